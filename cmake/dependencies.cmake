@@ -1,0 +1,12 @@
+# Debian 12 packages. Each is used by one unit of the program (Eigen and fmt aside).
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt 9 REQUIRED)
+find_package(assimp 5.2 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(CLI11 2.2 REQUIRED)
+find_package(SQLite3 3.40 REQUIRED)
+find_package(Threads REQUIRED)
+find_library(LIBDEFLATE deflate REQUIRED)
+find_library(OSMESA OSMesa REQUIRED)
+find_library(GLEW NAMES libGLEW.a REQUIRED)
+find_path(STB_INCLUDE stb/stb_image_write.h REQUIRED)

@@ -1,0 +1,20 @@
+# Flags that hold for the whole program.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+# Same input, same bits on every CPU: no fused multiply-add, and Eigen's templates in one flavour only.
+add_compile_options(-ffp-contract=off)
+add_compile_definitions(EIGEN_DONT_VECTORIZE)
+
+add_compile_options(-Wall -Wextra -Wconversion -Werror)
+
+if(CRADLE_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()

@@ -1,0 +1,17 @@
+#include "core/error.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace cradle {
+
+Error::Error(ErrorKind kind, const std::string& where, const std::string& what)
+    : kind_(kind), message_(where.empty() ? what : where + ": " + what) {}
+
+void failCheck(const char* condition, const char* file, int line) {
+  std::fprintf(stderr, "cradle: internal check failed: %s (%s:%d). This is a bug in cradle, not in your scene.\n",
+               condition, file, line);
+  std::_Exit(1);
+}
+
+}  // namespace cradle

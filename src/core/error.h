@@ -1,0 +1,43 @@
+#pragma once
+
+#include <exception>
+#include <string>
+
+namespace cradle {
+
+/// What went wrong, and with it the exit code of the program. 1 is left to our own bugs (CRADLE_CHECK).
+enum class ErrorKind {
+  usage = 2,         // command line
+  scene = 3,         // scene text
+  mesh = 4,          // a mesh file missing, unreadable or unusable
+  output = 5,        // disk full, not writable, not ours to replace
+  encoder = 6,       // ffmpeg missing or failed
+  unstable = 7,      // non-finite state or unexplained energy
+  limit = 8,         // memory, events per second
+  different = 9,     // a comparison found a difference
+  interrupted = 130  // SIGINT; SIGTERM is 143, see interruption.h
+};
+
+/// Something the user can mend: scene, mesh, command line, disk. Loaders and simulations throw it, only main catches
+/// it.
+class Error : public std::exception {
+ public:
+  /// `where` is a place the user can go to ("scenes/pendulum.json:12:7 /bodies/0/mass", a file, an option);
+  /// `what` says what was found, what is allowed and what to do.
+  Error(ErrorKind kind, const std::string& where, const std::string& what);
+  const char* what() const noexcept override { return message_.c_str(); }
+  ErrorKind kind() const { return kind_; }
+
+ private:
+  ErrorKind kind_;
+  std::string message_;  // "where: what"
+};
+
+/// Prints `condition` and its place, and ends the program with exit code 1.
+[[noreturn]] void failCheck(const char* condition, const char* file, int line);
+
+}  // namespace cradle
+
+/// Our own mistake, not the user's: always on, stops at once.
+#define CRADLE_CHECK(condition) \
+  ((condition) ? static_cast<void>(0) : ::cradle::failCheck(#condition, __FILE__, __LINE__))

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace cradle {
+
+/// Progress of long work on stderr, with time left: one line that is redrawn on a terminal, and elsewhere a plain line
+/// every ten seconds. Silent when `quiet`. The line is ended when the object goes.
+class Progress {
+ public:
+  /// `unit` names what is counted ("frames"); total > 0.
+  Progress(std::string task, std::string unit, long total, bool quiet);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// `done` of `total` are finished. Cheap enough to call for every frame.
+  void update(long done);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string line(long done) const;
+
+  std::string task_, unit_;
+  long total_;
+  bool quiet_, animated_, drawn_ = false;
+  Clock::time_point start_, lastDrawn_;
+};
+
+}  // namespace cradle

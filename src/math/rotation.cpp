@@ -1,0 +1,35 @@
+#include "math/rotation.h"
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace cradle {
+
+Quat rotationAbout(const Vec3& axis, double angle) {
+  const Vec3 vector = std::sin(angle / 2) * axis.normalized();
+  return {std::cos(angle / 2), vector.x(), vector.y(), vector.z()};
+}
+
+Quat rotationFromEuler(const std::array<double, 3>& angles, const std::string& order) {
+  CRADLE_CHECK(order.size() == 3);
+  Quat rotation = Quat::Identity();
+  for (std::size_t i = 0; i < 3; ++i) {
+    CRADLE_CHECK(order[i] >= 'x' && order[i] <= 'z');
+    rotation = rotation * rotationAbout(Vec3::Unit(order[i] - 'x'), angles[i]);
+  }
+  return rotation;
+}
+
+Quat orientationRate(const Quat& worldFromBody, const Vec3& angularVelocity) {
+  const Vec3 half = 0.5 * angularVelocity;
+  return Quat(0, half.x(), half.y(), half.z()) * worldFromBody;
+}
+
+Mat3 skew(const Vec3& a) {
+  Mat3 matrix;
+  matrix << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return matrix;
+}
+
+}  // namespace cradle

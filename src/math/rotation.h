@@ -1,0 +1,24 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "math/types.h"
+
+namespace cradle {
+
+/// Rotation by `angle` (rad) about `axis` (any non-zero length), counter-clockwise seen from its tip.
+Quat rotationAbout(const Vec3& axis, double angle);
+
+/// Euler angles in any order: "zyx" is R = Rz(angles[0]) Ry(angles[1]) Rx(angles[2]), angles in rad. `order` is three
+/// letters of x, y, z, neighbours different (Tait-Bryan "zyx" or proper Euler "zxz").
+Quat rotationFromEuler(const std::array<double, 3>& angles, const std::string& order);
+
+/// Time derivative of an orientation worldFromBody that turns with `angularVelocity` (rad/s, world):
+/// q' = 1/2 (0, w) q.
+Quat orientationRate(const Quat& worldFromBody, const Vec3& angularVelocity);
+
+/// The matrix of the cross product: skew(a) b = a x b.
+Mat3 skew(const Vec3& a);
+
+}  // namespace cradle

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh/triangle_mesh.h"
+
+namespace cradle {
+
+/// A mesh file as a scene names it.
+struct MeshReference {
+  std::string path;    // as the program opens it
+  std::string object;  // name of one object of the file; empty: all objects are one body
+  double scale = 1;    // file's units to metres, > 0
+};
+
+/// A model with what had to be mended on the way.
+struct LoadedModel {
+  Model model;
+  std::vector<std::string> notes;  // "42 degenerate triangles dropped", "was inside-out: turned"
+};
+
+/// All objects of a mesh file (.3ds, .obj, .ply, .stl, .gltf, .glb ...; Z-up files of 3ds come out Y up), node
+/// transforms applied in double, `scale` applied. Throws Error(mesh) if the file is missing, unreadable, over the size
+/// caps, has no triangles, non-finite vertices or indices out of range.
+std::vector<LoadedModel> loadObjects(const std::string& path, double scale);
+
+/// The object that `reference` names, or all objects of the file joined into one model. Throws as loadObjects does, and
+/// Error(mesh) naming the objects there are if the named one does not exist.
+LoadedModel loadModel(const MeshReference& reference);
+
+}  // namespace cradle

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "math/types.h"
+
+namespace cradle {
+
+using Triangle = std::array<std::uint32_t, 3>;  // vertex indices, counter-clockwise seen from outside
+
+/// Positions and triangles alone: what physics sees of a model. Vertices are distinct (welded where bit-equal).
+struct TriangleMesh {
+  std::vector<Vec3> vertices;  // m, body's frame
+  std::vector<Triangle> triangles;
+};
+
+/// Colour and finish of some triangles of a model, as its file has them.
+struct ModelMaterial {
+  std::string name;
+  Vec3f baseColor = Vec3f::Constant(0.69f);  // sRGB, 0..1
+  std::uint32_t firstTriangle = 0;  // triangles [firstTriangle, firstTriangle + triangleCount) of the drawn mesh
+  std::uint32_t triangleCount = 0;
+};
+
+/// What a picture shows of a model: a vertex per corner with its own normal, so that smoothing groups are kept.
+struct DrawnMesh {
+  std::vector<Vec3> vertices;  // m, body's frame
+  std::vector<Vec3f> normals;  // unit, one per vertex
+  std::vector<Triangle> triangles;
+  std::vector<ModelMaterial> materials;  // ranges cover all triangles, in order
+};
+
+/// One object of a mesh file (or a whole file as one body): the same surface twice, for physics and for pictures.
+struct Model {
+  std::string name;
+  TriangleMesh solid;
+  DrawnMesh drawn;
+};
+
+/// Joins vertices whose coordinates are bit-equal (-0 counts as 0), in order of first appearance, and drops triangles
+/// that have two equal corners. O(n log n).
+TriangleMesh weld(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
+
+}  // namespace cradle

@@ -1,0 +1,161 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "math/types.h"
+#include "mesh/load_mesh.h"
+#include "mesh/mass_properties.h"
+#include "mesh/primitives.h"
+
+// A scene file as plain data: checked, defaults filled in, references turned into indices, meshes loaded.
+
+namespace cradle {
+
+constexpr int kWorld = -1;  // in place of a body index: the world
+
+struct Material {
+  std::string name;                // empty: the material of bodies that name none
+  double density = 1000;           // kg/m^3
+  double restitution = 0;          // 0..1
+  double staticFriction = 0.5;     // >= dynamicFriction
+  double dynamicFriction = 0.5;    // >= 0
+  std::optional<Vec3f> baseColor;  // sRGB, 0..1; unset: #b0b0b0, or what a model's file says
+  double metallic = 0;             // 0..1
+  double roughness = 0.5;          // 0..1
+};
+
+/// How two materials meet: as `pairs` says, else restitution minimum, frictions geometric mean.
+struct SurfacePair {
+  double restitution = 0, staticFriction = 0.5, dynamicFriction = 0.5;
+};
+
+/// The solid half of a mesh shape is models[model].solid in the body's frame, scale applied.
+struct ModelShape {
+  int model = 0;  // index into Scene::models
+};
+using Shape = std::variant<Sphere, Box, Cylinder, Capsule, Plane, ModelShape>;
+
+enum class CollisionChoice { automatic, sphere, box, hull, mesh, none };
+enum class Motion { dynamic, fixed };
+
+struct Body {
+  std::string name;
+  std::string where;  // place in the scene file, for messages: "FILE:LINE:COLUMN /bodies/0"
+  int material = 0;   // index into Scene::materials
+  bool namesMaterial = false;
+  Shape shape = Sphere{};
+  CollisionChoice collision = CollisionChoice::automatic;
+  Motion motion = Motion::dynamic;
+  MassProperties massProperties;        // body's frame; mass 0 if fixed
+  RigidTransform worldFromBody;         // start; of the body's frame, not of the centre of mass
+  Vec3 linearVelocity = Vec3::Zero();   // m/s, world, of the centre of mass
+  Vec3 angularVelocity = Vec3::Zero();  // rad/s, world
+};
+
+/// A point of a body's frame, or of the world.
+struct Anchor {
+  int body = kWorld;
+  Vec3 point = Vec3::Zero();  // m
+};
+
+struct Spring {
+  std::string name, where;
+  Anchor anchorA, anchorB;
+  double stiffness = 0;   // N/m, >= 0
+  double damping = 0;     // N s/m, >= 0
+  double restLength = 0;  // m, >= 0
+};
+
+struct Rod {
+  std::string name, where;
+  Anchor anchorA, anchorB;
+  double length = 0;  // m, > 0
+};
+
+struct Rope {
+  std::string name, where;
+  Anchor anchorA, anchorB;
+  double maxLength = 0;    // m, > 0
+  double restitution = 0;  // 0..1
+};
+
+struct BallJoint {
+  std::string name, where;
+  Anchor anchorA, anchorB;
+};
+
+struct Hinge {
+  std::string name, where;
+  Anchor anchorA, anchorB;
+  Vec3 axis = Vec3::UnitZ();  // unit, frame of body A
+};
+
+/// A force for a time at a point of a body, or at the first hit of a ray on its surface.
+struct Push {
+  struct Ray {
+    Vec3 origin, direction;  // m, unit; world
+  };
+  std::string where;
+  int body = 0;
+  std::variant<Vec3, Ray> target;  // a point of the body's frame (m), or a ray
+  Vec3 force = Vec3::Zero();       // N, world
+  double start = 0;                // s
+  double duration = 0;             // s, > 0
+};
+
+enum class MethodName { explicitEuler, semiImplicitEuler, rk4, dop853 };
+struct Method {
+  MethodName name = MethodName::semiImplicitEuler;
+  std::optional<double> timeStep;  // s, > 0
+  std::string where;
+};
+
+struct Output {
+  double framesPerSecond = 60, playbackSpeed = 1;
+  int width = 1280, height = 720;
+};
+
+struct Camera {
+  Vec3 position, target;                    // m, world
+  double verticalFieldOfView = 0.69813170;  // rad (40 degrees)
+};
+
+struct Light {
+  Vec3 direction = Vec3(-1, -2, -1).normalized();  // unit; the way the light goes
+  Vec3f color = Vec3f::Ones();                     // sRGB, 0..1
+  double intensity = 3;
+};
+
+struct Scene {
+  std::string path, text;  // the file itself
+  std::string name, description;
+  double duration = 0;  // s, > 0
+  Vec3 gravity = Vec3(0, -9.81, 0);
+  double accuracy = 1e-6;
+  bool namesAccuracy = false;
+  std::optional<Method> method;  // unset: the program chooses
+  Output output;
+  std::vector<Material> materials;
+  std::vector<std::vector<SurfacePair>> surfacePairs;  // [material][material], symmetric
+  std::vector<Model> models;
+  std::vector<Body> bodies;  // copies written out, in the order of the file
+  std::vector<Spring> springs;
+  std::vector<Rod> rods;
+  std::vector<Rope> ropes;
+  std::vector<BallJoint> ballJoints;
+  std::vector<Hinge> hinges;
+  std::vector<Push> pushes;
+  std::optional<Camera> camera;  // unset: framed so that all that moves stays in view
+  std::vector<Light> lights;     // at least one
+};
+
+/// N: a trajectory has frames 0..N, a film pictures 0..N-1 (at least one).
+long lastFrame(const Scene& scene);
+
+/// Time of frame k in s.
+double frameTime(const Scene& scene, long frame);
+
+}  // namespace cradle

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "math/types.h"
+#include "mesh/mass_properties.h"
+#include "mesh/triangle_mesh.h"
+
+// What a simulation leaves: states at frames, events between them, energies. The only bridge from physics to pictures.
+
+namespace cradle {
+
+/// State of one dynamic body.
+struct BodyState {
+  Vec3 position = Vec3::Zero();         // m, of the centre of mass
+  Quat orientation = Quat::Identity();  // worldFromBody
+  Vec3 linearVelocity = Vec3::Zero();   // m/s, of the centre of mass
+  Vec3 angularVelocity = Vec3::Zero();  // rad/s, world
+};
+
+/// kinetic + potential + dissipated - work is constant.
+struct EnergyBalance {
+  double kinetic = 0;                   // J
+  double potential = 0;                 // J, -sum m g.x + springs
+  double dissipated = 0;                // J, by dampers, impacts, friction, ropes since the start
+  double work = 0;                      // J, by pushes since the start
+  Vec3 momentum = Vec3::Zero();         // kg m/s
+  Vec3 angularMomentum = Vec3::Zero();  // kg m^2/s, about the world origin
+};
+
+struct Frame {
+  long number = 0;
+  double time = 0;                // s
+  std::vector<BodyState> states;  // one a dynamic body, in the order of the bodies
+  EnergyBalance energy;
+};
+
+enum class EventKind { impact, taut, slack, rest, slip, stick, roll, release, wake, pushStart, pushEnd, pushMissed };
+
+struct Event {
+  double time = 0;  // s
+  EventKind kind = EventKind::impact;
+  int bodyA = 0, bodyB = -1;   // indices into TrajectoryHeader::bodies; -1: the world
+  Vec3 point = Vec3::Zero();   // m, world
+  Vec3 normal = Vec3::Zero();  // unit, from A to B
+  double impulse = 0;          // N s
+};
+
+/// A body as the trajectory describes it.
+struct BodyRecord {
+  std::string name;
+  bool isDynamic = true;
+  int mesh = -1;                  // index into TrajectoryHeader::meshes, or -1
+  std::string shape;              // JSON of the primitive, as in the scene file; empty if it has a mesh
+  MassProperties massProperties;  // body's frame; mass 0 if static
+};
+
+/// All that is known before the first step.
+struct TrajectoryHeader {
+  std::string scene, scenePath;        // text of the scene file; path for messages
+  std::string plan, accuracy, method;  // what was chosen, in words
+  std::vector<BodyRecord> bodies;
+  std::vector<Model> meshes;  // named "path#object@scale"; drawn and solid
+};
+
+/// What is known after the last step.
+struct RunCost {
+  double cpuSeconds = 0;  // integration alone
+  long evaluations = 0;   // of the right-hand side
+};
+
+struct Trajectory {
+  TrajectoryHeader header;
+  std::vector<Frame> frames;
+  std::vector<Event> events;
+  RunCost cost;
+};
+
+/// Name of an event kind as the files have it, and back (throws Error(scene) for an unknown one).
+std::string eventKindName(EventKind kind);
+EventKind eventKindFromName(const std::string& name);
+
+}  // namespace cradle
