@@ -1,0 +1,45 @@
+#include "dynamics/rigid_body.h"
+
+#include <Eigen/LU>
+
+#include "math/rotation.h"
+
+namespace cradle {
+
+RigidBody makeRigidBody(const MassProperties& properties) {
+  return {properties.mass, 1 / properties.mass, properties.centerOfMass, properties.inertiaTensor,
+          properties.inertiaTensor.inverse()};
+}
+
+AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state) {
+  if (attachment.body == kFixed) return {Vec3::Zero(), attachment.point, Vec3::Zero()};
+  const Vec3 arm = orientation(state, attachment.body).normalized() * attachment.point;
+  return {arm, centerOfMass(state, attachment.body) + arm,
+          linearVelocity(state, attachment.body) + angularVelocity(state, attachment.body).cross(arm)};
+}
+
+Mat3 worldInverseInertia(const RigidBody& body, const Quat& worldFromBody) {
+  const Mat3 rotation = worldFromBody.normalized().toRotationMatrix();
+  return rotation * body.inverseInertia * rotation.transpose();
+}
+
+void applyImpulse(const std::vector<RigidBody>& bodies, int body, const Vec3& arm, const Vec3& impulse,
+                  VectorX& state) {
+  if (body == kFixed) return;
+  const RigidBody& inertia = bodies[static_cast<std::size_t>(body)];
+  linearVelocity(state, body) += inertia.inverseMass * impulse;
+  angularVelocity(state, body) += worldInverseInertia(inertia, orientation(state, body)) * arm.cross(impulse);
+}
+
+void turnBody(VectorX& state, Eigen::Index body, const Vec3& rotation) {
+  const double angle = rotation.norm();
+  if (angle == 0) return;
+  setOrientation(state, body, (rotationAbout(rotation, angle) * orientation(state, body)).normalized());
+}
+
+void normalizeOrientations(VectorX& state) {
+  for (Eigen::Index body = 0; body < bodyCount(state); ++body)
+    setOrientation(state, body, orientation(state, body).normalized());
+}
+
+}  // namespace cradle

@@ -1,0 +1,79 @@
+#include "impact/pairwise.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "impact/contact_impulse.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kClosedPart = 1e-12;         // of the fastest closing speed: what is left is rounding
+constexpr long kMostImpulsesPerPair = 10000;  // a row of n balls needs n, a box on its corners tens
+constexpr double kEnergyRounding = 1e-12;     // of the energy that the impulse moves
+
+double closingSpeed(const Contact& contact, const VectorX& state) {
+  return -contact.normal.dot(relativeVelocity(contact, state));
+}
+
+/// Impulse that slides: friction at its limit against the sliding, the normal velocity reversed by `restitution`.
+Vec3 slidingImpulse(const Contact& contact, const Mat3& inverseMass, const Vec3& velocity, double friction,
+                    double restitution) {
+  const Vec3 sliding = velocity - contact.normal.dot(velocity) * contact.normal;
+  Vec3 direction = contact.normal - friction * sliding.stableNormalized();
+  double response = contact.normal.dot(inverseMass * direction);
+  if (response <= 0) {  // friction that jams: no impulse along this direction separates the pair
+    direction = contact.normal;
+    response = contact.normal.dot(inverseMass * direction);
+  }
+  return -(1 + restitution) * contact.normal.dot(velocity) / response * direction;
+}
+
+}  // namespace
+
+Vec3 pairImpulse(const Contact& contact, const SurfaceLaw& law, double restSpeed, const std::vector<RigidBody>& bodies,
+                 const VectorX& state) {
+  const Vec3 velocity = relativeVelocity(contact, state);
+  const double closing = -contact.normal.dot(velocity);
+  if (closing <= 0) return Vec3::Zero();
+  const Mat3 inverseMass = inverseMassAt(contact, bodies, state);
+  const double restitution = closing > restSpeed ? law.restitution : 0;
+  const Vec3 frictionless = slidingImpulse(contact, inverseMass, velocity, 0, restitution);
+  if (law.staticFriction == 0) return frictionless;
+
+  // Does friction hold the point still?
+  const Vec3 wanted = restitution * closing * contact.normal - velocity;
+  Vec3 impulse = inverseMass.lu().solve(wanted);
+  const double normal = contact.normal.dot(impulse);
+  const double tangential = (impulse - normal * contact.normal).norm();
+  if (!(normal > 0 && tangential <= law.staticFriction * normal))
+    impulse = slidingImpulse(contact, inverseMass, velocity, law.dynamicFriction, restitution);
+
+  const double gained = impulse.dot(velocity + 0.5 * (inverseMass * impulse));
+  const bool addsEnergy = gained > kEnergyRounding * std::abs(impulse.dot(velocity));
+  return addsEnergy ? frictionless : impulse;
+}
+
+void resolvePairwise(std::vector<ImpactContact>& impacts, const std::vector<RigidBody>& bodies, VectorX& state) {
+  double fastest = 0;
+  const long most = kMostImpulsesPerPair * static_cast<long>(impacts.size());
+  for (long count = 0; count < most; ++count) {
+    const auto next = std::max_element(impacts.begin(), impacts.end(), [&](const auto& left, const auto& right) {
+      return closingSpeed(left.contact, state) < closingSpeed(right.contact, state);
+    });
+    if (next == impacts.end()) return;
+    const double closing = closingSpeed(next->contact, state);
+    fastest = std::max(fastest, closing);
+    if (closing <= kClosedPart * fastest) return;
+    const Vec3 impulse = pairImpulse(next->contact, next->law, next->restSpeed, bodies, state);
+    applyContactImpulse(next->contact, impulse, bodies, state);
+    next->impulse += next->contact.normal.dot(impulse);
+  }
+  throw Error(ErrorKind::unstable, "",
+              "an impact among " + std::to_string(impacts.size()) +
+                  " contacts does not come to an end when resolved pair by pair");
+}
+
+}  // namespace cradle

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <vector>
+
+#include "dynamics/constraint_forces.h"
+#include "dynamics/integrators/step.h"
+#include "dynamics/spring.h"
+
+namespace cradle {
+
+/// Moving bodies and everything smooth that acts on them.
+struct Mechanism {
+  Vec3 gravity = Vec3::Zero();  // m/s^2
+  std::vector<RigidBody> bodies;
+  std::vector<SpringForce> springs;
+  std::vector<RodConstraint> rods;
+};
+
+/// The equations of motion of a mechanism in the layout of state.h:
+///   x' = v, q' = 1/2 (0, w) q, m v' = f, body frame: I w' = T - w x I w (Newton, Euler), rods by constraint forces.
+/// Bodies marked as resting do not move, whatever acts on them.
+class EquationsOfMotion {
+ public:
+  /// Keeps a reference to `mechanism`.
+  explicit EquationsOfMotion(const Mechanism& mechanism);
+
+  /// State rate. Allocates only in its first call.
+  void evaluate(const VectorX& state, VectorX& rate);
+
+  void setResting(std::size_t body, bool resting) { resting_[body] = resting; }
+  bool isResting(std::size_t body) const { return resting_[body] != 0; }
+
+  /// How often evaluate was called.
+  long evaluations() const { return evaluations_; }
+
+  /// As integrators take it; refers to this object.
+  RightHandSide rightHandSide();
+
+ private:
+  void applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& rate) const;
+  void applySprings(const VectorX& state, VectorX& rate) const;
+  void applyConstraintForces(const VectorX& state, VectorX& rate);
+
+  const Mechanism& mechanism_;
+  std::vector<char> resting_;
+  ConstraintSolver solver_;
+  VectorX constraintResidual_;
+  long evaluations_ = 0;
+};
+
+/// Rates of positions and orientations alone, from the velocities in `state`: writes the leading entries of `rate`.
+void evaluatePoseRates(const VectorX& state, VectorX& rate);
+
+}  // namespace cradle

@@ -1,0 +1,21 @@
+#include "dynamics/integrators/semi_implicit_euler.h"
+
+namespace cradle {
+
+void semiImplicitEuler(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep,
+                       Step& step) {
+  step.time = time;
+  step.timeStep = timeStep;
+  step.startState = state;
+  step.startRate.resize(state.size());
+  step.work.resize(state.size());
+  rightHandSide.rate(time, state, step.startRate);
+
+  const Eigen::Index positions = rightHandSide.positions, others = state.size() - positions;
+  step.state = state;
+  step.state.tail(others) += timeStep * step.startRate.tail(others);
+  rightHandSide.positionRate(step.state, step.work);
+  step.state.head(positions) += timeStep * step.work.head(positions);
+}
+
+}  // namespace cradle

@@ -1,0 +1,44 @@
+#include "dynamics/invariants.h"
+
+namespace cradle {
+namespace {
+
+/// Spin angular momentum about the centre of mass, world frame: R I R^T w.
+Vec3 spinMomentum(const RigidBody& body, const VectorX& state, Eigen::Index index) {
+  const Quat worldFromBody = orientation(state, index).normalized();
+  return worldFromBody * (body.inertiaTensor * (worldFromBody.conjugate() * Vec3(angularVelocity(state, index))));
+}
+
+}  // namespace
+
+double kineticEnergy(const std::vector<RigidBody>& bodies, const VectorX& state) {
+  double energy = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    energy += 0.5 * bodies[i].mass * linearVelocity(state, body).squaredNorm() +
+              0.5 * angularVelocity(state, body).dot(spinMomentum(bodies[i], state, body));
+  }
+  return energy;
+}
+
+Invariants invariantsOf(const Mechanism& mechanism, const VectorX& state) {
+  Invariants sums;
+  sums.kinetic = kineticEnergy(mechanism.bodies, state);
+  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    const Vec3 position = centerOfMass(state, body);
+    const Vec3 momentum = mechanism.bodies[i].mass * linearVelocity(state, body);
+    sums.potential -= mechanism.bodies[i].mass * mechanism.gravity.dot(position);
+    sums.momentum += momentum;
+    sums.angularMomentum += position.cross(momentum) + spinMomentum(mechanism.bodies[i], state, body);
+  }
+  for (const SpringForce& spring : mechanism.springs) sums.potential += actionOf(spring, state).potential;
+  return sums;
+}
+
+double energyConstant(const Mechanism& mechanism, const VectorX& state) {
+  const Invariants sums = invariantsOf(mechanism, state);
+  return sums.kinetic + sums.potential + dissipatedEnergy(state) - pushWork(state);
+}
+
+}  // namespace cradle

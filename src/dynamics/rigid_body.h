@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "dynamics/state.h"
+#include "mesh/mass_properties.h"
+
+namespace cradle {
+
+constexpr int kFixed = -1;  // in place of a moving body's index: something that does not move
+
+/// What never changes about a moving body. All tensors about the centre of mass, in the body's frame.
+struct RigidBody {
+  double mass = 1;                         // kg
+  double inverseMass = 1;                  // 1/kg
+  Vec3 centerOfMass = Vec3::Zero();        // m, in the body's frame
+  Mat3 inertiaTensor = Mat3::Identity();   // kg m^2
+  Mat3 inverseInertia = Mat3::Identity();  // 1/(kg m^2)
+};
+
+RigidBody makeRigidBody(const MassProperties& properties);
+
+/// A point fixed to a moving body, or to the world.
+struct Attachment {
+  int body = kFixed;
+  Vec3 point = Vec3::Zero();  // m, from the centre of mass in the body's frame; world if fixed
+};
+
+/// Where an attachment is and how it moves.
+struct AttachmentMotion {
+  Vec3 arm;       // m, from the centre of mass, world; zero if fixed
+  Vec3 position;  // m, world
+  Vec3 velocity;  // m/s, world
+};
+AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state);
+
+/// The inverse inertia tensor of a body in the world's frame.
+Mat3 worldInverseInertia(const RigidBody& body, const Quat& worldFromBody);
+
+/// Adds to the velocities what an impulse (N s) at `arm` from the centre of mass (m), both world, gives. Nothing if
+/// fixed.
+void applyImpulse(const std::vector<RigidBody>& bodies, int body, const Vec3& arm, const Vec3& impulse, VectorX& state);
+
+/// Turns a body by a rotation vector (rad, world; small or not) and keeps its orientation of unit length.
+void turnBody(VectorX& state, Eigen::Index body, const Vec3& rotation);
+
+/// Makes all orientations of unit length again.
+void normalizeOrientations(VectorX& state);
+
+}  // namespace cradle

@@ -1,0 +1,84 @@
+#include "impact/lasting_contact.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "impact/contact_impulse.h"
+
+namespace cradle {
+namespace {
+
+constexpr int kMostSweeps = 1000;         // heavy on light converges slowly: the study shows how slowly
+constexpr double kConvergedPart = 1e-12;  // of the largest change of a sweep
+constexpr int kMostOverlapSweeps = 20;
+constexpr double kOverlapLeft = 1e-15;  // m
+
+/// The nearest impulse with a normal part >= 0 and a tangential part <= friction times it (not the projection onto the
+/// cone: the normal part is kept, as Coulomb's law asks).
+Vec3 clampToCone(const Vec3& impulse, const Vec3& normal, double friction) {
+  const double pressing = std::max(0.0, impulse.dot(normal));
+  const Vec3 tangential = impulse - impulse.dot(normal) * normal;
+  const double size = tangential.norm(), most = friction * pressing;
+  return pressing * normal + (size > most ? most / size : 1.0) * tangential;
+}
+
+/// One contact's turn: normal part first, then friction under the pressure that it left.
+double relax(LastingContact& lasting, const Mat3& inverseMass, const std::vector<RigidBody>& bodies, VectorX& state) {
+  const Contact& contact = lasting.contact;
+  const Vec3& normal = contact.normal;
+  const Vec3 velocity = relativeVelocity(contact, state);
+  const double normalResponse = normal.dot(inverseMass * normal);
+  const double tangentResponse = std::max(1e-300, inverseMass.trace() - normalResponse);  // bounds both eigenvalues
+  const Vec3 sliding = velocity - velocity.dot(normal) * normal;
+
+  const Vec3 free = lasting.impulse - velocity.dot(normal) / normalResponse * normal - sliding / tangentResponse;
+  const Vec3 held = clampToCone(free, normal, lasting.friction);
+  const Vec3 change = held - lasting.impulse;
+  lasting.impulse = held;
+  applyContactImpulse(contact, change, bodies, state);
+  return (inverseMass * change).norm();
+}
+
+}  // namespace
+
+double solveLastingContacts(std::vector<LastingContact>& contacts, const std::vector<RigidBody>& bodies,
+                            VectorX& state) {
+  std::vector<Mat3> inverseMasses;
+  for (const LastingContact& lasting : contacts) inverseMasses.push_back(inverseMassAt(lasting.contact, bodies, state));
+  double largest = 0, change = 0;
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    change = 0;
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+      change = std::max(change, relax(contacts[i], inverseMasses[i], bodies, state));
+    largest = std::max(largest, change);
+    if (change <= kConvergedPart * largest) break;
+  }
+  return change;
+}
+
+void resolveOverlaps(const ContactGeometry& geometry, const std::vector<Contact>& contacts,
+                     const std::vector<RigidBody>& bodies, VectorX& state) {
+  for (int sweep = 0; sweep < kMostOverlapSweeps; ++sweep) {
+    double deepest = 0;
+    for (const Contact& found : contacts) {
+      const Contact contact = contactOf(geometry, found.pair, found.feature, state);
+      deepest = std::max(deepest, -contact.separation);
+      if (contact.separation >= 0) continue;
+      const double response = contact.normal.dot(inverseMassAt(contact, bodies, state) * contact.normal);
+      const double shift = -contact.separation / response;
+      for (const auto& [body, sign] : {std::pair(contact.bodyA, -1.0), std::pair(contact.bodyB, 1.0)}) {
+        if (body == kFixed) continue;
+        const RigidBody& inertia = bodies[static_cast<std::size_t>(body)];
+        const Vec3 push = sign * shift * contact.normal;
+        const Vec3 arm = contact.point - centerOfMass(state, body);
+        const Vec3 turn = worldInverseInertia(inertia, orientation(state, body)) * arm.cross(push);
+        centerOfMass(state, body) += inertia.inverseMass * push;
+        turnBody(state, body, turn);
+      }
+    }
+    if (deepest <= kOverlapLeft) return;
+  }
+}
+
+}  // namespace cradle

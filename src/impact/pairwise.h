@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/separation.h"
+
+namespace cradle {
+
+/// A contact that takes part in an impact.
+struct ImpactContact {
+  Contact contact;
+  SurfaceLaw law;
+  double restSpeed = 0;  // m/s: slower closing does not rebound
+  double impulse = 0;    // N s along the normal: what resolvePairwise applied in all
+};
+
+/// The textbook law of simultaneous impacts: the pair that closes fastest gets its two-body impulse (Newton's
+/// restitution, Coulomb's friction), again and again until no pair closes. Friction never adds energy: an impulse that
+/// would is replaced by the one without friction. Throws Error(unstable) if it does not come to an end.
+void resolvePairwise(std::vector<ImpactContact>& impacts, const std::vector<RigidBody>& bodies, VectorX& state);
+
+/// The impulse (N s, world, on B) of one pair alone. Zero if it does not close.
+Vec3 pairImpulse(const Contact& contact, const SurfaceLaw& law, double restSpeed, const std::vector<RigidBody>& bodies,
+                 const VectorX& state);
+
+}  // namespace cradle

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "collision/collider.h"
+#include "dynamics/equations_of_motion.h"
+#include "scene/scene.h"
+
+namespace cradle {
+
+/// A scene turned into what the methods work on.
+struct Assembly {
+  Mechanism mechanism;
+  ContactGeometry geometry;
+  VectorX state;                                // at time 0
+  std::vector<int> sceneBodies;                 // scene body of each moving body
+  std::vector<std::pair<int, int>> pairBodies;  // scene bodies A, B of each collider pair
+  std::vector<std::string> warnings;
+};
+
+/// The scene must have passed refuseUnsupported. Start velocities that violate rods are projected, with a warning.
+Assembly assemble(const Scene& scene);
+
+/// Throws Error(scene) that names everything in the scene that no method simulates yet, one a line.
+void refuseUnsupported(const Scene& scene);
+
+/// What the scene asks for and nothing uses yet.
+std::vector<std::string> unusedRequests(const Scene& scene);
+
+}  // namespace cradle

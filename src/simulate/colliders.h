@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "collision/collider.h"
+#include "scene/scene.h"
+
+namespace cradle {
+
+/// The collider of a body that is no plane, points in the body's frame; none if it does not collide.
+/// `collision: auto` of a mesh takes the primitive that it is recognised as, else its vertices.
+std::optional<BallsCollider> ballsColliderOf(const Body& body, const Scene& scene);
+
+/// Faults of pairs whose contact cannot be simulated yet: all but ball on ball, and anything on a plane.
+std::vector<std::string> unsupportedContacts(const Scene& scene);
+
+/// Do two bodies have to be watched for contact? (One moves, both collide.)
+bool mayTouch(const Body& a, const Body& b);
+
+}  // namespace cradle

@@ -1,0 +1,80 @@
+#include "simulate/energy_guard.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "dynamics/invariants.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kUnexplained = 10;  // times the energy that can be explained: far beyond any method's error
+constexpr double kSafePart = 0.5;    // of the stability limit: stable, and a few per cent accurate in frequency
+
+}  // namespace
+
+EnergyGuard::EnergyGuard(const Mechanism& mechanism, const VectorX& start, GuardNames names)
+    : mechanism_(mechanism),
+      start_(start),
+      names_(std::move(names)),
+      startConstant_(energyConstant(mechanism, start)),
+      startEnergy_(kineticEnergy(mechanism.bodies, start)),
+      excursions_(mechanism.bodies.size(), 0.0) {
+  for (const SpringForce& spring : mechanism.springs) startEnergy_ += actionOf(spring, start).potential;
+}
+
+void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
+  if (!state.allFinite()) fail(state, time, timeStep, "is not finite any more");
+  const double gravity = mechanism_.gravity.norm();
+  double explained = startEnergy_ + std::abs(pushWork(state));
+  for (std::size_t i = 0; i < excursions_.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    excursions_[i] = std::max(excursions_[i], (centerOfMass(state, body) - centerOfMass(start_, body)).norm());
+    explained += mechanism_.bodies[i].mass * gravity * (excursions_[i] + gravity * timeStep * timeStep);
+  }
+  const double change = std::abs(energyConstant(mechanism_, state) - startConstant_);
+  if (!(change <= kUnexplained * explained))
+    fail(state, time, timeStep,
+         fmt::format("has energy from nowhere ({:.3g} J of {:.3g} J explained)", change, explained));
+}
+
+void EnergyGuard::fail(const VectorX& state, double time, double timeStep, const std::string& what) const {
+  std::size_t worst = 0;
+  double most = -1;
+  for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    const double energy = mechanism_.bodies[i].mass * linearVelocity(state, body).squaredNorm();
+    const double size = std::isfinite(energy) ? energy : INFINITY;
+    if (size > most) most = size, worst = i;
+  }
+  throw Error(
+      ErrorKind::unstable, "",
+      fmt::format("unstable at {:.6g} s: body \"{}\" {}; {}", time, names_.bodies[worst], what, cause(timeStep)));
+}
+
+std::string EnergyGuard::cause(double timeStep) const {
+  double fastest = 0;
+  std::size_t spring = 0;
+  for (std::size_t i = 0; i < mechanism_.springs.size(); ++i) {
+    const double frequency = naturalFrequency(mechanism_.springs[i], mechanism_.bodies, start_);
+    if (frequency > fastest) fastest = frequency, spring = i;
+  }
+  const double product = timeStep * fastest;
+  if (fastest == 0 || product < kSafePart * names_.stabilityLimit)
+    return fmt::format("{} at a time step of {:.3g} s cannot follow it; give \"method\" a smaller \"timeStep\"",
+                       names_.method, timeStep);
+  if (names_.stabilityLimit == 0)
+    return fmt::format(
+        "spring \"{}\" (omega {:.4g} rad/s) gains energy at any step of {}; use semiImplicitEuler or rk4",
+        names_.springs[spring], fastest, names_.method);
+  return fmt::format(
+      "spring \"{}\" has step x omega = {:.3g} s x {:.4g} rad/s = {:.3g}, the limit of {} is {:.3g}; a timeStep of "
+      "{:.2g} "
+      "s is safe",
+      names_.springs[spring], timeStep, fastest, product, names_.method, names_.stabilityLimit,
+      kSafePart * names_.stabilityLimit / fastest);
+}
+
+}  // namespace cradle

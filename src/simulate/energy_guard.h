@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dynamics/equations_of_motion.h"
+
+namespace cradle {
+
+/// What the guard has to know to say what went wrong in the user's words.
+struct GuardNames {
+  std::vector<std::string> bodies, springs;  // in the order of the mechanism
+  std::string method;                        // "semi-implicit Euler"
+  double stabilityLimit = 0;                 // of step x omega; 0: unstable at any step
+};
+
+/// Watches kinetic + potential + dissipated - work, which no method may change by more than its own error. A change
+/// that exceeds ten times all energy that there was to begin with, or that gravity can have given on the way travelled,
+/// is a blow-up.
+class EnergyGuard {
+ public:
+  EnergyGuard(const Mechanism& mechanism, const VectorX& start, GuardNames names);
+
+  /// Throws Error(unstable), naming time, body, spring and a step that would be safe, if the state is not finite or its
+  /// energy is unexplained.
+  void check(const VectorX& state, double time, double timeStep);
+
+ private:
+  [[noreturn]] void fail(const VectorX& state, double time, double timeStep, const std::string& what) const;
+  std::string cause(double timeStep) const;
+
+  const Mechanism& mechanism_;
+  VectorX start_;
+  GuardNames names_;
+  double startConstant_, startEnergy_;  // J
+  std::vector<double> excursions_;      // m: farthest that each body has been from its start
+};
+
+}  // namespace cradle

@@ -1,0 +1,125 @@
+#include "simulate/resting_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "impact/lasting_contact.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kLiftablePart = 1e-7;  // of its size: the height that a slow body's kinetic energy could lift it
+constexpr double kSupportPart = 1e-6;   // of its size: how far a point may hover and still carry
+constexpr double kResidualAcceleration = 1e-6;  // of gravity: what supporting forces may leave
+
+int rootOf(std::vector<int>& parents, int body) {
+  while (parents[static_cast<std::size_t>(body)] != body) body = parents[static_cast<std::size_t>(body)];
+  return body;
+}
+
+void join(std::vector<int>& parents, int a, int b) {
+  if (a == kFixed || b == kFixed) return;
+  const int rootA = rootOf(parents, a), rootB = rootOf(parents, b);
+  parents[static_cast<std::size_t>(std::max(rootA, rootB))] = std::min(rootA, rootB);
+}
+
+}  // namespace
+
+RestingBodies::RestingBodies(const Mechanism& mechanism, const ContactGeometry& geometry, EquationsOfMotion& equations)
+    : mechanism_(mechanism),
+      geometry_(geometry),
+      equations_(equations),
+      sizes_(mechanism.bodies.size(), 0.0),
+      restingIsland_(mechanism.bodies.size(), -1) {
+  double smallest = INFINITY;
+  for (const BallsCollider& collider : geometry.balls) {
+    if (collider.body == kFixed) continue;
+    sizes_[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
+    smallest = std::min(smallest, collider.boundingRadius);
+  }
+  supportMargin_ = kSupportPart * smallest;
+}
+
+std::vector<int> RestingBodies::islandsOf(const std::vector<Contact>& contacts) const {
+  std::vector<int> parents(mechanism_.bodies.size());
+  std::iota(parents.begin(), parents.end(), 0);
+  for (const Contact& contact : contacts) join(parents, contact.bodyA, contact.bodyB);
+  for (const SpringForce& spring : mechanism_.springs) join(parents, spring.anchorA.body, spring.anchorB.body);
+  for (const RodConstraint& rod : mechanism_.rods) join(parents, rod.anchorA.body, rod.anchorB.body);
+  std::vector<int> islands;
+  for (std::size_t body = 0; body < parents.size(); ++body) islands.push_back(rootOf(parents, static_cast<int>(body)));
+  return islands;
+}
+
+bool RestingBodies::isSlow(std::size_t index, const VectorX& state) const {
+  const Eigen::Index body = static_cast<Eigen::Index>(index);
+  const double speed2 = linearVelocity(state, body).squaredNorm() +
+                        sizes_[index] * sizes_[index] * angularVelocity(state, body).squaredNorm();
+  return speed2 < 2 * mechanism_.gravity.norm() * kLiftablePart * sizes_[index];
+}
+
+bool RestingBodies::canBeHeld(const std::vector<int>& islands, int island, const VectorX& state) {
+  // Accelerations stand in for velocities: the impulses that stop them are then the forces that hold the bodies.
+  VectorX rate, accelerations = state;
+  equations_.evaluate(state, rate);
+  const Eigen::Index velocities = static_cast<Eigen::Index>(islands.size()) * kVelocitySize;
+  accelerations.segment(poseComponents(state), velocities) = rate.segment(poseComponents(state), velocities);
+
+  std::vector<Contact> supports;
+  findContacts(geometry_, state, supportMargin_, supports);
+  std::vector<LastingContact> lasting;
+  for (const Contact& contact : supports) {
+    const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
+    if (islands[static_cast<std::size_t>(body)] == island)
+      lasting.push_back({contact, geometry_.pairs[contact.pair].law.staticFriction, Vec3::Zero()});
+  }
+  solveLastingContacts(lasting, mechanism_.bodies, accelerations);
+
+  for (std::size_t i = 0; i < islands.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    const double left =
+        std::max(linearVelocity(accelerations, body).norm(), sizes_[i] * angularVelocity(accelerations, body).norm());
+    if (islands[i] == island && left > kResidualAcceleration * mechanism_.gravity.norm()) return false;
+  }
+  return true;
+}
+
+std::vector<int> RestingBodies::settle(const std::vector<Contact>& contacts, VectorX& state) {
+  std::vector<int> settled;
+  if (contacts.empty()) return settled;
+  const std::vector<int> islands = islandsOf(contacts);
+  std::vector<char> candidate(islands.size(), 0);
+  for (const Contact& contact : contacts)
+    for (const int body : {contact.bodyA, contact.bodyB})
+      if (body != kFixed && !isResting(body))
+        candidate[static_cast<std::size_t>(islands[static_cast<std::size_t>(body)])] = 1;
+  for (std::size_t body = 0; body < islands.size(); ++body)
+    if (!isSlow(body, state)) candidate[static_cast<std::size_t>(islands[body])] = 0;
+
+  for (std::size_t island = 0; island < islands.size(); ++island) {
+    if (!candidate[island] || !canBeHeld(islands, static_cast<int>(island), state)) continue;
+    for (std::size_t body = 0; body < islands.size(); ++body) {
+      if (islands[body] != static_cast<int>(island)) continue;
+      state.segment<kVelocitySize>(velocityOffset(state, static_cast<Eigen::Index>(body))).setZero();
+      if (!equations_.isResting(body)) settled.push_back(static_cast<int>(body));
+      equations_.setResting(body, true);
+      restingIsland_[body] = static_cast<int>(island);
+    }
+  }
+  return settled;
+}
+
+std::vector<int> RestingBodies::wake(int body) {
+  std::vector<int> woken;
+  if (!isResting(body)) return woken;
+  const int island = restingIsland_[static_cast<std::size_t>(body)];
+  for (std::size_t other = 0; other < restingIsland_.size(); ++other) {
+    if (!equations_.isResting(other) || restingIsland_[other] != island) continue;
+    equations_.setResting(other, false);
+    woken.push_back(static_cast<int>(other));
+  }
+  return woken;
+}
+
+}  // namespace cradle

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/separation.h"
+#include "dynamics/equations_of_motion.h"
+
+namespace cradle {
+
+/// Bodies that lie still: nothing is computed for them until something touches them. Bodies come to rest together with
+/// all that they touch or are tied to (their island), and wake together.
+class RestingBodies {
+ public:
+  RestingBodies(const Mechanism& mechanism, const ContactGeometry& geometry, EquationsOfMotion& equations);
+
+  /// Brings islands to rest that are slow and that contact forces within the friction cones can hold, given the
+  /// contacts of this instant. Returns the bodies that came to rest.
+  std::vector<int> settle(const std::vector<Contact>& contacts, VectorX& state);
+
+  /// Wakes the island of a body. Returns the bodies that were woken.
+  std::vector<int> wake(int body);
+
+  bool isResting(int body) const { return body != kFixed && equations_.isResting(static_cast<std::size_t>(body)); }
+
+ private:
+  std::vector<int> islandsOf(const std::vector<Contact>& contacts) const;
+  bool isSlow(std::size_t body, const VectorX& state) const;
+  bool canBeHeld(const std::vector<int>& islands, int island, const VectorX& state);
+
+  const Mechanism& mechanism_;
+  const ContactGeometry& geometry_;
+  EquationsOfMotion& equations_;
+  std::vector<double> sizes_;  // m: bounding radius of each moving body, 0 if it does not collide
+  double supportMargin_ = 0;   // m
+  std::vector<int> restingIsland_;
+};
+
+}  // namespace cradle

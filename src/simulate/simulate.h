@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "trajectory/trajectory.h"
+
+namespace cradle {
+
+/// Where the results of a run go, in the order of time: events of an instant before the frame of that instant.
+struct SimulationSink {
+  std::function<void(const Frame&)> frame;
+  std::function<void(const Event&)> event;
+};
+
+/// What a trajectory says before its first frame.
+TrajectoryHeader headerOf(const Scene& scene);
+
+/// Runs the scene from frame 0 to lastFrame(scene) and hands on what happens. Throws Error(scene) for what cannot be
+/// simulated yet (before the first frame), Error(unstable), Error(limit), Error(interrupted), and whatever the sink
+/// throws. `warnings` gets what the user should know.
+RunCost simulate(const Scene& scene, const SimulationSink& sink, std::vector<std::string>& warnings);
+
+/// The whole run in memory.
+Trajectory simulate(const Scene& scene);
+
+}  // namespace cradle

@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dynamics/integrators/explicit_euler.h"
+#include "dynamics/integrators/rk4.h"
+#include "dynamics/integrators/semi_implicit_euler.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kGravity = 9.81;
+
+/// x'' = -omega^2 x + g as (x, v): an oscillator, or free fall for omega = 0.
+RightHandSide oscillator(double omega, double gravity) {
+  return {[=](double, const VectorX& state, VectorX& rate) {
+            rate[0] = state[1];
+            rate[1] = -omega * omega * state[0] + gravity;
+          },
+          [](const VectorX& state, VectorX& rate) { rate[0] = state[1]; }, 1};
+}
+
+VectorX run(Integrator integrate, const RightHandSide& rightHandSide, const VectorX& start, double timeStep,
+            int steps) {
+  Step step;
+  VectorX state = start;
+  for (int i = 0; i < steps; ++i) {
+    integrate(rightHandSide, state, i * timeStep, timeStep, step);
+    state = step.state;
+  }
+  return state;
+}
+
+double energy(const VectorX& state, double omega) {
+  return 0.5 * state[1] * state[1] + 0.5 * omega * omega * state[0] * state[0];
+}
+
+// n steps of semi-implicit Euler from rest: v_n = g n h, x_n = g h^2 n (n + 1) / 2 = g t^2 / 2 + g h t / 2.
+TEST(SemiImplicitEuler, FreeFallErrorIsHalfGravityTimesStepTimesTime) {
+  const double timeStep = 0.01, time = 1;
+  const VectorX end = run(semiImplicitEuler, oscillator(0, kGravity), Eigen::Vector2d(0, 0), timeStep, 100);
+  // 100 additions of numbers below 10: rounding below 100 * 1e-15.
+  EXPECT_NEAR(end[0], kGravity * time * time / 2 + kGravity * timeStep * time / 2, 1e-13);
+  EXPECT_NEAR(end[1], kGravity * time, 1e-13);
+}
+
+// The same sum with the old velocity: x_n = g h^2 n (n - 1) / 2.
+TEST(ExplicitEuler, FreeFallErrorIsMinusHalfGravityTimesStepTimesTime) {
+  const double timeStep = 0.01, time = 1;
+  const VectorX end = run(explicitEuler, oscillator(0, kGravity), Eigen::Vector2d(0, 0), timeStep, 100);
+  EXPECT_NEAR(end[0], kGravity * time * time / 2 - kGravity * timeStep * time / 2, 1e-13);
+}
+
+TEST(ExplicitEuler, OscillatorEnergyGrowsByOnePlusStepTimesOmegaSquaredAStep) {
+  const double omega = 3, timeStep = 0.01;
+  const VectorX end = run(explicitEuler, oscillator(omega, 0), Eigen::Vector2d(1, 0), timeStep, 200);
+  const double growth = std::pow(1 + std::pow(timeStep * omega, 2), 200);
+  EXPECT_NEAR(energy(end, omega) / energy(Eigen::Vector2d(1, 0), omega), growth, growth * 1e-12);
+}
+
+// x and v map by a matrix of determinant 1 that keeps v^2 + omega^2 x^2 - h omega^2 x v (E. Hairer, C. Lubich, G.
+// Wanner, "Geometric Numerical Integration", I.1).
+TEST(SemiImplicitEuler, OscillatorKeepsItsModifiedEnergy) {
+  const double omega = 3, timeStep = 0.1;
+  const auto modified = [=](const VectorX& s) { return 2 * energy(s, omega) - timeStep * omega * omega * s[0] * s[1]; };
+  const Eigen::Vector2d start(1, 0.3);
+  const VectorX end = run(semiImplicitEuler, oscillator(omega, 0), start, timeStep, 1000);
+  EXPECT_NEAR(modified(end), modified(start), 1e-11);
+}
+
+TEST(SemiImplicitEuler, OscillatorIsStableUpToStepTimesOmegaTwo) {
+  const auto farthest = [](double omega) {
+    return run(semiImplicitEuler, oscillator(omega, 0), Eigen::Vector2d(1, 0), 1, 1000).cwiseAbs().maxCoeff();
+  };
+  EXPECT_LT(farthest(1.99), 1e3);
+  EXPECT_GT(farthest(2.01), 1e6);
+}
+
+// One step multiplies (x, v) by the Taylor polynomial of degree 4 of exp(h A): energy grows by 1 - z^6/72 + z^8/576, z
+// = h omega, which is below 1 up to z = 2 sqrt(2).
+TEST(Rk4, OscillatorEnergyChangesAsItsTaylorPolynomialSays) {
+  for (const double z : {0.5, 2.8, 2.9}) {
+    const VectorX end = run(rk4, oscillator(z, 0), Eigen::Vector2d(1, 0), 1, 10);
+    const double expected = std::pow(1 - std::pow(z, 6) / 72 + std::pow(z, 8) / 576, 10);
+    EXPECT_NEAR(energy(end, z) / energy(Eigen::Vector2d(1, 0), z), expected, expected * 1e-12) << z;
+  }
+}
+
+TEST(Rk4, IsExactForPolynomialsOfDegreeFour) {
+  const RightHandSide quartic{[](double t, const VectorX&, VectorX& rate) { rate[0] = 5 * t * t * t - 3 * t * t + 1; },
+                              nullptr, 0};
+  const VectorX end = run(rk4, quartic, VectorX::Zero(1), 2, 1);
+  EXPECT_NEAR(end[0], 5 * 16 / 4.0 - 8 + 2, 1e-14 * 20);
+}
+
+TEST(Interpolant, IsExactForCubicsAndAtBothEnds) {
+  const auto cubic = [](double t) { return 1 + 2 * t - 3 * t * t + 4 * t * t * t; };
+  const RightHandSide rate{[](double t, const VectorX&, VectorX& r) { r[0] = 2 - 6 * t + 12 * t * t; }, nullptr, 0};
+  Step step;
+  rk4(rate, VectorX::Constant(1, cubic(0.5)), 0.5, 2, step);
+  prepareInterpolant(rate, step);
+  VectorX state;
+  for (const double fraction : {0.0, 0.1, 0.37, 0.5, 0.9, 1.0}) {
+    interpolate(step, fraction, state);
+    EXPECT_NEAR(state[0], cubic(0.5 + 2 * fraction), 1e-13 * cubic(2.5)) << fraction;
+  }
+}
+
+}  // namespace
+}  // namespace cradle

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "scene/load_scene.h"
+#include "simulate/simulate.h"
+
+// Experiments run a scene text through the whole of the physics.
+
+namespace cradle {
+
+/// The scene of a JSON text; no meshes.
+inline Scene sceneOf(const std::string& text) {
+  return parseScene(text, "experiment.json", [](const MeshReference&) { return LoadedModel{}; }).scene;
+}
+
+/// `"method": ...` for a scene text.
+inline std::string methodText(const std::string& name, double timeStep) {
+  return fmt::format(R"("method": {{"name": "{}", "timeStep": {}}})", name, timeStep);
+}
+
+/// The state of the first dynamic body in the last frame.
+inline BodyState endOf(const Trajectory& trajectory) {
+  return trajectory.frames.back().states[0];
+}
+
+inline double energyConstantOf(const Frame& frame) {
+  return frame.energy.kinetic + frame.energy.potential + frame.energy.dissipated - frame.energy.work;
+}
+
+/// Largest difference of two orientations' components, q and -q being the same.
+inline double orientationError(const Quat& a, const Quat& b) {
+  const Eigen::Vector4d difference = a.coeffs() - b.coeffs(), sum = a.coeffs() + b.coeffs();
+  return std::min(difference.cwiseAbs().maxCoeff(), sum.cwiseAbs().maxCoeff());
+}
+
+/// Order of a method from its errors at steps h, h/2, h/4, ...: the mean slope in powers of two.
+inline double measuredOrder(const std::vector<double>& errors) {
+  return std::log2(errors.front() / errors.back()) / static_cast<double>(errors.size() - 1);
+}
+
+}  // namespace cradle
