@@ -99,6 +99,20 @@ TEST(TimeOfImpact, GlancingHitsAndMissesAreToldApart) {
   }
 }
 
+// A ball that starts and ends its step at rest, but moves by 1 m in between (x = 3 s^2 - 2 s^3): slow ends do not hide
+// the ball on its way. They meet where 3 s^2 - 2 s^3 = 0.4.
+TEST(TimeOfImpact, CountsTheWayBetweenSlowEnds) {
+  Step step;
+  step.timeStep = 1;
+  step.startState = stateOf({{Vec3::Zero(), Vec3::Zero()}, {Vec3(0.5, 0, 0), Vec3::Zero()}});
+  step.state = stateOf({{Vec3(1, 0, 0), Vec3::Zero()}, {Vec3(0.5, 0, 0), Vec3::Zero()}});
+  step.startRate = step.endRate = VectorX::Zero(step.state.size());
+  const auto impact = firstImpact(twoBalls(0.05), step, kTolerance);
+  ASSERT_TRUE(impact);
+  const double s = impact->fraction;
+  EXPECT_NEAR(3 * s * s - 2 * s * s * s, 0.4, 1e-11);
+}
+
 TEST(TimeOfImpact, TakesTheEarliestOfSeveralPairs) {
   ContactGeometry geometry = twoBalls(0.1);
   geometry.planes = {{Vec3::Zero(), Vec3::UnitY()}};
