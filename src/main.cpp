@@ -1,1 +1,155 @@
-int main() {}
+// The command line: options to commands, errors to exit codes. The only unit that sees CLI11.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <functional>
+#include <new>
+
+#include "commands/compare.h"
+#include "commands/inspect_mesh.h"
+#include "commands/pictures.h"
+#include "commands/simulate_scene.h"
+#include "core/error.h"
+#include "core/interruption.h"
+#include "trajectory/export.h"
+
+namespace cradle {
+namespace {
+
+constexpr int kTerminatedExit = 143;
+
+/// Everything that the command line can say, and the command that it asks for.
+struct CommandLine {
+  std::string input, output, expected, actual;
+  SceneOverrides overrides;
+  PictureOptions pictures;
+  double scale = 1, tolerance = 0;
+  bool json = false, quiet = false;
+  std::function<void()> command;
+};
+
+CLI::App* addCommand(CLI::App& app, CommandLine& line, const char* name, const char* description, const char* example,
+                     std::function<void()> run) {
+  CLI::App* command = app.add_subcommand(name, description);
+  command->footer(fmt::format("Example:\n  {}", example));
+  command->callback([&line, run = std::move(run)] { line.command = run; });
+  return command;
+}
+
+void addOutput(CLI::App* command, CommandLine& line, const char* what) {
+  command->add_option("-o,--output", line.output, what)->required();
+}
+
+void addPictureOptions(CLI::App* command, CommandLine& line) {
+  command->add_option("--size", line.pictures.size, "WIDTHxHEIGHT in pixels (default: the scene's)");
+  command->add_option("--shaders", line.pictures.shaders, "folder with shaders to use instead of the built-in ones");
+}
+
+void addSimulate(CLI::App& app, CommandLine& line) {
+  auto* simulate = addCommand(app, line, "simulate", "Simulate a scene into a trajectory file",
+                              "cradle simulate scenes/newtons_cradle.json -o cradle.sqlite",
+                              [&] { simulateScene(line.input, line.output, line.overrides, line.quiet); });
+  simulate->add_option("scene", line.input, "scene file (JSON)")->required();
+  addOutput(simulate, line, "trajectory file to write");
+  simulate->add_option("--accuracy", line.overrides.accuracy, "in place of the scene's accuracy");
+  simulate->add_option("--method", line.overrides.method, "explicitEuler, semiImplicitEuler or rk4");
+  simulate->add_option("--time-step", line.overrides.timeStep, "step of --method in s");
+  simulate->add_option("--duration", line.overrides.duration, "in place of the scene's duration, in s");
+}
+
+void addPictures(CLI::App& app, CommandLine& line) {
+  auto* render = addCommand(app, line, "render", "Draw the frames of a scene or trajectory as PNG files",
+                            "cradle render scenes/newtons_cradle.json -o frames --frames 0:60",
+                            [&] { renderFrames(line.input, line.output, line.pictures, line.quiet); });
+  render->add_option("input", line.input, "scene or trajectory file")->required();
+  addOutput(render, line, "folder for frame_000000.png, ...");
+  render->add_option("--frames", line.pictures.frames, "FIRST:END, half-open (default: all)");
+  addPictureOptions(render, line);
+
+  auto* encode =
+      addCommand(app, line, "encode", "Make a film of a folder of frames", "cradle encode frames -o film.mp4",
+                 [&] { encodeFrames(line.input, line.output, line.pictures.framesPerSecond, line.quiet); });
+  encode->add_option("folder", line.input, "folder with frame_000000.png, ...")->required();
+  addOutput(encode, line, "film to write (.mp4)");
+  encode->add_option("--frames-per-second", line.pictures.framesPerSecond, "of the film")->capture_default_str();
+
+  auto* video = addCommand(app, line, "video", "Make a film of a scene or trajectory",
+                           "cradle video scenes/newtons_cradle.json -o cradle.mp4",
+                           [&] { makeFilm(line.input, line.output, line.pictures, line.quiet); });
+  video->add_option("input", line.input, "scene or trajectory file")->required();
+  addOutput(video, line, "film to write (.mp4)");
+  addPictureOptions(video, line);
+}
+
+void addQuestions(CLI::App& app, CommandLine& line) {
+  auto* inspect =
+      addCommand(app, line, "inspect", "Say what the objects of a mesh file are as bodies of density 1",
+                 "cradle inspect assets/l_prism.3ds", [&] { inspectMesh(line.input, line.scale, line.json); });
+  inspect->add_option("mesh", line.input, "mesh file (.3ds, .obj, .ply, .stl, .gltf, ...)")->required();
+  inspect->add_option("--scale", line.scale, "file's units to metres")->capture_default_str();
+  inspect->add_flag("--json", line.json, "print JSON");
+
+  auto* check = addCommand(app, line, "check", "Check a scene and its meshes without simulating",
+                           "cradle check scenes/newtons_cradle.json", [&] { checkScene(line.input); });
+  check->add_option("scene", line.input, "scene file (JSON)")->required();
+
+  auto* compare = addCommand(
+      app, line, "compare", "Compare images, folders of images, or trajectories (exit 9: different)",
+      "cradle compare expected/ actual/", [&] { compareResults(line.expected, line.actual, line.tolerance); });
+  compare->add_option("expected", line.expected, "image, folder or trajectory")->required();
+  compare->add_option("actual", line.actual, "the same kind")->required();
+  compare->add_option("--tolerance", line.tolerance, "for trajectories: max |x-x_ref|/(1+|x_ref|)")
+      ->capture_default_str();
+
+  auto* exported =
+      addCommand(app, line, "export", "Write a trajectory as a table", "cradle export cradle.sqlite -o cradle.csv",
+                 [&] { exportTrajectory(line.input, line.output); });
+  exported->add_option("trajectory", line.input, "trajectory file")->required();
+  addOutput(exported, line, "table to write (.csv)");
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Cradle: rigid-body physics from a scene file, and pictures of it.", "cradle");
+  CommandLine line;
+  app.set_version_flag("--version", "cradle " CRADLE_VERSION);
+  app.add_flag("-q,--quiet", line.quiet, "no progress on stderr");
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.footer("Example:\n  cradle video scenes/newtons_cradle.json -o cradle.mp4\n'cradle COMMAND --help' says more.");
+  addSimulate(app, line);
+  addPictures(app, line);
+  addQuestions(app, line);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
+  }
+  line.command();
+  if (std::fflush(stdout) != 0) throw Error(ErrorKind::output, "standard output", "cannot be written");
+  return 0;
+}
+
+int report(const Error& error) {
+  fmt::print(stderr, "{}\n", error.what());
+  if (error.kind() == ErrorKind::interrupted && interruptingSignal() == SIGTERM) return kTerminatedExit;
+  return static_cast<int>(error.kind());
+}
+
+}  // namespace
+}  // namespace cradle
+
+int main(int argc, char** argv) {
+  cradle::noteInterruptions();
+  try {
+    return cradle::run(argc, argv);
+  } catch (const cradle::Error& error) {
+    return cradle::report(error);
+  } catch (const std::bad_alloc&) {
+    return cradle::report({cradle::ErrorKind::limit, "", "out of memory; make the scene or the picture smaller"});
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "cradle: {}. This is a bug in cradle.\n", error.what());
+    return 1;
+  }
+}

@@ -27,18 +27,8 @@ Frame frameOf(const Simulation& simulation, const VectorX& state, long number, d
   return frame;
 }
 
-/// The state inside the motion that led to the simulation's present time.
-VectorX stateWithin(const Simulation& simulation, double time) {
-  const Step& step = simulation.lastStep();
-  VectorX state;
-  interpolate(step, (time - step.time) / step.timeStep, state);
-  normalizeOrientations(state);
-  return state;
-}
-
 void handOnEvents(Simulation& simulation, const SimulationSink& sink) {
-  for (const Event& event : simulation.takeEvents())
-    if (sink.event) sink.event(event);
+  for (const Event& event : simulation.takeEvents()) sink.event(event);
 }
 
 std::string shapeText(const Shape& shape) {
@@ -75,12 +65,12 @@ TrajectoryHeader headerOf(const Scene& scene) {
   return header;
 }
 
-RunCost simulate(const Scene& scene, const SimulationSink& sink, std::vector<std::string>& warnings) {
+RunCost simulate(const Scene& scene, const SimulationSink& sink) {
   refuseUnsupported(scene);
   const double start = cpuSeconds();
   Assembly assembly = assemble(scene);
-  warnings = unusedRequests(scene);
-  warnings.insert(warnings.end(), assembly.warnings.begin(), assembly.warnings.end());
+  for (const std::string& warning : unusedRequests(scene)) sink.warning(warning);
+  for (const std::string& warning : assembly.warnings) sink.warning(warning);
   Simulation simulation(scene, std::move(assembly));
   double cpu = cpuSeconds() - start;
 
@@ -95,7 +85,7 @@ RunCost simulate(const Scene& scene, const SimulationSink& sink, std::vector<std
 
     const double same = kSameTime * std::max(1.0, simulation.time());
     for (; frame <= lastFrame(scene) && frameTime(scene, frame) < simulation.time() - same; ++frame)
-      sink.frame(frameOf(simulation, stateWithin(simulation, frameTime(scene, frame)), frame, frameTime(scene, frame)));
+      sink.frame(frameOf(simulation, simulation.stateWithin(frameTime(scene, frame)), frame, frameTime(scene, frame)));
     handOnEvents(simulation, sink);
     for (; frame <= lastFrame(scene) && frameTime(scene, frame) <= simulation.time() + same; ++frame)
       sink.frame(frameOf(simulation, simulation.state(), frame, frameTime(scene, frame)));
@@ -106,10 +96,9 @@ RunCost simulate(const Scene& scene, const SimulationSink& sink, std::vector<std
 Trajectory simulate(const Scene& scene) {
   Trajectory trajectory;
   trajectory.header = headerOf(scene);
-  std::vector<std::string> warnings;
   const SimulationSink sink{[&](const Frame& frame) { trajectory.frames.push_back(frame); },
-                            [&](const Event& event) { trajectory.events.push_back(event); }};
-  trajectory.cost = simulate(scene, sink, warnings);
+                            [&](const Event& event) { trajectory.events.push_back(event); }, [](const std::string&) {}};
+  trajectory.cost = simulate(scene, sink);
   return trajectory;
 }
 

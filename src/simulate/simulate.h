@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "scene/scene.h"
 #include "trajectory/trajectory.h"
@@ -13,6 +12,7 @@ namespace cradle {
 struct SimulationSink {
   std::function<void(const Frame&)> frame;
   std::function<void(const Event&)> event;
+  std::function<void(const std::string&)> warning;  // what the user should know, before the first frame
 };
 
 /// What a trajectory says before its first frame.
@@ -20,8 +20,8 @@ TrajectoryHeader headerOf(const Scene& scene);
 
 /// Runs the scene from frame 0 to lastFrame(scene) and hands on what happens. Throws Error(scene) for what cannot be
 /// simulated yet (before the first frame), Error(unstable), Error(limit), Error(interrupted), and whatever the sink
-/// throws. `warnings` gets what the user should know.
-RunCost simulate(const Scene& scene, const SimulationSink& sink, std::vector<std::string>& warnings);
+/// throws.
+RunCost simulate(const Scene& scene, const SimulationSink& sink);
 
 /// The whole run in memory.
 Trajectory simulate(const Scene& scene);

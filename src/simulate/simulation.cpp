@@ -22,7 +22,7 @@ namespace {
 constexpr double kDefaultTimeStep = 1.0 / 960;  // s: 16 steps a frame at 60 frames a second
 constexpr double kTouchPart = 1e-9;             // of the smallest body's size: nearer counts as touching
 constexpr double kImpactPart = 1e-3;            // of the touching tolerance: how well an impact's gap is closed
-constexpr int kMostCorrections = 20;            // Newton steps to that end; 3 are usual
+constexpr int kMostCorrections = 60;            // steps tried to that end; 3 are usual
 constexpr int kMostImpactsPerStep = 10000;
 constexpr double kSlidingSpeed = 1e-6;  // m/s: slower counts as sticking
 constexpr double kTimeRounding = 1e-9;  // of a step: remainders below it are rounding
@@ -110,17 +110,36 @@ bool Simulation::stopAtFirstImpact() {
   prepareInterpolant(rightHandSide_, step_);
   const auto impact = firstImpact(assembly_.geometry, step_, touchTolerance_);
   if (!impact) return false;
-  const double whole = step_.timeStep;
-  double part = impact->fraction * whole;
-  for (int i = 0; i < kMostCorrections; ++i) {
-    integrate(time_ + part);
-    const Contact contact = contactOf(assembly_.geometry, impact->pair, impact->feature, step_.state);
-    const double closing = -contact.normal.dot(relativeVelocity(contact, step_.state));
-    if (std::abs(contact.separation) <= kImpactPart * touchTolerance_ || closing <= 0) break;
-    part = std::clamp(part + contact.separation / closing, 0.0, whole);
-  }
-  prepareInterpolant(rightHandSide_, step_);
+  shortenStepTo(*impact);
   return true;
+}
+
+/// Finds the length of step whose end has no gap, from the interpolant's guess: the Illinois variant of regula falsi
+/// (M. Dowell, P. Jarratt, 1971), which keeps the instant between a gap and an overlap.
+void Simulation::shortenStepTo(const ImpactTime& impact) {
+  const double whole = step_.timeStep;
+  const auto gapAfter = [&](double length) {
+    integrate(time_ + length);
+    return contactOf(assembly_.geometry, impact.pair, impact.feature, step_.state).separation;
+  };
+  double apart = 0, gapApart = contactOf(assembly_.geometry, impact.pair, impact.feature, state_).separation;
+  double over = impact.fraction * whole, gapOver = gapAfter(over);
+  while (gapOver > 0 && over < whole) {  // the method is later than its interpolant
+    apart = over, gapApart = gapOver;
+    over = std::min(whole, 2 * over), gapOver = gapAfter(over);
+  }
+  double weightApart = gapApart, weightOver = gapOver;
+  for (int i = 0; i < kMostCorrections && gapOver < -kImpactPart * touchTolerance_; ++i) {
+    const double length = over + (apart - over) * weightOver / (weightOver - weightApart);
+    const double gap = gapAfter(length);
+    if (std::abs(gap) <= kImpactPart * touchTolerance_) return;
+    if (gap > 0) {
+      apart = length, weightApart = gap, weightOver /= 2;
+    } else {
+      over = length, gapOver = weightOver = gap, weightApart /= 2;
+    }
+  }
+  integrate(time_ + over);
 }
 
 void Simulation::resolveContacts(const VectorX& before) {
@@ -197,6 +216,14 @@ void Simulation::holdLasting(const VectorX& before) {
   for (const LastingContact& contact : lasting)
     dissipatedEnergy(state_) -=
         contact.impulse.dot(relativeVelocity(contact.contact, before) + relativeVelocity(contact.contact, state_)) / 2;
+}
+
+VectorX Simulation::stateWithin(double time) {
+  prepareInterpolant(rightHandSide_, step_);
+  VectorX state;
+  interpolate(step_, (time - step_.time) / step_.timeStep, state);
+  normalizeOrientations(state);
+  return state;
 }
 
 EnergyBalance Simulation::energyOf(const VectorX& state) const {

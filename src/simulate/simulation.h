@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "collision/time_of_impact.h"
 #include "simulate/assembly.h"
 #include "simulate/energy_guard.h"
 #include "simulate/resting_bodies.h"
@@ -31,8 +32,8 @@ class Simulation {
 
   double time() const { return time_; }
   const VectorX& state() const { return state_; }
-  /// The motion that led to time(), before contacts were resolved there.
-  const Step& lastStep() const { return step_; }
+  /// The state at a time inside the motion that led to time(), before contacts were resolved there.
+  VectorX stateWithin(double time);
   long evaluations() const { return equations_.evaluations(); }
   EnergyBalance energyOf(const VectorX& state) const;
 
@@ -42,6 +43,7 @@ class Simulation {
  private:
   void integrate(double stepEnd);
   bool stopAtFirstImpact();
+  void shortenStepTo(const ImpactTime& impact);
   void resolveContacts(const VectorX& before);
   void findTouching();
   void wakeTouched();

@@ -107,6 +107,7 @@ TEST(TimeOfImpact, CountsTheWayBetweenSlowEnds) {
   step.startState = stateOf({{Vec3::Zero(), Vec3::Zero()}, {Vec3(0.5, 0, 0), Vec3::Zero()}});
   step.state = stateOf({{Vec3(1, 0, 0), Vec3::Zero()}, {Vec3(0.5, 0, 0), Vec3::Zero()}});
   step.startRate = step.endRate = VectorX::Zero(step.state.size());
+  step.hasEndRate = true;
   const auto impact = firstImpact(twoBalls(0.05), step, kTolerance);
   ASSERT_TRUE(impact);
   const double s = impact->fraction;

@@ -3,11 +3,7 @@
 namespace cradle {
 
 void explicitEuler(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep, Step& step) {
-  step.time = time;
-  step.timeStep = timeStep;
-  step.startState = state;
-  step.startRate.resize(state.size());
-  rightHandSide.rate(time, state, step.startRate);
+  beginStep(rightHandSide, state, time, timeStep, step);
   step.state = state + timeStep * step.startRate;
 }
 

@@ -6,14 +6,9 @@
 namespace cradle {
 
 void rk4(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep, Step& step) {
-  step.time = time;
-  step.timeStep = timeStep;
-  step.startState = state;
-  step.startRate.resize(state.size());
-  step.work.resize(state.size());
+  beginStep(rightHandSide, state, time, timeStep, step);
 
   VectorX& k = step.work;
-  rightHandSide.rate(time, state, step.startRate);
   step.state = state + (timeStep / 6) * step.startRate;
 
   step.stage = state + (timeStep / 2) * step.startRate;

@@ -4,12 +4,7 @@ namespace cradle {
 
 void semiImplicitEuler(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep,
                        Step& step) {
-  step.time = time;
-  step.timeStep = timeStep;
-  step.startState = state;
-  step.startRate.resize(state.size());
-  step.work.resize(state.size());
-  rightHandSide.rate(time, state, step.startRate);
+  beginStep(rightHandSide, state, time, timeStep, step);
 
   const Eigen::Index positions = rightHandSide.positions, others = state.size() - positions;
   step.state = state;

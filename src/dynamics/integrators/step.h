@@ -18,15 +18,19 @@ struct RightHandSide {
 struct Step {
   double time = 0, timeStep = 0;  // s: the step covers [time, time + timeStep]
   VectorX startState, startRate;
-  VectorX state, endRate;  // at time + timeStep; endRate only after prepareInterpolant
-  VectorX work, stage;     // scratch, kept so that a step allocates nothing
+  VectorX state, endRate;  // at time + timeStep
+  bool hasEndRate = false;
+  VectorX work, stage;  // scratch, kept so that a step allocates nothing
 };
 
 /// An integrator advances `state` by `timeStep` and leaves the result in `step`.
 using Integrator = void (*)(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep,
                             Step& step);
 
-/// Evaluates the rate at the end of the step, which interpolate needs. One evaluation.
+/// What all integrators begin with: notes the start and evaluates its rate.
+void beginStep(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep, Step& step);
+
+/// Evaluates the rate at the end of the step, which interpolate needs, unless it is there already.
 void prepareInterpolant(const RightHandSide& rightHandSide, Step& step);
 
 /// Cubic Hermite interpolant at time + fraction * timeStep (order 3; exact at both ends). 0 <= fraction <= 1.

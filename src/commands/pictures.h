@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace cradle {
+
+/// What the command line may say about pictures.
+struct PictureOptions {
+  std::optional<std::string> size;     // "WIDTHxHEIGHT"
+  std::optional<std::string> frames;   // "FIRST:END", half-open
+  std::optional<std::string> shaders;  // folder
+  double framesPerSecond = 60;         // of `encode`
+};
+
+/// `cradle render SCENE|TRAJECTORY -o FOLDER`: frame_000000.png, ... . Throws Error(output) if the folder holds
+/// anything but frames.
+void renderFrames(const std::string& input, const std::string& folder, const PictureOptions& options, bool quiet);
+
+/// `cradle encode FOLDER -o FILE.mp4`.
+void encodeFrames(const std::string& folder, const std::string& film, double framesPerSecond, bool quiet);
+
+/// `cradle video SCENE|TRAJECTORY -o FILE.mp4`.
+void makeFilm(const std::string& input, const std::string& film, const PictureOptions& options, bool quiet);
+
+}  // namespace cradle

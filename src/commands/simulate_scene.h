@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scene/scene.h"
+#include "trajectory/trajectory_file.h"
+
+namespace cradle {
+
+/// What the command line may put in place of what the scene says.
+struct SceneOverrides {
+  std::optional<double> accuracy;
+  std::optional<std::string> method;
+  std::optional<double> timeStep;  // s
+  std::optional<double> duration;  // s
+};
+
+/// `cradle simulate SCENE -o FILE.sqlite`. Throws as loading, simulating and writing do; an unfinished run says what it
+/// kept.
+void simulateScene(const std::string& scenePath, const std::string& output, const SceneOverrides& overrides,
+                   bool quiet);
+
+/// `cradle check SCENE`: loads the scene and its meshes and says what is in it.
+void checkScene(const std::string& scenePath);
+
+/// A scene file with its warnings printed to stderr, overrides applied.
+Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides);
+
+/// Simulates a scene into a trajectory file and finishes it, with progress and warnings on stderr.
+void simulateInto(TrajectoryWriter& writer, const Scene& scene, bool quiet);
+
+}  // namespace cradle

@@ -1,0 +1,307 @@
+#!/usr/bin/env python3
+"""The command line as its users meet it: exit codes, messages, what is left behind.
+
+    command_line_test.py PROGRAM SOURCE_FOLDER
+"""
+import csv, json, os, re, shutil, signal, sqlite3, struct, subprocess, sys, tempfile, time, unittest
+
+PROGRAM, SOURCE = sys.argv[1], sys.argv[2]
+BALL = os.path.join(SOURCE, "assets", "ball.3ds")
+
+
+def cradle(*arguments, **options):
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=300, **options)
+
+
+def scene(**changes):
+    document = {"schema": "cradle-scene/1", "name": "test", "duration": 0.1,
+                "output": {"framesPerSecond": 60, "width": 64, "height": 36},
+                "bodies": [{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1}]}
+    document.update(changes)
+    return {key: value for key, value in document.items() if value is not None}
+
+
+class InTemporaryFolder(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, content):
+        mode = "wb" if isinstance(content, bytes) else "w"
+        with open(self.path(name), mode) as file:
+            file.write(json.dumps(content, indent=1) if isinstance(content, dict) else content)
+        return self.path(name)
+
+    def listing(self):
+        return sorted(os.listdir(self.folder))
+
+    def refuses(self, exit_code, words, *arguments, leaves=None):
+        """The command ends with exit_code and one clear message that has the words in it; nothing new is left."""
+        before = self.listing() if leaves is None else leaves
+        result = cradle(*arguments)
+        self.assertEqual(result.returncode, exit_code, result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+        self.assertEqual(self.listing(), before)
+        return result
+
+
+class Usage(InTemporaryFolder):
+    def test_help_of_every_command_has_an_example(self):
+        for command in ("simulate", "render", "encode", "video", "inspect", "check", "compare", "export"):
+            result = cradle(command, "--help")
+            self.assertEqual(result.returncode, 0)
+            self.assertIn("Example:\n  cradle " + command, result.stdout)
+
+    def test_version_is_said(self):
+        self.assertRegex(cradle("--version").stdout, r"^cradle \d+\.\d+\.\d+\n$")
+
+    def test_wrong_usage_ends_with_2(self):
+        for arguments in ((), ("fly",), ("simulate",), ("simulate", "a.json"), ("simulate", "a.json", "-o", "b", "--fast"),
+                          ("inspect", BALL, "--scale", "x")):
+            self.assertEqual(cradle(*arguments).returncode, 2, arguments)
+
+    def test_options_come_in_any_order(self):
+        path = self.write("s.json", scene())
+        self.assertEqual(cradle("simulate", "-o", self.path("a.sqlite"), "--quiet", path).returncode, 0)
+        self.assertEqual(cradle("--quiet", "simulate", path, "-o", self.path("b.sqlite")).returncode, 0)
+
+    def test_bad_overrides_are_named(self):
+        path = self.write("s.json", scene())
+        for option, value in (("--accuracy", "1"), ("--duration", "-1"), ("--duration", "nan"), ("--method", "euler")):
+            self.refuses(2, [option, value], "simulate", path, "-o", self.path("x.sqlite"), option, value)
+        self.refuses(2, ["--time-step", "--method"], "simulate", path, "-o", self.path("x.sqlite"), "--time-step", "0.1")
+
+
+class Scenes(InTemporaryFolder):
+    def test_every_fault_is_told_with_its_place(self):
+        text = '{"schema": "cradle-scene/1", "name": "t", "duration": -1,\n "bodys": []}'
+        result = self.refuses(3, [":1:55 /duration: ", ":2:2 /bodys: ", "bodies"], "simulate", self.write("s.json", text), "-o",
+                              self.path("x.sqlite"), leaves=["s.json"])
+        self.assertGreaterEqual(len(result.stderr.splitlines()), 2)
+
+    def test_broken_texts_end_with_3(self):
+        for text in ("", "[", "[" * 100000, '{"a": 1, "a": 2}', "nonsense", '{"duration": 1e999}', '{"duration": NaN}'):
+            path = self.write("s.json", text)
+            self.refuses(3, ["s.json:"], "check", path)
+
+    def test_sizes_out_of_range_end_with_3(self):
+        path = self.write("s.json", scene(output={"width": 1000000000, "height": 2}))
+        self.refuses(3, ["/output/width"], "simulate", path, "-o", self.path("x.sqlite"))
+
+    def test_what_is_not_simulated_yet_is_refused_by_name(self):
+        rope = {"name": "r", "bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 1, 0], "maxLength": 2}
+        path = self.write("s.json", scene(ropes=[rope]))
+        self.refuses(3, ["/ropes/0", "a rope cannot be simulated yet"], "simulate", path, "-o", self.path("x.sqlite"))
+        path = self.write("s.json", scene(method={"name": "dop853"}))
+        self.refuses(3, ["/method", "dop853"], "check", path)
+
+    def test_accuracy_that_is_not_used_is_warned_about(self):
+        result = cradle("check", self.write("s.json", scene(accuracy=1e-8)))
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("accuracy", result.stderr)
+
+    def test_missing_scene_is_named(self):
+        self.refuses(3, ["nowhere.json"], "simulate", self.path("nowhere.json"), "-o", self.path("x.sqlite"))
+
+
+class Meshes(InTemporaryFolder):
+    def check_mesh(self, name, content, words):
+        self.write(name, content)
+        body = {"name": "b", "shape": {"mesh": name}}
+        path = self.write("s.json", scene(bodies=[body]))
+        return self.refuses(4, [name, *words], "simulate", path, "-o", self.path("x.sqlite"))
+
+    def test_unusable_files_end_with_4(self):
+        ball = open(BALL, "rb").read()
+        self.check_mesh("empty.3ds", b"", [])
+        self.check_mesh("cut.3ds", ball[:len(ball) // 2], [])
+        self.check_mesh("noise.3ds", bytes(range(256)) * 20, [])
+        self.refuses(4, ["nowhere.3ds"], "inspect", self.path("nowhere.3ds"))
+
+    def test_open_flat_and_single_polygons_say_what_is_open(self):
+        self.check_mesh("single.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ["open"])
+        corners = "".join(f"v {x} {y} {z}\n" for x in (0, 1) for y in (0, 1) for z in (0, 1))
+        faces = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3"]
+        self.check_mesh("missing_face.obj", corners + "".join(f"f {f}\n" for f in faces), ["4", "open"])
+        flat = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n"
+        self.check_mesh("flat.obj", flat, ["volume"])
+
+    def test_scene_faults_win_over_mesh_faults(self):
+        path = self.write("s.json", scene(duration=0, bodies=[{"name": "b", "shape": {"mesh": "nowhere.3ds"}}]))
+        self.refuses(3, ["/duration"], "check", path)
+
+    def test_inspect_prints_the_contracted_json(self):
+        result = cradle("inspect", BALL, "--json", "--scale", "0.5")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        (ball,) = json.loads(result.stdout)["objects"]
+        self.assertEqual(list(ball), ["name", "vertices", "triangles", "solid", "problems", "volume", "centerOfMass",
+                                      "inertiaTensor", "shape", "size"])
+        self.assertEqual((ball["solid"], ball["shape"], ball["problems"]), (True, "sphere", []))
+        self.assertAlmostEqual(ball["volume"], 4 / 3 * 3.14159265 * 0.125, delta=0.005 * 0.5236)  # facets cut below 0.5 %
+        self.assertEqual([round(edge, 6) for edge in ball["size"]], [1, 1, 1])
+
+
+class Trajectories(InTemporaryFolder):
+    def simulate(self, name, *options, **changes):
+        path = self.write(name + ".json", scene(**changes))
+        result = cradle("simulate", path, "-o", self.path(name + ".sqlite"), *options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return self.path(name + ".sqlite")
+
+    def test_frames_are_0_to_n_and_free_fall_is_right(self):
+        database = sqlite3.connect(self.simulate("fall", "--method", "rk4", "--time-step", "0.01", duration=0.5))
+        frames = database.execute("select id, time from frame order by id").fetchall()
+        self.assertEqual(len(frames), 31)
+        self.assertEqual(frames[30], (30, 0.5))
+        (height,) = database.execute("select py from state where frame = 30").fetchone()
+        self.assertAlmostEqual(height, -9.81 * 0.25 / 2, delta=1e-13)
+        keys = {key for key, in database.execute("select key from meta")}
+        self.assertLessEqual({"scene", "sceneHash", "scenePath", "version", "plan", "accuracy", "method", "cpuSeconds",
+                              "evaluations", "stateHash"}, keys)
+
+    def test_equal_runs_compare_equal_and_different_ones_exit_9(self):
+        a, b = self.simulate("a"), self.simulate("b")
+        c = self.simulate("c", bodies=[{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "position": [0, 0, 0.01]}])
+        self.assertEqual(cradle("compare", a, b).returncode, 0)
+        self.assertEqual(cradle("compare", a, c).returncode, 9)
+        self.assertEqual(cradle("compare", a, c, "--tolerance", "0.02").returncode, 0)
+
+    def test_export_writes_a_row_for_every_frame_and_body(self):
+        trajectory = self.simulate("a")
+        self.assertEqual(cradle("export", trajectory, "-o", self.path("a.csv")).returncode, 0)
+        rows = list(csv.DictReader(open(self.path("a.csv"))))
+        self.assertEqual(len(rows), 7)
+        self.assertEqual(cradle("export", trajectory, "-o", self.path("a.xyz")).returncode, 2)
+
+    def test_outputs_that_cannot_be_written_end_with_5(self):
+        path = self.write("s.json", scene())
+        self.refuses(5, ["/dev/full"], "simulate", path, "-o", "/dev/full")
+        self.refuses(5, [self.folder], "simulate", path, "-o", self.folder)
+        self.refuses(5, ["nowhere"], "simulate", path, "-o", self.path("nowhere/x.sqlite"))
+        self.refuses(5, ["/dev/full"], "video", path, "-o", "/dev/full")
+
+    def test_a_too_stiff_spring_ends_with_7_and_keeps_the_part(self):
+        spring = {"name": "stiff", "bodyA": "ball", "anchorA": [0, 0.1, 0], "anchorB": [0, 1, 0], "stiffness": 1e7, "restLength": 0.5}
+        path = self.write("s.json", scene(springs=[spring], duration=2))
+        self.refuses(7, ["unstable at", '"ball"', '"stiff"', "step x omega", "x.sqlite.part"], "simulate", path, "-o",
+                     self.path("x.sqlite"), leaves=["s.json", "x.sqlite.part"])
+        database = sqlite3.connect(self.path("x.sqlite.part"))
+        self.assertGreaterEqual(database.execute("select count(*) from frame").fetchone()[0], 1)
+
+    def test_interruption_keeps_a_valid_part(self):
+        path = self.write("s.json", scene(duration=100000))
+        for number, exit_code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
+            process = subprocess.Popen([PROGRAM, "simulate", path, "-o", self.path("x.sqlite")], stderr=subprocess.PIPE, text=True)
+            for _ in range(200):
+                time.sleep(0.05)
+                if os.path.exists(self.path("x.sqlite.part")):
+                    break
+            time.sleep(0.5)
+            process.send_signal(number)
+            _, stderr = process.communicate(timeout=20)
+            self.assertEqual(process.returncode, exit_code, stderr)
+            self.assertIn("x.sqlite.part", stderr)
+            self.assertEqual(self.listing(), ["s.json", "x.sqlite.part"])
+            database = sqlite3.connect(self.path("x.sqlite.part"))
+            self.assertEqual(database.execute("pragma integrity_check").fetchone(), ("ok",))
+            self.assertGreater(database.execute("select count(*) from frame").fetchone()[0], 1)
+            database.close()
+
+
+def png_size(path):
+    with open(path, "rb") as file:
+        header = file.read(24)
+    assert header[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", header[16:24])
+
+
+def film_frames(path):
+    counted = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries",
+                              "stream=nb_read_frames,width,height", "-of", "csv=p=0", path], capture_output=True, text=True)
+    return counted.stdout.strip()
+
+
+class Pictures(InTemporaryFolder):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("s.json", scene())
+
+    def test_render_writes_frames_0_to_n_minus_1(self):
+        self.assertEqual(cradle("render", self.scene, "-o", self.path("all")).returncode, 0)
+        self.assertEqual(sorted(os.listdir(self.path("all"))), [f"frame_{i:06}.png" for i in range(6)])
+        self.assertEqual(png_size(self.path("all/frame_000000.png")), (64, 36))
+
+    def test_a_range_may_name_the_last_frame_and_gives_the_same_files(self):
+        cradle("render", self.scene, "-o", self.path("all"))
+        self.assertEqual(cradle("render", self.scene, "-o", self.path("some"), "--frames", "4:7").returncode, 0)
+        self.assertEqual(sorted(os.listdir(self.path("some"))), [f"frame_{i:06}.png" for i in (4, 5, 6)])
+        for name in ("frame_000004.png", "frame_000005.png"):
+            self.assertEqual(open(self.path("all/" + name), "rb").read(), open(self.path("some/" + name), "rb").read())
+
+    def test_a_trajectory_draws_as_its_scene_does_wherever_it_lies(self):
+        body = {"name": "b", "shape": {"mesh": BALL, "scale": 0.1}}
+        path = self.write("m.json", scene(bodies=[body], springs=[{"bodyA": "b", "anchorA": {"vertex": 5}, "anchorB": [0, 1, 0], "stiffness": 100}]))
+        cradle("simulate", path, "-o", self.path("m.sqlite"))
+        os.mkdir(self.path("elsewhere"))
+        shutil.move(self.path("m.sqlite"), self.path("elsewhere/m.sqlite"))
+        os.remove(path)
+        self.assertEqual(cradle("render", self.path("elsewhere/m.sqlite"), "-o", self.path("a"), "--frames", "3:4").returncode, 0)
+        self.write("m.json", scene(bodies=[body], springs=[{"bodyA": "b", "anchorA": {"vertex": 5}, "anchorB": [0, 1, 0], "stiffness": 100}]))
+        cradle("render", path, "-o", self.path("b"), "--frames", "3:4")
+        self.assertEqual(open(self.path("a/frame_000003.png"), "rb").read(), open(self.path("b/frame_000003.png"), "rb").read())
+
+    def test_size_is_taken_from_the_command_line(self):
+        self.assertEqual(cradle("render", self.scene, "-o", self.path("f"), "--frames", "0:1", "--size", "50x40").returncode, 0)
+        self.assertEqual(png_size(self.path("f/frame_000000.png")), (50, 40))
+
+    def test_bad_ranges_and_sizes_are_refused(self):
+        for frames in ("3", "5:4", "0:99", "-1:3", "a:b"):
+            self.refuses(2, ["--frames", frames], "render", self.scene, "-o", self.path("f"), "--frames=" + frames)
+        self.refuses(3, ["--size"], "render", self.scene, "-o", self.path("f"), "--size", "1000000000x2")
+        self.refuses(2, ["--size"], "render", self.scene, "-o", self.path("f"), "--size", "64")
+
+    def test_a_folder_with_other_files_is_refused(self):
+        os.mkdir(self.path("f"))
+        open(self.path("f/thesis.txt"), "w").close()
+        self.refuses(5, ["thesis.txt"], "render", self.scene, "-o", self.path("f"))
+        self.assertEqual(os.listdir(self.path("f")), ["thesis.txt"])
+
+    def test_compare_of_pictures(self):
+        cradle("render", self.scene, "-o", self.path("a"))
+        cradle("render", self.scene, "-o", self.path("b"))
+        self.assertEqual(cradle("compare", self.path("a"), self.path("b")).returncode, 0)
+        os.replace(self.path("b/frame_000005.png"), self.path("b/frame_000000.png"))
+        result = cradle("compare", self.path("a"), self.path("b"))
+        self.assertEqual(result.returncode, 9)
+        self.assertIn("frame_000005.png: missing", result.stdout)
+
+    def test_video_has_all_frames(self):
+        self.assertEqual(cradle("video", self.scene, "-o", self.path("f.mp4")).returncode, 0)
+        self.assertEqual(film_frames(self.path("f.mp4")), "64,36,6")
+        self.assertEqual(self.listing(), ["f.mp4", "s.json"])
+
+    def test_encode_of_a_rendered_folder_has_all_frames(self):
+        cradle("render", self.scene, "-o", self.path("frames"))
+        self.assertEqual(cradle("encode", self.path("frames"), "-o", self.path("f.mp4")).returncode, 0)
+        self.assertEqual(film_frames(self.path("f.mp4")), "64,36,6")
+
+    def test_a_missing_or_dying_encoder_ends_with_6_and_leaves_nothing(self):
+        os.mkdir(self.path("bin"))
+        environment = {**os.environ, "PATH": self.path("bin")}
+        for script in (None, "#!/bin/sh\nexit 3\n", "#!/bin/sh\nhead -c 100 >/dev/null\necho no more >&2\nexit 1\n"):
+            if script:
+                with open(self.path("bin/ffmpeg"), "w") as file:
+                    file.write(script)
+                os.chmod(self.path("bin/ffmpeg"), 0o755)
+            result = cradle("video", self.scene, "-o", self.path("f.mp4"), env=environment)
+            self.assertEqual(result.returncode, 6, result.stderr)
+            self.assertIn("ffmpeg", result.stderr)
+            self.assertEqual(self.listing(), ["bin", "s.json"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)

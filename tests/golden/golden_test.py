@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""Pictures and states of the scenes, compared with those that were looked at and accepted.
+
+    golden_test.py PROGRAM SOURCE_FOLDER [--accept]
+
+Pictures pass by the rule of `cradle compare`; states to 1e-9, of 1 + their size. When a change means to change them:
+draw the old and the new picture (`cradle render SCENE -o FOLDER --frames N:M --size 320x180`), look at both at full size,
+and only then run with --accept, which writes tests/golden/SCENE/ anew; commit it with the reason.
+"""
+import csv, os, shutil, subprocess, sys, tempfile, unittest
+
+PROGRAM, SOURCE = sys.argv[1], sys.argv[2]
+ACCEPT = "--accept" in sys.argv
+GOLDEN = os.path.join(SOURCE, "tests", "golden")
+FRAMES = {  # scene: frames that are drawn; states are kept for these too
+    "newtons_cradle": (0, 14, 40, 300, 599),
+    "suspended_model": (0, 45, 300, 700),
+    "dropped_model": (0, 24, 50, 179),
+}
+TOLERANCE = 1e-9
+
+
+def cradle(*arguments):
+    result = subprocess.run([PROGRAM, *arguments, "--quiet"], capture_output=True, text=True)
+    if result.returncode:
+        raise AssertionError(f"cradle {' '.join(arguments)}: exit {result.returncode}\n{result.stdout}{result.stderr}")
+    return result.stdout
+
+
+def make(scene, folder):
+    """Pictures and states.csv of a scene's golden frames."""
+    trajectory, table = os.path.join(folder, "run.sqlite"), os.path.join(folder, "run.csv")
+    cradle("simulate", os.path.join(SOURCE, "scenes", scene + ".json"), "-o", trajectory)
+    cradle("export", trajectory, "-o", table)
+    with open(table) as source, open(os.path.join(folder, "states.csv"), "w", newline="") as target:
+        rows = csv.DictReader(source)
+        writer = csv.DictWriter(target, rows.fieldnames, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(row for row in rows if int(row["frame"]) in FRAMES[scene])
+    os.remove(table)
+    for frame in FRAMES[scene]:
+        cradle("render", trajectory, "-o", os.path.join(folder, "pictures"), "--frames", f"{frame}:{frame + 1}", "--size", "320x180")
+    os.remove(trajectory)
+
+
+class Golden(unittest.TestCase):
+    def check(self, scene):
+        with tempfile.TemporaryDirectory() as folder:
+            make(scene, folder)
+            expected = os.path.join(GOLDEN, scene)
+            if ACCEPT:
+                shutil.rmtree(expected, ignore_errors=True)
+                shutil.copytree(folder, expected)
+            self.compare_states(os.path.join(expected, "states.csv"), os.path.join(folder, "states.csv"))
+            cradle("compare", os.path.join(expected, "pictures"), os.path.join(folder, "pictures"))
+
+    def compare_states(self, expected, actual):
+        with open(expected) as a, open(actual) as b:
+            expected_rows, actual_rows = list(csv.DictReader(a)), list(csv.DictReader(b))
+        self.assertEqual(len(expected_rows), len(actual_rows))
+        for row, other in zip(expected_rows, actual_rows):
+            for column, value in row.items():
+                if column in ("body", "frame"):
+                    self.assertEqual(value, other[column])
+                else:
+                    self.assertAlmostEqual(float(value), float(other[column]), delta=TOLERANCE * (1 + abs(float(value))),
+                                           msg=f"{row['body']}, frame {row['frame']}, {column}")
+
+
+for name in FRAMES:
+    setattr(Golden, "test_" + name, lambda self, scene=name: self.check(scene))
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)

@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+"""Includes run one way: each folder of src/ includes only those that stand in its row, and each third-party library
+appears where it is named here.
+
+    layering_test.py SOURCE_FOLDER
+"""
+import os, re, sys
+
+MAY_INCLUDE = {
+    "core": [],
+    "math": ["core"],
+    "mesh": ["core", "math"],
+    "scene": ["core", "math", "mesh"],
+    "dynamics": ["core", "math", "mesh"],
+    "collision": ["core", "math", "mesh", "dynamics"],
+    "impact": ["core", "math", "mesh", "dynamics", "collision"],
+    "trajectory": ["core", "math", "mesh"],
+    "simulate": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory"],
+    "image": ["core"],
+    "render": ["core", "math", "mesh", "scene", "trajectory", "image"],
+    "commands": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory", "simulate", "image", "render"],
+}
+# The one place of each library (Eigen and fmt are everywhere).
+LIBRARY_UNITS = {
+    "assimp/": ["mesh"],
+    "nlohmann/": ["scene/json_document", "commands/inspect_mesh"],
+    "CLI/": ["main.cpp"],
+    "sqlite3.h": ["trajectory/database"],
+    "stb/": ["image/png"],
+    "libdeflate.h": ["image/png"],
+    "GL/": ["render"],
+}
+
+
+def main():
+    source = os.path.join(sys.argv[1], "src")
+    faults, files = [], 0
+    for folder, _, names in os.walk(source):
+        for name in names:
+            if not name.endswith((".h", ".cpp")):
+                continue
+            files += 1
+            path = os.path.relpath(os.path.join(folder, name), source)
+            layer = path.split(os.sep)[0] if os.sep in path else None
+            text = open(os.path.join(source, path)).read()
+            for target in re.findall(r'^#include "([^"]+)"', text, re.M):
+                other = target.split("/")[0]
+                if layer and other != layer and other not in MAY_INCLUDE.get(layer, []):
+                    faults.append(f"src/{path} includes {target}: {layer} may not include {other}")
+            for target in re.findall(r"^#include <([^>]+)>", text, re.M):
+                for library, units in LIBRARY_UNITS.items():
+                    if target.startswith(library) and not any(path.startswith(unit) for unit in units):
+                        faults.append(f"src/{path} includes <{target}>: that belongs in {' and '.join(units)}")
+    print("\n".join(faults) or f"{files} files include one way")
+    sys.exit(bool(faults) or files == 0)
+
+
+main()

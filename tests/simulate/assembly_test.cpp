@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "experiments/experiment.h"
+#include "simulate/assembly.h"
+
+namespace cradle {
+namespace {
+
+std::string refusalOf(const Scene& scene) {
+  try {
+    refuseUnsupported(scene);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::scene);
+    return error.what();
+  }
+  return "";
+}
+
+Scene withBodies(const std::string& bodies, const std::string& more = "") {
+  return sceneOf(R"({"schema": "cradle-scene/1", "name": "t", "duration": 1, "bodies": [)" + bodies + "]" + more + "}");
+}
+const char* const kBall = R"({"name": "a", "shape": {"sphere": {"radius": 0.1}}})";
+
+TEST(Refusals, NameEverythingThatIsNotSimulatedYet) {
+  const std::string anchors = R"("bodyA": "a", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0])";
+  const Scene scene = withBodies(kBall, R"(,
+    "ropes": [{"bodyA": "a", "anchorA": [0, 0, 0], "anchorB": [0, 1, 0], "maxLength": 2}],
+    "ballJoints": [{)" + anchors + R"(}], "hinges": [{)" +
+                                            anchors + R"(}],
+    "pushes": [{"body": "a", "point": [0, 0, 0], "force": [1, 0, 0], "start": 0, "duration": 1}],
+    "method": {"name": "dop853"})");
+  const std::string refusal = refusalOf(scene);
+  for (const char* place : {"/ropes/0", "/ballJoints/0", "/hinges/0", "/pushes/0", "/method"})
+    EXPECT_NE(refusal.find(place), std::string::npos) << place << " in " << refusal;
+}
+
+TEST(Refusals, NameTheTwoBodiesOfAContactThatCannotBeSimulatedYet) {
+  const std::string box = R"({"name": "crate", "shape": {"box": {"size": [1, 1, 1]}}, "position": [3, 0, 0])";
+  const std::string refusal = refusalOf(withBodies(kBall + ("," + box + "}")));
+  EXPECT_NE(refusal.find("\"a\" and \"crate\""), std::string::npos) << refusal;
+  EXPECT_EQ(refusalOf(withBodies(kBall + ("," + box + R"(, "collision": "none"})"))), "");
+}
+
+TEST(Refusals, AcceptSpheresOnSpheresAndBoxesOnPlanes) {
+  const std::string plane = R"({"name": "p", "shape": {"plane": {"normal": [0, 1, 0]}}, "motion": "static"})";
+  EXPECT_EQ(refusalOf(withBodies(kBall + (", " + plane) +
+                                 R"(, {"name": "b", "shape": {"sphere": {"radius": 1}}, "position": [9, 0, 0]})")),
+            "");
+  EXPECT_EQ(refusalOf(withBodies(plane + R"(, {"name": "b", "shape": {"box": {"size": [1, 1, 1]}}})")), "");
+  EXPECT_EQ(refusalOf(withBodies(plane + R"(, {"name": "b", "shape": {"capsule": {"radius": 1, "length": 2}}})")), "");
+}
+
+// A static box turned by 90 degrees about z: its body-frame x is the world's y.
+TEST(Assembly, PutsAnchorsOfFixedBodiesIntoTheWorld) {
+  const Assembly assembly =
+      assemble(withBodies(R"({"name": "s", "shape": {"box": {"size": [1, 1, 1]}}, "motion": "static",
+    "position": [1, 2, 3], "orientation": {"axis": [0, 0, 1], "angleDegrees": 90}, "collision": "none"},
+    {"name": "m", "shape": {"sphere": {"radius": 0.1}}, "collision": "none", "mass": 1, "centerOfMass": [0, 0.5, 0],
+     "inertiaTensor": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]})",
+                          R"(,
+    "springs": [{"bodyA": "m", "anchorA": [0.25, 0, 0], "bodyB": "s", "anchorB": [0.5, 0, 0], "stiffness": 1}])"));
+  ASSERT_EQ(assembly.mechanism.springs.size(), 1u);
+  const SpringForce& spring = assembly.mechanism.springs[0];
+  EXPECT_EQ(spring.anchorA.body, 0);
+  EXPECT_LT((spring.anchorA.point - Vec3(0.25, -0.5, 0)).norm(), 1e-15) << "from the centre of mass";
+  EXPECT_EQ(spring.anchorB.body, kFixed);
+  EXPECT_LT((spring.anchorB.point - Vec3(1, 2.5, 3)).norm(), 1e-15);
+  EXPECT_LT((Vec3(centerOfMass(assembly.state, 0)) - Vec3(0, 0.5, 0)).norm(), 1e-15);
+}
+
+TEST(Assembly, ProjectsStartVelocitiesAgainstARodAndSaysSo) {
+  const Assembly assembly =
+      assemble(withBodies(R"({"name": "m", "shape": {"sphere": {"radius": 0.1}}, "mass": 1,
+    "linearVelocity": [3, 4, 0]})",
+                          R"(, "rods": [{"bodyA": "m", "anchorA": [0, 0, 0], "anchorB": [0, 2, 0]}])"));
+  EXPECT_LT((Vec3(linearVelocity(assembly.state, 0)) - Vec3(3, 0, 0)).norm(), 1e-14);
+  ASSERT_EQ(assembly.warnings.size(), 1u);
+  EXPECT_NE(assembly.warnings[0].find("4 m/s"), std::string::npos) << assembly.warnings[0];
+}
+
+TEST(Assembly, TakesPairSurfacesAndPutsPlanesSecond) {
+  const Assembly assembly = assemble(withBodies(R"({"name": "p", "shape": {"plane": {"normal": [0, 0, 2]}},
+    "motion": "static", "material": "ice", "position": [0, 0, -1]},
+    {"name": "m", "shape": {"sphere": {"radius": 0.1}}, "material": "steel"})",
+                                                R"(,
+    "materials": {"ice": {}, "steel": {}},
+    "pairs": [{"materials": ["steel", "ice"], "restitution": 0.7, "staticFriction": 0.2, "dynamicFriction": 0.1}])"));
+  ASSERT_EQ(assembly.geometry.pairs.size(), 1u);
+  EXPECT_TRUE(assembly.geometry.pairs[0].againstPlane);
+  EXPECT_EQ(assembly.geometry.pairs[0].law.restitution, 0.7);
+  EXPECT_EQ(assembly.geometry.pairs[0].law.dynamicFriction, 0.1);
+  EXPECT_EQ(assembly.geometry.planes[0].normal, Vec3::UnitZ());
+  EXPECT_EQ(assembly.pairBodies[0], std::make_pair(1, 0));
+}
+
+}  // namespace
+}  // namespace cradle
