@@ -38,6 +38,7 @@ void EquationsOfMotion::evaluate(const VectorX& state, VectorX& rate) {
   evaluatePoseRates(state, rate);
   applyGravityAndGyroscopicTerms(state, rate);
   applySprings(state, rate);
+  applyPushes(state, rate);
   applyConstraintForces(state, rate);
   for (std::size_t body = 0; body < resting_.size(); ++body)
     if (resting_[body]) rate.segment<kVelocitySize>(velocityOffset(state, static_cast<Eigen::Index>(body))).setZero();
@@ -61,6 +62,13 @@ void EquationsOfMotion::applySprings(const VectorX& state, VectorX& rate) const 
   }
 }
 
+void EquationsOfMotion::applyPushes(const VectorX& state, VectorX& rate) const {
+  for (const PushForce& push : mechanism_.pushes) {
+    addForce(mechanism_.bodies, push.point.body, motionOf(push.point, state).arm, push.force, state, rate);
+    pushWork(rate) += powerOf(push, state);
+  }
+}
+
 void EquationsOfMotion::applyConstraintForces(const VectorX& state, VectorX& rate) {
   if (mechanism_.rods.empty()) return;
   solver_.setRows(mechanism_.rods, mechanism_.bodies, state);
@@ -68,9 +76,9 @@ void EquationsOfMotion::applyConstraintForces(const VectorX& state, VectorX& rat
   for (std::size_t i = 0; i < mechanism_.rods.size(); ++i)
     constraintResidual_[static_cast<Eigen::Index>(i)] =
         -(solver_.rows()[i].curvature + rateOf(solver_.rows()[i], rate));
-  const VectorX& multipliers = solver_.solve(constraintResidual_);
+  multipliers_ = solver_.solve(constraintResidual_);
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
-    const auto [linear, angular] = solver_.response(body, multipliers);
+    const auto [linear, angular] = solver_.response(body, multipliers_);
     linearVelocity(rate, body) += linear;
     angularVelocity(rate, body) += angular;
   }

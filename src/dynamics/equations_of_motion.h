@@ -4,6 +4,7 @@
 
 #include "dynamics/constraint_forces.h"
 #include "dynamics/integrators/step.h"
+#include "dynamics/push.h"
 #include "dynamics/spring.h"
 
 namespace cradle {
@@ -14,6 +15,7 @@ struct Mechanism {
   std::vector<RigidBody> bodies;
   std::vector<SpringForce> springs;
   std::vector<RodConstraint> rods;
+  std::vector<PushForce> pushes;  // those that act now
 };
 
 /// The equations of motion of a mechanism in the layout of state.h:
@@ -30,6 +32,10 @@ class EquationsOfMotion {
   void setResting(std::size_t body, bool resting) { resting_[body] = resting; }
   bool isResting(std::size_t body) const { return resting_[body] != 0; }
 
+  /// Multipliers of the rods' rows at the last evaluation, in the order of Mechanism::rods: a rod pushes its ends apart
+  /// with the force (N) multiplier x length.
+  const VectorX& multipliers() const { return multipliers_; }
+
   /// How often evaluate was called.
   long evaluations() const { return evaluations_; }
 
@@ -39,12 +45,13 @@ class EquationsOfMotion {
  private:
   void applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& rate) const;
   void applySprings(const VectorX& state, VectorX& rate) const;
+  void applyPushes(const VectorX& state, VectorX& rate) const;
   void applyConstraintForces(const VectorX& state, VectorX& rate);
 
   const Mechanism& mechanism_;
   std::vector<char> resting_;
   ConstraintSolver solver_;
-  VectorX constraintResidual_;
+  VectorX constraintResidual_, multipliers_;
   long evaluations_ = 0;
 };
 

@@ -18,9 +18,23 @@ AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state) {
           linearVelocity(state, attachment.body) + angularVelocity(state, attachment.body).cross(arm)};
 }
 
+Vec3 pointAcceleration(int body, const Vec3& point, const VectorX& state, const VectorX& rate) {
+  if (body == kFixed) return Vec3::Zero();
+  const Vec3 arm = point - centerOfMass(state, body), spin = angularVelocity(state, body);
+  return linearVelocity(rate, body) + angularVelocity(rate, body).cross(arm) + spin.cross(spin.cross(arm));
+}
+
 Mat3 worldInverseInertia(const RigidBody& body, const Quat& worldFromBody) {
   const Mat3 rotation = worldFromBody.normalized().toRotationMatrix();
   return rotation * body.inverseInertia * rotation.transpose();
+}
+
+double inverseMassAlong(const Vec3& direction, const Attachment& attachment, const std::vector<RigidBody>& bodies,
+                        const VectorX& state) {
+  if (attachment.body == kFixed) return 0;
+  const RigidBody& body = bodies[static_cast<std::size_t>(attachment.body)];
+  const Vec3 lever = motionOf(attachment, state).arm.cross(direction);
+  return body.inverseMass + lever.dot(worldInverseInertia(body, orientation(state, attachment.body)) * lever);
 }
 
 void applyImpulse(const std::vector<RigidBody>& bodies, int body, const Vec3& arm, const Vec3& impulse,

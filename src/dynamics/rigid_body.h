@@ -34,8 +34,17 @@ struct AttachmentMotion {
 };
 AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state);
 
+/// Acceleration (m/s^2, world) of a body's material point that is at `point` (m, world), for the rates of all
+/// velocities in `rate`; zero if fixed.
+Vec3 pointAcceleration(int body, const Vec3& point, const VectorX& state, const VectorX& rate);
+
 /// The inverse inertia tensor of a body in the world's frame.
 Mat3 worldInverseInertia(const RigidBody& body, const Quat& worldFromBody);
+
+/// Inverse mass (1/kg) that an attachment shows along a unit direction n (world): 1/m + (r x n)^T I^-1 (r x n); 0 if
+/// fixed.
+double inverseMassAlong(const Vec3& direction, const Attachment& attachment, const std::vector<RigidBody>& bodies,
+                        const VectorX& state);
 
 /// Adds to the velocities what an impulse (N s) at `arm` from the centre of mass (m), both world, gives. Nothing if
 /// fixed.

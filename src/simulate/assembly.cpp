@@ -54,6 +54,11 @@ void addLinks(const Scene& scene, const std::vector<int>& moving, Assembly& asse
   for (const Rod& rod : scene.rods)
     assembly.mechanism.rods.push_back(
         {attach(rod.anchorA, scene, moving), attach(rod.anchorB, scene, moving), rod.length});
+  for (const Rope& rope : scene.ropes) {
+    assembly.ropes.push_back(
+        {attach(rope.anchorA, scene, moving), attach(rope.anchorB, scene, moving), rope.maxLength, rope.restitution});
+    assembly.ropeBodies.emplace_back(rope.anchorA.body, rope.anchorB.body);
+  }
 }
 
 void satisfyRods(const Scene& scene, Assembly& assembly) {
@@ -121,6 +126,7 @@ void addContactGeometry(const Scene& scene, const std::vector<int>& moving, Asse
 Assembly assemble(const Scene& scene) {
   Assembly assembly;
   const std::vector<int> moving = movingIndices(scene);
+  assembly.movingBodies = moving;
   assembly.mechanism.gravity = scene.gravity;
   addBodies(scene, assembly);
   addLinks(scene, moving, assembly);
@@ -132,13 +138,11 @@ Assembly assemble(const Scene& scene) {
 void refuseUnsupported(const Scene& scene) {
   std::vector<std::string> faults;
   const auto refuse = [&](const std::string& where, const char* what) {
-    faults.push_back(
-        fmt::format("{}: {} cannot be simulated yet; springs, rods and contacts can; take it out", where, what));
+    faults.push_back(fmt::format(
+        "{}: {} cannot be simulated yet; springs, rods, ropes, pushes and contacts can; take it out", where, what));
   };
-  for (const Rope& rope : scene.ropes) refuse(rope.where, "a rope");
   for (const BallJoint& joint : scene.ballJoints) refuse(joint.where, "a ball joint");
   for (const Hinge& hinge : scene.hinges) refuse(hinge.where, "a hinge");
-  for (const Push& push : scene.pushes) refuse(push.where, "a push");
   if (scene.method && scene.method->name == MethodName::dop853)
     faults.push_back(scene.method->where +
                      ": method dop853 is not there yet; explicitEuler, semiImplicitEuler and rk4 are");

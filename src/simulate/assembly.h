@@ -6,6 +6,7 @@
 
 #include "collision/collider.h"
 #include "dynamics/equations_of_motion.h"
+#include "dynamics/rope.h"
 #include "scene/scene.h"
 
 namespace cradle {
@@ -14,9 +15,12 @@ namespace cradle {
 struct Assembly {
   Mechanism mechanism;
   ContactGeometry geometry;
+  std::vector<RopeLimit> ropes;
   VectorX state;                                // at time 0
   std::vector<int> sceneBodies;                 // scene body of each moving body
+  std::vector<int> movingBodies;                // moving body of each scene body, or kFixed
   std::vector<std::pair<int, int>> pairBodies;  // scene bodies A, B of each collider pair
+  std::vector<std::pair<int, int>> ropeBodies;  // scene bodies A, B of each rope; kWorld
   std::vector<std::string> warnings;
 };
 

@@ -26,6 +26,7 @@ class EnergyGuard {
   void check(const VectorX& state, double time, double timeStep);
 
  private:
+  double firstStepEnergy(double timeStep) const;
   [[noreturn]] void fail(const VectorX& state, double time, double timeStep, const std::string& what) const;
   std::string cause(double timeStep) const;
 

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "collision/time_of_impact.h"
 #include "simulate/assembly.h"
+#include "simulate/contact_stage.h"
 #include "simulate/energy_guard.h"
-#include "simulate/resting_bodies.h"
+#include "simulate/push_schedule.h"
+#include "simulate/rope_stage.h"
 #include "trajectory/trajectory.h"
 
 namespace cradle {
@@ -19,14 +22,16 @@ struct ChosenMethod {
 };
 ChosenMethod chooseMethod(const Scene& scene);
 
-/// A scene in motion. Time goes on in steps of the method; a step is cut where bodies meet.
+/// A scene in motion. Time goes on in steps of the method; a step is cut where bodies meet, ropes go
+/// taut or slack, and pushes begin or end.
 class Simulation {
  public:
+  /// Keeps a reference to `scene`.
   Simulation(const Scene& scene, Assembly assembly);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Goes on to the end of the step, or to the next impact in it, and resolves what happens there. Throws
+  /// Goes on to the end of the step, or to the next event in it, and resolves what happens there. Throws
   /// Error(unstable) if the state blows up, Error(limit) if a step has too many impacts.
   void advance();
 
@@ -38,37 +43,31 @@ class Simulation {
   EnergyBalance energyOf(const VectorX& state) const;
 
   /// Events since the last call.
-  std::vector<Event> takeEvents();
+  std::vector<Event> takeEvents() { return log_.take(); }
 
  private:
   void integrate(double stepEnd);
-  bool stopAtFirstImpact();
-  void shortenStepTo(const ImpactTime& impact);
-  void resolveContacts(const VectorX& before);
-  void findTouching();
-  void wakeTouched();
-  bool resolveImpacts();
-  void holdLasting(const VectorX& before);
-  double restSpeed(const Contact& contact, const VectorX& rate) const;
-  void record(EventKind kind, int movingBody);
-  void record(const Contact& contact, double impulse);
+  bool stopAtFirstEvent();
+  void shortenStepTo(double length, double tolerance, const std::function<double(const VectorX&)>& margin);
+  void beginAndEndPushes();
+  void countEvent();
 
   Assembly assembly_;
   ChosenMethod method_;
   EquationsOfMotion equations_;
   RightHandSide rightHandSide_;
-  RestingBodies resting_;
+  EventLog log_;
+  ContactStage contacts_;
+  RopeStage ropes_;
+  PushSchedule pushes_;
   EnergyGuard guard_;
   ConstraintSolver solver_;
-  double touchTolerance_;  // m
-  double duration_;        // s
-  double time_ = 0;        // s
-  long stepNumber_ = 0;    // the step under way covers [stepNumber_, stepNumber_ + 1] x timeStep
-  int impactsInStep_ = 0;
-  VectorX state_, rate_;
+  double duration_;      // s
+  double time_ = 0;      // s
+  long stepNumber_ = 0;  // the step under way covers [stepNumber_, stepNumber_ + 1] x timeStep
+  int eventsInStep_ = 0;
+  VectorX state_;
   Step step_;
-  std::vector<Contact> touching_;
-  std::vector<Event> events_;
 };
 
 }  // namespace cradle

@@ -25,13 +25,11 @@ const char* const kBall = R"({"name": "a", "shape": {"sphere": {"radius": 0.1}}}
 TEST(Refusals, NameEverythingThatIsNotSimulatedYet) {
   const std::string anchors = R"("bodyA": "a", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0])";
   const Scene scene = withBodies(kBall, R"(,
-    "ropes": [{"bodyA": "a", "anchorA": [0, 0, 0], "anchorB": [0, 1, 0], "maxLength": 2}],
     "ballJoints": [{)" + anchors + R"(}], "hinges": [{)" +
                                             anchors + R"(}],
-    "pushes": [{"body": "a", "point": [0, 0, 0], "force": [1, 0, 0], "start": 0, "duration": 1}],
     "method": {"name": "dop853"})");
   const std::string refusal = refusalOf(scene);
-  for (const char* place : {"/ropes/0", "/ballJoints/0", "/hinges/0", "/pushes/0", "/method"})
+  for (const char* place : {"/ballJoints/0", "/hinges/0", "/method"})
     EXPECT_NE(refusal.find(place), std::string::npos) << place << " in " << refusal;
 }
 

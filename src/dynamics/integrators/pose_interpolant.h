@@ -1,0 +1,14 @@
+#pragma once
+
+#include "dynamics/integrators/step.h"
+#include "dynamics/rigid_body.h"
+
+namespace cradle {
+
+/// Pose of a body's centre of mass frame at a fraction of the step, on the step's interpolant; identity if fixed.
+RigidTransform poseAt(const Step& step, int body, double fraction);
+
+/// How far (m) any point within `reach` (m) of a body's centre of mass can move over the step, by its interpolant.
+double motionBound(const Step& step, int body, double reach);
+
+}  // namespace cradle

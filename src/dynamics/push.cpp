@@ -1,0 +1,9 @@
+#include "dynamics/push.h"
+
+namespace cradle {
+
+double powerOf(const PushForce& push, const VectorX& state) {
+  return push.force.dot(motionOf(push.point, state).velocity);
+}
+
+}  // namespace cradle

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "dynamics/rigid_body.h"
+
+namespace cradle {
+
+/// A force that does not turn with the body, at a point that does.
+struct PushForce {
+  Attachment point;
+  Vec3 force = Vec3::Zero();  // N, world
+};
+
+/// Power (W) that a push puts into its body.
+double powerOf(const PushForce& push, const VectorX& state);
+
+}  // namespace cradle

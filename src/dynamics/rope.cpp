@@ -1,0 +1,30 @@
+#include "dynamics/rope.h"
+
+namespace cradle {
+
+RopeMotion motionOf(const RopeLimit& rope, const VectorX& state) {
+  RopeMotion motion{motionOf(rope.anchorA, state), motionOf(rope.anchorB, state), Vec3::Zero(), 0, 0};
+  const Vec3 separation = motion.a.position - motion.b.position;
+  motion.direction = separation.stableNormalized();
+  motion.slackLength = rope.maxLength - separation.norm();
+  motion.lengthening = motion.direction.dot(motion.a.velocity - motion.b.velocity);
+  return motion;
+}
+
+double lengtheningAcceleration(const RopeLimit& rope, const VectorX& state, const VectorX& rate) {
+  // L'' = u.(a_A - a_B) + (|v|^2 - (u.v)^2) / L for the relative velocity v.
+  const RopeMotion motion = motionOf(rope, state);
+  const Vec3 velocity = motion.a.velocity - motion.b.velocity;
+  const Vec3 acceleration = pointAcceleration(rope.anchorA.body, motion.a.position, state, rate) -
+                            pointAcceleration(rope.anchorB.body, motion.b.position, state, rate);
+  const double across = velocity.squaredNorm() - motion.lengthening * motion.lengthening;
+  return motion.direction.dot(acceleration) + across / (rope.maxLength - motion.slackLength);
+}
+
+double inverseMassAlong(const RopeLimit& rope, const std::vector<RigidBody>& bodies, const VectorX& state) {
+  const RopeMotion motion = motionOf(rope, state);
+  return inverseMassAlong(motion.direction, rope.anchorA, bodies, state) +
+         inverseMassAlong(motion.direction, rope.anchorB, bodies, state);
+}
+
+}  // namespace cradle

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "simulate/event_log.h"
+#include "simulate/resting_bodies.h"
+
+namespace cradle {
+
+/// What happens where bodies touch at the end of a step: impacts rebound, lasting contacts hold, overlaps are taken
+/// out, and what lies still is put to rest.
+class ContactStage {
+ public:
+  /// Keeps references to all three. `timeStep` (s) is the method's.
+  ContactStage(const Assembly& assembly, EquationsOfMotion& equations, EventLog& log, double timeStep);
+
+  /// `before` is the state at the step's start: lasting contacts did their work since then.
+  void resolve(double time, const VectorX& before, VectorX& state);
+
+  /// Wakes the island of a moving body, with events.
+  void wake(double time, int body, const VectorX& state);
+
+  /// Nearer than this (m) is touching.
+  double touchTolerance() const { return touchTolerance_; }
+
+ private:
+  void findTouching(const VectorX& state);
+  void wakeTouched(double time, const VectorX& state);
+  bool resolveImpacts(double time, VectorX& state);
+  double restSpeed(const Contact& contact, const VectorX& state) const;
+  void holdLasting(const VectorX& before, VectorX& state);
+
+  const Assembly& assembly_;
+  EquationsOfMotion& equations_;
+  EventLog& log_;
+  RestingBodies resting_;
+  ConstraintSolver solver_;
+  double timeStep_, touchTolerance_;
+  std::vector<Contact> touching_;
+  VectorX rate_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/separation.h"
+#include "simulate/assembly.h"
+#include "trajectory/trajectory.h"
+
+namespace cradle {
+
+/// Collects the events of a run, in terms of the scene's bodies.
+class EventLog {
+ public:
+  /// Keeps a reference to `assembly`.
+  explicit EventLog(const Assembly& assembly) : assembly_(assembly) {}
+
+  void recordContact(double time, EventKind kind, const Contact& contact, double impulse);
+  /// Something that happens to one moving body, at `point` (m, world).
+  void recordBody(double time, EventKind kind, int movingBody, const Vec3& point);
+
+  void record(const Event& event) { events_.push_back(event); }
+
+  /// Events since the last call, in the order in which they were recorded.
+  std::vector<Event> take();
+
+ private:
+  const Assembly& assembly_;
+  std::vector<Event> events_;
+};
+
+}  // namespace cradle

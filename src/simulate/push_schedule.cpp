@@ -1,0 +1,84 @@
+#include "simulate/push_schedule.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "mesh/ray_cast.h"
+
+namespace cradle {
+namespace {
+
+std::optional<double> castRay(const Ray& ray, const Body& body, const Scene& scene) {
+  return std::visit(
+      [&](const auto& shape) -> std::optional<double> {
+        using Kind = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<Kind, ModelShape>)
+          return cradle::castRay(ray, scene.models[static_cast<std::size_t>(shape.model)].solid);
+        else if constexpr (std::is_same_v<Kind, Plane>)
+          return std::nullopt;  // planes do not move
+        else
+          return cradle::castRay(ray, shape);
+      },
+      body.shape);
+}
+
+}  // namespace
+
+PushSchedule::PushSchedule(const Scene& scene, const std::vector<int>& movingBodies, EventLog& log)
+    : scene_(scene), log_(log) {
+  for (const Push& push : scene.pushes) {
+    const int body = movingBodies[static_cast<std::size_t>(push.body)];
+    if (body != kFixed) planned_.push_back({&push, body, false, false, {}});
+  }
+}
+
+double PushSchedule::nextChange() const {
+  double next = std::numeric_limits<double>::infinity();
+  for (const Planned& planned : planned_)
+    if (!planned.isOver) next = std::min(next, planned.push->start + (planned.isActing ? planned.push->duration : 0));
+  return next;
+}
+
+std::vector<int> PushSchedule::apply(double time, const VectorX& state, std::vector<PushForce>& acting) {
+  std::vector<int> begun;
+  for (Planned& planned : planned_) {
+    if (planned.isOver) continue;
+    if (planned.isActing && time >= planned.push->start + planned.push->duration) {
+      planned.isActing = false, planned.isOver = true;
+      log_.recordBody(time, EventKind::pushEnd, planned.body, motionOf(planned.force.point, state).position);
+    } else if (!planned.isActing && time >= planned.push->start) {
+      planned.isActing = begin(planned, time, state);
+      planned.isOver = !planned.isActing;
+      if (planned.isActing) begun.push_back(planned.body);
+    }
+  }
+  acting.clear();
+  for (const Planned& planned : planned_)
+    if (planned.isActing) acting.push_back(planned.force);
+  return begun;
+}
+
+/// Finds the point that is pushed; false if the ray misses.
+bool PushSchedule::begin(Planned& planned, double time, const VectorX& state) {
+  const Body& body = scene_.bodies[static_cast<std::size_t>(planned.push->body)];
+  const Vec3& center = body.massProperties.centerOfMass;
+  Vec3 point;  // body's frame
+  if (const auto* ray = std::get_if<Push::Ray>(&planned.push->target)) {
+    const Quat worldFromBody = orientation(state, planned.body).normalized(), bodyFromWorld = worldFromBody.conjugate();
+    const Vec3 origin = bodyFromWorld * (ray->origin - centerOfMass(state, planned.body)) + center;
+    const Ray inBody{origin, bodyFromWorld * ray->direction};
+    const auto distance = castRay(inBody, body, scene_);
+    if (!distance) {
+      log_.recordBody(time, EventKind::pushMissed, planned.body, ray->origin);
+      return false;
+    }
+    point = inBody.origin + *distance * inBody.direction;
+  } else {
+    point = std::get<Vec3>(planned.push->target);
+  }
+  planned.force = {{planned.body, point - center}, planned.push->force};
+  log_.recordBody(time, EventKind::pushStart, planned.body, motionOf(planned.force.point, state).position);
+  return true;
+}
+
+}  // namespace cradle

@@ -1,0 +1,132 @@
+#include "simulate/rope_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/first_crossing.h"
+#include "dynamics/integrators/pose_interpolant.h"
+#include "dynamics/invariants.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kTautPart = 1e-9;         // of its length: a rope this near to it is at its length
+constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
+
+Vec3 positionAt(const Step& step, const Attachment& attachment, double fraction) {
+  return poseAt(step, attachment.body, fraction) * attachment.point;
+}
+
+double motionBound(const Step& step, const Attachment& attachment) {
+  return cradle::motionBound(step, attachment.body, attachment.point.norm());
+}
+
+}  // namespace
+
+RopeStage::RopeStage(Assembly& assembly, EquationsOfMotion& equations, EventLog& log, double timeStep)
+    : assembly_(assembly),
+      equations_(equations),
+      log_(log),
+      timeStep_(timeStep),
+      sceneRods_(assembly.mechanism.rods.size()),
+      tautRod_(assembly.ropes.size(), -1) {}
+
+std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
+  std::optional<RopeChange> first;
+  for (std::size_t i = 0; i < assembly_.ropes.size(); ++i) {
+    const RopeLimit& rope = assembly_.ropes[i];
+    const double end = first ? first->fraction : 1;
+    if (isTaut(i)) {
+      const double before = tension(i, step.startState), after = tension(i, step.state);
+      if (before > 0 && after < 0 && before / (before - after) < end) first = RopeChange{before / (before - after), i};
+      continue;
+    }
+    const auto slack = [&](double fraction) {
+      return rope.maxLength -
+             (positionAt(step, rope.anchorA, fraction) - positionAt(step, rope.anchorB, fraction)).norm();
+    };
+    const double start = slack(0), speed = motionBound(step, rope.anchorA) + motionBound(step, rope.anchorB);
+    if (start <= kTautPart * rope.maxLength || start > speed) continue;
+    if (const auto fraction = firstCrossing(slack, speed, 0, start, end, slack(end))) first = RopeChange{*fraction, i};
+  }
+  if (first && isTaut(first->rope)) startTension_ = tension(first->rope, step.startState);
+  return first;
+}
+
+double RopeStage::margin(const RopeChange& change, const VectorX& state) {
+  if (isTaut(change.rope)) return tension(change.rope, state) / startTension_;
+  return motionOf(assembly_.ropes[change.rope], state).slackLength;
+}
+
+/// Force (N) with which a taut rope pulls its ends together. Its row's multiplier pushes by multiplier x distance.
+double RopeStage::tension(std::size_t rope, const VectorX& state) {
+  equations_.evaluate(state, rate_);
+  return -equations_.multipliers()[tautRod_[rope]] * assembly_.ropes[rope].maxLength;
+}
+
+void RopeStage::resolve(double time, VectorX& state) {
+  // Ropes that would have to push let go; impacts may have shortened others.
+  bool released = false;
+  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
+    if (!isTaut(i) || tension(i, state) > kTautPart * startTension_) continue;
+    release(time, i, state);
+    released = true;
+  }
+  if (released) return;
+
+  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
+    const RopeLimit& rope = assembly_.ropes[i];
+    if (isTaut(i)) continue;
+    const RopeMotion motion = motionOf(rope, state);
+    if (motion.slackLength <= kTautPart * rope.maxLength && motion.lengthening >= 0) pull(time, i, state);
+  }
+}
+
+/// A rope at its length that still lengthens. A rebound that would end within about two steps is not resolved: the rope
+/// stays taut, if anything pulls at it.
+void RopeStage::pull(double time, std::size_t index, VectorX& state) {
+  const RopeLimit& rope = assembly_.ropes[index];
+  equations_.evaluate(state, rate_);
+  const double acceleration = lengtheningAcceleration(rope, state, rate_);
+  const RopeMotion motion = motionOf(rope, state);
+  const double restSpeed = 2 * std::max(0.0, acceleration) * timeStep_ + kRestSpeedFloor;
+  const bool rebounds = rope.restitution * motion.lengthening > restSpeed;
+  const double restitution = rebounds ? rope.restitution : 0;
+  const double impulse =
+      (1 + restitution) * motion.lengthening / inverseMassAlong(rope, assembly_.mechanism.bodies, state);
+
+  const double before = kineticEnergy(assembly_.mechanism.bodies, state);
+  applyImpulse(assembly_.mechanism.bodies, rope.anchorA.body, motion.a.arm, -impulse * motion.direction, state);
+  applyImpulse(assembly_.mechanism.bodies, rope.anchorB.body, motion.b.arm, impulse * motion.direction, state);
+  dissipatedEnergy(state) += before - kineticEnergy(assembly_.mechanism.bodies, state);
+  const bool staysTaut = !rebounds && acceleration > 0;
+  if (rebounds || staysTaut) record(time, EventKind::taut, index, impulse, state);
+  if (!staysTaut) return;
+  tautRod_[index] = 0;
+  rebuildRods();
+  projectOntoRods(assembly_.mechanism.rods, assembly_.mechanism.bodies, solver_, state);
+}
+
+void RopeStage::release(double time, std::size_t rope, const VectorX& state) {
+  tautRod_[rope] = -1;
+  rebuildRods();
+  record(time, EventKind::slack, rope, 0, state);
+}
+
+void RopeStage::rebuildRods() {
+  std::vector<RodConstraint>& rods = assembly_.mechanism.rods;
+  rods.resize(sceneRods_);
+  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
+    if (!isTaut(i)) continue;
+    tautRod_[i] = static_cast<int>(rods.size());
+    rods.push_back({assembly_.ropes[i].anchorA, assembly_.ropes[i].anchorB, assembly_.ropes[i].maxLength});
+  }
+}
+
+void RopeStage::record(double time, EventKind kind, std::size_t rope, double impulse, const VectorX& state) {
+  const RopeMotion motion = motionOf(assembly_.ropes[rope], state);
+  const auto [a, b] = assembly_.ropeBodies[rope];
+  log_.record({time, kind, a, b, motion.a.position, -motion.direction, impulse});
+}
+
+}  // namespace cradle

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "simulate/event_log.h"
+
+namespace cradle {
+
+/// A rope that goes taut, or slack, inside a step.
+struct RopeChange {
+  double fraction = 0;  // of the step, 0..1
+  std::size_t rope = 0;
+};
+
+/// Ropes over time: nothing while slack; an impulse when the length is reached; then a rod, until that would push.
+/// The rods of taut ropes stand behind the scene's own in Mechanism::rods.
+class RopeStage {
+ public:
+  /// Keeps references to all three. `timeStep` (s) is the method's.
+  RopeStage(Assembly& assembly, EquationsOfMotion& equations, EventLog& log, double timeStep);
+
+  /// The first slack rope of a step that reaches its length, or taut one whose tension ends. The step's end rate must
+  /// be there (prepareInterpolant).
+  std::optional<RopeChange> firstChange(const Step& step);
+
+  /// Zero where the change happens, positive before: slack length in m, or tension as a part of that at the step's
+  /// start.
+  double margin(const RopeChange& change, const VectorX& state);
+
+  /// What happens at the end of a step: impulses in ropes that are at their length, new rods, released ropes.
+  void resolve(double time, VectorX& state);
+
+  bool hasRopes() const { return !assembly_.ropes.empty(); }
+
+ private:
+  bool isTaut(std::size_t rope) const { return tautRod_[rope] >= 0; }
+  double tension(std::size_t rope, const VectorX& state);
+  void pull(double time, std::size_t rope, VectorX& state);
+  void release(double time, std::size_t rope, const VectorX& state);
+  void rebuildRods();
+  void record(double time, EventKind kind, std::size_t rope, double impulse, const VectorX& state);
+
+  Assembly& assembly_;
+  EquationsOfMotion& equations_;
+  EventLog& log_;
+  ConstraintSolver solver_;
+  double timeStep_;
+  std::size_t sceneRods_;     // rods that are no ropes
+  std::vector<int> tautRod_;  // index into Mechanism::rods of each rope, or -1: slack
+  double startTension_ = 1;   // N, of the change under way
+  VectorX rate_;
+};
+
+}  // namespace cradle

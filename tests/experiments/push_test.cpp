@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "experiments/experiment.h"
+
+namespace cradle {
+namespace {
+
+/// A free box of 0.4 x 0.2 x 0.6 m and 2 kg with a push.
+Trajectory pushBox(const std::string& push, const std::string& method = methodText("rk4", 0.001)) {
+  return simulate(sceneOf(R"({"schema": "cradle-scene/1", "name": "Push", "duration": 1, "gravity": [0, 0, 0],
+    "output": {"framesPerSecond": 10}, )" +
+                          method + R"(,
+    "bodies": [{"name": "box", "shape": {"box": {"size": [0.4, 0.2, 0.6]}}, "mass": 2, "collision": "none"}],
+    "pushes": [)" + push + "]}"));
+}
+
+std::vector<Event> eventsOf(const Trajectory& run, EventKind kind) {
+  std::vector<Event> events;
+  std::copy_if(run.events.begin(), run.events.end(), std::back_inserter(events),
+               [kind](const Event& event) { return event.kind == kind; });
+  return events;
+}
+
+// 3 N for 0.25 s through the centre: v = F t / m, and the way is F t^2 / 2 m during and v t after the push. The step of
+// 0.7 ms does not fit the push: a method that stepped across its end would be off by up to F h / m = 1e-3 m/s.
+TEST(Push, ThroughTheCentreGivesForceTimesTimeForAnyMethod) {
+  for (const char* method : {"explicitEuler", "semiImplicitEuler", "rk4"}) {
+    const Trajectory run = pushBox(R"({"body": "box", "point": [0, 0, 0], "force": [0, 0, -3], "start": 0.1,
+      "duration": 0.25})",
+                                   methodText(method, 0.0007));
+    EXPECT_NEAR(endOf(run).linearVelocity.z(), -0.375, 1e-13) << method;
+    EXPECT_EQ(endOf(run).angularVelocity, Vec3::Zero()) << method;
+    const double way = 0.5 * 1.5 * 0.25 * 0.25 + 0.375 * 0.65;
+    EXPECT_NEAR(endOf(run).position.z(), -way, method == std::string("rk4") ? 1e-13 : 1.5 * 0.25 * 0.0007) << method;
+  }
+}
+
+// The ray meets the face x = 0.2 at (0.2, 0.05, 0.1). A short push is an impulse: J = F t, w = I^-1 (r x J), with I =
+// m/12 (0.2^2 + 0.6^2, 0.4^2 + 0.6^2, 0.4^2 + 0.2^2). Within 1e-5 s the point moves by less than 1e-7 m.
+TEST(Push, ByARayOffCentreSpinsTheBody) {
+  const Trajectory run = pushBox(R"({"body": "box", "ray": {"origin": [3, 0.05, 0.1], "direction": [-2, 0, 0]},
+    "force": [-3e4, 0, 0], "start": 0.5, "duration": 1e-5})");
+  const std::vector<Event> starts = eventsOf(run, EventKind::pushStart);
+  ASSERT_EQ(starts.size(), 1u);
+  EXPECT_EQ(starts[0].time, 0.5);
+  EXPECT_LT((starts[0].point - Vec3(0.2, 0.05, 0.1)).norm(), 1e-15);
+  const Vec3 impulse(-0.3, 0, 0), lever = Vec3(0.2, 0.05, 0.1).cross(impulse);
+  const Vec3 inertia = 2.0 / 12 * Vec3(0.40, 0.52, 0.20);
+  const BodyState& after = run.frames[5].states[0];  // at 0.5 s, before the push acts
+  EXPECT_EQ(after.angularVelocity, Vec3::Zero());
+  // Torque-free afterwards: the angular momentum R I R^T w stays.
+  const BodyState end = endOf(run);
+  const Mat3 turn = end.orientation.toRotationMatrix();
+  EXPECT_LT((turn * inertia.asDiagonal() * turn.transpose() * end.angularVelocity - lever).norm(), 1e-6);
+  EXPECT_LT((end.linearVelocity - impulse / 2).norm(), 1e-12);
+  EXPECT_EQ(eventsOf(run, EventKind::pushEnd).size(), 1u);
+}
+
+TEST(Push, WhoseRayMissesSaysSoAndDoesNothing) {
+  const Trajectory run = pushBox(R"({"body": "box", "ray": {"origin": [3, 2, 0], "direction": [-1, 0, 0]},
+    "force": [-1, 0, 0], "start": 0.5, "duration": 0.1})");
+  EXPECT_EQ(eventsOf(run, EventKind::pushMissed).size(), 1u);
+  EXPECT_TRUE(eventsOf(run, EventKind::pushStart).empty());
+  EXPECT_EQ(endOf(run).linearVelocity, Vec3::Zero());
+}
+
+TEST(Push, PutsItsWorkIntoTheEnergyBalance) {
+  const Trajectory run = pushBox(R"({"body": "box", "point": [0.2, 0.1, -0.3], "force": [4, -2, 5], "start": 0.2,
+    "duration": 0.5})");
+  EXPECT_GT(run.frames.back().energy.work, 0.5);
+  for (const Frame& frame : run.frames) EXPECT_NEAR(energyConstantOf(frame), 0, 1e-9) << frame.time;
+}
+
+TEST(Push, WakesABodyThatLies) {
+  const Trajectory run = simulate(sceneOf(R"({"schema": "cradle-scene/1", "name": "Push", "duration": 1,
+    "output": {"framesPerSecond": 10}, )" +
+                                          methodText("rk4", 0.001) + R"(,
+    "bodies": [{"name": "floor", "shape": {"plane": {"normal": [0, 1, 0]}}, "motion": "static"},
+      {"name": "box", "shape": {"box": {"size": [0.4, 0.2, 0.6]}}, "mass": 2, "position": [0, 0.1, 0]}],
+    "pushes": [{"body": "box", "point": [0, 0, 0], "force": [0, 100, 0], "start": 0.5, "duration": 0.1}]})"));
+  EXPECT_EQ(eventsOf(run, EventKind::wake).size(), 1u);
+  // Up with F/m - g for 0.1 s, then free.
+  const double up = (50 - 9.81) * 0.1, height = up * 0.05 + up * 0.4 - 9.81 * 0.16 / 2;
+  EXPECT_NEAR(endOf(run).position.y() - 0.1, height, 1e-9);
+}
+
+}  // namespace
+}  // namespace cradle
