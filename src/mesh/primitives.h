@@ -30,7 +30,8 @@ MassProperties massProperties(const Box& box, double density);
 MassProperties massProperties(const Cylinder& cylinder, double density);
 MassProperties massProperties(const Capsule& capsule, double density);
 
-/// Smooth, closed drawn meshes. `segments` is the number of facets around (spheres have half as many rings).
+/// Closed drawn meshes, wound outwards, with the normals of the true shape; vertices lie on it. `segments` is the
+/// number of facets around, at least 8 (a sphere has half as many rows, a cap of a capsule a quarter).
 DrawnMesh tessellate(const Sphere& sphere, int segments = 64);
 DrawnMesh tessellate(const Box& box);
 DrawnMesh tessellate(const Cylinder& cylinder, int segments = 64);

@@ -7,8 +7,15 @@
 
 namespace cradle {
 
-/// Where the models of a scene come from: files, or a trajectory that holds them already.
+/// Where the models of a scene come from: files, or a trajectory that holds them already. The path of the reference is
+/// the scene file's own, not yet resolved. Throws Error(mesh) if there is no such model.
 using ModelSource = std::function<LoadedModel(const MeshReference&)>;
+
+/// Name of the model in Scene::models and in trajectories: "path#object@scale", the path as the scene file has it.
+std::string modelName(const MeshReference& reference);
+
+/// Reads models from files; relative paths start from the folder of the scene file.
+ModelSource modelFilesBeside(const std::string& scenePath);
 
 /// A scene, and what the user should know about it that is no error.
 struct LoadedScene {
@@ -18,10 +25,11 @@ struct LoadedScene {
 
 /// Reads a scene file and the meshes that it names. Throws Error(scene) with every fault of the text (at most 50, one a
 /// line: "FILE:LINE:COLUMN /json/pointer: what was found; what is allowed; hint"), else Error(mesh) with every mesh
-/// that cannot be used.
+/// that cannot be used. Meshes are looked at only if the text has no faults; the faults of the text that only they can
+/// show (a vertex that is not there) are then thrown first.
 LoadedScene loadScene(const std::string& path);
 
-/// The same for a text that is already in memory. `path` is used in messages and to resolve relative mesh paths.
+/// The same for a text that is already in memory; `path` is for messages.
 LoadedScene parseScene(const std::string& text, const std::string& path, const ModelSource& models);
 
 }  // namespace cradle

@@ -113,14 +113,17 @@ struct Method {
   std::string where;
 };
 
+/// Frame k is at k * playbackSpeed / framesPerSecond.
 struct Output {
-  double framesPerSecond = 60, playbackSpeed = 1;
-  int width = 1280, height = 720;
+  double framesPerSecond = 60, playbackSpeed = 1;  // 1/s, -; > 0
+  int width = 1280, height = 720;                  // pixels, 1..16384
+  std::string where;                               // the scene file itself if it says nothing of output
 };
 
 struct Camera {
-  Vec3 position, target;                    // m, world
-  double verticalFieldOfView = 0.69813170;  // rad (40 degrees)
+  std::string where;
+  Vec3 position = Vec3(0, 1, 5), target = Vec3::UnitY();  // m, world
+  double verticalFieldOfView = 0.69813170;                // rad (40 degrees)
 };
 
 struct Light {
@@ -132,10 +135,11 @@ struct Light {
 struct Scene {
   std::string path, text;  // the file itself
   std::string name, description;
-  double duration = 0;  // s, > 0
-  Vec3 gravity = Vec3(0, -9.81, 0);
-  double accuracy = 1e-6;
+  double duration = 0;               // s, > 0
+  Vec3 gravity = Vec3(0, -9.81, 0);  // m/s^2
+  double accuracy = 1e-6;            // 1e-12..1e-2, bound on the local error
   bool namesAccuracy = false;
+  std::string accuracyWhere;     // the scene file itself if it does not name one
   std::optional<Method> method;  // unset: the program chooses
   Output output;
   std::vector<Material> materials;

@@ -61,6 +61,7 @@ struct BodyRecord {
 /// All that is known before the first step.
 struct TrajectoryHeader {
   std::string scene, scenePath;        // text of the scene file; path for messages
+  std::string version;                 // of the program that made it
   std::string plan, accuracy, method;  // what was chosen, in words
   std::vector<BodyRecord> bodies;
   std::vector<Model> meshes;  // named "path#object@scale"; drawn and solid

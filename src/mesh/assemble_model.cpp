@@ -1,0 +1,169 @@
+#include "mesh/assemble_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "mesh/mass_properties.h"
+#include "mesh/solid.h"
+
+namespace cradle {
+namespace {
+
+constexpr float kShortestNormal = 1e-6f;  // shorter, or not finite: the file has no direction there
+
+Vec3f unitOrZero(const Vec3f& normal) {
+  const float length = normal.norm();
+  return length > kShortestNormal && std::isfinite(length) ? Vec3f(normal / length) : Vec3f(Vec3f::Zero());
+}
+
+// Drops triangles with two equal corners; returns how many there were.
+std::size_t dropDegenerate(MeshPiece& piece) {
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < piece.smoothing.size(); ++t) {
+    const Vec3 &a = piece.corners[3 * t], &b = piece.corners[3 * t + 1], &c = piece.corners[3 * t + 2];
+    if (a == b || b == c || c == a) continue;
+    if (kept != t) {
+      std::copy_n(piece.corners.begin() + static_cast<std::ptrdiff_t>(3 * t), 3,
+                  piece.corners.begin() + static_cast<std::ptrdiff_t>(3 * kept));
+      std::copy_n(piece.normals.begin() + static_cast<std::ptrdiff_t>(3 * t), 3,
+                  piece.normals.begin() + static_cast<std::ptrdiff_t>(3 * kept));
+      piece.smoothing[kept] = piece.smoothing[t];
+    }
+    ++kept;
+  }
+  const std::size_t dropped = piece.smoothing.size() - kept;
+  piece.corners.resize(3 * kept);
+  piece.normals.resize(3 * kept);
+  piece.smoothing.resize(kept);
+  return dropped;
+}
+
+template <typename T>
+void append(std::vector<T> values, std::vector<T>& to) {
+  if (to.empty())
+    to = std::move(values);
+  else
+    to.insert(to.end(), values.begin(), values.end());
+}
+
+// Appends the piece's triangles, a vertex per corner, and its material; returns how many were degenerate.
+std::size_t appendPiece(MeshPiece piece, bool continuesMaterial, DrawnMesh& drawn, std::vector<Smoothing>& smoothing) {
+  CRADLE_CHECK(piece.corners.size() == 3 * piece.smoothing.size());
+  piece.normals.resize(piece.corners.size(), Vec3f::Zero());
+  for (Vec3f& normal : piece.normals) normal = unitOrZero(normal);
+  const std::size_t degenerate = dropDegenerate(piece);
+
+  if (!continuesMaterial) {
+    drawn.materials.push_back(std::move(piece.look));
+    drawn.materials.back().firstTriangle = static_cast<std::uint32_t>(smoothing.size());
+    drawn.materials.back().triangleCount = 0;
+  }
+  drawn.materials.back().triangleCount += static_cast<std::uint32_t>(piece.smoothing.size());
+  append(std::move(piece.corners), drawn.vertices);
+  append(std::move(piece.normals), drawn.normals);
+  append(std::move(piece.smoothing), smoothing);
+  return degenerate;
+}
+
+std::uint32_t normalBits(float value) {
+  return std::bit_cast<std::uint32_t>(value == 0 ? 0.0f : value);
+}
+
+// Corners with bit-equal position and normal become one vertex: a smooth mesh shrinks to a sixth.
+void shareCorners(const Numbering& positions, DrawnMesh& drawn) {
+  const Numbering numbering = numberDistinct(drawn.vertices.size(), [&](std::size_t v) {
+    const Vec3f& n = drawn.normals[v];
+    return std::array{std::uint64_t{positions.numberOf[v]} << 32 | normalBits(n.x()),
+                      std::uint64_t{normalBits(n.y())} << 32 | normalBits(n.z())};
+  });
+  for (std::size_t v = 0; v < numbering.firstKey.size(); ++v) {  // firstKey[v] >= v: nothing is read after it changed
+    drawn.vertices[v] = drawn.vertices[numbering.firstKey[v]];
+    drawn.normals[v] = drawn.normals[numbering.firstKey[v]];
+  }
+  drawn.vertices.resize(numbering.firstKey.size());
+  drawn.normals.resize(numbering.firstKey.size());
+  for (Triangle& triangle : drawn.triangles)
+    for (std::uint32_t& corner : triangle) corner = numbering.numberOf[corner];
+}
+
+void turnInsideOut(Model& model) {
+  for (Triangle& triangle : model.solid.triangles) std::swap(triangle[1], triangle[2]);
+  for (Triangle& triangle : model.drawn.triangles) std::swap(triangle[1], triangle[2]);
+}
+
+// Normals that the file computed from its winding were inside-out too; those that an artist set may not have been.
+void turnNormalsOutwards(DrawnMesh& drawn) {
+  double agreement = 0;
+  for (const Triangle& triangle : drawn.triangles) {
+    const Vec3f outward = triangleNormal(drawn, triangle).cast<float>();
+    for (const std::uint32_t corner : triangle) agreement += outward.dot(drawn.normals[corner]);
+  }
+  if (agreement < 0)
+    for (Vec3f& normal : drawn.normals) normal = -normal;
+}
+
+std::string plural(std::size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+LoadedModel assembleModel(const std::string& name, std::vector<MeshPiece> pieces) {
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [](const MeshPiece& a, const MeshPiece& b) { return a.material < b.material; });
+  LoadedModel loaded;
+  loaded.model.name = name;
+  DrawnMesh& drawn = loaded.model.drawn;
+  std::vector<Smoothing> smoothing;
+  std::size_t degenerate = 0;
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    const bool continuesMaterial = p > 0 && pieces[p].material == pieces[p - 1].material;
+    degenerate += appendPiece(std::move(pieces[p]), continuesMaterial, drawn, smoothing);
+  }
+  std::erase_if(drawn.materials, [](const ModelMaterial& material) { return material.triangleCount == 0; });
+  drawn.triangles.reserve(smoothing.size());
+  for (std::uint32_t corner = 0; corner < drawn.vertices.size(); corner += 3)
+    drawn.triangles.push_back({corner, corner + 1, corner + 2});
+  const Numbering positions = numberPositions(drawn.vertices);
+  fillMissingNormals(smoothing, positions, drawn);
+  shareCorners(positions, drawn);
+  loaded.model.solid = weld(drawn.vertices, drawn.triangles);
+
+  if (degenerate > 0) loaded.notes.push_back(plural(degenerate, "degenerate triangle") + " dropped");
+  if (signedVolume(loaded.model.solid) < 0) {
+    turnInsideOut(loaded.model);
+    if (checkSolid(loaded.model.solid).isSolid) {
+      turnNormalsOutwards(drawn);
+      loaded.notes.push_back("was inside-out: turned");
+    } else {
+      turnInsideOut(loaded.model);  // back
+    }
+  }
+  return loaded;
+}
+
+LoadedModel joinModels(const std::string& name, const std::vector<LoadedModel>& objects) {
+  LoadedModel joined;
+  joined.model.name = name;
+  DrawnMesh& drawn = joined.model.drawn;
+  for (const auto& [object, notes] : objects) {
+    const auto firstVertex = static_cast<std::uint32_t>(drawn.vertices.size());
+    const auto firstTriangle = static_cast<std::uint32_t>(drawn.triangles.size());
+    drawn.vertices.insert(drawn.vertices.end(), object.drawn.vertices.begin(), object.drawn.vertices.end());
+    drawn.normals.insert(drawn.normals.end(), object.drawn.normals.begin(), object.drawn.normals.end());
+    for (const auto& [a, b, c] : object.drawn.triangles)
+      drawn.triangles.push_back({firstVertex + a, firstVertex + b, firstVertex + c});
+    for (ModelMaterial material : object.drawn.materials) {
+      material.firstTriangle += firstTriangle;
+      drawn.materials.push_back(std::move(material));
+    }
+    for (const std::string& note : notes) joined.notes.push_back(object.name + ": " + note);
+  }
+  joined.model.solid = weld(drawn.vertices, drawn.triangles);
+  return joined;
+}
+
+}  // namespace cradle

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh/load_mesh.h"
+#include "mesh/smooth_normals.h"
+#include "mesh/triangle_mesh.h"
+
+namespace cradle {
+
+/// Triangles of one material, as a file gives them, already in the frame of the file.
+struct MeshPiece {
+  std::vector<Vec3> corners;         // m, finite, three a triangle
+  std::vector<Vec3f> normals;        // one a corner, of any length; zero, or all left out: to be computed
+  std::vector<Smoothing> smoothing;  // one a triangle
+  int material = 0;                  // pieces of one number become one range
+  ModelMaterial look;
+};
+
+/// Joins the pieces of an object: drops degenerate triangles, shares corners with equal position and normal, orders by
+/// material, welds the solid, and turns both if the surface is closed and inside-out; `notes` says what was mended.
+/// The result's solid is weld(drawn.vertices, drawn.triangles). O(n).
+LoadedModel assembleModel(const std::string& name, std::vector<MeshPiece> pieces);
+
+/// Several objects as one model, in their order.
+LoadedModel joinModels(const std::string& name, const std::vector<LoadedModel>& objects);
+
+}  // namespace cradle

@@ -1,0 +1,138 @@
+#include "scene/attach_models.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "mesh/recognise_shape.h"
+#include "mesh/solid.h"
+#include "scene/given_mass.h"
+
+namespace cradle {
+namespace {
+
+/// What there is to know of a model, found once for all bodies that use it.
+struct ModelFacts {
+  int index = 0;                          // in Scene::models
+  bool isSolid = false;                   // bounds a volume
+  std::string problems;                   // why not
+  std::optional<MassProperties> uniform;  // at density 1, if it is a solid
+  std::optional<std::string> shape;       // what it was recognised as, once somebody asked
+  double size = 0;                        // m, radius of a sphere around it
+};
+
+/// Models by name; unset for those that could not be had.
+using ModelTable = std::map<std::string, std::optional<ModelFacts>>;
+
+struct Faults {
+  FaultList& text;
+  FaultList& mesh;
+};
+
+ModelFacts examine(const Model& model, const SolidReport& report) {
+  ModelFacts facts;
+  facts.isSolid = report.isSolid;
+  facts.problems = fmt::format("{}", fmt::join(report.problems, "; "));
+  if (report.isSolid) facts.uniform = computeMassProperties(model.solid, 1);
+  Bounds bounds;
+  for (const Vec3& vertex : model.solid.vertices) bounds.extend(vertex);
+  facts.size = bounds.isEmpty() ? 0 : bounds.diagonal().stableNorm() / 2;
+  return facts;
+}
+
+void warnOfNotes(const Field& field, std::vector<std::string> notes, const std::vector<std::string>& more,
+                 SceneDraft& scene, const FaultList& faults) {
+  for (const std::string& note : more) {
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+  }
+  for (const std::string& note : notes) {
+    scene.warnings.push_back(faults.where(field.place(), field.pointer) + ": " + note);
+  }
+}
+
+std::optional<ModelFacts> load(const BodyDraft& draft, SceneDraft& scene, const ModelSource& models, Faults faults) {
+  try {
+    LoadedModel loaded = models(draft.mesh);
+    loaded.model.name = modelName(draft.mesh);
+    const SolidReport report = checkSolid(loaded.model.solid);
+    warnOfNotes(*draft.meshField, loaded.notes, report.notes, scene, faults.mesh);
+    ModelFacts facts = examine(loaded.model, report);
+    facts.index = static_cast<int>(scene.scene.models.size());
+    scene.scene.models.push_back(std::move(loaded.model));
+    return facts;
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::mesh) throw;
+    addFault(faults.mesh, *draft.meshField, error.what());
+    return std::nullopt;
+  }
+}
+
+// A body that moves has a volume, or says itself how heavy it is.
+bool canMove(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults) {
+  if (facts.isSolid) return true;
+  const bool givesMass = draft.mass && draft.inertiaTensor;
+  const CollisionChoice choice = draft.body.collision;
+  if (givesMass && (choice == CollisionChoice::none || choice == CollisionChoice::hull)) return true;
+  const char* lacks = givesMass    ? "its collision needs a closed surface"
+                      : draft.mass ? "mass alone needs a volume for its inertia"
+                                   : "a body that moves needs a volume for its mass";
+  addFault(faults, *draft.meshField,
+           fmt::format("{} is no solid ({}), and {}; mend the mesh, or give \"motion\": \"static\", or \"mass\" with "
+                       "\"inertiaTensor\" and \"collision\": \"hull\" or \"none\"",
+                       inQuotes(draft.mesh.path), facts.problems, lacks));
+  return false;
+}
+
+// sphere and box are promises about the mesh that it must keep.
+void checkCollision(const BodyDraft& draft, ModelFacts& facts, const Scene& scene, FaultList& faults) {
+  const CollisionChoice choice = draft.body.collision;
+  if (choice != CollisionChoice::sphere && choice != CollisionChoice::box) return;
+  if (!facts.shape) {
+    const TriangleMesh& solid = scene.models[static_cast<std::size_t>(facts.index)].solid;
+    facts.shape = facts.isSolid ? shapeName(recogniseShape(solid)) : "an open surface";
+  }
+  const std::string wanted = choice == CollisionChoice::sphere ? "sphere" : "box";
+  if (*facts.shape == wanted) return;
+  addFault(
+      faults, *draft.collision,
+      fmt::format("collision is \"{}\", but the mesh is {} ({}); allowed are \"auto\", \"hull\", \"mesh\" and \"none\"",
+                  wanted, "no " + wanted, *facts.shape));
+}
+
+MassProperties massOf(const BodyDraft& draft, const ModelFacts& facts, SceneDraft& scene, FaultList& faults) {
+  if (draft.body.motion == Motion::fixed) return {};
+  if (!facts.isSolid && !draft.centerOfMass) {
+    scene.warnings.push_back(faults.where(draft.field.place(), draft.field.pointer) +
+                             ": the mesh is no solid and centerOfMass is not given; it is taken as [0, 0, 0]");
+  }
+  const double density = scene.scene.materials[static_cast<std::size_t>(draft.body.material)].density;
+  return completeMass(draft, facts.uniform, density, faults);
+}
+
+void complete(BodyDraft& draft, ModelFacts& facts, SceneDraft& scene, Faults faults) {
+  if (draft.body.motion == Motion::dynamic && !canMove(draft, facts, faults.mesh)) return;
+  checkCollision(draft, facts, scene.scene, faults.text);
+  const MassProperties properties = massOf(draft, facts, scene, faults.text);
+  for (int i = draft.firstBody; i < draft.firstBody + draft.bodyCount; ++i) {
+    Body& body = scene.scene.bodies[static_cast<std::size_t>(i)];
+    body.shape = ModelShape{facts.index};
+    body.massProperties = properties;
+  }
+  draft.size = facts.size;
+}
+
+}  // namespace
+
+void attachModels(SceneDraft& draft, const ModelSource& models, FaultList& textFaults, FaultList& meshFaults) {
+  const Faults faults{textFaults, meshFaults};
+  ModelTable table;
+  for (BodyDraft& body : draft.bodies) {
+    if (!body.meshField) continue;
+    const std::string name = modelName(body.mesh);
+    if (!table.contains(name)) table.emplace(name, load(body, draft, models, faults));
+    if (auto& facts = table.at(name)) complete(body, *facts, draft, faults);
+  }
+}
+
+}  // namespace cradle

@@ -1,0 +1,168 @@
+// The one unit that sees nlohmann-json. Its SAX parser says what is in the text, but not where (its positions are those
+// of its read-ahead), so a TokenCursor walks the same text in step and supplies the places. The parser keeps its own
+// stack on the heap: depth is limited for those who walk the tree afterwards.
+
+#include "scene/json_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "scene/syntax_fault.h"
+#include "scene/token_cursor.h"
+
+namespace cradle {
+namespace {
+
+constexpr std::size_t kMostLevels = 64;
+constexpr std::size_t kMostValues = 20'000'000;  // some 1.5 GB; a text of 64 MB that is a scene has fewer
+
+class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  TreeBuilder(const std::string& text, FaultList& faults) : cursor_(text), faults_(faults) {}
+
+  JsonValue takeRoot() { return std::move(root_); }
+
+  bool null() override { return addLeaf(nullptr); }
+  bool boolean(bool value) override { return addLeaf(value); }
+  bool number_integer(number_integer_t value) override { return addLeaf(static_cast<double>(value)); }
+  bool number_unsigned(number_unsigned_t value) override { return addLeaf(static_cast<double>(value)); }
+  bool number_float(number_float_t value, const string_t&) override { return addLeaf(value); }
+  bool string(string_t& value) override { return addLeaf(std::move(value)); }
+  bool binary(binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return open(JsonValue::Object{}); }
+  bool start_array(std::size_t) override { return open(JsonValue::Array{}); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool key(string_t& key) override;
+  bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override;
+
+ private:
+  struct Level {
+    JsonValue* value;  // stays in place: nothing is added to its parent before it is closed
+    std::map<std::string, TextPlace> keys;
+  };
+
+  JsonValue* add(JsonValue value);
+  bool addLeaf(decltype(JsonValue::content) content);
+  bool open(decltype(JsonValue::content) content);
+  bool close();
+  std::string pointer() const;
+
+  TokenCursor cursor_;
+  FaultList& faults_;
+  JsonValue root_;
+  std::vector<Level> levels_;
+  std::size_t count_ = 0;  // of values
+};
+
+// Null if there are too many.
+JsonValue* TreeBuilder::add(JsonValue value) {
+  if (++count_ > kMostValues) {
+    faults_.add(value.place, "", fmt::format("the text has more than {} values", kMostValues));
+    return nullptr;
+  }
+  if (levels_.empty()) return &(root_ = std::move(value));
+  auto& parent = levels_.back().value->content;
+  if (auto* array = std::get_if<JsonValue::Array>(&parent)) return &array->emplace_back(std::move(value));
+  return &(std::get<JsonValue::Object>(parent).back().value = std::move(value));
+}
+
+bool TreeBuilder::addLeaf(decltype(JsonValue::content) content) {
+  const TextPlace place = cursor_.takeToken();
+  return add({place, std::move(content)}) != nullptr;
+}
+
+bool TreeBuilder::open(decltype(JsonValue::content) content) {
+  const TextPlace place = cursor_.takeToken();
+  JsonValue* value = add({place, std::move(content)});
+  if (value == nullptr) return false;
+  if (levels_.size() == kMostLevels) {
+    faults_.add(place, "", fmt::format("brackets nest deeper than {0} levels; at most {0} are allowed", kMostLevels));
+    return false;
+  }
+  levels_.push_back({value, {}});
+  return true;
+}
+
+bool TreeBuilder::close() {
+  cursor_.takeToken();
+  levels_.pop_back();
+  return true;
+}
+
+bool TreeBuilder::key(string_t& key) {
+  const TextPlace place = cursor_.takeToken();
+  auto& object = std::get<JsonValue::Object>(levels_.back().value->content);
+  object.push_back({key, place, {}});
+  const auto [first, isNew] = levels_.back().keys.emplace(key, place);
+  if (!isNew) {
+    faults_.add(place, pointer(),
+                fmt::format("duplicate key {}; each key may stand once in an object; the first is at {}:{}",
+                            inQuotes(key), first->second.line, first->second.column));
+  }
+  return true;
+}
+
+bool TreeBuilder::parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) {
+  const std::string reason = error.what();
+  const bool isBadByte = reason.find("ill-formed UTF-8") != reason.npos;
+  TextPlace place = cursor_.findToken();
+  const bool followsComma = cursor_.followsComma();
+  const std::string token(cursor_.rest().substr(0, kLongestOffender));
+  if (isBadByte) place = cursor_.advanceTo(position - 1);
+  std::string what = explainSyntaxFault(token, followsComma, reason);
+  if (token.empty() && !levels_.empty()) {
+    const TextPlace opened = levels_.back().value->place;
+    what += fmt::format("; the bracket at {}:{} is not closed", opened.line, opened.column);
+  }
+  faults_.add(place, pointer(), what);
+  return false;
+}
+
+std::string TreeBuilder::pointer() const {
+  std::string result;
+  for (const Level& level : levels_) {
+    if (const auto* array = std::get_if<JsonValue::Array>(&level.value->content)) {
+      if (!array->empty()) result = pointerTo(result, array->size() - 1);
+    } else if (const auto& object = std::get<JsonValue::Object>(level.value->content); !object.empty()) {
+      result = pointerTo(result, object.back().key);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+JsonValue readJson(const std::string& text, FaultList& faults) {
+  if (text.size() > kLongestText) {
+    faults.add({}, "", fmt::format("the text has {} bytes; at most 64 MB are allowed", text.size()));
+    faults.throwIfAny(ErrorKind::scene);
+  }
+  // The parser would take a NUL for the end of the text and pass over what follows.
+  if (const auto nul = text.find('\0'); nul != text.npos) {
+    faults.add(TokenCursor(text).advanceTo(nul), "", "a NUL byte; a scene file is UTF-8 text");
+    faults.throwIfAny(ErrorKind::scene);
+  }
+  TreeBuilder builder(text, faults);
+  const bool isRead = nlohmann::json::sax_parse(text, &builder, nlohmann::json::input_format_t::json, true, true);
+  if (!isRead) faults.throwIfAny(ErrorKind::scene);
+  return builder.takeRoot();
+}
+
+std::string pointerTo(const std::string& pointer, const std::string& key) {
+  std::string result = pointer + '/';
+  for (const char character : key) {
+    result += character == '~' ? "~0" : character == '/' ? "~1" : std::string(1, character);
+  }
+  return result;
+}
+
+std::string pointerTo(const std::string& pointer, std::size_t index) {
+  return pointer + '/' + std::to_string(index);
+}
+
+}  // namespace cradle

@@ -1,0 +1,157 @@
+#include "scene/parse_bodies.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "scene/given_mass.h"
+#include "scene/parse_pose.h"
+#include "scene/parse_shape.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kMostBodies = 1e6;
+
+struct Copies {
+  std::array<int, 3> count{1, 1, 1};
+  Vec3 spacing = Vec3::Ones();  // m
+};
+
+Copies parseCopies(const Field& field, FaultList& faults) {
+  Copies copies;
+  ObjectReader reader(field, faults);
+  if (const auto count = reader.find("count")) {
+    const std::vector<Field> items = readItems(*count, 3, faults);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const Range counts{1, kMostBodies, false, true};
+      copies.count[i] = static_cast<int>(readNumber(items[i], counts, "", faults).value_or(1));
+    }
+  }
+  copies.spacing = reader.vector("spacing", "m", copies.spacing);
+  reader.rejectUnknownKeys();
+  return copies;
+}
+
+void parseMaterialName(ObjectReader& reader, const SceneDraft& scene, BodyDraft& draft) {
+  const auto field = reader.find("material");
+  if (!field) return;
+  draft.body.material = findNamed(*field, scene.materialIndex, "material", reader.faults()).value_or(0);
+  draft.body.namesMaterial = true;
+}
+
+void parseName(ObjectReader& reader, BodyDraft& draft) {
+  const auto field = reader.require("name");
+  const auto name = field ? readText(*field, reader.faults()) : std::nullopt;
+  if (name && name->empty()) addFault(reader.faults(), *field, "the name is empty; a body needs one");
+  draft.body.name = name.value_or("");
+}
+
+// What a body that never moves says about its motion goes unused; its writer should know.
+void warnOfUnused(ObjectReader& reader, const BodyDraft& draft, std::vector<std::string>& warnings) {
+  if (draft.body.motion != Motion::fixed) return;
+  for (const char* key :
+       {"mass", "centerOfMass", "inertiaTensor", "linearVelocity", "angularVelocity", "angularVelocityBody"}) {
+    if (const auto field = reader.find(key)) {
+      warnings.push_back(fmt::format("{}: {} is not used, because the body is static",
+                                     reader.faults().where(field->place(), field->pointer), key));
+    }
+  }
+}
+
+MassProperties uniformMass(const Shape& shape) {
+  constexpr double kUnitDensity = 1;
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return massProperties(*sphere, kUnitDensity);
+  if (const auto* box = std::get_if<Box>(&shape)) return massProperties(*box, kUnitDensity);
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return massProperties(*cylinder, kUnitDensity);
+  return massProperties(std::get<Capsule>(shape), kUnitDensity);
+}
+
+void completePrimitive(BodyDraft& draft, const SceneDraft& scene, FaultList& faults) {
+  if (draft.body.motion == Motion::fixed) return;
+  if (std::holds_alternative<Plane>(draft.body.shape)) {
+    addFault(faults, draft.field, "a plane is infinite and cannot move; give \"motion\": \"static\"");
+    return;
+  }
+  const double density = scene.scene.materials[static_cast<std::size_t>(draft.body.material)].density;
+  draft.body.massProperties = completeMass(draft, uniformMass(draft.body.shape), density, faults);
+}
+
+void addBody(const Body& body, SceneDraft& scene, const Field& name, FaultList& faults) {
+  const int index = static_cast<int>(scene.scene.bodies.size());
+  const auto [earlier, isNew] = scene.bodyIndex.emplace(body.name, index);
+  if (!isNew) {
+    const auto& first = scene.scene.bodies[static_cast<std::size_t>(earlier->second)];
+    addFault(faults, name,
+             fmt::format("duplicate name {}; names of bodies must differ; the first is {}", inQuotes(body.name),
+                         first.where));
+  }
+  scene.scene.bodies.push_back(body);
+  scene.draftOfBody.push_back(scene.bodies.size());
+}
+
+// Copy (ix, iy, iz) is named name_N, N = (ix*ny + iy)*nz + iz.
+void addCopies(const Copies& copies, const BodyDraft& draft, SceneDraft& scene, const Field& name, FaultList& faults) {
+  Body body = draft.body;
+  int number = 0;
+  for (int ix = 0; ix < copies.count[0]; ++ix) {
+    for (int iy = 0; iy < copies.count[1]; ++iy) {
+      for (int iz = 0; iz < copies.count[2]; ++iz) {
+        body.name = fmt::format("{}_{}", draft.body.name, number++);
+        body.worldFromBody.translation =
+            draft.body.worldFromBody.translation + copies.spacing.cwiseProduct(Vec3(ix, iy, iz));
+        addBody(body, scene, name, faults);
+      }
+    }
+  }
+}
+
+void writeOutBodies(ObjectReader& reader, BodyDraft& draft, SceneDraft& scene) {
+  FaultList& faults = reader.faults();
+  const auto copiesField = reader.find("copies");
+  const Copies copies = copiesField ? parseCopies(*copiesField, faults) : Copies{};
+  const double total = static_cast<double>(scene.scene.bodies.size()) +
+                       double(copies.count[0]) * double(copies.count[1]) * double(copies.count[2]);
+  draft.firstBody = static_cast<int>(scene.scene.bodies.size());
+  const auto name = reader.find("name");
+  if (!name || draft.body.name.empty()) return;
+  if (total > kMostBodies) {
+    addFault(faults, copiesField.value_or(draft.field),
+             fmt::format("the scene would have {} bodies; at most {} are allowed", total, kMostBodies));
+  } else if (copiesField) {
+    addCopies(copies, draft, scene, *name, faults);
+  } else {
+    addBody(draft.body, scene, *name, faults);
+  }
+  draft.bodyCount = static_cast<int>(scene.scene.bodies.size()) - draft.firstBody;
+}
+
+void parseBody(const Field& field, SceneDraft& scene, FaultList& faults) {
+  const std::size_t faultsBefore = faults.count();
+  BodyDraft draft;
+  draft.field = field;
+  draft.body.where = faults.where(field.place(), field.pointer);
+  ObjectReader reader(field, faults);
+  parseName(reader, draft);
+  parseMaterialName(reader, scene, draft);
+  parseShape(reader, draft);
+  draft.body.motion =
+      reader.choice<Motion>("motion", {{"dynamic", Motion::dynamic}, {"static", Motion::fixed}}, Motion::dynamic);
+  parseGivenMass(reader, draft);
+  parsePose(reader, draft);
+  if (faults.count() == faultsBefore && !draft.meshField) completePrimitive(draft, scene, faults);
+  warnOfUnused(reader, draft, scene.warnings);
+  writeOutBodies(reader, draft, scene);
+  reader.rejectUnknownKeys();
+  draft.isSound = faults.count() == faultsBefore;
+  scene.bodies.push_back(std::move(draft));
+}
+
+}  // namespace
+
+void parseBodies(ObjectReader& root, SceneDraft& draft) {
+  root.require("bodies");
+  for (const Field& item : root.items("bodies")) parseBody(item, draft, root.faults());
+}
+
+}  // namespace cradle

@@ -1,0 +1,164 @@
+#include "scene/parse_links.h"
+
+#include <fmt/format.h>
+
+namespace cradle {
+namespace {
+
+constexpr double kMostVertices = 2147483647;  // vertex indices are int
+
+bool isFixed(int body, const Scene& scene) {
+  return body == kWorld || scene.bodies[static_cast<std::size_t>(body)].motion == Motion::fixed;
+}
+
+std::optional<int> readVertex(const Field& field, int body, const SceneDraft& scene, FaultList& faults) {
+  const std::size_t faultsBefore = faults.count();
+  ObjectReader reader(field, faults);
+  const auto vertex = reader.require("vertex");
+  const double index = reader.number("vertex", {0, kMostVertices, false, true}, "", 0);
+  reader.rejectUnknownKeys();
+  if (faults.count() != faultsBefore) return std::nullopt;
+  const bool hasVertices =
+      body != kWorld && scene.bodies[scene.draftOfBody[static_cast<std::size_t>(body)]].meshField.has_value();
+  if (!hasVertices) {
+    addFault(faults, field, "only the vertices of a mesh can be anchors; give a point [x, y, z]");
+    return std::nullopt;
+  }
+  return static_cast<int>(index);
+}
+
+AnchorDraft parseAnchor(ObjectReader& reader, const char* key, int body, const Vec3& fallback,
+                        const SceneDraft& scene) {
+  AnchorDraft draft{{body, fallback}, reader.field(), std::nullopt};
+  const auto field = reader.find(key);
+  if (!field) return draft;
+  draft.field = *field;
+  if (std::holds_alternative<JsonValue::Object>(field->value->content)) {
+    draft.vertex = readVertex(*field, body, scene, reader.faults());
+  } else {
+    draft.anchor.point = readVector(*field, "m", reader.faults()).value_or(fallback);
+  }
+  return draft;
+}
+
+void checkBodies(ObjectReader& reader, std::optional<int> bodyA, std::optional<int> bodyB, const Scene& scene) {
+  if (!bodyA || !bodyB) return;
+  if (bodyA == bodyB) {
+    addFault(reader.faults(), reader.find("bodyB").value_or(reader.field()),
+             "bodyA and bodyB are the same body; they must differ, or leave out bodyB for a point of the world");
+  } else if (isFixed(*bodyA, scene) && isFixed(*bodyB, scene)) {
+    addFault(reader.faults(), reader.field(), "neither end can move; at least one body must be dynamic");
+  }
+}
+
+// bodyA, anchorA, bodyB, anchorB
+void parseEnds(ObjectReader& reader, const Vec3& usualAnchorB, const SceneDraft& scene, LinkDraft& draft) {
+  const auto nameA = reader.require("bodyA"), nameB = reader.find("bodyB");
+  const auto bodyA = nameA ? findNamed(*nameA, scene.bodyIndex, "body", reader.faults()) : std::nullopt;
+  const auto bodyB = nameB ? findNamed(*nameB, scene.bodyIndex, "body", reader.faults()) : std::optional(kWorld);
+  checkBodies(reader, bodyA, bodyB, scene.scene);
+  draft.anchorA = parseAnchor(reader, "anchorA", bodyA.value_or(kWorld), Vec3::Zero(), scene);
+  draft.anchorB = parseAnchor(reader, "anchorB", bodyB.value_or(kWorld), usualAnchorB, scene);
+}
+
+Spring parseSpring(ObjectReader& reader, LinkDraft& draft) {
+  Spring spring;
+  spring.stiffness = reader.number("stiffness", kNotNegative, "N/m", 100);
+  spring.damping = reader.number("damping", kNotNegative, "N s/m", 0);
+  draft.length = reader.find("restLength");
+  spring.restLength = reader.number("restLength", kNotNegative, "m", 0);
+  return spring;
+}
+
+Rod parseRod(ObjectReader& reader, LinkDraft& draft) {
+  Rod rod;
+  draft.length = reader.find("length");
+  rod.length = reader.number("length", kPositive, "m", 1);
+  return rod;
+}
+
+Rope parseRope(ObjectReader& reader, LinkDraft& draft) {
+  Rope rope;
+  draft.length = reader.find("maxLength");
+  rope.maxLength = reader.number("maxLength", kPositive, "m", 1);
+  rope.restitution = reader.number("restitution", kFraction, "", 0);
+  return rope;
+}
+
+BallJoint parseBallJoint(ObjectReader&, LinkDraft&) {
+  return {};
+}
+
+Hinge parseHinge(ObjectReader& reader, LinkDraft&) {
+  Hinge hinge;
+  hinge.axis = reader.direction("axis", hinge.axis);
+  return hinge;
+}
+
+template <typename Link>
+struct LinkKind {
+  const char* key;   // of the array in the scene file
+  const char* noun;  // names are noun0, noun1, ... by default
+  Vec3 usualAnchorB;
+  Link (*parse)(ObjectReader&, LinkDraft&);
+};
+
+using NamePlaces = std::map<std::string, std::string>;  // name of a link -> where it is
+
+template <typename Link>
+LinkDraft parseLink(const Field& field, const LinkKind<Link>& kind, std::size_t number, const SceneDraft& scene,
+                    FaultList& faults) {
+  LinkDraft draft;
+  draft.field = field;
+  ObjectReader reader(field, faults);
+  const std::string name = reader.text("name", fmt::format("{}{}", kind.noun, number));
+  parseEnds(reader, kind.usualAnchorB, scene, draft);
+  Link link = kind.parse(reader, draft);
+  reader.rejectUnknownKeys();
+  link.name = name;
+  link.where = faults.where(field.place(), field.pointer);
+  draft.link = link;
+  return draft;
+}
+
+// A link with faults, or of a body with faults, is not looked at further: what it seems to lack may follow from them.
+bool isSound(const LinkDraft& link, const SceneDraft& scene) {
+  for (const int body : {link.anchorA.anchor.body, link.anchorB.anchor.body}) {
+    if (body != kWorld && !scene.bodies[scene.draftOfBody[static_cast<std::size_t>(body)]].isSound) return false;
+  }
+  return true;
+}
+
+template <typename Link>
+void parseKind(ObjectReader& root, const LinkKind<Link>& kind, NamePlaces& names, SceneDraft& scene) {
+  FaultList& faults = root.faults();
+  std::size_t number = 0;
+  for (const Field& item : root.items(kind.key)) {
+    const std::size_t faultsBefore = faults.count();
+    LinkDraft draft = parseLink(item, kind, number++, scene, faults);
+    draft.isSound = faults.count() == faultsBefore && isSound(draft, scene);
+    const Link& link = std::get<Link>(draft.link);
+    const auto [first, isNew] = names.emplace(link.name, link.where);
+    if (!isNew) {
+      const auto name = ObjectReader(item, faults).find("name");
+      addFault(faults, name.value_or(item),
+               fmt::format("duplicate name {}; names of springs, rods, ropes and joints must differ; the first is {}",
+                           inQuotes(link.name), first->second));
+    }
+    scene.links.push_back(std::move(draft));
+  }
+}
+
+}  // namespace
+
+void parseLinks(ObjectReader& root, SceneDraft& draft) {
+  NamePlaces names;
+  const Vec3 above = Vec3::UnitY();
+  parseKind<Spring>(root, {"springs", "spring", Vec3::Zero(), parseSpring}, names, draft);
+  parseKind<Rod>(root, {"rods", "rod", above, parseRod}, names, draft);
+  parseKind<Rope>(root, {"ropes", "rope", above, parseRope}, names, draft);
+  parseKind<BallJoint>(root, {"ballJoints", "ballJoint", above, parseBallJoint}, names, draft);
+  parseKind<Hinge>(root, {"hinges", "hinge", above, parseHinge}, names, draft);
+}
+
+}  // namespace cradle

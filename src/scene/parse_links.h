@@ -1,0 +1,12 @@
+#pragma once
+
+#include "scene/read_fields.h"
+#include "scene/scene_draft.h"
+
+namespace cradle {
+
+/// `springs`, `rods`, `ropes`, `ballJoints` and `hinges`. Bodies must be there. Where the ends are, and with it the
+/// lengths, is settled later.
+void parseLinks(ObjectReader& root, SceneDraft& draft);
+
+}  // namespace cradle

@@ -1,0 +1,59 @@
+#include "scene/parse_pushes.h"
+
+#include <fmt/format.h>
+
+namespace cradle {
+namespace {
+
+Push::Ray parseRay(const Field& field, FaultList& faults) {
+  ObjectReader reader(field, faults);
+  Push::Ray ray;
+  ray.origin = reader.vector("origin", "m", Vec3(0, 0, 5));
+  ray.direction = reader.direction("direction", -Vec3::UnitZ());
+  reader.rejectUnknownKeys();
+  return ray;
+}
+
+// A body point, or the ray that finds one.
+void parseTarget(ObjectReader& reader, Push& push) {
+  const auto point = reader.find("point"), ray = reader.find("ray");
+  if (point) push.target = readVector(*point, "m", reader.faults()).value_or(Vec3::Zero());
+  if (ray) push.target = parseRay(*ray, reader.faults());
+  if (point && ray) {
+    addFault(reader.faults(), *ray, "both point and ray are given; allowed is one of them");
+  } else if (!point && !ray && std::holds_alternative<JsonValue::Object>(reader.field().value->content)) {
+    addFault(reader.faults(), reader.field(),
+             "the push does not say where it acts; give \"point\" (of the body) or \"ray\" (of the world)");
+  }
+}
+
+void warnIfFixed(const Push& push, SceneDraft& scene) {
+  const Body& body = scene.scene.bodies[static_cast<std::size_t>(push.body)];
+  if (body.motion == Motion::dynamic) return;
+  scene.warnings.push_back(
+      fmt::format("{}: the push moves nothing, because body {} is static", push.where, inQuotes(body.name)));
+}
+
+Push parsePush(const Field& field, SceneDraft& scene, FaultList& faults) {
+  Push push;
+  push.where = faults.where(field.place(), field.pointer);
+  ObjectReader reader(field, faults);
+  const auto name = reader.require("body");
+  const auto body = name ? findNamed(*name, scene.bodyIndex, "body", faults) : std::nullopt;
+  parseTarget(reader, push);
+  push.force = reader.vector("force", "N", Vec3(0, 0, -3));
+  push.start = reader.number("start", kNotNegative, "s", 0.5);
+  push.duration = reader.number("duration", kPositive, "s", 0.02);
+  reader.rejectUnknownKeys();
+  push.body = body.value_or(kWorld);
+  if (push.body != kWorld) warnIfFixed(push, scene);
+  return push;
+}
+
+}  // namespace
+
+void parsePushes(ObjectReader& root, SceneDraft& draft) {
+  for (const Field& item : root.items("pushes")) draft.scene.pushes.push_back(parsePush(item, draft, root.faults()));
+}
+
+}  // namespace cradle

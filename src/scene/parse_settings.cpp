@@ -1,0 +1,136 @@
+#include "scene/parse_settings.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+namespace cradle {
+namespace {
+
+constexpr const char* kSchema = "cradle-scene/1";
+constexpr Range kAccuracies{1e-12, 1e-2};
+constexpr int kLargestPicture = 16384;  // pixels; Mesa's limit
+constexpr double kMostFrames = 1e9;     // a year at 30 a second; keeps frame numbers far from overflow
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+
+void parseSchema(ObjectReader& root) {
+  const auto field = root.require("schema");
+  const auto schema = field ? readText(*field, root.faults()) : std::nullopt;
+  if (schema && *schema != kSchema) {
+    addFault(root.faults(), *field, fmt::format("schema is {}; allowed is \"{}\"", inQuotes(*schema), kSchema));
+  }
+}
+
+double parseAccuracy(const Field& field, FaultList& faults) {
+  const auto* word = std::get_if<std::string>(&field.value->content);
+  if (word == nullptr) return readNumber(field, kAccuracies, "or a word", faults).value_or(kAccuracies.most);
+  if (*word == "visual") return 1e-3;
+  if (*word == "default") return 1e-6;
+  if (*word == "reference") return 1e-10;
+  addFault(faults, field,
+           fmt::format("accuracy is {}; allowed is a number in 1e-12..1e-2, \"visual\" (1e-3), \"default\" (1e-6) or "
+                       "\"reference\" (1e-10)",
+                       inQuotes(*word)));
+  return kAccuracies.most;
+}
+
+Method parseMethod(const Field& field, FaultList& faults) {
+  Method method;
+  method.where = faults.where(field.place(), field.pointer);
+  ObjectReader reader(field, faults);
+  reader.require("name");
+  method.name = reader.choice<MethodName>("name",
+                                          {{"explicitEuler", MethodName::explicitEuler},
+                                           {"semiImplicitEuler", MethodName::semiImplicitEuler},
+                                           {"rk4", MethodName::rk4},
+                                           {"dop853", MethodName::dop853}},
+                                          method.name);
+  method.timeStep = reader.optionalNumber("timeStep", kPositive, "s");
+  reader.rejectUnknownKeys();
+  return method;
+}
+
+Output parseOutput(const Field& field, FaultList& faults) {
+  Output output;
+  output.where = faults.where(field.place(), field.pointer);
+  ObjectReader reader(field, faults);
+  output.framesPerSecond = reader.number("framesPerSecond", kPositive, "1/s", output.framesPerSecond);
+  output.width = reader.integer("width", 1, kLargestPicture, output.width);
+  output.height = reader.integer("height", 1, kLargestPicture, output.height);
+  output.playbackSpeed = reader.number("playbackSpeed", kPositive, "", output.playbackSpeed);
+  reader.rejectUnknownKeys();
+  return output;
+}
+
+Camera parseCamera(const Field& field, FaultList& faults) {
+  Camera camera;
+  camera.where = faults.where(field.place(), field.pointer);
+  ObjectReader reader(field, faults);
+  camera.position = reader.vector("position", "m", camera.position);
+  camera.target = reader.vector("target", "m", camera.target);
+  camera.verticalFieldOfView =
+      kRadiansPerDegree * reader.number("verticalFieldOfViewDegrees", {0, 180, true}, "degrees", 40);
+  reader.rejectUnknownKeys();
+  if (camera.position == camera.target) {
+    addFault(faults, field, "the camera's position is its target; they must differ, or there is no way to look");
+  }
+  return camera;
+}
+
+Light parseLight(const Field& field, FaultList& faults) {
+  Light light;
+  ObjectReader reader(field, faults);
+  light.direction = reader.direction("direction", light.direction);
+  light.color = reader.color("color").value_or(light.color);
+  light.intensity = reader.number("intensity", kNotNegative, "", light.intensity);
+  reader.rejectUnknownKeys();
+  return light;
+}
+
+void parseLights(ObjectReader& root, Scene& scene) {
+  const auto field = root.find("lights");
+  if (!field) {
+    scene.lights = {Light{}};
+    return;
+  }
+  for (const Field& item : readItems(*field, root.faults())) scene.lights.push_back(parseLight(item, root.faults()));
+  if (const auto* array = std::get_if<JsonValue::Array>(&field->value->content); array != nullptr && array->empty()) {
+    addFault(root.faults(), *field, "lights is empty; at least one is needed; leave the key out for the usual one");
+  }
+}
+
+// Frames are counted in whole numbers.
+void checkFrameCount(const Scene& scene, const Field& root, FaultList& faults) {
+  const double count = scene.duration * scene.output.framesPerSecond / scene.output.playbackSpeed;
+  if (count <= kMostFrames) return;
+  addFault(faults, root,
+           fmt::format("duration x framesPerSecond / playbackSpeed gives {} frames; at most {} are allowed", count,
+                       kMostFrames));
+}
+
+}  // namespace
+
+void parseSettings(ObjectReader& root, Scene& scene) {
+  FaultList& faults = root.faults();
+  const std::size_t faultsBefore = faults.count();
+  scene.accuracyWhere = scene.output.where = faults.where(root.field().place(), "");
+  parseSchema(root);
+  root.require("name");
+  scene.name = root.text("name", "");
+  scene.description = root.text("description", "");
+  root.require("duration");
+  scene.duration = root.number("duration", kPositive, "s", 1);
+  scene.gravity = root.vector("gravity", "m/s^2", scene.gravity);
+  if (const auto field = root.find("accuracy")) {
+    scene.accuracy = parseAccuracy(*field, faults);
+    scene.accuracyWhere = faults.where(field->place(), field->pointer);
+    scene.namesAccuracy = true;
+  }
+  if (const auto field = root.find("method")) scene.method = parseMethod(*field, faults);
+  if (const auto field = root.find("output")) scene.output = parseOutput(*field, faults);
+  if (const auto field = root.find("camera")) scene.camera = parseCamera(*field, faults);
+  parseLights(root, scene);
+  if (faults.count() == faultsBefore) checkFrameCount(scene, root.field(), faults);
+}
+
+}  // namespace cradle

@@ -1,0 +1,239 @@
+#include "scene/read_fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/suggestion.h"
+
+namespace cradle {
+namespace {
+
+constexpr std::size_t kMostItems = 1'000'000;  // of an array; as many bodies as a scene may have
+
+// "a number > 0 (kg)", "a whole number in 1..16384"
+std::string describedRange(const Range& range, const char* unit) {
+  std::string text = range.wantsInteger ? "a whole number" : "a number";
+  const bool hasMost = range.most != kUnbounded, hasLeast = range.least != -kUnbounded;
+  if (hasLeast && hasMost && !range.excludesEnds) {
+    text += fmt::format(" in {}..{}", range.least, range.most);
+  } else {
+    if (hasLeast) text += fmt::format(" {} {}", range.excludesEnds ? ">" : ">=", range.least);
+    if (hasMost) text += fmt::format("{} {} {}", hasLeast ? " and" : "", range.excludesEnds ? "<" : "<=", range.most);
+  }
+  return *unit == 0 ? text : fmt::format("{} ({})", text, unit);
+}
+
+bool holds(const Range& range, double number) {
+  if (range.wantsInteger && std::floor(number) != number) return false;
+  if (range.excludesEnds) return number > range.least && number < range.most;
+  return number >= range.least && number <= range.most;
+}
+
+std::string joinedInQuotes(const std::vector<std::string>& words) {
+  return fmt::format("\"{}\"", fmt::join(words, "\", \""));
+}
+
+// The key is named because the value alone may not say what it is for: "mass", or "gravity[1]" for an element.
+std::string keyOf(const Field& field) {
+  std::string path = field.pointer, indices;
+  while (!path.empty()) {
+    const auto slash = path.rfind('/');
+    const std::string step = path.substr(slash + 1);
+    path.resize(slash);
+    if (step.find_first_not_of("0123456789") != step.npos) return step + indices;
+    indices = fmt::format("[{}]{}", step, indices);
+  }
+  return "the scene" + indices;
+}
+
+int hexDigit(char character) {
+  if (character >= '0' && character <= '9') return character - '0';
+  if (character >= 'a' && character <= 'f') return character - 'a' + 10;
+  if (character >= 'A' && character <= 'F') return character - 'A' + 10;
+  return -1;
+}
+
+}  // namespace
+
+void addFault(FaultList& faults, const Field& field, const std::string& what) {
+  if (faults.isFull()) {
+    faults.add({}, "", "");
+  } else {
+    faults.add(field.place(), field.pointer, what);
+  }
+}
+
+std::string described(const JsonValue& value) {
+  struct {
+    std::string operator()(std::nullptr_t) const { return "null"; }
+    std::string operator()(bool value) const { return value ? "true" : "false"; }
+    std::string operator()(double value) const { return fmt::format("the number {}", value); }
+    std::string operator()(const std::string& value) const { return "the string " + inQuotes(value); }
+    std::string operator()(const JsonValue::Array& value) const {
+      return fmt::format("an array of {} element{}", value.size(), value.size() == 1 ? "" : "s");
+    }
+    std::string operator()(const JsonValue::Object&) const { return "an object"; }
+  } describe;
+  return std::visit(describe, value.content);
+}
+
+std::optional<double> readNumber(const Field& field, const Range& range, const char* unit, FaultList& faults) {
+  const double* number = std::get_if<double>(&field.value->content);
+  if (number != nullptr && holds(range, *number)) return *number;
+  const std::string found = number == nullptr ? described(*field.value) : fmt::format("{}", *number);
+  addFault(faults, field, fmt::format("{} is {}; allowed is {}", keyOf(field), found, describedRange(range, unit)));
+  return std::nullopt;
+}
+
+std::optional<std::string> readText(const Field& field, FaultList& faults) {
+  if (const auto* text = std::get_if<std::string>(&field.value->content)) return *text;
+  addFault(faults, field, fmt::format("{} is {}; allowed is a string", keyOf(field), described(*field.value)));
+  return std::nullopt;
+}
+
+std::optional<Vec3> readVector(const Field& field, const char* unit, FaultList& faults) {
+  const std::vector<Field> items = readItems(field, 3, faults);
+  if (items.empty()) return std::nullopt;
+  Vec3 vector;
+  bool isSound = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto number = readNumber(items[i], kAnyNumber, unit, faults);
+    isSound = isSound && number.has_value();
+    vector[static_cast<Eigen::Index>(i)] = number.value_or(0);
+  }
+  return isSound ? std::optional(vector) : std::nullopt;
+}
+
+std::optional<Vec3> readDirection(const Field& field, FaultList& faults) {
+  const auto vector = readVector(field, "", faults);
+  if (!vector) return std::nullopt;
+  if (*vector != Vec3::Zero()) return vector->stableNormalized();
+  addFault(faults, field, keyOf(field) + " is zero; allowed is any length but zero");
+  return std::nullopt;
+}
+
+std::optional<Vec3f> readColor(const Field& field, FaultList& faults) {
+  const auto text = readText(field, faults);
+  if (!text) return std::nullopt;
+  const bool isColor = text->size() == 7 && text->front() == '#' &&
+                       std::all_of(text->begin() + 1, text->end(), [](char c) { return hexDigit(c) >= 0; });
+  if (!isColor) {
+    addFault(faults, field, fmt::format("{} is {}; allowed is \"#rrggbb\"", keyOf(field), inQuotes(*text)));
+    return std::nullopt;
+  }
+  Vec3f color;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int level = 16 * hexDigit((*text)[2 * i + 1]) + hexDigit((*text)[2 * i + 2]);
+    color[static_cast<Eigen::Index>(i)] = static_cast<float>(level) / 255.0F;
+  }
+  return color;
+}
+
+std::vector<Field> readItems(const Field& field, FaultList& faults) {
+  const auto* array = std::get_if<JsonValue::Array>(&field.value->content);
+  if (array == nullptr) {
+    addFault(faults, field, fmt::format("{} is {}; allowed is an array", keyOf(field), described(*field.value)));
+    return {};
+  }
+  if (array->size() > kMostItems) {
+    addFault(faults, field,
+             fmt::format("{} has {} elements; at most {} are allowed", keyOf(field), array->size(), kMostItems));
+    return {};
+  }
+  std::vector<Field> items;
+  for (std::size_t i = 0; i < array->size(); ++i) items.push_back({&(*array)[i], pointerTo(field.pointer, i)});
+  return items;
+}
+
+std::vector<Field> readItems(const Field& field, std::size_t count, FaultList& faults) {
+  const auto* array = std::get_if<JsonValue::Array>(&field.value->content);
+  if (array != nullptr && array->size() == count) return readItems(field, faults);
+  addFault(faults, field,
+           fmt::format("{} is {}; allowed is an array of {} elements", keyOf(field), described(*field.value), count));
+  return {};
+}
+
+ObjectReader::ObjectReader(const Field& field, FaultList& faults)
+    : field_(field), object_(std::get_if<JsonValue::Object>(&field.value->content)), faults_(faults) {
+  if (object_ != nullptr) return;
+  addFault(faults, field, fmt::format("{} is {}; allowed is an object", keyOf(field), described(*field.value)));
+}
+
+std::optional<Field> ObjectReader::find(const char* key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
+  if (object_ == nullptr) return std::nullopt;
+  for (const JsonMember& member : *object_) {
+    if (member.key == key) return Field{&member.value, pointerTo(field_.pointer, member.key)};
+  }
+  return std::nullopt;
+}
+
+std::optional<Field> ObjectReader::require(const char* key) {
+  const auto found = find(key);
+  if (!found && object_ != nullptr)
+    addFault(faults_, field_, fmt::format("key \"{}\" is missing; it is required", key));
+  return found;
+}
+
+double ObjectReader::number(const char* key, const Range& range, const char* unit, double fallback) {
+  return optionalNumber(key, range, unit).value_or(fallback);
+}
+
+std::optional<double> ObjectReader::optionalNumber(const char* key, const Range& range, const char* unit) {
+  const auto found = find(key);
+  return found ? readNumber(*found, range, unit, faults_) : std::nullopt;
+}
+
+int ObjectReader::integer(const char* key, int least, int most, int fallback) {
+  return static_cast<int>(number(key, {double(least), double(most), false, true}, "", fallback));
+}
+
+std::string ObjectReader::text(const char* key, const std::string& fallback) {
+  const auto found = find(key);
+  return found ? readText(*found, faults_).value_or(fallback) : fallback;
+}
+
+Vec3 ObjectReader::vector(const char* key, const char* unit, const Vec3& fallback) {
+  const auto found = find(key);
+  return found ? readVector(*found, unit, faults_).value_or(fallback) : fallback;
+}
+
+Vec3 ObjectReader::direction(const char* key, const Vec3& fallback) {
+  const auto found = find(key);
+  return found ? readDirection(*found, faults_).value_or(fallback) : fallback;
+}
+
+std::optional<Vec3f> ObjectReader::color(const char* key) {
+  const auto found = find(key);
+  return found ? readColor(*found, faults_) : std::nullopt;
+}
+
+std::vector<Field> ObjectReader::items(const char* key) {
+  const auto found = find(key);
+  return found ? readItems(*found, faults_) : std::vector<Field>{};
+}
+
+std::size_t ObjectReader::choiceIndex(const Field& field, const std::vector<std::string>& words) {
+  const auto text = readText(field, faults_);
+  const auto found = text ? std::find(words.begin(), words.end(), *text) : words.end();
+  if (text && found == words.end()) {
+    addFault(faults_, field,
+             fmt::format("{} is {}; allowed are {}{}", keyOf(field), inQuotes(*text), joinedInQuotes(words),
+                         didYouMean(*text, words)));
+  }
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+void ObjectReader::rejectUnknownKeys() {
+  if (object_ == nullptr) return;
+  for (const JsonMember& member : *object_) {
+    if (std::find(known_.begin(), known_.end(), member.key) != known_.end()) continue;
+    const std::string hint = faults_.isFull() ? "" : didYouMean(member.key, known_);
+    faults_.add(member.place, pointerTo(field_.pointer, member.key),
+                fmt::format("unknown key {}; allowed are {}{}", inQuotes(member.key), fmt::join(known_, ", "), hint));
+  }
+}
+
+}  // namespace cradle

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "scene/read_fields.h"
+#include "scene/scene.h"
+
+// A scene between its text and its final form: some of it waits for the meshes.
+
+namespace cradle {
+
+/// An entry of `bodies`: one body, or all its copies.
+struct BodyDraft {
+  Field field;  // the entry
+  Body body;    // what the copies have in common; name is the entry's
+  std::optional<Field> collision;
+  bool isSound = true;  // nothing wrong with the entry: what follows from it can be checked
+
+  std::optional<Field> meshField;
+  MeshReference mesh;  // if meshField
+
+  std::optional<double> mass;         // kg
+  std::optional<Vec3> centerOfMass;   // m, body's frame
+  std::optional<Mat3> inertiaTensor;  // kg m^2, body's frame
+
+  std::optional<double> size;        // m, radius of the bounding sphere; unset until the shape is there
+  int firstBody = 0, bodyCount = 0;  // its bodies in Scene::bodies
+};
+
+/// An end of a spring, rod, ... that may be a vertex of a mesh.
+struct AnchorDraft {
+  Anchor anchor;
+  Field field;                // the anchor, or the link if it says nothing of this end
+  std::optional<int> vertex;  // index into the solid's vertices
+};
+
+/// A spring, rod, ... whose length may follow from where its ends are.
+struct LinkDraft {
+  Field field;  // the entry
+  std::variant<Spring, Rod, Rope, BallJoint, Hinge> link;
+  AnchorDraft anchorA, anchorB;
+  std::optional<Field> length;  // unset: the distance at the start
+  bool isSound = true;          // nothing wrong with the entry or its bodies
+  bool isSettled = false;       // ends known, length filled in
+};
+
+struct SceneDraft {
+  Scene scene;
+  std::vector<BodyDraft> bodies;
+  std::vector<std::size_t> draftOfBody;  // for each of Scene::bodies
+  std::vector<LinkDraft> links;
+  std::map<std::string, int> materialIndex, bodyIndex;  // by name
+  std::vector<std::string> warnings;
+};
+
+/// Body or material with the name that `field` holds; a name that nothing has is a fault that says which `noun` it
+/// would be.
+std::optional<int> findNamed(const Field& field, const std::map<std::string, int>& index, const char* noun,
+                             FaultList& faults);
+
+}  // namespace cradle

@@ -1,0 +1,204 @@
+// The only unit that sees SQLite.
+// Writing uses SQLite's rollback journal rather than its write-ahead log: the file alone is complete after every
+// commit, and nothing stands beside it at the end. Pages are not spilled to disk inside a transaction, so the file (and
+// a journal) changes only for the short time of a commit, and other programs can read it in between.
+
+#include "trajectory/database.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <cmath>
+#include <cstring>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace cradle {
+namespace {
+
+constexpr int kPatience = 30000;  // ms to wait for another program; queries of others seldom take longer
+
+std::string_view bytesOrEmpty(std::span<const std::byte> bytes) {
+  // SQLite takes a null pointer for null, not for zero bytes.
+  return bytes.empty() ? std::string_view("")
+                       : std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+}  // namespace
+
+void Statement::Finalize::operator()(sqlite3_stmt* statement) const {
+  sqlite3_finalize(statement);
+}
+
+void Statement::check(int code) const {
+  if (code != SQLITE_OK) database_->fail(code);
+}
+
+void Statement::bindInteger(int parameter, std::int64_t value) {
+  check(sqlite3_bind_int64(statement_.get(), parameter, value));
+}
+
+void Statement::bind(int parameter, double value) {
+  CRADLE_CHECK(!std::isnan(value));
+  check(sqlite3_bind_double(statement_.get(), parameter, value));
+}
+
+void Statement::bind(int parameter, const std::string& value) {
+  check(sqlite3_bind_text64(statement_.get(), parameter, value.data(), value.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
+}
+
+void Statement::bind(int parameter, std::span<const std::byte> value) {
+  const std::string_view bytes = bytesOrEmpty(value);
+  check(sqlite3_bind_blob64(statement_.get(), parameter, bytes.data(), bytes.size(), SQLITE_STATIC));
+}
+
+void Statement::bindNull(int parameter) {
+  check(sqlite3_bind_null(statement_.get(), parameter));
+}
+
+bool Statement::step() {
+  const int code = sqlite3_step(statement_.get());
+  if (code != SQLITE_ROW && code != SQLITE_DONE) database_->fail(code);
+  return code == SQLITE_ROW;
+}
+
+void Statement::run() {
+  CRADLE_CHECK(!step());
+  reset();
+}
+
+void Statement::reset() {
+  sqlite3_reset(statement_.get());  // its result repeats the last step's, which has been reported
+}
+
+bool Statement::isNull(int column) const {
+  return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
+}
+
+void Statement::requireType(int column, int type, const char* typeName) const {
+  if (sqlite3_column_type(statement_.get(), column) != type)
+    database_->failDamaged(fmt::format("its column {} holds something other than {}",
+                                       sqlite3_column_name(statement_.get(), column), typeName));
+}
+
+std::int64_t Statement::integer(int column) const {
+  requireType(column, SQLITE_INTEGER, "an integer");
+  return sqlite3_column_int64(statement_.get(), column);
+}
+
+double Statement::real(int column) const {
+  requireType(column, SQLITE_FLOAT, "a number");
+  const double value = sqlite3_column_double(statement_.get(), column);
+  if (!std::isfinite(value))
+    database_->failDamaged(
+        fmt::format("its column {} holds a number that is not finite", sqlite3_column_name(statement_.get(), column)));
+  return value;
+}
+
+std::string Statement::text(int column) const {
+  requireType(column, SQLITE_TEXT, "text");
+  return anyAsText(column);
+}
+
+std::string Statement::anyAsText(int column) const {
+  const auto* characters = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
+  const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column));
+  return characters == nullptr ? std::string() : std::string(characters, size);
+}
+
+std::span<const std::byte> Statement::blob(int column) const {
+  requireType(column, SQLITE_BLOB, "a blob");
+  const auto* bytes = static_cast<const std::byte*>(sqlite3_column_blob(statement_.get(), column));
+  const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column));
+  return bytes == nullptr ? std::span<const std::byte>() : std::span(bytes, size);
+}
+
+void Database::Close::operator()(sqlite3* handle) const {
+  sqlite3_close_v2(handle);
+}
+
+Database::Database(const std::string& path, DatabaseAccess access) : path_(path), access_(access) {
+  const bool creates = access == DatabaseAccess::create;
+  sqlite3* handle = nullptr;
+  // A reader too opens for writing where it may: SQLite must be able to take back what a killed writer left half-done.
+  const int code =
+      sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READWRITE | (creates ? SQLITE_OPEN_CREATE : 0), nullptr);
+  handle_.reset(handle);
+  if (code != SQLITE_OK) fail(code);
+  sqlite3_busy_timeout(handle, kPatience);
+  if (creates) {
+    execute("PRAGMA journal_mode = DELETE; PRAGMA cache_spill = OFF; PRAGMA synchronous = NORMAL");
+    return;
+  }
+  // The file may come from anywhere: what it holds is data, never something to be run.
+  sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  execute("PRAGMA query_only = ON; PRAGMA cell_size_check = ON");
+}
+
+void Database::execute(const std::string& sql) {
+  const int code = sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr);
+  if (code != SQLITE_OK) fail(code);
+}
+
+Statement Database::prepare(const std::string& sql) {
+  sqlite3_stmt* statement = nullptr;
+  const int code = sqlite3_prepare_v2(handle_.get(), sql.c_str(), -1, &statement, nullptr);
+  if (code != SQLITE_OK) fail(code);
+  return {*this, statement};
+}
+
+void Database::commit() {
+  execute("COMMIT");
+}
+
+bool Database::tryCommit() {
+  sqlite3_busy_timeout(handle_.get(), 0);
+  const int code = sqlite3_exec(handle_.get(), "COMMIT", nullptr, nullptr, nullptr);
+  if (code != SQLITE_OK && code != SQLITE_BUSY) fail(code);
+  sqlite3_busy_timeout(handle_.get(), kPatience);
+  return code == SQLITE_OK;
+}
+
+void Database::rollback() noexcept {
+  // Some errors end the transaction by themselves; a second end would be an error of its own.
+  if (sqlite3_get_autocommit(handle_.get()) == 0) sqlite3_exec(handle_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+void Database::fail(int code) const {
+  if (access_ == DatabaseAccess::read) failReading(code);
+  if (code == SQLITE_FULL)
+    throw Error(ErrorKind::output, path_, "the disk is full; free some space or choose another folder");
+  if (code == SQLITE_BUSY)
+    throw Error(ErrorKind::output, path_, "another program that reads it keeps it locked; close that program");
+  const int cause = sqlite3_system_errno(handle_.get());
+  const std::string because = cause == 0 ? "" : fmt::format(": {}", std::strerror(cause));
+  throw Error(ErrorKind::output, path_,
+              fmt::format("cannot be written ({}{})", sqlite3_errmsg(handle_.get()), because));
+}
+
+void Database::failReading(int code) const {
+  if (code == SQLITE_BUSY)
+    throw Error(ErrorKind::usage, path_, "another program keeps it locked; try again when that has ended");
+  if (code == SQLITE_CANTOPEN)
+    throw Error(ErrorKind::usage, path_, "cannot be opened; it must be an existing file that may be read");
+  throw Error(ErrorKind::usage, path_,
+              fmt::format("is not a trajectory, or is damaged ({})", sqlite3_errmsg(handle_.get())));
+}
+
+void Database::failDamaged(const std::string& what) const {
+  CRADLE_CHECK(access_ == DatabaseAccess::read);
+  throw Error(ErrorKind::usage, path_, "is damaged: " + what + "; make it again with `cradle simulate`");
+}
+
+bool isBeingWritten(const std::string& path) {
+  sqlite3* handle = nullptr;
+  bool busy = false;
+  if (sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READWRITE, nullptr) == SQLITE_OK)
+    busy = sqlite3_exec(handle, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr) == SQLITE_BUSY;
+  sqlite3_close(handle);
+  return busy;
+}
+
+}  // namespace cradle

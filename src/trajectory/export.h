@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "trajectory/trajectory_file.h"
+
+namespace cradle {
+
+/// Writes the states as comma-separated values: a header line with units, then one line for each frame and dynamic
+/// body. Numbers have as many digits as give the same bits when read back; names are quoted as RFC 4180 says where they
+/// need it. FILE is replaced when all is written. Throws Error(output), and what reading throws.
+void exportCsv(const TrajectoryReader& reader, const std::string& path);
+
+}  // namespace cradle

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "trajectory/state_hash.h"
+#include "trajectory/trajectory.h"
+
+// Trajectories as SQLite files; docs/trajectory_file.md describes the tables.
+
+namespace cradle {
+
+/// How often a running simulation's frames become visible to others, and safe from its sudden end.
+constexpr std::chrono::milliseconds kCommitInterval{500};
+
+/// Writes a trajectory to FILE.part, a valid database at every moment, and renames it to FILE at the end. A run that is
+/// not finished leaves FILE.part if it has at least one frame, else nothing; FILE itself is not touched before.
+class TrajectoryWriter {
+ public:
+  /// Replaces an earlier FILE.part. Throws Error(output) if FILE cannot be written there, is anything but a regular
+  /// file, or is being written by another run.
+  TrajectoryWriter(const std::string& path, const TrajectoryHeader& header,
+                   std::chrono::milliseconds commitInterval = kCommitInterval);
+  ~TrajectoryWriter();
+  TrajectoryWriter(const TrajectoryWriter&) = delete;
+  TrajectoryWriter& operator=(const TrajectoryWriter&) = delete;
+
+  /// Frames count from 0 without gaps, in order of time, with one state for each dynamic body. Throws Error(unstable)
+  /// if a number is not finite, Error(output) if it cannot be written. Amortised O(bodies).
+  void append(const Frame& frame);
+  /// Events in order of time.
+  void append(const Event& event);
+
+  /// Completes the file and gives it its name. There must be a frame. Throws Error(output).
+  void finish(const RunCost& cost);
+
+  /// Ends a run that is not finished, as the destructor does, and says where its frames are: FILE.part, or empty if
+  /// nothing was kept (or the run is finished).
+  std::string keptPath();
+
+ private:
+  struct Session;
+  void requireFinite(const Frame& frame) const;
+  void writeFrame(const Frame& frame);
+  void commitIfDue();
+  void endUnfinished() noexcept;
+
+  std::string path_, part_;
+  std::vector<std::string> bodyNames_;
+  std::vector<int> dynamicBodies_;  // ids
+  std::chrono::milliseconds commitInterval_;
+  std::chrono::steady_clock::time_point lastCommit_;
+  long framesAppended_ = 0, framesCommitted_ = 0;
+  double lastTime_ = 0;           // s
+  bool transactionWhole_ = true;  // the open transaction holds no half-written frame
+  bool isFinished_ = false;
+  Hash stateHash_;
+  std::unique_ptr<Session> session_;  // null when ended
+};
+
+/// Reads a trajectory, finished or not (a .part, even while it is being written: the frames there are when it is
+/// opened). Throws Error(usage) if the file is not a trajectory or is damaged.
+class TrajectoryReader {
+ public:
+  explicit TrajectoryReader(const std::string& path);
+  TrajectoryReader(TrajectoryReader&&) noexcept;
+  ~TrajectoryReader();
+
+  const std::string& path() const { return path_; }
+  const TrajectoryHeader& header() const { return header_; }
+  const std::vector<double>& frameTimes() const { return frameTimes_; }  // s, ascending
+  long frameCount() const { return static_cast<long>(frameTimes_.size()); }
+
+  /// Frame `number` of 0..frameCount()-1, in any order. Throws as the constructor does. O(bodies).
+  Frame readFrame(long number) const;
+  std::vector<Event> events() const;
+
+  /// Everything of the table `meta`, as text.
+  const std::map<std::string, std::string>& meta() const { return meta_; }
+  /// Of all frames; empty if the run was not finished.
+  std::string stateHash() const;
+  bool isFinished() const { return !stateHash().empty(); }
+  /// Zero if the run was not finished.
+  RunCost cost() const;
+
+ private:
+  struct Session;
+  void readMeta();
+  void readMeshes();
+  void readBodies();
+  void readFrameTimes();
+
+  std::string path_;
+  TrajectoryHeader header_;
+  std::vector<int> dynamicBodies_;  // ids
+  std::vector<double> frameTimes_;
+  std::map<std::string, std::string> meta_;
+  std::unique_ptr<Session> session_;
+};
+
+/// Whether `path` is a SQLite file, so that a command can tell a trajectory from a scene. Throws nothing: a file that
+/// cannot be read is none.
+bool isTrajectoryFile(const std::string& path);
+
+}  // namespace cradle

@@ -1,0 +1,285 @@
+// The file may have been cut, changed or made up. Everything that later code relies on (sizes, ranges, order, finite
+// numbers) is checked here, where it can still be reported as a fault of the file.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string_view>
+
+#include "core/error.h"
+#include "trajectory/database.h"
+#include "trajectory/trajectory_file.h"
+#include "trajectory/trajectory_schema.h"
+
+namespace cradle {
+namespace {
+
+std::int64_t oneInteger(Database& database, const std::string& sql) {
+  Statement query = database.prepare(sql);
+  if (!query.step()) database.failDamaged("a row is missing");
+  return query.integer(0);
+}
+
+void requireTrajectory(Database& database, const std::string& path) {
+  const bool isOurs = oneInteger(database, "PRAGMA application_id") == kApplicationId &&
+                      oneInteger(database,
+                                 "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN "
+                                 "('meta', 'mesh', 'body', 'frame', 'state', 'event', 'energy')") == 7;
+  if (!isOurs) throw Error(ErrorKind::usage, path, "is a SQLite database, but not a trajectory of cradle");
+  const std::int64_t version = oneInteger(database, "PRAGMA user_version");
+  if (version != kSchemaVersion)
+    throw Error(
+        ErrorKind::usage, path,
+        fmt::format("has version {} of the trajectory tables; this program reads version {}", version, kSchemaVersion));
+}
+
+/// An array as the file has it, element by element of `Element`.
+template <class Element>
+std::vector<Element> arrayOf(const Statement& row, int column, const Database& database) {
+  const auto bytes = row.blob(column);
+  if (bytes.size() % sizeof(Element) != 0) database.failDamaged("an array of a mesh ends in mid-element");
+  std::vector<Element> elements(bytes.size() / sizeof(Element));
+  std::ranges::copy(bytes, std::as_writable_bytes(std::span(elements)).begin());
+  return elements;
+}
+
+Vec3f colorFromHex(const std::string& text, const Database& database) {
+  unsigned red = 0, green = 0, blue = 0;
+  if (text.size() != 7 || std::sscanf(text.c_str(), "#%2x%2x%2x", &red, &green, &blue) != 3)
+    database.failDamaged("a colour of a mesh is not #rrggbb");
+  return Vec3f(static_cast<float>(red), static_cast<float>(green), static_cast<float>(blue)) / 255.0f;
+}
+
+std::vector<ModelMaterial> readMaterials(Database& database, std::int64_t mesh) {
+  Statement query = database.prepare(
+      "SELECT value ->> 'name', value ->> 'baseColor', value ->> 'firstTriangle', value ->> 'triangleCount' "
+      "FROM mesh, json_each(mesh.material) WHERE mesh.id = ?");
+  query.bind(1, mesh);
+  std::vector<ModelMaterial> materials;
+  std::int64_t next = 0;
+  while (query.step()) {
+    const std::int64_t first = query.integer(2), count = query.integer(3);
+    if (first != next || count < 0 || count > UINT32_MAX - first)
+      database.failDamaged("the materials of a mesh do not follow one another");
+    next = first + count;
+    materials.push_back({query.text(0), colorFromHex(query.text(1), database), static_cast<std::uint32_t>(first),
+                         static_cast<std::uint32_t>(count)});
+  }
+  return materials;
+}
+
+void requireConsistent(const DrawnMesh& drawn, const Database& database) {
+  const auto finite = [](const auto& vector) { return vector.allFinite(); };
+  const auto inRange = [&](const Triangle& triangle) {
+    return std::all_of(triangle.begin(), triangle.end(), [&](auto vertex) { return vertex < drawn.vertices.size(); });
+  };
+  if (drawn.normals.size() != drawn.vertices.size()) database.failDamaged("a mesh has not one normal a vertex");
+  if (!std::all_of(drawn.vertices.begin(), drawn.vertices.end(), finite) ||
+      !std::all_of(drawn.normals.begin(), drawn.normals.end(), finite))
+    database.failDamaged("a mesh has numbers that are not finite");
+  if (!std::all_of(drawn.triangles.begin(), drawn.triangles.end(), inRange))
+    database.failDamaged("a mesh has triangles between vertices that it does not have");
+  if (drawn.materials.empty()) return;
+  const ModelMaterial& last = drawn.materials.back();
+  if (std::size_t{last.firstTriangle} + last.triangleCount != drawn.triangles.size())
+    database.failDamaged("the materials of a mesh do not cover its triangles");
+}
+
+/// The three numbers from column `first` on.
+Vec3 vectorAt(const Statement& row, int first) {
+  return {row.real(first), row.real(first + 1), row.real(first + 2)};
+}
+
+BodyState stateAt(const Statement& row, int first) {
+  return {vectorAt(row, first),
+          Quat(row.real(first + 3), row.real(first + 4), row.real(first + 5), row.real(first + 6)),
+          vectorAt(row, first + 7), vectorAt(row, first + 10)};
+}
+
+MassProperties massPropertiesAt(const Statement& row, int first) {
+  MassProperties properties{row.real(first), vectorAt(row, first + 1), Mat3::Zero()};
+  Mat3& inertia = properties.inertiaTensor;
+  inertia.diagonal() = vectorAt(row, first + 4);
+  inertia(0, 1) = inertia(1, 0) = row.real(first + 7);
+  inertia(0, 2) = inertia(2, 0) = row.real(first + 8);
+  inertia(1, 2) = inertia(2, 1) = row.real(first + 9);
+  return properties;
+}
+
+}  // namespace
+
+struct TrajectoryReader::Session {
+  explicit Session(const std::string& path) : database(path, DatabaseAccess::read) {
+    requireTrajectory(database, path);
+    state.emplace(
+        database.prepare("SELECT body, px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz FROM state "
+                         "WHERE frame = ? ORDER BY body"));
+    energy.emplace(
+        database.prepare("SELECT kinetic, potential, dissipated, work, px, py, pz, lx, ly, lz FROM energy "
+                         "WHERE frame = ?"));
+  }
+
+  Database database;
+  std::optional<Statement> state, energy;
+};
+
+TrajectoryReader::TrajectoryReader(const std::string& path) : path_(path) {
+  // Asked here because SQLite would wait for ever on a pipe, and has no words for an empty file.
+  if (!isTrajectoryFile(path)) throw Error(ErrorKind::usage, path, "is not a trajectory (or cannot be read)");
+  session_ = std::make_unique<Session>(path);
+  readMeta();
+  readMeshes();
+  readBodies();
+  readFrameTimes();
+}
+
+TrajectoryReader::TrajectoryReader(TrajectoryReader&&) noexcept = default;
+TrajectoryReader::~TrajectoryReader() = default;
+
+void TrajectoryReader::readMeta() {
+  Statement query = session_->database.prepare("SELECT key, value FROM meta");
+  while (query.step()) meta_[query.text(0)] = query.anyAsText(1);
+  const auto value = [&](const char* key) {
+    const auto found = meta_.find(key);
+    if (found == meta_.end()) session_->database.failDamaged(fmt::format("its table meta has no {}", key));
+    return found->second;
+  };
+  header_.scene = value("scene");
+  header_.scenePath = value("scenePath");
+  header_.version = value("version");
+  header_.plan = value("plan");
+  header_.accuracy = value("accuracy");
+  header_.method = value("method");
+  if (textHash(header_.scene) != value("sceneHash"))
+    session_->database.failDamaged("its scene is not the one that was run (sceneHash)");
+}
+
+void TrajectoryReader::readMeshes() {
+  Database& database = session_->database;
+  Statement query = database.prepare("SELECT id, name, vertices, normals, triangles FROM mesh ORDER BY id");
+  while (query.step()) {
+    if (query.integer(0) != static_cast<std::int64_t>(header_.meshes.size())) database.failDamaged("a mesh is missing");
+    Model model;
+    model.name = query.text(1);
+    model.drawn.vertices = arrayOf<Vec3>(query, 2, database);
+    model.drawn.normals = arrayOf<Vec3f>(query, 3, database);
+    model.drawn.triangles = arrayOf<Triangle>(query, 4, database);
+    model.drawn.materials = readMaterials(database, query.integer(0));
+    requireConsistent(model.drawn, database);
+    model.solid = weld(model.drawn.vertices, model.drawn.triangles);
+    header_.meshes.push_back(std::move(model));
+  }
+}
+
+void TrajectoryReader::readBodies() {
+  Database& database = session_->database;
+  Statement query = database.prepare(
+      "SELECT id, name, motion, mesh, shape, mass, comx, comy, comz, ixx, iyy, izz, ixy, ixz, iyz FROM body ORDER BY "
+      "id");
+  while (query.step()) {
+    const auto id = static_cast<std::int64_t>(header_.bodies.size());
+    const std::string motion = query.text(2);
+    const bool hasMesh = !query.isNull(3);
+    const std::int64_t mesh = hasMesh ? query.integer(3) : -1;
+    if (query.integer(0) != id) database.failDamaged("a body is missing");
+    if (motion != "dynamic" && motion != "static") database.failDamaged("a body is neither dynamic nor static");
+    if (hasMesh && (mesh < 0 || mesh >= static_cast<std::int64_t>(header_.meshes.size())))
+      database.failDamaged("a body has a mesh that is not there");
+    if (motion == "dynamic") dynamicBodies_.push_back(static_cast<int>(id));
+    header_.bodies.push_back({query.text(1), motion == "dynamic", static_cast<int>(mesh), hasMesh ? "" : query.text(4),
+                              massPropertiesAt(query, 5)});
+  }
+}
+
+void TrajectoryReader::readFrameTimes() {
+  Database& database = session_->database;
+  Statement query = database.prepare("SELECT id, time FROM frame ORDER BY id");
+  while (query.step()) {
+    if (query.integer(0) != frameCount()) database.failDamaged(fmt::format("frame {} is missing", frameCount()));
+    const double time = query.real(1);
+    if (!frameTimes_.empty() && time <= frameTimes_.back()) database.failDamaged("its frames are not in order of time");
+    frameTimes_.push_back(time);
+  }
+  if (isFinished() && frameTimes_.empty()) database.failDamaged("its frames are missing");
+}
+
+Frame TrajectoryReader::readFrame(long number) const {
+  CRADLE_CHECK(number >= 0 && number < frameCount());
+  Frame frame;
+  frame.number = number;
+  frame.time = frameTimes_[static_cast<std::size_t>(number)];
+  const auto fail = [&](const char* what) {
+    session_->database.failDamaged(fmt::format("{} of frame {} are not those of its bodies", what, number));
+  };
+
+  Statement& state = *session_->state;
+  state.reset();
+  state.bind(1, number);
+  for (const int body : dynamicBodies_) {
+    if (!state.step() || state.integer(0) != body) fail("the states");
+    frame.states.push_back(stateAt(state, 1));
+  }
+  if (state.step()) fail("the states");
+  state.reset();
+
+  Statement& energy = *session_->energy;
+  energy.reset();
+  energy.bind(1, number);
+  if (!energy.step()) fail("the energies");
+  frame.energy = {energy.real(0), energy.real(1),      energy.real(2),
+                  energy.real(3), vectorAt(energy, 4), vectorAt(energy, 7)};
+  energy.reset();
+  return frame;
+}
+
+std::vector<Event> TrajectoryReader::events() const {
+  Database& database = session_->database;
+  Statement query = database.prepare("SELECT time, kind, a, b, x, y, z, nx, ny, nz, impulse FROM event ORDER BY rowid");
+  const auto body = [&](int column) {
+    const std::int64_t id = query.integer(column);
+    if (id < 0 || id >= static_cast<std::int64_t>(header_.bodies.size()))
+      database.failDamaged("an event names a body that is not there");
+    return static_cast<int>(id);
+  };
+  const auto kind = [&](const std::string& name) {
+    try {
+      return eventKindFromName(name);
+    } catch (const Error&) {
+      database.failDamaged(fmt::format("it has an event of unknown kind \"{}\"", name));
+    }
+  };
+  std::vector<Event> events;
+  while (query.step())
+    events.push_back({query.real(0), kind(query.text(1)), body(2), query.isNull(3) ? -1 : body(3), vectorAt(query, 4),
+                      vectorAt(query, 7), query.real(10)});
+  return events;
+}
+
+std::string TrajectoryReader::stateHash() const {
+  const auto found = meta_.find("stateHash");
+  return found == meta_.end() ? "" : found->second;
+}
+
+RunCost TrajectoryReader::cost() const {
+  Statement query = session_->database.prepare(
+      "SELECT (SELECT value FROM meta WHERE key = 'cpuSeconds'), (SELECT value FROM meta WHERE key = 'evaluations')");
+  if (!isFinished() || !query.step()) return {};
+  return {query.real(0), query.integer(1)};
+}
+
+bool isTrajectoryFile(const std::string& path) {
+  constexpr std::string_view kMagic("SQLite format 3\0", 16);
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  std::array<char, kMagic.size()> start{};
+  std::ifstream file(path, std::ios::binary);
+  return file.read(start.data(), start.size()) && std::string_view(start.data(), start.size()) == kMagic;
+}
+
+}  // namespace cradle

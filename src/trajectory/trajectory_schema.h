@@ -1,0 +1,43 @@
+#pragma once
+
+namespace cradle {
+
+/// Marks a SQLite file as a trajectory ("CRDL" in ASCII), and the version of its tables.
+constexpr int kApplicationId = 0x4352444c;
+constexpr int kSchemaVersion = 1;
+
+/// The tables, as docs/trajectory_file.md describes them. Columns of numbers have no declared type on purpose: SQLite
+/// would store -0.0 as 0 in a column declared REAL, and states are to come back bit by bit. `state` is clustered by
+/// frame, the way pictures ask for it.
+constexpr const char* kTables = R"sql(
+CREATE TABLE meta (key TEXT PRIMARY KEY, value) WITHOUT ROWID;
+CREATE TABLE mesh (id INTEGER PRIMARY KEY, name TEXT,
+  vertices BLOB,   -- m, body's frame; 3 float64 each, little-endian
+  normals BLOB,    -- unit, one per vertex; 3 float32
+  triangles BLOB,  -- vertex numbers, counter-clockwise from outside; 3 uint32
+  material TEXT);  -- JSON: name, baseColor, firstTriangle, triangleCount of each range of triangles
+CREATE TABLE body (id INTEGER PRIMARY KEY, name TEXT UNIQUE,
+  motion TEXT,              -- dynamic or static
+  mesh INTEGER,             -- id, or null if it has a shape
+  shape TEXT,               -- JSON of a primitive as in the scene file, or null
+  mass,                     -- kg; 0 if static
+  comx, comy, comz,         -- m, centre of mass in the body's frame
+  ixx, iyy, izz, ixy, ixz, iyz);  -- kg m^2, about the centre of mass, body's frame
+CREATE TABLE frame (id INTEGER PRIMARY KEY, time);  -- s
+CREATE TABLE state (frame INTEGER, body INTEGER,
+  px, py, pz,      -- m, centre of mass, world
+  qw, qx, qy, qz,  -- orientation, world from body
+  vx, vy, vz,      -- m/s, of the centre of mass
+  wx, wy, wz,      -- rad/s, world
+  PRIMARY KEY (frame, body)) WITHOUT ROWID;
+CREATE TABLE event (time, kind TEXT,
+  a INTEGER, b INTEGER,  -- bodies; b null for the world
+  x, y, z,               -- m, world
+  nx, ny, nz,            -- unit, from a to b
+  impulse);              -- N s
+CREATE TABLE energy (frame INTEGER PRIMARY KEY, kinetic, potential, dissipated, work,  -- J
+  px, py, pz,   -- kg m/s
+  lx, ly, lz);  -- kg m^2/s, about the world origin
+)sql";
+
+}  // namespace cradle

@@ -1,0 +1,284 @@
+// One transaction is open at nearly all times: committed every half second, so that a killed run keeps what it had, and
+// begun at once again, so that a second run on the same file notices.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "core/error.h"
+#include "core/output_path.h"
+#include "trajectory/database.h"
+#include "trajectory/trajectory_file.h"
+#include "trajectory/trajectory_schema.h"
+
+namespace cradle {
+namespace {
+
+namespace fs = std::filesystem;
+
+static_assert(sizeof(Vec3) == 24 && sizeof(Vec3f) == 12 && sizeof(Triangle) == 12, "arrays are stored as they are");
+
+void removeWithJournal(const std::string& part) {
+  std::error_code ignored;
+  fs::remove(part, ignored);
+  // An old journal would be taken for the new file's and "restored" into it.
+  fs::remove(part + "-journal", ignored);
+}
+
+/// Makes room for a new .part.
+void removeOldPart(const std::string& part) {
+  const auto status = fs::symlink_status(part);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw Error(ErrorKind::output, part, "is in the way and is not a regular file; remove it or choose another name");
+  if (isTrajectoryFile(part) && isBeingWritten(part))
+    throw Error(ErrorKind::output, part, "is being written by another run; wait for its end or choose another name");
+  removeWithJournal(part);
+}
+
+std::string hexColor(const Vec3f& color) {
+  const auto channel = [](float value) { return std::lround(255 * std::clamp(value, 0.0f, 1.0f)); };
+  return fmt::format("#{:02x}{:02x}{:02x}", channel(color.x()), channel(color.y()), channel(color.z()));
+}
+
+std::string materialsAsJson(const std::vector<ModelMaterial>& materials, Database& database) {
+  Statement object =
+      database.prepare("SELECT json_object('name', ?, 'baseColor', ?, 'firstTriangle', ?, 'triangleCount', ?)");
+  std::string json;
+  for (const ModelMaterial& material : materials) {
+    object.bind(1, material.name);
+    object.bind(2, hexColor(material.baseColor));
+    object.bind(3, material.firstTriangle);
+    object.bind(4, material.triangleCount);
+    object.step();
+    if (!json.empty()) json += ',';
+    json += object.text(0);
+    object.reset();
+  }
+  return "[" + json + "]";
+}
+
+void insertMeta(Database& database, const std::string& key, const auto& value) {
+  Statement insert = database.prepare("INSERT INTO meta VALUES (?, ?)");
+  insert.bind(1, key);
+  insert.bind(2, value);
+  insert.run();
+}
+
+void insertMeshes(Database& database, const std::vector<Model>& meshes) {
+  Statement insert = database.prepare("INSERT INTO mesh VALUES (?, ?, ?, ?, ?, ?)");
+  for (std::size_t id = 0; id < meshes.size(); ++id) {
+    const DrawnMesh& drawn = meshes[id].drawn;
+    CRADLE_CHECK(drawn.normals.size() == drawn.vertices.size());
+    insert.bind(1, id);
+    insert.bind(2, meshes[id].name);
+    insert.bind(3, std::as_bytes(std::span(drawn.vertices)));
+    insert.bind(4, std::as_bytes(std::span(drawn.normals)));
+    insert.bind(5, std::as_bytes(std::span(drawn.triangles)));
+    insert.bind(6, materialsAsJson(drawn.materials, database));
+    insert.run();
+  }
+}
+
+template <std::size_t N>
+void bindNumbers(Statement& statement, int firstParameter, const std::array<double, N>& numbers) {
+  for (std::size_t i = 0; i < N; ++i) statement.bind(firstParameter + static_cast<int>(i), numbers[i]);
+}
+
+void insertBodies(Database& database, const TrajectoryHeader& header) {
+  Statement insert = database.prepare("INSERT INTO body VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  for (std::size_t id = 0; id < header.bodies.size(); ++id) {
+    const BodyRecord& body = header.bodies[id];
+    const bool hasMesh = body.mesh >= 0;
+    CRADLE_CHECK(hasMesh ? static_cast<std::size_t>(body.mesh) < header.meshes.size() : !body.shape.empty());
+    insert.bind(1, id);
+    insert.bind(2, body.name);
+    insert.bind(3, body.isDynamic ? "dynamic" : "static");
+    hasMesh ? insert.bind(4, body.mesh) : insert.bindNull(4);
+    hasMesh ? insert.bindNull(5) : insert.bind(5, body.shape);
+    const MassProperties& m = body.massProperties;
+    const Mat3& inertia = m.inertiaTensor;
+    bindNumbers(insert, 6,
+                std::array{m.mass, m.centerOfMass.x(), m.centerOfMass.y(), m.centerOfMass.z(), inertia(0, 0),
+                           inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2)});
+    insert.run();
+  }
+}
+
+void insertHeader(Database& database, const TrajectoryHeader& header) {
+  insertMeta(database, "scene", header.scene);
+  insertMeta(database, "sceneHash", textHash(header.scene));
+  insertMeta(database, "scenePath", header.scenePath);
+  insertMeta(database, "version", header.version);
+  insertMeta(database, "plan", header.plan);
+  insertMeta(database, "accuracy", header.accuracy);
+  insertMeta(database, "method", header.method);
+  insertMeshes(database, header.meshes);
+  insertBodies(database, header);
+}
+
+std::array<double, 10> energyNumbers(const EnergyBalance& energy) {
+  const Vec3 &p = energy.momentum, &l = energy.angularMomentum;
+  return {energy.kinetic, energy.potential, energy.dissipated, energy.work, p.x(), p.y(), p.z(), l.x(), l.y(), l.z()};
+}
+
+template <std::size_t N>
+bool allFinite(const std::array<double, N>& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
+}
+
+[[noreturn]] void failNotFinite(double time, const std::string& whose) {
+  throw Error(ErrorKind::unstable, "", fmt::format("at {} s, the {} is no longer a finite number", time, whose));
+}
+
+/// Begins the transaction that holds the empty tables.
+Database& createTables(Database& database) {
+  database.execute("BEGIN IMMEDIATE");
+  database.execute(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kSchemaVersion));
+  database.execute(kTables);
+  return database;
+}
+
+}  // namespace
+
+struct TrajectoryWriter::Session {
+  explicit Session(const std::string& part)
+      : database(part, DatabaseAccess::create),
+        frame(createTables(database).prepare("INSERT INTO frame VALUES (?, ?)")),
+        state(database.prepare("INSERT INTO state VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
+        energy(database.prepare("INSERT INTO energy VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
+        event(database.prepare("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")) {}
+
+  Database database;
+  Statement frame, state, energy, event;
+};
+
+TrajectoryWriter::TrajectoryWriter(const std::string& path, const TrajectoryHeader& header,
+                                   std::chrono::milliseconds commitInterval)
+    : path_(path), part_(partPath(path)), commitInterval_(commitInterval) {
+  requireWritableFile(path_);
+  removeOldPart(part_);
+  for (std::size_t id = 0; id < header.bodies.size(); ++id) {
+    bodyNames_.push_back(header.bodies[id].name);
+    if (header.bodies[id].isDynamic) dynamicBodies_.push_back(static_cast<int>(id));
+  }
+  try {
+    session_ = std::make_unique<Session>(part_);
+    insertHeader(session_->database, header);
+    session_->database.commit();
+    session_->database.execute("BEGIN IMMEDIATE");
+  } catch (...) {
+    endUnfinished();
+    throw;
+  }
+  lastCommit_ = std::chrono::steady_clock::now();
+}
+
+TrajectoryWriter::~TrajectoryWriter() {
+  endUnfinished();
+}
+
+void TrajectoryWriter::append(const Frame& frame) {
+  CRADLE_CHECK(session_ && transactionWhole_);
+  CRADLE_CHECK(frame.number == framesAppended_ && (frame.number == 0 || frame.time > lastTime_));
+  CRADLE_CHECK(frame.states.size() == dynamicBodies_.size());
+  requireFinite(frame);
+  transactionWhole_ = false;
+  writeFrame(frame);
+  transactionWhole_ = true;
+  addFrame(frame, stateHash_);
+  lastTime_ = frame.time;
+  ++framesAppended_;
+  commitIfDue();
+}
+
+void TrajectoryWriter::requireFinite(const Frame& frame) const {
+  for (std::size_t i = 0; i < frame.states.size(); ++i)
+    if (!allFinite(stateNumbers(frame.states[i])))
+      failNotFinite(frame.time, "state of body " + bodyNames_[static_cast<std::size_t>(dynamicBodies_[i])]);
+  if (!allFinite(energyNumbers(frame.energy))) failNotFinite(frame.time, "energy or momentum of the scene");
+}
+
+void TrajectoryWriter::writeFrame(const Frame& frame) {
+  Session& session = *session_;
+  session.frame.bind(1, frame.number);
+  session.frame.bind(2, frame.time);
+  session.frame.run();
+  for (std::size_t i = 0; i < frame.states.size(); ++i) {
+    session.state.bind(1, frame.number);
+    session.state.bind(2, dynamicBodies_[i]);
+    bindNumbers(session.state, 3, stateNumbers(frame.states[i]));
+    session.state.run();
+  }
+  session.energy.bind(1, frame.number);
+  bindNumbers(session.energy, 2, energyNumbers(frame.energy));
+  session.energy.run();
+}
+
+void TrajectoryWriter::append(const Event& event) {
+  const auto isBody = [&](int body) { return body >= 0 && static_cast<std::size_t>(body) < bodyNames_.size(); };
+  CRADLE_CHECK(session_ && transactionWhole_);
+  CRADLE_CHECK(isBody(event.bodyA) && (event.bodyB < 0 || isBody(event.bodyB)));
+  const Vec3 &point = event.point, &normal = event.normal;
+  const std::array numbers{point.x(), point.y(), point.z(), normal.x(), normal.y(), normal.z(), event.impulse};
+  if (!std::isfinite(event.time) || !allFinite(numbers))
+    failNotFinite(event.time, fmt::format("event \"{}\" of body {}", eventKindName(event.kind),
+                                          bodyNames_[static_cast<std::size_t>(event.bodyA)]));
+  Statement& insert = session_->event;
+  insert.bind(1, event.time);
+  insert.bind(2, eventKindName(event.kind));
+  insert.bind(3, event.bodyA);
+  event.bodyB < 0 ? insert.bindNull(4) : insert.bind(4, event.bodyB);
+  bindNumbers(insert, 5, numbers);
+  insert.run();
+}
+
+void TrajectoryWriter::commitIfDue() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - lastCommit_ < commitInterval_ || !session_->database.tryCommit()) return;
+  framesCommitted_ = framesAppended_;
+  lastCommit_ = now;
+  session_->database.execute("BEGIN IMMEDIATE");
+}
+
+void TrajectoryWriter::finish(const RunCost& cost) {
+  CRADLE_CHECK(session_ && transactionWhole_ && framesAppended_ > 0);
+  insertMeta(session_->database, "cpuSeconds", cost.cpuSeconds);
+  insertMeta(session_->database, "evaluations", cost.evaluations);
+  insertMeta(session_->database, "stateHash", stateHash_.hex());
+  session_->database.commit();
+  framesCommitted_ = framesAppended_;
+  session_.reset();
+  // What stands in the way may have changed since the start; rename itself would replace a device.
+  requireWritableFile(path_);
+  std::error_code failed;
+  fs::rename(part_, path_, failed);
+  if (failed)
+    throw Error(ErrorKind::output, path_,
+                fmt::format("cannot be put in place ({}); the result is in {}", failed.message(), part_));
+  isFinished_ = true;
+}
+
+std::string TrajectoryWriter::keptPath() {
+  endUnfinished();
+  return isFinished_ || framesCommitted_ == 0 ? "" : part_;
+}
+
+void TrajectoryWriter::endUnfinished() noexcept {
+  if (session_ && framesAppended_ > 0) {
+    try {
+      if (transactionWhole_) session_->database.commit();
+      framesCommitted_ = transactionWhole_ ? framesAppended_ : framesCommitted_;
+    } catch (const Error&) {
+      // The run is over already for another reason, which is the one to tell; the frames since the last commit go.
+    }
+    session_->database.rollback();
+  }
+  session_.reset();
+  if (framesCommitted_ == 0) removeWithJournal(part_);
+}
+
+}  // namespace cradle

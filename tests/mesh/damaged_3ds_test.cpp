@@ -1,0 +1,156 @@
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+
+#include <cstring>
+#include <random>
+
+#include "mesh/check_3ds.h"
+#include "mesh/mass_properties.h"
+#include "mesh/solid.h"
+#include "test_files.h"
+
+namespace cradle {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+// Where the data of the first chunk `id` begins: its identifier is searched for from `from` on.
+std::size_t dataOf(const std::string& bytes, std::uint16_t id, std::size_t from = 0) {
+  const std::string needle{static_cast<char>(id & 0xFF), static_cast<char>(id >> 8)};
+  return bytes.find(needle, from) + 6;
+}
+
+template <typename T>
+void put(std::string& bytes, std::size_t where, T value) {
+  std::memcpy(bytes.data() + where, &value, sizeof value);
+}
+
+std::string appendedToMain(std::string bytes, const std::string& chunk) {
+  bytes += chunk;
+  put(bytes, 2, static_cast<std::uint32_t>(bytes.size()));
+  return bytes;
+}
+
+std::string chunk(std::uint16_t id, const std::string& data) {
+  std::string bytes(6, '\0');
+  put(bytes, 0, id);
+  put(bytes, 2, static_cast<std::uint32_t>(data.size() + 6));
+  return bytes + data;
+}
+
+// A keyframer section that animates the object Box with one position track.
+std::string positionTrack(std::uint32_t keys, const std::string& data) {
+  std::string header(14, '\0');
+  put(header, 10, keys);
+  const std::string name = std::string("Box") + '\0' + std::string(4, '\0') + "\xFF\xFF";
+  return chunk(0xB000, chunk(0xB002, chunk(0xB010, name) + chunk(0xB020, header + data)));
+}
+
+TEST(Damaged3ds, TruncationAnywhereIsAnError) {
+  const std::string whole = bytesOf(asset("l_prism.3ds"));
+  for (std::size_t size = 1; size < whole.size(); size += 7)
+    EXPECT_THAT(loadingError({writeFile("cut.3ds", whole.substr(0, size)), "", 1}), HasSubstr("cut.3ds"));
+}
+
+TEST(Damaged3ds, FaceThatNamesNoVertexIsAnError) {
+  std::string bytes = bytesOf(asset("box.3ds"));
+  put(bytes, dataOf(bytes, 0x4120) + 2, std::uint16_t{8});  // there are 0 .. 7
+  EXPECT_THAT(loadingError({writeFile("box.3ds", bytes), "", 1}),
+              HasSubstr("face 0 of \"Box\" names vertex 8, but there are only 8"));
+}
+
+TEST(Damaged3ds, VertexThatIsNotFiniteIsAnError) {
+  std::string bytes = bytesOf(asset("box.3ds"));
+  put(bytes, dataOf(bytes, 0x4110) + 2 + 4 * 5, 0x7FC00000U);  // NaN
+  EXPECT_THAT(loadingError({writeFile("box.3ds", bytes), "", 1}), HasSubstr("vertex coordinate is not finite"));
+}
+
+TEST(Damaged3ds, CountBeyondTheChunkIsAnError) {
+  std::string bytes = bytesOf(asset("box.3ds"));
+  put(bytes, dataOf(bytes, 0x4110), std::uint16_t{60000});
+  EXPECT_THAT(loadingError({writeFile("box.3ds", bytes), "", 1}), HasSubstr("ends too early"));
+}
+
+TEST(Damaged3ds, TrackCannotAskForMemoryThatTheFileDoesNotFill) {
+  const std::string box = bytesOf(asset("box.3ds"));
+  // 24 bytes a key: 96 GiB.
+  const std::string bytes = appendedToMain(box, positionTrack(0xFFFFFFFF, std::string(18, '\0')));
+  EXPECT_THAT(loadingError({writeFile("box.3ds", bytes), "", 1}), HasSubstr("promises 4294967295 keys"));
+}
+
+TEST(Damaged3ds, KeyframerPlacesAnObjectAndKeepsItsName) {
+  std::string key(18, '\0');  // frame 0, no flags, and the position
+  put(key, 6, 1.0f);
+  put(key, 10, 2.0f);
+  put(key, 14, 3.0f);
+  const std::string bytes = appendedToMain(bytesOf(asset("box.3ds")), positionTrack(1, key));
+  const Model model = loadModel({writeFile("box.3ds", bytes), "Box", 1}).model;
+  Bounds bounds;
+  for (const Vec3& vertex : model.solid.vertices) bounds.extend(vertex);
+  EXPECT_LE((bounds.center() - Vec3(1, 3, -2)).norm(), 1e-6);  // z up became y up
+}
+
+TEST(Damaged3ds, MeshThatTheKeyframerForgetsIsStillThere) {
+  const std::string name = std::string("Camera") + '\0' + std::string(4, '\0') + "\xFF\xFF";
+  const std::string camera = chunk(0xB000, chunk(0xB003, chunk(0xB010, name)));
+  const std::string bytes = appendedToMain(bytesOf(asset("box.3ds")), camera);
+  const Model model = loadModel({writeFile("box.3ds", bytes), "Box", 1}).model;
+  EXPECT_EQ(model.solid.vertices, loadModel({asset("box.3ds"), "", 1}).model.solid.vertices);
+}
+
+// Loads; true if that gave a finite model, false if a clean error.
+bool loadsFinite(const std::string& path) {
+  try {
+    for (const LoadedModel& object : loadObjects(path, 1)) {
+      for (const Vec3& vertex : object.model.solid.vertices) EXPECT_TRUE(vertex.allFinite());
+      for (const Vec3f& normal : object.model.drawn.normals) EXPECT_NEAR(normal.norm(), 1, 1e-3);
+      for (const Triangle& triangle : object.model.solid.triangles)
+        for (const std::uint32_t corner : triangle) EXPECT_LT(corner, object.model.solid.vertices.size());
+      if (checkSolid(object.model.solid).isSolid) {
+        const MassProperties properties = computeMassProperties(object.model.solid, 1);
+        EXPECT_GT(properties.mass, 0);
+        EXPECT_TRUE(properties.inertiaTensor.allFinite());
+      }
+    }
+    return true;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::mesh);
+    EXPECT_THAT(error.what(), HasSubstr(path));
+    return false;
+  }
+}
+
+TEST(Damaged3ds, FlippedBytesGiveAnErrorOrAFiniteModelInBoundedMemory) {
+  int loaded = 0, refused = 0;
+  for (const char* name : {"l_prism.3ds", "t_handle.3ds", "cradle_frame.3ds"}) {
+    std::string whole = bytesOf(asset(name));
+    if (whole.size() < 1000) whole = appendedToMain(whole, positionTrack(1, std::string(18, '\0')));
+    for (unsigned seed = 0; seed < 200; ++seed) {
+      std::mt19937 random(seed);
+      std::string bytes = whole;
+      for (int flip = 0; flip < 1 + static_cast<int>(seed % 8); ++flip)
+        bytes[random() % bytes.size()] = static_cast<char>(random());
+      (loadsFinite(writeFile("flipped.3ds", bytes)) ? loaded : refused)++;
+    }
+  }
+  EXPECT_GT(loaded, 50);
+  EXPECT_GT(refused, 50);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  EXPECT_LT(usage.ru_maxrss, 1L << 20) << "KiB at most in use";
+}
+
+TEST(Damaged3ds, FlippedHeadersGiveAnErrorOrAFiniteModel) {
+  // The first bytes hold most of the identifiers, sizes and counts.
+  const std::string whole = bytesOf(asset("box.3ds"));
+  for (unsigned seed = 0; seed < 400; ++seed) {
+    std::mt19937 random(seed);
+    std::string bytes = whole;
+    bytes[random() % 160] ^= static_cast<char>(1 << random() % 8);
+    loadsFinite(writeFile("flipped.3ds", bytes));
+  }
+}
+
+}  // namespace
+}  // namespace cradle

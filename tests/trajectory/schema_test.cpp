@@ -1,0 +1,108 @@
+#include <sqlite3.h>
+
+#include "sample_trajectory.h"
+
+namespace cradle {
+namespace {
+
+/// The rows of a query as text, columns separated by "|", as any other program would see them.
+std::vector<std::string> rowsOf(const std::string& path, const std::string& sql) {
+  sqlite3* database = nullptr;
+  EXPECT_EQ(sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READONLY, nullptr), SQLITE_OK);
+  std::vector<std::string> rows;
+  const auto add = [](void* to, int count, char** values, char**) {
+    std::string row = count > 0 && values[0] ? values[0] : "null";
+    for (int i = 1; i < count; ++i) row.append("|").append(values[i] ? values[i] : "null");
+    static_cast<std::vector<std::string>*>(to)->push_back(row);
+    return 0;
+  };
+  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), add, &rows, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
+  sqlite3_close(database);
+  return rows;
+}
+
+std::string columnsOf(const std::string& path, const std::string& table) {
+  std::string columns;
+  for (const std::string& name : rowsOf(path, "SELECT name FROM pragma_table_info('" + table + "') ORDER BY cid"))
+    columns.append(columns.empty() ? "" : " ").append(name);
+  return columns;
+}
+
+class TrajectorySchema : public testing::Test {
+ protected:
+  TrajectorySchema() { writeSample(path_, 3); }
+  std::vector<std::string> rows(const std::string& sql) const { return rowsOf(path_, sql); }
+
+  TemporaryFolder folder_;
+  std::string path_ = folder_.file("a.sqlite");
+};
+
+TEST_F(TrajectorySchema, HasTheTablesOfTheContract) {
+  EXPECT_EQ(rows("SELECT name FROM sqlite_master WHERE type != 'index' ORDER BY name"),
+            (std::vector<std::string>{"body", "energy", "event", "frame", "mesh", "meta", "state"}));
+}
+
+TEST_F(TrajectorySchema, HasTheColumnsOfTheContractInItsOrder) {
+  EXPECT_EQ(columnsOf(path_, "meta"), "key value");
+  EXPECT_EQ(columnsOf(path_, "mesh"), "id name vertices normals triangles material");
+  EXPECT_EQ(columnsOf(path_, "body"), "id name motion mesh shape mass comx comy comz ixx iyy izz ixy ixz iyz");
+  EXPECT_EQ(columnsOf(path_, "frame"), "id time");
+  EXPECT_EQ(columnsOf(path_, "state"), "frame body px py pz qw qx qy qz vx vy vz wx wy wz");
+  EXPECT_EQ(columnsOf(path_, "event"), "time kind a b x y z nx ny nz impulse");
+  EXPECT_EQ(columnsOf(path_, "energy"), "frame kinetic potential dissipated work px py pz lx ly lz");
+}
+
+TEST_F(TrajectorySchema, HasTheKeysOfTheContract) {
+  EXPECT_EQ(rows("SELECT key FROM meta ORDER BY key"),
+            (std::vector<std::string>{"accuracy", "cpuSeconds", "evaluations", "method", "plan", "scene", "sceneHash",
+                                      "scenePath", "stateHash", "version"}));
+  EXPECT_EQ(rows("SELECT value FROM meta WHERE key = 'sceneHash'"),
+            std::vector<std::string>{textHash(sampleHeader().scene)});
+}
+
+TEST_F(TrajectorySchema, HoldsBodiesAsOthersReadThem) {
+  const auto bodies = rows("SELECT id, name, motion, mesh, shape, mass, comy, iyy, ixz, iyz FROM body ORDER BY id");
+  ASSERT_EQ(bodies.size(), 3u);
+  EXPECT_EQ(bodies[0], R"(0|ball|dynamic|null|{"sphere": {"radius": 1}}|2.5|-0.2|1.2|0.2|-0.3)");
+  EXPECT_EQ(bodies[1], R"(1|ground|static|null|{"plane": {"normal": [0, 1, 0]}}|0.0|0.0|0.0|0.0|0.0)");
+  EXPECT_EQ(rows("SELECT motion, mesh, shape FROM body WHERE name = 'wedge'"),
+            std::vector<std::string>{"dynamic|0|null"});
+}
+
+TEST_F(TrajectorySchema, HoldsStatesOfDynamicBodiesOnly) {
+  EXPECT_EQ(rows("SELECT frame, body FROM state ORDER BY frame, body"),
+            (std::vector<std::string>{"0|0", "0|2", "1|0", "1|2", "2|0", "2|2"}));
+  EXPECT_EQ(rows("SELECT id, time FROM frame"), (std::vector<std::string>{"0|0.0", "1|0.125", "2|0.25"}));
+  EXPECT_EQ(rows("SELECT frame FROM energy"), (std::vector<std::string>{"0", "1", "2"}));
+}
+
+TEST_F(TrajectorySchema, HoldsEventsWithNullForTheWorld) {
+  EXPECT_EQ(rows("SELECT time, kind, a, b, x, y, z, nx, ny, nz, impulse FROM event"),
+            (std::vector<std::string>{"0.1|impact|0|2|1.0|2.0|3.0|0.0|1.0|0.0|0.7",
+                                      "0.2|taut|2|null|0.0|0.0|0.25|0.0|0.0|1.0|1.0e+300"}));
+}
+
+TEST_F(TrajectorySchema, HoldsMeshesAsLittleEndianArraysAndJson) {
+  EXPECT_EQ(rows("SELECT length(vertices), length(normals), length(triangles) FROM mesh"),
+            std::vector<std::string>{"288|144|48"});
+  // The second vertex starts with 1.0 = 3ff0 0000 0000 0000, the second triangle is 3, 4, 5.
+  EXPECT_EQ(rows("SELECT hex(substr(vertices, 25, 8)), hex(substr(triangles, 13, 12)) FROM mesh"),
+            std::vector<std::string>{"000000000000F03F|030000000400000005000000"});
+  EXPECT_EQ(rows("SELECT material FROM mesh"),
+            std::vector<std::string>{R"([{"name":"brass, \"old\" \\ \n","baseColor":"#ff0080","firstTriangle":0,)"
+                                     R"("triangleCount":3},{"name":"","baseColor":"#00ff00","firstTriangle":3,)"
+                                     R"("triangleCount":1}])"});
+}
+
+TEST_F(TrajectorySchema, FindsFramesWithoutReadingAllStates) {
+  const auto plan = rows("EXPLAIN QUERY PLAN SELECT px FROM state WHERE frame = 1 AND body = 2");
+  ASSERT_EQ(plan.size(), 1u);
+  EXPECT_NE(plan[0].find("SEARCH state USING PRIMARY KEY"), std::string::npos) << plan[0];
+}
+
+TEST_F(TrajectorySchema, PassesTheDatabasesOwnCheck) {
+  EXPECT_EQ(rows("PRAGMA integrity_check"), std::vector<std::string>{"ok"});
+}
+
+}  // namespace
+}  // namespace cradle
