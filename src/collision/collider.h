@@ -1,20 +1,24 @@
 #pragma once
 
-#include <variant>
+#include <optional>
 #include <vector>
 
+#include "collision/polytope.h"
 #include "dynamics/rigid_body.h"
-#include "math/types.h"
 
 namespace cradle {
 
-/// Points of a moving body, each with a ball of `radius` around it: a sphere is one, a capsule two, a box eight corners
-/// with radius 0, a mesh its vertices. Enough to touch planes; only single balls touch each other.
-struct BallsCollider {
-  int body = kFixed;          // moving body, or kFixed: then points are in the world
-  std::vector<Vec3> points;   // m, from the centre of mass in the body's frame
-  double radius = 0;          // m
-  double boundingRadius = 0;  // m, of all balls about the centre of mass
+/// The shape of a body for contact: points with a ball of `radius` around each. A sphere is one, a capsule two, a box
+/// its corners and a mesh its vertices, with radius 0. That is enough to touch planes. Single balls touch each other
+/// and polytopes; polytopes touch each other.
+struct Collider {
+  int body = kFixed;                 // moving body, or kFixed: then all is in the world
+  std::vector<Vec3> points;          // m, from the centre of mass in the body's frame
+  double radius = 0;                 // m
+  double boundingRadius = 0;         // m, of all balls about the centre of mass
+  std::optional<Polytope> polytope;  // same frame as the points
+
+  bool isBall() const { return points.size() == 1; }
 };
 
 /// A half-space that does not move.
@@ -30,13 +34,13 @@ struct SurfaceLaw {
 
 /// Two colliders that may touch.
 struct ColliderPair {
-  std::size_t a = 0, b = 0;  // indices into ContactGeometry: balls; balls or planes
+  std::size_t a = 0, b = 0;  // indices into ContactGeometry: colliders; colliders or planes
   bool againstPlane = false;
   SurfaceLaw law;
 };
 
 struct ContactGeometry {
-  std::vector<BallsCollider> balls;
+  std::vector<Collider> colliders;
   std::vector<PlaneCollider> planes;
   std::vector<ColliderPair> pairs;
 };

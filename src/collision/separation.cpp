@@ -1,28 +1,72 @@
 #include "collision/separation.h"
 
+#include <limits>
+
+#include "collision/polytope_contact.h"
+
 namespace cradle {
 namespace {
 
-const BallsCollider& ballsA(const ContactGeometry& geometry, const ColliderPair& pair) {
-  return geometry.balls[pair.a];
+/// The two colliders of a pair that is not against a plane, in their poses.
+struct PosedPair {
+  const Collider &a, &b;
+  RigidTransform worldFromA, worldFromB;
+};
+
+ContactPoint mirrored(const ContactPoint& contact) {
+  return {contact.point, -contact.normal, contact.separation};
 }
 
-int bodyBOf(const ContactGeometry& geometry, const ColliderPair& pair) {
-  return pair.againstPlane ? kFixed : geometry.balls[pair.b].body;
+ContactPoint ballOnPlane(const Vec3& center, double radius, const PlaneCollider& plane) {
+  const double separation = plane.normal.dot(center - plane.point) - radius;
+  return {center - (radius + separation / 2) * plane.normal, -plane.normal, separation};
 }
 
-/// No feature of the pair can be nearer than this.
-double separationBound(const ContactGeometry& geometry, const ColliderPair& pair, const VectorX& state) {
-  const BallsCollider& a = ballsA(geometry, pair);
-  const Vec3 centre = poseOf(state, a.body).translation;
-  if (a.body == kFixed) return 0;
+ContactPoint ballOnBall(const PosedPair& pair) {
+  const Vec3 centerA = pair.worldFromA * pair.a.points[0];
+  const Vec3 towardsB = pair.worldFromB * pair.b.points[0] - centerA;
+  const double distance = towardsB.norm(), separation = distance - pair.a.radius - pair.b.radius;
+  const Vec3 normal = distance > 0 ? Vec3(towardsB / distance) : Vec3(Vec3::UnitY());
+  return {centerA + (pair.a.radius + separation / 2) * normal, normal, separation};
+}
+
+/// A is the ball, B the polytope.
+ContactPoint ballOnPolytope(const PosedPair& pair) {
+  const Vec3 center = pair.worldFromA * pair.a.points[0];
+  const SurfacePoint surface = nearestSurfacePoint(*pair.b.polytope, pair.worldFromB.inverse() * center);
+  const double separation = surface.distance - pair.a.radius;
+  const Vec3 outward = pair.worldFromB.rotation * surface.normal;
+  return {center - (pair.a.radius + separation / 2) * outward, -outward, separation};
+}
+
+/// The one contact of a pair in which a ball takes part.
+ContactPoint ballContact(const PosedPair& pair) {
+  if (pair.a.isBall() && pair.b.isBall()) return ballOnBall(pair);
+  if (pair.a.isBall()) return ballOnPolytope(pair);
+  return mirrored(ballOnPolytope({pair.b, pair.a, pair.worldFromB, pair.worldFromA}));
+}
+
+PosedPair posed(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
+                const RigidTransform& worldFromB) {
+  return {geometry.colliders[pair.a], geometry.colliders[pair.b], worldFromA, worldFromB};
+}
+
+std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const ColliderPair& pair,
+                                        const RigidTransform& worldFromA, const RigidTransform& worldFromB,
+                                        double margin) {
+  std::vector<ContactPoint> points;
+  const Collider& a = geometry.colliders[pair.a];
   if (pair.againstPlane) {
-    const PlaneCollider& plane = geometry.planes[pair.b];
-    return plane.normal.dot(centre - plane.point) - a.boundingRadius;
+    for (const Vec3& point : a.points)
+      points.push_back(ballOnPlane(worldFromA * point, a.radius, geometry.planes[pair.b]));
+    return points;
   }
-  const BallsCollider& b = geometry.balls[pair.b];
-  if (b.body == kFixed) return 0;
-  return (centre - poseOf(state, b.body).translation).norm() - a.boundingRadius - b.boundingRadius;
+  const PosedPair both = posed(geometry, pair, worldFromA, worldFromB);
+  if (both.a.isBall() || both.b.isBall())
+    points.push_back(ballContact(both));
+  else
+    appendContacts(*both.a.polytope, *both.b.polytope, worldFromA, worldFromB, margin, points);
+  return points;
 }
 
 }  // namespace
@@ -32,50 +76,59 @@ RigidTransform poseOf(const VectorX& state, int body) {
   return {orientation(state, body).normalized(), centerOfMass(state, body)};
 }
 
+int bodyBOf(const ContactGeometry& geometry, const ColliderPair& pair) {
+  return pair.againstPlane ? kFixed : geometry.colliders[pair.b].body;
+}
+
 std::size_t featureCount(const ContactGeometry& geometry, const ColliderPair& pair) {
-  return ballsA(geometry, pair).points.size();
+  return pair.againstPlane ? geometry.colliders[pair.a].points.size() : 1;
 }
 
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature,
                   const RigidTransform& worldFromA, const RigidTransform& worldFromB) {
-  const BallsCollider& a = ballsA(geometry, pair);
-  const Vec3 centreA = worldFromA * a.points[feature];
-  if (pair.againstPlane) {
-    const PlaneCollider& plane = geometry.planes[pair.b];
-    return plane.normal.dot(centreA - plane.point) - a.radius;
-  }
-  const BallsCollider& b = geometry.balls[pair.b];
-  return (centreA - worldFromB * b.points[0]).norm() - a.radius - b.radius;
+  const Collider& a = geometry.colliders[pair.a];
+  if (pair.againstPlane)
+    return ballOnPlane(worldFromA * a.points[feature], a.radius, geometry.planes[pair.b]).separation;
+  const PosedPair both = posed(geometry, pair, worldFromA, worldFromB);
+  if (both.a.isBall() || both.b.isBall()) return ballContact(both).separation;
+  return separationOf(*both.a.polytope, *both.b.polytope, worldFromA, worldFromB);
 }
 
-Contact contactOf(const ContactGeometry& geometry, std::size_t pairIndex, std::size_t feature, const VectorX& state) {
-  const ColliderPair& pair = geometry.pairs[pairIndex];
-  const BallsCollider& a = ballsA(geometry, pair);
-  Contact contact{pairIndex, feature, a.body, bodyBOf(geometry, pair), Vec3::Zero(), Vec3::Zero(), 0};
-  const RigidTransform worldFromA = poseOf(state, a.body), worldFromB = poseOf(state, contact.bodyB);
-  const Vec3 centreA = worldFromA * a.points[feature];
-  contact.separation = separation(geometry, pair, feature, worldFromA, worldFromB);
+double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature,
+                  const VectorX& state) {
+  return separation(geometry, pair, feature, poseOf(state, geometry.colliders[pair.a].body),
+                    poseOf(state, bodyBOf(geometry, pair)));
+}
+
+double separationBound(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
+                       const RigidTransform& worldFromB) {
+  const Collider& a = geometry.colliders[pair.a];
+  if (a.body == kFixed) return -std::numeric_limits<double>::infinity();
   if (pair.againstPlane) {
-    contact.normal = -geometry.planes[pair.b].normal;
-  } else {
-    const Vec3 towardsB = worldFromB * geometry.balls[pair.b].points[0] - centreA;
-    contact.normal = towardsB.isZero(0) ? Vec3::UnitY() : Vec3(towardsB.normalized());
+    const PlaneCollider& plane = geometry.planes[pair.b];
+    return plane.normal.dot(worldFromA.translation - plane.point) - a.boundingRadius;
   }
-  contact.point = centreA + (a.radius + contact.separation / 2) * contact.normal;
-  return contact;
+  const Collider& b = geometry.colliders[pair.b];
+  if (b.body == kFixed) return -std::numeric_limits<double>::infinity();
+  return (worldFromA.translation - worldFromB.translation).norm() - a.boundingRadius - b.boundingRadius;
+}
+
+void appendContacts(const ContactGeometry& geometry, std::size_t index, const VectorX& state, double margin,
+                    std::vector<Contact>& contacts) {
+  const ColliderPair& pair = geometry.pairs[index];
+  const int bodyA = geometry.colliders[pair.a].body, bodyB = bodyBOf(geometry, pair);
+  const RigidTransform worldFromA = poseOf(state, bodyA), worldFromB = poseOf(state, bodyB);
+  if (separationBound(geometry, pair, worldFromA, worldFromB) > margin) return;
+  for (const ContactPoint& found : contactPoints(geometry, pair, worldFromA, worldFromB, margin))
+    if (found.separation <= margin)
+      contacts.push_back({index, bodyA, bodyB, found.point, found.normal, found.separation});
 }
 
 void findContacts(const ContactGeometry& geometry, const VectorX& state, double margin,
                   std::vector<Contact>& contacts) {
   contacts.clear();
-  for (std::size_t index = 0; index < geometry.pairs.size(); ++index) {
-    const ColliderPair& pair = geometry.pairs[index];
-    if (separationBound(geometry, pair, state) > margin) continue;
-    for (std::size_t feature = 0; feature < featureCount(geometry, pair); ++feature) {
-      const Contact contact = contactOf(geometry, index, feature, state);
-      if (contact.separation <= margin) contacts.push_back(contact);
-    }
-  }
+  for (std::size_t pair = 0; pair < geometry.pairs.size(); ++pair)
+    appendContacts(geometry, pair, state, margin, contacts);
 }
 
 }  // namespace cradle

@@ -6,10 +6,9 @@
 
 namespace cradle {
 
-/// Where two colliders are nearest: one ball of A against one ball of B, or against a plane.
+/// A point where two colliders are near.
 struct Contact {
-  std::size_t pair = 0;     // index into ContactGeometry::pairs
-  std::size_t feature = 0;  // which point of A
+  std::size_t pair = 0;  // index into ContactGeometry::pairs
   int bodyA = kFixed, bodyB = kFixed;
   Vec3 point = Vec3::Zero();   // m, world: middle between the two surfaces
   Vec3 normal = Vec3::Zero();  // unit, world, from A to B
@@ -19,17 +18,26 @@ struct Contact {
 /// Pose of a moving body's centre of mass frame in `state`; identity if fixed.
 RigidTransform poseOf(const VectorX& state, int body);
 
-/// Number of features of a pair: the points of A (B has a single one, or is a plane).
+/// The moving body of a pair's second collider, or kFixed.
+int bodyBOf(const ContactGeometry& geometry, const ColliderPair& pair);
+
+/// Number of features of a pair whose gaps close one by one: the points of A against a plane, else one for the pair.
 std::size_t featureCount(const ContactGeometry& geometry, const ColliderPair& pair);
 
-/// Signed distance (m) between point `feature` of A and B, for given poses of their bodies.
+/// Signed separation (m) of a feature, for given poses of the bodies. Zero where they touch, and continuous there.
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature,
                   const RigidTransform& worldFromA, const RigidTransform& worldFromB);
+double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature, const VectorX& state);
 
-/// The same with point and normal. Two balls with one centre get the normal +y.
-Contact contactOf(const ContactGeometry& geometry, std::size_t pair, std::size_t feature, const VectorX& state);
+/// Lower bound (m) of the separations of all features, from bounding spheres; -infinity for fixed bodies.
+double separationBound(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
+                       const RigidTransform& worldFromB);
 
-/// All contacts with separation <= margin (m), in order of pairs and features. O(pairs + features of near pairs).
+/// Appends the contacts of one pair with separation <= margin (m). Two balls with one centre get the normal +y.
+void appendContacts(const ContactGeometry& geometry, std::size_t pair, const VectorX& state, double margin,
+                    std::vector<Contact>& contacts);
+
+/// All contacts with separation <= margin, in order of pairs. O(pairs + features of near pairs).
 void findContacts(const ContactGeometry& geometry, const VectorX& state, double margin, std::vector<Contact>& contacts);
 
 }  // namespace cradle

@@ -14,15 +14,15 @@ class PairSearch {
         step_(step),
         pairIndex_(pair),
         pair_(geometry.pairs[pair]),
-        a_(geometry.balls[pair_.a]),
-        bodyB_(pair_.againstPlane ? kFixed : geometry.balls[pair_.b].body),
+        a_(geometry.colliders[pair_.a]),
+        bodyB_(bodyBOf(geometry, pair_)),
         speed_(motionBound(step, a_.body, a_.boundingRadius) +
-               (pair_.againstPlane ? 0 : motionBound(step, bodyB_, geometry.balls[pair_.b].boundingRadius))) {}
+               (pair_.againstPlane ? 0 : motionBound(step, bodyB_, geometry.colliders[pair_.b].boundingRadius))) {}
 
   void search(double tolerance, std::optional<ImpactTime>& best) {
     const RigidTransform startA = poseAt(step_, a_.body, 0), startB = poseAt(step_, bodyB_, 0);
-    if (centreGap(startA, startB) > speed_) return;
-    for (feature_ = 0; feature_ < a_.points.size(); ++feature_) {
+    if (separationBound(geometry_, pair_, startA, startB) > speed_) return;
+    for (feature_ = 0; feature_ < featureCount(geometry_, pair_); ++feature_) {
       const double start = separation(geometry_, pair_, feature_, startA, startB);
       if (start <= tolerance || start > speed_) continue;
       const double end = best ? best->fraction : 1;
@@ -37,23 +37,11 @@ class PairSearch {
     return separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction), poseAt(step_, bodyB_, fraction));
   }
 
-  /// Lower bound of the gaps of all features.
-  double centreGap(const RigidTransform& worldFromA, const RigidTransform& worldFromB) const {
-    if (a_.body == kFixed) return 0;
-    const Vec3 centre = worldFromA.translation;
-    if (pair_.againstPlane) {
-      const PlaneCollider& plane = geometry_.planes[pair_.b];
-      return plane.normal.dot(centre - plane.point) - a_.boundingRadius;
-    }
-    const BallsCollider& b = geometry_.balls[pair_.b];
-    return (centre - worldFromB * b.points[0]).norm() - a_.boundingRadius - b.radius;
-  }
-
   const ContactGeometry& geometry_;
   const Step& step_;
   std::size_t pairIndex_, feature_ = 0;
   const ColliderPair& pair_;
-  const BallsCollider& a_;
+  const Collider& a_;
   int bodyB_;
   double speed_;  // m: bound on the relative motion over the whole step
 };

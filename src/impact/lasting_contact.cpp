@@ -40,6 +40,21 @@ double relax(LastingContact& lasting, const Mat3& inverseMass, const std::vector
   return (inverseMass * change).norm();
 }
 
+/// Shifts and turns both bodies so that the contact's gap grows from `separation` to 0. What earlier contacts of the
+/// same bodies did since it was found is seen in the next sweep.
+void moveApart(const Contact& contact, const std::vector<RigidBody>& bodies, VectorX& state) {
+  const double response = contact.normal.dot(inverseMassAt(contact, bodies, state) * contact.normal);
+  const Vec3 push = -contact.separation / response * contact.normal;
+  for (const auto& [body, sign] : {std::pair(contact.bodyA, -1.0), std::pair(contact.bodyB, 1.0)}) {
+    if (body == kFixed) continue;
+    const RigidBody& inertia = bodies[static_cast<std::size_t>(body)];
+    const Vec3 arm = contact.point - centerOfMass(state, body);
+    const Vec3 turn = worldInverseInertia(inertia, orientation(state, body)) * arm.cross(sign * push);
+    centerOfMass(state, body) += sign * inertia.inverseMass * push;
+    turnBody(state, body, turn);
+  }
+}
+
 }  // namespace
 
 double solveLastingContacts(std::vector<LastingContact>& contacts, const std::vector<RigidBody>& bodies,
@@ -59,22 +74,18 @@ double solveLastingContacts(std::vector<LastingContact>& contacts, const std::ve
 
 void resolveOverlaps(const ContactGeometry& geometry, const std::vector<Contact>& contacts,
                      const std::vector<RigidBody>& bodies, VectorX& state) {
+  std::vector<std::size_t> pairs;
+  for (const Contact& contact : contacts)
+    if (pairs.empty() || pairs.back() != contact.pair) pairs.push_back(contact.pair);
+  std::vector<Contact> overlaps;
   for (int sweep = 0; sweep < kMostOverlapSweeps; ++sweep) {
     double deepest = 0;
-    for (const Contact& found : contacts) {
-      const Contact contact = contactOf(geometry, found.pair, found.feature, state);
-      deepest = std::max(deepest, -contact.separation);
-      if (contact.separation >= 0) continue;
-      const double response = contact.normal.dot(inverseMassAt(contact, bodies, state) * contact.normal);
-      const double shift = -contact.separation / response;
-      for (const auto& [body, sign] : {std::pair(contact.bodyA, -1.0), std::pair(contact.bodyB, 1.0)}) {
-        if (body == kFixed) continue;
-        const RigidBody& inertia = bodies[static_cast<std::size_t>(body)];
-        const Vec3 push = sign * shift * contact.normal;
-        const Vec3 arm = contact.point - centerOfMass(state, body);
-        const Vec3 turn = worldInverseInertia(inertia, orientation(state, body)) * arm.cross(push);
-        centerOfMass(state, body) += inertia.inverseMass * push;
-        turnBody(state, body, turn);
+    for (const std::size_t pair : pairs) {
+      overlaps.clear();
+      appendContacts(geometry, pair, state, 0, overlaps);
+      for (const Contact& overlap : overlaps) {
+        deepest = std::max(deepest, -overlap.separation);
+        moveApart(overlap, bodies, state);
       }
     }
     if (deepest <= kOverlapLeft) return;

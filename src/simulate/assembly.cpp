@@ -73,31 +73,25 @@ void satisfyRods(const Scene& scene, Assembly& assembly) {
                     scene.path, violation, (assembly.state - before).cwiseAbs().maxCoeff()));
 }
 
-/// Colliders of all bodies: points from the centre of mass for moving bodies, in the world for fixed ones.
 struct ColliderIndices {
-  std::vector<int> balls, planes;  // of each scene body, or -1
+  std::vector<int> colliders, planes;  // of each scene body, or -1
 };
 
 ColliderIndices addColliders(const Scene& scene, const std::vector<int>& moving, ContactGeometry& geometry) {
   ColliderIndices indices;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
-    indices.balls.push_back(-1);
+    indices.colliders.push_back(-1);
     indices.planes.push_back(-1);
     const auto* plane = std::get_if<Plane>(&body.shape);
     if (plane && body.collision != CollisionChoice::none) {
       indices.planes.back() = static_cast<int>(geometry.planes.size());
       geometry.planes.push_back({body.worldFromBody.translation, body.worldFromBody.rotation * plane->normal});
     }
-    auto collider = ballsColliderOf(body, scene);
+    auto collider = colliderOf(body, scene, moving[i]);
     if (!collider) continue;
-    collider->body = moving[i];
-    for (Vec3& point : collider->points) {
-      point = moving[i] == kFixed ? body.worldFromBody * point : Vec3(point - body.massProperties.centerOfMass);
-      collider->boundingRadius = std::max(collider->boundingRadius, point.norm() + collider->radius);
-    }
-    indices.balls.back() = static_cast<int>(geometry.balls.size());
-    geometry.balls.push_back(std::move(*collider));
+    indices.colliders.back() = static_cast<int>(geometry.colliders.size());
+    geometry.colliders.push_back(std::move(*collider));
   }
   return indices;
 }
@@ -113,10 +107,11 @@ void addContactGeometry(const Scene& scene, const std::vector<int>& moving, Asse
       const bool againstPlane = indices.planes[b] >= 0;
       const SurfacePair& surface = scene.surfacePairs[static_cast<std::size_t>(scene.bodies[a].material)]
                                                      [static_cast<std::size_t>(scene.bodies[b].material)];
-      assembly.geometry.pairs.push_back({static_cast<std::size_t>(indices.balls[a]),
-                                         static_cast<std::size_t>(againstPlane ? indices.planes[b] : indices.balls[b]),
-                                         againstPlane,
-                                         {surface.restitution, surface.staticFriction, surface.dynamicFriction}});
+      assembly.geometry.pairs.push_back(
+          {static_cast<std::size_t>(indices.colliders[a]),
+           static_cast<std::size_t>(againstPlane ? indices.planes[b] : indices.colliders[b]),
+           againstPlane,
+           {surface.restitution, surface.staticFriction, surface.dynamicFriction}});
       assembly.pairBodies.emplace_back(static_cast<int>(a), static_cast<int>(b));
     }
 }

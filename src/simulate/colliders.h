@@ -9,11 +9,11 @@
 
 namespace cradle {
 
-/// The collider of a body that is no plane, points in the body's frame; none if it does not collide.
-/// `collision: auto` of a mesh takes the primitive that it is recognised as, else its vertices.
-std::optional<BallsCollider> ballsColliderOf(const Body& body, const Scene& scene);
+/// The collider of a body that is no plane; none if it does not collide. `movingBody` is its index among those that
+/// move, or kFixed. `collision: auto` of a mesh takes the primitive that it is recognised as, else its vertices.
+std::optional<Collider> colliderOf(const Body& body, const Scene& scene, int movingBody);
 
-/// Faults of pairs whose contact cannot be simulated yet: all but ball on ball, and anything on a plane.
+/// Faults of pairs whose contact cannot be simulated yet.
 std::vector<std::string> unsupportedContacts(const Scene& scene);
 
 /// Do two bodies have to be watched for contact? (One moves, both collide.)

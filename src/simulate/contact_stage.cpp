@@ -17,7 +17,7 @@ constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
 
 double touchTolerance(const ContactGeometry& geometry) {
   double smallest = 1;
-  for (const BallsCollider& balls : geometry.balls)
+  for (const Collider& balls : geometry.colliders)
     if (balls.body != kFixed) smallest = std::min(smallest, balls.boundingRadius);
   return kTouchPart * smallest;
 }

@@ -33,7 +33,7 @@ RestingBodies::RestingBodies(const Mechanism& mechanism, const ContactGeometry& 
       sizes_(mechanism.bodies.size(), 0.0),
       restingIsland_(mechanism.bodies.size(), -1) {
   double smallest = INFINITY;
-  for (const BallsCollider& collider : geometry.balls) {
+  for (const Collider& collider : geometry.colliders) {
     if (collider.body == kFixed) continue;
     sizes_[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
     smallest = std::min(smallest, collider.boundingRadius);

@@ -97,7 +97,7 @@ bool Simulation::stopAtFirstEvent() {
   const double whole = step_.timeStep;
   if (impact && !(change && change->fraction < impact->fraction)) {
     shortenStepTo(impact->fraction * whole, kImpactPart * contacts_.touchTolerance(), [&](const VectorX& state) {
-      return contactOf(assembly_.geometry, impact->pair, impact->feature, state).separation;
+      return separation(assembly_.geometry, assembly_.geometry.pairs[impact->pair], impact->feature, state);
     });
   } else if (change) {
     shortenStepTo(change->fraction * whole, kRopeTolerance,

@@ -41,7 +41,7 @@ VectorX stateOf(const std::vector<std::pair<Vec3, Vec3>>& positionsAndVelocities
 
 ContactGeometry floorAndBall(double radius) {
   ContactGeometry geometry;
-  geometry.balls = {{0, {Vec3::Zero()}, radius, radius}};
+  geometry.colliders = {{0, {Vec3::Zero()}, radius, radius, {}}};
   geometry.planes = {{Vec3::Zero(), Vec3::UnitY()}};
   geometry.pairs = {{0, 0, true, {}}};
   return geometry;
@@ -49,7 +49,7 @@ ContactGeometry floorAndBall(double radius) {
 
 ContactGeometry twoBalls(double radius) {
   ContactGeometry geometry;
-  geometry.balls = {{0, {Vec3::Zero()}, radius, radius}, {1, {Vec3::Zero()}, radius, radius}};
+  geometry.colliders = {{0, {Vec3::Zero()}, radius, radius, {}}, {1, {Vec3::Zero()}, radius, radius, {}}};
   geometry.pairs = {{0, 1, false, {}}};
   return geometry;
 }
@@ -131,7 +131,7 @@ TEST(TimeOfImpact, OfASpinningTipIsWhenItReachesTheFloor) {
   Mechanism mechanism;
   mechanism.bodies = {makeRigidBody({1, Vec3::Zero(), 0.1 * Mat3::Identity()})};
   ContactGeometry geometry;
-  geometry.balls = {{0, {Vec3(0.5, 0, 0), Vec3(-0.5, 0, 0)}, 0, 0.5}};
+  geometry.colliders = {{0, {Vec3(0.5, 0, 0), Vec3(-0.5, 0, 0)}, 0, 0.5, {}}};
   geometry.planes = {{Vec3(0, -0.3, 0), Vec3::UnitY()}};
   geometry.pairs = {{0, 0, true, {}}};
   VectorX state = stateOf({{Vec3::Zero(), Vec3::Zero()}});

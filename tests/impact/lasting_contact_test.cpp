@@ -17,7 +17,7 @@ std::vector<LastingContact> cornersOf(double friction) {
   std::vector<LastingContact> contacts;
   for (const double x : {-0.5, 0.5})
     for (const double z : {-0.5, 0.5})
-      contacts.push_back({{0, 0, 0, kFixed, Vec3(x, 0, z), -Vec3::UnitY(), 0}, friction, Vec3::Zero()});
+      contacts.push_back({{0, 0, kFixed, Vec3(x, 0, z), -Vec3::UnitY(), 0}, friction, Vec3::Zero()});
   return contacts;
 }
 
@@ -68,7 +68,7 @@ TEST(LastingContact, LetsGoWhatSeparates) {
 // Two balls that overlap by 0.03 move apart along their line by 0.03 m2/(m1+m2) and 0.03 m1/(m1+m2).
 TEST(Overlap, IsResolvedInTheRatioOfInverseMasses) {
   ContactGeometry geometry;
-  geometry.balls = {{0, {Vec3::Zero()}, 0.1, 0.1}, {1, {Vec3::Zero()}, 0.2, 0.2}};
+  geometry.colliders = {{0, {Vec3::Zero()}, 0.1, 0.1, {}}, {1, {Vec3::Zero()}, 0.2, 0.2, {}}};
   geometry.pairs = {{0, 1, false, {}}};
   const std::vector<RigidBody> bodies = {cube(1, 0.1), cube(5, 0.1)};
   VectorX state = VectorX::Zero(stateSize(2));
@@ -86,7 +86,7 @@ TEST(Overlap, IsResolvedInTheRatioOfInverseMasses) {
 
 TEST(Overlap, WithAPlaneMovesTheBodyAlone) {
   ContactGeometry geometry;
-  geometry.balls = {{0, {Vec3::Zero()}, 0.1, 0.1}};
+  geometry.colliders = {{0, {Vec3::Zero()}, 0.1, 0.1, {}}};
   geometry.planes = {{Vec3(0, 1, 0), Vec3(0, 1, 0)}};
   geometry.pairs = {{0, 0, true, {}}};
   VectorX state = VectorX::Zero(stateSize(1));

@@ -32,7 +32,7 @@ struct Row {
       centerOfMass(state, static_cast<Eigen::Index>(i)).x() = 0.2 * static_cast<double>(i);
       if (i == 0) continue;
       const int b = static_cast<int>(i);
-      const Contact contact{i - 1, 0, b - 1, b, Vec3(0.2 * b - 0.1, 0, 0), Vec3::UnitX(), 0};
+      const Contact contact{i - 1, b - 1, b, Vec3(0.2 * b - 0.1, 0, 0), Vec3::UnitX(), 0};
       impacts.push_back({contact, {restitution, 0, 0}, 0, 0});
     }
   }
@@ -60,7 +60,7 @@ TEST(PairImpact, MatchesTheClosedFormForAnyMassesAndRestitution) {
 TEST(PairImpact, WithSomethingFixedReflectsExactly) {
   for (const double e : {0.0, 0.5, 1.0}) {
     Row row({2.0}, e);
-    const Contact wall{0, 0, 0, kFixed, Vec3(0.1, 0, 0), Vec3::UnitX(), 0};
+    const Contact wall{0, 0, kFixed, Vec3(0.1, 0, 0), Vec3::UnitX(), 0};
     row.impacts = {{wall, {e, 0, 0}, 0, 0}};
     linearVelocity(row.state, 0) = Vec3(3, 1, 0);
     row.resolve();
@@ -106,7 +106,7 @@ TEST(PairImpact, OfALopsidedBodyMatchesAnIndependentComputation) {
   angularVelocity(state, 0) = Vec3(1, -2, 0.5);
   const Vec3 arm(0.2, -0.3, 0.1), up = Vec3::UnitY();
   const double e = 0.6;
-  std::vector<ImpactContact> impacts{{{0, 0, 0, kFixed, arm, -up, 0}, {e, 0, 0}, 0, 0}};
+  std::vector<ImpactContact> impacts{{{0, 0, kFixed, arm, -up, 0}, {e, 0, 0}, 0, 0}};
 
   const Vec3 spinBody = turn.conjugate() * (arm.cross(up)), perUnit = spinBody.cwiseQuotient(Vec3(0.02, 0.05, 0.06));
   const double response = 1 / 1.3 + perUnit.dot(spinBody);
@@ -124,7 +124,7 @@ TEST(PairImpact, OfALopsidedBodyMatchesAnIndependentComputation) {
 // the point of contact is kept); friction that slides takes mu (1 + e) vn from v.
 TEST(PairImpact, FrictionMakesABallRollOrSlide) {
   const double radius = 0.1, v = 2, down = 1, e = 0.5;
-  const Contact floor{0, 0, 0, kFixed, Vec3(0, -radius, 0), -Vec3::UnitY(), 0};
+  const Contact floor{0, 0, kFixed, Vec3(0, -radius, 0), -Vec3::UnitY(), 0};
   const auto thrown = [&](double friction) {
     VectorX state = statesAtRest(1);
     linearVelocity(state, 0) = Vec3(v, -down, 0);
@@ -152,7 +152,7 @@ TEST(PairImpact, KeepsMomentaAndNeverAddsEnergy) {
     normalizeOrientations(state);
     const Vec3 normal = Vec3::Random().normalized(), point = Vec3::Random();
     const double friction = 1.5 * std::abs(normal.x()), e = std::abs(normal.y());
-    std::vector<ImpactContact> impacts{{{0, 0, 0, 1, point, normal, 0}, {e, friction, friction}, 0, 0}};
+    std::vector<ImpactContact> impacts{{{0, 0, 1, point, normal, 0}, {e, friction, friction}, 0, 0}};
     const Invariants before = invariantsOf(mechanism, state);
     resolvePairwise(impacts, mechanism.bodies, state);
     const Invariants after = invariantsOf(mechanism, state);

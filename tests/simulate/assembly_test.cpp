@@ -34,13 +34,14 @@ TEST(Refusals, NameEverythingThatIsNotSimulatedYet) {
 }
 
 TEST(Refusals, NameTheTwoBodiesOfAContactThatCannotBeSimulatedYet) {
-  const std::string box = R"({"name": "crate", "shape": {"box": {"size": [1, 1, 1]}}, "position": [3, 0, 0])";
+  const std::string box =
+      R"({"name": "crate", "shape": {"capsule": {"radius": 1, "length": 1}}, "position": [3, 0, 0])";
   const std::string refusal = refusalOf(withBodies(kBall + ("," + box + "}")));
   EXPECT_NE(refusal.find("\"a\" and \"crate\""), std::string::npos) << refusal;
   EXPECT_EQ(refusalOf(withBodies(kBall + ("," + box + R"(, "collision": "none"})"))), "");
 }
 
-TEST(Refusals, AcceptSpheresOnSpheresAndBoxesOnPlanes) {
+TEST(Refusals, AcceptSpheresAndBoxesAmongEachOtherAndAllButCylindersOnPlanes) {
   const std::string plane = R"({"name": "p", "shape": {"plane": {"normal": [0, 1, 0]}}, "motion": "static"})";
   EXPECT_EQ(refusalOf(withBodies(kBall + (", " + plane) +
                                  R"(, {"name": "b", "shape": {"sphere": {"radius": 1}}, "position": [9, 0, 0]})")),
