@@ -130,7 +130,7 @@ struct TrajectoryReader::Session {
 };
 
 TrajectoryReader::TrajectoryReader(const std::string& path) : path_(path) {
-  // Asked here because SQLite would wait for ever on a pipe, and has no words for an empty file.
+  // Asked first because SQLite takes an empty file for a database.
   if (!isTrajectoryFile(path)) throw Error(ErrorKind::usage, path, "is not a trajectory (or cannot be read)");
   session_ = std::make_unique<Session>(path);
   readMeta();

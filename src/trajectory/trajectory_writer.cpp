@@ -22,21 +22,14 @@ namespace fs = std::filesystem;
 
 static_assert(sizeof(Vec3) == 24 && sizeof(Vec3f) == 12 && sizeof(Triangle) == 12, "arrays are stored as they are");
 
-void removeWithJournal(const std::string& part) {
-  std::error_code ignored;
-  fs::remove(part, ignored);
-  // An old journal would be taken for the new file's and "restored" into it.
-  fs::remove(part + "-journal", ignored);
-}
-
-/// Makes room for a new .part.
+/// Makes room for a new .part. (SQLite itself drops a journal that it finds beside an empty file.)
 void removeOldPart(const std::string& part) {
   const auto status = fs::symlink_status(part);
   if (fs::exists(status) && !fs::is_regular_file(status))
     throw Error(ErrorKind::output, part, "is in the way and is not a regular file; remove it or choose another name");
   if (isTrajectoryFile(part) && isBeingWritten(part))
     throw Error(ErrorKind::output, part, "is being written by another run; wait for its end or choose another name");
-  removeWithJournal(part);
+  fs::remove(part);
 }
 
 std::string hexColor(const Vec3f& color) {
@@ -278,7 +271,8 @@ void TrajectoryWriter::endUnfinished() noexcept {
     session_->database.rollback();
   }
   session_.reset();
-  if (framesCommitted_ == 0) removeWithJournal(part_);
+  std::error_code ignored;
+  if (framesCommitted_ == 0) fs::remove(part_, ignored);
 }
 
 }  // namespace cradle

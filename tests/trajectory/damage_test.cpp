@@ -34,7 +34,7 @@ TEST_F(DamagedTrajectory, OtherFilesAreNone) {
   ASSERT_EQ(mkfifo(folder_.file("pipe").c_str(), 0600), 0);
   for (const std::string name : {"scene.json", "empty", "missing", "pipe", "."}) {
     EXPECT_FALSE(isTrajectoryFile(folder_.file(name))) << name;
-    expectError(ErrorKind::usage, folder_.file(name), [&] { readAll(folder_.file(name)); });
+    expectError(ErrorKind::usage, folder_.file(name) + ": is not a trajectory", [&] { readAll(folder_.file(name)); });
   }
 }
 
@@ -55,6 +55,11 @@ TEST_F(DamagedTrajectory, WithMissingRowsIsRefused) {
   expectRefused("DELETE FROM state WHERE frame = 2 AND body = 2", "frame 2");
   expectRefused(
       "INSERT INTO state SELECT frame, 1, px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz FROM state "
+      "WHERE frame = 3 AND body = 0",
+      "frame 3");
+  expectRefused("UPDATE state SET body = 1 WHERE frame = 3 AND body = 0", "frame 3");
+  expectRefused(
+      "INSERT INTO state SELECT frame, 3, px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz FROM state "
       "WHERE frame = 3 AND body = 0",
       "frame 3");
   expectRefused("DELETE FROM energy WHERE frame = 3", "energies of frame 3");

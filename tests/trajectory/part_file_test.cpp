@@ -1,5 +1,7 @@
+#include <sched.h>
 #include <signal.h>
 #include <sqlite3.h>
+#include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -59,9 +61,15 @@ class ChildWriter {
     close(ready[1]);
   }
 
-  void kill() const {
+  ~ChildWriter() { kill(); }
+  ChildWriter(const ChildWriter&) = delete;
+  ChildWriter& operator=(const ChildWriter&) = delete;
+
+  void kill() {
+    if (process_ == 0) return;
     ::kill(process_, SIGKILL);
     waitpid(process_, nullptr, 0);
+    process_ = 0;
   }
 
  private:
@@ -140,7 +148,7 @@ TEST(TrajectoryPart, ReplacesAnOldPartAndItsJournal) {
 
 TEST(TrajectoryPart, OfAnotherRunIsNotTaken) {
   const TemporaryFolder folder;
-  const ChildWriter other(folder.file("a.sqlite"), 1h);
+  ChildWriter other(folder.file("a.sqlite"), 1h);
   expectError(ErrorKind::output, "another run",
               [&] { const TrajectoryWriter writer(folder.file("a.sqlite"), sampleHeader()); });
   readAll(folder.file("a.sqlite.part"));
@@ -195,7 +203,7 @@ TEST(TrajectoryPart, IsConsistentAfterTheProcessIsKilled) {
   long most = 0;
   for (int round = 0; round < 30; ++round) {
     const std::string path = folder.file(std::to_string(round) + ".sqlite");
-    const ChildWriter writer(path);
+    ChildWriter writer(path);
     std::this_thread::sleep_for(round * 700us);
     writer.kill();
     const TrajectoryReader reader(path + ".part");
@@ -206,41 +214,65 @@ TEST(TrajectoryPart, IsConsistentAfterTheProcessIsKilled) {
   EXPECT_GT(most, 1);
 }
 
-/// Writes frames until that fails; 0 if it fails as a full disk should.
-int fillDisk(const std::string& path, rlim_t bytes) {
+/// No file of this process may be larger from now on. Further writing fails like a broken disk.
+void limitFileSize(rlim_t bytes) {
   signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{bytes, bytes};
-  setrlimit(RLIMIT_FSIZE, &limit);
-  TrajectoryWriter writer(path, sampleHeader(), 0ms);
-  try {
-    for (long number = 0;; ++number) writer.append(sampleFrame(number));
-  } catch (const Error& error) {
-    const bool says = std::string(error.what()).find(path) != std::string::npos;
-    return error.kind() == ErrorKind::output && says && writer.keptPath() == path + ".part" ? 0 : 1;
-  }
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
 }
 
-TEST(TrajectoryPart, KeepsItsFramesWhenTheDiskIsFull) {
-  const TemporaryFolder folder;
-  EXPECT_EQ(statusOfProcess([&] { return fillDisk(folder.file("a.sqlite"), 100000); }), 0);
-  EXPECT_EQ(folder.count(), 1);
-  const TrajectoryReader reader(folder.file("a.sqlite.part"));
+/// Makes `folder` a disk of 200 kB, for this process alone. False where that is not permitted.
+bool mountSmallDisk(const std::string& folder) {
+  return unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+         mount("tmpfs", folder.c_str(), "tmpfs", 0, "size=200k") == 0;
+}
+
+/// Writes frames until that fails, then reads those that were kept.
+void fillDisk(const std::string& path, const std::string& words) {
+  TrajectoryWriter writer(path, sampleHeader(), 0ms);
+  expectError(ErrorKind::output, words, [&] {
+    for (long number = 0;; ++number) writer.append(sampleFrame(number));
+  });
+  ASSERT_EQ(writer.keptPath(), path + ".part");
+  const TrajectoryReader reader(path + ".part");
   EXPECT_GT(reader.frameCount(), 50);
   expectFirstFrames(reader);
+}
+
+int failures() {
+  return testing::Test::HasFailure() ? 1 : 0;
+}
+
+TEST(TrajectoryPart, KeepsItsFramesWhenItCannotGrow) {
+  const TemporaryFolder folder;
+  const int status = statusOfProcess([&] {
+    limitFileSize(100000);
+    fillDisk(folder.file("a.sqlite"), "cannot be written");
+    return failures();
+  });
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(folder.count(), 1);
+  EXPECT_GT(TrajectoryReader(folder.file("a.sqlite.part")).frameCount(), 50);
+}
+
+TEST(TrajectoryPart, SaysThatTheDiskIsFull) {
+  const TemporaryFolder folder;
+  const int status = statusOfProcess([&] {
+    const bool isSmall = mountSmallDisk(folder.path());
+    if (!isSmall) limitFileSize(100000);
+    fillDisk(folder.file("a.sqlite"), isSmall ? "the disk is full" : "cannot be written");
+    return failures();
+  });
+  EXPECT_EQ(status, 0);
 }
 
 TEST(TrajectoryPart, LeavesNothingWhenTheDiskIsFullFromTheStart) {
   const TemporaryFolder folder;
   const int status = statusOfProcess([&] {
-    signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{5000, 5000};
-    setrlimit(RLIMIT_FSIZE, &limit);
-    try {
-      const TrajectoryWriter writer(folder.file("a.sqlite"), sampleHeader());
-    } catch (const Error& error) {
-      return error.kind() == ErrorKind::output ? 0 : 1;
-    }
-    return 2;
+    limitFileSize(5000);
+    expectError(ErrorKind::output, "cannot be written",
+                [&] { const TrajectoryWriter writer(folder.file("a.sqlite"), sampleHeader()); });
+    return failures();
   });
   EXPECT_EQ(status, 0);
   EXPECT_EQ(folder.count(), 0);

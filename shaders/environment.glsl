@@ -1,0 +1,35 @@
+// What a ray meets that leaves a surface: the ground with its squares and shadows, else the sky.
+
+uniform int hasGround;
+
+const float kUsuallyLit = 0.85;  // share of the ground out of shadow, where a mirror shows too much of it at once
+
+vec3 groundLight(vec3 from, vec3 direction, float spread) {
+  float approach = min(dot(groundPlane.xyz, direction), -1e-3);
+  float t = max((groundPlane.w - dot(groundPlane.xyz, from)) / approach, 0.0);
+  vec3 position = from + t * direction;
+  vec2 place = checkPlace(position);
+  vec2 footprint = fwidth(place) + checksPerMetre * spread * t;
+  vec3 albedo = checkColor(place, footprint);
+  // Shadows much smaller than the footprint would only flicker.
+  float texels = max(footprint.x, footprint.y) / (checksPerMetre * shadowTexel);
+  float lit = mix(quickShadow(position), kUsuallyLit, smoothstep(4.0, 24.0, texels));
+  vec3 light = albedo * groundIrradiance(lit, contactShade(position));
+  return mix(light, horizonColor, groundFade(t));
+}
+
+// `spread` is how far the ray fans out per metre.
+vec3 environment(vec3 from, vec3 direction, float spread) {
+  vec3 sky = skyLight(direction) + skyGlow(direction);
+  if (hasGround == 0) return sky;
+  float height = dot(groundPlane.xyz, direction);
+  float above = smoothstep(-spread - 0.01, spread + 0.01, height);
+  return mix(groundLight(from, direction, spread), sky, above);
+}
+
+// Light from all around on a matt surface: sky from above, from below what the ground or the floor sends back.
+vec3 ambientLight(vec3 normal) {
+  vec3 above = skyIrradiance;
+  vec3 below = bounceIrradiance;
+  return mix(below, above, 0.5 + 0.5 * normal.y);
+}

@@ -1,0 +1,31 @@
+#version 330 core
+
+// A mesh placed in the world, many at a time.
+
+uniform mat4 clipFromWorld;
+
+layout(location = 0) in vec3 meshPosition;
+layout(location = 1) in vec3 meshNormal;
+layout(location = 2) in vec4 worldFromMeshX;  // rows of the affine transform
+layout(location = 3) in vec4 worldFromMeshY;
+layout(location = 4) in vec4 worldFromMeshZ;
+layout(location = 5) in vec4 inverseScaleAndRoughness;  // 1 / scale^2: turns the transform into that of normals
+layout(location = 6) in vec4 instanceColor;             // linear; w is metallic
+layout(location = 7) in vec4 instanceBalls;             // first and number of the balls near, own ball or -1
+
+out vec3 position;
+out vec3 normal;
+flat out vec4 surfaceColor;
+flat out float roughness;
+flat out vec2 nearBalls;
+
+void main() {
+  vec4 place = vec4(meshPosition, 1.0);
+  position = vec3(dot(worldFromMeshX, place), dot(worldFromMeshY, place), dot(worldFromMeshZ, place));
+  vec3 scaled = meshNormal * inverseScaleAndRoughness.xyz;
+  normal = vec3(dot(worldFromMeshX.xyz, scaled), dot(worldFromMeshY.xyz, scaled), dot(worldFromMeshZ.xyz, scaled));
+  surfaceColor = instanceColor;
+  roughness = inverseScaleAndRoughness.w;
+  nearBalls = instanceBalls.xy;
+  gl_Position = clipFromWorld * vec4(position, 1.0);
+}

@@ -1,0 +1,144 @@
+#include "image/child_process.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+#include "core/error.h"
+
+extern char** environ;
+
+namespace cradle {
+namespace {
+
+constexpr int kPipeBytes = 1 << 20;  // the most that Linux gives everyone: fewer turns between the two programs
+
+[[noreturn]] void failStart(const std::string& program, int error) {
+  const std::string remedy = error == ENOENT ? "; install the package ffmpeg, or put it into PATH" : "";
+  throw Error(ErrorKind::encoder, program, std::string("cannot be started: ") + std::strerror(error) + remedy);
+}
+
+std::FILE* openTemporary(const std::string& program) {
+  std::FILE* file = std::tmpfile();
+  if (file == nullptr) failStart(program, errno);
+  fcntl(fileno(file), F_SETFD, FD_CLOEXEC);
+  return file;
+}
+
+std::string readWhole(std::FILE* file) {
+  std::string text;
+  std::array<char, 4096> part;
+  off_t offset = 0;
+  while (true) {
+    const ssize_t count = pread(fileno(file), part.data(), part.size(), offset);
+    if (count <= 0) return text;
+    text.append(part.data(), static_cast<std::size_t>(count));
+    offset += count;
+  }
+}
+
+/// The start of a process with its three standard files, its own group and the default reaction to SIGPIPE.
+class SpawnRequest {
+ public:
+  SpawnRequest(int input, int output, int error) {
+    posix_spawn_file_actions_init(&files_);
+    posix_spawn_file_actions_adddup2(&files_, input, STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&files_, output, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&files_, error, STDERR_FILENO);
+    sigset_t pipeSignal;
+    sigemptyset(&pipeSignal);
+    sigaddset(&pipeSignal, SIGPIPE);
+    posix_spawnattr_init(&attributes_);
+    posix_spawnattr_setsigdefault(&attributes_, &pipeSignal);
+    posix_spawnattr_setpgroup(&attributes_, 0);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+  }
+  ~SpawnRequest() {
+    posix_spawn_file_actions_destroy(&files_);
+    posix_spawnattr_destroy(&attributes_);
+  }
+  SpawnRequest(const SpawnRequest&) = delete;
+  SpawnRequest& operator=(const SpawnRequest&) = delete;
+
+  /// 0, or what went wrong.
+  int start(std::vector<std::string> command, pid_t& process) {
+    std::vector<char*> arguments;
+    for (std::string& argument : command) arguments.push_back(argument.data());
+    arguments.push_back(nullptr);
+    return posix_spawnp(&process, arguments[0], &files_, &attributes_, arguments.data(), environ);
+  }
+
+ private:
+  posix_spawn_file_actions_t files_;
+  posix_spawnattr_t attributes_;
+};
+
+}  // namespace
+
+ChildProcess::ChildProcess(const std::vector<std::string>& command)
+    : output_(openTemporary(command.at(0)), std::fclose), error_(openTemporary(command.at(0)), std::fclose) {
+  std::array<int, 2> ends;
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) failStart(command[0], errno);
+  fcntl(ends[1], F_SETPIPE_SZ, kPipeBytes);
+  SpawnRequest request(ends[0], fileno(output_.get()), fileno(error_.get()));
+  const int error = request.start(command, process_);
+  close(ends[0]);
+  input_ = ends[1];
+  if (error != 0) {
+    closeInput();
+    failStart(command[0], error);
+  }
+}
+
+ChildProcess::~ChildProcess() {
+  closeInput();
+  if (process_ < 0) return;
+  kill(process_, SIGKILL);
+  waitForEnd();
+}
+
+bool ChildProcess::write(const void* bytes, std::size_t count) {
+  const char* next = static_cast<const char*>(bytes);
+  while (count > 0) {
+    const ssize_t written = ::write(input_, next, count);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    next += written;
+    count -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+int ChildProcess::finish() {
+  closeInput();
+  return waitForEnd();
+}
+
+std::string ChildProcess::standardOutput() const {
+  return readWhole(output_.get());
+}
+
+std::string ChildProcess::standardError() const {
+  return readWhole(error_.get());
+}
+
+void ChildProcess::closeInput() {
+  if (input_ >= 0) close(input_);
+  input_ = -1;
+}
+
+int ChildProcess::waitForEnd() {
+  int status = 0;
+  while (waitpid(process_, &status, 0) < 0)
+    if (errno != EINTR) return 127;  // nobody there to wait for
+  process_ = -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace cradle

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace cradle {
+
+/// Another program, started without a shell, that reads what is written to it. What it prints is kept. It is ended when
+/// the object goes before finish(). It does not hear the terminal's Ctrl-C: the owner decides when it ends.
+class ChildProcess {
+ public:
+  /// command[0] is looked up in PATH. Throws Error(encoder) if it cannot be started.
+  explicit ChildProcess(const std::vector<std::string>& command);
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// Writes to its standard input. False if it no longer reads; SIGPIPE must be ignored (see core/interruption.h).
+  bool write(const void* bytes, std::size_t count);
+
+  /// Closes its input and waits for its end. Returns its exit code, or 128 plus the signal that ended it.
+  int finish();
+
+  /// What it has printed so far.
+  std::string standardOutput() const;
+  std::string standardError() const;
+
+ private:
+  using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+  void closeInput();
+  int waitForEnd();
+
+  File output_, error_;  // files rather than pipes: a program that prints much is never blocked
+  int input_ = -1;
+  pid_t process_ = -1;
+};
+
+}  // namespace cradle

@@ -1,0 +1,189 @@
+// The only unit that runs ffmpeg. Bytes depend on x264's number of threads, so it is fixed; swscale is told to round
+// the same on every CPU; and version strings are left out.
+
+#include "image/video.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <map>
+
+#include "core/error.h"
+#include "core/output_path.h"
+#include "image/png.h"
+
+namespace cradle {
+namespace {
+
+constexpr const char* kThreads = "4";           // part of the result, hence not the machine's number of cores
+constexpr const char* kConstantQuality = "16";  // x264's scale; flat walls and thin rods show no blocks
+constexpr std::size_t kLastWords = 600;         // characters of ffmpeg's messages that a user is shown
+
+std::string muxerFor(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".mp4" || extension == ".m4v") return "mp4";
+  if (extension == ".mov") return "mov";
+  if (extension == ".mkv") return "matroska";
+  throw Error(ErrorKind::usage, path, "the name of a film ends in .mp4, .mov or .mkv");
+}
+
+int roundedUpToEven(int size) {
+  return size + size % 2;
+}
+
+std::vector<std::string> ffmpegCommand(const std::string& part, const std::string& muxer, const VideoFormat& format) {
+  const std::string size = fmt::format("{}x{}", roundedUpToEven(format.width), roundedUpToEven(format.height));
+  std::vector<std::string> command = {"ffmpeg", "-hide_banner", "-loglevel", "error", "-y"};
+  const auto append = [&](const std::vector<std::string>& more) {
+    command.insert(command.end(), more.begin(), more.end());
+  };
+  append({"-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", size});
+  append({"-framerate", fmt::format("{}", format.framesPerSecond), "-i", "pipe:0"});
+  append({"-vf",
+          "scale=in_range=full:out_range=limited:out_color_matrix=bt709:flags=bicubic+accurate_rnd+full_chroma_int+"
+          "bitexact,format=yuv420p"});
+  append({"-c:v", "libx264", "-preset", "medium", "-crf", kConstantQuality, "-threads", kThreads});
+  append({"-color_primaries", "bt709", "-color_trc", "bt709", "-colorspace", "bt709", "-color_range", "tv"});
+  append({"-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1"});
+  if (muxer != "matroska") append({"-movflags", "+faststart"});
+  append({"-f", muxer, "file:" + part});
+  return command;
+}
+
+std::string lastWords(std::string text) {
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+  if (text.empty()) return "it said nothing";
+  if (text.size() <= kLastWords) return text;
+  const std::size_t line = text.find('\n', text.size() - kLastWords);
+  return "... " + text.substr(line == std::string::npos ? text.size() - kLastWords : line + 1);
+}
+
+bool speaksOfFullDisk(const std::string& text) {
+  for (const int error : {ENOSPC, EDQUOT, EFBIG})
+    if (text.find(std::strerror(error)) != std::string::npos) return true;
+  return false;
+}
+
+/// Number of pictures in a film, or -1 if it is no film.
+long countFrames(const std::string& path) {
+  ChildProcess ffprobe({"ffprobe", "-v", "error", "-select_streams", "v:0", "-count_packets", "-show_entries",
+                        "stream=nb_read_packets", "-of", "csv=p=0", "file:" + path});
+  if (ffprobe.finish() != 0) return -1;
+  const std::string text = ffprobe.standardOutput();
+  long count = -1;
+  std::from_chars(text.data(), text.data() + text.size(), count);
+  return count;
+}
+
+/// `image` with its last column and row repeated where its size is odd.
+Image paddedToEven(const Image& image) {
+  Image padded(roundedUpToEven(image.width), roundedUpToEven(image.height));
+  for (int y = 0; y < padded.height; ++y) {
+    const int row = std::min(y, image.height - 1);
+    std::memcpy(padded.at(0, y), image.at(0, row), static_cast<std::size_t>(image.width) * 3);
+    if (padded.width > image.width) std::memcpy(padded.at(image.width, y), image.at(image.width - 1, row), 3);
+  }
+  return padded;
+}
+
+}  // namespace
+
+VideoEncoder::VideoEncoder(std::string path, const VideoFormat& format) : path_(std::move(path)), format_(format) {
+  CRADLE_CHECK(format.width > 0 && format.height > 0 && format.framesPerSecond > 0);
+  const std::string muxer = muxerFor(path_);
+  requireWritableFile(path_);
+  requireWritableFile(partPath(path_));
+  ffmpeg_ = std::make_unique<ChildProcess>(ffmpegCommand(partPath(path_), muxer, format_));
+}
+
+VideoEncoder::~VideoEncoder() {
+  if (finished_) return;
+  ffmpeg_.reset();
+  unlink(partPath(path_).c_str());
+}
+
+void VideoEncoder::add(const Image& image) {
+  CRADLE_CHECK(image.width == format_.width && image.height == format_.height);
+  const bool isEven = image.width % 2 == 0 && image.height % 2 == 0;
+  const Image padded = isEven ? Image() : paddedToEven(image);
+  const auto& pixels = isEven ? image.pixels : padded.pixels;
+  if (!ffmpeg_->write(pixels.data(), pixels.size())) fail(ffmpeg_->finish());
+  ++frames_;
+}
+
+void VideoEncoder::finish() {
+  CRADLE_CHECK(frames_ > 0 && !finished_);
+  const int exitCode = ffmpeg_->finish();
+  if (exitCode != 0) fail(exitCode);
+  const std::string part = partPath(path_);
+  const long count = countFrames(part);
+  if (count != frames_ && speaksOfFullDisk(ffmpeg_->standardError())) fail(exitCode);
+  if (count != frames_)
+    throw Error(ErrorKind::encoder, path_,
+                fmt::format("ffmpeg was given {} pictures, and {} can be read back", frames_, count));
+  if (std::rename(part.c_str(), path_.c_str()) != 0)
+    throw Error(ErrorKind::output, path_, std::string("cannot be renamed from ") + part + ": " + std::strerror(errno));
+  finished_ = true;
+}
+
+void VideoEncoder::fail(int exitCode) const {
+  const std::string words = ffmpeg_->standardError();
+  if (speaksOfFullDisk(words)) throw Error(ErrorKind::output, path_, "cannot be written: " + lastWords(words));
+  throw Error(ErrorKind::encoder, path_,
+              fmt::format("ffmpeg ended with code {} after {} pictures: {}", exitCode, frames_, lastWords(words)));
+}
+
+namespace {
+
+/// The pictures of a folder by number.
+std::map<long, std::string> findFrames(const std::string& folder) {
+  std::error_code failed;
+  std::map<long, std::string> frames;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+    const std::string name = entry.path().filename().string();
+    long number = -1;
+    const auto [end, error] =
+        std::from_chars(name.data() + std::min<std::size_t>(6, name.size()), name.data() + name.size(), number);
+    if (error == std::errc() && number >= 0 && name == fmt::format("frame_{:06}.png", number))
+      frames[number] = entry.path().string();
+  }
+  if (failed) throw Error(ErrorKind::usage, folder, "cannot be read: " + failed.message());
+  if (frames.empty()) throw Error(ErrorKind::usage, folder, "holds no pictures named frame_000000.png ...");
+  return frames;
+}
+
+void requireNoGap(const std::map<long, std::string>& frames, const std::string& folder) {
+  long expected = frames.begin()->first;
+  for (const auto& [number, name] : frames)
+    if (number != expected++)
+      throw Error(ErrorKind::usage, folder,
+                  fmt::format("frame_{:06}.png is missing; the next there is frame_{:06}.png", expected - 1, number));
+}
+
+}  // namespace
+
+long encodeFolder(const std::string& folder, const std::string& path, double framesPerSecond,
+                  const std::function<void(long done, long total)>& progress) {
+  const auto frames = findFrames(folder);
+  requireNoGap(frames, folder);
+  const Image first = readPng(frames.begin()->second);
+  VideoEncoder encoder(path, {first.width, first.height, framesPerSecond});
+  long done = 0;
+  for (const auto& [number, name] : frames) {
+    const Image image = readPng(name);
+    if (image.width != first.width || image.height != first.height)
+      throw Error(ErrorKind::usage, name,
+                  fmt::format("is {}x{} pixels, the first picture {}x{}; all must have one size", image.width,
+                              image.height, first.width, first.height));
+    encoder.add(image);
+    progress(++done, static_cast<long>(frames.size()));
+  }
+  encoder.finish();
+  return done;
+}
+
+}  // namespace cradle

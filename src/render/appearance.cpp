@@ -1,0 +1,177 @@
+#include "render/appearance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mesh/recognise_shape.h"
+#include "mesh/solid.h"
+#include "render/body_place.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kVisibleFacet = 0.25;  // pixels by which a chord may miss the circle before its corner shows
+constexpr double kNearer = 1.2;         // things come so much nearer than the middle of the scene
+
+// The ground when its material names no colour: light stone, and squares of a darker one.
+constexpr float kStone = 0.64f;
+const Vec3f kStoneTint(1.0f, 0.985f, 0.955f);
+constexpr float kDarkSquare = 0.42f;  // of the light one
+constexpr double kFewestSquares = 4;  // across the scene
+
+/// Facets around a circle of `radius` pixels: a chord of angle 2 a misses it by radius a^2 / 2.
+int facetsFor(double radius) {
+  for (const int facets : {8, 16, 32, 64, 128})
+    if (radius * std::pow(std::numbers::pi / facets, 2) / 2 < kVisibleFacet) return facets;
+  return 256;
+}
+
+Surface surfaceOf(const Material& material, const std::optional<Vec3f>& fileColor) {
+  const Vec3f color = material.baseColor ? *material.baseColor : fileColor.value_or(Vec3f::Constant(0.69f));
+  return {linearFromSrgb(color), static_cast<float>(material.metallic), static_cast<float>(material.roughness)};
+}
+
+/// Fills the catalogue of meshes, one entry for all bodies that share a shape.
+class Catalogue {
+ public:
+  Catalogue(const Scene& scene, double pixelsPerMetre) : scene_(scene), pixelsPerMetre_(pixelsPerMetre) {}
+
+  std::vector<BodyPart> partsOf(const Body& body) {
+    const Material& material = scene_.materials.at(static_cast<std::size_t>(body.material));
+    if (std::holds_alternative<Plane>(body.shape)) return {};
+    if (const auto* model = std::get_if<ModelShape>(&body.shape)) return partsOfModel(*model, material);
+    const auto* sphere = std::get_if<Sphere>(&body.shape);
+    const int mesh = meshOf(body.shape);
+    const double scale = sphere != nullptr ? sphere->radius : 1;
+    return {{mesh, 0, triangleCount(mesh), scale, surfaceOf(material, {})}};
+  }
+
+  int meshOf(const Shape& shape);
+  std::vector<DrawnMesh> take() { return std::move(meshes_); }
+
+ private:
+  struct Key {
+    std::size_t kind;  // index into Shape
+    Vec3 numbers;      // what tells shapes of a kind apart
+    bool operator==(const Key& other) const { return kind == other.kind && numbers == other.numbers; }
+  };
+
+  std::uint32_t triangleCount(int mesh) const {
+    return static_cast<std::uint32_t>(meshes_.at(static_cast<std::size_t>(mesh)).triangles.size());
+  }
+  int facets(double radius) const { return facetsFor(radius * pixelsPerMetre_ * kNearer); }
+  Key keyOf(const Shape& shape) const;
+  DrawnMesh tessellateShape(const Shape& shape) const;
+  std::vector<BodyPart> partsOfModel(const ModelShape& shape, const Material& material);
+
+  const Scene& scene_;
+  double pixelsPerMetre_;
+  std::vector<Key> keys_;
+  std::vector<DrawnMesh> meshes_;
+};
+
+Catalogue::Key Catalogue::keyOf(const Shape& shape) const {
+  Key key{shape.index(), Vec3::Zero()};
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) key.numbers.x() = facets(sphere->radius);
+  if (const auto* box = std::get_if<Box>(&shape)) key.numbers = box->size;
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) key.numbers = {cylinder->radius, cylinder->length, 0};
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) key.numbers = {capsule->radius, capsule->length, 0};
+  if (const auto* model = std::get_if<ModelShape>(&shape)) key.numbers.x() = model->model;
+  return key;
+}
+
+DrawnMesh Catalogue::tessellateShape(const Shape& shape) const {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return tessellate(Sphere{1}, facets(sphere->radius));
+  if (const auto* box = std::get_if<Box>(&shape)) return tessellate(*box);
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return tessellate(*cylinder, facets(cylinder->radius));
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) return tessellate(*capsule, facets(capsule->radius));
+  return scene_.models.at(static_cast<std::size_t>(std::get<ModelShape>(shape).model)).drawn;
+}
+
+int Catalogue::meshOf(const Shape& shape) {
+  const Key key = keyOf(shape);
+  const auto found = std::find(keys_.begin(), keys_.end(), key);
+  if (found != keys_.end()) return static_cast<int>(found - keys_.begin());
+  keys_.push_back(key);
+  meshes_.push_back(tessellateShape(shape));
+  return static_cast<int>(keys_.size()) - 1;
+}
+
+std::vector<BodyPart> Catalogue::partsOfModel(const ModelShape& shape, const Material& material) {
+  const int mesh = meshOf(shape);
+  const auto& ranges = meshes_[static_cast<std::size_t>(mesh)].materials;
+  std::vector<BodyPart> parts;
+  for (const ModelMaterial& range : ranges)
+    parts.push_back({mesh, range.firstTriangle, range.triangleCount, 1, surfaceOf(material, range.baseColor)});
+  if (ranges.empty() || material.baseColor) parts = {{mesh, 0, triangleCount(mesh), 1, surfaceOf(material, {})}};
+  return parts;
+}
+
+/// The sphere that each model is, if it is one.
+std::vector<std::optional<BodyBall>> findBalls(const std::vector<Model>& models) {
+  std::vector<std::optional<BodyBall>> balls;
+  for (const Model& model : models) {
+    balls.emplace_back();
+    if (!checkSolid(model.solid).isSolid) continue;
+    const auto primitive = recogniseShape(model.solid).primitive;
+    const Sphere* sphere = primitive ? std::get_if<Sphere>(&primitive->shape) : nullptr;
+    if (sphere != nullptr) balls.back() = BodyBall{primitive->bodyFromShape.translation, sphere->radius, {}};
+  }
+  return balls;
+}
+
+std::optional<BodyBall> ballOf(const Shape& shape, const std::vector<std::optional<BodyBall>>& ballOfModel,
+                               const std::vector<BodyPart>& parts) {
+  std::optional<BodyBall> ball;
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) ball = BodyBall{Vec3::Zero(), sphere->radius, {}};
+  if (const auto* model = std::get_if<ModelShape>(&shape))
+    ball = ballOfModel.at(static_cast<std::size_t>(model->model));
+  if (ball) ball->surface = parts.at(0).surface;
+  return ball;
+}
+
+/// The plane that is nearest to level, if one is a floor rather than a wall.
+std::optional<Ground> findGround(const Scene& scene, const View& view) {
+  std::optional<Ground> ground;
+  double steepest = 0.3;  // y of the normal; a slope of 72 degrees
+  for (const Body& body : scene.bodies) {
+    const Plane* plane = std::get_if<Plane>(&body.shape);
+    if (plane == nullptr) continue;
+    const Vec3 normal = body.worldFromBody.rotation * plane->normal;
+    if (normal.y() <= steepest) continue;
+    steepest = normal.y();
+    const auto& color = scene.materials.at(static_cast<std::size_t>(body.material)).baseColor;
+    const Vec3f light = color ? linearFromSrgb(*color) : Vec3f(kStone * kStoneTint);
+    const double size = view.bounds.isEmpty() ? 1 : view.bounds.diagonal().norm();
+    const double square = std::pow(10.0, std::floor(std::log10(size / kFewestSquares)));
+    ground = Ground{normal, body.worldFromBody.translation, light, kDarkSquare * light, square};
+  }
+  return ground;
+}
+
+}  // namespace
+
+Vec3f linearFromSrgb(const Vec3f& color) {
+  return color.unaryExpr([](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); });
+}
+
+Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPerMetre) {
+  Appearance appearance;
+  Catalogue catalogue(scene, pixelsPerMetre);
+  const auto ballOfModel = findBalls(scene.models);
+  for (const Body& body : scene.bodies) {
+    BodyAppearance look{catalogue.partsOf(body), localBounds(scene, body), {}};
+    look.ball = ballOf(body.shape, ballOfModel, look.parts);
+    appearance.bodies.push_back(std::move(look));
+  }
+  appearance.ground = findGround(scene, view);
+  appearance.meshes = catalogue.take();
+  appearance.cylinderMesh = static_cast<int>(appearance.meshes.size());
+  appearance.meshes.push_back(tessellate(Cylinder{1, 1}, 8));
+  appearance.ballMesh = static_cast<int>(appearance.meshes.size());
+  appearance.meshes.push_back(tessellate(Sphere{1}, 16));
+  return appearance;
+}
+
+}  // namespace cradle

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "render/framing.h"
+#include "scene/scene.h"
+
+namespace cradle {
+
+/// How a surface reflects light.
+struct Surface {
+  Vec3f color = Vec3f::Constant(0.434f);  // linear, 0..1
+  float metallic = 0;                     // 0..1
+  float roughness = 0.5f;                 // 0..1
+};
+
+/// Some triangles of a mesh with one surface, in a body's frame.
+struct BodyPart {
+  int mesh = 0;  // index into Appearance::meshes
+  std::uint32_t firstTriangle = 0, triangleCount = 0;
+  double scale = 1;
+  Surface surface = {};
+};
+
+/// A ball that a body is, or that recognition found it to be.
+struct BodyBall {
+  Vec3 center;  // m, body's frame
+  double radius;
+  Surface surface = {};
+};
+
+struct BodyAppearance {
+  std::vector<BodyPart> parts;  // none for planes
+  Bounds local;                 // body's frame; empty for planes
+  std::optional<BodyBall> ball;
+};
+
+/// An endless plane, drawn as ground.
+struct Ground {
+  Vec3 normal = Vec3::UnitY();  // unit, world, upwards
+  Vec3 point = Vec3::Zero();    // m, world
+  Vec3f lightColor, darkColor;  // of the squares; linear
+  double squareSize = 1;        // m, a power of ten
+};
+
+/// What bodies look like, the same in every frame.
+struct Appearance {
+  std::vector<DrawnMesh> meshes;
+  std::vector<BodyAppearance> bodies;
+  std::optional<Ground> ground;
+  int cylinderMesh = 0, ballMesh = 0;  // of radius 1 and length 1, for what links bodies
+};
+
+/// `pixelsPerMetre` at the distance of the scene decides how finely round things are divided.
+Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPerMetre);
+
+/// Linear colour of an sRGB one, channels 0..1.
+Vec3f linearFromSrgb(const Vec3f& color);
+
+}  // namespace cradle

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <vector>
+
+#include "render/appearance.h"
+#include "scene/scene.h"
+#include "trajectory/trajectory.h"
+
+namespace cradle {
+
+/// Some triangles of a mesh, placed in the world.
+struct MeshItem {
+  int mesh = 0;  // index into Appearance::meshes
+  std::uint32_t firstTriangle = 0, triangleCount = 0;
+  RigidTransform worldFromMesh = {};
+  Vec3 scale = Vec3::Ones();  // before the transform
+  Surface surface = {};
+  Bounds bounds = {};                         // m, world
+  int firstNearBall = 0, nearBalls = 0;  // range of DrawList::nearBalls
+};
+
+/// A round tube along a curve: a spring's coil, or a rope that sags.
+struct TubeItem {
+  Vec3 start, end;        // m, world
+  Vec3 side;              // unit, across the line from start to end
+  double wireRadius = 0;  // m, of the tube
+  double coilRadius = 0;  // m, of the coil; 0 for a rope
+  int turns = 0;
+  double straightEnd = 0;   // share of the length that is straight at each end
+  Vec3 sag = Vec3::Zero();  // m, from the line's middle to the rope's
+  Surface surface = {};
+  Bounds bounds = {};  // m, world
+};
+
+/// A ball that is mirrored in what is near and keeps the sky's light from it.
+struct BallItem {
+  Vec3 center;  // m, world
+  double radius = 0;
+  Surface surface = {};
+  int body = 0;
+};
+
+/// A box (a ball, if `isBall`) that darkens the ground beneath.
+struct ContactItem {
+  RigidTransform worldFromBox;
+  Vec3 half;  // m, half edges; all the radius of a ball
+  bool isBall = false;
+};
+
+/// A picture as plain data, in a fixed order: OpenGL comes after.
+struct DrawList {
+  std::vector<MeshItem> meshes;  // grouped by mesh and range
+  std::vector<TubeItem> tubes;
+  std::vector<BallItem> balls;
+  std::vector<int> nearBalls;  // indices into balls
+  std::vector<ContactItem> contacts;
+};
+
+/// What is to be drawn at `frame`. Items stand in the order of the scene. O(bodies x balls).
+DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const View& view, const Frame& frame);
+
+}  // namespace cradle

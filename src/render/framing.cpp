@@ -1,0 +1,151 @@
+// With the direction of view fixed beforehand, the best place of the camera follows from four numbers: how far things
+// reach towards the planes that bound the picture on the right, left, top and bottom. Each is a maximum of linear
+// functions of the points shown, so that frames can be added one by one.
+
+#include "render/framing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "math/rotation.h"
+#include "render/body_place.h"
+#include "render/camera.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kFieldOfView = 32 * kDegree;  // long enough that balls at the border stay round
+constexpr double kElevation = 10 * kDegree;    // from above, with the horizon still in the picture
+// Seen along z or along x, and turned aside against the default light so that shadows fall aside, too.
+constexpr double kAlongZ = -24 * kDegree;
+constexpr double kAlongX = 114 * kDegree;
+constexpr double kFilled = 0.84;         // share of the picture that things may fill
+constexpr double kLargestFixed = 3;      // fixed bodies larger than so many times what moves are scenery
+constexpr double kSmallestReach = 1e-6;  // m, of a scene that shows nothing
+
+Mat3 axesFrom(double azimuth, double elevation) {
+  const Vec3 back(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                  std::cos(azimuth) * std::cos(elevation));
+  return cameraAxes(back, Vec3::Zero());
+}
+
+}  // namespace
+
+void Framing::Reach::include(const Reach& other) {
+  right = std::max(right, other.right);
+  left = std::max(left, other.left);
+  top = std::max(top, other.top);
+  bottom = std::max(bottom, other.bottom);
+}
+
+Framing::Reach Framing::emptyReach() {
+  constexpr double kNothing = -std::numeric_limits<double>::infinity();
+  return {kNothing, kNothing, kNothing, kNothing};
+}
+
+double Framing::Solid::support(const Vec3& direction) const {
+  const double atOrigin = direction.dot(worldFromLocal.translation);
+  if (radius > 0) return atOrigin + radius * direction.norm();
+  const Vec3 inward = worldFromLocal.rotation.conjugate() * direction;
+  return atOrigin + inward.dot(local.center()) + inward.cwiseAbs().dot(local.sizes() / 2);
+}
+
+Framing::Framing(const Scene& scene, int width, int height)
+    : scene_(scene),
+      tanHalfX_(kFilled * std::tan(kFieldOfView / 2) * width / height),
+      tanHalfY_(kFilled * std::tan(kFieldOfView / 2)) {
+  for (const Body& body : scene.bodies) localBounds_.push_back(localBounds(scene, body));
+  for (const double azimuth : {kAlongZ, -kAlongZ, kAlongX, std::numbers::pi - kAlongX}) {
+    Candidate candidate{axesFrom(azimuth, kElevation), {}, emptyReach()};
+    const Vec3 right = candidate.axes.col(0), up = candidate.axes.col(1), back = candidate.axes.col(2);
+    candidate.outwards = {right + tanHalfX_ * back, -right + tanHalfX_ * back, up + tanHalfY_ * back,
+                          -up + tanHalfY_ * back};
+    candidates_.push_back(candidate);
+  }
+  const auto addAnchor = [&](const Anchor& anchor) {
+    if (anchor.body == kWorld) includeMoving({Bounds(Vec3::Zero(), Vec3::Zero()), 0, {Quat::Identity(), anchor.point}});
+  };
+  const auto addLinks = [&](const auto& links) {
+    for (const auto& link : links) addAnchor(link.anchorA), addAnchor(link.anchorB);
+  };
+  addLinks(scene.springs);
+  addLinks(scene.rods);
+  addLinks(scene.ropes);
+  addLinks(scene.ballJoints);
+  addLinks(scene.hinges);
+}
+
+std::vector<Framing::Solid> Framing::solidsOf(const std::vector<RigidTransform>& places, Motion motion) const {
+  std::vector<Solid> solids;
+  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+    if (scene_.bodies[i].motion != motion || localBounds_[i].isEmpty()) continue;
+    const Sphere* sphere = std::get_if<Sphere>(&scene_.bodies[i].shape);
+    solids.push_back({localBounds_[i], sphere != nullptr ? sphere->radius : 0, places[i]});
+  }
+  return solids;
+}
+
+Framing::Reach Framing::reachOf(const Candidate& candidate, const Solid& solid) {
+  return {solid.support(candidate.outwards[0]), solid.support(candidate.outwards[1]),
+          solid.support(candidate.outwards[2]), solid.support(candidate.outwards[3])};
+}
+
+void Framing::includeMoving(const Solid& solid) {
+  for (Candidate& candidate : candidates_) candidate.moving.include(reachOf(candidate, solid));
+  movingBounds_.extend(transformed(solid.local, solid.worldFromLocal));
+}
+
+void Framing::add(const Frame& frame) {
+  for (const Solid& solid : solidsOf(placeBodies(scene_, frame), Motion::dynamic)) includeMoving(solid);
+}
+
+const Framing::Candidate& Framing::bestCandidate() const {
+  // Across the motion rather than along it; and never from behind a slope.
+  const Vec3 extent = movingBounds_.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(movingBounds_.sizes());
+  const bool alongX = extent.z() > 1.5 * extent.x();
+  const Candidate& usual = candidates_[alongX ? 2 : 0];
+  const Candidate& mirrored = candidates_[alongX ? 3 : 1];
+  for (const Body& body : scene_.bodies) {
+    const Plane* plane = std::get_if<Plane>(&body.shape);
+    if (plane == nullptr) continue;
+    const Vec3 normal = body.worldFromBody.rotation * plane->normal;
+    if (normal.y() > 0.5 && normal.dot(usual.axes.col(2)) < 0.9 * normal.dot(mirrored.axes.col(2))) return mirrored;
+  }
+  return usual;
+}
+
+Camera Framing::automaticCamera(const std::vector<Solid>& fixedThings) const {
+  const Candidate& seen = bestCandidate();
+  Reach reach = seen.moving;
+  for (const Solid& solid : fixedThings) reach.include(reachOf(seen, solid));
+  if (!std::isfinite(reach.right)) reach = {1, 1, 1, 1};
+
+  // Inside the picture: right <= x + tan z and left <= -x + tan z for a camera at (x, y, z) in the axes of view.
+  const double x = (reach.right - reach.left) / 2, y = (reach.top - reach.bottom) / 2;
+  const double z = std::max((reach.right + reach.left) / (2 * tanHalfX_), (reach.top + reach.bottom) / (2 * tanHalfY_));
+  const double depth = std::max({reach.right + reach.left, reach.top + reach.bottom, kSmallestReach});
+  Camera camera;
+  camera.position = seen.axes * Vec3(x, y, z + kSmallestReach);
+  camera.target = camera.position - depth * seen.axes.col(2);
+  camera.verticalFieldOfView = kFieldOfView;
+  return camera;
+}
+
+View Framing::view() const {
+  View view;
+  view.bounds = movingBounds_;
+  std::vector<Solid> shown;
+  for (const Solid& solid : solidsOf(placeBodiesAtStart(scene_), Motion::fixed)) {
+    const Bounds bounds = transformed(solid.local, solid.worldFromLocal);
+    const double limit = kLargestFixed * movingBounds_.diagonal().norm();
+    if (!movingBounds_.isEmpty() && bounds.diagonal().norm() > limit) continue;
+    shown.push_back(solid);
+    view.bounds.extend(bounds);
+  }
+  view.camera = scene_.camera ? *scene_.camera : automaticCamera(shown);
+  return view;
+}
+
+}  // namespace cradle

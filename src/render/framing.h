@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "scene/scene.h"
+#include "trajectory/trajectory.h"
+
+namespace cradle {
+
+/// What a whole film looks at: one camera, and a box around all that it shows (ground apart).
+struct View {
+  Camera camera;
+  Bounds bounds;  // m, world
+};
+
+/// Finds the view of a film from its frames, one by one. Unless the scene names a camera, all that moves stays in the
+/// picture, seen from slightly above and aside; fixed bodies too, unless they are much larger than what moves.
+class Framing {
+ public:
+  /// The scene must outlive this object. Sizes in pixels.
+  Framing(const Scene& scene, int width, int height);
+
+  /// O(bodies).
+  void add(const Frame& frame);
+
+  View view() const;
+
+ private:
+  /// How far things reach towards the sides of a picture seen with given axes.
+  struct Reach {
+    double right, left, top, bottom;
+    void include(const Reach& other);
+  };
+  struct Candidate {
+    Mat3 axes;                     // right, up, back
+    std::array<Vec3, 4> outwards;  // right, left, top, bottom: not normalised
+    Reach moving;
+  };
+  /// A convex thing in the world, for which farthest points are known.
+  struct Solid {
+    Bounds local;
+    double radius = 0;  // > 0: a ball around the local origin
+    RigidTransform worldFromLocal;
+    double support(const Vec3& direction) const;
+  };
+
+  static Reach emptyReach();
+  static Reach reachOf(const Candidate& candidate, const Solid& solid);
+  void includeMoving(const Solid& solid);
+  std::vector<Solid> solidsOf(const std::vector<RigidTransform>& places, Motion motion) const;
+  const Candidate& bestCandidate() const;
+  Camera automaticCamera(const std::vector<Solid>& fixedThings) const;
+
+  const Scene& scene_;
+  double tanHalfX_, tanHalfY_;
+  std::vector<Bounds> localBounds_;  // of every body
+  std::vector<Candidate> candidates_;
+  Bounds movingBounds_;
+};
+
+}  // namespace cradle

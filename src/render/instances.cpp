@@ -1,0 +1,102 @@
+#include "render/instances.h"
+
+#include <algorithm>
+
+namespace cradle {
+namespace {
+
+constexpr double kContactReach = 2.5;  // times the height of what touches the ground; beyond, 7 % of the sky are hidden
+
+void put(Instance& instance, std::size_t attribute, const Vec3f& vector, double last) {
+  float* numbers = instance.data() + 4 * attribute;
+  std::copy(vector.begin(), vector.end(), numbers);
+  numbers[3] = static_cast<float>(last);
+}
+
+/// Attributes 0..2: rows of `matrix` with `translation`.
+void putTransform(Instance& instance, const Mat3& matrix, const Vec3& translation) {
+  for (int row = 0; row < 3; ++row)
+    put(instance, static_cast<std::size_t>(row), matrix.row(row).transpose().cast<float>(), translation[row]);
+}
+
+Instance packMesh(const MeshItem& item, const Stage& stage) {
+  Instance instance{};
+  const Mat3 matrix = item.worldFromMesh.rotation.toRotationMatrix() * item.scale.asDiagonal();
+  putTransform(instance, matrix, item.worldFromMesh.translation - stage.origin);
+  put(instance, 3, item.scale.cwiseProduct(item.scale).cwiseInverse().cast<float>(), item.surface.roughness);
+  put(instance, 4, item.surface.color, item.surface.metallic);
+  put(instance, 5, Vec3f(static_cast<float>(item.firstNearBall), static_cast<float>(item.nearBalls), 0), 0);
+  return instance;
+}
+
+Instance packTube(const TubeItem& item, const Stage& stage) {
+  Instance instance{};
+  put(instance, 0, stage.relative(item.start), item.wireRadius);
+  put(instance, 1, stage.relative(item.end), item.coilRadius);
+  put(instance, 2, item.side.cast<float>(), item.turns);
+  put(instance, 3, item.sag.cast<float>(), item.surface.roughness);
+  put(instance, 4, item.surface.color, item.surface.metallic);
+  put(instance, 5, Vec3f(0, 0, static_cast<float>(item.straightEnd)), 0);
+  return instance;
+}
+
+/// The square of the contact map that an item may darken; none if it is too far above the ground.
+bool packContact(const ContactItem& item, const Stage& stage, Instance& instance) {
+  const Ground& ground = *stage.ground;
+  const ContactRegion& region = stage.contact;
+  const Mat3 turn = item.worldFromBox.rotation.toRotationMatrix();
+  const Vec3 center = item.worldFromBox.translation;
+  const auto extentAlong = [&](const Vec3& axis) {
+    return item.isBall ? item.half.x() : (turn.transpose() * axis).cwiseAbs().dot(item.half);
+  };
+  const double reach = kContactReach * 2 * item.half.minCoeff();
+  const double gap = ground.normal.dot(center - ground.point) - extentAlong(ground.normal);
+  if (gap > reach || gap < -2 * extentAlong(ground.normal)) return false;
+
+  const Vec3 relative = center - stage.origin;
+  putTransform(instance, turn.transpose(), -(turn.transpose() * relative));
+  put(instance, 3, item.half.cast<float>(), reach);
+  const double u = 2 * (region.axisU.dot(relative) - region.firstU) / region.sizeU - 1;
+  const double v = 2 * (region.axisV.dot(relative) - region.firstV) / region.sizeV - 1;
+  put(instance, 4, Vec3(u, v, 0).cast<float>(), item.isBall ? 1 : 0);
+  put(instance, 5,
+      Vec3(2 * (extentAlong(region.axisU) + reach) / region.sizeU,
+           2 * (extentAlong(region.axisV) + reach) / region.sizeV, 0)
+          .cast<float>(),
+      0);
+  return true;
+}
+
+void packBatches(const DrawList& list, PackedDrawList& packed) {
+  for (std::size_t i = 0; i < list.meshes.size(); ++i) {
+    const MeshItem& item = list.meshes[i];
+    const bool continues = !packed.batches.empty() && packed.batches.back().mesh == item.mesh &&
+                           packed.batches.back().firstTriangle == item.firstTriangle &&
+                           packed.batches.back().triangleCount == item.triangleCount;
+    if (!continues) packed.batches.push_back({item.mesh, item.firstTriangle, item.triangleCount, i, 0});
+    ++packed.batches.back().instanceCount;
+  }
+}
+
+}  // namespace
+
+PackedDrawList pack(const DrawList& list, const Stage& stage) {
+  PackedDrawList packed;
+  for (const MeshItem& item : list.meshes) packed.meshInstances.push_back(packMesh(item, stage));
+  for (const TubeItem& item : list.tubes) packed.tubeInstances.push_back(packTube(item, stage));
+  packBatches(list, packed);
+  for (const BallItem& ball : list.balls) {
+    const Vec3f center = stage.relative(ball.center);
+    packed.balls.insert(packed.balls.end(), {center.x(), center.y(), center.z(), static_cast<float>(ball.radius)});
+    packed.balls.insert(packed.balls.end(), ball.surface.color.begin(), ball.surface.color.end());
+    packed.balls.push_back(ball.surface.metallic);
+  }
+  for (const int index : list.nearBalls) packed.nearBalls.push_back(static_cast<float>(index));
+  Instance instance{};
+  if (stage.ground)
+    for (const ContactItem& item : list.contacts)
+      if (packContact(item, stage, instance)) packed.contactInstances.push_back(instance);
+  return packed;
+}
+
+}  // namespace cradle

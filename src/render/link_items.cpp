@@ -1,0 +1,224 @@
+// Springs, rods and ropes have no thickness in physics. Here they get one in proportion to the bodies that they hold.
+
+#include "render/link_items.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/body_place.h"
+
+namespace cradle {
+namespace {
+
+// Shares of the radius of a typical body, and of the whole view: links stay visible next to small and large bodies.
+constexpr double kRodOfBody = 0.055, kRodOfView = 0.0022;
+constexpr double kCoilOfBody = 0.34, kCoilOfView = 0.05, kCoilOfLength = 0.14;
+constexpr double kWireOfCoil = 0.16;
+constexpr double kPitchOfCoil = 0.85;  // distance of turns at rest
+constexpr int kFewestTurns = 6, kMostTurns = 40;
+constexpr double kStraightEnd = 0.07;  // of a spring's length
+constexpr double kSlenderest = 0.3;    // a coil that is drawn out narrows so far and no farther
+constexpr double kKnobOfRod = 1.8;     // radius of the ball at the end of a rod
+constexpr double kPlateOfKnob = 3.2, kPlateThickness = 0.9;
+constexpr double kTaut = 1 - 1e-4;  // share of its length from which a rope is drawn straight
+
+const Surface kSteel{Vec3f(0.56f, 0.57f, 0.58f), 1.0f, 0.28f};
+const Surface kDarkSteel{Vec3f(0.16f, 0.165f, 0.175f), 0.6f, 0.45f};
+const Surface kHemp{Vec3f(0.36f, 0.26f, 0.15f), 0.0f, 0.85f};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// A unit vector across `direction` that turns with it from the start of the scene on, so that coils do not jump.
+Vec3 sideOf(const Vec3& directionAtStart, const Vec3& direction) {
+  Vec3::Index smallest;
+  directionAtStart.cwiseAbs().minCoeff(&smallest);
+  const Vec3 side = directionAtStart.cross(Vec3::Unit(smallest)).normalized();
+  return Quat::FromTwoVectors(directionAtStart, direction) * side;
+}
+
+Vec3 directionBetween(const Vec3& a, const Vec3& b) {
+  const Vec3 line = b - a;
+  return line.norm() > 0 ? Vec3(line.normalized()) : Vec3(Vec3::UnitY());
+}
+
+/// Height of the parabola of length `length` over a chord, by bisection; for a chord that is not level the sag is
+/// vertical and the length slightly more, which nobody sees.
+double sagOf(double length, double chord) {
+  const auto arc = [chord](double sag) {
+    const double slope = 4 * sag / chord;
+    return chord / 2 * (std::sqrt(1 + slope * slope) + std::asinh(slope) / slope);
+  };
+  double low = 1e-9 * length, high = length;
+  for (int i = 0; i < 50; ++i) (arc((low + high) / 2) < length ? low : high) = (low + high) / 2;
+  return low;
+}
+
+class LinkBuilder {
+ public:
+  LinkBuilder(const Scene& scene, const Appearance& appearance, const View& view,
+              const std::vector<RigidTransform>& places, DrawList& list)
+      : scene_(scene), appearance_(appearance), places_(places), start_(placeBodiesAtStart(scene)), list_(list) {
+    std::vector<double> radii;
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+      if (scene.bodies[i].motion == Motion::dynamic) radii.push_back(appearance.bodies[i].local.sizes().minCoeff() / 2);
+    body_ = median(radii);
+    size_ = view.bounds.isEmpty() ? 1 : view.bounds.diagonal().norm();
+    rod_ = std::max(kRodOfBody * body_, kRodOfView * size_);
+    coil_ = std::min(kCoilOfBody * body_, kCoilOfView * size_);
+  }
+
+  void add(const Spring& spring);
+  void add(const Rod& rod);
+  void add(const Rope& rope);
+  void addJoint(const Anchor& anchorA, const Anchor& anchorB);
+
+ private:
+  Vec3 now(const Anchor& anchor) const { return worldPoint(anchor, places_); }
+  Vec3 atStart(const Anchor& anchor) const { return worldPoint(anchor, start_); }
+  bool isInsideFixedBody(const Vec3& point) const;
+  void addBall(const Vec3& center, double radius, const Surface& surface);
+  void addCylinder(const Vec3& a, const Vec3& b, double radius, const Surface& surface);
+  void addEnd(const Anchor& anchor, const Anchor& other, double knob, bool plate);
+  void addArm(const Anchor& anchor, double radius);
+
+  const Scene& scene_;
+  const Appearance& appearance_;
+  const std::vector<RigidTransform>& places_;
+  const std::vector<RigidTransform> start_;
+  DrawList& list_;
+  double body_ = 0, size_ = 1, rod_ = 0, coil_ = 0;  // m
+};
+
+bool LinkBuilder::isInsideFixedBody(const Vec3& point) const {
+  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+    if (scene_.bodies[i].motion != Motion::fixed || appearance_.bodies[i].local.isEmpty()) continue;
+    const Vec3 local = places_[i].inverse() * point;
+    if (appearance_.bodies[i].local.exteriorDistance(local) <= rod_) return true;
+  }
+  return false;
+}
+
+void LinkBuilder::addBall(const Vec3& center, double radius, const Surface& surface) {
+  const auto& mesh = appearance_.meshes.at(static_cast<std::size_t>(appearance_.ballMesh));
+  MeshItem item{appearance_.ballMesh, 0, static_cast<std::uint32_t>(mesh.triangles.size())};
+  item.worldFromMesh.translation = center;
+  item.scale = Vec3::Constant(radius);
+  item.surface = surface;
+  item.bounds = Bounds(center - item.scale, center + item.scale);
+  list_.meshes.push_back(item);
+}
+
+void LinkBuilder::addCylinder(const Vec3& a, const Vec3& b, double radius, const Surface& surface) {
+  const auto& mesh = appearance_.meshes.at(static_cast<std::size_t>(appearance_.cylinderMesh));
+  MeshItem item{appearance_.cylinderMesh, 0, static_cast<std::uint32_t>(mesh.triangles.size())};
+  item.worldFromMesh = {Quat::FromTwoVectors(Vec3::UnitY(), directionBetween(a, b)), (a + b) / 2};
+  item.scale = {radius, (b - a).norm(), radius};
+  item.surface = surface;
+  const Vec3 half = item.scale.cwiseProduct(Vec3(1, 0.5, 1));
+  item.bounds = transformed(Bounds(-half, half), item.worldFromMesh);
+  list_.meshes.push_back(item);
+}
+
+/// A knob where a link ends, and a plate behind it where that is the open world.
+void LinkBuilder::addEnd(const Anchor& anchor, const Anchor& other, double knob, bool plate) {
+  const Vec3 point = now(anchor);
+  addBall(point, knob, kSteel);
+  if (anchor.body != kWorld || !plate || isInsideFixedBody(point)) return;
+  const Vec3 away = directionBetween(atStart(other), atStart(anchor));
+  const double thickness = kPlateThickness * knob;
+  const Vec3 near = point + 0.5 * knob * away;
+  addCylinder(near, near + thickness * away, kPlateOfKnob * knob, kDarkSteel);
+}
+
+/// A link that ends outside its body hangs on a thin arm from the centre of mass.
+void LinkBuilder::addArm(const Anchor& anchor, double radius) {
+  if (anchor.body == kWorld) return;
+  const std::size_t body = static_cast<std::size_t>(anchor.body);
+  const Bounds& local = appearance_.bodies[body].local;
+  if (local.isEmpty() || local.exteriorDistance(anchor.point) <= radius) return;
+  addCylinder(places_[body] * scene_.bodies[body].massProperties.centerOfMass, now(anchor), radius, kSteel);
+}
+
+void LinkBuilder::add(const Spring& spring) {
+  const Vec3 a = now(spring.anchorA), b = now(spring.anchorB);
+  const Vec3 aStart = atStart(spring.anchorA), bStart = atStart(spring.anchorB);
+  const double natural = std::max({spring.restLength, 0.5 * (bStart - aStart).norm(), 1e-3 * size_});
+  const double widest = std::min(coil_, kCoilOfLength * natural);
+  const int turns = std::clamp(static_cast<int>(natural / (kPitchOfCoil * widest)), kFewestTurns, kMostTurns);
+
+  // The wire keeps its length, so a coil narrows as it is drawn out.
+  const double around = 2 * std::numbers::pi * turns;
+  const double wire = std::hypot(around * widest, natural);
+  const double length = (b - a).norm();
+  const double radius = std::sqrt(std::max(wire * wire - length * length, 0.0)) / around;
+
+  TubeItem tube{a, b, sideOf(directionBetween(aStart, bStart), directionBetween(a, b))};
+  tube.coilRadius = std::max(radius, kSlenderest * widest);
+  tube.wireRadius = kWireOfCoil * widest;
+  tube.turns = turns;
+  tube.straightEnd = kStraightEnd;
+  tube.surface = kSteel;
+  const Vec3 margin = Vec3::Constant(tube.coilRadius + tube.wireRadius);
+  tube.bounds = Bounds(a.cwiseMin(b) - margin, a.cwiseMax(b) + margin);
+  list_.tubes.push_back(tube);
+  addEnd(spring.anchorA, spring.anchorB, 1.7 * tube.wireRadius, true);
+  addEnd(spring.anchorB, spring.anchorA, 1.7 * tube.wireRadius, true);
+  addArm(spring.anchorA, tube.wireRadius);
+  addArm(spring.anchorB, tube.wireRadius);
+}
+
+void LinkBuilder::add(const Rod& rod) {
+  addCylinder(now(rod.anchorA), now(rod.anchorB), rod_, kSteel);
+  addEnd(rod.anchorA, rod.anchorB, kKnobOfRod * rod_, true);
+  addEnd(rod.anchorB, rod.anchorA, kKnobOfRod * rod_, true);
+  addArm(rod.anchorA, rod_);
+  addArm(rod.anchorB, rod_);
+}
+
+void LinkBuilder::add(const Rope& rope) {
+  const Vec3 a = now(rope.anchorA), b = now(rope.anchorB);
+  const double chord = (b - a).norm();
+  const Vec3 down = scene_.gravity.norm() > 0 ? Vec3(scene_.gravity.normalized()) : Vec3(-Vec3::UnitY());
+  TubeItem tube{a, b, Vec3::Zero()};
+  Vec3 side = directionBetween(a, b).cross(down);
+  if (side.norm() < 1e-6) side = directionBetween(a, b).unitOrthogonal();
+  tube.side = side.normalized();
+  tube.wireRadius = rod_;
+  tube.surface = kHemp;
+  if (chord < kTaut * rope.maxLength) tube.sag = sagOf(rope.maxLength, std::max(chord, 1e-3 * rope.maxLength)) * down;
+  const Vec3 margin = Vec3::Constant(tube.wireRadius);
+  tube.bounds = Bounds(a.cwiseMin(b) - margin, a.cwiseMax(b) + margin);
+  tube.bounds.extend(Vec3(((a + b) / 2 + tube.sag) - margin));
+  tube.bounds.extend(Vec3(((a + b) / 2 + tube.sag) + margin));
+  list_.tubes.push_back(tube);
+  addEnd(rope.anchorA, rope.anchorB, 1.4 * rod_, true);
+  addEnd(rope.anchorB, rope.anchorA, 1.4 * rod_, true);
+  addArm(rope.anchorA, rod_);
+  addArm(rope.anchorB, rod_);
+}
+
+void LinkBuilder::addJoint(const Anchor& anchorA, const Anchor& anchorB) {
+  addEnd(anchorA, anchorA, kKnobOfRod * rod_, false);
+  addArm(anchorA, rod_);
+  addArm(anchorB, rod_);
+}
+
+}  // namespace
+
+void appendLinks(const Scene& scene, const Appearance& appearance, const View& view,
+                 const std::vector<RigidTransform>& worldFromBody, DrawList& list) {
+  LinkBuilder builder(scene, appearance, view, worldFromBody, list);
+  for (const Spring& spring : scene.springs) builder.add(spring);
+  for (const Rod& rod : scene.rods) builder.add(rod);
+  for (const Rope& rope : scene.ropes) builder.add(rope);
+  for (const BallJoint& joint : scene.ballJoints) builder.addJoint(joint.anchorA, joint.anchorB);
+  for (const Hinge& hinge : scene.hinges) builder.addJoint(hinge.anchorA, hinge.anchorB);
+}
+
+}  // namespace cradle

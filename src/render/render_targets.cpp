@@ -1,0 +1,173 @@
+#include "render/render_targets.h"
+
+#include <GL/glew.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "core/error.h"
+
+namespace cradle {
+namespace {
+
+constexpr int kSamples = 4;          // llvmpipe has no more
+constexpr int kLargestSide = 16384;  // Mesa's software renderer crashes above instead of failing
+
+/// Bytes that the system can still give, or no limit where it does not say.
+double availableMemory() {
+  std::ifstream file("/proc/meminfo");
+  std::string key;
+  double kibibytes = 0;
+  while (file >> key) {
+    if (key == "MemAvailable:" && file >> kibibytes) return kibibytes * 1024;
+    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+void requireComplete(const char* what) {
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    throw Error(ErrorKind::limit, "OpenGL", std::string("gives no memory for ") + what);
+}
+
+unsigned int makeRenderbuffer(int samples, GLenum format, int width, int height, GLenum attachment) {
+  unsigned int buffer = 0;
+  glGenRenderbuffers(1, &buffer);
+  glBindRenderbuffer(GL_RENDERBUFFER, buffer);
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width, height);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer);
+  return buffer;
+}
+
+}  // namespace
+
+void requirePictureSize(int width, int height) {
+  int limit = 0;
+  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &limit);
+  limit = std::min(limit, kLargestSide);
+  if (width < 1 || height < 1 || width > limit || height > limit)
+    throw Error(ErrorKind::limit, fmt::format("{}x{}", width, height),
+                fmt::format("a picture is 1 to {} pixels wide and high", limit));
+  constexpr double kBytesPerPixel = kSamples * (4 + 4) + 4 + 3;  // samples of colour and depth, resolved, read back
+  const double needed = kBytesPerPixel * width * height;
+  if (needed > availableMemory())
+    throw Error(ErrorKind::limit, fmt::format("{}x{}", width, height),
+                fmt::format("drawing it takes {:.1f} GB, and {:.1f} GB are free; choose a smaller size", needed / 1e9,
+                            availableMemory() / 1e9));
+}
+
+PictureTarget::PictureTarget(int width, int height) : width_(width), height_(height) {
+  glGenFramebuffers(1, &samples_);
+  glBindFramebuffer(GL_FRAMEBUFFER, samples_);
+  color_ = makeRenderbuffer(kSamples, GL_RGBA8, width, height, GL_COLOR_ATTACHMENT0);
+  depth_ = makeRenderbuffer(kSamples, GL_DEPTH_COMPONENT24, width, height, GL_DEPTH_ATTACHMENT);
+  requireComplete("the picture's samples");
+  glGenFramebuffers(1, &resolved_);
+  glBindFramebuffer(GL_FRAMEBUFFER, resolved_);
+  resolvedColor_ = makeRenderbuffer(0, GL_RGBA8, width, height, GL_COLOR_ATTACHMENT0);
+  requireComplete("the picture");
+}
+
+PictureTarget::~PictureTarget() {
+  const std::array<unsigned int, 2> frames = {samples_, resolved_};
+  const std::array<unsigned int, 3> buffers = {color_, depth_, resolvedColor_};
+  glDeleteFramebuffers(2, frames.data());
+  glDeleteRenderbuffers(3, buffers.data());
+}
+
+void PictureTarget::begin() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, samples_);
+  glViewport(0, 0, width_, height_);
+  glEnable(GL_MULTISAMPLE);
+  glClearColor(0, 0, 0, 1);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+void PictureTarget::resolve() const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, samples_);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_);
+  // Upside down, for OpenGL's rows start at the bottom and a picture's at the top.
+  glBlitFramebuffer(0, 0, width_, height_, 0, height_, width_, 0, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+Image PictureTarget::read() const {
+  Image image(width_, height_);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, image.pixels.data());
+  return image;
+}
+
+MapTarget::MapTarget(Kind kind, int size) : size_(size) {
+  const bool isDepth = kind == Kind::depth;
+  glGenTextures(1, &texture_);
+  glBindTexture(GL_TEXTURE_2D, texture_);
+  const GLenum stored = isDepth ? GL_DEPTH_COMPONENT32F : GL_R8, given = isDepth ? GL_DEPTH_COMPONENT : GL_RED;
+  glTexImage2D(GL_TEXTURE_2D, 0, static_cast<int>(stored), size, size, 0, given, GL_FLOAT, nullptr);
+  const int filter = isDepth ? GL_NEAREST : GL_LINEAR;
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+  // Outside, nothing throws shadows, and nothing is touched.
+  const float edge = isDepth ? 1.0f : 0.0f;
+  const std::array<float, 4> border = {edge, edge, edge, edge};
+  glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, border.data());
+
+  glGenFramebuffers(1, &frame_);
+  glBindFramebuffer(GL_FRAMEBUFFER, frame_);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, isDepth ? GL_DEPTH_ATTACHMENT : GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_,
+                         0);
+  if (isDepth) {
+    glDrawBuffer(GL_NONE);
+    glReadBuffer(GL_NONE);
+  }
+  requireComplete("a map of shadows");
+}
+
+MapTarget::~MapTarget() {
+  glDeleteFramebuffers(1, &frame_);
+  glDeleteTextures(1, &texture_);
+}
+
+void MapTarget::begin() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, frame_);
+  glViewport(0, 0, size_, size_);
+  glClearColor(0, 0, 0, 0);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+void MapTarget::bindTexture(unsigned int unit) const {
+  glActiveTexture(GL_TEXTURE0 + unit);
+  glBindTexture(GL_TEXTURE_2D, texture_);
+}
+
+NumberTexture::NumberTexture(int components) : components_(components) {
+  glGenBuffers(1, &buffer_);
+  glGenTextures(1, &texture_);
+}
+
+NumberTexture::~NumberTexture() {
+  glDeleteTextures(1, &texture_);
+  glDeleteBuffers(1, &buffer_);
+}
+
+void NumberTexture::upload(const std::vector<float>& numbers) const {
+  const float nothing[4] = {};  // a buffer without bytes may not be bound
+  const bool empty = numbers.empty();
+  glBindBuffer(GL_TEXTURE_BUFFER, buffer_);
+  glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(empty ? sizeof nothing : numbers.size() * sizeof(float)),
+               empty ? nothing : numbers.data(), GL_STREAM_DRAW);
+}
+
+void NumberTexture::bindTexture(unsigned int unit) const {
+  glActiveTexture(GL_TEXTURE0 + unit);
+  glBindTexture(GL_TEXTURE_BUFFER, texture_);
+  glTexBuffer(GL_TEXTURE_BUFFER, components_ == 4 ? GL_RGBA32F : GL_R32F, buffer_);
+}
+
+}  // namespace cradle

@@ -1,0 +1,209 @@
+#include "render/renderer.h"
+
+#include <GL/glew.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "core/error.h"
+#include "render/draw_list.h"
+#include "render/gpu_mesh.h"
+#include "render/instances.h"
+#include "render/offscreen_context.h"
+#include "render/render_targets.h"
+#include "render/shader_program.h"
+#include "render/stage.h"
+
+namespace cradle {
+namespace {
+
+constexpr int kSegmentsPerTurn = 20;  // of a coil: its chords miss the circle by 1 % of its radius
+constexpr int kRopeSegments = 64;
+constexpr int kSegmentsAround = 10;  // of a wire
+
+using Clock = std::chrono::steady_clock;
+
+double pixelsPerMetre(const View& view, int height) {
+  const Vec3 center = view.bounds.isEmpty() ? view.camera.target : Vec3(view.bounds.center());
+  const double distance = (view.camera.position - center).norm();
+  return height / (2 * std::max(distance, 1e-9) * std::tan(view.camera.verticalFieldOfView / 2));
+}
+
+/// The ground as four triangles around the point below the stage's origin, with corners infinitely far.
+GpuMesh makeGroundMesh(const Stage& stage) {
+  const Ground& ground = *stage.ground;
+  const Vec3 middle = ground.normal * ground.normal.dot(ground.point - stage.origin);
+  std::vector<float> vertices;
+  const auto append = [&](const Vec3& v, float w) {
+    for (const double number : v) vertices.push_back(static_cast<float>(number));
+    vertices.push_back(w);
+  };
+  append(middle, 1);
+  for (const Vec3& far :
+       {stage.contact.axisU, stage.contact.axisV, Vec3(-stage.contact.axisU), Vec3(-stage.contact.axisV)})
+    append(far, 0);
+  return {vertices, 4, {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1}};
+}
+
+}  // namespace
+
+/// All that lives on the side of OpenGL; the context goes last.
+struct Renderer::Resources {
+  Resources(const Scene& scene, const View& view, int width, int height, const ShaderSource& shaders);
+
+  OffscreenContext context;
+  struct SizeCheck {
+    SizeCheck(int width, int height) { requirePictureSize(width, height); }
+  } sizeCheck;
+  Appearance appearance;
+  Stage stage;
+  ShaderProgram surface, tube, surfaceDepth, tubeDepth, ground, contact, sky;
+  PictureTarget picture;
+  MapTarget shadowMap, contactMap;
+  InstanceBuffer meshInstances, tubeInstances, contactInstances;
+  NumberTexture balls, nearBalls;
+  std::vector<GpuMesh> meshes;
+  GpuMesh coilMesh, ropeMesh, triangle, square;
+  std::optional<GpuMesh> groundMesh;
+  PackedDrawList packed;
+  Clock::time_point stageStart;
+};
+
+Renderer::Resources::Resources(const Scene& scene, const View& view, int width, int height, const ShaderSource& shaders)
+    : sizeCheck(width, height),
+      appearance(makeAppearance(scene, view, pixelsPerMetre(view, height))),
+      stage(makeStage(scene, view, appearance.ground, width, height)),
+      surface(shaders, "surface.vert", "surface.frag"),
+      tube(shaders, "tube.vert", "surface.frag"),
+      surfaceDepth(shaders, "surface.vert", "depth.frag"),
+      tubeDepth(shaders, "tube.vert", "depth.frag"),
+      ground(shaders, "ground.vert", "ground.frag"),
+      contact(shaders, "contact.vert", "contact.frag"),
+      sky(shaders, "sky.vert", "sky.frag"),
+      picture(width, height),
+      shadowMap(MapTarget::Kind::depth, kShadowMapSize),
+      contactMap(MapTarget::Kind::share, kContactMapSize),
+      balls(4),
+      nearBalls(1),
+      coilMesh(makeTube(40 * kSegmentsPerTurn, kSegmentsAround)),
+      ropeMesh(makeTube(kRopeSegments, kSegmentsAround)),
+      triangle({0, 0, 0}, 1, {0, 1, 2}),
+      square({-1, -1, 1, -1, 1, 1, -1, 1}, 2, {0, 1, 2, 0, 2, 3}) {
+  for (const DrawnMesh& mesh : appearance.meshes) meshes.emplace_back(mesh);
+  if (stage.ground) groundMesh.emplace(makeGroundMesh(stage));
+  for (const ShaderProgram* program : {&surface, &tube, &surfaceDepth, &tubeDepth, &ground, &contact, &sky})
+    setStage(stage, *program);
+  for (const ShaderProgram* program : {&surfaceDepth, &tubeDepth}) {
+    program->use();
+    program->set("clipFromWorld", stage.shadow.clipFromWorld);
+  }
+}
+
+Renderer::Renderer(const Scene& scene, const View& view, int width, int height, const std::string& shaderFolder)
+    : scene_(scene),
+      view_(view),
+      resources_(std::make_unique<Resources>(scene, view, width, height, ShaderSource{shaderFolder})) {}
+
+Renderer::~Renderer() {
+  resources_->context.makeCurrent();
+}
+
+Image Renderer::render(const Frame& frame) {
+  Resources& r = *resources_;
+  r.context.makeCurrent();
+  times_ = {};
+  r.stageStart = Clock::now();
+  r.packed = pack(makeDrawList(scene_, r.appearance, view_, frame), r.stage);
+  finishStage(times_.drawList);
+
+  r.meshInstances.upload(r.packed.meshInstances);
+  r.tubeInstances.upload(r.packed.tubeInstances);
+  r.contactInstances.upload(r.packed.contactInstances);
+  r.balls.upload(r.packed.balls);
+  r.nearBalls.upload(r.packed.nearBalls);
+  drawMaps();
+  finishStage(times_.maps);
+
+  drawPicture();
+  finishStage(times_.main);
+  r.picture.resolve();
+  finishStage(times_.resolve);
+  Image image = r.picture.read();
+  finishStage(times_.readBack);
+  return image;
+}
+
+void Renderer::finishStage(double& seconds) {
+  if (measuring_) glFinish();
+  const auto now = Clock::now();
+  seconds = std::chrono::duration<double>(now - resources_->stageStart).count();
+  resources_->stageStart = now;
+}
+
+void Renderer::drawMaps() {
+  const Resources& r = *resources_;
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_CLAMP);  // what stands outside the view still throws its shadow into it
+  r.shadowMap.begin();
+  r.surfaceDepth.use();
+  drawMeshes();
+  r.tubeDepth.use();
+  drawTubes();
+  glDisable(GL_DEPTH_CLAMP);
+
+  r.contactMap.begin();
+  if (r.packed.contactInstances.empty()) return;
+  glDisable(GL_DEPTH_TEST);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE_MINUS_DST_COLOR, GL_ONE);  // what two things leave open is the product of what each does
+  r.contact.use();
+  r.square.draw(0, 2, r.contactInstances, 0, r.packed.contactInstances.size());
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_TEST);
+}
+
+void Renderer::drawPicture() {
+  const Resources& r = *resources_;
+  r.shadowMap.bindTexture(kShadowUnit);
+  r.contactMap.bindTexture(kContactUnit);
+  r.balls.bindTexture(kBallUnit);
+  r.nearBalls.bindTexture(kNearBallUnit);
+  r.picture.begin();
+  glEnable(GL_CULL_FACE);
+  r.surface.use();
+  drawMeshes();
+  glDisable(GL_CULL_FACE);
+  r.tube.use();
+  drawTubes();
+  // Last what fills the picture: hidden pixels are not computed.
+  if (r.groundMesh) {
+    r.ground.use();
+    glEnable(GL_CULL_FACE);  // from below, the ground is not there
+    r.groundMesh->draw();
+    glDisable(GL_CULL_FACE);
+  }
+  r.sky.use();
+  r.triangle.draw();
+}
+
+void Renderer::drawMeshes() const {
+  const Resources& r = *resources_;
+  for (const Batch& batch : r.packed.batches)
+    r.meshes[static_cast<std::size_t>(batch.mesh)].draw(batch.firstTriangle, batch.triangleCount, r.meshInstances,
+                                                        batch.firstInstance, batch.instanceCount);
+}
+
+void Renderer::drawTubes() const {
+  const Resources& r = *resources_;
+  // Springs stand before ropes in the list.
+  std::size_t coils = 0;
+  while (coils < r.packed.tubeInstances.size() && r.packed.tubeInstances[coils][11] > 0) ++coils;
+  const std::size_t ropes = r.packed.tubeInstances.size() - coils;
+  if (coils > 0) r.coilMesh.draw(0, r.coilMesh.triangleCount(), r.tubeInstances, 0, coils);
+  if (ropes > 0) r.ropeMesh.draw(0, r.ropeMesh.triangleCount(), r.tubeInstances, coils, ropes);
+}
+
+}  // namespace cradle

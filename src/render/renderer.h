@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "image/image.h"
+#include "render/framing.h"
+#include "scene/scene.h"
+#include "trajectory/trajectory.h"
+
+namespace cradle {
+
+/// Seconds that the stages of a picture took.
+struct RenderTimes {
+  double drawList = 0;
+  double maps = 0;  // shadows, and contacts with the ground
+  double main = 0;
+  double resolve = 0;
+  double readBack = 0;
+};
+
+/// Draws the frames of one film. A picture depends on scene, view, size and frame alone: not on pictures drawn before,
+/// nor on the number of threads. One renderer at a time per thread.
+class Renderer {
+ public:
+  /// Sizes in pixels. `shaderFolder` replaces the shaders that are built in, unless empty. The scene must outlive the
+  /// renderer. Throws Error(limit) for sizes or memory that cannot be had, Error(usage) for shaders that do not
+  /// compile.
+  Renderer(const Scene& scene, const View& view, int width, int height, const std::string& shaderFolder = {});
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  Image render(const Frame& frame);
+
+  /// Of the latest picture. Each stage waits for OpenGL to finish only if `measuring` was set.
+  const RenderTimes& times() const { return times_; }
+  void measureStages(bool measuring) { measuring_ = measuring; }
+
+ private:
+  struct Resources;
+  void drawMaps();
+  void drawPicture();
+  void drawMeshes() const;
+  void drawTubes() const;
+  void finishStage(double& seconds);
+
+  const Scene& scene_;
+  const View view_;
+  std::unique_ptr<Resources> resources_;
+  RenderTimes times_;
+  bool measuring_ = false;
+};
+
+}  // namespace cradle

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+
+#include "render/appearance.h"
+#include "render/framing.h"
+#include "render/shader_program.h"
+
+namespace cradle {
+
+/// Light from all around and from lamps. Colours are linear radiances; of lamps, what a white matt surface that faces
+/// them sends out.
+struct Lighting {
+  struct Lamp {
+    Vec3 towards;  // unit, to the lamp
+    Vec3f radiance;
+  };
+  std::vector<Lamp> lamps;  // the first throws shadows
+  Vec3f zenith, horizon, nadir;
+  Vec3f sky, bounce;  // on a white surface that faces up and down
+};
+
+/// Where the shadow map looks: along the light, at all that the film shows.
+struct ShadowView {
+  Eigen::Matrix4f clipFromWorld, textureFromWorld;
+  double texel = 0;  // m
+};
+
+/// The part of the ground on which contacts are drawn.
+struct ContactRegion {
+  Vec3 axisU, axisV;                                    // unit, in the ground
+  double firstU = 0, firstV = 0, sizeU = 1, sizeV = 1;  // m, along the axes, from the stage's origin
+};
+
+/// All that stays the same from frame to frame. World coordinates for OpenGL are relative to `origin`.
+struct Stage {
+  int width = 0, height = 0;
+  Camera camera;
+  Vec3 origin;  // m, world
+  Eigen::Matrix4f clipFromWorld;
+  Lighting lighting;
+  ShadowView shadow;
+  std::optional<Ground> ground;
+  ContactRegion contact;
+  double fadeDistance = 1;  // m
+
+  Vec3f relative(const Vec3& point) const { return (point - origin).cast<float>(); }
+};
+
+constexpr int kShadowMapSize = 2048;
+constexpr int kContactMapSize = 256;
+
+/// Texture units that the shaders' samplers are bound to.
+enum TextureUnit { kShadowUnit = 0, kContactUnit, kBallUnit, kNearBallUnit };
+
+Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground>& ground, int width, int height);
+
+/// Gives a program all the uniforms of the stage.
+void setStage(const Stage& stage, const ShaderProgram& program);
+
+}  // namespace cradle

@@ -1,0 +1,50 @@
+#include "core/progress.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <functional>
+
+namespace cradle {
+namespace {
+
+using testing::HasSubstr;
+
+void countToThree(bool quiet) {
+  Progress progress("simulating", "frames", 3, quiet);
+  for (long frame = 1; frame <= 3; ++frame) progress.update(frame);
+}
+
+// What `work` writes to a stderr that is a terminal.
+std::string onTerminal(const std::function<void()>& work) {
+  const int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  EXPECT_TRUE(master >= 0 && grantpt(master) == 0 && unlockpt(master) == 0);
+  const int terminal = open(ptsname(master), O_RDWR | O_NOCTTY), before = dup(STDERR_FILENO);
+  dup2(terminal, STDERR_FILENO);
+  work();
+  dup2(before, STDERR_FILENO);
+  std::string text(1000, '\0');
+  const ssize_t length = read(master, text.data(), text.size());
+  text.resize(length < 0 ? 0 : static_cast<std::size_t>(length));
+  for (const int file : {before, terminal, master}) close(file);
+  return text;
+}
+
+TEST(Progress, EndsWithWhatWasDoneOnATerminal) {
+  EXPECT_THAT(onTerminal([] { countToThree(false); }), HasSubstr("simulating: 3 frames in 0:00\r\n"));
+}
+
+TEST(Progress, IsSilentWhenQuiet) {
+  EXPECT_EQ(onTerminal([] { countToThree(true); }), "");
+}
+
+TEST(Progress, ShortWorkLeavesLogsAlone) {
+  testing::internal::CaptureStderr();
+  countToThree(false);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace cradle
