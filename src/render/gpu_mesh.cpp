@@ -11,6 +11,7 @@ namespace {
 
 constexpr unsigned int kFirstInstanceAttribute = 2;
 constexpr unsigned int kInstanceAttributes = 6;
+constexpr int kInnermostRing = 8;  // corners of a half ball's ring next to its middle
 
 const void* byteOffset(std::size_t bytes) {
   return reinterpret_cast<const void*>(bytes);
@@ -104,6 +105,36 @@ void GpuMesh::draw(std::uint32_t first, std::uint32_t count, const InstanceBuffe
 void GpuMesh::draw() const {
   glBindVertexArray(array_);
   glDrawElements(GL_TRIANGLES, static_cast<int>(3 * triangleCount_), GL_UNSIGNED_INT, nullptr);
+}
+
+GpuMesh makeHalfBall(int outline) {
+  int rings = 1;
+  while (kInnermostRing << (rings - 1) < outline) ++rings;
+  // A polygon as large as the circle: its corners lie outside, the middles of its edges inside.
+  const double outwards = 1 / std::sqrt(std::cos(std::numbers::pi / outline));
+  std::vector<float> vertices = {0, 1, 0};
+  std::vector<std::uint32_t> indices;
+  std::uint32_t inner = 0;
+  for (int ring = 1; ring <= rings; ++ring) {
+    const std::uint32_t count = static_cast<std::uint32_t>(kInnermostRing << (ring - 1));
+    const std::uint32_t outer = static_cast<std::uint32_t>(vertices.size() / 3);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double angle = 2 * std::numbers::pi * i / count, scale = ring == rings ? outwards : 1;
+      vertices.push_back(static_cast<float>(ring) / static_cast<float>(rings));
+      vertices.push_back(static_cast<float>(scale * std::cos(angle)));
+      vertices.push_back(static_cast<float>(scale * std::sin(angle)));
+    }
+    // Every ring has twice the corners of the one inside it.
+    for (std::uint32_t i = 0; i < count; i += ring == 1 ? 1 : 2) {
+      const std::uint32_t a = ring == 1 ? 0 : inner + i / 2, b = outer + i, c = outer + (i + 1) % count;
+      indices.insert(indices.end(), {a, b, c});
+      if (ring == 1) continue;
+      const std::uint32_t next = inner + (i / 2 + 1) % (count / 2);
+      indices.insert(indices.end(), {a, c, next, next, c, outer + (i + 2) % count});
+    }
+    inner = outer;
+  }
+  return {vertices, 3, indices};
 }
 
 GpuMesh makeTube(int segmentsAlong, int segmentsAround) {

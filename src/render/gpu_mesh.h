@@ -53,6 +53,10 @@ class GpuMesh {
   std::uint32_t triangleCount_ = 0;
 };
 
+/// Half a ball with 8 * 2^n vertices around its outline (ball.vert); attribute 0: angle from the middle, 1 at the
+/// outline; cosine and sine of the direction around it.
+GpuMesh makeHalfBall(int outline);
+
 /// A tube along attribute 0: place along the curve 0..1, cosine and sine of the angle around it (tube.vert).
 GpuMesh makeTube(int segmentsAlong, int segmentsAround);
 

@@ -5,12 +5,17 @@
 """
 import csv, json, os, re, shutil, signal, sqlite3, struct, subprocess, sys, tempfile, time, unittest
 
-PROGRAM, SOURCE = sys.argv[1], sys.argv[2]
+PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 BALL = os.path.join(SOURCE, "assets", "ball.3ds")
 
 
 def cradle(*arguments, **options):
     return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=300, **options)
+
+
+def content(path):
+    with open(path, "rb") as file:
+        return file.read()
 
 
 def scene(**changes):
@@ -93,9 +98,9 @@ class Scenes(InTemporaryFolder):
         self.refuses(3, ["/output/width"], "simulate", path, "-o", self.path("x.sqlite"))
 
     def test_what_is_not_simulated_yet_is_refused_by_name(self):
-        rope = {"name": "r", "bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 1, 0], "maxLength": 2}
-        path = self.write("s.json", scene(ropes=[rope]))
-        self.refuses(3, ["/ropes/0", "a rope cannot be simulated yet"], "simulate", path, "-o", self.path("x.sqlite"))
+        joint = {"name": "j", "bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0]}
+        path = self.write("s.json", scene(ballJoints=[joint]))
+        self.refuses(3, ["/ballJoints/0", "a ball joint cannot be simulated yet"], "simulate", path, "-o", self.path("x.sqlite"))
         path = self.write("s.json", scene(method={"name": "dop853"}))
         self.refuses(3, ["/method", "dop853"], "check", path)
 
@@ -116,7 +121,7 @@ class Meshes(InTemporaryFolder):
         return self.refuses(4, [name, *words], "simulate", path, "-o", self.path("x.sqlite"))
 
     def test_unusable_files_end_with_4(self):
-        ball = open(BALL, "rb").read()
+        ball = content(BALL)
         self.check_mesh("empty.3ds", b"", [])
         self.check_mesh("cut.3ds", ball[:len(ball) // 2], [])
         self.check_mesh("noise.3ds", bytes(range(256)) * 20, [])
@@ -173,8 +178,8 @@ class Trajectories(InTemporaryFolder):
     def test_export_writes_a_row_for_every_frame_and_body(self):
         trajectory = self.simulate("a")
         self.assertEqual(cradle("export", trajectory, "-o", self.path("a.csv")).returncode, 0)
-        rows = list(csv.DictReader(open(self.path("a.csv"))))
-        self.assertEqual(len(rows), 7)
+        with open(self.path("a.csv")) as table:
+            self.assertEqual(len(list(csv.DictReader(table))), 7)
         self.assertEqual(cradle("export", trajectory, "-o", self.path("a.xyz")).returncode, 2)
 
     def test_outputs_that_cannot_be_written_end_with_5(self):
@@ -240,7 +245,7 @@ class Pictures(InTemporaryFolder):
         self.assertEqual(cradle("render", self.scene, "-o", self.path("some"), "--frames", "4:7").returncode, 0)
         self.assertEqual(sorted(os.listdir(self.path("some"))), [f"frame_{i:06}.png" for i in (4, 5, 6)])
         for name in ("frame_000004.png", "frame_000005.png"):
-            self.assertEqual(open(self.path("all/" + name), "rb").read(), open(self.path("some/" + name), "rb").read())
+            self.assertEqual(content(self.path("all/" + name)), content(self.path("some/" + name)))
 
     def test_a_trajectory_draws_as_its_scene_does_wherever_it_lies(self):
         body = {"name": "b", "shape": {"mesh": BALL, "scale": 0.1}}
@@ -252,7 +257,7 @@ class Pictures(InTemporaryFolder):
         self.assertEqual(cradle("render", self.path("elsewhere/m.sqlite"), "-o", self.path("a"), "--frames", "3:4").returncode, 0)
         self.write("m.json", scene(bodies=[body], springs=[{"bodyA": "b", "anchorA": {"vertex": 5}, "anchorB": [0, 1, 0], "stiffness": 100}]))
         cradle("render", path, "-o", self.path("b"), "--frames", "3:4")
-        self.assertEqual(open(self.path("a/frame_000003.png"), "rb").read(), open(self.path("b/frame_000003.png"), "rb").read())
+        self.assertEqual(content(self.path("a/frame_000003.png")), content(self.path("b/frame_000003.png")))
 
     def test_size_is_taken_from_the_command_line(self):
         self.assertEqual(cradle("render", self.scene, "-o", self.path("f"), "--frames", "0:1", "--size", "50x40").returncode, 0)

@@ -1,0 +1,39 @@
+#version 330 core
+
+// The half of a ball that the viewer sees, as a few triangles with an exact outline.
+
+uniform mat4 clipFromWorld;
+uniform vec4 viewer;  // m; w = 0: infinitely far in that direction
+
+layout(location = 0) in vec3 place;           // angle from the axis to the viewer, 1 at the outline; direction around it
+layout(location = 2) in vec4 worldFromMeshX;  // rows of the affine transform
+layout(location = 3) in vec4 worldFromMeshY;
+layout(location = 4) in vec4 worldFromMeshZ;
+layout(location = 5) in vec4 inverseScaleAndRoughness;
+layout(location = 6) in vec4 instanceColor;  // linear; w is metallic
+layout(location = 7) in vec4 instanceBalls;  // first and number of the balls near
+
+flat out vec4 ball;
+flat out vec4 surfaceColor;
+flat out float roughness;
+flat out vec2 nearBalls;
+
+const float kRightAngle = 1.57079633;
+
+void main() {
+  vec3 center = vec3(worldFromMeshX.w, worldFromMeshY.w, worldFromMeshZ.w);
+  float radius = length(vec3(worldFromMeshX.x, worldFromMeshY.x, worldFromMeshZ.x));
+  vec3 towards = viewer.xyz - viewer.w * center;
+  float distance = length(towards);
+  vec3 axis = towards / distance;
+  vec3 u = normalize(cross(axis, abs(axis.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
+  vec3 v = cross(axis, u);
+  float outline = viewer.w > 0.0 ? acos(min(radius / distance, 1.0)) : kRightAngle;
+  float angle = place.x * outline;
+  vec3 position = center + radius * (cos(angle) * axis + sin(angle) * (place.y * u + place.z * v));
+  ball = vec4(center, radius);
+  surfaceColor = instanceColor;
+  roughness = inverseScaleAndRoughness.w;
+  nearBalls = instanceBalls.xy;
+  gl_Position = clipFromWorld * vec4(position, 1.0);
+}

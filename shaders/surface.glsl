@@ -1,0 +1,74 @@
+// How a surface looks: what the vertex shader says of it, and the light that it sends to the eye.
+
+#include "encode.glsl"
+#include "sky.glsl"
+#include "shadow.glsl"
+#include "checker.glsl"
+#include "contact.glsl"
+uniform vec3 bounceIrradiance;  // what the ground or the floor sends back up, as a radiance from white
+#include "environment.glsl"
+#include "balls.glsl"
+
+uniform vec3 eye;
+uniform int fillLights;          // lights after the first throw no shadow
+uniform vec3 fillDirection[3];   // unit, towards the light
+uniform vec3 fillRadiance[3];
+
+flat in vec4 surfaceColor;  // linear; w is metallic
+flat in float roughness;
+flat in vec2 nearBalls;
+
+const float kDielectric = 0.04;   // reflected straight on by plastic, wood, stone
+const float kLightWidth = 0.035;  // the lights are no points: the narrowest highlight
+const float kTexelsAside = 3.5;   // reach of the shadow's tent: so far a surface must stand off from its own depths
+
+// Microfacets of Walter, Marschner, Li, Torrance 2007 (GGX); visibility term of Heitz 2014 in Hammon's approximation,
+// both without the factor pi that the radiance of the light has been given.
+vec3 highlight(vec3 n, vec3 v, vec3 l, vec3 straightOn, float alpha) {
+  vec3 h = normalize(l + v);
+  float nl = max(dot(n, l), 0.0), nv = abs(dot(n, v)) + 1e-4, nh = max(dot(n, h), 0.0), vh = max(dot(v, h), 0.0);
+  float a2 = alpha * alpha;
+  float d = nh * nh * (a2 - 1.0) + 1.0;
+  float visibility = 0.5 / mix(2.0 * nl * nv, nl + nv, alpha);
+  vec3 fresnel = straightOn + (1.0 - straightOn) * pow(1.0 - vh, 5.0);
+  return fresnel * (a2 / (d * d) * visibility * nl);
+}
+
+// Share of the surroundings that a rough surface mirrors (B. Karis, "Physically based shading on mobile", 2014).
+vec3 mirroredShare(vec3 straightOn, float roughness, float nv) {
+  vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+  float a = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
+  return straightOn * (r.z - 1.04 * a) + (r.w + 1.04 * a);
+}
+
+float keyShadow(vec3 position, vec3 n) {
+  float facing = dot(n, lightDirection);
+  float aside = kTexelsAside * shadowTexel * sqrt(max(1.0 - facing * facing, 0.0));
+  return softShadow(position + n * (aside + shadowTexel));
+}
+
+// Light from `position` on a surface with unit normal `n` towards the eye.
+vec3 shade(vec3 position, vec3 n) {
+  vec3 v = normalize(eye - position);
+  float metallic = surfaceColor.w;
+  vec3 matt = surfaceColor.rgb * (1.0 - metallic);
+  vec3 straightOn = mix(vec3(kDielectric), surfaceColor.rgb, metallic);
+  float alpha = roughness * roughness + kLightWidth;
+  int first = int(nearBalls.x), count = int(nearBalls.y);
+
+  float spread = roughness * roughness + 2.0 * length(fwidth(n));  // thin things turn within a pixel
+  Mirrored ray = Mirrored(position, reflect(-v, n), vec3(0.0), vec4(1.0), 0.0);
+  float open = lookAtBalls(first, count, position, n, spread, ray);
+
+  vec3 key = lightRadiance * keyShadow(position, n);
+  vec3 light = key * (matt * max(dot(n, lightDirection), 0.0) + highlight(n, v, lightDirection, straightOn, alpha));
+  for (int i = 0; i < fillLights; ++i)
+    light += fillRadiance[i] *
+             (matt * max(dot(n, fillDirection[i]), 0.0) + highlight(n, v, fillDirection[i], straightOn, alpha));
+
+  vec3 mirrored = environment(ray.from, ray.direction, spread) * mix(vec3(1.0), ray.look.rgb, ray.coverage);
+  vec3 mattBall = ray.look.rgb * (ambientLight(ray.normal) + lightRadiance * max(dot(ray.normal, lightDirection), 0.0));
+  mirrored = mix(mirrored, mattBall, ray.coverage * (1.0 - ray.look.w));
+  light += open * matt * ambientLight(n) + mirroredShare(straightOn, roughness, abs(dot(n, v))) * mirrored;
+  return light;
+}
