@@ -25,17 +25,19 @@
 #include "core/error.h"
 #include "mesh/assemble_model.h"
 #include "mesh/check_3ds.h"
-#include "mesh/memory_limit.h"
 #include "mesh/read_file.h"
+#include "mesh/trial.h"
 
 namespace cradle {
 namespace {
 
 using Affine = Eigen::Affine3d;
 
-// What importers need, with room to spare: a 3ds face of 8 bytes becomes some 300 bytes.
+// What importers need, with room to spare: files of the packages take up to 40 bytes a byte, and a second for 20 MB.
 constexpr std::uint64_t kMemoryPerByte = 100;
 constexpr std::uint64_t kMemoryForAnyFile = 256 << 20;  // bytes
+constexpr std::uint64_t kSecondsForAnyFile = 10;        // s, of computing
+constexpr std::uint64_t kBytesPerSecond = 1 << 20;      // slow machines included
 constexpr std::uint64_t kLargestFiles = 256 << 20;      // bytes, a mesh file and those it names together
 
 class MeshFiles : public Assimp::IOSystem {
@@ -83,18 +85,22 @@ void importFile(const std::string& path, ImportedFile& file) {
   auto* files = new MeshFiles;  // the importer deletes it
   file.importer.SetIOHandler(files);
   const std::string& bytes = files->read(path);
-  const bool looksLike3ds = bytes.starts_with("MM") && !file.importer.IsExtensionSupported(lowerExtension(path));
-  if (lowerExtension(path) == ".3ds" || looksLike3ds) file.summary = check3ds(bytes, path);
-  try {
-    const MemoryLimit limit(kMemoryForAnyFile + kMemoryPerByte * bytes.size());
+  const auto read = [&] {
     file.scene = file.importer.ReadFile(path, aiProcess_Triangulate);
-  } catch (const std::bad_alloc&) {
-    throw Error(ErrorKind::mesh, path, "asks for far more memory than its size explains; the file is damaged");
-  }
-  if (file.scene == nullptr || file.scene->mRootNode == nullptr)
+    const bool isRead = file.scene != nullptr && file.scene->mRootNode != nullptr;
+    return isRead ? std::string() : file.importer.GetErrorString() + std::string(" (no mesh found)");
+  };
+  const bool looksLike3ds = bytes.starts_with("MM") && !file.importer.IsExtensionSupported(lowerExtension(path));
+  std::string problem;
+  if (lowerExtension(path) == ".3ds" || looksLike3ds)
+    file.summary = check3ds(bytes, path);
+  else
+    problem = tryInChild(
+        read, {kMemoryForAnyFile + kMemoryPerByte * bytes.size(), kSecondsForAnyFile + bytes.size() / kBytesPerSecond});
+  if (problem.empty()) problem = read();
+  if (!problem.empty())
     throw Error(ErrorKind::mesh, path,
-                fmt::format("cannot be read as a mesh: {}; check the file, or export it again as 3ds or obj",
-                            file.importer.GetErrorString()));
+                fmt::format("cannot be read as a mesh: {}; check the file, or export it again as 3ds or obj", problem));
 }
 
 Affine toAffine(const aiMatrix4x4& m) {

@@ -12,6 +12,7 @@ namespace cradle {
 namespace {
 
 constexpr double kVisibleFacet = 0.25;  // pixels by which a chord may miss the circle before its corner shows
+constexpr int kLinkFacets = 8;          // rods are a few pixels thick
 constexpr double kNearer = 1.2;         // things come so much nearer than the middle of the scene
 
 // The ground when its material names no colour: light stone, and squares of a darker one.
@@ -39,12 +40,10 @@ class Catalogue {
 
   std::vector<BodyPart> partsOf(const Body& body) {
     const Material& material = scene_.materials.at(static_cast<std::size_t>(body.material));
-    if (std::holds_alternative<Plane>(body.shape)) return {};
+    if (std::holds_alternative<Plane>(body.shape) || std::holds_alternative<Sphere>(body.shape)) return {};
     if (const auto* model = std::get_if<ModelShape>(&body.shape)) return partsOfModel(*model, material);
-    const auto* sphere = std::get_if<Sphere>(&body.shape);
     const int mesh = meshOf(body.shape);
-    const double scale = sphere != nullptr ? sphere->radius : 1;
-    return {{mesh, 0, triangleCount(mesh), scale, surfaceOf(material, {})}};
+    return {{mesh, 0, triangleCount(mesh), surfaceOf(material, {})}};
   }
 
   int meshOf(const Shape& shape);
@@ -73,7 +72,6 @@ class Catalogue {
 
 Catalogue::Key Catalogue::keyOf(const Shape& shape) const {
   Key key{shape.index(), Vec3::Zero()};
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) key.numbers.x() = facets(sphere->radius);
   if (const auto* box = std::get_if<Box>(&shape)) key.numbers = box->size;
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) key.numbers = {cylinder->radius, cylinder->length, 0};
   if (const auto* capsule = std::get_if<Capsule>(&shape)) key.numbers = {capsule->radius, capsule->length, 0};
@@ -82,7 +80,6 @@ Catalogue::Key Catalogue::keyOf(const Shape& shape) const {
 }
 
 DrawnMesh Catalogue::tessellateShape(const Shape& shape) const {
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return tessellate(Sphere{1}, facets(sphere->radius));
   if (const auto* box = std::get_if<Box>(&shape)) return tessellate(*box);
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return tessellate(*cylinder, facets(cylinder->radius));
   if (const auto* capsule = std::get_if<Capsule>(&shape)) return tessellate(*capsule, facets(capsule->radius));
@@ -103,8 +100,8 @@ std::vector<BodyPart> Catalogue::partsOfModel(const ModelShape& shape, const Mat
   const auto& ranges = meshes_[static_cast<std::size_t>(mesh)].materials;
   std::vector<BodyPart> parts;
   for (const ModelMaterial& range : ranges)
-    parts.push_back({mesh, range.firstTriangle, range.triangleCount, 1, surfaceOf(material, range.baseColor)});
-  if (ranges.empty() || material.baseColor) parts = {{mesh, 0, triangleCount(mesh), 1, surfaceOf(material, {})}};
+    parts.push_back({mesh, range.firstTriangle, range.triangleCount, surfaceOf(material, range.baseColor)});
+  if (ranges.empty() || material.baseColor) parts = {{mesh, 0, triangleCount(mesh), surfaceOf(material, {})}};
   return parts;
 }
 
@@ -121,12 +118,14 @@ std::vector<std::optional<BodyBall>> findBalls(const std::vector<Model>& models)
   return balls;
 }
 
-std::optional<BodyBall> ballOf(const Shape& shape, const std::vector<std::optional<BodyBall>>& ballOfModel,
+std::optional<BodyBall> ballOf(const Body& body, const Material& material,
+                               const std::vector<std::optional<BodyBall>>& ballOfModel,
                                const std::vector<BodyPart>& parts) {
-  std::optional<BodyBall> ball;
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) ball = BodyBall{Vec3::Zero(), sphere->radius, {}};
-  if (const auto* model = std::get_if<ModelShape>(&shape))
-    ball = ballOfModel.at(static_cast<std::size_t>(model->model));
+  if (const auto* sphere = std::get_if<Sphere>(&body.shape))
+    return BodyBall{Vec3::Zero(), sphere->radius, surfaceOf(material, {})};
+  const auto* model = std::get_if<ModelShape>(&body.shape);
+  if (model == nullptr) return {};
+  std::optional<BodyBall> ball = ballOfModel.at(static_cast<std::size_t>(model->model));
   if (ball) ball->surface = parts.at(0).surface;
   return ball;
 }
@@ -161,16 +160,16 @@ Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPer
   Catalogue catalogue(scene, pixelsPerMetre);
   const auto ballOfModel = findBalls(scene.models);
   for (const Body& body : scene.bodies) {
-    BodyAppearance look{catalogue.partsOf(body), localBounds(scene, body), {}};
-    look.ball = ballOf(body.shape, ballOfModel, look.parts);
+    const Material& material = scene.materials.at(static_cast<std::size_t>(body.material));
+    BodyAppearance look{catalogue.partsOf(body), localBounds(scene, body), {}, false};
+    look.ball = ballOf(body, material, ballOfModel, look.parts);
+    look.isDrawnAsBall = std::holds_alternative<Sphere>(body.shape);
     appearance.bodies.push_back(std::move(look));
   }
   appearance.ground = findGround(scene, view);
   appearance.meshes = catalogue.take();
   appearance.cylinderMesh = static_cast<int>(appearance.meshes.size());
-  appearance.meshes.push_back(tessellate(Cylinder{1, 1}, 8));
-  appearance.ballMesh = static_cast<int>(appearance.meshes.size());
-  appearance.meshes.push_back(tessellate(Sphere{1}, 16));
+  appearance.meshes.push_back(tessellate(Cylinder{1, 1}, kLinkFacets));
   return appearance;
 }
 

@@ -19,7 +19,6 @@ struct Surface {
 struct BodyPart {
   int mesh = 0;  // index into Appearance::meshes
   std::uint32_t firstTriangle = 0, triangleCount = 0;
-  double scale = 1;
   Surface surface = {};
 };
 
@@ -31,9 +30,10 @@ struct BodyBall {
 };
 
 struct BodyAppearance {
-  std::vector<BodyPart> parts;  // none for planes
+  std::vector<BodyPart> parts;  // none for planes, and for balls that are drawn as such
   Bounds local;                 // body's frame; empty for planes
   std::optional<BodyBall> ball;
+  bool isDrawnAsBall = false;  // exactly round; else the ball only stands for a mesh in mirrors and contacts
 };
 
 /// An endless plane, drawn as ground.
@@ -49,7 +49,7 @@ struct Appearance {
   std::vector<DrawnMesh> meshes;
   std::vector<BodyAppearance> bodies;
   std::optional<Ground> ground;
-  int cylinderMesh = 0, ballMesh = 0;  // of radius 1 and length 1, for what links bodies
+  int cylinderMesh = 0;  // of radius 1 and length 1, for what links bodies
 };
 
 /// `pixelsPerMetre` at the distance of the scene decides how finely round things are divided.

@@ -13,7 +13,7 @@ constexpr double kNear = 3;                // balls farther than so many of thei
 
 void appendBody(const BodyAppearance& look, const RigidTransform& worldFromBody, DrawList& list) {
   for (const BodyPart& part : look.parts) {
-    MeshItem item{part.mesh, part.firstTriangle, part.triangleCount, worldFromBody, Vec3::Constant(part.scale)};
+    MeshItem item{part.mesh, part.firstTriangle, part.triangleCount, worldFromBody};
     item.surface = part.surface;
     item.bounds = transformed(look.local, worldFromBody);
     list.meshes.push_back(item);
@@ -21,7 +21,10 @@ void appendBody(const BodyAppearance& look, const RigidTransform& worldFromBody,
 }
 
 void appendBall(const BodyAppearance& look, const RigidTransform& worldFromBody, int body, DrawList& list) {
-  if (look.ball) list.balls.push_back({worldFromBody * look.ball->center, look.ball->radius, look.ball->surface, body});
+  if (!look.ball) return;
+  const Vec3 center = worldFromBody * look.ball->center;
+  list.balls.push_back({center, look.ball->radius, look.ball->surface, body});
+  if (look.isDrawnAsBall) list.spheres.push_back({center, look.ball->radius, look.ball->surface});
 }
 
 void appendContact(const BodyAppearance& look, const RigidTransform& worldFromBody, DrawList& list) {
@@ -32,11 +35,13 @@ void appendContact(const BodyAppearance& look, const RigidTransform& worldFromBo
 }
 
 /// The balls near an item's bounds, the closest (in radii) first.
-void findNearBalls(const std::vector<BallItem>& balls, int ownBody, MeshItem& item, std::vector<int>& nearBalls) {
+template <typename Item>
+void findNearBalls(const std::vector<BallItem>& balls, const Bounds& bounds, int ownBody, Item& item,
+                   std::vector<int>& nearBalls) {
   std::vector<std::pair<double, int>> found;
   for (std::size_t i = 0; i < balls.size(); ++i) {
     if (balls[i].body == ownBody) continue;
-    const double distance = item.bounds.exteriorDistance(balls[i].center) / balls[i].radius;
+    const double distance = bounds.exteriorDistance(balls[i].center) / balls[i].radius;
     if (distance < kNear) found.emplace_back(distance, static_cast<int>(i));
   }
   const std::size_t count = std::min(found.size(), kMostNearBalls);
@@ -51,16 +56,19 @@ void findNearBalls(const std::vector<BallItem>& balls, int ownBody, MeshItem& it
 DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const View& view, const Frame& frame) {
   const auto places = placeBodies(scene, frame);
   DrawList list;
-  std::vector<int> bodyOfItem;
+  std::vector<int> bodyOfMesh, bodyOfSphere;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const BodyAppearance& look = appearance.bodies[i];
     appendBody(look, places[i], list);
     appendBall(look, places[i], static_cast<int>(i), list);
     appendContact(look, places[i], list);
-    bodyOfItem.resize(list.meshes.size(), static_cast<int>(i));
+    bodyOfMesh.resize(list.meshes.size(), static_cast<int>(i));
+    bodyOfSphere.resize(list.spheres.size(), static_cast<int>(i));
   }
   for (std::size_t i = 0; i < list.meshes.size(); ++i)
-    findNearBalls(list.balls, bodyOfItem[i], list.meshes[i], list.nearBalls);
+    findNearBalls(list.balls, list.meshes[i].bounds, bodyOfMesh[i], list.meshes[i], list.nearBalls);
+  for (std::size_t i = 0; i < list.spheres.size(); ++i)
+    findNearBalls(list.balls, list.spheres[i].bounds(), bodyOfSphere[i], list.spheres[i], list.nearBalls);
   appendLinks(scene, appearance, view, places, list);
   std::stable_sort(list.meshes.begin(), list.meshes.end(), [](const MeshItem& a, const MeshItem& b) {
     return std::pair(a.mesh, a.firstTriangle) < std::pair(b.mesh, b.firstTriangle);

@@ -15,8 +15,17 @@ struct MeshItem {
   RigidTransform worldFromMesh = {};
   Vec3 scale = Vec3::Ones();  // before the transform
   Surface surface = {};
-  Bounds bounds = {};                         // m, world
+  Bounds bounds = {};                    // m, world
   int firstNearBall = 0, nearBalls = 0;  // range of DrawList::nearBalls
+};
+
+/// A ball that is drawn exactly round.
+struct SphereItem {
+  Vec3 center;  // m, world
+  double radius = 0;
+  Surface surface = {};
+  int firstNearBall = 0, nearBalls = 0;  // range of DrawList::nearBalls
+  Bounds bounds() const { return {center - Vec3::Constant(radius), center + Vec3::Constant(radius)}; }
 };
 
 /// A round tube along a curve: a spring's coil, or a rope that sags.
@@ -50,7 +59,8 @@ struct ContactItem {
 /// A picture as plain data, in a fixed order: OpenGL comes after.
 struct DrawList {
   std::vector<MeshItem> meshes;  // grouped by mesh and range
-  std::vector<TubeItem> tubes;
+  std::vector<SphereItem> spheres;
+  std::vector<TubeItem> tubes;  // springs before ropes
   std::vector<BallItem> balls;
   std::vector<int> nearBalls;  // indices into balls
   std::vector<ContactItem> contacts;

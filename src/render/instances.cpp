@@ -1,10 +1,13 @@
 #include "render/instances.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace cradle {
 namespace {
 
+constexpr double kVisibleCorner = 0.25;  // pixels
 constexpr double kContactReach = 2.5;  // times the height of what touches the ground; beyond, 7 % of the sky are hidden
 
 void put(Instance& instance, std::size_t attribute, const Vec3f& vector, double last) {
@@ -27,6 +30,34 @@ Instance packMesh(const MeshItem& item, const Stage& stage) {
   put(instance, 4, item.surface.color, item.surface.metallic);
   put(instance, 5, Vec3f(static_cast<float>(item.firstNearBall), static_cast<float>(item.nearBalls), 0), 0);
   return instance;
+}
+
+Instance packSphere(const SphereItem& item, const Stage& stage) {
+  Instance instance{};
+  putTransform(instance, item.radius * Mat3::Identity(), item.center - stage.origin);
+  put(instance, 3, Vec3f::Zero(), item.surface.roughness);
+  put(instance, 4, item.surface.color, item.surface.metallic);
+  put(instance, 5, Vec3f(static_cast<float>(item.firstNearBall), static_cast<float>(item.nearBalls), 0), 0);
+  return instance;
+}
+
+/// How fine an outline has to be: a polygon of n corners, as large as the circle, misses it by r (pi / n)^2 / 4.
+std::size_t outlineFor(const SphereItem& item, const Stage& stage) {
+  const double distance = std::max((item.center - stage.camera.position).norm() - item.radius, 1e-9);
+  const double pixels = item.radius / distance * stage.height / (2 * std::tan(stage.camera.verticalFieldOfView / 2));
+  for (std::size_t i = 0; i + 1 < kOutlines.size(); ++i)
+    if (pixels * std::pow(std::numbers::pi / kOutlines[i], 2) / 4 < kVisibleCorner) return i;
+  return kOutlines.size() - 1;
+}
+
+void packSpheres(const DrawList& list, const Stage& stage, PackedDrawList& packed) {
+  for (std::size_t level = 0; level < kOutlines.size(); ++level) {
+    Batch batch{static_cast<int>(level), 0, 0, packed.sphereInstances.size(), 0};
+    for (const SphereItem& item : list.spheres)
+      if (outlineFor(item, stage) == level) packed.sphereInstances.push_back(packSphere(item, stage));
+    batch.instanceCount = packed.sphereInstances.size() - batch.firstInstance;
+    if (batch.instanceCount > 0) packed.sphereBatches.push_back(batch);
+  }
 }
 
 Instance packTube(const TubeItem& item, const Stage& stage) {
@@ -70,11 +101,11 @@ bool packContact(const ContactItem& item, const Stage& stage, Instance& instance
 void packBatches(const DrawList& list, PackedDrawList& packed) {
   for (std::size_t i = 0; i < list.meshes.size(); ++i) {
     const MeshItem& item = list.meshes[i];
-    const bool continues = !packed.batches.empty() && packed.batches.back().mesh == item.mesh &&
-                           packed.batches.back().firstTriangle == item.firstTriangle &&
-                           packed.batches.back().triangleCount == item.triangleCount;
-    if (!continues) packed.batches.push_back({item.mesh, item.firstTriangle, item.triangleCount, i, 0});
-    ++packed.batches.back().instanceCount;
+    const bool continues = !packed.meshBatches.empty() && packed.meshBatches.back().mesh == item.mesh &&
+                           packed.meshBatches.back().firstTriangle == item.firstTriangle &&
+                           packed.meshBatches.back().triangleCount == item.triangleCount;
+    if (!continues) packed.meshBatches.push_back({item.mesh, item.firstTriangle, item.triangleCount, i, 0});
+    ++packed.meshBatches.back().instanceCount;
   }
 }
 
@@ -85,6 +116,7 @@ PackedDrawList pack(const DrawList& list, const Stage& stage) {
   for (const MeshItem& item : list.meshes) packed.meshInstances.push_back(packMesh(item, stage));
   for (const TubeItem& item : list.tubes) packed.tubeInstances.push_back(packTube(item, stage));
   packBatches(list, packed);
+  packSpheres(list, stage, packed);
   for (const BallItem& ball : list.balls) {
     const Vec3f center = stage.relative(ball.center);
     packed.balls.insert(packed.balls.end(), {center.x(), center.y(), center.z(), static_cast<float>(ball.radius)});

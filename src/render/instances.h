@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "render/draw_list.h"
 #include "render/gpu_mesh.h"
 #include "render/stage.h"
@@ -8,15 +10,18 @@ namespace cradle {
 
 /// Instances of the same triangles, drawn with one call.
 struct Batch {
-  int mesh = 0;
+  int mesh = 0;  // index into Appearance::meshes, or into kOutlines for spheres
   std::uint32_t firstTriangle = 0, triangleCount = 0;
   std::size_t firstInstance = 0, instanceCount = 0;
 };
 
+/// Corners around the outline of the half balls that spheres are drawn with, coarse to fine.
+constexpr std::array<int, 4> kOutlines = {16, 32, 64, 128};
+
 /// A draw list as OpenGL takes it: numbers relative to the stage's origin.
 struct PackedDrawList {
-  std::vector<Instance> meshInstances, tubeInstances, contactInstances;
-  std::vector<Batch> batches;
+  std::vector<Instance> meshInstances, sphereInstances, tubeInstances, contactInstances;
+  std::vector<Batch> meshBatches, sphereBatches;
   std::vector<float> balls;      // eight a ball: centre, radius, colour, metallic
   std::vector<float> nearBalls;  // indices
 };

@@ -82,7 +82,6 @@ class LinkBuilder {
   Vec3 now(const Anchor& anchor) const { return worldPoint(anchor, places_); }
   Vec3 atStart(const Anchor& anchor) const { return worldPoint(anchor, start_); }
   bool isInsideFixedBody(const Vec3& point) const;
-  void addBall(const Vec3& center, double radius, const Surface& surface);
   void addCylinder(const Vec3& a, const Vec3& b, double radius, const Surface& surface);
   void addEnd(const Anchor& anchor, const Anchor& other, double knob, bool plate);
   void addArm(const Anchor& anchor, double radius);
@@ -104,16 +103,6 @@ bool LinkBuilder::isInsideFixedBody(const Vec3& point) const {
   return false;
 }
 
-void LinkBuilder::addBall(const Vec3& center, double radius, const Surface& surface) {
-  const auto& mesh = appearance_.meshes.at(static_cast<std::size_t>(appearance_.ballMesh));
-  MeshItem item{appearance_.ballMesh, 0, static_cast<std::uint32_t>(mesh.triangles.size())};
-  item.worldFromMesh.translation = center;
-  item.scale = Vec3::Constant(radius);
-  item.surface = surface;
-  item.bounds = Bounds(center - item.scale, center + item.scale);
-  list_.meshes.push_back(item);
-}
-
 void LinkBuilder::addCylinder(const Vec3& a, const Vec3& b, double radius, const Surface& surface) {
   const auto& mesh = appearance_.meshes.at(static_cast<std::size_t>(appearance_.cylinderMesh));
   MeshItem item{appearance_.cylinderMesh, 0, static_cast<std::uint32_t>(mesh.triangles.size())};
@@ -128,7 +117,7 @@ void LinkBuilder::addCylinder(const Vec3& a, const Vec3& b, double radius, const
 /// A knob where a link ends, and a plate behind it where that is the open world.
 void LinkBuilder::addEnd(const Anchor& anchor, const Anchor& other, double knob, bool plate) {
   const Vec3 point = now(anchor);
-  addBall(point, knob, kSteel);
+  list_.spheres.push_back({point, knob, kSteel});
   if (anchor.body != kWorld || !plate || isInsideFixedBody(point)) return;
   const Vec3 away = directionBetween(atStart(other), atStart(anchor));
   const double thickness = kPlateThickness * knob;

@@ -57,12 +57,12 @@ struct Renderer::Resources {
   } sizeCheck;
   Appearance appearance;
   Stage stage;
-  ShaderProgram surface, tube, surfaceDepth, tubeDepth, ground, contact, sky;
+  ShaderProgram surface, ball, tube, surfaceDepth, ballDepth, tubeDepth, ground, contact, sky;
   PictureTarget picture;
   MapTarget shadowMap, contactMap;
-  InstanceBuffer meshInstances, tubeInstances, contactInstances;
+  InstanceBuffer meshInstances, sphereInstances, tubeInstances, contactInstances;
   NumberTexture balls, nearBalls;
-  std::vector<GpuMesh> meshes;
+  std::vector<GpuMesh> meshes, halfBalls;
   GpuMesh coilMesh, ropeMesh, triangle, square;
   std::optional<GpuMesh> groundMesh;
   PackedDrawList packed;
@@ -74,8 +74,10 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
       appearance(makeAppearance(scene, view, pixelsPerMetre(view, height))),
       stage(makeStage(scene, view, appearance.ground, width, height)),
       surface(shaders, "surface.vert", "surface.frag"),
+      ball(shaders, "ball.vert", "ball.frag"),
       tube(shaders, "tube.vert", "surface.frag"),
       surfaceDepth(shaders, "surface.vert", "depth.frag"),
+      ballDepth(shaders, "ball.vert", "depth.frag"),
       tubeDepth(shaders, "tube.vert", "depth.frag"),
       ground(shaders, "ground.vert", "ground.frag"),
       contact(shaders, "contact.vert", "contact.frag"),
@@ -90,12 +92,15 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
       triangle({0, 0, 0}, 1, {0, 1, 2}),
       square({-1, -1, 1, -1, 1, 1, -1, 1}, 2, {0, 1, 2, 0, 2, 3}) {
   for (const DrawnMesh& mesh : appearance.meshes) meshes.emplace_back(mesh);
+  for (const int outline : kOutlines) halfBalls.push_back(makeHalfBall(outline));
   if (stage.ground) groundMesh.emplace(makeGroundMesh(stage));
-  for (const ShaderProgram* program : {&surface, &tube, &surfaceDepth, &tubeDepth, &ground, &contact, &sky})
+  for (const ShaderProgram* program :
+       {&surface, &ball, &tube, &surfaceDepth, &ballDepth, &tubeDepth, &ground, &contact, &sky})
     setStage(stage, *program);
-  for (const ShaderProgram* program : {&surfaceDepth, &tubeDepth}) {
+  for (const ShaderProgram* program : {&surfaceDepth, &ballDepth, &tubeDepth}) {
     program->use();
     program->set("clipFromWorld", stage.shadow.clipFromWorld);
+    program->set("viewer", stage.shadow.viewer);
   }
 }
 
@@ -117,6 +122,7 @@ Image Renderer::render(const Frame& frame) {
   finishStage(times_.drawList);
 
   r.meshInstances.upload(r.packed.meshInstances);
+  r.sphereInstances.upload(r.packed.sphereInstances);
   r.tubeInstances.upload(r.packed.tubeInstances);
   r.contactInstances.upload(r.packed.contactInstances);
   r.balls.upload(r.packed.balls);
@@ -150,6 +156,8 @@ void Renderer::drawMaps() {
   r.shadowMap.begin();
   r.surfaceDepth.use();
   drawMeshes();
+  r.ballDepth.use();
+  drawSpheres();
   r.tubeDepth.use();
   drawTubes();
   glDisable(GL_DEPTH_CLAMP);
@@ -176,6 +184,8 @@ void Renderer::drawPicture() {
   r.surface.use();
   drawMeshes();
   glDisable(GL_CULL_FACE);
+  r.ball.use();
+  drawSpheres();
   r.tube.use();
   drawTubes();
   // Last what fills the picture: hidden pixels are not computed.
@@ -191,9 +201,17 @@ void Renderer::drawPicture() {
 
 void Renderer::drawMeshes() const {
   const Resources& r = *resources_;
-  for (const Batch& batch : r.packed.batches)
+  for (const Batch& batch : r.packed.meshBatches)
     r.meshes[static_cast<std::size_t>(batch.mesh)].draw(batch.firstTriangle, batch.triangleCount, r.meshInstances,
                                                         batch.firstInstance, batch.instanceCount);
+}
+
+void Renderer::drawSpheres() const {
+  const Resources& r = *resources_;
+  for (const Batch& batch : r.packed.sphereBatches) {
+    const GpuMesh& mesh = r.halfBalls[static_cast<std::size_t>(batch.mesh)];
+    mesh.draw(0, mesh.triangleCount(), r.sphereInstances, batch.firstInstance, batch.instanceCount);
+  }
 }
 
 void Renderer::drawTubes() const {

@@ -42,6 +42,7 @@ class Renderer {
   void drawMaps();
   void drawPicture();
   void drawMeshes() const;
+  void drawSpheres() const;
   void drawTubes() const;
   void finishStage(double& seconds);
 

@@ -51,6 +51,11 @@ Bounds inAxes(const Bounds& bounds, const Mat3& axes, const Vec3& origin) {
   return turned;
 }
 
+Eigen::Vector4f joined(const Vec3& vector, double last) {
+  return {static_cast<float>(vector.x()), static_cast<float>(vector.y()), static_cast<float>(vector.z()),
+          static_cast<float>(last)};
+}
+
 ShadowView makeShadowView(const Vec3& towardsLight, const Bounds& bounds, const Vec3& origin) {
   const Mat3 axes = cameraAxes(towardsLight, Vec3::Zero());
   const Bounds seen = inAxes(bounds, axes, origin);
@@ -65,7 +70,7 @@ ShadowView makeShadowView(const Vec3& towardsLight, const Bounds& bounds, const 
   Eigen::Matrix4d texture = Eigen::Matrix4d::Identity();
   texture.topLeftCorner<3, 3>() *= 0.5;
   texture.topRightCorner<3, 1>().setConstant(0.5);
-  return {clip.cast<float>(), (texture * clip).cast<float>(), 2 * half / kShadowMapSize};
+  return {clip.cast<float>(), (texture * clip).cast<float>(), joined(towardsLight, 0), 2 * half / kShadowMapSize};
 }
 
 ContactRegion makeContactRegion(const Ground& ground, const Bounds& bounds, const Vec3& origin) {
@@ -84,11 +89,6 @@ ContactRegion makeContactRegion(const Ground& ground, const Bounds& bounds, cons
   region.sizeU = seen.sizes().x() + 2 * margin;
   region.sizeV = seen.sizes().y() + 2 * margin;
   return region;
-}
-
-Eigen::Vector4f joined(const Vec3& vector, double last) {
-  return {static_cast<float>(vector.x()), static_cast<float>(vector.y()), static_cast<float>(vector.z()),
-          static_cast<float>(last)};
 }
 
 /// Position of the stage's origin within the pattern of squares along `axis`: repeats after two squares.
@@ -171,6 +171,7 @@ void setStage(const Stage& stage, const ShaderProgram& program) {
   program.use();
   program.set("clipFromWorld", stage.clipFromWorld);
   program.set("eye", stage.relative(stage.camera.position));
+  program.set("viewer", joined(stage.camera.position - stage.origin, 1));
   setRays(stage, program);
   setLighting(stage.lighting, program);
   setGround(stage, program);

@@ -23,7 +23,8 @@ struct Lighting {
 /// Where the shadow map looks: along the light, at all that the film shows.
 struct ShadowView {
   Eigen::Matrix4f clipFromWorld, textureFromWorld;
-  double texel = 0;  // m
+  Eigen::Vector4f viewer;  // the light's direction, as ball.vert takes it
+  double texel = 0;        // m
 };
 
 /// The part of the ground on which contacts are drawn.

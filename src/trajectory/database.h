@@ -17,7 +17,7 @@ class Database;
 /// A prepared statement: bind, step, read columns. Parameters count from 1, columns from 0.
 class Statement {
  public:
-  void bind(int parameter, std::integral auto value) { bindInteger(parameter, value); }
+  void bind(int parameter, std::integral auto value) { bindInteger(parameter, static_cast<std::int64_t>(value)); }
   void bind(int parameter, double value);  // bit by bit; not NaN, which SQLite would turn into null
   void bind(int parameter, const std::string& value);
   void bind(int parameter, std::span<const std::byte> value);  // not copied: must live until the statement has run

@@ -9,10 +9,16 @@
 #include "mesh/solid.h"
 #include "test_files.h"
 
+#ifdef __SANITIZE_ADDRESS__
+// The importer leaks when it gives up.
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libassimp";
+}
+#endif
+
 namespace cradle {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
 
 // Where the data of the first chunk `id` begins: its identifier is searched for from `from` on.

@@ -121,6 +121,12 @@ inline void expectSameBits(const Frame& a, const Frame& b) {
   }
 }
 
+/// Expects that all frames there are, are the sample's.
+inline void expectFirstFrames(const TrajectoryReader& reader) {
+  for (long number = 0; number < reader.frameCount(); ++number)
+    expectSameBits(reader.readFrame(number), sampleFrame(number));
+}
+
 inline std::string contentOf(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
