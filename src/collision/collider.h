@@ -43,6 +43,7 @@ struct ContactGeometry {
   std::vector<Collider> colliders;
   std::vector<PlaneCollider> planes;
   std::vector<ColliderPair> pairs;
+  std::vector<ColliderPair> unsolvedPairs;  // contact that cannot be computed: must stay out of each other's reach
 };
 
 }  // namespace cradle

@@ -97,7 +97,8 @@ ColliderIndices addColliders(const Scene& scene, const std::vector<int>& moving,
 }
 
 void addContactGeometry(const Scene& scene, const std::vector<int>& moving, Assembly& assembly) {
-  const ColliderIndices indices = addColliders(scene, moving, assembly.geometry);
+  ContactGeometry& geometry = assembly.geometry;
+  const ColliderIndices indices = addColliders(scene, moving, geometry);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     for (std::size_t j = i + 1; j < scene.bodies.size(); ++j) {
       if (!mayTouch(scene.bodies[i], scene.bodies[j])) continue;
@@ -105,14 +106,18 @@ void addContactGeometry(const Scene& scene, const std::vector<int>& moving, Asse
       const bool swapped = indices.planes[i] >= 0;
       const std::size_t a = swapped ? j : i, b = swapped ? i : j;
       const bool againstPlane = indices.planes[b] >= 0;
+      const std::size_t first = static_cast<std::size_t>(indices.colliders[a]);
+      const std::size_t second = static_cast<std::size_t>(againstPlane ? indices.planes[b] : indices.colliders[b]);
       const SurfacePair& surface = scene.surfacePairs[static_cast<std::size_t>(scene.bodies[a].material)]
                                                      [static_cast<std::size_t>(scene.bodies[b].material)];
-      assembly.geometry.pairs.push_back(
-          {static_cast<std::size_t>(indices.colliders[a]),
-           static_cast<std::size_t>(againstPlane ? indices.planes[b] : indices.colliders[b]),
-           againstPlane,
-           {surface.restitution, surface.staticFriction, surface.dynamicFriction}});
-      assembly.pairBodies.emplace_back(static_cast<int>(a), static_cast<int>(b));
+      const ColliderPair pair{
+          first, second, againstPlane, {surface.restitution, surface.staticFriction, surface.dynamicFriction}};
+      if (canSolveContact(geometry.colliders[first], againstPlane ? nullptr : &geometry.colliders[second])) {
+        geometry.pairs.push_back(pair);
+        assembly.pairBodies.emplace_back(static_cast<int>(a), static_cast<int>(b));
+      } else {
+        geometry.unsolvedPairs.push_back(pair);
+      }
     }
 }
 

@@ -47,20 +47,9 @@ void addMesh(const TriangleMesh& mesh, CollisionChoice choice, ColliderBuilder& 
   for (const Vec3& vertex : mesh.vertices) builder.collider.points.push_back(builder.frame * vertex);
 }
 
-enum class ContactKind { plane, ball, polytope, points, none };
-
-ContactKind contactKindOf(const Body& body, const Scene& scene) {
-  if (isPlane(body)) return ContactKind::plane;
-  const auto collider = colliderOf(body, scene, kFixed);
-  if (!collider || collider->points.empty()) return ContactKind::none;
-  if (collider->isBall()) return ContactKind::ball;
-  return collider->polytope ? ContactKind::polytope : ContactKind::points;
-}
-
-bool canTouch(ContactKind a, ContactKind b) {
-  if (a == ContactKind::none || b == ContactKind::none) return false;
-  if (a == ContactKind::plane || b == ContactKind::plane) return true;
-  return a != ContactKind::points && b != ContactKind::points;
+/// Only the surface of a ball or polytope is known, not that of mere points.
+bool hasSurface(const Collider& collider) {
+  return collider.isBall() || collider.polytope;
 }
 
 }  // namespace
@@ -89,18 +78,28 @@ bool mayTouch(const Body& a, const Body& b) {
          (a.motion == Motion::dynamic || b.motion == Motion::dynamic);
 }
 
+bool canSolveContact(const Collider& a, const Collider* b) {
+  if (a.points.empty()) return false;
+  return !b || (!b->points.empty() && hasSurface(a) && hasSurface(*b));
+}
+
 std::vector<std::string> unsupportedContacts(const Scene& scene) {
   std::vector<std::string> faults;
-  std::vector<ContactKind> kinds;
-  for (const Body& body : scene.bodies) kinds.push_back(contactKindOf(body, scene));
-  for (std::size_t a = 0; a < scene.bodies.size(); ++a)
-    for (std::size_t b = a + 1; b < scene.bodies.size(); ++b)
-      if (mayTouch(scene.bodies[a], scene.bodies[b]) && !canTouch(kinds[a], kinds[b]))
+  std::vector<std::optional<Collider>> colliders;
+  for (const Body& body : scene.bodies) colliders.push_back(colliderOf(body, scene, kFixed));
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    for (std::size_t j = i + 1; j < scene.bodies.size(); ++j) {
+      const Body &a = scene.bodies[i], &b = scene.bodies[j];
+      const bool bothMove = a.motion == Motion::dynamic && b.motion == Motion::dynamic;
+      if (bothMove || !mayTouch(a, b)) continue;
+      const auto &first = isPlane(a) ? colliders[j] : colliders[i], &second = isPlane(a) ? colliders[i] : colliders[j];
+      if (!canSolveContact(*first, second ? &*second : nullptr))
         faults.push_back(
             fmt::format("{}: contact between \"{}\" and \"{}\" cannot be simulated yet; spheres and boxes among each "
                         "other, and all "
                         "shapes but cylinders on planes, can; give one of them \"collision\": \"none\"",
-                        scene.bodies[b].where, scene.bodies[a].name, scene.bodies[b].name));
+                        b.where, a.name, b.name));
+    }
   return faults;
 }
 

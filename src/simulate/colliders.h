@@ -13,7 +13,10 @@ namespace cradle {
 /// move, or kFixed. `collision: auto` of a mesh takes the primitive that it is recognised as, else its vertices.
 std::optional<Collider> colliderOf(const Body& body, const Scene& scene, int movingBody);
 
-/// Faults of pairs whose contact cannot be simulated yet.
+/// Whether contact of two colliders can be computed; `b` is null for a plane.
+bool canSolveContact(const Collider& a, const Collider* b);
+
+/// Faults of pairs whose contact cannot be simulated yet. Two moving bodies are no fault: they may stay apart.
 std::vector<std::string> unsupportedContacts(const Scene& scene);
 
 /// Do two bodies have to be watched for contact? (One moves, both collide.)

@@ -51,6 +51,7 @@ std::string shapeText(const Shape& shape) {
 TrajectoryHeader headerOf(const Scene& scene) {
   const ChosenMethod method = chooseMethod(scene);
   TrajectoryHeader header;
+  header.version = CRADLE_VERSION;
   header.scene = scene.text;
   header.scenePath = scene.path;
   header.method = fmt::format("{}, step {} s", method.name, method.timeStep);

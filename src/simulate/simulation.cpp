@@ -42,7 +42,8 @@ ChosenMethod chooseMethod(const Scene& scene) {
 }
 
 Simulation::Simulation(const Scene& scene, Assembly assembly)
-    : assembly_(std::move(assembly)),
+    : scene_(scene),
+      assembly_(std::move(assembly)),
       method_(chooseMethod(scene)),
       equations_(assembly_.mechanism),
       rightHandSide_(equations_.rightHandSide()),
@@ -56,6 +57,7 @@ Simulation::Simulation(const Scene& scene, Assembly assembly)
   contacts_.resolve(time_, state_, state_);
   ropes_.resolve(time_, state_);
   beginAndEndPushes();
+  requireUnsolvedPairsApart();
 }
 
 void Simulation::advance() {
@@ -76,6 +78,7 @@ void Simulation::advance() {
   ropes_.resolve(time_, state_);
   beginAndEndPushes();
   guard_.check(state_, time_, method_.timeStep);
+  requireUnsolvedPairsApart();
 
   if (atEvent) countEvent();
   if (time_ < gridEnd) return;
@@ -137,6 +140,22 @@ void Simulation::shortenStepTo(double length, double tolerance, const std::funct
 void Simulation::beginAndEndPushes() {
   if (time_ < pushes_.nextChange()) return;
   for (const int body : pushes_.apply(time_, state_, assembly_.mechanism.pushes)) contacts_.wake(time_, body, state_);
+}
+
+/// Contact that cannot be computed must not come about: passing through each other silently would be a lie.
+void Simulation::requireUnsolvedPairsApart() const {
+  for (const ColliderPair& pair : assembly_.geometry.unsolvedPairs) {
+    const int a = assembly_.geometry.colliders[pair.a].body, b = bodyBOf(assembly_.geometry, pair);
+    if (separationBound(assembly_.geometry, pair, poseOf(state_, a), poseOf(state_, b)) > 0) continue;
+    const auto nameOf = [this](int body) {
+      const auto sceneBody = static_cast<std::size_t>(assembly_.sceneBodies[static_cast<std::size_t>(body)]);
+      return scene_.bodies[sceneBody].name;
+    };
+    throw Error(ErrorKind::scene, scene_.path,
+                fmt::format("\"{}\" and \"{}\" come within reach of each other at {:.6g} s; their contact cannot be "
+                            "simulated yet: keep them apart, or give one of them \"collision\": \"none\"",
+                            nameOf(a), nameOf(b), time_));
+  }
 }
 
 void Simulation::countEvent() {

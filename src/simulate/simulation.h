@@ -51,7 +51,9 @@ class Simulation {
   void shortenStepTo(double length, double tolerance, const std::function<double(const VectorX&)>& margin);
   void beginAndEndPushes();
   void countEvent();
+  void requireUnsolvedPairsApart() const;
 
+  const Scene& scene_;
   Assembly assembly_;
   ChosenMethod method_;
   EquationsOfMotion equations_;

@@ -34,11 +34,28 @@ TEST(Refusals, NameEverythingThatIsNotSimulatedYet) {
 }
 
 TEST(Refusals, NameTheTwoBodiesOfAContactThatCannotBeSimulatedYet) {
-  const std::string box =
-      R"({"name": "crate", "shape": {"capsule": {"radius": 1, "length": 1}}, "position": [3, 0, 0])";
-  const std::string refusal = refusalOf(withBodies(kBall + ("," + box + "}")));
+  const std::string crate =
+      R"({"name": "crate", "shape": {"capsule": {"radius": 1, "length": 1}}, "position": [3, 0, 0],
+    "motion": "static")";
+  const std::string refusal = refusalOf(withBodies(kBall + ("," + crate + "}")));
   EXPECT_NE(refusal.find("\"a\" and \"crate\""), std::string::npos) << refusal;
-  EXPECT_EQ(refusalOf(withBodies(kBall + ("," + box + R"(, "collision": "none"})"))), "");
+  EXPECT_EQ(refusalOf(withBodies(kBall + ("," + crate + R"(, "collision": "none"})"))), "");
+}
+
+TEST(Refusals, LetMovingBodiesFlyUntilTheyComeWithinReach) {
+  const std::string capsules = R"({"name": "still", "shape": {"capsule": {"radius": 0.1, "length": 0.2}}},
+    {"name": "flying", "shape": {"capsule": {"radius": 0.1, "length": 0.2}}, "position": [3, 0, 0],
+     "linearVelocity": [-4, 0, 0]})";
+  const Scene scene = withBodies(capsules);
+  EXPECT_EQ(refusalOf(scene), "");
+  try {
+    simulate(scene);
+    FAIL() << "flew through";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::scene);
+    // Bounding spheres of radius 0.2 meet after 2.6 m.
+    EXPECT_NE(std::string(error.what()).find("within reach of each other at 0.65"), std::string::npos) << error.what();
+  }
 }
 
 TEST(Refusals, AcceptSpheresAndBoxesAmongEachOtherAndAllButCylindersOnPlanes) {
