@@ -1,6 +1,7 @@
 // What a ray meets that leaves a surface: the ground with its squares and shadows, else the sky.
 
 uniform int hasGround;
+uniform vec3 bounceIrradiance;  // what the ground or the floor sends back up, as a radiance from white
 
 const float kUsuallyLit = 0.85;  // share of the ground out of shadow, where a mirror shows too much of it at once
 

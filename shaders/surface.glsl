@@ -5,7 +5,7 @@
 #include "shadow.glsl"
 #include "checker.glsl"
 #include "contact.glsl"
-uniform vec3 bounceIrradiance;  // what the ground or the floor sends back up, as a radiance from white
+#include "irradiance.glsl"
 #include "environment.glsl"
 #include "balls.glsl"
 

@@ -47,7 +47,7 @@ class Catalogue {
   }
 
   int meshOf(const Shape& shape);
-  std::vector<DrawnMesh> take() { return std::move(meshes_); }
+  void moveTo(Appearance& appearance);
 
  private:
   struct Key {
@@ -93,6 +93,15 @@ int Catalogue::meshOf(const Shape& shape) {
   keys_.push_back(key);
   meshes_.push_back(tessellateShape(shape));
   return static_cast<int>(keys_.size()) - 1;
+}
+
+void Catalogue::moveTo(Appearance& appearance) {
+  for (const Key& key : keys_) {
+    const bool isModel = key.kind == Shape(ModelShape{}).index();
+    const auto model = static_cast<std::size_t>(isModel ? key.numbers.x() : 0);
+    appearance.meshIsClosed.push_back(!isModel || checkSolid(scene_.models[model].solid).isSolid);
+  }
+  appearance.meshes = std::move(meshes_);
 }
 
 std::vector<BodyPart> Catalogue::partsOfModel(const ModelShape& shape, const Material& material) {
@@ -167,9 +176,10 @@ Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPer
     appearance.bodies.push_back(std::move(look));
   }
   appearance.ground = findGround(scene, view);
-  appearance.meshes = catalogue.take();
+  catalogue.moveTo(appearance);
   appearance.cylinderMesh = static_cast<int>(appearance.meshes.size());
   appearance.meshes.push_back(tessellate(Cylinder{1, 1}, kLinkFacets));
+  appearance.meshIsClosed.push_back(true);
   return appearance;
 }
 

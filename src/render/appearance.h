@@ -47,6 +47,7 @@ struct Ground {
 /// What bodies look like, the same in every frame.
 struct Appearance {
   std::vector<DrawnMesh> meshes;
+  std::vector<bool> meshIsClosed;  // then its inside is never seen
   std::vector<BodyAppearance> bodies;
   std::optional<Ground> ground;
   int cylinderMesh = 0;  // of radius 1 and length 1, for what links bodies

@@ -74,13 +74,13 @@ Instance packTube(const TubeItem& item, const Stage& stage) {
 /// The square of the contact map that an item may darken; none if it is too far above the ground.
 bool packContact(const ContactItem& item, const Stage& stage, Instance& instance) {
   const Ground& ground = *stage.ground;
-  const ContactRegion& region = stage.contact;
+  const ShadedRegion& region = stage.shaded;
   const Mat3 turn = item.worldFromBox.rotation.toRotationMatrix();
   const Vec3 center = item.worldFromBox.translation;
   const auto extentAlong = [&](const Vec3& axis) {
     return item.isBall ? item.half.x() : (turn.transpose() * axis).cwiseAbs().dot(item.half);
   };
-  const double reach = kContactReach * 2 * item.half.minCoeff();
+  const double reach = std::min(kContactReach * 2 * item.half.minCoeff(), region.margin);
   const double gap = ground.normal.dot(center - ground.point) - extentAlong(ground.normal);
   if (gap > reach || gap < -2 * extentAlong(ground.normal)) return false;
 

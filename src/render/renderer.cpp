@@ -2,6 +2,7 @@
 
 #include <GL/glew.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -29,20 +30,39 @@ double pixelsPerMetre(const View& view, int height) {
   return height / (2 * std::max(distance, 1e-9) * std::tan(view.camera.verticalFieldOfView / 2));
 }
 
-/// The ground as four triangles around the point below the stage's origin, with corners infinitely far.
-GpuMesh makeGroundMesh(const Stage& stage) {
-  const Ground& ground = *stage.ground;
-  const Vec3 middle = ground.normal * ground.normal.dot(ground.point - stage.origin);
+void appendCorner(const Vec3& corner, float w, std::vector<float>& vertices) {
+  for (const double number : corner) vertices.push_back(static_cast<float>(number));
+  vertices.push_back(w);
+}
+
+/// Corners of the part of the ground with shadows, counter-clockwise from above, relative to the stage's origin.
+std::array<Vec3, 4> shadedCorners(const Stage& stage) {
+  const ShadedRegion& region = stage.shaded;
+  const Vec3 foot = stage.ground->normal * stage.ground->normal.dot(stage.ground->point - stage.origin);
+  const Vec3 corner = foot + region.firstU * region.axisU + region.firstV * region.axisV;
+  const Vec3 u = region.sizeU * region.axisU, v = region.sizeV * region.axisV;
+  return {corner, corner + u, corner + u + v, corner + v};
+}
+
+GpuMesh makeNearGround(const Stage& stage) {
   std::vector<float> vertices;
-  const auto append = [&](const Vec3& v, float w) {
-    for (const double number : v) vertices.push_back(static_cast<float>(number));
-    vertices.push_back(w);
-  };
-  append(middle, 1);
-  for (const Vec3& far :
-       {stage.contact.axisU, stage.contact.axisV, Vec3(-stage.contact.axisU), Vec3(-stage.contact.axisV)})
-    append(far, 0);
-  return {vertices, 4, {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1}};
+  for (const Vec3& corner : shadedCorners(stage)) appendCorner(corner, 1, vertices);
+  return {vertices, 4, {0, 1, 2, 0, 2, 3}};
+}
+
+/// What lies around the near ground: from each of its edges to corners infinitely far.
+GpuMesh makeFarGround(const Stage& stage) {
+  const auto corners = shadedCorners(stage);
+  const Vec3 middle = (corners[0] + corners[2]) / 2;
+  std::vector<float> vertices;
+  for (const Vec3& corner : corners) appendCorner(corner, 1, vertices);
+  for (const Vec3& corner : corners) appendCorner((corner - middle).normalized(), 0, vertices);
+  std::vector<std::uint32_t> indices;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t next = (i + 1) % 4;
+    indices.insert(indices.end(), {i, i + 4, next + 4, i, next + 4, next});
+  }
+  return {vertices, 4, indices};
 }
 
 }  // namespace
@@ -57,14 +77,14 @@ struct Renderer::Resources {
   } sizeCheck;
   Appearance appearance;
   Stage stage;
-  ShaderProgram surface, ball, tube, surfaceDepth, ballDepth, tubeDepth, ground, contact, sky;
+  ShaderProgram surface, ball, tube, surfaceDepth, ballDepth, tubeDepth, ground, groundFar, contact, sky;
   PictureTarget picture;
   MapTarget shadowMap, contactMap;
   InstanceBuffer meshInstances, sphereInstances, tubeInstances, contactInstances;
   NumberTexture balls, nearBalls;
   std::vector<GpuMesh> meshes, halfBalls;
   GpuMesh coilMesh, ropeMesh, triangle, square;
-  std::optional<GpuMesh> groundMesh;
+  std::optional<GpuMesh> nearGround, farGround;
   PackedDrawList packed;
   Clock::time_point stageStart;
 };
@@ -80,6 +100,7 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
       ballDepth(shaders, "ball.vert", "depth.frag"),
       tubeDepth(shaders, "tube.vert", "depth.frag"),
       ground(shaders, "ground.vert", "ground.frag"),
+      groundFar(shaders, "ground.vert", "ground_far.frag"),
       contact(shaders, "contact.vert", "contact.frag"),
       sky(shaders, "sky.vert", "sky.frag"),
       picture(width, height),
@@ -93,9 +114,12 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
       square({-1, -1, 1, -1, 1, 1, -1, 1}, 2, {0, 1, 2, 0, 2, 3}) {
   for (const DrawnMesh& mesh : appearance.meshes) meshes.emplace_back(mesh);
   for (const int outline : kOutlines) halfBalls.push_back(makeHalfBall(outline));
-  if (stage.ground) groundMesh.emplace(makeGroundMesh(stage));
+  if (stage.ground) {
+    nearGround.emplace(makeNearGround(stage));
+    farGround.emplace(makeFarGround(stage));
+  }
   for (const ShaderProgram* program :
-       {&surface, &ball, &tube, &surfaceDepth, &ballDepth, &tubeDepth, &ground, &contact, &sky})
+       {&surface, &ball, &tube, &surfaceDepth, &ballDepth, &tubeDepth, &ground, &groundFar, &contact, &sky})
     setStage(stage, *program);
   for (const ShaderProgram* program : {&surfaceDepth, &ballDepth, &tubeDepth}) {
     program->use();
@@ -180,19 +204,19 @@ void Renderer::drawPicture() {
   r.balls.bindTexture(kBallUnit);
   r.nearBalls.bindTexture(kNearBallUnit);
   r.picture.begin();
-  glEnable(GL_CULL_FACE);
-  r.surface.use();
-  drawMeshes();
-  glDisable(GL_CULL_FACE);
   r.ball.use();
   drawSpheres();
+  r.surface.use();
+  drawMeshes();
   r.tube.use();
   drawTubes();
   // Last what fills the picture: hidden pixels are not computed.
-  if (r.groundMesh) {
-    r.ground.use();
+  if (r.nearGround) {
     glEnable(GL_CULL_FACE);  // from below, the ground is not there
-    r.groundMesh->draw();
+    r.ground.use();
+    r.nearGround->draw();
+    r.groundFar.use();
+    r.farGround->draw();
     glDisable(GL_CULL_FACE);
   }
   r.sky.use();
@@ -201,9 +225,13 @@ void Renderer::drawPicture() {
 
 void Renderer::drawMeshes() const {
   const Resources& r = *resources_;
-  for (const Batch& batch : r.packed.meshBatches)
-    r.meshes[static_cast<std::size_t>(batch.mesh)].draw(batch.firstTriangle, batch.triangleCount, r.meshInstances,
-                                                        batch.firstInstance, batch.instanceCount);
+  for (const Batch& batch : r.packed.meshBatches) {
+    const auto mesh = static_cast<std::size_t>(batch.mesh);
+    if (r.appearance.meshIsClosed[mesh]) glEnable(GL_CULL_FACE);
+    r.meshes[mesh].draw(batch.firstTriangle, batch.triangleCount, r.meshInstances, batch.firstInstance,
+                        batch.instanceCount);
+    glDisable(GL_CULL_FACE);
+  }
 }
 
 void Renderer::drawSpheres() const {

@@ -22,6 +22,7 @@ constexpr int kMostFillLights = 3;         // as many as surface.frag has room f
 constexpr double kNearShare = 0.02;        // of the camera's distance to what it looks at
 constexpr double kFadeDistance = 9;        // in sizes of the scene
 constexpr double kContactMargin = 0.15;    // of the scene's size
+constexpr double kLowestLight = 0.05;      // sine of the height below which the ground has no shadows
 constexpr double kShadowMargin = 0.03;     // of the scene's size: links and soft edges
 
 Lighting makeLighting(const Scene& scene, const std::optional<Ground>& ground) {
@@ -73,21 +74,28 @@ ShadowView makeShadowView(const Vec3& towardsLight, const Bounds& bounds, const 
   return {clip.cast<float>(), (texture * clip).cast<float>(), joined(towardsLight, 0), 2 * half / kShadowMapSize};
 }
 
-ContactRegion makeContactRegion(const Ground& ground, const Bounds& bounds, const Vec3& origin) {
-  ContactRegion region;
-  region.axisU = ground.normal.unitOrthogonal();
-  if (std::abs(ground.normal.x()) < 0.9) {
-    region.axisU = (Vec3::UnitX() - ground.normal.x() * ground.normal).normalized();
-  }
+/// Around all that the film shows, and its shadow.
+ShadedRegion makeShadedRegion(const Ground& ground, const Vec3& towardsLight, const Bounds& bounds,
+                              const Vec3& origin) {
+  ShadedRegion region;
+  const Vec3 along = std::abs(ground.normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitZ();
+  region.axisU = (along - along.dot(ground.normal) * ground.normal).normalized();
   region.axisV = ground.normal.cross(region.axisU);
   Mat3 axes;
   axes << region.axisU, region.axisV, ground.normal;
-  const Bounds seen = inAxes(bounds, axes, origin);
-  const double margin = kContactMargin * seen.diagonal().norm();
-  region.firstU = seen.min().x() - margin;
-  region.firstV = seen.min().y() - margin;
-  region.sizeU = seen.sizes().x() + 2 * margin;
-  region.sizeV = seen.sizes().y() + 2 * margin;
+  const Bounds shown = inAxes(bounds, axes, origin);
+  const Vec3 light = axes.transpose() * towardsLight;
+  const double height = ground.normal.dot(ground.point - origin);
+  Bounds shaded = shown;
+  for (int corner = 0; corner < 8 && light.z() > kLowestLight; ++corner) {
+    const Vec3 point = shown.corner(static_cast<Bounds::CornerType>(corner));
+    shaded.extend(Vec3(point - (point.z() - height) / light.z() * light));
+  }
+  region.margin = kContactMargin * shown.diagonal().norm();
+  region.firstU = shaded.min().x() - region.margin;
+  region.firstV = shaded.min().y() - region.margin;
+  region.sizeU = shaded.sizes().x() + 2 * region.margin;
+  region.sizeV = shaded.sizes().y() + 2 * region.margin;
   return region;
 }
 
@@ -128,7 +136,7 @@ void setGround(const Stage& stage, const ShaderProgram& program) {
   program.set("hasGround", stage.ground ? 1 : 0);
   if (!stage.ground) return;
   const Ground& ground = *stage.ground;
-  const ContactRegion& region = stage.contact;
+  const ShadedRegion& region = stage.shaded;
   program.set("groundPlane", joined(ground.normal, ground.normal.dot(ground.point - stage.origin)));
   program.set("groundAxisU", Vec3f(region.axisU.cast<float>()));
   program.set("groundAxisV", Vec3f(region.axisV.cast<float>()));
@@ -162,7 +170,7 @@ Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground
   stage.lighting = makeLighting(scene, ground);
   stage.shadow = makeShadowView(stage.lighting.lamps[0].towards, bounds, stage.origin);
   stage.ground = ground;
-  if (ground) stage.contact = makeContactRegion(*ground, bounds, stage.origin);
+  if (ground) stage.shaded = makeShadedRegion(*ground, stage.lighting.lamps[0].towards, bounds, stage.origin);
   stage.fadeDistance = kFadeDistance * std::max(size, distance / 3);
   return stage;
 }

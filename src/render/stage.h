@@ -27,10 +27,11 @@ struct ShadowView {
   double texel = 0;        // m
 };
 
-/// The part of the ground on which contacts are drawn.
-struct ContactRegion {
+/// The part of the ground on which shadows fall and contacts are drawn.
+struct ShadedRegion {
   Vec3 axisU, axisV;                                    // unit, in the ground
   double firstU = 0, firstV = 0, sizeU = 1, sizeV = 1;  // m, along the axes, from the stage's origin
+  double margin = 0;                                    // m, from what is shown to the region's border
 };
 
 /// All that stays the same from frame to frame. World coordinates for OpenGL are relative to `origin`.
@@ -42,7 +43,7 @@ struct Stage {
   Lighting lighting;
   ShadowView shadow;
   std::optional<Ground> ground;
-  ContactRegion contact;
+  ShadedRegion shaded;
   double fadeDistance = 1;  // m
 
   Vec3f relative(const Vec3& point) const { return (point - origin).cast<float>(); }

@@ -41,10 +41,9 @@ void ContactStage::resolve(double time, const VectorX& before, VectorX& state) {
   findTouching(state);
   if (touching_.empty()) return;
   wakeTouched(time, state);
-  const bool impacted = resolveImpacts(time, state);
+  resolveImpacts(time, state);
   holdLasting(before, state);
   resolveOverlaps(assembly_.geometry, touching_, assembly_.mechanism.bodies, state);
-  if (impacted) projectVelocitiesOntoRods(assembly_.mechanism.rods, assembly_.mechanism.bodies, solver_, state);
   for (const int body : resting_.settle(touching_, state))
     log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
 }
@@ -72,7 +71,7 @@ void ContactStage::wakeTouched(double time, const VectorX& state) {
 
 /// Restitution: every contact that closes faster than one step's acceleration explains is an impact, and then all that
 /// touch take part.
-bool ContactStage::resolveImpacts(double time, VectorX& state) {
+void ContactStage::resolveImpacts(double time, VectorX& state) {
   equations_.evaluate(state, rate_);
   std::vector<ImpactContact> impacts;
   bool anyImpact = false;
@@ -80,22 +79,22 @@ bool ContactStage::resolveImpacts(double time, VectorX& state) {
     impacts.push_back({contact, assembly_.geometry.pairs[contact.pair].law, restSpeed(contact, state), 0});
     anyImpact = anyImpact || -contact.normal.dot(relativeVelocity(contact, state)) > impacts.back().restSpeed;
   }
-  if (!anyImpact) return false;
+  if (!anyImpact) return;
   const double before = kineticEnergy(assembly_.mechanism.bodies, state);
   resolvePairwise(impacts, assembly_.mechanism.bodies, state);
+  projectVelocitiesOntoRods(assembly_.mechanism.rods, assembly_.mechanism.bodies, solver_, state);
   dissipatedEnergy(state) += before - kineticEnergy(assembly_.mechanism.bodies, state);
   for (const ImpactContact& impact : impacts)
     if (impact.impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impact.impulse);
-  return true;
 }
 
-/// A rebound slower than this would end within two steps: it is not resolved. Half of it is what one step adds to a
-/// contact that lasts.
+/// A rebound slower than this would end within about two steps: it is not resolved. What one step adds to the closing
+/// of a contact that lasts is at most half of it. Bodies in free fall side by side have no such speed: their impacts
+/// are resolved however slow.
 double ContactStage::restSpeed(const Contact& contact, const VectorX& state) const {
   const Vec3 acceleration = pointAcceleration(contact.bodyB, contact.point, state, rate_) -
                             pointAcceleration(contact.bodyA, contact.point, state, rate_);
-  const double closing = std::max(0.0, -contact.normal.dot(acceleration));
-  return 2 * closing * timeStep_ + kRestSpeedFloor;
+  return 2 * acceleration.norm() * timeStep_ + kRestSpeedFloor;
 }
 
 void ContactStage::holdLasting(const VectorX& before, VectorX& state) {

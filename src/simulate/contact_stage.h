@@ -26,7 +26,7 @@ class ContactStage {
  private:
   void findTouching(const VectorX& state);
   void wakeTouched(double time, const VectorX& state);
-  bool resolveImpacts(double time, VectorX& state);
+  void resolveImpacts(double time, VectorX& state);
   double restSpeed(const Contact& contact, const VectorX& state) const;
   void holdLasting(const VectorX& before, VectorX& state);
 

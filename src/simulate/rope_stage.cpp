@@ -23,9 +23,11 @@ double motionBound(const Step& step, const Attachment& attachment) {
 
 }  // namespace
 
-RopeStage::RopeStage(Assembly& assembly, EquationsOfMotion& equations, EventLog& log, double timeStep)
+RopeStage::RopeStage(Assembly& assembly, EquationsOfMotion& equations, ContactStage& contacts, EventLog& log,
+                     double timeStep)
     : assembly_(assembly),
       equations_(equations),
+      contacts_(contacts),
       log_(log),
       timeStep_(timeStep),
       sceneRods_(assembly.mechanism.rods.size()),
@@ -95,16 +97,19 @@ void RopeStage::pull(double time, std::size_t index, VectorX& state) {
   const double impulse =
       (1 + restitution) * motion.lengthening / inverseMassAlong(rope, assembly_.mechanism.bodies, state);
 
+  for (const int body : {rope.anchorA.body, rope.anchorB.body}) contacts_.wake(time, body, state);
   const double before = kineticEnergy(assembly_.mechanism.bodies, state);
   applyImpulse(assembly_.mechanism.bodies, rope.anchorA.body, motion.a.arm, -impulse * motion.direction, state);
   applyImpulse(assembly_.mechanism.bodies, rope.anchorB.body, motion.b.arm, impulse * motion.direction, state);
-  dissipatedEnergy(state) += before - kineticEnergy(assembly_.mechanism.bodies, state);
   const bool staysTaut = !rebounds && acceleration > 0;
   if (rebounds || staysTaut) record(time, EventKind::taut, index, impulse, state);
-  if (!staysTaut) return;
-  tautRod_[index] = 0;
-  rebuildRods();
-  projectOntoRods(assembly_.mechanism.rods, assembly_.mechanism.bodies, solver_, state);
+  if (staysTaut) {
+    tautRod_[index] = 0;
+    rebuildRods();
+  }
+  // The pull goes on into the other rods and taut ropes.
+  projectVelocitiesOntoRods(assembly_.mechanism.rods, assembly_.mechanism.bodies, solver_, state);
+  dissipatedEnergy(state) += before - kineticEnergy(assembly_.mechanism.bodies, state);
 }
 
 void RopeStage::release(double time, std::size_t rope, const VectorX& state) {

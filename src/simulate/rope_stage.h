@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "simulate/event_log.h"
+#include "simulate/contact_stage.h"
 
 namespace cradle {
 
@@ -17,8 +17,8 @@ struct RopeChange {
 /// The rods of taut ropes stand behind the scene's own in Mechanism::rods.
 class RopeStage {
  public:
-  /// Keeps references to all three. `timeStep` (s) is the method's.
-  RopeStage(Assembly& assembly, EquationsOfMotion& equations, EventLog& log, double timeStep);
+  /// Keeps references to all four. `timeStep` (s) is the method's.
+  RopeStage(Assembly& assembly, EquationsOfMotion& equations, ContactStage& contacts, EventLog& log, double timeStep);
 
   /// The first slack rope of a step that reaches its length, or taut one whose tension ends. The step's end rate must
   /// be there (prepareInterpolant).
@@ -43,6 +43,7 @@ class RopeStage {
 
   Assembly& assembly_;
   EquationsOfMotion& equations_;
+  ContactStage& contacts_;
   EventLog& log_;
   ConstraintSolver solver_;
   double timeStep_;

@@ -49,7 +49,7 @@ Simulation::Simulation(const Scene& scene, Assembly assembly)
       rightHandSide_(equations_.rightHandSide()),
       log_(assembly_),
       contacts_(assembly_, equations_, log_, method_.timeStep),
-      ropes_(assembly_, equations_, log_, method_.timeStep),
+      ropes_(assembly_, equations_, contacts_, log_, method_.timeStep),
       pushes_(scene, assembly_.movingBodies, log_),
       guard_(assembly_.mechanism, assembly_.state, namesOf(scene, assembly_, method_)),
       duration_(scene.duration),
