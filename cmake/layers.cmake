@@ -5,6 +5,17 @@ function(cradle_layer NAME)
   file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${NAME}/*.cpp)
   list(TRANSFORM ARG_LAYERS PREPEND cradle_)
   add_library(cradle_${NAME} STATIC ${SOURCES})
+  if(NOT NAME STREQUAL core AND NOT NAME STREQUAL image)  # those do not use Eigen
+    target_link_libraries(cradle_${NAME} PUBLIC cradle_headers)
+    target_precompile_headers(cradle_${NAME} REUSE_FROM cradle_headers)
+  endif()
   target_include_directories(cradle_${NAME} PUBLIC ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(cradle_${NAME} PUBLIC ${ARG_LAYERS} ${ARG_LIBRARIES})
 endfunction()
+
+# Eigen, fmt and the standard containers, compiled once for all layers: half of the time of a build.
+file(WRITE ${PROJECT_BINARY_DIR}/cradle_headers.cpp "")
+add_library(cradle_headers STATIC ${PROJECT_BINARY_DIR}/cradle_headers.cpp)
+target_link_libraries(cradle_headers PUBLIC Eigen3::Eigen fmt::fmt)
+target_precompile_headers(cradle_headers PRIVATE <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <string> <vector> <optional>
+  <variant> <algorithm>)

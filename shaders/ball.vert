@@ -6,12 +6,10 @@ uniform mat4 clipFromWorld;
 uniform vec4 viewer;  // m; w = 0: infinitely far in that direction
 
 layout(location = 0) in vec3 place;           // angle from the axis to the viewer, 1 at the outline; direction around it
-layout(location = 2) in vec4 worldFromMeshX;  // rows of the affine transform
-layout(location = 3) in vec4 worldFromMeshY;
-layout(location = 4) in vec4 worldFromMeshZ;
-layout(location = 5) in vec4 inverseScaleAndRoughness;
-layout(location = 6) in vec4 instanceColor;  // linear; w is metallic
-layout(location = 7) in vec4 instanceBalls;  // first and number of the balls near
+layout(location = 2) in vec4 centerAndRadius;    // m
+layout(location = 5) in vec4 instanceRoughness;  // w
+layout(location = 6) in vec4 instanceColor;      // linear; w is metallic
+layout(location = 7) in vec4 instanceBalls;      // first and number of the balls near
 
 flat out vec4 ball;
 flat out vec4 surfaceColor;
@@ -21,8 +19,8 @@ flat out vec2 nearBalls;
 const float kRightAngle = 1.57079633;
 
 void main() {
-  vec3 center = vec3(worldFromMeshX.w, worldFromMeshY.w, worldFromMeshZ.w);
-  float radius = length(vec3(worldFromMeshX.x, worldFromMeshY.x, worldFromMeshZ.x));
+  vec3 center = centerAndRadius.xyz;
+  float radius = centerAndRadius.w;
   vec3 towards = viewer.xyz - viewer.w * center;
   float distance = length(towards);
   vec3 axis = towards / distance;
@@ -31,9 +29,9 @@ void main() {
   float outline = viewer.w > 0.0 ? acos(min(radius / distance, 1.0)) : kRightAngle;
   float angle = place.x * outline;
   vec3 position = center + radius * (cos(angle) * axis + sin(angle) * (place.y * u + place.z * v));
-  ball = vec4(center, radius);
+  ball = centerAndRadius;
   surfaceColor = instanceColor;
-  roughness = inverseScaleAndRoughness.w;
+  roughness = instanceRoughness.w;
   nearBalls = instanceBalls.xy;
   gl_Position = clipFromWorld * vec4(position, 1.0);
 }

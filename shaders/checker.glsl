@@ -19,6 +19,7 @@ vec2 squareWaveIntegral(vec2 x) {
 vec3 checkColor(vec2 place, vec2 footprint) {
   vec2 width = max(footprint, vec2(1e-4));
   vec2 mean = (squareWaveIntegral(place + 0.5 * width) - squareWaveIntegral(place - 0.5 * width)) / width;
+  mean *= 1.0 - smoothstep(0.5, 1.0, width);  // squares of a pixel or less would beat with the pixels
   return mix(darkCheck, lightCheck, 0.5 + 0.5 * mean.x * mean.y);
 }
 

@@ -7,7 +7,7 @@ layout(location = 2) in vec4 boxFromWorldX;  // rows: from a point relative to t
 layout(location = 3) in vec4 boxFromWorldY;
 layout(location = 4) in vec4 boxFromWorldZ;
 layout(location = 5) in vec4 halfAndReach;   // m; half edges, and how far the darkening goes beyond
-layout(location = 6) in vec4 centreAndKind;  // centre in clip coordinates of the map; w is 1 for a ball
+layout(location = 6) in vec4 centreAndKind;  // centre in clip coordinates of the map; w: 0 box, 1 ellipsoid, 2 cylinder
 layout(location = 7) in vec4 halfSize;       // half size in clip coordinates of the map
 
 uniform vec3 mapOrigin;  // m; corner of the map
@@ -18,7 +18,7 @@ flat out vec4 rowX;
 flat out vec4 rowY;
 flat out vec4 rowZ;
 flat out vec4 box;
-flat out float isBall;
+flat out float kind;
 out vec3 position;
 
 void main() {
@@ -27,7 +27,7 @@ void main() {
   rowY = boxFromWorldY;
   rowZ = boxFromWorldZ;
   box = halfAndReach;
-  isBall = centreAndKind.w;
+  kind = centreAndKind.w;
   position = mapOrigin + (0.5 + 0.5 * place.x) * mapU + (0.5 + 0.5 * place.y) * mapV;
   gl_Position = vec4(place, 0.0, 1.0);
 }

@@ -6,12 +6,11 @@ uniform vec3 zenithColor;
 uniform vec3 horizonColor;
 uniform vec3 nadirColor;      // seen only where there is no ground
 
-const float kHorizonSharpness = 3.2;  // the sky loses its haze within about 20 degrees
+const float kHorizonSharpness = 4.0;  // half of the haze is gone 14 degrees above the horizon
 
 vec3 skyLight(vec3 direction) {
-  float height = direction.y;
-  vec3 above = mix(zenithColor, horizonColor, exp(-kHorizonSharpness * max(height, 0.0)));
-  return mix(above, nadirColor, 1.0 - exp(kHorizonSharpness * min(height, 0.0)));
+  float x = kHorizonSharpness * direction.y;
+  return mix(direction.y > 0.0 ? zenithColor : nadirColor, horizonColor, 1.0 / (1.0 + x * x));
 }
 
 // What mirrors see besides: a bright haze around the key light.

@@ -6,12 +6,12 @@ uniform mat4 clipFromWorld;
 
 layout(location = 0) in vec3 meshPosition;
 layout(location = 1) in vec3 meshNormal;
-layout(location = 2) in vec4 worldFromMeshX;  // rows of the affine transform
+layout(location = 2) in vec4 worldFromMeshX;  // rows of the rigid transform
 layout(location = 3) in vec4 worldFromMeshY;
 layout(location = 4) in vec4 worldFromMeshZ;
-layout(location = 5) in vec4 inverseScaleAndRoughness;  // 1 / scale^2: turns the transform into that of normals
-layout(location = 6) in vec4 instanceColor;             // linear; w is metallic
-layout(location = 7) in vec4 instanceBalls;             // first and number of the balls near, own ball or -1
+layout(location = 5) in vec4 instanceRoughness;  // w
+layout(location = 6) in vec4 instanceColor;      // linear; w is metallic
+layout(location = 7) in vec4 instanceBalls;      // first and number of the balls near
 
 out vec3 position;
 out vec3 normal;
@@ -22,10 +22,10 @@ flat out vec2 nearBalls;
 void main() {
   vec4 place = vec4(meshPosition, 1.0);
   position = vec3(dot(worldFromMeshX, place), dot(worldFromMeshY, place), dot(worldFromMeshZ, place));
-  vec3 scaled = meshNormal * inverseScaleAndRoughness.xyz;
-  normal = vec3(dot(worldFromMeshX.xyz, scaled), dot(worldFromMeshY.xyz, scaled), dot(worldFromMeshZ.xyz, scaled));
+  normal = vec3(dot(worldFromMeshX.xyz, meshNormal), dot(worldFromMeshY.xyz, meshNormal),
+                dot(worldFromMeshZ.xyz, meshNormal));
   surfaceColor = instanceColor;
-  roughness = inverseScaleAndRoughness.w;
+  roughness = instanceRoughness.w;
   nearBalls = instanceBalls.xy;
   gl_Position = clipFromWorld * vec4(position, 1.0);
 }

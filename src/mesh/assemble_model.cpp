@@ -137,7 +137,7 @@ LoadedModel assembleModel(const std::string& name, std::vector<MeshPiece> pieces
     turnInsideOut(loaded.model);
     if (checkSolid(loaded.model.solid).isSolid) {
       turnNormalsOutwards(drawn);
-      loaded.notes.push_back("was inside-out: turned");
+      loaded.notes.emplace_back("was inside-out: turned");
     } else {
       turnInsideOut(loaded.model);  // back
     }

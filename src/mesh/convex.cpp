@@ -1,7 +1,6 @@
 #include "mesh/convex.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace cradle {
 namespace {
@@ -13,26 +12,10 @@ struct FacePlane {
   double offset;
 };
 
-bool isConnected(const TriangleMesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) {
-    parent[root(b)] = root(a);
-    parent[root(c)] = root(a);
-  }
-  const std::uint32_t first = root(mesh.triangles.front()[0]);
-  return std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
-                     [&](const Triangle& triangle) { return root(triangle[0]) == first; });
-}
-
 }  // namespace
 
 bool isConvex(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty() || !isConnected(mesh)) return false;
+  if (mesh.triangles.empty()) return false;
   Bounds bounds;
   for (const Vec3& vertex : mesh.vertices) bounds.extend(vertex);
   const double size = bounds.diagonal().norm();

@@ -38,7 +38,7 @@ using Affine = Eigen::Affine3d;
 constexpr std::uint64_t kMemoryPerByte = 100;
 constexpr std::uint64_t kMemoryForAnyFile = 1 << 30;  // bytes
 constexpr std::uint64_t kBytesPerSecond = 1 << 20;
-constexpr std::uint64_t kSecondsForAnyFile = 5;     // s, of computing
+constexpr std::uint64_t kSecondsForAnyFile = 3;     // s, of computing
 constexpr std::uint64_t kLargestFiles = 256 << 20;  // bytes, a mesh file and those it names together
 
 class MeshFiles : public Assimp::IOSystem {
@@ -130,7 +130,8 @@ std::string objectName(const ImportedFile& file, const aiNode* node, const aiMes
   const std::string meshName = mesh.mName.C_Str(), nodeName = node == nullptr ? "" : node->mName.C_Str();
   const bool isDummy = nodeName.empty() || nodeName.starts_with("3DSMesh_");  // no keyframer section
   if (isDummy && numberIn3ds(mesh) < file.summary.meshes.size()) return file.summary.meshes[numberIn3ds(mesh)].name;
-  if (!nodeName.empty() && node != file.scene->mRootNode) return nodeName;
+  // Names in <> are importers' own; so are the ends of names of nodes that fbx files need for their many transforms.
+  if (!nodeName.empty() && !nodeName.starts_with("<")) return nodeName.substr(0, nodeName.find("_$AssimpFbx$"));
   return meshName.empty() ? std::filesystem::path(file.path).stem().string() : meshName;
 }
 

@@ -188,9 +188,8 @@ std::optional<PlacedPrimitive> fitCapsule(const AxialExtent& extent, const Candi
   return PlacedPrimitive{Capsule{radius, length}, place};
 }
 
-// Directions in which an axis of revolution may point: principal axes of inertia, principal axes of the surface's
-// normals (a cylinder with length^2 = 3 radius^2 has none of the former, one with length = 2 radius none of the
-// latter), and the farthest vertex (the tip of a capsule).
+// Directions in which an axis of revolution may point: principal axes of inertia and of the surface's normals (a
+// cylinder with length^2 = 3 radius^2 has none of the former, one with length = 2 radius none of the latter).
 std::vector<Vec3> likelyAxes(const Candidate& candidate) {
   const TriangleMesh& mesh = candidate.mesh;
   Mat3 normals = Mat3::Zero();
@@ -205,12 +204,6 @@ std::vector<Vec3> likelyAxes(const Candidate& candidate) {
     axes.push_back(principal.eigenvectors().col(0));
     axes.push_back(principal.eigenvectors().col(2));
   }
-  Vec3 farthest = Vec3::Zero();
-  for (const Vec3& vertex : mesh.vertices) {
-    const Vec3 from = vertex - candidate.properties.centerOfMass;
-    if (from.norm() > farthest.norm()) farthest = from;
-  }
-  axes.push_back(farthest.normalized());
   return axes;
 }
 

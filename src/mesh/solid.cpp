@@ -103,9 +103,9 @@ void checkVolume(const TriangleMesh& mesh, std::vector<std::string>& problems) {
   }
   const double volume = signedVolume(mesh);
   if (!std::isfinite(volume))
-    problems.push_back("is too large: its volume overflows");
+    problems.emplace_back("is too large: its volume overflows");
   else if (!(std::abs(volume) > kFlat * area * bounds.diagonal().norm()))
-    problems.push_back("is flat: it encloses no volume");
+    problems.emplace_back("is flat: it encloses no volume");
   else if (volume < 0 && problems.empty())
     problems.push_back(fmt::format("is inside-out: its volume is {:.6g} m^3; turn its faces", volume));
 }
@@ -115,14 +115,14 @@ void checkVolume(const TriangleMesh& mesh, std::vector<std::string>& problems) {
 SolidReport checkSolid(const TriangleMesh& mesh) {
   SolidReport report;
   if (mesh.triangles.empty())
-    report.problems.push_back("has no triangles");
+    report.problems.emplace_back("has no triangles");
   else if (checkNumbers(mesh, report.problems)) {
     checkEdges(mesh, report.problems);
     checkVolume(mesh, report.problems);
   }
   report.isSolid = report.problems.empty();
   if (!report.isSolid)
-    report.problems.push_back(
+    report.problems.emplace_back(
         "without a closed surface there is no volume, and so no mass: make the body static, give it `mass` with "
         "`inertiaTensor`, or use `collision: hull`");
   return report;

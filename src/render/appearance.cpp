@@ -12,14 +12,13 @@ namespace cradle {
 namespace {
 
 constexpr double kVisibleFacet = 0.25;  // pixels by which a chord may miss the circle before its corner shows
-constexpr int kLinkFacets = 8;          // rods are a few pixels thick
 constexpr double kNearer = 1.2;         // things come so much nearer than the middle of the scene
 
 // The ground when its material names no colour: light stone, and squares of a darker one.
 constexpr float kStone = 0.64f;
-const Vec3f kStoneTint(1.0f, 0.985f, 0.955f);
-constexpr float kDarkSquare = 0.42f;  // of the light one
-constexpr double kFewestSquares = 4;  // across the scene
+const Vec3f kStoneTint(1.0f, 0.972f, 0.925f);
+constexpr float kDarkSquare = 0.42f;    // of the light one
+constexpr double kFewestSquares = 2.5;  // across the scene
 
 /// Facets around a circle of `radius` pixels: a chord of angle 2 a misses it by radius a^2 / 2.
 int facetsFor(double radius) {
@@ -33,6 +32,11 @@ Surface surfaceOf(const Material& material, const std::optional<Vec3f>& fileColo
   return {linearFromSrgb(color), static_cast<float>(material.metallic), static_cast<float>(material.roughness)};
 }
 
+bool isDrawnAsMesh(const Shape& shape) {
+  return std::holds_alternative<Box>(shape) || std::holds_alternative<Capsule>(shape) ||
+         std::holds_alternative<ModelShape>(shape);
+}
+
 /// Fills the catalogue of meshes, one entry for all bodies that share a shape.
 class Catalogue {
  public:
@@ -40,7 +44,7 @@ class Catalogue {
 
   std::vector<BodyPart> partsOf(const Body& body) {
     const Material& material = scene_.materials.at(static_cast<std::size_t>(body.material));
-    if (std::holds_alternative<Plane>(body.shape) || std::holds_alternative<Sphere>(body.shape)) return {};
+    if (!isDrawnAsMesh(body.shape)) return {};
     if (const auto* model = std::get_if<ModelShape>(&body.shape)) return partsOfModel(*model, material);
     const int mesh = meshOf(body.shape);
     return {{mesh, 0, triangleCount(mesh), surfaceOf(material, {})}};
@@ -73,7 +77,6 @@ class Catalogue {
 Catalogue::Key Catalogue::keyOf(const Shape& shape) const {
   Key key{shape.index(), Vec3::Zero()};
   if (const auto* box = std::get_if<Box>(&shape)) key.numbers = box->size;
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) key.numbers = {cylinder->radius, cylinder->length, 0};
   if (const auto* capsule = std::get_if<Capsule>(&shape)) key.numbers = {capsule->radius, capsule->length, 0};
   if (const auto* model = std::get_if<ModelShape>(&shape)) key.numbers.x() = model->model;
   return key;
@@ -81,7 +84,6 @@ Catalogue::Key Catalogue::keyOf(const Shape& shape) const {
 
 DrawnMesh Catalogue::tessellateShape(const Shape& shape) const {
   if (const auto* box = std::get_if<Box>(&shape)) return tessellate(*box);
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return tessellate(*cylinder, facets(cylinder->radius));
   if (const auto* capsule = std::get_if<Capsule>(&shape)) return tessellate(*capsule, facets(capsule->radius));
   return scene_.models.at(static_cast<std::size_t>(std::get<ModelShape>(shape).model)).drawn;
 }
@@ -122,32 +124,40 @@ std::vector<std::optional<BodyBall>> findBalls(const std::vector<Model>& models)
     if (!checkSolid(model.solid).isSolid) continue;
     const auto primitive = recogniseShape(model.solid).primitive;
     const Sphere* sphere = primitive ? std::get_if<Sphere>(&primitive->shape) : nullptr;
-    if (sphere != nullptr) balls.back() = BodyBall{primitive->bodyFromShape.translation, sphere->radius, {}};
+    if (sphere != nullptr) balls.back() = BodyBall{primitive->bodyFromShape.translation, sphere->radius};
   }
   return balls;
 }
 
-std::optional<BodyBall> ballOf(const Body& body, const Material& material,
-                               const std::vector<std::optional<BodyBall>>& ballOfModel,
-                               const std::vector<BodyPart>& parts) {
-  if (const auto* sphere = std::get_if<Sphere>(&body.shape))
-    return BodyBall{Vec3::Zero(), sphere->radius, surfaceOf(material, {})};
-  const auto* model = std::get_if<ModelShape>(&body.shape);
-  if (model == nullptr) return {};
-  std::optional<BodyBall> ball = ballOfModel.at(static_cast<std::size_t>(model->model));
-  if (ball) ball->surface = parts.at(0).surface;
-  return ball;
+BodyAppearance lookOf(const Scene& scene, const Body& body, const std::vector<std::optional<BodyBall>>& ballOfModel,
+                      Catalogue& catalogue) {
+  BodyAppearance look;
+  look.local = localBounds(scene, body);
+  look.parts = catalogue.partsOf(body);
+  look.surface = surfaceOf(scene.materials.at(static_cast<std::size_t>(body.material)), {});
+  if (const auto* sphere = std::get_if<Sphere>(&body.shape)) {
+    look.ball = BodyBall{Vec3::Zero(), sphere->radius};
+    look.isDrawnAsBall = true;
+  }
+  if (const auto* cylinder = std::get_if<Cylinder>(&body.shape)) look.cylinder = *cylinder;
+  if (look.cylinder) look.contact = ContactKind::cylinder;
+  if (std::holds_alternative<Box>(body.shape)) look.contact = ContactKind::box;
+  if (const auto* model = std::get_if<ModelShape>(&body.shape)) {
+    look.ball = ballOfModel.at(static_cast<std::size_t>(model->model));
+    look.surface = look.parts.at(0).surface;
+  }
+  return look;
 }
 
 /// The plane that is nearest to level, if one is a floor rather than a wall.
 std::optional<Ground> findGround(const Scene& scene, const View& view) {
   std::optional<Ground> ground;
-  double steepest = 0.3;  // y of the normal; a slope of 72 degrees
+  double steepest = 0;  // y of the normal
   for (const Body& body : scene.bodies) {
     const Plane* plane = std::get_if<Plane>(&body.shape);
     if (plane == nullptr) continue;
     const Vec3 normal = body.worldFromBody.rotation * plane->normal;
-    if (normal.y() <= steepest) continue;
+    if (!isFloor(normal) || normal.y() <= steepest) continue;
     steepest = normal.y();
     const auto& color = scene.materials.at(static_cast<std::size_t>(body.material)).baseColor;
     const Vec3f light = color ? linearFromSrgb(*color) : Vec3f(kStone * kStoneTint);
@@ -168,18 +178,9 @@ Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPer
   Appearance appearance;
   Catalogue catalogue(scene, pixelsPerMetre);
   const auto ballOfModel = findBalls(scene.models);
-  for (const Body& body : scene.bodies) {
-    const Material& material = scene.materials.at(static_cast<std::size_t>(body.material));
-    BodyAppearance look{catalogue.partsOf(body), localBounds(scene, body), {}, false};
-    look.ball = ballOf(body, material, ballOfModel, look.parts);
-    look.isDrawnAsBall = std::holds_alternative<Sphere>(body.shape);
-    appearance.bodies.push_back(std::move(look));
-  }
+  for (const Body& body : scene.bodies) appearance.bodies.push_back(lookOf(scene, body, ballOfModel, catalogue));
   appearance.ground = findGround(scene, view);
   catalogue.moveTo(appearance);
-  appearance.cylinderMesh = static_cast<int>(appearance.meshes.size());
-  appearance.meshes.push_back(tessellate(Cylinder{1, 1}, kLinkFacets));
-  appearance.meshIsClosed.push_back(true);
   return appearance;
 }
 

@@ -26,13 +26,18 @@ struct BodyPart {
 struct BodyBall {
   Vec3 center;  // m, body's frame
   double radius;
-  Surface surface = {};
 };
 
+/// What a body is like for the ground that it darkens (as contact.frag counts).
+enum class ContactKind { box = 0, ellipsoid = 1, cylinder = 2 };
+
 struct BodyAppearance {
-  std::vector<BodyPart> parts;  // none for planes, and for balls that are drawn as such
+  std::vector<BodyPart> parts;  // none for planes, balls and cylinders
   Bounds local;                 // body's frame; empty for planes
   std::optional<BodyBall> ball;
+  std::optional<Cylinder> cylinder;
+  Surface surface = {};  // of ball or cylinder
+  ContactKind contact = ContactKind::ellipsoid;
   bool isDrawnAsBall = false;  // exactly round; else the ball only stands for a mesh in mirrors and contacts
 };
 
@@ -50,7 +55,6 @@ struct Appearance {
   std::vector<bool> meshIsClosed;  // then its inside is never seen
   std::vector<BodyAppearance> bodies;
   std::optional<Ground> ground;
-  int cylinderMesh = 0;  // of radius 1 and length 1, for what links bodies
 };
 
 /// `pixelsPerMetre` at the distance of the scene decides how finely round things are divided.

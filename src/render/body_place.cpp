@@ -5,6 +5,8 @@
 namespace cradle {
 namespace {
 
+constexpr double kSteepestFloor = 0.3;  // y of the normal: a slope of 72 degrees
+
 Bounds around(const Vec3& half) {
   return {-half, half};
 }
@@ -51,6 +53,10 @@ std::vector<RigidTransform> placeBodiesAtStart(const Scene& scene) {
 
 Bounds localBounds(const Scene& scene, const Body& body) {
   return std::visit(BoundsOfShape{scene}, body.shape);
+}
+
+bool isFloor(const Vec3& normal) {
+  return normal.y() > kSteepestFloor;
 }
 
 Vec3 worldPoint(const Anchor& anchor, const std::vector<RigidTransform>& worldFromBody) {

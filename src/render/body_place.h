@@ -16,6 +16,9 @@ std::vector<RigidTransform> placeBodiesAtStart(const Scene& scene);
 /// Box around a body's surface in its own frame; empty for a plane. O(vertices).
 Bounds localBounds(const Scene& scene, const Body& body);
 
+/// Whether a plane with this normal is drawn as ground rather than left out as a wall.
+bool isFloor(const Vec3& normal);
+
 /// World position of an anchor.
 Vec3 worldPoint(const Anchor& anchor, const std::vector<RigidTransform>& worldFromBody);
 

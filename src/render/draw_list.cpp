@@ -20,55 +20,76 @@ void appendBody(const BodyAppearance& look, const RigidTransform& worldFromBody,
   }
 }
 
-void appendBall(const BodyAppearance& look, const RigidTransform& worldFromBody, int body, DrawList& list) {
+void appendRound(const BodyAppearance& look, const RigidTransform& worldFromBody, int body, DrawList& list) {
+  if (look.cylinder)
+    list.cylinders.push_back({worldFromBody.translation, worldFromBody.rotation * Vec3::UnitY(), look.cylinder->radius,
+                              look.cylinder->length, look.surface});
   if (!look.ball) return;
   const Vec3 center = worldFromBody * look.ball->center;
-  list.balls.push_back({center, look.ball->radius, look.ball->surface, body});
-  if (look.isDrawnAsBall) list.spheres.push_back({center, look.ball->radius, look.ball->surface});
+  list.balls.push_back({center, look.ball->radius, look.surface, body});
+  if (look.isDrawnAsBall) list.spheres.push_back({center, look.ball->radius, look.surface});
 }
 
 void appendContact(const BodyAppearance& look, const RigidTransform& worldFromBody, DrawList& list) {
   if (look.local.isEmpty()) return;
   RigidTransform place = worldFromBody;
   place.translation = worldFromBody * Vec3(look.local.center());
-  list.contacts.push_back({place, look.local.sizes() / 2, look.ball.has_value()});
+  list.contacts.push_back({place, look.local.sizes() / 2, look.contact});
 }
 
-/// The balls near an item's bounds, the closest (in radii) first.
+Bounds boundsOf(const MeshItem& item) {
+  return item.bounds;
+}
+
+template <typename RoundItem>
+Bounds boundsOf(const RoundItem& item) {
+  return item.bounds();
+}
+
+/// The balls near each item's bounds, the closest (in radii) first; not its own.
 template <typename Item>
-void findNearBalls(const std::vector<BallItem>& balls, const Bounds& bounds, int ownBody, Item& item,
-                   std::vector<int>& nearBalls) {
-  std::vector<std::pair<double, int>> found;
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    if (balls[i].body == ownBody) continue;
-    const double distance = bounds.exteriorDistance(balls[i].center) / balls[i].radius;
-    if (distance < kNear) found.emplace_back(distance, static_cast<int>(i));
+void findNearBalls(const std::vector<int>& bodyOfItem, std::vector<Item>& items, DrawList& list) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Bounds bounds = boundsOf(items[i]);
+    std::vector<std::pair<double, int>> found;
+    for (std::size_t b = 0; b < list.balls.size(); ++b) {
+      const BallItem& ball = list.balls[b];
+      const double distance = bounds.exteriorDistance(ball.center) / ball.radius;
+      if (ball.body != bodyOfItem[i] && distance < kNear) found.emplace_back(distance, static_cast<int>(b));
+    }
+    const std::size_t count = std::min(found.size(), kMostNearBalls);
+    std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end());
+    items[i].firstNearBall = static_cast<int>(list.nearBalls.size());
+    items[i].nearBalls = static_cast<int>(count);
+    for (std::size_t f = 0; f < count; ++f) list.nearBalls.push_back(found[f].second);
   }
-  const std::size_t count = std::min(found.size(), kMostNearBalls);
-  std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end());
-  item.firstNearBall = static_cast<int>(nearBalls.size());
-  item.nearBalls = static_cast<int>(count);
-  for (std::size_t i = 0; i < count; ++i) nearBalls.push_back(found[i].second);
 }
 
 }  // namespace
 
+Bounds CylinderItem::bounds() const {
+  // A disc across the axis reaches as far along each world axis as that axis lies in the disc.
+  const Vec3 disc = (Vec3::Ones() - axis.cwiseProduct(axis)).cwiseMax(0).cwiseSqrt();
+  const Vec3 half = radius * disc + length / 2 * axis.cwiseAbs();
+  return {center - half, center + half};
+}
+
 DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const View& view, const Frame& frame) {
   const auto places = placeBodies(scene, frame);
   DrawList list;
-  std::vector<int> bodyOfMesh, bodyOfSphere;
+  std::vector<int> bodyOfMesh, bodyOfSphere, bodyOfCylinder;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const BodyAppearance& look = appearance.bodies[i];
-    appendBody(look, places[i], list);
-    appendBall(look, places[i], static_cast<int>(i), list);
-    appendContact(look, places[i], list);
-    bodyOfMesh.resize(list.meshes.size(), static_cast<int>(i));
-    bodyOfSphere.resize(list.spheres.size(), static_cast<int>(i));
+    const int body = static_cast<int>(i);
+    appendBody(appearance.bodies[i], places[i], list);
+    appendRound(appearance.bodies[i], places[i], body, list);
+    appendContact(appearance.bodies[i], places[i], list);
+    bodyOfMesh.resize(list.meshes.size(), body);
+    bodyOfSphere.resize(list.spheres.size(), body);
+    bodyOfCylinder.resize(list.cylinders.size(), body);
   }
-  for (std::size_t i = 0; i < list.meshes.size(); ++i)
-    findNearBalls(list.balls, list.meshes[i].bounds, bodyOfMesh[i], list.meshes[i], list.nearBalls);
-  for (std::size_t i = 0; i < list.spheres.size(); ++i)
-    findNearBalls(list.balls, list.spheres[i].bounds(), bodyOfSphere[i], list.spheres[i], list.nearBalls);
+  findNearBalls(bodyOfMesh, list.meshes, list);
+  findNearBalls(bodyOfSphere, list.spheres, list);
+  findNearBalls(bodyOfCylinder, list.cylinders, list);
   appendLinks(scene, appearance, view, places, list);
   std::stable_sort(list.meshes.begin(), list.meshes.end(), [](const MeshItem& a, const MeshItem& b) {
     return std::pair(a.mesh, a.firstTriangle) < std::pair(b.mesh, b.firstTriangle);

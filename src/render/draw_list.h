@@ -13,7 +13,6 @@ struct MeshItem {
   int mesh = 0;  // index into Appearance::meshes
   std::uint32_t firstTriangle = 0, triangleCount = 0;
   RigidTransform worldFromMesh = {};
-  Vec3 scale = Vec3::Ones();  // before the transform
   Surface surface = {};
   Bounds bounds = {};                    // m, world
   int firstNearBall = 0, nearBalls = 0;  // range of DrawList::nearBalls
@@ -26,6 +25,16 @@ struct SphereItem {
   Surface surface = {};
   int firstNearBall = 0, nearBalls = 0;  // range of DrawList::nearBalls
   Bounds bounds() const { return {center - Vec3::Constant(radius), center + Vec3::Constant(radius)}; }
+};
+
+/// A cylinder that is drawn exactly round: a body, or a rod.
+struct CylinderItem {
+  Vec3 center;  // m, world
+  Vec3 axis;    // unit
+  double radius = 0, length = 0;
+  Surface surface = {};
+  int firstNearBall = 0, nearBalls = 0;  // range of DrawList::nearBalls
+  Bounds bounds() const;
 };
 
 /// A round tube along a curve: a spring's coil, or a rope that sags.
@@ -49,17 +58,18 @@ struct BallItem {
   int body = 0;
 };
 
-/// A box (a ball, if `isBall`) that darkens the ground beneath.
+/// What darkens the ground beneath it.
 struct ContactItem {
   RigidTransform worldFromBox;
-  Vec3 half;  // m, half edges; all the radius of a ball
-  bool isBall = false;
+  Vec3 half;  // m, half edges of the box around it
+  ContactKind kind = ContactKind::box;
 };
 
 /// A picture as plain data, in a fixed order: OpenGL comes after.
 struct DrawList {
   std::vector<MeshItem> meshes;  // grouped by mesh and range
   std::vector<SphereItem> spheres;
+  std::vector<CylinderItem> cylinders;
   std::vector<TubeItem> tubes;  // springs before ropes
   std::vector<BallItem> balls;
   std::vector<int> nearBalls;  // indices into balls

@@ -18,9 +18,19 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kFieldOfView = 32 * kDegree;  // long enough that balls at the border stay round
 constexpr double kElevation = 10 * kDegree;    // from above, with the horizon still in the picture
-// Seen along z or along x, and turned aside against the default light so that shadows fall aside, too.
-constexpr double kAlongZ = -24 * kDegree;
-constexpr double kAlongX = 114 * kDegree;
+// Turned so far aside from the axes of the world; against the default light first, so that shadows fall aside, too.
+constexpr double kAside = 24 * kDegree;
+constexpr std::array<double, 8> kAzimuths = {-kAside,
+                                             kAside,
+                                             180 * kDegree + kAside,
+                                             180 * kDegree - kAside,
+                                             90 * kDegree + kAside,
+                                             90 * kDegree - kAside,
+                                             270 * kDegree - kAside,
+                                             270 * kDegree + kAside};
+constexpr std::size_t kFirstAlongX = 4;  // azimuths from there on look along x, those before along z
+constexpr double kSlopeInView = 0.1;     // sine of the least height of the camera over a slope
+constexpr double kClearlyAlong = 1.5;    // times the extent across
 constexpr double kFilled = 0.84;         // share of the picture that things may fill
 constexpr double kLargestFixed = 3;      // fixed bodies larger than so many times what moves are scenery
 constexpr double kSmallestReach = 1e-6;  // m, of a scene that shows nothing
@@ -57,7 +67,7 @@ Framing::Framing(const Scene& scene, int width, int height)
       tanHalfX_(kFilled * std::tan(kFieldOfView / 2) * width / height),
       tanHalfY_(kFilled * std::tan(kFieldOfView / 2)) {
   for (const Body& body : scene.bodies) localBounds_.push_back(localBounds(scene, body));
-  for (const double azimuth : {kAlongZ, -kAlongZ, kAlongX, std::numbers::pi - kAlongX}) {
+  for (const double azimuth : kAzimuths) {
     Candidate candidate{axesFrom(azimuth, kElevation), {}, emptyReach()};
     const Vec3 right = candidate.axes.col(0), up = candidate.axes.col(1), back = candidate.axes.col(2);
     candidate.outwards = {right + tanHalfX_ * back, -right + tanHalfX_ * back, up + tanHalfY_ * back,
@@ -101,19 +111,25 @@ void Framing::add(const Frame& frame) {
   for (const Solid& solid : solidsOf(placeBodies(scene_, frame), Motion::dynamic)) includeMoving(solid);
 }
 
-const Framing::Candidate& Framing::bestCandidate() const {
-  // Across the motion rather than along it; and never from behind a slope.
-  const Vec3 extent = movingBounds_.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(movingBounds_.sizes());
-  const bool alongX = extent.z() > 1.5 * extent.x();
-  const Candidate& usual = candidates_[alongX ? 2 : 0];
-  const Candidate& mirrored = candidates_[alongX ? 3 : 1];
+bool Framing::seesGround(const Candidate& candidate) const {
   for (const Body& body : scene_.bodies) {
     const Plane* plane = std::get_if<Plane>(&body.shape);
     if (plane == nullptr) continue;
     const Vec3 normal = body.worldFromBody.rotation * plane->normal;
-    if (normal.y() > 0.5 && normal.dot(usual.axes.col(2)) < 0.9 * normal.dot(mirrored.axes.col(2))) return mirrored;
+    if (isFloor(normal) && normal.dot(candidate.axes.col(2)) < kSlopeInView) return false;
   }
-  return usual;
+  return true;
+}
+
+const Framing::Candidate& Framing::bestCandidate() const {
+  // Across the motion rather than along it; and never from behind a slope.
+  const Vec3 extent = movingBounds_.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(movingBounds_.sizes());
+  const std::size_t first = extent.z() > kClearlyAlong * extent.x() ? kFirstAlongX : 0;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const Candidate& candidate = candidates_[(first + i) % candidates_.size()];
+    if (seesGround(candidate)) return candidate;
+  }
+  return candidates_[first];
 }
 
 Camera Framing::automaticCamera(const std::vector<Solid>& fixedThings) const {

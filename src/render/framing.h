@@ -50,6 +50,7 @@ class Framing {
   static Reach reachOf(const Candidate& candidate, const Solid& solid);
   void includeMoving(const Solid& solid);
   std::vector<Solid> solidsOf(const std::vector<RigidTransform>& places, Motion motion) const;
+  bool seesGround(const Candidate& candidate) const;
   const Candidate& bestCandidate() const;
   Camera automaticCamera(const std::vector<Solid>& fixedThings) const;
 

@@ -24,6 +24,12 @@ std::vector<std::uint32_t> flatten(const std::vector<Triangle>& triangles) {
   return indices;
 }
 
+/// Distance of the corners of a regular polygon that is as large as the circle of radius 1.
+double cornerOfEqualArea(int corners) {
+  const double angle = 2 * std::numbers::pi / corners;
+  return std::sqrt(angle / std::sin(angle));
+}
+
 void describeAttribute(unsigned int attribute, int components, std::size_t stride, std::size_t offset) {
   glEnableVertexAttribArray(attribute);
   glVertexAttribPointer(attribute, components, GL_FLOAT, GL_FALSE, static_cast<int>(stride), byteOffset(offset));
@@ -110,8 +116,7 @@ void GpuMesh::draw() const {
 GpuMesh makeHalfBall(int outline) {
   int rings = 1;
   while (kInnermostRing << (rings - 1) < outline) ++rings;
-  // A polygon as large as the circle: its corners lie outside, the middles of its edges inside.
-  const double outwards = 1 / std::sqrt(std::cos(std::numbers::pi / outline));
+  const double outwards = cornerOfEqualArea(outline);
   std::vector<float> vertices = {0, 1, 0};
   std::vector<std::uint32_t> indices;
   std::uint32_t inner = 0;
@@ -134,6 +139,30 @@ GpuMesh makeHalfBall(int outline) {
     }
     inner = outer;
   }
+  return {vertices, 3, indices};
+}
+
+GpuMesh makeHalfCylinder(int outline) {
+  const int strips = outline / 4;  // inside the outline, a chord only shows where something meets the side
+  std::vector<float> vertices;
+  std::vector<std::uint32_t> indices;
+  for (int i = 0; i <= strips; ++i) {
+    const float share = 2 * static_cast<float>(i) / static_cast<float>(strips) - 1;
+    vertices.insert(vertices.end(), {-1, share, 0, 1, share, 0});
+  }
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(2 * strips); i += 2)
+    indices.insert(indices.end(), {i, i + 2, i + 3, i, i + 3, i + 1});
+
+  const std::uint32_t first = static_cast<std::uint32_t>(vertices.size() / 3);
+  const double outwards = cornerOfEqualArea(outline);
+  for (int i = 0; i < outline; ++i) {
+    const double angle = 2 * std::numbers::pi * i / outline;
+    vertices.push_back(static_cast<float>(outwards * std::cos(angle)));
+    vertices.push_back(static_cast<float>(outwards * std::sin(angle)));
+    vertices.push_back(1);
+  }
+  for (std::uint32_t i = 1; i + 1 < static_cast<std::uint32_t>(outline); ++i)
+    indices.insert(indices.end(), {first, first + i, first + i + 1});
   return {vertices, 3, indices};
 }
 

@@ -57,6 +57,9 @@ class GpuMesh {
 /// outline; cosine and sine of the direction around it.
 GpuMesh makeHalfBall(int outline);
 
+/// Half a cylinder's side, and an end with `outline` corners (cylinder.vert says what attribute 0 is).
+GpuMesh makeHalfCylinder(int outline);
+
 /// A tube along attribute 0: place along the curve 0..1, cosine and sine of the angle around it (tube.vert).
 GpuMesh makeTube(int segmentsAlong, int segmentsAround);
 

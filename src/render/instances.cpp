@@ -22,41 +22,58 @@ void putTransform(Instance& instance, const Mat3& matrix, const Vec3& translatio
     put(instance, static_cast<std::size_t>(row), matrix.row(row).transpose().cast<float>(), translation[row]);
 }
 
+/// Attributes 3..5 of an item with a surface and balls near it; the first numbers of 3 are left alone.
+template <typename Item>
+void putLook(const Item& item, Instance& instance) {
+  instance[15] = item.surface.roughness;
+  put(instance, 4, item.surface.color, item.surface.metallic);
+  put(instance, 5, Vec3f(static_cast<float>(item.firstNearBall), static_cast<float>(item.nearBalls), 0), 0);
+}
+
 Instance packMesh(const MeshItem& item, const Stage& stage) {
   Instance instance{};
-  const Mat3 matrix = item.worldFromMesh.rotation.toRotationMatrix() * item.scale.asDiagonal();
-  putTransform(instance, matrix, item.worldFromMesh.translation - stage.origin);
-  put(instance, 3, item.scale.cwiseProduct(item.scale).cwiseInverse().cast<float>(), item.surface.roughness);
-  put(instance, 4, item.surface.color, item.surface.metallic);
-  put(instance, 5, Vec3f(static_cast<float>(item.firstNearBall), static_cast<float>(item.nearBalls), 0), 0);
+  putTransform(instance, item.worldFromMesh.rotation.toRotationMatrix(), item.worldFromMesh.translation - stage.origin);
+  putLook(item, instance);
   return instance;
 }
 
-Instance packSphere(const SphereItem& item, const Stage& stage) {
+Instance packRound(const SphereItem& item, const Stage& stage) {
   Instance instance{};
-  putTransform(instance, item.radius * Mat3::Identity(), item.center - stage.origin);
-  put(instance, 3, Vec3f::Zero(), item.surface.roughness);
-  put(instance, 4, item.surface.color, item.surface.metallic);
-  put(instance, 5, Vec3f(static_cast<float>(item.firstNearBall), static_cast<float>(item.nearBalls), 0), 0);
+  put(instance, 0, stage.relative(item.center), item.radius);
   return instance;
 }
 
-/// How fine an outline has to be: a polygon of n corners, as large as the circle, misses it by r (pi / n)^2 / 4.
-std::size_t outlineFor(const SphereItem& item, const Stage& stage) {
-  const double distance = std::max((item.center - stage.camera.position).norm() - item.radius, 1e-9);
-  const double pixels = item.radius / distance * stage.height / (2 * std::tan(stage.camera.verticalFieldOfView / 2));
+Instance packRound(const CylinderItem& item, const Stage& stage) {
+  Instance instance{};
+  put(instance, 0, stage.relative(item.center), item.radius);
+  put(instance, 1, item.axis.cast<float>(), item.length);
+  return instance;
+}
+
+/// How fine an outline has to be: a polygon of n corners, as large as the circle, misses it by r (pi / n)^2 / 3.
+std::size_t outlineFor(const Bounds& bounds, double radius, const Stage& stage) {
+  const double distance = std::max(bounds.exteriorDistance(stage.camera.position), 1e-9);
+  const double pixels = radius / distance * stage.height / (2 * std::tan(stage.camera.verticalFieldOfView / 2));
   for (std::size_t i = 0; i + 1 < kOutlines.size(); ++i)
-    if (pixels * std::pow(std::numbers::pi / kOutlines[i], 2) / 4 < kVisibleCorner) return i;
+    if (pixels * std::pow(std::numbers::pi / kOutlines[i], 2) / 3 < kVisibleCorner) return i;
   return kOutlines.size() - 1;
 }
 
-void packSpheres(const DrawList& list, const Stage& stage, PackedDrawList& packed) {
+template <typename Item>
+void packRounds(const std::vector<Item>& items, const Stage& stage, std::vector<Instance>& instances,
+                std::vector<Batch>& batches) {
+  std::vector<std::size_t> levels;
+  for (const Item& item : items) levels.push_back(outlineFor(item.bounds(), item.radius, stage));
   for (std::size_t level = 0; level < kOutlines.size(); ++level) {
-    Batch batch{static_cast<int>(level), 0, 0, packed.sphereInstances.size(), 0};
-    for (const SphereItem& item : list.spheres)
-      if (outlineFor(item, stage) == level) packed.sphereInstances.push_back(packSphere(item, stage));
-    batch.instanceCount = packed.sphereInstances.size() - batch.firstInstance;
-    if (batch.instanceCount > 0) packed.sphereBatches.push_back(batch);
+    Batch batch{static_cast<int>(level), 0, 0, instances.size(), 0};
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      if (levels[i] != level) continue;
+      Instance instance = packRound(items[i], stage);
+      putLook(items[i], instance);
+      instances.push_back(instance);
+    }
+    batch.instanceCount = instances.size() - batch.firstInstance;
+    if (batch.instanceCount > 0) batches.push_back(batch);
   }
 }
 
@@ -78,7 +95,8 @@ bool packContact(const ContactItem& item, const Stage& stage, Instance& instance
   const Mat3 turn = item.worldFromBox.rotation.toRotationMatrix();
   const Vec3 center = item.worldFromBox.translation;
   const auto extentAlong = [&](const Vec3& axis) {
-    return item.isBall ? item.half.x() : (turn.transpose() * axis).cwiseAbs().dot(item.half);
+    const Vec3 inBox = (turn.transpose() * axis).cwiseProduct(item.half);
+    return item.kind == ContactKind::ellipsoid ? inBox.norm() : inBox.cwiseAbs().sum();
   };
   const double reach = std::min(kContactReach * 2 * item.half.minCoeff(), region.margin);
   const double gap = ground.normal.dot(center - ground.point) - extentAlong(ground.normal);
@@ -89,7 +107,7 @@ bool packContact(const ContactItem& item, const Stage& stage, Instance& instance
   put(instance, 3, item.half.cast<float>(), reach);
   const double u = 2 * (region.axisU.dot(relative) - region.firstU) / region.sizeU - 1;
   const double v = 2 * (region.axisV.dot(relative) - region.firstV) / region.sizeV - 1;
-  put(instance, 4, Vec3(u, v, 0).cast<float>(), item.isBall ? 1 : 0);
+  put(instance, 4, Vec3(u, v, 0).cast<float>(), static_cast<int>(item.kind));
   put(instance, 5,
       Vec3(2 * (extentAlong(region.axisU) + reach) / region.sizeU,
            2 * (extentAlong(region.axisV) + reach) / region.sizeV, 0)
@@ -116,7 +134,8 @@ PackedDrawList pack(const DrawList& list, const Stage& stage) {
   for (const MeshItem& item : list.meshes) packed.meshInstances.push_back(packMesh(item, stage));
   for (const TubeItem& item : list.tubes) packed.tubeInstances.push_back(packTube(item, stage));
   packBatches(list, packed);
-  packSpheres(list, stage, packed);
+  packRounds(list.spheres, stage, packed.sphereInstances, packed.sphereBatches);
+  packRounds(list.cylinders, stage, packed.cylinderInstances, packed.cylinderBatches);
   for (const BallItem& ball : list.balls) {
     const Vec3f center = stage.relative(ball.center);
     packed.balls.insert(packed.balls.end(), {center.x(), center.y(), center.z(), static_cast<float>(ball.radius)});

@@ -10,18 +10,18 @@ namespace cradle {
 
 /// Instances of the same triangles, drawn with one call.
 struct Batch {
-  int mesh = 0;  // index into Appearance::meshes, or into kOutlines for spheres
+  int mesh = 0;  // index into Appearance::meshes, or into kOutlines for what is round
   std::uint32_t firstTriangle = 0, triangleCount = 0;
   std::size_t firstInstance = 0, instanceCount = 0;
 };
 
-/// Corners around the outline of the half balls that spheres are drawn with, coarse to fine.
+/// Corners around the outlines that spheres and the ends of cylinders are drawn with, coarse to fine.
 constexpr std::array<int, 4> kOutlines = {16, 32, 64, 128};
 
 /// A draw list as OpenGL takes it: numbers relative to the stage's origin.
 struct PackedDrawList {
-  std::vector<Instance> meshInstances, sphereInstances, tubeInstances, contactInstances;
-  std::vector<Batch> meshBatches, sphereBatches;
+  std::vector<Instance> meshInstances, sphereInstances, cylinderInstances, tubeInstances, contactInstances;
+  std::vector<Batch> meshBatches, sphereBatches, cylinderBatches;
   std::vector<float> balls;      // eight a ball: centre, radius, colour, metallic
   std::vector<float> nearBalls;  // indices
 };

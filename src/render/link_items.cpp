@@ -13,7 +13,7 @@ namespace {
 
 // Shares of the radius of a typical body, and of the whole view: links stay visible next to small and large bodies.
 constexpr double kRodOfBody = 0.055, kRodOfView = 0.0022;
-constexpr double kCoilOfBody = 0.34, kCoilOfView = 0.05, kCoilOfLength = 0.14;
+constexpr double kCoilOfBody = 0.45, kCoilOfView = 0.05, kCoilOfLength = 0.14;
 constexpr double kWireOfCoil = 0.16;
 constexpr double kPitchOfCoil = 0.85;  // distance of turns at rest
 constexpr int kFewestTurns = 6, kMostTurns = 40;
@@ -70,7 +70,7 @@ class LinkBuilder {
     body_ = median(radii);
     size_ = view.bounds.isEmpty() ? 1 : view.bounds.diagonal().norm();
     rod_ = std::max(kRodOfBody * body_, kRodOfView * size_);
-    coil_ = std::min(kCoilOfBody * body_, kCoilOfView * size_);
+    coil_ = body_ > 0 ? std::min(kCoilOfBody * body_, kCoilOfView * size_) : kCoilOfView * size_;
   }
 
   void add(const Spring& spring);
@@ -104,14 +104,7 @@ bool LinkBuilder::isInsideFixedBody(const Vec3& point) const {
 }
 
 void LinkBuilder::addCylinder(const Vec3& a, const Vec3& b, double radius, const Surface& surface) {
-  const auto& mesh = appearance_.meshes.at(static_cast<std::size_t>(appearance_.cylinderMesh));
-  MeshItem item{appearance_.cylinderMesh, 0, static_cast<std::uint32_t>(mesh.triangles.size())};
-  item.worldFromMesh = {Quat::FromTwoVectors(Vec3::UnitY(), directionBetween(a, b)), (a + b) / 2};
-  item.scale = {radius, (b - a).norm(), radius};
-  item.surface = surface;
-  const Vec3 half = item.scale.cwiseProduct(Vec3(1, 0.5, 1));
-  item.bounds = transformed(Bounds(-half, half), item.worldFromMesh);
-  list_.meshes.push_back(item);
+  list_.cylinders.push_back({(a + b) / 2, directionBetween(a, b), radius, (b - a).norm(), surface});
 }
 
 /// A knob where a link ends, and a plate behind it where that is the open world.
@@ -119,7 +112,11 @@ void LinkBuilder::addEnd(const Anchor& anchor, const Anchor& other, double knob,
   const Vec3 point = now(anchor);
   list_.spheres.push_back({point, knob, kSteel});
   if (anchor.body != kWorld || !plate || isInsideFixedBody(point)) return;
-  const Vec3 away = directionBetween(atStart(other), atStart(anchor));
+  // Ceilings are level and walls upright: the nearest axis of the world.
+  const Vec3 direction = directionBetween(atStart(other), atStart(anchor));
+  Vec3::Index along;
+  direction.cwiseAbs().maxCoeff(&along);
+  const Vec3 away = std::copysign(1.0, direction[along]) * Vec3::Unit(along);
   const double thickness = kPlateThickness * knob;
   const Vec3 near = point + 0.5 * knob * away;
   addCylinder(near, near + thickness * away, kPlateOfKnob * knob, kDarkSteel);

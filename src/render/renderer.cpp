@@ -77,12 +77,13 @@ struct Renderer::Resources {
   } sizeCheck;
   Appearance appearance;
   Stage stage;
-  ShaderProgram surface, ball, tube, surfaceDepth, ballDepth, tubeDepth, ground, groundFar, contact, sky;
+  ShaderProgram surface, ball, cylinder, tube, surfaceDepth, ballDepth, cylinderDepth, tubeDepth, ground, groundFar,
+      contact, sky;
   PictureTarget picture;
   MapTarget shadowMap, contactMap;
-  InstanceBuffer meshInstances, sphereInstances, tubeInstances, contactInstances;
+  InstanceBuffer meshInstances, sphereInstances, cylinderInstances, tubeInstances, contactInstances;
   NumberTexture balls, nearBalls;
-  std::vector<GpuMesh> meshes, halfBalls;
+  std::vector<GpuMesh> meshes, halfBalls, halfCylinders;
   GpuMesh coilMesh, ropeMesh, triangle, square;
   std::optional<GpuMesh> nearGround, farGround;
   PackedDrawList packed;
@@ -95,9 +96,11 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
       stage(makeStage(scene, view, appearance.ground, width, height)),
       surface(shaders, "surface.vert", "surface.frag"),
       ball(shaders, "ball.vert", "ball.frag"),
+      cylinder(shaders, "cylinder.vert", "cylinder.frag"),
       tube(shaders, "tube.vert", "surface.frag"),
       surfaceDepth(shaders, "surface.vert", "depth.frag"),
       ballDepth(shaders, "ball.vert", "depth.frag"),
+      cylinderDepth(shaders, "cylinder.vert", "depth.frag"),
       tubeDepth(shaders, "tube.vert", "depth.frag"),
       ground(shaders, "ground.vert", "ground.frag"),
       groundFar(shaders, "ground.vert", "ground_far.frag"),
@@ -113,15 +116,18 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
       triangle({0, 0, 0}, 1, {0, 1, 2}),
       square({-1, -1, 1, -1, 1, 1, -1, 1}, 2, {0, 1, 2, 0, 2, 3}) {
   for (const DrawnMesh& mesh : appearance.meshes) meshes.emplace_back(mesh);
-  for (const int outline : kOutlines) halfBalls.push_back(makeHalfBall(outline));
+  for (const int outline : kOutlines) {
+    halfBalls.push_back(makeHalfBall(outline));
+    halfCylinders.push_back(makeHalfCylinder(outline));
+  }
   if (stage.ground) {
     nearGround.emplace(makeNearGround(stage));
     farGround.emplace(makeFarGround(stage));
   }
-  for (const ShaderProgram* program :
-       {&surface, &ball, &tube, &surfaceDepth, &ballDepth, &tubeDepth, &ground, &groundFar, &contact, &sky})
+  for (const ShaderProgram* program : {&surface, &ball, &cylinder, &tube, &surfaceDepth, &ballDepth, &cylinderDepth,
+                                       &tubeDepth, &ground, &groundFar, &contact, &sky})
     setStage(stage, *program);
-  for (const ShaderProgram* program : {&surfaceDepth, &ballDepth, &tubeDepth}) {
+  for (const ShaderProgram* program : {&surfaceDepth, &ballDepth, &cylinderDepth, &tubeDepth}) {
     program->use();
     program->set("clipFromWorld", stage.shadow.clipFromWorld);
     program->set("viewer", stage.shadow.viewer);
@@ -147,6 +153,7 @@ Image Renderer::render(const Frame& frame) {
 
   r.meshInstances.upload(r.packed.meshInstances);
   r.sphereInstances.upload(r.packed.sphereInstances);
+  r.cylinderInstances.upload(r.packed.cylinderInstances);
   r.tubeInstances.upload(r.packed.tubeInstances);
   r.contactInstances.upload(r.packed.contactInstances);
   r.balls.upload(r.packed.balls);
@@ -182,6 +189,8 @@ void Renderer::drawMaps() {
   drawMeshes();
   r.ballDepth.use();
   drawSpheres();
+  r.cylinderDepth.use();
+  drawCylinders();
   r.tubeDepth.use();
   drawTubes();
   glDisable(GL_DEPTH_CLAMP);
@@ -206,6 +215,8 @@ void Renderer::drawPicture() {
   r.picture.begin();
   r.ball.use();
   drawSpheres();
+  r.cylinder.use();
+  drawCylinders();
   r.surface.use();
   drawMeshes();
   r.tube.use();
@@ -239,6 +250,14 @@ void Renderer::drawSpheres() const {
   for (const Batch& batch : r.packed.sphereBatches) {
     const GpuMesh& mesh = r.halfBalls[static_cast<std::size_t>(batch.mesh)];
     mesh.draw(0, mesh.triangleCount(), r.sphereInstances, batch.firstInstance, batch.instanceCount);
+  }
+}
+
+void Renderer::drawCylinders() const {
+  const Resources& r = *resources_;
+  for (const Batch& batch : r.packed.cylinderBatches) {
+    const GpuMesh& mesh = r.halfCylinders[static_cast<std::size_t>(batch.mesh)];
+    mesh.draw(0, mesh.triangleCount(), r.cylinderInstances, batch.firstInstance, batch.instanceCount);
   }
 }
 

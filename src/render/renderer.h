@@ -43,6 +43,7 @@ class Renderer {
   void drawPicture();
   void drawMeshes() const;
   void drawSpheres() const;
+  void drawCylinders() const;
   void drawTubes() const;
   void finishStage(double& seconds);
 

@@ -12,9 +12,9 @@ namespace cradle {
 namespace {
 
 // Skies: a hazy day over ground; without ground, a studio that grows darker upwards. Linear.
-const Vec3f kDayZenith(0.105f, 0.225f, 0.440f), kDayHorizon(0.600f, 0.690f, 0.770f);
-const Vec3f kStudioZenith(0.090f, 0.110f, 0.145f), kStudioHorizon(0.420f, 0.450f, 0.490f),
-    kStudioNadir(0.200f, 0.205f, 0.215f);
+const Vec3f kDayZenith(0.150f, 0.250f, 0.410f), kDayHorizon(0.600f, 0.690f, 0.770f);
+const Vec3f kStudioZenith(0.130f, 0.165f, 0.225f), kStudioHorizon(0.640f, 0.670f, 0.700f),
+    kStudioNadir(0.230f, 0.235f, 0.245f);
 constexpr float kSkyOnGround = 0.62f;      // of the mean of zenith and horizon
 constexpr float kBounceFromGround = 0.5f;  // shadows and distance take the rest
 constexpr float kMeanSquare = 0.71f;       // of light and dark squares, in terms of the light one

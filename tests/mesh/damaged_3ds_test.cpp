@@ -78,6 +78,22 @@ TEST(Damaged3ds, CountBeyondTheChunkIsAnError) {
   EXPECT_THAT(loadingError({writeFile("box.3ds", bytes), "", 1}), HasSubstr("ends too early"));
 }
 
+TEST(Damaged3ds, SecondListOfFacesIsAnError) {
+  // The importer would take the first list with the number of materials of the second.
+  const std::string box = bytesOf(asset("box.3ds"));
+  const std::size_t faces = dataOf(box, 0x4120) - 6, vertices = dataOf(box, 0x4110) - 6;
+  const std::string mesh = box.substr(vertices) + box.substr(faces);
+  const std::string object = chunk(0x4000, std::string("Box") + '\0' + chunk(0x4100, mesh));
+  EXPECT_THAT(loadingError({writeFile("box.3ds", chunk(0x4D4D, chunk(0x3D3D, object))), "", 1}),
+              HasSubstr("two lists of vertices or faces"));
+}
+
+TEST(Damaged3ds, FileWithoutSmoothingGroupsHasSharpEdges) {
+  std::string bytes = bytesOf(asset("box.3ds"));
+  put(bytes, dataOf(bytes, 0x4150) - 6, std::uint16_t{0x4151});  // a chunk that means nothing
+  EXPECT_EQ(loadModel({writeFile("box.3ds", bytes), "", 1}).model.drawn.vertices.size(), 24U);
+}
+
 TEST(Damaged3ds, TrackCannotAskForMemoryThatTheFileDoesNotFill) {
   const std::string box = bytesOf(asset("box.3ds"));
   // 24 bytes a key: 96 GiB.

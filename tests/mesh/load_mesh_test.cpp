@@ -1,6 +1,7 @@
 #include "mesh/load_mesh.h"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <filesystem>
@@ -206,6 +207,19 @@ TEST(LoadMesh, SideFilesAreFoundBesideTheMesh) {
   EXPECT_EQ(plain.model.drawn.materials.at(0).baseColor, ModelMaterial{}.baseColor);
 }
 
+TEST(LoadMesh, LinearColoursOfGltfBecomeSrgb) {
+  const float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const std::string buffer = writeFile("t.bin", {reinterpret_cast<const char*>(corners), sizeof corners});
+  const std::string text = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"nodes": [{"name": "t", "mesh": 0}], "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0, 0.2140411, 1, 1]}}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}], "accessors": [{"bufferView": 0,
+"componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": ")" +
+                           std::filesystem::path(buffer).filename().string() + "\"}]}";
+  const DrawnMesh drawn = loadModel({writeFile("t.gltf", text), "t", 1}).model.drawn;
+  EXPECT_LE((drawn.materials.at(0).baseColor - Vec3f(0, 0.5f, 1)).norm(), 1e-6f);  // 0.2140411 is sRGB 0.5
+}
+
 TEST(LoadMesh, FilesThatAreNoneAreNamed) {
   EXPECT_THAT(loadingError({"no/such/mesh.3ds", "", 1}),
               AllOf(HasSubstr("no/such/mesh.3ds"), HasSubstr("no such file")));
@@ -248,6 +262,9 @@ TEST(LoadMesh, CountsThatTheFileCannotHoldDoNotTakeTheMachinesMemory) {
       "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   EXPECT_THAT(loadingError({writeFile("large.ply", ply), "", 1}), HasSubstr("large.ply"));
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  EXPECT_LT(usage.ru_maxrss, 5L << 18) << "KiB at most in use";  // the limit is a GiB
 }
 
 }  // namespace

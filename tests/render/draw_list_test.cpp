@@ -1,0 +1,189 @@
+#include "render/draw_list.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "math/rotation.h"
+#include "render/body_place.h"
+#include "render/scene_builder.h"
+
+namespace cradle {
+namespace {
+
+DrawList listOf(const Scene& scene, const Frame& frame) {
+  Framing framing(scene, 640, 360);
+  framing.add(frame);
+  const View view = framing.view();
+  return makeDrawList(scene, makeAppearance(scene, view, 100), view, frame);
+}
+
+Scene springScene(double height) {
+  Scene scene = emptyScene();
+  addBody(scene, Box{{0.4, 0.3, 0.2}}, {Quat::Identity(), {0, -height, 0}});
+  scene.springs.push_back({"", "", {0, {0.2, 0.15, 0.1}}, {kWorld, {0.2, 0.15, 0.1}}, 100, 0, 1});
+  return scene;
+}
+
+TEST(BodyPlace, FrameOriginIsCentreOfMassMinusItsTurnedOffset) {
+  Scene scene = emptyScene();
+  addBody(scene, Box{{1, 2, 3}}, {}).massProperties.centerOfMass = {0.1, 0.2, 0.3};
+  Frame frame;
+  frame.states.resize(1);
+  frame.states[0].position = {5, 6, 7};
+  frame.states[0].orientation = rotationAbout(Vec3::UnitZ(), std::numbers::pi / 2);  // x to y, y to -x
+  const RigidTransform place = placeBodies(scene, frame).at(0);
+  EXPECT_NEAR((place.translation - Vec3(5.2, 5.9, 6.7)).norm(), 0, 1e-14);
+}
+
+TEST(BodyPlace, FixedBodiesTakeNoState) {
+  Scene scene = emptyScene();
+  addBody(scene, Sphere{1}, {Quat::Identity(), {1, 0, 0}}, Motion::fixed);
+  addBody(scene, Sphere{1}, {});
+  Frame frame;
+  frame.states.resize(1);
+  frame.states[0].position = {0, 9, 0};
+  const auto places = placeBodies(scene, frame);
+  EXPECT_EQ(places.at(0).translation, Vec3(1, 0, 0));
+  EXPECT_EQ(places.at(1).translation, Vec3(0, 9, 0));
+}
+
+TEST(DrawList, SpringRunsFromAnchorToAnchor) {
+  const Scene scene = springScene(1.2);
+  Frame frame = startFrame(scene);
+  frame.states[0].orientation = rotationAbout(Vec3::UnitY(), 0.3);
+  const DrawList list = listOf(scene, frame);
+  ASSERT_EQ(list.tubes.size(), 1u);
+  EXPECT_NEAR((list.tubes[0].start - (Vec3(0, -1.2, 0) + frame.states[0].orientation * Vec3(0.2, 0.15, 0.1))).norm(), 0,
+              1e-14);
+  EXPECT_EQ(list.tubes[0].end, Vec3(0.2, 0.15, 0.1));
+}
+
+TEST(DrawList, WireOfASpringKeepsItsLength) {
+  const Scene scene = springScene(1.2);
+  const auto tubeAt = [&](double height) {
+    Frame frame = startFrame(scene);
+    frame.states[0].position.y() = -height;
+    return listOf(scene, frame).tubes.at(0);
+  };
+  const auto wire = [](const TubeItem& tube) {
+    return std::hypot(2 * std::numbers::pi * tube.turns * tube.coilRadius, (tube.end - tube.start).norm());
+  };
+  const TubeItem pressed = tubeAt(0.7), drawn = tubeAt(1.7);
+  EXPECT_EQ(pressed.turns, drawn.turns);
+  EXPECT_LT(drawn.coilRadius, pressed.coilRadius);
+  EXPECT_NEAR(wire(pressed) / wire(drawn), 1, 0.01);  // the view grows with the motion, and thickness with it
+}
+
+TEST(DrawList, CoilTurnsWithItsSpringWithoutJumps) {
+  Scene scene = emptyScene();
+  addBody(scene, Sphere{0.1}, {Quat::Identity(), {0, -1, 0}});
+  scene.springs.push_back({"", "", {0, {0, 0, 0}}, {kWorld, {0, 0, 0}}, 100, 0, 1});
+  Vec3 before;
+  for (int i = 0; i <= 300; ++i) {  // most of a full turn
+    const double angle = 0.01 * i;
+    Frame frame = startFrame(scene);
+    frame.states[0].position = Vec3(std::sin(angle), -std::cos(angle), 0.05 * std::sin(3 * angle));
+    const Vec3 side = listOf(scene, frame).tubes.at(0).side;
+    EXPECT_NEAR(side.dot(frame.states[0].position.normalized()), 0, 1e-12);
+    if (i > 0) {
+      EXPECT_LT((side - before).norm(), 0.1) << angle;
+    }
+    before = side;
+  }
+}
+
+TEST(DrawList, SlackRopeHangsAsLongAsItIs) {
+  Scene scene = emptyScene();
+  addBody(scene, Sphere{0.1}, {Quat::Identity(), {1.2, 0, 0}});
+  scene.ropes.push_back({"", "", {0, {0, 0, 0}}, {kWorld, {0, 0, 0}}, 2, 0});
+  const TubeItem rope = listOf(scene, startFrame(scene)).tubes.at(0);
+  double length = 0;
+  Vec3 before = rope.start;
+  for (int i = 1; i <= 1000; ++i) {
+    const double s = i / 1000.0;
+    const Vec3 point = rope.start + s * (rope.end - rope.start) + 4 * s * (1 - s) * rope.sag;
+    length += (point - before).norm();
+    before = point;
+  }
+  EXPECT_NEAR(length, 2, 1e-5);
+  EXPECT_LT(rope.sag.y(), 0);
+  EXPECT_TRUE(rope.bounds.contains(Vec3((rope.start + rope.end) / 2 + rope.sag)));
+}
+
+TEST(DrawList, TautRopeIsStraight) {
+  Scene scene = emptyScene();
+  addBody(scene, Sphere{0.1}, {Quat::Identity(), {2, 0, 0}});
+  scene.ropes.push_back({"", "", {0, {0, 0, 0}}, {kWorld, {0, 0, 0}}, 2, 0});
+  EXPECT_EQ(listOf(scene, startFrame(scene)).tubes.at(0).sag, Vec3::Zero());
+}
+
+TEST(DrawList, RodEndsAtItsAnchors) {
+  Scene scene = emptyScene();
+  addBody(scene, Sphere{0.1}, {Quat::Identity(), {1, 0, 0}});
+  scene.rods.push_back({"", "", {0, {0, 0, 0}}, {kWorld, {0, 2, 0}}, std::sqrt(5.0)});
+  const CylinderItem rod = listOf(scene, startFrame(scene)).cylinders.at(0);
+  EXPECT_NEAR((rod.center - Vec3(0.5, 1, 0)).norm(), 0, 1e-14);
+  EXPECT_NEAR(rod.length, std::sqrt(5.0), 1e-14);
+  EXPECT_NEAR(rod.axis.cross(Vec3(-1, 2, 0)).norm(), 0, 1e-14);
+}
+
+TEST(DrawList, BoundsOfACylinderAreTight) {
+  // Axis (3, 4, 0) / 5: half length 2 along it, discs of radius 1 across.
+  const CylinderItem item{{1, 1, 1}, {0.6, 0.8, 0}, 1, 4};
+  EXPECT_NEAR((item.bounds().max() - Vec3(1 + 1.2 + 0.8, 1 + 1.6 + 0.6, 2)).norm(), 0, 1e-14);
+}
+
+TEST(DrawList, BallsNearABallAreTheClosestOthers) {
+  Scene scene = emptyScene();
+  for (int i = 0; i < 9; ++i) addBody(scene, Sphere{0.5}, {Quat::Identity(), {0.9 * i, 0, 0}});
+  const DrawList list = listOf(scene, startFrame(scene));
+  const SphereItem& middle = list.spheres.at(4);
+  std::vector<int> near(list.nearBalls.begin() + middle.firstNearBall,
+                        list.nearBalls.begin() + middle.firstNearBall + middle.nearBalls);
+  EXPECT_EQ(near, (std::vector<int>{3, 5, 2, 6}));
+}
+
+TEST(Appearance, ColoursOfAModelAreTheFilesUnlessTheSceneSaysOtherwise) {
+  Scene scene = emptyScene();
+  Model model;
+  model.drawn = tessellate(Box{{1, 1, 1}});
+  model.drawn.materials = {{"red", {1, 0, 0}, 0, 4}, {"blue", {0, 0, 1}, 4, 8}};
+  scene.models.push_back(model);
+  addBody(scene, ModelShape{0}, {});
+  const View view = viewOfStart(scene, 640, 360);
+  const BodyAppearance fromFile = makeAppearance(scene, view, 100).bodies.at(0);
+  ASSERT_EQ(fromFile.parts.size(), 2u);
+  EXPECT_EQ(fromFile.parts[0].surface.color, Vec3f(1, 0, 0));
+  EXPECT_EQ(fromFile.parts[1].firstTriangle, 4u);
+  EXPECT_EQ(fromFile.parts[1].triangleCount, 8u);
+
+  scene.materials[0].baseColor = Vec3f(0, 1, 0);
+  const BodyAppearance fromScene = makeAppearance(scene, view, 100).bodies.at(0);
+  ASSERT_EQ(fromScene.parts.size(), 1u);
+  EXPECT_EQ(fromScene.parts[0].surface.color, Vec3f(0, 1, 0));
+  EXPECT_EQ(fromScene.parts[0].triangleCount, 12u);
+}
+
+TEST(Appearance, UnnamedColourIsTheGreyOfTheSceneFormat) {
+  // #b0b0b0 is 0.434 of white.
+  Scene scene = emptyScene();
+  addBody(scene, Sphere{1}, {});
+  const Surface surface = makeAppearance(scene, viewOfStart(scene, 64, 64), 100).bodies.at(0).surface;
+  EXPECT_NEAR(surface.color.x(), 0.434, 0.001);
+}
+
+TEST(Appearance, SquaresOfTheGroundArePowersOfTenInProportion) {
+  for (const auto& [radius, square] :
+       {std::pair(0.025, 0.01), std::pair(0.4, 0.1), std::pair(1.0, 1.0), std::pair(30.0, 10.0)}) {
+    Scene scene = emptyScene();
+    addBody(scene, Plane{}, {}, Motion::fixed);
+    addBody(scene, Sphere{radius}, {});
+    const auto ground = makeAppearance(scene, viewOfStart(scene, 64, 64), 100).ground;
+    ASSERT_TRUE(ground);
+    EXPECT_DOUBLE_EQ(ground->squareSize, square) << radius;
+  }
+}
+
+}  // namespace
+}  // namespace cradle
