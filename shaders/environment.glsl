@@ -1,7 +1,13 @@
 // What a ray meets that leaves a surface: the ground with its squares and shadows, else the sky.
 
-uniform int hasGround;
-uniform vec3 bounceIrradiance;  // what the ground or the floor sends back up, as a radiance from white
+uniform vec3 skyIrradiance;     // of the open sky, as a radiance from white
+uniform vec3 bounceIrradiance;  // what the ground or the floor sends back up
+
+#if HAS_GROUND
+#include "checker.glsl"
+#include "contact.glsl"
+#include "irradiance.glsl"
+
 
 const float kUsuallyLit = 0.85;  // share of the ground out of shadow, where a mirror shows too much of it at once
 
@@ -19,13 +25,17 @@ vec3 groundLight(vec3 from, vec3 direction, float spread) {
   return mix(light, horizonColor, groundFade(t));
 }
 
+#endif
+
 // `spread` is how far the ray fans out per metre.
 vec3 environment(vec3 from, vec3 direction, float spread) {
   vec3 sky = skyLight(direction) + skyGlow(direction);
-  if (hasGround == 0) return sky;
+#if HAS_GROUND
   float height = dot(groundPlane.xyz, direction);
-  float above = smoothstep(-spread - 0.01, spread + 0.01, height);
-  return mix(groundLight(from, direction, spread), sky, above);
+  return mix(groundLight(from, direction, spread), sky, smoothstep(-spread - 0.01, spread + 0.01, height));
+#else
+  return sky;
+#endif
 }
 
 // Light from all around on a matt surface: sky from above, from below what the ground or the floor sends back.

@@ -4,6 +4,8 @@
 #include "ray.glsl"
 #include "sky.glsl"
 #include "checker.glsl"
+
+uniform vec3 skyIrradiance;  // of the open sky, as a radiance from white
 #include "irradiance.glsl"
 
 uniform vec3 eye;

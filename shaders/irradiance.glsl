@@ -1,7 +1,5 @@
 // Light on the ground: from the key light, and from the sky as far as bodies near the ground leave it open.
 
-uniform vec3 skyIrradiance;  // of the open sky, as a radiance from white
-
 vec3 groundIrradiance(float lit, float open) {
   return lightRadiance * (max(dot(groundPlane.xyz, lightDirection), 0.0) * lit) + skyIrradiance * open;
 }

@@ -3,16 +3,14 @@
 #include "encode.glsl"
 #include "sky.glsl"
 #include "shadow.glsl"
-#include "checker.glsl"
-#include "contact.glsl"
-#include "irradiance.glsl"
 #include "environment.glsl"
 #include "balls.glsl"
 
 uniform vec3 eye;
-uniform int fillLights;          // lights after the first throw no shadow
-uniform vec3 fillDirection[3];   // unit, towards the light
-uniform vec3 fillRadiance[3];
+#if FILL_LIGHTS > 0  // lights after the first throw no shadow
+uniform vec3 fillDirection[FILL_LIGHTS];  // unit, towards the light
+uniform vec3 fillRadiance[FILL_LIGHTS];
+#endif
 
 flat in vec4 surfaceColor;  // linear; w is metallic
 flat in float roughness;
@@ -62,9 +60,11 @@ vec3 shade(vec3 position, vec3 n) {
 
   vec3 key = lightRadiance * keyShadow(position, n);
   vec3 light = key * (matt * max(dot(n, lightDirection), 0.0) + highlight(n, v, lightDirection, straightOn, alpha));
-  for (int i = 0; i < fillLights; ++i)
+#if FILL_LIGHTS > 0
+  for (int i = 0; i < FILL_LIGHTS; ++i)
     light += fillRadiance[i] *
              (matt * max(dot(n, fillDirection[i]), 0.0) + highlight(n, v, fillDirection[i], straightOn, alpha));
+#endif
 
   vec3 mirrored = environment(ray.from, ray.direction, spread) * mix(vec3(1.0), ray.look.rgb, ray.coverage);
   vec3 mattBall = ray.look.rgb * (ambientLight(ray.normal) + lightRadiance * max(dot(ray.normal, lightDirection), 0.0));

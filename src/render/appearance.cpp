@@ -17,8 +17,9 @@ constexpr double kNearer = 1.2;         // things come so much nearer than the m
 // The ground when its material names no colour: light stone, and squares of a darker one.
 constexpr float kStone = 0.64f;
 const Vec3f kStoneTint(1.0f, 0.972f, 0.925f);
-constexpr float kDarkSquare = 0.42f;    // of the light one
-constexpr double kFewestSquares = 2.5;  // across the scene
+constexpr float kDarkSquare = 0.42f;     // of the light one
+constexpr double kWallThickness = 0.01;  // of its width
+constexpr double kFewestSquares = 2.5;   // across the scene
 
 /// Facets around a circle of `radius` pixels: a chord of angle 2 a misses it by radius a^2 / 2.
 int facetsFor(double radius) {
@@ -149,23 +150,37 @@ BodyAppearance lookOf(const Scene& scene, const Body& body, const std::vector<st
   return look;
 }
 
+Ground makeGround(const Scene& scene, int body, double size) {
+  const Body& plane = scene.bodies[static_cast<std::size_t>(body)];
+  const auto& color = scene.materials.at(static_cast<std::size_t>(plane.material)).baseColor;
+  Ground ground;
+  ground.body = body;
+  ground.normal = plane.worldFromBody.rotation * std::get<Plane>(plane.shape).normal;
+  ground.point = plane.worldFromBody.translation;
+  ground.lightColor = color ? linearFromSrgb(*color) : Vec3f(kStone * kStoneTint);
+  ground.darkColor = kDarkSquare * ground.lightColor;
+  ground.squareSize = std::pow(10.0, std::floor(std::log10(size / kFewestSquares)));
+  return ground;
+}
+
 /// The plane that is nearest to level, if one is a floor rather than a wall.
-std::optional<Ground> findGround(const Scene& scene, const View& view) {
+std::optional<Ground> findGround(const Scene& scene, double size) {
   std::optional<Ground> ground;
-  double steepest = 0;  // y of the normal
-  for (const Body& body : scene.bodies) {
-    const Plane* plane = std::get_if<Plane>(&body.shape);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Plane* plane = std::get_if<Plane>(&scene.bodies[i].shape);
     if (plane == nullptr) continue;
-    const Vec3 normal = body.worldFromBody.rotation * plane->normal;
-    if (!isFloor(normal) || normal.y() <= steepest) continue;
-    steepest = normal.y();
-    const auto& color = scene.materials.at(static_cast<std::size_t>(body.material)).baseColor;
-    const Vec3f light = color ? linearFromSrgb(*color) : Vec3f(kStone * kStoneTint);
-    const double size = view.bounds.isEmpty() ? 1 : view.bounds.diagonal().norm();
-    const double square = std::pow(10.0, std::floor(std::log10(size / kFewestSquares)));
-    ground = Ground{normal, body.worldFromBody.translation, light, kDarkSquare * light, square};
+    const Vec3 normal = scene.bodies[i].worldFromBody.rotation * plane->normal;
+    if (isFloor(normal) && (!ground || normal.y() > ground->normal.y()))
+      ground = makeGround(scene, static_cast<int>(i), size);
   }
   return ground;
+}
+
+DrawnMesh makeWall(double size) {
+  const double thickness = kWallThickness * size;
+  DrawnMesh wall = tessellate(Box{{size, thickness, size}});
+  for (Vec3& vertex : wall.vertices) vertex.y() -= thickness / 2;
+  return wall;
 }
 
 }  // namespace
@@ -179,8 +194,12 @@ Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPer
   Catalogue catalogue(scene, pixelsPerMetre);
   const auto ballOfModel = findBalls(scene.models);
   for (const Body& body : scene.bodies) appearance.bodies.push_back(lookOf(scene, body, ballOfModel, catalogue));
-  appearance.ground = findGround(scene, view);
+  const double size = view.bounds.isEmpty() ? 1 : view.bounds.diagonal().norm();
+  appearance.ground = findGround(scene, size);
   catalogue.moveTo(appearance);
+  appearance.wallMesh = static_cast<int>(appearance.meshes.size());
+  appearance.meshes.push_back(makeWall(size));
+  appearance.meshIsClosed.push_back(true);
   return appearance;
 }
 

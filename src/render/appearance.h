@@ -43,6 +43,7 @@ struct BodyAppearance {
 
 /// An endless plane, drawn as ground.
 struct Ground {
+  int body = 0;                 // index into Scene::bodies
   Vec3 normal = Vec3::UnitY();  // unit, world, upwards
   Vec3 point = Vec3::Zero();    // m, world
   Vec3f lightColor, darkColor;  // of the squares; linear
@@ -55,6 +56,7 @@ struct Appearance {
   std::vector<bool> meshIsClosed;  // then its inside is never seen
   std::vector<BodyAppearance> bodies;
   std::optional<Ground> ground;
+  int wallMesh = 0;  // a thin plate as wide as the scene, its upper face through the origin: other planes
 };
 
 /// `pixelsPerMetre` at the distance of the scene decides how finely round things are divided.

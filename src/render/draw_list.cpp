@@ -37,6 +37,23 @@ void appendContact(const BodyAppearance& look, const RigidTransform& worldFromBo
   list.contacts.push_back({place, look.local.sizes() / 2, look.contact});
 }
 
+/// A plane other than the ground, as a square next to what is shown; from behind, it is not there.
+void appendWall(const Scene& scene, const Appearance& appearance, const View& view, std::size_t body, DrawList& list) {
+  const Plane* plane = std::get_if<Plane>(&scene.bodies[body].shape);
+  if (plane == nullptr || (appearance.ground && appearance.ground->body == static_cast<int>(body))) return;
+  const RigidTransform& place = scene.bodies[body].worldFromBody;
+  const Vec3 normal = place.rotation * plane->normal;
+  if (normal.dot(view.camera.position - place.translation) <= 0) return;
+  const DrawnMesh& mesh = appearance.meshes[static_cast<std::size_t>(appearance.wallMesh)];
+  MeshItem item{appearance.wallMesh, 0, static_cast<std::uint32_t>(mesh.triangles.size())};
+  const Vec3 middle = view.bounds.isEmpty() ? place.translation : Vec3(view.bounds.center());
+  item.worldFromMesh = {Quat::FromTwoVectors(Vec3::UnitY(), normal),
+                        middle - normal.dot(middle - place.translation) * normal};
+  item.surface = appearance.bodies[body].surface;
+  for (const Vec3& vertex : mesh.vertices) item.bounds.extend(item.worldFromMesh * vertex);
+  list.walls.push_back(item);
+}
+
 Bounds boundsOf(const MeshItem& item) {
   return item.bounds;
 }
@@ -83,6 +100,7 @@ DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const Vi
     appendBody(appearance.bodies[i], places[i], list);
     appendRound(appearance.bodies[i], places[i], body, list);
     appendContact(appearance.bodies[i], places[i], list);
+    appendWall(scene, appearance, view, i, list);
     bodyOfMesh.resize(list.meshes.size(), body);
     bodyOfSphere.resize(list.spheres.size(), body);
     bodyOfCylinder.resize(list.cylinders.size(), body);

@@ -37,6 +37,8 @@ struct CylinderItem {
   Bounds bounds() const;
 };
 
+constexpr int kMostCoilTurns = 40;
+
 /// A round tube along a curve: a spring's coil, or a rope that sags.
 struct TubeItem {
   Vec3 start, end;        // m, world
@@ -68,6 +70,7 @@ struct ContactItem {
 /// A picture as plain data, in a fixed order: OpenGL comes after.
 struct DrawList {
   std::vector<MeshItem> meshes;  // grouped by mesh and range
+  std::vector<MeshItem> walls;   // planes other than the ground; throw no shadow, for light comes in through them
   std::vector<SphereItem> spheres;
   std::vector<CylinderItem> cylinders;
   std::vector<TubeItem> tubes;  // springs before ropes

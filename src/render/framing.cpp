@@ -30,7 +30,7 @@ constexpr std::array<double, 8> kAzimuths = {-kAside,
                                              270 * kDegree + kAside};
 constexpr std::size_t kFirstAlongX = 4;  // azimuths from there on look along x, those before along z
 constexpr double kSlopeInView = 0.1;     // sine of the least height of the camera over a slope
-constexpr double kClearlyAlong = 1.5;    // times the extent across
+constexpr double kClearlyAlong = 1.5;    // times the spread across
 constexpr double kFilled = 0.84;         // share of the picture that things may fill
 constexpr double kLargestFixed = 3;      // fixed bodies larger than so many times what moves are scenery
 constexpr double kSmallestReach = 1e-6;  // m, of a scene that shows nothing
@@ -108,7 +108,12 @@ void Framing::includeMoving(const Solid& solid) {
 }
 
 void Framing::add(const Frame& frame) {
-  for (const Solid& solid : solidsOf(placeBodies(scene_, frame), Motion::dynamic)) includeMoving(solid);
+  for (const Solid& solid : solidsOf(placeBodies(scene_, frame), Motion::dynamic)) {
+    includeMoving(solid);
+    ++places_;
+    placeSum_ += solid.worldFromLocal.translation;
+    placeSquareSum_ += solid.worldFromLocal.translation.cwiseAbs2();
+  }
 }
 
 bool Framing::seesGround(const Candidate& candidate) const {
@@ -121,10 +126,17 @@ bool Framing::seesGround(const Candidate& candidate) const {
   return true;
 }
 
+/// By the spread of all places of all bodies, for which a single one that runs away counts little.
+bool Framing::movesAlongZ() const {
+  if (places_ == 0) return false;
+  const double count = static_cast<double>(places_);
+  const Vec3 variance = placeSquareSum_ / count - (placeSum_ / count).cwiseAbs2();
+  return variance.z() > kClearlyAlong * kClearlyAlong * std::max(variance.x(), 0.0);
+}
+
 const Framing::Candidate& Framing::bestCandidate() const {
   // Across the motion rather than along it; and never from behind a slope.
-  const Vec3 extent = movingBounds_.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(movingBounds_.sizes());
-  const std::size_t first = extent.z() > kClearlyAlong * extent.x() ? kFirstAlongX : 0;
+  const std::size_t first = movesAlongZ() ? kFirstAlongX : 0;
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     const Candidate& candidate = candidates_[(first + i) % candidates_.size()];
     if (seesGround(candidate)) return candidate;

@@ -50,6 +50,7 @@ class Framing {
   static Reach reachOf(const Candidate& candidate, const Solid& solid);
   void includeMoving(const Solid& solid);
   std::vector<Solid> solidsOf(const std::vector<RigidTransform>& places, Motion motion) const;
+  bool movesAlongZ() const;
   bool seesGround(const Candidate& candidate) const;
   const Candidate& bestCandidate() const;
   Camera automaticCamera(const std::vector<Solid>& fixedThings) const;
@@ -59,6 +60,8 @@ class Framing {
   std::vector<Bounds> localBounds_;  // of every body
   std::vector<Candidate> candidates_;
   Bounds movingBounds_;
+  long places_ = 0;  // of bodies that move, over all frames
+  Vec3 placeSum_ = Vec3::Zero(), placeSquareSum_ = Vec3::Zero();
 };
 
 }  // namespace cradle

@@ -133,6 +133,7 @@ PackedDrawList pack(const DrawList& list, const Stage& stage) {
   PackedDrawList packed;
   for (const MeshItem& item : list.meshes) packed.meshInstances.push_back(packMesh(item, stage));
   for (const TubeItem& item : list.tubes) packed.tubeInstances.push_back(packTube(item, stage));
+  for (const MeshItem& item : list.walls) packed.wallInstances.push_back(packMesh(item, stage));
   packBatches(list, packed);
   packRounds(list.spheres, stage, packed.sphereInstances, packed.sphereBatches);
   packRounds(list.cylinders, stage, packed.cylinderInstances, packed.cylinderBatches);

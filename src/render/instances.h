@@ -16,11 +16,12 @@ struct Batch {
 };
 
 /// Corners around the outlines that spheres and the ends of cylinders are drawn with, coarse to fine.
-constexpr std::array<int, 4> kOutlines = {16, 32, 64, 128};
+constexpr std::array<int, 5> kOutlines = {8, 16, 32, 64, 128};
 
 /// A draw list as OpenGL takes it: numbers relative to the stage's origin.
 struct PackedDrawList {
-  std::vector<Instance> meshInstances, sphereInstances, cylinderInstances, tubeInstances, contactInstances;
+  std::vector<Instance> meshInstances, wallInstances, sphereInstances, cylinderInstances, tubeInstances,
+      contactInstances;
   std::vector<Batch> meshBatches, sphereBatches, cylinderBatches;
   std::vector<float> balls;      // eight a ball: centre, radius, colour, metallic
   std::vector<float> nearBalls;  // indices

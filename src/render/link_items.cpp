@@ -16,7 +16,7 @@ constexpr double kRodOfBody = 0.055, kRodOfView = 0.0022;
 constexpr double kCoilOfBody = 0.45, kCoilOfView = 0.05, kCoilOfLength = 0.14;
 constexpr double kWireOfCoil = 0.16;
 constexpr double kPitchOfCoil = 0.85;  // distance of turns at rest
-constexpr int kFewestTurns = 6, kMostTurns = 40;
+constexpr int kFewestTurns = 6;
 constexpr double kStraightEnd = 0.07;  // of a spring's length
 constexpr double kSlenderest = 0.3;    // a coil that is drawn out narrows so far and no farther
 constexpr double kKnobOfRod = 1.8;     // radius of the ball at the end of a rod
@@ -136,7 +136,7 @@ void LinkBuilder::add(const Spring& spring) {
   const Vec3 aStart = atStart(spring.anchorA), bStart = atStart(spring.anchorB);
   const double natural = std::max({spring.restLength, 0.5 * (bStart - aStart).norm(), 1e-3 * size_});
   const double widest = std::min(coil_, kCoilOfLength * natural);
-  const int turns = std::clamp(static_cast<int>(natural / (kPitchOfCoil * widest)), kFewestTurns, kMostTurns);
+  const int turns = std::clamp(static_cast<int>(natural / (kPitchOfCoil * widest)), kFewestTurns, kMostCoilTurns);
 
   // The wire keeps its length, so a coil narrows as it is drawn out.
   const double around = 2 * std::numbers::pi * turns;

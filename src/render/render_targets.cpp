@@ -111,12 +111,8 @@ MapTarget::MapTarget(Kind kind, int size) : size_(size) {
   const int filter = isDepth ? GL_NEAREST : GL_LINEAR;
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
-  // Outside, nothing throws shadows, and nothing is touched.
-  const float edge = isDepth ? 1.0f : 0.0f;
-  const std::array<float, 4> border = {edge, edge, edge, edge};
-  glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, border.data());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 
   glGenFramebuffers(1, &frame_);
   glBindFramebuffer(GL_FRAMEBUFFER, frame_);
@@ -139,6 +135,14 @@ void MapTarget::begin() const {
   glViewport(0, 0, size_, size_);
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  // The outermost texels stay clear, so that nothing throws a shadow or is touched beyond the edge. A border colour
+  // would say the same, and makes every look-up slower.
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(1, 1, size_ - 2, size_ - 2);
+}
+
+void MapTarget::end() const {
+  glDisable(GL_SCISSOR_TEST);
 }
 
 void MapTarget::bindTexture(unsigned int unit) const {

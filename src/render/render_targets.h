@@ -41,8 +41,9 @@ class MapTarget {
   MapTarget(const MapTarget&) = delete;
   MapTarget& operator=(const MapTarget&) = delete;
 
-  int size() const { return size_; }
+  /// Following draws go here until end(); its former contents are cleared.
   void begin() const;
+  void end() const;
   void bindTexture(unsigned int unit) const;
 
  private:

@@ -67,21 +67,49 @@ GpuMesh makeFarGround(const Stage& stage) {
 
 }  // namespace
 
+/// The shaders of all stages.
+struct Renderer::Programs {
+  Programs(const ShaderSource& source, const Stage& stage)
+      : surface(source, "surface.vert", "surface.frag"),
+        ball(source, "ball.vert", "ball.frag"),
+        cylinder(source, "cylinder.vert", "cylinder.frag"),
+        tube(source, "tube.vert", "surface.frag"),
+        surfaceDepth(source, "surface.vert", "depth.frag"),
+        ballDepth(source, "ball.vert", "depth.frag"),
+        cylinderDepth(source, "cylinder.vert", "depth.frag"),
+        tubeDepth(source, "tube.vert", "depth.frag"),
+        ground(source, "ground.vert", "ground.frag"),
+        groundFar(source, "ground.vert", "ground_far.frag"),
+        contact(source, "contact.vert", "contact.frag"),
+        sky(source, "sky.vert", "sky.frag") {
+    for (const ShaderProgram* program : {&surface, &ball, &cylinder, &tube, &ground, &groundFar, &contact, &sky})
+      setStage(stage, *program);
+    for (const ShaderProgram* program : {&surfaceDepth, &ballDepth, &cylinderDepth, &tubeDepth}) {
+      program->use();
+      program->set("clipFromWorld", stage.shadow.clipFromWorld);
+      program->set("viewer", stage.shadow.viewer);
+    }
+  }
+
+  ShaderProgram surface, ball, cylinder, tube;
+  ShaderProgram surfaceDepth, ballDepth, cylinderDepth, tubeDepth;  // the same for the shadow map
+  ShaderProgram ground, groundFar, contact, sky;
+};
+
 /// All that lives on the side of OpenGL; the context goes last.
 struct Renderer::Resources {
-  Resources(const Scene& scene, const View& view, int width, int height, const ShaderSource& shaders);
+  Resources(const Scene& scene, const View& view, int width, int height, const std::string& shaderFolder);
 
   OffscreenContext context;
   struct SizeCheck {
     SizeCheck(int width, int height) { requirePictureSize(width, height); }
-  } sizeCheck;
+  } sizeCheck;  // before any memory is asked for
   Appearance appearance;
   Stage stage;
-  ShaderProgram surface, ball, cylinder, tube, surfaceDepth, ballDepth, cylinderDepth, tubeDepth, ground, groundFar,
-      contact, sky;
+  Programs programs;
   PictureTarget picture;
   MapTarget shadowMap, contactMap;
-  InstanceBuffer meshInstances, sphereInstances, cylinderInstances, tubeInstances, contactInstances;
+  InstanceBuffer meshInstances, wallInstances, sphereInstances, cylinderInstances, tubeInstances, contactInstances;
   NumberTexture balls, nearBalls;
   std::vector<GpuMesh> meshes, halfBalls, halfCylinders;
   GpuMesh coilMesh, ropeMesh, triangle, square;
@@ -90,28 +118,18 @@ struct Renderer::Resources {
   Clock::time_point stageStart;
 };
 
-Renderer::Resources::Resources(const Scene& scene, const View& view, int width, int height, const ShaderSource& shaders)
+Renderer::Resources::Resources(const Scene& scene, const View& view, int width, int height,
+                               const std::string& shaderFolder)
     : sizeCheck(width, height),
       appearance(makeAppearance(scene, view, pixelsPerMetre(view, height))),
       stage(makeStage(scene, view, appearance.ground, width, height)),
-      surface(shaders, "surface.vert", "surface.frag"),
-      ball(shaders, "ball.vert", "ball.frag"),
-      cylinder(shaders, "cylinder.vert", "cylinder.frag"),
-      tube(shaders, "tube.vert", "surface.frag"),
-      surfaceDepth(shaders, "surface.vert", "depth.frag"),
-      ballDepth(shaders, "ball.vert", "depth.frag"),
-      cylinderDepth(shaders, "cylinder.vert", "depth.frag"),
-      tubeDepth(shaders, "tube.vert", "depth.frag"),
-      ground(shaders, "ground.vert", "ground.frag"),
-      groundFar(shaders, "ground.vert", "ground_far.frag"),
-      contact(shaders, "contact.vert", "contact.frag"),
-      sky(shaders, "sky.vert", "sky.frag"),
+      programs({shaderFolder, shaderDefinitions(stage)}, stage),
       picture(width, height),
       shadowMap(MapTarget::Kind::depth, kShadowMapSize),
       contactMap(MapTarget::Kind::share, kContactMapSize),
       balls(4),
       nearBalls(1),
-      coilMesh(makeTube(40 * kSegmentsPerTurn, kSegmentsAround)),
+      coilMesh(makeTube(kMostCoilTurns * kSegmentsPerTurn, kSegmentsAround)),
       ropeMesh(makeTube(kRopeSegments, kSegmentsAround)),
       triangle({0, 0, 0}, 1, {0, 1, 2}),
       square({-1, -1, 1, -1, 1, 1, -1, 1}, 2, {0, 1, 2, 0, 2, 3}) {
@@ -120,24 +138,13 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
     halfBalls.push_back(makeHalfBall(outline));
     halfCylinders.push_back(makeHalfCylinder(outline));
   }
-  if (stage.ground) {
-    nearGround.emplace(makeNearGround(stage));
-    farGround.emplace(makeFarGround(stage));
-  }
-  for (const ShaderProgram* program : {&surface, &ball, &cylinder, &tube, &surfaceDepth, &ballDepth, &cylinderDepth,
-                                       &tubeDepth, &ground, &groundFar, &contact, &sky})
-    setStage(stage, *program);
-  for (const ShaderProgram* program : {&surfaceDepth, &ballDepth, &cylinderDepth, &tubeDepth}) {
-    program->use();
-    program->set("clipFromWorld", stage.shadow.clipFromWorld);
-    program->set("viewer", stage.shadow.viewer);
-  }
+  if (!stage.ground) return;
+  nearGround.emplace(makeNearGround(stage));
+  farGround.emplace(makeFarGround(stage));
 }
 
 Renderer::Renderer(const Scene& scene, const View& view, int width, int height, const std::string& shaderFolder)
-    : scene_(scene),
-      view_(view),
-      resources_(std::make_unique<Resources>(scene, view, width, height, ShaderSource{shaderFolder})) {}
+    : scene_(scene), view_(view), resources_(std::make_unique<Resources>(scene, view, width, height, shaderFolder)) {}
 
 Renderer::~Renderer() {
   resources_->context.makeCurrent();
@@ -152,6 +159,7 @@ Image Renderer::render(const Frame& frame) {
   finishStage(times_.drawList);
 
   r.meshInstances.upload(r.packed.meshInstances);
+  r.wallInstances.upload(r.packed.wallInstances);
   r.sphereInstances.upload(r.packed.sphereInstances);
   r.cylinderInstances.upload(r.packed.cylinderInstances);
   r.tubeInstances.upload(r.packed.tubeInstances);
@@ -185,25 +193,27 @@ void Renderer::drawMaps() {
   glDisable(GL_BLEND);
   glEnable(GL_DEPTH_CLAMP);  // what stands outside the view still throws its shadow into it
   r.shadowMap.begin();
-  r.surfaceDepth.use();
+  r.programs.surfaceDepth.use();
   drawMeshes();
-  r.ballDepth.use();
+  r.programs.ballDepth.use();
   drawSpheres();
-  r.cylinderDepth.use();
+  r.programs.cylinderDepth.use();
   drawCylinders();
-  r.tubeDepth.use();
+  r.programs.tubeDepth.use();
   drawTubes();
   glDisable(GL_DEPTH_CLAMP);
+  r.shadowMap.end();
 
   r.contactMap.begin();
-  if (r.packed.contactInstances.empty()) return;
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE_MINUS_DST_COLOR, GL_ONE);  // what two things leave open is the product of what each does
-  r.contact.use();
-  r.square.draw(0, 2, r.contactInstances, 0, r.packed.contactInstances.size());
+  r.programs.contact.use();
+  const std::size_t contacts = r.packed.contactInstances.size();
+  if (contacts > 0) r.square.draw(0, 2, r.contactInstances, 0, contacts);
   glDisable(GL_BLEND);
   glEnable(GL_DEPTH_TEST);
+  r.contactMap.end();
 }
 
 void Renderer::drawPicture() {
@@ -213,24 +223,28 @@ void Renderer::drawPicture() {
   r.balls.bindTexture(kBallUnit);
   r.nearBalls.bindTexture(kNearBallUnit);
   r.picture.begin();
-  r.ball.use();
+  r.programs.ball.use();
   drawSpheres();
-  r.cylinder.use();
+  r.programs.cylinder.use();
   drawCylinders();
-  r.surface.use();
+  r.programs.surface.use();
   drawMeshes();
-  r.tube.use();
+  if (!r.packed.wallInstances.empty()) {
+    const GpuMesh& wall = r.meshes[static_cast<std::size_t>(r.appearance.wallMesh)];
+    wall.draw(0, wall.triangleCount(), r.wallInstances, 0, r.packed.wallInstances.size());
+  }
+  r.programs.tube.use();
   drawTubes();
   // Last what fills the picture: hidden pixels are not computed.
   if (r.nearGround) {
     glEnable(GL_CULL_FACE);  // from below, the ground is not there
-    r.ground.use();
+    r.programs.ground.use();
     r.nearGround->draw();
-    r.groundFar.use();
+    r.programs.groundFar.use();
     r.farGround->draw();
     glDisable(GL_CULL_FACE);
   }
-  r.sky.use();
+  r.programs.sky.use();
   r.triangle.draw();
 }
 

@@ -38,6 +38,7 @@ class Renderer {
   void measureStages(bool measuring) { measuring_ = measuring; }
 
  private:
+  struct Programs;
   struct Resources;
   void drawMaps();
   void drawPicture();

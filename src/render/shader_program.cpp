@@ -57,7 +57,9 @@ std::string ShaderSource::text(const std::string& name) const {
   std::string whole, line;
   const std::string include = kInclude;
   for (int number = 1; std::getline(lines, line); ++number) {
-    if (line.starts_with(include)) {
+    if (line.starts_with("#version")) {
+      whole += line + "\n" + definitions + "#line " + std::to_string(number + 1) + "\n";
+    } else if (line.starts_with(include)) {
       const std::string other = line.substr(include.size(), line.find('"', include.size()) - include.size());
       whole += "#line 1\n" + text(other) + "#line " + std::to_string(number + 1) + "\n";
     } else {

@@ -9,9 +9,10 @@ namespace cradle {
 /// Where shader texts come from: a folder, or (empty) the texts embedded in the program.
 struct ShaderSource {
   std::string folder;
+  std::string definitions = {};  // lines "#define NAME VALUE\n": what a scene does not have, its shaders do not compute
 
-  /// Text of a shader file with every line `#include "NAME"` replaced by that file. Throws Error(usage) if one is
-  /// missing.
+  /// Text of a shader file, the definitions after its line `#version`, with every line `#include "NAME"` replaced by
+  /// that file. Throws Error(usage) if one is missing.
   std::string text(const std::string& name) const;
 };
 

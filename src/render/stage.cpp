@@ -18,8 +18,7 @@ const Vec3f kStudioZenith(0.130f, 0.165f, 0.225f), kStudioHorizon(0.640f, 0.670f
 constexpr float kSkyOnGround = 0.62f;      // of the mean of zenith and horizon
 constexpr float kBounceFromGround = 0.5f;  // shadows and distance take the rest
 constexpr float kMeanSquare = 0.71f;       // of light and dark squares, in terms of the light one
-constexpr int kMostFillLights = 3;         // as many as surface.frag has room for
-constexpr double kNearShare = 0.02;        // of the camera's distance to what it looks at
+constexpr double kNearShare = 0.02;        // of the camera's distance to what is shown
 constexpr double kFadeDistance = 9;        // in sizes of the scene
 constexpr double kContactMargin = 0.15;    // of the scene's size
 constexpr double kLowestLight = 0.05;      // sine of the height below which the ground has no shadows
@@ -123,17 +122,14 @@ void setLighting(const Lighting& lighting, const ShaderProgram& program) {
   program.set("nadirColor", lighting.nadir);
   program.set("skyIrradiance", lighting.sky);
   program.set("bounceIrradiance", lighting.bounce);
-  const int fills = std::min(static_cast<int>(lighting.lamps.size()) - 1, kMostFillLights);
-  program.set("fillLights", fills);
-  for (int i = 0; i < fills; ++i) {
-    const auto& lamp = lighting.lamps[static_cast<std::size_t>(i) + 1];
+  for (std::size_t i = 0; i + 1 < lighting.lamps.size(); ++i) {
+    const auto& lamp = lighting.lamps[i + 1];
     program.set(fmt::format("fillDirection[{}]", i).c_str(), Vec3f(lamp.towards.cast<float>()));
     program.set(fmt::format("fillRadiance[{}]", i).c_str(), lamp.radiance);
   }
 }
 
 void setGround(const Stage& stage, const ShaderProgram& program) {
-  program.set("hasGround", stage.ground ? 1 : 0);
   if (!stage.ground) return;
   const Ground& ground = *stage.ground;
   const ShadedRegion& region = stage.shaded;
@@ -166,13 +162,19 @@ Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground
   stage.origin = bounds.center();
   const double distance = (view.camera.position - view.camera.target).norm();
   const double size = bounds.diagonal().norm();
-  stage.clipFromWorld = clipFromWorld(view.camera, stage.origin, width, height, kNearShare * std::max(distance, 1e-6));
+  const double nearest = std::max(bounds.exteriorDistance(view.camera.position), kNearShare * size);
+  stage.clipFromWorld = clipFromWorld(view.camera, stage.origin, width, height, kNearShare * nearest);
   stage.lighting = makeLighting(scene, ground);
   stage.shadow = makeShadowView(stage.lighting.lamps[0].towards, bounds, stage.origin);
   stage.ground = ground;
   if (ground) stage.shaded = makeShadedRegion(*ground, stage.lighting.lamps[0].towards, bounds, stage.origin);
   stage.fadeDistance = kFadeDistance * std::max(size, distance / 3);
   return stage;
+}
+
+std::string shaderDefinitions(const Stage& stage) {
+  return fmt::format("#define HAS_GROUND {}\n#define FILL_LIGHTS {}\n", stage.ground ? 1 : 0,
+                     stage.lighting.lamps.size() - 1);
 }
 
 void setStage(const Stage& stage, const ShaderProgram& program) {

@@ -57,6 +57,9 @@ enum TextureUnit { kShadowUnit = 0, kContactUnit, kBallUnit, kNearBallUnit };
 
 Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground>& ground, int width, int height);
 
+/// What the shaders need to know of the stage before they are compiled.
+std::string shaderDefinitions(const Stage& stage);
+
 /// Gives a program all the uniforms of the stage.
 void setStage(const Stage& stage, const ShaderProgram& program);
 

@@ -215,6 +215,33 @@ TEST(AnalyticPicture, LitBallThrowsNoShadowOnItself) {
       EXPECT_LE(image.at(x, y)[1], image.at(x + 1, y)[1] + 1) << x << " " << y;
 }
 
+// A ball of radius r that rests on the ground hides (r/d)^2 cos of the sky, d the distance of its centre and cos = r/d
+// of the angle to the vertical.
+TEST(AnalyticPicture, BallHidesTheSkyFromTheGroundAroundIt) {
+  const double radius = 0.15;
+  const Camera camera = cameraAt({0, 0.6, 0}, {0, -1, 0}, 50 * M_PI / 180);  // near: hardly any haze before the ground
+  Scene scene = shadowScene({0, -1 + radius, 0}, radius, {0, -1, 0});
+  scene.materials[0].baseColor = Vec3f::Ones();
+  scene.lights[0].intensity = 0;  // the sky alone
+  const Image image = drawWith(scene, camera);
+  scene.bodies[1].worldFromBody.translation.y() = 50;
+  const Image open = drawWith(scene, camera);
+  for (const double aside : {0.22, 0.27, 0.35}) {
+    for (int side = 0; side < 4; ++side) {
+      double mean = 0;  // around half the ball, so that the rounding of dark bytes, up to 0.02, averages out
+      for (int i = 0; i < 100; ++i) {
+        const double angle = M_PI * i / 100 + M_PI / 2 * side;
+        const Vec3 place(aside * std::cos(angle), -1, aside * std::sin(angle));
+        const Eigen::Vector2d pixel = projectToPixel(camera, place, kWidth, kHeight);
+        const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
+        mean += linearFromByte(image.at(x, y)[1]) / linearFromByte(open.at(x, y)[1]) / 100;
+      }
+      // A texel of the map is 2 cm wide: between its texels, the share is off by up to 2 mm of its slope of 2 a metre.
+      EXPECT_NEAR(mean, 1 - std::pow(radius / std::hypot(aside, radius), 3), 0.008) << aside << " side " << side;
+    }
+  }
+}
+
 TEST(AnalyticPicture, ShadowMeetsWhatThrowsIt) {
   // A box on the ground, seen from the side away from the light: close to its foot the ground is as dark as farther in
   // the shadow; a gap would show as light ground.

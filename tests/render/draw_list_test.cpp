@@ -79,11 +79,11 @@ TEST(DrawList, CoilTurnsWithItsSpringWithoutJumps) {
   Scene scene = emptyScene();
   addBody(scene, Sphere{0.1}, {Quat::Identity(), {0, -1, 0}});
   scene.springs.push_back({"", "", {0, {0, 0, 0}}, {kWorld, {0, 0, 0}}, 100, 0, 1});
-  Vec3 before;
-  for (int i = 0; i <= 300; ++i) {  // most of a full turn
+  Vec3 before = Vec3::Zero();
+  for (int i = 0; i <= 300; ++i) {  // most of a full turn, past all axes of the world
     const double angle = 0.01 * i;
     Frame frame = startFrame(scene);
-    frame.states[0].position = Vec3(std::sin(angle), -std::cos(angle), 0.05 * std::sin(3 * angle));
+    frame.states[0].position = Vec3(0.05 * std::sin(3 * angle), -std::cos(angle), std::sin(angle));
     const Vec3 side = listOf(scene, frame).tubes.at(0).side;
     EXPECT_NEAR(side.dot(frame.states[0].position.normalized()), 0, 1e-12);
     if (i > 0) {

@@ -26,29 +26,41 @@ Scene ballScene(double radius) {
   return scene;
 }
 
-/// How far towards the border of the picture (1) points around a ball reach.
-Eigen::Vector2d reachOfBall(const Camera& camera, const Vec3& center, double radius) {
-  Eigen::Vector2d reach(0, 0);
-  for (int i = 0; i < 2000; ++i) {  // a spiral over the ball
-    const double z = -1 + (2 * i + 1) / 2000.0, angle = 2.4 * i, across = std::sqrt(1 - z * z);
-    const Vec3 point = center + radius * Vec3(across * std::cos(angle), across * std::sin(angle), z);
-    const Eigen::Vector2d pixel = projectToPixel(camera, point, kWidth, kHeight);
-    reach.x() = std::max(reach.x(), std::abs(2 * pixel.x() / kWidth - 1));
-    reach.y() = std::max(reach.y(), std::abs(2 * pixel.y() / kHeight - 1));
+/// The part of the picture (-1..1 both ways) that balls on a path cover.
+Eigen::AlignedBox2d coveredPart(const Camera& camera, const std::vector<Vec3>& path, double radius) {
+  Eigen::AlignedBox2d covered;
+  for (const Vec3& center : path) {
+    for (int i = 0; i < 2000; ++i) {  // a spiral over the ball
+      const double z = -1 + (2 * i + 1) / 2000.0, angle = 2.4 * i, across = std::sqrt(1 - z * z);
+      const Vec3 point = center + radius * Vec3(across * std::cos(angle), across * std::sin(angle), z);
+      const Eigen::Vector2d pixel = projectToPixel(camera, point, kWidth, kHeight);
+      covered.extend(Eigen::Vector2d(2 * pixel.x() / kWidth - 1, 1 - 2 * pixel.y() / kHeight));
+    }
   }
-  return reach;
+  return covered;
 }
 
-TEST(Framing, WhatMovesStaysInThePictureAndFillsIt) {
+Eigen::AlignedBox2d coveredBy(const std::vector<Vec3>& path) {
   const Scene scene = ballScene(0.3);
-  const std::vector<Vec3> path = {{0, 0, 0}, {2, 1, 0.5}, {-1, 3, -4}, {0.5, -2, 1}, {1, 7, 0}};
   Framing framing(scene, kWidth, kHeight);
   for (const Vec3& place : path) framing.add(frameWithBallAt(place));
-  const Camera camera = framing.view().camera;
-  Eigen::Vector2d reach(0, 0);
-  for (const Vec3& place : path) reach = reach.cwiseMax(reachOfBall(camera, place, 0.3));
-  EXPECT_LE(reach.maxCoeff(), 0.8401);
-  EXPECT_GE(reach.maxCoeff(), 0.839);  // not farther away than needed
+  return coveredPart(framing.view().camera, path, 0.3);
+}
+
+TEST(Framing, TallMotionFillsThePictureFromTopToBottom) {
+  const auto covered = coveredBy({{0, 0, 0}, {2, 1, 0.5}, {-1, 3, -4}, {0.5, -2, 1}, {1, 7, 0}});
+  EXPECT_NEAR(covered.min().y(), -0.84, 1e-3);
+  EXPECT_NEAR(covered.max().y(), 0.84, 1e-3);
+  EXPECT_LT(covered.max().x(), 0.84);
+  EXPECT_GT(covered.min().x(), -0.84);
+}
+
+TEST(Framing, WideMotionFillsThePictureFromSideToSide) {
+  const auto covered = coveredBy({{-6, 0, 0}, {3, 1, 0.5}, {-1, -1, -4}, {5, 0, 1}});
+  EXPECT_NEAR(covered.min().x(), -0.84, 1e-3);
+  EXPECT_NEAR(covered.max().x(), 0.84, 1e-3);
+  EXPECT_LT(covered.max().y(), 0.84);
+  EXPECT_GT(covered.min().y(), -0.84);
 }
 
 TEST(Framing, OrderOfFramesDoesNotMatter) {
