@@ -24,7 +24,7 @@ void assimpAlone(benchmark::State& state) {
 
 void inspection(benchmark::State& state) {
   for (auto _ : state)
-    for (const LoadedModel& object : loadObjects(kModel, 1)) {
+    for (const LoadedModel& object : loadObjects(kModel, 1, ModelParts::solidAlone)) {
       benchmark::DoNotOptimize(checkSolid(object.model.solid));
       benchmark::DoNotOptimize(computeMassProperties(object.model.solid, 1));
     }

@@ -78,7 +78,7 @@ void printText(const Inspection& inspection) {
 void inspectMesh(const std::string& path, double scale, bool asJson) {
   if (!(scale > 0 && std::isfinite(scale)))
     throw Error(ErrorKind::usage, "--scale", fmt::format("found {}; allowed are numbers > 0", scale));
-  const std::vector<LoadedModel> objects = loadObjects(path, scale);
+  const std::vector<LoadedModel> objects = loadObjects(path, scale, ModelParts::solidAlone);
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const LoadedModel& object : objects) {
     const Inspection inspection = inspect(object);

@@ -89,6 +89,19 @@ void shareCorners(const Numbering& positions, DrawnMesh& drawn) {
     for (std::uint32_t& corner : triangle) corner = numbering.numberOf[corner];
 }
 
+// What weld makes of the corners, from their numbers. Triangles with equal corners are gone already.
+TriangleMesh solidOf(const Numbering& positions, const DrawnMesh& corners) {
+  TriangleMesh solid;
+  solid.vertices.reserve(positions.firstKey.size());
+  for (const std::uint32_t corner : positions.firstKey) {
+    solid.vertices.push_back(corners.vertices[corner] + Vec3::Zero());  // -0 becomes 0
+  }
+  solid.triangles.reserve(corners.triangles.size());
+  for (const auto& [a, b, c] : corners.triangles)
+    solid.triangles.push_back({positions.numberOf[a], positions.numberOf[b], positions.numberOf[c]});
+  return solid;
+}
+
 void turnInsideOut(Model& model) {
   for (Triangle& triangle : model.solid.triangles) std::swap(triangle[1], triangle[2]);
   for (Triangle& triangle : model.drawn.triangles) std::swap(triangle[1], triangle[2]);
@@ -111,7 +124,7 @@ std::string plural(std::size_t count, const char* what) {
 
 }  // namespace
 
-LoadedModel assembleModel(const std::string& name, std::vector<MeshPiece> pieces) {
+LoadedModel assembleModel(const std::string& name, std::vector<MeshPiece> pieces, ModelParts parts) {
   std::stable_sort(pieces.begin(), pieces.end(),
                    [](const MeshPiece& a, const MeshPiece& b) { return a.material < b.material; });
   LoadedModel loaded;
@@ -128,9 +141,13 @@ LoadedModel assembleModel(const std::string& name, std::vector<MeshPiece> pieces
   for (std::uint32_t corner = 0; corner < drawn.vertices.size(); corner += 3)
     drawn.triangles.push_back({corner, corner + 1, corner + 2});
   const Numbering positions = numberPositions(drawn.vertices);
-  fillMissingNormals(smoothing, positions, drawn);
-  shareCorners(positions, drawn);
-  loaded.model.solid = weld(drawn.vertices, drawn.triangles);
+  loaded.model.solid = solidOf(positions, drawn);
+  if (parts == ModelParts::solidAlone) {
+    drawn = {};
+  } else {
+    fillMissingNormals(smoothing, positions, drawn);
+    shareCorners(positions, drawn);
+  }
 
   if (degenerate > 0) loaded.notes.push_back(plural(degenerate, "degenerate triangle") + " dropped");
   if (signedVolume(loaded.model.solid) < 0) {

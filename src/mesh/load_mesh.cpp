@@ -251,7 +251,7 @@ std::vector<std::string> namesOf(const std::vector<LoadedModel>& objects) {
 
 }  // namespace
 
-std::vector<LoadedModel> loadObjects(const std::string& path, double scale) {
+std::vector<LoadedModel> loadObjects(const std::string& path, double scale, ModelParts parts) {
   CRADLE_CHECK(scale > 0);
   ImportedFile file;
   importFile(path, file);
@@ -274,7 +274,7 @@ std::vector<LoadedModel> loadObjects(const std::string& path, double scale) {
 
   std::vector<LoadedModel> objects;
   for (std::size_t object = 0; object < names.size(); ++object) {
-    LoadedModel loaded = assembleModel(names[object], std::move(pieces[object]));
+    LoadedModel loaded = assembleModel(names[object], std::move(pieces[object]), parts);
     if (!loaded.model.solid.triangles.empty()) objects.push_back(std::move(loaded));
   }
   if (objects.empty())

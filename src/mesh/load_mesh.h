@@ -20,10 +20,14 @@ struct LoadedModel {
   std::vector<std::string> notes;  // "42 degenerate triangles dropped", "was inside-out: turned"
 };
 
+/// Which halves of a model are wanted: pictures cost about as much again as the solid.
+enum class ModelParts { solidAlone, solidAndDrawn };
+
 /// All objects of a mesh file (.3ds, .obj, .ply, .stl, .gltf, .glb ...; Z-up files of 3ds come out Y up), node
 /// transforms applied in double, `scale` applied. Throws Error(mesh) if the file is missing, unreadable, over the size
 /// caps, has no triangles, non-finite vertices or indices out of range.
-std::vector<LoadedModel> loadObjects(const std::string& path, double scale);
+std::vector<LoadedModel> loadObjects(const std::string& path, double scale,
+                                     ModelParts parts = ModelParts::solidAndDrawn);
 
 /// The object that `reference` names, or all objects of the file joined into one model. Throws as loadObjects does, and
 /// Error(mesh) naming the objects there are if the named one does not exist.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "mesh/mass_properties.h"
@@ -36,14 +37,22 @@ struct Fault {
 };
 
 std::vector<Edge> sortedEdges(const TriangleMesh& mesh) {
-  std::vector<Edge> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (const Triangle& triangle : mesh.triangles)
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::uint32_t from = triangle[corner], to = triangle[(corner + 1) % 3];
-      edges.push_back({std::min(from, to), std::max(from, to), from < to});
-    }
-  std::sort(edges.begin(), edges.end());
+  const auto forEachEdge = [&mesh](const auto& take) {
+    for (const Triangle& triangle : mesh.triangles)
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const std::uint32_t from = triangle[corner], to = triangle[(corner + 1) % 3];
+        take(Edge{std::min(from, to), std::max(from, to), from < to});
+      }
+  };
+  // Counted into their place by the lower vertex; the few that share it are sorted.
+  std::vector<std::uint32_t> starts(mesh.vertices.size() + 1, 0);
+  forEachEdge([&](const Edge& edge) { ++starts[edge.low + 1]; });
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<Edge> edges(3 * mesh.triangles.size());
+  std::vector<std::uint32_t> next(starts.begin(), starts.end() - 1);
+  forEachEdge([&](const Edge& edge) { edges[next[edge.low]++] = edge; });
+  for (std::size_t vertex = 0; vertex + 1 < starts.size(); ++vertex)
+    std::sort(edges.begin() + starts[vertex], edges.begin() + starts[vertex + 1]);
   return edges;
 }
 

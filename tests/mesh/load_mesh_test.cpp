@@ -110,6 +110,17 @@ TEST(LoadMesh, ObjectsAreFoundByName) {
                     HasSubstr("\"RailFront\", \"RailBack\", \"Board\"")));
 }
 
+TEST(LoadMesh, SolidAloneIsTheSolidOfTheWholeModel) {
+  const auto whole = loadObjects(asset("cradle_frame.3ds"), 0.5);
+  const auto alone = loadObjects(asset("cradle_frame.3ds"), 0.5, ModelParts::solidAlone);
+  ASSERT_EQ(alone.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_EQ(alone[i].model.solid.vertices, whole[i].model.solid.vertices);
+    EXPECT_EQ(alone[i].model.solid.triangles, whole[i].model.solid.triangles);
+    EXPECT_TRUE(alone[i].model.drawn.vertices.empty());
+  }
+}
+
 TEST(LoadMesh, WithoutObjectAllAreOneBody) {
   double sum = 0;
   for (const LoadedModel& object : loadObjects(asset("cradle_frame.3ds"), 1)) sum += signedVolume(object.model.solid);
