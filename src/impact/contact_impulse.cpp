@@ -9,9 +9,9 @@ Vec3 armOf(const Contact& contact, int body, const VectorX& state) {
   return body == kFixed ? Vec3::Zero() : Vec3(contact.point - centerOfMass(state, body));
 }
 
-Vec3 pointVelocity(const Contact& contact, int body, const VectorX& state) {
+Vec3 pointVelocity(const Contact& contact, int body, const VectorX& places, const VectorX& velocities) {
   if (body == kFixed) return Vec3::Zero();
-  return linearVelocity(state, body) + angularVelocity(state, body).cross(armOf(contact, body, state));
+  return linearVelocity(velocities, body) + angularVelocity(velocities, body).cross(armOf(contact, body, places));
 }
 
 Mat3 inverseMassOf(const Contact& contact, int body, const std::vector<RigidBody>& bodies, const VectorX& state) {
@@ -25,7 +25,12 @@ Mat3 inverseMassOf(const Contact& contact, int body, const std::vector<RigidBody
 }  // namespace
 
 Vec3 relativeVelocity(const Contact& contact, const VectorX& state) {
-  return pointVelocity(contact, contact.bodyB, state) - pointVelocity(contact, contact.bodyA, state);
+  return relativeVelocity(contact, state, state);
+}
+
+Vec3 relativeVelocity(const Contact& contact, const VectorX& places, const VectorX& velocities) {
+  return pointVelocity(contact, contact.bodyB, places, velocities) -
+         pointVelocity(contact, contact.bodyA, places, velocities);
 }
 
 Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state) {
