@@ -37,10 +37,22 @@ Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies,
   return inverseMassOf(contact, contact.bodyA, bodies, state) + inverseMassOf(contact, contact.bodyB, bodies, state);
 }
 
-void applyContactImpulse(const Contact& contact, const Vec3& impulseOnB, const std::vector<RigidBody>& bodies,
-                         VectorX& state) {
-  applyImpulse(bodies, contact.bodyA, armOf(contact, contact.bodyA, state), -impulseOnB, state);
-  applyImpulse(bodies, contact.bodyB, armOf(contact, contact.bodyB, state), impulseOnB, state);
+Mat3 ImpulseResponse::inverseMassAt(const Contact& contact, const VectorX& state) const {
+  if (!constraints_) return cradle::inverseMassAt(contact, bodies_, state);
+  Mat3 inverseMass;
+  VectorX answer = state;
+  for (int i = 0; i < 3; ++i) {
+    answer.tail(state.size() - poseComponents(state)).setZero();
+    apply(contact, Vec3::Unit(i), answer);
+    inverseMass.col(i) = relativeVelocity(contact, answer);
+  }
+  return inverseMass;
+}
+
+void ImpulseResponse::apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const {
+  applyImpulse(bodies_, contact.bodyA, armOf(contact, contact.bodyA, state), -impulseOnB, state);
+  applyImpulse(bodies_, contact.bodyB, armOf(contact, contact.bodyB, state), impulseOnB, state);
+  if (constraints_) constraints_->constrainVelocities(state);
 }
 
 }  // namespace cradle

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "impact/contact_impulse.h"
-
 namespace cradle {
 namespace {
 
@@ -24,7 +22,7 @@ Vec3 clampToCone(const Vec3& impulse, const Vec3& normal, double friction) {
 }
 
 /// One contact's turn: normal part first, then friction under the pressure that it left.
-double relax(LastingContact& lasting, const Mat3& inverseMass, const std::vector<RigidBody>& bodies, VectorX& state) {
+double relax(LastingContact& lasting, const Mat3& inverseMass, const ImpulseResponse& response, VectorX& state) {
   const Contact& contact = lasting.contact;
   const Vec3& normal = contact.normal;
   const Vec3 velocity = relativeVelocity(contact, state);
@@ -36,7 +34,7 @@ double relax(LastingContact& lasting, const Mat3& inverseMass, const std::vector
   const Vec3 held = clampToCone(free, normal, lasting.friction);
   const Vec3 change = held - lasting.impulse;
   lasting.impulse = held;
-  applyContactImpulse(contact, change, bodies, state);
+  response.apply(contact, change, state);
   return (inverseMass * change).norm();
 }
 
@@ -57,15 +55,15 @@ void moveApart(const Contact& contact, const std::vector<RigidBody>& bodies, Vec
 
 }  // namespace
 
-double solveLastingContacts(std::vector<LastingContact>& contacts, const std::vector<RigidBody>& bodies,
-                            VectorX& state) {
+double solveLastingContacts(std::vector<LastingContact>& contacts, const ImpulseResponse& response, VectorX& state) {
   std::vector<Mat3> inverseMasses;
-  for (const LastingContact& lasting : contacts) inverseMasses.push_back(inverseMassAt(lasting.contact, bodies, state));
+  for (const LastingContact& lasting : contacts)
+    inverseMasses.push_back(response.inverseMassAt(lasting.contact, state));
   double largest = 0, change = 0;
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     change = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i)
-      change = std::max(change, relax(contacts[i], inverseMasses[i], bodies, state));
+      change = std::max(change, relax(contacts[i], inverseMasses[i], response, state));
     largest = std::max(largest, change);
     if (change <= kConvergedPart * largest) break;
   }

@@ -32,6 +32,7 @@ ContactStage::ContactStage(const Assembly& assembly, EquationsOfMotion& equation
       equations_(equations),
       log_(log),
       resting_(assembly.mechanism, assembly.geometry, equations, kCalmSteps * timeStep),
+      solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),
       timeStep_(timeStep),
       touchTolerance_(cradle::touchTolerance(assembly.geometry)) {}
 
@@ -46,6 +47,7 @@ void ContactStage::resolve(double time, const VectorX& before, VectorX& state) {
   findTouching(state);
   if (touching_.empty()) return;
   wakeTouched(time, state);
+  if (solver_.hasConstraints()) solver_.factorize(state);
   resolveImpacts(time, before, state);
   holdLasting(before, state);
   resolveOverlaps(assembly_.geometry, touching_, assembly_.mechanism.bodies, state);
@@ -81,8 +83,7 @@ void ContactStage::resolveImpacts(double time, const VectorX& before, VectorX& s
   std::vector<ImpactContact> impacts = findImpacts(before, state);
   if (impacts.empty()) return;
   const double energy = kineticEnergy(assembly_.mechanism.bodies, state);
-  resolvePairwise(impacts, assembly_.mechanism.bodies, state);
-  projectVelocitiesOntoRods(assembly_.mechanism.rods, assembly_.mechanism.bodies, solver_, state);
+  resolvePairwise(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
   dissipatedEnergy(state) += energy - kineticEnergy(assembly_.mechanism.bodies, state);
   for (const ImpactContact& impact : impacts)
     if (impact.impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impact.impulse);
@@ -117,7 +118,7 @@ void ContactStage::holdLasting(const VectorX& before, VectorX& state) {
     const double sliding = (velocity - contact.normal.dot(velocity) * contact.normal).norm();
     lasting.push_back({contact, sliding > kSlidingSpeed ? law.dynamicFriction : law.staticFriction, Vec3::Zero()});
   }
-  solveLastingContacts(lasting, assembly_.mechanism.bodies, state);
+  solveLastingContacts(lasting, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
   // An impulse spread over a step does work with the mean of the velocities at the step's two ends.
   for (const LastingContact& lastingContact : lasting) {
     const Contact& contact = lastingContact.contact;

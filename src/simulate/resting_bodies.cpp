@@ -20,6 +20,7 @@ RestingBodies::RestingBodies(const Mechanism& mechanism, const ContactGeometry& 
     : mechanism_(mechanism),
       geometry_(geometry),
       equations_(equations),
+      solver_(mechanism.constraints, mechanism.bodies),
       sizes_(mechanism.bodies.size(), 0.0),
       calmTime_(calmTime),
       wakeTimes_(mechanism.bodies.size(), -INFINITY),
@@ -37,7 +38,7 @@ std::vector<int> RestingBodies::islandsOf(const std::vector<Contact>& contacts) 
   Islands joined(mechanism_.bodies.size());
   for (const Contact& contact : contacts) joined.join(contact.bodyA, contact.bodyB);
   for (const SpringForce& spring : mechanism_.springs) joined.join(spring.anchorA.body, spring.anchorB.body);
-  for (const RodConstraint& rod : mechanism_.rods) joined.join(rod.anchorA.body, rod.anchorB.body);
+  forEachTie(mechanism_.constraints, [&](int bodyA, int bodyB) { joined.join(bodyA, bodyB); });
   std::vector<int> islands;
   for (std::size_t body = 0; body < sizes_.size(); ++body) islands.push_back(joined.islandOf(static_cast<int>(body)));
   return islands;
@@ -70,7 +71,8 @@ bool RestingBodies::canBeHeld(const std::vector<int>& islands, int island, const
     if (islands[static_cast<std::size_t>(body)] == island)
       lasting.push_back({contact, geometry_.pairs[contact.pair].law.staticFriction, Vec3::Zero()});
   }
-  solveLastingContacts(lasting, mechanism_.bodies, accelerations);
+  if (solver_.hasConstraints()) solver_.factorize(state);
+  solveLastingContacts(lasting, ImpulseResponse(mechanism_.bodies, solver_), accelerations);
 
   for (std::size_t i = 0; i < islands.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);

@@ -33,6 +33,7 @@ class RestingBodies {
   const Mechanism& mechanism_;
   const ContactGeometry& geometry_;
   EquationsOfMotion& equations_;
+  ConstraintSolver solver_;
   std::vector<double> sizes_;      // m: bounding radius of each moving body, 0 if it does not collide
   double supportMargin_ = 0;       // m
   double calmTime_;                // s
