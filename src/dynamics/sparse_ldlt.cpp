@@ -26,14 +26,16 @@ void SparseLdlt::analyze(int size, const std::vector<std::pair<int, int>>& entri
     rowEntries_.push_back({place.second, source});
     rowStart_[static_cast<std::size_t>(place.first) + 1] = static_cast<int>(rowEntries_.size());
   }
-  for (std::size_t row = 1; row < rowStart_.size(); ++row) rowStart_[row] = std::max(rowStart_[row], rowStart_[row - 1]);
+  for (std::size_t row = 1; row < rowStart_.size(); ++row)
+    rowStart_[row] = std::max(rowStart_[row], rowStart_[row - 1]);
   findFill();
 }
 
 void SparseLdlt::order(const std::vector<std::pair<int, int>>& entries) {
   using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
   std::vector<Eigen::Triplet<double>> triplets;
-  for (const auto& [row, column] : entries) triplets.emplace_back(row, column, 1), triplets.emplace_back(column, row, 1);
+  for (const auto& [row, column] : entries)
+    triplets.emplace_back(row, column, 1), triplets.emplace_back(column, row, 1);
   for (int row = 0; row < size_; ++row) triplets.emplace_back(row, row, 1);
   Matrix matrix(size_, size_);
   matrix.setFromTriplets(triplets.begin(), triplets.end());
@@ -84,8 +86,8 @@ void SparseLdlt::factorize(const std::vector<double>& diagonal, const std::vecto
   }
 }
 
-/// The columns of L that have an entry in `row`, in an order in which they can be eliminated: from the place returned to
-/// the end of pattern_.
+/// The columns of L that have an entry in `row`, in an order in which they can be eliminated: from the place returned
+/// to the end of pattern_.
 int SparseLdlt::reach(int row) {
   int first = size_;
   marks_[static_cast<std::size_t>(row)] = row;

@@ -40,13 +40,24 @@ Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies,
 Mat3 ImpulseResponse::inverseMassAt(const Contact& contact, const VectorX& state) const {
   if (!constraints_) return cradle::inverseMassAt(contact, bodies_, state);
   Mat3 inverseMass;
-  VectorX answer = state;
-  for (int i = 0; i < 3; ++i) {
-    answer.tail(state.size() - poseComponents(state)).setZero();
-    apply(contact, Vec3::Unit(i), answer);
-    inverseMass.col(i) = relativeVelocity(contact, answer);
-  }
+  for (int i = 0; i < 3; ++i) inverseMass.col(i) = relativeVelocity(contact, answerOf(contact, Vec3::Unit(i), state));
   return inverseMass;
+}
+
+/// The state with the velocities that an impulse gives to bodies at rest.
+VectorX ImpulseResponse::answerOf(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const {
+  VectorX answer = state;
+  answer.tail(state.size() - poseComponents(state)).setZero();
+  apply(contact, impulseOnB, answer);
+  return answer;
+}
+
+void ImpulseResponse::displace(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const {
+  const VectorX answer = answerOf(contact, impulseOnB, state);
+  for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
+    centerOfMass(state, body) += linearVelocity(answer, body);
+    turnBody(state, body, angularVelocity(answer, body));
+  }
 }
 
 void ImpulseResponse::apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const {

@@ -34,7 +34,12 @@ class ImpulseResponse {
   /// Applies an impulse (N s, world) to B and its opposite to A at the contact.
   void apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const;
 
+  /// Moves the bodies as far as the velocities that such an impulse gives would in 1 s. Velocities stay.
+  void displace(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const;
+
  private:
+  VectorX answerOf(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const;
+
   const std::vector<RigidBody>& bodies_;
   ConstraintSolver* constraints_ = nullptr;
 };

@@ -38,21 +38,6 @@ double relax(LastingContact& lasting, const Mat3& inverseMass, const ImpulseResp
   return (inverseMass * change).norm();
 }
 
-/// Shifts and turns both bodies so that the contact's gap grows from `separation` to 0. What earlier contacts of the
-/// same bodies did since it was found is seen in the next sweep.
-void moveApart(const Contact& contact, const std::vector<RigidBody>& bodies, VectorX& state) {
-  const double response = contact.normal.dot(inverseMassAt(contact, bodies, state) * contact.normal);
-  const Vec3 push = -contact.separation / response * contact.normal;
-  for (const auto& [body, sign] : {std::pair(contact.bodyA, -1.0), std::pair(contact.bodyB, 1.0)}) {
-    if (body == kFixed) continue;
-    const RigidBody& inertia = bodies[static_cast<std::size_t>(body)];
-    const Vec3 arm = contact.point - centerOfMass(state, body);
-    const Vec3 turn = worldInverseInertia(inertia, orientation(state, body)) * arm.cross(sign * push);
-    centerOfMass(state, body) += sign * inertia.inverseMass * push;
-    turnBody(state, body, turn);
-  }
-}
-
 }  // namespace
 
 double solveLastingContacts(std::vector<LastingContact>& contacts, const ImpulseResponse& response, VectorX& state) {
@@ -71,7 +56,7 @@ double solveLastingContacts(std::vector<LastingContact>& contacts, const Impulse
 }
 
 void resolveOverlaps(const ContactGeometry& geometry, const std::vector<Contact>& contacts,
-                     const std::vector<RigidBody>& bodies, VectorX& state) {
+                     const ImpulseResponse& response, VectorX& state) {
   std::vector<std::size_t> pairs;
   for (const Contact& contact : contacts)
     if (pairs.empty() || pairs.back() != contact.pair) pairs.push_back(contact.pair);
@@ -81,9 +66,11 @@ void resolveOverlaps(const ContactGeometry& geometry, const std::vector<Contact>
     for (const std::size_t pair : pairs) {
       overlaps.clear();
       appendContacts(geometry, pair, state, 0, overlaps);
+      // What earlier contacts of the same bodies did since it was found is seen in the next sweep.
       for (const Contact& overlap : overlaps) {
         deepest = std::max(deepest, -overlap.separation);
-        moveApart(overlap, bodies, state);
+        const double inverseMass = overlap.normal.dot(response.inverseMassAt(overlap, state) * overlap.normal);
+        response.displace(overlap, -overlap.separation / inverseMass * overlap.normal, state);
       }
     }
     if (deepest <= kOverlapLeft) return;

@@ -18,8 +18,9 @@ struct LastingContact {
 /// last sweep still changed, in m/s: how far it is from converged. O(sweeps x contacts).
 double solveLastingContacts(std::vector<LastingContact>& contacts, const ImpulseResponse& response, VectorX& state);
 
-/// Moves bodies apart until no contact overlaps, in the ratio of their inverse masses at the contact. Positions only.
+/// Moves bodies apart until no contact overlaps, in the ratio of their inverse masses at the contact, with what ties
+/// them. Positions only.
 void resolveOverlaps(const ContactGeometry& geometry, const std::vector<Contact>& contacts,
-                     const std::vector<RigidBody>& bodies, VectorX& state);
+                     const ImpulseResponse& response, VectorX& state);
 
 }  // namespace cradle

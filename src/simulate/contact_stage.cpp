@@ -50,7 +50,7 @@ void ContactStage::resolve(double time, const VectorX& before, VectorX& state) {
   if (solver_.hasConstraints()) solver_.factorize(state);
   resolveImpacts(time, before, state);
   holdLasting(before, state);
-  resolveOverlaps(assembly_.geometry, touching_, assembly_.mechanism.bodies, state);
+  resolveOverlaps(assembly_.geometry, touching_, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
   for (const int body : resting_.settle(time, touching_, state))
     log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
 }

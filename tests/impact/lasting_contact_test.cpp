@@ -94,7 +94,7 @@ TEST(Overlap, WithAPlaneMovesTheBodyAlone) {
   centerOfMass(state, 0) = Vec3(3, 1.04, 2);
   std::vector<Contact> contacts;
   findContacts(geometry, state, 0, contacts);
-  resolveOverlaps(geometry, contacts, {cube(1, 0.1)}, state);
+  resolveOverlaps(geometry, contacts, std::vector{cube(1, 0.1)}, state);
   EXPECT_LT((centerOfMass(state, 0) - Vec3(3, 1.1, 2)).norm(), 1e-15);
 }
 
