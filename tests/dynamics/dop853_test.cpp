@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "dynamics/dop853_problems.h"
 
@@ -55,11 +54,9 @@ TEST(Dop853, IsOfOrderEightOnTheOscillator) {
 }
 
 TEST(Dop853, IsOfOrderEightOnAnEllipse) {
-  const auto error = [](int steps) {
-    const double round = 2 * std::numbers::pi;
-    return (run(kepler(), keplerAt(0), round, steps) - keplerAt(round)).norm();
-  };
-  EXPECT_NEAR(orderOf(error(32), error(64)), 8, 0.5);
+  const auto error = [](int steps) { return (run(kepler(), keplerAt(0), 2, steps) - keplerAt(2)).norm(); };
+  EXPECT_NEAR(orderOf(error(8), error(16)), 8, 0.5);
+  EXPECT_LT(error(8), 1e-7);
 }
 
 // |R(i z)| of its stability polynomial is 1 at z = 5.9606: 0.90 at 5.9, 1.077 at 6.
@@ -123,12 +120,11 @@ TEST(Dop853, ErrorNormDoesNotAverageAStiffComponentAway) {
 }
 
 TEST(Dop853, ErrorNormOfAStepOutOfTheFiniteNumbersIsNotANumber) {
-  const RightHandSide explosion{
-      [](double, const VectorX& state, VectorX& rate) {
-        rate[0] = 0;
-        rate[1] = 1e300 * state[1] * state[1];
-      },
-      nullptr, 1};
+  const RightHandSide explosion{[](double, const VectorX& state, VectorX& rate) {
+                                  rate[0] = 0;
+                                  rate[1] = 1e300 * state[1] * state[1];
+                                },
+                                nullptr, 1};
   Step step;
   dop853(explosion, Eigen::Vector2d(1, 1), 0, 1, step);
   EXPECT_TRUE(std::isnan(errorNorm(step, VectorX::Constant(2, 1e-6))));

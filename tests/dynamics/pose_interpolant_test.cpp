@@ -116,8 +116,9 @@ TEST(PoseAt, AgreesWithTheInterpolatedState) {
     interpolate(step, 0.3, state);
     const RigidTransform pose = poseAt(step, 0, 0.3);
     EXPECT_LT((pose * Vec3::Zero() - centerOfMass(state, 0)).norm(), 1e-14);
-    EXPECT_LT((pose * Vec3(1, 2, 3) - centerOfMass(state, 0) - orientation(state, 0).normalized() * Vec3(1, 2, 3)).norm(),
-              1e-14 * 5);
+    EXPECT_LT(
+        (pose * Vec3(1, 2, 3) - centerOfMass(state, 0) - orientation(state, 0).normalized() * Vec3(1, 2, 3)).norm(),
+        1e-14 * 5);
   }
 }
 

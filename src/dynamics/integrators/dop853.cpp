@@ -5,6 +5,7 @@
 
 #include "dynamics/integrators/dop853.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -43,33 +44,25 @@ double weightedSum(const RatePointers& rates, Eigen::Index component) {
   return sum;
 }
 
-/// result = start state + h x weighted sum of the rates before row kRow.
-template <std::size_t kRow>
-void advanceTo(const Step& step, VectorX& result) {
+/// target = start + h x weighted sum of the rates.
+template <const auto& kTable, std::size_t kRow>
+void addRates(const Step& step, const VectorX& start, VectorX& target) {
+  target.resize(start.size());
   const RatePointers rates = ratesOf(step);
-  const double* start = step.startState.data();
+  const double* from = start.data();
+  double* to = target.data();
   const double timeStep = step.timeStep;
-  const Eigen::Index size = step.startState.size();
-  result.resize(size);
-  double* __restrict target = result.data();  // no rate: lets the compiler take several components at a time
-  for (Eigen::Index i = 0; i < size; ++i) target[i] = start[i] + timeStep * weightedSum<kStages, kRow>(rates, i);
+  const Eigen::Index size = start.size();
+// The target is none of the sources: several components at a time.
+#pragma GCC ivdep
+  for (Eigen::Index i = 0; i < size; ++i) to[i] = from[i] + timeStep * weightedSum<kTable, kRow>(rates, i);
 }
 
 template <std::size_t kRow>
 void evaluateStage(const RightHandSide& rightHandSide, Step& step) {
-  advanceTo<kRow>(step, step.stage);
+  addRates<kStages, kRow>(step, step.startState, step.stage);
   step.stageRates[kRow].resize(step.stage.size());
   rightHandSide.rate(step.time + kNodes[kRow] * step.timeStep, step.stage, step.stageRates[kRow]);
-}
-
-template <std::size_t kRow>
-void computeCorrection(Step& step) {
-  const RatePointers rates = ratesOf(step);
-  const double timeStep = step.timeStep;
-  const Eigen::Index size = step.startState.size();
-  step.corrections[kRow].resize(size);
-  double* __restrict target = step.corrections[kRow].data();
-  for (Eigen::Index i = 0; i < size; ++i) target[i] = timeStep * weightedSum<kCorrections, kRow>(rates, i);
 }
 
 }  // namespace
@@ -82,7 +75,7 @@ void dop853(const RightHandSide& rightHandSide, const VectorX& state, double tim
     (evaluateStage<kStage + 1>(rightHandSide, step), ...);
   }
   (std::make_index_sequence<kEndRate - 1>());
-  advanceTo<kEndRate>(step, step.state);
+  addRates<kStages, kEndRate>(step, step.startState, step.state);
 }
 
 double errorNorm(const Step& step, const VectorX& tolerance) {
@@ -106,10 +99,11 @@ void computeCorrections(const RightHandSide& rightHandSide, Step& step) {
   evaluateStage<kEndRate + 1>(rightHandSide, step);
   evaluateStage<kEndRate + 2>(rightHandSide, step);
   evaluateStage<kEndRate + 3>(rightHandSide, step);
-  computeCorrection<0>(step);
-  computeCorrection<1>(step);
-  computeCorrection<2>(step);
-  computeCorrection<3>(step);
+  step.work.setZero(step.startState.size());
+  [&]<std::size_t... kRow>(std::index_sequence<kRow...>) {
+    (addRates<kCorrections, kRow>(step, step.work, step.corrections[kRow]), ...);
+  }
+  (std::make_index_sequence<kCorrections.size()>());
 }
 
 }  // namespace cradle

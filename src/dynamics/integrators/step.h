@@ -46,7 +46,8 @@ void beginStep(const RightHandSide& rightHandSide, const VectorX& state, double 
 void keepStartRate(Step& step);
 
 /// The next step starts where this one ended, at the very same state, and nothing else that the rate depends on has
-/// changed: its start rate is this one's end rate, if that was evaluated. The step cannot be interpolated any more.
+/// changed: its start rate is this one's end rate, if that was evaluated. The step can be neither interpolated nor
+/// judged any more.
 void carryEndRate(Step& step);
 
 /// Evaluates what interpolate needs, unless it is there already: the rate at the end of the step, with DOP853 three
