@@ -1,5 +1,5 @@
-// What a step costs beside the evaluations of the right-hand side, which is nearly empty here: states of one body and of
-// about eleven.
+// What a step costs beside the evaluations of the right-hand side, which is nearly empty here: states of one body and
+// of about eleven.
 
 #include <benchmark/benchmark.h>
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "dynamics/dop853_problems.h"
+#include "dynamics/integrators/dop853_table.h"
 
 namespace cradle {
 namespace {
@@ -101,6 +102,25 @@ TEST(Dop853, ErrorNormIsOfTheEighthPowerAndAboveTheError) {
     EXPECT_GT(norm(timeStep), error) << timeStep;
     EXPECT_LT(norm(timeStep), 1e3 * error) << timeStep;
   }
+}
+
+// y' = 6 t^5 from 0 to h: both estimates are h^6 times a number of the table.
+TEST(Dop853, ErrorNormCombinesBothEstimatesAsPublished) {
+  const RightHandSide power{[](double t, const VectorX&, VectorX& rate) { rate[0] = 6 * t * t * t * t * t; }, nullptr,
+                            0};
+  const double timeStep = 0.7, tolerance = 1e-4, end = std::pow(timeStep, 6);
+  Step step;
+  dop853(power, VectorX::Zero(1), 0, timeStep, step);
+  const auto estimate = [&](std::size_t row) {
+    double sum = 0;
+    for (std::size_t i = 0; i < dop853_table::kRates; ++i)
+      sum += dop853_table::kErrors[row][i] * 6 * std::pow(dop853_table::kNodes[i], 5);
+    return sum * end / (tolerance * (1 + end));
+  };
+  const double fifth = estimate(0), third = estimate(1);
+  // e5 is what sums of numbers of size 1 leave of 1e-5 or more: 11 digits.
+  EXPECT_NEAR(errorNorm(step, VectorX::Constant(1, tolerance)) / (fifth * fifth / std::hypot(fifth, 0.1 * third)), 1,
+              1e-10);
 }
 
 // The oscillator among others at rest: a mean over components would fall with their number.

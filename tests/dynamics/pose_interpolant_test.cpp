@@ -77,34 +77,69 @@ void expectBound(Integrator integrate, double spin, double timeStep, double slac
 }
 
 TEST(MotionBound, HoldsForTheCubicOfRk4) {
-  expectBound(rk4, 5, 0.02, 4);
-  expectBound(rk4, 20, 0.05, 4);
+  expectBound(rk4, 5, 0.02, 1.5);
+  expectBound(rk4, 20, 0.05, 2);
 }
 
 TEST(MotionBound, HoldsForTheInterpolantOfDop853) {
-  expectBound(dop853, 5, 0.02, 4);
-  expectBound(dop853, 20, 0.05, 4);
-  expectBound(dop853, 5, 0.3, 6);   // the body turns by 2 rad
-  expectBound(dop853, 20, 0.2, 8);  // by 5 rad
+  expectBound(dop853, 5, 0.02, 1.5);
+  expectBound(dop853, 20, 0.05, 2);
+  expectBound(dop853, 5, 0.3, 3);   // the body turns by 2 rad
+  expectBound(dop853, 20, 0.2, 4);  // by 5 rad
 }
 
-// A motion that is a correction alone: the body ends where it starts, at rest at both ends, and goes by 1/16 of each
-// correction's basis function in between.
+/// A step whose interpolant is a correction of one component alone: the body ends where it starts, at rest at both
+/// ends, and moves in between.
+Step bentStep(std::size_t correction, Eigen::Index component, double size) {
+  Step step;
+  step.timeStep = 1;
+  step.startState = VectorX::Zero(stateSize(1));
+  setOrientation(step.startState, 0, Quat::Identity());
+  step.state = step.startState;
+  step.startRate = step.endRate = VectorX::Zero(stateSize(1));
+  step.hasEndRate = true;
+  step.interpolant = InterpolantKind::degreeSeven;
+  step.corrections.fill(VectorX::Zero(stateSize(1)));
+  step.corrections[correction][component] = size;
+  return step;
+}
+
 TEST(MotionBound, CountsTheCorrections) {
+  const Vec3 point(0.5, 0, 0);
   for (std::size_t correction = 0; correction < 4; ++correction) {
+    const Step moved = bentStep(correction, 1, 1), turned = bentStep(correction, 5, 1e-3);
+    // Numbers rounded up, slopes averaged over 1/500 of the step, and for the quaternion its length: below 1e-3.
+    for (const Step* step : {&moved, &turned}) {
+      const double bound = motionBound(*step, 0, point.norm()), reached = fastest(*step, point);
+      EXPECT_GE(bound, reached) << correction;
+      EXPECT_LT(bound, 1.001 * reached) << correction;
+    }
+  }
+}
+
+// At rest at both ends, 1 m apart: x = 3 s^2 - 2 s^3 is fastest in the middle, 3/2.
+TEST(MotionBound, CountsTheWayBetweenSlowEnds) {
+  Step step = bentStep(0, 0, 0);
+  step.state[2] += 1;
+  EXPECT_DOUBLE_EQ(motionBound(step, 0, 0.5), 1.5);
+}
+
+// Nothing bends: the bound is the way itself, h (v + omega x reach). The quaternion's cubic turns evenly up to (h
+// omega)^2, and its length is taken 1/4 of its slope too short.
+TEST(MotionBound, IsTheWayItselfOfAnEvenMotion) {
+  const Mechanism mechanism{Vec3::Zero(), {makeRigidBody({1, Vec3::Zero(), Mat3::Identity()})}, {}, {}, {}};
+  EquationsOfMotion equations(mechanism);
+  VectorX state = VectorX::Zero(stateSize(1));
+  setOrientation(state, 0, Quat::Identity());
+  linearVelocity(state, 0) = Vec3(0, 3, 0);
+  angularVelocity(state, 0) = Vec3(0, 0, 4);
+  const double timeStep = 1e-3, way = timeStep * (3 + 4 * 0.5);
+  for (const Integrator integrate : {rk4, dop853}) {
     Step step;
-    step.timeStep = 1;
-    step.startState = VectorX::Zero(stateSize(1));
-    setOrientation(step.startState, 0, Quat::Identity());
-    step.state = step.startState;
-    step.startRate = step.endRate = VectorX::Zero(stateSize(1));
-    step.hasEndRate = true;
-    step.interpolant = InterpolantKind::degreeSeven;
-    step.corrections.fill(VectorX::Zero(stateSize(1)));
-    step.corrections[correction][1] = 1;
-    const double bound = motionBound(step, 0, 0.5), reached = fastest(step, Vec3(0.5, 0, 0));
-    EXPECT_GE(bound, reached) << correction;
-    EXPECT_LT(bound, 1.001 * reached) << correction;
+    integrate(equations.rightHandSide(), state, 0, timeStep, step);
+    prepareInterpolant(equations.rightHandSide(), step);
+    EXPECT_GE(motionBound(step, 0, 0.5), way * (1 - 1e-15));
+    EXPECT_LT(motionBound(step, 0, 0.5), way * (1 + 2e-3));
   }
 }
 

@@ -30,14 +30,17 @@ Eigen::Matrix<double, kSize, 1> componentsAt(const Step& step, Eigen::Index at, 
   return part;
 }
 
-/// Bound on the slope of the interpolant over the unit interval: a cubic Hermite curve has basis slopes of at most 1, 1
-/// and 3/2; a degree 7 curve adds its corrections.
-double slopeBound(const Step& step, Eigen::Index at, Eigen::Index size) {
-  double bound = step.timeStep * (step.startRate.segment(at, size).norm() + step.endRate.segment(at, size).norm()) +
-                 1.5 * (step.state.segment(at, size) - step.startState.segment(at, size)).norm();
+/// Bound on the slope of the interpolant over the unit interval. That of the cubic is h (r f0 + s f1) + 6 s r (y1 - y0
+/// - h (f0 + f1) / 2), with 6 s r <= 3/2; the curve of degree 7 adds its corrections.
+template <int kSize>
+double slopeBound(const Step& step, Eigen::Index at) {
+  const Eigen::Matrix<double, kSize, 1> start = step.timeStep * step.startRate.segment<kSize>(at),
+                                        end = step.timeStep * step.endRate.segment<kSize>(at);
+  const auto bend = step.state.segment<kSize>(at) - step.startState.segment<kSize>(at) - 0.5 * (start + end);
+  double bound = std::max(start.norm(), end.norm()) + 1.5 * bend.norm();
   if (step.interpolant == InterpolantKind::degreeSeven)
     for (std::size_t i = 0; i < kCorrectionSlopes.size(); ++i)
-      bound += kCorrectionSlopes[i] * step.corrections[i].segment(at, size).norm();
+      bound += kCorrectionSlopes[i] * step.corrections[i].segment<kSize>(at).norm();
   return bound;
 }
 
@@ -62,10 +65,10 @@ RigidTransform poseAt(const Step& step, int body, double fraction) {
 double motionBound(const Step& step, int body, double reach) {
   if (body == kFixed) return 0;
   const Eigen::Index at = body * kPoseSize;
-  const double quaternionSlope = slopeBound(step, at + 3, 4);
+  const double quaternionSlope = slopeBound<4>(step, at + 3);
   // A unit quaternion that moves by a turns the body by 2 a.
   const double turn = 2 * quaternionSlope / leastLength(step, at + 3, quaternionSlope);
-  return slopeBound(step, at, 3) + turn * reach;
+  return slopeBound<3>(step, at) + turn * reach;
 }
 
 }  // namespace cradle
