@@ -50,7 +50,8 @@ std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
     };
     const double start = slack(0), speed = motionBound(step, rope.anchorA) + motionBound(step, rope.anchorB);
     if (start <= kTautPart * rope.maxLength || start > speed) continue;
-    if (const auto fraction = firstCrossing(slack, speed, 0, start, end, slack(end))) first = RopeChange{*fraction, i};
+    if (const auto fraction = firstCrossing(slack, GapBounds{speed}, 0, start, end, slack(end)))
+      first = RopeChange{*fraction, i};
   }
   if (first && isTaut(first->rope)) startTension_ = tension(first->rope, step.startState);
   return first;

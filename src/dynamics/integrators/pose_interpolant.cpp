@@ -13,6 +13,9 @@ using Pose = Eigen::Matrix<double, kPoseSize, 1>;
 /// rounded up.
 constexpr std::array<double, 4> kCorrectionSlopes = {0.19246, 0.13558, 0.05367, 0.03359};
 
+/// Largest second derivatives of the same; rounded up.
+constexpr std::array<double, 4> kCorrectionBends = {2, 2, 0.375, 0.243};
+
 constexpr double kShortestQuaternion = 0.5;  // on the interpolant of any step worth taking
 
 /// Components of the interpolant from `at` on. The quaternion is not of unit length.
@@ -44,6 +47,19 @@ double slopeBound(const Step& step, Eigen::Index at) {
   return bound;
 }
 
+/// Bound on the second derivative of the interpolant over the unit interval. That of the cubic is linear in s.
+template <int kSize>
+double bendBound(const Step& step, Eigen::Index at) {
+  const Eigen::Matrix<double, kSize, 1> start = step.timeStep * step.startRate.segment<kSize>(at),
+                                        end = step.timeStep * step.endRate.segment<kSize>(at),
+                                        way = step.state.segment<kSize>(at) - step.startState.segment<kSize>(at);
+  double bound = std::max((6 * way - 4 * start - 2 * end).norm(), (6 * way - 2 * start - 4 * end).norm());
+  if (step.interpolant == InterpolantKind::degreeSeven)
+    for (std::size_t i = 0; i < kCorrectionBends.size(); ++i)
+      bound += kCorrectionBends[i] * step.corrections[i].segment<kSize>(at).norm();
+  return bound;
+}
+
 /// Lower bound on the length of an interpolated quaternion: from the nearest of so many samples it falls by at most
 /// 1/8.
 double leastLength(const Step& step, Eigen::Index at, double slope) {
@@ -63,12 +79,19 @@ RigidTransform poseAt(const Step& step, int body, double fraction) {
 }
 
 double motionBound(const Step& step, int body, double reach) {
-  if (body == kFixed) return 0;
+  return motionBounds(step, body, reach).speed;
+}
+
+// With p = q' / q and its rate q'' / q - p^2, a body turns at w = 2 Im p: |w| <= 2 |q'| / |q|, and |w'| <= 2 (|q''| /
+// |q|
+// + |q'|^2 / |q|^2). A point at r moves at w x r and accelerates by w' x r + w x (w x r).
+MotionBounds motionBounds(const Step& step, int body, double reach) {
+  if (body == kFixed) return {};
   const Eigen::Index at = body * kPoseSize;
-  const double quaternionSlope = slopeBound<4>(step, at + 3);
-  // A unit quaternion that moves by a turns the body by 2 a.
-  const double turn = 2 * quaternionSlope / leastLength(step, at + 3, quaternionSlope);
-  return slopeBound<3>(step, at) + turn * reach;
+  const double slope = slopeBound<4>(step, at + 3), least = leastLength(step, at + 3, slope);
+  const double relative = slope / least, bend = bendBound<4>(step, at + 3) / least;
+  return {slopeBound<3>(step, at) + 2 * relative * reach,
+          bendBound<3>(step, at) + (2 * bend + 6 * relative * relative) * reach};
 }
 
 }  // namespace cradle

@@ -11,4 +11,11 @@ RigidTransform poseAt(const Step& step, int body, double fraction);
 /// How far (m) any point within `reach` (m) of a body's centre of mass can move over the step, by its interpolant.
 double motionBound(const Step& step, int body, double reach);
 
+/// Bounds on the motion of any point within a reach of a body's centre of mass, with the step as the unit of time.
+struct MotionBounds {
+  double speed = 0;         // m
+  double acceleration = 0;  // m
+};
+MotionBounds motionBounds(const Step& step, int body, double reach);
+
 }  // namespace cradle
