@@ -88,7 +88,7 @@ void expectBound(Integrator integrate, double spin, double timeStep, double slac
     tightest = std::min(tightest, bound / reached);
   }
   EXPECT_LT(tightest, slack);
-  EXPECT_LT(tightestBend, 3 * slack);  // the bound of turning alone is 3/2 of its w^2 r
+  EXPECT_LT(tightestBend, 4 * slack);  // the bound of turning alone is 3/2 of its w^2 r, and it is squared
 }
 
 TEST(MotionBound, HoldsForTheCubicOfRk4) {
