@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <future>
@@ -64,8 +65,12 @@ FrameRange parseFrames(const std::optional<std::string>& text, const TrajectoryS
 
 /// The one view of a whole film, from all of its frames.
 View viewOf(const TrajectorySource& source, const Size& size) {
-  Framing framing(source.scene(), size.width, size.height);
-  for (long frame = 0; frame < source.reader().frameCount(); ++frame) framing.add(source.reader().readFrame(frame));
+  const TrajectoryReader& reader = source.reader();
+  const auto pushes = findShownPushes(source.scene(), reader.events(), [&reader](long frame) {
+    return reader.readFrame(std::min(frame, reader.frameCount() - 1));
+  });
+  Framing framing(source.scene(), size.width, size.height, pushes);
+  for (long frame = 0; frame < reader.frameCount(); ++frame) framing.add(reader.readFrame(frame));
   return framing.view();
 }
 

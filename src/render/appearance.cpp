@@ -7,6 +7,7 @@
 #include "mesh/recognise_shape.h"
 #include "mesh/solid.h"
 #include "render/body_place.h"
+#include "render/push_arrows.h"
 
 namespace cradle {
 namespace {
@@ -199,6 +200,9 @@ Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPer
   catalogue.moveTo(appearance);
   appearance.wallMesh = static_cast<int>(appearance.meshes.size());
   appearance.meshes.push_back(makeWall(size));
+  appearance.meshIsClosed.push_back(true);
+  appearance.arrowHeadMesh = static_cast<int>(appearance.meshes.size());
+  appearance.meshes.push_back(makeArrowHead(view.longestArrow));
   appearance.meshIsClosed.push_back(true);
   return appearance;
 }

@@ -56,7 +56,8 @@ struct Appearance {
   std::vector<bool> meshIsClosed;  // then its inside is never seen
   std::vector<BodyAppearance> bodies;
   std::optional<Ground> ground;
-  int wallMesh = 0;  // a thin plate as wide as the scene, its upper face through the origin: other planes
+  int wallMesh = 0;       // a thin plate as wide as the scene, its upper face through the origin: other planes
+  int arrowHeadMesh = 0;  // of pushes; makeArrowHead says how it lies
 };
 
 /// `pixelsPerMetre` at the distance of the scene decides how finely round things are divided.

@@ -4,6 +4,7 @@
 
 #include "render/body_place.h"
 #include "render/link_items.h"
+#include "render/push_arrows.h"
 
 namespace cradle {
 namespace {
@@ -109,6 +110,7 @@ DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const Vi
   findNearBalls(bodyOfSphere, list.spheres, list);
   findNearBalls(bodyOfCylinder, list.cylinders, list);
   appendLinks(scene, appearance, view, places, list);
+  appendPushArrows(appearance, view, frame, places, list);
   std::stable_sort(list.meshes.begin(), list.meshes.end(), [](const MeshItem& a, const MeshItem& b) {
     return std::pair(a.mesh, a.firstTriangle) < std::pair(b.mesh, b.firstTriangle);
   });

@@ -33,6 +33,8 @@ constexpr double kSlopeInView = 0.1;     // sine of the least height of the came
 constexpr double kClearlyAlong = 1.5;    // times the spread across
 constexpr double kFilled = 0.84;         // share of the picture that things may fill
 constexpr double kLargestFixed = 3;      // fixed bodies larger than so many times what moves are scenery
+constexpr double kLongestArrow = 0.2;    // of the size of what moves
+constexpr double kShortestArrow = 0.45;  // of the longest one
 constexpr double kSmallestReach = 1e-6;  // m, of a scene that shows nothing
 
 Mat3 axesFrom(double azimuth, double elevation) {
@@ -62,8 +64,16 @@ double Framing::Solid::support(const Vec3& direction) const {
   return atOrigin + inward.dot(local.center()) + inward.cwiseAbs().dot(local.sizes() / 2);
 }
 
-Framing::Framing(const Scene& scene, int width, int height)
+double View::arrowLength(const ShownPush& push) const {
+  double greatest = 0;
+  for (const ShownPush& other : pushes) greatest = std::max(greatest, other.force.norm());
+  const double force = push.force.norm();
+  return force > 0 ? longestArrow * (kShortestArrow + (1 - kShortestArrow) * force / greatest) : 0;
+}
+
+Framing::Framing(const Scene& scene, int width, int height, std::vector<ShownPush> pushes)
     : scene_(scene),
+      pushes_(std::move(pushes)),
       tanHalfX_(kFilled * std::tan(kFieldOfView / 2) * width / height),
       tanHalfY_(kFilled * std::tan(kFieldOfView / 2)) {
   for (const Body& body : scene.bodies) localBounds_.push_back(localBounds(scene, body));
@@ -108,7 +118,10 @@ void Framing::includeMoving(const Solid& solid) {
 }
 
 void Framing::add(const Frame& frame) {
-  for (const Solid& solid : solidsOf(placeBodies(scene_, frame), Motion::dynamic)) {
+  const auto places = placeBodies(scene_, frame);
+  for (std::size_t i = 0; i < pushes_.size(); ++i)
+    if (pushes_[i].isShownAt(frame.time)) arrowPlaces_.push_back({i, pushes_[i].pointAt(frame.time, places)});
+  for (const Solid& solid : solidsOf(places, Motion::dynamic)) {
     includeMoving(solid);
     ++places_;
     placeSum_ += solid.worldFromLocal.translation;
@@ -144,10 +157,24 @@ const Framing::Candidate& Framing::bestCandidate() const {
   return candidates_[first];
 }
 
-Camera Framing::automaticCamera(const std::vector<Solid>& fixedThings) const {
+/// Arrows are as long as the motion of the whole film says, which is known after its last frame only.
+void Framing::includeArrows(View& view, std::vector<Solid>& shown) const {
+  view.pushes = pushes_;
+  if (!movingBounds_.isEmpty()) view.longestArrow = kLongestArrow * movingBounds_.diagonal().norm();
+  for (const ArrowPlace& place : arrowPlaces_) {
+    const ShownPush& push = pushes_[place.push];
+    const Vec3 tail = place.tip - view.arrowLength(push) * push.force.normalized();
+    for (const Vec3& end : {tail, place.tip}) {
+      shown.push_back({Bounds(Vec3::Zero(), Vec3::Zero()), 0, {Quat::Identity(), end}});
+      view.bounds.extend(end);
+    }
+  }
+}
+
+Camera Framing::automaticCamera(const std::vector<Solid>& others) const {
   const Candidate& seen = bestCandidate();
   Reach reach = seen.moving;
-  for (const Solid& solid : fixedThings) reach.include(reachOf(seen, solid));
+  for (const Solid& solid : others) reach.include(reachOf(seen, solid));
   if (!std::isfinite(reach.right)) reach = {1, 1, 1, 1};
 
   // Inside the picture: right <= x + tan z and left <= -x + tan z for a camera at (x, y, z) in the axes of view.
@@ -172,6 +199,7 @@ View Framing::view() const {
     shown.push_back(solid);
     view.bounds.extend(bounds);
   }
+  includeArrows(view, shown);
   view.camera = scene_.camera ? *scene_.camera : automaticCamera(shown);
   return view;
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "render/shown_push.h"
 #include "scene/scene.h"
 #include "trajectory/trajectory.h"
 
@@ -12,7 +13,12 @@ namespace cradle {
 /// What a whole film looks at: one camera, and a box around all that it shows (ground apart).
 struct View {
   Camera camera;
-  Bounds bounds;  // m, world
+  Bounds bounds;                       // m, world
+  std::vector<ShownPush> pushes = {};  // drawn as arrows
+  double longestArrow = 0;             // m, of the push with the greatest force
+
+  /// m, from the tail to the point that is pushed; 0 for a push without a force.
+  double arrowLength(const ShownPush& push) const;
 };
 
 /// Finds the view of a film from its frames, one by one. Unless the scene names a camera, all that moves stays in the
@@ -20,7 +26,7 @@ struct View {
 class Framing {
  public:
   /// The scene must outlive this object. Sizes in pixels.
-  Framing(const Scene& scene, int width, int height);
+  Framing(const Scene& scene, int width, int height, std::vector<ShownPush> pushes = {});
 
   /// O(bodies).
   void add(const Frame& frame);
@@ -53,9 +59,17 @@ class Framing {
   bool movesAlongZ() const;
   bool seesGround(const Candidate& candidate) const;
   const Candidate& bestCandidate() const;
-  Camera automaticCamera(const std::vector<Solid>& fixedThings) const;
+  void includeArrows(View& view, std::vector<Solid>& shown) const;
+  Camera automaticCamera(const std::vector<Solid>& others) const;
+
+  struct ArrowPlace {
+    std::size_t push;  // index into pushes_
+    Vec3 tip;          // m, world
+  };
 
   const Scene& scene_;
+  const std::vector<ShownPush> pushes_;
+  std::vector<ArrowPlace> arrowPlaces_;  // in all frames
   double tanHalfX_, tanHalfY_;
   std::vector<Bounds> localBounds_;  // of every body
   std::vector<Candidate> candidates_;

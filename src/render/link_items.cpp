@@ -59,6 +59,28 @@ double sagOf(double length, double chord) {
   return low;
 }
 
+/// Least height over the ground of the parabola between a rope's ends whose middle is `sag` off the chord.
+double lowestHeight(const Ground& ground, const TubeItem& rope, const Vec3& sag) {
+  const double a = ground.normal.dot(rope.start - ground.point), b = ground.normal.dot(rope.end - ground.point);
+  const double middle = ground.normal.dot(sag);
+  const double s = middle < 0 ? std::clamp(0.5 + (b - a) / (8 * middle), 0.0, 1.0) : 0;
+  return std::min({a, b, a + s * (b - a) + 4 * s * (1 - s) * middle});
+}
+
+/// A rope that would hang through the ground swings aside until it lies there: as long, and flat in the limit.
+Vec3 laidOnGround(const Ground& ground, const TubeItem& rope) {
+  const auto turned = [&rope](double angle) {
+    return Vec3(std::cos(angle) * rope.sag + std::sin(angle) * rope.sag.norm() * rope.side);
+  };
+  double low = 0, high = std::numbers::pi / 2;
+  if (lowestHeight(ground, rope, rope.sag) >= rope.wireRadius) return rope.sag;
+  for (int i = 0; i < 50; ++i) {
+    const double angle = (low + high) / 2;
+    (lowestHeight(ground, rope, turned(angle)) < rope.wireRadius ? low : high) = angle;
+  }
+  return turned(high);
+}
+
 class LinkBuilder {
  public:
   LinkBuilder(const Scene& scene, const Appearance& appearance, const View& view,
@@ -178,6 +200,7 @@ void LinkBuilder::add(const Rope& rope) {
   tube.wireRadius = rod_;
   tube.surface = kHemp;
   if (chord < kTaut * rope.maxLength) tube.sag = sagOf(rope.maxLength, std::max(chord, 1e-3 * rope.maxLength)) * down;
+  if (appearance_.ground) tube.sag = laidOnGround(*appearance_.ground, tube);
   const Vec3 margin = Vec3::Constant(tube.wireRadius);
   tube.bounds = Bounds(a.cwiseMin(b) - margin, a.cwiseMax(b) + margin);
   tube.bounds.extend(Vec3(((a + b) / 2 + tube.sag) - margin));

@@ -111,6 +111,30 @@ TEST(DrawList, SlackRopeHangsAsLongAsItIs) {
   EXPECT_TRUE(rope.bounds.contains(Vec3((rope.start + rope.end) / 2 + rope.sag)));
 }
 
+TEST(DrawList, SlackRopeLiesOnTheGroundRatherThanInIt) {
+  // Hanging freely, a rope of 2 m over a chord of 1.2 m would sag by 0.71 m; the ground is 0.2 m below its lower end.
+  for (const double rise : {0.0, 0.5}) {
+    Scene scene = emptyScene();
+    addBody(scene, Plane{}, {Quat::Identity(), {0, -0.2, 0}}, Motion::fixed);
+    addBody(scene, Sphere{0.1}, {Quat::Identity(), {1.2, rise, 0}});
+    scene.ropes.push_back({"", "", {1, {0, 0, 0}}, {kWorld, {0, 0, 0}}, 2, 0});
+    const TubeItem rope = listOf(scene, startFrame(scene)).tubes.at(0);
+    double lowest = 1, length = 0;
+    Vec3 before = rope.start;
+    for (int i = 1; i <= 1000; ++i) {
+      const double s = i / 1000.0;
+      const Vec3 point = rope.start + s * (rope.end - rope.start) + 4 * s * (1 - s) * rope.sag;
+      lowest = std::min(lowest, point.y());
+      length += (point - before).norm();
+      before = point;
+    }
+    EXPECT_NEAR(lowest, -0.2 + rope.wireRadius, 1e-5) << rise;
+    if (rise == 0) {
+      EXPECT_NEAR(length, 2, 1e-5);
+    }
+  }
+}
+
 TEST(DrawList, TautRopeIsStraight) {
   Scene scene = emptyScene();
   addBody(scene, Sphere{0.1}, {Quat::Identity(), {2, 0, 0}});
