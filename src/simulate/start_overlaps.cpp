@@ -14,8 +14,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kTouchingPart = 1e-9;                                   // of the smaller body's size
-constexpr double kModelPart = std::numeric_limits<float>::epsilon();     // of a model's: its vertices are that exact
+constexpr double kTouchingPart = 1e-9;                                // of the smaller body's size
+constexpr double kModelPart = std::numeric_limits<float>::epsilon();  // of a model's: its vertices are that exact
 constexpr std::size_t kMostFaults = 50;
 
 double depthOf(const ContactGeometry& geometry, const ColliderPair& pair, const VectorX& state) {
@@ -43,12 +43,14 @@ std::string lengthText(double meters) {
 std::string faultOf(const Body& a, const Body& b, bool againstPlane, double depth, double allowed) {
   const std::string length = lengthText(depth);
   if (againstPlane)
-    return fmt::format("{}: \"{}\" is {} deep in the plane \"{}\" at the start; at most {} is touching; move it out "
-                       "along the plane's normal by {}, or give one of them \"collision\": \"none\"",
-                       a.where, a.name, length, b.name, lengthText(allowed), length);
-  return fmt::format("{}: \"{}\" and \"{}\" overlap by {} at the start; at most {} is touching; move them apart by {}, "
-                     "or give one of them \"collision\": \"none\"",
-                     b.where, a.name, b.name, length, lengthText(allowed), length);
+    return fmt::format(
+        "{}: \"{}\" is {} deep in the plane \"{}\" at the start; at most {} is touching; move it out "
+        "along the plane's normal by {}, or give one of them \"collision\": \"none\"",
+        a.where, a.name, length, b.name, lengthText(allowed), length);
+  return fmt::format(
+      "{}: \"{}\" and \"{}\" overlap by {} at the start; at most {} is touching; move them apart by {}, "
+      "or give one of them \"collision\": \"none\"",
+      b.where, a.name, b.name, length, lengthText(allowed), length);
 }
 
 }  // namespace

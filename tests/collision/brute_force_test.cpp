@@ -197,7 +197,8 @@ Vec3 besideBox(const Vec3& size, int beyond, Random& random) {
   Vec3 point;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const double side = random.number(0, 1) < 0.5 ? -1 : 1;
-    point[axis] = axis < beyond ? side * (size[axis] / 2 + random.number(0.01, 0.4)) : random.number(-0.4, 0.4) * size[axis];
+    point[axis] =
+        axis < beyond ? side * (size[axis] / 2 + random.number(0.01, 0.4)) : random.number(-0.4, 0.4) * size[axis];
   }
   return point;
 }

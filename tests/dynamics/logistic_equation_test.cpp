@@ -59,12 +59,8 @@ TEST(LogisticEquation, Rk4sFourRatesAndItsFirstStepAreThoseOfPencilAndPaper) {
 }
 
 TEST(LogisticEquation, FurtherStepsOfBothMethodsAreTheirOwn) {
-  constexpr std::array kEuler = {39.65,
-                                 153.09757125,
-                                 530.35425287072910703,
-                                 1136.9522940996739717,
-                                 23.497359693905505362,
-                                 92.05699808157530886};
+  constexpr std::array kEuler = {
+      39.65, 153.09757125, 530.35425287072910703, 1136.9522940996739717, 23.497359693905505362, 92.05699808157530886};
   constexpr std::array kRk4 = {141.63029004621243278, 648.60187280154227887, 651.92165362429259892,
                                652.11412349679621478, 652.12788324384224344, 652.12887794826703559};
   const std::vector<double> euler = stepsOf(explicitEuler, 10, 6), rungeKutta = stepsOf(rk4, 10, 6);

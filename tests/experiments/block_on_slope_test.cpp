@@ -20,13 +20,12 @@ constexpr const char* kSurfaces[] = {"plane", "box"};
 
 Trajectory slide(const std::string& surface, double friction, double speed, double duration, double step = kStep) {
   const double c = std::cos(kSlope), s = std::sin(kSlope);
-  const std::string slope =
-      surface == "plane"
-          ? fmt::format(R"("shape": {{"plane": {{"normal": [{:.17g}, {:.17g}, 0]}}}})", -s, c)
-          : fmt::format(
-                R"("shape": {{"box": {{"size": [20, 1, 2]}}}}, "position": [{:.17g}, {:.17g}, 0],
+  const std::string slope = surface == "plane"
+                                ? fmt::format(R"("shape": {{"plane": {{"normal": [{:.17g}, {:.17g}, 0]}}}})", -s, c)
+                                : fmt::format(
+                                      R"("shape": {{"box": {{"size": [20, 1, 2]}}}}, "position": [{:.17g}, {:.17g}, 0],
                    "orientation": {{"axis": [0, 0, 1], "angleDegrees": 30}})",
-                0.5 * s, -0.5 * c);
+                                      0.5 * s, -0.5 * c);
   return simulate(sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Slope", "duration": {0},
     "output": {{"framesPerSecond": 50}}, {1},
     "materials": {{"m": {{"restitution": 0, "staticFriction": {2}, "dynamicFriction": {2}}}}},

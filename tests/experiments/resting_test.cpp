@@ -63,7 +63,8 @@ TEST(WhatLies, StaysInEveryFrameOfTenSecondsWithEveryMethod) {
 TEST(WhatLies, StaysWhereItFell) {
   for (const std::string& bodies : kLying) {
     Scene scene = parseScene(R"({"schema": "cradle-scene/1", "name": "Resting", "duration": 10,
-      "output": {"framesPerSecond": 60}, )" + methodText("rk4", 1.0 / 960) +
+      "output": {"framesPerSecond": 60}, )" +
+                                 methodText("rk4", 1.0 / 960) +
                                  R"(, "materials": {"m": {"restitution": 0.3}}, "bodies": [
       {"name": "ground", "shape": {"plane": {}}, "motion": "static", "position": [0, -0.001, 0]}, )" +
                                  bodies + "]}",

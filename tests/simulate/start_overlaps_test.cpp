@@ -79,8 +79,8 @@ TEST(StartOverlaps, OfWhatCannotTouchDoNotMatter) {
 
 TEST(StartOverlaps, OfBodiesJoinedByRodsSpringsAndRopesMatter) {
   for (const char* link : {R"("rods": [{{{}}}])", R"("ropes": [{{{}}}])", R"("springs": [{{{}, "stiffness": 1}}])"}) {
-    const std::string text = fmt::format(
-        fmt::runtime(link), R"("bodyA": "a", "anchorA": [0, 0, 0], "bodyB": "b", "anchorB": [0, 0, 0])");
+    const std::string text =
+        fmt::format(fmt::runtime(link), R"("bodyA": "a", "anchorA": [0, 0, 0], "bodyB": "b", "anchorB": [0, 0, 0])");
     EXPECT_THAT(refusalOf(all({ball("a", 0), ball("b", 0.15)}), fmt::format(", {}", text)),
                 HasSubstr("overlap by 50 mm"))
         << text;
@@ -93,10 +93,12 @@ TEST(StartOverlaps, OfModelsMayBeTheRoundingOfTheirFiles) {
     const Scene scene = parseScene(fmt::format(R"({{"schema": "cradle-scene/1", "name": "t", "duration": 0.01,
       "bodies": [{}, {{"name": "cube", "shape": {{"mesh": "cube.obj"}}, "position": [0, {:.17g}, 0]}}]}})",
                                                kGround, height),
-                                   "experiment.json", [](const MeshReference&) {
+                                   "experiment.json",
+                                   [](const MeshReference&) {
                                      const DrawnMesh drawn = tessellate(Box{2.0 * Vec3::Constant(0.3F)});
                                      return LoadedModel{{"cube", weld(drawn.vertices, drawn.triangles), drawn}, {}};
-                                   }).scene;
+                                   })
+                            .scene;
     try {
       simulate(scene);
     } catch (const Error& error) {
