@@ -33,9 +33,10 @@ struct Flight {
   Vec3 position = Vec3::Zero(), axis = Vec3::UnitY(), velocity = Vec3::Zero(), spin = Vec3::Zero();
 
   std::string text(const std::string& name) const {
-    const std::string motion = mass == 0 ? R"("motion": "static")"
-                                         : fmt::format(R"("mass": {:.17g}, "linearVelocity": {}, "angularVelocity": {})",
-                                                       mass, textOf(velocity), textOf(spin));
+    const std::string motion = mass == 0
+                                   ? R"("motion": "static")"
+                                   : fmt::format(R"("mass": {:.17g}, "linearVelocity": {}, "angularVelocity": {})",
+                                                 mass, textOf(velocity), textOf(spin));
     return fmt::format(R"({{"name": "{}", "shape": {}, "material": "m", "position": {}, {},
       "orientation": {{"axis": {}, "angleDegrees": 77}}}})",
                        name, shape, textOf(position), motion, textOf(axis));
@@ -64,10 +65,15 @@ std::string someShape(bool isBox, Random& random) {
 std::pair<Flight, Flight> someFlights(int boxes, Random& random) {
   const Vec3 apart = random.direction();
   const auto mass = [&] { return std::pow(10, random.number(-2, 2)); };
-  const Flight a{someShape(boxes == 2, random), mass(),          Vec3(0.2, -0.1, 0.3),
-                 random.direction(),            random.vector(0.3), random.vector(3)};
-  const Flight b{someShape(boxes >= 1, random),    mass(),           Vec3(a.position + 1.5 * apart),
-                 random.direction(),               Vec3(-3 * apart + random.vector(0.2)), random.vector(3)};
+  const Flight a{someShape(boxes == 2, random),
+                 mass(),
+                 Vec3(0.2, -0.1, 0.3),
+                 random.direction(),
+                 random.vector(0.3),
+                 random.vector(3)};
+  const Flight b{someShape(boxes >= 1, random),         mass(),
+                 Vec3(a.position + 1.5 * apart),        random.direction(),
+                 Vec3(-3 * apart + random.vector(0.2)), random.vector(3)};
   return {a, b};
 }
 
@@ -165,7 +171,8 @@ TEST(Impact, OfABallWithAFixedBodyIsAnExactReflection) {
       if (impactsIn(run) != 1) continue;
       ++hits;
       const Vec3 n = run.events[0].normal, before = run.frames[0].states[0].linearVelocity;
-      EXPECT_LT((endOf(run).linearVelocity - (before - 2 * before.dot(n) * n)).norm(), kReflectionRounding) << shape << trial;
+      EXPECT_LT((endOf(run).linearVelocity - (before - 2 * before.dot(n) * n)).norm(), kReflectionRounding)
+          << shape << trial;
       EXPECT_LT((endOf(run).angularVelocity - ball.spin).norm(), kReflectionRounding) << shape << trial;
     }
     EXPECT_GT(hits, 10) << shape;

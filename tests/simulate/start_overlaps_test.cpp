@@ -68,6 +68,7 @@ TEST(StartOverlaps, UpToABillionthOfTheSmallerBodyAreTouching) {
   EXPECT_EQ(refusalOf(all({ball("a", 0), ball("b", 0.2 - 0.9e-10)})), "");
   EXPECT_THAT(refusalOf(all({ball("a", 0), ball("b", 0.2 - 1.1e-10)})), HasSubstr("at most 1e-07 mm is touching"));
   EXPECT_EQ(refusalOf(all({ball("a", 0), box("crate", 0.6 - 0.9e-10)})), "");
+  EXPECT_THAT(refusalOf(all({ball("a", 0), box("crate", 0.6 - 1.1e-10)})), HasSubstr("at most 1e-07 mm is touching"));
 }
 
 TEST(StartOverlaps, OfWhatCannotTouchDoNotMatter) {
