@@ -110,7 +110,7 @@ double gapAlong(const Pair& pair, const Vec3& direction) {
 /// Climbs from a direction by ever smaller steps to all sides.
 Vec3 climb(const Pair& pair, Vec3 direction) {
   double gap = gapAlong(pair, direction);
-  for (double step = 0.1; step > 1e-11;) {
+  for (double step = 0.1; step > 1e-6;) {
     const Vec3 side = direction.unitOrthogonal(), other = direction.cross(side);
     bool better = false;
     for (int k = 0; k < 16 && !better; ++k) {

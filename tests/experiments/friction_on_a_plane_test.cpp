@@ -33,8 +33,8 @@ Trajectory throwBall(double spin) {
 }
 
 struct Throw {
-  double spin;                                // rad/s
-  double rollTime, finalSpeed, wayAtTheEnd;   // s, m/s, m at 3 s
+  double spin;                               // rad/s
+  double rollTime, finalSpeed, wayAtTheEnd;  // s, m/s, m at 3 s
 };
 
 // t = 2 (v - r w) / (7 mu g), v' = (5 v + 2 r w) / 7. Friction acts at a contact point in the middle of the overlap of
