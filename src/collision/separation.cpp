@@ -7,6 +7,8 @@
 namespace cradle {
 namespace {
 
+constexpr double kTurnRounding = 1e-14;  // of the distances that enter: a height taken in another frame is as good
+
 /// The two colliders of a pair that is not against a plane, in their poses.
 struct PosedPair {
   const Collider &a, &b;
@@ -57,8 +59,10 @@ std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const C
   std::vector<ContactPoint> points;
   const Collider& a = geometry.colliders[pair.a];
   if (pair.againstPlane) {
-    for (const Vec3& point : a.points)
-      points.push_back(ballOnPlane(worldFromA * point, a.radius, geometry.planes[pair.b]));
+    std::vector<std::size_t> near;
+    appendFeaturesWithin(geometry, pair, worldFromA, margin, near);
+    for (const std::size_t point : near)
+      points.push_back(ballOnPlane(worldFromA * a.points[point], a.radius, geometry.planes[pair.b]));
     return points;
   }
   const PosedPair both = posed(geometry, pair, worldFromA, worldFromB);
@@ -80,8 +84,18 @@ int bodyBOf(const ContactGeometry& geometry, const ColliderPair& pair) {
   return pair.againstPlane ? kFixed : geometry.colliders[pair.b].body;
 }
 
-std::size_t featureCount(const ContactGeometry& geometry, const ColliderPair& pair) {
-  return pair.againstPlane ? geometry.colliders[pair.a].points.size() : 1;
+void appendFeaturesWithin(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
+                          double reach, std::vector<std::size_t>& features) {
+  if (!pair.againstPlane) return features.push_back(0);
+  // Heights over the plane in the body's frame: one product a point instead of a turn.
+  const Collider& a = geometry.colliders[pair.a];
+  const PlaneCollider& plane = geometry.planes[pair.b];
+  const Vec3 normal = worldFromA.rotation.conjugate() * plane.normal;
+  const double distance = (worldFromA.translation - plane.point).norm();
+  const double rounding = kTurnRounding * (distance + a.boundingRadius);
+  const double highest = reach + a.radius - plane.normal.dot(worldFromA.translation - plane.point) + rounding;
+  for (std::size_t i = 0; i < a.points.size(); ++i)
+    if (normal.dot(a.points[i]) <= highest) features.push_back(i);
 }
 
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature,

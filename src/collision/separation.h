@@ -21,8 +21,10 @@ RigidTransform poseOf(const VectorX& state, int body);
 /// The moving body of a pair's second collider, or kFixed.
 int bodyBOf(const ContactGeometry& geometry, const ColliderPair& pair);
 
-/// Number of features of a pair whose gaps close one by one: the points of A against a plane, else one for the pair.
-std::size_t featureCount(const ContactGeometry& geometry, const ColliderPair& pair);
+/// Appends the features of a pair, whose gaps close one by one (the points of A against a plane, else one for the
+/// pair), that may be nearer than `reach` (m): all that are, and few others.
+void appendFeaturesWithin(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
+                          double reach, std::vector<std::size_t>& features);
 
 /// Signed separation (m) of a feature, for given poses of the bodies. Zero where they touch, and continuous there.
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature,

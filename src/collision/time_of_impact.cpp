@@ -22,7 +22,10 @@ class PairSearch {
   void search(double tolerance, std::optional<ImpactTime>& best) {
     const RigidTransform startA = poseAt(step_, a_.body, 0), startB = poseAt(step_, bodyB_, 0);
     if (separationBound(geometry_, pair_, startA, startB) > speed_) return;
-    for (feature_ = 0; feature_ < featureCount(geometry_, pair_); ++feature_) {
+    std::vector<std::size_t> features;
+    appendFeaturesWithin(geometry_, pair_, startA, speed_, features);
+    for (const std::size_t feature : features) {
+      feature_ = feature;
       const double start = separation(geometry_, pair_, feature_, startA, startB);
       if (start <= tolerance || start > speed_) continue;
       const double end = best ? best->fraction : 1;

@@ -1,9 +1,9 @@
 // Constraint forces by the Schur complement J M^-1 J^T, factorised directly (D. Baraff, "Linear-time dynamics using
-// Lagrange multipliers", SIGGRAPH 1996, section 3, without its sparsity: rows are few).
+// Lagrange multipliers", SIGGRAPH 1996, keeps the sparse matrix of bodies and rows instead: the same cost for chains,
+// and this one is positive semi-definite).
 
 #include "dynamics/constraint_forces.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -12,45 +12,96 @@
 namespace cradle {
 namespace {
 
-constexpr double kRankTolerance = 1e-12;    // pivots below this part of the largest are redundancy, not stiffness
-constexpr double kLengthTolerance = 1e-15;  // of length^2: where Newton's method stops gaining in double precision
-constexpr int kMostProjectionSteps = 10;    // quadratic convergence needs 1 or 2 from a step's error
+// What is added to the diagonal, as a part of it: rows that depend on each other then share their load, and a direction
+// that is constrained by less than its square root gives way instead of being thrown about by rounding. Refinement
+// takes out the error that this makes elsewhere: each one leaves 1e-8 / (smallest eigenvalue of the scaled matrix) of
+// it.
+constexpr double kRegularisation = 1e-8;
+constexpr double kRefined = 1e-15;  // residual that is left, as a part of the right-hand side
+constexpr int kMostRefinements = 3;
+
+constexpr int kMostProjectionSteps = 20;      // quadratic convergence needs 1 or 2 from a step's error
+constexpr double kStalled = 0.5;              // an iteration that leaves more of an error has failed
+constexpr double kFar = 1000;                 // times the error: farther than any sound mechanism moves to mend it
+constexpr double kMoreRegular = 1000;         // factor on the regularisation after a failure
+constexpr double kMostRegularisation = 1e-1;  // with it, every direction that is left is a singular one
 
 }  // namespace
 
-void ConstraintSolver::setRows(const std::vector<RodConstraint>& rods, const std::vector<RigidBody>& bodies,
-                               const VectorX& state) {
-  rows_.clear();
-  responses_.clear();
-  for (const RodConstraint& rod : rods) {
-    const ConstraintRow row = rowOf(rod, state);
-    RowResponse response{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-    if (row.bodyA != kFixed) {
-      const RigidBody& a = bodies[static_cast<std::size_t>(row.bodyA)];
-      response.linearA = a.inverseMass * row.linearA;
-      response.angularA = worldInverseInertia(a, orientation(state, row.bodyA)) * row.angularA;
-    }
-    if (row.bodyB != kFixed) {
-      const RigidBody& b = bodies[static_cast<std::size_t>(row.bodyB)];
-      response.linearB = b.inverseMass * row.linearB;
-      response.angularB = worldInverseInertia(b, orientation(state, row.bodyB)) * row.angularB;
-    }
-    rows_.push_back(row);
-    responses_.push_back(response);
-  }
-  const Eigen::Index count = static_cast<Eigen::Index>(rows_.size());
-  matrix_.resize(count, count);
-  for (Eigen::Index i = 0; i < count; ++i)
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      const std::size_t from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(j);
-      matrix_(i, j) = matrix_(j, i) = couple(responses_[from], rows_[from], rows_[to]);
-    }
-  factor_.compute(matrix_);
-  const auto pivots = factor_.vectorD().cwiseAbs();
-  isRegular_ = count == 0 || pivots.minCoeff() > kRankTolerance * pivots.maxCoeff();
+void ConstraintSolver::factorize(const VectorX& state) {
+  placeBodies(bodies_, state, frames_);
+  factorize(state, frames_);
 }
 
-double ConstraintSolver::couple(const RowResponse& response, const ConstraintRow& from, const ConstraintRow& to) const {
+void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFrame>& frames) {
+  findRows(constraints_, state, frames, rows_);
+  if (!hasKnownStructure()) analyze();
+  respond(frames);
+  for (std::size_t i = 0; i < rows_.size(); ++i) diagonal_[i] = couple(static_cast<int>(i), static_cast<int>(i));
+  for (std::size_t i = 0; i < couplings_.size(); ++i) entries_[i] = couple(couplings_[i].row, couplings_[i].column);
+  regularize(kRegularisation);
+}
+
+void ConstraintSolver::regularize(double regularisation) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) regularDiagonal_[i] = diagonal_[i] * (1 + regularisation);
+  factor_.factorize(regularDiagonal_, entries_);
+}
+
+bool ConstraintSolver::hasKnownStructure() const {
+  return std::equal(rows_.begin(), rows_.end(), structure_.begin(), structure_.end(),
+                    [](const ConstraintRow& row, const auto& bodies) {
+                      return row.bodyA == bodies.first && row.bodyB == bodies.second;
+                    });
+}
+
+void ConstraintSolver::analyze() {
+  structure_.clear();
+  std::vector<std::vector<int>> rowsOfBody(bodies_.size());
+  std::vector<std::pair<int, int>> places;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    structure_.emplace_back(rows_[i].bodyA, rows_[i].bodyB);
+    std::vector<int> neighbours;
+    for (const int body : {rows_[i].bodyA, rows_[i].bodyB}) {
+      if (body == kFixed) continue;
+      std::vector<int>& rows = rowsOfBody[static_cast<std::size_t>(body)];
+      neighbours.insert(neighbours.end(), rows.begin(), rows.end());
+      rows.push_back(static_cast<int>(i));
+    }
+    std::sort(neighbours.begin(), neighbours.end());
+    neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+    for (const int neighbour : neighbours)
+      if (neighbour != static_cast<int>(i)) places.emplace_back(static_cast<int>(i), neighbour);
+  }
+  couplings_.clear();
+  for (const auto& [row, column] : places) couplings_.push_back({row, column});
+  factor_.analyze(static_cast<int>(rows_.size()), places);
+  responses_.resize(rows_.size());
+  diagonal_.resize(rows_.size());
+  regularDiagonal_.resize(rows_.size());
+  entries_.resize(places.size());
+  multipliers_.resize(static_cast<Eigen::Index>(rows_.size()));
+  rightHandSide_.resize(multipliers_.size());
+  correction_.resize(multipliers_.size());
+}
+
+void ConstraintSolver::respond(const std::vector<BodyFrame>& frames) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const ConstraintRow& row = rows_[i];
+    RowResponse& response = responses_[i];
+    if (row.bodyA != kFixed) {
+      response.linearA = bodies_[static_cast<std::size_t>(row.bodyA)].inverseMass * row.linearA;
+      response.angularA = frames[static_cast<std::size_t>(row.bodyA)].inverseInertia * row.angularA;
+    }
+    if (row.bodyB != kFixed) {
+      response.linearB = bodies_[static_cast<std::size_t>(row.bodyB)].inverseMass * row.linearB;
+      response.angularB = frames[static_cast<std::size_t>(row.bodyB)].inverseInertia * row.angularB;
+    }
+  }
+}
+
+double ConstraintSolver::couple(int row, int column) const {
+  const ConstraintRow &from = rows_[static_cast<std::size_t>(row)], &to = rows_[static_cast<std::size_t>(column)];
+  const RowResponse& response = responses_[static_cast<std::size_t>(row)];
   double sum = 0;
   const auto add = [&](int body, const Vec3& linear, const Vec3& angular) {
     if (body == kFixed) return;
@@ -62,76 +113,119 @@ double ConstraintSolver::couple(const RowResponse& response, const ConstraintRow
   return sum;
 }
 
-const VectorX& ConstraintSolver::solve(const VectorX& rightHandSide) {
-  if (isRegular_) {
-    multipliers_ = factor_.solve(rightHandSide);
-  } else {
-    Eigen::CompleteOrthogonalDecomposition<MatrixX> factor;
-    factor.setThreshold(kRankTolerance);
-    multipliers_ = factor.compute(matrix_).solve(rightHandSide);
+/// Overwrites the right-hand side in multipliers_ by the solution, refined iteratively.
+void ConstraintSolver::solve() {
+  rightHandSide_ = multipliers_;
+  factor_.solve(multipliers_);
+  const double wanted = rightHandSide_.lpNorm<Eigen::Infinity>();
+  double last = wanted;
+  for (int i = 0; i < kMostRefinements; ++i) {
+    findResidual();
+    const double residual = correction_.lpNorm<Eigen::Infinity>();
+    if (!(residual > kRefined * wanted) || residual > kStalled * last) return;
+    last = residual;
+    factor_.solve(correction_);
+    multipliers_ += correction_;
   }
+}
+
+/// Right-hand side - J M^-1 J^T multipliers.
+void ConstraintSolver::findResidual() {
+  for (Eigen::Index row = 0; row < multipliers_.size(); ++row)
+    correction_[row] = rightHandSide_[row] - diagonal_[static_cast<std::size_t>(row)] * multipliers_[row];
+  for (std::size_t i = 0; i < couplings_.size(); ++i) {
+    const auto [row, column] = couplings_[i];
+    correction_[row] -= entries_[i] * multipliers_[column];
+    correction_[column] -= entries_[i] * multipliers_[row];
+  }
+}
+
+/// Calls add(body, linear, angular) with the parts of M^-1 J^T multipliers, row by row.
+template <class Add>
+void ConstraintSolver::addResponse(const Add& add) const {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const double multiplier = multipliers_[static_cast<Eigen::Index>(i)];
+    const RowResponse& response = responses_[i];
+    if (rows_[i].bodyA != kFixed) add(rows_[i].bodyA, multiplier * response.linearA, multiplier * response.angularA);
+    if (rows_[i].bodyB != kFixed) add(rows_[i].bodyB, multiplier * response.linearB, multiplier * response.angularB);
+  }
+}
+
+const VectorX& ConstraintSolver::constrainAccelerations(VectorX& rate) {
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    multipliers_[static_cast<Eigen::Index>(i)] = -(rows_[i].curvature + rateOf(rows_[i], rate));
+  solve();
+  addResponse([&rate](int body, const Vec3& linear, const Vec3& angular) {
+    linearVelocity(rate, body) += linear;
+    angularVelocity(rate, body) += angular;
+  });
   return multipliers_;
 }
 
-std::pair<Vec3, Vec3> ConstraintSolver::response(Eigen::Index body, const VectorX& multipliers) const {
-  std::pair<Vec3, Vec3> sum{Vec3::Zero(), Vec3::Zero()};
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const double multiplier = multipliers[static_cast<Eigen::Index>(i)];
-    if (rows_[i].bodyA == body) {
-      sum.first += multiplier * responses_[i].linearA;
-      sum.second += multiplier * responses_[i].angularA;
-    }
-    if (rows_[i].bodyB == body) {
-      sum.first += multiplier * responses_[i].linearB;
-      sum.second += multiplier * responses_[i].angularB;
-    }
-  }
-  return sum;
+void ConstraintSolver::constrainVelocities(VectorX& state) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) multipliers_[static_cast<Eigen::Index>(i)] = -rateOf(rows_[i], state);
+  solve();
+  addResponse([&state](int body, const Vec3& linear, const Vec3& angular) {
+    linearVelocity(state, body) += linear;
+    angularVelocity(state, body) += angular;
+  });
 }
 
-double projectOntoRods(const std::vector<RodConstraint>& rods, const std::vector<RigidBody>& bodies,
-                       ConstraintSolver& solver, VectorX& state) {
-  if (rods.empty()) return 0;
-  double lengthError = 0;
-  VectorX residual(static_cast<Eigen::Index>(rods.size()));
-  for (int iteration = 0; iteration < kMostProjectionSteps; ++iteration) {
-    solver.setRows(rods, bodies, state);
-    double worst = 0;
-    for (std::size_t i = 0; i < rods.size(); ++i) {
-      const double value = solver.rows()[i].value, length = rods[i].length;
-      residual[static_cast<Eigen::Index>(i)] = -value;
-      worst = std::max(worst, std::abs(value) / (length * length));
-      if (iteration == 0) lengthError = std::max(lengthError, std::abs(value) / length);
+// Newton's method, damped as by Levenberg and Marquardt: a step that does not help, or that goes far, was led astray by
+// directions that are hardly constrained, and is tried again with less trust in them.
+double ConstraintSolver::project(VectorX& state) {
+  double regularisation = kRegularisation;
+  factorize(state);
+  const double found = largestError();
+  double error = found;
+  for (int i = 0; i < kMostProjectionSteps && !isRounding(); ++i) {
+    undisplaced_ = state;
+    const double farthest = displace(state);
+    factorize(state);
+    const double left = largestError();
+    if (farthest <= kFar * error && left < kStalled * error) {
+      error = left;
+      continue;
     }
-    if (!(worst > kLengthTolerance)) break;
-    const VectorX& multipliers = solver.solve(residual);
-    for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
-      const auto [shift, turn] = solver.response(body, multipliers);
-      centerOfMass(state, body) += shift;
-      turnBody(state, body, turn);
-    }
+    if (farthest <= kFar * error && left < error) break;  // at the limit of rounding
+    state = undisplaced_;
+    regularisation *= kMoreRegular;
+    factorize(state);
+    if (regularisation > kMostRegularisation) break;
+    regularize(regularisation);
   }
-  projectVelocitiesOntoRods(rods, bodies, solver, state);
-  return lengthError;
+  constrainVelocities(state);
+  return found;
 }
 
-double projectVelocitiesOntoRods(const std::vector<RodConstraint>& rods, const std::vector<RigidBody>& bodies,
-                                 ConstraintSolver& solver, VectorX& state) {
-  if (rods.empty()) return 0;
-  solver.setRows(rods, bodies, state);
-  VectorX residual(static_cast<Eigen::Index>(rods.size()));
-  double worst = 0;
-  for (std::size_t i = 0; i < rods.size(); ++i) {
-    residual[static_cast<Eigen::Index>(i)] = -rateOf(solver.rows()[i], state);
-    worst = std::max(worst, std::abs(residual[static_cast<Eigen::Index>(i)]) / rods[i].length);
-  }
-  const VectorX& multipliers = solver.solve(residual);
-  for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
-    const auto [push, spin] = solver.response(body, multipliers);
-    linearVelocity(state, body) += push;
-    angularVelocity(state, body) += spin;
-  }
-  return worst;
+/// One step of Newton's method. Returns how far the body that moved most was shifted (m) or turned (rad).
+double ConstraintSolver::displace(VectorX& state) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) multipliers_[static_cast<Eigen::Index>(i)] = -rows_[i].value;
+  factor_.solve(multipliers_);
+  double farthest = 0;
+  addResponse([&](int body, const Vec3& shift, const Vec3& turn) {
+    centerOfMass(state, body) += shift;
+    turnBody(state, body, turn);
+    farthest = std::max({farthest, shift.norm(), turn.norm()});
+  });
+  return farthest;
+}
+
+double ConstraintSolver::largestError() const {
+  double error = 0;
+  for (const ConstraintRow& row : rows_) error = std::max(error, std::abs(row.value) / row.scale);
+  return error;
+}
+
+bool ConstraintSolver::isRounding() const {
+  return std::all_of(rows_.begin(), rows_.end(),
+                     [](const ConstraintRow& row) { return std::abs(row.value) <= row.rounding * row.scale; });
+}
+
+double ConstraintSolver::largestRate(const VectorX& state) const {
+  double largest = 0;
+  for (const ConstraintRow& row : rows_) largest = std::max(largest, std::abs(rateOf(row, state)) / row.scale);
+  return largest;
 }
 
 }  // namespace cradle

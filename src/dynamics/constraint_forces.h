@@ -1,48 +1,76 @@
 #pragma once
 
-#include <Eigen/Cholesky>
+#include <utility>
 #include <vector>
 
 #include "dynamics/constraint_rows.h"
+#include "dynamics/sparse_ldlt.h"
 
 namespace cradle {
 
-/// Solves J M^-1 J^T lambda = b for a set of rows and applies M^-1 J^T lambda, with a direct factorisation: exact at
-/// any mass ratio. Redundant rows get the multipliers of least norm. Keeps its memory between calls.
+/// Solves J M^-1 J^T lambda = b for the rows of a set of constraints and applies M^-1 J^T lambda, by a direct
+/// factorisation: exact at any mass ratio, linear in the length of a chain. Redundant rows are allowed; where they
+/// contradict each other, the contradiction stays as it is. Allocates only when bodies are tied together in another way
+/// than in the call before.
 class ConstraintSolver {
  public:
-  /// Takes the rows of `rods` in `state` and factorises. O(rows^3).
-  void setRows(const std::vector<RodConstraint>& rods, const std::vector<RigidBody>& bodies, const VectorX& state);
+  /// Keeps a reference to both; constraints may be added and taken away later.
+  ConstraintSolver(const Constraints& constraints, const std::vector<RigidBody>& bodies)
+      : constraints_(constraints), bodies_(bodies) {}
+
+  bool hasConstraints() const { return !constraints_.empty(); }
+
+  /// Takes the rows in `state`, in which the bodies have `frames`, and factorises.
+  void factorize(const VectorX& state, const std::vector<BodyFrame>& frames);
+  void factorize(const VectorX& state);
 
   const std::vector<ConstraintRow>& rows() const { return rows_; }
 
-  /// Multipliers of a right-hand side (one entry a row).
-  const VectorX& solve(const VectorX& rightHandSide);
+  /// Adds to the accelerations in `rate` what keeps d^2C/dt^2 = 0. Returns the multipliers: a rod pushes its ends apart
+  /// with the force (N) multiplier x length.
+  const VectorX& constrainAccelerations(VectorX& rate);
 
-  /// The change that multipliers make to a body: M^-1 J^T lambda, linear (first) and angular (second), world frame.
-  std::pair<Vec3, Vec3> response(Eigen::Index body, const VectorX& multipliers) const;
+  /// Takes out of the velocities what would change C, by the least change of kinetic energy.
+  void constrainVelocities(VectorX& state);
+
+  /// Moves the bodies by the least (mass-weighted) motion until all constraints hold to rounding, then constrains the
+  /// velocities. Returns the largest error that was found, in m or rad.
+  double project(VectorX& state);
+
+  /// How far the velocities are from keeping the constraints: max |J v| / scale, in m/s or rad/s.
+  double largestRate(const VectorX& state) const;
 
  private:
   struct RowResponse {
     Vec3 linearA, angularA, linearB, angularB;  // M^-1 J^T of one row
   };
-  double couple(const RowResponse& response, const ConstraintRow& from, const ConstraintRow& to) const;
+  /// An entry of the matrix below its diagonal: two rows that act on the same body.
+  struct Coupling {
+    int row, column;
+  };
+  bool hasKnownStructure() const;
+  void analyze();
+  void respond(const std::vector<BodyFrame>& frames);
+  double couple(int row, int column) const;
+  template <class Add>
+  void addResponse(const Add& add) const;
+  void regularize(double regularisation);
+  void solve();
+  void findResidual();
+  double displace(VectorX& state);
+  double largestError() const;
+  bool isRounding() const;
 
+  const Constraints& constraints_;
+  const std::vector<RigidBody>& bodies_;
+  std::vector<BodyFrame> frames_;
   std::vector<ConstraintRow> rows_;
   std::vector<RowResponse> responses_;
-  MatrixX matrix_;
-  Eigen::LDLT<MatrixX> factor_;
-  bool isRegular_ = true;
-  VectorX multipliers_;
+  std::vector<std::pair<int, int>> structure_;  // bodies of each row, when the couplings were found
+  std::vector<Coupling> couplings_;
+  std::vector<double> diagonal_, regularDiagonal_, entries_;
+  SparseLdlt factor_;
+  VectorX multipliers_, rightHandSide_, correction_, undisplaced_;
 };
-
-/// Moves the bodies by the least (mass-weighted) motion until all rods have their length, then takes out of the
-/// velocities what would change it. Returns the largest length error that was found, in m.
-double projectOntoRods(const std::vector<RodConstraint>& rods, const std::vector<RigidBody>& bodies,
-                       ConstraintSolver& solver, VectorX& state);
-
-/// The second half of projectOntoRods alone: velocities. Returns the largest |J v| / length found, in m/s.
-double projectVelocitiesOntoRods(const std::vector<RodConstraint>& rods, const std::vector<RigidBody>& bodies,
-                                 ConstraintSolver& solver, VectorX& state);
 
 }  // namespace cradle

@@ -3,23 +3,79 @@
 namespace cradle {
 namespace {
 
-/// w x (w x r): acceleration of a point that only turns.
-Vec3 centripetalAcceleration(const Attachment& attachment, const Vec3& arm, const VectorX& state) {
-  if (attachment.body == kFixed) return Vec3::Zero();
-  const Vec3 spin = angularVelocity(state, attachment.body);
-  return spin.cross(spin.cross(arm));
+constexpr double kRounding = 1e-15;  // of the lengths that enter a row: a few units in their last place
+
+/// Both ends of a constraint at one instant.
+struct Ends {
+  AttachmentMotion a, b;
+  Vec3 spinA, spinB;  // rad/s, world; zero if fixed
+};
+
+Vec3 spinOf(int body, const VectorX& state) {
+  return body == kFixed ? Vec3::Zero() : Vec3(angularVelocity(state, body));
+}
+
+Ends endsOf(const Attachment& anchorA, const Attachment& anchorB, const VectorX& state,
+            const std::vector<BodyFrame>& frames) {
+  return {motionOf(anchorA, state, frames), motionOf(anchorB, state, frames), spinOf(anchorA.body, state),
+          spinOf(anchorB.body, state)};
+}
+
+/// w x (w x r) of A minus that of B: relative acceleration of points that only turn.
+Vec3 centripetalAcceleration(const Ends& ends) {
+  return ends.spinA.cross(ends.spinA.cross(ends.a.arm)) - ends.spinB.cross(ends.spinB.cross(ends.b.arm));
+}
+
+ConstraintRow rowOf(const RodConstraint& rod, const Ends& ends) {
+  const Vec3 d = ends.a.position - ends.b.position, rate = ends.a.velocity - ends.b.velocity;
+  ConstraintRow row{rod.anchorA.body, rod.anchorB.body, d, ends.a.arm.cross(d), -d, -ends.b.arm.cross(d)};
+  row.value = 0.5 * (d.squaredNorm() - rod.length * rod.length);
+  row.curvature = rate.squaredNorm() + d.dot(centripetalAcceleration(ends));
+  row.scale = rod.length;
+  row.rounding = kRounding * rod.length;
+  return row;
+}
+
+void addPointRows(const Attachment& anchorA, const Attachment& anchorB, const Ends& ends,
+                  std::vector<ConstraintRow>& rows) {
+  const Vec3 error = ends.a.position - ends.b.position, curvature = centripetalAcceleration(ends);
+  const double size = ends.a.position.norm() + ends.a.arm.norm() + ends.b.arm.norm();
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 direction = Vec3::Unit(i);
+    rows.push_back({anchorA.body, anchorB.body, direction, ends.a.arm.cross(direction), -direction,
+                    -ends.b.arm.cross(direction), error[i], curvature[i], 1, kRounding * size});
+  }
+}
+
+Vec3 turned(int body, const Vec3& direction, const std::vector<BodyFrame>& frames) {
+  return body == kFixed ? direction : Vec3(frames[static_cast<std::size_t>(body)].rotation * direction);
+}
+
+void addAxisRows(const HingeConstraint& hinge, const Ends& ends, const std::vector<BodyFrame>& frames,
+                 std::vector<ConstraintRow>& rows) {
+  const Vec3 axis = turned(hinge.anchorA.body, hinge.axisA, frames);
+  for (const Vec3& acrossB : hinge.acrossB) {
+    const Vec3 across = turned(hinge.anchorB.body, acrossB, frames), lever = axis.cross(across);
+    const Vec3 leverRate = ends.spinA.cross(axis).cross(across) + axis.cross(ends.spinB.cross(across));
+    rows.push_back({hinge.anchorA.body, hinge.anchorB.body, Vec3::Zero(), lever, Vec3::Zero(), -lever, axis.dot(across),
+                    leverRate.dot(ends.spinA - ends.spinB), 1, kRounding});
+  }
 }
 
 }  // namespace
 
-ConstraintRow rowOf(const RodConstraint& rod, const VectorX& state) {
-  const AttachmentMotion a = motionOf(rod.anchorA, state), b = motionOf(rod.anchorB, state);
-  const Vec3 d = a.position - b.position, rate = a.velocity - b.velocity;
-  ConstraintRow row{rod.anchorA.body, rod.anchorB.body, d, a.arm.cross(d), -d, -b.arm.cross(d), 0, 0};
-  row.value = 0.5 * (d.squaredNorm() - rod.length * rod.length);
-  row.curvature = rate.squaredNorm() + d.dot(centripetalAcceleration(rod.anchorA, a.arm, state) -
-                                             centripetalAcceleration(rod.anchorB, b.arm, state));
-  return row;
+void findRows(const Constraints& constraints, const VectorX& state, const std::vector<BodyFrame>& frames,
+              std::vector<ConstraintRow>& rows) {
+  rows.clear();
+  for (const RodConstraint& rod : constraints.rods)
+    rows.push_back(rowOf(rod, endsOf(rod.anchorA, rod.anchorB, state, frames)));
+  for (const BallJointConstraint& joint : constraints.ballJoints)
+    addPointRows(joint.anchorA, joint.anchorB, endsOf(joint.anchorA, joint.anchorB, state, frames), rows);
+  for (const HingeConstraint& hinge : constraints.hinges) {
+    const Ends ends = endsOf(hinge.anchorA, hinge.anchorB, state, frames);
+    addPointRows(hinge.anchorA, hinge.anchorB, ends, rows);
+    addAxisRows(hinge, ends, frames, rows);
+  }
 }
 
 double rateOf(const ConstraintRow& row, const VectorX& state) {

@@ -14,12 +14,12 @@ struct Mechanism {
   Vec3 gravity = Vec3::Zero();  // m/s^2
   std::vector<RigidBody> bodies;
   std::vector<SpringForce> springs;
-  std::vector<RodConstraint> rods;
+  Constraints constraints;
   std::vector<PushForce> pushes;  // those that act now
 };
 
 /// The equations of motion of a mechanism in the layout of state.h:
-///   x' = v, q' = 1/2 (0, w) q, m v' = f, body frame: I w' = T - w x I w (Newton, Euler), rods by constraint forces.
+///   x' = v, q' = 1/2 (0, w) q, m v' = f, body frame: I w' = T - w x I w (Newton, Euler), constraints by their forces.
 /// Bodies marked as resting do not move, whatever acts on them.
 class EquationsOfMotion {
  public:
@@ -32,8 +32,8 @@ class EquationsOfMotion {
   void setResting(std::size_t body, bool resting) { resting_[body] = resting; }
   bool isResting(std::size_t body) const { return resting_[body] != 0; }
 
-  /// Multipliers of the rods' rows at the last evaluation, in the order of Mechanism::rods: a rod pushes its ends apart
-  /// with the force (N) multiplier x length.
+  /// Multipliers of the constraints' rows at the last evaluation, rods first: a rod pushes its ends apart with the
+  /// force (N) multiplier x length.
   const VectorX& multipliers() const { return multipliers_; }
 
   /// How often evaluate was called.
@@ -46,12 +46,13 @@ class EquationsOfMotion {
   void applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& rate) const;
   void applySprings(const VectorX& state, VectorX& rate) const;
   void applyPushes(const VectorX& state, VectorX& rate) const;
-  void applyConstraintForces(const VectorX& state, VectorX& rate);
+  void addForce(int body, const Vec3& arm, const Vec3& force, VectorX& rate) const;
 
   const Mechanism& mechanism_;
   std::vector<char> resting_;
+  std::vector<BodyFrame> frames_;
   ConstraintSolver solver_;
-  VectorX constraintResidual_, multipliers_;
+  VectorX multipliers_;
   long evaluations_ = 0;
 };
 

@@ -18,6 +18,22 @@ AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state) {
           linearVelocity(state, attachment.body) + angularVelocity(state, attachment.body).cross(arm)};
 }
 
+void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std::vector<BodyFrame>& frames) {
+  frames.resize(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    BodyFrame& frame = frames[i];
+    frame.rotation = orientation(state, static_cast<Eigen::Index>(i)).normalized().toRotationMatrix();
+    frame.inverseInertia = frame.rotation * bodies[i].inverseInertia * frame.rotation.transpose();
+  }
+}
+
+AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state, const std::vector<BodyFrame>& frames) {
+  if (attachment.body == kFixed) return {Vec3::Zero(), attachment.point, Vec3::Zero()};
+  const Vec3 arm = frames[static_cast<std::size_t>(attachment.body)].rotation * attachment.point;
+  return {arm, centerOfMass(state, attachment.body) + arm,
+          linearVelocity(state, attachment.body) + angularVelocity(state, attachment.body).cross(arm)};
+}
+
 Vec3 pointAcceleration(int body, const Vec3& point, const VectorX& state, const VectorX& rate) {
   if (body == kFixed) return Vec3::Zero();
   const Vec3 arm = point - centerOfMass(state, body), spin = angularVelocity(state, body);

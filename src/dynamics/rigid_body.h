@@ -34,6 +34,16 @@ struct AttachmentMotion {
 };
 AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state);
 
+/// What all forces on a body need of its orientation: found once an instant.
+struct BodyFrame {
+  Mat3 rotation;        // worldFromBody
+  Mat3 inverseInertia;  // 1/(kg m^2), world
+};
+void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std::vector<BodyFrame>& frames);
+
+/// The same motion from bodies that were placed for `state`.
+AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state, const std::vector<BodyFrame>& frames);
+
 /// Acceleration (m/s^2, world) of a body's material point that is at `point` (m, world), for the rates of all
 /// velocities in `rate`; zero if fixed.
 Vec3 pointAcceleration(int body, const Vec3& point, const VectorX& state, const VectorX& rate);

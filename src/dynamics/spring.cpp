@@ -3,8 +3,13 @@
 #include <cmath>
 
 namespace cradle {
+
 SpringAction actionOf(const SpringForce& spring, const VectorX& state) {
-  SpringAction action{motionOf(spring.anchorA, state), motionOf(spring.anchorB, state), Vec3::Zero(), 0, 0};
+  return actionOf(spring, motionOf(spring.anchorA, state), motionOf(spring.anchorB, state));
+}
+
+SpringAction actionOf(const SpringForce& spring, const AttachmentMotion& a, const AttachmentMotion& b) {
+  SpringAction action{a, b, Vec3::Zero(), 0, 0};
   const Vec3 separation = action.a.position - action.b.position;
   const double length = separation.norm();
   const double extension = length - spring.restLength;

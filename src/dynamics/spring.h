@@ -27,6 +27,9 @@ struct SpringAction {
 /// At length 0 the direction is undefined and the force is zero.
 SpringAction actionOf(const SpringForce& spring, const VectorX& state);
 
+/// The same from how its ends move.
+SpringAction actionOf(const SpringForce& spring, const AttachmentMotion& a, const AttachmentMotion& b);
+
 /// Frequency (rad/s) that the spring would have if nothing else acted: sqrt(k (1/m_A + 1/m_B)), each 1/m the inverse
 /// mass seen at the anchor along the spring, 1/m + (r x n)^T I^-1 (r x n). It limits the steps of explicit methods.
 double naturalFrequency(const SpringForce& spring, const std::vector<RigidBody>& bodies, const VectorX& state);

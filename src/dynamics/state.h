@@ -64,4 +64,12 @@ inline double pushWork(const VectorX& state) {
   return state[state.size() - 1];
 }
 
+/// Tolerances for errorNorm (integrators/dop853.h): one for orientations, one for all else.
+inline VectorX stateTolerance(Eigen::Index bodies, double tolerance, double orientationTolerance) {
+  VectorX tolerances = VectorX::Constant(stateSize(bodies), tolerance);
+  for (Eigen::Index body = 0; body < bodies; ++body)
+    tolerances.segment<4>(body * kPoseSize + 3).setConstant(orientationTolerance);
+  return tolerances;
+}
+
 }  // namespace cradle

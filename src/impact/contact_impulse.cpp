@@ -9,9 +9,9 @@ Vec3 armOf(const Contact& contact, int body, const VectorX& state) {
   return body == kFixed ? Vec3::Zero() : Vec3(contact.point - centerOfMass(state, body));
 }
 
-Vec3 pointVelocity(const Contact& contact, int body, const VectorX& state) {
+Vec3 pointVelocity(const Contact& contact, int body, const VectorX& places, const VectorX& velocities) {
   if (body == kFixed) return Vec3::Zero();
-  return linearVelocity(state, body) + angularVelocity(state, body).cross(armOf(contact, body, state));
+  return linearVelocity(velocities, body) + angularVelocity(velocities, body).cross(armOf(contact, body, places));
 }
 
 Mat3 inverseMassOf(const Contact& contact, int body, const std::vector<RigidBody>& bodies, const VectorX& state) {
@@ -25,17 +25,45 @@ Mat3 inverseMassOf(const Contact& contact, int body, const std::vector<RigidBody
 }  // namespace
 
 Vec3 relativeVelocity(const Contact& contact, const VectorX& state) {
-  return pointVelocity(contact, contact.bodyB, state) - pointVelocity(contact, contact.bodyA, state);
+  return relativeVelocity(contact, state, state);
+}
+
+Vec3 relativeVelocity(const Contact& contact, const VectorX& places, const VectorX& velocities) {
+  return pointVelocity(contact, contact.bodyB, places, velocities) -
+         pointVelocity(contact, contact.bodyA, places, velocities);
 }
 
 Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state) {
   return inverseMassOf(contact, contact.bodyA, bodies, state) + inverseMassOf(contact, contact.bodyB, bodies, state);
 }
 
-void applyContactImpulse(const Contact& contact, const Vec3& impulseOnB, const std::vector<RigidBody>& bodies,
-                         VectorX& state) {
-  applyImpulse(bodies, contact.bodyA, armOf(contact, contact.bodyA, state), -impulseOnB, state);
-  applyImpulse(bodies, contact.bodyB, armOf(contact, contact.bodyB, state), impulseOnB, state);
+Mat3 ImpulseResponse::inverseMassAt(const Contact& contact, const VectorX& state) const {
+  if (!constraints_) return cradle::inverseMassAt(contact, bodies_, state);
+  Mat3 inverseMass;
+  for (int i = 0; i < 3; ++i) inverseMass.col(i) = relativeVelocity(contact, answerOf(contact, Vec3::Unit(i), state));
+  return inverseMass;
+}
+
+/// The state with the velocities that an impulse gives to bodies at rest.
+VectorX ImpulseResponse::answerOf(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const {
+  VectorX answer = state;
+  answer.tail(state.size() - poseComponents(state)).setZero();
+  apply(contact, impulseOnB, answer);
+  return answer;
+}
+
+void ImpulseResponse::displace(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const {
+  const VectorX answer = answerOf(contact, impulseOnB, state);
+  for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
+    centerOfMass(state, body) += linearVelocity(answer, body);
+    turnBody(state, body, angularVelocity(answer, body));
+  }
+}
+
+void ImpulseResponse::apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const {
+  applyImpulse(bodies_, contact.bodyA, armOf(contact, contact.bodyA, state), -impulseOnB, state);
+  applyImpulse(bodies_, contact.bodyB, armOf(contact, contact.bodyB, state), impulseOnB, state);
+  if (constraints_) constraints_->constrainVelocities(state);
 }
 
 }  // namespace cradle

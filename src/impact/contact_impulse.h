@@ -3,18 +3,45 @@
 #include <vector>
 
 #include "collision/separation.h"
+#include "dynamics/constraint_forces.h"
 
 namespace cradle {
 
 /// Velocity (m/s, world) of B's surface relative to A's at a contact: contactNormal . velocity < 0 is closing.
 Vec3 relativeVelocity(const Contact& contact, const VectorX& state);
 
+/// The same for velocities of another instant, at the contact where it is in `places`: both are states.
+Vec3 relativeVelocity(const Contact& contact, const VectorX& places, const VectorX& velocities);
+
 /// The 3x3 matrix that maps an impulse on B (and its opposite on A) at the contact to the change of B's velocity
-/// relative to A there, in 1/kg.
+/// relative to A there, in 1/kg, for bodies that nothing ties.
 Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state);
 
-/// Applies an impulse (N s, world) to B and its opposite to A at the contact.
-void applyContactImpulse(const Contact& contact, const Vec3& impulseOnB, const std::vector<RigidBody>& bodies,
-                         VectorX& state);
+/// How bodies answer to impulses at contacts. What ties them answers within the same impulse: W = M^-1 - M^-1 B^T
+/// (B M^-1 B^T)^-1 B M^-1 stands in place of M^-1, B the rows of their constraints.
+class ImpulseResponse {
+ public:
+  /// Keeps a reference to `bodies`, which nothing ties.
+  ImpulseResponse(const std::vector<RigidBody>& bodies) : bodies_(bodies) {}
+
+  /// Keeps references to both. The solver must be factorised for the positions at which impulses are applied.
+  ImpulseResponse(const std::vector<RigidBody>& bodies, ConstraintSolver& constraints)
+      : bodies_(bodies), constraints_(constraints.hasConstraints() ? &constraints : nullptr) {}
+
+  /// As above, with what ties the bodies.
+  Mat3 inverseMassAt(const Contact& contact, const VectorX& state) const;
+
+  /// Applies an impulse (N s, world) to B and its opposite to A at the contact.
+  void apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const;
+
+  /// Moves the bodies as far as the velocities that such an impulse gives would in 1 s. Velocities stay.
+  void displace(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const;
+
+ private:
+  VectorX answerOf(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const;
+
+  const std::vector<RigidBody>& bodies_;
+  ConstraintSolver* constraints_ = nullptr;
+};
 
 }  // namespace cradle

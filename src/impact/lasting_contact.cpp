@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "impact/contact_impulse.h"
-
 namespace cradle {
 namespace {
 
@@ -24,7 +22,7 @@ Vec3 clampToCone(const Vec3& impulse, const Vec3& normal, double friction) {
 }
 
 /// One contact's turn: normal part first, then friction under the pressure that it left.
-double relax(LastingContact& lasting, const Mat3& inverseMass, const std::vector<RigidBody>& bodies, VectorX& state) {
+double relax(LastingContact& lasting, const Mat3& inverseMass, const ImpulseResponse& response, VectorX& state) {
   const Contact& contact = lasting.contact;
   const Vec3& normal = contact.normal;
   const Vec3 velocity = relativeVelocity(contact, state);
@@ -36,36 +34,21 @@ double relax(LastingContact& lasting, const Mat3& inverseMass, const std::vector
   const Vec3 held = clampToCone(free, normal, lasting.friction);
   const Vec3 change = held - lasting.impulse;
   lasting.impulse = held;
-  applyContactImpulse(contact, change, bodies, state);
+  response.apply(contact, change, state);
   return (inverseMass * change).norm();
-}
-
-/// Shifts and turns both bodies so that the contact's gap grows from `separation` to 0. What earlier contacts of the
-/// same bodies did since it was found is seen in the next sweep.
-void moveApart(const Contact& contact, const std::vector<RigidBody>& bodies, VectorX& state) {
-  const double response = contact.normal.dot(inverseMassAt(contact, bodies, state) * contact.normal);
-  const Vec3 push = -contact.separation / response * contact.normal;
-  for (const auto& [body, sign] : {std::pair(contact.bodyA, -1.0), std::pair(contact.bodyB, 1.0)}) {
-    if (body == kFixed) continue;
-    const RigidBody& inertia = bodies[static_cast<std::size_t>(body)];
-    const Vec3 arm = contact.point - centerOfMass(state, body);
-    const Vec3 turn = worldInverseInertia(inertia, orientation(state, body)) * arm.cross(sign * push);
-    centerOfMass(state, body) += sign * inertia.inverseMass * push;
-    turnBody(state, body, turn);
-  }
 }
 
 }  // namespace
 
-double solveLastingContacts(std::vector<LastingContact>& contacts, const std::vector<RigidBody>& bodies,
-                            VectorX& state) {
+double solveLastingContacts(std::vector<LastingContact>& contacts, const ImpulseResponse& response, VectorX& state) {
   std::vector<Mat3> inverseMasses;
-  for (const LastingContact& lasting : contacts) inverseMasses.push_back(inverseMassAt(lasting.contact, bodies, state));
+  for (const LastingContact& lasting : contacts)
+    inverseMasses.push_back(response.inverseMassAt(lasting.contact, state));
   double largest = 0, change = 0;
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     change = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i)
-      change = std::max(change, relax(contacts[i], inverseMasses[i], bodies, state));
+      change = std::max(change, relax(contacts[i], inverseMasses[i], response, state));
     largest = std::max(largest, change);
     if (change <= kConvergedPart * largest) break;
   }
@@ -73,7 +56,7 @@ double solveLastingContacts(std::vector<LastingContact>& contacts, const std::ve
 }
 
 void resolveOverlaps(const ContactGeometry& geometry, const std::vector<Contact>& contacts,
-                     const std::vector<RigidBody>& bodies, VectorX& state) {
+                     const ImpulseResponse& response, VectorX& state) {
   std::vector<std::size_t> pairs;
   for (const Contact& contact : contacts)
     if (pairs.empty() || pairs.back() != contact.pair) pairs.push_back(contact.pair);
@@ -83,9 +66,11 @@ void resolveOverlaps(const ContactGeometry& geometry, const std::vector<Contact>
     for (const std::size_t pair : pairs) {
       overlaps.clear();
       appendContacts(geometry, pair, state, 0, overlaps);
+      // What earlier contacts of the same bodies did since it was found is seen in the next sweep.
       for (const Contact& overlap : overlaps) {
         deepest = std::max(deepest, -overlap.separation);
-        moveApart(overlap, bodies, state);
+        const double inverseMass = overlap.normal.dot(response.inverseMassAt(overlap, state) * overlap.normal);
+        response.displace(overlap, -overlap.separation / inverseMass * overlap.normal, state);
       }
     }
     if (deepest <= kOverlapLeft) return;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "impact/contact_impulse.h"
 
 namespace cradle {
 namespace {
@@ -33,13 +32,14 @@ Vec3 slidingImpulse(const Contact& contact, const Mat3& inverseMass, const Vec3&
 
 }  // namespace
 
-Vec3 pairImpulse(const Contact& contact, const SurfaceLaw& law, double restSpeed, const std::vector<RigidBody>& bodies,
-                 const VectorX& state) {
+Vec3 pairImpulse(const ImpactContact& impact, const ImpulseResponse& response, const VectorX& state) {
+  const Contact& contact = impact.contact;
+  const SurfaceLaw& law = impact.law;
   const Vec3 velocity = relativeVelocity(contact, state);
   const double closing = -contact.normal.dot(velocity);
   if (closing <= 0) return Vec3::Zero();
-  const Mat3 inverseMass = inverseMassAt(contact, bodies, state);
-  const double restitution = closing > restSpeed ? law.restitution : 0;
+  const Mat3 inverseMass = response.inverseMassAt(contact, state);
+  const double restitution = closing > impact.restSpeed ? law.restitution : 0;
   const Vec3 frictionless = slidingImpulse(contact, inverseMass, velocity, 0, restitution);
   if (law.staticFriction == 0) return frictionless;
 
@@ -56,7 +56,7 @@ Vec3 pairImpulse(const Contact& contact, const SurfaceLaw& law, double restSpeed
   return addsEnergy ? frictionless : impulse;
 }
 
-void resolvePairwise(std::vector<ImpactContact>& impacts, const std::vector<RigidBody>& bodies, VectorX& state) {
+void resolvePairwise(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
   double fastest = 0;
   const long most = kMostImpulsesPerPair * static_cast<long>(impacts.size());
   for (long count = 0; count < most; ++count) {
@@ -67,8 +67,8 @@ void resolvePairwise(std::vector<ImpactContact>& impacts, const std::vector<Rigi
     const double closing = closingSpeed(next->contact, state);
     fastest = std::max(fastest, closing);
     if (closing <= kClosedPart * fastest) return;
-    const Vec3 impulse = pairImpulse(next->contact, next->law, next->restSpeed, bodies, state);
-    applyContactImpulse(next->contact, impulse, bodies, state);
+    const Vec3 impulse = pairImpulse(*next, response, state);
+    response.apply(next->contact, impulse, state);
     next->impulse += next->contact.normal.dot(impulse);
   }
   throw Error(ErrorKind::unstable, "",

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "collision/separation.h"
+#include "impact/contact_impulse.h"
 
 namespace cradle {
 
@@ -17,10 +17,9 @@ struct ImpactContact {
 /// The textbook law of simultaneous impacts: the pair that closes fastest gets its two-body impulse (Newton's
 /// restitution, Coulomb's friction), again and again until no pair closes. Friction never adds energy: an impulse that
 /// would is replaced by the one without friction. Throws Error(unstable) if it does not come to an end.
-void resolvePairwise(std::vector<ImpactContact>& impacts, const std::vector<RigidBody>& bodies, VectorX& state);
+void resolvePairwise(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state);
 
 /// The impulse (N s, world, on B) of one pair alone. Zero if it does not close.
-Vec3 pairImpulse(const Contact& contact, const SurfaceLaw& law, double restSpeed, const std::vector<RigidBody>& bodies,
-                 const VectorX& state);
+Vec3 pairImpulse(const ImpactContact& impact, const ImpulseResponse& response, const VectorX& state);
 
 }  // namespace cradle

@@ -52,7 +52,7 @@ void addLinks(const Scene& scene, const std::vector<int>& moving, Assembly& asse
     assembly.mechanism.springs.push_back({attach(spring.anchorA, scene, moving), attach(spring.anchorB, scene, moving),
                                           spring.stiffness, spring.damping, spring.restLength});
   for (const Rod& rod : scene.rods)
-    assembly.mechanism.rods.push_back(
+    assembly.mechanism.constraints.rods.push_back(
         {attach(rod.anchorA, scene, moving), attach(rod.anchorB, scene, moving), rod.length});
   for (const Rope& rope : scene.ropes) {
     assembly.ropes.push_back(
@@ -62,10 +62,12 @@ void addLinks(const Scene& scene, const std::vector<int>& moving, Assembly& asse
 }
 
 void satisfyRods(const Scene& scene, Assembly& assembly) {
-  ConstraintSolver solver;
   const Mechanism& mechanism = assembly.mechanism;
+  ConstraintSolver solver(mechanism.constraints, mechanism.bodies);
   const VectorX before = assembly.state;
-  const double violation = projectVelocitiesOntoRods(mechanism.rods, mechanism.bodies, solver, assembly.state);
+  solver.factorize(before);
+  const double violation = solver.largestRate(before);
+  solver.constrainVelocities(assembly.state);
   if (violation > kVelocityRounding)
     assembly.warnings.push_back(
         fmt::format("{}: the start velocities would stretch or shorten rods by up to {:.3g} m/s; they were changed by "

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
+#include "impact/pairwise.h"
 #include "simulate/event_log.h"
 #include "simulate/resting_bodies.h"
 
@@ -26,8 +28,8 @@ class ContactStage {
  private:
   void findTouching(const VectorX& state);
   void wakeTouched(double time, const VectorX& state);
-  void resolveImpacts(double time, VectorX& state);
-  double restSpeed(const Contact& contact, const VectorX& state) const;
+  void resolveImpacts(double time, const VectorX& before, VectorX& state);
+  std::vector<ImpactContact> findImpacts(const VectorX& before, const VectorX& state) const;
   void holdLasting(const VectorX& before, VectorX& state);
 
   const Assembly& assembly_;
@@ -36,8 +38,9 @@ class ContactStage {
   RestingBodies resting_;
   ConstraintSolver solver_;
   double timeStep_, touchTolerance_;
+  double lastTime_ = -INFINITY;  // s, of the last call of resolve
+  double stepPart_ = INFINITY;   // time since then, in steps
   std::vector<Contact> touching_;
-  VectorX rate_;
 };
 
 }  // namespace cradle

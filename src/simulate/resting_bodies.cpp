@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "impact/lasting_contact.h"
+#include "simulate/islands.h"
 
 namespace cradle {
 namespace {
@@ -13,24 +13,17 @@ constexpr double kLiftablePart = 1e-7;  // of its size: the height that a slow b
 constexpr double kSupportPart = 1e-6;   // of its size: how far a point may hover and still carry
 constexpr double kResidualAcceleration = 1e-6;  // of gravity: what supporting forces may leave
 
-int rootOf(std::vector<int>& parents, int body) {
-  while (parents[static_cast<std::size_t>(body)] != body) body = parents[static_cast<std::size_t>(body)];
-  return body;
-}
-
-void join(std::vector<int>& parents, int a, int b) {
-  if (a == kFixed || b == kFixed) return;
-  const int rootA = rootOf(parents, a), rootB = rootOf(parents, b);
-  parents[static_cast<std::size_t>(std::max(rootA, rootB))] = std::min(rootA, rootB);
-}
-
 }  // namespace
 
-RestingBodies::RestingBodies(const Mechanism& mechanism, const ContactGeometry& geometry, EquationsOfMotion& equations)
+RestingBodies::RestingBodies(const Mechanism& mechanism, const ContactGeometry& geometry, EquationsOfMotion& equations,
+                             double calmTime)
     : mechanism_(mechanism),
       geometry_(geometry),
       equations_(equations),
+      solver_(mechanism.constraints, mechanism.bodies),
       sizes_(mechanism.bodies.size(), 0.0),
+      calmTime_(calmTime),
+      wakeTimes_(mechanism.bodies.size(), -INFINITY),
       restingIsland_(mechanism.bodies.size(), -1) {
   double smallest = INFINITY;
   for (const Collider& collider : geometry.colliders) {
@@ -42,14 +35,18 @@ RestingBodies::RestingBodies(const Mechanism& mechanism, const ContactGeometry& 
 }
 
 std::vector<int> RestingBodies::islandsOf(const std::vector<Contact>& contacts) const {
-  std::vector<int> parents(mechanism_.bodies.size());
-  std::iota(parents.begin(), parents.end(), 0);
-  for (const Contact& contact : contacts) join(parents, contact.bodyA, contact.bodyB);
-  for (const SpringForce& spring : mechanism_.springs) join(parents, spring.anchorA.body, spring.anchorB.body);
-  for (const RodConstraint& rod : mechanism_.rods) join(parents, rod.anchorA.body, rod.anchorB.body);
+  Islands joined(mechanism_.bodies.size());
+  for (const Contact& contact : contacts) joined.join(contact.bodyA, contact.bodyB);
+  for (const SpringForce& spring : mechanism_.springs) joined.join(spring.anchorA.body, spring.anchorB.body);
+  forEachTie(mechanism_.constraints, [&](int bodyA, int bodyB) { joined.join(bodyA, bodyB); });
   std::vector<int> islands;
-  for (std::size_t body = 0; body < parents.size(); ++body) islands.push_back(rootOf(parents, static_cast<int>(body)));
+  for (std::size_t body = 0; body < sizes_.size(); ++body) islands.push_back(joined.islandOf(static_cast<int>(body)));
   return islands;
+}
+
+/// What is shaken again and again does not rest in between.
+bool RestingBodies::isCalm(double time, std::size_t body, const VectorX& state) const {
+  return time - wakeTimes_[body] >= calmTime_ && isSlow(body, state);
 }
 
 bool RestingBodies::isSlow(std::size_t index, const VectorX& state) const {
@@ -74,7 +71,8 @@ bool RestingBodies::canBeHeld(const std::vector<int>& islands, int island, const
     if (islands[static_cast<std::size_t>(body)] == island)
       lasting.push_back({contact, geometry_.pairs[contact.pair].law.staticFriction, Vec3::Zero()});
   }
-  solveLastingContacts(lasting, mechanism_.bodies, accelerations);
+  if (solver_.hasConstraints()) solver_.factorize(state);
+  solveLastingContacts(lasting, ImpulseResponse(mechanism_.bodies, solver_), accelerations);
 
   for (std::size_t i = 0; i < islands.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
@@ -85,7 +83,7 @@ bool RestingBodies::canBeHeld(const std::vector<int>& islands, int island, const
   return true;
 }
 
-std::vector<int> RestingBodies::settle(const std::vector<Contact>& contacts, VectorX& state) {
+std::vector<int> RestingBodies::settle(double time, const std::vector<Contact>& contacts, VectorX& state) {
   std::vector<int> settled;
   if (contacts.empty()) return settled;
   const std::vector<int> islands = islandsOf(contacts);
@@ -95,7 +93,7 @@ std::vector<int> RestingBodies::settle(const std::vector<Contact>& contacts, Vec
       if (body != kFixed && !isResting(body))
         candidate[static_cast<std::size_t>(islands[static_cast<std::size_t>(body)])] = 1;
   for (std::size_t body = 0; body < islands.size(); ++body)
-    if (!isSlow(body, state)) candidate[static_cast<std::size_t>(islands[body])] = 0;
+    if (!isCalm(time, body, state)) candidate[static_cast<std::size_t>(islands[body])] = 0;
 
   for (std::size_t island = 0; island < islands.size(); ++island) {
     if (!candidate[island] || !canBeHeld(islands, static_cast<int>(island), state)) continue;
@@ -110,13 +108,14 @@ std::vector<int> RestingBodies::settle(const std::vector<Contact>& contacts, Vec
   return settled;
 }
 
-std::vector<int> RestingBodies::wake(int body) {
+std::vector<int> RestingBodies::wake(double time, int body) {
   std::vector<int> woken;
   if (!isResting(body)) return woken;
   const int island = restingIsland_[static_cast<std::size_t>(body)];
   for (std::size_t other = 0; other < restingIsland_.size(); ++other) {
     if (!equations_.isResting(other) || restingIsland_[other] != island) continue;
     equations_.setResting(other, false);
+    wakeTimes_[other] = time;
     woken.push_back(static_cast<int>(other));
   }
   return woken;

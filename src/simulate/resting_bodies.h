@@ -11,27 +11,33 @@ namespace cradle {
 /// all that they touch or are tied to (their island), and wake together.
 class RestingBodies {
  public:
-  RestingBodies(const Mechanism& mechanism, const ContactGeometry& geometry, EquationsOfMotion& equations);
+  /// Keeps references to the first three. A body that was woken stays awake for at least `calmTime` (s).
+  RestingBodies(const Mechanism& mechanism, const ContactGeometry& geometry, EquationsOfMotion& equations,
+                double calmTime);
 
   /// Brings islands to rest that are slow and that contact forces within the friction cones can hold, given the
   /// contacts of this instant. Returns the bodies that came to rest.
-  std::vector<int> settle(const std::vector<Contact>& contacts, VectorX& state);
+  std::vector<int> settle(double time, const std::vector<Contact>& contacts, VectorX& state);
 
   /// Wakes the island of a body. Returns the bodies that were woken.
-  std::vector<int> wake(int body);
+  std::vector<int> wake(double time, int body);
 
   bool isResting(int body) const { return body != kFixed && equations_.isResting(static_cast<std::size_t>(body)); }
 
  private:
   std::vector<int> islandsOf(const std::vector<Contact>& contacts) const;
+  bool isCalm(double time, std::size_t body, const VectorX& state) const;
   bool isSlow(std::size_t body, const VectorX& state) const;
   bool canBeHeld(const std::vector<int>& islands, int island, const VectorX& state);
 
   const Mechanism& mechanism_;
   const ContactGeometry& geometry_;
   EquationsOfMotion& equations_;
-  std::vector<double> sizes_;  // m: bounding radius of each moving body, 0 if it does not collide
-  double supportMargin_ = 0;   // m
+  ConstraintSolver solver_;
+  std::vector<double> sizes_;      // m: bounding radius of each moving body, 0 if it does not collide
+  double supportMargin_ = 0;       // m
+  double calmTime_;                // s
+  std::vector<double> wakeTimes_;  // s, of each body's last waking
   std::vector<int> restingIsland_;
 };
 

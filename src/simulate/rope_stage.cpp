@@ -29,8 +29,9 @@ RopeStage::RopeStage(Assembly& assembly, EquationsOfMotion& equations, ContactSt
       equations_(equations),
       contacts_(contacts),
       log_(log),
+      solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),
       timeStep_(timeStep),
-      sceneRods_(assembly.mechanism.rods.size()),
+      sceneRods_(assembly.mechanism.constraints.rods.size()),
       tautRod_(assembly.ropes.size(), -1) {}
 
 std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
@@ -108,7 +109,10 @@ void RopeStage::pull(double time, std::size_t index, VectorX& state) {
     rebuildRods();
   }
   // The pull goes on into the other rods and taut ropes.
-  projectVelocitiesOntoRods(assembly_.mechanism.rods, assembly_.mechanism.bodies, solver_, state);
+  if (solver_.hasConstraints()) {
+    solver_.factorize(state);
+    solver_.constrainVelocities(state);
+  }
   dissipatedEnergy(state) += before - kineticEnergy(assembly_.mechanism.bodies, state);
 }
 
@@ -119,7 +123,7 @@ void RopeStage::release(double time, std::size_t rope, const VectorX& state) {
 }
 
 void RopeStage::rebuildRods() {
-  std::vector<RodConstraint>& rods = assembly_.mechanism.rods;
+  std::vector<RodConstraint>& rods = assembly_.mechanism.constraints.rods;
   rods.resize(sceneRods_);
   for (std::size_t i = 0; i < tautRod_.size(); ++i) {
     if (!isTaut(i)) continue;

@@ -52,6 +52,7 @@ Simulation::Simulation(const Scene& scene, Assembly assembly)
       ropes_(assembly_, equations_, contacts_, log_, method_.timeStep),
       pushes_(scene, assembly_.movingBodies, log_),
       guard_(assembly_.mechanism, assembly_.state, namesOf(scene, assembly_, method_)),
+      solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       duration_(scene.duration),
       state_(assembly_.state) {
   contacts_.resolve(time_, state_, state_);
@@ -73,7 +74,7 @@ void Simulation::advance() {
   // Take out what the step left wrong: lengths of rods, closing and overlapping contacts. Then what changes here?
   const VectorX before = std::exchange(state_, step_.state);
   normalizeOrientations(state_);
-  projectOntoRods(assembly_.mechanism.rods, assembly_.mechanism.bodies, solver_, state_);
+  if (solver_.hasConstraints()) solver_.project(state_);
   contacts_.resolve(time_, before, state_);
   ropes_.resolve(time_, state_);
   beginAndEndPushes();

@@ -112,68 +112,121 @@ TEST(Spring, NaturalFrequencyCountsTheTurningOfTheBody) {
   EXPECT_NEAR(naturalFrequency(spring, mechanism.bodies, state), std::sqrt(100 * (1 / 2.0 + 0.09 / 0.7)), 1e-12);
 }
 
-/// Two lopsided bodies on rods: one to the world, one between them, both off-centre; lengths as in `state`.
-Mechanism rodMechanism(const VectorX& state) {
+/// Two lopsided bodies tied by every kind of constraint: a rod to the world, one between them, and a joint each.
+/// Lengths and anchors fit `state`.
+Mechanism tiedBodies(const VectorX& state) {
   Mechanism mechanism = twoBodies();
   mechanism.gravity = Vec3(0, -9.81, 0);
-  mechanism.rods = {{{0, Vec3(0.2, 0.1, -0.3)}, {kFixed, Vec3(0.5, 2, 0.1)}, 0},
-                    {{1, Vec3(-0.1, 0.4, 0.2)}, {0, Vec3(0.3, 0, 0.1)}, 0}};
-  for (RodConstraint& rod : mechanism.rods)
+  Constraints& constraints = mechanism.constraints;
+  constraints.rods = {{{0, Vec3(0.2, 0.1, -0.3)}, {kFixed, Vec3(0.5, 2, 0.1)}, 0},
+                      {{1, Vec3(-0.1, 0.4, 0.2)}, {0, Vec3(0.3, 0, 0.1)}, 0}};
+  for (RodConstraint& rod : constraints.rods)
     rod.length = (motionOf(rod.anchorA, state).position - motionOf(rod.anchorB, state).position).norm();
   return mechanism;
 }
 
-TEST(RodConstraint, RateAndCurvatureAreTheTimeDerivativesOfItsValue) {
+/// A frame of body `index` in which a world direction or point is what `state` says.
+Vec3 directionInBody(const Vec3& direction, const VectorX& state, Eigen::Index index) {
+  return orientation(state, index).normalized().conjugate() * direction;
+}
+Attachment at(const Vec3& point, const VectorX& state, int body) {
+  return {body, directionInBody(point - centerOfMass(state, body), state, body)};
+}
+
+Mechanism hingedBodies(const VectorX& state) {
+  Mechanism mechanism = twoBodies();
+  mechanism.gravity = Vec3(0, -9.81, 0);
+  const Vec3 pin(0.3, 0.6, -0.2), joint(0.1, -0.4, 0.9), axis = Vec3(1, 2, 2) / 3;
+  mechanism.constraints.ballJoints = {{at(pin, state, 0), {kFixed, pin}}};
+  mechanism.constraints.hinges = {
+      {at(joint, state, 0),
+       at(joint, state, 1),
+       directionInBody(axis, state, 0),
+       {directionInBody(Vec3(2, 1, -2) / 3, state, 1), directionInBody(Vec3(2, -2, 1) / 3, state, 1)}}};
+  return mechanism;
+}
+
+std::vector<ConstraintRow> rowsIn(const Mechanism& mechanism, const VectorX& state) {
+  std::vector<BodyFrame> frames;
+  placeBodies(mechanism.bodies, state, frames);
+  std::vector<ConstraintRow> rows;
+  findRows(mechanism.constraints, state, frames, rows);
+  return rows;
+}
+
+TEST(ConstraintRows, RateAndCurvatureAreTheTimeDerivativesOfTheirValues) {
   const VectorX state = someState();
-  const Mechanism mechanism = rodMechanism(state);
-  VectorX rate = VectorX::Zero(state.size());
-  evaluatePoseRates(state, rate);
-  for (const RodConstraint& rod : mechanism.rods) {
-    const double first = timeDerivative(state, rate, [&](const VectorX& s) { return rowOf(rod, s).value; });
-    EXPECT_NEAR(rateOf(rowOf(rod, state), state), first, 1e-8);
-    // With constant velocities d^2C/dt^2 is the curvature alone: rates of positions move, velocities stay.
-    const double second = timeDerivative(state, rate, [&](const VectorX& s) { return rateOf(rowOf(rod, s), s); });
-    EXPECT_NEAR(rowOf(rod, state).curvature, second, 1e-8);
+  for (const Mechanism& mechanism : {tiedBodies(state), hingedBodies(state)}) {
+    VectorX rate = VectorX::Zero(state.size());
+    evaluatePoseRates(state, rate);
+    const std::vector<ConstraintRow> rows = rowsIn(mechanism, state);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double first = timeDerivative(state, rate, [&](const VectorX& s) { return rowsIn(mechanism, s)[i].value; });
+      EXPECT_NEAR(rateOf(rows[i], state), first, 1e-8) << i;
+      // With constant velocities d^2C/dt^2 is the curvature alone: rates of positions move, velocities stay.
+      const double second =
+          timeDerivative(state, rate, [&](const VectorX& s) { return rateOf(rowsIn(mechanism, s)[i], s); });
+      EXPECT_NEAR(rows[i].curvature, second, 1e-8) << i;
+    }
   }
 }
 
-TEST(ConstraintForces, KeepLengthsToSecondOrderAndDoNoWork) {
-  VectorX state = someState();
-  const Mechanism mechanism = rodMechanism(state);
-  ConstraintSolver solver;
-  projectVelocitiesOntoRods(mechanism.rods, mechanism.bodies, solver, state);
-  const VectorX rate = stateRate(mechanism, state);
-  for (const RodConstraint& rod : mechanism.rods) {
-    EXPECT_NEAR(rateOf(rowOf(rod, state), state), 0, 1e-13);
-    EXPECT_NEAR(timeDerivative(state, rate, [&](const VectorX& s) { return rateOf(rowOf(rod, s), s); }), 0, 1e-7);
+TEST(ConstraintForces, KeepConstraintsToSecondOrderAndDoNoWork) {
+  for (const bool hinged : {false, true}) {
+    VectorX state = someState();
+    const Mechanism mechanism = hinged ? hingedBodies(state) : tiedBodies(state);
+    ConstraintSolver solver(mechanism.constraints, mechanism.bodies);
+    solver.factorize(state);
+    solver.constrainVelocities(state);
+    const VectorX rate = stateRate(mechanism, state);
+    const std::vector<ConstraintRow> rows = rowsIn(mechanism, state);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      EXPECT_NEAR(rateOf(rows[i], state), 0, 1e-13);
+      EXPECT_NEAR(timeDerivative(state, rate, [&](const VectorX& s) { return rateOf(rowsIn(mechanism, s)[i], s); }), 0,
+                  1e-7);
+    }
+    EXPECT_NEAR(timeDerivative(state, rate, [&](const VectorX& s) { return energyConstant(mechanism, s); }), 0, 1e-7);
   }
-  EXPECT_NEAR(timeDerivative(state, rate, [&](const VectorX& s) { return energyConstant(mechanism, s); }), 0, 1e-7);
 }
 
-TEST(ConstraintForces, TwoEqualRodsShareTheLoadOfOne) {
+TEST(ConstraintForces, TwoEqualRodsDoWhatOneDoes) {
   const VectorX state = someState();
-  Mechanism one = rodMechanism(state), two = one;
-  two.rods.push_back(two.rods[0]);  // redundant: the matrix is singular
+  Mechanism one = tiedBodies(state), two = one;
+  two.constraints.rods.push_back(two.constraints.rods[0]);  // redundant: the matrix is singular
   const VectorX expected = stateRate(one, state), got = stateRate(two, state);
   EXPECT_LT((expected - got).cwiseAbs().maxCoeff(), 1e-9 * expected.cwiseAbs().maxCoeff());
 }
 
 TEST(Projection, RestoresLengthsAndKeepsMomentumOfFreeBodies) {
   VectorX state = someState();
-  Mechanism mechanism = rodMechanism(state);
-  mechanism.rods.erase(mechanism.rods.begin());  // what is left is free: no outside force
-  mechanism.rods[0].length *= 1.01;
+  Mechanism mechanism = tiedBodies(state);
+  std::vector<RodConstraint>& rods = mechanism.constraints.rods;
+  rods.erase(rods.begin());  // what is left is free: no outside force
+  rods[0].length *= 1.01;
   const Invariants before = invariantsOf(mechanism, state);
   const Vec3 centre = 1.5 * Vec3(centerOfMass(state, 0)) + 0.8 * Vec3(centerOfMass(state, 1));
-  ConstraintSolver solver;
-  const double error = projectOntoRods(mechanism.rods, mechanism.bodies, solver, state);
+  ConstraintSolver solver(mechanism.constraints, mechanism.bodies);
+  const double error = solver.project(state);
   // |C| / length with the old distance d: (length^2 - d^2) / (2 length), d = length / 1.01.
-  EXPECT_NEAR(error, mechanism.rods[0].length * (1 - 1 / (1.01 * 1.01)) / 2, 1e-14);
-  EXPECT_NEAR(rowOf(mechanism.rods[0], state).value, 0, 1e-14);
-  EXPECT_NEAR(rateOf(rowOf(mechanism.rods[0], state), state), 0, 1e-14);
+  EXPECT_NEAR(error, rods[0].length * (1 - 1 / (1.01 * 1.01)) / 2, 1e-14);
+  EXPECT_NEAR(rowsIn(mechanism, state)[0].value, 0, 1e-14);
+  EXPECT_NEAR(rateOf(rowsIn(mechanism, state)[0], state), 0, 1e-14);
   EXPECT_LT((invariantsOf(mechanism, state).momentum - before.momentum).norm(), 1e-14);
   const Vec3 moved = 1.5 * Vec3(centerOfMass(state, 0)) + 0.8 * Vec3(centerOfMass(state, 1)) - centre;
   EXPECT_LT(moved.norm(), 1e-14);
+}
+
+TEST(Projection, BringsJointsTogether) {
+  VectorX state = someState();
+  const Mechanism mechanism = hingedBodies(state);
+  centerOfMass(state, 0) += Vec3(0.01, -0.02, 0.01);
+  turnBody(state, 1, Vec3(0.03, 0.01, -0.02));
+  ConstraintSolver solver(mechanism.constraints, mechanism.bodies);
+  EXPECT_GT(solver.project(state), 0.01);
+  for (const ConstraintRow& row : rowsIn(mechanism, state)) {
+    EXPECT_NEAR(row.value, 0, 2e-15);  // sums of terms of about 1 m
+    EXPECT_NEAR(rateOf(row, state), 0, 1e-14);
+  }
 }
 
 TEST(RestingBody, DoesNotMoveWhateverActsOnIt) {

@@ -37,7 +37,7 @@ constexpr double kSweepError = 1e-9;
 TEST(LastingContact, HoldsACubeThatGravityPulledForAStep) {
   VectorX state = cubeState(Vec3(0, -0.01, 0));
   auto contacts = cornersOf(0.5);
-  solveLastingContacts(contacts, {cube(3, 1)}, state);
+  solveLastingContacts(contacts, std::vector{cube(3, 1)}, state);
   EXPECT_LT(linearVelocity(state, 0).norm(), 0.01 * kSweepError);
   EXPECT_LT(angularVelocity(state, 0).norm(), 0.01 * kSweepError);
   double held = 0;
@@ -51,7 +51,7 @@ TEST(LastingContact, FrictionStopsOrSlowsByItsLimit) {
   for (const double speed : {0.004, 0.0051, 1.0}) {
     VectorX state = cubeState(Vec3(speed, -fall, 0));
     auto contacts = cornersOf(friction);
-    solveLastingContacts(contacts, {cube(3, 1)}, state);
+    solveLastingContacts(contacts, std::vector{cube(3, 1)}, state);
     EXPECT_NEAR(linearVelocity(state, 0).x(), std::max(0.0, speed - friction * fall), kSweepError) << speed;
     EXPECT_NEAR(linearVelocity(state, 0).y(), 0, kSweepError);
   }
@@ -61,7 +61,7 @@ TEST(LastingContact, LetsGoWhatSeparates) {
   VectorX state = cubeState(Vec3(0.3, 0.1, 0));
   const VectorX before = state;
   auto contacts = cornersOf(1);
-  solveLastingContacts(contacts, {cube(3, 1)}, state);
+  solveLastingContacts(contacts, std::vector{cube(3, 1)}, state);
   EXPECT_EQ(state, before);
 }
 
@@ -94,7 +94,7 @@ TEST(Overlap, WithAPlaneMovesTheBodyAlone) {
   centerOfMass(state, 0) = Vec3(3, 1.04, 2);
   std::vector<Contact> contacts;
   findContacts(geometry, state, 0, contacts);
-  resolveOverlaps(geometry, contacts, {cube(1, 0.1)}, state);
+  resolveOverlaps(geometry, contacts, std::vector{cube(1, 0.1)}, state);
   EXPECT_LT((centerOfMass(state, 0) - Vec3(3, 1.1, 2)).norm(), 1e-15);
 }
 

@@ -114,7 +114,7 @@ TEST(PairImpact, OfALopsidedBodyMatchesAnIndependentComputation) {
   const double impulse = -(1 + e) * pointVelocity.y() / response;
   ASSERT_GT(impulse, 0);
 
-  resolvePairwise(impacts, {body}, state);
+  resolvePairwise(impacts, std::vector{body}, state);
   EXPECT_NEAR(impacts[0].impulse, impulse, 1e-13);
   EXPECT_LT((linearVelocity(state, 0) - Vec3(0.3, -2 + impulse / 1.3, 0.1)).norm(), 1e-13);
   EXPECT_LT((angularVelocity(state, 0) - (Vec3(1, -2, 0.5) + turn * (impulse * perUnit))).norm(), 1e-12);
@@ -129,7 +129,7 @@ TEST(PairImpact, FrictionMakesABallRollOrSlide) {
     VectorX state = statesAtRest(1);
     linearVelocity(state, 0) = Vec3(v, -down, 0);
     std::vector<ImpactContact> impacts{{floor, {e, friction, friction}, 0, 0}};
-    resolvePairwise(impacts, {ball(1.7)}, state);
+    resolvePairwise(impacts, std::vector{ball(1.7)}, state);
     return state;
   };
   const VectorX rolls = thrown(1.0), slides = thrown(0.1);

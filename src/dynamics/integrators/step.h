@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <functional>
+#include <vector>
 
 #include "math/types.h"
 
@@ -14,26 +16,45 @@ struct RightHandSide {
   Eigen::Index positions = 0;
 };
 
-/// One step of an integrator: the new state, and what is needed to interpolate inside it.
+/// What goes through a step, with s = fraction of the step, r = 1 - s:
+///   cubicHermite  the cubic through state and rate at both ends; order 3
+///   degreeSeven   that cubic + s^2 r^2 (c0 + s (c1 + r (c2 + s c3))), c0 ... c3 = Step::corrections; DOP853's, order 7
+enum class InterpolantKind { cubicHermite, degreeSeven };
+
+/// One step of an integrator: the new state, and what is needed to interpolate inside it and to judge it.
 struct Step {
   double time = 0, timeStep = 0;  // s: the step covers [time, time + timeStep]
   VectorX startState, startRate;
   VectorX state, endRate;  // at time + timeStep
   bool hasEndRate = false;
-  VectorX work, stage;  // scratch, kept so that a step allocates nothing
+  bool startRateIsKnown = false;  // startRate already holds the rate at the start of the step to come
+  InterpolantKind interpolant = InterpolantKind::cubicHermite;
+  std::array<VectorX, 4> corrections;
+  std::vector<VectorX> stageRates;  // DOP853's, numbered as in dop853_table.h; start and end have their own fields
+  VectorX work, stage;              // scratch, kept so that a step allocates nothing
 };
 
 /// An integrator advances `state` by `timeStep` and leaves the result in `step`.
 using Integrator = void (*)(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep,
                             Step& step);
 
-/// What all integrators begin with: notes the start and evaluates its rate.
+/// What all integrators begin with: notes the start and evaluates its rate, unless that is known.
 void beginStep(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep, Step& step);
 
-/// Evaluates the rate at the end of the step, which interpolate needs, unless it is there already.
+/// The next step starts where this one started: it is the same one with another length. Nothing that the rate depends
+/// on may have changed.
+void keepStartRate(Step& step);
+
+/// The next step starts where this one ended, at the very same state, and nothing else that the rate depends on has
+/// changed: its start rate is this one's end rate, if that was evaluated. The step can be neither interpolated nor
+/// judged any more.
+void carryEndRate(Step& step);
+
+/// Evaluates what interpolate needs, unless it is there already: the rate at the end of the step, with DOP853 three
+/// more.
 void prepareInterpolant(const RightHandSide& rightHandSide, Step& step);
 
-/// Cubic Hermite interpolant at time + fraction * timeStep (order 3; exact at both ends). 0 <= fraction <= 1.
+/// State at time + fraction * timeStep by the step's interpolant, exact at both ends. 0 <= fraction <= 1.
 void interpolate(const Step& step, double fraction, VectorX& state);
 
 }  // namespace cradle

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "math/types.h"
+
+namespace cradle {
+
+/// Factorisation L D L^T of a sparse symmetric positive definite matrix, with an order of elimination that keeps L
+/// sparse: O(n) for chains and trees. Allocates in `analyze` alone.
+class SparseLdlt {
+ public:
+  /// Takes the places of the entries below the diagonal, each once, row > column.
+  void analyze(int size, const std::vector<std::pair<int, int>>& entries);
+
+  /// Factorises the matrix with these values: `diagonal` and, in the order given to analyze, `entries`.
+  void factorize(const std::vector<double>& diagonal, const std::vector<double>& entries);
+
+  /// Overwrites a right-hand side with the solution.
+  void solve(VectorX& x);
+
+ private:
+  struct Entry {
+    int column, source;  // position of the column; index into the entries of analyze
+  };
+  void order(const std::vector<std::pair<int, int>>& entries);
+  void findFill();
+  int reach(int row);
+  void eliminate(int row, int first, double diagonal);
+
+  int size_ = 0;
+  std::vector<int> rowAt_, positionOf_;         // the order of elimination, and back
+  std::vector<int> rowStart_;                   // of each position, into rowEntries_
+  std::vector<Entry> rowEntries_;               // below the diagonal, by position
+  std::vector<int> parents_;                    // elimination tree
+  std::vector<int> columnStart_, columnCount_;  // L by columns
+  std::vector<int> lowerRows_;
+  std::vector<double> lower_, inversePivots_;
+  std::vector<int> marks_, pattern_;
+  std::vector<double> work_;
+};
+
+}  // namespace cradle
