@@ -18,10 +18,12 @@ constexpr double kTouchingPart = 1e-9;                                // of the 
 constexpr double kModelPart = std::numeric_limits<float>::epsilon();  // of a model's: its vertices are that exact
 constexpr std::size_t kMostFaults = 50;
 
+/// The deepest overlap (m) of a pair; < 0 or -infinity if it has none.
 double depthOf(const ContactGeometry& geometry, const ColliderPair& pair, const VectorX& state) {
+  std::vector<std::size_t> features;
+  appendFeaturesWithin(geometry, pair, poseOf(state, geometry.colliders[pair.a].body), 0, features);
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t feature = 0; feature < featureCount(geometry, pair); ++feature)
-    least = std::min(least, separation(geometry, pair, feature, state));
+  for (const std::size_t feature : features) least = std::min(least, separation(geometry, pair, feature, state));
   return -least;
 }
 

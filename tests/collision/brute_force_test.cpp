@@ -334,7 +334,9 @@ TEST(BruteForce, EveryShapeOnAPlane) {
       const Pair pair = pairOf(solid, plane);
       const double gap = -solid.reach(-plane.normal) - plane.normal.dot(plane.point);
       double least = INFINITY;
-      for (std::size_t feature = 0; feature < featureCount(pair.geometry, pair.geometry.pairs[0]); ++feature)
+      std::vector<std::size_t> features;
+      appendFeaturesWithin(pair.geometry, pair.geometry.pairs[0], solid.worldFromBody, gap + 1e-6, features);
+      for (const std::size_t feature : features)
         least = std::min(least, separation(pair.geometry, pair.geometry.pairs[0], feature, pair.state));
       EXPECT_NEAR(least, gap, kRounding);
 
