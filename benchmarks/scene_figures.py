@@ -37,7 +37,6 @@ def about(axis, degrees):
 
 
 def orientation_of(document):
-    """Rotation matrix of a scene's "orientation"."""
     if "w" in document:
         return rotation_matrix(*(document[key] for key in "wxyz"))
     if "axis" in document:
@@ -60,12 +59,11 @@ def written_out(bodies):
 
 class Shape:
     """Points with a ball around each; a box also has centre, axes and half sizes, all in the body's frame."""
-
     def __init__(self, text, vertices):
         self.points, self.radius, self.box, self.normal = vertices, 0.0, None, None
-        for kind, values in (json.loads(text) if text else {}).items():
+        for kind, values in json.loads(text or "{}").items():
             if kind == "plane":
-                self.normal = scaled(1 / norm(values.get("normal", [0, 1, 0])), values.get("normal", [0, 1, 0]))
+                self.normal = scaled(1 / norm(values["normal"]), values["normal"])
             elif kind == "box":
                 self.make_box([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], scaled(0.5, values["size"]))
             else:
@@ -80,8 +78,7 @@ class Shape:
         self.points = [add(center, [sum(s * h * a[i] for s, h, a in zip(signs, half, axes)) for i in range(3)])
                        for signs in itertools.product((-1, 1), repeat=3)]
 
-    def recognise(self, vertices):
-        """The program takes a model that is a sphere or a box for one."""
+    def recognise(self, vertices):  # as the program does
         center = scaled(1 / len(vertices), [sum(v[i] for v in vertices) for i in range(3)])
         radii = [norm(sub(v, center)) for v in vertices]
         if len(vertices) > 100 and max(radii) - min(radii) < 1e-6 * max(radii):
@@ -121,7 +118,6 @@ def depth_of_boxes(a, pose_a, b, pose_b):
 
 
 def depth(a, pose_a, b, pose_b):
-    """Overlap in m, or a number < 0; of pairs that are not looked at 0."""
     if a.normal or b.normal:
         return depth_in_plane(a, pose_a, b, pose_b) if b.normal else depth_in_plane(b, pose_b, a, pose_a)
     if is_ball(a) and is_ball(b):
@@ -188,11 +184,14 @@ def main(program, scenes):
     print(f'{"scene":24}{"speed":>10}{"energy":>10}{"penetration":>13}{"length":>10}{"events":>8}')
     for path in paths:
         with tempfile.TemporaryDirectory() as folder:
-            result = os.path.join(folder, "run.sqlite")
-            subprocess.run([program, "simulate", path, "-o", result, "--quiet"], check=True)
-            run = Run(result)
+            name, result = os.path.basename(path)[:-5], os.path.join(folder, "run.sqlite")
+            exit_code = subprocess.run([program, "simulate", path, "-o", result, "--quiet"]).returncode
+            run = Run(result) if exit_code == 0 else None
+        if run is None:
+            print(f"{name:24}  ended with exit code {exit_code}")
+            continue
         length = run.length_error()
-        print(f'{os.path.basename(path)[:-5]:24}{run.duration / run.meta["cpuSeconds"]:10.4g}{run.energy_drift():10.1e}'
+        print(f'{name:24}{run.duration / run.meta["cpuSeconds"]:10.4g}{run.energy_drift():10.1e}'
               f'{run.penetration():13.1e}{"-" if length is None else format(length, ".1e"):>10}{run.events:8}')
 
 
