@@ -11,6 +11,7 @@
 #include "scene/load_scene.h"
 #include "simulate/assembly.h"
 #include "simulate/simulate.h"
+#include "simulate/start_overlaps.h"
 #include "trajectory/trajectory_file.h"
 
 namespace cradle {
@@ -74,7 +75,11 @@ void simulateInto(TrajectoryWriter& writer, const Scene& scene, bool quiet) {
                               writer.append(frame);
                               progress.update(frame.number + 1);
                             },
-                            [&](const Event& event) { writer.append(event); }, warn};
+                            [&](const Event& event) { writer.append(event); },
+                            [&](const std::string& warning) {
+                              progress.endLine();
+                              warn(warning);
+                            }};
   const RunCost cost = simulate(scene, sink);
   writer.finish(cost);
 }
@@ -97,7 +102,10 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
 void checkScene(const std::string& scenePath) {
   const Scene scene = loadSceneAndWarn(scenePath, {});
   refuseUnsupported(scene);
+  const Assembly assembly = assemble(scene);
+  refuseStartOverlaps(scene, assembly);
   for (const std::string& warning : unusedRequests(scene)) warn(warning);
+  for (const std::string& warning : assembly.warnings) warn(warning);
   std::size_t dynamic = 0;
   for (const Body& body : scene.bodies) dynamic += body.motion == Motion::dynamic ? 1 : 0;
   fmt::print("{}: \"{}\" is in order: {} bodies ({} dynamic), {} springs, {} rods; {} s, {} frames\n", scenePath,

@@ -28,7 +28,13 @@ Progress::Progress(std::string task, std::string unit, long total, bool quiet)
       lastDrawn_(start_) {}
 
 Progress::~Progress() {
-  if (drawn_ && animated_) std::fputc('\n', stderr);
+  endLine();
+}
+
+void Progress::endLine() {
+  if (!drawn_ || !animated_) return;
+  std::fputc('\n', stderr);
+  drawn_ = false;
 }
 
 std::string Progress::line(long done) const {

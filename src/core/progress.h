@@ -18,6 +18,9 @@ class Progress {
   /// `done` of `total` are finished. Cheap enough to call for every frame.
   void update(long done);
 
+  /// Ends a line that is being redrawn, so that something else can be printed.
+  void endLine();
+
  private:
   using Clock = std::chrono::steady_clock;
   std::string line(long done) const;

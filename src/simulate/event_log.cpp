@@ -18,4 +18,8 @@ std::vector<Event> EventLog::take() {
   return std::exchange(events_, {});
 }
 
+std::vector<std::string> EventLog::takeWarnings() {
+  return std::exchange(warnings_, {});
+}
+
 }  // namespace cradle

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "collision/separation.h"
@@ -19,13 +20,17 @@ class EventLog {
   void recordBody(double time, EventKind kind, int movingBody, const Vec3& point);
 
   void record(const Event& event) { events_.push_back(event); }
+  void warn(const std::string& warning) { warnings_.push_back(warning); }
 
   /// Events since the last call, in the order in which they were recorded.
   std::vector<Event> take();
+  /// Warnings since the last call.
+  std::vector<std::string> takeWarnings();
 
  private:
   const Assembly& assembly_;
   std::vector<Event> events_;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace cradle

@@ -1,5 +1,7 @@
 #include "simulate/push_schedule.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -20,6 +22,13 @@ std::optional<double> castRay(const Ray& ray, const Body& body, const Scene& sce
           return cradle::castRay(ray, shape);
       },
       body.shape);
+}
+
+std::string missText(const Push& push, const Body& body, double time, const Vec3& center) {
+  return fmt::format(
+      "{}: the ray misses \"{}\" at {:.6g} s and nothing is pushed; the body's centre of mass is at [{:.4g}, {:.4g}, "
+      "{:.4g}] then: aim there, or name a \"point\" of the body in place of the ray",
+      push.where, body.name, time, center.x(), center.y(), center.z());
 }
 
 }  // namespace
@@ -70,6 +79,7 @@ bool PushSchedule::begin(Planned& planned, double time, const VectorX& state) {
     const auto distance = castRay(inBody, body, scene_);
     if (!distance) {
       log_.recordBody(time, EventKind::pushMissed, planned.body, ray->origin);
+      log_.warn(missText(*planned.push, body, time, centerOfMass(state, planned.body)));
       return false;
     }
     point = inBody.origin + *distance * inBody.direction;

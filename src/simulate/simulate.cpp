@@ -6,6 +6,7 @@
 
 #include "core/interruption.h"
 #include "simulate/simulation.h"
+#include "simulate/start_overlaps.h"
 
 namespace cradle {
 namespace {
@@ -28,6 +29,7 @@ Frame frameOf(const Simulation& simulation, const VectorX& state, long number, d
 }
 
 void handOnEvents(Simulation& simulation, const SimulationSink& sink) {
+  for (const std::string& warning : simulation.takeWarnings()) sink.warning(warning);
   for (const Event& event : simulation.takeEvents()) sink.event(event);
 }
 
@@ -70,6 +72,7 @@ RunCost simulate(const Scene& scene, const SimulationSink& sink) {
   refuseUnsupported(scene);
   const double start = cpuSeconds();
   Assembly assembly = assemble(scene);
+  refuseStartOverlaps(scene, assembly);
   for (const std::string& warning : unusedRequests(scene)) sink.warning(warning);
   for (const std::string& warning : assembly.warnings) sink.warning(warning);
   Simulation simulation(scene, std::move(assembly));

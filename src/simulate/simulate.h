@@ -12,7 +12,7 @@ namespace cradle {
 struct SimulationSink {
   std::function<void(const Frame&)> frame;
   std::function<void(const Event&)> event;
-  std::function<void(const std::string&)> warning;  // what the user should know, before the first frame
+  std::function<void(const std::string&)> warning;  // what the user should know, as soon as it is known
 };
 
 /// What a trajectory says before its first frame.

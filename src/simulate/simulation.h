@@ -44,6 +44,8 @@ class Simulation {
 
   /// Events since the last call.
   std::vector<Event> takeEvents() { return log_.take(); }
+  /// What the user should know, since the last call.
+  std::vector<std::string> takeWarnings() { return log_.takeWarnings(); }
 
  private:
   void integrate(double stepEnd);

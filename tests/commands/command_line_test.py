@@ -109,6 +109,30 @@ class Scenes(InTemporaryFolder):
         self.assertEqual(result.returncode, 0)
         self.assertIn("accuracy", result.stderr)
 
+    def test_bodies_that_overlap_at_the_start_are_refused_with_depth_and_leave_nothing(self):
+        ball = {"shape": {"sphere": {"radius": 0.1}}, "mass": 1}
+        ground = {"name": "ground", "shape": {"plane": {}}, "motion": "static", "position": [0, -0.05, 0]}
+        path = self.write("s.json", scene(bodies=[{"name": "a", **ball}, {"name": "b", "position": [0.19, 0, 0], **ball}, ground]))
+        words = ["s.json:", "/bodies/1: ", '"a" and "b" overlap by 10 mm', '"a" is 50 mm deep in the plane "ground"']
+        self.refuses(3, words, "simulate", path, "-o", self.path("x.sqlite"))
+        self.refuses(3, words, "check", path)
+
+    def test_a_ray_that_misses_is_warned_about_even_if_quiet(self):
+        push = {"body": "ball", "ray": {"origin": [0, 9, 5], "direction": [0, 0, -1]}, "force": [0, 0, -3], "start": 0.05, "duration": 0.02}
+        result = cradle("simulate", self.write("s.json", scene(pushes=[push])), "-o", self.path("x.sqlite"), "--quiet")
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stderr, r'^warning: .*s\.json:\d+:\d+ /pushes/0: the ray misses "ball" at 0\.05 s.*\n$')
+
+    def test_links_and_planes_that_cannot_be_are_told_with_their_place(self):
+        rope = {"bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 2, 0], "maxLength": 1.5}
+        self.refuses(3, ["/ropes/0/maxLength: ", "1.5 m", "2 m apart"], "check", self.write("s.json", scene(ropes=[rope])))
+        model = {"name": "model", "shape": {"mesh": BALL}}
+        rope = {"bodyA": "model", "anchorA": {"vertex": 100000}, "anchorB": [0, 9, 0]}
+        self.refuses(3, ["/ropes/0/anchorA: ", "100000", "allowed is a whole number in 0.."], "check",
+                     self.write("s.json", scene(bodies=[model], ropes=[rope])))
+        self.refuses(3, ["/bodies/0: ", "plane", "static"], "check",
+                     self.write("s.json", scene(bodies=[{"name": "p", "shape": {"plane": {}}}])))
+
     def test_missing_scene_is_named(self):
         self.refuses(3, ["nowhere.json"], "simulate", self.path("nowhere.json"), "-o", self.path("x.sqlite"))
 

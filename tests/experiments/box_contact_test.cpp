@@ -38,27 +38,6 @@ TEST(BallOnBox, ReboundsFromFaceEdgeAndCorner) {
   }
 }
 
-// x = (sin a - mu cos a) g t^2 / 2 along a slope of 30 degrees; mu = 0.7 > tan 30 sticks. The contact's impulse is
-// applied at the end of each step, so that the way is off by up to half a step times the speed.
-TEST(BlockOnSlope, SlidesByTheClosedFormOrSticks) {
-  const auto run = [](const std::string& material) {
-    const double c = std::cos(M_PI / 6), s = std::sin(M_PI / 6), up = 0.5 + 0.1;
-    return runScene(fmt::format(R"(
-      {{"name": "slope", "shape": {{"box": {{"size": [20, 1, 2]}}}}, "motion": "static", "material": "{0}",
-        "orientation": {{"axis": [0, 0, 1], "angleDegrees": 30}}}},
-      {{"name": "block", "shape": {{"box": {{"size": [0.5, 0.2, 0.5]}}}}, "mass": 1, "material": "{0}",
-        "position": [{1:.17g}, {2:.17g}, 0], "orientation": {{"axis": [0, 0, 1], "angleDegrees": 30}}}})",
-                                material, -up * s, up * c),
-                    1);
-  };
-  const auto way = [](const Trajectory& trajectory) {
-    return (endOf(trajectory).position - trajectory.frames[0].states[0].position).norm();
-  };
-  const double acceleration = 9.81 * (0.5 - 0.2 * std::sqrt(0.75));
-  EXPECT_NEAR(way(run("smooth")), acceleration / 2, acceleration / 960);
-  EXPECT_LT(way(run("rough")), 1e-9);
-}
-
 // One box dropped flat onto another that lies: both come to rest, one on the other, without sinking.
 TEST(BoxOnBox, ComesToRestOnTop) {
   const Trajectory run = runScene(R"(

@@ -117,17 +117,5 @@ TEST(RestingBall, WakesWhenItIsHit) {
   EXPECT_NEAR(end.states[1].linearVelocity.x(), 1, 3e-7);
 }
 
-// Overlapping bodies are pushed apart in the ratio of their inverse masses without gaining speed.
-TEST(OverlapAtTheStart, IsResolvedWithoutAJumpInEnergy) {
-  const Trajectory run = simulate(sceneOf(R"({"schema": "cradle-scene/1", "name": "Overlap", "duration": 0.1,
-    "gravity": [0, 0, 0], "output": {"framesPerSecond": 10}, )" +
-                                          methodText("rk4", 0.001) + R"(,
-    "bodies": [{"name": "a", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "position": [0, 0, 0]},
-      {"name": "b", "shape": {"sphere": {"radius": 0.1}}, "mass": 3, "position": [0.18, 0, 0]}]})"));
-  EXPECT_NEAR(run.frames[0].states[0].position.x(), -0.015, 1e-15);
-  EXPECT_NEAR(run.frames[0].states[1].position.x(), 0.185, 1e-15);
-  EXPECT_EQ(run.frames[1].energy.kinetic, 0);
-}
-
 }  // namespace
 }  // namespace cradle

@@ -66,6 +66,21 @@ TEST(Push, WhoseRayMissesSaysSoAndDoesNothing) {
   EXPECT_EQ(endOf(run).linearVelocity, Vec3::Zero());
 }
 
+// The box falls past the ray before the push begins: at 0.5 s it is g t^2 / 2 = 1.226 m lower.
+TEST(Push, WhoseRayMissesIsWarnedAboutWithPlaceTimeAndAim) {
+  const Scene scene =
+      sceneOf(R"({"schema": "cradle-scene/1", "name": "Push", "duration": 1, )" + methodText("rk4", 0.001) + R"(,
+    "bodies": [{"name": "box", "shape": {"box": {"size": [0.4, 0.2, 0.6]}}, "mass": 2}],
+    "pushes": [
+{"body": "box", "ray": {"origin": [3, 0, 0], "direction": [-1, 0, 0]}, "force": [-1, 0, 0], "start": 0.5,
+     "duration": 0.1}]})");
+  std::vector<std::string> warnings;
+  simulate(scene, {[](const Frame&) {}, [](const Event&) {}, [&](const std::string& w) { warnings.push_back(w); }});
+  ASSERT_EQ(warnings.size(), 1u);
+  for (const char* words : {"experiment.json:4:1 /pushes/0: ", "misses \"box\" at 0.5 s", "[0, -1.226, 0]"})
+    EXPECT_NE(warnings[0].find(words), std::string::npos) << words << " in " << warnings[0];
+}
+
 TEST(Push, PutsItsWorkIntoTheEnergyBalance) {
   const Trajectory run = pushBox(R"({"body": "box", "point": [0.2, 0.1, -0.3], "force": [4, -2, 5], "start": 0.2,
     "duration": 0.5})");

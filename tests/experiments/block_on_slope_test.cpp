@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "experiments/experiment.h"
+
+// A block on a slope of 30 degrees, on a plane and on a box, with Coulomb friction. Sliding it has the acceleration
+// g (sin +- mu cos), so that all expected values are closed forms.
+//
+// What the method adds: a step is flown freely, and the contact's impulse comes at its end. Speeds are exact; the way
+// misses what friction, mu g cos, does within each step, half of it times h^2: h t / 2 in all, farther the way the
+// block goes. In the step in which it stops the speed may end off by what friction can do in a step, twice.
+
+namespace cradle {
+namespace {
+
+constexpr double kGravity = 9.81, kSlope = M_PI / 6;
+constexpr double kStep = 1.0 / 1000;  // s: frames, 50 a second, lie on steps
+constexpr const char* kSurfaces[] = {"plane", "box"};
+
+Trajectory slide(const std::string& surface, double friction, double speed, double duration, double step = kStep) {
+  const double c = std::cos(kSlope), s = std::sin(kSlope);
+  const std::string slope = surface == "plane"
+                                ? fmt::format(R"("shape": {{"plane": {{"normal": [{:.17g}, {:.17g}, 0]}}}})", -s, c)
+                                : fmt::format(
+                                      R"("shape": {{"box": {{"size": [20, 1, 2]}}}}, "position": [{:.17g}, {:.17g}, 0],
+                   "orientation": {{"axis": [0, 0, 1], "angleDegrees": 30}})",
+                                      0.5 * s, -0.5 * c);
+  return simulate(sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Slope", "duration": {0},
+    "output": {{"framesPerSecond": 50}}, {1},
+    "materials": {{"m": {{"restitution": 0, "staticFriction": {2}, "dynamicFriction": {2}}}}},
+    "bodies": [{{"name": "slope", {3}, "motion": "static", "material": "m"}},
+      {{"name": "block", "shape": {{"box": {{"size": [0.5, 0.2, 0.4]}}}}, "mass": 1, "material": "m",
+        "position": [{4:.17g}, {5:.17g}, 0], "orientation": {{"axis": [0, 0, 1], "angleDegrees": 30}},
+        "linearVelocity": [{6:.17g}, {7:.17g}, 0]}}]}})",
+                                      duration, methodText("rk4", step), friction, slope, -0.1 * s, 0.1 * c, speed * c,
+                                      speed * s)));
+}
+
+/// How far up the slope a frame's block is from its start.
+double wayUp(const Trajectory& run, std::size_t frame) {
+  const Vec3 moved = run.frames.at(frame).states[0].position - run.frames[0].states[0].position;
+  EXPECT_NEAR(moved.dot(Vec3(-std::sin(kSlope), std::cos(kSlope), 0)), 0, 1e-9) << "off the slope";
+  return moved.dot(Vec3(std::cos(kSlope), std::sin(kSlope), 0));
+}
+double speedUp(const Trajectory& run, std::size_t frame) {
+  return run.frames.at(frame).states[0].linearVelocity.dot(Vec3(std::cos(kSlope), std::sin(kSlope), 0));
+}
+
+double frictionOf(double coefficient) {
+  return coefficient * kGravity * std::cos(kSlope);
+}
+constexpr double kSolverError = 1e-8;  // m, m/s: sweeps over four corners end at 1e-12 of the largest change, a step
+
+TEST(BlockOnSlope, SlidesDownByTheClosedForm) {
+  for (const char* surface : kSurfaces) {
+    const Trajectory run = slide(surface, 0.2, 0, 1);
+    EXPECT_NEAR(wayUp(run, 50), -1.6029290788874656875, frictionOf(0.2) * kStep / 2 + kSolverError) << surface;
+    EXPECT_NEAR(speedUp(run, 50), -3.2058581577749313750, kSolverError) << surface;
+  }
+}
+
+double errorOfSliding(double step) {
+  return std::abs(wayUp(slide("plane", 0.2, 0, 1, step), 50) + 1.6029290788874656875);
+}
+
+TEST(BlockOnSlope, HalvesItsErrorAtLeastWithTheStep) {
+  const double coarse = errorOfSliding(1.0 / 200), fine = errorOfSliding(1.0 / 400), finest = errorOfSliding(1.0 / 800);
+  EXPECT_LT(fine, 0.51 * coarse + kSolverError);
+  EXPECT_LT(finest, 0.51 * fine + kSolverError);
+}
+
+TEST(BlockOnSlope, SticksWhereFrictionIsMoreThanTheTangent) {
+  for (const char* surface : kSurfaces) {
+    const Trajectory run = slide(surface, 0.7, 0, 5);
+    for (const Frame& frame : run.frames) {
+      EXPECT_LT((frame.states[0].position - run.frames[0].states[0].position).norm(), 1e-12) << surface;
+      EXPECT_EQ(frame.states[0].linearVelocity, Vec3::Zero()) << surface;
+    }
+  }
+}
+
+// mu = 0.2: up for 0.454 s, then back down past the start.
+TEST(BlockThrownUpASlope, StopsAndSlidesBack) {
+  const double stop = 0.45426038260093448797, highest = 0.68139057390140173196;
+  const double down = kGravity * std::sin(kSlope) - frictionOf(0.2);
+  for (const char* surface : kSurfaces) {
+    const Trajectory run = slide(surface, 0.2, 3, 1.2);
+    const double end = 1.2 - stop, speedError = 2 * frictionOf(0.2) * kStep;
+    EXPECT_NEAR(speedUp(run, 60), -down * end, speedError) << surface;
+    EXPECT_NEAR(wayUp(run, 60), highest - down * end * end / 2, frictionOf(0.2) * kStep * 1.2 / 2 + speedError * end)
+        << surface;
+    double top = 0;
+    for (std::size_t frame = 0; frame <= 60; ++frame) top = std::max(top, wayUp(run, frame));
+    // The nearest frame is at most 10 ms from the stop; the block is then lower by its slower way, upwards.
+    const double up = kGravity * std::sin(kSlope) + frictionOf(0.2);
+    EXPECT_NEAR(top, highest, frictionOf(0.2) * kStep * stop / 2 + up * 0.01 * 0.01 / 2 + kSolverError) << surface;
+  }
+}
+
+// mu = 0.7: up for 0.276 s, then it stays. The step in which it stops ends within h of the closed form's time.
+TEST(BlockThrownUpASlope, StopsAndSticks) {
+  for (const char* surface : kSurfaces) {
+    const Trajectory run = slide(surface, 0.7, 3, 1.2);
+    const double stop = 0.27644682841852313810, bound = frictionOf(0.7) * kStep * (stop / 2 + 2 * kStep);
+    EXPECT_NEAR(wayUp(run, 60), 0.41467024262778470714, bound + kSolverError) << surface;
+    const auto rest = std::find_if(run.events.begin(), run.events.end(),
+                                   [](const Event& event) { return event.kind == EventKind::rest; });
+    ASSERT_NE(rest, run.events.end()) << surface;
+    EXPECT_NEAR(rest->time, stop, kStep + 1e-9) << surface;
+    for (std::size_t frame = 15; frame <= 60; ++frame)
+      EXPECT_EQ(run.frames[frame].states[0].position, run.frames[60].states[0].position) << surface << frame;
+  }
+}
+
+}  // namespace
+}  // namespace cradle

@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "experiments/experiment.h"
+
+// Balls and boxes that friction of 0.3 brings to roll or to rest on a plane. Each step is flown freely and friction
+// comes at its end, so that speeds are exact while it acts, and the way is farther by half of what friction does in a
+// step, each step: acceleration x h t / 2.
+
+namespace cradle {
+namespace {
+
+constexpr double kStep = 1.0 / 1000;  // s: frames lie on steps
+constexpr double kFriction = 0.3 * 9.81;
+constexpr double kSolverError = 1e-8;  // m, m/s: sweeps end at 1e-12 of the largest change, a step
+
+Trajectory onPlane(const std::string& body, double duration) {
+  return simulate(sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Friction", "duration": {},
+    "output": {{"framesPerSecond": 20}}, {},
+    "materials": {{"m": {{"restitution": 0, "staticFriction": 0.3, "dynamicFriction": 0.3}}}},
+    "bodies": [{{"name": "ground", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}},
+      {{"name": "body", "material": "m", {}}}]}})",
+                                      duration, methodText("rk4", kStep), body)));
+}
+
+/// Thrown along +x at 5 m/s; `spin` > 0 is that of rolling forwards.
+Trajectory throwBall(double spin) {
+  return onPlane(fmt::format(R"("shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 2, "position": [0, 0.1, 0],
+    "linearVelocity": [5, 0, 0], "angularVelocity": [0, 0, {}])",
+                             -spin),
+                 3);
+}
+
+struct Throw {
+  double spin;                               // rad/s
+  double rollTime, finalSpeed, wayAtTheEnd;  // s, m/s, m at 3 s
+};
+
+// t = 2 (v - r w) / (7 mu g), v' = (5 v + 2 r w) / 7. Friction acts at a contact point in the middle of the overlap of
+// g h^2 / 2 that a step makes: its lever is shorter than r by g h^2 / 4, part of which is missing from the turning that
+// friction makes and from the speed at which the point stands still.
+TEST(ThrownBall, SlidesThenRollsByTheClosedForm) {
+  for (const Throw& thrown : {Throw{0, 0.48541332945002669773, 3.5714285714285714286, 11.061009521035733356},
+                              Throw{-30, 0.77666132712004271637, 2.7142857142857142857, 9.0304700881371916759}}) {
+    const Trajectory run = throwBall(thrown.spin);
+    const BodyState end = endOf(run);
+    const double leverError = 9.81 * kStep * kStep / 4 / 0.1, slowed = 5 - thrown.finalSpeed;
+    const double speedError = leverError * (slowed + thrown.finalSpeed) + kSolverError;
+    EXPECT_NEAR(end.linearVelocity.x(), thrown.finalSpeed, speedError) << thrown.spin;
+    EXPECT_NEAR(end.angularVelocity.z(), -thrown.finalSpeed / 0.1, speedError / 0.1) << thrown.spin;
+    EXPECT_NEAR(end.position.x(), thrown.wayAtTheEnd,
+                kFriction * kStep * (thrown.rollTime / 2 + 2 * kStep) + 3 * speedError)
+        << thrown.spin;
+    const Frame& sliding = run.frames[8];  // 0.4 s
+    EXPECT_NEAR(sliding.states[0].linearVelocity.x(), 5 - kFriction * 0.4, kSolverError) << thrown.spin;
+  }
+}
+
+// A box of base 0.4 x 0.2 m on its four corners: 6 mu g / sqrt(a^2 + b^2) slows its spin of 10 rad/s, which ends within
+// the step of the closed form's time.
+TEST(SpinningBox, StopsByTheClosedFormOfFourCorners) {
+  const Trajectory run = onPlane(R"("shape": {"box": {"size": [0.4, 0.1, 0.2]}}, "position": [0, 0.05, 0],
+    "angularVelocity": [0, 10, 0])",
+                                 0.5);
+  const double slowing = 39.484488346691286459, stop = 0.25326401376144407027, angle = 1.2663200688072203513;
+  EXPECT_NEAR(run.frames[4].states[0].angularVelocity.y(), 10 - slowing * 0.2, slowing * kStep);
+  const Quat turn = endOf(run).orientation;
+  EXPECT_NEAR(2 * std::atan2(turn.y(), turn.w()), angle, slowing * kStep * (stop / 2 + 2 * kStep));
+  EXPECT_LT((endOf(run).position - Vec3(0, 0.05, 0)).norm(), 1e-6);
+  const auto rest = std::find_if(run.events.begin(), run.events.end(),
+                                 [](const Event& event) { return event.kind == EventKind::rest; });
+  ASSERT_NE(rest, run.events.end());
+  EXPECT_NEAR(rest->time, stop, 2 * kStep);
+}
+
+}  // namespace
+}  // namespace cradle

@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include "experiments/experiment.h"
+
+// What lies still stays where it is, for ever and with every method.
+
+namespace cradle {
+namespace {
+
+constexpr double kMostDrift = 1e-6;  // m, and rad times the size of about 1 m
+
+/// An L of 3 x 2 squares without its upper right 2 x 1, one deep, scaled; a corner is the origin.
+LoadedModel lPrism(const MeshReference& reference) {
+  DrawnMesh drawn;
+  for (const double z : {0, 1})
+    for (const auto& [x, y] : {std::pair{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 2}, {0, 2}})
+      drawn.vertices.emplace_back(reference.scale * Vec3(x, y, z));
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    const std::uint32_t j = (i + 1) % 6;
+    drawn.triangles.insert(drawn.triangles.end(), {{i, j, 6 + j}, {i, 6 + j, 6 + i}});
+  }
+  for (std::uint32_t i = 1; i < 5; ++i)
+    drawn.triangles.insert(drawn.triangles.end(), {{0, i + 1, i}, {6, 6 + i, 7 + i}});
+  drawn.normals.assign(drawn.vertices.size(), Vec3f::UnitY());
+  return {{"l", weld(drawn.vertices, drawn.triangles), drawn}, {}};
+}
+
+Trajectory layDown(const std::string& bodies, const std::string& method, double duration = 10) {
+  const std::string text = fmt::format(R"({{"schema": "cradle-scene/1", "name": "Resting", "duration": {},
+    "output": {{"framesPerSecond": 60}}, {},
+    "bodies": [{{"name": "ground", "shape": {{"plane": {{}}}}, "motion": "static"}}, {}]}})",
+                                       duration, methodText(method, 1.0 / 960), bodies);
+  return simulate(parseScene(text, "resting.json", lPrism).scene);
+}
+
+const std::vector<std::string> kLying = {
+    R"({"name": "box", "shape": {"box": {"size": [0.3, 0.2, 0.5]}}, "position": [0, 0.1, 0]})",
+    R"({"name": "lower", "shape": {"box": {"size": [1, 0.4, 1]}}, "position": [0, 0.2, 0]},
+       {"name": "upper", "shape": {"box": {"size": [0.5, 0.3, 0.5]}}, "position": [0.2, 0.55, 0.1],
+        "orientation": {"axis": [0, 1, 0], "angleDegrees": 20}})",
+    R"({"name": "l", "shape": {"mesh": "l.obj", "scale": 0.2}})",
+    // On the ends of its two legs.
+    R"({"name": "l", "shape": {"mesh": "l.obj", "scale": 0.2}, "position": [0, 0.6, 0],
+        "orientation": {"axis": [0, 0, 1], "angleDegrees": -90}})"};
+
+void expectStill(const Trajectory& run, std::size_t from, const std::string& what) {
+  const Frame& first = run.frames.at(from);
+  for (std::size_t i = from; i < run.frames.size(); ++i)
+    for (std::size_t body = 0; body < first.states.size(); ++body) {
+      const BodyState &state = run.frames[i].states[body], &start = first.states[body];
+      ASSERT_LT((state.position - start.position).norm(), kMostDrift) << what << " at " << run.frames[i].time;
+      ASSERT_LT(orientationError(state.orientation, start.orientation), kMostDrift) << what;
+      ASSERT_LT(state.linearVelocity.norm() + state.angularVelocity.norm(), kMostDrift) << what;
+    }
+}
+
+TEST(WhatLies, StaysInEveryFrameOfTenSecondsWithEveryMethod) {
+  for (const char* method : {"explicitEuler", "semiImplicitEuler", "rk4"})
+    for (const std::string& bodies : kLying) expectStill(layDown(bodies, method), 0, method + bodies);
+}
+
+// Let go 1 mm above the ground they fall, knock and lie: still from the second second on, and about as high as before.
+TEST(WhatLies, StaysWhereItFell) {
+  for (const std::string& bodies : kLying) {
+    Scene scene = parseScene(R"({"schema": "cradle-scene/1", "name": "Resting", "duration": 10,
+      "output": {"framesPerSecond": 60}, )" +
+                                 methodText("rk4", 1.0 / 960) +
+                                 R"(, "materials": {"m": {"restitution": 0.3}}, "bodies": [
+      {"name": "ground", "shape": {"plane": {}}, "motion": "static", "position": [0, -0.001, 0]}, )" +
+                                 bodies + "]}",
+                             "resting.json", lPrism)
+                      .scene;
+    const Trajectory run = simulate(scene);
+    expectStill(run, 120, bodies);
+    for (std::size_t body = 0; body < run.frames[0].states.size(); ++body)
+      EXPECT_NEAR(run.frames.back().states[body].position.y(), run.frames[0].states[body].position.y() - 0.001, 1e-4)
+          << bodies;
+  }
+}
+
+}  // namespace
+}  // namespace cradle
