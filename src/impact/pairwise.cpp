@@ -69,7 +69,7 @@ void resolvePairwise(std::vector<ImpactContact>& impacts, const ImpulseResponse&
     if (closing <= kClosedPart * fastest) return;
     const Vec3 impulse = pairImpulse(*next, response, state);
     response.apply(next->contact, impulse, state);
-    next->impulse += next->contact.normal.dot(impulse);
+    next->impulse += impulse;
   }
   throw Error(ErrorKind::unstable, "",
               "an impact among " + std::to_string(impacts.size()) +

@@ -17,12 +17,17 @@ constexpr double kSlidingSpeed = 1e-6;     // m/s: slower counts as sticking
 constexpr double kCalmSteps = 20;          // awake at least so long: a rattle is no row of rests
 constexpr double kRestSteps = 2;           // a rebound that ends within as many steps is not resolved
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
+constexpr double kLeastImpactPart = 0.01;  // of the speed that gravity gives in a step: slower is no impact
 
 double touchTolerance(const ContactGeometry& geometry) {
   double smallest = 1;
   for (const Collider& balls : geometry.colliders)
     if (balls.body != kFixed) smallest = std::min(smallest, balls.boundingRadius);
   return kTouchPart * smallest;
+}
+
+double closingSpeed(const Contact& contact, const VectorX& state) {
+  return -contact.normal.dot(relativeVelocity(contact, state));
 }
 
 }  // namespace
@@ -34,7 +39,8 @@ ContactStage::ContactStage(const Assembly& assembly, EquationsOfMotion& equation
       resting_(assembly.mechanism, assembly.geometry, equations, kCalmSteps * timeStep),
       solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),
       timeStep_(timeStep),
-      touchTolerance_(cradle::touchTolerance(assembly.geometry)) {}
+      touchTolerance_(cradle::touchTolerance(assembly.geometry)),
+      leastImpactSpeed_(kRestSpeedFloor + kLeastImpactPart * assembly.mechanism.gravity.norm() * timeStep) {}
 
 void ContactStage::wake(double time, int body, const VectorX& state) {
   for (const int other : resting_.wake(time, body))
@@ -76,17 +82,21 @@ void ContactStage::wakeTouched(double time, const VectorX& state) {
   if (woken) findTouching(state);
 }
 
-/// Restitution. A contact that closes faster than acceleration explains is an impact, and then all that touch each
-/// other there take part. What explains: the speed that it gained since the last step, part of a step as that may have
-/// been, would have in `kRestSteps` whole ones.
+/// Restitution. A contact that closes faster than acceleration explains is an impact, and then all that touch each other
+/// there take part. What explains: the speed that it gained since the last step, part of a step as that may have been,
+/// would have in `kRestSteps` whole ones.
 void ContactStage::resolveImpacts(double time, const VectorX& before, VectorX& state) {
   std::vector<ImpactContact> impacts = findImpacts(before, state);
   if (impacts.empty()) return;
-  const double energy = kineticEnergy(assembly_.mechanism.bodies, state);
+  const VectorX approach = state;
   resolvePairwise(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
-  dissipatedEnergy(state) += energy - kineticEnergy(assembly_.mechanism.bodies, state);
-  for (const ImpactContact& impact : impacts)
-    if (impact.impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impact.impulse);
+  for (const ImpactContact& impact : impacts) {
+    // What a lasting contact took was an acceleration's, spread over the step.
+    const bool isLasting = closingSpeed(impact.contact, approach) <= impact.restSpeed;
+    dissipate(impact.contact, impact.impulse, isLasting ? before : approach, state);
+    const double impulse = impact.contact.normal.dot(impact.impulse);
+    if (impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impulse);
+  }
 }
 
 std::vector<ImpactContact> ContactStage::findImpacts(const VectorX& before, const VectorX& state) const {
@@ -100,14 +110,20 @@ std::vector<ImpactContact> ContactStage::findImpacts(const VectorX& before, cons
   std::vector<ImpactContact> impacts;
   std::vector<char> isStruck(bodies, 0);  // by island
   for (const Contact& contact : touching_) {
-    const double closing = -contact.normal.dot(relativeVelocity(contact, state));
+    const double closing = closingSpeed(contact, state);
     const double gained = closing + contact.normal.dot(relativeVelocity(contact, state, before));
-    const double restSpeed = kRestSteps * std::max(0.0, gained / stepPart_) + kRestSpeedFloor;
-    impacts.push_back({contact, assembly_.geometry.pairs[contact.pair].law, restSpeed, 0});
+    const double restSpeed = std::max(kRestSteps * std::max(0.0, gained / stepPart_), leastImpactSpeed_);
+    impacts.push_back({contact, assembly_.geometry.pairs[contact.pair].law, restSpeed, Vec3::Zero()});
     if (closing > restSpeed) isStruck[islandOf(contact)] = 1;
   }
   std::erase_if(impacts, [&](const ImpactContact& impact) { return !isStruck[islandOf(impact.contact)]; });
   return impacts;
+}
+
+/// Books what an impulse (N s, on B) took: it works with the mean of the velocities before and after it.
+void ContactStage::dissipate(const Contact& contact, const Vec3& impulse, const VectorX& before, VectorX& state) {
+  const Vec3 meanVelocity = (relativeVelocity(contact, state, before) + relativeVelocity(contact, state)) / 2;
+  dissipatedEnergy(state) -= impulse.dot(meanVelocity);
 }
 
 void ContactStage::holdLasting(const VectorX& before, VectorX& state) {
@@ -119,12 +135,7 @@ void ContactStage::holdLasting(const VectorX& before, VectorX& state) {
     lasting.push_back({contact, sliding > kSlidingSpeed ? law.dynamicFriction : law.staticFriction, Vec3::Zero()});
   }
   solveLastingContacts(lasting, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
-  // An impulse spread over a step does work with the mean of the velocities at the step's two ends.
-  for (const LastingContact& lastingContact : lasting) {
-    const Contact& contact = lastingContact.contact;
-    const Vec3 meanVelocity = (relativeVelocity(contact, state, before) + relativeVelocity(contact, state)) / 2;
-    dissipatedEnergy(state) -= lastingContact.impulse.dot(meanVelocity);
-  }
+  for (const LastingContact& contact : lasting) dissipate(contact.contact, contact.impulse, before, state);
 }
 
 }  // namespace cradle

@@ -31,13 +31,14 @@ class ContactStage {
   void resolveImpacts(double time, const VectorX& before, VectorX& state);
   std::vector<ImpactContact> findImpacts(const VectorX& before, const VectorX& state) const;
   void holdLasting(const VectorX& before, VectorX& state);
+  static void dissipate(const Contact& contact, const Vec3& impulse, const VectorX& before, VectorX& state);
 
   const Assembly& assembly_;
   EquationsOfMotion& equations_;
   EventLog& log_;
   RestingBodies resting_;
   ConstraintSolver solver_;
-  double timeStep_, touchTolerance_;
+  double timeStep_, touchTolerance_, leastImpactSpeed_;
   double lastTime_ = -INFINITY;  // s, of the last call of resolve
   double stepPart_ = INFINITY;   // time since then, in steps
   std::vector<Contact> touching_;

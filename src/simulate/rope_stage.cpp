@@ -11,6 +11,8 @@ namespace cradle {
 namespace {
 
 constexpr double kTautPart = 1e-9;         // of its length: a rope this near to it is at its length
+constexpr double kSlackPart = 1e-6;        // of its length: a rope this much shorter is slack again
+constexpr double kLoadedPart = 1e-6;       // of gravity: a pull that is no rounding
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
 
 Vec3 positionAt(const Step& step, const Attachment& attachment, double fraction) {
@@ -32,7 +34,8 @@ RopeStage::RopeStage(Assembly& assembly, EquationsOfMotion& equations, ContactSt
       solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),
       timeStep_(timeStep),
       sceneRods_(assembly.mechanism.constraints.rods.size()),
-      tautRod_(assembly.ropes.size(), -1) {}
+      tautRod_(assembly.ropes.size(), -1),
+      isStretched_(assembly.ropes.size(), 0) {}
 
 std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
   std::optional<RopeChange> first;
@@ -79,37 +82,39 @@ void RopeStage::resolve(double time, VectorX& state) {
   if (released) return;
 
   for (std::size_t i = 0; i < tautRod_.size(); ++i) {
-    const RopeLimit& rope = assembly_.ropes[i];
     if (isTaut(i)) continue;
+    const RopeLimit& rope = assembly_.ropes[i];
     const RopeMotion motion = motionOf(rope, state);
+    if (motion.slackLength > kSlackPart * rope.maxLength) loosen(time, i, state);
     if (motion.slackLength <= kTautPart * rope.maxLength && motion.lengthening >= 0) pull(time, i, state);
   }
 }
 
 /// A rope at its length that still lengthens. A rebound that would end within about two steps is not resolved: the rope
-/// stays taut, if anything pulls at it.
+/// stays taut. It becomes a rod if smooth forces pull at it; else what drags at it (friction) is met step by step.
 void RopeStage::pull(double time, std::size_t index, VectorX& state) {
   const RopeLimit& rope = assembly_.ropes[index];
   equations_.evaluate(state, rate_);
   const double acceleration = lengtheningAcceleration(rope, state, rate_);
   const RopeMotion motion = motionOf(rope, state);
+  const bool isLoaded = acceleration > kLoadedPart * assembly_.mechanism.gravity.norm();
+  if (!isLoaded && motion.lengthening <= kRestSpeedFloor) return;
   const double restSpeed = 2 * std::max(0.0, acceleration) * timeStep_ + kRestSpeedFloor;
   const bool rebounds = rope.restitution * motion.lengthening > restSpeed;
-  const double restitution = rebounds ? rope.restitution : 0;
-  const double impulse =
-      (1 + restitution) * motion.lengthening / inverseMassAlong(rope, assembly_.mechanism.bodies, state);
+  const double impulse = (1 + (rebounds ? rope.restitution : 0)) * motion.lengthening /
+                         inverseMassAlong(rope, assembly_.mechanism.bodies, state);
 
   for (const int body : {rope.anchorA.body, rope.anchorB.body}) contacts_.wake(time, body, state);
   const double before = kineticEnergy(assembly_.mechanism.bodies, state);
   applyImpulse(assembly_.mechanism.bodies, rope.anchorA.body, motion.a.arm, -impulse * motion.direction, state);
   applyImpulse(assembly_.mechanism.bodies, rope.anchorB.body, motion.b.arm, impulse * motion.direction, state);
-  const bool staysTaut = !rebounds && acceleration > 0;
-  if (rebounds || staysTaut) record(time, EventKind::taut, index, impulse, state);
-  if (staysTaut) {
+  if (!isStretched_[index] || rebounds) record(time, EventKind::taut, index, impulse, state);
+  isStretched_[index] = !rebounds;
+  if (!rebounds && isLoaded) {
     tautRod_[index] = 0;
     rebuildRods();
   }
-  // The pull goes on into the other rods and taut ropes.
+  // The pull goes on into the other constraints and taut ropes.
   if (solver_.hasConstraints()) {
     solver_.factorize(state);
     solver_.constrainVelocities(state);
@@ -120,7 +125,12 @@ void RopeStage::pull(double time, std::size_t index, VectorX& state) {
 void RopeStage::release(double time, std::size_t rope, const VectorX& state) {
   tautRod_[rope] = -1;
   rebuildRods();
-  record(time, EventKind::slack, rope, 0, state);
+  loosen(time, rope, state);
+}
+
+void RopeStage::loosen(double time, std::size_t rope, const VectorX& state) {
+  if (isStretched_[rope]) record(time, EventKind::slack, rope, 0, state);
+  isStretched_[rope] = false;
 }
 
 void RopeStage::rebuildRods() {

@@ -14,7 +14,7 @@ struct RopeChange {
 };
 
 /// Ropes over time: nothing while slack; an impulse when the length is reached; then a rod, until that would push.
-/// The rods of taut ropes stand behind the scene's own in Mechanism::rods.
+/// The rods of taut ropes stand behind the scene's own in Constraints::rods.
 class RopeStage {
  public:
   /// Keeps references to all four. `timeStep` (s) is the method's.
@@ -38,6 +38,7 @@ class RopeStage {
   double tension(std::size_t rope, const VectorX& state);
   void pull(double time, std::size_t rope, VectorX& state);
   void release(double time, std::size_t rope, const VectorX& state);
+  void loosen(double time, std::size_t rope, const VectorX& state);
   void rebuildRods();
   void record(double time, EventKind kind, std::size_t rope, double impulse, const VectorX& state);
 
@@ -48,7 +49,8 @@ class RopeStage {
   ConstraintSolver solver_;
   double timeStep_;
   std::size_t sceneRods_;     // rods that are no ropes
-  std::vector<int> tautRod_;  // index into Mechanism::rods of each rope, or -1: slack
+  std::vector<int> tautRod_;  // index into Constraints::rods of each rope, or -1: no smooth force pulls at it
+  std::vector<char> isStretched_;  // has reached its length and not been slack since
   double startTension_ = 1;   // N, of the change under way
   VectorX rate_;
 };

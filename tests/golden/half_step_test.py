@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+"""Every scene at half its time step must look the same: what a film shows is the motion, not the step.
+
+    half_step_test.py PROGRAM SOURCE_FOLDER
+
+A body may be displaced by 2 % of the extent over which the scene's bodies move, and turned by 0.15 rad: less than the eye
+sees when one picture follows the other. Scenes are made so that they are not chaotic while they last.
+"""
+import json, os, re, sqlite3, subprocess, sys, tempfile, unittest
+
+PROGRAM, SCENES = os.path.abspath(sys.argv[1]), os.path.join(os.path.abspath(sys.argv[2]), "scenes")
+DISPLACED, TURNED = 0.02, 0.15  # of the extent; rad
+
+
+def without_comments(text):
+    return re.sub(r"^\s*//.*$", "", text, flags=re.M)
+
+
+def states(scene, *overrides):
+    """Frames of a run: {(frame, body): (px, py, pz, qw, qx, qy, qz)}."""
+    with tempfile.TemporaryDirectory() as folder:
+        trajectory = os.path.join(folder, "run.sqlite")
+        run = subprocess.run([PROGRAM, "simulate", scene, "-o", trajectory, "--quiet", *overrides], capture_output=True, text=True)
+        if run.returncode:
+            raise AssertionError(f"{scene} {overrides}: exit {run.returncode}\n{run.stderr}")
+        rows = sqlite3.connect(trajectory).execute("select frame, body, px, py, pz, qw, qx, qy, qz from state")
+        return {row[:2]: row[2:] for row in rows}
+
+
+def extent(run):
+    return max(max(row[i] for row in run.values()) - min(row[i] for row in run.values()) for i in range(3))
+
+
+class HalfStep(unittest.TestCase):
+    def check(self, scene):
+        with open(scene) as file:
+            method = json.loads(without_comments(file.read()))["method"]
+        whole = states(scene)
+        half = states(scene, "--method", method["name"], "--time-step", repr(method["timeStep"] / 2))
+        self.assertEqual(whole.keys(), half.keys())
+        size = max(extent(whole), 0.1)  # m: a body that turns on the spot is about so large
+        for key, pose in whole.items():
+            distance = max(abs(a - b) for a, b in zip(pose[:3], half[key][:3]))
+            cosine = min(1.0, abs(sum(a * b for a, b in zip(pose[3:], half[key][3:]))))
+            self.assertLess(distance, DISPLACED * size, f"frame and body {key}")
+            self.assertLess(2 * (1 - cosine), (TURNED / 2) ** 2, f"frame and body {key}")  # = (angle / 2)^2
+
+
+for name in sorted(os.listdir(SCENES)):
+    if name.endswith(".json"):
+        setattr(HalfStep, "test_" + name[:-5], lambda self, scene=os.path.join(SCENES, name): self.check(scene))
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)
