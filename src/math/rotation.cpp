@@ -1,14 +1,14 @@
 #include "math/rotation.h"
 
-#include <cmath>
-
 #include "core/error.h"
+#include "math/elementary.h"
 
 namespace cradle {
 
 Quat rotationAbout(const Vec3& axis, double angle) {
-  const Vec3 vector = std::sin(angle / 2) * axis.normalized();
-  return {std::cos(angle / 2), vector.x(), vector.y(), vector.z()};
+  const SinCos half = sinCos(angle / 2);
+  const Vec3 vector = half.sin * axis.normalized();
+  return {half.cos, vector.x(), vector.y(), vector.z()};
 }
 
 Quat rotationFromEuler(const std::array<double, 3>& angles, const std::string& order) {

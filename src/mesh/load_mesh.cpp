@@ -16,13 +16,13 @@
 #include <array>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <map>
 
 #include "core/error.h"
+#include "math/elementary.h"
 #include "mesh/assemble_model.h"
 #include "mesh/check_3ds.h"
 #include "mesh/read_file.h"
@@ -157,7 +157,8 @@ void placeForgottenMeshes(const ImportedFile& file, std::vector<Placement>& plac
 }
 
 float encodedAsSrgb(float linear) {
-  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;  // IEC 61966-2-1
+  if (linear <= 0.0031308f) return 12.92f * linear;  // IEC 61966-2-1
+  return static_cast<float>(1.055 * exp(log(linear) / 2.4) - 0.055);
 }
 
 std::string materialName(const aiMaterial& material) {

@@ -1,9 +1,9 @@
 #include "mesh/primitives.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "core/error.h"
+#include "math/elementary.h"
 
 namespace cradle {
 namespace {
@@ -23,7 +23,7 @@ struct Ring {
 void addRing(const Ring& ring, int segments, DrawnMesh& mesh) {
   for (int s = 0; s < segments; ++s) {
     const double angle = 2 * pi * s / segments;  // from z towards x, so that rising rings wind outwards
-    const double x = std::sin(angle), z = std::cos(angle);
+    const auto [x, z] = sinCos(angle);
     mesh.vertices.emplace_back(ring.radius * x, ring.height, ring.radius * z);
     mesh.normals.push_back(
         Vec3(ring.radialNormal * x, ring.heightOfNormal, ring.radialNormal * z).normalized().cast<float>());
@@ -63,7 +63,8 @@ void addRevolution(const std::vector<Ring>& rings, double bottom, double top, in
 void appendArc(double radius, double centre, double from, double to, int steps, std::vector<Ring>& rings) {
   for (int i = 0; i <= steps; ++i) {
     const double angle = from + (to - from) * i / steps;
-    rings.push_back({radius * std::cos(angle), centre + radius * std::sin(angle), std::cos(angle), std::sin(angle)});
+    const auto [sine, cosine] = sinCos(angle);
+    rings.push_back({radius * cosine, centre + radius * sine, cosine, sine});
   }
 }
 

@@ -87,7 +87,7 @@ std::optional<double> castRay(const Ray& ray, const Cylinder& cylinder) {
   for (const double end : {-cylinder.length / 2, cylinder.length / 2}) {
     const double distance = (end - ray.origin.y()) / ray.direction.y();
     const Vec3 hit = ray.origin + distance * ray.direction;
-    if (std::hypot(hit.x(), hit.z()) <= cylinder.radius) keepNearest(distance, nearest);
+    if (Eigen::Vector2d(hit.x(), hit.z()).norm() <= cylinder.radius) keepNearest(distance, nearest);
   }
   return nearest;
 }

@@ -153,10 +153,14 @@ bool fits(const Candidate& candidate, const RigidTransform& bodyFromShape, doubl
          std::all_of(candidate.midpoints.begin(), candidate.midpoints.end(), isFlush);
 }
 
+double fromAxis(const Vec3& point) {  // m, of a shape around y
+  return Eigen::Vector2d(point.x(), point.z()).norm();
+}
+
 std::optional<PlacedPrimitive> fitCylinder(const AxialExtent& extent, const Candidate& candidate) {
   const double radius = extent.across, length = extent.high - extent.low;
   const SurfaceDistance distance = [&](const Vec3& p) {
-    const double outsideSide = std::hypot(p.x(), p.z()) - radius, outsideEnd = std::abs(p.y()) - length / 2;
+    const double outsideSide = fromAxis(p) - radius, outsideEnd = std::abs(p.y()) - length / 2;
     return std::max(outsideSide, outsideEnd);
   };
   const RigidTransform place = placedAlong(extent), shapeFromBody = place.inverse();
@@ -169,7 +173,7 @@ std::optional<PlacedPrimitive> fitCylinder(const AxialExtent& extent, const Cand
     const auto isOnEnd = [&](double end) {
       return std::all_of(corners.begin(), corners.end(), [&](const Vec3& p) { return isNear(p.y(), end, size); });
     };
-    const auto isOnSide = [&](const Vec3& p) { return isNear(std::hypot(p.x(), p.z()), radius, size); };
+    const auto isOnSide = [&](const Vec3& p) { return isNear(fromAxis(p), radius, size); };
     if (!isOnEnd(length / 2) && !isOnEnd(-length / 2) && !std::all_of(corners.begin(), corners.end(), isOnSide))
       return {};
   }
@@ -181,7 +185,7 @@ std::optional<PlacedPrimitive> fitCapsule(const AxialExtent& extent, const Candi
   if (length <= kTolerance * radius) return {};
   const SurfaceDistance distance = [&](const Vec3& p) {
     const double beyond = std::max(0.0, std::abs(p.y()) - length / 2);
-    return std::hypot(p.x(), p.z(), beyond) - radius;
+    return Vec3(p.x(), beyond, p.z()).norm() - radius;
   };
   const RigidTransform place = placedAlong(extent);
   if (!fits(candidate, place, radius, radius + length, distance)) return {};

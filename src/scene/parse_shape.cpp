@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 
 namespace cradle {
 namespace {
@@ -63,7 +62,7 @@ void parsePrimitive(const std::string& key, const Field& field, BodyDraft& draft
     setPrimitive(box, box.size.stableNorm() / 2, draft);
   } else if (key == "cylinder") {
     const auto cylinder = parseRoundShape<Cylinder>(field, faults);
-    setPrimitive(cylinder, std::hypot(cylinder.radius, cylinder.length / 2), draft);
+    setPrimitive(cylinder, Eigen::Vector2d(cylinder.radius, cylinder.length / 2).stableNorm(), draft);
   } else if (key == "capsule") {
     const auto capsule = parseRoundShape<Capsule>(field, faults);
     setPrimitive(capsule, capsule.radius + capsule.length / 2, draft);

@@ -1,0 +1,21 @@
+#pragma once
+
+namespace cradle {
+
+// Elementary functions that give the same bits on every CPU, by every compiler, at every optimisation level: those of
+// the C library do not. Errors are below 1 unit in the last place for all finite arguments. Special values are those of
+// IEEE 754: sin and cos of an infinity are NaN, exp(-inf) = 0, log(0) = -inf, log of a negative number is NaN.
+
+double sin(double angle);  // rad, of any size
+double cos(double angle);
+
+struct SinCos {
+  double sin, cos;
+};
+/// Both for little more than the price of one, with the same bits.
+SinCos sinCos(double angle);
+
+double exp(double x);
+double log(double x);
+
+}  // namespace cradle
