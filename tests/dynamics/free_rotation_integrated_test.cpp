@@ -45,7 +45,7 @@ void expectAgreement(const Case& body, double time, double tolerance) {
 // Runge-Kutta's error is below (2 * 5e-4)^4 * 20 / 100 = 2e-13 for rates up to 2 rad/s.
 TEST(FreeRotation, AnyBodyMatchesAnIntegration) {
   Random random;
-  for (int i = 0; i < 40; ++i) expectAgreement(anyBody(random), 10, 4e-13);
+  for (int i = 0; i < 20; ++i) expectAgreement(anyBody(random), 10, 4e-13);
 }
 
 // Round the axis of the largest moment, and of the smallest.
@@ -59,7 +59,7 @@ TEST(FreeRotation, BothSidesOfTheSeparatrixMatchAnIntegration) {
 
 TEST(FreeRotation, NearlySymmetricBodiesMatchAnIntegration) {
   Random random;
-  for (int power = 3; power <= 16; ++power) {
+  for (int power = 3; power <= 16; power += 2) {
     const double same = 1 + std::pow(10, -power);
     for (const Vec3& moments : {Vec3(1, same, 1.5), Vec3(0.6, 1, same), Vec3(1, same, same * same)}) {
       expectAgreement(straight(moments, {0.5, -0.7, 0.9}), 10, 4e-13);
@@ -71,7 +71,7 @@ TEST(FreeRotation, NearlySymmetricBodiesMatchAnIntegration) {
 // The growth rate next to the unstable axis, sqrt((1/I1 - 1/I2) (1/I2 - 1/I3)) M2 = 0.45, makes 1e-14 of the rounding
 // of the start; the rest is Runge-Kutta's.
 TEST(FreeRotation, NearlyPrincipalRotationsMatchAnIntegration) {
-  for (int power = 1; power <= 20; ++power) {
+  for (int power = 1; power <= 20; power += 2) {
     const double little = std::pow(10, -power);
     for (int axis = 0; axis < 3; ++axis) {
       expectAgreement(straight({1, 2, 2.5}, Vec3::Unit(axis) + little * Vec3(1, -0.5, 0.7)), 10, 4e-13);
@@ -83,7 +83,7 @@ TEST(FreeRotation, NearlyPrincipalRotationsMatchAnIntegration) {
 // On the separatrix (1/I1 - 1/I2) M1^2 = (1/I2 - 1/I3) M3^2, here M1 = 1 and M3 = sqrt(5): the period is infinite.
 TEST(FreeRotation, NextToTheSeparatrixMatchesAnIntegration) {
   const Vec3 onSeparatrix(1, 0.4, std::sqrt(5.0) / 2.5);
-  for (int power = 3; power <= 17; ++power) {
+  for (int power = 3; power <= 17; power += 2) {
     for (const double side : {-1.0, 1.0}) {
       const Vec3 spin = onSeparatrix + side * std::pow(10, -power) * Vec3::UnitX();
       expectAgreement(straight({1, 2, 2.5}, spin), 10, 4e-13);
