@@ -15,7 +15,20 @@ GOLDEN = os.path.join(SOURCE, "tests", "golden")
 FRAMES = {  # scene: frames that are drawn; states are kept for these too
     "newtons_cradle": (0, 14, 40, 300, 599),
     "suspended_model": (0, 45, 300, 700),
+    "suspended_model_rod": (0, 45, 300),
     "dropped_model": (0, 19, 40, 149),
+    "struck_model": (25, 31, 155, 300),
+    "two_models_one_spring": (0, 100, 300),
+    "two_models_one_rod": (0, 100, 300),
+    "platform_drop": (0, 40, 80, 170),
+    "platform_drop_rods": (0, 40, 80, 170),
+    "slack_rope": (0, 30, 60, 120),
+    "rope_bridge": (0, 30, 100),
+    "rod_pendulum": (0, 60, 300),
+    "bouncing_balls": (0, 30, 100, 250),
+    "sliding_blocks": (0, 75, 145),
+    "spinning_handle": (0, 200, 400),
+    "gears_fall": (0, 30, 60, 170),
 }
 TOLERANCE = 1e-9
 
