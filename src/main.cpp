@@ -47,16 +47,25 @@ void addPictureOptions(CLI::App* command, CommandLine& line) {
   command->add_option("--shaders", line.pictures.shaders, "folder with shaders to use instead of the built-in ones");
 }
 
+void addOverrides(CLI::App* command, CommandLine& line) {
+  command->add_option("--accuracy", line.overrides.accuracy, "in place of the scene's accuracy");
+  command->add_option("--method", line.overrides.method, "explicitEuler, semiImplicitEuler, rk4 or dop853");
+  command->add_option("--time-step", line.overrides.timeStep, "step of --method in s; dop853 needs none");
+  command->add_option("--duration", line.overrides.duration, "in place of the scene's duration, in s");
+}
+
 void addSimulate(CLI::App& app, CommandLine& line) {
   auto* simulate = addCommand(app, line, "simulate", "Simulate a scene into a trajectory file",
                               "cradle simulate scenes/newtons_cradle.json -o cradle.sqlite",
                               [&] { simulateScene(line.input, line.output, line.overrides, line.quiet); });
   simulate->add_option("scene", line.input, "scene file (JSON)")->required();
   addOutput(simulate, line, "trajectory file to write");
-  simulate->add_option("--accuracy", line.overrides.accuracy, "in place of the scene's accuracy");
-  simulate->add_option("--method", line.overrides.method, "explicitEuler, semiImplicitEuler or rk4");
-  simulate->add_option("--time-step", line.overrides.timeStep, "step of --method in s");
-  simulate->add_option("--duration", line.overrides.duration, "in place of the scene's duration, in s");
+  addOverrides(simulate, line);
+
+  auto* plan = addCommand(app, line, "plan", "Say how a scene would be simulated, why, and what is left out",
+                          "cradle plan scenes/spinning_handle.json", [&] { printPlan(line.input, line.overrides); });
+  plan->add_option("scene", line.input, "scene file (JSON)")->required();
+  addOverrides(plan, line);
 }
 
 void addPictures(CLI::App& app, CommandLine& line) {

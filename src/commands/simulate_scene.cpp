@@ -99,13 +99,22 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
   }
 }
 
+void printPlan(const std::string& scenePath, const SceneOverrides& overrides) {
+  const Scene scene = loadSceneAndWarn(scenePath, overrides);
+  refuseUnsupported(scene);
+  const Plan plan = planOf(scene);
+  fmt::print("{}: accuracy {:.3g} asked, {}\n{}\n", scenePath, plan.accuracy, accuracyPromised(plan),
+             describe(plan, scene));
+}
+
 void checkScene(const std::string& scenePath) {
   const Scene scene = loadSceneAndWarn(scenePath, {});
   refuseUnsupported(scene);
-  const Assembly assembly = assemble(scene);
-  refuseStartOverlaps(scene, assembly);
-  for (const std::string& warning : unusedRequests(scene)) warn(warning);
-  for (const std::string& warning : assembly.warnings) warn(warning);
+  std::vector<Assembly> islands;
+  for (const IslandPlan& island : planOf(scene).islands) islands.push_back(assemble(scene, island));
+  refuseStartOverlaps(scene, islands);
+  for (const Assembly& assembly : islands)
+    for (const std::string& warning : assembly.warnings) warn(warning);
   std::size_t dynamic = 0;
   for (const Body& body : scene.bodies) dynamic += body.motion == Motion::dynamic ? 1 : 0;
   fmt::print("{}: \"{}\" is in order: {} bodies ({} dynamic), {} springs, {} rods; {} s, {} frames\n", scenePath,

@@ -24,6 +24,9 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
 /// `cradle check SCENE`: loads the scene and its meshes and says what is in it.
 void checkScene(const std::string& scenePath);
 
+/// `cradle plan SCENE`: prints what was chosen to simulate it, why, and what was left out.
+void printPlan(const std::string& scenePath, const SceneOverrides& overrides);
+
 /// A scene file with its warnings printed to stderr, overrides applied.
 Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides);
 

@@ -117,7 +117,7 @@ void SparseLdlt::eliminate(int row, int first, double diagonal) {
     lower_[end] = factor;
     ++columnCount_[column];
   }
-  inversePivots_[static_cast<std::size_t>(row)] = 1 / pivot;
+  inversePivots_[static_cast<std::size_t>(row)] = pivot > 0 ? 1 / pivot : 0;
 }
 
 void SparseLdlt::solve(VectorX& x) {

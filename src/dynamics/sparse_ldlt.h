@@ -8,7 +8,7 @@
 namespace cradle {
 
 /// Factorisation L D L^T of a sparse symmetric positive definite matrix, with an order of elimination that keeps L
-/// sparse: O(n) for chains and trees. Allocates in `analyze` alone.
+/// sparse: O(n) for chains and trees. A row without any entry gets the unknown 0. Allocates in `analyze` alone.
 class SparseLdlt {
  public:
   /// Takes the places of the entries below the diagonal, each once, row > column.

@@ -13,11 +13,11 @@ namespace {
 constexpr double kVelocityRounding = 1e-12;  // m/s a m of rod: less is no violation, only decimal digits
 constexpr std::size_t kMostFaults = 50;
 
-/// Index of each scene body among the moving ones, or kFixed.
-std::vector<int> movingIndices(const Scene& scene) {
-  std::vector<int> indices;
-  int next = 0;
-  for (const Body& body : scene.bodies) indices.push_back(body.motion == Motion::dynamic ? next++ : kFixed);
+/// Index of each scene body among those of an island, or kFixed.
+std::vector<int> movingIndices(const Scene& scene, const IslandPlan& island) {
+  std::vector<int> indices(scene.bodies.size(), kFixed);
+  for (std::size_t i = 0; i < island.bodies.size(); ++i)
+    indices[static_cast<std::size_t>(island.bodies[i])] = static_cast<int>(i);
   return indices;
 }
 
@@ -29,12 +29,10 @@ Attachment attach(const Anchor& anchor, const Scene& scene, const std::vector<in
   return {moving[index], anchor.point - body.massProperties.centerOfMass};
 }
 
-void addBodies(const Scene& scene, Assembly& assembly) {
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    if (scene.bodies[i].motion != Motion::dynamic) continue;
-    assembly.sceneBodies.push_back(static_cast<int>(i));
-    assembly.mechanism.bodies.push_back(makeRigidBody(scene.bodies[i].massProperties));
-  }
+void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
+  assembly.sceneBodies = island.bodies;
+  for (const int body : island.bodies)
+    assembly.mechanism.bodies.push_back(makeRigidBody(scene.bodies[static_cast<std::size_t>(body)].massProperties));
   VectorX& state = assembly.state;
   state.setZero(stateSize(static_cast<Eigen::Index>(assembly.sceneBodies.size())));
   for (std::size_t i = 0; i < assembly.sceneBodies.size(); ++i) {
@@ -47,118 +45,143 @@ void addBodies(const Scene& scene, Assembly& assembly) {
   }
 }
 
-void addLinks(const Scene& scene, const std::vector<int>& moving, Assembly& assembly) {
-  for (const Spring& spring : scene.springs)
-    assembly.mechanism.springs.push_back({attach(spring.anchorA, scene, moving), attach(spring.anchorB, scene, moving),
-                                          spring.stiffness, spring.damping, spring.restLength});
-  for (const Rod& rod : scene.rods)
-    assembly.mechanism.constraints.rods.push_back(
-        {attach(rod.anchorA, scene, moving), attach(rod.anchorB, scene, moving), rod.length});
-  for (const Rope& rope : scene.ropes) {
-    assembly.ropes.push_back(
-        {attach(rope.anchorA, scene, moving), attach(rope.anchorB, scene, moving), rope.maxLength, rope.restitution});
-    assembly.ropeBodies.emplace_back(rope.anchorA.body, rope.anchorB.body);
+/// Calls add(link, anchorA, anchorB) for the links that hold a body of the island.
+template <class Links, class Add>
+void forEachLink(const Links& links, const Scene& scene, const std::vector<int>& moving, const Add& add) {
+  for (const auto& link : links) {
+    const Attachment a = attach(link.anchorA, scene, moving), b = attach(link.anchorB, scene, moving);
+    if (a.body != kFixed || b.body != kFixed) add(link, a, b);
   }
 }
 
-void satisfyRods(const Scene& scene, Assembly& assembly) {
+/// The hinge's axis is given in body A's frame; B's directions across it follow from the bodies' places at the start.
+HingeConstraint makeHinge(const Hinge& hinge, const Attachment& a, const Attachment& b, const Scene& scene) {
+  const auto worldFromBody = [&](const Anchor& anchor) -> Quat {
+    if (anchor.body == kWorld) return Quat::Identity();
+    return scene.bodies[static_cast<std::size_t>(anchor.body)].worldFromBody.rotation;
+  };
+  const Vec3 axis = worldFromBody(hinge.anchorA) * hinge.axis;
+  const Vec3 across = axis.unitOrthogonal();
+  const Quat bodyFromWorldA = a.body == kFixed ? Quat::Identity() : worldFromBody(hinge.anchorA).conjugate();
+  const Quat bodyFromWorldB = b.body == kFixed ? Quat::Identity() : worldFromBody(hinge.anchorB).conjugate();
+  return {a, b, bodyFromWorldA * axis, {bodyFromWorldB * across, bodyFromWorldB * axis.cross(across)}};
+}
+
+void addLinks(const Scene& scene, const std::vector<int>& moving, Assembly& assembly) {
+  Mechanism& mechanism = assembly.mechanism;
+  forEachLink(scene.springs, scene, moving, [&](const Spring& spring, const Attachment& a, const Attachment& b) {
+    mechanism.springs.push_back({a, b, spring.stiffness, spring.damping, spring.restLength});
+    assembly.springNames.push_back(spring.name);
+  });
+  Constraints& constraints = mechanism.constraints;
+  forEachLink(scene.rods, scene, moving, [&](const Rod& rod, const Attachment& a, const Attachment& b) {
+    constraints.rods.push_back({a, b, rod.length});
+  });
+  forEachLink(scene.ballJoints, scene, moving, [&](const BallJoint&, const Attachment& a, const Attachment& b) {
+    constraints.ballJoints.push_back({a, b});
+  });
+  forEachLink(scene.hinges, scene, moving, [&](const Hinge& hinge, const Attachment& a, const Attachment& b) {
+    constraints.hinges.push_back(makeHinge(hinge, a, b, scene));
+  });
+  forEachLink(scene.ropes, scene, moving, [&](const Rope& rope, const Attachment& a, const Attachment& b) {
+    assembly.ropes.push_back({a, b, rope.maxLength, rope.restitution});
+    assembly.ropeBodies.emplace_back(rope.anchorA.body, rope.anchorB.body);
+  });
+}
+
+void satisfyConstraints(const Scene& scene, Assembly& assembly) {
   const Mechanism& mechanism = assembly.mechanism;
   ConstraintSolver solver(mechanism.constraints, mechanism.bodies);
+  if (!solver.hasConstraints()) return;
   const VectorX before = assembly.state;
   solver.factorize(before);
   const double violation = solver.largestRate(before);
+  // Spins that a scene gives are kept where velocities of the centres of mass can follow them.
+  std::vector<RigidBody> unturned = mechanism.bodies;
+  for (RigidBody& body : unturned) body.inverseInertia.setZero();
+  ConstraintSolver linear(mechanism.constraints, unturned);
+  linear.factorize(before);
+  linear.constrainVelocities(assembly.state);
   solver.constrainVelocities(assembly.state);
   if (violation > kVelocityRounding)
-    assembly.warnings.push_back(
-        fmt::format("{}: the start velocities would stretch or shorten rods by up to {:.3g} m/s; they were changed by "
-                    "up to {:.3g} to fit",
-                    scene.path, violation, (assembly.state - before).cwiseAbs().maxCoeff()));
+    assembly.warnings.push_back(fmt::format(
+        "{}: the start velocities would stretch or shorten rods or pull joints apart by up to {:.3g} m/s; they were "
+        "changed by up to {:.3g} to fit",
+        scene.path, violation, (assembly.state - before).cwiseAbs().maxCoeff()));
 }
 
 struct ColliderIndices {
   std::vector<int> colliders, planes;  // of each scene body, or -1
 };
 
-ColliderIndices addColliders(const Scene& scene, const std::vector<int>& moving, ContactGeometry& geometry) {
-  ColliderIndices indices;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+/// Colliders of the bodies that may touch.
+ColliderIndices addColliders(const Scene& scene, const IslandPlan& island, const std::vector<int>& moving,
+                             ContactGeometry& geometry) {
+  ColliderIndices indices{std::vector<int>(scene.bodies.size(), -1), std::vector<int>(scene.bodies.size(), -1)};
+  std::vector<std::size_t> bodies;
+  for (const auto& [a, b] : island.near)
+    bodies.push_back(static_cast<std::size_t>(a)), bodies.push_back(static_cast<std::size_t>(b));
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  for (const std::size_t i : bodies) {
     const Body& body = scene.bodies[i];
-    indices.colliders.push_back(-1);
-    indices.planes.push_back(-1);
-    const auto* plane = std::get_if<Plane>(&body.shape);
-    if (plane && body.collision != CollisionChoice::none) {
-      indices.planes.back() = static_cast<int>(geometry.planes.size());
+    if (const auto* plane = std::get_if<Plane>(&body.shape)) {
+      indices.planes[i] = static_cast<int>(geometry.planes.size());
       geometry.planes.push_back({body.worldFromBody.translation, body.worldFromBody.rotation * plane->normal});
+    } else {
+      indices.colliders[i] = static_cast<int>(geometry.colliders.size());
+      geometry.colliders.push_back(*colliderOf(body, scene, moving[i]));
     }
-    auto collider = colliderOf(body, scene, moving[i]);
-    if (!collider) continue;
-    indices.colliders.back() = static_cast<int>(geometry.colliders.size());
-    geometry.colliders.push_back(std::move(*collider));
   }
   return indices;
 }
 
-void addContactGeometry(const Scene& scene, const std::vector<int>& moving, Assembly& assembly) {
+void addPair(const Scene& scene, const ColliderIndices& indices, const std::pair<int, int>& bodies,
+             Assembly& assembly) {
   ContactGeometry& geometry = assembly.geometry;
-  const ColliderIndices indices = addColliders(scene, moving, geometry);
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    for (std::size_t j = i + 1; j < scene.bodies.size(); ++j) {
-      if (!mayTouch(scene.bodies[i], scene.bodies[j])) continue;
-      // Planes stand second.
-      const bool swapped = indices.planes[i] >= 0;
-      const std::size_t a = swapped ? j : i, b = swapped ? i : j;
-      const bool againstPlane = indices.planes[b] >= 0;
-      const std::size_t first = static_cast<std::size_t>(indices.colliders[a]);
-      const std::size_t second = static_cast<std::size_t>(againstPlane ? indices.planes[b] : indices.colliders[b]);
-      const SurfacePair& surface = scene.surfacePairs[static_cast<std::size_t>(scene.bodies[a].material)]
-                                                     [static_cast<std::size_t>(scene.bodies[b].material)];
-      const ColliderPair pair{
-          first, second, againstPlane, {surface.restitution, surface.staticFriction, surface.dynamicFriction}};
-      if (canSolveContact(geometry.colliders[first], againstPlane ? nullptr : &geometry.colliders[second])) {
-        geometry.pairs.push_back(pair);
-        assembly.pairBodies.emplace_back(static_cast<int>(a), static_cast<int>(b));
-      } else {
-        geometry.unsolvedPairs.push_back(pair);
-      }
-    }
+  // Planes stand second.
+  auto [a, b] = bodies;
+  if (indices.planes[static_cast<std::size_t>(a)] >= 0) std::swap(a, b);
+  const Body &bodyA = scene.bodies[static_cast<std::size_t>(a)], &bodyB = scene.bodies[static_cast<std::size_t>(b)];
+  const int plane = indices.planes[static_cast<std::size_t>(b)];
+  const std::size_t first = static_cast<std::size_t>(indices.colliders[static_cast<std::size_t>(a)]);
+  const std::size_t second =
+      static_cast<std::size_t>(plane >= 0 ? plane : indices.colliders[static_cast<std::size_t>(b)]);
+  const SurfacePair& surface =
+      scene.surfacePairs[static_cast<std::size_t>(bodyA.material)][static_cast<std::size_t>(bodyB.material)];
+  const ColliderPair pair{
+      first, second, plane >= 0, {surface.restitution, surface.staticFriction, surface.dynamicFriction}};
+  if (canSolveContact(geometry.colliders[first], plane >= 0 ? nullptr : &geometry.colliders[second])) {
+    geometry.pairs.push_back(pair);
+    assembly.pairBodies.emplace_back(a, b);
+  } else {
+    geometry.unsolvedPairs.push_back(pair);
+  }
 }
 
 }  // namespace
 
-Assembly assemble(const Scene& scene) {
+Assembly assemble(const Scene& scene, const IslandPlan& island) {
   Assembly assembly;
-  const std::vector<int> moving = movingIndices(scene);
+  const std::vector<int> moving = movingIndices(scene, island);
   assembly.movingBodies = moving;
   assembly.mechanism.gravity = scene.gravity;
-  addBodies(scene, assembly);
+  addBodies(scene, island, assembly);
   addLinks(scene, moving, assembly);
-  addContactGeometry(scene, moving, assembly);
-  satisfyRods(scene, assembly);
+  const ColliderIndices indices = addColliders(scene, island, moving, assembly.geometry);
+  for (const auto& pair : island.near) addPair(scene, indices, pair, assembly);
+  satisfyConstraints(scene, assembly);
   return assembly;
 }
 
 void refuseUnsupported(const Scene& scene) {
   std::vector<std::string> faults;
-  const auto refuse = [&](const std::string& where, const char* what) {
-    faults.push_back(fmt::format(
-        "{}: {} cannot be simulated yet; springs, rods, ropes, pushes and contacts can; take it out", where, what));
-  };
-  for (const BallJoint& joint : scene.ballJoints) refuse(joint.where, "a ball joint");
-  for (const Hinge& hinge : scene.hinges) refuse(hinge.where, "a hinge");
-  if (scene.method && scene.method->name == MethodName::dop853)
-    faults.push_back(scene.method->where +
-                     ": method dop853 is not there yet; explicitEuler, semiImplicitEuler and rk4 are");
   for (const std::string& fault : unsupportedContacts(scene)) faults.push_back(fault);
   if (faults.empty()) return;
   std::string text = faults[0];
   for (std::size_t i = 1; i < std::min(faults.size(), kMostFaults); ++i) text += "\n" + faults[i];
   if (faults.size() > kMostFaults) text += fmt::format("\nand {} more", faults.size() - kMostFaults);
   throw Error(ErrorKind::scene, "", text);
-}
-
-std::vector<std::string> unusedRequests(const Scene& scene) {
-  if (!scene.namesAccuracy) return {};
-  return {fmt::format("{}: \"accuracy\" is not used yet; the time step of \"method\" decides", scene.path)};
 }
 
 }  // namespace cradle

@@ -22,6 +22,9 @@ class ContactStage {
   /// Wakes the island of a moving body, with events.
   void wake(double time, int body, const VectorX& state);
 
+  /// Whether all bodies of the island lie still.
+  bool allRest() const { return resting_.allRest(); }
+
   /// Nearer than this (m) is touching.
   double touchTolerance() const { return touchTolerance_; }
 

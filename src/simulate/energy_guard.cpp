@@ -40,6 +40,10 @@ void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
          fmt::format("has energy from nowhere ({:.3g} J of {:.3g} J explained)", change, explained));
 }
 
+void EnergyGuard::failAtShortestStep(const VectorX& state, double time) const {
+  fail(state, time, 0, "cannot be followed with steps of any length");
+}
+
 /// What one step can give to bodies at rest by forces that do not depend on where they are: (F h)^2 / m. Methods of
 /// order 1 have it in their error from the first step on, when nothing has moved yet.
 double EnergyGuard::firstStepEnergy(double timeStep) const {
@@ -69,6 +73,8 @@ void EnergyGuard::fail(const VectorX& state, double time, double timeStep, const
 }
 
 std::string EnergyGuard::cause(double timeStep) const {
+  if (timeStep == 0)
+    return "what ties it leaves no motion, or forces grow without bound: look at its rods, joints and springs there";
   double fastest = 0;
   std::size_t spring = 0;
   for (std::size_t i = 0; i < mechanism_.springs.size(); ++i) {

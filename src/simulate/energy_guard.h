@@ -25,6 +25,9 @@ class EnergyGuard {
   /// energy is unexplained.
   void check(const VectorX& state, double time, double timeStep);
 
+  /// Throws Error(unstable): steps have become too short to go on from `time`.
+  [[noreturn]] void failAtShortestStep(const VectorX& state, double time) const;
+
  private:
   double firstStepEnergy(double timeStep) const;
   [[noreturn]] void fail(const VectorX& state, double time, double timeStep, const std::string& what) const;

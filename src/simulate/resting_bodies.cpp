@@ -108,6 +108,12 @@ std::vector<int> RestingBodies::settle(double time, const std::vector<Contact>& 
   return settled;
 }
 
+bool RestingBodies::allRest() const {
+  for (std::size_t body = 0; body < sizes_.size(); ++body)
+    if (!equations_.isResting(body)) return false;
+  return true;
+}
+
 std::vector<int> RestingBodies::wake(double time, int body) {
   std::vector<int> woken;
   if (!isResting(body)) return woken;

@@ -22,6 +22,7 @@ class RestingBodies {
   /// Wakes the island of a body. Returns the bodies that were woken.
   std::vector<int> wake(double time, int body);
 
+  bool allRest() const;
   bool isResting(int body) const { return body != kFixed && equations_.isResting(static_cast<std::size_t>(body)); }
 
  private:

@@ -12,7 +12,9 @@ namespace {
 
 constexpr double kTautPart = 1e-9;         // of its length: a rope this near to it is at its length
 constexpr double kSlackPart = 1e-6;        // of its length: a rope this much shorter is slack again
+constexpr double kRestPart = 1e-7;         // of sqrt(acceleration x length): a rebound that rises by 5e-15 of the length
 constexpr double kLoadedPart = 1e-6;       // of gravity: a pull that is no rounding
+constexpr int kTensionSamples = 4;         // a step: it is at most a small part of a swing
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
 
 Vec3 positionAt(const Step& step, const Attachment& attachment, double fraction) {
@@ -43,8 +45,8 @@ std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
     const RopeLimit& rope = assembly_.ropes[i];
     const double end = first ? first->fraction : 1;
     if (isTaut(i)) {
-      const double before = tension(i, step.startState), after = tension(i, step.state);
-      if (before > 0 && after < 0 && before / (before - after) < end) first = RopeChange{before / (before - after), i};
+      const auto fraction = firstPush(step, i);
+      if (fraction && *fraction < end) first = RopeChange{*fraction, i};
       continue;
     }
     const auto slack = [&](double fraction) {
@@ -58,6 +60,19 @@ std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
   }
   if (first && isTaut(first->rope)) startTension_ = tension(first->rope, step.startState);
   return first;
+}
+
+/// Where the tension of a taut rope first falls below zero, looked for at a few points of the step.
+std::optional<double> RopeStage::firstPush(const Step& step, std::size_t rope) {
+  double before = tension(rope, step.startState);
+  for (int i = 1; i <= kTensionSamples; ++i) {
+    const double fraction = static_cast<double>(i) / kTensionSamples;
+    interpolate(step, fraction, sample_);
+    const double after = tension(rope, sample_);
+    if (before > 0 && after < 0) return fraction - after / (after - before) / kTensionSamples;
+    before = after;
+  }
+  return std::nullopt;
 }
 
 double RopeStage::margin(const RopeChange& change, const VectorX& state) {
@@ -99,7 +114,8 @@ void RopeStage::pull(double time, std::size_t index, VectorX& state) {
   const RopeMotion motion = motionOf(rope, state);
   const bool isLoaded = acceleration > kLoadedPart * assembly_.mechanism.gravity.norm();
   if (!isLoaded && motion.lengthening <= kRestSpeedFloor) return;
-  const double restSpeed = 2 * std::max(0.0, acceleration) * timeStep_ + kRestSpeedFloor;
+  const double pulling = std::max(0.0, acceleration);
+  const double restSpeed = 2 * pulling * timeStep_ + kRestPart * std::sqrt(pulling * rope.maxLength) + kRestSpeedFloor;
   const bool rebounds = rope.restitution * motion.lengthening > restSpeed;
   const double impulse = (1 + (rebounds ? rope.restitution : 0)) * motion.lengthening /
                          inverseMassAlong(rope, assembly_.mechanism.bodies, state);

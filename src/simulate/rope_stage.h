@@ -17,7 +17,7 @@ struct RopeChange {
 /// The rods of taut ropes stand behind the scene's own in Constraints::rods.
 class RopeStage {
  public:
-  /// Keeps references to all four. `timeStep` (s) is the method's.
+  /// Keeps references to all four. `timeStep` (s) is the method's if that is fixed, else 0.
   RopeStage(Assembly& assembly, EquationsOfMotion& equations, ContactStage& contacts, EventLog& log, double timeStep);
 
   /// The first slack rope of a step that reaches its length, or taut one whose tension ends. The step's end rate must
@@ -36,6 +36,7 @@ class RopeStage {
  private:
   bool isTaut(std::size_t rope) const { return tautRod_[rope] >= 0; }
   double tension(std::size_t rope, const VectorX& state);
+  std::optional<double> firstPush(const Step& step, std::size_t rope);
   void pull(double time, std::size_t rope, VectorX& state);
   void release(double time, std::size_t rope, const VectorX& state);
   void loosen(double time, std::size_t rope, const VectorX& state);
@@ -52,7 +53,7 @@ class RopeStage {
   std::vector<int> tautRod_;  // index into Constraints::rods of each rope, or -1: no smooth force pulls at it
   std::vector<char> isStretched_;  // has reached its length and not been slack since
   double startTension_ = 1;   // N, of the change under way
-  VectorX rate_;
+  VectorX rate_, sample_;
 };
 
 }  // namespace cradle

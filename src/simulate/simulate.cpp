@@ -4,33 +4,16 @@
 
 #include <ctime>
 
-#include "core/interruption.h"
-#include "simulate/simulation.h"
-#include "simulate/start_overlaps.h"
+#include "simulate/run.h"
 
 namespace cradle {
 namespace {
-
-constexpr double kSameTime = 1e-12;  // s, relative beyond 1 s: a frame this near to a step's end is at it
 
 /// CPU time of this thread in s.
 double cpuSeconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-Frame frameOf(const Simulation& simulation, const VectorX& state, long number, double time) {
-  Frame frame{number, time, {}, simulation.energyOf(state)};
-  for (Eigen::Index body = 0; body < bodyCount(state); ++body)
-    frame.states.push_back({centerOfMass(state, body), orientation(state, body), linearVelocity(state, body),
-                            angularVelocity(state, body)});
-  return frame;
-}
-
-void handOnEvents(Simulation& simulation, const SimulationSink& sink) {
-  for (const std::string& warning : simulation.takeWarnings()) sink.warning(warning);
-  for (const Event& event : simulation.takeEvents()) sink.event(event);
 }
 
 std::string shapeText(const Shape& shape) {
@@ -51,14 +34,14 @@ std::string shapeText(const Shape& shape) {
 }  // namespace
 
 TrajectoryHeader headerOf(const Scene& scene) {
-  const ChosenMethod method = chooseMethod(scene);
+  const Plan plan = planOf(scene);
   TrajectoryHeader header;
   header.version = CRADLE_VERSION;
   header.scene = scene.text;
   header.scenePath = scene.path;
-  header.method = fmt::format("{}, step {} s", method.name, method.timeStep);
-  header.plan = scene.method ? "the method that the scene names" : "no plan yet: semi-implicit Euler, step 1/960 s";
-  header.accuracy = "not promised: decided by the time step";
+  header.method = methodNames(plan);
+  header.plan = describe(plan, scene);
+  header.accuracy = accuracyPromised(plan);
   header.meshes = scene.models;
   for (const Body& body : scene.bodies) {
     const auto* model = std::get_if<ModelShape>(&body.shape);
@@ -71,30 +54,19 @@ TrajectoryHeader headerOf(const Scene& scene) {
 RunCost simulate(const Scene& scene, const SimulationSink& sink) {
   refuseUnsupported(scene);
   const double start = cpuSeconds();
-  Assembly assembly = assemble(scene);
-  refuseStartOverlaps(scene, assembly);
-  for (const std::string& warning : unusedRequests(scene)) sink.warning(warning);
-  for (const std::string& warning : assembly.warnings) sink.warning(warning);
-  Simulation simulation(scene, std::move(assembly));
+  Run run(scene);
   double cpu = cpuSeconds() - start;
+  for (const std::string& warning : run.startWarnings()) sink.warning(warning);
 
-  handOnEvents(simulation, sink);
-  sink.frame(frameOf(simulation, simulation.state(), 0, 0));
-  long frame = 1;
-  while (frame <= lastFrame(scene)) {
-    throwIfInterrupted();
+  for (long number = 0; number <= lastFrame(scene); ++number) {
     const double before = cpuSeconds();
-    simulation.advance();
+    const Frame frame = run.frameAt(number, frameTime(scene, number));
     cpu += cpuSeconds() - before;
-
-    const double same = kSameTime * std::max(1.0, simulation.time());
-    for (; frame <= lastFrame(scene) && frameTime(scene, frame) < simulation.time() - same; ++frame)
-      sink.frame(frameOf(simulation, simulation.stateWithin(frameTime(scene, frame)), frame, frameTime(scene, frame)));
-    handOnEvents(simulation, sink);
-    for (; frame <= lastFrame(scene) && frameTime(scene, frame) <= simulation.time() + same; ++frame)
-      sink.frame(frameOf(simulation, simulation.state(), frame, frameTime(scene, frame)));
+    for (const Event& event : run.takeEvents(frame.time)) sink.event(event);
+    for (const std::string& warning : run.takeWarnings()) sink.warning(warning);
+    sink.frame(frame);
   }
-  return {cpu, simulation.evaluations()};
+  return {cpu, run.evaluations()};
 }
 
 Trajectory simulate(const Scene& scene) {

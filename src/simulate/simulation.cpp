@@ -8,43 +8,45 @@
 
 #include "collision/time_of_impact.h"
 #include "core/error.h"
-#include "dynamics/integrators/explicit_euler.h"
-#include "dynamics/integrators/rk4.h"
-#include "dynamics/integrators/semi_implicit_euler.h"
+#include "core/interruption.h"
+#include "dynamics/integrators/dop853.h"
 #include "dynamics/invariants.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kDefaultTimeStep = 1.0 / 960;  // s: 16 steps a frame at 60 frames a second
 constexpr double kImpactPart = 1e-3;            // of the touching tolerance: how well an impact's gap is closed
 constexpr int kMostCorrections = 60;            // steps tried to that end; 3 are usual
 constexpr int kMostEventsPerStep = 10000;
 constexpr double kRopeTolerance = 1e-13;  // m of slack, or part of the tension that is left
 constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
 
+constexpr double kSameTime = 1e-12;       // s, relative beyond 1 s
+constexpr double kManyTurns = 100;        // rad: beyond, orientations need a tighter tolerance
+constexpr double kTurningPart = 0.1;      // of the tolerance, for these
+constexpr double kUnitLength = 1e-9;      // how far |q|^2 may be from 1 before it is made 1
+
 GuardNames namesOf(const Scene& scene, const Assembly& assembly, const ChosenMethod& method) {
-  GuardNames names{{}, {}, method.name, method.stabilityLimit};
+  GuardNames names{{}, assembly.springNames, std::string(method.name), method.stabilityLimit};
   for (const int body : assembly.sceneBodies) names.bodies.push_back(scene.bodies[static_cast<std::size_t>(body)].name);
-  for (const Spring& spring : scene.springs) names.springs.push_back(spring.name);
   return names;
+}
+
+/// Errors of orientations add up over the turns: those of bodies that turn by more than 100 rad are kept smaller.
+VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double duration) {
+  VectorX tolerance = stateTolerance(bodyCount(state), method.tolerance, method.tolerance);
+  for (Eigen::Index body = 0; body < bodyCount(state); ++body)
+    if (angularVelocity(state, body).norm() * duration > kManyTurns)
+      tolerance.segment<4>(body * kPoseSize + 3) *= kTurningPart;
+  return tolerance;
 }
 
 }  // namespace
 
-ChosenMethod chooseMethod(const Scene& scene) {
-  const MethodName name = scene.method ? scene.method->name : MethodName::semiImplicitEuler;
-  const double timeStep = scene.method ? scene.method->timeStep.value_or(kDefaultTimeStep) : kDefaultTimeStep;
-  if (name == MethodName::explicitEuler) return {explicitEuler, "explicit Euler", timeStep, 0};
-  if (name == MethodName::rk4) return {rk4, "RK4", timeStep, 2 * std::sqrt(2.0)};
-  CRADLE_CHECK(name == MethodName::semiImplicitEuler);
-  return {semiImplicitEuler, "semi-implicit Euler", timeStep, 2};
-}
-
-Simulation::Simulation(const Scene& scene, Assembly assembly)
+Simulation::Simulation(const Scene& scene, Assembly assembly, const ChosenMethod& method)
     : scene_(scene),
       assembly_(std::move(assembly)),
-      method_(chooseMethod(scene)),
+      method_(method),
       equations_(assembly_.mechanism),
       rightHandSide_(equations_.rightHandSide()),
       log_(assembly_),
@@ -53,38 +55,114 @@ Simulation::Simulation(const Scene& scene, Assembly assembly)
       pushes_(scene, assembly_.movingBodies, log_),
       guard_(assembly_.mechanism, assembly_.state, namesOf(scene, assembly_, method_)),
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
-      duration_(scene.duration),
       state_(assembly_.state) {
   contacts_.resolve(time_, state_, state_);
   ropes_.resolve(time_, state_);
   beginAndEndPushes();
   requireUnsolvedPairsApart();
+  if (method_.isAdaptive()) tolerance_ = toleranceOf(method_, state_, scene.duration);
+}
+
+const VectorX& Simulation::stateAt(double time) {
+  const double same = kSameTime * std::max(1.0, time);
+  while (time_ < time - same) {
+    throwIfInterrupted();
+    if (isAtRest())
+      restUntil(time);
+    else
+      advance();
+  }
+  if (time_ <= time + same) {
+    reported_ = state_;
+  } else {
+    prepareInterpolant(rightHandSide_, step_);
+    interpolate(step_, (time - step_.time) / step_.timeStep, reported_);
+  }
+  normalizeOrientations(reported_);
+  return reported_;
 }
 
 void Simulation::advance() {
-  double gridEnd = static_cast<double>(stepNumber_ + 1) * method_.timeStep;
-  if (gridEnd > duration_ - kTimeRounding * method_.timeStep) gridEnd = duration_;
-  const double stepEnd = std::min(gridEnd, pushes_.nextChange());
+  const double stepEnd = nextStepEnd();
 
   // How far do bodies move freely?
-  integrate(stepEnd);
+  takeStep(stepEnd);
   const bool atEvent = stopAtFirstEvent();
-  time_ = atEvent ? step_.time + step_.timeStep : stepEnd;
+  time_ = step_.time + step_.timeStep;
+  if (!atEvent && time_ > stepEnd - kTimeRounding * step_.timeStep) time_ = stepEnd;
 
   // Take out what the step left wrong: lengths of rods, closing and overlapping contacts. Then what changes here?
   const VectorX before = std::exchange(state_, step_.state);
-  normalizeOrientations(state_);
-  if (solver_.hasConstraints()) solver_.project(state_);
+  tidyState();
   contacts_.resolve(time_, before, state_);
   ropes_.resolve(time_, state_);
   beginAndEndPushes();
-  guard_.check(state_, time_, method_.timeStep);
+  guard_.check(state_, time_, step_.timeStep);
   requireUnsolvedPairsApart();
 
   if (atEvent) countEvent();
-  if (time_ < gridEnd) return;
+  if (method_.isAdaptive() || time_ < static_cast<double>(stepNumber_ + 1) * method_.timeStep) return;
   ++stepNumber_;
   eventsInStep_ = 0;
+}
+
+/// The end of the fixed step under way, or of the run; a push that begins or ends comes first.
+double Simulation::nextStepEnd() const {
+  double end = scene_.duration;
+  if (!method_.isAdaptive()) {
+    const double gridEnd = static_cast<double>(stepNumber_ + 1) * method_.timeStep;
+    if (gridEnd <= end - kTimeRounding * method_.timeStep) end = gridEnd;
+  }
+  return std::min(end, pushes_.nextChange());
+}
+
+void Simulation::takeStep(double stepEnd) {
+  if (std::exchange(isContinuous_, false)) carryEndRate(step_);
+  if (method_.isAdaptive())
+    takeAdaptiveStep(stepEnd);
+  else
+    integrate(stepEnd);
+}
+
+/// Steps until one is as accurate as asked.
+void Simulation::takeAdaptiveStep(double stepEnd) {
+  if (stepSize_.timeStep == 0) {
+    beginStep(rightHandSide_, state_, time_, stepEnd - time_, step_);
+    stepSize_.timeStep = firstTimeStep(rightHandSide_, tolerance_, step_);
+  }
+  while (true) {
+    const double planned = stepSize_.timeStep, left = stepEnd - time_;
+    const double length = planned >= left * (1 - kTimeRounding) ? left : planned;
+    integrate(time_ + length);
+    if (acceptStep(errorNorm(step_, tolerance_), step_.timeStep, stepSize_)) return;
+    keepStartRate(step_);
+    if (stepSize_.timeStep < kShortestTimeStep * scene_.duration) guard_.failAtShortestStep(state_, time_);
+  }
+}
+
+/// Constraints hold to rounding after each step. Orientations are of unit length nearly enough for the equations, which
+/// take their direction; a state that is not touched lets the next step begin with this one's last rate.
+void Simulation::tidyState() {
+  bool isTouched = false;
+  if (solver_.hasConstraints()) {
+    solver_.project(state_);
+    isTouched = true;
+  }
+  for (Eigen::Index body = 0; body < bodyCount(state_); ++body)
+    isTouched = isTouched || std::abs(orientation(state_, body).squaredNorm() - 1) > kUnitLength;
+  if (isTouched || !method_.isAdaptive()) normalizeOrientations(state_);
+  isContinuous_ = method_.isAdaptive() && !isTouched;
+}
+
+bool Simulation::isAtRest() const {
+  return contacts_.allRest() && time_ < pushes_.nextChange();
+}
+
+/// Nothing happens before a push begins.
+void Simulation::restUntil(double time) {
+  time_ = std::min(time, pushes_.nextChange());
+  stepNumber_ = static_cast<long>(std::floor(time_ / method_.timeStep + kTimeRounding));
+  beginAndEndPushes();
 }
 
 void Simulation::integrate(double stepEnd) {
@@ -107,6 +185,7 @@ bool Simulation::stopAtFirstEvent() {
     shortenStepTo(change->fraction * whole, kRopeTolerance,
                   [&](const VectorX& state) { return ropes_.margin(*change, state); });
   }
+  if (impact || change) isContinuous_ = false;
   return impact || change;
 }
 
@@ -115,6 +194,7 @@ bool Simulation::stopAtFirstEvent() {
 void Simulation::shortenStepTo(double length, double tolerance, const std::function<double(const VectorX&)>& margin) {
   const double whole = step_.timeStep;
   const auto marginAfter = [&](double part) {
+    keepStartRate(step_);
     integrate(time_ + part);
     return margin(step_.state);
   };
@@ -135,11 +215,13 @@ void Simulation::shortenStepTo(double length, double tolerance, const std::funct
       late = part, lateMargin = lateWeight = found, earlyWeight /= 2;
     }
   }
+  keepStartRate(step_);
   integrate(time_ + late);
 }
 
 void Simulation::beginAndEndPushes() {
   if (time_ < pushes_.nextChange()) return;
+  isContinuous_ = false;
   for (const int body : pushes_.apply(time_, state_, assembly_.mechanism.pushes)) contacts_.wake(time_, body, state_);
 }
 
@@ -164,20 +246,7 @@ void Simulation::countEvent() {
   throw Error(ErrorKind::limit, "",
               fmt::format("more than {} impacts in one step of {:.3g} s at {:.6g} s; lower a restitution of 1 between "
                           "bodies that cannot separate, or take a smaller \"timeStep\"",
-                          kMostEventsPerStep, method_.timeStep, time_));
-}
-
-VectorX Simulation::stateWithin(double time) {
-  prepareInterpolant(rightHandSide_, step_);
-  VectorX state;
-  interpolate(step_, (time - step_.time) / step_.timeStep, state);
-  normalizeOrientations(state);
-  return state;
-}
-
-EnergyBalance Simulation::energyOf(const VectorX& state) const {
-  const Invariants sums = invariantsOf(assembly_.mechanism, state);
-  return {sums.kinetic, sums.potential, dissipatedEnergy(state), pushWork(state), sums.momentum, sums.angularMomentum};
+                          kMostEventsPerStep, step_.timeStep, time_));
 }
 
 }  // namespace cradle

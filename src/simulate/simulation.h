@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collision/time_of_impact.h"
+#include "dynamics/integrators/step_size.h"
 #include "simulate/assembly.h"
 #include "simulate/contact_stage.h"
 #include "simulate/energy_guard.h"
@@ -13,45 +14,39 @@
 
 namespace cradle {
 
-/// The fixed-step method that a scene names, or the one that stands in for a plan.
-struct ChosenMethod {
-  Integrator integrate;
-  const char* name;
-  double timeStep;        // s
-  double stabilityLimit;  // of step x omega
-};
-ChosenMethod chooseMethod(const Scene& scene);
-
-/// A scene in motion. Time goes on in steps of the method; a step is cut where bodies meet, ropes go
-/// taut or slack, and pushes begin or end.
+/// An island in motion, with a clock of its own. Time goes on in steps of the method; a step is cut where bodies meet,
+/// ropes go taut or slack, and pushes begin or end.
 class Simulation {
  public:
-  /// Keeps a reference to `scene`.
-  Simulation(const Scene& scene, Assembly assembly);
+  /// Keeps a reference to `scene`. The method is one that takes steps.
+  Simulation(const Scene& scene, Assembly assembly, const ChosenMethod& method);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Goes on to the end of the step, or to the next event in it, and resolves what happens there. Throws
-  /// Error(unstable) if the state blows up, Error(limit) if a step has too many impacts.
-  void advance();
+  /// The state at `time` (s), not earlier than in the call before; orientations of unit length. At an instant of events
+  /// the state after them. Throws Error(unstable) if the state blows up, Error(limit) if a step has too many impacts,
+  /// Error(interrupted).
+  const VectorX& stateAt(double time);
 
-  double time() const { return time_; }
-  const VectorX& state() const { return state_; }
-  /// The state at a time inside the motion that led to time(), before contacts were resolved there.
-  VectorX stateWithin(double time);
+  const Assembly& assembly() const { return assembly_; }
   long evaluations() const { return equations_.evaluations(); }
-  EnergyBalance energyOf(const VectorX& state) const;
 
-  /// Events since the last call.
+  /// Events since the last call: up to the end of the step under way.
   std::vector<Event> takeEvents() { return log_.take(); }
-  /// What the user should know, since the last call.
   std::vector<std::string> takeWarnings() { return log_.takeWarnings(); }
 
  private:
+  void advance();
+  double nextStepEnd() const;
+  void takeStep(double stepEnd);
+  void takeAdaptiveStep(double stepEnd);
   void integrate(double stepEnd);
   bool stopAtFirstEvent();
   void shortenStepTo(double length, double tolerance, const std::function<double(const VectorX&)>& margin);
   void beginAndEndPushes();
+  void tidyState();
+  bool isAtRest() const;
+  void restUntil(double time);
   void countEvent();
   void requireUnsolvedPairsApart() const;
 
@@ -66,11 +61,13 @@ class Simulation {
   PushSchedule pushes_;
   EnergyGuard guard_;
   ConstraintSolver solver_;
-  double duration_;      // s
-  double time_ = 0;      // s
-  long stepNumber_ = 0;  // the step under way covers [stepNumber_, stepNumber_ + 1] x timeStep
+  VectorX tolerance_;  // of an adaptive method
+  StepSize stepSize_;
+  bool isContinuous_ = false;  // nothing has changed the state since the last step's end
+  double time_ = 0;            // s
+  long stepNumber_ = 0;  // of a fixed step: the one under way covers [stepNumber_, stepNumber_ + 1] x timeStep
   int eventsInStep_ = 0;
-  VectorX state_;
+  VectorX state_, reported_;
   Step step_;
 };
 

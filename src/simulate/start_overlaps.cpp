@@ -55,12 +55,9 @@ std::string faultOf(const Body& a, const Body& b, bool againstPlane, double dept
       b.where, a.name, b.name, length, lengthText(allowed), length);
 }
 
-}  // namespace
-
-void refuseStartOverlaps(const Scene& scene, const Assembly& assembly) {
+/// Adds the overlaps of one island to `faults`.
+void findOverlaps(const Scene& scene, const Assembly& assembly, std::vector<std::string>& faults) {
   const ContactGeometry& geometry = assembly.geometry;
-  std::vector<std::string> faults;
-  std::size_t count = 0;
   for (std::size_t i = 0; i < geometry.pairs.size(); ++i) {
     const ColliderPair& pair = geometry.pairs[i];
     const Body& a = scene.bodies[static_cast<std::size_t>(assembly.pairBodies[i].first)];
@@ -68,11 +65,21 @@ void refuseStartOverlaps(const Scene& scene, const Assembly& assembly) {
     const RigidTransform worldFromA = poseOf(assembly.state, geometry.colliders[pair.a].body);
     if (separationBound(geometry, pair, worldFromA, poseOf(assembly.state, bodyBOf(geometry, pair))) > 0) continue;
     const double depth = depthOf(geometry, pair, assembly.state), allowed = touchingDepth(geometry, pair, a, b);
-    if (depth <= allowed) continue;
-    if (++count <= kMostFaults) faults.push_back(faultOf(a, b, pair.againstPlane, depth, allowed));
+    if (depth > allowed) faults.push_back(faultOf(a, b, pair.againstPlane, depth, allowed));
   }
-  if (count > kMostFaults) faults.push_back(fmt::format("and {} more", count - kMostFaults));
-  if (count > 0) throw Error(ErrorKind::scene, "", fmt::format("{}", fmt::join(faults, "\n")));
+}
+
+}  // namespace
+
+void refuseStartOverlaps(const Scene& scene, const std::vector<Assembly>& islands) {
+  std::vector<std::string> faults;
+  for (const Assembly& assembly : islands) findOverlaps(scene, assembly, faults);
+  if (faults.empty()) return;
+  if (faults.size() > kMostFaults) {
+    faults[kMostFaults] = fmt::format("and {} more", faults.size() - kMostFaults);
+    faults.resize(kMostFaults + 1);
+  }
+  throw Error(ErrorKind::scene, "", fmt::format("{}", fmt::join(faults, "\n")));
 }
 
 }  // namespace cradle

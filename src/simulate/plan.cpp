@@ -1,0 +1,236 @@
+// Rules of the plan. The first that applies to an island is taken:
+//   1. the scene names a method: that one, for studies
+//   2. something may touch: RK4 with a fixed step, since lasting contact is resolved once a step
+//   3. nothing acts but uniform gravity: closed form
+//   4. else DOP853 with steps as long as the accuracy allows
+
+#include "simulate/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "core/error.h"
+#include "dynamics/integrators/dop853.h"
+#include "dynamics/integrators/explicit_euler.h"
+#include "dynamics/integrators/rk4.h"
+#include "dynamics/integrators/semi_implicit_euler.h"
+#include "simulate/colliders.h"
+#include "simulate/islands.h"
+#include "simulate/reach.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kContactTimeStep = 1.0 / 960;  // s: 16 steps a frame at 60 frames a second
+constexpr double kTolerancePart = 0.1;          // of the accuracy: the local errors of about ten steps add up to it
+
+/// What reaches of bodies are compared with: their size around the centre of mass.
+double sizeOf(const Body& body, const Scene& scene) {
+  const auto collider = colliderOf(body, scene, 0);
+  return collider ? collider->boundingRadius : 0;
+}
+
+/// A fixed body's collider stands in the world: its size around the place of its frame.
+double fixedSizeOf(const Body& body, const Scene& scene) {
+  const auto collider = colliderOf(body, scene, -1);
+  double size = 0;
+  if (!collider) return size;
+  for (const Vec3& point : collider->points)
+    size = std::max(size, (point - body.worldFromBody.translation).norm() + collider->radius);
+  return size;
+}
+
+std::vector<double> sizesOf(const Scene& scene) {
+  std::vector<double> sizes;
+  for (const Body& body : scene.bodies)
+    sizes.push_back(body.motion == Motion::dynamic ? sizeOf(body, scene) : fixedSizeOf(body, scene));
+  return sizes;
+}
+
+bool canMeet(const Reach& a, double sizeA, const Reach& b, double sizeB) {
+  return (a.center - b.center).norm() <= a.radius + b.radius + sizeA + sizeB;
+}
+
+bool canMeetPlane(const Reach& reach, double size, const Body& plane) {
+  const Vec3 normal = plane.worldFromBody.rotation * std::get<Plane>(plane.shape).normal;
+  return normal.dot(reach.center - plane.worldFromBody.translation) <= reach.radius + size;
+}
+
+using Pairs = std::vector<std::pair<int, int>>;
+
+/// Bodies that a ball joint or a hinge joins do not touch each other.
+std::set<std::pair<int, int>> joinedPairs(const Scene& scene) {
+  std::set<std::pair<int, int>> pairs;
+  const auto add = [&](const auto& joints) {
+    for (const auto& joint : joints) pairs.insert(std::minmax(joint.anchorA.body, joint.anchorB.body));
+  };
+  add(scene.ballJoints), add(scene.hinges);
+  return pairs;
+}
+
+Pairs nearPairs(const Scene& scene, const std::vector<double>& sizes, const std::vector<Reach>& reaches) {
+  Pairs pairs;
+  const std::set<std::pair<int, int>> joined = joinedPairs(scene);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    for (std::size_t j = i + 1; j < scene.bodies.size(); ++j) {
+      const Body &a = scene.bodies[i], &b = scene.bodies[j];
+      if (!mayTouch(a, b)) continue;
+      const bool meet = std::holds_alternative<Plane>(a.shape)   ? canMeetPlane(reaches[j], sizes[j], a)
+                        : std::holds_alternative<Plane>(b.shape) ? canMeetPlane(reaches[i], sizes[i], b)
+                                                                 : canMeet(reaches[i], sizes[i], reaches[j], sizes[j]);
+      const std::pair<int, int> pair(i, j);
+      if (meet && !joined.contains(pair)) pairs.push_back(pair);
+    }
+  return pairs;
+}
+
+/// Bodies that touch something may be thrown anywhere that their ties allow: the search goes on until it finds no more.
+Pairs findNearPairs(const Scene& scene) {
+  const std::vector<double> sizes = sizesOf(scene);
+  std::vector<char> touches(scene.bodies.size(), 0);
+  while (true) {
+    const Pairs pairs = nearPairs(scene, sizes, reachOf(scene, touches));
+    std::vector<char> found(scene.bodies.size(), 0);
+    for (const auto& [a, b] : pairs) found[static_cast<std::size_t>(a)] = found[static_cast<std::size_t>(b)] = 1;
+    if (found == touches) return pairs;
+    touches = found;
+  }
+}
+
+template <class Tie>
+void forEachLink(const Scene& scene, const Tie& tie) {
+  const auto all = [&](const auto& links) {
+    for (const auto& link : links) tie(link.anchorA.body, link.anchorB.body);
+  };
+  all(scene.springs), all(scene.rods), all(scene.ropes), all(scene.ballJoints), all(scene.hinges);
+}
+
+int movingOr(const Scene& scene, int body) {
+  return body != kWorld && scene.bodies[static_cast<std::size_t>(body)].motion == Motion::dynamic ? body : kWorld;
+}
+
+/// Islands with their bodies and pairs; methods are chosen later.
+std::vector<IslandPlan> findIslands(const Scene& scene, const Pairs& pairs) {
+  Islands joined(scene.bodies.size());
+  const auto join = [&](int a, int b) { joined.join(movingOr(scene, a), movingOr(scene, b)); };
+  forEachLink(scene, join);
+  for (const auto& [a, b] : pairs) join(a, b);
+
+  std::map<int, IslandPlan> islands;
+  for (int body = 0; body < std::ssize(scene.bodies); ++body)
+    if (movingOr(scene, body) != kWorld) islands[joined.islandOf(body)].bodies.push_back(body);
+  for (const auto& pair : pairs)
+    islands[joined.islandOf(movingOr(scene, pair.first) != kWorld ? pair.first : pair.second)].near.push_back(pair);
+  std::vector<IslandPlan> ordered;
+  for (auto& [first, island] : islands) ordered.push_back(std::move(island));
+  return ordered;
+}
+
+ChosenMethod namedMethod(const Scene& scene) {
+  const double timeStep = scene.method->timeStep.value_or(kContactTimeStep);
+  switch (scene.method->name) {
+    case MethodName::explicitEuler: return {explicitEuler, "explicit Euler", timeStep, 0};
+    case MethodName::semiImplicitEuler: return {semiImplicitEuler, "semi-implicit Euler", timeStep, 2};
+    case MethodName::rk4: return {rk4, "RK4", timeStep, 2 * std::sqrt(2.0)};
+    case MethodName::dop853: break;
+  }
+  return {dop853, "DOP853", scene.method->timeStep.value_or(0), 5.96, kTolerancePart * scene.accuracy};
+}
+
+bool isActedUpon(const Scene& scene, const IslandPlan& island) {
+  const auto isIn = [&](int body) { return std::binary_search(island.bodies.begin(), island.bodies.end(), body); };
+  bool found = std::any_of(scene.pushes.begin(), scene.pushes.end(), [&](const Push& push) { return isIn(push.body); });
+  forEachLink(scene, [&](int a, int b) { found = found || isIn(a) || isIn(b); });
+  return found;
+}
+
+void choose(const Scene& scene, IslandPlan& island) {
+  const bool mayTouchSomething = !island.near.empty();
+  if (!mayTouchSomething) island.leftOut.push_back("no search for contact: nothing can touch");
+  if (scene.method) {
+    island.method = namedMethod(scene);
+    island.reason = "the scene names the method";
+    if (island.method.isAdaptive() && mayTouchSomething) {
+      island.method.timeStep = kContactTimeStep;
+      island.reason = "the scene names the method; something may touch, so that its step is fixed";
+    }
+  } else if (mayTouchSomething) {
+    island.method = {rk4, "RK4", kContactTimeStep, 2 * std::sqrt(2.0)};
+    island.reason = "something may touch: contact is resolved once a step, the accuracy asked is not promised";
+  } else if (!isActedUpon(scene, island)) {
+    island.method.name = "closed form";
+    island.reason = "nothing acts but uniform gravity: parabola and exact free rotation";
+    island.leftOut.push_back("no steps: one evaluation a frame");
+  } else {
+    island.method = {dop853, "DOP853", 0, 5.96, kTolerancePart * scene.accuracy};
+    island.reason = "smooth forces: steps as long as the accuracy allows";
+  }
+}
+
+std::string bodyNames(const IslandPlan& island, const Scene& scene) {
+  constexpr std::size_t kMostNames = 4;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(kMostNames, island.bodies.size()); ++i)
+    names += fmt::format("{}{}", i ? ", " : "", scene.bodies[static_cast<std::size_t>(island.bodies[i])].name);
+  if (island.bodies.size() > kMostNames) names += fmt::format(" and {} more", island.bodies.size() - kMostNames);
+  return names;
+}
+
+std::string methodText(const ChosenMethod& method) {
+  if (method.isClosedForm()) return std::string(method.name);
+  if (method.isAdaptive()) return fmt::format("{}, local error below {:.3g} (1 + |x|)", method.name, method.tolerance);
+  return fmt::format("{}, step {} s", method.name, method.timeStep);
+}
+
+}  // namespace
+
+Plan planOf(const Scene& scene) {
+  Plan plan{findIslands(scene, findNearPairs(scene)), scene.accuracy};
+  for (IslandPlan& island : plan.islands) choose(scene, island);
+  return plan;
+}
+
+std::string methodNames(const Plan& plan) {
+  std::vector<std::string> names;
+  for (const IslandPlan& island : plan.islands) {
+    const std::string name = methodText(island.method);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return fmt::format("{}", fmt::join(names, "; "));
+}
+
+std::string accuracyPromised(const Plan& plan) {
+  for (const IslandPlan& island : plan.islands)
+    if (!island.method.isClosedForm() && !island.method.isAdaptive())
+      return "not promised: decided by the time step";
+  return fmt::format("{:.3g}", plan.accuracy);
+}
+
+std::string describe(const Plan& plan, const Scene& scene) {
+  std::string text = fmt::format("{} {} in {} {}", scene.bodies.size(), scene.bodies.size() == 1 ? "body" : "bodies",
+                                 plan.islands.size(), plan.islands.size() == 1 ? "island" : "islands");
+  std::size_t fixed = 0;
+  for (const Body& body : scene.bodies) fixed += body.motion == Motion::fixed;
+  if (fixed > 0) text += fmt::format(", {} fixed", fixed);
+  // Islands that are moved alike are told together.
+  std::map<std::string, std::vector<const IslandPlan*>> alike;
+  std::vector<std::string> order;
+  for (const IslandPlan& island : plan.islands) {
+    std::string how = fmt::format("\n  method    {}\n  why       {}", methodText(island.method), island.reason);
+    for (const std::string_view leftOut : island.leftOut) how += fmt::format("\n  left out  {}", leftOut);
+    if (!alike.contains(how)) order.push_back(how);
+    alike[how].push_back(&island);
+  }
+  for (const std::string& how : order) {
+    const auto& islands = alike[how];
+    const std::string more = islands.size() > 1 ? fmt::format("; {} more islands alike", islands.size() - 1) : "";
+    text += fmt::format("\n{}{}{}", bodyNames(*islands[0], scene), more, how);
+  }
+  return text;
+}
+
+}  // namespace cradle

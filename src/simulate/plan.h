@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "dynamics/integrators/step.h"
+#include "scene/scene.h"
+
+namespace cradle {
+
+/// The method that moves an island.
+struct ChosenMethod {
+  Integrator integrate = nullptr;  // null: closed form
+  std::string_view name;
+  double timeStep = 0;        // s, fixed; 0: chosen by the error
+  double stabilityLimit = 0;  // of step x omega; 0: never stable
+  double tolerance = 0;       // of the local error, scaled 1 + |x|, if the error chooses the step
+
+  bool isClosedForm() const { return !integrate; }
+  bool isAdaptive() const { return integrate && timeStep == 0; }
+};
+
+/// Bodies that depend on each other, by ties, springs or contact that may come about, and how they are moved.
+struct IslandPlan {
+  std::vector<int> bodies;                // scene bodies that move, ascending
+  std::vector<std::pair<int, int>> near;  // scene bodies that may touch during the run, first < second
+  ChosenMethod method;
+  std::string_view reason;
+  std::vector<std::string_view> leftOut;  // what these bodies do not need
+};
+
+/// What a scene needs, and no more.
+struct Plan {
+  std::vector<IslandPlan> islands;  // in the order of their first bodies
+  double accuracy = 0;              // asked
+};
+
+/// O(pairs of bodies).
+Plan planOf(const Scene& scene);
+
+/// The methods of all islands, each named once; and what accuracy they promise.
+std::string methodNames(const Plan& plan);
+std::string accuracyPromised(const Plan& plan);
+
+/// The plan in words, a few lines for each kind of island.
+std::string describe(const Plan& plan, const Scene& scene);
+
+}  // namespace cradle

@@ -1,0 +1,100 @@
+#include "simulate/run.h"
+
+#include <algorithm>
+
+#include "core/interruption.h"
+#include "dynamics/invariants.h"
+#include "simulate/start_overlaps.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kSameTime = 1e-12;  // s, relative beyond 1 s: an event this near to a frame is at it
+
+void add(const Invariants& sums, const VectorX& state, EnergyBalance& balance) {
+  balance.kinetic += sums.kinetic;
+  balance.potential += sums.potential;
+  balance.dissipated += dissipatedEnergy(state);
+  balance.work += pushWork(state);
+  balance.momentum += sums.momentum;
+  balance.angularMomentum += sums.angularMomentum;
+}
+
+}  // namespace
+
+Run::Run(const Scene& scene) {
+  for (const Body& body : scene.bodies)
+    stateOfBody_.push_back(body.motion == Motion::dynamic ? static_cast<int>(moving_++) : -1);
+  const Plan plan = planOf(scene);
+  std::vector<Assembly> assemblies;
+  for (const IslandPlan& island : plan.islands) assemblies.push_back(assemble(scene, island));
+  refuseStartOverlaps(scene, assemblies);
+  for (std::size_t i = 0; i < assemblies.size(); ++i) {
+    startWarnings_.insert(startWarnings_.end(), assemblies[i].warnings.begin(), assemblies[i].warnings.end());
+    const ChosenMethod& method = plan.islands[i].method;
+    if (method.isClosedForm())
+      addFlight(std::move(assemblies[i]));
+    else
+      simulations_.push_back(std::make_unique<Simulation>(scene, std::move(assemblies[i]), method));
+  }
+}
+
+void Run::addFlight(Assembly assembly) {
+  FlyingIsland island{std::move(assembly), {}};
+  const Mechanism& mechanism = island.assembly.mechanism;
+  for (std::size_t body = 0; body < mechanism.bodies.size(); ++body)
+    island.flights.emplace_back(mechanism.bodies[body], island.assembly.state, static_cast<Eigen::Index>(body),
+                                mechanism.gravity);
+  flying_.push_back(std::move(island));
+}
+
+Frame Run::frameAt(long number, double time) {
+  throwIfInterrupted();
+  Frame frame{number, time, std::vector<BodyState>(moving_), {}};
+  for (const auto& simulation : simulations_) {
+    addTo(frame, simulation->assembly(), simulation->stateAt(time));
+    const std::vector<Event> events = simulation->takeEvents();
+    events_.insert(events_.end(), events.begin(), events.end());
+  }
+  for (FlyingIsland& island : flying_) {
+    for (const FreeFlight& flight : island.flights) flight.moveTo(time, island.assembly.state);
+    island.evaluations += std::ssize(island.flights);
+    addTo(frame, island.assembly, island.assembly.state);
+  }
+  return frame;
+}
+
+void Run::addTo(Frame& frame, const Assembly& assembly, const VectorX& state) const {
+  for (std::size_t i = 0; i < assembly.sceneBodies.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    const int at = stateOfBody_[static_cast<std::size_t>(assembly.sceneBodies[i])];
+    frame.states[static_cast<std::size_t>(at)] = {centerOfMass(state, body), orientation(state, body),
+                                                  linearVelocity(state, body), angularVelocity(state, body)};
+  }
+  add(invariantsOf(assembly.mechanism, state), state, frame.energy);
+}
+
+std::vector<Event> Run::takeEvents(double time) {
+  const double until = time + kSameTime * std::max(1.0, time);
+  std::stable_sort(events_.begin(), events_.end(), [](const Event& a, const Event& b) { return a.time < b.time; });
+  const auto later = std::find_if(events_.begin(), events_.end(), [&](const Event& event) { return event.time > until; });
+  const std::vector<Event> taken(events_.begin(), later);
+  events_.erase(events_.begin(), later);
+  return taken;
+}
+
+std::vector<std::string> Run::takeWarnings() {
+  std::vector<std::string> warnings;
+  for (const auto& simulation : simulations_)
+    for (std::string& warning : simulation->takeWarnings()) warnings.push_back(std::move(warning));
+  return warnings;
+}
+
+long Run::evaluations() const {
+  long sum = 0;
+  for (const auto& simulation : simulations_) sum += simulation->evaluations();
+  for (const FlyingIsland& island : flying_) sum += island.evaluations;
+  return sum;
+}
+
+}  // namespace cradle

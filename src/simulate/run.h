@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dynamics/free_flight.h"
+#include "simulate/simulation.h"
+
+namespace cradle {
+
+/// All islands of a scene in motion, each with its own method and clock.
+class Run {
+ public:
+  /// Keeps a reference to `scene`. Throws Error(scene) for bodies that overlap.
+  explicit Run(const Scene& scene);
+
+  /// Warnings about the start.
+  const std::vector<std::string>& startWarnings() const { return startWarnings_; }
+
+  /// The frame at a time (s) not earlier than in the call before. Throws what Simulation::stateAt throws.
+  Frame frameAt(long number, double time);
+
+  /// Events up to `time` that were not taken before, in the order of time.
+  std::vector<Event> takeEvents(double time);
+
+  /// Warnings since the last call.
+  std::vector<std::string> takeWarnings();
+
+  /// Evaluations of equations of motion, and of closed forms, so far.
+  long evaluations() const;
+
+ private:
+  /// Bodies that nothing but gravity acts upon.
+  struct FlyingIsland {
+    Assembly assembly;
+    std::vector<FreeFlight> flights;
+    long evaluations = 0;
+  };
+  void addFlight(Assembly assembly);
+  void addTo(Frame& frame, const Assembly& assembly, const VectorX& state) const;
+
+  std::vector<std::string> startWarnings_;
+  std::vector<std::unique_ptr<Simulation>> simulations_;
+  std::vector<FlyingIsland> flying_;
+  std::vector<int> stateOfBody_;  // of each scene body in a frame's states, or -1
+  std::size_t moving_ = 0;
+  std::vector<Event> events_;  // known, but not yet taken
+};
+
+}  // namespace cradle
