@@ -32,7 +32,7 @@ MethodName methodNamed(const std::string& name) {
   for (const auto& [text, method] : kMethodNames)
     if (name == text) return method;
   throw Error(ErrorKind::usage, "--method",
-              fmt::format("found \"{}\"; allowed are explicitEuler, semiImplicitEuler, rk4", name));
+              fmt::format("found \"{}\"; allowed are explicitEuler, semiImplicitEuler, rk4, dop853", name));
 }
 
 double requirePositive(const char* option, double value) {

@@ -82,9 +82,9 @@ void ContactStage::wakeTouched(double time, const VectorX& state) {
   if (woken) findTouching(state);
 }
 
-/// Restitution. A contact that closes faster than acceleration explains is an impact, and then all that touch each other
-/// there take part. What explains: the speed that it gained since the last step, part of a step as that may have been,
-/// would have in `kRestSteps` whole ones.
+/// Restitution. A contact that closes faster than acceleration explains is an impact, and then all that touch each
+/// other there take part. What explains: the speed that it gained since the last step, part of a step as that may have
+/// been, would have in `kRestSteps` whole ones.
 void ContactStage::resolveImpacts(double time, const VectorX& before, VectorX& state) {
   std::vector<ImpactContact> impacts = findImpacts(before, state);
   if (impacts.empty()) return;

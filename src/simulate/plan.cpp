@@ -133,10 +133,14 @@ std::vector<IslandPlan> findIslands(const Scene& scene, const Pairs& pairs) {
 ChosenMethod namedMethod(const Scene& scene) {
   const double timeStep = scene.method->timeStep.value_or(kContactTimeStep);
   switch (scene.method->name) {
-    case MethodName::explicitEuler: return {explicitEuler, "explicit Euler", timeStep, 0};
-    case MethodName::semiImplicitEuler: return {semiImplicitEuler, "semi-implicit Euler", timeStep, 2};
-    case MethodName::rk4: return {rk4, "RK4", timeStep, 2 * std::sqrt(2.0)};
-    case MethodName::dop853: break;
+    case MethodName::explicitEuler:
+      return {explicitEuler, "explicit Euler", timeStep, 0};
+    case MethodName::semiImplicitEuler:
+      return {semiImplicitEuler, "semi-implicit Euler", timeStep, 2};
+    case MethodName::rk4:
+      return {rk4, "RK4", timeStep, 2 * std::sqrt(2.0)};
+    case MethodName::dop853:
+      break;
   }
   return {dop853, "DOP853", scene.method->timeStep.value_or(0), 5.96, kTolerancePart * scene.accuracy};
 }
@@ -205,8 +209,7 @@ std::string methodNames(const Plan& plan) {
 
 std::string accuracyPromised(const Plan& plan) {
   for (const IslandPlan& island : plan.islands)
-    if (!island.method.isClosedForm() && !island.method.isAdaptive())
-      return "not promised: decided by the time step";
+    if (!island.method.isClosedForm() && !island.method.isAdaptive()) return "not promised: decided by the time step";
   return fmt::format("{:.3g}", plan.accuracy);
 }
 

@@ -58,8 +58,8 @@ bool narrow(const Anchor& end, const Anchor& other, double length, const Scene& 
   return true;
 }
 
-/// The farthest that a spring's end can be from its fixed anchor while energy suffices: k (d - L0)^2 / 2 <= E + m g (d +
-/// d0 + 2 arm), where the body's centre falls by no more than its anchor moves and its arm turns.
+/// The farthest that a spring's end can be from its fixed anchor while energy suffices: k (d - L0)^2 / 2 <= E + m g (d
+/// + d0 + 2 arm), where the body's centre falls by no more than its anchor moves and its arm turns.
 double farthestOnSpring(const Spring& spring, const Anchor& end, const Anchor& fixed, double energy,
                         const Scene& scene) {
   if (spring.stiffness == 0) return std::numeric_limits<double>::infinity();

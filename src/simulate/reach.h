@@ -13,8 +13,8 @@ struct Reach {
   double radius = std::numeric_limits<double>::infinity();
 };
 
-/// Where each body can get to during the run, as far as that follows from what ties it to fixed points (lengths of rods,
-/// ropes and joints), and, for bodies that touch nothing, from the energy that a body on springs has, or from the
+/// Where each body can get to during the run, as far as that follows from what ties it to fixed points (lengths of
+/// rods, ropes and joints), and, for bodies that touch nothing, from the energy that a body on springs has, or from the
 /// parabola of a body that nothing holds. Infinite where nothing is known. `touches`: by body. O(bodies x links) at
 /// worst.
 std::vector<Reach> reachOf(const Scene& scene, const std::vector<char>& touches);

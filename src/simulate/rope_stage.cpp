@@ -10,11 +10,12 @@
 namespace cradle {
 namespace {
 
-constexpr double kTautPart = 1e-9;         // of its length: a rope this near to it is at its length
-constexpr double kSlackPart = 1e-6;        // of its length: a rope this much shorter is slack again
-constexpr double kRestPart = 1e-7;         // of sqrt(acceleration x length): a rebound that rises by 5e-15 of the length
-constexpr double kLoadedPart = 1e-6;       // of gravity: a pull that is no rounding
-constexpr int kTensionSamples = 4;         // a step: it is at most a small part of a swing
+constexpr double kTautPart = 1e-9;    // of its length: a rope this near to it is at its length
+constexpr double kSlackPart = 1e-6;   // of its length: a rope this much shorter is slack again
+constexpr double kRestPart = 1e-7;    // of sqrt(acceleration x length): a rebound that rises by 5e-15 of the length
+constexpr double kLoadedPart = 1e-6;  // of gravity: a pull that is no rounding
+constexpr int kTensionSamples = 4;    // a step: it is at most a small part of a swing
+constexpr double kFirstLook = 1.0 / 1024;  // of a step
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
 
 Vec3 positionAt(const Step& step, const Attachment& attachment, double fraction) {
@@ -23,6 +24,16 @@ Vec3 positionAt(const Step& step, const Attachment& attachment, double fraction)
 
 double motionBound(const Step& step, const Attachment& attachment) {
   return cradle::motionBound(step, attachment.body, attachment.point.norm());
+}
+
+/// Where in the step a rope is slack by more than `least` (m): at its start, or, for one that has just been let go, as
+/// soon as can be; 1 if nowhere.
+template <class Slack>
+double firstSlack(const Slack& slack, double least) {
+  if (slack(0) > least) return 0;
+  double fraction = kFirstLook;
+  while (fraction < 1 && slack(fraction) <= least) fraction *= 2;
+  return std::min(fraction, 1.0);
 }
 
 }  // namespace
@@ -53,9 +64,10 @@ std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
       return rope.maxLength -
              (positionAt(step, rope.anchorA, fraction) - positionAt(step, rope.anchorB, fraction)).norm();
     };
-    const double start = slack(0), speed = motionBound(step, rope.anchorA) + motionBound(step, rope.anchorB);
-    if (start <= kTautPart * rope.maxLength || start > speed) continue;
-    if (const auto fraction = firstCrossing(slack, GapBounds{speed}, 0, start, end, slack(end)))
+    const double speed = motionBound(step, rope.anchorA) + motionBound(step, rope.anchorB);
+    const double begin = firstSlack(slack, kTautPart * rope.maxLength), start = slack(begin);
+    if (begin >= end || start > speed) continue;
+    if (const auto fraction = firstCrossing(slack, GapBounds{speed}, begin, start, end, slack(end)))
       first = RopeChange{*fraction, i};
   }
   if (first && isTaut(first->rope)) startTension_ = tension(first->rope, step.startState);

@@ -49,10 +49,10 @@ class RopeStage {
   EventLog& log_;
   ConstraintSolver solver_;
   double timeStep_;
-  std::size_t sceneRods_;     // rods that are no ropes
-  std::vector<int> tautRod_;  // index into Constraints::rods of each rope, or -1: no smooth force pulls at it
+  std::size_t sceneRods_;          // rods that are no ropes
+  std::vector<int> tautRod_;       // index into Constraints::rods of each rope, or -1: no smooth force pulls at it
   std::vector<char> isStretched_;  // has reached its length and not been slack since
-  double startTension_ = 1;   // N, of the change under way
+  double startTension_ = 1;        // N, of the change under way
   VectorX rate_, sample_;
 };
 

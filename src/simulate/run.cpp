@@ -77,7 +77,8 @@ void Run::addTo(Frame& frame, const Assembly& assembly, const VectorX& state) co
 std::vector<Event> Run::takeEvents(double time) {
   const double until = time + kSameTime * std::max(1.0, time);
   std::stable_sort(events_.begin(), events_.end(), [](const Event& a, const Event& b) { return a.time < b.time; });
-  const auto later = std::find_if(events_.begin(), events_.end(), [&](const Event& event) { return event.time > until; });
+  const auto later =
+      std::find_if(events_.begin(), events_.end(), [&](const Event& event) { return event.time > until; });
   const std::vector<Event> taken(events_.begin(), later);
   events_.erase(events_.begin(), later);
   return taken;

@@ -15,16 +15,16 @@
 namespace cradle {
 namespace {
 
-constexpr double kImpactPart = 1e-3;            // of the touching tolerance: how well an impact's gap is closed
-constexpr int kMostCorrections = 60;            // steps tried to that end; 3 are usual
+constexpr double kImpactPart = 1e-3;  // of the touching tolerance: how well an impact's gap is closed
+constexpr int kMostCorrections = 60;  // steps tried to that end; 3 are usual
 constexpr int kMostEventsPerStep = 10000;
 constexpr double kRopeTolerance = 1e-13;  // m of slack, or part of the tension that is left
 constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
 
-constexpr double kSameTime = 1e-12;       // s, relative beyond 1 s
-constexpr double kManyTurns = 100;        // rad: beyond, orientations need a tighter tolerance
-constexpr double kTurningPart = 0.1;      // of the tolerance, for these
-constexpr double kUnitLength = 1e-9;      // how far |q|^2 may be from 1 before it is made 1
+constexpr double kSameTime = 1e-12;   // s, relative beyond 1 s
+constexpr double kManyTurns = 100;    // rad: beyond, orientations need a tighter tolerance
+constexpr double kTurningPart = 0.1;  // of the tolerance, for these
+constexpr double kUnitLength = 1e-9;  // how far |q|^2 may be from 1 before it is made 1
 
 GuardNames namesOf(const Scene& scene, const Assembly& assembly, const ChosenMethod& method) {
   GuardNames names{{}, assembly.springNames, std::string(method.name), method.stabilityLimit};
@@ -70,19 +70,19 @@ const VectorX& Simulation::stateAt(double time) {
     if (isAtRest())
       restUntil(time);
     else
-      advance();
+      advance(time);
   }
   if (time_ <= time + same) {
     reported_ = state_;
   } else {
-    prepareInterpolant(rightHandSide_, step_);
     interpolate(step_, (time - step_.time) / step_.timeStep, reported_);
   }
   normalizeOrientations(reported_);
   return reported_;
 }
 
-void Simulation::advance() {
+/// Takes a step. `frame` (s) is the next time whose state is asked for.
+void Simulation::advance(double frame) {
   const double stepEnd = nextStepEnd();
 
   // How far do bodies move freely?
@@ -90,6 +90,9 @@ void Simulation::advance() {
   const bool atEvent = stopAtFirstEvent();
   time_ = step_.time + step_.timeStep;
   if (!atEvent && time_ > stepEnd - kTimeRounding * step_.timeStep) time_ = stepEnd;
+
+  // What the step's interpolant needs belongs to the forces of now.
+  if (time_ > frame) prepareInterpolant(rightHandSide_, step_);
 
   // Take out what the step left wrong: lengths of rods, closing and overlapping contacts. Then what changes here?
   const VectorX before = std::exchange(state_, step_.state);

@@ -36,7 +36,7 @@ class Simulation {
   std::vector<std::string> takeWarnings() { return log_.takeWarnings(); }
 
  private:
-  void advance();
+  void advance(double frame);
   double nextStepEnd() const;
   void takeStep(double stepEnd);
   void takeAdaptiveStep(double stepEnd);
@@ -65,7 +65,7 @@ class Simulation {
   StepSize stepSize_;
   bool isContinuous_ = false;  // nothing has changed the state since the last step's end
   double time_ = 0;            // s
-  long stepNumber_ = 0;  // of a fixed step: the one under way covers [stepNumber_, stepNumber_ + 1] x timeStep
+  long stepNumber_ = 0;        // of a fixed step: the one under way covers [stepNumber_, stepNumber_ + 1] x timeStep
   int eventsInStep_ = 0;
   VectorX state_, reported_;
   Step step_;
