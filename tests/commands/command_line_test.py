@@ -97,17 +97,13 @@ class Scenes(InTemporaryFolder):
         path = self.write("s.json", scene(output={"width": 1000000000, "height": 2}))
         self.refuses(3, ["/output/width"], "simulate", path, "-o", self.path("x.sqlite"))
 
-    def test_what_is_not_simulated_yet_is_refused_by_name(self):
-        joint = {"name": "j", "bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0]}
-        path = self.write("s.json", scene(ballJoints=[joint]))
-        self.refuses(3, ["/ballJoints/0", "a ball joint cannot be simulated yet"], "simulate", path, "-o", self.path("x.sqlite"))
-        path = self.write("s.json", scene(method={"name": "dop853"}))
-        self.refuses(3, ["/method", "dop853"], "check", path)
-
-    def test_accuracy_that_is_not_used_is_warned_about(self):
-        result = cradle("check", self.write("s.json", scene(accuracy=1e-8)))
+    def test_a_plan_says_what_was_chosen_and_what_was_left_out(self):
+        path = self.write("s.json", scene(accuracy=1e-8))
+        result = cradle("plan", path)
         self.assertEqual(result.returncode, 0)
-        self.assertIn("accuracy", result.stderr)
+        for text in ("1e-08", "closed form", "parabola", "left out"):
+            self.assertIn(text, result.stdout)
+        self.assertIn("RK4, step 0.01 s", cradle("plan", path, "--method", "rk4", "--time-step", "0.01").stdout)
 
     def test_bodies_that_overlap_at_the_start_are_refused_with_depth_and_leave_nothing(self):
         ball = {"shape": {"sphere": {"radius": 0.1}}, "mass": 1}
@@ -215,7 +211,7 @@ class Trajectories(InTemporaryFolder):
 
     def test_a_too_stiff_spring_ends_with_7_and_keeps_the_part(self):
         spring = {"name": "stiff", "bodyA": "ball", "anchorA": [0, 0.1, 0], "anchorB": [0, 1, 0], "stiffness": 1e7, "restLength": 0.5}
-        path = self.write("s.json", scene(springs=[spring], duration=2))
+        path = self.write("s.json", scene(springs=[spring], duration=2, method={"name": "rk4"}))
         self.refuses(7, ["unstable at", '"ball"', '"stiff"', "step x omega", "x.sqlite.part"], "simulate", path, "-o",
                      self.path("x.sqlite"), leaves=["s.json", "x.sqlite.part"])
         database = sqlite3.connect(self.path("x.sqlite.part"))
