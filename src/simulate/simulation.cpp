@@ -144,7 +144,8 @@ void Simulation::takeAdaptiveStep(double stepEnd) {
 }
 
 /// Constraints hold to rounding after each step. Orientations are of unit length nearly enough for the equations, which
-/// take their direction; a state that is not touched lets the next step begin with this one's last rate.
+/// take their direction; a state that nothing touches lets the next step begin with this one's last rate. (Ropes may
+/// pull at it yet.)
 void Simulation::tidyState() {
   bool isTouched = false;
   if (solver_.hasConstraints()) {
@@ -154,7 +155,7 @@ void Simulation::tidyState() {
   for (Eigen::Index body = 0; body < bodyCount(state_); ++body)
     isTouched = isTouched || std::abs(orientation(state_, body).squaredNorm() - 1) > kUnitLength;
   if (isTouched || !method_.isAdaptive()) normalizeOrientations(state_);
-  isContinuous_ = method_.isAdaptive() && !isTouched;
+  isContinuous_ = method_.isAdaptive() && !isTouched && !ropes_.hasRopes();
 }
 
 bool Simulation::isAtRest() const {
