@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTautPart = 1e-9;    // of its length: a rope this near to it is at its length
 constexpr double kSlackPart = 1e-6;   // of its length: a rope this much shorter is slack again
-constexpr double kRestPart = 1e-7;    // of sqrt(acceleration x length): a rebound that rises by 5e-15 of the length
+constexpr double kRestPart = 1e-6;    // of sqrt(acceleration x length): a rebound that rises by 5e-13 of the length
 constexpr double kLoadedPart = 1e-6;  // of gravity: a pull that is no rounding
 constexpr int kTensionSamples = 4;    // a step: it is at most a small part of a swing
 constexpr double kFirstLook = 1.0 / 1024;  // of a step
@@ -27,13 +27,24 @@ double motionBound(const Step& step, const Attachment& attachment) {
 }
 
 /// Where in the step a rope is slack by more than `least` (m): at its start, or, for one that has just been let go, as
-/// soon as can be; 1 if nowhere.
+/// soon as can be, looked for from `begin` on; 1 if nowhere.
 template <class Slack>
-double firstSlack(const Slack& slack, double least) {
+double firstSlack(const Slack& slack, double least, double begin) {
   if (slack(0) > least) return 0;
-  double fraction = kFirstLook;
-  while (fraction < 1 && slack(fraction) <= least) fraction *= 2;
+  double fraction = begin;
+  while (fraction < 1 && slack(fraction) <= (fraction < kFirstLook ? 0 : least)) fraction *= 2;
   return std::min(fraction, 1.0);
+}
+
+/// Part of the step after which a rope that shortens with `speed` (m a step) at its start shortens still, however it is
+/// pulled: a rebound, even one far shorter than the step, is not over by then.
+double firstLook(const RopeLimit& rope, const Step& step) {
+  const double speed = -motionOf(rope, step.startState).lengthening * step.timeStep;
+  if (!(speed > 0)) return kFirstLook;
+  const auto acceleration = [&](const Attachment& end) {
+    return motionBounds(step, end.body, end.point.norm()).acceleration;
+  };
+  return std::min(kFirstLook, speed / (acceleration(rope.anchorA) + acceleration(rope.anchorB)));
 }
 
 }  // namespace
@@ -65,7 +76,7 @@ std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
              (positionAt(step, rope.anchorA, fraction) - positionAt(step, rope.anchorB, fraction)).norm();
     };
     const double speed = motionBound(step, rope.anchorA) + motionBound(step, rope.anchorB);
-    const double begin = firstSlack(slack, kTautPart * rope.maxLength), start = slack(begin);
+    const double begin = firstSlack(slack, kTautPart * rope.maxLength, firstLook(rope, step)), start = slack(begin);
     if (begin >= end || start > speed) continue;
     if (const auto fraction = firstCrossing(slack, GapBounds{speed}, begin, start, end, slack(end)))
       first = RopeChange{*fraction, i};
@@ -89,7 +100,7 @@ std::optional<double> RopeStage::firstPush(const Step& step, std::size_t rope) {
 
 double RopeStage::margin(const RopeChange& change, const VectorX& state) {
   if (isTaut(change.rope)) return tension(change.rope, state) / startTension_;
-  return motionOf(assembly_.ropes[change.rope], state).slackLength;
+  return motionOf(assembly_.ropes[change.rope], state).slackLength / assembly_.ropes[change.rope].maxLength;
 }
 
 /// Force (N) with which a taut rope pulls its ends together. Its row's multiplier pushes by multiplier x distance.

@@ -24,8 +24,8 @@ class RopeStage {
   /// be there (prepareInterpolant).
   std::optional<RopeChange> firstChange(const Step& step);
 
-  /// Zero where the change happens, positive before: slack length in m, or tension as a part of that at the step's
-  /// start.
+  /// Zero where the change happens, positive before: slack as a part of the length, or tension as a part of that at the
+  /// step's start.
   double margin(const RopeChange& change, const VectorX& state);
 
   /// What happens at the end of a step: impulses in ropes that are at their length, new rods, released ropes.
