@@ -37,7 +37,15 @@ class RopeStage {
   bool isTaut(std::size_t rope) const { return tautRod_[rope] >= 0; }
   double tension(std::size_t rope, const VectorX& state);
   std::optional<double> firstPush(const Step& step, std::size_t rope);
-  void pull(double time, std::size_t rope, VectorX& state);
+  /// A rope at its length that lengthens.
+  struct Stretch {
+    std::size_t rope;
+    double speed;         // m/s, of lengthening
+    double reboundSpeed;  // m/s, 0: does not rebound
+    bool isLoaded;        // forces would lengthen it further
+  };
+  std::vector<Stretch> findStretches(const VectorX& state);
+  void pull(double time, const std::vector<Stretch>& stretches, VectorX& state);
   void release(double time, std::size_t rope, const VectorX& state);
   void loosen(double time, std::size_t rope, const VectorX& state);
   void rebuildRods();
