@@ -37,6 +37,9 @@ class ConstraintSolver {
   /// velocities. Returns the largest error that was found, in m or rad.
   double project(VectorX& state);
 
+  /// The largest error, in m or rad, that factorize or project left.
+  double largestError() const;
+
   /// How far the velocities are from keeping the constraints: max |J v| / scale, in m/s or rad/s.
   double largestRate(const VectorX& state) const;
 
@@ -58,7 +61,6 @@ class ConstraintSolver {
   void solve();
   void findResidual();
   double displace(VectorX& state);
-  double largestError() const;
   bool isRounding() const;
 
   const Constraints& constraints_;

@@ -44,6 +44,10 @@ void EnergyGuard::failAtShortestStep(const VectorX& state, double time) const {
   fail(state, time, 0, "cannot be followed with steps of any length");
 }
 
+void EnergyGuard::failAtTies(const VectorX& state, double time, double error) const {
+  fail(state, time, 0, fmt::format("is tied by what cannot all be kept (off by {:.3g} m or rad)", error));
+}
+
 /// What one step can give to bodies at rest by forces that do not depend on where they are: (F h)^2 / m. Methods of
 /// order 1 have it in their error from the first step on, when nothing has moved yet.
 double EnergyGuard::firstStepEnergy(double timeStep) const {

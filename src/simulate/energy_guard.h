@@ -28,6 +28,9 @@ class EnergyGuard {
   /// Throws Error(unstable): steps have become too short to go on from `time`.
   [[noreturn]] void failAtShortestStep(const VectorX& state, double time) const;
 
+  /// Throws Error(unstable): what ties the bodies cannot all be kept at `time`, the worst is off by `error` (m or rad).
+  [[noreturn]] void failAtTies(const VectorX& state, double time, double error) const;
+
  private:
   double firstStepEnergy(double timeStep) const;
   [[noreturn]] void fail(const VectorX& state, double time, double timeStep, const std::string& what) const;

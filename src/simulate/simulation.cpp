@@ -21,10 +21,11 @@ constexpr int kMostEventsPerStep = 10000;
 constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension that is left
 constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
 
-constexpr double kSameTime = 1e-12;   // s, relative beyond 1 s
-constexpr double kManyTurns = 100;    // rad: beyond, orientations need a tighter tolerance
-constexpr double kTurningPart = 0.1;  // of the tolerance, for these
-constexpr double kUnitLength = 1e-9;  // how far |q|^2 may be from 1 before it is made 1
+constexpr double kSameTime = 1e-12;     // s, relative beyond 1 s
+constexpr double kManyTurns = 100;      // rad: beyond, orientations need a tighter tolerance
+constexpr double kTurningPart = 0.1;    // of the tolerance, for these
+constexpr double kMostTieError = 1e-9;  // m (a m of coordinates) or rad: projection leaves 1e-15
+constexpr double kUnitLength = 1e-9;    // how far |q|^2 may be from 1 before it is made 1
 
 GuardNames namesOf(const Scene& scene, const Assembly& assembly, const ChosenMethod& method) {
   GuardNames names{{}, assembly.springNames, std::string(method.name), method.stabilityLimit};
@@ -61,6 +62,8 @@ Simulation::Simulation(const Scene& scene, Assembly assembly, const ChosenMethod
   beginAndEndPushes();
   requireUnsolvedPairsApart();
   if (method_.isAdaptive()) tolerance_ = toleranceOf(method_, state_, scene.duration);
+  if (solver_.hasConstraints()) solver_.factorize(state_);
+  startTieError_ = solver_.largestError();
 }
 
 const VectorX& Simulation::stateAt(double time) {
@@ -150,12 +153,20 @@ void Simulation::tidyState() {
   bool isTouched = false;
   if (solver_.hasConstraints()) {
     solver_.project(state_);
+    if (method_.isAdaptive()) requireTiesKept();
     isTouched = true;
   }
   for (Eigen::Index body = 0; body < bodyCount(state_); ++body)
     isTouched = isTouched || std::abs(orientation(state_, body).squaredNorm() - 1) > kUnitLength;
   if (isTouched || !method_.isAdaptive()) normalizeOrientations(state_);
   isContinuous_ = method_.isAdaptive() && !isTouched && !ropes_.hasRopes();
+}
+
+/// Where ties leave no motion, forces without bound stop the bodies: what would follow is no motion of theirs. Anchors
+/// that did not quite meet at the start never will.
+void Simulation::requireTiesKept() const {
+  const double error = solver_.largestError(), size = state_.head(poseComponents(state_)).cwiseAbs().maxCoeff();
+  if (error > startTieError_ + kMostTieError * (1 + size)) guard_.failAtTies(state_, time_, error);
 }
 
 bool Simulation::isAtRest() const {

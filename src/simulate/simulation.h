@@ -45,6 +45,7 @@ class Simulation {
   void shortenStepTo(double length, double tolerance, const std::function<double(const VectorX&)>& margin);
   void beginAndEndPushes();
   void tidyState();
+  void requireTiesKept() const;
   bool isAtRest() const;
   void restUntil(double time);
   void countEvent();
@@ -61,7 +62,8 @@ class Simulation {
   PushSchedule pushes_;
   EnergyGuard guard_;
   ConstraintSolver solver_;
-  VectorX tolerance_;  // of an adaptive method
+  VectorX tolerance_;         // of an adaptive method
+  double startTieError_ = 0;  // m or rad
   StepSize stepSize_;
   bool isContinuous_ = false;  // nothing has changed the state since the last step's end
   double time_ = 0;            // s

@@ -69,6 +69,13 @@ TEST(ConvergenceOrder, OfAHungBoxIsTheMethods) {
   EXPECT_NEAR(orderOf(hungBoxError, "rk4", 1.0 / 128), 4, kOrderTolerance);
 }
 
+// Below about 1e-13 rounding takes over: the coarsest steps are long enough for three halvings above it. The next term
+// of the error bends the slope more at such steps.
+TEST(ConvergenceOrder, OfDop853WithFixedStepsIsEight) {
+  EXPECT_NEAR(orderOf(hungBoxError, "dop853", 1.0 / 8), 8, 0.5);
+  EXPECT_NEAR(orderOf(tumblingError, "dop853", 1.0 / 16), 8, 0.5);
+}
+
 // Order 4 from step 1/64, where the error is below 1e-2, gives 1e-2 / 16^4 = 1.5e-7 at 1/1024; rounding is far below.
 TEST(Rk4, ReachesTheReferences) {
   EXPECT_LT(tumblingError("rk4", 1.0 / 1024), 1e-8);
@@ -122,6 +129,7 @@ TEST(RodPendulum, ConvergesToTheEllipticSolutionWithTheMethodsOrder) {
   EXPECT_NEAR(orderOf(pendulumError, "explicitEuler", 1.0 / 1024), 1, kOrderTolerance);
   EXPECT_NEAR(orderOf(pendulumError, "semiImplicitEuler", 1.0 / 1024), 1, kOrderTolerance);
   EXPECT_NEAR(orderOf(pendulumError, "rk4", 1.0 / 128), 4, kOrderTolerance);
+  EXPECT_NEAR(orderOf(pendulumError, "dop853", 1.0 / 8), 8, 0.5);
   EXPECT_LT(pendulumError("rk4", 1.0 / 1024), 1e-10);
 }
 

@@ -1,0 +1,149 @@
+// Places where ties leave more motion than elsewhere, or none: the motion goes on as it should, or the run stops and
+// says why.
+
+#include <gtest/gtest.h>
+
+#include "experiments/tie_error.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kGravity = 9.81;
+
+std::string ball(const std::string& name, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+  return fmt::format(R"({{"name": "{}", "shape": {{"sphere": {{"radius": 0.01}}}}, "collision": "none", "mass": 1,
+    "position": {}, "linearVelocity": {}}})",
+                     name, vectorText(position), vectorText(velocity));
+}
+
+std::string rodToWorld(const std::string& body, const Vec3& end) {
+  return fmt::format(R"({{"bodyA": "{}", "anchorA": [0, 0, 0], "anchorB": {}}})", body, vectorText(end));
+}
+std::string rodBetween(const std::string& a, const std::string& b) {
+  return fmt::format(R"({{"bodyA": "{}", "anchorA": [0, 0, 0], "bodyB": "{}", "anchorB": [0, 0, 0]}})", a, b);
+}
+
+Scene sceneOf(double duration, const Vec3& gravity, const std::string& members) {
+  return sceneWith(
+      fmt::format(R"("duration": {}, "accuracy": 1e-10, "gravity": {}, {})", duration, vectorText(gravity), members));
+}
+const Vec3 kDown(0, -kGravity, 0), kNone = Vec3::Zero();
+
+/// Three balls in line along x on rods of 1 m.
+const std::string kChain = R"("bodies": [)" + ball("a", Vec3(1, 0, 0)) + ", " + ball("b", Vec3(2, 0, 0)) + ", " +
+                           ball("c", Vec3(3, 0, 0)) + R"(], "rods": [)" + rodToWorld("a", Vec3::Zero()) + ", " +
+                           rodBetween("b", "a") + ", " + rodBetween("c", "b");
+
+TEST(StraightChain, StaysStraightUnderTension) {
+  const Trajectory run = simulate(sceneOf(
+      1, kNone,
+      kChain + R"(], "pushes": [{"body": "c", "point": [0, 0, 0], "force": [50, 0, 0], "start": 0, "duration": 1}])"));
+  for (const Frame& frame : run.frames)
+    for (const std::size_t i : {0u, 1u, 2u})
+      EXPECT_LT((frame.states[i].position - Vec3(static_cast<double>(i) + 1, 0, 0)).norm(), 1e-14) << frame.time;
+}
+
+TEST(StraightChain, FallsWithItsEnergy) {
+  const Scene scene = sceneOf(2, kDown, kChain + "]");
+  const Trajectory run = simulate(scene);
+  EXPECT_GT(run.frames[40].energy.kinetic, 5);
+  EXPECT_LT(largestEnergyError(run), 1e-8);
+  EXPECT_LT(largestTieError(run, scene), 1e-10);
+}
+
+void expectLock(const Scene& scene) {
+  try {
+    simulate(scene);
+    FAIL() << "ran to its end";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::unstable);
+    for (const char* word : {"unstable at", "cannot all be kept", "look at its rods, joints"})
+      EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << word << " in " << error.what();
+  }
+}
+
+// Stretched to its full length between fixed points a chain cannot move, and no finite tension carries its weight.
+TEST(ChainAtItsFullLength, IsRefusedAsSoonAsSomethingActsAcrossIt) {
+  const std::string held = kChain + ", " + rodToWorld("c", Vec3(4, 0, 0)) + "]";
+  const Trajectory still = simulate(sceneOf(1, kNone, held));
+  EXPECT_LT((still.frames.back().states[1].position - Vec3(2, 0, 0)).norm(), 1e-14);
+  expectLock(sceneOf(1, kDown, held));
+  expectLock(sceneOf(1, kNone,
+                     R"("bodies": [)" + ball("a", Vec3(1, 0, 0), Vec3(0, 1, 0)) + R"(], "rods": [)" +
+                         rodToWorld("a", Vec3::Zero()) + ", " + rodToWorld("a", Vec3(2, 0, 0)) + "]"));
+}
+
+// A parallelogram of rods of 1 m and 2 m, in line twice a turn: there it could go on as a parallelogram or crosswise.
+// What moves is no constraint's doing: it stays a parallelogram, whose ends go round evenly without gravity.
+TEST(Parallelogram, PassesItsFlatPositions) {
+  const double speed = 4;
+  const Scene scene =
+      sceneOf(5, kNone,
+              R"("bodies": [)" + ball("a", Vec3(0, -1, 0), Vec3(speed, 0, 0)) + ", " +
+                  ball("b", Vec3(2, -1, 0), Vec3(speed, 0, 0)) + R"(], "rods": [)" + rodToWorld("a", Vec3::Zero()) +
+                  ", " + rodToWorld("b", Vec3(2, 0, 0)) + ", " + rodBetween("a", "b") + "]");
+  const Trajectory run = simulate(scene);
+  for (const Frame& frame : run.frames) {
+    const double angle = speed * frame.time;
+    const Vec3 expected(std::sin(angle), -std::cos(angle), 0);
+    EXPECT_LT((frame.states[0].position - expected).norm(), 1e-7) << frame.time;
+    EXPECT_LT((frame.states[1].position - expected - Vec3(2, 0, 0)).norm(), 1e-7) << frame.time;
+  }
+  EXPECT_LT(largestTieError(run, scene), 1e-10);
+}
+
+// The same of three bars on hinges, swinging in gravity with enough speed to go round.
+TEST(HingedParallelogram, PassesItsFlatPositionsWithItsEnergy) {
+  const auto bar = [](const std::string& name, const Vec3& size, const std::string& motion) {
+    return fmt::format(R"({{"name": "{}", "shape": {{"box": {{"size": {}}}}}, "collision": "none", "mass": 1, {}}})",
+                       name, vectorText(size), motion);
+  };
+  const Scene scene = sceneOf(
+      3, kDown,
+      R"("bodies": [)" +
+          bar("left", Vec3(0.1, 1, 0.1),
+              R"("position": [0, -0.5, 0], "linearVelocity": [4, 0, 0], "angularVelocity": [0, 0, 8])") +
+          ", " + bar("coupler", Vec3(2, 0.1, 0.1), R"("position": [1, -1, 0], "linearVelocity": [8, 0, 0])") + ", " +
+          bar("right", Vec3(0.1, 1, 0.1),
+              R"("position": [2, -0.5, 0], "linearVelocity": [4, 0, 0], "angularVelocity": [0, 0, 8])") +
+          R"(], "hinges": [{"bodyA": "left", "anchorA": [0, 0.5, 0], "anchorB": [0, 0, 0]},
+        {"bodyA": "right", "anchorA": [0, 0.5, 0], "anchorB": [2, 0, 0]},
+        {"bodyA": "coupler", "anchorA": [-1, 0, 0], "bodyB": "left", "anchorB": [0, -0.5, 0]},
+        {"bodyA": "coupler", "anchorA": [1, 0, 0], "bodyB": "right", "anchorB": [0, -0.5, 0]}])");
+  const Trajectory run = simulate(scene);
+  double highest = -1;
+  for (const Frame& frame : run.frames) {
+    highest = std::max(highest, frame.states[1].position.y());
+    EXPECT_LT(orientationError(frame.states[1].orientation, Quat::Identity()), 1e-8) << frame.time;
+  }
+  EXPECT_GT(highest, 0.99) << "did not go over the top";
+  EXPECT_LT(largestEnergyError(run), 1e-7);
+  EXPECT_LT(largestTieError(run, scene), 1e-10);
+}
+
+// A rod pendulum that just reaches the top takes for ever; a thousandth faster, it goes over, and slower, falls back.
+// Just there: tan((pi + theta) / 4) = e^(w0 t), from the bottom with speed 2 w0 (1 m).
+TEST(RodPendulum, ReachesTheTopOrDoesNot) {
+  const double frequency = std::sqrt(kGravity);
+  const auto thrown = [&](double part, double duration) {
+    return simulate(sceneOf(duration, kDown,
+                            R"("bodies": [)" + ball("bob", Vec3(0, -1, 0), Vec3(2 * frequency * part, 0, 0)) +
+                                R"(], "rods": [)" + rodToWorld("bob", Vec3::Zero()) + "]"));
+  };
+  // A disturbance grows as e^(w0 t): 500 times in 2 s.
+  for (const Frame& frame : thrown(1, 2).frames) {
+    const double angle = 4 * std::atan(std::exp(frequency * frame.time)) - std::acos(-1);
+    EXPECT_LT((frame.states[0].position - Vec3(std::sin(angle), -std::cos(angle), 0)).norm(), 1e-7) << frame.time;
+  }
+  const auto crosses = [](const Trajectory& run) {
+    return std::any_of(run.frames.begin(), run.frames.end(), [](const Frame& frame) {
+      return frame.states[0].position.y() > 0.5 && frame.states[0].position.x() < -0.1;
+    });
+  };
+  EXPECT_TRUE(crosses(thrown(1.001, 3)));
+  EXPECT_FALSE(crosses(thrown(0.999, 3)));
+  EXPECT_LT(largestEnergyError(thrown(1.001, 6)), 1e-8);
+}
+
+}  // namespace
+}  // namespace cradle
