@@ -26,6 +26,7 @@ struct ChosenMethod {
 struct IslandPlan {
   std::vector<int> bodies;                // scene bodies that move, ascending
   std::vector<std::pair<int, int>> near;  // scene bodies that may touch during the run, first < second
+  std::vector<int> unturned;              // of the bodies, those on which no torque ever acts: balls held at their centres
   ChosenMethod method;
   std::string_view reason;
   std::vector<std::string_view> leftOut;  // what these bodies do not need

@@ -78,7 +78,14 @@ const VectorX& Simulation::stateAt(double time) {
     interpolate(step_, (time - step_.time) / step_.timeStep, reported_);
   }
   normalizeOrientations(reported_);
+  for (std::size_t i = 0; i < assembly_.mechanism.bodies.size(); ++i)
+    if (!assembly_.mechanism.bodies[i].turns) spin(static_cast<Eigen::Index>(i), time, reported_);
   return reported_;
+}
+
+/// Sets the orientation of a body whose spin is constant: the state keeps that of the start.
+void Simulation::spin(Eigen::Index body, double time, VectorX& state) const {
+  turnBody(state, body, time * Vec3(angularVelocity(state, body)));
 }
 
 /// Takes a step. `frame` (s) is the next time whose state is asked for.

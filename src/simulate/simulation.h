@@ -45,6 +45,7 @@ class Simulation {
   void shortenStepTo(double length, double tolerance, const std::function<double(const VectorX&)>& margin);
   void beginAndEndPushes();
   void tidyState();
+  void spin(Eigen::Index body, double time, VectorX& state) const;
   bool isAtRest() const;
   void restUntil(double time);
   void countEvent();
