@@ -72,7 +72,7 @@ void addStudy(CLI::App& app, CommandLine& line) {
   study
       ->add_option("--methods", line.methods, "of explicitEuler, semiImplicitEuler, rk4, dop853FixedStep, dop853, plan")
       ->delimiter(',')
-      ->expected(1);
+      ->allow_extra_args(false);
 }
 
 void addPictures(CLI::App& app, CommandLine& line) {

@@ -8,6 +8,7 @@
 #include <deque>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "commands/simulate_scene.h"
@@ -61,38 +62,92 @@ std::string cheapest(const std::vector<StudyRow>& rows, const StudyMethod& metho
 void printFindings(const NamedScene& named, const Reference& reference, const std::vector<StudyMethod>& methods,
                    const std::vector<StudyRow>& rows) {
   fmt::print("{}: reference {}; {}\n", named.name, reference.madeBy, reference.confirmation);
-  fmt::print("  {:<20}{:>12}   CPU s per simulated s for error <= {:.0e}{:>10.0e}{:>10.0e}\n", "", "least error",
+  fmt::print("  {:<20}{:>12}   CPU s a simulated s for error <= {:.0e}{:>12.0e}{:>12.0e}\n", "", "least error",
              kWantedErrors[0], kWantedErrors[1], kWantedErrors[2]);
   for (const StudyMethod& method : methods) {
     double least = std::numeric_limits<double>::infinity();
     for (const StudyRow& row : rows)
       if (row.method == method.name && row.status == RunStatus::ok) least = std::min(least, row.error);
-    fmt::print("  {:<20}{:>12}{:>42}{:>10}{:>10}\n", method.name, std::isfinite(least) ? fmt::format("{:.1e}", least) : "-",
-               cheapest(rows, method, kWantedErrors[0]), cheapest(rows, method, kWantedErrors[1]),
-               cheapest(rows, method, kWantedErrors[2]));
+    fmt::print("  {:<20}{:>12}{:>41}{:>12}{:>12}\n", method.name,
+               std::isfinite(least) ? fmt::format("{:.1e}", least) : "-", cheapest(rows, method, kWantedErrors[0]),
+               cheapest(rows, method, kWantedErrors[1]), cheapest(rows, method, kWantedErrors[2]));
   }
   for (const StudyRow& row : rows)
     if (row.status == RunStatus::failed) fmt::print("  {} at {}: {}\n", row.method, row.setting, row.message);
 }
 
-/// Studies one scene; `turns` counts the methods and references that are done.
-WorkPrecisionChart studyScene(NamedScene& named, const std::vector<StudyMethod>& methods, StudyTable& table,
-                              long& turns, Progress& progress) {
-  const auto tick = [&] { progress.update(turns); };
-  WorkPrecisionChart chart{named.scene.name(), {}, findReference(named.scene, tick), named.scene.duration()};
-  progress.update(++turns);
-  for (const StudyMethod& method : methods) {
-    sweep(named.scene, named.name, method, chart.reference, [&](const StudyRow& row) {
-      table.append(row);
-      chart.rows.push_back(row);
-      tick();
-    });
-    progress.update(++turns);
+/// A study of some scenes under way.
+class Study {
+ public:
+  Study(std::string folder, std::vector<StudyMethod> methods, std::size_t scenes, bool quiet)
+      : folder_(std::move(folder)),
+        methods_(std::move(methods)),
+        drawsCharts_(canDrawCharts()),
+        table_((fs::path(folder_) / kTableName).string()),
+        progress_("Studying", "methods", static_cast<long>(scenes * (methods_.size() + 1)), quiet) {
+    if (!drawsCharts_) fmt::print(stderr, "warning: gnuplot is missing: there will be a table, but no charts\n");
   }
-  progress.endLine();
-  printFindings(named, chart.reference, methods, chart.rows);
-  return chart;
-}
+
+  /// A scene without a reference, or a chart that cannot be drawn, is a fault to tell in the end: the rest is done.
+  void add(NamedScene& named) {
+    WorkPrecisionChart chart{named.scene.name(), {}, {}, named.scene.duration()};
+    try {
+      chart.reference = findReference(named.scene, [this] { progress_.update(turns_); });
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::limit) throw;
+      note(error);
+      turns_ += static_cast<long>(methods_.size()) + 1;
+      return;
+    }
+    progress_.update(++turns_);
+    for (const StudyMethod& method : methods_) sweepInto(chart, named, method);
+    progress_.endLine();
+    printFindings(named, chart.reference, methods_, chart.rows);
+    draw(chart, named.name);
+  }
+
+  /// Throws the first fault.
+  void finish() {
+    table_.complete();
+    if (fault_) throw Error(*fault_);
+    if (!drawsCharts_)
+      throw Error(ErrorKind::output, folder_,
+                  "has study.csv, but no charts: gnuplot cannot be started; install the package gnuplot-nox");
+  }
+
+ private:
+  void sweepInto(WorkPrecisionChart& chart, NamedScene& named, const StudyMethod& method) {
+    sweep(named.scene, named.name, method, chart.reference, [&](const StudyRow& row) {
+      table_.append(row);
+      chart.rows.push_back(row);
+      progress_.update(turns_);
+    });
+    progress_.update(++turns_);
+  }
+
+  void draw(const WorkPrecisionChart& chart, const std::string& name) {
+    if (!drawsCharts_) return;
+    try {
+      drawChart(chart, (fs::path(folder_) / (kChartPrefix + name)).string());
+    } catch (const Error& error) {
+      note(error);
+    }
+  }
+
+  void note(const Error& error) {
+    progress_.endLine();
+    fmt::print(stderr, "{}\n", error.what());
+    if (!fault_) fault_ = error;
+  }
+
+  std::string folder_;
+  std::vector<StudyMethod> methods_;
+  bool drawsCharts_;
+  StudyTable table_;
+  Progress progress_;
+  long turns_ = 0;  // methods and references that are done
+  std::optional<Error> fault_;
+};
 
 }  // namespace
 
@@ -102,26 +157,15 @@ void studyScenes(const std::vector<std::string>& paths, const std::string& folde
   requireOwnFolder(folder, "result of a study", isResultName);
   std::deque<NamedScene> scenes;
   loadScenes(paths, scenes);
-  const bool drawsCharts = canDrawCharts();
-  if (!drawsCharts) fmt::print(stderr, "warning: gnuplot is missing: there will be a table, but no charts\n");
-
   makeFolder(folder);
-  const std::string tablePath = (fs::path(folder) / kTableName).string();
-  StudyTable table(tablePath);
-  Progress progress("Studying", "methods", static_cast<long>(scenes.size() * (methods.size() + 1)), quiet);
-  long turns = 0;
+  Study study(folder, methods, scenes.size(), quiet);
   try {
-    for (NamedScene& named : scenes) {
-      const WorkPrecisionChart chart = studyScene(named, methods, table, turns, progress);
-      if (drawsCharts) drawChart(chart, (fs::path(folder) / (kChartPrefix + named.name)).string());
-    }
+    for (NamedScene& named : scenes) study.add(named);
   } catch (const Error& error) {
-    throw Error(error.kind(), "", fmt::format("{}; the rows up to then are in {}", error.what(), partPath(tablePath)));
+    const std::string part = partPath((fs::path(folder) / kTableName).string());
+    throw Error(error.kind(), "", fmt::format("{}; the rows up to then are in {}", error.what(), part));
   }
-  table.complete();
-  if (!drawsCharts)
-    throw Error(ErrorKind::output, folder,
-                "has study.csv, but no charts: gnuplot cannot be started; install the package gnuplot-nox");
+  study.finish();
 }
 
 }  // namespace cradle

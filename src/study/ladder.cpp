@@ -6,7 +6,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kLimitOfUnstable = 2;          // step x omega to start from if a method has no limit of its own
+constexpr double kLimitOfUnstable = 2;            // step x omega to start from if a method has no limit of its own
 constexpr double kStepWithoutSprings = 1.0 / 30;  // s
 constexpr long kMostSteps = 3000000;
 constexpr int kFinestTenths = 12;
@@ -26,7 +26,8 @@ Ladder::Ladder(const StudyMethod& method, const StudyScene& scene)
     : kind_(method.setting), duration_(scene.duration()), steps_(firstStepCount(method, scene)) {}
 
 double Ladder::setting() const {
-  return kind_ == SettingKind::timeStep ? duration_ / static_cast<double>(steps_) : std::stod("1e-" + std::to_string(tenths_));
+  return kind_ == SettingKind::timeStep ? duration_ / static_cast<double>(steps_)
+                                        : std::stod("1e-" + std::to_string(tenths_));
 }
 
 bool Ladder::descend(double cpuSeconds, double cpuLimit) {

@@ -8,8 +8,8 @@ namespace cradle {
 /// end.
 class Ladder {
  public:
-  /// Time steps that divide the duration evenly, from the stability limit of `method` on the fastest spring (2 if it has
-  /// none, 1/30 s without springs) down to 3e6 steps; or accuracies from 1e-2 to 1e-12.
+  /// Time steps that divide the duration evenly, from the stability limit of `method` on the fastest spring (2 if it
+  /// has none, 1/30 s without springs) down to 3e6 steps; or accuracies from 1e-2 to 1e-12.
   Ladder(const StudyMethod& method, const StudyScene& scene);
 
   double setting() const;
@@ -20,9 +20,9 @@ class Ladder {
 
  private:
   SettingKind kind_;
-  double duration_;     // s
-  long steps_ = 1;      // of the duration
-  int tenths_ = 2;      // accuracy 10^-tenths
+  double duration_;  // s
+  long steps_ = 1;   // of the duration
+  int tenths_ = 2;   // accuracy 10^-tenths
 };
 
 /// Errors of one method from coarse to fine, watched for the floor that rounding sets.

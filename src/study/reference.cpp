@@ -14,10 +14,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kConverged = 1e-11;      // between two runs at h and h/2
-constexpr double kCpuLimit = 20;          // s, of one run
+constexpr double kConverged = 1e-11;  // between two runs at h and h/2
+constexpr double kCpuLimit = 20;      // s, of one run
 constexpr double kFinestAccuracy = 1e-12;
-constexpr double kRounding = 1e-15;       // no motion is known better
+constexpr double kRounding = 1e-15;  // no motion is known better
 
 /// The best of the runs of a method at halved steps, and how far the one before was from it.
 struct Converged {
@@ -63,7 +63,8 @@ Reference findReference(StudyScene& scene, const std::function<void()>& tick) {
     return {check.run->end, std::max(check.change, kRounding), fmt::format("RK4, step {:.3g} s", check.run->setting),
             fmt::format("at twice the step it ends {:.1e} away", check.change)};
   const std::string madeBy = fmt::format("DOP853, accuracy {}", kFinestAccuracy);
-  if (!check.run) return {adaptive.end, std::numeric_limits<double>::infinity(), madeBy, "no second method confirms it"};
+  if (!check.run)
+    return {adaptive.end, std::numeric_limits<double>::infinity(), madeBy, "no second method confirms it"};
   const double distance = std::max(motionError(check.run->end, adaptive.end), kRounding);
   return {adaptive.end, distance, madeBy,
           fmt::format("RK4, step {:.3g} s, ends {:.1e} away", check.run->setting, distance)};

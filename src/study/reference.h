@@ -16,7 +16,8 @@ struct Reference {
 };
 
 /// Adaptive DOP853 at its best if the simulation has it, checked by RK4; else RK4 alone, its steps halved until that
-/// changes nothing. Calls `tick` after each run. Throws Error(limit) if RK4 is unstable at all steps, or takes too long.
+/// changes nothing. Calls `tick` after each run. Throws Error(limit) if RK4 is unstable at all steps, or takes too
+/// long.
 Reference findReference(StudyScene& scene, const std::function<void()>& tick);
 
 }  // namespace cradle

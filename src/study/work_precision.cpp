@@ -8,14 +8,15 @@
 namespace cradle {
 namespace {
 
-constexpr double kCpuLimit = 6;        // s, of one run: with its coarser ones, 12 s a method
+constexpr double kCpuLimit = 6;  // s, of one run: with its coarser ones, 12 s a method
 constexpr double kExactEnough = 1e-12;
 
 }  // namespace
 
 void sweep(StudyScene& scene, const std::string& sceneName, const StudyMethod& method, const Reference& reference,
            const std::function<void(const StudyRow&)>& take) {
-  const double floor = std::isfinite(reference.uncertainty) ? std::max(reference.uncertainty, kExactEnough) : kExactEnough;
+  const double floor =
+      std::isfinite(reference.uncertainty) ? std::max(reference.uncertainty, kExactEnough) : kExactEnough;
   Ladder ladder(method, scene);
   GainWatch watch;
   bool goesOn = true;

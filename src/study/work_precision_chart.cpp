@@ -20,13 +20,15 @@ namespace {
 constexpr StartFailure kNoGnuplot{ErrorKind::output, "gnuplot-nox"};
 constexpr double kTrusted = 1e-6;  // an uncertainty above it is told in red: the program's default accuracy
 
-/// One colour (M. Okabe, K. Ito, "Color Universal Design", 2008: told apart by all eyes) and one marker a method.
+/// A colour (M. Okabe, K. Ito, "Color Universal Design", 2008: told apart by all eyes) and a marker a method. The
+/// plan's open circles go around the markers of what it chose.
 struct Look {
   const char* color;
   int marker;  // gnuplot's pointtype
+  double size = 1.1, lineWidth = 2.5;
 };
 constexpr std::array<Look, 6> kLooks = {
-    {{"#D55E00", 9}, {"#E69F00", 5}, {"#0072B2", 7}, {"#56B4E9", 13}, {"#009E73", 11}, {"#CC79A7", 15}}};
+    {{"#D55E00", 9}, {"#E69F00", 5}, {"#0072B2", 7}, {"#56B4E9", 13}, {"#009E73", 11}, {"#CC79A7", 6, 2, 1.2}}};
 
 struct Point {
   double cpu, evaluations, error;
@@ -71,22 +73,32 @@ double decadeBelow(double value) {
   return std::pow(10, std::floor(std::log10(value)));
 }
 
-/// From below the smallest error or uncertainty to a decade of room above the largest error, where blow-ups stand.
+/// Decades around all errors and the uncertainty; above them a strip for blow-ups, if there are any.
 struct ErrorAxis {
   double bottom = 1e-1, top = 1;
+  double end = 1;  // of the strip; top without one
 };
 ErrorAxis errorAxisOf(const std::vector<Curve>& curves, double uncertainty) {
-  constexpr double kBottomMost = 1e-16, kTopMost = 1e4;
+  constexpr double kBottomMost = 1e-16, kTopMost = 1e4, kStrip = 20;
   ErrorAxis axis;
+  bool hasBlowUps = false;
   const auto include = [&](double error) {
     axis.bottom = std::max(kBottomMost, std::min(axis.bottom, decadeBelow(error) / 10));
     axis.top = std::min(kTopMost, std::max(axis.top, 10 * decadeBelow(error)));
   };
   if (std::isfinite(uncertainty)) include(uncertainty);
-  for (const Curve& curve : curves)
+  for (const Curve& curve : curves) {
     for (const Point& point : curve.points) include(std::max(point.error, kBottomMost));
-  axis.top *= 10;
+    hasBlowUps = hasBlowUps || !curve.blowUps.empty();
+  }
+  axis.end = hasBlowUps ? axis.top * kStrip : axis.top;
   return axis;
+}
+
+/// Height of a method's blow-ups in the strip, so that those of others do not hide them.
+double blowUpHeight(const ErrorAxis& axis, std::size_t curve, std::size_t curves) {
+  const double part = 1 - (static_cast<double>(curve) + 0.5) / static_cast<double>(curves);
+  return axis.top * std::pow(axis.end / axis.top, part);
 }
 
 /// A text for gnuplot, in quotes and without commands.
@@ -98,11 +110,12 @@ std::string quoted(const std::string& text) {
 
 std::string dataBlocks(const std::vector<Curve>& curves, const ErrorAxis& axis) {
   std::string text;
-  const auto addBlock = [&](const char* name, std::size_t curve, const std::vector<Point>& points, bool atTop) {
+  const auto addBlock = [&](const char* name, std::size_t curve, const std::vector<Point>& points, bool areBlowUps) {
     text += fmt::format("${}{} << EOD\n", name, curve);
     for (const Point& point : points)
-      text += fmt::format("{} {} {}\n", point.cpu, point.evaluations,
-                          atTop ? axis.top / std::sqrt(10.0) : std::max(point.error, axis.bottom));
+      text += fmt::format(
+          "{} {} {}\n", point.cpu, point.evaluations,
+          areBlowUps ? blowUpHeight(axis, curve, curves.size()) : std::clamp(point.error, axis.bottom, axis.top));
     text += "EOD\n";
   };
   for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -115,8 +128,8 @@ std::string dataBlocks(const std::vector<Curve>& curves, const ErrorAxis& axis) 
 std::string headings(const WorkPrecisionChart& chart) {
   const Reference& reference = chart.reference;
   const bool isTrusted = reference.uncertainty <= kTrusted;
-  std::string second = fmt::format("Error after {} s against {}; {}", chart.duration, reference.madeBy,
-                                   reference.confirmation);
+  std::string second = fmt::format("x: positions (m) and quaternions after {} s. Reference: {}; {}", chart.duration,
+                                   reference.madeBy, reference.confirmation);
   if (!isTrusted) second += ": THE REFERENCE IS NOT CERTAIN, smaller errors mean nothing";
   return fmt::format(
       "set label 1 {} at screen 0.5, 0.965 center font ',22' noenhanced\n"
@@ -129,10 +142,29 @@ std::string uncertaintyLine(const ErrorAxis& axis, double uncertainty) {
   return fmt::format(
       "set object 1 rectangle from graph 0, first {0} to graph 1, first {1} behind fillcolor rgb '#ececec' fillstyle "
       "solid noborder\n"
-      "set arrow 1 from graph 0, first {1} to graph 1, first {1} nohead dashtype 2 linewidth 2 linecolor rgb '#606060'\n"
+      "set arrow 1 from graph 0, first {1} to graph 1, first {1} nohead dashtype 2 linewidth 2 linecolor rgb "
+      "'#606060'\n"
       "set label 3 'uncertainty of the reference' at graph 0.985, first {1} right offset 0, -0.8 font ',13' "
       "textcolor rgb '#606060'\n",
       axis.bottom, uncertainty);
+}
+
+std::string blowUpStrip(const ErrorAxis& axis) {
+  if (axis.end == axis.top) return "";
+  return fmt::format(
+      "set object 2 rectangle from graph 0, first {0} to graph 1, first {1} behind fillcolor rgb '#fbeeee' fillstyle "
+      "solid noborder\n"
+      "set arrow 2 from graph 0, first {0} to graph 1, first {0} nohead linewidth 1 linecolor rgb '#a0a0a0'\n"
+      "set label 4 'unstable' at graph 0.985, first {2} right font ',13' textcolor rgb '#a03030'\n",
+      axis.top, axis.end, std::sqrt(axis.top * axis.end));
+}
+
+std::string errorTics(const ErrorAxis& axis) {
+  constexpr double kMostDecades = 8;  // that are all labelled
+  const double factor = axis.top / axis.bottom > std::pow(10, kMostDecades) ? 100 : 10;
+  double first = axis.top;
+  while (first / factor >= 0.99 * axis.bottom) first /= factor;
+  return fmt::format("set ytics {}, {}, {}\n", first, factor, 1.01 * axis.top);
 }
 
 std::string plotCommand(const std::vector<Curve>& curves, int column) {
@@ -140,12 +172,13 @@ std::string plotCommand(const std::vector<Curve>& curves, int column) {
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const Look& look = curves[i].look;
     text += fmt::format(
-        "{}$curve{} using {}:3 with linespoints linewidth 2.5 pointtype {} pointsize 1.1 linecolor rgb '{}' notitle",
-        i > 0 ? ", " : "", i, column, look.marker, look.color);
+        "{}$curve{} using {}:3 with linespoints linewidth {} pointtype {} pointsize {} linecolor rgb '{}' notitle",
+        i > 0 ? ", " : "", i, column, look.lineWidth, look.marker, look.size, look.color);
     if (!curves[i].blowUps.empty())
-      text += fmt::format(", $blowUps{} using {}:3 with points pointtype 2 pointsize 1.6 linewidth 3 linecolor rgb '{}' "
-                          "notitle",
-                          i, column, look.color);
+      text += fmt::format(
+          ", $blowUps{} using {}:3 with points pointtype 2 pointsize 1.6 linewidth 3 linecolor rgb '{}' "
+          "notitle",
+          i, column, look.color);
   }
   return text + "\n";
 }
@@ -153,30 +186,39 @@ std::string plotCommand(const std::vector<Curve>& curves, int column) {
 std::string legend(const std::vector<Curve>& curves) {
   std::string text =
       "unset label\nunset arrow\nunset object\nunset border\nunset tics\nunset xlabel\nunset ylabel\nunset grid\n"
-      "unset logscale\nset key center center horizontal maxrows 1 samplen 3 width 2 noenhanced font ',15'\n"
-      "set lmargin at screen 0.05\nset rmargin at screen 0.95\nset bmargin at screen 0.01\nset tmargin at screen 0.09\n"
+      "unset logscale\nset key center center horizontal Left reverse maxrows 1 samplen 3 width 1 noenhanced font "
+      "',15'\n"
+      "set lmargin at screen 0.03\nset rmargin at screen 0.97\nset bmargin at screen 0.05\nset tmargin at screen 0.1\n"
+      "set label 1 'One marker a run: from each to the next, the time step is halved, or the accuracy asked for ten "
+      "times finer.' at screen 0.5, 0.025 center font ',13' textcolor rgb '#505050'\n"
       "plot [0:1][0:1] ";
   for (const Curve& curve : curves)
-    text += fmt::format(
-        "NaN with linespoints linewidth 2.5 pointtype {} pointsize 1.3 linecolor rgb '{}' title '{}', ",
-        curve.look.marker, curve.look.color, quoted(curve.title).substr(1, quoted(curve.title).size() - 2));
-  return text + "NaN with points pointtype 2 pointsize 1.6 linewidth 3 linecolor rgb '#404040' title 'unstable'\n";
+    text +=
+        fmt::format("NaN with linespoints linewidth {} pointtype {} pointsize {} linecolor rgb '{}' title {}, ",
+                    curve.look.lineWidth, curve.look.marker, curve.look.size, curve.look.color, quoted(curve.title));
+  const bool hasBlowUps =
+      std::any_of(curves.begin(), curves.end(), [](const Curve& curve) { return !curve.blowUps.empty(); });
+  if (!hasBlowUps) return text + "NaN notitle\n";
+  return text + "NaN with points pointtype 2 pointsize 1.6 linewidth 3 linecolor rgb '#404040' title 'blew up'\n";
 }
 
 std::string panels(const WorkPrecisionChart& chart, const std::vector<Curve>& curves, const ErrorAxis& axis) {
   std::string text = fmt::format(
       "set multiplot\nset logscale xy\nset format xy '10^{{%T}}'\nset border linecolor rgb '#404040'\n"
-      "set grid xtics ytics linecolor rgb '#d8d8d8' linewidth 1 dashtype 1\nset tics nomirror\nset mxtics 10\n"
-      "unset key\nset yrange [{}:{}]\nset bmargin at screen 0.2\nset tmargin at screen 0.88\n",
-      axis.bottom, axis.top);
-  text += headings(chart) + uncertaintyLine(axis, chart.reference.uncertainty);
+      "set grid xtics ytics linecolor rgb '#c8c8c8' linewidth 1 dashtype 1\nset tics nomirror\nset mxtics 10\n"
+      "unset key\nset yrange [{}:{}]\nset bmargin at screen 0.21\nset tmargin at screen 0.88\n",
+      axis.bottom, axis.end);
+  text += headings(chart) + errorTics(axis) + uncertaintyLine(axis, chart.reference.uncertainty) + blowUpStrip(axis);
   text +=
       "set lmargin at screen 0.075\nset rmargin at screen 0.495\n"
-      "set ylabel 'error at the end:  max |x - x_{ref}| / (1 + |x_{ref}|),  x in m'\n"
+      "set ylabel 'error at the end:  max |x - x_{ref}| / (1 + |x_{ref}|)'\n"
+      "set label 5 'better' at graph 0.075, graph 0.33 center font ',13' textcolor rgb '#606060'\n"
+      "set arrow 5 from graph 0.09, graph 0.31 to graph 0.03, graph 0.25 linewidth 2 linecolor rgb '#909090'\n"
       "set xlabel 'CPU time per simulated second (s)'\n" +
       plotCommand(curves, 1);
   text +=
-      "unset label 1\nunset label 2\nset lmargin at screen 0.565\nset rmargin at screen 0.985\nunset ylabel\n"
+      "unset label 1\nunset label 2\nunset label 5\nunset arrow 5\nset lmargin at screen 0.565\nset rmargin at screen "
+      "0.985\nunset ylabel\n"
       "set xlabel 'evaluations of the right-hand side, whole run'\n" +
       plotCommand(curves, 2);
   return text + legend(curves) + "unset multiplot\nunset output\n";

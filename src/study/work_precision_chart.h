@@ -9,10 +9,10 @@ namespace cradle {
 
 /// Error against cost of all methods on one scene.
 struct WorkPrecisionChart {
-  std::string title;            // the scene
-  std::vector<StudyRow> rows;   // of that scene
+  std::string title;           // the scene
+  std::vector<StudyRow> rows;  // of that scene
   Reference reference;
-  double duration = 0;          // s
+  double duration = 0;  // s
 };
 
 /// Whether the program that draws charts (gnuplot) can be started.
