@@ -62,6 +62,8 @@ std::string cheapest(const std::vector<StudyRow>& rows, const StudyMethod& metho
 void printFindings(const NamedScene& named, const Reference& reference, const std::vector<StudyMethod>& methods,
                    const std::vector<StudyRow>& rows) {
   fmt::print("{}: reference {}; {}\n", named.name, reference.madeBy, reference.confirmation);
+  if (!(reference.uncertainty <= kTrustedUncertainty))
+    fmt::print("  THE REFERENCE IS UNCERTAIN: errors below {:.1e} mean nothing\n", reference.uncertainty);
   fmt::print("  {:<20}{:>12}   CPU s a simulated s for error <= {:.0e}{:>12.0e}{:>12.0e}\n", "", "least error",
              kWantedErrors[0], kWantedErrors[1], kWantedErrors[2]);
   for (const StudyMethod& method : methods) {

@@ -7,6 +7,9 @@
 
 namespace cradle {
 
+/// A reference that is known less well is told about in capitals: the accuracy of a scene that names none.
+constexpr double kTrustedUncertainty = 1e-6;
+
 /// The end of a scene as exactly as it can be had.
 struct Reference {
   std::vector<BodyState> end;

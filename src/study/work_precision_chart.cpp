@@ -18,7 +18,6 @@ namespace cradle {
 namespace {
 
 constexpr StartFailure kNoGnuplot{ErrorKind::output, "gnuplot-nox"};
-constexpr double kTrusted = 1e-6;  // an uncertainty above it is told in red: the program's default accuracy
 
 /// A colour (M. Okabe, K. Ito, "Color Universal Design", 2008: told apart by all eyes) and a marker a method. The
 /// plan's open circles go around the markers of what it chose.
@@ -79,11 +78,11 @@ struct ErrorAxis {
   double end = 1;  // of the strip; top without one
 };
 ErrorAxis errorAxisOf(const std::vector<Curve>& curves, double uncertainty) {
-  constexpr double kBottomMost = 1e-16, kTopMost = 1e4, kStrip = 20;
+  constexpr double kBottomMost = 1e-17, kTopMost = 1e4, kStrip = 0.09;  // the strip as part of the axis
   ErrorAxis axis;
   bool hasBlowUps = false;
   const auto include = [&](double error) {
-    axis.bottom = std::max(kBottomMost, std::min(axis.bottom, decadeBelow(error) / 10));
+    axis.bottom = std::max(kBottomMost, std::min(axis.bottom, decadeBelow(error / 3)));
     axis.top = std::min(kTopMost, std::max(axis.top, 10 * decadeBelow(error)));
   };
   if (std::isfinite(uncertainty)) include(uncertainty);
@@ -91,7 +90,7 @@ ErrorAxis errorAxisOf(const std::vector<Curve>& curves, double uncertainty) {
     for (const Point& point : curve.points) include(std::max(point.error, kBottomMost));
     hasBlowUps = hasBlowUps || !curve.blowUps.empty();
   }
-  axis.end = hasBlowUps ? axis.top * kStrip : axis.top;
+  axis.end = hasBlowUps ? axis.top * std::pow(axis.top / axis.bottom, kStrip / (1 - kStrip)) : axis.top;
   return axis;
 }
 
@@ -127,14 +126,15 @@ std::string dataBlocks(const std::vector<Curve>& curves, const ErrorAxis& axis) 
 
 std::string headings(const WorkPrecisionChart& chart) {
   const Reference& reference = chart.reference;
-  const bool isTrusted = reference.uncertainty <= kTrusted;
-  std::string second = fmt::format("x: positions (m) and quaternions after {} s. Reference: {}; {}", chart.duration,
-                                   reference.madeBy, reference.confirmation);
-  if (!isTrusted) second += ": THE REFERENCE IS NOT CERTAIN, smaller errors mean nothing";
+  const bool isTrusted = reference.uncertainty <= kTrustedUncertainty;
+  std::string title = "Work and precision: " + chart.title;
+  if (!isTrusted) title += fmt::format(" (THE REFERENCE IS UNCERTAIN BY {:.0e})", reference.uncertainty);
+  const std::string subtitle = fmt::format("x: positions (m) and quaternions after {} s. Reference: {}; {}",
+                                           chart.duration, reference.madeBy, reference.confirmation);
   return fmt::format(
-      "set label 1 {} at screen 0.5, 0.965 center font ',22' noenhanced\n"
-      "set label 2 {} at screen 0.5, 0.918 center font ',14' noenhanced textcolor rgb '{}'\n",
-      quoted("Work and precision: " + chart.title), quoted(second), isTrusted ? "#505050" : "#c00000");
+      "set label 1 {} at screen 0.5, 0.965 center font ',22' noenhanced textcolor rgb '{}'\n"
+      "set label 2 {} at screen 0.5, 0.918 center font ',14' noenhanced textcolor rgb '#505050'\n",
+      quoted(title), isTrusted ? "#000000" : "#c00000", quoted(subtitle));
 }
 
 std::string uncertaintyLine(const ErrorAxis& axis, double uncertainty) {
@@ -147,6 +147,16 @@ std::string uncertaintyLine(const ErrorAxis& axis, double uncertainty) {
       "set label 3 'uncertainty of the reference' at graph 0.985, first {1} right offset 0, -0.8 font ',13' "
       "textcolor rgb '#606060'\n",
       axis.bottom, uncertainty);
+}
+
+/// An arrow to where error and cost are small, above the uncertainty.
+std::string betterArrow(const ErrorAxis& axis, double uncertainty) {
+  const double lowest = std::isfinite(uncertainty) ? std::max(uncertainty, axis.bottom) : axis.bottom;
+  const double height = std::log(lowest / axis.bottom) / std::log(axis.end / axis.bottom);  // part of the panel
+  return fmt::format(
+      "set label 5 'better' at graph 0.075, graph {} center font ',13' textcolor rgb '#606060'\n"
+      "set arrow 5 from graph 0.09, graph {} to graph 0.03, graph {} linewidth 2 linecolor rgb '#909090'\n",
+      height + 0.12, height + 0.1, height + 0.04);
 }
 
 std::string blowUpStrip(const ErrorAxis& axis) {
@@ -212,10 +222,9 @@ std::string panels(const WorkPrecisionChart& chart, const std::vector<Curve>& cu
   text +=
       "set lmargin at screen 0.075\nset rmargin at screen 0.495\n"
       "set ylabel 'error at the end:  max |x - x_{ref}| / (1 + |x_{ref}|)'\n"
-      "set label 5 'better' at graph 0.075, graph 0.33 center font ',13' textcolor rgb '#606060'\n"
-      "set arrow 5 from graph 0.09, graph 0.31 to graph 0.03, graph 0.25 linewidth 2 linecolor rgb '#909090'\n"
+
       "set xlabel 'CPU time per simulated second (s)'\n" +
-      plotCommand(curves, 1);
+      betterArrow(axis, chart.reference.uncertainty) + plotCommand(curves, 1);
   text +=
       "unset label 1\nunset label 2\nunset label 5\nunset arrow 5\nset lmargin at screen 0.565\nset rmargin at screen "
       "0.985\nunset ylabel\n"

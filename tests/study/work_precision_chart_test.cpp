@@ -38,14 +38,15 @@ TEST(WorkPrecisionChart, BlowUpsStandWhereSuchARunWould) {
   // The coarsest good run has 32 evaluations at a step of 0.125 s, 8e-06 s of CPU time.
   const std::string commands = chartCommands(sampleChart(), "a.svg", "a.png");
   const std::string blowUps = commands.substr(commands.find("$blowUps0"));
-  EXPECT_THAT(blowUps.substr(0, blowUps.find("EOD\n", 20)), ::testing::AllOf(HasSubstr("2e-06 8 "), HasSubstr("4e-06 16 ")));
+  EXPECT_THAT(blowUps.substr(0, blowUps.find("EOD\n", 20)),
+              ::testing::AllOf(HasSubstr("2e-06 8 "), HasSubstr("4e-06 16 ")));
 }
 
 TEST(WorkPrecisionChart, AnUncertainReferenceIsSaidInTheHeading) {
   WorkPrecisionChart chart = sampleChart();
-  EXPECT_THAT(chartCommands(chart, "a.svg", "a.png"), Not(HasSubstr("NOT CERTAIN")));
+  EXPECT_THAT(chartCommands(chart, "a.svg", "a.png"), Not(HasSubstr("UNCERTAIN")));
   chart.reference.uncertainty = 1e-3;
-  EXPECT_THAT(chartCommands(chart, "a.svg", "a.png"), HasSubstr("NOT CERTAIN"));
+  EXPECT_THAT(chartCommands(chart, "a.svg", "a.png"), HasSubstr("UNCERTAIN"));
 }
 
 TEST(WorkPrecisionChart, TextsCannotBeCommands) {

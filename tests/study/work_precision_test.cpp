@@ -40,7 +40,8 @@ TEST(Reference, OfAnOscillatorIsAsNearToTheClosedFormAsItSays) {
   StudyScene scene(oscillator(omega, duration));
   const Reference reference = findReference(scene, ignore);
   EXPECT_LT(reference.uncertainty, 1e-10);
-  EXPECT_NEAR(reference.end[0].position.x(), 1 + 0.25 * std::cos(omega * duration), 2.25 * reference.uncertainty + 1e-14);
+  EXPECT_NEAR(reference.end[0].position.x(), 1 + 0.25 * std::cos(omega * duration),
+              2.25 * reference.uncertainty + 1e-14);
 }
 
 TEST(Reference, EndsWhereNothingIsGained) {
