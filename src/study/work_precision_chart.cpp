@@ -78,7 +78,7 @@ struct ErrorAxis {
   double end = 1;  // of the strip; top without one
 };
 ErrorAxis errorAxisOf(const std::vector<Curve>& curves, double uncertainty) {
-  constexpr double kBottomMost = 1e-17, kTopMost = 1e4, kStrip = 0.09;  // the strip as part of the axis
+  constexpr double kBottomMost = 1e-17, kTopMost = 1e4, kStrip = 0.1;  // the strip as part of the axis
   ErrorAxis axis;
   bool hasBlowUps = false;
   const auto include = [&](double error) {
@@ -182,11 +182,12 @@ std::string plotCommand(const std::vector<Curve>& curves, int column) {
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const Look& look = curves[i].look;
     text += fmt::format(
-        "{}$curve{} using {}:3 with linespoints linewidth {} pointtype {} pointsize {} linecolor rgb '{}' notitle",
+        "{}$curve{} using {}:3 with linespoints linewidth {} pointtype {} pointsize {}*markerScale linecolor rgb '{}' "
+        "notitle",
         i > 0 ? ", " : "", i, column, look.lineWidth, look.marker, look.size, look.color);
     if (!curves[i].blowUps.empty())
       text += fmt::format(
-          ", $blowUps{} using {}:3 with points pointtype 2 pointsize 1.6 linewidth 3 linecolor rgb '{}' "
+          ", $blowUps{} using {}:3 with points pointtype 2 pointsize 1.6*markerScale linewidth 3 linecolor rgb '{}' "
           "notitle",
           i, column, look.color);
   }
@@ -203,13 +204,14 @@ std::string legend(const std::vector<Curve>& curves) {
       "times finer.' at screen 0.5, 0.025 center font ',13' textcolor rgb '#505050'\n"
       "plot [0:1][0:1] ";
   for (const Curve& curve : curves)
-    text +=
-        fmt::format("NaN with linespoints linewidth {} pointtype {} pointsize {} linecolor rgb '{}' title {}, ",
-                    curve.look.lineWidth, curve.look.marker, curve.look.size, curve.look.color, quoted(curve.title));
+    text += fmt::format(
+        "NaN with linespoints linewidth {} pointtype {} pointsize {}*markerScale linecolor rgb '{}' title {}, ",
+        curve.look.lineWidth, curve.look.marker, curve.look.size, curve.look.color, quoted(curve.title));
   const bool hasBlowUps =
       std::any_of(curves.begin(), curves.end(), [](const Curve& curve) { return !curve.blowUps.empty(); });
   if (!hasBlowUps) return text + "NaN notitle\n";
-  return text + "NaN with points pointtype 2 pointsize 1.6 linewidth 3 linecolor rgb '#404040' title 'blew up'\n";
+  return text +
+         "NaN with points pointtype 2 pointsize 1.6*markerScale linewidth 3 linecolor rgb '#404040' title 'blew up'\n";
 }
 
 std::string panels(const WorkPrecisionChart& chart, const std::vector<Curve>& curves, const ErrorAxis& axis) {
@@ -253,10 +255,13 @@ std::string chartCommands(const WorkPrecisionChart& chart, const std::string& sv
   const ErrorAxis axis = errorAxisOf(curves, chart.reference.uncertainty);
   const std::string drawing = panels(chart, curves, axis);
   return dataBlocks(curves, axis) +
-         fmt::format("set terminal svg size 1600,900 font 'DejaVu Sans,15' background 'white'\nset output {}\n",
-                     quoted(svgPath)) +
+         fmt::format(
+             "set terminal svg size 1600,900 font 'DejaVu Sans,15' fontscale 1.3 background 'white'\nmarkerScale = "
+             "0.7\nset output {}\n",
+             quoted(svgPath)) +
          drawing + "reset\n" +
-         fmt::format("set terminal pngcairo size 1600,900 font 'DejaVu Sans,15'\nset output {}\n", quoted(pngPath)) +
+         fmt::format("set terminal pngcairo size 1600,900 font 'DejaVu Sans,15'\nmarkerScale = 1\nset output {}\n",
+                     quoted(pngPath)) +
          drawing;
 }
 
