@@ -13,9 +13,9 @@ enum class SettingKind { timeStep, accuracy };
 
 /// A way to go through time that a study compares with others.
 struct StudyMethod {
-  std::string name;                  // in study.csv and --methods
-  std::string title;                 // in charts
-  SettingKind setting;               //
+  std::string name;   // in study.csv and --methods
+  std::string title;  // in charts
+  SettingKind setting;
   std::optional<MethodName> method;  // for the scene; unset: the plan chooses
   double stabilityLimit = 0;         // of step x omega; 0: unstable at any step, or the step is not ours to choose
 };
