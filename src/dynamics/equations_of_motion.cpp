@@ -71,8 +71,7 @@ void EquationsOfMotion::addForce(int body, const Vec3& arm, const Vec3& force, V
   if (body == kFixed) return;
   const std::size_t index = static_cast<std::size_t>(body);
   linearVelocity(rate, body) += mechanism_.bodies[index].inverseMass * force;
-  if (mechanism_.bodies[index].turns)
-    angularVelocity(rate, body) += frames_[index].inverseInertia * arm.cross(force);
+  if (mechanism_.bodies[index].turns) angularVelocity(rate, body) += frames_[index].inverseInertia * arm.cross(force);
 }
 
 void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& state, VectorX& rate) {

@@ -225,6 +225,16 @@ Plan planOf(const Scene& scene) {
   return plan;
 }
 
+IslandPlan wholeScene(const Scene& scene) {
+  IslandPlan whole;
+  for (const IslandPlan& island : planOf(scene).islands) {
+    whole.bodies.insert(whole.bodies.end(), island.bodies.begin(), island.bodies.end());
+    whole.near.insert(whole.near.end(), island.near.begin(), island.near.end());
+  }
+  std::sort(whole.bodies.begin(), whole.bodies.end());
+  return whole;
+}
+
 std::string methodNames(const Plan& plan) {
   std::vector<std::string> names;
   for (const IslandPlan& island : plan.islands) {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "simulate/assembly.h"
 
 namespace cradle {
 
@@ -44,12 +43,6 @@ void choose(const StudyMethod& method, double setting, Scene& scene) {
     scene.method->timeStep = setting;
   else
     scene.accuracy = setting;
-}
-
-void refuseUnsupportedMethod(const Scene& scene) {
-  refuseUnsupported(scene);
-  const std::vector<std::string> unused = unusedRequests(scene);
-  if (!unused.empty()) throw Error(ErrorKind::scene, "", unused.front());
 }
 
 }  // namespace cradle

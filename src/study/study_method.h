@@ -30,7 +30,4 @@ std::vector<StudyMethod> studyMethodsNamed(const std::vector<std::string>& names
 /// Makes the scene go by `method` at `setting` (a time step in s, or an accuracy).
 void choose(const StudyMethod& method, double setting, Scene& scene);
 
-/// Throws Error(scene) if the simulation cannot go by what choose() put into the scene.
-void refuseUnsupportedMethod(const Scene& scene);
-
 }  // namespace cradle

@@ -42,7 +42,8 @@ StudyRun failedRun(const Error& error) {
 
 }  // namespace
 
-StudyScene::StudyScene(Scene scene) : scene_(withSafeMethod(std::move(scene))), assembly_(assemble(scene_)) {}
+StudyScene::StudyScene(Scene scene)
+    : scene_(withSafeMethod(std::move(scene))), assembly_(assemble(scene_, wholeScene(scene_))) {}
 
 double StudyScene::fastestFrequency() const {
   double fastest = 0;
@@ -78,7 +79,7 @@ StudyRun StudyScene::runOnce(long frames, double cpuLimit) {
       throw Error(ErrorKind::limit, "", fmt::format("takes more than {} s of CPU time", cpuLimit));
   };
   try {
-    refuseUnsupportedMethod(scene_);
+    refuseUnsupported(scene_);
     run.cost = simulate(scene_, {take, [](const Event&) {}, [](const std::string&) {}});
   } catch (const Error& error) {
     return failedRun(error);

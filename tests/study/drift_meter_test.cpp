@@ -16,7 +16,8 @@ Frame frameWith(const Vec3& position, const EnergyBalance& energy = {}) {
 }
 
 TEST(DriftMeter, EnergyIsThatOfTheConstantAsPartOfTheLargestKinetic) {
-  const Assembly assembly = assemble(freeFall(1));
+  const Scene scene = freeFall(1);
+  const Assembly assembly = assemble(scene, wholeScene(scene));
   DriftMeter meter(assembly);
   // The constants are 5, 7 and 4 J.
   meter.add(frameWith(Vec3::Zero(), {.kinetic = 2, .potential = 3}));
@@ -29,7 +30,7 @@ TEST(DriftMeter, ConstraintIsTheErrorOfARodInMetres) {
   const Scene scene = sceneOf(R"({"schema": "cradle-scene/1", "name": "rod", "duration": 1,
     "bodies": [{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [2, 0, 0]}],
     "rods": [{"bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0]}]})");
-  const Assembly assembly = assemble(scene);
+  const Assembly assembly = assemble(scene, wholeScene(scene));
   DriftMeter meter(assembly);
   meter.add(frameWith({0, 2, 0}));
   EXPECT_EQ(meter.constraintDrift(), 0);
@@ -44,7 +45,7 @@ TEST(DriftMeter, PenetrationIsTheDeepestOverlap) {
   const Scene scene = sceneOf(R"({"schema": "cradle-scene/1", "name": "ground", "duration": 1,
     "bodies": [{"name": "ball", "shape": {"sphere": {"radius": 0.5}}, "position": [0, 2, 0]},
                {"name": "ground", "shape": {"plane": {}}, "motion": "static"}]})");
-  const Assembly assembly = assemble(scene);
+  const Assembly assembly = assemble(scene, wholeScene(scene));
   DriftMeter meter(assembly);
   meter.add(frameWith({0, 0.75, 0}));
   EXPECT_EQ(meter.penetration(), 0);
