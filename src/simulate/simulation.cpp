@@ -102,9 +102,10 @@ void Simulation::advance(double frame) {
   if (time_ > frame) prepareInterpolant(rightHandSide_, step_);
 
   // Take out what the step left wrong: lengths of rods, closing and overlapping contacts. Then what changes here?
-  const VectorX before = std::exchange(state_, step_.state);
+  before_ = state_;
+  state_ = step_.state;
   tidyState();
-  contacts_.resolve(time_, before, state_);
+  contacts_.resolve(time_, before_, state_);
   ropes_.resolve(time_, state_);
   beginAndEndPushes();
   guard_.check(state_, time_, step_.timeStep);

@@ -68,7 +68,7 @@ class Simulation {
   double time_ = 0;            // s
   long stepNumber_ = 0;        // of a fixed step: the one under way covers [stepNumber_, stepNumber_ + 1] x timeStep
   int eventsInStep_ = 0;
-  VectorX state_, reported_;
+  VectorX state_, before_, reported_;
   Step step_;
 };
 
