@@ -76,6 +76,7 @@ const VectorX& Simulation::stateAt(double time) {
     reported_ = state_;
   } else {
     interpolate(step_, (time - step_.time) / step_.timeStep, reported_);
+    if (keepsTies_ && solver_.hasConstraints()) solver_.project(reported_);
   }
   normalizeOrientations(reported_);
   for (std::size_t i = 0; i < assembly_.mechanism.bodies.size(); ++i)
@@ -106,7 +107,9 @@ void Simulation::advance(double frame) {
   state_ = step_.state;
   tidyState();
   contacts_.resolve(time_, before_, state_);
+  const std::size_t rods = assembly_.mechanism.constraints.rods.size();
   ropes_.resolve(time_, state_);
+  keepsTies_ = assembly_.mechanism.constraints.rods.size() == rods;
   beginAndEndPushes();
   guard_.check(state_, time_, step_.timeStep);
   requireUnsolvedPairsApart();

@@ -65,6 +65,7 @@ class Simulation {
   VectorX tolerance_;  // of an adaptive method
   StepSize stepSize_;
   bool isContinuous_ = false;  // nothing has changed the state since the last step's end
+  bool keepsTies_ = true;      // no rope went taut or slack at the last step's end
   double time_ = 0;            // s
   long stepNumber_ = 0;        // of a fixed step: the one under way covers [stepNumber_, stepNumber_ + 1] x timeStep
   int eventsInStep_ = 0;
