@@ -2,21 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "collision/first_crossing.h"
 #include "dynamics/integrators/pose_interpolant.h"
 #include "dynamics/invariants.h"
+#include "impact/rope_impulse.h"
 
 namespace cradle {
 namespace {
 
 constexpr double kTautPart = 1e-9;    // of its length: a rope this near to it is at its length
 constexpr double kSlackPart = 1e-6;   // of its length: a rope this much shorter is slack again
-constexpr double kRestPart = 1e-7;    // of sqrt(acceleration x length): a rebound that rises by 5e-15 of the length
+constexpr double kRestPart = 1e-6;    // of sqrt(acceleration x length): a rebound that rises by 5e-13 of the length
 constexpr double kLoadedPart = 1e-6;  // of gravity: a pull that is no rounding
 constexpr int kTensionSamples = 4;    // a step: it is at most a small part of a swing
 constexpr double kFirstLook = 1.0 / 1024;  // of a step
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
+constexpr double kSpeedRounding = 1e-12;   // of the speed before a pull
+constexpr int kMostRounds = 100;           // of pulls at one instant; those left over pull after the next step
 
 Vec3 positionAt(const Step& step, const Attachment& attachment, double fraction) {
   return poseAt(step, attachment.body, fraction) * attachment.point;
@@ -27,13 +31,24 @@ double motionBound(const Step& step, const Attachment& attachment) {
 }
 
 /// Where in the step a rope is slack by more than `least` (m): at its start, or, for one that has just been let go, as
-/// soon as can be; 1 if nowhere.
+/// soon as can be, looked for from `begin` on; 1 if nowhere.
 template <class Slack>
-double firstSlack(const Slack& slack, double least) {
+double firstSlack(const Slack& slack, double least, double begin) {
   if (slack(0) > least) return 0;
-  double fraction = kFirstLook;
-  while (fraction < 1 && slack(fraction) <= least) fraction *= 2;
+  double fraction = begin;
+  while (fraction < 1 && slack(fraction) <= (fraction < kFirstLook ? 0 : least)) fraction *= 2;
   return std::min(fraction, 1.0);
+}
+
+/// Part of the step after which a rope that shortens with `speed` (m a step) at its start shortens still, however it is
+/// pulled: a rebound, even one far shorter than the step, is not over by then.
+double firstLook(const RopeLimit& rope, const Step& step) {
+  const double speed = -motionOf(rope, step.startState).lengthening * step.timeStep;
+  if (!(speed > 0)) return kFirstLook;
+  const auto acceleration = [&](const Attachment& end) {
+    return motionBounds(step, end.body, end.point.norm()).acceleration;
+  };
+  return std::min(kFirstLook, speed / (acceleration(rope.anchorA) + acceleration(rope.anchorB)));
 }
 
 }  // namespace
@@ -65,7 +80,7 @@ std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
              (positionAt(step, rope.anchorA, fraction) - positionAt(step, rope.anchorB, fraction)).norm();
     };
     const double speed = motionBound(step, rope.anchorA) + motionBound(step, rope.anchorB);
-    const double begin = firstSlack(slack, kTautPart * rope.maxLength), start = slack(begin);
+    const double begin = firstSlack(slack, kTautPart * rope.maxLength, firstLook(rope, step)), start = slack(begin);
     if (begin >= end || start > speed) continue;
     if (const auto fraction = firstCrossing(slack, GapBounds{speed}, begin, start, end, slack(end)))
       first = RopeChange{*fraction, i};
@@ -89,7 +104,7 @@ std::optional<double> RopeStage::firstPush(const Step& step, std::size_t rope) {
 
 double RopeStage::margin(const RopeChange& change, const VectorX& state) {
   if (isTaut(change.rope)) return tension(change.rope, state) / startTension_;
-  return motionOf(assembly_.ropes[change.rope], state).slackLength;
+  return motionOf(assembly_.ropes[change.rope], state).slackLength / assembly_.ropes[change.rope].maxLength;
 }
 
 /// Force (N) with which a taut rope pulls its ends together. Its row's multiplier pushes by multiplier x distance.
@@ -108,41 +123,61 @@ void RopeStage::resolve(double time, VectorX& state) {
   }
   if (released) return;
 
-  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
-    if (isTaut(i)) continue;
-    const RopeLimit& rope = assembly_.ropes[i];
-    const RopeMotion motion = motionOf(rope, state);
-    if (motion.slackLength > kSlackPart * rope.maxLength) loosen(time, i, state);
-    if (motion.slackLength <= kTautPart * rope.maxLength && motion.lengthening >= 0) pull(time, i, state);
+  for (std::size_t i = 0; i < tautRod_.size(); ++i)
+    if (!isTaut(i) && motionOf(assembly_.ropes[i], state).slackLength > kSlackPart * assembly_.ropes[i].maxLength)
+      loosen(time, i, state);
+  // A pull may stretch another rope that is at its length, or load it.
+  for (int round = 0; round < kMostRounds; ++round) {
+    const std::vector<Stretch> stretches = findStretches(state);
+    if (stretches.empty()) return;
+    pull(time, stretches, state);
   }
 }
 
-/// A rope at its length that still lengthens. A rebound that would end within about two steps is not resolved: the rope
-/// stays taut. It becomes a rod if smooth forces pull at it; else what drags at it (friction) is met step by step.
-void RopeStage::pull(double time, std::size_t index, VectorX& state) {
-  const RopeLimit& rope = assembly_.ropes[index];
-  equations_.evaluate(state, rate_);
-  const double acceleration = lengtheningAcceleration(rope, state, rate_);
-  const RopeMotion motion = motionOf(rope, state);
-  const bool isLoaded = acceleration > kLoadedPart * assembly_.mechanism.gravity.norm();
-  if (!isLoaded && motion.lengthening <= kRestSpeedFloor) return;
-  const double pulling = std::max(0.0, acceleration);
-  const double restSpeed = 2 * pulling * timeStep_ + kRestPart * std::sqrt(pulling * rope.maxLength) + kRestSpeedFloor;
-  const bool rebounds = rope.restitution * motion.lengthening > restSpeed;
-  const double impulse = (1 + (rebounds ? rope.restitution : 0)) * motion.lengthening /
-                         inverseMassAlong(rope, assembly_.mechanism.bodies, state);
-
-  for (const int body : {rope.anchorA.body, rope.anchorB.body}) contacts_.wake(time, body, state);
-  const double before = kineticEnergy(assembly_.mechanism.bodies, state);
-  applyImpulse(assembly_.mechanism.bodies, rope.anchorA.body, motion.a.arm, -impulse * motion.direction, state);
-  applyImpulse(assembly_.mechanism.bodies, rope.anchorB.body, motion.b.arm, impulse * motion.direction, state);
-  if (!isStretched_[index] || rebounds) record(time, EventKind::taut, index, impulse, state);
-  isStretched_[index] = !rebounds;
-  if (!rebounds && isLoaded) {
-    tautRod_[index] = 0;
-    rebuildRods();
+/// Ropes at their length that still lengthen. A rebound that would end within about two steps is not resolved: the rope
+/// stays taut.
+std::vector<RopeStage::Stretch> RopeStage::findStretches(const VectorX& state) {
+  std::vector<Stretch> stretches;
+  bool isEvaluated = false;
+  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
+    const RopeLimit& rope = assembly_.ropes[i];
+    if (isTaut(i)) continue;
+    const RopeMotion motion = motionOf(rope, state);
+    if (motion.slackLength > kTautPart * rope.maxLength || motion.lengthening < 0) continue;
+    if (!std::exchange(isEvaluated, true)) equations_.evaluate(state, rate_);
+    const double acceleration = lengtheningAcceleration(rope, state, rate_), pulling = std::max(0.0, acceleration);
+    const bool isLoaded = acceleration > kLoadedPart * assembly_.mechanism.gravity.norm();
+    if (!isLoaded && motion.lengthening <= kRestSpeedFloor) continue;
+    const double restSpeed =
+        2 * pulling * timeStep_ + kRestPart * std::sqrt(pulling * rope.maxLength) + kRestSpeedFloor;
+    const double rebound = rope.restitution * motion.lengthening;
+    stretches.push_back({i, motion.lengthening, rebound > restSpeed ? rebound : 0, isLoaded});
   }
-  // The pull goes on into the other constraints and taut ropes.
+  return stretches;
+}
+
+/// All ropes that are stretched at this instant pull at once. One that does not rebound becomes a rod if smooth forces
+/// pull at it; else what drags at it (friction) is met step by step.
+void RopeStage::pull(double time, const std::vector<Stretch>& stretches, VectorX& state) {
+  std::vector<RopePull> pulls;
+  for (const Stretch& stretch : stretches) {
+    const RopeLimit& rope = assembly_.ropes[stretch.rope];
+    for (const int body : {rope.anchorA.body, rope.anchorB.body}) contacts_.wake(time, body, state);
+    pulls.push_back({&rope, stretch.reboundSpeed});
+  }
+  const double before = kineticEnergy(assembly_.mechanism.bodies, state);
+  if (solver_.hasConstraints()) solver_.factorize(state);
+  applyPulls(pulls, assembly_.mechanism.bodies, solver_, state);
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    const auto& [rope, speed, reboundSpeed, isLoaded] = stretches[i];
+    const bool rebounds = reboundSpeed > 0;
+    const double lengthening = motionOf(assembly_.ropes[rope], state).lengthening;
+    if (lengthening < -(reboundSpeed + kRestSpeedFloor + kSpeedRounding * speed)) continue;  // others pulled it short
+    if (!isStretched_[rope] || rebounds) record(time, EventKind::taut, rope, pulls[i].impulse, state);
+    isStretched_[rope] = !rebounds;
+    if (!rebounds && isLoaded) tautRod_[rope] = 0;
+  }
+  rebuildRods();
   if (solver_.hasConstraints()) {
     solver_.factorize(state);
     solver_.constrainVelocities(state);

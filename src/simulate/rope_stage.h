@@ -24,8 +24,8 @@ class RopeStage {
   /// be there (prepareInterpolant).
   std::optional<RopeChange> firstChange(const Step& step);
 
-  /// Zero where the change happens, positive before: slack length in m, or tension as a part of that at the step's
-  /// start.
+  /// Zero where the change happens, positive before: slack as a part of the length, or tension as a part of that at the
+  /// step's start.
   double margin(const RopeChange& change, const VectorX& state);
 
   /// What happens at the end of a step: impulses in ropes that are at their length, new rods, released ropes.
@@ -37,7 +37,15 @@ class RopeStage {
   bool isTaut(std::size_t rope) const { return tautRod_[rope] >= 0; }
   double tension(std::size_t rope, const VectorX& state);
   std::optional<double> firstPush(const Step& step, std::size_t rope);
-  void pull(double time, std::size_t rope, VectorX& state);
+  /// A rope at its length that lengthens.
+  struct Stretch {
+    std::size_t rope;
+    double speed;         // m/s, of lengthening
+    double reboundSpeed;  // m/s, 0: does not rebound
+    bool isLoaded;        // forces would lengthen it further
+  };
+  std::vector<Stretch> findStretches(const VectorX& state);
+  void pull(double time, const std::vector<Stretch>& stretches, VectorX& state);
   void release(double time, std::size_t rope, const VectorX& state);
   void loosen(double time, std::size_t rope, const VectorX& state);
   void rebuildRods();

@@ -18,7 +18,7 @@ namespace {
 constexpr double kImpactPart = 1e-3;  // of the touching tolerance: how well an impact's gap is closed
 constexpr int kMostCorrections = 60;  // steps tried to that end; 3 are usual
 constexpr int kMostEventsPerStep = 10000;
-constexpr double kRopeTolerance = 1e-13;  // m of slack, or part of the tension that is left
+constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension that is left
 constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
 
 constexpr double kSameTime = 1e-12;   // s, relative beyond 1 s
@@ -155,7 +155,8 @@ void Simulation::takeAdaptiveStep(double stepEnd) {
 }
 
 /// Constraints hold to rounding after each step. Orientations are of unit length nearly enough for the equations, which
-/// take their direction; a state that is not touched lets the next step begin with this one's last rate.
+/// take their direction; a state that nothing touches lets the next step begin with this one's last rate. (Ropes may
+/// pull at it yet.)
 void Simulation::tidyState() {
   bool isTouched = false;
   if (solver_.hasConstraints()) {
@@ -165,7 +166,7 @@ void Simulation::tidyState() {
   for (Eigen::Index body = 0; body < bodyCount(state_); ++body)
     isTouched = isTouched || std::abs(orientation(state_, body).squaredNorm() - 1) > kUnitLength;
   if (isTouched || !method_.isAdaptive()) normalizeOrientations(state_);
-  isContinuous_ = method_.isAdaptive() && !isTouched;
+  isContinuous_ = method_.isAdaptive() && !isTouched && !ropes_.hasRopes();
 }
 
 bool Simulation::isAtRest() const {
@@ -199,7 +200,6 @@ bool Simulation::stopAtFirstEvent() {
     shortenStepTo(change->fraction * whole, kRopeTolerance,
                   [&](const VectorX& state) { return ropes_.margin(*change, state); });
   }
-  if (impact || change) isContinuous_ = false;
   return impact || change;
 }
 
@@ -212,7 +212,7 @@ void Simulation::shortenStepTo(double length, double tolerance, const std::funct
     integrate(time_ + part);
     return margin(step_.state);
   };
-  double early = 0, earlyMargin = margin(state_);
+  double early = 0, earlyMargin = std::max(margin(state_), tolerance);  // a rope that rebounds starts at its length
   double late = length, lateMargin = marginAfter(late);
   while (lateMargin > 0 && late < whole) {  // the method is later than its interpolant
     early = late, earlyMargin = lateMargin;

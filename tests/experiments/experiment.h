@@ -19,6 +19,16 @@ inline Scene sceneOf(const std::string& text) {
   return parseScene(text, "experiment.json", [](const MeshReference&) { return LoadedModel{}; }).scene;
 }
 
+/// The scene of a text's members behind schema and name.
+inline Scene sceneWith(const std::string& members) {
+  return sceneOf(R"({"schema": "cradle-scene/1", "name": "Experiment", )" + members + "}");
+}
+
+/// `[x, y, z]` for a scene text, with all digits.
+inline std::string vectorText(const Vec3& v) {
+  return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
+}
+
 /// `"method": ...` for a scene text.
 inline std::string methodText(const std::string& name, double timeStep) {
   return fmt::format(R"("method": {{"name": "{}", "timeStep": {}}})", name, timeStep);

@@ -1,0 +1,177 @@
+// Ropes going taut and slack, one at a time and together, between steps as long as the accuracy allows.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "experiments/tie_error.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kGravity = 9.81;
+
+std::string ball(const std::string& name, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+  return fmt::format(R"({{"name": "{}", "shape": {{"sphere": {{"radius": 0.01}}}}, "collision": "none", "mass": 1,
+    "position": {}, "linearVelocity": {}}})",
+                     name, vectorText(position), vectorText(velocity));
+}
+
+std::string rope(const std::string& body, const Vec3& anchor, double restitution) {
+  return fmt::format(R"({{"bodyA": "{}", "anchorA": [0, 0, 0], "anchorB": {}, "maxLength": 1, "restitution": {}}})",
+                     body, vectorText(anchor), restitution);
+}
+
+Trajectory run(double duration, const std::string& bodies, const std::string& ropes, double framesPerSecond = 10) {
+  return simulate(sceneWith(fmt::format(
+      R"("duration": {}, "accuracy": 1e-10, "output": {{"framesPerSecond": {}}}, "bodies": [{}], "ropes": [{}])",
+      duration, framesPerSecond, bodies, ropes)));
+}
+
+std::vector<Event> eventsOf(const Trajectory& run, EventKind kind) {
+  std::vector<Event> events;
+  std::copy_if(run.events.begin(), run.events.end(), std::back_inserter(events),
+               [kind](const Event& event) { return event.kind == kind; });
+  return events;
+}
+
+const double kDrop = 0.8;  // m
+const double kFall = std::sqrt(2 * kDrop / kGravity), kSpeed = kGravity * kFall;
+
+Trajectory dropBelowItsAnchor(double restitution, double duration) {
+  return run(duration, ball("ball", Vec3(0, kDrop - 1, 0)), rope("ball", Vec3::Zero(), restitution));
+}
+
+TEST(FallIntoARope, WithoutRestitutionEndsThere) {
+  const Trajectory fall = dropBelowItsAnchor(0, 2);
+  ASSERT_EQ(fall.events.size(), 1u);
+  EXPECT_EQ(fall.events[0].kind, EventKind::taut);
+  EXPECT_NEAR(fall.events[0].time, kFall, 1e-12);
+  EXPECT_NEAR(fall.events[0].impulse, kSpeed, 1e-11);
+  EXPECT_LT((fall.events[0].normal - Vec3(0, 1, 0)).norm(), 1e-12);
+  EXPECT_LT((endOf(fall).position - Vec3(0, -1, 0)).norm(), 1e-12);
+  EXPECT_LT(endOf(fall).linearVelocity.norm(), 1e-11);
+  EXPECT_NEAR(fall.frames.back().energy.dissipated, kSpeed * kSpeed / 2, 1e-11);
+}
+
+// Each flight between two pulls lasts 2 e^k v / g: they get shorter for ever, and end at t (1 + 2 e / (1 - e)) = 3 t
+// for e = 1/2. Rebounds slower than 1e-6 sqrt(g L) = 3.1e-6 m/s are not followed: with all that come after them they
+// would have lasted up to 2 v / (g (1 - e)) = 1.3e-6 s.
+TEST(FallIntoARope, WithHalfItsSpeedComesToRestInThreeTimesTheFall) {
+  const Trajectory fall = dropBelowItsAnchor(0.5, 2);
+  const std::vector<Event> taut = eventsOf(fall, EventKind::taut);
+  ASSERT_GT(taut.size(), 20u);
+  EXPECT_LT(taut.size(), 26u);
+  double time = kFall, speed = kSpeed;
+  for (std::size_t i = 0; i + 1 < taut.size(); ++i) {
+    EXPECT_NEAR(taut[i].time, time, 1e-10) << i;
+    EXPECT_NEAR(taut[i].impulse, 1.5 * speed, 1e-9) << i;
+    speed /= 2;
+    time += 2 * speed / kGravity;
+  }
+  EXPECT_NEAR(taut.back().time, 3 * kFall, 1.3e-6);
+  EXPECT_LT((endOf(fall).position - Vec3(0, -1, 0)).norm(), 1e-12);
+  EXPECT_LT(endOf(fall).linearVelocity.norm(), 1e-11);
+  EXPECT_NEAR(fall.frames.back().energy.dissipated, kSpeed * kSpeed / 2, 1e-10);
+}
+
+// Elastic: up to the start and down again, for ever, in parabolas.
+TEST(FallIntoARope, WithAllItsSpeedRepeatsItself) {
+  const Trajectory fall = dropBelowItsAnchor(1, 10);
+  const std::vector<Event> taut = eventsOf(fall, EventKind::taut);
+  ASSERT_EQ(taut.size(), 12u);  // 0.404 s x (2 k + 1) < 10 s
+  for (std::size_t i = 0; i < taut.size(); ++i) {
+    EXPECT_NEAR(taut[i].time, kFall * (2 * static_cast<double>(i) + 1), 1e-10) << i;
+    EXPECT_NEAR(taut[i].impulse, 2 * kSpeed, 1e-9) << i;
+  }
+  for (const Frame& frame : fall.frames) {
+    const double phase = std::remainder(frame.time, 2 * kFall);
+    EXPECT_NEAR(frame.states[0].position.y(), kDrop - 1 - kGravity * phase * phase / 2, 1e-9) << frame.time;
+  }
+  EXPECT_LT(largestEnergyError(fall), 1e-9);
+}
+
+// The ball of the reference goes slack at 0.96 s and taut again at 1.26 s: a parabola in between.
+TEST(SlackRope, LeavesAParabola) {
+  const Trajectory thrown =
+      run(1.25, ball("ball", Vec3(0.9, 0, 0), Vec3(0, -2, 0)), rope("ball", Vec3::Zero(), 0), 100);
+  ASSERT_EQ(thrown.events.size(), 2u);
+  const Event& slack = thrown.events[1];
+  ASSERT_EQ(slack.kind, EventKind::slack);
+  const Frame& first = thrown.frames[97];
+  ASSERT_GT(first.time, slack.time);
+  for (std::size_t i = 97; i < thrown.frames.size(); ++i) {
+    const double since = thrown.frames[i].time - first.time;
+    const Vec3 expected =
+        first.states[0].position + since * first.states[0].linearVelocity - Vec3(0, kGravity * since * since / 2, 0);
+    EXPECT_LT((thrown.frames[i].states[0].position - expected).norm(), 1e-13) << since;
+  }
+}
+
+// A bob on a rod answers to its rope along its circle alone: with n along the rope and t along the circle, the inverse
+// mass is (n.t)^2 / m, and the rope's end comes in with v n.t.
+TEST(RopeOnARodPendulum, PullsAsHardAsTheRodLetsTheBobAnswer) {
+  const Vec3 at(-0.6, -0.8, 0), tangent(0.8, -0.6, 0), anchor(-0.9, 0, 0);
+  const double restitution = 0.5, speed = std::sqrt(2 * kGravity * 0.8), length = (at - anchor).norm();
+  const Trajectory swing = simulate(sceneWith(fmt::format(
+      R"("duration": 1, "accuracy": 1e-10, "bodies": [{}],
+      "rods": [{{"bodyA": "bob", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0]}}],
+      "ropes": [{{"bodyA": "bob", "anchorA": [0, 0, 0], "anchorB": {}, "maxLength": {}, "restitution": {}}}])",
+      ball("bob", Vec3(-1, 0, 0)), vectorText(anchor), length, restitution)));
+  ASSERT_FALSE(swing.events.empty());
+  EXPECT_LT((swing.events[0].point - at).norm(), 1e-9);
+  const double along = (at - anchor).dot(tangent) / length;
+  EXPECT_NEAR(swing.events[0].impulse, (1 + restitution) * speed / along, 1e-8);
+  const auto after = std::find_if(swing.frames.begin(), swing.frames.end(),
+                                  [&](const Frame& frame) { return frame.time > swing.events[0].time; });
+  EXPECT_NEAR(after->energy.dissipated, (1 - restitution * restitution) * speed * speed / 2, 1e-8);
+}
+
+/// A ball that falls from between two anchors, on a rope from each.
+Trajectory dropBetweenAnchors(double restitution, double duration) {
+  return run(duration, ball("ball", Vec3::Zero()),
+             rope("ball", Vec3(0.6, 0, 0), restitution) + ", " + rope("ball", Vec3(-0.6, 0, 0), restitution));
+}
+
+// Both ropes are straight 0.8 m below.
+TEST(TwoRopesAtOnce, StopABallWithoutRestitution) {
+  const Trajectory fall = dropBetweenAnchors(0, 2);
+  const std::vector<Event> taut = eventsOf(fall, EventKind::taut);
+  ASSERT_EQ(taut.size(), 2u);
+  for (const Event& event : taut) EXPECT_NEAR(event.time, kFall, 1e-12);
+  EXPECT_EQ(taut[0].time, taut[1].time);
+  EXPECT_LT((endOf(fall).position - Vec3(0, -0.8, 0)).norm(), 1e-12);
+  EXPECT_LT(endOf(fall).linearVelocity.norm(), 1e-11);
+}
+
+TEST(TwoRopesAtOnce, ThrowABallBackStraight) {
+  for (const double restitution : {0.5, 1.0}) {
+    const Trajectory fall = dropBetweenAnchors(restitution, 1);
+    for (const Frame& frame : fall.frames) EXPECT_LT(std::abs(frame.states[0].position.x()), 1e-12) << frame.time;
+    // Each rope's end comes back with the part e of its speed, which the upright one alone does to both.
+    const Frame& after = fall.frames[5];
+    const double since = after.time - kFall;
+    EXPECT_NEAR(after.states[0].linearVelocity.y(), restitution * kSpeed - kGravity * since, 1e-10);
+  }
+}
+
+// Two balls on ropes of their own, tied by a slack spring without force: one island, two events at one instant.
+TEST(TwoRopesAtOnce, OnTwoBallsKeepTheMirrorsSymmetry) {
+  for (const double restitution : {0.0, 0.5, 1.0}) {
+    const Trajectory fall = simulate(sceneWith(fmt::format(
+        R"("duration": 3, "accuracy": 1e-8, "bodies": [{}, {}], "ropes": [{}, {}],
+        "springs": [{{"bodyA": "left", "anchorA": [0, 0, 0], "bodyB": "right", "anchorB": [0, 0, 0], "stiffness": 3}}])",
+        ball("left", Vec3(-1, 0, 0)), ball("right", Vec3(1, 0, 0)), rope("left", Vec3(-1.7, 0, 0), restitution),
+        rope("right", Vec3(1.7, 0, 0), restitution))));
+    const std::vector<Event> taut = eventsOf(fall, EventKind::taut);
+    ASSERT_GE(taut.size(), 2u);
+    for (const Frame& frame : fall.frames) {
+      const BodyState &left = frame.states[0], &right = frame.states[1];
+      EXPECT_LT((left.position - Vec3(-right.position.x(), right.position.y(), 0)).norm(), 1e-12)
+          << restitution << " at " << frame.time;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cradle
