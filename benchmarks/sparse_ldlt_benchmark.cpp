@@ -1,5 +1,5 @@
-// Is there a size below which a dense factorisation of J M^-1 J^T would be cheaper? A chain's matrix (tridiagonal) and a
-// full one, factorised and solved by ours and by Eigen's dense LDLT.
+// Is there a size below which a dense factorisation of J M^-1 J^T would be cheaper? A chain's matrix (tridiagonal) and
+// a full one, factorised and solved by ours and by Eigen's dense LDLT.
 
 #include <benchmark/benchmark.h>
 

@@ -17,9 +17,10 @@ namespace {
 
 constexpr double kImpactPart = 1e-3;  // of the touching tolerance: how well an impact's gap is closed
 constexpr int kMostCorrections = 60;  // steps tried to that end; 3 are usual
-constexpr int kMostEventsPerStep = 10000;
-constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension that is left
-constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
+constexpr int kMostEvents = 10000;
+constexpr double kEventWindow = 1.0 / 960;  // s, in which there may be so many, of methods without a fixed step
+constexpr double kRopeTolerance = 1e-13;    // of the length, or of the tension that is left
+constexpr double kTimeRounding = 1e-9;      // of a step: remainders below it are rounding
 
 constexpr double kSameTime = 1e-12;   // s, relative beyond 1 s
 constexpr double kManyTurns = 100;    // rad: beyond, orientations need a tighter tolerance
@@ -117,7 +118,6 @@ void Simulation::advance(double frame) {
   if (atEvent) countEvent();
   if (method_.isAdaptive() || time_ < static_cast<double>(stepNumber_ + 1) * method_.timeStep) return;
   ++stepNumber_;
-  eventsInStep_ = 0;
 }
 
 /// The end of the fixed step under way, or of the run; a push that begins or ends comes first.
@@ -256,11 +256,13 @@ void Simulation::requireUnsolvedPairsApart() const {
 }
 
 void Simulation::countEvent() {
-  if (++eventsInStep_ <= kMostEventsPerStep) return;
+  const double window = method_.isAdaptive() ? kEventWindow : method_.timeStep;
+  if (time_ > windowStart_ + window) windowStart_ = time_, eventsInWindow_ = 0;
+  if (++eventsInWindow_ <= kMostEvents) return;
   throw Error(ErrorKind::limit, "",
-              fmt::format("more than {} impacts in one step of {:.3g} s at {:.6g} s; lower a restitution of 1 between "
-                          "bodies that cannot separate, or take a smaller \"timeStep\"",
-                          kMostEventsPerStep, step_.timeStep, time_));
+              fmt::format("more than {} impacts and pulls of ropes within {:.3g} s at {:.6g} s; lower a restitution of "
+                          "1 between bodies that cannot separate, or take a smaller \"timeStep\"",
+                          kMostEvents, window, time_));
 }
 
 }  // namespace cradle

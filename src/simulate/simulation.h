@@ -68,7 +68,8 @@ class Simulation {
   bool keepsTies_ = true;      // no rope went taut or slack at the last step's end
   double time_ = 0;            // s
   long stepNumber_ = 0;        // of a fixed step: the one under way covers [stepNumber_, stepNumber_ + 1] x timeStep
-  int eventsInStep_ = 0;
+  int eventsInWindow_ = 0;
+  double windowStart_ = 0;  // s
   VectorX state_, before_, reported_;
   Step step_;
 };
