@@ -6,11 +6,14 @@
 #include <csignal>
 #include <functional>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "commands/compare.h"
 #include "commands/inspect_mesh.h"
 #include "commands/pictures.h"
 #include "commands/simulate_scene.h"
+#include "commands/study_scenes.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "trajectory/export.h"
@@ -23,6 +26,7 @@ constexpr int kTerminatedExit = 143;
 /// Everything that the command line can say, and the command that it asks for.
 struct CommandLine {
   std::string input, output, expected, actual;
+  std::vector<std::string> scenes, methods;
   SceneOverrides overrides;
   PictureOptions pictures;
   double scale = 1, tolerance = 0;
@@ -66,6 +70,18 @@ void addSimulate(CLI::App& app, CommandLine& line) {
                           "cradle plan scenes/spinning_handle.json", [&] { printPlan(line.input, line.overrides); });
   plan->add_option("scene", line.input, "scene file (JSON)")->required();
   addOverrides(plan, line);
+}
+
+void addStudy(CLI::App& app, CommandLine& line) {
+  auto* study = addCommand(app, line, "study", "Chart error against cost of all methods on scenes, with study.csv",
+                           "cradle study scenes/suspended_model.json scenes/rod_pendulum.json -o study",
+                           [&] { studyScenes(line.scenes, line.output, line.methods, line.quiet); });
+  study->add_option("scenes", line.scenes, "scene files (JSON)")->required();
+  addOutput(study, line, "folder for study.csv and charts (SVG, PNG)");
+  study
+      ->add_option("--methods", line.methods, "of explicitEuler, semiImplicitEuler, rk4, dop853FixedStep, dop853, plan")
+      ->delimiter(',')
+      ->allow_extra_args(false);
 }
 
 void addPictures(CLI::App& app, CommandLine& line) {
@@ -129,6 +145,7 @@ int run(int argc, char** argv) {
   app.footer("Example:\n  cradle video scenes/newtons_cradle.json -o cradle.mp4\n'cradle COMMAND --help' says more.");
   addSimulate(app, line);
   addPictures(app, line);
+  addStudy(app, line);
   addQuestions(app, line);
   try {
     app.parse(argc, argv);

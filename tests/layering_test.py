@@ -18,7 +18,8 @@ MAY_INCLUDE = {
     "simulate": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory"],
     "image": ["core"],
     "render": ["core", "math", "mesh", "scene", "trajectory", "image"],
-    "commands": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory", "simulate", "image", "render"],
+    "study": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory", "simulate", "image"],
+    "commands": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory", "simulate", "image", "render", "study"],
 }
 # The one place of each library (Eigen and fmt are everywhere).
 LIBRARY_UNITS = {

@@ -83,30 +83,6 @@ std::string frameName(long frame) {
   return fmt::format("frame_{:06}.png", frame);
 }
 
-/// A folder that is there or can be made, with nothing but frames in it.
-void requireFrameFolder(const std::string& folder) {
-  std::error_code error;
-  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
-    throw Error(ErrorKind::output, folder, "is no folder; name a new or empty one");
-  if (!fs::exists(folder, error)) {
-    const fs::path parent = fs::absolute(folder).parent_path();
-    if (!fs::is_directory(parent, error)) throw Error(ErrorKind::output, folder, "its parent folder does not exist");
-    return;
-  }
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (!isFrameName(entry.path().filename().string()))
-      throw Error(
-          ErrorKind::output, folder,
-          fmt::format("holds {}, which is no frame; name a new or empty folder", entry.path().filename().string()));
-  if (error) throw Error(ErrorKind::output, folder, error.message());
-}
-
-void makeFolder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directory(folder, error);
-  if (error) throw Error(ErrorKind::output, folder, error.message());
-}
-
 /// Draws frames in order and hands each picture on in a thread beside the drawing of the next one.
 template <class Take>
 void drawFrames(const TrajectorySource& source, const PictureOptions& options, const FrameRange& range, bool quiet,
@@ -128,7 +104,7 @@ void drawFrames(const TrajectorySource& source, const PictureOptions& options, c
 }  // namespace
 
 void renderFrames(const std::string& input, const std::string& folder, const PictureOptions& options, bool quiet) {
-  requireFrameFolder(folder);
+  requireOwnFolder(folder, "frame", isFrameName);
   const TrajectorySource source(input, quiet);
   const FrameRange range = parseFrames(options.frames, source);
   parseSize(options.size, source.scene());

@@ -26,6 +26,30 @@ void requireWritableFile(const std::string& path) {
     throw Error(ErrorKind::output, path, "the folder " + folder + " may not be written to; choose another");
 }
 
+void requireOwnFolder(const std::string& folder, const std::string& kind,
+                      const std::function<bool(const std::string& name)>& isOurs) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
+    throw Error(ErrorKind::output, folder, "is no folder; name a new or empty one");
+  if (!fs::exists(folder, error)) {
+    const fs::path parent = fs::absolute(folder).parent_path();
+    if (!fs::is_directory(parent, error)) throw Error(ErrorKind::output, folder, "its parent folder does not exist");
+    return;
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (isOurs(name)) continue;
+    throw Error(ErrorKind::output, folder, "holds " + name + ", which is no " + kind + "; name a new or empty folder");
+  }
+  if (error) throw Error(ErrorKind::output, folder, error.message());
+}
+
+void makeFolder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directory(folder, error);
+  if (error) throw Error(ErrorKind::output, folder, error.message());
+}
+
 std::string partPath(const std::string& path) {
   return path + ".part";
 }

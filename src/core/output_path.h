@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace cradle {
@@ -7,6 +8,14 @@ namespace cradle {
 /// Throws Error(output) unless a file can be put at `path`: nothing or a regular file is there, in a folder that exists
 /// and may be written to. Devices are refused, so that they are never replaced. Writes nothing.
 void requireWritableFile(const std::string& path);
+
+/// Throws Error(output) unless `folder` is there or can be made, and holds nothing but files whose names are ours;
+/// `kind` says in a word what those are ("frame"). Writes nothing.
+void requireOwnFolder(const std::string& folder, const std::string& kind,
+                      const std::function<bool(const std::string& name)>& isOurs);
+
+/// Makes the folder if it is not there. Throws Error(output).
+void makeFolder(const std::string& folder);
 
 /// Where the file that will be `path` is written until it is complete.
 std::string partPath(const std::string& path);

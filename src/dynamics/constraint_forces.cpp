@@ -12,10 +12,11 @@
 namespace cradle {
 namespace {
 
-// What is added to the diagonal, as a part of it: rows that depend on each other then share their load, and a direction
-// that is constrained by less than its square root gives way instead of being thrown about by rounding. Refinement
-// takes out the error that this makes elsewhere: each one leaves 1e-8 / (smallest eigenvalue of the scaled matrix) of
-// it.
+// Where rows depend on each other, or nearly so, a part of the diagonal is added to it: they then share their load, and
+// a direction that is constrained by less than its square root gives way instead of being thrown about by rounding.
+// Refinement takes out the error that this makes elsewhere: each one leaves 1e-8 / (smallest other eigenvalue of the
+// scaled matrix) of it.
+constexpr double kRegularPivot = 1e-6;  // of its diagonal entry: above, rows are independent
 constexpr double kRegularisation = 1e-8;
 constexpr double kRefined = 1e-15;  // residual that is left, as a part of the right-hand side
 constexpr int kMostRefinements = 3;
@@ -39,7 +40,9 @@ void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFra
   respond(frames);
   for (std::size_t i = 0; i < rows_.size(); ++i) diagonal_[i] = couple(static_cast<int>(i), static_cast<int>(i));
   for (std::size_t i = 0; i < couplings_.size(); ++i) entries_[i] = couple(couplings_[i].row, couplings_[i].column);
-  regularize(kRegularisation);
+  factor_.factorize(diagonal_, entries_);
+  isRegular_ = factor_.leastPivot() > kRegularPivot;
+  if (!isRegular_) regularize(kRegularisation);
 }
 
 void ConstraintSolver::regularize(double regularisation) {
@@ -113,8 +116,9 @@ double ConstraintSolver::couple(int row, int column) const {
   return sum;
 }
 
-/// Overwrites the right-hand side in multipliers_ by the solution, refined iteratively.
+/// Overwrites the right-hand side in multipliers_ by the solution, refined iteratively if it has to be.
 void ConstraintSolver::solve() {
+  if (isRegular_) return factor_.solve(multipliers_);
   rightHandSide_ = multipliers_;
   factor_.solve(multipliers_);
   const double wanted = rightHandSide_.lpNorm<Eigen::Infinity>();

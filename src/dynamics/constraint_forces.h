@@ -72,6 +72,7 @@ class ConstraintSolver {
   std::vector<Coupling> couplings_;
   std::vector<double> diagonal_, regularDiagonal_, entries_;
   SparseLdlt factor_;
+  bool isRegular_ = true;
   VectorX multipliers_, rightHandSide_, correction_, undisplaced_;
 };
 

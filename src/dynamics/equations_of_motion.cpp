@@ -19,7 +19,7 @@ EquationsOfMotion::EquationsOfMotion(const Mechanism& mechanism)
 
 RightHandSide EquationsOfMotion::rightHandSide() {
   return {[this](double, const VectorX& state, VectorX& rate) { evaluate(state, rate); },
-          [this](const VectorX& state, VectorX& rate) { evaluatePoseRates(state, rate); },
+          [this](const VectorX& state, VectorX& rate) { evaluatePoseRates(mechanism_.bodies, state, rate); },
           static_cast<Eigen::Index>(mechanism_.bodies.size()) * kPoseSize};
 }
 
@@ -27,7 +27,7 @@ void EquationsOfMotion::evaluate(const VectorX& state, VectorX& rate) {
   ++evaluations_;
   rate.setZero(state.size());
   placeBodies(mechanism_.bodies, state, frames_);
-  evaluatePoseRates(state, rate);
+  evaluatePoseRates(mechanism_.bodies, state, rate);
   applyGravityAndGyroscopicTerms(state, rate);
   applySprings(state, rate);
   applyPushes(state, rate);
@@ -43,8 +43,9 @@ void EquationsOfMotion::applyGravityAndGyroscopicTerms(const VectorX& state, Vec
   for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
     linearVelocity(rate, body) = mechanism_.gravity;
-    angularVelocity(rate, body) =
-        gyroscopicAcceleration(mechanism_.bodies[i], frames_[i].rotation, angularVelocity(state, body));
+    if (!mechanism_.bodies[i].isSpherical)
+      angularVelocity(rate, body) =
+          gyroscopicAcceleration(mechanism_.bodies[i], frames_[i].rotation, angularVelocity(state, body));
   }
 }
 
@@ -70,13 +71,14 @@ void EquationsOfMotion::addForce(int body, const Vec3& arm, const Vec3& force, V
   if (body == kFixed) return;
   const std::size_t index = static_cast<std::size_t>(body);
   linearVelocity(rate, body) += mechanism_.bodies[index].inverseMass * force;
-  angularVelocity(rate, body) += frames_[index].inverseInertia * arm.cross(force);
+  if (mechanism_.bodies[index].turns) angularVelocity(rate, body) += frames_[index].inverseInertia * arm.cross(force);
 }
 
-void evaluatePoseRates(const VectorX& state, VectorX& rate) {
+void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& state, VectorX& rate) {
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
     centerOfMass(rate, body) = linearVelocity(state, body);
-    setOrientation(rate, body, orientationRate(orientation(state, body), angularVelocity(state, body)));
+    if (bodies[static_cast<std::size_t>(body)].turns)
+      setOrientation(rate, body, orientationRate(orientation(state, body), angularVelocity(state, body)));
   }
 }
 

@@ -57,6 +57,6 @@ class EquationsOfMotion {
 };
 
 /// Rates of positions and orientations alone, from the velocities in `state`: writes the leading entries of `rate`.
-void evaluatePoseRates(const VectorX& state, VectorX& rate);
+void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& state, VectorX& rate);
 
 }  // namespace cradle

@@ -7,8 +7,10 @@
 namespace cradle {
 
 RigidBody makeRigidBody(const MassProperties& properties) {
-  return {properties.mass, 1 / properties.mass, properties.centerOfMass, properties.inertiaTensor,
-          properties.inertiaTensor.inverse()};
+  const Mat3& tensor = properties.inertiaTensor;
+  const bool isSpherical = tensor == tensor(0, 0) * Mat3::Identity();
+  const Mat3 inverse = isSpherical ? Mat3(1 / tensor(0, 0) * Mat3::Identity()) : Mat3(tensor.inverse());
+  return {properties.mass, 1 / properties.mass, properties.centerOfMass, tensor, inverse, isSpherical, true};
 }
 
 AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state) {
@@ -22,8 +24,14 @@ void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std
   frames.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     BodyFrame& frame = frames[i];
+    frame.inverseInertia = bodies[i].inverseInertia;
+    if (!bodies[i].turns) {
+      frame.rotation.setIdentity();  // nothing is attached off its centre
+      continue;
+    }
     frame.rotation = orientation(state, static_cast<Eigen::Index>(i)).normalized().toRotationMatrix();
-    frame.inverseInertia = frame.rotation * bodies[i].inverseInertia * frame.rotation.transpose();
+    if (!bodies[i].isSpherical)
+      frame.inverseInertia = frame.rotation * bodies[i].inverseInertia * frame.rotation.transpose();
   }
 }
 

@@ -16,6 +16,8 @@ struct RigidBody {
   Vec3 centerOfMass = Vec3::Zero();        // m, in the body's frame
   Mat3 inertiaTensor = Mat3::Identity();   // kg m^2
   Mat3 inverseInertia = Mat3::Identity();  // 1/(kg m^2)
+  bool isSpherical = true;                 // the inertia tensor is a multiple of the identity
+  bool turns = true;  // false: no torque ever acts and the spin is constant; its orientation is not kept in the state
 };
 
 RigidBody makeRigidBody(const MassProperties& properties);

@@ -74,6 +74,7 @@ void SparseLdlt::findFill() {
 }
 
 void SparseLdlt::factorize(const std::vector<double>& diagonal, const std::vector<double>& entries) {
+  leastPivot_ = 1;
   std::fill(columnCount_.begin(), columnCount_.end(), 0);
   std::fill(marks_.begin(), marks_.end(), -1);
   for (int row = 0; row < size_; ++row) {
@@ -117,6 +118,7 @@ void SparseLdlt::eliminate(int row, int first, double diagonal) {
     lower_[end] = factor;
     ++columnCount_[column];
   }
+  leastPivot_ = std::min(leastPivot_, diagonal > 0 ? pivot / diagonal : 0);
   inversePivots_[static_cast<std::size_t>(row)] = pivot > 0 ? 1 / pivot : 0;
 }
 

@@ -17,6 +17,9 @@ class SparseLdlt {
   /// Factorises the matrix with these values: `diagonal` and, in the order given to analyze, `entries`.
   void factorize(const std::vector<double>& diagonal, const std::vector<double>& entries);
 
+  /// Smallest pivot of the last factorisation as a part of its diagonal entry: near 0 where rows depend on each other.
+  double leastPivot() const { return leastPivot_; }
+
   /// Overwrites a right-hand side with the solution.
   void solve(VectorX& x);
 
@@ -30,6 +33,7 @@ class SparseLdlt {
   void eliminate(int row, int first, double diagonal);
 
   int size_ = 0;
+  double leastPivot_ = 1;
   std::vector<int> rowAt_, positionOf_;         // the order of elimination, and back
   std::vector<int> rowStart_;                   // of each position, into rowEntries_
   std::vector<Entry> rowEntries_;               // below the diagonal, by position

@@ -1,6 +1,7 @@
 #include "image/child_process.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,8 +11,6 @@
 #include <csignal>
 #include <cstring>
 
-#include "core/error.h"
-
 extern char** environ;
 
 namespace cradle {
@@ -19,14 +18,15 @@ namespace {
 
 constexpr int kPipeBytes = 1 << 20;  // the most that Linux gives everyone: fewer turns between the two programs
 
-[[noreturn]] void failStart(const std::string& program, int error) {
-  const std::string remedy = error == ENOENT ? "; install the package ffmpeg, or put it into PATH" : "";
-  throw Error(ErrorKind::encoder, program, std::string("cannot be started: ") + std::strerror(error) + remedy);
+[[noreturn]] void failStart(const std::string& program, const StartFailure& failure, int error) {
+  const std::string remedy =
+      error == ENOENT ? fmt::format("; install the package {}, or put it into PATH", failure.package) : "";
+  throw Error(failure.kind, program, std::string("cannot be started: ") + std::strerror(error) + remedy);
 }
 
-std::FILE* openTemporary(const std::string& program) {
+std::FILE* openTemporary(const std::string& program, const StartFailure& failure) {
   std::FILE* file = std::tmpfile();
-  if (file == nullptr) failStart(program, errno);
+  if (file == nullptr) failStart(program, failure, errno);
   fcntl(fileno(file), F_SETFD, FD_CLOEXEC);
   return file;
 }
@@ -81,10 +81,11 @@ class SpawnRequest {
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::vector<std::string>& command)
-    : output_(openTemporary(command.at(0)), std::fclose), error_(openTemporary(command.at(0)), std::fclose) {
+ChildProcess::ChildProcess(const std::vector<std::string>& command, const StartFailure& failure)
+    : output_(openTemporary(command.at(0), failure), std::fclose),
+      error_(openTemporary(command.at(0), failure), std::fclose) {
   std::array<int, 2> ends;
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) failStart(command[0], errno);
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) failStart(command[0], failure, errno);
   fcntl(ends[1], F_SETPIPE_SZ, kPipeBytes);
   SpawnRequest request(ends[0], fileno(output_.get()), fileno(error_.get()));
   const int error = request.start(command, process_);
@@ -92,7 +93,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command)
   input_ = ends[1];
   if (error != 0) {
     closeInput();
-    failStart(command[0], error);
+    failStart(command[0], failure, error);
   }
 }
 

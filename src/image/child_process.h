@@ -8,14 +8,22 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
+
 namespace cradle {
+
+/// What it means that a program cannot be started, and the Debian package that has it.
+struct StartFailure {
+  ErrorKind kind = ErrorKind::encoder;
+  const char* package = "ffmpeg";
+};
 
 /// Another program, started without a shell, that reads what is written to it. What it prints is kept. It is ended when
 /// the object goes before finish(). It does not hear the terminal's Ctrl-C: the owner decides when it ends.
 class ChildProcess {
  public:
-  /// command[0] is looked up in PATH. Throws Error(encoder) if it cannot be started.
-  explicit ChildProcess(const std::vector<std::string>& command);
+  /// command[0] is looked up in PATH. Throws Error(failure.kind) if it cannot be started.
+  explicit ChildProcess(const std::vector<std::string>& command, const StartFailure& failure = {});
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;

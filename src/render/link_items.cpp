@@ -17,9 +17,11 @@ constexpr double kCoilOfBody = 0.45, kCoilOfView = 0.05, kCoilOfLength = 0.14;
 constexpr double kWireOfCoil = 0.16;
 constexpr double kPitchOfCoil = 0.85;  // distance of turns at rest
 constexpr int kFewestTurns = 6;
-constexpr double kStraightEnd = 0.07;  // of a spring's length
-constexpr double kSlenderest = 0.3;    // a coil that is drawn out narrows so far and no farther
-constexpr double kKnobOfRod = 1.8;     // radius of the ball at the end of a rod
+constexpr double kStraightEnd = 0.07;                    // of a spring's length
+constexpr double kSlenderest = 0.3;                      // a coil that is drawn out narrows so far and no farther
+constexpr double kKnobOfRod = 1.8;                       // radius of the ball at the end of a rod
+constexpr double kBallOfRod = 4;                         // radius of a ball joint
+constexpr double kPinOfRod = 2.5, kPinLengthOfRod = 12;  // radius, of an axle too; length of a hinge's pin
 constexpr double kPlateOfKnob = 3.2, kPlateThickness = 0.9;
 constexpr double kTaut = 1 - 1e-4;  // share of its length from which a rope is drawn straight
 
@@ -32,6 +34,31 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// Bodies that hang on joints alone, like the wheels of a cart, are parts of others.
+std::vector<char> findParts(const Scene& scene) {
+  std::vector<char> isPart(scene.bodies.size(), 0);
+  const auto mark = [&isPart](const auto& links, char value) {
+    for (const auto& link : links)
+      for (const int body : {link.anchorA.body, link.anchorB.body})
+        if (body != kWorld) isPart[static_cast<std::size_t>(body)] = value;
+  };
+  mark(scene.ballJoints, 1), mark(scene.hinges, 1);
+  mark(scene.springs, 0), mark(scene.rods, 0), mark(scene.ropes, 0);
+  return isPart;
+}
+
+/// Median radius of the bodies that move, parts of others only if there is nothing else; m.
+double typicalRadius(const Scene& scene, const Appearance& appearance) {
+  const std::vector<char> isPart = findParts(scene);
+  std::vector<double> wholes, all;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].motion != Motion::dynamic) continue;
+    all.push_back(appearance.bodies[i].local.sizes().minCoeff() / 2);
+    if (!isPart[i]) wholes.push_back(all.back());
+  }
+  return median(wholes.empty() ? all : wholes);
 }
 
 /// A unit vector across `direction` that turns with it from the start of the scene on, so that coils do not jump.
@@ -86,10 +113,7 @@ class LinkBuilder {
   LinkBuilder(const Scene& scene, const Appearance& appearance, const View& view,
               const std::vector<RigidTransform>& places, DrawList& list)
       : scene_(scene), appearance_(appearance), places_(places), start_(placeBodiesAtStart(scene)), list_(list) {
-    std::vector<double> radii;
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-      if (scene.bodies[i].motion == Motion::dynamic) radii.push_back(appearance.bodies[i].local.sizes().minCoeff() / 2);
-    body_ = median(radii);
+    body_ = typicalRadius(scene, appearance);
     size_ = view.bounds.isEmpty() ? 1 : view.bounds.diagonal().norm();
     rod_ = std::max(kRodOfBody * body_, kRodOfView * size_);
     coil_ = body_ > 0 ? std::min(kCoilOfBody * body_, kCoilOfView * size_) : kCoilOfView * size_;
@@ -98,7 +122,8 @@ class LinkBuilder {
   void add(const Spring& spring);
   void add(const Rod& rod);
   void add(const Rope& rope);
-  void addJoint(const Anchor& anchorA, const Anchor& anchorB);
+  void add(const BallJoint& joint);
+  void add(const Hinge& hinge);
 
  private:
   Vec3 now(const Anchor& anchor) const { return worldPoint(anchor, places_); }
@@ -212,10 +237,18 @@ void LinkBuilder::add(const Rope& rope) {
   addArm(rope.anchorB, rod_);
 }
 
-void LinkBuilder::addJoint(const Anchor& anchorA, const Anchor& anchorB) {
-  addEnd(anchorA, anchorA, kKnobOfRod * rod_, false);
-  addArm(anchorA, rod_);
-  addArm(anchorB, rod_);
+void LinkBuilder::add(const BallJoint& joint) {
+  list_.spheres.push_back({now(joint.anchorA), kBallOfRod * rod_, kDarkSteel});
+  addArm(joint.anchorA, kPinOfRod * rod_);
+  addArm(joint.anchorB, kPinOfRod * rod_);
+}
+
+void LinkBuilder::add(const Hinge& hinge) {
+  const Vec3 axis = places_[static_cast<std::size_t>(hinge.anchorA.body)].rotation * hinge.axis;
+  const Vec3 point = now(hinge.anchorA), half = kPinLengthOfRod / 2 * rod_ * axis;
+  addCylinder(point - half, point + half, kPinOfRod * rod_, kDarkSteel);
+  addArm(hinge.anchorA, kPinOfRod * rod_);
+  addArm(hinge.anchorB, kPinOfRod * rod_);
 }
 
 }  // namespace
@@ -226,8 +259,8 @@ void appendLinks(const Scene& scene, const Appearance& appearance, const View& v
   for (const Spring& spring : scene.springs) builder.add(spring);
   for (const Rod& rod : scene.rods) builder.add(rod);
   for (const Rope& rope : scene.ropes) builder.add(rope);
-  for (const BallJoint& joint : scene.ballJoints) builder.addJoint(joint.anchorA, joint.anchorB);
-  for (const Hinge& hinge : scene.hinges) builder.addJoint(hinge.anchorA, hinge.anchorB);
+  for (const BallJoint& joint : scene.ballJoints) builder.add(joint);
+  for (const Hinge& hinge : scene.hinges) builder.add(hinge);
 }
 
 }  // namespace cradle

@@ -33,6 +33,9 @@ void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly)
   assembly.sceneBodies = island.bodies;
   for (const int body : island.bodies)
     assembly.mechanism.bodies.push_back(makeRigidBody(scene.bodies[static_cast<std::size_t>(body)].massProperties));
+  for (std::size_t i = 0; i < island.bodies.size(); ++i)
+    assembly.mechanism.bodies[i].turns =
+        !std::binary_search(island.unturned.begin(), island.unturned.end(), island.bodies[i]);
   VectorX& state = assembly.state;
   state.setZero(stateSize(static_cast<Eigen::Index>(assembly.sceneBodies.size())));
   for (std::size_t i = 0; i < assembly.sceneBodies.size(); ++i) {

@@ -18,6 +18,7 @@
 #include "dynamics/integrators/explicit_euler.h"
 #include "dynamics/integrators/rk4.h"
 #include "dynamics/integrators/semi_implicit_euler.h"
+#include "dynamics/rigid_body.h"
 #include "simulate/colliders.h"
 #include "simulate/islands.h"
 #include "simulate/reach.h"
@@ -152,7 +153,33 @@ bool isActedUpon(const Scene& scene, const IslandPlan& island) {
   return found;
 }
 
+/// Balls on which no torque can act: their spin is constant, whatever moves their centres.
+void findUnturned(const Scene& scene, IslandPlan& island) {
+  std::vector<char> isTurned(scene.bodies.size(), 0);
+  const auto turn = [&](int body) {
+    if (body != kWorld) isTurned[static_cast<std::size_t>(body)] = 1;
+  };
+  const auto turnIfOffCenter = [&](const Anchor& anchor) {
+    if (anchor.body == kWorld) return;
+    const Body& body = scene.bodies[static_cast<std::size_t>(anchor.body)];
+    if (anchor.point != body.massProperties.centerOfMass) turn(anchor.body);
+  };
+  const auto look = [&](const auto& links) {
+    for (const auto& link : links) turnIfOffCenter(link.anchorA), turnIfOffCenter(link.anchorB);
+  };
+  look(scene.springs), look(scene.rods), look(scene.ropes), look(scene.ballJoints);
+  for (const Hinge& hinge : scene.hinges) turn(hinge.anchorA.body), turn(hinge.anchorB.body);
+  for (const Push& push : scene.pushes) turn(push.body);
+  for (const auto& [a, b] : island.near) turn(a), turn(b);
+  for (const int body : island.bodies)
+    if (!isTurned[static_cast<std::size_t>(body)] &&
+        makeRigidBody(scene.bodies[static_cast<std::size_t>(body)].massProperties).isSpherical)
+      island.unturned.push_back(body);
+}
+
 void choose(const Scene& scene, IslandPlan& island) {
+  findUnturned(scene, island);
+  if (!island.unturned.empty()) island.leftOut.push_back("no rotation of balls held at their centres: no torque");
   const bool mayTouchSomething = !island.near.empty();
   if (!mayTouchSomething) island.leftOut.push_back("no search for contact: nothing can touch");
   if (scene.method) {
@@ -196,6 +223,16 @@ Plan planOf(const Scene& scene) {
   Plan plan{findIslands(scene, findNearPairs(scene)), scene.accuracy};
   for (IslandPlan& island : plan.islands) choose(scene, island);
   return plan;
+}
+
+IslandPlan wholeScene(const Scene& scene) {
+  IslandPlan whole;
+  for (const IslandPlan& island : planOf(scene).islands) {
+    whole.bodies.insert(whole.bodies.end(), island.bodies.begin(), island.bodies.end());
+    whole.near.insert(whole.near.end(), island.near.begin(), island.near.end());
+  }
+  std::sort(whole.bodies.begin(), whole.bodies.end());
+  return whole;
 }
 
 std::string methodNames(const Plan& plan) {

@@ -26,6 +26,7 @@ struct ChosenMethod {
 struct IslandPlan {
   std::vector<int> bodies;                // scene bodies that move, ascending
   std::vector<std::pair<int, int>> near;  // scene bodies that may touch during the run, first < second
+  std::vector<int> unturned;  // of the bodies, those on which no torque ever acts: balls held at their centres
   ChosenMethod method;
   std::string_view reason;
   std::vector<std::string_view> leftOut;  // what these bodies do not need
@@ -39,6 +40,9 @@ struct Plan {
 
 /// O(pairs of bodies).
 Plan planOf(const Scene& scene);
+
+/// All that moves as one island without a method, for what looks at a scene as a whole.
+IslandPlan wholeScene(const Scene& scene);
 
 /// The methods of all islands, each named once; and what accuracy they promise.
 std::string methodNames(const Plan& plan);

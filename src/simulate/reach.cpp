@@ -58,16 +58,19 @@ bool narrow(const Anchor& end, const Anchor& other, double length, const Scene& 
   return true;
 }
 
-/// The farthest that a spring's end can be from its fixed anchor while energy suffices: k (d - L0)^2 / 2 <= E + m g (d
-/// + d0 + 2 arm), where the body's centre falls by no more than its anchor moves and its arm turns.
+/// The farthest that a spring's end can be from its fixed anchor while energy suffices: k (d - L0)^2 / 2 <= E + m g
+/// fall. The body's centre, `arm` away from the spring's end, falls at most to d + arm below the anchor.
 double farthestOnSpring(const Spring& spring, const Anchor& end, const Anchor& fixed, double energy,
                         const Scene& scene) {
   if (spring.stiffness == 0) return std::numeric_limits<double>::infinity();
-  const double start = (worldPoint(end, scene) - worldPoint(fixed, scene)).norm();
-  const double weight = bodyOf(end, scene).massProperties.mass * scene.gravity.norm() / spring.stiffness;
-  const double half = spring.restLength + weight;  // d^2 - 2 half d + L0^2 - 2 (E / k + weight (d0 + 2 arm)) <= 0
+  const Body& body = bodyOf(end, scene);
+  const double gravity = scene.gravity.norm();
+  const Vec3 down = gravity > 0 ? Vec3(scene.gravity / gravity) : Vec3(Vec3::Zero());
+  const Vec3 start = body.worldFromBody * body.massProperties.centerOfMass - worldPoint(fixed, scene);
+  const double weight = body.massProperties.mass * gravity / spring.stiffness;  // m: what it stretches the spring by
+  const double half = spring.restLength + weight;  // d^2 - 2 half d + L0^2 - 2 (E / k + weight (arm - start)) <= 0
   const double rest = spring.restLength * spring.restLength -
-                      2 * (energy / spring.stiffness + weight * (start + 2 * armOf(end, scene)));
+                      2 * (energy / spring.stiffness + weight * (armOf(end, scene) - down.dot(start)));
   return half + std::sqrt(std::max(0.0, half * half - rest));
 }
 

@@ -45,10 +45,11 @@ double firstSlack(const Slack& slack, double least, double begin) {
 double firstLook(const RopeLimit& rope, const Step& step) {
   const double speed = -motionOf(rope, step.startState).lengthening * step.timeStep;
   if (!(speed > 0)) return kFirstLook;
-  const auto acceleration = [&](const Attachment& end) {
-    return motionBounds(step, end.body, end.point.norm()).acceleration;
-  };
-  return std::min(kFirstLook, speed / (acceleration(rope.anchorA) + acceleration(rope.anchorB)));
+  const MotionBounds a = motionBounds(step, rope.anchorA.body, rope.anchorA.point.norm());
+  const MotionBounds b = motionBounds(step, rope.anchorB.body, rope.anchorB.point.norm());
+  // The distance d of two points: d'' <= relative acceleration + (speed across)^2 / d.
+  const double across = a.speed + b.speed;
+  return std::min(kFirstLook, speed / (a.acceleration + b.acceleration + across * across / rope.maxLength));
 }
 
 }  // namespace

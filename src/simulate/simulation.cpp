@@ -17,9 +17,10 @@ namespace {
 
 constexpr double kImpactPart = 1e-3;  // of the touching tolerance: how well an impact's gap is closed
 constexpr int kMostCorrections = 60;  // steps tried to that end; 3 are usual
-constexpr int kMostEventsPerStep = 10000;
-constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension that is left
-constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
+constexpr int kMostEvents = 10000;
+constexpr double kEventWindow = 1.0 / 960;  // s, in which there may be so many, of methods without a fixed step
+constexpr double kRopeTolerance = 1e-13;    // of the length, or of the tension that is left
+constexpr double kTimeRounding = 1e-9;      // of a step: remainders below it are rounding
 
 constexpr double kSameTime = 1e-12;     // s, relative beyond 1 s
 constexpr double kManyTurns = 100;      // rad: beyond, orientations need a tighter tolerance
@@ -79,9 +80,17 @@ const VectorX& Simulation::stateAt(double time) {
     reported_ = state_;
   } else {
     interpolate(step_, (time - step_.time) / step_.timeStep, reported_);
+    if (keepsTies_ && solver_.hasConstraints()) solver_.project(reported_);
   }
   normalizeOrientations(reported_);
+  for (std::size_t i = 0; i < assembly_.mechanism.bodies.size(); ++i)
+    if (!assembly_.mechanism.bodies[i].turns) spin(static_cast<Eigen::Index>(i), time, reported_);
   return reported_;
+}
+
+/// Sets the orientation of a body whose spin is constant: the state keeps that of the start.
+void Simulation::spin(Eigen::Index body, double time, VectorX& state) const {
+  turnBody(state, body, time * Vec3(angularVelocity(state, body)));
 }
 
 /// Takes a step. `frame` (s) is the next time whose state is asked for.
@@ -98,10 +107,13 @@ void Simulation::advance(double frame) {
   if (time_ > frame) prepareInterpolant(rightHandSide_, step_);
 
   // Take out what the step left wrong: lengths of rods, closing and overlapping contacts. Then what changes here?
-  const VectorX before = std::exchange(state_, step_.state);
+  before_ = state_;
+  state_ = step_.state;
   tidyState();
-  contacts_.resolve(time_, before, state_);
+  contacts_.resolve(time_, before_, state_);
+  const std::size_t rods = assembly_.mechanism.constraints.rods.size();
   ropes_.resolve(time_, state_);
+  keepsTies_ = assembly_.mechanism.constraints.rods.size() == rods;
   beginAndEndPushes();
   guard_.check(state_, time_, step_.timeStep);
   requireUnsolvedPairsApart();
@@ -109,7 +121,6 @@ void Simulation::advance(double frame) {
   if (atEvent) countEvent();
   if (method_.isAdaptive() || time_ < static_cast<double>(stepNumber_ + 1) * method_.timeStep) return;
   ++stepNumber_;
-  eventsInStep_ = 0;
 }
 
 /// The end of the fixed step under way, or of the run; a push that begins or ends comes first.
@@ -256,11 +267,13 @@ void Simulation::requireUnsolvedPairsApart() const {
 }
 
 void Simulation::countEvent() {
-  if (++eventsInStep_ <= kMostEventsPerStep) return;
+  const double window = method_.isAdaptive() ? kEventWindow : method_.timeStep;
+  if (time_ > windowStart_ + window) windowStart_ = time_, eventsInWindow_ = 0;
+  if (++eventsInWindow_ <= kMostEvents) return;
   throw Error(ErrorKind::limit, "",
-              fmt::format("more than {} impacts in one step of {:.3g} s at {:.6g} s; lower a restitution of 1 between "
-                          "bodies that cannot separate, or take a smaller \"timeStep\"",
-                          kMostEventsPerStep, step_.timeStep, time_));
+              fmt::format("more than {} impacts and pulls of ropes within {:.3g} s at {:.6g} s; lower a restitution of "
+                          "1 between bodies that cannot separate, or take a smaller \"timeStep\"",
+                          kMostEvents, window, time_));
 }
 
 }  // namespace cradle

@@ -46,6 +46,7 @@ class Simulation {
   void beginAndEndPushes();
   void tidyState();
   void requireTiesKept() const;
+  void spin(Eigen::Index body, double time, VectorX& state) const;
   bool isAtRest() const;
   void restUntil(double time);
   void countEvent();
@@ -66,10 +67,12 @@ class Simulation {
   double startTieError_ = 0;  // m or rad
   StepSize stepSize_;
   bool isContinuous_ = false;  // nothing has changed the state since the last step's end
+  bool keepsTies_ = true;      // no rope went taut or slack at the last step's end
   double time_ = 0;            // s
   long stepNumber_ = 0;        // of a fixed step: the one under way covers [stepNumber_, stepNumber_ + 1] x timeStep
-  int eventsInStep_ = 0;
-  VectorX state_, reported_;
+  int eventsInWindow_ = 0;
+  double windowStart_ = 0;  // s
+  VectorX state_, before_, reported_;
   Step step_;
 };
 

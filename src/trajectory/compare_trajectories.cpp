@@ -57,14 +57,6 @@ double difference(const Quat& actual, const Quat& expected) {
   return std::min(difference(actual.coeffs(), expected.coeffs()), difference(turned, expected.coeffs()));
 }
 
-BodyDifference difference(const BodyState& actual, const BodyState& expected) {
-  return {.body = "",
-          .position = difference(actual.position, expected.position),
-          .orientation = difference(actual.orientation, expected.orientation),
-          .linearVelocity = difference(actual.linearVelocity, expected.linearVelocity),
-          .angularVelocity = difference(actual.angularVelocity, expected.angularVelocity)};
-}
-
 /// Raises a body's maxima to those of one frame, and the worst of all with them.
 void include(const BodyDifference& found, const Frame& frame, BodyDifference& body, WorstDifference& worst) {
   const auto raise = [&](double BodyDifference::*maximum, const char* quantity) {
@@ -90,7 +82,7 @@ void compareFrames(const TrajectoryReader& expected, const TrajectoryReader& act
     const Frame reference = expected.readFrame(static_cast<long>(i++));
     const Frame frame = actual.readFrame(static_cast<long>(j++));
     for (std::size_t k = 0; k < pairs.size(); ++k)
-      include(difference(frame.states[pairs[k].actual], reference.states[pairs[k].expected]), reference,
+      include(differenceOf(frame.states[pairs[k].actual], reference.states[pairs[k].expected]), reference,
               result.bodies[k], result.worst);
     ++result.commonFrames;
   }
@@ -103,6 +95,14 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+BodyDifference differenceOf(const BodyState& actual, const BodyState& expected) {
+  return {.body = "",
+          .position = difference(actual.position, expected.position),
+          .orientation = difference(actual.orientation, expected.orientation),
+          .linearVelocity = difference(actual.linearVelocity, expected.linearVelocity),
+          .angularVelocity = difference(actual.angularVelocity, expected.angularVelocity)};
+}
 
 double BodyDifference::largest() const {
   return std::max({position, orientation, linearVelocity, angularVelocity});

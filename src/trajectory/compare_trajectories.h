@@ -16,6 +16,9 @@ struct BodyDifference {
   double largest() const;
 };
 
+/// How far `actual` is from `expected`; the name of the body is left empty.
+BodyDifference differenceOf(const BodyState& actual, const BodyState& expected);
+
 /// Where the largest difference of all is.
 struct WorstDifference {
   std::string body, quantity;  // quantity: position, orientation, linear velocity, angular velocity

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/csv_field.h"
 #include "core/error.h"
 #include "core/output_path.h"
 
@@ -18,14 +19,6 @@ namespace {
 
 constexpr const char* kColumns =
     "time_s,frame,body,px_m,py_m,pz_m,qw,qx,qy,qz,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s\n";
-
-/// RFC 4180, section 2, rules 5 to 7.
-std::string quoted(const std::string& field) {
-  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
-  std::string result = "\"";
-  for (const char c : field) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
 
 /// FILE.part, which becomes FILE when complete, and goes when not.
 class PartFile {
@@ -69,7 +62,7 @@ class PartFile {
 void exportCsv(const TrajectoryReader& reader, const std::string& path) {
   std::vector<std::string> names;
   for (const BodyRecord& body : reader.header().bodies)
-    if (body.isDynamic) names.push_back(quoted(body.name));
+    if (body.isDynamic) names.push_back(csvField(body.name));
 
   PartFile file(path);
   file.write(kColumns);

@@ -56,7 +56,7 @@ class InTemporaryFolder(unittest.TestCase):
 
 class Usage(InTemporaryFolder):
     def test_help_of_every_command_has_an_example(self):
-        for command in ("simulate", "render", "encode", "video", "inspect", "check", "compare", "export"):
+        for command in ("simulate", "render", "encode", "video", "inspect", "check", "compare", "export", "study"):
             result = cradle(command, "--help")
             self.assertEqual(result.returncode, 0)
             self.assertIn("Example:\n  cradle " + command, result.stdout)
@@ -235,6 +235,66 @@ class Trajectories(InTemporaryFolder):
             self.assertEqual(database.execute("pragma integrity_check").fetchone(), ("ok",))
             self.assertGreater(database.execute("select count(*) from frame").fetchone()[0], 1)
             database.close()
+
+
+class Studies(InTemporaryFolder):
+    COLUMNS = ["scene", "engine", "method", "setting", "error", "cpu_seconds_per_simulated_second", "evaluations",
+               "energy_drift", "constraint_drift", "penetration", "status"]
+
+    def spring_scene(self, **changes):
+        spring = {"bodyA": "ball", "anchorA": [0, 0.1, 0], "anchorB": [0, 1, 0], "stiffness": 200, "restLength": 0.5}
+        return self.write("hung.json", scene(springs=[spring], **changes))
+
+    def rows(self, name):
+        with open(self.path(name)) as table:
+            reader = csv.DictReader(table)
+            self.assertEqual(reader.fieldnames, self.COLUMNS)
+            return list(reader)
+
+    def test_a_study_has_a_row_a_run_and_charts(self):
+        result = cradle("study", self.spring_scene(duration=0.5), "-o", self.path("s"), "--methods", "rk4")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(sorted(os.listdir(self.path("s"))), ["study.csv", "work_precision_hung.png", "work_precision_hung.svg"])
+        rows = self.rows("s/study.csv")
+        self.assertEqual({(row["scene"], row["engine"], row["method"]) for row in rows}, {("hung", "cradle", "rk4")})
+        steps, errors = [float(row["setting"]) for row in rows], [float(row["error"]) for row in rows]
+        self.assertTrue(all(abs(b - a / 2) < 1e-15 for a, b in zip(steps, steps[1:])), steps)
+        self.assertLess(errors[-1], 1e-9)
+        self.assertEqual(png_size(self.path("s/work_precision_hung.png")), (1600, 900))
+        self.assertIn("hung: reference ", result.stdout)
+        again = cradle("study", self.path("hung.json"), "-o", self.path("s"), "--methods", "rk4")
+        self.assertEqual(again.returncode, 0, again.stderr)
+
+    def test_without_gnuplot_there_is_a_table_and_exit_5(self):
+        os.mkdir(self.path("bin"))
+        result = cradle("study", self.spring_scene(), "-o", self.path("s"), "--methods", "rk4", env={**os.environ, "PATH": self.path("bin")})
+        self.assertEqual(result.returncode, 5, result.stderr)
+        self.assertIn("gnuplot-nox", result.stderr)
+        self.assertEqual(os.listdir(self.path("s")), ["study.csv"])
+        self.assertGreater(len(self.rows("s/study.csv")), 3)
+
+    def test_faults_are_told_before_anything_is_made(self):
+        path = self.spring_scene()
+        self.refuses(2, ["--methods", "rk5", "rk4"], "study", path, "-o", self.path("s"), "--methods", "rk4,rk5")
+        self.refuses(2, ["hung.json", "second"], "study", path, path, "-o", self.path("s"))
+        self.refuses(3, ["nowhere.json"], "study", path, self.path("nowhere.json"), "-o", self.path("s"))
+        self.refuses(5, ["hung.json"], "study", path, "-o", self.folder)
+
+    def test_interruption_keeps_the_rows_so_far(self):
+        path = self.spring_scene(duration=2)
+        process = subprocess.Popen([PROGRAM, "study", path, "-o", self.path("s"), "--methods", "explicitEuler"],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        part = self.path("s/study.csv.part")
+        for _ in range(400):
+            time.sleep(0.05)
+            if os.path.exists(part) and len(content(part).splitlines()) > 3:
+                break
+        process.send_signal(signal.SIGINT)
+        _, stderr = process.communicate(timeout=20)
+        self.assertEqual(process.returncode, 130, stderr)
+        self.assertIn("study.csv.part", stderr)
+        self.assertEqual(os.listdir(self.path("s")), ["study.csv.part"])
+        self.assertGreater(len(self.rows("s/study.csv.part")), 2)
 
 
 def png_size(path):

@@ -158,7 +158,7 @@ TEST(ConstraintRows, RateAndCurvatureAreTheTimeDerivativesOfTheirValues) {
   const VectorX state = someState();
   for (const Mechanism& mechanism : {tiedBodies(state), hingedBodies(state)}) {
     VectorX rate = VectorX::Zero(state.size());
-    evaluatePoseRates(state, rate);
+    evaluatePoseRates(mechanism.bodies, state, rate);
     const std::vector<ConstraintRow> rows = rowsIn(mechanism, state);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double first = timeDerivative(state, rate, [&](const VectorX& s) { return rowsIn(mechanism, s)[i].value; });

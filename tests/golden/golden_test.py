@@ -29,6 +29,14 @@ FRAMES = {  # scene: frames that are drawn; states are kept for these too
     "sliding_blocks": (0, 75, 145),
     "spinning_handle": (0, 200, 400),
     "gears_fall": (0, 30, 60, 170),
+    "double_pendulum": (0, 150, 400),
+    "triple_pendulum": (0, 150, 400),
+    "coupled_pendulums": (0, 180, 400),
+    "coupled_pendulums_rod": (0, 150, 400),
+    "hanging_chain": (0, 60, 400),
+    "lagrange_top": (0, 150, 260),
+    "cart": (0, 120, 260),
+    "rope_slack_taut": (0, 60, 180),
 }
 TOLERANCE = 1e-9
 

@@ -152,6 +152,51 @@ TEST(DrawList, RodEndsAtItsAnchors) {
   EXPECT_NEAR(rod.axis.cross(Vec3(-1, 2, 0)).norm(), 0, 1e-14);
 }
 
+TEST(DrawList, BallJointIsADarkBallAtTheEndOfAnArm) {
+  Scene scene = emptyScene();
+  addBody(scene, Box{{0.6, 0.2, 0.6}}, {Quat::Identity(), {0, 1, 0}});
+  scene.ballJoints.push_back({"", "", {0, {0, -0.5, 0}}, {kWorld, {0, 0.5, 0}}});
+  Frame frame = startFrame(scene);
+  frame.states[0].orientation = rotationAbout(Vec3::UnitZ(), std::numbers::pi / 2);  // -y to x
+  const DrawList list = listOf(scene, frame);
+  ASSERT_EQ(list.spheres.size(), 1u);
+  EXPECT_NEAR((list.spheres[0].center - Vec3(0.5, 1, 0)).norm(), 0, 1e-14);
+  EXPECT_LT(list.spheres[0].surface.color.maxCoeff(), 0.2f);
+  ASSERT_EQ(list.cylinders.size(), 1u);  // the arm: from the centre of mass to the joint
+  EXPECT_NEAR((list.cylinders[0].center - Vec3(0.25, 1, 0)).norm(), 0, 1e-14);
+  EXPECT_NEAR(list.cylinders[0].length, 0.5, 1e-14);
+  EXPECT_LT(list.cylinders[0].radius, list.spheres[0].radius);
+}
+
+TEST(DrawList, PinOfAHingeLiesAlongItsAxisAndTurnsWithBodyA) {
+  Scene scene = emptyScene();
+  addBody(scene, Box{{0.4, 0.1, 0.4}}, {Quat::Identity(), {0, 1, 0}});
+  scene.hinges.push_back({"", "", {0, {0.2, 0, 0}}, {kWorld, {0.2, 1, 0}}, {0.6, 0, 0.8}});
+  Frame frame = startFrame(scene);
+  frame.states[0].orientation = rotationAbout(Vec3::UnitX(), std::numbers::pi / 2);  // z to -y
+  const DrawList list = listOf(scene, frame);
+  ASSERT_EQ(list.cylinders.size(), 1u);  // the hinge is on the body's surface: no arm
+  const CylinderItem& pin = list.cylinders[0];
+  EXPECT_NEAR((pin.center - Vec3(0.2, 1, 0)).norm(), 0, 1e-14);
+  EXPECT_NEAR(pin.axis.cross(Vec3(0.6, -0.8, 0)).norm(), 0, 1e-14);
+  EXPECT_GT(pin.length, 3 * pin.radius);
+  EXPECT_LT(pin.surface.color.maxCoeff(), 0.2f);
+}
+
+TEST(DrawList, WheelsDoNotDecideHowThickTheSpringsOfACartAre) {
+  const auto coilRadius = [](double wheelThickness) {
+    Scene scene = emptyScene();
+    addBody(scene, Box{{0.4, 0.2, 0.4}}, {});
+    scene.springs.push_back({"", "", {0, {0, 0.1, 0}}, {kWorld, {0, 1, 0}}, 100, 0, 0.9});
+    for (int i = 0; i < 2; ++i) {
+      addBody(scene, Box{{wheelThickness, 0.2, 0.2}}, {Quat::Identity(), {i - 0.5, 0, 0}});
+      scene.hinges.push_back({"", "", {i + 1, {0, 0, 0}}, {0, {i - 0.5, 0, 0}}, Vec3::UnitX()});
+    }
+    return listOf(scene, startFrame(scene)).tubes.at(0).coilRadius;
+  };
+  EXPECT_NEAR(coilRadius(0.02) / coilRadius(0.04), 1, 0.02);  // the view is a little wider
+}
+
 TEST(DrawList, BoundsOfACylinderAreTight) {
   // Axis (3, 4, 0) / 5: half length 2 along it, discs of radius 1 across.
   const CylinderItem item{{1, 1, 1}, {0.6, 0.8, 0}, 1, 4};

@@ -22,9 +22,8 @@ Scene withBodies(const std::string& bodies, const std::string& more = "") {
 }
 const char* const kBall = R"({"name": "a", "shape": {"sphere": {"radius": 0.1}}})";
 
-/// The first island of a scene.
 Assembly assemble(const Scene& scene) {
-  return cradle::assemble(scene, planOf(scene).islands.at(0));
+  return cradle::assemble(scene, wholeScene(scene));
 }
 
 TEST(Refusals, NameTheTwoBodiesOfAContactThatCannotBeSimulatedYet) {

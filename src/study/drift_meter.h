@@ -1,0 +1,32 @@
+#pragma once
+
+#include "simulate/assembly.h"
+#include "trajectory/trajectory.h"
+
+namespace cradle {
+
+/// How far a motion leaves what it should keep, over all frames that it is given.
+class DriftMeter {
+ public:
+  /// Keeps a reference.
+  explicit DriftMeter(const Assembly& assembly) : assembly_(assembly) {}
+
+  void add(const Frame& frame);
+
+  /// Largest change of the energy constant since the first frame, as part of the largest kinetic energy.
+  double energyDrift() const;
+  /// Largest error of a rod or joint in m (of a hinge's axis in rad).
+  double constraintDrift() const { return constraintDrift_; }
+  /// Deepest overlap of two bodies in m, of those pairs whose contact is simulated.
+  double penetration() const { return penetration_; }
+
+ private:
+  VectorX stateOf(const Frame& frame) const;
+
+  const Assembly& assembly_;
+  bool isFirst_ = true;
+  double startConstant_ = 0, energyChange_ = 0, largestKinetic_ = 0;  // J
+  double constraintDrift_ = 0, penetration_ = 0;
+};
+
+}  // namespace cradle

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace cradle {
+
+/// What is turned to make a method more exact.
+enum class SettingKind { timeStep, accuracy };
+
+/// A way to go through time that a study compares with others.
+struct StudyMethod {
+  std::string name;   // in study.csv and --methods
+  std::string title;  // in charts
+  SettingKind setting;
+  std::optional<MethodName> method;  // for the scene; unset: the plan chooses
+  double stabilityLimit = 0;         // of step x omega; 0: unstable at any step, or the step is not ours to choose
+};
+
+/// All that there are, in the order of charts.
+const std::vector<StudyMethod>& studyMethods();
+
+/// The methods of these names, in the order of studyMethods(); all of them for no names. Throws Error(usage) for a name
+/// that is none.
+std::vector<StudyMethod> studyMethodsNamed(const std::vector<std::string>& names);
+
+/// Makes the scene go by `method` at `setting` (a time step in s, or an accuracy).
+void choose(const StudyMethod& method, double setting, Scene& scene);
+
+}  // namespace cradle

@@ -1,0 +1,94 @@
+// Frames between steps cost evaluations of their own in methods with dense output, so that the cost is taken from runs
+// that have only the two ends.
+
+#include "study/study_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <utility>
+
+#include "core/error.h"
+#include "simulate/simulate.h"
+#include "study/drift_meter.h"
+
+namespace cradle {
+namespace {
+
+constexpr long kDriftFrames = 16;    // a power of two: halved steps end on them
+constexpr double kShortRun = 0.2;    // s of CPU time: beyond, one run is exact to some per cent
+constexpr double kRepeatFor = 0.05;  // s of CPU time in all
+constexpr int kLeastRepeats = 3, kMostRepeats = 50;
+
+double cpuSeconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/// A scene that any method can be tried on.
+Scene withSafeMethod(Scene scene) {
+  choose(studyMethods().front(), scene.duration, scene);
+  refuseUnsupported(scene);
+  return scene;
+}
+
+StudyRun failedRun(const Error& error) {
+  if (error.kind() == ErrorKind::interrupted) throw Error(error);
+  StudyRun run;
+  run.status = error.kind() == ErrorKind::unstable ? RunStatus::unstable : RunStatus::failed;
+  run.message = error.what();
+  return run;
+}
+
+}  // namespace
+
+StudyScene::StudyScene(Scene scene)
+    : scene_(withSafeMethod(std::move(scene))), assembly_(assemble(scene_, wholeScene(scene_))) {}
+
+double StudyScene::fastestFrequency() const {
+  double fastest = 0;
+  for (const SpringForce& spring : assembly_.mechanism.springs)
+    fastest = std::max(fastest, naturalFrequency(spring, assembly_.mechanism.bodies, assembly_.state));
+  return fastest;
+}
+
+StudyRun StudyScene::run(const StudyMethod& method, double setting, double cpuLimit) {
+  choose(method, setting, scene_);
+  StudyRun result = runOnce(kDriftFrames, cpuLimit);
+  double sum = 0;
+  for (int i = 0; i < kMostRepeats && result.status == RunStatus::ok && result.cost.cpuSeconds < kShortRun; ++i) {
+    if (i >= kLeastRepeats && sum > kRepeatFor) break;
+    const RunCost cost = runOnce(1, cpuLimit).cost;
+    sum += cost.cpuSeconds;
+    result.cost = {i == 0 ? cost.cpuSeconds : std::min(result.cost.cpuSeconds, cost.cpuSeconds), cost.evaluations};
+  }
+  result.setting = setting;
+  return result;
+}
+
+StudyRun StudyScene::runOnce(long frames, double cpuLimit) {
+  scene_.output.playbackSpeed = 1;
+  scene_.output.framesPerSecond = static_cast<double>(frames) / scene_.duration;
+  StudyRun run;
+  DriftMeter meter(assembly_);
+  const double start = cpuSeconds();
+  const auto take = [&](const Frame& frame) {
+    meter.add(frame);
+    if (frame.number == frames) run.end = frame.states;
+    if (frame.number < frames && cpuSeconds() - start > cpuLimit)
+      throw Error(ErrorKind::limit, "", fmt::format("takes more than {} s of CPU time", cpuLimit));
+  };
+  try {
+    refuseUnsupported(scene_);
+    run.cost = simulate(scene_, {take, [](const Event&) {}, [](const std::string&) {}});
+  } catch (const Error& error) {
+    return failedRun(error);
+  }
+  CRADLE_CHECK(!run.end.empty() || assembly_.sceneBodies.empty());
+  run.energyDrift = meter.energyDrift();
+  run.constraintDrift = meter.constraintDrift();
+  run.penetration = meter.penetration();
+  return run;
+}
+
+}  // namespace cradle

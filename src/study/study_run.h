@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "simulate/assembly.h"
+#include "study/study_method.h"
+#include "trajectory/trajectory.h"
+
+namespace cradle {
+
+enum class RunStatus { ok, unstable, failed };
+
+/// What one run of a scene showed. Without a meaning unless `status` is ok: all but status, setting and message.
+struct StudyRun {
+  RunStatus status = RunStatus::ok;
+  double setting = 0;          // time step in s, or accuracy
+  std::string message;         // why it is not ok
+  std::vector<BodyState> end;  // states of the dynamic bodies at the end
+  RunCost cost;
+  double energyDrift = 0, constraintDrift = 0, penetration = 0;  // as DriftMeter has them
+};
+
+/// A scene that is run again and again.
+class StudyScene {
+ public:
+  /// Throws Error(scene) if no method can simulate the scene.
+  explicit StudyScene(Scene scene);
+  StudyScene(const StudyScene&) = delete;
+  StudyScene& operator=(const StudyScene&) = delete;
+
+  double duration() const { return scene_.duration; }
+  const std::string& name() const { return scene_.name; }
+
+  /// Natural frequency (rad/s) of the fastest spring at the start, 0 without springs.
+  double fastestFrequency() const;
+
+  /// Goes to the end once, for drifts at 16 frames and the end; then, if that is short, some times more without frames
+  /// on the way, for the least CPU time. Fails if it takes more than `cpuLimit` (s). Throws Error(interrupted) alone.
+  StudyRun run(const StudyMethod& method, double setting, double cpuLimit);
+
+ private:
+  StudyRun runOnce(long frames, double cpuLimit);
+
+  Scene scene_;
+  Assembly assembly_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "study/reference.h"
+
+namespace cradle {
+
+/// What one run of one method cost, and what it was good for: a row of study.csv.
+struct StudyRow {
+  std::string scene, method;  // method: its name among studyMethods()
+  double setting = 0;         // time step in s, or accuracy
+  double error = std::numeric_limits<double>::quiet_NaN();
+  double cpuSecondsPerSimulatedSecond = std::numeric_limits<double>::quiet_NaN();
+  double evaluations = std::numeric_limits<double>::quiet_NaN();  // of the right-hand side
+  double energyDrift = std::numeric_limits<double>::quiet_NaN();
+  double constraintDrift = std::numeric_limits<double>::quiet_NaN();  // m
+  double penetration = std::numeric_limits<double>::quiet_NaN();      // m
+  RunStatus status = RunStatus::failed;
+  std::string message;  // why it is not ok
+};
+
+/// Runs a scene by a method at finer and finer settings until the error is below the reference's uncertainty, does not
+/// become less, or the work too much; hands each row on. A method that fails is not tried again.
+void sweep(StudyScene& scene, const std::string& sceneName, const StudyMethod& method, const Reference& reference,
+           const std::function<void(const StudyRow&)>& take);
+
+}  // namespace cradle
