@@ -26,7 +26,7 @@ EnergyGuard::EnergyGuard(const Mechanism& mechanism, const VectorX& start, Guard
 }
 
 void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
-  if (!state.allFinite()) fail(state, time, timeStep, "is not finite any more");
+  if (!state.allFinite()) fail(state, time, "is not finite any more", cause(timeStep));
   const double gravity = mechanism_.gravity.norm();
   double explained = startEnergy_ + std::abs(pushWork(state)) + firstStepEnergy(timeStep);
   for (std::size_t i = 0; i < excursions_.size(); ++i) {
@@ -36,16 +36,21 @@ void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
   }
   const double change = std::abs(energyConstant(mechanism_, state) - startConstant_);
   if (!(change <= kUnexplained * explained))
-    fail(state, time, timeStep,
-         fmt::format("has energy from nowhere ({:.3g} J of {:.3g} J explained)", change, explained));
+    fail(state, time, fmt::format("has energy from nowhere ({:.3g} J of {:.3g} J explained)", change, explained),
+         cause(timeStep));
 }
 
 void EnergyGuard::failAtShortestStep(const VectorX& state, double time) const {
-  fail(state, time, 0, "cannot be followed with steps of any length");
+  fail(state, time, "cannot be followed with steps of any length", stiffCause());
+}
+
+void EnergyGuard::failAtShortSteps(const VectorX& state, double time, double timeStep) const {
+  fail(state, time, fmt::format("needs steps of {:.3g} s, too short to reach the end of the run", timeStep),
+       stiffCause());
 }
 
 void EnergyGuard::failAtTies(const VectorX& state, double time, double error) const {
-  fail(state, time, 0, fmt::format("is tied by what cannot all be kept (off by {:.3g} m or rad)", error));
+  fail(state, time, fmt::format("is tied by what cannot all be kept (off by {:.3g} m or rad)", error), cause(0));
 }
 
 /// What one step can give to bodies at rest by forces that do not depend on where they are: (F h)^2 / m. Methods of
@@ -62,7 +67,7 @@ double EnergyGuard::firstStepEnergy(double timeStep) const {
   return energy;
 }
 
-void EnergyGuard::fail(const VectorX& state, double time, double timeStep, const std::string& what) const {
+void EnergyGuard::fail(const VectorX& state, double time, const std::string& what, const std::string& cause) const {
   std::size_t worst = 0;
   double most = -1;
   for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i) {
@@ -71,20 +76,33 @@ void EnergyGuard::fail(const VectorX& state, double time, double timeStep, const
     const double size = std::isfinite(energy) ? energy : INFINITY;
     if (size > most) most = size, worst = i;
   }
-  throw Error(
-      ErrorKind::unstable, "",
-      fmt::format("unstable at {:.6g} s: body \"{}\" {}; {}", time, names_.bodies[worst], what, cause(timeStep)));
+  throw Error(ErrorKind::unstable, "",
+              fmt::format("unstable at {:.6g} s: body \"{}\" {}; {}", time, names_.bodies[worst], what, cause));
+}
+
+/// The spring with the highest natural frequency at the start, and that (rad/s; 0 without springs).
+std::pair<std::size_t, double> EnergyGuard::fastestSpring() const {
+  std::pair<std::size_t, double> fastest(0, 0);
+  for (std::size_t i = 0; i < mechanism_.springs.size(); ++i) {
+    const double frequency = naturalFrequency(mechanism_.springs[i], mechanism_.bodies, start_);
+    if (frequency > fastest.second) fastest = {i, frequency};
+  }
+  return fastest;
+}
+
+std::string EnergyGuard::stiffCause() const {
+  const auto [spring, frequency] = fastestSpring();
+  if (frequency == 0 || !mechanism_.constraints.empty()) return cause(0);
+  return fmt::format(
+      "spring \"{}\" (omega {:.3g} rad/s) is the fastest: give it less stiffness or damping, its bodies more mass, or "
+      "take a rod in its place",
+      names_.springs[spring], frequency);
 }
 
 std::string EnergyGuard::cause(double timeStep) const {
   if (timeStep == 0)
     return "what ties it leaves no motion, or forces grow without bound: look at its rods, joints and springs there";
-  double fastest = 0;
-  std::size_t spring = 0;
-  for (std::size_t i = 0; i < mechanism_.springs.size(); ++i) {
-    const double frequency = naturalFrequency(mechanism_.springs[i], mechanism_.bodies, start_);
-    if (frequency > fastest) fastest = frequency, spring = i;
-  }
+  const auto [spring, fastest] = fastestSpring();
   const double product = timeStep * fastest;
   if (fastest == 0 || product < kSafePart * names_.stabilityLimit)
     return fmt::format("{} at a time step of {:.3g} s cannot follow it; give \"method\" a smaller \"timeStep\"",

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dynamics/equations_of_motion.h"
@@ -28,13 +29,18 @@ class EnergyGuard {
   /// Throws Error(unstable): steps have become too short to go on from `time`.
   [[noreturn]] void failAtShortestStep(const VectorX& state, double time) const;
 
+  /// Throws Error(unstable): steps have stayed so short that the run would not end in any useful time.
+  [[noreturn]] void failAtShortSteps(const VectorX& state, double time, double timeStep) const;
+
   /// Throws Error(unstable): what ties the bodies cannot all be kept at `time`, the worst is off by `error` (m or rad).
   [[noreturn]] void failAtTies(const VectorX& state, double time, double error) const;
 
  private:
   double firstStepEnergy(double timeStep) const;
-  [[noreturn]] void fail(const VectorX& state, double time, double timeStep, const std::string& what) const;
+  [[noreturn]] void fail(const VectorX& state, double time, const std::string& what, const std::string& cause) const;
   std::string cause(double timeStep) const;
+  std::string stiffCause() const;
+  std::pair<std::size_t, double> fastestSpring() const;
 
   const Mechanism& mechanism_;
   VectorX start_;

@@ -22,11 +22,13 @@ constexpr double kEventWindow = 1.0 / 960;  // s, in which there may be so many,
 constexpr double kRopeTolerance = 1e-13;    // of the length, or of the tension that is left
 constexpr double kTimeRounding = 1e-9;      // of a step: remainders below it are rounding
 
-constexpr double kSameTime = 1e-12;     // s, relative beyond 1 s
-constexpr double kManyTurns = 100;      // rad: beyond, orientations need a tighter tolerance
-constexpr double kTurningPart = 0.1;    // of the tolerance, for these
-constexpr double kMostTieError = 1e-9;  // m (a m of coordinates) or rad: projection leaves 1e-15
-constexpr double kUnitLength = 1e-9;    // how far |q|^2 may be from 1 before it is made 1
+constexpr double kSameTime = 1e-12;      // s, relative beyond 1 s
+constexpr double kManyTurns = 100;       // rad: beyond, orientations need a tighter tolerance
+constexpr double kTurningPart = 0.1;     // of the tolerance, for these
+constexpr double kShortTimeStep = 1e-9;  // of the run's duration: nobody waits for so many steps
+constexpr int kMostShortSteps = 1000;    // in a row; after an event some are short
+constexpr double kMostTieError = 1e-9;   // m (a m of coordinates) or rad: projection leaves 1e-15
+constexpr double kUnitLength = 1e-9;     // how far |q|^2 may be from 1 before it is made 1
 
 GuardNames namesOf(const Scene& scene, const Assembly& assembly, const ChosenMethod& method) {
   GuardNames names{{}, assembly.springNames, std::string(method.name), method.stabilityLimit};
@@ -151,10 +153,12 @@ void Simulation::takeAdaptiveStep(double stepEnd) {
     const double planned = stepSize_.timeStep, left = stepEnd - time_;
     const double length = planned >= left * (1 - kTimeRounding) ? left : planned;
     integrate(time_ + length);
-    if (acceptStep(errorNorm(step_, tolerance_), step_.timeStep, stepSize_)) return;
+    if (acceptStep(errorNorm(step_, tolerance_), step_.timeStep, stepSize_)) break;
     keepStartRate(step_);
     if (stepSize_.timeStep < kShortestTimeStep * scene_.duration) guard_.failAtShortestStep(state_, time_);
   }
+  shortSteps_ = step_.timeStep < kShortTimeStep * scene_.duration ? shortSteps_ + 1 : 0;
+  if (shortSteps_ > kMostShortSteps) guard_.failAtShortSteps(state_, time_, step_.timeStep);
 }
 
 /// Constraints hold to rounding after each step. Orientations are of unit length nearly enough for the equations, which

@@ -66,6 +66,7 @@ class Simulation {
   VectorX tolerance_;         // of an adaptive method
   double startTieError_ = 0;  // m or rad
   StepSize stepSize_;
+  int shortSteps_ = 0;         // in a row
   bool isContinuous_ = false;  // nothing has changed the state since the last step's end
   bool keepsTies_ = true;      // no rope went taut or slack at the last step's end
   double time_ = 0;            // s

@@ -88,6 +88,20 @@ TEST(Assembly, ProjectsStartVelocitiesAgainstARodAndSaysSo) {
   EXPECT_NE(assembly.warnings[0].find("4 m/s"), std::string::npos) << assembly.warnings[0];
 }
 
+// Joined to the world at its edge, and given 3 m/s without the spin that would go with it: 3 m/s at the joint.
+TEST(Assembly, SaysHowMuchStartVelocitiesWouldPullAJointApart) {
+  for (const std::string kind : {"ballJoints", "hinges"}) {
+    const Assembly assembly = assemble(
+        withBodies(R"({"name": "m", "shape": {"sphere": {"radius": 0.1}}, "mass": 1,
+      "linearVelocity": [3, 0, 0]})",
+                   R"(, ")" + kind + R"(": [{"bodyA": "m", "anchorA": [0, 0.1, 0], "anchorB": [0, 0.1, 0]}])"));
+    ASSERT_EQ(assembly.warnings.size(), 1u);
+    EXPECT_NE(assembly.warnings[0].find("pull joints apart by up to 3 m/s"), std::string::npos) << assembly.warnings[0];
+    const Vec3 velocity = linearVelocity(assembly.state, 0), spin = angularVelocity(assembly.state, 0);
+    EXPECT_LT((velocity + spin.cross(Vec3(0, 0.1, 0))).norm(), 1e-14) << kind;
+  }
+}
+
 TEST(Assembly, TakesPairSurfacesAndPutsPlanesSecond) {
   const Assembly assembly = assemble(withBodies(R"({"name": "p", "shape": {"plane": {"normal": [0, 0, 2]}},
     "motion": "static", "material": "ice", "position": [0, 0, -1]},
