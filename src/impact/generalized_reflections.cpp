@@ -2,7 +2,8 @@
 // 31(4), 2012. With J the contacts' normals, v -> v+ = v + W J^T lambda. A reflection: 0 <= lambda perp J (v+ + v) >= 0
 // on the contacts that close. Restitution e: the blend (1 - e) v_LCP + e v_GR of the same paper, v_LCP with
 // 0 <= lambda perp J v+ >= 0 on all contacts. A blend contact by contact can gain energy; so with different e each
-// reflection takes 0 <= lambda perp J v+ + E J v >= 0: where lambda > 0, it does the work -(1 - e) |J v| lambda / 2 <= 0.
+// reflection takes 0 <= lambda perp J v+ + E J v >= 0: where lambda > 0, it does the work -(1 - e) |J v| lambda / 2 <=
+// 0.
 
 #include "impact/generalized_reflections.h"
 
@@ -86,8 +87,7 @@ void NormalImpact::reflectOnce(const std::vector<Index>& closing, const VectorX&
   VectorX offset = speeds;
   for (const Index i : closing)
     if (-speeds[i] > restSpeeds_[i]) offset[i] *= 1 + restitutions[i];
-  impulses(closing) +=
-      solveLinearComplementarity(inverseMass_(closing, closing), VectorX(offset(closing)));
+  impulses(closing) += solveLinearComplementarity(inverseMass_(closing, closing), VectorX(offset(closing)));
 }
 
 void NormalImpact::apply(const VectorX& impulses, std::vector<ImpactContact>& impacts, VectorX& state) const {

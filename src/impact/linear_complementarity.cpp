@@ -1,9 +1,9 @@
 // Principal pivoting (R. W. Cottle, J.-S. Pang, R. E. Stone, "The Linear Complementarity Problem", 1992, 4.2) without
-// guarding rows that are satisfied already, as C. L. Lawson and R. J. Hanson do ("Solving Least Squares Problems", 1974,
-// 23.3). lambda minimises lambda A lambda / 2 + b lambda over lambda >= 0; the minimum over the rows that push falls
-// with every row that is driven, so that no set of them comes back. A row is driven along the direction that leaves the
-// pushing rows satisfied. If A is singular along it, the step ends at a row that stops pushing: A of the pushing rows is
-// regular at all times.
+// guarding rows that are satisfied already, as C. L. Lawson and R. J. Hanson do ("Solving Least Squares Problems",
+// 1974, 23.3). lambda minimises lambda A lambda / 2 + b lambda over lambda >= 0; the minimum over the rows that push
+// falls with every row that is driven, so that no set of them comes back. A row is driven along the direction that
+// leaves the pushing rows satisfied. If A is singular along it, the step ends at a row that stops pushing: A of the
+// pushing rows is regular at all times.
 
 #include "impact/linear_complementarity.h"
 
