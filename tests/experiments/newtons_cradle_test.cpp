@@ -6,8 +6,9 @@
 
 #include "experiments/experiment.h"
 
-// Five touching balls, each on two rods of one plane across the row: pendulums of 0.5 m. One, two or three are lifted by
-// 30 degrees. As many as come in leave at the other end, the others hang still. References: elliptic functions, 20 digits.
+// Five touching balls, each on two rods of one plane across the row: pendulums of 0.5 m. One, two or three are lifted
+// by 30 degrees. As many as come in leave at the other end, the others hang still. References: elliptic functions, 20
+// digits.
 
 namespace cradle {
 namespace {
@@ -65,7 +66,7 @@ const std::array kSwings{Swing{5, true, -0.24400104078479672080, 2.0235712973452
                          Swing{100, false, 0.51079219300982308960, 0.49846923900076386114}};
 
 // RK4 with steps of 1/960 s turns a pendulum of w = 4.4 rad/s with an error of (w h)^4 / 120 = 4e-12 a radian: 1e-10
-// after 5 s. Each impact is placed to 1e-12 of a ball's size: nothing beside it.
+// rad after 5 s, and w times that in rad/s. Each impact is placed to 1e-12 of a ball's size: nothing beside it.
 constexpr double kSwingError = 1e-9;
 constexpr double kStill = 1e-9;  // rad, rad/s
 

@@ -34,8 +34,7 @@ struct RowOfBalls {
   }
 
   void setSpeeds(const std::vector<double>& speeds) {
-    for (std::size_t i = 0; i < speeds.size(); ++i)
-      linearVelocity(state, static_cast<Eigen::Index>(i)).x() = speeds[i];
+    for (std::size_t i = 0; i < speeds.size(); ++i) linearVelocity(state, static_cast<Eigen::Index>(i)).x() = speeds[i];
   }
   double speed(int body) const { return linearVelocity(state, body).x(); }
   std::vector<double> speeds() const {
