@@ -38,22 +38,25 @@ Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies,
 }
 
 Mat3 ImpulseResponse::inverseMassAt(const Contact& contact, const VectorX& state) const {
-  if (!constraints_) return cradle::inverseMassAt(contact, bodies_, state);
+  if (!constraints_) return untiedInverseMassAt(contact, state);
   Mat3 inverseMass;
-  for (int i = 0; i < 3; ++i) inverseMass.col(i) = relativeVelocity(contact, answerOf(contact, Vec3::Unit(i), state));
+  for (int i = 0; i < 3; ++i) inverseMass.col(i) = relativeVelocity(contact, answerTo(contact, Vec3::Unit(i), state));
   return inverseMass;
 }
 
-/// The state with the velocities that an impulse gives to bodies at rest.
-VectorX ImpulseResponse::answerOf(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const {
+VectorX ImpulseResponse::answerTo(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const {
   VectorX answer = state;
   answer.tail(state.size() - poseComponents(state)).setZero();
   apply(contact, impulseOnB, answer);
   return answer;
 }
 
+Mat3 ImpulseResponse::untiedInverseMassAt(const Contact& contact, const VectorX& state) const {
+  return cradle::inverseMassAt(contact, bodies_, state);
+}
+
 void ImpulseResponse::displace(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const {
-  const VectorX answer = answerOf(contact, impulseOnB, state);
+  const VectorX answer = answerTo(contact, impulseOnB, state);
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
     centerOfMass(state, body) += linearVelocity(answer, body);
     turnBody(state, body, angularVelocity(answer, body));

@@ -31,15 +31,19 @@ class ImpulseResponse {
   /// As above, with what ties the bodies.
   Mat3 inverseMassAt(const Contact& contact, const VectorX& state) const;
 
+  /// As above, as if nothing tied the bodies.
+  Mat3 untiedInverseMassAt(const Contact& contact, const VectorX& state) const;
+
   /// Applies an impulse (N s, world) to B and its opposite to A at the contact.
   void apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const;
+
+  /// `state` with the velocities that such an impulse gives to bodies at rest.
+  VectorX answerTo(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const;
 
   /// Moves the bodies as far as the velocities that such an impulse gives would in 1 s. Velocities stay.
   void displace(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const;
 
  private:
-  VectorX answerOf(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const;
-
   const std::vector<RigidBody>& bodies_;
   ConstraintSolver* constraints_ = nullptr;
 };

@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kMostSweeps = 1000;         // heavy on light converges slowly: the study shows how slowly
 constexpr double kConvergedPart = 1e-12;  // of the largest change of a sweep
+constexpr double kRoundingPart = 4e-15;   // of the speeds of the points that touch: changes below it are rounding
 constexpr int kMostOverlapSweeps = 20;
 constexpr double kOverlapLeft = 1e-15;  // m
 
@@ -19,6 +20,13 @@ Vec3 clampToCone(const Vec3& impulse, const Vec3& normal, double friction) {
   const Vec3 tangential = impulse - impulse.dot(normal) * normal;
   const double size = tangential.norm(), most = friction * pressing;
   return pressing * normal + (size > most ? most / size : 1.0) * tangential;
+}
+
+/// The faster of the two points that touch, in m/s.
+double pointSpeed(const Contact& contact, const VectorX& state) {
+  Contact ofA = contact, ofB = contact;
+  ofA.bodyB = ofB.bodyA = kFixed;
+  return std::max(relativeVelocity(ofA, state).norm(), relativeVelocity(ofB, state).norm());
 }
 
 /// One contact's turn: normal part first, then friction under the pressure that it left.
@@ -44,13 +52,15 @@ double solveLastingContacts(std::vector<LastingContact>& contacts, const Impulse
   std::vector<Mat3> inverseMasses;
   for (const LastingContact& lasting : contacts)
     inverseMasses.push_back(response.inverseMassAt(lasting.contact, state));
-  double largest = 0, change = 0;
+  double largest = 0, change = 0, rounding = 0;
+  for (const LastingContact& lasting : contacts)
+    rounding = std::max(rounding, kRoundingPart * pointSpeed(lasting.contact, state));
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     change = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i)
       change = std::max(change, relax(contacts[i], inverseMasses[i], response, state));
     largest = std::max(largest, change);
-    if (change <= kConvergedPart * largest) break;
+    if (change <= std::max(rounding, kConvergedPart * largest)) break;
   }
   return change;
 }

@@ -6,8 +6,8 @@
 
 #include "dynamics/invariants.h"
 #include "impact/contact_impulse.h"
+#include "impact/generalized_reflections.h"
 #include "impact/lasting_contact.h"
-#include "simulate/islands.h"
 
 namespace cradle {
 namespace {
@@ -28,6 +28,14 @@ double touchTolerance(const ContactGeometry& geometry) {
 
 double closingSpeed(const Contact& contact, const VectorX& state) {
   return -contact.normal.dot(relativeVelocity(contact, state));
+}
+
+/// Without friction by reflections; with it pair by pair.
+void resolveImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
+  const bool hasFriction = std::any_of(impacts.begin(), impacts.end(), [](const ImpactContact& impact) {
+    return impact.law.staticFriction > 0 || impact.law.dynamicFriction > 0;
+  });
+  hasFriction ? resolvePairwise(impacts, response, state) : resolveReflections(impacts, response, state);
 }
 
 }  // namespace
@@ -86,37 +94,44 @@ void ContactStage::wakeTouched(double time, const VectorX& state) {
 /// other there take part. What explains: the speed that it gained since the last step, part of a step as that may have
 /// been, would have in `kRestSteps` whole ones.
 void ContactStage::resolveImpacts(double time, const VectorX& before, VectorX& state) {
-  std::vector<ImpactContact> impacts = findImpacts(before, state);
-  if (impacts.empty()) return;
-  const VectorX approach = state;
-  resolvePairwise(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
-  for (const ImpactContact& impact : impacts) {
-    // What a lasting contact took was an acceleration's, spread over the step.
-    const bool isLasting = closingSpeed(impact.contact, approach) <= impact.restSpeed;
-    dissipate(impact.contact, impact.impulse, isLasting ? before : approach, state);
-    const double impulse = impact.contact.normal.dot(impact.impulse);
-    if (impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impulse);
+  for (std::vector<ImpactContact>& impacts : findImpacts(before, state)) {
+    if (impacts.empty()) continue;
+    const VectorX approach = state;
+    resolveImpact(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
+    for (const ImpactContact& impact : impacts) {
+      // What a lasting contact took was an acceleration's, spread over the step.
+      const bool isLasting = closingSpeed(impact.contact, approach) <= impact.restSpeed;
+      dissipate(impact.contact, impact.impulse, isLasting ? before : approach, state);
+      const double impulse = impact.contact.normal.dot(impact.impulse);
+      if (impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impulse);
+    }
   }
 }
 
-std::vector<ImpactContact> ContactStage::findImpacts(const VectorX& before, const VectorX& state) const {
-  const std::size_t bodies = assembly_.mechanism.bodies.size();
-  Islands islands(bodies);
+/// What an impact at a contact moves with others: bodies that touch each other or are tied.
+Islands ContactStage::findStruckTogether() const {
+  Islands islands(assembly_.mechanism.bodies.size());
   for (const Contact& contact : touching_) islands.join(contact.bodyA, contact.bodyB);
-  const auto islandOf = [&](const Contact& contact) {
-    return static_cast<std::size_t>(islands.islandOf(contact.bodyA != kFixed ? contact.bodyA : contact.bodyB));
-  };
+  forEachTie(assembly_.mechanism.constraints, [&](int bodyA, int bodyB) { islands.join(bodyA, bodyB); });
+  return islands;
+}
 
-  std::vector<ImpactContact> impacts;
-  std::vector<char> isStruck(bodies, 0);  // by island
+/// The impacts of this instant by island; most are empty.
+std::vector<std::vector<ImpactContact>> ContactStage::findImpacts(const VectorX& before, const VectorX& state) const {
+  const Islands islands = findStruckTogether();
+  std::vector<std::vector<ImpactContact>> impacts(assembly_.mechanism.bodies.size());
+  std::vector<char> isStruck(impacts.size(), 0);
   for (const Contact& contact : touching_) {
     const double closing = closingSpeed(contact, state);
     const double gained = closing + contact.normal.dot(relativeVelocity(contact, state, before));
     const double restSpeed = std::max(kRestSteps * std::max(0.0, gained / stepPart_), leastImpactSpeed_);
-    impacts.push_back({contact, assembly_.geometry.pairs[contact.pair].law, restSpeed, Vec3::Zero()});
-    if (closing > restSpeed) isStruck[islandOf(contact)] = 1;
+    const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
+    const auto island = static_cast<std::size_t>(islands.islandOf(body));
+    impacts[island].push_back({contact, assembly_.geometry.pairs[contact.pair].law, restSpeed, Vec3::Zero()});
+    if (closing > restSpeed) isStruck[island] = 1;
   }
-  std::erase_if(impacts, [&](const ImpactContact& impact) { return !isStruck[islandOf(impact.contact)]; });
+  for (std::size_t island = 0; island < impacts.size(); ++island)
+    if (!isStruck[island]) impacts[island].clear();
   return impacts;
 }
 

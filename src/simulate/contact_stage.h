@@ -5,6 +5,7 @@
 
 #include "impact/pairwise.h"
 #include "simulate/event_log.h"
+#include "simulate/islands.h"
 #include "simulate/resting_bodies.h"
 
 namespace cradle {
@@ -32,7 +33,8 @@ class ContactStage {
   void findTouching(const VectorX& state);
   void wakeTouched(double time, const VectorX& state);
   void resolveImpacts(double time, const VectorX& before, VectorX& state);
-  std::vector<ImpactContact> findImpacts(const VectorX& before, const VectorX& state) const;
+  Islands findStruckTogether() const;
+  std::vector<std::vector<ImpactContact>> findImpacts(const VectorX& before, const VectorX& state) const;
   void holdLasting(const VectorX& before, VectorX& state);
   static void dissipate(const Contact& contact, const Vec3& impulse, const VectorX& before, VectorX& state);
 

@@ -154,7 +154,7 @@ TEST(Impact, WithFrictionAndFullRestitutionNeverGainsEnergy) {
 // The ball leaves a fixed body as light leaves a mirror: v' = v - 2 (v.n) n, its spin untouched. Rounding: the
 // normal, 1e-15 off, is taken 2 x 3 m/s x 2 times; a lever of 1e-16 m times 2 m x 3 m/s over the least inertia of a
 // ball of 0.1 m, 0.004 m, is a spin of 1.5e-13 / 1 rad/s at most.
-constexpr double kReflectionRounding = 5e-14;
+constexpr double kReflectionRounding = 1.5e-13;
 TEST(Impact, OfABallWithAFixedBodyIsAnExactReflection) {
   Random random(14);
   for (const char* shape : {R"({"sphere": {"radius": 0.3}})", R"({"box": {"size": [0.6, 0.4, 0.7]}})",

@@ -5,50 +5,21 @@
 #include "dynamics/invariants.h"
 #include "impact/contact_impulse.h"
 #include "impact/pairwise.h"
+#include "impact/row_of_balls.h"
 #include "math/rotation.h"
 
 namespace cradle {
 namespace {
-
-VectorX statesAtRest(Eigen::Index bodies) {
-  VectorX state = VectorX::Zero(stateSize(bodies));
-  for (Eigen::Index body = 0; body < bodies; ++body) setOrientation(state, body, Quat::Identity());
-  return state;
-}
-
-RigidBody ball(double mass) {
-  return makeRigidBody({mass, Vec3::Zero(), 0.4 * mass * 0.01 * Mat3::Identity()});
-}
-
-/// Balls of radius 0.1 in a row along x, touching.
-struct Row {
-  std::vector<RigidBody> bodies;
-  VectorX state;
-  std::vector<ImpactContact> impacts;
-
-  Row(const std::vector<double>& masses, double restitution) : state(statesAtRest(std::ssize(masses))) {
-    for (std::size_t i = 0; i < masses.size(); ++i) {
-      bodies.push_back(ball(masses[i]));
-      centerOfMass(state, static_cast<Eigen::Index>(i)).x() = 0.2 * static_cast<double>(i);
-      if (i == 0) continue;
-      const int b = static_cast<int>(i);
-      const Contact contact{i - 1, b - 1, b, Vec3(0.2 * b - 0.1, 0, 0), Vec3::UnitX(), 0};
-      impacts.push_back({contact, {restitution, 0, 0}, 0, Vec3::Zero()});
-    }
-  }
-  double speed(int body) { return linearVelocity(state, body).x(); }
-  void resolve() { resolvePairwise(impacts, bodies, state); }
-};
 
 // Momentum and Newton's law of restitution: v1' = v1 - (1 + e) m2 / (m1 + m2) (v1 - v2), and the mirror of it.
 TEST(PairImpact, MatchesTheClosedFormForAnyMassesAndRestitution) {
   for (const double m1 : {0.5, 1.0, 700.0})
     for (const double m2 : {0.03, 1.0, 20.0})
       for (const double e : {0.0, 0.37, 1.0}) {
-        Row row({m1, m2}, e);
+        RowOfBalls row({m1, m2}, e);
         linearVelocity(row.state, 0).x() = 3;
         linearVelocity(row.state, 1).x() = -1.5;
-        row.resolve();
+        resolvePairwise(row.impacts, row.bodies, row.state);
         const double exchange = (1 + e) * 4.5 / (m1 + m2);
         // Velocities up to 10 m/s after a handful of operations on them.
         EXPECT_NEAR(row.speed(0), 3 - exchange * m2, 1e-14) << m1 << ' ' << m2 << ' ' << e;
@@ -59,37 +30,37 @@ TEST(PairImpact, MatchesTheClosedFormForAnyMassesAndRestitution) {
 
 TEST(PairImpact, WithSomethingFixedReflectsExactly) {
   for (const double e : {0.0, 0.5, 1.0}) {
-    Row row({2.0}, e);
+    RowOfBalls row({2.0}, e);
     const Contact wall{0, 0, kFixed, Vec3(0.1, 0, 0), Vec3::UnitX(), 0};
     row.impacts = {{wall, {e, 0, 0}, 0, Vec3::Zero()}};
     linearVelocity(row.state, 0) = Vec3(3, 1, 0);
-    row.resolve();
+    resolvePairwise(row.impacts, row.bodies, row.state);
     EXPECT_NEAR(row.speed(0), -3 * e, 1e-15);
     EXPECT_EQ(linearVelocity(row.state, 0).y(), 1);
   }
 }
 
 TEST(PairImpact, OfSeparatingBodiesDoesNothing) {
-  Row row({1, 1}, 1);
+  RowOfBalls row({1, 1}, 1);
   linearVelocity(row.state, 0).x() = -1;
   const VectorX before = row.state;
-  row.resolve();
+  resolvePairwise(row.impacts, row.bodies, row.state);
   EXPECT_EQ(row.state, before);
 }
 
 TEST(PairImpact, SlowerThanTheRestSpeedDoesNotRebound) {
-  Row row({1, 1}, 1);
+  RowOfBalls row({1, 1}, 1);
   row.impacts[0].restSpeed = 0.01;
   linearVelocity(row.state, 0).x() = 0.009;
-  row.resolve();
+  resolvePairwise(row.impacts, row.bodies, row.state);
   EXPECT_NEAR(row.speed(0), 0.0045, 1e-17);
   EXPECT_NEAR(row.speed(1), 0.0045, 1e-17);
 }
 
 TEST(PairwiseImpacts, PassOneBallsMotionThroughARowOfEqualBalls) {
-  Row row({1, 1, 1, 1, 1}, 1);
+  RowOfBalls row({1, 1, 1, 1, 1}, 1);
   linearVelocity(row.state, 0).x() = 1;
-  row.resolve();
+  resolvePairwise(row.impacts, row.bodies, row.state);
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(row.speed(i), 0, 1e-15) << i;
   EXPECT_NEAR(row.speed(4), 1, 1e-15);
 }

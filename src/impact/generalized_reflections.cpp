@@ -1,0 +1,131 @@
+// B. Smith, D. M. Kaufman, E. Vouga, R. Tamstorf, E. Grinspun, "Reflections on Simultaneous Impact", ACM Trans. Graph.
+// 31(4), 2012. With J the contacts' normals, v -> v+ = v + W J^T lambda. A reflection: 0 <= lambda perp J (v+ + v) >= 0
+// on the contacts that close. Restitution e: the blend (1 - e) v_LCP + e v_GR of the same paper, v_LCP with
+// 0 <= lambda perp J v+ >= 0 on all contacts. A blend contact by contact can gain energy; so with different e each
+// reflection takes 0 <= lambda perp J v+ + E J v >= 0: where lambda > 0, it does the work -(1 - e) |J v| lambda / 2 <=
+// 0.
+
+#include "impact/generalized_reflections.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "impact/linear_complementarity.h"
+
+namespace cradle {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kClosedPart = 1e-12;        // of the fastest speed: what is left is rounding
+constexpr double kImmobilePart = 1e-12;      // of the inverse mass without ties, which take part to 1e-16
+constexpr long kMostReflections = 10000;     // for each contact; a row of n balls needs n
+constexpr long kMostMixedReflections = 100;  // restitutions that differ: then one impact without rebound ends it
+
+/// The contacts of an impact by their normals alone: speeds J v and inverse masses J W J^T.
+class NormalImpact {
+ public:
+  NormalImpact(const std::vector<ImpactContact>& impacts, const ImpulseResponse& response, const VectorX& state);
+
+  /// Impulses (N s) that end all closing without rebound, after `impulses`.
+  VectorX stop(const VectorX& impulses) const;
+
+  /// Adds reflections to `impulses` until nothing closes, at most so many. False: something does still.
+  bool reflect(const VectorX& restitutions, long most, VectorX& impulses) const;
+
+  void apply(const VectorX& impulses, std::vector<ImpactContact>& impacts, VectorX& state) const;
+
+ private:
+  void reflectOnce(const std::vector<Index>& closing, const VectorX& speeds, const VectorX& restitutions,
+                   VectorX& impulses) const;
+
+  std::vector<VectorX> answers_;  // states: velocities from a unit impulse at each contact
+  MatrixX inverseMass_;           // 1/kg
+  VectorX speeds_, restSpeeds_;   // m/s; speeds: < 0 closing
+};
+
+NormalImpact::NormalImpact(const std::vector<ImpactContact>& impacts, const ImpulseResponse& response,
+                           const VectorX& state)
+    : inverseMass_(impacts.size(), impacts.size()), speeds_(impacts.size()), restSpeeds_(impacts.size()) {
+  for (const ImpactContact& impact : impacts)
+    answers_.push_back(response.answerTo(impact.contact, impact.contact.normal, state));
+  for (Index i = 0; i < speeds_.size(); ++i) {
+    const ImpactContact& impact = impacts[static_cast<std::size_t>(i)];
+    const Vec3& normal = impact.contact.normal;
+    speeds_[i] = normal.dot(relativeVelocity(impact.contact, state));
+    restSpeeds_[i] = impact.restSpeed;
+    for (Index j = 0; j < speeds_.size(); ++j)
+      inverseMass_(i, j) = normal.dot(relativeVelocity(impact.contact, state, answers_[static_cast<std::size_t>(j)]));
+  }
+  inverseMass_ = (0.5 * (inverseMass_ + inverseMass_.transpose())).eval();
+  for (Index i = 0; i < speeds_.size(); ++i) {
+    const Contact& contact = impacts[static_cast<std::size_t>(i)].contact;
+    const double untied = contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
+    if (inverseMass_(i, i) <= kImmobilePart * untied) speeds_[i] = 0;  // what ties the bodies holds the contact
+  }
+}
+
+VectorX NormalImpact::stop(const VectorX& impulses) const {
+  return impulses + solveLinearComplementarity(inverseMass_, speeds_ + inverseMass_ * impulses);
+}
+
+bool NormalImpact::reflect(const VectorX& restitutions, long most, VectorX& impulses) const {
+  const double closed = kClosedPart * speeds_.cwiseAbs().maxCoeff();
+  for (long count = 0; count <= most; ++count) {
+    const VectorX speeds = speeds_ + inverseMass_ * impulses;
+    std::vector<Index> closing;
+    for (Index i = 0; i < speeds.size(); ++i)
+      if (speeds[i] < -closed) closing.push_back(i);
+    if (closing.empty()) return true;
+    reflectOnce(closing, speeds, restitutions, impulses);
+  }
+  return false;
+}
+
+void NormalImpact::reflectOnce(const std::vector<Index>& closing, const VectorX& speeds, const VectorX& restitutions,
+                               VectorX& impulses) const {
+  VectorX offset = speeds;
+  for (const Index i : closing)
+    if (-speeds[i] > restSpeeds_[i]) offset[i] *= 1 + restitutions[i];
+  impulses(closing) += solveLinearComplementarity(inverseMass_(closing, closing), VectorX(offset(closing)));
+}
+
+void NormalImpact::apply(const VectorX& impulses, std::vector<ImpactContact>& impacts, VectorX& state) const {
+  const Index velocities = state.size() - poseComponents(state);
+  for (std::size_t i = 0; i < impacts.size(); ++i) {
+    const double impulse = impulses[static_cast<Index>(i)];
+    state.tail(velocities) += impulse * answers_[i].tail(velocities);
+    impacts[i].impulse += impulse * impacts[i].contact.normal;
+  }
+}
+
+VectorX restitutionsOf(const std::vector<ImpactContact>& impacts) {
+  VectorX restitutions(impacts.size());
+  for (std::size_t i = 0; i < impacts.size(); ++i) restitutions[static_cast<Index>(i)] = impacts[i].law.restitution;
+  return restitutions;
+}
+
+[[noreturn]] void failEndless(std::size_t contacts) {
+  throw Error(ErrorKind::unstable, "",
+              "an impact among " + std::to_string(contacts) + " contacts does not come to an end by reflections");
+}
+
+}  // namespace
+
+void resolveReflections(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
+  if (impacts.empty()) return;
+  const NormalImpact impact(impacts, response, state);
+  const VectorX restitutions = restitutionsOf(impacts), none = VectorX::Zero(restitutions.size());
+  const double restitution = restitutions[0];
+  VectorX impulses = none;
+  if ((restitutions.array() == restitution).all()) {
+    const long most = kMostReflections * static_cast<long>(impacts.size());
+    if (restitution > 0 && !impact.reflect(VectorX::Ones(none.size()), most, impulses)) failEndless(impacts.size());
+    if (restitution < 1) impulses = (restitution * impulses + (1 - restitution) * impact.stop(none)).eval();
+  } else if (!impact.reflect(restitutions, kMostMixedReflections, impulses)) {
+    impulses = impact.stop(impulses);
+  }
+  impact.apply(impulses, impacts, state);
+}
+
+}  // namespace cradle

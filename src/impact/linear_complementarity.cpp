@@ -1,0 +1,144 @@
+// Principal pivoting (R. W. Cottle, J.-S. Pang, R. E. Stone, "The Linear Complementarity Problem", 1992, 4.2) without
+// guarding rows that are satisfied already, as C. L. Lawson and R. J. Hanson do ("Solving Least Squares Problems",
+// 1974, 23.3). lambda minimises lambda A lambda / 2 + b lambda over lambda >= 0; the minimum over the rows that push
+// falls with every row that is driven, so that no set of them comes back. A row is driven along the direction that
+// leaves the pushing rows satisfied. If A is singular along it, the step ends at a row that stops pushing: A of the
+// pushing rows is regular at all times.
+
+#include "impact/linear_complementarity.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/error.h"
+
+namespace cradle {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();  // of the terms of a row, for each of them
+constexpr double kSingularPart = 1e-12;  // of a diagonal element: less left after elimination is rounding
+constexpr long kMostPivotsPerRow = 100;  // 1 or 2 are usual
+
+class Pivoting {
+ public:
+  Pivoting(const MatrixX& a, const VectorX& b)
+      : a_(a), b_(b), lambda_(VectorX::Zero(b.size())), isLeft_(static_cast<std::size_t>(b.size()), 0) {}
+
+  /// The row that is violated most, by more than rounding; -1: none.
+  Index mostViolated() const;
+  /// Lets a row push until it is satisfied.
+  void drive(Index row);
+  const VectorX& lambda() const { return lambda_; }
+
+ private:
+  double residual(Index row) const { return b_[row] + a_.row(row).dot(lambda_); }
+  VectorX solveForPushing(const VectorX& rightHandSide) const;
+  VectorX direction(Index row) const;
+  Index firstToStop(const VectorX& along) const;
+  void stop(Index row);
+  void satisfyPushing();
+
+  const MatrixX& a_;
+  const VectorX& b_;
+  VectorX lambda_;
+  std::vector<Index> pushing_;  // rows with A lambda + b = 0
+  std::vector<char> isLeft_;    // no lambda satisfies the row
+};
+
+Index Pivoting::mostViolated() const {
+  Index most = -1;
+  double largest = 0;
+  for (Index row = 0; row < b_.size(); ++row) {
+    if (lambda_[row] > 0 || isLeft_[static_cast<std::size_t>(row)]) continue;
+    const double terms = std::abs(b_[row]) + a_.row(row).cwiseAbs().dot(lambda_);
+    const double violation = -residual(row);
+    if (violation <= std::max(largest, kRounding * static_cast<double>(b_.size()) * terms)) continue;
+    most = row, largest = violation;
+  }
+  return most;
+}
+
+/// x with A x = rightHandSide in the pushing rows, 0 elsewhere.
+VectorX Pivoting::solveForPushing(const VectorX& rightHandSide) const {
+  VectorX x = VectorX::Zero(b_.size());
+  if (pushing_.empty()) return x;
+  const MatrixX a = a_(pushing_, pushing_);
+  const VectorX pushes = rightHandSide(pushing_);
+  x(pushing_) = VectorX(a.ldlt().solve(pushes));
+  return x;
+}
+
+/// Change of lambda, per unit of the row's own, that leaves the pushing rows satisfied.
+VectorX Pivoting::direction(Index row) const {
+  VectorX along = solveForPushing(-a_.col(row));
+  along[row] = 1;
+  return along;
+}
+
+/// Along a direction, the pushing row that reaches zero first; -1: none does.
+Index Pivoting::firstToStop(const VectorX& along) const {
+  Index first = -1;
+  for (const Index row : pushing_)
+    if (along[row] < 0 && (first < 0 || lambda_[row] * along[first] > lambda_[first] * along[row])) first = row;
+  return first;
+}
+
+void Pivoting::drive(Index row) {
+  const VectorX lambdaBefore = lambda_;
+  const std::vector<Index> pushingBefore = pushing_;
+  while (true) {
+    const VectorX along = direction(row);
+    const double curvature = a_.row(row).dot(along);
+    const bool isSingular = curvature <= kSingularPart * a_(row, row);
+    const Index first = firstToStop(along);
+    const double furthest = first < 0 ? INFINITY : -lambda_[first] / along[first];
+    const double wanted = isSingular ? INFINITY : std::max(0.0, -residual(row) / curvature);
+    if (wanted == INFINITY && furthest == INFINITY) {
+      lambda_ = lambdaBefore, pushing_ = pushingBefore;
+      isLeft_[static_cast<std::size_t>(row)] = 1;
+      return;
+    }
+    lambda_ += std::min(wanted, furthest) * along;
+    if (wanted <= furthest) break;
+    stop(first);
+  }
+  pushing_.push_back(row);
+  satisfyPushing();
+}
+
+void Pivoting::stop(Index row) {
+  lambda_[row] = 0;
+  std::erase(pushing_, row);
+}
+
+/// What pushes anew, from `b` alone: errors of steps do not add up. Rows that came to zero in the same step as the one
+/// that ended it stop.
+void Pivoting::satisfyPushing() {
+  while (true) {
+    lambda_ = solveForPushing(-b_);
+    const auto none = [this](Index row) { return lambda_[row] <= 0; };
+    if (std::none_of(pushing_.begin(), pushing_.end(), none)) return;
+    std::erase_if(pushing_, none);
+  }
+}
+
+}  // namespace
+
+VectorX solveLinearComplementarity(const MatrixX& a, const VectorX& b) {
+  Pivoting pivoting(a, b);
+  const long most = kMostPivotsPerRow * static_cast<long>(b.size());
+  for (long pivots = 0; pivots <= most; ++pivots) {
+    const Index row = pivoting.mostViolated();
+    if (row < 0) return pivoting.lambda();
+    pivoting.drive(row);
+  }
+  throw Error(ErrorKind::unstable, "",
+              "the forces among " + std::to_string(b.size()) + " contacts cannot be found: rounding hides them");
+}
+
+}  // namespace cradle
