@@ -89,6 +89,10 @@ TEST(Reach, OfFlyingBodiesHoldsAndIsTight) {
     EXPECT_LT(part, 1);
     EXPECT_GT(part, 0.3);
   }
+  // Straight up and back: the whole sag of the chord.
+  const Scene thrown =
+      sceneWith(R"("duration": 2, "bodies": [)" + body("a", Vec3::Zero(), Vec3(0, 9.81, 0), Vec3::Zero()) + "]");
+  EXPECT_NEAR(farthestPart(thrown), 1, 1e-5);
 }
 
 TEST(Reach, IsUnboundedWhereSomethingElseActs) {
