@@ -19,7 +19,7 @@ EquationsOfMotion::EquationsOfMotion(const Mechanism& mechanism)
 
 RightHandSide EquationsOfMotion::rightHandSide() {
   return {[this](double, const VectorX& state, VectorX& rate) { evaluate(state, rate); },
-          [this](const VectorX& state, VectorX& rate) { evaluatePoseRates(state, rate); },
+          [](const VectorX& state, VectorX& rate) { evaluatePoseRates(state, rate); },
           static_cast<Eigen::Index>(mechanism_.bodies.size()) * kPoseSize};
 }
 

@@ -34,7 +34,6 @@ double closingSpeed(const Contact& contact, const VectorX& state) {
 
 ContactStage::ContactStage(const Assembly& assembly, EquationsOfMotion& equations, EventLog& log, double timeStep)
     : assembly_(assembly),
-      equations_(equations),
       log_(log),
       resting_(assembly.mechanism, assembly.geometry, equations, kCalmSteps * timeStep),
       solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),
