@@ -120,6 +120,9 @@ void EnergyGuard::fail(const VectorX& state, double time, const std::string& wha
 }
 
 std::string EnergyGuard::cause(const VectorX& state) const {
+  if (!method_.isAdaptive())
+    if (const auto fault = stepFault(mechanism_, calm_, method_, duration_))
+      return fmt::format("spring \"{}\" {}", names_.springs[fault->spring], fault->text);
   for (std::size_t i = 0; i < mechanism_.springs.size(); ++i) {
     const SpringForce& spring = mechanism_.springs[i];
     const double length = (motionOf(spring.anchorA, calm_).position - motionOf(spring.anchorB, calm_).position).norm();
@@ -128,9 +131,8 @@ std::string EnergyGuard::cause(const VectorX& state) const {
                          names_.springs[i], length);
   }
   if (method_.isAdaptive())
-    return "what ties it leaves no motion, or forces grow without bound: look at its rods, joints and springs there";
-  if (const auto fault = stepFault(mechanism_, calm_, method_, duration_))
-    return fmt::format("spring \"{}\" {}", names_.springs[fault->spring], fault->text);
+    return "what ties it leaves no motion, or forces grow without bound: look at its rods, ropes, joints and springs "
+           "there";
   for (const VectorX* moment : {&calm_, &state}) {  // a start at rest shows nothing yet
     const std::string turn = fastestTurn(*moment);
     if (!turn.empty()) return turn;

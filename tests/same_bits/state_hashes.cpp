@@ -1,5 +1,5 @@
-// Prints "NAME HASH" for each scene: the stateHash of its first seconds. Only the physics is linked, so that one more
-// compiler, or one more level of optimisation, costs a small build.
+// Prints "NAME SECONDS HASH" for each scene: the stateHash of its first seconds. Only the physics is linked, so that
+// one more compiler, or one more level of optimisation, costs a small build.
 //
 //     state_hashes SECONDS SCENE...
 
@@ -29,7 +29,7 @@ void printHashes(int count, const char* const* arguments) {
   const double seconds = std::stod(arguments[1]);
   for (int i = 2; i < count; ++i) {
     const std::string name = std::filesystem::path(arguments[i]).stem().string();
-    fmt::print("{} {}\n", name, stateHash(arguments[i], seconds));
+    fmt::print("{} {} {}\n", name, seconds, stateHash(arguments[i], seconds));
   }
 }
 
