@@ -10,6 +10,8 @@ add_compile_definitions(EIGEN_DONT_VECTORIZE)
 add_compile_options(-Wall -Wextra -Wconversion -Werror)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-Wno-restrict -Wno-array-bounds)  # false alarms of g++ 12 inside std::string
+else()
+  add_compile_options(-Wno-unknown-pragmas)  # clang proves at run time what g++ is told by "ivdep"
 endif()
 
 if(CRADLE_SANITIZE)

@@ -71,8 +71,9 @@ std::optional<PlacedPrimitive> findBox(const Candidate& candidate) {
   const auto& [mesh, properties, midpoints] = candidate;
   if (mesh.vertices.size() != 8) return {};
   const double size = boundsOf(mesh).diagonal().norm();
-  const Vec3& corner = mesh.vertices[0];
-  const auto edge = [&](std::size_t i) { return Vec3(mesh.vertices[i] - corner); };
+  const std::vector<Vec3>& vertices = mesh.vertices;
+  const Vec3& corner = vertices[0];
+  const auto edge = [&](std::size_t i) { return Vec3(vertices[i] - corner); };
   const auto isRightAngle = [&](const Vec3& a, const Vec3& b) {
     return std::abs(a.dot(b)) <= kTolerance * a.norm() * b.norm();
   };

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "simulate/colliders.h"
+#include "simulate/step_limit.h"
 
 namespace cradle {
 namespace {
@@ -31,8 +32,11 @@ Attachment attach(const Anchor& anchor, const Scene& scene, const std::vector<in
 
 void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
   assembly.sceneBodies = island.bodies;
-  for (const int body : island.bodies)
-    assembly.mechanism.bodies.push_back(makeRigidBody(scene.bodies[static_cast<std::size_t>(body)].massProperties));
+  for (const int index : island.bodies) {
+    const Body& body = scene.bodies[static_cast<std::size_t>(index)];
+    assembly.mechanism.bodies.push_back(makeRigidBody(body.massProperties));
+    assembly.names.bodies.push_back(body.name);
+  }
   for (std::size_t i = 0; i < island.bodies.size(); ++i)
     assembly.mechanism.bodies[i].turns =
         !std::binary_search(island.unturned.begin(), island.unturned.end(), island.bodies[i]);
@@ -74,17 +78,20 @@ void addLinks(const Scene& scene, const std::vector<int>& moving, Assembly& asse
   Mechanism& mechanism = assembly.mechanism;
   forEachLink(scene.springs, scene, moving, [&](const Spring& spring, const Attachment& a, const Attachment& b) {
     mechanism.springs.push_back({a, b, spring.stiffness, spring.damping, spring.restLength});
-    assembly.springNames.push_back(spring.name);
+    assembly.names.springs.push_back(spring.name);
   });
   Constraints& constraints = mechanism.constraints;
   forEachLink(scene.rods, scene, moving, [&](const Rod& rod, const Attachment& a, const Attachment& b) {
     constraints.rods.push_back({a, b, rod.length});
+    assembly.names.rods.push_back(rod.name);
   });
-  forEachLink(scene.ballJoints, scene, moving, [&](const BallJoint&, const Attachment& a, const Attachment& b) {
+  forEachLink(scene.ballJoints, scene, moving, [&](const BallJoint& joint, const Attachment& a, const Attachment& b) {
     constraints.ballJoints.push_back({a, b});
+    assembly.names.ballJoints.push_back(joint.name);
   });
   forEachLink(scene.hinges, scene, moving, [&](const Hinge& hinge, const Attachment& a, const Attachment& b) {
     constraints.hinges.push_back(makeHinge(hinge, a, b, scene));
+    assembly.names.hinges.push_back(hinge.name);
   });
   forEachLink(scene.ropes, scene, moving, [&](const Rope& rope, const Attachment& a, const Attachment& b) {
     assembly.ropes.push_back({a, b, rope.maxLength, rope.restitution});
@@ -174,6 +181,9 @@ Assembly assemble(const Scene& scene, const IslandPlan& island) {
   const ColliderIndices indices = addColliders(scene, island, moving, assembly.geometry);
   for (const auto& pair : island.near) addPair(scene, indices, pair, assembly);
   satisfyConstraints(scene, assembly);
+  if (const auto fault = stepFault(assembly.mechanism, assembly.state, island.method, scene.duration))
+    assembly.warnings.push_back(
+        fmt::format("{}: spring \"{}\" {}", scene.path, assembly.names.springs[fault->spring], fault->text));
   return assembly;
 }
 

@@ -12,6 +12,11 @@
 
 namespace cradle {
 
+/// Names of what moves and of what ties it, in the order of the mechanism.
+struct PartNames {
+  std::vector<std::string> bodies, springs, rods, ballJoints, hinges;
+};
+
 /// An island of a scene turned into what the methods work on.
 struct Assembly {
   Mechanism mechanism;
@@ -20,7 +25,7 @@ struct Assembly {
   VectorX state;                                // at time 0
   std::vector<int> sceneBodies;                 // scene body of each moving body
   std::vector<int> movingBodies;                // moving body of each scene body, or kFixed: not in this island
-  std::vector<std::string> springNames;         // of each spring in the mechanism
+  PartNames names;                              // taut ropes stand behind the rods named here
   std::vector<std::pair<int, int>> pairBodies;  // scene bodies A, B of each collider pair
   std::vector<std::pair<int, int>> ropeBodies;  // scene bodies A, B of each rope; kWorld
   std::vector<std::string> warnings;

@@ -42,7 +42,6 @@ void resolveImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& r
 
 ContactStage::ContactStage(const Assembly& assembly, EquationsOfMotion& equations, EventLog& log, double timeStep)
     : assembly_(assembly),
-      equations_(equations),
       log_(log),
       resting_(assembly.mechanism, assembly.geometry, equations, kCalmSteps * timeStep),
       solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),

@@ -39,7 +39,6 @@ class ContactStage {
   static void dissipate(const Contact& contact, const Vec3& impulse, const VectorX& before, VectorX& state);
 
   const Assembly& assembly_;
-  EquationsOfMotion& equations_;
   EventLog& log_;
   RestingBodies resting_;
   ConstraintSolver solver_;

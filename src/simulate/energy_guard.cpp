@@ -6,27 +6,82 @@
 
 #include "core/error.h"
 #include "dynamics/invariants.h"
+#include "simulate/step_limit.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kUnexplained = 10;  // times the energy that can be explained: far beyond any method's error
-constexpr double kSafePart = 0.5;    // of the stability limit: stable, and a few per cent accurate in frequency
+constexpr double kUnexplained = 2;        // times the energy that can be explained: nothing is left of the motion
+constexpr double kMostLocalErrors = 100;  // times their sum: they are estimates; 0.1 of it has been seen
+constexpr double kRounding = 1e-13;       // of a component in a step: finer tolerances are not kept
+constexpr double kCalmPart = 0.1;         // of what stops a run: before, the motion is still the scene's own
+constexpr double kSafeTurn = 0.1;         // rad a step: RK4 is then right to 1e-7 a step; slower turns are no cause
+constexpr double kCollapsed = 1e-3;       // of its rest length: a spring without direction
+
+/// What an error of 1 + |y| in each component y of a state can change of its energy (J).
+double energySensitivity(const Mechanism& mechanism, const VectorX& state) {
+  double sum = 1 + std::abs(dissipatedEnergy(state)) + std::abs(pushWork(state));
+  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
+    const RigidBody& body = mechanism.bodies[i];
+    const Eigen::Index index = static_cast<Eigen::Index>(i);
+    const double speed = linearVelocity(state, index).norm(), spin = angularVelocity(state, index).norm();
+    sum += body.mass * mechanism.gravity.norm() * (1 + centerOfMass(state, index).norm());
+    sum += body.mass * speed * (1 + speed) + body.inertiaTensor.norm() * spin * (1 + 2 * spin);
+  }
+  for (const SpringForce& spring : mechanism.springs) {
+    const SpringAction action = actionOf(spring, state);
+    const double arms = action.a.arm.norm() + action.b.arm.norm();
+    sum += action.forceOnA.norm() * (2 + action.a.position.norm() + action.b.position.norm() + 2 * arms);
+  }
+  return sum;
+}
+
+/// Angle (rad) by which the line between two attachments turns in a time.
+double turnOf(const Attachment& anchorA, const Attachment& anchorB, const VectorX& state, double time) {
+  const AttachmentMotion a = motionOf(anchorA, state), b = motionOf(anchorB, state);
+  const Vec3 line = a.position - b.position;
+  return line.cross(a.velocity - b.velocity).norm() / line.squaredNorm() * time;
+}
+
+double spinOf(int body, const VectorX& state) {
+  return body == kFixed ? 0 : angularVelocity(state, body).norm();
+}
+
+const char* const kTiesCause =
+    "what ties it leaves no motion, or forces grow without bound: look at its rods, ropes, joints and springs there";
 
 }  // namespace
 
-EnergyGuard::EnergyGuard(const Mechanism& mechanism, const VectorX& start, GuardNames names)
-    : mechanism_(mechanism),
-      start_(start),
-      names_(std::move(names)),
-      startConstant_(energyConstant(mechanism, start)),
-      startEnergy_(kineticEnergy(mechanism.bodies, start)),
-      excursions_(mechanism.bodies.size(), 0.0) {
-  for (const SpringForce& spring : mechanism.springs) startEnergy_ += actionOf(spring, start).potential;
+EnergyGuard::EnergyGuard(const Assembly& assembly, const ChosenMethod& method, double duration)
+    : mechanism_(assembly.mechanism),
+      names_(assembly.names),
+      start_(assembly.state),
+      calm_(start_),
+      method_(method),
+      duration_(duration),
+      startConstant_(energyConstant(mechanism_, start_)),
+      startEnergy_(kineticEnergy(mechanism_.bodies, start_)),
+      mostError_(kUnexplained * (1 + springEnergyError(mechanism_, start_, method, duration))),
+      excursions_(mechanism_.bodies.size(), 0.0) {
+  for (const SpringForce& spring : mechanism_.springs) startEnergy_ += actionOf(spring, start_).potential;
 }
 
 void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
-  if (!state.allFinite()) fail(state, time, "is not finite any more", cause(timeStep));
+  if (!state.allFinite()) fail(state, time, "is not finite any more", cause(state));
+  double most = mostError_ * explainedEnergy(state, timeStep);
+  if (method_.isAdaptive()) {
+    errorSum_ += std::max(method_.tolerance, kRounding) * energySensitivity(mechanism_, state);
+    most = std::min(most, kMostLocalErrors * errorSum_);
+  }
+  const double change = std::abs(energyConstant(mechanism_, state) - startConstant_);
+  if (!(change <= most))
+    fail(state, time, fmt::format("has energy from nowhere ({:.3g} J; {:.3g} J can be explained)", change, most),
+         cause(state));
+  if (change <= kCalmPart * most) calm_ = state;
+}
+
+/// All energy (J) that there can be, and that errors are measured by.
+double EnergyGuard::explainedEnergy(const VectorX& state, double timeStep) {
   const double gravity = mechanism_.gravity.norm();
   double explained = startEnergy_ + std::abs(pushWork(state)) + firstStepEnergy(timeStep);
   for (std::size_t i = 0; i < excursions_.size(); ++i) {
@@ -34,23 +89,20 @@ void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
     excursions_[i] = std::max(excursions_[i], (centerOfMass(state, body) - centerOfMass(start_, body)).norm());
     explained += mechanism_.bodies[i].mass * gravity * excursions_[i];
   }
-  const double change = std::abs(energyConstant(mechanism_, state) - startConstant_);
-  if (!(change <= kUnexplained * explained))
-    fail(state, time, fmt::format("has energy from nowhere ({:.3g} J of {:.3g} J explained)", change, explained),
-         cause(timeStep));
+  return explained;
 }
 
 void EnergyGuard::failAtShortestStep(const VectorX& state, double time) const {
-  fail(state, time, "cannot be followed with steps of any length", stiffCause());
+  fail(state, time, "cannot be followed with steps of any length", stiffCause(state));
 }
 
 void EnergyGuard::failAtShortSteps(const VectorX& state, double time, double timeStep) const {
   fail(state, time, fmt::format("needs steps of {:.3g} s, too short to reach the end of the run", timeStep),
-       stiffCause());
+       stiffCause(state));
 }
 
 void EnergyGuard::failAtTies(const VectorX& state, double time, double error) const {
-  fail(state, time, fmt::format("is tied by what cannot all be kept (off by {:.3g} m or rad)", error), cause(0));
+  fail(state, time, fmt::format("is tied by what cannot all be kept (off by {:.3g} m or rad)", error), kTiesCause);
 }
 
 /// What one step can give to bodies at rest by forces that do not depend on where they are: (F h)^2 / m. Methods of
@@ -80,43 +132,71 @@ void EnergyGuard::fail(const VectorX& state, double time, const std::string& wha
               fmt::format("unstable at {:.6g} s: body \"{}\" {}; {}", time, names_.bodies[worst], what, cause));
 }
 
-/// The spring with the highest natural frequency at the start, and that (rad/s; 0 without springs).
-std::pair<std::size_t, double> EnergyGuard::fastestSpring() const {
-  std::pair<std::size_t, double> fastest(0, 0);
+/// Why steps have to be so short.
+std::string EnergyGuard::stiffCause(const VectorX& state) const {
+  double fastest = 0;
+  std::size_t spring = 0;
   for (std::size_t i = 0; i < mechanism_.springs.size(); ++i) {
     const double frequency = naturalFrequency(mechanism_.springs[i], mechanism_.bodies, start_);
-    if (frequency > fastest.second) fastest = {i, frequency};
+    if (frequency > fastest) fastest = frequency, spring = i;
   }
-  return fastest;
-}
-
-std::string EnergyGuard::stiffCause() const {
-  const auto [spring, frequency] = fastestSpring();
-  if (frequency == 0 || !mechanism_.constraints.empty()) return cause(0);
+  if (fastest == 0 || !mechanism_.constraints.empty()) return cause(state);
   return fmt::format(
       "spring \"{}\" (omega {:.3g} rad/s) is the fastest: give it less stiffness or damping, its bodies more mass, or "
       "take a rod in its place",
-      names_.springs[spring], frequency);
+      names_.springs[spring], fastest);
 }
 
-std::string EnergyGuard::cause(double timeStep) const {
-  if (timeStep == 0)
-    return "what ties it leaves no motion, or forces grow without bound: look at its rods, joints and springs there";
-  const auto [spring, fastest] = fastestSpring();
-  const double product = timeStep * fastest;
-  if (fastest == 0 || product < kSafePart * names_.stabilityLimit)
-    return fmt::format("{} at a time step of {:.3g} s cannot follow it; give \"method\" a smaller \"timeStep\"",
-                       names_.method, timeStep);
-  if (names_.stabilityLimit == 0)
-    return fmt::format(
-        "spring \"{}\" (omega {:.4g} rad/s) gains energy at any step of {}; use semiImplicitEuler or rk4",
-        names_.springs[spring], fastest, names_.method);
+std::string EnergyGuard::cause(const VectorX& state) const {
+  if (!method_.isAdaptive())
+    if (const auto fault = stepFault(mechanism_, calm_, method_, duration_))
+      return fmt::format("spring \"{}\" {}", names_.springs[fault->spring], fault->text);
+  for (std::size_t i = 0; i < mechanism_.springs.size(); ++i) {
+    const SpringForce& spring = mechanism_.springs[i];
+    const double length = (motionOf(spring.anchorA, calm_).position - motionOf(spring.anchorB, calm_).position).norm();
+    if (length < kCollapsed * spring.restLength)
+      return fmt::format("spring \"{}\" is {:.2g} m long, and has no direction at length 0: keep its ends apart",
+                         names_.springs[i], length);
+  }
+  if (method_.isAdaptive())
+    return kTiesCause;
+  for (const VectorX* moment : {&calm_, &state}) {  // a start at rest shows nothing yet
+    const std::string turn = fastestTurn(*moment);
+    if (!turn.empty()) return turn;
+  }
+  return fmt::format("{} at a time step of {:.3g} s cannot follow it; give \"method\" a smaller \"timeStep\"",
+                     method_.name, method_.timeStep);
+}
+
+/// The rod, joint or body that turns farthest in a step, if that is too far.
+std::string EnergyGuard::fastestTurn(const VectorX& state) const {
+  const double step = method_.timeStep;
+  double most = kSafeTurn;
+  std::string what;
+  const auto consider = [&](double turn, const std::string& name) {
+    if (turn > most) most = turn, what = name;
+  };
+  const Constraints& constraints = mechanism_.constraints;
+  for (std::size_t i = 0; i < constraints.rods.size(); ++i) {
+    const RodConstraint& rod = constraints.rods[i];
+    const bool isRope = i >= names_.rods.size();
+    consider(turnOf(rod.anchorA, rod.anchorB, state, step),
+             isRope ? "a taut rope" : fmt::format("rod \"{}\"", names_.rods[i]));
+  }
+  const auto considerJoint = [&](const auto& joint, const char* kind, const std::string& name) {
+    const double spin = std::max(spinOf(joint.anchorA.body, state), spinOf(joint.anchorB.body, state));
+    consider(spin * step, fmt::format("{} \"{}\"", kind, name));
+  };
+  for (std::size_t i = 0; i < constraints.ballJoints.size(); ++i)
+    considerJoint(constraints.ballJoints[i], "ball joint", names_.ballJoints[i]);
+  for (std::size_t i = 0; i < constraints.hinges.size(); ++i)
+    considerJoint(constraints.hinges[i], "hinge", names_.hinges[i]);
+  for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i)
+    consider(spinOf(static_cast<int>(i), state) * step, fmt::format("body \"{}\"", names_.bodies[i]));
+  if (what.empty()) return what;
   return fmt::format(
-      "spring \"{}\" has step x omega = {:.3g} s x {:.4g} rad/s = {:.3g}, the limit of {} is {:.3g}; a timeStep of "
-      "{:.2g} "
-      "s is safe",
-      names_.springs[spring], timeStep, fastest, product, names_.method, names_.stabilityLimit,
-      kSafePart * names_.stabilityLimit / fastest);
+      "{} turns by {:.3g} rad in a step of {:.3g} s, too far for {}; rk4 with a timeStep of {:.2g} s can follow", what,
+      most, step, method_.name, kSafeTurn / most * step);
 }
 
 }  // namespace cradle

@@ -4,26 +4,21 @@
 #include <utility>
 #include <vector>
 
-#include "dynamics/equations_of_motion.h"
+#include "simulate/assembly.h"
 
 namespace cradle {
 
-/// What the guard has to know to say what went wrong in the user's words.
-struct GuardNames {
-  std::vector<std::string> bodies, springs;  // in the order of the mechanism
-  std::string method;                        // "semi-implicit Euler"
-  double stabilityLimit = 0;                 // of step x omega; 0: unstable at any step
-};
-
-/// Watches kinetic + potential + dissipated - work, which no method may change by more than its own error. A change
-/// that exceeds ten times all energy that there was to begin with, or that gravity can have given on the way travelled,
-/// is a blow-up.
+/// Watches kinetic + potential + dissipated - work, which no method may change by more than its own error. That error
+/// is, with steps chosen by the error, what the accepted local errors can add up to; with a fixed step, what the method
+/// does to a mass on the fastest spring, in parts of all energy that there was to begin with, that pushes gave, or that
+/// gravity can have given on the way travelled.
 class EnergyGuard {
  public:
-  EnergyGuard(const Mechanism& mechanism, const VectorX& start, GuardNames names);
+  /// Keeps a reference to `assembly`, whose state is the start. `duration` (s) is the run's.
+  EnergyGuard(const Assembly& assembly, const ChosenMethod& method, double duration);
 
-  /// Throws Error(unstable), naming time, body, spring and a step that would be safe, if the state is not finite or its
-  /// energy is unexplained.
+  /// To be called after each step. Throws Error(unstable), naming time, body, what is too fast, and a step that would
+  /// be safe, if the state is not finite or its energy is unexplained.
   void check(const VectorX& state, double time, double timeStep);
 
   /// Throws Error(unstable): steps have become too short to go on from `time`.
@@ -36,16 +31,21 @@ class EnergyGuard {
   [[noreturn]] void failAtTies(const VectorX& state, double time, double error) const;
 
  private:
+  double explainedEnergy(const VectorX& state, double timeStep);
   double firstStepEnergy(double timeStep) const;
   [[noreturn]] void fail(const VectorX& state, double time, const std::string& what, const std::string& cause) const;
-  std::string cause(double timeStep) const;
-  std::string stiffCause() const;
-  std::pair<std::size_t, double> fastestSpring() const;
+  std::string cause(const VectorX& state) const;
+  std::string stiffCause(const VectorX& state) const;
+  std::string fastestTurn(const VectorX& state) const;
 
   const Mechanism& mechanism_;
-  VectorX start_;
-  GuardNames names_;
+  const PartNames& names_;
+  VectorX start_, calm_;  // calm: the last state whose energy was nearly all explained
+  ChosenMethod method_;
+  double duration_;
   double startConstant_, startEnergy_;  // J
+  double mostError_ = 0;                // of the energy explained: beyond it, a fixed step has failed
+  double errorSum_ = 0;                 // J: what the local errors accepted so far can have changed
   std::vector<double> excursions_;      // m: farthest that each body has been from its start
 };
 

@@ -30,12 +30,6 @@ constexpr int kMostShortSteps = 1000;    // in a row; after an event some are sh
 constexpr double kMostTieError = 1e-9;   // m (a m of coordinates) or rad: projection leaves 1e-15
 constexpr double kUnitLength = 1e-9;     // how far |q|^2 may be from 1 before it is made 1
 
-GuardNames namesOf(const Scene& scene, const Assembly& assembly, const ChosenMethod& method) {
-  GuardNames names{{}, assembly.springNames, std::string(method.name), method.stabilityLimit};
-  for (const int body : assembly.sceneBodies) names.bodies.push_back(scene.bodies[static_cast<std::size_t>(body)].name);
-  return names;
-}
-
 /// Errors of orientations add up over the turns: those of bodies that turn by more than 100 rad are kept smaller.
 VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double duration) {
   VectorX tolerance = stateTolerance(bodyCount(state), method.tolerance, method.tolerance);
@@ -57,7 +51,7 @@ Simulation::Simulation(const Scene& scene, Assembly assembly, const ChosenMethod
       contacts_(assembly_, equations_, log_, method_.timeStep),
       ropes_(assembly_, equations_, contacts_, log_, method_.timeStep),
       pushes_(scene, assembly_.movingBodies, log_),
-      guard_(assembly_.mechanism, assembly_.state, namesOf(scene, assembly_, method_)),
+      guard_(assembly_, method_, scene.duration),
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       state_(assembly_.state) {
   contacts_.resolve(time_, state_, state_);

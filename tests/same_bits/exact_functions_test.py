@@ -3,7 +3,7 @@
 other processors. Reads what the static libraries of the physics folders leave undefined. (Assimp, a shared library,
 reads files with its own arithmetic; nothing of it runs after a mesh is loaded.)
 
-    same_bits_test.py FOLDER_OF_THE_LIBRARIES COMPILER
+    exact_functions_test.py FOLDER_OF_THE_LIBRARIES COMPILER
 """
 import os, re, subprocess, sys
 

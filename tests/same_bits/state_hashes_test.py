@@ -1,0 +1,48 @@
+#!/usr/bin/env python3
+"""The scenes' states have the bits of hashes.txt: with this build, whatever its compiler and level of optimisation, and
+on a processor that has no fused multiply-add, for which the C library is told to use its other variants.
+
+    state_hashes_test.py PROGRAM SOURCE_FOLDER SECONDS... [--update]
+
+A scene or a method that changes its bits on purpose: ./run hashes writes hashes.txt anew.
+"""
+import glob, os, subprocess, sys
+
+WITHOUT_FMA = {**os.environ, "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-AVX512F,-FMA,-FMA4"}
+SINES = "import math; print(hash(tuple(math.sin(0.001373 * i) for i in range(1, 20000))))"
+
+
+def output(command, environment):
+    return subprocess.run(command, check=True, capture_output=True, text=True, env=environment).stdout
+
+
+def require_other_variants():
+    """The setting must matter, or the comparison below would prove nothing."""
+    with open("/proc/cpuinfo") as file:
+        has_fma = " fma " in file.read()
+    differs = output([sys.executable, "-c", SINES], os.environ) != output([sys.executable, "-c", SINES], WITHOUT_FMA)
+    assert differs or not has_fma, "sin() of the C library has the same bits without FMA: is the name still right?"
+
+
+def main():
+    program, source, *seconds = [argument for argument in sys.argv[1:] if argument != "--update"]
+    golden = os.path.join(source, "tests", "same_bits", "hashes.txt")
+    scenes = sorted(glob.glob(os.path.join(source, "scenes", "*.json")))
+
+    def lines(environment):
+        return [line for time in seconds for line in output([program, time, *scenes], environment).splitlines()]
+
+    found = {"this build": lines(os.environ)}
+    if "--update" in sys.argv:
+        with open(golden, "w") as file:
+            file.write("\n".join(found["this build"]) + "\n")
+    require_other_variants()
+    found["without FMA"] = lines(WITHOUT_FMA)
+    with open(golden) as file:
+        expected = {line for line in file.read().splitlines() if line.split()[1] in seconds}
+    faults = [f"{name}: {line}" for name, hashes in found.items() for line in sorted(expected ^ set(hashes))]
+    print("\n".join(faults + ["not as in hashes.txt, or only there"] if faults else [f"{len(expected)} hashes are as they were"]))
+    sys.exit(bool(faults))
+
+
+main()
