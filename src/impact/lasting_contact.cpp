@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kMostSweeps = 1000;         // heavy on light converges slowly: the study shows how slowly
 constexpr double kConvergedPart = 1e-12;  // of the largest change of a sweep
-constexpr double kRoundingPart = 4e-15;   // of the speeds of the points that touch: changes below it are rounding
+constexpr double kRoundingPart = 4e-15;   // of the speeds of the points that touch: rounding never converges
 constexpr int kMostOverlapSweeps = 20;
 constexpr double kOverlapLeft = 1e-15;  // m
 
@@ -60,7 +60,7 @@ double solveLastingContacts(std::vector<LastingContact>& contacts, const Impulse
     for (std::size_t i = 0; i < contacts.size(); ++i)
       change = std::max(change, relax(contacts[i], inverseMasses[i], response, state));
     largest = std::max(largest, change);
-    if (change <= std::max(rounding, kConvergedPart * largest)) break;
+    if (largest <= rounding || change <= kConvergedPart * largest) break;
   }
   return change;
 }

@@ -158,8 +158,7 @@ std::string EnergyGuard::cause(const VectorX& state) const {
       return fmt::format("spring \"{}\" is {:.2g} m long, and has no direction at length 0: keep its ends apart",
                          names_.springs[i], length);
   }
-  if (method_.isAdaptive())
-    return kTiesCause;
+  if (method_.isAdaptive()) return kTiesCause;
   for (const VectorX* moment : {&calm_, &state}) {  // a start at rest shows nothing yet
     const std::string turn = fastestTurn(*moment);
     if (!turn.empty()) return turn;
