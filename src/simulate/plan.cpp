@@ -135,15 +135,15 @@ ChosenMethod namedMethod(const Scene& scene) {
   const double timeStep = scene.method->timeStep.value_or(kContactTimeStep);
   switch (scene.method->name) {
     case MethodName::explicitEuler:
-      return {explicitEuler, "explicit Euler", timeStep, 0};
+      return {explicitEuler, "explicit Euler", timeStep};
     case MethodName::semiImplicitEuler:
-      return {semiImplicitEuler, "semi-implicit Euler", timeStep, 2};
+      return {semiImplicitEuler, "semi-implicit Euler", timeStep};
     case MethodName::rk4:
-      return {rk4, "RK4", timeStep, 2 * std::sqrt(2.0)};
+      return {rk4, "RK4", timeStep};
     case MethodName::dop853:
       break;
   }
-  return {dop853, "DOP853", scene.method->timeStep.value_or(0), 5.96, kTolerancePart * scene.accuracy};
+  return {dop853, "DOP853", scene.method->timeStep.value_or(0), kTolerancePart * scene.accuracy};
 }
 
 bool isActedUpon(const Scene& scene, const IslandPlan& island) {
@@ -190,14 +190,14 @@ void choose(const Scene& scene, IslandPlan& island) {
       island.reason = "the scene names the method; something may touch, so that its step is fixed";
     }
   } else if (mayTouchSomething) {
-    island.method = {rk4, "RK4", kContactTimeStep, 2 * std::sqrt(2.0)};
+    island.method = {rk4, "RK4", kContactTimeStep};
     island.reason = "something may touch: contact is resolved once a step, the accuracy asked is not promised";
   } else if (!isActedUpon(scene, island)) {
     island.method.name = "closed form";
     island.reason = "nothing acts but uniform gravity: parabola and exact free rotation";
     island.leftOut.push_back("no steps: one evaluation a frame");
   } else {
-    island.method = {dop853, "DOP853", 0, 5.96, kTolerancePart * scene.accuracy};
+    island.method = {dop853, "DOP853", 0, kTolerancePart * scene.accuracy};
     island.reason = "smooth forces: steps as long as the accuracy allows";
   }
 }
