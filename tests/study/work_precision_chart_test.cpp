@@ -55,7 +55,7 @@ TEST(WorkPrecisionChart, TextsCannotBeCommands) {
 }
 
 TEST(WorkPrecisionChart, GnuplotDrawsBothFiles) {
-  if (!canDrawCharts()) GTEST_SKIP() << "gnuplot is not installed";
+  ASSERT_TRUE(canDrawCharts()) << "gnuplot is among the packages that ./run packages installs";
   const std::string stem = ::testing::TempDir() + "work_precision_chart_test";
   WorkPrecisionChart chart = sampleChart();
   for (const char* method : {"explicitEuler", "semiImplicitEuler", "dop853FixedStep", "dop853", "plan"})
