@@ -26,7 +26,8 @@ Bounds turnedBounds(const Bounds& bounds, const RigidTransform& worldFromBody) {
 double wayBetween(const RigidTransform& from, const RigidTransform& to, double radius) {
   const double turn = std::min((from.rotation.coeffs() - to.rotation.coeffs()).norm(),
                                (from.rotation.coeffs() + to.rotation.coeffs()).norm());
-  // A chord of the unit quaternions c turns points by an angle a with c = 2 sin(a/4): their way is <= 2 r sin(a/2) <= 2 r c.
+  // A chord of the unit quaternions c turns points by an angle a with c = 2 sin(a/4): their way is <= 2 r sin(a/2) <= 2
+  // r c.
   return (to.translation - from.translation).norm() + 2 * radius * turn;
 }
 

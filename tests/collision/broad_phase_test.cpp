@@ -52,14 +52,17 @@ Pairs pairsOf(const ContactGeometry& geometry) {
 /// Lower bounds of the distance by sampling the axes of both: balls of 0.1 m along them.
 double distanceOf(const Crowd& crowd, std::size_t a, std::size_t b) {
   double least = INFINITY;
+  const Collider &first = crowd.geometry.colliders[a], &second = crowd.geometry.colliders[b];
+  const Vec3 between = poseOf(crowd.state, first.body).translation - poseOf(crowd.state, second.body).translation;
+  if (between.norm() > 2 * (first.boundingRadius + second.boundingRadius)) return least;
   const auto pointAt = [&](std::size_t i, double part) -> Vec3 {
     const Collider& collider = crowd.geometry.colliders[i];
     const RigidTransform pose = poseOf(crowd.state, collider.body);
     return pose * Vec3(part * collider.points.front() + (1 - part) * collider.points.back());
   };
-  for (int i = 0; i <= 20; ++i)
-    for (int j = 0; j <= 20; ++j) least = std::min(least, (pointAt(a, i / 20.0) - pointAt(b, j / 20.0)).norm());
-  return least - crowd.geometry.colliders[a].radius - crowd.geometry.colliders[b].radius;
+  for (int i = 0; i <= 10; ++i)
+    for (int j = 0; j <= 10; ++j) least = std::min(least, (pointAt(a, i / 10.0) - pointAt(b, j / 10.0)).norm());
+  return least - first.radius - second.radius;
 }
 
 /// All pairs nearer than `distance`, by brute force.
