@@ -70,15 +70,9 @@ void ContactSolver::fillContact(std::size_t contact, int row, int& tangentRow, c
 /// A row in units in which its multiplier is a force or a torque; bodies at rest are fixed to it.
 void ContactSolver::putRow(int row, const ConstraintRow& from, double scale, const std::vector<BodyFrame>& frames) {
   const double factor = 1 / scale;
-  rows_[index(row)] = {movingBody(from.bodyA),
-                       movingBody(from.bodyB),
-                       factor * from.linearA,
-                       factor * from.angularA,
-                       factor * from.linearB,
-                       factor * from.angularB,
-                       factor * from.value,
-                       factor * from.curvature,
-                       1,
+  rows_[index(row)] = {movingBody(from.bodyA), movingBody(from.bodyB),  factor * from.linearA,
+                       factor * from.angularA, factor * from.linearB,   factor * from.angularB,
+                       factor * from.value,    factor * from.curvature, 1,
                        from.rounding};
   responses_[index(row)] = responseTo(rows_[index(row)], frames);
 }
@@ -199,8 +193,7 @@ void ContactSolver::takeForces(const Group& group, VectorX& rate) {
     for (int k = 0; k < 2; ++k, ++tangentRow)
       force.tangential += multipliers_[index(tangentRow)] * rows_[index(tangentRow)].linearA;
   }
-  for (const int tie : group.ties)
-    tieMultipliers_[tie] = multipliers_[index(row++)] / tieRows_[index(tie)].scale;
+  for (const int tie : group.ties) tieMultipliers_[tie] = multipliers_[index(row++)] / tieRows_[index(tie)].scale;
 }
 
 void ContactSolver::constrainVelocities(VectorX& state) {

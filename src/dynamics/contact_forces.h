@@ -22,10 +22,10 @@ struct ContactForce {
 };
 
 /// Forces of lasting contacts and, with them, of the rods and joints of the same bodies. Bodies joined by contacts and
-/// ties are solved as one dense system, other bodies not at all or by ConstraintSolver: the cost is cubic in the rows of
-/// each group that has a contact, linear in the groups. Redundant rows are allowed; where they contradict each other,
-/// the contradiction is left as small as it can be. Allocates only when bodies are joined in another way than in the call
-/// before.
+/// ties are solved as one dense system, other bodies not at all or by ConstraintSolver: the cost is cubic in the rows
+/// of each group that has a contact, linear in the groups. Redundant rows are allowed; where they contradict each
+/// other, the contradiction is left as small as it can be. Allocates only when bodies are joined in another way than in
+/// the call before.
 class ContactSolver {
  public:
   /// Keeps references to all.

@@ -70,8 +70,8 @@ Vec3 across(const Vec3& n) {
 }
 
 ConstraintRow tangentRow(const ContactConstraint& contact, const ContactPlace& place, const Vec3& direction) {
-  ConstraintRow row{contact.centerA.body, contact.surfaceB.body,       direction,
-                    place.armA.cross(direction), -direction, -place.armB.cross(direction)};
+  ConstraintRow row{contact.centerA.body, contact.surfaceB.body,       direction, place.armA.cross(direction),
+                    -direction,           -place.armB.cross(direction)};
   row.curvature = direction.dot(place.drift) - direction.dot(place.normalRate) * place.normal.dot(place.velocity);
   return row;
 }
@@ -87,8 +87,7 @@ ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& sta
   const double half = 0.5 * contact.separation;
   const double depthB = isFace(contact.radiusB) ? 0 : contact.radiusB;
   ContactConstraint constraint;
-  constraint.centerA =
-      attachmentAt(contact.bodyA, contact.point - (half + contact.radiusA) * contact.normal, state);
+  constraint.centerA = attachmentAt(contact.bodyA, contact.point - (half + contact.radiusA) * contact.normal, state);
   constraint.radiusA = contact.radiusA;
   constraint.surfaceB = attachmentAt(contact.bodyB, contact.point + (half + depthB) * contact.normal, state);
   constraint.radiusB = contact.radiusB;

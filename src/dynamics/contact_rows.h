@@ -15,8 +15,8 @@ enum class ContactMotion {
   sticking  // no tangential velocity where they touch: at rest on each other, or rolling
 };
 
-/// A ball of body A that stays on a surface of body B: on a flat face, or on a ball. A corner is a ball of radius 0. What
-/// touches may roll, slide or spin; it is released only by being taken away.
+/// A ball of body A that stays on a surface of body B: on a flat face, or on a ball. A corner is a ball of radius 0.
+/// What touches may roll, slide or spin; it is released only by being taken away.
 struct ContactConstraint {
   Attachment centerA;                                        // of A's ball
   double radiusA = 0;                                        // m, >= 0
@@ -52,10 +52,10 @@ void setSlidingDirection(ContactConstraint& contact, const Vec3& direction, cons
 /// How the surfaces of a contact are placed and move, in the world's frame. They touch at `point`, the place of A's
 /// ball nearest to B.
 struct ContactPlace {
-  Vec3 normal;      // unit, out of B: A is pushed along it
-  Vec3 normalRate;  // 1/s
-  Vec3 point;       // m
-  Vec3 armA, armB;  // m, from the centres of mass to `point`
+  Vec3 normal;          // unit, out of B: A is pushed along it
+  Vec3 normalRate;      // 1/s
+  Vec3 point;           // m
+  Vec3 armA, armB;      // m, from the centres of mass to `point`
   Vec3 leverA, leverB;  // m, arms x normal
   double gap;           // m, distance of the surfaces, < 0: overlap
   Vec3 velocity;        // m/s, of A's material at `point` relative to B's: its normal part is the gap's rate

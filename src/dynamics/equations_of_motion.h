@@ -15,7 +15,7 @@ struct Mechanism {
   std::vector<RigidBody> bodies;
   std::vector<SpringForce> springs;
   Constraints constraints;
-  std::vector<PushForce> pushes;            // those that act now
+  std::vector<PushForce> pushes;                 // those that act now
   std::vector<ContactConstraint> contacts = {};  // those that last and are loaded
 };
 

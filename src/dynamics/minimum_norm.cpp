@@ -33,8 +33,8 @@ void subtract(double factor, const double* from, double* column, int size) {
 void MinimumNormSolver::resize(int size) {
   capacity_ = size;
   const std::size_t rows = static_cast<std::size_t>(size);
-  for (std::vector<double>* matrix : {&symmetric_, &coupled_, &lower_, &upper_, &lowerFactor_.q, &lowerFactor_.r,
-                                      &upperFactor_.q, &upperFactor_.r})
+  for (std::vector<double>* matrix :
+       {&symmetric_, &coupled_, &lower_, &upper_, &lowerFactor_.q, &lowerFactor_.r, &upperFactor_.q, &upperFactor_.r})
     matrix->assign(rows * rows, 0);
   for (std::vector<double>* vector : {&remaining_, &reduced_, &residual_}) vector->assign(rows, 0);
   pivots_.assign(rows, 0);
@@ -127,8 +127,7 @@ void MinimumNormSolver::solve(double* x) {
   for (int row = 0; row < size_; ++row) residual_[static_cast<std::size_t>(row)] = x[row];
   solveOnce(x);
   const std::vector<double>& matrix = isCoupled_ ? coupled_ : symmetric_;
-  for (int column = 0; column < size_; ++column)
-    subtract(x[column], &matrix[at(0, column)], residual_.data(), size_);
+  for (int column = 0; column < size_; ++column) subtract(x[column], &matrix[at(0, column)], residual_.data(), size_);
   solveOnce(residual_.data());
   for (int row = 0; row < size_; ++row) x[row] += residual_[static_cast<std::size_t>(row)];
 }
