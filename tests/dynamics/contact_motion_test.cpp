@@ -103,8 +103,7 @@ struct ThrownSphere {
 TEST(Sphere, ThrownSlidesUntilItRolls) {
   for (const ThrownSphere& ball : {ThrownSphere{.spin = 0}, ThrownSphere{.spin = -30}}) {
     Mechanism mechanism = onEarth({solidSphere(1, ball.radius)});
-    mechanism.contacts = {
-        ballOnFace({0, Vec3::Zero()}, ball.radius, {}, Vec3::UnitY(), kSliding, ball.friction)};
+    mechanism.contacts = {ballOnFace({0, Vec3::Zero()}, ball.radius, {}, Vec3::UnitY(), kSliding, ball.friction)};
     VectorX state = restingState(1);
     centerOfMass(state, 0).y() = ball.radius;
     linearVelocity(state, 0).x() = ball.speed;
