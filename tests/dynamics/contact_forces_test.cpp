@@ -34,7 +34,8 @@ struct Row {
   Mechanism mechanism;
   VectorX state;
 
-  explicit Row(int bodies) : mechanism(onEarth(static_cast<std::size_t>(bodies))), state(restingState(mechanism.bodies.size())) {
+  explicit Row(int bodies)
+      : mechanism(onEarth(static_cast<std::size_t>(bodies))), state(restingState(mechanism.bodies.size())) {
     for (int body = 0; body < bodies; ++body) {
       centerOfMass(state, body) = Vec3(body, 0.2, 0);
       linearVelocity(state, body) = Vec3(0.3 + body, 0, 0.1);
@@ -105,7 +106,8 @@ TEST(ContactGroups, RestingBodiesActAsFixed) {
     onGround.contacts.push_back(ballOnFace({0, point}, 0, {kFixed, Vec3(0, 0.3, 0)}, Vec3::UnitY(), kSliding, 0.3));
   }
   for (const Vec3& point : points) stack.contacts.push_back(corner(1, point, kSticking));
-  stack.constraints.rods = onGround.constraints.rods = {{{0, Vec3(0, 0.1, 0)}, {1, Vec3(0, 0.1, 0.1)}, std::sqrt(0.26)}};
+  stack.constraints.rods = {{{1, Vec3(0, 0.1, 0.1)}, {0, Vec3(0, 0.1, 0)}, std::sqrt(0.26)}};
+  onGround.constraints.rods = {{{kFixed, Vec3(0, 0.1, 0.1)}, {0, Vec3(0, 0.1, 0)}, std::sqrt(0.26)}};
   VectorX state = restingState(2), rate, expected;
   centerOfMass(state, 0).y() = 0.5;
   linearVelocity(state, 0) = Vec3(0.4, 0, 0.7);
