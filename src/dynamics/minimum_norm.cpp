@@ -18,10 +18,15 @@ constexpr double kDependent = 1e-12;
 constexpr double kWellConditioned = 1e-3;  // a least pivot above leaves no error worth a refinement
 constexpr double kVanished = 1e-6;         // of a column: what rounding leaves of one that depends on others
 
+/// Two sums, so that additions need not wait for each other.
 double dot(const double* a, const double* b, int size) {
-  double sum = 0;
-  for (int i = 0; i < size; ++i) sum += a[i] * b[i];
-  return sum;
+  double even = 0, odd = 0;
+  for (int i = 0; i + 1 < size; i += 2) {
+    even += a[i] * b[i];
+    odd += a[i + 1] * b[i + 1];
+  }
+  if (size % 2 != 0) even += a[size - 1] * b[size - 1];
+  return even + odd;
 }
 
 void subtract(double factor, const double* from, double* column, int size) {
@@ -36,7 +41,7 @@ void MinimumNormSolver::resize(int size) {
   for (std::vector<double>* matrix :
        {&symmetric_, &coupled_, &lower_, &upper_, &lowerFactor_.q, &lowerFactor_.r, &upperFactor_.q, &upperFactor_.r})
     matrix->assign(rows * rows, 0);
-  for (std::vector<double>* vector : {&remaining_, &reduced_, &residual_}) vector->assign(rows, 0);
+  for (std::vector<double>* vector : {&remaining_, &inverseDiagonal_, &reduced_, &residual_}) vector->assign(rows, 0);
   pivots_.assign(rows, 0);
   isUsed_.assign(rows, 0);
 }
@@ -53,7 +58,9 @@ void MinimumNormSolver::factorize(int size, bool isCoupled) {
 
 void MinimumNormSolver::findLower() {
   for (int row = 0; row < size_; ++row) {
-    remaining_[static_cast<std::size_t>(row)] = symmetric_[at(row, row)];
+    const double diagonal = symmetric_[at(row, row)];
+    remaining_[static_cast<std::size_t>(row)] = diagonal;
+    inverseDiagonal_[static_cast<std::size_t>(row)] = diagonal > 0 ? 1 / diagonal : 0;
     isUsed_[static_cast<std::size_t>(row)] = 0;
   }
   isWellConditioned_ = true;
@@ -81,7 +88,7 @@ int MinimumNormSolver::nextPivot() const {
   int next = -1;
   double most = kDependent;
   for (int row = 0; row < size_; ++row) {
-    const double part = remaining_[static_cast<std::size_t>(row)] / symmetric_[at(row, row)];
+    const double part = remaining_[static_cast<std::size_t>(row)] * inverseDiagonal_[static_cast<std::size_t>(row)];
     if (isUsed_[static_cast<std::size_t>(row)] || !(part > most)) continue;
     most = part;
     next = row;
@@ -120,10 +127,9 @@ void MinimumNormSolver::orthogonalize(const std::vector<double>& columns, Orthog
   }
 }
 
-// One refinement takes out what the rounding of dependent or nearly dependent rows leaves.
+// One refinement takes out what the rounding of nearly dependent rows leaves.
 void MinimumNormSolver::solve(double* x) {
-  const bool refines = rank_ < size_ || !isWellConditioned_;
-  if (!refines) return solveOnce(x);
+  if (isWellConditioned_) return solveOnce(x);
   for (int row = 0; row < size_; ++row) residual_[static_cast<std::size_t>(row)] = x[row];
   solveOnce(x);
   const std::vector<double>& matrix = isCoupled_ ? coupled_ : symmetric_;

@@ -52,6 +52,7 @@ class MinimumNormSolver {
   std::vector<double> upper_;      // K^T of S + C = L K
   std::vector<int> pivots_;        // the row that each column of L begins with
   std::vector<double> remaining_;  // of the diagonal of S
+  std::vector<double> inverseDiagonal_;
   std::vector<char> isUsed_;
   Orthogonal lowerFactor_, upperFactor_;
   std::vector<double> reduced_, residual_;
