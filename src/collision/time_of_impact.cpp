@@ -50,9 +50,7 @@ class PairSearch {
     appendFeaturesWithin(geometry_, pair_, startA_, reach, scratch_.features_);
     for (const std::size_t feature : scratch_.features_) {
       feature_ = feature;
-      const PairFeature watched{pairIndex_, feature};
-      if (touching.held && std::find(touching.held->begin(), touching.held->end(), watched) != touching.held->end())
-        continue;
+      if (isHeld(touching)) continue;
       const double start = separation(geometry_, pair_, feature_, startA_, startB_);
       if (start > bounds_.speed) continue;
       if (start > touching.tolerance)
@@ -80,6 +78,13 @@ class PairSearch {
     pull_ += turnB.acceleration * pointReach(b);
     if (a_.isBall() && b.isBall())
       bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / (a_.radius + b.radius);
+  }
+
+  bool isHeld(const TouchingFeatures& touching) const {
+    return touching.held &&
+           std::any_of(touching.held->begin(), touching.held->end(), [this](const HeldFeature& held) {
+             return held.pair == pairIndex_ && held.feature == feature_;
+           });
   }
 
   /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not has the

@@ -15,10 +15,10 @@ struct ImpactTime {
   std::size_t pair = 0, feature = 0;
 };
 
-/// A feature of a pair, as separation.h numbers them.
-struct PairFeature {
+/// A feature of a pair, as separation.h numbers them, that something keeps together.
+struct HeldFeature {
   std::size_t pair = 0, feature = 0;
-  bool operator==(const PairFeature&) const = default;
+  Attachment point;  // where they are held together
 };
 
 /// What touches when a step begins.
@@ -26,7 +26,7 @@ struct TouchingFeatures {
   double tolerance = 0;  // m: what is nearer touches
   // m: what touches comes together anew when it has closed by more than this; infinite: it is passed over
   double deadBand = std::numeric_limits<double>::infinity();
-  const std::vector<PairFeature>* held = nullptr;  // passed over: something keeps them together
+  const std::vector<HeldFeature>* held = nullptr;  // passed over: something keeps them together
 };
 
 /// Searches steps for the first instant at which two features come together: apart by more than the tolerance, leaving

@@ -1,48 +1,72 @@
 #include "simulate/contact_response.h"
 
+#include <cmath>
+
 namespace cradle {
 namespace {
 
 using Index = Eigen::Index;
 
-Mat3 frameOf(const Vec3& normal) {
-  Mat3 frame;
-  frame.col(0) = normal.unitOrthogonal();
-  frame.col(1) = normal.cross(frame.col(0));
-  frame.col(2) = normal;
-  return frame;
+void applyTo(int body, const Vec3& impulse, const Vec3& angularImpulse, const std::vector<RigidBody>& bodies,
+             const std::vector<BodyFrame>& frames, VectorX& velocities) {
+  if (body == kFixed) return;
+  const std::size_t index = static_cast<std::size_t>(body);
+  linearVelocity(velocities, body) += bodies[index].inverseMass * impulse;
+  angularVelocity(velocities, body) += frames[index].inverseInertia * angularImpulse;
 }
 
 }  // namespace
 
-ContactResponse::ContactResponse(const std::vector<Contact>& contacts, const ImpulseResponse& response,
-                                 const VectorX& state)
-    : contacts_(contacts), places_(state), inverseMass_(3 * contacts.size(), 3 * contacts.size()) {
-  for (const Contact& contact : contacts) frames_.push_back(frameOf(contact.normal));
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    for (Index k = 0; k < 3; ++k) {
-      answers_.push_back(response.answerTo(contacts[i], frames_[i].col(k), state));
-      inverseMass_.col(std::ssize(answers_) - 1) = relative(answers_.back());
+bool canLast(const Contact& contact) {
+  return !std::isnan(contact.radiusA) && !std::isnan(contact.radiusB) &&
+         (std::isfinite(contact.radiusA) || std::isfinite(contact.radiusB));
+}
+
+ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames) {
+  SurfaceContact surfaces{contact.bodyA, contact.bodyB, contact.point, contact.normal, contact.separation,
+                          contact.radiusA, contact.radiusB};
+  if (!canLast(contact)) surfaces.radiusA = 0, surfaces.radiusB = INFINITY;
+  ContactRows result;
+  result.constraint = constraintOf(surfaces, state);
+  result.place = placeOf(result.constraint, state, frames);
+  const auto tangents = tangentRows(result.constraint, result.place);
+  result.rows = {tangents[0], tangents[1], normalRow(result.constraint, result.place)};
+  return result;
+}
+
+ContactResponse::ContactResponse(const std::vector<ContactRows>& contacts, const std::vector<RigidBody>& bodies,
+                                 const std::vector<BodyFrame>& frames, ConstraintSolver& ties)
+    : contacts_(contacts), inverseMass_(3 * contacts.size(), 3 * contacts.size()) {
+  for (const ContactRows& contact : contacts)
+    for (const ConstraintRow& row : contact.rows) {
+      VectorX answer = VectorX::Zero(stateSize(std::ssize(bodies)));
+      applyTo(row.bodyA, row.linearA, row.angularA, bodies, frames, answer);
+      applyTo(row.bodyB, row.linearB, row.angularB, bodies, frames, answer);
+      if (ties.hasConstraints()) ties.constrainVelocities(answer);
+      inverseMass_.col(std::ssize(answers_)) = velocities(answer);
+      answers_.push_back(std::move(answer));
     }
   inverseMass_ = (0.5 * (inverseMass_ + inverseMass_.transpose())).eval();
 }
 
-VectorX ContactResponse::relative(const VectorX& velocities) const {
+VectorX ContactResponse::velocities(const VectorX& state) const {
   VectorX result(3 * contacts_.size());
-  for (std::size_t i = 0; i < contacts_.size(); ++i)
-    result.segment<3>(3 * static_cast<Index>(i)) =
-        frames_[i].transpose() * relativeVelocity(contacts_[i], places_, velocities);
+  Index next = 0;
+  for (const ContactRows& contact : contacts_)
+    for (const ConstraintRow& row : contact.rows) result[next++] = rateOf(row, state);
+  return result;
+}
+
+VectorX ContactResponse::accelerations(const VectorX& rate) const {
+  VectorX result(3 * contacts_.size());
+  Index next = 0;
+  for (const ContactRows& contact : contacts_)
+    for (const ConstraintRow& row : contact.rows) result[next++] = rateOf(row, rate) + row.curvature;
   return result;
 }
 
 void ContactResponse::apply(const VectorX& impulses, VectorX& velocities) const {
-  const Index count = velocities.size() - poseComponents(velocities);
-  for (std::size_t i = 0; i < answers_.size(); ++i)
-    velocities.tail(count) += impulses[static_cast<Index>(i)] * answers_[i].tail(count);
-}
-
-Vec3 ContactResponse::vectorOf(std::size_t contact, const VectorX& impulses) const {
-  return frames_[contact] * impulses.segment<3>(3 * static_cast<Index>(contact));
+  for (std::size_t i = 0; i < answers_.size(); ++i) velocities += impulses[static_cast<Index>(i)] * answers_[i];
 }
 
 }  // namespace cradle

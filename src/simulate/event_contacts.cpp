@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/invariants.h"
 #include "impact/cone_problem.h"
 #include "impact/contact_impulse.h"
 #include "impact/generalized_reflections.h"
@@ -53,6 +54,7 @@ int movingBodyOf(const Contact& contact) {
 
 EventContacts::EventContacts(MovingIsland& island, double accuracy)
     : island_(island),
+      lasting_(island),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       stillPart_(std::min(kMostStillPart, accuracy)) {
   const double size = smallestSize(island.assembly.geometry);
@@ -60,11 +62,11 @@ EventContacts::EventContacts(MovingIsland& island, double accuracy)
   deadBand_ = kDeadBandPart * size;
 }
 
-TouchingFeatures EventContacts::touching() const {
-  return {touchTolerance_, deadBand_};
+TouchingFeatures EventContacts::touching() {
+  return {touchTolerance_, deadBand_, &lasting_.held()};
 }
 
-void EventContacts::resolve() {
+void EventContacts::resolve(const std::optional<ContactChange>& change) {
   if (!island_.mayTouch()) return;
   std::vector<char> rested;
   for (std::size_t body = 0; body < island_.assembly.mechanism.bodies.size(); ++body)
@@ -73,8 +75,20 @@ void EventContacts::resolve() {
   findTouching();
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
   collide();
+  lasting_.letGo(change);
   settle();
+  lasting_.decide(touching_, solver_);
+  keepTogether();
   recordRests(rested);
+}
+
+/// Lasting contacts have no gap and do not leave each other, to rounding; those that stick do not slide.
+void EventContacts::keepTogether() {
+  if (lasting_.empty()) return;
+  VectorX& state = island_.state;
+  const double before = kineticEnergy(island_.assembly.mechanism.bodies, state);
+  island_.equations.project(state);
+  dissipatedEnergy(state) += before - kineticEnergy(island_.assembly.mechanism.bodies, state);
 }
 
 void EventContacts::findTouching() {
@@ -215,18 +229,18 @@ void EventContacts::settle() {
 /// Whether forces at the contacts of a group can balance all that acts on it.
 bool EventContacts::isHeld(const Islands& groups, int group) {
   const Mechanism& mechanism = island_.assembly.mechanism;
-  std::vector<Contact> contacts;
+  placeBodies(mechanism.bodies, island_.state, frames_);
+  std::vector<ContactRows> contacts;
   std::vector<double> frictions;
   for (const Contact& contact : touching_) {
     if (groups.islandOf(movingBodyOf(contact)) != group) continue;
-    contacts.push_back(contact);
+    contacts.push_back(rowsOf(contact, island_.state, frames_));
     frictions.push_back(island_.assembly.geometry.pairs[contact.pair].law.staticFriction);
   }
   island_.equations.evaluate(island_.state, rate_);
-  const ImpulseResponse impulses(mechanism.bodies, solver_);
-  const ContactResponse response(contacts, impulses, island_.state);
   if (!contacts.empty()) {
-    const ConeSolution solution = solveConeProblem(response.inverseMass(), response.relative(rate_), frictions);
+    const ContactResponse response(contacts, mechanism.bodies, frames_, solver_);
+    const ConeSolution solution = solveConeProblem(response.inverseMass(), response.accelerations(rate_), frictions);
     response.apply(solution.impulses, rate_);
   }
   const double most = std::min(kMostResidual, stillPart_) * mechanism.gravity.norm();

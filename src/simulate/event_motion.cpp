@@ -14,6 +14,7 @@ namespace cradle {
 namespace {
 
 constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension that is left
+constexpr double kContactTolerance = 1e-12;  // of the force, or m/s
 constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
 constexpr double kImpactPart = 1e-3;      // of the margin of contacts: a gap left that the step has to be taken anew for
 constexpr double kShortCorrection = 1e-5;  // of the step: so far the state at an impact is corrected along its rate
@@ -69,9 +70,9 @@ void EventMotion::advance(double frame) {
 
   // How far do bodies move freely?
   takeStep(stepEnd);
-  const bool atEvent = stopAtFirstEvent();
+  const Event event = stopAtFirstEvent();
   time = step.time + step.timeStep;
-  if (!atEvent && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
+  if (!event.any() && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
 
   // What the step's interpolant needs belongs to the forces of now.
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
@@ -79,10 +80,10 @@ void EventMotion::advance(double frame) {
   // Take out what the step left wrong. Then what changes here?
   island_.state = step.state;
   tidyState();
-  changeForces(atEvent);
+  changeForces(event);
   guard_.check(island_.state, time, step.timeStep);
   island_.requireUnsolvedPairsApart();
-  if (atEvent) countEvent();
+  if (event.any()) countEvent();
 }
 
 /// Steps until one is as accurate as asked.
@@ -111,23 +112,45 @@ double EventMotion::longestStep() const {
   return kMostGrowth * *std::max_element(lengths_.begin(), lengths_.end());
 }
 
-/// Cuts the step at the first event in it. The state there is a step of its own, never the interpolant, whose error
-/// would let bodies overlap.
-bool EventMotion::stopAtFirstEvent() {
-  if (!island_.mayTouch() && !ropes_.hasRopes()) return false;
+EventMotion::Event EventMotion::findFirstEvent() {
   Step& step = island_.step;
   prepareInterpolant(island_.rightHandSide, step);
-  island_.findNearPairs(contacts_.margin());
-  const auto impact = island_.search.first(step, contacts_.touching());
-  const auto change = ropes_.firstChange(step);
-  if (impact && !(change && change->fraction < impact->fraction)) {
-    stopAtImpact(*impact);
-  } else if (change) {
-    endStepAtEvent(island_, method_.integrate, change->fraction * step.timeStep, kRopeTolerance,
-                   [&](const VectorX& state) { return ropes_.margin(*change, state); });
+  Event event;
+  if (island_.mayTouch()) {
+    island_.findNearPairs(contacts_.margin());
+    event.impact = island_.search.first(step, contacts_.touching());
+  }
+  event.rope = ropes_.firstChange(step);
+  event.contact = contacts_.lasting().firstChange();
+  const double impact = event.impact ? event.impact->fraction : 2, rope = event.rope ? event.rope->fraction : 2,
+               contact = event.contact ? event.contact->fraction : 2, first = std::min({impact, rope, contact});
+  if (rope > first) event.rope.reset();
+  if (contact > first || event.rope) event.contact.reset();
+  if (impact > first || event.rope || event.contact) event.impact.reset();
+  return event;
+}
+
+/// Cuts the step at the first event in it. The state there is a step of its own, never the interpolant, whose error
+/// would let bodies overlap.
+EventMotion::Event EventMotion::stopAtFirstEvent() {
+  if (!island_.mayTouch() && !ropes_.hasRopes()) return {};
+  Step& step = island_.step;
+  const Event event = findFirstEvent();
+  const double whole = step.timeStep;
+  if (event.impact) {
+    stopAtImpact(*event.impact);
+  } else if (event.rope) {
+    endStepAtEvent(island_, method_.integrate, event.rope->fraction * whole, kRopeTolerance,
+                   [&](const VectorX& state) { return ropes_.margin(*event.rope, state); });
+  } else if (event.contact && event.contact->kind == ContactChange::Kind::redundant) {
+    keepStartRate(step);
+    method_.integrate(island_.rightHandSide, island_.state, island_.time, event.contact->fraction * whole, step);
+  } else if (event.contact) {
+    endStepAtEvent(island_, method_.integrate, event.contact->fraction * whole, kContactTolerance,
+                   [&](const VectorX& state) { return contacts_.lasting().margin(*event.contact, state); });
   }
   if (island_.mayTouch()) lengths_[lengthIndex_++ % lengths_.size()] = step.timeStep;
-  return impact || change;
+  return event;
 }
 
 /// Ends the step where a gap is closed. What the interpolant's error leaves of it is taken out along the rate there.
@@ -156,6 +179,10 @@ void EventMotion::stopAtImpact(const ImpactTime& impact) {
 void EventMotion::tidyState() {
   VectorX& state = island_.state;
   bool isTouched = false;
+  if (!contacts_.lasting().empty()) {
+    island_.equations.project(state);
+    isTouched = true;
+  }
   if (solver_.hasConstraints()) {
     solver_.project(state);
     requireTiesKept();
@@ -176,14 +203,17 @@ void EventMotion::requireTiesKept() const {
 }
 
 /// What acts from now on.
-void EventMotion::changeForces(bool atEvent) {
-  if (atEvent) contacts_.resolve();
+void EventMotion::changeForces(const Event& event) {
+  if (event.impact || event.contact)
+    contacts_.resolve(event.contact);
+  else
+    contacts_.lasting().followSliding();
   const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
   ropes_.resolve(island_.time, island_.state);
   keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
   const bool isPushed = island_.beginAndEndPushes();
-  if (isPushed || (atEvent && ropes_.hasRopes())) contacts_.resolve();
-  if (atEvent || isPushed) isContinuous_ = false;
+  if (isPushed || (event.any() && ropes_.hasRopes())) contacts_.resolve();
+  if (event.any() || isPushed) isContinuous_ = false;
 }
 
 bool EventMotion::isAtRest() const {

@@ -33,11 +33,19 @@ class EventMotion {
 
  private:
   void takeStep(double stepEnd);
-  bool stopAtFirstEvent();
+  /// What ends a step: at most one of them.
+  struct Event {
+    std::optional<ImpactTime> impact;
+    std::optional<RopeChange> rope;
+    std::optional<ContactChange> contact;
+    bool any() const { return impact || rope || contact; }
+  };
+  Event findFirstEvent();
+  Event stopAtFirstEvent();
   void stopAtImpact(const ImpactTime& impact);
   void tidyState();
   void requireTiesKept() const;
-  void changeForces(bool atEvent);
+  void changeForces(const Event& event);
   double longestStep() const;
   void countEvent();
 
