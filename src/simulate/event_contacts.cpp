@@ -20,6 +20,7 @@ constexpr double kStandstillPart = 1e-12;  // of the fastest speed at an impact:
 constexpr double kLastBouncePart = 1e-7;   // of sqrt(acceleration x size): bounces lower than 5e-15 of the size
 constexpr double kMostStillPart = 1e-7;    // of sqrt(g x size)
 constexpr double kMostResidual = 1e-6;     // of gravity: what forces may leave of bodies at rest
+constexpr double kSameCorner = 1e-6;       // of a size
 constexpr double kSpeedRounding = 1e-12;   // m/s
 
 double smallestSize(const ContactGeometry& geometry) {
@@ -44,6 +45,27 @@ double contactSpeed(const Contact& contact, const VectorX& state) {
 double openingAcceleration(const Contact& contact, const VectorX& state, const VectorX& rate) {
   return contact.normal.dot(pointAcceleration(contact.bodyB, contact.point, state, rate) -
                             pointAcceleration(contact.bodyA, contact.point, state, rate));
+}
+
+/// Whether a collider with corners has one at `point` (m, world).
+bool hasCornerAt(const Collider& collider, const Vec3& point, const VectorX& state) {
+  if (collider.radius > 0) return false;
+  const Vec3 local = poseOf(state, collider.body).inverse() * point;
+  const double near = kSameCorner * collider.boundingRadius;
+  return std::any_of(collider.points.begin(), collider.points.end(),
+                     [&](const Vec3& corner) { return (corner - local).squaredNorm() < near * near; });
+}
+
+/// Where two flat faces touch, a contact may be a corner of either of them; where their edges cross it is none.
+void findCorner(const ContactGeometry& geometry, const VectorX& state, Contact& contact) {
+  const ColliderPair& pair = geometry.pairs[contact.pair];
+  const double least = std::min(contact.radiusA, contact.radiusB), most = std::max(contact.radiusA, contact.radiusB);
+  if (pair.againstPlane || least != 0 || !std::isinf(most)) return;
+  contact.radiusA = contact.radiusB = INFINITY;
+  if (hasCornerAt(geometry.colliders[pair.a], contact.point, state))
+    contact.radiusA = 0;
+  else if (hasCornerAt(geometry.colliders[pair.b], contact.point, state))
+    contact.radiusB = 0;
 }
 
 int movingBodyOf(const Contact& contact) {
@@ -93,6 +115,7 @@ void EventContacts::keepTogether() {
 
 void EventContacts::findTouching() {
   findContacts(island_.assembly.geometry, island_.state, touchTolerance_, touching_);
+  for (Contact& contact : touching_) findCorner(island_.assembly.geometry, island_.state, contact);
 }
 
 /// Contacts that close are impacts, and then all that touch each other there take part.

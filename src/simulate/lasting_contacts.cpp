@@ -58,6 +58,7 @@ void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSol
   for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
   for (const Entry& entry : entries)
     if (entry.isLoaded) add(entry);
+  if(getenv("DBG")) { fprintf(stderr,"decide t %.15g touching %zu entries %zu loaded %zu\n",island_.time,touching.size(),entries.size(),entries_.size()); for(auto& e:entries) fprintf(stderr,"   v_n %.3g slides %d loaded %d sticks %d red %d p %.12f %.12f %.12f sep %.3g former %d\n",openingSpeed(e.contact,island_.state),e.slides,e.isLoaded,e.sticks,e.isRedundant,e.contact.point.x(),e.contact.point.y(),e.contact.point.z(),e.contact.separation,formerOf(e)!=nullptr);}
   recordChanges();
 }
 
@@ -202,8 +203,12 @@ void LastingContacts::add(const Entry& entry) {
   entries_.push_back(entry);
 }
 
-int LastingContacts::sceneBodyOf(int body) const {
-  return body == kFixed ? kWorld : island_.assembly.sceneBodies[static_cast<std::size_t>(body)];
+/// Whether what slid slides the other way now.
+bool LastingContacts::turnsBack(const Former& former, const Entry& now) const {
+  const int body = former.constraint.surfaceB.body;
+  const Vec3& given = former.constraint.slidingDirection;
+  const Vec3 before = body == kFixed ? given : Vec3(orientation(island_.state, body).normalized() * given);
+  return before.dot(now.direction) < 0;
 }
 
 /// What is new of the contacts that lasted before.
@@ -229,7 +234,7 @@ void LastingContacts::recordChanges() {
       if (contact.bodyA != kFixed) spin -= angularVelocity(island_.state, contact.bodyA);
       if (contact.bodyB != kFixed) spin += angularVelocity(island_.state, contact.bodyB);
       record(spin.norm() > kRollingSpin ? EventKind::roll : EventKind::stick);
-    } else if (stuck && now->slides) {
+    } else if (now->slides && (stuck || (slid && turnsBack(former, *now)))) {
       record(EventKind::slip);
     }
   }

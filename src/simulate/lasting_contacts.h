@@ -83,7 +83,7 @@ class LastingContacts {
   void add(const Entry& entry);
   void recordChanges();
   const Former* formerOf(const Entry& entry) const;
-  int sceneBodyOf(int body) const;
+  bool turnsBack(const Former& former, const Entry& now) const;
   bool isAwake(const Contact& contact) const;
 
   Vec3 givenDirection(std::size_t contact, const VectorX& state) const;
