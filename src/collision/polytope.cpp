@@ -7,10 +7,18 @@
 namespace cradle {
 namespace {
 
+constexpr double kFlat = std::numeric_limits<double>::infinity();
+constexpr double kEdge = std::numeric_limits<double>::quiet_NaN();
+
+struct FacePoint {
+  Vec3 point;     // m
+  double radius;  // m, as in SurfacePoint
+};
+
 /// Nearest point of a convex polygon in the plane of its face.
-Vec3 nearestOnFace(const Polytope& polytope, const Polytope::Face& face, const Vec3& point) {
+FacePoint nearestOnFace(const Polytope& polytope, const Polytope::Face& face, const Vec3& point) {
   const Vec3 inPlane = point - (face.normal.dot(point) - face.offset) * face.normal;
-  Vec3 nearest = inPlane;
+  FacePoint nearest{inPlane, kFlat};
   double least = std::numeric_limits<double>::infinity();
   bool inside = true;
   for (std::size_t i = 0; i < face.loop.size(); ++i) {
@@ -22,10 +30,10 @@ Vec3 nearestOnFace(const Polytope& polytope, const Polytope::Face& face, const V
     const Vec3 candidate = from + part * along;
     if ((candidate - point).squaredNorm() < least) {
       least = (candidate - point).squaredNorm();
-      nearest = candidate;
+      nearest = {candidate, part > 0 && part < 1 ? kEdge : 0};
     }
   }
-  return inside ? inPlane : nearest;
+  return inside ? FacePoint{inPlane, kFlat} : nearest;
 }
 
 }  // namespace
@@ -59,17 +67,17 @@ SurfacePoint nearestSurfacePoint(const Polytope& polytope, const Vec3& point) {
   result.distance = -std::numeric_limits<double>::infinity();
   for (const Polytope::Face& face : polytope.faces) {
     const double height = face.normal.dot(point) - face.offset;
-    if (height > result.distance) result = {height, point - height * face.normal, face.normal};
+    if (height > result.distance) result = {height, point - height * face.normal, face.normal, kFlat};
   }
   if (result.distance <= 0) return result;
   double least = std::numeric_limits<double>::infinity();
   for (const Polytope::Face& face : polytope.faces) {
     if (face.normal.dot(point) - face.offset <= 0) continue;
-    const Vec3 nearest = nearestOnFace(polytope, face, point);
+    const auto [nearest, radius] = nearestOnFace(polytope, face, point);
     const double distance = (point - nearest).norm();
     if (distance >= least) continue;
     least = distance;
-    result = {distance, nearest, (point - nearest) / distance};
+    result = {distance, nearest, (point - nearest) / distance, radius};
   }
   return result;
 }

@@ -33,6 +33,7 @@ struct SurfacePoint {
   double distance = 0;          // m, < 0 inside
   Vec3 nearest = Vec3::Zero();  // m
   Vec3 normal = Vec3::UnitY();  // unit, outwards there; from `nearest` to the point if that is outside
+  double radius = 0;            // m: infinite on a face, NaN on an edge, 0 at a corner
 };
 
 /// Of a point in the polytope's frame. Exact, inside and outside. O(vertices).

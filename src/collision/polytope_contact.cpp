@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kParallelSine = 1e-6;    // edges at a smaller angle give no axis: face normals cover them
 constexpr double kFacePreference = 1e-7;  // of the size: a face is taken unless an edge pair is clearly farther apart
+constexpr double kFlat = std::numeric_limits<double>::infinity();   // m: radius of a plane
+constexpr double kEdge = std::numeric_limits<double>::quiet_NaN();  // an edge has none
 
 /// An axis that may separate A (behind) from B (ahead).
 struct Axis {
@@ -86,7 +88,8 @@ std::vector<Vec3> clip(const std::vector<Vec3>& polygon, const Vec3& outward, do
   return kept;
 }
 
-/// Contacts of `incident` on a face of `reference`, in the reference's frame. Normals point out of the reference.
+/// Contacts of `incident` on a face of `reference`, in the reference's frame. Normals point out of the reference, which
+/// is A. Points of the incident face count as corners, also where it was clipped: they lie on it.
 std::vector<ContactPoint> clipAgainstFace(const Polytope& reference, std::size_t faceIndex, const Posed& incident,
                                           double margin) {
   const Polytope::Face& face = reference.faces[faceIndex];
@@ -105,7 +108,8 @@ std::vector<ContactPoint> clipAgainstFace(const Polytope& reference, std::size_t
   std::vector<ContactPoint> points;
   for (const Vec3& corner : polygon) {
     const double separation = face.normal.dot(corner) - face.offset;
-    if (separation <= margin) points.push_back({corner - separation / 2 * face.normal, face.normal, separation});
+    if (separation <= margin)
+      points.push_back({corner - separation / 2 * face.normal, face.normal, separation, kFlat, 0});
   }
   return points;
 }
@@ -132,7 +136,8 @@ ContactPoint nearestOfEdges(const Polytope& a, const Posed& b, const Axis& axis)
   const Vec3 &pointA = a.vertices[edgeA.from], &pointB = b.vertices[edgeB.from], between = pointB - pointA;
   const double cosine = directionA.dot(directionB);
   const double alongA = (between.dot(directionA) - cosine * between.dot(directionB)) / (1 - cosine * cosine);
-  return {pointA + alongA * directionA + axis.separation / 2 * axis.normal, axis.normal, axis.separation};
+  const Vec3 middle = pointA + alongA * directionA + axis.separation / 2 * axis.normal;
+  return {middle, axis.normal, axis.separation, kEdge, kEdge};
 }
 
 }  // namespace
@@ -152,8 +157,11 @@ void appendContacts(const Polytope& a, const Polytope& b, const RigidTransform& 
   const bool byEdges = edges.separation > face.separation + kFacePreference * std::min(sizeOf(a), sizeOf(b));
   if ((byEdges ? edges : face).separation > margin) return;
 
-  const auto append = [&](const ContactPoint& found, const RigidTransform& worldFromFrame, double sign) {
-    points.push_back({worldFromFrame * found.point, sign * (worldFromFrame.rotation * found.normal), found.separation});
+  const auto append = [&](ContactPoint found, const RigidTransform& worldFromFrame, double sign) {
+    if (sign < 0) std::swap(found.radiusA, found.radiusB);
+    found.point = worldFromFrame * found.point;
+    found.normal = sign * (worldFromFrame.rotation * found.normal);
+    points.push_back(found);
   };
   if (byEdges) {
     append(nearestOfEdges(a, posed, edges), worldFromA, 1);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "collision/polytope.h"
@@ -11,6 +12,8 @@ struct ContactPoint {
   Vec3 point = Vec3::Zero();   // m: middle between the two surfaces
   Vec3 normal = Vec3::Zero();  // unit, from A to B
   double separation = 0;       // m, < 0: overlap
+  // m: radius of the ball that each surface is there: 0 a corner, infinite a flat face; NaN: neither (edge, side, rim).
+  double radiusA = std::numeric_limits<double>::quiet_NaN(), radiusB = radiusA;
 };
 
 /// Signed separation (m) of two polytopes by the separating-axis theorem: over all face normals and products of edges

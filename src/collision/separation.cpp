@@ -8,6 +8,7 @@ namespace cradle {
 namespace {
 
 constexpr double kTurnRounding = 1e-14;  // of the distances that enter: a height taken in another frame is as good
+constexpr double kFlat = std::numeric_limits<double>::infinity();  // m: radius of a plane
 
 /// The two colliders of a pair that is not against a plane, in their poses.
 struct PosedPair {
@@ -16,12 +17,12 @@ struct PosedPair {
 };
 
 ContactPoint mirrored(const ContactPoint& contact) {
-  return {contact.point, -contact.normal, contact.separation};
+  return {contact.point, -contact.normal, contact.separation, contact.radiusB, contact.radiusA};
 }
 
 ContactPoint ballOnPlane(const Vec3& center, double radius, const PlaneCollider& plane) {
   const double separation = plane.normal.dot(center - plane.point) - radius;
-  return {center - (radius + separation / 2) * plane.normal, -plane.normal, separation};
+  return {center - (radius + separation / 2) * plane.normal, -plane.normal, separation, radius, kFlat};
 }
 
 ContactPoint ballOnBall(const PosedPair& pair) {
@@ -29,7 +30,7 @@ ContactPoint ballOnBall(const PosedPair& pair) {
   const Vec3 towardsB = pair.worldFromB * pair.b.points[0] - centerA;
   const double distance = towardsB.norm(), separation = distance - pair.a.radius - pair.b.radius;
   const Vec3 normal = distance > 0 ? Vec3(towardsB / distance) : Vec3(Vec3::UnitY());
-  return {centerA + (pair.a.radius + separation / 2) * normal, normal, separation};
+  return {centerA + (pair.a.radius + separation / 2) * normal, normal, separation, pair.a.radius, pair.b.radius};
 }
 
 /// A is the ball, B the polytope.
@@ -38,7 +39,7 @@ ContactPoint ballOnPolytope(const PosedPair& pair) {
   const SurfacePoint surface = nearestSurfacePoint(*pair.b.polytope, pair.worldFromB.inverse() * center);
   const double separation = surface.distance - pair.a.radius;
   const Vec3 outward = pair.worldFromB.rotation * surface.normal;
-  return {center - (pair.a.radius + separation / 2) * outward, -outward, separation};
+  return {center - (pair.a.radius + separation / 2) * outward, -outward, separation, pair.a.radius, surface.radius};
 }
 
 /// The one contact of a pair in which a ball takes part.
@@ -135,7 +136,8 @@ void appendContacts(const ContactGeometry& geometry, std::size_t index, const Ve
   if (separationBound(geometry, pair, worldFromA, worldFromB) > margin) return;
   for (const ContactPoint& found : contactPoints(geometry, pair, worldFromA, worldFromB, margin))
     if (found.separation <= margin)
-      contacts.push_back({index, bodyA, bodyB, found.point, found.normal, found.separation});
+      contacts.push_back(
+          {index, bodyA, bodyB, found.point, found.normal, found.separation, found.radiusA, found.radiusB});
 }
 
 void findContacts(const ContactGeometry& geometry, const VectorX& state, double margin,
