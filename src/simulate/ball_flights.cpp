@@ -1,0 +1,158 @@
+#include "simulate/ball_flights.h"
+
+#include <algorithm>
+
+namespace cradle {
+namespace {
+
+constexpr double kSlowPart = 1e-14;  // of the speeds: what touches and closes more slowly does so by rounding
+
+std::vector<Vec3> centersOf(const BallWorld& world) {
+  std::vector<Vec3> centers;
+  for (const UniformMotion& start : world.starts) centers.push_back(start.position);
+  return centers;
+}
+
+/// All places within `distance` of a box's core.
+Bounds boundsAround(const RoundedBox& box, double distance) {
+  const RigidTransform worldFromBox = box.boxFromWorld.inverse();
+  const Vec3 half = worldFromBox.rotation.toRotationMatrix().cwiseAbs() * box.halfSize + Vec3::Constant(distance);
+  return {Vec3(worldFromBox.translation - half), Vec3(worldFromBox.translation + half)};
+}
+
+/// The earlier one; of two at once what has the smaller index, so that nothing depends on the order of the search.
+void keepEarlier(double time, int other, long othersHits, Meeting& best) {
+  if (time < best.time || (time == best.time && other < best.other)) best = {time, other, othersHits};
+}
+
+}  // namespace
+
+BallFlights::BallFlights(const BallWorld& world, double duration)
+    : world_(world),
+      duration_(duration),
+      cells_(centersOf(world), *std::max_element(world.radii.begin(), world.radii.end())) {
+  for (const UniformMotion& start : world.starts) flights_.push_back({start, 0, 0, {-1, -1, -1}});
+  const double largest = *std::max_element(world.radii.begin(), world.radii.end());
+  for (std::size_t i = 0; i < world.boxes.size(); ++i)
+    cells_.addFixed(static_cast<int>(i), boundsAround(world.boxes[i], largest + world.boxes[i].radius));
+}
+
+UniformMotion BallFlights::motionAt(int ball, double time) const {
+  const Flight& flight = flights_[static_cast<std::size_t>(ball)];
+  return flight.motion.after(time - flight.since);
+}
+
+void BallFlights::strike(int ball, double time, const UniformMotion& motion, const std::array<int, 3>& supports) {
+  Flight& flight = flights_[static_cast<std::size_t>(ball)];
+  flight = {motion, time, flight.hits + 1, supports};
+}
+
+Meeting BallFlights::nextMeeting(int ball, double now) const {
+  Meeting best;
+  const UniformMotion motion = motionAt(ball, now);
+  meetPlanes(motion, ball, now, best);
+  meetObstacles(motion, ball, now, best);
+  cells_.visitNear(ball, [&](int other) { meetBall(motion, ball, other, now, best); });
+  return best;
+}
+
+Meeting BallFlights::cross(int ball, const Crossing& crossing) {
+  cells_.move(ball, crossing.axis, crossing.step);
+  Meeting best;
+  const UniformMotion motion = motionAt(ball, crossing.time);
+  meetObstacles(motion, ball, crossing.time, best);
+  cells_.visitAhead(ball, crossing.axis, crossing.step,
+                    [&](int other) { meetBall(motion, ball, other, crossing.time, best); });
+  return best;
+}
+
+void BallFlights::meetBall(const UniformMotion& motion, int ball, int other, double now, Meeting& best) const {
+  if (other == ball) return;
+  const Flight& flight = flights_[static_cast<std::size_t>(other)];
+  const UniformMotion theirs = flight.motion.after(now - flight.since);
+  const UniformMotion relative = theirs.relativeTo(motion);
+  if (relative.acceleration.isZero(0) && relative.position.dot(relative.velocity) >= 0) return;
+  const double slowest = kSlowPart * (motion.velocity.norm() + theirs.velocity.norm());
+  const double time = timeToDistance(relative, radiusOf(ball) + radiusOf(other), {slowest, duration_ - now});
+  keepEarlier(now + time, other, flight.hits, best);
+}
+
+void BallFlights::meetPlanes(const UniformMotion& motion, int ball, double now, Meeting& best) const {
+  const auto& supports = flights_[static_cast<std::size_t>(ball)].supports;
+  const ContactSearch search{kSlowPart * motion.velocity.norm(), duration_ - now};
+  for (int plane = 0; plane < world_.planeCount(); ++plane) {
+    if (std::find(supports.begin(), supports.end(), plane) != supports.end()) continue;
+    const auto index = static_cast<std::size_t>(plane);
+    keepEarlier(now + timeToContact(motion, radiusOf(ball), world_.planes[index], search), ~plane, 0, best);
+  }
+}
+
+void BallFlights::meetObstacles(const UniformMotion& motion, int ball, double now, Meeting& best) const {
+  const ContactSearch search{kSlowPart * motion.velocity.norm(), duration_ - now};
+  for (const int box : cells_.fixedNear(ball)) {
+    const double time = timeToContact(motion, radiusOf(ball), world_.boxes[static_cast<std::size_t>(box)], search);
+    keepEarlier(now + time, ~(world_.planeCount() + box), 0, best);
+  }
+}
+
+Crossing BallFlights::nextCrossing(int ball, double now) const {
+  Crossing first;
+  if (!cells_.isBounded()) return first;
+  const UniformMotion motion = motionAt(ball, now);
+  const Cell& cell = cells_.cellOf(ball);
+  for (int axis = 0; axis < 3; ++axis) {
+    const long place = cell[static_cast<std::size_t>(axis)];
+    for (const int step : {-1, 1}) {
+      const double gap = step * (cells_.sideOf(place + (step + 1) / 2, axis) - motion.position[axis]);
+      const double time =
+          now + timeToClose(gap, -step * motion.velocity[axis], -step * motion.acceleration[axis]);
+      if (time < first.time) first = {time, axis, step};
+    }
+  }
+  return first;
+}
+
+bool BallFlights::holds(const Meeting& meeting) const {
+  return meeting.other < 0 || meeting.othersHits == hits(meeting.other);
+}
+
+double BallFlights::touchingGap(int ball, int other) const {
+  return world_.touchPart * (other < 0 ? radiusOf(ball) : std::min(radiusOf(ball), radiusOf(other)));
+}
+
+BallContact BallFlights::contactOf(int ball, int other, double now) const {
+  const Vec3 center = motionAt(ball, now).position;
+  BallContact contact{ball, other, 0, Vec3::UnitY(), Vec3::Zero()};
+  if (other >= 0) {
+    const Vec3 towards = motionAt(other, now).position - center;
+    const double distance = towards.norm();
+    if (distance > 0) contact.normal = towards / distance;
+    contact.gap = distance - radiusOf(ball) - radiusOf(other);
+  } else {
+    const int obstacle = ~other;
+    const Nearness nearness = obstacle < world_.planeCount()
+                                  ? nearnessOf(center, world_.planes[static_cast<std::size_t>(obstacle)])
+                                  : nearnessOf(center, world_.boxes[static_cast<std::size_t>(obstacle - world_.planeCount())]);
+    contact.normal = -nearness.outward;
+    contact.gap = nearness.distance - radiusOf(ball);
+  }
+  contact.point = center + (radiusOf(ball) + contact.gap / 2) * contact.normal;
+  return contact;
+}
+
+void BallFlights::appendTouching(int ball, double now, std::vector<BallContact>& contacts) const {
+  const auto appendIfTouching = [&](int other) {
+    const BallContact contact = contactOf(ball, other, now);
+    if (contact.gap <= touchingGap(ball, other)) contacts.push_back(contact);
+  };
+  const Vec3 center = motionAt(ball, now).position;
+  cells_.visitNear(ball, [&](int other) {
+    if (other == ball) return;
+    const double reach = radiusOf(ball) + radiusOf(other) + touchingGap(ball, other);
+    if ((motionAt(other, now).position - center).squaredNorm() <= reach * reach) appendIfTouching(other);
+  });
+  for (int plane = 0; plane < world_.planeCount(); ++plane) appendIfTouching(~plane);
+  for (const int box : cells_.fixedNear(ball)) appendIfTouching(~(world_.planeCount() + box));
+}
+
+}  // namespace cradle
