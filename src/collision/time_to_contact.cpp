@@ -54,9 +54,7 @@ class Approach {
   explicit Approach(double radius) : radius_(radius) {}
 
   /// One more axis along which the ball's centre is outside.
-  void add(double excess, double rate, double acceleration) {
-    axes_[count_++] = {excess, rate, acceleration};
-  }
+  void add(double excess, double rate, double acceleration) { axes_[count_++] = {excess, rate, acceleration}; }
 
   std::size_t axes() const { return count_; }
 
@@ -194,8 +192,8 @@ double timeToDistance(const UniformMotion& motion, double distance, const Contac
   if (closing >= 0) return kNever;
   const double outside = motion.position.squaredNorm() - distance * distance;
   if (outside <= 0) return -closing > search.slowest * distance ? 0 : kNever;
-  const double discriminant = motion.velocity.squaredNorm() * distance * distance -
-                              motion.position.cross(motion.velocity).squaredNorm();
+  const double discriminant =
+      motion.velocity.squaredNorm() * distance * distance - motion.position.cross(motion.velocity).squaredNorm();
   return discriminant < 0 ? kNever : outside / (-closing + std::sqrt(discriminant));
 }
 

@@ -10,10 +10,10 @@ namespace cradle {
 namespace {
 
 constexpr int kNone = -1;
-constexpr std::size_t kFewBalls = 16;   // look at each other faster than at 27 cells
-constexpr double kMargin = 1e-6;        // of a cell: what touches within rounding is near
-constexpr long kLeastCount = 4;         // along an axis, so that a cell and its two neighbours are three lists
-constexpr long kMostLists = 8;          // a ball
+constexpr std::size_t kFewBalls = 16;  // look at each other faster than at 27 cells
+constexpr double kMargin = 1e-6;       // of a cell: what touches within rounding is near
+constexpr long kLeastCount = 4;        // along an axis, so that a cell and its two neighbours are three lists
+constexpr long kMostLists = 8;         // a ball
 
 /// The smallest power of two >= `least`, not below kLeastCount.
 long powerOfTwo(double least) {
@@ -31,8 +31,7 @@ BallCells::BallCells(const std::vector<Vec3>& centers, double largestRadius) {
     origin_ = bounds.min();
     const double smallest = 2 * largestRadius * (1 + kMargin);
     const Vec3 extent = bounds.sizes().cwiseMax(smallest);
-    const double spacing =
-        std::cbrt(extent.prod() / static_cast<double>(centers.size()));
+    const double spacing = std::cbrt(extent.prod() / static_cast<double>(centers.size()));
     size_ = std::max(smallest, spacing);
     for (std::size_t axis = 0; axis < 3; ++axis)
       counts_[axis] = powerOfTwo(extent[static_cast<Eigen::Index>(axis)] / size_);
@@ -49,11 +48,6 @@ BallCells::BallCells(const std::vector<Vec3>& centers, double largestRadius) {
   before_.assign(centers.size(), kNone);
   for (const Vec3& center : centers) cells_.push_back(cellAt(center));
   for (int ball = 0; ball < std::ssize(centers); ++ball) insert(ball);
-}
-
-std::size_t BallCells::listOf(const Cell& cell) const {
-  const long x = cell[0] & (counts_[0] - 1), y = cell[1] & (counts_[1] - 1), z = cell[2] & (counts_[2] - 1);
-  return static_cast<std::size_t>((x * counts_[1] + y) * counts_[2] + z);
 }
 
 Cell BallCells::cellAt(const Vec3& center) const {

@@ -44,42 +44,53 @@ class BallCells {
   const std::vector<int>& fixedNear(int ball) const { return fixed_[listOf(cellOf(ball))]; }
 
  private:
-  std::size_t listOf(const Cell& cell) const;
+  std::size_t wrapped(long place, std::size_t axis) const {
+    return static_cast<std::size_t>(place & (counts_[axis] - 1));
+  }
+  /// Where the lists of the cells along z begin.
+  std::size_t rowOf(long x, long y) const {
+    return (wrapped(x, 0) * static_cast<std::size_t>(counts_[1]) + wrapped(y, 1)) *
+           static_cast<std::size_t>(counts_[2]);
+  }
+  std::size_t listOf(const Cell& cell) const { return rowOf(cell[0], cell[1]) + wrapped(cell[2], 2); }
   Cell cellAt(const Vec3& center) const;
   void insert(int ball);
   template <class Visit>
-  void visitList(const Cell& cell, const Visit& visit) const;
+  void visitList(std::size_t list, const Visit& visit) const;
 
-  double size_ = 0;                      // m; 0: one cell without end
-  Vec3 origin_ = Vec3::Zero();           // m
-  Cell counts_ = {1, 1, 1};              // powers of two
-  std::vector<Cell> cells_;              // by ball
+  double size_ = 0;                         // m; 0: one cell without end
+  Vec3 origin_ = Vec3::Zero();              // m
+  Cell counts_ = {1, 1, 1};                 // powers of two
+  std::vector<Cell> cells_;                 // by ball
   std::vector<int> first_, next_, before_;  // first ball by list; its neighbours by ball; or kNone
-  std::vector<std::vector<int>> fixed_;  // by list
+  std::vector<std::vector<int>> fixed_;     // by list
 };
 
 template <class Visit>
-void BallCells::visitList(const Cell& cell, const Visit& visit) const {
-  for (int ball = first_[listOf(cell)]; ball >= 0; ball = next_[static_cast<std::size_t>(ball)]) visit(ball);
+void BallCells::visitList(std::size_t list, const Visit& visit) const {
+  for (int ball = first_[list]; ball >= 0; ball = next_[static_cast<std::size_t>(ball)]) visit(ball);
 }
 
 template <class Visit>
 void BallCells::visitNear(int ball, const Visit& visit) const {
-  const Cell center = cellOf(ball);
-  if (!isBounded()) return visitList(center, visit);
-  for (long x = center[0] - 1; x <= center[0] + 1; ++x)
-    for (long y = center[1] - 1; y <= center[1] + 1; ++y)
-      for (long z = center[2] - 1; z <= center[2] + 1; ++z) visitList({x, y, z}, visit);
+  const Cell& cell = cellOf(ball);
+  if (!isBounded()) return visitList(0, visit);
+  for (long x = cell[0] - 1; x <= cell[0] + 1; ++x)
+    for (long y = cell[1] - 1; y <= cell[1] + 1; ++y) {
+      const std::size_t row = rowOf(x, y);
+      for (long z = cell[2] - 1; z <= cell[2] + 1; ++z) visitList(row + wrapped(z, 2), visit);
+    }
 }
 
 template <class Visit>
 void BallCells::visitAhead(int ball, int axis, int step, const Visit& visit) const {
-  Cell ahead = cellOf(ball);
-  const std::size_t along = static_cast<std::size_t>(axis), second = (along + 1) % 3, third = (along + 2) % 3;
-  const Cell center = ahead;
-  ahead[along] += step;
-  for (ahead[second] = center[second] - 1; ahead[second] <= center[second] + 1; ++ahead[second])
-    for (ahead[third] = center[third] - 1; ahead[third] <= center[third] + 1; ++ahead[third]) visitList(ahead, visit);
+  const Cell& cell = cellOf(ball);
+  Cell from = {cell[0] - 1, cell[1] - 1, cell[2] - 1}, to = {cell[0] + 1, cell[1] + 1, cell[2] + 1};
+  const auto along = static_cast<std::size_t>(axis);
+  from[along] = to[along] = cell[along] + step;
+  for (long x = from[0]; x <= to[0]; ++x)
+    for (long y = from[1]; y <= to[1]; ++y)
+      for (long z = from[2]; z <= to[2]; ++z) visitList(rowOf(x, y) + wrapped(z, 2), visit);
 }
 
 }  // namespace cradle

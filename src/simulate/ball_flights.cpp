@@ -7,6 +7,11 @@ namespace {
 
 constexpr double kSlowPart = 1e-14;  // of the speeds: what touches and closes more slowly does so by rounding
 
+/// At most sqrt(3) times the speed, and no less than it.
+double speedBound(const UniformMotion& motion) {
+  return motion.velocity.lpNorm<1>();
+}
+
 std::vector<Vec3> centersOf(const BallWorld& world) {
   std::vector<Vec3> centers;
   for (const UniformMotion& start : world.starts) centers.push_back(start.position);
@@ -72,14 +77,14 @@ void BallFlights::meetBall(const UniformMotion& motion, int ball, int other, dou
   const UniformMotion theirs = flight.motion.after(now - flight.since);
   const UniformMotion relative = theirs.relativeTo(motion);
   if (relative.acceleration.isZero(0) && relative.position.dot(relative.velocity) >= 0) return;
-  const double slowest = kSlowPart * (motion.velocity.norm() + theirs.velocity.norm());
+  const double slowest = kSlowPart * (speedBound(motion) + speedBound(theirs));
   const double time = timeToDistance(relative, radiusOf(ball) + radiusOf(other), {slowest, duration_ - now});
   keepEarlier(now + time, other, flight.hits, best);
 }
 
 void BallFlights::meetPlanes(const UniformMotion& motion, int ball, double now, Meeting& best) const {
   const auto& supports = flights_[static_cast<std::size_t>(ball)].supports;
-  const ContactSearch search{kSlowPart * motion.velocity.norm(), duration_ - now};
+  const ContactSearch search{kSlowPart * speedBound(motion), duration_ - now};
   for (int plane = 0; plane < world_.planeCount(); ++plane) {
     if (std::find(supports.begin(), supports.end(), plane) != supports.end()) continue;
     const auto index = static_cast<std::size_t>(plane);
@@ -88,7 +93,7 @@ void BallFlights::meetPlanes(const UniformMotion& motion, int ball, double now, 
 }
 
 void BallFlights::meetObstacles(const UniformMotion& motion, int ball, double now, Meeting& best) const {
-  const ContactSearch search{kSlowPart * motion.velocity.norm(), duration_ - now};
+  const ContactSearch search{kSlowPart * speedBound(motion), duration_ - now};
   for (const int box : cells_.fixedNear(ball)) {
     const double time = timeToContact(motion, radiusOf(ball), world_.boxes[static_cast<std::size_t>(box)], search);
     keepEarlier(now + time, ~(world_.planeCount() + box), 0, best);
@@ -104,8 +109,7 @@ Crossing BallFlights::nextCrossing(int ball, double now) const {
     const long place = cell[static_cast<std::size_t>(axis)];
     for (const int step : {-1, 1}) {
       const double gap = step * (cells_.sideOf(place + (step + 1) / 2, axis) - motion.position[axis]);
-      const double time =
-          now + timeToClose(gap, -step * motion.velocity[axis], -step * motion.acceleration[axis]);
+      const double time = now + timeToClose(gap, -step * motion.velocity[axis], -step * motion.acceleration[axis]);
       if (time < first.time) first = {time, axis, step};
     }
   }
@@ -121,18 +125,19 @@ double BallFlights::touchingGap(int ball, int other) const {
 }
 
 BallContact BallFlights::contactOf(int ball, int other, double now) const {
-  const Vec3 center = motionAt(ball, now).position;
+  const Vec3 center = positionAt(ball, now);
   BallContact contact{ball, other, 0, Vec3::UnitY(), Vec3::Zero()};
   if (other >= 0) {
-    const Vec3 towards = motionAt(other, now).position - center;
+    const Vec3 towards = positionAt(other, now) - center;
     const double distance = towards.norm();
     if (distance > 0) contact.normal = towards / distance;
     contact.gap = distance - radiusOf(ball) - radiusOf(other);
   } else {
     const int obstacle = ~other;
-    const Nearness nearness = obstacle < world_.planeCount()
-                                  ? nearnessOf(center, world_.planes[static_cast<std::size_t>(obstacle)])
-                                  : nearnessOf(center, world_.boxes[static_cast<std::size_t>(obstacle - world_.planeCount())]);
+    const Nearness nearness =
+        obstacle < world_.planeCount()
+            ? nearnessOf(center, world_.planes[static_cast<std::size_t>(obstacle)])
+            : nearnessOf(center, world_.boxes[static_cast<std::size_t>(obstacle - world_.planeCount())]);
     contact.normal = -nearness.outward;
     contact.gap = nearness.distance - radiusOf(ball);
   }
@@ -141,18 +146,19 @@ BallContact BallFlights::contactOf(int ball, int other, double now) const {
 }
 
 void BallFlights::appendTouching(int ball, double now, std::vector<BallContact>& contacts) const {
-  const auto appendIfTouching = [&](int other) {
-    const BallContact contact = contactOf(ball, other, now);
-    if (contact.gap <= touchingGap(ball, other)) contacts.push_back(contact);
-  };
-  const Vec3 center = motionAt(ball, now).position;
+  const Vec3 center = positionAt(ball, now);
   cells_.visitNear(ball, [&](int other) {
-    if (other == ball) return;
     const double reach = radiusOf(ball) + radiusOf(other) + touchingGap(ball, other);
-    if ((motionAt(other, now).position - center).squaredNorm() <= reach * reach) appendIfTouching(other);
+    if ((positionAt(other, now) - center).squaredNorm() <= reach * reach && other != ball)
+      contacts.push_back(contactOf(ball, other, now));
   });
-  for (int plane = 0; plane < world_.planeCount(); ++plane) appendIfTouching(~plane);
-  for (const int box : cells_.fixedNear(ball)) appendIfTouching(~(world_.planeCount() + box));
+  const double reach = radiusOf(ball) + touchingGap(ball, kNothing);
+  for (int plane = 0; plane < world_.planeCount(); ++plane)
+    if (nearnessOf(center, world_.planes[static_cast<std::size_t>(plane)]).distance <= reach)
+      contacts.push_back(contactOf(ball, ~plane, now));
+  for (const int box : cells_.fixedNear(ball))
+    if (nearnessOf(center, world_.boxes[static_cast<std::size_t>(box)]).distance <= reach)
+      contacts.push_back(contactOf(ball, ~(world_.planeCount() + box), now));
 }
 
 }  // namespace cradle

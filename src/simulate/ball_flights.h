@@ -14,16 +14,16 @@ constexpr int kNothing = std::numeric_limits<int>::min();
 /// A contact of a ball with another ball or an obstacle.
 struct BallContact {
   int ball = 0, other = kNothing;
-  double gap = 0;               // m
-  Vec3 normal = Vec3::Zero();   // unit, world, from the ball to the other
-  Vec3 point = Vec3::Zero();    // m, world: middle between the two surfaces
+  double gap = 0;              // m
+  Vec3 normal = Vec3::Zero();  // unit, world, from the ball to the other
+  Vec3 point = Vec3::Zero();   // m, world: middle between the two surfaces
 };
 
 /// The next contact of a ball, as long as neither it nor the other is struck before.
 struct Meeting {
   double time = kNever;  // s
   int other = kNothing;
-  long othersHits = 0;   // of the other, when this was foreseen
+  long othersHits = 0;  // of the other, when this was foreseen
 };
 
 /// A ball's way out of its cell.
@@ -73,6 +73,10 @@ class BallFlights {
   void meetObstacles(const UniformMotion& motion, int ball, double now, Meeting& best) const;
   void meetPlanes(const UniformMotion& motion, int ball, double now, Meeting& best) const;
   double radiusOf(int ball) const { return world_.radii[static_cast<std::size_t>(ball)]; }
+  Vec3 positionAt(int ball, double time) const {
+    const Flight& flight = flights_[static_cast<std::size_t>(ball)];
+    return flight.motion.positionAfter(time - flight.since);
+  }
   double touchingGap(int ball, int other) const;
 
   const BallWorld& world_;

@@ -13,9 +13,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kRestPart = 1e-7;     // of sqrt(g r): slower is no bounce but rounding
+constexpr double kRestPart = 1e-7;       // of sqrt(g r): slower is no bounce but rounding
 constexpr double kRestRounding = 1e-13;  // of the ball's speed, likewise
-constexpr double kLoadedPart = 1e-9;   // of g: what presses less is rounding
+constexpr double kLoadedPart = 1e-9;     // of g: what presses less is rounding
 constexpr std::array<int, 3> kInFlight = {-1, -1, -1};
 
 }  // namespace
@@ -44,7 +44,8 @@ void BallImpact::resolve(int ball, int other, double time) {
     const auto isStruck = [&](const BallContact& contact) {
       return (contact.ball == ball && contact.other == other) || (contact.ball == other && contact.other == ball);
     };
-    reflectAlone(static_cast<std::size_t>(std::find_if(contacts_.begin(), contacts_.end(), isStruck) - contacts_.begin()));
+    reflectAlone(
+        static_cast<std::size_t>(std::find_if(contacts_.begin(), contacts_.end(), isStruck) - contacts_.begin()));
   }
   findSupports();
   for (std::size_t i = 0; i < balls_.size(); ++i) flights_.strike(balls_[i], time, motions_[i], supports_[i]);
@@ -185,8 +186,9 @@ std::optional<BallContact> BallImpact::lastingContact() const {
     // Balls that slide past each other also part because they are round.
     double curving = 0;
     if (contact.other >= 0)
-      curving = (velocity - opening * contact.normal).squaredNorm() /
-                (world_.radii[static_cast<std::size_t>(contact.ball)] + world_.radii[static_cast<std::size_t>(contact.other)]);
+      curving =
+          (velocity - opening * contact.normal).squaredNorm() / (world_.radii[static_cast<std::size_t>(contact.ball)] +
+                                                                 world_.radii[static_cast<std::size_t>(contact.other)]);
     if (contact.normal.dot(acceleration) + curving < -kLoadedPart * world_.gravity.norm()) return contact;
   }
   return std::nullopt;

@@ -45,8 +45,8 @@ class BallImpact {
   std::vector<int> balls_;
   std::vector<BallContact> contacts_, found_;
   std::vector<double> impulses_;
-  std::vector<UniformMotion> motions_;            // by place in balls_
-  std::vector<std::array<int, 3>> supports_;      // the same
+  std::vector<UniformMotion> motions_;        // by place in balls_
+  std::vector<std::array<int, 3>> supports_;  // the same
 };
 
 }  // namespace cradle

@@ -6,7 +6,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kTouchPart = 0.1;                       // of the accuracy
+constexpr double kTouchPart = 0.1;                        // of the accuracy
 constexpr double kLeastTouch = 1e-11, kMostTouch = 1e-8;  // of the radius: rounding; what nobody would call a gap
 
 const Body& bodyAt(const Scene& scene, int body) {
@@ -53,7 +53,8 @@ void addBall(const Body& body, int index, const Vec3& gravity, BallWorld& world)
 std::optional<RoundedBox> roundedBoxOf(const Body& body) {
   const RigidTransform boxFromWorld = body.worldFromBody.inverse();
   if (body.collision == CollisionChoice::hull || body.collision == CollisionChoice::mesh) return std::nullopt;
-  if (const auto* sphere = std::get_if<Sphere>(&body.shape)) return RoundedBox{boxFromWorld, Vec3::Zero(), sphere->radius};
+  if (const auto* sphere = std::get_if<Sphere>(&body.shape))
+    return RoundedBox{boxFromWorld, Vec3::Zero(), sphere->radius};
   if (const auto* box = std::get_if<Box>(&body.shape)) return RoundedBox{boxFromWorld, box->size / 2, 0};
   if (const auto* capsule = std::get_if<Capsule>(&body.shape))
     return RoundedBox{boxFromWorld, Vec3(0, capsule->length / 2, 0), capsule->radius};

@@ -18,9 +18,9 @@ class EventQueue {
   double firstTime() const { return times_[static_cast<std::size_t>(first())]; }
 
  private:
-  std::size_t leaves_ = 1;      // a power of two
-  std::vector<double> times_;   // s, by leaf; infinite beyond the parts
-  std::vector<int> winners_;    // by node; the root is 1, the children of k are 2 k and 2 k + 1
+  std::size_t leaves_ = 1;     // a power of two
+  std::vector<double> times_;  // s, by leaf; infinite beyond the parts
+  std::vector<int> winners_;   // by node; the root is 1, the children of k are 2 k and 2 k + 1
 };
 
 }  // namespace cradle

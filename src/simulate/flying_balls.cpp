@@ -1,8 +1,8 @@
 // B. J. Alder, T. E. Wainwright, "Studies in Molecular Dynamics I. General Method", J. Chem. Phys. 31, 1959; one event
 // a ball, looked into again when its partner was struck meanwhile: B. D. Lubachevsky, "How to simulate billiards and
 // similar systems", J. Comput. Phys. 94, 1991. Of each pair the ball that was foreseen last knows both motions; it
-// keeps the earliest of its own meetings only. A meeting whose partner has been struck since is no event but the time to
-// look again: what comes before it would have been foreseen by that partner.
+// keeps the earliest of its own meetings only. A meeting whose partner has been struck since is no event but the time
+// to look again: what comes before it would have been foreseen by that partner.
 
 #include "simulate/flying_balls.h"
 
@@ -103,7 +103,8 @@ void FlyingBalls::record() {
     const bool isPlane = contact.other < 0 && ~contact.other < world_.planeCount();
     const bool swaps = b < a && !isPlane;  // planes stand second
     if (swaps) std::swap(a, b);
-    events_.push_back({time_, EventKind::impact, a, b, contact.point, swaps ? Vec3(-contact.normal) : contact.normal, impulse});
+    events_.push_back(
+        {time_, EventKind::impact, a, b, contact.point, swaps ? Vec3(-contact.normal) : contact.normal, impulse});
   }
 }
 

@@ -33,8 +33,8 @@ Run::Run(const Scene& scene) {
     startWarnings_.insert(startWarnings_.end(), assemblies[i].warnings.begin(), assemblies[i].warnings.end());
     const ChosenMethod& method = plan.islands[i].method;
     if (method.hasCollisions)
-      balls_.push_back(std::make_unique<FlyingBalls>(scene, std::move(assemblies[i]),
-                                                     *flyingBallsOf(scene, plan.islands[i])));
+      balls_.push_back(
+          std::make_unique<FlyingBalls>(scene, std::move(assemblies[i]), *flyingBallsOf(scene, plan.islands[i])));
     else if (method.isClosedForm())
       addFlight(std::move(assemblies[i]));
     else

@@ -18,9 +18,9 @@ constexpr ContactSearch kSearch{0, 100};
 TEST(TimeToClose, IsTheFirstRootAtWhichTheGapFalls) {
   EXPECT_DOUBLE_EQ(timeToClose(2, -4, 0), 0.5);
   EXPECT_DOUBLE_EQ(timeToClose(2, 0, -4), 1);
-  EXPECT_DOUBLE_EQ(timeToClose(0, 3, -2), 3);   // thrown up from the ground
-  EXPECT_DOUBLE_EQ(timeToClose(6, 1, -2), 3);   // 6 + t - t^2
-  EXPECT_DOUBLE_EQ(timeToClose(6, -7, 2), 1);   // 6 - 7 t + t^2: 1, and opening at 6
+  EXPECT_DOUBLE_EQ(timeToClose(0, 3, -2), 3);  // thrown up from the ground
+  EXPECT_DOUBLE_EQ(timeToClose(6, 1, -2), 3);  // 6 + t - t^2
+  EXPECT_DOUBLE_EQ(timeToClose(6, -7, 2), 1);  // 6 - 7 t + t^2: 1, and opening at 6
   EXPECT_DOUBLE_EQ(timeToClose(-1e-17, -1, 5), 0);
 }
 
@@ -104,9 +104,9 @@ double firstByBruteForce(const std::function<double(double)>& gap, double until)
   return kNever;
 }
 
-// Parabolas of some 3 m/s and 10 m/s^2 around boxes that are turned and rounded. A step of 0.5 ms passes over visits of a
-// corner that are shorter, down to a depth of a t^2 / 8 = 1e-6 m: those are looked at with a radius that much smaller.
-// At a closing speed of 1e-3 m/s or more, where 1e-15 m of rounding makes 1e-12 s.
+// Parabolas of some 3 m/s and 10 m/s^2 around boxes that are turned and rounded. A step of 0.5 ms passes over visits of
+// a corner that are shorter, down to a depth of a t^2 / 8 = 1e-6 m: those are looked at with a radius that much
+// smaller. At a closing speed of 1e-3 m/s or more, where 1e-15 m of rounding makes 1e-12 s.
 TEST(TimeToContact, AgreesWithBruteForceAroundTurnedBoxes) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);

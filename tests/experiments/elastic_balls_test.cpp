@@ -173,12 +173,12 @@ TEST(ElasticBalls, CountTheDigitsOfPi) {
   }
 }
 
-// Two touching balls fall on a plane. The lower one, three times as heavy, gives all that it has to the upper one, which
-// rises four times as high, and lies on the plane from then on until it is hit again: then all goes backwards.
+// Two touching balls fall on a plane. The lower one, three times as heavy, gives all that it has to the upper one,
+// which rises four times as high, and lies on the plane from then on until it is hit again: then all goes backwards.
 TEST(ElasticBalls, LieOnAPlaneOnceTheyHaveGivenAwayAllTheirSpeed) {
   const double fall = kFloorFall, speed = 9.81 * fall;
-  const Trajectory trajectory = run({{Vec3(0, 1.1, 0), Vec3::Zero(), 3}, {Vec3(0, 1.3, 0)}}, {kFloor},
-                                    {6 * fall, kGravity, 4 / fall});
+  const Trajectory trajectory =
+      run({{Vec3(0, 1.1, 0), Vec3::Zero(), 3}, {Vec3(0, 1.3, 0)}}, {kFloor}, {6 * fall, kGravity, 4 / fall});
   const Frame& top = trajectory.frames[12];  // 2 v up for 2 fall times
   EXPECT_NEAR(trajectory.events.at(0).time, fall, 1e-14);
   EXPECT_LT((top.states[0].position - Vec3(0, 0.1, 0)).norm(), 1e-13);
@@ -229,8 +229,8 @@ double leastGapOf(const Frame& frame, const std::vector<Ball>& balls) {
   double least = 1;
   for (std::size_t i = 0; i < balls.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      least = std::min(least, (frame.states[i].position - frame.states[j].position).norm() - balls[i].radius -
-                                  balls[j].radius);
+      least = std::min(
+          least, (frame.states[i].position - frame.states[j].position).norm() - balls[i].radius - balls[j].radius);
   return least;
 }
 
@@ -265,10 +265,9 @@ TEST(ElasticBalls, ThatBurstApartKeepTheirMomenta) {
 
 // A box that is turned and a ball in the way, and walls that are boxes.
 TEST(ElasticBalls, BounceOffEverythingFixed) {
-  std::vector<std::string> fixed = {
-      fixedText("block", R"({"box": {"size": [0.6, 0.4, 0.5]}})", Vec3(0.3, -0.9, 0.1),
-                R"({"axis": [1, 2, 3], "angleDegrees": 40})"),
-      fixedText("dome", R"({"sphere": {"radius": 0.4}})", Vec3(0, -1.4, -0.8))};
+  std::vector<std::string> fixed = {fixedText("block", R"({"box": {"size": [0.6, 0.4, 0.5]}})", Vec3(0.3, -0.9, 0.1),
+                                              R"({"axis": [1, 2, 3], "angleDegrees": 40})"),
+                                    fixedText("dome", R"({"sphere": {"radius": 0.4}})", Vec3(0, -1.4, -0.8))};
   for (int axis = 0; axis < 3; ++axis)
     for (const double sign : {1.0, -1.0}) {
       const Vec3 size = Vec3(4, 4, 4) - 3 * Vec3::Unit(axis);
@@ -323,8 +322,8 @@ TEST(ElasticBalls, MoveTheSameInAnyOrder) {
   EXPECT_GT(trajectory.events.size(), 50u);
   EXPECT_EQ(trajectory.events.size(), other.events.size());
   for (std::size_t i = 0; i < balls.size(); ++i)
-    EXPECT_LT((trajectory.frames.back().states[i].position -
-               other.frames.back().states[balls.size() - 1 - i].position).norm(),
+    EXPECT_LT((trajectory.frames.back().states[i].position - other.frames.back().states[balls.size() - 1 - i].position)
+                  .norm(),
               1e-9);
 }
 
@@ -334,7 +333,7 @@ TEST(ElasticBalls, KeepTheirSpins) {
       bodyText("ball", R"({"sphere": {"radius": 0.1}})", Vec3(0, 0.3, 0), R"("angularVelocity": [0, 0, 2])");
   const Trajectory trajectory = simulate(cradle::sceneWith(fmt::format(R"("duration": 1,
     "materials": {{"m": {{"restitution": 1, "staticFriction": 0, "dynamicFriction": 0}}}}, "bodies": [{}, {}])",
-                                                               spinning, kFloor)));
+                                                                       spinning, kFloor)));
   EXPECT_EQ(trajectory.header.method, "closed form between collisions");
   EXPECT_GT(trajectory.events.size(), 1u);
   EXPECT_EQ(endOf(trajectory).angularVelocity, Vec3(0, 0, 2));
@@ -364,9 +363,9 @@ TEST(ElasticBalls, SlideDownPlanesThatCarryThem) {
   const Trajectory plane = run({{kRadius * slope}}, {planeText("slope", Vec3::Zero(), slope)}, {1, kGravity, 1});
   const Vec3 expected = kRadius * slope - 4.905 / 2 * Vec3(std::sqrt(0.75), 0.5, 0);
   EXPECT_LT((endOf(plane).position - expected).norm(), 1e-14);
-  const Trajectory gutter = run({{Vec3(0, kRadius / root, 0), Vec3(2, 0, 0)}},
-                                {planeText("left", Vec3::Zero(), left), planeText("right", Vec3::Zero(), right)},
-                                {1, kGravity, 1});
+  const Trajectory gutter =
+      run({{Vec3(0, kRadius / root, 0), Vec3(2, 0, 0)}},
+          {planeText("left", Vec3::Zero(), left), planeText("right", Vec3::Zero(), right)}, {1, kGravity, 1});
   EXPECT_LT((endOf(gutter).position - Vec3(2, kRadius / root, 0)).norm(), 1e-14);
   EXPECT_TRUE(gutter.events.empty());
 }
