@@ -71,6 +71,16 @@ class Approach {
     return sum;
   }
 
+  /// Rate of the slope.
+  double bend(double time) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const double rate = axes_[i].rateAt(time);
+      sum += rate * rate + axes_[i].at(time) * axes_[i].acceleration;
+    }
+    return sum;
+  }
+
   /// First time in [from, to] at which the gap closes.
   double firstClosing(double from, double to, double slowest) const;
 
@@ -133,14 +143,18 @@ Cuts Approach::turnings(double from, double to) const {
 
 /// The zero of a slope that is monotone in an interval; the interval's start if it has none.
 double Approach::turningIn(double from, double to) const {
-  const bool risesAtStart = slope(from) > 0;
-  if (risesAtStart == (slope(to) > 0)) return from;
-  double early = from, late = to;
-  for (int i = 0; i < kMostRefinements && late - early > kFinest * late; ++i) {
-    const double middle = early + (late - early) / 2;
-    ((slope(middle) > 0) == risesAtStart ? early : late) = middle;
+  const bool rises = slope(to) > 0;
+  if ((slope(from) > 0) == rises) return from;
+  double time = from + (to - from) / 2;
+  for (int i = 0; i < kMostRefinements; ++i) {
+    const double found = slope(time);
+    ((found > 0) == rises ? to : from) = time;
+    double next = time - found / bend(time);
+    if (!(next > from && next < to)) next = from + (to - from) / 2;
+    if (std::abs(next - time) <= kFinest * next || to - from <= kFinest * to) return next;
+    time = next;
   }
-  return early;
+  return time;
 }
 
 /// The zero of a gap that falls all through an interval, > 0 at its start and <= 0 at its end: Newton's method, kept
@@ -156,6 +170,11 @@ double Approach::crossingIn(double from, double to) const {
     time = next;
   }
   return time;
+}
+
+/// Whether a gap cannot close in time however the ball's centre turns.
+bool isOutOfReach(double gap, const UniformMotion& motion, double until) {
+  return gap > until * (motion.velocity.lpNorm<1>() + until / 2 * motion.acceleration.lpNorm<1>());
 }
 
 }  // namespace
@@ -182,6 +201,7 @@ double timeToClose(double gap, double rate, double acceleration) {
 
 double timeToDistance(const UniformMotion& motion, double distance, const ContactSearch& search) {
   if (!motion.acceleration.isZero(0)) {
+    if (isOutOfReach(motion.position.norm() - distance, motion, search.until)) return kNever;
     Approach approach(distance);
     for (int axis = 0; axis < 3; ++axis)
       approach.add(motion.position[axis], motion.velocity[axis], motion.acceleration[axis]);
@@ -210,6 +230,8 @@ double timeToContact(const UniformMotion& center, double radius, const RoundedBo
   const UniformMotion inBox{box.boxFromWorld * center.position, turn * center.velocity, turn * center.acceleration};
   const double distance = radius + box.radius;
   if (box.halfSize.isZero(0)) return timeToDistance(inBox, distance, search);
+  const double gap = (inBox.position.cwiseAbs() - box.halfSize).cwiseMax(0).norm() - distance;
+  if (isOutOfReach(gap, inBox, search.until)) return kNever;
   Cuts cuts(0, search.until);
   for (int axis = 0; axis < 3; ++axis)
     for (const double side : {-1.0, 1.0})

@@ -10,10 +10,10 @@ namespace cradle {
 namespace {
 
 constexpr int kNone = -1;
-constexpr std::size_t kFewBalls = 16;  // look at each other faster than at 27 cells
-constexpr double kMargin = 1e-6;       // of a cell: what touches within rounding is near
-constexpr long kLeastCount = 4;        // along an axis, so that a cell and its two neighbours are three lists
-constexpr long kMostLists = 8;         // a ball
+constexpr std::size_t kFew = 16;  // things are looked at faster than 27 cells
+constexpr double kMargin = 1e-6;  // of a cell: what touches within rounding is near
+constexpr long kLeastCount = 4;   // along an axis, so that a cell and its two neighbours are three lists
+constexpr long kMostLists = 8;    // a ball
 
 /// The smallest power of two >= `least`, not below kLeastCount.
 long powerOfTwo(double least) {
@@ -24,8 +24,8 @@ long powerOfTwo(double least) {
 
 }  // namespace
 
-BallCells::BallCells(const std::vector<Vec3>& centers, double largestRadius) {
-  if (centers.size() > kFewBalls) {
+BallCells::BallCells(const std::vector<Vec3>& centers, double largestRadius, std::size_t fixed) {
+  if (centers.size() + fixed > kFew) {
     Bounds bounds;
     for (const Vec3& center : centers) bounds.extend(center);
     origin_ = bounds.min();

@@ -15,11 +15,15 @@ using Cell = std::array<long, 3>;
 /// not. A few balls share one cell without end.
 class BallCells {
  public:
-  /// A grid for balls at `centers` (m) of at most that radius, with about one ball in a cell of it now.
-  BallCells(const std::vector<Vec3>& centers, double largestRadius);
+  BallCells() = default;
 
-  /// Whether cells end at all.
+  /// A grid for balls at `centers` (m) of at most that radius, with about one ball in a cell of it now; `fixed` things
+  /// are to be added.
+  BallCells(const std::vector<Vec3>& centers, double largestRadius, std::size_t fixed);
+
+  /// Whether cells end at all, and their size (m) if they do.
   bool isBounded() const { return size_ > 0; }
+  double size() const { return size_; }
 
   const Cell& cellOf(int ball) const { return cells_[static_cast<std::size_t>(ball)]; }
 

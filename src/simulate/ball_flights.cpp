@@ -7,15 +7,15 @@ namespace {
 
 constexpr double kSlowPart = 1e-14;  // of the speeds: what touches and closes more slowly does so by rounding
 
+constexpr double kMostChange = 1.5;  // of the cells' size: then they are made anew
+
+double timeLeft(double until, double now) {
+  return std::max(0.0, until - now);
+}
+
 /// At most sqrt(3) times the speed, and no less than it.
 double speedBound(const UniformMotion& motion) {
   return motion.velocity.lpNorm<1>();
-}
-
-std::vector<Vec3> centersOf(const BallWorld& world) {
-  std::vector<Vec3> centers;
-  for (const UniformMotion& start : world.starts) centers.push_back(start.position);
-  return centers;
 }
 
 /// All places within `distance` of a box's core.
@@ -35,11 +35,33 @@ void keepEarlier(double time, int other, long othersHits, Meeting& best) {
 BallFlights::BallFlights(const BallWorld& world, double duration)
     : world_(world),
       duration_(duration),
-      cells_(centersOf(world), *std::max_element(world.radii.begin(), world.radii.end())) {
-  for (const UniformMotion& start : world.starts) flights_.push_back({start, 0, 0, {-1, -1, -1}});
-  const double largest = *std::max_element(world.radii.begin(), world.radii.end());
-  for (std::size_t i = 0; i < world.boxes.size(); ++i)
-    cells_.addFixed(static_cast<int>(i), boundsAround(world.boxes[i], largest + world.boxes[i].radius));
+      flights_(world.starts.size()),
+      largestRadius_(*std::max_element(world.radii.begin(), world.radii.end())) {
+  for (std::size_t ball = 0; ball < flights_.size(); ++ball) flights_[ball].motion = world.starts[ball];
+  cells_ = cellsAt(0);
+}
+
+BallCells BallFlights::cellsAt(double now) const {
+  std::vector<Vec3> centers;
+  for (int ball = 0; ball < world_.ballCount(); ++ball) centers.push_back(positionAt(ball, now));
+  BallCells cells(centers, largestRadius_, world_.boxes.size());
+  for (std::size_t i = 0; i < world_.boxes.size(); ++i)
+    cells.addFixed(static_cast<int>(i), boundsAround(world_.boxes[i], largestRadius_ + world_.boxes[i].radius));
+  return cells;
+}
+
+bool BallFlights::renewCells(double now) {
+  if (!cells_.isBounded()) return false;
+  BallCells cells = cellsAt(now);
+  const double change = cells.size() / cells_.size();
+  if (change < kMostChange && change > 1 / kMostChange) return false;
+  cells_ = std::move(cells);
+  return true;
+}
+
+void BallFlights::shiftTime(double origin) {
+  for (Flight& flight : flights_) flight.since -= origin;
+  duration_ -= origin;
 }
 
 UniformMotion BallFlights::motionAt(int ball, double time) const {
@@ -52,20 +74,19 @@ void BallFlights::strike(int ball, double time, const UniformMotion& motion, con
   flight = {motion, time, flight.hits + 1, supports};
 }
 
-Meeting BallFlights::nextMeeting(int ball, double now) const {
+Meeting BallFlights::nextMeeting(int ball, double now, double crossing) const {
   Meeting best;
   const UniformMotion motion = motionAt(ball, now);
   meetPlanes(motion, ball, now, best);
-  meetObstacles(motion, ball, now, best);
+  meetBoxes(motion, ball, now, crossing, best);
   cells_.visitNear(ball, [&](int other) { meetBall(motion, ball, other, now, best); });
   return best;
 }
 
-Meeting BallFlights::cross(int ball, const Crossing& crossing) {
-  cells_.move(ball, crossing.axis, crossing.step);
+Meeting BallFlights::nextMeetingAhead(int ball, const Crossing& crossing, double next) const {
   Meeting best;
   const UniformMotion motion = motionAt(ball, crossing.time);
-  meetObstacles(motion, ball, crossing.time, best);
+  meetBoxes(motion, ball, crossing.time, next, best);
   cells_.visitAhead(ball, crossing.axis, crossing.step,
                     [&](int other) { meetBall(motion, ball, other, crossing.time, best); });
   return best;
@@ -78,13 +99,13 @@ void BallFlights::meetBall(const UniformMotion& motion, int ball, int other, dou
   const UniformMotion relative = theirs.relativeTo(motion);
   if (relative.acceleration.isZero(0) && relative.position.dot(relative.velocity) >= 0) return;
   const double slowest = kSlowPart * (speedBound(motion) + speedBound(theirs));
-  const double time = timeToDistance(relative, radiusOf(ball) + radiusOf(other), {slowest, duration_ - now});
+  const double time = timeToDistance(relative, radiusOf(ball) + radiusOf(other), {slowest, timeLeft(duration_, now)});
   keepEarlier(now + time, other, flight.hits, best);
 }
 
 void BallFlights::meetPlanes(const UniformMotion& motion, int ball, double now, Meeting& best) const {
   const auto& supports = flights_[static_cast<std::size_t>(ball)].supports;
-  const ContactSearch search{kSlowPart * speedBound(motion), duration_ - now};
+  const ContactSearch search{kSlowPart * speedBound(motion), timeLeft(duration_, now)};
   for (int plane = 0; plane < world_.planeCount(); ++plane) {
     if (std::find(supports.begin(), supports.end(), plane) != supports.end()) continue;
     const auto index = static_cast<std::size_t>(plane);
@@ -92,8 +113,8 @@ void BallFlights::meetPlanes(const UniformMotion& motion, int ball, double now, 
   }
 }
 
-void BallFlights::meetObstacles(const UniformMotion& motion, int ball, double now, Meeting& best) const {
-  const ContactSearch search{kSlowPart * speedBound(motion), duration_ - now};
+void BallFlights::meetBoxes(const UniformMotion& motion, int ball, double now, double until, Meeting& best) const {
+  const ContactSearch search{kSlowPart * speedBound(motion), timeLeft(std::min(until, duration_), now)};
   for (const int box : cells_.fixedNear(ball)) {
     const double time = timeToContact(motion, radiusOf(ball), world_.boxes[static_cast<std::size_t>(box)], search);
     keepEarlier(now + time, ~(world_.planeCount() + box), 0, best);

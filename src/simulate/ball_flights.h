@@ -47,13 +47,25 @@ class BallFlights {
   void strike(int ball, double time, const UniformMotion& motion, const std::array<int, 3>& supports);
   long hits(int ball) const { return flights_[static_cast<std::size_t>(ball)].hits; }
 
-  /// The first contact of a ball after `now` (s). Cost: the balls and obstacles near its cell.
-  Meeting nextMeeting(int ball, double now) const;
-
+  /// When a ball leaves its cell.
   Crossing nextCrossing(int ball, double now) const;
 
-  /// Moves a ball to the next cell; the first contact with what became near.
-  Meeting cross(int ball, const Crossing& crossing);
+  /// The first contact of a ball after `now` (s), those with boxes only before it leaves its cell at `crossing` (s).
+  /// Cost: the balls and boxes near its cell, and all planes.
+  Meeting nextMeeting(int ball, double now, double crossing) const;
+
+  /// Moves a ball to the next cell.
+  void cross(int ball, const Crossing& crossing) { cells_.move(ball, crossing.axis, crossing.step); }
+
+  /// The first contact with what came near by that; `next` (s) is when the ball leaves the new cell.
+  Meeting nextMeetingAhead(int ball, const Crossing& crossing, double next) const;
+
+  /// Sorts the balls into cells anew if their places now ask for cells of another size; then all that was foreseen is
+  /// void. O(balls).
+  bool renewCells(double now);
+
+  /// Makes `origin` (s) the new time 0.
+  void shiftTime(double origin);
 
   /// Whether a meeting still comes about as foreseen.
   bool holds(const Meeting& meeting) const;
@@ -70,7 +82,8 @@ class BallFlights {
     std::array<int, 3> supports = {-1, -1, -1};
   };
   void meetBall(const UniformMotion& motion, int ball, int other, double now, Meeting& best) const;
-  void meetObstacles(const UniformMotion& motion, int ball, double now, Meeting& best) const;
+  void meetBoxes(const UniformMotion& motion, int ball, double now, double until, Meeting& best) const;
+  BallCells cellsAt(double now) const;
   void meetPlanes(const UniformMotion& motion, int ball, double now, Meeting& best) const;
   double radiusOf(int ball) const { return world_.radii[static_cast<std::size_t>(ball)]; }
   Vec3 positionAt(int ball, double time) const {
@@ -80,8 +93,9 @@ class BallFlights {
   double touchingGap(int ball, int other) const;
 
   const BallWorld& world_;
-  double duration_;
+  double duration_;  // s: the end, on the clock of now
   std::vector<Flight> flights_;
+  double largestRadius_;  // m
   BallCells cells_;
 };
 

@@ -22,6 +22,7 @@ constexpr double kSameTime = 1e-12;           // s, relative beyond 1 s
 constexpr double kHitWindow = 1.0 / 960;      // s
 constexpr long kMostHits = 1000000;           // of a ball in a window: a second of computing
 constexpr long kEventsBetweenChecks = 10000;  // for a signal: some ms
+constexpr long kEventsAnOrigin = 8;           // a ball: moving the origin costs about one for each
 
 }  // namespace
 
@@ -45,9 +46,9 @@ FlyingBalls::FlyingBalls(const Scene& scene, Assembly assembly, BallWorld world)
 
 const VectorX& FlyingBalls::stateAt(double time) {
   const double same = kSameTime * std::max(1.0, time);
-  while (queue_.firstTime() <= time + same) advance();
+  while (queue_.firstTime() <= sinceOrigin(time) + same) advance();
   for (int ball = 0; ball < world_.ballCount(); ++ball) {
-    const UniformMotion motion = flights_.motionAt(ball, time);
+    const UniformMotion motion = flights_.motionAt(ball, sinceOrigin(time));
     centerOfMass(state_, ball) = motion.position;
     linearVelocity(state_, ball) = motion.velocity;
     const RotationState turned = rotations_[static_cast<std::size_t>(ball)].at(time);
@@ -61,18 +62,41 @@ const VectorX& FlyingBalls::stateAt(double time) {
 /// The next event: a way out of a cell, a meeting to look into again, or a collision.
 void FlyingBalls::advance() {
   if (++evaluations_ % kEventsBetweenChecks == 0) throwIfInterrupted();
+  if (++eventsSinceOrigin_ > kEventsAnOrigin * world_.ballCount()) moveOrigin();
   const int ball = queue_.first();
   const auto index = static_cast<std::size_t>(ball);
   time_ = std::max(time_, queue_.firstTime());
-  if (crossings_[index].time < meetings_[index].time) {
-    const Meeting ahead = flights_.cross(ball, crossings_[index]);
-    if (ahead.time < meetings_[index].time) meetings_[index] = ahead;
-    schedule(ball);
-  } else if (flights_.holds(meetings_[index])) {
+  if (crossings_[index].time < meetings_[index].time)
+    cross(ball);
+  else if (flights_.holds(meetings_[index]))
     collide(ball);
-  } else {
+  else
     foresee(ball);
-  }
+}
+
+/// Times are counted from a recent event, or they would lose digits as they grow.
+void FlyingBalls::moveOrigin() {
+  eventsSinceOrigin_ = 0;
+  const double sum = origin_ + (originRest_ + time_);
+  originRest_ = (origin_ - sum) + (originRest_ + time_);
+  origin_ = sum;
+  flights_.shiftTime(time_);
+  for (Window& window : windows_) window.start -= time_;
+  for (Meeting& meeting : meetings_) meeting.time -= time_;
+  for (Crossing& crossing : crossings_) crossing.time -= time_;
+  time_ = 0;
+  const bool isVoid = flights_.renewCells(0);
+  for (int ball = 0; ball < world_.ballCount(); ++ball) isVoid ? foresee(ball) : schedule(ball);
+}
+
+void FlyingBalls::cross(int ball) {
+  const auto index = static_cast<std::size_t>(ball);
+  const Crossing crossing = crossings_[index];
+  flights_.cross(ball, crossing);
+  crossings_[index] = flights_.nextCrossing(ball, time_);
+  const Meeting ahead = flights_.nextMeetingAhead(ball, crossing, crossings_[index].time);
+  if (ahead.time < meetings_[index].time) meetings_[index] = ahead;
+  schedule(ball);
 }
 
 void FlyingBalls::collide(int ball) {
@@ -84,13 +108,14 @@ void FlyingBalls::collide(int ball) {
 }
 
 void FlyingBalls::foresee(int ball) {
-  meetings_[static_cast<std::size_t>(ball)] = flights_.nextMeeting(ball, time_);
+  const auto index = static_cast<std::size_t>(ball);
+  crossings_[index] = flights_.nextCrossing(ball, time_);
+  meetings_[index] = flights_.nextMeeting(ball, time_, crossings_[index].time);
   schedule(ball);
 }
 
 void FlyingBalls::schedule(int ball) {
   const auto index = static_cast<std::size_t>(ball);
-  crossings_[index] = flights_.nextCrossing(ball, time_);
   queue_.set(ball, std::min(crossings_[index].time, meetings_[index].time));
 }
 
@@ -103,8 +128,8 @@ void FlyingBalls::record() {
     const bool isPlane = contact.other < 0 && ~contact.other < world_.planeCount();
     const bool swaps = b < a && !isPlane;  // planes stand second
     if (swaps) std::swap(a, b);
-    events_.push_back(
-        {time_, EventKind::impact, a, b, contact.point, swaps ? Vec3(-contact.normal) : contact.normal, impulse});
+    events_.push_back({timeSinceStart(), EventKind::impact, a, b, contact.point,
+                       swaps ? Vec3(-contact.normal) : contact.normal, impulse});
   }
 }
 
@@ -116,7 +141,7 @@ void FlyingBalls::countHit(int ball) {
   throw Error(ErrorKind::limit, scene_.path,
               fmt::format("\"{}\" is hit more than {} times within {:.3g} s at {:.6g} s: without loss this may have no "
                           "end; lower its \"restitution\", or name a \"method\", such as \"rk4\"",
-                          nameOf(ball), kMostHits, kHitWindow, time_));
+                          nameOf(ball), kMostHits, kHitWindow, timeSinceStart()));
 }
 
 void FlyingBalls::refuseLastingContact() const {
@@ -125,7 +150,7 @@ void FlyingBalls::refuseLastingContact() const {
   throw Error(ErrorKind::limit, scene_.path,
               fmt::format("\"{}\" comes to lie on \"{}\" at {:.6g} s, which is no flight between collisions; name a "
                           "\"method\", such as \"rk4\"",
-                          nameOf(contact->ball), nameOf(contact->other), time_));
+                          nameOf(contact->ball), nameOf(contact->other), timeSinceStart()));
 }
 
 int FlyingBalls::sceneBodyOf(int other) const {

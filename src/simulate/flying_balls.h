@@ -34,12 +34,16 @@ class FlyingBalls {
 
  private:
   void advance();
+  void moveOrigin();
+  void cross(int ball);
   void collide(int ball);
   void foresee(int ball);
   void schedule(int ball);
   void record();
   void countHit(int ball);
   void refuseLastingContact() const;
+  double timeSinceStart() const { return origin_ + (originRest_ + time_); }
+  double sinceOrigin(double time) const { return (time - origin_) - originRest_; }
   int sceneBodyOf(int other) const;
   std::string nameOf(int other) const;
 
@@ -59,7 +63,9 @@ class FlyingBalls {
   std::vector<Window> windows_;  // by ball
   std::vector<Event> events_;
   VectorX state_;
-  double time_ = 0;  // s, of the last event
+  double origin_ = 0, originRest_ = 0;  // s: their sum is the time 0 of all that follows, and of flights and meetings
+  double time_ = 0;                     // s, of the last event
+  long eventsSinceOrigin_ = 0;
   long evaluations_ = 0;
 };
 

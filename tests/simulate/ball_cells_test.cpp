@@ -31,7 +31,7 @@ std::vector<int> near(const BallCells& cells, int ball) {
 
 TEST(BallCells, FindEachBallThatMayBeTouchedOnce) {
   const std::vector<Vec3> centers = randomCenters(300, 1.5);
-  const BallCells cells(centers, kRadius);
+  const BallCells cells(centers, kRadius, 0);
   ASSERT_TRUE(cells.isBounded());
   for (int ball = 0; ball < 300; ++ball) {
     std::vector<int> found = near(cells, ball);
@@ -46,7 +46,7 @@ TEST(BallCells, FindEachBallThatMayBeTouchedOnce) {
 
 TEST(BallCells, KeepBallsThatLieInTheirCell) {
   const std::vector<Vec3> centers = randomCenters(50, 3);
-  const BallCells cells(centers, kRadius);
+  const BallCells cells(centers, kRadius, 0);
   for (int ball = 0; ball < 50; ++ball)
     for (int axis = 0; axis < 3; ++axis) {
       const long cell = cells.cellOf(ball)[static_cast<std::size_t>(axis)];
@@ -57,7 +57,7 @@ TEST(BallCells, KeepBallsThatLieInTheirCell) {
 
 // Far out and back: lists that repeat in space are the same after as many steps.
 TEST(BallCells, FindWhatIsAheadOfABallThatMoves) {
-  BallCells cells(randomCenters(50, 3), kRadius);
+  BallCells cells(randomCenters(50, 3), kRadius, 0);
   for (const int axis : {0, 1, 2}) {
     for (int i = 0; i < 100; ++i) cells.move(7, axis, 1);
     EXPECT_THAT(near(cells, 7), Contains(7));
@@ -73,7 +73,7 @@ TEST(BallCells, FindWhatIsAheadOfABallThatMoves) {
 
 TEST(BallCells, KnowWhatFixedThingsABallMayTouch) {
   const std::vector<Vec3> centers = randomCenters(50, 3);
-  BallCells cells(centers, kRadius);
+  BallCells cells(centers, kRadius, 0);
   cells.addFixed(0, Bounds(Vec3(1, 1, 1), Vec3(1.5, 1.5, 1.5)));
   cells.addFixed(1, Bounds(Vec3::Constant(-1e9), Vec3::Constant(1e9)));
   for (int ball = 0; ball < 50; ++ball) {
@@ -85,7 +85,7 @@ TEST(BallCells, KnowWhatFixedThingsABallMayTouch) {
 }
 
 TEST(BallCells, AreOneForAFewBalls) {
-  const BallCells cells({Vec3::Zero(), Vec3(1e6, 0, 0)}, kRadius);
+  const BallCells cells({Vec3::Zero(), Vec3(1e6, 0, 0)}, kRadius, 0);
   EXPECT_FALSE(cells.isBounded());
   EXPECT_THAT(near(cells, 0), testing::UnorderedElementsAre(0, 1));
   EXPECT_THAT(cells.fixedNear(0), IsEmpty());
