@@ -13,13 +13,6 @@ const Body& bodyAt(const Scene& scene, int body) {
   return scene.bodies[static_cast<std::size_t>(body)];
 }
 
-/// What an island's bodies may touch, themselves included; ascending.
-std::vector<int> touchingBodies(const IslandPlan& island) {
-  std::set<int> bodies;
-  for (const auto& [a, b] : island.near) bodies.insert({a, b});
-  return {bodies.begin(), bodies.end()};
-}
-
 bool isLossless(const SurfacePair& pair) {
   return pair.restitution == 1 && pair.staticFriction == 0 && pair.dynamicFriction == 0;
 }
@@ -84,15 +77,14 @@ bool addObstacles(const Scene& scene, const std::vector<int>& touching, BallWorl
 }  // namespace
 
 std::optional<BallWorld> ballWorldOf(const Scene& scene, const IslandPlan& island) {
-  const std::vector<int> touching = touchingBodies(island);
   const auto isBallAt = [&](int body) { return isBall(bodyAt(scene, body)); };
   if (!std::all_of(island.bodies.begin(), island.bodies.end(), isBallAt)) return std::nullopt;
-  if (!areLossless(scene, touching)) return std::nullopt;
+  if (!areLossless(scene, island.touching)) return std::nullopt;
   BallWorld world;
   world.gravity = scene.gravity;
   world.touchPart = std::clamp(kTouchPart * scene.accuracy, kLeastTouch, kMostTouch);
   for (const int body : island.bodies) addBall(bodyAt(scene, body), body, scene.gravity, world);
-  if (!addObstacles(scene, touching, world)) return std::nullopt;
+  if (!addObstacles(scene, island.touching, world)) return std::nullopt;
   return world;
 }
 
