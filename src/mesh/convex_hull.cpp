@@ -1,6 +1,6 @@
 // Qhull (C. B. Barber, D. P. Dobkin, H. Huhdanpaa, "The Quickhull algorithm for convex hulls", ACM TOMS 22, 1996) finds
-// the triangles; faces are put together here, since numbers in a mesh file are mostly floats, and Qhull merges only what
-// is flat to rounding.
+// the triangles; faces are put together here, since numbers in a mesh file are mostly floats, and Qhull merges only
+// what is flat to rounding.
 
 #include "mesh/convex_hull.h"
 
@@ -74,7 +74,7 @@ bool isFlat(const std::vector<Vec3>& points, double limit) {
     return *std::max_element(points.begin(), points.end(),
                              [&](const Vec3& a, const Vec3& b) { return distance(a) < distance(b); });
   };
-  const Vec3 from = points[0], to = farthest([&](const Vec3& p) { return (p - from).norm(); });
+  const Vec3 from = points[0], to = farthest([&](const Vec3&p) { return (p - from).norm(); });
   const Vec3 along = (to - from).normalized();
   const Vec3 aside = farthest([&](const Vec3& p) { return along.cross(p - from).norm(); }) - from;
   if (along.cross(aside).norm() <= limit) return true;
@@ -119,9 +119,7 @@ class FaceMerger {
   /// Gives a face to the seed and all that is in its plane and hangs together: these.
   std::vector<std::size_t> grow(std::size_t seed, std::size_t face) {
     const Vec3 normal = areaVector(seed).normalized(), origin = points_[triangles_[seed][0]];
-    const auto isInPlane = [&](std::size_t corner) {
-      return std::abs(normal.dot(points_[corner] - origin)) <= limit_;
-    };
+    const auto isInPlane = [&](std::size_t corner) { return std::abs(normal.dot(points_[corner] - origin)) <= limit_; };
     std::vector<std::size_t> reached{seed};
     face_[seed] = face;
     for (std::size_t i = 0; i < reached.size(); ++i)
@@ -151,7 +149,7 @@ class FaceMerger {
   const std::vector<Vec3>& points_;
   const std::vector<Corners>& triangles_;
   double limit_;
-  std::vector<std::size_t> face_;  // of each triangle
+  std::vector<std::size_t> face_;                                     // of each triangle
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> owner_;  // triangle of each directed side
 };
 

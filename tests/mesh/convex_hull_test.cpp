@@ -43,7 +43,8 @@ TEST(ConvexHull, OfPointsAllOverABoxIsTheBox) {
     std::vector<Vec3> points;
     for (int x = -3; x <= 3; ++x)
       for (int y = -3; y <= 3; ++y)
-        for (int z = -3; z <= 3; ++z) points.push_back((isTurned ? turn : Quat(Quat::Identity())) * Vec3(x, 0.4 * y, 2 * z));
+        for (int z = -3; z <= 3; ++z)
+          points.push_back((isTurned ? turn : Quat(Quat::Identity())) * Vec3(x, 0.4 * y, 2 * z));
     const ConvexHull hull = convexHullOf(points);
     EXPECT_EQ(hull.vertices.size(), 8u);
     EXPECT_EQ(hull.faces.size(), 6u);
