@@ -8,6 +8,7 @@
 namespace cradle {
 namespace {
 
+constexpr double kSamePlace = 1e-3;        // of a size: contacts so near to each other are one
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
 Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
@@ -50,8 +51,10 @@ class PairSearch {
     appendFeaturesWithin(geometry_, pair_, startA_, reach, scratch_.features_);
     for (const std::size_t feature : scratch_.features_) {
       feature_ = feature;
-      if (isHeld(touching)) continue;
-      const double start = separation(geometry_, pair_, feature_, startA_, startB_);
+      held_ = isHeld(touching) ? touching.held : nullptr;
+      if (held_ && hasOneContact()) continue;
+      reach_ = reach;
+      const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_);
       if (start > bounds_.speed) continue;
       if (start > touching.tolerance)
         searchFrom(0, start, 0, best);
@@ -87,6 +90,32 @@ class PairSearch {
            });
   }
 
+  bool hasOneContact() const {
+    return pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall();
+  }
+
+  /// Contacts of a sample of the step but those that are held.
+  void findOthers(double fraction, const VectorX& state, double margin) {
+    scratch_.contacts_.clear();
+    appendContacts(geometry_, pairIndex_, state, margin, scratch_.contacts_);
+    const double near = kSamePlace * std::min(a_.boundingRadius, geometry_.colliders[pair_.b].boundingRadius);
+    std::erase_if(scratch_.contacts_, [&](const Contact& contact) {
+      return std::any_of(held_->begin(), held_->end(), [&](const HeldFeature& held) {
+        if (held.pair != pairIndex_) return false;
+        return (poseAt(step_, held.point.body, fraction) * held.point.point - contact.point).norm() < near;
+      });
+    });
+  }
+
+  /// The least separation of points that are not held.
+  double gapOfOthers(double fraction) {
+    interpolate(step_, fraction, scratch_.sample_);
+    findOthers(fraction, scratch_.sample_, reach_);
+    double least = reach_;
+    for (const Contact& contact : scratch_.contacts_) least = std::min(least, contact.separation);
+    return least;
+  }
+
   /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not has the
   /// dead band.
   void searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
@@ -117,8 +146,12 @@ class PairSearch {
       const Vec3& normal = geometry_.planes[pair_.b].normal;
       return normal.dot(pointVelocity(a_.body, startA_ * a_.points[feature_] - a_.radius * normal, step_.startState));
     }
-    scratch_.contacts_.clear();
-    appendContacts(geometry_, pairIndex_, step_.startState, tolerance, scratch_.contacts_);
+    if (held_) {
+      findOthers(0, step_.startState, tolerance);
+    } else {
+      scratch_.contacts_.clear();
+      appendContacts(geometry_, pairIndex_, step_.startState, tolerance, scratch_.contacts_);
+    }
     double least = 0;
     for (std::size_t i = 0; i < scratch_.contacts_.size(); ++i) {
       const double speed = openingSpeed(scratch_.contacts_[i], step_.startState);
@@ -127,7 +160,8 @@ class PairSearch {
     return least;
   }
 
-  double gap(double fraction) const {
+  double gap(double fraction) {
+    if (held_) return gapOfOthers(fraction);
     return separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction), poseAt(step_, bodyB_, fraction));
   }
 
@@ -140,6 +174,8 @@ class PairSearch {
   int bodyB_;
   RigidTransform startA_, startB_;
   GapBounds bounds_;
+  const std::vector<HeldFeature>* held_ = nullptr;  // something holds points of this feature
+  double reach_ = 0;                                // m: farther apart nothing is looked at
   double pull_ = 0;  // m: bound on the relative acceleration, with the step as the unit of time
 };
 

@@ -26,7 +26,7 @@ struct TouchingFeatures {
   double tolerance = 0;  // m: what is nearer touches
   // m: what touches comes together anew when it has closed by more than this; infinite: it is passed over
   double deadBand = std::numeric_limits<double>::infinity();
-  const std::vector<HeldFeature>* held = nullptr;  // passed over: something keeps them together
+  const std::vector<HeldFeature>* held = nullptr;  // passed over; other points of the same pair are not: something keeps them together
 };
 
 /// Searches steps for the first instant at which two features come together: apart by more than the tolerance, leaving
@@ -52,6 +52,7 @@ class ImpactSearch {
   std::vector<Turn> turns_;  // of the moving bodies, in the step that is searched
   std::vector<std::size_t> features_;
   std::vector<Contact> contacts_;
+  VectorX sample_;
 };
 
 }  // namespace cradle

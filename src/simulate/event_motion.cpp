@@ -17,9 +17,11 @@ constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension th
 constexpr double kContactTolerance = 1e-12;  // of the force, or m/s
 constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
 constexpr double kImpactPart = 1e-3;      // of the margin of contacts: a gap left that the step has to be taken anew for
-constexpr double kShortCorrection = 1e-5;  // of the step: so far the state at an impact is corrected along its rate
+constexpr double kShortCorrection = 1e-3;  // of the step: so far the state at an impact is corrected along its rate
 constexpr double kSlopePart = 1e-6;        // of the step, to find the slope of a gap
 constexpr double kMostGrowth = 2;  // of the longest of the last steps: farther ahead no contact is looked for in vain
+
+constexpr double kLeastLookahead = 1.0 / 64;  // of the step that the accuracy allows
 
 constexpr double kManyTurns = 100;       // rad: beyond, orientations need a tighter tolerance
 constexpr double kTurningPart = 0.1;     // of the tolerance, for these
@@ -110,7 +112,8 @@ void EventMotion::takeStep(double stepEnd) {
 
 /// Where bodies meet often, no step goes far beyond the next meeting.
 double EventMotion::longestStep() const {
-  return kMostGrowth * *std::max_element(lengths_.begin(), lengths_.end());
+  return std::max(kMostGrowth * *std::max_element(lengths_.begin(), lengths_.end()),
+                  kLeastLookahead * stepSize_.timeStep);
 }
 
 EventMotion::Event EventMotion::findFirstEvent() {
@@ -169,9 +172,11 @@ void EventMotion::stopAtImpact(const ImpactTime& impact) {
   const double left = gap(step.state), before = kSlopePart * length;
   step.work = step.state - before * step.endRate;
   const double correction = left * before / (gap(step.work) - left);
-  if (!(std::abs(correction) <= kShortCorrection * length))
-    return endStepAtEvent(island_, method_.integrate, length, kImpactPart * contacts_.margin(), gap);
-  step.state += correction * step.endRate;
+  step.work = step.state + correction * step.endRate;
+  const double tolerance = kImpactPart * contacts_.margin();
+  if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))
+    return endStepAtEvent(island_, method_.integrate, length, tolerance, gap);
+  std::swap(step.state, step.work);
   step.timeStep += correction;
 }
 
