@@ -41,7 +41,7 @@ void ContactSolver::fillRows(const VectorX& state, const std::vector<BodyFrame>&
     int row = group.firstRow, tangentRow = group.firstRow + group.positionRows;
     for (const int contact : group.contacts) fillContact(index(contact), row++, tangentRow, state, frames);
     for (const int tie : group.ties) {
-      putRow(row, tieRows_[index(tie)], tieRows_[index(tie)].scale, frames);
+      putRow(row, tieRows_[index(tie)], frames);
       coupled_[index(row)] = responses_[index(row)];
       ++row;
     }
@@ -53,7 +53,7 @@ void ContactSolver::fillContact(std::size_t contact, int row, int& tangentRow, c
   const ContactConstraint& constraint = contacts_[contact];
   const ContactPlace& place = places_[contact] = placeOf(constraint, state, frames);
   forces_[contact] = {0, Vec3::Zero(), place.normal, place.point, tangentialVelocity(place), Vec3::Zero()};
-  putRow(row, normalRow(constraint, place), 1, frames);
+  putRow(row, normalRow(constraint, place), frames);
   coupled_[index(row)] = responses_[index(row)];
   if (constraint.motion == ContactMotion::sliding) {
     forces_[contact].slidingDirection = slidingDirection(constraint, place, frames);
@@ -61,19 +61,24 @@ void ContactSolver::fillContact(std::size_t contact, int row, int& tangentRow, c
   }
   if (constraint.motion != ContactMotion::sticking) return;
   for (const ConstraintRow& tangent : tangentRows(constraint, place)) {
-    putRow(tangentRow, tangent, 1, frames);
+    putRow(tangentRow, tangent, frames);
     coupled_[index(tangentRow)] = responses_[index(tangentRow)];
     ++tangentRow;
   }
 }
 
 /// A row in units in which its multiplier is a force or a torque; bodies at rest are fixed to it.
-void ContactSolver::putRow(int row, const ConstraintRow& from, double scale, const std::vector<BodyFrame>& frames) {
-  const double factor = 1 / scale;
-  rows_[index(row)] = {movingBody(from.bodyA), movingBody(from.bodyB),  factor * from.linearA,
-                       factor * from.angularA, factor * from.linearB,   factor * from.angularB,
-                       factor * from.value,    factor * from.curvature, 1,
-                       from.rounding};
+void ContactSolver::putRow(int row, const ConstraintRow& from, const std::vector<BodyFrame>& frames) {
+  ConstraintRow& to = rows_[index(row)] = from;
+  to.bodyA = movingBody(from.bodyA);
+  to.bodyB = movingBody(from.bodyB);
+  if (from.scale != 1) {
+    const double factor = 1 / from.scale;
+    for (Vec3* part : {&to.linearA, &to.angularA, &to.linearB, &to.angularB}) *part *= factor;
+    to.value *= factor;
+    to.curvature *= factor;
+    to.scale = 1;
+  }
   responses_[index(row)] = responseTo(rows_[index(row)], frames);
 }
 

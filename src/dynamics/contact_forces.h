@@ -86,7 +86,7 @@ class ContactSolver {
   void fillRows(const VectorX& state, const std::vector<BodyFrame>& frames);
   void fillContact(std::size_t contact, int row, int& tangentRow, const VectorX& state,
                    const std::vector<BodyFrame>& frames);
-  void putRow(int row, const ConstraintRow& from, double scale, const std::vector<BodyFrame>& frames);
+  void putRow(int row, const ConstraintRow& from, const std::vector<BodyFrame>& frames);
   void addFriction(std::size_t contact, int row, const std::vector<BodyFrame>& frames);
   Response responseTo(const ConstraintRow& row, const std::vector<BodyFrame>& frames) const;
   void couple(Group& group);

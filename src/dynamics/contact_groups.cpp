@@ -76,7 +76,6 @@ void ContactSolver::numberGroups() {
   }
   groupOfBody_.assign(bodies_.size(), -1);
   for (std::size_t body = 0; body < bodies_.size(); ++body) {
-    if (resting_[body]) continue;
     const int group = groupOfRoot[static_cast<std::size_t>(rootOf(parents, static_cast<int>(body)))];
     groupOfBody_[body] = group;
     if (group >= 0) groups_[static_cast<std::size_t>(group)].bodies.push_back(static_cast<int>(body));

@@ -15,13 +15,19 @@ namespace {
 // Of a row's diagonal entry: what is left of a row that depends on others, squared. Contacts less than a millionth of a
 // body's size apart are one, and rounding leaves 1e-16.
 constexpr double kDependent = 1e-12;
+constexpr double kGoodPivot = 0.1;         // of a row's diagonal entry: no need to look for a better one
 constexpr double kWellConditioned = 1e-3;  // a least pivot above leaves no error worth a refinement
 constexpr double kVanished = 1e-6;         // of a column: what rounding leaves of one that depends on others
 
+/// Two sums, so that additions need not wait for each other.
 double dot(const double* a, const double* b, int size) {
-  double sum = 0;
-  for (int i = 0; i < size; ++i) sum += a[i] * b[i];
-  return sum;
+  double even = 0, odd = 0;
+  for (int i = 0; i + 1 < size; i += 2) {
+    even += a[i] * b[i];
+    odd += a[i + 1] * b[i + 1];
+  }
+  if (size % 2 != 0) even += a[size - 1] * b[size - 1];
+  return even + odd;
 }
 
 void subtract(double factor, const double* from, double* column, int size) {
@@ -36,7 +42,8 @@ void MinimumNormSolver::resize(int size) {
   for (std::vector<double>* matrix :
        {&symmetric_, &coupled_, &lower_, &upper_, &lowerFactor_.q, &lowerFactor_.r, &upperFactor_.q, &upperFactor_.r})
     matrix->assign(rows * rows, 0);
-  for (std::vector<double>* vector : {&remaining_, &reduced_, &residual_}) vector->assign(rows, 0);
+  for (std::vector<double>* vector : {&remaining_, &inverseDiagonal_, &inverseBegin_, &reduced_, &residual_})
+    vector->assign(rows, 0);
   pivots_.assign(rows, 0);
   isUsed_.assign(rows, 0);
 }
@@ -53,7 +60,9 @@ void MinimumNormSolver::factorize(int size, bool isCoupled) {
 
 void MinimumNormSolver::findLower() {
   for (int row = 0; row < size_; ++row) {
-    remaining_[static_cast<std::size_t>(row)] = symmetric_[at(row, row)];
+    const double diagonal = symmetric_[at(row, row)];
+    remaining_[static_cast<std::size_t>(row)] = diagonal;
+    inverseDiagonal_[static_cast<std::size_t>(row)] = diagonal > 0 ? 1 / diagonal : 0;
     isUsed_[static_cast<std::size_t>(row)] = 0;
   }
   isWellConditioned_ = true;
@@ -73,16 +82,20 @@ void MinimumNormSolver::findLower() {
       remaining_[static_cast<std::size_t>(row)] -= column[row] * column[row];
     }
     column[pivot] = left * scale;
+    remaining_[static_cast<std::size_t>(pivot)] = 0;
+    inverseBegin_[static_cast<std::size_t>(rank_)] = scale;
   }
 }
 
-/// The row of which most is left, as a part of its diagonal entry; -1 if nothing is left of any.
+/// The first row of which enough is left, as a part of its diagonal entry, or else the one of which most is left; -1 if
+/// nothing is left of any.
 int MinimumNormSolver::nextPivot() const {
   int next = -1;
   double most = kDependent;
   for (int row = 0; row < size_; ++row) {
-    const double part = remaining_[static_cast<std::size_t>(row)] / symmetric_[at(row, row)];
-    if (isUsed_[static_cast<std::size_t>(row)] || !(part > most)) continue;
+    const double part = remaining_[static_cast<std::size_t>(row)] * inverseDiagonal_[static_cast<std::size_t>(row)];
+    if (part > kGoodPivot) return row;
+    if (!(part > most)) continue;
     most = part;
     next = row;
   }
@@ -96,7 +109,7 @@ void MinimumNormSolver::findUpper() {
     double* column = &upper_[at(0, k)];
     for (int i = 0; i < size_; ++i) column[i] = coupled_[at(pivot, i)];
     for (int j = 0; j < k; ++j) subtract(lower_[at(pivot, j)], &upper_[at(0, j)], column, size_);
-    const double scale = 1 / lower_[at(pivot, k)];
+    const double scale = inverseBegin_[static_cast<std::size_t>(k)];
     for (int i = 0; i < size_; ++i) column[i] *= scale;
   }
 }
@@ -120,10 +133,9 @@ void MinimumNormSolver::orthogonalize(const std::vector<double>& columns, Orthog
   }
 }
 
-// One refinement takes out what the rounding of dependent or nearly dependent rows leaves.
+// One refinement takes out what the rounding of nearly dependent rows leaves.
 void MinimumNormSolver::solve(double* x) {
-  const bool refines = rank_ < size_ || !isWellConditioned_;
-  if (!refines) return solveOnce(x);
+  if (isWellConditioned_) return solveOnce(x);
   for (int row = 0; row < size_; ++row) residual_[static_cast<std::size_t>(row)] = x[row];
   solveOnce(x);
   const std::vector<double>& matrix = isCoupled_ ? coupled_ : symmetric_;
@@ -148,7 +160,7 @@ void MinimumNormSolver::reduce(const double* b) {
       const int pivot = pivots_[static_cast<std::size_t>(k)];
       double value = b[pivot];
       for (int j = 0; j < k; ++j) value -= lower_[at(pivot, j)] * y[j];
-      y[k] = value / lower_[at(pivot, k)];
+      y[k] = value * inverseBegin_[static_cast<std::size_t>(k)];
     }
     return;
   }
@@ -179,8 +191,7 @@ void MinimumNormSolver::substituteBack(double* x) {
       const int pivot = pivots_[static_cast<std::size_t>(j)];
       value -= lower_[at(pivot, k)] * x[pivot];
     }
-    const int pivot = pivots_[static_cast<std::size_t>(k)];
-    x[pivot] = value / lower_[at(pivot, k)];
+    x[pivots_[static_cast<std::size_t>(k)]] = value * inverseBegin_[static_cast<std::size_t>(k)];
   }
 }
 

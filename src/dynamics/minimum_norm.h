@@ -48,10 +48,12 @@ class MinimumNormSolver {
   int capacity_ = 0, size_ = 0, rank_ = 0;
   bool isCoupled_ = false, isWellConditioned_ = true;
   std::vector<double> symmetric_, coupled_;
-  std::vector<double> lower_;      // L of S = L L^T, size x rank
-  std::vector<double> upper_;      // K^T of S + C = L K
-  std::vector<int> pivots_;        // the row that each column of L begins with
-  std::vector<double> remaining_;  // of the diagonal of S
+  std::vector<double> lower_;         // L of S = L L^T, size x rank
+  std::vector<double> upper_;         // K^T of S + C = L K
+  std::vector<int> pivots_;           // the row that each column of L begins with
+  std::vector<double> inverseBegin_;  // 1 / its entry there
+  std::vector<double> remaining_;     // of the diagonal of S
+  std::vector<double> inverseDiagonal_;
   std::vector<char> isUsed_;
   Orthogonal lowerFactor_, upperFactor_;
   std::vector<double> reduced_, residual_;

@@ -1,6 +1,6 @@
 // Sliding: u_t = -alpha z_t with alpha > 0 makes (S + alpha) z_t = -b with the normal part eliminated from G and g, and
-// |z_t| = friction z_n leaves one equation for alpha (compare O. Bonnefon, G. Daviet, "Quartic formulation of Coulomb 3D
-// frictional contact", 2011). In the principal axes of S, z_t(alpha) is two quotients.
+// |z_t| = friction z_n leaves one equation for alpha (compare O. Bonnefon, G. Daviet, "Quartic formulation of Coulomb
+// 3D frictional contact", 2011). In the principal axes of S, z_t(alpha) is two quotients.
 
 #include "impact/single_contact.h"
 

@@ -6,6 +6,7 @@
 
 #include "dynamics/invariants.h"
 #include "impact/contact_impulse.h"
+#include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
 #include "impact/lasting_contact.h"
 
@@ -30,12 +31,12 @@ double closingSpeed(const Contact& contact, const VectorX& state) {
   return -contact.normal.dot(relativeVelocity(contact, state));
 }
 
-/// Without friction by reflections; with it pair by pair.
+/// Without friction by reflections; with it by the same on Coulomb's cones.
 void resolveImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
   const bool hasFriction = std::any_of(impacts.begin(), impacts.end(), [](const ImpactContact& impact) {
     return impact.law.staticFriction > 0 || impact.law.dynamicFriction > 0;
   });
-  hasFriction ? resolvePairwise(impacts, response, state) : resolveReflections(impacts, response, state);
+  hasFriction ? resolveFrictionalImpact(impacts, response, state) : resolveReflections(impacts, response, state);
 }
 
 }  // namespace

@@ -18,11 +18,14 @@ struct Kind {
   double radiusA, radiusB;
 };
 constexpr double kFace = std::numeric_limits<double>::infinity();
-const std::vector<Kind> kKinds = {
-    {"corner on fixed face", 0, kFixed, 0, kFace}, {"ball on fixed face", 0, kFixed, 0.3, kFace},
-    {"corner on face", 0, 1, 0, kFace},            {"ball on face", 0, 1, 0.3, kFace},
-    {"fixed ball on face", kFixed, 1, 0.3, kFace}, {"ball on fixed ball", 0, kFixed, 0.3, 0.7},
-    {"ball on ball", 0, 1, 0.3, 0.7},              {"corner on ball", 0, 1, 0, 0.7}};
+const std::vector<Kind> kKinds = {{"corner on fixed face", 0, kFixed, 0, kFace},
+                                  {"ball on fixed face", 0, kFixed, 0.3, kFace},
+                                  {"corner on face", 0, 1, 0, kFace},
+                                  {"ball on face", 0, 1, 0.3, kFace},
+                                  {"fixed ball on face", kFixed, 1, 0.3, kFace},
+                                  {"ball on fixed ball", 0, kFixed, 0.3, 0.7},
+                                  {"ball on ball", 0, 1, 0.3, 0.7},
+                                  {"corner on ball", 0, 1, 0, 0.7}};
 
 /// Two lopsided bodies that move at random and touch in a contact of that kind, somewhere.
 struct Touching {
@@ -136,8 +139,8 @@ TEST(ContactRows, SurfacesApartKeepTheirDistanceInTheGap) {
   for (const Kind& kind : kKinds) {
     Mechanism mechanism;
     mechanism.bodies = {lopsided(1), lopsided(1)};
-    mechanism.contacts = {
-        constraintOf({kind.bodyA, kind.bodyB, Vec3(1, 2, 3), Vec3(2, -1, 2) / 3, 0.01, kind.radiusA, kind.radiusB}, state)};
+    mechanism.contacts = {constraintOf(
+        {kind.bodyA, kind.bodyB, Vec3(1, 2, 3), Vec3(2, -1, 2) / 3, 0.01, kind.radiusA, kind.radiusB}, state)};
     EXPECT_NEAR(placeIn(mechanism, 0, state).gap, 0.01, 3e-15) << kind.name;
   }
 }
@@ -158,9 +161,8 @@ TEST(ContactForces, KeepGapAndMomentaForAllKindsOfSurfaces) {
       }
       if (kind.bodyA == kFixed || kind.bodyB == kFixed) continue;
       const auto sum = [&](auto member) {
-        return Vec3(timeDerivative(pair.state, rate, [&](const VectorX& state) {
-          return Vec3(invariantsOf(pair.mechanism, state).*member);
-        }));
+        return Vec3(timeDerivative(
+            pair.state, rate, [&](const VectorX& state) { return Vec3(invariantsOf(pair.mechanism, state).*member); }));
       };
       EXPECT_LT(sum(&Invariants::momentum).norm(), kDifference) << kind.name;
       EXPECT_LT(sum(&Invariants::angularMomentum).norm(), kDifference) << kind.name;
@@ -181,8 +183,8 @@ TEST(ContactForces, TakeNoEnergyButBySliding) {
       VectorX rate;
       equations.evaluate(pair.state, rate);
       const ContactForce& force = equations.contactForces()[0];
-      const double power = timeDerivative(
-          pair.state, rate, [&](const VectorX& state) { return energyConstant(pair.mechanism, state); });
+      const double power =
+          timeDerivative(pair.state, rate, [&](const VectorX& state) { return energyConstant(pair.mechanism, state); });
       EXPECT_NEAR(power, 0, kDifference) << kind.name;
       if (motion != ContactMotion::sliding) {
         EXPECT_EQ(dissipatedEnergy(rate), 0);
