@@ -94,28 +94,6 @@ class PairSearch {
     return pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall();
   }
 
-  /// Contacts of a sample of the step but those that are held.
-  void findOthers(double fraction, const VectorX& state, double margin) {
-    scratch_.contacts_.clear();
-    appendContacts(geometry_, pairIndex_, state, margin, scratch_.contacts_);
-    const double near = kSamePlace * std::min(a_.boundingRadius, geometry_.colliders[pair_.b].boundingRadius);
-    std::erase_if(scratch_.contacts_, [&](const Contact& contact) {
-      return std::any_of(held_->begin(), held_->end(), [&](const HeldFeature& held) {
-        if (held.pair != pairIndex_) return false;
-        return (poseAt(step_, held.point.body, fraction) * held.point.point - contact.point).norm() < near;
-      });
-    });
-  }
-
-  /// The least separation of points that are not held.
-  double gapOfOthers(double fraction) {
-    interpolate(step_, fraction, scratch_.sample_);
-    findOthers(fraction, scratch_.sample_, reach_);
-    double least = reach_;
-    for (const Contact& contact : scratch_.contacts_) least = std::min(least, contact.separation);
-    return least;
-  }
-
   /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not has the
   /// dead band.
   void searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
@@ -137,7 +115,7 @@ class PairSearch {
     if (from >= end) return;
     const auto above = [&](double fraction) { return gap(fraction) - threshold; };
     if (const auto fraction = firstCrossing(above, bounds_, from, gapFrom - threshold, end, above(end)))
-      best = ImpactTime{*fraction, pairIndex_, feature_};
+      best = ImpactTime{*fraction, pairIndex_, feature_, threshold, held_ != nullptr};
   }
 
   /// m/s; of the point of the feature that leaves slowest.
@@ -147,7 +125,7 @@ class PairSearch {
       return normal.dot(pointVelocity(a_.body, startA_ * a_.points[feature_] - a_.radius * normal, step_.startState));
     }
     if (held_) {
-      findOthers(0, step_.startState, tolerance);
+      scratch_.findOthers(pairIndex_, *held_, step_.startState, tolerance);
     } else {
       scratch_.contacts_.clear();
       appendContacts(geometry_, pairIndex_, step_.startState, tolerance, scratch_.contacts_);
@@ -161,7 +139,10 @@ class PairSearch {
   }
 
   double gap(double fraction) {
-    if (held_) return gapOfOthers(fraction);
+    if (held_) {
+      interpolate(step_, fraction, scratch_.sample_);
+      return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, reach_);
+    }
     return separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction), poseAt(step_, bodyB_, fraction));
   }
 
@@ -185,6 +166,38 @@ const MotionBounds& ImpactSearch::turnOf(const Step& step, int body) {
   Turn& turn = turns_[static_cast<std::size_t>(body)];
   if (!turn.isKnown) turn = {true, turnBounds(step, body)};
   return turn.bounds;
+}
+
+/// Contacts of a pair that are not held, to contacts_.
+void ImpactSearch::findOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state,
+                              double margin) {
+  contacts_.clear();
+  appendContacts(geometry_, pair, state, margin, contacts_);
+  const ColliderPair& colliders = geometry_.pairs[pair];
+  const double near = kSamePlace * std::min(geometry_.colliders[colliders.a].boundingRadius,
+                                            geometry_.colliders[colliders.b].boundingRadius);
+  std::erase_if(contacts_, [&](const Contact& contact) {
+    return std::any_of(held.begin(), held.end(), [&](const HeldFeature& feature) {
+      if (feature.pair != pair) return false;
+      return (poseOf(state, feature.point.body) * feature.point.point - contact.point).norm() < near;
+    });
+  });
+}
+
+/// The least separation of points that are not held, at most `margin`.
+double ImpactSearch::gapOfOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state,
+                                 double margin) {
+  findOthers(pair, held, state, margin);
+  double least = margin;
+  for (const Contact& contact : contacts_) least = std::min(least, contact.separation);
+  return least;
+}
+
+double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& touching, const VectorX& state) {
+  const ColliderPair& pair = geometry_.pairs[impact.pair];
+  if (!impact.isOfOthers) return separation(geometry_, pair, impact.feature, state) - impact.threshold;
+  const double farthest = geometry_.colliders[pair.a].boundingRadius;
+  return gapOfOthers(impact.pair, *touching.held, state, farthest) - impact.threshold;
 }
 
 std::optional<ImpactTime> ImpactSearch::first(const Step& step, const TouchingFeatures& touching) {

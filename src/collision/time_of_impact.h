@@ -13,6 +13,8 @@ namespace cradle {
 struct ImpactTime {
   double fraction = 0;  // of the step, 0..1
   std::size_t pair = 0, feature = 0;
+  double threshold = 0;      // m: the gap that is reached; < 0 if the features touched at the start
+  bool isOfOthers = false;   // the gap is that of the points of the pair that are not held
 };
 
 /// A feature of a pair, as separation.h numbers them, that something keeps together.
@@ -40,6 +42,9 @@ class ImpactSearch {
   /// The step's end rate must be there (prepareInterpolant).
   std::optional<ImpactTime> first(const Step& step, const TouchingFeatures& touching);
 
+  /// How far (m) an impact, found with the same touching features, is from happening in a state.
+  double margin(const ImpactTime& impact, const TouchingFeatures& touching, const VectorX& state);
+
  private:
   struct Turn {
     bool isKnown = false;
@@ -47,6 +52,8 @@ class ImpactSearch {
   };
   friend class PairSearch;
   const MotionBounds& turnOf(const Step& step, int body);
+  void findOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state, double margin);
+  double gapOfOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state, double margin);
 
   const ContactGeometry& geometry_;
   std::vector<Turn> turns_;  // of the moving bodies, in the step that is searched

@@ -6,6 +6,7 @@
 #include "dynamics/invariants.h"
 #include "impact/cone_problem.h"
 #include "impact/contact_impulse.h"
+#include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
 #include "simulate/contact_response.h"
 
@@ -154,7 +155,7 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
     return impact.law.staticFriction > 0 || impact.law.dynamicFriction > 0;
   });
   const auto solve = [&] {
-    hasFriction ? resolvePairwise(impacts, response, state) : resolveReflections(impacts, response, state);
+    hasFriction ? resolveFrictionalImpact(impacts, response, state) : resolveReflections(impacts, response, state);
   };
   solve();
   if (endBounces(approach, impacts)) {

@@ -160,10 +160,8 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
 
 /// Ends the step where a gap is closed. What the interpolant's error leaves of it is taken out along the rate there.
 void EventMotion::stopAtImpact(const ImpactTime& impact) {
-  const ContactGeometry& geometry = island_.assembly.geometry;
-  const auto gap = [&](const VectorX& state) {
-    return separation(geometry, geometry.pairs[impact.pair], impact.feature, state);
-  };
+  const TouchingFeatures touching = contacts_.touching();
+  const auto gap = [&](const VectorX& state) { return island_.search.margin(impact, touching, state); };
   Step& step = island_.step;
   const double length = impact.fraction * step.timeStep;
   keepStartRate(step);
