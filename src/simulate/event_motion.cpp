@@ -210,7 +210,7 @@ void EventMotion::requireTiesKept() const {
 /// What acts from now on.
 void EventMotion::changeForces(const Event& event) {
   if (event.impact || event.contact)
-    contacts_.resolve(event.contact);
+    contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
   else
     contacts_.lasting().followSliding();
   const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
