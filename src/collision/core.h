@@ -20,12 +20,12 @@ class Core {
   Vec3 turnedBack(const Vec3& direction) const { return turn_.transpose() * direction; }
 
   // Of a cylinder and a segment:
-  const Vec3& axis() const { return axis_; }                                          // unit
-  const Vec3& center() const { return center_; }                                      // m
-  double halfLength() const { return halfLength_; }                                   // m
-  double rimRadius() const { return collider_.rimRadius; }                            // m
-  Vec3 end(double side) const { return center_ + side * halfLength_ * axis_; }        // m; side 1 or -1
-  Vec3 rimPoint(double side, const Vec3& direction) const;                            // m: farthest of that rim
+  const Vec3& axis() const { return axis_; }                                    // unit
+  const Vec3& center() const { return center_; }                                // m
+  double halfLength() const { return halfLength_; }                             // m
+  double rimRadius() const { return collider_.rimRadius; }                      // m
+  Vec3 end(double side) const { return center_ + side * halfLength_ * axis_; }  // m; side 1 or -1
+  Vec3 rimPoint(double side, const Vec3& direction) const;                      // m: farthest of that rim
 
  private:
   const Collider& collider_;
@@ -34,5 +34,8 @@ class Core {
   Vec3 axis_ = Vec3::UnitY(), center_ = Vec3::Zero();
   double halfLength_ = 0;
 };
+
+/// The unit vector across a unit axis nearest to `direction`; any across it if that is along the axis.
+Vec3 unitAcross(const Vec3& axis, const Vec3& direction);
 
 }  // namespace cradle
