@@ -157,11 +157,11 @@ void keepPartsInside(const MeshPair& pair, MeshGap& gap) {
 
 MeshGap gapBetween(const MeshPair& pair, double enough) {
   const TreePair trees(pair.a.tree, pair.b.tree, pair.aFromB);
-  const double reach = std::max(enough, kTouching * std::min(pair.a.size, pair.b.size));
+  const double touching = kTouching * std::min(pair.a.size, pair.b.size), reach = std::max(enough, touching);
   GapVisit nearest{pair, reach * reach};
   trees.visitNear(nearest);
   if (nearest.intersect) {
-    OverlapVisit overlap{pair, reach * reach, {}};
+    OverlapVisit overlap{pair, touching * touching, {}};
     overlap.deepest.separation = 0;
     trees.visitNear(overlap);
     return overlap.deepest;
