@@ -50,7 +50,8 @@ struct FlatTriangle {
   Vec3 normal;
 
   double heightOf(const Vec3& point) const { return normal.dot(point - a); }
-  /// Whether the foot of the perpendicular is in the triangle, or beyond a side by at most `slack` of the side's length.
+  /// Whether the foot of the perpendicular is in the triangle, or beyond a side by at most `slack` of the side's
+  /// length.
   bool isAbove(const Vec3& point, double slack = 0) const {
     return isLeftOf(a, b, point, slack) && isLeftOf(b, c, point, slack) && isLeftOf(c, a, point, slack) &&
            normal != Vec3::Zero();
@@ -62,5 +63,9 @@ struct FlatTriangle {
     return normal.cross(along).dot(point - from) >= -slack * along.squaredNorm();
   }
 };
+
+inline const Vec3& cornerOf(const FlatTriangle& triangle, std::size_t corner) {
+  return corner == 0 ? triangle.a : corner == 1 ? triangle.b : triangle.c;
+}
 
 }  // namespace cradle

@@ -51,9 +51,7 @@ void reduceContacts(std::size_t first, double size, std::vector<ContactPoint>& c
   std::vector<Cluster> clusters;
   for (std::size_t i = first; i < contacts.size(); ++i) {
     std::size_t at = 0;
-    while (at < clusters.size() &&
-           contacts[clusters[at].members[0]].normal.dot(contacts[i].normal) < kSameNormal)
-      ++at;
+    while (at < clusters.size() && contacts[clusters[at].members[0]].normal.dot(contacts[i].normal) < kSameNormal) ++at;
     if (at == clusters.size()) clusters.push_back({contacts, {}, kSamePart * size});
     clusters[at].members.push_back(i);
   }

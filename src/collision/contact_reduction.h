@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "collision/polytope_contact.h"
+#include "collision/contact_point.h"
 
 namespace cradle {
 

@@ -2,44 +2,15 @@
 
 #include "collision/contact_reduction.h"
 #include "collision/mesh_gap.h"
+#include "collision/tangent_plane.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kFlat = std::numeric_limits<double>::infinity();   // m: radius of a plane
-constexpr double kEdge = std::numeric_limits<double>::quiet_NaN();  // an edge has none
-constexpr double kDeepPart = 0.01;     // of the size: deeper, features do not tell where to
+constexpr double kDeepPart = 0.01;       // of the size: deeper, features do not tell where to
 constexpr double kRoundingPart = 1e-12;  // of the size
-constexpr double kBeyondEnd = 1e-9;    // of a side: points as far outside a triangle or beyond an edge are on it
+constexpr double kBeyondEnd = 1e-9;      // of a side: points as far outside a triangle or beyond an edge are on it
 constexpr double kParallelSine = 1e-6;   // edges at a smaller angle have no crossing: their ends touch instead
-// How far, in lengths, a neighbour may be ahead of the tangent plane: what is tilted by less touches as a whole.
-constexpr double kLeastTilt = 1e-5, kMostTilt = 0.1;
-
-double allowedAhead(double margin, double length) {
-  return std::clamp(margin, kLeastTilt * length, kMostTilt * length);
-}
-
-/// Whether a solid lies behind the plane across `ahead` (unit, its own frame) at one of its vertices.
-bool isForemost(const MeshSurface& surface, std::uint32_t vertex, const Vec3& ahead, double margin) {
-  if (surface.vertexNormals[vertex].dot(ahead) < -kLeastTilt) return false;
-  for (std::uint32_t i = surface.firstNeighbour[vertex]; i < surface.firstNeighbour[vertex + 1]; ++i) {
-    const Vec3 side = surface.vertices[surface.neighbours[i]] - surface.vertices[vertex];
-    if (ahead.dot(side) > allowedAhead(margin, side.norm())) return false;
-  }
-  return true;
-}
-
-/// The same at one of its edges, to which `ahead` is perpendicular.
-bool isForemostEdge(const MeshSurface& surface, const MeshSurface::Edge& edge, const Vec3& ahead, double margin) {
-  if (edge.normal.dot(ahead) <= 0) return false;
-  const Vec3& from = surface.vertices[edge.vertices[0]];
-  const Vec3 along = (surface.vertices[edge.vertices[1]] - from).normalized();
-  for (const std::uint32_t across : edge.across) {
-    const Vec3 side = surface.vertices[across] - from;
-    if (ahead.dot(side) > allowedAhead(margin, side.cross(along).norm())) return false;
-  }
-  return true;
-}
 
 /// A contact with its features, by which contacts are ordered whatever the way they were found.
 struct Candidate {
@@ -86,10 +57,10 @@ struct ContactVisit {
     if (std::max(std::abs(partA - 0.5), std::abs(partB - 0.5)) > 0.5 + kBeyondEnd) return;
     normal /= edgeA.normal.dot(normal) < 0 ? -std::sqrt(sine2) : std::sqrt(sine2);
     const double separation = between.dot(normal);
-    if (!counts(separation) || !isForemostEdge(pair.a, edgeA, normal, margin) ||
-        !isForemostEdge(pair.b, edgeB, -pair.turnedBack(normal), margin))
+    if (!counts(separation) || !isForemost(pair.a, edgeA, normal, margin) ||
+        !isForemost(pair.b, edgeB, -pair.turnedBack(normal), margin))
       return;
-    add({2, indexA, indexB}, {a.at(partA) + separation / 2 * normal, normal, separation, kEdge, kEdge});
+    add({2, indexA, indexB}, {a.at(partA) + separation / 2 * normal, normal, separation, kNotRound, kNotRound});
   }
 
   void add(const std::array<std::uint32_t, 3>& key, const ContactPoint& contact) { found.push_back({key, contact}); }
@@ -114,7 +85,7 @@ void appendContacts(const MeshPair& pair, double margin, std::vector<ContactPoin
     }
   }
   if (least > gap.separation + rounding)
-    contacts.push_back({(gap.pointA + gap.pointB) / 2, gap.normal, gap.separation, kEdge, kEdge});
+    contacts.push_back({(gap.pointA + gap.pointB) / 2, gap.normal, gap.separation, kNotRound, kNotRound});
   reduceContacts(first, size, contacts);
 }
 

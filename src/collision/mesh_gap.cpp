@@ -117,7 +117,8 @@ struct OverlapVisit {
 /// What two nearest points, of surfaces that do not intersect, say.
 MeshGap gapOf(const MeshPair& pair, const GapVisit& nearest) {
   const Witness &onA = nearest.onA, &onB = nearest.onB;
-  const Vec3 between = onB.point - onA.point, outOfA = normalAt(pair.a, onA), outOfB = pair.turned(normalAt(pair.b, onB));
+  const Vec3 between = onB.point - onA.point, outOfA = normalAt(pair.a, onA),
+             outOfB = pair.turned(normalAt(pair.b, onB));
   const double distance = std::sqrt(nearest.distance2);
   const bool aIsInside = between.dot(outOfB) > 0, bIsInside = between.dot(outOfA) < 0;
   const double sign = aIsInside || bIsInside ? -1 : 1;
@@ -169,8 +170,7 @@ MeshGap gapBetween(const MeshPair& pair, double enough) {
   MeshGap gap;
   if (nearest.onA.feature != Feature::none) gap = gapOf(pair, nearest);
   // Where nothing is near, or a part other than the nearest one may be inside.
-  if (nearest.onA.feature == Feature::none || pair.a.parts.size() + pair.b.parts.size() > 2)
-    keepPartsInside(pair, gap);
+  if (nearest.onA.feature == Feature::none || pair.a.parts.size() + pair.b.parts.size() > 2) keepPartsInside(pair, gap);
   return gap;
 }
 

@@ -5,7 +5,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kOnSurfacePart = 1e-14;  // of the size: nearer, the direction to the surface is rounding
+constexpr double kSameDirection = 1e-6;  // rad: the normal of an edge or vertex inside a flat face is exact
+constexpr double kRoundingPart = 1e-15;  // of the size, of a difference of points
 
 struct NearestVisit {
   const MeshSurface& surface;
@@ -57,10 +58,10 @@ SignedHeight heightOver(const MeshSurface& surface, const Vec3& point) {
   const MeshPoint nearest = nearestPoint(surface, point);
   const Vec3 away = point - nearest.point;
   const double distance = std::sqrt(nearest.distance2), side = away.dot(nearest.normal) < 0 ? -1 : 1;
-  const bool hasDirection =
-      nearest.feature != MeshPoint::Feature::face && distance > kOnSurfacePart * surface.size;
-  return {side * distance, hasDirection ? Vec3(side / distance * away) : nearest.normal, nearest.point,
-          nearest.feature};
+  const Vec3 outward = distance > 0 ? Vec3(side / distance * away) : nearest.normal;
+  const double noise = std::max(kSameDirection, kRoundingPart * surface.size / distance);
+  const bool isFeatures = nearest.feature == MeshPoint::Feature::face || !((outward - nearest.normal).norm() > noise);
+  return {side * distance, isFeatures ? nearest.normal : outward, nearest.point, nearest.feature};
 }
 
 }  // namespace cradle

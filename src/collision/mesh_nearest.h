@@ -10,10 +10,10 @@ namespace cradle {
 /// The point of a surface nearest to a given one, in the mesh's frame.
 struct MeshPoint {
   enum class Feature { none, face, edge, vertex };
-  Feature feature = Feature::none;  // none: nothing is as near as asked
-  std::uint32_t index = 0;          // of the feature
-  Vec3 point = Vec3::Zero();        // m
-  Vec3 normal = Vec3::Zero();       // unit, outwards: the feature's
+  Feature feature = Feature::none;                             // none: nothing is as near as asked
+  std::uint32_t index = 0;                                     // of the feature
+  Vec3 point = Vec3::Zero();                                   // m
+  Vec3 normal = Vec3::Zero();                                  // unit, outwards: the feature's
   double distance2 = std::numeric_limits<double>::infinity();  // m^2, of the squares
 };
 

@@ -1,7 +1,7 @@
 // The depth under the surface along a straight line is concave while the solid is convex there: its greatest value is
-// found by tangent planes (J. E. Kelley, "The cutting-plane method for solving convex programs", 1960). Where two planes
-// with normals n1, n2 meet above the line, their mean m that is perpendicular to the line (and to the planes' common
-// edge) leads straight from one to the other: the lines' distance is the depth under the planes divided by |m|.
+// found by tangent planes (J. E. Kelley, "The cutting-plane method for solving convex programs", 1960). Where two
+// planes with normals n1, n2 meet above the line, their mean m that is perpendicular to the line (and to the planes'
+// common edge) leads straight from one to the other: the lines' distance is the depth under the planes divided by |m|.
 
 #include "collision/mesh_overlap.h"
 
@@ -82,7 +82,9 @@ class DepthBound {
         const DepthPlane &up = planes_[i], &down = planes_[j];
         if (!(up.slope >= 0 && down.slope <= 0 && up.slope > down.slope)) continue;
         const double meet = (down.depthAt(0) - up.depthAt(0)) / (up.slope - down.slope);
-        if (meet > 0 && meet < end) keepIfHigher(meet, &up, &down);
+        // Where a third plane is lower, it is not these two that bound the depth.
+        const bool areLowest = depthAt(meet) >= up.depthAt(meet) * (1 - kExactPart);
+        if (meet > 0 && meet < end && areLowest) keepIfHigher(meet, &up, &down);
       }
   }
 

@@ -49,10 +49,6 @@ inline double leastDistance(const CornerHeights& heights) {
   return std::max({0.0, low, -high});
 }
 
-inline const Vec3& cornerOf(const FlatTriangle& triangle, std::size_t corner) {
-  return corner == 0 ? triangle.a : corner == 1 ? triangle.b : triangle.c;
-}
-
 /// Calls pierces(i, part) for the sides i that the face owns and that go through `through`, given its corners' heights.
 template <class Pierces>
 void forEachPiercing(const MeshSurface::Face& face, const FlatTriangle& triangle, const CornerHeights& heights,

@@ -1,6 +1,6 @@
 // J. A. Baerentzen, H. Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE Trans.
-// Visualization and Computer Graphics 11(3), 2005: with the mean normal of an edge's triangles, and the mean weighted by
-// angle of a vertex's, the sign of (point - nearest point) . normal says exactly whether a point is inside.
+// Visualization and Computer Graphics 11(3), 2005: with the mean normal of an edge's triangles, and the mean weighted
+// by angle of a vertex's, the sign of (point - nearest point) . normal says exactly whether a point is inside.
 
 #include "collision/mesh_surface.h"
 
@@ -95,8 +95,7 @@ void addNeighbours(MeshSurface& surface) {
   surface.firstNeighbour.assign(surface.vertices.size() + 1, 0);
   for (const MeshSurface::Edge& edge : surface.edges)
     for (const std::uint32_t vertex : edge.vertices) ++surface.firstNeighbour[vertex + 1];
-  for (std::size_t i = 0; i < surface.vertices.size(); ++i)
-    surface.firstNeighbour[i + 1] += surface.firstNeighbour[i];
+  for (std::size_t i = 0; i < surface.vertices.size(); ++i) surface.firstNeighbour[i + 1] += surface.firstNeighbour[i];
   std::vector<std::uint32_t> next = surface.firstNeighbour;
   surface.neighbours.resize(2 * surface.edges.size());
   for (const auto& [ends, across, normal, isConvex] : surface.edges) {

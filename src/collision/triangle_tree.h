@@ -9,8 +9,9 @@
 
 namespace cradle {
 
-/// Axis-aligned boxes around the triangles of a mesh, in the mesh's frame: a binary tree, its halves split at the middle
-/// triangle along the longest side. Node 0 holds all; the first child of node n is n + 1; a leaf is one triangle.
+/// Axis-aligned boxes around the triangles of a mesh, in the mesh's frame: a binary tree, its halves split at the
+/// middle triangle along the longest side. Node 0 holds all; the first child of node n is n + 1; a leaf is one
+/// triangle.
 struct TriangleTree {
   struct Node {
     Vec3 center, halfSize;   // m
@@ -30,17 +31,23 @@ inline double squaredDistance(const TriangleTree::Node& node, const Vec3& point)
   return ((point - node.center).cwiseAbs() - node.halfSize).cwiseMax(0.0).squaredNorm();
 }
 
-/// Calls visit(triangle) for triangles whose box is nearer to a point than the square root of visit.reach(), which may
-/// shrink on the way; the nearer half first.
-template <class Visit>
-void visitNear(const TriangleTree& tree, const Vec3& point, Visit& visit, std::uint32_t at = 0) {
+/// The same from a box along the same axes.
+inline double squaredDistance(const TriangleTree::Node& node, const Bounds& box) {
+  const Vec3 between = (box.center() - node.center).cwiseAbs() - box.sizes() / 2 - node.halfSize;
+  return between.cwiseMax(0.0).squaredNorm();
+}
+
+/// Calls visit(triangle) for triangles whose box is nearer to a point or box than the square root of visit.reach(),
+/// which may shrink on the way; the nearer half first.
+template <class Place, class Visit>
+void visitNear(const TriangleTree& tree, const Place& place, Visit& visit, std::uint32_t at = 0) {
   const TriangleTree::Node& node = tree.nodes[at];
   if (node.isLeaf()) return visit(node.triangle);
   std::uint32_t near = at + 1, far = node.second;
-  double nearest = squaredDistance(tree.nodes[near], point), farthest = squaredDistance(tree.nodes[far], point);
+  double nearest = squaredDistance(tree.nodes[near], place), farthest = squaredDistance(tree.nodes[far], place);
   if (farthest < nearest) std::swap(near, far), std::swap(nearest, farthest);
-  if (nearest <= visit.reach()) visitNear(tree, point, visit, near);
-  if (farthest <= visit.reach()) visitNear(tree, point, visit, far);
+  if (nearest <= visit.reach()) visitNear(tree, place, visit, near);
+  if (farthest <= visit.reach()) visitNear(tree, place, visit, far);
 }
 
 /// Two trees in a relative pose. Distances of boxes are bounded from below along the axes of both.
@@ -63,8 +70,7 @@ class TreePair {
   double squaredDistance(const TriangleTree::Node& a, const TriangleTree::Node& b) const {
     const Vec3 between = rotation_ * b.center + shift_ - a.center;
     const Vec3 alongA = between.cwiseAbs() - a.halfSize - extent_ * b.halfSize;
-    const Vec3 alongB =
-        (rotation_.transpose() * between).cwiseAbs() - b.halfSize - extent_.transpose() * a.halfSize;
+    const Vec3 alongB = (rotation_.transpose() * between).cwiseAbs() - b.halfSize - extent_.transpose() * a.halfSize;
     return std::max(alongA.cwiseMax(0.0).squaredNorm(), alongB.cwiseMax(0.0).squaredNorm());
   }
 
