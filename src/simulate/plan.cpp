@@ -27,6 +27,7 @@ namespace cradle {
 namespace {
 
 constexpr double kContactTimeStep = 1.0 / 960;  // s: 16 steps a frame at 60 frames a second
+constexpr double kEventAccuracy = 1e-4;         // at coarser ones contact is resolved once a step
 constexpr double kTolerancePart = 0.1;          // of the accuracy: the local errors of about ten steps add up to it
 
 /// What reaches of bodies are compared with: their size around the centre of mass.
@@ -228,13 +229,12 @@ void choose(const Scene& scene, IslandPlan& island) {
   if (scene.method) {
     island.method = namedMethod(scene);
     island.reason = "the scene names the method";
-    if (island.method.isAdaptive() && mayTouchSomething) {
-      island.method.timeStep = kContactTimeStep;
-      island.reason = "the scene names the method; something may touch, so that its step is fixed";
-    }
-  } else if (mayTouchSomething) {
+  } else if (mayTouchSomething && scene.accuracy > kEventAccuracy) {
     island.method = {rk4, "RK4", kContactTimeStep};
     island.reason = "something may touch: contact is resolved once a step, the accuracy asked is not promised";
+  } else if (mayTouchSomething) {
+    island.method = {dop853, "DOP853", 0, kTolerancePart * scene.accuracy};
+    island.reason = "something may touch: contact changes at events, with steps as long as the accuracy allows between";
   } else if (!isActedUpon(scene, island)) {
     island.method.name = "closed form";
     island.reason = "nothing acts but uniform gravity: parabola and exact free rotation";
