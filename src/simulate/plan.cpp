@@ -1,8 +1,10 @@
 // Rules of the plan. The first that applies to an island is taken:
 //   1. the scene names a method: that one, for studies
-//   2. something may touch: RK4 with a fixed step, since lasting contact is resolved once a step
-//   3. nothing acts but uniform gravity: closed form
-//   4. else DOP853 with steps as long as the accuracy allows
+//   2. balls bounce without loss, and nothing acts but uniform gravity: closed form between collisions
+//   3. something may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved once a
+//   step
+//   4. nothing acts but uniform gravity: closed form
+//   5. else DOP853 with steps as long as the accuracy allows; contact changes at events
 
 #include "simulate/plan.h"
 
@@ -20,6 +22,7 @@
 #include "dynamics/integrators/semi_implicit_euler.h"
 #include "dynamics/rigid_body.h"
 #include "simulate/colliders.h"
+#include "simulate/flying_balls.h"
 #include "simulate/islands.h"
 #include "simulate/reach.h"
 
@@ -229,6 +232,10 @@ void choose(const Scene& scene, IslandPlan& island) {
   if (scene.method) {
     island.method = namedMethod(scene);
     island.reason = "the scene names the method";
+  } else if (mayTouchSomething && !isActedUpon(scene, island) && flyingBallsOf(scene, island)) {
+    island.method = {nullptr, "closed form between collisions", 0, 0, true};
+    island.reason = "elastic balls in flight: parabolas, and collisions in the order of time";
+    island.leftOut.push_back("no steps, no rotation: nothing turns balls that touch without friction");
   } else if (mayTouchSomething && scene.accuracy > kEventAccuracy) {
     island.method = {rk4, "RK4", kContactTimeStep};
     island.reason = "something may touch: contact is resolved once a step, the accuracy asked is not promised";
