@@ -51,10 +51,8 @@ class PairSearch {
     appendFeaturesWithin(geometry_, pair_, startA_, reach, scratch_.features_);
     for (const std::size_t feature : scratch_.features_) {
       feature_ = feature;
-      held_ = isHeld(touching) ? touching.held : nullptr;
-      if (held_ && hasOneContact()) continue;
-      reach_ = reach;
-      const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_);
+      if (isHeld(touching)) continue;
+      const double start = separation(geometry_, pair_, feature_, startA_, startB_, reach);
       if (start > bounds_.speed) continue;
       if (start > touching.tolerance)
         searchFrom(0, start, 0, best);
@@ -137,12 +135,11 @@ class PairSearch {
     return least;
   }
 
-  double gap(double fraction) {
-    if (held_) {
-      interpolate(step_, fraction, scratch_.sample_);
-      return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, reach_);
-    }
-    return separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction), poseAt(step_, bodyB_, fraction));
+  double gap(double fraction) const {
+    // A gap of twice the way that can be gone in the step stays open, however large it is.
+    const double enough = 2 * bounds_.speed;
+    return std::min(2 * enough, separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction),
+                                           poseAt(step_, bodyB_, fraction), enough));
   }
 
   const ContactGeometry& geometry_;
