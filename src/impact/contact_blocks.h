@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "collision/contact_manifold.h"
+#include "impact/lanes.h"
+
+// Contacts as the soft contact solver works on them: two at a time, one a lane, everything it needs side by side.
+// Angular velocities are scaled: u = sqrt(I) w in a body's principal axes, so that an impulse p along n at arm r changes
+// u by p t and the contact's speed is t.u, with the same t = (r x n) / sqrt(I) (the usual way needs two vectors).
+
+namespace cradle {
+
+/// A moving body as the solver sees it.
+struct SolverBody {
+  Vec3 position;         // m, world, of the centre of mass
+  double inverseMass;    // 1/kg
+  Mat3 scaledFromWorld;  // 1/sqrt(kg) / m: of angular impulses
+};
+
+/// How gently a soft pass takes out overlap.
+struct Softness {
+  double timeStep;    // s, of the sub-step
+  double pushRate;    // 1/s: part of an overlap that is taken out
+  double mostPush;    // m/s
+  double massScale;   // of the impulse that would stop a contact at once
+  double impulseScale;
+};
+
+template <int pointCount, bool bothMove>
+struct ContactBlock {
+  static constexpr int kPoints = pointCount;
+  static constexpr bool kBothMove = bothMove;
+  static constexpr int kMovers = bothMove ? 2 : 1;
+
+  struct Point {
+    LaneVector turns[kMovers];  // of A and B
+    Lanes mass, separation, impulse;
+    Lanes start;  // impulse at the step's beginning
+    Lanes slack;  // m/s: closing speed that is left until the next sub-step
+  };
+  struct Friction {
+    LaneVector tangents[2];
+    LaneVector turns[2][kMovers];
+    Lanes mass11, mass12, mass22, impulses[2], coefficient;
+  };
+  struct Twist {
+    LaneVector turns[kMovers];
+    Lanes mass, impulse;
+    Lanes levers[kPoints];  // m, of the points about the middle
+  };
+
+  std::int32_t bodies[kMovers][kLanes];
+  std::int32_t manifolds[kLanes];  // -1: nothing in this lane
+  LaneVector normal;
+  Lanes inverseMasses[kMovers];
+  Lanes restitution;
+  Point points[kPoints];
+  Friction friction;
+  Twist twist;
+};
+
+/// Bodies' motions while a step is solved. The last entry of each stands still, for lanes without a contact.
+struct SolverMotions {
+  std::vector<BodyMotion> velocities;     // m/s, scaled rad/s
+  std::vector<BodyMotion> displacements;  // m, scaled rad: since the step began
+  std::vector<BodyMotion> starts;         // velocities before the step
+};
+
+}  // namespace cradle
