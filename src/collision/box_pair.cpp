@@ -32,6 +32,7 @@ class BoxPair {
       : a_(a),
         b_(b),
         margin_(margin),
+        reach_(margin + 2 * motion.norm()),
         aFromB_(a.axes.transpose() * b.axes),
         cosines_(aFromB_.cwiseAbs()),
         offset_(a.axes.transpose() * (b.center - a.center)),
@@ -128,6 +129,7 @@ class BoxPair {
 
   const PosedBox &a_, &b_;
   const double margin_;
+  const double reach_;  // m: corners as near as that count, for boxes turn about the first that touch
   const Mat3 aFromB_, cosines_;
   const Vec3 offset_, motion_;
   Axis side_, edges_;
@@ -198,7 +200,7 @@ ContactPatch BoxPair::sideContact(const PosedBox& reference, const PosedBox& inc
   std::size_t near = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const Corner& corner = corners[k];
-    if (corner.height > margin_) continue;
+    if (corner.height > reach_) continue;
     const Vec3 onReference = reference.center + height * normal + corner.u * alongU + corner.v * alongV;
     const Vec3 onIncident = onReference + corner.height * normal - ahead;
     points[near++] = {referenceIsA ? onReference : onIncident, referenceIsA ? onIncident : onReference,

@@ -12,6 +12,7 @@ struct ContactManifold {
   int bodyA = kFixed, bodyB = kFixed;  // A moves
   ContactPatch patch;
   std::array<double, ContactPatch::kMostPoints> impulses{};  // N s, along the normal, of each point
+  std::array<double, ContactPatch::kMostPoints> carried{};   // N s, the part of these that needs no overlap
   Vec3 frictionImpulse = Vec3::Zero();                       // N s, world, on B at the patch's middle
   double twistImpulse = 0;                                   // N m s, about the normal, on B
   SurfaceLaw law;

@@ -95,6 +95,7 @@ void fillLane(const ContactManifold& manifold, std::int32_t index, const std::ve
     point.mass[lane] = 1 / fillTurns<Block>(point.turns, patch.normal, arms, movers, lane);
     point.separation[lane] = from.separation;
     point.impulse[lane] = manifold.impulses[static_cast<std::size_t>(i)];
+    point.carried[lane] = manifold.carried[static_cast<std::size_t>(i)];
   }
   fillFriction(manifold, movers, coefficient, lane, block);
 }
@@ -111,8 +112,12 @@ void storeImpulses(const Block& block, std::vector<ContactManifold>& manifolds) 
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.manifolds[lane] < 0) continue;
     ContactManifold& manifold = manifolds[static_cast<std::size_t>(block.manifolds[lane])];
-    for (int i = 0; i < Block::kPoints; ++i)
-      manifold.impulses[static_cast<std::size_t>(i)] = block.points[i].impulse[lane];
+    static const double rate = getenv("KB") ? atof(getenv("KB")) : 0.05;
+    for (int i = 0; i < Block::kPoints; ++i) {
+      const double impulse = block.points[i].impulse[lane], carried = block.points[i].carried[lane];
+      manifold.impulses[static_cast<std::size_t>(i)] = impulse;
+      manifold.carried[static_cast<std::size_t>(i)] = carried + rate * (impulse - carried);
+    }
     const auto& friction = block.friction;
     const auto tangent = [&](int i) {
       const LaneVector& t = friction.tangents[i];

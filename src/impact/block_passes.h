@@ -89,7 +89,6 @@ void warmBlock(Block& block, SolverMotions& motions) {
   MotionsOf<Block> velocities(block, motions.velocities);
   for (int i = 0; i < Block::kPoints; ++i) {
     velocities.push(block, block.points[i].impulse, block.normal, block.points[i].turns);
-    block.points[i].start = block.points[i].impulse;
   }
   for (int i = 0; i < 2; ++i)
     velocities.push(block, block.friction.impulses[i], block.friction.tangents[i], block.friction.turns[i]);
@@ -107,13 +106,16 @@ void softenBlock(Block& block, const Softness& soft, SolverMotions& motions) {
     auto& point = block.points[i];
     const Lanes separation = point.separation + displacements.along(block.normal, point.turns);
     const auto apart = separation > none;
+    const Lanes turn = same(soft.turn) * (same(1) + larger(none, -separation) * same(soft.hardening));
+    const Lanes damping = same(soft.damping) + turn, stiffness = turn * damping;
+    const Lanes yielding = same(1) / (same(1) + stiffness);
     const Lanes wanted =
-        apart ? separation * rate : larger(separation * same(soft.pushRate), same(-soft.mostPush));
-    const Lanes massScale = apart ? same(1) : same(soft.massScale);
-    const Lanes impulseScale = apart ? none : same(soft.impulseScale);
+        apart ? separation * rate : larger(separation * rate * turn / damping, same(-soft.mostPush));
+    const Lanes massScale = apart ? same(1) : stiffness * yielding;
+    const Lanes impulseScale = apart ? none : yielding;
     const Lanes speed = velocities.along(block.normal, point.turns);
     const Lanes free = point.impulse - point.mass * massScale * (speed + wanted) -
-                       impulseScale * (point.impulse - point.start);
+                       impulseScale * (point.impulse - point.carried);
     const Lanes held = larger(none, free);
     point.slack = held > none ? none : larger(none, separation * rate + speed);
     velocities.push(block, held - point.impulse, block.normal, point.turns);

@@ -22,10 +22,10 @@ struct SolverBody {
 /// How gently a soft pass takes out overlap.
 struct Softness {
   double timeStep;    // s, of the sub-step
-  double pushRate;    // 1/s: part of an overlap that is taken out
+  double turn;        // rad: of the contact as an oscillator, in a sub-step
+  double damping;     // twice the damping ratio
+  double hardening;   // 1/m
   double mostPush;    // m/s
-  double massScale;   // of the impulse that would stop a contact at once
-  double impulseScale;
 };
 
 template <int pointCount, bool bothMove>
@@ -37,7 +37,7 @@ struct ContactBlock {
   struct Point {
     LaneVector turns[kMovers];  // of A and B
     Lanes mass, separation, impulse;
-    Lanes start;  // impulse at the step's beginning
+    Lanes carried;  // N s: part of the impulse that needs no overlap
     Lanes slack;  // m/s: closing speed that is left until the next sub-step
   };
   struct Friction {

@@ -6,9 +6,10 @@
 #include <tuple>
 
 namespace cradle {
+constexpr double kMargin = 5e-3;
 namespace {
 
-constexpr double kMargin = 5e-3;            // m: contacts are known before bodies touch
+constexpr double kMarginX = 5e-3;            // m: contacts are known before bodies touch
 constexpr double kSamePoint = 0.1;          // of the smaller body's radius: points this near are one from step to step
 constexpr double kSameNormal = 0.9;         // cosine, at least, for impulses to go on
 constexpr double kRoundSide = 1e-12;        // of a side: rounding of a box's corners
@@ -79,6 +80,18 @@ void PileContacts::update(const std::vector<MovingPose>& poses, const VectorX& s
     const auto [first, last] = threads.partOf(pairs_.size(), thread);
     for (std::size_t i = first; i < last; ++i) pairStates_[i].isNear = isNear(pairs_[i], poses, timeStep);
   });
+  static const double um = getenv("UM") ? atof(getenv("UM")) : 0.5;
+  shocks_.assign(poses.size(), 0);
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    if (!pairStates_[i].isNear) continue;
+    const int a = geometry_.colliders[pairs_[i].a].body, b = bodyBOf(geometry_, pairs_[i]);
+    Vec3 velocity = Vec3::Zero();
+    if (a != kFixed) velocity -= poses[static_cast<std::size_t>(a)].linearVelocity;
+    if (b != kFixed) velocity += poses[static_cast<std::size_t>(b)].linearVelocity;
+    const double shock = um * timeStep * velocity.norm();
+    if (a != kFixed) shocks_[static_cast<std::size_t>(a)] = std::max(shocks_[static_cast<std::size_t>(a)], shock);
+    if (b != kFixed) shocks_[static_cast<std::size_t>(b)] = std::max(shocks_[static_cast<std::size_t>(b)], shock);
+  }
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     PairState& pairState = pairStates_[i];
     if (!pairState.isNear || pairState.manifold >= 0) continue;
@@ -222,6 +235,8 @@ void PileContacts::updatePair(std::size_t index, const std::vector<MovingPose>& 
   const MovingPose& poseB = manifold.bodyB == kFixed ? still : poses[static_cast<std::size_t>(manifold.bodyB)];
   const Vec3 motion = (poseB.linearVelocity - poseA.linearVelocity) * timeStep;
 
+  const double kMargin = cradle::kMargin + shocks_[static_cast<std::size_t>(manifold.bodyA)] +
+                         (manifold.bodyB == kFixed ? 0 : shocks_[static_cast<std::size_t>(manifold.bodyB)]);
   // Only just moved: the same points, where they are now.
   if (origin.versionA == poseA.version && origin.versionB == poseB.version) {
     ContactPatch& patch = manifold.patch;
@@ -276,18 +291,19 @@ void PileContacts::updatePair(std::size_t index, const std::vector<MovingPose>& 
   if (patch.count > 0) {
     if (before.patch.count > 0 && before.patch.normal.dot(patch.normal) > kSameNormal) {
       if (!isKept) {
-        manifold.impulses = before.impulses;
+        manifold.impulses = before.impulses, manifold.carried = before.carried;
       } else {
-        manifold.impulses.fill(0);
+        manifold.impulses.fill(0), manifold.carried.fill(0);
         const double near = kSamePoint * poseA.radius;
         for (std::size_t i = 0; i < patch.count; ++i) {
           const Vec3 local = poseA.rotation.transpose() * (patch.points[i].onA - poseA.position);
           for (std::size_t j = 0; j < before.patch.count; ++j)
-            if ((local - origin.localA[j]).squaredNorm() < near * near) manifold.impulses[i] = before.impulses[j];
+            if ((local - origin.localA[j]).squaredNorm() < near * near)
+              manifold.impulses[i] = before.impulses[j], manifold.carried[i] = before.carried[j];
         }
       }
     } else {
-      manifold.impulses.fill(0);
+      manifold.impulses.fill(0), manifold.carried.fill(0);
       manifold.frictionImpulse.setZero();
       manifold.twistImpulse = 0;
     }

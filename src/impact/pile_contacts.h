@@ -71,6 +71,7 @@ class PileContacts {
   std::vector<Origin> origins_;
   std::vector<std::int32_t> free_;
   std::vector<std::int32_t> active_;
+  std::vector<double> shocks_;
 };
 
 }  // namespace cradle

@@ -11,17 +11,18 @@
 namespace cradle {
 namespace {
 
-constexpr int kSubSteps = 4;            // boxes need as many to come to rest
-constexpr double kFrequency = 60;       // Hz: of contacts as springs, a quarter of the sub-steps' at 60 steps a second
-constexpr double kDampingRatio = 5;     // far above 1: overlap goes, and does not come back as speed
+static const int kSubSteps = getenv("SS") ? atoi(getenv("SS")) : 4;            // boxes need as many to come to rest
+static const double kFrequency = getenv("FR") ? atof(getenv("FR")) : 60;       // Hz: of contacts as springs, a quarter of the sub-steps' at 60 steps a second
+static const double kDampingRatio = getenv("DR") ? atof(getenv("DR")) : 5;     // far above 1: overlap goes, and does not come back as speed
 constexpr double kMostPush = 4;         // m/s
 constexpr double kPi = 3.14159265358979324;
 
 /// A damped spring, implicit in the sub-step (E. Catto, "Soft Constraints", GDC 2011).
-Softness softnessOf(double timeStep) {
-  const double omega = 2 * kPi * kFrequency;
-  const double damping = 2 * kDampingRatio + timeStep * omega, stiffness = timeStep * omega * damping;
-  return {timeStep, omega / damping, kMostPush, stiffness / (1 + stiffness), 1 / (1 + stiffness)};
+Softness softnessOf(double timeStep, int points) {
+  static const double f1 = getenv("F1") ? atof(getenv("F1")) : 120, f2 = getenv("F2") ? atof(getenv("F2")) : 85;
+  const double omega = 2 * kPi * (points == 1 ? f1 : points == 2 ? f2 : kFrequency);
+  static const double hard = getenv("HD") ? atof(getenv("HD")) : 0;
+  return {timeStep, timeStep * omega, 2 * kDampingRatio, hard, kMostPush};
 }
 
 template <class Lists, class Work>
@@ -90,13 +91,24 @@ void SoftContactSolver::sweep(WorkerThreads& threads, int thread, const Pass& pa
 }
 
 void SoftContactSolver::solve(double timeStep, double slowestRebound, SolverMotions& motions, WorkerThreads& threads) {
-  const Softness soft = softnessOf(timeStep / kSubSteps);
+  const Softness softs[] = {softnessOf(timeStep / kSubSteps, 1), softnessOf(timeStep / kSubSteps, 2), softnessOf(timeStep / kSubSteps, 3), softnessOf(timeStep / kSubSteps, 4)};
+  const Softness& soft = softs[0];
   const Lanes subStep = same(soft.timeStep);
+  static const bool schemeB = getenv("SB");
   threads.run([&](int thread) {
-    sweep(threads, thread, [&](auto& block) { warmBlock(block, motions); });
+    if (!schemeB) sweep(threads, thread, [&](auto& block) { warmBlock(block, motions); });
     const auto [first, last] = threads.partOf(motions.displacements.size() - 1, thread);
     for (int i = 0; i < kSubSteps; ++i) {
-      sweep(threads, thread, [&](auto& block) { softenBlock(block, soft, motions); });
+      if (schemeB) {
+        for (std::size_t body = first; body < last; ++body) {
+          BodyMotion& velocity = motions.velocities[body];
+          if (i == 0) velocity.xy[1] += 9.81 * timeStep;
+          velocity.xy[1] -= 9.81 * soft.timeStep;
+        }
+        threads.meet();
+        sweep(threads, thread, [&](auto& block) { warmBlock(block, motions); });
+      }
+      sweep(threads, thread, [&](auto& block) { softenBlock(block, softs[std::decay_t<decltype(block)>::kPoints - 1], motions); });
       for (std::size_t body = first; body < last; ++body) {
         const BodyMotion& velocity = motions.velocities[body];
         BodyMotion& displacement = motions.displacements[body];
