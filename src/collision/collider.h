@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "collision/polytope.h"
@@ -17,6 +18,8 @@ struct Collider {
   double radius = 0;                 // m
   double boundingRadius = 0;         // m, of all balls about the centre of mass
   std::optional<Polytope> polytope;  // same frame as the points
+  Bounds bounds = {};                // m, of all balls; same frame as the points
+  int surface = 0;                   // index into ContactGeometry::laws
 
   bool isBall() const { return points.size() == 1; }
 };
@@ -25,6 +28,7 @@ struct Collider {
 struct PlaneCollider {
   Vec3 point = Vec3::Zero();    // m, world
   Vec3 normal = Vec3::UnitY();  // unit, out of the solid
+  int surface = 0;              // index into ContactGeometry::laws
 };
 
 /// How two touching surfaces treat each other.
@@ -39,10 +43,13 @@ struct ColliderPair {
   SurfaceLaw law;
 };
 
+/// Everything that may touch. Which of it is near changes as bodies move: see broad_phase.h.
 struct ContactGeometry {
   std::vector<Collider> colliders;
   std::vector<PlaneCollider> planes;
-  std::vector<ColliderPair> pairs;
+  std::vector<std::vector<SurfaceLaw>> laws;                  // [surface][surface], symmetric
+  std::vector<std::pair<std::size_t, std::size_t>> excluded;  // colliders a < b that do not touch each other; ascending
+  std::vector<ColliderPair> pairs;                            // near each other now, in the order of BroadPhase
   std::vector<ColliderPair> unsolvedPairs;  // contact that cannot be computed: must stay out of each other's reach
 };
 

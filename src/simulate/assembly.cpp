@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "collision/broad_phase.h"
 #include "core/error.h"
 #include "simulate/colliders.h"
 #include "simulate/step_limit.h"
@@ -120,53 +121,58 @@ void satisfyConstraints(const Scene& scene, Assembly& assembly) {
         scene.path, violation, (assembly.state - before).cwiseAbs().maxCoeff()));
 }
 
-struct ColliderIndices {
-  std::vector<int> colliders, planes;  // of each scene body, or -1
-};
-
 /// Colliders of the bodies that may touch.
-ColliderIndices addColliders(const Scene& scene, const IslandPlan& island, const std::vector<int>& moving,
-                             ContactGeometry& geometry) {
-  ColliderIndices indices{std::vector<int>(scene.bodies.size(), -1), std::vector<int>(scene.bodies.size(), -1)};
-  std::vector<std::size_t> bodies;
-  for (const auto& [a, b] : island.near)
-    bodies.push_back(static_cast<std::size_t>(a)), bodies.push_back(static_cast<std::size_t>(b));
-  std::sort(bodies.begin(), bodies.end());
-  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-  for (const std::size_t i : bodies) {
-    const Body& body = scene.bodies[i];
+void addColliders(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
+  ContactGeometry& geometry = assembly.geometry;
+  assembly.radii.assign(assembly.mechanism.bodies.size(), 0.0);
+  for (const int index : island.touching) {
+    const Body& body = scene.bodies[static_cast<std::size_t>(index)];
     if (const auto* plane = std::get_if<Plane>(&body.shape)) {
-      indices.planes[i] = static_cast<int>(geometry.planes.size());
-      geometry.planes.push_back({body.worldFromBody.translation, body.worldFromBody.rotation * plane->normal});
+      geometry.planes.push_back(
+          {body.worldFromBody.translation, body.worldFromBody.rotation * plane->normal, body.material});
+      assembly.planeBodies.push_back(index);
     } else {
-      indices.colliders[i] = static_cast<int>(geometry.colliders.size());
-      geometry.colliders.push_back(*colliderOf(body, scene, moving[i]));
+      geometry.colliders.push_back(*colliderOf(body, scene, assembly.movingBodies[static_cast<std::size_t>(index)]));
+      assembly.colliderBodies.push_back(index);
+      const Collider& collider = geometry.colliders.back();
+      if (collider.body != kFixed) assembly.radii[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
     }
   }
-  return indices;
+  for (const std::vector<SurfacePair>& row : scene.surfacePairs) {
+    std::vector<SurfaceLaw>& laws = geometry.laws.emplace_back();
+    for (const SurfacePair& pair : row) laws.push_back({pair.restitution, pair.staticFriction, pair.dynamicFriction});
+  }
 }
 
-void addPair(const Scene& scene, const ColliderIndices& indices, const std::pair<int, int>& bodies,
-             Assembly& assembly) {
-  ContactGeometry& geometry = assembly.geometry;
-  // Planes stand second.
-  auto [a, b] = bodies;
-  if (indices.planes[static_cast<std::size_t>(a)] >= 0) std::swap(a, b);
-  const Body &bodyA = scene.bodies[static_cast<std::size_t>(a)], &bodyB = scene.bodies[static_cast<std::size_t>(b)];
-  const int plane = indices.planes[static_cast<std::size_t>(b)];
-  const std::size_t first = static_cast<std::size_t>(indices.colliders[static_cast<std::size_t>(a)]);
-  const std::size_t second =
-      static_cast<std::size_t>(plane >= 0 ? plane : indices.colliders[static_cast<std::size_t>(b)]);
-  const SurfacePair& surface =
-      scene.surfacePairs[static_cast<std::size_t>(bodyA.material)][static_cast<std::size_t>(bodyB.material)];
-  const ColliderPair pair{
-      first, second, plane >= 0, {surface.restitution, surface.staticFriction, surface.dynamicFriction}};
-  if (canSolveContact(geometry.colliders[first], plane >= 0 ? nullptr : &geometry.colliders[second])) {
-    geometry.pairs.push_back(pair);
-    assembly.pairBodies.emplace_back(a, b);
-  } else {
-    geometry.unsolvedPairs.push_back(pair);
-  }
+/// The collider of a scene body, or -1.
+int colliderIndex(const Assembly& assembly, int body) {
+  const auto& bodies = assembly.colliderBodies;
+  const auto found = std::lower_bound(bodies.begin(), bodies.end(), body);
+  return found != bodies.end() && *found == body ? static_cast<int>(found - bodies.begin()) : -1;
+}
+
+/// Bodies that a joint joins do not touch each other.
+void excludeJoined(const Scene& scene, Assembly& assembly) {
+  const auto exclude = [&](const auto& joints) {
+    for (const auto& joint : joints) {
+      const int a = colliderIndex(assembly, joint.anchorA.body), b = colliderIndex(assembly, joint.anchorB.body);
+      if (a >= 0 && b >= 0) assembly.geometry.excluded.emplace_back(std::min(a, b), std::max(a, b));
+    }
+  };
+  exclude(scene.ballJoints), exclude(scene.hinges);
+}
+
+/// Contact that cannot be computed is not looked for, but must not come about.
+void excludeUnsolved(ContactGeometry& geometry) {
+  const std::vector<std::pair<std::size_t, std::size_t>> joined = geometry.excluded;
+  for (std::size_t a = 0; a < geometry.colliders.size(); ++a)
+    for (std::size_t b = a + 1; b < geometry.colliders.size(); ++b) {
+      const Collider &first = geometry.colliders[a], &second = geometry.colliders[b];
+      if ((first.body == kFixed && second.body == kFixed) || canSolveContact(first, &second)) continue;
+      if (std::find(joined.begin(), joined.end(), std::pair(a, b)) != joined.end()) continue;
+      geometry.unsolvedPairs.push_back({a, b, false, {}});
+      geometry.excluded.emplace_back(a, b);
+    }
 }
 
 }  // namespace
@@ -178,13 +184,21 @@ Assembly assemble(const Scene& scene, const IslandPlan& island) {
   assembly.mechanism.gravity = scene.gravity;
   addBodies(scene, island, assembly);
   addLinks(scene, moving, assembly);
-  const ColliderIndices indices = addColliders(scene, island, moving, assembly.geometry);
-  for (const auto& pair : island.near) addPair(scene, indices, pair, assembly);
+  addColliders(scene, island, assembly);
+  excludeJoined(scene, assembly);
+  excludeUnsolved(assembly.geometry);
+  std::sort(assembly.geometry.excluded.begin(), assembly.geometry.excluded.end());
+  BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0, assembly.geometry);
   satisfyConstraints(scene, assembly);
   if (const auto fault = stepFault(assembly.mechanism, assembly.state, island.method, scene.duration))
     assembly.warnings.push_back(
         fmt::format("{}: spring \"{}\" {}", scene.path, assembly.names.springs[fault->spring], fault->text));
   return assembly;
+}
+
+std::pair<int, int> bodiesOf(const Assembly& assembly, const ColliderPair& pair) {
+  return {assembly.colliderBodies[pair.a],
+          (pair.againstPlane ? assembly.planeBodies : assembly.colliderBodies)[pair.b]};
 }
 
 void refuseUnsupported(const Scene& scene) {

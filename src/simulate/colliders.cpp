@@ -47,6 +47,15 @@ void addMesh(const TriangleMesh& mesh, CollisionChoice choice, ColliderBuilder& 
   for (const Vec3& vertex : mesh.vertices) builder.collider.points.push_back(builder.frame * vertex);
 }
 
+void enclose(Collider& collider) {
+  const Vec3 radius = Vec3::Constant(collider.radius);
+  for (const Vec3& point : collider.points) {
+    collider.boundingRadius = std::max(collider.boundingRadius, point.norm() + collider.radius);
+    collider.bounds.extend(Vec3(point - radius));
+    collider.bounds.extend(Vec3(point + radius));
+  }
+}
+
 /// Only the surface of a ball or polytope is known, not that of mere points.
 bool hasSurface(const Collider& collider) {
   return collider.isBall() || collider.polytope;
@@ -68,8 +77,8 @@ std::optional<Collider> colliderOf(const Body& body, const Scene& scene, int mov
           builder(shape);
       },
       body.shape);
-  for (const Vec3& point : builder.collider.points)
-    builder.collider.boundingRadius = std::max(builder.collider.boundingRadius, point.norm() + builder.collider.radius);
+  builder.collider.surface = body.material;
+  enclose(builder.collider);
   return std::move(builder.collider);
 }
 

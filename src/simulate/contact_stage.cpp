@@ -56,7 +56,7 @@ void ContactStage::wake(double time, int body, const VectorX& state) {
 
 void ContactStage::resolve(double time, const VectorX& before, VectorX& state) {
   stepPart_ = (time - std::exchange(lastTime_, time)) / timeStep_;
-  if (assembly_.geometry.pairs.empty()) return;
+  if (assembly_.geometry.colliders.empty()) return;
   findTouching(state);
   if (touching_.empty()) return;
   wakeTouched(time, state);

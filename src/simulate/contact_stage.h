@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -28,6 +29,9 @@ class ContactStage {
 
   /// Nearer than this (m) is touching.
   double touchTolerance() const { return touchTolerance_; }
+
+  /// Farther apart (m) nothing is looked at.
+  double margin() const { return std::max(touchTolerance_, resting_.supportMargin()); }
 
  private:
   void findTouching(const VectorX& state);

@@ -5,7 +5,7 @@
 namespace cradle {
 
 void EventLog::recordContact(double time, EventKind kind, const Contact& contact, double impulse) {
-  const auto [a, b] = assembly_.pairBodies[contact.pair];
+  const auto [a, b] = bodiesOf(assembly_, assembly_.geometry.pairs[contact.pair]);
   events_.push_back({time, kind, a, b, contact.point, contact.normal, impulse});
 }
 

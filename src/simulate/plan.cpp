@@ -61,8 +61,6 @@ bool canMeetPlane(const Reach& reach, double size, const Body& plane) {
   return normal.dot(reach.center - plane.worldFromBody.translation) <= reach.radius + size;
 }
 
-using Pairs = std::vector<std::pair<int, int>>;
-
 /// Bodies that a ball joint or a hinge joins do not touch each other.
 std::set<std::pair<int, int>> joinedPairs(const Scene& scene) {
   std::set<std::pair<int, int>> pairs;
@@ -73,32 +71,52 @@ std::set<std::pair<int, int>> joinedPairs(const Scene& scene) {
   return pairs;
 }
 
-Pairs nearPairs(const Scene& scene, const std::vector<double>& sizes, const std::vector<Reach>& reaches) {
-  Pairs pairs;
-  const std::set<std::pair<int, int>> joined = joinedPairs(scene);
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    for (std::size_t j = i + 1; j < scene.bodies.size(); ++j) {
-      const Body &a = scene.bodies[i], &b = scene.bodies[j];
-      if (!mayTouch(a, b)) continue;
-      const bool meet = std::holds_alternative<Plane>(a.shape)   ? canMeetPlane(reaches[j], sizes[j], a)
-                        : std::holds_alternative<Plane>(b.shape) ? canMeetPlane(reaches[i], sizes[i], b)
-                                                                 : canMeet(reaches[i], sizes[i], reaches[j], sizes[j]);
-      const std::pair<int, int> pair(i, j);
-      if (meet && !joined.contains(pair)) pairs.push_back(pair);
+/// Which bodies may touch each other, as far as their reaches tell.
+class Meetings {
+ public:
+  Meetings(const Scene& scene, const std::vector<Reach>& reaches)
+      : scene_(scene), reaches_(reaches), sizes_(sizesOf(scene)), joined_(joinedPairs(scene)) {}
+
+  void setReaches(const std::vector<Reach>& reaches) { reaches_ = reaches; }
+
+  bool mayMeet(int first, int second) const {
+    const auto i = static_cast<std::size_t>(first), j = static_cast<std::size_t>(second);
+    const Body &a = scene_.bodies[i], &b = scene_.bodies[j];
+    if (!mayTouch(a, b)) return false;
+    const bool meet = std::holds_alternative<Plane>(a.shape) ? canMeetPlane(reaches_[j], sizes_[j], a)
+                      : std::holds_alternative<Plane>(b.shape)
+                          ? canMeetPlane(reaches_[i], sizes_[i], b)
+                          : canMeet(reaches_[i], sizes_[i], reaches_[j], sizes_[j]);
+    return meet && (joined_.empty() || !joined_.contains(std::minmax(first, second)));
+  }
+
+ private:
+  const Scene& scene_;
+  std::vector<Reach> reaches_;
+  std::vector<double> sizes_;
+  std::set<std::pair<int, int>> joined_;
+};
+
+/// Bodies that touch something, by body.
+std::vector<char> findTouching(const Scene& scene, const Meetings& meetings) {
+  std::vector<char> touches(scene.bodies.size(), 0);
+  for (int i = 0; i < std::ssize(touches); ++i)
+    for (int j = i + 1; j < std::ssize(touches); ++j) {
+      char &first = touches[static_cast<std::size_t>(i)], &second = touches[static_cast<std::size_t>(j)];
+      if (!(first && second) && meetings.mayMeet(i, j)) first = second = 1;
     }
-  return pairs;
+  return touches;
 }
 
 /// Bodies that touch something may be thrown anywhere that their ties allow: the search goes on until it finds no more.
-Pairs findNearPairs(const Scene& scene) {
-  const std::vector<double> sizes = sizesOf(scene);
+Meetings findMeetings(const Scene& scene) {
   std::vector<char> touches(scene.bodies.size(), 0);
+  Meetings meetings(scene, reachOf(scene, touches));
   while (true) {
-    const Pairs pairs = nearPairs(scene, sizes, reachOf(scene, touches));
-    std::vector<char> found(scene.bodies.size(), 0);
-    for (const auto& [a, b] : pairs) found[static_cast<std::size_t>(a)] = found[static_cast<std::size_t>(b)] = 1;
-    if (found == touches) return pairs;
+    const std::vector<char> found = findTouching(scene, meetings);
+    if (found == touches) return meetings;
     touches = found;
+    meetings.setReaches(reachOf(scene, touches));
   }
 }
 
@@ -114,20 +132,45 @@ int movingOr(const Scene& scene, int body) {
   return body != kWorld && scene.bodies[static_cast<std::size_t>(body)].motion == Motion::dynamic ? body : kWorld;
 }
 
-/// Islands with their bodies and pairs; methods are chosen later.
-std::vector<IslandPlan> findIslands(const Scene& scene, const Pairs& pairs) {
+/// Moving bodies that depend on each other.
+Islands joinIslands(const Scene& scene, const Meetings& meetings) {
   Islands joined(scene.bodies.size());
-  const auto join = [&](int a, int b) { joined.join(movingOr(scene, a), movingOr(scene, b)); };
-  forEachLink(scene, join);
-  for (const auto& [a, b] : pairs) join(a, b);
+  forEachLink(scene, [&](int a, int b) { joined.join(movingOr(scene, a), movingOr(scene, b)); });
+  for (int i = 0; i < std::ssize(scene.bodies); ++i)
+    for (int j = i + 1; j < std::ssize(scene.bodies); ++j) {
+      if (movingOr(scene, i) == kWorld || movingOr(scene, j) == kWorld) continue;
+      if (joined.islandOf(i) != joined.islandOf(j) && meetings.mayMeet(i, j)) joined.join(i, j);
+    }
+  return joined;
+}
 
+/// The bodies of an island that may touch, and the fixed ones that they may touch.
+std::vector<int> touchingOf(const Scene& scene, const IslandPlan& island, const Meetings& meetings) {
+  std::vector<int> touching;
+  for (int other = 0; other < std::ssize(scene.bodies); ++other) {
+    const bool moves = movingOr(scene, other) != kWorld;
+    if (moves && !std::binary_search(island.bodies.begin(), island.bodies.end(), other)) continue;
+    const auto meetsOther = [&](int body) { return body != other && meetings.mayMeet(body, other); };
+    bool meets = std::any_of(island.bodies.begin(), island.bodies.end(), meetsOther);
+    for (int body = 0; moves && !meets && body < std::ssize(scene.bodies); ++body)
+      meets = movingOr(scene, body) == kWorld && meetsOther(body);
+    if (meets) touching.push_back(other);
+  }
+  return touching;
+}
+
+/// Islands with their bodies and what these may touch; methods are chosen later.
+std::vector<IslandPlan> findIslands(const Scene& scene) {
+  const Meetings meetings = findMeetings(scene);
+  const Islands joined = joinIslands(scene, meetings);
   std::map<int, IslandPlan> islands;
   for (int body = 0; body < std::ssize(scene.bodies); ++body)
     if (movingOr(scene, body) != kWorld) islands[joined.islandOf(body)].bodies.push_back(body);
-  for (const auto& pair : pairs)
-    islands[joined.islandOf(movingOr(scene, pair.first) != kWorld ? pair.first : pair.second)].near.push_back(pair);
   std::vector<IslandPlan> ordered;
-  for (auto& [first, island] : islands) ordered.push_back(std::move(island));
+  for (auto& [first, island] : islands) {
+    island.touching = touchingOf(scene, island, meetings);
+    ordered.push_back(std::move(island));
+  }
   return ordered;
 }
 
@@ -170,7 +213,7 @@ void findUnturned(const Scene& scene, IslandPlan& island) {
   look(scene.springs), look(scene.rods), look(scene.ropes), look(scene.ballJoints);
   for (const Hinge& hinge : scene.hinges) turn(hinge.anchorA.body), turn(hinge.anchorB.body);
   for (const Push& push : scene.pushes) turn(push.body);
-  for (const auto& [a, b] : island.near) turn(a), turn(b);
+  for (const int body : island.touching) turn(body);
   for (const int body : island.bodies)
     if (!isTurned[static_cast<std::size_t>(body)] &&
         makeRigidBody(scene.bodies[static_cast<std::size_t>(body)].massProperties).isSpherical)
@@ -180,7 +223,7 @@ void findUnturned(const Scene& scene, IslandPlan& island) {
 void choose(const Scene& scene, IslandPlan& island) {
   findUnturned(scene, island);
   if (!island.unturned.empty()) island.leftOut.push_back("no rotation of balls held at their centres: no torque");
-  const bool mayTouchSomething = !island.near.empty();
+  const bool mayTouchSomething = !island.touching.empty();
   if (!mayTouchSomething) island.leftOut.push_back("no search for contact: nothing can touch");
   if (scene.method) {
     island.method = namedMethod(scene);
@@ -220,7 +263,7 @@ std::string methodText(const ChosenMethod& method) {
 }  // namespace
 
 Plan planOf(const Scene& scene) {
-  Plan plan{findIslands(scene, findNearPairs(scene)), scene.accuracy};
+  Plan plan{findIslands(scene), scene.accuracy};
   for (IslandPlan& island : plan.islands) choose(scene, island);
   return plan;
 }
@@ -229,9 +272,12 @@ IslandPlan wholeScene(const Scene& scene) {
   IslandPlan whole;
   for (const IslandPlan& island : planOf(scene).islands) {
     whole.bodies.insert(whole.bodies.end(), island.bodies.begin(), island.bodies.end());
-    whole.near.insert(whole.near.end(), island.near.begin(), island.near.end());
+    whole.touching.insert(whole.touching.end(), island.touching.begin(), island.touching.end());
   }
-  std::sort(whole.bodies.begin(), whole.bodies.end());
+  for (std::vector<int>* bodies : {&whole.bodies, &whole.touching}) {
+    std::sort(bodies->begin(), bodies->end());
+    bodies->erase(std::unique(bodies->begin(), bodies->end()), bodies->end());
+  }
   return whole;
 }
 

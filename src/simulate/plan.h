@@ -2,7 +2,6 @@
 
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "dynamics/integrators/step.h"
@@ -23,8 +22,8 @@ struct ChosenMethod {
 
 /// Bodies that depend on each other, by ties, springs or contact that may come about, and how they are moved.
 struct IslandPlan {
-  std::vector<int> bodies;                // scene bodies that move, ascending
-  std::vector<std::pair<int, int>> near;  // scene bodies that may touch during the run, first < second
+  std::vector<int> bodies;    // scene bodies that move, ascending
+  std::vector<int> touching;  // scene bodies, fixed ones too, that may touch something during the run, ascending
   std::vector<int> unturned;  // of the bodies, those on which no torque ever acts: balls held at their centres
   ChosenMethod method;
   std::string_view reason;
@@ -37,7 +36,7 @@ struct Plan {
   double accuracy = 0;              // asked
 };
 
-/// O(pairs of bodies).
+/// O(pairs of bodies), some 1e-8 s for each.
 Plan planOf(const Scene& scene);
 
 /// All that moves as one island without a method, for what looks at a scene as a whole.

@@ -25,6 +25,9 @@ class RestingBodies {
   bool allRest() const;
   bool isResting(int body) const { return body != kFixed && equations_.isResting(static_cast<std::size_t>(body)); }
 
+  /// How far (m) a point may hover and still carry.
+  double supportMargin() const { return supportMargin_; }
+
  private:
   std::vector<int> islandsOf(const std::vector<Contact>& contacts) const;
   bool isCalm(double time, std::size_t body, const VectorX& state) const;

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/interruption.h"
 #include "dynamics/integrators/dop853.h"
+#include "dynamics/integrators/pose_interpolant.h"
 #include "dynamics/invariants.h"
 
 namespace cradle {
@@ -53,6 +54,7 @@ Simulation::Simulation(const Scene& scene, Assembly assembly, const ChosenMethod
       pushes_(scene, assembly_.movingBodies, log_),
       guard_(assembly_, method_, scene.duration),
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
+      motions_(assembly_.mechanism.bodies.size()),
       state_(assembly_.state) {
   contacts_.resolve(time_, state_, state_);
   ropes_.resolve(time_, state_);
@@ -193,11 +195,19 @@ void Simulation::integrate(double stepEnd) {
   method_.integrate(rightHandSide_, state_, time_, stepEnd - time_, step_);
 }
 
+/// What may come near within the step.
+void Simulation::findNearPairs() {
+  for (std::size_t body = 0; body < motions_.size(); ++body)
+    motions_[body] = motionBound(step_, static_cast<int>(body), assembly_.radii[body]);
+  broadPhase_.update(step_.startState, motions_, contacts_.margin(), assembly_.geometry);
+}
+
 /// Cuts the step at the first event in it. The state there is a step of its own, never the interpolant, whose error
 /// would let bodies overlap.
 bool Simulation::stopAtFirstEvent() {
-  if (assembly_.geometry.pairs.empty() && !ropes_.hasRopes()) return false;
+  if (assembly_.geometry.colliders.empty() && !ropes_.hasRopes()) return false;
   prepareInterpolant(rightHandSide_, step_);
+  findNearPairs();
   const auto impact = firstImpact(assembly_.geometry, step_, contacts_.touchTolerance());
   const auto change = ropes_.firstChange(step_);
   const double whole = step_.timeStep;

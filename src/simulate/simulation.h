@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "collision/broad_phase.h"
 #include "collision/time_of_impact.h"
 #include "dynamics/integrators/step_size.h"
 #include "simulate/assembly.h"
@@ -41,6 +42,7 @@ class Simulation {
   void takeStep(double stepEnd);
   void takeAdaptiveStep(double stepEnd);
   void integrate(double stepEnd);
+  void findNearPairs();
   bool stopAtFirstEvent();
   void shortenStepTo(double length, double tolerance, const std::function<double(const VectorX&)>& margin);
   void beginAndEndPushes();
@@ -63,8 +65,10 @@ class Simulation {
   PushSchedule pushes_;
   EnergyGuard guard_;
   ConstraintSolver solver_;
-  VectorX tolerance_;         // of an adaptive method
-  double startTieError_ = 0;  // m or rad
+  BroadPhase broadPhase_;
+  std::vector<double> motions_;  // m: how far the points of each body may go within the step under way
+  VectorX tolerance_;            // of an adaptive method
+  double startTieError_ = 0;     // m or rad
   StepSize stepSize_;
   int shortSteps_ = 0;         // in a row
   bool isContinuous_ = false;  // nothing has changed the state since the last step's end

@@ -58,10 +58,9 @@ std::string faultOf(const Body& a, const Body& b, bool againstPlane, double dept
 /// Adds the overlaps of one island to `faults`.
 void findOverlaps(const Scene& scene, const Assembly& assembly, std::vector<std::string>& faults) {
   const ContactGeometry& geometry = assembly.geometry;
-  for (std::size_t i = 0; i < geometry.pairs.size(); ++i) {
-    const ColliderPair& pair = geometry.pairs[i];
-    const Body& a = scene.bodies[static_cast<std::size_t>(assembly.pairBodies[i].first)];
-    const Body& b = scene.bodies[static_cast<std::size_t>(assembly.pairBodies[i].second)];
+  for (const ColliderPair& pair : geometry.pairs) {
+    const auto [first, second] = bodiesOf(assembly, pair);
+    const Body &a = scene.bodies[static_cast<std::size_t>(first)], &b = scene.bodies[static_cast<std::size_t>(second)];
     const RigidTransform worldFromA = poseOf(assembly.state, geometry.colliders[pair.a].body);
     if (separationBound(geometry, pair, worldFromA, poseOf(assembly.state, bodyBOf(geometry, pair))) > 0) continue;
     const double depth = depthOf(geometry, pair, assembly.state), allowed = touchingDepth(geometry, pair, a, b);

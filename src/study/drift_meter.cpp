@@ -24,7 +24,8 @@ void DriftMeter::add(const Frame& frame) {
   for (const ConstraintRow& row : rows) constraintDrift_ = std::max(constraintDrift_, std::abs(row.value / row.scale));
 
   std::vector<Contact> overlaps;
-  findContacts(assembly_.geometry, state, 0, overlaps);
+  broadPhase_.update(state, std::vector<double>(frame.states.size(), 0.0), 0, geometry_);
+  findContacts(geometry_, state, 0, overlaps);
   for (const Contact& overlap : overlaps) penetration_ = std::max(penetration_, -overlap.separation);
 }
 

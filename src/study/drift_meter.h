@@ -1,5 +1,6 @@
 #pragma once
 
+#include "collision/broad_phase.h"
 #include "simulate/assembly.h"
 #include "trajectory/trajectory.h"
 
@@ -9,7 +10,7 @@ namespace cradle {
 class DriftMeter {
  public:
   /// Keeps a reference.
-  explicit DriftMeter(const Assembly& assembly) : assembly_(assembly) {}
+  explicit DriftMeter(const Assembly& assembly) : assembly_(assembly), geometry_(assembly.geometry) {}
 
   void add(const Frame& frame);
 
@@ -24,6 +25,8 @@ class DriftMeter {
   VectorX stateOf(const Frame& frame) const;
 
   const Assembly& assembly_;
+  ContactGeometry geometry_;
+  BroadPhase broadPhase_;
   bool isFirst_ = true;
   double startConstant_ = 0, energyChange_ = 0, largestKinetic_ = 0;  // J
   double constraintDrift_ = 0, penetration_ = 0;

@@ -104,7 +104,7 @@ TEST(Assembly, SaysHowMuchStartVelocitiesWouldPullAJointApart) {
 
 TEST(Assembly, TakesPairSurfacesAndPutsPlanesSecond) {
   const Assembly assembly = assemble(withBodies(R"({"name": "p", "shape": {"plane": {"normal": [0, 0, 2]}},
-    "motion": "static", "material": "ice", "position": [0, 0, -1]},
+    "motion": "static", "material": "ice", "position": [0, 0, -0.1]},
     {"name": "m", "shape": {"sphere": {"radius": 0.1}}, "material": "steel"})",
                                                 R"(,
     "materials": {"ice": {}, "steel": {}},
@@ -114,7 +114,7 @@ TEST(Assembly, TakesPairSurfacesAndPutsPlanesSecond) {
   EXPECT_EQ(assembly.geometry.pairs[0].law.restitution, 0.7);
   EXPECT_EQ(assembly.geometry.pairs[0].law.dynamicFriction, 0.1);
   EXPECT_EQ(assembly.geometry.planes[0].normal, Vec3::UnitZ());
-  EXPECT_EQ(assembly.pairBodies[0], std::make_pair(1, 0));
+  EXPECT_EQ(bodiesOf(assembly, assembly.geometry.pairs[0]), std::make_pair(1, 0));
 }
 
 }  // namespace

@@ -1,0 +1,121 @@
+#include "collision/broad_phase.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/separation.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kSlackMotions = 4;     // steps like the one to come that a list should last
+constexpr double kLeastSlack = 0.01;    // of a body's size: what lies nearly still is not sorted again at each step
+constexpr double kMostSlack = 0.25;     // of the size: beyond, lists of pairs that are not near cost more than new ones
+constexpr double kBoxRounding = 1e-12;  // of the coordinates
+constexpr double kFarthest = 1e100;     // m: a step that has blown up is judged elsewhere
+
+/// The box around a body's box that is turned.
+Bounds turnedBounds(const Bounds& bounds, const RigidTransform& worldFromBody) {
+  const Mat3 rotation = worldFromBody.rotation.toRotationMatrix();
+  const Vec3 center = rotation * bounds.center() + worldFromBody.translation;
+  const Vec3 half = rotation.cwiseAbs() * (bounds.sizes() / 2);
+  return {Vec3(center - half), Vec3(center + half)};
+}
+
+/// Bound on how far (m) a point within `radius` of a body's origin went from one pose to another.
+double wayBetween(const RigidTransform& from, const RigidTransform& to, double radius) {
+  const double turn = std::min((from.rotation.coeffs() - to.rotation.coeffs()).norm(),
+                               (from.rotation.coeffs() + to.rotation.coeffs()).norm());
+  // A chord of the unit quaternions c turns points by an angle a with c = 2 sin(a/4): their way is <= 2 r sin(a/2) <= 2
+  // r c.
+  return (to.translation - from.translation).norm() + 2 * radius * turn;
+}
+
+bool isExcluded(const ContactGeometry& geometry, std::size_t a, std::size_t b) {
+  return std::binary_search(geometry.excluded.begin(), geometry.excluded.end(), std::pair(a, b));
+}
+
+/// Height of a box's lowest point over a plane.
+double lowest(const Bounds& box, const PlaneCollider& plane) {
+  return plane.normal.dot(box.center() - plane.point) - plane.normal.cwiseAbs().dot(box.sizes() / 2);
+}
+
+}  // namespace
+
+bool BroadPhase::update(const VectorX& state, const std::vector<double>& motions, double margin,
+                        ContactGeometry& geometry) {
+  if (geometry.colliders.empty() || covers(state, motions, margin)) return false;
+  enclose(state, motions, margin, geometry);
+  sort();
+  sweep(geometry);
+  return true;
+}
+
+bool BroadPhase::covers(const VectorX& state, const std::vector<double>& motions, double margin) const {
+  if (poses_.empty()) return false;
+  for (std::size_t body = 0; body < motions.size(); ++body) {
+    const double way = wayBetween(poses_[body], poseOf(state, static_cast<int>(body)), radii_[body]);
+    if (!(way + motions[body] + margin <= slacks_[body])) return false;
+  }
+  return true;
+}
+
+void BroadPhase::enclose(const VectorX& state, const std::vector<double>& motions, double margin,
+                         const ContactGeometry& geometry) {
+  radii_.assign(motions.size(), 0.0);
+  for (const Collider& collider : geometry.colliders)
+    if (collider.body != kFixed) radii_[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
+  poses_.clear(), slacks_.clear(), boxes_.clear();
+  for (std::size_t body = 0; body < motions.size(); ++body) {
+    const double motion = motions[body] < kFarthest ? motions[body] : kFarthest;
+    const double ahead = std::min(kSlackMotions * motion, kMostSlack * radii_[body]);
+    poses_.push_back(poseOf(state, static_cast<int>(body)));
+    slacks_.push_back(margin + std::max({motion, ahead, kLeastSlack * radii_[body]}));
+  }
+  for (const Collider& collider : geometry.colliders) {
+    const auto body = static_cast<std::size_t>(collider.body);
+    Bounds box = collider.body == kFixed ? collider.bounds : turnedBounds(collider.bounds, poses_[body]);
+    const double rounding = kBoxRounding * (box.min().cwiseAbs() + box.max().cwiseAbs()).maxCoeff();
+    const Vec3 grown = Vec3::Constant(rounding + (collider.body == kFixed ? 0 : slacks_[body]));
+    boxes_.emplace_back(Vec3(box.min() - grown), Vec3(box.max() + grown));
+  }
+}
+
+/// Along the axis on which the boxes spread the most.
+void BroadPhase::sort() {
+  Vec3 mean = Vec3::Zero(), spread = Vec3::Zero();
+  for (const Bounds& box : boxes_) mean += box.center() / static_cast<double>(boxes_.size());
+  for (const Bounds& box : boxes_) spread += (box.center() - mean).cwiseAbs2();
+  Eigen::Index axis = 0;
+  spread.maxCoeff(&axis);
+  intervals_.clear();
+  for (std::size_t i = 0; i < boxes_.size(); ++i)
+    intervals_.push_back({boxes_[i].min()[axis], boxes_[i].max()[axis], i});
+  std::sort(intervals_.begin(), intervals_.end(), [](const Interval& a, const Interval& b) {
+    return a.from != b.from ? a.from < b.from : a.collider < b.collider;
+  });
+}
+
+void BroadPhase::sweep(ContactGeometry& geometry) const {
+  geometry.pairs.clear();
+  const auto law = [&](int surfaceA, int surfaceB) {
+    return geometry.laws[static_cast<std::size_t>(surfaceA)][static_cast<std::size_t>(surfaceB)];
+  };
+  for (std::size_t p = 0; p < geometry.planes.size(); ++p)
+    for (std::size_t i = 0; i < geometry.colliders.size(); ++i)
+      if (geometry.colliders[i].body != kFixed && lowest(boxes_[i], geometry.planes[p]) <= 0)
+        geometry.pairs.push_back({i, p, true, law(geometry.colliders[i].surface, geometry.planes[p].surface)});
+  const auto againstPlanes = static_cast<std::ptrdiff_t>(geometry.pairs.size());
+  for (std::size_t i = 0; i < intervals_.size(); ++i)
+    for (std::size_t j = i + 1; j < intervals_.size() && intervals_[j].from <= intervals_[i].to; ++j) {
+      const auto [a, b] = std::minmax(intervals_[i].collider, intervals_[j].collider);
+      const Collider &first = geometry.colliders[a], &second = geometry.colliders[b];
+      if (first.body == kFixed && second.body == kFixed) continue;
+      if (boxes_[a].intersects(boxes_[b]) && !isExcluded(geometry, a, b))
+        geometry.pairs.push_back({a, b, false, law(first.surface, second.surface)});
+    }
+  std::sort(geometry.pairs.begin() + againstPlanes, geometry.pairs.end(),
+            [](const ColliderPair& x, const ColliderPair& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
+}
+
+}  // namespace cradle

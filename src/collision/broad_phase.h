@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/collider.h"
+
+namespace cradle {
+
+/// Keeps the list of collider pairs that are near each other, by boxes along the world's axes around them (sweep and
+/// prune: D. Baraff, 1992). Boxes are taken larger than the bodies, and the list stays as it is until one leaves its
+/// box.
+class BroadPhase {
+ public:
+  /// Sets geometry.pairs to all pairs that may come nearer than `margin` (m) to each other while no point of moving
+  /// body i moves by more than `motions[i]` (m) from where it is in `state`; and some others. Against planes first,
+  /// then by colliders a < b; pairs of fixed bodies and excluded ones are left out. True if the list is a new one. O(n
+  /// log n) for the usual scene, as long as all that is near on one axis is not far on the others.
+  bool update(const VectorX& state, const std::vector<double>& motions, double margin, ContactGeometry& geometry);
+
+ private:
+  struct Interval {
+    double from, to;  // m, along the axis of the sweep
+    std::size_t collider;
+  };
+
+  bool covers(const VectorX& state, const std::vector<double>& motions, double margin) const;
+  void enclose(const VectorX& state, const std::vector<double>& motions, double margin,
+               const ContactGeometry& geometry);
+  void sort();
+  void sweep(ContactGeometry& geometry) const;
+
+  std::vector<RigidTransform> poses_;  // of the moving bodies when they were enclosed
+  std::vector<double> radii_;          // m, of the moving bodies about their centres of mass
+  std::vector<double> slacks_;         // m: how far any point of a moving body may go and stay in its box
+  std::vector<Bounds> boxes_;
+  std::vector<Interval> intervals_;
+};
+
+}  // namespace cradle
