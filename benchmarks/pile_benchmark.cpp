@@ -55,8 +55,10 @@ World makeWorld(int n, const std::string& kind, double width) {
       collider.points = {Vec3::Zero()};
       collider.radius = collider.boundingRadius = 0.1;
     }
+    for (const Vec3& p : collider.points) collider.bounds.extend(Vec3(p - Vec3::Constant(collider.radius))), collider.bounds.extend(Vec3(p + Vec3::Constant(collider.radius)));
     world.geometry.colliders.push_back(collider);
   }
+  world.geometry.laws = {{{0, 0.5, 0.5}}};
   world.geometry.planes.push_back({Vec3::Zero(), Vec3::UnitY()});
   for (const Vec3& n3 : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)})
     world.geometry.planes.push_back({-width / 2 * n3, n3});
@@ -91,7 +93,6 @@ double deepest(const World& world) {
 void runWorld(int n, const std::string& kind, double width, int threads, bool measure) {
   World world = makeWorld(n, kind, width);
   PileStep step(world.bodies, world.geometry, Vec3(0, -9.81, 0), threads);
-  step.sweep.law = {0, 0.5, 0.5};
   double sum = 0, fall = 0, late = 0, pen = 0, latePen = 0;
   const auto wall = std::chrono::steady_clock::now();
   for (int k = 0; k < 600; ++k) {

@@ -2,8 +2,7 @@
 
 #include <array>
 
-#include "collision/box_pair.h"
-#include "collision/collider.h"
+#include "collision/contact_patch.h"
 
 namespace cradle {
 
@@ -12,9 +11,10 @@ struct ContactManifold {
   int bodyA = kFixed, bodyB = kFixed;  // A moves
   ContactPatch patch;
   std::array<double, ContactPatch::kMostPoints> impulses{};  // N s, along the normal, of each point
-  std::array<double, ContactPatch::kMostPoints> carried{};   // N s, the part of these that needs no overlap
   Vec3 frictionImpulse = Vec3::Zero();                       // N s, world, on B at the patch's middle
   double twistImpulse = 0;                                   // N m s, about the normal, on B
+  double friction = 0;   // coefficient of now
+  double approach = 0;   // m/s, at the step's beginning, of the first point; > 0: closing
   SurfaceLaw law;
 };
 

@@ -32,7 +32,7 @@ double couplingOf(const LaneVector (&a)[Block::kMovers], const LaneVector (&b)[B
 }
 
 template <class Block>
-void fillFriction(const ContactManifold& manifold, const SolverBody* const (&bodies)[Block::kMovers], double coefficient,
+void fillFriction(const ContactManifold& manifold, const SolverBody* const (&bodies)[Block::kMovers], double impulseScale,
                   int lane, Block& block) {
   const ContactPatch& patch = manifold.patch;
   Vec3 middles[2] = {Vec3::Zero(), Vec3::Zero()};
@@ -47,14 +47,14 @@ void fillFriction(const ContactManifold& manifold, const SolverBody* const (&bod
     const Vec3& tangent = i == 0 ? tangent1 : tangent2;
     setLane(friction.tangents[i], lane, tangent);
     inverse[i] = fillTurns<Block>(friction.turns[i], tangent, arms, bodies, lane);
-    friction.impulses[i][lane] = manifold.frictionImpulse.dot(tangent);
+    friction.impulses[i][lane] = impulseScale * manifold.frictionImpulse.dot(tangent);
   }
   const double coupling = couplingOf<Block>(friction.turns[0], friction.turns[1], lane);
   const double determinant = inverse[0] * inverse[1] - coupling * coupling;
   friction.mass11[lane] = inverse[1] / determinant;
   friction.mass12[lane] = -coupling / determinant;
   friction.mass22[lane] = inverse[0] / determinant;
-  friction.coefficient[lane] = coefficient;
+  friction.coefficient[lane] = manifold.friction;
 
   if constexpr (Block::kPoints > 1) {
     double inverseTwist = 0;
@@ -64,17 +64,17 @@ void fillFriction(const ContactManifold& manifold, const SolverBody* const (&bod
       inverseTwist += turn.squaredNorm();
     }
     block.twist.mass[lane] = 1 / inverseTwist;
-    block.twist.impulse[lane] = manifold.twistImpulse;
+    block.twist.impulse[lane] = impulseScale * manifold.twistImpulse;
     const Vec3 middle = middles[0] / static_cast<double>(patch.count);
     for (int i = 0; i < Block::kPoints; ++i)
       block.twist.levers[i][lane] = (patch.points[static_cast<std::size_t>(i)].onA - middle).norm();
   }
 }
 
-/// Puts a manifold of the block's kind into one lane. `coefficient`: of friction.
+/// Puts a manifold of the block's kind into one lane, with its last impulses times `impulseScale`.
 template <class Block>
 void fillLane(const ContactManifold& manifold, std::int32_t index, const std::vector<SolverBody>& bodies,
-              double coefficient, int lane, Block& block) {
+              double impulseScale, int lane, Block& block) {
   const ContactPatch& patch = manifold.patch;
   const int indices[2] = {manifold.bodyA, manifold.bodyB};
   const SolverBody* movers[Block::kMovers];
@@ -94,10 +94,9 @@ void fillLane(const ContactManifold& manifold, std::int32_t index, const std::ve
     if constexpr (Block::kBothMove) arms[1] = from.onB - movers[1]->position;
     point.mass[lane] = 1 / fillTurns<Block>(point.turns, patch.normal, arms, movers, lane);
     point.separation[lane] = from.separation;
-    point.impulse[lane] = manifold.impulses[static_cast<std::size_t>(i)];
-    point.carried[lane] = manifold.carried[static_cast<std::size_t>(i)];
+    point.impulse[lane] = impulseScale * manifold.impulses[static_cast<std::size_t>(i)];
   }
-  fillFriction(manifold, movers, coefficient, lane, block);
+  fillFriction(manifold, movers, impulseScale, lane, block);
 }
 
 /// A lane that stands for nothing: its body never moves.
@@ -112,12 +111,8 @@ void storeImpulses(const Block& block, std::vector<ContactManifold>& manifolds) 
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.manifolds[lane] < 0) continue;
     ContactManifold& manifold = manifolds[static_cast<std::size_t>(block.manifolds[lane])];
-    static const double rate = getenv("KB") ? atof(getenv("KB")) : 0.05;
-    for (int i = 0; i < Block::kPoints; ++i) {
-      const double impulse = block.points[i].impulse[lane], carried = block.points[i].carried[lane];
-      manifold.impulses[static_cast<std::size_t>(i)] = impulse;
-      manifold.carried[static_cast<std::size_t>(i)] = carried + rate * (impulse - carried);
-    }
+    for (int i = 0; i < Block::kPoints; ++i)
+      manifold.impulses[static_cast<std::size_t>(i)] = block.points[i].impulse[lane];
     const auto& friction = block.friction;
     const auto tangent = [&](int i) {
       const LaneVector& t = friction.tangents[i];

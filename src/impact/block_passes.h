@@ -98,10 +98,10 @@ void warmBlock(Block& block, SolverMotions& motions) {
 
 /// Lets contacts that are apart close within the sub-step at most, and pushes overlapping ones apart gently.
 template <class Block>
-void softenBlock(Block& block, const Softness& soft, SolverMotions& motions) {
+void softenBlock(Block& block, const Softness& soft, double subStep, SolverMotions& motions) {
   MotionsOf<Block> velocities(block, motions.velocities);
   const MotionsOf<Block> displacements(block, motions.displacements);
-  const Lanes rate = same(1 / soft.timeStep), none = same(0);
+  const Lanes rate = same(1 / subStep), none = same(0);
   for (int i = 0; i < Block::kPoints; ++i) {
     auto& point = block.points[i];
     const Lanes separation = point.separation + displacements.along(block.normal, point.turns);
@@ -115,7 +115,7 @@ void softenBlock(Block& block, const Softness& soft, SolverMotions& motions) {
     const Lanes impulseScale = apart ? none : yielding;
     const Lanes speed = velocities.along(block.normal, point.turns);
     const Lanes free = point.impulse - point.mass * massScale * (speed + wanted) -
-                       impulseScale * (point.impulse - point.carried);
+                       impulseScale * point.impulse;
     const Lanes held = larger(none, free);
     point.slack = held > none ? none : larger(none, separation * rate + speed);
     velocities.push(block, held - point.impulse, block.normal, point.turns);

@@ -19,13 +19,12 @@ struct SolverBody {
   Mat3 scaledFromWorld;  // 1/sqrt(kg) / m: of angular impulses
 };
 
-/// How gently a soft pass takes out overlap.
+/// How a contact yields: as a damped spring that stiffens with the overlap.
 struct Softness {
-  double timeStep;    // s, of the sub-step
-  double turn;        // rad: of the contact as an oscillator, in a sub-step
-  double damping;     // twice the damping ratio
-  double hardening;   // 1/m
-  double mostPush;    // m/s
+  double turn;       // rad: of the spring's oscillation, in a sub-step
+  double damping;    // twice the damping ratio
+  double hardening;  // 1/m: part by which the frequency grows
+  double mostPush;   // m/s, apart
 };
 
 template <int pointCount, bool bothMove>
@@ -37,7 +36,6 @@ struct ContactBlock {
   struct Point {
     LaneVector turns[kMovers];  // of A and B
     Lanes mass, separation, impulse;
-    Lanes carried;  // N s: part of the impulse that needs no overlap
     Lanes slack;  // m/s: closing speed that is left until the next sub-step
   };
   struct Friction {
@@ -66,6 +64,12 @@ struct SolverMotions {
   std::vector<BodyMotion> velocities;     // m/s, scaled rad/s
   std::vector<BodyMotion> displacements;  // m, scaled rad: since the step began
   std::vector<BodyMotion> starts;         // velocities before the step
+  std::vector<char> falls;                // 0: gravity does not move this body
+
+  void resize(std::size_t bodies) {
+    for (auto* motions : {&velocities, &displacements, &starts}) motions->resize(bodies + 1);
+    falls.assign(bodies, 1);
+  }
 };
 
 }  // namespace cradle

@@ -21,6 +21,9 @@ class ContactColoring {
   const ContactColors& color(const std::vector<ContactManifold>& manifolds, const std::vector<std::int32_t>& active,
                              std::size_t bodies);
 
+  /// Whether a body had a contact in the last colouring.
+  bool isTouched(std::size_t body) const { return used_[body] != 0; }
+
  private:
   ContactColors colors_;
   std::vector<std::uint64_t> used_;  // colours of each body

@@ -2,320 +2,269 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <tuple>
 
 namespace cradle {
-constexpr double kMargin = 5e-3;
 namespace {
 
-constexpr double kMarginX = 5e-3;            // m: contacts are known before bodies touch
-constexpr double kSamePoint = 0.1;          // of the smaller body's radius: points this near are one from step to step
-constexpr double kSameNormal = 0.9;         // cosine, at least, for impulses to go on
-constexpr double kRoundSide = 1e-12;        // of a side: rounding of a box's corners
+constexpr double kSamePoint = 0.1;    // of the body's radius: points as near as that are one from step to step
+constexpr double kSameNormal = 0.9;   // cosine, at least, for impulses to go on
+constexpr double kRounding = 1e-9;    // of a unit axis or a side
+constexpr double kSlowSliding = 0.1;  // m/s: slower, static friction holds; a step's gain by gravity is 0.16
 
 auto orderOf(const ColliderPair& pair) {
-  return std::tuple(!pair.againstPlane, pair.a, pair.b);
+  return std::tuple(!pair.againstPlane, pair.againstPlane ? pair.b : pair.a, pair.againstPlane ? pair.a : pair.b);
 }
 
 }  // namespace
 
 PileContacts::PileContacts(const ContactGeometry& geometry) : geometry_(geometry) {
-  for (const Collider& collider : geometry.colliders) {
-    std::optional<BoxShape> box;
-    if (collider.polytope && collider.polytope->vertices.size() == 8 && collider.polytope->faces.size() == 6) {
-      const auto& v = collider.polytope->vertices;
-      BoxShape shape;
-      const Vec3 sides[3] = {v[1] - v[0], v[2] - v[0], v[4] - v[0]};
-      for (int k = 0; k < 3; ++k) {
-        shape.halfSize[k] = sides[k].norm() / 2;
-        shape.axes.col(k) = sides[k].normalized();
-      }
-      shape.center = (v[0] + v[7]) / 2;
-      const Vec3 last = v[0] + sides[0] + sides[1] + sides[2];
-      if ((shape.axes.transpose() * shape.axes - Mat3::Identity()).norm() < kRoundSide * 1e3 &&
-          (last - v[7]).norm() < kRoundSide * 1e3)
-        box = shape;
-    }
-    boxes_.push_back(box);
+  for (const Collider& collider : geometry.colliders) boxes_.push_back(boxOf(collider));
+}
+
+/// A polytope that is a box with corners numbered as polytopeOf does.
+std::optional<PileContacts::BoxShape> PileContacts::boxOf(const Collider& collider) {
+  if (!collider.polytope || collider.polytope->vertices.size() != 8 || collider.polytope->faces.size() != 6) return {};
+  const std::vector<Vec3>& corners = collider.polytope->vertices;
+  BoxShape box;
+  Vec3 opposite = corners[0];
+  for (const int k : {0, 1, 2}) {
+    const Vec3 side = corners[std::size_t{1} << k] - corners[0];
+    box.halfSize[k] = side.norm() / 2;
+    box.axes.col(k) = side.normalized();
+    opposite += side;
   }
+  box.center = (corners[0] + opposite) / 2;
+  const double size = box.halfSize.norm();
+  if (!((box.axes.transpose() * box.axes - Mat3::Identity()).norm() < kRounding)) return {};
+  if ((opposite - corners[7]).norm() > kRounding * size) return {};
+  if ((corners[3] - corners[1] - corners[2] + corners[0]).norm() > kRounding * size) return {};
+  return box;
+}
+
+const MovingPose& PileContacts::poseOf(const std::vector<MovingPose>& poses, int body) {
+  static const MovingPose kStill{};
+  return body == kFixed ? kStill : poses[static_cast<std::size_t>(body)];
+}
+
+PileContacts::NearPair PileContacts::nearPairOf(std::size_t index) const {
+  const ColliderPair& pair = geometry_.pairs[index];
+  NearPair near;
+  near.pair = index, near.againstPlane = pair.againstPlane;
+  near.shapeA = pair.a, near.shapeB = pair.b;
+  near.bodyA = geometry_.colliders[pair.a].body, near.bodyB = bodyBOf(geometry_, pair);
+  if (near.bodyA == kFixed) std::swap(near.shapeA, near.shapeB), std::swap(near.bodyA, near.bodyB);
+  return near;
 }
 
 void PileContacts::takePairs() {
-  std::vector<PairState> states(geometry_.pairs.size());
+  taken_.clear();
   std::size_t old = 0;
-  const auto release = [&](const PairState& state) {
-    if (state.manifold >= 0) free_.push_back(state.manifold);
+  const auto release = [&](const NearPair& pair) {
+    if (pair.manifold >= 0) free_.push_back(pair.manifold);
   };
   for (std::size_t i = 0; i < geometry_.pairs.size(); ++i) {
-    while (old < pairs_.size() && orderOf(pairs_[old]) < orderOf(geometry_.pairs[i])) release(pairStates_[old++]);
-    if (old < pairs_.size() && orderOf(pairs_[old]) == orderOf(geometry_.pairs[i])) states[i] = pairStates_[old++];
+    const auto order = orderOf(geometry_.pairs[i]);
+    while (old < listed_.size() && orderOf(listed_[old]) < order) release(pairs_[old++]);
+    if (old < listed_.size() && orderOf(listed_[old]) == order) {
+      taken_.push_back(pairs_[old++]);
+      taken_.back().pair = i;
+    } else {
+      taken_.push_back(nearPairOf(i));
+    }
   }
-  while (old < pairs_.size()) release(pairStates_[old++]);
-  pairs_ = geometry_.pairs;
-  pairStates_.swap(states);
+  while (old < listed_.size()) release(pairs_[old++]);
+  listed_ = geometry_.pairs;
+  pairs_.swap(taken_);
 }
 
-bool PileContacts::isNear(const ColliderPair& pair, const std::vector<MovingPose>& poses, double timeStep) const {
-  const Collider& a = geometry_.colliders[pair.a];
-  const int bodyB = bodyBOf(geometry_, pair);
-  if (a.body == kFixed || bodyB == kFixed) {
-    const MovingPose& pose = poses[static_cast<std::size_t>(a.body == kFixed ? bodyB : a.body)];
-    if (pose.isAsleep) return false;
-    if (!pair.againstPlane) return true;
-    const PlaneCollider& plane = geometry_.planes[pair.b];
-    const double speed = pose.linearVelocity.norm() + pose.angularVelocity.norm() * pose.radius;
-    return plane.normal.dot(pose.position - plane.point) < pose.radius + kMargin + speed * timeStep;
+/// How fast bodies approach each other, at most; 0 if they cannot meet within the time.
+double PileContacts::approachOf(const NearPair& pair, const std::vector<MovingPose>& poses, double time) const {
+  const MovingPose &a = poseOf(poses, pair.bodyA), &b = poseOf(poses, pair.bodyB);
+  const double spin = (geometry_.colliders[pair.shapeA].isBall() ? 0 : a.angularVelocity.norm() * a.radius) +
+                      (pair.bodyB == kFixed || geometry_.colliders[pair.shapeB].isBall()
+                           ? 0
+                           : b.angularVelocity.norm() * b.radius);
+  const Vec3 velocity = b.linearVelocity - a.linearVelocity;
+  if (pair.againstPlane) {
+    const PlaneCollider& plane = geometry_.planes[pair.shapeB];
+    const double closing = std::max(0.0, plane.normal.dot(velocity)) + spin;
+    return plane.normal.dot(a.position - plane.point) - a.radius < closing * time ? closing : 0;
   }
-  const MovingPose &poseA = poses[static_cast<std::size_t>(a.body)], &poseB = poses[static_cast<std::size_t>(bodyB)];
-  if (poseA.isAsleep && poseB.isAsleep) return false;
-  const double reach = poseA.radius + poseB.radius + kMargin +
-                       (poseB.linearVelocity - poseA.linearVelocity).norm() * timeStep;
-  return (poseB.position - poseA.position).squaredNorm() < reach * reach;
+  if (pair.bodyB == kFixed) return velocity.norm() + spin;
+  const Vec3 offset = b.position - a.position;
+  const double distance = offset.norm(), reach = a.radius + b.radius + (velocity.norm() + spin) * time;
+  if (distance > reach || distance == 0) return 0;
+  return std::max(0.0, -offset.dot(velocity) / distance) + spin;
 }
 
-void PileContacts::update(const std::vector<MovingPose>& poses, const VectorX& state, double timeStep,
-                          WorkerThreads& threads) {
+double PileContacts::fastestApproach(const std::vector<MovingPose>& poses, double time, WorkerThreads& threads) const {
+  std::vector<double> fastest(static_cast<std::size_t>(threads.count()), 0);
   threads.run([&](int thread) {
     const auto [first, last] = threads.partOf(pairs_.size(), thread);
-    for (std::size_t i = first; i < last; ++i) pairStates_[i].isNear = isNear(pairs_[i], poses, timeStep);
+    double most = 0;
+    for (std::size_t i = first; i < last; ++i) most = std::max(most, approachOf(pairs_[i], poses, time));
+    fastest[static_cast<std::size_t>(thread)] = most;
   });
-  static const double um = getenv("UM") ? atof(getenv("UM")) : 0.5;
-  shocks_.assign(poses.size(), 0);
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    if (!pairStates_[i].isNear) continue;
-    const int a = geometry_.colliders[pairs_[i].a].body, b = bodyBOf(geometry_, pairs_[i]);
-    Vec3 velocity = Vec3::Zero();
-    if (a != kFixed) velocity -= poses[static_cast<std::size_t>(a)].linearVelocity;
-    if (b != kFixed) velocity += poses[static_cast<std::size_t>(b)].linearVelocity;
-    const double shock = um * timeStep * velocity.norm();
-    if (a != kFixed) shocks_[static_cast<std::size_t>(a)] = std::max(shocks_[static_cast<std::size_t>(a)], shock);
-    if (b != kFixed) shocks_[static_cast<std::size_t>(b)] = std::max(shocks_[static_cast<std::size_t>(b)], shock);
+  return *std::max_element(fastest.begin(), fastest.end());
+}
+
+bool PileContacts::mayTouch(const NearPair& pair, const std::vector<MovingPose>& poses, double time) const {
+  const MovingPose &a = poseOf(poses, pair.bodyA), &b = poseOf(poses, pair.bodyB);
+  if (a.isAsleep && (pair.bodyB == kFixed || b.isAsleep)) return false;
+  if (pair.againstPlane) {
+    const PlaneCollider& plane = geometry_.planes[pair.shapeB];
+    const double speed = a.linearVelocity.norm() + a.angularVelocity.norm() * a.radius;
+    return plane.normal.dot(a.position - plane.point) < a.radius + kContactMargin + speed * time;
   }
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    PairState& pairState = pairStates_[i];
-    if (!pairState.isNear || pairState.manifold >= 0) continue;
-    if (free_.empty()) {
-      free_.push_back(static_cast<std::int32_t>(manifolds_.size()));
-      manifolds_.emplace_back();
-      origins_.emplace_back();
-    }
-    pairState.manifold = free_.back();
-    free_.pop_back();
-    const std::size_t slot = static_cast<std::size_t>(pairState.manifold);
-    manifolds_[slot] = {};
-    origins_[slot] = {};
-    ContactManifold& manifold = manifolds_[slot];
-    manifold.bodyA = geometry_.colliders[pairs_[i].a].body;
-    manifold.bodyB = bodyBOf(geometry_, pairs_[i]);
-    if (manifold.bodyA == kFixed) std::swap(manifold.bodyA, manifold.bodyB);
-    manifold.law = pairs_[i].law;
-  }
+  if (pair.bodyB == kFixed) return true;
+  const double reach =
+      a.radius + b.radius + kContactMargin + (b.linearVelocity - a.linearVelocity).norm() * time;
+  return (b.position - a.position).squaredNorm() < reach * reach;
+}
+
+void PileContacts::update(const std::vector<MovingPose>& poses, double timeStep, WorkerThreads& threads) {
+  threads.run([&](int thread) {
+    const auto [first, last] = threads.partOf(pairs_.size(), thread);
+    for (std::size_t i = first; i < last; ++i) pairs_[i].isNear = mayTouch(pairs_[i], poses, timeStep);
+  });
+  giveManifolds();
   threads.run([&](int thread) {
     const auto [first, last] = threads.partOf(pairs_.size(), thread);
     for (std::size_t i = first; i < last; ++i)
-      if (pairStates_[i].isNear) updatePair(i, poses, state, timeStep);
+      if (pairs_[i].isNear) updatePair(pairs_[i], poses, timeStep);
   });
   active_.clear();
-  for (PairState& pairState : pairStates_) {
-    if (!pairState.isNear) continue;
-    if (manifolds_[static_cast<std::size_t>(pairState.manifold)].patch.count > 0)
-      active_.push_back(pairState.manifold);
-  }
+  for (const NearPair& pair : pairs_)
+    if (pair.isNear && !pair.isEmpty) active_.push_back(pair.manifold);
 }
 
-namespace {
-
-/// One surface in the world: a ball, a box or a plane.
-struct BallAt {
-  Vec3 center;
-  double radius;
-};
-
-ContactPatch single(const Vec3& normal, const Vec3& onA, const Vec3& onB) {
-  ContactPatch patch;
-  patch.normal = normal;
-  patch.count = 1;
-  patch.points[0] = {onA, onB, normal.dot(onB - onA)};
-  return patch;
-}
-
-/// Balls: the normal is that of the instant at which they meet.
-ContactPatch contactOfBalls(const BallAt& a, const BallAt& b, const Vec3& motion, double margin) {
-  const Vec3 offset = b.center - a.center;
-  const double reach = a.radius + b.radius, distance2 = offset.squaredNorm();
-  Vec3 direction = offset;
-  if (distance2 > (reach + margin) * (reach + margin)) {
-    // |offset + part motion| = reach
-    const double along = offset.dot(motion), speed2 = motion.squaredNorm();
-    const double root = along * along - speed2 * (distance2 - reach * reach);
-    if (along >= 0 || root < 0) return {};
-    const double part = (distance2 - reach * reach) / (std::sqrt(root) - along);
-    if (part > 1) return {};
-    direction = offset + part * motion;
-  }
-  const double length = direction.norm();
-  const Vec3 normal = length > 0 ? Vec3(direction / length) : Vec3(Vec3::UnitY());
-  return single(normal, a.center + a.radius * normal, b.center - b.radius * normal);
-}
-
-ContactPatch contactOfBallOnPlane(const BallAt& a, const PlaneCollider& plane, const Vec3& motion, double margin) {
-  const double height = plane.normal.dot(a.center - plane.point);
-  if (height - a.radius + std::min(0.0, -plane.normal.dot(motion)) > margin) return {};
-  return single(-plane.normal, a.center - a.radius * plane.normal, a.center - height * plane.normal);
-}
-
-/// Nearest point of a box's surface to `center`, with the normal out of it there.
-ContactPatch contactOfBallOnBox(const BallAt& ball, const PosedBox& box, const Vec3& motion, double margin) {
-  const auto nearest = [&](const Vec3& center, Vec3& normal, Vec3& onBox) {
-    const Vec3 local = box.axes.transpose() * (center - box.center);
-    const Vec3 clamped = local.cwiseMin(box.halfSize).cwiseMax(-box.halfSize);
-    const double distance = (local - clamped).norm();
-    if (distance > 0) {
-      normal = box.axes * ((local - clamped) / distance);
-      onBox = box.center + box.axes * clamped;
-      return distance;
+/// Room for the manifolds of pairs that have come near.
+void PileContacts::giveManifolds() {
+  for (NearPair& pair : pairs_) {
+    if (!pair.isNear || pair.manifold >= 0) continue;
+    if (free_.empty()) {
+      free_.push_back(static_cast<std::int32_t>(manifolds_.size()));
+      manifolds_.emplace_back();
+      anchors_.emplace_back();
     }
-    int axis = 0;
-    const Vec3 depths = box.halfSize - local.cwiseAbs();
-    depths.minCoeff(&axis);
-    const double sign = local[axis] < 0 ? -1 : 1;
-    normal = sign * box.axes.col(axis);
-    onBox = center + depths[axis] * normal;
-    return -depths[axis];
+    pair.manifold = free_.back();
+    free_.pop_back();
+    ContactManifold& manifold = manifolds_[static_cast<std::size_t>(pair.manifold)];
+    manifold.bodyA = pair.bodyA, manifold.bodyB = pair.bodyB;
+    manifold.law = geometry_.pairs[pair.pair].law;
+  }
+}
+
+void PileContacts::updatePair(NearPair& pair, const std::vector<MovingPose>& poses, double timeStep) {
+  const MovingPose &poseA = poseOf(poses, pair.bodyA), &poseB = poseOf(poses, pair.bodyB);
+  ContactManifold& manifold = manifolds_[static_cast<std::size_t>(pair.manifold)];
+  Anchors& anchors = anchors_[static_cast<std::size_t>(pair.manifold)];
+  if (pair.versionA == poseA.version && pair.versionB == poseB.version) {
+    if (pair.isEmpty) return;
+    follow(poseA, poseB, anchors, manifold.patch);
+  } else {
+    const ContactPatch patch = patchOf(pair, poseA, poseB, timeStep);
+    const bool wasEmpty = pair.isEmpty;
+    pair.versionA = poseA.version, pair.versionB = poseB.version;
+    pair.isEmpty = patch.count == 0;
+    if (pair.isEmpty) return;
+    renew(patch, poseA, poseB, wasEmpty, manifold, anchors);
+  }
+  const ContactPatch::Point& point = manifold.patch.points[0];
+  const Vec3 sliding = poseB.linearVelocity - poseA.linearVelocity +
+                       poseB.angularVelocity.cross(point.onB - poseB.position) -
+                       poseA.angularVelocity.cross(point.onA - poseA.position);
+  manifold.approach = -manifold.patch.normal.dot(sliding);
+  const double across2 = sliding.squaredNorm() - manifold.approach * manifold.approach;
+  manifold.friction =
+      across2 < kSlowSliding * kSlowSliding ? manifold.law.staticFriction : manifold.law.dynamicFriction;
+}
+
+/// Where a manifold's points are after a small motion.
+void PileContacts::follow(const MovingPose& poseA, const MovingPose& poseB, const Anchors& anchors,
+                          ContactPatch& patch) const {
+  patch.normal = poseA.rotation * anchors.normal;
+  for (std::size_t i = 0; i < patch.count; ++i) {
+    ContactPatch::Point& point = patch.points[i];
+    point.onA = poseA.position + poseA.rotation * anchors.onA[i];
+    point.onB = poseB.position + poseB.rotation * anchors.onB[i];
+    point.separation = patch.normal.dot(point.onB - point.onA);
+  }
+}
+
+/// Takes a new patch; points that were there before keep their impulses.
+void PileContacts::renew(const ContactPatch& patch, const MovingPose& poseA, const MovingPose& poseB, bool wasEmpty,
+                         ContactManifold& manifold, Anchors& anchors) const {
+  const bool goesOn = !wasEmpty && manifold.patch.normal.dot(patch.normal) > kSameNormal;
+  const std::array<double, ContactPatch::kMostPoints> before = manifold.impulses;
+  const Anchors old = anchors;
+  const double near = kSamePoint * poseA.radius;
+  manifold.impulses.fill(0);
+  if (!goesOn) manifold.frictionImpulse.setZero(), manifold.twistImpulse = 0;
+  anchors.normal = poseA.rotation.transpose() * patch.normal;
+  for (std::size_t i = 0; i < patch.count; ++i) {
+    anchors.onA[i] = poseA.rotation.transpose() * (patch.points[i].onA - poseA.position);
+    anchors.onB[i] = poseB.rotation.transpose() * (patch.points[i].onB - poseB.position);
+    for (std::size_t k = 0; goesOn && k < manifold.patch.count; ++k)
+      if (patch.count == 1 && manifold.patch.count == 1)
+        manifold.impulses[0] = before[0];
+      else if ((anchors.onA[i] - old.onA[k]).squaredNorm() < near * near)
+        manifold.impulses[i] = before[k];
+  }
+  manifold.patch = patch;
+}
+
+ContactPatch PileContacts::patchOf(const NearPair& pair, const MovingPose& poseA, const MovingPose& poseB,
+                                   double timeStep) const {
+  const auto ballAt = [&](const Collider& ball, const MovingPose& pose) {
+    return PosedBall{pose.position + pose.rotation * ball.points[0], ball.radius};
   };
-  Vec3 normal, onBox;
-  double gap = nearest(ball.center, normal, onBox) - ball.radius;
-  const double closing = normal.dot(motion);  // of the box as seen from the ball
-  if (gap - std::max(0.0, motion.norm()) > margin) return {};
-  if (gap > 1e-3 && closing > 0) {
-    const double part = std::min(1.0, gap / closing);
-    gap = nearest(ball.center - part * motion, normal, onBox) - ball.radius;
-    onBox += part * motion;
-    onBox -= part * motion;
-    if (gap > margin && part == 1.0) return {};
-    // The box's point where it is now.
-  } else if (gap > margin) {
-    return {};
-  }
-  return single(-normal, ball.center - ball.radius * normal, onBox);
-}
-
-ContactPatch contactOfBoxOnPlane(const PosedBox& box, const PlaneCollider& plane, double reach) {
-  ContactPatch::Point points[8];
-  std::size_t count = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 signs(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-    const Vec3 at = box.center + box.axes * signs.cwiseProduct(box.halfSize);
-    const double height = plane.normal.dot(at - plane.point);
-    if (height <= reach) points[count++] = {at, at - height * plane.normal, height};
-  }
-  ContactPatch patch;
-  patch.normal = -plane.normal;
-  appendSpanning(points, count, patch);
-  return patch;
-}
-
-ContactPatch mirrored(ContactPatch patch) {
-  patch.normal = -patch.normal;
-  for (ContactPatch::Point& point : patch.points) std::swap(point.onA, point.onB);
-  return patch;
-}
-
-}  // namespace
-
-void PileContacts::updatePair(std::size_t index, const std::vector<MovingPose>& poses, const VectorX&,
-                              double timeStep) {
-  const ColliderPair& pair = pairs_[index];
-  const std::size_t slot = static_cast<std::size_t>(pairStates_[index].manifold);
-  ContactManifold& manifold = manifolds_[slot];
-  Origin& origin = origins_[slot];
-  const MovingPose still{Vec3::Zero(), Mat3::Identity(), Vec3::Zero(), Vec3::Zero(), 0, 0, false};
-  const MovingPose& poseA = poses[static_cast<std::size_t>(manifold.bodyA)];
-  const MovingPose& poseB = manifold.bodyB == kFixed ? still : poses[static_cast<std::size_t>(manifold.bodyB)];
-  const Vec3 motion = (poseB.linearVelocity - poseA.linearVelocity) * timeStep;
-
-  const double kMargin = cradle::kMargin + shocks_[static_cast<std::size_t>(manifold.bodyA)] +
-                         (manifold.bodyB == kFixed ? 0 : shocks_[static_cast<std::size_t>(manifold.bodyB)]);
-  // Only just moved: the same points, where they are now.
-  if (origin.versionA == poseA.version && origin.versionB == poseB.version) {
-    ContactPatch& patch = manifold.patch;
-    patch.normal = poseA.rotation * origin.localNormal;
-    for (std::size_t i = 0; i < patch.count; ++i) {
-      ContactPatch::Point& point = patch.points[i];
-      point.onA = poseA.position + poseA.rotation * origin.localA[i];
-      point.onB = poseB.position + poseB.rotation * origin.localB[i];
-      point.separation = patch.normal.dot(point.onB - point.onA);
-    }
-    return;
-  }
-
-  const bool flipped = geometry_.colliders[pair.a].body == kFixed;
-  const std::size_t colliderA = flipped ? pair.b : pair.a, colliderB = flipped ? pair.a : pair.b;
-  const Collider& a = geometry_.colliders[colliderA];
-  const auto posedBox = [&](const BoxShape& box, const MovingPose& pose) {
+  const auto boxAt = [](const BoxShape& box, const MovingPose& pose) {
     return PosedBox{pose.position + pose.rotation * box.center, pose.rotation * box.axes, box.halfSize};
   };
-  const auto posedBall = [&](const Collider& ball, const MovingPose& pose) {
-    return BallAt{pose.position + pose.rotation * ball.points[0], ball.radius};
+  const Vec3 motion = timeStep * (poseB.linearVelocity - poseA.linearVelocity);
+  const auto spinOf = [&](bool isBox, const MovingPose& pose) {
+    return isBox ? timeStep * pose.radius * pose.angularVelocity.norm() : 0;
   };
-  const ContactManifold before = manifold;
-  ContactPatch& patch = manifold.patch;
-  const auto& boxA = boxes_[colliderA];
-  const double spinA = boxA ? poseA.angularVelocity.norm() * poseA.radius * timeStep : 0;
-  bool isKept = true;
+  const Collider& a = geometry_.colliders[pair.shapeA];
+  const auto& boxA = boxes_[pair.shapeA];
+  const double marginA = kContactMargin + spinOf(boxA.has_value(), poseA);
   if (pair.againstPlane) {
-    const PlaneCollider& plane = geometry_.planes[pair.b];
-    if (boxA) {
-      patch = contactOfBoxOnPlane(posedBox(*boxA, poseA), plane,
-                                  kMargin + spinA + std::max(0.0, plane.normal.dot(motion)));
-    } else {
-      patch = contactOfBallOnPlane(posedBall(a, poseA), plane, motion, kMargin);
-      isKept = false;
-    }
-  } else {
-    const auto& boxB = boxes_[colliderB];
-    const Collider& b = geometry_.colliders[colliderB];
-    const double spinB = boxB ? poseB.angularVelocity.norm() * poseB.radius * timeStep : 0;
-    if (boxA && boxB) {
-      patch = contactOfBoxes(posedBox(*boxA, poseA), posedBox(*boxB, poseB), motion, kMargin + spinA + spinB);
-    } else if (boxB) {
-      patch = contactOfBallOnBox(posedBall(a, poseA), posedBox(*boxB, poseB), motion, kMargin + spinB);
-    } else if (boxA) {
-      patch = mirrored(contactOfBallOnBox(posedBall(b, poseB), posedBox(*boxA, poseA), -motion, kMargin + spinA));
-    } else {
-      patch = contactOfBalls(posedBall(a, poseA), posedBall(b, poseB), motion, kMargin);
-      isKept = false;
-    }
+    const PlaneCollider& plane = geometry_.planes[pair.shapeB];
+    return boxA ? contactOfBoxAndPlane(boxAt(*boxA, poseA), plane, motion, marginA)
+                : contactOfBallAndPlane(ballAt(a, poseA), plane, motion, marginA);
   }
-  if (patch.count > 0) {
-    if (before.patch.count > 0 && before.patch.normal.dot(patch.normal) > kSameNormal) {
-      if (!isKept) {
-        manifold.impulses = before.impulses, manifold.carried = before.carried;
-      } else {
-        manifold.impulses.fill(0), manifold.carried.fill(0);
-        const double near = kSamePoint * poseA.radius;
-        for (std::size_t i = 0; i < patch.count; ++i) {
-          const Vec3 local = poseA.rotation.transpose() * (patch.points[i].onA - poseA.position);
-          for (std::size_t j = 0; j < before.patch.count; ++j)
-            if ((local - origin.localA[j]).squaredNorm() < near * near)
-              manifold.impulses[i] = before.impulses[j], manifold.carried[i] = before.carried[j];
-        }
-      }
-    } else {
-      manifold.impulses.fill(0), manifold.carried.fill(0);
-      manifold.frictionImpulse.setZero();
-      manifold.twistImpulse = 0;
+  const Collider& b = geometry_.colliders[pair.shapeB];
+  const auto& boxB = boxes_[pair.shapeB];
+  const double margin = marginA + spinOf(boxB.has_value(), poseB);
+  if (boxA && boxB) return contactOfBoxes(boxAt(*boxA, poseA), boxAt(*boxB, poseB), motion, margin);
+  if (boxB) return contactOfBallAndBox(ballAt(a, poseA), boxAt(*boxB, poseB), motion, margin);
+  if (boxA) return exchanged(contactOfBallAndBox(ballAt(b, poseB), boxAt(*boxA, poseA), -motion, margin));
+  return contactOfBalls(ballAt(a, poseA), ballAt(b, poseB), motion, margin);
+}
+
+const std::vector<int>& PileContacts::islands(const std::vector<MovingPose>& poses) {
+  islands_.resize(poses.size());
+  std::iota(islands_.begin(), islands_.end(), 0);
+  const auto root = [&](int body) {
+    while (islands_[static_cast<std::size_t>(body)] != body) {
+      int& parent = islands_[static_cast<std::size_t>(body)];
+      parent = islands_[static_cast<std::size_t>(parent)];
+      body = parent;
     }
+    return body;
+  };
+  for (const std::int32_t index : active_) {
+    const ContactManifold& manifold = manifolds_[static_cast<std::size_t>(index)];
+    if (manifold.bodyB == kFixed || poseOf(poses, manifold.bodyA).isAsleep || poseOf(poses, manifold.bodyB).isAsleep)
+      continue;
+    const int a = root(manifold.bodyA), b = root(manifold.bodyB);
+    islands_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
   }
-  if (!isKept) return;
-  origin.versionA = poseA.version, origin.versionB = poseB.version;
-  if (patch.count == 0) return;
-  origin.localNormal = poseA.rotation.transpose() * patch.normal;
-  for (std::size_t i = 0; i < patch.count; ++i) {
-    origin.localA[i] = poseA.rotation.transpose() * (patch.points[i].onA - poseA.position);
-    origin.localB[i] = poseB.rotation.transpose() * (patch.points[i].onB - poseB.position);
-  }
+  for (std::size_t body = 0; body < islands_.size(); ++body) islands_[body] = root(static_cast<int>(body));
+  return islands_;
 }
 
 }  // namespace cradle

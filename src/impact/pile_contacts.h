@@ -4,21 +4,22 @@
 #include <optional>
 #include <vector>
 
-#include "collision/box_pair.h"
 #include "collision/contact_manifold.h"
 #include "collision/separation.h"
 #include "core/worker_threads.h"
 
 namespace cradle {
 
+constexpr double kContactMargin = 5e-3;  // m: contacts are known before bodies touch
+
 /// Where and how fast a moving body is.
 struct MovingPose {
-  Vec3 position;         // m, world, of the centre of mass
-  Mat3 rotation;         // worldFromBody
-  Vec3 linearVelocity;   // m/s, at the end of the step if nothing touches
-  Vec3 angularVelocity;  // rad/s
-  double radius = 0;     // m, about the centre of mass
-  int version = 0;       // changes when the body has moved farther than a manifold may be kept
+  Vec3 position = Vec3::Zero();         // m, world, of the centre of mass
+  Mat3 rotation = Mat3::Identity();     // worldFromBody
+  Vec3 linearVelocity = Vec3::Zero();   // m/s, world
+  Vec3 angularVelocity = Vec3::Zero();  // rad/s, world
+  double radius = 0;                    // m, of the collider about the centre of mass
+  int version = 0;                      // changes when the body has moved farther than a manifold may be kept
   bool isAsleep = false;
 };
 
@@ -31,47 +32,62 @@ class PileContacts {
   /// To be called when geometry.pairs is a new list: manifolds of pairs that stay are kept.
   void takePairs();
 
+  /// Bound on the speed (m/s) at which bodies approach each other that may touch within the time (s).
+  double fastestApproach(const std::vector<MovingPose>& poses, double time, WorkerThreads& threads) const;
+
   /// Contacts of now, and those that come about within the step. Pairs of bodies asleep stay as they are.
-  void update(const std::vector<MovingPose>& poses, const VectorX& state, double timeStep, WorkerThreads& threads);
+  void update(const std::vector<MovingPose>& poses, double timeStep, WorkerThreads& threads);
 
   std::vector<ContactManifold>& manifolds() { return manifolds_; }
+  const std::vector<ContactManifold>& manifolds() const { return manifolds_; }
   /// The manifolds that have points and a body awake, in the order of pairs.
   const std::vector<std::int32_t>& active() const { return active_; }
 
+  /// The first body of each body's group of bodies in contact, among those awake.
+  const std::vector<int>& islands(const std::vector<MovingPose>& poses);
+
  private:
   struct BoxShape {
-    Vec3 center;  // m, from the centre of mass, body's frame
+    Vec3 center;  // m, from the centre of mass, body's frame; world if fixed
     Mat3 axes;
     Vec3 halfSize;
   };
-  static std::array<Vec3, ContactPatch::kMostPoints> noPoints() {
-    std::array<Vec3, ContactPatch::kMostPoints> points;
-    points.fill(Vec3::Zero());
-    return points;
-  }
-  /// What a manifold was found from.
-  struct Origin {
-    int versionA = -1, versionB = -1;
-    Vec3 localNormal = Vec3::UnitY();  // in A's frame
-    std::array<Vec3, ContactPatch::kMostPoints> localA = noPoints(), localB = noPoints();
-  };
-  struct PairState {
+  /// A pair with a moving body first, and what is known of it from the step before.
+  struct NearPair {
+    std::size_t pair = 0;             // index into geometry.pairs
+    std::size_t shapeA = 0;           // collider
+    std::size_t shapeB = 0;           // collider or plane
+    int bodyA = kFixed, bodyB = kFixed;
+    int versionA = -1, versionB = -1;  // of the bodies when its manifold was found
     std::int32_t manifold = -1;
-    bool isNear = false;
+    bool againstPlane = false, isNear = false, isEmpty = true;
+  };
+  /// A manifold's points in their bodies' frames.
+  struct Anchors {
+    Vec3 normal = Vec3::UnitY();  // in A's
+    std::array<Vec3, ContactPatch::kMostPoints> onA{}, onB{};
   };
 
-  void updatePair(std::size_t pair, const std::vector<MovingPose>& poses, const VectorX& state, double timeStep);
-  bool isNear(const ColliderPair& pair, const std::vector<MovingPose>& poses, double timeStep) const;
+  static std::optional<BoxShape> boxOf(const Collider& collider);
+  static const MovingPose& poseOf(const std::vector<MovingPose>& poses, int body);
+  NearPair nearPairOf(std::size_t pair) const;
+  void giveManifolds();
+  bool mayTouch(const NearPair& pair, const std::vector<MovingPose>& poses, double time) const;
+  double approachOf(const NearPair& pair, const std::vector<MovingPose>& poses, double time) const;
+  void updatePair(NearPair& pair, const std::vector<MovingPose>& poses, double timeStep);
+  ContactPatch patchOf(const NearPair& pair, const MovingPose& poseA, const MovingPose& poseB, double timeStep) const;
+  void follow(const MovingPose& poseA, const MovingPose& poseB, const Anchors& anchors, ContactPatch& patch) const;
+  void renew(const ContactPatch& patch, const MovingPose& poseA, const MovingPose& poseB, bool wasEmpty,
+             ContactManifold& manifold, Anchors& anchors) const;
 
   const ContactGeometry& geometry_;
   std::vector<std::optional<BoxShape>> boxes_;  // of each collider
-  std::vector<ColliderPair> pairs_;             // those that pairStates_ belong to
-  std::vector<PairState> pairStates_;
+  std::vector<ColliderPair> listed_;            // geometry.pairs as last taken
+  std::vector<NearPair> pairs_, taken_;         // taken_: scratch
   std::vector<ContactManifold> manifolds_;
-  std::vector<Origin> origins_;
-  std::vector<std::int32_t> free_;
-  std::vector<std::int32_t> active_;
-  std::vector<double> shocks_;
+  std::vector<Anchors> anchors_;
+  std::vector<std::int32_t> free_, active_;
+  std::vector<int> islands_;
 };
 
 }  // namespace cradle

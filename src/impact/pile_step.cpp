@@ -1,5 +1,6 @@
 #include "impact/pile_step.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "math/principal_axes.h"
@@ -7,87 +8,193 @@
 namespace cradle {
 namespace {
 
-constexpr double kMargin = 5e-3;  // m
-constexpr double kKeptMotion = 5e-4;  // m: half of what two bodies may move against each other with one manifold
-constexpr double kKeptTurn = 5e-3;    // rad
+constexpr double kMostApproach = 8e-3;  // m: bodies that come nearer to each other in a step are looked at more often
+constexpr int kMostPieces = 16;         // looks a step
+constexpr int kSubSteps = 4;            // a step, at least: fewer do not bring boxes to rest
+constexpr double kKeptMotion = 5e-4;    // m: half of what two bodies may move against each other with one manifold
+constexpr double kKeptTurn = 5e-3;      // rad
+constexpr double kCalmTime = 0.5;       // s: slow for so long is at rest
+
+/// Turns by a small rotation vector: q + 1/2 (0, r) q, made of unit length, turns by 2 atan(|r| / 2).
+Quat turned(const Quat& worldFromBody, const Vec3& rotation) {
+  const Quat half(0, rotation.x() / 2, rotation.y() / 2, rotation.z() / 2);
+  Quat sum = half * worldFromBody;
+  sum.coeffs() += worldFromBody.coeffs();
+  return sum.normalized();
+}
+
+BodyMotion motionOf(const Vec3& linear, const Vec3& angular) {
+  return BodyMotion{Lanes{linear.x(), linear.y()}, Lanes{linear.z(), angular.x()}, Lanes{angular.y(), angular.z()}};
+}
+Vec3 linearOf(const BodyMotion& motion) {
+  return {motion.xy[0], motion.xy[1], motion.zu[0]};
+}
+Vec3 angularOf(const BodyMotion& motion) {
+  return {motion.zu[1], motion.vw[0], motion.vw[1]};
+}
 
 }  // namespace
 
 PileStep::PileStep(const std::vector<RigidBody>& bodies, ContactGeometry geometry, const Vec3& gravity, int threads)
     : bodies_(bodies), geometry_(std::move(geometry)), gravity_(gravity), threads_(threads), contacts_(geometry_) {
-  const std::size_t n = bodies.size();
-  poses_.resize(n);
-  for (const Collider& collider : geometry_.colliders)
-    if (collider.body != kFixed) poses_[static_cast<std::size_t>(collider.body)].radius = collider.boundingRadius;
+  const std::size_t count = bodies.size();
+  geometry_.pairs.clear();
   for (const RigidBody& body : bodies) {
     const PrincipalAxes principal = principalAxes(body.inertiaTensor);
-    principalAxes_.push_back(body.isSpherical ? Mat3::Identity() : principal.axes);
+    principalAxes_.push_back(body.isSpherical ? Mat3(Mat3::Identity()) : principal.axes);
     rootMoments_.push_back(principal.moments.cwiseSqrt());
   }
-  principals_.assign(n, Mat3::Identity());
-  solverBodies_.resize(n);
-  motions_.velocities.resize(n + 1);
-  motions_.displacements.resize(n + 1);
-  motions_.starts.resize(n + 1);
-  reach_.resize(n);
-  markedPositions_.assign(n, Vec3::Constant(1e300));
-  markedOrientations_.assign(n, Quat::Identity());
-  calmTimes_.assign(n, 0);
-  awake_ = n;
-}
-
-void PileStep::placeBodies(double timeStep, const VectorX& state) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const Eigen::Index body = static_cast<Eigen::Index>(i);
-    MovingPose& pose = poses_[i];
-    const Quat turn = orientation(state, body);
-    pose.position = centerOfMass(state, body);
-    pose.rotation = turn.toRotationMatrix();
-    const Vec3 velocity = linearVelocity(state, body);
-    pose.linearVelocity = velocity + timeStep * gravity_;
-    pose.angularVelocity = angularVelocity(state, body);
-    const double cosine = std::abs(turn.dot(markedOrientations_[i]));
-    if ((pose.position - markedPositions_[i]).squaredNorm() > kKeptMotion * kKeptMotion ||
-        8 * (1 - cosine) > kKeptTurn * kKeptTurn) {
-      markedPositions_[i] = pose.position, markedOrientations_[i] = turn;
-      ++pose.version;
-    }
-    if (!bodies_[i].isSpherical) principals_[i] = pose.rotation * principalAxes_[i];
-    const Vec3& roots = rootMoments_[i];
-    solverBodies_[i] = {pose.position, bodies_[i].inverseMass,
-                        Mat3(roots.cwiseInverse().asDiagonal() * principals_[i].transpose())};
-    const Vec3 scaled = roots.cwiseProduct(principals_[i].transpose() * pose.angularVelocity);
-    const auto motionOf = [&](const Vec3& linear) {
-      return BodyMotion{{linear.x(), linear.y()}, {linear.z(), scaled.x()}, {scaled.y(), scaled.z()}};
-    };
-    motions_.starts[i] = motionOf(velocity);
-    motions_.velocities[i] = motionOf(pose.linearVelocity);
-    motions_.displacements[i] = {};
-    reach_[i] = timeStep * (pose.linearVelocity.norm() + pose.radius * pose.angularVelocity.norm());
-  }
-}
-
-void PileStep::moveBodies(double, VectorX& state) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const Eigen::Index body = static_cast<Eigen::Index>(i);
-    const BodyMotion &velocity = motions_.velocities[i], &displacement = motions_.displacements[i];
-    const Mat3 worldFromScaled = principals_[i] * rootMoments_[i].cwiseInverse().asDiagonal();
-    centerOfMass(state, body) += Vec3(displacement.xy[0], displacement.xy[1], displacement.zu[0]);
-    linearVelocity(state, body) = Vec3(velocity.xy[0], velocity.xy[1], velocity.zu[0]);
-    angularVelocity(state, body) = worldFromScaled * Vec3(velocity.zu[1], velocity.vw[0], velocity.vw[1]);
-    turnBody(state, body, worldFromScaled * Vec3(displacement.zu[1], displacement.vw[0], displacement.vw[1]));
-  }
+  poses_.resize(count);
+  for (const Collider& collider : geometry_.colliders)
+    if (collider.body != kFixed) poses_[static_cast<std::size_t>(collider.body)].radius = collider.boundingRadius;
+  worldFromPrincipal_.assign(count, Mat3::Identity());
+  solverBodies_.resize(count);
+  motions_.resize(count);
+  reaches_.assign(count, 0);
+  markedPositions_.assign(count, Vec3::Constant(std::numeric_limits<double>::infinity()));
+  markedOrientations_.assign(count, Quat::Identity());
+  calmTimes_.assign(count, 0);
+  sleepIslands_.assign(count, -1);
+  awake_ = count;
 }
 
 void PileStep::advance(double timeStep, VectorX& state) {
+  if (allAsleep()) return;
+
+  // How fast do bodies approach each other, and how often must they be looked at for that?
   placeBodies(timeStep, state);
-  if (sweep.update(state, reach_, 2 * kMargin, geometry_)) contacts_.takePairs();
-  contacts_.update(poses_, state, timeStep, threads_);
-  solver_.prepare(coloring_.color(contacts_.manifolds(), contacts_.active(), bodies_.size()), contacts_.manifolds(),
-                  solverBodies_, threads_);
-  solver_.solve(timeStep, gravity_.norm() * timeStep, motions_, threads_);
+  if (broadPhase_.update(state, reaches_, kContactMargin, geometry_)) contacts_.takePairs();
+  const double approach = timeStep * contacts_.fastestApproach(poses_, timeStep, threads_);
+  const int pieces = std::clamp(static_cast<int>(std::ceil(approach / kMostApproach)), 1, kMostPieces);
+  const int subSteps = (kSubSteps + pieces - 1) / pieces;
+
+  for (int piece = 0; piece < pieces; ++piece) {
+    if (pieces > 1) placeBodies(timeStep / pieces, state);
+    takePiece(timeStep / pieces, subSteps, state);
+  }
+  letSleep(timeStep, state);
+}
+
+/// A step with one look for contacts.
+void PileStep::takePiece(double timeStep, int subSteps, VectorX& state) {
+  if (broadPhase_.update(state, reaches_, kContactMargin, geometry_)) contacts_.takePairs();
+  contacts_.update(poses_, timeStep, threads_);
+  const ContactColors& colors = coloring_.color(contacts_.manifolds(), contacts_.active(), bodies_.size());
+  const double subStep = timeStep / subSteps;
+  solver_.prepare(colors, contacts_.manifolds(), solverBodies_, subStep, threads_);
+  solver_.solve({subStep, subSteps, subSteps * subStep * gravity_.norm()}, gravity_, motions_, threads_);
   solver_.store(contacts_.manifolds(), threads_);
-  moveBodies(timeStep, state);
+  wakeTouched();
+  threads_.run([&](int thread) {
+    const auto [first, last] = threads_.partOf(bodies_.size(), thread);
+    for (std::size_t i = first; i < last; ++i) moveBody(i, timeStep, subStep, state);
+  });
+}
+
+void PileStep::placeBodies(double timeStep, const VectorX& state) {
+  threads_.run([&](int thread) {
+    const auto [first, last] = threads_.partOf(bodies_.size(), thread);
+    for (std::size_t i = first; i < last; ++i) {
+      if (!poses_[i].isAsleep) placeBody(i, state);
+      const MovingPose& pose = poses_[i];
+      motions_.velocities[i] = motions_.starts[i];
+      motions_.displacements[i] = {};
+      reaches_[i] = pose.isAsleep ? 0
+                                  : timeStep * (pose.linearVelocity.norm() + timeStep * gravity_.norm() +
+                                                pose.radius * pose.angularVelocity.norm());
+    }
+  });
+}
+
+void PileStep::placeBody(std::size_t index, const VectorX& state) {
+  const Eigen::Index body = static_cast<Eigen::Index>(index);
+  MovingPose& pose = poses_[index];
+  const Quat turn = orientation(state, body);
+  pose.position = centerOfMass(state, body);
+  pose.rotation = turn.toRotationMatrix();
+  pose.linearVelocity = linearVelocity(state, body);
+  pose.angularVelocity = angularVelocity(state, body);
+  // |q - p|^2 = 2 (1 - q.p) is a quarter of the squared angle between two orientations, if that is small.
+  const double cosine = std::abs(turn.dot(markedOrientations_[index]));
+  if (!((pose.position - markedPositions_[index]).squaredNorm() <= kKeptMotion * kKeptMotion &&
+        8 * (1 - cosine) <= kKeptTurn * kKeptTurn)) {
+    markedPositions_[index] = pose.position, markedOrientations_[index] = turn;
+    ++pose.version;
+  }
+  Mat3& axes = worldFromPrincipal_[index];
+  if (!bodies_[index].isSpherical) axes = pose.rotation * principalAxes_[index];
+  const Vec3& roots = rootMoments_[index];
+  solverBodies_[index] = {pose.position, bodies_[index].inverseMass,
+                          Mat3(roots.cwiseInverse().asDiagonal() * axes.transpose())};
+  motions_.starts[index] = motionOf(pose.linearVelocity, roots.cwiseProduct(axes.transpose() * pose.angularVelocity));
+}
+
+void PileStep::moveBody(std::size_t index, double timeStep, double subStep, VectorX& state) {
+  if (poses_[index].isAsleep) return;
+  const Eigen::Index body = static_cast<Eigen::Index>(index);
+  const BodyMotion &velocity = motions_.velocities[index], &displacement = motions_.displacements[index];
+  const Vec3 inverseRoots = rootMoments_[index].cwiseInverse();
+  const auto unscaled = [&](const Vec3& scaled) -> Vec3 {
+    return worldFromPrincipal_[index] * inverseRoots.cwiseProduct(scaled);
+  };
+  centerOfMass(state, body) += linearOf(displacement);
+  // Falling by sub-steps goes too far by g h/2 a unit of time: what touches nothing falls exactly.
+  if (!coloring_.isTouched(index)) centerOfMass(state, body) -= timeStep * subStep / 2 * gravity_;
+  linearVelocity(state, body) = linearOf(velocity);
+  const Quat turn = turned(orientation(state, body), unscaled(angularOf(displacement)));
+  setOrientation(state, body, turn);
+  Vec3 spin = unscaled(angularOf(velocity));
+  if (!bodies_[index].isSpherical && !spin.isZero()) {
+    // Without torque the angular momentum stays, and the energy: the spin that belongs to both at the new orientation.
+    const Mat3 axes = turn.toRotationMatrix() * principalAxes_[index];
+    const Vec3 momentum = worldFromPrincipal_[index] * rootMoments_[index].cwiseProduct(angularOf(velocity));
+    const Vec3 next = axes * inverseRoots.cwiseAbs2().cwiseProduct(axes.transpose() * momentum);
+    spin = std::sqrt(momentum.dot(spin) / momentum.dot(next)) * next;
+  }
+  angularVelocity(state, body) = spin;
+}
+
+/// Wakes sleepers that were pushed, with all that fell asleep with them.
+void PileStep::wakeTouched() {
+  if (awake_ == bodies_.size()) return;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const BodyMotion& velocity = motions_.velocities[i];
+    if (!poses_[i].isAsleep || (linearOf(velocity).isZero(0) && angularOf(velocity).isZero(0))) continue;
+    const int island = sleepIslands_[i];
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      if (sleepIslands_[k] != island) continue;
+      poses_[k].isAsleep = false, motions_.falls[k] = 1, sleepIslands_[k] = -1, calmTimes_[k] = 0;
+      ++awake_;
+    }
+  }
+}
+
+/// Puts to sleep what has been slow for a while together with all that it touches. Slow: as fast as gravity makes a
+/// body in a sub-step, which the contacts of a pile at rest cannot be told from.
+void PileStep::letSleep(double timeStep, VectorX& state) {
+  const double slow = gravity_.norm() * timeStep / kSubSteps;
+  bool someAreCalm = false;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (poses_[i].isAsleep) continue;
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    const double speed = std::max(linearVelocity(state, body).norm(), poses_[i].radius * angularVelocity(state, body).norm());
+    calmTimes_[i] = speed < slow && coloring_.isTouched(i) ? calmTimes_[i] + timeStep : 0;
+    someAreCalm = someAreCalm || calmTimes_[i] >= kCalmTime;
+  }
+  if (!someAreCalm) return;
+  const std::vector<int>& islands = contacts_.islands(poses_);
+  std::vector<char> isRestless(bodies_.size(), 0);
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    if (!poses_[i].isAsleep && calmTimes_[i] < kCalmTime) isRestless[static_cast<std::size_t>(islands[i])] = 1;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (poses_[i].isAsleep || isRestless[static_cast<std::size_t>(islands[i])]) continue;
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    linearVelocity(state, body).setZero();
+    angularVelocity(state, body).setZero();
+    poses_[i].linearVelocity.setZero(), poses_[i].angularVelocity.setZero();
+    poses_[i].isAsleep = true, motions_.falls[i] = 0, motions_.starts[i] = {}, sleepIslands_[i] = islands[i];
+    --awake_;
+  }
 }
 
 }  // namespace cradle

@@ -13,13 +13,17 @@ namespace cradle {
 /// contacts at a time; the result does not depend on the number of threads.
 class SoftContactSolver {
  public:
-  /// Arranges the manifolds for work. Velocities and scaled frames of all bodies must be known.
+  /// Arranges the manifolds for sub-steps of that length (s).
   void prepare(const ContactColors& colors, const std::vector<ContactManifold>& manifolds,
-               const std::vector<SolverBody>& bodies, WorkerThreads& threads);
+               const std::vector<SolverBody>& bodies, double subStep, WorkerThreads& threads);
 
-  /// From the velocities in `motions` (gravity's gain of the step included) and displacements of zero to the velocities
-  /// and displacements at the end. Contacts that closed faster than `slowestRebound` (m/s) rebound.
-  void solve(double timeStep, double slowestRebound, SolverMotions& motions, WorkerThreads& threads);
+  struct Steps {
+    double subStep;  // s
+    int count;
+    double slowestRebound;  // m/s: contacts that close more slowly do not rebound
+  };
+  /// From the velocities in `motions` and displacements of zero to the velocities and displacements at the end.
+  void solve(const Steps& steps, const Vec3& gravity, SolverMotions& motions, WorkerThreads& threads);
 
   /// Impulses of the step, for the next one.
   void store(std::vector<ContactManifold>& manifolds, WorkerThreads& threads) const;
@@ -45,6 +49,7 @@ class SoftContactSolver {
   BlockLists lists_;
   std::size_t colors_ = 0;
   bool rebounds_ = false;
+  double subStep_ = 0;  // s, that the manifolds' impulses belong to
 };
 
 }  // namespace cradle

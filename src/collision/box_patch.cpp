@@ -4,7 +4,7 @@
 // coming step, and sides are clipped at that instant: a falling box moves by half its size in a step of 1/60 s, and
 // with the axis of now it would stop on boxes that it passes and sink into those that it meets.
 
-#include "collision/box_pair.h"
+#include "collision/contact_patch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -213,27 +213,6 @@ ContactPatch BoxPair::sideContact(const PosedBox& reference, const PosedBox& inc
 }
 
 }  // namespace
-
-void appendSpanning(const ContactPatch::Point* points, std::size_t count, ContactPatch& patch) {
-  if (count <= ContactPatch::kMostPoints) {
-    for (std::size_t k = 0; k < count; ++k) patch.points[patch.count++] = points[k];
-    return;
-  }
-  const auto farthest = [&](const auto& measure) {
-    std::size_t best = 0;
-    double most = -std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < count; ++k)
-      if (const double value = measure(points[k]); value > most) most = value, best = k;
-    patch.points[patch.count++] = points[best];
-    return points[best].onA;
-  };
-  const Vec3 first = farthest([](const ContactPatch::Point& p) { return -p.separation; });
-  const Vec3 second = farthest([&](const ContactPatch::Point& p) { return (p.onA - first).squaredNorm(); });
-  const Vec3 across = patch.normal.cross(second - first);
-  const auto height = [&](const ContactPatch::Point& p) { return across.dot(p.onA - first); };
-  farthest(height);
-  farthest([&](const ContactPatch::Point& p) { return -height(p); });
-}
 
 ContactPatch contactOfBoxes(const PosedBox& a, const PosedBox& b, const Vec3& motion, double margin) {
   BoxPair pair(a, b, motion, margin);
