@@ -7,6 +7,7 @@
 #include <random>
 
 #include "collision/polytope_contact.h"
+#include "dynamics/invariants.h"
 #include "impact/pile_step.h"
 
 namespace cradle {
@@ -90,9 +91,16 @@ double deepest(const World& world) {
   return most;
 }
 
+double energyOf(const World& world) {
+  Mechanism mechanism;
+  mechanism.bodies = world.bodies, mechanism.gravity = Vec3(0, -9.81, 0);
+  return energyConstant(mechanism, world.state);
+}
+
 void runWorld(int n, const std::string& kind, double width, int threads, bool measure) {
   World world = makeWorld(n, kind, width);
   PileStep step(world.bodies, world.geometry, Vec3(0, -9.81, 0), threads);
+  double lastE = 0, firstE = 0;
   double sum = 0, fall = 0, late = 0, pen = 0, latePen = 0;
   const auto wall = std::chrono::steady_clock::now();
   for (int k = 0; k < 600; ++k) {
@@ -103,6 +111,13 @@ void runWorld(int n, const std::string& kind, double width, int threads, bool me
     sum += t;
     if (k < 180) fall += t;
     if (k >= 420) late += t;
+    const double energy = energyOf(world);
+    static double grew, most;
+    if (k == 0) grew = most = 0;
+    if (k && energy > lastE) grew += energy - lastE, most = std::max(most, energy - lastE);
+    lastE = energy;
+    if (k == 599) fmt::print("energy grew by {:.3e} in all, {:.3e} at most, of {:.3e}\n", grew, most, firstE);
+    if (k == 0) firstE = energy;
     if (measure) {
       const double d = deepest(world);
       pen = std::max(pen, d);
@@ -110,7 +125,7 @@ void runWorld(int n, const std::string& kind, double width, int threads, bool me
       if (k % 60 == 59) {
         double v = 0, w = 0, low = 1e9;
         for (long i = 0; i < n; ++i) v = std::max(v, linearVelocity(world.state, i).norm()), w = std::max(w, angularVelocity(world.state, i).norm()), low=std::min(low, centerOfMass(world.state,i).y());
-        fmt::print("  {} s: deepest now {:.2f} mm, most {:.2f} mm, v {:.4f} w {:.4f} active {} pairs {}\n", (k + 1) / 60, 1e3 * d, 1e3 * pen, v, w, step.contacts().active().size(), step.geometry().pairs.size());
+        fmt::print("  {} s: deepest now {:.2f} mm, most {:.2f} mm, v {:.4f} w {:.4f} active {} pairs {} E {:.3f}\n", (k + 1) / 60, 1e3 * d, 1e3 * pen, v, w, step.contacts().active().size(), step.geometry().pairs.size(), energyOf(world));
       }
     }
   }

@@ -45,8 +45,12 @@ PileStep::PileStep(const std::vector<RigidBody>& bodies, ContactGeometry geometr
     rootMoments_.push_back(principal.moments.cwiseSqrt());
   }
   poses_.resize(count);
+  isBall_.assign(count, 0);
   for (const Collider& collider : geometry_.colliders)
-    if (collider.body != kFixed) poses_[static_cast<std::size_t>(collider.body)].radius = collider.boundingRadius;
+    if (collider.body != kFixed) {
+      poses_[static_cast<std::size_t>(collider.body)].radius = collider.boundingRadius;
+      isBall_[static_cast<std::size_t>(collider.body)] = collider.isBall();
+    }
   worldFromPrincipal_.assign(count, Mat3::Identity());
   solverBodies_.resize(count);
   motions_.resize(count);
@@ -170,15 +174,17 @@ void PileStep::wakeTouched() {
 }
 
 /// Puts to sleep what has been slow for a while together with all that it touches. Slow: as fast as gravity makes a
-/// body in a sub-step, which the contacts of a pile at rest cannot be told from.
+/// body in a sub-step, which the contacts of a pile at rest cannot be told from. Nothing stops a ball that spins in
+/// place: it may be as fast as in a step.
 void PileStep::letSleep(double timeStep, VectorX& state) {
   const double slow = gravity_.norm() * timeStep / kSubSteps;
   bool someAreCalm = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (poses_[i].isAsleep) continue;
     const Eigen::Index body = static_cast<Eigen::Index>(i);
-    const double speed = std::max(linearVelocity(state, body).norm(), poses_[i].radius * angularVelocity(state, body).norm());
-    calmTimes_[i] = speed < slow && coloring_.isTouched(i) ? calmTimes_[i] + timeStep : 0;
+    const double spin = poses_[i].radius * angularVelocity(state, body).norm();
+    const bool isSlow = linearVelocity(state, body).norm() < slow && spin < (isBall_[i] ? kSubSteps : 1) * slow;
+    calmTimes_[i] = isSlow && coloring_.isTouched(i) ? calmTimes_[i] + timeStep : 0;
     someAreCalm = someAreCalm || calmTimes_[i] >= kCalmTime;
   }
   if (!someAreCalm) return;

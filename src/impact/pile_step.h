@@ -46,6 +46,7 @@ class PileStep {
   std::vector<Mat3> principalAxes_;  // columns, body's frame
   std::vector<Vec3> rootMoments_;    // sqrt(kg) m
   std::vector<MovingPose> poses_;
+  std::vector<char> isBall_;
   std::vector<Mat3> worldFromPrincipal_;
   std::vector<SolverBody> solverBodies_;
   SolverMotions motions_;

@@ -11,15 +11,15 @@
 namespace cradle {
 namespace {
 
-// Oscillation of a contact in a sub-step, by its number of points (rad): 50 Hz at 240 sub-steps a second with four.
-constexpr double kTurns[] = {3.2, 2.2, 1.3, 1.3};
+constexpr double kFrequencies[] = {120, 85, 50, 50};  // Hz: of contacts as springs, by their number of points
 constexpr double kDampingRatio = 2;
 constexpr double kHardening = 200;  // 1/m: twice the frequency at 5 mm of overlap
 constexpr double kMostPush = 4;     // m/s
+constexpr double kPi = 3.14159265358979324;
 
 /// A damped spring, implicit in the sub-step (E. Catto, "Soft Constraints", GDC 2011).
-constexpr Softness softnessOf(int points) {
-  return {kTurns[points - 1], 2 * kDampingRatio, kHardening, kMostPush};
+Softness softnessOf(int points, double subStep) {
+  return {2 * kPi * kFrequencies[points - 1] * subStep, 2 * kDampingRatio, kHardening, kMostPush};
 }
 
 template <class Lists, class Work>
@@ -92,6 +92,8 @@ void SoftContactSolver::sweep(WorkerThreads& threads, int thread, const Pass& pa
 void SoftContactSolver::solve(const Steps& steps, const Vec3& gravity, SolverMotions& motions,
                               WorkerThreads& threads) {
   const Lanes subStep = same(steps.subStep);
+  const Softness soft[] = {softnessOf(1, steps.subStep), softnessOf(2, steps.subStep), softnessOf(3, steps.subStep),
+                           softnessOf(4, steps.subStep)};
   const Vec3 gain = steps.subStep * gravity;
   const Lanes gainXy{gain.x(), gain.y()}, gainZ{gain.z(), 0};
   threads.run([&](int thread) {
@@ -105,8 +107,7 @@ void SoftContactSolver::solve(const Steps& steps, const Vec3& gravity, SolverMot
       threads.meet();
       sweep(threads, thread, [&](auto& block) { warmBlock(block, motions); });
       sweep(threads, thread, [&](auto& block) {
-        constexpr Softness soft = softnessOf(std::decay_t<decltype(block)>::kPoints);
-        softenBlock(block, soft, steps.subStep, motions);
+        softenBlock(block, soft[std::decay_t<decltype(block)>::kPoints - 1], steps.subStep, motions);
       });
       for (std::size_t body = first; body < last; ++body) {
         const BodyMotion& velocity = motions.velocities[body];
