@@ -8,8 +8,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kMostApproach = 8e-3;  // m: bodies that come nearer to each other in a step are looked at more often
-constexpr int kMostPieces = 16;         // looks a step
+constexpr double kMostApproach = 3e-3;  // m: bodies that come nearer to each other in a step are looked at more often
+constexpr int kMostPieces = 32;              // looks a step
 constexpr int kSubSteps = 4;            // a step, at least: fewer do not bring boxes to rest
 constexpr double kKeptMotion = 5e-4;    // m: half of what two bodies may move against each other with one manifold
 constexpr double kKeptTurn = 5e-3;      // rad
@@ -174,16 +174,16 @@ void PileStep::wakeTouched() {
 }
 
 /// Puts to sleep what has been slow for a while together with all that it touches. Slow: as fast as gravity makes a
-/// body in a sub-step, which the contacts of a pile at rest cannot be told from. Nothing stops a ball that spins in
-/// place: it may be as fast as in a step.
+/// body in a sub-step, which the contacts of a pile at rest cannot be told from. The spin of a ball that stays in
+/// place does not count: nothing in the laws of contact would ever stop it.
 void PileStep::letSleep(double timeStep, VectorX& state) {
   const double slow = gravity_.norm() * timeStep / kSubSteps;
   bool someAreCalm = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (poses_[i].isAsleep) continue;
     const Eigen::Index body = static_cast<Eigen::Index>(i);
-    const double spin = poses_[i].radius * angularVelocity(state, body).norm();
-    const bool isSlow = linearVelocity(state, body).norm() < slow && spin < (isBall_[i] ? kSubSteps : 1) * slow;
+    const double spin = isBall_[i] ? 0 : poses_[i].radius * angularVelocity(state, body).norm();
+    const bool isSlow = std::max(linearVelocity(state, body).norm(), spin) < slow;
     calmTimes_[i] = isSlow && coloring_.isTouched(i) ? calmTimes_[i] + timeStep : 0;
     someAreCalm = someAreCalm || calmTimes_[i] >= kCalmTime;
   }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kFrequencies[] = {120, 85, 50, 50};  // Hz: of contacts as springs, by their number of points
 constexpr double kDampingRatio = 2;
-constexpr double kHardening = 200;  // 1/m: twice the frequency at 5 mm of overlap
+constexpr double kHardening = 300;  // 1/m: twice the frequency at 3.3 mm of overlap
 constexpr double kMostPush = 4;     // m/s
 constexpr double kPi = 3.14159265358979324;
 
