@@ -14,7 +14,6 @@ struct ContactManifold {
   Vec3 frictionImpulse = Vec3::Zero();                       // N s, world, on B at the patch's middle
   double twistImpulse = 0;                                   // N m s, about the normal, on B
   double friction = 0;   // coefficient of now
-  double approach = 0;   // m/s, at the step's beginning, of the first point; > 0: closing
   SurfaceLaw law;
 };
 

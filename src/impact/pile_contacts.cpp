@@ -20,12 +20,15 @@ auto orderOf(const ColliderPair& pair) {
 }  // namespace
 
 PileContacts::PileContacts(const ContactGeometry& geometry) : geometry_(geometry) {
-  for (const Collider& collider : geometry.colliders) boxes_.push_back(boxOf(collider));
+  for (const Collider& collider : geometry.colliders) {
+    boxes_.push_back(boxOf(collider));
+    isFast_.push_back(boxes_.back().has_value() || collider.isBall());
+  }
 }
 
 /// A polytope that is a box with corners numbered as polytopeOf does.
 std::optional<PileContacts::BoxShape> PileContacts::boxOf(const Collider& collider) {
-  if (!collider.polytope || collider.polytope->vertices.size() != 8 || collider.polytope->faces.size() != 6) return {};
+  if (collider.kind() != ColliderKind::polytope || !collider.polytope || collider.polytope->vertices.size() != 8 || collider.polytope->faces.size() != 6) return {};
   const std::vector<Vec3>& corners = collider.polytope->vertices;
   BoxShape box;
   Vec3 opposite = corners[0];
@@ -54,7 +57,8 @@ PileContacts::NearPair PileContacts::nearPairOf(std::size_t index) const {
   near.pair = index, near.againstPlane = pair.againstPlane;
   near.shapeA = pair.a, near.shapeB = pair.b;
   near.bodyA = geometry_.colliders[pair.a].body, near.bodyB = bodyBOf(geometry_, pair);
-  if (near.bodyA == kFixed) std::swap(near.shapeA, near.shapeB), std::swap(near.bodyA, near.bodyB);
+  near.isExchanged = near.bodyA == kFixed;
+  if (near.isExchanged) std::swap(near.shapeA, near.shapeB), std::swap(near.bodyA, near.bodyB);
   return near;
 }
 
@@ -124,7 +128,9 @@ bool PileContacts::mayTouch(const NearPair& pair, const std::vector<MovingPose>&
   return (b.position - a.position).squaredNorm() < reach * reach;
 }
 
-void PileContacts::update(const std::vector<MovingPose>& poses, double timeStep, WorkerThreads& threads) {
+void PileContacts::update(const std::vector<MovingPose>& poses, const VectorX& state, double timeStep,
+                          WorkerThreads& threads) {
+  scratch_.resize(static_cast<std::size_t>(threads.count()));
   threads.run([&](int thread) {
     const auto [first, last] = threads.partOf(pairs_.size(), thread);
     for (std::size_t i = first; i < last; ++i) pairs_[i].isNear = mayTouch(pairs_[i], poses, timeStep);
@@ -133,7 +139,7 @@ void PileContacts::update(const std::vector<MovingPose>& poses, double timeStep,
   threads.run([&](int thread) {
     const auto [first, last] = threads.partOf(pairs_.size(), thread);
     for (std::size_t i = first; i < last; ++i)
-      if (pairs_[i].isNear) updatePair(pairs_[i], poses, timeStep);
+      if (pairs_[i].isNear) updatePair(pairs_[i], poses, state, timeStep, scratch_[static_cast<std::size_t>(thread)]);
   });
   active_.clear();
   for (const NearPair& pair : pairs_)
@@ -157,7 +163,8 @@ void PileContacts::giveManifolds() {
   }
 }
 
-void PileContacts::updatePair(NearPair& pair, const std::vector<MovingPose>& poses, double timeStep) {
+void PileContacts::updatePair(NearPair& pair, const std::vector<MovingPose>& poses, const VectorX& state,
+                              double timeStep, std::vector<Contact>& scratch) {
   const MovingPose &poseA = poseOf(poses, pair.bodyA), &poseB = poseOf(poses, pair.bodyB);
   ContactManifold& manifold = manifolds_[static_cast<std::size_t>(pair.manifold)];
   Anchors& anchors = anchors_[static_cast<std::size_t>(pair.manifold)];
@@ -165,7 +172,11 @@ void PileContacts::updatePair(NearPair& pair, const std::vector<MovingPose>& pos
     if (pair.isEmpty) return;
     follow(poseA, poseB, anchors, manifold.patch);
   } else {
-    const ContactPatch patch = patchOf(pair, poseA, poseB, timeStep);
+    const double speed = (poseB.linearVelocity - poseA.linearVelocity).norm() +
+                         poseA.radius * poseA.angularVelocity.norm() + poseB.radius * poseB.angularVelocity.norm();
+    const ContactPatch patch = isFast(pair)
+                                   ? patchOf(pair, poseA, poseB, timeStep)
+                                   : patchOfAnyShapes(pair, state, kContactMargin + timeStep * speed, scratch);
     const bool wasEmpty = pair.isEmpty;
     pair.versionA = poseA.version, pair.versionB = poseB.version;
     pair.isEmpty = patch.count == 0;
@@ -176,8 +187,10 @@ void PileContacts::updatePair(NearPair& pair, const std::vector<MovingPose>& pos
   const Vec3 sliding = poseB.linearVelocity - poseA.linearVelocity +
                        poseB.angularVelocity.cross(point.onB - poseB.position) -
                        poseA.angularVelocity.cross(point.onA - poseA.position);
-  manifold.approach = -manifold.patch.normal.dot(sliding);
-  const double across2 = sliding.squaredNorm() - manifold.approach * manifold.approach;
+  const double approach = -manifold.patch.normal.dot(sliding);
+  const double across2 = sliding.squaredNorm() - approach * approach;
+  const auto& impulses = manifold.impulses;
+  pair.approach = std::all_of(impulses.begin(), impulses.end(), [](double p) { return p == 0; }) ? approach : 0;
   manifold.friction =
       across2 < kSlowSliding * kSlowSliding ? manifold.law.staticFriction : manifold.law.dynamicFriction;
 }
@@ -243,6 +256,41 @@ ContactPatch PileContacts::patchOf(const NearPair& pair, const MovingPose& poseA
   if (boxB) return contactOfBallAndBox(ballAt(a, poseA), boxAt(*boxB, poseB), motion, margin);
   if (boxA) return exchanged(contactOfBallAndBox(ballAt(b, poseB), boxAt(*boxA, poseA), -motion, margin));
   return contactOfBalls(ballAt(a, poseA), ballAt(b, poseB), motion, margin);
+}
+
+bool PileContacts::isFast(const NearPair& pair) const {
+  return isFast_[pair.shapeA] && (pair.againstPlane || isFast_[pair.shapeB]);
+}
+
+/// Through the general search. One patch: of contacts with several normals those along the deepest one's.
+ContactPatch PileContacts::patchOfAnyShapes(const NearPair& pair, const VectorX& state, double reach,
+                                            std::vector<Contact>& scratch) const {
+  scratch.clear();
+  appendContacts(geometry_, pair.pair, state, reach, scratch);
+  ContactPatch patch;
+  if (scratch.empty()) return patch;
+  const auto deepest = std::min_element(scratch.begin(), scratch.end(), [](const Contact& a, const Contact& b) {
+    return a.separation < b.separation;
+  });
+  patch.normal = deepest->normal;
+  constexpr std::size_t kMostCandidates = 16;
+  ContactPatch::Point points[kMostCandidates];
+  std::size_t count = 0;
+  for (const Contact& contact : scratch) {
+    if (contact.normal.dot(patch.normal) < kSameNormal || count == kMostCandidates) continue;
+    const Vec3 half = contact.separation / 2 * contact.normal;
+    points[count++] = {contact.point - half, contact.point + half, contact.separation};
+  }
+  appendSpanning(points, count, patch);
+  return pair.isExchanged ? exchanged(patch) : patch;
+}
+
+std::vector<PileContacts::Meeting> PileContacts::meetings(double slowest) const {
+  std::vector<Meeting> found;
+  for (const NearPair& pair : pairs_)
+    if (pair.isNear && !pair.isEmpty && pair.approach > slowest)
+      found.push_back({geometry_.pairs[pair.pair], pair.manifold, pair.isExchanged});
+  return found;
 }
 
 const std::vector<int>& PileContacts::islands(const std::vector<MovingPose>& poses) {

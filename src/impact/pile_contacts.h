@@ -35,13 +35,23 @@ class PileContacts {
   /// Bound on the speed (m/s) at which bodies approach each other that may touch within the time (s).
   double fastestApproach(const std::vector<MovingPose>& poses, double time, WorkerThreads& threads) const;
 
-  /// Contacts of now, and those that come about within the step. Pairs of bodies asleep stay as they are.
-  void update(const std::vector<MovingPose>& poses, double timeStep, WorkerThreads& threads);
+  /// Contacts of now, and those that come about within the step. Pairs of bodies asleep stay as they are. `state` holds
+  /// the same poses.
+  void update(const std::vector<MovingPose>& poses, const VectorX& state, double timeStep, WorkerThreads& threads);
 
   std::vector<ContactManifold>& manifolds() { return manifolds_; }
   const std::vector<ContactManifold>& manifolds() const { return manifolds_; }
   /// The manifolds that have points and a body awake, in the order of pairs.
   const std::vector<std::int32_t>& active() const { return active_; }
+
+  /// Contacts among them that were not pressed in the step before and close faster than `slowest` (m/s), as pairs of
+  /// colliders.
+  struct Meeting {
+    ColliderPair pair;
+    std::int32_t manifold;
+    bool isExchanged;  // the manifold's A is the pair's second
+  };
+  std::vector<Meeting> meetings(double slowest) const;
 
   /// The first body of each body's group of bodies in contact, among those awake.
   const std::vector<int>& islands(const std::vector<MovingPose>& poses);
@@ -60,7 +70,8 @@ class PileContacts {
     int bodyA = kFixed, bodyB = kFixed;
     int versionA = -1, versionB = -1;  // of the bodies when its manifold was found
     std::int32_t manifold = -1;
-    bool againstPlane = false, isNear = false, isEmpty = true;
+    bool againstPlane = false, isExchanged = false, isNear = false, isEmpty = true;
+    double approach = 0;  // m/s, of a contact that was not pressed in the step before
   };
   /// A manifold's points in their bodies' frames.
   struct Anchors {
@@ -74,14 +85,20 @@ class PileContacts {
   void giveManifolds();
   bool mayTouch(const NearPair& pair, const std::vector<MovingPose>& poses, double time) const;
   double approachOf(const NearPair& pair, const std::vector<MovingPose>& poses, double time) const;
-  void updatePair(NearPair& pair, const std::vector<MovingPose>& poses, double timeStep);
+  void updatePair(NearPair& pair, const std::vector<MovingPose>& poses, const VectorX& state, double timeStep,
+                  std::vector<Contact>& scratch);
   ContactPatch patchOf(const NearPair& pair, const MovingPose& poseA, const MovingPose& poseB, double timeStep) const;
+  ContactPatch patchOfAnyShapes(const NearPair& pair, const VectorX& state, double reach,
+                                std::vector<Contact>& scratch) const;
+  bool isFast(const NearPair& pair) const;
   void follow(const MovingPose& poseA, const MovingPose& poseB, const Anchors& anchors, ContactPatch& patch) const;
   void renew(const ContactPatch& patch, const MovingPose& poseA, const MovingPose& poseB, bool wasEmpty,
              ContactManifold& manifold, Anchors& anchors) const;
 
   const ContactGeometry& geometry_;
   std::vector<std::optional<BoxShape>> boxes_;  // of each collider
+  std::vector<char> isFast_;                    // of each collider: a ball or a box
+  std::vector<std::vector<Contact>> scratch_;   // of each thread
   std::vector<ColliderPair> listed_;            // geometry.pairs as last taken
   std::vector<NearPair> pairs_, taken_;         // taken_: scratch
   std::vector<ContactManifold> manifolds_;

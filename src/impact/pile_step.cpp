@@ -35,8 +35,8 @@ Vec3 angularOf(const BodyMotion& motion) {
 
 }  // namespace
 
-PileStep::PileStep(const std::vector<RigidBody>& bodies, ContactGeometry geometry, const Vec3& gravity, int threads)
-    : bodies_(bodies), geometry_(std::move(geometry)), gravity_(gravity), threads_(threads), contacts_(geometry_) {
+PileStep::PileStep(const std::vector<RigidBody>& bodies, ContactGeometry& geometry, const Vec3& gravity, int threads)
+    : bodies_(bodies), geometry_(geometry), gravity_(gravity), threads_(threads), contacts_(geometry_) {
   const std::size_t count = bodies.size();
   geometry_.pairs.clear();
   for (const RigidBody& body : bodies) {
@@ -63,7 +63,9 @@ PileStep::PileStep(const std::vector<RigidBody>& bodies, ContactGeometry geometr
 }
 
 void PileStep::advance(double timeStep, VectorX& state) {
+  impacts_.clear(), fallenAsleep_.clear(), woken_.clear();
   if (allAsleep()) return;
+  slowestRebound_ = timeStep * gravity_.norm();
 
   // How fast do bodies approach each other, and how often must they be looked at for that?
   placeBodies(timeStep, state);
@@ -82,12 +84,14 @@ void PileStep::advance(double timeStep, VectorX& state) {
 /// A step with one look for contacts.
 void PileStep::takePiece(double timeStep, int subSteps, VectorX& state) {
   if (broadPhase_.update(state, reaches_, kContactMargin, geometry_)) contacts_.takePairs();
-  contacts_.update(poses_, timeStep, threads_);
+  contacts_.update(poses_, state, timeStep, threads_);
+  ++looks_;
   const ContactColors& colors = coloring_.color(contacts_.manifolds(), contacts_.active(), bodies_.size());
   const double subStep = timeStep / subSteps;
   solver_.prepare(colors, contacts_.manifolds(), solverBodies_, subStep, threads_);
-  solver_.solve({subStep, subSteps, subSteps * subStep * gravity_.norm()}, gravity_, motions_, threads_);
+  solver_.solve({subStep, subSteps, slowestRebound_}, gravity_, motions_, threads_);
   solver_.store(contacts_.manifolds(), threads_);
+  recordImpacts(subSteps);
   wakeTouched();
   threads_.run([&](int thread) {
     const auto [first, last] = threads_.partOf(bodies_.size(), thread);
@@ -158,6 +162,19 @@ void PileStep::moveBody(std::size_t index, double timeStep, double subStep, Vect
   angularVelocity(state, body) = spin;
 }
 
+/// The impulse of the last sub-step stands for each: where bodies meet fast, a look has but one.
+void PileStep::recordImpacts(int subSteps) {
+  for (const PileContacts::Meeting& meeting : contacts_.meetings(slowestRebound_)) {
+    const ContactManifold& manifold = contacts_.manifolds()[static_cast<std::size_t>(meeting.manifold)];
+    double impulse = 0;
+    for (std::size_t i = 0; i < manifold.patch.count; ++i) impulse += subSteps * manifold.impulses[i];
+    if (impulse <= 0) continue;
+    const ContactPatch::Point& point = manifold.patch.points[0];
+    impacts_.push_back({meeting.pair, (point.onA + point.onB) / 2,
+                        (meeting.isExchanged ? -1 : 1) * manifold.patch.normal, impulse});
+  }
+}
+
 /// Wakes sleepers that were pushed, with all that fell asleep with them.
 void PileStep::wakeTouched() {
   if (awake_ == bodies_.size()) return;
@@ -169,6 +186,7 @@ void PileStep::wakeTouched() {
       if (sleepIslands_[k] != island) continue;
       poses_[k].isAsleep = false, motions_.falls[k] = 1, sleepIslands_[k] = -1, calmTimes_[k] = 0;
       ++awake_;
+      woken_.push_back(static_cast<int>(k));
     }
   }
 }
@@ -200,6 +218,7 @@ void PileStep::letSleep(double timeStep, VectorX& state) {
     poses_[i].linearVelocity.setZero(), poses_[i].angularVelocity.setZero();
     poses_[i].isAsleep = true, motions_.falls[i] = 0, motions_.starts[i] = {}, sleepIslands_[i] = islands[i];
     --awake_;
+    fallenAsleep_.push_back(static_cast<int>(i));
   }
 }
 

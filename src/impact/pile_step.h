@@ -14,8 +14,8 @@ namespace cradle {
 /// depend on the number of threads.
 class PileStep {
  public:
-  /// Keeps a reference to `bodies`. All bodies are awake.
-  PileStep(const std::vector<RigidBody>& bodies, ContactGeometry geometry, const Vec3& gravity, int threads);
+  /// Keeps references to bodies and geometry, whose pairs it refreshes. All bodies are awake.
+  PileStep(const std::vector<RigidBody>& bodies, ContactGeometry& geometry, const Vec3& gravity, int threads);
 
   /// Moves the state (layout of dynamics/state.h; orientations of unit length) on by `timeStep` (s), at most 1/60 for
   /// piles to stay still. Orientations stay of unit length; dissipated energy and work are left as they are.
@@ -23,20 +23,33 @@ class PileStep {
 
   bool allAsleep() const { return awake_ == 0; }
   bool isAsleep(std::size_t body) const { return poses_[body].isAsleep; }
-  /// The contacts of the last step.
+  /// The contacts of the last look.
   const PileContacts& contacts() const { return contacts_; }
-  const ContactGeometry& geometry() const { return geometry_; }
+  /// Looks for contacts so far.
+  long looks() const { return looks_; }
+
+  /// What happened in the last step: bodies that met faster than gravity makes them in a step, and bodies that fell
+  /// asleep or were woken.
+  struct Impact {
+    ColliderPair pair;
+    Vec3 point, normal;  // m, world; unit, from A to B
+    double impulse;      // N s
+  };
+  const std::vector<Impact>& impacts() const { return impacts_; }
+  const std::vector<int>& fallenAsleep() const { return fallenAsleep_; }
+  const std::vector<int>& woken() const { return woken_; }
 
  private:
   void placeBodies(double timeStep, const VectorX& state);
   void placeBody(std::size_t index, const VectorX& state);
   void takePiece(double timeStep, int subSteps, VectorX& state);
   void moveBody(std::size_t index, double timeStep, double subStep, VectorX& state);
+  void recordImpacts(int subSteps);
   void wakeTouched();
   void letSleep(double timeStep, VectorX& state);
 
   const std::vector<RigidBody>& bodies_;
-  ContactGeometry geometry_;
+  ContactGeometry& geometry_;
   const Vec3 gravity_;
   WorkerThreads threads_;
   BroadPhase broadPhase_;
@@ -56,6 +69,10 @@ class PileStep {
   std::vector<double> calmTimes_;  // s, for which each body has been slow
   std::vector<int> sleepIslands_;  // bodies that fell asleep together have the same number
   std::size_t awake_ = 0;
+  double slowestRebound_ = 0;  // m/s
+  long looks_ = 0;
+  std::vector<Impact> impacts_;
+  std::vector<int> fallenAsleep_, woken_;
 };
 
 }  // namespace cradle
