@@ -213,7 +213,7 @@ std::string legend(const std::vector<Curve>& curves) {
       "set label 1 'One marker a run: from each to the next, the time step is halved, or the accuracy asked for ten "
       "times finer.' at screen 0.5, 0.025 center font ',13' textcolor rgb '#505050'\n"
       "plot [0:1][0:1] ",
-      curves.size() > kMostInALine ? 2 : 1, curves.size() > kMostInALine ? 13 : 15);
+      curves.size() > kMostInALine ? 3 : 1, curves.size() > kMostInALine ? 12 : 15);
   for (const Curve& curve : curves)
     text += fmt::format(
         "NaN with linespoints dashtype {} linewidth {} pointtype {} pointsize {}*markerScale linecolor rgb '{}' title "
