@@ -10,6 +10,7 @@ find_library(LIBDEFLATE deflate REQUIRED)
 find_library(OSMESA OSMesa REQUIRED)
 find_library(GLEW NAMES libGLEW.a REQUIRED)
 find_path(STB_INCLUDE stb/stb_image_write.h REQUIRED)
+find_package(Qhull 8 REQUIRED)
 
 if(CRADLE_PEERS)
   find_path(BULLET_INCLUDE btBulletDynamicsCommon.h PATH_SUFFIXES bullet REQUIRED)

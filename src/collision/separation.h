@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "collision/collider.h"
@@ -13,6 +14,8 @@ struct Contact {
   Vec3 point = Vec3::Zero();   // m, world: middle between the two surfaces
   Vec3 normal = Vec3::Zero();  // unit, world, from A to B
   double separation = 0;       // m, < 0: overlap
+  // m: radius of the ball that each surface is there: 0 a corner, infinite a flat face; NaN: neither (edge, side, rim).
+  double radiusA = std::numeric_limits<double>::quiet_NaN(), radiusB = radiusA;
 };
 
 /// Pose of a moving body's centre of mass frame in `state`; identity if fixed.
