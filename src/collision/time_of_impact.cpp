@@ -4,10 +4,14 @@
 #include <cmath>
 
 #include "collision/first_crossing.h"
+#include "collision/mesh_collider.h"
 
 namespace cradle {
 namespace {
 
+// Of the smaller radius. A gap of triangles costs as much as hundreds of others; what grazes by less between two looks
+// is apart at both, and at the rates of a body in free motion by far less.
+constexpr double kPassedPart = 1e-4;
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
 Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
@@ -76,6 +80,7 @@ class PairSearch {
     const MotionBounds& turnB = scratch_.turnOf(step_, bodyB_);
     bounds_.speed += turnB.speed * pointReach(b);
     pull_ += turnB.acceleration * pointReach(b);
+    if (hasMesh(a_, b)) bounds_.passedDepth = kPassedPart * std::min(a_.boundingRadius, b.boundingRadius);
     if (a_.isBall() && b.isBall())
       bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / (a_.radius + b.radius);
   }
