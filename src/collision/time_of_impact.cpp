@@ -1,49 +1,130 @@
 #include "collision/time_of_impact.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "collision/first_crossing.h"
-#include "dynamics/integrators/pose_interpolant.h"
 
 namespace cradle {
 namespace {
 
+constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
+
+Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
+  if (body == kFixed) return Vec3::Zero();
+  return linearVelocity(state, body) + angularVelocity(state, body).cross(point - centerOfMass(state, body));
+}
+
+/// m/s at which a contact opens.
+double openingSpeed(const Contact& contact, const VectorX& state) {
+  return contact.normal.dot(pointVelocity(contact.bodyB, contact.point, state) -
+                            pointVelocity(contact.bodyA, contact.point, state));
+}
+
+/// How far (m) from the centre of mass the points of a collider are, without the balls around them.
+double pointReach(const Collider& collider) {
+  return collider.boundingRadius - collider.radius;
+}
+
+}  // namespace
+
 /// Searches one pair; keeps the earliest impact found so far in `best`.
 class PairSearch {
  public:
-  PairSearch(const ContactGeometry& geometry, const Step& step, std::size_t pair)
-      : geometry_(geometry),
+  PairSearch(ImpactSearch& scratch, const Step& step, std::size_t pair)
+      : geometry_(scratch.geometry_),
+        scratch_(scratch),
         step_(step),
         pairIndex_(pair),
-        pair_(geometry.pairs[pair]),
-        a_(geometry.colliders[pair_.a]),
-        bodyB_(bodyBOf(geometry, pair_)),
-        bounds_(gapBounds()) {}
+        pair_(geometry_.pairs[pair]),
+        a_(geometry_.colliders[pair_.a]),
+        bodyB_(bodyBOf(geometry_, pair_)),
+        startA_(poseAt(step, a_.body, 0)),
+        startB_(poseAt(step, bodyB_, 0)) {}
 
-  void search(double tolerance, std::optional<ImpactTime>& best) {
-    const RigidTransform startA = poseAt(step_, a_.body, 0), startB = poseAt(step_, bodyB_, 0);
-    if (separationBound(geometry_, pair_, startA, startB) > bounds_.speed) return;
-    std::vector<std::size_t> features;
-    appendFeaturesWithin(geometry_, pair_, startA, bounds_.speed, features);
-    for (const std::size_t feature : features) {
+  void search(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
+    findBounds();
+    const double reach = bounds_.speed + touching.tolerance;
+    if (separationBound(geometry_, pair_, startA_, startB_) > reach) return;
+    scratch_.features_.clear();
+    appendFeaturesWithin(geometry_, pair_, startA_, reach, scratch_.features_);
+    for (const std::size_t feature : scratch_.features_) {
       feature_ = feature;
-      const double start = separation(geometry_, pair_, feature_, startA, startB);
-      if (start <= tolerance || start > bounds_.speed) continue;
-      const double end = best ? best->fraction : 1;
-      const auto gapAt = [this](double fraction) { return gap(fraction); };
-      if (const auto fraction = firstCrossing(gapAt, bounds_, 0, start, end, gap(end)))
-        best = ImpactTime{*fraction, pairIndex_, feature_};
+      if (isHeld(touching)) continue;
+      const double start = separation(geometry_, pair_, feature_, startA_, startB_);
+      if (start > bounds_.speed) continue;
+      if (start > touching.tolerance)
+        searchFrom(0, start, 0, best);
+      else if (std::isfinite(touching.deadBand))
+        searchTouching(start, touching, best);
     }
   }
 
  private:
-  GapBounds gapBounds() const {
-    const MotionBounds a = motionBounds(step_, a_.body, a_.boundingRadius);
-    if (pair_.againstPlane) return {a.speed, a.acceleration};
-    const Collider& other = geometry_.colliders[pair_.b];
-    const MotionBounds b = motionBounds(step_, bodyB_, other.boundingRadius);
-    const double speed = a.speed + b.speed;
-    if (!a_.isBall() || !other.isBall()) return {speed};  // edges: a gap's slope may jump
-    // The distance d of two centres: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's sum.
-    return {speed, a.acceleration + b.acceleration + speed * speed / (a_.radius + other.radius)};
+  /// Between two centres at distance d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's sum.
+  /// With edges a gap's slope may jump: then nothing bounds its acceleration.
+  void findBounds() {
+    const MotionBounds shift = relativeMotionBounds(step_, a_.body, bodyB_);
+    const MotionBounds& turnA = scratch_.turnOf(step_, a_.body);
+    bounds_.speed = shift.speed + turnA.speed * pointReach(a_);
+    pull_ = shift.acceleration + turnA.acceleration * pointReach(a_);
+    if (pair_.againstPlane) {
+      bounds_.acceleration = pull_;
+      return;
+    }
+    const Collider& b = geometry_.colliders[pair_.b];
+    const MotionBounds& turnB = scratch_.turnOf(step_, bodyB_);
+    bounds_.speed += turnB.speed * pointReach(b);
+    pull_ += turnB.acceleration * pointReach(b);
+    if (a_.isBall() && b.isBall())
+      bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / (a_.radius + b.radius);
+  }
+
+  bool isHeld(const TouchingFeatures& touching) const {
+    return touching.held &&
+           std::any_of(touching.held->begin(), touching.held->end(), [this](const HeldFeature& held) {
+             return held.pair == pairIndex_ && held.feature == feature_;
+           });
+  }
+
+  /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not has the
+  /// dead band.
+  void searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
+    const double lowest = std::min(0.0, start), speed = leavingSpeed(touching.tolerance) * step_.timeStep;
+    if (!(speed > 0)) return searchFrom(0, start, lowest - touching.deadBand, best);
+    if (speed >= 0.5 * pull_) return;
+    double from = speed / pull_;
+    if (!std::isfinite(bounds_.acceleration)) from = std::min(from, kFirstLook);
+    const double away = gap(from);
+    if (away > lowest)
+      searchFrom(from, away, lowest, best);
+    else
+      searchFrom(0, start, lowest - touching.deadBand, best);  // a leap within rounding
+  }
+
+  /// Where the gap falls to `threshold` (m).
+  void searchFrom(double from, double gapFrom, double threshold, std::optional<ImpactTime>& best) {
+    const double end = best ? best->fraction : 1;
+    if (from >= end) return;
+    const auto above = [&](double fraction) { return gap(fraction) - threshold; };
+    if (const auto fraction = firstCrossing(above, bounds_, from, gapFrom - threshold, end, above(end)))
+      best = ImpactTime{*fraction, pairIndex_, feature_};
+  }
+
+  /// m/s; of the point of the feature that leaves slowest.
+  double leavingSpeed(double tolerance) {
+    if (pair_.againstPlane) {
+      const Vec3& normal = geometry_.planes[pair_.b].normal;
+      return normal.dot(pointVelocity(a_.body, startA_ * a_.points[feature_] - a_.radius * normal, step_.startState));
+    }
+    scratch_.contacts_.clear();
+    appendContacts(geometry_, pairIndex_, step_.startState, tolerance, scratch_.contacts_);
+    double least = 0;
+    for (std::size_t i = 0; i < scratch_.contacts_.size(); ++i) {
+      const double speed = openingSpeed(scratch_.contacts_[i], step_.startState);
+      least = i == 0 ? speed : std::min(least, speed);
+    }
+    return least;
   }
 
   double gap(double fraction) const {
@@ -51,20 +132,30 @@ class PairSearch {
   }
 
   const ContactGeometry& geometry_;
+  ImpactSearch& scratch_;
   const Step& step_;
   std::size_t pairIndex_, feature_ = 0;
   const ColliderPair& pair_;
   const Collider& a_;
   int bodyB_;
+  RigidTransform startA_, startB_;
   GapBounds bounds_;
+  double pull_ = 0;  // m: bound on the relative acceleration, with the step as the unit of time
 };
 
-}  // namespace
+const MotionBounds& ImpactSearch::turnOf(const Step& step, int body) {
+  static constexpr MotionBounds kStill;
+  if (body == kFixed) return kStill;
+  Turn& turn = turns_[static_cast<std::size_t>(body)];
+  if (!turn.isKnown) turn = {true, turnBounds(step, body)};
+  return turn.bounds;
+}
 
-std::optional<ImpactTime> firstImpact(const ContactGeometry& geometry, const Step& step, double tolerance) {
+std::optional<ImpactTime> ImpactSearch::first(const Step& step, const TouchingFeatures& touching) {
+  turns_.assign(static_cast<std::size_t>(bodyCount(step.state)), {});
   std::optional<ImpactTime> best;
-  for (std::size_t pair = 0; pair < geometry.pairs.size(); ++pair)
-    PairSearch(geometry, step, pair).search(tolerance, best);
+  for (std::size_t pair = 0; pair < geometry_.pairs.size(); ++pair)
+    PairSearch(*this, step, pair).search(touching, best);
   return best;
 }
 

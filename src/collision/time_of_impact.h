@@ -1,9 +1,11 @@
 #pragma once
 
+#include <limits>
 #include <optional>
+#include <vector>
 
 #include "collision/separation.h"
-#include "dynamics/integrators/step.h"
+#include "dynamics/integrators/pose_interpolant.h"
 
 namespace cradle {
 
@@ -13,9 +15,43 @@ struct ImpactTime {
   std::size_t pair = 0, feature = 0;
 };
 
-/// The first instant of a step at which two features that are apart by more than `tolerance` (m) at its start come
-/// together. Searched on the step's interpolant by bisection, with a bound on the relative speed so that nothing passes
-/// through anything. The step's end rate must be there (prepareInterpolant).
-std::optional<ImpactTime> firstImpact(const ContactGeometry& geometry, const Step& step, double tolerance);
+/// A feature of a pair, as separation.h numbers them, that something keeps together.
+struct HeldFeature {
+  std::size_t pair = 0, feature = 0;
+  Attachment point;  // where they are held together
+};
+
+/// What touches when a step begins.
+struct TouchingFeatures {
+  double tolerance = 0;  // m: what is nearer touches
+  // m: what touches comes together anew when it has closed by more than this; infinite: it is passed over
+  double deadBand = std::numeric_limits<double>::infinity();
+  const std::vector<HeldFeature>* held = nullptr;  // passed over: something keeps them together
+};
+
+/// Searches steps for the first instant at which two features come together: apart by more than the tolerance, leaving
+/// each other, or touching without a load before. On the step's interpolant, with bounds on the relative motion so that
+/// nothing passes through anything.
+class ImpactSearch {
+ public:
+  /// Keeps a reference to `geometry`.
+  explicit ImpactSearch(const ContactGeometry& geometry) : geometry_(geometry) {}
+
+  /// The step's end rate must be there (prepareInterpolant).
+  std::optional<ImpactTime> first(const Step& step, const TouchingFeatures& touching);
+
+ private:
+  struct Turn {
+    bool isKnown = false;
+    MotionBounds bounds;
+  };
+  friend class PairSearch;
+  const MotionBounds& turnOf(const Step& step, int body);
+
+  const ContactGeometry& geometry_;
+  std::vector<Turn> turns_;  // of the moving bodies, in the step that is searched
+  std::vector<std::size_t> features_;
+  std::vector<Contact> contacts_;
+};
 
 }  // namespace cradle

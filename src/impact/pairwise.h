@@ -11,7 +11,7 @@ struct ImpactContact {
   Contact contact;
   SurfaceLaw law;
   double restSpeed = 0;         // m/s: slower closing does not rebound
-  Vec3 impulse = Vec3::Zero();  // N s, world, on B: what resolvePairwise applied in all
+  Vec3 impulse = Vec3::Zero();  // N s, world, on B: what was applied in all
 };
 
 /// The textbook law of simultaneous impacts: the pair that closes fastest gets its two-body impulse (Newton's

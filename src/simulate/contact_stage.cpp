@@ -6,6 +6,7 @@
 
 #include "dynamics/invariants.h"
 #include "impact/contact_impulse.h"
+#include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
 #include "impact/lasting_contact.h"
 
@@ -30,28 +31,25 @@ double closingSpeed(const Contact& contact, const VectorX& state) {
   return -contact.normal.dot(relativeVelocity(contact, state));
 }
 
-/// Without friction by reflections; with it pair by pair.
+/// Without friction by reflections; with it by the same on Coulomb's cones.
 void resolveImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
   const bool hasFriction = std::any_of(impacts.begin(), impacts.end(), [](const ImpactContact& impact) {
     return impact.law.staticFriction > 0 || impact.law.dynamicFriction > 0;
   });
-  hasFriction ? resolvePairwise(impacts, response, state) : resolveReflections(impacts, response, state);
+  hasFriction ? resolveFrictionalImpact(impacts, response, state) : resolveReflections(impacts, response, state);
 }
 
 }  // namespace
 
-ContactStage::ContactStage(const Assembly& assembly, EquationsOfMotion& equations, EventLog& log, double timeStep)
-    : assembly_(assembly),
-      log_(log),
-      resting_(assembly.mechanism, assembly.geometry, equations, kCalmSteps * timeStep),
-      solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),
+ContactStage::ContactStage(MovingIsland& island, double timeStep)
+    : assembly_(island.assembly),
+      log_(island.log),
+      resting_(island.resting),
+      solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       timeStep_(timeStep),
-      touchTolerance_(cradle::touchTolerance(assembly.geometry)),
-      leastImpactSpeed_(kRestSpeedFloor + kLeastImpactPart * assembly.mechanism.gravity.norm() * timeStep) {}
-
-void ContactStage::wake(double time, int body, const VectorX& state) {
-  for (const int other : resting_.wake(time, body))
-    log_.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
+      touchTolerance_(cradle::touchTolerance(assembly_.geometry)),
+      leastImpactSpeed_(kRestSpeedFloor + kLeastImpactPart * assembly_.mechanism.gravity.norm() * timeStep) {
+  resting_.setCalmTime(kCalmSteps * timeStep);
 }
 
 void ContactStage::resolve(double time, const VectorX& before, VectorX& state) {

@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "impact/pairwise.h"
-#include "simulate/event_log.h"
 #include "simulate/islands.h"
-#include "simulate/resting_bodies.h"
+#include "simulate/moving_island.h"
 
 namespace cradle {
 
@@ -15,17 +14,11 @@ namespace cradle {
 /// out, and what lies still is put to rest.
 class ContactStage {
  public:
-  /// Keeps references to all three. `timeStep` (s) is the method's.
-  ContactStage(const Assembly& assembly, EquationsOfMotion& equations, EventLog& log, double timeStep);
+  /// Keeps a reference to `island`. `timeStep` (s) is the method's.
+  ContactStage(MovingIsland& island, double timeStep);
 
   /// `before` is the state at the step's start: lasting contacts did their work since then.
   void resolve(double time, const VectorX& before, VectorX& state);
-
-  /// Wakes the island of a moving body, with events.
-  void wake(double time, int body, const VectorX& state);
-
-  /// Whether all bodies of the island lie still.
-  bool allRest() const { return resting_.allRest(); }
 
   /// Nearer than this (m) is touching.
   double touchTolerance() const { return touchTolerance_; }
@@ -44,7 +37,7 @@ class ContactStage {
 
   const Assembly& assembly_;
   EventLog& log_;
-  RestingBodies resting_;
+  RestingBodies& resting_;
   ConstraintSolver solver_;
   double timeStep_, touchTolerance_, leastImpactSpeed_;
   double lastTime_ = -INFINITY;  // s, of the last call of resolve

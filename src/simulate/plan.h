@@ -13,8 +13,9 @@ namespace cradle {
 struct ChosenMethod {
   Integrator integrate = nullptr;  // null: closed form
   std::string_view name;
-  double timeStep = 0;   // s, fixed; 0: chosen by the error
-  double tolerance = 0;  // of the local error, scaled 1 + |x|, if the error chooses the step
+  double timeStep = 0;         // s, fixed; 0: chosen by the error
+  double tolerance = 0;        // of the local error, scaled 1 + |x|, if the error chooses the step
+  bool hasCollisions = false;  // closed form between collisions without loss
 
   bool isClosedForm() const { return !integrate; }
   bool isAdaptive() const { return integrate && timeStep == 0; }

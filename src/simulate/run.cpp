@@ -32,7 +32,10 @@ Run::Run(const Scene& scene) {
   for (std::size_t i = 0; i < assemblies.size(); ++i) {
     startWarnings_.insert(startWarnings_.end(), assemblies[i].warnings.begin(), assemblies[i].warnings.end());
     const ChosenMethod& method = plan.islands[i].method;
-    if (method.isClosedForm())
+    if (method.hasCollisions)
+      balls_.push_back(
+          std::make_unique<FlyingBalls>(scene, std::move(assemblies[i]), *flyingBallsOf(scene, plan.islands[i])));
+    else if (method.isClosedForm())
       addFlight(std::move(assemblies[i]));
     else
       simulations_.push_back(std::make_unique<Simulation>(scene, std::move(assemblies[i]), method));
@@ -51,11 +54,13 @@ void Run::addFlight(Assembly assembly) {
 Frame Run::frameAt(long number, double time) {
   throwIfInterrupted();
   Frame frame{number, time, std::vector<BodyState>(moving_), {}};
-  for (const auto& simulation : simulations_) {
+  const auto add = [&](const auto& simulation) {
     addTo(frame, simulation->assembly(), simulation->stateAt(time));
     const std::vector<Event> events = simulation->takeEvents();
     events_.insert(events_.end(), events.begin(), events.end());
-  }
+  };
+  for (const auto& simulation : simulations_) add(simulation);
+  for (const auto& balls : balls_) add(balls);
   for (FlyingIsland& island : flying_) {
     for (const FreeFlight& flight : island.flights) flight.moveTo(time, island.assembly.state);
     island.evaluations += std::ssize(island.flights);
@@ -94,6 +99,7 @@ std::vector<std::string> Run::takeWarnings() {
 long Run::evaluations() const {
   long sum = 0;
   for (const auto& simulation : simulations_) sum += simulation->evaluations();
+  for (const auto& balls : balls_) sum += balls->evaluations();
   for (const FlyingIsland& island : flying_) sum += island.evaluations;
   return sum;
 }

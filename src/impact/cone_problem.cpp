@@ -1,0 +1,226 @@
+// ADMM (cone_iteration.h) finds which contacts are open, stick and slide; Newton's method on the equations of P. Alart
+// and A. Curnier ("A mixed formulation for frictional contact problems prone to Newton like solution methods", 1991)
+// finishes to rounding from there. It is tried again and again: often it needs no more than a rough guess.
+
+#include "impact/cone_problem.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "impact/cone_iteration.h"
+#include "impact/single_contact.h"
+
+namespace cradle {
+namespace {
+
+using Index = Eigen::Index;
+using Mat2 = Eigen::Matrix2d;
+using Vec2 = Eigen::Vector2d;
+
+constexpr double kConvergedPart = 1e-12;                                   // of the largest velocity
+constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // of the sums in G z
+constexpr double kProximalPart = 1e-7;  // of the largest inverse mass: makes singular problems regular
+constexpr double kFirstPenaltyParts[] = {1e-5, 1e-3,
+                                         0.1};  // of the same; heavy on light wants it small, many contacts large
+constexpr int kFirstRound = 10;                 // iterations before Newton's method is tried
+constexpr double kRoundGrowth = 1.2;            // and before each further trial: far from the end, trials are waste
+constexpr int kMostIterations = 500;            // from each of them
+constexpr double kRegularPart = 1e-9;           // of the largest inverse mass: what makes Newton's matrix regular
+constexpr int kMostNewtonSteps = 20;
+
+/// Impulses and velocities multiplied contact by contact so that each has inverse mass 1 and the largest free velocity
+/// is 1.
+class ScaledProblem {
+ public:
+  ScaledProblem(const MatrixX& g, const VectorX& free, const std::vector<double>& frictions);
+
+  /// Impulses in the given units. Found: to rounding; else as near as was come.
+  VectorX solve();
+
+  /// In the given units.
+  ConeSolution judge(VectorX impulses) const;
+
+ private:
+  double friction(Index contact) const { return cones_.frictions[static_cast<std::size_t>(contact)]; }
+  bool solveFrom(double penalty);
+  void setPenalty(double penalty);
+  double residual(const VectorX& z, const VectorX& u) const;
+  bool isConverged(double residual, const VectorX& z, const VectorX& u) const;
+  bool finish(VectorX& impulses) const;
+  void stepByNewton(VectorX& z) const;
+  void addNewtonRows(Index contact, const VectorX& z, const VectorX& u, MatrixX& rows, VectorX& sides, Index at) const;
+  VectorX unscaled(const VectorX& z) const;
+
+  const MatrixX& givenMatrix_;
+  const VectorX& givenFree_;
+  VectorX scale_;  // of impulses, by contact
+  double velocityScale_ = 1;
+  MatrixX g_;
+  ScaledCones cones_;
+  double largest_ = 0;  // bound on the eigenvalues of g_
+  ConeIterate iterate_;
+  Eigen::LLT<MatrixX> factor_;
+  VectorX best_;
+  double leastResidual_ = 0;
+};
+
+ScaledProblem::ScaledProblem(const MatrixX& g, const VectorX& free, const std::vector<double>& frictions)
+    : givenMatrix_(g), givenFree_(free), scale_(frictions.size()), g_(g.rows(), g.cols()), cones_{free, frictions} {
+  const Index contacts = scale_.size();
+  for (Index i = 0; i < contacts; ++i) {
+    const double inverseMass = g.diagonal().segment<3>(3 * i).sum() / 3;
+    scale_[i] = inverseMass > 0 ? 1 / std::sqrt(inverseMass) : 1;
+    cones_.free.segment<3>(3 * i) *= scale_[i];
+  }
+  for (Index j = 0; j < contacts; ++j)
+    for (Index i = 0; i < contacts; ++i)
+      g_.block<3, 3>(3 * i, 3 * j) = scale_[i] * scale_[j] * g.block<3, 3>(3 * i, 3 * j);
+  const double fastest = cones_.free.cwiseAbs().maxCoeff();
+  if (fastest > 0) velocityScale_ = fastest;
+  cones_.free /= velocityScale_;
+  largest_ = g_.cwiseAbs().colwise().sum().maxCoeff();
+}
+
+void ScaledProblem::setPenalty(double penalty) {
+  if (penalty == iterate_.penalty) return;
+  iterate_.penalty = penalty;
+  MatrixX shifted = g_;
+  shifted.diagonal().array() += penalty + kProximalPart * largest_;
+  factor_.compute(shifted);
+}
+
+/// The largest of all contacts'.
+double ScaledProblem::residual(const VectorX& z, const VectorX& u) const {
+  double largest = 0;
+  for (Index i = 0; i < scale_.size(); ++i) {
+    const Vec3 error = coulombResidual(z.segment<3>(3 * i), u.segment<3>(3 * i), friction(i));
+    largest = std::max(largest, error.cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+bool ScaledProblem::isConverged(double residual, const VectorX& z, const VectorX& u) const {
+  if (residual <= kConvergedPart * std::max(1.0, u.cwiseAbs().maxCoeff())) return true;
+  return residual <= kRounding * (g_.cwiseAbs() * z.cwiseAbs()).maxCoeff();
+}
+
+/// Replaces one contact's rows of G by those of Newton's matrix A + B G, for a contact that pushes.
+void ScaledProblem::addNewtonRows(Index contact, const VectorX& z, const VectorX& u, MatrixX& rows, VectorX& sides,
+                                  Index at) const {
+  const double mu = friction(contact), pressing = z[3 * contact + 2] - u[3 * contact + 2];
+  const Vec2 pull = z.segment<2>(3 * contact) - u.segment<2>(3 * contact);
+  const double size = pull.norm();
+  Mat3 a = kRegularPart * largest_ * Mat3::Identity(), b = Mat3::Identity();
+  sides.segment<3>(at) = -u.segment<3>(3 * contact);
+  if (size > mu * pressing || mu == 0) {  // z_t = mu (z_n - u_n) e
+    const Vec2 e = size > 0 ? Vec2(pull / size) : Vec2::Zero();
+    const Mat2 turning = size > 0 ? Mat2(mu * pressing / size * (Mat2::Identity() - e * e.transpose())) : Mat2::Zero();
+    a.topLeftCorner<2, 2>() = Mat2::Identity() - turning;
+    a.topRightCorner<2, 1>() = -mu * e;
+    b.topLeftCorner<2, 2>() = turning;
+    b.topRightCorner<2, 1>() = mu * e;
+    sides.segment<2>(at) = mu * pressing * e - z.segment<2>(3 * contact);
+  }
+  rows.middleRows<3>(at) = (b * rows.middleRows<3>(at)).eval();
+  rows.block<3, 3>(at, at) += a;
+}
+
+void ScaledProblem::stepByNewton(VectorX& z) const {
+  VectorX u = g_ * z + cones_.free;
+  std::vector<Index> pushing;
+  for (Index i = 0; i < scale_.size(); ++i) {
+    if (z[3 * i + 2] - u[3 * i + 2] > 0)
+      pushing.insert(pushing.end(), {3 * i, 3 * i + 1, 3 * i + 2});
+    else
+      z.segment<3>(3 * i).setZero();
+  }
+  if (pushing.empty()) return;
+  u = g_ * z + cones_.free;
+  MatrixX rows = g_(pushing, pushing);
+  VectorX sides(pushing.size());
+  for (std::size_t at = 0; at < pushing.size(); at += 3)
+    addNewtonRows(pushing[at] / 3, z, u, rows, sides, static_cast<Index>(at));
+  z(pushing) += VectorX(rows.partialPivLu().solve(sides));
+}
+
+/// Newton's method. Changes the impulses only if it converges.
+bool ScaledProblem::finish(VectorX& impulses) const {
+  VectorX z = impulses;
+  for (int step = 0; step < kMostNewtonSteps; ++step) {
+    stepByNewton(z);
+    const VectorX u = g_ * z + cones_.free;
+    const double left = residual(z, u);
+    if (isConverged(left, z, u)) {
+      impulses = z;
+      stepByNewton(z);  // what is left is often rounding then
+      if (residual(z, g_ * z + cones_.free) < left) impulses = z;
+      return true;
+    }
+    if (!(left < INFINITY)) return false;
+  }
+  return false;
+}
+
+VectorX ScaledProblem::solve() {
+  best_ = VectorX::Zero(cones_.free.size());
+  leastResidual_ = residual(best_, cones_.free);
+  if (isConverged(leastResidual_, best_, cones_.free)) return unscaled(best_);
+  for (const double part : kFirstPenaltyParts)
+    if (solveFrom(part * largest_)) break;
+  return unscaled(best_);
+}
+
+/// From nothing, with a penalty to begin with.
+bool ScaledProblem::solveFrom(double penalty) {
+  iterate_.impulses = iterate_.velocities = iterate_.unbounded = VectorX::Zero(cones_.free.size());
+  setPenalty(penalty);
+  const auto solveShifted = [this](VectorX& b) { factor_.solveInPlace(b); };
+  double round = kFirstRound;
+  for (int done = 0; done < kMostIterations; done += static_cast<int>(round), round *= kRoundGrowth) {
+    iterateCones(cones_, kProximalPart * largest_, solveShifted, static_cast<int>(round), iterate_);
+    VectorX z = iterate_.impulses;
+    const VectorX u = g_ * z + cones_.free;
+    const double left = residual(z, u);
+    const bool isFound = isConverged(left, z, u) || finish(z);
+    if (isFound || left < leastResidual_) best_ = z, leastResidual_ = left;
+    if (isFound) return true;
+    setPenalty(balancedPenalty(iterate_, largest_));
+  }
+  return false;
+}
+
+/// In the cones exactly.
+VectorX ScaledProblem::unscaled(const VectorX& z) const {
+  VectorX impulses(z.size());
+  for (Index i = 0; i < scale_.size(); ++i)
+    impulses.segment<3>(3 * i) = scale_[i] * velocityScale_ * projectOnCone(z.segment<3>(3 * i), friction(i));
+  return impulses;
+}
+
+ConeSolution ScaledProblem::judge(VectorX impulses) const {
+  ConeSolution solution{std::move(impulses), {}, 0, false};
+  solution.velocities = givenMatrix_ * solution.impulses + givenFree_;
+  VectorX z = solution.impulses / velocityScale_, u = solution.velocities / velocityScale_;
+  for (Index i = 0; i < scale_.size(); ++i) {
+    z.segment<3>(3 * i) /= scale_[i];
+    u.segment<3>(3 * i) *= scale_[i];
+    const Vec3 error = coulombResidual(z.segment<3>(3 * i), u.segment<3>(3 * i), friction(i));
+    solution.residual = std::max(solution.residual, velocityScale_ / scale_[i] * error.cwiseAbs().maxCoeff());
+  }
+  // What was off the cones by the residual is in them now; the velocities have changed by that.
+  solution.converged = isConverged(residual(z, u) / (1 + largest_), z, u);
+  return solution;
+}
+
+}  // namespace
+
+ConeSolution solveConeProblem(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions) {
+  if (frictions.empty()) return {};
+  ScaledProblem problem(G, g, frictions);
+  return problem.judge(frictions.size() == 1 ? VectorX(solveSingleContact(G, g, frictions[0])) : problem.solve());
+}
+
+}  // namespace cradle

@@ -1,0 +1,57 @@
+#include "impact/contact_cones.h"
+
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kImmobilePart = 1e-12;  // of the inverse mass without ties, which take part to 1e-16
+
+}  // namespace
+
+Mat3 contactAxes(const Vec3& normal) {
+  // Gram-Schmidt on the world's axis that is farthest from the normal.
+  int least = 0;
+  for (int axis = 1; axis < 3; ++axis)
+    if (std::abs(normal[axis]) < std::abs(normal[least])) least = axis;
+  Mat3 axes;
+  axes.col(2) = normal;
+  axes.col(0) = (Vec3::Unit(least) - normal[least] * normal).normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
+ContactCones::ContactCones(const std::vector<Contact>& contacts, const ImpulseResponse& response, const VectorX& state)
+    : contacts_(contacts), places_(state), inverseMass_(3 * contacts.size(), 3 * contacts.size()) {
+  for (const Contact& contact : contacts) {
+    axes_.push_back(contactAxes(contact.normal));
+    for (int axis = 0; axis < 3; ++axis)
+      answers_.push_back(response.answerTo(contact, axes_.back().col(axis), state));
+  }
+  for (std::size_t column = 0; column < answers_.size(); ++column)
+    inverseMass_.col(static_cast<Index>(column)) = velocitiesIn(answers_[column]);
+  inverseMass_ = (0.5 * (inverseMass_ + inverseMass_.transpose())).eval();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const double untied = contacts[i].normal.dot(response.untiedInverseMassAt(contacts[i], state) * contacts[i].normal);
+    const Index normal = 3 * static_cast<Index>(i) + 2;
+    isImmobile_.push_back(inverseMass_(normal, normal) <= kImmobilePart * untied);
+  }
+}
+
+VectorX ContactCones::velocitiesIn(const VectorX& velocities) const {
+  VectorX all(3 * contacts_.size());
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    all.segment<3>(3 * static_cast<Index>(i)) =
+        axes_[i].transpose() * relativeVelocity(contacts_[i], places_, velocities);
+  return all;
+}
+
+void ContactCones::apply(const VectorX& impulses, VectorX& state) const {
+  const Index size = bodyCount(state) * kVelocitySize, from = poseComponents(state);
+  for (std::size_t column = 0; column < answers_.size(); ++column)
+    state.segment(from, size) += impulses[static_cast<Index>(column)] * answers_[column].segment(from, size);
+}
+
+}  // namespace cradle

@@ -1,0 +1,99 @@
+// Sliding: u_t = -alpha z_t with alpha > 0 makes (S + alpha) z_t = -b with the normal part eliminated from G and g, and
+// |z_t| = friction z_n leaves one equation for alpha (compare O. Bonnefon, G. Daviet, "Quartic formulation of Coulomb
+// 3D frictional contact", 2011). In the principal axes of S, z_t(alpha) is two quotients.
+
+#include "impact/single_contact.h"
+
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+constexpr double kSingularPart = 1e-13;  // of the trace: less is rounding
+constexpr double kRootPart = 4e-16;      // of alpha
+constexpr int kMostSteps = 200;          // 5 are usual; bisection alone ends after about 100
+
+/// The tangential problem after elimination of the normal part, in its principal axes.
+class Sliding {
+ public:
+  Sliding(const Mat3& g, const Vec3& free, double friction)
+      : friction_(friction), pressing_(-free.z() / g(2, 2)), coupling_(-g(0, 2) / g(2, 2), -g(1, 2) / g(2, 2)) {
+    const double a = g(0, 0) + g(0, 2) * coupling_[0], b = g(0, 1) + g(0, 2) * coupling_[1],
+                 c = g(1, 1) + g(1, 2) * coupling_[1];
+    const double middle = 0.5 * (a + c), half = 0.5 * (a - c), radius = std::sqrt(half * half + b * b);
+    moments_[0] = middle + radius;
+    moments_[1] = middle - radius;
+    // The axis of the larger moment, from the column that does not cancel.
+    double x = half >= 0 ? half + radius : b, y = half >= 0 ? b : radius - half;
+    const double length = std::sqrt(x * x + y * y);
+    axis_ = length > 0 ? Vec2(x / length, y / length) : Vec2(1, 0);
+    const Vec2 offset(free.x() + free.z() * coupling_[0], free.y() + free.z() * coupling_[1]);
+    offset_ = {axis_.dot(offset), axis_.x() * offset.y() - axis_.y() * offset.x()};
+    const double rounding = kSingularPart * (g(0, 0) + g(1, 1));
+    for (int i = 0; i < 2; ++i)
+      if (moments_[i] < rounding) moments_[i] = 0;
+  }
+
+  Vec3 at(double alpha) const {
+    const Vec2 along(part(0, alpha), part(1, alpha));
+    const Vec2 tangential(axis_.x() * along.x() - axis_.y() * along.y(), axis_.y() * along.x() + axis_.x() * along.y());
+    return {tangential.x(), tangential.y(), pressing_ + coupling_.dot(tangential)};
+  }
+  bool sticks(const Vec3& z) const { return std::sqrt(z.x() * z.x() + z.y() * z.y()) <= friction_ * z.z(); }
+
+  /// |z_t| - friction z_n, > 0 outside the cone, and its derivative.
+  double excess(double alpha, double& slope) const {
+    const Vec3 z = at(alpha);
+    const double da = -part(0, alpha) / (moments_[0] + alpha), db = -part(1, alpha) / (moments_[1] + alpha);
+    const Vec2 change(axis_.x() * da - axis_.y() * db, axis_.y() * da + axis_.x() * db);
+    const double size = std::sqrt(z.x() * z.x() + z.y() * z.y());
+    slope = (size > 0 ? (z.x() * change.x() + z.y() * change.y()) / size : 0) - friction_ * coupling_.dot(change);
+    return size - friction_ * z.z();
+  }
+  double start() const { return offset_.norm() / (friction_ * pressing_); }
+
+ private:
+  using Vec2 = Eigen::Vector2d;
+  double part(int i, double alpha) const {
+    const double divisor = moments_[i] + alpha;
+    return offset_[i] == 0 ? 0 : -offset_[i] / divisor;  // infinite: a direction without inertia that does not stop
+  }
+
+  double friction_, pressing_;  // pressing: normal part without friction
+  Vec2 coupling_;               // normal part per tangential part
+  double moments_[2];
+  Vec2 axis_, offset_;
+};
+
+/// Newton's method between bounds that halve where it does not help.
+double findRoot(const Sliding& sliding) {
+  double slope = 0, low = 0, high = sliding.start();
+  for (int i = 0; i < kMostSteps && sliding.excess(high, slope) > 0; ++i) low = high, high *= 2;
+  double alpha = high;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const double excess = sliding.excess(alpha, slope);
+    if (excess == 0) return alpha;
+    (excess > 0 ? low : high) = alpha;
+    double next = alpha - excess / slope;
+    if (!(next > low && next < high)) next = low + 0.5 * (high - low);
+    if (std::abs(next - alpha) <= kRootPart * alpha || next == low || next == high) return next;
+    alpha = next;
+  }
+  return alpha;
+}
+
+}  // namespace
+
+Vec3 solveSingleContact(const Mat3& g, const Vec3& free, double friction) {
+  if (free.z() >= 0 || !(g(2, 2) > 0)) return Vec3::Zero();
+  if (friction == 0) return {0, 0, -free.z() / g(2, 2)};
+  const Sliding sliding(g, free, friction);
+  const Vec3 sticking = sliding.at(0);
+  if (sliding.sticks(sticking)) return sticking;
+  Vec3 z = sliding.at(findRoot(sliding));
+  const double size = std::sqrt(z.x() * z.x() + z.y() * z.y());
+  if (size > 0) z.head<2>() *= friction * z.z() / size;
+  return z;
+}
+
+}  // namespace cradle
