@@ -51,7 +51,7 @@ class PairSearch {
     for (const std::size_t feature : scratch_.features_) {
       feature_ = feature;
       if (isHeld(touching)) continue;
-      const double start = separation(geometry_, pair_, feature_, startA_, startB_);
+      const double start = separation(geometry_, pair_, feature_, startA_, startB_, reach);
       if (start > bounds_.speed) continue;
       if (start > touching.tolerance)
         searchFrom(0, start, 0, best);
@@ -128,7 +128,10 @@ class PairSearch {
   }
 
   double gap(double fraction) const {
-    return separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction), poseAt(step_, bodyB_, fraction));
+    // A gap of twice the way that can be gone in the step stays open, however large it is.
+    const double enough = 2 * bounds_.speed;
+    return std::min(2 * enough, separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction),
+                                           poseAt(step_, bodyB_, fraction), enough));
   }
 
   const ContactGeometry& geometry_;
