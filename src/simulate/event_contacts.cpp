@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/core.h"
 #include "dynamics/invariants.h"
 #include "impact/cone_problem.h"
 #include "impact/contact_impulse.h"
@@ -52,6 +53,11 @@ bool hasCornerAt(const Collider& collider, const Vec3& point, const VectorX& sta
   if (collider.radius > 0) return false;
   const Vec3 local = poseOf(state, collider.body).inverse() * point;
   const double near = kSameCorner * collider.boundingRadius;
+  if (collider.kind() == ColliderKind::cylinder) {  // any point of a rim
+    const Core core(collider, {});
+    const double side = core.axis().dot(local - core.center()) < 0 ? -1 : 1;
+    return (core.rimPoint(side, local - core.center()) - local).squaredNorm() < near * near;
+  }
   return std::any_of(collider.points.begin(), collider.points.end(),
                      [&](const Vec3& corner) { return (corner - local).squaredNorm() < near * near; });
 }
@@ -226,7 +232,9 @@ Islands EventContacts::findRestGroups() const {
 void EventContacts::settle() {
   const std::size_t bodies = island_.assembly.mechanism.bodies.size();
   const Islands groups = findRestGroups();
-  const auto groupOf = [&](std::size_t body) { return static_cast<std::size_t>(groups.islandOf(static_cast<int>(body))); };
+  const auto groupOf = [&](std::size_t body) {
+    return static_cast<std::size_t>(groups.islandOf(static_cast<int>(body)));
+  };
   std::vector<char> isStill(bodies, 1), isAwake(bodies, 0);
   for (std::size_t body = 0; body < bodies; ++body) {
     if (!isSlow(body)) isStill[groupOf(body)] = 0;

@@ -1,7 +1,8 @@
 // Rules of the plan. The first that applies to an island is taken:
 //   1. the scene names a method: that one, for studies
 //   2. balls bounce without loss, and nothing acts but uniform gravity: closed form between collisions
-//   3. something may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved once a step
+//   3. something may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved once a
+//   step
 //   4. nothing acts but uniform gravity: closed form
 //   5. else DOP853 with steps as long as the accuracy allows; contact changes at events
 
@@ -44,7 +45,7 @@ double fixedSizeOf(const Body& body, const Scene& scene) {
   double size = 0;
   if (!collider) return size;
   for (const Vec3& point : collider->points)
-    size = std::max(size, (point - body.worldFromBody.translation).norm() + collider->radius);
+    size = std::max(size, (point - body.worldFromBody.translation).norm() + collider->radius + collider->rimRadius);
   return size;
 }
 
