@@ -92,7 +92,8 @@ TEST(Manifold, OfAStandingCylinderSpansItsRim) {
       expectTouching(contacts, 8, Vec3::UnitY(), INFINITY, 0);
     // Eight points of a circle of diameter 1 are nowhere narrower than cos(pi/8).
     for (int i = 0; i < 16; ++i)
-      EXPECT_GT(extent(contacts, Vec3(std::cos(i * M_PI / 16), 0, std::sin(i * M_PI / 16))), std::cos(M_PI / 8) - 1e-12);
+      EXPECT_GT(extent(contacts, Vec3(std::cos(i * M_PI / 16), 0, std::sin(i * M_PI / 16))),
+                std::cos(M_PI / 8) - 1e-12);
   }
 }
 
@@ -164,8 +165,7 @@ TEST(Manifold, OfABoxOnACylinderIsTheLineOrTheEnd) {
 
 TEST(Manifold, OfAHullOnItsFaceIsThatFace) {
   std::vector<Vec3> points;  // a tetrahedron on its base
-  for (int i = 0; i < 3; ++i)
-    points.emplace_back(std::cos(i * 2 * M_PI / 3), 0, std::sin(i * 2 * M_PI / 3));
+  for (int i = 0; i < 3; ++i) points.emplace_back(std::cos(i * 2 * M_PI / 3), 0, std::sin(i * 2 * M_PI / 3));
   points.emplace_back(0, 1, 0);
   const Placed stone{colliderOf(convexHullOf(points), {}), kHere};
   expectTouching(contactsOf(floorBox(), stone), 3, Vec3::UnitY(), INFINITY, 0);
@@ -175,8 +175,7 @@ TEST(Manifold, OfAHullOnItsFaceIsThatFace) {
 TEST(Manifold, OfAFaceWithManyCornersHasNoMoreThanEight) {
   std::vector<Vec3> points;
   for (int i = 0; i < 40; ++i)
-    for (const double y : {0.0, 1.0})
-      points.emplace_back(std::cos(i * M_PI / 20), y, std::sin(i * M_PI / 20));
+    for (const double y : {0.0, 1.0}) points.emplace_back(std::cos(i * M_PI / 20), y, std::sin(i * M_PI / 20));
   const Placed drum{colliderOf(convexHullOf(points), {}), kHere};
   for (const auto& contacts : {contactsOnGround(drum), contactsOf(drum, floorBox())}) {
     EXPECT_EQ(contacts.size(), 8u);

@@ -28,7 +28,7 @@ std::string refusalOf(const std::string& bodies, const std::string& more = "") {
 struct Start {
   VectorX state;
   std::vector<std::string> warnings;
-  std::vector<Contact> contacts;  // nearer than 1e-9 m
+  std::vector<Contact> contacts;  // nearer than 1 cm
 };
 
 /// Of a scene of one island.
@@ -39,7 +39,7 @@ Start startOf(const std::string& bodies) {
   for (const IslandPlan& island : planOf(scene).islands) islands.push_back(assemble(scene, island));
   settleStartOverlaps(scene, islands);
   Start start{islands.at(0).state, islands[0].warnings, {}};
-  findContacts(islands[0].geometry, start.state, 1e-9, start.contacts);
+  findContacts(islands[0].geometry, start.state, 0.01, start.contacts);
   return start;
 }
 
@@ -116,7 +116,7 @@ TEST(StartOverlaps, OfEveryShapeAreMovedApart) {
     for (const char* other : {R"({"cylinder": {"radius": 0.2, "length": 2}})",
                               R"({"capsule": {"radius": 0.2, "length": 2}})", R"({"box": {"size": [0.4, 2, 0.4]}})"}) {
       const Start start = startOf(all({fmt::format(R"({{"name": "a", "shape": {}}})", shape),
-                                       fmt::format(R"({{"name": "b", "shape": {}, "position": [0.42, 0.1, 0.05],
+                                       fmt::format(R"({{"name": "b", "shape": {}, "position": [0.46, 0.1, 0.05],
         "orientation": {{"axis": [0, 0, 1], "angleDegrees": 3}}}})",
                                                    other)}));
       EXPECT_THAT(start.warnings, ElementsAre(HasSubstr("they were moved apart before the run"))) << shape << other;
