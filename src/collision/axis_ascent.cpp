@@ -47,9 +47,7 @@ struct Features {
 void addCylinder(const Core& core, const Vec3& outward, Features& features) {
   const double cosine = core.axis().dot(outward);
   features.lines.push_back({core.center(), core.axis()});
-  Vec3 radial = outward - cosine * core.axis();
-  const double sine = radial.norm();
-  radial = sine > kParallelSine ? Vec3(radial / sine) : core.axis().unitOrthogonal();
+  const Vec3 radial = unitAcross(core.axis(), outward);
   for (const double side : {1.0, -1.0}) {
     if (side * cosine < -kAmbiguousCosine) continue;
     features.flats.push_back(side * core.axis());
@@ -168,6 +166,8 @@ class Ascent {
       for (const Line& lineB : ofB.lines) lookAcross(lineA, lineB);
     lookFromLinesToCorners(ofA, ofB, 1);
     lookFromLinesToCorners(ofB, ofA, -1);
+    for (const Vec3& cornerA : ofA.corners)
+      for (const Vec3& cornerB : ofB.corners) look(cornerB - cornerA);
     lookFromRims(ofA, ofB, 1);
     lookFromRims(ofB, ofA, -1);
     for (const Rim& rimA : ofA.rims)
@@ -181,13 +181,13 @@ class Ascent {
 
   void lookAcross(const Line& lineA, const Line& lineB) {
     lookBothWays(across(lineA.direction, lineB.direction));
-    lookBothWays(without(lineA.direction, lineB.point - lineA.point));
+    lookBothWays(unitAcross(lineA.direction, lineB.point - lineA.point));
   }
 
   /// `sign` is -1 if the lines are B's.
   void lookFromLinesToCorners(const Features& lines, const Features& corners, double sign) {
     for (const Line& line : lines.lines)
-      for (const Vec3& corner : corners.corners) look(sign * without(line.direction, corner - line.point));
+      for (const Vec3& corner : corners.corners) look(sign * unitAcross(line.direction, corner - line.point));
   }
 
   void lookFromRims(const Features& rims, const Features& others, double sign) {
@@ -196,12 +196,11 @@ class Ascent {
         Rim rim = start;
         turnTowards(line, rim);
         lookBothWays(across(rim.axis.cross(rim.radial), line.direction));
-        lookBothWays(without(line.direction, line.point - pointOf(rim)));
+        lookBothWays(unitAcross(line.direction, line.point - pointOf(rim)));
       }
       for (const Vec3& corner : others.corners) {
         Rim rim = start;
-        const Vec3 towards = without(rim.axis, corner - rim.center);
-        if (towards.norm() > 0) rim.radial = towards.normalized();
+        rim.radial = unitAcross(rim.axis, corner - rim.center);
         look(sign * (corner - pointOf(rim)));
       }
     }
@@ -229,7 +228,7 @@ Vec3 across(const Vec3& directionA, const Vec3& directionB) {
   const Vec3 aside = without(directionA, directionB);
   const double sine = aside.norm();
   if (sine <= kParallelSine) return Vec3::Zero();
-  return directionA.cross(aside / sine).normalized();
+  return directionA.cross(unitAcross(directionA, directionB));
 }
 
 SeparatingAxis improved(SeparatingAxis axis, const Core& a, const Core& b) {

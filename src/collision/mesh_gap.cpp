@@ -5,9 +5,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kNoDirection = 1e-9;  // of the size: nearer points do not tell the normal well
+constexpr double kNoDirection = 1e-9;                    // of the size: nearer points do not tell the normal well
 constexpr double kFirstReach = 1e-4, kLongerReach = 16;  // of the size; then how much longer each time
-constexpr double kTouching = 1e-10;    // of the size: gaps as small as that are always looked for
+constexpr double kTouching = 1e-10;                      // of the size: gaps as small as that are always looked for
 
 using Feature = MeshPoint::Feature;
 

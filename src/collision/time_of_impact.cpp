@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/core.h"
 #include "collision/first_crossing.h"
 #include "collision/mesh_collider.h"
 
@@ -65,8 +66,9 @@ class PairSearch {
   }
 
  private:
-  /// Between two centres at distance d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's
-  /// sum. With edges a gap's slope may jump: then nothing bounds its acceleration.
+  /// A gap is the least of those between all points of the two cores, less the balls' radii. Of two points at distance
+  /// d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's sum before they touch; and the
+  /// least of many bends upwards no more than they do. Without balls nothing bounds it where d goes to zero.
   void findBounds() {
     const MotionBounds shift = relativeMotionBounds(step_, a_.body, bodyB_);
     const MotionBounds& turnA = scratch_.turnOf(step_, a_.body);
@@ -81,8 +83,7 @@ class PairSearch {
     bounds_.speed += turnB.speed * pointReach(b);
     pull_ += turnB.acceleration * pointReach(b);
     if (hasMesh(a_, b)) bounds_.passedDepth = kPassedPart * std::min(a_.boundingRadius, b.boundingRadius);
-    if (a_.isBall() && b.isBall())
-      bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / (a_.radius + b.radius);
+    if (a_.radius + b.radius > 0) bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / (a_.radius + b.radius);
   }
 
   bool isHeld(const TouchingFeatures& touching) const {
@@ -119,7 +120,7 @@ class PairSearch {
   double leavingSpeed(double tolerance) {
     if (pair_.againstPlane) {
       const Vec3& normal = geometry_.planes[pair_.b].normal;
-      return normal.dot(pointVelocity(a_.body, startA_ * a_.points[feature_] - a_.radius * normal, step_.startState));
+      return normal.dot(pointVelocity(a_.body, lowestPoint(normal), step_.startState));
     }
     scratch_.contacts_.clear();
     appendContacts(geometry_, pairIndex_, step_.startState, tolerance, scratch_.contacts_);
@@ -129,6 +130,12 @@ class PairSearch {
       least = i == 0 ? speed : std::min(least, speed);
     }
     return least;
+  }
+
+  /// m, world: of the feature, over a plane.
+  Vec3 lowestPoint(const Vec3& planeNormal) const {
+    if (a_.kind() == ColliderKind::cylinder) return Core(a_, startA_).rimPoint(feature_ == 0 ? 1 : -1, -planeNormal);
+    return startA_ * a_.points[feature_] - a_.radius * planeNormal;
   }
 
   double gap(double fraction) const {

@@ -86,7 +86,7 @@ class TreePair {
     std::uint32_t near = halveA ? atA + 1 : atB + 1, far = halveA ? a.second : b.second;
     const auto distanceOf = [&](std::uint32_t child) {
       return halveA ? squaredDistance(a_.nodes[child], b, visit.reach())
-                   : squaredDistance(a, b_.nodes[child], visit.reach());
+                    : squaredDistance(a, b_.nodes[child], visit.reach());
     };
     double nearest = distanceOf(near), farthest = distanceOf(far);
     if (farthest < nearest) std::swap(near, far), std::swap(nearest, farthest);
