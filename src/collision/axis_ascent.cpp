@@ -181,13 +181,13 @@ class Ascent {
 
   void lookAcross(const Line& lineA, const Line& lineB) {
     lookBothWays(across(lineA.direction, lineB.direction));
-    lookBothWays(without(lineA.direction, lineB.point - lineA.point));
+    lookBothWays(unitAcross(lineA.direction, lineB.point - lineA.point));
   }
 
   /// `sign` is -1 if the lines are B's.
   void lookFromLinesToCorners(const Features& lines, const Features& corners, double sign) {
     for (const Line& line : lines.lines)
-      for (const Vec3& corner : corners.corners) look(sign * without(line.direction, corner - line.point));
+      for (const Vec3& corner : corners.corners) look(sign * unitAcross(line.direction, corner - line.point));
   }
 
   void lookFromRims(const Features& rims, const Features& others, double sign) {
@@ -196,7 +196,7 @@ class Ascent {
         Rim rim = start;
         turnTowards(line, rim);
         lookBothWays(across(rim.axis.cross(rim.radial), line.direction));
-        lookBothWays(without(line.direction, line.point - pointOf(rim)));
+        lookBothWays(unitAcross(line.direction, line.point - pointOf(rim)));
       }
       for (const Vec3& corner : others.corners) {
         Rim rim = start;

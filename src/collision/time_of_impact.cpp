@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/core.h"
 #include "collision/first_crossing.h"
+#include "collision/mesh_collider.h"
 
 namespace cradle {
 namespace {
 
 constexpr double kSamePlace = 1e-3;        // of a size: contacts so near to each other are one
+// Of the smaller radius. A gap of triangles costs as much as hundreds of others; what grazes by less between two looks
+// is apart at both, and at the rates of a body in free motion by far less.
+constexpr double kPassedPart = 1e-4;
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
 Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
@@ -62,8 +67,9 @@ class PairSearch {
   }
 
  private:
-  /// Between two centres at distance d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's
-  /// sum. With edges a gap's slope may jump: then nothing bounds its acceleration.
+  /// A gap is the least of those between all points of the two cores, less the balls' radii. Of two points at distance
+  /// d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's sum before they touch; and the
+  /// least of many bends upwards no more than they do. Without balls nothing bounds it where d goes to zero.
   void findBounds() {
     const MotionBounds shift = relativeMotionBounds(step_, a_.body, bodyB_);
     const MotionBounds& turnA = scratch_.turnOf(step_, a_.body);
@@ -77,8 +83,8 @@ class PairSearch {
     const MotionBounds& turnB = scratch_.turnOf(step_, bodyB_);
     bounds_.speed += turnB.speed * pointReach(b);
     pull_ += turnB.acceleration * pointReach(b);
-    if (a_.isBall() && b.isBall())
-      bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / (a_.radius + b.radius);
+    if (hasMesh(a_, b)) bounds_.passedDepth = kPassedPart * std::min(a_.boundingRadius, b.boundingRadius);
+    if (a_.radius + b.radius > 0) bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / (a_.radius + b.radius);
   }
 
   bool isHeld(const TouchingFeatures& touching) const {
@@ -117,7 +123,7 @@ class PairSearch {
   double leavingSpeed(double tolerance) {
     if (pair_.againstPlane) {
       const Vec3& normal = geometry_.planes[pair_.b].normal;
-      return normal.dot(pointVelocity(a_.body, startA_ * a_.points[feature_] - a_.radius * normal, step_.startState));
+      return normal.dot(pointVelocity(a_.body, lowestPoint(normal), step_.startState));
     }
     if (held_) {
       scratch_.findOthers(pairIndex_, *held_, step_.startState, tolerance);
@@ -131,6 +137,12 @@ class PairSearch {
       least = i == 0 ? speed : std::min(least, speed);
     }
     return least;
+  }
+
+  /// m, world: of the feature, over a plane.
+  Vec3 lowestPoint(const Vec3& planeNormal) const {
+    if (a_.kind() == ColliderKind::cylinder) return Core(a_, startA_).rimPoint(feature_ == 0 ? 1 : -1, -planeNormal);
+    return startA_ * a_.points[feature_] - a_.radius * planeNormal;
   }
 
   double gap(double fraction) const {
