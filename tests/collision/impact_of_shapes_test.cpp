@@ -47,7 +47,8 @@ std::optional<ImpactTime> impactOf(const std::vector<Flying>& bodies, double tim
 // 10 m of way in the step, 21 mm of it inside the plate.
 TEST(ImpactOfShapes, ABallAtAThousandMetresASecondDoesNotPassAPlateOfAMillimetre) {
   const Flying plate{colliderOf(Box{Vec3(1, 1, 0.001)}, {})};
-  const Flying disc{colliderOf(Cylinder{0.5, 0.001}, RigidTransform{rotationAbout(Vec3::UnitX(), M_PI / 2), Vec3::Zero()})};
+  const Flying disc{
+      colliderOf(Cylinder{0.5, 0.001}, RigidTransform{rotationAbout(Vec3::UnitX(), M_PI / 2), Vec3::Zero()})};
   for (const Collider& bullet : {colliderOf(Sphere{0.01}, {}), colliderOf(Box{Vec3::Constant(0.02)}, {}),
                                  colliderOf(Capsule{0.01, 0.05}, {}), colliderOf(Cylinder{0.01, 0.05}, {})})
     for (const Flying& target : {plate, disc})
