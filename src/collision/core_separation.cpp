@@ -104,13 +104,13 @@ SeparatingAxis contactAxis(const Core& a, const Core& b) {
     return flat.separation >= best.separation - preference ? flat : best;
   }
   const bool isApart = apart.distance > kTouching * sizeOf(a, b);
-  const SeparatingAxis nearest = isApart ? ofNearest(apart, a, b) : SeparatingAxis();
-  if (apart.distance > kNear * sizeOf(a, b)) return nearest;
-  if (isSegment(a) && isSegment(b)) return isApart ? nearest : ofCrossingSegments(a, b);
+  if (isSegment(a) && isSegment(b)) return isApart ? ofNearest(apart, a, b) : ofCrossingSegments(a, b);
   const SeparatingAxes axes = separatingAxes(a, b);
   const SeparatingAxis face = better(axes.faceOfA, axes.faceOfB);
   const SeparatingAxis feature = axes.edges.separation > face.separation + preference ? axes.edges : face;
-  return isApart && nearest.separation > feature.separation + preference ? nearest : feature;
+  if (!isApart || feature.separation >= apart.distance - preference) return feature;
+  const SeparatingAxis nearest = ofNearest(apart, a, b);
+  return nearest.separation > feature.separation + preference ? nearest : feature;
 }
 
 }  // namespace cradle
