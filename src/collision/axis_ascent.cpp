@@ -163,7 +163,11 @@ class Ascent {
     for (const Vec3& flat : ofA.flats) look(flat);
     for (const Vec3& flat : ofB.flats) look(-flat);
     for (const Line& lineA : ofA.lines)
-      for (const Line& lineB : ofB.lines) lookAcross(lineA, lineB);
+      for (const Line& lineB : ofB.lines) {
+        lookBothWays(across(lineA.direction, lineB.direction));
+        if (ofA.corners.empty() && ofB.corners.empty())  // two cylinders that may be parallel
+          lookBothWays(unitAcross(lineA.direction, lineB.point - lineA.point));
+      }
     lookFromLinesToCorners(ofA, ofB, 1);
     lookFromLinesToCorners(ofB, ofA, -1);
     for (const Vec3& cornerA : ofA.corners)
@@ -177,11 +181,6 @@ class Ascent {
         lookBothWays(across(a.axis.cross(a.radial), b.axis.cross(b.radial)));
         lookBothWays(pointOf(b) - pointOf(a));
       }
-  }
-
-  void lookAcross(const Line& lineA, const Line& lineB) {
-    lookBothWays(across(lineA.direction, lineB.direction));
-    lookBothWays(unitAcross(lineA.direction, lineB.point - lineA.point));
   }
 
   /// `sign` is -1 if the lines are B's.
