@@ -1,12 +1,9 @@
 #include "simulate/event_motion.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "core/error.h"
 #include "dynamics/integrators/dop853.h"
 #include "simulate/event_location.h"
 
@@ -30,8 +27,8 @@ constexpr int kMostShortSteps = 1000;    // in a row; after an event some are sh
 constexpr double kMostTieError = 1e-9;   // m (a m of coordinates) or rad: projection leaves 1e-15
 constexpr double kUnitLength = 1e-9;     // how far |q|^2 may be from 1 before it is made 1
 
-constexpr int kMostEvents = 10000;
-constexpr double kEventWindow = 1.0 / 960;  // s, in which there may be so many
+constexpr int kMostEvents = 500;
+constexpr double kEventWindow = 1.0 / 60;  // s, in which there may be so many
 
 /// Errors of orientations add up over the turns: those of bodies that turn by more than 100 rad are kept smaller.
 VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double duration) {
@@ -233,11 +230,12 @@ void EventMotion::restUntil(double time) {
 
 void EventMotion::countEvent() {
   if (island_.time > windowStart_ + kEventWindow) windowStart_ = island_.time, eventsInWindow_ = 0;
-  if (++eventsInWindow_ <= kMostEvents) return;
-  throw Error(ErrorKind::limit, "",
-              fmt::format("more than {} impacts and pulls of ropes within {:.3g} s at {:.6g} s; lower a restitution of "
-                          "1 between bodies that cannot separate",
-                          kMostEvents, kEventWindow, island_.time));
+  ++eventsInWindow_;
+}
+
+std::string_view EventMotion::fault() const {
+  if (eventsInWindow_ > kMostEvents) return "contacts change more than 500 times in 1/60 s";
+  return contacts_.fault();
 }
 
 }  // namespace cradle

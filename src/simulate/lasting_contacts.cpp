@@ -49,7 +49,7 @@ void LastingContacts::letGo(const std::optional<ContactChange>& change) {
   isReleasing_ = change && change->kind == ContactChange::Kind::release;
   mechanism().contacts.clear();
   entries_.clear();
-  canServe_ = true;
+  fault_ = {};
 }
 
 void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSolver& ties) {
@@ -138,7 +138,7 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
     entry.force = most / inverseMass(at + 2, at + 2);
     entry.isLoaded = solution.impulses[at + 2] > unloaded / inverseMass(at + 2, at + 2);
     if (!entry.isLoaded) continue;
-    canServe_ = canServe_ && canLast(entry.contact);
+    if (!canLast(entry.contact)) fault_ = "edges touch and press";
     const bool hasFriction = entry.pair.law.staticFriction > 0;
     entry.sticks = hasFriction && !entry.slides && motion.head<2>().norm() <= kStillPart * most;
     if (hasFriction && !entry.slides && !entry.sticks) {
@@ -154,7 +154,7 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
   factor.setThreshold(kRankPart);
   const Index rank = factor.rank();
   for (const std::size_t i : group) entries[i].isRedundant = rank < held.rows();
-  canServe_ = canServe_ && held.rows() - rank <= kMostRedundant && rank <= kMostIndependent;
+  if (held.rows() - rank > kMostRedundant || rank > kMostIndependent) fault_ = "too many contacts press at once";
 }
 
 /// Forces and accelerations of contacts whose free accelerations are those in rate_. Those that slide have their

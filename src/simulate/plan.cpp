@@ -28,7 +28,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kContactTimeStep = 1.0 / 960;  // s: 16 steps a frame at 60 frames a second
 constexpr double kEventAccuracy = 1e-4;         // at coarser ones contact is resolved once a step
 constexpr double kTolerancePart = 0.1;          // of the accuracy: the local errors of about ten steps add up to it
 
