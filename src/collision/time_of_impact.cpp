@@ -99,9 +99,9 @@ class PairSearch {
   void searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
     const double lowest = std::min(0.0, start), speed = leavingSpeed(touching.tolerance) * step_.timeStep;
     if (!(speed > 0)) return searchFrom(0, start, lowest - touching.deadBand, best);
-    if (speed >= 0.5 * pull_) return;
-    double from = speed / pull_;
-    if (!std::isfinite(bounds_.acceleration)) from = std::min(from, kFirstLook);
+    const bool hasOnePoint = std::isfinite(bounds_.acceleration);
+    if (hasOnePoint && speed >= 0.5 * pull_) return;
+    const double from = std::min(speed / pull_, hasOnePoint ? 1 : kFirstLook);
     const double away = gap(from);
     if (away > lowest)
       searchFrom(from, away, lowest, best);
