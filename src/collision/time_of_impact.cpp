@@ -47,13 +47,15 @@ class PairSearch {
     findBounds();
     const double reach = bounds_.speed + touching.tolerance;
     if (separationBound(geometry_, pair_, startA_, startB_) > reach) return;
+    reach_ = reach;
+    findFace();
+    if (face_) return searchCorners(touching, best);
     scratch_.features_.clear();
     appendFeaturesWithin(geometry_, pair_, startA_, reach, scratch_.features_);
     for (const std::size_t feature : scratch_.features_) {
       feature_ = feature;
       held_ = isHeld(touching) ? touching.held : nullptr;
       if (held_ && hasOneContact()) continue;
-      reach_ = reach;
       const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_);
       if (start > bounds_.speed) continue;
       if (start > touching.tolerance)
@@ -81,6 +83,47 @@ class PairSearch {
     pull_ += turnB.acceleration * pointReach(b);
     if (a_.isBall() && b.isBall())
       bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / (a_.radius + b.radius);
+  }
+
+  /// Whether one body is above a face of the other all the time.
+  void findFace() {
+    if (pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall()) return;
+    const Collider& b = geometry_.colliders[pair_.b];
+    const double distance = (startA_.translation - startB_.translation).norm();
+    const double turn = std::max(scratch_.turnOf(step_, a_.body).speed, scratch_.turnOf(step_, bodyB_).speed);
+    const double motion = 2 * bounds_.speed + turn * distance;
+    face_ = faceBelow(a_, startA_, b, startB_, motion);
+    if (face_) return;
+    face_ = faceBelow(b, startB_, a_, startA_, motion);
+    if (face_) face_->isOfA = true;
+  }
+
+  /// Corners over a face that may turn: h'' of their height h has parts from the normal's turning.
+  void searchCorners(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
+    const Collider& upper = face_->isOfA ? geometry_.colliders[pair_.b] : a_;
+    const MotionBounds& turn = scratch_.turnOf(step_, face_->isOfA ? a_.body : bodyB_);
+    const double distance = (startA_.translation - startB_.translation).norm() + upper.boundingRadius + bounds_.speed;
+    pull_ += 2 * turn.speed * bounds_.speed + turn.acceleration * distance;
+    bounds_.acceleration = pull_;
+    for (std::size_t corner = 0; corner < upper.points.size(); ++corner) {
+      feature_ = corner;
+      if (isCornerHeld(touching, upper)) continue;
+      const double start = gap(0);
+      if (start > bounds_.speed) continue;
+      if (start > touching.tolerance)
+        searchFrom(0, start, 0, best);
+      else if (std::isfinite(touching.deadBand))
+        searchTouching(start, touching, best);
+    }
+  }
+
+  bool isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const {
+    const double near = kSamePlace * upper.boundingRadius;
+    return touching.held &&
+           std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
+             return held.pair == pairIndex_ && held.point.body == upper.body &&
+                    (held.point.point - upper.points[feature_]).squaredNorm() < near * near;
+           });
   }
 
   bool isHeld(const TouchingFeatures& touching) const {
@@ -115,7 +158,7 @@ class PairSearch {
     if (from >= end) return;
     const auto above = [&](double fraction) { return gap(fraction) - threshold; };
     if (const auto fraction = firstCrossing(above, bounds_, from, gapFrom - threshold, end, above(end)))
-      best = ImpactTime{*fraction, pairIndex_, feature_, threshold, held_ != nullptr};
+      best = ImpactTime{*fraction, pairIndex_, feature_, threshold, held_ != nullptr, face_};
   }
 
   /// m/s; of the point of the feature that leaves slowest.
@@ -123,6 +166,12 @@ class PairSearch {
     if (pair_.againstPlane) {
       const Vec3& normal = geometry_.planes[pair_.b].normal;
       return normal.dot(pointVelocity(a_.body, startA_ * a_.points[feature_] - a_.radius * normal, step_.startState));
+    }
+    if (face_) {
+      const Vec3 normal = (face_->isOfA ? startA_ : startB_).rotation * face_->normal;
+      const Vec3 corner = cornerAt(startA_, startB_);
+      const int upper = face_->isOfA ? bodyB_ : a_.body, lower = face_->isOfA ? a_.body : bodyB_;
+      return normal.dot(pointVelocity(upper, corner, step_.startState) - pointVelocity(lower, corner, step_.startState));
     }
     if (held_) {
       scratch_.findOthers(pairIndex_, *held_, step_.startState, tolerance);
@@ -138,7 +187,16 @@ class PairSearch {
     return least;
   }
 
+  Vec3 cornerAt(const RigidTransform& worldFromA, const RigidTransform& worldFromB) const {
+    if (face_->isOfA) return worldFromB * geometry_.colliders[pair_.b].points[feature_];
+    return worldFromA * a_.points[feature_];
+  }
+
   double gap(double fraction) {
+    if (face_) {
+      const RigidTransform a = poseAt(step_, a_.body, fraction), b = poseAt(step_, bodyB_, fraction);
+      return heightOver(*face_, face_->isOfA ? a : b, cornerAt(a, b));
+    }
     if (held_) {
       interpolate(step_, fraction, scratch_.sample_);
       return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, reach_);
@@ -155,6 +213,7 @@ class PairSearch {
   int bodyB_;
   RigidTransform startA_, startB_;
   GapBounds bounds_;
+  std::optional<FaceBelow> face_;                   // below all of the other body
   const std::vector<HeldFeature>* held_ = nullptr;  // something holds points of this feature
   double reach_ = 0;                                // m: farther apart nothing is looked at
   double pull_ = 0;  // m: bound on the relative acceleration, with the step as the unit of time
@@ -195,6 +254,13 @@ double ImpactSearch::gapOfOthers(std::size_t pair, const std::vector<HeldFeature
 
 double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& touching, const VectorX& state) {
   const ColliderPair& pair = geometry_.pairs[impact.pair];
+  if (impact.face) {
+    const Collider &a = geometry_.colliders[pair.a], &b = geometry_.colliders[pair.b];
+    const RigidTransform worldFromA = poseOf(state, a.body), worldFromB = poseOf(state, b.body);
+    const bool isOfA = impact.face->isOfA;
+    const Vec3 corner = isOfA ? worldFromB * b.points[impact.feature] : worldFromA * a.points[impact.feature];
+    return heightOver(*impact.face, isOfA ? worldFromA : worldFromB, corner) - impact.threshold;
+  }
   if (!impact.isOfOthers) return separation(geometry_, pair, impact.feature, state) - impact.threshold;
   const double farthest = geometry_.colliders[pair.a].boundingRadius;
   return gapOfOthers(impact.pair, *touching.held, state, farthest) - impact.threshold;

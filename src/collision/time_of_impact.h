@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "collision/face_below.h"
 #include "collision/separation.h"
 #include "dynamics/integrators/pose_interpolant.h"
 
@@ -15,6 +16,7 @@ struct ImpactTime {
   std::size_t pair = 0, feature = 0;
   double threshold = 0;      // m: the gap that is reached; < 0 if the features touched at the start
   bool isOfOthers = false;   // the gap is that of the points of the pair that are not held
+  std::optional<FaceBelow> face;  // the gap is the height of corner number `feature` over it
 };
 
 /// A feature of a pair, as separation.h numbers them, that something keeps together.

@@ -42,6 +42,7 @@ class EventContacts {
   void wakeStruck();
   void settle();
   Islands findRestGroups() const;
+  bool isAnySlow() const;
   bool isSlow(std::size_t body) const;
   bool isHeld(const Islands& groups, int group);
   void keepTogether();

@@ -22,7 +22,6 @@ constexpr double kStillPart = 1e-7;        // of the accelerations: less is held
 constexpr double kLastBouncePart = 1e-7;   // of sqrt(g x size): what leaves so slowly is held by what presses
 constexpr double kSamePoint = 1e-4;        // of a size
 constexpr double kSameDirection = 0.999;   // cosine
-constexpr double kRollingSpin = 1e-9;      // rad/s
 constexpr int kMostFrictionRounds = 200;
 constexpr double kFrictionConverged = 1e-10;
 constexpr int kMostRedundant = 12;
@@ -60,6 +59,17 @@ void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSol
     if (entry.isLoaded) add(entry);
   if(getenv("DBG")) { for(auto& c:touching) fprintf(stderr,"  T pair %zu (%d %d) sep %.3g v_n %.3g n %.6f %.6f %.6f r %g %g p %.9f %.9f %.9f\n",c.pair,c.bodyA,c.bodyB,c.separation,openingSpeed(c,island_.state),c.normal.x(),c.normal.y(),c.normal.z(),c.radiusA,c.radiusB,c.point.x(),c.point.y(),c.point.z()); fprintf(stderr,"decide t %.15g touching %zu entries %zu loaded %zu\n",island_.time,touching.size(),entries.size(),entries_.size()); for(auto& e:entries) fprintf(stderr,"   v_n %.3g slides %d loaded %d sticks %d red %d p %.12f %.12f %.12f sep %.3g former %d\n",openingSpeed(e.contact,island_.state),e.slides,e.isLoaded,e.sticks,e.isRedundant,e.contact.point.x(),e.contact.point.y(),e.contact.point.z(),e.contact.separation,formerOf(e)!=nullptr);}
   recordChanges();
+}
+
+void LastingContacts::letGoResting() {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (!isAwake(entries_[i].contact)) continue;
+    entries_[kept] = entries_[i];
+    mechanism().contacts[kept++] = mechanism().contacts[i];
+  }
+  entries_.resize(kept);
+  mechanism().contacts.resize(kept);
 }
 
 bool LastingContacts::isAwake(const Contact& contact) const {
@@ -233,7 +243,8 @@ void LastingContacts::recordChanges() {
       Vec3 spin = Vec3::Zero();
       if (contact.bodyA != kFixed) spin -= angularVelocity(island_.state, contact.bodyA);
       if (contact.bodyB != kFixed) spin += angularVelocity(island_.state, contact.bodyB);
-      record(spin.norm() > kRollingSpin ? EventKind::roll : EventKind::stick);
+      const double size = island_.assembly.geometry.colliders[former.entry.pair.a].boundingRadius;
+      record(spin.norm() * size > kSlowSliding ? EventKind::roll : EventKind::stick);
     } else if (now->slides && (stuck || (slid && turnsBack(former, *now)))) {
       record(EventKind::slip);
     }

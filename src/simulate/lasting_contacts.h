@@ -38,6 +38,9 @@ class LastingContacts {
   /// bodies that all rest are left out. `ties` must be factorised for the state. Records slip, stick, roll and release.
   void decide(const std::vector<Contact>& touching, ConstraintSolver& ties);
 
+  /// Lets go of contacts between bodies that have come to rest.
+  void letGoResting();
+
   bool empty() const { return mechanism().contacts.empty(); }
 
   /// Features that lasting contacts hold together, for the pairs of now.
