@@ -87,6 +87,7 @@ Features featuresOf(const Core& core, const Vec3& outward, Memory* memory) {
       addCylinder(core, outward, features);
       break;
     case ColliderKind::polytope:
+    case ColliderKind::mesh:
       addPolytope(core, outward, features);
       break;
   }

@@ -88,6 +88,7 @@ SurfacePoint nearestSurfacePoint(const Collider& collider, const Vec3& point) {
     case ColliderKind::cylinder:
       return nearestOnCylinder(collider, point);
     case ColliderKind::polytope:
+    case ColliderKind::mesh:
       break;
   }
   return nearestSurfacePoint(*collider.polytope, point);

@@ -27,6 +27,7 @@ Vec3 Core::farthest(const Vec3& direction) const {
     case ColliderKind::cylinder:
       return rimPoint(axis_.dot(direction) < 0 ? -1 : 1, direction);
     case ColliderKind::polytope:
+    case ColliderKind::mesh:
       break;
   }
   const Polytope& polytope = *collider_.polytope;

@@ -56,7 +56,7 @@ class PairSearch {
       feature_ = feature;
       held_ = isHeld(touching) ? touching.held : nullptr;
       if (held_ && hasOneContact()) continue;
-      const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_);
+      const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_, reach);
       if (start > bounds_.speed) continue;
       if (start > touching.tolerance)
         searchFrom(0, start, 0, best);
@@ -66,8 +66,8 @@ class PairSearch {
   }
 
  private:
-  /// Between two centres at distance d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's sum.
-  /// With edges a gap's slope may jump: then nothing bounds its acceleration.
+  /// Between two centres at distance d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's
+  /// sum. With edges a gap's slope may jump: then nothing bounds its acceleration.
   void findBounds() {
     const MotionBounds shift = relativeMotionBounds(step_, a_.body, bodyB_);
     const MotionBounds& turnA = scratch_.turnOf(step_, a_.body);
@@ -127,8 +127,7 @@ class PairSearch {
   }
 
   bool isHeld(const TouchingFeatures& touching) const {
-    return touching.held &&
-           std::any_of(touching.held->begin(), touching.held->end(), [this](const HeldFeature& held) {
+    return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [this](const HeldFeature& held) {
              return held.pair == pairIndex_ && held.feature == feature_;
            });
   }
@@ -201,7 +200,10 @@ class PairSearch {
       interpolate(step_, fraction, scratch_.sample_);
       return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, reach_);
     }
-    return separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction), poseAt(step_, bodyB_, fraction));
+    // A gap of twice the way that can be gone in the step stays open, however large it is.
+    const double enough = 2 * bounds_.speed;
+    return std::min(2 * enough, separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction),
+                                           poseAt(step_, bodyB_, fraction), enough));
   }
 
   const ContactGeometry& geometry_;

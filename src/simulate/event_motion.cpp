@@ -102,7 +102,6 @@ void EventMotion::takeStep(double stepEnd) {
     if (stepSize_.timeStep < kShortestTimeStep * island_.scene.duration)
       guard_.failAtShortestStep(island_.state, island_.time);
   }
-  if(getenv("DBG")) fprintf(stderr,"t %.12g h %.6g err %.3g next %.3g\n",island_.time,step.timeStep,errorNorm(step,tolerance_),stepSize_.timeStep);
   shortSteps_ = stepSize_.timeStep < kShortTimeStep * island_.scene.duration ? shortSteps_ + 1 : 0;
   if (shortSteps_ > kMostShortSteps) guard_.failAtShortSteps(island_.state, island_.time, step.timeStep);
 }
@@ -138,7 +137,6 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   Step& step = island_.step;
   const Event event = findFirstEvent();
   const double whole = step.timeStep;
-  if(getenv("DBG")) fprintf(stderr,"event impact %d rope %d contact %d kind %d at %.15g\n",event.impact.has_value(),event.rope.has_value(),event.contact.has_value(),event.contact?(int)event.contact->kind:-1, island_.time+whole*(event.impact?event.impact->fraction:event.contact?event.contact->fraction:1));
   if (event.impact) {
     stopAtImpact(*event.impact);
   } else if (event.rope) {

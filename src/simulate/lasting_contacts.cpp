@@ -57,7 +57,6 @@ void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSol
   for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
   for (const Entry& entry : entries)
     if (entry.isLoaded) add(entry);
-  if(getenv("DBG")) { for(auto& c:touching) fprintf(stderr,"  T pair %zu (%d %d) sep %.3g v_n %.3g n %.6f %.6f %.6f r %g %g p %.9f %.9f %.9f\n",c.pair,c.bodyA,c.bodyB,c.separation,openingSpeed(c,island_.state),c.normal.x(),c.normal.y(),c.normal.z(),c.radiusA,c.radiusB,c.point.x(),c.point.y(),c.point.z()); fprintf(stderr,"decide t %.15g touching %zu entries %zu loaded %zu\n",island_.time,touching.size(),entries.size(),entries_.size()); for(auto& e:entries) fprintf(stderr,"   v_n %.3g slides %d loaded %d sticks %d red %d p %.12f %.12f %.12f sep %.3g former %d\n",openingSpeed(e.contact,island_.state),e.slides,e.isLoaded,e.sticks,e.isRedundant,e.contact.point.x(),e.contact.point.y(),e.contact.point.z(),e.contact.separation,formerOf(e)!=nullptr);}
   recordChanges();
 }
 
