@@ -17,6 +17,7 @@ constexpr int kMostCuts = 100;  // of a bracket; halving alone would need 40
 struct GapBounds {
   double speed = 0;
   double acceleration = std::numeric_limits<double>::infinity();
+  double graze = 0;  // m: without a bound on the acceleration, touches that may be no deeper are passed over
 };
 
 /// A gap with these values at the ends of an interval of that length cannot close inside it: the fastest approach does
@@ -66,7 +67,9 @@ std::optional<double> firstCrossing(const Gap& gap, const GapBounds& bounds, dou
     const auto earlier = firstCrossing(gap, bounds, from, gapFrom, bracket.before, bracket.gapBefore);
     return earlier ? earlier : bracket.after;
   }
-  const double finest = std::isfinite(bounds.acceleration) ? kFinestApproach : kFinestBlindApproach;
+  const double finest = std::isfinite(bounds.acceleration) ? kFinestApproach
+                        : bounds.graze > 0                 ? bounds.graze / bounds.speed
+                                                           : kFinestBlindApproach;
   if (to - from < finest || staysOpen(bounds, gapFrom, gapTo, to - from)) return std::nullopt;
   const double middle = from + (to - from) / 2, gapMiddle = gap(middle);
   if (const auto crossing = firstCrossing(gap, bounds, from, gapFrom, middle, gapMiddle)) return crossing;

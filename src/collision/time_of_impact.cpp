@@ -8,6 +8,7 @@
 namespace cradle {
 namespace {
 
+constexpr double kGrazePart = 1e-4;        // of a size: edges may graze each other so deep unseen
 constexpr double kSamePlace = 1e-3;        // of a size: contacts so near to each other are one
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
@@ -81,6 +82,7 @@ class PairSearch {
     const MotionBounds& turnB = scratch_.turnOf(step_, bodyB_);
     bounds_.speed += turnB.speed * pointReach(b);
     pull_ += turnB.acceleration * pointReach(b);
+    bounds_.graze = kGrazePart * std::min(a_.boundingRadius, b.boundingRadius);
     if (a_.isBall() && b.isBall())
       bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / (a_.radius + b.radius);
   }
