@@ -20,6 +20,9 @@ class ContactStage {
   /// `before` is the state at the step's start: lasting contacts did their work since then.
   void resolve(double time, const VectorX& before, VectorX& state);
 
+  /// What touched at the last call of resolve, if something of it moved.
+  const std::vector<Contact>& touching() const { return touching_; }
+
   /// Nearer than this (m) is touching.
   double touchTolerance() const { return touchTolerance_; }
 

@@ -109,6 +109,10 @@ void EventContacts::resolve(const std::optional<ContactChange>& change, const st
   settle();
   lasting_.decide(touching_, solver_);
   keepTogether();
+  if (!lasting_.empty() && isAnySlow()) {  // what sticks is still now
+    settle();
+    lasting_.letGoResting();
+  }
   recordRests(rested);
 }
 
@@ -222,6 +226,12 @@ void EventContacts::wakeStruck() {
         island_.resting.wake(island_.time, body);
 }
 
+bool EventContacts::isAnySlow() const {
+  for (std::size_t body = 0; body < island_.assembly.mechanism.bodies.size(); ++body)
+    if (!island_.equations.isResting(body) && isSlow(body)) return true;
+  return false;
+}
+
 bool EventContacts::isSlow(std::size_t body) const {
   const Eigen::Index index = static_cast<Eigen::Index>(body);
   const double size = island_.assembly.radii[body], gravity = island_.assembly.mechanism.gravity.norm();
@@ -284,7 +294,10 @@ bool EventContacts::isHeld(const Islands& groups, int group) {
     contacts.push_back(rowsOf(contact, island_.state, frames_));
     frictions.push_back(island_.assembly.geometry.pairs[contact.pair].law.staticFriction);
   }
+  std::vector<ContactConstraint> lasting;
+  std::swap(lasting, island_.assembly.mechanism.contacts);
   island_.equations.evaluate(island_.state, rate_);
+  std::swap(lasting, island_.assembly.mechanism.contacts);
   if (!contacts.empty()) {
     const ContactResponse response(contacts, mechanism.bodies, frames_, solver_);
     const ConeSolution solution = solveConeProblem(response.inverseMass(), response.accelerations(rate_), frictions);

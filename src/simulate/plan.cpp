@@ -30,7 +30,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kContactTimeStep = 1.0 / 960;  // s: 16 steps a frame at 60 frames a second
 constexpr double kEventAccuracy = 1e-4;         // at coarser ones contact is resolved once a step
 constexpr double kPileTimeStep = 1.0 / 60;      // s, at most
 constexpr std::size_t kPileBodies = 50;         // with fewer, RK4 costs less than the pictures of its frames

@@ -6,15 +6,17 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "simulate/contact_response.h"
 #include "simulate/event_location.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kImpactPart = 1e-3;      // of the touching tolerance: how well an impact's gap is closed
-constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension that is left
-constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
-constexpr int kMostEvents = 10000;        // within a step
+constexpr double kImpactPart = 1e-3;       // of the touching tolerance: how well an impact's gap is closed
+constexpr double kRopeTolerance = 1e-13;   // of the length, or of the tension that is left
+constexpr double kTimeRounding = 1e-9;     // of a step: remainders below it are rounding
+constexpr int kMostServed = 12;            // contacts
+constexpr int kMostEvents = 10000;         // within a step
 
 }  // namespace
 
@@ -95,6 +97,11 @@ bool SteppedMotion::stopAtFirstEvent() {
 
 bool SteppedMotion::isAtRest() const {
   return island_.resting.allRest() && island_.time < island_.pushes.nextChange();
+}
+
+bool SteppedMotion::mayServeEvents() const {
+  const std::vector<Contact>& touching = contacts_.touching();
+  return std::ssize(touching) <= kMostServed && std::all_of(touching.begin(), touching.end(), canLast);
 }
 
 void SteppedMotion::restUntil(double time) {
