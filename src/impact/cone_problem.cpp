@@ -11,14 +11,13 @@
 #include <limits>
 
 #include "impact/cone_iteration.h"
+#include "impact/cone_newton.h"
 #include "impact/single_contact.h"
 
 namespace cradle {
 namespace {
 
 using Index = Eigen::Index;
-using Mat2 = Eigen::Matrix2d;
-using Vec2 = Eigen::Vector2d;
 
 constexpr double kConvergedPart = 1e-12;                                   // of the largest velocity
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // of the sums in G z
@@ -51,7 +50,6 @@ class ScaledProblem {
   bool isConverged(double residual, const VectorX& z, const VectorX& u) const;
   bool finish(VectorX& impulses) const;
   void stepByNewton(VectorX& z) const;
-  void addNewtonRows(Index contact, const VectorX& z, const VectorX& u, MatrixX& rows, VectorX& sides, Index at) const;
   VectorX unscaled(const VectorX& z) const;
 
   const MatrixX& givenMatrix_;
@@ -107,32 +105,11 @@ bool ScaledProblem::isConverged(double residual, const VectorX& z, const VectorX
   return residual <= kRounding * (g_.cwiseAbs() * z.cwiseAbs()).maxCoeff();
 }
 
-/// Replaces one contact's rows of G by those of Newton's matrix A + B G, for a contact that pushes.
-void ScaledProblem::addNewtonRows(Index contact, const VectorX& z, const VectorX& u, MatrixX& rows, VectorX& sides,
-                                  Index at) const {
-  const double mu = friction(contact), pressing = z[3 * contact + 2] - u[3 * contact + 2];
-  const Vec2 pull = z.segment<2>(3 * contact) - u.segment<2>(3 * contact);
-  const double size = pull.norm();
-  Mat3 a = kRegularPart * largest_ * Mat3::Identity(), b = Mat3::Identity();
-  sides.segment<3>(at) = -u.segment<3>(3 * contact);
-  if (size > mu * pressing || mu == 0) {  // z_t = mu (z_n - u_n) e
-    const Vec2 e = size > 0 ? Vec2(pull / size) : Vec2::Zero();
-    const Mat2 turning = size > 0 ? Mat2(mu * pressing / size * (Mat2::Identity() - e * e.transpose())) : Mat2::Zero();
-    a.topLeftCorner<2, 2>() = Mat2::Identity() - turning;
-    a.topRightCorner<2, 1>() = -mu * e;
-    b.topLeftCorner<2, 2>() = turning;
-    b.topRightCorner<2, 1>() = mu * e;
-    sides.segment<2>(at) = mu * pressing * e - z.segment<2>(3 * contact);
-  }
-  rows.middleRows<3>(at) = (b * rows.middleRows<3>(at)).eval();
-  rows.block<3, 3>(at, at) += a;
-}
-
 void ScaledProblem::stepByNewton(VectorX& z) const {
   VectorX u = g_ * z + cones_.free;
   std::vector<Index> pushing;
   for (Index i = 0; i < scale_.size(); ++i) {
-    if (z[3 * i + 2] - u[3 * i + 2] > 0)
+    if (pushes(z.segment<3>(3 * i), u.segment<3>(3 * i)))
       pushing.insert(pushing.end(), {3 * i, 3 * i + 1, 3 * i + 2});
     else
       z.segment<3>(3 * i).setZero();
@@ -141,8 +118,14 @@ void ScaledProblem::stepByNewton(VectorX& z) const {
   u = g_ * z + cones_.free;
   MatrixX rows = g_(pushing, pushing);
   VectorX sides(pushing.size());
-  for (std::size_t at = 0; at < pushing.size(); at += 3)
-    addNewtonRows(pushing[at] / 3, z, u, rows, sides, static_cast<Index>(at));
+  for (Index at = 0; at < sides.size(); at += 3) {
+    const Index first = pushing[static_cast<std::size_t>(at)];
+    const NewtonRow row =
+        newtonRow(z.segment<3>(first), u.segment<3>(first), friction(first / 3), kRegularPart * largest_);
+    rows.middleRows<3>(at) = (row.ofVelocity * rows.middleRows<3>(at)).eval();
+    rows.block<3, 3>(at, at) += row.ofImpulse;
+    sides.segment<3>(at) = -row.value;
+  }
   z(pushing) += VectorX(rows.partialPivLu().solve(sides));
 }
 
