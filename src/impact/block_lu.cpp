@@ -109,8 +109,7 @@ void BlockLu::solve(VectorX& x) const {
   for (std::size_t position = diagonal_.size(); position-- > 0;) {
     Eigen::Matrix<double, 6, 1> sum = x.segment<6>(6 * bodyAt_[position]);
     for (std::size_t i = 0; i < later_[position].size(); ++i)
-      sum.noalias() -=
-          blocks_[2 * (first_[position] + i) + 1] * x.segment<6>(6 * bodyAt_[at(later_[position][i])]);
+      sum.noalias() -= blocks_[2 * (first_[position] + i) + 1] * x.segment<6>(6 * bodyAt_[at(later_[position][i])]);
     x.segment<6>(6 * bodyAt_[position]).noalias() = diagonal_[position] * sum;
   }
 }

@@ -40,11 +40,11 @@ class BlockLu {
   };
   std::vector<std::vector<int>> eliminate(const std::vector<std::pair<int, int>>& pairs);
 
-  std::vector<int> bodyAt_, positionOf_;    // the order of elimination, and back
-  std::vector<std::vector<int>> later_;     // positions that each position is coupled to and that come after it
-  std::vector<std::size_t> first_;          // index of the first of these couplings, of each position
-  std::vector<Mat6> diagonal_;              // by position; inverses of pivots after factorize
-  std::vector<Mat6> blocks_;                // coupling c: below the diagonal at 2 c, above at 2 c + 1
+  std::vector<int> bodyAt_, positionOf_;           // the order of elimination, and back
+  std::vector<std::vector<int>> later_;            // positions that each position is coupled to and that come after it
+  std::vector<std::size_t> first_;                 // index of the first of these couplings, of each position
+  std::vector<Mat6> diagonal_;                     // by position; inverses of pivots after factorize
+  std::vector<Mat6> blocks_;                       // coupling c: below the diagonal at 2 c, above at 2 c + 1
   std::vector<std::size_t> firstRow_, secondRow_;  // of each pair
   std::vector<std::vector<Update>> updates_;       // of each position
 };

@@ -29,10 +29,12 @@ inline NewtonRow newtonRow(const Vec3& z, const Vec3& u, double friction, double
   const double size = pull.norm();
   if (size <= friction * pressing && friction > 0) return row;
   // Slides: z_t = friction (z_n - u_n) e.
+  constexpr double kSticky = 1e-13;  // what is about to stick leaves the row regular
   using Mat2 = Eigen::Matrix2d;
   const Eigen::Vector2d e = size > 0 ? Eigen::Vector2d(pull / size) : Eigen::Vector2d::Zero();
-  const Mat2 turning = size > 0 ? Mat2(friction * pressing / size * (Mat2::Identity() - e * e.transpose())) : Mat2::Zero();
-  row.ofImpulse.topLeftCorner<2, 2>() = Mat2::Identity() - (1 - regular) * turning;
+  const Mat2 turning =
+      size > 0 ? Mat2(friction * pressing / size * (Mat2::Identity() - e * e.transpose())) : Mat2::Zero();
+  row.ofImpulse.topLeftCorner<2, 2>() = Mat2::Identity() - (1 - kSticky) * turning;
   row.ofImpulse.topRightCorner<2, 1>() = -friction * e;
   row.ofVelocity.topLeftCorner<2, 2>() = turning;
   row.ofVelocity.topRightCorner<2, 1>() = friction * e;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "impact/cone_interior.h"
 #include "impact/cone_iteration.h"
 #include "impact/cone_newton.h"
 #include "impact/single_contact.h"
@@ -27,6 +28,7 @@ constexpr double kFirstPenaltyParts[] = {1e-5, 1e-3,
 constexpr int kFirstRound = 10;                 // iterations before Newton's method is tried
 constexpr double kRoundGrowth = 1.2;            // and before each further trial: far from the end, trials are waste
 constexpr int kMostIterations = 500;            // from each of them
+constexpr double kInteriorPart = 1e-9;          // of the largest velocity: where the interior point method ends
 constexpr double kRegularPart = 1e-9;           // of the largest inverse mass: what makes Newton's matrix regular
 constexpr int kMostNewtonSteps = 20;
 
@@ -45,6 +47,8 @@ class ScaledProblem {
  private:
   double friction(Index contact) const { return cones_.frictions[static_cast<std::size_t>(contact)]; }
   bool solveFrom(double penalty);
+  bool solveFromInside();
+  bool take(VectorX& z);
   void setPenalty(double penalty);
   double residual(const VectorX& z, const VectorX& u) const;
   bool isConverged(double residual, const VectorX& z, const VectorX& u) const;
@@ -95,6 +99,7 @@ double ScaledProblem::residual(const VectorX& z, const VectorX& u) const {
   double largest = 0;
   for (Index i = 0; i < scale_.size(); ++i) {
     const Vec3 error = coulombResidual(z.segment<3>(3 * i), u.segment<3>(3 * i), friction(i));
+    if (!error.allFinite()) return INFINITY;
     largest = std::max(largest, error.cwiseAbs().maxCoeff());
   }
   return largest;
@@ -151,9 +156,39 @@ VectorX ScaledProblem::solve() {
   best_ = VectorX::Zero(cones_.free.size());
   leastResidual_ = residual(best_, cones_.free);
   if (isConverged(leastResidual_, best_, cones_.free)) return unscaled(best_);
+  if (solveFrom(kFirstPenaltyParts[0] * largest_) || solveFromInside()) return unscaled(best_);
   for (const double part : kFirstPenaltyParts)
     if (solveFrom(part * largest_)) break;
   return unscaled(best_);
+}
+
+bool ScaledProblem::solveFromInside() {
+  Eigen::PartialPivLU<MatrixX> factor;
+  ConeOperator op;
+  op.multiply = [this](const VectorX& z, VectorX& u) { u = g_ * z + cones_.free; };
+  op.respond = [this, &factor](const std::vector<Mat3>& stiffnesses, bool isNew, const VectorX& c, VectorX& du) {
+    if (isNew) {
+      MatrixX matrix(g_.rows(), g_.cols());
+      for (Index i = 0; i < scale_.size(); ++i)
+        matrix.middleCols<3>(3 * i) = g_.middleCols<3>(3 * i) * stiffnesses[static_cast<std::size_t>(i)];
+      matrix.diagonal().array() += 1;
+      factor.compute(matrix);
+    }
+    du = factor.solve(g_ * c);
+  };
+  VectorX z = VectorX::Zero(cones_.free.size());
+  solveByInteriorPoint(cones_, op, kInteriorPart, z);
+  return take(z);
+}
+
+/// Keeps impulses that are better than the best so far. True if they, or where Newton's method leads from them, are a
+/// solution.
+bool ScaledProblem::take(VectorX& z) {
+  const VectorX u = g_ * z + cones_.free;
+  const double left = residual(z, u);
+  const bool isFound = isConverged(left, z, u) || finish(z);
+  if (isFound || left < leastResidual_) best_ = z, leastResidual_ = left;
+  return isFound;
 }
 
 /// From nothing, with a penalty to begin with.
@@ -165,11 +200,7 @@ bool ScaledProblem::solveFrom(double penalty) {
   for (int done = 0; done < kMostIterations; done += static_cast<int>(round), round *= kRoundGrowth) {
     iterateCones(cones_, kProximalPart * largest_, solveShifted, static_cast<int>(round), iterate_);
     VectorX z = iterate_.impulses;
-    const VectorX u = g_ * z + cones_.free;
-    const double left = residual(z, u);
-    const bool isFound = isConverged(left, z, u) || finish(z);
-    if (isFound || left < leastResidual_) best_ = z, leastResidual_ = left;
-    if (isFound) return true;
+    if (take(z)) return true;
     setPenalty(balancedPenalty(iterate_, largest_));
   }
   return false;

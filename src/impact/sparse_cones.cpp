@@ -1,6 +1,6 @@
 // ADMM as in cone_iteration.h. With J = D J' M^-1/2, D the scale of each contact, (J J^T + s)^-1 b = (b - J (J^T J +
-// s)^-1 J^T b) / s: what is factorised has six rows a body, whatever the number of its contacts, and couples only bodies
-// that touch.
+// s)^-1 J^T b) / s: what is factorised has six rows a body, whatever the number of its contacts, and couples only
+// bodies that touch.
 
 #include "impact/sparse_cones.h"
 
@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 
+#include "impact/cone_interior.h"
 #include "impact/cone_newton.h"
 #include "impact/contact_cones.h"
 #include "math/rotation.h"
@@ -18,15 +19,14 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kLargest = 4;             // bound that a few contacts a body stay below, of scaled inverse masses
-constexpr double kProximal = 1e-7;         // eta, scaled
-constexpr double kFirstPenalty = 1e-4;     // rho, scaled
-constexpr double kLeastPenalty = 1e-6;     // of the same: below, the difference b - ... is rounding
-constexpr int kFirstRound = 10;            // iterations before Newton's method is tried
-constexpr double kRoundGrowth = 1.3;
+constexpr double kLargest = 4;          // bound that a few contacts a body stay below, of scaled inverse masses
+constexpr double kProximal = 1e-7;      // eta, scaled
+constexpr double kFirstPenalty = 1e-4;  // rho, scaled
+constexpr double kLeastPenalty = 1e-6;  // of the same: below, the difference b - ... is rounding
+constexpr int kIterations = 10;         // of ADMM before Newton's method is tried again
+constexpr double kInteriorPart = 1e-9;  // of the velocities: where the interior point method ends
 constexpr double kRegular = 1e-9;
-constexpr int kMostNewtonSteps = 10;
-constexpr int kMostIterations = 300;
+constexpr int kMostNewtonSteps = 6;
 
 }  // namespace
 
@@ -85,10 +85,12 @@ VectorX SparseCones::velocitiesIn(const VectorX& velocities) const {
       const Row& row = contacts_[i];
       if (row.body[side] < 0) continue;
       const BodyRoot& body = bodies_[static_cast<std::size_t>(row.body[side])];
-      const Vec3 turn = body.inverseInertia.triangularView<Eigen::Lower>().solve(Vec3(angularVelocity(velocities, body.index)));
+      const Vec3 turn =
+          body.inverseInertia.triangularView<Eigen::Lower>().solve(Vec3(angularVelocity(velocities, body.index)));
       all.segment<3>(3 * static_cast<Index>(i)) +=
           (row.j[side].leftCols<3>() * linearVelocity(velocities, body.index) / body.inverseMass +
-           row.j[side].rightCols<3>() * turn) / row.scale;
+           row.j[side].rightCols<3>() * turn) /
+          row.scale;
     }
   return all;
 }
@@ -230,9 +232,30 @@ double SparseCones::residual(const VectorX& z, const VectorX& u) const {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
     const Vec3 error = coulombResidual(z.segment<3>(at), u.segment<3>(at), cones_.frictions[i]);
+    if (!error.allFinite()) return INFINITY;
     largest = std::max(largest, error.cwiseAbs().maxCoeff() / contacts_[i].scale);
   }
   return largest;
+}
+
+long SparseCones::approachFromInside(VectorX& impulses) {
+  shift_ = 0;
+  ConeOperator op;
+  op.multiply = [this](const VectorX& z, VectorX& u) { multiply(z, u); };
+  op.respond = [this](const std::vector<Mat3>& stiffnesses, bool isNew, const VectorX& c, VectorX& du) {
+    if (isNew) assemble(1, [&](std::size_t i) { return stiffnesses[i]; });
+    gather(c);
+    factor_.solve(bodyWork_);
+    du.resize(c.size());
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      Vec3 sum = Vec3::Zero();
+      for (std::size_t side = 0; side < 2; ++side)
+        if (const int body = contacts_[i].body[side]; body >= 0)
+          sum += contacts_[i].j[side] * bodyWork_.segment<6>(6 * body);
+      du.segment<3>(3 * static_cast<Index>(i)) = sum;
+    }
+  };
+  return solveByInteriorPoint(cones_, op, kInteriorPart * cones_.free.cwiseAbs().maxCoeff(), impulses);
 }
 
 ConeSolution SparseCones::solve(const VectorX& free, const std::vector<double>& frictions, double tolerance,
@@ -250,15 +273,21 @@ ConeSolution SparseCones::solve(const VectorX& free, const std::vector<double>& 
   ConeSolution solution;
   VectorX u;
   const auto shifted = [this](VectorX& b) { solveShifted(b); };
-  double round = kFirstRound;
-  for (int done = 0;; done += static_cast<int>(round), round *= kRoundGrowth) {
-    multiply(at.impulses, u);
-    solution.converged = residual(at.impulses, u) <= tolerance || finish(at.impulses, u, tolerance);
-    if (solution.converged || done >= kMostIterations) break;
-    if (done > 0) at.penalty = std::max(balancedPenalty(at, kLargest), kLeastPenalty);
+  multiply(at.impulses, u);
+  const auto isFound = [&] { return residual(at.impulses, u) <= tolerance || finish(at.impulses, u, tolerance); };
+  solution.converged = isFound();
+  if (!solution.converged) {
     factorize(at.penalty + kProximal);
-    iterateCones(cones_, kProximal, shifted, static_cast<int>(round), at);
-    iterations += static_cast<int>(round);
+    iterateCones(cones_, kProximal, shifted, kIterations, at);
+    at.penalty = std::max(balancedPenalty(at, kLargest), kLeastPenalty);
+    iterations += kIterations;
+    multiply(at.impulses, u);
+    solution.converged = isFound();
+  }
+  if (!solution.converged) {
+    iterations += approachFromInside(at.impulses);
+    multiply(at.impulses, u);
+    solution.converged = isFound();
   }
   solution.residual = residual(at.impulses, u);
   if (solution.converged)

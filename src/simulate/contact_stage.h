@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "impact/pairwise.h"
+#include "simulate/contact_stepping.h"
 #include "simulate/event_log.h"
 #include "simulate/islands.h"
 #include "simulate/resting_bodies.h"
@@ -21,6 +22,13 @@ class ContactStage {
   /// `before` is the state at the step's start: lasting contacts did their work since then.
   void resolve(double time, const VectorX& before, VectorX& state);
 
+  /// Many contacts last or chatter: the next step is to end without a search for impacts, by resolveStep.
+  bool isCrowded() const { return isCrowded_; }
+  void setCrowded() { isCrowded_ = true; }
+
+  /// What happens over a whole step of free motion from `before` to `state`, as one cone problem.
+  void resolveStep(double time, const VectorX& before, VectorX& state);
+
   /// Wakes the island of a moving body, with events.
   void wake(double time, int body, const VectorX& state);
 
@@ -34,7 +42,8 @@ class ContactStage {
   double margin() const { return std::max(touchTolerance_, resting_.supportMargin()); }
 
  private:
-  void findTouching(const VectorX& state);
+  void findTouching(const VectorX& state, double margin);
+  void findWithinReach(const VectorX& before, const VectorX& state, double length);
   void wakeTouched(double time, const VectorX& state);
   void resolveImpacts(double time, const VectorX& before, VectorX& state);
   Islands findStruckTogether() const;
@@ -50,6 +59,8 @@ class ContactStage {
   double lastTime_ = -INFINITY;  // s, of the last call of resolve
   double stepPart_ = INFINITY;   // time since then, in steps
   std::vector<Contact> touching_;
+  ContactStepping stepping_;
+  bool isCrowded_ = false;
 };
 
 }  // namespace cradle

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kImpactPart = 1e-3;  // of the touching tolerance: how well an impact's gap is closed
 constexpr int kMostCorrections = 60;  // steps tried to that end; 3 are usual
+constexpr int kManyEvents = 16;       // in a step: beyond, it is not cut any more
 constexpr int kMostEvents = 10000;
 constexpr double kEventWindow = 1.0 / 960;  // s, in which there may be so many, of methods without a fixed step
 constexpr double kRopeTolerance = 1e-13;    // of the length, or of the tension that is left
@@ -108,7 +109,7 @@ void Simulation::advance(double frame) {
   before_ = state_;
   state_ = step_.state;
   tidyState();
-  contacts_.resolve(time_, before_, state_);
+  contacts_.isCrowded() ? contacts_.resolveStep(time_, before_, state_) : contacts_.resolve(time_, before_, state_);
   const std::size_t rods = assembly_.mechanism.constraints.rods.size();
   ropes_.resolve(time_, state_);
   keepsTies_ = assembly_.mechanism.constraints.rods.size() == rods;
@@ -117,6 +118,7 @@ void Simulation::advance(double frame) {
   requireUnsolvedPairsApart();
 
   if (atEvent) countEvent();
+  if (eventsInWindow_ > kManyEvents) contacts_.setCrowded();
   if (method_.isAdaptive() || time_ < static_cast<double>(stepNumber_ + 1) * method_.timeStep) return;
   ++stepNumber_;
 }
@@ -208,7 +210,8 @@ bool Simulation::stopAtFirstEvent() {
   if (assembly_.geometry.colliders.empty() && !ropes_.hasRopes()) return false;
   prepareInterpolant(rightHandSide_, step_);
   findNearPairs();
-  const auto impact = firstImpact(assembly_.geometry, step_, contacts_.touchTolerance());
+  const auto impact =
+      contacts_.isCrowded() ? std::nullopt : firstImpact(assembly_.geometry, step_, contacts_.touchTolerance());
   const auto change = ropes_.firstChange(step_);
   const double whole = step_.timeStep;
   if (impact && !(change && change->fraction < impact->fraction)) {

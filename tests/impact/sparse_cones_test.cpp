@@ -24,8 +24,7 @@ struct Stack {
       centerOfMass(state, body).y() = 0.5 + body;
       setOrientation(state, body, rotationAbout(Vec3(1, 2, 3), 0.3 * body));
       for (const double x : {-0.5, 0.45})
-        for (const double z : {-0.4, 0.5})
-          contacts.push_back({0, body, body - 1, Vec3(x, body, z), -Vec3::UnitY(), 0});
+        for (const double z : {-0.4, 0.5}) contacts.push_back({0, body, body - 1, Vec3(x, body, z), -Vec3::UnitY(), 0});
     }
   }
 };
