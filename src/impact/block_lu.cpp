@@ -3,9 +3,9 @@
 
 #include "impact/block_lu.h"
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <iterator>
+#include <cmath>
+#include <utility>
 
 namespace cradle {
 namespace {
@@ -22,6 +22,30 @@ void insertOnce(std::vector<int>& sorted, int value) {
 }
 
 }  // namespace
+
+void PivotBlock::factorize() {
+  for (Index column = 0; column < 6; ++column) {
+    Index pivot = column;
+    for (Index row = column + 1; row < 6; ++row)
+      if (std::abs(matrix(row, column)) > std::abs(matrix(pivot, column))) pivot = row;
+    pivots_[at(static_cast<int>(column))] = static_cast<int>(pivot);
+    if (pivot != column) matrix.row(column).swap(matrix.row(pivot));
+    for (Index row = column + 1; row < 6; ++row) matrix(row, column) /= matrix(column, column);
+    for (Index k = column + 1; k < 6; ++k)
+      for (Index row = column + 1; row < 6; ++row) matrix(row, k) -= matrix(row, column) * matrix(column, k);
+  }
+}
+
+void PivotBlock::solve(Vec6& x) const {
+  for (Index i = 0; i < 6; ++i)
+    if (const Index pivot = pivots_[at(static_cast<int>(i))]; pivot != i) std::swap(x[i], x[pivot]);
+  for (Index i = 0; i < 6; ++i)
+    for (Index row = i + 1; row < 6; ++row) x[row] -= matrix(row, i) * x[i];
+  for (Index i = 5; i >= 0; --i) {
+    x[i] /= matrix(i, i);
+    for (Index row = 0; row < i; ++row) x[row] -= matrix(row, i) * x[i];
+  }
+}
 
 /// Chooses the order. Returns the bodies that each body is coupled to when its turn comes.
 std::vector<std::vector<int>> BlockLu::eliminate(const std::vector<std::pair<int, int>>& pairs) {
@@ -83,35 +107,40 @@ void BlockLu::analyze(int bodies, const std::vector<std::pair<int, int>>& pairs)
 }
 
 void BlockLu::clear() {
-  for (Mat6& block : diagonal_) block.setZero();
+  for (PivotBlock& block : diagonal_) block.matrix.setZero();
   for (Mat6& block : blocks_) block.setZero();
 }
 
 void BlockLu::factorize() {
   for (std::size_t position = 0; position < diagonal_.size(); ++position) {
-    diagonal_[position] = Mat6(diagonal_[position].partialPivLu().inverse());
+    diagonal_[position].factorize();
     for (std::size_t i = 0; i < later_[position].size(); ++i) {
-      Mat6& below = blocks_[2 * (first_[position] + i)];
-      below = (below * diagonal_[position]).eval();
+      Mat6& above = blocks_[2 * (first_[position] + i) + 1];
+      for (Index column = 0; column < 6; ++column) {
+        Vec6 x = above.col(column);
+        diagonal_[position].solve(x);
+        above.col(column) = x;
+      }
     }
     for (const Update& update : updates_[position]) {
-      Mat6& target = update.isDiagonal ? diagonal_[update.target] : blocks_[update.target];
-      target.noalias() -= blocks_[update.below] * blocks_[update.above];
+      Mat6& target = update.isDiagonal ? diagonal_[update.target].matrix : blocks_[update.target];
+      target -= blocks_[update.below].lazyProduct(blocks_[update.above]);
     }
   }
 }
 
 void BlockLu::solve(VectorX& x) const {
-  for (std::size_t position = 0; position < diagonal_.size(); ++position)
+  for (std::size_t position = 0; position < diagonal_.size(); ++position) {
+    Vec6 own = x.segment<6>(6 * bodyAt_[position]);
+    diagonal_[position].solve(own);
+    x.segment<6>(6 * bodyAt_[position]) = own;
     for (std::size_t i = 0; i < later_[position].size(); ++i)
-      x.segment<6>(6 * bodyAt_[at(later_[position][i])]).noalias() -=
-          blocks_[2 * (first_[position] + i)] * x.segment<6>(6 * bodyAt_[position]);
-  for (std::size_t position = diagonal_.size(); position-- > 0;) {
-    Eigen::Matrix<double, 6, 1> sum = x.segment<6>(6 * bodyAt_[position]);
-    for (std::size_t i = 0; i < later_[position].size(); ++i)
-      sum.noalias() -= blocks_[2 * (first_[position] + i) + 1] * x.segment<6>(6 * bodyAt_[at(later_[position][i])]);
-    x.segment<6>(6 * bodyAt_[position]).noalias() = diagonal_[position] * sum;
+      x.segment<6>(6 * bodyAt_[at(later_[position][i])]) -= blocks_[2 * (first_[position] + i)].lazyProduct(own);
   }
+  for (std::size_t position = diagonal_.size(); position-- > 0;)
+    for (std::size_t i = 0; i < later_[position].size(); ++i)
+      x.segment<6>(6 * bodyAt_[position]) -=
+          blocks_[2 * (first_[position] + i) + 1].lazyProduct(x.segment<6>(6 * bodyAt_[at(later_[position][i])]));
 }
 
 }  // namespace cradle

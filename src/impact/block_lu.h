@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -8,6 +9,20 @@
 namespace cradle {
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+
+/// A 6x6 matrix factorised in place, with row pivoting. Solved by substitution, never by an inverse: what is stiff
+/// along some directions then stays exact along them.
+class PivotBlock {
+ public:
+  Mat6 matrix;  // before `factorize`; factors after it
+
+  void factorize();
+  void solve(Vec6& x) const;
+
+ private:
+  std::array<int, 6> pivots_{};  // rows exchanged with
+};
 
 /// Factorisation of a sparse matrix of 6x6 blocks, one row of blocks for each body, with blocks where bodies touch: as
 /// often above the diagonal as below, but with any values. Pivots within diagonal blocks only, so that these must stay
@@ -23,7 +38,7 @@ class BlockLu {
 
   /// The diagonal block of a body; the block in the row of a pair's first body and the column of its second; and the
   /// other way round. To be filled after `clear`.
-  Mat6& diagonal(std::size_t body) { return diagonal_[static_cast<std::size_t>(positionOf_[body])]; }
+  Mat6& diagonal(std::size_t body) { return diagonal_[static_cast<std::size_t>(positionOf_[body])].matrix; }
   Mat6& firstRow(std::size_t pair) { return blocks_[firstRow_[pair]]; }
   Mat6& secondRow(std::size_t pair) { return blocks_[secondRow_[pair]]; }
 
@@ -43,7 +58,7 @@ class BlockLu {
   std::vector<int> bodyAt_, positionOf_;           // the order of elimination, and back
   std::vector<std::vector<int>> later_;            // positions that each position is coupled to and that come after it
   std::vector<std::size_t> first_;                 // index of the first of these couplings, of each position
-  std::vector<Mat6> diagonal_;                     // by position; inverses of pivots after factorize
+  std::vector<PivotBlock> diagonal_;               // by position
   std::vector<Mat6> blocks_;                       // coupling c: below the diagonal at 2 c, above at 2 c + 1
   std::vector<std::size_t> firstRow_, secondRow_;  // of each pair
   std::vector<std::vector<Update>> updates_;       // of each position

@@ -1,7 +1,7 @@
-// A primal-dual interior point method with the scaling of Nesterov and Todd and Mehrotra's corrector on the second-order
-// cone problem of V. Acary, P. Armand, H. M. Nguyen, M. Shpakovych ("Second-order cone programming for frictional contact
-// mechanics using interior point algorithm", Optim. Methods Softw. 2022): De Saxce's correction is taken from the
-// iterate before, as part of what the next step has to make up for.
+// A primal-dual interior point method with the scaling of Nesterov and Todd and Mehrotra's corrector on the
+// second-order cone problem of V. Acary, P. Armand, H. M. Nguyen, M. Shpakovych ("Second-order cone programming for
+// frictional contact mechanics using interior point algorithm", Optim. Methods Softw. 2022): De Saxce's correction is
+// taken from the iterate before, as part of what the next step has to make up for.
 
 #include "impact/cone_interior.h"
 
@@ -22,8 +22,8 @@ constexpr double kShortest = 1e-8;   // step that leads nowhere
 
 /// One contact: impulses x and velocities y in the Lorentz cone; without friction only the normal parts.
 struct Pair {
-  Vec3 x = Vec3::UnitZ(), y = Vec3::UnitZ();            // (z_t, mu z_n) and (w_t, w_n / mu)
-  double friction = 0;  // mu
+  Vec3 x = Vec3::UnitZ(), y = Vec3::UnitZ();  // (z_t, mu z_n) and (w_t, w_n / mu)
+  double friction = 0;                        // mu
   Vec3 affineX = Vec3::Zero(), affineY = Vec3::Zero(), dx = Vec3::Zero(), dy = Vec3::Zero();
   ConeScaling scaling;
   Vec3 middle = Vec3::Zero();  // W y = W^-1 x

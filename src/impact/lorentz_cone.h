@@ -1,8 +1,8 @@
 #pragma once
 
 // Products, scaling and steps in the Lorentz cone |t| <= n of vectors (t1, t2, n): F. Alizadeh, D. Goldfarb,
-// "Second-order cone programming", Math. Programming 95, 2003; scaling of Yu. Nesterov and M. Todd as in L. Vandenberghe,
-// "The CVXOPT linear and quadratic cone program solvers", 2010, 4.
+// "Second-order cone programming", Math. Programming 95, 2003; scaling of Yu. Nesterov and M. Todd as in L.
+// Vandenberghe, "The CVXOPT linear and quadratic cone program solvers", 2010, 4.
 
 #include <cmath>
 #include <limits>
