@@ -18,11 +18,11 @@ namespace {
 
 constexpr int kMostRounds = 12;
 constexpr int kMostNewtonSteps = 20;
-constexpr double kLongestStep = 0.5;       // rad
-constexpr double kLastStep = 1e-15;        // rad
-constexpr double kParallelSine = 1e-14;    // between unit vectors: rounding
-constexpr double kAmbiguousCosine = 0.2;   // between normal and a cylinder's axis: either end may be the one
-constexpr double kGain = 1e-15;            // of the size
+constexpr double kLongestStep = 0.5;      // rad
+constexpr double kLastStep = 1e-15;       // rad
+constexpr double kParallelSine = 1e-14;   // between unit vectors: rounding
+constexpr double kAmbiguousCosine = 0.2;  // between normal and a cylinder's axis: either end may be the one
+constexpr double kGain = 1e-15;           // of the size
 
 struct Line {
   Vec3 point, direction;

@@ -22,7 +22,8 @@ Collider enclosed(Collider collider) {
   }
   for (const Vec3& point : collider.points) {
     const double along = axis.dot(point), across = (point - along * axis).norm() + collider.rimRadius;
-    collider.boundingRadius = std::max(collider.boundingRadius, std::sqrt(along * along + across * across) + collider.radius);
+    collider.boundingRadius =
+        std::max(collider.boundingRadius, std::sqrt(along * along + across * across) + collider.radius);
     collider.bounds.extend(Vec3(point - around));
     collider.bounds.extend(Vec3(point + around));
   }

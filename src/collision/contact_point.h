@@ -6,7 +6,7 @@
 
 namespace cradle {
 
-constexpr double kFlat = std::numeric_limits<double>::infinity();      // m: radius of a surface at a flat face
+constexpr double kFlat = std::numeric_limits<double>::infinity();       // m: radius of a surface at a flat face
 constexpr double kNotRound = std::numeric_limits<double>::quiet_NaN();  // of an edge, a rim, a cylinder's side
 
 /// One point where two surfaces are near.

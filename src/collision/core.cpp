@@ -3,9 +3,7 @@
 namespace cradle {
 
 Core::Core(const Collider& collider, const RigidTransform& frameFromCollider)
-    : collider_(collider),
-      turn_(frameFromCollider.rotation.toRotationMatrix()),
-      shift_(frameFromCollider.translation) {
+    : collider_(collider), turn_(frameFromCollider.rotation.toRotationMatrix()), shift_(frameFromCollider.translation) {
   if (collider.points.size() != 2) return;
   const Vec3 from = placed(collider.points[1]), to = placed(collider.points[0]);
   center_ = (from + to) / 2;

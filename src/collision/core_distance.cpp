@@ -1,6 +1,6 @@
 // E. G. Gilbert, D. W. Johnson, S. S. Keerthi, "A fast procedure for computing the distance between complex objects in
-// three-dimensional space", IEEE J. Robotics and Automation 4(2), 1988: the point of the difference A - B nearest to the
-// origin, by simplices of its farthest points. Nearest points of simplices by their regions: C. Ericson, "Real-Time
+// three-dimensional space", IEEE J. Robotics and Automation 4(2), 1988: the point of the difference A - B nearest to
+// the origin, by simplices of its farthest points. Nearest points of simplices by their regions: C. Ericson, "Real-Time
 // Collision Detection", 2004, 5.1.
 
 #include "collision/core_distance.h"

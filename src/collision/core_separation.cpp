@@ -9,8 +9,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kTouching = 1e-12;  // of the size: nearer, the direction to the nearest point is rounding
-constexpr double kNear = 0.01;       // of the size: nearer, the normals of features are better than that direction
+constexpr double kTouching = 1e-12;       // of the size: nearer, the direction to the nearest point is rounding
+constexpr double kNear = 0.01;            // of the size: nearer, the normals of features are better than that direction
 constexpr double kFacePreference = 1e-7;  // of the size
 
 double sizeOf(const Core& a, const Core& b) {

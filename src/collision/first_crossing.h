@@ -33,8 +33,8 @@ struct Bracket {
   double before, gapBefore, after, gapAfter;
 };
 
-/// Closes a bracket around a crossing to kFinestCrossing by the Illinois variant of regula falsi (M. Dowell, P. Jarratt,
-/// 1971).
+/// Closes a bracket around a crossing to kFinestCrossing by the Illinois variant of regula falsi (M. Dowell, P.
+/// Jarratt, 1971).
 template <class Gap>
 void closeBracket(const Gap& gap, Bracket& bracket) {
   double weightBefore = bracket.gapBefore, weightAfter = bracket.gapAfter;

@@ -1,6 +1,6 @@
-// The incident feature clipped against the side planes of the reference face (D. Gregorius, "Robust Contact Creation for
-// Physics Simulations", GDC 2015). Points of the incident feature count as its corners, or as points of its balls, also
-// where it was clipped: they lie on it. Discs are clipped as polygons of 16 sides: those of the prism inside the
+// The incident feature clipped against the side planes of the reference face (D. Gregorius, "Robust Contact Creation
+// for Physics Simulations", GDC 2015). Points of the incident feature count as its corners, or as points of its balls,
+// also where it was clipped: they lie on it. Discs are clipped as polygons of 16 sides: those of the prism inside the
 // cylinder, a little larger where they are the reference so that what stands on the rim is not lost.
 
 #include "collision/manifold.h"
@@ -21,8 +21,9 @@ constexpr double kStandingCosine = 0.7;  // between a cylinder's axis and the co
 constexpr double kOuterPart = 1.0195911582083184;  // 1 / cos(pi / 16): polygon around a disc to the one in it
 constexpr double kDeeperPart = 1e-9;               // of the size: a manifold must hold a point so near to the deepest
 constexpr std::size_t kMostPoints = 8;
-constexpr double kTie = 1e-9;    // of an area: corners of a regular polygon are alike
-constexpr double kLying = 1e-5;  // rad: a cylinder so little tilted is a ball of its radius at both rims, to 1e-10 of it
+constexpr double kTie = 1e-9;  // of an area: corners of a regular polygon are alike
+constexpr double kLying =
+    1e-5;  // rad: a cylinder so little tilted is a ball of its radius at both rims, to 1e-10 of it
 
 using Points = std::pmr::vector<Vec3>;
 using Memory = std::pmr::monotonic_buffer_resource;
@@ -122,7 +123,8 @@ void thinOut(Points& polygon) {
     std::size_t least = 0;
     double leastArea = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const Vec3 &before = polygon[(i + polygon.size() - 1) % polygon.size()], &after = polygon[(i + 1) % polygon.size()];
+      const Vec3 &before = polygon[(i + polygon.size() - 1) % polygon.size()],
+                 &after = polygon[(i + 1) % polygon.size()];
       const double area = (before - polygon[i]).cross(after - polygon[i]).squaredNorm();
       if (area < leastArea * (1 - kTie)) leastArea = area, least = i;  // of a disc every other point is left
     }
@@ -138,8 +140,7 @@ struct Reference {
 
 /// Contacts of what is left of an incident patch on a face of A.
 void appendOnFace(const Reference& face, Patch& incident, double margin, std::vector<ContactPoint>& points) {
-  std::erase_if(incident.points,
-                [&](const Vec3& point) { return face.normal.dot(point) - face.offset > margin; });
+  std::erase_if(incident.points, [&](const Vec3& point) { return face.normal.dot(point) - face.offset > margin; });
   thinOut(incident.points);
   for (const Vec3& point : incident.points) {
     const double separation = face.normal.dot(point) - face.offset;

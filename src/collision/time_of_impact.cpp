@@ -61,8 +61,8 @@ class PairSearch {
   }
 
  private:
-  /// Between two centres at distance d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's sum.
-  /// With edges a gap's slope may jump: then nothing bounds its acceleration.
+  /// Between two centres at distance d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's
+  /// sum. With edges a gap's slope may jump: then nothing bounds its acceleration.
   void findBounds() {
     const MotionBounds shift = relativeMotionBounds(step_, a_.body, bodyB_);
     const MotionBounds& turnA = scratch_.turnOf(step_, a_.body);
@@ -81,8 +81,7 @@ class PairSearch {
   }
 
   bool isHeld(const TouchingFeatures& touching) const {
-    return touching.held &&
-           std::any_of(touching.held->begin(), touching.held->end(), [this](const HeldFeature& held) {
+    return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [this](const HeldFeature& held) {
              return held.pair == pairIndex_ && held.feature == feature_;
            });
   }

@@ -27,8 +27,7 @@ ContactCones::ContactCones(const std::vector<Contact>& contacts, const ImpulseRe
     : contacts_(contacts), places_(state), inverseMass_(3 * contacts.size(), 3 * contacts.size()) {
   for (const Contact& contact : contacts) {
     axes_.push_back(contactAxes(contact.normal));
-    for (int axis = 0; axis < 3; ++axis)
-      answers_.push_back(response.answerTo(contact, axes_.back().col(axis), state));
+    for (int axis = 0; axis < 3; ++axis) answers_.push_back(response.answerTo(contact, axes_.back().col(axis), state));
   }
   for (std::size_t column = 0; column < answers_.size(); ++column)
     inverseMass_.col(static_cast<Index>(column)) = velocitiesIn(answers_[column]);

@@ -1,8 +1,8 @@
 // Newton's restitution with Coulomb's friction, all contacts at once: u = G z + J v + e (J v)_n in the cone problem (J.
-// J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988). Together they can gain energy; then
-// the restitution is scaled down: without rebound the change of energy is z (u + J v) / 2 = z_t u_t / 2 - z G z / 2 <= 0.
-// Rounds over the contacts that close are the reflections of generalized_reflections.h with friction: what hits one end
-// of a row of balls leaves at the other.
+// J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988). Together they can gain energy;
+// then the restitution is scaled down: without rebound the change of energy is z (u + J v) / 2 = z_t u_t / 2 - z G z /
+// 2 <= 0. Rounds over the contacts that close are the reflections of generalized_reflections.h with friction: what hits
+// one end of a row of balls leaves at the other.
 
 #include "impact/frictional_impact.h"
 
@@ -21,8 +21,8 @@ constexpr double kClosedPart = 1e-11;  // of the fastest speed: what is left is 
 constexpr double kSlidingPart = 1e-9;  // of the same: slower sticks
 constexpr int kMostRounds = 100;       // then one without rebound ends it
 constexpr double kLessRestitution = 0.7;
-constexpr double kLeastRestitution = 1e-2;   // part of it: less is none
-constexpr double kEnergyRounding = 1e-13;    // of the energy that moves
+constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
+constexpr double kEnergyRounding = 1e-13;   // of the energy that moves
 
 std::vector<Contact> contactsOf(const std::vector<ImpactContact>& impacts) {
   std::vector<Contact> contacts;

@@ -13,7 +13,8 @@ constexpr double kSameNormal = 0.9;   // cosine, at least, for impulses to go on
 constexpr double kRounding = 1e-9;    // of a unit axis or a side
 constexpr double kSlowSliding = 0.1;  // m/s: slower, static friction holds; a step's gain by gravity is 0.16
 
-constexpr double kBallPart = 0.4;     // of their approach counts: of balls the point that will touch is known
+constexpr double kBallPart = 0.4;  // of their approach counts: of balls the point that will touch is known
+constexpr double kSpinPart = 0.5;  // of the speed of the farthest point: few touch with that one
 const MovingPose kStill{};
 
 const MovingPose& poseOf(const std::vector<MovingPose>& poses, int body) {
@@ -35,7 +36,9 @@ PileContacts::PileContacts(const ContactGeometry& geometry) : geometry_(geometry
 
 /// A polytope that is a box with corners numbered as polytopeOf does.
 std::optional<PileContacts::BoxShape> PileContacts::boxOf(const Collider& collider) {
-  if (collider.kind() != ColliderKind::polytope || !collider.polytope || collider.polytope->vertices.size() != 8 || collider.polytope->faces.size() != 6) return {};
+  if (collider.kind() != ColliderKind::polytope || !collider.polytope || collider.polytope->vertices.size() != 8 ||
+      collider.polytope->faces.size() != 6)
+    return {};
   const std::vector<Vec3>& corners = collider.polytope->vertices;
   BoxShape box;
   Vec3 opposite = corners[0];
@@ -90,8 +93,8 @@ double PileContacts::approachOf(const NearPair& pair, const std::vector<MovingPo
   const MovingPose &a = poseOf(poses, pair.bodyA), &b = poseOf(poses, pair.bodyB);
   const bool isBallA = geometry_.colliders[pair.shapeA].isBall();
   const bool isBallB = pair.againstPlane || geometry_.colliders[pair.shapeB].isBall();
-  const double spin = (isBallA ? 0 : a.angularVelocity.norm() * a.radius) +
-                      (isBallB || pair.bodyB == kFixed ? 0 : b.angularVelocity.norm() * b.radius);
+  const double spin = kSpinPart * ((isBallA ? 0 : a.angularVelocity.norm() * a.radius) +
+                                   (isBallB || pair.bodyB == kFixed ? 0 : b.angularVelocity.norm() * b.radius));
   const double part = isBallA && isBallB ? kBallPart : 1;
   const Vec3 velocity = b.linearVelocity - a.linearVelocity;
   if (pair.againstPlane) {
@@ -126,8 +129,7 @@ bool PileContacts::mayTouch(const NearPair& pair, const std::vector<MovingPose>&
     return plane.normal.dot(a.position - plane.point) < a.radius + kContactMargin + speed * time;
   }
   if (pair.bodyB == kFixed) return true;
-  const double reach =
-      a.radius + b.radius + kContactMargin + (b.linearVelocity - a.linearVelocity).norm() * time;
+  const double reach = a.radius + b.radius + kContactMargin + (b.linearVelocity - a.linearVelocity).norm() * time;
   return (b.position - a.position).squaredNorm() < reach * reach;
 }
 
@@ -177,9 +179,8 @@ void PileContacts::updatePair(NearPair& pair, const std::vector<MovingPose>& pos
   } else {
     const double speed = (poseB.linearVelocity - poseA.linearVelocity).norm() +
                          poseA.radius * poseA.angularVelocity.norm() + poseB.radius * poseB.angularVelocity.norm();
-    const ContactPatch patch = isFast(pair)
-                                   ? patchOf(pair, poseA, poseB, timeStep)
-                                   : patchOfAnyShapes(pair, state, kContactMargin + timeStep * speed, scratch);
+    const ContactPatch patch = isFast(pair) ? patchOf(pair, poseA, poseB, timeStep)
+                                            : patchOfAnyShapes(pair, state, kContactMargin + timeStep * speed, scratch);
     const bool wasEmpty = pair.isEmpty;
     pair.versionA = poseA.version, pair.versionB = poseB.version;
     pair.isEmpty = patch.count == 0;
@@ -272,9 +273,8 @@ ContactPatch PileContacts::patchOfAnyShapes(const NearPair& pair, const VectorX&
   appendContacts(geometry_, pair.pair, state, reach, scratch);
   ContactPatch patch;
   if (scratch.empty()) return patch;
-  const auto deepest = std::min_element(scratch.begin(), scratch.end(), [](const Contact& a, const Contact& b) {
-    return a.separation < b.separation;
-  });
+  const auto deepest = std::min_element(scratch.begin(), scratch.end(),
+                                        [](const Contact& a, const Contact& b) { return a.separation < b.separation; });
   patch.normal = deepest->normal;
   constexpr std::size_t kMostCandidates = 16;
   ContactPatch::Point points[kMostCandidates];

@@ -12,10 +12,10 @@ namespace {
 
 using Kind = ContactChange::Kind;
 
-constexpr int kSamples = 4;                 // of a step
-constexpr double kMarginRounding = 1e-12;   // of the force, or m/s
-constexpr double kStillPart = 1e-7;         // of the accelerations: what forces leave of less holds
-constexpr double kLocated = 1e-11;          // of a step, on the interpolant
+constexpr int kSamples = 4;                // of a step
+constexpr double kMarginRounding = 1e-12;  // of the force, or m/s
+constexpr double kStillPart = 1e-7;        // of the accelerations: what forces leave of less holds
+constexpr double kLocated = 1e-11;         // of a step, on the interpolant
 constexpr int kMostCuts = 60;
 
 constexpr std::array<Kind, 3> kKinds = {Kind::release, Kind::slip, Kind::stick};
@@ -39,10 +39,8 @@ void LastingContacts::findMargins(const VectorX& state, std::vector<std::array<d
     const ContactMotion motion = mechanism().contacts[i].motion;
     const double limit = entries_[i].pair.law.staticFriction * forces[i].normal;
     margins[i] = {forces[i].normal / entries_[i].force, INFINITY, INFINITY};
-    if (motion == ContactMotion::sticking)
-      margins[i][1] = (limit - forces[i].tangential.norm()) / entries_[i].force;
-    if (motion == ContactMotion::sliding)
-      margins[i][2] = forces[i].tangentialVelocity.dot(givenDirection(i, state));
+    if (motion == ContactMotion::sticking) margins[i][1] = (limit - forces[i].tangential.norm()) / entries_[i].force;
+    if (motion == ContactMotion::sliding) margins[i][2] = forces[i].tangentialVelocity.dot(givenDirection(i, state));
   }
 }
 

@@ -23,8 +23,8 @@ bool canLast(const Contact& contact) {
 }
 
 ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames) {
-  SurfaceContact surfaces{contact.bodyA, contact.bodyB, contact.point, contact.normal, contact.separation,
-                          contact.radiusA, contact.radiusB};
+  SurfaceContact surfaces{contact.bodyA,      contact.bodyB,   contact.point,  contact.normal,
+                          contact.separation, contact.radiusA, contact.radiusB};
   if (!canLast(contact)) surfaces.radiusA = 0, surfaces.radiusB = INFINITY;
   ContactRows result;
   result.constraint = constraintOf(surfaces, state);

@@ -226,7 +226,9 @@ Islands EventContacts::findRestGroups() const {
 void EventContacts::settle() {
   const std::size_t bodies = island_.assembly.mechanism.bodies.size();
   const Islands groups = findRestGroups();
-  const auto groupOf = [&](std::size_t body) { return static_cast<std::size_t>(groups.islandOf(static_cast<int>(body))); };
+  const auto groupOf = [&](std::size_t body) {
+    return static_cast<std::size_t>(groups.islandOf(static_cast<int>(body)));
+  };
   std::vector<char> isStill(bodies, 1), isAwake(bodies, 0);
   for (std::size_t body = 0; body < bodies; ++body) {
     if (!isSlow(body)) isStill[groupOf(body)] = 0;

@@ -20,7 +20,8 @@ void endStepAtEvent(MovingIsland& island, Integrator integrate, double guess, do
     integrate(island.rightHandSide, island.state, island.time, part, step);
     return margin(step.state);
   };
-  double early = 0, earlyMargin = std::max(margin(island.state), tolerance);  // a rope that rebounds starts at its length
+  double early = 0,
+         earlyMargin = std::max(margin(island.state), tolerance);  // a rope that rebounds starts at its length
   double late = guess, lateMargin = marginAfter(late);
   while (lateMargin > 0 && late < whole) {  // the method is later than its interpolant
     early = late, earlyMargin = lateMargin;

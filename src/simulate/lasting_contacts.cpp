@@ -15,14 +15,14 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kSlowSliding = 1e-6;      // m/s: slower has no direction
-constexpr double kUnloadedPart = 1e-9;     // of the accelerations: a contact that takes less carries nothing
-constexpr double kReleasedPart = 1e-6;     // the same when another lets go: what is symmetric lets go together
-constexpr double kStillPart = 1e-7;        // of the accelerations: less is held
-constexpr double kLastBouncePart = 1e-7;   // of sqrt(g x size): what leaves so slowly is held by what presses
-constexpr double kSamePoint = 1e-4;        // of a size
-constexpr double kSameDirection = 0.999;   // cosine
-constexpr double kRollingSpin = 1e-9;      // rad/s
+constexpr double kSlowSliding = 1e-6;     // m/s: slower has no direction
+constexpr double kUnloadedPart = 1e-9;    // of the accelerations: a contact that takes less carries nothing
+constexpr double kReleasedPart = 1e-6;    // the same when another lets go: what is symmetric lets go together
+constexpr double kStillPart = 1e-7;       // of the accelerations: less is held
+constexpr double kLastBouncePart = 1e-7;  // of sqrt(g x size): what leaves so slowly is held by what presses
+constexpr double kSamePoint = 1e-4;       // of a size
+constexpr double kSameDirection = 0.999;  // cosine
+constexpr double kRollingSpin = 1e-9;     // rad/s
 constexpr int kMostFrictionRounds = 200;
 constexpr double kFrictionConverged = 1e-10;
 constexpr int kMostRedundant = 12;
@@ -58,7 +58,15 @@ void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSol
   for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
   for (const Entry& entry : entries)
     if (entry.isLoaded) add(entry);
-  if(getenv("DBG")) { fprintf(stderr,"decide t %.15g touching %zu entries %zu loaded %zu\n",island_.time,touching.size(),entries.size(),entries_.size()); for(auto& e:entries) fprintf(stderr,"   v_n %.3g slides %d loaded %d sticks %d red %d p %.12f %.12f %.12f sep %.3g former %d\n",openingSpeed(e.contact,island_.state),e.slides,e.isLoaded,e.sticks,e.isRedundant,e.contact.point.x(),e.contact.point.y(),e.contact.point.z(),e.contact.separation,formerOf(e)!=nullptr);}
+  if (getenv("DBG")) {
+    fprintf(stderr, "decide t %.15g touching %zu entries %zu loaded %zu\n", island_.time, touching.size(),
+            entries.size(), entries_.size());
+    for (auto& e : entries)
+      fprintf(stderr, "   v_n %.3g slides %d loaded %d sticks %d red %d p %.12f %.12f %.12f sep %.3g former %d\n",
+              openingSpeed(e.contact, island_.state), e.slides, e.isLoaded, e.sticks, e.isRedundant,
+              e.contact.point.x(), e.contact.point.y(), e.contact.point.z(), e.contact.separation,
+              formerOf(e) != nullptr);
+  }
   recordChanges();
 }
 

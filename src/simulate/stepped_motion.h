@@ -39,9 +39,9 @@ class SteppedMotion {
   ContactStage contacts_;
   EnergyGuard guard_;
   ConstraintSolver solver_;
-  double start_ = 0;        // s: where the steps begin to be counted
-  long stepNumber_ = 0;     // the step under way covers start + [stepNumber_, stepNumber_ + 1] x timeStep
-  bool keepsTies_ = true;   // no rope went taut or slack at the last step's end
+  double start_ = 0;       // s: where the steps begin to be counted
+  long stepNumber_ = 0;    // the step under way covers start + [stepNumber_, stepNumber_ + 1] x timeStep
+  bool keepsTies_ = true;  // no rope went taut or slack at the last step's end
   int eventsInWindow_ = 0;
   double windowStart_ = 0;  // s
   VectorX before_;

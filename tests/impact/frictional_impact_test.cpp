@@ -142,8 +142,7 @@ TEST(FrictionalImpact, KeepsMirrorSymmetry) {
   row.impacts.clear();
   for (const int side : {-1, 1}) {
     const Vec3 normal = Vec3(4, 3 * side, 0) / 5;
-    row.impacts.push_back(
-        {{0, 0, side < 0 ? 1 : 2, Vec3(0.1 * normal), normal, 0}, {0.6, 0.4, 0.4}, 0, Vec3::Zero()});
+    row.impacts.push_back({{0, 0, side < 0 ? 1 : 2, Vec3(0.1 * normal), normal, 0}, {0.6, 0.4, 0.4}, 0, Vec3::Zero()});
     centerOfMass(row.state, side < 0 ? 1 : 2) = 0.2 * normal;
   }
   linearVelocity(row.state, 0).x() = 3;

@@ -49,8 +49,8 @@ auto difference(int bodyA, int bodyB) {
   };
 }
 
-/// Bound on the slope of the interpolant of a part of the state over the unit interval. That of the cubic is h (r f0 + s
-/// f1) + 6 s r (y1 - y0 - h (f0 + f1) / 2), with 6 s r <= 3/2; the curve of degree 7 adds its corrections.
+/// Bound on the slope of the interpolant of a part of the state over the unit interval. That of the cubic is h (r f0 +
+/// s f1) + 6 s r (y1 - y0 - h (f0 + f1) / 2), with 6 s r <= 3/2; the curve of degree 7 adds its corrections.
 template <class Part>
 double slopeBound(const Step& step, const Part& part) {
   const auto start = (step.timeStep * part(step.startRate)).eval(), end = (step.timeStep * part(step.endRate)).eval();
@@ -96,7 +96,8 @@ double motionBound(const Step& step, int body, double reach) {
   return motionBounds(step, body, reach).speed;
 }
 
-// With p = q' / q and its rate q'' / q - p^2, a body turns at w = 2 Im p: |w| <= 2 |q'| / |q|, and |w'| <= 2 (|q''| / |q|
+// With p = q' / q and its rate q'' / q - p^2, a body turns at w = 2 Im p: |w| <= 2 |q'| / |q|, and |w'| <= 2 (|q''| /
+// |q|
 // + |q'|^2 / |q|^2). A point at r moves at w x r and accelerates by w' x r + w x (w x r).
 MotionBounds turnBounds(const Step& step, int body) {
   if (body == kFixed) return {};
