@@ -93,6 +93,7 @@ void BroadPhase::sort(const ContactGeometry& geometry) {
   spread.maxCoeff(&along);
   spread[along] = -1;
   spread.maxCoeff(&across);
+  const Eigen::Index third = 3 - along - across;
   double width = 0;
   for (std::size_t i = 0; i < boxes_.size(); ++i)
     if (geometry.colliders[i].body != kFixed) width += kStripWidth * boxes_[i].sizes()[across];
@@ -105,7 +106,8 @@ void BroadPhase::sort(const ContactGeometry& geometry) {
       wide_.push_back(i);
       continue;
     }
-    intervals_.push_back({std::floor((least[across] - mean[across]) / width), least[along], most[along], i});
+    intervals_.push_back({std::floor((least[across] - mean[across]) / width), least[along], most[along], least[across],
+                          most[across], least[third], most[third], i});
     longest_ = std::max(longest_, most[along] - least[along]);
   }
   std::sort(intervals_.begin(), intervals_.end(), [](const Interval& a, const Interval& b) {
@@ -129,18 +131,22 @@ void BroadPhase::sweep(ContactGeometry& geometry) {
     if (geometry.colliders[a].body == kFixed && geometry.colliders[b].body == kFixed) return;
     if (geometry.excluded.empty() || !isExcluded(geometry, a, b)) found_.emplace_back(a, b);
   };
+  const auto meetAcross = [](const Interval& a, const Interval& b) {
+    return a.thirdFrom <= b.thirdTo && b.thirdFrom <= a.thirdTo && a.acrossFrom <= b.acrossTo &&
+           b.acrossFrom <= a.acrossTo;
+  };
   const std::size_t count = intervals_.size();
   std::size_t next = 0;  // the first interval that may begin beside this one in the next strip
   for (std::size_t i = 0; i < count; ++i) {
     const Interval& here = intervals_[i];
     for (std::size_t j = i + 1; j < count && intervals_[j].strip == here.strip && intervals_[j].from <= here.to; ++j)
-      compare(here.collider, intervals_[j].collider);
+      if (meetAcross(here, intervals_[j])) compare(here.collider, intervals_[j].collider);
     const auto isBefore = [&](const Interval& other) {
       return other.strip <= here.strip || (other.strip == here.strip + 1 && other.from < here.from - longest_);
     };
     while (next < count && isBefore(intervals_[next])) ++next;
     for (std::size_t j = next; j < count && intervals_[j].strip == here.strip + 1 && intervals_[j].from <= here.to; ++j)
-      compare(here.collider, intervals_[j].collider);
+      if (meetAcross(here, intervals_[j])) compare(here.collider, intervals_[j].collider);
   }
   for (std::size_t i = 0; i < wide_.size(); ++i) {
     for (const Interval& interval : intervals_) compare(wide_[i], interval.collider);

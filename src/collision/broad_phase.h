@@ -19,8 +19,9 @@ class BroadPhase {
 
  private:
   struct Interval {
-    double strip;     // whole number
-    double from, to;  // m, along the axis of the sweep
+    double strip;                                     // whole number
+    double from, to;                                  // m, along the axis of the sweep
+    double acrossFrom, acrossTo, thirdFrom, thirdTo;  // m, along the others
     std::size_t collider;
   };
 

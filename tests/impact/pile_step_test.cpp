@@ -92,8 +92,8 @@ TEST(PileAtRest, IsLookedAtNoMoreUntilSomethingHitsIt) {
   DroppedBodies bodies;
   bodies.addTray(2);
   for (int i = 0; i < 4; ++i) bodies.addBall(Vec3(0.1, 0.1 + 0.2 * i, 0));  // one on the other: they do not fall aside
-  bodies.addBall(Vec3(-0.6, 12, 0));                                          // falls for 1.56 s, far from the others
-  bodies.addBall(Vec3(0.1, 25, 0), Vec3(0, -4, 0));                           // hits the uppermost after 1.83 s
+  bodies.addBall(Vec3(-0.6, 12, 0));                                        // falls for 1.56 s, far from the others
+  bodies.addBall(Vec3(0.1, 25, 0), Vec3(0, -4, 0));                         // hits the uppermost after 1.83 s
   bodies.begin(kLaw);
   bodies.advance(60);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(bodies.step().isAsleep(i)) << i;
