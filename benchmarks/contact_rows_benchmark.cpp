@@ -47,6 +47,19 @@ Mechanism box(int corners, ContactMotion motion) {
   return mechanism;
 }
 
+/// Boxes standing on each other, the lowest on the ground.
+Mechanism stack(int count, ContactMotion motion) {
+  Mechanism mechanism = bodies(static_cast<std::size_t>(count), Vec3(0.01, 0.02, 0.03));
+  for (int body = 0; body < count; ++body)
+    for (ContactConstraint contact : box(4, motion).contacts) {
+      contact.centerA.body = body;
+      contact.surfaceB.body = body - 1;
+      if (body > 0) contact.surfaceB.point.y() = 0.1;
+      mechanism.contacts.push_back(contact);
+    }
+  return mechanism;
+}
+
 void evaluate(benchmark::State& loop, Mechanism mechanism, bool hasContacts) {
   if (!hasContacts) mechanism.contacts.clear();
   const Eigen::Index count = static_cast<Eigen::Index>(mechanism.bodies.size());
@@ -76,6 +89,10 @@ BENCHMARK_CAPTURE(evaluate, box_frictionless, box(4, ContactMotion::frictionless
 BENCHMARK_CAPTURE(evaluate, box_sliding, box(4, ContactMotion::sliding), true);
 BENCHMARK_CAPTURE(evaluate, box_on_edge_sticking, box(2, ContactMotion::sticking), true);
 BENCHMARK_CAPTURE(evaluate, box_sticking, box(4, ContactMotion::sticking), true);
+BENCHMARK_CAPTURE(evaluate, stack2_sticking, stack(2, ContactMotion::sticking), true);
+BENCHMARK_CAPTURE(evaluate, stack5_sliding, stack(5, ContactMotion::sliding), true);
+BENCHMARK_CAPTURE(evaluate, stack5_sticking, stack(5, ContactMotion::sticking), true);
+BENCHMARK_CAPTURE(evaluate, stack10_sticking, stack(10, ContactMotion::sticking), true);
 
 }  // namespace
 }  // namespace cradle

@@ -17,9 +17,11 @@ constexpr double kRopeTolerance = 1e-13;     // of the length, or of the tension
 constexpr double kContactTolerance = 1e-12;  // of the force, or m/s
 constexpr double kTimeRounding = 1e-9;       // of a step: remainders below it are rounding
 constexpr double kImpactPart = 1e-3;  // of the margin of contacts: a gap left that the step has to be taken anew for
-constexpr double kShortCorrection = 1e-5;  // of the step: so far the state at an impact is corrected along its rate
+constexpr double kShortCorrection = 1e-3;  // of the step: so far the state at an impact is corrected along its rate
 constexpr double kSlopePart = 1e-6;        // of the step, to find the slope of a gap
 constexpr double kMostGrowth = 2;  // of the longest of the last steps: farther ahead no contact is looked for in vain
+
+constexpr double kLeastLookahead = 1.0 / 64;  // of the step that the accuracy allows
 
 constexpr double kManyTurns = 100;       // rad: beyond, orientations need a tighter tolerance
 constexpr double kTurningPart = 0.1;     // of the tolerance, for these
@@ -112,7 +114,8 @@ void EventMotion::takeStep(double stepEnd) {
 
 /// Where bodies meet often, no step goes far beyond the next meeting.
 double EventMotion::longestStep() const {
-  return kMostGrowth * *std::max_element(lengths_.begin(), lengths_.end());
+  return std::max(kMostGrowth * *std::max_element(lengths_.begin(), lengths_.end()),
+                  kLeastLookahead * stepSize_.timeStep);
 }
 
 EventMotion::Event EventMotion::findFirstEvent() {
@@ -164,10 +167,8 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
 
 /// Ends the step where a gap is closed. What the interpolant's error leaves of it is taken out along the rate there.
 void EventMotion::stopAtImpact(const ImpactTime& impact) {
-  const ContactGeometry& geometry = island_.assembly.geometry;
-  const auto gap = [&](const VectorX& state) {
-    return separation(geometry, geometry.pairs[impact.pair], impact.feature, state);
-  };
+  const TouchingFeatures touching = contacts_.touching();
+  const auto gap = [&](const VectorX& state) { return island_.search.margin(impact, touching, state); };
   Step& step = island_.step;
   const double length = impact.fraction * step.timeStep;
   keepStartRate(step);
@@ -176,9 +177,11 @@ void EventMotion::stopAtImpact(const ImpactTime& impact) {
   const double left = gap(step.state), before = kSlopePart * length;
   step.work = step.state - before * step.endRate;
   const double correction = left * before / (gap(step.work) - left);
-  if (!(std::abs(correction) <= kShortCorrection * length))
-    return endStepAtEvent(island_, method_.integrate, length, kImpactPart * contacts_.margin(), gap);
-  step.state += correction * step.endRate;
+  step.work = step.state + correction * step.endRate;
+  const double tolerance = kImpactPart * contacts_.margin();
+  if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))
+    return endStepAtEvent(island_, method_.integrate, length, tolerance, gap);
+  std::swap(step.state, step.work);
   step.timeStep += correction;
 }
 
@@ -214,7 +217,7 @@ void EventMotion::requireTiesKept() const {
 /// What acts from now on.
 void EventMotion::changeForces(const Event& event) {
   if (event.impact || event.contact)
-    contacts_.resolve(event.contact);
+    contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
   else
     contacts_.lasting().followSliding();
   const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
 #include <vector>
 
 #include "dynamics/equations_of_motion.h"
@@ -25,6 +28,19 @@ inline RigidBody lopsided(double mass, const Quat& bodyFromPrincipal = rotationA
   const Mat3 turn = bodyFromPrincipal.toRotationMatrix();
   const Mat3 tensor = mass * (turn * Vec3(0.02, 0.05, 0.06).asDiagonal() * turn.transpose());
   return bodyOf(mass, (tensor + tensor.transpose()) / 2);
+}
+
+inline Mechanism onEarth(std::vector<RigidBody> bodies) {
+  Mechanism mechanism;
+  mechanism.gravity = Vec3(0, -kGravity, 0);
+  mechanism.bodies = std::move(bodies);
+  return mechanism;
+}
+
+/// Gravity over a slope down along x, with y out of it.
+constexpr double kSlope = std::numbers::pi / 6;
+inline Vec3 tiltedGravity() {
+  return kGravity * Vec3(std::sin(kSlope), -std::cos(kSlope), 0);
 }
 
 /// All bodies at the origin, straight and still.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <random>
+#include <utility>
 
 #include "experiments/experiment.h"
 
@@ -234,6 +235,32 @@ double leastGapOf(const Frame& frame, const std::vector<Ball>& balls) {
   return least;
 }
 
+/// The balls again by the event log alone: parabolas from impulse to impulse. Expects what meets to touch there, and to
+/// get the impulse of a lossless impact; returns the balls at the end.
+std::vector<Ball> replay(const Trajectory& trajectory, std::vector<Ball> balls, const Vec3& gravity) {
+  std::vector<double> times(balls.size(), 0.0);
+  const auto moveTo = [&](std::size_t ball, double time) {
+    const double passed = time - std::exchange(times[ball], time);
+    balls[ball].position += passed * (balls[ball].velocity + passed / 2 * gravity);
+    balls[ball].velocity += passed * gravity;
+  };
+  for (const Event& event : trajectory.events) {
+    double closing = 0, inverseMass = 0;
+    for (const auto& [body, sign] : {std::pair(event.bodyA, 1.0), std::pair(event.bodyB, -1.0)}) {
+      if (body >= std::ssize(balls)) continue;
+      Ball& ball = balls[static_cast<std::size_t>(body)];
+      moveTo(static_cast<std::size_t>(body), event.time);
+      EXPECT_LT((ball.position + sign * ball.radius * event.normal - event.point).norm(), 1e-13);
+      closing += sign * event.normal.dot(ball.velocity);
+      inverseMass += 1 / ball.mass;
+      ball.velocity -= sign * event.impulse / ball.mass * event.normal;
+    }
+    EXPECT_NEAR(event.impulse, 2 * closing / inverseMass, 1e-12);
+  }
+  for (std::size_t ball = 0; ball < balls.size(); ++ball) moveTo(ball, trajectory.frames.back().time);
+  return balls;
+}
+
 // 64 balls of two sizes in a closed cube, under gravity. Had a collision been missed, balls would overlap.
 TEST(ElasticBalls, OfAGasKeepTheirEnergyAndApart) {
   std::vector<Ball> balls = gas(4, Vec3(-0.45, -0.45, -0.45));
@@ -246,6 +273,9 @@ TEST(ElasticBalls, OfAGasKeepTheirEnergyAndApart) {
     EXPECT_GT(leastGapOf(frame, balls), -1e-13);
     for (const BodyState& state : frame.states) EXPECT_LT(state.position.cwiseAbs().maxCoeff(), 0.55 + 1e-13);
   }
+  const std::vector<Ball> replayed = replay(trajectory, balls, kGravity);
+  for (std::size_t i = 0; i < balls.size(); ++i)
+    EXPECT_LT((replayed[i].position - trajectory.frames.back().states[i].position).norm(), 1e-12);
   EXPECT_TRUE(std::is_sorted(trajectory.events.begin(), trajectory.events.end(),
                              [](const Event& a, const Event& b) { return a.time < b.time; }));
 }
@@ -350,10 +380,10 @@ TEST(ElasticBalls, ThatLieOnEachOtherAreLeftToOtherMethods) {
   const Setting setting{0.05, kGravity, 60};
   const std::vector<Ball> alone = {{Vec3(0, 0.1, 0)}}, pair = {{Vec3(0, 0.1, 0)}, {Vec3(0, 0.3, 0)}};
   EXPECT_EQ(methodOf(alone, {kFloor}, setting), "closed");
-  EXPECT_EQ(methodOf(alone, {box}, setting), "RK4, s");
-  EXPECT_EQ(methodOf(pair, {kFloor}, setting), "RK4, s");
+  EXPECT_NE(methodOf(alone, {box}, setting), "closed");
+  EXPECT_NE(methodOf(pair, {kFloor}, setting), "closed");
   EXPECT_EQ(methodOf(pair, {kFloor}, {0.05, Vec3::Zero(), 60}), "closed");
-  EXPECT_EQ(methodOf(alone, {kFloor}, {0.05, kGravity, 60, 0.9}), "RK4, s");
+  EXPECT_NE(methodOf(alone, {kFloor}, {0.05, kGravity, 60, 0.9}), "closed");
 }
 
 // Down a slope of 30 degrees with g sin 30 = 4.905 m/s^2, on one plane; in a gutter of two, at rest across it.
