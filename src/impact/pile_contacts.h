@@ -32,7 +32,8 @@ class PileContacts {
   /// To be called when geometry.pairs is a new list: manifolds of pairs that stay are kept.
   void takePairs();
 
-  /// Bound on the speed (m/s) at which bodies approach each other that may touch within the time (s).
+  /// The speed (m/s) at which bodies approach each other that may touch within the time (s), for how often they must be
+  /// looked at: a part of it between balls.
   double fastestApproach(const std::vector<MovingPose>& poses, double time, WorkerThreads& threads) const;
 
   /// Contacts of now, and those that come about within the step. Pairs of bodies asleep stay as they are. `state` holds
@@ -80,7 +81,6 @@ class PileContacts {
   };
 
   static std::optional<BoxShape> boxOf(const Collider& collider);
-  static const MovingPose& poseOf(const std::vector<MovingPose>& poses, int body);
   NearPair nearPairOf(std::size_t pair) const;
   void giveManifolds();
   bool mayTouch(const NearPair& pair, const std::vector<MovingPose>& poses, double time) const;
