@@ -47,9 +47,7 @@ struct Features {
 void addCylinder(const Core& core, const Vec3& outward, Features& features) {
   const double cosine = core.axis().dot(outward);
   features.lines.push_back({core.center(), core.axis()});
-  Vec3 radial = outward - cosine * core.axis();
-  const double sine = radial.norm();
-  radial = sine > kParallelSine ? Vec3(radial / sine) : core.axis().unitOrthogonal();
+  const Vec3 radial = unitAcross(core.axis(), outward);
   for (const double side : {1.0, -1.0}) {
     if (side * cosine < -kAmbiguousCosine) continue;
     features.flats.push_back(side * core.axis());
@@ -89,6 +87,7 @@ Features featuresOf(const Core& core, const Vec3& outward, Memory* memory) {
       addCylinder(core, outward, features);
       break;
     case ColliderKind::polytope:
+    case ColliderKind::mesh:
       addPolytope(core, outward, features);
       break;
   }
@@ -167,6 +166,8 @@ class Ascent {
       for (const Line& lineB : ofB.lines) lookAcross(lineA, lineB);
     lookFromLinesToCorners(ofA, ofB, 1);
     lookFromLinesToCorners(ofB, ofA, -1);
+    for (const Vec3& cornerA : ofA.corners)
+      for (const Vec3& cornerB : ofB.corners) look(cornerB - cornerA);
     lookFromRims(ofA, ofB, 1);
     lookFromRims(ofB, ofA, -1);
     for (const Rim& rimA : ofA.rims)
@@ -199,8 +200,7 @@ class Ascent {
       }
       for (const Vec3& corner : others.corners) {
         Rim rim = start;
-        const Vec3 towards = without(rim.axis, corner - rim.center);
-        if (towards.norm() > 0) rim.radial = towards.normalized();
+        rim.radial = unitAcross(rim.axis, corner - rim.center);
         look(sign * (corner - pointOf(rim)));
       }
     }
@@ -228,7 +228,7 @@ Vec3 across(const Vec3& directionA, const Vec3& directionB) {
   const Vec3 aside = without(directionA, directionB);
   const double sine = aside.norm();
   if (sine <= kParallelSine) return Vec3::Zero();
-  return directionA.cross(aside / sine).normalized();
+  return directionA.cross(unitAcross(directionA, directionB));
 }
 
 SeparatingAxis improved(SeparatingAxis axis, const Core& a, const Core& b) {

@@ -4,9 +4,9 @@
 
 namespace cradle {
 
-/// The direction near a given one that sees the largest gap between two cores of which one is a cylinder. Exact: from a
-/// direction on the way to the nearest points, the distance of cores that are apart; else a local maximum. The
-/// separation of `axis` need not be set.
+/// The direction near a given one that sees the largest gap between two cores. Exact: of cores that are apart, their
+/// distance, if the given one is about that of the nearest points; else a local maximum. The separation of `axis` need
+/// not be set.
 SeparatingAxis improved(SeparatingAxis axis, const Core& a, const Core& b);
 
 /// A unit vector across two directions that may be nearly parallel; zero if they are to rounding.

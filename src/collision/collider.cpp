@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/contact_point.h"
+#include "collision/core.h"
 
 namespace cradle {
 namespace {
@@ -61,7 +62,7 @@ SurfacePoint nearestOnCylinder(const Collider& cylinder, const Vec3& point) {
   const Vec3 away = point - center - height * axis;
   const double fromAxis = away.norm();
   const Vec3 end = height < 0 ? Vec3(-axis) : axis;
-  const Vec3 radial = fromAxis > 0 ? Vec3(away / fromAxis) : axis.unitOrthogonal();
+  const Vec3 radial = unitAcross(axis, away);
   const double overEnd = std::abs(height) - length / 2, overSide = fromAxis - cylinder.rimRadius;
   if (overEnd > 0 && overSide > 0) {
     const double distance = std::sqrt(overEnd * overEnd + overSide * overSide);
@@ -87,6 +88,7 @@ SurfacePoint nearestSurfacePoint(const Collider& collider, const Vec3& point) {
     case ColliderKind::cylinder:
       return nearestOnCylinder(collider, point);
     case ColliderKind::polytope:
+    case ColliderKind::mesh:
       break;
   }
   return nearestSurfacePoint(*collider.polytope, point);

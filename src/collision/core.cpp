@@ -1,6 +1,13 @@
 #include "collision/core.h"
 
+#include <cmath>
+
 namespace cradle {
+namespace {
+
+constexpr double kAcross = 1e-15;  // cosine: rounding
+
+}  // namespace
 
 Core::Core(const Collider& collider, const RigidTransform& frameFromCollider)
     : collider_(collider), turn_(frameFromCollider.rotation.toRotationMatrix()), shift_(frameFromCollider.translation) {
@@ -20,6 +27,7 @@ Vec3 Core::farthest(const Vec3& direction) const {
     case ColliderKind::cylinder:
       return rimPoint(axis_.dot(direction) < 0 ? -1 : 1, direction);
     case ColliderKind::polytope:
+    case ColliderKind::mesh:
       break;
   }
   const Polytope& polytope = *collider_.polytope;
@@ -27,10 +35,19 @@ Vec3 Core::farthest(const Vec3& direction) const {
 }
 
 Vec3 Core::rimPoint(double side, const Vec3& direction) const {
-  const Vec3 across = direction - axis_.dot(direction) * axis_;
-  const double length = across.norm();
-  const Vec3 radial = length > 0 ? Vec3(across / length) : axis_.unitOrthogonal();
-  return end(side) + rimRadius() * radial;
+  return end(side) + rimRadius() * unitAcross(axis_, direction);
+}
+
+Vec3 unitAcross(const Vec3& axis, const Vec3& direction) {
+  // Twice: what is left of a direction along the axis is rounding, and that need not be across it.
+  Vec3 aside = direction - axis.dot(direction) * axis;
+  const double length = aside.norm();
+  if (!(length > 0)) return axis.unitOrthogonal();
+  aside /= length;
+  const double along = axis.dot(aside);
+  if (std::abs(along) < kAcross) return aside;
+  if (std::abs(along) > 0.5) return axis.unitOrthogonal();
+  return (aside - along * axis).normalized();
 }
 
 }  // namespace cradle

@@ -35,4 +35,7 @@ class Core {
   double halfLength_ = 0;
 };
 
+/// The unit vector across a unit axis nearest to `direction`; any across it if that is along the axis.
+Vec3 unitAcross(const Vec3& axis, const Vec3& direction);
+
 }  // namespace cradle

@@ -8,8 +8,8 @@ namespace cradle {
 struct CoreDistance {
   double distance = 0;         // m; 0: they overlap, or nearly
   Vec3 normal = Vec3::Zero();  // unit, from A to B; zero if they overlap
-  double seen = 0;             // m: gap that `normal` sees, at most the distance: equal to it but for rounding if both
-                               // cores have corners, and for about 1e-6 of it if one is round
+  double seen = 0;             // m: gap that `normal` sees, at most the distance. Less than it if a core is round, by
+                               // about 1e-6 of it, and where faces are nearly parallel
   Vec3 onA = Vec3::Zero(), onB = Vec3::Zero();  // m: nearest points
 };
 

@@ -10,6 +10,7 @@ namespace cradle {
 namespace {
 
 constexpr double kTouching = 1e-12;       // of the size: nearer, the direction to the nearest point is rounding
+constexpr double kSeen = 1e-14;           // of the size: rounding of a gap
 constexpr double kNear = 0.01;            // of the size: nearer, the normals of features are better than that direction
 constexpr double kFacePreference = 1e-7;  // of the size
 
@@ -34,6 +35,13 @@ SeparatingAxis ofCrossingSegments(const Core& a, const Core& b) {
   const Vec3 normal = across(a.axis(), b.axis());
   if (normal.norm() > 0) return {0, normal};
   return {0, a.axis().unitOrthogonal()};
+}
+
+/// Of cores without rims that are apart. Where faces are nearly parallel the distance of their simplices stands still
+/// before its direction is right, but that direction leads to the right one.
+SeparatingAxis ofNearest(const CoreDistance& apart, const Core& a, const Core& b) {
+  if (apart.distance - apart.seen <= kSeen * sizeOf(a, b)) return {apart.distance, apart.normal};
+  return improved({0, apart.normal}, a, b);
 }
 
 /// The best of what the axes of the polytopes lead to.
@@ -70,7 +78,7 @@ SeparatingAxis bestFlat(const Core& a, const Core& b, const Vec3& near) {
 SeparatingAxis separationOf(const Core& a, const Core& b) {
   const CoreDistance apart = distanceOf(a, b);
   if (isRound(a) || isRound(b)) return ofRoundCores(apart, a, b);
-  if (apart.distance > kTouching * sizeOf(a, b)) return {apart.distance, apart.normal};
+  if (apart.distance > kTouching * sizeOf(a, b)) return ofNearest(apart, a, b);
   if (isSegment(a) && isSegment(b)) return ofCrossingSegments(a, b);
   const SeparatingAxes axes = separatingAxes(a, b);
   return better(better(axes.faceOfA, axes.faceOfB), axes.edges);
@@ -83,8 +91,8 @@ SeparatingAxis contactAxis(const Core& a, const Core& b) {
     const SeparatingAxis best = ofRoundCores(apart, a, b), flat = bestFlat(a, b, best.normal);
     return flat.separation >= best.separation - preference ? flat : best;
   }
-  const SeparatingAxis nearest{apart.distance, apart.normal};
   const bool isApart = apart.distance > kTouching * sizeOf(a, b);
+  const SeparatingAxis nearest = isApart ? ofNearest(apart, a, b) : SeparatingAxis();
   if (apart.distance > kNear * sizeOf(a, b)) return nearest;
   if (isSegment(a) && isSegment(b)) return isApart ? nearest : ofCrossingSegments(a, b);
   const SeparatingAxes axes = separatingAxes(a, b);

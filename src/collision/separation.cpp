@@ -2,8 +2,10 @@
 
 #include <limits>
 
+#include "collision/contact_reduction.h"
 #include "collision/core_separation.h"
 #include "collision/manifold.h"
+#include "collision/mesh_collider.h"
 
 namespace cradle {
 namespace {
@@ -66,14 +68,22 @@ double coreSeparation(const PosedPair& pair) {
   return separationOf(cores.a, cores.b).separation - pair.a.radius - pair.b.radius;
 }
 
+void placeInWorld(const PosedPair& pair, std::vector<ContactPoint>& points) {
+  for (ContactPoint& contact : points) {
+    contact.point = pair.worldFromA * contact.point;
+    contact.normal = pair.worldFromA.rotation * contact.normal;
+  }
+}
+
 void appendOfCores(const PosedPair& pair, double margin, std::vector<ContactPoint>& points) {
   const PosedCores cores(pair);
-  const std::size_t first = points.size();
   appendManifold(cores.a, cores.b, contactAxis(cores.a, cores.b), margin, points);
-  for (std::size_t i = first; i < points.size(); ++i) {
-    points[i].point = pair.worldFromA * points[i].point;
-    points[i].normal = pair.worldFromA.rotation * points[i].normal;
-  }
+  placeInWorld(pair, points);
+}
+
+void appendOfMeshes(const PosedPair& pair, double margin, std::vector<ContactPoint>& points) {
+  points = meshContacts(pair.a, pair.b, pair.worldFromA.inverse() * pair.worldFromB, margin);
+  placeInWorld(pair, points);
 }
 
 /// Height (m) of a rim's lowest point over a plane.
@@ -89,6 +99,7 @@ void appendOnPlane(const Collider& a, const RigidTransform& worldFromA, const Pl
   if (a.kind() == ColliderKind::cylinder || hasManyCorners)
     return appendManifold(Core(a, worldFromA), plane.point, plane.normal, margin, points);
   for (const std::size_t point : near) points.push_back(ballOnPlane(worldFromA * a.points[point], a.radius, plane));
+  if (a.kind() == ColliderKind::mesh) reduceContacts(0, a.boundingRadius, points);
 }
 
 std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const ColliderPair& pair,
@@ -103,7 +114,9 @@ std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const C
     return points;
   }
   const PosedPair both{a, geometry.colliders[pair.b], worldFromA, worldFromB};
-  if (hasBall(both))
+  if (hasMesh(both.a, both.b))
+    appendOfMeshes(both, margin, points);
+  else if (hasBall(both))
     points.push_back(ballContact(both));
   else
     appendOfCores(both, margin, points);
@@ -141,7 +154,7 @@ void appendFeaturesWithin(const ContactGeometry& geometry, const ColliderPair& p
 }
 
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature,
-                  const RigidTransform& worldFromA, const RigidTransform& worldFromB) {
+                  const RigidTransform& worldFromA, const RigidTransform& worldFromB, double enough) {
   const Collider& a = geometry.colliders[pair.a];
   if (pair.againstPlane) {
     const PlaneCollider& plane = geometry.planes[pair.b];
@@ -149,6 +162,7 @@ double separation(const ContactGeometry& geometry, const ColliderPair& pair, std
     return ballOnPlane(worldFromA * a.points[feature], a.radius, plane).separation;
   }
   const PosedPair both{a, geometry.colliders[pair.b], worldFromA, worldFromB};
+  if (hasMesh(both.a, both.b)) return meshSeparation(both.a, both.b, worldFromA.inverse() * worldFromB, enough);
   return hasBall(both) ? ballContact(both).separation : coreSeparation(both);
 }
 

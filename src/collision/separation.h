@@ -29,9 +29,11 @@ int bodyBOf(const ContactGeometry& geometry, const ColliderPair& pair);
 void appendFeaturesWithin(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
                           double reach, std::vector<std::size_t>& features);
 
-/// Signed separation (m) of a feature, for given poses of the bodies. Zero where they touch, and continuous there.
+/// Signed separation (m) of a feature, for given poses of the bodies. Zero where they touch, and continuous there. What
+/// is farther than `enough` (m) may be infinite: that saves most of a search among triangles.
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature,
-                  const RigidTransform& worldFromA, const RigidTransform& worldFromB);
+                  const RigidTransform& worldFromA, const RigidTransform& worldFromB,
+                  double enough = std::numeric_limits<double>::infinity());
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature, const VectorX& state);
 
 /// Lower bound (m) of the separations of all features, from bounding spheres; -infinity for fixed bodies.

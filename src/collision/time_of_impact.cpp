@@ -8,6 +8,7 @@
 namespace cradle {
 namespace {
 
+constexpr double kSamePlace = 1e-3;        // of a size: contacts so near to each other are one
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
 Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
@@ -51,7 +52,7 @@ class PairSearch {
     for (const std::size_t feature : scratch_.features_) {
       feature_ = feature;
       if (isHeld(touching)) continue;
-      const double start = separation(geometry_, pair_, feature_, startA_, startB_);
+      const double start = separation(geometry_, pair_, feature_, startA_, startB_, reach);
       if (start > bounds_.speed) continue;
       if (start > touching.tolerance)
         searchFrom(0, start, 0, best);
@@ -86,6 +87,10 @@ class PairSearch {
            });
   }
 
+  bool hasOneContact() const {
+    return pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall();
+  }
+
   /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not has the
   /// dead band.
   void searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
@@ -107,7 +112,7 @@ class PairSearch {
     if (from >= end) return;
     const auto above = [&](double fraction) { return gap(fraction) - threshold; };
     if (const auto fraction = firstCrossing(above, bounds_, from, gapFrom - threshold, end, above(end)))
-      best = ImpactTime{*fraction, pairIndex_, feature_};
+      best = ImpactTime{*fraction, pairIndex_, feature_, threshold, held_ != nullptr};
   }
 
   /// m/s; of the point of the feature that leaves slowest.
@@ -116,8 +121,12 @@ class PairSearch {
       const Vec3& normal = geometry_.planes[pair_.b].normal;
       return normal.dot(pointVelocity(a_.body, startA_ * a_.points[feature_] - a_.radius * normal, step_.startState));
     }
-    scratch_.contacts_.clear();
-    appendContacts(geometry_, pairIndex_, step_.startState, tolerance, scratch_.contacts_);
+    if (held_) {
+      scratch_.findOthers(pairIndex_, *held_, step_.startState, tolerance);
+    } else {
+      scratch_.contacts_.clear();
+      appendContacts(geometry_, pairIndex_, step_.startState, tolerance, scratch_.contacts_);
+    }
     double least = 0;
     for (std::size_t i = 0; i < scratch_.contacts_.size(); ++i) {
       const double speed = openingSpeed(scratch_.contacts_[i], step_.startState);
@@ -127,7 +136,10 @@ class PairSearch {
   }
 
   double gap(double fraction) const {
-    return separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction), poseAt(step_, bodyB_, fraction));
+    // A gap of twice the way that can be gone in the step stays open, however large it is.
+    const double enough = 2 * bounds_.speed;
+    return std::min(2 * enough, separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction),
+                                           poseAt(step_, bodyB_, fraction), enough));
   }
 
   const ContactGeometry& geometry_;
@@ -139,6 +151,8 @@ class PairSearch {
   int bodyB_;
   RigidTransform startA_, startB_;
   GapBounds bounds_;
+  const std::vector<HeldFeature>* held_ = nullptr;  // something holds points of this feature
+  double reach_ = 0;                                // m: farther apart nothing is looked at
   double pull_ = 0;  // m: bound on the relative acceleration, with the step as the unit of time
 };
 
@@ -148,6 +162,38 @@ const MotionBounds& ImpactSearch::turnOf(const Step& step, int body) {
   Turn& turn = turns_[static_cast<std::size_t>(body)];
   if (!turn.isKnown) turn = {true, turnBounds(step, body)};
   return turn.bounds;
+}
+
+/// Contacts of a pair that are not held, to contacts_.
+void ImpactSearch::findOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state,
+                              double margin) {
+  contacts_.clear();
+  appendContacts(geometry_, pair, state, margin, contacts_);
+  const ColliderPair& colliders = geometry_.pairs[pair];
+  const double near = kSamePlace * std::min(geometry_.colliders[colliders.a].boundingRadius,
+                                            geometry_.colliders[colliders.b].boundingRadius);
+  std::erase_if(contacts_, [&](const Contact& contact) {
+    return std::any_of(held.begin(), held.end(), [&](const HeldFeature& feature) {
+      if (feature.pair != pair) return false;
+      return (poseOf(state, feature.point.body) * feature.point.point - contact.point).norm() < near;
+    });
+  });
+}
+
+/// The least separation of points that are not held, at most `margin`.
+double ImpactSearch::gapOfOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state,
+                                 double margin) {
+  findOthers(pair, held, state, margin);
+  double least = margin;
+  for (const Contact& contact : contacts_) least = std::min(least, contact.separation);
+  return least;
+}
+
+double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& touching, const VectorX& state) {
+  const ColliderPair& pair = geometry_.pairs[impact.pair];
+  if (!impact.isOfOthers) return separation(geometry_, pair, impact.feature, state) - impact.threshold;
+  const double farthest = geometry_.colliders[pair.a].boundingRadius;
+  return gapOfOthers(impact.pair, *touching.held, state, farthest) - impact.threshold;
 }
 
 std::optional<ImpactTime> ImpactSearch::first(const Step& step, const TouchingFeatures& touching) {

@@ -26,7 +26,7 @@ void ContactSolver::factorize(const VectorX& state, const std::vector<BodyFrame>
     couple(group);
     group.solver.factorize(group.rows, group.slides);
   }
-  if (ties_.hasConstraints()) ties_.factorize(state, frames);
+  if (hasFreeTies_) ties_.factorize(state, frames);
 }
 
 void ContactSolver::findTieRows(const VectorX& state, const std::vector<BodyFrame>& frames) {
@@ -176,7 +176,7 @@ void ContactSolver::constrainAccelerations(VectorX& rate) {
     addResponse(group, group.rows, coupled_, rate);
     takeForces(group, rate);
   }
-  if (!ties_.hasConstraints()) return;
+  if (!hasFreeTies_) return;
   const VectorX& multipliers = ties_.constrainAccelerations(rate);
   Eigen::Index next = 0;
   for (std::size_t tie = 0; tie < tieRows_.size(); ++tie)
@@ -205,7 +205,7 @@ void ContactSolver::constrainVelocities(VectorX& state) {
   for (Group& group : groups_)
     if (group.slides) group.solver.factorize(group.rows, false);
   constrainGroupVelocities(state);
-  if (ties_.hasConstraints()) ties_.constrainVelocities(state);
+  if (hasFreeTies_) ties_.constrainVelocities(state);
 }
 
 /// Needs the matrices factorised without friction.

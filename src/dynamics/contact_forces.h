@@ -106,6 +106,7 @@ class ContactSolver {
   const Constraints& constraints_;
   const std::vector<RigidBody>& bodies_;
   ConstraintSolver ties_;  // of bodies without a contact
+  bool hasFreeTies_ = false;
 
   std::vector<Joint> joints_;  // of contacts, then of rows of ties
   std::vector<char> resting_;

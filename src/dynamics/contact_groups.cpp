@@ -107,6 +107,8 @@ void ContactSolver::sizeRows() {
   std::vector<char> isGrouped(bodies_.size());
   for (std::size_t body = 0; body < bodies_.size(); ++body) isGrouped[body] = groupOfBody_[body] >= 0;
   ties_.leaveOut(isGrouped);
+  hasFreeTies_ =
+      std::any_of(tieRows_.begin(), tieRows_.end(), [this](const ConstraintRow& row) { return !ties_.isLeftOut(row); });
 }
 
 }  // namespace cradle

@@ -36,7 +36,7 @@ double ContactSolver::project(VectorX& state, const std::vector<char>& resting) 
     couple(group);
     group.solver.factorize(group.rows, false);
   }
-  if (ties_.hasConstraints()) found = std::max(found, ties_.project(state));
+  if (hasFreeTies_) found = std::max(found, ties_.project(state));
   constrainGroupVelocities(state);
   return found;
 }

@@ -45,7 +45,6 @@ void MinimumNormSolver::resize(int size) {
   for (std::vector<double>* vector : {&remaining_, &inverseDiagonal_, &inverseBegin_, &reduced_, &residual_})
     vector->assign(rows, 0);
   pivots_.assign(rows, 0);
-  isUsed_.assign(rows, 0);
 }
 
 void MinimumNormSolver::factorize(int size, bool isCoupled) {
@@ -63,7 +62,6 @@ void MinimumNormSolver::findLower() {
     const double diagonal = symmetric_[at(row, row)];
     remaining_[static_cast<std::size_t>(row)] = diagonal;
     inverseDiagonal_[static_cast<std::size_t>(row)] = diagonal > 0 ? 1 / diagonal : 0;
-    isUsed_[static_cast<std::size_t>(row)] = 0;
   }
   isWellConditioned_ = true;
   for (rank_ = 0; rank_ < size_; ++rank_) {
@@ -71,14 +69,14 @@ void MinimumNormSolver::findLower() {
     if (pivot < 0) return;
     const double left = remaining_[static_cast<std::size_t>(pivot)];
     if (left < kWellConditioned * symmetric_[at(pivot, pivot)]) isWellConditioned_ = false;
-    isUsed_[static_cast<std::size_t>(pivot)] = 1;
     pivots_[static_cast<std::size_t>(rank_)] = pivot;
     double* column = &lower_[at(0, rank_)];
     for (int row = 0; row < size_; ++row) column[row] = symmetric_[at(row, pivot)];
     for (int k = 0; k < rank_; ++k) subtract(lower_[at(pivot, k)], &lower_[at(0, k)], column, size_);
+    for (int k = 0; k < rank_; ++k) column[pivots_[static_cast<std::size_t>(k)]] = 0;
     const double scale = 1 / std::sqrt(left);
     for (int row = 0; row < size_; ++row) {
-      column[row] = isUsed_[static_cast<std::size_t>(row)] ? 0 : column[row] * scale;
+      column[row] *= scale;
       remaining_[static_cast<std::size_t>(row)] -= column[row] * column[row];
     }
     column[pivot] = left * scale;
@@ -120,14 +118,15 @@ void MinimumNormSolver::orthogonalize(const std::vector<double>& columns, Orthog
     double* column = &factor.q[at(0, k)];
     const double* source = &columns[at(0, k)];
     for (int i = 0; i < size_; ++i) column[i] = source[i];
-    const double whole = dot(column, column, size_);
+    double taken = 0;
     for (int j = 0; j < k; ++j) {
       const double part = dot(&factor.q[at(0, j)], column, size_);
       factor.r[at(j, k)] = part;
+      taken += part * part;
       subtract(part, &factor.q[at(0, j)], column, size_);
     }
     const double left = dot(column, column, size_);
-    const double inverse = left > kVanished * kVanished * whole ? 1 / std::sqrt(left) : 0;
+    const double inverse = left > kVanished * kVanished * taken ? 1 / std::sqrt(left) : 0;
     factor.r[at(k, k)] = inverse;
     for (int i = 0; i < size_; ++i) column[i] *= inverse;
   }

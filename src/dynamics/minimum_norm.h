@@ -54,7 +54,6 @@ class MinimumNormSolver {
   std::vector<double> inverseBegin_;  // 1 / its entry there
   std::vector<double> remaining_;     // of the diagonal of S
   std::vector<double> inverseDiagonal_;
-  std::vector<char> isUsed_;
   Orthogonal lowerFactor_, upperFactor_;
   std::vector<double> reduced_, residual_;
 };

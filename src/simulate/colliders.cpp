@@ -4,13 +4,22 @@
 
 #include <algorithm>
 
+#include "collision/mesh_collider.h"
+#include "collision/mesh_surface.h"
 #include "mesh/recognise_shape.h"
+#include "mesh/solid.h"
 
 namespace cradle {
 namespace {
 
 bool isPlane(const Body& body) {
   return std::holds_alternative<Plane>(body.shape);
+}
+
+/// The shape's frame in the collider's: that of the centre of mass of a body that moves, else the world.
+RigidTransform colliderFromShape(const Body& body, int movingBody) {
+  if (movingBody == kFixed) return body.worldFromBody;
+  return {Quat::Identity(), -body.massProperties.centerOfMass};
 }
 
 /// Fills a collider from shapes, each placed in the collider's frame.
@@ -56,9 +65,17 @@ void enclose(Collider& collider) {
   }
 }
 
-/// Only the surface of a ball or polytope is known, not that of mere points.
+/// That of a mesh that is no solid is not known.
 bool hasSurface(const Collider& collider) {
-  return collider.isBall() || collider.polytope;
+  return collider.kind() != ColliderKind::mesh || collider.mesh;
+}
+
+bool isFixedObstacle(const Body& body) {
+  return body.motion == Motion::fixed && body.collision != CollisionChoice::none && !isPlane(body);
+}
+
+bool isMesh(const Collider& collider) {
+  return collider.kind() == ColliderKind::mesh;
 }
 
 }  // namespace
@@ -67,8 +84,7 @@ std::optional<Collider> colliderOf(const Body& body, const Scene& scene, int mov
   if (body.collision == CollisionChoice::none || isPlane(body)) return std::nullopt;
   ColliderBuilder builder;
   builder.collider.body = movingBody;
-  builder.frame = body.worldFromBody;
-  if (movingBody != kFixed) builder.frame = {Quat::Identity(), -body.massProperties.centerOfMass};
+  builder.frame = colliderFromShape(body, movingBody);
   std::visit(
       [&](const auto& shape) {
         if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, ModelShape>)
@@ -82,6 +98,23 @@ std::optional<Collider> colliderOf(const Body& body, const Scene& scene, int mov
   return std::move(builder.collider);
 }
 
+void addSurfaces(const Scene& scene, const std::vector<int>& bodies, std::vector<Collider>& colliders) {
+  if (colliders.size() < 2 || std::none_of(colliders.begin(), colliders.end(), isMesh)) return;
+  std::vector<std::shared_ptr<const MeshSurface>> surfaces(scene.models.size());
+  for (std::size_t i = 0; i < colliders.size(); ++i) {
+    Collider& collider = colliders[i];
+    if (collider.kind() == ColliderKind::polytope) collider.mesh = surfaceOf(*collider.polytope);
+    if (!isMesh(collider)) continue;
+    const Body& body = scene.bodies[static_cast<std::size_t>(bodies[i])];
+    const auto model = static_cast<std::size_t>(std::get<ModelShape>(body.shape).model);
+    const TriangleMesh& mesh = scene.models[model].solid;
+    if (!surfaces[model] && checkSolid(mesh).isSolid)
+      surfaces[model] = std::make_shared<const MeshSurface>(surfaceOf(mesh));
+    collider.mesh = surfaces[model];
+    collider.bodyFromMesh = colliderFromShape(body, collider.body);
+  }
+}
+
 bool mayTouch(const Body& a, const Body& b) {
   return a.collision != CollisionChoice::none && b.collision != CollisionChoice::none &&
          (a.motion == Motion::dynamic || b.motion == Motion::dynamic);
@@ -89,13 +122,28 @@ bool mayTouch(const Body& a, const Body& b) {
 
 bool canSolveContact(const Collider& a, const Collider* b) {
   if (a.points.empty()) return false;
-  return !b || (!b->points.empty() && hasSurface(a) && hasSurface(*b));
+  if (!b) return true;
+  const bool hasCylinder = a.kind() == ColliderKind::cylinder || b->kind() == ColliderKind::cylinder;
+  return !b->points.empty() && hasSurface(a) && hasSurface(*b) && !(hasCylinder && hasMesh(a, *b));
+}
+
+/// Where something fixed may be touched, for canSolveContact.
+static void addSurfacesToFixed(const Scene& scene, std::vector<std::optional<Collider>>& colliders) {
+  if (std::none_of(scene.bodies.begin(), scene.bodies.end(), isFixedObstacle)) return;
+  std::vector<int> bodies;
+  std::vector<Collider> present;
+  for (std::size_t i = 0; i < colliders.size(); ++i)
+    if (colliders[i]) bodies.push_back(static_cast<int>(i)), present.push_back(*colliders[i]);
+  addSurfaces(scene, bodies, present);
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    colliders[static_cast<std::size_t>(bodies[i])] = std::move(present[i]);
 }
 
 std::vector<std::string> unsupportedContacts(const Scene& scene) {
   std::vector<std::string> faults;
   std::vector<std::optional<Collider>> colliders;
   for (const Body& body : scene.bodies) colliders.push_back(colliderOf(body, scene, kFixed));
+  addSurfacesToFixed(scene, colliders);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     for (std::size_t j = i + 1; j < scene.bodies.size(); ++j) {
       const Body &a = scene.bodies[i], &b = scene.bodies[j];
@@ -104,9 +152,8 @@ std::vector<std::string> unsupportedContacts(const Scene& scene) {
       const auto &first = isPlane(a) ? colliders[j] : colliders[i], &second = isPlane(a) ? colliders[i] : colliders[j];
       if (!canSolveContact(*first, second ? &*second : nullptr))
         faults.push_back(
-            fmt::format("{}: contact between \"{}\" and \"{}\" cannot be simulated yet; spheres and boxes among each "
-                        "other, and all "
-                        "shapes but cylinders on planes, can; give one of them \"collision\": \"none\"",
+            fmt::format("{}: contact between \"{}\" and \"{}\" cannot be simulated yet; all shapes but cylinders can, and "
+                        "meshes that are solids; give one of them \"collision\": \"none\"",
                         b.where, a.name, b.name));
     }
   return faults;

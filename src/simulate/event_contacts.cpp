@@ -6,6 +6,7 @@
 #include "dynamics/invariants.h"
 #include "impact/cone_problem.h"
 #include "impact/contact_impulse.h"
+#include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
 #include "simulate/contact_response.h"
 
@@ -15,6 +16,7 @@ namespace {
 constexpr double kTouchPart = 0.1;         // of the accuracy, in sizes of a body: nearer is touching ...
 constexpr double kLeastTouchPart = 1e-11;  // ... but not within rounding
 constexpr double kMostTouchPart = 1e-8;
+constexpr double kMostTouchError = 1e-6;   // of a size: so well two ways to find a gap agree
 constexpr double kDeadBandPart = 1e-12;    // of the smallest size
 constexpr double kStandstillPart = 1e-12;  // of the fastest speed at an impact: what is left is rounding
 constexpr double kLastBouncePart = 1e-7;   // of sqrt(acceleration x size): bounces lower than 5e-15 of the size
@@ -79,22 +81,22 @@ EventContacts::EventContacts(MovingIsland& island, double accuracy)
       lasting_(island),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       stillPart_(std::min(kMostStillPart, accuracy)) {
-  const double size = smallestSize(island.assembly.geometry);
-  touchTolerance_ = size * std::clamp(kTouchPart * accuracy, kLeastTouchPart, kMostTouchPart);
-  deadBand_ = kDeadBandPart * size;
+  size_ = smallestSize(island.assembly.geometry);
+  touchTolerance_ = size_ * std::clamp(kTouchPart * accuracy, kLeastTouchPart, kMostTouchPart);
+  deadBand_ = kDeadBandPart * size_;
 }
 
 TouchingFeatures EventContacts::touching() {
   return {touchTolerance_, deadBand_, &lasting_.held()};
 }
 
-void EventContacts::resolve(const std::optional<ContactChange>& change) {
+void EventContacts::resolve(const std::optional<ContactChange>& change, const std::optional<std::size_t>& meeting) {
   if (!island_.mayTouch()) return;
   std::vector<char> rested;
   for (std::size_t body = 0; body < island_.assembly.mechanism.bodies.size(); ++body)
     rested.push_back(island_.equations.isResting(body));
   restDelay_ = 0;
-  findTouching();
+  findTouching(meeting);
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
   collide();
   lasting_.letGo(change);
@@ -113,8 +115,22 @@ void EventContacts::keepTogether() {
   dissipatedEnergy(state) += before - kineticEnergy(island_.assembly.mechanism.bodies, state);
 }
 
-void EventContacts::findTouching() {
-  findContacts(island_.assembly.geometry, island_.state, touchTolerance_, touching_);
+/// What meets now touches, if its gap is known to that or not.
+void EventContacts::findTouching(const std::optional<std::size_t>& meeting) {
+  const ContactGeometry& geometry = island_.assembly.geometry;
+  findContacts(geometry, island_.state, touchTolerance_, touching_);
+  const auto isOfMeeting = [&](const Contact& contact) { return contact.pair == *meeting; };
+  if (!meeting || std::any_of(touching_.begin(), touching_.end(), isOfMeeting)) return findCorners();
+  std::vector<Contact> near;
+  appendContacts(geometry, *meeting, island_.state, kMostTouchError * size_, near);
+  const auto nearest = std::min_element(near.begin(), near.end(), [](const Contact& left, const Contact& right) {
+    return left.separation < right.separation;
+  });
+  if (nearest != near.end()) touching_.push_back(*nearest);
+  findCorners();
+}
+
+void EventContacts::findCorners() {
   for (Contact& contact : touching_) findCorner(island_.assembly.geometry, island_.state, contact);
 }
 
@@ -154,7 +170,7 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
     return impact.law.staticFriction > 0 || impact.law.dynamicFriction > 0;
   });
   const auto solve = [&] {
-    hasFriction ? resolvePairwise(impacts, response, state) : resolveReflections(impacts, response, state);
+    hasFriction ? resolveFrictionalImpact(impacts, response, state) : resolveReflections(impacts, response, state);
   };
   solve();
   if (endBounces(approach, impacts)) {

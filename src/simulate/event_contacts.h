@@ -25,11 +25,13 @@ class EventContacts {
   double margin() const { return touchTolerance_; }
 
   /// Contacts in the island's state now: changes its velocities. `change` is what happens to a lasting one, if
-  /// anything does.
-  void resolve(const std::optional<ContactChange>& change = std::nullopt);
+  /// anything does; `meeting` the pair that comes together.
+  void resolve(const std::optional<ContactChange>& change = std::nullopt,
+               const std::optional<std::size_t>& meeting = std::nullopt);
 
  private:
-  void findTouching();
+  void findTouching(const std::optional<std::size_t>& meeting);
+  void findCorners();
   void collide();
   Islands findStruckTogether() const;
   void resolveImpact(std::vector<ImpactContact>& impacts);
@@ -45,7 +47,8 @@ class EventContacts {
   MovingIsland& island_;
   LastingContacts lasting_;
   ConstraintSolver solver_;
-  double stillPart_;                  // of the speed that a body gains when it falls by its size: slower is still
+  double stillPart_;  // of the speed that a body gains when it falls by its size: slower is still
+  double size_;                       // m: of the smallest body
   double touchTolerance_, deadBand_;  // m
   double restDelay_ = 0;              // s: how long the bounces that are left out would take
   std::vector<Contact> touching_;

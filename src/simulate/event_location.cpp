@@ -8,6 +8,9 @@ namespace {
 
 constexpr int kMostCorrections = 60;  // steps tried to find an event; 3 are usual
 
+constexpr double kFirstReach = 1e-6;  // of the step: so far around the guess an event is looked for at first
+constexpr double kGrowingReach = 16;
+
 }  // namespace
 
 // The Illinois variant of regula falsi (M. Dowell, P. Jarratt, 1971).
@@ -20,12 +23,20 @@ void endStepAtEvent(MovingIsland& island, Integrator integrate, double guess, do
     integrate(island.rightHandSide, island.state, island.time, part, step);
     return margin(step.state);
   };
-  double early = 0,
-         earlyMargin = std::max(margin(island.state), tolerance);  // a rope that rebounds starts at its length
   double late = guess, lateMargin = marginAfter(late);
+  if (std::abs(lateMargin) <= tolerance) return;
+  double early = 0, earlyMargin = tolerance, reach = kFirstReach * whole;
   while (lateMargin > 0 && late < whole) {  // the method is later than its interpolant
     early = late, earlyMargin = lateMargin;
-    late = std::min(whole, 2 * late), lateMargin = marginAfter(late);
+    late = std::min(whole, late + reach), lateMargin = marginAfter(late), reach *= kGrowingReach;
+  }
+  // Near the guess: a contact, or a rope, that has just rebounded has no margin at the start either.
+  for (double part = guess - reach; early == 0 && part > 0; part -= reach, reach *= kGrowingReach) {
+    const double found = marginAfter(part);
+    if (found > 0)
+      early = part, earlyMargin = found;
+    else
+      late = part, lateMargin = found;
   }
   double earlyWeight = earlyMargin, lateWeight = lateMargin;
   for (int i = 0; i < kMostCorrections && lateMargin < -tolerance; ++i) {

@@ -13,13 +13,15 @@
 namespace cradle {
 namespace {
 
-constexpr double kRopeTolerance = 1e-13;     // of the length, or of the tension that is left
+constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension that is left
 constexpr double kContactTolerance = 1e-12;  // of the force, or m/s
-constexpr double kTimeRounding = 1e-9;       // of a step: remainders below it are rounding
-constexpr double kImpactPart = 1e-3;  // of the margin of contacts: a gap left that the step has to be taken anew for
-constexpr double kShortCorrection = 1e-5;  // of the step: so far the state at an impact is corrected along its rate
+constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
+constexpr double kImpactPart = 1e-3;      // of the margin of contacts: a gap left that the step has to be taken anew for
+constexpr double kShortCorrection = 1e-3;  // of the step: so far the state at an impact is corrected along its rate
 constexpr double kSlopePart = 1e-6;        // of the step, to find the slope of a gap
 constexpr double kMostGrowth = 2;  // of the longest of the last steps: farther ahead no contact is looked for in vain
+
+constexpr double kLeastLookahead = 1.0 / 64;  // of the step that the accuracy allows
 
 constexpr double kManyTurns = 100;       // rad: beyond, orientations need a tighter tolerance
 constexpr double kTurningPart = 0.1;     // of the tolerance, for these
@@ -103,16 +105,15 @@ void EventMotion::takeStep(double stepEnd) {
     if (stepSize_.timeStep < kShortestTimeStep * island_.scene.duration)
       guard_.failAtShortestStep(island_.state, island_.time);
   }
-  if (getenv("DBG"))
-    fprintf(stderr, "t %.12g h %.6g err %.3g next %.3g\n", island_.time, step.timeStep, errorNorm(step, tolerance_),
-            stepSize_.timeStep);
+  if(getenv("DBG")) fprintf(stderr,"t %.12g h %.6g err %.3g next %.3g\n",island_.time,step.timeStep,errorNorm(step,tolerance_),stepSize_.timeStep);
   shortSteps_ = stepSize_.timeStep < kShortTimeStep * island_.scene.duration ? shortSteps_ + 1 : 0;
   if (shortSteps_ > kMostShortSteps) guard_.failAtShortSteps(island_.state, island_.time, step.timeStep);
 }
 
 /// Where bodies meet often, no step goes far beyond the next meeting.
 double EventMotion::longestStep() const {
-  return kMostGrowth * *std::max_element(lengths_.begin(), lengths_.end());
+  return std::max(kMostGrowth * *std::max_element(lengths_.begin(), lengths_.end()),
+                  kLeastLookahead * stepSize_.timeStep);
 }
 
 EventMotion::Event EventMotion::findFirstEvent() {
@@ -140,12 +141,7 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   Step& step = island_.step;
   const Event event = findFirstEvent();
   const double whole = step.timeStep;
-  if (getenv("DBG"))
-    fprintf(stderr, "event impact %d rope %d contact %d kind %d at %.15g\n", event.impact.has_value(),
-            event.rope.has_value(), event.contact.has_value(), event.contact ? (int)event.contact->kind : -1,
-            island_.time + whole * (event.impact    ? event.impact->fraction
-                                    : event.contact ? event.contact->fraction
-                                                    : 1));
+  if(getenv("DBG")) fprintf(stderr,"event impact %d rope %d contact %d kind %d at %.15g\n",event.impact.has_value(),event.rope.has_value(),event.contact.has_value(),event.contact?(int)event.contact->kind:-1, island_.time+whole*(event.impact?event.impact->fraction:event.contact?event.contact->fraction:1));
   if (event.impact) {
     stopAtImpact(*event.impact);
   } else if (event.rope) {
@@ -164,10 +160,8 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
 
 /// Ends the step where a gap is closed. What the interpolant's error leaves of it is taken out along the rate there.
 void EventMotion::stopAtImpact(const ImpactTime& impact) {
-  const ContactGeometry& geometry = island_.assembly.geometry;
-  const auto gap = [&](const VectorX& state) {
-    return separation(geometry, geometry.pairs[impact.pair], impact.feature, state);
-  };
+  const TouchingFeatures touching = contacts_.touching();
+  const auto gap = [&](const VectorX& state) { return island_.search.margin(impact, touching, state); };
   Step& step = island_.step;
   const double length = impact.fraction * step.timeStep;
   keepStartRate(step);
@@ -176,9 +170,11 @@ void EventMotion::stopAtImpact(const ImpactTime& impact) {
   const double left = gap(step.state), before = kSlopePart * length;
   step.work = step.state - before * step.endRate;
   const double correction = left * before / (gap(step.work) - left);
-  if (!(std::abs(correction) <= kShortCorrection * length))
-    return endStepAtEvent(island_, method_.integrate, length, kImpactPart * contacts_.margin(), gap);
-  step.state += correction * step.endRate;
+  step.work = step.state + correction * step.endRate;
+  const double tolerance = kImpactPart * contacts_.margin();
+  if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))
+    return endStepAtEvent(island_, method_.integrate, length, tolerance, gap);
+  std::swap(step.state, step.work);
   step.timeStep += correction;
 }
 
@@ -214,7 +210,7 @@ void EventMotion::requireTiesKept() const {
 /// What acts from now on.
 void EventMotion::changeForces(const Event& event) {
   if (event.impact || event.contact)
-    contacts_.resolve(event.contact);
+    contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
   else
     contacts_.lasting().followSliding();
   const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();

@@ -1,10 +1,10 @@
 // Rules of the plan. The first that applies to an island is taken:
 //   1. the scene names a method: that one, for studies
 //   2. balls bounce without loss, and nothing acts but uniform gravity: closed form between collisions
-//   3. something may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved once a
-//   step
-//   4. nothing acts but uniform gravity: closed form
-//   5. else DOP853 with steps as long as the accuracy allows; contact changes at events
+//   3. many bodies may touch, only gravity acts, and the accuracy asked is coarse: the fast contact step
+//   4. something may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved once a step
+//   5. nothing acts but uniform gravity: closed form
+//   6. else DOP853 with steps as long as the accuracy allows; contact changes at events
 
 #include "simulate/plan.h"
 
@@ -31,6 +31,8 @@ namespace {
 
 constexpr double kContactTimeStep = 1.0 / 960;  // s: 16 steps a frame at 60 frames a second
 constexpr double kEventAccuracy = 1e-4;         // at coarser ones contact is resolved once a step
+constexpr double kPileTimeStep = 1.0 / 60;        // s, at most
+constexpr std::size_t kPileBodies = 50;          // with fewer, RK4 costs less than the pictures of its frames
 constexpr double kTolerancePart = 0.1;          // of the accuracy: the local errors of about ten steps add up to it
 
 /// What reaches of bodies are compared with: their size around the centre of mass.
@@ -236,6 +238,11 @@ void choose(const Scene& scene, IslandPlan& island) {
     island.method = {nullptr, "closed form between collisions", 0, 0, true};
     island.reason = "elastic balls in flight: parabolas, and collisions in the order of time";
     island.leftOut.push_back("no steps, no rotation: nothing turns balls that touch without friction");
+  } else if (mayTouchSomething && scene.accuracy > kEventAccuracy && island.bodies.size() >= kPileBodies &&
+             !isActedUpon(scene, island)) {
+    island.method = {nullptr, "fast contact step", kPileTimeStep, 0, false, true};
+    island.reason = "many bodies may touch: soft contacts, sub-stepped; the accuracy asked is not promised";
+    island.leftOut.push_back("no motion of bodies that lie still");
   } else if (mayTouchSomething && scene.accuracy > kEventAccuracy) {
     island.method = {rk4, "RK4", kContactTimeStep};
     island.reason = "something may touch: contact is resolved once a step, the accuracy asked is not promised";

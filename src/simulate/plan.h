@@ -16,8 +16,9 @@ struct ChosenMethod {
   double timeStep = 0;         // s, fixed; 0: chosen by the error
   double tolerance = 0;        // of the local error, scaled 1 + |x|, if the error chooses the step
   bool hasCollisions = false;  // closed form between collisions without loss
+  bool isPile = false;         // many bodies in contact: the fast step, as in impact/pile_step.h
 
-  bool isClosedForm() const { return !integrate; }
+  bool isClosedForm() const { return !integrate && !isPile; }
   bool isAdaptive() const { return integrate && timeStep == 0; }
 };
 

@@ -35,6 +35,8 @@ Run::Run(const Scene& scene) {
     if (method.hasCollisions)
       balls_.push_back(
           std::make_unique<FlyingBalls>(scene, std::move(assemblies[i]), *flyingBallsOf(scene, plan.islands[i])));
+    else if (method.isPile)
+      piles_.push_back(std::make_unique<Pile>(std::move(assemblies[i]), method.timeStep));
     else if (method.isClosedForm())
       addFlight(std::move(assemblies[i]));
     else
@@ -61,6 +63,7 @@ Frame Run::frameAt(long number, double time) {
   };
   for (const auto& simulation : simulations_) add(simulation);
   for (const auto& balls : balls_) add(balls);
+  for (const auto& pile : piles_) add(pile);
   for (FlyingIsland& island : flying_) {
     for (const FreeFlight& flight : island.flights) flight.moveTo(time, island.assembly.state);
     island.evaluations += std::ssize(island.flights);
@@ -100,6 +103,7 @@ long Run::evaluations() const {
   long sum = 0;
   for (const auto& simulation : simulations_) sum += simulation->evaluations();
   for (const auto& balls : balls_) sum += balls->evaluations();
+  for (const auto& pile : piles_) sum += pile->evaluations();
   for (const FlyingIsland& island : flying_) sum += island.evaluations;
   return sum;
 }

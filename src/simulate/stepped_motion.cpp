@@ -84,11 +84,8 @@ bool SteppedMotion::stopAtFirstEvent() {
   const auto change = ropes_.firstChange(step);
   const double whole = step.timeStep;
   if (impact && !(change && change->fraction < impact->fraction)) {
-    const ContactGeometry& geometry = island_.assembly.geometry;
     endStepAtEvent(island_, method_.integrate, impact->fraction * whole, kImpactPart * contacts_.touchTolerance(),
-                   [&](const VectorX& state) {
-                     return separation(geometry, geometry.pairs[impact->pair], impact->feature, state);
-                   });
+                   [&](const VectorX& state) { return island_.search.margin(*impact, {}, state); });
   } else if (change) {
     endStepAtEvent(island_, method_.integrate, change->fraction * whole, kRopeTolerance,
                    [&](const VectorX& state) { return ropes_.margin(*change, state); });

@@ -165,6 +165,31 @@ TEST(RedundantContacts, ShareTheWeightEqually) {
   }
 }
 
+// Three boxes of 1 kg under one of 1000: the light ones are in balance between 1e4 N above and below, rounded by 1e-12
+// N; what decides about these forces is a thousandth of the matrix.
+TEST(RedundantContacts, CarryAHeavyBodyOnLightOnes) {
+  Mechanism mechanism = onEarth(4);
+  mechanism.gravity = Vec3(0, -kGravity, 0);
+  VectorX state = restingState(4), rate;
+  for (int body = 0; body < 4; ++body) {
+    mechanism.bodies[static_cast<std::size_t>(body)] = lopsided(body < 3 ? 1 : 1000);
+    centerOfMass(state, body) = Vec3(0.01 * body, 0.2 + 0.4 * body, 0);
+    for (const double x : {-0.3, 0.3})
+      for (const double z : {-0.2, 0.2})
+        mechanism.contacts.push_back(ballOnFace({body, Vec3(x, -0.2, z)}, 0, {body - 1, Vec3(0, body > 0 ? 0.2 : 0, 0)},
+                                                Vec3::UnitY(), kSticking));
+  }
+  EquationsOfMotion equations(mechanism);
+  equations.evaluate(state, rate);
+  EXPECT_LT(rate.segment(poseComponents(state), 4 * kVelocitySize).cwiseAbs().maxCoeff(),
+            1e-10);  // arms / inertia: up to 10/kg
+  for (std::size_t body = 0; body < 4; ++body) {
+    double weight = 0;
+    for (std::size_t i = 4 * body; i < 4 * body + 4; ++i) weight += equations.contactForces()[i].normal;
+    EXPECT_NEAR(weight, kGravity * (1003 - static_cast<double>(body)), 1e-8);
+  }
+}
+
 // Feet that stick to two plates which move apart: no motion keeps both; the box goes with their mean.
 TEST(RedundantContacts, ThatContradictEachOtherAreHeldInTheMean) {
   Mechanism mechanism = onEarth(3);
