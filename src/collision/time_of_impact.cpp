@@ -87,9 +87,7 @@ class PairSearch {
            });
   }
 
-  bool hasOneContact() const {
-    return pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall();
-  }
+  bool hasOneContact() const { return pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall(); }
 
   /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not has the
   /// dead band.

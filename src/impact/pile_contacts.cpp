@@ -28,7 +28,9 @@ PileContacts::PileContacts(const ContactGeometry& geometry) : geometry_(geometry
 
 /// A polytope that is a box with corners numbered as polytopeOf does.
 std::optional<PileContacts::BoxShape> PileContacts::boxOf(const Collider& collider) {
-  if (collider.kind() != ColliderKind::polytope || !collider.polytope || collider.polytope->vertices.size() != 8 || collider.polytope->faces.size() != 6) return {};
+  if (collider.kind() != ColliderKind::polytope || !collider.polytope || collider.polytope->vertices.size() != 8 ||
+      collider.polytope->faces.size() != 6)
+    return {};
   const std::vector<Vec3>& corners = collider.polytope->vertices;
   BoxShape box;
   Vec3 opposite = corners[0];
@@ -86,10 +88,9 @@ void PileContacts::takePairs() {
 /// How fast bodies approach each other, at most; 0 if they cannot meet within the time.
 double PileContacts::approachOf(const NearPair& pair, const std::vector<MovingPose>& poses, double time) const {
   const MovingPose &a = poseOf(poses, pair.bodyA), &b = poseOf(poses, pair.bodyB);
-  const double spin = (geometry_.colliders[pair.shapeA].isBall() ? 0 : a.angularVelocity.norm() * a.radius) +
-                      (pair.bodyB == kFixed || geometry_.colliders[pair.shapeB].isBall()
-                           ? 0
-                           : b.angularVelocity.norm() * b.radius);
+  const double spin =
+      (geometry_.colliders[pair.shapeA].isBall() ? 0 : a.angularVelocity.norm() * a.radius) +
+      (pair.bodyB == kFixed || geometry_.colliders[pair.shapeB].isBall() ? 0 : b.angularVelocity.norm() * b.radius);
   const Vec3 velocity = b.linearVelocity - a.linearVelocity;
   if (pair.againstPlane) {
     const PlaneCollider& plane = geometry_.planes[pair.shapeB];
@@ -123,8 +124,7 @@ bool PileContacts::mayTouch(const NearPair& pair, const std::vector<MovingPose>&
     return plane.normal.dot(a.position - plane.point) < a.radius + kContactMargin + speed * time;
   }
   if (pair.bodyB == kFixed) return true;
-  const double reach =
-      a.radius + b.radius + kContactMargin + (b.linearVelocity - a.linearVelocity).norm() * time;
+  const double reach = a.radius + b.radius + kContactMargin + (b.linearVelocity - a.linearVelocity).norm() * time;
   return (b.position - a.position).squaredNorm() < reach * reach;
 }
 
@@ -174,9 +174,8 @@ void PileContacts::updatePair(NearPair& pair, const std::vector<MovingPose>& pos
   } else {
     const double speed = (poseB.linearVelocity - poseA.linearVelocity).norm() +
                          poseA.radius * poseA.angularVelocity.norm() + poseB.radius * poseB.angularVelocity.norm();
-    const ContactPatch patch = isFast(pair)
-                                   ? patchOf(pair, poseA, poseB, timeStep)
-                                   : patchOfAnyShapes(pair, state, kContactMargin + timeStep * speed, scratch);
+    const ContactPatch patch = isFast(pair) ? patchOf(pair, poseA, poseB, timeStep)
+                                            : patchOfAnyShapes(pair, state, kContactMargin + timeStep * speed, scratch);
     const bool wasEmpty = pair.isEmpty;
     pair.versionA = poseA.version, pair.versionB = poseB.version;
     pair.isEmpty = patch.count == 0;
@@ -269,9 +268,8 @@ ContactPatch PileContacts::patchOfAnyShapes(const NearPair& pair, const VectorX&
   appendContacts(geometry_, pair.pair, state, reach, scratch);
   ContactPatch patch;
   if (scratch.empty()) return patch;
-  const auto deepest = std::min_element(scratch.begin(), scratch.end(), [](const Contact& a, const Contact& b) {
-    return a.separation < b.separation;
-  });
+  const auto deepest = std::min_element(scratch.begin(), scratch.end(),
+                                        [](const Contact& a, const Contact& b) { return a.separation < b.separation; });
   patch.normal = deepest->normal;
   constexpr std::size_t kMostCandidates = 16;
   ContactPatch::Point points[kMostCandidates];

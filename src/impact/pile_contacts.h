@@ -64,9 +64,9 @@ class PileContacts {
   };
   /// A pair with a moving body first, and what is known of it from the step before.
   struct NearPair {
-    std::size_t pair = 0;             // index into geometry.pairs
-    std::size_t shapeA = 0;           // collider
-    std::size_t shapeB = 0;           // collider or plane
+    std::size_t pair = 0;    // index into geometry.pairs
+    std::size_t shapeA = 0;  // collider
+    std::size_t shapeB = 0;  // collider or plane
     int bodyA = kFixed, bodyB = kFixed;
     int versionA = -1, versionB = -1;  // of the bodies when its manifold was found
     std::int32_t manifold = -1;

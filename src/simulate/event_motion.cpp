@@ -13,10 +13,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension that is left
+constexpr double kRopeTolerance = 1e-13;     // of the length, or of the tension that is left
 constexpr double kContactTolerance = 1e-12;  // of the force, or m/s
-constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
-constexpr double kImpactPart = 1e-3;      // of the margin of contacts: a gap left that the step has to be taken anew for
+constexpr double kTimeRounding = 1e-9;       // of a step: remainders below it are rounding
+constexpr double kImpactPart = 1e-3;  // of the margin of contacts: a gap left that the step has to be taken anew for
 constexpr double kShortCorrection = 1e-3;  // of the step: so far the state at an impact is corrected along its rate
 constexpr double kSlopePart = 1e-6;        // of the step, to find the slope of a gap
 constexpr double kMostGrowth = 2;  // of the longest of the last steps: farther ahead no contact is looked for in vain
@@ -105,7 +105,9 @@ void EventMotion::takeStep(double stepEnd) {
     if (stepSize_.timeStep < kShortestTimeStep * island_.scene.duration)
       guard_.failAtShortestStep(island_.state, island_.time);
   }
-  if(getenv("DBG")) fprintf(stderr,"t %.12g h %.6g err %.3g next %.3g\n",island_.time,step.timeStep,errorNorm(step,tolerance_),stepSize_.timeStep);
+  if (getenv("DBG"))
+    fprintf(stderr, "t %.12g h %.6g err %.3g next %.3g\n", island_.time, step.timeStep, errorNorm(step, tolerance_),
+            stepSize_.timeStep);
   shortSteps_ = stepSize_.timeStep < kShortTimeStep * island_.scene.duration ? shortSteps_ + 1 : 0;
   if (shortSteps_ > kMostShortSteps) guard_.failAtShortSteps(island_.state, island_.time, step.timeStep);
 }
@@ -141,7 +143,12 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   Step& step = island_.step;
   const Event event = findFirstEvent();
   const double whole = step.timeStep;
-  if(getenv("DBG")) fprintf(stderr,"event impact %d rope %d contact %d kind %d at %.15g\n",event.impact.has_value(),event.rope.has_value(),event.contact.has_value(),event.contact?(int)event.contact->kind:-1, island_.time+whole*(event.impact?event.impact->fraction:event.contact?event.contact->fraction:1));
+  if (getenv("DBG"))
+    fprintf(stderr, "event impact %d rope %d contact %d kind %d at %.15g\n", event.impact.has_value(),
+            event.rope.has_value(), event.contact.has_value(), event.contact ? (int)event.contact->kind : -1,
+            island_.time + whole * (event.impact    ? event.impact->fraction
+                                    : event.contact ? event.contact->fraction
+                                                    : 1));
   if (event.impact) {
     stopAtImpact(*event.impact);
   } else if (event.rope) {

@@ -97,8 +97,8 @@ Shape pebble() {
 }
 
 std::vector<Shape> allShapes() {
-  return {ball(0.4), capsule(0.3, 1.2), cylinder(0.5, 0.8), cylinder(0.2, 1.6), box(Vec3(1, 0.6, 1.4)), stone(),
-          pebble()};
+  return {ball(0.4), capsule(0.3, 1.2), cylinder(0.5, 0.8), cylinder(0.2, 1.6), box(Vec3(1, 0.6, 1.4)),
+          stone(),   pebble()};
 }
 
 /// Two shapes in their poses.
