@@ -9,7 +9,7 @@ namespace cradle {
 /// A face of one polytope above which another one stays, with all of its points inside the face's outline: what touches
 /// are then corners on the face, as on a plane.
 struct FaceBelow {
-  bool isOfA = false;  // of a pair: else B's
+  bool isOfA = false;                                // of a pair: else B's
   Vec3 normal = Vec3::Zero(), point = Vec3::Zero();  // unit, m; in its body's frame
 };
 

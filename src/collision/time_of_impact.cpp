@@ -10,8 +10,8 @@
 namespace cradle {
 namespace {
 
-// Of the smaller radius: edges may graze each other so deep unseen. What does is apart at two looks, and at the rates of
-// a body in free motion by far less.
+// Of the smaller radius: edges may graze each other so deep unseen. What does is apart at two looks, and at the rates
+// of a body in free motion by far less.
 constexpr double kGrazePart = 1e-4;
 constexpr double kSamePlace = 1e-3;        // of a size: contacts so near to each other are one
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
@@ -126,8 +126,7 @@ class PairSearch {
 
   bool isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const {
     const double near = kSamePlace * upper.boundingRadius;
-    return touching.held &&
-           std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
+    return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
              return held.pair == pairIndex_ && held.point.body == upper.body &&
                     (held.point.point - upper.points[feature_]).squaredNorm() < near * near;
            });
@@ -175,7 +174,8 @@ class PairSearch {
       const Vec3 normal = (face_->isOfA ? startA_ : startB_).rotation * face_->normal;
       const Vec3 corner = cornerAt(startA_, startB_);
       const int upper = face_->isOfA ? bodyB_ : a_.body, lower = face_->isOfA ? a_.body : bodyB_;
-      return normal.dot(pointVelocity(upper, corner, step_.startState) - pointVelocity(lower, corner, step_.startState));
+      return normal.dot(pointVelocity(upper, corner, step_.startState) -
+                        pointVelocity(lower, corner, step_.startState));
     }
     if (held_) {
       scratch_.findOthers(pairIndex_, *held_, step_.startState, tolerance);

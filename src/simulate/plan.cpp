@@ -30,10 +30,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kEventAccuracy = 1e-4;         // at coarser ones contact is resolved once a step
-constexpr double kPileTimeStep = 1.0 / 60;      // s, at most
-constexpr std::size_t kPileBodies = 50;         // with fewer, RK4 costs less than the pictures of its frames
-constexpr double kTolerancePart = 0.1;          // of the accuracy: the local errors of about ten steps add up to it
+constexpr double kEventAccuracy = 1e-4;     // at coarser ones contact is resolved once a step
+constexpr double kPileTimeStep = 1.0 / 60;  // s, at most
+constexpr std::size_t kPileBodies = 50;     // with fewer, RK4 costs less than the pictures of its frames
+constexpr double kTolerancePart = 0.1;      // of the accuracy: the local errors of about ten steps add up to it
 
 /// What reaches of bodies are compared with: their size around the centre of mass.
 double sizeOf(const Body& body, const Scene& scene) {

@@ -73,9 +73,10 @@ void Simulation::changeMotion() {
     const std::string_view fault = events->fault();
     if (fault.empty()) return;
     if (!std::exchange(isWarned_, true))
-      island_.log.warn(fmt::format("{}: the accuracy asked is not promised from {:.6g} s on: {}; contact is resolved "
-                                   "every {:.3g} s as long as that lasts",
-                                   island_.scene.path, island_.time, fault, kContactTimeStep));
+      island_.log.warn(
+          fmt::format("{}: the accuracy asked is not promised from {:.6g} s on: {}; contact is resolved "
+                      "every {:.3g} s as long as that lasts",
+                      island_.scene.path, island_.time, fault, kContactTimeStep));
     island_.assembly.mechanism.contacts.clear();
     nextTrial_ = island_.time + kTrialTime;
     motion_.emplace<SteppedMotion>(island_, ropes_, ChosenMethod{rk4, "RK4", kContactTimeStep});

@@ -43,8 +43,8 @@ class Simulation {
   ConstraintSolver solver_;
   std::variant<std::monostate, EventMotion, SteppedMotion> motion_;
   ChosenMethod method_;
-  bool isWarned_ = false;   // that the accuracy is not kept any more
-  double nextTrial_ = 0;    // s: when events may serve again
+  bool isWarned_ = false;  // that the accuracy is not kept any more
+  double nextTrial_ = 0;   // s: when events may serve again
   VectorX reported_;
 };
 
