@@ -17,6 +17,7 @@ constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension th
 constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
 constexpr int kMostServed = 12;           // contacts
 constexpr int kMostEvents = 10000;        // within a step
+constexpr int kManyEvents = 16;           // in a step: beyond, it is not cut any more
 
 }  // namespace
 
