@@ -17,8 +17,9 @@ double insideOutline(const Polytope& polytope, const Polytope::Face& face, const
 
 std::optional<FaceBelow> faceBelow(const Collider& upper, const RigidTransform& worldFromUpper, const Collider& lower,
                                    const RigidTransform& worldFromLower, double motion) {
-  if (upper.body == kFixed || upper.kind() != ColliderKind::polytope || lower.kind() != ColliderKind::polytope)
-    return std::nullopt;
+  const bool hasPoints = upper.kind() == ColliderKind::ball || upper.kind() == ColliderKind::capsule ||
+                         upper.kind() == ColliderKind::polytope;
+  if (upper.body == kFixed || !hasPoints || lower.kind() != ColliderKind::polytope) return std::nullopt;
   const Vec3 center = worldFromLower.inverse() * worldFromUpper.translation;
   const double reach = upper.boundingRadius + motion;
   for (const Polytope::Face& face : lower.polytope->faces) {
