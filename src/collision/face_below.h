@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "collision/collider.h"
@@ -13,10 +14,11 @@ struct FaceBelow {
   Vec3 normal = Vec3::Zero(), point = Vec3::Zero();  // unit, m; in its body's frame
 };
 
-/// The face of `lower` below all of `upper`, as long as no point of it moves by more than `motion` (m) as seen from the
-/// lower one.
+/// The face of `lower` below all of `upper`. `motionAlong` tells how far (m) the upper body can go along a face with a
+/// normal (world), as seen from the lower one.
 std::optional<FaceBelow> faceBelow(const Collider& upper, const RigidTransform& worldFromUpper, const Collider& lower,
-                                   const RigidTransform& worldFromLower, double motion);
+                                   const RigidTransform& worldFromLower,
+                                   const std::function<double(const Vec3& normal)>& motionAlong);
 
 /// Height (m) of a point of the upper body over the face.
 double heightOver(const FaceBelow& face, const RigidTransform& worldFromLower, const Vec3& corner);

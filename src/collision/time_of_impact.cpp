@@ -93,10 +93,13 @@ class PairSearch {
     const Collider& b = geometry_.colliders[pair_.b];
     const double distance = (startA_.translation - startB_.translation).norm();
     const double turn = std::max(scratch_.turnOf(step_, a_.body).speed, scratch_.turnOf(step_, bodyB_).speed);
-    const double motion = 2 * bounds_.speed + turn * distance;
-    face_ = faceBelow(a_, startA_, b, startB_, motion);
+    const auto motionAlong = [&](const Vec3& normal) {
+      if (a_.body == kFixed || bodyB_ == kFixed) return motionBoundAcross(step_, a_.body, bodyB_, normal);
+      return 2 * bounds_.speed + turn * distance;
+    };
+    face_ = faceBelow(a_, startA_, b, startB_, motionAlong);
     if (face_) return;
-    face_ = faceBelow(b, startB_, a_, startA_, motion);
+    face_ = faceBelow(b, startB_, a_, startA_, motionAlong);
     if (face_) face_->isOfA = true;
   }
 
