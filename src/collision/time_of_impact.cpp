@@ -124,8 +124,7 @@ class PairSearch {
 
   bool isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const {
     const double near = kSamePlace * upper.boundingRadius;
-    return touching.held &&
-           std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
+    return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
              return held.pair == pairIndex_ && held.point.body == upper.body &&
                     (held.point.point - upper.points[feature_]).squaredNorm() < near * near;
            });
@@ -137,9 +136,7 @@ class PairSearch {
            });
   }
 
-  bool hasOneContact() const {
-    return pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall();
-  }
+  bool hasOneContact() const { return pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall(); }
 
   /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not has the
   /// dead band.
@@ -176,7 +173,8 @@ class PairSearch {
       const double radius = (face_->isOfA ? geometry_.colliders[pair_.b] : a_).radius;
       const Vec3 corner = cornerAt(startA_, startB_) - radius * normal;
       const int upper = face_->isOfA ? bodyB_ : a_.body, lower = face_->isOfA ? a_.body : bodyB_;
-      return normal.dot(pointVelocity(upper, corner, step_.startState) - pointVelocity(lower, corner, step_.startState));
+      return normal.dot(pointVelocity(upper, corner, step_.startState) -
+                        pointVelocity(lower, corner, step_.startState));
     }
     if (held_) {
       scratch_.findOthers(pairIndex_, *held_, step_.startState, tolerance);

@@ -14,8 +14,8 @@ namespace cradle {
 struct ImpactTime {
   double fraction = 0;  // of the step, 0..1
   std::size_t pair = 0, feature = 0;
-  double threshold = 0;      // m: the gap that is reached; < 0 if the features touched at the start
-  bool isOfOthers = false;   // the gap is that of the points of the pair that are not held
+  double threshold = 0;           // m: the gap that is reached; < 0 if the features touched at the start
+  bool isOfOthers = false;        // the gap is that of the points of the pair that are not held
   std::optional<FaceBelow> face;  // the gap is the height of corner number `feature` over it
 };
 
@@ -30,7 +30,8 @@ struct TouchingFeatures {
   double tolerance = 0;  // m: what is nearer touches
   // m: what touches comes together anew when it has closed by more than this; infinite: it is passed over
   double deadBand = std::numeric_limits<double>::infinity();
-  const std::vector<HeldFeature>* held = nullptr;  // passed over; other points of the same pair are not: something keeps them together
+  const std::vector<HeldFeature>* held =
+      nullptr;  // passed over; other points of the same pair are not: something keeps them together
 };
 
 /// Searches steps for the first instant at which two features come together: apart by more than the tolerance, leaving

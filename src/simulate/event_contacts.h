@@ -51,7 +51,7 @@ class EventContacts {
   MovingIsland& island_;
   LastingContacts lasting_;
   ConstraintSolver solver_;
-  double stillPart_;  // of the speed that a body gains when it falls by its size: slower is still
+  double stillPart_;                  // of the speed that a body gains when it falls by its size: slower is still
   double size_;                       // m: of the smallest body
   double touchTolerance_, deadBand_;  // m
   double restDelay_ = 0;              // s: how long the bounces that are left out would take

@@ -2,7 +2,8 @@
 //   1. the scene names a method: that one, for studies
 //   2. balls bounce without loss, and nothing acts but uniform gravity: closed form between collisions
 //   3. many bodies may touch, only gravity acts, and the accuracy asked is coarse: the fast contact step
-//   4. something may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved once a step
+//   4. something may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved once a
+//   step
 //   5. nothing acts but uniform gravity: closed form
 //   6. else DOP853 with steps as long as the accuracy allows; contact changes at events
 
@@ -29,10 +30,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kEventAccuracy = 1e-4;         // at coarser ones contact is resolved once a step
-constexpr double kPileTimeStep = 1.0 / 60;        // s, at most
-constexpr std::size_t kPileBodies = 50;          // with fewer, RK4 costs less than the pictures of its frames
-constexpr double kTolerancePart = 0.1;          // of the accuracy: the local errors of about ten steps add up to it
+constexpr double kEventAccuracy = 1e-4;     // at coarser ones contact is resolved once a step
+constexpr double kPileTimeStep = 1.0 / 60;  // s, at most
+constexpr std::size_t kPileBodies = 50;     // with fewer, RK4 costs less than the pictures of its frames
+constexpr double kTolerancePart = 0.1;      // of the accuracy: the local errors of about ten steps add up to it
 
 /// What reaches of bodies are compared with: their size around the centre of mass.
 double sizeOf(const Body& body, const Scene& scene) {

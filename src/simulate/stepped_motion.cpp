@@ -12,11 +12,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kImpactPart = 1e-3;       // of the touching tolerance: how well an impact's gap is closed
-constexpr double kRopeTolerance = 1e-13;   // of the length, or of the tension that is left
-constexpr double kTimeRounding = 1e-9;     // of a step: remainders below it are rounding
-constexpr int kMostServed = 12;            // contacts
-constexpr int kMostEvents = 10000;         // within a step
+constexpr double kImpactPart = 1e-3;      // of the touching tolerance: how well an impact's gap is closed
+constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension that is left
+constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
+constexpr int kMostServed = 12;           // contacts
+constexpr int kMostEvents = 10000;        // within a step
 
 }  // namespace
 
