@@ -246,10 +246,11 @@ Figures measure(const Scene& scene, World& world, int steps) {
 }
 
 void print(const std::string& who, const Figures& figures, double theirs) {
-  fmt::print("  {:<7} falling {:6.3f} ms, settling {:6.3f} ms, all {:6.3f} ms ({:.2f} of Bullet's); deepest {:5.1f} mm, "
-             "at the end {:4.1f} mm; rest at {:.2f} s\n",
-             who, figures.falling, figures.settling, figures.all, figures.all / theirs, figures.deepest,
-             figures.deepestAtEnd, figures.restTime);
+  fmt::print(
+      "  {:<7} falling {:6.3f} ms, settling {:6.3f} ms, all {:6.3f} ms ({:.2f} of Bullet's); deepest {:5.1f} mm, "
+      "at the end {:4.1f} mm; rest at {:.2f} s\n",
+      who, figures.falling, figures.settling, figures.all, figures.all / theirs, figures.deepest, figures.deepestAtEnd,
+      figures.restTime);
 }
 
 void compare(int bodies, const std::string& kind, int steps) {

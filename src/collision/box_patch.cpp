@@ -1,7 +1,7 @@
 // Separating axes of two boxes (S. Gottschalk, M. Lin, D. Manocha, "OBBTree", SIGGRAPH 1996) and clipping of the facing
 // sides (D. Gregorius, "Robust Contact Creation for Physics Simulations", GDC 2015).
-// While boxes are apart, the axis taken is not that of the largest gap now, but the one whose gap closes last within the
-// coming step, and sides are clipped at that instant: a falling box moves by half its size in a step of 1/60 s, and
+// While boxes are apart, the axis taken is not that of the largest gap now, but the one whose gap closes last within
+// the coming step, and sides are clipped at that instant: a falling box moves by half its size in a step of 1/60 s, and
 // with the axis of now it would stop on boxes that it passes and sink into those that it meets.
 
 #include "collision/contact_patch.h"
@@ -54,14 +54,14 @@ class BoxPair {
 
   ContactPatch contact() const {
     const bool areApart = std::max(side_.separation, edges_.separation) > kApart;
-    const bool byEdges =
-        hasEdges_ && (areApart ? closingTime(edges_) > closingTime(side_) && edges_.separation > 0
-                               : edges_.separation > side_.separation + kFacePreference);
+    const bool byEdges = hasEdges_ && (areApart ? closingTime(edges_) > closingTime(side_) && edges_.separation > 0
+                                                : edges_.separation > side_.separation + kFacePreference);
     const Axis& axis = byEdges ? edges_ : side_;
     const double part = areApart ? std::min(1.0, std::max(0.0, closingTime(axis))) : 0;
     const Vec3 ahead = part * motion_;
-    return byEdges ? edgeContact(axis, ahead) : axis.ofA >= 0 ? sideContact(a_, b_, axis.ofA, axis.sign, ahead, true)
-                                                        : sideContact(b_, a_, axis.ofB, -axis.sign, -ahead, false);
+    return byEdges         ? edgeContact(axis, ahead)
+           : axis.ofA >= 0 ? sideContact(a_, b_, axis.ofA, axis.sign, ahead, true)
+                           : sideContact(b_, a_, axis.ofB, -axis.sign, -ahead, false);
   }
 
  private:
@@ -183,9 +183,8 @@ ContactPatch BoxPair::sideContact(const PosedBox& reference, const PosedBox& inc
     const Vec3 corner = middle + signsP[k] * halfP + signsQ[k] * halfQ;
     corners[k] = {corner.dot(alongU), corner.dot(alongV), corner.dot(normal) - height};
   }
-  const Corner* lowest = std::min_element(corners, corners + 4, [](const Corner& left, const Corner& right) {
-    return left.height < right.height;
-  });
+  const Corner* lowest = std::min_element(
+      corners, corners + 4, [](const Corner& left, const Corner& right) { return left.height < right.height; });
   const Corner lowestCorner = *lowest;
   std::size_t count = clip<&Corner::u>(corners, 4, 1, limitU, clipped);
   count = clip<&Corner::u>(clipped, count, -1, limitU, corners);

@@ -15,8 +15,8 @@ struct MeshSurface;
 enum class ColliderKind { ball, capsule, cylinder, polytope, mesh };
 
 /// The shape of a body for contact: a core, and a ball of `radius` around each of its points. The core of a ball is a
-/// point, that of a capsule a segment; boxes and hulls are polytopes, cylinders are all between two discs, and these and
-/// meshes have no balls around them.
+/// point, that of a capsule a segment; boxes and hulls are polytopes, cylinders are all between two discs, and these
+/// and meshes have no balls around them.
 struct Collider {
   int body = kFixed;                 // moving body, or kFixed: then all is in the world
   std::vector<Vec3> points;          // m, from the centre of mass in the body's frame: centre, ends, or vertices
@@ -26,7 +26,8 @@ struct Collider {
   Bounds bounds = {};                // m, of the whole; same frame as the points
   int surface = 0;                   // index into ContactGeometry::laws
   double rimRadius = 0;              // m, > 0: of the discs around both points of a cylinder
-  std::shared_ptr<const MeshSurface> mesh = {};  // of a mesh, shared by all bodies of a model; of a polytope that meets meshes
+  std::shared_ptr<const MeshSurface> mesh =
+      {};  // of a mesh, shared by all bodies of a model; of a polytope that meets meshes
   RigidTransform bodyFromMesh = {};
 
   bool isBall() const { return points.size() == 1; }

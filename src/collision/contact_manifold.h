@@ -13,7 +13,7 @@ struct ContactManifold {
   std::array<double, ContactPatch::kMostPoints> impulses{};  // N s, along the normal, of each point
   Vec3 frictionImpulse = Vec3::Zero();                       // N s, world, on B at the patch's middle
   double twistImpulse = 0;                                   // N m s, about the normal, on B
-  double friction = 0;   // coefficient of now
+  double friction = 0;                                       // coefficient of now
   SurfaceLaw law;
 };
 

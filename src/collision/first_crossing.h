@@ -17,13 +17,13 @@ constexpr int kMostCuts = 100;  // of a bracket; halving alone would need 40
 struct GapBounds {
   double speed = 0;
   double acceleration = std::numeric_limits<double>::infinity();
-  double graze = 0;  // m: without a bound on the acceleration, touches that may be no deeper are passed over
+  double graze = 0;  // m: touches that come and go and cannot be deeper are passed over
 };
 
 /// A gap with these values at the ends of an interval of that length cannot close inside it: the fastest approach does
 /// not suffice, or the parabola under its chord stays above 0.
 inline bool staysOpen(const GapBounds& bounds, double gapFrom, double gapTo, double length) {
-  if (gapFrom + gapTo > bounds.speed * length) return true;
+  if (gapFrom + gapTo + 2 * bounds.graze > bounds.speed * length) return true;
   const double sag = bounds.acceleration * length * length / 8, slant = std::abs(gapTo - gapFrom);
   if (slant >= 4 * sag) return true;  // the parabola is lowest at an end
   return (gapFrom + gapTo) / 2 - sag - slant * slant / (16 * sag) > 0;
@@ -67,9 +67,7 @@ std::optional<double> firstCrossing(const Gap& gap, const GapBounds& bounds, dou
     const auto earlier = firstCrossing(gap, bounds, from, gapFrom, bracket.before, bracket.gapBefore);
     return earlier ? earlier : bracket.after;
   }
-  const double finest = std::isfinite(bounds.acceleration) ? kFinestApproach
-                        : bounds.graze > 0                 ? bounds.graze / bounds.speed
-                                                           : kFinestBlindApproach;
+  const double finest = std::isfinite(bounds.acceleration) ? kFinestApproach : kFinestBlindApproach;
   if (to - from < finest || staysOpen(bounds, gapFrom, gapTo, to - from)) return std::nullopt;
   const double middle = from + (to - from) / 2, gapMiddle = gap(middle);
   if (const auto crossing = firstCrossing(gap, bounds, from, gapFrom, middle, gapMiddle)) return crossing;

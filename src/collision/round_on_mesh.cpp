@@ -142,8 +142,8 @@ struct RoundVisit {
     const double length = round.core.along.norm(), rise = (part > 0 ? -1 : 1) * outward.dot(round.core.along);
     const bool isAtEnd = part <= 0 || part >= 1;
     if (isAtEnd && rise < -allowedAhead(margin, length)) return;
-    contacts.push_back({onMesh + separation / 2 * outward, -outward, separation,
-                        isAtEnd ? round.radius : kNotRound, radius});
+    contacts.push_back(
+        {onMesh + separation / 2 * outward, -outward, separation, isAtEnd ? round.radius : kNotRound, radius});
     least = std::min(least, separation);
   }
 };

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/core.h"
 #include "collision/first_crossing.h"
+#include "collision/mesh_collider.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kGrazePart = 1e-4;        // of a size: edges may graze each other so deep unseen
+// Of the smaller radius: edges may graze each other so deep unseen. What does is apart at two looks, and at the rates
+// of a body in free motion by far less.
+constexpr double kGrazePart = 1e-4;
 constexpr double kSamePlace = 1e-3;        // of a size: contacts so near to each other are one
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
@@ -67,8 +71,9 @@ class PairSearch {
   }
 
  private:
-  /// Between two centres at distance d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's
-  /// sum. With edges a gap's slope may jump: then nothing bounds its acceleration.
+  /// A gap is the least of those between all points of the two cores, less the balls' radii. Of two points at distance
+  /// d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's sum before they touch; and the
+  /// least of many bends upwards no more than they do. Without balls nothing bounds it where d goes to zero.
   void findBounds() {
     const MotionBounds shift = relativeMotionBounds(step_, a_.body, bodyB_);
     const MotionBounds& turnA = scratch_.turnOf(step_, a_.body);
@@ -82,9 +87,9 @@ class PairSearch {
     const MotionBounds& turnB = scratch_.turnOf(step_, bodyB_);
     bounds_.speed += turnB.speed * pointReach(b);
     pull_ += turnB.acceleration * pointReach(b);
-    bounds_.graze = kGrazePart * std::min(a_.boundingRadius, b.boundingRadius);
-    if (a_.isBall() && b.isBall())
-      bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / (a_.radius + b.radius);
+    const double radius = a_.radius + b.radius;
+    if (radius > 0) bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / radius;
+    if (radius == 0 || hasMesh(a_, b)) bounds_.graze = kGrazePart * std::min(a_.boundingRadius, b.boundingRadius);
   }
 
   /// Whether one body is above a face of the other all the time.
@@ -166,7 +171,7 @@ class PairSearch {
   double leavingSpeed(double tolerance) {
     if (pair_.againstPlane) {
       const Vec3& normal = geometry_.planes[pair_.b].normal;
-      return normal.dot(pointVelocity(a_.body, startA_ * a_.points[feature_] - a_.radius * normal, step_.startState));
+      return normal.dot(pointVelocity(a_.body, lowestPoint(normal), step_.startState));
     }
     if (face_) {
       const Vec3 normal = (face_->isOfA ? startA_ : startB_).rotation * face_->normal;
@@ -188,6 +193,12 @@ class PairSearch {
       least = i == 0 ? speed : std::min(least, speed);
     }
     return least;
+  }
+
+  /// m, world: of the feature, over a plane.
+  Vec3 lowestPoint(const Vec3& planeNormal) const {
+    if (a_.kind() == ColliderKind::cylinder) return Core(a_, startA_).rimPoint(feature_ == 0 ? 1 : -1, -planeNormal);
+    return startA_ * a_.points[feature_] - a_.radius * planeNormal;
   }
 
   Vec3 cornerAt(const RigidTransform& worldFromA, const RigidTransform& worldFromB) const {

@@ -5,7 +5,7 @@
 namespace cradle {
 namespace {
 
-constexpr int kSpins = 2000;         // looks before the processor is offered to others: a few microseconds
+constexpr int kSpins = 2000;  // looks before the processor is offered to others: a few microseconds
 
 void pause() {
 #if defined(__x86_64__)

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kRounding = 1e-15;    // of the lengths that enter a gap: a few units in their last place
 constexpr double kSlowSliding = 1e-6;  // m/s: below, velocities have no direction that could be trusted
+constexpr double kFastSliding = 1e-4;  // m/s: above, the weight of the direction given is below rounding
 
 bool isFace(double radius) {
   return std::isinf(radius);
@@ -123,12 +124,13 @@ Vec3 tangentialVelocity(const ContactPlace& place) {
 }
 
 // Mirrored rather than reversed: a velocity that turns to the other side with a part across lets the direction follow
-// without a jump. The weight of the constraint's direction is gone to rounding above 1e-4 m/s.
+// without a jump.
 Vec3 slidingDirection(const ContactConstraint& contact, const ContactPlace& place,
                       const std::vector<BodyFrame>& frames) {
   const Vec3 given = turned(contact.surfaceB.body, contact.slidingDirection, frames);
-  const Vec3 side = (given - given.dot(place.normal) * place.normal).normalized();
   const Vec3 velocity = tangentialVelocity(place);
+  if (velocity.dot(given) > 0 && velocity.squaredNorm() > kFastSliding * kFastSliding) return velocity.normalized();
+  const Vec3 side = (given - given.dot(place.normal) * place.normal).normalized();
   const double along = velocity.dot(side);
   const double speed = 1 + velocity.squaredNorm() / (kSlowSliding * kSlowSliding);
   const double weight = kSlowSliding / (speed * speed * speed * speed);

@@ -32,13 +32,14 @@ double couplingOf(const LaneVector (&a)[Block::kMovers], const LaneVector (&b)[B
 }
 
 template <class Block>
-void fillFriction(const ContactManifold& manifold, const SolverBody* const (&bodies)[Block::kMovers], double impulseScale,
-                  int lane, Block& block) {
+void fillFriction(const ContactManifold& manifold, const SolverBody* const (&bodies)[Block::kMovers],
+                  double impulseScale, int lane, Block& block) {
   const ContactPatch& patch = manifold.patch;
   Vec3 middles[2] = {Vec3::Zero(), Vec3::Zero()};
   for (std::size_t i = 0; i < patch.count; ++i) middles[0] += patch.points[i].onA, middles[1] += patch.points[i].onB;
   Vec3 arms[Block::kMovers];
-  for (int k = 0; k < Block::kMovers; ++k) arms[k] = middles[k] / static_cast<double>(patch.count) - bodies[k]->position;
+  for (int k = 0; k < Block::kMovers; ++k)
+    arms[k] = middles[k] / static_cast<double>(patch.count) - bodies[k]->position;
 
   auto& friction = block.friction;
   const Vec3 tangent1 = patch.normal.unitOrthogonal(), tangent2 = patch.normal.cross(tangent1);
@@ -118,8 +119,7 @@ void storeImpulses(const Block& block, std::vector<ContactManifold>& manifolds) 
       const LaneVector& t = friction.tangents[i];
       return Vec3(t.x[lane], t.y[lane], t.z[lane]);
     };
-    manifold.frictionImpulse =
-        friction.impulses[0][lane] * tangent(0) + friction.impulses[1][lane] * tangent(1);
+    manifold.frictionImpulse = friction.impulses[0][lane] * tangent(0) + friction.impulses[1][lane] * tangent(1);
     if constexpr (Block::kPoints > 1) manifold.twistImpulse = block.twist.impulse[lane];
   }
 }

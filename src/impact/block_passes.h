@@ -109,13 +109,11 @@ void softenBlock(Block& block, const Softness& soft, double subStep, SolverMotio
     const Lanes turn = same(soft.turn) * (same(1) + larger(none, -separation) * same(soft.hardening));
     const Lanes damping = same(soft.damping) + turn, stiffness = turn * damping;
     const Lanes yielding = same(1) / (same(1) + stiffness);
-    const Lanes wanted =
-        apart ? separation * rate : larger(separation * rate * turn / damping, same(-soft.mostPush));
+    const Lanes wanted = apart ? separation * rate : larger(separation * rate * turn / damping, same(-soft.mostPush));
     const Lanes massScale = apart ? same(1) : stiffness * yielding;
     const Lanes impulseScale = apart ? none : yielding;
     const Lanes speed = velocities.along(block.normal, point.turns);
-    const Lanes free = point.impulse - point.mass * massScale * (speed + wanted) -
-                       impulseScale * point.impulse;
+    const Lanes free = point.impulse - point.mass * massScale * (speed + wanted) - impulseScale * point.impulse;
     const Lanes held = larger(none, free);
     point.slack = held > none ? none : larger(none, separation * rate + speed);
     velocities.push(block, held - point.impulse, block.normal, point.turns);

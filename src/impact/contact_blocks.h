@@ -7,8 +7,9 @@
 #include "impact/lanes.h"
 
 // Contacts as the soft contact solver works on them: two at a time, one a lane, everything it needs side by side.
-// Angular velocities are scaled: u = sqrt(I) w in a body's principal axes, so that an impulse p along n at arm r changes
-// u by p t and the contact's speed is t.u, with the same t = (r x n) / sqrt(I) (the usual way needs two vectors).
+// Angular velocities are scaled: u = sqrt(I) w in a body's principal axes, so that an impulse p along n at arm r
+// changes u by p t and the contact's speed is t.u, with the same t = (r x n) / sqrt(I) (the usual way needs two
+// vectors).
 
 namespace cradle {
 

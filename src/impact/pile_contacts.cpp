@@ -13,6 +13,14 @@ constexpr double kSameNormal = 0.9;   // cosine, at least, for impulses to go on
 constexpr double kRounding = 1e-9;    // of a unit axis or a side
 constexpr double kSlowSliding = 0.1;  // m/s: slower, static friction holds; a step's gain by gravity is 0.16
 
+constexpr double kBallPart = 0.4;  // of their approach counts: of balls the point that will touch is known
+constexpr double kSpinPart = 0.5;  // of the speed of the farthest point: few touch with that one
+const MovingPose kStill{};
+
+const MovingPose& poseOf(const std::vector<MovingPose>& poses, int body) {
+  return body == kFixed ? kStill : poses[static_cast<std::size_t>(body)];
+}
+
 auto orderOf(const ColliderPair& pair) {
   return std::tuple(!pair.againstPlane, pair.againstPlane ? pair.b : pair.a, pair.againstPlane ? pair.a : pair.b);
 }
@@ -28,7 +36,9 @@ PileContacts::PileContacts(const ContactGeometry& geometry) : geometry_(geometry
 
 /// A polytope that is a box with corners numbered as polytopeOf does.
 std::optional<PileContacts::BoxShape> PileContacts::boxOf(const Collider& collider) {
-  if (collider.kind() != ColliderKind::polytope || !collider.polytope || collider.polytope->vertices.size() != 8 || collider.polytope->faces.size() != 6) return {};
+  if (collider.kind() != ColliderKind::polytope || !collider.polytope || collider.polytope->vertices.size() != 8 ||
+      collider.polytope->faces.size() != 6)
+    return {};
   const std::vector<Vec3>& corners = collider.polytope->vertices;
   BoxShape box;
   Vec3 opposite = corners[0];
@@ -44,11 +54,6 @@ std::optional<PileContacts::BoxShape> PileContacts::boxOf(const Collider& collid
   if ((opposite - corners[7]).norm() > kRounding * size) return {};
   if ((corners[3] - corners[1] - corners[2] + corners[0]).norm() > kRounding * size) return {};
   return box;
-}
-
-const MovingPose& PileContacts::poseOf(const std::vector<MovingPose>& poses, int body) {
-  static const MovingPose kStill{};
-  return body == kFixed ? kStill : poses[static_cast<std::size_t>(body)];
 }
 
 PileContacts::NearPair PileContacts::nearPairOf(std::size_t index) const {
@@ -86,21 +91,22 @@ void PileContacts::takePairs() {
 /// How fast bodies approach each other, at most; 0 if they cannot meet within the time.
 double PileContacts::approachOf(const NearPair& pair, const std::vector<MovingPose>& poses, double time) const {
   const MovingPose &a = poseOf(poses, pair.bodyA), &b = poseOf(poses, pair.bodyB);
-  const double spin = (geometry_.colliders[pair.shapeA].isBall() ? 0 : a.angularVelocity.norm() * a.radius) +
-                      (pair.bodyB == kFixed || geometry_.colliders[pair.shapeB].isBall()
-                           ? 0
-                           : b.angularVelocity.norm() * b.radius);
+  const bool isBallA = geometry_.colliders[pair.shapeA].isBall();
+  const bool isBallB = pair.againstPlane || geometry_.colliders[pair.shapeB].isBall();
+  const double spin = kSpinPart * ((isBallA ? 0 : a.angularVelocity.norm() * a.radius) +
+                                   (isBallB || pair.bodyB == kFixed ? 0 : b.angularVelocity.norm() * b.radius));
+  const double part = isBallA && isBallB ? kBallPart : 1;
   const Vec3 velocity = b.linearVelocity - a.linearVelocity;
   if (pair.againstPlane) {
     const PlaneCollider& plane = geometry_.planes[pair.shapeB];
     const double closing = std::max(0.0, plane.normal.dot(velocity)) + spin;
-    return plane.normal.dot(a.position - plane.point) - a.radius < closing * time ? closing : 0;
+    return plane.normal.dot(a.position - plane.point) - a.radius < closing * time ? part * closing : 0;
   }
-  if (pair.bodyB == kFixed) return velocity.norm() + spin;
+  if (pair.bodyB == kFixed) return part * velocity.norm() + spin;
   const Vec3 offset = b.position - a.position;
-  const double distance = offset.norm(), reach = a.radius + b.radius + (velocity.norm() + spin) * time;
-  if (distance > reach || distance == 0) return 0;
-  return std::max(0.0, -offset.dot(velocity) / distance) + spin;
+  const double reach = a.radius + b.radius + (velocity.norm() + spin) * time, distance2 = offset.squaredNorm();
+  if (distance2 > reach * reach || distance2 == 0) return 0;
+  return part * std::max(0.0, -offset.dot(velocity) / std::sqrt(distance2)) + spin;
 }
 
 double PileContacts::fastestApproach(const std::vector<MovingPose>& poses, double time, WorkerThreads& threads) const {
@@ -123,8 +129,7 @@ bool PileContacts::mayTouch(const NearPair& pair, const std::vector<MovingPose>&
     return plane.normal.dot(a.position - plane.point) < a.radius + kContactMargin + speed * time;
   }
   if (pair.bodyB == kFixed) return true;
-  const double reach =
-      a.radius + b.radius + kContactMargin + (b.linearVelocity - a.linearVelocity).norm() * time;
+  const double reach = a.radius + b.radius + kContactMargin + (b.linearVelocity - a.linearVelocity).norm() * time;
   return (b.position - a.position).squaredNorm() < reach * reach;
 }
 
@@ -174,9 +179,8 @@ void PileContacts::updatePair(NearPair& pair, const std::vector<MovingPose>& pos
   } else {
     const double speed = (poseB.linearVelocity - poseA.linearVelocity).norm() +
                          poseA.radius * poseA.angularVelocity.norm() + poseB.radius * poseB.angularVelocity.norm();
-    const ContactPatch patch = isFast(pair)
-                                   ? patchOf(pair, poseA, poseB, timeStep)
-                                   : patchOfAnyShapes(pair, state, kContactMargin + timeStep * speed, scratch);
+    const ContactPatch patch = isFast(pair) ? patchOf(pair, poseA, poseB, timeStep)
+                                            : patchOfAnyShapes(pair, state, kContactMargin + timeStep * speed, scratch);
     const bool wasEmpty = pair.isEmpty;
     pair.versionA = poseA.version, pair.versionB = poseB.version;
     pair.isEmpty = patch.count == 0;
@@ -269,9 +273,8 @@ ContactPatch PileContacts::patchOfAnyShapes(const NearPair& pair, const VectorX&
   appendContacts(geometry_, pair.pair, state, reach, scratch);
   ContactPatch patch;
   if (scratch.empty()) return patch;
-  const auto deepest = std::min_element(scratch.begin(), scratch.end(), [](const Contact& a, const Contact& b) {
-    return a.separation < b.separation;
-  });
+  const auto deepest = std::min_element(scratch.begin(), scratch.end(),
+                                        [](const Contact& a, const Contact& b) { return a.separation < b.separation; });
   patch.normal = deepest->normal;
   constexpr std::size_t kMostCandidates = 16;
   ContactPatch::Point points[kMostCandidates];

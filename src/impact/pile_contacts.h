@@ -32,7 +32,8 @@ class PileContacts {
   /// To be called when geometry.pairs is a new list: manifolds of pairs that stay are kept.
   void takePairs();
 
-  /// Bound on the speed (m/s) at which bodies approach each other that may touch within the time (s).
+  /// The speed (m/s) at which bodies approach each other that may touch within the time (s), for how often they must be
+  /// looked at: a part of it between balls.
   double fastestApproach(const std::vector<MovingPose>& poses, double time, WorkerThreads& threads) const;
 
   /// Contacts of now, and those that come about within the step. Pairs of bodies asleep stay as they are. `state` holds
@@ -64,9 +65,9 @@ class PileContacts {
   };
   /// A pair with a moving body first, and what is known of it from the step before.
   struct NearPair {
-    std::size_t pair = 0;             // index into geometry.pairs
-    std::size_t shapeA = 0;           // collider
-    std::size_t shapeB = 0;           // collider or plane
+    std::size_t pair = 0;    // index into geometry.pairs
+    std::size_t shapeA = 0;  // collider
+    std::size_t shapeB = 0;  // collider or plane
     int bodyA = kFixed, bodyB = kFixed;
     int versionA = -1, versionB = -1;  // of the bodies when its manifold was found
     std::int32_t manifold = -1;
@@ -80,7 +81,6 @@ class PileContacts {
   };
 
   static std::optional<BoxShape> boxOf(const Collider& collider);
-  static const MovingPose& poseOf(const std::vector<MovingPose>& poses, int body);
   NearPair nearPairOf(std::size_t pair) const;
   void giveManifolds();
   bool mayTouch(const NearPair& pair, const std::vector<MovingPose>& poses, double time) const;

@@ -9,7 +9,7 @@ namespace cradle {
 namespace {
 
 constexpr double kMostApproach = 3e-3;  // m: bodies that come nearer to each other in a step are looked at more often
-constexpr int kMostPieces = 32;              // looks a step
+constexpr int kMostPieces = 32;         // looks a step
 constexpr int kSubSteps = 4;            // a step, at least: fewer do not bring boxes to rest
 constexpr double kKeptMotion = 5e-4;    // m: half of what two bodies may move against each other with one manifold
 constexpr double kKeptTurn = 5e-3;      // rad
@@ -170,8 +170,8 @@ void PileStep::recordImpacts(int subSteps) {
     for (std::size_t i = 0; i < manifold.patch.count; ++i) impulse += subSteps * manifold.impulses[i];
     if (impulse <= 0) continue;
     const ContactPatch::Point& point = manifold.patch.points[0];
-    impacts_.push_back({meeting.pair, (point.onA + point.onB) / 2,
-                        (meeting.isExchanged ? -1 : 1) * manifold.patch.normal, impulse});
+    impacts_.push_back(
+        {meeting.pair, (point.onA + point.onB) / 2, (meeting.isExchanged ? -1 : 1) * manifold.patch.normal, impulse});
   }
 }
 

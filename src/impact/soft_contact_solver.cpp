@@ -1,7 +1,7 @@
 // E. Catto, "Solver2D" (box2d.org, 2024): of the solvers compared there, sub-steps with soft contacts that are relaxed
 // afterwards ("soft step") hold piles best for their cost. Different here: contacts stiffen with their overlap, and
-// those with few points are stiffer from the start. Springs that are as stiff as boxes on boxes allow let the few points
-// that carry a pile of turned boxes sink in by 20 mm; springs stiffer than that make stacks of boxes tremble.
+// those with few points are stiffer from the start. Springs that are as stiff as boxes on boxes allow let the few
+// points that carry a pile of turned boxes sink in by 20 mm; springs stiffer than that make stacks of boxes tremble.
 
 #include "impact/soft_contact_solver.h"
 
@@ -89,8 +89,7 @@ void SoftContactSolver::sweep(WorkerThreads& threads, int thread, const Pass& pa
   }
 }
 
-void SoftContactSolver::solve(const Steps& steps, const Vec3& gravity, SolverMotions& motions,
-                              WorkerThreads& threads) {
+void SoftContactSolver::solve(const Steps& steps, const Vec3& gravity, SolverMotions& motions, WorkerThreads& threads) {
   const Lanes subStep = same(steps.subStep);
   const Softness soft[] = {softnessOf(1, steps.subStep), softnessOf(2, steps.subStep), softnessOf(3, steps.subStep),
                            softnessOf(4, steps.subStep)};

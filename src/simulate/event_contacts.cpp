@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/core.h"
 #include "dynamics/invariants.h"
 #include "impact/cone_problem.h"
 #include "impact/contact_impulse.h"
@@ -54,6 +55,11 @@ bool hasCornerAt(const Collider& collider, const Vec3& point, const VectorX& sta
   if (collider.radius > 0) return false;
   const Vec3 local = poseOf(state, collider.body).inverse() * point;
   const double near = kSameCorner * collider.boundingRadius;
+  if (collider.kind() == ColliderKind::cylinder) {  // any point of a rim
+    const Core core(collider, {});
+    const double side = core.axis().dot(local - core.center()) < 0 ? -1 : 1;
+    return (core.rimPoint(side, local - core.center()) - local).squaredNorm() < near * near;
+  }
   return std::any_of(collider.points.begin(), collider.points.end(),
                      [&](const Vec3& corner) { return (corner - local).squaredNorm() < near * near; });
 }

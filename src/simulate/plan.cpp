@@ -47,7 +47,7 @@ double fixedSizeOf(const Body& body, const Scene& scene) {
   double size = 0;
   if (!collider) return size;
   for (const Vec3& point : collider->points)
-    size = std::max(size, (point - body.worldFromBody.translation).norm() + collider->radius);
+    size = std::max(size, (point - body.worldFromBody.translation).norm() + collider->radius + collider->rimRadius);
   return size;
 }
 

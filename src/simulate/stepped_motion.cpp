@@ -56,7 +56,8 @@ void SteppedMotion::advance(double frame) {
   island_.state = step.state;
   if (solver_.hasConstraints()) solver_.project(island_.state);
   normalizeOrientations(island_.state);
-  contacts_.resolve(time, before_, island_.state);
+  contacts_.isCrowded() ? contacts_.resolveStep(time, before_, island_.state)
+                        : contacts_.resolve(time, before_, island_.state);
   const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
   ropes_.resolve(time, island_.state);
   keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
@@ -65,6 +66,7 @@ void SteppedMotion::advance(double frame) {
   island_.requireUnsolvedPairsApart();
 
   if (atEvent) countEvent();
+  if (eventsInWindow_ > kManyEvents) contacts_.setCrowded();
   if (time >= start_ + static_cast<double>(stepNumber_ + 1) * method_.timeStep) ++stepNumber_;
 }
 
@@ -82,7 +84,7 @@ bool SteppedMotion::stopAtFirstEvent() {
   Step& step = island_.step;
   prepareInterpolant(island_.rightHandSide, step);
   island_.findNearPairs(contacts_.margin());
-  const auto impact = island_.search.first(step, {contacts_.touchTolerance()});
+  const auto impact = contacts_.isCrowded() ? std::nullopt : island_.search.first(step, {contacts_.touchTolerance()});
   const auto change = ropes_.firstChange(step);
   const double whole = step.timeStep;
   if (impact && !(change && change->fraction < impact->fraction)) {

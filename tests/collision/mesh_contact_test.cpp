@@ -153,8 +153,7 @@ TEST(MeshContact, SwappedSolidsHaveTheSameContactsTurnedAround) {
   ASSERT_EQ(contacts.size(), swapped.size());
   ASSERT_GE(contacts.size(), 3u);
   for (const ContactPoint& contact : contacts) EXPECT_TRUE(holdsPoint(swapped, pose.inverse() * contact.point, 1e-12));
-  for (const ContactPoint& contact : swapped)
-    EXPECT_LT((pose.rotation * contact.normal + Vec3::UnitY()).norm(), 1e-12);
+  for (const ContactPoint& contact : swapped) EXPECT_LT((pose.rotation * contact.normal + Vec3::UnitY()).norm(), 1e-12);
 }
 
 TEST(RoundOnMesh, BallRollingOverADividedSquareSeesNothing) {
