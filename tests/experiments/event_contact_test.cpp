@@ -222,7 +222,7 @@ TEST(BallOnPlatform, LeavesWhereThePlatformFallsFasterThanItself) {
   const std::string spring = fmt::format(R"(, "springs": [{{"bodyA": "platform", "anchorA": [0, 0.05, 0],
       "anchorB": [0, 3, 0], "stiffness": 200, "restLength": {}}}])",
                                          3 - 2.5 * kGravity / 200);
-  const Trajectory run = simulate(sceneOf(sceneText(1e-10, 0.4, 1, materialText(0.5, 0), bodies, spring)));
+  const Trajectory run = simulate(sceneOf(sceneText(1e-10, 0.4, 10, materialText(0.5, 0), bodies, spring)));
   ASSERT_EQ(timesOf(run, EventKind::release).size(), 1u);
   EXPECT_NEAR(timesOf(run, EventKind::release)[0], std::acos(-kGravity / 80 / 0.2) / std::sqrt(80), 1e-9);
 }
