@@ -10,3 +10,12 @@ find_library(LIBDEFLATE deflate REQUIRED)
 find_library(OSMESA OSMesa REQUIRED)
 find_library(GLEW NAMES libGLEW.a REQUIRED)
 find_path(STB_INCLUDE stb/stb_image_write.h REQUIRED)
+find_package(Qhull 8 REQUIRED)
+
+if(CRADLE_PEERS)
+  find_path(BULLET_INCLUDE btBulletDynamicsCommon.h PATH_SUFFIXES bullet REQUIRED)
+  foreach(NAME BulletDynamics BulletCollision LinearMath)  # in double precision
+    find_library(BULLET_${NAME} ${NAME}-float64 REQUIRED)
+    list(APPEND BULLET_LIBRARIES ${BULLET_${NAME}})
+  endforeach()
+endif()

@@ -24,12 +24,15 @@ MAY_INCLUDE = {
 # The one place of each library (Eigen and fmt are everywhere).
 LIBRARY_UNITS = {
     "assimp/": ["mesh"],
+    "libqhull_r/": ["mesh/convex_hull"],
     "nlohmann/": ["scene/json_document", "commands/inspect_mesh"],
     "CLI/": ["main.cpp"],
     "sqlite3.h": ["trajectory/database"],
     "stb/": ["image/png"],
     "libdeflate.h": ["image/png"],
     "GL/": ["render"],
+    "Bullet": ["study/peers/bullet"],
+    "bt": ["study/peers/bullet"],
 }
 
 

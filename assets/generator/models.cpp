@@ -147,6 +147,30 @@ Surface gear() {
   return surface;
 }
 
+// A spinning top that stands on its tip, the origin: rings around y from the tip to the end of the stem. Twelve flat
+// facets show that it turns.
+Surface spinningTop() {
+  constexpr std::size_t kSides = 12;
+  const std::array<Eigen::Vector2d, 6> rings{
+      // radius, height in m
+      {{0.018, 0.014}, {0.06, 0.05}, {0.062, 0.058}, {0.016, 0.076}, {0.007, 0.09}, {0.007, 0.125}}};
+  Surface surface{"SpinningTop", 0, {}, {}};
+  surface.add(Vec3::Zero());
+  for (const auto& ring : rings)
+    for (std::size_t i = 0; i < kSides; ++i)
+      surface.add(ring.x() * aroundY(2 * pi * fraction(i, kSides)) + ring.y() * Vec3::UnitY());
+  surface.add({0, rings.back().y(), 0});
+  const std::size_t end = surface.vertices.size() - 1;
+  for (std::size_t i = 0; i < kSides; ++i) {
+    const std::size_t j = (i + 1) % kSides;
+    surface.addTriangle(0, 1 + j, 1 + i, kSharp);
+    for (std::size_t row = 1; row + kSides < end; row += kSides)
+      surface.addQuad(row + i, row + j, row + kSides + j, row + kSides + i, kSharp);
+    surface.addTriangle(end, end - kSides + i, end - kSides + j, kSharp);
+  }
+  return surface;
+}
+
 // One tube, bent twice: a foot that stands on the board, a leg, a rail, a leg, a foot.
 Surface railWithLegs(const std::string& name, double z) {
   using namespace frame;
@@ -205,6 +229,7 @@ std::vector<Model> allModels() {
           cradleFrame(),
           {"gear.3ds", {{"Brass", {196, 160, 82}}}, {gear()}},
           {"l_prism.3ds", {{"Teal", {42, 132, 138}}}, {lPrism()}},
+          {"spinning_top.3ds", {{"Cherry", {168, 58, 42}}}, {spinningTop()}},
           {"t_handle.3ds", {{"Steel", {168, 176, 188}}}, {tHandle()}},
           {"torus.3ds", {{"Coral", {222, 98, 76}}}, {torus()}},
           {"torus_knot.3ds", {{"Indigo", {76, 84, 178}}}, {torusKnot()}}};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "collision/separation.h"
 
@@ -9,8 +10,9 @@ namespace cradle {
 namespace {
 
 constexpr double kSlackMotions = 4;     // steps like the one to come that a list should last
-constexpr double kLeastSlack = 0.01;    // of a body's size: what lies nearly still is not sorted again at each step
+constexpr double kLeastSlack = 0.05;    // of a body's size: what lies nearly still is not sorted again at each step
 constexpr double kMostSlack = 0.25;     // of the size: beyond, lists of pairs that are not near cost more than new ones
+constexpr double kStripWidth = 1.5;     // of the mean size of the moving bodies' boxes
 constexpr double kBoxRounding = 1e-12;  // of the coordinates
 constexpr double kFarthest = 1e100;     // m: a step that has blown up is judged elsewhere
 
@@ -46,7 +48,7 @@ bool BroadPhase::update(const VectorX& state, const std::vector<double>& motions
                         ContactGeometry& geometry) {
   if (geometry.colliders.empty() || covers(state, motions, margin)) return false;
   enclose(state, motions, margin, geometry);
-  sort();
+  sort(geometry);
   sweep(geometry);
   return true;
 }
@@ -81,22 +83,39 @@ void BroadPhase::enclose(const VectorX& state, const std::vector<double>& motion
   }
 }
 
-/// Along the axis on which the boxes spread the most.
-void BroadPhase::sort() {
+/// Strips along the axis on which the boxes spread the most, side by side along the next. Boxes wider than a strip are
+/// compared with all others.
+void BroadPhase::sort(const ContactGeometry& geometry) {
   Vec3 mean = Vec3::Zero(), spread = Vec3::Zero();
   for (const Bounds& box : boxes_) mean += box.center() / static_cast<double>(boxes_.size());
   for (const Bounds& box : boxes_) spread += (box.center() - mean).cwiseAbs2();
-  Eigen::Index axis = 0;
-  spread.maxCoeff(&axis);
-  intervals_.clear();
+  Eigen::Index along = 0, across = 0;
+  spread.maxCoeff(&along);
+  spread[along] = -1;
+  spread.maxCoeff(&across);
+  const Eigen::Index third = 3 - along - across;
+  double width = 0;
   for (std::size_t i = 0; i < boxes_.size(); ++i)
-    intervals_.push_back({boxes_[i].min()[axis], boxes_[i].max()[axis], i});
+    if (geometry.colliders[i].body != kFixed) width += kStripWidth * boxes_[i].sizes()[across];
+  width /= static_cast<double>(std::max<std::size_t>(1, poses_.size()));
+  intervals_.clear(), wide_.clear();
+  longest_ = 0;
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const Vec3 least = boxes_[i].min(), most = boxes_[i].max();
+    if (!(most[across] - least[across] <= width)) {
+      wide_.push_back(i);
+      continue;
+    }
+    intervals_.push_back({std::floor((least[across] - mean[across]) / width), least[along], most[along], least[across],
+                          most[across], least[third], most[third], i});
+    longest_ = std::max(longest_, most[along] - least[along]);
+  }
   std::sort(intervals_.begin(), intervals_.end(), [](const Interval& a, const Interval& b) {
-    return a.from != b.from ? a.from < b.from : a.collider < b.collider;
+    return std::tie(a.strip, a.from, a.collider) < std::tie(b.strip, b.from, b.collider);
   });
 }
 
-void BroadPhase::sweep(ContactGeometry& geometry) const {
+void BroadPhase::sweep(ContactGeometry& geometry) {
   geometry.pairs.clear();
   const auto law = [&](int surfaceA, int surfaceB) {
     return geometry.laws[static_cast<std::size_t>(surfaceA)][static_cast<std::size_t>(surfaceB)];
@@ -105,17 +124,37 @@ void BroadPhase::sweep(ContactGeometry& geometry) const {
     for (std::size_t i = 0; i < geometry.colliders.size(); ++i)
       if (geometry.colliders[i].body != kFixed && lowest(boxes_[i], geometry.planes[p]) <= 0)
         geometry.pairs.push_back({i, p, true, law(geometry.colliders[i].surface, geometry.planes[p].surface)});
-  const auto againstPlanes = static_cast<std::ptrdiff_t>(geometry.pairs.size());
-  for (std::size_t i = 0; i < intervals_.size(); ++i)
-    for (std::size_t j = i + 1; j < intervals_.size() && intervals_[j].from <= intervals_[i].to; ++j) {
-      const auto [a, b] = std::minmax(intervals_[i].collider, intervals_[j].collider);
-      const Collider &first = geometry.colliders[a], &second = geometry.colliders[b];
-      if (first.body == kFixed && second.body == kFixed) continue;
-      if (boxes_[a].intersects(boxes_[b]) && !isExcluded(geometry, a, b))
-        geometry.pairs.push_back({a, b, false, law(first.surface, second.surface)});
-    }
-  std::sort(geometry.pairs.begin() + againstPlanes, geometry.pairs.end(),
-            [](const ColliderPair& x, const ColliderPair& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
+  found_.clear();
+  const auto compare = [&](std::size_t first, std::size_t second) {
+    if (!boxes_[first].intersects(boxes_[second])) return;
+    const std::size_t a = std::min(first, second), b = std::max(first, second);
+    if (geometry.colliders[a].body == kFixed && geometry.colliders[b].body == kFixed) return;
+    if (geometry.excluded.empty() || !isExcluded(geometry, a, b)) found_.emplace_back(a, b);
+  };
+  const auto meetAcross = [](const Interval& a, const Interval& b) {
+    return a.thirdFrom <= b.thirdTo && b.thirdFrom <= a.thirdTo && a.acrossFrom <= b.acrossTo &&
+           b.acrossFrom <= a.acrossTo;
+  };
+  const std::size_t count = intervals_.size();
+  std::size_t next = 0;  // the first interval that may begin beside this one in the next strip
+  for (std::size_t i = 0; i < count; ++i) {
+    const Interval& here = intervals_[i];
+    for (std::size_t j = i + 1; j < count && intervals_[j].strip == here.strip && intervals_[j].from <= here.to; ++j)
+      if (meetAcross(here, intervals_[j])) compare(here.collider, intervals_[j].collider);
+    const auto isBefore = [&](const Interval& other) {
+      return other.strip <= here.strip || (other.strip == here.strip + 1 && other.from < here.from - longest_);
+    };
+    while (next < count && isBefore(intervals_[next])) ++next;
+    for (std::size_t j = next; j < count && intervals_[j].strip == here.strip + 1 && intervals_[j].from <= here.to; ++j)
+      if (meetAcross(here, intervals_[j])) compare(here.collider, intervals_[j].collider);
+  }
+  for (std::size_t i = 0; i < wide_.size(); ++i) {
+    for (const Interval& interval : intervals_) compare(wide_[i], interval.collider);
+    for (std::size_t j = i + 1; j < wide_.size(); ++j) compare(wide_[i], wide_[j]);
+  }
+  std::sort(found_.begin(), found_.end());
+  for (const auto& [a, b] : found_)
+    geometry.pairs.push_back({a, b, false, law(geometry.colliders[a].surface, geometry.colliders[b].surface)});
 }
 
 }  // namespace cradle

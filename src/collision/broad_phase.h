@@ -19,21 +19,26 @@ class BroadPhase {
 
  private:
   struct Interval {
-    double from, to;  // m, along the axis of the sweep
+    double strip;                                     // whole number
+    double from, to;                                  // m, along the axis of the sweep
+    double acrossFrom, acrossTo, thirdFrom, thirdTo;  // m, along the others
     std::size_t collider;
   };
 
   bool covers(const VectorX& state, const std::vector<double>& motions, double margin) const;
   void enclose(const VectorX& state, const std::vector<double>& motions, double margin,
                const ContactGeometry& geometry);
-  void sort();
-  void sweep(ContactGeometry& geometry) const;
+  void sort(const ContactGeometry& geometry);
+  void sweep(ContactGeometry& geometry);
 
   std::vector<RigidTransform> poses_;  // of the moving bodies when they were enclosed
   std::vector<double> radii_;          // m, of the moving bodies about their centres of mass
   std::vector<double> slacks_;         // m: how far any point of a moving body may go and stay in its box
   std::vector<Bounds> boxes_;
   std::vector<Interval> intervals_;
+  double longest_ = 0;             // m, of the intervals
+  std::vector<std::size_t> wide_;  // colliders that no strip is wide enough for
+  std::vector<std::pair<std::size_t, std::size_t>> found_;
 };
 
 }  // namespace cradle

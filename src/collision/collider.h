@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -9,20 +10,43 @@
 
 namespace cradle {
 
-/// The shape of a body for contact: points with a ball of `radius` around each. A sphere is one, a capsule two, a box
-/// its corners and a mesh its vertices, with radius 0. That is enough to touch planes. Single balls touch each other
-/// and polytopes; polytopes touch each other.
+struct MeshSurface;
+
+enum class ColliderKind { ball, capsule, cylinder, polytope, mesh };
+
+/// The shape of a body for contact: a core, and a ball of `radius` around each of its points. The core of a ball is a
+/// point, that of a capsule a segment; boxes and hulls are polytopes, cylinders are all between two discs, and these
+/// and meshes have no balls around them.
 struct Collider {
   int body = kFixed;                 // moving body, or kFixed: then all is in the world
-  std::vector<Vec3> points;          // m, from the centre of mass in the body's frame
+  std::vector<Vec3> points;          // m, from the centre of mass in the body's frame: centre, ends, or vertices
   double radius = 0;                 // m
-  double boundingRadius = 0;         // m, of all balls about the centre of mass
-  std::optional<Polytope> polytope;  // same frame as the points
-  Bounds bounds = {};                // m, of all balls; same frame as the points
+  double boundingRadius = 0;         // m, of the whole about the centre of mass
+  std::optional<Polytope> polytope;  // same frame; of a capsule its segment, of a cylinder a prism inside it
+  Bounds bounds = {};                // m, of the whole; same frame as the points
   int surface = 0;                   // index into ContactGeometry::laws
+  double rimRadius = 0;              // m, > 0: of the discs around both points of a cylinder
+  std::shared_ptr<const MeshSurface> mesh =
+      {};  // of a mesh, shared by all bodies of a model; of a polytope that meets meshes
+  RigidTransform bodyFromMesh = {};
 
   bool isBall() const { return points.size() == 1; }
+  ColliderKind kind() const {
+    if (rimRadius > 0) return ColliderKind::cylinder;
+    if (points.size() > 2) return polytope ? ColliderKind::polytope : ColliderKind::mesh;
+    return isBall() ? ColliderKind::ball : ColliderKind::capsule;
+  }
 };
+
+/// Colliders of the shapes that primitives and hulls have, placed in the body's frame. `body` and `surface` are left.
+Collider colliderOf(const Sphere& sphere, const RigidTransform& bodyFromShape);
+Collider colliderOf(const Box& box, const RigidTransform& bodyFromShape);
+Collider colliderOf(const Cylinder& cylinder, const RigidTransform& bodyFromShape);
+Collider colliderOf(const Capsule& capsule, const RigidTransform& bodyFromShape);
+Collider colliderOf(const ConvexHull& hull, const RigidTransform& bodyFromShape);
+
+/// Of a point in the collider's frame. Exact, inside and outside.
+SurfacePoint nearestSurfacePoint(const Collider& collider, const Vec3& point);
 
 /// A half-space that does not move.
 struct PlaneCollider {

@@ -7,32 +7,68 @@
 
 namespace cradle {
 
-constexpr double kFinestCrossing = 1e-12;       // of a step: to this the instant of a crossing is found
-constexpr double kFinestApproach = 1.0 / 4096;  // of a step: a touch that comes and goes within less is passed over
+constexpr double kFinestCrossing = 1e-12;  // of a step: to this the instant of a crossing is found
+// Of a step: touches that come and go within less are passed over, with a bound on the gap's acceleration and without.
+constexpr double kFinestApproach = 1.0 / (1 << 20);
+constexpr double kFinestBlindApproach = 1.0 / (1 << 12);
+constexpr int kMostCuts = 100;  // of a bracket; halving alone would need 40
 
 /// What is known of a gap over a whole step: |gap'| <= speed, gap'' <= acceleration; the unit of time is the step.
 struct GapBounds {
   double speed = 0;
   double acceleration = std::numeric_limits<double>::infinity();
+  double graze = 0;  // m: touches that come and go and cannot be deeper are passed over
 };
 
 /// A gap with these values at the ends of an interval of that length cannot close inside it: the fastest approach does
 /// not suffice, or the parabola under its chord stays above 0.
 inline bool staysOpen(const GapBounds& bounds, double gapFrom, double gapTo, double length) {
-  if (gapFrom + gapTo > bounds.speed * length) return true;
+  if (gapFrom + gapTo + 2 * bounds.graze > bounds.speed * length) return true;
   const double sag = bounds.acceleration * length * length / 8, slant = std::abs(gapTo - gapFrom);
   if (slant >= 4 * sag) return true;  // the parabola is lowest at an end
   return (gapFrom + gapTo) / 2 - sag - slant * slant / (16 * sag) > 0;
 }
 
+/// A crossing between two fractions of a step, and the gaps there: gapBefore > 0 >= gapAfter.
+struct Bracket {
+  double before, gapBefore, after, gapAfter;
+};
+
+/// Closes a bracket around a crossing to kFinestCrossing by the Illinois variant of regula falsi (M. Dowell, P.
+/// Jarratt, 1971).
+template <class Gap>
+void closeBracket(const Gap& gap, Bracket& bracket) {
+  double weightBefore = bracket.gapBefore, weightAfter = bracket.gapAfter;
+  for (int i = 0; i < kMostCuts && bracket.after - bracket.before > kFinestCrossing; ++i) {
+    const double width = bracket.after - bracket.before;
+    double cut = bracket.after - width * weightAfter / (weightAfter - weightBefore);
+    // Half the resolution to the inside, so that both ends come to the crossing.
+    cut = std::clamp(cut, bracket.before + 0.5 * kFinestCrossing, bracket.after - 0.5 * kFinestCrossing);
+    const double found = gap(cut);
+    if (found > 0) {
+      bracket.before = cut, bracket.gapBefore = weightBefore = found;
+      weightAfter /= 2;
+    } else {
+      bracket.after = cut, bracket.gapAfter = weightAfter = found;
+      weightBefore /= 2;
+    }
+  }
+}
+
 /// First zero of `gap(fraction)` in [from, to], given the gap at both ends, gapFrom > 0. An interval in which the gap
-/// stays open is passed over; else it is halved, the earlier half first.
+/// stays open is passed over; else it is halved, the earlier half first. Where the ends differ in sign a crossing is
+/// found at once, and what comes before it is searched like the rest.
 template <class Gap>
 std::optional<double> firstCrossing(const Gap& gap, const GapBounds& bounds, double from, double gapFrom, double to,
                                     double gapTo) {
-  const bool crosses = gapTo <= 0;
-  if (!crosses && (staysOpen(bounds, gapFrom, gapTo, to - from) || to - from < kFinestApproach)) return std::nullopt;
-  if (crosses && to - from < kFinestCrossing) return to;
+  if (gapTo <= 0) {
+    Bracket bracket{from, gapFrom, to, gapTo};
+    closeBracket(gap, bracket);
+    const auto earlier = firstCrossing(gap, bounds, from, gapFrom, bracket.before, bracket.gapBefore);
+    return earlier ? earlier : bracket.after;
+  }
+  const double finest = std::isfinite(bounds.acceleration) ? kFinestApproach : kFinestBlindApproach;
+  if (to - from < finest || staysOpen(bounds, gapFrom, gapTo, to - from)) return std::nullopt;
   const double middle = from + (to - from) / 2, gapMiddle = gap(middle);
   if (const auto crossing = firstCrossing(gap, bounds, from, gapFrom, middle, gapMiddle)) return crossing;
   if (gapMiddle <= 0) return middle;

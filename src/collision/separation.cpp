@@ -2,55 +2,104 @@
 
 #include <limits>
 
-#include "collision/polytope_contact.h"
+#include "collision/contact_reduction.h"
+#include "collision/core_separation.h"
+#include "collision/manifold.h"
+#include "collision/mesh_collider.h"
 
 namespace cradle {
 namespace {
 
 constexpr double kTurnRounding = 1e-14;  // of the distances that enter: a height taken in another frame is as good
+constexpr std::size_t kMostPoints = 8;   // of a polytope on a plane: the rest of a face with more does not support it
 
 /// The two colliders of a pair that is not against a plane, in their poses.
 struct PosedPair {
   const Collider &a, &b;
-  RigidTransform worldFromA, worldFromB;
+  const RigidTransform &worldFromA, &worldFromB;
 };
 
 ContactPoint mirrored(const ContactPoint& contact) {
-  return {contact.point, -contact.normal, contact.separation};
+  return {contact.point, -contact.normal, contact.separation, contact.radiusB, contact.radiusA};
 }
 
 ContactPoint ballOnPlane(const Vec3& center, double radius, const PlaneCollider& plane) {
   const double separation = plane.normal.dot(center - plane.point) - radius;
-  return {center - (radius + separation / 2) * plane.normal, -plane.normal, separation};
+  return {center - (radius + separation / 2) * plane.normal, -plane.normal, separation, radius, kFlat};
 }
 
+/// A is the ball.
+ContactPoint ballOnOther(const PosedPair& pair) {
+  const Vec3 center = pair.worldFromA * pair.a.points[0];
+  const SurfacePoint surface = nearestSurfacePoint(pair.b, pair.worldFromB.inverse() * center);
+  const double separation = surface.distance - pair.a.radius;
+  const Vec3 outward = pair.worldFromB.rotation * surface.normal;
+  return {center - (pair.a.radius + separation / 2) * outward, -outward, separation, pair.a.radius, surface.radius};
+}
+
+/// Without a turn: exact where turns would round.
 ContactPoint ballOnBall(const PosedPair& pair) {
   const Vec3 centerA = pair.worldFromA * pair.a.points[0];
   const Vec3 towardsB = pair.worldFromB * pair.b.points[0] - centerA;
   const double distance = towardsB.norm(), separation = distance - pair.a.radius - pair.b.radius;
   const Vec3 normal = distance > 0 ? Vec3(towardsB / distance) : Vec3(Vec3::UnitY());
-  return {centerA + (pair.a.radius + separation / 2) * normal, normal, separation};
-}
-
-/// A is the ball, B the polytope.
-ContactPoint ballOnPolytope(const PosedPair& pair) {
-  const Vec3 center = pair.worldFromA * pair.a.points[0];
-  const SurfacePoint surface = nearestSurfacePoint(*pair.b.polytope, pair.worldFromB.inverse() * center);
-  const double separation = surface.distance - pair.a.radius;
-  const Vec3 outward = pair.worldFromB.rotation * surface.normal;
-  return {center - (pair.a.radius + separation / 2) * outward, -outward, separation};
+  return {centerA + (pair.a.radius + separation / 2) * normal, normal, separation, pair.a.radius, pair.b.radius};
 }
 
 /// The one contact of a pair in which a ball takes part.
 ContactPoint ballContact(const PosedPair& pair) {
   if (pair.a.isBall() && pair.b.isBall()) return ballOnBall(pair);
-  if (pair.a.isBall()) return ballOnPolytope(pair);
-  return mirrored(ballOnPolytope({pair.b, pair.a, pair.worldFromB, pair.worldFromA}));
+  if (pair.a.isBall()) return ballOnOther(pair);
+  return mirrored(ballOnOther({pair.b, pair.a, pair.worldFromB, pair.worldFromA}));
 }
 
-PosedPair posed(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
-                const RigidTransform& worldFromB) {
-  return {geometry.colliders[pair.a], geometry.colliders[pair.b], worldFromA, worldFromB};
+bool hasBall(const PosedPair& pair) {
+  return pair.a.isBall() || pair.b.isBall();
+}
+
+/// The cores of a pair without a ball, in the frame of A.
+struct PosedCores {
+  Core a, b;
+  explicit PosedCores(const PosedPair& pair) : a(pair.a, {}), b(pair.b, pair.worldFromA.inverse() * pair.worldFromB) {}
+};
+
+double coreSeparation(const PosedPair& pair) {
+  const PosedCores cores(pair);
+  return separationOf(cores.a, cores.b).separation - pair.a.radius - pair.b.radius;
+}
+
+void placeInWorld(const PosedPair& pair, std::vector<ContactPoint>& points) {
+  for (ContactPoint& contact : points) {
+    contact.point = pair.worldFromA * contact.point;
+    contact.normal = pair.worldFromA.rotation * contact.normal;
+  }
+}
+
+void appendOfCores(const PosedPair& pair, double margin, std::vector<ContactPoint>& points) {
+  const PosedCores cores(pair);
+  appendManifold(cores.a, cores.b, contactAxis(cores.a, cores.b), margin, points);
+  placeInWorld(pair, points);
+}
+
+void appendOfMeshes(const PosedPair& pair, double margin, std::vector<ContactPoint>& points) {
+  points = meshContacts(pair.a, pair.b, pair.worldFromA.inverse() * pair.worldFromB, margin);
+  placeInWorld(pair, points);
+}
+
+/// Height (m) of a rim's lowest point over a plane.
+double rimSeparation(const Collider& cylinder, std::size_t rim, const RigidTransform& worldFromBody,
+                     const PlaneCollider& plane) {
+  const Core core(cylinder, worldFromBody);
+  return plane.normal.dot(core.rimPoint(rim == 0 ? 1 : -1, -plane.normal) - plane.point);
+}
+
+void appendOnPlane(const Collider& a, const RigidTransform& worldFromA, const PlaneCollider& plane,
+                   const std::vector<std::size_t>& near, double margin, std::vector<ContactPoint>& points) {
+  const bool hasManyCorners = a.polytope && near.size() > kMostPoints;
+  if (a.kind() == ColliderKind::cylinder || hasManyCorners)
+    return appendManifold(Core(a, worldFromA), plane.point, plane.normal, margin, points);
+  for (const std::size_t point : near) points.push_back(ballOnPlane(worldFromA * a.points[point], a.radius, plane));
+  if (near.size() > kMostPoints) reduceContacts(0, a.boundingRadius, points);
 }
 
 std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const ColliderPair& pair,
@@ -61,15 +110,16 @@ std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const C
   if (pair.againstPlane) {
     std::vector<std::size_t> near;
     appendFeaturesWithin(geometry, pair, worldFromA, margin, near);
-    for (const std::size_t point : near)
-      points.push_back(ballOnPlane(worldFromA * a.points[point], a.radius, geometry.planes[pair.b]));
+    appendOnPlane(a, worldFromA, geometry.planes[pair.b], near, margin, points);
     return points;
   }
-  const PosedPair both = posed(geometry, pair, worldFromA, worldFromB);
-  if (both.a.isBall() || both.b.isBall())
+  const PosedPair both{a, geometry.colliders[pair.b], worldFromA, worldFromB};
+  if (hasMesh(both.a, both.b))
+    appendOfMeshes(both, margin, points);
+  else if (hasBall(both))
     points.push_back(ballContact(both));
   else
-    appendContacts(*both.a.polytope, *both.b.polytope, worldFromA, worldFromB, margin, points);
+    appendOfCores(both, margin, points);
   return points;
 }
 
@@ -91,6 +141,11 @@ void appendFeaturesWithin(const ContactGeometry& geometry, const ColliderPair& p
   const Collider& a = geometry.colliders[pair.a];
   const PlaneCollider& plane = geometry.planes[pair.b];
   const Vec3 normal = worldFromA.rotation.conjugate() * plane.normal;
+  if (a.kind() == ColliderKind::cylinder) {
+    for (const std::size_t rim : {std::size_t{0}, std::size_t{1}})
+      if (rimSeparation(a, rim, worldFromA, plane) <= reach) features.push_back(rim);
+    return;
+  }
   const double distance = (worldFromA.translation - plane.point).norm();
   const double rounding = kTurnRounding * (distance + a.boundingRadius);
   const double highest = reach + a.radius - plane.normal.dot(worldFromA.translation - plane.point) + rounding;
@@ -99,13 +154,16 @@ void appendFeaturesWithin(const ContactGeometry& geometry, const ColliderPair& p
 }
 
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature,
-                  const RigidTransform& worldFromA, const RigidTransform& worldFromB) {
+                  const RigidTransform& worldFromA, const RigidTransform& worldFromB, double enough) {
   const Collider& a = geometry.colliders[pair.a];
-  if (pair.againstPlane)
-    return ballOnPlane(worldFromA * a.points[feature], a.radius, geometry.planes[pair.b]).separation;
-  const PosedPair both = posed(geometry, pair, worldFromA, worldFromB);
-  if (both.a.isBall() || both.b.isBall()) return ballContact(both).separation;
-  return separationOf(*both.a.polytope, *both.b.polytope, worldFromA, worldFromB);
+  if (pair.againstPlane) {
+    const PlaneCollider& plane = geometry.planes[pair.b];
+    if (a.kind() == ColliderKind::cylinder) return rimSeparation(a, feature, worldFromA, plane);
+    return ballOnPlane(worldFromA * a.points[feature], a.radius, plane).separation;
+  }
+  const PosedPair both{a, geometry.colliders[pair.b], worldFromA, worldFromB};
+  if (hasMesh(both.a, both.b)) return meshSeparation(both.a, both.b, worldFromA.inverse() * worldFromB, enough);
+  return hasBall(both) ? ballContact(both).separation : coreSeparation(both);
 }
 
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature,
@@ -135,7 +193,8 @@ void appendContacts(const ContactGeometry& geometry, std::size_t index, const Ve
   if (separationBound(geometry, pair, worldFromA, worldFromB) > margin) return;
   for (const ContactPoint& found : contactPoints(geometry, pair, worldFromA, worldFromB, margin))
     if (found.separation <= margin)
-      contacts.push_back({index, bodyA, bodyB, found.point, found.normal, found.separation});
+      contacts.push_back(
+          {index, bodyA, bodyB, found.point, found.normal, found.separation, found.radiusA, found.radiusB});
 }
 
 void findContacts(const ContactGeometry& geometry, const VectorX& state, double margin,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "collision/collider.h"
@@ -13,6 +14,8 @@ struct Contact {
   Vec3 point = Vec3::Zero();   // m, world: middle between the two surfaces
   Vec3 normal = Vec3::Zero();  // unit, world, from A to B
   double separation = 0;       // m, < 0: overlap
+  // m: radius of the ball that each surface is there: 0 a corner, infinite a flat face; NaN: neither (edge, side, rim).
+  double radiusA = std::numeric_limits<double>::quiet_NaN(), radiusB = radiusA;
 };
 
 /// Pose of a moving body's centre of mass frame in `state`; identity if fixed.
@@ -26,9 +29,11 @@ int bodyBOf(const ContactGeometry& geometry, const ColliderPair& pair);
 void appendFeaturesWithin(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
                           double reach, std::vector<std::size_t>& features);
 
-/// Signed separation (m) of a feature, for given poses of the bodies. Zero where they touch, and continuous there.
+/// Signed separation (m) of a feature, for given poses of the bodies. Zero where they touch, and continuous there. What
+/// is farther than `enough` (m) may be infinite: that saves most of a search among triangles.
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature,
-                  const RigidTransform& worldFromA, const RigidTransform& worldFromB);
+                  const RigidTransform& worldFromA, const RigidTransform& worldFromB,
+                  double enough = std::numeric_limits<double>::infinity());
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature, const VectorX& state);
 
 /// Lower bound (m) of the separations of all features, from bounding spheres; -infinity for fixed bodies.

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <limits>
 #include <optional>
+#include <vector>
 
+#include "collision/face_below.h"
 #include "collision/separation.h"
-#include "dynamics/integrators/step.h"
+#include "dynamics/integrators/pose_interpolant.h"
 
 namespace cradle {
 
@@ -11,11 +14,55 @@ namespace cradle {
 struct ImpactTime {
   double fraction = 0;  // of the step, 0..1
   std::size_t pair = 0, feature = 0;
+  double threshold = 0;           // m: the gap that is reached; < 0 if the features touched at the start
+  bool isOfOthers = false;        // the gap is that of the points of the pair that are not held
+  std::optional<FaceBelow> face;  // the gap is the height of corner number `feature` over it
 };
 
-/// The first instant of a step at which two features that are apart by more than `tolerance` (m) at its start come
-/// together. Searched on the step's interpolant by bisection, with a bound on the relative speed so that nothing passes
-/// through anything. The step's end rate must be there (prepareInterpolant).
-std::optional<ImpactTime> firstImpact(const ContactGeometry& geometry, const Step& step, double tolerance);
+/// A feature of a pair, as separation.h numbers them, that something keeps together.
+struct HeldFeature {
+  std::size_t pair = 0, feature = 0;
+  Attachment point;  // where they are held together
+};
+
+/// What touches when a step begins.
+struct TouchingFeatures {
+  double tolerance = 0;  // m: what is nearer touches
+  // m: what touches comes together anew when it has closed by more than this; infinite: it is passed over
+  double deadBand = std::numeric_limits<double>::infinity();
+  const std::vector<HeldFeature>* held =
+      nullptr;  // passed over; other points of the same pair are not: something keeps them together
+};
+
+/// Searches steps for the first instant at which two features come together: apart by more than the tolerance, leaving
+/// each other, or touching without a load before. On the step's interpolant, with bounds on the relative motion so that
+/// nothing passes through anything.
+class ImpactSearch {
+ public:
+  /// Keeps a reference to `geometry`.
+  explicit ImpactSearch(const ContactGeometry& geometry) : geometry_(geometry) {}
+
+  /// The step's end rate must be there (prepareInterpolant).
+  std::optional<ImpactTime> first(const Step& step, const TouchingFeatures& touching);
+
+  /// How far (m) an impact, found with the same touching features, is from happening in a state.
+  double margin(const ImpactTime& impact, const TouchingFeatures& touching, const VectorX& state);
+
+ private:
+  struct Turn {
+    bool isKnown = false;
+    MotionBounds bounds;
+  };
+  friend class PairSearch;
+  const MotionBounds& turnOf(const Step& step, int body);
+  void findOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state, double margin);
+  double gapOfOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state, double margin);
+
+  const ContactGeometry& geometry_;
+  std::vector<Turn> turns_;  // of the moving bodies, in the step that is searched
+  std::vector<std::size_t> features_;
+  std::vector<Contact> contacts_;
+  VectorX sample_;
+};
 
 }  // namespace cradle

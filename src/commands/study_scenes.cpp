@@ -8,6 +8,7 @@
 #include <deque>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -67,6 +68,7 @@ void printFindings(const NamedScene& named, const Reference& reference, const st
   fmt::print("  {:<20}{:>12}   CPU s a simulated s for error <= {:.0e}{:>12.0e}{:>12.0e}\n", "", "least error",
              kWantedErrors[0], kWantedErrors[1], kWantedErrors[2]);
   for (const StudyMethod& method : methods) {
+    if (!named.scene.missingIn(method).empty()) continue;
     double least = std::numeric_limits<double>::infinity();
     for (const StudyRow& row : rows)
       if (row.method == method.name && row.status == RunStatus::ok) least = std::min(least, row.error);
@@ -74,6 +76,10 @@ void printFindings(const NamedScene& named, const Reference& reference, const st
                std::isfinite(least) ? fmt::format("{:.1e}", least) : "-", cheapest(rows, method, kWantedErrors[0]),
                cheapest(rows, method, kWantedErrors[1]), cheapest(rows, method, kWantedErrors[2]));
   }
+  std::map<std::string, std::string> missing;  // by engine
+  for (const StudyMethod& method : methods)
+    if (const std::string what = named.scene.missingIn(method); !what.empty()) missing[method.engine()] = what;
+  for (const auto& [engine, what] : missing) fmt::print("  {} is left out: it does not have {}\n", engine, what);
   for (const StudyRow& row : rows)
     if (row.status == RunStatus::failed) fmt::print("  {} at {}: {}\n", row.method, row.setting, row.message);
 }
@@ -87,6 +93,8 @@ class Study {
         drawsCharts_(canDrawCharts()),
         table_((fs::path(folder_) / kTableName).string()),
         progress_("Studying", "methods", static_cast<long>(scenes * (methods_.size() + 1)), quiet) {
+    if (!hasBullet())
+      fmt::print(stderr, "note: built without Bullet (CMake: CRADLE_PEERS); only our own methods run\n");
     if (!drawsCharts_) fmt::print(stderr, "warning: gnuplot is missing: there will be a table, but no charts\n");
   }
 

@@ -36,6 +36,9 @@ void ConstraintSolver::factorize(const VectorX& state) {
 
 void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFrame>& frames) {
   findRows(constraints_, state, frames, rows_);
+  if (!leftOut_.empty())
+    rows_.erase(std::remove_if(rows_.begin(), rows_.end(), [this](const ConstraintRow& row) { return isLeftOut(row); }),
+                rows_.end());
   if (!hasKnownStructure()) analyze();
   respond(frames);
   for (std::size_t i = 0; i < rows_.size(); ++i) diagonal_[i] = couple(static_cast<int>(i), static_cast<int>(i));
@@ -48,6 +51,11 @@ void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFra
 void ConstraintSolver::regularize(double regularisation) {
   for (std::size_t i = 0; i < rows_.size(); ++i) regularDiagonal_[i] = diagonal_[i] * (1 + regularisation);
   factor_.factorize(regularDiagonal_, entries_);
+}
+
+bool ConstraintSolver::isLeftOut(const ConstraintRow& row) const {
+  const auto isOut = [this](int body) { return body != kFixed && leftOut_[static_cast<std::size_t>(body)]; };
+  return !leftOut_.empty() && (isOut(row.bodyA) || isOut(row.bodyB));
 }
 
 bool ConstraintSolver::hasKnownStructure() const {

@@ -20,6 +20,10 @@ class ConstraintSolver {
 
   bool hasConstraints() const { return !constraints_.empty(); }
 
+  /// Leaves out the rows of some bodies from the next factorize or project on.
+  void leaveOut(const std::vector<char>& bodies) { leftOut_ = bodies; }
+  bool isLeftOut(const ConstraintRow& row) const;
+
   /// Takes the rows in `state`, in which the bodies have `frames`, and factorises.
   void factorize(const VectorX& state, const std::vector<BodyFrame>& frames);
   void factorize(const VectorX& state);
@@ -65,6 +69,7 @@ class ConstraintSolver {
 
   const Constraints& constraints_;
   const std::vector<RigidBody>& bodies_;
+  std::vector<char> leftOut_;  // by body, or none
   std::vector<BodyFrame> frames_;
   std::vector<ConstraintRow> rows_;
   std::vector<RowResponse> responses_;

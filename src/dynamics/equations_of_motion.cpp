@@ -15,7 +15,10 @@ Vec3 gyroscopicAcceleration(const RigidBody& body, const Mat3& worldFromBody, co
 }  // namespace
 
 EquationsOfMotion::EquationsOfMotion(const Mechanism& mechanism)
-    : mechanism_(mechanism), resting_(mechanism.bodies.size(), 0), solver_(mechanism.constraints, mechanism.bodies) {}
+    : mechanism_(mechanism),
+      resting_(mechanism.bodies.size(), 0),
+      solver_(mechanism.constraints, mechanism.bodies),
+      contactSolver_(mechanism.contacts, mechanism.constraints, mechanism.bodies) {}
 
 RightHandSide EquationsOfMotion::rightHandSide() {
   return {[this](double, const VectorX& state, VectorX& rate) { evaluate(state, rate); },
@@ -31,12 +34,30 @@ void EquationsOfMotion::evaluate(const VectorX& state, VectorX& rate) {
   applyGravityAndGyroscopicTerms(state, rate);
   applySprings(state, rate);
   applyPushes(state, rate);
-  if (solver_.hasConstraints()) {
+  applyConstraints(state, rate);
+  holdResting(state, rate);
+}
+
+void EquationsOfMotion::applyConstraints(const VectorX& state, VectorX& rate) {
+  if (!mechanism_.contacts.empty()) {
+    holdResting(state, rate);
+    contactSolver_.factorize(state, frames_, resting_);
+    contactSolver_.constrainAccelerations(rate);
+    multipliers_ = contactSolver_.tieMultipliers();
+  } else if (solver_.hasConstraints()) {
     solver_.factorize(state, frames_);
     multipliers_ = solver_.constrainAccelerations(rate);
   }
+}
+
+void EquationsOfMotion::holdResting(const VectorX& state, VectorX& rate) const {
   for (std::size_t body = 0; body < resting_.size(); ++body)
     if (resting_[body]) rate.segment<kVelocitySize>(velocityOffset(state, static_cast<Eigen::Index>(body))).setZero();
+}
+
+double EquationsOfMotion::project(VectorX& state) {
+  if (!mechanism_.contacts.empty()) return contactSolver_.project(state, resting_);
+  return solver_.hasConstraints() ? solver_.project(state) : 0;
 }
 
 void EquationsOfMotion::applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& rate) const {

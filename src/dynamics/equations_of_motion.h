@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "dynamics/constraint_forces.h"
+#include "dynamics/contact_forces.h"
 #include "dynamics/integrators/step.h"
 #include "dynamics/push.h"
 #include "dynamics/spring.h"
@@ -15,7 +15,8 @@ struct Mechanism {
   std::vector<RigidBody> bodies;
   std::vector<SpringForce> springs;
   Constraints constraints;
-  std::vector<PushForce> pushes;  // those that act now
+  std::vector<PushForce> pushes;                 // those that act now
+  std::vector<ContactConstraint> contacts = {};  // those that last and are loaded
 };
 
 /// The equations of motion of a mechanism in the layout of state.h:
@@ -36,6 +37,14 @@ class EquationsOfMotion {
   /// force (N) multiplier x length.
   const VectorX& multipliers() const { return multipliers_; }
 
+  /// What acts at each contact, at the last evaluation. Contacts between bodies at rest have no force here.
+  const std::vector<ContactForce>& contactForces() const { return contactSolver_.forces(); }
+
+  /// Moves the bodies by the least (mass-weighted) motion until constraints and contacts hold to rounding, and takes
+  /// out of the velocities what would change that or makes sticking contacts slide. Returns the largest error that was
+  /// found, in m or rad.
+  double project(VectorX& state);
+
   /// How often evaluate was called.
   long evaluations() const { return evaluations_; }
 
@@ -46,12 +55,15 @@ class EquationsOfMotion {
   void applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& rate) const;
   void applySprings(const VectorX& state, VectorX& rate) const;
   void applyPushes(const VectorX& state, VectorX& rate) const;
+  void applyConstraints(const VectorX& state, VectorX& rate);
+  void holdResting(const VectorX& state, VectorX& rate) const;
   void addForce(int body, const Vec3& arm, const Vec3& force, VectorX& rate) const;
 
   const Mechanism& mechanism_;
   std::vector<char> resting_;
   std::vector<BodyFrame> frames_;
-  ConstraintSolver solver_;
+  ConstraintSolver solver_;  // without contacts
+  ContactSolver contactSolver_;
   VectorX multipliers_;
   long evaluations_ = 0;
 };

@@ -138,6 +138,7 @@ void addColliders(const Scene& scene, const IslandPlan& island, Assembly& assemb
       if (collider.body != kFixed) assembly.radii[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
     }
   }
+  addSurfaces(scene, assembly.colliderBodies, geometry.colliders);
   for (const std::vector<SurfacePair>& row : scene.surfacePairs) {
     std::vector<SurfaceLaw>& laws = geometry.laws.emplace_back();
     for (const SurfacePair& pair : row) laws.push_back({pair.restitution, pair.staticFriction, pair.dynamicFriction});

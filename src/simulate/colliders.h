@@ -13,6 +13,10 @@ namespace cradle {
 /// move, or kFixed. `collision: auto` of a mesh takes the primitive that it is recognised as, else its vertices.
 std::optional<Collider> colliderOf(const Body& body, const Scene& scene, int movingBody);
 
+/// Gives the colliders of bodies (indices into the scene's) the surfaces by which meshes touch: one a model, and those
+/// of the polytopes that meet them. Nothing if there is no mesh, or nothing but planes for it to touch.
+void addSurfaces(const Scene& scene, const std::vector<int>& bodies, std::vector<Collider>& colliders);
+
 /// Whether contact of two colliders can be computed; `b` is null for a plane.
 bool canSolveContact(const Collider& a, const Collider* b);
 

@@ -44,19 +44,16 @@ void resolveImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& r
 
 }  // namespace
 
-ContactStage::ContactStage(const Assembly& assembly, EquationsOfMotion& equations, EventLog& log, double timeStep)
-    : assembly_(assembly),
-      log_(log),
-      resting_(assembly.mechanism, assembly.geometry, equations, kCalmSteps * timeStep),
-      solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),
+ContactStage::ContactStage(MovingIsland& island, double timeStep)
+    : assembly_(island.assembly),
+      log_(island.log),
+      resting_(island.resting),
+      solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       timeStep_(timeStep),
-      touchTolerance_(cradle::touchTolerance(assembly.geometry)),
-      leastImpactSpeed_(kRestSpeedFloor + kLeastImpactPart * assembly.mechanism.gravity.norm() * timeStep),
-      stepping_(assembly) {}
-
-void ContactStage::wake(double time, int body, const VectorX& state) {
-  for (const int other : resting_.wake(time, body))
-    log_.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
+      touchTolerance_(cradle::touchTolerance(assembly_.geometry)),
+      leastImpactSpeed_(kRestSpeedFloor + kLeastImpactPart * assembly_.mechanism.gravity.norm() * timeStep),
+      stepping_(assembly_) {
+  resting_.setCalmTime(kCalmSteps * timeStep);
 }
 
 void ContactStage::resolve(double time, const VectorX& before, VectorX& state) {
@@ -100,7 +97,9 @@ void ContactStage::resolveStep(double time, const VectorX& before, VectorX& stat
   findWithinReach(before, state, length);
   for (const Contact& contact : std::vector<Contact>(touching_)) {
     if (contact.separation > touchTolerance_) continue;
-    for (const int body : {contact.bodyA, contact.bodyB}) wake(time, body, state);
+    for (const int body : {contact.bodyA, contact.bodyB})
+      for (const int other : resting_.wake(time, body))
+        log_.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
   }
   stepping_.resolve(touching_, before, length, state);
   std::vector<Contact> acting;

@@ -6,9 +6,8 @@
 
 #include "impact/pairwise.h"
 #include "simulate/contact_stepping.h"
-#include "simulate/event_log.h"
 #include "simulate/islands.h"
-#include "simulate/resting_bodies.h"
+#include "simulate/moving_island.h"
 
 namespace cradle {
 
@@ -16,11 +15,14 @@ namespace cradle {
 /// out, and what lies still is put to rest.
 class ContactStage {
  public:
-  /// Keeps references to all three. `timeStep` (s) is the method's.
-  ContactStage(const Assembly& assembly, EquationsOfMotion& equations, EventLog& log, double timeStep);
+  /// Keeps a reference to `island`. `timeStep` (s) is the method's.
+  ContactStage(MovingIsland& island, double timeStep);
 
   /// `before` is the state at the step's start: lasting contacts did their work since then.
   void resolve(double time, const VectorX& before, VectorX& state);
+
+  /// What touched at the last call of resolve, if something of it moved.
+  const std::vector<Contact>& touching() const { return touching_; }
 
   /// Many contacts last or chatter: the next step is to end without a search for impacts, by resolveStep.
   bool isCrowded() const { return isCrowded_; }
@@ -28,12 +30,6 @@ class ContactStage {
 
   /// What happens over a whole step of free motion from `before` to `state`, as one cone problem.
   void resolveStep(double time, const VectorX& before, VectorX& state);
-
-  /// Wakes the island of a moving body, with events.
-  void wake(double time, int body, const VectorX& state);
-
-  /// Whether all bodies of the island lie still.
-  bool allRest() const { return resting_.allRest(); }
 
   /// Nearer than this (m) is touching.
   double touchTolerance() const { return touchTolerance_; }
@@ -53,7 +49,7 @@ class ContactStage {
 
   const Assembly& assembly_;
   EventLog& log_;
-  RestingBodies resting_;
+  RestingBodies& resting_;
   ConstraintSolver solver_;
   double timeStep_, touchTolerance_, leastImpactSpeed_;
   double lastTime_ = -INFINITY;  // s, of the last call of resolve

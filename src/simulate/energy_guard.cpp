@@ -52,10 +52,10 @@ const char* const kTiesCause =
 
 }  // namespace
 
-EnergyGuard::EnergyGuard(const Assembly& assembly, const ChosenMethod& method, double duration)
+EnergyGuard::EnergyGuard(const Assembly& assembly, const VectorX& start, const ChosenMethod& method, double duration)
     : mechanism_(assembly.mechanism),
       names_(assembly.names),
-      start_(assembly.state),
+      start_(start),
       calm_(start_),
       method_(method),
       duration_(duration),

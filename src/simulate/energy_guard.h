@@ -14,8 +14,8 @@ namespace cradle {
 /// gravity can have given on the way travelled.
 class EnergyGuard {
  public:
-  /// Keeps a reference to `assembly`, whose state is the start. `duration` (s) is the run's.
-  EnergyGuard(const Assembly& assembly, const ChosenMethod& method, double duration);
+  /// Keeps a reference to `assembly`. `start` is the state to begin with; `duration` (s) is the run's.
+  EnergyGuard(const Assembly& assembly, const VectorX& start, const ChosenMethod& method, double duration);
 
   /// To be called after each step. Throws Error(unstable), naming time, body, what is too fast, and a step that would
   /// be safe, if the state is not finite or its energy is unexplained.

@@ -1,8 +1,11 @@
 // Rules of the plan. The first that applies to an island is taken:
 //   1. the scene names a method: that one, for studies
-//   2. something may touch: RK4 with a fixed step, since lasting contact is resolved once a step
-//   3. nothing acts but uniform gravity: closed form
-//   4. else DOP853 with steps as long as the accuracy allows
+//   2. balls bounce without loss, and nothing acts but uniform gravity: closed form between collisions
+//   3. many bodies may touch, only gravity acts, and the accuracy asked is coarse: the fast contact step
+//   4. something may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved once a
+//   step
+//   5. nothing acts but uniform gravity: closed form
+//   6. else DOP853 with steps as long as the accuracy allows; contact changes at events
 
 #include "simulate/plan.h"
 
@@ -20,14 +23,17 @@
 #include "dynamics/integrators/semi_implicit_euler.h"
 #include "dynamics/rigid_body.h"
 #include "simulate/colliders.h"
+#include "simulate/flying_balls.h"
 #include "simulate/islands.h"
 #include "simulate/reach.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kContactTimeStep = 1.0 / 960;  // s: 16 steps a frame at 60 frames a second
-constexpr double kTolerancePart = 0.1;          // of the accuracy: the local errors of about ten steps add up to it
+constexpr double kEventAccuracy = 1e-4;     // at coarser ones contact is resolved once a step
+constexpr double kPileTimeStep = 1.0 / 60;  // s, at most
+constexpr std::size_t kPileBodies = 50;     // with fewer, RK4 costs less than the pictures of its frames
+constexpr double kTolerancePart = 0.1;      // of the accuracy: the local errors of about ten steps add up to it
 
 /// What reaches of bodies are compared with: their size around the centre of mass.
 double sizeOf(const Body& body, const Scene& scene) {
@@ -41,7 +47,7 @@ double fixedSizeOf(const Body& body, const Scene& scene) {
   double size = 0;
   if (!collider) return size;
   for (const Vec3& point : collider->points)
-    size = std::max(size, (point - body.worldFromBody.translation).norm() + collider->radius);
+    size = std::max(size, (point - body.worldFromBody.translation).norm() + collider->radius + collider->rimRadius);
   return size;
 }
 
@@ -228,13 +234,21 @@ void choose(const Scene& scene, IslandPlan& island) {
   if (scene.method) {
     island.method = namedMethod(scene);
     island.reason = "the scene names the method";
-    if (island.method.isAdaptive() && mayTouchSomething) {
-      island.method.timeStep = kContactTimeStep;
-      island.reason = "the scene names the method; something may touch, so that its step is fixed";
-    }
-  } else if (mayTouchSomething) {
+  } else if (mayTouchSomething && !isActedUpon(scene, island) && flyingBallsOf(scene, island)) {
+    island.method = {nullptr, "closed form between collisions", 0, 0, true};
+    island.reason = "elastic balls in flight: parabolas, and collisions in the order of time";
+    island.leftOut.push_back("no steps, no rotation: nothing turns balls that touch without friction");
+  } else if (mayTouchSomething && scene.accuracy > kEventAccuracy && island.bodies.size() >= kPileBodies &&
+             !isActedUpon(scene, island)) {
+    island.method = {nullptr, "fast contact step", kPileTimeStep, 0, false, true};
+    island.reason = "many bodies may touch: soft contacts, sub-stepped; the accuracy asked is not promised";
+    island.leftOut.push_back("no motion of bodies that lie still");
+  } else if (mayTouchSomething && scene.accuracy > kEventAccuracy) {
     island.method = {rk4, "RK4", kContactTimeStep};
     island.reason = "something may touch: contact is resolved once a step, the accuracy asked is not promised";
+  } else if (mayTouchSomething) {
+    island.method = {dop853, "DOP853", 0, kTolerancePart * scene.accuracy};
+    island.reason = "something may touch: contact changes at events, with steps as long as the accuracy allows between";
   } else if (!isActedUpon(scene, island)) {
     island.method.name = "closed form";
     island.reason = "nothing acts but uniform gravity: parabola and exact free rotation";

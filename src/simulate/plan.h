@@ -9,14 +9,18 @@
 
 namespace cradle {
 
+constexpr double kContactTimeStep = 1.0 / 960;  // s, of contact that events do not serve: 16 steps a frame at 60/s
+
 /// The method that moves an island.
 struct ChosenMethod {
   Integrator integrate = nullptr;  // null: closed form
   std::string_view name;
-  double timeStep = 0;   // s, fixed; 0: chosen by the error
-  double tolerance = 0;  // of the local error, scaled 1 + |x|, if the error chooses the step
+  double timeStep = 0;         // s, fixed; 0: chosen by the error
+  double tolerance = 0;        // of the local error, scaled 1 + |x|, if the error chooses the step
+  bool hasCollisions = false;  // closed form between collisions without loss
+  bool isPile = false;         // many bodies in contact: the fast step, as in impact/pile_step.h
 
-  bool isClosedForm() const { return !integrate; }
+  bool isClosedForm() const { return !integrate && !isPile; }
   bool isAdaptive() const { return integrate && timeStep == 0; }
 };
 

@@ -49,22 +49,23 @@ double PushSchedule::nextChange() const {
 }
 
 std::vector<int> PushSchedule::apply(double time, const VectorX& state, std::vector<PushForce>& acting) {
-  std::vector<int> begun;
+  std::vector<int> changed;
   for (Planned& planned : planned_) {
     if (planned.isOver) continue;
     if (planned.isActing && time >= planned.push->start + planned.push->duration) {
       planned.isActing = false, planned.isOver = true;
       log_.recordBody(time, EventKind::pushEnd, planned.body, motionOf(planned.force.point, state).position);
+      changed.push_back(planned.body);
     } else if (!planned.isActing && time >= planned.push->start) {
       planned.isActing = begin(planned, time, state);
       planned.isOver = !planned.isActing;
-      if (planned.isActing) begun.push_back(planned.body);
+      if (planned.isActing) changed.push_back(planned.body);
     }
   }
   acting.clear();
   for (const Planned& planned : planned_)
     if (planned.isActing) acting.push_back(planned.force);
-  return begun;
+  return changed;
 }
 
 /// Finds the point that is pushed; false if the ray misses.

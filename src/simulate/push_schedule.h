@@ -17,7 +17,7 @@ class PushSchedule {
   /// go beyond it.
   double nextChange() const;
 
-  /// Puts the pushes that act from `time` on into `acting`. Returns the moving bodies on which one begins.
+  /// Puts the pushes that act from `time` on into `acting`. Returns the moving bodies on which one begins or ends.
   std::vector<int> apply(double time, const VectorX& state, std::vector<PushForce>& acting);
 
  private:

@@ -19,14 +19,12 @@ constexpr double kResidualAcceleration = 1e-6;  // of gravity: what supporting f
 
 }  // namespace
 
-RestingBodies::RestingBodies(const Mechanism& mechanism, const ContactGeometry& geometry, EquationsOfMotion& equations,
-                             double calmTime)
+RestingBodies::RestingBodies(const Mechanism& mechanism, const ContactGeometry& geometry, EquationsOfMotion& equations)
     : mechanism_(mechanism),
       geometry_(geometry),
       equations_(equations),
       solver_(mechanism.constraints, mechanism.bodies),
       sizes_(mechanism.bodies.size(), 0.0),
-      calmTime_(calmTime),
       wakeTimes_(mechanism.bodies.size(), -INFINITY),
       restingIsland_(mechanism.bodies.size(), -1) {
   double smallest = INFINITY;
@@ -121,15 +119,23 @@ std::vector<int> RestingBodies::settle(double time, const std::vector<Contact>& 
 
   for (std::size_t island = 0; island < islands.size(); ++island) {
     if (!candidate[island] || !canBeHeld(islands, static_cast<int>(island), state)) continue;
+    std::vector<int> members;
     for (std::size_t body = 0; body < islands.size(); ++body) {
       if (islands[body] != static_cast<int>(island)) continue;
-      state.segment<kVelocitySize>(velocityOffset(state, static_cast<Eigen::Index>(body))).setZero();
       if (!equations_.isResting(body)) settled.push_back(static_cast<int>(body));
-      equations_.setResting(body, true);
-      restingIsland_[body] = static_cast<int>(island);
+      members.push_back(static_cast<int>(body));
     }
+    bringToRest(members, state);
   }
   return settled;
+}
+
+void RestingBodies::bringToRest(const std::vector<int>& bodies, VectorX& state) {
+  for (const int body : bodies) {
+    state.segment<kVelocitySize>(velocityOffset(state, body)).setZero();
+    equations_.setResting(static_cast<std::size_t>(body), true);
+    restingIsland_[static_cast<std::size_t>(body)] = bodies[0];
+  }
 }
 
 bool RestingBodies::allRest() const {

@@ -11,13 +11,18 @@ namespace cradle {
 /// all that they touch or are tied to (their island), and wake together.
 class RestingBodies {
  public:
-  /// Keeps references to the first three. A body that was woken stays awake for at least `calmTime` (s).
-  RestingBodies(const Mechanism& mechanism, const ContactGeometry& geometry, EquationsOfMotion& equations,
-                double calmTime);
+  /// Keeps references to all three.
+  RestingBodies(const Mechanism& mechanism, const ContactGeometry& geometry, EquationsOfMotion& equations);
+
+  /// A body that was woken is not settled again for so long (s).
+  void setCalmTime(double calmTime) { calmTime_ = calmTime; }
 
   /// Brings islands to rest that are slow and that contact forces within the friction cones can hold, given the
   /// contacts of this instant. Returns the bodies that came to rest.
   std::vector<int> settle(double time, const std::vector<Contact>& contacts, VectorX& state);
+
+  /// Stops bodies that rest together from now on.
+  void bringToRest(const std::vector<int>& bodies, VectorX& state);
 
   /// Wakes the island of a body. Returns the bodies that were woken.
   std::vector<int> wake(double time, int body);
@@ -42,7 +47,7 @@ class RestingBodies {
   ConstraintSolver solver_;
   std::vector<double> sizes_;      // m: bounding radius of each moving body, 0 if it does not collide
   double supportMargin_ = 0;       // m
-  double calmTime_;                // s
+  double calmTime_ = 0;            // s
   std::vector<double> wakeTimes_;  // s, of each body's last waking
   std::vector<int> restingIsland_;
 };

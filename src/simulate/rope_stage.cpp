@@ -54,17 +54,14 @@ double firstLook(const RopeLimit& rope, const Step& step) {
 
 }  // namespace
 
-RopeStage::RopeStage(Assembly& assembly, EquationsOfMotion& equations, ContactStage& contacts, EventLog& log,
-                     double timeStep)
-    : assembly_(assembly),
-      equations_(equations),
-      contacts_(contacts),
-      log_(log),
-      solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),
-      timeStep_(timeStep),
-      sceneRods_(assembly.mechanism.constraints.rods.size()),
-      tautRod_(assembly.ropes.size(), -1),
-      isStretched_(assembly.ropes.size(), 0) {}
+RopeStage::RopeStage(MovingIsland& island)
+    : island_(island),
+      assembly_(island.assembly),
+      equations_(island.equations),
+      solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
+      sceneRods_(assembly_.mechanism.constraints.rods.size()),
+      tautRod_(assembly_.ropes.size(), -1),
+      isStretched_(assembly_.ropes.size(), 0) {}
 
 std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
   std::optional<RopeChange> first;
@@ -163,7 +160,7 @@ void RopeStage::pull(double time, const std::vector<Stretch>& stretches, VectorX
   std::vector<RopePull> pulls;
   for (const Stretch& stretch : stretches) {
     const RopeLimit& rope = assembly_.ropes[stretch.rope];
-    for (const int body : {rope.anchorA.body, rope.anchorB.body}) contacts_.wake(time, body, state);
+    for (const int body : {rope.anchorA.body, rope.anchorB.body}) island_.wake(body);
     pulls.push_back({&rope, stretch.reboundSpeed});
   }
   const double before = kineticEnergy(assembly_.mechanism.bodies, state);
@@ -210,7 +207,7 @@ void RopeStage::rebuildRods() {
 void RopeStage::record(double time, EventKind kind, std::size_t rope, double impulse, const VectorX& state) {
   const RopeMotion motion = motionOf(assembly_.ropes[rope], state);
   const auto [a, b] = assembly_.ropeBodies[rope];
-  log_.record({time, kind, a, b, motion.a.position, -motion.direction, impulse});
+  island_.log.record({time, kind, a, b, motion.a.position, -motion.direction, impulse});
 }
 
 }  // namespace cradle

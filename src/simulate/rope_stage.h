@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "simulate/contact_stage.h"
+#include "simulate/moving_island.h"
 
 namespace cradle {
 
@@ -17,8 +17,11 @@ struct RopeChange {
 /// The rods of taut ropes stand behind the scene's own in Constraints::rods.
 class RopeStage {
  public:
-  /// Keeps references to all four. `timeStep` (s) is the method's if that is fixed, else 0.
-  RopeStage(Assembly& assembly, EquationsOfMotion& equations, ContactStage& contacts, EventLog& log, double timeStep);
+  /// Keeps a reference to `island`.
+  explicit RopeStage(MovingIsland& island);
+
+  /// The method's if that is fixed (s), else 0: rebounds that end within about two steps are not resolved.
+  void setTimeStep(double timeStep) { timeStep_ = timeStep; }
 
   /// The first slack rope of a step that reaches its length, or taut one whose tension ends. The step's end rate must
   /// be there (prepareInterpolant).
@@ -51,12 +54,11 @@ class RopeStage {
   void rebuildRods();
   void record(double time, EventKind kind, std::size_t rope, double impulse, const VectorX& state);
 
+  MovingIsland& island_;
   Assembly& assembly_;
   EquationsOfMotion& equations_;
-  ContactStage& contacts_;
-  EventLog& log_;
   ConstraintSolver solver_;
-  double timeStep_;
+  double timeStep_ = 0;
   std::size_t sceneRods_;          // rods that are no ropes
   std::vector<int> tautRod_;       // index into Constraints::rods of each rope, or -1: no smooth force pulls at it
   std::vector<char> isStretched_;  // has reached its length and not been slack since

@@ -28,11 +28,16 @@ Run::Run(const Scene& scene) {
   const Plan plan = planOf(scene);
   std::vector<Assembly> assemblies;
   for (const IslandPlan& island : plan.islands) assemblies.push_back(assemble(scene, island));
-  refuseStartOverlaps(scene, assemblies);
+  settleStartOverlaps(scene, assemblies);
   for (std::size_t i = 0; i < assemblies.size(); ++i) {
     startWarnings_.insert(startWarnings_.end(), assemblies[i].warnings.begin(), assemblies[i].warnings.end());
     const ChosenMethod& method = plan.islands[i].method;
-    if (method.isClosedForm())
+    if (method.hasCollisions)
+      balls_.push_back(
+          std::make_unique<FlyingBalls>(scene, std::move(assemblies[i]), *flyingBallsOf(scene, plan.islands[i])));
+    else if (method.isPile)
+      piles_.push_back(std::make_unique<Pile>(std::move(assemblies[i]), method.timeStep));
+    else if (method.isClosedForm())
       addFlight(std::move(assemblies[i]));
     else
       simulations_.push_back(std::make_unique<Simulation>(scene, std::move(assemblies[i]), method));
@@ -51,11 +56,14 @@ void Run::addFlight(Assembly assembly) {
 Frame Run::frameAt(long number, double time) {
   throwIfInterrupted();
   Frame frame{number, time, std::vector<BodyState>(moving_), {}};
-  for (const auto& simulation : simulations_) {
+  const auto add = [&](const auto& simulation) {
     addTo(frame, simulation->assembly(), simulation->stateAt(time));
     const std::vector<Event> events = simulation->takeEvents();
     events_.insert(events_.end(), events.begin(), events.end());
-  }
+  };
+  for (const auto& simulation : simulations_) add(simulation);
+  for (const auto& balls : balls_) add(balls);
+  for (const auto& pile : piles_) add(pile);
   for (FlyingIsland& island : flying_) {
     for (const FreeFlight& flight : island.flights) flight.moveTo(time, island.assembly.state);
     island.evaluations += std::ssize(island.flights);
@@ -94,6 +102,8 @@ std::vector<std::string> Run::takeWarnings() {
 long Run::evaluations() const {
   long sum = 0;
   for (const auto& simulation : simulations_) sum += simulation->evaluations();
+  for (const auto& balls : balls_) sum += balls->evaluations();
+  for (const auto& pile : piles_) sum += pile->evaluations();
   for (const FlyingIsland& island : flying_) sum += island.evaluations;
   return sum;
 }

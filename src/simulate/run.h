@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "dynamics/free_flight.h"
+#include "simulate/flying_balls.h"
+#include "simulate/pile.h"
 #include "simulate/simulation.h"
 
 namespace cradle {
@@ -43,6 +45,8 @@ class Run {
   std::vector<std::string> startWarnings_;
   std::vector<std::unique_ptr<Simulation>> simulations_;
   std::vector<FlyingIsland> flying_;
+  std::vector<std::unique_ptr<FlyingBalls>> balls_;
+  std::vector<std::unique_ptr<Pile>> piles_;
   std::vector<int> stateOfBody_;  // of each scene body in a frame's states, or -1
   std::size_t moving_ = 0;
   std::vector<Event> events_;  // known, but not yet taken

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "study/peers/bullet.h"
 
 namespace cradle {
 
@@ -16,18 +17,21 @@ struct StudyMethod {
   std::string name;   // in study.csv and --methods
   std::string title;  // in charts
   SettingKind setting;
-  std::optional<MethodName> method;  // for the scene; unset: the plan chooses
-  double stabilityLimit = 0;         // of step x omega; 0: unstable at any step, or the step is not ours to choose
+  std::optional<MethodName> method;      // for the scene; unset: the plan chooses
+  double stabilityLimit = 0;             // of step x omega; 0: unstable at any step, or the step is not ours to choose
+  std::optional<BulletSettings> bullet;  // set: Bullet's own method
+
+  const char* engine() const { return bullet ? "bullet" : "cradle"; }
 };
 
-/// All that there are, in the order of charts.
+/// All that there are, in the order of charts: our own, then those of the peers that the program was built with.
 const std::vector<StudyMethod>& studyMethods();
 
 /// The methods of these names, in the order of studyMethods(); all of them for no names. Throws Error(usage) for a name
 /// that is none.
 std::vector<StudyMethod> studyMethodsNamed(const std::vector<std::string>& names);
 
-/// Makes the scene go by `method` at `setting` (a time step in s, or an accuracy).
+/// Makes the scene go by `method`, one of our own, at `setting` (a time step in s, or an accuracy).
 void choose(const StudyMethod& method, double setting, Scene& scene);
 
 }  // namespace cradle

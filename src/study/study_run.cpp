@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <ctime>
+#include <limits>
 #include <utility>
 
 #include "core/error.h"
 #include "simulate/simulate.h"
 #include "study/drift_meter.h"
+#include "study/peers/peer_run.h"
 
 namespace cradle {
 namespace {
@@ -45,6 +47,10 @@ StudyRun failedRun(const Error& error) {
 StudyScene::StudyScene(Scene scene)
     : scene_(withSafeMethod(std::move(scene))), assembly_(assemble(scene_, wholeScene(scene_))) {}
 
+std::string StudyScene::missingIn(const StudyMethod& method) const {
+  return method.bullet ? missingInBullet(scene_) : "";
+}
+
 double StudyScene::fastestFrequency() const {
   double fastest = 0;
   for (const SpringForce& spring : assembly_.mechanism.springs)
@@ -53,12 +59,12 @@ double StudyScene::fastestFrequency() const {
 }
 
 StudyRun StudyScene::run(const StudyMethod& method, double setting, double cpuLimit) {
-  choose(method, setting, scene_);
-  StudyRun result = runOnce(kDriftFrames, cpuLimit);
+  if (!method.bullet) choose(method, setting, scene_);
+  StudyRun result = runOnce(method, setting, kDriftFrames, cpuLimit);
   double sum = 0;
   for (int i = 0; i < kMostRepeats && result.status == RunStatus::ok && result.cost.cpuSeconds < kShortRun; ++i) {
     if (i >= kLeastRepeats && sum > kRepeatFor) break;
-    const RunCost cost = runOnce(1, cpuLimit).cost;
+    const RunCost cost = runOnce(method, setting, 1, cpuLimit).cost;
     sum += cost.cpuSeconds;
     result.cost = {i == 0 ? cost.cpuSeconds : std::min(result.cost.cpuSeconds, cost.cpuSeconds), cost.evaluations};
   }
@@ -66,7 +72,7 @@ StudyRun StudyScene::run(const StudyMethod& method, double setting, double cpuLi
   return result;
 }
 
-StudyRun StudyScene::runOnce(long frames, double cpuLimit) {
+StudyRun StudyScene::runOnce(const StudyMethod& method, double setting, long frames, double cpuLimit) {
   scene_.output.playbackSpeed = 1;
   scene_.output.framesPerSecond = static_cast<double>(frames) / scene_.duration;
   StudyRun run;
@@ -79,13 +85,18 @@ StudyRun StudyScene::runOnce(long frames, double cpuLimit) {
       throw Error(ErrorKind::limit, "", fmt::format("takes more than {} s of CPU time", cpuLimit));
   };
   try {
-    refuseUnsupported(scene_);
-    run.cost = simulate(scene_, {take, [](const Event&) {}, [](const std::string&) {}});
+    if (method.bullet) {
+      run.cost = runBullet(scene_, assembly_, *method.bullet, setting, take);
+    } else {
+      refuseUnsupported(scene_);
+      run.cost = simulate(scene_, {take, [](const Event&) {}, [](const std::string&) {}});
+    }
   } catch (const Error& error) {
     return failedRun(error);
   }
   CRADLE_CHECK(!run.end.empty() || assembly_.sceneBodies.empty());
-  run.energyDrift = meter.energyDrift();
+  const bool knowsEnergy = !method.bullet || !mayDissipate(assembly_);
+  run.energyDrift = knowsEnergy ? meter.energyDrift() : std::numeric_limits<double>::quiet_NaN();
   run.constraintDrift = meter.constraintDrift();
   run.penetration = meter.penetration();
   return run;

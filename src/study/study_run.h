@@ -19,7 +19,7 @@ struct StudyRun {
   std::string message;         // why it is not ok
   std::vector<BodyState> end;  // states of the dynamic bodies at the end
   RunCost cost;
-  double energyDrift = 0, constraintDrift = 0, penetration = 0;  // as DriftMeter has them
+  double energyDrift = 0, constraintDrift = 0, penetration = 0;  // as DriftMeter has them; NaN if energy is not known
 };
 
 /// A scene that is run again and again.
@@ -29,6 +29,9 @@ class StudyScene {
   explicit StudyScene(Scene scene);
   StudyScene(const StudyScene&) = delete;
   StudyScene& operator=(const StudyScene&) = delete;
+
+  /// What the scene has that the method's engine cannot simulate at all ("ropes"); empty for our own.
+  std::string missingIn(const StudyMethod& method) const;
 
   double duration() const { return scene_.duration; }
   const std::string& name() const { return scene_.name; }
@@ -41,7 +44,7 @@ class StudyScene {
   StudyRun run(const StudyMethod& method, double setting, double cpuLimit);
 
  private:
-  StudyRun runOnce(long frames, double cpuLimit);
+  StudyRun runOnce(const StudyMethod& method, double setting, long frames, double cpuLimit);
 
   Scene scene_;
   Assembly assembly_;

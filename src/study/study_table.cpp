@@ -21,8 +21,8 @@ constexpr std::array<const char*, 3> kStatusNames = {"ok", "unstable", "failed"}
 }  // namespace
 
 std::string tableLine(const StudyRow& row) {
-  return fmt::format("{},cradle,{},{},{},{},{},{},{},{},{}\n", csvField(row.scene), row.method, row.setting, row.error,
-                     row.cpuSecondsPerSimulatedSecond, row.evaluations, row.energyDrift, row.constraintDrift,
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", csvField(row.scene), row.engine, row.method, row.setting,
+                     row.error, row.cpuSecondsPerSimulatedSecond, row.evaluations, row.energyDrift, row.constraintDrift,
                      row.penetration, kStatusNames.at(static_cast<std::size_t>(row.status)));
 }
 

@@ -15,6 +15,7 @@ constexpr double kExactEnough = 1e-12;
 
 void sweep(StudyScene& scene, const std::string& sceneName, const StudyMethod& method, const Reference& reference,
            const std::function<void(const StudyRow&)>& take) {
+  if (!scene.missingIn(method).empty()) return;
   const double floor =
       std::isfinite(reference.uncertainty) ? std::max(reference.uncertainty, kExactEnough) : kExactEnough;
   Ladder ladder(method, scene);
@@ -24,6 +25,7 @@ void sweep(StudyScene& scene, const std::string& sceneName, const StudyMethod& m
     const StudyRun run = scene.run(method, ladder.setting(), kCpuLimit);
     StudyRow row;
     row.scene = sceneName;
+    row.engine = method.engine();
     row.method = method.name;
     row.setting = run.setting;
     row.status = run.status;

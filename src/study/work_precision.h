@@ -10,8 +10,8 @@ namespace cradle {
 
 /// What one run of one method cost, and what it was good for: a row of study.csv.
 struct StudyRow {
-  std::string scene, method;  // method: its name among studyMethods()
-  double setting = 0;         // time step in s, or accuracy
+  std::string scene, engine = "cradle", method;  // method: its name among studyMethods()
+  double setting = 0;                            // time step in s, or accuracy
   double error = std::numeric_limits<double>::quiet_NaN();
   double cpuSecondsPerSimulatedSecond = std::numeric_limits<double>::quiet_NaN();
   double evaluations = std::numeric_limits<double>::quiet_NaN();  // of the right-hand side
@@ -23,7 +23,8 @@ struct StudyRow {
 };
 
 /// Runs a scene by a method at finer and finer settings until the error is below the reference's uncertainty, does not
-/// become less, or the work too much; hands each row on. A method that fails is not tried again.
+/// become less, or the work too much; hands each row on. A method that fails is not tried again. A scene with something
+/// that the method's engine misses has no rows.
 void sweep(StudyScene& scene, const std::string& sceneName, const StudyMethod& method, const Reference& reference,
            const std::function<void(const StudyRow&)>& take);
 

@@ -20,14 +20,24 @@ namespace {
 constexpr StartFailure kNoGnuplot{ErrorKind::output, "gnuplot-nox"};
 
 /// A colour (M. Okabe, K. Ito, "Color Universal Design", 2008: told apart by all eyes) and a marker a method. The
-/// plan's open circles go around the markers of what it chose.
+/// plan's open circles go around the markers of what it chose. Peers have open markers and dashed lines.
 struct Look {
   const char* color;
   int marker;  // gnuplot's pointtype
   double size = 1.1, lineWidth = 2.5;
+  int dash = 1;  // gnuplot's dashtype
 };
-constexpr std::array<Look, 6> kLooks = {
-    {{"#D55E00", 9}, {"#E69F00", 5}, {"#0072B2", 7}, {"#56B4E9", 13}, {"#009E73", 11}, {"#CC79A7", 6, 2, 1.2}}};
+constexpr std::array<Look, 10> kLooks = {{{"#D55E00", 9},
+                                          {"#E69F00", 5},
+                                          {"#0072B2", 7},
+                                          {"#56B4E9", 13},
+                                          {"#009E73", 11},
+                                          {"#CC79A7", 6, 2, 1.2},
+                                          {"#000000", 4, 1.2, 1.6, 2},
+                                          {"#000000", 8, 1.2, 1.6, 4},
+                                          {"#7A5195", 4, 1.2, 1.6, 2},
+                                          {"#7A5195", 8, 1.2, 1.6, 4}}};
+constexpr std::size_t kMostInALine = 6;  // entries of the legend
 
 struct Point {
   double cpu, evaluations, error;
@@ -182,9 +192,9 @@ std::string plotCommand(const std::vector<Curve>& curves, int column) {
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const Look& look = curves[i].look;
     text += fmt::format(
-        "{}$curve{} using {}:3 with linespoints linewidth {} pointtype {} pointsize {}*markerScale linecolor rgb '{}' "
-        "notitle",
-        i > 0 ? ", " : "", i, column, look.lineWidth, look.marker, look.size, look.color);
+        "{}$curve{} using {}:3 with linespoints dashtype {} linewidth {} pointtype {} pointsize {}*markerScale "
+        "linecolor rgb '{}' notitle",
+        i > 0 ? ", " : "", i, column, look.dash, look.lineWidth, look.marker, look.size, look.color);
     if (!curves[i].blowUps.empty())
       text += fmt::format(
           ", $blowUps{} using {}:3 with points pointtype 2 pointsize 1.6*markerScale linewidth 3 linecolor rgb '{}' "
@@ -195,18 +205,21 @@ std::string plotCommand(const std::vector<Curve>& curves, int column) {
 }
 
 std::string legend(const std::vector<Curve>& curves) {
-  std::string text =
+  std::string text = fmt::format(
       "unset label\nunset arrow\nunset object\nunset border\nunset tics\nunset xlabel\nunset ylabel\nunset grid\n"
-      "unset logscale\nset key center center horizontal Left reverse maxrows 1 samplen 3 width 1 noenhanced font "
-      "',15'\n"
+      "unset logscale\nset key center center horizontal Left reverse maxrows {} samplen 3 width 1 noenhanced font "
+      "',{}'\n"
       "set lmargin at screen 0.03\nset rmargin at screen 0.97\nset bmargin at screen 0.05\nset tmargin at screen 0.1\n"
       "set label 1 'One marker a run: from each to the next, the time step is halved, or the accuracy asked for ten "
       "times finer.' at screen 0.5, 0.025 center font ',13' textcolor rgb '#505050'\n"
-      "plot [0:1][0:1] ";
+      "plot [0:1][0:1] ",
+      curves.size() > kMostInALine ? 3 : 1, curves.size() > kMostInALine ? 12 : 15);
   for (const Curve& curve : curves)
     text += fmt::format(
-        "NaN with linespoints linewidth {} pointtype {} pointsize {}*markerScale linecolor rgb '{}' title {}, ",
-        curve.look.lineWidth, curve.look.marker, curve.look.size, curve.look.color, quoted(curve.title));
+        "NaN with linespoints dashtype {} linewidth {} pointtype {} pointsize {}*markerScale linecolor rgb '{}' title "
+        "{}, ",
+        curve.look.dash, curve.look.lineWidth, curve.look.marker, curve.look.size, curve.look.color,
+        quoted(curve.title));
   const bool hasBlowUps =
       std::any_of(curves.begin(), curves.end(), [](const Curve& curve) { return !curve.blowUps.empty(); });
   if (!hasBlowUps) return text + "NaN notitle\n";

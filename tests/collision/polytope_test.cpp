@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "collision/polytope_contact.h"
+#include "collision/separation.h"
 #include "math/rotation.h"
 
 namespace cradle {
@@ -11,6 +11,41 @@ namespace {
 
 Polytope boxOf(const Vec3& size) {
   return polytopeOf(Box{size}, {});
+}
+
+Collider colliderOfSize(const Vec3& size) {
+  return colliderOf(Box{size}, {});
+}
+
+/// Two moving colliders in their poses.
+struct Pair {
+  ContactGeometry geometry;
+  VectorX state = VectorX::Zero(stateSize(2));
+
+  Pair(const Collider& a, const Collider& b, const RigidTransform& poseA, const RigidTransform& poseB) {
+    geometry.colliders = {a, b};
+    geometry.pairs = {{0, 1, false, {}}};
+    int body = 0;
+    for (const RigidTransform& pose : {poseA, poseB}) {
+      geometry.colliders[static_cast<std::size_t>(body)].body = body;
+      centerOfMass(state, body) = pose.translation;
+      setOrientation(state, body, pose.rotation);
+      ++body;
+    }
+  }
+};
+
+double separationOf(const Collider& a, const Collider& b, const RigidTransform& poseA, const RigidTransform& poseB) {
+  const Pair pair(a, b, poseA, poseB);
+  return separation(pair.geometry, pair.geometry.pairs[0], 0, pair.state);
+}
+
+std::vector<Contact> contactsOf(const Collider& a, const Collider& b, const RigidTransform& poseA,
+                                const RigidTransform& poseB, double margin) {
+  const Pair pair(a, b, poseA, poseB);
+  std::vector<Contact> contacts;
+  findContacts(pair.geometry, pair.state, margin, contacts);
+  return contacts;
 }
 
 class Random {
@@ -78,7 +113,7 @@ double distanceByProjection(const Vec3& sizeA, const Vec3& sizeB, const RigidTra
 TEST(SeparationOfPolytopes, HasTheSignOfTheDistance) {
   Random random;
   const Vec3 sizeA(1, 0.6, 1.4), sizeB(0.5, 1.1, 0.8);
-  const Polytope a = boxOf(sizeA), b = boxOf(sizeB);
+  const Collider a = colliderOfSize(sizeA), b = colliderOfSize(sizeB);
   int apart = 0, overlapping = 0, equal = 0;
   for (int i = 0; i < 300; ++i) {
     const RigidTransform poseA = random.pose(0.6), poseB = random.pose(0.9);
@@ -98,7 +133,7 @@ TEST(SeparationOfPolytopes, HasTheSignOfTheDistance) {
 // Moving B along the normal by the overlap brings the separation to zero, and no smaller move along any axis does.
 TEST(SeparationOfPolytopes, IsTheLeastTranslationThatSeparates) {
   Random random;
-  const Polytope a = boxOf(Vec3(1, 0.6, 1.4)), b = boxOf(Vec3(0.5, 1.1, 0.8));
+  const Collider a = colliderOfSize(Vec3(1, 0.6, 1.4)), b = colliderOfSize(Vec3(0.5, 1.1, 0.8));
   int overlapping = 0;
   for (int i = 0; i < 200; ++i) {
     const RigidTransform poseA = random.pose(0.4);
@@ -106,8 +141,7 @@ TEST(SeparationOfPolytopes, IsTheLeastTranslationThatSeparates) {
     const double separation = separationOf(a, b, poseA, poseB);
     if (separation >= 0) continue;
     ++overlapping;
-    std::vector<ContactPoint> contacts;
-    appendContacts(a, b, poseA, poseB, 0, contacts);
+    const auto contacts = contactsOf(a, b, poseA, poseB, 0);
     ASSERT_FALSE(contacts.empty()) << i;
     const Vec3 normal = contacts[0].normal;
     EXPECT_NEAR(normal.norm(), 1, 1e-14);
@@ -123,40 +157,36 @@ TEST(SeparationOfPolytopes, IsTheLeastTranslationThatSeparates) {
 }
 
 TEST(BoxContacts, OfAFaceOnAFaceAreTheCornersOfTheSharedArea) {
-  const Polytope floor = boxOf(Vec3(4, 1, 4)), box = boxOf(Vec3(1, 1, 1));
+  const Collider floor = colliderOfSize(Vec3(4, 1, 4)), box = colliderOfSize(Vec3(1, 1, 1));
   for (const double gap : {0.0, 1e-9, -1e-6}) {
-    std::vector<ContactPoint> contacts;
     // Half over the floor's edge at x = 2.
-    appendContacts(floor, box, {}, {Quat::Identity(), Vec3(2, 1 + gap, 0.3)}, 1e-8, contacts);
+    const auto contacts = contactsOf(floor, box, {}, {Quat::Identity(), Vec3(2, 1 + gap, 0.3)}, 1e-8);
     ASSERT_EQ(contacts.size(), 4u);
-    for (const ContactPoint& contact : contacts) {
+    for (const Contact& contact : contacts) {
       EXPECT_LT((contact.normal - Vec3::UnitY()).norm(), 1e-15);
       EXPECT_NEAR(contact.separation, gap, 1e-15);
       EXPECT_NEAR(contact.point.y(), 0.5 + gap / 2, 1e-15);
       EXPECT_NEAR(std::abs(contact.point.x() - 1.75), 0.25, 1e-12);
       EXPECT_NEAR(std::abs(contact.point.z() - 0.3), 0.5, 1e-12);
     }
-    std::vector<ContactPoint> swapped;
-    appendContacts(box, floor, {Quat::Identity(), Vec3(2, 1 + gap, 0.3)}, {}, 1e-8, swapped);
+    const auto swapped = contactsOf(box, floor, {Quat::Identity(), Vec3(2, 1 + gap, 0.3)}, {}, 1e-8);
     ASSERT_EQ(swapped.size(), 4u);
     EXPECT_LT((swapped[0].normal + Vec3::UnitY()).norm(), 1e-15);
   }
 }
 
 TEST(BoxContacts, OfACornerAndOfAnEdgeOnAFace) {
-  const Polytope floor = boxOf(Vec3(4, 1, 4)), box = boxOf(Vec3(1, 1, 1));
-  const auto contactsOf = [&](const Quat& turn) {
+  const Collider floor = colliderOfSize(Vec3(4, 1, 4)), box = colliderOfSize(Vec3(1, 1, 1));
+  const auto contactsWhen = [&](const Quat& turn) {
     double lowest = 0;
-    for (const Vec3& vertex : box.vertices) lowest = std::min(lowest, (turn * vertex).y());
-    std::vector<ContactPoint> contacts;
-    appendContacts(floor, box, {}, {turn, Vec3(0.2, 0.5 - lowest, 0.1)}, 1e-8, contacts);
-    return contacts;
+    for (const Vec3& vertex : box.points) lowest = std::min(lowest, (turn * vertex).y());
+    return contactsOf(floor, box, {}, {turn, Vec3(0.2, 0.5 - lowest, 0.1)}, 1e-8);
   };
-  const auto corner = contactsOf(Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3(0, -1, 0)));
+  const auto corner = contactsWhen(Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3(0, -1, 0)));
   ASSERT_EQ(corner.size(), 1u);
   EXPECT_LT((corner[0].point - Vec3(0.2, 0.5, 0.1)).norm(), 1e-12);
   EXPECT_LT((corner[0].normal - Vec3::UnitY()).norm(), 1e-12);
-  const auto edge = contactsOf(rotationAbout(Vec3::UnitZ(), M_PI / 4));
+  const auto edge = contactsWhen(rotationAbout(Vec3::UnitZ(), M_PI / 4));
   ASSERT_EQ(edge.size(), 2u);
   EXPECT_NEAR(std::abs(edge[0].point.z() - 0.1), 0.5, 1e-12);
   EXPECT_NEAR(edge[0].point.z() + edge[1].point.z(), 0.2, 1e-12);
@@ -164,12 +194,11 @@ TEST(BoxContacts, OfACornerAndOfAnEdgeOnAFace) {
 
 // Two edges that cross at right angles: a box on its edge along z above one with its edge along x.
 TEST(BoxContacts, OfCrossingEdgesIsTheirNearestPoint) {
-  const Polytope box = boxOf(Vec3(1, 1, 1));
+  const Collider box = colliderOfSize(Vec3(1, 1, 1));
   const double half = std::sqrt(0.5);
   for (const double gap : {1e-3, -1e-3}) {
-    std::vector<ContactPoint> contacts;
-    appendContacts(box, box, {rotationAbout(Vec3::UnitX(), M_PI / 4), Vec3(0.1, 0, 0)},
-                   {rotationAbout(Vec3::UnitZ(), M_PI / 4), Vec3(0.3, 2 * half + gap, 0.2)}, 0.01, contacts);
+    const auto contacts = contactsOf(box, box, {rotationAbout(Vec3::UnitX(), M_PI / 4), Vec3(0.1, 0, 0)},
+                                     {rotationAbout(Vec3::UnitZ(), M_PI / 4), Vec3(0.3, 2 * half + gap, 0.2)}, 0.01);
     ASSERT_EQ(contacts.size(), 1u);
     EXPECT_NEAR(contacts[0].separation, gap, 1e-14);
     EXPECT_LT((contacts[0].normal - Vec3::UnitY()).norm(), 1e-14);

@@ -6,6 +6,7 @@
 
 #include <atomic>
 
+#include "dynamics/contact_motion.h"
 #include "dynamics/dop853_problems.h"
 #include "dynamics/integrators/dop853.h"
 #include "dynamics/integrators/explicit_euler.h"
@@ -45,6 +46,28 @@ TEST(Step, AllocatesNothingAfterTheFirst) {
     EXPECT_EQ(once(), 0);
     EXPECT_EQ(once(), 0);
   }
+}
+
+TEST(ContactForces, AllocateNothingAfterTheFirstEvaluation) {
+  Mechanism mechanism;
+  mechanism.bodies = {lopsided(1), solidSphere(2, 0.1)};
+  mechanism.constraints.rods = {{{0, Vec3(0, 0.1, 0)}, {kFixed, Vec3(0, 1, 0.3)}, 1}};
+  for (const double x : {-0.2, 0.2})
+    for (const double z : {-0.3, 0.3})
+      mechanism.contacts.push_back(ballOnFace({0, Vec3(x, 0, z)}, 0, {}, Vec3::UnitY(),
+                                              x < 0 ? ContactMotion::sliding : ContactMotion::sticking));
+  mechanism.contacts.push_back(
+      ballOnFace({1, Vec3::Zero()}, 0.1, {kFixed, Vec3(0, -0.1, 0)}, Vec3::UnitY(), ContactMotion::sticking));
+  EquationsOfMotion equations(mechanism);
+  VectorX state = restingState(2), rate;
+  const auto once = [&] {
+    const long before = allocations;
+    equations.evaluate(state, rate);
+    equations.project(state);
+    return allocations - before;
+  };
+  EXPECT_GT(once(), 0);
+  EXPECT_EQ(once(), 0);
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ class AdaptiveGuard : public ::testing::Test {
     "springs": [{"name": "s", "bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 1, 0], "stiffness": 10}])");
   IslandPlan plan_ = planOf(scene_).islands.at(0);
   Assembly assembly_ = assemble(scene_, plan_);
-  EnergyGuard guard_{assembly_, plan_.method, scene_.duration};
+  EnergyGuard guard_{assembly_, assembly_.state, plan_.method, scene_.duration};
 };
 
 // One step with local errors of 1e-7 (1 + |y|): the weight of 9.81 N and the dissipated joule have a part of 1.1e-6 J,

@@ -33,30 +33,44 @@ Eigen::Matrix<double, kSize, 1> componentsAt(const Step& step, Eigen::Index at, 
   return part;
 }
 
-/// Bound on the slope of the interpolant over the unit interval. That of the cubic is h (r f0 + s f1) + 6 s r (y1 - y0
-/// - h (f0 + f1) / 2), with 6 s r <= 3/2; the curve of degree 7 adds its corrections.
+/// The components of one vector from `at` on.
 template <int kSize>
-double slopeBound(const Step& step, Eigen::Index at) {
-  const Eigen::Matrix<double, kSize, 1> start = step.timeStep * step.startRate.segment<kSize>(at),
-                                        end = step.timeStep * step.endRate.segment<kSize>(at);
-  const auto bend = step.state.segment<kSize>(at) - step.startState.segment<kSize>(at) - 0.5 * (start + end);
+auto componentsFrom(Eigen::Index at) {
+  return [at](const VectorX& vector) { return vector.segment<kSize>(at); };
+}
+
+/// Positions of B relative to A; either may be fixed.
+auto difference(int bodyA, int bodyB) {
+  return [bodyA, bodyB](const VectorX& vector) {
+    Vec3 result = Vec3::Zero();
+    if (bodyB != kFixed) result += vector.segment<3>(bodyB * kPoseSize);
+    if (bodyA != kFixed) result -= vector.segment<3>(bodyA * kPoseSize);
+    return result;
+  };
+}
+
+/// Bound on the slope of the interpolant of a part of the state over the unit interval. That of the cubic is h (r f0 +
+/// s f1) + 6 s r (y1 - y0 - h (f0 + f1) / 2), with 6 s r <= 3/2; the curve of degree 7 adds its corrections.
+template <class Part>
+double slopeBound(const Step& step, const Part& part) {
+  const auto start = (step.timeStep * part(step.startRate)).eval(), end = (step.timeStep * part(step.endRate)).eval();
+  const auto bend = (part(step.state) - part(step.startState) - 0.5 * (start + end)).eval();
   double bound = std::max(start.norm(), end.norm()) + 1.5 * bend.norm();
   if (step.interpolant == InterpolantKind::degreeSeven)
     for (std::size_t i = 0; i < kCorrectionSlopes.size(); ++i)
-      bound += kCorrectionSlopes[i] * step.corrections[i].segment<kSize>(at).norm();
+      bound += kCorrectionSlopes[i] * part(step.corrections[i]).norm();
   return bound;
 }
 
-/// Bound on the second derivative of the interpolant over the unit interval. That of the cubic is linear in s.
-template <int kSize>
-double bendBound(const Step& step, Eigen::Index at) {
-  const Eigen::Matrix<double, kSize, 1> start = step.timeStep * step.startRate.segment<kSize>(at),
-                                        end = step.timeStep * step.endRate.segment<kSize>(at),
-                                        way = step.state.segment<kSize>(at) - step.startState.segment<kSize>(at);
+/// Bound on the second derivative of the same. That of the cubic is linear in s.
+template <class Part>
+double bendBound(const Step& step, const Part& part) {
+  const auto start = (step.timeStep * part(step.startRate)).eval(), end = (step.timeStep * part(step.endRate)).eval();
+  const auto way = (part(step.state) - part(step.startState)).eval();
   double bound = std::max((6 * way - 4 * start - 2 * end).norm(), (6 * way - 2 * start - 4 * end).norm());
   if (step.interpolant == InterpolantKind::degreeSeven)
     for (std::size_t i = 0; i < kCorrectionBends.size(); ++i)
-      bound += kCorrectionBends[i] * step.corrections[i].segment<kSize>(at).norm();
+      bound += kCorrectionBends[i] * part(step.corrections[i]).norm();
   return bound;
 }
 
@@ -85,13 +99,21 @@ double motionBound(const Step& step, int body, double reach) {
 // With p = q' / q and its rate q'' / q - p^2, a body turns at w = 2 Im p: |w| <= 2 |q'| / |q|, and |w'| <= 2 (|q''| /
 // |q|
 // + |q'|^2 / |q|^2). A point at r moves at w x r and accelerates by w' x r + w x (w x r).
-MotionBounds motionBounds(const Step& step, int body, double reach) {
+MotionBounds turnBounds(const Step& step, int body) {
   if (body == kFixed) return {};
-  const Eigen::Index at = body * kPoseSize;
-  const double slope = slopeBound<4>(step, at + 3), least = leastLength(step, at + 3, slope);
-  const double relative = slope / least, bend = bendBound<4>(step, at + 3) / least;
-  return {slopeBound<3>(step, at) + 2 * relative * reach,
-          bendBound<3>(step, at) + (2 * bend + 6 * relative * relative) * reach};
+  const Eigen::Index at = body * kPoseSize + 3;
+  const double slope = slopeBound(step, componentsFrom<4>(at)), least = leastLength(step, at, slope);
+  const double relative = slope / least, bend = bendBound(step, componentsFrom<4>(at)) / least;
+  return {2 * relative, 2 * bend + 6 * relative * relative};
+}
+
+MotionBounds relativeMotionBounds(const Step& step, int bodyA, int bodyB) {
+  return {slopeBound(step, difference(bodyA, bodyB)), bendBound(step, difference(bodyA, bodyB))};
+}
+
+MotionBounds motionBounds(const Step& step, int body, double reach) {
+  const MotionBounds shift = relativeMotionBounds(step, kFixed, body), turn = turnBounds(step, body);
+  return {shift.speed + turn.speed * reach, shift.acceleration + turn.acceleration * reach};
 }
 
 }  // namespace cradle

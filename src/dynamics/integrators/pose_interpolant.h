@@ -18,4 +18,11 @@ struct MotionBounds {
 };
 MotionBounds motionBounds(const Step& step, int body, double reach);
 
+/// The same for the difference of two bodies' centres of mass: bodies that move alike hardly move relative to each
+/// other.
+MotionBounds relativeMotionBounds(const Step& step, int bodyA, int bodyB);
+
+/// Bounds on what a body's turning does to a point at 1 m from its centre of mass, with the step as the unit of time.
+MotionBounds turnBounds(const Step& step, int body);
+
 }  // namespace cradle

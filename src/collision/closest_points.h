@@ -1,0 +1,71 @@
+#pragma once
+
+#include <algorithm>
+
+#include "math/types.h"
+
+// Nearest points of segments and triangles (C. Ericson, "Real-Time Collision Detection", 2005, 5.1), in forms that keep
+// the distance exact to rounding for any angles.
+
+namespace cradle {
+
+/// A straight line's part from `from` to from + along.
+struct Segment {
+  Vec3 from, along;  // m
+
+  Vec3 at(double part) const { return from + part * along; }
+  /// Where (0..1) it is nearest to a point.
+  double nearestPart(const Vec3& point) const {
+    const double length2 = along.squaredNorm();
+    return length2 > 0 ? std::clamp((point - from).dot(along) / length2, 0.0, 1.0) : 0.0;
+  }
+};
+
+/// Where (0..1) two segments are nearest to each other.
+struct SegmentParts {
+  double a = 0, b = 0;
+};
+
+/// The lines' nearest points by their common normal, whose error grows as their angle shrinks just as its effect on the
+/// distance shrinks (that of the usual determinant grows with the square). If one is beyond a segment's end, the
+/// nearest of the other to that end.
+inline SegmentParts nearestParts(const Segment& a, const Segment& b) {
+  const Vec3 normal = a.along.cross(b.along), between = b.from - a.from;
+  const double normal2 = normal.squaredNorm();
+  SegmentParts parts;
+  if (normal2 > 0) {
+    parts.a = between.cross(b.along).dot(normal) / normal2;
+    parts.b = between.cross(a.along).dot(normal) / normal2;
+    if (parts.a >= 0 && parts.a <= 1 && parts.b >= 0 && parts.b <= 1) return parts;
+    parts.a = std::clamp(parts.a, 0.0, 1.0);
+  }
+  parts.b = b.nearestPart(a.at(parts.a));
+  parts.a = a.nearestPart(b.at(parts.b));
+  return parts;
+}
+
+/// Corners of a triangle and its unit normal, which is zero if it has no area.
+struct FlatTriangle {
+  Vec3 a, b, c;  // m
+  Vec3 normal;
+
+  double heightOf(const Vec3& point) const { return normal.dot(point - a); }
+  /// Whether the foot of the perpendicular is in the triangle, or beyond a side by at most `slack` of the side's
+  /// length.
+  bool isAbove(const Vec3& point, double slack = 0) const {
+    return isLeftOf(a, b, point, slack) && isLeftOf(b, c, point, slack) && isLeftOf(c, a, point, slack) &&
+           normal != Vec3::Zero();
+  }
+
+ private:
+  bool isLeftOf(const Vec3& from, const Vec3& to, const Vec3& point, double slack) const {
+    const Vec3 along = to - from;
+    return normal.cross(along).dot(point - from) >= -slack * along.squaredNorm();
+  }
+};
+
+inline const Vec3& cornerOf(const FlatTriangle& triangle, std::size_t corner) {
+  return corner == 0 ? triangle.a : corner == 1 ? triangle.b : triangle.c;
+}
+
+}  // namespace cradle

@@ -1,0 +1,122 @@
+#include "collision/contact_patch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cradle {
+namespace {
+
+ContactPatch single(const Vec3& normal, const Vec3& onA, const Vec3& onB) {
+  ContactPatch patch;
+  patch.normal = normal;
+  patch.count = 1;
+  patch.points[0] = {onA, onB, normal.dot(onB - onA)};
+  return patch;
+}
+
+/// A box's surface as a point sees it.
+struct NearestOfBox {
+  double distance;  // m, < 0 inside
+  Vec3 normal;      // unit, out of the box
+  Vec3 point;       // m, world
+};
+
+NearestOfBox nearestOf(const PosedBox& box, const Vec3& from) {
+  const Vec3 local = box.axes.transpose() * (from - box.center);
+  const Vec3 nearest = local.cwiseMin(box.halfSize).cwiseMax(-box.halfSize);
+  const double distance = (local - nearest).norm();
+  if (distance > 0) return {distance, box.axes * ((local - nearest) / distance), box.center + box.axes * nearest};
+  Eigen::Index axis = 0;
+  const double depth = (box.halfSize - local.cwiseAbs()).minCoeff(&axis);
+  const Vec3 normal = (local[axis] < 0 ? -1 : 1) * box.axes.col(axis);
+  return {-depth, normal, from + depth * normal};
+}
+
+}  // namespace
+
+/// Apart, the normal is that of the instant at which they meet: |offset + part motion| = reach.
+ContactPatch contactOfBalls(const PosedBall& a, const PosedBall& b, const Vec3& motion, double margin) {
+  Vec3 offset = b.center - a.center;
+  const double reach = a.radius + b.radius, distance2 = offset.squaredNorm();
+  if (distance2 > (reach + margin) * (reach + margin)) {
+    const double along = offset.dot(motion), excess = distance2 - reach * reach;
+    const double root = along * along - motion.squaredNorm() * excess;
+    if (along >= 0 || root < 0) return {};
+    const double part = excess / (std::sqrt(root) - along);
+    if (part > 1) return {};
+    offset += part * motion;
+  }
+  const double length = offset.norm();
+  const Vec3 normal = length > 0 ? Vec3(offset / length) : Vec3(Vec3::UnitY());
+  return single(normal, a.center + a.radius * normal, b.center - b.radius * normal);
+}
+
+/// Apart, the box is taken where it is when it has come as near as its speed along the normal of now allows.
+ContactPatch contactOfBallAndBox(const PosedBall& a, const PosedBox& b, const Vec3& motion, double margin) {
+  NearestOfBox nearest = nearestOf(b, a.center);
+  const double gap = nearest.distance - a.radius;
+  if (gap - motion.norm() > margin) return {};
+  const double closing = nearest.normal.dot(motion);
+  if (gap > margin) {
+    if (closing <= 0) return {};
+    nearest = nearestOf(b, a.center - std::min(1.0, gap / closing) * motion);
+    if (nearest.distance - a.radius > margin) return {};
+  }
+  return single(-nearest.normal, a.center - a.radius * nearest.normal, nearest.point);
+}
+
+ContactPatch contactOfBallAndPlane(const PosedBall& a, const PlaneCollider& b, const Vec3& motion, double margin) {
+  const double height = b.normal.dot(a.center - b.point), closing = b.normal.dot(motion);
+  if (height - a.radius - std::max(0.0, closing) > margin) return {};
+  return single(-b.normal, a.center - a.radius * b.normal, a.center - height * b.normal);
+}
+
+ContactPatch contactOfBoxAndPlane(const PosedBox& a, const PlaneCollider& b, const Vec3& motion, double margin) {
+  const double reach = margin + std::max(0.0, b.normal.dot(motion));
+  const double middle = b.normal.dot(a.center - b.point);
+  const Vec3 heights = (a.axes.transpose() * b.normal).cwiseProduct(a.halfSize);
+  ContactPatch patch;
+  patch.normal = -b.normal;
+  if (middle - heights.cwiseAbs().sum() > reach) return patch;
+  ContactPatch::Point points[8];
+  std::size_t count = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 signs(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    const double height = middle + heights.dot(signs);
+    if (height > reach) continue;
+    const Vec3 at = a.center + a.axes * signs.cwiseProduct(a.halfSize);
+    points[count++] = {at, at - height * b.normal, height};
+  }
+  appendSpanning(points, count, patch);
+  return patch;
+}
+
+ContactPatch exchanged(ContactPatch patch) {
+  patch.normal = -patch.normal;
+  for (ContactPatch::Point& point : patch.points) std::swap(point.onA, point.onB);
+  return patch;
+}
+
+void appendSpanning(const ContactPatch::Point* points, std::size_t count, ContactPatch& patch) {
+  if (count <= ContactPatch::kMostPoints) {
+    for (std::size_t k = 0; k < count; ++k) patch.points[patch.count++] = points[k];
+    return;
+  }
+  const auto farthest = [&](const auto& measure) {
+    std::size_t best = 0;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < count; ++k)
+      if (const double value = measure(points[k]); value > most) most = value, best = k;
+    patch.points[patch.count++] = points[best];
+    return points[best].onA;
+  };
+  const Vec3 first = farthest([](const ContactPatch::Point& p) { return -p.separation; });
+  const Vec3 second = farthest([&](const ContactPatch::Point& p) { return (p.onA - first).squaredNorm(); });
+  const Vec3 across = patch.normal.cross(second - first);
+  const auto height = [&](const ContactPatch::Point& p) { return across.dot(p.onA - first); };
+  farthest(height);
+  farthest([&](const ContactPatch::Point& p) { return -height(p); });
+}
+
+}  // namespace cradle

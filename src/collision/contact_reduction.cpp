@@ -1,0 +1,66 @@
+#include "collision/contact_reduction.h"
+
+#include <array>
+#include <numbers>
+
+namespace cradle {
+namespace {
+
+constexpr double kSameNormal = 1 - 1e-4;  // cosine: within 0.8 degrees
+constexpr double kSamePart = 1e-9;        // of the size: points as near are one, and heights as near are level
+
+constexpr double kHalf = 0.5, kRoot = std::numbers::sqrt3 / 2;
+constexpr std::array<std::array<double, 2>, 6> kDirections = {
+    {{1, 0}, {kHalf, kRoot}, {-kHalf, kRoot}, {-1, 0}, {-kHalf, -kRoot}, {kHalf, -kRoot}}};
+
+/// The contacts of one normal, and which of them stay.
+struct Cluster {
+  const std::vector<ContactPoint>& contacts;
+  std::vector<std::size_t> members;
+  double same;  // m
+
+  /// The farthest along a direction; among equals the farthest along the other one, then the first.
+  std::size_t farthest(const Vec3& direction, const Vec3& other) const {
+    std::size_t best = members[0];
+    for (const std::size_t member : members) {
+      const Vec3 ahead = contacts[member].point - contacts[best].point;
+      const double along = direction.dot(ahead);
+      if (along > same || (along > -same && other.dot(ahead) > same)) best = member;
+    }
+    return best;
+  }
+
+  void markKept(std::vector<char>& isKept) const {
+    const Vec3& normal = contacts[members[0]].normal;
+    const Vec3 across = normal.unitOrthogonal(), other = normal.cross(across);
+    for (const auto& [x, y] : kDirections) isKept[farthest(x * across + y * other, x * other - y * across)] = 1;
+    std::size_t deepest = members[0];
+    double least = std::numeric_limits<double>::infinity(), leastKept = least;
+    for (const std::size_t member : members) {
+      const double separation = contacts[member].separation;
+      if (separation < least) least = separation, deepest = member;
+      if (isKept[member]) leastKept = std::min(leastKept, separation);
+    }
+    if (least < leastKept - same) isKept[deepest] = 1;
+  }
+};
+
+}  // namespace
+
+void reduceContacts(std::size_t first, double size, std::vector<ContactPoint>& contacts) {
+  std::vector<Cluster> clusters;
+  for (std::size_t i = first; i < contacts.size(); ++i) {
+    std::size_t at = 0;
+    while (at < clusters.size() && contacts[clusters[at].members[0]].normal.dot(contacts[i].normal) < kSameNormal) ++at;
+    if (at == clusters.size()) clusters.push_back({contacts, {}, kSamePart * size});
+    clusters[at].members.push_back(i);
+  }
+  std::vector<char> isKept(contacts.size(), 0);
+  for (const Cluster& cluster : clusters) cluster.markKept(isKept);
+  std::size_t end = first;
+  for (std::size_t i = first; i < contacts.size(); ++i)
+    if (isKept[i]) contacts[end++] = contacts[i];
+  contacts.erase(contacts.begin() + static_cast<std::ptrdiff_t>(end), contacts.end());
+}
+
+}  // namespace cradle

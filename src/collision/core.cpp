@@ -1,0 +1,54 @@
+#include "collision/core.h"
+
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+constexpr double kAcross = 1e-15;  // cosine: rounding
+
+}  // namespace
+
+Core::Core(const Collider& collider, const RigidTransform& frameFromCollider)
+    : collider_(collider), turn_(frameFromCollider.rotation.toRotationMatrix()), shift_(frameFromCollider.translation) {
+  if (collider.points.size() != 2) return;
+  const Vec3 from = placed(collider.points[1]), to = placed(collider.points[0]);
+  center_ = (from + to) / 2;
+  halfLength_ = (to - from).norm() / 2;
+  if (halfLength_ > 0) axis_ = (to - from) / (2 * halfLength_);
+}
+
+Vec3 Core::farthest(const Vec3& direction) const {
+  switch (collider_.kind()) {
+    case ColliderKind::ball:
+      return placed(collider_.points[0]);
+    case ColliderKind::capsule:
+      return end(axis_.dot(direction) < 0 ? -1 : 1);
+    case ColliderKind::cylinder:
+      return rimPoint(axis_.dot(direction) < 0 ? -1 : 1, direction);
+    case ColliderKind::polytope:
+    case ColliderKind::mesh:
+      break;
+  }
+  const Polytope& polytope = *collider_.polytope;
+  lastVertex_ = farthestVertex(polytope, turnedBack(direction), lastVertex_);
+  return placed(polytope.vertices[lastVertex_]);
+}
+
+Vec3 Core::rimPoint(double side, const Vec3& direction) const {
+  return end(side) + rimRadius() * unitAcross(axis_, direction);
+}
+
+Vec3 unitAcross(const Vec3& axis, const Vec3& direction) {
+  // Twice: what is left of a direction along the axis is rounding, and that need not be across it.
+  Vec3 aside = direction - axis.dot(direction) * axis;
+  const double length = aside.norm();
+  if (!(length > 0)) return axis.unitOrthogonal();
+  aside /= length;
+  const double along = axis.dot(aside);
+  if (std::abs(along) < kAcross) return aside;
+  if (std::abs(along) > 0.5) return axis.unitOrthogonal();
+  return (aside - along * axis).normalized();
+}
+
+}  // namespace cradle

@@ -1,0 +1,116 @@
+#include "collision/core_separation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "collision/axis_ascent.h"
+#include "collision/core_distance.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kTouching = 1e-12;       // of the size: nearer, the direction to the nearest point is rounding
+constexpr double kSeen = 1e-14;           // of the size: rounding of a gap
+constexpr double kDistanceError = 1e-5;   // of a distance: what is this near to it is its direction's local maximum
+constexpr double kNear = 0.01;            // of the size: nearer, the normals of features are better than that direction
+constexpr double kFacePreference = 1e-7;  // of the size
+
+double sizeOf(const Core& a, const Core& b) {
+  return std::min(a.collider().boundingRadius, b.collider().boundingRadius);
+}
+
+bool isRound(const Core& core) {
+  return core.rimRadius() > 0;
+}
+
+bool isSegment(const Core& core) {
+  return core.collider().kind() == ColliderKind::capsule;
+}
+
+SeparatingAxis better(const SeparatingAxis& first, const SeparatingAxis& second) {
+  return second.separation > first.separation ? second : first;
+}
+
+/// Crossing segments have no inside: any direction across both.
+SeparatingAxis ofCrossingSegments(const Core& a, const Core& b) {
+  const Vec3 normal = across(a.axis(), b.axis());
+  if (normal.norm() > 0) return {0, normal};
+  return {0, a.axis().unitOrthogonal()};
+}
+
+/// Of cores without rims that are apart. Where faces are nearly parallel the distance of their simplices stands still
+/// before its direction is right, but that direction leads to the right one.
+SeparatingAxis ofNearest(const CoreDistance& apart, const Core& a, const Core& b) {
+  if (apart.distance - apart.seen <= kSeen * sizeOf(a, b)) return {apart.distance, apart.normal};
+  if (apart.distance < kNear * sizeOf(a, b) && !(isSegment(a) && isSegment(b))) {
+    const SeparatingAxes axes = separatingAxes(a, b);
+    const SeparatingAxis feature = better(better(axes.faceOfA, axes.faceOfB), axes.edges);
+    if (feature.separation >= (1 - kDistanceError) * apart.distance) return feature;
+  }
+  return improved({0, apart.normal}, a, b);
+}
+
+/// The best of what the axes of the polytopes lead to. A prism inside a cylinder sees no smaller gap than that, so that
+/// an axis of less than what is found leads to no more.
+SeparatingAxis ofRoundCores(const CoreDistance& apart, const Core& a, const Core& b) {
+  SeparatingAxis best;
+  if (apart.distance > 0) best = improved({0, apart.normal}, a, b);
+  if (apart.distance > kTouching * sizeOf(a, b) && best.separation >= (1 - kDistanceError) * apart.distance)
+    return best;
+  SeparatingAxes axes = separatingAxes(a, b);
+  std::array<SeparatingAxis, 3> starts{axes.faceOfA, axes.faceOfB, axes.edges};
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const auto& left, const auto& right) { return left.separation > right.separation; });
+  for (const SeparatingAxis& start : starts)
+    if (start.separation > best.separation) best = better(best, improved(start, a, b));
+  return best;
+}
+
+/// Normals of faces, which are not known to be the best.
+SeparatingAxis bestFlat(const Core& a, const Core& b, const Vec3& near) {
+  SeparatingAxis best;
+  const auto look = [&](const Core& core, double sign) {
+    if (isRound(core)) {
+      const Vec3 normal = (core.axis().dot(near) < 0 ? -1 : 1) * core.axis();
+      best = better(best, {gapAlong(a, b, normal), normal});
+    } else if (core.collider().kind() == ColliderKind::polytope) {
+      for (const Polytope::Face& face : core.collider().polytope->faces) {
+        const Vec3 normal = sign * core.turned(face.normal);
+        if (normal.dot(near) > 0.5) best = better(best, {gapAlong(a, b, normal), normal});
+      }
+    }
+  };
+  look(a, 1), look(b, -1);
+  return best;
+}
+
+}  // namespace
+
+SeparatingAxis separationOf(const Core& a, const Core& b) {
+  const CoreDistance apart = distanceOf(a, b);
+  if (isRound(a) || isRound(b)) return ofRoundCores(apart, a, b);
+  if (apart.distance > kTouching * sizeOf(a, b)) return ofNearest(apart, a, b);
+  if (isSegment(a) && isSegment(b)) return ofCrossingSegments(a, b);
+  const SeparatingAxes axes = separatingAxes(a, b);
+  return better(better(axes.faceOfA, axes.faceOfB), axes.edges);
+}
+
+SeparatingAxis contactAxis(const Core& a, const Core& b) {
+  const CoreDistance apart = distanceOf(a, b);
+  const double preference = kFacePreference * sizeOf(a, b);
+  if (isRound(a) || isRound(b)) {
+    const SeparatingAxis best = ofRoundCores(apart, a, b), flat = bestFlat(a, b, best.normal);
+    return flat.separation >= best.separation - preference ? flat : best;
+  }
+  const bool isApart = apart.distance > kTouching * sizeOf(a, b);
+  if (isSegment(a) && isSegment(b)) return isApart ? ofNearest(apart, a, b) : ofCrossingSegments(a, b);
+  const SeparatingAxes axes = separatingAxes(a, b);
+  const SeparatingAxis face = better(axes.faceOfA, axes.faceOfB);
+  const SeparatingAxis feature = axes.edges.separation > face.separation + preference ? axes.edges : face;
+  if (!isApart || feature.separation >= apart.distance - preference) return feature;
+  const SeparatingAxis nearest = ofNearest(apart, a, b);
+  return nearest.separation > feature.separation + preference ? nearest : feature;
+}
+
+}  // namespace cradle

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "collision/separating_axis.h"
+
+namespace cradle {
+
+/// Signed distance of two convex cores in a common frame, and the normal that sees it: the distance where they are
+/// apart, minus the least translation that separates them where they overlap; continuous in between. For two polytopes,
+/// segments or points exact to rounding.
+SeparatingAxis separationOf(const Core& a, const Core& b);
+
+/// The same for contact: where several directions see the same gap up to 1e-7 of the size, one that is normal to a face
+/// is taken.
+SeparatingAxis contactAxis(const Core& a, const Core& b);
+
+}  // namespace cradle

@@ -1,0 +1,305 @@
+// The incident feature clipped against the side planes of the reference face (D. Gregorius, "Robust Contact Creation
+// for Physics Simulations", GDC 2015). Points of the incident feature count as its corners, or as points of its balls,
+// also where it was clipped: they lie on it. Discs are clipped as polygons of 16 sides: those of the prism inside the
+// cylinder, a little larger where they are the reference so that what stands on the rim is not lost.
+
+#include "collision/manifold.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory_resource>
+
+#include "collision/axis_ascent.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kAlong = 1e-7;          // rad: a face or line so near to the contact's plane lies in it
+constexpr double kTiltedCosine = 0.5;    // between a face's normal and the contact's: more tilted, it does not carry
+constexpr double kStandingCosine = 0.7;  // between a cylinder's axis and the contact's normal: its end carries
+constexpr double kOuterPart = 1.0195911582083184;  // 1 / cos(pi / 16): polygon around a disc to the one in it
+constexpr double kDeeperPart = 1e-9;               // of the size: a manifold must hold a point so near to the deepest
+constexpr std::size_t kMostPoints = 8;
+constexpr double kTie = 1e-9;  // of an area: corners of a regular polygon are alike
+constexpr double kLying =
+    1e-5;  // rad: a cylinder so little tilted is a ball of its radius at both rims, to 1e-10 of it
+
+using Points = std::pmr::vector<Vec3>;
+using Memory = std::pmr::monotonic_buffer_resource;
+
+/// What of a collider's surface may carry contact.
+struct Patch {
+  explicit Patch(Memory* memory) : points(memory) {}
+  Points points;              // m: one, the ends of a line, or a polygon, counter-clockwise seen from outside
+  double radius = kNotRound;  // m, at those points as in ContactPoint
+  bool isFlat = false;        // a face whose normal is the direction asked for
+};
+
+double marginOf(const Core& core) {
+  return core.collider().radius;
+}
+
+double sizeOf(const Core& core) {
+  return core.collider().boundingRadius;
+}
+
+void addLoop(const Core& core, const Polytope::Face& face, Patch& patch) {
+  for (const std::size_t vertex : face.loop)
+    patch.points.push_back(core.placed(core.collider().polytope->vertices[vertex]));
+}
+
+bool isAlong(const Vec3& normal, const Vec3& outward) {
+  return (normal - outward).squaredNorm() < kAlong * kAlong;
+}
+
+void addEndOfCylinder(const Core& core, const Vec3& outward, Patch& patch) {
+  const Polytope& prism = *core.collider().polytope;
+  const double cosine = core.axis().dot(outward);
+  addLoop(core, prism.faces[prism.faces.size() - (cosine > 0 ? 2 : 1)], patch);  // as inscribedPrism has them
+  patch.isFlat = isAlong(cosine > 0 ? core.axis() : Vec3(-core.axis()), outward);
+  if (patch.isFlat) patch.radius = 0;  // else a rim, which rolls
+}
+
+void addFaceOrCorner(const Core& core, const Vec3& outward, Patch& patch) {
+  const Polytope& polytope = *core.collider().polytope;
+  const Vec3 direction = core.turnedBack(outward);
+  const std::size_t vertex = farthestVertex(polytope, direction);
+  const Polytope::Face* best = nullptr;
+  double largest = kTiltedCosine;
+  for (std::size_t i = polytope.firstNeighbor[vertex]; i < polytope.firstNeighbor[vertex + 1]; ++i) {
+    const Polytope::Edge& edge = polytope.edges[polytope.edgesAt[i]];
+    const Polytope::Face& face = polytope.faces[edge.from == vertex ? edge.left : edge.right];
+    if (face.normal.dot(direction) > largest) largest = face.normal.dot(direction), best = &face;
+  }
+  patch.radius = 0;
+  if (!best) return patch.points.push_back(core.placed(polytope.vertices[vertex]));
+  addLoop(core, *best, patch);
+  patch.isFlat = isAlong(best->normal, direction);
+}
+
+/// What faces `outward`, tilted as it may be.
+Patch patchOf(const Core& core, const Vec3& outward, Memory* memory) {
+  Patch patch(memory);
+  const double cosine = core.axis().dot(outward);
+  const Vec3 margin = marginOf(core) * outward;
+  if (core.collider().kind() == ColliderKind::polytope) {
+    addFaceOrCorner(core, outward, patch);
+  } else if (core.rimRadius() > 0) {
+    if (std::abs(cosine) > kStandingCosine) {
+      addEndOfCylinder(core, outward, patch);
+    } else {
+      patch.points = {core.rimPoint(1, outward), core.rimPoint(-1, outward)};
+      if (std::abs(cosine) < kLying) patch.radius = core.rimRadius();
+    }
+  } else {
+    patch.radius = marginOf(core);
+    if (std::abs(cosine) < kStandingCosine)
+      patch.points = {core.end(1) + margin, core.end(-1) + margin};
+    else
+      patch.points = {core.farthest(outward) + margin};
+  }
+  return patch;
+}
+
+/// The part of a polygon, or of a line, on the inner side of a plane.
+void clip(Points& polygon, Points& scratch, const Vec3& outward, double offset) {
+  scratch.clear();
+  const std::size_t count = polygon.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 &from = polygon[i], &to = polygon[(i + 1) % count];
+    const double heightFrom = outward.dot(from) - offset, heightTo = outward.dot(to) - offset;
+    if (heightFrom <= 0) scratch.push_back(from);
+    if (count == 2 && i == 1) break;  // a line has one side
+    if ((heightFrom < 0) != (heightTo < 0) && heightFrom != heightTo && heightFrom != 0 && heightTo != 0)
+      scratch.push_back(from + heightFrom / (heightFrom - heightTo) * (to - from));
+  }
+  std::swap(polygon, scratch);
+}
+
+/// Leaves those points of a polygon that span most of its area.
+void thinOut(Points& polygon) {
+  while (polygon.size() > kMostPoints) {
+    std::size_t least = 0;
+    double leastArea = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3 &before = polygon[(i + polygon.size() - 1) % polygon.size()],
+                 &after = polygon[(i + 1) % polygon.size()];
+      const double area = (before - polygon[i]).cross(after - polygon[i]).squaredNorm();
+      if (area < leastArea * (1 - kTie)) leastArea = area, least = i;  // of a disc every other point is left
+    }
+    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(least));
+  }
+}
+
+/// A face in the plane of contact.
+struct Reference {
+  Vec3 normal;  // unit, outwards
+  double offset;
+};
+
+/// Contacts of what is left of an incident patch on a face of A.
+void appendOnFace(const Reference& face, Patch& incident, double margin, std::vector<ContactPoint>& points) {
+  std::erase_if(incident.points, [&](const Vec3& point) { return face.normal.dot(point) - face.offset > margin; });
+  thinOut(incident.points);
+  for (const Vec3& point : incident.points) {
+    const double separation = face.normal.dot(point) - face.offset;
+    points.push_back({point - separation / 2 * face.normal, face.normal, separation, kFlat, incident.radius});
+  }
+}
+
+/// Grows the polygon in a disc to one around it.
+void growDisc(const Core& core, Patch& patch) {
+  const Vec3 center = core.end(core.axis().dot(patch.points[0] - core.center()) < 0 ? -1 : 1);
+  for (Vec3& point : patch.points) point = center + kOuterPart * (point - center);
+}
+
+/// Contacts of an incident patch on a flat one of A, with that normal out of it. Changes both.
+void clipOnFace(const Core& core, const Vec3& normal, Patch& reference, Patch& incident, double margin,
+                std::vector<ContactPoint>& points) {
+  if (core.rimRadius() > 0) growDisc(core, reference);
+  Points scratch(reference.points.get_allocator());
+  const Points& corners = reference.points;
+  for (std::size_t i = 0; i < corners.size() && !incident.points.empty(); ++i) {
+    const Vec3 outward = (corners[(i + 1) % corners.size()] - corners[i]).cross(normal).normalized();
+    clip(incident.points, scratch, outward, outward.dot(corners[i]));
+  }
+  appendOnFace({normal, core.reach(normal)}, incident, margin, points);
+}
+
+/// A straight part of a surface across `outward`.
+struct Ridge {
+  bool isThere = false;
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  // m
+};
+
+Ridge ridgeOf(const Core& core, const Vec3& outward) {
+  const Vec3 margin = marginOf(core) * outward;
+  if (core.collider().kind() == ColliderKind::polytope) {
+    const Polytope& polytope = *core.collider().polytope;
+    const std::size_t vertex = farthestVertex(polytope, core.turnedBack(outward));
+    const Vec3 from = core.placed(polytope.vertices[vertex]);
+    Ridge best;
+    double least = kAlong;
+    for (std::size_t i = polytope.firstNeighbor[vertex]; i < polytope.firstNeighbor[vertex + 1]; ++i) {
+      const Vec3 to = core.placed(polytope.vertices[polytope.neighbors[i]]);
+      const double slope = std::abs(outward.dot(to - from)) / (to - from).norm();
+      if (slope < least) least = slope, best = {true, from, to};
+    }
+    return best;
+  }
+  if (std::abs(core.axis().dot(outward)) >= kAlong) return {};
+  if (core.rimRadius() > 0) return {true, core.rimPoint(-1, outward), core.rimPoint(1, outward)};
+  return {true, core.end(-1) + margin, core.end(1) + margin};
+}
+
+/// Ends of what two parallel ridges share, if they do.
+void appendOnRidges(const Ridge& a, const Ridge& b, const Vec3& normal, double margin,
+                    std::vector<ContactPoint>& points) {
+  const Vec3 along = (a.to - a.from).normalized();
+  if (along.cross((b.to - b.from).normalized()).norm() > kAlong) return;
+  const double length = along.dot(a.to - a.from);
+  double from = along.dot(b.from - a.from), to = along.dot(b.to - a.from);
+  if (from > to) std::swap(from, to);
+  from = std::max(from, 0.0), to = std::min(to, length);
+  if (from > to) return;
+  for (const double at : {from, to}) {
+    const Vec3 onA = a.from + at * along;
+    const Vec3 lineB = (b.to - b.from).normalized();
+    const Vec3 onB = b.from + lineB.dot(onA - b.from) * lineB;
+    const double separation = normal.dot(onB - onA);
+    if (separation <= margin && (at == from || to > from))
+      points.push_back({onA + separation / 2 * normal, normal, separation, kNotRound, kNotRound});
+    if (from == to) break;
+  }
+}
+
+/// Where a ridge comes nearest to another, as a part of it.
+double partNearest(const Ridge& ridge, const Ridge& other) {
+  const Vec3 along = ridge.to - ridge.from, across = other.to - other.from, between = other.from - ridge.from;
+  const double aa = along.squaredNorm(), bb = across.squaredNorm(), ab = along.dot(across);
+  const double whole = aa * bb - ab * ab;
+  if (!(whole > 0)) return 0.5;
+  return std::clamp((along.dot(between) * bb - across.dot(between) * ab) / whole, 0.0, 1.0);
+}
+
+bool isCorner(const Core& core) {
+  return core.collider().kind() == ColliderKind::polytope;
+}
+
+/// m, as in ContactPoint, where one point of a collider is farthest.
+double radiusOfCorner(const Core& core) {
+  if (isCorner(core)) return 0;
+  return core.rimRadius() > 0 ? kNotRound : marginOf(core);
+}
+
+/// The one point of two patches that share no more.
+ContactPoint singlePoint(const Core& a, const Core& b, const SeparatingAxis& axis, const Patch& patchA,
+                         const Patch& patchB) {
+  const Vec3& normal = axis.normal;
+  const double separation = axis.separation - marginOf(a) - marginOf(b);
+  const Ridge ridgeA = ridgeOf(a, normal), ridgeB = ridgeOf(b, -normal);
+  const bool isWideA = patchA.isFlat || ridgeA.isThere, isWideB = patchB.isFlat || ridgeB.isThere;
+  const Vec3 onA = a.farthest(normal) + marginOf(a) * normal, onB = b.farthest(-normal) - marginOf(b) * normal;
+  ContactPoint contact{(onA + onB) / 2, normal, separation, kNotRound, kNotRound};
+  if (isWideA && isWideB && !patchA.isFlat && !patchB.isFlat)
+    contact.point = ridgeA.from + partNearest(ridgeA, ridgeB) * (ridgeA.to - ridgeA.from) + separation / 2 * normal;
+  else if (isWideA)
+    contact.point = onB - separation / 2 * normal;
+  else if (isWideB)
+    contact.point = onA + separation / 2 * normal;
+  if (patchA.isFlat) contact.radiusA = kFlat;
+  if (patchB.isFlat) contact.radiusB = kFlat;
+  if (!isWideA) contact.radiusA = radiusOfCorner(a);
+  if (!isWideB) contact.radiusB = radiusOfCorner(b);
+  return contact;
+}
+
+void mirror(ContactPoint& contact) {
+  contact.normal = -contact.normal;
+  std::swap(contact.radiusA, contact.radiusB);
+}
+
+}  // namespace
+
+void appendManifold(const Core& a, const Core& b, const SeparatingAxis& axis, double margin,
+                    std::vector<ContactPoint>& points) {
+  std::array<std::byte, 8192> memory;
+  Memory pool(memory.data(), memory.size());
+  const double separation = axis.separation - marginOf(a) - marginOf(b);
+  if (separation > margin) return;
+  const std::size_t first = points.size();
+  Patch patchA = patchOf(a, axis.normal, &pool), patchB = patchOf(b, -axis.normal, &pool);
+  if (patchA.isFlat) {
+    clipOnFace(a, axis.normal, patchA, patchB, margin, points);
+  } else if (patchB.isFlat) {
+    clipOnFace(b, -axis.normal, patchB, patchA, margin, points);
+    std::for_each(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(), mirror);
+  } else {
+    const Ridge ridgeA = ridgeOf(a, axis.normal), ridgeB = ridgeOf(b, -axis.normal);
+    if (ridgeA.isThere && ridgeB.isThere) appendOnRidges(ridgeA, ridgeB, axis.normal, margin, points);
+  }
+  const double near = separation + kDeeperPart * std::min(sizeOf(a), sizeOf(b));
+  if (std::none_of(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
+                   [near](const ContactPoint& point) { return point.separation <= near; }))
+    points.push_back(singlePoint(a, b, axis, patchA, patchB));
+}
+
+void appendManifold(const Core& core, const Vec3& planePoint, const Vec3& planeNormal, double margin,
+                    std::vector<ContactPoint>& points) {
+  std::array<std::byte, 8192> memory;
+  Memory pool(memory.data(), memory.size());
+  const Vec3 lowest = core.farthest(-planeNormal) - marginOf(core) * planeNormal;
+  const double height = planeNormal.dot(lowest - planePoint);
+  if (height > margin) return;
+  const std::size_t first = points.size();
+  Patch patch = patchOf(core, -planeNormal, &pool);
+  appendOnFace({planeNormal, planeNormal.dot(planePoint)}, patch, margin, points);
+  const double near = height + kDeeperPart * sizeOf(core);
+  if (std::none_of(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
+                   [near](const ContactPoint& point) { return point.separation <= near; }))
+    points.push_back({lowest - height / 2 * planeNormal, planeNormal, height, kFlat, radiusOfCorner(core)});
+  std::for_each(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(), mirror);
+}
+
+}  // namespace cradle

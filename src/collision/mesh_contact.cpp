@@ -1,0 +1,92 @@
+#include "collision/mesh_contact.h"
+
+#include "collision/contact_reduction.h"
+#include "collision/mesh_gap.h"
+#include "collision/tangent_plane.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kDeepPart = 0.01;       // of the size: deeper, features do not tell where to
+constexpr double kRoundingPart = 1e-12;  // of the size
+constexpr double kBeyondEnd = 1e-9;      // of a side: points as far outside a triangle or beyond an edge are on it
+constexpr double kParallelSine = 1e-6;   // edges at a smaller angle have no crossing: their ends touch instead
+
+/// A contact with its features, by which contacts are ordered whatever the way they were found.
+struct Candidate {
+  std::array<std::uint32_t, 3> key;  // kind; feature of A, of B
+  ContactPoint contact;
+};
+
+struct ContactVisit {
+  const MeshPair& pair;
+  double margin, depth;  // m: separations from -depth to margin count
+  std::vector<Candidate> found = {};
+
+  double reach() const { return std::max(margin, depth) * std::max(margin, depth); }
+  bool counts(double separation) const { return separation <= margin && separation >= -depth; }
+
+  void operator()(std::uint32_t indexA, std::uint32_t indexB) {
+    const MeshSurface::Face &faceA = pair.a.faces[indexA], &faceB = pair.b.faces[indexB];
+    const FlatTriangle a = triangleOf(pair.a, indexA), b = pair.triangleOfB(indexB);
+    const CornerHeights ofA = heightsOver(b, a), ofB = heightsOver(a, b);
+    const double least = std::max(leastDistance(ofA), leastDistance(ofB));
+    if (least * least > reach()) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (faceA.ownsVertex[i] && counts(ofA[i]) && b.isAbove(cornerOf(a, i), kBeyondEnd) &&
+          isForemost(pair.a, faceA.vertices[i], -b.normal, margin))
+        add({0, faceA.vertices[i], indexB}, {cornerOf(a, i) - ofA[i] / 2 * b.normal, -b.normal, ofA[i], 0, kFlat});
+      if (faceB.ownsVertex[i] && counts(ofB[i]) && a.isAbove(cornerOf(b, i), kBeyondEnd) &&
+          isForemost(pair.b, faceB.vertices[i], -pair.turnedBack(a.normal), margin))
+        add({1, indexA, faceB.vertices[i]}, {cornerOf(b, i) - ofB[i] / 2 * a.normal, a.normal, ofB[i], kFlat, 0});
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        if (faceA.ownsEdge[i] && faceB.ownsEdge[j]) tryEdges(faceA.edges[i], faceB.edges[j]);
+  }
+
+  void tryEdges(std::uint32_t indexA, std::uint32_t indexB) {
+    const MeshSurface::Edge &edgeA = pair.a.edges[indexA], &edgeB = pair.b.edges[indexB];
+    if (!edgeA.isConvex || !edgeB.isConvex) return;
+    const Segment a = segmentOf(pair.a, indexA), b = pair.segmentOfB(indexB);
+    Vec3 normal = a.along.cross(b.along);
+    const Vec3 between = b.from - a.from;
+    const double sine2 = normal.squaredNorm();
+    if (!(sine2 > kParallelSine * kParallelSine * a.along.squaredNorm() * b.along.squaredNorm())) return;
+    const double partA = between.cross(b.along).dot(normal) / sine2, partB = between.cross(a.along).dot(normal) / sine2;
+    if (std::max(std::abs(partA - 0.5), std::abs(partB - 0.5)) > 0.5 + kBeyondEnd) return;
+    normal /= edgeA.normal.dot(normal) < 0 ? -std::sqrt(sine2) : std::sqrt(sine2);
+    const double separation = between.dot(normal);
+    if (!counts(separation) || !isForemost(pair.a, edgeA, normal, margin) ||
+        !isForemost(pair.b, edgeB, -pair.turnedBack(normal), margin))
+      return;
+    add({2, indexA, indexB}, {a.at(partA) + separation / 2 * normal, normal, separation, kNotRound, kNotRound});
+  }
+
+  void add(const std::array<std::uint32_t, 3>& key, const ContactPoint& contact) { found.push_back({key, contact}); }
+};
+
+}  // namespace
+
+void appendContacts(const MeshPair& pair, double margin, std::vector<ContactPoint>& contacts) {
+  const MeshGap gap = gapBetween(pair, margin);
+  if (!(gap.separation <= margin)) return;
+  const std::size_t first = contacts.size();
+  const double size = std::min(pair.a.size, pair.b.size), rounding = kRoundingPart * size;
+  double least = std::numeric_limits<double>::infinity();
+  if (gap.separation > -kDeepPart * size) {
+    ContactVisit visit{pair, margin, std::max(0.0, -gap.separation) + rounding};
+    TreePair(pair.a.tree, pair.b.tree, pair.aFromB).visitNear(visit);
+    std::sort(visit.found.begin(), visit.found.end(),
+              [](const Candidate& left, const Candidate& right) { return left.key < right.key; });
+    for (const Candidate& candidate : visit.found) {
+      contacts.push_back(candidate.contact);
+      least = std::min(least, candidate.contact.separation);
+    }
+  }
+  if (least > gap.separation + rounding)
+    contacts.push_back({(gap.pointA + gap.pointB) / 2, gap.normal, gap.separation, kNotRound, kNotRound});
+  reduceContacts(first, size, contacts);
+}
+
+}  // namespace cradle

@@ -1,0 +1,190 @@
+#include "collision/mesh_gap.h"
+
+#include "collision/mesh_overlap.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kNoDirection = 1e-9;                    // of the size: nearer points do not tell the normal well
+constexpr double kFirstReach = 1e-4, kLongerReach = 16;  // of the size; then how much longer each time
+constexpr double kTouching = 1e-10;                      // of the size: gaps as small as that are always looked for
+
+using Feature = MeshPoint::Feature;
+
+/// A point on a feature, in A's frame.
+struct Witness {
+  Feature feature = Feature::none;
+  std::uint32_t index = 0;
+  Vec3 point = Vec3::Zero();  // m
+};
+
+/// Outward normal (unit) of a feature, in its own frame.
+const Vec3& normalAt(const MeshSurface& surface, const Witness& witness) {
+  if (witness.feature == Feature::face) return surface.faces[witness.index].normal;
+  if (witness.feature == Feature::edge) return surface.edges[witness.index].normal;
+  return surface.vertexNormals[witness.index];
+}
+
+/// The nearest features of two surfaces, until a triangle goes through another one.
+struct GapVisit {
+  const MeshPair& pair;
+  double distance2;  // m^2: nothing farther matters
+  Witness onA = {}, onB = {};
+  bool intersect = false;
+
+  double reach() const { return intersect ? -1 : distance2; }
+
+  void operator()(std::uint32_t indexA, std::uint32_t indexB) {
+    const MeshSurface::Face &faceA = pair.a.faces[indexA], &faceB = pair.b.faces[indexB];
+    const FlatTriangle a = triangleOf(pair.a, indexA), b = pair.triangleOfB(indexB);
+    const CornerHeights ofA = heightsOver(b, a), ofB = heightsOver(a, b);
+    const double least = std::max(leastDistance(ofA), leastDistance(ofB));
+    if (least * least > distance2) return;
+    const auto stop = [&](std::size_t, double) { intersect = true; };
+    forEachPiercing(faceA, a, ofA, b, stop);
+    forEachPiercing(faceB, b, ofB, a, stop);
+    if (intersect) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (faceA.ownsVertex[i] && ofA[i] * ofA[i] < distance2 && b.isAbove(cornerOf(a, i)))
+        keep({Feature::vertex, faceA.vertices[i], cornerOf(a, i)},
+             {Feature::face, indexB, cornerOf(a, i) - ofA[i] * b.normal});
+      if (faceB.ownsVertex[i] && ofB[i] * ofB[i] < distance2 && a.isAbove(cornerOf(b, i)))
+        keep({Feature::face, indexA, cornerOf(b, i) - ofB[i] * a.normal},
+             {Feature::vertex, faceB.vertices[i], cornerOf(b, i)});
+    }
+    tryEdges(faceA, faceB);
+  }
+
+  void tryEdges(const MeshSurface::Face& faceA, const MeshSurface::Face& faceB) {
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) {
+        if (!faceA.ownsEdge[i] || !faceB.ownsEdge[j]) continue;
+        const Segment a = segmentOf(pair.a, faceA.edges[i]), b = pair.segmentOfB(faceB.edges[j]);
+        const SegmentParts parts = nearestParts(a, b);
+        const Vec3 onA = a.at(parts.a), onB = b.at(parts.b);
+        if ((onA - onB).squaredNorm() >= distance2) continue;
+        keep(onEdge(pair.a, faceA.edges[i], parts.a, onA), onEdge(pair.b, faceB.edges[j], parts.b, onB));
+      }
+  }
+
+  static Witness onEdge(const MeshSurface& surface, std::uint32_t edge, double part, const Vec3& point) {
+    if (part > 0 && part < 1) return {Feature::edge, edge, point};
+    return {Feature::vertex, surface.edges[edge].vertices[part > 0 ? 1 : 0], point};
+  }
+
+  void keep(const Witness& a, const Witness& b) {
+    distance2 = (a.point - b.point).squaredNorm();
+    onA = a, onB = b;
+  }
+};
+
+/// The deepest edge inside the other solid.
+struct OverlapVisit {
+  const MeshPair& pair;
+  double rounding2;  // m^2
+  MeshGap deepest;
+
+  double reach() const { return rounding2; }
+
+  void operator()(std::uint32_t indexA, std::uint32_t indexB) {
+    const MeshSurface::Face &faceA = pair.a.faces[indexA], &faceB = pair.b.faces[indexB];
+    const FlatTriangle a = triangleOf(pair.a, indexA), b = pair.triangleOfB(indexB);
+    forEachPiercing(faceA, a, heightsOver(b, a), b, [&](std::size_t i, double) {
+      const Segment edge = segmentOf(pair.a, faceA.edges[i]);
+      const Segment seen{pair.placedBack(edge.from), pair.turnedBack(edge.along)};
+      const EdgeDepth found = depthOfEdge(pair.b, seen, partAt(seen, indexB, pair.b), indexB);
+      const Vec3 normal = pair.turned(found.normal), point = pair.placed(found.deepest);
+      keep({-found.depth, point, point + found.depth * normal, -normal});
+    });
+    forEachPiercing(faceB, b, heightsOver(a, b), a, [&](std::size_t i, double) {
+      const Segment edge = pair.segmentOfB(faceB.edges[i]);
+      const EdgeDepth found = depthOfEdge(pair.a, edge, partAt(edge, indexA, pair.a), indexA);
+      keep({-found.depth, found.deepest + found.depth * found.normal, found.deepest, found.normal});
+    });
+  }
+
+  /// Where an edge goes through a face, in the direction of the edge.
+  static double partAt(const Segment& edge, std::uint32_t face, const MeshSurface& surface) {
+    const FlatTriangle triangle = triangleOf(surface, face);
+    const double slope = triangle.normal.dot(edge.along);
+    return slope != 0 ? std::clamp(-triangle.heightOf(edge.from) / slope, 0.0, 1.0) : 0;
+  }
+
+  void keep(const MeshGap& found) {
+    if (found.separation < deepest.separation || deepest.normal == Vec3::Zero()) deepest = found;
+  }
+};
+
+/// What two nearest points, of surfaces that do not intersect, say.
+MeshGap gapOf(const MeshPair& pair, const GapVisit& nearest) {
+  const Witness &onA = nearest.onA, &onB = nearest.onB;
+  const Vec3 between = onB.point - onA.point, outOfA = normalAt(pair.a, onA),
+             outOfB = pair.turned(normalAt(pair.b, onB));
+  const double distance = std::sqrt(nearest.distance2);
+  const bool aIsInside = between.dot(outOfB) > 0, bIsInside = between.dot(outOfA) < 0;
+  const double sign = aIsInside || bIsInside ? -1 : 1;
+  const Vec3 apart = aIsInside ? Vec3(-outOfB) : bIsInside ? outOfA : Vec3((outOfA - outOfB).normalized());
+  MeshGap gap{sign * distance, onA.point, onB.point, apart};
+  if (onA.feature == Feature::face) {
+    gap.normal = outOfA;
+  } else if (onB.feature == Feature::face) {
+    gap.normal = -outOfB;
+  } else if (distance > kNoDirection * std::min(pair.a.size, pair.b.size)) {
+    gap.normal = sign / distance * between;
+  } else if (onA.feature == Feature::edge && onB.feature == Feature::edge) {
+    const Vec3 across = segmentOf(pair.a, onA.index).along.cross(pair.segmentOfB(onB.index).along).normalized();
+    gap.normal = across.dot(apart) < 0 ? Vec3(-across) : across;
+  }
+  return gap;
+}
+
+/// The gap of a part that is inside the other solid, far from its surface.
+void keepPartsInside(const MeshPair& pair, MeshGap& gap) {
+  for (const std::uint32_t vertex : pair.a.parts) {
+    const Vec3 &point = pair.a.vertices[vertex], seen = pair.placedBack(point);
+    if (squaredDistance(pair.b.tree.nodes[0], seen) > 0) continue;
+    const SignedHeight found = heightOver(pair.b, seen);
+    if (found.height < std::min(0.0, gap.separation))
+      gap = {found.height, point, pair.placed(found.nearest), -pair.turned(found.normal)};
+  }
+  for (const std::uint32_t vertex : pair.b.parts) {
+    const Vec3 point = pair.placed(pair.b.vertices[vertex]);
+    if (squaredDistance(pair.a.tree.nodes[0], point) > 0) continue;
+    const SignedHeight found = heightOver(pair.a, point);
+    if (found.height < std::min(0.0, gap.separation)) gap = {found.height, found.nearest, point, found.normal};
+  }
+}
+
+/// Most solids that are asked for are near: short distances first, since a search costs as its bound.
+GapVisit searchNearest(const MeshPair& pair, const TreePair& trees, double enough) {
+  double reach = kFirstReach * std::min(pair.a.size, pair.b.size);
+  while (true) {
+    const double bound = std::min(reach, enough);
+    GapVisit visit{pair, bound * bound};
+    trees.visitNear(visit);
+    if (visit.intersect || visit.onA.feature != Feature::none || bound >= enough) return visit;
+    reach *= kLongerReach;
+  }
+}
+
+}  // namespace
+
+MeshGap gapBetween(const MeshPair& pair, double enough) {
+  const TreePair trees(pair.a.tree, pair.b.tree, pair.aFromB);
+  const double size = std::min(pair.a.size, pair.b.size);
+  const GapVisit nearest = searchNearest(pair, trees, std::max(enough, kTouching * size));
+  if (nearest.intersect) {
+    OverlapVisit overlap{pair, kTouching * size * kTouching * size, {}};
+    overlap.deepest.separation = 0;
+    trees.visitNear(overlap);
+    return overlap.deepest;
+  }
+  MeshGap gap;
+  const bool isNear = nearest.onA.feature != Feature::none;
+  if (isNear) gap = gapOf(pair, nearest);
+  // Where nothing is near, or a part other than the nearest one may be inside.
+  if (!isNear || pair.a.parts.size() + pair.b.parts.size() > 2) keepPartsInside(pair, gap);
+  return gap;
+}
+
+}  // namespace cradle

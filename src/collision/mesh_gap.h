@@ -1,0 +1,21 @@
+#pragma once
+
+#include "collision/mesh_pair.h"
+
+namespace cradle {
+
+/// Where two solids are nearest, or overlap deepest; in A's frame.
+struct MeshGap {
+  double separation = std::numeric_limits<double>::infinity();  // m, < 0: overlap
+  Vec3 pointA = Vec3::Zero(), pointB = Vec3::Zero();            // m, on the surfaces
+  Vec3 normal = Vec3::Zero();                                   // unit, from A to B
+};
+
+/// Signed separation of two closed surfaces. Apart: the distance, exact to rounding. Where they intersect: minus the
+/// depth of the edge or vertex that is deepest inside the other solid, among those whose edges go through its surface;
+/// exact while that is less than the triangles' size, continuous through 0 (to 1e-14 of the sizes), and never positive.
+/// One inside the other: minus the distance of the surfaces. Separations above `enough` (m) are not looked for: then
+/// infinite. O(log triangles) for pairs near in few places.
+MeshGap gapBetween(const MeshPair& pair, double enough);
+
+}  // namespace cradle

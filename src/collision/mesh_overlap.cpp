@@ -1,0 +1,148 @@
+// The depth under the surface along a straight line is concave while the solid is convex there: its greatest value is
+// found by tangent planes (J. E. Kelley, "The cutting-plane method for solving convex programs", 1960). Where two
+// planes with normals n1, n2 meet above the line, their mean m that is perpendicular to the line (and to the planes'
+// common edge) leads straight from one to the other: the lines' distance is the depth under the planes divided by |m|.
+
+#include "collision/mesh_overlap.h"
+
+#include <array>
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+constexpr double kSkippedPart = 1e-12;  // of the piece: the entry is no exit
+constexpr double kExactPart = 1e-9;     // of the depth
+constexpr double kLeastMean = 1e-3;     // of unit normals: faces back to back leave no way between them
+constexpr std::size_t kMostPlanes = 12;
+
+/// Where a segment first leaves the solid.
+struct ExitVisit {
+  const MeshSurface& surface;
+  const Segment& segment;
+  double part = 2;  // 0..1; 2: nowhere
+  Vec3 normal = Vec3::Zero();
+
+  void visit(std::uint32_t at) {
+    const TriangleTree::Node& node = surface.tree.nodes[at];
+    if (!meets(node)) return;
+    if (node.isLeaf()) return tryFace(node.triangle);
+    visit(at + 1);
+    visit(node.second);
+  }
+
+  bool meets(const TriangleTree::Node& node) const {
+    double enter = 0, leave = std::min(part, 1.0);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const double from = segment.from[axis] - node.center[axis], along = segment.along[axis];
+      if (along == 0 && std::abs(from) > node.halfSize[axis]) return false;
+      if (along == 0) continue;
+      enter = std::max(enter, (-std::copysign(node.halfSize[axis], along) - from) / along);
+      leave = std::min(leave, (std::copysign(node.halfSize[axis], along) - from) / along);
+    }
+    return enter <= leave + kSkippedPart;
+  }
+
+  void tryFace(std::uint32_t face) {
+    const FlatTriangle triangle = triangleOf(surface, face);
+    const double slope = triangle.normal.dot(segment.along);
+    if (!(slope > 0)) return;
+    const double found = -triangle.heightOf(segment.from) / slope;
+    if (found <= kSkippedPart || found > 1 || found >= part || !triangle.isAbove(segment.at(found))) return;
+    part = found, normal = triangle.normal;
+  }
+};
+
+/// Depth under a plane along the piece: depth + slope * (part - at).
+struct DepthPlane {
+  double at, depth, slope;
+  Vec3 normal;
+
+  double depthAt(double part) const { return depth + slope * (part - at); }
+};
+
+/// The least depth under some planes, where it is greatest.
+class DepthBound {
+ public:
+  void add(const DepthPlane& plane) { planes_[count_++] = plane; }
+  bool isFull() const { return count_ == kMostPlanes; }
+
+  double depthAt(double part) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < count_; ++i) least = std::min(least, planes_[i].depthAt(part));
+    return least;
+  }
+
+  /// Among the ends of [0, end] and where a rising plane meets a falling one.
+  void findTop(double end) {
+    part = 0, depth = depthAt(0), rising = falling = nullptr;
+    keepIfHigher(end, nullptr, nullptr);
+    for (std::size_t i = 0; i < count_; ++i)
+      for (std::size_t j = 0; j < count_; ++j) {
+        const DepthPlane &up = planes_[i], &down = planes_[j];
+        if (!(up.slope >= 0 && down.slope <= 0 && up.slope > down.slope)) continue;
+        const double meet = (down.depthAt(0) - up.depthAt(0)) / (up.slope - down.slope);
+        // Where a third plane is lower, it is not these two that bound the depth.
+        const bool areLowest = depthAt(meet) >= up.depthAt(meet) * (1 - kExactPart);
+        if (meet > 0 && meet < end && areLowest) keepIfHigher(meet, &up, &down);
+      }
+  }
+
+  double part = 0, depth = 0;
+  const DepthPlane *rising = nullptr, *falling = nullptr;  // null at an end
+
+ private:
+  void keepIfHigher(double at, const DepthPlane* up, const DepthPlane* down) {
+    const double found = depthAt(at);
+    if (found > depth) part = at, depth = found, rising = up, falling = down;
+  }
+
+  std::array<DepthPlane, kMostPlanes> planes_;
+  std::size_t count_ = 0;
+};
+
+DepthPlane planeAt(const MeshSurface& solid, const Segment& piece, double part) {
+  const SignedHeight found = heightOver(solid, piece.at(part));
+  return {part, -found.height, -found.normal.dot(piece.along), found.normal};
+}
+
+EdgeDepth depthBetween(const DepthBound& top, const Segment& piece, const Vec3& fallback) {
+  const double rise = top.rising->slope, fall = -top.falling->slope;
+  const Vec3 mean = (fall * top.rising->normal + rise * top.falling->normal) / (rise + fall);
+  const double length = mean.norm();
+  if (length < kLeastMean) return {top.depth, fallback, piece.at(top.part), false};
+  EdgeDepth result{top.depth / length, mean / length, piece.at(top.part), false};
+  // From there along the edge to the point that is straight below the other edge.
+  const DepthPlane& steeper = rise > fall ? *top.rising : *top.falling;
+  if (steeper.slope != 0)
+    result.deepest += (result.depth * steeper.normal.dot(result.normal) - top.depth) / steeper.slope * piece.along;
+  return result;
+}
+
+}  // namespace
+
+EdgeDepth depthOfEdge(const MeshSurface& solid, const Segment& edge, double part, std::uint32_t face) {
+  const Vec3& entry = solid.faces[face].normal;
+  const bool goesOn = entry.dot(edge.along) < 0;
+  const Segment piece{edge.at(part), (goesOn ? 1 - part : -part) * edge.along};
+  ExitVisit exit{solid, piece};
+  exit.visit(0);
+  const bool leaves = exit.part <= 1;
+  const double end = leaves ? exit.part : 1;
+
+  DepthBound bound;
+  const DepthPlane last =
+      leaves ? DepthPlane{end, 0, -exit.normal.dot(piece.along), exit.normal} : planeAt(solid, piece, 1);
+  bound.add({0, 0, -entry.dot(piece.along), entry});
+  bound.add(last);
+  for (bound.findTop(end); !bound.isFull(); bound.findTop(end)) {
+    const DepthPlane tangent = planeAt(solid, piece, bound.part);
+    if (tangent.depth >= bound.depth * (1 - kExactPart)) break;
+    bound.add(tangent);
+  }
+  if (bound.depth <= 0) return {0, entry, piece.from, false};
+  if (!bound.rising) return {bound.depth, last.normal, piece.at(bound.part), !leaves};
+  return depthBetween(bound, piece, last.normal);
+}
+
+}  // namespace cradle

@@ -1,0 +1,190 @@
+#include "collision/round_on_mesh.h"
+
+#include <cmath>
+
+#include "collision/contact_reduction.h"
+#include "collision/tangent_plane.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kBeyondEnd = 1e-9;      // of a side: points as far outside a triangle or beyond an edge are on it
+constexpr double kRoundingPart = 1e-12;  // of the size
+
+/// Where a core is nearest to a mesh that it does not go through.
+struct CoreGap {
+  double distance2;  // m^2: nothing farther matters
+  Vec3 onCore = Vec3::Zero(), onMesh = Vec3::Zero();
+  bool isFound = false, intersects = false;
+};
+
+struct CoreVisit {
+  const MeshSurface& mesh;
+  const Segment& core;
+  CoreGap gap;
+
+  double reach() const { return gap.intersects ? -1 : gap.distance2; }
+
+  void operator()(std::uint32_t index) {
+    const MeshSurface::Face& face = mesh.faces[index];
+    const FlatTriangle triangle = triangleOf(mesh, index);
+    const double start = triangle.heightOf(core.from), end = triangle.heightOf(core.at(1));
+    if ((start < 0) != (end < 0) && triangle.isAbove(core.at(start / (start - end)))) gap.intersects = true;
+    for (const double part : {0.0, 1.0}) {
+      const double height = part > 0 ? end : start;
+      const Vec3 point = core.at(part);
+      if (height * height < gap.distance2 && triangle.isAbove(point)) keep(point, point - height * triangle.normal);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!face.ownsEdge[i]) continue;
+      const Segment edge = segmentOf(mesh, face.edges[i]);
+      const SegmentParts parts = nearestParts(core, edge);
+      keep(core.at(parts.a), edge.at(parts.b));
+    }
+  }
+
+  void keep(const Vec3& onCore, const Vec3& onMesh) {
+    const double distance2 = (onCore - onMesh).squaredNorm();
+    if (distance2 < gap.distance2) gap = {distance2, onCore, onMesh, true, gap.intersects};
+  }
+};
+
+Bounds boundsOf(const Segment& core) {
+  Bounds bounds(core.from);
+  bounds.extend(core.at(1));
+  return bounds;
+}
+
+CoreGap gapOf(const Segment& core, const MeshSurface& mesh, double reach) {
+  CoreVisit visit{mesh, core, {reach * reach}};
+  visitNear(mesh.tree, boundsOf(core), visit);
+  return visit.gap;
+}
+
+/// Height over the surface of the end of a core that is deeper inside.
+SignedHeight deeperEnd(const Segment& core, const MeshSurface& mesh) {
+  const SignedHeight start = heightOver(mesh, core.from), end = heightOver(mesh, core.at(1));
+  return end.height < start.height ? end : start;
+}
+
+bool isInside(const Segment& core, const MeshSurface& mesh) {
+  return squaredDistance(mesh.tree.nodes[0], core.from) <= 0 && heightOver(mesh, core.from).height < 0;
+}
+
+/// Gathers the places where a core is locally nearest.
+struct RoundVisit {
+  const RoundSolid& round;
+  const MeshSurface& mesh;
+  double margin;
+  std::vector<ContactPoint>& contacts;
+  double least = std::numeric_limits<double>::infinity();
+
+  double reach() const { return (round.radius + margin) * (round.radius + margin); }
+
+  void operator()(std::uint32_t index) {
+    const MeshSurface::Face& face = mesh.faces[index];
+    const FlatTriangle triangle = triangleOf(mesh, index);
+    for (const double part : {0.0, 1.0}) {
+      if (part > 0 && round.isBall()) break;
+      tryEnd(part, face, triangle);
+    }
+    if (round.isBall()) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (face.ownsEdge[i]) tryAcross(face.edges[i]);
+      if (face.ownsVertex[i]) tryVertex(round.core.nearestPart(cornerOf(triangle, i)), face.vertices[i]);
+    }
+  }
+
+  /// The end of the core that is at `part`.
+  void tryEnd(double part, const MeshSurface::Face& face, const FlatTriangle& triangle) {
+    const Vec3 point = round.core.at(part);
+    const double height = triangle.heightOf(point);
+    if (height > 0 && triangle.isAbove(point, kBeyondEnd)) add(part, point - height * triangle.normal, kFlat);
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (face.ownsEdge[i]) tryEdge(part, face.edges[i]);
+      if (face.ownsVertex[i]) tryVertex(part, face.vertices[i]);
+    }
+  }
+
+  void tryEdge(double part, std::uint32_t index) {
+    const Segment edge = segmentOf(mesh, index);
+    const Vec3 point = round.core.at(part), nearest = edge.at(edge.nearestPart(point)), away = point - nearest;
+    const double distance = away.norm();
+    const bool isWithin = std::abs(away.dot(edge.along)) <= kBeyondEnd * distance * edge.along.norm();
+    if (distance > 0 && isWithin && isForemost(mesh, mesh.edges[index], away / distance, 0))
+      add(part, nearest, kNotRound);
+  }
+
+  void tryVertex(double part, std::uint32_t index) {
+    const Vec3& vertex = mesh.vertices[index];
+    const Vec3 away = round.core.at(part) - vertex;
+    const double distance = away.norm();
+    if (distance > 0 && isForemost(mesh, index, away / distance, 0)) add(part, vertex, 0);
+  }
+
+  /// The core across an edge.
+  void tryAcross(std::uint32_t index) {
+    const Segment edge = segmentOf(mesh, index);
+    const SegmentParts parts = nearestParts(round.core, edge);
+    const Vec3 away = round.core.at(parts.a) - edge.at(parts.b);
+    const double distance = away.norm();
+    const bool isInner = parts.a > 0 && parts.a < 1 && parts.b > 0 && parts.b < 1;
+    if (isInner && distance > 0 && isForemost(mesh, mesh.edges[index], away / distance, margin))
+      add(parts.a, edge.at(parts.b), kNotRound);
+  }
+
+  /// A contact at a point of the mesh, if that is where the core is nearest to it.
+  void add(double part, const Vec3& onMesh, double radius) {
+    const Vec3 away = round.core.at(part) - onMesh;
+    const double distance = away.norm(), separation = distance - round.radius;
+    if (separation > margin) return;
+    const Vec3 outward = away / distance;
+    const double length = round.core.along.norm(), rise = (part > 0 ? -1 : 1) * outward.dot(round.core.along);
+    const bool isAtEnd = part <= 0 || part >= 1;
+    if (isAtEnd && rise < -allowedAhead(margin, length)) return;
+    contacts.push_back(
+        {onMesh + separation / 2 * outward, -outward, separation, isAtEnd ? round.radius : kNotRound, radius});
+    least = std::min(least, separation);
+  }
+};
+
+/// One contact at the deepest place.
+ContactPoint deepestContact(const RoundSolid& round, const SignedHeight& end) {
+  const double separation = end.height - round.radius;
+  return {end.nearest + separation / 2 * end.normal, -end.normal, separation, round.radius, kNotRound};
+}
+
+}  // namespace
+
+double separationOf(const RoundSolid& round, const MeshSurface& mesh, double enough) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  const double reach = std::max(enough, 0.0) + round.radius;
+  if (squaredDistance(mesh.tree.nodes[0], boundsOf(round.core)) > reach * reach) return kFar;
+  if (round.isBall()) return heightOver(mesh, round.core.from).height - round.radius;
+  const CoreGap gap = gapOf(round.core, mesh, reach);
+  if (gap.intersects || isInside(round.core, mesh))
+    return std::min(0.0, deeperEnd(round.core, mesh).height) - round.radius;
+  return gap.isFound ? std::sqrt(gap.distance2) - round.radius : kFar;
+}
+
+void appendContacts(const RoundSolid& round, const MeshSurface& mesh, double margin,
+                    std::vector<ContactPoint>& contacts) {
+  const double reach = round.radius + std::max(0.0, margin);
+  if (squaredDistance(mesh.tree.nodes[0], boundsOf(round.core)) > reach * reach) return;
+  const std::size_t first = contacts.size();
+  const CoreGap gap = gapOf(round.core, mesh, reach);
+  if (gap.intersects || isInside(round.core, mesh))
+    return contacts.push_back(deepestContact(round, deeperEnd(round.core, mesh)));
+  const double distance = std::sqrt(gap.distance2), rounding = kRoundingPart * mesh.size;
+  if (!gap.isFound || distance - round.radius > margin) return;
+  RoundVisit visit{round, mesh, margin, contacts};
+  visitNear(mesh.tree, boundsOf(round.core), visit);
+  if (visit.least > distance - round.radius + rounding) {
+    const Vec3 outward = distance > 0 ? Vec3((gap.onCore - gap.onMesh) / distance) : deeperEnd(round.core, mesh).normal;
+    const double separation = distance - round.radius;
+    contacts.push_back({gap.onMesh + separation / 2 * outward, -outward, separation, kNotRound, kNotRound});
+  }
+  reduceContacts(first, mesh.size, contacts);
+}
+
+}  // namespace cradle

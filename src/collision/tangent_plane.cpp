@@ -1,0 +1,36 @@
+#include "collision/tangent_plane.h"
+
+#include <algorithm>
+
+namespace cradle {
+namespace {
+
+constexpr double kLeastTilt = 1e-5, kMostTilt = 0.1;  // rad: less is always allowed, more never
+
+}  // namespace
+
+double allowedAhead(double margin, double length) {
+  return std::clamp(margin, kLeastTilt * length, kMostTilt * length);
+}
+
+bool isForemost(const MeshSurface& surface, std::uint32_t vertex, const Vec3& ahead, double margin) {
+  if (surface.vertexNormals[vertex].dot(ahead) < -kLeastTilt) return false;
+  for (std::uint32_t i = surface.firstNeighbour[vertex]; i < surface.firstNeighbour[vertex + 1]; ++i) {
+    const Vec3 side = surface.vertices[surface.neighbours[i]] - surface.vertices[vertex];
+    if (ahead.dot(side) > allowedAhead(margin, side.norm())) return false;
+  }
+  return true;
+}
+
+bool isForemost(const MeshSurface& surface, const MeshSurface::Edge& edge, const Vec3& ahead, double margin) {
+  if (!edge.isConvex || edge.normal.dot(ahead) <= 0) return false;
+  const Vec3& from = surface.vertices[edge.vertices[0]];
+  const Vec3 along = (surface.vertices[edge.vertices[1]] - from).normalized();
+  for (const std::uint32_t across : edge.across) {
+    const Vec3 side = surface.vertices[across] - from;
+    if (ahead.dot(side) > allowedAhead(margin, side.cross(along).norm())) return false;
+  }
+  return true;
+}
+
+}  // namespace cradle

@@ -1,0 +1,76 @@
+#include "core/worker_threads.h"
+
+#include <algorithm>
+
+namespace cradle {
+namespace {
+
+constexpr int kSpins = 2000;  // looks before the processor is offered to others: a few microseconds
+
+void pause() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#endif
+}
+
+}  // namespace
+
+int hardwareThreads() {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+WorkerThreads::WorkerThreads(int count) : count_(count) {
+  for (int thread = 1; thread < count; ++thread) threads_.emplace_back([this, thread] { work(thread); });
+}
+
+WorkerThreads::~WorkerThreads() {
+  {
+    const std::lock_guard lock(mutex_);
+    isClosing_ = true;
+  }
+  wake_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+void WorkerThreads::run(const std::function<void(int)>& task) {
+  if (count_ == 1) return task(0);
+  {
+    const std::lock_guard lock(mutex_);
+    task_ = &task;
+    started_.fetch_add(1, std::memory_order_release);
+  }
+  wake_.notify_all();
+  task(0);
+  meet();
+}
+
+void WorkerThreads::work(int thread) {
+  for (long done = 0;; ++done) {
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [&] { return isClosing_ || started_.load() > done; });
+      if (isClosing_) return;
+    }
+    (*task_)(thread);
+    meet();
+  }
+}
+
+void WorkerThreads::meet() {
+  if (count_ == 1) return;
+  const long meeting = meetings_.load(std::memory_order_acquire);
+  if (waiting_.fetch_add(1, std::memory_order_acq_rel) + 1 == count_) {
+    waiting_.store(0, std::memory_order_relaxed);
+    meetings_.store(meeting + 1, std::memory_order_release);
+    return;
+  }
+  for (int spins = 0; meetings_.load(std::memory_order_acquire) == meeting; ++spins)
+    spins < kSpins ? pause() : std::this_thread::yield();
+}
+
+WorkerThreads::Part WorkerThreads::partOf(std::size_t size, int thread) const {
+  const std::size_t threads = static_cast<std::size_t>(count_), index = static_cast<std::size_t>(thread);
+  return {size * index / threads, size * (index + 1) / threads};
+}
+
+}  // namespace cradle

@@ -1,0 +1,221 @@
+// Rows of contacts and ties solved together. Friction of sliding is a part of its normal force, so the response to a
+// multiplier is not the transpose of its row: J M^-1 (J^T + F) lambda = b, F the friction that goes with each normal
+// force (D. Baraff, "Coping with friction for non-penetrating rigid body simulation", SIGGRAPH 1991).
+
+#include "dynamics/contact_forces.h"
+
+namespace cradle {
+namespace {
+
+std::size_t index(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+ContactSolver::ContactSolver(const std::vector<ContactConstraint>& contacts, const Constraints& constraints,
+                             const std::vector<RigidBody>& bodies)
+    : contacts_(contacts), constraints_(constraints), bodies_(bodies), ties_(constraints, bodies) {}
+
+void ContactSolver::factorize(const VectorX& state, const std::vector<BodyFrame>& frames,
+                              const std::vector<char>& resting) {
+  findTieRows(state, frames);
+  if (!hasKnownStructure(resting)) analyze(resting);
+  fillRows(state, frames);
+  for (Group& group : groups_) {
+    couple(group);
+    group.solver.factorize(group.rows, group.slides);
+  }
+  if (hasFreeTies_) ties_.factorize(state, frames);
+}
+
+void ContactSolver::findTieRows(const VectorX& state, const std::vector<BodyFrame>& frames) {
+  if (constraints_.empty())
+    tieRows_.clear();
+  else
+    findRows(constraints_, state, frames, tieRows_);
+}
+
+void ContactSolver::fillRows(const VectorX& state, const std::vector<BodyFrame>& frames) {
+  for (const Group& group : groups_) {
+    int row = group.firstRow, tangentRow = group.firstRow + group.positionRows;
+    for (const int contact : group.contacts) fillContact(index(contact), row++, tangentRow, state, frames);
+    for (const int tie : group.ties) {
+      putRow(row, tieRows_[index(tie)], frames);
+      coupled_[index(row)] = responses_[index(row)];
+      ++row;
+    }
+  }
+}
+
+void ContactSolver::fillContact(std::size_t contact, int row, int& tangentRow, const VectorX& state,
+                                const std::vector<BodyFrame>& frames) {
+  const ContactConstraint& constraint = contacts_[contact];
+  const ContactPlace& place = places_[contact] = placeOf(constraint, state, frames);
+  forces_[contact] = {0, Vec3::Zero(), place.normal, place.point, tangentialVelocity(place), Vec3::Zero()};
+  putRow(row, normalRow(constraint, place), frames);
+  coupled_[index(row)] = responses_[index(row)];
+  if (constraint.motion == ContactMotion::sliding) {
+    forces_[contact].slidingDirection = slidingDirection(constraint, place, frames);
+    addFriction(contact, row, frames);
+  }
+  if (constraint.motion != ContactMotion::sticking) return;
+  for (const ConstraintRow& tangent : tangentRows(constraint, place)) {
+    putRow(tangentRow, tangent, frames);
+    coupled_[index(tangentRow)] = responses_[index(tangentRow)];
+    ++tangentRow;
+  }
+}
+
+/// A row in units in which its multiplier is a force or a torque; bodies at rest are fixed to it.
+void ContactSolver::putRow(int row, const ConstraintRow& from, const std::vector<BodyFrame>& frames) {
+  ConstraintRow& to = rows_[index(row)] = from;
+  to.bodyA = movingBody(from.bodyA);
+  to.bodyB = movingBody(from.bodyB);
+  if (from.scale != 1) {
+    const double factor = 1 / from.scale;
+    for (Vec3* part : {&to.linearA, &to.angularA, &to.linearB, &to.angularB}) *part *= factor;
+    to.value *= factor;
+    to.curvature *= factor;
+    to.scale = 1;
+  }
+  responses_[index(row)] = responseTo(rows_[index(row)], frames);
+}
+
+/// Adds to the response to a normal force that to the friction that goes with it.
+void ContactSolver::addFriction(std::size_t contact, int row, const std::vector<BodyFrame>& frames) {
+  const ContactPlace& place = places_[contact];
+  const Vec3 force = -contacts_[contact].friction * forces_[contact].slidingDirection;
+  ConstraintRow friction;
+  friction.bodyA = rows_[index(row)].bodyA;
+  friction.bodyB = rows_[index(row)].bodyB;
+  friction.linearA = force;
+  friction.angularA = place.armA.cross(force);
+  friction.linearB = -force;
+  friction.angularB = -place.armB.cross(force);
+  const Response response = responseTo(friction, frames);
+  Response& sum = coupled_[index(row)];
+  sum.linearA += response.linearA;
+  sum.angularA += response.angularA;
+  sum.linearB += response.linearB;
+  sum.angularB += response.angularB;
+}
+
+ContactSolver::Response ContactSolver::responseTo(const ConstraintRow& row,
+                                                  const std::vector<BodyFrame>& frames) const {
+  Response response{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  if (row.bodyA != kFixed) {
+    response.linearA = bodies_[index(row.bodyA)].inverseMass * row.linearA;
+    if (bodies_[index(row.bodyA)].turns) response.angularA = frames[index(row.bodyA)].inverseInertia * row.angularA;
+  }
+  if (row.bodyB != kFixed) {
+    response.linearB = bodies_[index(row.bodyB)].inverseMass * row.linearB;
+    if (bodies_[index(row.bodyB)].turns) response.angularB = frames[index(row.bodyB)].inverseInertia * row.angularB;
+  }
+  return response;
+}
+
+/// The matrices of a group. Columns differ with friction alone.
+void ContactSolver::couple(Group& group) {
+  const int first = group.firstRow;
+  for (int column = 0; column < group.rows; ++column) {
+    const Response& response = responses_[index(first + column)];
+    for (int row = column; row < group.rows; ++row) {
+      const double entry = couple(rows_[index(first + row)], first + column, response);
+      group.solver.symmetric(row, column) = entry;
+      group.solver.symmetric(column, row) = entry;
+    }
+  }
+  if (!group.slides) return;
+  for (int column = 0; column < group.rows; ++column) {
+    const bool isSliding = column < static_cast<int>(group.contacts.size()) &&
+                           contacts_[index(group.contacts[index(column)])].motion == ContactMotion::sliding;
+    for (int row = 0; row < group.rows; ++row)
+      group.solver.coupled(row, column) =
+          isSliding ? couple(rows_[index(first + row)], first + column, coupled_[index(first + column)])
+                    : group.solver.symmetric(row, column);
+  }
+}
+
+double ContactSolver::couple(const ConstraintRow& row, int column, const Response& response) const {
+  const int bodyA = rows_[index(column)].bodyA, bodyB = rows_[index(column)].bodyB;
+  double sum = 0;
+  const auto add = [&](int body, const Vec3& linear, const Vec3& angular) {
+    if (body == kFixed) return;
+    if (body == row.bodyA) sum += linear.dot(row.linearA) + angular.dot(row.angularA);
+    if (body == row.bodyB) sum += linear.dot(row.linearB) + angular.dot(row.angularB);
+  };
+  add(bodyA, response.linearA, response.angularA);
+  add(bodyB, response.linearB, response.angularB);
+  return sum;
+}
+
+/// Adds to velocities, or their rates, what the multipliers of a group's leading rows do.
+void ContactSolver::addResponse(const Group& group, int rows, const std::vector<Response>& responses,
+                                VectorX& rate) const {
+  for (int i = group.firstRow; i < group.firstRow + rows; ++i) {
+    const double multiplier = multipliers_[index(i)];
+    const Response& response = responses[index(i)];
+    const ConstraintRow& row = rows_[index(i)];
+    if (row.bodyA != kFixed) {
+      linearVelocity(rate, row.bodyA) += multiplier * response.linearA;
+      angularVelocity(rate, row.bodyA) += multiplier * response.angularA;
+    }
+    if (row.bodyB != kFixed) {
+      linearVelocity(rate, row.bodyB) += multiplier * response.linearB;
+      angularVelocity(rate, row.bodyB) += multiplier * response.angularB;
+    }
+  }
+}
+
+void ContactSolver::constrainAccelerations(VectorX& rate) {
+  for (Group& group : groups_) {
+    for (int row = group.firstRow; row < group.firstRow + group.rows; ++row)
+      multipliers_[index(row)] = -(rows_[index(row)].curvature + rateOf(rows_[index(row)], rate));
+    group.solver.solve(&multipliers_[index(group.firstRow)]);
+    addResponse(group, group.rows, coupled_, rate);
+    takeForces(group, rate);
+  }
+  if (!hasFreeTies_) return;
+  const VectorX& multipliers = ties_.constrainAccelerations(rate);
+  Eigen::Index next = 0;
+  for (std::size_t tie = 0; tie < tieRows_.size(); ++tie)
+    if (!ties_.isLeftOut(tieRows_[tie])) tieMultipliers_[static_cast<Eigen::Index>(tie)] = multipliers[next++];
+}
+
+/// Notes the forces that go with a group's multipliers, and what friction takes.
+void ContactSolver::takeForces(const Group& group, VectorX& rate) {
+  int row = group.firstRow, tangentRow = group.firstRow + group.positionRows;
+  for (const int i : group.contacts) {
+    const ContactConstraint& contact = contacts_[index(i)];
+    ContactForce& force = forces_[index(i)];
+    force.normal = multipliers_[index(row++)];
+    if (contact.motion == ContactMotion::sliding) {
+      force.tangential = -contact.friction * force.normal * force.slidingDirection;
+      dissipatedEnergy(rate) -= force.tangential.dot(force.tangentialVelocity);
+    }
+    if (contact.motion != ContactMotion::sticking) continue;
+    for (int k = 0; k < 2; ++k, ++tangentRow)
+      force.tangential += multipliers_[index(tangentRow)] * rows_[index(tangentRow)].linearA;
+  }
+  for (const int tie : group.ties) tieMultipliers_[tie] = multipliers_[index(row++)] / tieRows_[index(tie)].scale;
+}
+
+void ContactSolver::constrainVelocities(VectorX& state) {
+  for (Group& group : groups_)
+    if (group.slides) group.solver.factorize(group.rows, false);
+  constrainGroupVelocities(state);
+  if (hasFreeTies_) ties_.constrainVelocities(state);
+}
+
+/// Needs the matrices factorised without friction.
+void ContactSolver::constrainGroupVelocities(VectorX& state) {
+  for (Group& group : groups_) {
+    for (int row = group.firstRow; row < group.firstRow + group.rows; ++row)
+      multipliers_[index(row)] = -rateOf(rows_[index(row)], state);
+    group.solver.solve(&multipliers_[index(group.firstRow)]);
+    addResponse(group, group.rows, responses_, state);
+  }
+}
+
+}  // namespace cradle

@@ -1,0 +1,154 @@
+// Kinematics of a ball on a face or on a ball. The rows are those of the relative velocity of the bodies' material at
+// the point of contact; their curvature terms let that point move over both surfaces (rolling), and the normal turn.
+//
+// With n out of B, c the centre of A's ball, a = c - r_A n - x_A and b = c - r_A n - x_B the arms, u the velocity:
+//   u = v_A + w_A x a - v_B - w_B x b,   gap' = n.u,   gap'' = n'.u + n.u',
+//   u' = J (accelerations) + w_A x a' - w_B x b',   a' = w_A x (c - x_A) - r_A n',   b' = a' + v_A - v_B,
+// n' = w_B x n on a face, and the part of the centres' relative velocity across n over their distance on a ball.
+// Tangential: the rate of u - n (n.u) has the part u' - n' (n.u) along the surfaces, whatever spans them.
+
+#include "dynamics/contact_rows.h"
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kRounding = 1e-15;    // of the lengths that enter a gap: a few units in their last place
+constexpr double kSlowSliding = 1e-6;  // m/s: below, velocities have no direction that could be trusted
+constexpr double kFastSliding = 1e-4;  // m/s: above, the weight of the direction given is below rounding
+
+bool isFace(double radius) {
+  return std::isinf(radius);
+}
+
+Vec3 spinOf(int body, const VectorX& state) {
+  return body == kFixed ? Vec3::Zero() : Vec3(angularVelocity(state, body));
+}
+Vec3 centerOf(int body, const VectorX& state) {
+  return body == kFixed ? Vec3::Zero() : Vec3(centerOfMass(state, body));
+}
+Vec3 velocityOf(int body, const VectorX& state) {
+  return body == kFixed ? Vec3::Zero() : Vec3(linearVelocity(state, body));
+}
+Vec3 turned(int body, const Vec3& direction, const std::vector<BodyFrame>& frames) {
+  return body == kFixed ? direction : Vec3(frames[static_cast<std::size_t>(body)].rotation * direction);
+}
+
+Vec3 inFrameOf(int body, const Vec3& direction, const VectorX& state) {
+  return body == kFixed ? direction : Vec3(orientation(state, body).normalized().conjugate() * direction);
+}
+Attachment attachmentAt(int body, const Vec3& point, const VectorX& state) {
+  return {body, inFrameOf(body, point - centerOf(body, state), state)};
+}
+
+/// Normal, its rate, the gap and B's lever: what depends on the kind of B's surface.
+void placeNormal(const ContactConstraint& contact, const AttachmentMotion& a, const AttachmentMotion& b,
+                 const Vec3& spinB, const std::vector<BodyFrame>& frames, ContactPlace& place) {
+  const Vec3 apart = a.position - b.position;
+  if (isFace(contact.radiusB)) {
+    place.normal = turned(contact.surfaceB.body, contact.normalB, frames);
+    place.normalRate = spinB.cross(place.normal);
+    place.gap = apart.dot(place.normal) - contact.radiusA;
+    place.leverB = (b.arm + apart).cross(place.normal);
+    return;
+  }
+  const double distance = apart.norm();
+  const Vec3 velocity = a.velocity - b.velocity;
+  place.normal = apart / distance;
+  place.normalRate = (velocity - velocity.dot(place.normal) * place.normal) / distance;
+  place.gap = distance - (contact.radiusA + contact.radiusB);
+  place.leverB = b.arm.cross(place.normal);
+}
+
+/// A unit vector across another (T. Duff et al., "Building an Orthonormal Basis, Revisited", J. Computer Graphics
+/// Techniques 6(1), 2017).
+Vec3 across(const Vec3& n) {
+  const double sign = n.z() < 0 ? -1 : 1, part = -n.x() / (sign + n.z());
+  return {1 + sign * n.x() * part, sign * n.y() * part, -sign * n.x()};
+}
+
+ConstraintRow tangentRow(const ContactConstraint& contact, const ContactPlace& place, const Vec3& direction) {
+  ConstraintRow row{contact.centerA.body, contact.surfaceB.body,       direction, place.armA.cross(direction),
+                    -direction,           -place.armB.cross(direction)};
+  row.curvature = direction.dot(place.drift) - direction.dot(place.normalRate) * place.normal.dot(place.velocity);
+  return row;
+}
+
+}  // namespace
+
+ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& state) {
+  CRADLE_CHECK(!(isFace(contact.radiusA) && isFace(contact.radiusB)));
+  if (isFace(contact.radiusA))
+    return constraintOf({contact.bodyB, contact.bodyA, contact.point, -contact.normal, contact.separation,
+                         contact.radiusB, contact.radiusA},
+                        state);
+  const double half = 0.5 * contact.separation;
+  const double depthB = isFace(contact.radiusB) ? 0 : contact.radiusB;
+  ContactConstraint constraint;
+  constraint.centerA = attachmentAt(contact.bodyA, contact.point - (half + contact.radiusA) * contact.normal, state);
+  constraint.radiusA = contact.radiusA;
+  constraint.surfaceB = attachmentAt(contact.bodyB, contact.point + (half + depthB) * contact.normal, state);
+  constraint.radiusB = contact.radiusB;
+  constraint.normalB = inFrameOf(contact.bodyB, -contact.normal, state);
+  return constraint;
+}
+
+void setSlidingDirection(ContactConstraint& contact, const Vec3& direction, const VectorX& state) {
+  contact.slidingDirection = inFrameOf(contact.surfaceB.body, direction, state);
+}
+
+ContactPlace placeOf(const ContactConstraint& contact, const VectorX& state, const std::vector<BodyFrame>& frames) {
+  const int bodyA = contact.centerA.body, bodyB = contact.surfaceB.body;
+  const AttachmentMotion a = motionOf(contact.centerA, state, frames), b = motionOf(contact.surfaceB, state, frames);
+  const Vec3 spinA = spinOf(bodyA, state), spinB = spinOf(bodyB, state);
+  const Vec3 velocity = velocityOf(bodyA, state) - velocityOf(bodyB, state);
+  ContactPlace place;
+  placeNormal(contact, a, b, spinB, frames, place);
+  const Vec3 down = contact.radiusA * place.normal;
+  place.leverA = a.arm.cross(place.normal);
+  place.point = a.position - down;
+  place.armA = a.arm - down;
+  place.armB = place.point - centerOf(bodyB, state);
+  place.velocity = velocity + spinA.cross(place.armA) - spinB.cross(place.armB);
+  const Vec3 armRateA = spinA.cross(a.arm) - contact.radiusA * place.normalRate;
+  place.drift = spinA.cross(armRateA) - spinB.cross(armRateA + velocity);
+  place.rounding = kRounding * (a.position.norm() + a.arm.norm() + b.arm.norm() + contact.radiusA);
+  return place;
+}
+
+Vec3 tangentialVelocity(const ContactPlace& place) {
+  return place.velocity - place.velocity.dot(place.normal) * place.normal;
+}
+
+// Mirrored rather than reversed: a velocity that turns to the other side with a part across lets the direction follow
+// without a jump.
+Vec3 slidingDirection(const ContactConstraint& contact, const ContactPlace& place,
+                      const std::vector<BodyFrame>& frames) {
+  const Vec3 given = turned(contact.surfaceB.body, contact.slidingDirection, frames);
+  const Vec3 velocity = tangentialVelocity(place);
+  if (velocity.dot(given) > 0 && velocity.squaredNorm() > kFastSliding * kFastSliding) return velocity.normalized();
+  const Vec3 side = (given - given.dot(place.normal) * place.normal).normalized();
+  const double along = velocity.dot(side);
+  const double speed = 1 + velocity.squaredNorm() / (kSlowSliding * kSlowSliding);
+  const double weight = kSlowSliding / (speed * speed * speed * speed);
+  return (velocity + (std::abs(along) - along + weight) * side).normalized();
+}
+
+ConstraintRow normalRow(const ContactConstraint& contact, const ContactPlace& place) {
+  ConstraintRow row{contact.centerA.body, contact.surfaceB.body, place.normal,
+                    place.leverA,         -place.normal,         -place.leverB};
+  row.value = place.gap;
+  row.curvature = place.normalRate.dot(place.velocity) + place.normal.dot(place.drift);
+  row.rounding = place.rounding;
+  return row;
+}
+
+std::array<ConstraintRow, 2> tangentRows(const ContactConstraint& contact, const ContactPlace& place) {
+  const Vec3 first = across(place.normal);
+  return {tangentRow(contact, place, first), tangentRow(contact, place, place.normal.cross(first))};
+}
+
+}  // namespace cradle

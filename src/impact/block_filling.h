@@ -1,0 +1,127 @@
+#pragma once
+
+#include "impact/contact_blocks.h"
+
+// From manifolds to lanes of contact blocks, and back.
+
+namespace cradle {
+
+inline void setLane(LaneVector& lanes, int lane, const Vec3& value) {
+  lanes.x[lane] = value.x(), lanes.y[lane] = value.y(), lanes.z[lane] = value.z();
+}
+
+/// One row of a lane: its turns, and the mass that it moves.
+template <class Block>
+double fillTurns(LaneVector (&turns)[Block::kMovers], const Vec3& direction, const Vec3 (&arms)[Block::kMovers],
+                 const SolverBody* const (&bodies)[Block::kMovers], int lane) {
+  double inverseMass = 0;
+  for (int k = 0; k < Block::kMovers; ++k) {
+    const Vec3 turn = bodies[k]->scaledFromWorld * arms[k].cross(direction);
+    setLane(turns[k], lane, turn);
+    inverseMass += bodies[k]->inverseMass + turn.squaredNorm();
+  }
+  return inverseMass;
+}
+
+/// Product of two rows' turns.
+template <class Block>
+double couplingOf(const LaneVector (&a)[Block::kMovers], const LaneVector (&b)[Block::kMovers], int lane) {
+  double sum = 0;
+  for (int k = 0; k < Block::kMovers; ++k) sum += dot(a[k], b[k])[lane];
+  return sum;
+}
+
+template <class Block>
+void fillFriction(const ContactManifold& manifold, const SolverBody* const (&bodies)[Block::kMovers],
+                  double impulseScale, int lane, Block& block) {
+  const ContactPatch& patch = manifold.patch;
+  Vec3 middles[2] = {Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t i = 0; i < patch.count; ++i) middles[0] += patch.points[i].onA, middles[1] += patch.points[i].onB;
+  Vec3 arms[Block::kMovers];
+  for (int k = 0; k < Block::kMovers; ++k)
+    arms[k] = middles[k] / static_cast<double>(patch.count) - bodies[k]->position;
+
+  auto& friction = block.friction;
+  const Vec3 tangent1 = patch.normal.unitOrthogonal(), tangent2 = patch.normal.cross(tangent1);
+  double inverse[2];
+  for (int i = 0; i < 2; ++i) {
+    const Vec3& tangent = i == 0 ? tangent1 : tangent2;
+    setLane(friction.tangents[i], lane, tangent);
+    inverse[i] = fillTurns<Block>(friction.turns[i], tangent, arms, bodies, lane);
+    friction.impulses[i][lane] = impulseScale * manifold.frictionImpulse.dot(tangent);
+  }
+  const double coupling = couplingOf<Block>(friction.turns[0], friction.turns[1], lane);
+  const double determinant = inverse[0] * inverse[1] - coupling * coupling;
+  friction.mass11[lane] = inverse[1] / determinant;
+  friction.mass12[lane] = -coupling / determinant;
+  friction.mass22[lane] = inverse[0] / determinant;
+  friction.coefficient[lane] = manifold.friction;
+
+  if constexpr (Block::kPoints > 1) {
+    double inverseTwist = 0;
+    for (int k = 0; k < Block::kMovers; ++k) {
+      const Vec3 turn = bodies[k]->scaledFromWorld * patch.normal;
+      setLane(block.twist.turns[k], lane, turn);
+      inverseTwist += turn.squaredNorm();
+    }
+    block.twist.mass[lane] = 1 / inverseTwist;
+    block.twist.impulse[lane] = impulseScale * manifold.twistImpulse;
+    const Vec3 middle = middles[0] / static_cast<double>(patch.count);
+    for (int i = 0; i < Block::kPoints; ++i)
+      block.twist.levers[i][lane] = (patch.points[static_cast<std::size_t>(i)].onA - middle).norm();
+  }
+}
+
+/// Puts a manifold of the block's kind into one lane, with its last impulses times `impulseScale`.
+template <class Block>
+void fillLane(const ContactManifold& manifold, std::int32_t index, const std::vector<SolverBody>& bodies,
+              double impulseScale, int lane, Block& block) {
+  const ContactPatch& patch = manifold.patch;
+  const int indices[2] = {manifold.bodyA, manifold.bodyB};
+  const SolverBody* movers[Block::kMovers];
+  for (int k = 0; k < Block::kMovers; ++k) {
+    movers[k] = &bodies[static_cast<std::size_t>(indices[k])];
+    block.bodies[k][lane] = indices[k];
+    block.inverseMasses[k][lane] = movers[k]->inverseMass;
+  }
+  block.manifolds[lane] = index;
+  setLane(block.normal, lane, patch.normal);
+  block.restitution[lane] = manifold.law.restitution;
+  for (int i = 0; i < Block::kPoints; ++i) {
+    const ContactPatch::Point& from = patch.points[static_cast<std::size_t>(i)];
+    auto& point = block.points[i];
+    Vec3 arms[Block::kMovers];
+    arms[0] = from.onA - movers[0]->position;
+    if constexpr (Block::kBothMove) arms[1] = from.onB - movers[1]->position;
+    point.mass[lane] = 1 / fillTurns<Block>(point.turns, patch.normal, arms, movers, lane);
+    point.separation[lane] = from.separation;
+    point.impulse[lane] = impulseScale * manifold.impulses[static_cast<std::size_t>(i)];
+  }
+  fillFriction(manifold, movers, impulseScale, lane, block);
+}
+
+/// A lane that stands for nothing: its body never moves.
+template <class Block>
+void emptyLane(std::int32_t stillBody, int lane, Block& block) {
+  block.manifolds[lane] = -1;
+  for (int k = 0; k < Block::kMovers; ++k) block.bodies[k][lane] = stillBody;
+}
+
+template <class Block>
+void storeImpulses(const Block& block, std::vector<ContactManifold>& manifolds) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (block.manifolds[lane] < 0) continue;
+    ContactManifold& manifold = manifolds[static_cast<std::size_t>(block.manifolds[lane])];
+    for (int i = 0; i < Block::kPoints; ++i)
+      manifold.impulses[static_cast<std::size_t>(i)] = block.points[i].impulse[lane];
+    const auto& friction = block.friction;
+    const auto tangent = [&](int i) {
+      const LaneVector& t = friction.tangents[i];
+      return Vec3(t.x[lane], t.y[lane], t.z[lane]);
+    };
+    manifold.frictionImpulse = friction.impulses[0][lane] * tangent(0) + friction.impulses[1][lane] * tangent(1);
+    if constexpr (Block::kPoints > 1) manifold.twistImpulse = block.twist.impulse[lane];
+  }
+}
+
+}  // namespace cradle

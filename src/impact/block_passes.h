@@ -1,0 +1,161 @@
+#pragma once
+
+#include "impact/contact_blocks.h"
+
+// What a pass does to one contact block. E. Catto, "Solver2D" (box2d.org, 2024) names the passes: soft contacts that
+// take out overlap a little at a time, relaxed by rigid ones without it, so that taking out overlap leaves no speed.
+// Bodies of a block's lanes are different, so that lanes do not see each other.
+
+namespace cradle {
+
+/// The motions of a block's bodies, loaded from and stored to their places.
+template <class Block>
+struct MotionsOf {
+  LaneMotion movers[Block::kMovers];
+
+  MotionsOf(const Block& block, const std::vector<BodyMotion>& motions) {
+    for (int k = 0; k < Block::kMovers; ++k)
+      movers[k] = gather(motions[static_cast<std::size_t>(block.bodies[k][0])],
+                         motions[static_cast<std::size_t>(block.bodies[k][1])]);
+  }
+  void store(const Block& block, std::vector<BodyMotion>& motions) const {
+    for (int k = 0; k < Block::kMovers; ++k) {
+      scatter<0>(movers[k], motions[static_cast<std::size_t>(block.bodies[k][0])]);
+      if (block.manifolds[1] >= 0) scatter<1>(movers[k], motions[static_cast<std::size_t>(block.bodies[k][1])]);
+    }
+  }
+
+  /// Along a row: of B as seen from A, or of the world as seen from A.
+  Lanes along(const LaneVector& direction, const LaneVector (&turns)[Block::kMovers]) const {
+    if constexpr (Block::kBothMove)
+      return dot(direction, movers[1].linear - movers[0].linear) + dot(turns[1], movers[1].angular) -
+             dot(turns[0], movers[0].angular);
+    else
+      return -(dot(direction, movers[0].linear) + dot(turns[0], movers[0].angular));
+  }
+  Lanes twist(const LaneVector (&turns)[Block::kMovers]) const {
+    if constexpr (Block::kBothMove)
+      return dot(turns[1], movers[1].angular) - dot(turns[0], movers[0].angular);
+    else
+      return -dot(turns[0], movers[0].angular);
+  }
+
+  /// An impulse along a row, on B and backwards on A.
+  void push(const Block& block, Lanes impulse, const LaneVector& direction, const LaneVector (&turns)[Block::kMovers]) {
+    movers[0].linear = movers[0].linear - (impulse * block.inverseMasses[0]) * direction;
+    if constexpr (Block::kBothMove)
+      movers[1].linear = movers[1].linear + (impulse * block.inverseMasses[1]) * direction;
+    turn(impulse, turns);
+  }
+  void turn(Lanes impulse, const LaneVector (&turns)[Block::kMovers]) {
+    movers[0].angular = movers[0].angular - impulse * turns[0];
+    if constexpr (Block::kBothMove) movers[1].angular = movers[1].angular + impulse * turns[1];
+  }
+};
+
+template <class Block>
+void rubBlock(Block& block, MotionsOf<Block>& velocities) {
+  Lanes pressing = same(0), leverage = same(0);
+  for (int i = 0; i < Block::kPoints; ++i) {
+    pressing += block.points[i].impulse;
+    if constexpr (Block::kPoints > 1) leverage += block.points[i].impulse * block.twist.levers[i];
+  }
+  auto& friction = block.friction;
+  const Lanes slip0 = velocities.along(friction.tangents[0], friction.turns[0]);
+  const Lanes slip1 = velocities.along(friction.tangents[1], friction.turns[1]);
+  const Lanes free0 = friction.impulses[0] - (friction.mass11 * slip0 + friction.mass12 * slip1);
+  const Lanes free1 = friction.impulses[1] - (friction.mass12 * slip0 + friction.mass22 * slip1);
+  const Lanes most = friction.coefficient * pressing;
+  const Lanes size = squareRoot(larger(free0 * free0 + free1 * free1, same(1e-300)));
+  const Lanes part = smaller(same(1), most / size);
+  const Lanes held0 = part * free0, held1 = part * free1;
+  velocities.push(block, held0 - friction.impulses[0], friction.tangents[0], friction.turns[0]);
+  velocities.push(block, held1 - friction.impulses[1], friction.tangents[1], friction.turns[1]);
+  friction.impulses[0] = held0, friction.impulses[1] = held1;
+
+  if constexpr (Block::kPoints > 1) {
+    auto& twist = block.twist;
+    const Lanes limit = friction.coefficient * leverage;
+    const Lanes free = twist.impulse - twist.mass * velocities.twist(twist.turns);
+    const Lanes held = larger(-limit, smaller(limit, free));
+    velocities.turn(held - twist.impulse, twist.turns);
+    twist.impulse = held;
+  }
+}
+
+/// Gives the bodies the impulses of the step before.
+template <class Block>
+void warmBlock(Block& block, SolverMotions& motions) {
+  MotionsOf<Block> velocities(block, motions.velocities);
+  for (int i = 0; i < Block::kPoints; ++i) {
+    velocities.push(block, block.points[i].impulse, block.normal, block.points[i].turns);
+  }
+  for (int i = 0; i < 2; ++i)
+    velocities.push(block, block.friction.impulses[i], block.friction.tangents[i], block.friction.turns[i]);
+  if constexpr (Block::kPoints > 1) velocities.turn(block.twist.impulse, block.twist.turns);
+  velocities.store(block, motions.velocities);
+}
+
+/// Lets contacts that are apart close within the sub-step at most, and pushes overlapping ones apart gently.
+template <class Block>
+void softenBlock(Block& block, const Softness& soft, double subStep, SolverMotions& motions) {
+  MotionsOf<Block> velocities(block, motions.velocities);
+  const MotionsOf<Block> displacements(block, motions.displacements);
+  const Lanes rate = same(1 / subStep), none = same(0);
+  for (int i = 0; i < Block::kPoints; ++i) {
+    auto& point = block.points[i];
+    const Lanes separation = point.separation + displacements.along(block.normal, point.turns);
+    const auto apart = separation > none;
+    const Lanes turn = same(soft.turn) * (same(1) + larger(none, -separation) * same(soft.hardening));
+    const Lanes damping = same(soft.damping) + turn, stiffness = turn * damping;
+    const Lanes yielding = same(1) / (same(1) + stiffness);
+    const Lanes wanted = apart ? separation * rate : larger(separation * rate * turn / damping, same(-soft.mostPush));
+    const Lanes massScale = apart ? same(1) : stiffness * yielding;
+    const Lanes impulseScale = apart ? none : yielding;
+    const Lanes speed = velocities.along(block.normal, point.turns);
+    const Lanes free = point.impulse - point.mass * massScale * (speed + wanted) - impulseScale * point.impulse;
+    const Lanes held = larger(none, free);
+    point.slack = held > none ? none : larger(none, separation * rate + speed);
+    velocities.push(block, held - point.impulse, block.normal, point.turns);
+    point.impulse = held;
+  }
+  rubBlock(block, velocities);
+  velocities.store(block, motions.velocities);
+}
+
+/// Stops what closes, whatever the overlap, but lets contacts that are still apart close.
+template <class Block>
+void relaxBlock(Block& block, SolverMotions& motions) {
+  MotionsOf<Block> velocities(block, motions.velocities);
+  for (int i = 0; i < Block::kPoints; ++i) {
+    auto& point = block.points[i];
+    const Lanes speed = velocities.along(block.normal, point.turns);
+    const Lanes held = larger(same(0), point.impulse - point.mass * (speed + point.slack));
+    velocities.push(block, held - point.impulse, block.normal, point.turns);
+    point.impulse = held;
+  }
+  rubBlock(block, velocities);
+  velocities.store(block, motions.velocities);
+}
+
+/// Rebounds contacts that closed faster than `slowest` (m/s) and were pressed in this step.
+template <class Block>
+void reboundBlock(Block& block, double slowest, SolverMotions& motions) {
+  if (block.restitution[0] == 0 && block.restitution[1] == 0) return;
+  MotionsOf<Block> velocities(block, motions.velocities);
+  const MotionsOf<Block> starts(block, motions.starts);
+  for (int i = 0; i < Block::kPoints; ++i) {
+    auto& point = block.points[i];
+    const Lanes before = starts.along(block.normal, point.turns);
+    const Lanes speed = velocities.along(block.normal, point.turns);
+    const auto rebounds = (before < same(-slowest)) & (point.impulse > same(0));
+    const Lanes restitution = rebounds ? block.restitution : same(0);
+    const Lanes free = point.impulse - point.mass * (speed + restitution * before);
+    const Lanes held = rebounds ? larger(same(0), free) : point.impulse;
+    velocities.push(block, held - point.impulse, block.normal, point.turns);
+    point.impulse = held;
+  }
+  velocities.store(block, motions.velocities);
+}
+
+}  // namespace cradle

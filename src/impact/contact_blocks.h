@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "collision/contact_manifold.h"
+#include "impact/lanes.h"
+
+// Contacts as the soft contact solver works on them: two at a time, one a lane, everything it needs side by side.
+// Angular velocities are scaled: u = sqrt(I) w in a body's principal axes, so that an impulse p along n at arm r
+// changes u by p t and the contact's speed is t.u, with the same t = (r x n) / sqrt(I) (the usual way needs two
+// vectors).
+
+namespace cradle {
+
+/// A moving body as the solver sees it.
+struct SolverBody {
+  Vec3 position;         // m, world, of the centre of mass
+  double inverseMass;    // 1/kg
+  Mat3 scaledFromWorld;  // 1/sqrt(kg) / m: of angular impulses
+};
+
+/// How a contact yields: as a damped spring that stiffens with the overlap.
+struct Softness {
+  double turn;       // rad: of the spring's oscillation, in a sub-step
+  double damping;    // twice the damping ratio
+  double hardening;  // 1/m: part by which the frequency grows
+  double mostPush;   // m/s, apart
+};
+
+template <int pointCount, bool bothMove>
+struct ContactBlock {
+  static constexpr int kPoints = pointCount;
+  static constexpr bool kBothMove = bothMove;
+  static constexpr int kMovers = bothMove ? 2 : 1;
+
+  struct Point {
+    LaneVector turns[kMovers];  // of A and B
+    Lanes mass, separation, impulse;
+    Lanes slack;  // m/s: closing speed that is left until the next sub-step
+  };
+  struct Friction {
+    LaneVector tangents[2];
+    LaneVector turns[2][kMovers];
+    Lanes mass11, mass12, mass22, impulses[2], coefficient;
+  };
+  struct Twist {
+    LaneVector turns[kMovers];
+    Lanes mass, impulse;
+    Lanes levers[kPoints];  // m, of the points about the middle
+  };
+
+  std::int32_t bodies[kMovers][kLanes];
+  std::int32_t manifolds[kLanes];  // -1: nothing in this lane
+  LaneVector normal;
+  Lanes inverseMasses[kMovers];
+  Lanes restitution;
+  Point points[kPoints];
+  Friction friction;
+  Twist twist;
+};
+
+/// Bodies' motions while a step is solved. The last entry of each stands still, for lanes without a contact.
+struct SolverMotions {
+  std::vector<BodyMotion> velocities;     // m/s, scaled rad/s
+  std::vector<BodyMotion> displacements;  // m, scaled rad: since the step began
+  std::vector<BodyMotion> starts;         // velocities before the step
+  std::vector<char> falls;                // 0: gravity does not move this body
+
+  void resize(std::size_t bodies) {
+    for (auto* motions : {&velocities, &displacements, &starts}) motions->resize(bodies + 1);
+    falls.assign(bodies, 1);
+  }
+};
+
+}  // namespace cradle

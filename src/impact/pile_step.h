@@ -1,0 +1,78 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/broad_phase.h"
+#include "core/worker_threads.h"
+#include "impact/pile_contacts.h"
+#include "impact/soft_contact_solver.h"
+
+namespace cradle {
+
+/// Many bodies that gravity pulls and contact holds, stepped together: fast, and accurate enough for the eye. Bodies
+/// that lie still with all that they touch sleep, and cost nothing until something touches them. The result does not
+/// depend on the number of threads.
+class PileStep {
+ public:
+  /// Keeps references to bodies and geometry, whose pairs it refreshes. All bodies are awake.
+  PileStep(const std::vector<RigidBody>& bodies, ContactGeometry& geometry, const Vec3& gravity, int threads);
+
+  /// Moves the state (layout of dynamics/state.h; orientations of unit length) on by `timeStep` (s), at most 1/60 for
+  /// piles to stay still. Orientations stay of unit length; dissipated energy and work are left as they are.
+  void advance(double timeStep, VectorX& state);
+
+  bool allAsleep() const { return awake_ == 0; }
+  bool isAsleep(std::size_t body) const { return poses_[body].isAsleep; }
+  /// The contacts of the last look.
+  const PileContacts& contacts() const { return contacts_; }
+  /// Looks for contacts so far.
+  long looks() const { return looks_; }
+
+  /// What happened in the last step: bodies that met faster than gravity makes them in a step, and bodies that fell
+  /// asleep or were woken.
+  struct Impact {
+    ColliderPair pair;
+    Vec3 point, normal;  // m, world; unit, from A to B
+    double impulse;      // N s
+  };
+  const std::vector<Impact>& impacts() const { return impacts_; }
+  const std::vector<int>& fallenAsleep() const { return fallenAsleep_; }
+  const std::vector<int>& woken() const { return woken_; }
+
+ private:
+  void placeBodies(double timeStep, const VectorX& state);
+  void placeBody(std::size_t index, const VectorX& state);
+  void takePiece(double timeStep, int subSteps, VectorX& state);
+  void moveBody(std::size_t index, double timeStep, double subStep, VectorX& state);
+  void recordImpacts(int subSteps);
+  void wakeTouched();
+  void letSleep(double timeStep, VectorX& state);
+
+  const std::vector<RigidBody>& bodies_;
+  ContactGeometry& geometry_;
+  const Vec3 gravity_;
+  WorkerThreads threads_;
+  BroadPhase broadPhase_;
+  PileContacts contacts_;
+  ContactColoring coloring_;
+  SoftContactSolver solver_;
+  std::vector<Mat3> principalAxes_;  // columns, body's frame
+  std::vector<Vec3> rootMoments_;    // sqrt(kg) m
+  std::vector<MovingPose> poses_;
+  std::vector<char> isBall_;
+  std::vector<Mat3> worldFromPrincipal_;
+  std::vector<SolverBody> solverBodies_;
+  SolverMotions motions_;
+  std::vector<double> reaches_;  // m: farthest that any point of a body goes in the step
+  std::vector<Vec3> markedPositions_;
+  std::vector<Quat> markedOrientations_;
+  std::vector<double> calmTimes_;  // s, for which each body has been slow
+  std::vector<int> sleepIslands_;  // bodies that fell asleep together have the same number
+  std::size_t awake_ = 0;
+  double slowestRebound_ = 0;  // m/s
+  long looks_ = 0;
+  std::vector<Impact> impacts_;
+  std::vector<int> fallenAsleep_, woken_;
+};
+
+}  // namespace cradle

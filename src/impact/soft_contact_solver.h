@@ -1,0 +1,55 @@
+#pragma once
+
+#include <tuple>
+#include <vector>
+
+#include "core/worker_threads.h"
+#include "impact/contact_blocks.h"
+#include "impact/contact_colors.h"
+
+namespace cradle {
+
+/// Moves bodies in contact through one step: fast, and accurate enough for the eye. Gauss-Seidel with sub-steps, two
+/// contacts at a time; the result does not depend on the number of threads.
+class SoftContactSolver {
+ public:
+  /// Arranges the manifolds for sub-steps of that length (s).
+  void prepare(const ContactColors& colors, const std::vector<ContactManifold>& manifolds,
+               const std::vector<SolverBody>& bodies, double subStep, WorkerThreads& threads);
+
+  struct Steps {
+    double subStep;  // s
+    int count;
+    double slowestRebound;  // m/s: contacts that close more slowly do not rebound
+  };
+  /// From the velocities in `motions` and displacements of zero to the velocities and displacements at the end.
+  void solve(const Steps& steps, const Vec3& gravity, SolverMotions& motions, WorkerThreads& threads);
+
+  /// Impulses of the step, for the next one.
+  void store(std::vector<ContactManifold>& manifolds, WorkerThreads& threads) const;
+
+ private:
+  template <class Block>
+  struct BlockList {
+    std::vector<Block> blocks;  // at least `size`
+    std::size_t size = 0;
+    std::vector<std::size_t> starts;  // of each colour, and the end
+  };
+  using BlockLists =
+      std::tuple<BlockList<ContactBlock<1, true>>, BlockList<ContactBlock<2, true>>, BlockList<ContactBlock<3, true>>,
+                 BlockList<ContactBlock<4, true>>, BlockList<ContactBlock<1, false>>, BlockList<ContactBlock<2, false>>,
+                 BlockList<ContactBlock<3, false>>, BlockList<ContactBlock<4, false>>>;
+
+  template <class Block>
+  void arrange(const ContactColors& colors, const std::vector<ContactManifold>& manifolds, std::int32_t stillBody,
+               BlockList<Block>& list);
+  template <class Pass>
+  void sweep(WorkerThreads& threads, int thread, const Pass& pass);
+
+  BlockLists lists_;
+  std::size_t colors_ = 0;
+  bool rebounds_ = false;
+  double subStep_ = 0;  // s, that the manifolds' impulses belong to
+};
+
+}  // namespace cradle

@@ -1,0 +1,72 @@
+#include "simulate/contact_response.h"
+
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+using Index = Eigen::Index;
+
+void applyTo(int body, const Vec3& impulse, const Vec3& angularImpulse, const std::vector<RigidBody>& bodies,
+             const std::vector<BodyFrame>& frames, VectorX& velocities) {
+  if (body == kFixed) return;
+  const std::size_t index = static_cast<std::size_t>(body);
+  linearVelocity(velocities, body) += bodies[index].inverseMass * impulse;
+  angularVelocity(velocities, body) += frames[index].inverseInertia * angularImpulse;
+}
+
+}  // namespace
+
+bool canLast(const Contact& contact) {
+  return !std::isnan(contact.radiusA) && !std::isnan(contact.radiusB) &&
+         (std::isfinite(contact.radiusA) || std::isfinite(contact.radiusB));
+}
+
+ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames) {
+  SurfaceContact surfaces{contact.bodyA,      contact.bodyB,   contact.point,  contact.normal,
+                          contact.separation, contact.radiusA, contact.radiusB};
+  if (!canLast(contact)) surfaces.radiusA = 0, surfaces.radiusB = INFINITY;
+  ContactRows result;
+  result.constraint = constraintOf(surfaces, state);
+  result.place = placeOf(result.constraint, state, frames);
+  const auto tangents = tangentRows(result.constraint, result.place);
+  result.rows = {tangents[0], tangents[1], normalRow(result.constraint, result.place)};
+  return result;
+}
+
+ContactResponse::ContactResponse(const std::vector<ContactRows>& contacts, const std::vector<RigidBody>& bodies,
+                                 const std::vector<BodyFrame>& frames, ConstraintSolver& ties)
+    : contacts_(contacts), inverseMass_(3 * contacts.size(), 3 * contacts.size()) {
+  for (const ContactRows& contact : contacts)
+    for (const ConstraintRow& row : contact.rows) {
+      VectorX answer = VectorX::Zero(stateSize(std::ssize(bodies)));
+      applyTo(row.bodyA, row.linearA, row.angularA, bodies, frames, answer);
+      applyTo(row.bodyB, row.linearB, row.angularB, bodies, frames, answer);
+      if (ties.hasConstraints()) ties.constrainVelocities(answer);
+      inverseMass_.col(std::ssize(answers_)) = velocities(answer);
+      answers_.push_back(std::move(answer));
+    }
+  inverseMass_ = (0.5 * (inverseMass_ + inverseMass_.transpose())).eval();
+}
+
+VectorX ContactResponse::velocities(const VectorX& state) const {
+  VectorX result(3 * contacts_.size());
+  Index next = 0;
+  for (const ContactRows& contact : contacts_)
+    for (const ConstraintRow& row : contact.rows) result[next++] = rateOf(row, state);
+  return result;
+}
+
+VectorX ContactResponse::accelerations(const VectorX& rate) const {
+  VectorX result(3 * contacts_.size());
+  Index next = 0;
+  for (const ContactRows& contact : contacts_)
+    for (const ConstraintRow& row : contact.rows) result[next++] = rateOf(row, rate) + row.curvature;
+  return result;
+}
+
+void ContactResponse::apply(const VectorX& impulses, VectorX& velocities) const {
+  for (std::size_t i = 0; i < answers_.size(); ++i) velocities += impulses[static_cast<Index>(i)] * answers_[i];
+}
+
+}  // namespace cradle

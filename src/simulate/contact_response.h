@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/separation.h"
+#include "dynamics/constraint_forces.h"
+#include "dynamics/contact_rows.h"
+
+namespace cradle {
+
+/// A contact as rows: where its surfaces are, and how they move relative to each other.
+struct ContactRows {
+  ContactConstraint constraint;
+  ContactPlace place;
+  std::array<ConstraintRow, 3> rows;  // two along the surfaces, then the gap's
+};
+
+/// Surfaces that are neither ball, corner nor face (edges) are taken as a corner on a face: good for one instant.
+ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames);
+
+/// Whether a contact can last: its kinematics are those of a ball or corner on a face, a corner or a ball.
+bool canLast(const Contact& contact);
+
+/// How contacts answer to each other's impulses, with what ties the bodies: three rows of each in turn.
+class ContactResponse {
+ public:
+  /// Keeps a reference to `contacts`. `ties` must be factorised for the bodies' places.
+  ContactResponse(const std::vector<ContactRows>& contacts, const std::vector<RigidBody>& bodies,
+                  const std::vector<BodyFrame>& frames, ConstraintSolver& ties);
+
+  /// Relative velocities, of A to B, for velocities of the bodies.
+  VectorX velocities(const VectorX& state) const;
+
+  /// Relative accelerations for accelerations of the bodies.
+  VectorX accelerations(const VectorX& rate) const;
+
+  /// Adds to velocities what impulses (N s, on A) give, or to accelerations what forces (N) do.
+  void apply(const VectorX& impulses, VectorX& velocities) const;
+
+  const MatrixX& inverseMass() const { return inverseMass_; }  // 1/kg: impulses to relative velocities
+
+ private:
+  const std::vector<ContactRows>& contacts_;
+  std::vector<VectorX> answers_;
+  MatrixX inverseMass_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "impact/cone_problem.h"
+#include "simulate/contact_response.h"
+#include "simulate/moving_island.h"
+
+namespace cradle {
+
+/// What happens to a lasting contact inside a step.
+struct ContactChange {
+  enum class Kind {
+    release,   // its force would have to pull
+    slip,      // friction gives way
+    stick,     // sliding stops
+    redundant  // no forces hold it together with others any more
+  };
+  Kind kind = Kind::release;
+  double fraction = 0;      // of the step, 0..1
+  std::size_t contact = 0;  // index into Mechanism::contacts
+};
+
+/// Contacts that last: those that forces press together, as rows of the equations of motion (Mechanism::contacts). They
+/// stay as they are within a step. What changes them is an event.
+class LastingContacts {
+ public:
+  /// Keeps a reference to `island`.
+  explicit LastingContacts(MovingIsland& island) : island_(island) {}
+
+  /// Lets go of everything, until `decide`. `change` is what happens to one of the contacts now, if anything does.
+  void letGo(const std::optional<ContactChange>& change);
+
+  /// Which of the touching contacts that do not leave each other last, and how, by the forces between them; those of
+  /// bodies that all rest are left out. `ties` must be factorised for the state. Records slip, stick, roll and release.
+  void decide(const std::vector<Contact>& touching, ConstraintSolver& ties);
+
+  /// Lets go of contacts between bodies that have come to rest.
+  void letGoResting();
+
+  bool empty() const { return mechanism().contacts.empty(); }
+
+  /// Features that lasting contacts hold together, for the pairs of now.
+  const std::vector<HeldFeature>& held();
+
+  /// The first change of a lasting contact within the island's step, whose end rate must be there.
+  std::optional<ContactChange> firstChange();
+
+  /// Zero where the change happens, positive before. Not for redundant ones.
+  double margin(const ContactChange& change, const VectorX& state);
+
+  /// Directions of sliding follow the motion from step to step.
+  void followSliding();
+
+  /// Why rows do not serve, if they don't: they are for few contacts, and only those between balls, corners and faces.
+  std::string_view fault() const { return fault_; }
+
+ private:
+  /// A contact that touches, on its way to a decision; and what is known of one that lasts, beside its constraint.
+  struct Entry {
+    Contact contact;  // where and when it was decided
+    ColliderPair pair;
+    bool slides = false;
+    Vec3 direction = Vec3::Zero();  // unit, world, of A's sliding, if it slides
+    bool isLoaded = false, sticks = false;
+    bool isRedundant = false;  // its forces are not unique
+    double force = 1;          // N, that margins are measured by
+  };
+  /// A contact that lasted until now.
+  struct Former {
+    Entry entry;
+    ContactConstraint constraint;
+    bool isSlipping = false;       // friction gives way now ...
+    Vec3 slipping = Vec3::Zero();  // ... and A will slide there; unit, world
+  };
+  using Together = std::vector<std::size_t>;  // entries whose forces depend on each other
+
+  Mechanism& mechanism() const { return island_.assembly.mechanism; }
+  std::vector<Entry> entriesOf(const std::vector<Contact>& touching) const;
+  std::vector<Together> groupsOf(const std::vector<Entry>& entries) const;
+  void decide(const Together& group, std::vector<Entry>& entries, ConstraintSolver& ties);
+  ConeSolution solve(const std::vector<const Entry*>& entries, const std::vector<ContactRows>& rows,
+                     const ContactResponse& response) const;
+  void add(const Entry& entry);
+  void recordChanges();
+  const Former* formerOf(const Entry& entry) const;
+  bool turnsBack(const Former& former, const Entry& now) const;
+  bool isAwake(const Contact& contact) const;
+
+  Vec3 givenDirection(std::size_t contact, const VectorX& state) const;
+  void findMargins(const VectorX& state, std::vector<std::array<double, 3>>& margins);
+  bool isHeldTogether(const VectorX& state);
+  std::optional<double> firstFailure(double from, double to);
+  double locate(const ContactChange& change, double from, double marginFrom, double to, double marginTo);
+
+  MovingIsland& island_;
+  std::vector<Entry> entries_;  // of Mechanism::contacts
+  std::vector<Former> former_;
+  std::vector<HeldFeature> held_;
+  std::vector<BodyFrame> frames_;
+  std::string_view fault_;
+  bool isReleasing_ = false;
+  VectorX rate_, sample_;
+  std::vector<std::array<double, 3>> before_, after_;
+};
+
+}  // namespace cradle

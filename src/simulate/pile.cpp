@@ -1,0 +1,89 @@
+#include "simulate/pile.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "core/interruption.h"
+#include "dynamics/invariants.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kSameTime = 1e-12;          // s, relative beyond 1 s
+constexpr double kEnergyRounding = 1e-9;     // of the energy that there is
+constexpr std::size_t kBodiesAThread = 400;  // with fewer, threads wait for each other longer than they work
+
+int threadsFor(std::size_t bodies) {
+  const std::size_t useful = std::max<std::size_t>(1, bodies / kBodiesAThread);
+  return std::min(hardwareThreads(), static_cast<int>(useful));
+}
+
+}  // namespace
+
+Pile::Pile(Assembly assembly, double longestStep)
+    : Pile(std::move(assembly), longestStep, threadsFor(assembly.mechanism.bodies.size())) {}
+
+Pile::Pile(Assembly assembly, double longestStep, int threads)
+    : assembly_(std::move(assembly)),
+      state_(assembly_.state),
+      longestStep_(longestStep),
+      step_(assembly_.mechanism.bodies, assembly_.geometry, assembly_.mechanism.gravity, threads),
+      startEnergy_(energyConstant(assembly_.mechanism, state_)) {
+  normalizeOrientations(state_);
+}
+
+const VectorX& Pile::stateAt(double time) {
+  const double same = kSameTime * std::max(1.0, time);
+  if (time <= time_ + same) return state_;
+  const int steps = std::max(1, static_cast<int>(std::ceil((time - time_) / longestStep_ - same)));
+  const double timeStep = (time - time_) / steps;
+  for (int i = 0; i < steps; ++i) takeStep(timeStep);
+  time_ = time;
+  return state_;
+}
+
+void Pile::takeStep(double timeStep) {
+  throwIfInterrupted();
+  time_ += timeStep;
+  if (step_.allAsleep()) return;
+  step_.advance(timeStep, state_);
+  bookDissipation();
+  record();
+}
+
+/// Kinetic and potential energy and what has gone of them stay the same.
+void Pile::bookDissipation() {
+  dissipatedEnergy(state_) = 0;
+  const Invariants now = invariantsOf(assembly_.mechanism, state_);
+  const double lost = startEnergy_ - (now.kinetic + now.potential);
+  const double rounding = kEnergyRounding * (std::abs(startEnergy_) + std::abs(now.potential) + now.kinetic);
+  if (!state_.allFinite() || !(lost >= -rounding))
+    throw Error(ErrorKind::unstable, "",
+                fmt::format("unstable at {:.6g} s: a pile of {} bodies from \"{}\" on has {:.3g} J more energy than at "
+                            "the start; give the scene an \"accuracy\" of 1e-4 or finer",
+                            time_, assembly_.names.bodies.size(), assembly_.names.bodies[0], -lost));
+  dissipatedEnergy(state_) = lost;
+}
+
+void Pile::record() {
+  const auto recordBody = [&](EventKind kind, int body) {
+    events_.push_back({time_, kind, assembly_.sceneBodies[static_cast<std::size_t>(body)], kWorld,
+                       Vec3(centerOfMass(state_, body)), Vec3::Zero(), 0});
+  };
+  for (const PileStep::Impact& impact : step_.impacts()) {
+    const auto [a, b] = bodiesOf(assembly_, impact.pair);
+    events_.push_back({time_, EventKind::impact, a, b, impact.point, impact.normal, impact.impulse});
+  }
+  for (const int body : step_.woken()) recordBody(EventKind::wake, body);
+  for (const int body : step_.fallenAsleep()) recordBody(EventKind::rest, body);
+}
+
+std::vector<Event> Pile::takeEvents() {
+  return std::exchange(events_, {});
+}
+
+}  // namespace cradle

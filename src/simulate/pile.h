@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include "impact/pile_step.h"
+#include "simulate/assembly.h"
+#include "trajectory/trajectory.h"
+
+namespace cradle {
+
+/// An island of many bodies that gravity and contact move, in motion: by the fast contact step.
+class Pile {
+ public:
+  /// Steps end at the times asked for, and are no longer than `longestStep` (s). As many threads as the machine has
+  /// for large piles; the result is the same for any number.
+  Pile(Assembly assembly, double longestStep);
+  Pile(Assembly assembly, double longestStep, int threads);
+  Pile(const Pile&) = delete;
+  Pile& operator=(const Pile&) = delete;
+
+  /// The state at `time` (s), not earlier than in the call before. What contact takes of the energy is dissipated;
+  /// taking out overlap gives a little back. Throws Error(unstable) if the state is not finite, or there is more energy
+  /// than at the start.
+  const VectorX& stateAt(double time);
+
+  const Assembly& assembly() const { return assembly_; }
+
+  /// Looks for contacts.
+  long evaluations() const { return step_.looks(); }
+
+  /// Events since the last call: impacts, rest and waking, at the ends of steps.
+  std::vector<Event> takeEvents();
+
+ private:
+  void takeStep(double timeStep);
+  void bookDissipation();
+  void record();
+
+  Assembly assembly_;
+  VectorX state_;
+  double longestStep_;
+  PileStep step_;
+  double startEnergy_ = 0;  // J
+  double time_ = 0;         // s
+  std::vector<Event> events_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,314 @@
+// Bullet 3.24 (E. Coumans, https://github.com/bulletphysics/bullet3): semi-implicit Euler, and sequential impulses for
+// joints and contacts. Its bodies have their frames at the centre of mass along the principal axes of inertia.
+
+#define BT_USE_DOUBLE_PRECISION
+#include "study/peers/bullet.h"
+
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/CollisionShapes/btEmptyShape.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <cmath>
+
+#include "math/principal_axes.h"
+#include "mesh/recognise_shape.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kBounceFrom = 0.01;     // m/s, if tuned; 0.2 m/s is Bullet's default
+constexpr double kSamePlace = 1e-9;      // m: a shape that near the centre of mass needs no compound
+constexpr double kSameDirection = 1e-9;  // rad
+
+btVector3 toBullet(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+btQuaternion toBullet(const Quat& q) {
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+btTransform toBullet(const RigidTransform& transform) {
+  return btTransform(toBullet(transform.rotation), toBullet(transform.translation));
+}
+Vec3 fromBullet(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+Quat fromBullet(const btQuaternion& q) {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+/// What a collision object points to: its material's row in the table of surface laws.
+using LawsOfMaterial = std::vector<SurfacePair>;
+
+const SurfacePair& lawOf(const btCollisionObject* a, const btCollisionObject* b) {
+  const auto& laws = *static_cast<const LawsOfMaterial*>(a->getUserPointer());
+  return laws[static_cast<std::size_t>(b->getUserIndex())];
+}
+btScalar restitutionOf(const btCollisionObject* a, const btCollisionObject* b) {
+  return lawOf(a, b).restitution;
+}
+btScalar frictionOf(const btCollisionObject* a, const btCollisionObject* b) {
+  return lawOf(a, b).dynamicFriction;
+}
+
+/// A shape, and where it is in its body's frame.
+struct PlacedShape {
+  std::unique_ptr<btCollisionShape> shape;
+  RigidTransform bodyFromShape;
+};
+
+struct ShapeMaker {
+  std::unique_ptr<btCollisionShape> operator()(const Sphere& sphere) const {
+    return std::make_unique<btSphereShape>(sphere.radius);
+  }
+  std::unique_ptr<btCollisionShape> operator()(const Box& box) const {
+    return std::make_unique<btBoxShape>(toBullet(box.size / 2));
+  }
+  std::unique_ptr<btCollisionShape> operator()(const Cylinder& cylinder) const {
+    return std::make_unique<btCylinderShape>(btVector3(cylinder.radius, cylinder.length / 2, cylinder.radius));
+  }
+  std::unique_ptr<btCollisionShape> operator()(const Capsule& capsule) const {
+    return std::make_unique<btCapsuleShape>(capsule.radius, capsule.length);
+  }
+  std::unique_ptr<btCollisionShape> operator()(const Plane& plane) const {
+    return std::make_unique<btStaticPlaneShape>(toBullet(plane.normal), 0);
+  }
+};
+
+RecognisedShape recognised(const Body& body, const Scene& scene) {
+  const auto* model = std::get_if<ModelShape>(&body.shape);
+  if (!model) return {};
+  RecognisedShape found = recogniseShape(scene.models[static_cast<std::size_t>(model->model)].solid);
+  if (body.collision == CollisionChoice::hull || body.collision == CollisionChoice::mesh) found.primitive.reset();
+  return found;
+}
+
+PlacedShape shapeOf(const Body& body, const Scene& scene) {
+  if (body.collision == CollisionChoice::none) return {std::make_unique<btEmptyShape>(), {}};
+  if (const auto found = recognised(body, scene); found.primitive)
+    return {std::visit(ShapeMaker{}, found.primitive->shape), found.primitive->bodyFromShape};
+  return std::visit(
+      [&](const auto& shape) -> PlacedShape {
+        if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, ModelShape>) {
+          auto hull = std::make_unique<btConvexHullShape>();
+          for (const Vec3& vertex : scene.models[static_cast<std::size_t>(shape.model)].solid.vertices)
+            hull->addPoint(toBullet(vertex), false);
+          hull->recalcLocalAabb();
+          return {std::move(hull), {}};
+        } else {
+          return {ShapeMaker{}(shape), {}};
+        }
+      },
+      body.shape);
+}
+
+/// A massless rod: one row that keeps the distance of two points, as Bullet's own joints keep theirs.
+class BulletRod : public btTypedConstraint {
+ public:
+  BulletRod(btRigidBody& a, btRigidBody& b, const btVector3& anchorA, const btVector3& anchorB, double length)
+      : btTypedConstraint(POINT2POINT_CONSTRAINT_TYPE, a, b), anchorA_(anchorA), anchorB_(anchorB), length_(length) {}
+
+  void getInfo1(btConstraintInfo1* info) override { info->m_numConstraintRows = info->nub = 1; }
+  void getInfo2(btConstraintInfo2* info) override {
+    const btVector3 armA = m_rbA.getWorldTransform().getBasis() * anchorA_;
+    const btVector3 armB = m_rbB.getWorldTransform().getBasis() * anchorB_;
+    const btVector3 d = m_rbA.getWorldTransform().getOrigin() + armA - m_rbB.getWorldTransform().getOrigin() - armB;
+    const btVector3 along = d.normalized(), turnA = armA.cross(along), turnB = along.cross(armB);
+    for (int i = 0; i < 3; ++i) {
+      info->m_J1linearAxis[i] = along[i];
+      info->m_J1angularAxis[i] = turnA[i];
+      info->m_J2linearAxis[i] = -along[i];
+      info->m_J2angularAxis[i] = turnB[i];
+    }
+    info->m_constraintError[0] = info->fps * info->erp * (length_ - d.length());
+  }
+  void setParam(int, btScalar, int) override {}
+  btScalar getParam(int, int) const override { return 0; }
+
+ private:
+  btVector3 anchorA_, anchorB_;  // m, in the bodies' principal frames
+  double length_;                // m
+};
+
+}  // namespace
+
+struct BulletWorld::World {
+  World(const Scene& scene, const Assembly& parts, const BulletSettings& settings);
+  void addBody(const Body& body, const Scene& scene, int index);
+  btRigidBody& add(const btRigidBody::btRigidBodyConstructionInfo& info, const Body& body);
+  void addJoints();
+  void letJoinedOverlap(const Scene& scene);
+  void addForces();
+  AttachmentMotion motionOf(const Attachment& attachment) const;
+  btRigidBody& bodyOf(const Attachment& attachment) const;
+  btVector3 pointOf(const Attachment& attachment) const;
+
+  const Assembly& assembly;
+  std::vector<LawsOfMaterial> laws;
+  std::vector<std::unique_ptr<btCollisionShape>> shapes;
+  std::vector<std::unique_ptr<btRigidBody>> bodies;  // of the scene
+  std::vector<std::unique_ptr<btTypedConstraint>> joints;
+  std::vector<btRigidBody*> moving;     // in the order of the assembly
+  std::vector<Quat> bodyFromPrincipal;  // of each moving body
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadPhase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld dynamics{&dispatcher, &broadPhase, &solver, &configuration};
+  btScalar processingThreshold = BT_LARGE_FLOAT;  // m: contacts up to this distance are solved
+};
+
+BulletWorld::World::World(const Scene& scene, const Assembly& parts, const BulletSettings& settings)
+    : assembly(parts), laws(scene.surfacePairs) {
+  gCalculateCombinedRestitutionCallback = restitutionOf;
+  gCalculateCombinedFrictionCallback = frictionOf;
+  dynamics.setGravity(toBullet(scene.gravity));
+  btContactSolverInfo& info = dynamics.getSolverInfo();
+  info.m_numIterations = settings.iterations;
+  if (settings.isTuned) {
+    info.m_splitImpulsePenetrationThreshold = 0;
+    info.m_restitutionVelocityThreshold = kBounceFrom;
+    processingThreshold = 0;
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) addBody(scene.bodies[i], scene, assembly.movingBodies[i]);
+  addJoints();
+  letJoinedOverlap(scene);
+}
+
+void BulletWorld::World::addBody(const Body& body, const Scene& scene, int index) {
+  PlacedShape placed = shapeOf(body, scene);
+  btCollisionShape* shape = placed.shape.get();
+  shapes.push_back(std::move(placed.shape));
+  if (index == kFixed) {
+    btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, shape);
+    info.m_startWorldTransform = toBullet(body.worldFromBody * placed.bodyFromShape);
+    add(info, body);
+    return;
+  }
+  const PrincipalAxes principal = principalAxes(body.massProperties.inertiaTensor);
+  const RigidTransform bodyFromFrame{Quat(principal.axes), body.massProperties.centerOfMass};
+  const RigidTransform frameFromShape = bodyFromFrame.inverse() * placed.bodyFromShape;
+  const bool isRound = shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE;
+  if (frameFromShape.translation.norm() > kSamePlace ||
+      (!isRound && frameFromShape.rotation.angularDistance(Quat::Identity()) > kSameDirection)) {
+    auto compound = std::make_unique<btCompoundShape>(true, 1);
+    compound->addChildShape(toBullet(frameFromShape), shape);
+    shape = compound.get();
+    shapes.push_back(std::move(compound));
+  }
+  btRigidBody::btRigidBodyConstructionInfo info(body.massProperties.mass, nullptr, shape, toBullet(principal.moments));
+  info.m_startWorldTransform = toBullet(body.worldFromBody * bodyFromFrame);
+  btRigidBody& rigid = add(info, body);
+  rigid.setLinearVelocity(toBullet(Vec3(linearVelocity(assembly.state, index))));
+  rigid.setAngularVelocity(toBullet(Vec3(angularVelocity(assembly.state, index))));
+  rigid.setActivationState(DISABLE_DEACTIVATION);
+  moving.push_back(&rigid);
+  bodyFromPrincipal.push_back(bodyFromFrame.rotation);
+}
+
+btRigidBody& BulletWorld::World::add(const btRigidBody::btRigidBodyConstructionInfo& info, const Body& body) {
+  bodies.push_back(std::make_unique<btRigidBody>(info));
+  btRigidBody& rigid = *bodies.back();
+  rigid.setUserPointer(&laws[static_cast<std::size_t>(body.material)]);
+  rigid.setUserIndex(body.material);
+  rigid.setContactProcessingThreshold(processingThreshold);
+  if (body.collision == CollisionChoice::none)
+    dynamics.addRigidBody(&rigid, 0, 0);
+  else
+    dynamics.addRigidBody(&rigid);
+  return rigid;
+}
+
+btRigidBody& BulletWorld::World::bodyOf(const Attachment& attachment) const {
+  if (attachment.body == kFixed) return btTypedConstraint::getFixedBody();
+  return *moving[static_cast<std::size_t>(attachment.body)];
+}
+
+btVector3 BulletWorld::World::pointOf(const Attachment& attachment) const {
+  if (attachment.body == kFixed) return toBullet(attachment.point);
+  return toBullet(bodyFromPrincipal[static_cast<std::size_t>(attachment.body)].conjugate() * attachment.point);
+}
+
+void BulletWorld::World::addJoints() {
+  const auto add = [&](std::unique_ptr<btTypedConstraint> joint) {
+    dynamics.addConstraint(joint.get());
+    joints.push_back(std::move(joint));
+  };
+  const auto turned = [&](const Attachment& at, const Vec3& direction) {
+    return pointOf({at.body, direction});  // a direction turns as a point at the centre of mass does
+  };
+  for (const RodConstraint& rod : assembly.mechanism.constraints.rods)
+    add(std::make_unique<BulletRod>(bodyOf(rod.anchorA), bodyOf(rod.anchorB), pointOf(rod.anchorA),
+                                    pointOf(rod.anchorB), rod.length));
+  for (const auto& [a, b] : assembly.mechanism.constraints.ballJoints)
+    add(std::make_unique<btPoint2PointConstraint>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b)));
+  for (const auto& [a, b, axisA, acrossB] : assembly.mechanism.constraints.hinges)
+    add(std::make_unique<btHingeConstraint>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b), turned(a, axisA),
+                                            turned(b, acrossB[0].cross(acrossB[1]))));
+}
+
+/// Bodies of a joint do not touch each other, fixed ones neither: for Bullet those are not the joint's.
+void BulletWorld::World::letJoinedOverlap(const Scene& scene) {
+  const auto ignore = [&](const auto& joint) {
+    if (joint.anchorA.body == kWorld || joint.anchorB.body == kWorld) return;
+    btRigidBody& a = *bodies[static_cast<std::size_t>(joint.anchorA.body)];
+    btRigidBody& b = *bodies[static_cast<std::size_t>(joint.anchorB.body)];
+    a.setIgnoreCollisionCheck(&b, true), b.setIgnoreCollisionCheck(&a, true);
+  };
+  for (const BallJoint& joint : scene.ballJoints) ignore(joint);
+  for (const Hinge& hinge : scene.hinges) ignore(hinge);
+}
+
+AttachmentMotion BulletWorld::World::motionOf(const Attachment& attachment) const {
+  if (attachment.body == kFixed) return {Vec3::Zero(), attachment.point, Vec3::Zero()};
+  const btRigidBody& body = bodyOf(attachment);
+  const btVector3 arm = body.getWorldTransform().getBasis() * pointOf(attachment);
+  return {fromBullet(arm), fromBullet(body.getWorldTransform().getOrigin() + arm),
+          fromBullet(body.getVelocityInLocalPoint(arm))};
+}
+
+void BulletWorld::World::addForces() {
+  for (const SpringForce& spring : assembly.mechanism.springs) {
+    const SpringAction action = actionOf(spring, motionOf(spring.anchorA), motionOf(spring.anchorB));
+    if (spring.anchorA.body != kFixed)
+      bodyOf(spring.anchorA).applyForce(toBullet(action.forceOnA), toBullet(action.a.arm));
+    if (spring.anchorB.body != kFixed)
+      bodyOf(spring.anchorB).applyForce(toBullet(-action.forceOnA), toBullet(action.b.arm));
+  }
+}
+
+bool hasBullet() {
+  return true;
+}
+
+std::string missingInBullet(const Scene& scene) {
+  if (!scene.ropes.empty()) return "ropes";
+  if (!scene.pushes.empty()) return "pushes";
+  for (const Body& body : scene.bodies)
+    if (std::holds_alternative<ModelShape>(body.shape) && body.collision != CollisionChoice::none &&
+        body.collision != CollisionChoice::hull && !recognised(body, scene).isConvex)
+      return "the concave mesh of \"" + body.name + "\"";
+  return "";
+}
+
+BulletWorld::BulletWorld(const Scene& scene, const Assembly& assembly, const BulletSettings& settings)
+    : world_(std::make_unique<World>(scene, assembly, settings)) {}
+BulletWorld::~BulletWorld() = default;
+
+void BulletWorld::step(double timeStep) {
+  world_->addForces();
+  world_->dynamics.stepSimulation(timeStep, 0);
+}
+
+void BulletWorld::read(VectorX& state) const {
+  for (std::size_t i = 0; i < world_->moving.size(); ++i) {
+    const btRigidBody& body = *world_->moving[i];
+    const Eigen::Index index = static_cast<Eigen::Index>(i);
+    centerOfMass(state, index) = fromBullet(body.getWorldTransform().getOrigin());
+    setOrientation(state, index,
+                   fromBullet(body.getWorldTransform().getRotation()) * world_->bodyFromPrincipal[i].conjugate());
+    linearVelocity(state, index) = fromBullet(body.getLinearVelocity());
+    angularVelocity(state, index) = fromBullet(body.getAngularVelocity());
+  }
+}
+
+}  // namespace cradle

@@ -1,0 +1,72 @@
+#include "study/peers/peer_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <set>
+
+#include "core/interruption.h"
+#include "dynamics/integrators/semi_implicit_euler.h"
+#include "dynamics/invariants.h"
+#include "simulate/energy_guard.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kSameTime = 1e-6;  // of a step
+
+/// CPU time of this thread in s.
+double cpuSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Frame frameOf(const Assembly& assembly, const VectorX& state, long number, double time) {
+  Frame frame{number, time, {}, {}};
+  for (Eigen::Index body = 0; body < bodyCount(state); ++body)
+    frame.states.push_back({centerOfMass(state, body), orientation(state, body), linearVelocity(state, body),
+                            angularVelocity(state, body)});
+  const Invariants sums = invariantsOf(assembly.mechanism, state);
+  frame.energy = {sums.kinetic, sums.potential, 0, 0, sums.momentum, sums.angularMomentum};
+  return frame;
+}
+
+}  // namespace
+
+RunCost runBullet(const Scene& scene, const Assembly& assembly, const BulletSettings& settings, double timeStep,
+                  const std::function<void(const Frame&)>& take) {
+  BulletWorld world(scene, assembly, settings);
+  EnergyGuard guard(assembly, assembly.state, {semiImplicitEuler, "semiImplicitEuler", timeStep, 0}, scene.duration);
+  VectorX state = assembly.state;
+  RunCost cost;
+  for (long number = 0; number <= lastFrame(scene); ++number) {
+    const double time = frameTime(scene, number);
+    const long steps = static_cast<long>(std::ceil(time / timeStep - kSameTime));
+    const double before = cpuSeconds();
+    for (; cost.evaluations < steps; ++cost.evaluations) world.step(timeStep);
+    world.read(state);
+    cost.cpuSeconds += cpuSeconds() - before;
+    guard.check(state, time, timeStep);
+    take(frameOf(assembly, state, number, time));
+    throwIfInterrupted();
+  }
+  return cost;
+}
+
+bool mayDissipate(const Assembly& assembly) {
+  for (const SpringForce& spring : assembly.mechanism.springs)
+    if (spring.damping > 0) return true;
+  std::set<std::size_t> surfaces;
+  for (const Collider& collider : assembly.geometry.colliders)
+    surfaces.insert(static_cast<std::size_t>(collider.surface));
+  for (const PlaneCollider& plane : assembly.geometry.planes) surfaces.insert(static_cast<std::size_t>(plane.surface));
+  for (const std::size_t a : surfaces)
+    for (const std::size_t b : surfaces) {
+      const SurfaceLaw& law = assembly.geometry.laws[a][b];
+      if (law.restitution < 1 || law.dynamicFriction > 0) return true;
+    }
+  return false;
+}
+
+}  // namespace cradle

@@ -1,0 +1,94 @@
+#include "collision/contact_patch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+constexpr double kExact = 1e-14;  // m: rounding of coordinates below 1 m
+const Mat3 kStraight = Mat3::Identity();
+
+Mat3 turnedAbout(const Vec3& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+}
+
+// A cube of 0.2 m on one of 0.4 m, 1 mm deep: its four lower corners.
+TEST(BoxesInContact, CarryEachOtherOnFourCornersOfTheSmallerSide) {
+  const PosedBox below{Vec3::Zero(), kStraight, Vec3::Constant(0.2)};
+  const PosedBox above{Vec3(0.02, 0.299, 0.03), turnedAbout(Vec3::UnitY(), 0.3), Vec3::Constant(0.1)};
+  const ContactPatch patch = contactOfBoxes(below, above, Vec3::Zero(), 0.005);
+  ASSERT_EQ(patch.count, 4u);
+  EXPECT_LT((patch.normal - Vec3::UnitY()).norm(), kExact);
+  Vec3 middle = Vec3::Zero();
+  for (const ContactPatch::Point& point : patch.points) {
+    EXPECT_NEAR(point.separation, -0.001, kExact);
+    EXPECT_NEAR(point.onB.y(), 0.199, kExact);
+    EXPECT_NEAR(point.onA.y(), 0.2, kExact);
+    EXPECT_NEAR((point.onB - above.center).norm(), 0.1 * std::sqrt(3.0), kExact);
+    middle += point.onB / 4;
+  }
+  EXPECT_LT((middle - Vec3(0.02, 0.199, 0.03)).norm(), kExact);
+}
+
+// Two cubes that stand on an edge each, crossed: the upper's lowest edge on the lower's highest.
+TEST(BoxesInContact, TouchInOnePointWhereEdgesCross) {
+  const double high = 0.1 * std::sqrt(2.0);
+  const PosedBox below{Vec3::Zero(), turnedAbout(Vec3::UnitX(), std::atan(1.0)), Vec3::Constant(0.1)};
+  const PosedBox above{Vec3(0.03, 2 * high - 0.002, -0.04), turnedAbout(Vec3::UnitZ(), std::atan(1.0)),
+                       Vec3::Constant(0.1)};
+  const ContactPatch patch = contactOfBoxes(below, above, Vec3::Zero(), 0.005);
+  ASSERT_EQ(patch.count, 1u);
+  EXPECT_LT((patch.normal - Vec3::UnitY()).norm(), 1e-12);
+  EXPECT_NEAR(patch.points[0].separation, -0.002, 1e-12);
+  EXPECT_LT((patch.points[0].onA - Vec3(0.03, high, 0)).norm(), 1e-12);
+  EXPECT_LT((patch.points[0].onB - Vec3(0.03, high - 0.002, 0)).norm(), 1e-12);
+}
+
+// Diagonally above, and falling 0.1 m in the step: beside the other cube it falls past; when it comes nearer sideways
+// at the same time it will land on it, though the gap sideways is the larger one now.
+TEST(BoxesInContact, AreThoseOfTheInstantAtWhichTheyWillMeet) {
+  const PosedBox below{Vec3::Zero(), kStraight, Vec3::Constant(0.1)};
+  const PosedBox beside{Vec3(0.21, 0.23, 0), kStraight, Vec3::Constant(0.1)};
+  EXPECT_EQ(contactOfBoxes(below, beside, Vec3(0, -0.1, 0), 0.005).count, 0u);
+  const PosedBox coming{Vec3(0.24, 0.23, 0), kStraight, Vec3::Constant(0.1)};
+  const ContactPatch patch = contactOfBoxes(below, coming, Vec3(-0.2, -0.1, 0), 0.005);
+  ASSERT_EQ(patch.count, 4u);
+  EXPECT_LT((patch.normal - Vec3::UnitY()).norm(), kExact);
+  for (const ContactPatch::Point& point : patch.points) EXPECT_NEAR(point.separation, 0.03, kExact);
+}
+
+// Centres 0.5 m apart along x, 0.12 m to the side: they meet where they are 0.2 m apart, at 0.16 along x.
+TEST(BallsInContact, HaveTheNormalOfTheInstantAtWhichTheyMeet) {
+  const PosedBall a{Vec3::Zero(), 0.1}, b{Vec3(0.5, 0.12, 0), 0.1};
+  const ContactPatch patch = contactOfBalls(a, b, Vec3(-0.4, 0, 0), 0.005);
+  ASSERT_EQ(patch.count, 1u);
+  EXPECT_LT((patch.normal - Vec3(0.8, 0.6, 0)).norm(), kExact);
+  EXPECT_NEAR(patch.points[0].separation, 0.8 * 0.34, kExact);
+  EXPECT_EQ(contactOfBalls(a, b, Vec3(-0.3, 0, 0), 0.005).count, 0u);
+  EXPECT_EQ(contactOfBalls(a, b, Vec3(0.4, 0, 0), 0.005).count, 0u);
+}
+
+TEST(BallAndBox, TouchAtCornersSidesAndFromInside) {
+  const PosedBox box{Vec3::Zero(), kStraight, Vec3::Constant(0.1)};
+  const Vec3 corner(0.1, 0.1, 0.1), out = Vec3(1, 2, 2) / 3;
+  const ContactPatch atCorner = contactOfBallAndBox({corner + 0.099 * out, 0.1}, box, Vec3::Zero(), 0.005);
+  ASSERT_EQ(atCorner.count, 1u);
+  EXPECT_LT((atCorner.normal + out).norm(), 1e-13);
+  EXPECT_NEAR(atCorner.points[0].separation, -0.001, kExact);
+  const ContactPatch inside = contactOfBallAndBox({Vec3(0.01, 0.09, 0), 0.1}, box, Vec3::Zero(), 0.005);
+  ASSERT_EQ(inside.count, 1u);
+  EXPECT_LT((inside.normal + Vec3::UnitY()).norm(), kExact);
+  EXPECT_NEAR(inside.points[0].separation, -0.11, kExact);
+}
+
+TEST(BoxOnPlane, StandsOnItsFourLowestCorners) {
+  const ContactPatch patch = contactOfBoxAndPlane({Vec3(0, 0.101, 0), kStraight, Vec3::Constant(0.1)},
+                                                  {Vec3::Zero(), Vec3::UnitY(), 0}, Vec3::Zero(), 0.005);
+  ASSERT_EQ(patch.count, 4u);
+  for (const ContactPatch::Point& point : patch.points) EXPECT_NEAR(point.separation, 0.001, kExact);
+}
+
+}  // namespace
+}  // namespace cradle

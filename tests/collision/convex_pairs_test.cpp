@@ -1,0 +1,347 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "collision/separation.h"
+#include "math/rotation.h"
+
+// Every pair of convex shapes. What a contact says is proven, not compared: the surface points are on their solids, as
+// far apart as the separation, which bounds the distance from above; and the normal sees a gap as large between the
+// solids' support functions, which bounds it from below. Where solids overlap no other of many directions may see a
+// larger gap. Supports and solids are written down here once more, without the program's.
+
+namespace cradle {
+namespace {
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double number(double from, double to) { return std::uniform_real_distribution<double>(from, to)(engine_); }
+  Vec3 vector(double reach) { return {number(-reach, reach), number(-reach, reach), number(-reach, reach)}; }
+  Vec3 direction() { return Vec3(vector(1) + Vec3(0, 1e-3, 0)).normalized(); }
+  RigidTransform pose(double reach) { return {rotationAbout(direction(), number(0, 6)), vector(reach)}; }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// A shape by its support function and by how far outside a point is (<= 0 inside), in its own frame.
+struct Shape {
+  std::string name;
+  Collider collider;
+  std::function<double(const Vec3&)> reach;
+  std::function<double(const Vec3&)> outside;
+};
+
+double radiusOf(const Vec3& point) {
+  return std::sqrt(point.x() * point.x() + point.z() * point.z());
+}
+
+Shape ball(double radius) {
+  return {"ball", colliderOf(Sphere{radius}, {}), [=](const Vec3& n) { return radius * n.norm(); },
+          [=](const Vec3& p) { return p.norm() - radius; }};
+}
+
+Shape capsule(double radius, double length) {
+  return {"capsule", colliderOf(Capsule{radius, length}, {}),
+          [=](const Vec3& n) { return length / 2 * std::abs(n.y()) + radius * n.norm(); },
+          [=](const Vec3& p) {
+            const double beyond = std::max(0.0, std::abs(p.y()) - length / 2);
+            return Vec3(p.x(), beyond, p.z()).norm() - radius;
+          }};
+}
+
+Shape cylinder(double radius, double length) {
+  return {"cylinder", colliderOf(Cylinder{radius, length}, {}),
+          [=](const Vec3& n) { return length / 2 * std::abs(n.y()) + radius * radiusOf(n); },
+          [=](const Vec3& p) { return std::max(radiusOf(p) - radius, std::abs(p.y()) - length / 2); }};
+}
+
+Shape box(const Vec3& size) {
+  return {"box", colliderOf(Box{size}, {}), [=](const Vec3& n) { return n.cwiseAbs().dot(size / 2); },
+          [=](const Vec3& p) { return (p.cwiseAbs() - size / 2).maxCoeff(); }};
+}
+
+Shape hull(const std::string& name, std::vector<Vec3> points) {
+  const ConvexHull found = convexHullOf(points);
+  return {name, colliderOf(found, {}),
+          [=](const Vec3& n) {
+            double farthest = -INFINITY;
+            for (const Vec3& point : points) farthest = std::max(farthest, n.dot(point));
+            return farthest;
+          },
+          [=](const Vec3& p) {
+            double most = -INFINITY;
+            for (const auto& loop : found.faces) {
+              const auto at = [&](std::size_t i) { return found.vertices[loop[i]]; };
+              most = std::max(most, (at(1) - at(0)).cross(at(2) - at(0)).normalized().dot(p - at(0)));
+            }
+            return most;
+          }};
+}
+
+Shape stone() {
+  Random random(11);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 14; ++i) points.push_back(random.direction().cwiseProduct(Vec3(0.7, 0.5, 0.9)));
+  return hull("stone", points);
+}
+
+Shape pebble() {
+  Random random(12);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 100; ++i) points.push_back(random.direction().cwiseProduct(Vec3(0.6, 0.8, 0.5)));
+  return hull("pebble", points);
+}
+
+std::vector<Shape> allShapes() {
+  return {ball(0.4), capsule(0.3, 1.2), cylinder(0.5, 0.8), cylinder(0.2, 1.6), box(Vec3(1, 0.6, 1.4)),
+          stone(),   pebble()};
+}
+
+/// Two shapes in their poses.
+struct Pair {
+  const Shape &a, &b;
+  RigidTransform poseA, poseB;
+  ContactGeometry geometry;
+  VectorX state = VectorX::Zero(stateSize(2));
+
+  Pair(const Shape& shapeA, const Shape& shapeB, const RigidTransform& worldFromA, const RigidTransform& worldFromB)
+      : a(shapeA), b(shapeB) {
+    geometry.colliders = {a.collider, b.collider};
+    geometry.colliders[0].body = 0, geometry.colliders[1].body = 1;
+    geometry.pairs = {{0, 1, false, {}}};
+    place(worldFromA, worldFromB);
+  }
+  void place(const RigidTransform& worldFromA, const RigidTransform& worldFromB) {
+    centerOfMass(state, 0) = worldFromA.translation, setOrientation(state, 0, worldFromA.rotation);
+    centerOfMass(state, 1) = worldFromB.translation, setOrientation(state, 1, worldFromB.rotation);
+    poseA = poseOf(state, 0), poseB = poseOf(state, 1);
+  }
+  double separation() const { return cradle::separation(geometry, geometry.pairs[0], 0, poseA, poseB); }
+  std::vector<Contact> contacts(double margin) const {
+    std::vector<Contact> found;
+    findContacts(geometry, state, margin, found);
+    return found;
+  }
+  double gapAlong(const Vec3& normal) const {
+    return normal.dot(poseB.translation - poseA.translation) - a.reach(poseA.rotation.conjugate() * normal) -
+           b.reach(poseB.rotation.conjugate() * Vec3(-normal));
+  }
+};
+
+constexpr double kRounding = 2e-14;  // m: of sums of products of lengths of some metres
+
+/// Climbs from a direction by ever smaller steps to all sides.
+double climb(const Pair& pair, Vec3 direction) {
+  double gap = pair.gapAlong(direction);
+  for (double step = 0.05; step > 1e-4;) {
+    const Vec3 side = direction.unitOrthogonal(), other = direction.cross(side);
+    bool better = false;
+    for (int k = 0; k < 8 && !better; ++k) {
+      const double angle = k * M_PI / 4;
+      const Vec3 tried = (direction + step * (std::cos(angle) * side + std::sin(angle) * other)).normalized();
+      const double found = pair.gapAlong(tried);
+      if (found > gap) gap = found, direction = tried, better = true;
+    }
+    if (!better) step /= 2;
+  }
+  return gap;
+}
+
+/// The largest gap that a spiral of directions over the sphere sees, the 6 best of them improved.
+double widestGapSearched(const Pair& pair) {
+  std::vector<std::pair<double, Vec3>> tried;
+  const int count = 700;
+  for (int i = 0; i < count; ++i) {
+    const double y = 1 - (2 * i + 1.0) / count, ring = std::sqrt(1 - y * y), angle = i * M_PI * (3 - std::sqrt(5));
+    const Vec3 direction(ring * std::cos(angle), y, ring * std::sin(angle));
+    tried.emplace_back(pair.gapAlong(direction), direction);
+  }
+  std::partial_sort(tried.begin(), tried.begin() + 6, tried.end(),
+                    [](const auto& left, const auto& right) { return left.first > right.first; });
+  double best = -INFINITY;
+  for (int i = 0; i < 6; ++i) best = std::max(best, climb(pair, tried[static_cast<std::size_t>(i)].second));
+  return best;
+}
+
+std::string describe(const Pair& pair) {
+  return pair.a.name + " on " + pair.b.name;
+}
+
+/// Of all contacts: unit normal; deepest as deep as the separation; none deeper.
+const Contact& deepestOf(const std::vector<Contact>& contacts) {
+  return *std::min_element(contacts.begin(), contacts.end(),
+                           [](const Contact& a, const Contact& b) { return a.separation < b.separation; });
+}
+
+/// `preference` (m): what a contact may give away for the normal of a face.
+void expectProven(const Pair& pair, double preference) {
+  const double separation = pair.separation();
+  const auto contacts = pair.contacts(separation + 1e-9);
+  ASSERT_FALSE(contacts.empty()) << describe(pair) << ' ' << separation;
+  const Contact& contact = deepestOf(contacts);
+  EXPECT_NEAR(contact.normal.norm(), 1, kRounding);
+  EXPECT_NEAR(contact.separation, separation, preference) << describe(pair);
+  // The corner that is deepest may be beside the face that it is held against: then others stand in, if as deep to
+  // 1e-9.
+  EXPECT_NEAR(pair.gapAlong(contact.normal), contact.separation, std::min(preference, 1e-9))
+      << describe(pair) << ' ' << separation;
+  const Vec3 onA = contact.point - contact.separation / 2 * contact.normal;
+  const Vec3 onB = contact.point + contact.separation / 2 * contact.normal;
+  EXPECT_LE(pair.a.outside(pair.poseA.inverse() * onA), preference) << describe(pair) << ' ' << separation;
+  EXPECT_LE(pair.b.outside(pair.poseB.inverse() * onB), preference) << describe(pair) << ' ' << separation;
+}
+
+template <class Check>
+void forAllPairs(const Check& check) {
+  const std::vector<Shape> shapes = allShapes();
+  for (const Shape& a : shapes)
+    for (const Shape& b : shapes) check(a, b);
+}
+
+TEST(ConvexPairs, DistancesApartAreProvenBySurfacePointsAndNormal) {
+  Random random(1);
+  forAllPairs([&](const Shape& a, const Shape& b) {
+    int apart = 0;
+    for (int i = 0; apart < 10 && i < 200; ++i) {
+      const Pair pair(a, b, random.pose(1), random.pose(1.5));
+      if (pair.separation() <= 0.02) continue;
+      ++apart;
+      expectProven(pair, kRounding);
+    }
+    EXPECT_EQ(apart, 10);
+  });
+}
+
+// A step along the normal by the distance touches; a little more overlaps by as much. The gap stays what it is.
+TEST(ConvexPairs, SeparationGoesThroughZeroAlongTheNormal) {
+  Random random(2);
+  forAllPairs([&](const Shape& a, const Shape& b) {
+    int apart = 0;
+    for (int i = 0; apart < 4 && i < 200; ++i) {
+      Pair pair(a, b, random.pose(1), random.pose(1.5));
+      const double distance = pair.separation();
+      if (distance <= 0.02) continue;
+      ++apart;
+      const Vec3 normal = pair.contacts(distance + 1e-9)[0].normal;
+      const RigidTransform start = pair.poseB;
+      for (const double left : {1e-3, 1e-6, 1e-9, 1e-11, 0.0}) {
+        pair.place(pair.poseA, {start.rotation, start.translation - (distance - left) * normal});
+        EXPECT_NEAR(pair.separation(), left, 3e-13) << describe(pair);
+      }
+      // Overlapping by less than any feature is large, the least way out is the same but for corners and edges, where
+      // normals of faces see less.
+      for (const double depth : {1e-11, 1e-9, 1e-6}) {
+        pair.place(pair.poseA, {start.rotation, start.translation - (distance + depth) * normal});
+        EXPECT_LT(pair.separation(), -0.1 * depth) << describe(pair);
+        EXPECT_GE(pair.separation(), -depth - 3e-13) << describe(pair);
+        expectProven(pair, 2e-6);
+      }
+    }
+  });
+}
+
+TEST(ConvexPairs, NoDirectionSeesALargerGapWhereTheyOverlap) {
+  Random random(3);
+  forAllPairs([&](const Shape& a, const Shape& b) {
+    int overlapping = 0;
+    for (int i = 0; overlapping < 3 && i < 100; ++i) {
+      const Pair pair(a, b, random.pose(0.4), random.pose(0.5));
+      const double separation = pair.separation();
+      if (separation >= 0) continue;
+      ++overlapping;
+      EXPECT_LE(widestGapSearched(pair), separation + kRounding) << describe(pair);
+      const Contact deepest = deepestOf(pair.contacts(0));
+      EXPECT_NEAR(pair.gapAlong(deepest.normal), separation, 1e-7) << describe(pair);
+    }
+    EXPECT_EQ(overlapping, 3);
+  });
+}
+
+// Swapped, and turned and moved together: the same to rounding.
+TEST(ConvexPairs, DoNotDependOnOrderOrFrame) {
+  Random random(4);
+  forAllPairs([&](const Shape& a, const Shape& b) {
+    for (int i = 0; i < 10; ++i) {
+      const RigidTransform poseA = random.pose(1), poseB = random.pose(1), frame = random.pose(2);
+      const double separation = Pair(a, b, poseA, poseB).separation();
+      EXPECT_NEAR(Pair(b, a, poseB, poseA).separation(), separation, 1e-13) << a.name << " on " << b.name;
+      EXPECT_NEAR(Pair(a, b, frame * poseA, frame * poseB).separation(), separation, 1e-13) << a.name << b.name;
+    }
+  });
+}
+
+// d(separation)/dt is the normal's part of the relative velocity of the surface points: the gap of an hour's motion is
+// followed by its slope.
+TEST(ConvexPairs, SlopeOfTheSeparationIsTheRelativeVelocityAtTheContact) {
+  Random random(5);
+  forAllPairs([&](const Shape& a, const Shape& b) {
+    int apart = 0;
+    for (int i = 0; apart < 5 && i < 100; ++i) {
+      const RigidTransform poseA = random.pose(1), poseB = random.pose(1.5);
+      Pair pair(a, b, poseA, poseB);
+      const double separation = pair.separation();
+      if (separation <= 0.05) continue;
+      ++apart;
+      const Contact contact = deepestOf(pair.contacts(separation + 1e-9));
+      const Vec3 velocity = random.vector(1), spin = random.vector(1);
+      const Vec3 onB = contact.point + contact.separation / 2 * contact.normal;
+      const double slope = contact.normal.dot(velocity + spin.cross(onB - poseB.translation));
+      const double step = 1e-6;
+      const auto gapAt = [&](double time) {
+        pair.place(poseA, {rotationAbout(spin.normalized(), spin.norm() * time) * poseB.rotation,
+                           poseB.translation + velocity * time});
+        return pair.separation();
+      };
+      // Kinks between features have a slope of their own on each side.
+      const double before = (gapAt(0) - gapAt(-step)) / step, after = (gapAt(step) - gapAt(0)) / step;
+      EXPECT_NEAR(std::min(std::abs(before - slope), std::abs(after - slope)), 0, 1e-4) << describe(pair);
+    }
+  });
+}
+
+/// Aligned and nearly aligned, along and across: parallel edges, coincident faces, common axes.
+std::vector<Quat> alignedTurns() {
+  std::vector<Quat> turns;
+  for (const double angle : {0.0, M_PI / 2, M_PI, M_PI / 4})
+    for (const double noise : {0.0, 1e-15, 1e-12, 1e-8, 1e-5})
+      for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+        turns.push_back(rotationAbout(axis, angle) * rotationAbout(Vec3(1, 2, 3).normalized(), noise));
+  return turns;
+}
+
+// On a way through the other, from one side to the other past the common centre: no NaN, a unit normal that sees the
+// gap, and no separation that changes by more than the way.
+TEST(ConvexPairs, AlignedPosesPassThroughEachOtherWithoutAJump) {
+  const std::vector<Quat> turns = alignedTurns();
+  std::size_t next = 0;  // five for each pair, others for the next
+  forAllPairs([&](const Shape& a, const Shape& b) {
+    Pair pair(a, b, {}, {});
+    for (int trial = 0; trial < 5; ++trial, next += 7) {
+      const Quat& turn = turns[next % turns.size()];
+      const Vec3 way = Vec3::Unit(trial % 3);
+      double last = 0;
+      const double step = 0.2;
+      for (int i = -9; i <= 9; ++i) {
+        pair.place({}, {turn, step * i * way});
+        const double separation = pair.separation();
+        ASSERT_TRUE(std::isfinite(separation));
+        if (i > -9) {
+          EXPECT_LE(std::abs(separation - last), step + 1e-12) << describe(pair) << i;
+        }
+        last = separation;
+        for (const Contact& contact : pair.contacts(separation + 1e-9)) {
+          EXPECT_NEAR(contact.normal.norm(), 1, kRounding);
+          EXPECT_TRUE(contact.point.allFinite());
+          EXPECT_GE(contact.separation, separation - 2e-7) << describe(pair);
+        }
+      }
+    }
+  });
+}
+
+}  // namespace
+}  // namespace cradle

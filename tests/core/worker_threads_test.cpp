@@ -1,0 +1,40 @@
+#include "core/worker_threads.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace cradle {
+namespace {
+
+TEST(WorkerThreads, ShareAllOfALoop) {
+  for (const int count : {1, 2, 5}) {
+    WorkerThreads threads(count);
+    std::vector<int> visits(17, 0);
+    threads.run([&](int thread) {
+      const auto [first, last] = threads.partOf(visits.size(), thread);
+      for (std::size_t i = first; i < last; ++i) ++visits[i];
+    });
+    EXPECT_EQ(visits, std::vector<int>(17, 1)) << count;
+  }
+}
+
+// Each round reads what the other thread wrote in the round before.
+TEST(WorkerThreads, SeeWhatOthersDidBeforeTheyMet) {
+  WorkerThreads threads(2);
+  std::vector<long> values(2, 1), next(2);
+  threads.run([&](int thread) {
+    const std::size_t mine = static_cast<std::size_t>(thread);
+    for (int round = 0; round < 40; ++round) {
+      next[mine] = values[0] + values[1];
+      threads.meet();
+      values[mine] = next[mine];
+      threads.meet();
+    }
+  });
+  EXPECT_EQ(values[0], 1L << 40);
+  EXPECT_EQ(values[1], 1L << 40);
+}
+
+}  // namespace
+}  // namespace cradle

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "impact/pile_step.h"
+
+namespace cradle {
+
+/// Balls of radius 0.1 m and cubes of 0.2 m, 1 kg each, over planes, with a step of 1/60 s.
+class DroppedBodies {
+ public:
+  static constexpr double kHalf = 0.1, kTimeStep = 1.0 / 60;
+
+  void addPlane(const Vec3& point, const Vec3& normal) { geometry_.planes.push_back({point, normal, 0}); }
+  /// A floor and four walls, `width` (m) apart.
+  void addTray(double width) {
+    addPlane(Vec3::Zero(), Vec3::UnitY());
+    for (const Vec3& normal : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)})
+      addPlane(-width / 2 * normal, normal);
+  }
+  void addBall(const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+    add(colliderOf(Sphere{kHalf}, {}), 0.4 * kHalf * kHalf * Mat3::Identity(), position, Quat::Identity(), velocity);
+  }
+  void addCube(const Vec3& position, const Quat& turn = Quat::Identity()) {
+    const double inertia = 4 * kHalf * kHalf / 6;
+    add(colliderOf(Box{Vec3::Constant(2 * kHalf)}, {}), inertia * Mat3::Identity(), position, turn, Vec3::Zero());
+  }
+  void add(Collider collider, const Mat3& inertiaTensor, const Vec3& position, const Quat& turn, const Vec3& velocity) {
+    collider.body = static_cast<int>(bodies_.size());
+    geometry_.colliders.push_back(std::move(collider));
+    bodies_.push_back(makeRigidBody({1, Vec3::Zero(), inertiaTensor}));
+    positions_.push_back(position), turns_.push_back(turn), velocities_.push_back(velocity);
+  }
+
+  /// To be called when all have been added.
+  void begin(const SurfaceLaw& law, const Vec3& gravity = Vec3(0, -9.81, 0), int threads = 1) {
+    geometry_.laws = {{law}};
+    gravity_ = gravity;
+    state_.setZero(stateSize(std::ssize(bodies_)));
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const Eigen::Index body = static_cast<Eigen::Index>(i);
+      centerOfMass(state_, body) = positions_[i];
+      setOrientation(state_, body, turns_[i]);
+      linearVelocity(state_, body) = velocities_[i];
+    }
+    step_ = std::make_unique<PileStep>(bodies_, geometry_, gravity, threads);
+  }
+  void advance(int steps = 1) {
+    for (int i = 0; i < steps; ++i) step_->advance(kTimeStep, state_);
+  }
+
+  VectorX& state() { return state_; }
+  PileStep& step() { return *step_; }
+  int count() const { return static_cast<int>(bodies_.size()); }
+  Vec3 position(int body) { return centerOfMass(state_, body); }
+
+  /// Kinetic and potential (J).
+  double energy() {
+    double sum = 0;
+    for (int i = 0; i < count(); ++i) {
+      const Mat3 turn = orientation(state_, i).toRotationMatrix();
+      const Vec3 spin = turn.transpose() * angularVelocity(state_, i), velocity = linearVelocity(state_, i);
+      sum += velocity.squaredNorm() / 2 + spin.dot(bodies_[static_cast<std::size_t>(i)].inertiaTensor * spin) / 2;
+      sum -= gravity_.dot(position(i));
+    }
+    return sum;
+  }
+
+  /// The deepest overlap (m) of balls, cubes and planes, from the poses alone: cubes by all 15 axes.
+  double deepestOverlap() {
+    double most = 0;
+    for (int i = 0; i < count(); ++i) {
+      for (const PlaneCollider& plane : geometry_.planes)
+        most = std::max(most, reachAlong(i, plane.normal) - plane.normal.dot(position(i) - plane.point));
+      for (int j = 0; j < i; ++j) most = std::max(most, overlapOf(i, j));
+    }
+    return most;
+  }
+
+ private:
+  bool isBall(int body) const { return geometry_.colliders[static_cast<std::size_t>(body)].isBall(); }
+  Mat3 turnOf(int body) { return orientation(state_, body).toRotationMatrix(); }
+  double reachAlong(int body, const Vec3& direction) {
+    return kHalf * (isBall(body) ? direction.norm() : (turnOf(body).transpose() * direction).cwiseAbs().sum());
+  }
+  double overlapOf(int i, int j) {
+    const Vec3 offset = position(i) - position(j);
+    std::vector<Vec3> axes{offset};
+    const Mat3 a = turnOf(i), b = turnOf(j);
+    for (int k = 0; k < 3; ++k) {
+      if (!isBall(i)) axes.push_back(a.col(k));
+      if (!isBall(j)) axes.push_back(b.col(k));
+      for (int l = 0; l < 3 && !isBall(i) && !isBall(j); ++l) axes.push_back(a.col(k).cross(b.col(l)));
+    }
+    double least = 1;
+    for (const Vec3& axis : axes)
+      if (axis.norm() > 1e-6)
+        least = std::min(least, (reachAlong(i, axis) + reachAlong(j, axis) - std::abs(offset.dot(axis))) / axis.norm());
+    return least;
+  }
+
+  std::vector<RigidBody> bodies_;
+  std::vector<Vec3> positions_, velocities_;
+  std::vector<Quat> turns_;
+  ContactGeometry geometry_;
+  Vec3 gravity_ = Vec3::Zero();
+  VectorX state_;
+  std::unique_ptr<PileStep> step_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,65 @@
+#include "simulate/pile.h"
+
+#include <gmock/gmock.h>
+
+#include "experiments/experiment.h"
+#include "simulate/plan.h"
+
+namespace cradle {
+namespace {
+
+std::string heap(int layers, const std::string& accuracy, const std::string& more = "") {
+  return fmt::format(R"("duration": 2.5, "accuracy": {}, "bodies": [
+    {{"name": "floor", "shape": {{"plane": {{"normal": [0, 1, 0]}}}}, "motion": "static"}},
+    {{"name": "wall", "shape": {{"box": {{"size": [0.1, 2, 2]}}}}, "motion": "static", "position": [-0.4, 1, 0]}},
+    {{"name": "box", "shape": {{"box": {{"size": [0.2, 0.1, 0.2]}}}}, "position": [-0.22, 0.1, -0.3],
+      "copies": {{"count": [2, {}, 2], "spacing": [0.23, 0.14, 0.23]}}}}]{})",
+                     accuracy, layers, more);
+}
+
+std::string methodOf(const std::string& members) {
+  return std::string(planOf(sceneWith(members)).islands.at(0).method.name);
+}
+
+TEST(PlanOfPiles, TakesTheFastStepForManyBodiesAndCoarseAccuracyOnly) {
+  EXPECT_EQ(methodOf(heap(13, "\"visual\"")), "fast contact step");
+  EXPECT_NE(methodOf(heap(12, "\"visual\"")), "fast contact step");
+  EXPECT_NE(methodOf(heap(13, "1e-4")), "fast contact step");
+  EXPECT_NE(methodOf(heap(13, "\"visual\"", R"(, "springs": [{"bodyA": "box_0", "anchorA": [0, 0, 0],
+      "anchorB": [0, 1, 0], "stiffness": 10}])")),
+            "fast contact step");
+  EXPECT_THAT(describe(planOf(sceneWith(heap(13, "\"visual\""))), sceneWith(heap(13, "\"visual\""))),
+              testing::HasSubstr("not promised"));
+}
+
+// The sum is constant by the way that it is booked; what the test asks is that nothing is ever gained.
+TEST(Pile, DissipatesAndComesToRestWithEvents) {
+  const Trajectory trajectory = simulate(sceneWith(heap(13, "\"visual\"")));
+  const double start = energyConstantOf(trajectory.frames[0]);
+  for (const Frame& frame : trajectory.frames) {
+    EXPECT_NEAR(energyConstantOf(frame), start, 1e-9 * start);
+    EXPECT_GE(frame.energy.dissipated, -1e-9 * start);
+  }
+  int impacts = 0;
+  for (const Event& event : trajectory.events) {
+    if (event.kind != EventKind::impact) continue;
+    ++impacts;
+    EXPECT_NEAR(event.normal.norm(), 1, 1e-12);
+    EXPECT_GT(event.impulse, 0);
+  }
+  EXPECT_GT(impacts, 50);  // each box lands on something
+  EXPECT_GT(trajectory.frames.back().energy.dissipated, 0.1 * start);
+}
+
+// Steps end at frames: a frame rate of 30 asks for two steps between frames.
+TEST(Pile, GivesTheSameStatesAtHalfTheFrameRate) {
+  const Trajectory often = simulate(sceneWith(heap(13, "\"visual\""))),
+                   seldom = simulate(sceneWith(heap(13, "\"visual\"", R"(, "output": {"framesPerSecond": 30})")));
+  ASSERT_EQ(often.frames.size(), 2 * seldom.frames.size() - 1);
+  const auto& a = often.frames.back().states;
+  const auto& b = seldom.frames.back().states;
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_LT((a[i].position - b[i].position).norm(), 0.05) << i;
+}
+
+}  // namespace
+}  // namespace cradle
