@@ -16,6 +16,7 @@ constexpr double kImpactPart = 1e-3;      // of the touching tolerance: how well
 constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension that is left
 constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
 constexpr int kMostServed = 12;           // contacts
+constexpr int kManyEvents = 16;           // in a step: beyond, it is not cut any more
 constexpr int kMostEvents = 10000;        // within a step
 
 }  // namespace
