@@ -30,7 +30,9 @@ void PivotBlock::factorize() {
       if (std::abs(matrix(row, column)) > std::abs(matrix(pivot, column))) pivot = row;
     pivots_[at(static_cast<int>(column))] = static_cast<int>(pivot);
     if (pivot != column) matrix.row(column).swap(matrix.row(pivot));
-    for (Index row = column + 1; row < 6; ++row) matrix(row, column) /= matrix(column, column);
+    const double inverse = 1 / matrix(column, column);
+    inverses_[at(static_cast<int>(column))] = inverse;
+    for (Index row = column + 1; row < 6; ++row) matrix(row, column) *= inverse;
     for (Index k = column + 1; k < 6; ++k)
       for (Index row = column + 1; row < 6; ++row) matrix(row, k) -= matrix(row, column) * matrix(column, k);
   }
@@ -42,7 +44,7 @@ void PivotBlock::solve(Vec6& x) const {
   for (Index i = 0; i < 6; ++i)
     for (Index row = i + 1; row < 6; ++row) x[row] -= matrix(row, i) * x[i];
   for (Index i = 5; i >= 0; --i) {
-    x[i] /= matrix(i, i);
+    x[i] *= inverses_[at(static_cast<int>(i))];
     for (Index row = 0; row < i; ++row) x[row] -= matrix(row, i) * x[i];
   }
 }

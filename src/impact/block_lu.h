@@ -21,7 +21,8 @@ class PivotBlock {
   void solve(Vec6& x) const;
 
  private:
-  std::array<int, 6> pivots_{};  // rows exchanged with
+  std::array<int, 6> pivots_{};       // rows exchanged with
+  std::array<double, 6> inverses_{};  // of the diagonal
 };
 
 /// Factorisation of a sparse matrix of 6x6 blocks, one row of blocks for each body, with blocks where bodies touch: as

@@ -23,6 +23,8 @@ constexpr double kLargest = 4;          // bound that a few contacts a body stay
 constexpr double kProximal = 1e-7;      // eta, scaled
 constexpr double kFirstPenalty = 1e-4;  // rho, scaled
 constexpr double kLeastPenalty = 1e-6;  // of the same: below, the difference b - ... is rounding
+constexpr int kMostTrials = 4;          // to come near enough for Newton's method
+constexpr int kInteriorTrial = 1;       // of them: by the interior point method, the others by ADMM
 constexpr int kIterations = 10;         // of ADMM before Newton's method is tried again
 constexpr double kInteriorPart = 1e-9;  // of the velocities: where the interior point method ends
 constexpr double kRegular = 1e-9;
@@ -258,6 +260,15 @@ long SparseCones::approachFromInside(VectorX& impulses) {
   return solveByInteriorPoint(cones_, op, kInteriorPart * cones_.free.cwiseAbs().maxCoeff(), impulses);
 }
 
+/// The iterate's velocities from those that its impulses give.
+void SparseCones::takeVelocities(const VectorX& u, ConeIterate& at) const {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const Index k = 3 * static_cast<Index>(i);
+    at.velocities.segment<3>(k) = correctedVelocity(u.segment<3>(k), cones_.frictions[i]);
+  }
+  at.unbounded = at.impulses;
+}
+
 ConeSolution SparseCones::solve(const VectorX& free, const std::vector<double>& frictions, double tolerance,
                                 ConeStart& start, long& iterations) {
   cones_.free = free, cones_.frictions = frictions;
@@ -276,24 +287,22 @@ ConeSolution SparseCones::solve(const VectorX& free, const std::vector<double>& 
   multiply(at.impulses, u);
   const auto isFound = [&] { return residual(at.impulses, u) <= tolerance || finish(at.impulses, u, tolerance); };
   solution.converged = isFound();
-  if (!solution.converged) {
-    factorize(at.penalty + kProximal);
-    iterateCones(cones_, kProximal, shifted, kIterations, at);
-    at.penalty = std::max(balancedPenalty(at, kLargest), kLeastPenalty);
-    iterations += kIterations;
-    multiply(at.impulses, u);
-    solution.converged = isFound();
-  }
-  if (!solution.converged) {
-    iterations += approachFromInside(at.impulses);
-    multiply(at.impulses, u);
+  for (int trial = 0; trial < kMostTrials && !solution.converged; ++trial) {
+    if (trial == kInteriorTrial) {
+      iterations += approachFromInside(at.impulses);
+      multiply(at.impulses, u);
+      takeVelocities(u, at);
+    } else {
+      factorize(at.penalty + kProximal);
+      iterateCones(cones_, kProximal, shifted, kIterations, at);
+      at.penalty = std::max(balancedPenalty(at, kLargest), kLeastPenalty);
+      iterations += kIterations;
+      multiply(at.impulses, u);
+    }
     solution.converged = isFound();
   }
   solution.residual = residual(at.impulses, u);
-  if (solution.converged)
-    for (std::size_t i = 0; i < contacts_.size(); ++i)
-      at.velocities.segment<3>(3 * static_cast<Index>(i)) =
-          correctedVelocity(u.segment<3>(3 * static_cast<Index>(i)), frictions[i]);
+  if (solution.converged) takeVelocities(u, at);
   solution.impulses = at.impulses, solution.velocities = u;
   start.impulses = at.impulses, start.velocities = at.velocities, start.penalty = at.penalty;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {

@@ -66,6 +66,7 @@ class SparseCones {
   void gather(const VectorX& impulses);
   void solveShifted(VectorX& b);
   double residual(const VectorX& z, const VectorX& u) const;
+  void takeVelocities(const VectorX& u, ConeIterate& at) const;
 
   std::vector<Row> contacts_;
   std::vector<BodyRoot> bodies_;
