@@ -163,7 +163,11 @@ class Ascent {
     for (const Vec3& flat : ofA.flats) look(flat);
     for (const Vec3& flat : ofB.flats) look(-flat);
     for (const Line& lineA : ofA.lines)
-      for (const Line& lineB : ofB.lines) lookAcross(lineA, lineB);
+      for (const Line& lineB : ofB.lines) {
+        lookBothWays(across(lineA.direction, lineB.direction));
+        if (ofA.corners.empty() && ofB.corners.empty())  // two cylinders that may be parallel
+          lookBothWays(unitAcross(lineA.direction, lineB.point - lineA.point));
+      }
     lookFromLinesToCorners(ofA, ofB, 1);
     lookFromLinesToCorners(ofB, ofA, -1);
     for (const Vec3& cornerA : ofA.corners)
@@ -179,15 +183,10 @@ class Ascent {
       }
   }
 
-  void lookAcross(const Line& lineA, const Line& lineB) {
-    lookBothWays(across(lineA.direction, lineB.direction));
-    lookBothWays(without(lineA.direction, lineB.point - lineA.point));
-  }
-
   /// `sign` is -1 if the lines are B's.
   void lookFromLinesToCorners(const Features& lines, const Features& corners, double sign) {
     for (const Line& line : lines.lines)
-      for (const Vec3& corner : corners.corners) look(sign * without(line.direction, corner - line.point));
+      for (const Vec3& corner : corners.corners) look(sign * unitAcross(line.direction, corner - line.point));
   }
 
   void lookFromRims(const Features& rims, const Features& others, double sign) {
@@ -196,7 +195,7 @@ class Ascent {
         Rim rim = start;
         turnTowards(line, rim);
         lookBothWays(across(rim.axis.cross(rim.radial), line.direction));
-        lookBothWays(without(line.direction, line.point - pointOf(rim)));
+        lookBothWays(unitAcross(line.direction, line.point - pointOf(rim)));
       }
       for (const Vec3& corner : others.corners) {
         Rim rim = start;

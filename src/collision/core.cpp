@@ -31,7 +31,8 @@ Vec3 Core::farthest(const Vec3& direction) const {
       break;
   }
   const Polytope& polytope = *collider_.polytope;
-  return placed(polytope.vertices[farthestVertex(polytope, turnedBack(direction))]);
+  lastVertex_ = farthestVertex(polytope, turnedBack(direction), lastVertex_);
+  return placed(polytope.vertices[lastVertex_]);
 }
 
 Vec3 Core::rimPoint(double side, const Vec3& direction) const {

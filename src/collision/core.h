@@ -33,6 +33,7 @@ class Core {
   Vec3 shift_;
   Vec3 axis_ = Vec3::UnitY(), center_ = Vec3::Zero();
   double halfLength_ = 0;
+  mutable std::size_t lastVertex_ = 0;  // found last: where the next search starts
 };
 
 /// The unit vector across a unit axis nearest to `direction`; any across it if that is along the axis.

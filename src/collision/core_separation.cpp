@@ -1,6 +1,7 @@
 #include "collision/core_separation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "collision/axis_ascent.h"
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kTouching = 1e-12;       // of the size: nearer, the direction to the nearest point is rounding
 constexpr double kSeen = 1e-14;           // of the size: rounding of a gap
+constexpr double kDistanceError = 1e-5;   // of a distance: what is this near to it is its direction's local maximum
 constexpr double kNear = 0.01;            // of the size: nearer, the normals of features are better than that direction
 constexpr double kFacePreference = 1e-7;  // of the size
 
@@ -41,17 +43,27 @@ SeparatingAxis ofCrossingSegments(const Core& a, const Core& b) {
 /// before its direction is right, but that direction leads to the right one.
 SeparatingAxis ofNearest(const CoreDistance& apart, const Core& a, const Core& b) {
   if (apart.distance - apart.seen <= kSeen * sizeOf(a, b)) return {apart.distance, apart.normal};
+  if (apart.distance < kNear * sizeOf(a, b) && !(isSegment(a) && isSegment(b))) {
+    const SeparatingAxes axes = separatingAxes(a, b);
+    const SeparatingAxis feature = better(better(axes.faceOfA, axes.faceOfB), axes.edges);
+    if (feature.separation >= (1 - kDistanceError) * apart.distance) return feature;
+  }
   return improved({0, apart.normal}, a, b);
 }
 
-/// The best of what the axes of the polytopes lead to.
+/// The best of what the axes of the polytopes lead to. A prism inside a cylinder sees no smaller gap than that, so that
+/// an axis of less than what is found leads to no more.
 SeparatingAxis ofRoundCores(const CoreDistance& apart, const Core& a, const Core& b) {
   SeparatingAxis best;
   if (apart.distance > 0) best = improved({0, apart.normal}, a, b);
-  if (apart.distance > kNear * sizeOf(a, b)) return best;
-  const SeparatingAxes axes = separatingAxes(a, b);
-  for (const SeparatingAxis& axis : {axes.faceOfA, axes.faceOfB, axes.edges})
-    if (std::isfinite(axis.separation)) best = better(best, improved(axis, a, b));
+  if (apart.distance > kTouching * sizeOf(a, b) && best.separation >= (1 - kDistanceError) * apart.distance)
+    return best;
+  SeparatingAxes axes = separatingAxes(a, b);
+  std::array<SeparatingAxis, 3> starts{axes.faceOfA, axes.faceOfB, axes.edges};
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const auto& left, const auto& right) { return left.separation > right.separation; });
+  for (const SeparatingAxis& start : starts)
+    if (start.separation > best.separation) best = better(best, improved(start, a, b));
   return best;
 }
 
@@ -92,13 +104,13 @@ SeparatingAxis contactAxis(const Core& a, const Core& b) {
     return flat.separation >= best.separation - preference ? flat : best;
   }
   const bool isApart = apart.distance > kTouching * sizeOf(a, b);
-  const SeparatingAxis nearest = isApart ? ofNearest(apart, a, b) : SeparatingAxis();
-  if (apart.distance > kNear * sizeOf(a, b)) return nearest;
-  if (isSegment(a) && isSegment(b)) return isApart ? nearest : ofCrossingSegments(a, b);
+  if (isSegment(a) && isSegment(b)) return isApart ? ofNearest(apart, a, b) : ofCrossingSegments(a, b);
   const SeparatingAxes axes = separatingAxes(a, b);
   const SeparatingAxis face = better(axes.faceOfA, axes.faceOfB);
   const SeparatingAxis feature = axes.edges.separation > face.separation + preference ? axes.edges : face;
-  return isApart && nearest.separation > feature.separation + preference ? nearest : feature;
+  if (!isApart || feature.separation >= apart.distance - preference) return feature;
+  const SeparatingAxis nearest = ofNearest(apart, a, b);
+  return nearest.separation > feature.separation + preference ? nearest : feature;
 }
 
 }  // namespace cradle

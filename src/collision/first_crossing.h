@@ -17,12 +17,13 @@ constexpr int kMostCuts = 100;  // of a bracket; halving alone would need 40
 struct GapBounds {
   double speed = 0;
   double acceleration = std::numeric_limits<double>::infinity();
+  double graze = 0;  // m: touches that come and go and cannot be deeper are passed over
 };
 
 /// A gap with these values at the ends of an interval of that length cannot close inside it: the fastest approach does
 /// not suffice, or the parabola under its chord stays above 0.
 inline bool staysOpen(const GapBounds& bounds, double gapFrom, double gapTo, double length) {
-  if (gapFrom + gapTo > bounds.speed * length) return true;
+  if (gapFrom + gapTo + 2 * bounds.graze > bounds.speed * length) return true;
   const double sag = bounds.acceleration * length * length / 8, slant = std::abs(gapTo - gapFrom);
   if (slant >= 4 * sag) return true;  // the parabola is lowest at an end
   return (gapFrom + gapTo) / 2 - sag - slant * slant / (16 * sag) > 0;

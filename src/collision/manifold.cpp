@@ -58,7 +58,7 @@ void addEndOfCylinder(const Core& core, const Vec3& outward, Patch& patch) {
   const double cosine = core.axis().dot(outward);
   addLoop(core, prism.faces[prism.faces.size() - (cosine > 0 ? 2 : 1)], patch);  // as inscribedPrism has them
   patch.isFlat = isAlong(cosine > 0 ? core.axis() : Vec3(-core.axis()), outward);
-  patch.radius = 0;
+  if (patch.isFlat) patch.radius = 0;  // else a rim, which rolls
 }
 
 void addFaceOrCorner(const Core& core, const Vec3& outward, Patch& patch) {

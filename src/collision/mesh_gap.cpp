@@ -5,8 +5,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kNoDirection = 1e-9;  // of the size: nearer points do not tell the normal well
-constexpr double kTouching = 1e-10;    // of the size: gaps as small as that are always looked for
+constexpr double kNoDirection = 1e-9;                    // of the size: nearer points do not tell the normal well
+constexpr double kFirstReach = 1e-4, kLongerReach = 16;  // of the size; then how much longer each time
+constexpr double kTouching = 1e-10;                      // of the size: gaps as small as that are always looked for
 
 using Feature = MeshPoint::Feature;
 
@@ -154,23 +155,35 @@ void keepPartsInside(const MeshPair& pair, MeshGap& gap) {
   }
 }
 
+/// Most solids that are asked for are near: short distances first, since a search costs as its bound.
+GapVisit searchNearest(const MeshPair& pair, const TreePair& trees, double enough) {
+  double reach = kFirstReach * std::min(pair.a.size, pair.b.size);
+  while (true) {
+    const double bound = std::min(reach, enough);
+    GapVisit visit{pair, bound * bound};
+    trees.visitNear(visit);
+    if (visit.intersect || visit.onA.feature != Feature::none || bound >= enough) return visit;
+    reach *= kLongerReach;
+  }
+}
+
 }  // namespace
 
 MeshGap gapBetween(const MeshPair& pair, double enough) {
   const TreePair trees(pair.a.tree, pair.b.tree, pair.aFromB);
-  const double touching = kTouching * std::min(pair.a.size, pair.b.size), reach = std::max(enough, touching);
-  GapVisit nearest{pair, reach * reach};
-  trees.visitNear(nearest);
+  const double size = std::min(pair.a.size, pair.b.size);
+  const GapVisit nearest = searchNearest(pair, trees, std::max(enough, kTouching * size));
   if (nearest.intersect) {
-    OverlapVisit overlap{pair, touching * touching, {}};
+    OverlapVisit overlap{pair, kTouching * size * kTouching * size, {}};
     overlap.deepest.separation = 0;
     trees.visitNear(overlap);
     return overlap.deepest;
   }
   MeshGap gap;
-  if (nearest.onA.feature != Feature::none) gap = gapOf(pair, nearest);
+  const bool isNear = nearest.onA.feature != Feature::none;
+  if (isNear) gap = gapOf(pair, nearest);
   // Where nothing is near, or a part other than the nearest one may be inside.
-  if (nearest.onA.feature == Feature::none || pair.a.parts.size() + pair.b.parts.size() > 2) keepPartsInside(pair, gap);
+  if (!isNear || pair.a.parts.size() + pair.b.parts.size() > 2) keepPartsInside(pair, gap);
   return gap;
 }
 

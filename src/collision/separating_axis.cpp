@@ -2,10 +2,12 @@
 // that form a face of the Minkowski difference. Each edge is an arc between two face normals on the Gauss map (D.
 // Gregorius, "The Separating Axis Test between Convex Polyhedra", GDC 2013); instead of testing all pairs of arcs, the
 // farthest vertex of B is followed along each arc of A: where it changes, the arc crosses one of B's. The crossings are
-// found each once, and their number is about that of the edges.
+// found each once, and their number is about that of the edges. Normals that see one of B's points deeper than the best
+// gap found so far are passed over.
 
 #include "collision/separating_axis.h"
 
+#include <algorithm>
 #include <array>
 #include <memory_resource>
 
@@ -14,45 +16,52 @@ namespace {
 
 constexpr double kParallelSine = 1e-7;  // edges at a smaller angle give no axis: faces and other edges cover them
 
-void keepBetter(SeparatingAxis& best, double separation, const Vec3& normal) {
-  if (separation > best.separation) best = {separation, normal};
-}
-
 /// Seen from B's frame.
 class AxisSearch {
  public:
   /// `a` has faces.
   AxisSearch(const Core& a, const Core& b)
-      : coreA_(a), coreB_(b), a_(*a.collider().polytope), b_(*b.collider().polytope), lowest_(&pool_) {}
+      : coreA_(a), coreB_(b), a_(*a.collider().polytope), b_(*b.collider().polytope), heights_(&pool_) {}
 
   SeparatingAxes find() {
-    lookAtFacesOfA();
-    lookAtFacesOfB();
-    for (const Polytope::Edge& edge : a_.edges) followArc(edge);
+    const Vec3 towards = coreB_.placed(b_.vertices[0]) - coreA_.placed(a_.vertices[0]);
+    lookAtFacesOfA(coreB_.farthest(-towards));
+    lookAtFacesOfB(coreA_.farthest(towards));
+    for (const Polytope::Edge& edge : a_.edges) {
+      // The normals between two that see a point of B below the edge see it no higher.
+      const double seen = std::max(heights_[edge.left], heights_[edge.right]);
+      if (seen >= 0 || seen > best_) followArc(edge);
+    }
     return axes_;
   }
 
  private:
-  void lookAtFacesOfA() {
-    lowest_.reserve(a_.faces.size());
+  /// No normal sees a larger gap than to one of B's points: most faces need no more. `onB` (m) is one that is near.
+  void lookAtFacesOfA(const Vec3& onB) {
+    heights_.reserve(a_.faces.size());
     std::size_t vertex = 0;
     for (const Polytope::Face& face : a_.faces) {
-      const Vec3 normal = coreA_.turned(face.normal);
+      const Vec3 normal = coreA_.turned(face.normal), onFace = coreA_.placed(face.offset * face.normal);
+      heights_.push_back(normal.dot(onB - onFace));
+      if (heights_.back() <= best_) continue;
       vertex = farthestVertex(b_, coreB_.turnedBack(-normal), vertex);
-      lowest_.push_back(vertex);
-      const Vec3 onFace = coreA_.placed(face.offset * face.normal);
-      keepBetter(axes_.faceOfA, normal.dot(coreB_.placed(b_.vertices[vertex]) - onFace), normal);
+      keep(axes_.faceOfA, normal.dot(coreB_.placed(b_.vertices[vertex]) - onFace), normal);
     }
   }
 
-  void lookAtFacesOfB() {
+  void lookAtFacesOfB(const Vec3& onA) {
     std::size_t vertex = 0;
     for (const Polytope::Face& face : b_.faces) {
-      const Vec3 normal = coreB_.turned(face.normal);
+      const Vec3 normal = coreB_.turned(face.normal), onFace = coreB_.placed(face.offset * face.normal);
+      if (normal.dot(onA - onFace) <= best_) continue;
       vertex = farthestVertex(a_, coreA_.turnedBack(-normal), vertex);
-      const Vec3 onFace = coreB_.placed(face.offset * face.normal);
-      keepBetter(axes_.faceOfB, normal.dot(coreA_.placed(a_.vertices[vertex]) - onFace), -normal);
+      keep(axes_.faceOfB, normal.dot(coreA_.placed(a_.vertices[vertex]) - onFace), -normal);
     }
+  }
+
+  void keep(SeparatingAxis& best, double separation, const Vec3& normal) {
+    if (separation > best.separation) best = {separation, normal};
+    best_ = std::max(best_, separation);
   }
 
   /// The vertex of B that is farthest along -n, while n goes from the normal of the edge's left face to that of the
@@ -60,7 +69,7 @@ class AxisSearch {
   void followArc(const Polytope::Edge& edge) {
     const Vec3 left = coreA_.turned(a_.faces[edge.left].normal), right = coreA_.turned(a_.faces[edge.right].normal);
     const Vec3 from = coreB_.turnedBack(left), along = coreB_.turnedBack(right - left);
-    std::size_t vertex = lowest_[edge.left];
+    std::size_t vertex = lastStart_ = farthestVertex(b_, -from, lastStart_);
     for (double t = 0; t < 1;) {
       double crossing = 1;
       std::size_t next = vertex;
@@ -85,7 +94,7 @@ class AxisSearch {
     if (length <= kParallelSine * alongA.norm() * alongB.norm()) return;
     normal /= normal.dot(near) < 0 ? -length : length;
     const Vec3 between = coreB_.placed(b_.vertices[fromB]) - coreA_.placed(a_.vertices[edge.from]);
-    keepBetter(axes_.edges, normal.dot(between), normal);
+    keep(axes_.edges, normal.dot(between), normal);
   }
 
   const Core &coreA_, &coreB_;
@@ -93,7 +102,9 @@ class AxisSearch {
   SeparatingAxes axes_;
   std::array<std::byte, 2048> memory_;  // enough for 256 faces: no allocation
   std::pmr::monotonic_buffer_resource pool_{memory_.data(), memory_.size()};
-  std::pmr::vector<std::size_t> lowest_;  // vertex of B farthest behind each face of A
+  std::pmr::vector<double> heights_;                        // m: of a point of B over each face of A
+  double best_ = -std::numeric_limits<double>::infinity();  // m: largest gap found
+  std::size_t lastStart_ = 0;                               // vertex of B where the last arc began
 };
 
 }  // namespace

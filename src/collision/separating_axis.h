@@ -10,7 +10,7 @@ struct SeparatingAxis {
   Vec3 normal = Vec3::UnitY();                                   // unit, from A to B
 };
 
-/// The best axes of each kind.
+/// The best axes of each kind, as far as they are better than those before them here.
 struct SeparatingAxes {
   SeparatingAxis faceOfA, faceOfB, edges;
 };

@@ -99,7 +99,7 @@ void appendOnPlane(const Collider& a, const RigidTransform& worldFromA, const Pl
   if (a.kind() == ColliderKind::cylinder || hasManyCorners)
     return appendManifold(Core(a, worldFromA), plane.point, plane.normal, margin, points);
   for (const std::size_t point : near) points.push_back(ballOnPlane(worldFromA * a.points[point], a.radius, plane));
-  if (a.kind() == ColliderKind::mesh) reduceContacts(0, a.boundingRadius, points);
+  if (near.size() > kMostPoints) reduceContacts(0, a.boundingRadius, points);
 }
 
 std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const ColliderPair& pair,

@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/core.h"
 #include "collision/first_crossing.h"
+#include "collision/mesh_collider.h"
 
 namespace cradle {
 namespace {
 
+// Of the smaller radius: edges may graze each other so deep unseen. What does is apart at two looks, and at the rates
+// of a body in free motion by far less.
+constexpr double kGrazePart = 1e-4;
 constexpr double kSamePlace = 1e-3;        // of a size: contacts so near to each other are one
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
@@ -47,12 +52,16 @@ class PairSearch {
     findBounds();
     const double reach = bounds_.speed + touching.tolerance;
     if (separationBound(geometry_, pair_, startA_, startB_) > reach) return;
+    reach_ = reach;
+    findFace();
+    if (face_) return searchCorners(touching, best);
     scratch_.features_.clear();
     appendFeaturesWithin(geometry_, pair_, startA_, reach, scratch_.features_);
     for (const std::size_t feature : scratch_.features_) {
       feature_ = feature;
-      if (isHeld(touching)) continue;
-      const double start = separation(geometry_, pair_, feature_, startA_, startB_, reach);
+      held_ = isHeld(touching) ? touching.held : nullptr;
+      if (held_ && hasOneContact()) continue;
+      const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_, reach);
       if (start > bounds_.speed) continue;
       if (start > touching.tolerance)
         searchFrom(0, start, 0, best);
@@ -62,8 +71,9 @@ class PairSearch {
   }
 
  private:
-  /// Between two centres at distance d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's
-  /// sum. With edges a gap's slope may jump: then nothing bounds its acceleration.
+  /// A gap is the least of those between all points of the two cores, less the balls' radii. Of two points at distance
+  /// d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's sum before they touch; and the
+  /// least of many bends upwards no more than they do. Without balls nothing bounds it where d goes to zero.
   void findBounds() {
     const MotionBounds shift = relativeMotionBounds(step_, a_.body, bodyB_);
     const MotionBounds& turnA = scratch_.turnOf(step_, a_.body);
@@ -77,8 +87,49 @@ class PairSearch {
     const MotionBounds& turnB = scratch_.turnOf(step_, bodyB_);
     bounds_.speed += turnB.speed * pointReach(b);
     pull_ += turnB.acceleration * pointReach(b);
-    if (a_.isBall() && b.isBall())
-      bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / (a_.radius + b.radius);
+    const double radius = a_.radius + b.radius;
+    if (radius > 0) bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / radius;
+    if (radius == 0 || hasMesh(a_, b)) bounds_.graze = kGrazePart * std::min(a_.boundingRadius, b.boundingRadius);
+  }
+
+  /// Whether one body is above a face of the other all the time.
+  void findFace() {
+    if (pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall()) return;
+    const Collider& b = geometry_.colliders[pair_.b];
+    const double distance = (startA_.translation - startB_.translation).norm();
+    const double turn = std::max(scratch_.turnOf(step_, a_.body).speed, scratch_.turnOf(step_, bodyB_).speed);
+    const double motion = 2 * bounds_.speed + turn * distance;
+    face_ = faceBelow(a_, startA_, b, startB_, motion);
+    if (face_) return;
+    face_ = faceBelow(b, startB_, a_, startA_, motion);
+    if (face_) face_->isOfA = true;
+  }
+
+  /// Corners over a face that may turn: h'' of their height h has parts from the normal's turning.
+  void searchCorners(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
+    const Collider& upper = face_->isOfA ? geometry_.colliders[pair_.b] : a_;
+    const MotionBounds& turn = scratch_.turnOf(step_, face_->isOfA ? a_.body : bodyB_);
+    const double distance = (startA_.translation - startB_.translation).norm() + upper.boundingRadius + bounds_.speed;
+    pull_ += 2 * turn.speed * bounds_.speed + turn.acceleration * distance;
+    bounds_.acceleration = pull_;
+    for (std::size_t corner = 0; corner < upper.points.size(); ++corner) {
+      feature_ = corner;
+      if (isCornerHeld(touching, upper)) continue;
+      const double start = gap(0);
+      if (start > bounds_.speed) continue;
+      if (start > touching.tolerance)
+        searchFrom(0, start, 0, best);
+      else if (std::isfinite(touching.deadBand))
+        searchTouching(start, touching, best);
+    }
+  }
+
+  bool isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const {
+    const double near = kSamePlace * upper.boundingRadius;
+    return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
+             return held.pair == pairIndex_ && held.point.body == upper.body &&
+                    (held.point.point - upper.points[feature_]).squaredNorm() < near * near;
+           });
   }
 
   bool isHeld(const TouchingFeatures& touching) const {
@@ -94,9 +145,9 @@ class PairSearch {
   void searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
     const double lowest = std::min(0.0, start), speed = leavingSpeed(touching.tolerance) * step_.timeStep;
     if (!(speed > 0)) return searchFrom(0, start, lowest - touching.deadBand, best);
-    if (speed >= 0.5 * pull_) return;
-    double from = speed / pull_;
-    if (!std::isfinite(bounds_.acceleration)) from = std::min(from, kFirstLook);
+    const bool hasOnePoint = std::isfinite(bounds_.acceleration);
+    if (hasOnePoint && speed >= 0.5 * pull_) return;
+    const double from = std::min(speed / pull_, hasOnePoint ? 1 : kFirstLook);
     const double away = gap(from);
     if (away > lowest)
       searchFrom(from, away, lowest, best);
@@ -110,14 +161,21 @@ class PairSearch {
     if (from >= end) return;
     const auto above = [&](double fraction) { return gap(fraction) - threshold; };
     if (const auto fraction = firstCrossing(above, bounds_, from, gapFrom - threshold, end, above(end)))
-      best = ImpactTime{*fraction, pairIndex_, feature_, threshold, held_ != nullptr};
+      best = ImpactTime{*fraction, pairIndex_, feature_, threshold, held_ != nullptr, face_};
   }
 
   /// m/s; of the point of the feature that leaves slowest.
   double leavingSpeed(double tolerance) {
     if (pair_.againstPlane) {
       const Vec3& normal = geometry_.planes[pair_.b].normal;
-      return normal.dot(pointVelocity(a_.body, startA_ * a_.points[feature_] - a_.radius * normal, step_.startState));
+      return normal.dot(pointVelocity(a_.body, lowestPoint(normal), step_.startState));
+    }
+    if (face_) {
+      const Vec3 normal = (face_->isOfA ? startA_ : startB_).rotation * face_->normal;
+      const Vec3 corner = cornerAt(startA_, startB_);
+      const int upper = face_->isOfA ? bodyB_ : a_.body, lower = face_->isOfA ? a_.body : bodyB_;
+      return normal.dot(pointVelocity(upper, corner, step_.startState) -
+                        pointVelocity(lower, corner, step_.startState));
     }
     if (held_) {
       scratch_.findOthers(pairIndex_, *held_, step_.startState, tolerance);
@@ -133,7 +191,26 @@ class PairSearch {
     return least;
   }
 
-  double gap(double fraction) const {
+  /// m, world: of the feature, over a plane.
+  Vec3 lowestPoint(const Vec3& planeNormal) const {
+    if (a_.kind() == ColliderKind::cylinder) return Core(a_, startA_).rimPoint(feature_ == 0 ? 1 : -1, -planeNormal);
+    return startA_ * a_.points[feature_] - a_.radius * planeNormal;
+  }
+
+  Vec3 cornerAt(const RigidTransform& worldFromA, const RigidTransform& worldFromB) const {
+    if (face_->isOfA) return worldFromB * geometry_.colliders[pair_.b].points[feature_];
+    return worldFromA * a_.points[feature_];
+  }
+
+  double gap(double fraction) {
+    if (face_) {
+      const RigidTransform a = poseAt(step_, a_.body, fraction), b = poseAt(step_, bodyB_, fraction);
+      return heightOver(*face_, face_->isOfA ? a : b, cornerAt(a, b));
+    }
+    if (held_) {
+      interpolate(step_, fraction, scratch_.sample_);
+      return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, reach_);
+    }
     // A gap of twice the way that can be gone in the step stays open, however large it is.
     const double enough = 2 * bounds_.speed;
     return std::min(2 * enough, separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction),
@@ -149,6 +226,7 @@ class PairSearch {
   int bodyB_;
   RigidTransform startA_, startB_;
   GapBounds bounds_;
+  std::optional<FaceBelow> face_;                   // below all of the other body
   const std::vector<HeldFeature>* held_ = nullptr;  // something holds points of this feature
   double reach_ = 0;                                // m: farther apart nothing is looked at
   double pull_ = 0;  // m: bound on the relative acceleration, with the step as the unit of time
@@ -189,6 +267,13 @@ double ImpactSearch::gapOfOthers(std::size_t pair, const std::vector<HeldFeature
 
 double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& touching, const VectorX& state) {
   const ColliderPair& pair = geometry_.pairs[impact.pair];
+  if (impact.face) {
+    const Collider &a = geometry_.colliders[pair.a], &b = geometry_.colliders[pair.b];
+    const RigidTransform worldFromA = poseOf(state, a.body), worldFromB = poseOf(state, b.body);
+    const bool isOfA = impact.face->isOfA;
+    const Vec3 corner = isOfA ? worldFromB * b.points[impact.feature] : worldFromA * a.points[impact.feature];
+    return heightOver(*impact.face, isOfA ? worldFromA : worldFromB, corner) - impact.threshold;
+  }
   if (!impact.isOfOthers) return separation(geometry_, pair, impact.feature, state) - impact.threshold;
   const double farthest = geometry_.colliders[pair.a].boundingRadius;
   return gapOfOthers(impact.pair, *touching.held, state, farthest) - impact.threshold;

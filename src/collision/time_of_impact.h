@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "collision/face_below.h"
 #include "collision/separation.h"
 #include "dynamics/integrators/pose_interpolant.h"
 
@@ -13,8 +14,9 @@ namespace cradle {
 struct ImpactTime {
   double fraction = 0;  // of the step, 0..1
   std::size_t pair = 0, feature = 0;
-  double threshold = 0;     // m: the gap that is reached; < 0 if the features touched at the start
-  bool isOfOthers = false;  // the gap is that of the points of the pair that are not held
+  double threshold = 0;           // m: the gap that is reached; < 0 if the features touched at the start
+  bool isOfOthers = false;        // the gap is that of the points of the pair that are not held
+  std::optional<FaceBelow> face;  // the gap is the height of corner number `feature` over it
 };
 
 /// A feature of a pair, as separation.h numbers them, that something keeps together.

@@ -63,15 +63,17 @@ class TreePair {
   /// which may shrink on the way; the nearer ones first.
   template <class Visit>
   void visitNear(Visit& visit) const {
-    if (squaredDistance(a_.nodes[0], b_.nodes[0]) <= visit.reach()) descend(visit, 0, 0);
+    if (squaredDistance(a_.nodes[0], b_.nodes[0], visit.reach()) <= visit.reach()) descend(visit, 0, 0);
   }
 
-  /// Lower bound (m^2) of the square of the distance of two boxes.
-  double squaredDistance(const TriangleTree::Node& a, const TriangleTree::Node& b) const {
+  /// Lower bound (m^2) of the square of the distance of two boxes; a coarser one if that is above `reach`.
+  double squaredDistance(const TriangleTree::Node& a, const TriangleTree::Node& b, double reach) const {
     const Vec3 between = rotation_ * b.center + shift_ - a.center;
     const Vec3 alongA = between.cwiseAbs() - a.halfSize - extent_ * b.halfSize;
+    const double coarse = alongA.cwiseMax(0.0).squaredNorm();
+    if (coarse > reach) return coarse;
     const Vec3 alongB = (rotation_.transpose() * between).cwiseAbs() - b.halfSize - extent_.transpose() * a.halfSize;
-    return std::max(alongA.cwiseMax(0.0).squaredNorm(), alongB.cwiseMax(0.0).squaredNorm());
+    return std::max(coarse, alongB.cwiseMax(0.0).squaredNorm());
   }
 
  private:
@@ -83,7 +85,8 @@ class TreePair {
     const bool halveA = !a.isLeaf() && (b.isLeaf() || a.halfSize.squaredNorm() >= b.halfSize.squaredNorm());
     std::uint32_t near = halveA ? atA + 1 : atB + 1, far = halveA ? a.second : b.second;
     const auto distanceOf = [&](std::uint32_t child) {
-      return halveA ? squaredDistance(a_.nodes[child], b) : squaredDistance(a, b_.nodes[child]);
+      return halveA ? squaredDistance(a_.nodes[child], b, visit.reach())
+                    : squaredDistance(a, b_.nodes[child], visit.reach());
     };
     double nearest = distanceOf(near), farthest = distanceOf(far);
     if (farthest < nearest) std::swap(near, far), std::swap(nearest, farthest);

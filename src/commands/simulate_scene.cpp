@@ -112,7 +112,7 @@ void checkScene(const std::string& scenePath) {
   refuseUnsupported(scene);
   std::vector<Assembly> islands;
   for (const IslandPlan& island : planOf(scene).islands) islands.push_back(assemble(scene, island));
-  refuseStartOverlaps(scene, islands);
+  settleStartOverlaps(scene, islands);
   for (const Assembly& assembly : islands)
     for (const std::string& warning : assembly.warnings) warn(warning);
   std::size_t dynamic = 0;

@@ -10,15 +10,15 @@
 #include <cmath>
 #include <limits>
 
+#include "impact/cone_interior.h"
 #include "impact/cone_iteration.h"
+#include "impact/cone_newton.h"
 #include "impact/single_contact.h"
 
 namespace cradle {
 namespace {
 
 using Index = Eigen::Index;
-using Mat2 = Eigen::Matrix2d;
-using Vec2 = Eigen::Vector2d;
 
 constexpr double kConvergedPart = 1e-12;                                   // of the largest velocity
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // of the sums in G z
@@ -28,6 +28,7 @@ constexpr double kFirstPenaltyParts[] = {1e-5, 1e-3,
 constexpr int kFirstRound = 10;                 // iterations before Newton's method is tried
 constexpr double kRoundGrowth = 1.2;            // and before each further trial: far from the end, trials are waste
 constexpr int kMostIterations = 500;            // from each of them
+constexpr double kInteriorPart = 1e-9;          // of the largest velocity: where the interior point method ends
 constexpr double kRegularPart = 1e-9;           // of the largest inverse mass: what makes Newton's matrix regular
 constexpr int kMostNewtonSteps = 20;
 
@@ -46,12 +47,13 @@ class ScaledProblem {
  private:
   double friction(Index contact) const { return cones_.frictions[static_cast<std::size_t>(contact)]; }
   bool solveFrom(double penalty);
+  bool solveFromInside();
+  bool take(VectorX& z);
   void setPenalty(double penalty);
   double residual(const VectorX& z, const VectorX& u) const;
   bool isConverged(double residual, const VectorX& z, const VectorX& u) const;
   bool finish(VectorX& impulses) const;
   void stepByNewton(VectorX& z) const;
-  void addNewtonRows(Index contact, const VectorX& z, const VectorX& u, MatrixX& rows, VectorX& sides, Index at) const;
   VectorX unscaled(const VectorX& z) const;
 
   const MatrixX& givenMatrix_;
@@ -97,6 +99,7 @@ double ScaledProblem::residual(const VectorX& z, const VectorX& u) const {
   double largest = 0;
   for (Index i = 0; i < scale_.size(); ++i) {
     const Vec3 error = coulombResidual(z.segment<3>(3 * i), u.segment<3>(3 * i), friction(i));
+    if (!error.allFinite()) return INFINITY;
     largest = std::max(largest, error.cwiseAbs().maxCoeff());
   }
   return largest;
@@ -107,32 +110,11 @@ bool ScaledProblem::isConverged(double residual, const VectorX& z, const VectorX
   return residual <= kRounding * (g_.cwiseAbs() * z.cwiseAbs()).maxCoeff();
 }
 
-/// Replaces one contact's rows of G by those of Newton's matrix A + B G, for a contact that pushes.
-void ScaledProblem::addNewtonRows(Index contact, const VectorX& z, const VectorX& u, MatrixX& rows, VectorX& sides,
-                                  Index at) const {
-  const double mu = friction(contact), pressing = z[3 * contact + 2] - u[3 * contact + 2];
-  const Vec2 pull = z.segment<2>(3 * contact) - u.segment<2>(3 * contact);
-  const double size = pull.norm();
-  Mat3 a = kRegularPart * largest_ * Mat3::Identity(), b = Mat3::Identity();
-  sides.segment<3>(at) = -u.segment<3>(3 * contact);
-  if (size > mu * pressing || mu == 0) {  // z_t = mu (z_n - u_n) e
-    const Vec2 e = size > 0 ? Vec2(pull / size) : Vec2::Zero();
-    const Mat2 turning = size > 0 ? Mat2(mu * pressing / size * (Mat2::Identity() - e * e.transpose())) : Mat2::Zero();
-    a.topLeftCorner<2, 2>() = Mat2::Identity() - turning;
-    a.topRightCorner<2, 1>() = -mu * e;
-    b.topLeftCorner<2, 2>() = turning;
-    b.topRightCorner<2, 1>() = mu * e;
-    sides.segment<2>(at) = mu * pressing * e - z.segment<2>(3 * contact);
-  }
-  rows.middleRows<3>(at) = (b * rows.middleRows<3>(at)).eval();
-  rows.block<3, 3>(at, at) += a;
-}
-
 void ScaledProblem::stepByNewton(VectorX& z) const {
   VectorX u = g_ * z + cones_.free;
   std::vector<Index> pushing;
   for (Index i = 0; i < scale_.size(); ++i) {
-    if (z[3 * i + 2] - u[3 * i + 2] > 0)
+    if (pushes(z.segment<3>(3 * i), u.segment<3>(3 * i)))
       pushing.insert(pushing.end(), {3 * i, 3 * i + 1, 3 * i + 2});
     else
       z.segment<3>(3 * i).setZero();
@@ -141,8 +123,14 @@ void ScaledProblem::stepByNewton(VectorX& z) const {
   u = g_ * z + cones_.free;
   MatrixX rows = g_(pushing, pushing);
   VectorX sides(pushing.size());
-  for (std::size_t at = 0; at < pushing.size(); at += 3)
-    addNewtonRows(pushing[at] / 3, z, u, rows, sides, static_cast<Index>(at));
+  for (Index at = 0; at < sides.size(); at += 3) {
+    const Index first = pushing[static_cast<std::size_t>(at)];
+    const NewtonRow row =
+        newtonRow(z.segment<3>(first), u.segment<3>(first), friction(first / 3), kRegularPart * largest_);
+    rows.middleRows<3>(at) = (row.ofVelocity * rows.middleRows<3>(at)).eval();
+    rows.block<3, 3>(at, at) += row.ofImpulse;
+    sides.segment<3>(at) = -row.value;
+  }
   z(pushing) += VectorX(rows.partialPivLu().solve(sides));
 }
 
@@ -168,9 +156,39 @@ VectorX ScaledProblem::solve() {
   best_ = VectorX::Zero(cones_.free.size());
   leastResidual_ = residual(best_, cones_.free);
   if (isConverged(leastResidual_, best_, cones_.free)) return unscaled(best_);
+  if (solveFrom(kFirstPenaltyParts[0] * largest_) || solveFromInside()) return unscaled(best_);
   for (const double part : kFirstPenaltyParts)
     if (solveFrom(part * largest_)) break;
   return unscaled(best_);
+}
+
+bool ScaledProblem::solveFromInside() {
+  Eigen::PartialPivLU<MatrixX> factor;
+  ConeOperator op;
+  op.multiply = [this](const VectorX& z, VectorX& u) { u = g_ * z + cones_.free; };
+  op.respond = [this, &factor](const std::vector<Mat3>& stiffnesses, bool isNew, const VectorX& c, VectorX& du) {
+    if (isNew) {
+      MatrixX matrix(g_.rows(), g_.cols());
+      for (Index i = 0; i < scale_.size(); ++i)
+        matrix.middleCols<3>(3 * i) = g_.middleCols<3>(3 * i) * stiffnesses[static_cast<std::size_t>(i)];
+      matrix.diagonal().array() += 1;
+      factor.compute(matrix);
+    }
+    du = factor.solve(g_ * c);
+  };
+  VectorX z = VectorX::Zero(cones_.free.size());
+  solveByInteriorPoint(cones_, op, kInteriorPart, z);
+  return take(z);
+}
+
+/// Keeps impulses that are better than the best so far. True if they, or where Newton's method leads from them, are a
+/// solution.
+bool ScaledProblem::take(VectorX& z) {
+  const VectorX u = g_ * z + cones_.free;
+  const double left = residual(z, u);
+  const bool isFound = isConverged(left, z, u) || finish(z);
+  if (isFound || left < leastResidual_) best_ = z, leastResidual_ = left;
+  return isFound;
 }
 
 /// From nothing, with a penalty to begin with.
@@ -182,11 +200,7 @@ bool ScaledProblem::solveFrom(double penalty) {
   for (int done = 0; done < kMostIterations; done += static_cast<int>(round), round *= kRoundGrowth) {
     iterateCones(cones_, kProximalPart * largest_, solveShifted, static_cast<int>(round), iterate_);
     VectorX z = iterate_.impulses;
-    const VectorX u = g_ * z + cones_.free;
-    const double left = residual(z, u);
-    const bool isFound = isConverged(left, z, u) || finish(z);
-    if (isFound || left < leastResidual_) best_ = z, leastResidual_ = left;
-    if (isFound) return true;
+    if (take(z)) return true;
     setPenalty(balancedPenalty(iterate_, largest_));
   }
   return false;

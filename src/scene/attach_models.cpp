@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "core/error.h"
+#include "mesh/convex_hull.h"
 #include "mesh/recognise_shape.h"
 #include "mesh/solid.h"
 #include "scene/given_mass.h"
@@ -18,7 +20,7 @@ struct ModelFacts {
   bool isSolid = false;                   // bounds a volume
   std::string problems;                   // why not
   std::optional<MassProperties> uniform;  // at density 1, if it is a solid
-  std::optional<std::string> shape;       // what it was recognised as, once somebody asked
+  bool isRecognised = false;              // its shape, once somebody asked
   double size = 0;                        // m, radius of a sphere around it
 };
 
@@ -60,6 +62,7 @@ std::optional<ModelFacts> load(const BodyDraft& draft, SceneDraft& scene, const 
     ModelFacts facts = examine(loaded.model, report);
     facts.index = static_cast<int>(scene.scene.models.size());
     scene.scene.models.push_back(std::move(loaded.model));
+    scene.scene.modelCollisions.emplace_back();
     return facts;
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::mesh) throw;
@@ -84,20 +87,41 @@ bool canMove(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults)
   return false;
 }
 
-// sphere and box are promises about the mesh that it must keep.
-void checkCollision(const BodyDraft& draft, ModelFacts& facts, const Scene& scene, FaultList& faults) {
-  const CollisionChoice choice = draft.body.collision;
-  if (choice != CollisionChoice::sphere && choice != CollisionChoice::box) return;
-  if (!facts.shape) {
-    const TriangleMesh& solid = scene.models[static_cast<std::size_t>(facts.index)].solid;
-    facts.shape = facts.isSolid ? shapeName(recogniseShape(solid)) : "an open surface";
+/// The hull of a mesh that has one.
+void findHull(const BodyDraft& draft, const TriangleMesh& solid, ModelCollision& collision, FaultList& faults) {
+  if (collision.hull) return;
+  try {
+    collision.hull = convexHullOf(solid.vertices);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::mesh) throw;
+    addFault(faults, draft.collision ? *draft.collision : *draft.meshField,
+             fmt::format("{}; give the body \"collision\": \"none\", or a mesh that is not flat", error.what()));
   }
-  const std::string wanted = choice == CollisionChoice::sphere ? "sphere" : "box";
-  if (*facts.shape == wanted) return;
+}
+
+// sphere and box are promises about the mesh that it must keep.
+void checkPromise(const BodyDraft& draft, bool isSolid, const RecognisedShape& recognised, FaultList& faults) {
+  const std::string wanted = draft.body.collision == CollisionChoice::sphere ? "sphere" : "box";
+  const std::string shape = isSolid ? shapeName(recognised) : "an open surface";
+  if (shape == wanted) return;
   addFault(
       faults, *draft.collision,
       fmt::format("collision is \"{}\", but the mesh is {} ({}); allowed are \"auto\", \"hull\", \"mesh\" and \"none\"",
-                  wanted, "no " + wanted, *facts.shape));
+                  wanted, "no " + wanted, shape));
+}
+
+void settleCollision(const BodyDraft& draft, ModelFacts& facts, Scene& scene, FaultList& faults) {
+  const CollisionChoice choice = draft.body.collision;
+  if (choice == CollisionChoice::none) return;
+  const TriangleMesh& solid = scene.models[static_cast<std::size_t>(facts.index)].solid;
+  ModelCollision& collision = scene.modelCollisions[static_cast<std::size_t>(facts.index)];
+  if (choice == CollisionChoice::hull) return findHull(draft, solid, collision, faults);
+  if (facts.isSolid && !facts.isRecognised) collision.recognised = recogniseShape(solid);
+  facts.isRecognised = true;
+  if (choice == CollisionChoice::sphere || choice == CollisionChoice::box)
+    checkPromise(draft, facts.isSolid, collision.recognised, faults);
+  const bool takesPrimitive = collision.recognised.primitive && choice != CollisionChoice::mesh;
+  if (collision.recognised.isConvex && !takesPrimitive) findHull(draft, solid, collision, faults);
 }
 
 MassProperties massOf(const BodyDraft& draft, const ModelFacts& facts, SceneDraft& scene, FaultList& faults) {
@@ -112,7 +136,7 @@ MassProperties massOf(const BodyDraft& draft, const ModelFacts& facts, SceneDraf
 
 void complete(BodyDraft& draft, ModelFacts& facts, SceneDraft& scene, Faults faults) {
   if (draft.body.motion == Motion::dynamic && !canMove(draft, facts, faults.mesh)) return;
-  checkCollision(draft, facts, scene.scene, faults.text);
+  settleCollision(draft, facts, scene.scene, faults.text);
   const MassProperties properties = massOf(draft, facts, scene, faults.text);
   for (int i = draft.firstBody; i < draft.firstBody + draft.bodyCount; ++i) {
     Body& body = scene.scene.bodies[static_cast<std::size_t>(i)];

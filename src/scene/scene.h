@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "math/types.h"
+#include "mesh/convex_hull.h"
 #include "mesh/load_mesh.h"
 #include "mesh/mass_properties.h"
 #include "mesh/primitives.h"
+#include "mesh/recognise_shape.h"
 
 // A scene file as plain data: checked, defaults filled in, references turned into indices, meshes loaded.
 
@@ -35,6 +37,12 @@ struct SurfacePair {
 /// The solid half of a mesh shape is models[model].solid in the body's frame, scale applied.
 struct ModelShape {
   int model = 0;  // index into Scene::models
+};
+
+/// What a model is for the collision of its bodies, as far as they ask.
+struct ModelCollision {
+  RecognisedShape recognised;
+  std::optional<ConvexHull> hull;  // if it is convex and no primitive, or a body asks for the hull
 };
 using Shape = std::variant<Sphere, Box, Cylinder, Capsule, Plane, ModelShape>;
 
@@ -145,7 +153,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<std::vector<SurfacePair>> surfacePairs;  // [material][material], symmetric
   std::vector<Model> models;
-  std::vector<Body> bodies;  // copies written out, in the order of the file
+  std::vector<ModelCollision> modelCollisions;  // of each model
+  std::vector<Body> bodies;                     // copies written out, in the order of the file
   std::vector<Spring> springs;
   std::vector<Rod> rods;
   std::vector<Rope> ropes;

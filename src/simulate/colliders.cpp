@@ -22,47 +22,40 @@ RigidTransform colliderFromShape(const Body& body, int movingBody) {
   return {Quat::Identity(), -body.massProperties.centerOfMass};
 }
 
-/// Fills a collider from shapes, each placed in the collider's frame.
-struct ColliderBuilder {
+Collider wholeMesh(const TriangleMesh& mesh, const RigidTransform& frame) {
   Collider collider;
-  RigidTransform frame;  // colliderFromShape
-
-  void operator()(const Sphere& sphere) {
-    collider.points = {frame.translation};
-    collider.radius = sphere.radius;
+  for (const Vec3& vertex : mesh.vertices) {
+    collider.points.push_back(frame * vertex);
+    collider.boundingRadius = std::max(collider.boundingRadius, collider.points.back().norm());
+    collider.bounds.extend(collider.points.back());
   }
-  void operator()(const Capsule& capsule) {
-    const Vec3 end = capsule.length / 2 * Vec3::UnitY();
-    collider.points = {frame * end, frame * -end};
-    collider.radius = capsule.radius;
-  }
-  void operator()(const Box& box) {
-    collider.polytope = polytopeOf(box, frame);
-    collider.points = collider.polytope->vertices;
-  }
-  void operator()(const Cylinder&) {}  // refused before, see unsupportedContacts
-  void operator()(const Plane&) {}     // no collider of this kind
-};
-
-void addMesh(const TriangleMesh& mesh, CollisionChoice choice, ColliderBuilder& builder) {
-  const bool asPrimitive =
-      choice == CollisionChoice::automatic || choice == CollisionChoice::sphere || choice == CollisionChoice::box;
-  const RecognisedShape recognised = asPrimitive ? recogniseShape(mesh) : RecognisedShape{};
-  if (recognised.primitive && !std::holds_alternative<Cylinder>(recognised.primitive->shape)) {
-    builder.frame = builder.frame * recognised.primitive->bodyFromShape;
-    std::visit(builder, recognised.primitive->shape);
-    return;
-  }
-  for (const Vec3& vertex : mesh.vertices) builder.collider.points.push_back(builder.frame * vertex);
+  return collider;
 }
 
-void enclose(Collider& collider) {
-  const Vec3 radius = Vec3::Constant(collider.radius);
-  for (const Vec3& point : collider.points) {
-    collider.boundingRadius = std::max(collider.boundingRadius, point.norm() + collider.radius);
-    collider.bounds.extend(Vec3(point - radius));
-    collider.bounds.extend(Vec3(point + radius));
+Collider ofModel(const Scene& scene, const Body& body, const RigidTransform& frame) {
+  const auto model = static_cast<std::size_t>(std::get<ModelShape>(body.shape).model);
+  const auto& [recognised, hull] = scene.modelCollisions[model];
+  const bool asPrimitive = body.collision != CollisionChoice::hull && body.collision != CollisionChoice::mesh;
+  if (recognised.primitive && asPrimitive) {
+    const RigidTransform place = frame * recognised.primitive->bodyFromShape;
+    return std::visit([&](const auto& shape) { return colliderOf(shape, place); }, recognised.primitive->shape);
   }
+  if (hull && (recognised.isConvex || body.collision == CollisionChoice::hull)) return colliderOf(*hull, frame);
+  return wholeMesh(scene.models[model].solid, frame);
+}
+
+Collider shapedLike(const Body& body, const Scene& scene, const RigidTransform& frame) {
+  return std::visit(
+      [&](const auto& shape) {
+        using Kind = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<Kind, ModelShape>)
+          return ofModel(scene, body, frame);
+        else if constexpr (std::is_same_v<Kind, Plane>)
+          return Collider();
+        else
+          return colliderOf(shape, frame);
+      },
+      body.shape);
 }
 
 /// That of a mesh that is no solid is not known.
@@ -82,20 +75,10 @@ bool isMesh(const Collider& collider) {
 
 std::optional<Collider> colliderOf(const Body& body, const Scene& scene, int movingBody) {
   if (body.collision == CollisionChoice::none || isPlane(body)) return std::nullopt;
-  ColliderBuilder builder;
-  builder.collider.body = movingBody;
-  builder.frame = colliderFromShape(body, movingBody);
-  std::visit(
-      [&](const auto& shape) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, ModelShape>)
-          addMesh(scene.models[static_cast<std::size_t>(shape.model)].solid, body.collision, builder);
-        else
-          builder(shape);
-      },
-      body.shape);
-  builder.collider.surface = body.material;
-  enclose(builder.collider);
-  return std::move(builder.collider);
+  Collider collider = shapedLike(body, scene, colliderFromShape(body, movingBody));
+  collider.body = movingBody;
+  collider.surface = body.material;
+  return collider;
 }
 
 void addSurfaces(const Scene& scene, const std::vector<int>& bodies, std::vector<Collider>& colliders) {

@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kTouchPart = 1e-9;        // of the smallest body's size: nearer counts as touching
 constexpr double kSlidingSpeed = 1e-6;     // m/s: slower counts as sticking
+constexpr long kFewLoaded = 8;             // contacts that last: more are resolved step by step
+constexpr double kReach = 2;               // of the way that a body goes freely: what others may make of it
+constexpr double kReachPart = 1e-3;        // of its size: the same, for bodies at rest
 constexpr double kCalmSteps = 20;          // awake at least so long: a rattle is no row of rests
 constexpr double kRestSteps = 2;           // a rebound that ends within as many steps is not resolved
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
@@ -48,14 +51,15 @@ ContactStage::ContactStage(MovingIsland& island, double timeStep)
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       timeStep_(timeStep),
       touchTolerance_(cradle::touchTolerance(assembly_.geometry)),
-      leastImpactSpeed_(kRestSpeedFloor + kLeastImpactPart * assembly_.mechanism.gravity.norm() * timeStep) {
+      leastImpactSpeed_(kRestSpeedFloor + kLeastImpactPart * assembly_.mechanism.gravity.norm() * timeStep),
+      stepping_(assembly_) {
   resting_.setCalmTime(kCalmSteps * timeStep);
 }
 
 void ContactStage::resolve(double time, const VectorX& before, VectorX& state) {
   stepPart_ = (time - std::exchange(lastTime_, time)) / timeStep_;
   if (assembly_.geometry.colliders.empty()) return;
-  findTouching(state);
+  findTouching(state, touchTolerance_);
   if (touching_.empty()) return;
   wakeTouched(time, state);
   if (solver_.hasConstraints()) solver_.factorize(state);
@@ -66,9 +70,53 @@ void ContactStage::resolve(double time, const VectorX& before, VectorX& state) {
     log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
 }
 
+/// Contacts that may close within a step, also if others make the bodies faster.
+void ContactStage::findWithinReach(const VectorX& before, const VectorX& state, double length) {
+  std::vector<double> ways;  // m, of each body within the step
+  double farthest = 0;
+  for (std::size_t i = 0; i < assembly_.radii.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    double speed = 0;
+    for (const VectorX* moment : {&before, &state})
+      speed = std::max(
+          speed, linearVelocity(*moment, body).norm() + assembly_.radii[i] * angularVelocity(*moment, body).norm());
+    ways.push_back(kReach * speed * length + kReachPart * assembly_.radii[i]);
+    farthest = std::max(farthest, ways.back());
+  }
+  findTouching(before, 2 * farthest);
+  std::erase_if(touching_, [&](const Contact& contact) {
+    double way = 0;
+    for (const int body : {contact.bodyA, contact.bodyB})
+      if (body != kFixed) way += ways[static_cast<std::size_t>(body)];
+    return contact.separation > way;
+  });
+}
+
+void ContactStage::resolveStep(double time, const VectorX& before, VectorX& state) {
+  const double length = time - std::exchange(lastTime_, time);
+  findWithinReach(before, state, length);
+  for (const Contact& contact : std::vector<Contact>(touching_)) {
+    if (contact.separation > touchTolerance_) continue;
+    for (const int body : {contact.bodyA, contact.bodyB})
+      for (const int other : resting_.wake(time, body))
+        log_.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
+  }
+  stepping_.resolve(touching_, before, length, state);
+  std::vector<Contact> acting;
+  for (const SteppedContact& stepped : stepping_.contacts()) {
+    const double impulse = stepped.contact.normal.dot(stepped.impulse);
+    if (impulse <= 0) continue;
+    acting.push_back(stepped.contact);
+    if (stepped.isImpact) log_.recordContact(time, EventKind::impact, stepped.contact, impulse);
+  }
+  isCrowded_ = !acting.empty();
+  for (const int body : resting_.settle(time, acting, state))
+    log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
+}
+
 /// Contacts of this instant in which something moves.
-void ContactStage::findTouching(const VectorX& state) {
-  findContacts(assembly_.geometry, state, touchTolerance_, touching_);
+void ContactStage::findTouching(const VectorX& state, double margin) {
+  findContacts(assembly_.geometry, state, margin, touching_);
   std::erase_if(touching_, [this](const Contact& contact) {
     const bool aLies = contact.bodyA == kFixed || resting_.isResting(contact.bodyA);
     const bool bLies = contact.bodyB == kFixed || resting_.isResting(contact.bodyB);
@@ -84,7 +132,7 @@ void ContactStage::wakeTouched(double time, const VectorX& state) {
         log_.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
         woken = true;
       }
-  if (woken) findTouching(state);
+  if (woken) findTouching(state, touchTolerance_);
 }
 
 /// Restitution. A contact that closes faster than acceleration explains is an impact, and then all that touch each
@@ -148,6 +196,8 @@ void ContactStage::holdLasting(const VectorX& before, VectorX& state) {
   }
   solveLastingContacts(lasting, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
   for (const LastingContact& contact : lasting) dissipate(contact.contact, contact.impulse, before, state);
+  const auto isLoaded = [](const LastingContact& contact) { return contact.impulse.dot(contact.contact.normal) > 0; };
+  isCrowded_ = std::count_if(lasting.begin(), lasting.end(), isLoaded) > kFewLoaded;
 }
 
 }  // namespace cradle

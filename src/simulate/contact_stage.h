@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "impact/pairwise.h"
+#include "simulate/contact_stepping.h"
 #include "simulate/islands.h"
 #include "simulate/moving_island.h"
 
@@ -20,6 +21,16 @@ class ContactStage {
   /// `before` is the state at the step's start: lasting contacts did their work since then.
   void resolve(double time, const VectorX& before, VectorX& state);
 
+  /// What touched at the last call of resolve, if something of it moved.
+  const std::vector<Contact>& touching() const { return touching_; }
+
+  /// Many contacts last or chatter: the next step is to end without a search for impacts, by resolveStep.
+  bool isCrowded() const { return isCrowded_; }
+  void setCrowded() { isCrowded_ = true; }
+
+  /// What happens over a whole step of free motion from `before` to `state`, as one cone problem.
+  void resolveStep(double time, const VectorX& before, VectorX& state);
+
   /// Nearer than this (m) is touching.
   double touchTolerance() const { return touchTolerance_; }
 
@@ -27,7 +38,8 @@ class ContactStage {
   double margin() const { return std::max(touchTolerance_, resting_.supportMargin()); }
 
  private:
-  void findTouching(const VectorX& state);
+  void findTouching(const VectorX& state, double margin);
+  void findWithinReach(const VectorX& before, const VectorX& state, double length);
   void wakeTouched(double time, const VectorX& state);
   void resolveImpacts(double time, const VectorX& before, VectorX& state);
   Islands findStruckTogether() const;
@@ -43,6 +55,8 @@ class ContactStage {
   double lastTime_ = -INFINITY;  // s, of the last call of resolve
   double stepPart_ = INFINITY;   // time since then, in steps
   std::vector<Contact> touching_;
+  ContactStepping stepping_;
+  bool isCrowded_ = false;
 };
 
 }  // namespace cradle

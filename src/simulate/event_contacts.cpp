@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/core.h"
 #include "dynamics/invariants.h"
 #include "impact/cone_problem.h"
 #include "impact/contact_impulse.h"
@@ -54,6 +55,11 @@ bool hasCornerAt(const Collider& collider, const Vec3& point, const VectorX& sta
   if (collider.radius > 0) return false;
   const Vec3 local = poseOf(state, collider.body).inverse() * point;
   const double near = kSameCorner * collider.boundingRadius;
+  if (collider.kind() == ColliderKind::cylinder) {  // any point of a rim
+    const Core core(collider, {});
+    const double side = core.axis().dot(local - core.center()) < 0 ? -1 : 1;
+    return (core.rimPoint(side, local - core.center()) - local).squaredNorm() < near * near;
+  }
   return std::any_of(collider.points.begin(), collider.points.end(),
                      [&](const Vec3& corner) { return (corner - local).squaredNorm() < near * near; });
 }
@@ -103,6 +109,10 @@ void EventContacts::resolve(const std::optional<ContactChange>& change, const st
   settle();
   lasting_.decide(touching_, solver_);
   keepTogether();
+  if (!lasting_.empty() && isAnySlow()) {  // what sticks is still now
+    settle();
+    lasting_.letGoResting();
+  }
   recordRests(rested);
 }
 
@@ -216,6 +226,12 @@ void EventContacts::wakeStruck() {
         island_.resting.wake(island_.time, body);
 }
 
+bool EventContacts::isAnySlow() const {
+  for (std::size_t body = 0; body < island_.assembly.mechanism.bodies.size(); ++body)
+    if (!island_.equations.isResting(body) && isSlow(body)) return true;
+  return false;
+}
+
 bool EventContacts::isSlow(std::size_t body) const {
   const Eigen::Index index = static_cast<Eigen::Index>(body);
   const double size = island_.assembly.radii[body], gravity = island_.assembly.mechanism.gravity.norm();
@@ -278,7 +294,10 @@ bool EventContacts::isHeld(const Islands& groups, int group) {
     contacts.push_back(rowsOf(contact, island_.state, frames_));
     frictions.push_back(island_.assembly.geometry.pairs[contact.pair].law.staticFriction);
   }
+  std::vector<ContactConstraint> lasting;
+  std::swap(lasting, island_.assembly.mechanism.contacts);
   island_.equations.evaluate(island_.state, rate_);
+  std::swap(lasting, island_.assembly.mechanism.contacts);
   if (!contacts.empty()) {
     const ContactResponse response(contacts, mechanism.bodies, frames_, solver_);
     const ConeSolution solution = solveConeProblem(response.inverseMass(), response.accelerations(rate_), frictions);

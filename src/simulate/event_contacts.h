@@ -21,6 +21,9 @@ class EventContacts {
 
   LastingContacts& lasting() { return lasting_; }
 
+  /// Why contacts cannot last as rows, if they can't; else empty.
+  std::string_view fault() const { return lasting_.fault(); }
+
   /// Farther apart (m) nothing is looked at.
   double margin() const { return touchTolerance_; }
 
@@ -39,6 +42,7 @@ class EventContacts {
   void wakeStruck();
   void settle();
   Islands findRestGroups() const;
+  bool isAnySlow() const;
   bool isSlow(std::size_t body) const;
   bool isHeld(const Islands& groups, int group);
   void keepTogether();

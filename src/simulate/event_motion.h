@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 
 #include "dynamics/integrators/step_size.h"
 #include "simulate/energy_guard.h"
@@ -18,9 +19,12 @@ class EventMotion {
   /// Keeps references to the island, which it moves, and its ropes.
   EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method);
 
-  /// Takes a step. `frame` (s) is the next time whose state is asked for. Throws Error(unstable) if the state blows up,
-  /// Error(limit) if events follow each other without end.
+  /// Takes a step. `frame` (s) is the next time whose state is asked for. Throws Error(unstable) if the state blows up.
   void advance(double frame);
+
+  /// Why events serve the island no more, if they don't: what lasts are not contacts of balls, corners and faces, they
+  /// are too many, or events follow each other too fast. Empty if they do.
+  std::string_view fault() const;
 
   /// Whether the last step kept what ties the bodies: its interpolant may be projected.
   bool keepsTies() const { return keepsTies_; }

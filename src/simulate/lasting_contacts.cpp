@@ -22,7 +22,6 @@ constexpr double kStillPart = 1e-7;       // of the accelerations: less is held
 constexpr double kLastBouncePart = 1e-7;  // of sqrt(g x size): what leaves so slowly is held by what presses
 constexpr double kSamePoint = 1e-4;       // of a size
 constexpr double kSameDirection = 0.999;  // cosine
-constexpr double kRollingSpin = 1e-9;     // rad/s
 constexpr int kMostFrictionRounds = 200;
 constexpr double kFrictionConverged = 1e-10;
 constexpr int kMostRedundant = 12;
@@ -49,7 +48,7 @@ void LastingContacts::letGo(const std::optional<ContactChange>& change) {
   isReleasing_ = change && change->kind == ContactChange::Kind::release;
   mechanism().contacts.clear();
   entries_.clear();
-  canServe_ = true;
+  fault_ = {};
 }
 
 void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSolver& ties) {
@@ -58,16 +57,18 @@ void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSol
   for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
   for (const Entry& entry : entries)
     if (entry.isLoaded) add(entry);
-  if (getenv("DBG")) {
-    fprintf(stderr, "decide t %.15g touching %zu entries %zu loaded %zu\n", island_.time, touching.size(),
-            entries.size(), entries_.size());
-    for (auto& e : entries)
-      fprintf(stderr, "   v_n %.3g slides %d loaded %d sticks %d red %d p %.12f %.12f %.12f sep %.3g former %d\n",
-              openingSpeed(e.contact, island_.state), e.slides, e.isLoaded, e.sticks, e.isRedundant,
-              e.contact.point.x(), e.contact.point.y(), e.contact.point.z(), e.contact.separation,
-              formerOf(e) != nullptr);
-  }
   recordChanges();
+}
+
+void LastingContacts::letGoResting() {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (!isAwake(entries_[i].contact)) continue;
+    entries_[kept] = entries_[i];
+    mechanism().contacts[kept++] = mechanism().contacts[i];
+  }
+  entries_.resize(kept);
+  mechanism().contacts.resize(kept);
 }
 
 bool LastingContacts::isAwake(const Contact& contact) const {
@@ -146,7 +147,7 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
     entry.force = most / inverseMass(at + 2, at + 2);
     entry.isLoaded = solution.impulses[at + 2] > unloaded / inverseMass(at + 2, at + 2);
     if (!entry.isLoaded) continue;
-    canServe_ = canServe_ && canLast(entry.contact);
+    if (!canLast(entry.contact)) fault_ = "edges touch and press";
     const bool hasFriction = entry.pair.law.staticFriction > 0;
     entry.sticks = hasFriction && !entry.slides && motion.head<2>().norm() <= kStillPart * most;
     if (hasFriction && !entry.slides && !entry.sticks) {
@@ -162,7 +163,7 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
   factor.setThreshold(kRankPart);
   const Index rank = factor.rank();
   for (const std::size_t i : group) entries[i].isRedundant = rank < held.rows();
-  canServe_ = canServe_ && held.rows() - rank <= kMostRedundant && rank <= kMostIndependent;
+  if (held.rows() - rank > kMostRedundant || rank > kMostIndependent) fault_ = "too many contacts press at once";
 }
 
 /// Forces and accelerations of contacts whose free accelerations are those in rate_. Those that slide have their
@@ -241,7 +242,8 @@ void LastingContacts::recordChanges() {
       Vec3 spin = Vec3::Zero();
       if (contact.bodyA != kFixed) spin -= angularVelocity(island_.state, contact.bodyA);
       if (contact.bodyB != kFixed) spin += angularVelocity(island_.state, contact.bodyB);
-      record(spin.norm() > kRollingSpin ? EventKind::roll : EventKind::stick);
+      const double size = island_.assembly.geometry.colliders[former.entry.pair.a].boundingRadius;
+      record(spin.norm() * size > kSlowSliding ? EventKind::roll : EventKind::stick);
     } else if (now->slides && (stuck || (slid && turnsBack(former, *now)))) {
       record(EventKind::slip);
     }

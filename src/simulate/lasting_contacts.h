@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "impact/cone_problem.h"
@@ -37,6 +38,9 @@ class LastingContacts {
   /// bodies that all rest are left out. `ties` must be factorised for the state. Records slip, stick, roll and release.
   void decide(const std::vector<Contact>& touching, ConstraintSolver& ties);
 
+  /// Lets go of contacts between bodies that have come to rest.
+  void letGoResting();
+
   bool empty() const { return mechanism().contacts.empty(); }
 
   /// Features that lasting contacts hold together, for the pairs of now.
@@ -51,8 +55,8 @@ class LastingContacts {
   /// Directions of sliding follow the motion from step to step.
   void followSliding();
 
-  /// Rows serve few contacts, and only those between balls, corners and faces.
-  bool canServe() const { return canServe_; }
+  /// Why rows do not serve, if they don't: they are for few contacts, and only those between balls, corners and faces.
+  std::string_view fault() const { return fault_; }
 
  private:
   /// A contact that touches, on its way to a decision; and what is known of one that lasts, beside its constraint.
@@ -97,7 +101,7 @@ class LastingContacts {
   std::vector<Former> former_;
   std::vector<HeldFeature> held_;
   std::vector<BodyFrame> frames_;
-  bool canServe_ = true;
+  std::string_view fault_;
   bool isReleasing_ = false;
   VectorX rate_, sample_;
   std::vector<std::array<double, 3>> before_, after_;

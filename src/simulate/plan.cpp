@@ -30,11 +30,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kContactTimeStep = 1.0 / 960;  // s: 16 steps a frame at 60 frames a second
-constexpr double kEventAccuracy = 1e-4;         // at coarser ones contact is resolved once a step
-constexpr double kPileTimeStep = 1.0 / 60;      // s, at most
-constexpr std::size_t kPileBodies = 50;         // with fewer, RK4 costs less than the pictures of its frames
-constexpr double kTolerancePart = 0.1;          // of the accuracy: the local errors of about ten steps add up to it
+constexpr double kEventAccuracy = 1e-4;     // at coarser ones contact is resolved once a step
+constexpr double kPileTimeStep = 1.0 / 60;  // s, at most
+constexpr std::size_t kPileBodies = 50;     // with fewer, RK4 costs less than the pictures of its frames
+constexpr double kTolerancePart = 0.1;      // of the accuracy: the local errors of about ten steps add up to it
 
 /// What reaches of bodies are compared with: their size around the centre of mass.
 double sizeOf(const Body& body, const Scene& scene) {
@@ -48,7 +47,7 @@ double fixedSizeOf(const Body& body, const Scene& scene) {
   double size = 0;
   if (!collider) return size;
   for (const Vec3& point : collider->points)
-    size = std::max(size, (point - body.worldFromBody.translation).norm() + collider->radius);
+    size = std::max(size, (point - body.worldFromBody.translation).norm() + collider->radius + collider->rimRadius);
   return size;
 }
 

@@ -9,6 +9,8 @@
 
 namespace cradle {
 
+constexpr double kContactTimeStep = 1.0 / 960;  // s, of contact that events do not serve: 16 steps a frame at 60/s
+
 /// The method that moves an island.
 struct ChosenMethod {
   Integrator integrate = nullptr;  // null: closed form

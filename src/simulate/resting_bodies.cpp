@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "impact/lasting_contact.h"
+#include "impact/cone_problem.h"
+#include "impact/contact_cones.h"
+#include "impact/sparse_cones.h"
 #include "simulate/islands.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kLiftablePart = 1e-7;  // of its size: the height that a slow body's kinetic energy could lift it
-constexpr double kSupportPart = 1e-6;   // of its size: how far a point may hover and still carry
+constexpr double kLiftablePart = 1e-7;    // of its size: the height that a slow body's kinetic energy could lift it
+constexpr double kSupportPart = 1e-6;     // of its size: how far a point may hover and still carry
+constexpr std::size_t kFewSupports = 12;  // whose forces are found densely
+constexpr double kSolvedPart = 1e-2;      // of the residual: how well forces of many are found
 constexpr double kResidualAcceleration = 1e-6;  // of gravity: what supporting forces may leave
 
 }  // namespace
@@ -61,16 +65,16 @@ bool RestingBodies::canBeHeld(const std::vector<int>& islands, int island, const
   const Eigen::Index velocities = static_cast<Eigen::Index>(islands.size()) * kVelocitySize;
   accelerations.segment(poseComponents(state), velocities) = rate.segment(poseComponents(state), velocities);
 
-  std::vector<Contact> supports;
-  findContacts(geometry_, state, supportMargin_, supports);
-  std::vector<LastingContact> lasting;
-  for (const Contact& contact : supports) {
+  std::vector<Contact> near, supports;
+  std::vector<double> frictions;
+  findContacts(geometry_, state, supportMargin_, near);
+  for (const Contact& contact : near) {
     const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
-    if (islands[static_cast<std::size_t>(body)] == island)
-      lasting.push_back({contact, geometry_.pairs[contact.pair].law.staticFriction, Vec3::Zero()});
+    if (islands[static_cast<std::size_t>(body)] != island) continue;
+    supports.push_back(contact);
+    frictions.push_back(geometry_.pairs[contact.pair].law.staticFriction);
   }
-  if (solver_.hasConstraints()) solver_.factorize(state);
-  solveLastingContacts(lasting, ImpulseResponse(mechanism_.bodies, solver_), accelerations);
+  hold(supports, frictions, state, accelerations);
 
   for (std::size_t i = 0; i < islands.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
@@ -79,6 +83,26 @@ bool RestingBodies::canBeHeld(const std::vector<int>& islands, int island, const
     if (islands[i] == island && left > kResidualAcceleration * mechanism_.gravity.norm()) return false;
   }
   return true;
+}
+
+/// Adds to the accelerations what forces at the supports give that leave as little closing and sliding as can be.
+void RestingBodies::hold(const std::vector<Contact>& supports, const std::vector<double>& frictions,
+                         const VectorX& state, VectorX& accelerations) {
+  if (supports.size() <= kFewSupports || solver_.hasConstraints()) {
+    if (solver_.hasConstraints()) solver_.factorize(state);
+    const ContactCones cones(supports, ImpulseResponse(mechanism_.bodies, solver_), state);
+    const VectorX free = cones.velocitiesIn(accelerations);
+    cones.apply(solveConeProblem(cones.inverseMass(), free, frictions).impulses, accelerations);
+    return;
+  }
+  SparseCones cones;
+  cones.set(supports, mechanism_.bodies, state);
+  const Eigen::Index size = 3 * static_cast<Eigen::Index>(supports.size());
+  ConeStart start{VectorX::Zero(size), VectorX::Zero(size), 0};
+  long iterations = 0;
+  const double tolerance = kSolvedPart * kResidualAcceleration * mechanism_.gravity.norm();
+  cones.apply(cones.solve(cones.velocitiesIn(accelerations), frictions, tolerance, start, iterations).impulses,
+              accelerations);
 }
 
 std::vector<int> RestingBodies::settle(double time, const std::vector<Contact>& contacts, VectorX& state) {

@@ -37,6 +37,8 @@ class RestingBodies {
   std::vector<int> islandsOf(const std::vector<Contact>& contacts) const;
   bool isCalm(double time, std::size_t body, const VectorX& state) const;
   bool isSlow(std::size_t body, const VectorX& state) const;
+  void hold(const std::vector<Contact>& supports, const std::vector<double>& frictions, const VectorX& state,
+            VectorX& accelerations);
   bool canBeHeld(const std::vector<int>& islands, int island, const VectorX& state);
 
   const Mechanism& mechanism_;

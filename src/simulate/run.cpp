@@ -28,7 +28,7 @@ Run::Run(const Scene& scene) {
   const Plan plan = planOf(scene);
   std::vector<Assembly> assemblies;
   for (const IslandPlan& island : plan.islands) assemblies.push_back(assemble(scene, island));
-  refuseStartOverlaps(scene, assemblies);
+  settleStartOverlaps(scene, assemblies);
   for (std::size_t i = 0; i < assemblies.size(); ++i) {
     startWarnings_.insert(startWarnings_.end(), assemblies[i].warnings.begin(), assemblies[i].warnings.end());
     const ChosenMethod& method = plan.islands[i].method;

@@ -1,32 +1,43 @@
 #include "simulate/simulation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "core/interruption.h"
+#include "dynamics/integrators/rk4.h"
 
 namespace cradle {
 namespace {
 
 constexpr double kSameTime = 1e-12;  // s, relative beyond 1 s
+constexpr double kTrialTime = 0.05;  // s: so often contacts that were too much for events are tried again
 
 }  // namespace
 
 Simulation::Simulation(const Scene& scene, Assembly assembly, const ChosenMethod& method)
     : island_(scene, std::move(assembly)),
       ropes_(island_),
-      solver_(island_.assembly.mechanism.constraints, island_.assembly.mechanism.bodies) {
+      solver_(island_.assembly.mechanism.constraints, island_.assembly.mechanism.bodies),
+      method_(method) {
   if (method.isAdaptive())
     motion_.emplace<EventMotion>(island_, ropes_, method);
   else
     motion_.emplace<SteppedMotion>(island_, ropes_, method);
+  changeMotion();
 }
 
 const VectorX& Simulation::stateAt(double time) {
-  if (auto* events = std::get_if<EventMotion>(&motion_))
-    moveTo(time, *events);
+  const double same = kSameTime * std::max(1.0, time);
+  while (island_.time < time - same) {
+    throwIfInterrupted();
+    advance(time);
+  }
+  if (island_.time <= time + same)
+    reported_ = island_.state;
   else
-    moveTo(time, std::get<SteppedMotion>(motion_));
+    interpolateAt(time, keepsTies());
   normalizeOrientations(reported_);
   const std::vector<RigidBody>& bodies = island_.assembly.mechanism.bodies;
   for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -35,19 +46,47 @@ const VectorX& Simulation::stateAt(double time) {
 }
 
 template <class Motion>
-void Simulation::moveTo(double time, Motion& motion) {
-  const double same = kSameTime * std::max(1.0, time);
-  while (island_.time < time - same) {
-    throwIfInterrupted();
-    if (motion.isAtRest())
-      motion.restUntil(time);
-    else
-      motion.advance(time);
-  }
-  if (island_.time <= time + same)
-    reported_ = island_.state;
+void Simulation::advance(double time, Motion& motion) {
+  if (motion.isAtRest())
+    motion.restUntil(time);
   else
-    interpolateAt(time, motion.keepsTies());
+    motion.advance(time);
+}
+
+void Simulation::advance(double time) {
+  if (auto* events = std::get_if<EventMotion>(&motion_))
+    advance(time, *events);
+  else
+    advance(time, std::get<SteppedMotion>(motion_));
+  // The step under way ends later than `time`: its interpolant is needed as it is.
+  if (method_.isAdaptive()) changeMotion();
+}
+
+bool Simulation::keepsTies() const {
+  if (const auto* events = std::get_if<EventMotion>(&motion_)) return events->keepsTies();
+  return std::get<SteppedMotion>(motion_).keepsTies();
+}
+
+/// Steps of one length take over where events do not serve, and give back where nothing touches, or after a while.
+void Simulation::changeMotion() {
+  if (const auto* events = std::get_if<EventMotion>(&motion_)) {
+    const std::string_view fault = events->fault();
+    if (fault.empty()) return;
+    if (!std::exchange(isWarned_, true))
+      island_.log.warn(
+          fmt::format("{}: the accuracy asked is not promised from {:.6g} s on: {}; contact is resolved "
+                      "every {:.3g} s as long as that lasts",
+                      island_.scene.path, island_.time, fault, kContactTimeStep));
+    island_.assembly.mechanism.contacts.clear();
+    nextTrial_ = island_.time + kTrialTime;
+    motion_.emplace<SteppedMotion>(island_, ropes_, ChosenMethod{rk4, "RK4", kContactTimeStep});
+    return;
+  }
+  const auto& steps = std::get<SteppedMotion>(motion_);
+  if (!method_.isAdaptive() || steps.isAtRest()) return;
+  if (!steps.isFree() && island_.time < nextTrial_) return;
+  nextTrial_ = island_.time + kTrialTime;
+  if (steps.isFree() || steps.mayServeEvents()) motion_.emplace<EventMotion>(island_, ropes_, method_);
 }
 
 void Simulation::interpolateAt(double time, bool keepsTies) {

@@ -30,8 +30,11 @@ class Simulation {
   std::vector<std::string> takeWarnings() { return island_.log.takeWarnings(); }
 
  private:
+  void advance(double time);
+  void changeMotion();
   template <class Motion>
-  void moveTo(double time, Motion& motion);
+  static void advance(double time, Motion& motion);
+  bool keepsTies() const;
   void interpolateAt(double time, bool keepsTies);
   void spin(Eigen::Index body, double time, VectorX& state) const;
 
@@ -39,6 +42,9 @@ class Simulation {
   RopeStage ropes_;
   ConstraintSolver solver_;
   std::variant<std::monostate, EventMotion, SteppedMotion> motion_;
+  ChosenMethod method_;
+  bool isWarned_ = false;  // that the accuracy is not kept any more
+  double nextTrial_ = 0;   // s: when events may serve again
   VectorX reported_;
 };
 

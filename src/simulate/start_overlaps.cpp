@@ -1,5 +1,5 @@
-// A body that starts inside another would be thrown out of it: the energy for that comes from nowhere. Contact needs a
-// start that is possible.
+// A body that starts inside another would be thrown out of it: the energy for that comes from nowhere. What overlaps
+// little is moved apart before the run begins; what overlaps much is a mistake in the scene.
 
 #include "simulate/start_overlaps.h"
 
@@ -8,14 +8,19 @@
 #include <algorithm>
 #include <limits>
 
+#include "collision/broad_phase.h"
+#include "collision/mesh_surface.h"
 #include "collision/separation.h"
 #include "core/error.h"
+#include "impact/lasting_contact.h"
 
 namespace cradle {
 namespace {
 
 constexpr double kTouchingPart = 1e-9;                                // of the smaller body's size
 constexpr double kModelPart = std::numeric_limits<float>::epsilon();  // of a model's: its vertices are that exact
+constexpr double kMostPart = 0.5;                                     // of the smaller body's inner radius
+constexpr int kMostRounds = 20;                                       // of moving apart: each may bring others together
 constexpr std::size_t kMostFaults = 50;
 
 /// The deepest overlap (m) of a pair; < 0 or -infinity if it has none.
@@ -42,37 +47,96 @@ std::string lengthText(double meters) {
   return meters < 1 ? fmt::format("{:.4g} mm", 1000 * meters) : fmt::format("{:.4g} m", meters);
 }
 
-std::string faultOf(const Body& a, const Body& b, bool againstPlane, double depth, double allowed) {
-  const std::string length = lengthText(depth);
-  if (againstPlane)
-    return fmt::format(
-        "{}: \"{}\" is {} deep in the plane \"{}\" at the start; at most {} is touching; move it out "
-        "along the plane's normal by {}, or give one of them \"collision\": \"none\"",
-        a.where, a.name, length, b.name, lengthText(allowed), length);
-  return fmt::format(
-      "{}: \"{}\" and \"{}\" overlap by {} at the start; at most {} is touching; move them apart by {}, "
-      "or give one of them \"collision\": \"none\"",
-      b.where, a.name, b.name, length, lengthText(allowed), length);
+/// Radius (m) of a ball inside a collider: around its middle, of a mesh at least its volume by its surface's area.
+double innerRadius(const Collider& collider) {
+  if (collider.kind() != ColliderKind::mesh) return -nearestSurfacePoint(collider, collider.bounds.center()).distance;
+  if (!collider.mesh) return collider.boundingRadius;
+  double volume = 0, area = 0;
+  for (const MeshSurface::Face& face : collider.mesh->faces) {
+    const Vec3 &a = collider.mesh->vertices[face.vertices[0]], &b = collider.mesh->vertices[face.vertices[1]],
+               &c = collider.mesh->vertices[face.vertices[2]];
+    volume += a.dot(b.cross(c)) / 6;
+    area += (b - a).cross(c - a).norm() / 2;
+  }
+  return area > 0 ? std::abs(volume) / area : collider.boundingRadius;
 }
 
-/// Adds the overlaps of one island to `faults`.
-void findOverlaps(const Scene& scene, const Assembly& assembly, std::vector<std::string>& faults) {
+/// How deep (m) a pair may overlap to be moved apart.
+double mendableDepth(const ContactGeometry& geometry, const ColliderPair& pair) {
+  const double radiusA = innerRadius(geometry.colliders[pair.a]);
+  return kMostPart * (pair.againstPlane ? radiusA : std::min(radiusA, innerRadius(geometry.colliders[pair.b])));
+}
+
+/// Two bodies of an island that overlap.
+struct Overlap {
+  const Body &a, &b;
+  bool againstPlane;
+  double depth, mendable;  // m
+};
+
+std::string textOf(const Overlap& overlap) {
+  const auto& [a, b, againstPlane, depth, mendable] = overlap;
+  if (againstPlane)
+    return fmt::format("{}: \"{}\" is {} deep in the plane \"{}\" at the start", a.where, a.name, lengthText(depth),
+                       b.name);
+  return fmt::format("{}: \"{}\" and \"{}\" overlap by {} at the start", b.where, a.name, b.name, lengthText(depth));
+}
+
+std::string faultOf(const Overlap& overlap) {
+  return fmt::format(
+      "{}; at most {}, half of the radius inside the smaller one, is mended; move {} by {}, or give one "
+      "of them \"collision\": \"none\"",
+      textOf(overlap), lengthText(overlap.mendable),
+      overlap.againstPlane ? "it out along the plane's normal" : "them apart", lengthText(overlap.depth));
+}
+
+std::vector<Overlap> overlapsOf(const Scene& scene, const Assembly& assembly) {
   const ContactGeometry& geometry = assembly.geometry;
+  std::vector<Overlap> overlaps;
   for (const ColliderPair& pair : geometry.pairs) {
     const auto [first, second] = bodiesOf(assembly, pair);
     const Body &a = scene.bodies[static_cast<std::size_t>(first)], &b = scene.bodies[static_cast<std::size_t>(second)];
     const RigidTransform worldFromA = poseOf(assembly.state, geometry.colliders[pair.a].body);
     if (separationBound(geometry, pair, worldFromA, poseOf(assembly.state, bodyBOf(geometry, pair))) > 0) continue;
-    const double depth = depthOf(geometry, pair, assembly.state), allowed = touchingDepth(geometry, pair, a, b);
-    if (depth > allowed) faults.push_back(faultOf(a, b, pair.againstPlane, depth, allowed));
+    const double depth = depthOf(geometry, pair, assembly.state);
+    if (depth > touchingDepth(geometry, pair, a, b))
+      overlaps.push_back({a, b, pair.againstPlane, depth, mendableDepth(geometry, pair)});
   }
+  return overlaps;
+}
+
+void moveApart(Assembly& assembly) {
+  ConstraintSolver solver(assembly.mechanism.constraints, assembly.mechanism.bodies);
+  if (solver.hasConstraints()) solver.factorize(assembly.state);
+  std::vector<Contact> contacts;
+  findContacts(assembly.geometry, assembly.state, 0, contacts);
+  resolveOverlaps(assembly.geometry, contacts, ImpulseResponse(assembly.mechanism.bodies, solver), assembly.state);
+  // What was moved may be near others now.
+  BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0, assembly.geometry);
+}
+
+/// Mends what can be; the rest are faults.
+void settle(const Scene& scene, Assembly& assembly, std::vector<std::string>& faults) {
+  const std::vector<Overlap> overlaps = overlapsOf(scene, assembly);
+  const std::size_t before = faults.size();
+  for (const Overlap& overlap : overlaps)
+    if (overlap.depth > overlap.mendable) faults.push_back(faultOf(overlap));
+  if (overlaps.empty() || faults.size() > before) return;
+  std::vector<Overlap> left = overlaps;
+  for (int round = 0; round < kMostRounds && !left.empty(); ++round) {
+    moveApart(assembly);
+    left = overlapsOf(scene, assembly);
+  }
+  for (const Overlap& overlap : overlaps)
+    assembly.warnings.push_back(textOf(overlap) + "; they were moved apart before the run");
+  for (const Overlap& overlap : left) faults.push_back(textOf(overlap) + ", and what is around holds them together");
 }
 
 }  // namespace
 
-void refuseStartOverlaps(const Scene& scene, const std::vector<Assembly>& islands) {
+void settleStartOverlaps(const Scene& scene, std::vector<Assembly>& islands) {
   std::vector<std::string> faults;
-  for (const Assembly& assembly : islands) findOverlaps(scene, assembly, faults);
+  for (Assembly& assembly : islands) settle(scene, assembly, faults);
   if (faults.empty()) return;
   if (faults.size() > kMostFaults) {
     faults[kMostFaults] = fmt::format("and {} more", faults.size() - kMostFaults);

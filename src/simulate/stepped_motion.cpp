@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "simulate/contact_response.h"
 #include "simulate/event_location.h"
 
 namespace cradle {
@@ -14,6 +15,7 @@ namespace {
 constexpr double kImpactPart = 1e-3;      // of the touching tolerance: how well an impact's gap is closed
 constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension that is left
 constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
+constexpr int kMostServed = 12;           // contacts
 constexpr int kMostEvents = 10000;        // within a step
 
 }  // namespace
@@ -54,7 +56,8 @@ void SteppedMotion::advance(double frame) {
   island_.state = step.state;
   if (solver_.hasConstraints()) solver_.project(island_.state);
   normalizeOrientations(island_.state);
-  contacts_.resolve(time, before_, island_.state);
+  contacts_.isCrowded() ? contacts_.resolveStep(time, before_, island_.state)
+                        : contacts_.resolve(time, before_, island_.state);
   const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
   ropes_.resolve(time, island_.state);
   keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
@@ -63,6 +66,7 @@ void SteppedMotion::advance(double frame) {
   island_.requireUnsolvedPairsApart();
 
   if (atEvent) countEvent();
+  if (eventsInWindow_ > kManyEvents) contacts_.setCrowded();
   if (time >= start_ + static_cast<double>(stepNumber_ + 1) * method_.timeStep) ++stepNumber_;
 }
 
@@ -80,7 +84,7 @@ bool SteppedMotion::stopAtFirstEvent() {
   Step& step = island_.step;
   prepareInterpolant(island_.rightHandSide, step);
   island_.findNearPairs(contacts_.margin());
-  const auto impact = island_.search.first(step, {contacts_.touchTolerance()});
+  const auto impact = contacts_.isCrowded() ? std::nullopt : island_.search.first(step, {contacts_.touchTolerance()});
   const auto change = ropes_.firstChange(step);
   const double whole = step.timeStep;
   if (impact && !(change && change->fraction < impact->fraction)) {
@@ -95,6 +99,11 @@ bool SteppedMotion::stopAtFirstEvent() {
 
 bool SteppedMotion::isAtRest() const {
   return island_.resting.allRest() && island_.time < island_.pushes.nextChange();
+}
+
+bool SteppedMotion::mayServeEvents() const {
+  const std::vector<Contact>& touching = contacts_.touching();
+  return std::ssize(touching) <= kMostServed && std::all_of(touching.begin(), touching.end(), canLast);
 }
 
 void SteppedMotion::restUntil(double time) {

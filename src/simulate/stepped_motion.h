@@ -25,6 +25,12 @@ class SteppedMotion {
   /// Whether all bodies of the island lie still.
   bool isAtRest() const;
 
+  /// Whether nothing touches any more.
+  bool isFree() const { return contacts_.touching().empty(); }
+
+  /// Whether all that touches may be served by events.
+  bool mayServeEvents() const;
+
   /// Lets time pass in which nothing moves.
   void restUntil(double time);
 

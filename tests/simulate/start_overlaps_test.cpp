@@ -2,12 +2,15 @@
 
 #include <gmock/gmock.h>
 
+#include "collision/separation.h"
 #include "experiments/experiment.h"
 
 namespace cradle {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
 
 std::string refusalOf(const std::string& bodies, const std::string& more = "") {
@@ -20,6 +23,24 @@ std::string refusalOf(const std::string& bodies, const std::string& more = "") {
     return error.what();
   }
   return "";
+}
+
+struct Start {
+  VectorX state;
+  std::vector<std::string> warnings;
+  std::vector<Contact> contacts;  // nearer than 1 cm
+};
+
+/// Of a scene of one island.
+Start startOf(const std::string& bodies) {
+  const Scene scene =
+      sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "t", "duration": 0.01, "bodies": [{}]}})", bodies));
+  std::vector<Assembly> islands;
+  for (const IslandPlan& island : planOf(scene).islands) islands.push_back(assemble(scene, island));
+  settleStartOverlaps(scene, islands);
+  Start start{islands.at(0).state, islands[0].warnings, {}};
+  findContacts(islands[0].geometry, start.state, 0.01, start.contacts);
+  return start;
 }
 
 std::string ball(const std::string& name, double x, const std::string& more = "") {
@@ -37,14 +58,14 @@ std::string all(const std::vector<std::string>& bodies) {
 const char* const kGround = R"({"name": "ground", "shape": {"plane": {}}, "motion": "static"})";
 
 TEST(StartOverlaps, AreToldWithBothBodiesDepthAndPlace) {
-  const std::string refusal = refusalOf(all({ball("a", 0), ball("b", 0.18)}));
-  EXPECT_THAT(refusal, HasSubstr("experiment.json:3:1 /bodies/1: \"a\" and \"b\" overlap by 20 mm at the start"));
+  const std::string refusal = refusalOf(all({ball("a", 0), ball("b", 0.14)}));
+  EXPECT_THAT(refusal, HasSubstr("experiment.json:3:1 /bodies/1: \"a\" and \"b\" overlap by 60 mm at the start"));
   EXPECT_THAT(refusal, HasSubstr("move them apart"));
 }
 
 TEST(StartOverlaps, OfEveryKindOfPairAreFound) {
-  EXPECT_THAT(refusalOf(all({ball("a", 0), box("crate", 0.55)})), HasSubstr("overlap by 50 mm"));
-  EXPECT_THAT(refusalOf(all({box("crate", 0), box("other", 0.75)})), HasSubstr("overlap by 250 mm"));
+  EXPECT_THAT(refusalOf(all({ball("a", 0), box("crate", 0.5)})), HasSubstr("overlap by 100 mm"));
+  EXPECT_THAT(refusalOf(all({box("crate", 0), box("other", 0.7)})), HasSubstr("overlap by 300 mm"));
   EXPECT_THAT(refusalOf(all({box("crate", 0, R"(, "motion": "static")"), ball("inside", 0)})),
               HasSubstr("overlap by 600 mm"));
   // A cube of 1 m with its centre in the ground's surface, and one far below it.
@@ -55,7 +76,7 @@ TEST(StartOverlaps, OfEveryKindOfPairAreFound) {
 }
 
 TEST(StartOverlaps, AreToldAllAtOnceButNoMoreThanFifty) {
-  EXPECT_THAT(refusalOf(all({ball("a", 0), ball("b", 0.15), ball("c", 0.3)})),
+  EXPECT_THAT(refusalOf(all({ball("a", 0), ball("b", 0.13), ball("c", 0.26)})),
               testing::AllOf(HasSubstr("\"a\" and \"b\""), HasSubstr("\"b\" and \"c\""), Not(HasSubstr("more"))));
   // 12 balls in one place are 66 pairs.
   const std::string many = refusalOf(ball("a", 0, R"(, "copies": {"count": [12, 1, 1], "spacing": [0, 0, 0]})"));
@@ -66,9 +87,49 @@ TEST(StartOverlaps, AreToldAllAtOnceButNoMoreThanFifty) {
 // 1e-9 of the smaller body's radius, 0.1 m, is touching.
 TEST(StartOverlaps, UpToABillionthOfTheSmallerBodyAreTouching) {
   EXPECT_EQ(refusalOf(all({ball("a", 0), ball("b", 0.2 - 0.9e-10)})), "");
-  EXPECT_THAT(refusalOf(all({ball("a", 0), ball("b", 0.2 - 1.1e-10)})), HasSubstr("at most 1e-07 mm is touching"));
-  EXPECT_EQ(refusalOf(all({ball("a", 0), box("crate", 0.6 - 0.9e-10)})), "");
-  EXPECT_THAT(refusalOf(all({ball("a", 0), box("crate", 0.6 - 1.1e-10)})), HasSubstr("at most 1e-07 mm is touching"));
+  EXPECT_THAT(startOf(all({ball("a", 0), ball("b", 0.2 - 0.9e-10)})).warnings, IsEmpty());
+  EXPECT_THAT(startOf(all({ball("a", 0), ball("b", 0.2 - 1.1e-10)})).warnings,
+              ElementsAre(HasSubstr("overlap by 1.1e-07 mm at the start; they were moved apart")));
+  EXPECT_THAT(startOf(all({ball("a", 0), box("crate", 0.6 - 0.9e-10)})).warnings, IsEmpty());
+  EXPECT_THAT(startOf(all({ball("a", 0), box("crate", 0.6 - 1.1e-10)})).warnings,
+              ElementsAre(HasSubstr("overlap by 1.1e-07 mm")));
+}
+
+// Two balls of 1 and 3 kg that overlap by 40 mm part by 30 and 10: their centre of mass stays. A crate 0.2 m in the
+// ground comes up by that.
+TEST(StartOverlaps, UpToHalfTheInnerRadiusAreMovedApart) {
+  const Start balls = startOf(all({ball("a", 0, R"(, "mass": 1)"), ball("b", 0.16, R"(, "mass": 3)")}));
+  EXPECT_THAT(balls.warnings, ElementsAre(HasSubstr("\"a\" and \"b\" overlap by 40 mm at the start")));
+  EXPECT_NEAR(centerOfMass(balls.state, 0).x(), -0.03, 1e-12);
+  EXPECT_NEAR(centerOfMass(balls.state, 1).x(), 0.17, 1e-12);
+
+  const Start crate = startOf(all({kGround, R"({"name": "crate", "shape": {"box": {"size": [1, 1, 1]}},
+    "position": [0, 0.3, 0]})"}));
+  EXPECT_THAT(crate.warnings, ElementsAre(HasSubstr("\"crate\" is 200 mm deep in the plane \"ground\"")));
+  EXPECT_NEAR(centerOfMass(crate.state, 0).y(), 0.5, 1e-12);
+}
+
+TEST(StartOverlaps, OfEveryShapeAreMovedApart) {
+  for (const char* shape :
+       {R"({"cylinder": {"radius": 0.3, "length": 1}})", R"({"capsule": {"radius": 0.3, "length": 1}})",
+        R"({"box": {"size": [0.6, 1, 0.6]}})", R"({"sphere": {"radius": 0.3}})"})
+    for (const char* other : {R"({"cylinder": {"radius": 0.2, "length": 2}})",
+                              R"({"capsule": {"radius": 0.2, "length": 2}})", R"({"box": {"size": [0.4, 2, 0.4]}})"}) {
+      const Start start = startOf(all({fmt::format(R"({{"name": "a", "shape": {}}})", shape),
+                                       fmt::format(R"({{"name": "b", "shape": {}, "position": [0.46, 0.1, 0.05],
+        "orientation": {{"axis": [0, 0, 1], "angleDegrees": 3}}}})",
+                                                   other)}));
+      EXPECT_THAT(start.warnings, ElementsAre(HasSubstr("they were moved apart before the run"))) << shape << other;
+      EXPECT_THAT(start.contacts, Not(IsEmpty()));
+      for (const Contact& contact : start.contacts) EXPECT_GT(contact.separation, -1e-9) << shape << other;
+    }
+}
+
+TEST(StartOverlaps, ThatNothingCanMendAreRefused) {
+  // A ball 10 mm too wide for the gap between two walls.
+  EXPECT_THAT(refusalOf(all({box("left", -0.595, R"(, "motion": "static")"), ball("a", 0),
+                             box("right", 0.595, R"(, "motion": "static")")})),
+              HasSubstr("holds them together"));
 }
 
 TEST(StartOverlaps, OfWhatCannotTouchDoNotMatter) {
@@ -82,8 +143,8 @@ TEST(StartOverlaps, OfBodiesJoinedByRodsSpringsAndRopesMatter) {
   for (const char* link : {R"("rods": [{{{}}}])", R"("ropes": [{{{}}}])", R"("springs": [{{{}, "stiffness": 1}}])"}) {
     const std::string text =
         fmt::format(fmt::runtime(link), R"("bodyA": "a", "anchorA": [0, 0, 0], "bodyB": "b", "anchorB": [0, 0, 0])");
-    EXPECT_THAT(refusalOf(all({ball("a", 0), ball("b", 0.15)}), fmt::format(", {}", text)),
-                HasSubstr("overlap by 50 mm"))
+    EXPECT_THAT(refusalOf(all({ball("a", 0), ball("b", 0.13)}), fmt::format(", {}", text)),
+                HasSubstr("overlap by 70 mm"))
         << text;
   }
 }
@@ -108,7 +169,7 @@ TEST(StartOverlaps, OfModelsMayBeTheRoundingOfTheirFiles) {
     return "";
   };
   EXPECT_EQ(refusalAt(0.3), "");
-  EXPECT_THAT(refusalAt(0.2999), HasSubstr("\"cube\" is 0.1 mm deep"));
+  EXPECT_THAT(refusalAt(0.1499), HasSubstr("\"cube\" is 150.1 mm deep"));
 }
 
 }  // namespace

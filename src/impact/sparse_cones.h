@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "impact/block_lu.h"
+#include "impact/cone_iteration.h"
+#include "impact/cone_problem.h"
+#include "impact/contact_impulse.h"
+
+namespace cradle {
+
+/// Where an iteration begins, and where it ended: impulses (N s) and velocities (m/s) of the contacts by components
+/// (t1, t2, n), De Saxce's correction included, and the penalty (in scaled units; 0: none known).
+struct ConeStart {
+  VectorX impulses, velocities;
+  double penalty = 0;
+};
+
+/// Contacts of bodies that nothing ties as a cone problem (cone_problem.h) whose matrix is never formed: J M^-1 J^T by
+/// its factors. Linear in the number of contacts for stacks and chains.
+class SparseCones {
+ public:
+  /// Contacts, and bodies at their places in `state`, as they are now. Keeps what `analyze` found for the calls after,
+  /// as long as the same bodies touch.
+  void set(const std::vector<Contact>& contacts, const std::vector<RigidBody>& bodies, const VectorX& state);
+
+  /// World from the axes of a contact.
+  const Mat3& axes(std::size_t contact) const { return contacts_[contact].axes; }
+
+  /// Velocities (m/s) of all contacts for the velocities in a state.
+  VectorX velocitiesIn(const VectorX& velocities) const;
+
+  /// Adds to the velocities in `state` what the impulses give.
+  void apply(const VectorX& impulses, VectorX& state) const;
+
+  /// G, in 1/kg, dense.
+  MatrixX inverseMass() const;
+
+  /// By ADMM and Newton's method from `start`, to `tolerance` (m/s), in at most so many iterations. Leaves in `start`
+  /// where it ended. The number of iterations that it took is added to `iterations`.
+  ConeSolution solve(const VectorX& free, const std::vector<double>& frictions, double tolerance, ConeStart& start,
+                     long& iterations);
+
+ private:
+  using Mat36 = Eigen::Matrix<double, 3, 6>;
+  struct Row {
+    Mat3 axes;                // world from (t1, t2, n)
+    std::array<int, 2> body;  // of A and B among bodies_, or -1
+    std::array<Mat36, 2> j;   // of A and B: velocity of the contact from velocities times root of mass
+    double scale = 1;         // of its impulses: inverse mass 1
+  };
+  struct BodyRoot {
+    Eigen::Index index;   // in the state
+    double inverseMass;   // 1/kg, square root of
+    Mat3 inverseInertia;  // world, lower root of
+  };
+  template <class Stiffness>
+  void assemble(double shift, const Stiffness& stiffness);
+  void factorize(double shift);
+  void stepByNewton(VectorX& z, VectorX& u);
+  long approachFromInside(VectorX& impulses);
+  bool finish(VectorX& z, VectorX& u, double tolerance);
+  void multiply(const VectorX& impulses, VectorX& velocities);
+  void gather(const VectorX& impulses);
+  void solveShifted(VectorX& b);
+  double residual(const VectorX& z, const VectorX& u) const;
+
+  std::vector<Row> contacts_;
+  std::vector<BodyRoot> bodies_;
+  std::vector<std::pair<int, int>> pairs_;  // of bodies that touch
+  std::vector<std::size_t> pairOf_;         // of each contact
+  BlockLu factor_;
+  std::vector<std::pair<int, int>> analyzed_;
+  std::size_t analyzedBodies_ = 0;
+  ScaledCones cones_;
+  double shift_ = 0;
+  VectorX bodyWork_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "impact/sparse_cones.h"
+#include "simulate/assembly.h"
+
+namespace cradle {
+
+/// A contact that took part in a step.
+struct SteppedContact {
+  Contact contact;              // at the step's start
+  Vec3 impulse = Vec3::Zero();  // N s, world, on B
+  bool isImpact = false;        // it closed faster than what accelerations explain
+};
+
+/// How well the cone problems of the steps so far were solved.
+struct SteppingCount {
+  long problems = 0, unsolved = 0, iterations = 0;
+  double worstResidual = 0;  // m/s, of those that were not solved
+};
+
+/// The contact step for many contacts that last or chatter: all contacts within reach of the step are one cone problem
+/// for the velocities at its end. Nothing passes through anything (what is apart may close by its gap and no more),
+/// restitution and friction included, and energy does not grow. Order 1 where something strikes, 2 where contacts last.
+class ContactStepping {
+ public:
+  /// Keeps a reference to `assembly`.
+  explicit ContactStepping(const Assembly& assembly);
+
+  /// `contacts` are those of the step's start, with gaps that may close within it; `before` the state there; `state`
+  /// where free motion led after `timeStep` (s), and after the call where contact did. Energy that went is booked.
+  void resolve(const std::vector<Contact>& contacts, const VectorX& before, double timeStep, VectorX& state);
+
+  /// Those of the last step.
+  const std::vector<SteppedContact>& contacts() const { return contacts_; }
+  const SteppingCount& count() const { return count_; }
+
+ private:
+  struct Group {
+    std::vector<std::size_t> members;  // of contacts_
+    int firstBody = 0;
+    bool isTied = false;
+  };
+  struct Problem {
+    VectorX free;  // m/s, less the speeds that must remain
+    std::vector<double> frictions;
+  };
+  std::vector<Group> findGroups() const;
+  double restSpeed(double pressing, double timeStep) const;
+  void resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state);
+  Problem posed(const std::vector<Contact>& contacts, const VectorX& startVelocities, const VectorX& freeVelocities,
+                double timeStep) const;
+  VectorX solveUntied(const Group& group, const Problem& problem);
+  VectorX solveTied(const Problem& problem, const MatrixX& inverseMass);
+  void count(const ConeSolution& solution);
+  void move(const std::vector<int>& bodies, bool isSmooth, const VectorX& before, double timeStep, VectorX& state);
+  ConeStart startOf(const Group& group) const;
+  void separate(const std::vector<Contact>& contacts, const VectorX& gaps, bool isTied, const VectorX& before,
+                VectorX& state);
+
+  const Assembly& assembly_;
+  ConstraintSolver solver_;
+  double overlapTolerance_ = 0;  // m
+  SparseCones cones_;
+  std::vector<SteppedContact> contacts_, previous_;
+  std::vector<Vec3> slips_, previousSlips_;  // m/s, world: velocities of the contacts with De Saxce's correction
+  std::map<int, double> penalties_;          // of each group's first body
+  SteppingCount count_;
+  VectorX free_;  // where free motion led
+};
+
+}  // namespace cradle
