@@ -16,14 +16,16 @@ double insideOutline(const Polytope& polytope, const Polytope::Face& face, const
 }  // namespace
 
 std::optional<FaceBelow> faceBelow(const Collider& upper, const RigidTransform& worldFromUpper, const Collider& lower,
-                                   const RigidTransform& worldFromLower, double motion) {
-  if (upper.body == kFixed || upper.kind() != ColliderKind::polytope || lower.kind() != ColliderKind::polytope)
-    return std::nullopt;
+                                   const RigidTransform& worldFromLower,
+                                   const std::function<double(const Vec3& normal)>& motionAlong) {
+  const bool hasPoints = upper.kind() == ColliderKind::ball || upper.kind() == ColliderKind::capsule ||
+                         upper.kind() == ColliderKind::polytope;
+  if (upper.body == kFixed || !hasPoints || lower.kind() != ColliderKind::polytope) return std::nullopt;
   const Vec3 center = worldFromLower.inverse() * worldFromUpper.translation;
-  const double reach = upper.boundingRadius + motion;
   for (const Polytope::Face& face : lower.polytope->faces) {
     if (face.normal.dot(center) <= face.offset) continue;
-    if (insideOutline(*lower.polytope, face, center) < reach) continue;
+    const double inside = insideOutline(*lower.polytope, face, center) - upper.boundingRadius;
+    if (inside < 0 || inside < motionAlong(worldFromLower.rotation * face.normal)) continue;
     return FaceBelow{false, face.normal, lower.polytope->vertices[face.loop[0]]};
   }
   return std::nullopt;

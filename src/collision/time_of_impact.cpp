@@ -94,14 +94,17 @@ class PairSearch {
 
   /// Whether one body is above a face of the other all the time.
   void findFace() {
-    if (pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall()) return;
+    if (pair_.againstPlane) return;
     const Collider& b = geometry_.colliders[pair_.b];
     const double distance = (startA_.translation - startB_.translation).norm();
     const double turn = std::max(scratch_.turnOf(step_, a_.body).speed, scratch_.turnOf(step_, bodyB_).speed);
-    const double motion = 2 * bounds_.speed + turn * distance;
-    face_ = faceBelow(a_, startA_, b, startB_, motion);
+    const auto motionAlong = [&](const Vec3& normal) {
+      if (a_.body == kFixed || bodyB_ == kFixed) return motionBoundAcross(step_, a_.body, bodyB_, normal);
+      return 2 * bounds_.speed + turn * distance;
+    };
+    face_ = faceBelow(a_, startA_, b, startB_, motionAlong);
     if (face_) return;
-    face_ = faceBelow(b, startB_, a_, startA_, motion);
+    face_ = faceBelow(b, startB_, a_, startA_, motionAlong);
     if (face_) face_->isOfA = true;
   }
 
@@ -172,7 +175,8 @@ class PairSearch {
     }
     if (face_) {
       const Vec3 normal = (face_->isOfA ? startA_ : startB_).rotation * face_->normal;
-      const Vec3 corner = cornerAt(startA_, startB_);
+      const double radius = (face_->isOfA ? geometry_.colliders[pair_.b] : a_).radius;
+      const Vec3 corner = cornerAt(startA_, startB_) - radius * normal;
       const int upper = face_->isOfA ? bodyB_ : a_.body, lower = face_->isOfA ? a_.body : bodyB_;
       return normal.dot(pointVelocity(upper, corner, step_.startState) -
                         pointVelocity(lower, corner, step_.startState));
@@ -205,7 +209,8 @@ class PairSearch {
   double gap(double fraction) {
     if (face_) {
       const RigidTransform a = poseAt(step_, a_.body, fraction), b = poseAt(step_, bodyB_, fraction);
-      return heightOver(*face_, face_->isOfA ? a : b, cornerAt(a, b));
+      const double radius = (face_->isOfA ? geometry_.colliders[pair_.b] : a_).radius;
+      return heightOver(*face_, face_->isOfA ? a : b, cornerAt(a, b)) - radius;
     }
     if (held_) {
       interpolate(step_, fraction, scratch_.sample_);
@@ -272,7 +277,8 @@ double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& to
     const RigidTransform worldFromA = poseOf(state, a.body), worldFromB = poseOf(state, b.body);
     const bool isOfA = impact.face->isOfA;
     const Vec3 corner = isOfA ? worldFromB * b.points[impact.feature] : worldFromA * a.points[impact.feature];
-    return heightOver(*impact.face, isOfA ? worldFromA : worldFromB, corner) - impact.threshold;
+    return heightOver(*impact.face, isOfA ? worldFromA : worldFromB, corner) - (isOfA ? b : a).radius -
+           impact.threshold;
   }
   if (!impact.isOfOthers) return separation(geometry_, pair, impact.feature, state) - impact.threshold;
   const double farthest = geometry_.colliders[pair.a].boundingRadius;

@@ -46,8 +46,32 @@ void EquationsOfMotion::applyConstraints(const VectorX& state, VectorX& rate) {
     multipliers_ = contactSolver_.tieMultipliers();
   } else if (solver_.hasConstraints()) {
     solver_.factorize(state, frames_);
-    multipliers_ = solver_.constrainAccelerations(rate);
+    placeMultipliers(solver_.constrainAccelerations(rate));
   }
+}
+
+/// Rows of bodies at rest are left out of the solver and have no multiplier.
+void EquationsOfMotion::placeMultipliers(const VectorX& multipliers) {
+  const Constraints& constraints = mechanism_.constraints;
+  multipliers_.setZero(static_cast<Eigen::Index>(constraints.rods.size() + 3 * constraints.ballJoints.size() +
+                                                 5 * constraints.hinges.size()));
+  const auto rests = [this](int body) { return body != kFixed && resting_[static_cast<std::size_t>(body)]; };
+  Eigen::Index next = 0, row = 0;
+  const auto place = [&](const auto& ties, Eigen::Index rows) {
+    for (const auto& tie : ties) {
+      if (!rests(tie.anchorA.body) && !rests(tie.anchorB.body)) {
+        multipliers_.segment(row, rows) = multipliers.segment(next, rows);
+        next += rows;
+      }
+      row += rows;
+    }
+  };
+  place(constraints.rods, 1), place(constraints.ballJoints, 3), place(constraints.hinges, 5);
+}
+
+void EquationsOfMotion::setResting(std::size_t body, bool resting) {
+  resting_[body] = resting;
+  solver_.leaveOut(resting_);
 }
 
 void EquationsOfMotion::holdResting(const VectorX& state, VectorX& rate) const {

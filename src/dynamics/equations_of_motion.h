@@ -30,8 +30,9 @@ class EquationsOfMotion {
   /// State rate. Allocates only in its first call.
   void evaluate(const VectorX& state, VectorX& rate);
 
-  void setResting(std::size_t body, bool resting) { resting_[body] = resting; }
+  void setResting(std::size_t body, bool resting);
   bool isResting(std::size_t body) const { return resting_[body] != 0; }
+  const std::vector<char>& resting() const { return resting_; }
 
   /// Multipliers of the constraints' rows at the last evaluation, rods first: a rod pushes its ends apart with the
   /// force (N) multiplier x length.
@@ -56,6 +57,7 @@ class EquationsOfMotion {
   void applySprings(const VectorX& state, VectorX& rate) const;
   void applyPushes(const VectorX& state, VectorX& rate) const;
   void applyConstraints(const VectorX& state, VectorX& rate);
+  void placeMultipliers(const VectorX& multipliers);
   void holdResting(const VectorX& state, VectorX& rate) const;
   void addForce(int body, const Vec3& arm, const Vec3& force, VectorX& rate) const;
 

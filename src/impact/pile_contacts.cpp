@@ -13,7 +13,7 @@ constexpr double kSameNormal = 0.9;   // cosine, at least, for impulses to go on
 constexpr double kRounding = 1e-9;    // of a unit axis or a side
 constexpr double kSlowSliding = 0.1;  // m/s: slower, static friction holds; a step's gain by gravity is 0.16
 
-constexpr double kBallPart = 0.4;  // of their approach counts: of balls the point that will touch is known
+constexpr double kBallPart = 0.6;  // of their approach counts: of balls the point that will touch is known
 constexpr double kSpinPart = 0.5;  // of the speed of the farthest point: few touch with that one
 const MovingPose kStill{};
 

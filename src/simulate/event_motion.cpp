@@ -184,6 +184,7 @@ void EventMotion::tidyState() {
     isTouched = true;
   }
   if (solver_.hasConstraints()) {
+    solver_.leaveOut(island_.equations.resting());
     solver_.project(state);
     requireTiesKept();
     isTouched = true;

@@ -13,9 +13,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kSameTime = 1e-12;          // s, relative beyond 1 s
-constexpr double kEnergyRounding = 1e-9;     // of the energy that there is
-constexpr std::size_t kBodiesAThread = 400;  // with fewer, threads wait for each other longer than they work
+constexpr double kSameTime = 1e-12;           // s, relative beyond 1 s
+constexpr double kEnergyRounding = 1e-9;      // of the energy that there is
+constexpr std::size_t kBodiesAThread = 2000;  // with fewer, threads wait for each other longer than they work
 
 int threadsFor(std::size_t bodies) {
   const std::size_t useful = std::max<std::size_t>(1, bodies / kBodiesAThread);

@@ -274,6 +274,27 @@ std::string methodText(const ChosenMethod& method) {
   return fmt::format("{}, step {} s", method.name, method.timeStep);
 }
 
+/// What a model's body is for contact.
+std::string collisionName(const Body& body, const ModelCollision& model) {
+  if (body.collision == CollisionChoice::hull) return "its hull";
+  const bool asPrimitive = body.collision != CollisionChoice::mesh || !model.recognised.primitive;
+  return asPrimitive ? shapeName(model.recognised) : "convex";
+}
+
+/// "gear.3ds as mesh": the models that may touch something, each way once.
+std::string collisionText(const Scene& scene) {
+  std::vector<std::string> found;
+  for (const Body& body : scene.bodies) {
+    const auto* shape = std::get_if<ModelShape>(&body.shape);
+    if (!shape || body.collision == CollisionChoice::none) continue;
+    const auto model = static_cast<std::size_t>(shape->model);
+    const std::string text =
+        fmt::format("{} as {}", scene.models[model].name, collisionName(body, scene.modelCollisions[model]));
+    if (std::find(found.begin(), found.end(), text) == found.end()) found.push_back(text);
+  }
+  return found.empty() ? "" : fmt::format("\ncollision of models: {}", fmt::join(found, ", "));
+}
+
 }  // namespace
 
 Plan planOf(const Scene& scene) {
@@ -316,6 +337,7 @@ std::string describe(const Plan& plan, const Scene& scene) {
   std::size_t fixed = 0;
   for (const Body& body : scene.bodies) fixed += body.motion == Motion::fixed;
   if (fixed > 0) text += fmt::format(", {} fixed", fixed);
+  text += collisionText(scene);
   // Islands that are moved alike are told together.
   std::map<std::string, std::vector<const IslandPlan*>> alike;
   std::vector<std::string> order;

@@ -12,7 +12,6 @@ namespace cradle {
 namespace {
 
 constexpr double kSameTime = 1e-12;  // s, relative beyond 1 s
-constexpr double kTrialTime = 0.05;  // s: so often contacts that were too much for events are tried again
 
 }  // namespace
 
@@ -78,14 +77,16 @@ void Simulation::changeMotion() {
                       "every {:.3g} s as long as that lasts",
                       island_.scene.path, island_.time, fault, kContactTimeStep));
     island_.assembly.mechanism.contacts.clear();
-    nextTrial_ = island_.time + kTrialTime;
+    nextTrial_ = island_.time + trialTime_;
+    trialTime_ *= 2;
     motion_.emplace<SteppedMotion>(island_, ropes_, ChosenMethod{rk4, "RK4", kContactTimeStep});
     return;
   }
   const auto& steps = std::get<SteppedMotion>(motion_);
   if (!method_.isAdaptive() || steps.isAtRest()) return;
   if (!steps.isFree() && island_.time < nextTrial_) return;
-  nextTrial_ = island_.time + kTrialTime;
+  nextTrial_ = island_.time + trialTime_;
+  if (steps.isFree()) trialTime_ = kTrialTime;
   if (steps.isFree() || steps.mayServeEvents()) motion_.emplace<EventMotion>(island_, ropes_, method_);
 }
 

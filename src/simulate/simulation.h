@@ -9,6 +9,8 @@
 
 namespace cradle {
 
+constexpr double kTrialTime = 0.05;  // s: after that, contacts that were too much for events are tried again
+
 /// An island in motion, with a clock of its own. Time goes on in steps of the method.
 class Simulation {
  public:
@@ -43,8 +45,9 @@ class Simulation {
   ConstraintSolver solver_;
   std::variant<std::monostate, EventMotion, SteppedMotion> motion_;
   ChosenMethod method_;
-  bool isWarned_ = false;  // that the accuracy is not kept any more
-  double nextTrial_ = 0;   // s: when events may serve again
+  bool isWarned_ = false;          // that the accuracy is not kept any more
+  double nextTrial_ = 0;           // s: when events may serve again
+  double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not
   VectorX reported_;
 };
 

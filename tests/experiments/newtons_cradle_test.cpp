@@ -35,11 +35,12 @@ Trajectory swing(int lifted) {
     bodies.push_back(ballText(ball, ball < lifted));
     for (const double side : {0.2, -0.2}) rods.push_back(rodText(ball, side));
   }
-  return simulate(sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Cradle", "duration": 10,
+  return simulate(
+      sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Cradle", "duration": 10, "accuracy": 1e-10,
     "gravity": [0, -9.81, 0], "output": {{"framesPerSecond": 20}},
     "materials": {{"steel": {{"restitution": 1, "staticFriction": 0, "dynamicFriction": 0}}}},
     "bodies": [{}], "rods": [{}]}})",
-                                      fmt::join(bodies, ", "), fmt::join(rods, ", "))));
+                          fmt::join(bodies, ", "), fmt::join(rods, ", "))));
 }
 
 double angleOf(const Frame& frame, int ball) {

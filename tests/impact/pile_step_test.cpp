@@ -148,7 +148,7 @@ TEST(Slope, LetsACubeSlideAsFrictionAllows) {
   EXPECT_NEAR(slideOn(35), expected, 0.01 * expected);
 }
 
-// The speed at which the ball lands is that of the look before: at most 4e-3 m / 0.4 of approach earlier, at 4.4 m/s
+// The speed at which the ball lands is that of the look before: at most 3e-3 m / 0.6 of approach earlier, at 4.4 m/s
 // 0.5 % of the speed less, and 1 % of the height.
 TEST(Rebound, HasTheHeightOfItsRestitution) {
   DroppedBodies bodies;

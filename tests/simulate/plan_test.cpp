@@ -152,7 +152,7 @@ TEST(Evaluations, OfABodyAtRestGoOnOnlyWhileItIsPushed) {
         start);
   };
   const long soon = evaluationsOf(lyingBox(2, pushed(0.5))), late = evaluationsOf(lyingBox(20, pushed(10)));
-  EXPECT_GT(late, evaluationsOf(lyingBox(20)) + 100);
+  EXPECT_GT(late, evaluationsOf(lyingBox(20)) + 20);
   EXPECT_NEAR(static_cast<double>(late), static_cast<double>(soon), 0.05 * static_cast<double>(soon));
 }
 

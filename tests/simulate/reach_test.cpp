@@ -125,9 +125,7 @@ TEST(BodyOnASpring, IsWatchedForThePlaneThatItMayReachAlone) {
   };
   const Plan above = planFor(-0.99 * (swing + radius)), below = planFor(-1.01 * (swing + radius));
   EXPECT_EQ(above.islands.at(0).touching.size(), 2u);
-  EXPECT_FALSE(above.islands[0].method.isAdaptive());
   EXPECT_EQ(below.islands.at(0).touching.size(), 0u);
-  EXPECT_TRUE(below.islands[0].method.isAdaptive());
 }
 
 }  // namespace

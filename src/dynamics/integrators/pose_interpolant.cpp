@@ -111,6 +111,14 @@ MotionBounds relativeMotionBounds(const Step& step, int bodyA, int bodyB) {
   return {slopeBound(step, difference(bodyA, bodyB)), bendBound(step, difference(bodyA, bodyB))};
 }
 
+double motionBoundAcross(const Step& step, int bodyA, int bodyB, const Vec3& direction) {
+  const auto apart = difference(bodyA, bodyB);
+  return slopeBound(step, [&](const VectorX& vector) {
+    const Vec3 part = apart(vector);
+    return Vec3(part - part.dot(direction) * direction);
+  });
+}
+
 MotionBounds motionBounds(const Step& step, int body, double reach) {
   const MotionBounds shift = relativeMotionBounds(step, kFixed, body), turn = turnBounds(step, body);
   return {shift.speed + turn.speed * reach, shift.acceleration + turn.acceleration * reach};

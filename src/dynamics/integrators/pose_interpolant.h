@@ -22,6 +22,9 @@ MotionBounds motionBounds(const Step& step, int body, double reach);
 /// other.
 MotionBounds relativeMotionBounds(const Step& step, int bodyA, int bodyB);
 
+/// How far (m) B's centre of mass can go from A's over the step, across a unit direction.
+double motionBoundAcross(const Step& step, int bodyA, int bodyB, const Vec3& direction);
+
 /// Bounds on what a body's turning does to a point at 1 m from its centre of mass, with the step as the unit of time.
 MotionBounds turnBounds(const Step& step, int body);
 
