@@ -18,7 +18,6 @@ constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are 
 constexpr int kMostServed = 12;           // contacts
 constexpr int kManyEvents = 16;           // in a step: beyond, it is not cut any more
 constexpr int kMostEvents = 10000;        // within a step
-constexpr int kManyEvents = 16;           // in a step: beyond, it is not cut any more
 
 }  // namespace
 

@@ -17,11 +17,12 @@ std::string cube(int number, double mass, double height) {
 Trajectory runStack(double gap, double top, double duration) {
   std::string cubes;
   for (int i = 0; i < 10; ++i) cubes += ", " + cube(i, i == 9 ? top : 1, 0.5 + gap + i * (1 + gap));
-  return simulate(sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Stack", "duration": {}, "accuracy": 1e-3,
+  return simulate(
+      sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Stack", "duration": {}, "accuracy": 1e-3,
     "materials": {{"m": {{"restitution": 0, "staticFriction": 0.5, "dynamicFriction": 0.5}}}},
     "bodies": [{{"name": "ground", "motion": "static", "material": "m", "position": [0, -0.5, 0],
       "shape": {{"box": {{"size": [10, 1, 10]}}}}}}{}]}})",
-                                      duration, cubes)));
+                          duration, cubes)));
 }
 
 TEST(Stack, DroppedComesToRestAndStandsAlsoUnderAHeavyTop) {
@@ -56,9 +57,10 @@ TEST(Stack, ThatTouchesRestsAtOnce) {
 TEST(TrayOfBalls, IsPushedDiagonallyWithTheAccelerationOfTheClosedForm) {
   std::string balls;
   for (int i = 0; i < 25; ++i)
-    balls += fmt::format(R"(, {{"name": "ball{}", "shape": {{"sphere": {{"radius": 0.2}}}}, "mass": 1, "material": "ball",
+    balls +=
+        fmt::format(R"(, {{"name": "ball{}", "shape": {{"sphere": {{"radius": 0.2}}}}, "mass": 1, "material": "ball",
       "position": [{}, 0.3, {}]}})",
-                         i, 2 * (i % 5 - 2), 2 * (i / 5 - 2));
+                    i, 2 * (i % 5 - 2), 2 * (i / 5 - 2));
   const Trajectory run = simulate(sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Tray", "duration": 0.5,
     "accuracy": 1e-3, "gravity": [0, -9.81, 0],
     "materials": {{"tray": {{"restitution": 0, "staticFriction": 0.4, "dynamicFriction": 0.4}},
