@@ -1,4 +1,5 @@
-// ADMM (cone_iteration.h) finds which contacts are open, stick and slide; Newton's method on the equations of P. Alart
+// ADMM (cone_iteration.h), or an interior point method (cone_interior.h) where that is slow, finds which contacts are
+// open, stick and slide; Newton's method on the equations of P. Alart
 // and A. Curnier ("A mixed formulation for frictional contact problems prone to Newton like solution methods", 1991)
 // finishes to rounding from there. It is tried again and again: often it needs no more than a rough guess.
 

@@ -1,6 +1,6 @@
-// ADMM as in cone_iteration.h. With J = D J' M^-1/2, D the scale of each contact, (J J^T + s)^-1 b = (b - J (J^T J +
-// s)^-1 J^T b) / s: what is factorised has six rows a body, whatever the number of its contacts, and couples only
-// bodies that touch.
+// Newton's method (cone_newton.h), helped by ADMM (cone_iteration.h) and interior points (cone_interior.h). With J = D
+// J' M^-1/2, D the scale of each contact, (J J^T + s)^-1 b = (b - J (J^T J + s)^-1 J^T b) / s: what is factorised has
+// six rows a body, whatever the number of its contacts, and couples only bodies that touch.
 
 #include "impact/sparse_cones.h"
 
@@ -27,10 +27,28 @@ constexpr int kMostTrials = 4;          // to come near enough for Newton's meth
 constexpr int kInteriorTrial = 1;       // of them: by the interior point method, the others by ADMM
 constexpr int kIterations = 10;         // of ADMM before Newton's method is tried again
 constexpr double kInteriorPart = 1e-9;  // of the velocities: where the interior point method ends
-constexpr double kRegular = 1e-9;
-constexpr int kMostNewtonSteps = 6;
+constexpr double kRegular = 1e-9;       // scaled inverse mass: makes redundant contacts solvable
+constexpr int kMostNewtonSteps = 6;     // 1 or 2 from the step before, where nothing changes
 
 }  // namespace
+
+SparseCones::Row SparseCones::rowOf(const Contact& contact, const std::array<int, 2>& bodies,
+                                    const VectorX& state) const {
+  Row row{contactAxes(contact.normal), bodies, {Mat36::Zero(), Mat36::Zero()}, 1};
+  double inverseMass = 0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (bodies[side] < 0) continue;
+    const BodyRoot& body = bodies_[static_cast<std::size_t>(bodies[side])];
+    const Vec3 arm = contact.point - centerOfMass(state, body.index);
+    const double sign = side == 0 ? -1 : 1;
+    row.j[side].leftCols<3>() = sign * body.inverseMass * row.axes.transpose();
+    row.j[side].rightCols<3>() = -sign * row.axes.transpose() * skew(arm) * body.inverseInertia;
+    inverseMass += row.j[side].squaredNorm() / 3;
+  }
+  if (inverseMass > 0) row.scale = 1 / std::sqrt(inverseMass);
+  for (Mat36& j : row.j) j *= row.scale;
+  return row;
+}
 
 void SparseCones::set(const std::vector<Contact>& contacts, const std::vector<RigidBody>& bodies,
                       const VectorX& state) {
@@ -48,22 +66,7 @@ void SparseCones::set(const std::vector<Contact>& contacts, const std::vector<Ri
   };
   std::map<std::pair<int, int>, std::size_t> pairs;
   for (const Contact& contact : contacts) {
-    Row row;
-    row.j = {Mat36::Zero(), Mat36::Zero()};
-    row.axes = contactAxes(contact.normal);
-    row.body = {localOf(contact.bodyA), localOf(contact.bodyB)};
-    double inverseMass = 0;
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (row.body[side] < 0) continue;
-      const BodyRoot& body = bodies_[static_cast<std::size_t>(row.body[side])];
-      const Vec3 arm = contact.point - centerOfMass(state, body.index);
-      const double sign = side == 0 ? -1 : 1;
-      row.j[side].leftCols<3>() = sign * body.inverseMass * row.axes.transpose();
-      row.j[side].rightCols<3>() = -sign * row.axes.transpose() * skew(arm) * body.inverseInertia;
-      inverseMass += row.j[side].squaredNorm() / 3;
-    }
-    row.scale = inverseMass > 0 ? 1 / std::sqrt(inverseMass) : 1;
-    for (Mat36& j : row.j) j *= row.scale;
+    const Row row = rowOf(contact, {localOf(contact.bodyA), localOf(contact.bodyB)}, state);
     const std::pair<int, int> pair(std::max(row.body[0], row.body[1]), std::min(row.body[0], row.body[1]));
     std::size_t at = SIZE_MAX;
     if (pair.second >= 0) {

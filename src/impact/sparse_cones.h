@@ -38,8 +38,8 @@ class SparseCones {
   /// G, in 1/kg, dense.
   MatrixX inverseMass() const;
 
-  /// By ADMM and Newton's method from `start`, to `tolerance` (m/s), in at most so many iterations. Leaves in `start`
-  /// where it ended. The number of iterations that it took is added to `iterations`.
+  /// By Newton's method from `start`, to `tolerance` (m/s); if that does not lead there, from where ADMM or an interior
+  /// point method do. Leaves in `start` where it ended, and adds to `iterations` those of the last two.
   ConeSolution solve(const VectorX& free, const std::vector<double>& frictions, double tolerance, ConeStart& start,
                      long& iterations);
 
@@ -58,6 +58,7 @@ class SparseCones {
   };
   template <class Stiffness>
   void assemble(double shift, const Stiffness& stiffness);
+  Row rowOf(const Contact& contact, const std::array<int, 2>& bodies, const VectorX& state) const;
   void factorize(double shift);
   void stepByNewton(VectorX& z, VectorX& u);
   long approachFromInside(VectorX& impulses);

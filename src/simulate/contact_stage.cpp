@@ -95,12 +95,18 @@ void ContactStage::findWithinReach(const VectorX& before, const VectorX& state, 
 void ContactStage::resolveStep(double time, const VectorX& before, VectorX& state) {
   const double length = time - std::exchange(lastTime_, time);
   findWithinReach(before, state, length);
-  for (const Contact& contact : std::vector<Contact>(touching_)) {
-    if (contact.separation > touchTolerance_) continue;
+  // What rests is woken by what closes within the step, with all that it rests on.
+  bool woken = false;
+  for (const Contact& contact : touching_) {
+    const double closing = -contact.normal.dot(relativeVelocity(contact, before, state));
+    if (contact.separation - length * std::max(0.0, closing) > touchTolerance_) continue;
     for (const int body : {contact.bodyA, contact.bodyB})
-      for (const int other : resting_.wake(time, body))
+      for (const int other : resting_.wake(time, body)) {
         log_.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
+        woken = true;
+      }
   }
+  if (woken) findWithinReach(before, state, length);
   stepping_.resolve(touching_, before, length, state);
   std::vector<Contact> acting;
   for (const SteppedContact& stepped : stepping_.contacts()) {

@@ -1,0 +1,83 @@
+#include <gtest/gtest.h>
+
+#include "experiments/experiment.h"
+
+// Stacks and other groups of many contacts, moved by the contact step.
+
+namespace cradle {
+namespace {
+
+std::string cube(int number, double mass, double height) {
+  return fmt::format(R"({{"name": "cube{}", "shape": {{"box": {{"size": [1, 1, 1]}}}}, "mass": {}, "material": "m",
+      "position": [0, {:.17g}, 0]}})",
+                     number, mass, height);
+}
+
+/// Ten cubes of 1 m and 1 kg above each other on a box, `gap` (m) apart, the highest of mass `top` (kg).
+Trajectory runStack(double gap, double top, double duration) {
+  std::string cubes;
+  for (int i = 0; i < 10; ++i) cubes += ", " + cube(i, i == 9 ? top : 1, 0.5 + gap + i * (1 + gap));
+  return simulate(
+      sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Stack", "duration": {}, "accuracy": 1e-3,
+    "materials": {{"m": {{"restitution": 0, "staticFriction": 0.5, "dynamicFriction": 0.5}}}},
+    "bodies": [{{"name": "ground", "motion": "static", "material": "m", "position": [0, -0.5, 0],
+      "shape": {{"box": {{"size": [10, 1, 10]}}}}}}{}]}})",
+                          duration, cubes)));
+}
+
+TEST(Stack, DroppedComesToRestAndStandsAlsoUnderAHeavyTop) {
+  for (const double top : {1.0, 1000.0}) {
+    const Trajectory run = runStack(0.01, top, 0.4);
+    const Frame& end = run.frames.back();
+    EXPECT_EQ(end.energy.kinetic, 0) << top;
+    for (std::size_t i = 0; i < 10; ++i) {
+      // Overlaps beyond 1e-9 of a cube's size (0.87 m) are taken out at each of ten contacts; sliding on impact is less
+      // than what edges that meet off their middle give.
+      EXPECT_NEAR(end.states[i].position.y(), 0.5 + static_cast<double>(i), 1e-8) << top << " " << i;
+      EXPECT_LT(std::hypot(end.states[i].position.x(), end.states[i].position.z()), 1e-4) << top << " " << i;
+    }
+    double before = INFINITY;
+    for (const Frame& frame : run.frames) {
+      const double energy = frame.energy.kinetic + frame.energy.potential;
+      EXPECT_LT(energy, before + 1e-12 * top * 100);
+      before = energy;
+    }
+  }
+}
+
+TEST(Stack, ThatTouchesRestsAtOnce) {
+  const Trajectory run = runStack(0, 1000, 0.1);
+  EXPECT_EQ(run.cost.evaluations, 1);
+  EXPECT_EQ(run.frames.back().states[9].position, Vec3(0, 9.5, 0));
+}
+
+// A box of 10 kg on a floor, pushed diagonally, under 25 balls of 1 kg that roll on it: a = (F - mu (M + n m) g) / (M +
+// 2 n m / 7), the balls follow with 2/7 of it. Forces are constant, so that velocities are exact but for the solver's
+// 1e-7 of the velocities a step.
+TEST(TrayOfBalls, IsPushedDiagonallyWithTheAccelerationOfTheClosedForm) {
+  std::string balls;
+  for (int i = 0; i < 25; ++i)
+    balls +=
+        fmt::format(R"(, {{"name": "ball{}", "shape": {{"sphere": {{"radius": 0.2}}}}, "mass": 1, "material": "ball",
+      "position": [{}, 0.3, {}]}})",
+                    i, 2 * (i % 5 - 2), 2 * (i / 5 - 2));
+  const Trajectory run = simulate(sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Tray", "duration": 0.5,
+    "accuracy": 1e-3, "gravity": [0, -9.81, 0],
+    "materials": {{"tray": {{"restitution": 0, "staticFriction": 0.4, "dynamicFriction": 0.4}},
+                   "ball": {{"restitution": 0, "staticFriction": 0.8, "dynamicFriction": 0.8}}}},
+    "pairs": [{{"materials": ["tray", "ball"], "restitution": 0, "staticFriction": 0.8, "dynamicFriction": 0.8}}],
+    "pushes": [{{"body": "tray", "point": [0, 0, 0], "force": [106.06601717798212, 0, 106.06601717798212], "start": 0,
+                 "duration": 1}}],
+    "bodies": [{{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "tray"}},
+      {{"name": "tray", "shape": {{"box": {{"size": [20, 0.1, 20]}}}}, "mass": 10, "material": "tray",
+        "position": [0, 0.05, 0]}}{}]}})",
+                                                      balls)));
+  const Frame& end = run.frames.back();
+  EXPECT_NEAR(end.states[0].linearVelocity.norm(), 0.7385 * 0.5, 1e-7);
+  EXPECT_NEAR(end.states[0].linearVelocity.x(), end.states[0].linearVelocity.z(), 1e-7);
+  for (std::size_t ball = 1; ball <= 25; ++ball)
+    EXPECT_NEAR(end.states[ball].linearVelocity.norm(), 0.211 * 0.5, 1e-7) << ball;
+}
+
+}  // namespace
+}  // namespace cradle
