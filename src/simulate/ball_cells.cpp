@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace cradle {
 namespace {
 
@@ -31,7 +33,7 @@ BallCells::BallCells(const std::vector<Vec3>& centers, double largestRadius, std
     origin_ = bounds.min();
     const double smallest = 2 * largestRadius * (1 + kMargin);
     const Vec3 extent = bounds.sizes().cwiseMax(smallest);
-    const double spacing = std::cbrt(extent.prod() / static_cast<double>(centers.size()));
+    const double spacing = exp(log(extent.prod() / static_cast<double>(centers.size())) / 3);
     size_ = std::max(smallest, spacing);
     for (std::size_t axis = 0; axis < 3; ++axis)
       counts_[axis] = powerOfTwo(extent[static_cast<Eigen::Index>(axis)] / size_);

@@ -107,9 +107,9 @@ class Scenes(InTemporaryFolder):
 
     def test_bodies_that_overlap_at_the_start_are_refused_with_depth_and_leave_nothing(self):
         ball = {"shape": {"sphere": {"radius": 0.1}}, "mass": 1}
-        ground = {"name": "ground", "shape": {"plane": {}}, "motion": "static", "position": [0, -0.05, 0]}
-        path = self.write("s.json", scene(bodies=[{"name": "a", **ball}, {"name": "b", "position": [0.19, 0, 0], **ball}, ground]))
-        words = ["s.json:", "/bodies/1: ", '"a" and "b" overlap by 10 mm', '"a" is 50 mm deep in the plane "ground"']
+        ground = {"name": "ground", "shape": {"plane": {}}, "motion": "static", "position": [0, -0.03, 0]}
+        path = self.write("s.json", scene(bodies=[{"name": "a", **ball}, {"name": "b", "position": [0.13, 0, 0], **ball}, ground]))
+        words = ["s.json:", "/bodies/1: ", '"a" and "b" overlap by 70 mm', '"a" is 70 mm deep in the plane "ground"']
         self.refuses(3, words, "simulate", path, "-o", self.path("x.sqlite"))
         self.refuses(3, words, "check", path)
 

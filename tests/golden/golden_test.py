@@ -37,6 +37,17 @@ FRAMES = {  # scene: frames that are drawn; states are kept for these too
     "lagrange_top": (0, 150, 260),
     "cart": (0, 120, 260),
     "rope_slack_taut": (0, 60, 180),
+    "newtons_cradles": (0, 30, 330),
+    "billiard_break": (0, 30, 200),
+    "backspin_ball": (0, 60, 150),
+    "top_on_ground": (0, 150, 350),
+    "hard_sphere_gas": (0, 60, 200),
+    "heavy_top_stack": (0, 60, 170),
+    "dominoes": (0, 80, 200),
+    "tray_of_balls": (0, 120, 230),
+    "gears_on_platform": (0, 30, 70, 110),
+    "ball_tray": (0, 60, 290),
+    "box_tray": (0, 60, 290),
 }
 TOLERANCE = 1e-9
 
