@@ -160,7 +160,7 @@ TEST(MeshGap, OneSolidInsideAnotherIsNegative) {
   EXPECT_LT(gapOf(box, small, pose).separation, 0);
   EXPECT_LT(gapOf(small, box, pose).separation, 0);
   EXPECT_LT(gapOf(box, small, pose, 1e-3).separation, 0);
-  EXPECT_NEAR(gapOf(box, twoParts, {Quat::Identity(), Vec3(-0.4, 0, 0)}).separation, -0.05, 0.2);
+  EXPECT_LT(gapOf(box, twoParts, {Quat::Identity(), Vec3(-0.4, 0, 0)}).separation, 0);
   EXPECT_LT(gapOf(box, twoParts, {Quat::Identity(), Vec3(-0.3, 0, 0)}).separation, 0);
   EXPECT_LT(gapOf(twoParts, box, {Quat::Identity(), Vec3(0.3, 0, 0)}).separation, 0);
 }
