@@ -75,7 +75,6 @@ class InteriorPoint {
   Mat3 correction(std::size_t pair) const;
   double step(double target, bool correct, const std::vector<Mat3>& stiffnesses);
 
-  const ScaledCones& cones_;
   const ConeOperator& op_;
   std::vector<Pair> pairs_;
   VectorX z_, velocities_, residual_, side_, change_;
@@ -83,7 +82,7 @@ class InteriorPoint {
 };
 
 InteriorPoint::InteriorPoint(const ScaledCones& cones, const ConeOperator& op, const VectorX& impulses)
-    : cones_(cones), op_(op), z_(impulses.size()), side_(impulses.size()) {
+    : op_(op), z_(impulses.size()), side_(impulses.size()) {
   unit_ = std::max(cones.free.cwiseAbs().maxCoeff(), 1e-300);
   pairs_.resize(cones.frictions.size());
   for (std::size_t i = 0; i < pairs_.size(); ++i) {

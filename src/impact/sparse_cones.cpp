@@ -84,7 +84,7 @@ void SparseCones::set(const std::vector<Contact>& contacts, const std::vector<Ri
 }
 
 VectorX SparseCones::velocitiesIn(const VectorX& velocities) const {
-  VectorX all = VectorX::Zero(3 * contacts_.size());
+  VectorX all = VectorX::Zero(3 * static_cast<Index>(contacts_.size()));
   for (std::size_t i = 0; i < contacts_.size(); ++i)
     for (std::size_t side = 0; side < 2; ++side) {
       const Row& row = contacts_[i];
@@ -113,7 +113,8 @@ void SparseCones::apply(const VectorX& impulses, VectorX& state) const {
 }
 
 MatrixX SparseCones::inverseMass() const {
-  MatrixX g = MatrixX::Zero(3 * contacts_.size(), 3 * contacts_.size());
+  const Index size = 3 * static_cast<Index>(contacts_.size());
+  MatrixX g = MatrixX::Zero(size, size);
   for (std::size_t i = 0; i < contacts_.size(); ++i)
     for (std::size_t k = 0; k <= i; ++k) {
       Mat3 block = Mat3::Zero();

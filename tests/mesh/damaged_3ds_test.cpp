@@ -9,12 +9,10 @@
 #include "mesh/solid.h"
 #include "test_files.h"
 
-#ifdef __SANITIZE_ADDRESS__
-// The importer leaks when it gives up.
+// The importer leaks when it gives up: the leak sanitizer asks this function.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libassimp";
 }
-#endif
 
 namespace cradle {
 namespace {

@@ -20,7 +20,6 @@ std::string refusalOf(const Scene& scene) {
 Scene withBodies(const std::string& bodies, const std::string& more = "") {
   return sceneOf(R"({"schema": "cradle-scene/1", "name": "t", "duration": 1, "bodies": [)" + bodies + "]" + more + "}");
 }
-const char* const kBall = R"({"name": "a", "shape": {"sphere": {"radius": 0.1}}})";
 
 Assembly assemble(const Scene& scene) {
   return cradle::assemble(scene, wholeScene(scene));

@@ -1,23 +1,8 @@
-// Counts calls of malloc in this program: all of Eigen's and the standard library's allocations go through it. With
-// sanitizers, which bring their own malloc, there is nothing to count.
-#ifndef __SANITIZE_ADDRESS__
-
 #include <gtest/gtest.h>
 
-#include <atomic>
-
+#include "allocation/allocations.h"
 #include "experiments/experiment.h"
 #include "simulate/simulation.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-extern "C" void* __libc_malloc(std::size_t size);
-extern "C" void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
 
 namespace cradle {
 namespace {
@@ -42,14 +27,12 @@ TEST(Simulation, AllocatesNothingInASmoothStep) {
     ASSERT_EQ(plan.islands.size(), 1u);
     Simulation simulation(scene, assemble(scene, plan.islands[0]), plan.islands[0].method);
     simulation.stateAt(0.1);  // the first steps make the memory that is used ever after
-    const long before = allocations, evaluations = simulation.evaluations();
+    const long before = allocations(), evaluations = simulation.evaluations();
     simulation.stateAt(1);
-    EXPECT_EQ(allocations, before) << method;
+    EXPECT_EQ(allocations(), before) << method;
     EXPECT_GT(simulation.evaluations(), evaluations + 100);
   }
 }
 
 }  // namespace
 }  // namespace cradle
-
-#endif
