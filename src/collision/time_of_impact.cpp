@@ -143,11 +143,11 @@ class PairSearch {
 
   bool hasOneContact() const { return pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall(); }
 
-  /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not has the
-  /// dead band.
+  /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not, or by
+  /// no more than the dead band, has that.
   void searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
     const double lowest = std::min(0.0, start), speed = leavingSpeed(touching.tolerance) * step_.timeStep;
-    if (!(speed > 0)) return searchFrom(0, start, lowest - touching.deadBand, best);
+    if (!(speed > touching.deadBand)) return searchFrom(0, start, lowest - touching.deadBand, best);
     const bool hasOnePoint = std::isfinite(bounds_.acceleration);
     if (hasOnePoint && speed >= 0.5 * pull_) return;
     const double from = std::min(speed / pull_, hasOnePoint ? 1 : kFirstLook);

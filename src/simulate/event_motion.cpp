@@ -161,7 +161,7 @@ void EventMotion::stopAtImpact(const ImpactTime& impact) {
   const double length = impact.fraction * step.timeStep;
   keepStartRate(step);
   method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
-  prepareInterpolant(island_.rightHandSide, step);
+  evaluateEndRate(island_.rightHandSide, step);
   const double left = gap(step.state), before = kSlopePart * length;
   step.work = step.state - before * step.endRate;
   const double correction = left * before / (gap(step.work) - left);
