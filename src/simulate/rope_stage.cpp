@@ -26,8 +26,8 @@ Vec3 positionAt(const Step& step, const Attachment& attachment, double fraction)
   return poseAt(step, attachment.body, fraction) * attachment.point;
 }
 
-double motionBound(const Step& step, const Attachment& attachment) {
-  return cradle::motionBound(step, attachment.body, attachment.point.norm());
+MotionBounds motionBounds(const Step& step, const Attachment& attachment) {
+  return cradle::motionBounds(step, attachment.body, attachment.point.norm());
 }
 
 /// Where in the step a rope is slack by more than `least` (m): at its start, or, for one that has just been let go, as
@@ -45,8 +45,7 @@ double firstSlack(const Slack& slack, double least, double begin) {
 double firstLook(const RopeLimit& rope, const Step& step) {
   const double speed = -motionOf(rope, step.startState).lengthening * step.timeStep;
   if (!(speed > 0)) return kFirstLook;
-  const MotionBounds a = motionBounds(step, rope.anchorA.body, rope.anchorA.point.norm());
-  const MotionBounds b = motionBounds(step, rope.anchorB.body, rope.anchorB.point.norm());
+  const MotionBounds a = motionBounds(step, rope.anchorA), b = motionBounds(step, rope.anchorB);
   // The distance d of two points: d'' <= relative acceleration + (speed across)^2 / d.
   const double across = a.speed + b.speed;
   return std::min(kFirstLook, speed / (a.acceleration + b.acceleration + across * across / rope.maxLength));
@@ -77,10 +76,12 @@ std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
       return rope.maxLength -
              (positionAt(step, rope.anchorA, fraction) - positionAt(step, rope.anchorB, fraction)).norm();
     };
-    const double speed = motionBound(step, rope.anchorA) + motionBound(step, rope.anchorB);
+    // Of two points at distance d, -d'' is at most their relative acceleration.
+    const MotionBounds a = motionBounds(step, rope.anchorA), b = motionBounds(step, rope.anchorB);
+    const GapBounds bounds{a.speed + b.speed, a.acceleration + b.acceleration};
     const double begin = firstSlack(slack, kTautPart * rope.maxLength, firstLook(rope, step)), start = slack(begin);
-    if (begin >= end || start > speed) continue;
-    if (const auto fraction = firstCrossing(slack, GapBounds{speed}, begin, start, end, slack(end)))
+    if (begin >= end || start > bounds.speed) continue;
+    if (const auto fraction = firstCrossing(slack, bounds, {begin, start, end, slack(end)}))
       first = RopeChange{*fraction, i};
   }
   if (first && isTaut(first->rope)) startTension_ = tension(first->rope, step.startState);
