@@ -14,6 +14,7 @@ namespace {
 // Of the smaller radius: edges of meshes may graze each other so deep unseen. What does is apart at two looks, and at
 // the rates of a body in free motion by far less.
 constexpr double kGrazePart = 1e-4;
+constexpr int kMostLooks = 1000;           // for directions, at a pair whose edges stay within a hair of each other
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
 Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
@@ -102,7 +103,15 @@ class PairSearch {
     if (hasMesh(a_, b))
       lookBlindly();
     else if (radius == 0)
-      apart_.emplace(step_, a_, b, turnA.acceleration * pointReach(a_) + turnB.acceleration * pointReach(b));
+      apart_.emplace(step_, a_, b,
+                     DirectionBends{turnA.acceleration * pointReach(a_) + turnB.acceleration * pointReach(b),
+                                    pull_ + bendInFrame(turnA, b), pull_ + bendInFrame(turnB, a_)});
+  }
+
+  /// What the turning of a frame adds to the bend of the other body's points along a direction in it.
+  double bendInFrame(const MotionBounds& turn, const Collider& other) const {
+    const double distance = (startA_.translation - startB_.translation).norm() + other.boundingRadius + bounds_.speed;
+    return 2 * turn.speed * bounds_.speed + turn.acceleration * distance;
   }
 
   /// With a bound on the gap's speed alone.
@@ -131,9 +140,7 @@ class PairSearch {
   /// Corners over a face that may turn: h'' of their height h has parts from the normal's turning.
   void searchCorners(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
     const Collider& upper = face_->isOfA ? geometry_.colliders[pair_.b] : a_;
-    const MotionBounds& turn = scratch_.turnOf(step_, face_->isOfA ? a_.body : bodyB_);
-    const double distance = (startA_.translation - startB_.translation).norm() + upper.boundingRadius + bounds_.speed;
-    pull_ += 2 * turn.speed * bounds_.speed + turn.acceleration * distance;
+    pull_ += bendInFrame(scratch_.turnOf(step_, face_->isOfA ? a_.body : bodyB_), upper);
     bounds_.acceleration = pull_;
     apart_.reset();
     for (std::size_t corner = 0; corner < upper.points.size(); ++corner) {
@@ -185,7 +192,10 @@ class PairSearch {
     const double end = best ? best->fraction : 1;
     if (from >= end) return;
     const auto above = [&](double fraction) { return gap(fraction) - threshold; };
-    const auto areApart = [&](const Bracket& ends) { return apart_ && apart_->during(ends, threshold, bounds_); };
+    const auto areApart = [&](const Bracket& ends) {
+      if (apart_ && apart_->looks() > kMostLooks) lookBlindly();
+      return apart_ && apart_->during(ends, threshold, bounds_);
+    };
     if (const auto fraction = firstCrossing(above, bounds_, areApart, {from, gapFrom - threshold, end, above(end)}))
       best = ImpactTime{*fraction, pairIndex_, feature_, threshold, held_ != nullptr, face_};
   }

@@ -69,7 +69,11 @@ void EventMotion::advance(double frame) {
 
   // How far do bodies move freely?
   takeStep(stepEnd);
-  const Event event = stopAtFirstEvent();
+  Event event = stopAtFirstEvent();
+  while (event.any() && !isStillAccurate()) {
+    takeStep(stepEnd);
+    event = stopAtFirstEvent();
+  }
   time = step.time + step.timeStep;
   if (!event.any() && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
 
@@ -104,6 +108,19 @@ void EventMotion::takeStep(double stepEnd) {
   }
   shortSteps_ = stepSize_.timeStep < kShortTimeStep * island_.scene.duration ? shortSteps_ + 1 : 0;
   if (shortSteps_ > kMostShortSteps) guard_.failAtShortSteps(island_.state, island_.time, step.timeStep);
+}
+
+/// Whether a step that was cut short is accurate too: where forces turn quickly, the long one may have been by luck. If
+/// not, shorter ones are tried.
+bool EventMotion::isStillAccurate() {
+  Step& step = island_.step;
+  const double error = errorNorm(step, tolerance_);
+  if (error <= 1) return true;
+  acceptStep(error, step.timeStep, stepSize_);
+  keepStartRate(step);
+  if (stepSize_.timeStep < kShortestTimeStep * island_.scene.duration)
+    guard_.failAtShortestStep(island_.state, island_.time);
+  return false;
 }
 
 /// Where bodies meet often, no step goes far beyond the next meeting.
