@@ -112,7 +112,7 @@ double RopeStage::tension(std::size_t rope, const VectorX& state) {
   return -equations_.multipliers()[tautRod_[rope]] * assembly_.ropes[rope].maxLength;
 }
 
-void RopeStage::resolve(double time, VectorX& state) {
+bool RopeStage::resolve(double time, VectorX& state) {
   // Ropes that would have to push let go; impacts may have shortened others.
   bool released = false;
   for (std::size_t i = 0; i < tautRod_.size(); ++i) {
@@ -120,7 +120,7 @@ void RopeStage::resolve(double time, VectorX& state) {
     release(time, i, state);
     released = true;
   }
-  if (released) return;
+  if (released) return true;
 
   for (std::size_t i = 0; i < tautRod_.size(); ++i)
     if (!isTaut(i) && motionOf(assembly_.ropes[i], state).slackLength > kSlackPart * assembly_.ropes[i].maxLength)
@@ -128,9 +128,10 @@ void RopeStage::resolve(double time, VectorX& state) {
   // A pull may stretch another rope that is at its length, or load it.
   for (int round = 0; round < kMostRounds; ++round) {
     const std::vector<Stretch> stretches = findStretches(state);
-    if (stretches.empty()) return;
+    if (stretches.empty()) return round > 0;
     pull(time, stretches, state);
   }
+  return true;
 }
 
 /// Ropes at their length that still lengthen. A rebound that would end within about two steps is not resolved: the rope

@@ -31,8 +31,9 @@ class RopeStage {
   /// step's start.
   double margin(const RopeChange& change, const VectorX& state);
 
-  /// What happens at the end of a step: impulses in ropes that are at their length, new rods, released ropes.
-  void resolve(double time, VectorX& state);
+  /// What happens at the end of a step: impulses in ropes that are at their length, new rods, released ropes. True if
+  /// anything does.
+  bool resolve(double time, VectorX& state);
 
   bool hasRopes() const { return !assembly_.ropes.empty(); }
 
