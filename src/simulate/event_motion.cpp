@@ -46,7 +46,7 @@ EventMotion::EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMet
     : island_(island),
       ropes_(ropes),
       method_(method),
-      contacts_(island, island.scene.accuracy),
+      contacts_(island, ropes, island.scene.accuracy),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       tolerance_(toleranceOf(method, island.state, island.scene.duration)),
       windowStart_(island.time) {
@@ -224,7 +224,7 @@ void EventMotion::requireTiesKept() const {
 
 /// What acts from now on.
 void EventMotion::changeForces(const Event& event) {
-  if (event.impact || event.contact)
+  if (event.impact || event.contact || event.rope)  // a rope may go taut as bodies meet
     contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
   else
     contacts_.lasting().followSliding();

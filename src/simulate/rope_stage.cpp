@@ -143,7 +143,7 @@ std::vector<RopeStage::Stretch> RopeStage::findStretches(const VectorX& state) {
     const RopeLimit& rope = assembly_.ropes[i];
     if (isTaut(i)) continue;
     const RopeMotion motion = motionOf(rope, state);
-    if (motion.slackLength > kTautPart * rope.maxLength || motion.lengthening < 0) continue;
+    if (motion.slackLength > kTautPart * rope.maxLength || motion.lengthening < -kRestSpeedFloor) continue;
     if (!std::exchange(isEvaluated, true)) equations_.evaluate(state, rate_);
     const double acceleration = lengtheningAcceleration(rope, state, rate_), pulling = std::max(0.0, acceleration);
     const bool isLoaded = acceleration > kLoadedPart * assembly_.mechanism.gravity.norm();
@@ -183,6 +183,41 @@ void RopeStage::pull(double time, const std::vector<Stretch>& stretches, VectorX
     solver_.constrainVelocities(state);
   }
   dissipatedEnergy(state) += before - kineticEnergy(assembly_.mechanism.bodies, state);
+}
+
+// An impulse along the line of both ends has the same effect wherever on that line it acts: at end A for both bodies.
+std::vector<ImpactContact> RopeStage::beginImpact(const VectorX& state) {
+  std::vector<ImpactContact> impacts;
+  members_.clear();
+  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
+    const RopeLimit& rope = assembly_.ropes[i];
+    const RopeMotion motion = motionOf(rope, state);
+    if (!isTaut(i) && motion.slackLength > kTautPart * rope.maxLength) continue;
+    members_.push_back({i, isTaut(i)});
+    tautRod_[i] = -1;
+    Contact contact;
+    contact.bodyA = rope.anchorA.body, contact.bodyB = rope.anchorB.body;
+    contact.point = motion.a.position, contact.normal = motion.direction;
+    impacts.push_back({contact, {rope.restitution, 0, 0}, 0, Vec3::Zero()});
+  }
+  rebuildRods();
+  return impacts;
+}
+
+void RopeStage::endImpact(double time, const std::vector<ImpactContact>& impacts, const VectorX& state) {
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    const auto [rope, wasTaut] = members_[k];
+    const RopeMotion motion = motionOf(assembly_.ropes[rope], state);
+    const double speed = motion.a.velocity.norm() + motion.b.velocity.norm();
+    const bool shortens = motion.lengthening < -(kRestSpeedFloor + kSpeedRounding * speed);
+    const double impulse = impacts[k].impulse.norm();
+    if (wasTaut && shortens) loosen(time, rope, state);
+    if (wasTaut && !shortens) tautRod_[rope] = 0;
+    if (wasTaut || impulse == 0) continue;
+    record(time, EventKind::taut, rope, impulse, state);
+    isStretched_[rope] = !shortens;
+  }
+  rebuildRods();
 }
 
 void RopeStage::release(double time, std::size_t rope, const VectorX& state) {
