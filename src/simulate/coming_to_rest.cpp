@@ -42,7 +42,8 @@ Islands EventContacts::findRestGroups() const {
   for (const Contact& contact : touching_) {
     const double size = island_.assembly.radii[static_cast<std::size_t>(movingBodyOf(contact))];
     const double still = kSpeedRounding + stillPart_ * std::sqrt(mechanism.gravity.norm() * size);
-    if (contact.normal.dot(relativeVelocity(contact, island_.state)) <= still) groups.join(contact.bodyA, contact.bodyB);
+    if (contact.normal.dot(relativeVelocity(contact, island_.state)) <= still)
+      groups.join(contact.bodyA, contact.bodyB);
   }
   for (const SpringForce& spring : mechanism.springs) groups.join(spring.anchorA.body, spring.anchorB.body);
   forEachTie(mechanism.constraints, [&](int bodyA, int bodyB) { groups.join(bodyA, bodyB); });
