@@ -1,5 +1,5 @@
-// benchmark_redraw TRAJECTORY [WIDTH HEIGHT]: CPU time a picture, drawn as changes of the one before and drawn whole, in
-// turns; medians over frames of the whole film, and their ratio.
+// benchmark_redraw TRAJECTORY [WIDTH HEIGHT]: CPU time a picture, drawn as changes of the one before and drawn whole,
+// in turns; medians over frames of the whole film, and their ratio.
 
 #include <fmt/format.h>
 
@@ -32,7 +32,8 @@ void run(const std::string& trajectory, int width, int height) {
   });
   Framing framing(source.scene(), width, height, pushes);
   for (long frame = 0; frame < reader.frameCount(); ++frame) framing.add(reader.readFrame(frame));
-  Renderer changing(source.scene(), framing.view(), width, height), whole(source.scene(), framing.view(), width, height);
+  Renderer changing(source.scene(), framing.view(), width, height),
+      whole(source.scene(), framing.view(), width, height);
   whole.render(reader.readFrame(0));  // compiles shaders
   std::vector<double> changedTimes, wholeTimes, shares;
   for (long run = 0; run < kRuns; ++run) {

@@ -16,7 +16,8 @@ constexpr double kWholeFrom = 0.6;    // of the picture: from there on, drawing 
 constexpr double kShadowTexels = 10;  // reach of a shadow's soft edge (3.5 sqrt 2) and of the look-up beside it (4.5)
 constexpr int kRodPieces = 6;
 constexpr double kBlurredTexels = 24;  // as in environment.glsl
-constexpr double kLeastTurn = 0.5;  // of a ball's normal from pixel to pixel: a mesh turns by facets
+constexpr double kLeastTurn = 0.5;     // of a ball's normal from pixel to pixel: a mesh turns by facets
+constexpr double kEdgePixels = 32;
 constexpr double kContactTexels = 2;  // of the contact map, which is interpolated
 
 /// Alike for OpenGL, which computes in single precision; balls near them apart.
@@ -41,8 +42,13 @@ bool isSame(const ContactItem& a, const ContactItem& b, const Stage& stage) {
   return instanceOf(a, *first, stage) == instanceOf(b, *second, stage);
 }
 
-/// For how far a box must be moved along `direction`, from the least to the most and not backwards, to meet another box;
-/// none if the first is greater.
+/// Size of a pixel at distance 1, in the middle of the picture.
+double pixelAngle(const Stage& stage) {
+  return 2 * std::tan(stage.camera.verticalFieldOfView / 2) / stage.height;
+}
+
+/// For how far a box must be moved along `direction`, from the least to the most and not backwards, to meet another
+/// box; none if the first is greater.
 std::pair<double, double> timesOfOverlap(const Bounds& box, const Vec3& direction, const Bounds& other) {
   double first = 0, last = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -71,7 +77,8 @@ void appendCaster(const DrawnHull& hull, std::vector<DrawnHull>& casters) {
 /// Collects the area; once it is nearly everything, it is everything.
 class ChangeFinder {
  public:
-  ChangeFinder(const DrawList& before, const DrawList& now, const Stage& stage, const std::vector<MeshBounds>& meshBounds)
+  ChangeFinder(const DrawList& before, const DrawList& now, const Stage& stage,
+               const std::vector<MeshBounds>& meshBounds)
       : before_(before), now_(now), stage_(stage), meshBounds_(meshBounds), area_{{stage.width, stage.height}} {}
 
   ChangedArea find();
@@ -145,8 +152,13 @@ void ChangeFinder::compareItems(const std::vector<Item>& before, const std::vect
   if (area_.picture.coverage() > kWholeFrom) isWhole_ = true;
 }
 
+/// At the edge of a triangle seen edge-on, the middle of a pixel may lie far beyond it in depth: shading takes place
+/// there.
 void ChangeFinder::addReceiver(const DrawnHull& hull) {
-  receivers_.push_back({spansOf(hull), hull.bounds()});
+  DrawnHull wide = hull;
+  const double distance = (hull.middle() - stage_.camera.position).norm();
+  wide.radius += kEdgePixels * distance * pixelAngle(stage_);
+  receivers_.push_back({spansOf(hull), wide.bounds()});
 }
 
 template <typename Item>
@@ -161,9 +173,9 @@ void ChangeFinder::addReceivers(const Item& item) {
   }
 }
 
-/// Balls whose images or shade an item shows where they are near. A ball that is not near multiplies light by 1, so that
-/// only the order of those that stay matters: where their number changes, all of them count. The item's receivers stand
-/// from `first` on.
+/// Balls whose images or shade an item shows where they are near. A ball that is not near multiplies light by 1, so
+/// that only the order of those that stay matters: where their number changes, all of them count. The item's receivers
+/// stand from `first` on.
 template <typename Item>
 void ChangeFinder::compareNearBalls(const Item& before, const Item& now, std::size_t first) {
   const auto ballOf = [](const DrawList& list, const Item& item, int i) -> const BallItem& {
@@ -183,8 +195,7 @@ void ChangeFinder::addAround(const BallItem& ball, std::size_t first) {
   around.add(ball.center);
   around.radius = kBallReach * ball.radius;
   for (std::size_t i = first; i < receivers_.size(); ++i)
-    if (receivers_[i].bounds.exteriorDistance(ball.center) < around.radius)
-      addCommon(receivers_[i].spans, around);
+    if (receivers_[i].bounds.exteriorDistance(ball.center) < around.radius) addCommon(receivers_[i].spans, around);
 }
 
 void ChangeFinder::compareContacts() {
@@ -268,8 +279,7 @@ void ChangeFinder::addMirrors(const Surface& surface, const DrawnHull& ball) {
   if (!mirrorsShadows(surface)) return;
   const Vec3 center = ball.middle();
   const double radius = ball.reach();
-  const double pixel = 2 * std::tan(stage_.camera.verticalFieldOfView / 2) / stage_.height *
-                       std::max((center - stage_.camera.position).norm() - radius, 0.0);
+  const double pixel = pixelAngle(stage_) * std::max((center - stage_.camera.position).norm() - radius, 0.0);
   const double spread = surface.roughness * surface.roughness + kLeastTurn * 2 * pixel / radius;
   const double reach = kBlurredTexels * stage_.shadow.texel / spread + radius;
   for (const auto& [middle, size] : groundPatches_)

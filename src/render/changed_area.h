@@ -13,7 +13,8 @@ struct ChangedArea {
 };
 
 /// `meshBounds` are those of Appearance::meshes. Contains all that differs in looks, and what
-/// its shadows, its mirror images and its darkening of what is near may touch, before and now. O(changed items x items).
+/// its shadows, its mirror images and its darkening of what is near may touch, before and now. O(changed items x
+/// items).
 ChangedArea changedArea(const DrawList& before, const DrawList& now, const Stage& stage,
                         const std::vector<MeshBounds>& meshBounds);
 

@@ -7,7 +7,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kNearest = 1e-3;  // of the distance to a ball's centre: what is nearer to the camera's plane is not bounded
+constexpr double kNearest =
+    1e-3;  // of the distance to a ball's centre: what is nearer to the camera's plane is not bounded
 
 /// Slopes, sideways over forwards, of the two lines from the eye that touch a circle of radius r at (side, depth).
 std::optional<std::pair<double, double>> tangentSlopes(double side, double depth, double r) {

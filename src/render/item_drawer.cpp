@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace cradle {
 namespace {
 
@@ -28,8 +27,8 @@ PixelRectangle seenIn(const DrawnHull& hull, const Stage& stage) {
 }
 
 bool isSeenIn(const PixelRectangle& seen, const PixelRectangle* area) {
-  return area == nullptr || (seen.left < area->right && seen.right > area->left && seen.bottom < area->top &&
-                             seen.top > area->bottom);
+  return area == nullptr ||
+         (seen.left < area->right && seen.right > area->left && seen.bottom < area->top && seen.top > area->bottom);
 }
 
 /// Calls draw(first, count) for each run of instances in [first, first + count) that are seen in `area`.

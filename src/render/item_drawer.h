@@ -35,7 +35,8 @@ class ItemDrawer {
 
   const Appearance& appearance_;
   const Stage& stage_;
-  InstanceBuffer meshInstances_, wallInstances_, sphereInstances_, cylinderInstances_, tubeInstances_, contactInstances_;
+  InstanceBuffer meshInstances_, wallInstances_, sphereInstances_, cylinderInstances_, tubeInstances_,
+      contactInstances_;
   std::vector<GpuMesh> meshes_, halfBalls_, halfCylinders_;
   GpuMesh coilMesh_, ropeMesh_, square_;
   PackedDrawList packed_;

@@ -8,7 +8,7 @@ namespace cradle {
 namespace {
 
 constexpr int kTile = 8;              // pixels
-constexpr double kMargin = 1;         // pixels: samples lie beside the centres, and rounding
+constexpr double kMargin = 2;         // pixels: samples lie beside the centres, and rounding
 constexpr long kRectangleCost = 24;   // tiles: what drawing one more rectangle costs
 constexpr int kMostRectangles = 256;  // before they are merged: the merging is quadratic
 
