@@ -4,17 +4,17 @@
 
 #include "render/changed_area.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "render/instances.h"
+#include "render/shadow_casters.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kWholeFrom = 0.6;    // of the picture: from there on, drawing all of it costs less than finding out
-constexpr double kShadowTexels = 10;  // reach of a shadow's soft edge (3.5 sqrt 2) and of the look-up beside it (4.5)
-constexpr int kRodPieces = 6;
+constexpr double kWholeFrom = 0.6;     // of the picture: from there on, drawing all of it costs less than finding out
+constexpr double kShadowTexels = 10;   // reach of a shadow's soft edge (3.5 sqrt 2) and of the look-up beside it (4.5)
 constexpr double kBlurredTexels = 24;  // as in environment.glsl
 constexpr double kLeastTurn = 0.5;     // of a ball's normal from pixel to pixel: a mesh turns by facets
 constexpr double kEdgePixels = 32;
@@ -47,39 +47,16 @@ double pixelAngle(const Stage& stage) {
   return 2 * std::tan(stage.camera.verticalFieldOfView / 2) / stage.height;
 }
 
-/// For how far a box must be moved along `direction`, from the least to the most and not backwards, to meet another
-/// box; none if the first is greater.
-std::pair<double, double> timesOfOverlap(const Bounds& box, const Vec3& direction, const Bounds& other) {
-  double first = 0, last = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double begin = other.min()[axis] - box.max()[axis], end = other.max()[axis] - box.min()[axis];
-    const double speed = direction[axis];
-    if (speed == 0 && (begin > 0 || end < 0)) return {1, 0};
-    if (speed == 0) continue;
-    first = std::max(first, std::min(begin / speed, end / speed));
-    last = std::min(last, std::max(begin / speed, end / speed));
-  }
-  return {first, last};
-}
-
-/// A rod casts its shadow piece by piece: each meets less of what is behind.
-void appendCaster(const DrawnHull& hull, std::vector<DrawnHull>& casters) {
-  if (hull.count != 2) return casters.push_back(hull);
-  const Vec3 step = (hull.centers[1] - hull.centers[0]) / kRodPieces;
-  for (int i = 0; i < kRodPieces; ++i) {
-    DrawnHull& piece = casters.emplace_back();
-    piece.add(hull.centers[0] + i * step);
-    piece.add(hull.centers[0] + (i + 1) * step);
-    piece.radius = hull.radius;
-  }
-}
-
 /// Collects the area; once it is nearly everything, it is everything.
 class ChangeFinder {
  public:
   ChangeFinder(const DrawList& before, const DrawList& now, const Stage& stage,
                const std::vector<MeshBounds>& meshBounds)
-      : before_(before), now_(now), stage_(stage), meshBounds_(meshBounds), area_{{stage.width, stage.height}} {}
+      : before_(before),
+        now_(now),
+        stage_(stage),
+        meshBounds_(meshBounds),
+        area_{{stage.width, stage.height}, {}, false} {}
 
   ChangedArea find();
 
@@ -261,7 +238,7 @@ void ChangeFinder::addShadowOnItems(const DrawnHull& caster) {
   wide.radius += kShadowTexels * stage_.shadow.texel;
   const Bounds box = wide.bounds();
   for (const Receiver& receiver : receivers_) {
-    const auto [first, last] = timesOfOverlap(box, -light, receiver.bounds);
+    const auto [first, last] = distancesOfOverlap(box, -light, receiver.bounds);
     if (first <= last) addCommon(receiver.spans, swept(wide, -first * light, -last * light));
   }
 }
@@ -293,7 +270,7 @@ ChangedArea ChangeFinder::find() {
   compareItems(before_.cylinders, now_.cylinders, true);
   compareItems(before_.tubes, now_.tubes, true);
   compareContacts();
-  area_.shadowsChanged = !casters_.empty();
+  area_.shadows = shadowTexels(casters_, stage_);
   for (std::size_t i = 0; i < casters_.size() && !isWhole_; ++i) {
     if (stage_.ground) addShadowOnGround(casters_[i]);
     addShadowOnItems(casters_[i]);
@@ -313,7 +290,7 @@ ChangedArea changedArea(const DrawList& before, const DrawList& now, const Stage
 }
 
 ChangedArea wholePicture(const Stage& stage) {
-  ChangedArea whole{{stage.width, stage.height}, true, true};
+  ChangedArea whole{{stage.width, stage.height}, PixelRectangle{0, 0, kShadowMapSize, kShadowMapSize}, true};
   whole.picture.addAll();
   return whole;
 }

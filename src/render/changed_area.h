@@ -8,8 +8,8 @@ namespace cradle {
 /// What has to be drawn again when one draw list follows another; the rest of the picture has the same bytes.
 struct ChangedArea {
   TileMask picture;
-  bool shadowsChanged = false;   // something that throws a shadow moved
-  bool contactsChanged = false;  // something that darkens the ground did
+  std::optional<PixelRectangle> shadows;  // texels of the shadow map; none if nothing that throws a shadow moved
+  bool contactsChanged = false;           // something that darkens the ground did
 };
 
 /// `meshBounds` are those of Appearance::meshes. Contains all that differs in looks, and what

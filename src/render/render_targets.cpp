@@ -130,6 +130,9 @@ MapTarget::MapTarget(Kind kind, int size) : size_(size) {
     glReadBuffer(GL_NONE);
   }
   requireComplete("a map of shadows");
+  glViewport(0, 0, size, size);
+  glClearColor(0, 0, 0, 0);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 MapTarget::~MapTarget() {
@@ -137,15 +140,16 @@ MapTarget::~MapTarget() {
   glDeleteTextures(1, &texture_);
 }
 
-void MapTarget::begin() const {
+void MapTarget::begin(const PixelRectangle& area) const {
   glBindFramebuffer(GL_FRAMEBUFFER, frame_);
   glViewport(0, 0, size_, size_);
+  glEnable(GL_SCISSOR_TEST);
+  const PixelRectangle limits = inside();
+  const int left = std::max(area.left, limits.left), bottom = std::max(area.bottom, limits.bottom);
+  glScissor(left, bottom, std::max(std::min(area.right, limits.right) - left, 0),
+            std::max(std::min(area.top, limits.top) - bottom, 0));
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  // The outermost texels stay clear, so that nothing throws a shadow or is touched beyond the edge. A border colour
-  // would say the same, and makes every look-up slower.
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(1, 1, size_ - 2, size_ - 2);
 }
 
 void MapTarget::end() const {

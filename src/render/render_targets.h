@@ -43,9 +43,13 @@ class MapTarget {
   MapTarget(const MapTarget&) = delete;
   MapTarget& operator=(const MapTarget&) = delete;
 
-  /// Following draws go here until end(); its former contents are cleared.
-  void begin() const;
+  /// Following draws go into `area` until end(); its former contents are cleared. The outermost texels stay clear, so
+  /// that nothing throws a shadow or is touched beyond the edge (a border colour makes every look-up slower).
+  void begin(const PixelRectangle& area) const;
   void end() const;
+
+  /// All of it but the outermost texels.
+  PixelRectangle inside() const { return {1, 1, size_ - 1, size_ - 1}; }
   void bindTexture(unsigned int unit) const;
 
  private:

@@ -171,7 +171,7 @@ void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
   r.items.take(list, r.meshBounds);
   r.balls.upload(r.items.packed().balls);
   r.nearBalls.upload(r.items.packed().nearBalls);
-  if (changed.shadowsChanged) drawShadowMap();
+  if (changed.shadows) drawShadowMap(*changed.shadows);
   if (changed.contactsChanged) drawContactMap();
   finishStage(times_.maps);
   const std::vector<PixelRectangle> areas = changed.picture.rectangles();
@@ -194,14 +194,14 @@ void Renderer::finishStage(double& seconds) {
   resources_->stageStart = now;
 }
 
-void Renderer::drawShadowMap() {
+void Renderer::drawShadowMap(const PixelRectangle& area) {
   const Resources& r = *resources_;
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
   glEnable(GL_DEPTH_CLAMP);  // what stands outside the view still throws its shadow into it
-  r.shadowMap.begin();
+  r.shadowMap.begin(area);
   r.programs.surfaceDepth.use();
   r.items.drawMeshes();
   r.programs.ballDepth.use();
@@ -216,7 +216,7 @@ void Renderer::drawShadowMap() {
 
 void Renderer::drawContactMap() {
   const Resources& r = *resources_;
-  r.contactMap.begin();
+  r.contactMap.begin(r.contactMap.inside());
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE_MINUS_DST_COLOR, GL_ONE);  // what two things leave open is the product of what each does

@@ -48,7 +48,7 @@ class Renderer {
   struct Programs;
   struct Resources;
   void draw(const DrawList& list, const ChangedArea& changed);
-  void drawShadowMap();
+  void drawShadowMap(const PixelRectangle& area);
   void drawContactMap();
   void drawPicture(const PixelRectangle& area);
   void finishStage(double& seconds);
