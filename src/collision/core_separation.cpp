@@ -1,10 +1,9 @@
 #include "collision/core_separation.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "collision/axis_ascent.h"
+#include "collision/core_depth.h"
 #include "collision/core_distance.h"
 
 namespace cradle {
@@ -13,6 +12,7 @@ namespace {
 constexpr double kTouching = 1e-12;       // of the size: nearer, the direction to the nearest point is rounding
 constexpr double kSeen = 1e-14;           // of the size: rounding of a gap
 constexpr double kDistanceError = 1e-5;   // of a distance: what is this near to it is its direction's local maximum
+constexpr double kDistanceRounding = 1e-8;  // of a distance: what it is uncertain by if its direction is by 1e-5 rad
 constexpr double kNear = 0.01;            // of the size: nearer, the normals of features are better than that direction
 constexpr double kFacePreference = 1e-7;  // of the size
 
@@ -46,25 +46,19 @@ SeparatingAxis ofNearest(const CoreDistance& apart, const Core& a, const Core& b
   if (apart.distance < kNear * sizeOf(a, b) && !(isSegment(a) && isSegment(b))) {
     const SeparatingAxes axes = separatingAxes(a, b);
     const SeparatingAxis feature = better(better(axes.faceOfA, axes.faceOfB), axes.edges);
-    if (feature.separation >= (1 - kDistanceError) * apart.distance) return feature;
+    if (feature.separation >= apart.distance - kSeen * sizeOf(a, b)) return feature;
+    return better(feature, improved({0, apart.normal}, a, b));
   }
   return improved({0, apart.normal}, a, b);
 }
 
-/// The best of what the axes of the polytopes lead to. A prism inside a cylinder sees no smaller gap than that, so that
-/// an axis of less than what is found leads to no more.
+/// Apart the one maximum is near the direction to the nearest point; else there may be several.
 SeparatingAxis ofRoundCores(const CoreDistance& apart, const Core& a, const Core& b) {
   SeparatingAxis best;
-  if (apart.distance > 0) best = improved({0, apart.normal}, a, b);
+  if (apart.distance > 0) best = improved({0, apart.normal}, a, b, (1 - kDistanceRounding) * apart.distance);
   if (apart.distance > kTouching * sizeOf(a, b) && best.separation >= (1 - kDistanceError) * apart.distance)
     return best;
-  SeparatingAxes axes = separatingAxes(a, b);
-  std::array<SeparatingAxis, 3> starts{axes.faceOfA, axes.faceOfB, axes.edges};
-  std::stable_sort(starts.begin(), starts.end(),
-                   [](const auto& left, const auto& right) { return left.separation > right.separation; });
-  for (const SeparatingAxis& start : starts)
-    if (start.separation > best.separation) best = better(best, improved(start, a, b));
-  return best;
+  return better(best, deepestAxis(a, b));
 }
 
 /// Normals of faces, which are not known to be the best.
