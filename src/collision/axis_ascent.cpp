@@ -161,8 +161,8 @@ class Ascent {
   }
 
  private:
-  /// Where no feature near the normal n leads on: of the cores moved apart along n by s, the nearest points' direction m
-  /// sees no less than n does, f(m) + s n.m >= f(n) + s, so that f(m) >= f(n) + s (1 - n.m).
+  /// Where no feature near the normal n leads on: of the cores moved apart along n by s, the nearest points' direction
+  /// m sees no less than n does, f(m) + s n.m >= f(n) + s, so that f(m) >= f(n) + s (1 - n.m).
   void pullApart(double size) {
     const Vec3 way = (kPulledPart * size - best_.separation) * best_.normal;
     const CoreDistance apart = distanceOf(a_, b_.moved(way));

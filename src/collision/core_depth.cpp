@@ -111,7 +111,8 @@ class Search {
       const Hull::Face& face = hull.nearest();
       if (face.offset >= -best_.separation - kProven * std::abs(best_.separation) - kRounding * size) break;
       const Vec3 point = difference(face.normal), normal = face.normal;
-      if (point.dot(normal) - face.offset <= kCoarse * (std::abs(face.offset) + size)) tryFrom({-point.dot(normal), normal});
+      if (point.dot(normal) - face.offset <= kCoarse * (std::abs(face.offset) + size))
+        tryFrom({-point.dot(normal), normal});
       if (!hull.grow(point)) break;
     }
     return best_;

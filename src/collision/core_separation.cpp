@@ -9,9 +9,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kTouching = 1e-12;       // of the size: nearer, the direction to the nearest point is rounding
-constexpr double kSeen = 1e-14;           // of the size: rounding of a gap
-constexpr double kDistanceError = 1e-5;   // of a distance: what is this near to it is its direction's local maximum
+constexpr double kTouching = 1e-12;         // of the size: nearer, the direction to the nearest point is rounding
+constexpr double kSeen = 1e-14;             // of the size: rounding of a gap
+constexpr double kDistanceError = 1e-5;     // of a distance: what is this near to it is its direction's local maximum
 constexpr double kDistanceRounding = 1e-8;  // of a distance: what it is uncertain by if its direction is by 1e-5 rad
 constexpr double kNear = 0.01;            // of the size: nearer, the normals of features are better than that direction
 constexpr double kFacePreference = 1e-7;  // of the size
