@@ -21,6 +21,7 @@ constexpr std::size_t kMostClimbs = 8;
 constexpr double kProven = 1e-3;        // of the depth: faces so near to it leave no better way out
 constexpr double kRounding = 1e-14;     // of the size
 constexpr double kPromising = 0.2;      // of the depth: normals that see an overlap larger by less are climbed from,
+constexpr double kShallow = 0.01;       // of the size: as if it were no less deep,
 constexpr double kCoarse = 0.05;        // of depth and size: faces farther inside the surface have another normal
 constexpr double kOtherCosine = 0.995;  // if 0.1 rad from those climbed to or from
 
@@ -102,19 +103,22 @@ Vec3 farther(const Vec3& one, const Vec3& other, const Vec3& from, const Vec3& n
 
 class Search {
  public:
-  Search(const Core& a, const Core& b) : a_(a), b_(b) {}
+  Search(const Core& a, const Core& b)
+      : a_(a), b_(b), size_(std::min(a.collider().boundingRadius, b.collider().boundingRadius)) {}
 
   SeparatingAxis find() {
-    const double size = std::min(a_.collider().boundingRadius, b_.collider().boundingRadius);
-    Hull hull(firstCorners(), size);
+    Hull hull(firstCorners(), size_);
+    Vec3 normal = Vec3::UnitY();
     while (hull.isSound() && !hull.isFull()) {
       const Hull::Face& face = hull.nearest();
-      if (face.offset >= -best_.separation - kProven * std::abs(best_.separation) - kRounding * size) break;
-      const Vec3 point = difference(face.normal), normal = face.normal;
-      if (point.dot(normal) - face.offset <= kCoarse * (std::abs(face.offset) + size))
+      if (face.offset >= -best_.separation - kProven * std::abs(best_.separation) - kRounding * size_) break;
+      normal = face.normal;
+      const Vec3 point = difference(normal);
+      if (point.dot(normal) - face.offset <= kCoarse * (std::abs(face.offset) + size_))
         tryFrom({-point.dot(normal), normal});
       if (!hull.grow(point)) break;
     }
+    if (climbCount_ == 0) best_ = improved({0, normal}, a_, b_);  // flat to rounding
     return best_;
   }
 
@@ -131,9 +135,9 @@ class Search {
   }
 
   void tryFrom(const SeparatingAxis& start) {
-    if (climbCount_ > 0) {
-      if (climbCount_ + 2 > climbed_.size()) return;
-      if (start.separation < best_.separation - kPromising * std::abs(best_.separation)) return;
+    if (climbCount_ + 2 > climbed_.size()) return;
+    if (start.separation <= best_.separation + kRounding * size_) {  // else a climb has stopped too early
+      if (start.separation < best_.separation - kPromising * (std::abs(best_.separation) + kShallow * size_)) return;
       for (std::size_t i = 0; i < climbCount_; ++i)
         if (climbed_[i].dot(start.normal) > kOtherCosine) return;
     }
@@ -143,6 +147,7 @@ class Search {
   }
 
   const Core &a_, &b_;
+  double size_;  // m
   SeparatingAxis best_;
   std::array<Vec3, 2 * kMostClimbs> climbed_;  // from and to: unit normals
   std::size_t climbCount_ = 0;

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <memory_resource>
 
-#include "collision/axis_ascent.h"
+#include "collision/core_distance.h"
 
 namespace cradle {
 namespace {
@@ -20,6 +20,7 @@ constexpr double kTiltedCosine = 0.5;    // between a face's normal and the cont
 constexpr double kStandingCosine = 0.7;  // between a cylinder's axis and the contact's normal: its end carries
 constexpr double kOuterPart = 1.0195911582083184;  // 1 / cos(pi / 16): polygon around a disc to the one in it
 constexpr double kDeeperPart = 1e-9;               // of the size: a manifold must hold a point so near to the deepest
+constexpr double kPulledPart = 0.01;               // of the size: far enough to tell places of nearest points
 constexpr std::size_t kMostPoints = 8;
 constexpr double kTie = 1e-9;  // of an area: corners of a regular polygon are alike
 constexpr double kLying =
@@ -233,6 +234,13 @@ double radiusOfCorner(const Core& core) {
   return core.rimRadius() > 0 ? kNotRound : marginOf(core);
 }
 
+/// Where the cores are nearest when they are moved apart along the axis; as seen before that.
+Vec3 middlePulledApart(const Core& a, const Core& b, const SeparatingAxis& axis) {
+  const double way = kPulledPart * std::min(sizeOf(a), sizeOf(b)) - axis.separation;
+  const CoreDistance apart = distanceOf(a, b.moved(way * axis.normal));
+  return (apart.onA + apart.onB - way * axis.normal) / 2;
+}
+
 /// The one point of two patches that share no more.
 ContactPoint singlePoint(const Core& a, const Core& b, const SeparatingAxis& axis, const Patch& patchA,
                          const Patch& patchB) {
@@ -244,10 +252,12 @@ ContactPoint singlePoint(const Core& a, const Core& b, const SeparatingAxis& axi
   ContactPoint contact{(onA + onB) / 2, normal, separation, kNotRound, kNotRound};
   if (isWideA && isWideB && !patchA.isFlat && !patchB.isFlat)
     contact.point = ridgeA.from + partNearest(ridgeA, ridgeB) * (ridgeA.to - ridgeA.from) + separation / 2 * normal;
-  else if (isWideA)
+  else if (isWideA && !isWideB)
     contact.point = onB - separation / 2 * normal;
-  else if (isWideB)
+  else if (isWideB && !isWideA)
     contact.point = onA + separation / 2 * normal;
+  else if (isWideA || (onB - onA - separation * normal).norm() > kDeeperPart * std::min(sizeOf(a), sizeOf(b)))
+    contact.point = middlePulledApart(a, b, axis) + (marginOf(a) - marginOf(b)) / 2 * normal;
   if (patchA.isFlat) contact.radiusA = kFlat;
   if (patchB.isFlat) contact.radiusB = kFlat;
   if (!isWideA) contact.radiusA = radiusOfCorner(a);
