@@ -21,7 +21,7 @@ constexpr std::size_t kMostClimbs = 8;
 constexpr double kProven = 1e-3;        // of the depth: faces so near to it leave no better way out
 constexpr double kRounding = 1e-14;     // of the size
 constexpr double kPromising = 0.2;      // of the depth: normals that see an overlap larger by less are climbed from,
-constexpr double kShallow = 0.01;       // of the size: as if it were no less deep,
+constexpr double kShallow = 0.002;      // of the size: as if it were no less deep,
 constexpr double kCoarse = 0.05;        // of depth and size: faces farther inside the surface have another normal
 constexpr double kOtherCosine = 0.995;  // if 0.1 rad from those climbed to or from
 

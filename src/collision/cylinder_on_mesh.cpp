@@ -1,6 +1,6 @@
-// Each triangle is a flat polytope of its own, so that distances, ways out and manifolds are those of convex cores. What
-// is new is which of them belong to the surface: a way out of one triangle that leads into the solid, or sideways over an
-// edge at which the surface goes on, is none.
+// Each triangle is a flat polytope of its own, so that distances, ways out and manifolds are those of convex cores.
+// What is new is which of them belong to the surface: a way out of one triangle that leads into the solid, or sideways
+// over an edge at which the surface goes on, is none.
 
 #include "collision/cylinder_on_mesh.h"
 
@@ -120,7 +120,8 @@ bool isOnSurface(const MeshSurface& mesh, std::uint32_t index, const ContactPoin
     const Segment edge{cornerOf(triangle, i), cornerOf(triangle, (i + 1) % 3) - cornerOf(triangle, i)};
     const double length = edge.along.norm(), part = edge.nearestPart(onMesh);
     if ((onMesh - edge.at(part)).norm() > kOnEdge * length) continue;
-    if (part > kOnEdge && part < 1 - kOnEdge) return isForemost(mesh, mesh.edges[face.edges[i]], contact.normal, margin);
+    if (part > kOnEdge && part < 1 - kOnEdge)
+      return isForemost(mesh, mesh.edges[face.edges[i]], contact.normal, margin);
     return isForemost(mesh, face.vertices[part > 0.5 ? (i + 1) % 3 : i], contact.normal, margin);
   }
   return false;
@@ -176,7 +177,8 @@ void appendCylinderContacts(const Core& cylinder, const MeshSurface& mesh, doubl
     }
   }
   const SignedHeight center = inside ? heightOver(mesh, cylinder.center()) : SignedHeight{};
-  const SeparatingAxis gap = inside ? SeparatingAxis{cylinderSeparation(cylinder, mesh, 0), center.normal} : visit.least;
+  const SeparatingAxis gap =
+      inside ? SeparatingAxis{cylinderSeparation(cylinder, mesh, 0), center.normal} : visit.least;
   if (!(least <= gap.separation + kFacePart * size)) {
     const Vec3 onCylinder = cylinder.farthest(-gap.normal);
     contacts.push_back(

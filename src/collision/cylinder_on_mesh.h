@@ -14,8 +14,8 @@ namespace cradle {
 double cylinderSeparation(const Core& cylinder, const MeshSurface& mesh, double enough);
 
 /// Contacts with separation <= margin (m), in the mesh's frame; A is the mesh. On a face what of the cylinder's end or
-/// side is above it, on edges and corners a point each where the mesh lies behind the tangent plane, so that inner edges
-/// of flat or hollow places give none. Appends to `contacts`.
+/// side is above it, on edges and corners a point each where the mesh lies behind the tangent plane, so that inner
+/// edges of flat or hollow places give none. Appends to `contacts`.
 void appendCylinderContacts(const Core& cylinder, const MeshSurface& mesh, double margin,
                             std::vector<ContactPoint>& contacts);
 

@@ -11,7 +11,8 @@ namespace cradle {
 bool hasMesh(const Collider& a, const Collider& b);
 
 /// Signed separation (m) of a mesh and a mesh, polytope, ball, capsule or cylinder, whichever is A; see
-/// mesh_gap.h, round_on_mesh.h and cylinder_on_mesh.h. `enough` (m): what is farther apart need not be known, and may be infinite.
+/// mesh_gap.h, round_on_mesh.h and cylinder_on_mesh.h. `enough` (m): what is farther apart need not be known, and may
+/// be infinite.
 double meshSeparation(const Collider& a, const Collider& b, const RigidTransform& aFromB, double enough);
 
 /// Their contacts with separation <= margin (m), in A's frame.

@@ -133,10 +133,10 @@ std::vector<std::string> unsupportedContacts(const Scene& scene) {
       if (bothMove || !mayTouch(a, b)) continue;
       const auto &first = isPlane(a) ? colliders[j] : colliders[i], &second = isPlane(a) ? colliders[i] : colliders[j];
       if (!canSolveContact(*first, second ? &*second : nullptr))
-        faults.push_back(fmt::format(
-            "{}: contact between \"{}\" and \"{}\" cannot be simulated: a mesh that is no solid can touch "
-            "nothing but planes; give one of them \"collision\": \"none\"",
-            b.where, a.name, b.name));
+        faults.push_back(
+            fmt::format("{}: contact between \"{}\" and \"{}\" cannot be simulated: a mesh that is no solid can touch "
+                        "nothing but planes; give one of them \"collision\": \"none\"",
+                        b.where, a.name, b.name));
     }
   return faults;
 }
