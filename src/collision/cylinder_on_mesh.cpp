@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "collision/contact_reduction.h"
-#include "collision/core_distance.h"
 #include "collision/core_separation.h"
 #include "collision/manifold.h"
 #include "collision/tangent_plane.h"
@@ -18,6 +17,8 @@ namespace {
 
 constexpr double kRoundingPart = 1e-12;  // of the size
 constexpr double kFacePart = 2e-7;       // of the size: what a contact may give away for the normal of a face
+constexpr double kLevelPart = 1e-15;     // of the size: points as near in height are level
+constexpr double kFarPart = 10;          // of the depth: no way out over a side as far is shorter than that straight up
 constexpr double kFaceCosine = 1e-12;    // below 1 by less: the normal is a face's
 constexpr double kOnEdge = 1e-9;         // of a side: points as near to an edge are on it
 
@@ -62,11 +63,34 @@ Bounds boundsOf(const Core& cylinder) {
   return bounds;
 }
 
-/// Whether a triangle's plane is farther from a cylinder than `distance` (m).
-bool isBeyond(const FlatTriangle& triangle, const Core& cylinder, double distance) {
-  const double low = -cylinder.reach(-triangle.normal), high = cylinder.reach(triangle.normal);
-  const double plane = triangle.normal.dot(triangle.a);
-  return low - plane > distance || plane - high > distance;
+/// Whether all of a cylinder is farther than `distance` (m) behind a triangle's plane.
+bool isUnder(const FlatTriangle& triangle, const Core& cylinder, double distance) {
+  return triangle.normal.dot(triangle.a) - cylinder.reach(triangle.normal) > distance;
+}
+
+/// Whether the foot of a point is inside a triangle, `distance` (m) or more from its sides.
+bool isFarInside(const FlatTriangle& triangle, const Vec3& point, double distance) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 along = cornerOf(triangle, (i + 1) % 3) - cornerOf(triangle, i);
+    if (triangle.normal.cross(along).dot(point - cornerOf(triangle, i)) < distance * along.norm()) return false;
+  }
+  return true;
+}
+
+/// Height (m) of a cylinder's lowest points over a triangle's plane.
+double heightOver(const FlatTriangle& triangle, const Core& cylinder) {
+  return -cylinder.reach(-triangle.normal) - triangle.normal.dot(triangle.a);
+}
+
+/// Whether one of a cylinder's lowest points, at that height, is above a triangle, as far from its sides as no way out
+/// sideways is shorter.
+bool isLowestAbove(const FlatTriangle& triangle, const Core& cylinder, double height) {
+  const Vec3 one = cylinder.rimPoint(1, -triangle.normal), other = cylinder.rimPoint(-1, -triangle.normal);
+  const double side = cylinder.axis().dot(triangle.normal) > 0 ? -1 : 1;
+  const double same = height + kLevelPart * cylinder.collider().boundingRadius, deep = std::max(-height, 0.0);
+  for (const Vec3& point : {one, other, Vec3((one + other) / 2), cylinder.end(side)})
+    if (triangle.heightOf(point) <= same && isFarInside(triangle, point, kFarPart * deep)) return true;
+  return false;
 }
 
 /// Where a cylinder is nearest to the surface, or deepest in it: normals point from the mesh to the cylinder.
@@ -75,7 +99,6 @@ struct CylinderVisit {
   const MeshSurface& mesh;
   TriangleSolid& solid;
   SeparatingAxis least;             // of triangles apart, and of those whose way out leads out of the mesh
-  std::uint32_t nearest = 0;        // triangle of `least`
   SeparatingAxis straightOut = {};  // where all others lead into it
   bool isFound = false;
 
@@ -85,16 +108,22 @@ struct CylinderVisit {
 
   void operator()(std::uint32_t index) {
     const FlatTriangle triangle = triangleOf(mesh, index);
-    if (triangle.normal == Vec3::Zero() || isBeyond(triangle, cylinder, std::max(least.separation, 0.0))) return;
+    const double height = heightOver(triangle, cylinder), size = cylinder.collider().boundingRadius;
+    // The height bounds the distance from below, and the way out along the normal is one.
+    if (triangle.normal == Vec3::Zero() || height >= least.separation - kLevelPart * size) return;
+    if (isUnder(triangle, cylinder, std::max(least.separation, 0.0))) return;
+    if (isLowestAbove(triangle, cylinder, height)) {
+      least = {height, triangle.normal}, isFound = true;
+      return;
+    }
     const Core core = solid.coreOf(triangle);
     const SeparatingAxis axis = separationOf(core, cylinder);
     if (axis.separation <= 0 && axis.normal.dot(triangle.normal) < 0) {
-      if (axis.separation > -kRoundingPart * cylinder.collider().boundingRadius) return;  // beside its edge
-      const double depth = gapAlong(core, cylinder, triangle.normal);
-      if (depth > straightOut.separation) straightOut = {depth, triangle.normal};
+      if (axis.separation > -kRoundingPart * size) return;  // beside its edge
+      if (height > straightOut.separation) straightOut = {height, triangle.normal};
       return;
     }
-    if (axis.separation < least.separation) least = axis, nearest = index, isFound = true;
+    if (axis.separation < least.separation) least = axis, isFound = true;
   }
 };
 
@@ -164,7 +193,8 @@ void appendCylinderContacts(const Core& cylinder, const MeshSurface& mesh, doubl
   std::vector<ContactPoint> ofTriangle;
   for (const std::uint32_t index : near.found) {
     const FlatTriangle triangle = triangleOf(mesh, index);
-    if (triangle.normal == Vec3::Zero() || isBeyond(triangle, cylinder, reach)) continue;
+    if (triangle.normal == Vec3::Zero() || heightOver(triangle, cylinder) > reach || isUnder(triangle, cylinder, reach))
+      continue;
     const Core core = solid.coreOf(triangle);
     const SeparatingAxis axis = contactAxis(core, cylinder);
     if (axis.separation > margin || axis.normal.dot(triangle.normal) <= 0) continue;

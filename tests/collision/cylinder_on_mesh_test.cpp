@@ -144,7 +144,8 @@ TEST(CylinderOnMesh, StandsOnItsRimOverInnerEdges) {
         EXPECT_LT((contact.normal - Vec3::UnitY()).norm(), 1e-14);
       }
       for (double angle = 0; angle < 6.28; angle += 0.1)
-        EXPECT_GT(reachOf(contacts, angle) - shift * std::cos(angle) - 0.1 * std::sin(angle), std::sqrt(0.5) * 0.5 - 1e-9)
+        EXPECT_GT(reachOf(contacts, angle) - shift * std::cos(angle) - 0.1 * std::sin(angle),
+                  std::sqrt(0.5) * 0.5 - 1e-9)
             << gap << ' ' << shift;
     }
 }
