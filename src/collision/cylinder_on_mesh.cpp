@@ -193,10 +193,11 @@ void appendCylinderContacts(const Core& cylinder, const MeshSurface& mesh, doubl
   std::vector<ContactPoint> ofTriangle;
   for (const std::uint32_t index : near.found) {
     const FlatTriangle triangle = triangleOf(mesh, index);
-    if (triangle.normal == Vec3::Zero() || heightOver(triangle, cylinder) > reach || isUnder(triangle, cylinder, reach))
-      continue;
+    const double height = heightOver(triangle, cylinder);
+    if (triangle.normal == Vec3::Zero() || height > reach || isUnder(triangle, cylinder, reach)) continue;
     const Core core = solid.coreOf(triangle);
-    const SeparatingAxis axis = contactAxis(core, cylinder);
+    const SeparatingAxis axis = isLowestAbove(triangle, cylinder, height) ? SeparatingAxis{height, triangle.normal}
+                                                                          : contactAxis(core, cylinder);
     if (axis.separation > margin || axis.normal.dot(triangle.normal) <= 0) continue;
     ofTriangle.clear();
     appendManifold(core, cylinder, axis, margin, ofTriangle);
