@@ -5,6 +5,7 @@
 
 #include "collision/random_poses.h"
 #include "collision/separation.h"
+#include "collision/widest_gap.h"
 
 // Every pair of convex shapes. What a contact says is proven, not compared: the surface points are on their solids, as
 // far apart as the separation, which bounds the distance from above; and the normal sees a gap as large between the
@@ -121,37 +122,10 @@ struct Pair {
 
 constexpr double kRounding = 2e-14;  // m: of sums of products of lengths of some metres
 
-/// Climbs from a direction by ever smaller steps to all sides.
-double climb(const Pair& pair, Vec3 direction) {
-  double gap = pair.gapAlong(direction);
-  for (double step = 0.05; step > 1e-4;) {
-    const Vec3 side = direction.unitOrthogonal(), other = direction.cross(side);
-    bool better = false;
-    for (int k = 0; k < 8 && !better; ++k) {
-      const double angle = k * M_PI / 4;
-      const Vec3 tried = (direction + step * (std::cos(angle) * side + std::sin(angle) * other)).normalized();
-      const double found = pair.gapAlong(tried);
-      if (found > gap) gap = found, direction = tried, better = true;
-    }
-    if (!better) step /= 2;
-  }
-  return gap;
-}
-
-/// The largest gap that a spiral of directions over the sphere sees, the 6 best of them improved.
+/// The largest gap that a search over the sphere of directions sees.
 double widestGapSearched(const Pair& pair) {
-  std::vector<std::pair<double, Vec3>> tried;
-  const int count = 700;
-  for (int i = 0; i < count; ++i) {
-    const double y = 1 - (2 * i + 1.0) / count, ring = std::sqrt(1 - y * y), angle = i * M_PI * (3 - std::sqrt(5));
-    const Vec3 direction(ring * std::cos(angle), y, ring * std::sin(angle));
-    tried.emplace_back(pair.gapAlong(direction), direction);
-  }
-  std::partial_sort(tried.begin(), tried.begin() + 6, tried.end(),
-                    [](const auto& left, const auto& right) { return left.first > right.first; });
-  double best = -INFINITY;
-  for (int i = 0; i < 6; ++i) best = std::max(best, climb(pair, tried[static_cast<std::size_t>(i)].second));
-  return best;
+  const auto gapAlong = [&](const Vec3& direction) { return pair.gapAlong(direction); };
+  return gapAlong(widestGap(gapAlong, {700, 6, 1e-4}));
 }
 
 std::string describe(const Pair& pair) {
