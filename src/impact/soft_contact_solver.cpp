@@ -11,7 +11,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kFrequencies[] = {120, 85, 50, 50};  // Hz: of contacts as springs, by their number of points
+constexpr double kFrequencies[] = {240, 170, 100, 100};  // Hz: of contacts as springs, by their number of points
 constexpr double kDampingRatio = 2;
 constexpr double kHardening = 300;  // 1/m: twice the frequency at 3.3 mm of overlap
 constexpr double kMostPush = 4;     // m/s

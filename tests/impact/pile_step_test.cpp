@@ -76,7 +76,7 @@ TEST_P(Piles, DoNotDependOnWhatStandsInTheOtherLane) {
   for (const bool hasOthers : {false, true}) {
     DroppedBodies bodies;
     drop(GetParam(), bodies);
-    if (hasOthers) bodies.addBall(Vec3(50, 5, 0)), bodies.addBall(Vec3(50.2, 5, 0));
+    if (hasOthers) bodies.addBall(Vec3(0, 20, 0)), bodies.addBall(Vec3(0.2, 20, 0));
     bodies.begin(kLaw);
     bodies.advance(40);
     VectorX poses(7 * 40);
