@@ -29,27 +29,32 @@ void forEachList(Lists& lists, const Work& work) {
 
 }  // namespace
 
+/// The next free lane of a list, in a new block if the last is full or of another colour.
 template <class Block>
+void SoftContactSolver::BlockList<Block>::add(std::int32_t manifold, std::int32_t stillBody) {
+  if (lane == kLanes) {
+    lane = 0;
+    if (size == blocks.size()) blocks.emplace_back();
+    for (int k = 0; k < kLanes; ++k) emptyLane(stillBody, k, blocks[size]);
+    ++size;
+  }
+  blocks[size - 1].manifolds[lane++] = manifold;
+}
+
 void SoftContactSolver::arrange(const ContactColors& colors, const std::vector<ContactManifold>& manifolds,
-                                std::int32_t stillBody, BlockList<Block>& list) {
-  list.size = 0;
-  list.starts.clear();
+                                std::int32_t stillBody) {
+  forEachList(lists_, [](auto& list) { list.size = 0, list.starts.clear(); });
   for (std::size_t color = 0; color + 1 < colors.starts.size(); ++color) {
-    list.starts.push_back(list.size);
-    int lane = kLanes;
+    forEachList(lists_, [](auto& list) { list.starts.push_back(list.size), list.lane = kLanes; });
     for (std::size_t i = colors.starts[color]; i < colors.starts[color + 1]; ++i) {
       const ContactManifold& manifold = manifolds[static_cast<std::size_t>(colors.manifolds[i])];
-      if (manifold.patch.count != Block::kPoints || (manifold.bodyB != kFixed) != Block::kBothMove) continue;
-      if (lane == kLanes) {
-        lane = 0;
-        if (list.size == list.blocks.size()) list.blocks.emplace_back();
-        for (int k = 0; k < kLanes; ++k) emptyLane(stillBody, k, list.blocks[list.size]);
-        ++list.size;
-      }
-      list.blocks[list.size - 1].manifolds[lane++] = colors.manifolds[i];
+      forEachList(lists_, [&]<class Block>(BlockList<Block>& list) {
+        if (manifold.patch.count == Block::kPoints && (manifold.bodyB != kFixed) == Block::kBothMove)
+          list.add(colors.manifolds[i], stillBody);
+      });
     }
   }
-  list.starts.push_back(list.size);
+  forEachList(lists_, [](auto& list) { list.starts.push_back(list.size); });
 }
 
 void SoftContactSolver::prepare(const ContactColors& colors, const std::vector<ContactManifold>& manifolds,
@@ -61,7 +66,7 @@ void SoftContactSolver::prepare(const ContactColors& colors, const std::vector<C
   for (const std::int32_t index : colors.manifolds)
     rebounds_ = rebounds_ || manifolds[static_cast<std::size_t>(index)].law.restitution > 0;
   const std::int32_t stillBody = static_cast<std::int32_t>(bodies.size());
-  forEachList(lists_, [&](auto& list) { arrange(colors, manifolds, stillBody, list); });
+  arrange(colors, manifolds, stillBody);
   threads.run([&](int thread) {
     forEachList(lists_, [&](auto& list) {
       const auto [first, last] = threads.partOf(list.size, thread);
