@@ -9,11 +9,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kMostApproach = 12e-3;  // m: bodies that come nearer to each other between looks get more of them
-constexpr double kMostSubStepApproach = 3e-3;  // m: in a sub-step, as far as an impact goes on into the next bodies
-constexpr double kDeflected = 0.5;             // of the approach is added to the margin: an impact turns bodies aside
-constexpr int kMostPieces = 32;                // looks a step
-constexpr int kSubSteps = 8;                   // a step, at least: with fewer, contacts must be so soft that piles sink
+constexpr double kMostApproach = 10e-3;  // m: bodies that come nearer to each other between looks get more of them
+constexpr double kMostSubStepApproach = 3.4e-3;  // m: in a sub-step, as far as an impact goes on into the next bodies
+constexpr double kDeflected = 0.5;               // of the approach is added to the margin: an impact turns bodies aside
+constexpr int kMostPieces = 32;                  // looks a step
+constexpr int kSubSteps = 8;         // a step, at least: with fewer, contacts must be so soft that piles sink
 constexpr double kStillPart = 0.25;  // of the speed that gravity gives a body in a step: contacts at rest have as much
 constexpr double kContactMargin = 5e-3;  // m: contacts are known before bodies touch
 

@@ -109,6 +109,39 @@ TEST(PileAtRest, IsLookedAtNoMoreUntilSomethingHitsIt) {
   EXPECT_EQ(bodies.step().looks(), looks);
 }
 
+// A ball rolls along a row of cubes: those that it does not touch sleep, and do not brake it. Rolling costs what the
+// linearised contact gives way: below 1 % of the speed in a second.
+TEST(PileAtRest, SleepsBesideABodyThatRollsOverIt) {
+  DroppedBodies bodies;
+  bodies.addPlane(Vec3::Zero(), Vec3::UnitY());
+  for (int i = 0; i < 10; ++i) bodies.addCube(Vec3(0.2 * i, 0.1, 0));
+  bodies.addBall(Vec3(0, 0.3, 0), Vec3(0.5, 0, 0));
+  bodies.begin(kLaw);
+  angularVelocity(bodies.state(), 10) = Vec3(0, 0, -5);
+  bodies.advance(75);
+  EXPECT_NEAR(bodies.position(10).x(), 0.625, 0.01);
+  EXPECT_FALSE(bodies.step().isAsleep(10));
+  EXPECT_FALSE(bodies.step().isAsleep(3));
+  for (const std::size_t i : {6, 7, 8, 9}) EXPECT_TRUE(bodies.step().isAsleep(i)) << i;
+  EXPECT_NEAR(linearVelocity(bodies.state(), 10).x(), 0.5, 0.005);
+}
+
+// A ball strikes the end of a row of sleeping cubes on ice: all of them move, with its momentum.
+TEST(PileAtRest, TakesUpTheMomentumOfABlow) {
+  DroppedBodies bodies;
+  bodies.addPlane(Vec3::Zero(), Vec3::UnitY());
+  for (int i = 0; i < 5; ++i) bodies.addCube(Vec3(0.2 * i, 0.1, 0));
+  bodies.addBall(Vec3(-4.1, 0.1, 0), Vec3(4, 0, 0));  // there after 0.97 s
+  bodies.begin({0, 0, 0});
+  bodies.advance(45);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_TRUE(bodies.step().isAsleep(i)) << i;
+  bodies.advance(30);
+  double momentum = 0;
+  for (int i = 0; i < 6; ++i) momentum += linearVelocity(bodies.state(), i).x();
+  EXPECT_NEAR(momentum, 4, 1e-9);
+  EXPECT_GT(linearVelocity(bodies.state(), 4).x(), 0.1);
+}
+
 // Dropped by 10 mm and more: each cube may come to lie 2 mm off the one below.
 TEST(Stack, OfTenCubesStands) {
   DroppedBodies bodies;
