@@ -151,7 +151,7 @@ void PileContacts::updatePair(NearPair& pair, const PileLook& look, std::vector<
   const double turned = poseA.turned + poseB.turned;
   if (!pair.isEmpty && (offset - pair.offset).squaredNorm() <= kKeptMotion * kKeptMotion &&
       turned - pair.turned <= kKeptTurn) {
-    follow(poseA, poseB, anchors, manifold.patch);
+    follow(poseA, poseB, anchors, manifold);
   } else {
     const ContactPatch patch = patches_.patchOf(pair, look, scratch);
     const bool wasEmpty = pair.isEmpty;
@@ -172,10 +172,11 @@ void PileContacts::updatePair(NearPair& pair, const PileLook& look, std::vector<
       across2 < kSlowSliding * kSlowSliding ? manifold.law.staticFriction : manifold.law.dynamicFriction;
 }
 
-/// Where a manifold's points are after a small motion.
+/// Where a manifold's points are after a small motion. What is fixed keeps its normal.
 void PileContacts::follow(const MovingPose& poseA, const MovingPose& poseB, const Anchors& anchors,
-                          ContactPatch& patch) const {
-  patch.normal = poseA.rotation * anchors.normal;
+                          ContactManifold& manifold) {
+  ContactPatch& patch = manifold.patch;
+  if (manifold.bodyB != kFixed) patch.normal = poseA.rotation * anchors.normal;
   for (std::size_t i = 0; i < patch.count; ++i) {
     ContactPatch::Point& point = patch.points[i];
     point.onA = poseA.position + poseA.rotation * anchors.onA[i];

@@ -69,7 +69,8 @@ class PileContacts {
   bool mayTouch(const NearPair& pair, const PileLook& look) const;
   double approachOf(const NearPair& pair, const PileLook& look) const;
   void updatePair(NearPair& pair, const PileLook& look, std::vector<Contact>& scratch);
-  void follow(const MovingPose& poseA, const MovingPose& poseB, const Anchors& anchors, ContactPatch& patch) const;
+  static void follow(const MovingPose& poseA, const MovingPose& poseB, const Anchors& anchors,
+                     ContactManifold& manifold);
   void renew(const ContactPatch& patch, const MovingPose& poseA, const MovingPose& poseB, bool wasEmpty,
              ContactManifold& manifold, Anchors& anchors) const;
 

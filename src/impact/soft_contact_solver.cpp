@@ -1,7 +1,9 @@
 // E. Catto, "Solver2D" (box2d.org, 2024): of the solvers compared there, sub-steps with soft contacts that are relaxed
 // afterwards ("soft step") hold piles best for their cost. Different here: contacts stiffen with their overlap, and
-// those with few points are stiffer from the start. Springs that are as stiff as boxes on boxes allow let the few
-// points that carry a pile of turned boxes sink in by 20 mm; springs stiffer than that make stacks of boxes tremble.
+// those with few points are stiffer from the start. What a contact sinks in by is the load over its stiffness, which
+// sub-steps limit: twice as stiff as these, for sub-steps of 1/480 s, makes stacks of boxes tremble; half as stiff,
+// four sub-steps are enough, and a pile of turned boxes ends 5 mm deep. The frequency does not follow the length of the
+// sub-steps, which changes from step to step: overlap would be let go as speed each time.
 
 #include "impact/soft_contact_solver.h"
 
