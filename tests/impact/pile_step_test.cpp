@@ -58,6 +58,24 @@ TEST_P(Piles, HaveNeverMoreEnergyThanAtTheStart) {
   }
 }
 
+// Contacts give as springs do: what an impact presses in comes back in part. Documented: 1.5 % of the kinetic energy.
+TEST_P(Piles, RegainLittleOfTheEnergyThatAnImpactTook) {
+  DroppedBodies bodies;
+  drop(GetParam(), bodies);
+  bodies.begin(kLaw);
+  const double start = bodies.energy();
+  double least = start, regained = 0, fastest = 0;
+  for (int step = 0; step < 150; ++step) {
+    bodies.advance();
+    const double energy = bodies.energy();
+    regained = std::max(regained, energy - least), least = std::min(least, energy);
+    double kinetic = 0;
+    for (int i = 0; i < bodies.count(); ++i) kinetic += linearVelocity(bodies.state(), i).squaredNorm() / 2;
+    fastest = std::max(fastest, kinetic);
+  }
+  EXPECT_LT(regained, 0.015 * fastest);
+}
+
 TEST_P(Piles, AreTheSameWithAnyNumberOfThreads) {
   std::vector<VectorX> states;
   for (const int threads : {1, 2}) {
@@ -122,7 +140,7 @@ TEST(PileAtRest, SleepsBesideABodyThatRollsOverIt) {
   EXPECT_NEAR(bodies.position(10).x(), 0.6, 0.05);
   EXPECT_FALSE(bodies.step().isAsleep(10));
   EXPECT_FALSE(bodies.step().isAsleep(3));
-  for (const std::size_t i : {6, 7, 8, 9}) EXPECT_TRUE(bodies.step().isAsleep(i)) << i;
+  for (std::size_t i = 6; i < 10; ++i) EXPECT_TRUE(bodies.step().isAsleep(i)) << i;
   EXPECT_GT(linearVelocity(bodies.state(), 10).x(), 0.45);
 }
 
