@@ -23,8 +23,8 @@ Trajectory landingOf(const Landing& landing, double framesPerSecond) {
                       "position": [0, -0.05, 0], "material": "m"}},
                     {{"name": "bar", "shape": {{"box": {{"size": [1, 0.1, 0.1]}}}}, "mass": 1, "position": [0, 0.25, 0],
                       "orientation": {{"w": {}, "x": 0, "y": 0, "z": {}}}, "material": "m"}}])",
-      landing.accuracy, framesPerSecond, landing.restitution, landing.width, landing.width / 10, std::cos(landing.tilt / 2),
-      std::sin(landing.tilt / 2))));
+      landing.accuracy, framesPerSecond, landing.restitution, landing.width, landing.width / 10,
+      std::cos(landing.tilt / 2), std::sin(landing.tilt / 2))));
 }
 
 /// m: how deep the bar's lower face, or its ends, are in the plate; the bar turns about z only.
@@ -56,7 +56,8 @@ TEST(LandingBar, IsNeverInThePlate) {
 TEST(LandingBar, DoesNotDependOnTheSteps) {
   for (const double width : {4.0, 0.6})
     for (const double tilt : {1e-2, 1e-4}) {
-      const Trajectory coarse = landingOf({tilt, 0.5, 1e-6, width}, 10), fine = landingOf({tilt, 0.5, 1e-12, width}, 10);
+      const Trajectory coarse = landingOf({tilt, 0.5, 1e-6, width}, 10),
+                       fine = landingOf({tilt, 0.5, 1e-12, width}, 10);
       const BodyState a = endOf(coarse), b = endOf(fine);
       EXPECT_LT((a.position - b.position).norm(), 1e-5) << width << " " << tilt;
       EXPECT_LT(orientationError(a.orientation, b.orientation), 1e-5) << width << " " << tilt;
