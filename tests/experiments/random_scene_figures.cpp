@@ -1,0 +1,81 @@
+#include "experiments/random_scene_figures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/tie_error.h"
+#include "study/drift_meter.h"
+
+namespace cradle {
+namespace {
+
+double mechanicalEnergy(const Frame& frame) {
+  return frame.energy.kinetic + frame.energy.potential;
+}
+
+bool isFinite(const Frame& frame) {
+  const auto finite = [](const BodyState& state) {
+    return state.position.allFinite() && state.orientation.coeffs().allFinite() && state.linearVelocity.allFinite() &&
+           state.angularVelocity.allFinite();
+  };
+  return std::all_of(frame.states.begin(), frame.states.end(), finite) && std::isfinite(energyConstantOf(frame));
+}
+
+double ropeExcess(const Frame& frame, const Scene& scene) {
+  const std::vector<RigidTransform> places = placesIn(frame, scene);
+  double excess = 0;
+  for (const Rope& rope : scene.ropes)
+    excess = std::max(excess, distanceOfEnds(rope.anchorA, rope.anchorB, places) - rope.maxLength);
+  return excess;
+}
+
+}  // namespace
+
+RandomSceneFigures runRandomScene(const Scene& scene) {
+  RandomSceneFigures figures;
+  std::vector<Frame> frames;
+  const SimulationSink sink{[&](const Frame& frame) { frames.push_back(frame); }, [](const Event&) {},
+                            [&](const std::string& warning) {
+                              if (warning.find("not promised") != std::string::npos) figures.keepsAccuracy = false;
+                            }};
+  figures.cpuSeconds = simulate(scene, sink).cpuSeconds;
+
+  const Assembly assembly = assemble(scene, wholeScene(scene));
+  DriftMeter meter(assembly);
+  const double start = mechanicalEnergy(frames[0]);
+  double least = start;
+  for (const Frame& frame : frames) {
+    const double energy = mechanicalEnergy(frame);
+    figures.isFinite = figures.isFinite && isFinite(frame);
+    figures.energyScale = std::max(
+        {figures.energyScale, frame.energy.kinetic, std::abs(frame.energy.potential - frames[0].energy.potential)});
+    figures.energyGain = std::max(figures.energyGain, energy - least);
+    figures.energyError = std::max(figures.energyError, std::abs(energyConstantOf(frame) - start));
+    figures.tieError = std::max({figures.tieError, tieError(frame, scene), ropeExcess(frame, scene)});
+    least = std::min(least, energy);
+    meter.add(frame);
+  }
+  figures.penetration = meter.penetration();
+  return figures;
+}
+
+std::vector<std::string> faultsOf(const RandomSceneFigures& figures, double accuracy) {
+  const double energyTolerance = 10 * accuracy * figures.energyScale;
+  const double penetrationBound = accuracy > 1e-4 ? 0.005 : 1e-4, tieBound = 10 * accuracy;
+  std::vector<std::string> faults;
+  const auto require = [&](bool holds, const std::string& what) {
+    if (!holds) faults.push_back(what);
+  };
+  require(figures.isFinite, "not finite");
+  require(figures.energyGain <= energyTolerance,
+          fmt::format("gains {:.2g} J, {:.1e} of {:.3g} J", figures.energyGain,
+                      figures.energyGain / figures.energyScale, figures.energyScale));
+  require(figures.energyError <= energyTolerance,
+          fmt::format("balance off by {:.2g} J, {:.1e} of {:.3g} J", figures.energyError,
+                      figures.energyError / figures.energyScale, figures.energyScale));
+  require(figures.penetration <= penetrationBound, fmt::format("penetration {:.2g} m", figures.penetration));
+  require(figures.tieError <= tieBound, fmt::format("ties off by {:.2g} m", figures.tieError));
+  return faults;
+}
+
+}  // namespace cradle
