@@ -49,7 +49,7 @@ double firstLook(const RopeLimit& rope, const Step& step) {
   const MotionBounds b = motionBounds(step, rope.anchorB.body, rope.anchorB.point.norm());
   // The distance d of two points: d'' <= relative acceleration + (speed across)^2 / d.
   const double across = a.speed + b.speed;
-  return std::min(kFirstLook, speed / (a.acceleration + b.acceleration + across * across / rope.maxLength));
+  return std::min(kFirstLook / 2, speed / (a.acceleration + b.acceleration + across * across / rope.maxLength));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ std::string turnText(const Quat& q) {
 
 class RandomScene {
  public:
-  explicit RandomScene(unsigned number) : number_(number), random_(number) {}
+  explicit RandomScene(unsigned number) : number_(number), random_(number), hasMeshes_(chance(0.5)) {}
 
   std::string text() {
     const bool isWeightless = chance(0.1);
@@ -69,12 +69,13 @@ class RandomScene {
 
   const char* someMaterial() { return chance(0.5) ? "a" : "b"; }
 
-  /// A shape in a ball of radius kLargest.
+  /// A shape in a ball of radius kLargest. Scenes have cylinders or concave meshes, whose contact with each other is not
+  /// simulated.
   std::string someShape() {
     const double a = number(0.06, 0.12), b = number(0.05, 0.2);
     const Vec3 size = Vec3::Constant(0.16) + random_.vector(0.1);
     const std::string mesh = fmt::format(R"({{"mesh": "{}/assets/l_prism.3ds", "scale": {}}})", CRADLE_SOURCE_DIR, a);
-    switch (upTo(6)) {
+    switch (upTo(5)) {
       case 0:
         return fmt::format(R"("shape": {{"sphere": {{"radius": {}}}}})", a);
       case 1:
@@ -82,11 +83,10 @@ class RandomScene {
       case 2:
         return fmt::format(R"("shape": {{"capsule": {{"radius": {}, "length": {}}}}})", a, b);
       case 3:
-        return fmt::format(R"("shape": {{"cylinder": {{"radius": {}, "length": {}}}}})", a, b);
-      case 4:
         return fmt::format(R"("shape": {}, "collision": "hull")", mesh);
       default:
-        return fmt::format(R"("shape": {})", mesh);
+        return hasMeshes_ ? fmt::format(R"("shape": {})", mesh)
+                          : fmt::format(R"("shape": {{"cylinder": {{"radius": {}, "length": {}}}}})", a, b);
     }
   }
 
@@ -226,6 +226,7 @@ class RandomScene {
 
   unsigned number_;
   RandomPoses random_;
+  bool hasMeshes_;
   std::vector<RigidTransform> places_;  // of the bodies that move
   std::vector<std::string> bodies_, springs_, ropes_, rods_, ballJoints_, hinges_;
   std::vector<int> ties_;  // of each body, then the world: another one that it is tied to, or -1

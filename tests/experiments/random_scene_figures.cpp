@@ -42,17 +42,17 @@ RandomSceneFigures runRandomScene(const Scene& scene) {
 
   const Assembly assembly = assemble(scene, wholeScene(scene));
   DriftMeter meter(assembly);
-  const double start = mechanicalEnergy(frames[0]);
-  double least = start;
+  double least = mechanicalEnergy(frames[0]);
   for (const Frame& frame : frames) {
     const double energy = mechanicalEnergy(frame);
     figures.isFinite = figures.isFinite && isFinite(frame);
     figures.energyScale = std::max(
         {figures.energyScale, frame.energy.kinetic, std::abs(frame.energy.potential - frames[0].energy.potential)});
     figures.energyGain = std::max(figures.energyGain, energy - least);
-    figures.energyError = std::max(figures.energyError, std::abs(energyConstantOf(frame) - start));
+    figures.energyError = std::max(figures.energyError, std::abs(energyConstantOf(frame) - energyConstantOf(frames[0])));
     figures.tieError = std::max({figures.tieError, tieError(frame, scene), ropeExcess(frame, scene)});
     least = std::min(least, energy);
+    if (getenv("TRACE")) fmt::print("{} E {} const {} tie {} rope {}\n", frame.time, energy, energyConstantOf(frame), tieError(frame,scene), ropeExcess(frame,scene));
     meter.add(frame);
   }
   figures.penetration = meter.penetration();
