@@ -24,7 +24,7 @@ constexpr int kMostRefinements = 3;
 constexpr int kMostProjectionSteps = 20;      // quadratic convergence needs 1 or 2 from a step's error
 constexpr double kStalled = 0.5;              // an iteration that leaves more of an error has failed
 constexpr double kFar = 1000;                 // times the error: few sound mechanisms move farther to mend it
-constexpr double kConverged = 0.01;           // an iteration that leaves less of an error was sound, however far it went
+constexpr double kConverged = 0.1;            // an iteration that leaves less of an error was sound, however far it went
 constexpr double kMoreRegular = 1000;         // factor on the regularisation after a failure
 constexpr double kMostRegularisation = 1e-1;  // with it, every direction that is left is a singular one
 
