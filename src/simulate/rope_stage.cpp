@@ -112,15 +112,9 @@ double RopeStage::tension(std::size_t rope, const VectorX& state) {
 }
 
 void RopeStage::resolve(double time, VectorX& state) {
-  // Ropes that would have to push let go; impacts may have shortened others.
-  bool released = false;
-  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
-    if (!isTaut(i) || tension(i, state) > kTautPart * startTension_) continue;
-    release(time, i, state);
-    released = true;
-  }
-  if (released) return;
-
+  // Ropes that would have to push let go, even where others go taut; impacts may have shortened some.
+  for (std::size_t i = 0; i < tautRod_.size(); ++i)
+    if (isTaut(i) && tension(i, state) <= kTautPart * startTension_) release(time, i, state);
   for (std::size_t i = 0; i < tautRod_.size(); ++i)
     if (!isTaut(i) && motionOf(assembly_.ropes[i], state).slackLength > kSlackPart * assembly_.ropes[i].maxLength)
       loosen(time, i, state);
