@@ -60,8 +60,7 @@ void SteppedMotion::advance(double frame) {
   island_.state = step.state;
   if (solver_.hasConstraints()) solver_.project(island_.state);
   normalizeOrientations(island_.state);
-  contacts_.isCrowded() ? contacts_.resolveStep(time, before_, island_.state)
-                        : contacts_.resolve(time, before_, island_.state);
+  resolveContacts();
   const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
   ropes_.resolve(time, island_.state);
   keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
@@ -80,6 +79,15 @@ double SteppedMotion::nextStepEnd() const {
   const double gridEnd = start_ + static_cast<double>(stepNumber_ + 1) * method_.timeStep;
   if (gridEnd <= end - kTimeRounding * method_.timeStep) end = gridEnd;
   return std::min(end, island_.pushes.nextChange());
+}
+
+void SteppedMotion::resolveContacts() {
+  if (!contacts_.isCrowded())
+    contacts_.resolve(island_.time, before_, island_.state);
+  else if (island_.step.timeStep > kTimeRounding * method_.timeStep)  // no gap closes in no time
+    contacts_.resolveStep(island_.time, before_, island_.state);
+  // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
+  if (solver_.hasConstraints() && !contacts_.touching().empty()) solver_.project(island_.state);
 }
 
 /// Takes a step to `stepEnd`, or a part of it where springs, ropes or spins are too fast for the whole.

@@ -40,6 +40,7 @@ class SteppedMotion {
   double nextStepEnd() const;
   void moveFreely(double stepEnd);
   bool stopAtFirstEvent();
+  void resolveContacts();
   void countEvent();
 
   MovingIsland& island_;

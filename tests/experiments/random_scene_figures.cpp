@@ -11,9 +11,11 @@ namespace {
 
 constexpr double kEventAccuracy = 1e-4;  // the plan takes events up to here
 constexpr double kMostErrors = 10;       // times the accuracy, which bounds the error of a step: they add up
-// Steps of one length promise no accuracy, but that pictures are right: energy to a part, ties in m; penetration as in
-// piles.
-constexpr double kSteppedError = 2e-3, kSteppedPenetration = 0.005;
+// Steps of one length promise no accuracy, but that pictures are right. What is left of the energy's balance is the
+// work of taking out overlaps; ropes are drawn too long by what contact does to speeds of 20 m/s within a step of 1/960
+// s; penetration is as in piles.
+constexpr double kSteppedGain = 3e-3, kSteppedError = 1e-2;                  // of the energy
+constexpr double kSteppedTieError = 20. / 960, kSteppedPenetration = 0.005;  // m
 
 double mechanicalEnergy(const Frame& frame) {
   return frame.energy.kinetic + frame.energy.potential;
@@ -70,17 +72,19 @@ RandomSceneFigures runRandomScene(const Scene& scene) {
 
 std::vector<std::string> faultsOf(const RandomSceneFigures& figures, double accuracy) {
   const bool keeps = figures.keepsAccuracy && accuracy <= kEventAccuracy;
-  const double most = keeps ? kMostErrors * accuracy : kSteppedError, deepest = keeps ? most : kSteppedPenetration;
+  const double most = kMostErrors * accuracy;
   const double gain = figures.energyGain / figures.energyScale, error = figures.energyError / figures.energyScale;
   std::vector<std::string> faults;
   const auto require = [&](bool holds, const std::string& what) {
     if (!holds) faults.push_back(what);
   };
   require(figures.isFinite, "not finite");
-  require(gain <= most, fmt::format("gains {:.2g} of its energy", gain));
-  require(error <= most, fmt::format("balance of energy off by {:.2g} of it", error));
-  require(figures.penetration <= deepest, fmt::format("penetration {:.2g} m", figures.penetration));
-  require(figures.tieError <= most, fmt::format("ties off by {:.2g} m or rad", figures.tieError));
+  require(gain <= (keeps ? most : kSteppedGain), fmt::format("gains {:.2g} of its energy", gain));
+  require(error <= (keeps ? most : kSteppedError), fmt::format("balance of energy off by {:.2g} of it", error));
+  require(figures.penetration <= (keeps ? most : kSteppedPenetration),
+          fmt::format("penetration {:.2g} m", figures.penetration));
+  require(figures.tieError <= (keeps ? most : kSteppedTieError),
+          fmt::format("ties off by {:.2g} m or rad", figures.tieError));
   return faults;
 }
 
