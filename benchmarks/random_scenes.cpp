@@ -85,7 +85,6 @@ bool finish(std::map<pid_t, std::pair<unsigned, int>>& running, Progress& progre
   else if (WEXITSTATUS(status) != 0)
     line = fmt::format("ends with exit code {}|", WEXITSTATUS(status));
   const std::size_t bar = line.find('|');
-  if (getenv("ALL")) fmt::print("ALL {} {}\n", number, line);
   if (bar == 0) return true;
   progress.endLine();
   fmt::print("scene {}: {}\n    {}\n", number, line.substr(0, bar), line.substr(bar + 1));

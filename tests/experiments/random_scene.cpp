@@ -69,8 +69,8 @@ class RandomScene {
 
   const char* someMaterial() { return chance(0.5) ? "a" : "b"; }
 
-  /// A shape in a ball of radius kLargest. Scenes have cylinders or concave meshes, whose contact with each other is not
-  /// simulated.
+  /// A shape in a ball of radius kLargest. Scenes have cylinders or concave meshes, whose contact with each other is
+  /// not simulated.
   std::string someShape() {
     const double a = number(0.06, 0.12), b = number(0.05, 0.2);
     const Vec3 size = Vec3::Constant(0.16) + random_.vector(0.1);

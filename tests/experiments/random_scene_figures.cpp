@@ -61,9 +61,6 @@ RandomSceneFigures runRandomScene(const Scene& scene) {
         std::max(figures.energyError, std::abs(energyConstantOf(frame) - energyConstantOf(frames[0])));
     figures.tieError = std::max({figures.tieError, tieError(frame, scene), ropeExcess(frame, scene)});
     least = std::min(least, energy);
-    if (getenv("TRACE"))
-      fmt::print("{} E {} const {} tie {} rope {}\n", frame.time, energy, energyConstantOf(frame),
-                 tieError(frame, scene), ropeExcess(frame, scene));
     meter.add(frame);
   }
   figures.penetration = meter.penetration();
