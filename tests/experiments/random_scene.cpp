@@ -12,9 +12,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kLargest = 0.25;  // m: radius around any body
-constexpr double kCell = 0.55;     // m: bodies start in cells of their own
-constexpr int kRow = 3;            // cells along x and z
+constexpr double kCell = 0.55;  // m: bodies start in cells of their own
+constexpr int kRow = 3;         // cells along x and z
 constexpr std::array kAccuracies{"1e-3", "1e-5", "1e-7"};
 
 std::string turnText(const Quat& q) {
@@ -69,7 +68,7 @@ class RandomScene {
 
   const char* someMaterial() { return chance(0.5) ? "a" : "b"; }
 
-  /// A shape in a ball of radius kLargest. Scenes have cylinders or concave meshes, whose contact with each other is
+  /// A shape in a ball of radius 0.25 m. Scenes have cylinders or concave meshes, whose contact with each other is
   /// not simulated.
   std::string someShape() {
     const double a = number(0.06, 0.12), b = number(0.05, 0.2);
