@@ -21,11 +21,12 @@ constexpr double kRegularisation = 1e-8;
 constexpr double kRefined = 1e-15;  // residual that is left, as a part of the right-hand side
 constexpr int kMostRefinements = 3;
 
-constexpr int kMostProjectionSteps = 20;  // quadratic convergence needs 1 or 2 from a step's error
-constexpr double kStalled = 0.5;          // an iteration that leaves more of an error has failed
-constexpr double kFar = 1000;             // times the error: few sound mechanisms move farther to mend it
-constexpr double kConverged = 0.1;        // an iteration that leaves less of an error was sound, however far it went
-constexpr double kMoreRegular = 1000;     // factor on the regularisation after a failure
+constexpr int kMostProjectionSteps = 20;      // quadratic convergence needs 1 or 2 from a step's error
+constexpr double kStalled = 0.5;              // an iteration that leaves more of an error has failed
+constexpr double kFar = 1000;                 // times the error: few sound mechanisms move farther to mend it
+constexpr double kConverged = 0.1;            // an iteration that leaves less of an error was sound,
+constexpr double kFarthest = 1e-3;            // if it moved nothing farther than this (m or rad)
+constexpr double kMoreRegular = 1000;         // factor on the regularisation after a failure
 constexpr double kMostRegularisation = 1e-1;  // with it, every direction that is left is a singular one
 
 }  // namespace
@@ -196,7 +197,7 @@ double ConstraintSolver::project(VectorX& state) {
     const double farthest = displace(state);
     factorize(state);
     const double left = largestError();
-    const bool isSound = farthest <= kFar * error || left < kConverged * error;
+    const bool isSound = farthest <= kFar * error || (left < kConverged * error && farthest <= kFarthest);
     if (isSound && left < kStalled * error) {
       error = left;
       continue;
