@@ -25,8 +25,8 @@ namespace {
 constexpr rlim_t kMostSeconds = 20;  // CPU time of a scene
 constexpr int kAtOnce = 2;
 
-Scene sceneOf(const std::string& text, const std::string& path) {
-  return parseScene(text, path, modelFilesBeside(path)).scene;
+Scene randomScene(unsigned number) {
+  return parseScene(randomSceneText(number), "random.json", modelFilesBeside("random.json")).scene;
 }
 
 /// One line; what is wrong comes first.
@@ -40,9 +40,10 @@ std::string lineOf(const Scene& scene) {
       figures.tieError, figures.cpuSeconds);
 }
 
-std::string lineOrError(unsigned number) {
+template <class MakeScene>
+std::string lineOrError(const MakeScene& makeScene) {
   try {
-    return lineOf(sceneOf(randomSceneText(number), "random.json"));
+    return lineOf(makeScene());
   } catch (const Error& error) {
     return fmt::format("ends with exit code {}: {}|", static_cast<int>(error.kind()), error.what());
   }
@@ -56,7 +57,7 @@ int start(unsigned number, pid_t& process) {
   if (process == 0) {
     const rlimit limit{kMostSeconds, kMostSeconds + 1};
     setrlimit(RLIMIT_CPU, &limit);
-    const std::string line = lineOrError(number).substr(0, 4000);  // a pipe holds more
+    const std::string line = lineOrError([&] { return randomScene(number); }).substr(0, 4000);  // a pipe holds more
     if (write(pipeEnds[1], line.data(), line.size()) < 0) _exit(1);
     _exit(0);
   }
@@ -121,7 +122,7 @@ int main(int count, char** arguments) {
     return 0;
   }
   if (what == "--file") {
-    fmt::print("{}\n", cradle::lineOf(cradle::loadScene(which).scene));
+    fmt::print("{}\n", cradle::lineOrError([&] { return cradle::loadScene(which).scene; }));
     return 0;
   }
   return cradle::runScenes(static_cast<unsigned>(std::stoul(what)), static_cast<unsigned>(std::stoul(which)));
