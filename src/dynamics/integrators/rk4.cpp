@@ -4,6 +4,7 @@
 
 #include "dynamics/integrators/rk4.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cradle {
@@ -31,7 +32,8 @@ double rk4Error(const Step& step) {
   double largest = 0;
   for (Eigen::Index i = 0; i < step.state.size(); ++i) {
     const double error = step.timeStep / 6 * std::abs(step.work[i] - step.endRate[i]) / (1 + std::abs(step.state[i]));
-    if (!(error <= largest)) largest = error;
+    if (!std::isfinite(error)) return NAN;
+    largest = std::max(largest, error);
   }
   return largest;
 }
