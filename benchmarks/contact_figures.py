@@ -1,19 +1,24 @@
 #!/usr/bin/env python3
-"""Contact beside Bullet: error, energy, drift at rest, penetration and cost of the scenes in benchmarks/scenes.
+"""Contact beside Bullet: error, energy, drift at rest, penetration and cost of scenes of contact, as a table.
 
-    contact_figures.py PROGRAM [SCENE ...]      SCENE: a name without folder and ending; all of them if none is given
+    contact_figures.py PROGRAM [NAME ...]      NAME: a scene of benchmarks/scenes without folder and ending, or one of
+                                               cradle_N_K, tray_of_balls, balls_49, balls_216, piles; all if none is given
 
 PROGRAM is cradle; Bullet runs by bullet_trajectory beside it, if that was built (CMake: CRADLE_PEERS), in turn with cradle.
+Progress goes to stderr.
 error        m, at the worst frame, unless the scene's line says otherwise
-energy       largest drift of kinetic + potential + dissipated in parts of the largest kinetic energy; of Bullet only where
-             nothing dissipates
+energy       largest drift of kinetic + potential + dissipated - work in parts of the largest kinetic energy; of Bullet only
+             where nothing dissipates
 drift        m: how far a body that should lie still goes
 penetration  m: deepest overlap in the frames looked at
 ms/s         CPU milliseconds per simulated second, steps alone: the median of at least three runs (of one, if it is long)
 ratio        to the first row of the scene
+cradle_N_K   N touching balls on rods, K of them lifted by 45 degrees
+piles        is what benchmark_pile says of 1000 bodies in 10 s
 """
-import math, os, sqlite3, statistics, subprocess, sys, tempfile
+import json, math, os, sqlite3, statistics, subprocess, sys, tempfile, time
 
+import hard_sphere_gas
 from scene_figures import Run, norm, sub
 
 GRAVITY = 9.81
@@ -86,33 +91,61 @@ def off_by(result, kinds, expected, number=-1):
     events = [event for event in result.events if event[1] in kinds]
     return f"{events[number][1]} off by {abs(events[number][0] - expected):.1e} s" if events else ""
 
-def cradle(arm_inertia):
-    """Five balls at 0.5 m; a ball that is rigid with its arm has inertia 2/5 r^2 about itself."""
+def cradle(balls, lifted, arm_inertia):
+    """Balls at 0.5 m; a ball that is rigid with its arm has inertia 2/5 r^2 about itself."""
     lift, length, radius = math.pi / 4, 0.5, 0.05
     frequency = math.sqrt(GRAVITY * length / (length ** 2 + arm_inertia * 0.4 * radius ** 2))
 
-    def ideal(t):  # what is left of the middle swings as the first ball, what is right of it as the last
+    def ideal(t):  # what is left of the middle swings as the first balls, what is right of it as the last
         angle, rate = swing(t, lift, frequency)
-        return [(min(angle, 0.0), rate if angle < 0 else 0.0), *[(0.0, 0.0)] * 3, (max(angle, 0.0), rate if angle > 0 else 0.0)]
+        moves = [i < lifted if angle < 0 else i >= balls - lifted for i in range(balls)]
+        return [(angle, rate) if moving else (0.0, 0.0) for moving in moves]
 
     def figures(result):
         worst = resting = 0.0
         start = math.sqrt(2 * GRAVITY * length * (1 - math.cos(lift)) / (1 + arm_inertia * 0.4 * (radius / length) ** 2))
-        after = next(i for i, row in enumerate(result.states["ball1"]) if ideal(row[0] - 0.05)[4][0] > 0)
-        rates = [rate for _, rate in ideal(result.states["ball1"][after][0])]
-        angles = [angle for angle, _ in ideal(result.states["ball1"][after][0])]
-        missed = [math.dist(result.states[f"ball{i + 1}"][after][2], [length * rate * math.cos(angle), length * rate * math.sin(angle), 0])
-                  for i, (angle, rate) in enumerate(zip(angles, rates))]
-        for frame in range(len(result.states["ball1"])):
-            expected = ideal(result.states["ball1"][frame][0])
-            for i, (angle, _) in enumerate(expected):
-                position = result.states[f"ball{i + 1}"][frame][1]
-                away = math.dist(position, [0.1 * i + length * math.sin(angle), -length * math.cos(angle), 0])
+        states = [result.states[f"ball{i + 1}"] for i in range(balls)]
+        after = next(i for i, row in enumerate(states[0]) if ideal(row[0] - 0.05)[-1][0] > 0)
+        missed = [math.dist(ball[after][2], [length * rate * math.cos(angle), length * rate * math.sin(angle), 0])
+                  for ball, (angle, rate) in zip(states, ideal(states[0][after][0]))]
+        for frame in range(len(states[0])):
+            for i, (angle, _) in enumerate(ideal(states[0][frame][0])):
+                away = math.dist(states[i][frame][1], [0.1 * i + length * math.sin(angle), -length * math.cos(angle), 0])
                 worst = max(worst, away)
-                if 0 < i < 4:
+                if angle == 0:
                     resting = max(resting, away)
-        return worst, resting, f"{math.sqrt(sum(m * m for m in missed) / 5) / start:.1e} of v0 after the first impact"
+        return worst, resting, f"{math.sqrt(sum(m * m for m in missed) / balls) / start:.1e} of v0 after the first impact"
     return figures
+
+
+def cradle_scene(balls, lifted):
+    """As cradle_on_rods.json, for any number of balls."""
+    lift = math.pi / 4
+    places = [[0.1 * i - 0.5 * math.sin(lift), -0.5 * math.cos(lift), 0] if i < lifted else [0.1 * i, -0.5, 0]
+              for i in range(balls)]
+    return {"schema": "cradle-scene/1", "name": f"{balls} balls, {lifted} lifted", "duration": 10,
+            "output": {"framesPerSecond": 20},
+            "materials": {"steel": {"restitution": 1, "staticFriction": 0, "dynamicFriction": 0}},
+            "bodies": [{"name": f"ball{i + 1}", "material": "steel", "shape": {"sphere": {"radius": 0.05}}, "mass": 0.2,
+                        "position": place} for i, place in enumerate(places)],
+            "rods": [{"bodyA": f"ball{i + 1}", "anchorA": [0, 0, 0], "anchorB": [0.1 * i, 0, 0]} for i in range(balls)]}
+
+
+def seldom_seen(scene):
+    """With a frame a second: overlaps of many balls are looked for in each."""
+    scene["output"]["framesPerSecond"] = 1
+    return scene
+
+
+def pushed_tray(result):
+    """a = (F - mu (M + n m) g) / (M + 2 n m / 7) of the box, 2/7 of it of the balls that roll on it."""
+    acceleration = (150 - 0.4 * 35 * GRAVITY) / (10 + 50 / 7)
+    end = {name: norm(rows[-1][2]) for name, rows in result.states.items()}
+    seconds = result.states["tray"][-1][0]
+    box = end.pop("tray")
+    balls = max(end.values(), key=lambda speed: abs(speed - 2 / 7 * acceleration * seconds))
+    error = max(abs(box - acceleration * seconds), abs(balls - 2 / 7 * acceleration * seconds))
+    return error, None, f"v_box {box:.9f}, v_ball {balls:.9f} m/s"
 
 
 def bouncing(restitution):
@@ -177,24 +210,42 @@ def on_platform(result):
     return worst, None, "fourth " + off_by(result, ["impact"], 1.0888006663158162, 3) if result.events else ""
 
 
-FIGURES = {
-    "cradle_on_joints": (cradle(1), True, "drift: of the three balls in the middle"),
-    "cradle_on_rods": (cradle(0), True, "drift: of the three balls in the middle"),
-    "bounce_elastic": (bouncing(1), True, ""),
-    "bounce_fading": (bouncing(0.8), False, ""),
-    "stack": (stack(0), False, ""),
-    "stack_heavy_top": (stack(0), False, ""),
-    "stack_dropped": (stack(SETTLED), False, f"drift: after {SETTLED} s"),
-    "stack_heavy_top_dropped": (stack(SETTLED), False, f"drift: after {SETTLED} s"),
-    "stack_struck": (stack(SETTLED), False, f"drift: after {SETTLED} s"),
-    "slope_slide": (slides(0.5), False, ""),
-    "slope_stick": (lambda result: (None, result.moved("block"), ""), False, ""),
-    "slope_up_and_back": (thrown_up(0.2), False, ""),
-    "slope_up_and_stay": (thrown_up(0.7), False, ""),
-    "ball_slip_to_roll": (rolling(0), False, ""),
-    "ball_backspin": (rolling(-30), False, ""),
-    "ball_on_platform": (on_platform, False, "error: at seven instants"),
-}
+class Case:
+    """What is run, and how it is looked at. `scene`: a file, or what would stand in one."""
+    def __init__(self, scene, figures, keeps_energy=False, meaning="", accuracies=ACCURACIES, has_peer=True):
+        self.scene, self.figures, self.keeps_energy, self.meaning = scene, figures, keeps_energy, meaning
+        self.accuracies, self.has_peer = accuracies, has_peer
+
+
+def of_folder(name, *rest):
+    return name, Case(os.path.join(SCENES, name + ".json"), *rest)
+
+
+AT_REST = "drift: of the balls that hang still"
+CASES = dict([
+    of_folder("cradle_on_joints", cradle(5, 1, 1), True, AT_REST),
+    of_folder("cradle_on_rods", cradle(5, 1, 0), True, AT_REST),
+    *((f"cradle_{n}_{k}", Case(cradle_scene(n, k), cradle(n, k, 0), True, AT_REST, ("1e-10", "1e-6"), False))
+      for n in range(2, 8) for k in range(1, min(4, n))),
+    of_folder("bounce_elastic", bouncing(1), True),
+    of_folder("bounce_fading", bouncing(0.8)),
+    of_folder("stack", stack(0)),
+    of_folder("stack_heavy_top", stack(0)),
+    of_folder("stack_dropped", stack(SETTLED), False, f"drift: after {SETTLED} s"),
+    of_folder("stack_heavy_top_dropped", stack(SETTLED), False, f"drift: after {SETTLED} s"),
+    of_folder("stack_struck", stack(SETTLED), False, f"drift: after {SETTLED} s"),
+    of_folder("slope_slide", slides(0.5)),
+    of_folder("slope_stick", lambda result: (None, result.moved("block"), "")),
+    of_folder("slope_up_and_back", thrown_up(0.2)),
+    of_folder("slope_up_and_stay", thrown_up(0.7)),
+    of_folder("ball_slip_to_roll", rolling(0)),
+    of_folder("ball_backspin", rolling(-30)),
+    of_folder("ball_on_platform", on_platform, False, "error: at seven instants"),
+    ("tray_of_balls", Case(os.path.join(SCENES, "../../scenes/tray_of_balls.json"), pushed_tray, False,
+                           "error: of the speeds after 4 s, m/s", ("1e-3", "1e-6"), False)),
+    *((name, Case(seldom_seen(scene), lambda result: (None, None, ""), True, "", ("1e-6",), False))
+      for name, scene in (("balls_49", hard_sphere_gas.grid()), ("balls_216", hard_sphere_gas.cube()))),
+])
 
 
 def run_once(command, path):
@@ -207,12 +258,12 @@ def run_once(command, path):
     return Result(path) if done.returncode == 0 else (done.stderr or done.stdout).strip().splitlines()[-1]
 
 
-def programs(cradle_program, scene):
+def programs(cradle_program, case, scene):
     """Name and command of each row; the path of the trajectory comes last."""
-    for accuracy in ACCURACIES:
+    for accuracy in case.accuracies:
         yield f"cradle {accuracy}", [cradle_program, "simulate", scene, "--quiet", "--accuracy", accuracy, "-o"]
     bullet = os.path.join(os.path.dirname(cradle_program), "bullet_trajectory")
-    if os.path.exists(bullet):
+    if case.has_peer and os.path.exists(bullet):
         for method, steps in BULLET:
             yield f"{method} 1/{steps} s", [bullet, scene, method, repr(1 / steps)]
 
@@ -221,10 +272,19 @@ def show(value, form=".1e"):
     return "-" if value is None else format(value, form)
 
 
-def measure(cradle_program, name, path):
-    figures, keeps_energy, meaning = FIGURES[name]
-    print(f"{name}{': ' + meaning if meaning else ''}")
-    commands = list(programs(cradle_program, os.path.join(SCENES, name + ".json")))
+def scene_file(case, folder):
+    if isinstance(case.scene, str):
+        return case.scene
+    path = os.path.join(folder, "scene.json")
+    with open(path, "w") as stream:
+        json.dump(case.scene, stream)
+    return path
+
+
+def measure(cradle_program, name, folder):
+    """The lines of a scene."""
+    case, path = CASES[name], os.path.join(folder, "run.sqlite")
+    commands = list(programs(cradle_program, case, scene_file(case, folder)))
     results, costs = {}, {row: [] for row, _ in commands}
     for turn in range(LEAST_RUNS):
         for row, command in commands:
@@ -233,24 +293,37 @@ def measure(cradle_program, name, path):
             results[row] = run_once(command, path)
             if not isinstance(results[row], str):
                 costs[row].append(1000 * results[row].cpu / results[row].run.duration)
+    yield f"{name}{': ' + case.meaning if case.meaning else ''}"
     first = None
     for row, result in results.items():
         if isinstance(result, str):
-            print(f"  {row:24} failed: {result[:140]}")
+            yield f"  {row:24} failed: {result[:140]}"
             continue
-        (error, drift, note), cost = figures(result), statistics.median(costs[row])
+        (error, drift, note), cost = case.figures(result), statistics.median(costs[row])
         first = cost if row == commands[0][0] else first
-        knows_energy = keeps_energy or row.startswith("cradle")
-        print(f"  {row:24}{show(error):>10}{show(result.run.energy_drift() if knows_energy else None):>10}"
-              f"{'collapsed' if drift is not None and drift > FAR else show(drift):>12}{show(result.run.penetration()):>13}"
-              f"{cost:12.4f}{show(first and cost / first, '.3g'):>10}   {note}".rstrip())
+        knows_energy = case.keeps_energy or row.startswith("cradle")
+        yield (f"  {row:24}{show(error):>10}{show(result.run.energy_drift() if knows_energy else None):>10}"
+               f"{'collapsed' if drift is not None and drift > FAR else show(drift):>12}{show(result.run.penetration()):>13}"
+               f"{cost:12.4f}{show(first and cost / first, '.3g'):>10}   {note}").rstrip()
+
+
+def piles(cradle_program):
+    program = os.path.join(os.path.dirname(cradle_program), "../benchmarks/benchmark_pile")
+    if not os.path.exists(program):
+        return ["piles: benchmark_pile was not built"]
+    return ["piles", *subprocess.run([program, "1000", "all", "10"], capture_output=True, text=True).stdout.splitlines()]
 
 
 def main(program, *names):
-    print(f"  {'':24}{'error':>10}{'energy':>10}{'drift':>12}{'penetration':>13}{'ms/s':>12}{'ratio':>10}")
+    program, names = os.path.abspath(program), names or [*CASES, "piles"]
+    lines = [f"  {'':24}{'error':>10}{'energy':>10}{'drift':>12}{'penetration':>13}{'ms/s':>12}{'ratio':>10}"]
+    start = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
-        for name in names or FIGURES:
-            measure(os.path.abspath(program), name, os.path.join(folder, "run.sqlite"))
+        for done, name in enumerate(names):
+            left = f", about {(time.monotonic() - start) / done * (len(names) - done):.0f} s left" if done else ""
+            print(f"{done + 1} of {len(names)}: {name}{left}", file=sys.stderr)
+            lines += piles(program) if name == "piles" else measure(program, name, folder)
+    print("\n".join(lines))
 
 
 if __name__ == "__main__":

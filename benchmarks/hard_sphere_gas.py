@@ -143,4 +143,5 @@ def main():
     print(f"one ball dropped 1 m     {run.figures()}  error {bounce_error(run):.1e} m")
 
 
-main()
+if __name__ == "__main__":
+    main()

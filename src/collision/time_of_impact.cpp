@@ -171,13 +171,20 @@ class PairSearch {
 
   bool hasOneContact() const { return pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall(); }
 
+  /// Whether the gap is that of one point, or bends downwards no more than one: of a ball and what is convex, of a
+  /// corner over a plane. While one point of a rim leaves, another may come down.
+  bool staysOnePoint() const {
+    if (pair_.againstPlane) return a_.kind() != ColliderKind::cylinder;
+    return hasOneContact() && !hasMesh(a_, geometry_.colliders[pair_.b]);
+  }
+
   /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not, or by
   /// no more than the dead band, has that.
   void searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
     const double lowest = std::min(0.0, start), speed = leavingSpeed(touching.tolerance) * step_.timeStep;
     if (apart_) bounds_.graze = touching.tolerance;  // flush faces would be looked at for ever
     if (!(speed > touching.deadBand)) return searchFrom(0, start, lowest - touching.deadBand, best);
-    const bool hasOnePoint = std::isfinite(bounds_.acceleration);
+    const bool hasOnePoint = std::isfinite(bounds_.acceleration) && staysOnePoint();
     if (hasOnePoint && speed >= 0.5 * pull_) return;
     const double from = std::min(speed / pull_, hasOnePoint ? 1 : kFirstLook);
     const double away = gap(from);

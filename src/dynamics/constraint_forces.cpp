@@ -23,7 +23,9 @@ constexpr int kMostRefinements = 3;
 
 constexpr int kMostProjectionSteps = 20;      // quadratic convergence needs 1 or 2 from a step's error
 constexpr double kStalled = 0.5;              // an iteration that leaves more of an error has failed
-constexpr double kFar = 1000;                 // times the error: farther than any sound mechanism moves to mend it
+constexpr double kFar = 1000;                 // times the error: few sound mechanisms move farther to mend it
+constexpr double kConverged = 0.1;            // an iteration that leaves less of an error was sound,
+constexpr double kFarthest = 1e-3;            // if it moved nothing farther than this (m or rad)
 constexpr double kMoreRegular = 1000;         // factor on the regularisation after a failure
 constexpr double kMostRegularisation = 1e-1;  // with it, every direction that is left is a singular one
 
@@ -180,8 +182,8 @@ void ConstraintSolver::constrainVelocities(VectorX& state) {
   });
 }
 
-// Newton's method, damped as by Levenberg and Marquardt: a step that does not help, or that goes far, was led astray by
-// directions that are hardly constrained, and is tried again with less trust in them.
+// Newton's method, damped as by Levenberg and Marquardt: a step that does not help, or that goes far for a slow gain,
+// was led astray by directions that are hardly constrained, and is tried again with less trust in them.
 double ConstraintSolver::project(VectorX& state) {
   double regularisation = kRegularisation;
   factorize(state);
@@ -192,11 +194,12 @@ double ConstraintSolver::project(VectorX& state) {
     const double farthest = displace(state);
     factorize(state);
     const double left = largestError();
-    if (farthest <= kFar * error && left < kStalled * error) {
+    const bool isSound = farthest <= kFar * error || (left < kConverged * error && farthest <= kFarthest);
+    if (isSound && left < kStalled * error) {
       error = left;
       continue;
     }
-    if (farthest <= kFar * error && left < error) break;  // at the limit of rounding
+    if (isSound && left < error) break;  // at the limit of rounding
     state = undisplaced_;
     regularisation *= kMoreRegular;
     factorize(state);

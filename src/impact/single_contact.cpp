@@ -39,7 +39,10 @@ class Sliding {
     const Vec2 tangential(axis_.x() * along.x() - axis_.y() * along.y(), axis_.y() * along.x() + axis_.x() * along.y());
     return {tangential.x(), tangential.y(), pressing_ + coupling_.dot(tangential)};
   }
-  bool sticks(const Vec3& z) const { return std::sqrt(z.x() * z.x() + z.y() * z.y()) <= friction_ * z.z(); }
+  bool sticks(const Vec3& z) const {
+    const double size = std::sqrt(z.x() * z.x() + z.y() * z.y());
+    return std::isfinite(size) && size <= friction_ * z.z();
+  }
 
   /// |z_t| - friction z_n, > 0 outside the cone, and its derivative.
   double excess(double alpha, double& slope) const {

@@ -25,6 +25,7 @@ constexpr double kTurningPart = 0.1;     // of the tolerance, for these
 constexpr double kShortTimeStep = 1e-9;  // of the run's duration: nobody waits for so many steps
 constexpr int kMostShortSteps = 1000;    // in a row; after an event some are short
 constexpr double kMostTieError = 1e-9;   // m (a m of coordinates) or rad: projection leaves 1e-15
+constexpr double kTieErrorPart = 0.1;    // of the accuracy: so much is left now and then where ties are all but jammed
 constexpr double kUnitLength = 1e-9;     // how far |q|^2 may be from 1 before it is made 1
 
 constexpr int kMostEvents = 500;
@@ -219,7 +220,8 @@ void EventMotion::tidyState() {
 void EventMotion::requireTiesKept() const {
   const VectorX& state = island_.state;
   const double error = solver_.largestError(), size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
-  if (error > startTieError_ + kMostTieError * (1 + size)) guard_->failAtTies(state, island_.time, error);
+  const double most = std::max(kMostTieError, kTieErrorPart * island_.scene.accuracy);
+  if (error > startTieError_ + most * (1 + size)) guard_->failAtTies(state, island_.time, error);
 }
 
 /// What acts from now on.

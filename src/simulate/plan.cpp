@@ -22,10 +22,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kEventAccuracy = 1e-4;     // at coarser ones contact is resolved once a step
-constexpr double kPileTimeStep = 1.0 / 60;  // s, at most
-constexpr std::size_t kPileBodies = 50;     // with fewer, RK4 costs less than the pictures of its frames
-constexpr double kTolerancePart = 0.1;      // of the accuracy: the local errors of about ten steps add up to it
+constexpr double kEventAccuracy = 1e-4;         // at coarser ones contact is resolved once a step
+constexpr double kPileTimeStep = 1.0 / 60;      // s, at most
+constexpr std::size_t kPileBodies = 50;         // with fewer, RK4 costs less than the pictures of its frames
+constexpr double kContactStepTolerance = 1e-5;  // of the local error, where contact decides how good a step is
+constexpr double kTolerancePart = 0.1;          // of the accuracy: the local errors of about ten steps add up to it
 
 ChosenMethod errorSteps(const Scene& scene) {
   return {MotionKind::errorSteps, "DOP853", 0, dop853, kTolerancePart * scene.accuracy};
@@ -96,7 +97,7 @@ void choose(const Scene& scene, IslandPlan& island) {
     island.reason = "many bodies may touch: soft contacts, sub-stepped; the accuracy asked is not promised";
     island.leftOut.push_back("no motion of bodies that lie still");
   } else if (mayTouchSomething && scene.accuracy > kEventAccuracy) {
-    island.method = {MotionKind::fixedSteps, "RK4", kContactTimeStep, rk4};
+    island.method = contactSteps();
     island.reason = "something may touch: contact is resolved once a step, the accuracy asked is not promised";
   } else if (mayTouchSomething) {
     island.method = errorSteps(scene);
@@ -112,6 +113,10 @@ void choose(const Scene& scene, IslandPlan& island) {
 }
 
 }  // namespace
+
+ChosenMethod contactSteps() {
+  return {MotionKind::fixedSteps, "RK4", kContactTimeStep, rk4, kContactStepTolerance};
+}
 
 Plan planOf(const Scene& scene) {
   Plan plan{findIslands(scene), scene.accuracy};

@@ -26,11 +26,14 @@ struct ChosenMethod {
   std::string_view name;
   double timeStep = 0;             // s, of piles and fixed steps
   Integrator integrate = nullptr;  // of fixed steps and error steps
-  double tolerance = 0;            // of error steps: of the local error, scaled 1 + |x|
+  double tolerance = 0;            // of the local error, scaled 1 + |x|; 0: fixed steps are never cut for it
 
   bool isClosedForm() const { return kind == MotionKind::freeFlight || kind == MotionKind::elasticFlight; }
   bool isAdaptive() const { return kind == MotionKind::errorSteps; }
 };
+
+/// What moves bodies whose contact is resolved once a step: RK4, with shorter steps only where its error asks for them.
+ChosenMethod contactSteps();
 
 /// Bodies that depend on each other, by ties, springs or contact that may come about, and how they are moved.
 struct IslandPlan {

@@ -48,7 +48,7 @@ double firstLook(const RopeLimit& rope, const Step& step) {
   const MotionBounds a = motionBounds(step, rope.anchorA), b = motionBounds(step, rope.anchorB);
   // The distance d of two points: d'' <= relative acceleration + (speed across)^2 / d.
   const double across = a.speed + b.speed;
-  return std::min(kFirstLook, speed / (a.acceleration + b.acceleration + across * across / rope.maxLength));
+  return std::min(kFirstLook / 2, speed / (a.acceleration + b.acceleration + across * across / rope.maxLength));
 }
 
 }  // namespace
@@ -113,14 +113,13 @@ double RopeStage::tension(std::size_t rope, const VectorX& state) {
 }
 
 bool RopeStage::resolve(double time, VectorX& state) {
-  // Ropes that would have to push let go; impacts may have shortened others.
+  // Ropes that would have to push let go, even where others go taut; impacts may have shortened some.
   bool released = false;
   for (std::size_t i = 0; i < tautRod_.size(); ++i) {
     if (!isTaut(i) || tension(i, state) > kTautPart * startTension_) continue;
     release(time, i, state);
     released = true;
   }
-  if (released) return true;
 
   for (std::size_t i = 0; i < tautRod_.size(); ++i)
     if (!isTaut(i) && motionOf(assembly_.ropes[i], state).slackLength > kSlackPart * assembly_.ropes[i].maxLength)
@@ -128,7 +127,7 @@ bool RopeStage::resolve(double time, VectorX& state) {
   // A pull may stretch another rope that is at its length, or load it.
   for (int round = 0; round < kMostRounds; ++round) {
     const std::vector<Stretch> stretches = findStretches(state);
-    if (stretches.empty()) return round > 0;
+    if (stretches.empty()) return released || round > 0;
     pull(time, stretches, state);
   }
   return true;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/interruption.h"
-#include "dynamics/integrators/rk4.h"
 
 namespace cradle {
 namespace {
@@ -79,7 +78,7 @@ void Simulation::changeMotion() {
     island_.assembly.mechanism.contacts.clear();
     nextTrial_ = island_.time + trialTime_;
     trialTime_ *= 2;
-    motion_.emplace<SteppedMotion>(island_, ropes_, ChosenMethod{MotionKind::fixedSteps, "RK4", kContactTimeStep, rk4});
+    motion_.emplace<SteppedMotion>(island_, ropes_, contactSteps());
     return;
   }
   const auto& steps = std::get<SteppedMotion>(motion_);

@@ -6,18 +6,21 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "dynamics/integrators/rk4.h"
 #include "simulate/contact_response.h"
 #include "simulate/event_location.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kImpactPart = 1e-3;      // of the touching tolerance: how well an impact's gap is closed
-constexpr double kRopeTolerance = 1e-13;  // of the length, or of the tension that is left
-constexpr double kTimeRounding = 1e-9;    // of a step: remainders below it are rounding
-constexpr int kMostServed = 12;           // contacts
-constexpr int kManyEvents = 16;           // in a step: beyond, it is not cut any more
-constexpr int kMostEvents = 10000;        // within a step
+constexpr double kImpactPart = 1e-3;          // of the touching tolerance: how well an impact's gap is closed
+constexpr double kRopeTolerance = 1e-13;      // of the length, or of the tension that is left
+constexpr double kTimeRounding = 1e-9;        // of a step: remainders below it are rounding
+constexpr double kShortestPart = 1.0 / 1024;  // of a step: shorter ones are not cut for their error
+constexpr double kMostGrowth = 4;             // of a part of a step to the next
+constexpr int kMostServed = 12;               // contacts
+constexpr int kManyEvents = 16;               // in a step: beyond, it is not cut any more
+constexpr int kMostEvents = 10000;            // within a step
 
 }  // namespace
 
@@ -44,7 +47,7 @@ void SteppedMotion::advance(double frame) {
   const double stepEnd = nextStepEnd();
 
   // How far do bodies move freely?
-  method_.integrate(island_.rightHandSide, island_.state, time, stepEnd - time, step);
+  moveFreely(stepEnd);
   const bool atEvent = stopAtFirstEvent();
   time = step.time + step.timeStep;
   if (!atEvent && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
@@ -57,8 +60,7 @@ void SteppedMotion::advance(double frame) {
   island_.state = step.state;
   if (solver_.hasConstraints()) solver_.project(island_.state);
   normalizeOrientations(island_.state);
-  contacts_.isCrowded() ? contacts_.resolveStep(time, before_, island_.state)
-                        : contacts_.resolve(time, before_, island_.state);
+  resolveContacts();
   const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
   ropes_.resolve(time, island_.state);
   keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
@@ -77,6 +79,31 @@ double SteppedMotion::nextStepEnd() const {
   const double gridEnd = start_ + static_cast<double>(stepNumber_ + 1) * method_.timeStep;
   if (gridEnd <= end - kTimeRounding * method_.timeStep) end = gridEnd;
   return std::min(end, island_.pushes.nextChange());
+}
+
+void SteppedMotion::resolveContacts() {
+  if (!contacts_.isCrowded())
+    contacts_.resolve(island_.time, before_, island_.state);
+  else if (island_.step.timeStep > kTimeRounding * method_.timeStep)  // no gap closes in no time
+    contacts_.resolveStep(island_.time, before_, island_.state);
+  // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
+  if (solver_.hasConstraints() && !contacts_.touching().empty()) solver_.project(island_.state);
+}
+
+/// Takes a step to `stepEnd`, or a part of it where springs, ropes or spins are too fast for the whole.
+void SteppedMotion::moveFreely(double stepEnd) {
+  Step& step = island_.step;
+  double length = std::min(stepEnd - island_.time, longest_);
+  method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
+  if (method_.tolerance == 0) return;
+  prepareInterpolant(island_.rightHandSide, step);
+  while (!(rk4Error(step) <= method_.tolerance) && length > kShortestPart * method_.timeStep) {
+    length /= 2;
+    keepStartRate(step);
+    method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
+    prepareInterpolant(island_.rightHandSide, step);
+  }
+  longest_ = kMostGrowth * length;
 }
 
 /// Cuts the step at the first event in it.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "simulate/contact_stage.h"
 #include "simulate/energy_guard.h"
 #include "simulate/moving_island.h"
@@ -36,7 +38,9 @@ class SteppedMotion {
 
  private:
   double nextStepEnd() const;
+  void moveFreely(double stepEnd);
   bool stopAtFirstEvent();
+  void resolveContacts();
   void countEvent();
 
   MovingIsland& island_;
@@ -45,9 +49,10 @@ class SteppedMotion {
   ContactStage contacts_;
   EnergyGuard guard_;
   ConstraintSolver solver_;
-  double start_ = 0;       // s: where the steps begin to be counted
-  long stepNumber_ = 0;    // the step under way covers start + [stepNumber_, stepNumber_ + 1] x timeStep
-  bool keepsTies_ = true;  // no rope went taut or slack at the last step's end
+  double start_ = 0;           // s: where the steps begin to be counted
+  long stepNumber_ = 0;        // the step under way covers start + [stepNumber_, stepNumber_ + 1] x timeStep
+  double longest_ = INFINITY;  // s: what the error allowed last, and more
+  bool keepsTies_ = true;      // no rope went taut or slack at the last step's end
   int eventsInWindow_ = 0;
   double windowStart_ = 0;  // s
   VectorX before_;

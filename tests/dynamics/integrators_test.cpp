@@ -76,6 +76,26 @@ TEST(SemiImplicitEuler, OscillatorIsStableUpToStepTimesOmegaTwo) {
   EXPECT_GT(farthest(2.01), 1e6);
 }
 
+// With A = (0, 1; -omega^2, 0) the fourth stage stands at (1 + h A + (h A)^2 / 2 + (h A)^3 / 4) y, the end at the
+// Taylor polynomial of degree 4: their rates, times h / 6, differ by ((h A)^4 / 72 - (h A)^5 / 144) y. For y = (1, 0)
+// that is z^4 / 72 in x and omega z^5 / 144 in v, z = h omega. What it estimates is z^5 / 120 omega in v, and smaller.
+TEST(RungeKutta4, ErrorEstimateMatchesTheClosedFormAndBoundsTheError) {
+  const double omega = 3;
+  for (const double timeStep : {0.1, 0.01}) {
+    const double z = timeStep * omega;
+    Step step;
+    rk4(oscillator(omega, 0), Eigen::Vector2d(1, 0), 0, timeStep, step);
+    prepareInterpolant(oscillator(omega, 0), step);
+    const double inX = std::pow(z, 4) / 72 / (1 + std::abs(step.state[0]));
+    const double inV = omega * std::pow(z, 5) / 144 / (1 + std::abs(step.state[1]));
+    EXPECT_NEAR(rk4Error(step), std::max(inX, inV), 1e-16);
+    const Eigen::Vector2d exact(std::cos(z), -omega * std::sin(z));
+    EXPECT_LT((step.state - exact).cwiseAbs().maxCoeff() / (1 + exact.norm()), rk4Error(step));
+    step.work[0] = NAN;  // a rate that is not finite is no small error
+    EXPECT_FALSE(rk4Error(step) <= 1);
+  }
+}
+
 // One step multiplies (x, v) by the Taylor polynomial of degree 4 of exp(h A): energy grows by 1 - z^6/72 + z^8/576, z
 // = h omega, which is below 1 up to z = 2 sqrt(2).
 TEST(Rk4, OscillatorEnergyChangesAsItsTaylorPolynomialSays) {

@@ -92,6 +92,22 @@ TEST(EventContact, RestitutionZeroDoesNotBounce) {
   EXPECT_EQ(timesOf(run, EventKind::rest).size(), 1u);
 }
 
+// Flat on its face, by events and by steps: nothing rises once it is down, and all that it fell is gone.
+TEST(RestitutionZero, LetsNoShapeBounce) {
+  for (const char* shape :
+       {R"({"sphere": {"radius": 0.1}})", R"({"box": {"size": [0.3, 0.2, 0.4]}})",
+        R"({"cylinder": {"radius": 0.3, "length": 0.2}})", R"({"capsule": {"radius": 0.05, "length": 0.1}})"})
+    for (const double accuracy : {1e-3, 1e-6})
+      for (const double friction : {0.0, 0.5}) {
+        const std::string body = fmt::format(
+            R"(, {{"name": "body", "shape": {}, "mass": 1, "position": [0, 1.1, 0], "material": "m"}})", shape);
+        const Trajectory run = simulate(sceneOf(sceneText(accuracy, 1, 100, materialText(0, friction), kSlab + body)));
+        for (const Frame& frame : run.frames) EXPECT_LT(frame.states[0].linearVelocity.y(), 1e-9) << shape << accuracy;
+        EXPECT_EQ(endOf(run).linearVelocity, Vec3::Zero()) << shape << accuracy;
+        EXPECT_NEAR(endOf(run).position.y(), 0.1, 1e-6) << shape << accuracy;
+      }
+}
+
 Trajectory cradleRun(int balls, int lifted, double accuracy) {
   const double radius = 0.05, length = 0.5, lift = std::numbers::pi / 4;
   std::string bodies, rods;

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
 
+#include "collision/random_poses.h"
 #include "experiments/experiment.h"
 #include "math/rotation.h"
 
@@ -11,21 +11,6 @@
 
 namespace cradle {
 namespace {
-
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double number(double from, double to) { return std::uniform_real_distribution<double>(from, to)(engine_); }
-  Vec3 vector(double reach) { return {number(-reach, reach), number(-reach, reach), number(-reach, reach)}; }
-  Vec3 direction() { return Vec3(vector(1) + Vec3(0, 1e-3, 0)).normalized(); }
-
- private:
-  std::mt19937 engine_;
-};
-
-std::string textOf(const Vec3& v) {
-  return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z());
-}
 
 struct Flight {
   std::string shape;
@@ -36,10 +21,10 @@ struct Flight {
     const std::string motion = mass == 0
                                    ? R"("motion": "static")"
                                    : fmt::format(R"("mass": {:.17g}, "linearVelocity": {}, "angularVelocity": {})",
-                                                 mass, textOf(velocity), textOf(spin));
+                                                 mass, vectorText(velocity), vectorText(spin));
     return fmt::format(R"({{"name": "{}", "shape": {}, "material": "m", "position": {}, {},
       "orientation": {{"axis": {}, "angleDegrees": 77}}}})",
-                       name, shape, textOf(position), motion, textOf(axis));
+                       name, shape, vectorText(position), motion, vectorText(axis));
   }
 };
 
@@ -56,13 +41,13 @@ Trajectory collide(const Flight& a, const Flight& b, const Surface& surface) {
                                       surface.friction, a.text("a"), b.text("b"))));
 }
 
-std::string someShape(bool isBox, Random& random) {
+std::string someShape(bool isBox, RandomPoses& random) {
   if (!isBox) return fmt::format(R"({{"sphere": {{"radius": {:.17g}}}}})", random.number(0.1, 0.4));
-  return fmt::format(R"({{"box": {{"size": {}}}}})", textOf(Vec3(0.5, 0.5, 0.5) + random.vector(0.3)));
+  return fmt::format(R"({{"box": {{"size": {}}}}})", vectorText(Vec3(0.5, 0.5, 0.5) + random.vector(0.3)));
 }
 
 /// Two bodies of masses from 10 g to 100 kg that meet about half way, off-centre. `boxes`: how many of the two are.
-std::pair<Flight, Flight> someFlights(int boxes, Random& random) {
+std::pair<Flight, Flight> someFlights(int boxes, RandomPoses& random) {
   const Vec3 apart = random.direction();
   const auto mass = [&] { return std::pow(10, random.number(-2, 2)); };
   const Flight a{someShape(boxes == 2, random),
@@ -104,7 +89,7 @@ void expectMomentaKept(const Trajectory& run, const std::string& what) {
 }
 
 TEST(Impact, WithoutLossKeepsMomentumAngularMomentumAndEnergyForEveryPairOfShapes) {
-  Random random(11);
+  RandomPoses random(11);
   for (int boxes = 0; boxes <= 2; ++boxes) {
     int hits = 0;
     for (int trial = 0; trial < 25; ++trial) {
@@ -121,7 +106,7 @@ TEST(Impact, WithoutLossKeepsMomentumAngularMomentumAndEnergyForEveryPairOfShape
 }
 
 TEST(Impact, WithFrictionAndLossKeepsTheMomentaAndAccountsForTheEnergy) {
-  Random random(12);
+  RandomPoses random(12);
   int once = 0;
   for (int boxes = 0; boxes <= 2; ++boxes)
     for (int trial = 0; trial < 25; ++trial) {
@@ -143,7 +128,7 @@ TEST(Impact, WithFrictionAndLossKeepsTheMomentaAndAccountsForTheEnergy) {
 
 // Friction alone, on a perfectly elastic pair: the worst case for gaining energy by Newton's law of restitution.
 TEST(Impact, WithFrictionAndFullRestitutionNeverGainsEnergy) {
-  Random random(13);
+  RandomPoses random(13);
   for (int trial = 0; trial < 50; ++trial) {
     const auto [a, b] = someFlights(2, random);
     const Trajectory run = collide(a, b, {1, random.number(0, 2)});
@@ -156,7 +141,7 @@ TEST(Impact, WithFrictionAndFullRestitutionNeverGainsEnergy) {
 // ball of 0.1 m, 0.004 m, is a spin of 1.5e-13 / 1 rad/s at most.
 constexpr double kReflectionRounding = 1.5e-13;
 TEST(Impact, OfABallWithAFixedBodyIsAnExactReflection) {
-  Random random(14);
+  RandomPoses random(14);
   for (const char* shape : {R"({"sphere": {"radius": 0.3}})", R"({"box": {"size": [0.6, 0.4, 0.7]}})",
                             R"({"plane": {"normal": [0.1, 1, -0.2]}})"}) {
     int hits = 0;
@@ -182,7 +167,7 @@ TEST(Impact, OfABallWithAFixedBodyIsAnExactReflection) {
 // A body of 1e12 kg is a wall: what rebounds from it differs by the ratio of the masses, 1e-12 x 2 x 3 m/s, and by what
 // the position where they meet changes that: nothing, as the wall stands still until then.
 TEST(Impact, WithAnImmenselyHeavyBodyIsThatWithAFixedOne) {
-  Random random(15);
+  RandomPoses random(15);
   for (int boxes = 1; boxes <= 2; ++boxes)
     for (int trial = 0; trial < 20; ++trial) {
       auto [wall, flyer] = someFlights(boxes, random);

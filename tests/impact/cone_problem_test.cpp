@@ -77,6 +77,18 @@ TEST(ConeProblem, OneBallSticksSlidesOrLeaves) {
   EXPECT_TRUE(sliding.converged);
 }
 
+// A body on a ball joint cannot give way along the lever r from the joint to the contact: (r.r - r r^T) / I. A rebound
+// asks for velocities that nothing can bring about; friction slides then, however strong it would have to be to hold.
+TEST(ConeProblem, OneContactOfABodyOnABallJointSlides) {
+  for (const Vec3& lever : {Vec3(0.1, 0.2, 0.3), Vec3(-0.4, 0.1, 0.05), Vec3(0, 0.3, -0.3)}) {
+    const MatrixX g = (lever.squaredNorm() * Mat3::Identity() - lever * lever.transpose()) / 0.2;
+    const VectorX free = Vec3(-2.2, -2.4, -4.1);
+    const ConeSolution solution = solveConeProblem(g, free, {0.05});
+    ASSERT_TRUE(solution.impulses.allFinite()) << lever.transpose();
+    expectCoulomb(solution, {0.05}, 1e-9);  // impulses of some ten N s: rounding, thousandfold by the singular matrix
+  }
+}
+
 TEST(ConeProblem, NothingToPushIsSaid) {
   EXPECT_FALSE(solveConeProblem(Mat3::Zero(), Vec3(0, 0, -1), {0.5}).converged);
   EXPECT_TRUE(solveConeProblem(MatrixX::Zero(6, 6), VectorX::Zero(6), {0.5, 0.5}).converged);

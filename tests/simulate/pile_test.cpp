@@ -5,6 +5,7 @@
 #include "experiments/experiment.h"
 #include "simulate/plan.h"
 #include "simulate/plan_text.h"
+#include "trajectory/state_hash.h"
 
 namespace cradle {
 namespace {
@@ -50,6 +51,27 @@ TEST(Pile, DissipatesAndComesToRestWithEvents) {
   }
   EXPECT_GT(impacts, 50);  // each box lands on something
   EXPECT_GT(trajectory.frames.back().energy.dissipated, 0.1 * start);
+}
+
+TEST(Pile, HasTheSameStateHashForOneAndTwoThreads) {
+  const Scene scene = sceneWith(heap(13, "\"visual\""));
+  std::vector<std::string> hashes;
+  for (const int threads : {1, 2}) {
+    Pile pile(assemble(scene, planOf(scene).islands.at(0)), 1.0 / 60, threads);
+    Hash hash;
+    for (long number = 0; number <= 30; ++number) {
+      const double time = frameTime(scene, number);
+      const VectorX& state = pile.stateAt(time);
+      Frame frame{number, time, {}, {}};
+      for (Eigen::Index body = 0; body < bodyCount(state); ++body)
+        frame.states.push_back({centerOfMass(state, body), orientation(state, body), linearVelocity(state, body),
+                                angularVelocity(state, body)});
+      addFrame(frame, hash);
+    }
+    hashes.push_back(hash.hex());
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+  EXPECT_NE(hashes[0], Hash().hex());
 }
 
 // Steps end at frames: a frame rate of 30 asks for two steps between frames.

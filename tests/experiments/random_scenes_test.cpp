@@ -1,0 +1,51 @@
+// A sample of the scenes that benchmarks/random_scenes runs by the thousand.
+
+#include <gmock/gmock.h>
+
+#include "experiments/experiment.h"
+#include "experiments/random_scene.h"
+#include "experiments/random_scene_figures.h"
+
+namespace cradle {
+namespace {
+
+Scene randomScene(unsigned number) {
+  return parseScene(randomSceneText(number), "random.json", modelFilesBeside("random.json")).scene;
+}
+
+class RandomScenes : public testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomScenes, StayFiniteKeepTheirTiesAndNeverGainEnergy) {
+  const Scene scene = randomScene(GetParam());
+  EXPECT_THAT(faultsOf(runRandomScene(scene), scene.accuracy), testing::IsEmpty());
+}
+
+// Those first that once failed: ropes that rebound within a thousandth of a step, or go taut as others go slack; ties
+// all but jammed; springs, dampers and ropes too fast for a step; rims that come down on one side while the other
+// leaves.
+INSTANTIATE_TEST_SUITE_P(Sample, RandomScenes,
+                         testing::Values(265U, 14U, 292U, 622U, 28U, 135U, 60U, 219U, 333U, 363U, 214U, 649U, 1U, 2U,
+                                         3U, 4U, 5U, 9U, 10U, 11U, 12U, 13U, 15U, 16U, 17U, 18U, 21U, 22U, 23U, 24U,
+                                         26U));
+
+TEST(RandomScene, IsTheSameForTheSameNumber) {
+  EXPECT_EQ(randomSceneText(7), randomSceneText(7));
+  EXPECT_NE(randomSceneText(7), randomSceneText(8));
+}
+
+// What the other test would say if it went wrong.
+TEST(RandomScene, ShowsWhatGoesWrong) {
+  RandomSceneFigures figures;
+  figures.energyScale = 1;
+  EXPECT_TRUE(faultsOf(figures, 1e-5).empty());
+  figures.energyGain = figures.penetration = 2e-4;
+  EXPECT_EQ(faultsOf(figures, 1e-5).size(), 2u);
+  EXPECT_TRUE(faultsOf(figures, 1e-3).empty());
+  figures.keepsAccuracy = false;
+  EXPECT_TRUE(faultsOf(figures, 1e-5).empty());
+  figures.isFinite = false, figures.tieError = 0.1;
+  EXPECT_EQ(faultsOf(figures, 1e-5).size(), 2u);
+}
+
+}  // namespace
+}  // namespace cradle
