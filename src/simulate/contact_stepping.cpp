@@ -23,7 +23,9 @@ constexpr double kRestSpeedPart = 0.01;    // of the speed that gravity gives in
 constexpr double kOverlapPart = 1e-9;      // of the smallest body's size: deeper overlaps are taken out
 constexpr double kSmoothPart = 1e-2;       // of that: overlaps that the mean velocity may add in a step
 constexpr std::size_t kFewContacts = 6;    // solved densely, to rounding
-constexpr double kSeparatedPart = 1e-3;    // of the overlaps that are let be
+constexpr double kSeparatedPart = 0.1;     // of the overlaps that are let be: how well others are taken out, ...
+constexpr double kSeparatedError = 1e-3;   // ... or of the deepest
+constexpr double kFarOverlaps = 10;        // of the deepest overlap: gaps that are as good as any wider ones
 constexpr double kSolvedPart = 1e-7;       // of the fastest velocity
 
 double smallestSize(const ContactGeometry& geometry) {
@@ -221,8 +223,9 @@ void ContactStepping::move(const std::vector<int>& bodies, bool isSmooth, const 
 /// Moves bodies apart where `gaps` (m) at the step's end are negative, without touching velocities.
 void ContactStepping::separate(const std::vector<Contact>& contacts, const VectorX& gaps, bool isTied,
                                const VectorX& before, VectorX& state) {
+  const double deepest = -gaps.minCoeff();
   Problem problem{VectorX::Zero(3 * gaps.size()), std::vector<double>(contacts.size(), 0)};
-  for (Index i = 0; i < gaps.size(); ++i) problem.free[3 * i + 2] = gaps[i];
+  for (Index i = 0; i < gaps.size(); ++i) problem.free[3 * i + 2] = std::min(gaps[i], kFarOverlaps * deepest);
   VectorX displacement = state;
   displacement.tail(state.size() - poseComponents(state)).setZero();
   if (isTied) {
@@ -232,7 +235,7 @@ void ContactStepping::separate(const std::vector<Contact>& contacts, const Vecto
     cones_.apply(solveConeProblem(cones_.inverseMass(), problem.free, problem.frictions).impulses, displacement);
   } else {
     ConeStart start{VectorX::Zero(3 * gaps.size()), VectorX::Zero(3 * gaps.size()), 0};
-    const double tolerance = kSeparatedPart * overlapTolerance_;
+    const double tolerance = std::max(kSeparatedPart * overlapTolerance_, kSeparatedError * deepest);
     cones_.apply(cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations).impulses,
                  displacement);
   }
