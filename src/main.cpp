@@ -29,7 +29,8 @@ struct CommandLine {
   std::vector<std::string> scenes, methods;
   SceneOverrides overrides;
   PictureOptions pictures;
-  double scale = 1, tolerance = 0;
+  CompareOptions comparison;
+  double scale = 1;
   bool json = false, quiet = false;
   std::function<void()> command;
 };
@@ -120,12 +121,20 @@ void addQuestions(CLI::App& app, CommandLine& line) {
                            "cradle check scenes/newtons_cradle.json", [&] { checkScene(line.input); });
   check->add_option("scene", line.input, "scene file (JSON)")->required();
 
-  auto* compare = addCommand(
-      app, line, "compare", "Compare images, folders of images, or trajectories (exit 9: different)",
-      "cradle compare expected/ actual/", [&] { compareResults(line.expected, line.actual, line.tolerance); });
+  auto* compare =
+      addCommand(app, line, "compare", "Compare images, folders of images, or trajectories (exit 9: different)",
+                 "cradle compare expected/ actual/ --report report.html",
+                 [&] { compareResults(line.expected, line.actual, line.comparison); });
   compare->add_option("expected", line.expected, "image, folder or trajectory")->required();
   compare->add_option("actual", line.actual, "the same kind")->required();
-  compare->add_option("--tolerance", line.tolerance, "for trajectories: max |x-x_ref|/(1+|x_ref|)")
+  compare->add_option(
+      "--visible", line.comparison.visible,
+      "for images, LEVEL:PERCENT: pixels in percent that may be off by more than that (default: 2:0.005, "
+      "and 4 pixels in small ones)");
+  compare->add_option("--striking", line.comparison.striking,
+                      "the same for large differences (default: 32:0.001, and 1)");
+  compare->add_option("--report", line.comparison.report, "page to write (.html): the pictures that differ, to swap");
+  compare->add_option("--tolerance", line.comparison.tolerance, "for trajectories: max |x-x_ref|/(1+|x_ref|)")
       ->capture_default_str();
 
   auto* exported =

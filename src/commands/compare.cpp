@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
+#include <iterator>
 #include <vector>
 
 #include "core/error.h"
-#include "image/compare_images.h"
+#include "core/output_path.h"
+#include "image/comparison_report.h"
 #include "image/png.h"
 #include "trajectory/compare_trajectories.h"
 #include "trajectory/export.h"
@@ -26,30 +29,88 @@ std::vector<std::string> pictureNames(const std::string& folder) {
   return names;
 }
 
-bool compareImageFiles(const std::string& expected, const std::string& actual) {
-  const ImageComparison comparison = compareImages(readPng(expected), readPng(actual));
-  if (!comparison.isSame) fmt::print("{}: {}\n", actual, comparison.sentence);
-  return comparison.passes;
+/// "LEVEL:PERCENT". Nothing passes beyond what is written: no pixels are allowed in addition in small pictures.
+DifferenceLimit parseLimit(const std::string& text, const char* option) {
+  const char *begin = text.data(), *end = begin + text.size();
+  DifferenceLimit limit{0, 0, 0};
+  double percent = -1;
+  const auto level = std::from_chars(begin, end, limit.level);
+  if (level.ec == std::errc() && level.ptr != end && *level.ptr == ':') {
+    const auto share = std::from_chars(level.ptr + 1, end, percent);
+    if (share.ec != std::errc() || share.ptr != end) percent = -1;
+  }
+  if (!(percent >= 0 && percent <= 100) || limit.level < 0 || limit.level > 255)
+    throw Error(ErrorKind::usage, option,
+                fmt::format("found \"{}\"; allowed is LEVEL:PERCENT, as 2:0.005: the largest difference of a channel "
+                            "that does not count, 0 to 255, and the pixels in percent that may differ by more",
+                            text));
+  limit.share = percent / 100;
+  return limit;
 }
 
-bool compareFolders(const std::string& expected, const std::string& actual) {
+ImageLimits parseLimits(const CompareOptions& options) {
+  ImageLimits limits;
+  if (options.visible) limits.visible = parseLimit(*options.visible, "--visible");
+  if (options.striking) limits.striking = parseLimit(*options.striking, "--striking");
+  return limits;
+}
+
+/// Pictures of the expected folder, or else of the actual one, by name.
+std::vector<ComparedPicture> pairPictures(const std::string& expected, const std::string& actual) {
   const std::vector<std::string> names = pictureNames(expected), others = pictureNames(actual);
   if (names.empty()) throw Error(ErrorKind::usage, expected, "has no PNG files to compare with");
+  std::vector<std::string> all;
+  std::set_union(names.begin(), names.end(), others.begin(), others.end(), std::back_inserter(all));
+  std::vector<ComparedPicture> pairs;
+  for (const std::string& name : all) {
+    ComparedPicture pair{name, {}, {}, {}};
+    if (std::binary_search(names.begin(), names.end(), name)) pair.expectedPath = (fs::path(expected) / name).string();
+    if (std::binary_search(others.begin(), others.end(), name)) pair.actualPath = (fs::path(actual) / name).string();
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+void comparePair(ComparedPicture& pair, const ImageLimits& limits) {
+  if (pair.actualPath.empty())
+    pair.comparison.sentence = "missing";
+  else if (pair.expectedPath.empty())
+    pair.comparison.sentence = "not expected";
+  else
+    pair.comparison = compareImages(readPng(pair.expectedPath), readPng(pair.actualPath), limits);
+}
+
+void printAcceptance(const std::vector<ComparedPicture>& pictures, const std::string& expected) {
+  fmt::print("To accept what you have looked at and found right:\n");
+  for (const ComparedPicture& picture : pictures) {
+    if (picture.comparison.passes) continue;
+    if (picture.actualPath.empty())
+      fmt::print("  rm '{}'\n", picture.expectedPath);
+    else
+      fmt::print("  cp '{}' '{}'\n", picture.actualPath,
+                 picture.expectedPath.empty() ? expected : picture.expectedPath);
+  }
+}
+
+/// All pictures of both, compared; the outcome is printed, and shown in the report if one is asked for.
+bool comparePictures(std::vector<ComparedPicture> pictures, const std::string& expected,
+                     const CompareOptions& options) {
+  const ImageLimits limits = parseLimits(options);
+  if (options.report) requireWritableFile(*options.report);
   long different = 0;
-  for (const std::string& name : names) {
-    if (!std::binary_search(others.begin(), others.end(), name)) {
-      fmt::print("{}: missing\n", (fs::path(actual) / name).string());
-      ++different;
-    } else if (!compareImageFiles((fs::path(expected) / name).string(), (fs::path(actual) / name).string())) {
-      ++different;
-    }
+  for (ComparedPicture& picture : pictures) {
+    comparePair(picture, limits);
+    if (!picture.comparison.isSame)
+      fmt::print("{}: {}\n", picture.actualPath.empty() ? picture.name : picture.actualPath,
+                 picture.comparison.sentence);
+    different += !picture.comparison.passes;
   }
-  for (const std::string& name : others) {
-    if (std::binary_search(names.begin(), names.end(), name)) continue;
-    fmt::print("{}: not expected\n", (fs::path(actual) / name).string());
-    ++different;
+  fmt::print("{} of {} pictures differ\n", different, pictures.size());
+  if (options.report) {
+    writeComparisonReport(pictures, limits, *options.report);
+    fmt::print("{}\n", *options.report);
   }
-  fmt::print("{} of {} pictures differ\n", different, names.size());
+  if (different > 0) printAcceptance(pictures, expected);
   return different == 0;
 }
 
@@ -62,21 +123,24 @@ bool compareTrajectoryFiles(const std::string& expected, const std::string& actu
   return comparison.equal;
 }
 
-bool compareAny(const std::string& expected, const std::string& actual, double tolerance) {
+bool compareAny(const std::string& expected, const std::string& actual, const CompareOptions& options) {
   for (const std::string& path : {expected, actual})
     if (!fs::exists(path)) throw Error(ErrorKind::usage, path, "does not exist");
   if (fs::is_directory(expected) != fs::is_directory(actual))
     throw Error(ErrorKind::usage, actual, "a folder can only be compared with a folder");
-  if (fs::is_directory(expected)) return compareFolders(expected, actual);
-  if (isTrajectoryFile(expected) && isTrajectoryFile(actual))
-    return compareTrajectoryFiles(expected, actual, tolerance);
-  return compareImageFiles(expected, actual);
+  if (fs::is_directory(expected)) return comparePictures(pairPictures(expected, actual), expected, options);
+  if (isTrajectoryFile(expected) && isTrajectoryFile(actual)) {
+    if (options.report) throw Error(ErrorKind::usage, "--report", "shows pictures; these are trajectories");
+    return compareTrajectoryFiles(expected, actual, options.tolerance);
+  }
+  const std::string name = fs::path(actual).filename().string();
+  return comparePictures({{name, expected, actual, {}}}, expected, options);
 }
 
 }  // namespace
 
-void compareResults(const std::string& expected, const std::string& actual, double tolerance) {
-  if (!compareAny(expected, actual, tolerance))
+void compareResults(const std::string& expected, const std::string& actual, const CompareOptions& options) {
+  if (!compareAny(expected, actual, options))
     throw Error(ErrorKind::different, "", fmt::format("{} differs from {}", actual, expected));
   fmt::print("the same\n");
 }

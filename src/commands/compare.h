@@ -1,12 +1,20 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace cradle {
 
-/// `cradle compare EXPECTED ACTUAL`: two images, two folders of images, or two trajectories (differences up to
-/// `tolerance`). Prints what was found to stdout; throws Error(different) if they differ.
-void compareResults(const std::string& expected, const std::string& actual, double tolerance);
+/// What the command line says about a comparison; empty: the defaults of image/compare_images.h.
+struct CompareOptions {
+  double tolerance = 0;                          // of trajectories
+  std::optional<std::string> visible, striking;  // "LEVEL:PERCENT"
+  std::optional<std::string> report;             // page to write, of pictures
+};
+
+/// `cradle compare EXPECTED ACTUAL`: two images, two folders of images, or two trajectories. Prints what was found to
+/// stdout, and how new pictures are accepted; throws Error(different) if they differ.
+void compareResults(const std::string& expected, const std::string& actual, const CompareOptions& options);
 
 /// `cradle export TRAJECTORY -o FILE.csv`.
 void exportTrajectory(const std::string& trajectory, const std::string& output);

@@ -8,52 +8,71 @@
 namespace cradle {
 namespace {
 
-// Another CPU rounds otherwise and moves a few pixels of edges; an error of motion of 0.1 ms moves 0.01 % of a
-// picture of 1280x720. The limits lie between.
-constexpr int kVisible = 2;
-constexpr int kStriking = 32;
-constexpr long kVisibleParts = 20000;    // one pixel of so many: 0.005 %
-constexpr long kStrikingParts = 100000;  // 0.001 %
-constexpr long kVisibleAlways = 4;
-constexpr long kStrikingAlways = 1;
+constexpr double kShareRounding =
+    1e-9;  // relative: 0.005 % of 1000 x 1000 pixels are 50, whatever the product rounds to
 
 int pixelDifference(const std::uint8_t* a, const std::uint8_t* b) {
   return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
 }
 
-void countDifferences(const Image& expected, const Image& actual, ImageComparison& result) {
-  for (std::size_t i = 0; i < expected.pixels.size(); i += 3) {
-    const int difference = pixelDifference(&expected.pixels[i], &actual.pixels[i]);
-    if (difference > 0) ++result.differingPixels;
-    if (difference > kVisible) ++result.visiblePixels;
-    if (difference > kStriking) ++result.strikingPixels;
-    result.largestDifference = std::max(result.largestDifference, difference);
-  }
+void take(PixelBox& box, int x, int y) {
+  const bool isEmpty = box.left == box.right;
+  box.left = isEmpty ? x : std::min(box.left, x);
+  box.top = isEmpty ? y : std::min(box.top, y);
+  box.right = std::max(box.right, x + 1);
+  box.bottom = std::max(box.bottom, y + 1);
+}
+
+void countDifferences(const Image& expected, const Image& actual, const ImageLimits& limits, ImageComparison& result) {
+  for (int y = 0; y < expected.height; ++y)
+    for (int x = 0; x < expected.width; ++x) {
+      const int difference = pixelDifference(expected.at(x, y), actual.at(x, y));
+      if (difference == 0) continue;
+      ++result.differingPixels;
+      if (difference > limits.visible.level) ++result.visiblePixels;
+      if (difference > limits.striking.level) ++result.strikingPixels;
+      result.largestDifference = std::max(result.largestDifference, difference);
+      take(result.where, x, y);
+    }
+}
+
+long mostPixels(const DifferenceLimit& limit, long total) {
+  const double share = limit.share * static_cast<double>(total) * (1 + kShareRounding);
+  return std::max(limit.always, static_cast<long>(share));
 }
 
 }  // namespace
 
-ImageComparison compareImages(const Image& expected, const Image& actual) {
+ImageComparison compareImages(const Image& expected, const Image& actual, const ImageLimits& limits) {
   ImageComparison result;
   if (expected.width != actual.width || expected.height != actual.height) {
     result.sentence = fmt::format("sizes differ: {}x{} expected, {}x{} found", expected.width, expected.height,
                                   actual.width, actual.height);
     return result;
   }
-  countDifferences(expected, actual, result);
+  countDifferences(expected, actual, limits, result);
   const long total = static_cast<long>(expected.width) * expected.height;
-  const long visibleLimit = std::max(kVisibleAlways, total / kVisibleParts);
-  const long strikingLimit = std::max(kStrikingAlways, total / kStrikingParts);
+  const long mostVisible = mostPixels(limits.visible, total), mostStriking = mostPixels(limits.striking, total);
   result.isSame = result.differingPixels == 0;
-  result.passes = result.visiblePixels <= visibleLimit && result.strikingPixels <= strikingLimit;
+  result.passes = result.visiblePixels <= mostVisible && result.strikingPixels <= mostStriking;
   if (result.isSame)
     result.sentence = "equal";
   else
     result.sentence = fmt::format(
         "{} of {} pixels differ, by {} at most; {} by more than {} ({} allowed), {} by more than {} ({} allowed)",
-        result.differingPixels, total, result.largestDifference, result.visiblePixels, kVisible, visibleLimit,
-        result.strikingPixels, kStriking, strikingLimit);
+        result.differingPixels, total, result.largestDifference, result.visiblePixels, limits.visible.level,
+        mostVisible, result.strikingPixels, limits.striking.level, mostStriking);
   return result;
+}
+
+Image amplifiedDifference(const Image& expected, const Image& actual) {
+  Image difference(expected.width, expected.height);
+  int largest = 1;
+  for (std::size_t i = 0; i < expected.pixels.size(); ++i)
+    largest = std::max(largest, std::abs(expected.pixels[i] - actual.pixels[i]));
+  for (std::size_t i = 0; i < expected.pixels.size(); ++i)
+    difference.pixels[i] = static_cast<std::uint8_t>(std::abs(expected.pixels[i] - actual.pixels[i]) * 255 / largest);
+  return difference;
 }
 
 }  // namespace cradle

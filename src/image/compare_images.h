@@ -6,18 +6,41 @@
 
 namespace cradle {
 
-/// How two pictures differ, and whether that passes as rounding: pixels with a channel off by more than 2 are at most
-/// max(0.005 %, 4 pixels), by more than 32 at most max(0.001 %, 1 pixel).
+/// Pixels with a channel off by more than `level` (0..255) may be at most max(share of the picture, `always`).
+struct DifferenceLimit {
+  int level;
+  double share;  // 0..1
+  long always;   // pixels
+};
+
+/// What passes as rounding. Another CPU rounds otherwise and moves a few pixels of edges; an error of motion of 0.1 ms
+/// moves 0.01 % of a picture of 1280x720: the limits lie between.
+struct ImageLimits {
+  DifferenceLimit visible{2, 0.005e-2, 4};
+  DifferenceLimit striking{32, 0.001e-2, 1};
+};
+
+/// A part of a picture: columns and rows from the top left, first included, last not.
+struct PixelBox {
+  int left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// How two pictures differ, and whether that passes as rounding.
 struct ImageComparison {
   bool isSame = false;        // every byte equal
-  bool passes = false;        // equal, or within the limits above
+  bool passes = false;        // equal, or within the limits
   long differingPixels = 0;   // any channel off
-  long visiblePixels = 0;     // a channel off by more than 2
-  long strikingPixels = 0;    // a channel off by more than 32
+  long visiblePixels = 0;     // beyond the visible level
+  long strikingPixels = 0;    // beyond the striking level
   int largestDifference = 0;  // of any channel, 0..255
+  PixelBox where;             // of all pixels that differ
   std::string sentence;       // for the user
 };
 
-ImageComparison compareImages(const Image& expected, const Image& actual);
+ImageComparison compareImages(const Image& expected, const Image& actual, const ImageLimits& limits = {});
+
+/// The difference of every channel, times the factor that makes the largest 255; black where both are equal. The
+/// pictures have one size.
+Image amplifiedDifference(const Image& expected, const Image& actual);
 
 }  // namespace cradle

@@ -4,18 +4,14 @@
 
 #include "image/png.h"
 
-#include <fcntl.h>
 #include <libdeflate.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
 
 #include "core/error.h"
-#include "core/output_path.h"
+#include "core/part_file.h"
 
 namespace {
 
@@ -69,25 +65,6 @@ void takeBytes(void* context, void* data, int size) {
   target.assign(bytes, bytes + size);
 }
 
-[[noreturn]] void failWriting(const std::string& path, const std::string& part, int error) {
-  unlink(part.c_str());
-  throw Error(ErrorKind::output, path, std::string("cannot be written: ") + std::strerror(error));
-}
-
-void writeAll(int file, const std::vector<std::uint8_t>& bytes, const std::string& path, const std::string& part) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t count = write(file, bytes.data() + done, bytes.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) {
-      const int error = errno;
-      close(file);
-      failWriting(path, part, error);
-    }
-    done += static_cast<std::size_t>(count);
-  }
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> encodePng(const Image& image) {
@@ -99,15 +76,10 @@ std::vector<std::uint8_t> encodePng(const Image& image) {
 }
 
 void writePng(const Image& image, const std::string& path) {
-  requireWritableFile(path);
+  PartFile file(path);
   const std::vector<std::uint8_t> bytes = encodePng(image);
-  const std::string part = partPath(path);
-  requireWritableFile(part);
-  const int file = open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) failWriting(path, part, errno);
-  writeAll(file, bytes, path, part);
-  if (close(file) != 0) failWriting(path, part, errno);
-  if (std::rename(part.c_str(), path.c_str()) != 0) failWriting(path, part, errno);
+  file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  file.complete();
 }
 
 Image readPng(const std::string& path) {

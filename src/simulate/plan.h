@@ -11,17 +11,25 @@ namespace cradle {
 
 constexpr double kContactTimeStep = 1.0 / 960;  // s, of contact that events do not serve: 16 steps a frame at 60/s
 
+/// How bodies are moved, from the least work to the most.
+enum class MotionKind {
+  freeFlight,     // closed form
+  elasticFlight,  // closed form between collisions without loss, as in simulate/flying_balls.h
+  pile,           // many bodies in contact: the fast contact step, as in impact/pile_step.h
+  fixedSteps,     // an integrator with steps of one length
+  errorSteps,     // an integrator with steps as long as the error allows; contact changes at events
+};
+
 /// The method that moves an island.
 struct ChosenMethod {
-  Integrator integrate = nullptr;  // null: closed form
+  MotionKind kind = MotionKind::freeFlight;
   std::string_view name;
-  double timeStep = 0;         // s, fixed; 0: chosen by the error
-  double tolerance = 0;        // of the local error, scaled 1 + |x|, if the error chooses the step
-  bool hasCollisions = false;  // closed form between collisions without loss
-  bool isPile = false;         // many bodies in contact: the fast step, as in impact/pile_step.h
+  double timeStep = 0;             // s, of piles and fixed steps
+  Integrator integrate = nullptr;  // of fixed steps and error steps
+  double tolerance = 0;            // of error steps: of the local error, scaled 1 + |x|
 
-  bool isClosedForm() const { return !integrate && !isPile; }
-  bool isAdaptive() const { return integrate && timeStep == 0; }
+  bool isClosedForm() const { return kind == MotionKind::freeFlight || kind == MotionKind::elasticFlight; }
+  bool isAdaptive() const { return kind == MotionKind::errorSteps; }
 };
 
 /// Bodies that depend on each other, by ties, springs or contact that may come about, and how they are moved.
@@ -45,12 +53,5 @@ Plan planOf(const Scene& scene);
 
 /// All that moves as one island without a method, for what looks at a scene as a whole.
 IslandPlan wholeScene(const Scene& scene);
-
-/// The methods of all islands, each named once; and what accuracy they promise.
-std::string methodNames(const Plan& plan);
-std::string accuracyPromised(const Plan& plan);
-
-/// The plan in words, a few lines for each kind of island.
-std::string describe(const Plan& plan, const Scene& scene);
 
 }  // namespace cradle

@@ -31,16 +31,23 @@ Run::Run(const Scene& scene) {
   settleStartOverlaps(scene, assemblies);
   for (std::size_t i = 0; i < assemblies.size(); ++i) {
     startWarnings_.insert(startWarnings_.end(), assemblies[i].warnings.begin(), assemblies[i].warnings.end());
-    const ChosenMethod& method = plan.islands[i].method;
-    if (method.hasCollisions)
-      balls_.push_back(
-          std::make_unique<FlyingBalls>(scene, std::move(assemblies[i]), *flyingBallsOf(scene, plan.islands[i])));
-    else if (method.isPile)
-      piles_.push_back(std::make_unique<Pile>(std::move(assemblies[i]), method.timeStep));
-    else if (method.isClosedForm())
-      addFlight(std::move(assemblies[i]));
-    else
-      simulations_.push_back(std::make_unique<Simulation>(scene, std::move(assemblies[i]), method));
+    move(scene, plan.islands[i], std::move(assemblies[i]));
+  }
+}
+
+void Run::move(const Scene& scene, const IslandPlan& island, Assembly assembly) {
+  switch (island.method.kind) {
+    case MotionKind::freeFlight:
+      return addFlight(std::move(assembly));
+    case MotionKind::elasticFlight:
+      balls_.push_back(std::make_unique<FlyingBalls>(scene, std::move(assembly), *flyingBallsOf(scene, island)));
+      return;
+    case MotionKind::pile:
+      piles_.push_back(std::make_unique<Pile>(std::move(assembly), island.method.timeStep));
+      return;
+    case MotionKind::fixedSteps:
+    case MotionKind::errorSteps:
+      simulations_.push_back(std::make_unique<Simulation>(scene, std::move(assembly), island.method));
   }
 }
 

@@ -39,6 +39,7 @@ class Run {
     std::vector<FreeFlight> flights;
     long evaluations = 0;
   };
+  void move(const Scene& scene, const IslandPlan& island, Assembly assembly);
   void addFlight(Assembly assembly);
   void addTo(Frame& frame, const Assembly& assembly, const VectorX& state) const;
 

@@ -79,7 +79,7 @@ void Simulation::changeMotion() {
     island_.assembly.mechanism.contacts.clear();
     nextTrial_ = island_.time + trialTime_;
     trialTime_ *= 2;
-    motion_.emplace<SteppedMotion>(island_, ropes_, ChosenMethod{rk4, "RK4", kContactTimeStep});
+    motion_.emplace<SteppedMotion>(island_, ropes_, ChosenMethod{MotionKind::fixedSteps, "RK4", kContactTimeStep, rk4});
     return;
   }
   const auto& steps = std::get<SteppedMotion>(motion_);

@@ -3,7 +3,7 @@
 
     command_line_test.py PROGRAM SOURCE_FOLDER
 """
-import csv, json, os, re, shutil, signal, sqlite3, struct, subprocess, sys, tempfile, time, unittest
+import base64, csv, json, os, re, shutil, signal, sqlite3, struct, subprocess, sys, tempfile, time, unittest
 
 PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 BALL = os.path.join(SOURCE, "assets", "ball.3ds")
@@ -357,6 +357,33 @@ class Pictures(InTemporaryFolder):
         open(self.path("f/thesis.txt"), "w").close()
         self.refuses(5, ["thesis.txt"], "render", self.scene, "-o", self.path("f"))
         self.assertEqual(os.listdir(self.path("f")), ["thesis.txt"])
+
+    def test_report_of_pictures_holds_what_it_was_made_of(self):
+        path = self.write("s.json", scene(duration=0.05))
+        for name, frames in (("a", "0:3"), ("b", "0:2")):
+            cradle("render", path, "-o", self.path(name), "--frames", frames)
+        os.replace(self.path("b/frame_000000.png"), self.path("b/frame_000001.png"))
+        result = cradle("compare", self.path("a"), self.path("b"), "--report", self.path("r.html"))
+        self.assertEqual(result.returncode, 9)
+        self.assertIn(f"cp '{self.path('b/frame_000001.png')}' '{self.path('a/frame_000001.png')}'", result.stdout)
+        page = content(self.path("r.html")).decode()
+        self.assertIn("3 of 3 pictures fail", page)
+        self.assertNotIn("http", page)
+        pictures = [base64.b64decode(code) for code in re.findall("data:image/png;base64,([^\"]*)", page)]
+        self.assertEqual(len(pictures), 3)
+        self.assertEqual(pictures[0], content(self.path("a/frame_000001.png")))
+        self.assertEqual(pictures[1], content(self.path("b/frame_000001.png")))
+
+    def test_thresholds_of_pictures(self):
+        path = self.write("s.json", scene(duration=0.05))
+        cradle("render", path, "-o", self.path("a"), "--frames", "0:3")
+        first, last = self.path("a/frame_000000.png"), self.path("a/frame_000002.png")
+        self.assertEqual(cradle("compare", first, last).returncode, 9)
+        self.assertEqual(cradle("compare", first, last, "--visible", "255:0", "--striking", "255:0").returncode, 0)
+        self.assertEqual(cradle("compare", first, last, "--visible", "0:100", "--striking", "0:100").returncode, 0)
+        self.assertEqual(cradle("compare", first, first, "--visible", "0:0", "--striking", "0:0").returncode, 0)
+        for value in ("2", "2:", ":1", "256:1", "-1:1", "2:101", "2:1x", "2:nan"):
+            self.refuses(2, ["--visible", value, "LEVEL:PERCENT"], "compare", first, last, f"--visible={value}")
 
     def test_compare_of_pictures(self):
         cradle("render", self.scene, "-o", self.path("a"))

@@ -71,5 +71,34 @@ TEST(CompareImages, OtherSizeNeverPasses) {
   EXPECT_THAT(result.sentence, HasSubstr("3x4"));
 }
 
+TEST(CompareImages, LimitsCanBeSet) {
+  Image expected(10, 10), actual(10, 10);
+  *actual.at(3, 4) = 7;
+  const auto passes = [&](DifferenceLimit visible) {
+    return compareImages(expected, actual, {visible, {255, 0, 0}}).passes;
+  };
+  EXPECT_TRUE(passes({7, 0, 0}));
+  EXPECT_FALSE(passes({6, 0, 0}));
+  EXPECT_TRUE(passes({6, 0.01, 0}));
+  EXPECT_FALSE(passes({6, 0.0099, 0}));
+}
+
+TEST(CompareImages, WhereTheyDifferIsTheSmallestBox) {
+  Image expected(10, 10), actual(10, 10);
+  *actual.at(3, 7) = *actual.at(5, 2) = 1;
+  const PixelBox where = compareImages(expected, actual).where;
+  EXPECT_EQ(where.left, 3);
+  EXPECT_EQ(where.right, 6);
+  EXPECT_EQ(where.top, 2);
+  EXPECT_EQ(where.bottom, 8);
+}
+
+TEST(AmplifiedDifference, LargestIsWhiteAndEqualIsBlack) {
+  Image expected(2, 1), actual(2, 1);
+  expected.pixels = {10, 20, 30, 100, 100, 100};
+  actual.pixels = {10, 25, 28, 100, 100, 100};
+  EXPECT_EQ(amplifiedDifference(expected, actual).pixels, (std::vector<std::uint8_t>{0, 255, 102, 0, 0, 0}));
+}
+
 }  // namespace
 }  // namespace cradle

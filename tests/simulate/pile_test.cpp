@@ -4,6 +4,7 @@
 
 #include "experiments/experiment.h"
 #include "simulate/plan.h"
+#include "simulate/plan_text.h"
 
 namespace cradle {
 namespace {

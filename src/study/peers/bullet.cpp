@@ -1,17 +1,15 @@
 // Bullet 3.24 (E. Coumans, https://github.com/bulletphysics/bullet3): semi-implicit Euler, and sequential impulses for
 // joints and contacts. Its bodies have their frames at the centre of mass along the principal axes of inertia.
 
-#define BT_USE_DOUBLE_PRECISION
 #include "study/peers/bullet.h"
 
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
-#include <BulletCollision/CollisionShapes/btEmptyShape.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <cmath>
 
 #include "math/principal_axes.h"
-#include "mesh/recognise_shape.h"
+#include "study/peers/bullet_shapes.h"
 
 namespace cradle {
 namespace {
@@ -19,22 +17,6 @@ namespace {
 constexpr double kBounceFrom = 0.01;     // m/s, if tuned; 0.2 m/s is Bullet's default
 constexpr double kSamePlace = 1e-9;      // m: a shape that near the centre of mass needs no compound
 constexpr double kSameDirection = 1e-9;  // rad
-
-btVector3 toBullet(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-btQuaternion toBullet(const Quat& q) {
-  return {q.x(), q.y(), q.z(), q.w()};
-}
-btTransform toBullet(const RigidTransform& transform) {
-  return btTransform(toBullet(transform.rotation), toBullet(transform.translation));
-}
-Vec3 fromBullet(const btVector3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-Quat fromBullet(const btQuaternion& q) {
-  return {q.w(), q.x(), q.y(), q.z()};
-}
 
 /// What a collision object points to: its material's row in the table of surface laws.
 using LawsOfMaterial = std::vector<SurfacePair>;
@@ -48,57 +30,6 @@ btScalar restitutionOf(const btCollisionObject* a, const btCollisionObject* b) {
 }
 btScalar frictionOf(const btCollisionObject* a, const btCollisionObject* b) {
   return lawOf(a, b).dynamicFriction;
-}
-
-/// A shape, and where it is in its body's frame.
-struct PlacedShape {
-  std::unique_ptr<btCollisionShape> shape;
-  RigidTransform bodyFromShape;
-};
-
-struct ShapeMaker {
-  std::unique_ptr<btCollisionShape> operator()(const Sphere& sphere) const {
-    return std::make_unique<btSphereShape>(sphere.radius);
-  }
-  std::unique_ptr<btCollisionShape> operator()(const Box& box) const {
-    return std::make_unique<btBoxShape>(toBullet(box.size / 2));
-  }
-  std::unique_ptr<btCollisionShape> operator()(const Cylinder& cylinder) const {
-    return std::make_unique<btCylinderShape>(btVector3(cylinder.radius, cylinder.length / 2, cylinder.radius));
-  }
-  std::unique_ptr<btCollisionShape> operator()(const Capsule& capsule) const {
-    return std::make_unique<btCapsuleShape>(capsule.radius, capsule.length);
-  }
-  std::unique_ptr<btCollisionShape> operator()(const Plane& plane) const {
-    return std::make_unique<btStaticPlaneShape>(toBullet(plane.normal), 0);
-  }
-};
-
-RecognisedShape recognised(const Body& body, const Scene& scene) {
-  const auto* model = std::get_if<ModelShape>(&body.shape);
-  if (!model) return {};
-  RecognisedShape found = recogniseShape(scene.models[static_cast<std::size_t>(model->model)].solid);
-  if (body.collision == CollisionChoice::hull || body.collision == CollisionChoice::mesh) found.primitive.reset();
-  return found;
-}
-
-PlacedShape shapeOf(const Body& body, const Scene& scene) {
-  if (body.collision == CollisionChoice::none) return {std::make_unique<btEmptyShape>(), {}};
-  if (const auto found = recognised(body, scene); found.primitive)
-    return {std::visit(ShapeMaker{}, found.primitive->shape), found.primitive->bodyFromShape};
-  return std::visit(
-      [&](const auto& shape) -> PlacedShape {
-        if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, ModelShape>) {
-          auto hull = std::make_unique<btConvexHullShape>();
-          for (const Vec3& vertex : scene.models[static_cast<std::size_t>(shape.model)].solid.vertices)
-            hull->addPoint(toBullet(vertex), false);
-          hull->recalcLocalAabb();
-          return {std::move(hull), {}};
-        } else {
-          return {ShapeMaker{}(shape), {}};
-        }
-      },
-      body.shape);
 }
 
 /// A massless rod: one row that keeps the distance of two points, as Bullet's own joints keep theirs.
@@ -175,7 +106,7 @@ BulletWorld::World::World(const Scene& scene, const Assembly& parts, const Bulle
 }
 
 void BulletWorld::World::addBody(const Body& body, const Scene& scene, int index) {
-  PlacedShape placed = shapeOf(body, scene);
+  PlacedBulletShape placed = bulletShapeOf(body, scene);
   btCollisionShape* shape = placed.shape.get();
   shapes.push_back(std::move(placed.shape));
   if (index == kFixed) {
@@ -285,7 +216,7 @@ std::string missingInBullet(const Scene& scene) {
   if (!scene.pushes.empty()) return "pushes";
   for (const Body& body : scene.bodies)
     if (std::holds_alternative<ModelShape>(body.shape) && body.collision != CollisionChoice::none &&
-        body.collision != CollisionChoice::hull && !recognised(body, scene).isConvex)
+        body.collision != CollisionChoice::hull && !recogniseModel(body, scene).isConvex)
       return "the concave mesh of \"" + body.name + "\"";
   return "";
 }

@@ -37,7 +37,8 @@ Frame frameOf(const Assembly& assembly, const VectorX& state, long number, doubl
 RunCost runBullet(const Scene& scene, const Assembly& assembly, const BulletSettings& settings, double timeStep,
                   const std::function<void(const Frame&)>& take) {
   BulletWorld world(scene, assembly, settings);
-  EnergyGuard guard(assembly, assembly.state, {semiImplicitEuler, "semiImplicitEuler", timeStep, 0}, scene.duration);
+  const ChosenMethod method{MotionKind::fixedSteps, "semi-implicit Euler", timeStep, semiImplicitEuler};
+  EnergyGuard guard(assembly, assembly.state, method, scene.duration);
   VectorX state = assembly.state;
   RunCost cost;
   for (long number = 0; number <= lastFrame(scene); ++number) {

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <btBulletCollisionCommon.h>
+
+#include <memory>
+
+#include "mesh/recognise_shape.h"
+#include "scene/scene.h"
+
+namespace cradle {
+
+inline btVector3 toBullet(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline btQuaternion toBullet(const Quat& q) {
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+inline btTransform toBullet(const RigidTransform& transform) {
+  return btTransform(toBullet(transform.rotation), toBullet(transform.translation));
+}
+inline Vec3 fromBullet(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline Quat fromBullet(const btQuaternion& q) {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+/// A shape, and where it is in its body's frame.
+struct PlacedBulletShape {
+  std::unique_ptr<btCollisionShape> shape;
+  RigidTransform bodyFromShape;
+};
+
+/// A body's shape as `auto` takes it, or the hull of its model where that is no primitive; empty for bodies that touch
+/// nothing.
+PlacedBulletShape bulletShapeOf(const Body& body, const Scene& scene);
+
+/// What a body's model is, if it has one and does not ask to be a hull or a mesh.
+RecognisedShape recogniseModel(const Body& body, const Scene& scene);
+
+}  // namespace cradle
