@@ -12,7 +12,8 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kMostShown = 40;  // pictures, some 100 to 500 kB each at 1280x720: a browser opens the page at once
+constexpr std::size_t kMostShown =
+    40;  // pictures, some 100 to 500 kB each at 1280x720: a browser opens the page at once
 
 constexpr std::string_view kHead = R"(<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>Pictures compared</title>
@@ -44,11 +45,20 @@ for (const section of document.querySelectorAll("section")) {
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
     }
   return result;
 }

@@ -28,6 +28,7 @@ constexpr double kFirstPenaltyParts[] = {1e-5, 1e-3,
                                          0.1};  // of the same; heavy on light wants it small, many contacts large
 constexpr int kFirstRound = 10;                 // iterations before Newton's method is tried
 constexpr double kRoundGrowth = 1.2;            // and before each further trial: far from the end, trials are waste
+constexpr Index kFewContacts = 12;              // of more, Newton's method from a rough guess costs too much
 constexpr int kMostIterations = 500;            // from each of them
 constexpr double kInteriorPart = 1e-9;          // of the largest velocity: where the interior point method ends
 constexpr double kRegularPart = 1e-9;           // of the largest inverse mass: what makes Newton's matrix regular
@@ -157,7 +158,9 @@ VectorX ScaledProblem::solve() {
   best_ = VectorX::Zero(cones_.free.size());
   leastResidual_ = residual(best_, cones_.free);
   if (isConverged(leastResidual_, best_, cones_.free)) return unscaled(best_);
-  if (solveFrom(kFirstPenaltyParts[0] * largest_) || solveFromInside()) return unscaled(best_);
+  const bool isSmall = scale_.size() <= kFewContacts;
+  if (isSmall && solveFrom(kFirstPenaltyParts[0] * largest_)) return unscaled(best_);
+  if (solveFromInside()) return unscaled(best_);
   for (const double part : kFirstPenaltyParts)
     if (solveFrom(part * largest_)) break;
   return unscaled(best_);

@@ -105,8 +105,7 @@ long SparseCones::approachFromInside(double tolerance, ConeIterate& at) {
     gather(c);
     factor_.solve(bodyWork_);
     du.resize(c.size());
-    for (std::size_t i = 0; i < contacts_.size(); ++i)
-      du.segment<3>(3 * static_cast<Index>(i)) = velocityOfBodies(i);
+    for (std::size_t i = 0; i < contacts_.size(); ++i) du.segment<3>(3 * static_cast<Index>(i)) = velocityOfBodies(i);
   };
   double least = INFINITY;
   for (const Row& row : contacts_) least = std::min(least, row.scale);
