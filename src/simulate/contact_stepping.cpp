@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "dynamics/invariants.h"
-#include "impact/contact_cones.h"
+#include "simulate/contact_energy.h"
 #include "simulate/islands.h"
 
 namespace cradle {
@@ -28,7 +28,6 @@ constexpr double kSeparatedError = 1e-3;    // ... or of the deepest
 constexpr double kFarOverlaps = 10;         // of the deepest overlap: gaps that are as good as any wider ones
 constexpr double kLessRestitution = 0.7;    // of the restitution that let energy grow
 constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
-constexpr double kEnergyRounding = 1e-13;   // of the energy
 constexpr double kSolvedPart = 1e-7;        // of the fastest velocity
 
 double smallestSize(const ContactGeometry& geometry) {
@@ -122,17 +121,16 @@ void ContactStepping::resolve(const Group& group, const VectorX& before, double 
   tied_.reset();
   if (group.isTied) tied_.emplace(group.contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), before);
   const Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), timeStep};
-  const double most = energyOf(group.bodies, state), rounding = kEnergyRounding * std::abs(most);
+  const double most = energyOf(group.bodies, assembly_.mechanism, state);
   for (double part = 1;; part = part > kLeastRestitution ? kLessRestitution * part : 0) {
     const Problem problem = posed(group, motion, part);
     const VectorX impulses = solve(group, problem);
     move(group, motion, impulses, state);
-    const double gain = energyOf(group.bodies, state) - most;
-    if (gain > rounding && problem.hasRebounds) {
+    if (problem.hasRebounds && isGain(energyOf(group.bodies, assembly_.mechanism, state), most)) {
       restore(group.bodies, state);
       continue;
     }
-    if (gain > rounding) slowDown(group.bodies, gain, state);
+    limitEnergy(group.bodies, most, assembly_.mechanism, state);
     return keep(group, motion, problem, impulses, state);
   }
 }
@@ -235,28 +233,6 @@ void ContactStepping::separate(const Group& group, const VectorX& gaps, VectorX&
     centerOfMass(state, body) += linearVelocity(displacement, body);
     turnBody(state, body, angularVelocity(displacement, body));
   }
-}
-
-/// Kinetic and potential energy (J) of bodies, and of all springs.
-double ContactStepping::energyOf(const std::vector<int>& bodies, const VectorX& state) const {
-  const Mechanism& mechanism = assembly_.mechanism;
-  double energy = 0;
-  for (const int body : bodies) {
-    const RigidBody& inertia = mechanism.bodies[static_cast<std::size_t>(body)];
-    energy += kineticEnergy(inertia, body, state) - inertia.mass * mechanism.gravity.dot(centerOfMass(state, body));
-  }
-  for (const SpringForce& spring : mechanism.springs) energy += actionOf(spring, state).potential;
-  return energy;
-}
-
-/// Takes energy (J) from bodies: all their velocities become smaller by the same part, so that what touches opens and
-/// slides as before.
-void ContactStepping::slowDown(const std::vector<int>& bodies, double energy, VectorX& state) const {
-  double kinetic = 0;
-  for (const int body : bodies)
-    kinetic += kineticEnergy(assembly_.mechanism.bodies[static_cast<std::size_t>(body)], body, state);
-  const double part = std::sqrt(std::max(0.0, 1 - energy / std::max(kinetic, energy)));
-  for (const int body : bodies) state.segment<kVelocitySize>(velocityOffset(state, body)) *= part;
 }
 
 void ContactStepping::restore(const std::vector<int>& bodies, VectorX& state) const {

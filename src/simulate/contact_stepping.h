@@ -69,8 +69,6 @@ class ContactStepping {
   void moveByMean(const Group& group, const Motion& motion, VectorX& state) const;
   void moveByEnd(const Group& group, const Motion& motion, VectorX& state) const;
   void separate(const Group& group, const VectorX& gaps, VectorX& state);
-  double energyOf(const std::vector<int>& bodies, const VectorX& state) const;
-  void slowDown(const std::vector<int>& bodies, double energy, VectorX& state) const;
   void restore(const std::vector<int>& bodies, VectorX& state) const;
   void keep(const Group& group, const Motion& motion, const Problem& problem, const VectorX& impulses,
             const VectorX& state);

@@ -4,7 +4,8 @@
 
 // A slender block that rocks from edge to edge: G. W. Housner, "The behavior of inverted pendulum structures during
 // earthquakes", Bull. Seismological Society of America 53(2), 1963. Angular momentum about the new edge is kept: of its
-// speed a part r = 1 - m R^2 (1 - cos 2 alpha) / I is left, I about an edge, R to the centre, tan alpha = width / height.
+// speed a part r = 1 - m R^2 (1 - cos 2 alpha) / I is left, I about an edge, R to the centre, tan alpha = width /
+// height.
 
 namespace cradle {
 namespace {
@@ -19,20 +20,19 @@ struct Tower {
   double radius() const { return std::hypot(1, height) / 2; }
   double inertia() const { return 10 * 4 * radius() * radius() / 3; }
   double slenderness() const { return std::atan2(1, height); }
-  double speedLeft() const {
-    return 1 - 10 * radius() * radius() * (1 - std::cos(2 * slenderness())) / inertia();
-  }
+  double speedLeft() const { return 1 - 10 * radius() * radius() * (1 - std::cos(2 * slenderness())) / inertia(); }
   double lift() const {  // J
     return 10 * kGravity * radius() * (std::cos(slenderness() - angle) - std::cos(slenderness()));
   }
-  /// s, until it first stands: dt = d(theta) / sqrt(2 (U(angle) - U(theta)) / I) by the midpoint rule, theta = angle (1 -
-  /// s^2).
+  /// s, until it first stands: dt = d(theta) / sqrt(2 (U(angle) - U(theta)) / I) by the midpoint rule, theta = angle (1
+  /// - s^2).
   double timeOfFall() const {
     constexpr int kPieces = 1000;
     double time = 0;
     for (int i = 0; i < kPieces; ++i) {
       const double s = (i + 0.5) / kPieces, theta = angle * (1 - s * s);
-      const double fall = 10 * kGravity * radius() * (std::cos(slenderness() - angle) - std::cos(slenderness() - theta));
+      const double fall =
+          10 * kGravity * radius() * (std::cos(slenderness() - angle) - std::cos(slenderness() - theta));
       time += 2 * angle * s / std::sqrt(2 * fall / inertia()) / kPieces;
     }
     return time;

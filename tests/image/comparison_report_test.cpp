@@ -39,7 +39,8 @@ std::vector<ComparedPicture> picturesIn(const TemporaryFolder& folder, int total
   std::vector<ComparedPicture> pictures;
   for (int i = 0; i < total; ++i) {
     const bool differs = i >= total - different;
-    pictures.push_back({"p" + std::to_string(i), folder / "expected.png", folder / (differs ? "actual.png" : "expected.png"),
+    pictures.push_back({"p" + std::to_string(i), folder / "expected.png",
+                        folder / (differs ? "actual.png" : "expected.png"),
                         compareImages(expected, differs ? actual : expected)});
   }
   return pictures;
