@@ -12,8 +12,7 @@ constexpr double kRounding = 1e-13;  // of the energy
 
 double kineticEnergyOf(const std::vector<int>& bodies, const Mechanism& mechanism, const VectorX& state) {
   double energy = 0;
-  for (const int body : bodies)
-    energy += kineticEnergy(mechanism.bodies[static_cast<std::size_t>(body)], body, state);
+  for (const int body : bodies) energy += kineticEnergy(mechanism.bodies[static_cast<std::size_t>(body)], body, state);
   return energy;
 }
 
@@ -22,8 +21,7 @@ double kineticEnergyOf(const std::vector<int>& bodies, const Mechanism& mechanis
 double energyOf(const std::vector<int>& bodies, const Mechanism& mechanism, const VectorX& state) {
   double energy = kineticEnergyOf(bodies, mechanism, state);
   for (const int body : bodies)
-    energy -=
-        mechanism.bodies[static_cast<std::size_t>(body)].mass * mechanism.gravity.dot(centerOfMass(state, body));
+    energy -= mechanism.bodies[static_cast<std::size_t>(body)].mass * mechanism.gravity.dot(centerOfMass(state, body));
   for (const SpringForce& spring : mechanism.springs) energy += actionOf(spring, state).potential;
   return energy;
 }

@@ -11,7 +11,7 @@
 namespace cradle {
 namespace {
 
-constexpr int kStones = 16;
+constexpr int kStones = 10;
 constexpr double kHalfAngle = std::numbers::pi / kStones / 2;  // rad
 
 /// A stone at the crown, its faces in planes through the z axis: thickness is that of an arch of mean radius 1.
@@ -62,7 +62,7 @@ double roomForThrust(double thickness) {
   return best;
 }
 
-// Sixteen straight stones need 0.1081 (by the search above), an arch of very many 0.1075.
+// Ten straight stones need 0.1085 (by the search above), an arch of very many 0.1075.
 
 TEST(Arch, StandsIfALineOfThrustFitsIntoIt) {
   for (const double thickness : {0.111, 0.15}) {
@@ -79,13 +79,13 @@ TEST(Arch, StandsIfALineOfThrustFitsIntoIt) {
 
 // Hinges open where the line of thrust leaves it: at the crown and the springings outside, at the haunches inside.
 TEST(Arch, FallsIfNoLineOfThrustFitsIntoIt) {
-  for (const double thickness : {0.08, 0.105}) {
+  for (const double thickness : {0.08, 0.104}) {
     EXPECT_LT(roomForThrust(thickness), 0);
-    const Trajectory run = runArch(thickness, 0.2);
+    const Trajectory run = runArch(thickness, 0.06);
     const auto height = [&](const Frame& frame, std::size_t stone) { return frame.states[stone].position.y(); };
     const Frame &start = run.frames.front(), &end = run.frames.back();
-    EXPECT_LT(height(end, 8), height(start, 8) - 1e-5) << thickness;               // at the crown
-    EXPECT_GT(std::abs(end.states[2].position.x()), std::abs(start.states[2].position.x()) + 1e-6) << thickness;
+    EXPECT_LT(height(end, 4), height(start, 4) - 1e-5) << thickness;  // at the crown
+    EXPECT_GT(std::abs(end.states[1].position.x()), std::abs(start.states[1].position.x()) + 1e-6) << thickness;
     EXPECT_GT(end.energy.kinetic, 0);
   }
 }
