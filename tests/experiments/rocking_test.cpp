@@ -99,5 +99,26 @@ TEST(RockingTower, LosesInTheContactStepWhatABlockDoesOrAFewPercentMore) {
   EXPECT_GT(before, r2 * r2 * 0.96);
 }
 
+// Small angles: constant accelerations c = m g R sin(alpha) / I between impacts that leave a part r of the speed, so
+// that all landings together take sqrt(2 angle / c) (1 + 2 r / (1 - r)). What the contact step loses besides ends it
+// earlier, the more the shorter the last swings are; a block that events move takes the whole time.
+TEST(RockingTower, ComesToRestWhenItsEnergyIsGone) {
+  for (const int boxes : {1, 3}) {
+    const Tower tower{boxes, 3, 0.001};
+    const double acceleration = 10 * kGravity * tower.radius() * std::sin(tower.slenderness()) / tower.inertia();
+    const double r = tower.speedLeft(), end = std::sqrt(2 * tower.angle / acceleration) * (1 + 2 * r / (1 - r));
+    const Trajectory run = tower.run(1.2 * end);
+    double rest = 0;
+    for (const Event& event : run.events)
+      if (event.kind == EventKind::rest) rest = event.time;
+    EXPECT_LT(rest, 1.01 * end)
+        << boxes;  // accelerations are as constant as cos(angle), and end later by angle / alpha
+    EXPECT_GT(rest, (boxes == 1 ? 0.99 : 0.6) * end) << boxes;
+    EXPECT_EQ(run.frames.back().energy.kinetic, 0) << boxes;
+    for (const BodyState& state : run.frames.back().states)
+      EXPECT_LT(std::hypot(state.position.x(), state.position.z()), tower.angle * 3) << boxes;
+  }
+}
+
 }  // namespace
 }  // namespace cradle
