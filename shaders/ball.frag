@@ -1,5 +1,6 @@
 #version 330 core
 #extension GL_ARB_texture_gather : require
+#define MIRRORS_SHADOWS
 #include "surface.glsl"
 #include "ray.glsl"
 

@@ -9,12 +9,13 @@ layout(location = 0) in vec3 place;           // angle from the axis to the view
 layout(location = 2) in vec4 centerAndRadius;    // m
 layout(location = 5) in vec4 instanceRoughness;  // w
 layout(location = 6) in vec4 instanceColor;      // linear; w is metallic
-layout(location = 7) in vec4 instanceBalls;      // first and number of the balls near
+layout(location = 7) in vec4 instanceBalls;      // first and number of the balls near; 1 if it mirrors shadows
 
 flat out vec4 ball;
 flat out vec4 surfaceColor;
 flat out float roughness;
 flat out vec2 nearBalls;
+flat out float mirrorsShadows;
 
 const float kRightAngle = 1.57079633;
 
@@ -33,5 +34,6 @@ void main() {
   surfaceColor = instanceColor;
   roughness = instanceRoughness.w;
   nearBalls = instanceBalls.xy;
+  mirrorsShadows = instanceBalls.z;
   gl_Position = clipFromWorld * vec4(position, 1.0);
 }

@@ -3,6 +3,8 @@
 uniform samplerBuffer ballTexels;      // two a ball: centre and radius; linear colour and metallic
 uniform samplerBuffer nearBallTexels;  // indices of the balls near each item, one after the other
 
+const float kBallReach = 3.0;  // radii: what is farther from a ball's centre does not show it, and changes with nothing there
+
 // Share of the hemisphere around `normal` that a ball leaves open (exact while it is wholly above the surface).
 float openSky(vec3 to, float radius, vec3 normal) {
   float squared = max(dot(to, to), radius * radius);
@@ -28,12 +30,14 @@ float lookAtBalls(int first, int count, vec3 position, vec3 normal, float spread
     int index = int(texelFetch(nearBallTexels, first + i).r);
     vec4 ball = texelFetch(ballTexels, 2 * index);
     vec3 to = ball.xyz - position;
-    open *= openSky(to, ball.w, normal);
+    if (dot(to, to) >= kBallReach * kBallReach * ball.w * ball.w) continue;
+    float near = 1.0 - smoothstep(kBallReach - 1.0, kBallReach, length(to) / ball.w);
+    open *= mix(1.0, openSky(to, ball.w, normal), near);
     float along = dot(to, direction);
     vec3 aside = along * direction - to;
     float beside = length(aside);
     float soft = spread * max(along, 0.0) + 1e-3 * ball.w;
-    float covered = along > 0.0 ? clamp(0.5 + (ball.w - beside) / soft, 0.0, 1.0) : 0.0;
+    float covered = along > 0.0 ? near * clamp(0.5 + (ball.w - beside) / soft, 0.0, 1.0) : 0.0;
     if (covered > 0.0 && along < nearest) {
       nearest = along;
       ray.coverage = covered;

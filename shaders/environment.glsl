@@ -5,34 +5,44 @@ uniform vec3 bounceIrradiance;  // what the ground or the floor sends back up
 
 #if HAS_GROUND
 #include "checker.glsl"
-#include "contact.glsl"
 #include "irradiance.glsl"
+#ifdef MIRRORS_SHADOWS  // only shining balls do: all others may stay as they are when a shadow moves
+#include "contact.glsl"
+flat in float mirrorsShadows;
+#endif
 
-
+const float kBlurredTexels = 24.0;  // footprint in texels of the shadow map from which no shadow shows
 const float kUsuallyLit = 0.85;  // share of the ground out of shadow, where a mirror shows too much of it at once
 
-vec3 groundLight(vec3 from, vec3 direction, float spread) {
+vec3 groundLight(vec3 from, vec3 direction, float spread, float bounced) {
   float approach = min(dot(groundPlane.xyz, direction), -1e-3);
   float t = max((groundPlane.w - dot(groundPlane.xyz, from)) / approach, 0.0);
   vec3 position = from + t * direction;
   vec2 place = checkPlace(position);
   vec2 footprint = fwidth(place) + checksPerMetre * spread * t;
   vec3 albedo = checkColor(place, footprint);
-  // Shadows much smaller than the footprint would only flicker.
-  float texels = max(footprint.x, footprint.y) / (checksPerMetre * shadowTexel);
-  float lit = mix(quickShadow(position), kUsuallyLit, smoothstep(4.0, 24.0, texels));
-  vec3 light = albedo * groundIrradiance(lit, contactShade(position));
+  float lit = kUsuallyLit, open = 1.0;
+#ifdef MIRRORS_SHADOWS
+  if (mirrorsShadows > 0.5) {
+    // Shadows much smaller than the footprint would only flicker.
+    float texels = max(footprint.x, footprint.y) / (checksPerMetre * shadowTexel);
+    float blur = max(smoothstep(4.0, kBlurredTexels, texels), bounced);
+    lit = mix(quickShadow(position), kUsuallyLit, blur);
+    open = mix(contactShade(position), 1.0, blur);
+  }
+#endif
+  vec3 light = albedo * groundIrradiance(lit, open);
   return mix(light, horizonColor, groundFade(t));
 }
 
 #endif
 
-// `spread` is how far the ray fans out per metre.
-vec3 environment(vec3 from, vec3 direction, float spread) {
+// `spread` is how far the ray fans out per metre; `bounced` 1 if it comes by way of a ball: it shows no shadows then.
+vec3 environment(vec3 from, vec3 direction, float spread, float bounced) {
   vec3 sky = skyLight(direction) + skyGlow(direction);
 #if HAS_GROUND
   float height = dot(groundPlane.xyz, direction);
-  return mix(groundLight(from, direction, spread), sky, smoothstep(-spread - 0.01, spread + 0.01, height));
+  return mix(groundLight(from, direction, spread, bounced), sky, smoothstep(-spread - 0.01, spread + 0.01, height));
 #else
   return sky;
 #endif

@@ -66,7 +66,7 @@ vec3 shade(vec3 position, vec3 n) {
              (matt * max(dot(n, fillDirection[i]), 0.0) + highlight(n, v, fillDirection[i], straightOn, alpha));
 #endif
 
-  vec3 mirrored = environment(ray.from, ray.direction, spread) * mix(vec3(1.0), ray.look.rgb, ray.coverage);
+  vec3 mirrored = environment(ray.from, ray.direction, spread, ray.coverage) * mix(vec3(1.0), ray.look.rgb, ray.coverage);
   vec3 mattBall = ray.look.rgb * (ambientLight(ray.normal) + lightRadiance * max(dot(ray.normal, lightDirection), 0.0));
   mirrored = mix(mirrored, mattBall, ray.coverage * (1.0 - ray.look.w));
   light += open * matt * ambientLight(n) + mirroredShare(straightOn, roughness, abs(dot(n, v))) * mirrored;

@@ -17,6 +17,7 @@ out vec3 normal;
 flat out vec4 surfaceColor;
 flat out float roughness;
 flat out vec2 nearBalls;
+flat out float mirrorsShadows;
 
 const float kTurn = 6.28318531;
 
@@ -54,5 +55,6 @@ void main() {
   surfaceColor = instanceColor;
   roughness = sagAndRoughness.w;
   nearBalls = instanceBalls.xy;
+  mirrorsShadows = 0.0;
   gl_Position = clipFromWorld * vec4(position, 1.0);
 }

@@ -13,6 +13,7 @@ struct Surface {
   Vec3f color = Vec3f::Constant(0.434f);  // linear, 0..1
   float metallic = 0;                     // 0..1
   float roughness = 0.5f;                 // 0..1
+  bool operator==(const Surface&) const = default;
 };
 
 /// Some triangles of a mesh with one surface, in a body's frame.

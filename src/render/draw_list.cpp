@@ -10,12 +10,12 @@ namespace cradle {
 namespace {
 
 constexpr std::size_t kMostNearBalls = 6;  // of one item: as many as touch a ball in a dense layer
-constexpr double kNear = 3;                // balls farther than so many of their radii do not matter
 
 void appendBody(const BodyAppearance& look, const RigidTransform& worldFromBody, DrawList& list) {
   for (const BodyPart& part : look.parts) {
     MeshItem item{part.mesh, part.firstTriangle, part.triangleCount, worldFromBody};
     item.surface = part.surface;
+    item.isBall = look.ball.has_value();
     item.bounds = transformed(look.local, worldFromBody);
     list.meshes.push_back(item);
   }
@@ -73,7 +73,7 @@ void findNearBalls(const std::vector<int>& bodyOfItem, std::vector<Item>& items,
     for (std::size_t b = 0; b < list.balls.size(); ++b) {
       const BallItem& ball = list.balls[b];
       const double distance = bounds.exteriorDistance(ball.center) / ball.radius;
-      if (ball.body != bodyOfItem[i] && distance < kNear) found.emplace_back(distance, static_cast<int>(b));
+      if (ball.body != bodyOfItem[i] && distance < kBallReach) found.emplace_back(distance, static_cast<int>(b));
     }
     const std::size_t count = std::min(found.size(), kMostNearBalls);
     std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end());

@@ -14,6 +14,7 @@ struct MeshItem {
   std::uint32_t firstTriangle = 0, triangleCount = 0;
   RigidTransform worldFromMesh = {};
   Surface surface = {};
+  bool isBall = false;
   Bounds bounds = {};                    // m, world
   int firstNearBall = 0, nearBalls = 0;  // range of DrawList::nearBalls
 };
@@ -51,6 +52,8 @@ struct TubeItem {
   Surface surface = {};
   Bounds bounds = {};  // m, world
 };
+
+constexpr double kBallReach = 3;  // radii from a ball's centre: beyond, it is not mirrored and shades nothing
 
 /// A ball that is mirrored in what is near and keeps the sky's light from it.
 struct BallItem {

@@ -7,13 +7,20 @@
 namespace cradle {
 namespace {
 
+constexpr float kTrembling = 1e-12f;     // m, or of a direction
 constexpr double kVisibleCorner = 0.25;  // pixels
+constexpr float kMirrorMetallic = 0.5f, kMirrorRoughness = 0.35f;
 constexpr double kContactReach = 2.5;  // times the height of what touches the ground; beyond, 7 % of the sky are hidden
+
+/// What trembles in its last digits beside zero is at rest.
+float settled(float number) {
+  return std::abs(number) < kTrembling ? 0.0f : number;
+}
 
 void put(Instance& instance, std::size_t attribute, const Vec3f& vector, double last) {
   float* numbers = instance.data() + 4 * attribute;
-  std::copy(vector.begin(), vector.end(), numbers);
-  numbers[3] = static_cast<float>(last);
+  std::transform(vector.begin(), vector.end(), numbers, settled);
+  numbers[3] = settled(static_cast<float>(last));
 }
 
 /// Attributes 0..2: rows of `matrix` with `translation`.
@@ -24,30 +31,13 @@ void putTransform(Instance& instance, const Mat3& matrix, const Vec3& translatio
 
 /// Attributes 3..5 of an item with a surface and balls near it; the first numbers of 3 are left alone.
 template <typename Item>
-void putLook(const Item& item, Instance& instance) {
+void putLook(const Item& item, bool isBall, Instance& instance) {
   instance[15] = item.surface.roughness;
   put(instance, 4, item.surface.color, item.surface.metallic);
-  put(instance, 5, Vec3f(static_cast<float>(item.firstNearBall), static_cast<float>(item.nearBalls), 0), 0);
-}
-
-Instance packMesh(const MeshItem& item, const Stage& stage) {
-  Instance instance{};
-  putTransform(instance, item.worldFromMesh.rotation.toRotationMatrix(), item.worldFromMesh.translation - stage.origin);
-  putLook(item, instance);
-  return instance;
-}
-
-Instance packRound(const SphereItem& item, const Stage& stage) {
-  Instance instance{};
-  put(instance, 0, stage.relative(item.center), item.radius);
-  return instance;
-}
-
-Instance packRound(const CylinderItem& item, const Stage& stage) {
-  Instance instance{};
-  put(instance, 0, stage.relative(item.center), item.radius);
-  put(instance, 1, item.axis.cast<float>(), item.length);
-  return instance;
+  put(instance, 5,
+      Vec3f(static_cast<float>(item.firstNearBall), static_cast<float>(item.nearBalls),
+            isBall && mirrorsShadows(item.surface)),
+      0);
 }
 
 /// How fine an outline has to be: a polygon of n corners, as large as the circle, misses it by r (pi / n)^2 / 3.
@@ -59,61 +49,33 @@ std::size_t outlineFor(const Bounds& bounds, double radius, const Stage& stage) 
   return kOutlines.size() - 1;
 }
 
+/// Where rounds go: instances, their batches, and which item each instance is.
+struct PackedRounds {
+  std::vector<Instance>& instances;
+  std::vector<Batch>& batches;
+  std::vector<std::size_t>& order;
+};
+
 template <typename Item>
-void packRounds(const std::vector<Item>& items, const Stage& stage, std::vector<Instance>& instances,
-                std::vector<Batch>& batches) {
+void packRounds(const std::vector<Item>& items, const Stage& stage, const PackedRounds& packed) {
+  auto& [instances, batches, order] = packed;
   std::vector<std::size_t> levels;
-  for (const Item& item : items) levels.push_back(outlineFor(item.bounds(), item.radius, stage));
+  for (const Item& item : items) levels.push_back(outlineLevel(item, stage));
   for (std::size_t level = 0; level < kOutlines.size(); ++level) {
     Batch batch{static_cast<int>(level), 0, 0, instances.size(), 0};
     for (std::size_t i = 0; i < items.size(); ++i) {
       if (levels[i] != level) continue;
-      Instance instance = packRound(items[i], stage);
-      putLook(items[i], instance);
-      instances.push_back(instance);
+      instances.push_back(instanceOf(items[i], stage));
+      order.push_back(i);
     }
     batch.instanceCount = instances.size() - batch.firstInstance;
     if (batch.instanceCount > 0) batches.push_back(batch);
   }
 }
 
-Instance packTube(const TubeItem& item, const Stage& stage) {
-  Instance instance{};
-  put(instance, 0, stage.relative(item.start), item.wireRadius);
-  put(instance, 1, stage.relative(item.end), item.coilRadius);
-  put(instance, 2, item.side.cast<float>(), item.turns);
-  put(instance, 3, item.sag.cast<float>(), item.surface.roughness);
-  put(instance, 4, item.surface.color, item.surface.metallic);
-  put(instance, 5, Vec3f(0, 0, static_cast<float>(item.straightEnd)), 0);
-  return instance;
-}
-
-/// The square of the contact map that an item may darken; none if it is too far above the ground.
-bool packContact(const ContactItem& item, const Stage& stage, Instance& instance) {
-  const Ground& ground = *stage.ground;
-  const ShadedRegion& region = stage.shaded;
-  const Mat3 turn = item.worldFromBox.rotation.toRotationMatrix();
-  const Vec3 center = item.worldFromBox.translation;
-  const auto extentAlong = [&](const Vec3& axis) {
-    const Vec3 inBox = (turn.transpose() * axis).cwiseProduct(item.half);
-    return item.kind == ContactKind::ellipsoid ? inBox.norm() : inBox.cwiseAbs().sum();
-  };
-  const double reach = std::min(kContactReach * 2 * item.half.minCoeff(), region.margin);
-  const double gap = ground.normal.dot(center - ground.point) - extentAlong(ground.normal);
-  if (gap > reach || gap < -2 * extentAlong(ground.normal)) return false;
-
-  const Vec3 relative = center - stage.origin;
-  putTransform(instance, turn.transpose(), -(turn.transpose() * relative));
-  put(instance, 3, item.half.cast<float>(), reach);
-  const double u = 2 * (region.axisU.dot(relative) - region.firstU) / region.sizeU - 1;
-  const double v = 2 * (region.axisV.dot(relative) - region.firstV) / region.sizeV - 1;
-  put(instance, 4, Vec3(u, v, 0).cast<float>(), static_cast<int>(item.kind));
-  put(instance, 5,
-      Vec3(2 * (extentAlong(region.axisU) + reach) / region.sizeU,
-           2 * (extentAlong(region.axisV) + reach) / region.sizeV, 0)
-          .cast<float>(),
-      0);
-  return true;
+double extentAlong(const Vec3& axis, const ContactItem& item) {
+  const Vec3 inBox = (item.worldFromBox.rotation.conjugate() * axis).cwiseProduct(item.half);
+  return item.kind == ContactKind::ellipsoid ? inBox.norm() : inBox.cwiseAbs().sum();
 }
 
 void packBatches(const DrawList& list, PackedDrawList& packed) {
@@ -129,25 +91,99 @@ void packBatches(const DrawList& list, PackedDrawList& packed) {
 
 }  // namespace
 
+std::optional<DarkenedSquare> darkenedSquare(const ContactItem& item, const Stage& stage) {
+  const Ground& ground = *stage.ground;
+  const ShadedRegion& region = stage.shaded;
+  const double reach = std::min(kContactReach * 2 * item.half.minCoeff(), region.margin);
+  const double height = extentAlong(ground.normal, item);
+  const double gap = ground.normal.dot(item.worldFromBox.translation - ground.point) - height;
+  if (gap > reach || gap < -2 * height) return std::nullopt;
+  return DarkenedSquare{extentAlong(region.axisU, item) + reach, extentAlong(region.axisV, item) + reach, reach};
+}
+
+bool mirrorsShadows(const Surface& surface) {
+  return surface.metallic > kMirrorMetallic && surface.roughness < kMirrorRoughness;
+}
+
+Instance instanceOf(const MeshItem& item, const Stage& stage) {
+  Instance instance{};
+  putTransform(instance, item.worldFromMesh.rotation.toRotationMatrix(), item.worldFromMesh.translation - stage.origin);
+  putLook(item, item.isBall, instance);
+  return instance;
+}
+
+Instance instanceOf(const SphereItem& item, const Stage& stage) {
+  Instance instance{};
+  put(instance, 0, stage.relative(item.center), item.radius);
+  putLook(item, true, instance);
+  return instance;
+}
+
+Instance instanceOf(const CylinderItem& item, const Stage& stage) {
+  Instance instance{};
+  put(instance, 0, stage.relative(item.center), item.radius);
+  put(instance, 1, item.axis.cast<float>(), item.length);
+  putLook(item, false, instance);
+  return instance;
+}
+
+Instance instanceOf(const TubeItem& item, const Stage& stage) {
+  Instance instance{};
+  put(instance, 0, stage.relative(item.start), item.wireRadius);
+  put(instance, 1, stage.relative(item.end), item.coilRadius);
+  put(instance, 2, item.side.cast<float>(), item.turns);
+  put(instance, 3, item.sag.cast<float>(), item.surface.roughness);
+  put(instance, 4, item.surface.color, item.surface.metallic);
+  put(instance, 5, Vec3f(0, 0, static_cast<float>(item.straightEnd)), 0);
+  return instance;
+}
+
+Instance instanceOf(const ContactItem& item, const DarkenedSquare& square, const Stage& stage) {
+  Instance instance{};
+  const ShadedRegion& region = stage.shaded;
+  const Mat3 turn = item.worldFromBox.rotation.toRotationMatrix();
+  const Vec3 relative = item.worldFromBox.translation - stage.origin;
+  putTransform(instance, turn.transpose(), -(turn.transpose() * relative));
+  put(instance, 3, item.half.cast<float>(), square.reach);
+  const double u = 2 * (region.axisU.dot(relative) - region.firstU) / region.sizeU - 1;
+  const double v = 2 * (region.axisV.dot(relative) - region.firstV) / region.sizeV - 1;
+  put(instance, 4, Vec3(u, v, 0).cast<float>(), static_cast<int>(item.kind));
+  put(instance, 5, Vec3(2 * square.halfU / region.sizeU, 2 * square.halfV / region.sizeV, 0).cast<float>(), 0);
+  return instance;
+}
+
+std::size_t outlineLevel(const SphereItem& item, const Stage& stage) {
+  return outlineFor(item.bounds(), item.radius, stage);
+}
+
+std::size_t outlineLevel(const CylinderItem& item, const Stage& stage) {
+  return outlineFor(item.bounds(), item.radius, stage);
+}
+
+std::array<float, 8> numbersOf(const BallItem& ball, const Stage& stage) {
+  const Vec3f center = stage.relative(ball.center);
+  const Vec3f& color = ball.surface.color;
+  return {settled(center.x()), settled(center.y()), settled(center.z()), static_cast<float>(ball.radius),
+          color.x(),           color.y(),           color.z(),           ball.surface.metallic};
+}
+
 PackedDrawList pack(const DrawList& list, const Stage& stage) {
   PackedDrawList packed;
-  for (const MeshItem& item : list.meshes) packed.meshInstances.push_back(packMesh(item, stage));
-  for (const TubeItem& item : list.tubes) packed.tubeInstances.push_back(packTube(item, stage));
-  for (const MeshItem& item : list.walls) packed.wallInstances.push_back(packMesh(item, stage));
+  for (const MeshItem& item : list.meshes) packed.meshInstances.push_back(instanceOf(item, stage));
+  for (const TubeItem& item : list.tubes) packed.tubeInstances.push_back(instanceOf(item, stage));
+  for (const MeshItem& item : list.walls) packed.wallInstances.push_back(instanceOf(item, stage));
   packBatches(list, packed);
-  packRounds(list.spheres, stage, packed.sphereInstances, packed.sphereBatches);
-  packRounds(list.cylinders, stage, packed.cylinderInstances, packed.cylinderBatches);
+  packRounds(list.spheres, stage, {packed.sphereInstances, packed.sphereBatches, packed.sphereItems});
+  packRounds(list.cylinders, stage, {packed.cylinderInstances, packed.cylinderBatches, packed.cylinderItems});
   for (const BallItem& ball : list.balls) {
-    const Vec3f center = stage.relative(ball.center);
-    packed.balls.insert(packed.balls.end(), {center.x(), center.y(), center.z(), static_cast<float>(ball.radius)});
-    packed.balls.insert(packed.balls.end(), ball.surface.color.begin(), ball.surface.color.end());
-    packed.balls.push_back(ball.surface.metallic);
+    const auto numbers = numbersOf(ball, stage);
+    packed.balls.insert(packed.balls.end(), numbers.begin(), numbers.end());
   }
   for (const int index : list.nearBalls) packed.nearBalls.push_back(static_cast<float>(index));
-  Instance instance{};
   if (stage.ground)
     for (const ContactItem& item : list.contacts)
-      if (packContact(item, stage, instance)) packed.contactInstances.push_back(instance);
+      if (const auto square = darkenedSquare(item, stage))
+        packed.contactInstances.push_back(instanceOf(item, *square, stage));
   return packed;
 }
 

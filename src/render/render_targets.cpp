@@ -79,27 +79,34 @@ PictureTarget::~PictureTarget() {
   glDeleteRenderbuffers(3, buffers.data());
 }
 
-void PictureTarget::begin() const {
+void PictureTarget::begin(const PixelRectangle& area) const {
   glBindFramebuffer(GL_FRAMEBUFFER, samples_);
   glViewport(0, 0, width_, height_);
   glEnable(GL_MULTISAMPLE);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(area.left, area.bottom, area.width(), area.height());
   glClearColor(0, 0, 0, 1);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void PictureTarget::resolve() const {
+void PictureTarget::end() const {
+  glDisable(GL_SCISSOR_TEST);
+}
+
+void PictureTarget::resolve(const PixelRectangle& area) const {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, samples_);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_);
   // Upside down, for OpenGL's rows start at the bottom and a picture's at the top.
-  glBlitFramebuffer(0, 0, width_, height_, 0, height_, width_, 0, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBlitFramebuffer(area.left, area.bottom, area.right, area.top, area.left, height_ - area.bottom, area.right,
+                    height_ - area.top, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
-Image PictureTarget::read() const {
-  Image image(width_, height_);
+void PictureTarget::read(const PixelRectangle& area, Image& image) const {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, image.pixels.data());
-  return image;
+  glPixelStorei(GL_PACK_ROW_LENGTH, width_);
+  const int top = height_ - area.top;
+  glReadPixels(area.left, top, area.width(), area.height(), GL_RGB, GL_UNSIGNED_BYTE, image.at(area.left, top));
 }
 
 MapTarget::MapTarget(Kind kind, int size) : size_(size) {
@@ -123,6 +130,9 @@ MapTarget::MapTarget(Kind kind, int size) : size_(size) {
     glReadBuffer(GL_NONE);
   }
   requireComplete("a map of shadows");
+  glViewport(0, 0, size, size);
+  glClearColor(0, 0, 0, 0);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 MapTarget::~MapTarget() {
@@ -130,15 +140,16 @@ MapTarget::~MapTarget() {
   glDeleteTextures(1, &texture_);
 }
 
-void MapTarget::begin() const {
+void MapTarget::begin(const PixelRectangle& area) const {
   glBindFramebuffer(GL_FRAMEBUFFER, frame_);
   glViewport(0, 0, size_, size_);
+  glEnable(GL_SCISSOR_TEST);
+  const PixelRectangle limits = inside();
+  const int left = std::max(area.left, limits.left), bottom = std::max(area.bottom, limits.bottom);
+  glScissor(left, bottom, std::max(std::min(area.right, limits.right) - left, 0),
+            std::max(std::min(area.top, limits.top) - bottom, 0));
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  // The outermost texels stay clear, so that nothing throws a shadow or is touched beyond the edge. A border colour
-  // would say the same, and makes every look-up slower.
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(1, 1, size_ - 2, size_ - 2);
 }
 
 void MapTarget::end() const {

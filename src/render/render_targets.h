@@ -1,6 +1,7 @@
 #pragma once
 
 #include "image/image.h"
+#include "render/tile_mask.h"
 
 namespace cradle {
 
@@ -8,7 +9,7 @@ namespace cradle {
 /// limit, or does not fit into memory. Needs a current context.
 void requirePictureSize(int width, int height);
 
-/// What a picture is drawn into: four samples a pixel, colour and depth, and the resolved picture.
+/// What a picture is drawn into, whole or in parts: four samples a pixel, colour and depth, and the resolved picture.
 class PictureTarget {
  public:
   PictureTarget(int width, int height);
@@ -16,14 +17,15 @@ class PictureTarget {
   PictureTarget(const PictureTarget&) = delete;
   PictureTarget& operator=(const PictureTarget&) = delete;
 
-  /// Following draws go here; its former contents are cleared.
-  void begin() const;
+  /// Following draws go into `area` until end(); its former contents are cleared.
+  void begin(const PixelRectangle& area) const;
+  void end() const;
 
   /// Averages the samples of each pixel.
-  void resolve() const;
+  void resolve(const PixelRectangle& area) const;
 
-  /// The resolved picture.
-  Image read() const;
+  /// Copies the resolved pixels into a picture of the target's size.
+  void read(const PixelRectangle& area, Image& image) const;
 
  private:
   int width_, height_;
@@ -41,9 +43,13 @@ class MapTarget {
   MapTarget(const MapTarget&) = delete;
   MapTarget& operator=(const MapTarget&) = delete;
 
-  /// Following draws go here until end(); its former contents are cleared.
-  void begin() const;
+  /// Following draws go into `area` until end(); its former contents are cleared. The outermost texels stay clear, so
+  /// that nothing throws a shadow or is touched beyond the edge (a border colour makes every look-up slower).
+  void begin(const PixelRectangle& area) const;
   void end() const;
+
+  /// All of it but the outermost texels.
+  PixelRectangle inside() const { return {1, 1, size_ - 1, size_ - 1}; }
   void bindTexture(unsigned int unit) const;
 
  private:

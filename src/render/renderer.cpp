@@ -7,9 +7,8 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "render/draw_list.h"
-#include "render/gpu_mesh.h"
-#include "render/instances.h"
+#include "render/changed_area.h"
+#include "render/item_drawer.h"
 #include "render/offscreen_context.h"
 #include "render/render_targets.h"
 #include "render/shader_program.h"
@@ -17,10 +16,6 @@
 
 namespace cradle {
 namespace {
-
-constexpr int kSegmentsPerTurn = 20;  // of a coil: its chords miss the circle by 1 % of its radius
-constexpr int kRopeSegments = 64;
-constexpr int kSegmentsAround = 10;  // of a wire
 
 using Clock = std::chrono::steady_clock;
 
@@ -65,6 +60,12 @@ GpuMesh makeFarGround(const Stage& stage) {
   return {vertices, 4, indices};
 }
 
+std::vector<MeshBounds> boundsOf(const std::vector<DrawnMesh>& meshes) {
+  std::vector<MeshBounds> all;
+  for (const DrawnMesh& mesh : meshes) all.push_back(boundsOf(mesh));
+  return all;
+}
+
 }  // namespace
 
 /// The shaders of all stages.
@@ -96,7 +97,7 @@ struct Renderer::Programs {
   ShaderProgram ground, groundFar, contact, sky;
 };
 
-/// All that lives on the side of OpenGL; the context goes last.
+/// All that lives on the side of OpenGL, and the picture drawn last; the context goes last.
 struct Renderer::Resources {
   Resources(const Scene& scene, const View& view, int width, int height, const std::string& shaderFolder);
 
@@ -105,16 +106,17 @@ struct Renderer::Resources {
     SizeCheck(int width, int height) { requirePictureSize(width, height); }
   } sizeCheck;  // before any memory is asked for
   Appearance appearance;
+  std::vector<MeshBounds> meshBounds;
   Stage stage;
   Programs programs;
   PictureTarget picture;
   MapTarget shadowMap, contactMap;
-  InstanceBuffer meshInstances, wallInstances, sphereInstances, cylinderInstances, tubeInstances, contactInstances;
   NumberTexture balls, nearBalls;
-  std::vector<GpuMesh> meshes, halfBalls, halfCylinders;
-  GpuMesh coilMesh, ropeMesh, triangle, square;
+  ItemDrawer items;
+  GpuMesh triangle;
   std::optional<GpuMesh> nearGround, farGround;
-  PackedDrawList packed;
+  std::optional<DrawList> drawn;  // what picture, maps and image show
+  Image image;
   Clock::time_point stageStart;
 };
 
@@ -122,6 +124,7 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
                                const std::string& shaderFolder)
     : sizeCheck(width, height),
       appearance(makeAppearance(scene, view, pixelsPerMetre(view, height))),
+      meshBounds(boundsOf(appearance.meshes)),
       stage(makeStage(scene, view, appearance.ground, width, height)),
       programs({shaderFolder, shaderDefinitions(stage)}, stage),
       picture(width, height),
@@ -129,15 +132,9 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
       contactMap(MapTarget::Kind::share, kContactMapSize),
       balls(4),
       nearBalls(1),
-      coilMesh(makeTube(kMostCoilTurns * kSegmentsPerTurn, kSegmentsAround)),
-      ropeMesh(makeTube(kRopeSegments, kSegmentsAround)),
+      items(appearance, stage),
       triangle({0, 0, 0}, 1, {0, 1, 2}),
-      square({-1, -1, 1, -1, 1, 1, -1, 1}, 2, {0, 1, 2, 0, 2, 3}) {
-  for (const DrawnMesh& mesh : appearance.meshes) meshes.emplace_back(mesh);
-  for (const int outline : kOutlines) {
-    halfBalls.push_back(makeHalfBall(outline));
-    halfCylinders.push_back(makeHalfCylinder(outline));
-  }
+      image(width, height) {
   if (!stage.ground) return;
   nearGround.emplace(makeNearGround(stage));
   farGround.emplace(makeFarGround(stage));
@@ -150,32 +147,44 @@ Renderer::~Renderer() {
   resources_->context.makeCurrent();
 }
 
+void Renderer::forgetPicture() {
+  resources_->drawn.reset();
+}
+
 Image Renderer::render(const Frame& frame) {
   Resources& r = *resources_;
   r.context.makeCurrent();
   times_ = {};
   r.stageStart = Clock::now();
-  r.packed = pack(makeDrawList(scene_, r.appearance, view_, frame), r.stage);
+  DrawList list = makeDrawList(scene_, r.appearance, view_, frame);
+  const ChangedArea changed = r.drawn ? changedArea(*r.drawn, list, r.stage, r.meshBounds) : wholePicture(r.stage);
+  r.drawn.reset();  // until the picture is complete
   finishStage(times_.drawList);
+  drawnShare_ = 0;
+  if (!changed.picture.isEmpty()) draw(list, changed);
+  r.drawn = std::move(list);
+  return r.image;
+}
 
-  r.meshInstances.upload(r.packed.meshInstances);
-  r.wallInstances.upload(r.packed.wallInstances);
-  r.sphereInstances.upload(r.packed.sphereInstances);
-  r.cylinderInstances.upload(r.packed.cylinderInstances);
-  r.tubeInstances.upload(r.packed.tubeInstances);
-  r.contactInstances.upload(r.packed.contactInstances);
-  r.balls.upload(r.packed.balls);
-  r.nearBalls.upload(r.packed.nearBalls);
-  drawMaps();
+void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
+  Resources& r = *resources_;
+  r.items.take(list, r.meshBounds);
+  r.balls.upload(r.items.packed().balls);
+  r.nearBalls.upload(r.items.packed().nearBalls);
+  if (changed.shadows) drawShadowMap(*changed.shadows);
+  if (changed.contactsChanged) drawContactMap();
   finishStage(times_.maps);
-
-  drawPicture();
+  const std::vector<PixelRectangle> areas = changed.picture.rectangles();
+  for (const PixelRectangle& area : areas) {
+    drawPicture(area);
+    drawnShare_ +=
+        static_cast<double>(area.width()) * area.height() / (static_cast<double>(r.image.width) * r.image.height);
+  }
   finishStage(times_.main);
-  r.picture.resolve();
+  for (const PixelRectangle& area : areas) r.picture.resolve(area);
   finishStage(times_.resolve);
-  Image image = r.picture.read();
+  for (const PixelRectangle& area : areas) r.picture.read(area, r.image);
   finishStage(times_.readBack);
-  return image;
 }
 
 void Renderer::finishStage(double& seconds) {
@@ -185,56 +194,56 @@ void Renderer::finishStage(double& seconds) {
   resources_->stageStart = now;
 }
 
-void Renderer::drawMaps() {
+void Renderer::drawShadowMap(const PixelRectangle& area) {
   const Resources& r = *resources_;
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
   glEnable(GL_DEPTH_CLAMP);  // what stands outside the view still throws its shadow into it
-  r.shadowMap.begin();
+  r.shadowMap.begin(area);
   r.programs.surfaceDepth.use();
-  drawMeshes();
+  r.items.drawMeshes();
   r.programs.ballDepth.use();
-  drawSpheres();
+  r.items.drawSpheres();
   r.programs.cylinderDepth.use();
-  drawCylinders();
+  r.items.drawCylinders();
   r.programs.tubeDepth.use();
-  drawTubes();
+  r.items.drawTubes();
   glDisable(GL_DEPTH_CLAMP);
   r.shadowMap.end();
+}
 
-  r.contactMap.begin();
+void Renderer::drawContactMap() {
+  const Resources& r = *resources_;
+  r.contactMap.begin(r.contactMap.inside());
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE_MINUS_DST_COLOR, GL_ONE);  // what two things leave open is the product of what each does
   r.programs.contact.use();
-  const std::size_t contacts = r.packed.contactInstances.size();
-  if (contacts > 0) r.square.draw(0, 2, r.contactInstances, 0, contacts);
+  r.items.drawContacts();
   glDisable(GL_BLEND);
-  glEnable(GL_DEPTH_TEST);
   r.contactMap.end();
 }
 
-void Renderer::drawPicture() {
+void Renderer::drawPicture(const PixelRectangle& area) {
   const Resources& r = *resources_;
   r.shadowMap.bindTexture(kShadowUnit);
   r.contactMap.bindTexture(kContactUnit);
   r.balls.bindTexture(kBallUnit);
   r.nearBalls.bindTexture(kNearBallUnit);
-  r.picture.begin();
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  r.picture.begin(area);
   r.programs.ball.use();
-  drawSpheres();
+  r.items.drawSpheres(&area);
   r.programs.cylinder.use();
-  drawCylinders();
+  r.items.drawCylinders(&area);
   r.programs.surface.use();
-  drawMeshes();
-  if (!r.packed.wallInstances.empty()) {
-    const GpuMesh& wall = r.meshes[static_cast<std::size_t>(r.appearance.wallMesh)];
-    wall.draw(0, wall.triangleCount(), r.wallInstances, 0, r.packed.wallInstances.size());
-  }
+  r.items.drawMeshes(&area);
+  r.items.drawWalls();
   r.programs.tube.use();
-  drawTubes();
+  r.items.drawTubes(&area);
   // Last what fills the picture: hidden pixels are not computed.
   if (r.nearGround) {
     glEnable(GL_CULL_FACE);  // from below, the ground is not there
@@ -246,43 +255,7 @@ void Renderer::drawPicture() {
   }
   r.programs.sky.use();
   r.triangle.draw();
-}
-
-void Renderer::drawMeshes() const {
-  const Resources& r = *resources_;
-  for (const Batch& batch : r.packed.meshBatches) {
-    const auto mesh = static_cast<std::size_t>(batch.mesh);
-    if (r.appearance.meshIsClosed[mesh]) glEnable(GL_CULL_FACE);
-    r.meshes[mesh].draw(batch.firstTriangle, batch.triangleCount, r.meshInstances, batch.firstInstance,
-                        batch.instanceCount);
-    glDisable(GL_CULL_FACE);
-  }
-}
-
-void Renderer::drawSpheres() const {
-  const Resources& r = *resources_;
-  for (const Batch& batch : r.packed.sphereBatches) {
-    const GpuMesh& mesh = r.halfBalls[static_cast<std::size_t>(batch.mesh)];
-    mesh.draw(0, mesh.triangleCount(), r.sphereInstances, batch.firstInstance, batch.instanceCount);
-  }
-}
-
-void Renderer::drawCylinders() const {
-  const Resources& r = *resources_;
-  for (const Batch& batch : r.packed.cylinderBatches) {
-    const GpuMesh& mesh = r.halfCylinders[static_cast<std::size_t>(batch.mesh)];
-    mesh.draw(0, mesh.triangleCount(), r.cylinderInstances, batch.firstInstance, batch.instanceCount);
-  }
-}
-
-void Renderer::drawTubes() const {
-  const Resources& r = *resources_;
-  // Springs stand before ropes in the list.
-  std::size_t coils = 0;
-  while (coils < r.packed.tubeInstances.size() && r.packed.tubeInstances[coils][11] > 0) ++coils;
-  const std::size_t ropes = r.packed.tubeInstances.size() - coils;
-  if (coils > 0) r.coilMesh.draw(0, r.coilMesh.triangleCount(), r.tubeInstances, 0, coils);
-  if (ropes > 0) r.ropeMesh.draw(0, r.ropeMesh.triangleCount(), r.tubeInstances, coils, ropes);
+  r.picture.end();
 }
 
 }  // namespace cradle

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "image/image.h"
-#include "render/framing.h"
+#include "render/changed_area.h"
 #include "scene/scene.h"
 #include "trajectory/trajectory.h"
 
@@ -19,8 +19,8 @@ struct RenderTimes {
   double readBack = 0;
 };
 
-/// Draws the frames of one film. A picture depends on scene, view, size and frame alone: not on pictures drawn before,
-/// nor on the number of threads. One renderer at a time per thread.
+/// Draws the frames of one film, each as far as it differs from the one before. A picture depends on scene, view, size
+/// and frame alone: not on pictures drawn before, nor on the number of threads. One renderer at a time per thread.
 class Renderer {
  public:
   /// Sizes in pixels. `shaderFolder` replaces the shaders that are built in, unless empty. The scene must outlive the
@@ -31,7 +31,14 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
+  /// Draws what differs from the picture before, and copies the rest.
   Image render(const Frame& frame);
+
+  /// The next picture is drawn whole.
+  void forgetPicture();
+
+  /// Share of the latest picture that was drawn rather than copied, 0..1.
+  double drawnShare() const { return drawnShare_; }
 
   /// Of the latest picture. Each stage waits for OpenGL to finish only if `measuring` was set.
   const RenderTimes& times() const { return times_; }
@@ -40,18 +47,17 @@ class Renderer {
  private:
   struct Programs;
   struct Resources;
-  void drawMaps();
-  void drawPicture();
-  void drawMeshes() const;
-  void drawSpheres() const;
-  void drawCylinders() const;
-  void drawTubes() const;
+  void draw(const DrawList& list, const ChangedArea& changed);
+  void drawShadowMap(const PixelRectangle& area);
+  void drawContactMap();
+  void drawPicture(const PixelRectangle& area);
   void finishStage(double& seconds);
 
   const Scene& scene_;
   const View view_;
   std::unique_ptr<Resources> resources_;
   RenderTimes times_;
+  double drawnShare_ = 0;
   bool measuring_ = false;
 };
 

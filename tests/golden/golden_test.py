@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """Pictures and states of the scenes, compared with those that were looked at and accepted.
 
-    golden_test.py PROGRAM SOURCE_FOLDER [--accept]
+    golden_test.py PROGRAM REDRAW_CHECK SOURCE_FOLDER [--accept]
 
-Pictures pass by the rule of `cradle compare`; states to 1e-9, of 1 + their size. When a change means to change them:
+What changes from a frame to the next is drawn with the same bytes as all of it. Pictures pass by the rule of `cradle compare`; states to 1e-9, of 1 + their size. When a change means to change them:
 draw the old and the new picture (`cradle render SCENE -o FOLDER --frames N:M --size 320x180`), look at both at full size,
 and only then run with --accept, which writes tests/golden/SCENE/ anew; commit it with the reason.
 """
 import csv, os, shutil, subprocess, sys, tempfile, unittest
 
-PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+PROGRAM, REDRAW_CHECK, SOURCE = [os.path.abspath(path) for path in sys.argv[1:4]]
 ACCEPT = "--accept" in sys.argv
 GOLDEN = os.path.join(SOURCE, "tests", "golden")
 FRAMES = {  # scene: frames that are drawn; states are kept for these too
@@ -72,6 +72,9 @@ def make(scene, folder):
     os.remove(table)
     for frame in FRAMES[scene]:
         cradle("render", trajectory, "-o", os.path.join(folder, "pictures"), "--frames", f"{frame}:{frame + 1}", "--size", "320x180")
+    redraw = subprocess.run([REDRAW_CHECK, trajectory, *map(str, FRAMES[scene])], capture_output=True, text=True)
+    if redraw.returncode:
+        raise AssertionError(f"{scene}: {redraw.stdout}{redraw.stderr}")
     os.remove(trajectory)
 
 

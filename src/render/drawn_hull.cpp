@@ -1,0 +1,108 @@
+#include "render/drawn_hull.h"
+
+#include <cmath>
+
+#include "render/camera.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kNearest =
+    1e-3;  // of the distance to a ball's centre: what is nearer to the camera's plane is not bounded
+
+/// Slopes, sideways over forwards, of the two lines from the eye that touch a circle of radius r at (side, depth).
+std::optional<std::pair<double, double>> tangentSlopes(double side, double depth, double r) {
+  if (depth - r <= kNearest * depth) return std::nullopt;
+  const double tangent = std::sqrt(side * side + depth * depth - r * r);
+  return std::pair((side * tangent - r * depth) / (depth * tangent + r * side),
+                   (side * tangent + r * depth) / (depth * tangent - r * side));
+}
+
+}  // namespace
+
+Vec3 DrawnHull::middle() const {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < count; ++i) sum += centers[i];
+  return sum / static_cast<double>(count);
+}
+
+Bounds DrawnHull::bounds() const {
+  Bounds box;
+  for (std::size_t i = 0; i < count; ++i)
+    box.extend(Vec3(centers[i].array() - radius)), box.extend(Vec3(centers[i].array() + radius));
+  return box;
+}
+
+double DrawnHull::reach() const {
+  const Vec3 from = middle();
+  double farthest = 0;
+  for (std::size_t i = 0; i < count; ++i) farthest = std::max(farthest, (centers[i] - from).norm());
+  return farthest + radius;
+}
+
+MeshBounds boundsOf(const DrawnMesh& mesh) {
+  MeshBounds bounds;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (i % kTrianglesPerRun == 0) bounds.runs.emplace_back();
+    for (const std::uint32_t vertex : mesh.triangles[i]) bounds.runs.back().extend(mesh.vertices[vertex]);
+  }
+  for (const Bounds& run : bounds.runs) bounds.whole.extend(run);
+  return bounds;
+}
+
+DrawnHull hullOf(const Bounds& local, const RigidTransform& worldFromLocal) {
+  DrawnHull hull;
+  for (int corner = 0; corner < 8; ++corner)
+    hull.add(worldFromLocal * Vec3(local.corner(static_cast<Bounds::CornerType>(corner))));
+  return hull;
+}
+
+DrawnHull hullOf(const SphereItem& item) {
+  DrawnHull hull;
+  hull.add(item.center);
+  hull.radius = item.radius;
+  return hull;
+}
+
+DrawnHull hullOf(const CylinderItem& item) {
+  DrawnHull hull;
+  hull.add(item.center - item.length / 2 * item.axis);
+  hull.add(item.center + item.length / 2 * item.axis);
+  hull.radius = item.radius;
+  return hull;
+}
+
+DrawnHull hullOf(const TubeItem& item) {
+  DrawnHull hull;
+  hull.add(item.start);
+  hull.add(item.end);
+  hull.add((item.start + item.end) / 2 + 2 * item.sag);  // the parabola's tangents at both ends meet there
+  hull.radius = item.coilRadius + item.wireRadius;
+  return hull;
+}
+
+DrawnHull swept(const DrawnHull& hull, const Vec3& first, const Vec3& last) {
+  DrawnHull both;
+  both.radius = hull.radius;
+  for (std::size_t i = 0; i < hull.count; ++i) both.add(hull.centers[i] + first), both.add(hull.centers[i] + last);
+  return both;
+}
+
+std::optional<std::vector<Eigen::Vector2d>> outlineOf(const DrawnHull& hull, const Stage& stage) {
+  const Mat3 axes = cameraAxes(stage.camera.position, stage.camera.target);
+  const double pixelsPerSlope = stage.height / (2 * std::tan(stage.camera.verticalFieldOfView / 2));
+  const auto column = [&](double slope) { return stage.width / 2.0 + pixelsPerSlope * slope; };
+  const auto row = [&](double slope) { return stage.height / 2.0 + pixelsPerSlope * slope; };
+  std::vector<Eigen::Vector2d> outline;
+  for (std::size_t i = 0; i < hull.count; ++i) {
+    const Vec3 seen = axes.transpose() * (hull.centers[i] - stage.camera.position);
+    const auto across = tangentSlopes(seen.x(), -seen.z(), hull.radius);
+    const auto up = tangentSlopes(seen.y(), -seen.z(), hull.radius);
+    if (!across || !up) return std::nullopt;
+    for (const double x : {across->first, across->second})
+      for (const double y : {up->first, up->second}) outline.emplace_back(column(x), row(y));
+  }
+  return outline;
+}
+
+}  // namespace cradle

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "render/draw_list.h"
+#include "render/stage.h"
+
+namespace cradle {
+
+/// The convex hull of balls of one radius, around what is drawn of an item.
+struct DrawnHull {
+  std::array<Vec3, 16> centers = {};  // m, world
+  std::size_t count = 0;
+  double radius = 0;  // m
+
+  void add(const Vec3& center) { centers[count++] = center; }
+  Vec3 middle() const;
+  Bounds bounds() const;  // m, world
+  /// Of a ball around the middle that contains all.
+  double reach() const;
+};
+
+/// Boxes around a mesh and around each run of kTrianglesPerRun triangles, in the mesh's frame.
+struct MeshBounds {
+  Bounds whole;
+  std::vector<Bounds> runs;
+};
+constexpr std::uint32_t kTrianglesPerRun = 64;
+MeshBounds boundsOf(const DrawnMesh& mesh);
+
+DrawnHull hullOf(const Bounds& local, const RigidTransform& worldFromLocal);
+DrawnHull hullOf(const SphereItem& item);
+DrawnHull hullOf(const CylinderItem& item);
+DrawnHull hullOf(const TubeItem& item);
+
+/// What a hull passes on its way from `first` to `last` (m, world); of at most eight centres.
+DrawnHull swept(const DrawnHull& hull, const Vec3& first, const Vec3& last);
+
+/// Points in the picture (pixels from the lower left corner) whose convex hull contains what is seen of a hull; none if
+/// part of it is not in front of the camera.
+std::optional<std::vector<Eigen::Vector2d>> outlineOf(const DrawnHull& hull, const Stage& stage);
+
+}  // namespace cradle

@@ -1,0 +1,133 @@
+#include "render/item_drawer.h"
+
+#include <GL/glew.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+constexpr int kSegmentsPerTurn = 20;  // of a coil: its chords miss the circle by 1 % of its radius
+constexpr int kRopeSegments = 64;
+constexpr int kSegmentsAround = 10;  // of a wire
+constexpr double kMargin = 2;        // pixels: samples lie beside centres, and rounding
+
+/// The pixels in which a hull may be seen: all, if it is not wholly in front of the camera.
+PixelRectangle seenIn(const DrawnHull& hull, const Stage& stage) {
+  const auto outline = outlineOf(hull, stage);
+  if (!outline) return {0, 0, stage.width, stage.height};
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& point : *outline) box.extend(point);
+  const auto pixel = [](double place, int size) {
+    return static_cast<int>(std::floor(std::clamp(place, -kMargin, size + kMargin)));
+  };
+  return {pixel(box.min().x() - kMargin, stage.width), pixel(box.min().y() - kMargin, stage.height),
+          pixel(box.max().x() + kMargin, stage.width) + 1, pixel(box.max().y() + kMargin, stage.height) + 1};
+}
+
+bool isSeenIn(const PixelRectangle& seen, const PixelRectangle* area) {
+  return area == nullptr ||
+         (seen.left < area->right && seen.right > area->left && seen.bottom < area->top && seen.top > area->bottom);
+}
+
+/// Calls draw(first, count) for each run of instances in [first, first + count) that are seen in `area`.
+template <typename Draw>
+void forSeen(const std::vector<PixelRectangle>& seen, std::size_t first, std::size_t count, const PixelRectangle* area,
+             const Draw& draw) {
+  const std::size_t end = first + count;
+  for (std::size_t i = first; i < end; ++i) {
+    if (!isSeenIn(seen[i], area)) continue;
+    std::size_t last = i + 1;
+    while (last < end && isSeenIn(seen[last], area)) ++last;
+    draw(i, last - i);
+    i = last;
+  }
+}
+
+}  // namespace
+
+ItemDrawer::ItemDrawer(const Appearance& appearance, const Stage& stage)
+    : appearance_(appearance),
+      stage_(stage),
+      coilMesh_(makeTube(kMostCoilTurns * kSegmentsPerTurn, kSegmentsAround)),
+      ropeMesh_(makeTube(kRopeSegments, kSegmentsAround)),
+      square_({-1, -1, 1, -1, 1, 1, -1, 1}, 2, {0, 1, 2, 0, 2, 3}) {
+  for (const DrawnMesh& mesh : appearance.meshes) meshes_.emplace_back(mesh);
+  for (const int outline : kOutlines) {
+    halfBalls_.push_back(makeHalfBall(outline));
+    halfCylinders_.push_back(makeHalfCylinder(outline));
+  }
+}
+
+void ItemDrawer::take(const DrawList& list, const std::vector<MeshBounds>& meshBounds) {
+  packed_ = pack(list, stage_);
+  meshInstances_.upload(packed_.meshInstances);
+  wallInstances_.upload(packed_.wallInstances);
+  sphereInstances_.upload(packed_.sphereInstances);
+  cylinderInstances_.upload(packed_.cylinderInstances);
+  tubeInstances_.upload(packed_.tubeInstances);
+  contactInstances_.upload(packed_.contactInstances);
+  for (Seen* seen : {&seenMeshes_, &seenSpheres_, &seenCylinders_, &seenTubes_}) seen->clear();
+  for (const MeshItem& item : list.meshes)
+    seenMeshes_.push_back(
+        seenIn(hullOf(meshBounds[static_cast<std::size_t>(item.mesh)].whole, item.worldFromMesh), stage_));
+  for (const std::size_t i : packed_.sphereItems) seenSpheres_.push_back(seenIn(hullOf(list.spheres[i]), stage_));
+  for (const std::size_t i : packed_.cylinderItems) seenCylinders_.push_back(seenIn(hullOf(list.cylinders[i]), stage_));
+  for (const TubeItem& item : list.tubes) seenTubes_.push_back(seenIn(hullOf(item), stage_));
+}
+
+void ItemDrawer::drawMeshes(const PixelRectangle* area) const {
+  for (const Batch& batch : packed_.meshBatches) {
+    const auto mesh = static_cast<std::size_t>(batch.mesh);
+    if (appearance_.meshIsClosed[mesh]) glEnable(GL_CULL_FACE);
+    forSeen(seenMeshes_, batch.firstInstance, batch.instanceCount, area, [&](std::size_t first, std::size_t count) {
+      meshes_[mesh].draw(batch.firstTriangle, batch.triangleCount, meshInstances_, first, count);
+    });
+    glDisable(GL_CULL_FACE);
+  }
+}
+
+void ItemDrawer::drawWalls() const {
+  if (packed_.wallInstances.empty()) return;
+  const GpuMesh& wall = meshes_[static_cast<std::size_t>(appearance_.wallMesh)];
+  wall.draw(0, wall.triangleCount(), wallInstances_, 0, packed_.wallInstances.size());
+}
+
+void ItemDrawer::drawSpheres(const PixelRectangle* area) const {
+  for (const Batch& batch : packed_.sphereBatches) {
+    const GpuMesh& mesh = halfBalls_[static_cast<std::size_t>(batch.mesh)];
+    forSeen(seenSpheres_, batch.firstInstance, batch.instanceCount, area, [&](std::size_t first, std::size_t count) {
+      mesh.draw(0, mesh.triangleCount(), sphereInstances_, first, count);
+    });
+  }
+}
+
+void ItemDrawer::drawCylinders(const PixelRectangle* area) const {
+  for (const Batch& batch : packed_.cylinderBatches) {
+    const GpuMesh& mesh = halfCylinders_[static_cast<std::size_t>(batch.mesh)];
+    forSeen(seenCylinders_, batch.firstInstance, batch.instanceCount, area, [&](std::size_t first, std::size_t count) {
+      mesh.draw(0, mesh.triangleCount(), cylinderInstances_, first, count);
+    });
+  }
+}
+
+void ItemDrawer::drawTubes(const PixelRectangle* area) const {
+  // Springs stand before ropes in the list.
+  std::size_t coils = 0;
+  while (coils < packed_.tubeInstances.size() && packed_.tubeInstances[coils][11] > 0) ++coils;
+  const auto draw = [&](const GpuMesh& mesh, std::size_t begin, std::size_t size) {
+    forSeen(seenTubes_, begin, size, area, [&](std::size_t first, std::size_t count) {
+      mesh.draw(0, mesh.triangleCount(), tubeInstances_, first, count);
+    });
+  };
+  draw(coilMesh_, 0, coils);
+  draw(ropeMesh_, coils, packed_.tubeInstances.size() - coils);
+}
+
+void ItemDrawer::drawContacts() const {
+  const std::size_t contacts = packed_.contactInstances.size();
+  if (contacts > 0) square_.draw(0, 2, contactInstances_, 0, contacts);
+}
+
+}  // namespace cradle
