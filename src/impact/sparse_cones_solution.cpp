@@ -1,7 +1,5 @@
 // Newton's method (cone_newton.h) from where the step before ended; where that does not lead to a solution, from where
 // ADMM (cone_iteration.h) and interior points (cone_interior.h) come, in turn. Of all that they find the best is kept.
-// Of 4339 problems of stacks, dominoes, an arch and heaps, every tenth of which Newton's method alone does not solve,
-// none is left.
 
 #include <algorithm>
 #include <cmath>
