@@ -7,7 +7,7 @@ namespace cradle {
 namespace {
 
 constexpr int kRodPieces = 6;
-constexpr double kMapMargin = 2;       // texels: rounding
+constexpr double kMapMargin = 2;  // texels: rounding
 
 }  // namespace
 

@@ -24,9 +24,8 @@ double outside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2
 }
 
 bool contains(const std::vector<PixelRectangle>& rectangles, int x, int y) {
-  return std::any_of(rectangles.begin(), rectangles.end(), [&](const PixelRectangle& r) {
-    return r.left <= x && x < r.right && r.bottom <= y && y < r.top;
-  });
+  return std::any_of(rectangles.begin(), rectangles.end(),
+                     [&](const PixelRectangle& r) { return r.left <= x && x < r.right && r.bottom <= y && y < r.top; });
 }
 
 TEST(TileMask, ContainsEveryPixelOfAPolygonAndLittleElse) {
@@ -37,7 +36,8 @@ TEST(TileMask, ContainsEveryPixelOfAPolygonAndLittleElse) {
     std::vector<Eigen::Vector2d> polygon;
     for (int i = 0; i < 7; ++i) {
       const double t = 2 * M_PI * i / 7, u = a * std::cos(t), v = b * std::sin(t);
-      polygon.emplace_back(x + u * std::cos(angle) - v * std::sin(angle), y + u * std::sin(angle) + v * std::cos(angle));
+      polygon.emplace_back(x + u * std::cos(angle) - v * std::sin(angle),
+                           y + u * std::sin(angle) + v * std::cos(angle));
     }
     TileMask mask(200, 111);
     mask.add(mask.spansOf(polygon));
