@@ -8,7 +8,7 @@
 namespace cradle {
 
 constexpr double kFinestCrossing = 1e-12;  // of a step: to this the instant of a crossing is found
-// Of a step: touches that come and go within less are passed over, with a bound on the gap's acceleration and without.
+// Of a step: touches that come and go within less are passed over, with bounds on the gap's acceleration and without.
 constexpr double kFinestApproach = 1.0 / (1 << 20);
 constexpr double kFinestBlindApproach = 1.0 / (1 << 12);
 constexpr int kMostCuts = 100;  // of a bracket; halving alone would need 40
@@ -17,62 +17,85 @@ constexpr int kMostCuts = 100;  // of a bracket; halving alone would need 40
 struct GapBounds {
   double speed = 0;
   double acceleration = std::numeric_limits<double>::infinity();
-  double graze = 0;  // m: touches that come and go and cannot be deeper are passed over
+  double graze = 0;                 // m: touches that come and go and cannot be deeper are passed over
+  double finest = kFinestApproach;  // of a step: intervals that are not looked into
 };
 
 /// A gap with these values at the ends of an interval of that length cannot close inside it: the fastest approach does
 /// not suffice, or the parabola under its chord stays above 0.
 inline bool staysOpen(const GapBounds& bounds, double gapFrom, double gapTo, double length) {
-  if (gapFrom + gapTo + 2 * bounds.graze > bounds.speed * length) return true;
-  const double sag = bounds.acceleration * length * length / 8, slant = std::abs(gapTo - gapFrom);
+  const double from = gapFrom + bounds.graze, to = gapTo + bounds.graze;
+  if (from + to > bounds.speed * length) return true;
+  const double sag = bounds.acceleration * length * length / 8, slant = std::abs(to - from);
   if (slant >= 4 * sag) return true;  // the parabola is lowest at an end
-  return (gapFrom + gapTo) / 2 - sag - slant * slant / (16 * sag) > 0;
+  return (from + to) / 2 - sag - slant * slant / (16 * sag) > 0;
 }
 
-/// A crossing between two fractions of a step, and the gaps there: gapBefore > 0 >= gapAfter.
+/// Two fractions of a step, and the gaps there: gapBefore > 0. Around a crossing 0 >= gapAfter.
 struct Bracket {
   double before, gapBefore, after, gapAfter;
 };
 
-/// Closes a bracket around a crossing to kFinestCrossing by the Illinois variant of regula falsi (M. Dowell, P.
-/// Jarratt, 1971).
+/// Where in a bracket the parabola through its ends and a third point crosses zero: it does so once.
+inline double crossingOfParabola(const Bracket& bracket, double third, double gapThird) {
+  const double width = bracket.after - bracket.before, chord = (bracket.gapAfter - bracket.gapBefore) / width;
+  const double bend = ((gapThird - bracket.gapBefore) / (third - bracket.before) - chord) / (third - bracket.after);
+  const double slope = chord - bend * width, root = slope * slope - 4 * bend * bracket.gapBefore;
+  return bracket.before + 2 * bracket.gapBefore / (std::sqrt(std::max(0.0, root)) - slope);
+}
+
+/// Closes a bracket around a crossing to kFinestCrossing by parabolas (D. E. Muller, 1956): a gap in free fall is one.
+/// Where they do not halve the bracket in three cuts, it is halved.
 template <class Gap>
 void closeBracket(const Gap& gap, Bracket& bracket) {
-  double weightBefore = bracket.gapBefore, weightAfter = bracket.gapAfter;
+  double third = 0, gapThird = 0, widthBefore = INFINITY;
   for (int i = 0; i < kMostCuts && bracket.after - bracket.before > kFinestCrossing; ++i) {
     const double width = bracket.after - bracket.before;
-    double cut = bracket.after - width * weightAfter / (weightAfter - weightBefore);
-    // Half the resolution to the inside, so that both ends come to the crossing.
-    cut = std::clamp(cut, bracket.before + 0.5 * kFinestCrossing, bracket.after - 0.5 * kFinestCrossing);
-    const double found = gap(cut);
-    if (found > 0) {
-      bracket.before = cut, bracket.gapBefore = weightBefore = found;
-      weightAfter /= 2;
-    } else {
-      bracket.after = cut, bracket.gapAfter = weightAfter = found;
-      weightBefore /= 2;
+    double cut = bracket.before + width * bracket.gapBefore / (bracket.gapBefore - bracket.gapAfter);
+    if (i > 0) cut = crossingOfParabola(bracket, third, gapThird);
+    if (i % 3 == 2) {
+      if (width > widthBefore / 2) cut = bracket.before + width / 2;
+      widthBefore = width;
     }
+    // Half the resolution to the inside, so that both ends come to the crossing.
+    if (!(cut > bracket.before + 0.5 * kFinestCrossing)) cut = bracket.before + 0.5 * kFinestCrossing;
+    if (!(cut < bracket.after - 0.5 * kFinestCrossing)) cut = bracket.after - 0.5 * kFinestCrossing;
+    const double found = gap(cut);
+    double& end = found > 0 ? bracket.before : bracket.after;
+    double& gapEnd = found > 0 ? bracket.gapBefore : bracket.gapAfter;
+    third = end, gapThird = gapEnd;
+    end = cut, gapEnd = found;
   }
 }
 
 /// First zero of `gap(fraction)` in [from, to], given the gap at both ends, gapFrom > 0. An interval in which the gap
-/// stays open is passed over; else it is halved, the earlier half first. Where the ends differ in sign a crossing is
-/// found at once, and what comes before it is searched like the rest.
-template <class Gap>
-std::optional<double> firstCrossing(const Gap& gap, const GapBounds& bounds, double from, double gapFrom, double to,
-                                    double gapTo) {
-  if (gapTo <= 0) {
-    Bracket bracket{from, gapFrom, to, gapTo};
+/// stays open, by its bounds or because `isOpen(ends)` knows, is passed over; else it is halved, the earlier half
+/// first. Where the ends differ in sign a crossing is found at once, and what comes before it is searched like the
+/// rest.
+template <class Gap, class IsOpen>
+std::optional<double> firstCrossing(const Gap& gap, const GapBounds& bounds, const IsOpen& isOpen, Bracket ends) {
+  if (ends.gapAfter <= 0) {
+    Bracket bracket = ends;
     closeBracket(gap, bracket);
-    const auto earlier = firstCrossing(gap, bounds, from, gapFrom, bracket.before, bracket.gapBefore);
+    const auto earlier =
+        firstCrossing(gap, bounds, isOpen, {ends.before, ends.gapBefore, bracket.before, bracket.gapBefore});
     return earlier ? earlier : bracket.after;
   }
-  const double finest = std::isfinite(bounds.acceleration) ? kFinestApproach : kFinestBlindApproach;
-  if (to - from < finest || staysOpen(bounds, gapFrom, gapTo, to - from)) return std::nullopt;
-  const double middle = from + (to - from) / 2, gapMiddle = gap(middle);
-  if (const auto crossing = firstCrossing(gap, bounds, from, gapFrom, middle, gapMiddle)) return crossing;
+  const double length = ends.after - ends.before;
+  if (length < bounds.finest || staysOpen(bounds, ends.gapBefore, ends.gapAfter, length)) return std::nullopt;
+  if (isOpen(ends)) return std::nullopt;
+  const double middle = ends.before + length / 2, gapMiddle = gap(middle);
+  if (const auto crossing = firstCrossing(gap, bounds, isOpen, {ends.before, ends.gapBefore, middle, gapMiddle}))
+    return crossing;
   if (gapMiddle <= 0) return middle;
-  return firstCrossing(gap, bounds, middle, gapMiddle, to, gapTo);
+  return firstCrossing(gap, bounds, isOpen, {middle, gapMiddle, ends.after, ends.gapAfter});
+}
+
+/// The same where nothing but the bounds is known.
+template <class Gap>
+std::optional<double> firstCrossing(const Gap& gap, const GapBounds& bounds, const Bracket& ends) {
+  return firstCrossing(
+      gap, bounds, [](const Bracket&) { return false; }, ends);
 }
 
 }  // namespace cradle

@@ -6,14 +6,15 @@
 #include "collision/core.h"
 #include "collision/first_crossing.h"
 #include "collision/mesh_collider.h"
+#include "collision/staying_apart.h"
 
 namespace cradle {
 namespace {
 
-// Of the smaller radius: edges may graze each other so deep unseen. What does is apart at two looks, and at the rates
-// of a body in free motion by far less.
+// Of the smaller radius: edges of meshes may graze each other so deep unseen. What does is apart at two looks, and at
+// the rates of a body in free motion by far less.
 constexpr double kGrazePart = 1e-4;
-constexpr double kSamePlace = 1e-3;        // of a size: contacts so near to each other are one
+constexpr int kMostLooks = 1000;           // for directions, at a pair whose edges stay within a hair of each other
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
 Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
@@ -25,6 +26,14 @@ Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
 double openingSpeed(const Contact& contact, const VectorX& state) {
   return contact.normal.dot(pointVelocity(contact.bodyB, contact.point, state) -
                             pointVelocity(contact.bodyA, contact.point, state));
+}
+
+/// m: of a corner of one collider, with the ball around it, over a face of the other.
+double heightOfCorner(const FaceBelow& face, std::size_t corner, const std::pair<const Collider&, RigidTransform>& a,
+                      const std::pair<const Collider&, RigidTransform>& b) {
+  const auto& [upper, worldFromUpper] = face.isOfA ? b : a;
+  const RigidTransform& worldFromLower = face.isOfA ? a.second : b.second;
+  return heightOver(face, worldFromLower, worldFromUpper * upper.points[corner]) - upper.radius;
 }
 
 /// How far (m) from the centre of mass the points of a collider are, without the balls around them.
@@ -61,6 +70,7 @@ class PairSearch {
       feature_ = feature;
       held_ = isHeld(touching) ? touching.held : nullptr;
       if (held_ && hasOneContact()) continue;
+      if (held_ && apart_) lookBlindly();
       const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_, reach);
       if (start > bounds_.speed) continue;
       if (start > touching.tolerance)
@@ -73,7 +83,8 @@ class PairSearch {
  private:
   /// A gap is the least of those between all points of the two cores, less the balls' radii. Of two points at distance
   /// d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's sum before they touch; and the
-  /// least of many bends upwards no more than they do. Without balls nothing bounds it where d goes to zero.
+  /// least of many bends upwards no more than they do. Without balls nothing bounds it where d goes to zero: then
+  /// directions tell whether convex bodies stay apart.
   void findBounds() {
     const MotionBounds shift = relativeMotionBounds(step_, a_.body, bodyB_);
     const MotionBounds& turnA = scratch_.turnOf(step_, a_.body);
@@ -89,7 +100,25 @@ class PairSearch {
     pull_ += turnB.acceleration * pointReach(b);
     const double radius = a_.radius + b.radius;
     if (radius > 0) bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / radius;
-    if (radius == 0 || hasMesh(a_, b)) bounds_.graze = kGrazePart * std::min(a_.boundingRadius, b.boundingRadius);
+    if (hasMesh(a_, b))
+      lookBlindly();
+    else if (radius == 0)
+      apart_.emplace(step_, a_, b,
+                     DirectionBends{turnA.acceleration * pointReach(a_) + turnB.acceleration * pointReach(b),
+                                    pull_ + bendInFrame(turnA, b), pull_ + bendInFrame(turnB, a_)});
+  }
+
+  /// What the turning of a frame adds to the bend of the other body's points along a direction in it.
+  double bendInFrame(const MotionBounds& turn, const Collider& other) const {
+    const double distance = (startA_.translation - startB_.translation).norm() + other.boundingRadius + bounds_.speed;
+    return 2 * turn.speed * bounds_.speed + turn.acceleration * distance;
+  }
+
+  /// With a bound on the gap's speed alone.
+  void lookBlindly() {
+    bounds_.graze = kGrazePart * std::min(a_.boundingRadius, geometry_.colliders[pair_.b].boundingRadius);
+    if (!std::isfinite(bounds_.acceleration)) bounds_.finest = kFinestBlindApproach;
+    apart_.reset();
   }
 
   /// Whether one body is above a face of the other all the time.
@@ -111,10 +140,9 @@ class PairSearch {
   /// Corners over a face that may turn: h'' of their height h has parts from the normal's turning.
   void searchCorners(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
     const Collider& upper = face_->isOfA ? geometry_.colliders[pair_.b] : a_;
-    const MotionBounds& turn = scratch_.turnOf(step_, face_->isOfA ? a_.body : bodyB_);
-    const double distance = (startA_.translation - startB_.translation).norm() + upper.boundingRadius + bounds_.speed;
-    pull_ += 2 * turn.speed * bounds_.speed + turn.acceleration * distance;
+    pull_ += bendInFrame(scratch_.turnOf(step_, face_->isOfA ? a_.body : bodyB_), upper);
     bounds_.acceleration = pull_;
+    apart_.reset();
     for (std::size_t corner = 0; corner < upper.points.size(); ++corner) {
       feature_ = corner;
       if (isCornerHeld(touching, upper)) continue;
@@ -128,7 +156,7 @@ class PairSearch {
   }
 
   bool isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const {
-    const double near = kSamePlace * upper.boundingRadius;
+    const double near = kHeldPlace * upper.boundingRadius;
     return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
              return held.pair == pairIndex_ && held.point.body == upper.body &&
                     (held.point.point - upper.points[feature_]).squaredNorm() < near * near;
@@ -143,11 +171,12 @@ class PairSearch {
 
   bool hasOneContact() const { return pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall(); }
 
-  /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not has the
-  /// dead band.
+  /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not, or by
+  /// no more than the dead band, has that.
   void searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
     const double lowest = std::min(0.0, start), speed = leavingSpeed(touching.tolerance) * step_.timeStep;
-    if (!(speed > 0)) return searchFrom(0, start, lowest - touching.deadBand, best);
+    if (apart_) bounds_.graze = touching.tolerance;  // flush faces would be looked at for ever
+    if (!(speed > touching.deadBand)) return searchFrom(0, start, lowest - touching.deadBand, best);
     const bool hasOnePoint = std::isfinite(bounds_.acceleration);
     if (hasOnePoint && speed >= 0.5 * pull_) return;
     const double from = std::min(speed / pull_, hasOnePoint ? 1 : kFirstLook);
@@ -163,7 +192,11 @@ class PairSearch {
     const double end = best ? best->fraction : 1;
     if (from >= end) return;
     const auto above = [&](double fraction) { return gap(fraction) - threshold; };
-    if (const auto fraction = firstCrossing(above, bounds_, from, gapFrom - threshold, end, above(end)))
+    const auto areApart = [&](const Bracket& ends) {
+      if (apart_ && apart_->looks() > kMostLooks) lookBlindly();
+      return apart_ && apart_->during(ends, threshold, bounds_);
+    };
+    if (const auto fraction = firstCrossing(above, bounds_, areApart, {from, gapFrom - threshold, end, above(end)}))
       best = ImpactTime{*fraction, pairIndex_, feature_, threshold, held_ != nullptr, face_};
   }
 
@@ -176,7 +209,9 @@ class PairSearch {
     if (face_) {
       const Vec3 normal = (face_->isOfA ? startA_ : startB_).rotation * face_->normal;
       const double radius = (face_->isOfA ? geometry_.colliders[pair_.b] : a_).radius;
-      const Vec3 corner = cornerAt(startA_, startB_) - radius * normal;
+      const Vec3 place =
+          face_->isOfA ? startB_ * geometry_.colliders[pair_.b].points[feature_] : startA_ * a_.points[feature_];
+      const Vec3 corner = place - radius * normal;
       const int upper = face_->isOfA ? bodyB_ : a_.body, lower = face_->isOfA ? a_.body : bodyB_;
       return normal.dot(pointVelocity(upper, corner, step_.startState) -
                         pointVelocity(lower, corner, step_.startState));
@@ -201,17 +236,10 @@ class PairSearch {
     return startA_ * a_.points[feature_] - a_.radius * planeNormal;
   }
 
-  Vec3 cornerAt(const RigidTransform& worldFromA, const RigidTransform& worldFromB) const {
-    if (face_->isOfA) return worldFromB * geometry_.colliders[pair_.b].points[feature_];
-    return worldFromA * a_.points[feature_];
-  }
-
   double gap(double fraction) {
-    if (face_) {
-      const RigidTransform a = poseAt(step_, a_.body, fraction), b = poseAt(step_, bodyB_, fraction);
-      const double radius = (face_->isOfA ? geometry_.colliders[pair_.b] : a_).radius;
-      return heightOver(*face_, face_->isOfA ? a : b, cornerAt(a, b)) - radius;
-    }
+    if (face_)
+      return heightOfCorner(*face_, feature_, {a_, poseAt(step_, a_.body, fraction)},
+                            {geometry_.colliders[pair_.b], poseAt(step_, bodyB_, fraction)});
     if (held_) {
       interpolate(step_, fraction, scratch_.sample_);
       return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, reach_);
@@ -231,6 +259,7 @@ class PairSearch {
   int bodyB_;
   RigidTransform startA_, startB_;
   GapBounds bounds_;
+  std::optional<StayingApart> apart_;               // where the bend of the gap has no bound
   std::optional<FaceBelow> face_;                   // below all of the other body
   const std::vector<HeldFeature>* held_ = nullptr;  // something holds points of this feature
   double reach_ = 0;                                // m: farther apart nothing is looked at
@@ -245,44 +274,16 @@ const MotionBounds& ImpactSearch::turnOf(const Step& step, int body) {
   return turn.bounds;
 }
 
-/// Contacts of a pair that are not held, to contacts_.
-void ImpactSearch::findOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state,
-                              double margin) {
-  contacts_.clear();
-  appendContacts(geometry_, pair, state, margin, contacts_);
-  const ColliderPair& colliders = geometry_.pairs[pair];
-  const double near = kSamePlace * std::min(geometry_.colliders[colliders.a].boundingRadius,
-                                            geometry_.colliders[colliders.b].boundingRadius);
-  std::erase_if(contacts_, [&](const Contact& contact) {
-    return std::any_of(held.begin(), held.end(), [&](const HeldFeature& feature) {
-      if (feature.pair != pair) return false;
-      return (poseOf(state, feature.point.body) * feature.point.point - contact.point).norm() < near;
-    });
-  });
-}
-
-/// The least separation of points that are not held, at most `margin`.
-double ImpactSearch::gapOfOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state,
-                                 double margin) {
-  findOthers(pair, held, state, margin);
-  double least = margin;
-  for (const Contact& contact : contacts_) least = std::min(least, contact.separation);
-  return least;
-}
-
 double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& touching, const VectorX& state) {
   const ColliderPair& pair = geometry_.pairs[impact.pair];
+  const Collider& a = geometry_.colliders[pair.a];
   if (impact.face) {
-    const Collider &a = geometry_.colliders[pair.a], &b = geometry_.colliders[pair.b];
-    const RigidTransform worldFromA = poseOf(state, a.body), worldFromB = poseOf(state, b.body);
-    const bool isOfA = impact.face->isOfA;
-    const Vec3 corner = isOfA ? worldFromB * b.points[impact.feature] : worldFromA * a.points[impact.feature];
-    return heightOver(*impact.face, isOfA ? worldFromA : worldFromB, corner) - (isOfA ? b : a).radius -
+    const Collider& b = geometry_.colliders[pair.b];
+    return heightOfCorner(*impact.face, impact.feature, {a, poseOf(state, a.body)}, {b, poseOf(state, b.body)}) -
            impact.threshold;
   }
   if (!impact.isOfOthers) return separation(geometry_, pair, impact.feature, state) - impact.threshold;
-  const double farthest = geometry_.colliders[pair.a].boundingRadius;
-  return gapOfOthers(impact.pair, *touching.held, state, farthest) - impact.threshold;
+  return gapOfOthers(impact.pair, *touching.held, state, a.boundingRadius) - impact.threshold;
 }
 
 std::optional<ImpactTime> ImpactSearch::first(const Step& step, const TouchingFeatures& touching) {

@@ -19,6 +19,8 @@ struct ImpactTime {
   std::optional<FaceBelow> face;  // the gap is the height of corner number `feature` over it
 };
 
+constexpr double kHeldPlace = 1e-3;  // of a size: so near to a point that is held, it is that point
+
 /// A feature of a pair, as separation.h numbers them, that something keeps together.
 struct HeldFeature {
   std::size_t pair = 0, feature = 0;

@@ -35,10 +35,7 @@ void ConstraintSolver::factorize(const VectorX& state) {
 }
 
 void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFrame>& frames) {
-  findRows(constraints_, state, frames, rows_);
-  if (!leftOut_.empty())
-    rows_.erase(std::remove_if(rows_.begin(), rows_.end(), [this](const ConstraintRow& row) { return isLeftOut(row); }),
-                rows_.end());
+  findRows(constraints_, state, frames, rows_, leftOut_);
   if (!hasKnownStructure()) analyze();
   respond(frames);
   for (std::size_t i = 0; i < rows_.size(); ++i) diagonal_[i] = couple(static_cast<int>(i), static_cast<int>(i));

@@ -65,13 +65,20 @@ void addAxisRows(const HingeConstraint& hinge, const Ends& ends, const std::vect
 }  // namespace
 
 void findRows(const Constraints& constraints, const VectorX& state, const std::vector<BodyFrame>& frames,
-              std::vector<ConstraintRow>& rows) {
+              std::vector<ConstraintRow>& rows, const std::vector<char>& leftOut) {
+  const auto isOut = [&](const auto& tie) {
+    const int a = tie.anchorA.body, b = tie.anchorB.body;
+    return !leftOut.empty() && ((a != kFixed && leftOut[static_cast<std::size_t>(a)]) ||
+                                (b != kFixed && leftOut[static_cast<std::size_t>(b)]));
+  };
   rows.clear();
   for (const RodConstraint& rod : constraints.rods)
-    rows.push_back(rowOf(rod, endsOf(rod.anchorA, rod.anchorB, state, frames)));
+    if (!isOut(rod)) rows.push_back(rowOf(rod, endsOf(rod.anchorA, rod.anchorB, state, frames)));
   for (const BallJointConstraint& joint : constraints.ballJoints)
-    addPointRows(joint.anchorA, joint.anchorB, endsOf(joint.anchorA, joint.anchorB, state, frames), rows);
+    if (!isOut(joint))
+      addPointRows(joint.anchorA, joint.anchorB, endsOf(joint.anchorA, joint.anchorB, state, frames), rows);
   for (const HingeConstraint& hinge : constraints.hinges) {
+    if (isOut(hinge)) continue;
     const Ends ends = endsOf(hinge.anchorA, hinge.anchorB, state, frames);
     addPointRows(hinge.anchorA, hinge.anchorB, ends, rows);
     addAxisRows(hinge, ends, frames, rows);

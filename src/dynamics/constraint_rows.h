@@ -45,9 +45,10 @@ struct ConstraintRow {
 };
 
 /// The rows of all constraints in `state`, in the order rods, ball joints, hinges. `frames` are the bodies' at that
-/// state. Units: rods C in m^2 and J in m, joints C in m and J without unit, axes of hinges C without unit.
+/// state. Units: rods C in m^2 and J in m, joints C in m and J without unit, axes of hinges C without unit. Constraints
+/// of bodies marked in `leftOut` have none; it may be empty: none is marked.
 void findRows(const Constraints& constraints, const VectorX& state, const std::vector<BodyFrame>& frames,
-              std::vector<ConstraintRow>& rows);
+              std::vector<ConstraintRow>& rows, const std::vector<char>& leftOut = {});
 
 /// J v of a row for the velocities, or accelerations, in `state`.
 double rateOf(const ConstraintRow& row, const VectorX& state);

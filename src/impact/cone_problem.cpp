@@ -14,6 +14,7 @@
 #include "impact/cone_interior.h"
 #include "impact/cone_iteration.h"
 #include "impact/cone_newton.h"
+#include "impact/linear_complementarity.h"
 #include "impact/single_contact.h"
 
 namespace cradle {
@@ -234,12 +235,30 @@ ConeSolution ScaledProblem::judge(VectorX impulses) const {
   return solution;
 }
 
+/// Without friction: the normal parts alone, by pivoting. False if they are not the only ones; then the load is better
+/// shared than put on as few contacts as can carry it.
+bool solveNormals(const MatrixX& G, const VectorX& g, VectorX& impulses) {
+  const auto normals = Eigen::seq(2, Eigen::last, 3);
+  const MatrixX matrix = G(normals, normals);
+  const Eigen::LLT<MatrixX> factor(matrix);
+  if (factor.info() != Eigen::Success) return false;
+  for (Index i = 0; i < matrix.rows(); ++i)
+    if (factor.matrixLLT()(i, i) * factor.matrixLLT()(i, i) <= kRegularPart * matrix(i, i)) return false;
+  impulses.setZero(g.size());
+  impulses(normals) = solveLinearComplementarity(matrix, VectorX(g(normals)));
+  return true;
+}
+
 }  // namespace
 
 ConeSolution solveConeProblem(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions) {
   if (frictions.empty()) return {};
   ScaledProblem problem(G, g, frictions);
-  return problem.judge(frictions.size() == 1 ? VectorX(solveSingleContact(G, g, frictions[0])) : problem.solve());
+  if (frictions.size() == 1) return problem.judge(solveSingleContact(G, g, frictions[0]));
+  const bool hasFriction =
+      std::any_of(frictions.begin(), frictions.end(), [](double friction) { return friction > 0; });
+  VectorX impulses;
+  return problem.judge(!hasFriction && solveNormals(G, g, impulses) ? impulses : problem.solve());
 }
 
 }  // namespace cradle

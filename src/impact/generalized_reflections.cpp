@@ -110,10 +110,27 @@ VectorX restitutionsOf(const std::vector<ImpactContact>& impacts) {
               "an impact among " + std::to_string(contacts) + " contacts does not come to an end by reflections");
 }
 
+/// What all of the above comes to for one contact.
+void reflectAlone(ImpactContact& impact, const ImpulseResponse& response, VectorX& state) {
+  const Contact& contact = impact.contact;
+  const double speed = contact.normal.dot(relativeVelocity(contact, state));
+  if (!(speed < 0)) return;
+  const VectorX answer = response.answerTo(contact, contact.normal, state);
+  const double inverseMass = contact.normal.dot(relativeVelocity(contact, state, answer));
+  const double untied = contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
+  if (inverseMass <= kImmobilePart * untied) return;
+  const double restitution = -speed > impact.restSpeed ? impact.law.restitution : 0;
+  const double impulse = -(1 + restitution) * speed / inverseMass;
+  const Index velocities = state.size() - poseComponents(state);
+  state.tail(velocities) += impulse * answer.tail(velocities);
+  impact.impulse += impulse * contact.normal;
+}
+
 }  // namespace
 
 void resolveReflections(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
   if (impacts.empty()) return;
+  if (impacts.size() == 1) return reflectAlone(impacts[0], response, state);
   const NormalImpact impact(impacts, response, state);
   const VectorX restitutions = restitutionsOf(impacts), none = VectorX::Zero(restitutions.size());
   const double restitution = restitutions[0];

@@ -130,6 +130,7 @@ void Pivoting::satisfyPushing() {
 }  // namespace
 
 VectorX solveLinearComplementarity(const MatrixX& a, const VectorX& b) {
+  if (b.size() == 1) return VectorX::Constant(1, a(0, 0) > 0 ? std::max(0.0, -b[0] / a(0, 0)) : 0.0);
   Pivoting pivoting(a, b);
   const long most = kMostPivotsPerRow * static_cast<long>(b.size());
   for (long pivots = 0; pivots <= most; ++pivots) {

@@ -14,8 +14,9 @@ using Kind = ContactChange::Kind;
 
 constexpr int kSamples = 4;                // of a step
 constexpr double kMarginRounding = 1e-12;  // of the force, or m/s
-constexpr double kStillPart = 1e-7;        // of the accelerations: what forces leave of less holds
-constexpr double kLocated = 1e-11;         // of a step, on the interpolant
+constexpr double kFailedPart =
+    1e-6;  // of the accelerations: less that forces leave is held; more than when it was decided
+constexpr double kLocated = 1e-11;  // of a step, on the interpolant
 constexpr int kMostCuts = 60;
 
 constexpr std::array<Kind, 3> kKinds = {Kind::release, Kind::slip, Kind::stick};
@@ -122,7 +123,7 @@ bool LastingContacts::isHeldTogether(const VectorX& state) {
   const ContactResponse response(rows, mechanism().bodies, frames_, ties);
   const ConeSolution solution = solve(members, rows, response);
   const double most =
-      kStillPart * std::max(response.accelerations(rate_).cwiseAbs().maxCoeff(), mechanism().gravity.norm());
+      kFailedPart * std::max(response.accelerations(rate_).cwiseAbs().maxCoeff(), mechanism().gravity.norm());
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const Vec3 motion = solution.velocities.segment<3>(3 * static_cast<Eigen::Index>(i));
     if (std::abs(motion.z()) > most) return false;

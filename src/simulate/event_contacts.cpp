@@ -22,9 +22,7 @@ constexpr double kDeadBandPart = 1e-12;    // of the smallest size
 constexpr double kStandstillPart = 1e-12;  // of the fastest speed at an impact: what is left is rounding
 constexpr double kLastBouncePart = 1e-7;   // of sqrt(acceleration x size): bounces lower than 5e-15 of the size
 constexpr double kMostStillPart = 1e-7;    // of sqrt(g x size)
-constexpr double kMostResidual = 1e-6;     // of gravity: what forces may leave of bodies at rest
 constexpr double kSameCorner = 1e-6;       // of a size
-constexpr double kSpeedRounding = 1e-12;   // m/s
 
 double smallestSize(const ContactGeometry& geometry) {
   double smallest = INFINITY;
@@ -82,8 +80,9 @@ int movingBodyOf(const Contact& contact) {
 
 }  // namespace
 
-EventContacts::EventContacts(MovingIsland& island, double accuracy)
+EventContacts::EventContacts(MovingIsland& island, RopeStage& ropes, double accuracy)
     : island_(island),
+      ropes_(ropes),
       lasting_(island),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       stillPart_(std::min(kMostStillPart, accuracy)) {
@@ -144,32 +143,54 @@ void EventContacts::findCorners() {
   for (Contact& contact : touching_) findCorner(island_.assembly.geometry, island_.state, contact);
 }
 
-/// Contacts that close are impacts, and then all that touch each other there take part.
+/// Contacts that close are impacts, and then all that touch each other there, and all ropes that cannot lengthen, take
+/// part.
 void EventContacts::collide() {
   double fastest = 0;
   for (const Contact& contact : touching_) fastest = std::max(fastest, contactSpeed(contact, island_.state));
-  const Islands together = findStruckTogether();
+  const auto closes = [&](const Contact& contact) {
+    return openingSpeed(contact, island_.state) < -kStandstillPart * fastest;
+  };
+  if (std::none_of(touching_.begin(), touching_.end(), closes)) return;
+  std::vector<ImpactContact> ropes = ropes_.beginImpact(island_.state);
+  if (!ropes.empty() && solver_.hasConstraints()) solver_.factorize(island_.state);
+  const Islands together = findStruckTogether(ropes);
   std::vector<char> isStruck(island_.assembly.mechanism.bodies.size(), 0);
   for (const Contact& contact : touching_)
-    if (openingSpeed(contact, island_.state) < -kStandstillPart * fastest)
-      isStruck[static_cast<std::size_t>(together.islandOf(movingBodyOf(contact)))] = 1;
-  for (std::size_t group = 0; group < isStruck.size(); ++group) {
-    if (!isStruck[group]) continue;
-    std::vector<ImpactContact> impacts;
-    for (const Contact& contact : touching_)
-      if (together.islandOf(movingBodyOf(contact)) == static_cast<int>(group))
-        impacts.push_back({contact, island_.assembly.geometry.pairs[contact.pair].law, 0, Vec3::Zero()});
-    resolveImpact(impacts);
-  }
-  wakeStruck();
+    if (closes(contact)) isStruck[static_cast<std::size_t>(together.islandOf(movingBodyOf(contact)))] = 1;
+  for (std::size_t group = 0; group < isStruck.size(); ++group)
+    if (isStruck[group]) strike(together, static_cast<int>(group), ropes);
+  ropes_.endImpact(island_.time, ropes, island_.state);
+  if (!ropes.empty() && solver_.hasConstraints()) solver_.factorize(island_.state);
+  for (const Contact& contact : touching_) wakeStruck(contact);
+  for (const ImpactContact& rope : ropes) wakeStruck(rope.contact);
 }
 
 /// Bodies that an impact at one of them moves.
-Islands EventContacts::findStruckTogether() const {
+Islands EventContacts::findStruckTogether(const std::vector<ImpactContact>& ropes) const {
   Islands islands(island_.assembly.mechanism.bodies.size());
   for (const Contact& contact : touching_) islands.join(contact.bodyA, contact.bodyB);
+  for (const ImpactContact& rope : ropes) islands.join(rope.contact.bodyA, rope.contact.bodyB);
   forEachTie(island_.assembly.mechanism.constraints, [&](int bodyA, int bodyB) { islands.join(bodyA, bodyB); });
   return islands;
+}
+
+void EventContacts::strike(const Islands& together, int group, std::vector<ImpactContact>& ropes) {
+  const auto isIn = [&](const Contact& contact) { return together.islandOf(movingBodyOf(contact)) == group; };
+  std::vector<ImpactContact> impacts;
+  for (const Contact& contact : touching_)
+    if (isIn(contact)) impacts.push_back({contact, island_.assembly.geometry.pairs[contact.pair].law, 0, Vec3::Zero()});
+  const std::size_t contacts = impacts.size();
+  for (const ImpactContact& rope : ropes)
+    if (isIn(rope.contact)) impacts.push_back(rope);
+  resolveImpact(impacts);
+  for (std::size_t i = 0; i < contacts; ++i) {
+    const double impulse = impacts[i].contact.normal.dot(impacts[i].impulse);
+    if (impulse > 0) island_.log.recordContact(island_.time, EventKind::impact, impacts[i].contact, impulse);
+  }
+  std::size_t next = contacts;
+  for (ImpactContact& rope : ropes)
+    if (isIn(rope.contact)) rope.impulse = impacts[next++].impulse;
 }
 
 void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
@@ -192,8 +213,6 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
     const Vec3 meanVelocity =
         (relativeVelocity(impact.contact, approach) + relativeVelocity(impact.contact, state)) / 2;
     dissipatedEnergy(state) -= impact.impulse.dot(meanVelocity);
-    const double impulse = impact.contact.normal.dot(impact.impulse);
-    if (impulse > 0) island_.log.recordContact(island_.time, EventKind::impact, impact.contact, impulse);
   }
 }
 
@@ -219,99 +238,10 @@ bool EventContacts::endBounces(const VectorX& approach, std::vector<ImpactContac
 }
 
 /// Bodies that an impact has set in motion, and all that rests with them.
-void EventContacts::wakeStruck() {
-  for (const Contact& contact : touching_)
-    for (const int body : {contact.bodyA, contact.bodyB})
-      if (island_.resting.isResting(body) && !isSlow(static_cast<std::size_t>(body)))
-        island_.resting.wake(island_.time, body);
-}
-
-bool EventContacts::isAnySlow() const {
-  for (std::size_t body = 0; body < island_.assembly.mechanism.bodies.size(); ++body)
-    if (!island_.equations.isResting(body) && isSlow(body)) return true;
-  return false;
-}
-
-bool EventContacts::isSlow(std::size_t body) const {
-  const Eigen::Index index = static_cast<Eigen::Index>(body);
-  const double size = island_.assembly.radii[body], gravity = island_.assembly.mechanism.gravity.norm();
-  const double most = kSpeedRounding + stillPart_ * std::sqrt(gravity * size);
-  return std::max(linearVelocity(island_.state, index).norm(), size * angularVelocity(island_.state, index).norm()) <=
-         most;
-}
-
-/// Bodies that come to rest only together: tied, on a spring, or touching without leaving each other.
-Islands EventContacts::findRestGroups() const {
-  const Mechanism& mechanism = island_.assembly.mechanism;
-  Islands groups(mechanism.bodies.size());
-  for (const Contact& contact : touching_) {
-    const double size = island_.assembly.radii[static_cast<std::size_t>(movingBodyOf(contact))];
-    const double still = kSpeedRounding + stillPart_ * std::sqrt(mechanism.gravity.norm() * size);
-    if (openingSpeed(contact, island_.state) <= still) groups.join(contact.bodyA, contact.bodyB);
-  }
-  for (const SpringForce& spring : mechanism.springs) groups.join(spring.anchorA.body, spring.anchorB.body);
-  forEachTie(mechanism.constraints, [&](int bodyA, int bodyB) { groups.join(bodyA, bodyB); });
-  return groups;
-}
-
-/// Puts groups to rest that are still and that forces within the friction cones can hold; wakes those that are not.
-void EventContacts::settle() {
-  const std::size_t bodies = island_.assembly.mechanism.bodies.size();
-  const Islands groups = findRestGroups();
-  const auto groupOf = [&](std::size_t body) {
-    return static_cast<std::size_t>(groups.islandOf(static_cast<int>(body)));
-  };
-  std::vector<char> isStill(bodies, 1), isAwake(bodies, 0);
-  for (std::size_t body = 0; body < bodies; ++body) {
-    if (!isSlow(body)) isStill[groupOf(body)] = 0;
-    if (!island_.equations.isResting(body)) isAwake[groupOf(body)] = 1;
-  }
-  // What rested together may stand in several groups now.
-  for (bool woken = true; woken;) {
-    woken = false;
-    for (std::size_t body = 0; body < bodies; ++body)
-      if (isAwake[groupOf(body)])
-        for (const int other : island_.resting.wake(island_.time, static_cast<int>(body)))
-          isAwake[groupOf(static_cast<std::size_t>(other))] = 1, woken = true;
-  }
-  for (std::size_t group = 0; group < bodies; ++group) {
-    if (!isAwake[group] || !isStill[group] || !isHeld(groups, static_cast<int>(group))) continue;
-    std::vector<int> members;
-    for (std::size_t body = 0; body < bodies; ++body)
-      if (groupOf(body) == group) members.push_back(static_cast<int>(body));
-    if (!members.empty()) island_.resting.bringToRest(members, island_.state);
-  }
-}
-
-/// Whether forces at the contacts of a group can balance all that acts on it.
-bool EventContacts::isHeld(const Islands& groups, int group) {
-  const Mechanism& mechanism = island_.assembly.mechanism;
-  placeBodies(mechanism.bodies, island_.state, frames_);
-  std::vector<ContactRows> contacts;
-  std::vector<double> frictions;
-  for (const Contact& contact : touching_) {
-    if (groups.islandOf(movingBodyOf(contact)) != group) continue;
-    contacts.push_back(rowsOf(contact, island_.state, frames_));
-    frictions.push_back(island_.assembly.geometry.pairs[contact.pair].law.staticFriction);
-  }
-  std::vector<ContactConstraint> lasting;
-  std::swap(lasting, island_.assembly.mechanism.contacts);
-  island_.equations.evaluate(island_.state, rate_);
-  std::swap(lasting, island_.assembly.mechanism.contacts);
-  if (!contacts.empty()) {
-    const ContactResponse response(contacts, mechanism.bodies, frames_, solver_);
-    const ConeSolution solution = solveConeProblem(response.inverseMass(), response.accelerations(rate_), frictions);
-    response.apply(solution.impulses, rate_);
-  }
-  const double most = std::min(kMostResidual, stillPart_) * mechanism.gravity.norm();
-  for (std::size_t body = 0; body < mechanism.bodies.size(); ++body) {
-    if (groups.islandOf(static_cast<int>(body)) != group) continue;
-    const Eigen::Index index = static_cast<Eigen::Index>(body);
-    const double left = std::max(linearVelocity(rate_, index).norm(),
-                                 island_.assembly.radii[body] * angularVelocity(rate_, index).norm());
-    if (left > most) return false;
-  }
-  return true;
+void EventContacts::wakeStruck(const Contact& contact) {
+  for (const int body : {contact.bodyA, contact.bodyB})
+    if (body != kFixed && island_.resting.isResting(body) && !isSlow(static_cast<std::size_t>(body)))
+      island_.resting.wake(island_.time, body);
 }
 
 void EventContacts::recordRests(const std::vector<char>& restedBefore) {

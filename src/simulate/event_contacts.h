@@ -6,6 +6,7 @@
 #include "simulate/islands.h"
 #include "simulate/lasting_contacts.h"
 #include "simulate/moving_island.h"
+#include "simulate/rope_stage.h"
 
 namespace cradle {
 
@@ -13,8 +14,8 @@ namespace cradle {
 /// together lasts.
 class EventContacts {
  public:
-  /// Keeps a reference to `island`. `accuracy` is the scene's.
-  EventContacts(MovingIsland& island, double accuracy);
+  /// Keeps references to both. `accuracy` is the scene's.
+  EventContacts(MovingIsland& island, RopeStage& ropes, double accuracy);
 
   /// What touches as the island's step begins.
   TouchingFeatures touching();
@@ -36,10 +37,11 @@ class EventContacts {
   void findTouching(const std::optional<std::size_t>& meeting);
   void findCorners();
   void collide();
-  Islands findStruckTogether() const;
+  Islands findStruckTogether(const std::vector<ImpactContact>& ropes) const;
+  void strike(const Islands& together, int group, std::vector<ImpactContact>& ropes);
   void resolveImpact(std::vector<ImpactContact>& impacts);
   bool endBounces(const VectorX& approach, std::vector<ImpactContact>& impacts);
-  void wakeStruck();
+  void wakeStruck(const Contact& contact);
   void settle();
   Islands findRestGroups() const;
   bool isAnySlow() const;
@@ -49,6 +51,7 @@ class EventContacts {
   void recordRests(const std::vector<char>& restedBefore);
 
   MovingIsland& island_;
+  RopeStage& ropes_;
   LastingContacts lasting_;
   ConstraintSolver solver_;
   double stillPart_;                  // of the speed that a body gains when it falls by its size: slower is still

@@ -50,14 +50,15 @@ class EventMotion {
   void tidyState();
   void requireTiesKept() const;
   void changeForces(const Event& event);
+  bool isStillAccurate();
   double longestStep() const;
-  void countEvent();
+  void countEvent(const Event& event);
 
   MovingIsland& island_;
   RopeStage& ropes_;
   ChosenMethod method_;
   EventContacts contacts_;
-  EnergyGuard guard_;
+  std::optional<EnergyGuard> guard_;  // always there once begun
   ConstraintSolver solver_;
   VectorX tolerance_;
   double startTieError_ = 0;  // m or rad

@@ -26,8 +26,8 @@ Vec3 positionAt(const Step& step, const Attachment& attachment, double fraction)
   return poseAt(step, attachment.body, fraction) * attachment.point;
 }
 
-double motionBound(const Step& step, const Attachment& attachment) {
-  return cradle::motionBound(step, attachment.body, attachment.point.norm());
+MotionBounds motionBounds(const Step& step, const Attachment& attachment) {
+  return cradle::motionBounds(step, attachment.body, attachment.point.norm());
 }
 
 /// Where in the step a rope is slack by more than `least` (m): at its start, or, for one that has just been let go, as
@@ -45,8 +45,7 @@ double firstSlack(const Slack& slack, double least, double begin) {
 double firstLook(const RopeLimit& rope, const Step& step) {
   const double speed = -motionOf(rope, step.startState).lengthening * step.timeStep;
   if (!(speed > 0)) return kFirstLook;
-  const MotionBounds a = motionBounds(step, rope.anchorA.body, rope.anchorA.point.norm());
-  const MotionBounds b = motionBounds(step, rope.anchorB.body, rope.anchorB.point.norm());
+  const MotionBounds a = motionBounds(step, rope.anchorA), b = motionBounds(step, rope.anchorB);
   // The distance d of two points: d'' <= relative acceleration + (speed across)^2 / d.
   const double across = a.speed + b.speed;
   return std::min(kFirstLook, speed / (a.acceleration + b.acceleration + across * across / rope.maxLength));
@@ -77,10 +76,12 @@ std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
       return rope.maxLength -
              (positionAt(step, rope.anchorA, fraction) - positionAt(step, rope.anchorB, fraction)).norm();
     };
-    const double speed = motionBound(step, rope.anchorA) + motionBound(step, rope.anchorB);
+    // Of two points at distance d, -d'' is at most their relative acceleration.
+    const MotionBounds a = motionBounds(step, rope.anchorA), b = motionBounds(step, rope.anchorB);
+    const GapBounds bounds{a.speed + b.speed, a.acceleration + b.acceleration};
     const double begin = firstSlack(slack, kTautPart * rope.maxLength, firstLook(rope, step)), start = slack(begin);
-    if (begin >= end || start > speed) continue;
-    if (const auto fraction = firstCrossing(slack, GapBounds{speed}, begin, start, end, slack(end)))
+    if (begin >= end || start > bounds.speed) continue;
+    if (const auto fraction = firstCrossing(slack, bounds, {begin, start, end, slack(end)}))
       first = RopeChange{*fraction, i};
   }
   if (first && isTaut(first->rope)) startTension_ = tension(first->rope, step.startState);
@@ -111,7 +112,7 @@ double RopeStage::tension(std::size_t rope, const VectorX& state) {
   return -equations_.multipliers()[tautRod_[rope]] * assembly_.ropes[rope].maxLength;
 }
 
-void RopeStage::resolve(double time, VectorX& state) {
+bool RopeStage::resolve(double time, VectorX& state) {
   // Ropes that would have to push let go; impacts may have shortened others.
   bool released = false;
   for (std::size_t i = 0; i < tautRod_.size(); ++i) {
@@ -119,7 +120,7 @@ void RopeStage::resolve(double time, VectorX& state) {
     release(time, i, state);
     released = true;
   }
-  if (released) return;
+  if (released) return true;
 
   for (std::size_t i = 0; i < tautRod_.size(); ++i)
     if (!isTaut(i) && motionOf(assembly_.ropes[i], state).slackLength > kSlackPart * assembly_.ropes[i].maxLength)
@@ -127,9 +128,10 @@ void RopeStage::resolve(double time, VectorX& state) {
   // A pull may stretch another rope that is at its length, or load it.
   for (int round = 0; round < kMostRounds; ++round) {
     const std::vector<Stretch> stretches = findStretches(state);
-    if (stretches.empty()) return;
+    if (stretches.empty()) return round > 0;
     pull(time, stretches, state);
   }
+  return true;
 }
 
 /// Ropes at their length that still lengthen. A rebound that would end within about two steps is not resolved: the rope
@@ -141,7 +143,7 @@ std::vector<RopeStage::Stretch> RopeStage::findStretches(const VectorX& state) {
     const RopeLimit& rope = assembly_.ropes[i];
     if (isTaut(i)) continue;
     const RopeMotion motion = motionOf(rope, state);
-    if (motion.slackLength > kTautPart * rope.maxLength || motion.lengthening < 0) continue;
+    if (motion.slackLength > kTautPart * rope.maxLength || motion.lengthening < -kRestSpeedFloor) continue;
     if (!std::exchange(isEvaluated, true)) equations_.evaluate(state, rate_);
     const double acceleration = lengtheningAcceleration(rope, state, rate_), pulling = std::max(0.0, acceleration);
     const bool isLoaded = acceleration > kLoadedPart * assembly_.mechanism.gravity.norm();
@@ -181,6 +183,41 @@ void RopeStage::pull(double time, const std::vector<Stretch>& stretches, VectorX
     solver_.constrainVelocities(state);
   }
   dissipatedEnergy(state) += before - kineticEnergy(assembly_.mechanism.bodies, state);
+}
+
+// An impulse along the line of both ends has the same effect wherever on that line it acts: at end A for both bodies.
+std::vector<ImpactContact> RopeStage::beginImpact(const VectorX& state) {
+  std::vector<ImpactContact> impacts;
+  members_.clear();
+  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
+    const RopeLimit& rope = assembly_.ropes[i];
+    const RopeMotion motion = motionOf(rope, state);
+    if (!isTaut(i) && motion.slackLength > kTautPart * rope.maxLength) continue;
+    members_.push_back({i, isTaut(i)});
+    tautRod_[i] = -1;
+    Contact contact;
+    contact.bodyA = rope.anchorA.body, contact.bodyB = rope.anchorB.body;
+    contact.point = motion.a.position, contact.normal = motion.direction;
+    impacts.push_back({contact, {rope.restitution, 0, 0}, 0, Vec3::Zero()});
+  }
+  rebuildRods();
+  return impacts;
+}
+
+void RopeStage::endImpact(double time, const std::vector<ImpactContact>& impacts, const VectorX& state) {
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    const auto [rope, wasTaut] = members_[k];
+    const RopeMotion motion = motionOf(assembly_.ropes[rope], state);
+    const double speed = motion.a.velocity.norm() + motion.b.velocity.norm();
+    const bool shortens = motion.lengthening < -(kRestSpeedFloor + kSpeedRounding * speed);
+    const double impulse = impacts[k].impulse.norm();
+    if (wasTaut && shortens) loosen(time, rope, state);
+    if (wasTaut && !shortens) tautRod_[rope] = 0;
+    if (wasTaut || impulse == 0) continue;
+    record(time, EventKind::taut, rope, impulse, state);
+    isStretched_[rope] = !shortens;
+  }
+  rebuildRods();
 }
 
 void RopeStage::release(double time, std::size_t rope, const VectorX& state) {

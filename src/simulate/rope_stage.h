@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "impact/pairwise.h"
 #include "simulate/moving_island.h"
 
 namespace cradle {
@@ -31,8 +32,16 @@ class RopeStage {
   /// step's start.
   double margin(const RopeChange& change, const VectorX& state);
 
-  /// What happens at the end of a step: impulses in ropes that are at their length, new rods, released ropes.
-  void resolve(double time, VectorX& state);
+  /// What happens at the end of a step: impulses in ropes that are at their length, new rods, released ropes. True if
+  /// anything does.
+  bool resolve(double time, VectorX& state);
+
+  /// Ropes at their length as members of an impact: they lengthen as contacts close, along the line of their ends.
+  /// Those that are taut are no rods until endImpact.
+  std::vector<ImpactContact> beginImpact(const VectorX& state);
+
+  /// Takes the impulses that the same members got. What lengthens no more and shortens is slack now.
+  void endImpact(double time, const std::vector<ImpactContact>& members, const VectorX& state);
 
   bool hasRopes() const { return !assembly_.ropes.empty(); }
 
@@ -59,8 +68,13 @@ class RopeStage {
   EquationsOfMotion& equations_;
   ConstraintSolver solver_;
   double timeStep_ = 0;
-  std::size_t sceneRods_;          // rods that are no ropes
-  std::vector<int> tautRod_;       // index into Constraints::rods of each rope, or -1: no smooth force pulls at it
+  std::size_t sceneRods_;     // rods that are no ropes
+  std::vector<int> tautRod_;  // index into Constraints::rods of each rope, or -1: no smooth force pulls at it
+  struct Member {
+    std::size_t rope;
+    bool wasTaut;
+  };
+  std::vector<Member> members_;    // of the impact under way
   std::vector<char> isStretched_;  // has reached its length and not been slack since
   double startTension_ = 1;        // N, of the change under way
   VectorX rate_, sample_;

@@ -94,7 +94,20 @@ void Simulation::interpolateAt(double time, bool keepsTies) {
   const double fraction = (time - island_.step.time) / island_.step.timeStep;
   interpolate(island_.step, fraction, reported_);
   if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->hold(fraction, reported_);
-  if (keepsTies && solver_.hasConstraints()) solver_.project(reported_);
+  if (!keepsTies || !solver_.hasConstraints()) return;
+  findStill();
+  solver_.leaveOut(still_);
+  solver_.project(reported_);
+}
+
+/// What has not moved within the step is where its ties hold it.
+void Simulation::findStill() {
+  const Step& step = island_.step;
+  still_.resize(island_.assembly.mechanism.bodies.size());
+  for (std::size_t i = 0; i < still_.size(); ++i) {
+    const Eigen::Index at = static_cast<Eigen::Index>(i) * kPoseSize;
+    still_[i] = step.startState.segment<kPoseSize>(at) == step.state.segment<kPoseSize>(at);
+  }
 }
 
 /// Sets the orientation of a body whose spin is constant: the state keeps that of the start.

@@ -38,6 +38,7 @@ class Simulation {
   static void advance(double time, Motion& motion);
   bool keepsTies() const;
   void interpolateAt(double time, bool keepsTies);
+  void findStill();
   void spin(Eigen::Index body, double time, VectorX& state) const;
 
   MovingIsland island_;
@@ -48,6 +49,7 @@ class Simulation {
   bool isWarned_ = false;          // that the accuracy is not kept any more
   double nextTrial_ = 0;           // s: when events may serve again
   double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not
+  std::vector<char> still_;        // bodies that the step has not moved
   VectorX reported_;
 };
 

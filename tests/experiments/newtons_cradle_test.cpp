@@ -96,5 +96,10 @@ TEST(NewtonsCradle, KeepsItsEnergyForTenSeconds) {
   }
 }
 
+// Balls that swing side by side touch without a load: rounding of their gaps makes no events, and no more steps.
+TEST(NewtonsCradle, BallsThatSwingTogetherCostNoMoreThanOne) {
+  EXPECT_LT(static_cast<double>(swing(3).cost.evaluations), 1.05 * static_cast<double>(swing(1).cost.evaluations));
+}
+
 }  // namespace
 }  // namespace cradle

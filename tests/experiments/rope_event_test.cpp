@@ -173,5 +173,58 @@ TEST(TwoRopesAtOnce, OnTwoBallsKeepTheMirrorsSymmetry) {
   }
 }
 
+// Two balls come in from both sides, mirror images of each other, and meet one between them just as the ropes that hold
+// them go taut at 45 degrees. With all restitutions 1 the velocity (v, -w) of one becomes (-v, w): contact and rope
+// reflect at once, the contact with impulse 2 (v - w) m. One after the other it would be (-v, -w), or (-w, v).
+TEST(RopeAndContactAtOnce, ReflectTogether) {
+  const double v = 1, w = 0.5, time = 0.5, side = std::sqrt(0.5);
+  const auto ballText = [&](const std::string& name, double sign, double speed) {
+    return fmt::format(
+        R"({{"name": "{}", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1, "material": "m", "position": [{}, {}, 0],
+             "linearVelocity": [{}, {}, 0]}})",
+        name, sign * (0.2 + v * time) * speed, w * time * speed, -sign * v * speed, -w * speed);
+  };
+  const auto ropeText = [&](const std::string& name, double sign) {
+    return fmt::format(
+        R"({{"bodyA": "{}", "anchorA": [0, 0, 0], "anchorB": [{}, {}, 0], "maxLength": 1, "restitution": 1}})", name,
+        sign * (0.2 + side), side);
+  };
+  const Trajectory run = simulate(sceneWith(fmt::format(
+      R"("duration": 0.75, "gravity": [0, 0, 0], "accuracy": 1e-10, "output": {{"framesPerSecond": 4}},
+         "materials": {{"m": {{"restitution": 1, "staticFriction": 0, "dynamicFriction": 0}}}},
+         "bodies": [{}, {}, {}], "ropes": [{}, {}])",
+      ballText("left", -1, 1), ballText("right", 1, 1), ballText("middle", 0, 0), ropeText("left", -1),
+      ropeText("right", 1))));
+  const auto& states = run.frames.back().states;
+  EXPECT_LT((states[0].linearVelocity - Vec3(-v, w, 0)).norm(), 1e-10);
+  EXPECT_LT((states[1].linearVelocity - Vec3(v, w, 0)).norm(), 1e-10);
+  EXPECT_LT(states[2].linearVelocity.norm(), 1e-12);
+  for (const EventKind kind : {EventKind::impact, EventKind::taut}) {
+    const std::vector<Event> events = eventsOf(run, kind);
+    EXPECT_EQ(events.size(), 2u);
+    for (const Event& event : events) {
+      EXPECT_NEAR(event.time, time, 1e-10);
+      EXPECT_NEAR(event.impulse, kind == EventKind::taut ? 4 * side * w : 2 * (v - w), 1e-10);
+    }
+  }
+}
+
+// A ball that hangs on a taut rope is struck from below by one of the same mass: a rope holds nothing back, the struck
+// ball flies on with all of the speed.
+TEST(RopeAndContactAtOnce, ATautRopeDoesNotHoldBackWhatIsStruckFromBelow) {
+  const Trajectory run = simulate(sceneWith(
+      R"("duration": 0.3, "accuracy": 1e-10, "output": {"framesPerSecond": 10},
+         "materials": {"m": {"restitution": 1, "staticFriction": 0, "dynamicFriction": 0}},
+         "bodies": [{"name": "hung", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "material": "m", "position": [0, 0, 0]},
+                    {"name": "striker", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "material": "m",
+                     "position": [0, -0.6, 0], "linearVelocity": [0, 4, 0]}],
+         "ropes": [{"bodyA": "hung", "anchorA": [0, 0, 0], "anchorB": [0, 1, 0]}])"));
+  // The striker needs t with 4 t - g t^2 / 2 = 0.4 and arrives with 4 - g t.
+  const double g = 9.81, arrival = std::sqrt(16 - 2 * g * 0.4), time = (4 - arrival) / g;
+  const double since = run.frames.back().time - time;
+  EXPECT_NEAR(run.frames.back().states[0].position.y(), arrival * since - g * since * since / 2, 1e-9);
+  EXPECT_NEAR(run.frames.back().states[1].position.y(), -0.2 - g * since * since / 2, 1e-9);
+}
+
 }  // namespace
 }  // namespace cradle

@@ -119,6 +119,12 @@ double motionBoundAcross(const Step& step, int bodyA, int bodyB, const Vec3& dir
   });
 }
 
+double accelerationBoundAlong(const Step& step, int bodyA, int bodyB, const Vec3& direction) {
+  const auto apart = difference(bodyA, bodyB);
+  return bendBound(step,
+                   [&](const VectorX& vector) { return Eigen::Matrix<double, 1, 1>(apart(vector).dot(direction)); });
+}
+
 MotionBounds motionBounds(const Step& step, int body, double reach) {
   const MotionBounds shift = relativeMotionBounds(step, kFixed, body), turn = turnBounds(step, body);
   return {shift.speed + turn.speed * reach, shift.acceleration + turn.acceleration * reach};

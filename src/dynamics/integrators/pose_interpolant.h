@@ -25,6 +25,10 @@ MotionBounds relativeMotionBounds(const Step& step, int bodyA, int bodyB);
 /// How far (m) B's centre of mass can go from A's over the step, across a unit direction.
 double motionBoundAcross(const Step& step, int bodyA, int bodyB, const Vec3& direction);
 
+/// Bound on how fast (m) B's centre of mass accelerates from A's along a unit direction, with the step as the unit of
+/// time.
+double accelerationBoundAlong(const Step& step, int bodyA, int bodyB, const Vec3& direction);
+
 /// Bounds on what a body's turning does to a point at 1 m from its centre of mass, with the step as the unit of time.
 MotionBounds turnBounds(const Step& step, int body);
 

@@ -34,12 +34,19 @@ void carryEndRate(Step& step) {
   step.hasEndRate = false;
 }
 
-void prepareInterpolant(const RightHandSide& rightHandSide, Step& step) {
+void evaluateEndRate(const RightHandSide& rightHandSide, Step& step) {
   if (step.hasEndRate) return;
   step.hasEndRate = true;
+  step.hasCorrections = false;
   step.endRate.resize(step.state.size());
   rightHandSide.rate(step.time + step.timeStep, step.state, step.endRate);
-  if (step.interpolant == InterpolantKind::degreeSeven) computeCorrections(rightHandSide, step);
+}
+
+void prepareInterpolant(const RightHandSide& rightHandSide, Step& step) {
+  evaluateEndRate(rightHandSide, step);
+  if (step.interpolant != InterpolantKind::degreeSeven || step.hasCorrections) return;
+  step.hasCorrections = true;
+  computeCorrections(rightHandSide, step);
 }
 
 void interpolate(const Step& step, double fraction, VectorX& state) {

@@ -27,6 +27,7 @@ struct Step {
   VectorX startState, startRate;
   VectorX state, endRate;  // at time + timeStep
   bool hasEndRate = false;
+  bool hasCorrections = false;
   bool startRateIsKnown = false;  // startRate already holds the rate at the start of the step to come
   InterpolantKind interpolant = InterpolantKind::cubicHermite;
   std::array<VectorX, 4> corrections;
@@ -49,6 +50,9 @@ void keepStartRate(Step& step);
 /// changed: its start rate is this one's end rate, if that was evaluated. The step can be neither interpolated nor
 /// judged any more.
 void carryEndRate(Step& step);
+
+/// Evaluates the rate at the end of the step, unless it is there already.
+void evaluateEndRate(const RightHandSide& rightHandSide, Step& step);
 
 /// Evaluates what interpolate needs, unless it is there already: the rate at the end of the step, with DOP853 three
 /// more.

@@ -1,0 +1,68 @@
+// A bar that comes down nearly flat touches with one end, and within the same step with the other.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "experiments/experiment.h"
+#include "math/rotation.h"
+
+namespace cradle {
+namespace {
+
+struct Landing {
+  double tilt = 0, restitution = 0, accuracy = 1e-6;
+  double width = 4;  // m, of the plate along the bar, which is 1 m long and 0.1 m thick; a tenth of it across
+};
+
+Trajectory landingOf(const Landing& landing, double framesPerSecond) {
+  return simulate(sceneWith(fmt::format(
+      R"("duration": 0.4, "accuracy": {}, "output": {{"framesPerSecond": {}}},
+         "materials": {{"m": {{"restitution": {}, "staticFriction": 0, "dynamicFriction": 0}}}},
+         "bodies": [{{"name": "plate", "motion": "static", "shape": {{"box": {{"size": [{}, 0.1, {}]}}}},
+                      "position": [0, -0.05, 0], "material": "m"}},
+                    {{"name": "bar", "shape": {{"box": {{"size": [1, 0.1, 0.1]}}}}, "mass": 1, "position": [0, 0.25, 0],
+                      "orientation": {{"w": {}, "x": 0, "y": 0, "z": {}}}, "material": "m"}}])",
+      landing.accuracy, framesPerSecond, landing.restitution, landing.width, landing.width / 10,
+      std::cos(landing.tilt / 2), std::sin(landing.tilt / 2))));
+}
+
+/// m: how deep the bar's lower face, or its ends, are in the plate; the bar turns about z only.
+double depthOf(const BodyState& bar, double width) {
+  double depth = -1;
+  for (const double end : {-0.5, 0.5}) {
+    const Vec3 corner = bar.position + bar.orientation * Vec3(end, -0.05, 0);
+    if (std::abs(corner.x()) < width / 2) depth = std::max(depth, -corner.y());
+    const Vec3 edge = bar.orientation.conjugate() * (Vec3(end * width, 0, 0) - bar.position);
+    if (std::abs(edge.x()) < 0.5) depth = std::max(depth, edge.y() + 0.05);
+  }
+  return depth;
+}
+
+// Frames every ms: nothing overlaps by more than the interpolant's error. The plate is wider than the bar, whose
+// corners touch then, or smaller, and its corners touch the bar's face.
+TEST(LandingBar, IsNeverInThePlate) {
+  for (const double width : {4.0, 0.6})
+    for (const double restitution : {0.0, 0.5, 1.0})
+      for (const double tilt : {1e-2, 1e-4, 1e-7}) {
+        const Trajectory run = landingOf({tilt, restitution, 1e-6, width}, 1000);
+        double deepest = -1;
+        for (const Frame& frame : run.frames) deepest = std::max(deepest, depthOf(frame.states[0], width));
+        EXPECT_LT(deepest, 1e-7) << width << " " << restitution << " " << tilt;
+      }
+}
+
+// At an accuracy of 1e-12 steps are several times shorter and touches a thousand times closer.
+TEST(LandingBar, DoesNotDependOnTheSteps) {
+  for (const double width : {4.0, 0.6})
+    for (const double tilt : {1e-2, 1e-4}) {
+      const Trajectory coarse = landingOf({tilt, 0.5, 1e-6, width}, 10),
+                       fine = landingOf({tilt, 0.5, 1e-12, width}, 10);
+      const BodyState a = endOf(coarse), b = endOf(fine);
+      EXPECT_LT((a.position - b.position).norm(), 1e-5) << width << " " << tilt;
+      EXPECT_LT(orientationError(a.orientation, b.orientation), 1e-5) << width << " " << tilt;
+    }
+}
+
+}  // namespace
+}  // namespace cradle
