@@ -1,6 +1,7 @@
 // Spheres, boxes and turned boxes dropped into a tray, ours beside Bullet in one run: CPU time a step of 1/60 s, the
-// deepest overlap (found from the poses alone, each step), and when all lie still. Usage: benchmark_pile [bodies]
-// [spheres|boxes|turned|all] [seconds]; benchmark_pile threads [bodies] compares two threads with two runs at once.
+// deepest overlap (found from the poses alone, each step), and when all lie still. Usage: benchmark_pile BODIES
+// spheres|boxes|turned SECONDS; benchmark_pile sizes: 5000 bodies beside 1000; benchmark_pile threads BODIES: two
+// threads beside two runs at once; without arguments all of these, one after the other.
 
 #include <btBulletDynamicsCommon.h>
 #include <fmt/format.h>
@@ -219,9 +220,9 @@ class BulletWorld {
 };
 
 struct Figures {
-  double falling = 0, settling = 0, all = 0;  // ms a step: the first, those until all lie still, all
-  double deepest = 0, deepestAtEnd = 0;       // mm
-  double restTime = -1;                       // s; -1: never
+  double falling = 0, settling = 0, all = 0;                 // ms a step: the first, those until all lie still, all
+  double deepestFalling = 0, deepest = 0, deepestAtEnd = 0;  // mm: in the first steps, after them, at the end
+  double restTime = -1;                                      // s; -1: never
 };
 
 template <class World>
@@ -239,18 +240,20 @@ Figures measure(const Scene& scene, World& world, int steps) {
       figures.settling += cost, ++settlingSteps;
     if (figures.restTime < 0 && world.isAtRest()) figures.restTime = (step + 1) * kTimeStep;
     figures.deepestAtEnd = 1e3 * deepestOverlap(scene, world.poses());
-    figures.deepest = std::max(figures.deepest, figures.deepestAtEnd);
+    double& deepest = step < kFallingSteps ? figures.deepestFalling : figures.deepest;
+    deepest = std::max(deepest, figures.deepestAtEnd);
   }
   if (settlingSteps > 0) figures.settling /= settlingSteps;
   return figures;
 }
 
-void print(const std::string& who, const Figures& figures, double theirs) {
+void print(const std::string& who, const Figures& figures, const Figures& bullet) {
   fmt::print(
-      "  {:<7} falling {:6.3f} ms, settling {:6.3f} ms, all {:6.3f} ms ({:.2f} of Bullet's); deepest {:5.1f} mm, "
-      "at the end {:4.1f} mm; rest at {:.2f} s\n",
-      who, figures.falling, figures.settling, figures.all, figures.all / theirs, figures.deepest, figures.deepestAtEnd,
-      figures.restTime);
+      "  {:<7} falling {:6.3f} ms ({:.2f} of Bullet's), then until rest {:6.3f} ms, all {:6.3f} ms ({:.2f} of "
+      "Bullet's)\n"
+      "          deepest falling {:5.1f} mm, later {:5.1f} mm, at the end {:4.1f} mm; rest at {:.2f} s\n",
+      who, figures.falling, figures.falling / bullet.falling, figures.settling, figures.all, figures.all / bullet.all,
+      figures.deepestFalling, figures.deepest, figures.deepestAtEnd, figures.restTime);
 }
 
 void compare(int bodies, const std::string& kind, int steps) {
@@ -258,9 +261,24 @@ void compare(int bodies, const std::string& kind, int steps) {
   OurWorld ours(scene, 1);
   BulletWorld bullet(scene);
   const Figures our = measure(scene, ours, steps), theirs = measure(scene, bullet, steps);
-  fmt::print("{} {}, {} steps\n", bodies, kind, steps);
-  print("cradle", our, theirs.all);
-  print("Bullet", theirs, theirs.all);
+  fmt::print("{} {}, {} steps, one thread\n", bodies, kind, steps);
+  print("cradle", our, theirs);
+  print("Bullet", theirs, theirs);
+}
+
+double cpuOf(const Scene& scene, int steps) {
+  OurWorld world(scene, 1);
+  const double start = secondsOf(CLOCK_PROCESS_CPUTIME_ID);
+  for (int step = 0; step < steps; ++step) world.advance();
+  return secondsOf(CLOCK_PROCESS_CPUTIME_ID) - start;
+}
+
+void compareSizes() {
+  constexpr int kSteps = 300;
+  for (const std::string kind : {"spheres", "boxes", "turned"}) {
+    const double few = cpuOf(makeScene(1000, kind), kSteps), many = cpuOf(makeScene(5000, kind), kSteps);
+    fmt::print("{} steps of 5000 {}: {:.1f} times the CPU time of 1000\n", kSteps, kind, many / few);
+  }
 }
 
 double wallOf(const Scene& scene, int threads, int steps) {
@@ -272,7 +290,7 @@ double wallOf(const Scene& scene, int threads, int steps) {
 
 void compareThreads(int bodies) {
   constexpr int kSteps = 120;
-  for (const std::string kind : {"spheres", "boxes"}) {
+  for (const std::string kind : {"spheres", "boxes", "turned"}) {
     const Scene scene = makeScene(bodies, kind);
     const double one = wallOf(scene, 1, kSteps), two = wallOf(scene, 2, kSteps);
     const double start = secondsOf(CLOCK_MONOTONIC);
@@ -290,16 +308,15 @@ void compareThreads(int bodies) {
 
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  const auto argument = [&](std::size_t i, const std::string& otherwise) {
-    return i < arguments.size() ? arguments[i] : otherwise;
-  };
-  if (argument(0, "") == "threads") {
-    cradle::compareThreads(std::stoi(argument(1, "5000")));
-    return 0;
+  const bool all = arguments.empty();
+  const auto isAsked = [&](const std::string& what) { return all || arguments[0] == what; };
+  if (all || arguments.size() == 3) {
+    fmt::print("Bullet {} with {} precision\n", btGetVersion(), sizeof(btScalar) == 8 ? "double" : "single");
+    const int bodies = all ? 1000 : std::stoi(arguments[0]);
+    const int steps = static_cast<int>(60 * (all ? 10 : std::stod(arguments[2])));
+    for (const std::string kind : {"spheres", "boxes", "turned"})
+      if (all || arguments[1] == kind) cradle::compare(bodies, kind, steps);
   }
-  fmt::print("Bullet {} with {} precision\n", btGetVersion(), sizeof(btScalar) == 8 ? "double" : "single");
-  const std::string asked = argument(1, "all");
-  for (const std::string kind : {"spheres", "boxes", "turned"})
-    if (asked == kind || asked == "all")
-      cradle::compare(std::stoi(argument(0, "1000")), kind, static_cast<int>(60 * std::stod(argument(2, "10"))));
+  if (isAsked("sizes")) cradle::compareSizes();
+  if (isAsked("threads")) cradle::compareThreads(arguments.size() > 1 ? std::stoi(arguments[1]) : 5000);
 }

@@ -23,6 +23,8 @@ constexpr double kLastStep = 1e-15;       // rad
 constexpr double kParallelSine = 1e-14;   // between unit vectors: rounding
 constexpr double kAmbiguousCosine = 0.2;  // between normal and a cylinder's axis: either end may be the one
 constexpr double kGain = 1e-15;           // of the size
+constexpr double kPulledPart = 0.01;      // of the size: far enough for a direction, near enough to come on
+constexpr double kSameDirection = 1e-5;   // rad: what the direction to nearest points of round cores is uncertain by
 
 struct Line {
   Vec3 point, direction;
@@ -144,18 +146,32 @@ class Ascent {
     best_.separation = gapAlong(a, b, start.normal);
   }
 
-  SeparatingAxis climb() {
+  SeparatingAxis climb(double enough) {
     const double size = std::min(a_.collider().boundingRadius, b_.collider().boundingRadius);
     for (int round = 0; round < kMostRounds; ++round) {
       const double before = best_.separation;
       near_ = best_.normal;
       lookAround();
+      if (best_.separation > before + kGain * size) continue;
+      if (best_.separation >= enough) break;
+      pullApart(size);
       if (!(best_.separation > before + kGain * size)) break;
     }
     return best_;
   }
 
  private:
+  /// Where no feature near the normal n leads on: of the cores moved apart along n by s, the nearest points' direction
+  /// m sees no less than n does, f(m) + s n.m >= f(n) + s, so that f(m) >= f(n) + s (1 - n.m).
+  void pullApart(double size) {
+    const Vec3 way = (kPulledPart * size - best_.separation) * best_.normal;
+    const CoreDistance apart = distanceOf(a_, b_.moved(way));
+    if ((apart.normal - best_.normal).squaredNorm() < kSameDirection * kSameDirection) return;
+    near_ = apart.normal;
+    look(near_);
+    lookAround();
+  }
+
   void lookAround() {
     std::array<std::byte, 8192> memory;
     Memory pool(memory.data(), memory.size());
@@ -230,8 +246,8 @@ Vec3 across(const Vec3& directionA, const Vec3& directionB) {
   return directionA.cross(unitAcross(directionA, directionB));
 }
 
-SeparatingAxis improved(SeparatingAxis axis, const Core& a, const Core& b) {
-  return Ascent(axis, a, b).climb();
+SeparatingAxis improved(const SeparatingAxis& axis, const Core& a, const Core& b, double enough) {
+  return Ascent(axis, a, b).climb(enough);
 }
 
 }  // namespace cradle

@@ -3,6 +3,8 @@
 // While boxes are apart, the axis taken is not that of the largest gap now, but the one whose gap closes last within
 // the coming step, and sides are clipped at that instant: a falling box moves by half its size in a step of 1/60 s, and
 // with the axis of now it would stop on boxes that it passes and sink into those that it meets.
+// Crossing edges of two sides that lie on each other have nearly the normal of those sides, and may be a little farther
+// apart: one point there would let boxes tip into each other about it, so such edges never carry contact.
 
 #include "collision/contact_patch.h"
 
@@ -15,6 +17,7 @@ namespace {
 
 constexpr double kApart = 1e-3;           // m: boxes nearer than that touch, and their axis is that of least overlap
 constexpr double kFacePreference = 5e-4;  // m: edges carry contact only where they are clearly farther apart than sides
+constexpr double kAligned = 0.95;         // cosine: edges that face as a side does are covered by that side
 constexpr double kParallelSine2 = 1e-4;   // squared sine: edges at a smaller angle are covered by sides
 constexpr double kLeastClosing = 1e-9;    // m in a step: less is no approach
 
@@ -38,6 +41,9 @@ class BoxPair {
         offset_(a.axes.transpose() * (b.center - a.center)),
         motion_(a.axes.transpose() * motion) {}
 
+  /// Of the axis that separates the boxes all through the step, if findAxis found one.
+  double clearance() const { return clearance_; }
+
   /// False if some axis separates the boxes all through the step.
   bool findAxis() {
     for (int i = 0; i < 3; ++i)
@@ -54,8 +60,9 @@ class BoxPair {
 
   ContactPatch contact() const {
     const bool areApart = std::max(side_.separation, edges_.separation) > kApart;
-    const bool byEdges = hasEdges_ && (areApart ? closingTime(edges_) > closingTime(side_) && edges_.separation > 0
-                                                : edges_.separation > side_.separation + kFacePreference);
+    const bool byEdges = hasEdges_ && edgeNormal().dot(sideNormal()) < kAligned &&
+                         (areApart ? closingTime(edges_) > closingTime(side_) && edges_.separation > 0
+                                   : edges_.separation > side_.separation + kFacePreference);
     const Axis& axis = byEdges ? edges_ : side_;
     const double part = areApart ? std::min(1.0, std::max(0.0, closingTime(axis))) : 0;
     const Vec3 ahead = part * motion_;
@@ -65,7 +72,15 @@ class BoxPair {
   }
 
  private:
-  bool consider(const Axis& axis, Axis& best, bool& known) const {
+  Vec3 sideNormal() const {  // A's frame
+    return side_.sign * (side_.ofA >= 0 ? Vec3(Vec3::Unit(side_.ofA)) : Vec3(aFromB_.col(side_.ofB)));
+  }
+  Vec3 edgeNormal() const {  // A's frame
+    return edges_.sign * Vec3(Vec3::Unit(edges_.ofA)).cross(aFromB_.col(edges_.ofB)).normalized();
+  }
+
+  bool consider(const Axis& axis, Axis& best, bool& known) {
+    clearance_ = axis.separation;
     if (std::min(axis.separation, axis.separation - axis.closing) > margin_) return false;
     if (!known || isBetter(axis, best)) best = axis;
     known = true;
@@ -134,6 +149,7 @@ class BoxPair {
   const Vec3 offset_, motion_;
   Axis side_, edges_;
   bool hasSide_ = false, hasEdges_ = false;
+  double clearance_ = 0;  // m
 };
 
 /// A corner of a clipped side: along the reference side's two directions, and its height above it.
@@ -215,8 +231,10 @@ ContactPatch BoxPair::sideContact(const PosedBox& reference, const PosedBox& inc
 
 ContactPatch contactOfBoxes(const PosedBox& a, const PosedBox& b, const Vec3& motion, double margin) {
   BoxPair pair(a, b, motion, margin);
-  if (!pair.findAxis()) return {};
-  return pair.contact();
+  if (pair.findAxis()) return pair.contact();
+  ContactPatch none;
+  none.clearance = pair.clearance();
+  return none;
 }
 
 }  // namespace cradle

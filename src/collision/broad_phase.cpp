@@ -12,7 +12,8 @@ namespace {
 constexpr double kSlackMotions = 4;     // steps like the one to come that a list should last
 constexpr double kLeastSlack = 0.05;    // of a body's size: what lies nearly still is not sorted again at each step
 constexpr double kMostSlack = 0.25;     // of the size: beyond, lists of pairs that are not near cost more than new ones
-constexpr double kStripWidth = 1.5;     // of the mean size of the moving bodies' boxes
+constexpr double kCellWidth = 1.5;      // of the mean size of the moving bodies' boxes
+constexpr double kMostCells = 1e9;      // from the middle: what lies farther away shares the outermost cells
 constexpr double kBoxRounding = 1e-12;  // of the coordinates
 constexpr double kFarthest = 1e100;     // m: a step that has blown up is judged elsewhere
 
@@ -35,6 +36,16 @@ double wayBetween(const RigidTransform& from, const RigidTransform& to, double r
 
 bool isExcluded(const ContactGeometry& geometry, std::size_t a, std::size_t b) {
   return std::binary_search(geometry.excluded.begin(), geometry.excluded.end(), std::pair(a, b));
+}
+
+/// Cells side by side across the sweep, in rows: cells next to each other in a row have numbers that follow each other.
+constexpr std::int64_t kRow = std::int64_t{1} << 31;
+
+std::int64_t cellOf(double across, double third) {
+  const auto whole = [](double cells) {
+    return static_cast<std::int64_t>(std::floor(std::clamp(cells, -kMostCells, kMostCells)));
+  };
+  return whole(across) * kRow + whole(third);
 }
 
 /// Height of a box's lowest point over a plane.
@@ -83,36 +94,96 @@ void BroadPhase::enclose(const VectorX& state, const std::vector<double>& motion
   }
 }
 
-/// Strips along the axis on which the boxes spread the most, side by side along the next. Boxes wider than a strip are
+/// Cells along the axis on which the boxes spread the most, side by side along the others. Boxes wider than a cell are
 /// compared with all others.
 void BroadPhase::sort(const ContactGeometry& geometry) {
   Vec3 mean = Vec3::Zero(), spread = Vec3::Zero();
   for (const Bounds& box : boxes_) mean += box.center() / static_cast<double>(boxes_.size());
   for (const Bounds& box : boxes_) spread += (box.center() - mean).cwiseAbs2();
-  Eigen::Index along = 0, across = 0;
+  Eigen::Index along = 0;
   spread.maxCoeff(&along);
-  spread[along] = -1;
-  spread.maxCoeff(&across);
-  const Eigen::Index third = 3 - along - across;
+  const Eigen::Index across = (along + 1) % 3, third = (along + 2) % 3;
   double width = 0;
   for (std::size_t i = 0; i < boxes_.size(); ++i)
-    if (geometry.colliders[i].body != kFixed) width += kStripWidth * boxes_[i].sizes()[across];
+    if (geometry.colliders[i].body != kFixed)
+      width += kCellWidth * std::max(boxes_[i].sizes()[across], boxes_[i].sizes()[third]);
   width /= static_cast<double>(std::max<std::size_t>(1, poses_.size()));
   intervals_.clear(), wide_.clear();
   longest_ = 0;
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     const Vec3 least = boxes_[i].min(), most = boxes_[i].max();
-    if (!(most[across] - least[across] <= width)) {
+    if (!(most[across] - least[across] <= width && most[third] - least[third] <= width)) {
       wide_.push_back(i);
       continue;
     }
-    intervals_.push_back({std::floor((least[across] - mean[across]) / width), least[along], most[along], least[across],
-                          most[across], least[third], most[third], i});
+    intervals_.push_back({cellOf((least[across] - mean[across]) / width, (least[third] - mean[third]) / width),
+                          least[along], most[along], least[across], most[across], least[third], most[third], i});
     longest_ = std::max(longest_, most[along] - least[along]);
   }
   std::sort(intervals_.begin(), intervals_.end(), [](const Interval& a, const Interval& b) {
-    return std::tie(a.strip, a.from, a.collider) < std::tie(b.strip, b.from, b.collider);
+    return std::tie(a.cell, a.from, a.collider) < std::tie(b.cell, b.from, b.collider);
   });
+}
+
+void BroadPhase::compare(const ContactGeometry& geometry, std::size_t first, std::size_t second) {
+  if (!boxes_[first].intersects(boxes_[second])) return;
+  const std::size_t a = std::min(first, second), b = std::max(first, second);
+  const Collider &colliderA = geometry.colliders[a], &colliderB = geometry.colliders[b];
+  if (colliderA.body == kFixed && colliderB.body == kFixed) return;
+  if (colliderA.isBall() && colliderB.isBall()) {
+    const double reach = (boxes_[a].sizes().x() + boxes_[b].sizes().x()) / 2;
+    if ((boxes_[b].center() - boxes_[a].center()).squaredNorm() > reach * reach) return;
+  }
+  if (geometry.excluded.empty() || !isExcluded(geometry, a, b)) found_.emplace_back(a, b);
+}
+
+/// Each box with those in its cell and in four of the eight around it: those of the others find it.
+void BroadPhase::compareIntervals(const ContactGeometry& geometry) {
+  const auto meetAcross = [](const Interval& a, const Interval& b) {
+    return a.thirdFrom <= b.thirdTo && b.thirdFrom <= a.thirdTo && a.acrossFrom <= b.acrossTo &&
+           b.acrossFrom <= a.acrossTo;
+  };
+  const std::size_t count = intervals_.size();
+  constexpr std::int64_t kAround[] = {1, kRow - 1, kRow, kRow + 1};
+  std::size_t nexts[] = {0, 0, 0, 0};  // the first interval of those cells that may begin beside this one
+  for (std::size_t i = 0; i < count; ++i) {
+    const Interval& here = intervals_[i];
+    const auto compareFrom = [&](std::size_t first, std::int64_t cell) {
+      for (std::size_t j = first; j < count && intervals_[j].cell == cell && intervals_[j].from <= here.to; ++j)
+        if (meetAcross(here, intervals_[j])) compare(geometry, here.collider, intervals_[j].collider);
+    };
+    compareFrom(i + 1, here.cell);
+    for (int k = 0; k < 4; ++k) {
+      const std::int64_t cell = here.cell + kAround[k];
+      std::size_t& next = nexts[k];
+      while (next < count && (intervals_[next].cell < cell ||
+                              (intervals_[next].cell == cell && intervals_[next].from < here.from - longest_)))
+        ++next;
+      compareFrom(next, cell);
+    }
+  }
+}
+
+void BroadPhase::compareWide(const ContactGeometry& geometry) {
+  for (std::size_t i = 0; i < wide_.size(); ++i) {
+    for (const Interval& interval : intervals_) compare(geometry, wide_[i], interval.collider);
+    for (std::size_t j = i + 1; j < wide_.size(); ++j) compare(geometry, wide_[i], wide_[j]);
+  }
+}
+
+/// Counting sort by the first collider, then the few of each by the second.
+void BroadPhase::sortFound() {
+  next_.assign(boxes_.size() + 1, 0);
+  for (const auto& [a, b] : found_) ++next_[a + 1];
+  for (std::size_t i = 1; i < next_.size(); ++i) next_[i] += next_[i - 1];
+  sorted_.resize(found_.size());
+  for (const auto& pair : found_) sorted_[next_[pair.first]++] = pair;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {  // next_[i] is the end of i's pairs now
+    std::sort(sorted_.begin() + static_cast<std::ptrdiff_t>(first),
+              sorted_.begin() + static_cast<std::ptrdiff_t>(next_[i]));
+    first = next_[i];
+  }
 }
 
 void BroadPhase::sweep(ContactGeometry& geometry) {
@@ -125,35 +196,10 @@ void BroadPhase::sweep(ContactGeometry& geometry) {
       if (geometry.colliders[i].body != kFixed && lowest(boxes_[i], geometry.planes[p]) <= 0)
         geometry.pairs.push_back({i, p, true, law(geometry.colliders[i].surface, geometry.planes[p].surface)});
   found_.clear();
-  const auto compare = [&](std::size_t first, std::size_t second) {
-    if (!boxes_[first].intersects(boxes_[second])) return;
-    const std::size_t a = std::min(first, second), b = std::max(first, second);
-    if (geometry.colliders[a].body == kFixed && geometry.colliders[b].body == kFixed) return;
-    if (geometry.excluded.empty() || !isExcluded(geometry, a, b)) found_.emplace_back(a, b);
-  };
-  const auto meetAcross = [](const Interval& a, const Interval& b) {
-    return a.thirdFrom <= b.thirdTo && b.thirdFrom <= a.thirdTo && a.acrossFrom <= b.acrossTo &&
-           b.acrossFrom <= a.acrossTo;
-  };
-  const std::size_t count = intervals_.size();
-  std::size_t next = 0;  // the first interval that may begin beside this one in the next strip
-  for (std::size_t i = 0; i < count; ++i) {
-    const Interval& here = intervals_[i];
-    for (std::size_t j = i + 1; j < count && intervals_[j].strip == here.strip && intervals_[j].from <= here.to; ++j)
-      if (meetAcross(here, intervals_[j])) compare(here.collider, intervals_[j].collider);
-    const auto isBefore = [&](const Interval& other) {
-      return other.strip <= here.strip || (other.strip == here.strip + 1 && other.from < here.from - longest_);
-    };
-    while (next < count && isBefore(intervals_[next])) ++next;
-    for (std::size_t j = next; j < count && intervals_[j].strip == here.strip + 1 && intervals_[j].from <= here.to; ++j)
-      if (meetAcross(here, intervals_[j])) compare(here.collider, intervals_[j].collider);
-  }
-  for (std::size_t i = 0; i < wide_.size(); ++i) {
-    for (const Interval& interval : intervals_) compare(wide_[i], interval.collider);
-    for (std::size_t j = i + 1; j < wide_.size(); ++j) compare(wide_[i], wide_[j]);
-  }
-  std::sort(found_.begin(), found_.end());
-  for (const auto& [a, b] : found_)
+  compareIntervals(geometry);
+  compareWide(geometry);
+  sortFound();
+  for (const auto& [a, b] : sorted_)
     geometry.pairs.push_back({a, b, false, law(geometry.colliders[a].surface, geometry.colliders[b].surface)});
 }
 

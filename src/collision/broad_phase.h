@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "collision/collider.h"
@@ -19,7 +20,7 @@ class BroadPhase {
 
  private:
   struct Interval {
-    double strip;                                     // whole number
+    std::int64_t cell;                                // see cellOf
     double from, to;                                  // m, along the axis of the sweep
     double acrossFrom, acrossTo, thirdFrom, thirdTo;  // m, along the others
     std::size_t collider;
@@ -30,6 +31,10 @@ class BroadPhase {
                const ContactGeometry& geometry);
   void sort(const ContactGeometry& geometry);
   void sweep(ContactGeometry& geometry);
+  void compareIntervals(const ContactGeometry& geometry);
+  void compareWide(const ContactGeometry& geometry);
+  void compare(const ContactGeometry& geometry, std::size_t first, std::size_t second);
+  void sortFound();
 
   std::vector<RigidTransform> poses_;  // of the moving bodies when they were enclosed
   std::vector<double> radii_;          // m, of the moving bodies about their centres of mass
@@ -37,8 +42,9 @@ class BroadPhase {
   std::vector<Bounds> boxes_;
   std::vector<Interval> intervals_;
   double longest_ = 0;             // m, of the intervals
-  std::vector<std::size_t> wide_;  // colliders that no strip is wide enough for
-  std::vector<std::pair<std::size_t, std::size_t>> found_;
+  std::vector<std::size_t> wide_;  // colliders that no cell is wide enough for
+  std::vector<std::pair<std::size_t, std::size_t>> found_, sorted_;
+  std::vector<std::size_t> next_;  // scratch
 };
 
 }  // namespace cradle

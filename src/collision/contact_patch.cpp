@@ -15,6 +15,12 @@ ContactPatch single(const Vec3& normal, const Vec3& onA, const Vec3& onB) {
   return patch;
 }
 
+ContactPatch none(double clearance) {
+  ContactPatch patch;
+  patch.clearance = clearance;
+  return patch;
+}
+
 /// A box's surface as a point sees it.
 struct NearestOfBox {
   double distance;  // m, < 0 inside
@@ -42,9 +48,10 @@ ContactPatch contactOfBalls(const PosedBall& a, const PosedBall& b, const Vec3& 
   if (distance2 > (reach + margin) * (reach + margin)) {
     const double along = offset.dot(motion), excess = distance2 - reach * reach;
     const double root = along * along - motion.squaredNorm() * excess;
-    if (along >= 0 || root < 0) return {};
+    const double gap = std::sqrt(distance2) - reach;
+    if (along >= 0 || root < 0) return none(gap);
     const double part = excess / (std::sqrt(root) - along);
-    if (part > 1) return {};
+    if (part > 1) return none(gap);
     offset += part * motion;
   }
   const double length = offset.norm();
@@ -56,19 +63,19 @@ ContactPatch contactOfBalls(const PosedBall& a, const PosedBall& b, const Vec3& 
 ContactPatch contactOfBallAndBox(const PosedBall& a, const PosedBox& b, const Vec3& motion, double margin) {
   NearestOfBox nearest = nearestOf(b, a.center);
   const double gap = nearest.distance - a.radius;
-  if (gap - motion.norm() > margin) return {};
+  if (gap - motion.norm() > margin) return none(gap);
   const double closing = nearest.normal.dot(motion);
   if (gap > margin) {
-    if (closing <= 0) return {};
+    if (closing <= 0) return none(gap);
     nearest = nearestOf(b, a.center - std::min(1.0, gap / closing) * motion);
-    if (nearest.distance - a.radius > margin) return {};
+    if (nearest.distance - a.radius > margin) return none(gap);
   }
   return single(-nearest.normal, a.center - a.radius * nearest.normal, nearest.point);
 }
 
 ContactPatch contactOfBallAndPlane(const PosedBall& a, const PlaneCollider& b, const Vec3& motion, double margin) {
   const double height = b.normal.dot(a.center - b.point), closing = b.normal.dot(motion);
-  if (height - a.radius - std::max(0.0, closing) > margin) return {};
+  if (height - a.radius - std::max(0.0, closing) > margin) return none(height - a.radius);
   return single(-b.normal, a.center - a.radius * b.normal, a.center - height * b.normal);
 }
 
@@ -78,7 +85,8 @@ ContactPatch contactOfBoxAndPlane(const PosedBox& a, const PlaneCollider& b, con
   const Vec3 heights = (a.axes.transpose() * b.normal).cwiseProduct(a.halfSize);
   ContactPatch patch;
   patch.normal = -b.normal;
-  if (middle - heights.cwiseAbs().sum() > reach) return patch;
+  patch.clearance = middle - heights.cwiseAbs().sum();
+  if (patch.clearance > reach) return patch;
   ContactPatch::Point points[8];
   std::size_t count = 0;
   for (int corner = 0; corner < 8; ++corner) {

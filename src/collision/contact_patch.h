@@ -29,6 +29,7 @@ struct ContactPatch {
   };
   Vec3 normal = Vec3::UnitY();  // unit, world, from A to B
   std::size_t count = 0;
+  double clearance = 0;  // m, of a patch without points: the surfaces are at least that far apart now
   std::array<Point, kMostPoints> points;
 };
 

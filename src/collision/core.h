@@ -14,6 +14,13 @@ class Core {
   Vec3 farthest(const Vec3& direction) const;
   double reach(const Vec3& direction) const { return direction.dot(farthest(direction)); }
 
+  /// The same core a way (m) from here.
+  Core moved(const Vec3& way) const {
+    Core core = *this;
+    core.shift_ += way, core.center_ += way;
+    return core;
+  }
+
   const Collider& collider() const { return collider_; }
   Vec3 placed(const Vec3& point) const { return turn_ * point + shift_; }
   Vec3 turned(const Vec3& direction) const { return turn_ * direction; }

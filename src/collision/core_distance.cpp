@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMostRounds = 60;
 constexpr double kRounding = 4e-16;       // of the size: what differences of coordinates are uncertain by
-constexpr double kRoundTolerance = 1e-6;  // of the distance, where a core is round: others finish (see core_separation)
+constexpr double kRoundTolerance = 1e-8;  // of the distance, where a core is round: others finish (see core_separation)
 
 /// A point of A - B, and where it comes from.
 struct Difference {

@@ -1,20 +1,23 @@
 #include "collision/core_separation.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "collision/axis_ascent.h"
+#include "collision/core_depth.h"
 #include "collision/core_distance.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kTouching = 1e-12;       // of the size: nearer, the direction to the nearest point is rounding
-constexpr double kSeen = 1e-14;           // of the size: rounding of a gap
-constexpr double kDistanceError = 1e-5;   // of a distance: what is this near to it is its direction's local maximum
+constexpr double kTouching = 1e-12;         // of the size: nearer, the direction to the nearest point is rounding
+constexpr double kSeen = 1e-14;             // of the size: rounding of a gap
+constexpr double kDistanceError = 1e-5;     // of a distance: what is this near to it is its direction's local maximum
+constexpr double kDistanceRounding = 1e-8;  // of a distance: what it is uncertain by if its direction is by 1e-5 rad
 constexpr double kNear = 0.01;            // of the size: nearer, the normals of features are better than that direction
 constexpr double kFacePreference = 1e-7;  // of the size
+constexpr double kFlatError = 1e-13;      // of the size: a face that misses no more of the distance is the nearest
+constexpr double kLeastCosine = 0.5;      // between a face's normal and one that sees as much
+constexpr double kSameCosine = 0.999;     // where that is known: the direction to nearest points is uncertain by less
 
 double sizeOf(const Core& a, const Core& b) {
   return std::min(a.collider().boundingRadius, b.collider().boundingRadius);
@@ -46,43 +49,42 @@ SeparatingAxis ofNearest(const CoreDistance& apart, const Core& a, const Core& b
   if (apart.distance < kNear * sizeOf(a, b) && !(isSegment(a) && isSegment(b))) {
     const SeparatingAxes axes = separatingAxes(a, b);
     const SeparatingAxis feature = better(better(axes.faceOfA, axes.faceOfB), axes.edges);
-    if (feature.separation >= (1 - kDistanceError) * apart.distance) return feature;
+    if (feature.separation >= apart.distance - kSeen * sizeOf(a, b)) return feature;
+    return better(feature, improved({0, apart.normal}, a, b));
   }
   return improved({0, apart.normal}, a, b);
 }
 
-/// The best of what the axes of the polytopes lead to. A prism inside a cylinder sees no smaller gap than that, so that
-/// an axis of less than what is found leads to no more.
-SeparatingAxis ofRoundCores(const CoreDistance& apart, const Core& a, const Core& b) {
-  SeparatingAxis best;
-  if (apart.distance > 0) best = improved({0, apart.normal}, a, b);
-  if (apart.distance > kTouching * sizeOf(a, b) && best.separation >= (1 - kDistanceError) * apart.distance)
-    return best;
-  SeparatingAxes axes = separatingAxes(a, b);
-  std::array<SeparatingAxis, 3> starts{axes.faceOfA, axes.faceOfB, axes.edges};
-  std::stable_sort(starts.begin(), starts.end(),
-                   [](const auto& left, const auto& right) { return left.separation > right.separation; });
-  for (const SeparatingAxis& start : starts)
-    if (start.separation > best.separation) best = better(best, improved(start, a, b));
-  return best;
-}
-
-/// Normals of faces, which are not known to be the best.
-SeparatingAxis bestFlat(const Core& a, const Core& b, const Vec3& near) {
+/// Of the normals of faces within an angle of `near`.
+SeparatingAxis bestFlat(const Core& a, const Core& b, const Vec3& near, double leastCosine) {
   SeparatingAxis best;
   const auto look = [&](const Core& core, double sign) {
     if (isRound(core)) {
       const Vec3 normal = (core.axis().dot(near) < 0 ? -1 : 1) * core.axis();
-      best = better(best, {gapAlong(a, b, normal), normal});
+      if (normal.dot(near) > leastCosine) best = better(best, {gapAlong(a, b, normal), normal});
     } else if (core.collider().kind() == ColliderKind::polytope) {
       for (const Polytope::Face& face : core.collider().polytope->faces) {
         const Vec3 normal = sign * core.turned(face.normal);
-        if (normal.dot(near) > 0.5) best = better(best, {gapAlong(a, b, normal), normal});
+        if (normal.dot(near) > leastCosine) best = better(best, {gapAlong(a, b, normal), normal});
       }
     }
   };
   look(a, 1), look(b, -1);
   return best;
+}
+
+/// Apart the one maximum is near the direction to the nearest point; else there may be several.
+SeparatingAxis ofRoundCores(const CoreDistance& apart, const Core& a, const Core& b) {
+  SeparatingAxis best;
+  if (apart.distance > 0) {
+    const double enough = (1 - kDistanceRounding) * apart.distance;
+    best = bestFlat(a, b, apart.normal, kSameCosine);
+    if (best.separation >= apart.distance - kFlatError * sizeOf(a, b)) return best;
+    best = better(best, improved({0, apart.normal}, a, b, enough));
+  }
+  if (apart.distance > kTouching * sizeOf(a, b) && best.separation >= (1 - kDistanceError) * apart.distance)
+    return best;
+  return better(best, deepestAxis(a, b));
 }
 
 }  // namespace
@@ -100,7 +102,7 @@ SeparatingAxis contactAxis(const Core& a, const Core& b) {
   const CoreDistance apart = distanceOf(a, b);
   const double preference = kFacePreference * sizeOf(a, b);
   if (isRound(a) || isRound(b)) {
-    const SeparatingAxis best = ofRoundCores(apart, a, b), flat = bestFlat(a, b, best.normal);
+    const SeparatingAxis best = ofRoundCores(apart, a, b), flat = bestFlat(a, b, best.normal, kLeastCosine);
     return flat.separation >= best.separation - preference ? flat : best;
   }
   const bool isApart = apart.distance > kTouching * sizeOf(a, b);

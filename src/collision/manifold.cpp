@@ -10,7 +10,8 @@
 #include <cmath>
 #include <memory_resource>
 
-#include "collision/axis_ascent.h"
+#include "collision/core_distance.h"
+#include "collision/polygon_clip.h"
 
 namespace cradle {
 namespace {
@@ -20,12 +21,11 @@ constexpr double kTiltedCosine = 0.5;    // between a face's normal and the cont
 constexpr double kStandingCosine = 0.7;  // between a cylinder's axis and the contact's normal: its end carries
 constexpr double kOuterPart = 1.0195911582083184;  // 1 / cos(pi / 16): polygon around a disc to the one in it
 constexpr double kDeeperPart = 1e-9;               // of the size: a manifold must hold a point so near to the deepest
+constexpr double kPulledPart = 0.01;               // of the size: far enough to tell places of nearest points
 constexpr std::size_t kMostPoints = 8;
-constexpr double kTie = 1e-9;  // of an area: corners of a regular polygon are alike
 constexpr double kLying =
     1e-5;  // rad: a cylinder so little tilted is a ball of its radius at both rims, to 1e-10 of it
 
-using Points = std::pmr::vector<Vec3>;
 using Memory = std::pmr::monotonic_buffer_resource;
 
 /// What of a collider's surface may carry contact.
@@ -102,36 +102,6 @@ Patch patchOf(const Core& core, const Vec3& outward, Memory* memory) {
   return patch;
 }
 
-/// The part of a polygon, or of a line, on the inner side of a plane.
-void clip(Points& polygon, Points& scratch, const Vec3& outward, double offset) {
-  scratch.clear();
-  const std::size_t count = polygon.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 &from = polygon[i], &to = polygon[(i + 1) % count];
-    const double heightFrom = outward.dot(from) - offset, heightTo = outward.dot(to) - offset;
-    if (heightFrom <= 0) scratch.push_back(from);
-    if (count == 2 && i == 1) break;  // a line has one side
-    if ((heightFrom < 0) != (heightTo < 0) && heightFrom != heightTo && heightFrom != 0 && heightTo != 0)
-      scratch.push_back(from + heightFrom / (heightFrom - heightTo) * (to - from));
-  }
-  std::swap(polygon, scratch);
-}
-
-/// Leaves those points of a polygon that span most of its area.
-void thinOut(Points& polygon) {
-  while (polygon.size() > kMostPoints) {
-    std::size_t least = 0;
-    double leastArea = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const Vec3 &before = polygon[(i + polygon.size() - 1) % polygon.size()],
-                 &after = polygon[(i + 1) % polygon.size()];
-      const double area = (before - polygon[i]).cross(after - polygon[i]).squaredNorm();
-      if (area < leastArea * (1 - kTie)) leastArea = area, least = i;  // of a disc every other point is left
-    }
-    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(least));
-  }
-}
-
 /// A face in the plane of contact.
 struct Reference {
   Vec3 normal;  // unit, outwards
@@ -141,7 +111,7 @@ struct Reference {
 /// Contacts of what is left of an incident patch on a face of A.
 void appendOnFace(const Reference& face, Patch& incident, double margin, std::vector<ContactPoint>& points) {
   std::erase_if(incident.points, [&](const Vec3& point) { return face.normal.dot(point) - face.offset > margin; });
-  thinOut(incident.points);
+  thinOut(kMostPoints, incident.points);
   for (const Vec3& point : incident.points) {
     const double separation = face.normal.dot(point) - face.offset;
     points.push_back({point - separation / 2 * face.normal, face.normal, separation, kFlat, incident.radius});
@@ -233,6 +203,13 @@ double radiusOfCorner(const Core& core) {
   return core.rimRadius() > 0 ? kNotRound : marginOf(core);
 }
 
+/// Where the cores are nearest when they are moved apart along the axis; as seen before that.
+Vec3 middlePulledApart(const Core& a, const Core& b, const SeparatingAxis& axis) {
+  const double way = kPulledPart * std::min(sizeOf(a), sizeOf(b)) - axis.separation;
+  const CoreDistance apart = distanceOf(a, b.moved(way * axis.normal));
+  return (apart.onA + apart.onB - way * axis.normal) / 2;
+}
+
 /// The one point of two patches that share no more.
 ContactPoint singlePoint(const Core& a, const Core& b, const SeparatingAxis& axis, const Patch& patchA,
                          const Patch& patchB) {
@@ -244,10 +221,12 @@ ContactPoint singlePoint(const Core& a, const Core& b, const SeparatingAxis& axi
   ContactPoint contact{(onA + onB) / 2, normal, separation, kNotRound, kNotRound};
   if (isWideA && isWideB && !patchA.isFlat && !patchB.isFlat)
     contact.point = ridgeA.from + partNearest(ridgeA, ridgeB) * (ridgeA.to - ridgeA.from) + separation / 2 * normal;
-  else if (isWideA)
+  else if (isWideA && !isWideB)
     contact.point = onB - separation / 2 * normal;
-  else if (isWideB)
+  else if (isWideB && !isWideA)
     contact.point = onA + separation / 2 * normal;
+  else if (isWideA || (onB - onA - separation * normal).norm() > kDeeperPart * std::min(sizeOf(a), sizeOf(b)))
+    contact.point = middlePulledApart(a, b, axis) + (marginOf(a) - marginOf(b)) / 2 * normal;
   if (patchA.isFlat) contact.radiusA = kFlat;
   if (patchB.isFlat) contact.radiusB = kFlat;
   if (!isWideA) contact.radiusA = radiusOfCorner(a);

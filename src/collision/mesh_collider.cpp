@@ -1,5 +1,6 @@
 #include "collision/mesh_collider.h"
 
+#include "collision/cylinder_on_mesh.h"
 #include "collision/mesh_contact.h"
 #include "collision/mesh_gap.h"
 #include "collision/round_on_mesh.h"
@@ -9,6 +10,10 @@ namespace {
 
 bool isRound(const Collider& collider) {
   return collider.kind() == ColliderKind::ball || collider.kind() == ColliderKind::capsule;
+}
+
+bool isCylinder(const Collider& collider) {
+  return collider.kind() == ColliderKind::cylinder;
 }
 
 /// Two colliders with surfaces, in the frames of these.
@@ -34,8 +39,9 @@ bool hasMesh(const Collider& a, const Collider& b) {
 }
 
 double meshSeparation(const Collider& a, const Collider& b, const RigidTransform& aFromB, double enough) {
-  if (isRound(b)) return meshSeparation(b, a, aFromB.inverse(), enough);
+  if (isRound(b) || isCylinder(b)) return meshSeparation(b, a, aFromB.inverse(), enough);
   if (isRound(a)) return separationOf(roundOf(a, (aFromB * b.bodyFromMesh).inverse()), *b.mesh, enough);
+  if (isCylinder(a)) return cylinderSeparation(Core(a, (aFromB * b.bodyFromMesh).inverse()), *b.mesh, enough);
   return gapBetween(pairOf(a, b, aFromB), enough).separation;
 }
 
@@ -48,11 +54,16 @@ std::vector<ContactPoint> meshContacts(const Collider& a, const Collider& b, con
     appendContacts(roundOf(a, aFromContacts.inverse()), *b.mesh, margin, contacts);
   } else if (isRound(b)) {
     appendContacts(roundOf(b, a.bodyFromMesh.inverse() * aFromB), *a.mesh, margin, contacts);
+  } else if (isCylinder(a)) {
+    aFromContacts = aFromB * b.bodyFromMesh;
+    appendCylinderContacts(Core(a, aFromContacts.inverse()), *b.mesh, margin, contacts);
+  } else if (isCylinder(b)) {
+    appendCylinderContacts(Core(b, a.bodyFromMesh.inverse() * aFromB), *a.mesh, margin, contacts);
   } else {
     appendContacts(pairOf(a, b, aFromB), margin, contacts);
   }
   for (ContactPoint& contact : contacts) {
-    if (isRound(b)) turnAround(contact);
+    if (isRound(b) || isCylinder(a)) turnAround(contact);
     contact.point = aFromContacts * contact.point;
     contact.normal = aFromContacts.rotation * contact.normal;
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "collision/contact_reduction.h"
+#include "collision/mesh_overlap.h"
 #include "collision/tangent_plane.h"
 
 namespace cradle {
@@ -16,6 +17,8 @@ struct CoreGap {
   double distance2;  // m^2: nothing farther matters
   Vec3 onCore = Vec3::Zero(), onMesh = Vec3::Zero();
   bool isFound = false, intersects = false;
+  double part = 0;         // where it goes through a face, if it does
+  std::uint32_t face = 0;  // that one
 };
 
 struct CoreVisit {
@@ -29,7 +32,8 @@ struct CoreVisit {
     const MeshSurface::Face& face = mesh.faces[index];
     const FlatTriangle triangle = triangleOf(mesh, index);
     const double start = triangle.heightOf(core.from), end = triangle.heightOf(core.at(1));
-    if ((start < 0) != (end < 0) && triangle.isAbove(core.at(start / (start - end)))) gap.intersects = true;
+    if ((start < 0) != (end < 0) && triangle.isAbove(core.at(start / (start - end))))
+      gap.intersects = true, gap.part = start / (start - end), gap.face = index;
     for (const double part : {0.0, 1.0}) {
       const double height = part > 0 ? end : start;
       const Vec3 point = core.at(part);
@@ -45,7 +49,8 @@ struct CoreVisit {
 
   void keep(const Vec3& onCore, const Vec3& onMesh) {
     const double distance2 = (onCore - onMesh).squaredNorm();
-    if (distance2 < gap.distance2) gap = {distance2, onCore, onMesh, true, gap.intersects};
+    if (distance2 >= gap.distance2) return;
+    gap.distance2 = distance2, gap.onCore = onCore, gap.onMesh = onMesh, gap.isFound = true;
   }
 };
 
@@ -61,10 +66,14 @@ CoreGap gapOf(const Segment& core, const MeshSurface& mesh, double reach) {
   return visit.gap;
 }
 
-/// Height over the surface of the end of a core that is deeper inside.
-SignedHeight deeperEnd(const Segment& core, const MeshSurface& mesh) {
+/// Where a core that goes through the surface, or is inside, is deepest: at an end, or where it passes beneath an edge.
+SignedHeight deepestPlace(const Segment& core, const MeshSurface& mesh, const CoreGap& gap) {
   const SignedHeight start = heightOver(mesh, core.from), end = heightOver(mesh, core.at(1));
-  return end.height < start.height ? end : start;
+  const SignedHeight& deeper = end.height < start.height ? end : start;
+  if (!gap.intersects) return deeper;
+  const EdgeDepth beneath = depthOfEdge(mesh, core, gap.part, gap.face);
+  if (-beneath.depth >= deeper.height) return deeper;
+  return {-beneath.depth, beneath.normal, beneath.deepest + beneath.depth * beneath.normal, MeshPoint::Feature::edge};
 }
 
 bool isInside(const Segment& core, const MeshSurface& mesh) {
@@ -149,9 +158,9 @@ struct RoundVisit {
 };
 
 /// One contact at the deepest place.
-ContactPoint deepestContact(const RoundSolid& round, const SignedHeight& end) {
-  const double separation = end.height - round.radius;
-  return {end.nearest + separation / 2 * end.normal, -end.normal, separation, round.radius, kNotRound};
+ContactPoint deepestContact(const RoundSolid& round, const SignedHeight& place) {
+  const double separation = std::min(0.0, place.height) - round.radius;
+  return {place.nearest + separation / 2 * place.normal, -place.normal, separation, round.radius, kNotRound};
 }
 
 }  // namespace
@@ -163,7 +172,7 @@ double separationOf(const RoundSolid& round, const MeshSurface& mesh, double eno
   if (round.isBall()) return heightOver(mesh, round.core.from).height - round.radius;
   const CoreGap gap = gapOf(round.core, mesh, reach);
   if (gap.intersects || isInside(round.core, mesh))
-    return std::min(0.0, deeperEnd(round.core, mesh).height) - round.radius;
+    return std::min(0.0, deepestPlace(round.core, mesh, gap).height) - round.radius;
   return gap.isFound ? std::sqrt(gap.distance2) - round.radius : kFar;
 }
 
@@ -174,13 +183,14 @@ void appendContacts(const RoundSolid& round, const MeshSurface& mesh, double mar
   const std::size_t first = contacts.size();
   const CoreGap gap = gapOf(round.core, mesh, reach);
   if (gap.intersects || isInside(round.core, mesh))
-    return contacts.push_back(deepestContact(round, deeperEnd(round.core, mesh)));
+    return contacts.push_back(deepestContact(round, deepestPlace(round.core, mesh, gap)));
   const double distance = std::sqrt(gap.distance2), rounding = kRoundingPart * mesh.size;
   if (!gap.isFound || distance - round.radius > margin) return;
   RoundVisit visit{round, mesh, margin, contacts};
   visitNear(mesh.tree, boundsOf(round.core), visit);
   if (visit.least > distance - round.radius + rounding) {
-    const Vec3 outward = distance > 0 ? Vec3((gap.onCore - gap.onMesh) / distance) : deeperEnd(round.core, mesh).normal;
+    const Vec3 outward =
+        distance > 0 ? Vec3((gap.onCore - gap.onMesh) / distance) : deepestPlace(round.core, mesh, gap).normal;
     const double separation = distance - round.radius;
     contacts.push_back({gap.onMesh + separation / 2 * outward, -outward, separation, kNotRound, kNotRound});
   }

@@ -16,8 +16,8 @@ struct RoundSolid {
 };
 
 /// Signed separation (m) of a ball or capsule and a mesh: the distance of its core less the radius; of a core inside,
-/// or through the surface, minus the depth of its deeper end less the radius. Exact for separations above -radius.
-/// Infinite if above `enough` (m).
+/// or through the surface, minus its depth, at an end or beneath an edge that it passes, less the radius. Exact for
+/// separations above -radius. Infinite if above `enough` (m).
 double separationOf(const RoundSolid& round, const MeshSurface& mesh, double enough);
 
 /// Contacts with separation <= margin (m), in the mesh's frame; A is the ball or capsule. One for each place where the

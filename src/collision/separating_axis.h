@@ -15,9 +15,9 @@ struct SeparatingAxes {
   SeparatingAxis faceOfA, faceOfB, edges;
 };
 
-/// Of the polytopes of two cores (for a cylinder that is the prism inside it), of which one at least has faces. The
-/// largest of the three separations is exact where they overlap, the least translation that separates them; apart it is
-/// at most the distance. O(faces + edges that face each other), each with a walk along edges.
+/// Of two polytopes, or one and a segment. The largest of the three separations is exact where they overlap, the least
+/// translation that separates them; apart it is at most the distance. O(faces + edges that face each other), each with
+/// a walk along edges.
 SeparatingAxes separatingAxes(const Core& a, const Core& b);
 
 }  // namespace cradle

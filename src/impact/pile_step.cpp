@@ -2,18 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "math/principal_axes.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kMostApproach = 3e-3;  // m: bodies that come nearer to each other in a step are looked at more often
-constexpr int kMostPieces = 32;         // looks a step
-constexpr int kSubSteps = 4;            // a step, at least: fewer do not bring boxes to rest
-constexpr double kKeptMotion = 5e-4;    // m: half of what two bodies may move against each other with one manifold
-constexpr double kKeptTurn = 5e-3;      // rad
-constexpr double kCalmTime = 0.5;       // s: slow for so long is at rest
+constexpr double kMostApproach = 10e-3;  // m: bodies that come nearer to each other between looks get more of them
+constexpr double kMostSubStepApproach = 3.4e-3;  // m: in a sub-step, as far as an impact goes on into the next bodies
+constexpr double kDeflected = 0.5;               // of the approach is added to the margin: an impact turns bodies aside
+constexpr int kMostPieces = 32;                  // looks a step
+constexpr int kSubSteps = 8;         // a step, at least: with fewer, contacts must be so soft that piles sink
+constexpr double kStillPart = 0.25;  // of the speed that gravity gives a body in a step: contacts at rest have as much
+constexpr double kContactMargin = 5e-3;  // m: contacts are known before bodies touch
+
+std::vector<double> massesOf(const std::vector<RigidBody>& bodies) {
+  std::vector<double> masses;
+  for (const RigidBody& body : bodies) masses.push_back(1 / body.inverseMass);
+  return masses;
+}
 
 /// Turns by a small rotation vector: q + 1/2 (0, r) q, made of unit length, turns by 2 atan(|r| / 2).
 Quat turned(const Quat& worldFromBody, const Vec3& rotation) {
@@ -36,7 +44,12 @@ Vec3 angularOf(const BodyMotion& motion) {
 }  // namespace
 
 PileStep::PileStep(const std::vector<RigidBody>& bodies, ContactGeometry& geometry, const Vec3& gravity, int threads)
-    : bodies_(bodies), geometry_(geometry), gravity_(gravity), threads_(threads), contacts_(geometry_) {
+    : bodies_(bodies),
+      geometry_(geometry),
+      gravity_(gravity),
+      threads_(threads),
+      contacts_(geometry_),
+      sleep_(massesOf(bodies)) {
   const std::size_t count = bodies.size();
   geometry_.pairs.clear();
   for (const RigidBody& body : bodies) {
@@ -45,34 +58,37 @@ PileStep::PileStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
     rootMoments_.push_back(principal.moments.cwiseSqrt());
   }
   poses_.resize(count);
+  bounds_.assign(count, Bounds(Vec3(Vec3::Zero()), Vec3(Vec3::Zero())));
   isBall_.assign(count, 0);
   for (const Collider& collider : geometry_.colliders)
     if (collider.body != kFixed) {
-      poses_[static_cast<std::size_t>(collider.body)].radius = collider.boundingRadius;
+      MovingPose& pose = poses_[static_cast<std::size_t>(collider.body)];
+      pose.radius = collider.boundingRadius;
+      bounds_[static_cast<std::size_t>(collider.body)] = collider.bounds;
+      pose.spinRadius = collider.isBall() && collider.points[0].isZero() ? 0 : pose.radius;
       isBall_[static_cast<std::size_t>(collider.body)] = collider.isBall();
     }
   worldFromPrincipal_.assign(count, Mat3::Identity());
   solverBodies_.resize(count);
   motions_.resize(count);
   reaches_.assign(count, 0);
-  markedPositions_.assign(count, Vec3::Constant(std::numeric_limits<double>::infinity()));
-  markedOrientations_.assign(count, Quat::Identity());
-  calmTimes_.assign(count, 0);
-  sleepIslands_.assign(count, -1);
-  awake_ = count;
+  speeds_.assign(count, 0);
 }
 
 void PileStep::advance(double timeStep, VectorX& state) {
   impacts_.clear(), fallenAsleep_.clear(), woken_.clear();
   if (allAsleep()) return;
-  slowestRebound_ = timeStep * gravity_.norm();
+  slowestRebound_ = timeStep * gravity_.norm(), slow_ = kStillPart * slowestRebound_;
 
   // How fast do bodies approach each other, and how often must they be looked at for that?
   placeBodies(timeStep, state);
-  if (broadPhase_.update(state, reaches_, kContactMargin, geometry_)) contacts_.takePairs();
-  const double approach = timeStep * contacts_.fastestApproach(poses_, timeStep, threads_);
+  const double mostMargin = kContactMargin + kDeflected * kMostApproach;
+  if (broadPhase_.update(state, reaches_, mostMargin, geometry_)) contacts_.takePairs();
+  const double approach = timeStep * contacts_.fastestApproach({poses_, state, timeStep, mostMargin}, threads_);
   const int pieces = std::clamp(static_cast<int>(std::ceil(approach / kMostApproach)), 1, kMostPieces);
-  const int subSteps = (kSubSteps + pieces - 1) / pieces;
+  const int fewest = static_cast<int>(std::ceil(std::min(approach / pieces, kMostApproach) / kMostSubStepApproach));
+  const int subSteps = std::max((kSubSteps + pieces - 1) / pieces, fewest);
+  margin_ = kContactMargin + kDeflected * std::min(approach / pieces, kMostApproach);
 
   for (int piece = 0; piece < pieces; ++piece) {
     if (pieces > 1) placeBodies(timeStep / pieces, state);
@@ -83,8 +99,9 @@ void PileStep::advance(double timeStep, VectorX& state) {
 
 /// A step with one look for contacts.
 void PileStep::takePiece(double timeStep, int subSteps, VectorX& state) {
-  if (broadPhase_.update(state, reaches_, kContactMargin, geometry_)) contacts_.takePairs();
-  contacts_.update(poses_, state, timeStep, threads_);
+  if (broadPhase_.update(state, reaches_, margin_, geometry_)) contacts_.takePairs();
+  contacts_.update({poses_, state, timeStep, margin_}, threads_);
+  wakeTouched(timeStep, state);
   ++looks_;
   const ContactColors& colors = coloring_.color(contacts_.manifolds(), contacts_.active(), bodies_.size());
   const double subStep = timeStep / subSteps;
@@ -92,7 +109,6 @@ void PileStep::takePiece(double timeStep, int subSteps, VectorX& state) {
   solver_.solve({subStep, subSteps, slowestRebound_}, gravity_, motions_, threads_);
   solver_.store(contacts_.manifolds(), threads_);
   recordImpacts(subSteps);
-  wakeTouched();
   threads_.run([&](int thread) {
     const auto [first, last] = threads_.partOf(bodies_.size(), thread);
     for (std::size_t i = first; i < last; ++i) moveBody(i, timeStep, subStep, state);
@@ -122,13 +138,8 @@ void PileStep::placeBody(std::size_t index, const VectorX& state) {
   pose.rotation = turn.toRotationMatrix();
   pose.linearVelocity = linearVelocity(state, body);
   pose.angularVelocity = angularVelocity(state, body);
-  // |q - p|^2 = 2 (1 - q.p) is a quarter of the squared angle between two orientations, if that is small.
-  const double cosine = std::abs(turn.dot(markedOrientations_[index]));
-  if (!((pose.position - markedPositions_[index]).squaredNorm() <= kKeptMotion * kKeptMotion &&
-        8 * (1 - cosine) <= kKeptTurn * kKeptTurn)) {
-    markedPositions_[index] = pose.position, markedOrientations_[index] = turn;
-    ++pose.version;
-  }
+  pose.boxCenter = pose.position + pose.rotation * bounds_[index].center();
+  pose.boxHalf = pose.rotation.cwiseAbs() * (bounds_[index].sizes() / 2);
   Mat3& axes = worldFromPrincipal_[index];
   if (!bodies_[index].isSpherical) axes = pose.rotation * principalAxes_[index];
   const Vec3& roots = rootMoments_[index];
@@ -149,7 +160,9 @@ void PileStep::moveBody(std::size_t index, double timeStep, double subStep, Vect
   // Falling by sub-steps goes too far by g h/2 a unit of time: what touches nothing falls exactly.
   if (!coloring_.isTouched(index)) centerOfMass(state, body) -= timeStep * subStep / 2 * gravity_;
   linearVelocity(state, body) = linearOf(velocity);
-  const Quat turn = turned(orientation(state, body), unscaled(angularOf(displacement)));
+  const Vec3 rotation = unscaled(angularOf(displacement));
+  const Quat turn = turned(orientation(state, body), rotation);
+  poses_[index].turned += rotation.norm();
   setOrientation(state, body, turn);
   Vec3 spin = unscaled(angularOf(velocity));
   if (!bodies_[index].isSpherical && !spin.isZero()) {
@@ -175,50 +188,38 @@ void PileStep::recordImpacts(int subSteps) {
   }
 }
 
-/// Wakes sleepers that were pushed, with all that fell asleep with them.
-void PileStep::wakeTouched() {
-  if (awake_ == bodies_.size()) return;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const BodyMotion& velocity = motions_.velocities[i];
-    if (!poses_[i].isAsleep || (linearOf(velocity).isZero(0) && angularOf(velocity).isZero(0))) continue;
-    const int island = sleepIslands_[i];
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-      if (sleepIslands_[k] != island) continue;
-      poses_[k].isAsleep = false, motions_.falls[k] = 1, sleepIslands_[k] = -1, calmTimes_[k] = 0;
-      ++awake_;
-      woken_.push_back(static_cast<int>(k));
-    }
+/// Wakes what is disturbed, and finds what it touches.
+void PileStep::wakeTouched(double timeStep, const VectorX& state) {
+  const std::size_t before = woken_.size();
+  sleep_.wakeTouched(contacts_, poses_, slow_, woken_);
+  if (woken_.size() == before) return;
+  for (std::size_t i = before; i < woken_.size(); ++i) {
+    const std::size_t body = static_cast<std::size_t>(woken_[i]);
+    poses_[body].isAsleep = false, motions_.falls[body] = 1;
+    placeBody(body, state);
   }
+  contacts_.update({poses_, state, timeStep, margin_}, threads_);
 }
 
-/// Puts to sleep what has been slow for a while together with all that it touches. Slow: as fast as gravity makes a
-/// body in a sub-step, which the contacts of a pile at rest cannot be told from. The spin of a ball that stays in
-/// place does not count: nothing in the laws of contact would ever stop it.
+/// Slow: as fast as gravity makes a body in a part of a step, which the contacts of a pile at rest cannot be told from.
+/// The spin of a ball that stays in place does not count: nothing in the laws of contact would ever stop it.
 void PileStep::letSleep(double timeStep, VectorX& state) {
-  const double slow = gravity_.norm() * timeStep / kSubSteps;
-  bool someAreCalm = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (poses_[i].isAsleep) continue;
     const Eigen::Index body = static_cast<Eigen::Index>(i);
     const double spin = isBall_[i] ? 0 : poses_[i].radius * angularVelocity(state, body).norm();
-    const bool isSlow = std::max(linearVelocity(state, body).norm(), spin) < slow;
-    calmTimes_[i] = isSlow && coloring_.isTouched(i) ? calmTimes_[i] + timeStep : 0;
-    someAreCalm = someAreCalm || calmTimes_[i] >= kCalmTime;
+    speeds_[i] = coloring_.isTouched(i) ? std::max(linearVelocity(state, body).norm(), spin)
+                                        : std::numeric_limits<double>::infinity();
   }
-  if (!someAreCalm) return;
-  const std::vector<int>& islands = contacts_.islands(poses_);
-  std::vector<char> isRestless(bodies_.size(), 0);
-  for (std::size_t i = 0; i < bodies_.size(); ++i)
-    if (!poses_[i].isAsleep && calmTimes_[i] < kCalmTime) isRestless[static_cast<std::size_t>(islands[i])] = 1;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (poses_[i].isAsleep || isRestless[static_cast<std::size_t>(islands[i])]) continue;
-    const Eigen::Index body = static_cast<Eigen::Index>(i);
-    linearVelocity(state, body).setZero();
-    angularVelocity(state, body).setZero();
-    poses_[i].linearVelocity.setZero(), poses_[i].angularVelocity.setZero();
-    poses_[i].isAsleep = true, motions_.falls[i] = 0, motions_.starts[i] = {}, sleepIslands_[i] = islands[i];
-    --awake_;
-    fallenAsleep_.push_back(static_cast<int>(i));
+  const std::size_t before = fallenAsleep_.size();
+  sleep_.letSleep(contacts_, speeds_, slow_, timeStep, fallenAsleep_);
+  for (std::size_t i = before; i < fallenAsleep_.size(); ++i) {
+    const std::size_t sleeper = static_cast<std::size_t>(fallenAsleep_[i]);
+    linearVelocity(state, fallenAsleep_[i]).setZero();
+    angularVelocity(state, fallenAsleep_[i]).setZero();
+    poses_[sleeper].linearVelocity.setZero(), poses_[sleeper].angularVelocity.setZero();
+    poses_[sleeper].isAsleep = true, motions_.falls[sleeper] = 0, motions_.starts[sleeper] = {};
+    solverBodies_[sleeper] = {centerOfMass(state, fallenAsleep_[i]), 0, Mat3(Mat3::Zero())};
   }
 }
 

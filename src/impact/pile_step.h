@@ -5,6 +5,7 @@
 #include "collision/broad_phase.h"
 #include "core/worker_threads.h"
 #include "impact/pile_contacts.h"
+#include "impact/pile_sleep.h"
 #include "impact/soft_contact_solver.h"
 
 namespace cradle {
@@ -21,8 +22,8 @@ class PileStep {
   /// piles to stay still. Orientations stay of unit length; dissipated energy and work are left as they are.
   void advance(double timeStep, VectorX& state);
 
-  bool allAsleep() const { return awake_ == 0; }
-  bool isAsleep(std::size_t body) const { return poses_[body].isAsleep; }
+  bool allAsleep() const { return sleep_.awake() == 0; }
+  bool isAsleep(std::size_t body) const { return sleep_.isAsleep(body); }
   /// The contacts of the last look.
   const PileContacts& contacts() const { return contacts_; }
   /// Looks for contacts so far.
@@ -45,7 +46,7 @@ class PileStep {
   void takePiece(double timeStep, int subSteps, VectorX& state);
   void moveBody(std::size_t index, double timeStep, double subStep, VectorX& state);
   void recordImpacts(int subSteps);
-  void wakeTouched();
+  void wakeTouched(double timeStep, const VectorX& state);
   void letSleep(double timeStep, VectorX& state);
 
   const std::vector<RigidBody>& bodies_;
@@ -59,17 +60,17 @@ class PileStep {
   std::vector<Mat3> principalAxes_;  // columns, body's frame
   std::vector<Vec3> rootMoments_;    // sqrt(kg) m
   std::vector<MovingPose> poses_;
+  std::vector<Bounds> bounds_;  // m, of the colliders, body's frame
   std::vector<char> isBall_;
   std::vector<Mat3> worldFromPrincipal_;
   std::vector<SolverBody> solverBodies_;
   SolverMotions motions_;
   std::vector<double> reaches_;  // m: farthest that any point of a body goes in the step
-  std::vector<Vec3> markedPositions_;
-  std::vector<Quat> markedOrientations_;
-  std::vector<double> calmTimes_;  // s, for which each body has been slow
-  std::vector<int> sleepIslands_;  // bodies that fell asleep together have the same number
-  std::size_t awake_ = 0;
-  double slowestRebound_ = 0;  // m/s
+  PileSleep sleep_;
+  std::vector<double> speeds_;  // m/s, of each body's fastest point; infinite if it touches nothing
+  double slowestRebound_ = 0;   // m/s
+  double margin_ = 0;           // m: nearer bodies are in contact
+  double slow_ = 0;             // m/s: slower is as good as still
   long looks_ = 0;
   std::vector<Impact> impacts_;
   std::vector<int> fallenAsleep_, woken_;

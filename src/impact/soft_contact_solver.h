@@ -34,15 +34,16 @@ class SoftContactSolver {
     std::vector<Block> blocks;  // at least `size`
     std::size_t size = 0;
     std::vector<std::size_t> starts;  // of each colour, and the end
+    int lane = kLanes;                // next free one of the last block
+
+    void add(std::int32_t manifold, std::int32_t stillBody);
   };
   using BlockLists =
       std::tuple<BlockList<ContactBlock<1, true>>, BlockList<ContactBlock<2, true>>, BlockList<ContactBlock<3, true>>,
                  BlockList<ContactBlock<4, true>>, BlockList<ContactBlock<1, false>>, BlockList<ContactBlock<2, false>>,
                  BlockList<ContactBlock<3, false>>, BlockList<ContactBlock<4, false>>>;
 
-  template <class Block>
-  void arrange(const ContactColors& colors, const std::vector<ContactManifold>& manifolds, std::int32_t stillBody,
-               BlockList<Block>& list);
+  void arrange(const ContactColors& colors, const std::vector<ContactManifold>& manifolds, std::int32_t stillBody);
   template <class Pass>
   void sweep(WorkerThreads& threads, int thread, const Pass& pass);
 

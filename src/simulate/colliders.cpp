@@ -106,8 +106,7 @@ bool mayTouch(const Body& a, const Body& b) {
 bool canSolveContact(const Collider& a, const Collider* b) {
   if (a.points.empty()) return false;
   if (!b) return true;
-  const bool hasCylinder = a.kind() == ColliderKind::cylinder || b->kind() == ColliderKind::cylinder;
-  return !b->points.empty() && hasSurface(a) && hasSurface(*b) && !(hasCylinder && hasMesh(a, *b));
+  return !b->points.empty() && hasSurface(a) && hasSurface(*b);
 }
 
 /// Where something fixed may be touched, for canSolveContact.
@@ -134,10 +133,10 @@ std::vector<std::string> unsupportedContacts(const Scene& scene) {
       if (bothMove || !mayTouch(a, b)) continue;
       const auto &first = isPlane(a) ? colliders[j] : colliders[i], &second = isPlane(a) ? colliders[i] : colliders[j];
       if (!canSolveContact(*first, second ? &*second : nullptr))
-        faults.push_back(fmt::format(
-            "{}: contact between \"{}\" and \"{}\" cannot be simulated yet; all shapes but cylinders can, and "
-            "meshes that are solids; give one of them \"collision\": \"none\"",
-            b.where, a.name, b.name));
+        faults.push_back(
+            fmt::format("{}: contact between \"{}\" and \"{}\" cannot be simulated: a mesh that is no solid can touch "
+                        "nothing but planes; give one of them \"collision\": \"none\"",
+                        b.where, a.name, b.name));
     }
   return faults;
 }

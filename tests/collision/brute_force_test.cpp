@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
+#include "collision/random_poses.h"
 #include "collision/separation.h"
-#include "math/rotation.h"
+#include "collision/widest_gap.h"
 
 // Every kind of pair against a computation that knows nothing of features. The signed distance of two convex solids is
 // the largest gap that any direction n sees, -h_A(n) - h_B(-n), where h is the support function (the farthest that a
@@ -13,18 +13,6 @@
 
 namespace cradle {
 namespace {
-
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double number(double from, double to) { return std::uniform_real_distribution<double>(from, to)(engine_); }
-  Vec3 vector(double reach) { return {number(-reach, reach), number(-reach, reach), number(-reach, reach)}; }
-  Vec3 direction() { return Vec3(vector(1) + Vec3(0, 1e-3, 0)).normalized(); }
-  Quat turn() { return rotationAbout(direction(), number(0, 6)); }
-
- private:
-  std::mt19937 engine_;
-};
 
 /// A solid by its pose and what reaches farthest: points with a ball around each.
 struct Solid {
@@ -60,7 +48,7 @@ Solid boxOf(const Vec3& size) {
 Solid capsuleOf(double radius, double length) {
   return {{Vec3(0, length / 2, 0), Vec3(0, -length / 2, 0)}, radius, false, {}, {}};
 }
-Solid someMesh(Random& random) {
+Solid someMesh(RandomPoses& random) {
   Solid mesh;
   for (int i = 0; i < 20; ++i) mesh.corners.push_back(random.vector(0.7));
   return mesh;
@@ -107,41 +95,9 @@ double gapAlong(const Pair& pair, const Vec3& direction) {
   return -pair.a.reach(direction) - pair.b.reach(-direction);
 }
 
-/// Climbs from a direction by ever smaller steps to all sides.
-Vec3 climb(const Pair& pair, Vec3 direction) {
-  double gap = gapAlong(pair, direction);
-  for (double step = 0.1; step > 1e-6;) {
-    const Vec3 side = direction.unitOrthogonal(), other = direction.cross(side);
-    bool better = false;
-    for (int k = 0; k < 16 && !better; ++k) {
-      const double angle = k * M_PI / 8;
-      const Vec3 tried = (direction + step * (std::cos(angle) * side + std::sin(angle) * other)).normalized();
-      const double found = gapAlong(pair, tried);
-      if (found > gap) gap = found, direction = tried, better = true;
-    }
-    if (!better) step /= 2;
-  }
-  return direction;
-}
-
-/// The direction of the largest gap: the best of a spiral of 2000 over the sphere (3 degrees apart), the 12 best of
-/// them improved.
+/// Of 2000 directions, 3 degrees apart, the 12 best improved.
 Vec3 widestGap(const Pair& pair) {
-  std::vector<std::pair<double, Vec3>> tried;
-  const int count = 2000;
-  for (int i = 0; i < count; ++i) {
-    const double y = 1 - (2 * i + 1.0) / count, ring = std::sqrt(1 - y * y), angle = i * M_PI * (3 - std::sqrt(5));
-    const Vec3 direction(ring * std::cos(angle), y, ring * std::sin(angle));
-    tried.emplace_back(gapAlong(pair, direction), direction);
-  }
-  std::partial_sort(tried.begin(), tried.begin() + 12, tried.end(),
-                    [](const auto& left, const auto& right) { return left.first > right.first; });
-  Vec3 best = tried[0].second;
-  for (int i = 0; i < 12; ++i) {
-    const Vec3 improved = climb(pair, tried[static_cast<std::size_t>(i)].second);
-    if (gapAlong(pair, improved) > gapAlong(pair, best)) best = improved;
-  }
-  return best;
+  return cradle::widestGap([&](const Vec3& direction) { return gapAlong(pair, direction); }, {2000, 12, 1e-5});
 }
 
 std::vector<Contact> contactsOf(const Pair& pair, double margin) {
@@ -179,7 +135,7 @@ void expectRightContact(const Pair& pair, const Contact& contact, double toleran
 }
 
 TEST(BruteForce, SphereOnSphere) {
-  Random random(1);
+  RandomPoses random(1);
   for (int i = 0; i < 20; ++i) {
     Solid a = sphereOf(random.number(0.1, 1)), b = sphereOf(random.number(0.1, 1));
     a.worldFromBody = {random.turn(), random.vector(1)}, b.worldFromBody = {random.turn(), random.vector(1)};
@@ -193,7 +149,7 @@ TEST(BruteForce, SphereOnSphere) {
 }
 
 /// A point of the box's frame beside a face, an edge or a corner (`beyond` 1, 2 or 3 of its extents).
-Vec3 besideBox(const Vec3& size, int beyond, Random& random) {
+Vec3 besideBox(const Vec3& size, int beyond, RandomPoses& random) {
   Vec3 point;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const double side = random.number(0, 1) < 0.5 ? -1 : 1;
@@ -204,7 +160,7 @@ Vec3 besideBox(const Vec3& size, int beyond, Random& random) {
 }
 
 TEST(BruteForce, SphereOnBoxBesideFaceEdgeAndCornerAndInside) {
-  Random random(2);
+  RandomPoses random(2);
   for (int beyond = 0; beyond <= 3; ++beyond)
     for (int i = 0; i < 10; ++i) {
       Solid ball = sphereOf(random.number(0.05, 0.5)), box = boxOf(Vec3(0.6, 1, 1.7));
@@ -243,7 +199,7 @@ void expectBoxesRight(const Pair& pair) {
 }
 
 TEST(BruteForce, BoxesThatOverlapAnyhow) {
-  Random random(3);
+  RandomPoses random(3);
   int overlapping = 0;
   for (int i = 0; i < 60; ++i) {
     Solid a = boxOf(Vec3(1, 0.6, 1.4)), b = boxOf(Vec3(0.5, 1.1, 0.8));
@@ -270,7 +226,7 @@ Pair touching(Solid a, Solid b, double depth) {
 // Randomly turned boxes touch with a vertex on a face or with two edges: the deepest contact is one point, on the
 // surface of both. Of a vertex pressed in by 1 mm it is the vertex; of two edges, their nearest points.
 TEST(BruteForce, BoxesThatTouchByAVertexOnAFaceOrByTwoEdges) {
-  Random random(4);
+  RandomPoses random(4);
   int vertexOnFace = 0, edges = 0;
   for (int i = 0; i < 40; ++i) {
     Solid a = boxOf(Vec3(1, 0.6, 1.4)), b = boxOf(Vec3(0.5, 1.1, 0.8));
@@ -295,12 +251,12 @@ TEST(BruteForce, BoxesThatTouchByAVertexOnAFaceOrByTwoEdges) {
 // of both faces is inside their hull; the support function of contacts and of the overlap agree. The overlap's is found
 // by sampling the smaller face on a grid.
 TEST(BruteForce, BoxesWithParallelFacesShareTheWholePolygon) {
-  Random random(5);
+  RandomPoses random(5);
   for (int i = 0; i < 20; ++i) {
     Solid a = boxOf(Vec3(1, 0.6, 1.4)), b = boxOf(Vec3(0.5, 1.1, 0.8));
     const RigidTransform frame{random.turn(), random.vector(1)};
     a.worldFromBody = frame;
-    const Vec3 across(random.number(-0.5, 0.5), 0, random.number(-0.7, 0.7));
+    const Vec3 across{random.number(-0.5, 0.5), 0, random.number(-0.7, 0.7)};
     b.worldFromBody =
         frame * RigidTransform{rotationAbout(Vec3::UnitY(), random.number(0, 6)), across + Vec3(0, 0.85 - 1e-4, 0)};
     const Pair pair = pairOf(a, b);
@@ -326,7 +282,7 @@ TEST(BruteForce, BoxesWithParallelFacesShareTheWholePolygon) {
 }
 
 TEST(BruteForce, EveryShapeOnAPlane) {
-  Random random(6);
+  RandomPoses random(6);
   for (int i = 0; i < 40; ++i) {
     const PlaneCollider plane{random.vector(1), random.direction()};
     for (Solid solid : {sphereOf(0.4), boxOf(Vec3(0.6, 1, 1.7)), capsuleOf(0.3, 1.2), someMesh(random)}) {

@@ -46,6 +46,38 @@ TEST(BoxesInContact, TouchInOnePointWhereEdgesCross) {
   EXPECT_LT((patch.points[0].onB - Vec3(0.03, high - 0.002, 0)).norm(), 1e-12);
 }
 
+// Nearly level on each other, turned about the vertical: edges of the facing sides cross, and seen along their common
+// perpendicular the cubes overlap by up to 1 mm less. One point there would let the upper one tip.
+TEST(BoxesInContact, LieOnSidesNotOnCrossingEdgesWhenNearlyLevel) {
+  const PosedBox below{Vec3::Zero(), kStraight, Vec3::Constant(0.1)};
+  for (const double height : {0.197, 0.21})
+    for (int yaw = 0; yaw < 16; ++yaw)
+      for (int about = 0; about < 8; ++about) {
+        const Vec3 axis(std::cos(0.8 * about), 0, std::sin(0.8 * about));
+        const Mat3 turn = turnedAbout(axis, 0.02) * turnedAbout(Vec3::UnitY(), 0.1 * yaw);
+        const PosedBox above{Vec3(0.06, height, 0.05), turn, Vec3::Constant(0.1)};
+        const ContactPatch patch = contactOfBoxes(below, above, Vec3(0, 0.197 - height, 0), 0.005);
+        EXPECT_EQ(patch.count, 4u) << height << " " << yaw << " " << about;
+      }
+}
+
+// A patch without points tells how far apart the surfaces are at least: 50 mm and less.
+TEST(Clearance, IsALowerBoundOfTheGap) {
+  const PosedBox box{Vec3::Zero(), kStraight, Vec3::Constant(0.1)};
+  const PosedBox other{Vec3(0.05, 0.25, 0), turnedAbout(Vec3::UnitY(), 0.4), Vec3::Constant(0.1)};
+  const PosedBall ball{Vec3(0, 0.2, 0), 0.05}, far{Vec3(0, 0.35, 0), 0.05};
+  const PlaneCollider plane{Vec3(0, -0.15, 0), Vec3::UnitY(), 0};
+  const Vec3 still = Vec3::Zero();
+  for (const ContactPatch& patch :
+       {contactOfBoxes(box, other, still, 0.005), contactOfBalls(ball, far, still, 0.005),
+        contactOfBallAndBox(ball, box, still, 0.005), contactOfBoxAndPlane(box, plane, still, 0.005)}) {
+    EXPECT_EQ(patch.count, 0u);
+    EXPECT_LT(patch.clearance, 0.05 + kExact);
+    EXPECT_GT(patch.clearance, 0.04);
+  }
+  EXPECT_NEAR(contactOfBallAndPlane({Vec3::Zero(), 0.05}, plane, still, 0.005).clearance, 0.1, kExact);
+}
+
 // Diagonally above, and falling 0.1 m in the step: beside the other cube it falls past; when it comes nearer sideways
 // at the same time it will land on it, though the gap sideways is the larger one now.
 TEST(BoxesInContact, AreThoseOfTheInstantAtWhichTheyWillMeet) {

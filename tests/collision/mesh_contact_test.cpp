@@ -206,6 +206,18 @@ TEST(RoundOnMesh, CapsuleThatLiesTouchesAtBothEnds) {
   EXPECT_TRUE(holdsPoint(over, Vec3(1, 0.25, 0.1), kRounding));
 }
 
+// Both ends outside, 1 cm beneath an edge in between: that is what it takes to bring it out.
+TEST(RoundOnMesh, CoreThatPassesBeneathAnEdgeIsAsDeepAsThat) {
+  const MeshSurface cube = surfaceOf(boxMesh(Vec3::Ones()));
+  const Vec3 out = Vec3(1, 1, 0).normalized(), along(1, -1, 0.3);
+  const RoundSolid capsule{{Vec3(0.5, 0.5, 0.1) - 0.01 * out - along / 2, along}, 0.002};
+  EXPECT_NEAR(separationOf(capsule, cube, INFINITY), -0.012, kRounding);
+  const auto contacts = contactsOf(capsule, cube, 0);
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_NEAR(contacts[0].separation, -0.012, kRounding);
+  EXPECT_LT((contacts[0].normal + out).norm(), 10 * kRounding);
+}
+
 // The distance of a segment by that of many points on it.
 TEST(RoundOnMesh, SeparationIsTheDistanceOfTheCoreLessTheRadius) {
   RandomPoses random(2);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "collision/closest_points.h"
 #include "collision/separation.h"
 #include "math/rotation.h"
 
@@ -52,7 +53,11 @@ class Random {
  public:
   double number(double from, double to) { return std::uniform_real_distribution<double>(from, to)(engine_); }
   Vec3 vector(double reach) { return {number(-reach, reach), number(-reach, reach), number(-reach, reach)}; }
-  RigidTransform pose(double reach) { return {rotationAbout(vector(1), number(0, 6)), vector(reach)}; }
+  RigidTransform pose(double reach) {
+    const Vec3 axis = vector(1);
+    const Quat turn = rotationAbout(axis, number(0, 6));
+    return {turn, vector(reach)};
+  }
 
  private:
   std::mt19937 engine_{5};
@@ -93,41 +98,70 @@ TEST(Polytope, OfABoxIsClosedAndWoundOutwards) {
   EXPECT_NEAR(volume, 6, 1e-14);
 }
 
-/// Distance of two boxes by alternating projections (von Neumann), which shares nothing with separating axes: each
-/// point goes to the nearest point of the other solid until they stop. Slow, and right for convex bodies.
-double distanceByProjection(const Vec3& sizeA, const Vec3& sizeB, const RigidTransform& aPose,
-                            const RigidTransform& bPose) {
-  Vec3 onA = aPose.translation, onB = bPose.translation;
-  const auto project = [](const Vec3& point, const Vec3& size, const RigidTransform& pose) {
-    const Vec3 local = pose.inverse() * point;
-    return Vec3(pose * Vec3(local.cwiseMin(size / 2).cwiseMax(-size / 2)));
-  };
-  for (int i = 0; i < 20000; ++i) {
-    onB = project(onA, sizeB, bPose);
-    onA = project(onB, sizeA, aPose);
-  }
-  return (onA - onB).norm();
+/// The point of a solid box that is nearest to one, in the box's frame.
+Vec3 nearestInBox(const Vec3& size, const Vec3& point) {
+  return point.cwiseMin(size / 2).cwiseMax(-size / 2);
 }
 
-// The sign is that of the distance, and the separation at most the distance; where a face is nearest they are equal.
-TEST(SeparationOfPolytopes, HasTheSignOfTheDistance) {
+/// Whether a segment meets a box: the parts of it between the three pairs of planes have one in common.
+bool meets(const Vec3& size, const Vec3& from, const Vec3& to) {
+  double enter = 0, leave = 1;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const double along = to[axis] - from[axis];
+    const double one = (-size[axis] / 2 - from[axis]) / along, other = (size[axis] / 2 - from[axis]) / along;
+    enter = std::max(enter, std::min(one, other)), leave = std::min(leave, std::max(one, other));
+  }
+  return enter <= leave;
+}
+
+double segmentDistance(const Segment& a, const Segment& b) {
+  const SegmentParts parts = nearestParts(a, b);
+  return (a.at(parts.a) - b.at(parts.b)).norm();
+}
+
+/// Distance of two boxes, 0 if they overlap, by all their corners and edges: shares nothing with separating axes.
+double distanceOfBoxes(const Vec3& sizeA, const Vec3& sizeB, const RigidTransform& aFromB) {
+  const Polytope a = boxOf(sizeA), b = boxOf(sizeB);
+  const RigidTransform bFromA = aFromB.inverse();
+  double least = INFINITY;
+  for (const Vec3& corner : b.vertices)
+    least = std::min(least, (aFromB * corner - nearestInBox(sizeA, aFromB * corner)).norm());
+  for (const Vec3& corner : a.vertices)
+    least = std::min(least, (bFromA * corner - nearestInBox(sizeB, bFromA * corner)).norm());
+  const auto edgeOf = [](const Polytope& box, const Polytope::Edge& edge, const RigidTransform& pose) {
+    const Vec3 from = pose * box.vertices[edge.from];
+    return Segment{from, pose * box.vertices[edge.to] - from};
+  };
+  for (const Polytope::Edge& ofA : a.edges) {
+    const Segment seen = edgeOf(a, ofA, bFromA), edge = edgeOf(a, ofA, {});
+    if (meets(sizeB, seen.from, seen.at(1))) return 0;
+    for (const Polytope::Edge& ofB : b.edges) least = std::min(least, segmentDistance(edge, edgeOf(b, ofB, aFromB)));
+  }
+  for (const Polytope::Edge& ofB : b.edges) {
+    const Segment edge = edgeOf(b, ofB, aFromB);
+    if (meets(sizeA, edge.from, edge.at(1))) return 0;
+  }
+  return least;
+}
+
+TEST(SeparationOfPolytopes, IsTheDistanceApartAndNegativeExactlyIfTheyOverlap) {
   Random random;
   const Vec3 sizeA(1, 0.6, 1.4), sizeB(0.5, 1.1, 0.8);
   const Collider a = colliderOfSize(sizeA), b = colliderOfSize(sizeB);
-  int apart = 0, overlapping = 0, equal = 0;
+  int apart = 0, overlapping = 0;
   for (int i = 0; i < 300; ++i) {
     const RigidTransform poseA = random.pose(0.6), poseB = random.pose(0.9);
     const double separation = separationOf(a, b, poseA, poseB);
-    const double distance = distanceByProjection(sizeA, sizeB, poseA, poseB);
-    if (std::abs(separation) < 1e-3) continue;  // projections converge slowly near touching
-    EXPECT_EQ(separation > 0, distance > 1e-6) << i << ' ' << separation << ' ' << distance;
-    EXPECT_LE(separation, distance + 1e-9);
+    const double distance = distanceOfBoxes(sizeA, sizeB, poseA.inverse() * poseB);
     separation > 0 ? ++apart : ++overlapping;
-    if (separation > 0 && distance - separation < 1e-6) ++equal;
+    if (distance > 0) {
+      EXPECT_NEAR(separation, distance, 1e-14) << i;  // sums and products of lengths of about 1 m
+    } else {
+      EXPECT_LT(separation, 0) << i;
+    }
   }
   EXPECT_GT(apart, 50);
   EXPECT_GT(overlapping, 50);
-  EXPECT_GT(equal, 20);
 }
 
 // Moving B along the normal by the overlap brings the separation to zero, and no smaller move along any axis does.

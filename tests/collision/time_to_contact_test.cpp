@@ -110,11 +110,13 @@ double firstByBruteForce(const std::function<double(double)>& gap, double until)
 TEST(TimeToContact, AgreesWithBruteForceAroundTurnedBoxes) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const auto vector = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+  const auto vector = [&] { return Vec3{uniform(random), uniform(random), uniform(random)}; };
   int hits = 0;
   for (int trial = 0; trial < 200; ++trial) {
     const Vec3 half = (vector() + Vec3::Ones()) / 2;
-    const RigidTransform boxFromWorld{rotationAbout(vector(), 3 * uniform(random)), vector()};
+    const Vec3 axis = vector();
+    const Quat turn = rotationAbout(axis, 3 * uniform(random));
+    const RigidTransform boxFromWorld{turn, vector()};
     const RoundedBox box{boxFromWorld, trial % 3 ? half : Vec3(0, half.y(), 0), trial % 2 ? 0.2 : 0.0};
     UniformMotion motion{3 * vector(), Vec3::Zero(), trial % 4 ? Vec3(10 * vector()) : Vec3::Zero()};
     motion.velocity = boxFromWorld.inverse().translation - motion.position + vector();

@@ -220,7 +220,7 @@ std::vector<Ball> gas(int perAxis, const Vec3& corner) {
   std::vector<Ball> balls;
   for (int i = 0; i < perAxis * perAxis * perAxis; ++i) {
     const Vec3 place(i % perAxis, i / perAxis % perAxis, i / perAxis / perAxis);
-    const Vec3 velocity(uniform(random), uniform(random), uniform(random));
+    const Vec3 velocity{uniform(random), uniform(random), uniform(random)};
     balls.push_back({corner + 0.3 * place, velocity, 1.5 + 0.5 * uniform(random)});
   }
   return balls;

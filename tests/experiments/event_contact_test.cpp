@@ -259,17 +259,19 @@ std::string heapText(unsigned seed, double mirror, bool reversed) {
   const double restitution = uniform(0, 0.9), friction = uniform(0, 0.8);
   std::vector<std::string> bodies;
   for (int i = 0; i < count; ++i) {
-    const std::string shape = random() % 2 ? fmt::format(R"({{"sphere": {{"radius": {}}}}})", uniform(0.1, 0.2))
-                                           : fmt::format(R"({{"box": {{"size": [{}, {}, {}]}}}})", uniform(0.15, 0.4),
-                                                         uniform(0.15, 0.4), uniform(0.15, 0.4));
-    const Vec3 position(uniform(-0.2, 0.2), 0.4 + 0.6 * i, mirror * uniform(-0.2, 0.2));
-    const Vec3 axis(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
-    const Vec3 velocity(uniform(-1, 1), uniform(-1, 1), mirror * uniform(-1, 1));
+    const bool isSphere = random() % 2 == 1;
+    const Vec3 size{uniform(0.15, 0.4), uniform(0.15, 0.4), uniform(0.15, 0.4)};
+    const std::string shape = isSphere ? fmt::format(R"({{"sphere": {{"radius": {}}}}})", size.x() / 2)
+                                       : fmt::format(R"({{"box": {{"size": {}}}}})", vectorText(size));
+    const Vec3 position{uniform(-0.2, 0.2), 0.4 + 0.6 * i, mirror * uniform(-0.2, 0.2)};
+    const Vec3 axis{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    const Vec3 velocity{uniform(-1, 1), uniform(-1, 1), mirror * uniform(-1, 1)};
+    const double mass = uniform(0.5, 2), angle = uniform(10, 80);
     bodies.push_back(fmt::format(
         R"({{"name": "b{}", "shape": {}, "mass": {}, "material": "m", "position": {}, "linearVelocity": {},
              "orientation": {{"axis": {}, "angleDegrees": {}}}}})",
-        i, shape, uniform(0.5, 2), vectorText(position), vectorText(velocity),
-        vectorText(Vec3(mirror * axis.x(), mirror * axis.y(), axis.z())), uniform(10, 80)));
+        i, shape, mass, vectorText(position), vectorText(velocity),
+        vectorText(Vec3(mirror * axis.x(), mirror * axis.y(), axis.z())), angle));
   }
   if (reversed) std::reverse(bodies.begin(), bodies.end());
   return sceneText(1e-7, 0.8, 20, materialText(restitution, friction),

@@ -78,5 +78,39 @@ TEST(WhatLies, StaysWhereItFell) {
   }
 }
 
+/// A cylinder, over an L that does not move: a mesh, or the two boxes that it is made of.
+BodyState cylinderOnL(bool isMesh, const std::string& motion) {
+  const std::string l =
+      isMesh ? R"({"name": "l", "shape": {"mesh": "l.obj"}, "motion": "static", "material": "m"})"
+             : R"({"name": "foot", "shape": {"box": {"size": [3, 1, 1]}}, "motion": "static", "material": "m",
+                   "position": [1.5, 0.5, 0.5]},
+                  {"name": "back", "shape": {"box": {"size": [1, 2, 1]}}, "motion": "static", "material": "m",
+                   "position": [0.5, 1, 0.5]})";
+  return endOf(simulate(parseScene(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Cylinder", "duration": 0.1,
+    "accuracy": 1e-8, "materials": {{"m": {{"staticFriction": 0.4, "dynamicFriction": 0.4}}}},
+    "bodies": [{{"name": "cylinder", "shape": {{"cylinder": {{"radius": 0.2, "length": 0.6}}}}, "material": "m", {}}},
+               {}]}})",
+                                               motion, l),
+                                   "cylinder.json", lPrism)
+                            .scene));
+}
+
+// It lands on its end, on its side, and rolls over the triangles until the L's back stops it.
+TEST(CylinderOnAMesh, MovesAsOnTheBoxesThatTheMeshIsMadeOf) {
+  const std::string lying = R"("orientation": {"axis": [1, 0, 0], "angleDegrees": 90}, )";
+  const std::vector<std::pair<std::string, Vec3>> motions = {
+      {R"("position": [2, 1.301, 0.5])", Vec3(2, 1.3, 0.5)},
+      {lying + R"("position": [2.2, 1.201, 0.5])", Vec3(2.2, 1.2, 0.5)},
+      {lying + R"("position": [1.22, 1.2, 0.5], "linearVelocity": [-0.8, 0, 0], "angularVelocity": [0, 0, 4])",
+       Vec3(1.2, 1.2, 0.5)}};
+  for (const auto& [motion, end] : motions) {
+    const BodyState onMesh = cylinderOnL(true, motion), onBoxes = cylinderOnL(false, motion);
+    EXPECT_LT((onMesh.position - onBoxes.position).norm(), 1e-7) << motion;  // ten times the accuracy
+    EXPECT_LT(orientationError(onMesh.orientation, onBoxes.orientation), 1e-7) << motion;
+    EXPECT_LT((onMesh.position - end).norm(), 1e-7) << motion;
+    EXPECT_LT(onMesh.linearVelocity.norm() + onMesh.angularVelocity.norm(), 1e-7) << motion;
+  }
+}
+
 }  // namespace
 }  // namespace cradle

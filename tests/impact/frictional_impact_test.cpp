@@ -67,7 +67,7 @@ class Scatter {
     mechanism.bodies.clear(), impacts.clear();
     for (int i = 0; i < bodies; ++i) {
       const double mass = std::pow(10.0, number(-1, 1));
-      const Vec3 size(number(0.3, 1), number(0.3, 1), number(0.3, 1));
+      const Vec3 size{number(0.3, 1), number(0.3, 1), number(0.3, 1)};
       const Vec3 moments = i % 2 == 0 ? Vec3::Constant(0.4 * mass * 0.25)
                                       : Vec3(mass / 12 * (Vec3::Constant(size.squaredNorm()) - size.cwiseAbs2()));
       mechanism.bodies.push_back(makeRigidBody({mass, Vec3::Zero(), Mat3(moments.asDiagonal())}));
@@ -75,7 +75,8 @@ class Scatter {
     state = statesAtRest(bodies);
     for (Eigen::Index i = 0; i < bodies; ++i) {
       centerOfMass(state, i) = vector();
-      setOrientation(state, i, rotationAbout(vector(), number(0, 6)));
+      const Vec3 axis = vector();
+      setOrientation(state, i, rotationAbout(axis, number(0, 6)));
       linearVelocity(state, i) = vector(), angularVelocity(state, i) = 3 * vector();
     }
     for (int i = 0; i < contacts; ++i) {

@@ -282,9 +282,9 @@ class Heap {
   double number() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
   double mass() { return std::pow(10, number()); }
   void addContact(int a, int b) {
-    const Vec3 normal = Vec3(number(), number(), number()).normalized();
+    const Vec3 normal = Vec3{number(), number(), number()}.normalized();
     impacts.push_back(
-        {{impacts.size(), a, b, Vec3(number(), number(), number()), normal, 0}, {1, 0, 0}, 0, Vec3::Zero()});
+        {{impacts.size(), a, b, Vec3{number(), number(), number()}, normal, 0}, {1, 0, 0}, 0, Vec3::Zero()});
   }
   std::mt19937& random_;
 };

@@ -33,7 +33,7 @@ TEST(SparseCones, AreTheSameProblemAsTheDenseOnes) {
   Stack stack({1, 20, 0.3});
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  for (Contact& contact : stack.contacts) contact.normal = Vec3(uniform(random), uniform(random), 1).normalized();
+  for (Contact& contact : stack.contacts) contact.normal = Vec3{uniform(random), uniform(random), 1}.normalized();
   for (double& velocity : stack.state.tail(20)) velocity = uniform(random);
   const ContactCones dense(stack.contacts, stack.bodies, stack.state);
   SparseCones sparse;

@@ -47,7 +47,7 @@ template <class Primitive>
 void compareWithTessellation(const Primitive& primitive, const TriangleMesh& mesh, double facetError) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const auto point = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+  const auto point = [&] { return Vec3{uniform(random), uniform(random), uniform(random)}; };
   int hits = 0;
   for (int i = 0; i < 300; ++i) {
     const Vec3 origin = 4 * point().normalized();

@@ -23,11 +23,13 @@ void damageByte(std::string& text, Random& random) {
 }
 
 void removePart(std::string& text, Random& random) {
-  text.erase(below(text.size(), random), below(20, random));
+  const std::size_t at = below(text.size(), random);
+  text.erase(at, below(20, random));
 }
 
 void repeatPart(std::string& text, Random& random) {
-  const std::string part = text.substr(below(text.size(), random), below(200, random));
+  const std::size_t from = below(text.size(), random);
+  const std::string part = text.substr(from, below(200, random));
   text.insert(below(text.size(), random), part);
 }
 
@@ -35,7 +37,8 @@ void insertToken(std::string& text, Random& random) {
   static const std::vector<std::string> tokens{
       "{",  "}",  "[",  "]",       ",",     ":",        "\"",   "null", "true", "-1", "0",  "1e308", "1e-320",
       "//", "/*", "*/", "\\u0000", "1e999", "\"name\"", "[[[[", "{}",   "[]",   "-",  "\n", "NaN",   "4294967297"};
-  text.insert(below(text.size(), random), tokens[below(tokens.size(), random)]);
+  const std::size_t at = below(text.size(), random);
+  text.insert(at, tokens[below(tokens.size(), random)]);
 }
 
 // Numbers are where a text that is still JSON goes wrong.

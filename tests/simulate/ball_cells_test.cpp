@@ -19,7 +19,7 @@ std::vector<Vec3> randomCenters(int count, double extent) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(0, extent);
   std::vector<Vec3> centers;
-  for (int i = 0; i < count; ++i) centers.emplace_back(uniform(random), uniform(random), uniform(random));
+  for (int i = 0; i < count; ++i) centers.push_back({uniform(random), uniform(random), uniform(random)});
   return centers;
 }
 

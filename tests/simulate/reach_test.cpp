@@ -48,13 +48,15 @@ TEST(Reach, OfBodiesOnSpringsToFixedPointsHolds) {
   double tightest = 0;
   for (int i = 0; i < 60; ++i) {
     std::string springs;
-    for (int count = 1 + i % 2; count > 0; --count)
+    for (int count = 1 + i % 2; count > 0; --count) {
+      const Vec3 anchorA = throws.vector(0.3), anchorB = throws.vector(1.5);
+      const double stiffness = std::exp(throws.number(1, 6)), restLength = throws.number(0, 2);
       springs += fmt::format(R"({{"bodyA": "a", "anchorA": {}, "anchorB": {}, "stiffness": {}, "restLength": {}}}{})",
-                             vectorText(throws.vector(0.3)), vectorText(throws.vector(1.5)),
-                             std::exp(throws.number(1, 6)), throws.number(0, 2), count > 1 ? ", " : "");
-    const Scene scene =
-        sceneWith(fmt::format(R"("duration": 5, "bodies": [{}], "springs": [{}])",
-                              body("a", throws.vector(1), throws.vector(4), throws.vector(4)), springs));
+                             vectorText(anchorA), vectorText(anchorB), stiffness, restLength, count > 1 ? ", " : "");
+    }
+    const Vec3 position = throws.vector(1), velocity = throws.vector(4), spin = throws.vector(4);
+    const Scene scene = sceneWith(
+        fmt::format(R"("duration": 5, "bodies": [{}], "springs": [{}])", body("a", position, velocity, spin), springs));
     ASSERT_LT(reachesOf(scene)[0].radius, 1e3);
     const double part = farthestPart(scene);
     EXPECT_LT(part, 1) << springs;
@@ -67,14 +69,16 @@ TEST(Reach, OfBodiesInAChainOfTiesHolds) {
   Throws throws;
   for (int i = 0; i < 30; ++i) {
     const Vec3 pin = throws.vector(1), middle = throws.vector(0.3);
+    const Vec3 velocityA = throws.vector(3), spinA = throws.vector(3);
+    const Vec3 beside = throws.vector(0.5), velocityC = throws.vector(6), spinC = throws.vector(3);
     const Scene scene = sceneWith(fmt::format(
         R"("duration": 5, "bodies": [{}, {}, {}],
         "ballJoints": [{{"bodyA": "b", "anchorA": {}, "bodyB": "a", "anchorB": {}}}],
         "rods": [{{"bodyA": "a", "anchorA": [0.1, 0.1, 0.1], "anchorB": {}}}],
         "ropes": [{{"bodyA": "c", "anchorA": [0, 0.2, 0], "bodyB": "b", "anchorB": [0.1, 0, 0], "maxLength": 4}}])",
-        body("a", Vec3::Zero(), throws.vector(3), throws.vector(3)), body("b", middle, Vec3::Zero(), Vec3::Zero()),
-        body("c", middle + throws.vector(0.5), throws.vector(6), throws.vector(3)), vectorText(-0.5 * middle),
-        vectorText(0.5 * middle), vectorText(pin)));
+        body("a", Vec3::Zero(), velocityA, spinA), body("b", middle, Vec3::Zero(), Vec3::Zero()),
+        body("c", middle + beside, velocityC, spinC), vectorText(-0.5 * middle), vectorText(0.5 * middle),
+        vectorText(pin)));
     EXPECT_LT(farthestPart(scene), 1);
   }
 }
@@ -83,8 +87,10 @@ TEST(Reach, OfBodiesInAChainOfTiesHolds) {
 TEST(Reach, OfFlyingBodiesHoldsAndIsTight) {
   Throws throws;
   for (int i = 0; i < 60; ++i) {
-    const Scene scene = sceneWith(fmt::format(R"("duration": {}, "bodies": [{}])", throws.number(0.1, 3),
-                                              body("a", throws.vector(1), throws.vector(10), throws.vector(3))));
+    const double duration = throws.number(0.1, 3);
+    const Vec3 position = throws.vector(1), velocity = throws.vector(10), spin = throws.vector(3);
+    const Scene scene =
+        sceneWith(fmt::format(R"("duration": {}, "bodies": [{}])", duration, body("a", position, velocity, spin)));
     const double part = farthestPart(scene);
     EXPECT_LT(part, 1);
     EXPECT_GT(part, 0.3);

@@ -81,9 +81,9 @@ TEST(TrajectoryFile, KeepsTheBitsOfExtremeNumbers) {
   Frame frame = sampleFrame(0);
   std::size_t next = 0;
   const auto extreme = [&] { return extremes[next++ % std::size(extremes)]; };
-  const auto vector = [&] { return Vec3(extreme(), extreme(), extreme()); };
+  const auto vector = [&] { return Vec3{extreme(), extreme(), extreme()}; };
   for (BodyState& state : frame.states)
-    state = {vector(), Quat(extreme(), extreme(), extreme(), extreme()), vector(), vector()};
+    state = {vector(), Quat{extreme(), extreme(), extreme(), extreme()}, vector(), vector()};
   frame.time = -0.0;
   frame.energy = {extreme(), extreme(), extreme(), extreme(), vector(), vector()};
   {

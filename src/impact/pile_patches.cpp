@@ -1,0 +1,115 @@
+#include "impact/pile_patches.h"
+
+#include <algorithm>
+
+namespace cradle {
+namespace {
+
+constexpr double kRounding = 1e-9;   // of a unit axis or a side
+constexpr double kSameNormal = 0.9;  // cosine, at least, for contacts to be one patch
+
+}  // namespace
+
+PilePatches::PilePatches(const ContactGeometry& geometry) : geometry_(geometry) {
+  for (const Collider& collider : geometry.colliders) {
+    boxes_.push_back(boxOf(collider));
+    isFast_.push_back(boxes_.back().has_value() || collider.isBall());
+  }
+}
+
+/// A polytope that is a box with corners numbered as polytopeOf does.
+std::optional<PilePatches::BoxShape> PilePatches::boxOf(const Collider& collider) {
+  if (collider.kind() != ColliderKind::polytope || !collider.polytope || collider.polytope->vertices.size() != 8 ||
+      collider.polytope->faces.size() != 6)
+    return {};
+  const std::vector<Vec3>& corners = collider.polytope->vertices;
+  BoxShape box;
+  Vec3 opposite = corners[0];
+  for (const int k : {0, 1, 2}) {
+    const Vec3 side = corners[std::size_t{1} << k] - corners[0];
+    box.halfSize[k] = side.norm() / 2;
+    box.axes.col(k) = side.normalized();
+    opposite += side;
+  }
+  box.center = (corners[0] + opposite) / 2;
+  const double size = box.halfSize.norm();
+  if (!((box.axes.transpose() * box.axes - Mat3::Identity()).norm() < kRounding)) return {};
+  if ((opposite - corners[7]).norm() > kRounding * size) return {};
+  if ((corners[3] - corners[1] - corners[2] + corners[0]).norm() > kRounding * size) return {};
+  return box;
+}
+
+PilePair PilePatches::pairOf(std::size_t index) const {
+  const ColliderPair& pair = geometry_.pairs[index];
+  PilePair oriented;
+  oriented.pair = index, oriented.againstPlane = pair.againstPlane;
+  oriented.shapeA = pair.a, oriented.shapeB = pair.b;
+  oriented.bodyA = geometry_.colliders[pair.a].body, oriented.bodyB = bodyBOf(geometry_, pair);
+  oriented.isExchanged = oriented.bodyA == kFixed;
+  if (oriented.isExchanged) std::swap(oriented.shapeA, oriented.shapeB), std::swap(oriented.bodyA, oriented.bodyB);
+  return oriented;
+}
+
+bool PilePatches::isFast(const PilePair& pair) const {
+  return isFast_[pair.shapeA] && (pair.againstPlane || isFast_[pair.shapeB]);
+}
+
+ContactPatch PilePatches::patchOf(const PilePair& pair, const PileLook& look, std::vector<Contact>& scratch) const {
+  return isFast(pair) ? patchOfFastShapes(pair, look) : patchOfAnyShapes(pair, look, scratch);
+}
+
+ContactPatch PilePatches::patchOfFastShapes(const PilePair& pair, const PileLook& look) const {
+  const MovingPose &poseA = look.poseOf(pair.bodyA), &poseB = look.poseOf(pair.bodyB);
+  const auto ballAt = [&](const Collider& ball, const MovingPose& pose) {
+    return PosedBall{pose.position + pose.rotation * ball.points[0], ball.radius};
+  };
+  const auto boxAt = [](const BoxShape& box, const MovingPose& pose) {
+    return PosedBox{pose.position + pose.rotation * box.center, pose.rotation * box.axes, box.halfSize};
+  };
+  const Vec3 motion = look.timeStep * (poseB.linearVelocity - poseA.linearVelocity);
+  const double spin = poseA.spinRadius * poseA.angularVelocity.norm() + poseB.spinRadius * poseB.angularVelocity.norm();
+  const double margin = look.margin + look.timeStep * spin;
+  const Collider& a = geometry_.colliders[pair.shapeA];
+  const auto& boxA = boxes_[pair.shapeA];
+  if (pair.againstPlane) {
+    const PlaneCollider& plane = geometry_.planes[pair.shapeB];
+    return boxA ? contactOfBoxAndPlane(boxAt(*boxA, poseA), plane, motion, margin)
+                : contactOfBallAndPlane(ballAt(a, poseA), plane, motion, margin);
+  }
+  const Collider& b = geometry_.colliders[pair.shapeB];
+  const auto& boxB = boxes_[pair.shapeB];
+  if (boxA && boxB) return contactOfBoxes(boxAt(*boxA, poseA), boxAt(*boxB, poseB), motion, margin);
+  if (boxB) return contactOfBallAndBox(ballAt(a, poseA), boxAt(*boxB, poseB), motion, margin);
+  if (boxA) return exchanged(contactOfBallAndBox(ballAt(b, poseB), boxAt(*boxA, poseA), -motion, margin));
+  return contactOfBalls(ballAt(a, poseA), ballAt(b, poseB), motion, margin);
+}
+
+/// Through the general search. One patch: of contacts with several normals those along the deepest one's.
+ContactPatch PilePatches::patchOfAnyShapes(const PilePair& pair, const PileLook& look,
+                                           std::vector<Contact>& scratch) const {
+  const MovingPose &poseA = look.poseOf(pair.bodyA), &poseB = look.poseOf(pair.bodyB);
+  const double speed = (poseB.linearVelocity - poseA.linearVelocity).norm() +
+                       poseA.spinRadius * poseA.angularVelocity.norm() +
+                       poseB.spinRadius * poseB.angularVelocity.norm();
+  const double reach = look.margin + look.timeStep * speed;
+  scratch.clear();
+  appendContacts(geometry_, pair.pair, look.state, reach, scratch);
+  ContactPatch patch;
+  patch.clearance = reach;
+  if (scratch.empty()) return patch;
+  const auto deepest = std::min_element(scratch.begin(), scratch.end(),
+                                        [](const Contact& a, const Contact& b) { return a.separation < b.separation; });
+  patch.normal = deepest->normal;
+  constexpr std::size_t kMostCandidates = 16;
+  ContactPatch::Point points[kMostCandidates];
+  std::size_t count = 0;
+  for (const Contact& contact : scratch) {
+    if (contact.normal.dot(patch.normal) < kSameNormal || count == kMostCandidates) continue;
+    const Vec3 half = contact.separation / 2 * contact.normal;
+    points[count++] = {contact.point - half, contact.point + half, contact.separation};
+  }
+  appendSpanning(points, count, patch);
+  return pair.isExchanged ? exchanged(patch) : patch;
+}
+
+}  // namespace cradle

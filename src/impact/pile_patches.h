@@ -1,0 +1,75 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "collision/contact_patch.h"
+#include "collision/separation.h"
+
+namespace cradle {
+
+/// Where and how fast a moving body is.
+struct MovingPose {
+  Vec3 position = Vec3::Zero();         // m, world, of the centre of mass
+  Mat3 rotation = Mat3::Identity();     // worldFromBody
+  Vec3 linearVelocity = Vec3::Zero();   // m/s, world
+  Vec3 angularVelocity = Vec3::Zero();  // rad/s, world
+  double radius = 0;                    // m, of the collider about the centre of mass
+  double spinRadius = 0;                // m: how far from it turning moves the surface; 0 for a ball about its centre
+  double turned = 0;                    // rad, since the start, to and fro
+  Vec3 boxCenter = Vec3::Zero();        // m, world: of a box along the world's axes around the collider
+  Vec3 boxHalf = Vec3::Zero();          // m
+  bool isAsleep = false;
+};
+
+/// A pile at the begin of a step.
+struct PileLook {
+  const std::vector<MovingPose>& poses;
+  const VectorX& state;  // the same poses
+  double timeStep;       // s, of the step to come
+  double margin;         // m: what comes nearer than that in the step is in contact
+
+  const MovingPose& poseOf(int body) const {
+    static const MovingPose fixed{};
+    return body == kFixed ? fixed : poses[static_cast<std::size_t>(body)];
+  }
+};
+
+/// A pair with a moving body first.
+struct PilePair {
+  std::size_t pair = 0;    // index into ContactGeometry::pairs
+  std::size_t shapeA = 0;  // collider
+  std::size_t shapeB = 0;  // collider or plane
+  int bodyA = kFixed, bodyB = kFixed;
+  bool againstPlane = false, isExchanged = false;
+};
+
+/// The contact patches of a pile's pairs: boxes and balls fast, other shapes through the general search.
+class PilePatches {
+ public:
+  /// Keeps a reference to `geometry`.
+  explicit PilePatches(const ContactGeometry& geometry);
+
+  PilePair pairOf(std::size_t index) const;
+
+  /// Its contact in the step to come.
+  ContactPatch patchOf(const PilePair& pair, const PileLook& look, std::vector<Contact>& scratch) const;
+
+ private:
+  struct BoxShape {
+    Vec3 center;  // m, from the centre of mass, body's frame; world if fixed
+    Mat3 axes;
+    Vec3 halfSize;
+  };
+
+  static std::optional<BoxShape> boxOf(const Collider& collider);
+  bool isFast(const PilePair& pair) const;
+  ContactPatch patchOfFastShapes(const PilePair& pair, const PileLook& look) const;
+  ContactPatch patchOfAnyShapes(const PilePair& pair, const PileLook& look, std::vector<Contact>& scratch) const;
+
+  const ContactGeometry& geometry_;
+  std::vector<std::optional<BoxShape>> boxes_;  // of each collider
+  std::vector<char> isFast_;                    // of each collider: a ball or a box
+};
+
+}  // namespace cradle

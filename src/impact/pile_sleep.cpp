@@ -1,0 +1,114 @@
+#include "impact/pile_sleep.h"
+
+#include <algorithm>
+
+namespace cradle {
+namespace {
+
+constexpr double kCalmTime = 0.5;  // s: slow for so long is at rest
+
+bool bothMove(const ContactManifold& manifold) {
+  return manifold.bodyB != kFixed;
+}
+
+/// Speed (m/s) at which a contact closes at its first point.
+double closingSpeed(const ContactManifold& manifold, const MovingPose& a, const MovingPose& b) {
+  const ContactPatch::Point& point = manifold.patch.points[0];
+  const Vec3 relative = b.linearVelocity - a.linearVelocity + b.angularVelocity.cross(point.onB - b.position) -
+                        a.angularVelocity.cross(point.onA - a.position);
+  return std::max(0.0, -manifold.patch.normal.dot(relative));
+}
+
+}  // namespace
+
+PileSleep::PileSleep(std::vector<double> masses)
+    : masses_(std::move(masses)),
+      calmTimes_(masses_.size(), 0.0),
+      isAsleep_(masses_.size(), 0),
+      hasRestlessNeighbor_(masses_.size(), 0),
+      awake_(masses_.size()) {}
+
+void PileSleep::wakeTouched(const PileContacts& contacts, const std::vector<MovingPose>& poses, double slow,
+                            std::vector<int>& woken) {
+  if (awake_ == masses_.size()) return;
+  bool isListed = false;
+  for (const std::int32_t index : contacts.active()) {
+    const ContactManifold& manifold = contacts.manifolds()[static_cast<std::size_t>(index)];
+    if (!bothMove(manifold)) continue;
+    const std::size_t a = static_cast<std::size_t>(manifold.bodyA), b = static_cast<std::size_t>(manifold.bodyB);
+    if (isAsleep_[a] == isAsleep_[b]) continue;
+    const std::size_t mover = isAsleep_[a] ? b : a, sleeper = isAsleep_[a] ? a : b;
+    if (calmTimes_[mover] > 0) continue;
+    if (!isListed) listNeighbors(contacts);
+    isListed = true;
+    const double momentum = masses_[mover] * closingSpeed(manifold, poses[a], poses[b]);
+    wakeAround(static_cast<int>(sleeper), momentum / slow, woken);
+  }
+}
+
+void PileSleep::wake(int body, std::vector<int>& woken) {
+  const std::size_t index = static_cast<std::size_t>(body);
+  isAsleep_[index] = 0;
+  calmTimes_[index] = kCalmTime / 2;  // not restless before it has moved
+  ++awake_;
+  woken.push_back(body);
+}
+
+/// The body struck and those nearest to it, along contacts, until they have that mass (kg) together.
+void PileSleep::wakeAround(int struck, double leastMass, std::vector<int>& woken) {
+  std::size_t next = woken.size();
+  wake(struck, woken);
+  double mass = masses_[static_cast<std::size_t>(struck)];
+  for (; next < woken.size() && mass < leastMass; ++next) {
+    const std::size_t body = static_cast<std::size_t>(woken[next]);
+    for (std::size_t i = firstNeighbors_[body]; i < firstNeighbors_[body + 1]; ++i) {
+      const std::size_t neighbor = static_cast<std::size_t>(neighbors_[i]);
+      if (!isAsleep_[neighbor]) continue;
+      wake(neighbors_[i], woken);
+      mass += masses_[neighbor];
+    }
+  }
+}
+
+/// Counting sort of the contacts by their bodies.
+void PileSleep::listNeighbors(const PileContacts& contacts) {
+  firstNeighbors_.assign(masses_.size() + 2, 0);
+  const auto forEach = [&](const auto& work) {
+    contacts.forEachTouching([&](int a, int b) {
+      work(static_cast<std::size_t>(a), b);
+      work(static_cast<std::size_t>(b), a);
+    });
+  };
+  forEach([&](std::size_t body, int) { ++firstNeighbors_[body + 2]; });
+  for (std::size_t i = 2; i < firstNeighbors_.size(); ++i) firstNeighbors_[i] += firstNeighbors_[i - 1];
+  neighbors_.resize(firstNeighbors_.back());
+  forEach([&](std::size_t body, int other) { neighbors_[firstNeighbors_[body + 1]++] = other; });
+}
+
+void PileSleep::letSleep(const PileContacts& contacts, const std::vector<double>& speeds, double slow, double timeStep,
+                         std::vector<int>& fallenAsleep) {
+  bool someAreCalm = false;
+  for (std::size_t i = 0; i < masses_.size(); ++i) {
+    if (isAsleep_[i]) continue;
+    calmTimes_[i] = speeds[i] < slow ? calmTimes_[i] + timeStep : 0;
+    someAreCalm = someAreCalm || calmTimes_[i] >= kCalmTime;
+  }
+  if (!someAreCalm) return;
+  std::fill(hasRestlessNeighbor_.begin(), hasRestlessNeighbor_.end(), 0);
+  const auto isRestless = [&](std::size_t body) { return !isAsleep_[body] && calmTimes_[body] < kCalmTime; };
+  for (const std::int32_t index : contacts.active()) {
+    const ContactManifold& manifold = contacts.manifolds()[static_cast<std::size_t>(index)];
+    if (!bothMove(manifold)) continue;
+    const std::size_t a = static_cast<std::size_t>(manifold.bodyA), b = static_cast<std::size_t>(manifold.bodyB);
+    if (isRestless(a)) hasRestlessNeighbor_[b] = 1;
+    if (isRestless(b)) hasRestlessNeighbor_[a] = 1;
+  }
+  for (std::size_t i = 0; i < masses_.size(); ++i) {
+    if (isAsleep_[i] || isRestless(i) || hasRestlessNeighbor_[i]) continue;
+    isAsleep_[i] = 1;
+    --awake_;
+    fallenAsleep.push_back(static_cast<int>(i));
+  }
+}
+
+}  // namespace cradle
