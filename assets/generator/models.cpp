@@ -65,17 +65,34 @@ Surface ball() {
   return surface;
 }
 
-Surface box() {
-  const Vec3 half(0.25, 0.125, 0.0625);  // m; exact in a float
-  Surface surface{"Box", 0, {}, {}};
-  for (std::size_t v = 0; v < 8; ++v)
-    surface.add(half.cwiseProduct(Vec3(v & 1 ? 1 : -1, v & 2 ? 1 : -1, v & 4 ? 1 : -1)));
+// The faces of a block whose corners are those of a cube in the order of binary numbers zyx.
+void addBlock(Surface& surface) {
   surface.addQuad(1, 3, 7, 5, kSharp);  // +x
   surface.addQuad(0, 4, 6, 2, kSharp);  // -x
   surface.addQuad(2, 6, 7, 3, kSharp);  // +y
   surface.addQuad(0, 1, 5, 4, kSharp);  // -y
   surface.addQuad(4, 5, 7, 6, kSharp);  // +z
   surface.addQuad(0, 2, 3, 1, kSharp);  // -z
+}
+
+Surface box() {
+  const Vec3 half(0.25, 0.125, 0.0625);  // m; exact in a float
+  Surface surface{"Box", 0, {}, {}};
+  for (std::size_t v = 0; v < 8; ++v)
+    surface.add(half.cwiseProduct(Vec3(v & 1 ? 1 : -1, v & 2 ? 1 : -1, v & 4 ? 1 : -1)));
+  addBlock(surface);
+  return surface;
+}
+
+// A stone of an arch that is round the z axis, at its crown; so that the faces of neighbours lie in each other, their
+// slope and all vertices are exact in floats. Fifteen of them make 178.96 degrees.
+Surface voussoir() {
+  constexpr double kSlope = 107.0 / 1024, kInner = 59.0 / 32, kOuter = 69.0 / 32, kHalfWidth = 0.25;  // -, m, m, m
+  Surface surface{"Voussoir", 0, {}, {}};
+  for (const double z : {-kHalfWidth, kHalfWidth})
+    for (const double height : {kInner, kOuter})
+      for (const double slope : {-kSlope, kSlope}) surface.add({slope * height, height, z});
+  addBlock(surface);
   return surface;
 }
 
@@ -232,7 +249,8 @@ std::vector<Model> allModels() {
           {"spinning_top.3ds", {{"Cherry", {168, 58, 42}}}, {spinningTop()}},
           {"t_handle.3ds", {{"Steel", {168, 176, 188}}}, {tHandle()}},
           {"torus.3ds", {{"Coral", {222, 98, 76}}}, {torus()}},
-          {"torus_knot.3ds", {{"Indigo", {76, 84, 178}}}, {torusKnot()}}};
+          {"torus_knot.3ds", {{"Indigo", {76, 84, 178}}}, {torusKnot()}},
+          {"voussoir.3ds", {{"Sandstone", {206, 184, 146}}}, {voussoir()}}};
 }
 
 }  // namespace cradle::assets

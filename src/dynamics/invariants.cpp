@@ -11,13 +11,15 @@ Vec3 spinMomentum(const RigidBody& body, const VectorX& state, Eigen::Index inde
 
 }  // namespace
 
+double kineticEnergy(const RigidBody& body, Eigen::Index index, const VectorX& state) {
+  return 0.5 * body.mass * linearVelocity(state, index).squaredNorm() +
+         0.5 * angularVelocity(state, index).dot(spinMomentum(body, state, index));
+}
+
 double kineticEnergy(const std::vector<RigidBody>& bodies, const VectorX& state) {
   double energy = 0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Eigen::Index body = static_cast<Eigen::Index>(i);
-    energy += 0.5 * bodies[i].mass * linearVelocity(state, body).squaredNorm() +
-              0.5 * angularVelocity(state, body).dot(spinMomentum(bodies[i], state, body));
-  }
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    energy += kineticEnergy(bodies[i], static_cast<Eigen::Index>(i), state);
   return energy;
 }
 

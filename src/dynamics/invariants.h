@@ -13,7 +13,8 @@ struct Invariants {
 };
 Invariants invariantsOf(const Mechanism& mechanism, const VectorX& state);
 
-/// Kinetic energy in J.
+/// Kinetic energy in J, of one body or all.
+double kineticEnergy(const RigidBody& body, Eigen::Index index, const VectorX& state);
 double kineticEnergy(const std::vector<RigidBody>& bodies, const VectorX& state);
 
 /// kinetic + potential + dissipated - work in J: constant up to the error of the method.

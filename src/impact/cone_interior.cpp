@@ -1,7 +1,8 @@
 // A primal-dual interior point method with the scaling of Nesterov and Todd and Mehrotra's corrector on the
 // second-order cone problem of V. Acary, P. Armand, H. M. Nguyen, M. Shpakovych ("Second-order cone programming for
 // frictional contact mechanics using interior point algorithm", Optim. Methods Softw. 2022): De Saxce's correction is
-// taken from the iterate before, as part of what the next step has to make up for.
+// taken from the iterate before, as part of what the next step has to make up for. Its corner where a contact begins to
+// slide is rounded off while the end is far: steps would get stuck there.
 
 #include "impact/cone_interior.h"
 
@@ -15,9 +16,11 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr int kMostIterations = 20;
-constexpr double kLeastGap = 1e-14;  // of the squared velocities: complementarity where rounding rules
+constexpr int kMostIterations = 40;
+constexpr double kLeastGap = 1e-22;  // of the squared velocities: complementarity where rounding rules
 constexpr double kStay = 0.99;       // of the way to the boundary
+constexpr double kSmoothing = 0.1;   // of the root of complementarity
+constexpr double kShort = 0.1;       // step that is too near the boundary
 constexpr double kShortest = 1e-8;   // step that leads nowhere
 
 /// One contact: impulses x and velocities y in the Lorentz cone; without friction only the normal parts.
@@ -72,13 +75,17 @@ class InteriorPoint {
   double gap() const;
   void findResidual();
   double offCoulomb() const;
+  double slidingSpeed(const Eigen::Vector2d& slip) const {
+    return std::sqrt(slip.squaredNorm() + smoothing_ * smoothing_) - smoothing_;
+  }
   Mat3 correction(std::size_t pair) const;
   double step(double target, bool correct, const std::vector<Mat3>& stiffnesses);
 
   const ConeOperator& op_;
   std::vector<Pair> pairs_;
   VectorX z_, velocities_, residual_, side_, change_;
-  double unit_ = 1;  // velocities
+  double unit_ = 1;       // velocities
+  double smoothing_ = 0;  // of the same: rounds off the corner of |u_t| at 0
 };
 
 InteriorPoint::InteriorPoint(const ScaledCones& cones, const ConeOperator& op, const VectorX& impulses)
@@ -109,7 +116,7 @@ void InteriorPoint::findResidual() {
       residual_[at + 2] -= pair.y.z();
       continue;
     }
-    residual_[at + 2] += pair.friction * residual_.segment<2>(at).norm();
+    residual_[at + 2] += pair.friction * slidingSpeed(residual_.segment<2>(at));
     residual_.segment<3>(at) -= pair.velocity();
   }
 }
@@ -130,7 +137,7 @@ double InteriorPoint::offCoulomb() const {
 Mat3 InteriorPoint::correction(std::size_t i) const {
   Mat3 derivative = Mat3::Identity();
   const Eigen::Vector2d slip = velocities_.segment<2>(3 * static_cast<Index>(i));
-  const double speed = slip.norm();
+  const double speed = std::sqrt(slip.squaredNorm() + smoothing_ * smoothing_);
   if (speed > 0) derivative.bottomLeftCorner<1, 2>() = pairs_[i].friction / speed * slip.transpose();
   return derivative;
 }
@@ -160,6 +167,7 @@ int InteriorPoint::run(double tolerance, VectorX& impulses) {
   double least = INFINITY;
   for (; iteration < kMostIterations; ++iteration) {
     const double complementarity = gap();
+    smoothing_ = kSmoothing * std::sqrt(complementarity);
     findResidual();
     const double off = offCoulomb();
     if (off < least) impulses = z_, least = off;
@@ -171,7 +179,11 @@ int InteriorPoint::run(double tolerance, VectorX& impulses) {
     const double affine = step(0, false, stiffnesses);
     for (Pair& pair : pairs_) pair.affineX = pair.dx, pair.affineY = pair.dy;
     const double left = 1 - affine, centering = left * left * left;
-    const double length = kStay * step(centering * complementarity, true, stiffnesses);
+    double length = kStay * step(centering * complementarity, true, stiffnesses);
+    if (length < kShort) {  // back to the middle
+      for (Pair& pair : pairs_) pair.affineX.setZero(), pair.affineY.setZero();
+      length = kStay * step(complementarity, true, stiffnesses);
+    }
     if (!(length > kShortest)) break;
     for (Pair& pair : pairs_) pair.x += length * pair.dx, pair.y += length * pair.dy;
   }

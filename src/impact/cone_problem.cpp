@@ -29,10 +29,12 @@ constexpr double kFirstPenaltyParts[] = {1e-5, 1e-3,
                                          0.1};  // of the same; heavy on light wants it small, many contacts large
 constexpr int kFirstRound = 10;                 // iterations before Newton's method is tried
 constexpr double kRoundGrowth = 1.2;            // and before each further trial: far from the end, trials are waste
+constexpr Index kFewContacts = 12;              // more are often redundant, and rounding is far off:
+constexpr double kGoodPart = 1e-9;              // of the largest velocity: good enough for them
 constexpr int kMostIterations = 500;            // from each of them
 constexpr double kInteriorPart = 1e-9;          // of the largest velocity: where the interior point method ends
 constexpr double kRegularPart = 1e-9;           // of the largest inverse mass: what makes Newton's matrix regular
-constexpr int kMostNewtonSteps = 20;
+constexpr int kMostNewtonSteps = 20, kFewNewtonSteps = 6;  // with few contacts, and with more
 
 /// Impulses and velocities multiplied contact by contact so that each has inverse mass 1 and the largest free velocity
 /// is 1.
@@ -139,7 +141,8 @@ void ScaledProblem::stepByNewton(VectorX& z) const {
 /// Newton's method. Changes the impulses only if it converges.
 bool ScaledProblem::finish(VectorX& impulses) const {
   VectorX z = impulses;
-  for (int step = 0; step < kMostNewtonSteps; ++step) {
+  const int most = scale_.size() > kFewContacts ? kFewNewtonSteps : kMostNewtonSteps;
+  for (int step = 0; step < most; ++step) {
     stepByNewton(z);
     const VectorX u = g_ * z + cones_.free;
     const double left = residual(z, u);
@@ -159,6 +162,7 @@ VectorX ScaledProblem::solve() {
   leastResidual_ = residual(best_, cones_.free);
   if (isConverged(leastResidual_, best_, cones_.free)) return unscaled(best_);
   if (solveFrom(kFirstPenaltyParts[0] * largest_) || solveFromInside()) return unscaled(best_);
+  if (scale_.size() > kFewContacts && leastResidual_ <= kGoodPart) return unscaled(best_);
   for (const double part : kFirstPenaltyParts)
     if (solveFrom(part * largest_)) break;
   return unscaled(best_);

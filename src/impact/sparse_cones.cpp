@@ -1,6 +1,6 @@
-// Newton's method (cone_newton.h), helped by ADMM (cone_iteration.h) and interior points (cone_interior.h). With J = D
-// J' M^-1/2, D the scale of each contact, (J J^T + s)^-1 b = (b - J (J^T J + s)^-1 J^T b) / s: what is factorised has
-// six rows a body, whatever the number of its contacts, and couples only bodies that touch.
+// The matrix by its factors. With J = D J' M^-1/2, D the scale of each contact, (J J^T + s)^-1 b = (b - J (J^T J +
+// s)^-1 J^T b) / s: what is factorised has six rows a body, whatever the number of its contacts, and couples only
+// bodies that touch.
 
 #include "impact/sparse_cones.h"
 
@@ -9,28 +9,12 @@
 #include <cmath>
 #include <map>
 
-#include "impact/cone_interior.h"
-#include "impact/cone_newton.h"
 #include "impact/contact_cones.h"
 #include "math/rotation.h"
 
 namespace cradle {
-namespace {
 
 using Index = Eigen::Index;
-
-constexpr double kLargest = 4;          // bound that a few contacts a body stay below, of scaled inverse masses
-constexpr double kProximal = 1e-7;      // eta, scaled
-constexpr double kFirstPenalty = 1e-4;  // rho, scaled
-constexpr double kLeastPenalty = 1e-6;  // of the same: below, the difference b - ... is rounding
-constexpr int kMostTrials = 4;          // to come near enough for Newton's method
-constexpr int kInteriorTrial = 1;       // of them: by the interior point method, the others by ADMM
-constexpr int kIterations = 10;         // of ADMM before Newton's method is tried again
-constexpr double kInteriorPart = 1e-9;  // of the velocities: where the interior point method ends
-constexpr double kRegular = 1e-9;       // scaled inverse mass: makes redundant contacts solvable
-constexpr int kMostNewtonSteps = 6;     // 1 or 2 from the step before, where nothing changes
-
-}  // namespace
 
 SparseCones::Row SparseCones::rowOf(const Contact& contact, const std::array<int, 2>& bodies,
                                     const VectorX& state) const {
@@ -130,14 +114,12 @@ MatrixX SparseCones::inverseMass() const {
 }
 
 /// shift + sum over contacts of J^T stiffness J.
-template <class Stiffness>
-void SparseCones::assemble(double shift, const Stiffness& stiffness) {
+void SparseCones::assemble(double shift, const std::vector<Mat3>& stiffnesses) {
   factor_.clear();
   for (std::size_t body = 0; body < bodies_.size(); ++body) factor_.diagonal(body).diagonal().setConstant(shift);
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Row& row = contacts_[c];
-    const Mat3 k = stiffness(c);
-    const std::array<Mat36, 2> kj = {k * row.j[0], k * row.j[1]};
+    const std::array<Mat36, 2> kj = {stiffnesses[c] * row.j[0], stiffnesses[c] * row.j[1]};
     for (std::size_t side = 0; side < 2; ++side)
       if (row.body[side] >= 0)
         factor_.diagonal(static_cast<std::size_t>(row.body[side])).noalias() += row.j[side].transpose() * kj[side];
@@ -151,8 +133,9 @@ void SparseCones::assemble(double shift, const Stiffness& stiffness) {
 
 void SparseCones::factorize(double shift) {
   if (shift == shift_) return;
+  stiffnesses_.assign(contacts_.size(), Mat3::Identity());
+  assemble(shift, stiffnesses_);
   shift_ = shift;
-  assemble(shift, [](std::size_t) { return Mat3(Mat3::Identity()); });
 }
 
 /// J^T impulses.
@@ -165,13 +148,19 @@ void SparseCones::gather(const VectorX& impulses) {
             contacts_[i].j[side].transpose() * impulses.segment<3>(3 * static_cast<Index>(i));
 }
 
+/// J times what is left of the bodies, at one contact.
+Vec3 SparseCones::velocityOfBodies(std::size_t contact) const {
+  const Row& row = contacts_[contact];
+  Vec3 velocity = Vec3::Zero();
+  for (std::size_t side = 0; side < 2; ++side)
+    if (const int body = row.body[side]; body >= 0) velocity.noalias() += row.j[side] * bodyWork_.segment<6>(6 * body);
+  return velocity;
+}
+
 void SparseCones::solveShifted(VectorX& b) {
   gather(b);
   factor_.solve(bodyWork_);
-  for (std::size_t i = 0; i < contacts_.size(); ++i)
-    for (std::size_t side = 0; side < 2; ++side)
-      if (const int body = contacts_[i].body[side]; body >= 0)
-        b.segment<3>(3 * static_cast<Index>(i)).noalias() -= contacts_[i].j[side] * bodyWork_.segment<6>(6 * body);
+  for (std::size_t i = 0; i < contacts_.size(); ++i) b.segment<3>(3 * static_cast<Index>(i)) -= velocityOfBodies(i);
   b /= shift_;
 }
 
@@ -179,142 +168,7 @@ void SparseCones::multiply(const VectorX& impulses, VectorX& velocities) {
   gather(impulses);
   velocities = cones_.free;
   for (std::size_t i = 0; i < contacts_.size(); ++i)
-    for (std::size_t side = 0; side < 2; ++side)
-      if (const int body = contacts_[i].body[side]; body >= 0)
-        velocities.segment<3>(3 * static_cast<Index>(i)).noalias() +=
-            contacts_[i].j[side] * bodyWork_.segment<6>(6 * body);
-}
-
-/// Newton's method as in cone_problem.cpp, A dz + B du = -F by contact, du = J dv: (1 + sum J^T A^-1 B J) dv = -sum J^T
-/// A^-1 F by body.
-void SparseCones::stepByNewton(VectorX& z, VectorX& u) {
-  std::vector<Mat3> stiffness(contacts_.size(), Mat3::Zero());
-  VectorX change = VectorX::Zero(z.size());
-  std::vector<char> isPushing(contacts_.size());
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const Index at = 3 * static_cast<Index>(i);
-    isPushing[i] = pushes(z.segment<3>(at), u.segment<3>(at));
-    if (!isPushing[i]) z.segment<3>(at).setZero();
-  }
-  multiply(z, u);
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (!isPushing[i]) continue;
-    const Index at = 3 * static_cast<Index>(i);
-    const NewtonRow row = newtonRow(z.segment<3>(at), u.segment<3>(at), cones_.frictions[i], kRegular);
-    const Mat3 inverse = row.ofImpulse.inverse();
-    stiffness[i] = inverse * row.ofVelocity;
-    change.segment<3>(at) = -inverse * row.value;
-  }
-  shift_ = 0;
-  assemble(1, [&](std::size_t i) { return stiffness[i]; });
-  gather(change);
-  factor_.solve(bodyWork_);
-  for (std::size_t i = 0; i < contacts_.size(); ++i)
-    for (std::size_t side = 0; side < 2; ++side)
-      if (const int body = contacts_[i].body[side]; body >= 0)
-        change.segment<3>(3 * static_cast<Index>(i)) -=
-            stiffness[i] * (contacts_[i].j[side] * bodyWork_.segment<6>(6 * body));
-  z += change;
-  multiply(z, u);
-}
-
-/// Changes the impulses only if it converges.
-bool SparseCones::finish(VectorX& impulses, VectorX& velocities, double tolerance) {
-  VectorX z = impulses, u = velocities;
-  for (int step = 0; step < kMostNewtonSteps; ++step) {
-    stepByNewton(z, u);
-    const double left = residual(z, u);
-    if (!(left < INFINITY)) return false;
-    if (left > tolerance) continue;
-    impulses = z, velocities = u;
-    return true;
-  }
-  return false;
-}
-
-/// In m/s, of the worst contact.
-double SparseCones::residual(const VectorX& z, const VectorX& u) const {
-  double largest = 0;
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const Index at = 3 * static_cast<Index>(i);
-    const Vec3 error = coulombResidual(z.segment<3>(at), u.segment<3>(at), cones_.frictions[i]);
-    if (!error.allFinite()) return INFINITY;
-    largest = std::max(largest, error.cwiseAbs().maxCoeff() / contacts_[i].scale);
-  }
-  return largest;
-}
-
-long SparseCones::approachFromInside(VectorX& impulses) {
-  shift_ = 0;
-  ConeOperator op;
-  op.multiply = [this](const VectorX& z, VectorX& u) { multiply(z, u); };
-  op.respond = [this](const std::vector<Mat3>& stiffnesses, bool isNew, const VectorX& c, VectorX& du) {
-    if (isNew) assemble(1, [&](std::size_t i) { return stiffnesses[i]; });
-    gather(c);
-    factor_.solve(bodyWork_);
-    du.resize(c.size());
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      Vec3 sum = Vec3::Zero();
-      for (std::size_t side = 0; side < 2; ++side)
-        if (const int body = contacts_[i].body[side]; body >= 0)
-          sum += contacts_[i].j[side] * bodyWork_.segment<6>(6 * body);
-      du.segment<3>(3 * static_cast<Index>(i)) = sum;
-    }
-  };
-  return solveByInteriorPoint(cones_, op, kInteriorPart * cones_.free.cwiseAbs().maxCoeff(), impulses);
-}
-
-/// The iterate's velocities from those that its impulses give.
-void SparseCones::takeVelocities(const VectorX& u, ConeIterate& at) const {
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const Index k = 3 * static_cast<Index>(i);
-    at.velocities.segment<3>(k) = correctedVelocity(u.segment<3>(k), cones_.frictions[i]);
-  }
-  at.unbounded = at.impulses;
-}
-
-ConeSolution SparseCones::solve(const VectorX& free, const std::vector<double>& frictions, double tolerance,
-                                ConeStart& start, long& iterations) {
-  cones_.free = free, cones_.frictions = frictions;
-  ConeIterate at;
-  at.impulses = start.impulses, at.velocities = start.velocities;
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const Index k = 3 * static_cast<Index>(i);
-    cones_.free.segment<3>(k) *= contacts_[i].scale;
-    at.impulses.segment<3>(k) /= contacts_[i].scale, at.velocities.segment<3>(k) *= contacts_[i].scale;
-  }
-  at.unbounded = at.impulses;
-  at.penalty = start.penalty > 0 ? start.penalty : kFirstPenalty;
-  ConeSolution solution;
-  VectorX u;
-  const auto shifted = [this](VectorX& b) { solveShifted(b); };
-  multiply(at.impulses, u);
-  const auto isFound = [&] { return residual(at.impulses, u) <= tolerance || finish(at.impulses, u, tolerance); };
-  solution.converged = isFound();
-  for (int trial = 0; trial < kMostTrials && !solution.converged; ++trial) {
-    if (trial == kInteriorTrial) {
-      iterations += approachFromInside(at.impulses);
-      multiply(at.impulses, u);
-      takeVelocities(u, at);
-    } else {
-      factorize(at.penalty + kProximal);
-      iterateCones(cones_, kProximal, shifted, kIterations, at);
-      at.penalty = std::max(balancedPenalty(at, kLargest), kLeastPenalty);
-      iterations += kIterations;
-      multiply(at.impulses, u);
-    }
-    solution.converged = isFound();
-  }
-  solution.residual = residual(at.impulses, u);
-  if (solution.converged) takeVelocities(u, at);
-  solution.impulses = at.impulses, solution.velocities = u;
-  start.impulses = at.impulses, start.velocities = at.velocities, start.penalty = at.penalty;
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const Index k = 3 * static_cast<Index>(i);
-    solution.impulses.segment<3>(k) *= contacts_[i].scale, solution.velocities.segment<3>(k) /= contacts_[i].scale;
-    start.impulses.segment<3>(k) *= contacts_[i].scale, start.velocities.segment<3>(k) /= contacts_[i].scale;
-  }
-  return solution;
+    velocities.segment<3>(3 * static_cast<Index>(i)) += velocityOfBodies(i);
 }
 
 }  // namespace cradle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -39,7 +40,8 @@ class SparseCones {
   MatrixX inverseMass() const;
 
   /// By Newton's method from `start`, to `tolerance` (m/s); if that does not lead there, from where ADMM or an interior
-  /// point method do. Leaves in `start` where it ended, and adds to `iterations` those of the last two.
+  /// point method do, and then ten times the tolerance is enough. If nothing does, the best that was found. Leaves in
+  /// `start` where it ended, and adds to `iterations` those of the last two.
   ConeSolution solve(const VectorX& free, const std::vector<double>& frictions, double tolerance, ConeStart& start,
                      long& iterations);
 
@@ -56,17 +58,25 @@ class SparseCones {
     double inverseMass;   // 1/kg, square root of
     Mat3 inverseInertia;  // world, lower root of
   };
-  template <class Stiffness>
-  void assemble(double shift, const Stiffness& stiffness);
+  struct Found {
+    VectorX impulses, velocities;  // scaled
+    double residual = INFINITY;    // m/s
+  };
+  void assemble(double shift, const std::vector<Mat3>& stiffnesses);
   Row rowOf(const Contact& contact, const std::array<int, 2>& bodies, const VectorX& state) const;
   void factorize(double shift);
   void stepByNewton(VectorX& z, VectorX& u);
-  long approachFromInside(VectorX& impulses);
+  void approachByAdmm(int iterations, ConeIterate& at);
+  long approachFromInside(double tolerance, ConeIterate& at);
   bool finish(VectorX& z, VectorX& u, double tolerance);
   void multiply(const VectorX& impulses, VectorX& velocities);
   void gather(const VectorX& impulses);
+  Vec3 velocityOfBodies(std::size_t contact) const;
   void solveShifted(VectorX& b);
   double residual(const VectorX& z, const VectorX& u) const;
+  bool take(const VectorX& impulses, double tolerance, Found& found);
+  bool search(double tolerance, ConeIterate& at, Found& found, long& iterations);
+  ConeIterate scaled(const ConeStart& start) const;
   void takeVelocities(const VectorX& u, ConeIterate& at) const;
 
   std::vector<Row> contacts_;
@@ -77,7 +87,8 @@ class SparseCones {
   std::vector<std::pair<int, int>> analyzed_;
   std::size_t analyzedBodies_ = 0;
   ScaledCones cones_;
-  double shift_ = 0;
+  double shift_ = 0;               // of what is factorised, 0 if that is something else
+  std::vector<Mat3> stiffnesses_;  // work
   VectorX bodyWork_;
 };
 

@@ -9,6 +9,7 @@
 #include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
 #include "impact/lasting_contact.h"
+#include "simulate/contact_energy.h"
 
 namespace cradle {
 namespace {
@@ -63,9 +64,15 @@ void ContactStage::resolve(double time, const VectorX& before, VectorX& state) {
   if (touching_.empty()) return;
   wakeTouched(time, state);
   if (solver_.hasConstraints()) solver_.factorize(state);
+  const std::vector<int> bodies = touchingBodies();
+  const double most = energyOf(bodies, assembly_.mechanism, state), dissipated = dissipatedEnergy(state);
   resolveImpacts(time, before, state);
   holdLasting(before, state);
   resolveOverlaps(assembly_.geometry, touching_, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
+  if (isGain(energyOf(bodies, assembly_.mechanism, state), most)) {
+    limitEnergy(bodies, most, assembly_.mechanism, state);
+    dissipatedEnergy(state) = dissipated + most - energyOf(bodies, assembly_.mechanism, state);
+  }
   for (const int body : resting_.settle(time, touching_, state))
     log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
 }
@@ -128,6 +135,18 @@ void ContactStage::findTouching(const VectorX& state, double margin) {
     const bool bLies = contact.bodyB == kFixed || resting_.isResting(contact.bodyB);
     return aLies && bLies;
   });
+}
+
+/// Bodies that contacts of this instant move, with those that are tied to them.
+std::vector<int> ContactStage::touchingBodies() const {
+  const Islands islands = findStruckTogether();
+  std::vector<char> isMoved(assembly_.mechanism.bodies.size(), 0);
+  for (const Contact& contact : touching_)
+    isMoved[static_cast<std::size_t>(islands.islandOf(contact.bodyA != kFixed ? contact.bodyA : contact.bodyB))] = 1;
+  std::vector<int> bodies;
+  for (int body = 0; body < std::ssize(isMoved); ++body)
+    if (isMoved[static_cast<std::size_t>(islands.islandOf(body))]) bodies.push_back(body);
+  return bodies;
 }
 
 void ContactStage::wakeTouched(double time, const VectorX& state) {

@@ -40,6 +40,7 @@ class ContactStage {
  private:
   void findTouching(const VectorX& state, double margin);
   void findWithinReach(const VectorX& before, const VectorX& state, double length);
+  std::vector<int> touchingBodies() const;
   void wakeTouched(double time, const VectorX& state);
   void resolveImpacts(double time, const VectorX& before, VectorX& state);
   Islands findStruckTogether() const;

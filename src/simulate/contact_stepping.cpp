@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "dynamics/invariants.h"
-#include "impact/contact_cones.h"
+#include "simulate/contact_energy.h"
 #include "simulate/islands.h"
 
 namespace cradle {
@@ -16,15 +16,19 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kSlidingSpeed = 1e-6;     // m/s: slower counts as sticking
-constexpr double kRestSteps = 2;           // a rebound that ends within as many steps is not resolved
-constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
-constexpr double kRestSpeedPart = 0.01;    // of the speed that gravity gives in a step: slower is no impact
-constexpr double kOverlapPart = 1e-9;      // of the smallest body's size: deeper overlaps are taken out
-constexpr double kSmoothPart = 1e-2;       // of that: overlaps that the mean velocity may add in a step
-constexpr std::size_t kFewContacts = 6;    // solved densely, to rounding
-constexpr double kSeparatedPart = 1e-3;    // of the overlaps that are let be
-constexpr double kSolvedPart = 1e-7;       // of the fastest velocity
+constexpr double kSlidingSpeed = 1e-6;      // m/s: slower counts as sticking
+constexpr double kRestSteps = 2;            // a rebound that ends within as many steps is not resolved
+constexpr double kRestSpeedFloor = 1e-12;   // m/s: rounding
+constexpr double kRestSpeedPart = 0.01;     // of the speed that gravity gives in a step: slower is no impact
+constexpr double kOverlapPart = 1e-9;       // of the smallest body's size: deeper overlaps are taken out
+constexpr double kSmoothPart = 1e-2;        // of that: overlaps that the mean velocity may add in a step
+constexpr std::size_t kFewContacts = 6;     // solved densely, to rounding
+constexpr double kSeparatedPart = 0.1;      // of the overlaps that are let be: how well others are taken out, ...
+constexpr double kSeparatedError = 1e-3;    // ... or of the deepest
+constexpr double kFarOverlaps = 10;         // of the deepest overlap: gaps that are as good as any wider ones
+constexpr double kLessRestitution = 0.7;    // of the restitution that let energy grow
+constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
+constexpr double kSolvedPart = 1e-7;        // of the fastest velocity
 
 double smallestSize(const ContactGeometry& geometry) {
   double smallest = 1;
@@ -69,11 +73,15 @@ std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& contact = contacts_[i].contact;
     const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
-    groups[islands.islandOf(body)].members.push_back(i);
+    Group& group = groups[islands.islandOf(body)];
+    group.members.push_back(i);
+    group.contacts.push_back(contact);
   }
   for (std::size_t body = 0; body < isTied.size(); ++body)
-    if (const auto group = groups.find(islands.islandOf(static_cast<int>(body))); group != groups.end())
+    if (const auto group = groups.find(islands.islandOf(static_cast<int>(body))); group != groups.end()) {
+      group->second.bodies.push_back(static_cast<int>(body));
       group->second.isTied = group->second.isTied || isTied[body];
+    }
   std::vector<Group> ordered;
   for (auto& [firstBody, group] : groups) {
     group.firstBody = firstBody;
@@ -87,88 +95,56 @@ double ContactStepping::restSpeed(double pressing, double timeStep) const {
   return kRestSteps * pressing + kRestSpeedPart * assembly_.mechanism.gravity.norm() * timeStep + kRestSpeedFloor;
 }
 
-/// The cone problem: what is left of the gap, or the rebound, is taken from the normal velocities.
-ContactStepping::Problem ContactStepping::posed(const std::vector<Contact>& contacts, const VectorX& startVelocities,
-                                                const VectorX& freeVelocities, double timeStep) const {
-  Problem problem{freeVelocities, {}};
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
+/// The cone problem: what is left of the gap, or the rebound, is taken from the normal velocities. Of the restitution
+/// only a part counts.
+ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion& motion, double part) const {
+  Problem problem{motion.free, {}};
+  for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
-    const SurfaceLaw& law = assembly_.geometry.pairs[contacts[i].pair].law;
-    const bool slides = startVelocities.segment<2>(at).norm() > kSlidingSpeed;
+    const SurfaceLaw& law = assembly_.geometry.pairs[group.contacts[i].pair].law;
+    const bool slides = motion.start.segment<2>(at).norm() > kSlidingSpeed;
     problem.frictions.push_back(slides ? law.dynamicFriction : law.staticFriction);
-    const double closing = -startVelocities[at + 2], pressing = std::max(0.0, -closing - freeVelocities[at + 2]);
-    const double gap = std::max(0.0, contacts[i].separation);
-    const bool touches = gap + timeStep * freeVelocities[at + 2] < 0;
-    const bool rebounds = touches && law.restitution * closing > restSpeed(pressing, timeStep);
-    problem.free[at + 2] -= rebounds ? law.restitution * closing - pressing : -gap / timeStep;
+    const double closing = -motion.start[at + 2], pressing = std::max(0.0, -closing - motion.free[at + 2]);
+    const double gap = std::max(0.0, group.contacts[i].separation), restitution = part * law.restitution;
+    const bool touches = gap + motion.timeStep * motion.free[at + 2] < 0;
+    const bool rebounds = touches && restitution * closing > restSpeed(pressing, motion.timeStep);
+    problem.free[at + 2] -= rebounds ? restitution * closing - pressing : -gap / motion.timeStep;
+    problem.hasRebounds = problem.hasRebounds || rebounds;
   }
   return problem;
 }
 
+/// Energy does not grow: a restitution that would let it is made smaller (with friction it can), and what is left by
+/// rounding, by the order of the method, or by impulses that were not found is taken from the velocities.
 void ContactStepping::resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state) {
-  std::vector<Contact> contacts;
-  std::vector<int> bodies;
-  for (const std::size_t i : group.members) {
-    contacts.push_back(contacts_[i].contact);
-    for (const int body : {contacts.back().bodyA, contacts.back().bodyB})
-      if (body != kFixed) bodies.push_back(body);
-  }
-  std::sort(bodies.begin(), bodies.end());
-  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-
-  // How fast would the contacts close, and what stops them?
-  cones_.set(contacts, assembly_.mechanism.bodies, before);
-  const VectorX startVelocities = cones_.velocitiesIn(before), freeVelocities = cones_.velocitiesIn(state);
-  const Problem problem = posed(contacts, startVelocities, freeVelocities, timeStep);
-  VectorX impulses;
-  if (group.isTied) {
-    const ContactCones tied(contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), before);
-    impulses = solveTied(problem, tied.inverseMass());
-    tied.apply(impulses, state);
-  } else {
-    impulses = solveUntied(group, problem);
-    cones_.apply(impulses, state);
-  }
-
-  // Where do the new velocities lead?
-  const VectorX endVelocities = cones_.velocitiesIn(state);
-  bool isSmooth = true;
-  VectorX gaps(contacts.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Index at = 3 * static_cast<Index>(i);
-    const double mean = 0.5 * (startVelocities[at + 2] + endVelocities[at + 2]), gap = contacts[i].separation;
-    gaps[static_cast<Index>(i)] = gap + timeStep * mean;
-    isSmooth = isSmooth && gap + timeStep * mean > std::min(0.0, gap) - kSmoothPart * overlapTolerance_;
-  }
-  if (!isSmooth)
-    for (std::size_t i = 0; i < contacts.size(); ++i)
-      gaps[static_cast<Index>(i)] = contacts[i].separation + timeStep * endVelocities[3 * static_cast<Index>(i) + 2];
-  move(bodies, isSmooth, before, timeStep, state);
-  if (gaps.minCoeff() < -overlapTolerance_) separate(contacts, gaps, group.isTied, before, state);
-
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Index at = 3 * static_cast<Index>(i);
-    SteppedContact& stepped = contacts_[group.members[i]];
-    stepped.impulse = cones_.axes(i) * impulses.segment<3>(at);
-    const double closing = -startVelocities[at + 2], pressing = std::max(0.0, -closing - freeVelocities[at + 2]);
-    stepped.isImpact = impulses[at + 2] > 0 && closing > restSpeed(pressing, timeStep);
-    const Vec3 slip = endVelocities.segment<3>(at) + problem.free.segment<3>(at) - freeVelocities.segment<3>(at);
-    slips_[group.members[i]] = cones_.axes(i) * correctedVelocity(slip, problem.frictions[i]);
+  cones_.set(group.contacts, assembly_.mechanism.bodies, before);
+  tied_.reset();
+  if (group.isTied) tied_.emplace(group.contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), before);
+  const Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), timeStep};
+  const double most = energyOf(group.bodies, assembly_.mechanism, state);
+  for (double part = 1;; part = part > kLeastRestitution ? kLessRestitution * part : 0) {
+    const Problem problem = posed(group, motion, part);
+    const VectorX impulses = solve(group, problem);
+    move(group, motion, impulses, state);
+    if (problem.hasRebounds && isGain(energyOf(group.bodies, assembly_.mechanism, state), most)) {
+      restore(group.bodies, state);
+      continue;
+    }
+    limitEnergy(group.bodies, most, assembly_.mechanism, state);
+    return keep(group, motion, problem, impulses, state);
   }
 }
 
-VectorX ContactStepping::solveUntied(const Group& group, const Problem& problem) {
+VectorX ContactStepping::solve(const Group& group, const Problem& problem) {
+  if (tied_ || group.contacts.size() <= kFewContacts) {
+    const ConeSolution solution = solveConeProblem(inverseMass(), problem.free, problem.frictions);
+    count(solution);
+    return solution.impulses;
+  }
   const double tolerance = kSolvedPart * problem.free.cwiseAbs().maxCoeff();
-  if (group.members.size() <= kFewContacts) return solveTied(problem, cones_.inverseMass());
   ConeStart start = startOf(group);
   const ConeSolution solution = cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations);
   penalties_[group.firstBody] = start.penalty;
-  count(solution);
-  return solution.impulses;
-}
-
-VectorX ContactStepping::solveTied(const Problem& problem, const MatrixX& inverseMass) {
-  const ConeSolution solution = solveConeProblem(inverseMass, problem.free, problem.frictions);
   count(solution);
   return solution.impulses;
 }
@@ -202,43 +178,83 @@ ConeStart ContactStepping::startOf(const Group& group) const {
   return start;
 }
 
-/// With the mean of the velocities at both ends, where that leads into no overlap: what lasts keeps order 2 and its
-/// energy. Else with those at the end, which the gaps were asked of.
-void ContactStepping::move(const std::vector<int>& bodies, bool isSmooth, const VectorX& before, double timeStep,
-                           VectorX& state) {
-  for (const int body : bodies) {
-    if (isSmooth) {
-      centerOfMass(state, body) += 0.5 * timeStep * (linearVelocity(state, body) - linearVelocity(free_, body));
-      turnBody(state, body, 0.5 * timeStep * (angularVelocity(state, body) - angularVelocity(free_, body)));
-    } else {
-      centerOfMass(state, body) = centerOfMass(before, body) + timeStep * linearVelocity(state, body);
-      setOrientation(state, body, orientation(before, body));
-      turnBody(state, body, timeStep * angularVelocity(state, body));
-    }
+/// From free motion to where impulses lead: with the mean of the velocities at both ends, where that leads into no
+/// overlap: what lasts keeps order 2 and its energy. Else with those at the end, which the gaps were asked of.
+void ContactStepping::move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state) {
+  tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
+  const VectorX end = cones_.velocitiesIn(state);
+  bool isSmooth = true;
+  VectorX gaps(group.contacts.size());
+  for (Index i = 0; i < gaps.size(); ++i) {
+    const double gap = group.contacts[static_cast<std::size_t>(i)].separation;
+    gaps[i] = gap + motion.timeStep * 0.5 * (motion.start[3 * i + 2] + end[3 * i + 2]);
+    isSmooth = isSmooth && gaps[i] > std::min(0.0, gap) - kSmoothPart * overlapTolerance_;
+  }
+  if (!isSmooth)
+    for (Index i = 0; i < gaps.size(); ++i)
+      gaps[i] = group.contacts[static_cast<std::size_t>(i)].separation + motion.timeStep * end[3 * i + 2];
+  isSmooth ? moveByMean(group, motion, state) : moveByEnd(group, motion, state);
+  if (gaps.minCoeff() < -overlapTolerance_) separate(group, gaps, state);
+}
+
+void ContactStepping::moveByMean(const Group& group, const Motion& motion, VectorX& state) const {
+  const double half = 0.5 * motion.timeStep;
+  for (const int body : group.bodies) {
+    centerOfMass(state, body) += half * (linearVelocity(state, body) - linearVelocity(free_, body));
+    turnBody(state, body, half * (angularVelocity(state, body) - angularVelocity(free_, body)));
+  }
+}
+
+void ContactStepping::moveByEnd(const Group& group, const Motion& motion, VectorX& state) const {
+  for (const int body : group.bodies) {
+    centerOfMass(state, body) = centerOfMass(motion.before, body) + motion.timeStep * linearVelocity(state, body);
+    setOrientation(state, body, orientation(motion.before, body));
+    turnBody(state, body, motion.timeStep * angularVelocity(state, body));
   }
 }
 
 /// Moves bodies apart where `gaps` (m) at the step's end are negative, without touching velocities.
-void ContactStepping::separate(const std::vector<Contact>& contacts, const VectorX& gaps, bool isTied,
-                               const VectorX& before, VectorX& state) {
-  Problem problem{VectorX::Zero(3 * gaps.size()), std::vector<double>(contacts.size(), 0)};
-  for (Index i = 0; i < gaps.size(); ++i) problem.free[3 * i + 2] = gaps[i];
+void ContactStepping::separate(const Group& group, const VectorX& gaps, VectorX& state) {
+  const double deepest = -gaps.minCoeff();
+  Problem problem{VectorX::Zero(3 * gaps.size()), std::vector<double>(group.contacts.size(), 0)};
+  for (Index i = 0; i < gaps.size(); ++i) problem.free[3 * i + 2] = std::min(gaps[i], kFarOverlaps * deepest);
   VectorX displacement = state;
   displacement.tail(state.size() - poseComponents(state)).setZero();
-  if (isTied) {
-    const ContactCones tied(contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), before);
-    tied.apply(solveConeProblem(tied.inverseMass(), problem.free, problem.frictions).impulses, displacement);
-  } else if (contacts.size() <= kFewContacts) {
-    cones_.apply(solveConeProblem(cones_.inverseMass(), problem.free, problem.frictions).impulses, displacement);
+  if (tied_ || group.contacts.size() <= kFewContacts) {
+    const VectorX pushes = solveConeProblem(inverseMass(), problem.free, problem.frictions).impulses;
+    tied_ ? tied_->apply(pushes, displacement) : cones_.apply(pushes, displacement);
   } else {
     ConeStart start{VectorX::Zero(3 * gaps.size()), VectorX::Zero(3 * gaps.size()), 0};
-    const double tolerance = kSeparatedPart * overlapTolerance_;
+    const double tolerance = std::max(kSeparatedPart * overlapTolerance_, kSeparatedError * deepest);
     cones_.apply(cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations).impulses,
                  displacement);
   }
-  for (Index body = 0; body < bodyCount(state); ++body) {
+  for (const int body : group.bodies) {
     centerOfMass(state, body) += linearVelocity(displacement, body);
     turnBody(state, body, angularVelocity(displacement, body));
+  }
+}
+
+void ContactStepping::restore(const std::vector<int>& bodies, VectorX& state) const {
+  for (const int body : bodies) {
+    state.segment<kPoseSize>(body * kPoseSize) = free_.segment<kPoseSize>(body * kPoseSize);
+    state.segment<kVelocitySize>(velocityOffset(state, body)) =
+        free_.segment<kVelocitySize>(velocityOffset(state, body));
+  }
+}
+
+/// What the next step begins with, and who is told.
+void ContactStepping::keep(const Group& group, const Motion& motion, const Problem& problem, const VectorX& impulses,
+                           const VectorX& state) {
+  const VectorX end = cones_.velocitiesIn(state);
+  for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+    const Index at = 3 * static_cast<Index>(i);
+    SteppedContact& stepped = contacts_[group.members[i]];
+    stepped.impulse = cones_.axes(i) * impulses.segment<3>(at);
+    const double closing = -motion.start[at + 2], pressing = std::max(0.0, -closing - motion.free[at + 2]);
+    stepped.isImpact = impulses[at + 2] > 0 && closing > restSpeed(pressing, motion.timeStep);
+    const Vec3 slip = end.segment<3>(at) + problem.free.segment<3>(at) - motion.free.segment<3>(at);
+    slips_[group.members[i]] = cones_.axes(i) * correctedVelocity(slip, problem.frictions[i]);
   }
 }
 

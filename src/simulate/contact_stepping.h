@@ -1,8 +1,10 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
+#include "impact/contact_cones.h"
 #include "impact/sparse_cones.h"
 #include "simulate/assembly.h"
 
@@ -40,30 +42,42 @@ class ContactStepping {
  private:
   struct Group {
     std::vector<std::size_t> members;  // of contacts_
+    std::vector<Contact> contacts;     // the same
+    std::vector<int> bodies;           // that their impulses move
     int firstBody = 0;
     bool isTied = false;
+  };
+  struct Motion {
+    const VectorX& before;  // the state at the step's start
+    VectorX start, free;    // m/s, of the contacts there and after free motion
+    double timeStep;        // s
   };
   struct Problem {
     VectorX free;  // m/s, less the speeds that must remain
     std::vector<double> frictions;
+    bool hasRebounds = false;
   };
   std::vector<Group> findGroups() const;
   double restSpeed(double pressing, double timeStep) const;
   void resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state);
-  Problem posed(const std::vector<Contact>& contacts, const VectorX& startVelocities, const VectorX& freeVelocities,
-                double timeStep) const;
-  VectorX solveUntied(const Group& group, const Problem& problem);
-  VectorX solveTied(const Problem& problem, const MatrixX& inverseMass);
+  Problem posed(const Group& group, const Motion& motion, double part) const;
+  VectorX solve(const Group& group, const Problem& problem);
+  MatrixX inverseMass() const { return tied_ ? tied_->inverseMass() : cones_.inverseMass(); }
   void count(const ConeSolution& solution);
-  void move(const std::vector<int>& bodies, bool isSmooth, const VectorX& before, double timeStep, VectorX& state);
   ConeStart startOf(const Group& group) const;
-  void separate(const std::vector<Contact>& contacts, const VectorX& gaps, bool isTied, const VectorX& before,
-                VectorX& state);
+  void move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state);
+  void moveByMean(const Group& group, const Motion& motion, VectorX& state) const;
+  void moveByEnd(const Group& group, const Motion& motion, VectorX& state) const;
+  void separate(const Group& group, const VectorX& gaps, VectorX& state);
+  void restore(const std::vector<int>& bodies, VectorX& state) const;
+  void keep(const Group& group, const Motion& motion, const Problem& problem, const VectorX& impulses,
+            const VectorX& state);
 
   const Assembly& assembly_;
   ConstraintSolver solver_;
   double overlapTolerance_ = 0;  // m
   SparseCones cones_;
+  std::optional<ContactCones> tied_;  // of a group that something ties
   std::vector<SteppedContact> contacts_, previous_;
   std::vector<Vec3> slips_, previousSlips_;  // m/s, world: velocities of the contacts with De Saxce's correction
   std::map<int, double> penalties_;          // of each group's first body

@@ -90,7 +90,9 @@ void Simulation::changeMotion() {
 }
 
 void Simulation::interpolateAt(double time, bool keepsTies) {
-  interpolate(island_.step, (time - island_.step.time) / island_.step.timeStep, reported_);
+  const double fraction = (time - island_.step.time) / island_.step.timeStep;
+  interpolate(island_.step, fraction, reported_);
+  if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->hold(fraction, reported_);
   if (!keepsTies || !solver_.hasConstraints()) return;
   findStill();
   solver_.leaveOut(still_);

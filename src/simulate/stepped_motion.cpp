@@ -73,6 +73,28 @@ void SteppedMotion::advance(double frame) {
   if (time >= start_ + static_cast<double>(stepNumber_ + 1) * method_.timeStep) ++stepNumber_;
 }
 
+void SteppedMotion::resolveContacts() {
+  isHeld_ = contacts_.isCrowded();
+  if (!isHeld_) return contacts_.resolve(island_.time, before_, island_.state);
+  contacts_.resolveStep(island_.time, before_, island_.state);
+  held_ = island_.state;
+}
+
+void SteppedMotion::hold(double fraction, VectorX& state) const {
+  if (!isHeld_) return;
+  const VectorX& free = island_.step.state;
+  const double square = fraction * fraction;
+  for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
+    centerOfMass(state, body) += square * (centerOfMass(held_, body) - centerOfMass(free, body));
+    const Quat turn = (orientation(held_, body) * orientation(free, body).conjugate()).normalized();
+    turnBody(state, body, square * 2 * turn.vec());
+    const Eigen::Index velocity = velocityOffset(state, body);
+    state.segment<kVelocitySize>(velocity) +=
+        fraction * (held_.segment<kVelocitySize>(velocity) - free.segment<kVelocitySize>(velocity));
+  }
+  dissipatedEnergy(state) += fraction * (dissipatedEnergy(held_) - dissipatedEnergy(free));
+}
+
 /// The end of the fixed step under way, or of the run; a push that begins or ends comes first.
 double SteppedMotion::nextStepEnd() const {
   double end = island_.scene.duration;

@@ -24,6 +24,9 @@ class SteppedMotion {
   /// Whether the last step kept what ties the bodies: its interpolant may be projected.
   bool keepsTies() const { return keepsTies_; }
 
+  /// Adds to a state of the last step's free motion, at a fraction of it, what contacts did that acted over all of it.
+  void hold(double fraction, VectorX& state) const;
+
   /// Whether all bodies of the island lie still.
   bool isAtRest() const;
 
@@ -56,6 +59,8 @@ class SteppedMotion {
   int eventsInWindow_ = 0;
   double windowStart_ = 0;  // s
   VectorX before_;
+  bool isHeld_ = false;  // contacts acted over all of the last step ...
+  VectorX held_;         // ... and led here
 };
 
 }  // namespace cradle
