@@ -24,18 +24,17 @@ std::vector<std::uint32_t> flatten(const std::vector<Triangle>& triangles) {
   return indices;
 }
 
-/// Distance of the corners of a regular polygon that is as large as the circle of radius 1.
-double cornerOfEqualArea(int corners) {
-  const double angle = 2 * std::numbers::pi / corners;
-  return std::sqrt(angle / std::sin(angle));
-}
-
 void describeAttribute(unsigned int attribute, int components, std::size_t stride, std::size_t offset) {
   glEnableVertexAttribArray(attribute);
   glVertexAttribPointer(attribute, components, GL_FLOAT, GL_FALSE, static_cast<int>(stride), byteOffset(offset));
 }
 
 }  // namespace
+
+double cornerOfEqualArea(int corners) {
+  const double angle = 2 * std::numbers::pi / corners;
+  return std::sqrt(angle / std::sin(angle));
+}
 
 InstanceBuffer::InstanceBuffer() {
   glGenBuffers(1, &buffer_);

@@ -53,6 +53,9 @@ class GpuMesh {
   std::uint32_t triangleCount_ = 0;
 };
 
+/// How far the corners of a polygon are from its middle that has the area of a circle of radius 1.
+double cornerOfEqualArea(int corners);
+
 /// Half a ball with 8 * 2^n vertices around its outline (ball.vert); attribute 0: angle from the middle, 1 at the
 /// outline; cosine and sine of the direction around it.
 GpuMesh makeHalfBall(int outline);

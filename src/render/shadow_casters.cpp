@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "render/gpu_mesh.h"
+#include "render/instances.h"
+
 namespace cradle {
 namespace {
 
@@ -12,13 +15,18 @@ constexpr double kMapMargin = 2;  // texels: rounding
 }  // namespace
 
 void appendCaster(const DrawnHull& hull, std::vector<DrawnHull>& casters) {
-  if (hull.count != 2) return casters.push_back(hull);
+  const double radius = cornerOfEqualArea(kOutlines.front()) * hull.radius;  // rounds are drawn as polygons
+  if (hull.count != 2) {
+    casters.push_back(hull);
+    casters.back().radius = radius;
+    return;
+  }
   const Vec3 step = (hull.centers[1] - hull.centers[0]) / kRodPieces;
   for (int i = 0; i < kRodPieces; ++i) {
     DrawnHull& piece = casters.emplace_back();
     piece.add(hull.centers[0] + i * step);
     piece.add(hull.centers[0] + (i + 1) * step);
-    piece.radius = hull.radius;
+    piece.radius = radius;
   }
 }
 

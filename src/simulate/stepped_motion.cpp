@@ -73,13 +73,6 @@ void SteppedMotion::advance(double frame) {
   if (time >= start_ + static_cast<double>(stepNumber_ + 1) * method_.timeStep) ++stepNumber_;
 }
 
-void SteppedMotion::resolveContacts() {
-  isHeld_ = contacts_.isCrowded();
-  if (!isHeld_) return contacts_.resolve(island_.time, before_, island_.state);
-  contacts_.resolveStep(island_.time, before_, island_.state);
-  held_ = island_.state;
-}
-
 void SteppedMotion::hold(double fraction, VectorX& state) const {
   if (!isHeld_) return;
   const VectorX& free = island_.step.state;
@@ -104,12 +97,15 @@ double SteppedMotion::nextStepEnd() const {
 }
 
 void SteppedMotion::resolveContacts() {
-  if (!contacts_.isCrowded())
-    contacts_.resolve(island_.time, before_, island_.state);
-  else if (island_.step.timeStep > kTimeRounding * method_.timeStep)  // no gap closes in no time
+  isHeld_ =
+      contacts_.isCrowded() && island_.step.timeStep > kTimeRounding * method_.timeStep;  // no gap closes in no time
+  if (isHeld_)
     contacts_.resolveStep(island_.time, before_, island_.state);
+  else if (!contacts_.isCrowded())
+    contacts_.resolve(island_.time, before_, island_.state);
   // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
   if (solver_.hasConstraints() && !contacts_.touching().empty()) solver_.project(island_.state);
+  if (isHeld_) held_ = island_.state;
 }
 
 /// Takes a step to `stepEnd`, or a part of it where springs, ropes or spins are too fast for the whole.

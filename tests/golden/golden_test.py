@@ -48,6 +48,7 @@ FRAMES = {  # scene: frames that are drawn; states are kept for these too
     "gears_on_platform": (0, 30, 70, 110),
     "ball_tray": (0, 60, 290),
     "box_tray": (0, 60, 290),
+    "arch": (0, 90, 200),
 }
 TOLERANCE = 1e-9
 
