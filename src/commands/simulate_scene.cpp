@@ -10,7 +10,7 @@
 #include "core/progress.h"
 #include "scene/load_scene.h"
 #include "simulate/assembly.h"
-#include "simulate/plan_text.h"
+#include "simulate/plan/plan_text.h"
 #include "simulate/simulate.h"
 #include "simulate/start_overlaps.h"
 #include "trajectory/trajectory_file.h"

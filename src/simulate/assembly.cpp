@@ -7,7 +7,7 @@
 #include "collision/broad_phase.h"
 #include "core/error.h"
 #include "simulate/colliders.h"
-#include "simulate/step_limit.h"
+#include "simulate/steps/step_limit.h"
 
 namespace cradle {
 namespace {

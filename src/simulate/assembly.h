@@ -8,7 +8,7 @@
 #include "dynamics/equations_of_motion.h"
 #include "dynamics/rope.h"
 #include "scene/scene.h"
-#include "simulate/plan.h"
+#include "simulate/plan/plan.h"
 
 namespace cradle {
 

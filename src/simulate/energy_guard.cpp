@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "dynamics/invariants.h"
-#include "simulate/step_limit.h"
+#include "simulate/steps/step_limit.h"
 
 namespace cradle {
 namespace {

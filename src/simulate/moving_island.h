@@ -7,7 +7,7 @@
 #include "collision/time_of_impact.h"
 #include "dynamics/integrators/step.h"
 #include "simulate/assembly.h"
-#include "simulate/event_log.h"
+#include "simulate/events/event_log.h"
 #include "simulate/push_schedule.h"
 #include "simulate/resting_bodies.h"
 

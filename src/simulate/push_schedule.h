@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "simulate/event_log.h"
+#include "simulate/events/event_log.h"
 
 namespace cradle {
 

@@ -6,7 +6,7 @@
 #include "impact/cone_problem.h"
 #include "impact/contact_cones.h"
 #include "impact/sparse_cones.h"
-#include "simulate/islands.h"
+#include "simulate/plan/islands.h"
 
 namespace cradle {
 namespace {

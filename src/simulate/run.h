@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dynamics/free_flight.h"
-#include "simulate/flying_balls.h"
+#include "simulate/balls/flying_balls.h"
 #include "simulate/pile.h"
 #include "simulate/simulation.h"
 

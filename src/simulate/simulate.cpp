@@ -4,7 +4,7 @@
 
 #include <ctime>
 
-#include "simulate/plan_text.h"
+#include "simulate/plan/plan_text.h"
 #include "simulate/run.h"
 
 namespace cradle {

@@ -3,8 +3,8 @@
 #include <variant>
 #include <vector>
 
-#include "simulate/event_motion.h"
-#include "simulate/stepped_motion.h"
+#include "simulate/events/event_motion.h"
+#include "simulate/steps/stepped_motion.h"
 #include "trajectory/trajectory.h"
 
 namespace cradle {

@@ -1,4 +1,4 @@
-#include "simulate/ball_cells.h"
+#include "simulate/balls/ball_cells.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

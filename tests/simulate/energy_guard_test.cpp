@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "dynamics/spring_modes.h"
 #include "experiments/experiment.h"
-#include "simulate/step_limit.h"
+#include "simulate/steps/step_limit.h"
 
 namespace cradle {
 namespace {

@@ -1,4 +1,4 @@
-#include "simulate/event_queue.h"
+#include "simulate/balls/event_queue.h"
 
 #include <gtest/gtest.h>
 

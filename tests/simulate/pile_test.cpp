@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "experiments/experiment.h"
-#include "simulate/plan.h"
-#include "simulate/plan_text.h"
+#include "simulate/plan/plan.h"
+#include "simulate/plan/plan_text.h"
 #include "trajectory/state_hash.h"
 
 namespace cradle {

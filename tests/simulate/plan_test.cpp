@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/experiment.h"
-#include "simulate/plan.h"
+#include "simulate/plan/plan.h"
 
 namespace cradle {
 namespace {

@@ -1,13 +1,13 @@
 // Bounds on where bodies can get to, against where they do get to.
 
-#include "simulate/reach.h"
+#include "simulate/plan/reach.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "experiments/experiment.h"
-#include "simulate/plan.h"
+#include "simulate/plan/plan.h"
 
 namespace cradle {
 namespace {

@@ -1,0 +1,113 @@
+// Which bodies an event brings to rest: those that are still, touch each other, and are held by forces within the
+// friction cones.
+
+#include <algorithm>
+#include <cmath>
+
+#include "impact/cone_problem.h"
+#include "impact/contact_impulse.h"
+#include "simulate/contact_response.h"
+#include "simulate/events/event_contacts.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kMostResidual = 1e-6;    // of gravity: what forces may leave of bodies at rest
+constexpr double kSpeedRounding = 1e-12;  // m/s
+
+int movingBodyOf(const Contact& contact) {
+  return contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
+}
+
+}  // namespace
+
+bool EventContacts::isAnySlow() const {
+  for (std::size_t body = 0; body < island_.assembly.mechanism.bodies.size(); ++body)
+    if (!island_.equations.isResting(body) && isSlow(body)) return true;
+  return false;
+}
+
+bool EventContacts::isSlow(std::size_t body) const {
+  const Eigen::Index index = static_cast<Eigen::Index>(body);
+  const double size = island_.assembly.radii[body], gravity = island_.assembly.mechanism.gravity.norm();
+  const double most = kSpeedRounding + stillPart_ * std::sqrt(gravity * size);
+  return std::max(linearVelocity(island_.state, index).norm(), size * angularVelocity(island_.state, index).norm()) <=
+         most;
+}
+
+/// Bodies that come to rest only together: tied, on a spring, or touching without leaving each other.
+Islands EventContacts::findRestGroups() const {
+  const Mechanism& mechanism = island_.assembly.mechanism;
+  Islands groups(mechanism.bodies.size());
+  for (const Contact& contact : touching_) {
+    const double size = island_.assembly.radii[static_cast<std::size_t>(movingBodyOf(contact))];
+    const double still = kSpeedRounding + stillPart_ * std::sqrt(mechanism.gravity.norm() * size);
+    if (contact.normal.dot(relativeVelocity(contact, island_.state)) <= still)
+      groups.join(contact.bodyA, contact.bodyB);
+  }
+  for (const SpringForce& spring : mechanism.springs) groups.join(spring.anchorA.body, spring.anchorB.body);
+  forEachTie(mechanism.constraints, [&](int bodyA, int bodyB) { groups.join(bodyA, bodyB); });
+  return groups;
+}
+
+/// Puts groups to rest that are still and that forces within the friction cones can hold; wakes those that are not.
+void EventContacts::settle() {
+  const std::size_t bodies = island_.assembly.mechanism.bodies.size();
+  const Islands groups = findRestGroups();
+  const auto groupOf = [&](std::size_t body) {
+    return static_cast<std::size_t>(groups.islandOf(static_cast<int>(body)));
+  };
+  std::vector<char> isStill(bodies, 1), isAwake(bodies, 0);
+  for (std::size_t body = 0; body < bodies; ++body) {
+    if (!isSlow(body)) isStill[groupOf(body)] = 0;
+    if (!island_.equations.isResting(body)) isAwake[groupOf(body)] = 1;
+  }
+  // What rested together may stand in several groups now.
+  for (bool woken = true; woken;) {
+    woken = false;
+    for (std::size_t body = 0; body < bodies; ++body)
+      if (isAwake[groupOf(body)])
+        for (const int other : island_.resting.wake(island_.time, static_cast<int>(body)))
+          isAwake[groupOf(static_cast<std::size_t>(other))] = 1, woken = true;
+  }
+  for (std::size_t group = 0; group < bodies; ++group) {
+    if (!isAwake[group] || !isStill[group] || !isHeld(groups, static_cast<int>(group))) continue;
+    std::vector<int> members;
+    for (std::size_t body = 0; body < bodies; ++body)
+      if (groupOf(body) == group) members.push_back(static_cast<int>(body));
+    if (!members.empty()) island_.resting.bringToRest(members, island_.state);
+  }
+}
+
+/// Whether forces at the contacts of a group can balance all that acts on it.
+bool EventContacts::isHeld(const Islands& groups, int group) {
+  const Mechanism& mechanism = island_.assembly.mechanism;
+  placeBodies(mechanism.bodies, island_.state, frames_);
+  std::vector<ContactRows> contacts;
+  std::vector<double> frictions;
+  for (const Contact& contact : touching_) {
+    if (groups.islandOf(movingBodyOf(contact)) != group) continue;
+    contacts.push_back(rowsOf(contact, island_.state, frames_));
+    frictions.push_back(island_.assembly.geometry.pairs[contact.pair].law.staticFriction);
+  }
+  std::vector<ContactConstraint> lasting;
+  std::swap(lasting, island_.assembly.mechanism.contacts);
+  island_.equations.evaluate(island_.state, rate_);
+  std::swap(lasting, island_.assembly.mechanism.contacts);
+  if (!contacts.empty()) {
+    const ContactResponse response(contacts, mechanism.bodies, frames_, solver_);
+    const ConeSolution solution = solveConeProblem(response.inverseMass(), response.accelerations(rate_), frictions);
+    response.apply(solution.impulses, rate_);
+  }
+  const double most = std::min(kMostResidual, stillPart_) * mechanism.gravity.norm();
+  for (std::size_t body = 0; body < mechanism.bodies.size(); ++body) {
+    if (groups.islandOf(static_cast<int>(body)) != group) continue;
+    const Eigen::Index index = static_cast<Eigen::Index>(body);
+    const double left = std::max(linearVelocity(rate_, index).norm(),
+                                 island_.assembly.radii[body] * angularVelocity(rate_, index).norm());
+    if (left > most) return false;
+  }
+  return true;
+}
+
+}  // namespace cradle

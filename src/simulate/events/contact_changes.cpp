@@ -1,0 +1,147 @@
+// Changes of lasting contacts within a step, looked for at a few points of its interpolant. Where forces are not
+// unique, those of the rows (the shortest) tell only that contacts hold if they lie in the friction cones; whether any
+// others do is Coulomb's problem.
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulate/events/lasting_contacts.h"
+
+namespace cradle {
+namespace {
+
+using Kind = ContactChange::Kind;
+
+constexpr int kSamples = 4;                // of a step
+constexpr double kMarginRounding = 1e-12;  // of the force, or m/s
+constexpr double kFailedPart =
+    1e-6;  // of the accelerations: less that forces leave is held; more than when it was decided
+constexpr double kLocated = 1e-11;  // of a step, on the interpolant
+constexpr int kMostCuts = 60;
+
+constexpr std::array<Kind, 3> kKinds = {Kind::release, Kind::slip, Kind::stick};
+
+}  // namespace
+
+/// In the world, of A's sliding.
+Vec3 LastingContacts::givenDirection(std::size_t contact, const VectorX& state) const {
+  const ContactConstraint& constraint = mechanism().contacts[contact];
+  const int body = constraint.surfaceB.body;
+  if (body == kFixed) return constraint.slidingDirection;
+  return orientation(state, body).normalized() * constraint.slidingDirection;
+}
+
+/// Of each contact, in the order of kKinds; infinite where there is nothing to change.
+void LastingContacts::findMargins(const VectorX& state, std::vector<std::array<double, 3>>& margins) {
+  island_.equations.evaluate(state, rate_);
+  const std::vector<ContactForce>& forces = island_.equations.contactForces();
+  margins.resize(entries_.size());
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const ContactMotion motion = mechanism().contacts[i].motion;
+    const double limit = entries_[i].pair.law.staticFriction * forces[i].normal;
+    margins[i] = {forces[i].normal / entries_[i].force, INFINITY, INFINITY};
+    if (motion == ContactMotion::sticking) margins[i][1] = (limit - forces[i].tangential.norm()) / entries_[i].force;
+    if (motion == ContactMotion::sliding) margins[i][2] = forces[i].tangentialVelocity.dot(givenDirection(i, state));
+  }
+}
+
+double LastingContacts::margin(const ContactChange& change, const VectorX& state) {
+  findMargins(state, after_);
+  return after_[change.contact][static_cast<std::size_t>(change.kind)];
+}
+
+std::optional<ContactChange> LastingContacts::firstChange() {
+  if (empty()) return std::nullopt;
+  const Step& step = island_.step;
+  findMargins(step.startState, before_);
+  std::vector<std::array<double, 3>> after;
+  for (int k = 1; k <= kSamples; ++k) {
+    const double from = static_cast<double>(k - 1) / kSamples, to = static_cast<double>(k) / kSamples;
+    interpolate(step, to, sample_);
+    findMargins(sample_, after);
+    std::optional<ContactChange> first;
+    bool isDoubtful = false;
+    for (std::size_t i = 0; i < entries_.size(); ++i)
+      for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
+        if (!(after[i][kind] < -kMarginRounding)) continue;
+        if (entries_[i].isRedundant && kKinds[kind] != Kind::stick) {
+          isDoubtful = true;
+          continue;
+        }
+        ContactChange change{kKinds[kind], 0, i};
+        change.fraction = locate(change, from, before_[i][kind], to, after[i][kind]);
+        if (!first || change.fraction < first->fraction) first = change;
+      }
+    if (isDoubtful) {
+      const double end = first ? first->fraction : to;
+      if (const auto failure = firstFailure(from, end)) first = ContactChange{Kind::redundant, *failure, 0};
+    }
+    if (first) return first;
+    std::swap(before_, after);
+  }
+  return std::nullopt;
+}
+
+/// Where between two points of the step a margin falls to zero, on the interpolant (Illinois).
+double LastingContacts::locate(const ContactChange& change, double from, double marginFrom, double to,
+                               double marginTo) {
+  double weightFrom = std::max(marginFrom, kMarginRounding), weightTo = marginTo;
+  for (int i = 0; i < kMostCuts && to - from > kLocated; ++i) {
+    const double cut = to - (to - from) * weightTo / (weightTo - weightFrom);
+    interpolate(island_.step, cut, sample_);
+    const double found = margin(change, sample_);
+    if (std::abs(found) <= kMarginRounding) return cut;
+    if (found > 0)
+      from = cut, weightFrom = found, weightTo /= 2;
+    else
+      to = cut, weightTo = found, weightFrom /= 2;
+  }
+  return to;
+}
+
+/// Whether some forces within the friction cones keep all contacts as they are.
+bool LastingContacts::isHeldTogether(const VectorX& state) {
+  placeBodies(mechanism().bodies, state, frames_);
+  std::vector<ContactRows> rows;
+  std::vector<const Entry*> members;
+  std::vector<Entry> entries = entries_;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    ContactRows contact{mechanism().contacts[i], placeOf(mechanism().contacts[i], state, frames_), {}};
+    const auto tangents = tangentRows(contact.constraint, contact.place);
+    contact.rows = {tangents[0], tangents[1], normalRow(contact.constraint, contact.place)};
+    if (contact.constraint.motion == ContactMotion::sliding)
+      entries[i].direction = slidingDirection(contact.constraint, contact.place, frames_);
+    rows.push_back(contact);
+    members.push_back(&entries[i]);
+  }
+  ConstraintSolver ties(mechanism().constraints, mechanism().bodies);
+  if (ties.hasConstraints()) ties.factorize(state, frames_);
+  std::vector<ContactConstraint> held;
+  std::swap(held, mechanism().contacts);
+  island_.equations.evaluate(state, rate_);
+  std::swap(held, mechanism().contacts);
+  const ContactResponse response(rows, mechanism().bodies, frames_, ties);
+  const ConeSolution solution = solve(members, rows, response);
+  const double most =
+      kFailedPart * std::max(response.accelerations(rate_).cwiseAbs().maxCoeff(), mechanism().gravity.norm());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Vec3 motion = solution.velocities.segment<3>(3 * static_cast<Eigen::Index>(i));
+    if (std::abs(motion.z()) > most) return false;
+    if (entries[i].sticks && motion.head<2>().norm() > most) return false;
+  }
+  return true;
+}
+
+/// Where between two points of the step no forces hold the contacts any more.
+std::optional<double> LastingContacts::firstFailure(double from, double to) {
+  interpolate(island_.step, to, sample_);
+  if (isHeldTogether(sample_)) return std::nullopt;
+  while (to - from > kLocated) {
+    const double middle = from + (to - from) / 2;
+    interpolate(island_.step, middle, sample_);
+    (isHeldTogether(sample_) ? from : to) = middle;
+  }
+  return to;
+}
+
+}  // namespace cradle

@@ -1,0 +1,257 @@
+#include "simulate/events/event_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/core.h"
+#include "dynamics/invariants.h"
+#include "impact/cone_problem.h"
+#include "impact/contact_impulse.h"
+#include "impact/frictional_impact.h"
+#include "impact/generalized_reflections.h"
+#include "simulate/contact_response.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kTouchPart = 0.1;         // of the accuracy, in sizes of a body: nearer is touching ...
+constexpr double kLeastTouchPart = 1e-11;  // ... but not within rounding
+constexpr double kMostTouchPart = 1e-8;
+constexpr double kMostTouchError = 1e-6;   // of a size: so well two ways to find a gap agree
+constexpr double kDeadBandPart = 1e-12;    // of the smallest size
+constexpr double kStandstillPart = 1e-12;  // of the fastest speed at an impact: what is left is rounding
+constexpr double kLastBouncePart = 1e-7;   // of sqrt(acceleration x size): bounces lower than 5e-15 of the size
+constexpr double kMostStillPart = 1e-7;    // of sqrt(g x size)
+constexpr double kSameCorner = 1e-6;       // of a size
+
+double smallestSize(const ContactGeometry& geometry) {
+  double smallest = INFINITY;
+  for (const Collider& collider : geometry.colliders)
+    if (collider.body != kFixed) smallest = std::min(smallest, collider.boundingRadius);
+  return std::isfinite(smallest) ? smallest : 1;
+}
+
+double openingSpeed(const Contact& contact, const VectorX& state) {
+  return contact.normal.dot(relativeVelocity(contact, state));
+}
+
+/// The fastest that any point moves at a contact, in m/s.
+double contactSpeed(const Contact& contact, const VectorX& state) {
+  double speed = 0;
+  for (const int body : {contact.bodyA, contact.bodyB})
+    if (body != kFixed) speed = std::max(speed, linearVelocity(state, body).norm());
+  return speed;
+}
+
+double openingAcceleration(const Contact& contact, const VectorX& state, const VectorX& rate) {
+  return contact.normal.dot(pointAcceleration(contact.bodyB, contact.point, state, rate) -
+                            pointAcceleration(contact.bodyA, contact.point, state, rate));
+}
+
+/// Whether a collider with corners has one at `point` (m, world).
+bool hasCornerAt(const Collider& collider, const Vec3& point, const VectorX& state) {
+  if (collider.radius > 0) return false;
+  const Vec3 local = poseOf(state, collider.body).inverse() * point;
+  const double near = kSameCorner * collider.boundingRadius;
+  if (collider.kind() == ColliderKind::cylinder) {  // any point of a rim
+    const Core core(collider, {});
+    const double side = core.axis().dot(local - core.center()) < 0 ? -1 : 1;
+    return (core.rimPoint(side, local - core.center()) - local).squaredNorm() < near * near;
+  }
+  return std::any_of(collider.points.begin(), collider.points.end(),
+                     [&](const Vec3& corner) { return (corner - local).squaredNorm() < near * near; });
+}
+
+/// Where two flat faces touch, a contact may be a corner of either of them; where their edges cross it is none.
+void findCorner(const ContactGeometry& geometry, const VectorX& state, Contact& contact) {
+  const ColliderPair& pair = geometry.pairs[contact.pair];
+  const double least = std::min(contact.radiusA, contact.radiusB), most = std::max(contact.radiusA, contact.radiusB);
+  if (pair.againstPlane || least != 0 || !std::isinf(most)) return;
+  contact.radiusA = contact.radiusB = INFINITY;
+  if (hasCornerAt(geometry.colliders[pair.a], contact.point, state))
+    contact.radiusA = 0;
+  else if (hasCornerAt(geometry.colliders[pair.b], contact.point, state))
+    contact.radiusB = 0;
+}
+
+int movingBodyOf(const Contact& contact) {
+  return contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
+}
+
+}  // namespace
+
+EventContacts::EventContacts(MovingIsland& island, RopeStage& ropes, double accuracy)
+    : island_(island),
+      ropes_(ropes),
+      lasting_(island),
+      solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
+      stillPart_(std::min(kMostStillPart, accuracy)) {
+  size_ = smallestSize(island.assembly.geometry);
+  touchTolerance_ = size_ * std::clamp(kTouchPart * accuracy, kLeastTouchPart, kMostTouchPart);
+  deadBand_ = kDeadBandPart * size_;
+}
+
+TouchingFeatures EventContacts::touching() {
+  return {touchTolerance_, deadBand_, &lasting_.held()};
+}
+
+void EventContacts::resolve(const std::optional<ContactChange>& change, const std::optional<std::size_t>& meeting) {
+  if (!island_.mayTouch()) return;
+  std::vector<char> rested;
+  for (std::size_t body = 0; body < island_.assembly.mechanism.bodies.size(); ++body)
+    rested.push_back(island_.equations.isResting(body));
+  restDelay_ = 0;
+  findTouching(meeting);
+  if (solver_.hasConstraints()) solver_.factorize(island_.state);
+  collide();
+  lasting_.letGo(change);
+  settle();
+  lasting_.decide(touching_, solver_);
+  keepTogether();
+  if (!lasting_.empty() && isAnySlow()) {  // what sticks is still now
+    settle();
+    lasting_.letGoResting();
+  }
+  recordRests(rested);
+}
+
+/// Lasting contacts have no gap and do not leave each other, to rounding; those that stick do not slide.
+void EventContacts::keepTogether() {
+  if (lasting_.empty()) return;
+  VectorX& state = island_.state;
+  const double before = kineticEnergy(island_.assembly.mechanism.bodies, state);
+  island_.equations.project(state);
+  dissipatedEnergy(state) += before - kineticEnergy(island_.assembly.mechanism.bodies, state);
+}
+
+/// What meets now touches, if its gap is known to that or not.
+void EventContacts::findTouching(const std::optional<std::size_t>& meeting) {
+  const ContactGeometry& geometry = island_.assembly.geometry;
+  findContacts(geometry, island_.state, touchTolerance_, touching_);
+  const auto isOfMeeting = [&](const Contact& contact) { return contact.pair == *meeting; };
+  if (!meeting || std::any_of(touching_.begin(), touching_.end(), isOfMeeting)) return findCorners();
+  std::vector<Contact> near;
+  appendContacts(geometry, *meeting, island_.state, kMostTouchError * size_, near);
+  const auto nearest = std::min_element(near.begin(), near.end(), [](const Contact& left, const Contact& right) {
+    return left.separation < right.separation;
+  });
+  if (nearest != near.end()) touching_.push_back(*nearest);
+  findCorners();
+}
+
+void EventContacts::findCorners() {
+  for (Contact& contact : touching_) findCorner(island_.assembly.geometry, island_.state, contact);
+}
+
+/// Contacts that close are impacts, and then all that touch each other there, and all ropes that cannot lengthen, take
+/// part.
+void EventContacts::collide() {
+  double fastest = 0;
+  for (const Contact& contact : touching_) fastest = std::max(fastest, contactSpeed(contact, island_.state));
+  const auto closes = [&](const Contact& contact) {
+    return openingSpeed(contact, island_.state) < -kStandstillPart * fastest;
+  };
+  if (std::none_of(touching_.begin(), touching_.end(), closes)) return;
+  std::vector<ImpactContact> ropes = ropes_.beginImpact(island_.state);
+  if (!ropes.empty() && solver_.hasConstraints()) solver_.factorize(island_.state);
+  const Islands together = findStruckTogether(ropes);
+  std::vector<char> isStruck(island_.assembly.mechanism.bodies.size(), 0);
+  for (const Contact& contact : touching_)
+    if (closes(contact)) isStruck[static_cast<std::size_t>(together.islandOf(movingBodyOf(contact)))] = 1;
+  for (std::size_t group = 0; group < isStruck.size(); ++group)
+    if (isStruck[group]) strike(together, static_cast<int>(group), ropes);
+  ropes_.endImpact(island_.time, ropes, island_.state);
+  if (!ropes.empty() && solver_.hasConstraints()) solver_.factorize(island_.state);
+  for (const Contact& contact : touching_) wakeStruck(contact);
+  for (const ImpactContact& rope : ropes) wakeStruck(rope.contact);
+}
+
+/// Bodies that an impact at one of them moves.
+Islands EventContacts::findStruckTogether(const std::vector<ImpactContact>& ropes) const {
+  Islands islands(island_.assembly.mechanism.bodies.size());
+  for (const Contact& contact : touching_) islands.join(contact.bodyA, contact.bodyB);
+  for (const ImpactContact& rope : ropes) islands.join(rope.contact.bodyA, rope.contact.bodyB);
+  forEachTie(island_.assembly.mechanism.constraints, [&](int bodyA, int bodyB) { islands.join(bodyA, bodyB); });
+  return islands;
+}
+
+void EventContacts::strike(const Islands& together, int group, std::vector<ImpactContact>& ropes) {
+  const auto isIn = [&](const Contact& contact) { return together.islandOf(movingBodyOf(contact)) == group; };
+  std::vector<ImpactContact> impacts;
+  for (const Contact& contact : touching_)
+    if (isIn(contact)) impacts.push_back({contact, island_.assembly.geometry.pairs[contact.pair].law, 0, Vec3::Zero()});
+  const std::size_t contacts = impacts.size();
+  for (const ImpactContact& rope : ropes)
+    if (isIn(rope.contact)) impacts.push_back(rope);
+  resolveImpact(impacts);
+  for (std::size_t i = 0; i < contacts; ++i) {
+    const double impulse = impacts[i].contact.normal.dot(impacts[i].impulse);
+    if (impulse > 0) island_.log.recordContact(island_.time, EventKind::impact, impacts[i].contact, impulse);
+  }
+  std::size_t next = contacts;
+  for (ImpactContact& rope : ropes)
+    if (isIn(rope.contact)) rope.impulse = impacts[next++].impulse;
+}
+
+void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
+  VectorX& state = island_.state;
+  const VectorX approach = state;
+  const ImpulseResponse response(island_.assembly.mechanism.bodies, solver_);
+  const bool hasFriction = std::any_of(impacts.begin(), impacts.end(), [](const ImpactContact& impact) {
+    return impact.law.staticFriction > 0 || impact.law.dynamicFriction > 0;
+  });
+  const auto solve = [&] {
+    hasFriction ? resolveFrictionalImpact(impacts, response, state) : resolveReflections(impacts, response, state);
+  };
+  solve();
+  if (endBounces(approach, impacts)) {
+    state = approach;
+    for (ImpactContact& impact : impacts) impact.impulse.setZero();
+    solve();
+  }
+  for (const ImpactContact& impact : impacts) {
+    const Vec3 meanVelocity =
+        (relativeVelocity(impact.contact, approach) + relativeVelocity(impact.contact, state)) / 2;
+    dissipatedEnergy(state) -= impact.impulse.dot(meanVelocity);
+  }
+}
+
+/// Rebounds that are over before they are seen are left out: an accumulation of bounces ends here, as long before its
+/// time as all of them would take. True if there are any.
+bool EventContacts::endBounces(const VectorX& approach, std::vector<ImpactContact>& impacts) {
+  const VectorX& state = island_.state;
+  bool isEvaluated = false, found = false;
+  for (ImpactContact& impact : impacts) {
+    const double speed = openingSpeed(impact.contact, state), restitution = impact.law.restitution;
+    const bool rebounds = openingSpeed(impact.contact, approach) < 0 && speed > 0 && restitution < 1;
+    if (!rebounds || restitution == 0) continue;
+    if (!isEvaluated) island_.equations.evaluate(state, rate_);
+    isEvaluated = true;
+    const double closing = -openingAcceleration(impact.contact, state, rate_);
+    const double size = island_.assembly.radii[static_cast<std::size_t>(movingBodyOf(impact.contact))];
+    if (!(closing > 0) || speed > kLastBouncePart * std::sqrt(closing * size)) continue;
+    impact.restSpeed = INFINITY;
+    restDelay_ = std::max(restDelay_, 2 * speed / (closing * (1 - restitution)));
+    found = true;
+  }
+  return found;
+}
+
+/// Bodies that an impact has set in motion, and all that rests with them.
+void EventContacts::wakeStruck(const Contact& contact) {
+  for (const int body : {contact.bodyA, contact.bodyB})
+    if (body != kFixed && island_.resting.isResting(body) && !isSlow(static_cast<std::size_t>(body)))
+      island_.resting.wake(island_.time, body);
+}
+
+void EventContacts::recordRests(const std::vector<char>& restedBefore) {
+  for (std::size_t body = 0; body < restedBefore.size(); ++body) {
+    const bool rests = island_.equations.isResting(body);
+    if (rests == static_cast<bool>(restedBefore[body])) continue;
+    const double time = island_.time + (rests ? restDelay_ : 0);
+    island_.log.recordBody(time, rests ? EventKind::rest : EventKind::wake, static_cast<int>(body),
+                           centerOfMass(island_.state, static_cast<Eigen::Index>(body)));
+  }
+}
+
+}  // namespace cradle

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <vector>
+
+#include "impact/pairwise.h"
+#include "simulate/events/lasting_contacts.h"
+#include "simulate/moving_island.h"
+#include "simulate/plan/islands.h"
+#include "simulate/rope_stage.h"
+
+namespace cradle {
+
+/// What happens where bodies touch at an event: impacts rebound, what forces hold comes to rest, and what they press
+/// together lasts.
+class EventContacts {
+ public:
+  /// Keeps references to both. `accuracy` is the scene's.
+  EventContacts(MovingIsland& island, RopeStage& ropes, double accuracy);
+
+  /// What touches as the island's step begins.
+  TouchingFeatures touching();
+
+  LastingContacts& lasting() { return lasting_; }
+
+  /// Why contacts cannot last as rows, if they can't; else empty.
+  std::string_view fault() const { return lasting_.fault(); }
+
+  /// Farther apart (m) nothing is looked at.
+  double margin() const { return touchTolerance_; }
+
+  /// Contacts in the island's state now: changes its velocities. `change` is what happens to a lasting one, if
+  /// anything does; `meeting` the pair that comes together.
+  void resolve(const std::optional<ContactChange>& change = std::nullopt,
+               const std::optional<std::size_t>& meeting = std::nullopt);
+
+ private:
+  void findTouching(const std::optional<std::size_t>& meeting);
+  void findCorners();
+  void collide();
+  Islands findStruckTogether(const std::vector<ImpactContact>& ropes) const;
+  void strike(const Islands& together, int group, std::vector<ImpactContact>& ropes);
+  void resolveImpact(std::vector<ImpactContact>& impacts);
+  bool endBounces(const VectorX& approach, std::vector<ImpactContact>& impacts);
+  void wakeStruck(const Contact& contact);
+  void settle();
+  Islands findRestGroups() const;
+  bool isAnySlow() const;
+  bool isSlow(std::size_t body) const;
+  bool isHeld(const Islands& groups, int group);
+  void keepTogether();
+  void recordRests(const std::vector<char>& restedBefore);
+
+  MovingIsland& island_;
+  RopeStage& ropes_;
+  LastingContacts lasting_;
+  ConstraintSolver solver_;
+  double stillPart_;                  // of the speed that a body gains when it falls by its size: slower is still
+  double size_;                       // m: of the smallest body
+  double touchTolerance_, deadBand_;  // m
+  double restDelay_ = 0;              // s: how long the bounces that are left out would take
+  std::vector<Contact> touching_;
+  std::vector<BodyFrame> frames_;
+  VectorX rate_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,56 @@
+#include "simulate/events/event_location.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+constexpr int kMostCorrections = 60;  // steps tried to find an event; 3 are usual
+
+constexpr double kFirstReach = 1e-6;  // of the step: so far around the guess an event is looked for at first
+constexpr double kGrowingReach = 16;
+
+}  // namespace
+
+// The Illinois variant of regula falsi (M. Dowell, P. Jarratt, 1971).
+void endStepAtEvent(MovingIsland& island, Integrator integrate, double guess, double tolerance,
+                    const EventMargin& margin) {
+  Step& step = island.step;
+  const double whole = step.timeStep;
+  const auto marginAfter = [&](double part) {
+    keepStartRate(step);
+    integrate(island.rightHandSide, island.state, island.time, part, step);
+    return margin(step.state);
+  };
+  double late = guess, lateMargin = marginAfter(late);
+  if (std::abs(lateMargin) <= tolerance) return;
+  double early = 0, earlyMargin = tolerance, reach = kFirstReach * whole;
+  while (lateMargin > 0 && late < whole) {  // the method is later than its interpolant
+    early = late, earlyMargin = lateMargin;
+    late = std::min(whole, late + reach), lateMargin = marginAfter(late), reach *= kGrowingReach;
+  }
+  // Near the guess: a contact, or a rope, that has just rebounded has no margin at the start either.
+  for (double part = guess - reach; early == 0 && part > 0; part -= reach, reach *= kGrowingReach) {
+    const double found = marginAfter(part);
+    if (found > 0)
+      early = part, earlyMargin = found;
+    else
+      late = part, lateMargin = found;
+  }
+  double earlyWeight = earlyMargin, lateWeight = lateMargin;
+  for (int i = 0; i < kMostCorrections && lateMargin < -tolerance; ++i) {
+    const double part = late + (early - late) * lateWeight / (lateWeight - earlyWeight);
+    const double found = marginAfter(part);
+    if (std::abs(found) <= tolerance) return;
+    if (found > 0) {
+      early = part, earlyWeight = found, lateWeight /= 2;
+    } else {
+      late = part, lateMargin = lateWeight = found, earlyWeight /= 2;
+    }
+  }
+  keepStartRate(step);
+  integrate(island.rightHandSide, island.state, island.time, late, step);
+}
+
+}  // namespace cradle

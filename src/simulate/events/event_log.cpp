@@ -1,0 +1,25 @@
+#include "simulate/events/event_log.h"
+
+#include <utility>
+
+namespace cradle {
+
+void EventLog::recordContact(double time, EventKind kind, const Contact& contact, double impulse) {
+  const auto [a, b] = bodiesOf(assembly_, assembly_.geometry.pairs[contact.pair]);
+  events_.push_back({time, kind, a, b, contact.point, contact.normal, impulse});
+}
+
+void EventLog::recordBody(double time, EventKind kind, int movingBody, const Vec3& point) {
+  events_.push_back(
+      {time, kind, assembly_.sceneBodies[static_cast<std::size_t>(movingBody)], kWorld, point, Vec3::Zero(), 0});
+}
+
+std::vector<Event> EventLog::take() {
+  return std::exchange(events_, {});
+}
+
+std::vector<std::string> EventLog::takeWarnings() {
+  return std::exchange(warnings_, {});
+}
+
+}  // namespace cradle

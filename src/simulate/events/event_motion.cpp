@@ -1,0 +1,262 @@
+#include "simulate/events/event_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dynamics/integrators/dop853.h"
+#include "simulate/events/event_location.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kRopeTolerance = 1e-13;     // of the length, or of the tension that is left
+constexpr double kContactTolerance = 1e-12;  // of the force, or m/s
+constexpr double kTimeRounding = 1e-9;       // of a step: remainders below it are rounding
+constexpr double kImpactPart = 1e-3;  // of the margin of contacts: a gap left that the step has to be taken anew for
+constexpr double kShortCorrection = 1e-3;  // of the step: so far the state at an impact is corrected along its rate
+constexpr double kSlopePart = 1e-6;        // of the step, to find the slope of a gap
+constexpr double kMostGrowth = 2;  // of the longest of the last steps: farther ahead no contact is looked for in vain
+
+constexpr double kLeastLookahead = 1.0 / 64;  // of the step that the accuracy allows
+
+constexpr double kManyTurns = 100;       // rad: beyond, orientations need a tighter tolerance
+constexpr double kTurningPart = 0.1;     // of the tolerance, for these
+constexpr double kShortTimeStep = 1e-9;  // of the run's duration: nobody waits for so many steps
+constexpr int kMostShortSteps = 1000;    // in a row; after an event some are short
+constexpr double kMostTieError = 1e-9;   // m (a m of coordinates) or rad: projection leaves 1e-15
+constexpr double kTieErrorPart = 0.1;    // of the accuracy: so much is left now and then where ties are all but jammed
+constexpr double kUnitLength = 1e-9;     // how far |q|^2 may be from 1 before it is made 1
+
+constexpr int kMostEvents = 500;
+constexpr double kEventWindow = 1.0 / 60;  // s, in which there may be so many
+constexpr int kEventsAFailure = 50;        // that take no longer than to find where redundant contacts fail
+
+/// Errors of orientations add up over the turns: those of bodies that turn by more than 100 rad are kept smaller.
+VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double duration) {
+  VectorX tolerance = stateTolerance(bodyCount(state), method.tolerance, method.tolerance);
+  for (Eigen::Index body = 0; body < bodyCount(state); ++body)
+    if (angularVelocity(state, body).norm() * duration > kManyTurns)
+      tolerance.segment<4>(body * kPoseSize + 3) *= kTurningPart;
+  return tolerance;
+}
+
+}  // namespace
+
+EventMotion::EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method)
+    : island_(island),
+      ropes_(ropes),
+      method_(method),
+      contacts_(island, ropes, island.scene.accuracy),
+      solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
+      tolerance_(toleranceOf(method, island.state, island.scene.duration)),
+      windowStart_(island.time) {
+  lengths_.fill(island_.scene.duration);
+  island_.step.startRateIsKnown = false;
+  island_.findNearPairsNow(contacts_.margin());
+  ropes_.setTimeStep(0);
+  contacts_.resolve();
+  ropes_.resolve(island_.time, island_.state);
+  if (island_.beginAndEndPushes()) contacts_.resolve();
+  island_.requireUnsolvedPairsApart();
+  if (solver_.hasConstraints()) solver_.factorize(island_.state);
+  startTieError_ = solver_.largestError();
+  // From here on: what steps of one length left of overlaps is taken out by now, and the energy of that with it.
+  guard_.emplace(island_.assembly, island_.state, method_, island_.scene.duration);
+}
+
+void EventMotion::advance(double frame) {
+  double& time = island_.time;
+  Step& step = island_.step;
+  const double stepEnd = std::min(island_.scene.duration, island_.pushes.nextChange());
+
+  // How far do bodies move freely?
+  takeStep(stepEnd);
+  Event event = stopAtFirstEvent();
+  while (event.any() && !isStillAccurate()) {
+    takeStep(stepEnd);
+    event = stopAtFirstEvent();
+  }
+  time = step.time + step.timeStep;
+  if (!event.any() && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
+
+  // What the step's interpolant needs belongs to the forces of now.
+  if (time > frame) prepareInterpolant(island_.rightHandSide, step);
+
+  // Take out what the step left wrong. Then what changes here?
+  island_.state = step.state;
+  tidyState();
+  changeForces(event);
+  guard_->check(island_.state, time, step.timeStep);
+  island_.requireUnsolvedPairsApart();
+  if (event.any()) countEvent(event);
+}
+
+/// Steps until one is as accurate as asked.
+void EventMotion::takeStep(double stepEnd) {
+  Step& step = island_.step;
+  if (std::exchange(isContinuous_, false)) carryEndRate(step);
+  if (stepSize_.timeStep == 0) {
+    beginStep(island_.rightHandSide, island_.state, island_.time, stepEnd - island_.time, step);
+    stepSize_.timeStep = firstTimeStep(island_.rightHandSide, tolerance_, step);
+  }
+  while (true) {
+    const double planned = std::min(stepSize_.timeStep, longestStep()), left = stepEnd - island_.time;
+    const double length = planned >= left * (1 - kTimeRounding) ? left : planned;
+    method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
+    if (acceptStep(errorNorm(step, tolerance_), step.timeStep, stepSize_)) break;
+    keepStartRate(step);
+    if (stepSize_.timeStep < kShortestTimeStep * island_.scene.duration)
+      guard_->failAtShortestStep(island_.state, island_.time);
+  }
+  shortSteps_ = stepSize_.timeStep < kShortTimeStep * island_.scene.duration ? shortSteps_ + 1 : 0;
+  if (shortSteps_ > kMostShortSteps) guard_->failAtShortSteps(island_.state, island_.time, step.timeStep);
+}
+
+/// Whether a step that was cut short is accurate too: where forces turn quickly, the long one may have been by luck. If
+/// not, shorter ones are tried.
+bool EventMotion::isStillAccurate() {
+  Step& step = island_.step;
+  const double error = errorNorm(step, tolerance_);
+  if (error <= 1) return true;
+  acceptStep(error, step.timeStep, stepSize_);
+  keepStartRate(step);
+  if (stepSize_.timeStep < kShortestTimeStep * island_.scene.duration)
+    guard_->failAtShortestStep(island_.state, island_.time);
+  return false;
+}
+
+/// Where bodies meet often, no step goes far beyond the next meeting.
+double EventMotion::longestStep() const {
+  return std::max(kMostGrowth * *std::max_element(lengths_.begin(), lengths_.end()),
+                  kLeastLookahead * stepSize_.timeStep);
+}
+
+EventMotion::Event EventMotion::findFirstEvent() {
+  Step& step = island_.step;
+  prepareInterpolant(island_.rightHandSide, step);
+  Event event;
+  if (island_.mayTouch()) {
+    island_.findNearPairs(contacts_.margin());
+    event.impact = island_.search.first(step, contacts_.touching());
+  }
+  event.rope = ropes_.firstChange(step);
+  event.contact = contacts_.lasting().firstChange();
+  const double impact = event.impact ? event.impact->fraction : 2, rope = event.rope ? event.rope->fraction : 2,
+               contact = event.contact ? event.contact->fraction : 2, first = std::min({impact, rope, contact});
+  if (rope > first) event.rope.reset();
+  if (contact > first || event.rope) event.contact.reset();
+  if (impact > first || event.rope || event.contact) event.impact.reset();
+  return event;
+}
+
+/// Cuts the step at the first event in it. The state there is a step of its own, never the interpolant, whose error
+/// would let bodies overlap.
+EventMotion::Event EventMotion::stopAtFirstEvent() {
+  if (!island_.mayTouch() && !ropes_.hasRopes()) return {};
+  Step& step = island_.step;
+  const Event event = findFirstEvent();
+  const double whole = step.timeStep;
+  if (event.impact) {
+    stopAtImpact(*event.impact);
+  } else if (event.rope) {
+    endStepAtEvent(island_, method_.integrate, event.rope->fraction * whole, kRopeTolerance,
+                   [&](const VectorX& state) { return ropes_.margin(*event.rope, state); });
+  } else if (event.contact && event.contact->kind == ContactChange::Kind::redundant) {
+    keepStartRate(step);
+    method_.integrate(island_.rightHandSide, island_.state, island_.time, event.contact->fraction * whole, step);
+  } else if (event.contact) {
+    endStepAtEvent(island_, method_.integrate, event.contact->fraction * whole, kContactTolerance,
+                   [&](const VectorX& state) { return contacts_.lasting().margin(*event.contact, state); });
+  }
+  if (island_.mayTouch()) lengths_[lengthIndex_++ % lengths_.size()] = step.timeStep;
+  return event;
+}
+
+/// Ends the step where a gap is closed. What the interpolant's error leaves of it is taken out along the rate there.
+void EventMotion::stopAtImpact(const ImpactTime& impact) {
+  const TouchingFeatures touching = contacts_.touching();
+  const auto gap = [&](const VectorX& state) { return island_.search.margin(impact, touching, state); };
+  Step& step = island_.step;
+  const double length = impact.fraction * step.timeStep;
+  keepStartRate(step);
+  method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
+  evaluateEndRate(island_.rightHandSide, step);
+  const double left = gap(step.state), before = kSlopePart * length;
+  step.work = step.state - before * step.endRate;
+  const double correction = left * before / (gap(step.work) - left);
+  step.work = step.state + correction * step.endRate;
+  const double tolerance = kImpactPart * contacts_.margin();
+  if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))
+    return endStepAtEvent(island_, method_.integrate, length, tolerance, gap);
+  std::swap(step.state, step.work);
+  step.timeStep += correction;
+}
+
+/// Constraints hold to rounding after each step. Orientations are of unit length nearly enough for the equations, which
+/// take their direction; a state that nothing touches lets the next step begin with this one's last rate. (Ropes may
+/// pull at it yet.)
+void EventMotion::tidyState() {
+  VectorX& state = island_.state;
+  bool isTouched = false;
+  if (!contacts_.lasting().empty()) {
+    island_.equations.project(state);
+    isTouched = true;
+  }
+  if (solver_.hasConstraints()) {
+    solver_.leaveOut(island_.equations.resting());
+    solver_.project(state);
+    requireTiesKept();
+    isTouched = true;
+  }
+  for (Eigen::Index body = 0; body < bodyCount(state); ++body)
+    isTouched = isTouched || std::abs(orientation(state, body).squaredNorm() - 1) > kUnitLength;
+  if (isTouched) normalizeOrientations(state);
+  isContinuous_ = !isTouched && !ropes_.hasRopes();
+}
+
+/// Where ties leave no motion, forces without bound stop the bodies: what would follow is no motion of theirs. Anchors
+/// that did not quite meet at the start never will.
+void EventMotion::requireTiesKept() const {
+  const VectorX& state = island_.state;
+  const double error = solver_.largestError(), size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
+  const double most = std::max(kMostTieError, kTieErrorPart * island_.scene.accuracy);
+  if (error > startTieError_ + most * (1 + size)) guard_->failAtTies(state, island_.time, error);
+}
+
+/// What acts from now on.
+void EventMotion::changeForces(const Event& event) {
+  if (event.impact || event.contact || event.rope)  // a rope may go taut as bodies meet
+    contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
+  else
+    contacts_.lasting().followSliding();
+  const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
+  const bool isPulled = ropes_.resolve(island_.time, island_.state);
+  keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
+  const bool isPushed = island_.beginAndEndPushes();
+  if (isPushed || isPulled) contacts_.resolve();
+  if (event.any() || isPushed) isContinuous_ = false;
+}
+
+bool EventMotion::isAtRest() const {
+  return island_.mayTouch() && island_.resting.allRest() && island_.time < island_.pushes.nextChange();
+}
+
+void EventMotion::restUntil(double time) {
+  island_.time = std::min(time, island_.pushes.nextChange());
+  if (island_.beginAndEndPushes()) contacts_.resolve();
+  isContinuous_ = false;
+}
+
+void EventMotion::countEvent(const Event& event) {
+  if (island_.time > windowStart_ + kEventWindow) windowStart_ = island_.time, eventsInWindow_ = 0;
+  const bool isFailure = event.contact && event.contact->kind == ContactChange::Kind::redundant;
+  eventsInWindow_ += isFailure ? kEventsAFailure : 1;
+}
+
+std::string_view EventMotion::fault() const {
+  if (eventsInWindow_ > kMostEvents) return "contacts change more than 500 times in 1/60 s, or redundant ones 10 times";
+  return contacts_.fault();
+}
+
+}  // namespace cradle

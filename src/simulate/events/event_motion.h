@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "dynamics/integrators/step_size.h"
+#include "simulate/energy_guard.h"
+#include "simulate/events/event_contacts.h"
+#include "simulate/moving_island.h"
+#include "simulate/rope_stage.h"
+
+namespace cradle {
+
+/// Moves an island with DOP853 in steps as long as the accuracy allows. Each step ends at the first event in it: bodies
+/// meet, ropes go taut or slack, pushes begin or end. Between events the motion is of order 8.
+class EventMotion {
+ public:
+  /// Keeps references to the island, which it moves, and its ropes.
+  EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method);
+
+  /// Takes a step. `frame` (s) is the next time whose state is asked for. Throws Error(unstable) if the state blows up.
+  void advance(double frame);
+
+  /// Why events serve the island no more, if they don't: what lasts are not contacts of balls, corners and faces, they
+  /// are too many, or events follow each other too fast. Empty if they do.
+  std::string_view fault() const;
+
+  /// Whether the last step kept what ties the bodies: its interpolant may be projected.
+  bool keepsTies() const { return keepsTies_; }
+
+  /// Whether all bodies of the island lie still.
+  bool isAtRest() const;
+
+  /// Lets time pass in which nothing moves.
+  void restUntil(double time);
+
+ private:
+  void takeStep(double stepEnd);
+  /// What ends a step: at most one of them.
+  struct Event {
+    std::optional<ImpactTime> impact;
+    std::optional<RopeChange> rope;
+    std::optional<ContactChange> contact;
+    bool any() const { return impact || rope || contact; }
+  };
+  Event findFirstEvent();
+  Event stopAtFirstEvent();
+  void stopAtImpact(const ImpactTime& impact);
+  void tidyState();
+  void requireTiesKept() const;
+  void changeForces(const Event& event);
+  bool isStillAccurate();
+  double longestStep() const;
+  void countEvent(const Event& event);
+
+  MovingIsland& island_;
+  RopeStage& ropes_;
+  ChosenMethod method_;
+  EventContacts contacts_;
+  std::optional<EnergyGuard> guard_;  // always there once begun
+  ConstraintSolver solver_;
+  VectorX tolerance_;
+  double startTieError_ = 0;  // m or rad
+  StepSize stepSize_;
+  std::array<double, 8> lengths_;  // s: of the last steps, if bodies may touch
+  std::size_t lengthIndex_ = 0;
+  int shortSteps_ = 0;         // in a row
+  bool isContinuous_ = false;  // nothing has changed the state since the last step's end
+  bool keepsTies_ = true;      // no rope went taut or slack at the last step's end
+  int eventsInWindow_ = 0;
+  double windowStart_ = 0;  // s
+};
+
+}  // namespace cradle

@@ -1,0 +1,290 @@
+// Which contacts are loaded, stick and slide is Coulomb's problem on accelerations; those that slide already keep their
+// direction, and their friction follows their normal forces.
+
+#include "simulate/events/lasting_contacts.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "impact/contact_impulse.h"
+#include "simulate/plan/islands.h"
+
+namespace cradle {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kSlowSliding = 1e-6;     // m/s: slower has no direction
+constexpr double kUnloadedPart = 1e-9;    // of the accelerations: a contact that takes less carries nothing
+constexpr double kReleasedPart = 1e-6;    // the same when another lets go: what is symmetric lets go together
+constexpr double kStillPart = 1e-7;       // of the accelerations: less is held
+constexpr double kLastBouncePart = 1e-7;  // of sqrt(g x size): what leaves so slowly is held by what presses
+constexpr double kSamePoint = 1e-4;       // of a size
+constexpr double kSameDirection = 0.999;  // cosine
+constexpr int kMostFrictionRounds = 200;
+constexpr double kFrictionConverged = 1e-10;
+constexpr int kMostRedundant = 12;
+constexpr int kMostIndependent = 40;
+constexpr double kRankPart = 1e-9;
+
+double openingSpeed(const Contact& contact, const VectorX& state) {
+  return contact.normal.dot(relativeVelocity(contact, state));
+}
+
+}  // namespace
+
+void LastingContacts::letGo(const std::optional<ContactChange>& change) {
+  former_.clear();
+  if (change && change->kind == ContactChange::Kind::slip) island_.equations.evaluate(island_.state, rate_);
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    Former former{entries_[i], mechanism().contacts[i]};
+    if (change && change->kind == ContactChange::Kind::slip && change->contact == i) {
+      former.isSlipping = true;
+      former.slipping = -island_.equations.contactForces()[i].tangential.normalized();
+    }
+    former_.push_back(former);
+  }
+  isReleasing_ = change && change->kind == ContactChange::Kind::release;
+  mechanism().contacts.clear();
+  entries_.clear();
+  fault_ = {};
+}
+
+void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSolver& ties) {
+  placeBodies(mechanism().bodies, island_.state, frames_);
+  std::vector<Entry> entries = entriesOf(touching);
+  for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
+  for (const Entry& entry : entries)
+    if (entry.isLoaded) add(entry);
+  recordChanges();
+}
+
+void LastingContacts::letGoResting() {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (!isAwake(entries_[i].contact)) continue;
+    entries_[kept] = entries_[i];
+    mechanism().contacts[kept++] = mechanism().contacts[i];
+  }
+  entries_.resize(kept);
+  mechanism().contacts.resize(kept);
+}
+
+bool LastingContacts::isAwake(const Contact& contact) const {
+  const auto isUp = [this](int body) { return body != kFixed && !island_.resting.isResting(body); };
+  return isUp(contact.bodyA) || isUp(contact.bodyB);
+}
+
+/// The contacts that may last, and what their speeds say of them.
+std::vector<LastingContacts::Entry> LastingContacts::entriesOf(const std::vector<Contact>& touching) const {
+  std::vector<Entry> entries;
+  for (const Contact& contact : touching) {
+    if (!isAwake(contact)) continue;
+    const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
+    const double size = island_.assembly.radii[static_cast<std::size_t>(body)];
+    const double still = kLastBouncePart * std::sqrt(mechanism().gravity.norm() * size) + 1e-12;
+    if (openingSpeed(contact, island_.state) > still) continue;
+    Entry entry{contact, island_.assembly.geometry.pairs[contact.pair]};
+    const ContactRows rows = rowsOf(contact, island_.state, frames_);
+    const Vec3 sliding = tangentialVelocity(rows.place);
+    entry.slides = sliding.norm() > kSlowSliding;
+    if (entry.slides) entry.direction = sliding.normalized();
+    const Former* former = formerOf(entry);
+    if (former && former->isSlipping && !entry.slides) entry.slides = true, entry.direction = former->slipping;
+    entries.push_back(entry);
+  }
+  return entries;
+}
+
+/// The contact that lasted until now at the same place, or null.
+const LastingContacts::Former* LastingContacts::formerOf(const Entry& entry) const {
+  for (const Former& former : former_) {
+    const ColliderPair &a = former.entry.pair, &b = entry.pair;
+    if (a.a != b.a || a.b != b.b || a.againstPlane != b.againstPlane) continue;
+    const ContactPlace place = placeOf(former.constraint, island_.state, frames_);
+    const double size = island_.assembly.geometry.colliders[a.a].boundingRadius;
+    if (std::abs(place.normal.dot(entry.contact.normal)) > kSameDirection &&
+        (place.point - entry.contact.point).norm() < kSamePoint * size)
+      return &former;
+  }
+  return nullptr;
+}
+
+std::vector<LastingContacts::Together> LastingContacts::groupsOf(const std::vector<Entry>& entries) const {
+  Islands islands(mechanism().bodies.size());
+  for (const Entry& entry : entries) islands.join(entry.contact.bodyA, entry.contact.bodyB);
+  forEachTie(mechanism().constraints, [&](int bodyA, int bodyB) { islands.join(bodyA, bodyB); });
+  std::vector<Together> groups(mechanism().bodies.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Contact& contact = entries[i].contact;
+    const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
+    groups[static_cast<std::size_t>(islands.islandOf(body))].push_back(i);
+  }
+  std::erase_if(groups, [](const Together& group) { return group.empty(); });
+  return groups;
+}
+
+void LastingContacts::decide(const Together& group, std::vector<Entry>& entries, ConstraintSolver& ties) {
+  std::vector<ContactRows> rows;
+  std::vector<const Entry*> members;
+  for (const std::size_t i : group) {
+    rows.push_back(rowsOf(entries[i].contact, island_.state, frames_));
+    members.push_back(&entries[i]);
+  }
+  const ContactResponse response(rows, mechanism().bodies, frames_, ties);
+  island_.equations.evaluate(island_.state, rate_);
+  const VectorX free = response.accelerations(rate_);
+  const ConeSolution solution = solve(members, rows, response);
+  const double most = std::max(free.cwiseAbs().maxCoeff(), mechanism().gravity.norm());
+  const double unloaded = (isReleasing_ ? kReleasedPart : kUnloadedPart) * most;
+  const MatrixX& inverseMass = response.inverseMass();
+  std::vector<Index> heldRows;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    Entry& entry = entries[group[k]];
+    const Index at = 3 * static_cast<Index>(k);
+    const Vec3 motion = solution.velocities.segment<3>(at);
+    entry.force = most / inverseMass(at + 2, at + 2);
+    entry.isLoaded = solution.impulses[at + 2] > unloaded / inverseMass(at + 2, at + 2);
+    if (!entry.isLoaded) continue;
+    if (!canLast(entry.contact)) fault_ = "edges touch and press";
+    const bool hasFriction = entry.pair.law.staticFriction > 0;
+    entry.sticks = hasFriction && !entry.slides && motion.head<2>().norm() <= kStillPart * most;
+    if (hasFriction && !entry.slides && !entry.sticks) {
+      entry.slides = true;
+      entry.direction = (motion.x() * rows[k].rows[0].linearA + motion.y() * rows[k].rows[1].linearA).normalized();
+    }
+    heldRows.push_back(at + 2);
+    if (entry.sticks) heldRows.push_back(at), heldRows.push_back(at + 1);
+  }
+  if (heldRows.empty()) return;
+  const MatrixX held = inverseMass(heldRows, heldRows);
+  Eigen::ColPivHouseholderQR<MatrixX> factor(held);
+  factor.setThreshold(kRankPart);
+  const Index rank = factor.rank();
+  for (const std::size_t i : group) entries[i].isRedundant = rank < held.rows();
+  if (held.rows() - rank > kMostRedundant || rank > kMostIndependent) fault_ = "too many contacts press at once";
+}
+
+/// Forces and accelerations of contacts whose free accelerations are those in rate_. Those that slide have their
+/// friction against their direction, from the normal forces of the round before.
+ConeSolution LastingContacts::solve(const std::vector<const Entry*>& entries, const std::vector<ContactRows>& rows,
+                                    const ContactResponse& response) const {
+  const VectorX free = response.accelerations(rate_);
+  std::vector<double> frictions;
+  bool slides = false;
+  for (const Entry* entry : entries) {
+    frictions.push_back(entry->slides ? 0 : entry->pair.law.staticFriction);
+    slides = slides || (entry->slides && entry->pair.law.dynamicFriction > 0);
+  }
+  VectorX friction = VectorX::Zero(free.size());
+  ConeSolution solution;
+  for (int round = 0; round < kMostFrictionRounds; ++round) {
+    solution = solveConeProblem(response.inverseMass(), free + response.inverseMass() * friction, frictions);
+    if (!slides) break;
+    double change = 0, largest = 0;
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      if (!entries[k]->slides) continue;
+      const Index at = 3 * static_cast<Index>(k);
+      const double size = entries[k]->pair.law.dynamicFriction * solution.impulses[at + 2];
+      for (int i = 0; i < 2; ++i) {
+        const double wanted = -size * entries[k]->direction.dot(rows[k].rows[static_cast<std::size_t>(i)].linearA);
+        change = std::max(change, std::abs(wanted - friction[at + i]));
+        friction[at + i] = wanted;
+      }
+      largest = std::max(largest, solution.impulses[at + 2]);
+    }
+    if (change <= kFrictionConverged * largest) break;
+  }
+  solution.impulses += friction;
+  return solution;
+}
+
+void LastingContacts::add(const Entry& entry) {
+  ContactConstraint constraint = rowsOf(entry.contact, island_.state, frames_).constraint;
+  if (entry.sticks) constraint.motion = ContactMotion::sticking;
+  if (entry.slides && entry.pair.law.dynamicFriction > 0) {
+    constraint.motion = ContactMotion::sliding;
+    constraint.friction = entry.pair.law.dynamicFriction;
+    setSlidingDirection(constraint, entry.direction, island_.state);
+  }
+  mechanism().contacts.push_back(constraint);
+  entries_.push_back(entry);
+}
+
+/// Whether what slid slides the other way now.
+bool LastingContacts::turnsBack(const Former& former, const Entry& now) const {
+  const int body = former.constraint.surfaceB.body;
+  const Vec3& given = former.constraint.slidingDirection;
+  const Vec3 before = body == kFixed ? given : Vec3(orientation(island_.state, body).normalized() * given);
+  return before.dot(now.direction) < 0;
+}
+
+/// What is new of the contacts that lasted before.
+void LastingContacts::recordChanges() {
+  for (const Former& former : former_) {
+    const Entry* now = nullptr;
+    for (const Entry& entry : entries_)
+      if (formerOf(entry) == &former) now = &entry;
+    const Contact& contact = former.entry.contact;
+    const auto record = [&](EventKind kind) {
+      const auto [a, b] = bodiesOf(island_.assembly, former.entry.pair);
+      const ContactPlace place = placeOf(former.constraint, island_.state, frames_);
+      island_.log.record({island_.time, kind, a, b, place.point, contact.normal, 0});
+    };
+    const bool slid = former.constraint.motion == ContactMotion::sliding;
+    const bool stuck = former.constraint.motion == ContactMotion::sticking;
+    if (!isAwake(contact)) {
+      if (slid) record(EventKind::stick);
+    } else if (!now) {
+      record(EventKind::release);
+    } else if (slid && now->sticks) {
+      Vec3 spin = Vec3::Zero();
+      if (contact.bodyA != kFixed) spin -= angularVelocity(island_.state, contact.bodyA);
+      if (contact.bodyB != kFixed) spin += angularVelocity(island_.state, contact.bodyB);
+      const double size = island_.assembly.geometry.colliders[former.entry.pair.a].boundingRadius;
+      record(spin.norm() * size > kSlowSliding ? EventKind::roll : EventKind::stick);
+    } else if (now->slides && (stuck || (slid && turnsBack(former, *now)))) {
+      record(EventKind::slip);
+    }
+  }
+  former_.clear();
+}
+
+const std::vector<HeldFeature>& LastingContacts::held() {
+  held_.clear();
+  const ContactGeometry& geometry = island_.assembly.geometry;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const ColliderPair& held = entries_[i].pair;
+    const auto isSame = [&](const ColliderPair& pair) {
+      return pair.a == held.a && pair.b == held.b && pair.againstPlane == held.againstPlane;
+    };
+    const auto pair = std::find_if(geometry.pairs.begin(), geometry.pairs.end(), isSame);
+    if (pair == geometry.pairs.end()) continue;
+    const Attachment& center = mechanism().contacts[i].centerA;
+    HeldFeature feature{static_cast<std::size_t>(pair - geometry.pairs.begin()), 0, center};
+    const Collider& a = geometry.colliders[held.a];
+    if (held.againstPlane) {
+      const auto nearer = [&](const Vec3& left, const Vec3& right) {
+        return (left - center.point).squaredNorm() < (right - center.point).squaredNorm();
+      };
+      feature.feature =
+          static_cast<std::size_t>(std::min_element(a.points.begin(), a.points.end(), nearer) - a.points.begin());
+    }
+    held_.push_back(feature);
+  }
+  return held_;
+}
+
+void LastingContacts::followSliding() {
+  bool isPlaced = false;
+  for (ContactConstraint& contact : mechanism().contacts) {
+    if (contact.motion != ContactMotion::sliding) continue;
+    if (!isPlaced) placeBodies(mechanism().bodies, island_.state, frames_);
+    isPlaced = true;
+    const Vec3 sliding = tangentialVelocity(placeOf(contact, island_.state, frames_));
+    if (sliding.norm() > kSlowSliding) setSlidingDirection(contact, sliding.normalized(), island_.state);
+  }
+}
+
+}  // namespace cradle

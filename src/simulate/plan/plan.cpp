@@ -1,0 +1,140 @@
+// Rules of the plan. The first that applies to an island is taken:
+//   1. the scene names a method: that one, for studies
+//   2. balls bounce without loss, and nothing acts but uniform gravity: closed form between collisions
+//   3. many bodies may touch, only gravity acts, and the accuracy asked is coarse: the fast contact step
+//   4. something may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved once a
+//   step
+//   5. nothing acts but uniform gravity: closed form
+//   6. else DOP853 with steps as long as the accuracy allows; contact changes at events
+
+#include "simulate/plan/plan.h"
+
+#include <algorithm>
+
+#include "dynamics/integrators/dop853.h"
+#include "dynamics/integrators/explicit_euler.h"
+#include "dynamics/integrators/rk4.h"
+#include "dynamics/integrators/semi_implicit_euler.h"
+#include "dynamics/rigid_body.h"
+#include "simulate/balls/flying_balls.h"
+#include "simulate/plan/plan_islands.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kEventAccuracy = 1e-4;         // at coarser ones contact is resolved once a step
+constexpr double kPileTimeStep = 1.0 / 60;      // s, at most
+constexpr std::size_t kPileBodies = 50;         // with fewer, RK4 costs less than the pictures of its frames
+constexpr double kContactStepTolerance = 1e-5;  // of the local error, where contact decides how good a step is
+constexpr double kTolerancePart = 0.1;          // of the accuracy: the local errors of about ten steps add up to it
+
+ChosenMethod errorSteps(const Scene& scene) {
+  return {MotionKind::errorSteps, "DOP853", 0, dop853, kTolerancePart * scene.accuracy};
+}
+
+ChosenMethod namedMethod(const Scene& scene) {
+  const double timeStep = scene.method->timeStep.value_or(kContactTimeStep);
+  switch (scene.method->name) {
+    case MethodName::explicitEuler:
+      return {MotionKind::fixedSteps, "explicit Euler", timeStep, explicitEuler};
+    case MethodName::semiImplicitEuler:
+      return {MotionKind::fixedSteps, "semi-implicit Euler", timeStep, semiImplicitEuler};
+    case MethodName::rk4:
+      return {MotionKind::fixedSteps, "RK4", timeStep, rk4};
+    case MethodName::dop853:
+      break;
+  }
+  if (scene.method->timeStep) return {MotionKind::fixedSteps, "DOP853", timeStep, dop853};
+  return errorSteps(scene);
+}
+
+bool isActedUpon(const Scene& scene, const IslandPlan& island) {
+  const auto isIn = [&](int body) { return std::binary_search(island.bodies.begin(), island.bodies.end(), body); };
+  bool found = std::any_of(scene.pushes.begin(), scene.pushes.end(), [&](const Push& push) { return isIn(push.body); });
+  forEachLink(scene, [&](int a, int b) { found = found || isIn(a) || isIn(b); });
+  return found;
+}
+
+/// Balls on which no torque can act: their spin is constant, whatever moves their centres.
+void findUnturned(const Scene& scene, IslandPlan& island) {
+  std::vector<char> isTurned(scene.bodies.size(), 0);
+  const auto turn = [&](int body) {
+    if (body != kWorld) isTurned[static_cast<std::size_t>(body)] = 1;
+  };
+  const auto turnIfOffCenter = [&](const Anchor& anchor) {
+    if (anchor.body == kWorld) return;
+    const Body& body = scene.bodies[static_cast<std::size_t>(anchor.body)];
+    if (anchor.point != body.massProperties.centerOfMass) turn(anchor.body);
+  };
+  const auto look = [&](const auto& links) {
+    for (const auto& link : links) turnIfOffCenter(link.anchorA), turnIfOffCenter(link.anchorB);
+  };
+  look(scene.springs), look(scene.rods), look(scene.ropes), look(scene.ballJoints);
+  for (const Hinge& hinge : scene.hinges) turn(hinge.anchorA.body), turn(hinge.anchorB.body);
+  for (const Push& push : scene.pushes) turn(push.body);
+  for (const int body : island.touching) turn(body);
+  for (const int body : island.bodies)
+    if (!isTurned[static_cast<std::size_t>(body)] &&
+        makeRigidBody(scene.bodies[static_cast<std::size_t>(body)].massProperties).isSpherical)
+      island.unturned.push_back(body);
+}
+
+void choose(const Scene& scene, IslandPlan& island) {
+  findUnturned(scene, island);
+  if (!island.unturned.empty()) island.leftOut.push_back("no rotation of balls held at their centres: no torque");
+  const bool mayTouchSomething = !island.touching.empty();
+  if (!mayTouchSomething) island.leftOut.push_back("no search for contact: nothing can touch");
+  if (scene.method) {
+    island.method = namedMethod(scene);
+    island.reason = "the scene names the method";
+  } else if (mayTouchSomething && !isActedUpon(scene, island) && flyingBallsOf(scene, island)) {
+    island.method = {MotionKind::elasticFlight, "closed form between collisions"};
+    island.reason = "elastic balls in flight: parabolas, and collisions in the order of time";
+    island.leftOut.push_back("no steps, no rotation: nothing turns balls that touch without friction");
+  } else if (mayTouchSomething && scene.accuracy > kEventAccuracy && island.bodies.size() >= kPileBodies &&
+             !isActedUpon(scene, island)) {
+    island.method = {MotionKind::pile, "fast contact step", kPileTimeStep};
+    island.reason = "many bodies may touch: soft contacts, sub-stepped; the accuracy asked is not promised";
+    island.leftOut.push_back("no motion of bodies that lie still");
+  } else if (mayTouchSomething && scene.accuracy > kEventAccuracy) {
+    island.method = contactSteps();
+    island.reason = "something may touch: contact is resolved once a step, the accuracy asked is not promised";
+  } else if (mayTouchSomething) {
+    island.method = errorSteps(scene);
+    island.reason = "something may touch: contact changes at events, with steps as long as the accuracy allows between";
+  } else if (!isActedUpon(scene, island)) {
+    island.method = {MotionKind::freeFlight, "closed form"};
+    island.reason = "nothing acts but uniform gravity: parabola and exact free rotation";
+    island.leftOut.push_back("no steps: one evaluation a frame");
+  } else {
+    island.method = errorSteps(scene);
+    island.reason = "smooth forces: steps as long as the accuracy allows";
+  }
+}
+
+}  // namespace
+
+ChosenMethod contactSteps() {
+  return {MotionKind::fixedSteps, "RK4", kContactTimeStep, rk4, kContactStepTolerance};
+}
+
+Plan planOf(const Scene& scene) {
+  Plan plan{findIslands(scene), scene.accuracy};
+  for (IslandPlan& island : plan.islands) choose(scene, island);
+  return plan;
+}
+
+IslandPlan wholeScene(const Scene& scene) {
+  IslandPlan whole;
+  for (const IslandPlan& island : planOf(scene).islands) {
+    whole.bodies.insert(whole.bodies.end(), island.bodies.begin(), island.bodies.end());
+    whole.touching.insert(whole.touching.end(), island.touching.begin(), island.touching.end());
+  }
+  for (std::vector<int>* bodies : {&whole.bodies, &whole.touching}) {
+    std::sort(bodies->begin(), bodies->end());
+    bodies->erase(std::unique(bodies->begin(), bodies->end()), bodies->end());
+  }
+  return whole;
+}
+
+}  // namespace cradle

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dynamics/integrators/step.h"
+#include "scene/scene.h"
+
+namespace cradle {
+
+constexpr double kContactTimeStep = 1.0 / 960;  // s, of contact that events do not serve: 16 steps a frame at 60/s
+
+/// How bodies are moved, from the least work to the most.
+enum class MotionKind {
+  freeFlight,     // closed form
+  elasticFlight,  // closed form between collisions without loss, as in simulate/balls/flying_balls.h
+  pile,           // many bodies in contact: the fast contact step, as in impact/pile_step.h
+  fixedSteps,     // an integrator with steps of one length
+  errorSteps,     // an integrator with steps as long as the error allows; contact changes at events
+};
+
+/// The method that moves an island.
+struct ChosenMethod {
+  MotionKind kind = MotionKind::freeFlight;
+  std::string_view name;
+  double timeStep = 0;             // s, of piles and fixed steps
+  Integrator integrate = nullptr;  // of fixed steps and error steps
+  double tolerance = 0;            // of the local error, scaled 1 + |x|; 0: fixed steps are never cut for it
+
+  bool isClosedForm() const { return kind == MotionKind::freeFlight || kind == MotionKind::elasticFlight; }
+  bool isAdaptive() const { return kind == MotionKind::errorSteps; }
+};
+
+/// What moves bodies whose contact is resolved once a step: RK4, with shorter steps only where its error asks for them.
+ChosenMethod contactSteps();
+
+/// Bodies that depend on each other, by ties, springs or contact that may come about, and how they are moved.
+struct IslandPlan {
+  std::vector<int> bodies;    // scene bodies that move, ascending
+  std::vector<int> touching;  // scene bodies, fixed ones too, that may touch something during the run, ascending
+  std::vector<int> unturned;  // of the bodies, those on which no torque ever acts: balls held at their centres
+  ChosenMethod method;
+  std::string_view reason;
+  std::vector<std::string_view> leftOut;  // what these bodies do not need
+};
+
+/// What a scene needs, and no more.
+struct Plan {
+  std::vector<IslandPlan> islands;  // in the order of their first bodies
+  double accuracy = 0;              // asked
+};
+
+/// O(pairs of bodies), some 1e-8 s for each.
+Plan planOf(const Scene& scene);
+
+/// All that moves as one island without a method, for what looks at a scene as a whole.
+IslandPlan wholeScene(const Scene& scene);
+
+}  // namespace cradle

@@ -1,0 +1,152 @@
+#include "simulate/plan/plan_islands.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "simulate/colliders.h"
+#include "simulate/plan/islands.h"
+#include "simulate/plan/reach.h"
+
+namespace cradle {
+namespace {
+
+/// What reaches of bodies are compared with: their size around the centre of mass.
+double sizeOf(const Body& body, const Scene& scene) {
+  const auto collider = colliderOf(body, scene, 0);
+  return collider ? collider->boundingRadius : 0;
+}
+
+/// A fixed body's collider stands in the world: its size around the place of its frame.
+double fixedSizeOf(const Body& body, const Scene& scene) {
+  const auto collider = colliderOf(body, scene, -1);
+  double size = 0;
+  if (!collider) return size;
+  for (const Vec3& point : collider->points)
+    size = std::max(size, (point - body.worldFromBody.translation).norm() + collider->radius + collider->rimRadius);
+  return size;
+}
+
+std::vector<double> sizesOf(const Scene& scene) {
+  std::vector<double> sizes;
+  for (const Body& body : scene.bodies)
+    sizes.push_back(body.motion == Motion::dynamic ? sizeOf(body, scene) : fixedSizeOf(body, scene));
+  return sizes;
+}
+
+bool canMeet(const Reach& a, double sizeA, const Reach& b, double sizeB) {
+  return (a.center - b.center).norm() <= a.radius + b.radius + sizeA + sizeB;
+}
+
+bool canMeetPlane(const Reach& reach, double size, const Body& plane) {
+  const Vec3 normal = plane.worldFromBody.rotation * std::get<Plane>(plane.shape).normal;
+  return normal.dot(reach.center - plane.worldFromBody.translation) <= reach.radius + size;
+}
+
+/// Bodies that a ball joint or a hinge joins do not touch each other.
+std::set<std::pair<int, int>> joinedPairs(const Scene& scene) {
+  std::set<std::pair<int, int>> pairs;
+  const auto add = [&](const auto& joints) {
+    for (const auto& joint : joints) pairs.insert(std::minmax(joint.anchorA.body, joint.anchorB.body));
+  };
+  add(scene.ballJoints), add(scene.hinges);
+  return pairs;
+}
+
+/// Which bodies may touch each other, as far as their reaches tell.
+class Meetings {
+ public:
+  Meetings(const Scene& scene, const std::vector<Reach>& reaches)
+      : scene_(scene), reaches_(reaches), sizes_(sizesOf(scene)), joined_(joinedPairs(scene)) {}
+
+  void setReaches(const std::vector<Reach>& reaches) { reaches_ = reaches; }
+
+  bool mayMeet(int first, int second) const {
+    const auto i = static_cast<std::size_t>(first), j = static_cast<std::size_t>(second);
+    const Body &a = scene_.bodies[i], &b = scene_.bodies[j];
+    if (!mayTouch(a, b)) return false;
+    const bool meet = std::holds_alternative<Plane>(a.shape) ? canMeetPlane(reaches_[j], sizes_[j], a)
+                      : std::holds_alternative<Plane>(b.shape)
+                          ? canMeetPlane(reaches_[i], sizes_[i], b)
+                          : canMeet(reaches_[i], sizes_[i], reaches_[j], sizes_[j]);
+    return meet && (joined_.empty() || !joined_.contains(std::minmax(first, second)));
+  }
+
+ private:
+  const Scene& scene_;
+  std::vector<Reach> reaches_;
+  std::vector<double> sizes_;
+  std::set<std::pair<int, int>> joined_;
+};
+
+/// Bodies that touch something, by body.
+std::vector<char> findTouching(const Scene& scene, const Meetings& meetings) {
+  std::vector<char> touches(scene.bodies.size(), 0);
+  for (int i = 0; i < std::ssize(touches); ++i)
+    for (int j = i + 1; j < std::ssize(touches); ++j) {
+      char &first = touches[static_cast<std::size_t>(i)], &second = touches[static_cast<std::size_t>(j)];
+      if (!(first && second) && meetings.mayMeet(i, j)) first = second = 1;
+    }
+  return touches;
+}
+
+/// Bodies that touch something may be thrown anywhere that their ties allow: the search goes on until it finds no more.
+Meetings findMeetings(const Scene& scene) {
+  std::vector<char> touches(scene.bodies.size(), 0);
+  Meetings meetings(scene, reachOf(scene, touches));
+  while (true) {
+    const std::vector<char> found = findTouching(scene, meetings);
+    if (found == touches) return meetings;
+    touches = found;
+    meetings.setReaches(reachOf(scene, touches));
+  }
+}
+
+int movingOr(const Scene& scene, int body) {
+  return body != kWorld && scene.bodies[static_cast<std::size_t>(body)].motion == Motion::dynamic ? body : kWorld;
+}
+
+/// Moving bodies that depend on each other.
+Islands joinIslands(const Scene& scene, const Meetings& meetings) {
+  Islands joined(scene.bodies.size());
+  forEachLink(scene, [&](int a, int b) { joined.join(movingOr(scene, a), movingOr(scene, b)); });
+  for (int i = 0; i < std::ssize(scene.bodies); ++i)
+    for (int j = i + 1; j < std::ssize(scene.bodies); ++j) {
+      if (movingOr(scene, i) == kWorld || movingOr(scene, j) == kWorld) continue;
+      if (joined.islandOf(i) != joined.islandOf(j) && meetings.mayMeet(i, j)) joined.join(i, j);
+    }
+  return joined;
+}
+
+/// The bodies of an island that may touch, and the fixed ones that they may touch.
+std::vector<int> touchingOf(const Scene& scene, const IslandPlan& island, const Meetings& meetings) {
+  std::vector<int> touching;
+  for (int other = 0; other < std::ssize(scene.bodies); ++other) {
+    const bool moves = movingOr(scene, other) != kWorld;
+    if (moves && !std::binary_search(island.bodies.begin(), island.bodies.end(), other)) continue;
+    const auto meetsOther = [&](int body) { return body != other && meetings.mayMeet(body, other); };
+    bool meets = std::any_of(island.bodies.begin(), island.bodies.end(), meetsOther);
+    for (int body = 0; moves && !meets && body < std::ssize(scene.bodies); ++body)
+      meets = movingOr(scene, body) == kWorld && meetsOther(body);
+    if (meets) touching.push_back(other);
+  }
+  return touching;
+}
+
+}  // namespace
+
+std::vector<IslandPlan> findIslands(const Scene& scene) {
+  const Meetings meetings = findMeetings(scene);
+  const Islands joined = joinIslands(scene, meetings);
+  std::map<int, IslandPlan> islands;
+  for (int body = 0; body < std::ssize(scene.bodies); ++body)
+    if (movingOr(scene, body) != kWorld) islands[joined.islandOf(body)].bodies.push_back(body);
+  std::vector<IslandPlan> ordered;
+  for (auto& [first, island] : islands) {
+    island.touching = touchingOf(scene, island, meetings);
+    ordered.push_back(std::move(island));
+  }
+  return ordered;
+}
+
+}  // namespace cradle

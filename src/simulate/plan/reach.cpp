@@ -1,0 +1,155 @@
+#include "simulate/plan/reach.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+constexpr double kRounding = 1e-6;  // of the radius: bounds are met by motions that stretch them fully
+
+/// Two anchors that stay within `length` (m) of each other.
+struct Tie {
+  Anchor a, b;
+  double length;
+};
+
+std::vector<Tie> tiesOf(const Scene& scene) {
+  std::vector<Tie> ties;
+  for (const Rod& rod : scene.rods) ties.push_back({rod.anchorA, rod.anchorB, rod.length});
+  for (const Rope& rope : scene.ropes) ties.push_back({rope.anchorA, rope.anchorB, rope.maxLength});
+  for (const BallJoint& joint : scene.ballJoints) ties.push_back({joint.anchorA, joint.anchorB, 0});
+  for (const Hinge& hinge : scene.hinges) ties.push_back({hinge.anchorA, hinge.anchorB, 0});
+  return ties;
+}
+
+bool isFixed(const Anchor& anchor, const Scene& scene) {
+  return anchor.body == kWorld || scene.bodies[static_cast<std::size_t>(anchor.body)].motion == Motion::fixed;
+}
+
+const Body& bodyOf(const Anchor& anchor, const Scene& scene) {
+  return scene.bodies[static_cast<std::size_t>(anchor.body)];
+}
+
+/// Distance of an anchor from its body's centre of mass.
+double armOf(const Anchor& anchor, const Scene& scene) {
+  return (anchor.point - bodyOf(anchor, scene).massProperties.centerOfMass).norm();
+}
+
+Vec3 worldPoint(const Anchor& anchor, const Scene& scene) {
+  return anchor.body == kWorld ? anchor.point : bodyOf(anchor, scene).worldFromBody * anchor.point;
+}
+
+/// Where an anchor can get to.
+Reach reachOfAnchor(const Anchor& anchor, const Scene& scene, const std::vector<Reach>& reaches) {
+  if (isFixed(anchor, scene)) return {worldPoint(anchor, scene), 0};
+  const Reach& body = reaches[static_cast<std::size_t>(anchor.body)];
+  return {body.center, body.radius + armOf(anchor, scene)};
+}
+
+/// Narrows the reach of the body at `end` by a tie to `other`. True if that helped.
+bool narrow(const Anchor& end, const Anchor& other, double length, const Scene& scene, std::vector<Reach>& reaches) {
+  if (isFixed(end, scene)) return false;
+  const Reach from = reachOfAnchor(other, scene, reaches);
+  const double radius = (from.radius + length + armOf(end, scene)) * (1 + kRounding);
+  Reach& reach = reaches[static_cast<std::size_t>(end.body)];
+  if (!(radius < reach.radius)) return false;
+  reach = {from.center, radius};
+  return true;
+}
+
+/// The farthest that a spring's end can be from its fixed anchor while energy suffices: k (d - L0)^2 / 2 <= E + m g
+/// fall. The body's centre, `arm` away from the spring's end, falls at most to d + arm below the anchor.
+double farthestOnSpring(const Spring& spring, const Anchor& end, const Anchor& fixed, double energy,
+                        const Scene& scene) {
+  if (spring.stiffness == 0) return std::numeric_limits<double>::infinity();
+  const Body& body = bodyOf(end, scene);
+  const double gravity = scene.gravity.norm();
+  const Vec3 down = gravity > 0 ? Vec3(scene.gravity / gravity) : Vec3(Vec3::Zero());
+  const Vec3 start = body.worldFromBody * body.massProperties.centerOfMass - worldPoint(fixed, scene);
+  const double weight = body.massProperties.mass * gravity / spring.stiffness;  // m: what it stretches the spring by
+  const double half = spring.restLength + weight;  // d^2 - 2 half d + L0^2 - 2 (E / k + weight (arm - start)) <= 0
+  const double rest = spring.restLength * spring.restLength -
+                      2 * (energy / spring.stiffness + weight * (armOf(end, scene) - down.dot(start)));
+  return half + std::sqrt(std::max(0.0, half * half - rest));
+}
+
+double kineticEnergyOf(const Body& body) {
+  const Vec3 spin = body.worldFromBody.rotation.conjugate() * body.angularVelocity;
+  return 0.5 * body.massProperties.mass * body.linearVelocity.squaredNorm() +
+         0.5 * spin.dot(body.massProperties.inertiaTensor * spin);
+}
+
+bool isPushed(int body, const Scene& scene) {
+  return std::any_of(scene.pushes.begin(), scene.pushes.end(), [body](const Push& push) { return push.body == body; });
+}
+
+/// Bodies on springs that all end at fixed points, and that nothing else moves.
+void narrowBySprings(const Scene& scene, const std::vector<char>& touches, std::vector<Reach>& reaches) {
+  for (std::size_t index = 0; index < scene.bodies.size(); ++index) {
+    if (touches[index]) continue;
+    const int body = static_cast<int>(index);
+    double energy = kineticEnergyOf(scene.bodies[index]);
+    bool isAlone = !isPushed(body, scene);
+    for (const Spring& spring : scene.springs) {
+      if (spring.anchorA.body != body && spring.anchorB.body != body) continue;
+      const double extension =
+          (worldPoint(spring.anchorA, scene) - worldPoint(spring.anchorB, scene)).norm() - spring.restLength;
+      energy += 0.5 * spring.stiffness * extension * extension;
+      isAlone = isAlone && (isFixed(spring.anchorA, scene) || isFixed(spring.anchorB, scene));
+    }
+    for (const Tie& tie : tiesOf(scene))
+      for (const auto& [end, other] : {std::pair(tie.a, tie.b), std::pair(tie.b, tie.a)})
+        isAlone = isAlone && (end.body != body || isFixed(other, scene));
+    if (!isAlone) continue;
+    for (const Spring& spring : scene.springs)
+      for (const auto& [end, other] :
+           {std::pair(spring.anchorA, spring.anchorB), std::pair(spring.anchorB, spring.anchorA)})
+        if (end.body == body && isFixed(other, scene))
+          narrow(end, other, farthestOnSpring(spring, end, other, energy, scene), scene, reaches);
+  }
+}
+
+/// A parabola stays within its chord and its sag of the way's middle.
+void narrowByFlight(const Scene& scene, const std::vector<char>& isHeld, std::vector<Reach>& reaches) {
+  for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
+    if (isHeld[body] || isPushed(static_cast<int>(body), scene)) continue;
+    const Body& flying = scene.bodies[body];
+    const Vec3 way = flying.linearVelocity * scene.duration + 0.5 * scene.duration * scene.duration * scene.gravity;
+    const double sag = scene.gravity.norm() * scene.duration * scene.duration / 8;
+    const Vec3 start = flying.worldFromBody * flying.massProperties.centerOfMass;
+    const double radius = (way.norm() / 2 + sag) * (1 + kRounding);
+    if (radius < reaches[body].radius) reaches[body] = {start + way / 2, radius};
+  }
+}
+
+}  // namespace
+
+std::vector<Reach> reachOf(const Scene& scene, const std::vector<char>& touches) {
+  std::vector<Reach> reaches(scene.bodies.size());
+  std::vector<char> isHeld = touches;
+  const auto hold = [&](const Anchor& anchor) {
+    if (anchor.body != kWorld) isHeld[static_cast<std::size_t>(anchor.body)] = 1;
+  };
+  const std::vector<Tie> ties = tiesOf(scene);
+  for (const Tie& tie : ties) hold(tie.a), hold(tie.b);
+  for (const Spring& spring : scene.springs) hold(spring.anchorA), hold(spring.anchorB);
+  for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
+    if (scene.bodies[body].motion == Motion::dynamic) continue;
+    reaches[body] = {scene.bodies[body].worldFromBody.translation, 0};
+    isHeld[body] = 1;
+  }
+
+  narrowBySprings(scene, touches, reaches);
+  for (bool helped = true; helped;) {
+    helped = false;
+    for (const Tie& tie : ties) {
+      helped = narrow(tie.a, tie.b, tie.length, scene, reaches) || helped;
+      helped = narrow(tie.b, tie.a, tie.length, scene, reaches) || helped;
+    }
+  }
+  narrowByFlight(scene, isHeld, reaches);
+  return reaches;
+}
+
+}  // namespace cradle

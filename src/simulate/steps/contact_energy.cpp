@@ -1,0 +1,41 @@
+#include "simulate/steps/contact_energy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/invariants.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kRounding = 1e-13;  // of the energy
+
+double kineticEnergyOf(const std::vector<int>& bodies, const Mechanism& mechanism, const VectorX& state) {
+  double energy = 0;
+  for (const int body : bodies) energy += kineticEnergy(mechanism.bodies[static_cast<std::size_t>(body)], body, state);
+  return energy;
+}
+
+}  // namespace
+
+double energyOf(const std::vector<int>& bodies, const Mechanism& mechanism, const VectorX& state) {
+  double energy = kineticEnergyOf(bodies, mechanism, state);
+  for (const int body : bodies)
+    energy -= mechanism.bodies[static_cast<std::size_t>(body)].mass * mechanism.gravity.dot(centerOfMass(state, body));
+  for (const SpringForce& spring : mechanism.springs) energy += actionOf(spring, state).potential;
+  return energy;
+}
+
+bool isGain(double energy, double most) {
+  return energy > most + kRounding * std::abs(most);
+}
+
+void limitEnergy(const std::vector<int>& bodies, double most, const Mechanism& mechanism, VectorX& state) {
+  const double energy = energyOf(bodies, mechanism, state);
+  if (!isGain(energy, most)) return;
+  const double kinetic = kineticEnergyOf(bodies, mechanism, state);
+  const double part = kinetic > 0 ? std::sqrt(std::max(0.0, 1 - (energy - most) / kinetic)) : 0;
+  for (const int body : bodies) state.segment<kVelocitySize>(velocityOffset(state, body)) *= part;
+}
+
+}  // namespace cradle

@@ -1,0 +1,261 @@
+// J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988; M. Jean, "The non-smooth
+// contact dynamics method", Comput. Methods Appl. Mech. Engrg. 177, 1999: velocities at the step's end are the
+// unknowns, impulses of a step may be forces or shocks. What is apart by a gap s may close with s/h at most.
+
+#include "simulate/steps/contact_stepping.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/invariants.h"
+#include "simulate/plan/islands.h"
+#include "simulate/steps/contact_energy.h"
+
+namespace cradle {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kSlidingSpeed = 1e-6;      // m/s: slower counts as sticking
+constexpr double kRestSteps = 2;            // a rebound that ends within as many steps is not resolved
+constexpr double kRestSpeedFloor = 1e-12;   // m/s: rounding
+constexpr double kRestSpeedPart = 0.01;     // of the speed that gravity gives in a step: slower is no impact
+constexpr double kOverlapPart = 1e-9;       // of the smallest body's size: deeper overlaps are taken out
+constexpr double kSmoothPart = 1e-2;        // of that: overlaps that the mean velocity may add in a step
+constexpr std::size_t kFewContacts = 6;     // solved densely, to rounding
+constexpr double kSeparatedPart = 0.1;      // of the overlaps that are let be: how well others are taken out, ...
+constexpr double kSeparatedError = 1e-3;    // ... or of the deepest
+constexpr double kFarOverlaps = 10;         // of the deepest overlap: gaps that are as good as any wider ones
+constexpr double kLessRestitution = 0.7;    // of the restitution that let energy grow
+constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
+constexpr double kSolvedPart = 1e-7;        // of the fastest velocity
+
+double smallestSize(const ContactGeometry& geometry) {
+  double smallest = 1;
+  for (const Collider& collider : geometry.colliders)
+    if (collider.body != kFixed) smallest = std::min(smallest, collider.boundingRadius);
+  return smallest;
+}
+
+}  // namespace
+
+ContactStepping::ContactStepping(const Assembly& assembly)
+    : assembly_(assembly),
+      solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),
+      overlapTolerance_(kOverlapPart * smallestSize(assembly.geometry)) {}
+
+void ContactStepping::resolve(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
+                              VectorX& state) {
+  previous_.swap(contacts_), previousSlips_.swap(slips_);
+  contacts_.clear();
+  for (const Contact& contact : contacts) contacts_.push_back({contact, Vec3::Zero(), false});
+  slips_.assign(contacts.size(), Vec3::Zero());
+  if (contacts.empty()) return;
+  free_ = state;
+  const Invariants free = invariantsOf(assembly_.mechanism, state);
+  if (solver_.hasConstraints()) solver_.factorize(before);
+  for (const Group& group : findGroups()) resolve(group, before, timeStep, state);
+  const Invariants held = invariantsOf(assembly_.mechanism, state);
+  dissipatedEnergy(state) += free.kinetic + free.potential - held.kinetic - held.potential;
+}
+
+/// Contacts whose bodies touch or are tied to each other.
+std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
+  Islands islands(assembly_.mechanism.bodies.size());
+  std::vector<char> isTied(assembly_.mechanism.bodies.size(), 0);
+  forEachTie(assembly_.mechanism.constraints, [&](int bodyA, int bodyB) {
+    islands.join(bodyA, bodyB);
+    for (const int body : {bodyA, bodyB})
+      if (body != kFixed) isTied[static_cast<std::size_t>(body)] = 1;
+  });
+  for (const SteppedContact& stepped : contacts_) islands.join(stepped.contact.bodyA, stepped.contact.bodyB);
+  std::map<int, Group> groups;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const Contact& contact = contacts_[i].contact;
+    const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
+    Group& group = groups[islands.islandOf(body)];
+    group.members.push_back(i);
+    group.contacts.push_back(contact);
+  }
+  for (std::size_t body = 0; body < isTied.size(); ++body)
+    if (const auto group = groups.find(islands.islandOf(static_cast<int>(body))); group != groups.end()) {
+      group->second.bodies.push_back(static_cast<int>(body));
+      group->second.isTied = group->second.isTied || isTied[body];
+    }
+  std::vector<Group> ordered;
+  for (auto& [firstBody, group] : groups) {
+    group.firstBody = firstBody;
+    ordered.push_back(std::move(group));
+  }
+  return ordered;
+}
+
+/// Speed (m/s) of closing that does not rebound; `pressing` is what a step adds to it.
+double ContactStepping::restSpeed(double pressing, double timeStep) const {
+  return kRestSteps * pressing + kRestSpeedPart * assembly_.mechanism.gravity.norm() * timeStep + kRestSpeedFloor;
+}
+
+/// The cone problem: what is left of the gap, or the rebound, is taken from the normal velocities. Of the restitution
+/// only a part counts.
+ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion& motion, double part) const {
+  Problem problem{motion.free, {}};
+  for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+    const Index at = 3 * static_cast<Index>(i);
+    const SurfaceLaw& law = assembly_.geometry.pairs[group.contacts[i].pair].law;
+    const bool slides = motion.start.segment<2>(at).norm() > kSlidingSpeed;
+    problem.frictions.push_back(slides ? law.dynamicFriction : law.staticFriction);
+    const double closing = -motion.start[at + 2], pressing = std::max(0.0, -closing - motion.free[at + 2]);
+    const double gap = std::max(0.0, group.contacts[i].separation), restitution = part * law.restitution;
+    const bool touches = gap + motion.timeStep * motion.free[at + 2] < 0;
+    const bool rebounds = touches && restitution * closing > restSpeed(pressing, motion.timeStep);
+    problem.free[at + 2] -= rebounds ? restitution * closing - pressing : -gap / motion.timeStep;
+    problem.hasRebounds = problem.hasRebounds || rebounds;
+  }
+  return problem;
+}
+
+/// Energy does not grow: a restitution that would let it is made smaller (with friction it can), and what is left by
+/// rounding, by the order of the method, or by impulses that were not found is taken from the velocities.
+void ContactStepping::resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state) {
+  cones_.set(group.contacts, assembly_.mechanism.bodies, before);
+  tied_.reset();
+  if (group.isTied) tied_.emplace(group.contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), before);
+  const Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), timeStep};
+  const double most = energyOf(group.bodies, assembly_.mechanism, state);
+  for (double part = 1;; part = part > kLeastRestitution ? kLessRestitution * part : 0) {
+    const Problem problem = posed(group, motion, part);
+    const VectorX impulses = solve(group, problem);
+    move(group, motion, impulses, state);
+    if (problem.hasRebounds && isGain(energyOf(group.bodies, assembly_.mechanism, state), most)) {
+      restore(group.bodies, state);
+      continue;
+    }
+    limitEnergy(group.bodies, most, assembly_.mechanism, state);
+    return keep(group, motion, problem, impulses, state);
+  }
+}
+
+VectorX ContactStepping::solve(const Group& group, const Problem& problem) {
+  if (tied_ || group.contacts.size() <= kFewContacts) {
+    const ConeSolution solution = solveConeProblem(inverseMass(), problem.free, problem.frictions);
+    count(solution);
+    return solution.impulses;
+  }
+  const double tolerance = kSolvedPart * problem.free.cwiseAbs().maxCoeff();
+  ConeStart start = startOf(group);
+  const ConeSolution solution = cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations);
+  penalties_[group.firstBody] = start.penalty;
+  count(solution);
+  return solution.impulses;
+}
+
+void ContactStepping::count(const ConeSolution& solution) {
+  ++count_.problems;
+  if (solution.converged) return;
+  ++count_.unsolved;
+  count_.worstResidual = std::max(count_.worstResidual, solution.residual);
+}
+
+/// Impulses and velocities of the step before, by the nearest contact of the same bodies.
+ConeStart ContactStepping::startOf(const Group& group) const {
+  const Index size = 3 * static_cast<Index>(group.members.size());
+  ConeStart start{VectorX::Zero(size), VectorX::Zero(size), 0};
+  const auto penalty = penalties_.find(group.firstBody);
+  if (penalty != penalties_.end()) start.penalty = penalty->second;
+  for (std::size_t i = 0; i < group.members.size(); ++i) {
+    const Contact& contact = contacts_[group.members[i]].contact;
+    double nearest = INFINITY;
+    for (std::size_t k = 0; k < previous_.size(); ++k) {
+      const Contact& other = previous_[k].contact;
+      if (other.bodyA != contact.bodyA || other.bodyB != contact.bodyB) continue;
+      const double distance = (other.point - contact.point).squaredNorm();
+      if (distance >= nearest) continue;
+      nearest = distance;
+      start.impulses.segment<3>(3 * static_cast<Index>(i)) = cones_.axes(i).transpose() * previous_[k].impulse;
+      start.velocities.segment<3>(3 * static_cast<Index>(i)) = cones_.axes(i).transpose() * previousSlips_[k];
+    }
+  }
+  return start;
+}
+
+/// From free motion to where impulses lead: with the mean of the velocities at both ends, where that leads into no
+/// overlap: what lasts keeps order 2 and its energy. Else with those at the end, which the gaps were asked of.
+void ContactStepping::move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state) {
+  tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
+  const VectorX end = cones_.velocitiesIn(state);
+  bool isSmooth = true;
+  VectorX gaps(group.contacts.size());
+  for (Index i = 0; i < gaps.size(); ++i) {
+    const double gap = group.contacts[static_cast<std::size_t>(i)].separation;
+    gaps[i] = gap + motion.timeStep * 0.5 * (motion.start[3 * i + 2] + end[3 * i + 2]);
+    isSmooth = isSmooth && gaps[i] > std::min(0.0, gap) - kSmoothPart * overlapTolerance_;
+  }
+  if (!isSmooth)
+    for (Index i = 0; i < gaps.size(); ++i)
+      gaps[i] = group.contacts[static_cast<std::size_t>(i)].separation + motion.timeStep * end[3 * i + 2];
+  isSmooth ? moveByMean(group, motion, state) : moveByEnd(group, motion, state);
+  if (gaps.minCoeff() < -overlapTolerance_) separate(group, gaps, state);
+}
+
+void ContactStepping::moveByMean(const Group& group, const Motion& motion, VectorX& state) const {
+  const double half = 0.5 * motion.timeStep;
+  for (const int body : group.bodies) {
+    centerOfMass(state, body) += half * (linearVelocity(state, body) - linearVelocity(free_, body));
+    turnBody(state, body, half * (angularVelocity(state, body) - angularVelocity(free_, body)));
+  }
+}
+
+void ContactStepping::moveByEnd(const Group& group, const Motion& motion, VectorX& state) const {
+  for (const int body : group.bodies) {
+    centerOfMass(state, body) = centerOfMass(motion.before, body) + motion.timeStep * linearVelocity(state, body);
+    setOrientation(state, body, orientation(motion.before, body));
+    turnBody(state, body, motion.timeStep * angularVelocity(state, body));
+  }
+}
+
+/// Moves bodies apart where `gaps` (m) at the step's end are negative, without touching velocities.
+void ContactStepping::separate(const Group& group, const VectorX& gaps, VectorX& state) {
+  const double deepest = -gaps.minCoeff();
+  Problem problem{VectorX::Zero(3 * gaps.size()), std::vector<double>(group.contacts.size(), 0)};
+  for (Index i = 0; i < gaps.size(); ++i) problem.free[3 * i + 2] = std::min(gaps[i], kFarOverlaps * deepest);
+  VectorX displacement = state;
+  displacement.tail(state.size() - poseComponents(state)).setZero();
+  if (tied_ || group.contacts.size() <= kFewContacts) {
+    const VectorX pushes = solveConeProblem(inverseMass(), problem.free, problem.frictions).impulses;
+    tied_ ? tied_->apply(pushes, displacement) : cones_.apply(pushes, displacement);
+  } else {
+    ConeStart start{VectorX::Zero(3 * gaps.size()), VectorX::Zero(3 * gaps.size()), 0};
+    const double tolerance = std::max(kSeparatedPart * overlapTolerance_, kSeparatedError * deepest);
+    cones_.apply(cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations).impulses,
+                 displacement);
+  }
+  for (const int body : group.bodies) {
+    centerOfMass(state, body) += linearVelocity(displacement, body);
+    turnBody(state, body, angularVelocity(displacement, body));
+  }
+}
+
+void ContactStepping::restore(const std::vector<int>& bodies, VectorX& state) const {
+  for (const int body : bodies) {
+    state.segment<kPoseSize>(body * kPoseSize) = free_.segment<kPoseSize>(body * kPoseSize);
+    state.segment<kVelocitySize>(velocityOffset(state, body)) =
+        free_.segment<kVelocitySize>(velocityOffset(state, body));
+  }
+}
+
+/// What the next step begins with, and who is told.
+void ContactStepping::keep(const Group& group, const Motion& motion, const Problem& problem, const VectorX& impulses,
+                           const VectorX& state) {
+  const VectorX end = cones_.velocitiesIn(state);
+  for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+    const Index at = 3 * static_cast<Index>(i);
+    SteppedContact& stepped = contacts_[group.members[i]];
+    stepped.impulse = cones_.axes(i) * impulses.segment<3>(at);
+    const double closing = -motion.start[at + 2], pressing = std::max(0.0, -closing - motion.free[at + 2]);
+    stepped.isImpact = impulses[at + 2] > 0 && closing > restSpeed(pressing, motion.timeStep);
+    const Vec3 slip = end.segment<3>(at) + problem.free.segment<3>(at) - motion.free.segment<3>(at);
+    slips_[group.members[i]] = cones_.axes(i) * correctedVelocity(slip, problem.frictions[i]);
+  }
+}
+
+}  // namespace cradle

@@ -1,0 +1,170 @@
+#include "simulate/steps/stepped_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "dynamics/integrators/rk4.h"
+#include "simulate/contact_response.h"
+#include "simulate/events/event_location.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kImpactPart = 1e-3;          // of the touching tolerance: how well an impact's gap is closed
+constexpr double kRopeTolerance = 1e-13;      // of the length, or of the tension that is left
+constexpr double kTimeRounding = 1e-9;        // of a step: remainders below it are rounding
+constexpr double kShortestPart = 1.0 / 1024;  // of a step: shorter ones are not cut for their error
+constexpr double kMostGrowth = 4;             // of a part of a step to the next
+constexpr int kMostServed = 12;               // contacts
+constexpr int kManyEvents = 16;               // in a step: beyond, it is not cut any more
+constexpr int kMostEvents = 10000;            // within a step
+
+}  // namespace
+
+SteppedMotion::SteppedMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method)
+    : island_(island),
+      ropes_(ropes),
+      method_(method),
+      contacts_(island, method.timeStep),
+      guard_(island.assembly, island.state, method, island.scene.duration),
+      solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
+      start_(island.time),
+      windowStart_(island.time) {
+  ropes_.setTimeStep(method.timeStep);
+  island_.step.startRateIsKnown = false;
+  contacts_.resolve(island_.time, island_.state, island_.state);
+  ropes_.resolve(island_.time, island_.state);
+  island_.beginAndEndPushes();
+  island_.requireUnsolvedPairsApart();
+}
+
+void SteppedMotion::advance(double frame) {
+  double& time = island_.time;
+  Step& step = island_.step;
+  const double stepEnd = nextStepEnd();
+
+  // How far do bodies move freely?
+  moveFreely(stepEnd);
+  const bool atEvent = stopAtFirstEvent();
+  time = step.time + step.timeStep;
+  if (!atEvent && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
+
+  // What the step's interpolant needs belongs to the forces of now.
+  if (time > frame) prepareInterpolant(island_.rightHandSide, step);
+
+  // Take out what the step left wrong: lengths of rods, closing and overlapping contacts. Then what changes here?
+  before_ = island_.state;
+  island_.state = step.state;
+  if (solver_.hasConstraints()) solver_.project(island_.state);
+  normalizeOrientations(island_.state);
+  resolveContacts();
+  const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
+  ropes_.resolve(time, island_.state);
+  keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
+  island_.beginAndEndPushes();
+  guard_.check(island_.state, time, step.timeStep);
+  island_.requireUnsolvedPairsApart();
+
+  if (atEvent) countEvent();
+  if (eventsInWindow_ > kManyEvents) contacts_.setCrowded();
+  if (time >= start_ + static_cast<double>(stepNumber_ + 1) * method_.timeStep) ++stepNumber_;
+}
+
+void SteppedMotion::hold(double fraction, VectorX& state) const {
+  if (!isHeld_) return;
+  const VectorX& free = island_.step.state;
+  const double square = fraction * fraction;
+  for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
+    centerOfMass(state, body) += square * (centerOfMass(held_, body) - centerOfMass(free, body));
+    const Quat turn = (orientation(held_, body) * orientation(free, body).conjugate()).normalized();
+    turnBody(state, body, square * 2 * turn.vec());
+    const Eigen::Index velocity = velocityOffset(state, body);
+    state.segment<kVelocitySize>(velocity) +=
+        fraction * (held_.segment<kVelocitySize>(velocity) - free.segment<kVelocitySize>(velocity));
+  }
+  dissipatedEnergy(state) += fraction * (dissipatedEnergy(held_) - dissipatedEnergy(free));
+}
+
+/// The end of the fixed step under way, or of the run; a push that begins or ends comes first.
+double SteppedMotion::nextStepEnd() const {
+  double end = island_.scene.duration;
+  const double gridEnd = start_ + static_cast<double>(stepNumber_ + 1) * method_.timeStep;
+  if (gridEnd <= end - kTimeRounding * method_.timeStep) end = gridEnd;
+  return std::min(end, island_.pushes.nextChange());
+}
+
+void SteppedMotion::resolveContacts() {
+  isHeld_ =
+      contacts_.isCrowded() && island_.step.timeStep > kTimeRounding * method_.timeStep;  // no gap closes in no time
+  if (isHeld_)
+    contacts_.resolveStep(island_.time, before_, island_.state);
+  else if (!contacts_.isCrowded())
+    contacts_.resolve(island_.time, before_, island_.state);
+  // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
+  if (solver_.hasConstraints() && !contacts_.touching().empty()) solver_.project(island_.state);
+  if (isHeld_) held_ = island_.state;
+}
+
+/// Takes a step to `stepEnd`, or a part of it where springs, ropes or spins are too fast for the whole.
+void SteppedMotion::moveFreely(double stepEnd) {
+  Step& step = island_.step;
+  double length = std::min(stepEnd - island_.time, longest_);
+  method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
+  if (method_.tolerance == 0) return;
+  prepareInterpolant(island_.rightHandSide, step);
+  while (!(rk4Error(step) <= method_.tolerance) && length > kShortestPart * method_.timeStep) {
+    length /= 2;
+    keepStartRate(step);
+    method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
+    prepareInterpolant(island_.rightHandSide, step);
+  }
+  longest_ = kMostGrowth * length;
+}
+
+/// Cuts the step at the first event in it.
+bool SteppedMotion::stopAtFirstEvent() {
+  if (!island_.mayTouch() && !ropes_.hasRopes()) return false;
+  Step& step = island_.step;
+  prepareInterpolant(island_.rightHandSide, step);
+  island_.findNearPairs(contacts_.margin());
+  const auto impact = contacts_.isCrowded() ? std::nullopt : island_.search.first(step, {contacts_.touchTolerance()});
+  const auto change = ropes_.firstChange(step);
+  const double whole = step.timeStep;
+  if (impact && !(change && change->fraction < impact->fraction)) {
+    endStepAtEvent(island_, method_.integrate, impact->fraction * whole, kImpactPart * contacts_.touchTolerance(),
+                   [&](const VectorX& state) { return island_.search.margin(*impact, {}, state); });
+  } else if (change) {
+    endStepAtEvent(island_, method_.integrate, change->fraction * whole, kRopeTolerance,
+                   [&](const VectorX& state) { return ropes_.margin(*change, state); });
+  }
+  return impact || change;
+}
+
+bool SteppedMotion::isAtRest() const {
+  return island_.resting.allRest() && island_.time < island_.pushes.nextChange();
+}
+
+bool SteppedMotion::mayServeEvents() const {
+  const std::vector<Contact>& touching = contacts_.touching();
+  return std::ssize(touching) <= kMostServed && std::all_of(touching.begin(), touching.end(), canLast);
+}
+
+void SteppedMotion::restUntil(double time) {
+  island_.time = std::min(time, island_.pushes.nextChange());
+  stepNumber_ = static_cast<long>(std::floor((island_.time - start_) / method_.timeStep + kTimeRounding));
+  island_.beginAndEndPushes();
+}
+
+void SteppedMotion::countEvent() {
+  if (island_.time > windowStart_ + method_.timeStep) windowStart_ = island_.time, eventsInWindow_ = 0;
+  if (++eventsInWindow_ <= kMostEvents) return;
+  throw Error(ErrorKind::limit, "",
+              fmt::format("more than {} impacts and pulls of ropes within {:.3g} s at {:.6g} s; lower a restitution of "
+                          "1 between bodies that cannot separate, or take a smaller \"timeStep\"",
+                          kMostEvents, method_.timeStep, island_.time));
+}
+
+}  // namespace cradle

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cmath>
+
+#include "simulate/energy_guard.h"
+#include "simulate/moving_island.h"
+#include "simulate/rope_stage.h"
+#include "simulate/steps/contact_stage.h"
+
+namespace cradle {
+
+/// Moves an island in steps of one length, for methods that a scene names and for contact that is too much for events.
+/// A step is cut where bodies meet, ropes go taut or slack, and pushes begin or end; lasting contact is resolved at its
+/// end.
+class SteppedMotion {
+ public:
+  /// Keeps references to the island, which it moves, and its ropes. The method has a fixed step; the first begins now.
+  SteppedMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method);
+
+  /// Takes a step, or goes to an event inside it. `frame` (s) is the next time whose state is asked for. Throws
+  /// Error(unstable) if the state blows up, Error(limit) if a step has too many impacts.
+  void advance(double frame);
+
+  /// Whether the last step kept what ties the bodies: its interpolant may be projected.
+  bool keepsTies() const { return keepsTies_; }
+
+  /// Adds to a state of the last step's free motion, at a fraction of it, what contacts did that acted over all of it.
+  void hold(double fraction, VectorX& state) const;
+
+  /// Whether all bodies of the island lie still.
+  bool isAtRest() const;
+
+  /// Whether nothing touches any more.
+  bool isFree() const { return contacts_.touching().empty(); }
+
+  /// Whether all that touches may be served by events.
+  bool mayServeEvents() const;
+
+  /// Lets time pass in which nothing moves.
+  void restUntil(double time);
+
+ private:
+  double nextStepEnd() const;
+  void moveFreely(double stepEnd);
+  bool stopAtFirstEvent();
+  void resolveContacts();
+  void countEvent();
+
+  MovingIsland& island_;
+  RopeStage& ropes_;
+  ChosenMethod method_;
+  ContactStage contacts_;
+  EnergyGuard guard_;
+  ConstraintSolver solver_;
+  double start_ = 0;           // s: where the steps begin to be counted
+  long stepNumber_ = 0;        // the step under way covers start + [stepNumber_, stepNumber_ + 1] x timeStep
+  double longest_ = INFINITY;  // s: what the error allowed last, and more
+  bool keepsTies_ = true;      // no rope went taut or slack at the last step's end
+  int eventsInWindow_ = 0;
+  double windowStart_ = 0;  // s
+  VectorX before_;
+  bool isHeld_ = false;  // contacts acted over all of the last step ...
+  VectorX held_;         // ... and led here
+};
+
+}  // namespace cradle
