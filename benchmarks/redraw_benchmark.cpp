@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "commands/trajectory_source.h"
+#include "commands/film_view.h"
 #include "render/renderer.h"
 
 namespace cradle {
@@ -27,13 +27,8 @@ double median(std::vector<double> values) {
 void run(const std::string& trajectory, int width, int height) {
   const TrajectorySource source(trajectory, true);
   const TrajectoryReader& reader = source.reader();
-  const auto pushes = findShownPushes(source.scene(), reader.events(), [&reader](long frame) {
-    return reader.readFrame(std::min(frame, reader.frameCount() - 1));
-  });
-  Framing framing(source.scene(), width, height, pushes);
-  for (long frame = 0; frame < reader.frameCount(); ++frame) framing.add(reader.readFrame(frame));
-  Renderer changing(source.scene(), framing.view(), width, height),
-      whole(source.scene(), framing.view(), width, height);
+  const View view = viewOf(source, width, height);
+  Renderer changing(source.scene(), view, width, height), whole(source.scene(), view, width, height);
   whole.render(reader.readFrame(0));  // compiles shaders
   std::vector<double> changedTimes, wholeTimes, shares;
   for (long run = 0; run < kRuns; ++run) {

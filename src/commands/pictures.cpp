@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <future>
 
-#include "commands/trajectory_source.h"
+#include "commands/film_view.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
@@ -63,17 +63,6 @@ FrameRange parseFrames(const std::optional<std::string>& text, const TrajectoryS
   return {range->first, range->second};
 }
 
-/// The one view of a whole film, from all of its frames.
-View viewOf(const TrajectorySource& source, const Size& size) {
-  const TrajectoryReader& reader = source.reader();
-  const auto pushes = findShownPushes(source.scene(), reader.events(), [&reader](long frame) {
-    return reader.readFrame(std::min(frame, reader.frameCount() - 1));
-  });
-  Framing framing(source.scene(), size.width, size.height, pushes);
-  for (long frame = 0; frame < reader.frameCount(); ++frame) framing.add(reader.readFrame(frame));
-  return framing.view();
-}
-
 bool isFrameName(const std::string& name) {
   return name.size() == 16 && name.starts_with("frame_") && name.ends_with(".png") &&
          name.find_first_not_of("0123456789", 6) == 12;
@@ -88,7 +77,8 @@ template <class Take>
 void drawFrames(const TrajectorySource& source, const PictureOptions& options, const FrameRange& range, bool quiet,
                 const Take& take) {
   const Size size = parseSize(options.size, source.scene());
-  Renderer renderer(source.scene(), viewOf(source, size), size.width, size.height, options.shaders.value_or(""));
+  Renderer renderer(source.scene(), viewOf(source, size.width, size.height), size.width, size.height,
+                    options.shaders.value_or(""));
   Progress progress("Drawing", "pictures", range.end - range.first, quiet);
   std::future<void> taken;
   for (long frame = range.first; frame < range.end; ++frame) {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "commands/trajectory_source.h"
+#include "commands/film_view.h"
 #include "render/renderer.h"
 
 namespace cradle {
@@ -24,12 +24,7 @@ long differingPixels(const Image& a, const Image& b) {
 bool check(const std::string& trajectory, const std::vector<long>& frames) {
   const TrajectorySource source(trajectory, true);
   const TrajectoryReader& reader = source.reader();
-  const auto pushes = findShownPushes(source.scene(), reader.events(), [&reader](long frame) {
-    return reader.readFrame(std::min(frame, reader.frameCount() - 1));
-  });
-  Framing framing(source.scene(), kWidth, kHeight, pushes);
-  for (long frame = 0; frame < reader.frameCount(); ++frame) framing.add(reader.readFrame(frame));
-  const View view = framing.view();
+  const View view = viewOf(source, kWidth, kHeight);
   Renderer changing(source.scene(), view, kWidth, kHeight), whole(source.scene(), view, kWidth, kHeight);
   bool same = true;
   double share = 0;
