@@ -93,8 +93,8 @@ class Study {
         drawsCharts_(canDrawCharts()),
         table_((fs::path(folder_) / kTableName).string()),
         progress_("Studying", "methods", static_cast<long>(scenes * (methods_.size() + 1)), quiet) {
-    if (!hasBullet())
-      fmt::print(stderr, "note: built without Bullet (CMake: CRADLE_PEERS); only our own methods run\n");
+    if (peers().empty())
+      fmt::print(stderr, "note: built without other engines (CMake: CRADLE_PEERS); only our own methods run\n");
     if (!drawsCharts_) fmt::print(stderr, "warning: gnuplot is missing: there will be a table, but no charts\n");
   }
 

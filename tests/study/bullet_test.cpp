@@ -1,36 +1,16 @@
-#include "study/peers/bullet.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "core/error.h"
 #include "study/motion_error.h"
-#include "study/peers/peer_run.h"
+#include "study/peer_frames.h"
 #include "study/sample_scenes.h"
 #include "study/study_table.h"
 
 namespace cradle {
 namespace {
 
-/// Tests of the adapter, in programs that have it.
-class Bullet : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (!hasBullet()) GTEST_SKIP() << "built without Bullet (CMake: CRADLE_PEERS)";
-  }
-};
-
-constexpr BulletSettings kTuned100{100, true};
-
-/// Frames at `framesPerSecond` of a scene in Bullet.
-std::vector<Frame> framesOf(Scene scene, const BulletSettings& settings, double timeStep, double framesPerSecond) {
-  scene.output.framesPerSecond = framesPerSecond;
-  const Assembly assembly = assemble(scene, wholeScene(scene));
-  std::vector<Frame> frames;
-  runBullet(scene, assembly, settings, timeStep, [&](const Frame& frame) { frames.push_back(frame); });
-  return frames;
-}
+class Bullet : public PeerTest {};
 
 /// A block of 0.5 x 0.2 x 0.5 m that lies on a slope of 30 degrees.
 Scene blockOnSlope(double friction) {
@@ -48,7 +28,7 @@ Scene blockOnSlope(double friction) {
 TEST_F(Bullet, FreeFallErrorIsHalfGravityTimesStepTimesTime) {
   // Semi-implicit Euler: y = -g h^2 (1 + 2 + ... + n) = -g (t^2 + h t) / 2, up to the rounding of 128 steps.
   const double timeStep = 1.0 / 64, time = 2;
-  const Frame end = framesOf(freeFall(time), {}, timeStep, 0.5).back();
+  const Frame end = framesOf(freeFall(time), "bullet", timeStep, 0.5).back();
   EXPECT_NEAR(end.states[0].position.y(), -9.81 * (time * time + timeStep * time) / 2, 1e-12);
 }
 
@@ -56,7 +36,7 @@ TEST_F(Bullet, SpringForcesActOnceAStep) {
   // x(n+1) - 2 x(n) + x(n-1) = -(omega h)^2 x(n), and x(0) = x(-1) at rest: x(n) ~ cos((n + 1/2) a), cos a = 1 - (omega
   // h)^2 / 2. The spring's energy is reported with the state that it belongs to.
   const double omega = 20, timeStep = 0.005, duration = 2;
-  const Frame end = framesOf(oscillator(omega, duration), {}, timeStep, 1 / duration).back();
+  const Frame end = framesOf(oscillator(omega, duration), "bullet", timeStep, 1 / duration).back();
   const double angle = std::acos(1 - omega * omega * timeStep * timeStep / 2);
   const double away = 0.25 * std::cos((duration / timeStep + 0.5) * angle) / std::cos(angle / 2);
   EXPECT_NEAR(end.states[0].position.x(), 1 + away, 1e-11);
@@ -69,11 +49,7 @@ TEST_F(Bullet, BodiesStartWhereTheSceneHasThem) {
                 "inertiaTensor": [[0.4, 0.05, 0.02], [0.05, 0.5, -0.03], [0.02, -0.03, 0.6]], "position": [1, 2, 3],
                 "orientation": {"axis": [1, 2, -1], "angleDegrees": 70}, "linearVelocity": [1, -2, 0.5],
                 "angularVelocity": [0.3, 4, -1]}]})");
-  const Assembly assembly = assemble(scene, wholeScene(scene));
-  VectorX state = VectorX::Zero(assembly.state.size());
-  BulletWorld(scene, assembly, {}).read(state);
-  if (orientation(state, 0).dot(orientation(assembly.state, 0)) < 0) state.segment<4>(3) *= -1;
-  EXPECT_LT((state - assembly.state).cwiseAbs().maxCoeff(), 1e-14);
+  expectStartIsTheScenes(scene, "bullet");
 }
 
 TEST_F(Bullet, TiedBodiesThatAreNotSymmetricAreRightToFirstOrder) {
@@ -89,8 +65,8 @@ TEST_F(Bullet, TiedBodiesThatAreNotSymmetricAreRightToFirstOrder) {
     "ballJoints": [{"bodyA": "b", "anchorA": [-0.5, 0, 0], "bodyB": "a", "anchorB": [0.5, 0, 0]}],
     "rods": [{"bodyA": "c", "anchorA": [-0.1, 0.1, 0.2], "bodyB": "b", "anchorB": [0.1, 0, 0.1]}]})");
   const std::vector<BodyState> exact = StudyScene(scene).run(methodOf("dop853"), 1e-10, 10).end;
-  const double coarse = motionError(framesOf(scene, {100, false}, 1.0 / 512, 2).back().states, exact);
-  const double fine = motionError(framesOf(scene, {100, false}, 1.0 / 1024, 2).back().states, exact);
+  const double coarse = motionError(framesOf(scene, "bullet100", 1.0 / 512, 2).back().states, exact);
+  const double fine = motionError(framesOf(scene, "bullet100", 1.0 / 1024, 2).back().states, exact);
   EXPECT_LT(coarse, 0.02);
   EXPECT_NEAR(coarse / fine, 2, 0.3);
 }
@@ -104,7 +80,7 @@ TEST_F(Bullet, TheRestitutionOfAPairGivesTheHeightOfTheBounce) {
                {{"name": "ball", "shape": {{"sphere": {{"radius": 0.1}}}}, "material": "rubber", "position": [0, 1.1, 0]}}]}})",
                                           restitution));
   double apex = 0;
-  for (const Frame& frame : framesOf(scene, kTuned100, 1.0 / 4096, 256))
+  for (const Frame& frame : framesOf(scene, "bulletTuned100", 1.0 / 4096, 256))
     if (frame.time > 0.6) apex = std::max(apex, frame.states[0].position.y() - 0.1);
   EXPECT_NEAR(apex, restitution * restitution, 4e-3);
 }
@@ -112,14 +88,14 @@ TEST_F(Bullet, TheRestitutionOfAPairGivesTheHeightOfTheBounce) {
 TEST_F(Bullet, ABlockSlidesWithTheFrictionOfItsPair) {
   // g (sin - mu cos) t^2 / 2 down the slope; 1 % is five times the error of a step of 1/1000 s (h / t, and the
   // solver's).
-  const std::vector<Frame> frames = framesOf(blockOnSlope(0.5), kTuned100, 1e-3, 1);
+  const std::vector<Frame> frames = framesOf(blockOnSlope(0.5), "bulletTuned100", 1e-3, 1);
   const double way = (frames.back().states[0].position - frames.front().states[0].position).norm();
   EXPECT_NEAR(way, 9.81 * (0.5 - 0.5 * std::sqrt(0.75)) / 2, 0.01 * way);
 }
 
 TEST_F(Bullet, WhatItDoesNotHaveIsNamed) {
   const auto missing = [](const char* name) {
-    return missingInBullet(loadScene(std::string(CRADLE_SOURCE_DIR "/scenes/") + name).scene);
+    return missingIn("bullet", loadScene(std::string(CRADLE_SOURCE_DIR "/scenes/") + name).scene);
   };
   EXPECT_EQ(missing("slack_rope.json"), "ropes");
   EXPECT_EQ(missing("struck_model.json"), "pushes");
