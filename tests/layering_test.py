@@ -33,6 +33,9 @@ LIBRARY_UNITS = {
     "GL/": ["render"],
     "Bullet": ["study/peers/bullet"],
     "bt": ["study/peers/bullet"],
+    "ode/": ["study/peers/ode"],
+    "mujoco/": ["study/peers/mujoco"],
+    "Simbody": ["study/peers/simbody"],
 }
 
 
