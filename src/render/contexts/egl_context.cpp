@@ -35,13 +35,9 @@ OffscreenContext::OffscreenContext() : surface_(std::make_unique<Surface>()) {
   if (surface_->display == EGL_NO_DISPLAY || eglInitialize(surface_->display, nullptr, nullptr) != EGL_TRUE)
     fail("EGL has no display without a screen");
   eglBindAPI(EGL_OPENGL_API);
-  const std::array<EGLint, 7> attributes = {EGL_CONTEXT_MAJOR_VERSION,
-                                            3,
-                                            EGL_CONTEXT_MINOR_VERSION,
-                                            3,
-                                            EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                            EGL_NONE};
+  const std::array<EGLint, 7> attributes = {
+      EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
   surface_->context = eglCreateContext(surface_->display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
   if (surface_->context == EGL_NO_CONTEXT) fail("EGL gives no context of version 3.3");
   makeCurrent();
