@@ -1,5 +1,6 @@
-// CPU time of a picture of 1000 and of 10 000 bodies, balls and boxes that all move, drawn whole and drawn as changes of
-// the one before, against the cradle's drawn whole (1280x720): medians of pictures drawn in turns, and the peak of memory.
+// CPU time of a picture of 1000 and of 10 000 bodies, balls and boxes that all move, drawn whole and drawn as changes
+// of the one before, against the cradle's drawn whole (1280x720): medians of pictures drawn in turns, and the peak of
+// memory.
 
 #include <fmt/format.h>
 #include <sys/resource.h>
