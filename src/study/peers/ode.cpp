@@ -271,7 +271,7 @@ Peer peerOf(const std::string& name, const std::string& title, const OdeSettings
 std::vector<Peer> odePeers() {
   return {peerOf("ode", "ODE, step", {}), peerOf("odeQuick", "ODE, quick step", {20, {}}),
           peerOf("odeTuned", "ODE, step, ERP 0.8", {0, kTunedErrorReduction}),
-          peerOf("odeQuick100", "ODE, quick step, 100 iterations, ERP 0.8", {100, kTunedErrorReduction})};
+          peerOf("odeQuick100", "ODE, quick step, 100 iterations", {100, {}})};
 }
 
 }  // namespace cradle
