@@ -217,7 +217,7 @@ std::string plotCommand(const std::vector<Curve>& curves, int column) {
 }
 
 std::string legend(const std::vector<Curve>& curves) {
-  const int lines = curves.size() <= kMostInALine ? 1 : curves.size() <= kMostInThreeLines ? 3 : 5;
+  const int lines = curves.size() <= kMostInALine ? 1 : curves.size() <= kMostInThreeLines ? 3 : 4;
   std::string text = fmt::format(
       "unset label\nunset arrow\nunset object\nunset border\nunset tics\nunset xlabel\nunset ylabel\nunset grid\n"
       "unset logscale\nset key center center horizontal Left reverse maxrows {} samplen 3 width 1 noenhanced font "
