@@ -38,18 +38,18 @@ Scene blockOnSlope(double friction) {
                              friction));
 }
 
-/// A body that is nowhere symmetric hangs from a hinge, another from it by a ball joint, and with `rod` a third from
+/// A body that is nowhere symmetric hangs from a ball joint, another from it by a hinge, and with `rod` a third from
 /// that by a rod; none at its centre of mass.
 Scene tiedBodies(bool rod) {
   return sceneOf(
       std::string(R"({"schema": "cradle-scene/1", "name": "tied", "duration": 0.5,
     "bodies": [{"name": "a", "shape": {"box": {"size": [1, 0.6, 0.2]}}, "collision": "none", "mass": 2,
                 "centerOfMass": [0.2, -0.1, 0.05], "inertiaTensor": [[0.4, 0.05, 0.02], [0.05, 0.5, -0.03], [0.02, -0.03, 0.6]],
-                "angularVelocity": [0, 0, 2], "linearVelocity": [0.2, 1, 0]},
+                "angularVelocity": [1, 0.5, 2]},
                {"name": "b", "shape": {"box": {"size": [0.3, 0.5, 0.4]}}, "collision": "none", "mass": 1, "position": [1, 0, 0]},
                {"name": "c", "shape": {"box": {"size": [0.3, 0.2, 0.4]}}, "collision": "none", "mass": 1, "position": [2, 0, 0]}],
-    "hinges": [{"bodyA": "a", "anchorA": [-0.5, 0, 0], "anchorB": [-0.5, 0, 0], "axis": [0, 1, 1]}],
-    "ballJoints": [{"bodyA": "b", "anchorA": [-0.5, 0, 0], "bodyB": "a", "anchorB": [0.5, 0, 0]}])") +
+    "ballJoints": [{"bodyA": "a", "anchorA": [-0.5, 0, 0], "anchorB": [-0.5, 0, 0]}],
+    "hinges": [{"bodyA": "b", "anchorA": [-0.5, 0, 0], "bodyB": "a", "anchorB": [0.5, 0, 0], "axis": [0, 1, 1]}])") +
       (rod ? R"(, "rods": [{"bodyA": "c", "anchorA": [-0.1, 0.1, 0.2], "bodyB": "b", "anchorB": [0.1, 0, 0.1]}]})"
            : "}"));
 }
