@@ -37,7 +37,7 @@ void startOde() {
     dSetErrorHandler(giveUp);
     dSetDebugHandler(giveUp);
     dSetMessageHandler(ignore);
-    return dAllocateODEDataForThread(dAllocateMaskAll) != 0;
+    return dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll)) != 0;
   }();
   CRADLE_CHECK(isStarted);
   dRandSetSeed(kSeed);
