@@ -49,6 +49,9 @@ void addOutput(CLI::App* command, CommandLine& line, const char* what) {
 
 void addPictureOptions(CLI::App* command, CommandLine& line) {
   command->add_option("--size", line.pictures.size, "WIDTHxHEIGHT in pixels (default: the scene's)");
+  command->add_option("--overlay", line.pictures.overlay,
+                      "what lies on the pictures, with commas: time, contacts, velocities, trails, plot=energy, "
+                      "plot=energyError, plot=height:BODY");
   command->add_option("--shaders", line.pictures.shaders, "folder with shaders to use instead of the built-in ones");
 }
 

@@ -14,6 +14,7 @@
 #include "core/progress.h"
 #include "image/png.h"
 #include "image/video.h"
+#include "overlay/film_overlay.h"
 #include "render/renderer.h"
 
 namespace cradle {
@@ -72,18 +73,30 @@ std::string frameName(long frame) {
   return fmt::format("frame_{:06}.png", frame);
 }
 
+/// Nothing if no overlay is asked for.
+std::optional<FilmOverlay> overlayOf(const TrajectorySource& source, const PictureOptions& options, const View& view) {
+  if (!options.overlay) return std::nullopt;
+  const TrajectoryReader& reader = source.reader();
+  const FilmRecord film{source.scene(), view, [&reader](long number) { return reader.readFrame(number); },
+                        reader.frameCount(), reader.events()};
+  return std::optional<FilmOverlay>(std::in_place, film, parseOverlays(*options.overlay, source.scene()));
+}
+
 /// Draws frames in order and hands each picture on in a thread beside the drawing of the next one.
 template <class Take>
 void drawFrames(const TrajectorySource& source, const PictureOptions& options, const FrameRange& range, bool quiet,
                 const Take& take) {
   const Size size = parseSize(options.size, source.scene());
-  Renderer renderer(source.scene(), viewOf(source, size.width, size.height), size.width, size.height,
-                    options.shaders.value_or(""));
+  const View view = viewOf(source, size.width, size.height);
+  std::optional<FilmOverlay> overlay = overlayOf(source, options, view);
+  Renderer renderer(source.scene(), view, size.width, size.height, options.shaders.value_or(""));
   Progress progress("Drawing", "pictures", range.end - range.first, quiet);
   std::future<void> taken;
   for (long frame = range.first; frame < range.end; ++frame) {
     throwIfInterrupted();
-    Image image = renderer.render(source.reader().readFrame(frame));
+    const Frame state = source.reader().readFrame(frame);
+    Image image = renderer.render(state);
+    if (overlay) overlay->draw(state, image);
     if (taken.valid()) taken.get();
     taken = std::async(std::launch::async, [&take, frame, picture = std::move(image)] { take(frame, picture); });
     progress.update(frame - range.first + 1);
@@ -98,6 +111,7 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
   const TrajectorySource source(input, quiet);
   const FrameRange range = parseFrames(options.frames, source);
   parseSize(options.size, source.scene());
+  if (options.overlay) parseOverlays(*options.overlay, source.scene());
   makeFolder(folder);
   drawFrames(source, options, range, quiet, [&](long frame, const Image& picture) {
     writePng(picture, (fs::path(folder) / frameName(frame)).string());
@@ -117,6 +131,7 @@ void makeFilm(const std::string& input, const std::string& film, const PictureOp
   requireWritableFile(film);
   const TrajectorySource source(input, quiet);
   const Size size = parseSize(options.size, source.scene());
+  if (options.overlay) parseOverlays(*options.overlay, source.scene());
   VideoEncoder encoder(film, {size.width, size.height, source.scene().output.framesPerSecond});
   drawFrames(source, options, {0, source.pictureCount()}, quiet,
              [&](long, const Image& picture) { encoder.add(picture); });

@@ -9,6 +9,7 @@ namespace cradle {
 struct PictureOptions {
   std::optional<std::string> size;     // "WIDTHxHEIGHT"
   std::optional<std::string> frames;   // "FIRST:END", half-open
+  std::optional<std::string> overlay;  // as parseOverlays() reads it
   std::optional<std::string> shaders;  // folder
   double framesPerSecond = 60;         // of `encode`
 };

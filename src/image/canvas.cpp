@@ -1,5 +1,6 @@
 // A shape covers a pixel by its signed distance from the pixel's middle: half of it at distance 0, none and all half a
-// pixel further out and in. That is exact for straight edges along the pixels, and off by at most 0.1 for slanting ones.
+// pixel further out and in. That is exact for straight edges along the pixels, and off by at most 0.1 for slanting
+// ones.
 
 #include "image/canvas.h"
 

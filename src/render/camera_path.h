@@ -24,10 +24,10 @@ class CameraPath {
   const CameraMotion& motion_;
   std::vector<Bounds> localBounds_;  // of every body
   bool hasStarted_ = false;
-  double time_ = 0;              // s, of the frame before
-  Vec3 leaderStart_, leader_;    // m, world: of the body that is followed
-  Vec3 behind_;                  // m, from the end of the spring to the body
-  Vec3 velocity_ = Vec3::Zero(); // m/s, of the end of the spring
+  double time_ = 0;               // s, of the frame before
+  Vec3 leaderStart_, leader_;     // m, world: of the body that is followed
+  Vec3 behind_;                   // m, from the end of the spring to the body
+  Vec3 velocity_ = Vec3::Zero();  // m/s, of the end of the spring
 };
 
 /// Throws Error(scene) if the scene names a camera that cannot be used at its start.

@@ -40,7 +40,7 @@ struct Stage {
   int width = 0, height = 0;
   Camera camera;
   Bounds bounds;  // m, world
-  Vec3 origin;  // m, world
+  Vec3 origin;    // m, world
   Eigen::Matrix4f clipFromWorld;
   Lighting lighting;
   ShadowView shadow;

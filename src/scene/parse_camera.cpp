@@ -32,9 +32,8 @@ CameraMotion::Key parseKey(const Field& field, const SceneDraft& draft, FaultLis
   key.target = reader.vector("target", "m", camera.target);
   if (const auto target = reader.find("target"); target && looksAtBody)
     addFault(faults, *target, "a key frame has a target though the camera's target is a body; allowed is one of them");
-  key.verticalFieldOfView =
-      kRadiansPerDegree * reader.number("verticalFieldOfViewDegrees", kFieldsOfView, "degrees",
-                                        camera.verticalFieldOfView / kRadiansPerDegree);
+  key.verticalFieldOfView = kRadiansPerDegree * reader.number("verticalFieldOfViewDegrees", kFieldsOfView, "degrees",
+                                                              camera.verticalFieldOfView / kRadiansPerDegree);
   reader.rejectUnknownKeys();
   if (!looksAtBody) checkView({"", key.position, key.target, key.verticalFieldOfView, camera.up}, field, faults);
   return key;
@@ -72,8 +71,9 @@ void parseTarget(const Field& field, SceneDraft& draft, FaultList& faults) {
   else if (std::holds_alternative<JsonValue::Array>(field.value->content))
     draft.scene.camera->target = readVector(field, "m", faults).value_or(Vec3::UnitY());
   else
-    addFault(faults, field,
-             fmt::format("target is {}; allowed are three numbers (m), or the name of a body", described(*field.value)));
+    addFault(
+        faults, field,
+        fmt::format("target is {}; allowed are three numbers (m), or the name of a body", described(*field.value)));
 }
 
 std::optional<double> parseOrbit(const Field& field, FaultList& faults) {
@@ -81,7 +81,8 @@ std::optional<double> parseOrbit(const Field& field, FaultList& faults) {
   const auto period = reader.require("period");
   const auto seconds = period ? readNumber(*period, kAnyNumber, "s", faults) : std::nullopt;
   if (seconds == 0.0)
-    addFault(faults, *period, "period is 0; allowed is any other number (s); negative turns clockwise, seen from above");
+    addFault(faults, *period,
+             "period is 0; allowed is any other number (s); negative turns clockwise, seen from above");
   reader.rejectUnknownKeys();
   return seconds;
 }

@@ -190,7 +190,7 @@ TEST(CameraPath, KeyFramesAreNeverOvershot) {
     const Numbers numbers = numbersAt(scene, time);
     EXPECT_GE(numbers[0], 4);
     EXPECT_LE(numbers[0], 5);
-    EXPECT_EQ(numbers[1], 1);    // equal keys stand still
+    EXPECT_EQ(numbers[1], 1);  // equal keys stand still
     EXPECT_EQ(numbers[6], 0.5);
   }
 }
