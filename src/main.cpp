@@ -95,6 +95,7 @@ void addPictures(CLI::App& app, CommandLine& line) {
   render->add_option("input", line.input, "scene or trajectory file")->required();
   addOutput(render, line, "folder for frame_000000.png, ...");
   render->add_option("--frames", line.pictures.frames, "FIRST:END, half-open (default: all)");
+  render->add_flag("--overwrite", line.pictures.overwrite, "replace frames that are in the folder already");
   addPictureOptions(render, line);
 
   auto* encode =

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cradle {
 namespace {
@@ -14,20 +15,40 @@ double linearFrom(double srgb) {
   return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
 }
 
-/// sRGB levels as linear light, and the linear light halfway to the next level.
-struct Levels {
-  std::array<float, 256> linear;
-  std::array<float, 255> upTo;
+/// sRGB levels as linear light, and the way back.
+class Levels {
+ public:
   Levels() {
-    for (std::size_t i = 0; i < linear.size(); ++i) linear[i] = static_cast<float>(linearFrom(double(i) / 255));
-    for (std::size_t i = 0; i < upTo.size(); ++i) upTo[i] = static_cast<float>(linearFrom((double(i) + 0.5) / 255));
+    for (std::size_t i = 0; i < linear_.size(); ++i) linear_[i] = static_cast<float>(linearFrom(double(i) / 255));
+    for (std::size_t i = 0; i + 1 < upTo_.size(); ++i)
+      upTo_[i] = static_cast<float>(linearFrom((double(i) + 0.5) / 255));
+    upTo_.back() = std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < first_.size(); ++i) {
+      const float least = static_cast<float>(i) / kSteps;
+      first_[i] = static_cast<std::uint8_t>(std::upper_bound(upTo_.begin(), upTo_.end(), least) - upTo_.begin());
+    }
   }
+
+  float linear(std::uint8_t level) const { return linear_[level]; }
+
+  /// The level nearest to linear light of 0..1.
+  std::uint8_t nearest(float light) const {
+    std::uint8_t level = first_[static_cast<std::size_t>(light * kSteps)];
+    while (light >= upTo_[level]) ++level;
+    return level;
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 4096;   // finer than the levels are apart, even near black
+  std::array<float, 256> linear_, upTo_;        // upTo_: halfway to the next level
+  std::array<std::uint8_t, kSteps + 1> first_;  // the lowest level of a step
 };
 
 const Levels kLevels;
 
 double distanceTo(const PicturePoint& a, const PicturePoint& b) {
-  return std::hypot(a.x - b.x, a.y - b.y);
+  const double x = a.x - b.x, y = a.y - b.y;
+  return std::sqrt(x * x + y * y);
 }
 
 /// Above 0 on the right of the way from a to b, as y points down.
@@ -53,9 +74,7 @@ void Canvas::blend(int x, int y, double coverage, const Ink& ink) {
   if (share <= 0) return;
   std::uint8_t* pixel = image_.at(x, y);
   for (std::size_t i = 0; i < 3; ++i) {
-    const float mixed = (1 - share) * kLevels.linear[pixel[i]] + share * kLevels.linear[ink.color[i]];
-    pixel[i] = static_cast<std::uint8_t>(std::upper_bound(kLevels.upTo.begin(), kLevels.upTo.end(), mixed) -
-                                         kLevels.upTo.begin());
+    pixel[i] = kLevels.nearest((1 - share) * kLevels.linear(pixel[i]) + share * kLevels.linear(ink.color[i]));
   }
 }
 
@@ -79,7 +98,7 @@ void Canvas::rectangle(const PicturePoint& topLeft, const PicturePoint& bottomRi
   const double halfX = middle.x - topLeft.x - cornerRadius, halfY = middle.y - topLeft.y - cornerRadius;
   fill(topLeft, bottomRight, ink, [&](const PicturePoint& point) {
     const double x = std::abs(point.x - middle.x) - halfX, y = std::abs(point.y - middle.y) - halfY;
-    return std::hypot(std::max(x, 0.0), std::max(y, 0.0)) + std::min(std::max(x, y), 0.0) - cornerRadius;
+    return distanceTo({std::max(x, 0.0), std::max(y, 0.0)}, {}) + std::min(std::max(x, y), 0.0) - cornerRadius;
   });
 }
 

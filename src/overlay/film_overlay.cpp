@@ -74,8 +74,8 @@ void FilmOverlay::readFilm(const FilmRecord& film) {
     plot_ = {"energy (J)", {}, {{"kinetic", {}, kFirstCurve}, {"potential", {}, kSecondCurve}, {"sum", {}, kSumCurve}}};
   if (choice_.plot == PlotKind::energyError) plot_ = {"energy error (J)", {}, {{"", {}, kSecondCurve}}};
   if (choice_.plot == PlotKind::height) {
-    const std::string& name = scene_.bodies[static_cast<std::size_t>(choice_.plottedBody)].name;
-    plot_ = {"height of " + name + " (m)", {}, {{"", {}, kFirstCurve}}};
+    plottedBody_ = plottedBody(choice_, scene_);
+    plot_ = {"height of " + choice_.plottedBody + " (m)", {}, {{"", {}, kFirstCurve}}};
   }
   for (long number = 0; number < film.frameCount; ++number) {
     const Frame frame = film.frameAt(number);
@@ -103,7 +103,7 @@ void FilmOverlay::addToPlot(const Frame& frame) {
     if (values.empty()) energyAtStart_ = sum;
     values.push_back(sum - energyAtStart_);
   } else {
-    const auto state = std::find(dynamicBodies_.begin(), dynamicBodies_.end(), choice_.plottedBody);
+    const auto state = std::find(dynamicBodies_.begin(), dynamicBodies_.end(), plottedBody_);
     const auto index = static_cast<std::size_t>(state - dynamicBodies_.begin());
     plot_.curves[0].values.push_back(frame.states.at(index).position.y());
   }
@@ -179,7 +179,7 @@ void FilmOverlay::drawContacts(const Frame& frame, const Lens& lens, Canvas& can
     for (const double way : {-1.0, 1.0})
       if (const auto tip = lens.see(event.point + way * length * event.normal))
         drawArrow(canvas, *point, *tip, kArrowWidth * lens.height, {kImpulse.color, opacity});
-    canvas.disc(*point, 1.5 * kDotRadius * lens.height, {{255, 255, 255}, opacity});
+    canvas.disc(*point, 1.5 * kDotRadius * lens.height, {{255, 255, 255}, opacity * opacity});
     canvas.disc(*point, kDotRadius * lens.height, {kImpulse.color, opacity});
     if (event.impulse >= kShortestText * greatestImpulse_) texts.push_back({event.impulse, *point, opacity});
   }

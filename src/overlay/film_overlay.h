@@ -54,7 +54,8 @@ class FilmOverlay {
   double size_ = 1;             // m, of what the film shows
   double greatestImpulse_ = 0;  // N s
   double greatestSpeed_ = 0;    // m/s
-  double energyAtStart_ = 0;    // J
+  int plottedBody_ = 0;
+  double energyAtStart_ = 0;  // J
   PlotContent plot_;
   long trailStride_ = 1;           // frames from point to point of a trail
   std::deque<Frame> trailFrames_;  // with numbers that the stride divides, ascending

@@ -37,7 +37,7 @@ void drawArrow(Canvas& canvas, const PicturePoint& tail, const PicturePoint& tip
          PicturePoint{neck.x + half * uy, neck.y - half * ux}},
         with);
   };
-  draw(kEdge * size, {{255, 255, 255}, kEdgeOpacity * ink.opacity});
+  draw(kEdge * size, {{255, 255, 255}, kEdgeOpacity * ink.opacity * ink.opacity});  // fades before it shines through
   draw(0, ink);
 }
 

@@ -4,28 +4,20 @@
 
 #include <algorithm>
 #include <sstream>
+#include <string_view>
 
 #include "core/error.h"
 
 namespace cradle {
 namespace {
 
-constexpr const char* kHeight = "plot=height:";
+constexpr std::string_view kHeight = "plot=height:";
 
 [[noreturn]] void refuse(const std::string& word, const std::string& why) {
   throw Error(ErrorKind::usage, "--overlay", fmt::format("found \"{}\"; {}", word, why));
 }
 
-int movingBody(const std::string& word, const Scene& scene) {
-  const std::string name = word.substr(std::string(kHeight).size());
-  const auto body =
-      std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const Body& b) { return b.name == name; });
-  if (body == scene.bodies.end()) refuse(word, "there is no body of that name");
-  if (body->motion == Motion::fixed) refuse(word, "that body is static; name one that moves");
-  return static_cast<int>(body - scene.bodies.begin());
-}
-
-void read(const std::string& word, const Scene& scene, OverlayChoice& choice) {
+void read(const std::string& word, OverlayChoice& choice) {
   const auto plot = [&](PlotKind kind) {
     if (choice.plot) refuse(word, "there is one plot in a picture, and another was named before");
     choice.plot = kind;
@@ -43,20 +35,29 @@ void read(const std::string& word, const Scene& scene, OverlayChoice& choice) {
   else if (word == "plot=energyError")
     plot(PlotKind::energyError);
   else if (word.starts_with(kHeight))
-    plot(PlotKind::height), choice.plottedBody = movingBody(word, scene);
+    plot(PlotKind::height), choice.plottedBody = word.substr(kHeight.size());
   else
     refuse(word,
-           "allowed are time, contacts, velocities, trails, plot=energy, plot=energyError and plot=height:BODY, "
-           "with commas between them");
+           "allowed are time, contacts, velocities, trails, plot=energy, plot=energyError and plot=height:BODY, with "
+           "commas between them");
 }
 
 }  // namespace
 
-OverlayChoice parseOverlays(const std::string& text, const Scene& scene) {
+OverlayChoice parseOverlays(const std::string& text) {
   OverlayChoice choice;
   std::istringstream words(text + ",");  // the comma lets an empty last word be seen
-  for (std::string word; std::getline(words, word, ',');) read(word, scene, choice);
+  for (std::string word; std::getline(words, word, ',');) read(word, choice);
   return choice;
+}
+
+int plottedBody(const OverlayChoice& choice, const Scene& scene) {
+  const std::string word = std::string(kHeight) + choice.plottedBody;
+  const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                 [&](const Body& candidate) { return candidate.name == choice.plottedBody; });
+  if (body == scene.bodies.end()) refuse(word, "there is no body of that name");
+  if (body->motion == Motion::fixed) refuse(word, "that body is static; name one that moves");
+  return static_cast<int>(body - scene.bodies.begin());
 }
 
 }  // namespace cradle

@@ -16,11 +16,14 @@ struct OverlayChoice {
   bool velocities = false;  // arrows of all dynamic bodies
   bool trails = false;      // of their centres of mass
   std::optional<PlotKind> plot;
-  int plottedBody = 0;  // of PlotKind::height
+  std::string plottedBody;  // name, of PlotKind::height
 };
 
 /// Reads "time,contacts,velocities,trails,plot=WHAT", in any order and number, WHAT energy, energyError or height:BODY.
-/// Throws Error(usage) for anything else, and for bodies that the scene has not or that do not move.
-OverlayChoice parseOverlays(const std::string& text, const Scene& scene);
+/// Throws Error(usage) for anything else.
+OverlayChoice parseOverlays(const std::string& text);
+
+/// The index of the body whose height is plotted. Throws Error(usage) if the scene has none that moves of that name.
+int plottedBody(const OverlayChoice& choice, const Scene& scene);
 
 }  // namespace cradle
