@@ -127,8 +127,13 @@ struct FilmDrawer {
         view(viewOf(source, size.width, size.height)),
         renderer(source.scene(), view, size.width, size.height, options.shaders.value_or("")) {
     const TrajectoryReader& reader = source.reader();
-    const FilmRecord film{source.scene(), view, [&reader](long number) { return reader.readFrame(number); },
-                          reader.frameCount(), reader.events()};
+    const FilmRecord film{source.scene(),
+                          view,
+                          size.width,
+                          size.height,
+                          [&reader](long number) { return reader.readFrame(number); },
+                          reader.frameCount(),
+                          reader.events()};
     if (options.overlay) overlay.emplace(film, parseOverlays(*options.overlay));
   }
 

@@ -32,6 +32,8 @@ const std::array<Ink, 6> kTrailInks = {Ink{{0, 114, 178}},   Ink{{230, 159, 0}},
                                        Ink{{204, 121, 167}}, Ink{{86, 180, 233}}, Ink{{70, 70, 70}}};
 const Ink kFirstCurve{{86, 180, 233}, 1}, kSecondCurve{{255, 176, 64}, 1}, kSumCurve{{255, 255, 255}, 1};
 
+constexpr std::array<PlotCorner, 3> kCorners = {PlotCorner::upperRight, PlotCorner::lowerRight, PlotCorner::lowerLeft};
+
 /// Digits after the point that tell neighbouring frames apart.
 int timeDigits(const Scene& scene) {
   return static_cast<int>(std::clamp(std::ceil(-std::log10(frameTime(scene, 1))), 0.0, 9.0));
@@ -77,17 +79,32 @@ void FilmOverlay::readFilm(const FilmRecord& film) {
     plottedBody_ = plottedBody(choice_, scene_);
     plot_ = {"height of " + choice_.plottedBody + " (m)", {}, {{"", {}, kFirstCurve}}};
   }
+  std::array<long, kCorners.size()> hidden{};
   for (long number = 0; number < film.frameCount; ++number) {
     const Frame frame = film.frameAt(number);
     for (const BodyState& state : frame.states) greatestSpeed_ = std::max(greatestSpeed_, state.linearVelocity.norm());
-    if (choice_.plot) addToPlot(frame);
+    if (!choice_.plot) continue;
+    addToPlot(frame);
+    countHidden(frame, {view_.cameraAt(number), film.width, film.height}, hidden);
   }
+  plot_.corner = kCorners[static_cast<std::size_t>(std::min_element(hidden.begin(), hidden.end()) - hidden.begin())];
   if (choice_.plot != PlotKind::energy) return;
   // A potential's zero means nothing: from its lowest, so that curves of one size share the plot.
   auto& potential = plot_.curves[1].values;
   const double lowest = *std::min_element(potential.begin(), potential.end());
   for (double& value : potential) value -= lowest;
   for (double& value : plot_.curves[2].values) value -= lowest;
+}
+
+/// Adds up by corner how many bodies a plot would hide.
+void FilmOverlay::countHidden(const Frame& frame, const Lens& lens, std::array<long, 3>& hidden) const {
+  for (const BodyState& state : frame.states) {
+    const auto place = lens.see(state.position);
+    for (std::size_t i = 0; i < kCorners.size() && place; ++i) {
+      const auto [low, high] = plotPanelAt(kCorners[i], lens.width, lens.height);
+      hidden[i] += place->x > low.x && place->x < high.x && place->y > low.y && place->y < high.y;
+    }
+  }
 }
 
 void FilmOverlay::addToPlot(const Frame& frame) {

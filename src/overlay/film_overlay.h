@@ -13,8 +13,9 @@ namespace cradle {
 
 /// A film's trajectory as overlays need it.
 struct FilmRecord {
-  const Scene& scene;  // must outlive the overlay
-  const View& view;    // for the constructor alone, like what follows but frameAt
+  const Scene& scene;         // must outlive the overlay
+  const View& view;           // for the constructor alone, like what follows but frameAt
+  int width = 0, height = 0;  // pixels
   FrameSource frameAt;
   long frameCount = 0;
   std::vector<Event> events;  // in order of time
@@ -24,7 +25,8 @@ struct FilmRecord {
 /// alone, not on which frames are drawn before.
 class FilmOverlay {
  public:
-  /// Reads all frames once if the choice needs it (velocities, plot).
+  /// Reads all frames once if the choice needs it (velocities, plot). A plot goes to the corner where it hides the
+  /// centres of mass of dynamic bodies the least often.
   FilmOverlay(const FilmRecord& film, const OverlayChoice& choice);
 
   /// `image` is the picture of `frame`. O(bodies x length of their trails).
@@ -38,6 +40,7 @@ class FilmOverlay {
   };
   void readFilm(const FilmRecord& film);
   void addToPlot(const Frame& frame);
+  void countHidden(const Frame& frame, const Lens& lens, std::array<long, 3>& hidden) const;
   void readTrail(long now);
   void drawTrails(const Frame& frame, const Lens& lens, Canvas& canvas);
   void drawVelocities(const Frame& frame, const Lens& lens, Canvas& canvas) const;

@@ -43,12 +43,10 @@ std::pair<double, double> rangeOf(const PlotContent& content) {
 
 Layout layOut(const PlotContent& content, int width, int height) {
   Layout layout;
-  const double unit = height, breadth = std::min(kWidth * unit, width - 2 * kFromEdge * unit);
+  const double unit = height, padding = kPadding * unit;
   layout.text = crispTextSize(kText * unit);
-  const double line = kLineHeight * layout.text.em, padding = kPadding * unit;
-  const double edge = std::round(kFromEdge * unit);
-  layout.panelTopLeft = {std::round(width - edge - breadth), edge};
-  layout.panelBottomRight = {width - edge, edge + std::round(kHeight * unit)};
+  const double line = kLineHeight * layout.text.em;
+  std::tie(layout.panelTopLeft, layout.panelBottomRight) = plotPanelAt(content.corner, width, height);
   PlotArea& area = layout.area;
   area.left = std::round(layout.panelTopLeft.x + padding + kValueColumn * unit);
   area.right = std::round(layout.panelBottomRight.x - 2 * padding);
@@ -104,6 +102,14 @@ void drawHead(Canvas& canvas, const PlotContent& content, const Layout& layout) 
 }
 
 }  // namespace
+
+std::pair<PicturePoint, PicturePoint> plotPanelAt(PlotCorner corner, int width, int height) {
+  const double edge = std::round(kFromEdge * height), tall = std::round(kHeight * height);
+  const double wide = std::round(std::min(kWidth * height, width - 2 * edge));
+  const double left = corner == PlotCorner::lowerLeft ? edge : width - edge - wide;
+  const double top = corner == PlotCorner::upperRight ? edge : height - edge - tall;
+  return {{left, top}, {left + wide, top + tall}};
+}
 
 PicturePoint PlotArea::at(double time, double value) const {
   return {left + (right - left) * (time - firstTime) / (lastTime - firstTime),

@@ -14,11 +14,15 @@ struct PlotCurve {
   Ink ink;
 };
 
+/// Where a plot lies in a picture; the upper left corner is that of the time.
+enum class PlotCorner { upperRight, lowerRight, lowerLeft };
+
 /// What a plot shows; all curves have as many values as there are times.
 struct PlotContent {
   std::string title;          // with the unit
   std::vector<double> times;  // s, ascending, at least one
   std::vector<PlotCurve> curves;
+  PlotCorner corner = PlotCorner::upperRight;
 };
 
 /// The rectangle of a plot's curves in a picture, and what its sides stand for.
@@ -29,7 +33,10 @@ struct PlotArea {
   PicturePoint at(double time, double value) const;
 };
 
-/// Where the plot of `content` lies in a picture: in the upper right corner, the same in all frames of a film.
+/// The upper left and the lower right end of a plot and what belongs to it (pixels).
+std::pair<PicturePoint, PicturePoint> plotPanelAt(PlotCorner corner, int width, int height);
+
+/// Where the curves of `content` lie in a picture: the same in all frames of a film.
 PlotArea plotAreaOf(const PlotContent& content, int width, int height);
 
 /// Draws the plot with its curves up to the time with index `now`, and a dot on each there.

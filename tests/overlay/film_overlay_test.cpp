@@ -43,7 +43,7 @@ class Film : public ::testing::Test {
   }
 
   FilmOverlay overlay(const OverlayChoice& choice) const {
-    return {{scene_, view_, frameAt, kFrames, events_}, choice};
+    return {{scene_, view_, kWidth, kHeight, frameAt, kFrames, events_}, choice};
   }
 
   Image draw(const OverlayChoice& choice, long number) const {
@@ -143,6 +143,22 @@ TEST_F(Film, EnergyPlotStartsThePotentialAtItsLowest) {
   EXPECT_LT(half.at(static_cast<int>(later.x), static_cast<int>(later.y))[2], 100);
 }
 
+TEST_F(Film, PlotLiesWhereItHidesTheFewestBodies) {
+  OverlayChoice choice;
+  choice.plot = PlotKind::energy;
+  const auto isAt = [&](PlotCorner corner) {
+    const auto [low, high] = plotPanelAt(corner, kWidth, kHeight);
+    const Image image = draw(choice, 60);
+    return image.at(static_cast<int>((low.x + high.x) / 2), static_cast<int>(high.y) - 2)[2] > 0;
+  };
+  // The balls stay in the middle of the picture; from nearer, theirs is the right half: from (1, 0.5) to (2, 0.5), and
+  // from (1, 1) to (1, -1).
+  EXPECT_TRUE(isAt(PlotCorner::upperRight));
+  EXPECT_FALSE(isAt(PlotCorner::lowerRight) || isAt(PlotCorner::lowerLeft));
+  view_.camera.position.z() = 3.2;
+  EXPECT_FALSE(isAt(PlotCorner::upperRight));
+}
+
 TEST_F(Film, PanelOfTimeKeepsItsPlaceAndTheRestIsLeftAlone) {
   OverlayChoice choice;
   choice.time = true;
@@ -188,7 +204,7 @@ TEST_F(Film, LongTrailsHaveFewerPointsAndStayWhereTheyAre) {
   long reads = 0;
   OverlayChoice choice;
   choice.trails = true;
-  FilmOverlay overlay({scene_, view_,
+  FilmOverlay overlay({scene_, view_, kWidth, kHeight,
                        [&](long number) {
                          ++reads;
                          return frameAt(number);

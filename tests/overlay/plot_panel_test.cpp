@@ -71,6 +71,16 @@ TEST(PlotPanel, LiesInTheUpperRightCornerAndLeavesTheRestAlone) {
   }
 }
 
+TEST(PlotPanel, CornersAreThoseOfThePicture) {
+  using Ends = std::pair<PicturePoint, PicturePoint>;
+  const auto isAt = [](const Ends& ends, double left, double top) {
+    return ends.first.x == left && ends.first.y == top && ends.second.x == left + 446 && ends.second.y == top + 216;
+  };
+  EXPECT_TRUE(isAt(plotPanelAt(PlotCorner::upperRight, 1280, 720), 1280 - 22 - 446, 22));
+  EXPECT_TRUE(isAt(plotPanelAt(PlotCorner::lowerRight, 1280, 720), 1280 - 22 - 446, 720 - 22 - 216));
+  EXPECT_TRUE(isAt(plotPanelAt(PlotCorner::lowerLeft, 1280, 720), 22, 720 - 22 - 216));
+}
+
 TEST(PlotPanel, ValuesThatNeverChangeAreDrawn) {
   for (const double value : {0.0, 5.0, -1e-9}) {
     const PlotContent content{"c", {0, 1, 2}, {{"", {value, value, value}, kRed}}};
