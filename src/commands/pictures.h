@@ -15,8 +15,9 @@ struct PictureOptions {
   double framesPerSecond = 60;         // of `encode`
 };
 
-/// `cradle render SCENE|TRAJECTORY -o FOLDER`: frame_000000.png, ... . Throws Error(output) if the folder holds anything
-/// but frames of the film, or, without `overwrite`, some that are to be drawn: several runs can draw parts of a film.
+/// `cradle render SCENE|TRAJECTORY -o FOLDER`: frame_000000.png, ... . Throws Error(output) if the folder holds
+/// anything but frames of the film, or, without `overwrite`, some that are to be drawn: several runs can draw parts of
+/// a film.
 void renderFrames(const std::string& input, const std::string& folder, const PictureOptions& options, bool quiet);
 
 /// `cradle encode FOLDER -o FILE.mp4`.

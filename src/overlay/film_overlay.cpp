@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "image/font.h"
 
@@ -18,7 +19,7 @@ namespace {
 constexpr double kTrailSeconds = 1.2, kContactSeconds = 0.4;
 constexpr long kMostTrailPoints = 120;
 constexpr double kSmoothTurn = 0.7;  // change of velocity between frames, of the velocity: below, no impact
-// Of the size of what the film shows.
+// Of arrowUnit().
 constexpr double kLongestVelocity = 0.22, kLongestImpulse = 0.14;
 // Of the picture's height.
 constexpr double kTrailWidth = 0.008, kArrowWidth = 0.0075, kDotRadius = 0.006, kFromEdge = 0.03, kPadding = 0.014;
@@ -33,6 +34,18 @@ const std::array<Ink, 6> kTrailInks = {Ink{{0, 114, 178}},   Ink{{230, 159, 0}},
 const Ink kFirstCurve{{86, 180, 233}, 1}, kSecondCurve{{255, 176, 64}, 1}, kSumCurve{{255, 255, 255}, 1};
 
 constexpr std::array<PlotCorner, 3> kCorners = {PlotCorner::upperRight, PlotCorner::lowerRight, PlotCorner::lowerLeft};
+
+/// What arrows are measured by (m): the size of what the film shows, or as much of it as its camera ever sees at once.
+double arrowUnit(const View& view) {
+  double unit = view.bounds.isEmpty() ? std::numeric_limits<double>::infinity() : view.bounds.diagonal().norm();
+  const auto include = [&unit](const Camera& camera) {
+    const double distance = (camera.target - camera.position).norm();
+    unit = std::min(unit, 2 * std::tan(camera.verticalFieldOfView / 2) * distance);
+  };
+  include(view.camera);
+  for (const Camera& camera : view.cameras) include(camera);
+  return unit;
+}
 
 /// Digits after the point that tell neighbouring frames apart.
 int timeDigits(const Scene& scene) {
@@ -65,7 +78,7 @@ FilmOverlay::FilmOverlay(const FilmRecord& film, const OverlayChoice& choice)
   for (const Event& event : film.events)
     if (event.kind == EventKind::impact && event.impulse > 0) impacts_.push_back(event);
   for (const Event& event : impacts_) greatestImpulse_ = std::max(greatestImpulse_, event.impulse);
-  if (!view_.bounds.isEmpty()) size_ = view_.bounds.diagonal().norm();
+  arrowUnit_ = arrowUnit(view_);
   const double perSecond = scene_.output.framesPerSecond;
   trailStride_ = std::max(1L, static_cast<long>(std::ceil(kTrailSeconds * perSecond / kMostTrailPoints)));
   if (choice_.velocities || choice_.plot) readFilm(film);
@@ -174,7 +187,7 @@ void FilmOverlay::drawTrails(const Frame& frame, const Lens& lens, Canvas& canva
 /// From the centre of mass; lengths go with the speed, the film's greatest being the longest.
 void FilmOverlay::drawVelocities(const Frame& frame, const Lens& lens, Canvas& canvas) const {
   if (greatestSpeed_ == 0) return;
-  const double metresPerSpeed = kLongestVelocity * size_ / greatestSpeed_;
+  const double metresPerSpeed = kLongestVelocity * arrowUnit_ / greatestSpeed_;
   for (const BodyState& state : frame.states) {
     const auto tail = lens.see(state.position);
     const auto tip = lens.see(state.position + metresPerSpeed * state.linearVelocity);
@@ -192,7 +205,7 @@ void FilmOverlay::drawContacts(const Frame& frame, const Lens& lens, Canvas& can
     const auto point = lens.see(event.point);
     if (!point) continue;
     const double opacity = 1 - (frame.time - event.time) / shown;
-    const double length = kLongestImpulse * size_ * std::sqrt(event.impulse / greatestImpulse_);
+    const double length = kLongestImpulse * arrowUnit_ * std::sqrt(event.impulse / greatestImpulse_);
     for (const double way : {-1.0, 1.0})
       if (const auto tip = lens.see(event.point + way * length * event.normal))
         drawArrow(canvas, *point, *tip, kArrowWidth * lens.height, {kImpulse.color, opacity});

@@ -54,7 +54,7 @@ class FilmOverlay {
   const FrameSource frameAt_;
   std::vector<Event> impacts_;  // with an impulse, in order of time
   std::vector<int> dynamicBodies_;
-  double size_ = 1;             // m, of what the film shows
+  double arrowUnit_ = 1;        // m
   double greatestImpulse_ = 0;  // N s
   double greatestSpeed_ = 0;    // m/s
   int plottedBody_ = 0;

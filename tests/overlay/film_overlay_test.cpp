@@ -13,6 +13,7 @@ namespace {
 constexpr int kWidth = 640, kHeight = 360;
 constexpr double kSpeed = 2;  // m/s
 constexpr long kFrames = 121;
+const double kSeenHeight = 12 * std::tan(0.69813170 / 2);  // m, at the target
 
 /// Two balls: one goes to the right, one falls; seen from the front, 60 frames a second.
 class Film : public ::testing::Test {
@@ -90,11 +91,11 @@ TEST_F(Film, VelocityArrowsGoWithTheSpeed) {
   OverlayChoice choice;
   choice.velocities = true;
   const Image image = draw(choice, 60);
-  // The fastest is 22 % of the size of what is shown, sqrt(32) m, for 2 m/s; the other goes down with 1 m/s.
-  const double metresPerSpeed = 0.22 * std::sqrt(32) / kSpeed;
+  // The fastest, of 2 m/s, is 22 % of the height of what the camera sees; the other goes down with 1 m/s.
+  const double metresPerSpeed = 0.22 * kSeenHeight / kSpeed;
   const Vec3 right = frameAt(60).states[0].position, down = frameAt(60).states[1].position;
   EXPECT_TRUE(isMarked(image, right + Vec3(0.95 * metresPerSpeed * 2, 0, 0)));
-  EXPECT_FALSE(isMarked(image, right + Vec3(1.05 * metresPerSpeed * 2, 0, 0)));
+  EXPECT_FALSE(isMarked(image, right + Vec3(1.08 * metresPerSpeed * 2, 0, 0)));
   EXPECT_TRUE(isMarked(image, down + Vec3(0, -0.9 * metresPerSpeed, 0)));
   EXPECT_FALSE(isMarked(image, down + Vec3(0, -1.1 * metresPerSpeed, 0)));
   EXPECT_FALSE(isMarked(image, right - Vec3(0.2, 0, 0)));
@@ -110,11 +111,11 @@ TEST_F(Film, ImpactsAreShownForAWhileAndFade) {
   const Image fresh = draw(choice, 30);
   EXPECT_TRUE(isMarked(fresh, place));
   EXPECT_FALSE(isMarked(fresh, {-1, -1, 0}));
-  // The greatest: 14 % of the size to either side.
-  const double length = 0.14 * std::sqrt(32);
+  // The greatest: 14 % of the height that is seen to either side.
+  const double length = 0.14 * kSeenHeight;
   for (const double way : {-1.0, 1.0}) {
     EXPECT_TRUE(isMarked(fresh, place + Vec3(way * 0.93 * length, 0, 0)));
-    EXPECT_FALSE(isMarked(fresh, place + Vec3(way * 1.07 * length, 0, 0)));
+    EXPECT_FALSE(isMarked(fresh, place + Vec3(way * 1.12 * length, 0, 0)));
   }
   const auto brightness = [&](long number) {
     const Image image = draw(choice, number);
