@@ -16,7 +16,7 @@ namespace cradle {
 namespace {
 
 // Of the film, as its viewer sees it.
-constexpr double kTrailSeconds = 1.2, kContactSeconds = 0.4;
+constexpr double kTrailSeconds = 1.2, kContactSeconds = 0.25;
 constexpr long kMostTrailPoints = 120;
 constexpr double kSmoothTurn = 0.7;  // change of velocity between frames, of the velocity: below, no impact
 // Of arrowUnit().
@@ -24,6 +24,7 @@ constexpr double kLongestVelocity = 0.22, kLongestImpulse = 0.14;
 // Of the picture's height.
 constexpr double kTrailWidth = 0.008, kArrowWidth = 0.0075, kDotRadius = 0.006, kFromEdge = 0.03, kPadding = 0.014;
 constexpr double kNameText = 0.036, kTimeText = 0.033, kImpulseText = 0.028;
+constexpr double kLeastMark = 0.35;           // of an impact, in terms of that of the film's greatest
 constexpr std::size_t kMostImpulseTexts = 4;  // the greatest ones of a picture: more would hide each other
 constexpr double kShortestText = 0.05;        // of the film's greatest impulse: below, a number says nothing
 const Ink kVelocity{{0, 128, 96}, 1}, kImpulse{{200, 16, 46}, 1};
@@ -200,17 +201,21 @@ void FilmOverlay::drawVelocities(const Frame& frame, const Lens& lens, Canvas& c
 void FilmOverlay::drawContacts(const Frame& frame, const Lens& lens, Canvas& canvas) const {
   const double shown = kContactSeconds * scene_.output.playbackSpeed;
   std::vector<ImpulseText> texts;
-  for (const Event& event : impacts_) {
-    if (event.time > frame.time || event.time <= frame.time - shown) continue;
+  auto next = std::partition_point(impacts_.begin(), impacts_.end(),
+                                   [&](const Event& event) { return event.time <= frame.time - shown; });
+  for (; next != impacts_.end() && next->time <= frame.time; ++next) {
+    const Event& event = *next;
     const auto point = lens.see(event.point);
     if (!point) continue;
     const double opacity = 1 - (frame.time - event.time) / shown;
-    const double length = kLongestImpulse * arrowUnit_ * std::sqrt(event.impulse / greatestImpulse_);
+    const double size = std::sqrt(event.impulse / greatestImpulse_), length = kLongestImpulse * arrowUnit_ * size;
+    const double scale = kLeastMark + (1 - kLeastMark) * size;  // of lines and dots
     for (const double way : {-1.0, 1.0})
       if (const auto tip = lens.see(event.point + way * length * event.normal))
-        drawArrow(canvas, *point, *tip, kArrowWidth * lens.height, {kImpulse.color, opacity});
-    canvas.disc(*point, 1.5 * kDotRadius * lens.height, {{255, 255, 255}, opacity * opacity});
-    canvas.disc(*point, kDotRadius * lens.height, {kImpulse.color, opacity});
+        drawArrow(canvas, *point, *tip, scale * kArrowWidth * lens.height, {kImpulse.color, opacity});
+    const double radius = scale * kDotRadius * lens.height;
+    canvas.disc(*point, 1.5 * radius, {{255, 255, 255}, opacity * opacity});
+    canvas.disc(*point, radius, {kImpulse.color, opacity});
     if (event.impulse >= kShortestText * greatestImpulse_) texts.push_back({event.impulse, *point, opacity});
   }
   drawImpulseTexts(std::move(texts), canvas);

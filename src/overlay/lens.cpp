@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kLeastDepth = 0.02;  // of the camera's distance to its target: nearer points may be anywhere
 constexpr double kHeadLength = 4.2, kHeadWidth = 3.6;  // of an arrow, in thicknesses of its shaft
+constexpr double kShortest = 2;                        // the same: below, an arrow does not tell its direction
 constexpr double kEdge = 0.45;                         // the same, of the light edge
 constexpr double kEdgeOpacity = 0.75;                  // of the ink's
 
@@ -24,7 +25,7 @@ std::optional<PicturePoint> Lens::see(const Vec3& point) const {
 
 void drawArrow(Canvas& canvas, const PicturePoint& tail, const PicturePoint& tip, double thickness, const Ink& ink) {
   const double x = tip.x - tail.x, y = tip.y - tail.y, length = std::hypot(x, y);
-  if (length < thickness) return;
+  if (length < kShortest * thickness) return;
   const double size = thickness * std::min(1.0, length / (kHeadLength * thickness));
   const double ux = x / length, uy = y / length;
   const auto draw = [&](double edge, const Ink& with) {

@@ -17,7 +17,7 @@ struct Lens {
 };
 
 /// An arrow with a light edge around it, so that it is seen on any ground; `thickness` of the shaft in pixels. Shorter
-/// than its head, it shrinks as a whole.
+/// than its head, it shrinks as a whole; shorter than two thicknesses, it is not drawn.
 void drawArrow(Canvas& canvas, const PicturePoint& tail, const PicturePoint& tip, double thickness, const Ink& ink);
 
 }  // namespace cradle

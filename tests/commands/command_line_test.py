@@ -463,6 +463,17 @@ class Pictures(InTemporaryFolder):
         self.assertEqual(film_frames(self.path("f.mp4")), "64,36,6")
         self.assertEqual(self.listing(), ["f.mp4", "s.json"])
 
+    def test_slow_motion_and_time_lapse_change_the_number_of_pictures(self):
+        for speed, pictures in ((0.5, 12), (3, 2)):
+            path = self.write("s.json", scene(output={"width": 64, "height": 36, "playbackSpeed": speed}))
+            self.assertEqual(cradle("video", path, "-o", self.path("f.mp4")).returncode, 0)
+            self.assertEqual(film_frames(self.path("f.mp4")), f"64,36,{pictures}")
+            self.assertEqual(cradle("simulate", path, "-o", self.path("f.sqlite")).returncode, 0)
+            times = sqlite3.connect(self.path("f.sqlite")).execute("select time from frame order by id").fetchall()
+            self.assertEqual(len(times), pictures + 1)
+            for number, (time_,) in enumerate(times):
+                self.assertAlmostEqual(time_, number * speed / 60, delta=1e-15)
+
     def test_encode_of_a_rendered_folder_has_all_frames(self):
         cradle("render", self.scene, "-o", self.path("frames"))
         self.assertEqual(cradle("encode", self.path("frames"), "-o", self.path("f.mp4")).returncode, 0)

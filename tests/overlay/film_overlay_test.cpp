@@ -121,9 +121,9 @@ TEST_F(Film, ImpactsAreShownForAWhileAndFade) {
     const Image image = draw(choice, number);
     return std::accumulate(image.pixels.begin(), image.pixels.end(), 0L);
   };
-  EXPECT_GT(brightness(30), brightness(40));
-  EXPECT_GT(brightness(40), brightness(50));
-  EXPECT_EQ(brightness(54), 0);  // 0.4 s later
+  EXPECT_GT(brightness(30), brightness(35));
+  EXPECT_GT(brightness(35), brightness(44));
+  EXPECT_EQ(brightness(45), 0);  // 0.25 s later
 }
 
 TEST_F(Film, EnergyPlotStartsThePotentialAtItsLowest) {
