@@ -5,7 +5,7 @@
 
 A scene that FRAMES does not know is shown in the middle of its film: name a moment that says what it is about.
 """
-import json, os, re, shutil, subprocess, sys, tempfile
+import html, json, os, re, shutil, subprocess, sys, tempfile
 
 SIZE = "480x270"
 MOST_BYTES = 4_000_000  # of all pictures: a page that loads at once
@@ -40,8 +40,9 @@ def draw(program, path, frame, target):
 
 
 def entry(name, scene):
-    return (f'<td width="50%" valign="top"><img src="gallery/{name}.png" alt="{scene["name"]}"><br>'
-            f'<b><a href="../scenes/{name}.json">{scene["name"]}</a></b><br>{scene.get("description", "")}</td>')
+    title, text = html.escape(scene["name"], False), html.escape(scene.get("description", ""), False)
+    return (f'<td width="50%" valign="top"><img src="gallery/{name}.png" alt="{name}"><br>'
+            f'<b><a href="../scenes/{name}.json">{title}</a></b><br>{text}</td>')
 
 
 def main():

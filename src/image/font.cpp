@@ -79,6 +79,16 @@ double textWidth(const std::string& text, const TextSize& size) {
   return layOut(text, scaleOf(size), [](int, double) {});
 }
 
+std::string fittedText(const std::string& text, const TextSize& size, double width) {
+  if (textWidth(text, size) <= width) return text;
+  std::string start = text;
+  while (!start.empty() && textWidth(start + "...", size) > width) {
+    while ((static_cast<std::uint8_t>(start.back()) & 0xC0) == 0x80 && start.size() > 1) start.pop_back();
+    start.pop_back();  // with the first byte, the whole character
+  }
+  return start + "...";
+}
+
 void drawText(Canvas& canvas, const std::string& text, const TextSize& size, const PicturePoint& start,
               const Ink& ink) {
   const float scale = scaleOf(size);

@@ -19,6 +19,9 @@ TextSize crispTextSize(double em);
 /// it lacks shows as a box.
 double textWidth(const std::string& text, const TextSize& size);
 
+/// The text if it is at most `width` pixels wide, else as much of its beginning as fits with three points after it.
+std::string fittedText(const std::string& text, const TextSize& size, double width);
+
 /// Draws a text with the left end of its baseline at `start`; the baseline goes to the nearest edge of pixels.
 void drawText(Canvas& canvas, const std::string& text, const TextSize& size, const PicturePoint& start, const Ink& ink);
 

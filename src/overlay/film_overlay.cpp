@@ -24,6 +24,7 @@ constexpr double kLongestVelocity = 0.22, kLongestImpulse = 0.14;
 // Of the picture's height.
 constexpr double kTrailWidth = 0.008, kArrowWidth = 0.0075, kDotRadius = 0.006, kFromEdge = 0.03, kPadding = 0.014;
 constexpr double kNameText = 0.036, kTimeText = 0.033, kImpulseText = 0.028;
+constexpr double kWidestName = 0.45;          // of the picture's width, so that a plot fits beside it
 constexpr double kLeastMark = 0.35;           // of an impact, in terms of that of the film's greatest
 constexpr std::size_t kMostImpulseTexts = 4;  // the greatest ones of a picture: more would hide each other
 constexpr double kShortestText = 0.05;        // of the film's greatest impulse: below, a number says nothing
@@ -248,6 +249,7 @@ void FilmOverlay::drawImpulseTexts(std::vector<ImpulseText> texts, Canvas& canva
 void FilmOverlay::drawTime(const Frame& frame, Canvas& canvas) const {
   const double unit = canvas.height();
   const TextSize nameSize = crispTextSize(kNameText * unit), timeSize = crispTextSize(kTimeText * unit);
+  const std::string name = fittedText(scene_.name, nameSize, kWidestName * canvas.width());
   const double speed = scene_.output.playbackSpeed;
   const std::string time = fmt::format("t = {:.{}f} s{}", frame.time, timeDigits(scene_),
                                        speed == 1 ? "" : fmt::format("   speed {:g}", speed));
@@ -255,12 +257,12 @@ void FilmOverlay::drawTime(const Frame& frame, Canvas& canvas) const {
   const std::string last = fmt::format("t = {:.{}f} s{}", scene_.duration, timeDigits(scene_),
                                        speed == 1 ? "" : fmt::format("   speed {:g}", speed));
   const double padding = kPadding * unit, edge = std::round(kFromEdge * unit);
-  const double breadth = std::max(textWidth(scene_.name, nameSize), textWidth(last, timeSize));
+  const double breadth = std::max(textWidth(name, nameSize), textWidth(last, timeSize));
   const double nameLine = edge + std::round(padding + nameSize.ascent);
   const double timeLine = nameLine + std::round(0.75 * nameSize.em + timeSize.ascent / 2 + 0.2 * timeSize.em);
   canvas.rectangle({edge, edge}, {edge + std::round(breadth + 2 * padding), std::round(timeLine + padding)}, padding,
                    kPanel);
-  drawText(canvas, scene_.name, nameSize, {edge + padding, nameLine}, kWords);
+  drawText(canvas, name, nameSize, {edge + padding, nameLine}, kWords);
   drawText(canvas, time, timeSize, {edge + padding, timeLine}, kWords);
 }
 

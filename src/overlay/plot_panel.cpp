@@ -91,7 +91,8 @@ void drawRules(Canvas& canvas, const Layout& layout) {
 /// The title, and the names of more than one curve in their colours, from right to left.
 void drawHead(Canvas& canvas, const PlotContent& content, const Layout& layout) {
   const double y = layout.area.top - 0.45 * layout.text.em;
-  drawText(canvas, content.title, layout.text, {layout.panelTopLeft.x + kPadding * canvas.height(), y}, kWords);
+  const double start = layout.panelTopLeft.x + kPadding * canvas.height();
+  drawText(canvas, fittedText(content.title, layout.text, layout.area.right - start), layout.text, {start, y}, kWords);
   if (content.curves.size() < 2) return;
   double x = layout.area.right;
   for (auto curve = content.curves.rbegin(); curve != content.curves.rend(); ++curve) {

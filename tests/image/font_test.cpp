@@ -75,6 +75,15 @@ TEST(Font, DigitsAreAllAsWide) {
   for (const char* digit : {"1", "4", "7", "9"}) EXPECT_EQ(textWidth(digit, size), textWidth("0", size));
 }
 
+TEST(Font, LongTextsAreCutToFit) {
+  const TextSize size = crispTextSize(17);
+  EXPECT_EQ(fittedText("short", size, textWidth("short", size)), "short");
+  const std::string text = "r\xC3\xA9sum\xC3\xA9 of all that moves";
+  EXPECT_EQ(fittedText(text, size, textWidth("r\xC3\xA9...", size)), "r\xC3\xA9...");
+  EXPECT_EQ(fittedText(text, size, textWidth("r\xC3\xA9...", size) - 1), "r...");  // never half a character
+  EXPECT_EQ(fittedText(text, size, 0), "...");
+}
+
 TEST(Font, TextIsReadAsUtf8) {
   const TextSize size = crispTextSize(17);
   EXPECT_EQ(textWidth("\xC3\xA9", size), textWidth("e", size));                // e with an accent
