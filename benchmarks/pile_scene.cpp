@@ -9,11 +9,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kHalf = 0.1;         // m: radius of the spheres, half the side of the cubes
-constexpr double kDensity = 1000;     // kg/m^3, where bodies differ
+constexpr double kHalf = 0.1;      // m: radius of the spheres, half the side of the cubes
+constexpr double kDensity = 1000;  // kg/m^3, where bodies differ
 constexpr double kPi = 3.14159265358979324;
-constexpr double kLeastAxis = 1e-6;   // of a unit: edges that are parallel have no axis of their own
-constexpr int kSearchSteps = 60;      // of a golden section: 0.618^60 = 3e-13
+constexpr double kLeastAxis = 1e-6;  // of a unit: edges that are parallel have no axis of their own
+constexpr int kSearchSteps = 60;     // of a golden section: 0.618^60 = 3e-13
 
 PileItem itemOf(const std::string& kind, std::mt19937& random) {
   const auto between = [&](double least, double most) {
@@ -27,8 +27,10 @@ PileItem itemOf(const std::string& kind, std::mt19937& random) {
   if (kind == "mixed") {
     const bool isBall = random() % 2 == 0;
     const double x = between(0.04, 0.15), y = between(0.04, 0.15), z = between(0.04, 0.15);
-    if (isBall) item.radius = x;
-    else item.halfSize = Vec3(x, y, z);
+    if (isBall)
+      item.radius = x;
+    else
+      item.halfSize = Vec3(x, y, z);
   }
   if (kind == "bars" || kind == "capsules" || kind == "mixed") {
     const double r = item.radius, length = 2 * item.halfSize.y();
@@ -43,8 +45,8 @@ double depthOfBoxes(const PileItem& first, const PileItem& second, const Vec3& o
   const auto consider = [&](const Vec3& axis) {
     const double length = axis.norm();
     if (length < kLeastAxis) return;
-    const double reach = (a.transpose() * axis).cwiseAbs().dot(first.halfSize) +
-                         (b.transpose() * axis).cwiseAbs().dot(second.halfSize);
+    const double reach =
+        (a.transpose() * axis).cwiseAbs().dot(first.halfSize) + (b.transpose() * axis).cwiseAbs().dot(second.halfSize);
     least = std::min(least, (reach - std::abs(offset.dot(axis))) / length);
   };
   for (int i = 0; i < 3; ++i) {
@@ -66,8 +68,10 @@ double leastOf(const Function& function) {
   double from = -1, to = 1;
   for (int i = 0; i < kSearchSteps; ++i) {
     const double low = to - ratio * (to - from), high = from + ratio * (to - from);
-    if (function(low) < function(high)) to = high;
-    else from = low;
+    if (function(low) < function(high))
+      to = high;
+    else
+      from = low;
   }
   return function((from + to) / 2);
 }

@@ -10,11 +10,11 @@ namespace cradle {
 
 /// A body of a heap: a box, or all points within `radius` of the segment from -halfSize to halfSize along y.
 struct PileItem {
-  double radius = 0;              // m; 0: a box
-  Vec3 halfSize = Vec3::Zero();   // m; of a ball zero, of a capsule its half length in y
-  double mass = 1;                // kg
-  Vec3 position = Vec3::Zero();   // m, of the centre
-  Quat turn = Quat::Identity();   // worldFromBody
+  double radius = 0;             // m; 0: a box
+  Vec3 halfSize = Vec3::Zero();  // m; of a ball zero, of a capsule its half length in y
+  double mass = 1;               // kg
+  Vec3 position = Vec3::Zero();  // m, of the centre
+  Quat turn = Quat::Identity();  // worldFromBody
   bool isBox() const { return radius == 0; }
   double reach() const { return radius + halfSize.norm(); }  // m, from the centre
 };

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kFrequencies[] = {240, 170, 100, 100};  // Hz: of contacts as springs, by their number of points
 constexpr double kDampingRatio = 2;
-constexpr double kHardening = 300;  // 1/m: twice the frequency at 3.3 mm of overlap
+constexpr double kHardening = 300;  // 1/m: three times the frequency at 3.3 mm of overlap, and more below
 constexpr double kMostPush = 4;     // m/s
 constexpr double kPi = 3.14159265358979324;
 
