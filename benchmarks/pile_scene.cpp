@@ -105,11 +105,12 @@ const std::vector<std::string>& pileKinds() {
 PileScene makePileScene(int bodies, const std::string& kind) {
   if (std::count(pileKinds().begin(), pileKinds().end(), kind) == 0) throw std::invalid_argument("no heap of " + kind);
   PileScene scene;
-  scene.width = bodies <= 1000 ? 2.4 : 4.6;
   std::mt19937 random(1), sizes(2);
   const auto jitter = [&](double size) { return size * (static_cast<double>(random()) / 2147483648.0 - 1); };
   const bool isTurned = kind != "spheres" && kind != "boxes";
   const double pitch = !isTurned ? 0.22 : kind == "bars" ? 0.64 : kind == "mixed" || kind == "capsules" ? 0.55 : 0.36;
+  const double ofCubes = bodies <= 1000 ? 2.4 : 4.6, ofLongOnes = (bodies <= 1000 ? 7 : 12) * pitch + 0.1;
+  scene.width = pitch > 0.5 ? ofLongOnes : ofCubes;
   const double lowest = std::max(0.2, pitch / 2 + 0.02);
   const int side = static_cast<int>((scene.width - 0.1) / pitch);
   for (int i = 0; i < bodies; ++i) {
