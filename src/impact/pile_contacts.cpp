@@ -5,6 +5,8 @@
 #include <limits>
 #include <tuple>
 
+#include "impact/lanes.h"
+
 namespace cradle {
 namespace {
 
@@ -16,6 +18,7 @@ constexpr double kKeptTurn = 0.01;      // rad: both together
 constexpr double kBallPart = 0.8;       // that counts of their approach: balls have no edges that could be missed
 constexpr double kSpinPart = 0.5;       // of the speed of the farthest point: few touch with that one
 constexpr std::size_t kGrain = 512;     // pairs that a thread takes at once: tens of microseconds
+constexpr std::size_t kAhead = 2;       // pairs: what they need is asked for in time, for it lies anywhere
 constexpr std::size_t kNearGrain = 64;  // those among them that are near take longer
 
 auto orderOf(const ColliderPair& pair) {
@@ -114,8 +117,14 @@ void PileContacts::update(const PileLook& look, WorkerThreads& threads) {
   findNear(look, threads);
   giveManifolds();
   threads.share(near_.size(), kNearGrain, [&](int thread, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i)
+    for (std::size_t i = first; i < last; ++i) {
+      if (i + kAhead < last) {
+        const std::size_t next = static_cast<std::size_t>(pairs_[near_[i + kAhead]].manifold);
+        fetchAhead<true>(manifolds_[next]);
+        fetchAhead<true>(anchors_[next]);
+      }
       updatePair(pairs_[near_[i]], look, scratch_[static_cast<std::size_t>(thread)]);
+    }
   });
   active_.clear();
   for (const std::size_t index : near_)

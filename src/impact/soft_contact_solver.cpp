@@ -74,13 +74,18 @@ void SoftContactSolver::prepare(const ContactColors& colors, const std::vector<C
   threads.run([&](int thread) {
     forEachList(lists_, [&](auto& list) {
       const auto [first, last] = threads.partOf(list.size, thread);
-      for (std::size_t i = first; i < last; ++i)
+      for (std::size_t i = first; i < last; ++i) {
+        if (i + 1 < last) fetchAhead<true>(list.blocks[i + 1]);
+        if (i + 2 < last)
+          for (const std::int32_t index : list.blocks[i + 2].manifolds)
+            if (index >= 0) fetchAhead<false>(manifolds[static_cast<std::size_t>(index)]);
         for (int lane = 0; lane < kLanes; ++lane) {
           const std::int32_t index = list.blocks[i].manifolds[lane];
           if (index < 0) continue;
           const ContactManifold& manifold = manifolds[static_cast<std::size_t>(index)];
           fillLane(manifold, index, bodies, impulseScale, lane, list.blocks[i]);
         }
+      }
     });
   });
 }
