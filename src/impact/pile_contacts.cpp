@@ -80,12 +80,11 @@ bool PileContacts::areNear(const NearPair& pair, const PileLook& look, double re
 double PileContacts::approachOf(const NearPair& pair, const PileLook& look) const {
   const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
   if (a.isAsleep && (pair.bodyB == kFixed || b.isAsleep)) return 0;
-  const double spinA = a.spinRadius * a.angularVelocity.norm(), spinB = b.spinRadius * b.angularVelocity.norm();
-  const double spin = kSpinPart * (spinA + spinB);
+  const double spin = kSpinPart * (a.spinSpeed + b.spinSpeed);
   const bool areBalls = a.spinRadius == 0 && (pair.againstPlane || b.spinRadius == 0);
   const double part = areBalls ? kBallPart : 1;
   const Vec3 velocity = b.linearVelocity - a.linearVelocity;
-  if (!areNear(pair, look, look.margin + look.timeStep * (velocity.norm() + spinA + spinB))) return 0;
+  if (!areNear(pair, look, look.margin + look.timeStep * (velocity.norm() + a.spinSpeed + b.spinSpeed))) return 0;
   if (pair.againstPlane) return part * std::max(0.0, geometry_.planes[pair.shapeB].normal.dot(velocity)) + spin;
   if (pair.bodyB == kFixed) return part * velocity.norm() + spin;
   const Vec3 offset = b.position - a.position;
@@ -106,8 +105,7 @@ bool PileContacts::mayTouch(const NearPair& pair, const PileLook& look) const {
   const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
   if (a.isAsleep && (pair.bodyB == kFixed || b.isAsleep)) return false;
   if (!pair.isEmpty) return true;
-  const double speed = (b.linearVelocity - a.linearVelocity).norm() + a.spinRadius * a.angularVelocity.norm() +
-                       b.spinRadius * b.angularVelocity.norm();
+  const double speed = (b.linearVelocity - a.linearVelocity).norm() + a.spinSpeed + b.spinSpeed;
   const double reach = look.margin + speed * look.timeStep;
   return clearanceOf(pair, a, b) <= reach && areNear(pair, look, reach);
 }

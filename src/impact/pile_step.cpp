@@ -125,8 +125,7 @@ void PileStep::placeBodies(double timeStep, const VectorX& state) {
       motions_.velocities[i] = motions_.starts[i];
       motions_.displacements[i] = {};
       drifts_[i] = timeStep * pose.linearVelocity;
-      reaches_[i] =
-          pose.isAsleep ? 0 : timeStep * (timeStep * gravity_.norm() + pose.spinRadius * pose.angularVelocity.norm());
+      reaches_[i] = pose.isAsleep ? 0 : timeStep * (timeStep * gravity_.norm() + pose.spinSpeed);
     }
   });
 }
@@ -139,6 +138,7 @@ void PileStep::placeBody(std::size_t index, const VectorX& state) {
   pose.rotation = turn.toRotationMatrix();
   pose.linearVelocity = linearVelocity(state, body);
   pose.angularVelocity = angularVelocity(state, body);
+  pose.spinSpeed = pose.spinRadius * pose.angularVelocity.norm();
   pose.boxCenter = pose.position + pose.rotation * bounds_[index].center();
   pose.boxHalf = pose.rotation.cwiseAbs() * (bounds_[index].sizes() / 2);
   Mat3& axes = worldFromPrincipal_[index];
@@ -219,6 +219,7 @@ void PileStep::letSleep(double timeStep, VectorX& state) {
     linearVelocity(state, fallenAsleep_[i]).setZero();
     angularVelocity(state, fallenAsleep_[i]).setZero();
     poses_[sleeper].linearVelocity.setZero(), poses_[sleeper].angularVelocity.setZero();
+    poses_[sleeper].spinSpeed = 0;
     poses_[sleeper].isAsleep = true, motions_.falls[sleeper] = 0, motions_.starts[sleeper] = {};
     solverBodies_[sleeper] = {centerOfMass(state, fallenAsleep_[i]), 0, Mat3(Mat3::Zero())};
   }
