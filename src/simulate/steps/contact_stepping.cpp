@@ -29,6 +29,7 @@ constexpr double kFarOverlaps = 10;         // of the deepest overlap: gaps that
 constexpr double kLessRestitution = 0.7;    // of the restitution that let energy grow
 constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
 constexpr double kSolvedPart = 1e-7;        // of the fastest velocity
+constexpr double kFreeClosing = 2;          // of the speed with which a contact lands: nothing makes it so fast
 
 double smallestSize(const ContactGeometry& geometry) {
   double smallest = 1;
@@ -47,14 +48,31 @@ ContactStepping::ContactStepping(const Assembly& assembly)
 void ContactStepping::resolve(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
                               VectorX& state) {
   previous_.swap(contacts_), previousSlips_.swap(slips_);
+  begin(contacts, before, state);
+  slips_.assign(contacts.size(), Vec3::Zero());
+  lands_.resize(contacts.size(), 0);
+  if (contacts.empty()) return;
+  const Invariants free = invariantsOf(assembly_.mechanism, state);
+  for (const Group& group : findGroups()) resolve(group, before, timeStep, state);
+  lands_.clear();
+  book(free, state);
+}
+
+void ContactStepping::begin(const std::vector<Contact>& contacts, const VectorX& before, const VectorX& state) {
   contacts_.clear();
   for (const Contact& contact : contacts) contacts_.push_back({contact, Vec3::Zero(), false});
-  slips_.assign(contacts.size(), Vec3::Zero());
-  if (contacts.empty()) return;
   free_ = state;
-  const Invariants free = invariantsOf(assembly_.mechanism, state);
-  if (solver_.hasConstraints()) solver_.factorize(before);
-  for (const Group& group : findGroups()) resolve(group, before, timeStep, state);
+  if (solver_.hasConstraints() && !contacts.empty()) solver_.factorize(before);
+}
+
+void ContactStepping::setCones(const Group& group, const VectorX& state) {
+  cones_.set(group.contacts, assembly_.mechanism.bodies, state);
+  tied_.reset();
+  if (group.isTied) tied_.emplace(group.contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
+}
+
+/// What is gone since the energies were `free`.
+void ContactStepping::book(const Invariants& free, VectorX& state) const {
   const Invariants held = invariantsOf(assembly_.mechanism, state);
   dissipatedEnergy(state) += free.kinetic + free.potential - held.kinetic - held.potential;
 }
@@ -108,6 +126,10 @@ ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion
     const double gap = std::max(0.0, group.contacts[i].separation), restitution = part * law.restitution;
     const bool touches = gap + motion.timeStep * motion.free[at + 2] < 0;
     const bool rebounds = touches && restitution * closing > restSpeed(pressing, motion.timeStep);
+    if (lands_[group.members[i]]) {
+      problem.free[at + 2] += kFreeClosing * (closing + pressing);
+      continue;
+    }
     problem.free[at + 2] -= rebounds ? restitution * closing - pressing : -gap / motion.timeStep;
     problem.hasRebounds = problem.hasRebounds || rebounds;
   }
@@ -117,9 +139,7 @@ ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion
 /// Energy does not grow: a restitution that would let it is made smaller (with friction it can), and what is left by
 /// rounding, by the order of the method, or by impulses that were not found is taken from the velocities.
 void ContactStepping::resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state) {
-  cones_.set(group.contacts, assembly_.mechanism.bodies, before);
-  tied_.reset();
-  if (group.isTied) tied_.emplace(group.contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), before);
+  setCones(group, before);
   const Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), timeStep};
   const double most = energyOf(group.bodies, assembly_.mechanism, state);
   for (double part = 1;; part = part > kLeastRestitution ? kLessRestitution * part : 0) {
