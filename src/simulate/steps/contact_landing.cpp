@@ -120,21 +120,21 @@ bool ContactStepping::slide(const Group& group, const VectorX& end, Problem& pro
 /// With all friction static, then with dynamic friction where that slides.
 VectorX ContactStepping::strike(const Group& group, double timeStep, VectorX& state) {
   const VectorX start = cones_.velocitiesIn(state);
-  const double most = energyOf(group.bodies, assembly_.mechanism, state);
+  const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
   for (double part = 1;; part = part > kLeastRestitution ? kLessRestitution * part : 0) {
     Problem problem = posedImpact(group, start, timeStep, part);
     VectorX impulses = solve(group, problem);
     tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
     if (slide(group, cones_.velocitiesIn(state), problem)) {
-      restore(group.bodies, state);
+      restore(group.moved.bodies, state);
       impulses = solve(group, problem);
       tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
     }
-    if (problem.hasRebounds && isGain(energyOf(group.bodies, assembly_.mechanism, state), most)) {
-      restore(group.bodies, state);
+    if (problem.hasRebounds && isGain(energyOf(group.moved.bodies, assembly_.mechanism, state), most)) {
+      restore(group.moved.bodies, state);
       continue;
     }
-    limitEnergy(group.bodies, most, assembly_.mechanism, state);
+    limitEnergy(group.moved, most, assembly_.mechanism, state);
     return impulses;
   }
 }

@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kTouchPart = 1e-9;        // of the smallest body's size: nearer counts as touching
 constexpr std::size_t kFewLoaded = 8;      // contacts that last: more are resolved step by step
-constexpr std::size_t kFewStruck = 12;     // contacts whose impact goes from one to the next, in rounds
 constexpr double kTogetherPart = 1e-3;     // of a step: what touches within it touches together
 constexpr double kReach = 2;               // of the way that a body goes freely: what others may make of it
 constexpr double kReachPart = 1e-3;        // of its size: the same, for bodies at rest
 constexpr double kCalmSteps = 20;          // awake at least so long: a rattle is no row of rests
 constexpr double kRestSteps = 2;           // a rebound that ends within as many steps is not resolved
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
+constexpr double kClosedPart = 1e-6;       // of the speed that gravity gives in a step: slower does not close
 constexpr double kLeastImpactPart = 0.01;  // of the speed that gravity gives in a step: slower is no impact
 
 double touchTolerance(const ContactGeometry& geometry) {
@@ -49,6 +49,7 @@ ContactStage::ContactStage(MovingIsland& island, double timeStep)
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       timeStep_(timeStep),
       touchTolerance_(cradle::touchTolerance(assembly_.geometry)),
+      leastClosingSpeed_(kRestSpeedFloor + kClosedPart * assembly_.mechanism.gravity.norm() * timeStep),
       leastImpactSpeed_(kRestSpeedFloor + kLeastImpactPart * assembly_.mechanism.gravity.norm() * timeStep),
       stepping_(assembly_) {
   resting_.setCalmTime(kCalmSteps * timeStep);
@@ -60,7 +61,10 @@ void ContactStage::strike(double time, const VectorX& before, VectorX& state) {
   if (touching_.empty()) return;
   wakeTouched(time, state);
   if (solver_.hasConstraints()) solver_.factorize(state);
-  if (touching_.size() <= kFewStruck) return resolveImpacts(time, before, state);
+  if (!isCrowded_) {
+    resolveImpacts(time, before, state);
+    return settle(time, touching_, state);
+  }
   const std::vector<Vec3> impulses = stepping_.strike(touching_, timeStep_, state);
   for (std::size_t i = 0; i < impulses.size(); ++i) {
     const double impulse = touching_[i].normal.dot(impulses[i]);
@@ -110,6 +114,7 @@ void ContactStage::findHeld(const VectorX& before, const VectorX& state, double 
 }
 
 void ContactStage::begin(double time, const VectorX& before, const VectorX& state, double length) {
+  isCrowded_ = becomesCrowded_;
   stepPart_ = length / timeStep_;
   touching_.clear();
   if (assembly_.geometry.colliders.empty()) return;
@@ -138,12 +143,24 @@ void ContactStage::hold(double time, const VectorX& before, double length, Vecto
   std::vector<Contact> acting;
   for (const SteppedContact& stepped : stepping_.contacts()) {
     const double impulse = stepped.contact.normal.dot(stepped.impulse);
-    if (impulse <= 0) continue;
+    if (impulse <= kRestSpeedFloor * lightest(stepped.contact)) continue;
     acting.push_back(stepped.contact);
     if (stepped.isImpact) log_.recordContact(time, EventKind::impact, stepped.contact, impulse);
   }
-  isCrowded_ = isCrowded_ ? !acting.empty() : acting.size() > kFewLoaded;
-  for (const int body : resting_.settle(time, acting, state))
+  if (isCrowded_) settle(time, acting, state);
+  becomesCrowded_ = isCrowded_ ? !acting.empty() : acting.size() > kFewLoaded;
+}
+
+/// Mass (kg) of the lighter of the bodies at a contact.
+double ContactStage::lightest(const Contact& contact) const {
+  double mass = INFINITY;
+  for (const int body : {contact.bodyA, contact.bodyB})
+    if (body != kFixed) mass = std::min(mass, assembly_.mechanism.bodies[static_cast<std::size_t>(body)].mass);
+  return mass;
+}
+
+void ContactStage::settle(double time, const std::vector<Contact>& contacts, VectorX& state) {
+  for (const int body : resting_.settle(time, contacts, state))
     log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
 }
 
@@ -168,20 +185,21 @@ void ContactStage::wakeTouched(double time, const VectorX& state) {
   if (woken) findMeeting(state);
 }
 
-/// Restitution. A contact that closes faster than acceleration explains is an impact, and then all that touch each
-/// other there take part. What explains: the speed that it gained since the last step, part of a step as that may have
-/// been, would have in `kRestSteps` whole ones.
+/// All that touch each other where one closes take part. A contact that closes faster than acceleration explains
+/// rebounds. What explains: the speed that it gained since the last step, part of a step as that may have been, would
+/// have in `kRestSteps` whole ones.
 void ContactStage::resolveImpacts(double time, const VectorX& before, VectorX& state) {
   for (std::vector<ImpactContact>& impacts : findImpacts(before, state)) {
     if (impacts.empty()) continue;
     const VectorX approach = state;
     resolveImpact(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
+    const bool isHard = std::any_of(impacts.begin(), impacts.end(), [&](const ImpactContact& impact) {
+      return closingSpeed(impact.contact, approach) > leastImpactSpeed_;
+    });
     for (const ImpactContact& impact : impacts) {
-      // What a lasting contact took was an acceleration's, spread over the step.
-      const bool isLasting = closingSpeed(impact.contact, approach) <= impact.restSpeed;
-      dissipate(impact.contact, impact.impulse, isLasting ? before : approach, state);
+      dissipate(impact.contact, impact.impulse, approach, state);
       const double impulse = impact.contact.normal.dot(impact.impulse);
-      if (impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impulse);
+      if (isHard && impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impulse);
     }
   }
 }
@@ -206,7 +224,7 @@ std::vector<std::vector<ImpactContact>> ContactStage::findImpacts(const VectorX&
     const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
     const auto island = static_cast<std::size_t>(islands.islandOf(body));
     impacts[island].push_back({contact, assembly_.geometry.pairs[contact.pair].law, restSpeed, Vec3::Zero()});
-    if (closing > leastImpactSpeed_) isStruck[island] = 1;
+    if (closing > leastClosingSpeed_) isStruck[island] = 1;
   }
   for (std::size_t island = 0; island < impacts.size(); ++island)
     if (!isStruck[island]) impacts[island].clear();

@@ -35,7 +35,7 @@ class ContactStage {
 
   /// Many contacts last or chatter: impacts are no longer searched for.
   bool isCrowded() const { return isCrowded_; }
-  void setCrowded() { isCrowded_ = true; }
+  void setCrowded() { becomesCrowded_ = true; }
 
   /// Nearer than this (m) is touching.
   double touchTolerance() const { return touchTolerance_; }
@@ -48,6 +48,8 @@ class ContactStage {
   void findWithinReach(const VectorX& before, const VectorX& state, double length);
   void findHeld(const VectorX& before, const VectorX& state, double length);
   void findMeeting(const VectorX& state);
+  double lightest(const Contact& contact) const;
+  void settle(double time, const std::vector<Contact>& contacts, VectorX& state);
   void wakeTouched(double time, const VectorX& state);
   void resolveImpacts(double time, const VectorX& before, VectorX& state);
   Islands findStruckTogether() const;
@@ -58,11 +60,11 @@ class ContactStage {
   EventLog& log_;
   RestingBodies& resting_;
   ConstraintSolver solver_;
-  double timeStep_, touchTolerance_, leastImpactSpeed_;
+  double timeStep_, touchTolerance_, leastClosingSpeed_, leastImpactSpeed_;
   double stepPart_ = INFINITY;  // of a step, that the last one took
   std::vector<Contact> touching_;
   ContactStepping stepping_;
-  bool isCrowded_ = false;
+  bool isCrowded_ = false, becomesCrowded_ = false;
 };
 
 }  // namespace cradle

@@ -53,7 +53,18 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const Vector
   lands_.resize(contacts.size(), 0);
   if (contacts.empty()) return;
   const Invariants free = invariantsOf(assembly_.mechanism, state);
-  for (const Group& group : findGroups()) resolve(group, before, timeStep, state);
+  const std::vector<Group> groups = findGroups();
+  std::vector<double> most;  // J, of each group
+  for (const Group& group : groups) {
+    most.push_back(energyOf(group.moved.bodies, assembly_.mechanism, state));
+    resolve(group, before, timeStep, state);
+  }
+  // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
+  if (solver_.hasConstraints()) {
+    solver_.project(state);
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      limitEnergy(groups[i].moved, most[i], assembly_.mechanism, state);
+  }
   lands_.clear();
   book(free, state);
 }
@@ -80,9 +91,14 @@ void ContactStepping::book(const Invariants& free, VectorX& state) const {
 /// Contacts whose bodies touch or are tied to each other.
 std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
   Islands islands(assembly_.mechanism.bodies.size());
-  std::vector<char> isTied(assembly_.mechanism.bodies.size(), 0);
+  std::vector<char> isTied(assembly_.mechanism.bodies.size(), 0), isGrounded = isTied;
+  const auto ground = [&](int bodyA, int bodyB) {
+    if (bodyA != kFixed && bodyB == kFixed) isGrounded[static_cast<std::size_t>(bodyA)] = 1;
+    if (bodyB != kFixed && bodyA == kFixed) isGrounded[static_cast<std::size_t>(bodyB)] = 1;
+  };
   forEachTie(assembly_.mechanism.constraints, [&](int bodyA, int bodyB) {
     islands.join(bodyA, bodyB);
+    ground(bodyA, bodyB);
     for (const int body : {bodyA, bodyB})
       if (body != kFixed) isTied[static_cast<std::size_t>(body)] = 1;
   });
@@ -92,12 +108,14 @@ std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
     const Contact& contact = contacts_[i].contact;
     const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
     Group& group = groups[islands.islandOf(body)];
+    ground(contact.bodyA, contact.bodyB);
     group.members.push_back(i);
     group.contacts.push_back(contact);
   }
   for (std::size_t body = 0; body < isTied.size(); ++body)
     if (const auto group = groups.find(islands.islandOf(static_cast<int>(body))); group != groups.end()) {
-      group->second.bodies.push_back(static_cast<int>(body));
+      group->second.moved.bodies.push_back(static_cast<int>(body));
+      group->second.moved.isGrounded = group->second.moved.isGrounded || isGrounded[body];
       group->second.isTied = group->second.isTied || isTied[body];
     }
   std::vector<Group> ordered;
@@ -141,16 +159,16 @@ ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion
 void ContactStepping::resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state) {
   setCones(group, before);
   const Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), timeStep};
-  const double most = energyOf(group.bodies, assembly_.mechanism, state);
+  const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
   for (double part = 1;; part = part > kLeastRestitution ? kLessRestitution * part : 0) {
     const Problem problem = posed(group, motion, part);
     const VectorX impulses = solve(group, problem);
     move(group, motion, impulses, state);
-    if (problem.hasRebounds && isGain(energyOf(group.bodies, assembly_.mechanism, state), most)) {
-      restore(group.bodies, state);
+    if (problem.hasRebounds && isGain(energyOf(group.moved.bodies, assembly_.mechanism, state), most)) {
+      restore(group.moved.bodies, state);
       continue;
     }
-    limitEnergy(group.bodies, most, assembly_.mechanism, state);
+    limitEnergy(group.moved, most, assembly_.mechanism, state);
     return keep(group, motion, problem, impulses, state);
   }
 }
@@ -219,14 +237,16 @@ void ContactStepping::move(const Group& group, const Motion& motion, const Vecto
 
 void ContactStepping::moveByMean(const Group& group, const Motion& motion, VectorX& state) const {
   const double half = 0.5 * motion.timeStep;
-  for (const int body : group.bodies) {
-    centerOfMass(state, body) += half * (linearVelocity(state, body) - linearVelocity(free_, body));
+  for (const int body : group.moved.bodies) {
+    if (linearVelocity(state, body) != linearVelocity(free_, body))
+      centerOfMass(state, body) = centerOfMass(motion.before, body) +
+                                  half * (linearVelocity(motion.before, body) + linearVelocity(state, body));
     turnBody(state, body, half * (angularVelocity(state, body) - angularVelocity(free_, body)));
   }
 }
 
 void ContactStepping::moveByEnd(const Group& group, const Motion& motion, VectorX& state) const {
-  for (const int body : group.bodies) {
+  for (const int body : group.moved.bodies) {
     centerOfMass(state, body) = centerOfMass(motion.before, body) + motion.timeStep * linearVelocity(state, body);
     setOrientation(state, body, orientation(motion.before, body));
     turnBody(state, body, motion.timeStep * angularVelocity(state, body));
@@ -249,7 +269,7 @@ void ContactStepping::separate(const Group& group, const VectorX& gaps, VectorX&
     cones_.apply(cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations).impulses,
                  displacement);
   }
-  for (const int body : group.bodies) {
+  for (const int body : group.moved.bodies) {
     centerOfMass(state, body) += linearVelocity(displacement, body);
     turnBody(state, body, angularVelocity(displacement, body));
   }

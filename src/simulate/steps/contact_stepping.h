@@ -8,6 +8,7 @@
 #include "impact/contact_cones.h"
 #include "impact/sparse_cones.h"
 #include "simulate/assembly.h"
+#include "simulate/steps/contact_energy.h"
 
 namespace cradle {
 
@@ -54,7 +55,7 @@ class ContactStepping {
   struct Group {
     std::vector<std::size_t> members;  // of contacts_
     std::vector<Contact> contacts;     // the same
-    std::vector<int> bodies;           // that their impulses move
+    MovedBodies moved;
     int firstBody = 0;
     bool isTied = false;
   };

@@ -63,7 +63,7 @@ void SteppedMotion::advance(double frame) {
   if (solver_.hasConstraints()) solver_.project(island_.state);
   normalizeOrientations(island_.state);
   holdContacts();
-  if (atEvent) contacts_.strike(time, before_, island_.state);
+  if (atEvent || !contacts_.isCrowded()) contacts_.strike(time, before_, island_.state);
   const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
   ropes_.resolve(time, island_.state);
   keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
@@ -104,8 +104,6 @@ void SteppedMotion::holdContacts() {
   isHeld_ = !contacts_.touching().empty() && length > kTimeRounding * method_.timeStep;  // no gap closes in no time
   if (!isHeld_) return;
   contacts_.hold(island_.time, before_, length, island_.state);
-  // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
-  if (solver_.hasConstraints()) solver_.project(island_.state);
   held_ = island_.state;
 }
 
