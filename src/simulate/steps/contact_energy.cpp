@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/invariants.h"
 
 namespace cradle {
 namespace {
@@ -34,6 +33,11 @@ double energyOf(const std::vector<int>& bodies, const Mechanism& mechanism, cons
     energy -= mechanism.bodies[static_cast<std::size_t>(body)].mass * mechanism.gravity.dot(centerOfMass(state, body));
   for (const SpringForce& spring : mechanism.springs) energy += actionOf(spring, state).potential;
   return energy;
+}
+
+void bookDifference(const Invariants& before, const Mechanism& mechanism, VectorX& state) {
+  const Invariants now = invariantsOf(mechanism, state);
+  dissipatedEnergy(state) += before.kinetic + before.potential - now.kinetic - now.potential;
 }
 
 bool isGain(double energy, double most) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "dynamics/equations_of_motion.h"
+#include "dynamics/invariants.h"
 
 namespace cradle {
 
@@ -19,6 +20,9 @@ struct MovedBodies {
 /// that were not found, is taken from their velocities. All become smaller by the same part, so that what touches opens
 /// and slides as before; nothing fixed takes the momentum of bodies that touch only each other, which is kept.
 void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state);
+
+/// Books as dissipated what `state` has less than it had with the energies `before`.
+void bookDifference(const Invariants& before, const Mechanism& mechanism, VectorX& state);
 
 /// Whether energies (J) differ by more than rounding.
 bool isGain(double energy, double most);

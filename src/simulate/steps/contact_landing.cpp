@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/invariants.h"
-#include "simulate/steps/contact_energy.h"
 #include "simulate/steps/contact_stepping.h"
 
 namespace cradle {
@@ -84,7 +82,7 @@ std::vector<Vec3> ContactStepping::strike(const std::vector<Contact>& contacts, 
       impulses[group.members[i]] = cones_.axes(i) * found.segment<3>(3 * static_cast<Index>(i));
   }
   contacts_ = last;
-  book(free, state);
+  bookDifference(free, assembly_.mechanism, state);
   return impulses;
 }
 

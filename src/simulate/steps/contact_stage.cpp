@@ -151,6 +151,11 @@ void ContactStage::hold(double time, const VectorX& before, double length, Vecto
   becomesCrowded_ = isCrowded_ ? !acting.empty() : acting.size() > kFewLoaded;
 }
 
+bool ContactStage::hasImpact() const {
+  const auto isImpact = [](const SteppedContact& stepped) { return stepped.isImpact; };
+  return std::any_of(stepping_.contacts().begin(), stepping_.contacts().end(), isImpact);
+}
+
 /// Mass (kg) of the lighter of the bodies at a contact.
 double ContactStage::lightest(const Contact& contact) const {
   double mass = INFINITY;

@@ -33,6 +33,9 @@ class ContactStage {
   /// What may have touched in the last step, or touched at its end, if something of it moved.
   const std::vector<Contact>& touching() const { return touching_; }
 
+  /// Whether something struck within the last step, and not at its end.
+  bool hasImpact() const;
+
   /// Many contacts last or chatter: impacts are no longer searched for.
   bool isCrowded() const { return isCrowded_; }
   void setCrowded() { becomesCrowded_ = true; }

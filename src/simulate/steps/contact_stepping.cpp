@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/invariants.h"
 #include "simulate/plan/islands.h"
-#include "simulate/steps/contact_energy.h"
 
 namespace cradle {
 namespace {
@@ -66,7 +64,7 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const Vector
       limitEnergy(groups[i].moved, most[i], assembly_.mechanism, state);
   }
   lands_.clear();
-  book(free, state);
+  bookDifference(free, assembly_.mechanism, state);
 }
 
 void ContactStepping::begin(const std::vector<Contact>& contacts, const VectorX& before, const VectorX& state) {
@@ -80,12 +78,6 @@ void ContactStepping::setCones(const Group& group, const VectorX& state) {
   cones_.set(group.contacts, assembly_.mechanism.bodies, state);
   tied_.reset();
   if (group.isTied) tied_.emplace(group.contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
-}
-
-/// What is gone since the energies were `free`.
-void ContactStepping::book(const Invariants& free, VectorX& state) const {
-  const Invariants held = invariantsOf(assembly_.mechanism, state);
-  dissipatedEnergy(state) += free.kinetic + free.potential - held.kinetic - held.potential;
 }
 
 /// Contacts whose bodies touch or are tied to each other.

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "dynamics/invariants.h"
 #include "impact/contact_cones.h"
 #include "impact/sparse_cones.h"
 #include "simulate/assembly.h"
@@ -71,7 +70,6 @@ class ContactStepping {
   };
   void begin(const std::vector<Contact>& contacts, const VectorX& before, const VectorX& state);
   void setCones(const Group& group, const VectorX& state);
-  void book(const Invariants& free, VectorX& state) const;
   std::vector<Group> findGroups() const;
   double restSpeed(double pressing, double timeStep) const;
   void resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state);

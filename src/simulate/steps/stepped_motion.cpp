@@ -7,8 +7,10 @@
 
 #include "core/error.h"
 #include "dynamics/integrators/rk4.h"
+#include "dynamics/invariants.h"
 #include "simulate/contact_response.h"
 #include "simulate/events/event_location.h"
+#include "simulate/steps/contact_energy.h"
 
 namespace cradle {
 namespace {
@@ -19,7 +21,7 @@ constexpr double kTimeRounding = 1e-9;        // of a step: remainders below it 
 constexpr double kShortestPart = 1.0 / 1024;  // of a step: shorter ones are not cut for their error
 constexpr double kMostGrowth = 4;             // of a part of a step to the next
 constexpr int kMostServed = 12;               // contacts
-constexpr int kManyLandings = 4;              // events in a step: beyond, it is not cut where something lands
+constexpr int kManyLandings = 2;              // events in a step: beyond, it is not cut where something lands
 constexpr int kManyEvents = 16;               // in a step: beyond, it is not cut any more
 constexpr int kMostEvents = 10000;            // within a step
 
@@ -78,17 +80,20 @@ void SteppedMotion::advance(double frame) {
 
 void SteppedMotion::hold(double fraction, VectorX& state) const {
   if (!isHeld_) return;
-  const VectorX& free = island_.step.state;
+  const Invariants free = invariantsOf(island_.assembly.mechanism, state);
+  const VectorX& led = island_.step.state;
   const double square = fraction * fraction;
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
-    centerOfMass(state, body) += square * (centerOfMass(held_, body) - centerOfMass(free, body));
-    const Quat turn = (orientation(held_, body) * orientation(free, body).conjugate()).normalized();
+    centerOfMass(state, body) += square * (centerOfMass(held_, body) - centerOfMass(led, body));
+    const Quat turn = (orientation(held_, body) * orientation(led, body).conjugate()).normalized();
     turnBody(state, body, square * 2 * turn.vec());
+    // Between the velocities before and after an impact there are none.
+    if (contacts_.hasImpact()) continue;
     const Eigen::Index velocity = velocityOffset(state, body);
     state.segment<kVelocitySize>(velocity) +=
-        fraction * (held_.segment<kVelocitySize>(velocity) - free.segment<kVelocitySize>(velocity));
+        fraction * (held_.segment<kVelocitySize>(velocity) - led.segment<kVelocitySize>(velocity));
   }
-  dissipatedEnergy(state) += fraction * (dissipatedEnergy(held_) - dissipatedEnergy(free));
+  bookDifference(free, island_.assembly.mechanism, state);
 }
 
 /// The end of the fixed step under way, or of the run; a push that begins or ends comes first.
