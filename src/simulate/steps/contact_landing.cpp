@@ -1,6 +1,6 @@
-// A body that lands on one end while another still carries loses what the impact takes from it, at an instant. Spread over
-// a step, in which the end that will leave is still held, more is lost: by a part of the step's length over the time
-// between landings. So a step ends where something lands.
+// A body that lands on one end while another still carries loses what the impact takes from it, at an instant. Spread
+// over a step, in which the end that will leave is still held, more is lost: by a part of the step's length over the
+// time between landings. So a step ends where something lands.
 
 #include <algorithm>
 #include <cmath>

@@ -103,7 +103,8 @@ void ContactStage::findWithinReach(const VectorX& before, const VectorX& state, 
   });
 }
 
-/// Of pairs that are apart when the step begins nothing is known but by the search for impacts, as long as there is one.
+/// Of pairs that are apart when the step begins nothing is known but by the search for impacts, as long as there is
+/// one.
 void ContactStage::findHeld(const VectorX& before, const VectorX& state, double length) {
   findWithinReach(before, state, length);
   if (isCrowded_) return;
@@ -131,6 +132,16 @@ void ContactStage::begin(double time, const VectorX& before, const VectorX& stat
       }
   }
   if (woken) findHeld(before, state, length);
+}
+
+std::vector<ColliderPair> ContactStage::pairsNotHeld() const {
+  const std::vector<ColliderPair>& pairs = assembly_.geometry.pairs;
+  std::vector<char> isHeld(pairs.size(), 0);
+  for (const Contact& contact : touching_) isHeld[contact.pair] = 1;
+  std::vector<ColliderPair> others;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (!isHeld[i]) others.push_back(pairs[i]);
+  return others;
 }
 
 double ContactStage::firstLanding(const VectorX& before, const VectorX& state, double length) {

@@ -11,8 +11,8 @@
 
 namespace cradle {
 
-/// What happens where bodies touch: lasting contacts hold over steps, impacts rebound at their ends, and what lies still
-/// is put to rest.
+/// What happens where bodies touch: lasting contacts hold over steps, impacts rebound at their ends, and what lies
+/// still is put to rest.
 class ContactStage {
  public:
   /// Keeps a reference to `island`. `timeStep` (s) is the method's.
@@ -20,6 +20,9 @@ class ContactStage {
 
   /// Finds what may touch within a step of free motion of `length` (s) from `before` to `state`.
   void begin(double time, const VectorX& before, const VectorX& state, double length);
+
+  /// Near pairs but those that are held over the step.
+  std::vector<ColliderPair> pairsNotHeld() const;
 
   /// The part of that step after which something lands that is then to strike; infinite if nothing does.
   double firstLanding(const VectorX& before, const VectorX& state, double length);

@@ -60,8 +60,7 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const Vector
   // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
   if (solver_.hasConstraints()) {
     solver_.project(state);
-    for (std::size_t i = 0; i < groups.size(); ++i)
-      limitEnergy(groups[i].moved, most[i], assembly_.mechanism, state);
+    for (std::size_t i = 0; i < groups.size(); ++i) limitEnergy(groups[i].moved, most[i], assembly_.mechanism, state);
   }
   lands_.clear();
   bookDifference(free, assembly_.mechanism, state);
@@ -209,7 +208,8 @@ ConeStart ContactStepping::startOf(const Group& group) const {
 }
 
 /// From free motion to where impulses lead: with the mean of the velocities at both ends, where that leads into no
-/// overlap: what lasts keeps order 2 and its energy. Else with those at the end, which the gaps were asked of.
+/// overlap, and nothing is pushed that leaves: what lasts keeps order 2 and its energy. Else with those at the end,
+/// which the gaps were asked of.
 void ContactStepping::move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state) {
   tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
   const VectorX end = cones_.velocitiesIn(state);
@@ -218,7 +218,8 @@ void ContactStepping::move(const Group& group, const Motion& motion, const Vecto
   for (Index i = 0; i < gaps.size(); ++i) {
     const double gap = group.contacts[static_cast<std::size_t>(i)].separation;
     gaps[i] = gap + motion.timeStep * 0.5 * (motion.start[3 * i + 2] + end[3 * i + 2]);
-    isSmooth = isSmooth && gaps[i] > std::min(0.0, gap) - kSmoothPart * overlapTolerance_;
+    const double most = impulses[3 * i + 2] > 0 ? gap + overlapTolerance_ : INFINITY;
+    isSmooth = isSmooth && gaps[i] > std::min(0.0, gap) - kSmoothPart * overlapTolerance_ && gaps[i] < most;
   }
   if (!isSmooth)
     for (Index i = 0; i < gaps.size(); ++i)

@@ -37,8 +37,8 @@ class ContactStepping {
   /// What firstLanding found to land is not held before the step's end.
   void resolve(const std::vector<Contact>& contacts, const VectorX& before, double timeStep, VectorX& state);
 
-  /// The part of a step, with the same arguments, after which something lands first: what is apart meets, faster than at
-  /// `landingSpeed` (m/s), while what touches is held. Infinite if nothing does.
+  /// The part of a step, with the same arguments, after which something lands first: what is apart meets, faster than
+  /// at `landingSpeed` (m/s), while what touches is held. Infinite if nothing does.
   double firstLanding(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
                       const VectorX& state, double landingSpeed);
 

@@ -53,7 +53,8 @@ void SteppedMotion::advance(double frame) {
   // How far do bodies move freely, and until what meets?
   moveFreely(stepEnd);
   before_ = island_.state;
-  const bool atEvent = stopAtFirstEvent() | stopAtFirstLanding();
+  bool atEvent = stopAtFirstEvent();
+  atEvent = stopAtFirstLanding() || atEvent;
   time = step.time + step.timeStep;
   if (!atEvent && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
 
@@ -128,12 +129,16 @@ void SteppedMotion::moveFreely(double stepEnd) {
   longest_ = kMostGrowth * length;
 }
 
-/// Cuts the step at the first event in it.
+/// Cuts the step at the first event in it. Free motion does not say when bodies meet that touch already: landings do.
 bool SteppedMotion::stopAtFirstEvent() {
   if (!island_.mayTouch() && !ropes_.hasRopes()) return false;
   Step& step = island_.step;
   prepareInterpolant(island_.rightHandSide, step);
   island_.findNearPairs(contacts_.margin());
+  contacts_.begin(island_.time, before_, step.state, step.timeStep);
+  std::vector<ColliderPair>& pairs = island_.assembly.geometry.pairs;
+  const std::vector<ColliderPair> all = pairs;
+  pairs = contacts_.pairsNotHeld();
   const auto impact = contacts_.isCrowded() ? std::nullopt : island_.search.first(step, {contacts_.touchTolerance()});
   const auto change = ropes_.firstChange(step);
   const double whole = step.timeStep;
@@ -144,13 +149,13 @@ bool SteppedMotion::stopAtFirstEvent() {
     endStepAtEvent(island_, method_.integrate, change->fraction * whole, kRopeTolerance,
                    [&](const VectorX& state) { return ropes_.margin(*change, state); });
   }
+  pairs = all;
   return impact || change;
 }
 
 /// Cuts the step where something lands while other contacts last.
 bool SteppedMotion::stopAtFirstLanding() {
   Step& step = island_.step;
-  contacts_.begin(island_.time, before_, step.state, step.timeStep);
   if (eventsInWindow_ >= kManyLandings) return false;
   const double part = contacts_.firstLanding(before_, step.state, step.timeStep);
   if (part > 1) return false;
