@@ -27,6 +27,7 @@ double ContactStepping::firstLanding(const std::vector<Contact>& contacts, const
   const std::vector<SteppedContact> last = contacts_;
   begin(contacts, before, state);
   previous_ = last, previousSlips_ = slips_;
+  startPart_ = previousStep_ > 0 ? timeStep / previousStep_ : 1;
   for (const Group& group : findGroups()) {
     setCones(group, before);
     const Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), timeStep};

@@ -20,6 +20,7 @@ constexpr double kRestSteps = 2;           // a rebound that ends within as many
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
 constexpr double kClosedPart = 1e-6;       // of the speed that gravity gives in a step: slower does not close
 constexpr double kLeastImpactPart = 0.01;  // of the speed that gravity gives in a step: slower is no impact
+constexpr double kLandingPart = 0.1;       // of the same: slower landings are not worth ending a step for
 
 double touchTolerance(const ContactGeometry& geometry) {
   double smallest = 1;
@@ -145,7 +146,8 @@ std::vector<ColliderPair> ContactStage::pairsNotHeld() const {
 }
 
 double ContactStage::firstLanding(const VectorX& before, const VectorX& state, double length) {
-  return stepping_.firstLanding(touching_, before, length, state, leastImpactSpeed_);
+  const double landingSpeed = kRestSpeedFloor + kLandingPart * assembly_.mechanism.gravity.norm() * timeStep_;
+  return stepping_.firstLanding(touching_, before, length, state, landingSpeed);
 }
 
 void ContactStage::hold(double time, const VectorX& before, double length, VectorX& state) {

@@ -46,6 +46,8 @@ ContactStepping::ContactStepping(const Assembly& assembly)
 void ContactStepping::resolve(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
                               VectorX& state) {
   previous_.swap(contacts_), previousSlips_.swap(slips_);
+  startPart_ = previousStep_ > 0 ? timeStep / previousStep_ : 1;
+  previousStep_ = timeStep;
   begin(contacts, before, state);
   slips_.assign(contacts.size(), Vec3::Zero());
   lands_.resize(contacts.size(), 0);
@@ -200,7 +202,8 @@ ConeStart ContactStepping::startOf(const Group& group) const {
       const double distance = (other.point - contact.point).squaredNorm();
       if (distance >= nearest) continue;
       nearest = distance;
-      start.impulses.segment<3>(3 * static_cast<Index>(i)) = cones_.axes(i).transpose() * previous_[k].impulse;
+      start.impulses.segment<3>(3 * static_cast<Index>(i)) =
+          startPart_ * (cones_.axes(i).transpose() * previous_[k].impulse);
       start.velocities.segment<3>(3 * static_cast<Index>(i)) = cones_.axes(i).transpose() * previousSlips_[k];
     }
   }

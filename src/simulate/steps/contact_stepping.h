@@ -99,6 +99,7 @@ class ContactStepping {
   std::vector<SteppedContact> contacts_, previous_;
   std::vector<char> lands_;                  // contacts that are not held before the step's end
   std::vector<Vec3> slips_, previousSlips_;  // m/s, world: velocities of the contacts with De Saxce's correction
+  double previousStep_ = 0, startPart_ = 1;  // s; ratio of impulses now to those of the step before, if forces last
   std::map<int, double> penalties_;          // of each group's first body
   SteppingCount count_;
   VectorX free_;  // where free motion led
