@@ -71,6 +71,24 @@ double ContactStepping::landingPart(const Group& group, const Motion& motion, co
   return first;
 }
 
+void ContactStepping::takeOut(const std::vector<Contact>& contacts, VectorX& state) {
+  const std::vector<SteppedContact> last = contacts_;
+  begin(contacts, state, state);
+  const Invariants free = invariantsOf(assembly_.mechanism, state);
+  for (const Group& group : findGroups()) {
+    VectorX gaps(group.contacts.size());
+    for (Index i = 0; i < gaps.size(); ++i) gaps[i] = group.contacts[static_cast<std::size_t>(i)].separation;
+    if (gaps.minCoeff() >= -overlapTolerance_) continue;
+    setCones(group, state);
+    const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
+    separate(group, gaps, state);
+    if (group.isTied) solver_.project(state);
+    limitEnergy(group.moved, most, assembly_.mechanism, state);
+  }
+  contacts_ = last;
+  bookDifference(free, assembly_.mechanism, state);
+}
+
 std::vector<Vec3> ContactStepping::strike(const std::vector<Contact>& contacts, double timeStep, VectorX& state) {
   std::vector<Vec3> impulses(contacts.size(), Vec3::Zero());
   const std::vector<SteppedContact> last = contacts_;

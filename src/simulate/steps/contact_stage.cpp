@@ -17,6 +17,7 @@ constexpr double kReach = 2;               // of the way that a body goes freely
 constexpr double kReachPart = 1e-3;        // of its size: the same, for bodies at rest
 constexpr double kCalmSteps = 20;          // awake at least so long: a rattle is no row of rests
 constexpr double kRestSteps = 2;           // a rebound that ends within as many steps is not resolved
+constexpr double kNearOverlap = 10;        // of the deepest overlap: so near others may be pushed into
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
 constexpr double kClosedPart = 1e-6;       // of the speed that gravity gives in a step: slower does not close
 constexpr double kLeastImpactPart = 0.01;  // of the speed that gravity gives in a step: slower is no impact
@@ -153,6 +154,7 @@ double ContactStage::firstLanding(const VectorX& before, const VectorX& state, d
 void ContactStage::hold(double time, const VectorX& before, double length, VectorX& state) {
   stepPart_ = length / timeStep_;
   stepping_.resolve(touching_, before, length, state);
+  takeOutOverlaps(state);
   std::vector<Contact> acting;
   for (const SteppedContact& stepped : stepping_.contacts()) {
     const double impulse = stepped.contact.normal.dot(stepped.impulse);
@@ -162,6 +164,16 @@ void ContactStage::hold(double time, const VectorX& before, double length, Vecto
   }
   if (isCrowded_) settle(time, acting, state);
   becomesCrowded_ = isCrowded_ ? !acting.empty() : acting.size() > kFewLoaded;
+}
+
+/// Points that were not yet nearest when the step began, on rims and edges that turn, may have come too near at its end.
+void ContactStage::takeOutOverlaps(VectorX& state) {
+  findTouching(state, 0, overlapping_);
+  double deepest = 0;
+  for (const Contact& contact : overlapping_) deepest = std::max(deepest, -contact.separation);
+  if (deepest <= touchTolerance_) return;
+  findTouching(state, kNearOverlap * deepest, overlapping_);
+  stepping_.takeOut(overlapping_, state);
 }
 
 bool ContactStage::hasImpact() const {
@@ -183,9 +195,9 @@ void ContactStage::settle(double time, const std::vector<Contact>& contacts, Vec
 }
 
 /// Contacts of this instant in which something moves.
-void ContactStage::findTouching(const VectorX& state, double margin) {
-  findContacts(assembly_.geometry, state, margin, touching_);
-  std::erase_if(touching_, [this](const Contact& contact) {
+void ContactStage::findTouching(const VectorX& state, double margin, std::vector<Contact>& touching) const {
+  findContacts(assembly_.geometry, state, margin, touching);
+  std::erase_if(touching, [this](const Contact& contact) {
     const bool aLies = contact.bodyA == kFixed || resting_.isResting(contact.bodyA);
     const bool bLies = contact.bodyB == kFixed || resting_.isResting(contact.bodyB);
     return aLies && bLies;

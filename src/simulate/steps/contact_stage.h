@@ -50,7 +50,9 @@ class ContactStage {
   double margin() const { return std::max(touchTolerance_, resting_.supportMargin()); }
 
  private:
-  void findTouching(const VectorX& state, double margin);
+  void findTouching(const VectorX& state, double margin) { findTouching(state, margin, touching_); }
+  void findTouching(const VectorX& state, double margin, std::vector<Contact>& touching) const;
+  void takeOutOverlaps(VectorX& state);
   void findWithinReach(const VectorX& before, const VectorX& state, double length);
   void findHeld(const VectorX& before, const VectorX& state, double length);
   void findMeeting(const VectorX& state);
@@ -68,7 +70,7 @@ class ContactStage {
   ConstraintSolver solver_;
   double timeStep_, touchTolerance_, leastClosingSpeed_, leastImpactSpeed_;
   double stepPart_ = INFINITY;  // of a step, that the last one took
-  std::vector<Contact> touching_;
+  std::vector<Contact> touching_, overlapping_;
   ContactStepping stepping_;
   bool isCrowded_ = false, becomesCrowded_ = false;
 };

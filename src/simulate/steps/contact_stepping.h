@@ -42,6 +42,9 @@ class ContactStepping {
   double firstLanding(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
                       const VectorX& state, double landingSpeed);
 
+  /// Moves bodies apart that overlap in `state`; what lifts them is taken from their velocities.
+  void takeOut(const std::vector<Contact>& contacts, VectorX& state);
+
   /// The impact of contacts that touch in `state`, all at once. Their impulses (N s, world, on B). Energy that went is
   /// booked.
   std::vector<Vec3> strike(const std::vector<Contact>& contacts, double timeStep, VectorX& state);
