@@ -17,6 +17,7 @@ constexpr double kReach = 2;               // of the way that a body goes freely
 constexpr double kReachPart = 1e-3;        // of its size: the same, for bodies at rest
 constexpr double kCalmSteps = 20;          // awake at least so long: a rattle is no row of rests
 constexpr double kRestSteps = 2;           // a rebound that ends within as many steps is not resolved
+constexpr double kLetBe = 0.1;             // of what carries at rest: overlaps that the next step may take out
 constexpr double kNearOverlap = 10;        // of the deepest overlap: so near others may be pushed into
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
 constexpr double kClosedPart = 1e-6;       // of the speed that gravity gives in a step: slower does not close
@@ -166,12 +167,13 @@ void ContactStage::hold(double time, const VectorX& before, double length, Vecto
   becomesCrowded_ = isCrowded_ ? !acting.empty() : acting.size() > kFewLoaded;
 }
 
-/// Points that were not yet nearest when the step began, on rims and edges that turn, may have come too near at its end.
+/// Points that were not yet nearest when the step began, on rims and edges that turn, may have come too near at its
+/// end.
 void ContactStage::takeOutOverlaps(VectorX& state) {
   findTouching(state, 0, overlapping_);
   double deepest = 0;
   for (const Contact& contact : overlapping_) deepest = std::max(deepest, -contact.separation);
-  if (deepest <= touchTolerance_) return;
+  if (deepest <= kLetBe * margin()) return;
   findTouching(state, kNearOverlap * deepest, overlapping_);
   stepping_.takeOut(overlapping_, state);
 }
