@@ -125,6 +125,7 @@ class PairSearch {
   void findFace() {
     if (pair_.againstPlane) return;
     const Collider& b = geometry_.colliders[pair_.b];
+    if (a_.kind() != ColliderKind::polytope && b.kind() != ColliderKind::polytope) return;
     const double distance = (startA_.translation - startB_.translation).norm();
     const double turn = std::max(scratch_.turnOf(step_, a_.body).speed, scratch_.turnOf(step_, bodyB_).speed);
     const auto motionAlong = [&](const Vec3& normal) {
@@ -294,10 +295,17 @@ double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& to
 }
 
 std::optional<ImpactTime> ImpactSearch::first(const Step& step, const TouchingFeatures& touching) {
-  turns_.assign(static_cast<std::size_t>(bodyCount(step.state)), {});
+  const auto bodies = static_cast<std::size_t>(bodyCount(step.state));
+  turns_.assign(bodies, {});
+  isMoving_.resize(bodies);
+  for (std::size_t body = 0; body < bodies; ++body) isMoving_[body] = !isStill(step, static_cast<int>(body));
+  const auto moves = [this](int body) { return body != kFixed && isMoving_[static_cast<std::size_t>(body)]; };
   std::optional<ImpactTime> best;
-  for (std::size_t pair = 0; pair < geometry_.pairs.size(); ++pair)
-    PairSearch(*this, step, pair).search(touching, best);
+  for (std::size_t pair = 0; pair < geometry_.pairs.size(); ++pair) {
+    const ColliderPair& bodiesOf = geometry_.pairs[pair];
+    if (moves(geometry_.colliders[bodiesOf.a].body) || moves(bodyBOf(geometry_, bodiesOf)))
+      PairSearch(*this, step, pair).search(touching, best);
+  }
   return best;
 }
 

@@ -62,6 +62,7 @@ class ImpactSearch {
 
   const ContactGeometry& geometry_;
   std::vector<Turn> turns_;  // of the moving bodies, in the step that is searched
+  std::vector<char> isMoving_;  // of the same
   std::vector<std::size_t> features_;
   std::vector<Contact> contacts_;
   VectorX sample_;

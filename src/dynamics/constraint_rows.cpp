@@ -21,9 +21,15 @@ Ends endsOf(const Attachment& anchorA, const Attachment& anchorB, const VectorX&
           spinOf(anchorB.body, state)};
 }
 
-/// w x (w x r) of A minus that of B: relative acceleration of points that only turn.
+/// w x (w x r) of a point that only turns.
+Vec3 centripetalAcceleration(const Vec3& spin, const Vec3& arm) {
+  if (arm == Vec3::Zero()) return Vec3::Zero();
+  return spin.cross(spin.cross(arm));
+}
+
+/// That of A minus that of B.
 Vec3 centripetalAcceleration(const Ends& ends) {
-  return ends.spinA.cross(ends.spinA.cross(ends.a.arm)) - ends.spinB.cross(ends.spinB.cross(ends.b.arm));
+  return centripetalAcceleration(ends.spinA, ends.a.arm) - centripetalAcceleration(ends.spinB, ends.b.arm);
 }
 
 ConstraintRow rowOf(const RodConstraint& rod, const Ends& ends) {

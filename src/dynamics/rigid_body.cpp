@@ -24,12 +24,15 @@ void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std
   frames.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     BodyFrame& frame = frames[i];
+    const Quat worldFromBody = orientation(state, static_cast<Eigen::Index>(i));
+    if (frame.orientation.coeffs() == worldFromBody.coeffs()) continue;
+    frame.orientation = worldFromBody;
     frame.inverseInertia = bodies[i].inverseInertia;
     if (!bodies[i].turns) {
       frame.rotation.setIdentity();  // nothing is attached off its centre
       continue;
     }
-    frame.rotation = orientation(state, static_cast<Eigen::Index>(i)).normalized().toRotationMatrix();
+    frame.rotation = worldFromBody.normalized().toRotationMatrix();
     if (!bodies[i].isSpherical)
       frame.inverseInertia = frame.rotation * bodies[i].inverseInertia * frame.rotation.transpose();
   }
@@ -37,6 +40,8 @@ void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std
 
 AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state, const std::vector<BodyFrame>& frames) {
   if (attachment.body == kFixed) return {Vec3::Zero(), attachment.point, Vec3::Zero()};
+  if (attachment.point == Vec3::Zero())
+    return {Vec3::Zero(), centerOfMass(state, attachment.body), linearVelocity(state, attachment.body)};
   const Vec3 arm = frames[static_cast<std::size_t>(attachment.body)].rotation * attachment.point;
   return {arm, centerOfMass(state, attachment.body) + arm,
           linearVelocity(state, attachment.body) + angularVelocity(state, attachment.body).cross(arm)};

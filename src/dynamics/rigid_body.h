@@ -38,9 +38,12 @@ AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state);
 
 /// What all forces on a body need of its orientation: found once an instant.
 struct BodyFrame {
-  Mat3 rotation;        // worldFromBody
-  Mat3 inverseInertia;  // 1/(kg m^2), world
+  Quat orientation{0, 0, 0, 0};  // worldFromBody as stored, that the others were found for
+  Mat3 rotation;                 // worldFromBody
+  Mat3 inverseInertia;           // 1/(kg m^2), world
 };
+
+/// Those of all bodies. `frames` are none, or those of the same bodies in another state: what has not turned is kept.
 void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std::vector<BodyFrame>& frames);
 
 /// The same motion from bodies that were placed for `state`.

@@ -18,6 +18,7 @@ using Index = Eigen::Index;
 constexpr double kSlowSliding = 1e-6;     // m/s: slower has no direction
 constexpr double kUnloadedPart = 1e-9;    // of the accelerations: a contact that takes less carries nothing
 constexpr double kReleasedPart = 1e-6;    // the same when another lets go: what is symmetric lets go together
+constexpr double kAccelerationRounding = 1e-14;  // of gravity
 constexpr double kStillPart = 1e-7;       // of the accelerations: less is held
 constexpr double kLastBouncePart = 1e-7;  // of sqrt(g x size): what leaves so slowly is held by what presses
 constexpr double kSamePoint = 1e-4;       // of a size
@@ -132,8 +133,9 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
     rows.push_back(rowsOf(entries[i].contact, island_.state, frames_));
     members.push_back(&entries[i]);
   }
-  const ContactResponse response(rows, mechanism().bodies, frames_, ties);
   island_.equations.evaluate(island_.state, rate_);
+  if (nothingCloses(rows)) return;
+  const ContactResponse response(rows, mechanism().bodies, frames_, ties);
   const VectorX free = response.accelerations(rate_);
   const ConeSolution solution = solve(members, rows, response);
   const double most = std::max(free.cwiseAbs().maxCoeff(), mechanism().gravity.norm());
@@ -164,6 +166,14 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
   const Index rank = factor.rank();
   for (const std::size_t i : group) entries[i].isRedundant = rank < held.rows();
   if (held.rows() - rank > kMostRedundant || rank > kMostIndependent) fault_ = "too many contacts press at once";
+}
+
+/// Whether the accelerations in rate_ press no contact together by more than rounding.
+bool LastingContacts::nothingCloses(const std::vector<ContactRows>& rows) const {
+  const double most = kAccelerationRounding * mechanism().gravity.norm();
+  return std::all_of(rows.begin(), rows.end(), [&](const ContactRows& contact) {
+    return rateOf(contact.rows[2], rate_) + contact.rows[2].curvature >= -most;
+  });
 }
 
 /// Forces and accelerations of contacts whose free accelerations are those in rate_. Those that slide have their
