@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "collision/core.h"
 #include "collision/first_crossing.h"
@@ -125,16 +126,17 @@ class PairSearch {
   void findFace() {
     if (pair_.againstPlane) return;
     const Collider& b = geometry_.colliders[pair_.b];
-    if (a_.kind() != ColliderKind::polytope && b.kind() != ColliderKind::polytope) return;
+    const bool hasFacesA = a_.kind() == ColliderKind::polytope, hasFacesB = b.kind() == ColliderKind::polytope;
+    if (!hasFacesA && !hasFacesB) return;
     const double distance = (startA_.translation - startB_.translation).norm();
     const double turn = std::max(scratch_.turnOf(step_, a_.body).speed, scratch_.turnOf(step_, bodyB_).speed);
     const auto motionAlong = [&](const Vec3& normal) {
       if (a_.body == kFixed || bodyB_ == kFixed) return motionBoundAcross(step_, a_.body, bodyB_, normal);
       return 2 * bounds_.speed + turn * distance;
     };
-    face_ = faceBelow(a_, startA_, b, startB_, motionAlong);
-    if (face_) return;
-    face_ = faceBelow(b, startB_, a_, startA_, motionAlong);
+    if (hasFacesB) face_ = faceBelow(a_, startA_, b, startB_, std::cref(motionAlong));
+    if (face_ || !hasFacesA) return;
+    face_ = faceBelow(b, startB_, a_, startA_, std::cref(motionAlong));
     if (face_) face_->isOfA = true;
   }
 

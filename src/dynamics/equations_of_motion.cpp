@@ -32,8 +32,8 @@ void EquationsOfMotion::evaluate(const VectorX& state, VectorX& rate) {
   placeBodies(mechanism_.bodies, state, frames_);
   evaluatePoseRates(mechanism_.bodies, state, rate);
   applyGravityAndGyroscopicTerms(state, rate);
-  applySprings(state, rate);
-  applyPushes(state, rate);
+  if (!mechanism_.springs.empty()) applySprings(state, rate);
+  if (!mechanism_.pushes.empty()) applyPushes(state, rate);
   applyConstraints(state, rate);
   holdResting(state, rate);
 }

@@ -1,6 +1,7 @@
 #include "dynamics/rigid_body.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "math/rotation.h"
 
@@ -24,15 +25,15 @@ void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std
   frames.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     BodyFrame& frame = frames[i];
-    const Quat worldFromBody = orientation(state, static_cast<Eigen::Index>(i));
-    if (frame.orientation.coeffs() == worldFromBody.coeffs()) continue;
-    frame.orientation = worldFromBody;
+    const double* stored = state.data() + i * kPoseSize + 3;
+    if (std::equal(frame.orientation.begin(), frame.orientation.end(), stored)) continue;
+    std::copy_n(stored, frame.orientation.size(), frame.orientation.begin());
     frame.inverseInertia = bodies[i].inverseInertia;
     if (!bodies[i].turns) {
       frame.rotation.setIdentity();  // nothing is attached off its centre
       continue;
     }
-    frame.rotation = worldFromBody.normalized().toRotationMatrix();
+    frame.rotation = orientation(state, static_cast<Eigen::Index>(i)).normalized().toRotationMatrix();
     if (!bodies[i].isSpherical)
       frame.inverseInertia = frame.rotation * bodies[i].inverseInertia * frame.rotation.transpose();
   }

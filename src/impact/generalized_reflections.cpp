@@ -22,6 +22,13 @@ constexpr double kImmobilePart = 1e-12;      // of the inverse mass without ties
 constexpr long kMostReflections = 10000;     // for each contact; a row of n balls needs n
 constexpr long kMostMixedReflections = 100;  // restitutions that differ: then one impact without rebound ends it
 
+/// Whether what ties the bodies holds a contact with such an inverse mass (1/kg) along its normal.
+bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass) {
+  if (!response.areTied()) return false;
+  return inverseMass <=
+         kImmobilePart * contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
+}
+
 /// The contacts of an impact by their normals alone: speeds J v and inverse masses J W J^T.
 class NormalImpact {
  public:
@@ -60,8 +67,7 @@ NormalImpact::NormalImpact(const std::vector<ImpactContact>& impacts, const Impu
   inverseMass_ = (0.5 * (inverseMass_ + inverseMass_.transpose())).eval();
   for (Index i = 0; i < speeds_.size(); ++i) {
     const Contact& contact = impacts[static_cast<std::size_t>(i)].contact;
-    const double untied = contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
-    if (inverseMass_(i, i) <= kImmobilePart * untied) speeds_[i] = 0;  // what ties the bodies holds the contact
+    if (isImmobile(contact, response, state, inverseMass_(i, i))) speeds_[i] = 0;
   }
 }
 
@@ -117,8 +123,7 @@ void reflectAlone(ImpactContact& impact, const ImpulseResponse& response, Vector
   if (!(speed < 0)) return;
   const VectorX answer = response.answerTo(contact, contact.normal, state);
   const double inverseMass = contact.normal.dot(relativeVelocity(contact, state, answer));
-  const double untied = contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
-  if (inverseMass <= kImmobilePart * untied) return;
+  if (isImmobile(contact, response, state, inverseMass)) return;
   const double restitution = -speed > impact.restSpeed ? impact.law.restitution : 0;
   const double impulse = -(1 + restitution) * speed / inverseMass;
   const Index velocities = state.size() - poseComponents(state);

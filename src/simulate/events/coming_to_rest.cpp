@@ -52,6 +52,7 @@ Islands EventContacts::findRestGroups() const {
 
 /// Puts groups to rest that are still and that forces within the friction cones can hold; wakes those that are not.
 void EventContacts::settle() {
+  if (!island_.resting.anyRests() && !isAnySlow()) return;
   const std::size_t bodies = island_.assembly.mechanism.bodies.size();
   const Islands groups = findRestGroups();
   const auto groupOf = [&](std::size_t body) {

@@ -55,7 +55,8 @@ void LastingContacts::letGo(const std::optional<ContactChange>& change) {
 void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSolver& ties) {
   placeBodies(mechanism().bodies, island_.state, frames_);
   std::vector<Entry> entries = entriesOf(touching);
-  for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
+  if (!entries.empty())
+    for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
   for (const Entry& entry : entries)
     if (entry.isLoaded) add(entry);
   recordChanges();
