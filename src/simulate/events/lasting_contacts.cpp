@@ -15,14 +15,14 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kSlowSliding = 1e-6;     // m/s: slower has no direction
-constexpr double kUnloadedPart = 1e-9;    // of the accelerations: a contact that takes less carries nothing
-constexpr double kReleasedPart = 1e-6;    // the same when another lets go: what is symmetric lets go together
+constexpr double kSlowSliding = 1e-6;            // m/s: slower has no direction
+constexpr double kUnloadedPart = 1e-9;           // of the accelerations: a contact that takes less carries nothing
+constexpr double kReleasedPart = 1e-6;           // the same when another lets go: what is symmetric lets go together
 constexpr double kAccelerationRounding = 1e-14;  // of gravity
-constexpr double kStillPart = 1e-7;       // of the accelerations: less is held
-constexpr double kLastBouncePart = 1e-7;  // of sqrt(g x size): what leaves so slowly is held by what presses
-constexpr double kSamePoint = 1e-4;       // of a size
-constexpr double kSameDirection = 0.999;  // cosine
+constexpr double kStillPart = 1e-7;              // of the accelerations: less is held
+constexpr double kLastBouncePart = 1e-7;         // of sqrt(g x size): what leaves so slowly is held by what presses
+constexpr double kSamePoint = 1e-4;              // of a size
+constexpr double kSameDirection = 0.999;         // cosine
 constexpr int kMostFrictionRounds = 200;
 constexpr double kFrictionConverged = 1e-10;
 constexpr int kMostRedundant = 12;
