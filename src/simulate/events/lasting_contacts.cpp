@@ -191,7 +191,8 @@ ConeSolution LastingContacts::solve(const std::vector<const Entry*>& entries, co
   VectorX friction = VectorX::Zero(free.size());
   ConeSolution solution;
   for (int round = 0; round < kMostFrictionRounds; ++round) {
-    solution = solveConeProblem(response.inverseMass(), free + response.inverseMass() * friction, frictions);
+    solution = solveConeProblem(response.inverseMass(), free + response.inverseMass() * friction, frictions,
+                                solution.impulses);
     if (!slides) break;
     double change = 0, largest = 0;
     for (std::size_t k = 0; k < entries.size(); ++k) {
