@@ -251,7 +251,8 @@ class PairSearch {
       return heightOfCorner(*face_, feature_, {a_, poseAt(step_, a_.body, fraction)},
                             {geometry_.colliders[pair_.b], poseAt(step_, bodyB_, fraction)});
     if (held_) {
-      interpolate(step_, fraction, scratch_.sample_);
+      for (const int body : {a_.body, bodyB_})
+        if (body != kFixed) interpolatePose(step_, body, fraction, scratch_.sample_);
       return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, reach_);
     }
     // A gap of twice the way that can be gone in the step stays open, however large it is.
@@ -299,6 +300,7 @@ double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& to
 std::optional<ImpactTime> ImpactSearch::first(const Step& step, const TouchingFeatures& touching) {
   const auto bodies = static_cast<std::size_t>(bodyCount(step.state));
   turns_.assign(bodies, {});
+  sample_.resize(step.state.size());
   isMoving_.resize(bodies);
   for (std::size_t body = 0; body < bodies; ++body) isMoving_[body] = !isStill(step, static_cast<int>(body));
   const auto moves = [this](int body) { return body != kFixed && isMoving_[static_cast<std::size_t>(body)]; };

@@ -65,7 +65,7 @@ class ImpactSearch {
   std::vector<char> isMoving_;  // of the same
   std::vector<std::size_t> features_;
   std::vector<Contact> contacts_;
-  VectorX sample_;
+  VectorX sample_;  // with the poses of the pair that is searched
 };
 
 }  // namespace cradle

@@ -104,6 +104,10 @@ RigidTransform poseAt(const Step& step, int body, double fraction) {
   return {Quat(pose[3], pose[4], pose[5], pose[6]).normalized(), pose.head<3>()};
 }
 
+void interpolatePose(const Step& step, int body, double fraction, VectorX& state) {
+  state.segment<kPoseSize>(body * kPoseSize) = componentsAt<kPoseSize>(step, body * kPoseSize, fraction);
+}
+
 bool isStill(const Step& step, int body) {
   return body == kFixed || isConstant<kPoseSize>(step, body * kPoseSize);
 }
