@@ -18,7 +18,7 @@ flat in vec2 nearBalls;
 
 const float kDielectric = 0.04;   // reflected straight on by plastic, wood, stone
 const float kLightWidth = 0.035;  // the lights are no points: the narrowest highlight
-const float kTexelsAside = 3.5;   // reach of the shadow's tent: so far a surface must stand off from its own depths
+const float kTexelsAside = 1.5;   // so far a surface stands off from its own depths, which are those of flat triangles
 
 // Microfacets of Walter, Marschner, Li, Torrance 2007 (GGX); visibility term of Heitz 2014 in Hammon's approximation,
 // both without the factor pi that the radiance of the light has been given.
@@ -41,8 +41,12 @@ vec3 mirroredShare(vec3 straightOn, float roughness, float nv) {
 
 float keyShadow(vec3 position, vec3 n) {
   float facing = dot(n, lightDirection);
-  float aside = kTexelsAside * shadowTexel * sqrt(max(1.0 - facing * facing, 0.0));
-  return softShadow(position + n * (aside + shadowTexel));
+  float lit = 0.0;
+  if (facing > 0.0) {
+    float aside = kTexelsAside * shadowTexel * sqrt(max(1.0 - facing * facing, 0.0));
+    lit = softShadow(position + n * aside, n);
+  }
+  return lit;
 }
 
 // Light from `position` on a surface with unit normal `n` towards the eye.

@@ -15,10 +15,11 @@ namespace {
 constexpr double kVisibleFacet = 0.25;  // pixels by which a chord may miss the circle before its corner shows
 constexpr double kNearer = 1.2;         // things come so much nearer than the middle of the scene
 
-// The ground when its material names no colour: light stone, and squares of a darker one.
-constexpr float kStone = 0.64f;
-const Vec3f kStoneTint(1.0f, 0.972f, 0.925f);
-constexpr float kDarkSquare = 0.42f;     // of the light one
+// The ground when its material names no colour: light stone, or slate; squares that differ just so that a mirror shows
+// them; lines that are darker than stone and lighter than slate.
+const Vec3f kStone(0.400f, 0.392f, 0.376f), kSlate(0.042f, 0.046f, 0.054f);
+constexpr float kDarkSquare = 0.92f;  // of the light one
+const Vec3f kLinesOnStone(0.80f, 0.64f, 0.42f), kLinesOnSlate(1.25f, 1.75f, 3.0f);
 constexpr double kWallThickness = 0.01;  // of its width
 constexpr double kFewestSquares = 2.5;   // across the scene
 
@@ -158,7 +159,9 @@ Ground makeGround(const Scene& scene, int body, double size) {
   ground.body = body;
   ground.normal = plane.worldFromBody.rotation * std::get<Plane>(plane.shape).normal;
   ground.point = plane.worldFromBody.translation;
-  ground.lightColor = color ? linearFromSrgb(*color) : Vec3f(kStone * kStoneTint);
+  const bool isDark = scene.look == Look::dark;
+  ground.lightColor = color ? linearFromSrgb(*color) : isDark ? kSlate : kStone;
+  ground.lineShade = isDark ? kLinesOnSlate : kLinesOnStone;
   ground.darkColor = kDarkSquare * ground.lightColor;
   ground.squareSize = std::pow(10.0, std::floor(std::log10(size / kFewestSquares)));
   return ground;

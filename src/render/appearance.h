@@ -48,6 +48,7 @@ struct Ground {
   Vec3 normal = Vec3::UnitY();  // unit, world, upwards
   Vec3 point = Vec3::Zero();    // m, world
   Vec3f lightColor, darkColor;  // of the squares; linear
+  Vec3f lineShade;              // share of its colour in lines each tenth of a square, each, each ten squares
   double squareSize = 1;        // m, a power of ten
 };
 

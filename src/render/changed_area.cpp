@@ -13,9 +13,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kWholeFrom = 0.6;     // of the picture: from there on, drawing all of it costs less than finding out
-constexpr double kShadowTexels = 10;   // reach of a shadow's soft edge (3.5 sqrt 2) and of the look-up beside it (4.5)
-constexpr double kBlurredTexels = 24;  // as in environment.glsl
+constexpr double kWholeFrom = 0.6;  // of the picture: from there on, drawing all of it costs less than finding out
+// As in shadow.glsl: the disc over which shadows are looked up, what it is widened by (look-ups between texels, and
+// beside the surface), and what whole blocks add where its size is found out; texels of the shadow map.
+constexpr double kLightRadius = 0.03, kWidestRadius = 16, kAroundDisc = 6, kAroundBlocks = 20;
+constexpr double kBlurredTexels = 12;  // as in environment.glsl
 constexpr double kLeastTurn = 0.5;     // of a ball's normal from pixel to pixel: a mesh turns by facets
 constexpr double kEdgePixels = 32;
 constexpr double kContactTexels = 2;  // of the contact map, which is interpolated
@@ -90,6 +92,7 @@ class ChangeFinder {
   void addShadowOnGround(const DrawnHull& caster);
   void addShadowOnItems(const DrawnHull& caster);
   void addMirrors(const Surface& surface, const DrawnHull& ball);
+  double shadowMargin(double distance) const;
 
   const DrawList &before_, &now_;
   const Stage& stage_;
@@ -203,6 +206,12 @@ void ChangeFinder::addDarkened(const ContactItem& item) {
   groundPatches_.emplace_back(darkened.middle(), darkened.reach());
 }
 
+/// How far beside a caster's outline in the light its shadow may change, `distance` m behind it.
+double ChangeFinder::shadowMargin(double distance) const {
+  const double cone = std::min(kLightRadius * std::max(distance, 0.0) / stage_.shadow.texel, kWidestRadius);
+  return stage_.shadow.texel * std::max(kWidestRadius + kAroundDisc, cone + kAroundBlocks);
+}
+
 /// A ball's shadow on the ground is an ellipse, as long as the light is low.
 void ChangeFinder::addShadowOnGround(const DrawnHull& caster) {
   const Vec3 light = stage_.lighting.lamps[0].towards;
@@ -212,7 +221,10 @@ void ChangeFinder::addShadowOnGround(const DrawnHull& caster) {
   const Vec3 level = light - steepness * ground.normal;
   const Vec3 along = level.norm() > 0 ? Vec3(level.normalized()) : stage_.shaded.axisU;
   const Vec3 across = ground.normal.cross(along);
-  const double halfWidth = caster.radius + kShadowTexels * stage_.shadow.texel, halfLength = halfWidth / steepness;
+  double highest = 0;
+  for (std::size_t i = 0; i < caster.count; ++i)
+    highest = std::max(highest, ground.normal.dot(caster.centers[i] - ground.point) + caster.radius);
+  const double halfWidth = caster.radius + shadowMargin(highest / steepness), halfLength = halfWidth / steepness;
   std::vector<Eigen::Vector2d> outline;
   DrawnHull feet;
   for (std::size_t i = 0; i < caster.count; ++i) {
@@ -234,10 +246,12 @@ void ChangeFinder::addShadowOnGround(const DrawnHull& caster) {
 /// On all that stands behind it in the light.
 void ChangeFinder::addShadowOnItems(const DrawnHull& caster) {
   const Vec3 light = stage_.lighting.lamps[0].towards;
-  DrawnHull wide = caster;
-  wide.radius += kShadowTexels * stage_.shadow.texel;
-  const Bounds box = wide.bounds();
+  const double nearest = light.dot(caster.middle()) + caster.reach();
   for (const Receiver& receiver : receivers_) {
+    const Vec3 middle = receiver.bounds.center(), half = receiver.bounds.sizes() / 2;
+    DrawnHull wide = caster;
+    wide.radius += shadowMargin(nearest - light.dot(middle) + light.cwiseAbs().dot(half));
+    const Bounds box = wide.bounds();
     const auto [first, last] = distancesOfOverlap(box, -light, receiver.bounds);
     if (first <= last) addCommon(receiver.spans, swept(wide, -first * light, -last * light));
   }

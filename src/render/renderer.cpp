@@ -81,9 +81,11 @@ struct Renderer::Programs {
         tubeDepth(source, "tube.vert", "depth.frag"),
         ground(source, "ground.vert", "ground.frag"),
         groundFar(source, "ground.vert", "ground_far.frag"),
+        shadowBlocks(source, "sky.vert", "shadow_blocks.frag"),
         contact(source, "contact.vert", "contact.frag"),
         sky(source, "sky.vert", "sky.frag") {
-    for (const ShaderProgram* program : {&surface, &ball, &cylinder, &tube, &ground, &groundFar, &contact, &sky})
+    for (const ShaderProgram* program :
+         {&surface, &ball, &cylinder, &tube, &ground, &groundFar, &shadowBlocks, &contact, &sky})
       setStage(stage, *program);
     for (const ShaderProgram* program : {&surfaceDepth, &ballDepth, &cylinderDepth, &tubeDepth}) {
       program->use();
@@ -94,7 +96,7 @@ struct Renderer::Programs {
 
   ShaderProgram surface, ball, cylinder, tube;
   ShaderProgram surfaceDepth, ballDepth, cylinderDepth, tubeDepth;  // the same for the shadow map
-  ShaderProgram ground, groundFar, contact, sky;
+  ShaderProgram ground, groundFar, shadowBlocks, contact, sky;
 };
 
 /// All that lives on the side of OpenGL, and the picture drawn last; the context goes last.
@@ -110,7 +112,7 @@ struct Renderer::Resources {
   Stage stage;
   Programs programs;
   PictureTarget picture;
-  MapTarget shadowMap, contactMap;
+  MapTarget shadowMap, shadowBlocks, contactMap;
   NumberTexture balls, nearBalls;
   ItemDrawer items;
   GpuMesh triangle;
@@ -129,6 +131,7 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
       programs({shaderFolder, shaderDefinitions(stage)}, stage),
       picture(width, height),
       shadowMap(MapTarget::Kind::depth, kShadowMapSize),
+      shadowBlocks(MapTarget::Kind::leastDepth, kShadowMapSize / kShadowBlock),
       contactMap(MapTarget::Kind::share, kContactMapSize),
       balls(4),
       nearBalls(1),
@@ -171,7 +174,10 @@ void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
   r.items.take(list, r.meshBounds);
   r.balls.upload(r.items.packed().balls);
   r.nearBalls.upload(r.items.packed().nearBalls);
-  if (changed.shadows) drawShadowMap(*changed.shadows);
+  if (changed.shadows) {
+    drawShadowMap(*changed.shadows);
+    drawShadowBlocks(*changed.shadows);
+  }
   if (changed.contactsChanged) drawContactMap();
   finishStage(times_.maps);
   const std::vector<PixelRectangle> areas = changed.picture.rectangles();
@@ -214,6 +220,18 @@ void Renderer::drawShadowMap(const PixelRectangle& area) {
   r.shadowMap.end();
 }
 
+/// `area` is of the shadow map.
+void Renderer::drawShadowBlocks(const PixelRectangle& area) {
+  const Resources& r = *resources_;
+  const auto after = [](int texel) { return (texel + kShadowBlock - 1) / kShadowBlock; };
+  r.shadowBlocks.begin({area.left / kShadowBlock, area.bottom / kShadowBlock, after(area.right), after(area.top)});
+  glDisable(GL_DEPTH_TEST);
+  r.shadowMap.bindTexture(kShadowUnit);
+  r.programs.shadowBlocks.use();
+  r.triangle.draw();
+  r.shadowBlocks.end();
+}
+
 void Renderer::drawContactMap() {
   const Resources& r = *resources_;
   r.contactMap.begin(r.contactMap.inside());
@@ -229,6 +247,7 @@ void Renderer::drawContactMap() {
 void Renderer::drawPicture(const PixelRectangle& area) {
   const Resources& r = *resources_;
   r.shadowMap.bindTexture(kShadowUnit);
+  r.shadowBlocks.bindTexture(kBlockUnit);
   r.contactMap.bindTexture(kContactUnit);
   r.balls.bindTexture(kBallUnit);
   r.nearBalls.bindTexture(kNearBallUnit);

@@ -140,6 +140,9 @@ struct Light {
   double intensity = 3;
 };
 
+/// The surroundings of a picture: a light day or the dark.
+enum class Look { light, dark };
+
 struct Scene {
   std::string path, text;  // the file itself
   std::string name, description;
@@ -163,6 +166,7 @@ struct Scene {
   std::vector<Push> pushes;
   std::optional<Camera> camera;  // unset: framed so that all that moves stays in view
   std::vector<Light> lights;     // at least one
+  Look look = Look::light;
 };
 
 /// N: a trajectory has frames 0..N, a film pictures 0..N-1 (at least one).
