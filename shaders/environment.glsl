@@ -49,8 +49,11 @@ vec3 environment(vec3 from, vec3 direction, float spread, float bounced) {
 #endif
 }
 
+const float kBounceSlope = 2.0;  // on the side away from the key light, the ground lies in shadow
+
 // Light from all around on a matt surface: sky from above, from below what the ground or the floor sends back; more from
 // the side of the key light, where skies are brighter.
 vec3 ambientLight(vec3 normal) {
-  return mix(bounceIrradiance, skyIrradiance, 0.5 + 0.5 * normal.y) * (1.0 + dot(skySlope, normal));
+  float aside = dot(skySlope, normal);
+  return mix(bounceIrradiance * (1.0 + kBounceSlope * aside), skyIrradiance * (1.0 + aside), 0.5 + 0.5 * normal.y);
 }

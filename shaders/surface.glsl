@@ -4,7 +4,7 @@
 #include "sky.glsl"
 #include "shadow.glsl"
 #include "environment.glsl"
-#include "balls.glsl"
+#include "neighbours.glsl"
 
 uniform vec3 eye;
 #if FILL_LIGHTS > 0  // lights after the first throw no shadow
@@ -60,7 +60,7 @@ vec3 shade(vec3 position, vec3 n) {
 
   float spread = roughness * roughness + 2.0 * length(fwidth(n));  // thin things turn within a pixel
   Mirrored ray = Mirrored(position, reflect(-v, n), vec3(0.0), vec4(1.0), 0.0);
-  float open = lookAtBalls(first, count, position, n, spread, ray);
+  float open = lookAtNeighbours(first, count, position, n, spread, ray);
 
   vec3 key = lightRadiance * keyShadow(position, n);
   vec3 light = key * (matt * max(dot(n, lightDirection), 0.0) + highlight(n, v, lightDirection, straightOn, alpha));
@@ -73,6 +73,7 @@ vec3 shade(vec3 position, vec3 n) {
   vec3 mirrored = environment(ray.from, ray.direction, spread, ray.coverage) * mix(vec3(1.0), ray.look.rgb, ray.coverage);
   vec3 mattBall = ray.look.rgb * (ambientLight(ray.normal) + lightRadiance * max(dot(ray.normal, lightDirection), 0.0));
   mirrored = mix(mirrored, mattBall, ray.coverage * (1.0 - ray.look.w));
-  light += open * matt * ambientLight(n) + mirroredShare(straightOn, roughness, abs(dot(n, v))) * mirrored;
+  light += open * matt * ambientLight(n) + mirroredShare(straightOn, roughness, abs(dot(n, v))) * mirrored *
+           mix(1.0, open, roughness);
   return light;
 }

@@ -20,6 +20,8 @@ constexpr double kNearer = 1.2;         // things come so much nearer than the m
 const Vec3f kStone(0.400f, 0.392f, 0.376f), kSlate(0.042f, 0.046f, 0.054f);
 constexpr float kDarkSquare = 0.92f;  // of the light one
 const Vec3f kLinesOnStone(0.80f, 0.64f, 0.42f), kLinesOnSlate(1.25f, 1.75f, 3.0f);
+constexpr double kFullBox = 0.8;         // of a bounding box: from there on, it is darkened by as a box
+constexpr double kLeastFull = 0.05;      // below, what is in it darkens nothing
 constexpr double kWallThickness = 0.01;  // of its width
 constexpr double kFewestSquares = 2.5;   // across the scene
 
@@ -40,6 +42,26 @@ bool isDrawnAsMesh(const Shape& shape) {
          std::holds_alternative<ModelShape>(shape);
 }
 
+/// Share of its bounding box that a closed part of a mesh fills.
+double fullness(const DrawnMesh& mesh, const BodyPart& part, const Bounds& box) {
+  double volume = 0;  // signed tetrahedra from the box's centre
+  const Vec3 center = box.center();
+  for (std::uint32_t i = part.firstTriangle; i < part.firstTriangle + part.triangleCount; ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    volume += (mesh.vertices[a] - center).dot((mesh.vertices[b] - center).cross(mesh.vertices[c] - center)) / 6;
+  }
+  return std::abs(volume) / std::max(box.volume(), 1e-300);
+}
+
+BodySolid solidOf(const DrawnMesh& mesh, const BodyPart& part) {
+  BodySolid solid;
+  solid.surface = part.surface;
+  for (std::uint32_t i = part.firstTriangle; i < part.firstTriangle + part.triangleCount; ++i)
+    for (const std::uint32_t vertex : mesh.triangles[i]) solid.box.extend(mesh.vertices[vertex]);
+  if (fullness(mesh, part, solid.box) > kFullBox) solid.kind = ContactKind::box;
+  return solid;
+}
+
 /// Fills the catalogue of meshes, one entry for all bodies that share a shape.
 class Catalogue {
  public:
@@ -54,6 +76,7 @@ class Catalogue {
   }
 
   int meshOf(const Shape& shape);
+  std::vector<BodySolid> solidsOf(const Body& body, const BodySolid& whole, const std::vector<BodyPart>& parts) const;
   void moveTo(Appearance& appearance);
 
  private:
@@ -100,6 +123,19 @@ int Catalogue::meshOf(const Shape& shape) {
   return static_cast<int>(keys_.size()) - 1;
 }
 
+/// Of a model, its parts but those that are mostly air, like rails around a room; else the whole.
+std::vector<BodySolid> Catalogue::solidsOf(const Body& body, const BodySolid& whole,
+                                           const std::vector<BodyPart>& parts) const {
+  if (!std::holds_alternative<ModelShape>(body.shape)) return {whole};
+  std::vector<BodySolid> solids;
+  for (const BodyPart& part : parts) {
+    const DrawnMesh& mesh = meshes_[static_cast<std::size_t>(part.mesh)];
+    const BodySolid solid = solidOf(mesh, part);
+    if (fullness(mesh, part, solid.box) > kLeastFull) solids.push_back(solid);
+  }
+  return solids;
+}
+
 void Catalogue::moveTo(Appearance& appearance) {
   for (const Key& key : keys_) {
     const bool isModel = key.kind == Shape(ModelShape{}).index();
@@ -143,12 +179,14 @@ BodyAppearance lookOf(const Scene& scene, const Body& body, const std::vector<st
     look.isDrawnAsBall = true;
   }
   if (const auto* cylinder = std::get_if<Cylinder>(&body.shape)) look.cylinder = *cylinder;
-  if (look.cylinder) look.contact = ContactKind::cylinder;
-  if (std::holds_alternative<Box>(body.shape)) look.contact = ContactKind::box;
   if (const auto* model = std::get_if<ModelShape>(&body.shape)) {
     look.ball = ballOfModel.at(static_cast<std::size_t>(model->model));
     look.surface = look.parts.at(0).surface;
   }
+  const ContactKind kind = look.cylinder                            ? ContactKind::cylinder
+                           : std::holds_alternative<Box>(body.shape) ? ContactKind::box
+                                                                     : ContactKind::ellipsoid;
+  if (!look.local.isEmpty()) look.solids = catalogue.solidsOf(body, {look.local, kind, look.surface}, look.parts);
   return look;
 }
 

@@ -34,7 +34,7 @@ bool isSame(const Item& a, const Item& b, const Stage& stage) {
   return first == second;
 }
 
-bool isSame(const BallItem& a, const BallItem& b, const Stage& stage) {
+bool isSame(const NeighbourItem& a, const NeighbourItem& b, const Stage& stage) {
   return numbersOf(a, stage) == numbersOf(b, stage);
 }
 
@@ -85,7 +85,7 @@ class ChangeFinder {
   void addReceiver(const DrawnHull& hull);
   template <typename Item>
   void compareNearBalls(const Item& before, const Item& now, std::size_t first);
-  void addAround(const BallItem& ball, std::size_t first);
+  void addAround(const NeighbourItem& item, std::size_t first);
   void compareContacts();
   void addDarkened(const ContactItem& item);
   void addCommon(const TileSpans& item, const DrawnHull& hull);
@@ -158,8 +158,8 @@ void ChangeFinder::addReceivers(const Item& item) {
 /// stand from `first` on.
 template <typename Item>
 void ChangeFinder::compareNearBalls(const Item& before, const Item& now, std::size_t first) {
-  const auto ballOf = [](const DrawList& list, const Item& item, int i) -> const BallItem& {
-    return list.balls[static_cast<std::size_t>(list.nearBalls[static_cast<std::size_t>(item.firstNearBall + i)])];
+  const auto ballOf = [](const DrawList& list, const Item& item, int i) -> const NeighbourItem& {
+    return list.neighbours[static_cast<std::size_t>(list.nearBalls[static_cast<std::size_t>(item.firstNearBall + i)])];
   };
   const bool sameNumber = before.nearBalls == now.nearBalls;
   for (int i = 0; i < std::max(before.nearBalls, now.nearBalls); ++i) {
@@ -169,13 +169,13 @@ void ChangeFinder::compareNearBalls(const Item& before, const Item& now, std::si
   }
 }
 
-/// What of the receivers from `first` on is near a ball.
-void ChangeFinder::addAround(const BallItem& ball, std::size_t first) {
-  DrawnHull around;
-  around.add(ball.center);
-  around.radius = kBallReach * ball.radius;
+/// What of the receivers from `first` on a neighbour reaches.
+void ChangeFinder::addAround(const NeighbourItem& item, std::size_t first) {
+  DrawnHull around = hullOf(Bounds(-item.half, item.half), {item.rotation, item.center});
+  around.radius = item.isBall() ? kBallReach * item.radius : item.radius;
+  const Bounds reach = item.reach();
   for (std::size_t i = first; i < receivers_.size(); ++i)
-    if (receivers_[i].bounds.exteriorDistance(ball.center) < around.radius) addCommon(receivers_[i].spans, around);
+    if (receivers_[i].bounds.intersects(reach)) addCommon(receivers_[i].spans, around);
 }
 
 void ChangeFinder::compareContacts() {

@@ -53,14 +53,20 @@ struct TubeItem {
   Bounds bounds = {};  // m, world
 };
 
-constexpr double kBallReach = 3;  // radii from a ball's centre: beyond, it is not mirrored and shades nothing
+constexpr double kBallReach = 3;   // radii from a ball's centre: beyond, it is not mirrored and shades nothing
+constexpr double kBoxReach = 1.6;  // middle half edges from a box's surface
 
-/// A ball that is mirrored in what is near and keeps the sky's light from it.
-struct BallItem {
-  Vec3 center;  // m, world
-  double radius = 0;
+/// A ball or box that is mirrored in what is near and keeps the sky's light from it.
+struct NeighbourItem {
+  Vec3 center;         // m, world
+  double radius = 0;   // of a ball, m; of a box, how far it reaches beyond its surface
   Surface surface = {};
   int body = 0;
+  Vec3 half = Vec3::Zero();         // half edges of a box, m; zero for a ball
+  Quat rotation = Quat::Identity();  // worldFromBox
+  bool isBall() const { return half.isZero(0); }
+  /// Of all that it influences; m, world.
+  Bounds reach() const;
 };
 
 /// What darkens the ground beneath it.
@@ -77,8 +83,8 @@ struct DrawList {
   std::vector<SphereItem> spheres;
   std::vector<CylinderItem> cylinders;
   std::vector<TubeItem> tubes;  // springs before ropes
-  std::vector<BallItem> balls;
-  std::vector<int> nearBalls;  // indices into balls
+  std::vector<NeighbourItem> neighbours;
+  std::vector<int> nearBalls;  // indices into neighbours
   std::vector<ContactItem> contacts;
 };
 

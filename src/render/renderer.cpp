@@ -172,7 +172,7 @@ Image Renderer::render(const Frame& frame) {
 void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
   Resources& r = *resources_;
   r.items.take(list, r.meshBounds);
-  r.balls.upload(r.items.packed().balls);
+  r.balls.upload(r.items.packed().neighbours);
   r.nearBalls.upload(r.items.packed().nearBalls);
   if (changed.shadows) {
     drawShadowMap(*changed.shadows);
