@@ -12,7 +12,7 @@ uniform vec3 darkSquare;
 uniform vec3 lineShade;        // of lines each tenth of a square, each square, each ten squares: share of the ground's colour
 uniform float fadeDistance;    // m, where the ground has dissolved into the horizon to 63 %
 
-const vec3 kLineWidth = vec3(0.006, 0.015, 0.034);  // squares
+const vec3 kLineWidth = vec3(0.006, 0.015, 0.024);  // squares
 const float kFinestFade = 0.03;  // lines disappear while their distance shrinks from so many pixels (inverse)
 const float kFinestGone = 0.14;  // to so many
 

@@ -55,10 +55,11 @@ vec3 shade(vec3 position, vec3 n) {
   float metallic = surfaceColor.w;
   vec3 matt = surfaceColor.rgb * (1.0 - metallic);
   vec3 straightOn = mix(vec3(kDielectric), surfaceColor.rgb, metallic);
-  float alpha = roughness * roughness + kLightWidth;
+  float turn = length(fwidth(n));  // thin things turn within a pixel
+  float alpha = min(roughness * roughness + kLightWidth + 0.5 * turn, 1.0 + kLightWidth);
   int first = int(nearBalls.x), count = int(nearBalls.y);
 
-  float spread = roughness * roughness + 2.0 * length(fwidth(n));  // thin things turn within a pixel
+  float spread = roughness * roughness + 2.0 * turn;
   Mirrored ray = Mirrored(position, reflect(-v, n), vec3(0.0), vec4(1.0), 0.0);
   float open = lookAtNeighbours(first, count, position, n, spread, ray);
 

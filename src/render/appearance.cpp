@@ -17,8 +17,9 @@ constexpr double kNearer = 1.2;         // things come so much nearer than the m
 
 // The ground when its material names no colour: light stone, or slate; squares that differ just so that a mirror shows
 // them; lines that are darker than stone and lighter than slate.
-const Vec3f kStone(0.400f, 0.392f, 0.376f), kSlate(0.042f, 0.046f, 0.054f);
-constexpr float kDarkSquare = 0.92f;  // of the light one
+const Vec3f kStone(0.350f, 0.343f, 0.329f), kSlate(0.042f, 0.046f, 0.054f);
+constexpr float kLightSquare = 0.76f;  // of the colour that the scene names: a stage for what stands on it
+constexpr float kDarkSquare = 0.92f;   // of the light one
 const Vec3f kLinesOnStone(0.80f, 0.64f, 0.42f), kLinesOnSlate(1.25f, 1.75f, 3.0f);
 constexpr double kFullBox = 0.8;         // of a bounding box: from there on, it is darkened by as a box
 constexpr double kLeastFull = 0.05;      // below, what is in it darkens nothing
@@ -183,7 +184,7 @@ BodyAppearance lookOf(const Scene& scene, const Body& body, const std::vector<st
     look.ball = ballOfModel.at(static_cast<std::size_t>(model->model));
     look.surface = look.parts.at(0).surface;
   }
-  const ContactKind kind = look.cylinder                            ? ContactKind::cylinder
+  const ContactKind kind = look.cylinder                             ? ContactKind::cylinder
                            : std::holds_alternative<Box>(body.shape) ? ContactKind::box
                                                                      : ContactKind::ellipsoid;
   if (!look.local.isEmpty()) look.solids = catalogue.solidsOf(body, {look.local, kind, look.surface}, look.parts);
@@ -198,7 +199,7 @@ Ground makeGround(const Scene& scene, int body, double size) {
   ground.normal = plane.worldFromBody.rotation * std::get<Plane>(plane.shape).normal;
   ground.point = plane.worldFromBody.translation;
   const bool isDark = scene.look == Look::dark;
-  ground.lightColor = color ? linearFromSrgb(*color) : isDark ? kSlate : kStone;
+  ground.lightColor = color ? Vec3f(kLightSquare * linearFromSrgb(*color)) : isDark ? kSlate : kStone;
   ground.lineShade = isDark ? kLinesOnSlate : kLinesOnStone;
   ground.darkColor = kDarkSquare * ground.lightColor;
   ground.squareSize = std::pow(10.0, std::floor(std::log10(size / kFewestSquares)));

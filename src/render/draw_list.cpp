@@ -110,9 +110,8 @@ NeighbourSearch::NeighbourSearch(const std::vector<NeighbourItem>& neighbours) {
 template <typename Visit>
 void NeighbourSearch::forNear(const Bounds& bounds, const Visit& visit) const {
   for (const int index : large_) visit(index);
-  const auto first =
-      std::lower_bound(sorted_.begin(), sorted_.end(), bounds.min().x() - widest_,
-                       [](const Entry& entry, double place) { return entry.least < place; });
+  const auto first = std::lower_bound(sorted_.begin(), sorted_.end(), bounds.min().x() - widest_,
+                                      [](const Entry& entry, double place) { return entry.least < place; });
   for (auto entry = first; entry != sorted_.end() && entry->least <= bounds.max().x(); ++entry) visit(entry->index);
 }
 

@@ -134,7 +134,8 @@ Instance instanceOf(const TubeItem& item, const Stage& stage) {
   put(instance, 2, item.side.cast<float>(), item.turns);
   put(instance, 3, item.sag.cast<float>(), item.surface.roughness);
   put(instance, 4, item.surface.color, item.surface.metallic);
-  put(instance, 5, Vec3f(0, 0, static_cast<float>(item.straightEnd)), 0);
+  const bool isRope = item.turns == 0;
+  put(instance, 5, Vec3f(0, 0, static_cast<float>(isRope ? item.slack : item.straightEnd)), item.lean);
   return instance;
 }
 
@@ -164,10 +165,22 @@ std::array<float, 16> numbersOf(const NeighbourItem& item, const Stage& stage) {
   const Vec3f center = stage.relative(item.center), half = item.half.cast<float>();
   const Vec3f& color = item.surface.color;
   const Eigen::Vector4f turn = item.rotation.coeffs().cast<float>();
-  return {settled(center.x()), settled(center.y()), settled(center.z()), static_cast<float>(item.radius),
-          color.x(),           color.y(),           color.z(),           item.surface.metallic,
-          half.x(),            half.y(),            half.z(),            item.isBall() ? 0.0f : 1.0f,
-          settled(turn.x()),   settled(turn.y()),   settled(turn.z()),   settled(turn.w())};
+  return {settled(center.x()),
+          settled(center.y()),
+          settled(center.z()),
+          static_cast<float>(item.radius),
+          color.x(),
+          color.y(),
+          color.z(),
+          item.surface.metallic,
+          half.x(),
+          half.y(),
+          half.z(),
+          item.isBall() ? 0.0f : 1.0f,
+          settled(turn.x()),
+          settled(turn.y()),
+          settled(turn.z()),
+          settled(turn.w())};
 }
 
 PackedDrawList pack(const DrawList& list, const Stage& stage) {

@@ -91,6 +91,7 @@ struct Renderer::Programs {
       program->use();
       program->set("clipFromWorld", stage.shadow.clipFromWorld);
       program->set("viewer", stage.shadow.viewer);
+      program->set("pixelSize", 0.0f);
     }
   }
 
@@ -256,14 +257,10 @@ void Renderer::drawPicture(const PixelRectangle& area) {
   r.picture.begin(area);
   r.programs.ball.use();
   r.items.drawSpheres(&area);
-  r.programs.cylinder.use();
-  r.items.drawCylinders(&area);
   r.programs.surface.use();
   r.items.drawMeshes(&area);
   r.items.drawWalls();
-  r.programs.tube.use();
-  r.items.drawTubes(&area);
-  // Last what fills the picture: hidden pixels are not computed.
+  // Late what fills the picture: hidden pixels are not computed.
   if (r.nearGround) {
     glEnable(GL_CULL_FACE);  // from below, the ground is not there
     r.programs.ground.use();
@@ -274,6 +271,14 @@ void Renderer::drawPicture(const PixelRectangle& area) {
   }
   r.programs.sky.use();
   r.triangle.draw();
+  // Lines thinner than a pixel let through what is behind them.
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  r.programs.cylinder.use();
+  r.items.drawCylinders(&area);
+  r.programs.tube.use();
+  r.items.drawTubes(&area);
+  glDisable(GL_BLEND);
   r.picture.end();
 }
 

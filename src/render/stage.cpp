@@ -136,6 +136,7 @@ void setRays(const Stage& stage, const ShaderProgram& program) {
   program.set("cornerRay", Vec3f(corner.cast<float>()));
   program.set("columnRay", Vec3f(column.cast<float>()));
   program.set("rowRay", Vec3f(row.cast<float>()));
+  program.set("pixelSize", static_cast<float>(pixel));
 }
 
 void setLighting(const Lighting& lighting, const ShaderProgram& program) {
