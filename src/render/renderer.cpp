@@ -260,6 +260,15 @@ void Renderer::drawPicture(const PixelRectangle& area) {
   r.programs.surface.use();
   r.items.drawMeshes(&area);
   r.items.drawWalls();
+  // Lines thinner than a pixel take fewer of its samples: blending would ask for an order.
+  glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+  r.programs.cylinder.use();
+  r.items.drawCylinders(&area);
+  glEnable(GL_CULL_FACE);
+  r.programs.tube.use();
+  r.items.drawTubes(&area);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
   // Late what fills the picture: hidden pixels are not computed.
   if (r.nearGround) {
     glEnable(GL_CULL_FACE);  // from below, the ground is not there
@@ -271,14 +280,6 @@ void Renderer::drawPicture(const PixelRectangle& area) {
   }
   r.programs.sky.use();
   r.triangle.draw();
-  // Lines thinner than a pixel let through what is behind them.
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  r.programs.cylinder.use();
-  r.items.drawCylinders(&area);
-  r.programs.tube.use();
-  r.items.drawTubes(&area);
-  glDisable(GL_BLEND);
   r.picture.end();
 }
 

@@ -19,9 +19,9 @@ struct Palette {
 
 // A clear day that is pale enough behind a figure in print, and a studio without ground that grows darker upwards; then
 // both at night, for slides with a dark background: bodies stay as bright by the key light.
-const Palette kDay{{0.095f, 0.205f, 0.430f},
-                   {0.600f, 0.700f, 0.830f},
-                   {0.600f, 0.700f, 0.830f},
+const Palette kDay{{0.090f, 0.205f, 0.450f},
+                   {0.540f, 0.650f, 0.790f},
+                   {0.540f, 0.650f, 0.790f},
                    {0.185f, 0.222f, 0.285f},
                    {0.000f, 0.000f, 0.000f}};
 const Palette kStudio{{0.190f, 0.235f, 0.310f},

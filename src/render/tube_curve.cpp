@@ -64,8 +64,7 @@ std::vector<Vec3> ropeCorners(const TubeItem& rope) {
   if (rope.slack == 0) return corners;
   // It lies on one side of its tangents: at both ends, and where it is farthest from the chord.
   double low = -1, high = 1;
-  for (int i = 0; i < kHalvings; ++i)
-    (hangingSlope(rope, (low + high) / 2) > 0 ? low : high) = (low + high) / 2;
+  for (int i = 0; i < kHalvings; ++i) (hangingSlope(rope, (low + high) / 2) > 0 ? low : high) = (low + high) / 2;
   const double farthest = hanging(rope, low);
   const double first = -1 + farthest / hangingSlope(rope, -1), last = 1 + farthest / hangingSlope(rope, 1);
   for (const double u : {first, last})
@@ -100,8 +99,7 @@ double windCoil(double wireLength, double narrowest, TubeItem& coil) {
     return length;
   };
   double low = narrowest, high = wireLength;
-  for (int i = 0; i < kHalvings; ++i)
-    (lengthFor((low + high) / 2) < wireLength ? low : high) = (low + high) / 2;
+  for (int i = 0; i < kHalvings; ++i) (lengthFor((low + high) / 2) < wireLength ? low : high) = (low + high) / 2;
   coil.coilRadius = low;
   return lengthFor(low);
 }
