@@ -15,7 +15,7 @@ const float kBlock = 8.0;          // as in stage.h
 const float kLightRadius = 0.03;   // tangent of half the angle in which the light is seen; as in changed_area.cpp
 const float kWidestRadius = 16.0;  // of the disc
 const float kNarrowestRadius = 1.3;
-const int kSamples = 24;
+const int kSamples = 18;
 const float kDepthBias = 0.6;
 const float kSteepest = 12.0;  // slope of a surface's plane in the map; beyond, hardly any light arrives
 

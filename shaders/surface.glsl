@@ -18,6 +18,7 @@ flat in vec2 nearBalls;
 
 const float kDielectric = 0.04;   // reflected straight on by plastic, wood, stone
 const float kLightWidth = 0.035;  // the lights are no points: the narrowest highlight
+const float kFromNeighbours = 0.2;  // what hides the surroundings sends out light too: of theirs
 const float kTexelsAside = 1.5;   // so far a surface stands off from its own depths, which are those of flat triangles
 
 // Microfacets of Walter, Marschner, Li, Torrance 2007 (GGX); visibility term of Heitz 2014 in Hammon's approximation,
@@ -56,12 +57,12 @@ vec3 shade(vec3 position, vec3 n) {
   vec3 matt = surfaceColor.rgb * (1.0 - metallic);
   vec3 straightOn = mix(vec3(kDielectric), surfaceColor.rgb, metallic);
   float turn = length(fwidth(n));  // thin things turn within a pixel
-  float alpha = min(roughness * roughness + kLightWidth + 0.5 * turn, 1.0 + kLightWidth);
+  float alpha = min(roughness * roughness + kLightWidth + 0.3 * turn, 1.0 + kLightWidth);
   int first = int(nearBalls.x), count = int(nearBalls.y);
 
   float spread = roughness * roughness + 2.0 * turn;
   Mirrored ray = Mirrored(position, reflect(-v, n), vec3(0.0), vec4(1.0), 0.0);
-  float open = lookAtNeighbours(first, count, position, n, spread, ray);
+  float open = mix(kFromNeighbours, 1.0, lookAtNeighbours(first, count, position, n, spread, ray));
 
   vec3 key = lightRadiance * keyShadow(position, n);
   vec3 light = key * (matt * max(dot(n, lightDirection), 0.0) + highlight(n, v, lightDirection, straightOn, alpha));
