@@ -25,6 +25,8 @@ vec3 turnedBy(vec4 q, vec3 v) {
   return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v);
 }
 
+const float kTouching = 0.03;  // half widths of a box: nearer, all of it counts as a wall, whatever rounding says of its side
+
 // Share of the hemisphere around `normal` that a ball leaves open (exact while it is wholly above the surface).
 float openBesideBall(vec3 to, float radius, vec3 normal) {
   float squared = max(dot(to, to), radius * radius);
@@ -35,7 +37,7 @@ float openBesideBall(vec3 to, float radius, vec3 normal) {
 // (1 - d / sqrt(d^2 + h^2)) / 2 as far as it is wide, and a ceiling of half-width w, which hides w^2 / (w^2 + d^2).
 float openBesideBox(vec3 to, float height, float width, vec3 normal) {
   float d = length(to);
-  float above = d > 1e-6 * width ? dot(to, normal) / d : 1.0;
+  float above = dot(to, normal) / (d + kTouching * width);
   float wall = 0.5 * (1.0 - d * inversesqrt(d * d + height * height + 1e-20)) * width / (width + 0.5 * d);
   float ceiling = width * width / (width * width + d * d);
   float rising = smoothstep(0.0, 0.1 * width, height);

@@ -15,7 +15,7 @@ const float kBlock = 8.0;          // as in stage.h
 const float kLightRadius = 0.03;   // tangent of half the angle in which the light is seen; as in changed_area.cpp
 const float kWidestRadius = 16.0;  // of the disc
 const float kNarrowestRadius = 1.3;
-const int kSamples = 18;
+const int kSamples = 24;
 const float kDepthBias = 0.6;
 const float kSteepest = 12.0;  // slope of a surface's plane in the map; beyond, hardly any light arrives
 
@@ -34,7 +34,7 @@ vec2 blockersAround(vec2 corner, vec3 place, vec2 slope) {
   vec4 depth = shadowDeep * textureGather(shadowBlocks, corner * kBlock / shadowSize);
   // Nowhere in the block is the surface's plane nearer to the light than this.
   float lowest = place.z - 0.5 * kBlock * (abs(slope.x) + abs(slope.y)) - kDepthBias;
-  vec4 away = lowest + slope.x * x + slope.y * y - depth;
+  vec4 away = min(lowest + slope.x * x + slope.y * y, place.z) - depth;
   vec4 besideX = max(abs(x) - 0.5 * kBlock, 0.0), besideY = max(abs(y) - 0.5 * kBlock, 0.0);
   vec4 cone = min(kLightRadius * max(away, 0.0), kWidestRadius) + 0.5 * kBlock;
   vec4 weight = step(1e-3, away) * (1.0 - step(shadowDeep, depth)) * max(1.0 - sqrt(besideX * besideX + besideY * besideY) / cone, 0.0);
@@ -47,6 +47,7 @@ float litDisc(vec3 place, vec2 slope, float radius) {
   const mat2 kTurning = mat2(cos(kTurn), sin(kTurn), -sin(kTurn), cos(kTurn));
   vec4 ownPlane = slope.x * kGatherX + slope.y * kGatherY;
   vec2 direction = vec2(1.0, 0.0);
+  float farthest = min(place.z - kDepthBias, shadowDeep);  // what is behind the surface hides nothing, in a corner either
   float lit = 0.0;
   for (int i = 0; i < kSamples; ++i) {
     vec2 texel = place.xy + radius * sqrt((float(i) + 0.5) / float(kSamples)) * direction;
@@ -54,7 +55,7 @@ float litDisc(vec3 place, vec2 slope, float radius) {
     vec2 corner = floor(texel + 0.5);
     vec4 depth = shadowDeep * textureGather(shadowMap, corner / shadowSize);
     float plane = place.z + dot(slope, corner - place.xy) - kDepthBias;
-    lit += weigh(step(min(plane + ownPlane, shadowDeep), depth), texel + 0.5 - corner);
+    lit += weigh(step(min(plane + ownPlane, farthest), depth), texel + 0.5 - corner);
   }
   return lit / float(kSamples);
 }
