@@ -15,7 +15,7 @@ const float kBlock = 8.0;          // as in stage.h
 const float kLightRadius = 0.03;   // tangent of half the angle in which the light is seen; as in changed_area.cpp
 const float kWidestRadius = 16.0;  // of the disc
 const float kNarrowestRadius = 1.3;
-const int kSamples = 24;
+const int kSamplePairs = 12;
 const float kDepthBias = 0.6;
 const float kSteepest = 12.0;  // slope of a surface's plane in the map; beyond, hardly any light arrives
 
@@ -41,23 +41,29 @@ vec2 blockersAround(vec2 corner, vec3 place, vec2 slope) {
   return vec2(dot(weight, vec4(1.0)), dot(weight, max(away, 0.0)));
 }
 
-// Share of a disc of the map that is not nearer to the light than the surface's plane.
+// Share of the four texels around `texel`, by distance, that is not nearer to the light than the surface's plane.
+float litAround(vec2 texel, vec3 place, vec2 slope, vec4 ownPlane) {
+  vec2 corner = floor(texel + 0.5);
+  vec4 depth = shadowDeep * textureGather(shadowMap, corner / shadowSize);
+  // What is behind the surface hides nothing, in a corner either; nor does what is beyond the map.
+  float farthest = min(place.z, shadowDeep + kDepthBias);
+  vec4 plane = min(place.z + dot(slope, corner - place.xy) + ownPlane, farthest) - kDepthBias;
+  return weigh(step(plane, depth), texel + 0.5 - corner);
+}
+
+// The same of a disc: pairs of samples, so that no shadow is moved to a side.
 float litDisc(vec3 place, vec2 slope, float radius) {
   const float kTurn = 2.39996323;  // the golden angle: samples spread evenly over the disc (H. Vogel, 1979)
   const mat2 kTurning = mat2(cos(kTurn), sin(kTurn), -sin(kTurn), cos(kTurn));
   vec4 ownPlane = slope.x * kGatherX + slope.y * kGatherY;
   vec2 direction = vec2(1.0, 0.0);
-  float farthest = min(place.z - kDepthBias, shadowDeep);  // what is behind the surface hides nothing, in a corner either
   float lit = 0.0;
-  for (int i = 0; i < kSamples; ++i) {
-    vec2 texel = place.xy + radius * sqrt((float(i) + 0.5) / float(kSamples)) * direction;
+  for (int i = 0; i < kSamplePairs; ++i) {
+    vec2 aside = radius * sqrt((float(i) + 0.5) / float(kSamplePairs)) * direction;
+    lit += litAround(place.xy + aside, place, slope, ownPlane) + litAround(place.xy - aside, place, slope, ownPlane);
     direction = kTurning * direction;
-    vec2 corner = floor(texel + 0.5);
-    vec4 depth = shadowDeep * textureGather(shadowMap, corner / shadowSize);
-    float plane = place.z + dot(slope, corner - place.xy) - kDepthBias;
-    lit += weigh(step(min(plane + ownPlane, farthest), depth), texel + 0.5 - corner);
   }
-  return lit / float(kSamples);
+  return lit / float(2 * kSamplePairs);
 }
 
 float softShadow(vec3 position, vec3 normal) {

@@ -17,6 +17,7 @@ flat in float roughness;
 flat in vec2 nearBalls;
 
 const float kDielectric = 0.04;   // reflected straight on by plastic, wood, stone
+const float kSheen = 0.08;         // the same of what is seen in a mirror, at the usual slant
 const float kLightWidth = 0.035;  // the lights are no points: the narrowest highlight
 const float kFromNeighbours = 0.2;  // what hides the surroundings sends out light too: of theirs
 const float kTexelsAside = 1.5;   // so far a surface stands off from its own depths, which are those of flat triangles
@@ -74,6 +75,7 @@ vec3 shade(vec3 position, vec3 n) {
 
   vec3 mirrored = environment(ray.from, ray.direction, spread, ray.coverage) * mix(vec3(1.0), ray.look.rgb, ray.coverage);
   vec3 mattBall = ray.look.rgb * (ambientLight(ray.normal) + lightRadiance * max(dot(ray.normal, lightDirection), 0.0));
+  mattBall += kSheen * skyLight(ray.direction);
   mirrored = mix(mirrored, mattBall, ray.coverage * (1.0 - ray.look.w));
   light += open * matt * ambientLight(n) + mirroredShare(straightOn, roughness, abs(dot(n, v))) * mirrored *
            mix(1.0, open, roughness);

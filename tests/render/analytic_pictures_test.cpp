@@ -156,6 +156,26 @@ TEST(AnalyticPicture, MattWallSendsOutAlbedoTimesCosine) {
   EXPECT_NEAR(lightFromByte(lit) - lightFromByte(dark), expected, rounding);
 }
 
+// A rod of half a pixel's width is drawn 1.1 pixels wide, in half of the samples: no row goes without, and all together
+// are as dark as the rod is wide.
+TEST(AnalyticPicture, RodThinnerThanAPixelIsNotBroken) {
+  const Camera camera = cameraAt({0, 0, 4}, {0, 0, 0}, 60 * M_PI / 180);
+  const double pixel = 2 * 4 * std::tan(30 * M_PI / 180) / kHeight;
+  Scene scene = blackBallScene({0, 0, 9}, 0.1);
+  const Image background = drawWith(scene, camera);
+  scene.bodies[0].shape = Cylinder{0.275 * pixel, 10};
+  scene.bodies[0].worldFromBody = {rotationAbout(Vec3::UnitZ(), 0.13), Vec3::Zero()};
+  const Image image = drawWith(scene, camera);
+  double sum = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    double row = 0;
+    for (int x = 0; x < kWidth; ++x) row += 1 - byteAt(image, x, y) / byteAt(background, x, y);
+    EXPECT_GE(row, 0.24) << y;  // one sample of four
+    sum += row;
+  }
+  EXPECT_NEAR(sum / kHeight, 0.55 / std::cos(0.13), 0.06);
+}
+
 /// A ball over a ground, seen from straight above; the lamp shines aside.
 Scene shadowScene(const Vec3& center, double radius, const Vec3& light) {
   Scene scene = emptyScene();
@@ -231,7 +251,7 @@ TEST(AnalyticPicture, ShadowsEdgeIsAsSoftAsItIsFarFromWhatThrowsIt) {
     return placeOf(0.9) - placeOf(0.1);
   };
   for (const double height : {0.4, 0.8, 1.2}) {
-    // 18 samples tell the tenth to half of one; rows of pixels are 3 mm apart, and rounding of bytes adds as much.
+    // 24 samples tell the tenth to half of one; rows of pixels are 3 mm apart, and rounding of bytes adds as much.
     const double expected = 2 * 0.687 * 0.03 * height;
     EXPECT_NEAR(widthUnder(height), expected, 0.1 * expected + 0.004) << height;
   }
