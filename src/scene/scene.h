@@ -134,7 +134,12 @@ struct Camera {
   Vec3 position = Vec3(0, 1, 5), target = Vec3::UnitY();  // m, world
   double verticalFieldOfView = 0.69813170;                // rad (40 degrees), 0..pi
   Vec3 up = Vec3::UnitY();                                // unit, world; not along the view
-  bool operator==(const Camera&) const = default;
+
+  /// Sees the same, wherever it is from.
+  bool operator==(const Camera& other) const {
+    return position == other.position && target == other.target && verticalFieldOfView == other.verticalFieldOfView &&
+           up == other.up;
+  }
 };
 
 /// How the camera of a film moves from where it starts, in this order: from key to key, with a body, around its target.
