@@ -28,5 +28,5 @@ void main() {
     n = axis.w * axis.xyz;
     t = (halfLength - dot(from, n)) / min(dot(ray, n), -1e-6);
   }
-  color = vec4(encode(shade(eye + t * ray, n)), coverage);
+  color = vec4(encode(shade(eye + t * ray, n)), sampleShare(coverage));
 }

@@ -4,7 +4,7 @@
 
 uniform mat4 clipFromWorld;
 uniform vec4 viewer;  // m; w = 0: infinitely far in that direction
-uniform float pixelSize;  // m, of a pixel at a distance of 1 m; 0 for the shadow map
+uniform float pixelSize;  // m, of a pixel at a depth of 1 m; 0 for the shadow map
 
 layout(location = 0) in vec3 place;  // side: -1 or 1 for the ends, share of the visible angle -1..1, 0; end: cos, sin, 1
 layout(location = 2) in vec4 centerAndRadius;    // m
@@ -39,7 +39,7 @@ void main() {
 
   bool isEnd = place.z > 0.5;
   float end = isEnd ? sign(height) : place.x;
-  drawnRadius = max(centerAndRadius.w, kThinnest * pixelSize * length(viewer.xyz - center - end * halfLength * along));
+  drawnRadius = max(centerAndRadius.w, kThinnest * pixelSize * (clipFromWorld * vec4(center + end * halfLength * along, 1.0)).w);
   coverage = centerAndRadius.w / drawnRadius;
   float radius = drawnRadius;
   float outline = viewer.w > 0.0 ? acos(min(radius / max(distance, 1e-20), 1.0)) : kRightAngle;

@@ -11,5 +11,5 @@ out vec4 color;
 
 void main() {
   vec3 n = normalize(gl_FrontFacing ? normal : -normal);
-  color = vec4(encode(shade(position, n)), coverage);
+  color = vec4(encode(shade(position, n)), sampleShare(coverage));
 }

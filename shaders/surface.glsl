@@ -51,6 +51,11 @@ float keyShadow(vec3 position, vec3 n) {
   return lit;
 }
 
+// What alpha tells of a line thinner than a pixel: the number of its samples is rounded up from there, four to a pixel.
+float sampleShare(float coverage) {
+  return coverage < 1.0 ? max(coverage - 0.125, 0.01) : 1.0;
+}
+
 // Light from `position` on a surface with unit normal `n` towards the eye.
 vec3 shade(vec3 position, vec3 n) {
   vec3 v = normalize(eye - position);

@@ -12,8 +12,7 @@ layout(location = 5) in vec4 sagAndRoughness;
 layout(location = 6) in vec4 instanceColor;
 layout(location = 7) in vec4 instanceBalls;  // z: share of a coil that is straight at each end, or a rope's slack; w: its lean
 
-uniform float pixelSize;  // m, of a pixel at a distance of 1 m; 0 for the shadow map
-uniform vec4 viewer;      // m
+uniform float pixelSize;  // m, of a pixel at a depth of 1 m; 0 for the shadow map
 
 out vec3 position;
 out vec3 normal;
@@ -77,7 +76,7 @@ void main() {
   vec3 u = normalize(radial - dot(radial, tangent) * tangent);
   vec3 v = cross(tangent, u);
   normal = place.y * u + place.z * v;
-  float thinnest = kThinnest * pixelSize * length(viewer.xyz - centre);
+  float thinnest = kThinnest * pixelSize * (clipFromWorld * vec4(centre, 1.0)).w;
   float radius = max(startAndWire.w, thinnest);
   coverage = startAndWire.w / radius;
   position = centre + radius * normal;

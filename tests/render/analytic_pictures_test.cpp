@@ -170,7 +170,7 @@ TEST(AnalyticPicture, RodThinnerThanAPixelIsNotBroken) {
   for (int y = 0; y < kHeight; ++y) {
     double row = 0;
     for (int x = 0; x < kWidth; ++x) row += 1 - byteAt(image, x, y) / byteAt(background, x, y);
-    EXPECT_GE(row, 0.24) << y;  // one sample of four
+    EXPECT_GE(row, 0.2) << y;  // one sample of four, and rounding
     sum += row;
   }
   EXPECT_NEAR(sum / kHeight, 0.55 / std::cos(0.13), 0.06);
