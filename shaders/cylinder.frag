@@ -8,6 +8,8 @@
 flat in vec4 base;  // centre, radius
 flat in vec4 axis;  // unit; 0 on the side, +-1 on an end
 flat in float halfLength;
+in float drawnRadius;
+in float coverage;
 
 out vec4 color;
 
@@ -18,7 +20,7 @@ void main() {
   vec3 fromAcross = from - dot(from, axis.xyz) * axis.xyz;
   float a = max(dot(rayAcross, rayAcross), 1e-12);
   float b = dot(rayAcross, fromAcross);
-  float c = dot(fromAcross, fromAcross) - base.w * base.w;
+  float c = dot(fromAcross, fromAcross) - drawnRadius * drawnRadius;
   // At the edge, the pixel's centre may miss the cylinder: the ray then grazes it.
   float t = (-b - sqrt(max(b * b - a * c, 0.0))) / a;
   vec3 n = normalize(fromAcross + t * rayAcross);
@@ -26,5 +28,5 @@ void main() {
     n = axis.w * axis.xyz;
     t = (halfLength - dot(from, n)) / min(dot(ray, n), -1e-6);
   }
-  color = vec4(encode(shade(eye + t * ray, n)), 1.0);
+  color = vec4(encode(shade(eye + t * ray, n)), sampleShare(coverage));
 }

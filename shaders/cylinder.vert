@@ -4,6 +4,7 @@
 
 uniform mat4 clipFromWorld;
 uniform vec4 viewer;  // m; w = 0: infinitely far in that direction
+uniform float pixelSize;  // m, of a pixel at a depth of 1 m; 0 for the shadow map
 
 layout(location = 0) in vec3 place;  // side: -1 or 1 for the ends, share of the visible angle -1..1, 0; end: cos, sin, 1
 layout(location = 2) in vec4 centerAndRadius;    // m
@@ -15,15 +16,17 @@ layout(location = 7) in vec4 instanceBalls;      // first and number of the ball
 flat out vec4 base;  // centre, radius
 flat out vec4 axis;  // unit; 0 on the side, +-1 on an end
 flat out float halfLength;
+out float drawnRadius;
+out float coverage;
 flat out vec4 surfaceColor;
 flat out float roughness;
 flat out vec2 nearBalls;
 
 const float kRightAngle = 1.57079633;
+const float kThinnest = 0.55;  // pixels: radius of the thinnest line that is drawn; thinner ones fade
 
 void main() {
   vec3 center = centerAndRadius.xyz, along = axisAndLength.xyz;
-  float radius = centerAndRadius.w;
   halfLength = 0.5 * axisAndLength.w;
   vec3 towards = viewer.xyz - viewer.w * center;
   float height = dot(towards, along);
@@ -36,6 +39,9 @@ void main() {
 
   bool isEnd = place.z > 0.5;
   float end = isEnd ? sign(height) : place.x;
+  drawnRadius = max(centerAndRadius.w, kThinnest * pixelSize * (clipFromWorld * vec4(center + end * halfLength * along, 1.0)).w);
+  coverage = centerAndRadius.w / drawnRadius;
+  float radius = drawnRadius;
   float outline = viewer.w > 0.0 ? acos(min(radius / max(distance, 1e-20), 1.0)) : kRightAngle;
   float angle = place.y * outline;
   vec3 outwards = isEnd ? place.x * front + end * place.y * right : cos(angle) * front + sin(angle) * right;

@@ -1,10 +1,9 @@
 // From scene light to the bytes of the picture.
 
-const float kShoulder = 0.5;  // below, light is shown as it is; above, it bends towards white and never clips
-
+// The fit of K. Narkowicz, "ACES filmic tone mapping curve", 2016: a toe that keeps shadows dark, a shoulder that bends
+// lights towards white and never clips them.
 vec3 toneCurve(vec3 light) {
-  vec3 above = max(light - kShoulder, 0.0);
-  return min(light, kShoulder) + (1.0 - kShoulder) * (1.0 - exp(-above / (1.0 - kShoulder)));
+  return min(light * (2.51 * light + 0.03) / (light * (2.43 * light + 0.59) + 0.14), 1.0);
 }
 
 // IEC 61966-2-1.
@@ -20,4 +19,9 @@ vec3 encode(vec3 light) {
 // (J. Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", 2014).
 float ditherPattern(vec2 pixel) {
   return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))) - 0.5;
+}
+
+// For what fills large parts of the picture and changes slowly over it.
+vec3 encodeSmoothly(vec3 light, vec2 pixel) {
+  return encode(light) + ditherPattern(pixel) / 255.0;
 }

@@ -11,5 +11,5 @@ out vec4 color;
 void main() {
   GroundPoint point = meetGround();
   vec3 position = groundPosition(point);
-  color = groundColor(point, softShadow(position), contactShade(position));
+  color = groundColor(point, softShadow(position, groundPlane.xyz), contactShade(position));
 }

@@ -3,7 +3,7 @@
 #include "encode.glsl"
 #include "ray.glsl"
 #include "sky.glsl"
-#include "checker.glsl"
+#include "grid.glsl"
 
 uniform vec3 skyIrradiance;  // of the open sky, as a radiance from white
 #include "irradiance.glsl"
@@ -30,13 +30,13 @@ vec3 groundPosition(GroundPoint point) {
 // How the position changes to a neighbouring pixel, whose ray differs by `step`; in squares.
 vec2 footprintAlong(GroundPoint point, vec3 step) {
   vec3 change = point.reach * (step - point.ray * (dot(groundPlane.xyz, step) / point.approach));
-  return checksPerMetre * abs(vec2(dot(change, groundAxisU), dot(change, groundAxisV)));
+  return squaresPerMetre * abs(vec2(dot(change, groundAxisU), dot(change, groundAxisV)));
 }
 
 vec4 groundColor(GroundPoint point, float lit, float open) {
   vec2 footprint = footprintAlong(point, columnRay) + footprintAlong(point, rowRay);
-  vec3 light = checkColor(checkPlace(groundPosition(point)), footprint) * groundIrradiance(lit, open);
+  vec3 light = gridColor(gridPlace(groundPosition(point)), footprint) * groundIrradiance(lit, open);
   float distance = point.reach * length(point.ray);
   vec3 horizon = skyLight(vec3(point.ray.x, max(point.ray.y, 0.0), point.ray.z) / length(point.ray));
-  return vec4(encode(mix(light, horizon, groundFade(distance))), 1.0);
+  return vec4(encodeSmoothly(mix(light, horizon, groundFade(distance)), gl_FragCoord.xy), 1.0);
 }

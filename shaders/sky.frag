@@ -7,5 +7,5 @@ out vec4 color;
 
 void main() {
   vec3 light = skyLight(normalize(pixelRay(gl_FragCoord.xy)));
-  color = vec4(encode(light) + ditherPattern(gl_FragCoord.xy) / 255.0, 1.0);
+  color = vec4(encodeSmoothly(light, gl_FragCoord.xy), 1.0);
 }

@@ -6,7 +6,7 @@ uniform vec3 zenithColor;
 uniform vec3 horizonColor;
 uniform vec3 nadirColor;      // seen only where there is no ground
 
-const float kHorizonSharpness = 4.0;  // half of the haze is gone 14 degrees above the horizon
+const float kHorizonSharpness = 5.0;  // half of the haze is gone 11 degrees above the horizon
 
 vec3 skyLight(vec3 direction) {
   float x = kHorizonSharpness * direction.y;

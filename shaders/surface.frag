@@ -5,10 +5,11 @@
 
 in vec3 position;
 in vec3 normal;
+in float coverage;
 
 out vec4 color;
 
 void main() {
   vec3 n = normalize(gl_FrontFacing ? normal : -normal);
-  color = vec4(encode(shade(position, n)), 1.0);
+  color = vec4(encode(shade(position, n)), sampleShare(coverage));
 }

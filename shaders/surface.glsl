@@ -4,7 +4,7 @@
 #include "sky.glsl"
 #include "shadow.glsl"
 #include "environment.glsl"
-#include "balls.glsl"
+#include "neighbours.glsl"
 
 uniform vec3 eye;
 #if FILL_LIGHTS > 0  // lights after the first throw no shadow
@@ -17,8 +17,10 @@ flat in float roughness;
 flat in vec2 nearBalls;
 
 const float kDielectric = 0.04;   // reflected straight on by plastic, wood, stone
+const float kSheen = 0.08;         // the same of what is seen in a mirror, at the usual slant
 const float kLightWidth = 0.035;  // the lights are no points: the narrowest highlight
-const float kTexelsAside = 3.5;   // reach of the shadow's tent: so far a surface must stand off from its own depths
+const float kFromNeighbours = 0.2;  // what hides the surroundings sends out light too: of theirs
+const float kTexelsAside = 1.5;   // so far a surface stands off from its own depths, which are those of flat triangles
 
 // Microfacets of Walter, Marschner, Li, Torrance 2007 (GGX); visibility term of Heitz 2014 in Hammon's approximation,
 // both without the factor pi that the radiance of the light has been given.
@@ -41,8 +43,17 @@ vec3 mirroredShare(vec3 straightOn, float roughness, float nv) {
 
 float keyShadow(vec3 position, vec3 n) {
   float facing = dot(n, lightDirection);
-  float aside = kTexelsAside * shadowTexel * sqrt(max(1.0 - facing * facing, 0.0));
-  return softShadow(position + n * (aside + shadowTexel));
+  float lit = 0.0;
+  if (facing > 0.0) {
+    float aside = kTexelsAside * shadowTexel * sqrt(max(1.0 - facing * facing, 0.0));
+    lit = softShadow(position + n * aside, n);
+  }
+  return lit;
+}
+
+// What alpha tells of a line thinner than a pixel: the number of its samples is rounded up from there, four to a pixel.
+float sampleShare(float coverage) {
+  return coverage < 1.0 ? max(coverage - 0.125, 0.01) : 1.0;
 }
 
 // Light from `position` on a surface with unit normal `n` towards the eye.
@@ -51,12 +62,13 @@ vec3 shade(vec3 position, vec3 n) {
   float metallic = surfaceColor.w;
   vec3 matt = surfaceColor.rgb * (1.0 - metallic);
   vec3 straightOn = mix(vec3(kDielectric), surfaceColor.rgb, metallic);
-  float alpha = roughness * roughness + kLightWidth;
+  float turn = length(fwidth(n));  // thin things turn within a pixel
+  float alpha = min(roughness * roughness + kLightWidth + 0.3 * turn, 1.0 + kLightWidth);
   int first = int(nearBalls.x), count = int(nearBalls.y);
 
-  float spread = roughness * roughness + 2.0 * length(fwidth(n));  // thin things turn within a pixel
+  float spread = roughness * roughness + 2.0 * turn;
   Mirrored ray = Mirrored(position, reflect(-v, n), vec3(0.0), vec4(1.0), 0.0);
-  float open = lookAtBalls(first, count, position, n, spread, ray);
+  float open = mix(kFromNeighbours, 1.0, lookAtNeighbours(first, count, position, n, spread, ray));
 
   vec3 key = lightRadiance * keyShadow(position, n);
   vec3 light = key * (matt * max(dot(n, lightDirection), 0.0) + highlight(n, v, lightDirection, straightOn, alpha));
@@ -68,7 +80,9 @@ vec3 shade(vec3 position, vec3 n) {
 
   vec3 mirrored = environment(ray.from, ray.direction, spread, ray.coverage) * mix(vec3(1.0), ray.look.rgb, ray.coverage);
   vec3 mattBall = ray.look.rgb * (ambientLight(ray.normal) + lightRadiance * max(dot(ray.normal, lightDirection), 0.0));
+  mattBall += kSheen * skyLight(ray.direction);
   mirrored = mix(mirrored, mattBall, ray.coverage * (1.0 - ray.look.w));
-  light += open * matt * ambientLight(n) + mirroredShare(straightOn, roughness, abs(dot(n, v))) * mirrored;
+  light += open * matt * ambientLight(n) + mirroredShare(straightOn, roughness, abs(dot(n, v))) * mirrored *
+           mix(1.0, open, roughness);
   return light;
 }

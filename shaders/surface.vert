@@ -19,6 +19,7 @@ flat out vec4 surfaceColor;
 flat out float roughness;
 flat out vec2 nearBalls;
 flat out float mirrorsShadows;
+out float coverage;
 
 void main() {
   vec4 place = vec4(meshPosition, 1.0);
@@ -29,5 +30,6 @@ void main() {
   roughness = instanceRoughness.w;
   nearBalls = instanceBalls.xy;
   mirrorsShadows = instanceBalls.z;
+  coverage = 1.0;
   gl_Position = clipFromWorld * vec4(position, 1.0);
 }

@@ -15,10 +15,14 @@ namespace {
 constexpr double kVisibleFacet = 0.25;  // pixels by which a chord may miss the circle before its corner shows
 constexpr double kNearer = 1.2;         // things come so much nearer than the middle of the scene
 
-// The ground when its material names no colour: light stone, and squares of a darker one.
-constexpr float kStone = 0.64f;
-const Vec3f kStoneTint(1.0f, 0.972f, 0.925f);
-constexpr float kDarkSquare = 0.42f;     // of the light one
+// The ground when its material names no colour: light stone, or slate; squares that differ just so that a mirror shows
+// them; lines that are darker than stone and lighter than slate.
+const Vec3f kStone(0.350f, 0.343f, 0.329f), kSlate(0.042f, 0.046f, 0.054f);
+constexpr float kLightSquare = 0.76f;  // of the colour that the scene names: a stage for what stands on it
+constexpr float kDarkSquare = 0.92f;   // of the light one
+const Vec3f kLinesOnStone(0.80f, 0.64f, 0.42f), kLinesOnSlate(1.25f, 1.75f, 3.0f);
+constexpr double kFullBox = 0.8;         // of a bounding box: from there on, it is darkened by as a box
+constexpr double kLeastFull = 0.05;      // below, what is in it darkens nothing
 constexpr double kWallThickness = 0.01;  // of its width
 constexpr double kFewestSquares = 2.5;   // across the scene
 
@@ -39,6 +43,26 @@ bool isDrawnAsMesh(const Shape& shape) {
          std::holds_alternative<ModelShape>(shape);
 }
 
+/// Share of its bounding box that a closed part of a mesh fills.
+double fullness(const DrawnMesh& mesh, const BodyPart& part, const Bounds& box) {
+  double volume = 0;  // signed tetrahedra from the box's centre
+  const Vec3 center = box.center();
+  for (std::uint32_t i = part.firstTriangle; i < part.firstTriangle + part.triangleCount; ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    volume += (mesh.vertices[a] - center).dot((mesh.vertices[b] - center).cross(mesh.vertices[c] - center)) / 6;
+  }
+  return std::abs(volume) / std::max(box.volume(), 1e-300);
+}
+
+BodySolid solidOf(const DrawnMesh& mesh, const BodyPart& part) {
+  BodySolid solid;
+  solid.surface = part.surface;
+  for (std::uint32_t i = part.firstTriangle; i < part.firstTriangle + part.triangleCount; ++i)
+    for (const std::uint32_t vertex : mesh.triangles[i]) solid.box.extend(mesh.vertices[vertex]);
+  if (fullness(mesh, part, solid.box) > kFullBox) solid.kind = ContactKind::box;
+  return solid;
+}
+
 /// Fills the catalogue of meshes, one entry for all bodies that share a shape.
 class Catalogue {
  public:
@@ -53,6 +77,7 @@ class Catalogue {
   }
 
   int meshOf(const Shape& shape);
+  std::vector<BodySolid> solidsOf(const Body& body, const BodySolid& whole, const std::vector<BodyPart>& parts) const;
   void moveTo(Appearance& appearance);
 
  private:
@@ -99,6 +124,19 @@ int Catalogue::meshOf(const Shape& shape) {
   return static_cast<int>(keys_.size()) - 1;
 }
 
+/// Of a model, its parts but those that are mostly air, like rails around a room; else the whole.
+std::vector<BodySolid> Catalogue::solidsOf(const Body& body, const BodySolid& whole,
+                                           const std::vector<BodyPart>& parts) const {
+  if (!std::holds_alternative<ModelShape>(body.shape)) return {whole};
+  std::vector<BodySolid> solids;
+  for (const BodyPart& part : parts) {
+    const DrawnMesh& mesh = meshes_[static_cast<std::size_t>(part.mesh)];
+    const BodySolid solid = solidOf(mesh, part);
+    if (fullness(mesh, part, solid.box) > kLeastFull) solids.push_back(solid);
+  }
+  return solids;
+}
+
 void Catalogue::moveTo(Appearance& appearance) {
   for (const Key& key : keys_) {
     const bool isModel = key.kind == Shape(ModelShape{}).index();
@@ -142,12 +180,14 @@ BodyAppearance lookOf(const Scene& scene, const Body& body, const std::vector<st
     look.isDrawnAsBall = true;
   }
   if (const auto* cylinder = std::get_if<Cylinder>(&body.shape)) look.cylinder = *cylinder;
-  if (look.cylinder) look.contact = ContactKind::cylinder;
-  if (std::holds_alternative<Box>(body.shape)) look.contact = ContactKind::box;
   if (const auto* model = std::get_if<ModelShape>(&body.shape)) {
     look.ball = ballOfModel.at(static_cast<std::size_t>(model->model));
     look.surface = look.parts.at(0).surface;
   }
+  const ContactKind kind = look.cylinder                             ? ContactKind::cylinder
+                           : std::holds_alternative<Box>(body.shape) ? ContactKind::box
+                                                                     : ContactKind::ellipsoid;
+  if (!look.local.isEmpty()) look.solids = catalogue.solidsOf(body, {look.local, kind, look.surface}, look.parts);
   return look;
 }
 
@@ -158,7 +198,9 @@ Ground makeGround(const Scene& scene, int body, double size) {
   ground.body = body;
   ground.normal = plane.worldFromBody.rotation * std::get<Plane>(plane.shape).normal;
   ground.point = plane.worldFromBody.translation;
-  ground.lightColor = color ? linearFromSrgb(*color) : Vec3f(kStone * kStoneTint);
+  const bool isDark = scene.look == Look::dark;
+  ground.lightColor = color ? Vec3f(kLightSquare * linearFromSrgb(*color)) : isDark ? kSlate : kStone;
+  ground.lineShade = isDark ? kLinesOnSlate : kLinesOnStone;
   ground.darkColor = kDarkSquare * ground.lightColor;
   ground.squareSize = std::pow(10.0, std::floor(std::log10(size / kFewestSquares)));
   return ground;

@@ -32,13 +32,20 @@ struct BodyBall {
 /// What a body is like for the ground that it darkens (as contact.frag counts).
 enum class ContactKind { box = 0, ellipsoid = 1, cylinder = 2 };
 
+/// What stands for a body, or a part of it, where it darkens what is near it.
+struct BodySolid {
+  Bounds box;  // body's frame
+  ContactKind kind = ContactKind::ellipsoid;
+  Surface surface = {};
+};
+
 struct BodyAppearance {
   std::vector<BodyPart> parts;  // none for planes, balls and cylinders
   Bounds local;                 // body's frame; empty for planes
   std::optional<BodyBall> ball;
   std::optional<Cylinder> cylinder;
   Surface surface = {};  // of ball or cylinder
-  ContactKind contact = ContactKind::ellipsoid;
+  std::vector<BodySolid> solids;
   bool isDrawnAsBall = false;  // exactly round; else the ball only stands for a mesh in mirrors and contacts
 };
 
@@ -48,6 +55,7 @@ struct Ground {
   Vec3 normal = Vec3::UnitY();  // unit, world, upwards
   Vec3 point = Vec3::Zero();    // m, world
   Vec3f lightColor, darkColor;  // of the squares; linear
+  Vec3f lineShade;              // share of its colour in lines each tenth of a square, each, each ten squares
   double squareSize = 1;        // m, a power of ten
 };
 

@@ -13,9 +13,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kWholeFrom = 0.6;     // of the picture: from there on, drawing all of it costs less than finding out
-constexpr double kShadowTexels = 10;   // reach of a shadow's soft edge (3.5 sqrt 2) and of the look-up beside it (4.5)
-constexpr double kBlurredTexels = 24;  // as in environment.glsl
+constexpr double kWholeFrom = 0.6;  // of the picture: from there on, drawing all of it costs less than finding out
+// As in shadow.glsl: the disc over which shadows are looked up, what it is widened by (look-ups between texels, and
+// beside the surface), and what whole blocks add where its size is found out; texels of the shadow map.
+constexpr double kLightRadius = 0.03, kWidestRadius = 16, kAroundDisc = 6, kAroundBlocks = 20;
+constexpr double kBlurredTexels = 12;  // as in environment.glsl
 constexpr double kLeastTurn = 0.5;     // of a ball's normal from pixel to pixel: a mesh turns by facets
 constexpr double kEdgePixels = 32;
 constexpr double kContactTexels = 2;  // of the contact map, which is interpolated
@@ -32,7 +34,7 @@ bool isSame(const Item& a, const Item& b, const Stage& stage) {
   return first == second;
 }
 
-bool isSame(const BallItem& a, const BallItem& b, const Stage& stage) {
+bool isSame(const NeighbourItem& a, const NeighbourItem& b, const Stage& stage) {
   return numbersOf(a, stage) == numbersOf(b, stage);
 }
 
@@ -83,13 +85,14 @@ class ChangeFinder {
   void addReceiver(const DrawnHull& hull);
   template <typename Item>
   void compareNearBalls(const Item& before, const Item& now, std::size_t first);
-  void addAround(const BallItem& ball, std::size_t first);
+  void addAround(const NeighbourItem& item, std::size_t first);
   void compareContacts();
   void addDarkened(const ContactItem& item);
   void addCommon(const TileSpans& item, const DrawnHull& hull);
   void addShadowOnGround(const DrawnHull& caster);
   void addShadowOnItems(const DrawnHull& caster);
   void addMirrors(const Surface& surface, const DrawnHull& ball);
+  double shadowMargin(double distance) const;
 
   const DrawList &before_, &now_;
   const Stage& stage_;
@@ -155,8 +158,8 @@ void ChangeFinder::addReceivers(const Item& item) {
 /// stand from `first` on.
 template <typename Item>
 void ChangeFinder::compareNearBalls(const Item& before, const Item& now, std::size_t first) {
-  const auto ballOf = [](const DrawList& list, const Item& item, int i) -> const BallItem& {
-    return list.balls[static_cast<std::size_t>(list.nearBalls[static_cast<std::size_t>(item.firstNearBall + i)])];
+  const auto ballOf = [](const DrawList& list, const Item& item, int i) -> const NeighbourItem& {
+    return list.neighbours[static_cast<std::size_t>(list.nearBalls[static_cast<std::size_t>(item.firstNearBall + i)])];
   };
   const bool sameNumber = before.nearBalls == now.nearBalls;
   for (int i = 0; i < std::max(before.nearBalls, now.nearBalls); ++i) {
@@ -166,13 +169,13 @@ void ChangeFinder::compareNearBalls(const Item& before, const Item& now, std::si
   }
 }
 
-/// What of the receivers from `first` on is near a ball.
-void ChangeFinder::addAround(const BallItem& ball, std::size_t first) {
-  DrawnHull around;
-  around.add(ball.center);
-  around.radius = kBallReach * ball.radius;
+/// What of the receivers from `first` on a neighbour reaches.
+void ChangeFinder::addAround(const NeighbourItem& item, std::size_t first) {
+  DrawnHull around = hullOf(Bounds(-item.half, item.half), {item.rotation, item.center});
+  around.radius = item.isBall() ? kBallReach * item.radius : item.radius;
+  const Bounds reach = item.reach();
   for (std::size_t i = first; i < receivers_.size(); ++i)
-    if (receivers_[i].bounds.exteriorDistance(ball.center) < around.radius) addCommon(receivers_[i].spans, around);
+    if (receivers_[i].bounds.intersects(reach)) addCommon(receivers_[i].spans, around);
 }
 
 void ChangeFinder::compareContacts() {
@@ -203,6 +206,12 @@ void ChangeFinder::addDarkened(const ContactItem& item) {
   groundPatches_.emplace_back(darkened.middle(), darkened.reach());
 }
 
+/// How far beside a caster's outline in the light its shadow may change, `distance` m behind it.
+double ChangeFinder::shadowMargin(double distance) const {
+  const double cone = std::min(kLightRadius * std::max(distance, 0.0) / stage_.shadow.texel, kWidestRadius);
+  return stage_.shadow.texel * std::max(kWidestRadius + kAroundDisc, cone + kAroundBlocks);
+}
+
 /// A ball's shadow on the ground is an ellipse, as long as the light is low.
 void ChangeFinder::addShadowOnGround(const DrawnHull& caster) {
   const Vec3 light = stage_.lighting.lamps[0].towards;
@@ -212,7 +221,10 @@ void ChangeFinder::addShadowOnGround(const DrawnHull& caster) {
   const Vec3 level = light - steepness * ground.normal;
   const Vec3 along = level.norm() > 0 ? Vec3(level.normalized()) : stage_.shaded.axisU;
   const Vec3 across = ground.normal.cross(along);
-  const double halfWidth = caster.radius + kShadowTexels * stage_.shadow.texel, halfLength = halfWidth / steepness;
+  double highest = 0;
+  for (std::size_t i = 0; i < caster.count; ++i)
+    highest = std::max(highest, ground.normal.dot(caster.centers[i] - ground.point) + caster.radius);
+  const double halfWidth = caster.radius + shadowMargin(highest / steepness), halfLength = halfWidth / steepness;
   std::vector<Eigen::Vector2d> outline;
   DrawnHull feet;
   for (std::size_t i = 0; i < caster.count; ++i) {
@@ -234,10 +246,12 @@ void ChangeFinder::addShadowOnGround(const DrawnHull& caster) {
 /// On all that stands behind it in the light.
 void ChangeFinder::addShadowOnItems(const DrawnHull& caster) {
   const Vec3 light = stage_.lighting.lamps[0].towards;
-  DrawnHull wide = caster;
-  wide.radius += kShadowTexels * stage_.shadow.texel;
-  const Bounds box = wide.bounds();
+  const double nearest = light.dot(caster.middle()) + caster.reach();
   for (const Receiver& receiver : receivers_) {
+    const Vec3 middle = receiver.bounds.center(), half = receiver.bounds.sizes() / 2;
+    DrawnHull wide = caster;
+    wide.radius += shadowMargin(nearest - light.dot(middle) + light.cwiseAbs().dot(half));
+    const Bounds box = wide.bounds();
     const auto [first, last] = distancesOfOverlap(box, -light, receiver.bounds);
     if (first <= last) addCommon(receiver.spans, swept(wide, -first * light, -last * light));
   }

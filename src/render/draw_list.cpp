@@ -10,6 +10,7 @@ namespace cradle {
 namespace {
 
 constexpr std::size_t kMostNearBalls = 6;  // of one item: as many as touch a ball in a dense layer
+constexpr double kLarge = 4;               // times the typical neighbour: compared with everything
 
 void appendBody(const BodyAppearance& look, const RigidTransform& worldFromBody, DrawList& list) {
   for (const BodyPart& part : look.parts) {
@@ -27,15 +28,19 @@ void appendRound(const BodyAppearance& look, const RigidTransform& worldFromBody
                               look.cylinder->length, look.surface});
   if (!look.ball) return;
   const Vec3 center = worldFromBody * look.ball->center;
-  list.balls.push_back({center, look.ball->radius, look.surface, body});
+  list.neighbours.push_back({center, look.ball->radius, look.surface, body});
   if (look.isDrawnAsBall) list.spheres.push_back({center, look.ball->radius, look.surface});
 }
 
-void appendContact(const BodyAppearance& look, const RigidTransform& worldFromBody, DrawList& list) {
-  if (look.local.isEmpty()) return;
-  RigidTransform place = worldFromBody;
-  place.translation = worldFromBody * Vec3(look.local.center());
-  list.contacts.push_back({place, look.local.sizes() / 2, look.contact});
+void appendSolids(const BodyAppearance& look, const RigidTransform& worldFromBody, int body, DrawList& list) {
+  for (const BodySolid& solid : look.solids) {
+    const RigidTransform place{worldFromBody.rotation, worldFromBody * Vec3(solid.box.center())};
+    const Vec3 half = solid.box.sizes() / 2;
+    list.contacts.push_back({place, half, solid.kind});
+    if (look.ball || solid.kind == ContactKind::ellipsoid) continue;
+    const double middle = std::max(std::min(half.x(), half.y()), std::min(std::max(half.x(), half.y()), half.z()));
+    list.neighbours.push_back({place.translation, kBoxReach * middle, solid.surface, body, half, place.rotation});
+  }
 }
 
 /// A plane other than the ground, as a square next to what is shown; from behind, it is not there.
@@ -65,17 +70,73 @@ Bounds boundsOf(const RoundItem& item) {
   return item.bounds();
 }
 
-/// The balls near each item's bounds, the closest (in radii) first; not its own.
+/// Finds the neighbours of a box in space: their reaches sorted along x, large ones apart.
+class NeighbourSearch {
+ public:
+  explicit NeighbourSearch(const std::vector<NeighbourItem>& neighbours);
+
+  /// Calls visit(index) for all whose reach meets `bounds`, and perhaps others. O(log n + those beside in x).
+  template <typename Visit>
+  void forNear(const Bounds& bounds, const Visit& visit) const;
+
+ private:
+  struct Entry {
+    double least;  // m, along x
+    int index;
+  };
+  std::vector<Entry> sorted_;
+  std::vector<int> large_;
+  double widest_ = 0;  // m, of those sorted
+};
+
+NeighbourSearch::NeighbourSearch(const std::vector<NeighbourItem>& neighbours) {
+  std::vector<double> widths;
+  for (const NeighbourItem& item : neighbours) widths.push_back(item.reach().sizes().x());
+  std::vector<double> ordered = widths;
+  if (ordered.empty()) return;
+  std::nth_element(ordered.begin(), ordered.begin() + std::ssize(ordered) / 2, ordered.end());
+  const double limit = kLarge * ordered[ordered.size() / 2];
+  for (std::size_t i = 0; i < widths.size(); ++i) {
+    const int index = static_cast<int>(i);
+    if (widths[i] > limit) {
+      large_.push_back(index);
+      continue;
+    }
+    sorted_.push_back({neighbours[i].reach().min().x(), index});
+    widest_ = std::max(widest_, widths[i]);
+  }
+  std::stable_sort(sorted_.begin(), sorted_.end(), [](const Entry& a, const Entry& b) { return a.least < b.least; });
+}
+
+template <typename Visit>
+void NeighbourSearch::forNear(const Bounds& bounds, const Visit& visit) const {
+  for (const int index : large_) visit(index);
+  const auto first = std::lower_bound(sorted_.begin(), sorted_.end(), bounds.min().x() - widest_,
+                                      [](const Entry& entry, double place) { return entry.least < place; });
+  for (auto entry = first; entry != sorted_.end() && entry->least <= bounds.max().x(); ++entry) visit(entry->index);
+}
+
+/// Distance of a neighbour from a box in space, in terms of how far it reaches: below 1, it counts.
+double relativeDistance(const NeighbourItem& item, const Bounds& bounds) {
+  if (item.isBall()) return bounds.exteriorDistance(item.center) / (kBallReach * item.radius);
+  const Vec3 extent = item.rotation.toRotationMatrix().cwiseAbs() * item.half;
+  return bounds.exteriorDistance(Bounds(item.center - extent, item.center + extent)) / item.radius;
+}
+
+/// The neighbours of each item's bounds, the closest first; not its own.
 template <typename Item>
-void findNearBalls(const std::vector<int>& bodyOfItem, std::vector<Item>& items, DrawList& list) {
+void findNearBalls(const std::vector<int>& bodyOfItem, const NeighbourSearch& search, std::vector<Item>& items,
+                   DrawList& list) {
+  std::vector<std::pair<double, int>> found;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const Bounds bounds = boundsOf(items[i]);
-    std::vector<std::pair<double, int>> found;
-    for (std::size_t b = 0; b < list.balls.size(); ++b) {
-      const BallItem& ball = list.balls[b];
-      const double distance = bounds.exteriorDistance(ball.center) / ball.radius;
-      if (ball.body != bodyOfItem[i] && distance < kBallReach) found.emplace_back(distance, static_cast<int>(b));
-    }
+    found.clear();
+    search.forNear(bounds, [&](int index) {
+      const NeighbourItem& item = list.neighbours[static_cast<std::size_t>(index)];
+      if (item.body == bodyOfItem[i]) return;
+      const double distance = relativeDistance(item, bounds);
+      if (distance < 1) found.emplace_back(distance, index);
+    });
     const std::size_t count = std::min(found.size(), kMostNearBalls);
     std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end());
     items[i].firstNearBall = static_cast<int>(list.nearBalls.size());
@@ -93,6 +154,12 @@ Bounds CylinderItem::bounds() const {
   return {center - half, center + half};
 }
 
+Bounds NeighbourItem::reach() const {
+  const Vec3 extent = isBall() ? Vec3::Constant(kBallReach * radius)
+                               : Vec3(rotation.toRotationMatrix().cwiseAbs() * half + Vec3::Constant(radius));
+  return {center - extent, center + extent};
+}
+
 DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const View& view, const Frame& frame) {
   const auto places = placeBodies(scene, frame);
   DrawList list;
@@ -101,15 +168,16 @@ DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const Vi
     const int body = static_cast<int>(i);
     appendBody(appearance.bodies[i], places[i], list);
     appendRound(appearance.bodies[i], places[i], body, list);
-    appendContact(appearance.bodies[i], places[i], list);
+    appendSolids(appearance.bodies[i], places[i], body, list);
     appendWall(scene, appearance, view, i, view.cameraAt(frame.number).position, list);
     bodyOfMesh.resize(list.meshes.size(), body);
     bodyOfSphere.resize(list.spheres.size(), body);
     bodyOfCylinder.resize(list.cylinders.size(), body);
   }
-  findNearBalls(bodyOfMesh, list.meshes, list);
-  findNearBalls(bodyOfSphere, list.spheres, list);
-  findNearBalls(bodyOfCylinder, list.cylinders, list);
+  const NeighbourSearch search(list.neighbours);
+  findNearBalls(bodyOfMesh, search, list.meshes, list);
+  findNearBalls(bodyOfSphere, search, list.spheres, list);
+  findNearBalls(bodyOfCylinder, search, list.cylinders, list);
   appendLinks(scene, appearance, view, places, list);
   appendPushArrows(appearance, view, frame, places, list);
   std::stable_sort(list.meshes.begin(), list.meshes.end(), [](const MeshItem& a, const MeshItem& b) {

@@ -49,18 +49,26 @@ struct TubeItem {
   int turns = 0;
   double straightEnd = 0;   // share of the length that is straight at each end
   Vec3 sag = Vec3::Zero();  // m, from the line's middle to the rope's
+  double slack = 0;         // of a rope: half its span in units of the catenary's parameter; 0 if it is straight
+  double lean = 0;          // of a rope: rise of its end over its length
   Surface surface = {};
   Bounds bounds = {};  // m, world
 };
 
-constexpr double kBallReach = 3;  // radii from a ball's centre: beyond, it is not mirrored and shades nothing
+constexpr double kBallReach = 3;   // radii from a ball's centre: beyond, it is not mirrored and shades nothing
+constexpr double kBoxReach = 1.6;  // middle half edges from a box's surface
 
-/// A ball that is mirrored in what is near and keeps the sky's light from it.
-struct BallItem {
-  Vec3 center;  // m, world
-  double radius = 0;
+/// A ball or box that is mirrored in what is near and keeps the sky's light from it.
+struct NeighbourItem {
+  Vec3 center;        // m, world
+  double radius = 0;  // of a ball, m; of a box, how far it reaches beyond its surface
   Surface surface = {};
   int body = 0;
+  Vec3 half = Vec3::Zero();          // half edges of a box, m; zero for a ball
+  Quat rotation = Quat::Identity();  // worldFromBox
+  bool isBall() const { return half.isZero(0); }
+  /// Of all that it influences; m, world.
+  Bounds reach() const;
 };
 
 /// What darkens the ground beneath it.
@@ -77,8 +85,8 @@ struct DrawList {
   std::vector<SphereItem> spheres;
   std::vector<CylinderItem> cylinders;
   std::vector<TubeItem> tubes;  // springs before ropes
-  std::vector<BallItem> balls;
-  std::vector<int> nearBalls;  // indices into balls
+  std::vector<NeighbourItem> neighbours;
+  std::vector<int> nearBalls;  // indices into neighbours
   std::vector<ContactItem> contacts;
 };
 

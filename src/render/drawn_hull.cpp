@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "render/camera.h"
+#include "render/tube_curve.h"
 
 namespace cradle {
 namespace {
@@ -74,9 +75,7 @@ DrawnHull hullOf(const CylinderItem& item) {
 
 DrawnHull hullOf(const TubeItem& item) {
   DrawnHull hull;
-  hull.add(item.start);
-  hull.add(item.end);
-  hull.add((item.start + item.end) / 2 + 2 * item.sag);  // the parabola's tangents at both ends meet there
+  for (const Vec3& corner : ropeCorners(item)) hull.add(corner);
   hull.radius = item.coilRadius + item.wireRadius;
   return hull;
 }

@@ -134,7 +134,8 @@ Instance instanceOf(const TubeItem& item, const Stage& stage) {
   put(instance, 2, item.side.cast<float>(), item.turns);
   put(instance, 3, item.sag.cast<float>(), item.surface.roughness);
   put(instance, 4, item.surface.color, item.surface.metallic);
-  put(instance, 5, Vec3f(0, 0, static_cast<float>(item.straightEnd)), 0);
+  const bool isRope = item.turns == 0;
+  put(instance, 5, Vec3f(0, 0, static_cast<float>(isRope ? item.slack : item.straightEnd)), item.lean);
   return instance;
 }
 
@@ -160,11 +161,26 @@ std::size_t outlineLevel(const CylinderItem& item, const Stage& stage) {
   return outlineFor(item.bounds(), item.radius, stage);
 }
 
-std::array<float, 8> numbersOf(const BallItem& ball, const Stage& stage) {
-  const Vec3f center = stage.relative(ball.center);
-  const Vec3f& color = ball.surface.color;
-  return {settled(center.x()), settled(center.y()), settled(center.z()), static_cast<float>(ball.radius),
-          color.x(),           color.y(),           color.z(),           ball.surface.metallic};
+std::array<float, 16> numbersOf(const NeighbourItem& item, const Stage& stage) {
+  const Vec3f center = stage.relative(item.center), half = item.half.cast<float>();
+  const Vec3f& color = item.surface.color;
+  const Eigen::Vector4f turn = item.rotation.coeffs().cast<float>();
+  return {settled(center.x()),
+          settled(center.y()),
+          settled(center.z()),
+          static_cast<float>(item.radius),
+          color.x(),
+          color.y(),
+          color.z(),
+          item.surface.metallic,
+          half.x(),
+          half.y(),
+          half.z(),
+          item.isBall() ? 0.0f : 1.0f,
+          settled(turn.x()),
+          settled(turn.y()),
+          settled(turn.z()),
+          settled(turn.w())};
 }
 
 PackedDrawList pack(const DrawList& list, const Stage& stage) {
@@ -175,9 +191,9 @@ PackedDrawList pack(const DrawList& list, const Stage& stage) {
   packBatches(list, packed);
   packRounds(list.spheres, stage, {packed.sphereInstances, packed.sphereBatches, packed.sphereItems});
   packRounds(list.cylinders, stage, {packed.cylinderInstances, packed.cylinderBatches, packed.cylinderItems});
-  for (const BallItem& ball : list.balls) {
-    const auto numbers = numbersOf(ball, stage);
-    packed.balls.insert(packed.balls.end(), numbers.begin(), numbers.end());
+  for (const NeighbourItem& item : list.neighbours) {
+    const auto numbers = numbersOf(item, stage);
+    packed.neighbours.insert(packed.neighbours.end(), numbers.begin(), numbers.end());
   }
   for (const int index : list.nearBalls) packed.nearBalls.push_back(static_cast<float>(index));
   if (stage.ground)

@@ -24,7 +24,7 @@ struct PackedDrawList {
       contactInstances;
   std::vector<Batch> meshBatches, sphereBatches, cylinderBatches;
   std::vector<std::size_t> sphereItems, cylinderItems;  // indices into the draw list, of each instance
-  std::vector<float> balls;                             // eight a ball: centre, radius, colour, metallic
+  std::vector<float> neighbours;                        // sixteen each, as numbersOf gives them
   std::vector<float> nearBalls;                         // indices
 };
 
@@ -48,8 +48,8 @@ Instance instanceOf(const ContactItem& item, const DarkenedSquare& square, const
 std::size_t outlineLevel(const SphereItem& item, const Stage& stage);
 std::size_t outlineLevel(const CylinderItem& item, const Stage& stage);
 
-/// Centre, radius, colour, metallic of a ball.
-std::array<float, 8> numbersOf(const BallItem& ball, const Stage& stage);
+/// Centre, radius, colour, metallic of a ball or box; half edges, 1 for a box; turn as a quaternion, w last.
+std::array<float, 16> numbersOf(const NeighbourItem& item, const Stage& stage);
 
 /// The numbers of an instance that say where its near balls stand in their list, and how many they are.
 constexpr std::array<std::size_t, 2> kNearBallNumbers = {20, 21};

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "render/body_place.h"
+#include "render/tube_curve.h"
 
 namespace cradle {
 namespace {
@@ -23,7 +24,7 @@ constexpr double kKnobOfRod = 1.8;                       // radius of the ball a
 constexpr double kBallOfRod = 4;                         // radius of a ball joint
 constexpr double kPinOfRod = 2.5, kPinLengthOfRod = 12;  // radius, of an axle too; length of a hinge's pin
 constexpr double kPlateOfKnob = 3.2, kPlateThickness = 0.9;
-constexpr double kTaut = 1 - 1e-4;  // share of its length from which a rope is drawn straight
+constexpr int kHalvings = 40, kThirds = 50;  // to find where a rope lies on the ground
 
 const Surface kSteel{Vec3f(0.56f, 0.57f, 0.58f), 1.0f, 0.28f};
 const Surface kDarkSteel{Vec3f(0.16f, 0.165f, 0.175f), 0.6f, 0.45f};
@@ -74,24 +75,20 @@ Vec3 directionBetween(const Vec3& a, const Vec3& b) {
   return line.norm() > 0 ? Vec3(line.normalized()) : Vec3(Vec3::UnitY());
 }
 
-/// Height of the parabola of length `length` over a chord, by bisection; for a chord that is not level the sag is
-/// vertical and the length slightly more, which nobody sees.
-double sagOf(double length, double chord) {
-  const auto arc = [chord](double sag) {
-    const double slope = 4 * sag / chord;
-    return chord / 2 * (std::sqrt(1 + slope * slope) + std::asinh(slope) / slope);
-  };
-  double low = 1e-9 * length, high = length;
-  for (int i = 0; i < 50; ++i) (arc((low + high) / 2) < length ? low : high) = (low + high) / 2;
-  return low;
-}
-
-/// Least height over the ground of the parabola between a rope's ends whose middle is `sag` off the chord.
+/// Least height over the ground of a rope that hangs along `sag`.
 double lowestHeight(const Ground& ground, const TubeItem& rope, const Vec3& sag) {
-  const double a = ground.normal.dot(rope.start - ground.point), b = ground.normal.dot(rope.end - ground.point);
-  const double middle = ground.normal.dot(sag);
-  const double s = middle < 0 ? std::clamp(0.5 + (b - a) / (8 * middle), 0.0, 1.0) : 0;
-  return std::min({a, b, a + s * (b - a) + 4 * s * (1 - s) * middle});
+  TubeItem moved = rope;
+  moved.sag = sag;
+  const auto height = [&](double s) { return ground.normal.dot(tubePoint(moved, s) - ground.point); };
+  double low = 0, high = 1;  // heights along a hanging rope are convex
+  for (int i = 0; i < kThirds; ++i) {
+    const double left = (2 * low + high) / 3, right = (low + 2 * high) / 3;
+    if (height(left) < height(right))
+      high = right;
+    else
+      low = left;
+  }
+  return std::min({height(0), height(1), height((low + high) / 2)});
 }
 
 /// A rope that would hang through the ground swings aside until it lies there: as long, and flat in the limit.
@@ -101,7 +98,7 @@ Vec3 laidOnGround(const Ground& ground, const TubeItem& rope) {
   };
   double low = 0, high = std::numbers::pi / 2;
   if (lowestHeight(ground, rope, rope.sag) >= rope.wireRadius) return rope.sag;
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < kHalvings; ++i) {
     const double angle = (low + high) / 2;
     (lowestHeight(ground, rope, turned(angle)) < rope.wireRadius ? low : high) = angle;
   }
@@ -185,17 +182,13 @@ void LinkBuilder::add(const Spring& spring) {
   const double widest = std::min(coil_, kCoilOfLength * natural);
   const int turns = std::clamp(static_cast<int>(natural / (kPitchOfCoil * widest)), kFewestTurns, kMostCoilTurns);
 
-  // The wire keeps its length, so a coil narrows as it is drawn out.
-  const double around = 2 * std::numbers::pi * turns;
-  const double wire = std::hypot(around * widest, natural);
-  const double length = (b - a).norm();
-  const double radius = std::sqrt(std::max(wire * wire - length * length, 0.0)) / around;
-
+  // The wire keeps its length and its volume: a coil narrows as it is drawn out, and at last its wire does.
+  const double wire = std::hypot(2 * std::numbers::pi * turns * widest, natural);
   TubeItem tube{a, b, sideOf(directionBetween(aStart, bStart), directionBetween(a, b))};
-  tube.coilRadius = std::max(radius, kSlenderest * widest);
-  tube.wireRadius = kWireOfCoil * widest;
   tube.turns = turns;
   tube.straightEnd = kStraightEnd;
+  const double drawnWire = windCoil(wire, kSlenderest * widest, tube);
+  tube.wireRadius = kWireOfCoil * widest * std::sqrt(std::min(wire / drawnWire, 1.0));
   tube.surface = kSteel;
   const Vec3 margin = Vec3::Constant(tube.coilRadius + tube.wireRadius);
   tube.bounds = Bounds(a.cwiseMin(b) - margin, a.cwiseMax(b) + margin);
@@ -216,7 +209,6 @@ void LinkBuilder::add(const Rod& rod) {
 
 void LinkBuilder::add(const Rope& rope) {
   const Vec3 a = now(rope.anchorA), b = now(rope.anchorB);
-  const double chord = (b - a).norm();
   const Vec3 down = scene_.gravity.norm() > 0 ? Vec3(scene_.gravity.normalized()) : Vec3(-Vec3::UnitY());
   TubeItem tube{a, b, Vec3::Zero()};
   Vec3 side = directionBetween(a, b).cross(down);
@@ -224,12 +216,12 @@ void LinkBuilder::add(const Rope& rope) {
   tube.side = side.normalized();
   tube.wireRadius = rod_;
   tube.surface = kHemp;
-  if (chord < kTaut * rope.maxLength) tube.sag = sagOf(rope.maxLength, std::max(chord, 1e-3 * rope.maxLength)) * down;
-  if (appearance_.ground) tube.sag = laidOnGround(*appearance_.ground, tube);
+  hangRope(rope.maxLength, down, tube);
+  if (appearance_.ground && tube.slack > 0) tube.sag = laidOnGround(*appearance_.ground, tube);
   const Vec3 margin = Vec3::Constant(tube.wireRadius);
   tube.bounds = Bounds(a.cwiseMin(b) - margin, a.cwiseMax(b) + margin);
-  tube.bounds.extend(Vec3(((a + b) / 2 + tube.sag) - margin));
-  tube.bounds.extend(Vec3(((a + b) / 2 + tube.sag) + margin));
+  for (const Vec3& corner : ropeCorners(tube))
+    tube.bounds.extend(Vec3(corner - margin)), tube.bounds.extend(Vec3(corner + margin));
   list_.tubes.push_back(tube);
   addEnd(rope.anchorA, rope.anchorB, 1.4 * rod_, true);
   addEnd(rope.anchorB, rope.anchorA, 1.4 * rod_, true);

@@ -110,12 +110,15 @@ void PictureTarget::read(const PixelRectangle& area, Image& image) const {
 }
 
 MapTarget::MapTarget(Kind kind, int size) : size_(size) {
-  const bool isDepth = kind == Kind::depth;
+  const bool isDepth = kind == Kind::depth, isShare = kind == Kind::share;
   glGenTextures(1, &texture_);
   glBindTexture(GL_TEXTURE_2D, texture_);
-  const GLenum stored = isDepth ? GL_DEPTH_COMPONENT32F : GL_R8, given = isDepth ? GL_DEPTH_COMPONENT : GL_RED;
+  const GLenum stored = isDepth   ? GL_DEPTH_COMPONENT32F
+                        : isShare ? GL_R8
+                                  : GL_R32F,
+               given = isDepth ? GL_DEPTH_COMPONENT : GL_RED;
   glTexImage2D(GL_TEXTURE_2D, 0, static_cast<int>(stored), size, size, 0, given, GL_FLOAT, nullptr);
-  const int filter = isDepth ? GL_NEAREST : GL_LINEAR;
+  const int filter = isShare ? GL_LINEAR : GL_NEAREST;
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
@@ -131,7 +134,7 @@ MapTarget::MapTarget(Kind kind, int size) : size_(size) {
   }
   requireComplete("a map of shadows");
   glViewport(0, 0, size, size);
-  glClearColor(0, 0, 0, 0);
+  glClearColor(isShare ? 0 : 1, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 

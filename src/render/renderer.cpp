@@ -88,13 +88,16 @@ struct Renderer::Programs {
         tubeDepth(source, "tube.vert", "depth.frag"),
         ground(source, "ground.vert", "ground.frag"),
         groundFar(source, "ground.vert", "ground_far.frag"),
+        shadowBlocks(source, "sky.vert", "shadow_blocks.frag"),
         contact(source, "contact.vert", "contact.frag"),
         sky(source, "sky.vert", "sky.frag") {
     for (const ShaderProgram* program : seen()) setStage(stage, *program);
+    setStage(stage, shadowBlocks);
     for (const ShaderProgram* program : {&surfaceDepth, &ballDepth, &cylinderDepth, &tubeDepth}) {
       program->use();
       program->set("clipFromWorld", stage.shadow.clipFromWorld);
       program->set("viewer", stage.shadow.viewer);
+      program->set("pixelSize", 0.0f);
     }
   }
 
@@ -105,7 +108,7 @@ struct Renderer::Programs {
 
   ShaderProgram surface, ball, cylinder, tube;
   ShaderProgram surfaceDepth, ballDepth, cylinderDepth, tubeDepth;  // the same for the shadow map
-  ShaderProgram ground, groundFar, contact, sky;
+  ShaderProgram ground, groundFar, shadowBlocks, contact, sky;
 };
 
 /// All that lives on the side of OpenGL, and the picture drawn last; the context goes last.
@@ -121,7 +124,7 @@ struct Renderer::Resources {
   Stage stage;
   Programs programs;
   PictureTarget picture;
-  MapTarget shadowMap, contactMap;
+  MapTarget shadowMap, shadowBlocks, contactMap;
   NumberTexture balls, nearBalls;
   ItemDrawer items;
   GpuMesh triangle;
@@ -140,6 +143,7 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
       programs({shaderFolder, shaderDefinitions(stage)}, stage),
       picture(width, height),
       shadowMap(MapTarget::Kind::depth, kShadowMapSize),
+      shadowBlocks(MapTarget::Kind::leastDepth, kShadowMapSize / kShadowBlock),
       contactMap(MapTarget::Kind::share, kContactMapSize),
       balls(4),
       nearBalls(1),
@@ -190,9 +194,12 @@ void Renderer::aim(const Camera& camera) {
 void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
   Resources& r = *resources_;
   r.items.take(list, r.meshBounds);
-  r.balls.upload(r.items.packed().balls);
+  r.balls.upload(r.items.packed().neighbours);
   r.nearBalls.upload(r.items.packed().nearBalls);
-  if (changed.shadows) drawShadowMap(*changed.shadows);
+  if (changed.shadows) {
+    drawShadowMap(*changed.shadows);
+    drawShadowBlocks(*changed.shadows);
+  }
   if (changed.contactsChanged) drawContactMap();
   finishStage(times_.maps);
   const std::vector<PixelRectangle> areas = changed.picture.rectangles();
@@ -235,6 +242,18 @@ void Renderer::drawShadowMap(const PixelRectangle& area) {
   r.shadowMap.end();
 }
 
+/// `area` is of the shadow map.
+void Renderer::drawShadowBlocks(const PixelRectangle& area) {
+  const Resources& r = *resources_;
+  const auto after = [](int texel) { return (texel + kShadowBlock - 1) / kShadowBlock; };
+  r.shadowBlocks.begin({area.left / kShadowBlock, area.bottom / kShadowBlock, after(area.right), after(area.top)});
+  glDisable(GL_DEPTH_TEST);
+  r.shadowMap.bindTexture(kShadowUnit);
+  r.programs.shadowBlocks.use();
+  r.triangle.draw();
+  r.shadowBlocks.end();
+}
+
 void Renderer::drawContactMap() {
   const Resources& r = *resources_;
   r.contactMap.begin(r.contactMap.inside());
@@ -250,6 +269,7 @@ void Renderer::drawContactMap() {
 void Renderer::drawPicture(const PixelRectangle& area) {
   const Resources& r = *resources_;
   r.shadowMap.bindTexture(kShadowUnit);
+  r.shadowBlocks.bindTexture(kBlockUnit);
   r.contactMap.bindTexture(kContactUnit);
   r.balls.bindTexture(kBallUnit);
   r.nearBalls.bindTexture(kNearBallUnit);
@@ -258,14 +278,19 @@ void Renderer::drawPicture(const PixelRectangle& area) {
   r.picture.begin(area);
   r.programs.ball.use();
   r.items.drawSpheres(&area);
-  r.programs.cylinder.use();
-  r.items.drawCylinders(&area);
   r.programs.surface.use();
   r.items.drawMeshes(&area);
   r.items.drawWalls();
+  // Lines thinner than a pixel take fewer of its samples: blending would ask for an order.
+  glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+  r.programs.cylinder.use();
+  r.items.drawCylinders(&area);
+  glEnable(GL_CULL_FACE);
   r.programs.tube.use();
   r.items.drawTubes(&area);
-  // Last what fills the picture: hidden pixels are not computed.
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+  // Late what fills the picture: hidden pixels are not computed.
   if (r.nearGround) {
     glEnable(GL_CULL_FACE);  // from below, the ground is not there
     r.programs.ground.use();

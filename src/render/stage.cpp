@@ -11,35 +11,58 @@
 namespace cradle {
 namespace {
 
-// Skies: a hazy day over ground; without ground, a studio that grows darker upwards. Linear.
-const Vec3f kDayZenith(0.150f, 0.250f, 0.410f), kDayHorizon(0.600f, 0.690f, 0.770f);
-const Vec3f kStudioZenith(0.130f, 0.165f, 0.225f), kStudioHorizon(0.640f, 0.670f, 0.700f),
-    kStudioNadir(0.230f, 0.235f, 0.245f);
-constexpr float kSkyOnGround = 0.62f;      // of the mean of zenith and horizon
-constexpr float kBounceFromGround = 0.5f;  // shadows and distance take the rest
-constexpr float kMeanSquare = 0.71f;       // of light and dark squares, in terms of the light one
-constexpr double kNearShare = 0.02;        // of the camera's distance to what is shown
-constexpr double kFadeDistance = 9;        // in sizes of the scene
-constexpr double kContactMargin = 0.15;    // of the scene's size
-constexpr double kLowestLight = 0.05;      // sine of the height below which the ground has no shadows
-constexpr double kShadowMargin = 0.03;     // of the scene's size: links and soft edges
+/// Colours of the surroundings; linear.
+struct Palette {
+  Vec3f zenith, horizon, nadir;  // nadir is seen only where there is no ground
+  Vec3f sky, bounce;             // on a white surface that faces up and down; over ground, its light is added to bounce
+};
+
+// A clear day that is pale enough behind a figure in print, and a studio without ground that grows darker upwards; then
+// both at night, for slides with a dark background: bodies stay as bright by the key light.
+const Palette kDay{{0.090f, 0.205f, 0.450f},
+                   {0.540f, 0.650f, 0.790f},
+                   {0.540f, 0.650f, 0.790f},
+                   {0.185f, 0.222f, 0.285f},
+                   {0.000f, 0.000f, 0.000f}};
+const Palette kStudio{{0.190f, 0.235f, 0.310f},
+                      {0.620f, 0.640f, 0.670f},
+                      {0.240f, 0.245f, 0.255f},
+                      {0.260f, 0.280f, 0.310f},
+                      {0.160f, 0.160f, 0.165f}};
+const Palette kNight{{0.022f, 0.032f, 0.055f},
+                     {0.050f, 0.061f, 0.085f},
+                     {0.050f, 0.061f, 0.085f},
+                     {0.135f, 0.160f, 0.210f},
+                     {0.030f, 0.034f, 0.042f}};
+const Palette kDarkStudio{{0.020f, 0.026f, 0.040f},
+                          {0.055f, 0.063f, 0.080f},
+                          {0.016f, 0.018f, 0.022f},
+                          {0.120f, 0.135f, 0.165f},
+                          {0.045f, 0.047f, 0.052f}};
+
+const Vec3f kKeyTint(1.10f, 1.02f, 0.91f);  // of a white lamp of the scene: warmer than the sky, as the sun is
+constexpr float kBounceFromGround = 0.42f;  // shadows and distance take the rest
+constexpr float kSkySlope = 0.30f;          // how much brighter it is towards the key light than on average
+constexpr double kNearShare = 0.02;         // of the camera's distance to what is shown
+constexpr double kFadeDistance = 9;         // in sizes of the scene
+constexpr double kContactMargin = 0.15;     // of the scene's size
+constexpr double kLowestLight = 0.05;       // sine of the height below which the ground has no shadows
+constexpr double kShadowMargin = 0.03;      // of the scene's size: links and soft edges
 
 Lighting makeLighting(const Scene& scene, const std::optional<Ground>& ground) {
-  Lighting lighting;
+  const bool isDark = scene.look == Look::dark;
+  const Palette& palette = ground ? (isDark ? kNight : kDay) : (isDark ? kDarkStudio : kStudio);
+  Lighting lighting{{}, palette.zenith, palette.horizon, palette.nadir, palette.sky, palette.bounce, Vec3f::Zero()};
   for (const Light& light : scene.lights) {
     const float strength = static_cast<float>(light.intensity / std::numbers::pi);
-    lighting.lamps.push_back({-light.direction, strength * linearFromSrgb(light.color)});
+    lighting.lamps.push_back({-light.direction, strength * kKeyTint.cwiseProduct(linearFromSrgb(light.color))});
   }
-  lighting.zenith = ground ? kDayZenith : kStudioZenith;
-  lighting.horizon = ground ? kDayHorizon : kStudioHorizon;
-  lighting.nadir = ground ? kDayHorizon : kStudioNadir;
-  lighting.sky = kSkyOnGround * (lighting.zenith + lighting.horizon) / 2;
-  lighting.bounce = kSkyOnGround * lighting.nadir;
+  const auto& key = lighting.lamps.at(0);
+  lighting.skySlope = kSkySlope * Vec3(key.towards.x(), 0, key.towards.z()).cast<float>();
   if (ground) {
-    const auto& key = lighting.lamps.at(0);
     const float facing = static_cast<float>(std::max(ground->normal.dot(key.towards), 0.0));
     const Vec3f received = facing * key.radiance + lighting.sky;
-    lighting.bounce = kBounceFromGround * kMeanSquare * ground->lightColor.cwiseProduct(received);
+    lighting.bounce += kBounceFromGround * ground->lightColor.cwiseProduct(received);
   }
   return lighting;
 }
@@ -70,7 +93,8 @@ ShadowView makeShadowView(const Vec3& towardsLight, const Bounds& bounds, const 
   Eigen::Matrix4d texture = Eigen::Matrix4d::Identity();
   texture.topLeftCorner<3, 3>() *= 0.5;
   texture.topRightCorner<3, 1>().setConstant(0.5);
-  return {clip.cast<float>(), (texture * clip).cast<float>(), joined(towardsLight, 0), 2 * half / kShadowMapSize};
+  return {clip.cast<float>(), (texture * clip).cast<float>(), joined(towardsLight, 0), 2 * half / kShadowMapSize,
+          2 * deep};
 }
 
 /// Around all that the film shows, and its shadow.
@@ -98,9 +122,9 @@ ShadedRegion makeShadedRegion(const Ground& ground, const Vec3& towardsLight, co
   return region;
 }
 
-/// Position of the stage's origin within the pattern of squares along `axis`: repeats after two squares.
+/// Position of the stage's origin within the pattern of squares along `axis`: repeats after ten squares.
 float phaseAlong(const Vec3& axis, const Stage& stage) {
-  return static_cast<float>(std::fmod(axis.dot(stage.origin) / stage.ground->squareSize, 2));
+  return static_cast<float>(std::fmod(axis.dot(stage.origin) / stage.ground->squareSize, 10));
 }
 
 void setRays(const Stage& stage, const ShaderProgram& program) {
@@ -112,6 +136,7 @@ void setRays(const Stage& stage, const ShaderProgram& program) {
   program.set("cornerRay", Vec3f(corner.cast<float>()));
   program.set("columnRay", Vec3f(column.cast<float>()));
   program.set("rowRay", Vec3f(row.cast<float>()));
+  program.set("pixelSize", static_cast<float>(pixel));
 }
 
 void setLighting(const Lighting& lighting, const ShaderProgram& program) {
@@ -122,6 +147,7 @@ void setLighting(const Lighting& lighting, const ShaderProgram& program) {
   program.set("nadirColor", lighting.nadir);
   program.set("skyIrradiance", lighting.sky);
   program.set("bounceIrradiance", lighting.bounce);
+  program.set("skySlope", lighting.skySlope);
   for (std::size_t i = 0; i + 1 < lighting.lamps.size(); ++i) {
     const auto& lamp = lighting.lamps[i + 1];
     program.set(fmt::format("fillDirection[{}]", i).c_str(), Vec3f(lamp.towards.cast<float>()));
@@ -136,11 +162,12 @@ void setGround(const Stage& stage, const ShaderProgram& program) {
   program.set("groundPlane", joined(ground.normal, ground.normal.dot(ground.point - stage.origin)));
   program.set("groundAxisU", Vec3f(region.axisU.cast<float>()));
   program.set("groundAxisV", Vec3f(region.axisV.cast<float>()));
-  program.set("checkPhaseU", phaseAlong(region.axisU, stage));
-  program.set("checkPhaseV", phaseAlong(region.axisV, stage));
-  program.set("checksPerMetre", static_cast<float>(1 / ground.squareSize));
-  program.set("lightCheck", ground.lightColor);
-  program.set("darkCheck", ground.darkColor);
+  program.set("gridPhaseU", phaseAlong(region.axisU, stage));
+  program.set("gridPhaseV", phaseAlong(region.axisV, stage));
+  program.set("squaresPerMetre", static_cast<float>(1 / ground.squareSize));
+  program.set("lightSquare", ground.lightColor);
+  program.set("darkSquare", ground.darkColor);
+  program.set("lineShade", ground.lineShade);
   program.set("fadeDistance", static_cast<float>(stage.fadeDistance));
   program.set("contactFromWorldU", joined(region.axisU / region.sizeU, -region.firstU / region.sizeU));
   program.set("contactFromWorldV", joined(region.axisV / region.sizeV, -region.firstV / region.sizeV));
@@ -206,7 +233,9 @@ void setStage(const Stage& stage, const ShaderProgram& program) {
   program.set("shadowFromWorld", stage.shadow.textureFromWorld);
   program.set("shadowSize", static_cast<float>(kShadowMapSize));
   program.set("shadowTexel", static_cast<float>(stage.shadow.texel));
+  program.set("shadowDeep", static_cast<float>(stage.shadow.deep / stage.shadow.texel));
   program.set("shadowMap", static_cast<int>(kShadowUnit));
+  program.set("shadowBlocks", static_cast<int>(kBlockUnit));
   program.set("contactMap", static_cast<int>(kContactUnit));
   program.set("ballTexels", static_cast<int>(kBallUnit));
   program.set("nearBallTexels", static_cast<int>(kNearBallUnit));

@@ -18,6 +18,7 @@ struct Lighting {
   std::vector<Lamp> lamps;  // the first throws shadows
   Vec3f zenith, horizon, nadir;
   Vec3f sky, bounce;  // on a white surface that faces up and down
+  Vec3f skySlope;     // relative change of both with the direction of the surface
 };
 
 /// Where the shadow map looks: along the light, at all that the film shows.
@@ -25,6 +26,7 @@ struct ShadowView {
   Eigen::Matrix4f clipFromWorld, textureFromWorld;
   Eigen::Vector4f viewer;  // the light's direction, as ball.vert takes it
   double texel = 0;        // m
+  double deep = 0;         // m, from the least to the greatest depth
 };
 
 /// The part of the ground on which shadows fall and contacts are drawn.
@@ -51,11 +53,12 @@ struct Stage {
   Vec3f relative(const Vec3& point) const { return (point - origin).cast<float>(); }
 };
 
-constexpr int kShadowMapSize = 2048;
+constexpr int kShadowMapSize = 1024;
+constexpr int kShadowBlock = 8;  // texels of the shadow map a side; the map of blocks has the least depth of each
 constexpr int kContactMapSize = 256;
 
 /// Texture units that the shaders' samplers are bound to.
-enum TextureUnit { kShadowUnit = 0, kContactUnit, kBallUnit, kNearBallUnit };
+enum TextureUnit { kShadowUnit = 0, kBlockUnit, kContactUnit, kBallUnit, kNearBallUnit };
 
 Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground>& ground, int width, int height);
 

@@ -111,6 +111,7 @@ void parseSettings(ObjectReader& root, Scene& scene) {
   if (const auto field = root.find("method")) scene.method = parseMethod(*field, faults);
   if (const auto field = root.find("output")) scene.output = parseOutput(*field, faults);
   parseLights(root, scene);
+  scene.look = root.choice<Look>("look", {{"light", Look::light}, {"dark", Look::dark}}, scene.look);
   if (faults.count() == faultsBefore) checkFrameCount(scene, root.field(), faults);
 }
 

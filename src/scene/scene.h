@@ -168,6 +168,9 @@ struct Light {
   double intensity = 3;
 };
 
+/// The surroundings of a picture: a light day or the dark.
+enum class Look { light, dark };
+
 struct Scene {
   std::string path, text;  // the file itself
   std::string name, description;
@@ -192,6 +195,7 @@ struct Scene {
   std::optional<Camera> camera;  // at the start; unset: framed so that all that moves stays in view
   CameraMotion cameraMotion;
   std::vector<Light> lights;  // at least one
+  Look look = Look::light;
 };
 
 /// Whether a camera looks along its own `up` (or its target is its position), so that no side of the picture is up.

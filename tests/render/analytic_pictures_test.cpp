@@ -13,24 +13,44 @@ namespace {
 
 constexpr int kWidth = 640, kHeight = 480;
 
-/// Area and centroid of what one picture shows darker than another: pixels count by how much darker they are, where
-/// `darkest` (0..1, of the brighter picture) counts fully.
+double linearFromByte(double byte) {
+  const double c = byte / 255;
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+/// The light that a byte stands for: the tone curve y = x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), solved for x.
+double lightFromByte(double byte) {
+  const double y = linearFromByte(byte);
+  const double a = 2.51 - 2.43 * y, b = 0.03 - 0.59 * y, c = -0.14 * y;
+  return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
+}
+
+/// Area and centroid of what one picture shows darker than another: pixels count by how much less light they show,
+/// where `darkest` (0..1, of the brighter picture) counts fully.
 struct Patch {
   double area = 0;  // pixels
   Eigen::Vector2d center = {0, 0};
 };
 
-Patch patchOf(const Image& dark, const Image& bright, double darkest) {
+Patch patchOf(const Image& dark, const Image& bright, double darkest, double (*light)(const Image&, int, int)) {
   Patch patch;
   for (int y = 0; y < bright.height; ++y) {
     for (int x = 0; x < bright.width; ++x) {
-      const double share = (1 - dark.at(x, y)[1] / static_cast<double>(bright.at(x, y)[1])) / (1 - darkest);
+      const double share = (1 - light(dark, x, y) / light(bright, x, y)) / (1 - darkest);
       patch.area += share;
       patch.center += share * Eigen::Vector2d(x + 0.5, y + 0.5);
     }
   }
   patch.center /= patch.area;
   return patch;
+}
+
+/// Edges are averaged in bytes, shadows in light.
+double byteAt(const Image& image, int x, int y) {
+  return image.at(x, y)[1];
+}
+double lightAt(const Image& image, int x, int y) {
+  return lightFromByte(image.at(x, y)[1]);
 }
 
 /// A picture in a fixed view; all bodies near the origin.
@@ -68,7 +88,7 @@ TEST(AnalyticPicture, OutlineOfABallIsTheEllipseOfItsCone) {
     const double beside = std::hypot(towards.x(), towards.y());
     const Vec3 aside = beside > 0 ? Vec3(towards.x() / beside, towards.y() / beside, 0) : Vec3(Vec3::Zero());
 
-    const Patch patch = patchOf(drawWith(blackBallScene(center, radius), camera), background, 0);
+    const Patch patch = patchOf(drawWith(blackBallScene(center, radius), camera), background, 0, byteAt);
     // Each of about 450 pixels on the outline counts its 4 samples: an error of up to 1/8, 1.5 pixels together; four
     // times that, and the outline's polygon, which is as large as the ellipse to 1e-4.
     EXPECT_NEAR(patch.area, area, 6 + 1e-4 * area);
@@ -87,7 +107,7 @@ TEST(AnalyticPicture, CylinderAndBoxHaveTheAreaOfTheirOutline) {
     Scene scene = blackBallScene({0, 0, 0}, 1);
     scene.bodies[0].shape = shape;
     scene.bodies[0].worldFromBody.rotation = turn;
-    return patchOf(drawWith(scene, camera), background, 0).area / (pixelsPerMetre * pixelsPerMetre);
+    return patchOf(drawWith(scene, camera), background, 0, byteAt).area / (pixelsPerMetre * pixelsPerMetre);
   };
   const Quat upright = Quat::Identity(), towardsEye = rotationAbout(Vec3::UnitX(), M_PI / 2);
   const double nearer = std::pow(60 / 59.6, 2);
@@ -104,19 +124,14 @@ TEST(AnalyticPicture, NearCylinderIsAsWideAsItsTangents) {
   const Image background = drawWith(scene, camera);
   scene.bodies[0].shape = Cylinder{0.5, 20};
   scene.bodies[0].worldFromBody.translation = Vec3::Zero();
-  const Patch patch = patchOf(drawWith(scene, camera), background, 0);
+  const Patch patch = patchOf(drawWith(scene, camera), background, 0, byteAt);
   // Edges are upright: the 4 samples of a pixel lie in 4 columns, an error of up to 1/8 pixel on either side.
   EXPECT_NEAR(patch.area / kHeight, 2 * f * std::tan(std::asin(0.5)), 0.25);
 }
 
-double linearFromByte(int byte) {
-  const double c = byte / 255.0;
-  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
 // A wall that faces the camera, lit at 60 degrees. Lambert: albedo times cosine; and the highlight of the roughest
 // dielectric, straight on: F D G / (4 nl nv) nl with alpha = 1 + 0.035 (the width of the lamp). Surroundings are taken
-// off as the same picture without the lamp. All below 0.5, where light is shown as it is.
+// off as the same picture without the lamp. A white lamp's green is tinted by 1.02.
 TEST(AnalyticPicture, MattWallSendsOutAlbedoTimesCosine) {
   const double albedo = 0.3, intensity = 7, nl = std::cos(60 * M_PI / 180);
   const auto brightness = [&](double lamp) {
@@ -126,17 +141,39 @@ TEST(AnalyticPicture, MattWallSendsOutAlbedoTimesCosine) {
     scene.lights[0].direction = Vec3(0, -std::sin(60 * M_PI / 180), -nl);
     scene.lights[0].intensity = lamp;
     addBody(scene, Box{{2, 2, 0.2}}, {});
-    return linearFromByte(drawWith(scene, cameraAt({0, 0, 5}, {0, 0, 0}, 0.6)).at(kWidth / 2, kHeight / 2)[1]);
+    return drawWith(scene, cameraAt({0, 0, 5}, {0, 0, 0}, 0.6)).at(kWidth / 2, kHeight / 2)[1];
   };
   const double alpha = 1.035, nv = 1, vh = std::cos(30 * M_PI / 180);
   const double fresnel = 0.04 + 0.96 * std::pow(1 - vh, 5);
   const double d = vh * vh * (alpha * alpha - 1) + 1;
   const double visibility = 0.5 / (2 * nl * nv + (nl + nv - 2 * nl * nv) * alpha);
   const double highlight = fresnel * alpha * alpha / (d * d) * visibility * nl;
-  const double expected = intensity / M_PI * (albedo * nl + highlight);
-  ASSERT_LT(brightness(intensity), 0.5);
-  // Two roundings by half a step of 1/255, where the curve of sRGB has slopes of 1.6 and 0.6.
-  EXPECT_NEAR(brightness(intensity) - brightness(0), expected, (0.8 + 0.3) / 255);
+  const double expected = 1.02 * intensity / M_PI * (albedo * nl + highlight);
+  const int lit = brightness(intensity), dark = brightness(0);
+  // Two roundings by half a step.
+  const double rounding =
+      lightFromByte(lit + 0.5) - lightFromByte(lit) + lightFromByte(dark + 0.5) - lightFromByte(dark);
+  EXPECT_NEAR(lightFromByte(lit) - lightFromByte(dark), expected, rounding);
+}
+
+// A rod of half a pixel's width is drawn 1.1 pixels wide, in half of the samples: no row goes without, and all together
+// are as dark as the rod is wide.
+TEST(AnalyticPicture, RodThinnerThanAPixelIsNotBroken) {
+  const Camera camera = cameraAt({0, 0, 4}, {0, 0, 0}, 60 * M_PI / 180);
+  const double pixel = 2 * 4 * std::tan(30 * M_PI / 180) / kHeight;
+  Scene scene = blackBallScene({0, 0, 9}, 0.1);
+  const Image background = drawWith(scene, camera);
+  scene.bodies[0].shape = Cylinder{0.275 * pixel, 10};
+  scene.bodies[0].worldFromBody = {rotationAbout(Vec3::UnitZ(), 0.13), Vec3::Zero()};
+  const Image image = drawWith(scene, camera);
+  double sum = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    double row = 0;
+    for (int x = 0; x < kWidth; ++x) row += 1 - byteAt(image, x, y) / byteAt(background, x, y);
+    EXPECT_GE(row, 0.2) << y;  // one sample of four, and rounding
+    sum += row;
+  }
+  EXPECT_NEAR(sum / kHeight, 0.55 / std::cos(0.13), 0.06);
 }
 
 /// A ball over a ground, seen from straight above; the lamp shines aside.
@@ -171,17 +208,53 @@ TEST(AnalyticPicture, ShadowOfABallFallsWhereTheLightTakesIt) {
   const Eigen::Vector2d expected(kWidth / 2.0 + pixelsPerMetre * shadow.x(),
                                  kHeight / 2.0 + pixelsPerMetre * shadow.z());
   const int x = static_cast<int>(expected.x()), y = static_cast<int>(expected.y());
-  const double darkest = dark.at(x, y)[1] / static_cast<double>(bright.at(x, y)[1]);
-  EXPECT_LT(darkest, 0.75);
-  const Patch patch = patchOf(dark, bright, darkest);
-  // A texel of the map is 3 m * sqrt(3) / 2048 at most, half a pixel on the ground: a tenth of it is left of its grid.
+  const double darkest = lightAt(dark, x, y) / lightAt(bright, x, y);
+  EXPECT_LT(darkest, 0.45);
+  const Patch patch = patchOf(dark, bright, darkest, lightAt);
+  // A texel of the map is 3 m * sqrt(3) / 1024 at most, 0.7 pixels on the ground: soft edges leave a fraction of it.
   EXPECT_NEAR(patch.center.x(), expected.x(), 0.3);
   EXPECT_NEAR(patch.center.y(), expected.y(), 0.3);
-  // An ellipse pi r (r / sine of the light's height). Squares are of two colours and show shadow in different shares,
-  // bytes are curved: 4 %.
+  // An ellipse pi r (r / sine of the light's height): soft edges take from it what they give to its surroundings. The
+  // middle's byte is off by up to half a step of 60: 2 %; the ball is drawn as a polygon whose depths are those of its
+  // middle third: 2 %.
   const double sine = 1.2 / light.norm();
   const double area = M_PI * radius * radius / sine * pixelsPerMetre * pixelsPerMetre;
   EXPECT_NEAR(patch.area / area, 1, 0.04);
+}
+
+// The lamp is a disc of angular radius atan 0.03. On the ground, d below an edge that hides half of it, the light falls
+// as the disc's area beside a chord: between 10 % and 90 % over 2 * 0.687 * 0.03 d.
+TEST(AnalyticPicture, ShadowsEdgeIsAsSoftAsItIsFarFromWhatThrowsIt) {
+  const Camera camera = cameraAt({3, 0, 0}, {0.5, -1, 0}, 0.2);
+  const auto widthUnder = [&](double height) {
+    Scene scene = shadowScene({0, 40, 0}, 0.1, {0, -1, 0});
+    const Image bright = drawWith(scene, camera);
+    scene.bodies[1].shape = Box{{1, 0.02, 3}};
+    scene.bodies[1].worldFromBody.translation = Vec3(0, height - 1.01, 0);  // its upper face is met by the light
+    const Image dark = drawWith(scene, camera);
+    const auto shareAt = [&](double place) {  // mean over some lines of pixels
+      double sum = 0;
+      for (int i = -20; i <= 20; ++i) {
+        const Eigen::Vector2d pixel = projectToPixel(camera, {place, -1, 0.005 * i}, kWidth, kHeight);
+        const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
+        sum += lightAt(dark, x, y) / lightAt(bright, x, y) / 41;
+      }
+      return sum;
+    };
+    const double darkest = shareAt(0.3), open = shareAt(0.7);
+    const auto placeOf = [&](double lit) {
+      double place = 0.3;
+      while ((shareAt(place) - darkest) / (open - darkest) < lit) place += 1e-3;
+      return place;
+    };
+    EXPECT_NEAR(placeOf(0.5), 0.5, 0.006) << height;  // a texel of the map
+    return placeOf(0.9) - placeOf(0.1);
+  };
+  for (const double height : {0.4, 0.8, 1.2}) {
+    // 24 samples tell the tenth to half of one; rows of pixels are 3 mm apart, and rounding of bytes adds as much.
+    const double expected = 2 * 0.687 * 0.03 * height;
+    EXPECT_NEAR(widthUnder(height), expected, 0.1 * expected + 0.004) << height;
+  }
 }
 
 TEST(AnalyticPicture, LitWallThrowsNoShadowOnItself) {
@@ -234,7 +307,7 @@ TEST(AnalyticPicture, BallHidesTheSkyFromTheGroundAroundIt) {
         const Vec3 place(aside * std::cos(angle), -1, aside * std::sin(angle));
         const Eigen::Vector2d pixel = projectToPixel(camera, place, kWidth, kHeight);
         const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
-        mean += linearFromByte(image.at(x, y)[1]) / linearFromByte(open.at(x, y)[1]) / 100;
+        mean += lightAt(image, x, y) / lightAt(open, x, y) / 100;
       }
       // A texel of the map is 2 cm wide: between its texels, the share is off by up to 2 mm of its slope of 2 a metre.
       EXPECT_NEAR(mean, 1 - std::pow(radius / std::hypot(aside, radius), 3), 0.008) << aside << " side " << side;

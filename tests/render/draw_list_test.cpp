@@ -7,6 +7,7 @@
 #include "math/rotation.h"
 #include "render/body_place.h"
 #include "render/scene_builder.h"
+#include "render/tube_curve.h"
 
 namespace cradle {
 namespace {
@@ -48,6 +49,14 @@ TEST(BodyPlace, FixedBodiesTakeNoState) {
   EXPECT_EQ(places.at(1).translation, Vec3(0, 9, 0));
 }
 
+double lengthOf(const TubeItem& tube) {
+  constexpr int kPieces = 20000;
+  double length = 0;
+  for (int i = 0; i < kPieces; ++i)
+    length += (tubePoint(tube, (i + 1.0) / kPieces) - tubePoint(tube, i / double{kPieces})).norm();
+  return length;
+}
+
 TEST(DrawList, SpringRunsFromAnchorToAnchor) {
   const Scene scene = springScene(1.2);
   Frame frame = startFrame(scene);
@@ -66,13 +75,32 @@ TEST(DrawList, WireOfASpringKeepsItsLength) {
     frame.states[0].position.y() = -height;
     return listOf(scene, frame).tubes.at(0);
   };
-  const auto wire = [](const TubeItem& tube) {
-    return std::hypot(2 * std::numbers::pi * tube.turns * tube.coilRadius, (tube.end - tube.start).norm());
-  };
   const TubeItem pressed = tubeAt(0.7), drawn = tubeAt(1.7);
   EXPECT_EQ(pressed.turns, drawn.turns);
   EXPECT_LT(drawn.coilRadius, pressed.coilRadius);
-  EXPECT_NEAR(wire(pressed) / wire(drawn), 1, 0.01);  // the view grows with the motion, and thickness with it
+  EXPECT_NEAR(lengthOf(pressed) / lengthOf(drawn), 1, 0.01);  // the view grows with the motion, and thickness with it
+}
+
+TEST(DrawList, WireThatIsDrawnOutFurtherKeepsItsVolume) {
+  TubeItem coil{{0, 0, 0}, {0, 3, 0}, {1, 0, 0}};
+  coil.turns = 10;
+  coil.straightEnd = 0.07;
+  EXPECT_NEAR(windCoil(5, 0.01, coil), 5, 1e-9);
+  EXPECT_NEAR(lengthOf(coil), 5, 0.005);
+  EXPECT_GT(coil.coilRadius, 0.01);
+  coil.end = {0, 6, 0};  // longer than the wire
+  EXPECT_GT(windCoil(5, 0.01, coil), 6);
+  EXPECT_DOUBLE_EQ(coil.coilRadius, 0.01);
+
+  const auto tubeAt = [](double height) {
+    const Scene scene = springScene(1.2);
+    Frame frame = startFrame(scene);
+    frame.states[0].position.y() = -height;
+    return listOf(scene, frame).tubes.at(0);
+  };
+  const auto volume = [](const TubeItem& tube) { return tube.wireRadius * tube.wireRadius * lengthOf(tube); };
+  EXPECT_LT(tubeAt(9).wireRadius / tubeAt(9).coilRadius, tubeAt(1.2).wireRadius / (0.3 * tubeAt(1.2).coilRadius));
+  EXPECT_NEAR(volume(tubeAt(9)) / volume(tubeAt(1.2)), 1, 0.02);
 }
 
 TEST(DrawList, CoilTurnsWithItsSpringWithoutJumps) {
@@ -98,17 +126,41 @@ TEST(DrawList, SlackRopeHangsAsLongAsItIs) {
   addBody(scene, Sphere{0.1}, {Quat::Identity(), {1.2, 0, 0}});
   scene.ropes.push_back({"", "", {0, {0, 0, 0}}, {kWorld, {0, 0, 0}}, 2, 0});
   const TubeItem rope = listOf(scene, startFrame(scene)).tubes.at(0);
-  double length = 0;
-  Vec3 before = rope.start;
-  for (int i = 1; i <= 1000; ++i) {
-    const double s = i / 1000.0;
-    const Vec3 point = rope.start + s * (rope.end - rope.start) + 4 * s * (1 - s) * rope.sag;
-    length += (point - before).norm();
-    before = point;
-  }
-  EXPECT_NEAR(length, 2, 1e-5);
+  EXPECT_NEAR(lengthOf(rope), 2, 1e-5);
   EXPECT_LT(rope.sag.y(), 0);
   EXPECT_TRUE(rope.bounds.contains(Vec3((rope.start + rope.end) / 2 + rope.sag)));
+}
+
+// Along a hanging rope, the horizontal pull is the same everywhere and the vertical one grows with the weight of what
+// hangs below: the slope is a linear function of the length along it.
+TEST(DrawList, SlackRopeIsACatenaryOfItsLength) {
+  for (const Vec3& end : {Vec3(1.2, 0, 0), Vec3(0.7, 1.1, 0.4), Vec3(-1, -1.5, 0.3), Vec3(0.4, 0.1, 0)}) {
+    TubeItem rope{Vec3::Zero(), end, Vec3::Zero()};
+    hangRope(2, -Vec3::UnitY(), rope);
+    constexpr int kPieces = 40000;
+    const double step = std::hypot(end.x(), end.z()) / kPieces;
+    double length = 0, firstSlope = 0, change = 0;
+    for (int i = 0; i < kPieces; ++i) {
+      const Vec3 piece = tubePoint(rope, (i + 1.0) / kPieces) - tubePoint(rope, i / double{kPieces});
+      const double slope = piece.y() / step;
+      length += piece.norm();
+      if (i == 0) firstSlope = slope;
+      if (i == kPieces / 4) change = (slope - firstSlope) / length;  // per metre
+      if (i > kPieces / 4) {
+        EXPECT_NEAR((slope - firstSlope) / (length * change), 1, 2e-3) << end.transpose() << " " << i;
+      }
+    }
+    EXPECT_NEAR(length, 2, 1e-6) << end.transpose();
+    Bounds around;
+    for (const Vec3& corner : ropeCorners(rope)) around.extend(corner);
+    for (int i = 0; i <= 100; ++i) EXPECT_LT(around.exteriorDistance(tubePoint(rope, i / 100.0)), 1e-9);
+  }
+}
+
+TEST(DrawList, RopeWithItsEndsTogetherHangsDoubled) {
+  TubeItem rope{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  hangRope(2, -Vec3::UnitY(), rope);
+  EXPECT_NEAR(tubePoint(rope, 0.5).y(), -1, 0.02);
 }
 
 TEST(DrawList, SlackRopeLiesOnTheGroundRatherThanInIt) {
@@ -123,7 +175,7 @@ TEST(DrawList, SlackRopeLiesOnTheGroundRatherThanInIt) {
     Vec3 before = rope.start;
     for (int i = 1; i <= 1000; ++i) {
       const double s = i / 1000.0;
-      const Vec3 point = rope.start + s * (rope.end - rope.start) + 4 * s * (1 - s) * rope.sag;
+      const Vec3 point = tubePoint(rope, s);
       lowest = std::min(lowest, point.y());
       length += (point - before).norm();
       before = point;
@@ -211,6 +263,16 @@ TEST(DrawList, BallsNearABallAreTheClosestOthers) {
   std::vector<int> near(list.nearBalls.begin() + middle.firstNearBall,
                         list.nearBalls.begin() + middle.firstNearBall + middle.nearBalls);
   EXPECT_EQ(near, (std::vector<int>{3, 5, 2, 6}));
+}
+
+TEST(DrawList, BoxBesideABallIsItsNeighbourToItsReach) {
+  // Half edges 0.1, 0.3, 0.5: the box counts 1.6 times the middle one beyond its faces.
+  for (const auto& [gap, count] : {std::pair(0.47, 1), std::pair(0.49, 0)}) {
+    Scene scene = emptyScene();
+    addBody(scene, Box{{0.2, 0.6, 1}}, {});
+    addBody(scene, Sphere{0.05}, {Quat::Identity(), {0.1 + gap + 0.05, 0, 0}});
+    EXPECT_EQ(listOf(scene, startFrame(scene)).spheres.at(0).nearBalls, count) << gap;
+  }
 }
 
 TEST(Appearance, ColoursOfAModelAreTheFilesUnlessTheSceneSaysOtherwise) {

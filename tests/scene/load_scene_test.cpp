@@ -50,6 +50,7 @@ TEST_F(EveryKey, CameraAndLightsAreThoseOfTheFile) {
   EXPECT_EQ(scene_.lights[0].direction, Vec3(0, -1, 0));
   EXPECT_EQ(scene_.lights[0].color, Vec3f(1, 128.0F / 255, 0));
   EXPECT_EQ(scene_.lights[0].intensity, 2);
+  EXPECT_EQ(scene_.look, Look::dark);
 }
 
 TEST_F(EveryKey, MaterialsFollowTheUnnamedOne) {
@@ -174,6 +175,7 @@ TEST(SceneDefaults, AreThoseOfTheTable) {
   EXPECT_TRUE(scene.lights[0].direction.isApprox(Vec3(-1, -2, -1) / std::sqrt(6.0), kRounding));
   EXPECT_EQ(scene.lights[0].color, Vec3f(1, 1, 1));
   EXPECT_EQ(scene.lights[0].intensity, 3);
+  EXPECT_EQ(scene.look, Look::light);
 }
 
 TEST(SceneDefaults, OfABodyAreThoseOfTheTable) {
