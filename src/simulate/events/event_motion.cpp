@@ -28,6 +28,8 @@ constexpr double kMostTieError = 1e-9;   // m (a m of coordinates) or rad: proje
 constexpr double kTieErrorPart = 0.1;    // of the accuracy: so much is left now and then where ties are all but jammed
 constexpr double kUnitLength = 1e-9;     // how far |q|^2 may be from 1 before it is made 1
 
+constexpr int kMostRounds = 100;  // of ropes and contacts at one instant; what is left comes after the next step
+
 constexpr int kMostEvents = 500;
 constexpr double kEventWindow = 1.0 / 60;  // s, in which there may be so many
 constexpr int kEventsAFailure = 50;        // that take no longer than to find where redundant contacts fail
@@ -56,7 +58,7 @@ EventMotion::EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMet
   island_.findNearPairsNow(contacts_.margin());
   ropes_.setTimeStep(0);
   contacts_.resolve();
-  ropes_.resolve(island_.time, island_.state);
+  settleRopes();
   if (island_.beginAndEndPushes()) contacts_.resolve();
   island_.requireUnsolvedPairsApart();
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
@@ -231,11 +233,16 @@ void EventMotion::changeForces(const Event& event) {
   else
     contacts_.lasting().followSliding();
   const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
-  const bool isPulled = ropes_.resolve(island_.time, island_.state);
+  settleRopes();
   keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
   const bool isPushed = island_.beginAndEndPushes();
-  if (isPushed || isPulled) contacts_.resolve();
+  if (isPushed) contacts_.resolve();
   if (event.any() || isPushed) isContinuous_ = false;
+}
+
+/// What ropes do to contacts may load or release ropes, and the other way round.
+void EventMotion::settleRopes() {
+  for (int round = 0; round < kMostRounds && ropes_.resolve(island_.time, island_.state); ++round) contacts_.resolve();
 }
 
 bool EventMotion::isAtRest() const {

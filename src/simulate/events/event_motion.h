@@ -50,6 +50,7 @@ class EventMotion {
   void tidyState();
   void requireTiesKept() const;
   void changeForces(const Event& event);
+  void settleRopes();
   bool isStillAccurate();
   double longestStep() const;
   void countEvent(const Event& event);
