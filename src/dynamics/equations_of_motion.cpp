@@ -124,6 +124,8 @@ void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& stat
     centerOfMass(rate, body) = linearVelocity(state, body);
     if (bodies[static_cast<std::size_t>(body)].turns)
       setOrientation(rate, body, orientationRate(orientation(state, body), angularVelocity(state, body)));
+    else
+      rate.segment<4>(body * kPoseSize + 3).setZero();
   }
 }
 

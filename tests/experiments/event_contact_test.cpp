@@ -31,6 +31,10 @@ const std::string kSlab =
     R"({"name": "floor", "shape": {"box": {"size": [20, 1, 20]}}, "motion": "static", "position": [0, -0.5, 0],
         "material": "m"})";
 
+const std::string kTable =
+    R"({"name": "table", "shape": {"box": {"size": [1, 0.2, 1]}}, "motion": "static", "position": [0, -0.1, 0],
+        "material": "m"})";
+
 std::vector<double> timesOf(const Trajectory& run, EventKind kind) {
   std::vector<double> times;
   for (const Event& event : run.events)
@@ -241,6 +245,47 @@ TEST(BallOnPlatform, LeavesWhereThePlatformFallsFasterThanItself) {
   const Trajectory run = simulate(sceneOf(sceneText(1e-10, 0.4, 10, materialText(0.5, 0), bodies, spring)));
   ASSERT_EQ(timesOf(run, EventKind::release).size(), 1u);
   EXPECT_NEAR(timesOf(run, EventKind::release)[0], std::acos(-kGravity / 80 / 0.2) / std::sqrt(80), 1e-9);
+}
+
+// At x = 0.5, after 0.1 s, the table ends: with v^2 / r = 40 m/s^2 > g nothing bends the ball around its edge. The
+// border is found to half of what touches, 1e-8 sizes: 5e-10 m, or 2.5e-10 s.
+TEST(BallOnATable, FliesOnInAParabolaWhereTheTableEnds) {
+  const double speed = 2, edge = 0.1;
+  const Trajectory run = simulate(sceneOf(sceneText(1e-8, 0.6, 10, materialText(0, 0), kTable + R"(,
+    {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "position": [0.3, 0.1, 0], "material": "m",
+     "linearVelocity": [2, 0, 0]})")));
+  for (const Frame& frame : run.frames) {
+    const double flight = std::max(0.0, frame.time - edge);
+    EXPECT_NEAR(frame.states[0].position.x(), 0.3 + speed * frame.time, 1e-8) << frame.time;
+    EXPECT_NEAR(frame.states[0].position.y(), 0.1 - kGravity * flight * flight / 2, 1e-8) << frame.time;
+  }
+}
+
+// Its centre of mass is carried until it is over the edge: at 0.2 s, were there no friction; then it tips and falls.
+TEST(BoxOnATable, TipsOverItsEdge) {
+  const Trajectory run = simulate(sceneOf(sceneText(1e-6, 0.6, 10, materialText(0, 0), kTable + R"(,
+    {"name": "box", "shape": {"box": {"size": [0.2, 0.1, 0.2]}}, "mass": 1, "position": [0.3, 0.05, 0],
+     "material": "m", "linearVelocity": [1, 0, 0]})")));
+  EXPECT_NEAR(run.frames[1].states[0].position.y(), 0.05, 1e-8);
+  EXPECT_LT(run.frames[3].states[0].angularVelocity.z(), -0.1);
+  EXPECT_LT(run.frames[6].states[0].position.y(), -0.3);
+}
+
+// Along the foot of an L of 3 m x 2 m to its other arm, 0.9 m away, and back: what carries the ball is a row by then.
+TEST(BallInTheCornerOfAMesh, ReboundsFromTheArmThatItRollsAgainst) {
+  const double arm = 10. * 0.1F;  // m: its width, as files have it
+  const std::string bodies =
+      fmt::format(R"({{"name": "corner", "shape": {{"mesh": "{}/assets/l_prism.3ds", "scale": 10}},
+     "motion": "static", "material": "m"}},
+    {{"name": "ball", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1, "position": [2, {}, 0.5], "material": "m",
+     "linearVelocity": [-1, 0, 0]}})",
+                  CRADLE_SOURCE_DIR, arm + 0.1);
+  const std::string text = sceneText(1e-8, 1.5, 10, materialText(1, 0), bodies);
+  const Trajectory run = simulate(parseScene(text, "corner.json", modelFilesBeside("corner.json")).scene);
+  for (const Frame& frame : run.frames) {
+    EXPECT_NEAR(frame.states[0].position.x(), arm + 0.1 + std::abs(frame.time - 1.9 + arm), 1e-8) << frame.time;
+    EXPECT_NEAR(frame.states[0].position.y(), arm + 0.1, 1e-8) << frame.time;
+  }
 }
 
 // 2 cm at 1000 m/s against 1 mm: passed in 21 us, whatever the step would be. Glancing, spinning and long bodies too.

@@ -149,6 +149,8 @@ EventMotion::Event EventMotion::findFirstEvent() {
   if (rope > first) event.rope.reset();
   if (contact > first || event.rope) event.contact.reset();
   if (impact > first || event.rope || event.contact) event.impact.reset();
+  for (const double other : {impact, rope, contact})
+    if (other > first) event.latest = std::min(event.latest, other);
   return event;
 }
 
@@ -158,17 +160,17 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   if (!island_.mayTouch() && !ropes_.hasRopes()) return {};
   Step& step = island_.step;
   const Event event = findFirstEvent();
-  const double whole = step.timeStep;
+  const double whole = step.timeStep, latest = event.latest * whole;
   if (event.impact) {
-    stopAtImpact(*event.impact);
+    stopAtImpact(*event.impact, latest);
   } else if (event.rope) {
-    endStepAtEvent(island_, method_.integrate, event.rope->fraction * whole, kRopeTolerance,
+    endStepAtEvent(island_, method_.integrate, {event.rope->fraction * whole, latest, kRopeTolerance},
                    [&](const VectorX& state) { return ropes_.margin(*event.rope, state); });
   } else if (event.contact && event.contact->kind == ContactChange::Kind::redundant) {
     keepStartRate(step);
     method_.integrate(island_.rightHandSide, island_.state, island_.time, event.contact->fraction * whole, step);
   } else if (event.contact) {
-    endStepAtEvent(island_, method_.integrate, event.contact->fraction * whole, kContactTolerance,
+    endStepAtEvent(island_, method_.integrate, {event.contact->fraction * whole, latest, kContactTolerance},
                    [&](const VectorX& state) { return contacts_.lasting().margin(*event.contact, state); });
   }
   if (island_.mayTouch()) lengths_[lengthIndex_++ % lengths_.size()] = step.timeStep;
@@ -176,7 +178,7 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
 }
 
 /// Ends the step where a gap is closed. What the interpolant's error leaves of it is taken out along the rate there.
-void EventMotion::stopAtImpact(const ImpactTime& impact) {
+void EventMotion::stopAtImpact(const ImpactTime& impact, double latest) {
   const TouchingFeatures touching = contacts_.touching();
   const auto gap = [&](const VectorX& state) { return island_.search.margin(impact, touching, state); };
   Step& step = island_.step;
@@ -190,7 +192,7 @@ void EventMotion::stopAtImpact(const ImpactTime& impact) {
   step.work = step.state + correction * step.endRate;
   const double tolerance = kImpactPart * contacts_.margin();
   if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))
-    return endStepAtEvent(island_, method_.integrate, length, tolerance, gap);
+    return endStepAtEvent(island_, method_.integrate, {length, latest, tolerance}, gap);
   std::swap(step.state, step.work);
   step.timeStep += correction;
 }

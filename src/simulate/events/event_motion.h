@@ -42,11 +42,12 @@ class EventMotion {
     std::optional<ImpactTime> impact;
     std::optional<RopeChange> rope;
     std::optional<ContactChange> contact;
+    double latest = 1;  // of the step: where the next one comes
     bool any() const { return impact || rope || contact; }
   };
   Event findFirstEvent();
   Event stopAtFirstEvent();
-  void stopAtImpact(const ImpactTime& impact);
+  void stopAtImpact(const ImpactTime& impact, double latest);
   void tidyState();
   void requireTiesKept() const;
   void changeForces(const Event& event);

@@ -134,10 +134,11 @@ bool SteppedMotion::stopAtFirstEvent() {
   const auto change = ropes_.firstChange(step);
   const double whole = step.timeStep;
   if (impact && !(change && change->fraction < impact->fraction)) {
-    endStepAtEvent(island_, method_.integrate, impact->fraction * whole, kImpactPart * contacts_.touchTolerance(),
+    endStepAtEvent(island_, method_.integrate,
+                   {impact->fraction * whole, whole, kImpactPart * contacts_.touchTolerance()},
                    [&](const VectorX& state) { return island_.search.margin(*impact, {}, state); });
   } else if (change) {
-    endStepAtEvent(island_, method_.integrate, change->fraction * whole, kRopeTolerance,
+    endStepAtEvent(island_, method_.integrate, {change->fraction * whole, whole, kRopeTolerance},
                    [&](const VectorX& state) { return ropes_.margin(*change, state); });
   }
   return impact || change;
