@@ -3,6 +3,7 @@
 function(cradle_layer NAME)
   cmake_parse_arguments(ARG "" "" "LAYERS;LIBRARIES" ${ARGN})
   file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${NAME}/*.cpp)
+  list(FILTER SOURCES EXCLUDE REGEX "/contexts/")  # of these a program has one: cmake/contexts.cmake
   list(TRANSFORM ARG_LAYERS PREPEND cradle_)
   add_library(cradle_${NAME} STATIC ${SOURCES})
   if(NOT NAME STREQUAL core AND NOT NAME STREQUAL image)  # those do not use Eigen

@@ -27,7 +27,7 @@ constexpr int kTerminatedExit = 143;
 struct CommandLine {
   std::string input, output, expected, actual;
   std::vector<std::string> scenes, methods;
-  SceneOverrides overrides;
+  SimulateOptions simulation;
   PictureOptions pictures;
   CompareOptions comparison;
   double scale = 1;
@@ -53,22 +53,25 @@ void addPictureOptions(CLI::App* command, CommandLine& line) {
 }
 
 void addOverrides(CLI::App* command, CommandLine& line) {
-  command->add_option("--accuracy", line.overrides.accuracy, "in place of the scene's accuracy");
-  command->add_option("--method", line.overrides.method, "explicitEuler, semiImplicitEuler, rk4 or dop853");
-  command->add_option("--time-step", line.overrides.timeStep, "step of --method in s; dop853 needs none");
-  command->add_option("--duration", line.overrides.duration, "in place of the scene's duration, in s");
+  command->add_option("--accuracy", line.simulation.overrides.accuracy, "in place of the scene's accuracy");
+  command->add_option("--method", line.simulation.overrides.method, "explicitEuler, semiImplicitEuler, rk4 or dop853");
+  command->add_option("--time-step", line.simulation.overrides.timeStep, "step of --method in s; dop853 needs none");
+  command->add_option("--duration", line.simulation.overrides.duration, "in place of the scene's duration, in s");
 }
 
 void addSimulate(CLI::App& app, CommandLine& line) {
   auto* simulate = addCommand(app, line, "simulate", "Simulate a scene into a trajectory file",
                               "cradle simulate scenes/newtons_cradle.json -o cradle.sqlite",
-                              [&] { simulateScene(line.input, line.output, line.overrides, line.quiet); });
+                              [&] { simulateScene(line.input, line.output, line.simulation, line.quiet); });
   simulate->add_option("scene", line.input, "scene file (JSON)")->required();
   addOutput(simulate, line, "trajectory file to write");
   addOverrides(simulate, line);
+  simulate->add_flag("--check-accuracy", line.simulation.checksAccuracy,
+                     "run again, finer, and print the error of each body; where the scene is chaotic, say so");
 
-  auto* plan = addCommand(app, line, "plan", "Say how a scene would be simulated, why, and what is left out",
-                          "cradle plan scenes/spinning_handle.json", [&] { printPlan(line.input, line.overrides); });
+  auto* plan =
+      addCommand(app, line, "plan", "Say how a scene would be simulated, why, and what is left out",
+                 "cradle plan scenes/spinning_handle.json", [&] { printPlan(line.input, line.simulation.overrides); });
   plan->add_option("scene", line.input, "scene file (JSON)")->required();
   addOverrides(plan, line);
 }

@@ -31,6 +31,8 @@ LIBRARY_UNITS = {
     "stb/": ["image/png"],
     "libdeflate.h": ["image/png"],
     "GL/": ["render"],
+    "GL/osmesa.h": ["render/contexts/osmesa"],
+    "EGL/": ["render/contexts/egl"],
     "Bullet": ["study/peers/bullet"],
     "bt": ["study/peers/bullet"],
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/interruption.h"
 #include "core/output_path.h"
 #include "core/progress.h"
 #include "scene/load_scene.h"
@@ -13,6 +14,7 @@
 #include "simulate/plan/plan_text.h"
 #include "simulate/simulate.h"
 #include "simulate/start_overlaps.h"
+#include "study/achieved_accuracy.h"
 #include "trajectory/trajectory_file.h"
 
 namespace cradle {
@@ -61,6 +63,21 @@ void apply(const SceneOverrides& overrides, Scene& scene) {
   scene.method->timeStep = requirePositive("--time-step", *overrides.timeStep);
 }
 
+void printAchievedAccuracy(const Scene& scene, const std::string& output, bool quiet) {
+  const TrajectoryReader run(output);
+  Progress progress("Checking", "frames", run.frameCount(), quiet);
+  try {
+    const AchievedAccuracy accuracy = achievedAccuracy(scene, run, [&](long done) {
+      throwIfInterrupted();
+      progress.update(done);
+    });
+    progress.endLine();
+    fmt::print("{}\n", describe(accuracy));
+  } catch (const Error& error) {
+    throw Error(error.kind(), "", fmt::format("{}; {} is whole, but its accuracy is not known", error.what(), output));
+  }
+}
+
 }  // namespace
 
 Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides) {
@@ -85,10 +102,10 @@ void simulateInto(TrajectoryWriter& writer, const Scene& scene, bool quiet) {
   writer.finish(cost);
 }
 
-void simulateScene(const std::string& scenePath, const std::string& output, const SceneOverrides& overrides,
+void simulateScene(const std::string& scenePath, const std::string& output, const SimulateOptions& options,
                    bool quiet) {
   requireWritableFile(output);
-  const Scene scene = loadSceneAndWarn(scenePath, overrides);
+  const Scene scene = loadSceneAndWarn(scenePath, options.overrides);
   refuseUnsupported(scene);
   TrajectoryWriter writer(output, headerOf(scene));
   try {
@@ -98,6 +115,7 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
     if (kept.empty()) throw;
     throw Error(error.kind(), "", fmt::format("{}; the frames up to then are in {}", error.what(), kept));
   }
+  if (options.checksAccuracy) printAchievedAccuracy(scene, output, quiet);
 }
 
 void printPlan(const std::string& scenePath, const SceneOverrides& overrides) {

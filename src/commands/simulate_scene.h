@@ -16,10 +16,14 @@ struct SceneOverrides {
   std::optional<double> duration;  // s
 };
 
+struct SimulateOptions {
+  SceneOverrides overrides;
+  bool checksAccuracy = false;  // afterwards, by finer runs; printed
+};
+
 /// `cradle simulate SCENE -o FILE.sqlite`. Throws as loading, simulating and writing do; an unfinished run says what it
 /// kept.
-void simulateScene(const std::string& scenePath, const std::string& output, const SceneOverrides& overrides,
-                   bool quiet);
+void simulateScene(const std::string& scenePath, const std::string& output, const SimulateOptions& options, bool quiet);
 
 /// `cradle check SCENE`: loads the scene and its meshes and says what is in it.
 void checkScene(const std::string& scenePath);

@@ -5,7 +5,8 @@
 namespace cradle {
 
 /// An OpenGL 3.3 core context that needs no screen, with all functions of GLEW loaded. One at a time per thread; it is
-/// current from construction on.
+/// current from construction on. A program is linked with one of the units in render/contexts, which makes it: OSMesa's
+/// draws on the CPU; EGL's, without a surface, also on a GPU.
 class OffscreenContext {
  public:
   /// Throws Error(limit) if the driver gives none, or draws nothing.
@@ -18,7 +19,7 @@ class OffscreenContext {
   void makeCurrent();
 
  private:
-  struct Surface;  // what the platform needs: OSMesa's context and its own small picture, which nobody looks at
+  struct Surface;  // what the platform needs
   std::unique_ptr<Surface> surface_;
 };
 

@@ -195,6 +195,12 @@ class Trajectories(InTemporaryFolder):
         self.assertEqual(cradle("compare", a, c).returncode, 9)
         self.assertEqual(cradle("compare", a, c, "--tolerance", "0.02").returncode, 0)
 
+    def test_accuracy_is_checked_for_every_body(self):
+        run = cradle("simulate", self.write("a.json", scene()), "-o", self.path("a.sqlite"), "--check-accuracy")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("Checked by a run at accuracy 1e-08", run.stdout)
+        self.assertIn("not chaotic", run.stdout)
+
     def test_export_writes_a_row_for_every_frame_and_body(self):
         trajectory = self.simulate("a")
         self.assertEqual(cradle("export", trajectory, "-o", self.path("a.csv")).returncode, 0)

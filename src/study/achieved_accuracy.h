@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "trajectory/trajectory_file.h"
+
+namespace cradle {
+
+/// How far one dynamic body was from the finer run.
+struct BodyError {
+  std::string body;
+  double error = 0;  // the largest |x - x_ref| / (1 + |x_ref|) over numbers x of position (m) and orientation
+  double time = 0;   // s, of that error
+};
+
+/// A scene that makes small differences large.
+struct Divergence {
+  double rate = 0;                        // 1/s: a small difference grows by e in 1 / rate
+  std::optional<double> meaninglessFrom;  // s: by then the small difference is seen in the second digit
+};
+
+/// What the states of a run are worth.
+struct AchievedAccuracy {
+  bool isHeap = false;                   // it has no finer run at its speed: errors are what the disturbance changes
+  std::string finerRun;                  // "accuracy 1e-08", "time step 1e-05 s"; empty for a heap
+  std::vector<BodyError> bodies;         // dynamic ones, in the order of the scene; up to meaninglessFrom, if that is
+  double disturbance = 0;                // m/s and rad/s that a third run starts with, above the scene's velocities
+  double largestDifference = 0;          // that it makes, in the measure of errors
+  std::optional<Divergence> divergence;  // set if it grows more than a hundred times faster than time
+};
+
+/// Compares a finished run of `scene` with one at a hundredth of the accuracy (1e-12 at the least), or of the error that
+/// the named method's time step has by its order; and that one with a third, whose velocities differ a little at the
+/// start: the rate at which neighbouring motions part is the largest Lyapunov exponent, as far as one run shows it
+/// (Benettin et al., Meccanica 15, 1980). The two go side by side: memory O(bodies). `tick` is told the frames done, and
+/// may throw. Throws what simulating throws.
+AchievedAccuracy achievedAccuracy(const Scene& scene, const TrajectoryReader& run,
+                                  const std::function<void(long)>& tick);
+
+/// For a person, a line a body.
+std::string describe(const AchievedAccuracy& accuracy);
+
+}  // namespace cradle
