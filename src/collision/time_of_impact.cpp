@@ -70,7 +70,7 @@ class PairSearch {
       feature_ = feature;
       held_ = isHeld(touching) ? touching.held : nullptr;
       if (held_ && hasOneContact()) continue;
-      if (held_ && apart_) lookBlindly();
+      if (held_ && (apart_ || hasMesh(a_, geometry_.colliders[pair_.b]))) lookBlindly();
       const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_, reach);
       if (start > bounds_.speed) continue;
       if (start > touching.tolerance)
@@ -100,9 +100,10 @@ class PairSearch {
     pull_ += turnB.acceleration * pointReach(b);
     const double radius = a_.radius + b.radius;
     if (radius > 0) bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / radius;
+    if (radius > 0) return;
     if (hasMesh(a_, b))
       lookBlindly();
-    else if (radius == 0)
+    else
       apart_.emplace(step_, a_, b,
                      DirectionBends{turnA.acceleration * pointReach(a_) + turnB.acceleration * pointReach(b),
                                     pull_ + bendInFrame(turnA, b), pull_ + bendInFrame(turnB, a_)});

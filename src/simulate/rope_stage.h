@@ -46,6 +46,9 @@ class RopeStage {
 
   bool hasRopes() const { return !assembly_.ropes.empty(); }
 
+  /// Which ropes are rods now: to be asked later whether they are the same ones.
+  const std::vector<int>& rods() const { return tautRod_; }
+
  private:
   bool isTaut(std::size_t rope) const { return tautRod_[rope] >= 0; }
   bool rests(std::size_t rope) const;

@@ -13,11 +13,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kFinestAccuracy = 1e-12;    // as in scene files
-constexpr double kFiner = 100;               // times
+constexpr double kFinestAccuracy = 1e-12;     // as in scene files
+constexpr double kFiner = 100;                // times
 constexpr double kLargestDisturbance = 1e-5;  // m/s and rad/s
-constexpr double kSteadyGrowth = 100;        // times 1 + t: phases that drift apart grow like time alone
-constexpr double kFirstGrowth = 10;          // times the disturbance: from there on, growth is measured
+constexpr double kSteadyGrowth = 100;         // times 1 + t: phases that drift apart grow like time alone
+constexpr double kFirstGrowth = 10;           // times the disturbance: from there on, growth is measured
 constexpr double kSecondDigit = 1e-2;
 
 /// By how much a fixed time step has to be divided for a hundredth of the error.
@@ -122,8 +122,7 @@ AchievedAccuracy achievedAccuracy(const Scene& scene, const TrajectoryReader& ru
     finerRun.takeEvents(time);
     disturbedRun.takeEvents(time);
     growth.take(time, motionError(disturbed.states, finer.states));
-    if (!growth.isMeaningless())
-      compare(run.readFrame(number), result.isHeap ? disturbed : finer, result.bodies);
+    if (!growth.isMeaningless()) compare(run.readFrame(number), result.isHeap ? disturbed : finer, result.bodies);
     tick(number + 1);
   }
   result.largestDifference = growth.largest();
@@ -146,11 +145,11 @@ std::string describe(const AchievedAccuracy& accuracy) {
   const Divergence& divergence = *accuracy.divergence;
   text += fmt::format("Chaotic: {:.0e} m/s and rad/s more at the start grow by e in {:.3g} s (rate {:.3g} 1/s)",
                       accuracy.disturbance, 1 / divergence.rate, divergence.rate);
-  if (!divergence.meaninglessFrom)
-    return text + fmt::format(", to {:.1e} by the end.", accuracy.largestDifference);
-  return text + fmt::format(",\nto more than {} at {:.6g} s: from there on, states are one possible motion of many, and "
-                            "no error is given.",
-                            kSecondDigit, *divergence.meaninglessFrom);
+  if (!divergence.meaninglessFrom) return text + fmt::format(", to {:.1e} by the end.", accuracy.largestDifference);
+  return text + fmt::format(
+                    ",\nto more than {} at {:.6g} s: from there on, states are one possible motion of many, and "
+                    "no error is given.",
+                    kSecondDigit, *divergence.meaninglessFrom);
 }
 
 }  // namespace cradle

@@ -33,11 +33,11 @@ struct AchievedAccuracy {
   std::optional<Divergence> divergence;  // set if it grows more than a hundred times faster than time
 };
 
-/// Compares a finished run of `scene` with one at a hundredth of the accuracy (1e-12 at the least), or of the error that
-/// the named method's time step has by its order; and that one with a third, whose velocities differ a little at the
-/// start: the rate at which neighbouring motions part is the largest Lyapunov exponent, as far as one run shows it
-/// (Benettin et al., Meccanica 15, 1980). The two go side by side: memory O(bodies). `tick` is told the frames done, and
-/// may throw. Throws what simulating throws.
+/// Compares a finished run of `scene` with one at a hundredth of the accuracy (1e-12 at the least), or of the error
+/// that the named method's time step has by its order; and that one with a third, whose velocities differ a little at
+/// the start: the rate at which neighbouring motions part is the largest Lyapunov exponent, as far as one run shows it
+/// (Benettin et al., Meccanica 15, 1980). The two go side by side: memory O(bodies). `tick` is told the frames done,
+/// and may throw. Throws what simulating throws.
 AchievedAccuracy achievedAccuracy(const Scene& scene, const TrajectoryReader& run,
                                   const std::function<void(long)>& tick);
 

@@ -288,6 +288,24 @@ TEST(BallInTheCornerOfAMesh, ReboundsFromTheArmThatItRollsAgainst) {
   }
 }
 
+// Past an edge of the same L, at a distance that is less than the radius by 1e-6 of it: for 2 sqrt(2e-6) R / v = 28 us.
+TEST(BallPastAMesh, IsSeenToGrazeItsEdge) {
+  const double edge = 10. * 0.3F, radius = 0.1;  // m: where the foot ends; its top is at 10 * 0.1F
+  for (const double overlap : {1e-6, -1e-6}) {
+    const Vec3 start(edge + radius * (1 - overlap) * std::sqrt(0.5) - 0.5,
+                     10. * 0.1F + radius * (1 - overlap) * std::sqrt(0.5) + 0.5, 0.5);
+    const std::string bodies =
+        fmt::format(R"({{"name": "corner", "shape": {{"mesh": "{}/assets/l_prism.3ds", "scale": 10}},
+       "motion": "static", "material": "m"}},
+      {{"name": "ball", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1, "position": {}, "material": "m",
+       "linearVelocity": [5, -5, 0]}})",
+                    CRADLE_SOURCE_DIR, vectorText(start));
+    const std::string text = sceneText(1e-4, 0.2, 10, materialText(1, 0), bodies, R"(, "gravity": [0, 0, 0])");
+    const Trajectory run = simulate(parseScene(text, "corner.json", modelFilesBeside("corner.json")).scene);
+    EXPECT_EQ(timesOf(run, EventKind::impact).size(), overlap > 0 ? 1u : 0u);
+  }
+}
+
 // 2 cm at 1000 m/s against 1 mm: passed in 21 us, whatever the step would be. Glancing, spinning and long bodies too.
 TEST(EventContact, NothingTunnels) {
   const std::string plate =

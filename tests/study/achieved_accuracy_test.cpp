@@ -73,7 +73,8 @@ TEST(AchievedAccuracy, AnInvertedPendulumDivergesAtItsRate) {
   // decays is below 1 / (omega 10)^2 of it. Frames are 1/60 s apart, and sin(theta) < theta ends the growth at 1e-2.
   const double rate = std::sqrt(9.81);
   EXPECT_NEAR(accuracy.divergence->rate, rate, 0.01 * rate);
-  // 1e-8 m/s of 1e-8, of which the part across the rod in each of two directions counts by (1 + |x|), grows to 1e-2 / 1.
+  // 1e-8 m/s of 1e-8, of which the part across the rod in each of two directions counts by (1 + |x|), grows to 1e-2
+  // / 1.
   ASSERT_TRUE(accuracy.divergence->meaninglessFrom);
   const double across = 1e-8 * 0.64;  // m/s along z, the larger of the two
   EXPECT_NEAR(*accuracy.divergence->meaninglessFrom, std::asinh(1e-2 * rate / across) / rate, 0.03);

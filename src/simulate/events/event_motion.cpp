@@ -230,13 +230,13 @@ void EventMotion::requireTiesKept() const {
 
 /// What acts from now on.
 void EventMotion::changeForces(const Event& event) {
+  rodsBefore_ = ropes_.rods();
   if (event.impact || event.contact || event.rope)  // a rope may go taut as bodies meet
     contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
   else
     contacts_.lasting().followSliding();
-  const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
   settleRopes();
-  keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
+  keepsTies_ = ropes_.rods() == rodsBefore_;
   const bool isPushed = island_.beginAndEndPushes();
   if (isPushed) contacts_.resolve();
   if (event.any() || isPushed) isContinuous_ = false;

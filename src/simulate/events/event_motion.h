@@ -63,7 +63,8 @@ class EventMotion {
   std::optional<EnergyGuard> guard_;  // always there once begun
   ConstraintSolver solver_;
   VectorX tolerance_;
-  double startTieError_ = 0;  // m or rad
+  double startTieError_ = 0;     // m or rad
+  std::vector<int> rodsBefore_;  // of ropes, before an event
   StepSize stepSize_;
   std::array<double, 8> lengths_;  // s: of the last steps, if bodies may touch
   std::size_t lengthIndex_ = 0;

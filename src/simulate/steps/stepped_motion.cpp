@@ -61,9 +61,9 @@ void SteppedMotion::advance(double frame) {
   if (solver_.hasConstraints()) solver_.project(island_.state);
   normalizeOrientations(island_.state);
   resolveContacts();
-  const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
+  rodsBefore_ = ropes_.rods();
   ropes_.resolve(time, island_.state);
-  keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
+  keepsTies_ = ropes_.rods() == rodsBefore_;
   island_.beginAndEndPushes();
   guard_.check(island_.state, time, step.timeStep);
   island_.requireUnsolvedPairsApart();
