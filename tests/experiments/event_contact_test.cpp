@@ -271,6 +271,29 @@ TEST(BoxOnATable, TipsOverItsEdge) {
   EXPECT_LT(run.frames[6].states[0].position.y(), -0.3);
 }
 
+// A cube stands on a corner; a ball slides from its top corner, without friction, along a plane of symmetry towards the
+// edge between two faces. Around a corner it would leave at cos a = 2/3, where it would be (1 - cos 12.9) R = 2.5 mm
+// deep in that edge, which begins at a = 35.3 degrees. An edge is met by steps: they leave some micrometres.
+TEST(BallOnACorner, GoesOverAnEdgeWithoutSinkingIn) {
+  const double radius = 0.1, corner = std::sqrt(0.75), degree = std::numbers::pi / 180;  // m, m, rad
+  const Quat worldFromCube(Eigen::AngleAxisd(std::acos(1 / std::sqrt(3.)), Vec3(-1, 0, 1).normalized()));
+  const Vec3 overEdge = worldFromCube * Vec3(1, 1, 0).normalized(), aside = Vec3(overEdge.x(), 0, overEdge.z());
+  const Vec3 away = std::cos(10 * degree) * Vec3::UnitY() + std::sin(10 * degree) * aside.normalized();
+  const std::string bodies = fmt::format(
+      R"({{"name": "cube", "shape": {{"box": {{"size": [1, 1, 1]}}}}, "motion": "static", "material": "m",
+          "orientation": {{"w": {}, "x": {}, "y": {}, "z": {}}}}},
+         {{"name": "ball", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1, "position": {}, "material": "m"}})",
+      worldFromCube.w(), worldFromCube.x(), worldFromCube.y(), worldFromCube.z(),
+      vectorText(corner * Vec3::UnitY() + radius * away));
+  const Trajectory run = simulate(sceneOf(sceneText(1e-6, 0.4, 100, materialText(0, 0), bodies)));
+  for (const Frame& frame : run.frames) {
+    const Vec3 inCube = worldFromCube.conjugate() * frame.states[0].position;
+    const Vec3 fromEdge(inCube.x() - 0.5, inCube.y() - 0.5, std::max(0.0, inCube.z() - 0.5));
+    EXPECT_GT(fromEdge.norm(), radius - 1e-4) << frame.time;
+  }
+  EXPECT_LT(endOf(run).position.y(), corner);
+}
+
 // Along the foot of an L of 3 m x 2 m to its other arm, 0.9 m away, and back: what carries the ball is a row by then.
 TEST(BallInTheCornerOfAMesh, ReboundsFromTheArmThatItRollsAgainst) {
   const double arm = 10. * 0.1F;  // m: its width, as files have it

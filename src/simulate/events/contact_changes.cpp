@@ -36,20 +36,25 @@ Vec3 LastingContacts::givenDirection(std::size_t contact, const VectorX& state) 
   return orientation(state, body).normalized() * constraint.slidingDirection;
 }
 
-/// How far (m) the place where a contact's row keeps it is from where the surfaces are nearest: beyond a face's border
-/// that stays behind, in a hollow another part of the surface comes nearer. Needs frames_.
-double LastingContacts::distanceFromFace(std::size_t contact, const VectorX& state) const {
+/// How far (m) the place where a contact's row keeps it is from where the surfaces are nearest: beyond the border of a
+/// face, or when a corner becomes an edge, that stays behind; in a hollow another part of a surface comes nearer. Needs
+/// frames_.
+double LastingContacts::distanceFromNearest(std::size_t contact, const VectorX& state) const {
   const ContactConstraint& held = mechanism().contacts[contact];
   const ColliderPair& pair = entries_[contact].pair;
   if (pair.againstPlane) return 0;
   const ContactGeometry& geometry = island_.assembly.geometry;
   const bool isOfB = geometry.colliders[pair.a].body == held.centerA.body;
-  const Collider& surface = geometry.colliders[isOfB ? pair.b : pair.a];
-  const RigidTransform worldFromSurface = poseOf(state, surface.body);
-  const Vec3 center = poseOf(state, held.centerA.body) * held.centerA.point;
-  const Vec3 nearest = worldFromSurface * nearestOnSurface(surface, worldFromSurface.inverse() * center);
+  const Collider &a = geometry.colliders[isOfB ? pair.a : pair.b], &b = geometry.colliders[isOfB ? pair.b : pair.a];
+  const auto nearestOn = [&](const Collider& collider, const Attachment& center) {
+    const RigidTransform worldFromBody = poseOf(state, collider.body);
+    return worldFromBody *
+           nearestOnSurface(collider, worldFromBody.inverse() * (poseOf(state, center.body) * center.point));
+  };
   const ContactPlace place = placeOf(held, state, frames_);
-  return (place.point - place.gap * place.normal - nearest).norm();
+  const double onB = (place.point - place.gap * place.normal - nearestOn(b, held.centerA)).norm();
+  if (std::isinf(held.radiusB)) return onB;
+  return std::max(onB, (place.point - nearestOn(a, held.surfaceB)).norm());
 }
 
 /// Of each contact, in the order of kKinds; infinite where there is nothing to change.
@@ -61,7 +66,7 @@ void LastingContacts::findMargins(const VectorX& state, std::vector<Margins>& ma
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const ContactMotion motion = mechanism().contacts[i].motion;
     const double limit = entries_[i].pair.law.staticFriction * forces[i].normal;
-    const double away = distanceFromFace(i, state) / (kLeavingPart * reach_);
+    const double away = distanceFromNearest(i, state) / (kLeavingPart * reach_);
     margins[i] = {forces[i].normal / entries_[i].force, INFINITY, INFINITY, kLeavingUnit * std::max(-1.0, 1 - away)};
     if (motion == ContactMotion::sticking) margins[i][1] = (limit - forces[i].tangential.norm()) / entries_[i].force;
     if (motion == ContactMotion::sliding) margins[i][2] = forces[i].tangentialVelocity.dot(givenDirection(i, state));

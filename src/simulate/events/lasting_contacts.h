@@ -17,7 +17,7 @@ struct ContactChange {
     release,   // its force would have to pull
     slip,      // friction gives way
     stick,     // sliding stops
-    leave,     // the contact comes to the border of its face
+    leave,     // the contact comes to the border of its face, or off its corner
     redundant  // no forces hold it together with others any more
   };
   Kind kind = Kind::release;
@@ -95,7 +95,7 @@ class LastingContacts {
   using Margins = std::array<double, 4>;
 
   Vec3 givenDirection(std::size_t contact, const VectorX& state) const;
-  double distanceFromFace(std::size_t contact, const VectorX& state) const;
+  double distanceFromNearest(std::size_t contact, const VectorX& state) const;
   void findMargins(const VectorX& state, std::vector<Margins>& margins);
   bool isHeldTogether(const VectorX& state);
   std::optional<double> firstFailure(double from, double to);
