@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Contact beside Bullet: error, energy, drift at rest, penetration and cost of scenes of contact, as a table.
+"""Contact beside other engines: error, energy, drift at rest, penetration and cost of scenes of contact, as a table.
 
     contact_figures.py PROGRAM [NAME ...]      NAME: a scene of benchmarks/scenes without folder and ending, or one of
                                                cradle_N_K, tray_of_balls, balls_49, balls_216, piles; all if none is given
 
-PROGRAM is cradle; Bullet runs by bullet_trajectory beside it, if that was built (CMake: CRADLE_PEERS), in turn with cradle.
+PROGRAM is cradle; other engines run by peer_trajectory beside it, if that was built (CMake: CRADLE_PEERS), in turn with cradle.
 Progress goes to stderr.
 error        m, at the worst frame, unless the scene's line says otherwise
-energy       largest drift of kinetic + potential + dissipated - work in parts of the largest kinetic energy; of Bullet only
+energy       largest drift of kinetic + potential + dissipated - work in parts of the largest kinetic energy; of others only
              where nothing dissipates
 drift        m: how far a body that should lie still goes
 penetration  m: deepest overlap in the frames looked at
@@ -24,7 +24,8 @@ from scene_figures import Run, norm, sub
 GRAVITY = 9.81
 SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes")
 ACCURACIES = ("1e-6", "1e-10")
-BULLET = (("bullet", 60), ("bulletTuned", 60), ("bulletTuned", 1000), ("bulletTuned100", 1000))  # method, steps a second
+PEERS = (("bullet", 60), ("bulletTuned", 60), ("bulletTuned", 1000), ("bulletTuned100", 1000), ("ode", 60), ("ode", 1000),
+         ("odeQuick100", 60), ("odeQuick100", 1000), ("mujoco", 60), ("mujocoTuned", 60), ("mujocoTuned", 1000))  # steps a second
 LEAST_RUNS, LONG_RUN = 3, 2.0  # CPU s
 LONGEST_RUN = 60  # s
 SETTLED = 5  # s: by then, what is dropped should lie still
@@ -88,7 +89,7 @@ def bounce(t, restitution):
 # Figures of a scene: (error, drift, what else there is to say); error and drift may be None.
 
 def off_by(result, kinds, expected, number=-1):
-    """How far an event of some kinds, the last one if not said otherwise, is from where it should be; Bullet has none."""
+    """How far an event of some kinds, the last one if not said otherwise, is from where it should be; other engines have none."""
     events = [event for event in result.events if event[1] in kinds]
     return f"{events[number][1]} off by {abs(events[number][0] - expected):.1e} s" if events else ""
 
@@ -263,10 +264,10 @@ def programs(cradle_program, case, scene):
     """Name and command of each row; the path of the trajectory comes last."""
     for accuracy in case.accuracies:
         yield f"cradle {accuracy}", [cradle_program, "simulate", scene, "--quiet", "--accuracy", accuracy, "-o"]
-    bullet = os.path.join(os.path.dirname(cradle_program), "bullet_trajectory")
-    if case.has_peer and os.path.exists(bullet):
-        for method, steps in BULLET:
-            yield f"{method} 1/{steps} s", [bullet, scene, method, repr(1 / steps)]
+    peer = os.path.join(os.path.dirname(cradle_program), "peer_trajectory")
+    if case.has_peer and os.path.exists(peer):
+        for method, steps in PEERS:
+            yield f"{method} 1/{steps} s", [peer, scene, method, repr(1 / steps)]
 
 
 def show(value, form=".1e"):

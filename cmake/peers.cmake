@@ -1,14 +1,17 @@
 # cradle_link_peers(TARGET): takes the units of the engines that studies compare with out of a target, or, without
-# CRADLE_PEERS, those that stand in for them.
+# CRADLE_PEERS, what stands in for them.
 function(cradle_link_peers TARGET)
   get_target_property(SOURCES ${TARGET} SOURCES)
   if(CRADLE_PEERS)
-    list(FILTER SOURCES EXCLUDE REGEX "/peers/no_bullet.cpp$")
-    target_compile_definitions(${TARGET} PRIVATE BT_USE_DOUBLE_PRECISION)  # as Debian builds it
-    target_include_directories(${TARGET} SYSTEM PRIVATE ${BULLET_INCLUDE})
-    target_link_libraries(${TARGET} PRIVATE ${BULLET_LIBRARIES})
+    list(FILTER SOURCES EXCLUDE REGEX "/peers/no_peers.cpp$")
+    target_compile_definitions(${TARGET} PRIVATE BT_USE_DOUBLE_PRECISION dIDEDOUBLE)  # as Debian builds them
+    target_include_directories(${TARGET} SYSTEM PRIVATE ${PEER_INCLUDES})
+    target_link_libraries(${TARGET} PRIVATE ${PEER_LIBRARIES})
+    # Simbody's headers compare its indices in a way that C++20 finds ambiguous.
+    set_source_files_properties(${PROJECT_SOURCE_DIR}/src/study/peers/simbody.cpp PROPERTIES COMPILE_OPTIONS -std=c++17
+      SKIP_PRECOMPILE_HEADERS ON)
   else()
-    list(FILTER SOURCES EXCLUDE REGEX "/peers/bullet(_shapes)?.cpp$")
+    list(FILTER SOURCES EXCLUDE REGEX "/peers/(bullet|joint_tree|mujoco|ode|peer_shapes|peers|simbody)")
   endif()
   set_target_properties(${TARGET} PROPERTIES SOURCES "${SOURCES}")
 endfunction()

@@ -49,6 +49,9 @@ void addOutput(CLI::App* command, CommandLine& line, const char* what) {
 
 void addPictureOptions(CLI::App* command, CommandLine& line) {
   command->add_option("--size", line.pictures.size, "WIDTHxHEIGHT in pixels (default: the scene's)");
+  command->add_option("--overlay", line.pictures.overlay,
+                      "what lies on the pictures, with commas: time, contacts, velocities, trails, plot=energy, "
+                      "plot=energyError, plot=height:BODY");
   command->add_option("--shaders", line.pictures.shaders, "folder with shaders to use instead of the built-in ones");
 }
 
@@ -95,6 +98,7 @@ void addPictures(CLI::App& app, CommandLine& line) {
   render->add_option("input", line.input, "scene or trajectory file")->required();
   addOutput(render, line, "folder for frame_000000.png, ...");
   render->add_option("--frames", line.pictures.frames, "FIRST:END, half-open (default: all)");
+  render->add_flag("--overwrite", line.pictures.overwrite, "replace frames that are in the folder already");
   addPictureOptions(render, line);
 
   auto* encode =

@@ -18,8 +18,9 @@ MAY_INCLUDE = {
     "simulate": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory"],
     "image": ["core"],
     "render": ["core", "math", "mesh", "scene", "trajectory", "image"],
+    "overlay": ["core", "math", "mesh", "scene", "trajectory", "image", "render"],
     "study": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory", "simulate", "image"],
-    "commands": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory", "simulate", "image", "render", "study"],
+    "commands": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory", "simulate", "image", "render", "overlay", "study"],
 }
 # The one place of each library (Eigen and fmt are everywhere).
 LIBRARY_UNITS = {
@@ -28,13 +29,16 @@ LIBRARY_UNITS = {
     "nlohmann/": ["scene/json_document", "commands/inspect_mesh"],
     "CLI/": ["main.cpp"],
     "sqlite3.h": ["trajectory/database"],
-    "stb/": ["image/png"],
+    "stb/": ["image/png", "image/font"],
     "libdeflate.h": ["image/png"],
     "GL/": ["render"],
     "GL/osmesa.h": ["render/contexts/osmesa"],
     "EGL/": ["render/contexts/egl"],
     "Bullet": ["study/peers/bullet"],
     "bt": ["study/peers/bullet"],
+    "ode/": ["study/peers/ode"],
+    "mujoco/": ["study/peers/mujoco"],
+    "Simbody": ["study/peers/simbody"],
 }
 
 

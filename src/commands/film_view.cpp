@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "render/body_place.h"
+#include "render/camera_path.h"
+
 namespace cradle {
 
 View viewOf(const TrajectorySource& source, int width, int height) {
@@ -10,8 +13,20 @@ View viewOf(const TrajectorySource& source, int width, int height) {
     return reader.readFrame(std::min(frame, reader.frameCount() - 1));
   });
   Framing framing(source.scene(), width, height, pushes);
-  for (long frame = 0; frame < reader.frameCount(); ++frame) framing.add(reader.readFrame(frame));
-  return framing.view();
+  std::vector<Camera> cameras;
+  std::optional<CameraPath> path;
+  if (source.scene().camera) path.emplace(source.scene());
+  for (long number = 0; number < reader.frameCount(); ++number) {
+    const Frame frame = reader.readFrame(number);
+    framing.add(frame);
+    if (path) cameras.push_back(path->next(frame.time, placeBodies(source.scene(), frame)));
+  }
+  View view = framing.view();
+  if (!source.scene().cameraMotion.isNone()) {
+    view.camera = cameras.front();
+    view.cameras = std::move(cameras);
+  }
+  return view;
 }
 
 }  // namespace cradle

@@ -14,6 +14,7 @@
 #include "core/progress.h"
 #include "image/png.h"
 #include "image/video.h"
+#include "overlay/film_overlay.h"
 #include "render/renderer.h"
 
 namespace cradle {
@@ -52,38 +53,112 @@ Size parseSize(const std::optional<std::string>& text, const Scene& scene) {
   return {static_cast<int>(size->first), static_cast<int>(size->second)};
 }
 
+std::optional<FrameRange> parseRange(const std::optional<std::string>& text) {
+  const auto range = text ? parsePair(*text, ':') : std::nullopt;
+  return range ? std::optional(FrameRange{range->first, range->second}) : std::nullopt;
+}
+
 /// The frames to draw; the last frame of the trajectory may be named, though a film leaves it out.
 FrameRange parseFrames(const std::optional<std::string>& text, const TrajectorySource& source) {
   if (!text) return {0, source.pictureCount()};
-  const auto range = parsePair(*text, ':');
+  const auto range = parseRange(text);
   const long count = source.reader().frameCount();
-  if (!range || range->first < 0 || range->second <= range->first || range->second > count)
+  if (!range || range->first < 0 || range->end <= range->first || range->end > count)
     throw Error(ErrorKind::usage, "--frames",
                 fmt::format("found \"{}\"; allowed is FIRST:END with 0 <= FIRST < END <= {}", *text, count));
-  return {range->first, range->second};
+  return *range;
 }
 
-bool isFrameName(const std::string& name) {
-  return name.size() == 16 && name.starts_with("frame_") && name.ends_with(".png") &&
-         name.find_first_not_of("0123456789", 6) == 12;
+constexpr long kMostFrames = 1'000'000;  // that file names have digits for
+
+/// The number of a frame's file, or of one that is being written; nothing for other names.
+std::optional<long> frameNumber(const std::string& name) {
+  const std::string whole = name.ends_with(".part") ? name.substr(0, name.size() - 5) : name;
+  const bool isFrame = whole.size() == 16 && whole.starts_with("frame_") && whole.ends_with(".png") &&
+                       whole.find_first_not_of("0123456789", 6) == 12;
+  return isFrame ? std::optional(std::stol(whole.substr(6, 6))) : std::nullopt;
 }
 
 std::string frameName(long frame) {
   return fmt::format("frame_{:06}.png", frame);
 }
 
+/// Numbers of the frames in a folder that are in a range, ascending.
+std::vector<long> framesIn(const std::string& folder, const FrameRange& range) {
+  std::vector<long> numbers;
+  std::error_code missing;  // none in a folder that is still to be made
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, missing)) {
+    const auto number = frameNumber(entry.path().filename().string());
+    if (number && *number >= range.first && *number < range.end) numbers.push_back(*number);
+  }
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+/// Refuses a folder with frames that a run would replace without being told to. Without `range`, all frames are its
+/// own.
+void requireRoom(const std::string& folder, const std::optional<FrameRange>& range, const PictureOptions& options) {
+  requireOwnFolder(folder, "frame", [](const std::string& name) { return frameNumber(name).has_value(); });
+  const std::vector<long> there = framesIn(folder, range.value_or(FrameRange{0, kMostFrames}));
+  if (there.empty() || options.overwrite) return;
+  throw Error(
+      ErrorKind::output, folder,
+      fmt::format("holds {} of the frames to be drawn, {} to {}; name a new or empty folder, or say --overwrite to "
+                  "replace them",
+                  there.size(), frameName(there.front()), frameName(there.back())));
+}
+
+/// Frames that the film has not would get between its own when it is encoded.
+void requireNoOthers(const std::string& folder, long frameCount) {
+  const std::vector<long> others = framesIn(folder, {frameCount, kMostFrames});
+  if (others.empty()) return;
+  throw Error(
+      ErrorKind::output, folder,
+      fmt::format("holds {} to {}, which are of another film, for this one has {} frames; remove them, or name a "
+                  "new or empty folder",
+                  frameName(others.front()), frameName(others.back()), frameCount));
+}
+
+/// What draws the frames of a film: whatever is wrong with its camera, overlays or shaders shows before a file is made.
+struct FilmDrawer {
+  FilmDrawer(const TrajectorySource& trajectory, const PictureOptions& options)
+      : source(trajectory),
+        size(parseSize(options.size, source.scene())),
+        view(viewOf(source, size.width, size.height)),
+        renderer(source.scene(), view, size.width, size.height, options.shaders.value_or("")) {
+    const TrajectoryReader& reader = source.reader();
+    const FilmRecord film{source.scene(),
+                          view,
+                          size.width,
+                          size.height,
+                          [&reader](long number) { return reader.readFrame(number); },
+                          reader.frameCount(),
+                          reader.events()};
+    if (options.overlay) overlay.emplace(film, parseOverlays(*options.overlay));
+  }
+
+  Image draw(long number) {
+    const Frame frame = source.reader().readFrame(number);
+    Image image = renderer.render(frame);
+    if (overlay) overlay->draw(frame, image);
+    return image;
+  }
+
+  const TrajectorySource& source;
+  Size size;
+  View view;
+  Renderer renderer;
+  std::optional<FilmOverlay> overlay;
+};
+
 /// Draws frames in order and hands each picture on in a thread beside the drawing of the next one.
 template <class Take>
-void drawFrames(const TrajectorySource& source, const PictureOptions& options, const FrameRange& range, bool quiet,
-                const Take& take) {
-  const Size size = parseSize(options.size, source.scene());
-  Renderer renderer(source.scene(), viewOf(source, size.width, size.height), size.width, size.height,
-                    options.shaders.value_or(""));
+void drawFrames(FilmDrawer& drawer, const FrameRange& range, bool quiet, const Take& take) {
   Progress progress("Drawing", "pictures", range.end - range.first, quiet);
   std::future<void> taken;
   for (long frame = range.first; frame < range.end; ++frame) {
     throwIfInterrupted();
-    Image image = renderer.render(source.reader().readFrame(frame));
+    Image image = drawer.draw(frame);
     if (taken.valid()) taken.get();
     taken = std::async(std::launch::async, [&take, frame, picture = std::move(image)] { take(frame, picture); });
     progress.update(frame - range.first + 1);
@@ -94,12 +169,14 @@ void drawFrames(const TrajectorySource& source, const PictureOptions& options, c
 }  // namespace
 
 void renderFrames(const std::string& input, const std::string& folder, const PictureOptions& options, bool quiet) {
-  requireOwnFolder(folder, "frame", isFrameName);
+  requireRoom(folder, parseRange(options.frames), options);
+  if (options.overlay) parseOverlays(*options.overlay);
   const TrajectorySource source(input, quiet);
   const FrameRange range = parseFrames(options.frames, source);
-  parseSize(options.size, source.scene());
+  requireNoOthers(folder, source.reader().frameCount());
+  FilmDrawer drawer(source, options);
   makeFolder(folder);
-  drawFrames(source, options, range, quiet, [&](long frame, const Image& picture) {
+  drawFrames(drawer, range, quiet, [&](long frame, const Image& picture) {
     writePng(picture, (fs::path(folder) / frameName(frame)).string());
   });
 }
@@ -115,11 +192,11 @@ void encodeFrames(const std::string& folder, const std::string& film, double fra
 
 void makeFilm(const std::string& input, const std::string& film, const PictureOptions& options, bool quiet) {
   requireWritableFile(film);
+  if (options.overlay) parseOverlays(*options.overlay);
   const TrajectorySource source(input, quiet);
-  const Size size = parseSize(options.size, source.scene());
-  VideoEncoder encoder(film, {size.width, size.height, source.scene().output.framesPerSecond});
-  drawFrames(source, options, {0, source.pictureCount()}, quiet,
-             [&](long, const Image& picture) { encoder.add(picture); });
+  FilmDrawer drawer(source, options);
+  VideoEncoder encoder(film, {drawer.size.width, drawer.size.height, source.scene().output.framesPerSecond});
+  drawFrames(drawer, {0, source.pictureCount()}, quiet, [&](long, const Image& picture) { encoder.add(picture); });
   encoder.finish();
 }
 

@@ -9,12 +9,15 @@ namespace cradle {
 struct PictureOptions {
   std::optional<std::string> size;     // "WIDTHxHEIGHT"
   std::optional<std::string> frames;   // "FIRST:END", half-open
+  std::optional<std::string> overlay;  // as parseOverlays() reads it
   std::optional<std::string> shaders;  // folder
+  bool overwrite = false;              // of `render`
   double framesPerSecond = 60;         // of `encode`
 };
 
 /// `cradle render SCENE|TRAJECTORY -o FOLDER`: frame_000000.png, ... . Throws Error(output) if the folder holds
-/// anything but frames.
+/// anything but frames of the film, or, without `overwrite`, some that are to be drawn: several runs can draw parts of
+/// a film.
 void renderFrames(const std::string& input, const std::string& folder, const PictureOptions& options, bool quiet);
 
 /// `cradle encode FOLDER -o FILE.mp4`.

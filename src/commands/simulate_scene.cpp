@@ -9,6 +9,7 @@
 #include "core/interruption.h"
 #include "core/output_path.h"
 #include "core/progress.h"
+#include "render/camera_path.h"
 #include "scene/load_scene.h"
 #include "simulate/assembly.h"
 #include "simulate/plan/plan_text.h"
@@ -84,6 +85,7 @@ Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides)
   LoadedScene loaded = loadScene(path);
   for (const std::string& warning : loaded.warnings) warn(warning);
   apply(overrides, loaded.scene);
+  requireUsableCamera(loaded.scene);
   return std::move(loaded.scene);
 }
 

@@ -84,6 +84,14 @@ void printFindings(const NamedScene& named, const Reference& reference, const st
     if (row.status == RunStatus::failed) fmt::print("  {} at {}: {}\n", row.method, row.setting, row.message);
 }
 
+/// How each of the other engines' methods is set up.
+void printPeers(const std::vector<StudyMethod>& methods) {
+  for (const StudyMethod& method : methods)
+    if (method.peer)
+      fmt::print("{:<20}{} {}: {}\n", method.name, method.peer->engine, method.peer->version,
+                 method.peer->configuration);
+}
+
 /// A study of some scenes under way.
 class Study {
  public:
@@ -93,8 +101,8 @@ class Study {
         drawsCharts_(canDrawCharts()),
         table_((fs::path(folder_) / kTableName).string()),
         progress_("Studying", "methods", static_cast<long>(scenes * (methods_.size() + 1)), quiet) {
-    if (!hasBullet())
-      fmt::print(stderr, "note: built without Bullet (CMake: CRADLE_PEERS); only our own methods run\n");
+    if (peers().empty())
+      fmt::print(stderr, "note: built without other engines (CMake: CRADLE_PEERS); only our own methods run\n");
     if (!drawsCharts_) fmt::print(stderr, "warning: gnuplot is missing: there will be a table, but no charts\n");
   }
 
@@ -168,6 +176,7 @@ void studyScenes(const std::vector<std::string>& paths, const std::string& folde
   std::deque<NamedScene> scenes;
   loadScenes(paths, scenes);
   makeFolder(folder);
+  printPeers(methods);
   Study study(folder, methods, scenes.size(), quiet);
   try {
     for (NamedScene& named : scenes) study.add(named);

@@ -15,10 +15,10 @@ Eigen::Vector2d halfExtents(const Camera& camera, int width, int height) {
 
 }  // namespace
 
-Mat3 cameraAxes(const Vec3& position, const Vec3& target) {
+Mat3 cameraAxes(const Vec3& position, const Vec3& target, const Vec3& up) {
   const Vec3 towards = target - position;
   const Vec3 back = towards.norm() > 0 ? Vec3(-towards.normalized()) : Vec3(Vec3::UnitZ());
-  Vec3 right = Vec3::UnitY().cross(back);
+  Vec3 right = up.cross(back);
   if (right.norm() < 1e-9) right = Vec3::UnitX();
   right.normalize();
   Mat3 axes;
@@ -26,8 +26,12 @@ Mat3 cameraAxes(const Vec3& position, const Vec3& target) {
   return axes;
 }
 
+Mat3 cameraAxes(const Camera& camera) {
+  return cameraAxes(camera.position, camera.target, camera.up);
+}
+
 Eigen::Matrix4f clipFromWorld(const Camera& camera, const Vec3& origin, int width, int height, double nearPlane) {
-  const Mat3 axes = cameraAxes(camera.position, camera.target);
+  const Mat3 axes = cameraAxes(camera);
   Eigen::Matrix4d viewFromWorld = Eigen::Matrix4d::Identity();
   viewFromWorld.topLeftCorner<3, 3>() = axes.transpose();
   viewFromWorld.topRightCorner<3, 1>() = axes.transpose() * (origin - camera.position);
@@ -43,7 +47,7 @@ Eigen::Matrix4f clipFromWorld(const Camera& camera, const Vec3& origin, int widt
 }
 
 Eigen::Vector2d projectToPixel(const Camera& camera, const Vec3& point, int width, int height) {
-  const Vec3 view = cameraAxes(camera.position, camera.target).transpose() * (point - camera.position);
+  const Vec3 view = cameraAxes(camera).transpose() * (point - camera.position);
   const Eigen::Vector2d half = halfExtents(camera, width, height);
   const double x = view.x() / (-view.z() * half.x()), y = view.y() / (-view.z() * half.y());
   return {width * (1 + x) / 2, height * (1 - y) / 2};

@@ -39,12 +39,13 @@ void appendContact(const BodyAppearance& look, const RigidTransform& worldFromBo
 }
 
 /// A plane other than the ground, as a square next to what is shown; from behind, it is not there.
-void appendWall(const Scene& scene, const Appearance& appearance, const View& view, std::size_t body, DrawList& list) {
+void appendWall(const Scene& scene, const Appearance& appearance, const View& view, std::size_t body,
+                const Vec3& viewpoint, DrawList& list) {
   const Plane* plane = std::get_if<Plane>(&scene.bodies[body].shape);
   if (plane == nullptr || (appearance.ground && appearance.ground->body == static_cast<int>(body))) return;
   const RigidTransform& place = scene.bodies[body].worldFromBody;
   const Vec3 normal = place.rotation * plane->normal;
-  if (normal.dot(view.camera.position - place.translation) <= 0) return;
+  if (normal.dot(viewpoint - place.translation) <= 0) return;
   const DrawnMesh& mesh = appearance.meshes[static_cast<std::size_t>(appearance.wallMesh)];
   MeshItem item{appearance.wallMesh, 0, static_cast<std::uint32_t>(mesh.triangles.size())};
   const Vec3 middle = view.bounds.isEmpty() ? place.translation : Vec3(view.bounds.center());
@@ -101,7 +102,7 @@ DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const Vi
     appendBody(appearance.bodies[i], places[i], list);
     appendRound(appearance.bodies[i], places[i], body, list);
     appendContact(appearance.bodies[i], places[i], list);
-    appendWall(scene, appearance, view, i, list);
+    appendWall(scene, appearance, view, i, view.cameraAt(frame.number).position, list);
     bodyOfMesh.resize(list.meshes.size(), body);
     bodyOfSphere.resize(list.spheres.size(), body);
     bodyOfCylinder.resize(list.cylinders.size(), body);

@@ -89,7 +89,7 @@ DrawnHull swept(const DrawnHull& hull, const Vec3& first, const Vec3& last) {
 }
 
 std::optional<std::vector<Eigen::Vector2d>> outlineOf(const DrawnHull& hull, const Stage& stage) {
-  const Mat3 axes = cameraAxes(stage.camera.position, stage.camera.target);
+  const Mat3 axes = cameraAxes(stage.camera);
   const double pixelsPerSlope = stage.height / (2 * std::tan(stage.camera.verticalFieldOfView / 2));
   const auto column = [&](double slope) { return stage.width / 2.0 + pixelsPerSlope * slope; };
   const auto row = [&](double slope) { return stage.height / 2.0 + pixelsPerSlope * slope; };

@@ -10,12 +10,17 @@
 
 namespace cradle {
 
-/// What a whole film looks at: one camera, and a box around all that it shows (ground apart).
+/// What a whole film looks at: one camera, or one for each frame; and a box around all that it shows (ground apart).
 struct View {
-  Camera camera;
+  Camera camera;                       // at the start
   Bounds bounds;                       // m, world
   std::vector<ShownPush> pushes = {};  // drawn as arrows
   double longestArrow = 0;             // m, of the push with the greatest force
+  std::vector<Camera> cameras = {};    // of all frames; none if the camera stands still
+
+  const Camera& cameraAt(long frame) const {
+    return cameras.empty() ? camera : cameras.at(static_cast<std::size_t>(frame));
+  }
 
   /// m, from the tail to the point that is pushed; 0 for a push without a force.
   double arrowLength(const ShownPush& push) const;

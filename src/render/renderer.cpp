@@ -19,10 +19,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+double pixelsPerMetre(const Camera& camera, const Bounds& bounds, int height) {
+  const Vec3 center = bounds.isEmpty() ? camera.target : Vec3(bounds.center());
+  const double distance = (camera.position - center).norm();
+  return height / (2 * std::max(distance, 1e-9) * std::tan(camera.verticalFieldOfView / 2));
+}
+
+/// Where the scene looks largest.
 double pixelsPerMetre(const View& view, int height) {
-  const Vec3 center = view.bounds.isEmpty() ? view.camera.target : Vec3(view.bounds.center());
-  const double distance = (view.camera.position - center).norm();
-  return height / (2 * std::max(distance, 1e-9) * std::tan(view.camera.verticalFieldOfView / 2));
+  double most = pixelsPerMetre(view.camera, view.bounds, height);
+  for (const Camera& camera : view.cameras) most = std::max(most, pixelsPerMetre(camera, view.bounds, height));
+  return most;
 }
 
 void appendCorner(const Vec3& corner, float w, std::vector<float>& vertices) {
@@ -83,13 +90,17 @@ struct Renderer::Programs {
         groundFar(source, "ground.vert", "ground_far.frag"),
         contact(source, "contact.vert", "contact.frag"),
         sky(source, "sky.vert", "sky.frag") {
-    for (const ShaderProgram* program : {&surface, &ball, &cylinder, &tube, &ground, &groundFar, &contact, &sky})
-      setStage(stage, *program);
+    for (const ShaderProgram* program : seen()) setStage(stage, *program);
     for (const ShaderProgram* program : {&surfaceDepth, &ballDepth, &cylinderDepth, &tubeDepth}) {
       program->use();
       program->set("clipFromWorld", stage.shadow.clipFromWorld);
       program->set("viewer", stage.shadow.viewer);
     }
+  }
+
+  /// Those of what the camera sees.
+  std::array<const ShaderProgram*, 8> seen() const {
+    return {&surface, &ball, &cylinder, &tube, &ground, &groundFar, &contact, &sky};
   }
 
   ShaderProgram surface, ball, cylinder, tube;
@@ -156,6 +167,7 @@ Image Renderer::render(const Frame& frame) {
   r.context.makeCurrent();
   times_ = {};
   r.stageStart = Clock::now();
+  aim(view_.cameraAt(frame.number));
   DrawList list = makeDrawList(scene_, r.appearance, view_, frame);
   const ChangedArea changed = r.drawn ? changedArea(*r.drawn, list, r.stage, r.meshBounds) : wholePicture(r.stage);
   r.drawn.reset();  // until the picture is complete
@@ -164,6 +176,15 @@ Image Renderer::render(const Frame& frame) {
   if (!changed.picture.isEmpty()) draw(list, changed);
   r.drawn = std::move(list);
   return r.image;
+}
+
+/// From another place everything looks different.
+void Renderer::aim(const Camera& camera) {
+  Resources& r = *resources_;
+  if (camera == r.stage.camera) return;
+  aimCamera(camera, r.stage);
+  for (const ShaderProgram* program : r.programs.seen()) setCamera(r.stage, *program);
+  r.drawn.reset();
 }
 
 void Renderer::draw(const DrawList& list, const ChangedArea& changed) {

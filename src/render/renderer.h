@@ -47,6 +47,7 @@ class Renderer {
  private:
   struct Programs;
   struct Resources;
+  void aim(const Camera& camera);
   void draw(const DrawList& list, const ChangedArea& changed);
   void drawShadowMap(const PixelRectangle& area);
   void drawContactMap();

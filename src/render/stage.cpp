@@ -104,7 +104,7 @@ float phaseAlong(const Vec3& axis, const Stage& stage) {
 }
 
 void setRays(const Stage& stage, const ShaderProgram& program) {
-  const Mat3 axes = cameraAxes(stage.camera.position, stage.camera.target);
+  const Mat3 axes = cameraAxes(stage.camera);
   const double tangent = std::tan(stage.camera.verticalFieldOfView / 2);
   const double pixel = 2 * tangent / stage.height;
   const Vec3 column = pixel * axes.col(0), row = pixel * axes.col(1);
@@ -151,24 +151,38 @@ void setGround(const Stage& stage, const ShaderProgram& program) {
   program.set("mapV", Vec3f((region.sizeV * region.axisV).cast<float>()));
 }
 
+double sizeOf(const Stage& stage) {
+  return stage.bounds.diagonal().norm();
+}
+
+/// The same in all frames, so that the ground does not change where a camera comes near.
+double farthestTarget(const View& view) {
+  double farthest = (view.camera.position - view.camera.target).norm();
+  for (const Camera& camera : view.cameras) farthest = std::max(farthest, (camera.position - camera.target).norm());
+  return farthest;
+}
+
 }  // namespace
+
+void aimCamera(const Camera& camera, Stage& stage) {
+  stage.camera = camera;
+  const double nearest = std::max(stage.bounds.exteriorDistance(camera.position), kNearShare * sizeOf(stage));
+  stage.clipFromWorld = clipFromWorld(camera, stage.origin, stage.width, stage.height, kNearShare * nearest);
+}
 
 Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground>& ground, int width, int height) {
   const Bounds bounds = view.bounds.isEmpty() ? Bounds(-Vec3::Ones(), Vec3::Ones()) : view.bounds;
   Stage stage;
   stage.width = width;
   stage.height = height;
-  stage.camera = view.camera;
+  stage.bounds = bounds;
   stage.origin = bounds.center();
-  const double distance = (view.camera.position - view.camera.target).norm();
-  const double size = bounds.diagonal().norm();
-  const double nearest = std::max(bounds.exteriorDistance(view.camera.position), kNearShare * size);
-  stage.clipFromWorld = clipFromWorld(view.camera, stage.origin, width, height, kNearShare * nearest);
+  aimCamera(view.camera, stage);
   stage.lighting = makeLighting(scene, ground);
   stage.shadow = makeShadowView(stage.lighting.lamps[0].towards, bounds, stage.origin);
   stage.ground = ground;
   if (ground) stage.shaded = makeShadedRegion(*ground, stage.lighting.lamps[0].towards, bounds, stage.origin);
-  stage.fadeDistance = kFadeDistance * std::max(size, distance / 3);
+  stage.fadeDistance = kFadeDistance * std::max(sizeOf(stage), farthestTarget(view) / 3);
   return stage;
 }
 
@@ -177,12 +191,16 @@ std::string shaderDefinitions(const Stage& stage) {
                      stage.lighting.lamps.size() - 1);
 }
 
-void setStage(const Stage& stage, const ShaderProgram& program) {
+void setCamera(const Stage& stage, const ShaderProgram& program) {
   program.use();
   program.set("clipFromWorld", stage.clipFromWorld);
   program.set("eye", stage.relative(stage.camera.position));
   program.set("viewer", joined(stage.camera.position - stage.origin, 1));
   setRays(stage, program);
+}
+
+void setStage(const Stage& stage, const ShaderProgram& program) {
+  setCamera(stage, program);
   setLighting(stage.lighting, program);
   setGround(stage, program);
   program.set("shadowFromWorld", stage.shadow.textureFromWorld);

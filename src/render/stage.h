@@ -34,11 +34,13 @@ struct ShadedRegion {
   double margin = 0;                                    // m, from what is shown to the region's border
 };
 
-/// All that stays the same from frame to frame. World coordinates for OpenGL are relative to `origin`.
+/// All that stays the same from frame to frame, but for a camera that moves. World coordinates for OpenGL are relative
+/// to `origin`.
 struct Stage {
   int width = 0, height = 0;
   Camera camera;
-  Vec3 origin;  // m, world
+  Bounds bounds;  // m, world
+  Vec3 origin;    // m, world
   Eigen::Matrix4f clipFromWorld;
   Lighting lighting;
   ShadowView shadow;
@@ -57,10 +59,16 @@ enum TextureUnit { kShadowUnit = 0, kContactUnit, kBallUnit, kNearBallUnit };
 
 Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground>& ground, int width, int height);
 
+/// Turns the stage to another camera.
+void aimCamera(const Camera& camera, Stage& stage);
+
 /// What the shaders need to know of the stage before they are compiled.
 std::string shaderDefinitions(const Stage& stage);
 
 /// Gives a program all the uniforms of the stage.
 void setStage(const Stage& stage, const ShaderProgram& program);
+
+/// Gives it those that change with the camera.
+void setCamera(const Stage& stage, const ShaderProgram& program);
 
 }  // namespace cradle

@@ -7,6 +7,7 @@
 
 #include "scene/attach_models.h"
 #include "scene/parse_bodies.h"
+#include "scene/parse_camera.h"
 #include "scene/parse_links.h"
 #include "scene/parse_materials.h"
 #include "scene/parse_pushes.h"
@@ -40,6 +41,7 @@ SceneDraft parseText(const JsonValue& document, FaultList& faults) {
   parseBodies(root, draft);
   parseLinks(root, draft);
   parsePushes(root, draft);
+  parseCamera(root, draft);
   root.rejectUnknownKeys();
   settleLinks(draft, faults);
   return draft;

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
 namespace cradle {
 namespace {
 
@@ -11,7 +9,6 @@ constexpr const char* kSchema = "cradle-scene/1";
 constexpr Range kAccuracies{1e-12, 1e-2};
 constexpr int kLargestPicture = 16384;  // pixels; Mesa's limit
 constexpr double kMostFrames = 1e9;     // a year at 30 a second; keeps frame numbers far from overflow
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 void parseSchema(ObjectReader& root) {
   const auto field = root.require("schema");
@@ -60,21 +57,6 @@ Output parseOutput(const Field& field, FaultList& faults) {
   output.playbackSpeed = reader.number("playbackSpeed", kPositive, "", output.playbackSpeed);
   reader.rejectUnknownKeys();
   return output;
-}
-
-Camera parseCamera(const Field& field, FaultList& faults) {
-  Camera camera;
-  camera.where = faults.where(field.place(), field.pointer);
-  ObjectReader reader(field, faults);
-  camera.position = reader.vector("position", "m", camera.position);
-  camera.target = reader.vector("target", "m", camera.target);
-  camera.verticalFieldOfView =
-      kRadiansPerDegree * reader.number("verticalFieldOfViewDegrees", {0, 180, true}, "degrees", 40);
-  reader.rejectUnknownKeys();
-  if (camera.position == camera.target) {
-    addFault(faults, field, "the camera's position is its target; they must differ, or there is no way to look");
-  }
-  return camera;
 }
 
 Light parseLight(const Field& field, FaultList& faults) {
@@ -128,7 +110,6 @@ void parseSettings(ObjectReader& root, Scene& scene) {
   }
   if (const auto field = root.find("method")) scene.method = parseMethod(*field, faults);
   if (const auto field = root.find("output")) scene.output = parseOutput(*field, faults);
-  if (const auto field = root.find("camera")) scene.camera = parseCamera(*field, faults);
   parseLights(root, scene);
   if (faults.count() == faultsBefore) checkFrameCount(scene, root.field(), faults);
 }

@@ -5,7 +5,7 @@
 
 namespace cradle {
 
-/// All of the scene file that is about the scene as a whole: from `schema` to `output`, `camera` and `lights`.
+/// All of the scene file that is about the scene as a whole: from `schema` to `output` and `lights`.
 void parseSettings(ObjectReader& root, Scene& scene);
 
 }  // namespace cradle

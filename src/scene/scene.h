@@ -128,10 +128,38 @@ struct Output {
   std::string where;                               // the scene file itself if it says nothing of output
 };
 
+/// What one picture is seen from.
 struct Camera {
   std::string where;
   Vec3 position = Vec3(0, 1, 5), target = Vec3::UnitY();  // m, world
-  double verticalFieldOfView = 0.69813170;                // rad (40 degrees)
+  double verticalFieldOfView = 0.69813170;                // rad (40 degrees), 0..pi
+  Vec3 up = Vec3::UnitY();                                // unit, world; not along the view
+
+  /// Sees the same, wherever it is from.
+  bool operator==(const Camera& other) const {
+    return position == other.position && target == other.target && verticalFieldOfView == other.verticalFieldOfView &&
+           up == other.up;
+  }
+};
+
+/// How the camera of a film moves from where it starts, in this order: from key to key, with a body, around its target.
+/// Times are the scene's.
+struct CameraMotion {
+  struct Key {
+    double time = 0;  // s, ascending
+    Vec3 position, target;
+    double verticalFieldOfView = 0;
+  };
+  struct Follow {
+    int body = 0;
+    double lag = 0.25;  // s behind a body that goes straight on, >= 0
+  };
+  std::vector<Key> keys;              // none, or at least two
+  std::optional<Follow> follow;       // moves with it, on a spring
+  std::optional<double> orbitPeriod;  // s, of a turn about `up` through the target; < 0: clockwise from above
+  int targetBody = kWorld;            // kept in the middle of the picture; kWorld: what else says where to look
+
+  bool isNone() const { return keys.empty() && !follow && !orbitPeriod && targetBody == kWorld; }
 };
 
 struct Light {
@@ -161,9 +189,13 @@ struct Scene {
   std::vector<BallJoint> ballJoints;
   std::vector<Hinge> hinges;
   std::vector<Push> pushes;
-  std::optional<Camera> camera;  // unset: framed so that all that moves stays in view
-  std::vector<Light> lights;     // at least one
+  std::optional<Camera> camera;  // at the start; unset: framed so that all that moves stays in view
+  CameraMotion cameraMotion;
+  std::vector<Light> lights;  // at least one
 };
+
+/// Whether a camera looks along its own `up` (or its target is its position), so that no side of the picture is up.
+bool looksAlongUp(const Camera& camera);
 
 /// N: a trajectory has frames 0..N, a film pictures 0..N-1 (at least one).
 long lastFrame(const Scene& scene);

@@ -14,22 +14,19 @@ namespace {
 std::vector<StudyMethod> ownMethods() {
   // Limits of step x omega on an undamped oscillator: Hairer, Norsett, Wanner, "Solving Ordinary Differential Equations
   // II", IV.2; of DOP853 by its stability polynomial.
-  return {{"explicitEuler", "explicit Euler", SettingKind::timeStep, MethodName::explicitEuler, 0, {}},
-          {"semiImplicitEuler", "semi-implicit Euler", SettingKind::timeStep, MethodName::semiImplicitEuler, 2, {}},
-          {"rk4", "RK4", SettingKind::timeStep, MethodName::rk4, 2 * std::sqrt(2.0), {}},
-          {"dop853FixedStep", "DOP853, fixed step", SettingKind::timeStep, MethodName::dop853, 5.96, {}},
-          {"dop853", "DOP853, adaptive", SettingKind::accuracy, MethodName::dop853, 0, {}},
-          {"plan", "the scene's plan", SettingKind::accuracy, std::nullopt, 0, {}}};
+  return {
+      {"explicitEuler", "explicit Euler", SettingKind::timeStep, MethodName::explicitEuler, 0, nullptr},
+      {"semiImplicitEuler", "semi-implicit Euler", SettingKind::timeStep, MethodName::semiImplicitEuler, 2, nullptr},
+      {"rk4", "RK4", SettingKind::timeStep, MethodName::rk4, 2 * std::sqrt(2.0), nullptr},
+      {"dop853FixedStep", "DOP853, fixed step", SettingKind::timeStep, MethodName::dop853, 5.96, nullptr},
+      {"dop853", "DOP853, adaptive", SettingKind::accuracy, MethodName::dop853, 0, nullptr},
+      {"plan", "the scene's plan", SettingKind::accuracy, std::nullopt, 0, nullptr}};
 }
 
-/// Semi-implicit Euler is stable up to step x omega = 2, with forces that are set once a step as well.
-std::vector<StudyMethod> bulletMethods() {
-  if (!hasBullet()) return {};
-  const SettingKind step = SettingKind::timeStep;
-  return {{"bullet", "Bullet", step, std::nullopt, 2, BulletSettings{10, false}},
-          {"bullet100", "Bullet, 100 iterations", step, std::nullopt, 2, BulletSettings{100, false}},
-          {"bulletTuned", "Bullet, tuned", step, std::nullopt, 2, BulletSettings{10, true}},
-          {"bulletTuned100", "Bullet, tuned, 100 iterations", step, std::nullopt, 2, BulletSettings{100, true}}};
+/// A scene is first tried at the limit of semi-implicit Euler, which most engines are.
+StudyMethod methodOf(const Peer& peer) {
+  const double limit = peer.setting == SettingKind::timeStep ? 2 : 0;
+  return {peer.name, peer.title, peer.setting, std::nullopt, limit, &peer};
 }
 
 }  // namespace
@@ -37,7 +34,7 @@ std::vector<StudyMethod> bulletMethods() {
 const std::vector<StudyMethod>& studyMethods() {
   static const std::vector<StudyMethod> methods = [] {
     std::vector<StudyMethod> all = ownMethods();
-    for (const StudyMethod& method : bulletMethods()) all.push_back(method);
+    for (const Peer& peer : peers()) all.push_back(methodOf(peer));
     return all;
   }();
   return methods;

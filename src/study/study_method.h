@@ -5,23 +5,20 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "study/peers/bullet.h"
+#include "study/peers/peer.h"
 
 namespace cradle {
-
-/// What is turned to make a method more exact.
-enum class SettingKind { timeStep, accuracy };
 
 /// A way to go through time that a study compares with others.
 struct StudyMethod {
   std::string name;   // in study.csv and --methods
   std::string title;  // in charts
   SettingKind setting;
-  std::optional<MethodName> method;      // for the scene; unset: the plan chooses
-  double stabilityLimit = 0;             // of step x omega; 0: unstable at any step, or the step is not ours to choose
-  std::optional<BulletSettings> bullet;  // set: Bullet's own method
+  std::optional<MethodName> method;  // for the scene; unset: the plan chooses
+  double stabilityLimit = 0;         // of step x omega; 0: unstable at any step, or the step is not ours to choose
+  const Peer* peer = nullptr;        // set: the way of another engine
 
-  const char* engine() const { return bullet ? "bullet" : "cradle"; }
+  std::string engine() const { return peer ? peer->engine : "cradle"; }
 };
 
 /// All that there are, in the order of charts: our own, then those of the peers that the program was built with.

@@ -48,7 +48,7 @@ StudyScene::StudyScene(Scene scene)
     : scene_(withSafeMethod(std::move(scene))), assembly_(assemble(scene_, wholeScene(scene_))) {}
 
 std::string StudyScene::missingIn(const StudyMethod& method) const {
-  return method.bullet ? missingInBullet(scene_) : "";
+  return method.peer ? method.peer->missingIn(scene_, assembly_) : "";
 }
 
 double StudyScene::fastestFrequency() const {
@@ -59,7 +59,7 @@ double StudyScene::fastestFrequency() const {
 }
 
 StudyRun StudyScene::run(const StudyMethod& method, double setting, double cpuLimit) {
-  if (!method.bullet) choose(method, setting, scene_);
+  if (!method.peer) choose(method, setting, scene_);
   StudyRun result = runOnce(method, setting, kDriftFrames, cpuLimit);
   double sum = 0;
   for (int i = 0; i < kMostRepeats && result.status == RunStatus::ok && result.cost.cpuSeconds < kShortRun; ++i) {
@@ -85,8 +85,8 @@ StudyRun StudyScene::runOnce(const StudyMethod& method, double setting, long fra
       throw Error(ErrorKind::limit, "", fmt::format("takes more than {} s of CPU time", cpuLimit));
   };
   try {
-    if (method.bullet) {
-      run.cost = runBullet(scene_, assembly_, *method.bullet, setting, take);
+    if (method.peer) {
+      run.cost = runPeer(*method.peer, setting, scene_, assembly_, take);
     } else {
       refuseUnsupported(scene_);
       run.cost = simulate(scene_, {take, [](const Event&) {}, [](const std::string&) {}});
@@ -95,7 +95,7 @@ StudyRun StudyScene::runOnce(const StudyMethod& method, double setting, long fra
     return failedRun(error);
   }
   CRADLE_CHECK(!run.end.empty() || assembly_.sceneBodies.empty());
-  const bool knowsEnergy = !method.bullet || !mayDissipate(assembly_);
+  const bool knowsEnergy = !method.peer || !mayDissipate(assembly_);
   run.energyDrift = knowsEnergy ? meter.energyDrift() : std::numeric_limits<double>::quiet_NaN();
   run.constraintDrift = meter.constraintDrift();
   run.penetration = meter.penetration();

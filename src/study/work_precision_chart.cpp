@@ -20,24 +20,35 @@ namespace {
 constexpr StartFailure kNoGnuplot{ErrorKind::output, "gnuplot-nox"};
 
 /// A colour (M. Okabe, K. Ito, "Color Universal Design", 2008: told apart by all eyes) and a marker a method. The
-/// plan's open circles go around the markers of what it chose. Peers have open markers and dashed lines.
+/// plan's open circles go around the markers of what it chose. Peers have a colour an engine, open markers and dashed
+/// lines.
 struct Look {
   const char* color;
   int marker;  // gnuplot's pointtype
   double size = 1.1, lineWidth = 2.5;
   int dash = 1;  // gnuplot's dashtype
 };
-constexpr std::array<Look, 10> kLooks = {{{"#D55E00", 9},
-                                          {"#E69F00", 5},
-                                          {"#0072B2", 7},
-                                          {"#56B4E9", 13},
-                                          {"#009E73", 11},
-                                          {"#CC79A7", 6, 2, 1.2},
-                                          {"#000000", 4, 1.2, 1.6, 2},
-                                          {"#000000", 8, 1.2, 1.6, 4},
-                                          {"#7A5195", 4, 1.2, 1.6, 2},
-                                          {"#7A5195", 8, 1.2, 1.6, 4}}};
-constexpr std::size_t kMostInALine = 6;  // entries of the legend
+constexpr std::array<Look, 6> kLooks = {
+    {{"#D55E00", 9}, {"#E69F00", 5}, {"#0072B2", 7}, {"#56B4E9", 13}, {"#009E73", 11}, {"#CC79A7", 6, 2, 1.2}}};
+constexpr std::array<const char*, 4> kEngineColors = {"#000000", "#7A5195", "#8C510A", "#7F7F7F"};
+constexpr std::array<int, 4> kPeerMarkers = {4, 8, 6, 12};  // of an engine's methods
+constexpr std::array<int, 4> kPeerDashes = {2, 4, 3, 5};
+constexpr std::size_t kMostInALine = 6, kMostInThreeLines = 12;  // entries of the legend
+
+std::vector<Look> looksOf(const std::vector<StudyMethod>& methods) {
+  std::vector<Look> looks;
+  std::size_t engine = 0, inEngine = 0;
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    const bool isNewEngine = i > 0 && methods[i].engine() != methods[i - 1].engine();
+    if (isNewEngine && methods[i - 1].peer) ++engine;
+    inEngine = isNewEngine ? 0 : inEngine + 1;
+    if (methods[i].peer)
+      looks.push_back({kEngineColors.at(engine), kPeerMarkers.at(inEngine), 1.2, 1.6, kPeerDashes.at(inEngine)});
+    else
+      looks.push_back(kLooks.at(i));
+  }
+  return looks;
+}
 
 struct Point {
   double cpu, evaluations, error;
@@ -71,8 +82,9 @@ Curve curveOf(const StudyMethod& method, const Look& look, const std::vector<Stu
 
 std::vector<Curve> curvesOf(const std::vector<StudyRow>& rows) {
   std::vector<Curve> curves;
-  for (std::size_t i = 0; i < studyMethods().size(); ++i) {
-    curves.push_back(curveOf(studyMethods()[i], kLooks.at(i), rows));
+  const std::vector<Look> looks = looksOf(studyMethods());
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    curves.push_back(curveOf(studyMethods()[i], looks[i], rows));
     if (curves.back().points.empty()) curves.pop_back();
   }
   return curves;
@@ -205,6 +217,7 @@ std::string plotCommand(const std::vector<Curve>& curves, int column) {
 }
 
 std::string legend(const std::vector<Curve>& curves) {
+  const int lines = curves.size() <= kMostInALine ? 1 : curves.size() <= kMostInThreeLines ? 3 : 4;
   std::string text = fmt::format(
       "unset label\nunset arrow\nunset object\nunset border\nunset tics\nunset xlabel\nunset ylabel\nunset grid\n"
       "unset logscale\nset key center center horizontal Left reverse maxrows {} samplen 3 width 1 noenhanced font "
@@ -213,7 +226,10 @@ std::string legend(const std::vector<Curve>& curves) {
       "set label 1 'One marker a run: from each to the next, the time step is halved, or the accuracy asked for ten "
       "times finer.' at screen 0.5, 0.025 center font ',13' textcolor rgb '#505050'\n"
       "plot [0:1][0:1] ",
-      curves.size() > kMostInALine ? 3 : 1, curves.size() > kMostInALine ? 12 : 15);
+      lines,
+      lines == 1   ? 15
+      : lines == 3 ? 12
+                   : 10);
   for (const Curve& curve : curves)
     text += fmt::format(
         "NaN with linespoints dashtype {} linewidth {} pointtype {} pointsize {}*markerScale linecolor rgb '{}' title "

@@ -364,6 +364,64 @@ class Pictures(InTemporaryFolder):
         self.refuses(5, ["thesis.txt"], "render", self.scene, "-o", self.path("f"))
         self.assertEqual(os.listdir(self.path("f")), ["thesis.txt"])
 
+    def test_a_folder_with_frames_is_refused_unless_they_may_be_replaced(self):
+        cradle("render", self.scene, "-o", self.path("f"), "--frames", "2:6")
+        before = content(self.path("f/frame_000002.png"))
+        self.refuses(5, ["holds 4 of the frames to be drawn, frame_000002.png to frame_000005.png", "--overwrite"], "render",
+                     self.scene, "-o", self.path("f"))
+        self.refuses(5, ["holds 1 of the frames", "frame_000002.png"], "render", self.scene, "-o", self.path("f"), "--frames", "0:3")
+        # The rest of the film may go beside them.
+        self.assertEqual(cradle("render", self.scene, "-o", self.path("f"), "--frames", "0:2").returncode, 0)
+        self.assertEqual(sorted(os.listdir(self.path("f"))), [f"frame_{i:06}.png" for i in range(6)])
+        other = self.write("o.json", scene(camera={"position": [0, 0, 2], "target": [0, 0, 0]}))
+        self.assertEqual(cradle("render", other, "-o", self.path("f"), "--overwrite", "--frames", "2:3").returncode, 0)
+        self.assertNotEqual(content(self.path("f/frame_000002.png")), before)
+        self.assertEqual(cradle("render", self.scene, "-o", self.path("f"), "--overwrite").returncode, 0)
+        self.assertEqual(content(self.path("f/frame_000002.png")), before)
+        # Never what is not its own: other files, and frames of a longer film.
+        short = self.write("t.json", scene(duration=0.05))
+        self.refuses(5, ["frame_000004.png to frame_000005.png, which are of another film", "4 frames"], "render", short, "-o",
+                     self.path("f"), "--overwrite")
+        open(self.path("f/thesis.txt"), "w").close()
+        self.refuses(5, ["thesis.txt"], "render", self.scene, "-o", self.path("f"), "--overwrite")
+        self.assertEqual(len(os.listdir(self.path("f"))), 7)
+
+    def test_parts_of_a_film_are_those_of_the_whole_with_a_camera_that_follows_and_overlays(self):
+        path = self.write("f.json", scene(duration=0.3, output={"width": 160, "height": 90},
+                                          bodies=[{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "linearVelocity": [2, 3, 0]},
+                                                  {"name": "ground", "shape": {"plane": {}}, "motion": "static", "position": [0, -0.1, 0]}],
+                                          camera={"position": [0, 1, 3], "follow": {"body": "ball"}, "orbit": {"period": 4}}))
+        self.assertEqual(cradle("simulate", path, "-o", self.path("f.sqlite")).returncode, 0)
+        overlay = ["--overlay", "time,contacts,velocities,trails,plot=height:ball"]
+        self.assertEqual(cradle("render", self.path("f.sqlite"), "-o", self.path("whole"), *overlay).returncode, 0)
+        for frames in ("11:18", "0:1", "1:11"):
+            result = cradle("render", self.path("f.sqlite"), "-o", self.path("parts"), "--frames", frames, *overlay)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        names = sorted(os.listdir(self.path("whole")))
+        self.assertEqual(sorted(os.listdir(self.path("parts"))), names)
+        for name in names:
+            self.assertEqual(content(self.path("parts/" + name)), content(self.path("whole/" + name)), name)
+        self.assertEqual(len({content(self.path("whole/" + name)) for name in names}), 18)
+
+    def test_overlays_that_are_not_there_are_refused(self):
+        self.refuses(2, ["--overlay", '"tme"', "allowed are time, contacts"], "render", self.scene, "-o", self.path("f"), "--overlay", "tme")
+        self.refuses(2, ["plot=height:bal", "no body"], "video", self.scene, "-o", self.path("f.mp4"), "--overlay", "plot=height:bal")
+
+    def test_cameras_that_cannot_be_are_refused_before_anything_moves(self):
+        for camera, words in (({"position": [0, 0.05, 0], "target": [0, 0, 5]}, ["/camera: ", 'inside body "ball"', "outside all bodies"]),
+                              ({"position": [0, 5, 0], "target": [0, 0, 0]}, ["/camera: ", "along its up vector", '"up"']),
+                              ({"position": [0, 5, 0], "target": "ball"}, ["/camera: ", "along its up vector"]),
+                              ({"position": [1, 1, 1], "target": [1, 1, 1]}, ["/camera: ", "position is its target"]),
+                              ({"target": "bal"}, ["/camera/target: ", 'no body "bal"', 'did you mean "ball"?'])):
+            path = self.write("s.json", scene(camera=camera))
+            for arguments in (["check", path], ["video", path, "-o", self.path("f.mp4")]):
+                result = self.refuses(3, words, *arguments)
+                self.assertEqual(len(result.stderr.splitlines()), 1)
+        # One that a body comes upon: the ball falls onto it.
+        path = self.write("s.json", scene(duration=0.5, camera={"position": [0, -0.5, 0], "target": [0, -0.5, 5]}))
+        self.assertEqual(cradle("check", path).returncode, 0)
+        self.refuses(3, ["/camera: at 0.3", 'inside body "ball"'], "render", path, "-o", self.path("f"))
+
     def test_report_of_pictures_holds_what_it_was_made_of(self):
         path = self.write("s.json", scene(duration=0.05))
         for name, frames in (("a", "0:3"), ("b", "0:2")):
@@ -404,6 +462,17 @@ class Pictures(InTemporaryFolder):
         self.assertEqual(cradle("video", self.scene, "-o", self.path("f.mp4")).returncode, 0)
         self.assertEqual(film_frames(self.path("f.mp4")), "64,36,6")
         self.assertEqual(self.listing(), ["f.mp4", "s.json"])
+
+    def test_slow_motion_and_time_lapse_change_the_number_of_pictures(self):
+        for speed, pictures in ((0.5, 12), (3, 2)):
+            path = self.write("s.json", scene(output={"width": 64, "height": 36, "playbackSpeed": speed}))
+            self.assertEqual(cradle("video", path, "-o", self.path("f.mp4")).returncode, 0)
+            self.assertEqual(film_frames(self.path("f.mp4")), f"64,36,{pictures}")
+            self.assertEqual(cradle("simulate", path, "-o", self.path("f.sqlite")).returncode, 0)
+            times = sqlite3.connect(self.path("f.sqlite")).execute("select time from frame order by id").fetchall()
+            self.assertEqual(len(times), pictures + 1)
+            for number, (time_,) in enumerate(times):
+                self.assertAlmostEqual(time_, number * speed / 60, delta=1e-15)
 
     def test_encode_of_a_rendered_folder_has_all_frames(self):
         cradle("render", self.scene, "-o", self.path("frames"))

@@ -25,6 +25,7 @@ FRAMES = {  # scene: frames that are drawn; states are kept for these too
     "slack_rope": (0, 30, 60, 120),
     "rope_bridge": (0, 30, 100),
     "rod_pendulum": (0, 60, 300),
+    "rolling_race": (0, 120, 299),
     "bouncing_balls": (0, 30, 100, 250),
     "sliding_blocks": (0, 75, 145),
     "spinning_handle": (0, 200, 400),

@@ -6,10 +6,13 @@
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <btBulletDynamicsCommon.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "math/principal_axes.h"
 #include "study/peers/bullet_shapes.h"
+#include "study/peers/peer_shapes.h"
 
 namespace cradle {
 namespace {
@@ -60,10 +63,19 @@ class BulletRod : public btTypedConstraint {
   double length_;                // m
 };
 
-}  // namespace
+/// What is not Bullet's default.
+struct BulletSettings {
+  int iterations = 10;   // of the sequential impulses in a step
+  bool isTuned = false;  // contacts only where bodies touch, all overlap by split impulses, bounces from 0.01 m/s
+};
 
-struct BulletWorld::World {
-  World(const Scene& scene, const Assembly& parts, const BulletSettings& settings);
+class BulletWorld : public SteppedWorld {
+ public:
+  BulletWorld(const Scene& scene, const Assembly& parts, const BulletSettings& settings, double timeStep);
+  void read(VectorX& state) override;
+
+ private:
+  void step() override;
   void addBody(const Body& body, const Scene& scene, int index);
   btRigidBody& add(const btRigidBody::btRigidBodyConstructionInfo& info, const Body& body);
   void addJoints();
@@ -73,42 +85,42 @@ struct BulletWorld::World {
   btRigidBody& bodyOf(const Attachment& attachment) const;
   btVector3 pointOf(const Attachment& attachment) const;
 
-  const Assembly& assembly;
-  std::vector<LawsOfMaterial> laws;
-  std::vector<std::unique_ptr<btCollisionShape>> shapes;
-  std::vector<std::unique_ptr<btRigidBody>> bodies;  // of the scene
-  std::vector<std::unique_ptr<btTypedConstraint>> joints;
-  std::vector<btRigidBody*> moving;     // in the order of the assembly
-  std::vector<Quat> bodyFromPrincipal;  // of each moving body
-  btDefaultCollisionConfiguration configuration;
-  btCollisionDispatcher dispatcher{&configuration};
-  btDbvtBroadphase broadPhase;
-  btSequentialImpulseConstraintSolver solver;
-  btDiscreteDynamicsWorld dynamics{&dispatcher, &broadPhase, &solver, &configuration};
-  btScalar processingThreshold = BT_LARGE_FLOAT;  // m: contacts up to this distance are solved
+  const Assembly& assembly_;
+  std::vector<LawsOfMaterial> laws_;
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;  // of the scene
+  std::vector<std::unique_ptr<btTypedConstraint>> joints_;
+  std::vector<btRigidBody*> moving_;     // in the order of the assembly
+  std::vector<Quat> bodyFromPrincipal_;  // of each moving body
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broadPhase_;
+  btSequentialImpulseConstraintSolver solver_;
+  btDiscreteDynamicsWorld dynamics_{&dispatcher_, &broadPhase_, &solver_, &configuration_};
+  btScalar processingThreshold_ = BT_LARGE_FLOAT;  // m: contacts up to this distance are solved
 };
 
-BulletWorld::World::World(const Scene& scene, const Assembly& parts, const BulletSettings& settings)
-    : assembly(parts), laws(scene.surfacePairs) {
+BulletWorld::BulletWorld(const Scene& scene, const Assembly& parts, const BulletSettings& settings, double timeStep)
+    : SteppedWorld(timeStep), assembly_(parts), laws_(scene.surfacePairs) {
   gCalculateCombinedRestitutionCallback = restitutionOf;
   gCalculateCombinedFrictionCallback = frictionOf;
-  dynamics.setGravity(toBullet(scene.gravity));
-  btContactSolverInfo& info = dynamics.getSolverInfo();
+  dynamics_.setGravity(toBullet(scene.gravity));
+  btContactSolverInfo& info = dynamics_.getSolverInfo();
   info.m_numIterations = settings.iterations;
   if (settings.isTuned) {
     info.m_splitImpulsePenetrationThreshold = 0;
     info.m_restitutionVelocityThreshold = kBounceFrom;
-    processingThreshold = 0;
+    processingThreshold_ = 0;
   }
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) addBody(scene.bodies[i], scene, assembly.movingBodies[i]);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) addBody(scene.bodies[i], scene, assembly_.movingBodies[i]);
   addJoints();
   letJoinedOverlap(scene);
 }
 
-void BulletWorld::World::addBody(const Body& body, const Scene& scene, int index) {
+void BulletWorld::addBody(const Body& body, const Scene& scene, int index) {
   PlacedBulletShape placed = bulletShapeOf(body, scene);
   btCollisionShape* shape = placed.shape.get();
-  shapes.push_back(std::move(placed.shape));
+  shapes_.push_back(std::move(placed.shape));
   if (index == kFixed) {
     btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, shape);
     info.m_startWorldTransform = toBullet(body.worldFromBody * placed.bodyFromShape);
@@ -124,72 +136,69 @@ void BulletWorld::World::addBody(const Body& body, const Scene& scene, int index
     auto compound = std::make_unique<btCompoundShape>(true, 1);
     compound->addChildShape(toBullet(frameFromShape), shape);
     shape = compound.get();
-    shapes.push_back(std::move(compound));
+    shapes_.push_back(std::move(compound));
   }
   btRigidBody::btRigidBodyConstructionInfo info(body.massProperties.mass, nullptr, shape, toBullet(principal.moments));
   info.m_startWorldTransform = toBullet(body.worldFromBody * bodyFromFrame);
   btRigidBody& rigid = add(info, body);
-  rigid.setLinearVelocity(toBullet(Vec3(linearVelocity(assembly.state, index))));
-  rigid.setAngularVelocity(toBullet(Vec3(angularVelocity(assembly.state, index))));
+  rigid.setLinearVelocity(toBullet(Vec3(linearVelocity(assembly_.state, index))));
+  rigid.setAngularVelocity(toBullet(Vec3(angularVelocity(assembly_.state, index))));
   rigid.setActivationState(DISABLE_DEACTIVATION);
-  moving.push_back(&rigid);
-  bodyFromPrincipal.push_back(bodyFromFrame.rotation);
+  moving_.push_back(&rigid);
+  bodyFromPrincipal_.push_back(bodyFromFrame.rotation);
 }
 
-btRigidBody& BulletWorld::World::add(const btRigidBody::btRigidBodyConstructionInfo& info, const Body& body) {
-  bodies.push_back(std::make_unique<btRigidBody>(info));
-  btRigidBody& rigid = *bodies.back();
-  rigid.setUserPointer(&laws[static_cast<std::size_t>(body.material)]);
+btRigidBody& BulletWorld::add(const btRigidBody::btRigidBodyConstructionInfo& info, const Body& body) {
+  bodies_.push_back(std::make_unique<btRigidBody>(info));
+  btRigidBody& rigid = *bodies_.back();
+  rigid.setUserPointer(&laws_[static_cast<std::size_t>(body.material)]);
   rigid.setUserIndex(body.material);
-  rigid.setContactProcessingThreshold(processingThreshold);
+  rigid.setContactProcessingThreshold(processingThreshold_);
   if (body.collision == CollisionChoice::none)
-    dynamics.addRigidBody(&rigid, 0, 0);
+    dynamics_.addRigidBody(&rigid, 0, 0);
   else
-    dynamics.addRigidBody(&rigid);
+    dynamics_.addRigidBody(&rigid);
   return rigid;
 }
 
-btRigidBody& BulletWorld::World::bodyOf(const Attachment& attachment) const {
+btRigidBody& BulletWorld::bodyOf(const Attachment& attachment) const {
   if (attachment.body == kFixed) return btTypedConstraint::getFixedBody();
-  return *moving[static_cast<std::size_t>(attachment.body)];
+  return *moving_[static_cast<std::size_t>(attachment.body)];
 }
 
-btVector3 BulletWorld::World::pointOf(const Attachment& attachment) const {
+btVector3 BulletWorld::pointOf(const Attachment& attachment) const {
   if (attachment.body == kFixed) return toBullet(attachment.point);
-  return toBullet(bodyFromPrincipal[static_cast<std::size_t>(attachment.body)].conjugate() * attachment.point);
+  return toBullet(bodyFromPrincipal_[static_cast<std::size_t>(attachment.body)].conjugate() * attachment.point);
 }
 
-void BulletWorld::World::addJoints() {
+void BulletWorld::addJoints() {
   const auto add = [&](std::unique_ptr<btTypedConstraint> joint) {
-    dynamics.addConstraint(joint.get());
-    joints.push_back(std::move(joint));
+    dynamics_.addConstraint(joint.get());
+    joints_.push_back(std::move(joint));
   };
   const auto turned = [&](const Attachment& at, const Vec3& direction) {
     return pointOf({at.body, direction});  // a direction turns as a point at the centre of mass does
   };
-  for (const RodConstraint& rod : assembly.mechanism.constraints.rods)
+  for (const RodConstraint& rod : assembly_.mechanism.constraints.rods)
     add(std::make_unique<BulletRod>(bodyOf(rod.anchorA), bodyOf(rod.anchorB), pointOf(rod.anchorA),
                                     pointOf(rod.anchorB), rod.length));
-  for (const auto& [a, b] : assembly.mechanism.constraints.ballJoints)
+  for (const auto& [a, b] : assembly_.mechanism.constraints.ballJoints)
     add(std::make_unique<btPoint2PointConstraint>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b)));
-  for (const auto& [a, b, axisA, acrossB] : assembly.mechanism.constraints.hinges)
+  for (const auto& [a, b, axisA, acrossB] : assembly_.mechanism.constraints.hinges)
     add(std::make_unique<btHingeConstraint>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b), turned(a, axisA),
                                             turned(b, acrossB[0].cross(acrossB[1]))));
 }
 
 /// Bodies of a joint do not touch each other, fixed ones neither: for Bullet those are not the joint's.
-void BulletWorld::World::letJoinedOverlap(const Scene& scene) {
-  const auto ignore = [&](const auto& joint) {
-    if (joint.anchorA.body == kWorld || joint.anchorB.body == kWorld) return;
-    btRigidBody& a = *bodies[static_cast<std::size_t>(joint.anchorA.body)];
-    btRigidBody& b = *bodies[static_cast<std::size_t>(joint.anchorB.body)];
-    a.setIgnoreCollisionCheck(&b, true), b.setIgnoreCollisionCheck(&a, true);
-  };
-  for (const BallJoint& joint : scene.ballJoints) ignore(joint);
-  for (const Hinge& hinge : scene.hinges) ignore(hinge);
+void BulletWorld::letJoinedOverlap(const Scene& scene) {
+  for (const auto& [a, b] : joinedBodies(scene)) {
+    if (a == kWorld) continue;
+    btRigidBody &bodyA = *bodies_[static_cast<std::size_t>(a)], &bodyB = *bodies_[static_cast<std::size_t>(b)];
+    bodyA.setIgnoreCollisionCheck(&bodyB, true), bodyB.setIgnoreCollisionCheck(&bodyA, true);
+  }
 }
 
-AttachmentMotion BulletWorld::World::motionOf(const Attachment& attachment) const {
+AttachmentMotion BulletWorld::motionOf(const Attachment& attachment) const {
   if (attachment.body == kFixed) return {Vec3::Zero(), attachment.point, Vec3::Zero()};
   const btRigidBody& body = bodyOf(attachment);
   const btVector3 arm = body.getWorldTransform().getBasis() * pointOf(attachment);
@@ -197,8 +206,8 @@ AttachmentMotion BulletWorld::World::motionOf(const Attachment& attachment) cons
           fromBullet(body.getVelocityInLocalPoint(arm))};
 }
 
-void BulletWorld::World::addForces() {
-  for (const SpringForce& spring : assembly.mechanism.springs) {
+void BulletWorld::addForces() {
+  for (const SpringForce& spring : assembly_.mechanism.springs) {
     const SpringAction action = actionOf(spring, motionOf(spring.anchorA), motionOf(spring.anchorB));
     if (spring.anchorA.body != kFixed)
       bodyOf(spring.anchorA).applyForce(toBullet(action.forceOnA), toBullet(action.a.arm));
@@ -207,11 +216,24 @@ void BulletWorld::World::addForces() {
   }
 }
 
-bool hasBullet() {
-  return true;
+void BulletWorld::step() {
+  addForces();
+  dynamics_.stepSimulation(timeStep(), 0);
 }
 
-std::string missingInBullet(const Scene& scene) {
+void BulletWorld::read(VectorX& state) {
+  for (std::size_t i = 0; i < moving_.size(); ++i) {
+    const btRigidBody& body = *moving_[i];
+    const Eigen::Index index = static_cast<Eigen::Index>(i);
+    centerOfMass(state, index) = fromBullet(body.getWorldTransform().getOrigin());
+    setOrientation(state, index,
+                   fromBullet(body.getWorldTransform().getRotation()) * bodyFromPrincipal_[i].conjugate());
+    linearVelocity(state, index) = fromBullet(body.getLinearVelocity());
+    angularVelocity(state, index) = fromBullet(body.getAngularVelocity());
+  }
+}
+
+std::string missingInBullet(const Scene& scene, const Assembly&) {
   if (!scene.ropes.empty()) return "ropes";
   if (!scene.pushes.empty()) return "pushes";
   for (const Body& body : scene.bodies)
@@ -221,25 +243,24 @@ std::string missingInBullet(const Scene& scene) {
   return "";
 }
 
-BulletWorld::BulletWorld(const Scene& scene, const Assembly& assembly, const BulletSettings& settings)
-    : world_(std::make_unique<World>(scene, assembly, settings)) {}
-BulletWorld::~BulletWorld() = default;
-
-void BulletWorld::step(double timeStep) {
-  world_->addForces();
-  world_->dynamics.stepSimulation(timeStep, 0);
+Peer peerOf(const std::string& name, const std::string& title, const BulletSettings& settings) {
+  Peer peer{"bullet", "3.24", name, title, "", SettingKind::timeStep, missingInBullet, {}};
+  peer.configuration = fmt::format("{} iterations of sequential impulses", settings.iterations);
+  if (settings.isTuned)
+    peer.configuration += fmt::format(
+        ", contact processing threshold 0, split impulse penetration threshold 0, bounces from {} m/s", kBounceFrom);
+  peer.open = [settings](const Scene& scene, const Assembly& assembly, double timeStep) {
+    return std::make_unique<BulletWorld>(scene, assembly, settings, timeStep);
+  };
+  return peer;
 }
 
-void BulletWorld::read(VectorX& state) const {
-  for (std::size_t i = 0; i < world_->moving.size(); ++i) {
-    const btRigidBody& body = *world_->moving[i];
-    const Eigen::Index index = static_cast<Eigen::Index>(i);
-    centerOfMass(state, index) = fromBullet(body.getWorldTransform().getOrigin());
-    setOrientation(state, index,
-                   fromBullet(body.getWorldTransform().getRotation()) * world_->bodyFromPrincipal[i].conjugate());
-    linearVelocity(state, index) = fromBullet(body.getLinearVelocity());
-    angularVelocity(state, index) = fromBullet(body.getAngularVelocity());
-  }
+}  // namespace
+
+std::vector<Peer> bulletPeers() {
+  return {peerOf("bullet", "Bullet", {10, false}), peerOf("bullet100", "Bullet, 100 iterations", {100, false}),
+          peerOf("bulletTuned", "Bullet, tuned", {10, true}),
+          peerOf("bulletTuned100", "Bullet, tuned, 100 iterations", {100, true})};
 }
 
 }  // namespace cradle

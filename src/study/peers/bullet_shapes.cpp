@@ -2,6 +2,8 @@
 
 #include <BulletCollision/CollisionShapes/btEmptyShape.h>
 
+#include "study/peers/peer_shapes.h"
+
 namespace cradle {
 namespace {
 
@@ -24,14 +26,6 @@ struct ShapeMaker {
 };
 
 }  // namespace
-
-RecognisedShape recogniseModel(const Body& body, const Scene& scene) {
-  const auto* model = std::get_if<ModelShape>(&body.shape);
-  if (!model) return {};
-  RecognisedShape found = recogniseShape(scene.models[static_cast<std::size_t>(model->model)].solid);
-  if (body.collision == CollisionChoice::hull || body.collision == CollisionChoice::mesh) found.primitive.reset();
-  return found;
-}
 
 PlacedBulletShape bulletShapeOf(const Body& body, const Scene& scene) {
   if (body.collision == CollisionChoice::none) return {std::make_unique<btEmptyShape>(), {}};

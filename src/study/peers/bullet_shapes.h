@@ -4,7 +4,6 @@
 
 #include <memory>
 
-#include "mesh/recognise_shape.h"
 #include "scene/scene.h"
 
 namespace cradle {
@@ -34,8 +33,5 @@ struct PlacedBulletShape {
 /// A body's shape as `auto` takes it, or the hull of its model where that is no primitive; empty for bodies that touch
 /// nothing.
 PlacedBulletShape bulletShapeOf(const Body& body, const Scene& scene);
-
-/// What a body's model is, if it has one and does not ask to be a hull or a mesh.
-RecognisedShape recogniseModel(const Body& body, const Scene& scene);
 
 }  // namespace cradle

@@ -14,6 +14,7 @@ namespace cradle {
 namespace {
 
 constexpr double kSameTime = 1e-6;  // of a step
+constexpr double kFineStep = 1e-6;  // s: engines that choose their steps get no allowance for the error of a long one
 
 /// CPU time of this thread in s.
 double cpuSeconds() {
@@ -34,24 +35,33 @@ Frame frameOf(const Assembly& assembly, const VectorX& state, long number, doubl
 
 }  // namespace
 
-RunCost runBullet(const Scene& scene, const Assembly& assembly, const BulletSettings& settings, double timeStep,
-                  const std::function<void(const Frame&)>& take) {
-  BulletWorld world(scene, assembly, settings);
+SteppedWorld::SteppedWorld(double timeStep, long evaluationsPerStep)
+    : timeStep_(timeStep), evaluationsPerStep_(evaluationsPerStep) {}
+
+void SteppedWorld::advance(double time) {
+  const long steps = static_cast<long>(std::ceil(time / timeStep_ - kSameTime));
+  for (; steps_ < steps; ++steps_) step();
+}
+
+RunCost runPeer(const Peer& peer, double setting, const Scene& scene, const Assembly& assembly,
+                const std::function<void(const Frame&)>& take) {
+  const std::unique_ptr<PeerWorld> world = peer.open(scene, assembly, setting);
+  const double timeStep = peer.setting == SettingKind::timeStep ? setting : kFineStep;
   const ChosenMethod method{MotionKind::fixedSteps, "semi-implicit Euler", timeStep, semiImplicitEuler};
   EnergyGuard guard(assembly, assembly.state, method, scene.duration);
   VectorX state = assembly.state;
   RunCost cost;
   for (long number = 0; number <= lastFrame(scene); ++number) {
     const double time = frameTime(scene, number);
-    const long steps = static_cast<long>(std::ceil(time / timeStep - kSameTime));
     const double before = cpuSeconds();
-    for (; cost.evaluations < steps; ++cost.evaluations) world.step(timeStep);
-    world.read(state);
+    world->advance(time);
+    world->read(state);
     cost.cpuSeconds += cpuSeconds() - before;
     guard.check(state, time, timeStep);
     take(frameOf(assembly, state, number, time));
     throwIfInterrupted();
   }
+  cost.evaluations = world->evaluations();
   return cost;
 }
 

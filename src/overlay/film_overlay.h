@@ -1,0 +1,67 @@
+#pragma once
+
+#include <deque>
+
+#include "image/canvas.h"
+#include "overlay/lens.h"
+#include "overlay/overlay_choice.h"
+#include "overlay/plot_panel.h"
+#include "render/framing.h"
+#include "trajectory/trajectory.h"
+
+namespace cradle {
+
+/// A film's trajectory as overlays need it.
+struct FilmRecord {
+  const Scene& scene;         // must outlive the overlay
+  const View& view;           // for the constructor alone, like what follows but frameAt
+  int width = 0, height = 0;  // pixels
+  FrameSource frameAt;
+  long frameCount = 0;
+  std::vector<Event> events;  // in order of time
+};
+
+/// Draws what was chosen on the finished pictures of a film. A picture depends on the film and the frame's number
+/// alone, not on which frames are drawn before.
+class FilmOverlay {
+ public:
+  /// Reads all frames once if the choice needs it (velocities, plot). A plot goes to the corner where it hides the
+  /// centres of mass of dynamic bodies the least often.
+  FilmOverlay(const FilmRecord& film, const OverlayChoice& choice);
+
+  /// `image` is the picture of `frame`. O(bodies x length of their trails).
+  void draw(const Frame& frame, Image& image);
+
+ private:
+  struct ImpulseText {
+    double impulse;  // N s
+    PicturePoint point;
+    double opacity;
+  };
+  void readFilm(const FilmRecord& film);
+  void addToPlot(const Frame& frame);
+  void countHidden(const Frame& frame, const Lens& lens, std::array<long, 3>& hidden) const;
+  void readTrail(long now);
+  void drawTrails(const Frame& frame, const Lens& lens, Canvas& canvas);
+  void drawVelocities(const Frame& frame, const Lens& lens, Canvas& canvas) const;
+  void drawContacts(const Frame& frame, const Lens& lens, Canvas& canvas) const;
+  void drawImpulseTexts(std::vector<ImpulseText> texts, Canvas& canvas) const;
+  void drawTime(const Frame& frame, Canvas& canvas) const;
+
+  const Scene& scene_;
+  const OverlayChoice choice_;
+  const View view_;
+  const FrameSource frameAt_;
+  std::vector<Event> impacts_;  // with an impulse, in order of time
+  std::vector<int> dynamicBodies_;
+  double arrowUnit_ = 1;        // m
+  double greatestImpulse_ = 0;  // N s
+  double greatestSpeed_ = 0;    // m/s
+  int plottedBody_ = 0;
+  double energyAtStart_ = 0;  // J
+  PlotContent plot_;
+  long trailStride_ = 1;           // frames from point to point of a trail
+  std::deque<Frame> trailFrames_;  // with numbers that the stride divides, ascending
+};
+
+}  // namespace cradle

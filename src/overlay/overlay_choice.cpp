@@ -1,0 +1,63 @@
+#include "overlay/overlay_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace cradle {
+namespace {
+
+constexpr std::string_view kHeight = "plot=height:";
+
+[[noreturn]] void refuse(const std::string& word, const std::string& why) {
+  throw Error(ErrorKind::usage, "--overlay", fmt::format("found \"{}\"; {}", word, why));
+}
+
+void read(const std::string& word, OverlayChoice& choice) {
+  const auto plot = [&](PlotKind kind) {
+    if (choice.plot) refuse(word, "there is one plot in a picture, and another was named before");
+    choice.plot = kind;
+  };
+  if (word == "time")
+    choice.time = true;
+  else if (word == "contacts")
+    choice.contacts = true;
+  else if (word == "velocities")
+    choice.velocities = true;
+  else if (word == "trails")
+    choice.trails = true;
+  else if (word == "plot=energy")
+    plot(PlotKind::energy);
+  else if (word == "plot=energyError")
+    plot(PlotKind::energyError);
+  else if (word.starts_with(kHeight))
+    plot(PlotKind::height), choice.plottedBody = word.substr(kHeight.size());
+  else
+    refuse(word,
+           "allowed are time, contacts, velocities, trails, plot=energy, plot=energyError and plot=height:BODY, with "
+           "commas between them");
+}
+
+}  // namespace
+
+OverlayChoice parseOverlays(const std::string& text) {
+  OverlayChoice choice;
+  std::istringstream words(text + ",");  // the comma lets an empty last word be seen
+  for (std::string word; std::getline(words, word, ',');) read(word, choice);
+  return choice;
+}
+
+int plottedBody(const OverlayChoice& choice, const Scene& scene) {
+  const std::string word = std::string(kHeight) + choice.plottedBody;
+  const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                 [&](const Body& candidate) { return candidate.name == choice.plottedBody; });
+  if (body == scene.bodies.end()) refuse(word, "there is no body of that name");
+  if (body->motion == Motion::fixed) refuse(word, "that body is static; name one that moves");
+  return static_cast<int>(body - scene.bodies.begin());
+}
+
+}  // namespace cradle

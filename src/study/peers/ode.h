@@ -1,0 +1,14 @@
+#pragma once
+
+#include "study/peers/peer.h"
+
+namespace cradle {
+
+/// ODE 0.16.2, the Open Dynamics Engine, in double precision: semi-implicit Euler whose constraints a linear
+/// complementarity problem solves once a step, exactly (dWorldStep) or by iterations (dWorldQuickStep).
+///   restitution and friction  as the scene's pairs of materials have them; friction is a pyramid, and the dynamic one
+///   rods                      its double ball joints
+///   springs                   forces that are set before each step, from where the bodies are then
+std::vector<Peer> odePeers();
+
+}  // namespace cradle

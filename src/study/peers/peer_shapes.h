@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "scene/scene.h"
+
+namespace cradle {
+
+/// A shape that all engines know, and where it is in its body's frame.
+struct PeerShape {
+  std::variant<Sphere, Box, Cylinder, Capsule, Plane> shape;
+  RigidTransform bodyFromShape;
+};
+
+/// A body's shape as `auto` takes it; nothing for bodies that touch nothing, and for meshes that are no primitive.
+std::optional<PeerShape> peerShapeOf(const Body& body, const Scene& scene);
+
+/// The first body that touches with a mesh that is no primitive, in words; empty if there is none.
+std::string meshThatTouches(const Scene& scene);
+
+/// Scene bodies A < B of joints: they do not touch each other.
+std::set<std::pair<int, int>> joinedBodies(const Scene& scene);
+
+/// What a body's model is, if it has one and does not ask to be a hull or a mesh.
+RecognisedShape recogniseModel(const Body& body, const Scene& scene);
+
+}  // namespace cradle

@@ -1,0 +1,107 @@
+#include "overlay/plot_panel.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+constexpr int kWidth = 640, kHeight = 360;
+const Ink kRed{{255, 0, 0}, 1}, kGreen{{0, 255, 0}, 1};
+
+/// A wave and a line over 4 s.
+PlotContent waveAndLine() {
+  PlotContent content{"height (m)", {}, {{"wave", {}, kRed}, {"line", {}, kGreen}}};
+  for (int i = 0; i <= 240; ++i) {
+    const double time = i / 60.0;
+    content.times.push_back(time);
+    content.curves[0].values.push_back(std::sin(2 * time));
+    content.curves[1].values.push_back(time / 4);
+  }
+  return content;
+}
+
+std::vector<int> pixelAt(const Image& image, const PicturePoint& place) {
+  const auto* pixel = image.at(static_cast<int>(std::floor(place.x)), static_cast<int>(std::floor(place.y)));
+  return {pixel[0], pixel[1], pixel[2]};
+}
+
+TEST(PlotPanel, CurvesPassThroughTheirPixelsUpToNow) {
+  const PlotContent content = waveAndLine();
+  const PlotArea area = plotAreaOf(content, kWidth, kHeight);
+  Image image(kWidth, kHeight);
+  Canvas canvas(image);
+  drawPlot(canvas, content, 150);
+  const auto colored = [&](double time, double value, std::size_t channel) {
+    // Linear maps: the whole film from side to side; the values' range with 6 % above and below (line: 0..1, wave
+    // -1..1).
+    const double x = area.left + (area.right - area.left) * time / 4;
+    const double y = area.bottom - (area.bottom - area.top) * (value + 1.12) / 2.24;
+    const auto pixel = pixelAt(image, {x, y});
+    return pixel[channel] > 200 && pixel[1 - channel] < 100;
+  };
+  for (const double time : {0.1, 0.5, 1.2, 1.8, 2.4}) {
+    EXPECT_TRUE(colored(time, std::sin(2 * time), 0)) << time;
+    EXPECT_FALSE(colored(time, std::sin(2 * time) + 0.3, 0)) << time;
+    EXPECT_FALSE(colored(time, std::sin(2 * time) - 0.3, 0)) << time;
+  }
+  for (const double time : {0.3, 1.1, 2.2}) EXPECT_TRUE(colored(time, time / 4, 1)) << time;
+  for (const double time : {2.7, 3.5}) EXPECT_FALSE(colored(time, std::sin(2 * time), 0) || colored(time, time / 4, 1));
+}
+
+TEST(PlotPanel, LiesInTheUpperRightCornerAndLeavesTheRestAlone) {
+  for (const auto& [width, height] : {std::pair(1280, 720), std::pair(640, 360), std::pair(300, 600)}) {
+    Image image(width, height);
+    Canvas canvas(image);
+    drawPlot(canvas, waveAndLine(), 240);
+    int left = width, top = height, right = 0, bottom = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        if (image.at(x, y)[0] + image.at(x, y)[1] + image.at(x, y)[2] > 0) {
+          left = std::min(left, x), right = std::max(right, x + 1);
+          top = std::min(top, y), bottom = std::max(bottom, y + 1);
+        }
+    const double edge = std::round(0.03 * height);
+    EXPECT_EQ(right, width - edge);
+    EXPECT_EQ(top, edge);
+    EXPECT_EQ(bottom, edge + std::round(0.3 * height));
+    EXPECT_NEAR(right - left, std::min(0.62 * height, width - 0.06 * height), 1);
+  }
+}
+
+TEST(PlotPanel, CornersAreThoseOfThePicture) {
+  using Ends = std::pair<PicturePoint, PicturePoint>;
+  const auto isAt = [](const Ends& ends, double left, double top) {
+    return ends.first.x == left && ends.first.y == top && ends.second.x == left + 446 && ends.second.y == top + 216;
+  };
+  EXPECT_TRUE(isAt(plotPanelAt(PlotCorner::upperRight, 1280, 720), 1280 - 22 - 446, 22));
+  EXPECT_TRUE(isAt(plotPanelAt(PlotCorner::lowerRight, 1280, 720), 1280 - 22 - 446, 720 - 22 - 216));
+  EXPECT_TRUE(isAt(plotPanelAt(PlotCorner::lowerLeft, 1280, 720), 22, 720 - 22 - 216));
+}
+
+TEST(PlotPanel, ValuesThatNeverChangeAreDrawn) {
+  for (const double value : {0.0, 5.0, -1e-9}) {
+    const PlotContent content{"c", {0, 1, 2}, {{"", {value, value, value}, kRed}}};
+    Image image(kWidth, kHeight);
+    Canvas canvas(image);
+    drawPlot(canvas, content, 2);
+    const PlotArea area = plotAreaOf(content, kWidth, kHeight);
+    EXPECT_GT(pixelAt(image, area.at(1, value))[0], 200) << value;
+  }
+  const PlotContent single{"one frame", {0}, {{"", {1}, kRed}}};
+  Image image(kWidth, kHeight);
+  Canvas canvas(image);
+  drawPlot(canvas, single, 0);
+}
+
+TEST(PlotPanel, RoundNumbersAreOneTwoOrFiveTimesAPowerOfTenApart) {
+  EXPECT_THAT(roundNumbers(0, 10, 5), testing::ElementsAre(0, 2, 4, 6, 8, 10));
+  EXPECT_THAT(roundNumbers(-0.011, 0.19, 4), testing::ElementsAre(0, 0.05, 0.1, testing::DoubleEq(0.15)));
+  EXPECT_THAT(roundNumbers(-3.1e-9, 3e-9, 3),
+              testing::ElementsAre(testing::DoubleEq(-2e-9), testing::DoubleEq(0), testing::DoubleEq(2e-9)));
+}
+
+}  // namespace
+}  // namespace cradle

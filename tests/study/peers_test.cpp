@@ -1,0 +1,265 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "simulate/simulate.h"
+#include "study/motion_error.h"
+#include "study/peer_frames.h"
+#include "study/study_table.h"
+
+// What the adapters of other engines make of a scene, against closed forms and against our own motion.
+
+namespace cradle {
+namespace {
+
+/// A test for each of some methods.
+class Peers : public PeerTest {};
+class SteppedOnce : public PeerTest, public ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(, SteppedOnce, ::testing::Values("bullet", "ode", "odeQuick", "mujoco"));
+class Tied : public PeerTest, public ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(, Tied, ::testing::Values("bullet100", "ode", "odeTuned", "mujocoTuned"));
+class Touching : public PeerTest, public ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(, Touching, ::testing::Values("bulletTuned100", "ode", "odeQuick", "mujoco"));
+
+Scene fileOf(const std::string& name) {
+  return loadScene(CRADLE_SOURCE_DIR "/" + name).scene;
+}
+
+/// A block of 0.5 x 0.2 x 0.5 m that lies on a slope of 30 degrees.
+Scene blockOnSlope(double friction) {
+  return sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "slope", "duration": 1,
+    "materials": {{"slab": {{"staticFriction": 0.9, "dynamicFriction": 0.9}}, "wood": {{}}}},
+    "pairs": [{{"materials": ["slab", "wood"], "staticFriction": {0}, "dynamicFriction": {0}}}],
+    "bodies": [{{"name": "slab", "shape": {{"box": {{"size": [40, 1, 4]}}}}, "motion": "static", "material": "slab",
+                 "position": [0.25, -0.43301270189221935, 0], "orientation": {{"axis": [0, 0, 1], "angleDegrees": 30}}}},
+               {{"name": "block", "shape": {{"box": {{"size": [0.5, 0.2, 0.5]}}}}, "mass": 1, "material": "wood",
+                 "position": [-0.05, 0.08660254037844387, 0], "orientation": {{"axis": [0, 0, 1], "angleDegrees": 30}}}}
+              ]}})",
+                             friction));
+}
+
+/// A body that is nowhere symmetric hangs from a ball joint, another from it by a hinge, and with `rod` a third from
+/// that by a rod; none at its centre of mass.
+Scene tiedBodies(bool rod) {
+  return sceneOf(
+      std::string(R"({"schema": "cradle-scene/1", "name": "tied", "duration": 0.5,
+    "bodies": [{"name": "a", "shape": {"box": {"size": [1, 0.6, 0.2]}}, "collision": "none", "mass": 2,
+                "centerOfMass": [0.2, -0.1, 0.05], "inertiaTensor": [[0.4, 0.05, 0.02], [0.05, 0.5, -0.03], [0.02, -0.03, 0.6]],
+                "angularVelocity": [1, 0.5, 2]},
+               {"name": "b", "shape": {"box": {"size": [0.3, 0.5, 0.4]}}, "collision": "none", "mass": 1, "position": [1, 0, 0]},
+               {"name": "c", "shape": {"box": {"size": [0.3, 0.2, 0.4]}}, "collision": "none", "mass": 1, "position": [2, 0, 0]}],
+    "ballJoints": [{"bodyA": "a", "anchorA": [-0.5, 0, 0], "anchorB": [-0.5, 0, 0]}],
+    "hinges": [{"bodyA": "b", "anchorA": [-0.5, 0, 0], "bodyB": "a", "anchorB": [0.5, 0, 0], "axis": [0, 1, 1]}])") +
+      (rod ? R"(, "rods": [{"bodyA": "c", "anchorA": [-0.1, 0.1, 0.2], "bodyB": "b", "anchorB": [0.1, 0, 0.1]}]})"
+           : "}"));
+}
+
+Scene planarChain() {
+  return sceneOf(R"({"schema": "cradle-scene/1", "name": "chain", "duration": 0.5,
+    "bodies": [{"name": "a", "shape": {"sphere": {"radius": 0.05}}, "collision": "none", "mass": 1, "position": [1, 0, 0]},
+               {"name": "b", "shape": {"box": {"size": [1, 0.2, 0.4]}}, "collision": "none", "mass": 1, "position": [1.5, 0, 0]}],
+    "ballJoints": [{"bodyA": "a", "anchorA": [-1, 0, 0], "anchorB": [0, 0, 0]}],
+    "hinges": [{"bodyA": "b", "anchorA": [-0.5, 0, 0], "bodyB": "a", "anchorB": [0, 0, 0], "axis": [0, 0, 1]}]})");
+}
+
+std::vector<BodyState> exactEnd(Scene scene) {
+  choose(methodOf("dop853"), 1e-11, scene);
+  scene.output.framesPerSecond = 1 / scene.duration;
+  return simulate(scene).frames.back().states;
+}
+
+double errorAtEnd(const Scene& scene, const std::string& peer, double setting, const std::vector<BodyState>& exact) {
+  return motionError(framesOf(scene, peer, setting, 1 / scene.duration).back().states, exact);
+}
+
+/// Angle (rad) between two orientations.
+double angleBetween(const Quat& a, const Quat& b) {
+  return a.angularDistance(b.normalized());
+}
+
+TEST_P(SteppedOnce, FreeFallErrorIsHalfGravityTimesStepTimesTime) {
+  // Semi-implicit Euler: y = -g h^2 (1 + 2 + ... + n) = -g (t^2 + h t) / 2, up to the rounding of 128 steps.
+  const double timeStep = 1.0 / 64, time = 2;
+  const Frame end = framesOf(freeFall(time), GetParam(), timeStep, 0.5).back();
+  EXPECT_NEAR(end.states[0].position.y(), -9.81 * (time * time + timeStep * time) / 2, 1e-12);
+}
+
+TEST_P(SteppedOnce, SpringForcesActOnceAStep) {
+  // x(n+1) - 2 x(n) + x(n-1) = -(omega h)^2 x(n), and x(0) = x(-1) at rest: x(n) ~ cos((n + 1/2) a), cos a = 1 - (omega
+  // h)^2 / 2. The spring's energy is reported with the state that it belongs to.
+  const double omega = 20, timeStep = 0.005, duration = 2;
+  const Frame end = framesOf(oscillator(omega, duration), GetParam(), timeStep, 1 / duration).back();
+  const double angle = std::acos(1 - omega * omega * timeStep * timeStep / 2);
+  const double away = 0.25 * std::cos((duration / timeStep + 0.5) * angle) / std::cos(angle / 2);
+  EXPECT_NEAR(end.states[0].position.x(), 1 + away, 1e-11);
+  EXPECT_NEAR(end.energy.potential, omega * omega * away * away / 2, 1e-8);
+}
+
+TEST_F(Peers, BodiesStartWhereTheSceneHasThem) {
+  const Scene alone = sceneOf(R"({"schema": "cradle-scene/1", "name": "start", "duration": 1,
+    "bodies": [{"name": "a", "shape": {"box": {"size": [1, 0.6, 0.2]}}, "mass": 2, "centerOfMass": [0.2, -0.1, 0.05],
+                "inertiaTensor": [[0.4, 0.05, 0.02], [0.05, 0.5, -0.03], [0.02, -0.03, 0.6]], "position": [1, 2, 3],
+                "orientation": {"axis": [1, 2, -1], "angleDegrees": 70}, "linearVelocity": [1, -2, 0.5],
+                "angularVelocity": [0.3, 4, -1]}]})");
+  for (const Peer& peer : peers()) {
+    SCOPED_TRACE(peer.name);
+    EXPECT_LT(startError(alone, peer), 1e-14);
+    EXPECT_LT(startError(tiedBodies(true), peer), 1e-14);
+  }
+}
+
+TEST_P(Tied, BodiesThatAreNotSymmetricAreRightToFirstOrder) {
+  // Rod, ball joint and hinge off the centres of mass, an inertia tensor off the axes, and gyroscopic torque: any of
+  // them wrong leaves an error that does not go with the step.
+  const Scene scene = tiedBodies(true);
+  const std::vector<BodyState> exact = exactEnd(scene);
+  const double coarse = errorAtEnd(scene, GetParam(), 1.0 / 512, exact);
+  const double fine = errorAtEnd(scene, GetParam(), 1.0 / 1024, exact);
+  EXPECT_LT(coarse, 0.02);
+  EXPECT_NEAR(coarse / fine, 2, 0.3);
+}
+
+TEST_P(Touching, TheRestitutionOfAPairGivesTheHeightOfTheBounce) {
+  // Apex e^2 h. The impact is seen up to a step late, and that deep the ball starts again: some v h = 1e-3 m. MuJoCo
+  // follows an oscillator of 0.2 rad a step while they touch, whose damping is right to 0.2^2 / 2, or 2 %.
+  const double restitution = 0.7;
+  const Scene scene = sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "bounce", "duration": 1,
+    "materials": {{"rubber": {{"restitution": {}}}, "stone": {{"restitution": 0.95}}}},
+    "bodies": [{{"name": "ground", "shape": {{"plane": {{"normal": [0, 1, 0]}}}}, "motion": "static", "material": "stone"}},
+               {{"name": "ball", "shape": {{"sphere": {{"radius": 0.1}}}}, "material": "rubber", "position": [0, 1.1, 0]}}]}})",
+                                          restitution));
+  double apex = 0;
+  for (const Frame& frame : framesOf(scene, GetParam(), 1.0 / 4096, 256))
+    if (frame.time > 0.6) apex = std::max(apex, frame.states[0].position.y() - 0.1);
+  EXPECT_NEAR(apex, restitution * restitution, std::string(GetParam()) == "mujoco" ? 0.01 : 4e-3);
+}
+
+TEST_P(Touching, ABlockSlidesWithTheFrictionOfItsPair) {
+  // g (sin - mu cos) t^2 / 2 down the slope; 1 % is ten times the error of a step of 1/1000 s (h / t), and leaves room
+  // for what the solvers and soft contact add.
+  const std::vector<Frame> frames = framesOf(blockOnSlope(0.5), GetParam(), 1e-3, 1);
+  const double way = (frames.back().states[0].position - frames.front().states[0].position).norm();
+  EXPECT_NEAR(way, 9.81 * (0.5 - 0.5 * std::sqrt(0.75)) / 2, 0.01 * way);
+}
+
+/// By what an error at the end shrinks as the step is halved.
+double gain(const std::string& peer, const Scene& scene) {
+  const std::vector<BodyState> exact = exactEnd(scene);
+  return errorAtEnd(scene, peer, 1.0 / 128, exact) / errorAtEnd(scene, peer, 1.0 / 256, exact);
+}
+
+TEST_F(Peers, RungeKuttaOfMujocoIsOfOrderFourUnlessAxesOfRotationTurn) {
+  // It adds the stages' rotation vectors as if they were numbers: right to order 2 where their directions change.
+  EXPECT_NEAR(gain("mujocoRk4", oscillator(5, 0.5)), 16, 1);
+  EXPECT_NEAR(gain("mujocoRk4", planarChain()), 16, 1);
+  EXPECT_NEAR(gain("mujocoRk4", tiedBodies(false)), 4, 0.2);
+}
+
+TEST_F(Peers, JointsThatCloseALoopHoldInReducedCoordinates) {
+  // A bar on two ball joints of one axis swings as on a hinge, where the second closes a loop.
+  const Scene scene = sceneOf(R"({"schema": "cradle-scene/1", "name": "loop", "duration": 0.5,
+    "bodies": [{"name": "bar", "shape": {"box": {"size": [1, 0.2, 0.4]}}, "collision": "none", "mass": 2, "position": [0.5, 0, 0]},
+               {"name": "end", "shape": {"box": {"size": [1, 0.2, 0.4]}}, "collision": "none", "mass": 1, "position": [1.5, 0, 0]}],
+    "ballJoints": [{"bodyA": "bar", "anchorA": [-0.5, 0, 0.2], "anchorB": [0, 0, 0.2]},
+                   {"bodyA": "bar", "anchorA": [-0.5, 0, -0.2], "anchorB": [0, 0, -0.2]},
+                   {"bodyA": "end", "anchorA": [-0.5, 0, 0.2], "bodyB": "bar", "anchorB": [0.5, 0, 0.2]}],
+    "hinges": [{"bodyA": "end", "anchorA": [-0.5, 0, 0], "bodyB": "bar", "anchorB": [0.5, 0, 0], "axis": [0, 0, 1]}]})");
+  const std::vector<BodyState> exact = exactEnd(scene);
+  EXPECT_LT(errorAtEnd(scene, "mujocoTuned", 1.0 / 2048, exact), 5e-3);
+  EXPECT_LT(errorAtEnd(scene, "simbody", 1e-8, exact), 1e-6);
+}
+
+TEST_F(Peers, SimbodyIsAsExactAsItIsAskedToBe) {
+  // Accuracies are local: the error at the end may be some times as large, and goes with them.
+  for (const Scene& scene : {oscillator(20, 0.5), tiedBodies(true)}) {
+    SCOPED_TRACE(scene.name);
+    const std::vector<BodyState> exact = exactEnd(scene);
+    EXPECT_LT(errorAtEnd(scene, "simbody", 1e-6, exact), 1e-4);
+    EXPECT_LT(errorAtEnd(scene, "simbody", 1e-9, exact), 1e-7);
+    EXPECT_LT(errorAtEnd(scene, "simbodyFehlberg", 1e-9, exact), 1e-6);
+  }
+}
+
+TEST_F(Peers, WhatTheyDoNotHaveIsNamed) {
+  EXPECT_EQ(missingIn("bullet", fileOf("scenes/slack_rope.json")), "ropes");
+  EXPECT_EQ(missingIn("ode", fileOf("scenes/struck_model.json")), "pushes");
+  EXPECT_THAT(missingIn("bullet", fileOf("scenes/gears_fall.json")), ::testing::HasSubstr("concave mesh"));
+  EXPECT_THAT(missingIn("mujoco", fileOf("scenes/gears_fall.json")), ::testing::HasSubstr("no primitive"));
+  EXPECT_THAT(missingIn("simbody", fileOf("scenes/newtons_cradle.json")), ::testing::HasSubstr("contact"));
+  for (const char* name : {"bullet", "ode", "mujoco"})
+    EXPECT_EQ(missingIn(name, fileOf("scenes/newtons_cradle.json")), "");
+  EXPECT_EQ(missingIn("simbody", fileOf("scenes/coupled_pendulums.json")), "");
+}
+
+TEST_F(Peers, RowsNameTheEngine) {
+  StudyScene scene(oscillator(5, 0.5));
+  const Reference reference{scene.run(methodOf("dop853"), 1e-12, 10).end, 1e-2, "", ""};
+  std::vector<StudyRow> rows;
+  sweep(scene, "spring", methodOf("bulletTuned"), reference, [&](const StudyRow& row) { rows.push_back(row); });
+  ASSERT_FALSE(rows.empty());
+  EXPECT_THAT(tableLine(rows.back()), ::testing::StartsWith("spring,bullet,bulletTuned,"));
+  EXPECT_EQ(rows.back().evaluations * rows.back().setting, 0.5);  // steps
+}
+
+TEST_F(Peers, EnergyIsNotJudgedWhereContactMayTakeIt) {
+  StudyScene sliding(blockOnSlope(0.5)), swinging(oscillator(5, 0.5));
+  EXPECT_TRUE(std::isnan(sliding.run(methodOf("bullet"), 0.01, 10).energyDrift));
+  EXPECT_GT(swinging.run(methodOf("bullet"), 0.01, 10).energyDrift, 0);
+}
+
+TEST_F(Peers, AScenePartThatIsMissingLeavesNoRows) {
+  StudyScene scene(fileOf("scenes/rope_slack_taut.json"));
+  sweep(scene, "ropes", methodOf("bullet"), {}, [](const StudyRow&) { FAIL(); });
+  EXPECT_EQ(scene.missingIn(methodOf("bullet")), "ropes");
+  EXPECT_EQ(scene.missingIn(methodOf("rk4")), "");
+}
+
+// Figures that these engines are known to reach, from programs written for each: a wrong translation of a scene, or
+// another setting, would show in them. They are given to two digits, hence 5 %.
+
+/// Error (rad) of benchmarks/scenes/free_rotation.json at its end; the reference is RK4 in long double, step 5e-5 s.
+double errorOfFreeRotation(const std::string& peer, double setting) {
+  const Quat exact(0.91299440034513210, -0.02676327986032762, 0.40594789521804807, 0.03051652269815690);
+  const std::vector<Frame> frames = framesOf(fileOf("benchmarks/scenes/free_rotation.json"), peer, setting, 1.0 / 20);
+  return angleBetween(frames.back().states[0].orientation, exact);
+}
+
+TEST_F(Peers, FreeRotationIsAsExactAsTheyAreKnownToBe) {
+  EXPECT_NEAR(errorOfFreeRotation("mujoco", 1e-3), 0.040, 0.002);
+  EXPECT_NEAR(errorOfFreeRotation("bullet", 1e-3), 0.040, 0.002);
+  EXPECT_NEAR(errorOfFreeRotation("mujocoRk4", 1.0 / 60), 2.3e-4, 0.1e-4);
+  EXPECT_NEAR(errorOfFreeRotation("simbody", 1e-8), 1.0e-4, 0.05e-4);
+}
+
+/// Largest error (m) of benchmarks/scenes/oscillator.json over all steps: y = -1.00981 + 0.1 cos(sqrt(1000) t).
+double errorOfOscillator(const std::string& peer, double stepsPerSecond) {
+  double largest = 0;
+  for (const Frame& frame :
+       framesOf(fileOf("benchmarks/scenes/oscillator.json"), peer, 1 / stepsPerSecond, stepsPerSecond))
+    largest = std::max(
+        largest, std::abs(frame.states[0].position.y() + 1.00981 - 0.1 * std::cos(std::sqrt(1000.0) * frame.time)));
+  return largest;
+}
+
+TEST_F(Peers, AnOscillatorIsAsExactAsTheyAreKnownToBe) {
+  EXPECT_NEAR(errorOfOscillator("mujocoRk4", 240), 7.9e-5, 0.4e-5);
+  EXPECT_NEAR(errorOfOscillator("ode", 1000), 0.0029, 0.00015);
+  EXPECT_NEAR(errorOfOscillator("bullet", 1000), 0.0029, 0.00015);
+}
+
+/// Error (m) of the last ball of benchmarks/scenes/chain_on_joints.json at its end; the reference is DOP853 in reduced
+/// coordinates.
+double errorOfChain(const std::string& peer, double setting) {
+  const Vec3 exact(-2.69216544565380913, -0.28584971181580214, 0);
+  const std::vector<Frame> frames = framesOf(fileOf("benchmarks/scenes/chain_on_joints.json"), peer, setting, 0.2);
+  return (frames.back().states[2].position - exact).norm();
+}
+
+TEST_F(Peers, AChainIsAsExactAsTheyAreKnownToBe) {
+  EXPECT_NEAR(errorOfChain("odeTuned", 1.0 / 60), 0.085, 0.004);
+  EXPECT_NEAR(errorOfChain("odeTuned", 1e-3), 0.0016, 0.0001);
+  EXPECT_NEAR(errorOfChain("mujocoRk4", 1.0 / 60), 1.0e-4, 0.05e-4);
+}
+
+}  // namespace
+}  // namespace cradle
