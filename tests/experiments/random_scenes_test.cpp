@@ -36,7 +36,7 @@ TEST(RandomScene, ShowsWhatGoesWrong) {
   RandomSceneFigures figures;
   figures.energyScale = 1;
   EXPECT_TRUE(faultsOf(figures, 1e-5).empty());
-  figures.energyGain = figures.penetration = 2e-4;
+  figures.energyGain = figures.penetration = 5e-5;
   EXPECT_EQ(faultsOf(figures, 1e-5).size(), 2u);
   EXPECT_TRUE(faultsOf(figures, 1e-3).empty());
   figures.keepsAccuracy = false;
