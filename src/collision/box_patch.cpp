@@ -4,7 +4,8 @@
 // the coming step, and sides are clipped at that instant: a falling box moves by half its size in a step of 1/60 s, and
 // with the axis of now it would stop on boxes that it passes and sink into those that it meets.
 // Crossing edges of two sides that lie on each other have nearly the normal of those sides, and may be a little farther
-// apart: one point there would let boxes tip into each other about it, so such edges never carry contact.
+// apart: one point there would let boxes tip into each other about it, so such edges never carry contact. Where boxes
+// slide over each other, though, an edge of one climbs an edge of the other, and the side sees nothing of it.
 
 #include "collision/contact_patch.h"
 
@@ -18,6 +19,8 @@ namespace {
 constexpr double kApart = 1e-3;           // m: boxes nearer than that touch, and their axis is that of least overlap
 constexpr double kFacePreference = 5e-4;  // m: edges carry contact only where they are clearly farther apart than sides
 constexpr double kAligned = 0.95;         // cosine: edges that face as a side does are covered by that side
+constexpr double kAlignedSliding = 0.98;  // cosine: what slides up a slope that a side does not see sinks in
+constexpr double kSliding = 2e-3;         // m in a step: less is no sliding
 constexpr double kParallelSine2 = 1e-4;   // squared sine: edges at a smaller angle are covered by sides
 constexpr double kLeastClosing = 1e-9;    // m in a step: less is no approach
 
@@ -60,7 +63,8 @@ class BoxPair {
 
   ContactPatch contact() const {
     const bool areApart = std::max(side_.separation, edges_.separation) > kApart;
-    const bool byEdges = hasEdges_ && edgeNormal().dot(sideNormal()) < kAligned &&
+    const double aligned = motion_.squaredNorm() > kSliding * kSliding ? kAlignedSliding : kAligned;
+    const bool byEdges = hasEdges_ && edgeNormal().dot(sideNormal()) < aligned &&
                          (areApart ? closingTime(edges_) > closingTime(side_) && edges_.separation > 0
                                    : edges_.separation > side_.separation + kFacePreference);
     const Axis& axis = byEdges ? edges_ : side_;

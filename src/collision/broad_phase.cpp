@@ -12,8 +12,10 @@ namespace {
 constexpr double kSlackMotions = 4;     // steps like the one to come that a list should last
 constexpr double kLeastSlack = 0.05;    // of a body's size: what lies nearly still is not sorted again at each step
 constexpr double kMostSlack = 0.25;     // of the size: beyond, lists of pairs that are not near cost more than new ones
+constexpr double kDeflection = 0.25;    // of its way: as much a body may be turned aside without a new list
 constexpr double kCellWidth = 1.5;      // of the mean size of the moving bodies' boxes
 constexpr double kMostCells = 1e9;      // from the middle: what lies farther away shares the outermost cells
+constexpr std::size_t kGrain = 256;     // boxes that a thread compares at once
 constexpr double kBoxRounding = 1e-12;  // of the coordinates
 constexpr double kFarthest = 1e100;     // m: a step that has blown up is judged elsewhere
 
@@ -25,13 +27,20 @@ Bounds turnedBounds(const Bounds& bounds, const RigidTransform& worldFromBody) {
   return {Vec3(center - half), Vec3(center + half)};
 }
 
-/// Bound on how far (m) a point within `radius` of a body's origin went from one pose to another.
-double wayBetween(const RigidTransform& from, const RigidTransform& to, double radius) {
-  const double turn = std::min((from.rotation.coeffs() - to.rotation.coeffs()).norm(),
-                               (from.rotation.coeffs() + to.rotation.coeffs()).norm());
-  // A chord of the unit quaternions c turns points by an angle a with c = 2 sin(a/4): their way is <= 2 r sin(a/2) <= 2
-  // r c.
-  return (to.translation - from.translation).norm() + 2 * radius * turn;
+/// Bound on how far (m) turning from one orientation to another moves a point at `radius` (m): a chord c of the unit
+/// quaternions turns points by an angle a with c = 2 sin(a/4), and 2 r sin(a/2) <= 2 r c.
+double wayOfTurning(const Quat& from, const Quat& to, double radius) {
+  return 2 * radius * std::min((from.coeffs() - to.coeffs()).norm(), (from.coeffs() + to.coeffs()).norm());
+}
+
+/// Of a way along `drift` (m), and `around` (m) it.
+Bounds wayBounds(const Vec3& from, const Vec3& drift, double around) {
+  const Vec3 to = from + drift, grown = Vec3::Constant(around);
+  return {Vec3(from.cwiseMin(to) - grown), Vec3(from.cwiseMax(to) + grown)};
+}
+
+bool isCenteredBall(const Collider& collider) {
+  return collider.isBall() && collider.points[0].isZero();
 }
 
 bool isExcluded(const ContactGeometry& geometry, std::size_t a, std::size_t b) {
@@ -57,40 +66,67 @@ double lowest(const Bounds& box, const PlaneCollider& plane) {
 
 bool BroadPhase::update(const VectorX& state, const std::vector<double>& motions, double margin,
                         ContactGeometry& geometry) {
-  if (geometry.colliders.empty() || covers(state, motions, margin)) return false;
-  enclose(state, motions, margin, geometry);
+  return update({state, motions, {}}, margin, geometry);
+}
+
+bool BroadPhase::update(const Ways& ways, double margin, ContactGeometry& geometry) {
+  if (geometry.colliders.empty() || covers(ways, margin)) return false;
+  enclose(ways, margin, geometry);
   sort(geometry);
   sweep(geometry);
   return true;
 }
 
-bool BroadPhase::covers(const VectorX& state, const std::vector<double>& motions, double margin) const {
+Vec3 BroadPhase::driftOf(const Ways& ways, std::size_t body) {
+  return ways.drifts.empty() ? Vec3(Vec3::Zero()) : ways.drifts[body];
+}
+
+bool BroadPhase::covers(const Ways& ways, double margin) const {
   if (poses_.empty()) return false;
-  for (std::size_t body = 0; body < motions.size(); ++body) {
-    const double way = wayBetween(poses_[body], poseOf(state, static_cast<int>(body)), radii_[body]);
-    if (!(way + motions[body] + margin <= slacks_[body])) return false;
+  for (std::size_t body = 0; body < ways.motions.size(); ++body) {
+    const RigidTransform now = poseOf(ways.state, static_cast<int>(body));
+    const double turning =
+        spinRadii_[body] > 0 ? wayOfTurning(poses_[body].rotation, now.rotation, spinRadii_[body]) : 0;
+    const double around = turning + ways.motions[body] + margin;
+    // Not a number is not covered.
+    if (!(around <= slacks_[body])) return false;
+    if (!centers_[body].contains(wayBounds(now.translation, driftOf(ways, body), around))) return false;
   }
   return true;
 }
 
-void BroadPhase::enclose(const VectorX& state, const std::vector<double>& motions, double margin,
-                         const ContactGeometry& geometry) {
-  radii_.assign(motions.size(), 0.0);
+void BroadPhase::enclose(const Ways& ways, double margin, const ContactGeometry& geometry) {
+  const std::size_t count = ways.motions.size();
+  radii_.assign(count, 0.0), spinRadii_.assign(count, 0.0);
   for (const Collider& collider : geometry.colliders)
-    if (collider.body != kFixed) radii_[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
-  poses_.clear(), slacks_.clear(), boxes_.clear();
-  for (std::size_t body = 0; body < motions.size(); ++body) {
-    const double motion = motions[body] < kFarthest ? motions[body] : kFarthest;
-    const double ahead = std::min(kSlackMotions * motion, kMostSlack * radii_[body]);
-    poses_.push_back(poseOf(state, static_cast<int>(body)));
-    slacks_.push_back(margin + std::max({motion, ahead, kLeastSlack * radii_[body]}));
+    if (collider.body != kFixed) {
+      const auto body = static_cast<std::size_t>(collider.body);
+      radii_[body] = collider.boundingRadius;
+      spinRadii_[body] = isCenteredBall(collider) ? 0 : collider.boundingRadius;
+    }
+  poses_.clear(), slacks_.clear(), centers_.clear();
+  for (std::size_t body = 0; body < count; ++body) {
+    const Vec3 drift = driftOf(ways, body);
+    const double motion = ways.motions[body] < kFarthest ? ways.motions[body] : kFarthest, way = drift.norm();
+    const double ahead = std::min(kSlackMotions * (motion + way), kMostSlack * radii_[body]);
+    poses_.push_back(poseOf(ways.state, static_cast<int>(body)));
+    slacks_.push_back(margin + std::max({motion + kDeflection * way, ahead, kLeastSlack * radii_[body]}));
+    centers_.push_back(wayBounds(poses_.back().translation, drift, slacks_.back()));
   }
+  encloseColliders(geometry, ways);
+}
+
+void BroadPhase::encloseColliders(const ContactGeometry& geometry, const Ways& ways) {
+  boxes_.clear(), roundings_.clear();
   for (const Collider& collider : geometry.colliders) {
     const auto body = static_cast<std::size_t>(collider.body);
     Bounds box = collider.body == kFixed ? collider.bounds : turnedBounds(collider.bounds, poses_[body]);
-    const double rounding = kBoxRounding * (box.min().cwiseAbs() + box.max().cwiseAbs()).maxCoeff();
-    const Vec3 grown = Vec3::Constant(rounding + (collider.body == kFixed ? 0 : slacks_[body]));
-    boxes_.emplace_back(Vec3(box.min() - grown), Vec3(box.max() + grown));
+    double grown = kBoxRounding * (box.min().cwiseAbs() + box.max().cwiseAbs()).maxCoeff();
+    Vec3 drift = Vec3::Zero();
+    if (collider.body != kFixed) grown += slacks_[body], drift = driftOf(ways, body);
+    boxes_.emplace_back(Vec3(box.min() + drift.cwiseMin(0) - Vec3::Constant(grown)),
+                        Vec3(box.max() + drift.cwiseMax(0) + Vec3::Constant(grown)));
+    roundings_.push_back(collider.isBall() ? collider.radius + grown : 0);
   }
 }
 
@@ -125,20 +161,24 @@ void BroadPhase::sort(const ContactGeometry& geometry) {
   });
 }
 
-void BroadPhase::compare(const ContactGeometry& geometry, std::size_t first, std::size_t second) {
+void BroadPhase::compare(const ContactGeometry& geometry, std::size_t first, std::size_t second, Found& found) const {
   if (!boxes_[first].intersects(boxes_[second])) return;
   const std::size_t a = std::min(first, second), b = std::max(first, second);
   const Collider &colliderA = geometry.colliders[a], &colliderB = geometry.colliders[b];
   if (colliderA.body == kFixed && colliderB.body == kFixed) return;
   if (colliderA.isBall() && colliderB.isBall()) {
-    const double reach = (boxes_[a].sizes().x() + boxes_[b].sizes().x()) / 2;
-    if ((boxes_[b].center() - boxes_[a].center()).squaredNorm() > reach * reach) return;
+    // The boxes of their centres, and the ways between these.
+    const double reach = roundings_[a] + roundings_[b];
+    const Vec3 beside = (boxes_[b].center() - boxes_[a].center()).cwiseAbs() -
+                        (boxes_[a].sizes() + boxes_[b].sizes()) / 2 + Vec3::Constant(reach);
+    if (beside.cwiseMax(0).squaredNorm() > reach * reach) return;
   }
-  if (geometry.excluded.empty() || !isExcluded(geometry, a, b)) found_.emplace_back(a, b);
+  if (geometry.excluded.empty() || !isExcluded(geometry, a, b)) found.emplace_back(a, b);
 }
 
 /// Each box with those in its cell and in four of the eight around it: those of the others find it.
-void BroadPhase::compareIntervals(const ContactGeometry& geometry) {
+void BroadPhase::compareIntervals(const ContactGeometry& geometry, std::size_t first, std::size_t last,
+                                  Found& found) const {
   const auto meetAcross = [](const Interval& a, const Interval& b) {
     return a.thirdFrom <= b.thirdTo && b.thirdFrom <= a.thirdTo && a.acrossFrom <= b.acrossTo &&
            b.acrossFrom <= a.acrossTo;
@@ -146,11 +186,19 @@ void BroadPhase::compareIntervals(const ContactGeometry& geometry) {
   const std::size_t count = intervals_.size();
   constexpr std::int64_t kAround[] = {1, kRow - 1, kRow, kRow + 1};
   std::size_t nexts[] = {0, 0, 0, 0};  // the first interval of those cells that may begin beside this one
-  for (std::size_t i = 0; i < count; ++i) {
+  if (first < last)
+    for (int k = 0; k < 4; ++k) {
+      const std::int64_t cell = intervals_[first].cell + kAround[k];
+      nexts[k] = static_cast<std::size_t>(
+          std::partition_point(intervals_.begin(), intervals_.end(),
+                               [&](const Interval& interval) { return interval.cell < cell; }) -
+          intervals_.begin());
+    }
+  for (std::size_t i = first; i < last; ++i) {
     const Interval& here = intervals_[i];
-    const auto compareFrom = [&](std::size_t first, std::int64_t cell) {
-      for (std::size_t j = first; j < count && intervals_[j].cell == cell && intervals_[j].from <= here.to; ++j)
-        if (meetAcross(here, intervals_[j])) compare(geometry, here.collider, intervals_[j].collider);
+    const auto compareFrom = [&](std::size_t from, std::int64_t cell) {
+      for (std::size_t j = from; j < count && intervals_[j].cell == cell && intervals_[j].from <= here.to; ++j)
+        if (meetAcross(here, intervals_[j])) compare(geometry, here.collider, intervals_[j].collider, found);
     };
     compareFrom(i + 1, here.cell);
     for (int k = 0; k < 4; ++k) {
@@ -166,18 +214,20 @@ void BroadPhase::compareIntervals(const ContactGeometry& geometry) {
 
 void BroadPhase::compareWide(const ContactGeometry& geometry) {
   for (std::size_t i = 0; i < wide_.size(); ++i) {
-    for (const Interval& interval : intervals_) compare(geometry, wide_[i], interval.collider);
-    for (std::size_t j = i + 1; j < wide_.size(); ++j) compare(geometry, wide_[i], wide_[j]);
+    for (const Interval& interval : intervals_) compare(geometry, wide_[i], interval.collider, found_[0]);
+    for (std::size_t j = i + 1; j < wide_.size(); ++j) compare(geometry, wide_[i], wide_[j], found_[0]);
   }
 }
 
 /// Counting sort by the first collider, then the few of each by the second.
 void BroadPhase::sortFound() {
   next_.assign(boxes_.size() + 1, 0);
-  for (const auto& [a, b] : found_) ++next_[a + 1];
+  for (const Found& found : found_)
+    for (const auto& [a, b] : found) ++next_[a + 1];
   for (std::size_t i = 1; i < next_.size(); ++i) next_[i] += next_[i - 1];
-  sorted_.resize(found_.size());
-  for (const auto& pair : found_) sorted_[next_[pair.first]++] = pair;
+  sorted_.resize(next_.back());
+  for (const Found& found : found_)
+    for (const auto& pair : found) sorted_[next_[pair.first]++] = pair;
   std::size_t first = 0;
   for (std::size_t i = 0; i < boxes_.size(); ++i) {  // next_[i] is the end of i's pairs now
     std::sort(sorted_.begin() + static_cast<std::ptrdiff_t>(first),
@@ -195,8 +245,14 @@ void BroadPhase::sweep(ContactGeometry& geometry) {
     for (std::size_t i = 0; i < geometry.colliders.size(); ++i)
       if (geometry.colliders[i].body != kFixed && lowest(boxes_[i], geometry.planes[p]) <= 0)
         geometry.pairs.push_back({i, p, true, law(geometry.colliders[i].surface, geometry.planes[p].surface)});
-  found_.clear();
-  compareIntervals(geometry);
+  found_.resize(threads_ ? static_cast<std::size_t>(threads_->count()) : 1);
+  for (Found& found : found_) found.clear();
+  if (threads_)
+    threads_->share(intervals_.size(), kGrain, [&](int thread, std::size_t first, std::size_t last) {
+      compareIntervals(geometry, first, last, found_[static_cast<std::size_t>(thread)]);
+    });
+  else
+    compareIntervals(geometry, 0, intervals_.size(), found_[0]);
   compareWide(geometry);
   sortFound();
   for (const auto& [a, b] : sorted_)

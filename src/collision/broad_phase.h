@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collision/collider.h"
+#include "core/worker_threads.h"
 
 namespace cradle {
 
@@ -12,11 +13,25 @@ namespace cradle {
 /// box.
 class BroadPhase {
  public:
+  BroadPhase() = default;
+  /// Shares the work among `threads`, to which it keeps a reference; the list is the same for any number.
+  explicit BroadPhase(WorkerThreads& threads) : threads_(&threads) {}
+
   /// Sets geometry.pairs to all pairs that may come nearer than `margin` (m) to each other while no point of moving
   /// body i moves by more than `motions[i]` (m) from where it is in `state`; and some others. Against planes first,
   /// then by colliders a < b; pairs of fixed bodies and excluded ones are left out. True if the list is a new one. O(n
   /// log n) for the usual scene, as long as all that is near on one axis is not far on the others.
   bool update(const VectorX& state, const std::vector<double>& motions, double margin, ContactGeometry& geometry);
+
+  /// Where bodies are, and where they go until the next update.
+  struct Ways {
+    const VectorX& state;
+    const std::vector<double>& motions;  // m
+    const std::vector<Vec3>& drifts;     // m; empty: none
+  };
+  /// The same, where motions[i] is how far points of body i move at most beside the way drifts[i] (m) that all of them
+  /// go together.
+  bool update(const Ways& ways, double margin, ContactGeometry& geometry);
 
  private:
   struct Interval {
@@ -26,25 +41,33 @@ class BroadPhase {
     std::size_t collider;
   };
 
-  bool covers(const VectorX& state, const std::vector<double>& motions, double margin) const;
-  void enclose(const VectorX& state, const std::vector<double>& motions, double margin,
-               const ContactGeometry& geometry);
+  using Found = std::vector<std::pair<std::size_t, std::size_t>>;
+
+  static Vec3 driftOf(const Ways& ways, std::size_t body);
+  bool covers(const Ways& ways, double margin) const;
+  void enclose(const Ways& ways, double margin, const ContactGeometry& geometry);
+  void encloseColliders(const ContactGeometry& geometry, const Ways& ways);
   void sort(const ContactGeometry& geometry);
   void sweep(ContactGeometry& geometry);
-  void compareIntervals(const ContactGeometry& geometry);
+  void compareIntervals(const ContactGeometry& geometry, std::size_t first, std::size_t last, Found& found) const;
   void compareWide(const ContactGeometry& geometry);
-  void compare(const ContactGeometry& geometry, std::size_t first, std::size_t second);
+  void compare(const ContactGeometry& geometry, std::size_t first, std::size_t second, Found& found) const;
   void sortFound();
 
   std::vector<RigidTransform> poses_;  // of the moving bodies when they were enclosed
   std::vector<double> radii_;          // m, of the moving bodies about their centres of mass
-  std::vector<double> slacks_;         // m: how far any point of a moving body may go and stay in its box
+  std::vector<double> spinRadii_;      // m: how far from there turning moves their surface; 0 for a ball
+  std::vector<double> slacks_;         // m: how far any point of a moving body may go beside its way
+  std::vector<Bounds> centers_;        // m: of the ways of the moving bodies' centres of mass, and the slack
   std::vector<Bounds> boxes_;
+  std::vector<double> roundings_;  // m: of the corners of boxes around balls; 0 for others
   std::vector<Interval> intervals_;
   double longest_ = 0;             // m, of the intervals
   std::vector<std::size_t> wide_;  // colliders that no cell is wide enough for
-  std::vector<std::pair<std::size_t, std::size_t>> found_, sorted_;
+  std::vector<Found> found_;       // by each thread
+  Found sorted_;
   std::vector<std::size_t> next_;  // scratch
+  WorkerThreads* threads_ = nullptr;
 };
 
 }  // namespace cradle

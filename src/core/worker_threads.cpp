@@ -46,7 +46,10 @@ void WorkerThreads::run(const std::function<void(int)>& task) {
 
 void WorkerThreads::work(int thread) {
   for (long done = 0;; ++done) {
-    {
+    // The next task mostly comes before this thread could be put to sleep and woken.
+    for (int spins = 0; spins < kSpins && started_.load(std::memory_order_acquire) == done && !isClosing_; ++spins)
+      pause();
+    if (started_.load(std::memory_order_acquire) == done) {
       std::unique_lock lock(mutex_);
       wake_.wait(lock, [&] { return isClosing_ || started_.load() > done; });
       if (isClosing_) return;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <functional>
@@ -24,6 +25,18 @@ class WorkerThreads {
   /// The task must not throw.
   void run(const std::function<void(int)>& task);
 
+  /// Calls work(thread, first, last) for parts [first, last) of `size` things, `grain` in each, until all are done: a
+  /// thread that is done early takes more of them. The work must not throw.
+  template <class Work>
+  void share(std::size_t size, std::size_t grain, const Work& work) {
+    if (count_ == 1) return work(0, std::size_t{0}, size);
+    next_.store(0, std::memory_order_relaxed);
+    run([&](int thread) {
+      for (std::size_t first; (first = next_.fetch_add(grain, std::memory_order_relaxed)) < size;)
+        work(thread, first, std::min(first + grain, size));
+    });
+  }
+
   /// To be called by all threads inside a task: none goes on before all have come.
   void meet();
 
@@ -41,8 +54,9 @@ class WorkerThreads {
   std::mutex mutex_;
   std::condition_variable wake_;
   const std::function<void(int)>* task_ = nullptr;
-  std::atomic<long> started_ = 0;  // tasks so far
-  bool isClosing_ = false;
+  std::atomic<long> started_ = 0;      // tasks so far
+  std::atomic<std::size_t> next_ = 0;  // of the things shared that nobody has taken
+  std::atomic<bool> isClosing_ = false;
   std::atomic<int> waiting_ = 0;
   std::atomic<long> meetings_ = 0;
 };

@@ -24,7 +24,7 @@ struct SolverBody {
 struct Softness {
   double turn;       // rad: of the spring's oscillation, in a sub-step
   double damping;    // twice the damping ratio
-  double hardening;  // 1/m: part by which the frequency grows
+  double hardening;  // 1/m: an overlap s raises the frequency 1 + hardening s + (hardening s)^2 times
   double mostPush;   // m/s, apart
 };
 

@@ -1,8 +1,17 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 namespace cradle {
+
+/// Asks for something that is soon read, or written (`isWritten`), wherever it lies in memory.
+template <bool isWritten, class Thing>
+void fetchAhead(const Thing& thing) {
+  constexpr std::size_t kLine = 64;  // bytes
+  const char* from = reinterpret_cast<const char*>(&thing);
+  for (std::size_t at = 0; at < sizeof(Thing); at += kLine) __builtin_prefetch(from + at, isWritten);
+}
 
 /// Two numbers of two contacts that are worked on at once: one contact a lane. All operations are those of doubles,
 /// lane by lane.

@@ -5,16 +5,21 @@
 #include <limits>
 #include <tuple>
 
+#include "impact/lanes.h"
+
 namespace cradle {
 namespace {
 
-constexpr double kSamePoint = 0.1;    // of the body's radius: points as near as that are one from step to step
-constexpr double kSameNormal = 0.9;   // cosine, at least, for impulses to go on
-constexpr double kSlowSliding = 0.1;  // m/s: slower, static friction holds; a step's gain by gravity is 0.16
-constexpr double kKeptMotion = 1e-3;  // m: what two bodies may move against each other with one manifold
-constexpr double kKeptTurn = 0.01;    // rad: both together
-constexpr double kBallPart = 1.0;     // that counts of their approach: between balls a ball is deflected most
-constexpr double kSpinPart = 0.5;     // of the speed of the farthest point: few touch with that one
+constexpr double kSamePoint = 0.1;      // of the body's radius: points as near as that are one from step to step
+constexpr double kSameNormal = 0.9;     // cosine, at least, for impulses to go on
+constexpr double kSlowSliding = 0.1;    // m/s: slower, static friction holds; a step's gain by gravity is 0.16
+constexpr double kKeptMotion = 1e-3;    // m: what two bodies may move against each other with one manifold
+constexpr double kKeptTurn = 0.01;      // rad: both together
+constexpr double kBallPart = 0.8;       // that counts of their approach: balls have no edges that could be missed
+constexpr double kSpinPart = 0.5;       // of the speed of the farthest point: few touch with that one
+constexpr std::size_t kGrain = 512;     // pairs that a thread takes at once: tens of microseconds
+constexpr std::size_t kAhead = 2;       // pairs: what they need is asked for in time, for it lies anywhere
+constexpr std::size_t kNearGrain = 64;  // those among them that are near take longer
 
 auto orderOf(const ColliderPair& pair) {
   return std::tuple(!pair.againstPlane, pair.againstPlane ? pair.b : pair.a, pair.againstPlane ? pair.a : pair.b);
@@ -75,12 +80,11 @@ bool PileContacts::areNear(const NearPair& pair, const PileLook& look, double re
 double PileContacts::approachOf(const NearPair& pair, const PileLook& look) const {
   const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
   if (a.isAsleep && (pair.bodyB == kFixed || b.isAsleep)) return 0;
-  const double spinA = a.spinRadius * a.angularVelocity.norm(), spinB = b.spinRadius * b.angularVelocity.norm();
-  const double spin = kSpinPart * (spinA + spinB);
+  const double spin = kSpinPart * (a.spinSpeed + b.spinSpeed);
   const bool areBalls = a.spinRadius == 0 && (pair.againstPlane || b.spinRadius == 0);
   const double part = areBalls ? kBallPart : 1;
   const Vec3 velocity = b.linearVelocity - a.linearVelocity;
-  if (!areNear(pair, look, look.margin + look.timeStep * (velocity.norm() + spinA + spinB))) return 0;
+  if (!areNear(pair, look, look.margin + look.timeStep * (velocity.norm() + a.spinSpeed + b.spinSpeed))) return 0;
   if (pair.againstPlane) return part * std::max(0.0, geometry_.planes[pair.shapeB].normal.dot(velocity)) + spin;
   if (pair.bodyB == kFixed) return part * velocity.norm() + spin;
   const Vec3 offset = b.position - a.position;
@@ -90,11 +94,9 @@ double PileContacts::approachOf(const NearPair& pair, const PileLook& look) cons
 
 double PileContacts::fastestApproach(const PileLook& look, WorkerThreads& threads) const {
   std::vector<double> fastest(static_cast<std::size_t>(threads.count()), 0);
-  threads.run([&](int thread) {
-    const auto [first, last] = threads.partOf(pairs_.size(), thread);
-    double most = 0;
+  threads.share(pairs_.size(), kGrain, [&](int thread, std::size_t first, std::size_t last) {
+    double& most = fastest[static_cast<std::size_t>(thread)];
     for (std::size_t i = first; i < last; ++i) most = std::max(most, approachOf(pairs_[i], look));
-    fastest[static_cast<std::size_t>(thread)] = most;
   });
   return *std::max_element(fastest.begin(), fastest.end());
 }
@@ -103,33 +105,51 @@ bool PileContacts::mayTouch(const NearPair& pair, const PileLook& look) const {
   const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
   if (a.isAsleep && (pair.bodyB == kFixed || b.isAsleep)) return false;
   if (!pair.isEmpty) return true;
-  const double speed = (b.linearVelocity - a.linearVelocity).norm() + a.spinRadius * a.angularVelocity.norm() +
-                       b.spinRadius * b.angularVelocity.norm();
+  const double speed = (b.linearVelocity - a.linearVelocity).norm() + a.spinSpeed + b.spinSpeed;
   const double reach = look.margin + speed * look.timeStep;
   return clearanceOf(pair, a, b) <= reach && areNear(pair, look, reach);
 }
 
 void PileContacts::update(const PileLook& look, WorkerThreads& threads) {
   scratch_.resize(static_cast<std::size_t>(threads.count()));
-  threads.run([&](int thread) {
-    const auto [first, last] = threads.partOf(pairs_.size(), thread);
-    for (std::size_t i = first; i < last; ++i) pairs_[i].isNear = mayTouch(pairs_[i], look);
-  });
+  findNear(look, threads);
   giveManifolds();
-  threads.run([&](int thread) {
-    const auto [first, last] = threads.partOf(pairs_.size(), thread);
-    for (std::size_t i = first; i < last; ++i)
-      if (pairs_[i].isNear) updatePair(pairs_[i], look, scratch_[static_cast<std::size_t>(thread)]);
+  threads.share(near_.size(), kNearGrain, [&](int thread, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      if (i + kAhead < last) {
+        const std::size_t next = static_cast<std::size_t>(pairs_[near_[i + kAhead]].manifold);
+        fetchAhead<true>(manifolds_[next]);
+        fetchAhead<true>(anchors_[next]);
+      }
+      updatePair(pairs_[near_[i]], look, scratch_[static_cast<std::size_t>(thread)]);
+    }
   });
   active_.clear();
-  for (const NearPair& pair : pairs_)
-    if (pair.isNear && !pair.isEmpty) active_.push_back(pair.manifold);
+  for (const std::size_t index : near_)
+    if (!pairs_[index].isEmpty) active_.push_back(pairs_[index].manifold);
+}
+
+/// Each part of the pairs lists its own in place; put together they are in the order of pairs.
+void PileContacts::findNear(const PileLook& look, WorkerThreads& threads) {
+  near_.resize(pairs_.size());
+  nearOfPart_.assign(pairs_.size() / kGrain + 1, 0);
+  threads.share(pairs_.size(), kGrain, [&](int, std::size_t first, std::size_t last) {
+    std::size_t count = 0;
+    for (std::size_t i = first; i < last; ++i)
+      if (mayTouch(pairs_[i], look)) near_[first + count++] = i;
+    nearOfPart_[first / kGrain] = count;
+  });
+  std::size_t count = 0;
+  for (std::size_t part = 0; part < nearOfPart_.size(); ++part)
+    for (std::size_t i = 0; i < nearOfPart_[part]; ++i) near_[count++] = near_[part * kGrain + i];
+  near_.resize(count);
 }
 
 /// Room for the manifolds of pairs that have come near.
 void PileContacts::giveManifolds() {
-  for (NearPair& pair : pairs_) {
-    if (!pair.isNear || pair.manifold >= 0) continue;
+  for (const std::size_t index : near_) {
+    NearPair& pair = pairs_[index];
+    if (pair.manifold >= 0) continue;
     if (free_.empty()) {
       free_.push_back(static_cast<std::int32_t>(manifolds_.size()));
       manifolds_.emplace_back();
@@ -209,9 +229,11 @@ void PileContacts::renew(const ContactPatch& patch, const MovingPose& poseA, con
 
 std::vector<PileContacts::Meeting> PileContacts::meetings(double slowest) const {
   std::vector<Meeting> found;
-  for (const NearPair& pair : pairs_)
-    if (pair.isNear && !pair.isEmpty && pair.approach > slowest)
+  for (const std::size_t index : near_) {
+    const NearPair& pair = pairs_[index];
+    if (!pair.isEmpty && pair.approach > slowest)
       found.push_back({geometry_.pairs[pair.pair], pair.manifold, pair.isExchanged});
+  }
   return found;
 }
 

@@ -51,7 +51,7 @@ class PileContacts {
   /// A pair, and what is known of it from the steps before.
   struct NearPair : PilePair {
     std::int32_t manifold = -1;
-    bool isNear = false, isEmpty = true;
+    bool isEmpty = true;
     double approach = 0;         // m/s, of a contact that was not pressed in the step before
     Vec3 offset = Vec3::Zero();  // m, from A to B when its patch was found
     double turned = 0;           // rad, of both, then
@@ -63,6 +63,7 @@ class PileContacts {
     std::array<Vec3, ContactPatch::kMostPoints> onA{}, onB{};
   };
 
+  void findNear(const PileLook& look, WorkerThreads& threads);
   void giveManifolds();
   static double clearanceOf(const NearPair& pair, const MovingPose& a, const MovingPose& b);
   bool areNear(const NearPair& pair, const PileLook& look, double reach) const;
@@ -81,6 +82,7 @@ class PileContacts {
   std::vector<NearPair> pairs_, taken_;        // taken_: scratch
   std::vector<ContactManifold> manifolds_;
   std::vector<Anchors> anchors_;
+  std::vector<std::size_t> near_, nearOfPart_;  // indices into pairs_ of the last update, and how many of each part
   std::vector<std::int32_t> free_, active_;
 };
 

@@ -67,8 +67,7 @@ ContactPatch PilePatches::patchOfFastShapes(const PilePair& pair, const PileLook
     return PosedBox{pose.position + pose.rotation * box.center, pose.rotation * box.axes, box.halfSize};
   };
   const Vec3 motion = look.timeStep * (poseB.linearVelocity - poseA.linearVelocity);
-  const double spin = poseA.spinRadius * poseA.angularVelocity.norm() + poseB.spinRadius * poseB.angularVelocity.norm();
-  const double margin = look.margin + look.timeStep * spin;
+  const double margin = look.margin + look.timeStep * (poseA.spinSpeed + poseB.spinSpeed);
   const Collider& a = geometry_.colliders[pair.shapeA];
   const auto& boxA = boxes_[pair.shapeA];
   if (pair.againstPlane) {
@@ -88,9 +87,7 @@ ContactPatch PilePatches::patchOfFastShapes(const PilePair& pair, const PileLook
 ContactPatch PilePatches::patchOfAnyShapes(const PilePair& pair, const PileLook& look,
                                            std::vector<Contact>& scratch) const {
   const MovingPose &poseA = look.poseOf(pair.bodyA), &poseB = look.poseOf(pair.bodyB);
-  const double speed = (poseB.linearVelocity - poseA.linearVelocity).norm() +
-                       poseA.spinRadius * poseA.angularVelocity.norm() +
-                       poseB.spinRadius * poseB.angularVelocity.norm();
+  const double speed = (poseB.linearVelocity - poseA.linearVelocity).norm() + poseA.spinSpeed + poseB.spinSpeed;
   const double reach = look.margin + look.timeStep * speed;
   scratch.clear();
   appendContacts(geometry_, pair.pair, look.state, reach, scratch);

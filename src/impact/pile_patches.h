@@ -10,16 +10,18 @@ namespace cradle {
 
 /// Where and how fast a moving body is.
 struct MovingPose {
-  Vec3 position = Vec3::Zero();         // m, world, of the centre of mass
-  Mat3 rotation = Mat3::Identity();     // worldFromBody
-  Vec3 linearVelocity = Vec3::Zero();   // m/s, world
-  Vec3 angularVelocity = Vec3::Zero();  // rad/s, world
+  // What tells whether a pair is near stands together.
+  Vec3 position = Vec3::Zero();        // m, world, of the centre of mass
+  Vec3 linearVelocity = Vec3::Zero();  // m/s, world
+  double spinSpeed = 0;                // m/s: of the surface by turning, at most
+  double turned = 0;                   // rad, since the start, to and fro
+  double spinRadius = 0;               // m: how far from it turning moves the surface; 0 for a ball about its centre
+  bool isAsleep = false;
   double radius = 0;                    // m, of the collider about the centre of mass
-  double spinRadius = 0;                // m: how far from it turning moves the surface; 0 for a ball about its centre
-  double turned = 0;                    // rad, since the start, to and fro
   Vec3 boxCenter = Vec3::Zero();        // m, world: of a box along the world's axes around the collider
   Vec3 boxHalf = Vec3::Zero();          // m
-  bool isAsleep = false;
+  Mat3 rotation = Mat3::Identity();     // worldFromBody
+  Vec3 angularVelocity = Vec3::Zero();  // rad/s, world
 };
 
 /// A pile at the begin of a step.

@@ -16,6 +16,7 @@ constexpr int kMostPieces = 32;                  // looks a step
 constexpr int kSubSteps = 8;         // a step, at least: with fewer, contacts must be so soft that piles sink
 constexpr double kStillPart = 0.25;  // of the speed that gravity gives a body in a step: contacts at rest have as much
 constexpr double kContactMargin = 5e-3;  // m: contacts are known before bodies touch
+constexpr std::size_t kGrain = 256;      // bodies that a thread takes at once: tens of microseconds
 
 std::vector<double> massesOf(const std::vector<RigidBody>& bodies) {
   std::vector<double> masses;
@@ -48,6 +49,7 @@ PileStep::PileStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
       geometry_(geometry),
       gravity_(gravity),
       threads_(threads),
+      broadPhase_(threads_),
       contacts_(geometry_),
       sleep_(massesOf(bodies)) {
   const std::size_t count = bodies.size();
@@ -72,6 +74,7 @@ PileStep::PileStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
   solverBodies_.resize(count);
   motions_.resize(count);
   reaches_.assign(count, 0);
+  drifts_.assign(count, Vec3::Zero());
   speeds_.assign(count, 0);
 }
 
@@ -83,7 +86,7 @@ void PileStep::advance(double timeStep, VectorX& state) {
   // How fast do bodies approach each other, and how often must they be looked at for that?
   placeBodies(timeStep, state);
   const double mostMargin = kContactMargin + kDeflected * kMostApproach;
-  if (broadPhase_.update(state, reaches_, mostMargin, geometry_)) contacts_.takePairs();
+  if (broadPhase_.update({state, reaches_, drifts_}, mostMargin, geometry_)) contacts_.takePairs();
   const double approach = timeStep * contacts_.fastestApproach({poses_, state, timeStep, mostMargin}, threads_);
   const int pieces = std::clamp(static_cast<int>(std::ceil(approach / kMostApproach)), 1, kMostPieces);
   const int fewest = static_cast<int>(std::ceil(std::min(approach / pieces, kMostApproach) / kMostSubStepApproach));
@@ -99,7 +102,7 @@ void PileStep::advance(double timeStep, VectorX& state) {
 
 /// A step with one look for contacts.
 void PileStep::takePiece(double timeStep, int subSteps, VectorX& state) {
-  if (broadPhase_.update(state, reaches_, margin_, geometry_)) contacts_.takePairs();
+  if (broadPhase_.update({state, reaches_, drifts_}, margin_, geometry_)) contacts_.takePairs();
   contacts_.update({poses_, state, timeStep, margin_}, threads_);
   wakeTouched(timeStep, state);
   ++looks_;
@@ -109,23 +112,20 @@ void PileStep::takePiece(double timeStep, int subSteps, VectorX& state) {
   solver_.solve({subStep, subSteps, slowestRebound_}, gravity_, motions_, threads_);
   solver_.store(contacts_.manifolds(), threads_);
   recordImpacts(subSteps);
-  threads_.run([&](int thread) {
-    const auto [first, last] = threads_.partOf(bodies_.size(), thread);
+  threads_.share(bodies_.size(), kGrain, [&](int, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) moveBody(i, timeStep, subStep, state);
   });
 }
 
 void PileStep::placeBodies(double timeStep, const VectorX& state) {
-  threads_.run([&](int thread) {
-    const auto [first, last] = threads_.partOf(bodies_.size(), thread);
+  threads_.share(bodies_.size(), kGrain, [&](int, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (!poses_[i].isAsleep) placeBody(i, state);
       const MovingPose& pose = poses_[i];
       motions_.velocities[i] = motions_.starts[i];
       motions_.displacements[i] = {};
-      reaches_[i] = pose.isAsleep ? 0
-                                  : timeStep * (pose.linearVelocity.norm() + timeStep * gravity_.norm() +
-                                                pose.radius * pose.angularVelocity.norm());
+      drifts_[i] = timeStep * pose.linearVelocity;
+      reaches_[i] = pose.isAsleep ? 0 : timeStep * (timeStep * gravity_.norm() + pose.spinSpeed);
     }
   });
 }
@@ -138,6 +138,7 @@ void PileStep::placeBody(std::size_t index, const VectorX& state) {
   pose.rotation = turn.toRotationMatrix();
   pose.linearVelocity = linearVelocity(state, body);
   pose.angularVelocity = angularVelocity(state, body);
+  pose.spinSpeed = pose.spinRadius * pose.angularVelocity.norm();
   pose.boxCenter = pose.position + pose.rotation * bounds_[index].center();
   pose.boxHalf = pose.rotation.cwiseAbs() * (bounds_[index].sizes() / 2);
   Mat3& axes = worldFromPrincipal_[index];
@@ -218,6 +219,7 @@ void PileStep::letSleep(double timeStep, VectorX& state) {
     linearVelocity(state, fallenAsleep_[i]).setZero();
     angularVelocity(state, fallenAsleep_[i]).setZero();
     poses_[sleeper].linearVelocity.setZero(), poses_[sleeper].angularVelocity.setZero();
+    poses_[sleeper].spinSpeed = 0;
     poses_[sleeper].isAsleep = true, motions_.falls[sleeper] = 0, motions_.starts[sleeper] = {};
     solverBodies_[sleeper] = {centerOfMass(state, fallenAsleep_[i]), 0, Mat3(Mat3::Zero())};
   }

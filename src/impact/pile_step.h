@@ -65,7 +65,8 @@ class PileStep {
   std::vector<Mat3> worldFromPrincipal_;
   std::vector<SolverBody> solverBodies_;
   SolverMotions motions_;
-  std::vector<double> reaches_;  // m: farthest that any point of a body goes in the step
+  std::vector<Vec3> drifts_;     // m: ways of the bodies in the step, if nothing deflects them
+  std::vector<double> reaches_;  // m: farthest that any point of a body goes beside them
   PileSleep sleep_;
   std::vector<double> speeds_;  // m/s, of each body's fastest point; infinite if it touches nothing
   double slowestRebound_ = 0;   // m/s

@@ -44,10 +44,17 @@ class SoftContactSolver {
                  BlockList<ContactBlock<3, false>>, BlockList<ContactBlock<4, false>>>;
 
   void arrange(const ContactColors& colors, const std::vector<ContactManifold>& manifolds, std::int32_t stillBody);
+  void arrangeTasks();
   template <class Pass>
   void sweep(WorkerThreads& threads, int thread, const Pass& pass);
 
+  struct Task {
+    std::size_t firstColor, lastColor;  // [first, last)
+    bool isShared;                      // by all threads
+  };
+
   BlockLists lists_;
+  std::vector<Task> tasks_;
   std::size_t colors_ = 0;
   bool rebounds_ = false;
   double subStep_ = 0;  // s, that the manifolds' impulses belong to

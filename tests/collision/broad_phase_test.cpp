@@ -107,6 +107,43 @@ TEST(BroadPhase, MissesNoPairThatMayMeetWhileBodiesMove) {
   EXPECT_LT(newLists, 60);
 }
 
+// Each goes 0.5 m on a way of its own, stops anywhere on it, and is pushed aside by up to 0.01 m: a new list is made
+// only where this was not foreseen.
+TEST(BroadPhase, MissesNoPairThatMayMeetOnTheirWays) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> part(0, 1);
+  for (int run = 0; run < 20; ++run) {
+    Crowd crowd = crowdOf(40, 2, random);
+    std::vector<Vec3> drifts;
+    for (int body = 0; body < 40; ++body) drifts.push_back(0.5 * randomPoint(random, 1).normalized());
+    const std::vector<double> beside(40, 0.02);
+    BroadPhase broadPhase;
+    EXPECT_TRUE(broadPhase.update({crowd.state, beside, drifts}, 0.02, crowd.geometry));
+    for (int body = 0; body < 40; ++body) {
+      const double gone = part(random);
+      centerOfMass(crowd.state, body) += gone * drifts[static_cast<std::size_t>(body)] + randomPoint(random, 0.005);
+    }
+    EXPECT_TRUE(includes(pairsOf(crowd.geometry), nearPairsOf(crowd, 0.02))) << run;
+    const std::vector<Vec3> still(40, Vec3(Vec3::Zero()));
+    EXPECT_FALSE(broadPhase.update({crowd.state, std::vector<double>(40, 0.0), still}, 0.02, crowd.geometry));
+    EXPECT_TRUE(broadPhase.update({crowd.state, std::vector<double>(40, 0.0), drifts}, 0.02, crowd.geometry));
+  }
+}
+
+TEST(BroadPhase, HasTheSameListForAnyNumberOfThreads) {
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> lists;
+  for (const int count : {1, 3}) {
+    std::mt19937 random(5);
+    Crowd crowd = crowdOf(600, 4, random);
+    WorkerThreads threads(count);
+    BroadPhase(threads).update(crowd.state, std::vector<double>(600, 0.0), 0.1, crowd.geometry);
+    lists.emplace_back();
+    for (const ColliderPair& pair : crowd.geometry.pairs) lists.back().emplace_back(pair.a, pair.b);
+  }
+  EXPECT_GT(lists[0].size(), 600u);
+  EXPECT_EQ(lists[1], lists[0]);
+}
+
 TEST(BroadPhase, KeepsItsListWhileNothingMoves) {
   std::mt19937 random(2);
   Crowd crowd = crowdOf(10, 1, random);

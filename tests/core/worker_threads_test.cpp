@@ -19,6 +19,19 @@ TEST(WorkerThreads, ShareAllOfALoop) {
   }
 }
 
+TEST(WorkerThreads, HandOutEveryPartOnce) {
+  for (const int count : {1, 2, 5}) {
+    WorkerThreads threads(count);
+    for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{1000}}) {
+      std::vector<int> visits(size, 0);
+      threads.share(size, 7, [&](int, std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) ++visits[i];
+      });
+      EXPECT_EQ(visits, std::vector<int>(size, 1)) << count;
+    }
+  }
+}
+
 // Each round reads what the other thread wrote in the round before.
 TEST(WorkerThreads, SeeWhatOthersDidBeforeTheyMet) {
   WorkerThreads threads(2);

@@ -13,12 +13,11 @@ constexpr double kEventAccuracy = 1e-4;  // the plan takes events up to here
 // Times the accuracy. A step's error is a tenth of it: a hundred of them a run, of random signs, make up one of speeds,
 // and energy has their square. Frames between steps, which end where ties and contacts hold, have less than one.
 constexpr double kMostEnergyErrors = 2, kMostPlaceErrors = 1;
-// Steps of one length promise no accuracy, but that pictures are right. What is left of the energy's balance is the
-// work of taking out overlaps: a fall of one step, g h^2 = 1e-5 m, out of falls of 0.1 m and more makes the gain. Ropes
-// are drawn too long by what contact does to speeds of up to 10 m/s within a step of 1/960 s. Heaps of sixty overlap by
-// half of what piles are allowed.
-constexpr double kSteppedGain = 1e-4, kSteppedError = 1e-2;                   // of the energy
-constexpr double kSteppedTieError = 10. / 960, kSteppedPenetration = 0.0025;  // m
+// Steps of one length promise no accuracy, but that pictures are right. What they gain or lose is RK4's with springs
+// and ropes; ropes are drawn too long by what contact does to speeds of 20 m/s within a step of 1/960 s; penetration is
+// as in piles.
+constexpr double kSteppedGain = 3e-4, kSteppedError = 2e-3;                  // of the energy
+constexpr double kSteppedTieError = 20. / 960, kSteppedPenetration = 0.005;  // m
 
 double mechanicalEnergy(const Frame& frame) {
   return frame.energy.kinetic + frame.energy.potential;

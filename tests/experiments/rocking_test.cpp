@@ -82,9 +82,9 @@ TEST(RockingBlock, LosesAtEachImpactWhatHousnerSays) {
 }
 
 // Boxes on each other rock as one: what an edge of the lowest takes, the others can pass on without leaving each other.
-// The contact step spreads a landing over two steps of 1/960 s, in which the old edge still carries: more is lost, by
-// less than the landing's part of the fall, 2 / (960 x 0.2 s) = 1 % of the speed or 2 % of the energy. Never less.
-TEST(RockingTower, LosesInTheContactStepWhatABlockDoesOrAFewPercentMore) {
+// Steps of 1/960 s end where an edge lands, and between landings keep the energy to their order 2: the block's 1.5
+// rad/s make (1.5 / 960)^2 = 2e-6 of it in a step, of changing sign. Never more.
+TEST(RockingTower, LosesInTheContactStepWhatABlockDoes) {
   const Tower tower{3, 6, 0.01};
   const Trajectory run = tower.run(1);
   const double r2 = tower.speedLeft() * tower.speedLeft();
@@ -95,8 +95,7 @@ TEST(RockingTower, LosesInTheContactStepWhatABlockDoesOrAFewPercentMore) {
     before = part;
   }
   // By then it has landed twice: Housner's times are 0.23, 0.66 and 1.08 s.
-  EXPECT_LT(before, r2 * r2);
-  EXPECT_GT(before, r2 * r2 * 0.96);
+  EXPECT_NEAR(before, r2 * r2, 2e-3);
 }
 
 // Small angles: constant accelerations c = m g R sin(alpha) / I between impacts that leave a part r of the speed, so
@@ -113,11 +112,38 @@ TEST(RockingTower, ComesToRestWhenItsEnergyIsGone) {
       if (event.kind == EventKind::rest) rest = event.time;
     EXPECT_LT(rest, 1.01 * end)
         << boxes;  // accelerations are as constant as cos(angle), and end later by angle / alpha
-    EXPECT_GT(rest, (boxes == 1 ? 0.99 : 0.6) * end) << boxes;
+    EXPECT_GT(rest, (boxes == 1 ? 0.99 : 0.85) * end) << boxes;
     EXPECT_EQ(run.frames.back().energy.kinetic, 0) << boxes;
     for (const BodyState& state : run.frames.back().states)
       EXPECT_LT(std::hypot(state.position.x(), state.position.z()), tower.angle * 3) << boxes;
   }
+}
+
+// A disc without friction that bounces down to rocking on its rim, which lands on one side while the other carries.
+// Each frame has no more energy than the one before, in parts of what is left: integration with an accuracy of 1e-6.
+TEST(RockingDisc, ComesToLieWithoutGainOfEnergyOrSinking) {
+  const Trajectory run = simulate(sceneWith(
+      R"("duration": 0.4, "accuracy": 1e-6, "output": {"framesPerSecond": 960},
+         "materials": {"m": {"restitution": 0.3, "staticFriction": 0, "dynamicFriction": 0}},
+         "bodies": [{"name": "floor", "shape": {"plane": {}}, "motion": "static", "material": "m"},
+                    {"name": "disc", "shape": {"cylinder": {"radius": 0.1, "length": 0.05}}, "mass": 1, "material": "m",
+                     "position": [0, 0.05, 0], "orientation": {"axis": [1, 0, 2], "angleDegrees": 4},
+                     "angularVelocity": [-20, 0, -37], "linearVelocity": [0, -2, 0]}])"));
+  double before = INFINITY, deepest = 0;
+  for (const Frame& frame : run.frames) {
+    const double energy = frame.energy.kinetic + frame.energy.potential - kGravity * 0.025;  // J, above rest
+    EXPECT_LE(energy, before * (1 + 1e-6) + 1e-7) << frame.time;
+    EXPECT_NEAR(energyConstantOf(frame), energyConstantOf(run.frames[0]), 1e-6) << frame.time;
+    before = energy;
+    const double tilt = (frame.states[0].orientation * Vec3::UnitY()).y();
+    const double low = 0.025 * std::abs(tilt) + 0.1 * std::sqrt(std::max(0.0, 1 - tilt * tilt));
+    deepest = std::max(deepest, low - frame.states[0].position.y());
+  }
+  EXPECT_LT(deepest, 1e-3);  // the rim turns within a step
+  // It lies flat, and goes on turning about its axis, as nothing holds it: m r^2 w^2 / 4.
+  const BodyState& end = run.frames.back().states[0];
+  EXPECT_NEAR(end.position.y(), 0.025, 1e-6);
+  EXPECT_NEAR(run.frames.back().energy.kinetic, 0.01 * end.angularVelocity.y() * end.angularVelocity.y() / 4, 1e-9);
 }
 
 }  // namespace

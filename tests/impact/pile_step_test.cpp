@@ -10,7 +10,7 @@ namespace cradle {
 namespace {
 
 const SurfaceLaw kLaw{0, 0.5, 0.5};
-constexpr double kDeepest = 5e-3;  // m: what the eye may see of 0.2 m
+constexpr double kDeepest = 3.5e-3;  // m: what the eye may see of 0.2 m
 
 enum class Kind { balls, cubes, turnedCubes };
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/invariants.h"
-
 namespace cradle {
 namespace {
 
@@ -14,6 +12,16 @@ double kineticEnergyOf(const std::vector<int>& bodies, const Mechanism& mechanis
   double energy = 0;
   for (const int body : bodies) energy += kineticEnergy(mechanism.bodies[static_cast<std::size_t>(body)], body, state);
   return energy;
+}
+
+Vec3 meanVelocity(const std::vector<int>& bodies, const Mechanism& mechanism, const VectorX& state) {
+  Vec3 momentum = Vec3::Zero();
+  double mass = 0;
+  for (const int body : bodies) {
+    const double m = mechanism.bodies[static_cast<std::size_t>(body)].mass;
+    mass += m, momentum += m * linearVelocity(state, body);
+  }
+  return momentum / mass;
 }
 
 }  // namespace
@@ -26,16 +34,26 @@ double energyOf(const std::vector<int>& bodies, const Mechanism& mechanism, cons
   return energy;
 }
 
+void bookDifference(const Invariants& before, const Mechanism& mechanism, VectorX& state) {
+  const Invariants now = invariantsOf(mechanism, state);
+  dissipatedEnergy(state) += before.kinetic + before.potential - now.kinetic - now.potential;
+}
+
 bool isGain(double energy, double most) {
   return energy > most + kRounding * std::abs(most);
 }
 
-void limitEnergy(const std::vector<int>& bodies, double most, const Mechanism& mechanism, VectorX& state) {
-  const double energy = energyOf(bodies, mechanism, state);
+void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state) {
+  const double energy = energyOf(moved.bodies, mechanism, state);
   if (!isGain(energy, most)) return;
-  const double kinetic = kineticEnergyOf(bodies, mechanism, state);
+  const Vec3 kept = moved.isGrounded ? Vec3::Zero() : meanVelocity(moved.bodies, mechanism, state);
+  for (const int body : moved.bodies) linearVelocity(state, body) -= kept;
+  const double kinetic = kineticEnergyOf(moved.bodies, mechanism, state);
   const double part = kinetic > 0 ? std::sqrt(std::max(0.0, 1 - (energy - most) / kinetic)) : 0;
-  for (const int body : bodies) state.segment<kVelocitySize>(velocityOffset(state, body)) *= part;
+  for (const int body : moved.bodies) {
+    state.segment<kVelocitySize>(velocityOffset(state, body)) *= part;
+    linearVelocity(state, body) += kept;
+  }
 }
 
 }  // namespace cradle

@@ -3,16 +3,26 @@
 #include <vector>
 
 #include "dynamics/equations_of_motion.h"
+#include "dynamics/invariants.h"
 
 namespace cradle {
 
 /// Kinetic and potential energy (J) of `bodies`, and of all springs.
 double energyOf(const std::vector<int>& bodies, const Mechanism& mechanism, const VectorX& state);
 
-/// Contact gives no energy: what `bodies` have more than `most` (J), by rounding, by the order of a method or by
-/// impulses that were not found, is taken from their velocities. All become smaller by the same part, so that what
-/// touches opens and slides as before.
-void limitEnergy(const std::vector<int>& bodies, double most, const Mechanism& mechanism, VectorX& state);
+/// Bodies that contact moves together.
+struct MovedBodies {
+  std::vector<int> bodies;
+  bool isGrounded = false;  // something fixed touches or ties them
+};
+
+/// Contact gives no energy: what bodies have more than `most` (J), by rounding, by the order of a method or by impulses
+/// that were not found, is taken from their velocities. All become smaller by the same part, so that what touches opens
+/// and slides as before; nothing fixed takes the momentum of bodies that touch only each other, which is kept.
+void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state);
+
+/// Books as dissipated what `state` has less than it had with the energies `before`.
+void bookDifference(const Invariants& before, const Mechanism& mechanism, VectorX& state);
 
 /// Whether energies (J) differ by more than rounding.
 bool isGain(double energy, double most);

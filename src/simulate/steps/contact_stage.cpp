@@ -2,27 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include "dynamics/invariants.h"
 #include "impact/contact_impulse.h"
 #include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
-#include "impact/lasting_contact.h"
-#include "simulate/steps/contact_energy.h"
 
 namespace cradle {
 namespace {
 
 constexpr double kTouchPart = 1e-9;        // of the smallest body's size: nearer counts as touching
-constexpr double kSlidingSpeed = 1e-6;     // m/s: slower counts as sticking
-constexpr long kFewLoaded = 8;             // contacts that last: more are resolved step by step
+constexpr std::size_t kFewLoaded = 8;      // contacts that last: more are resolved step by step
+constexpr double kTogetherPart = 1e-3;     // of a step: what touches within it touches together
 constexpr double kReach = 2;               // of the way that a body goes freely: what others may make of it
 constexpr double kReachPart = 1e-3;        // of its size: the same, for bodies at rest
 constexpr double kCalmSteps = 20;          // awake at least so long: a rattle is no row of rests
 constexpr double kRestSteps = 2;           // a rebound that ends within as many steps is not resolved
+constexpr double kLetBe = 0.1;             // of what carries at rest: overlaps that the next step may take out
+constexpr double kNearOverlap = 10;        // of the deepest overlap: so near others may be pushed into
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
+constexpr double kClosedPart = 1e-6;       // of the speed that gravity gives in a step: slower does not close
 constexpr double kLeastImpactPart = 0.01;  // of the speed that gravity gives in a step: slower is no impact
+constexpr double kLandingPart = 0.1;       // of the same: slower landings are not worth ending a step for
 
 double touchTolerance(const ContactGeometry& geometry) {
   double smallest = 1;
@@ -52,29 +52,36 @@ ContactStage::ContactStage(MovingIsland& island, double timeStep)
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       timeStep_(timeStep),
       touchTolerance_(cradle::touchTolerance(assembly_.geometry)),
+      leastClosingSpeed_(kRestSpeedFloor + kClosedPart * assembly_.mechanism.gravity.norm() * timeStep),
       leastImpactSpeed_(kRestSpeedFloor + kLeastImpactPart * assembly_.mechanism.gravity.norm() * timeStep),
       stepping_(assembly_) {
   resting_.setCalmTime(kCalmSteps * timeStep);
 }
 
-void ContactStage::resolve(double time, const VectorX& before, VectorX& state) {
-  stepPart_ = (time - std::exchange(lastTime_, time)) / timeStep_;
+void ContactStage::strike(double time, const VectorX& before, VectorX& state) {
   if (assembly_.geometry.colliders.empty()) return;
-  findTouching(state, touchTolerance_);
+  findMeeting(state);
   if (touching_.empty()) return;
   wakeTouched(time, state);
   if (solver_.hasConstraints()) solver_.factorize(state);
-  const std::vector<int> bodies = touchingBodies();
-  const double most = energyOf(bodies, assembly_.mechanism, state), dissipated = dissipatedEnergy(state);
-  resolveImpacts(time, before, state);
-  holdLasting(before, state);
-  resolveOverlaps(assembly_.geometry, touching_, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
-  if (isGain(energyOf(bodies, assembly_.mechanism, state), most)) {
-    limitEnergy(bodies, most, assembly_.mechanism, state);
-    dissipatedEnergy(state) = dissipated + most - energyOf(bodies, assembly_.mechanism, state);
+  if (!isCrowded_) {
+    resolveImpacts(time, before, state);
+    return settle(time, touching_, state);
   }
-  for (const int body : resting_.settle(time, touching_, state))
-    log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
+  const std::vector<Vec3> impulses = stepping_.strike(touching_, timeStep_, state);
+  for (std::size_t i = 0; i < impulses.size(); ++i) {
+    const double impulse = touching_[i].normal.dot(impulses[i]);
+    if (impulse > 0) log_.recordContact(time, EventKind::impact, touching_[i], impulse);
+  }
+}
+
+/// Contacts of this instant, and those that are so near to it that they take part in its impact.
+void ContactStage::findMeeting(const VectorX& state) {
+  findTouching(state, margin());
+  double fastest = 0;
+  for (const Contact& contact : touching_) fastest = std::max(fastest, closingSpeed(contact, state));
+  const double near = std::max(touchTolerance_, kTogetherPart * fastest * timeStep_);
+  std::erase_if(touching_, [&](const Contact& contact) { return contact.separation > near; });
 }
 
 /// Contacts that may close within a step, also if others make the bodies faster.
@@ -99,9 +106,23 @@ void ContactStage::findWithinReach(const VectorX& before, const VectorX& state, 
   });
 }
 
-void ContactStage::resolveStep(double time, const VectorX& before, VectorX& state) {
-  const double length = time - std::exchange(lastTime_, time);
+/// Of pairs that are apart when the step begins nothing is known but by the search for impacts, as long as there is
+/// one.
+void ContactStage::findHeld(const VectorX& before, const VectorX& state, double length) {
   findWithinReach(before, state, length);
+  if (isCrowded_) return;
+  std::vector<char> touches(assembly_.geometry.pairs.size(), 0);
+  for (const Contact& contact : touching_)
+    if (contact.separation <= touchTolerance_) touches[contact.pair] = 1;
+  std::erase_if(touching_, [&](const Contact& contact) { return !touches[contact.pair]; });
+}
+
+void ContactStage::begin(double time, const VectorX& before, const VectorX& state, double length) {
+  isCrowded_ = becomesCrowded_;
+  stepPart_ = length / timeStep_;
+  touching_.clear();
+  if (assembly_.geometry.colliders.empty()) return;
+  findHeld(before, state, length);
   // What rests is woken by what closes within the step, with all that it rests on.
   bool woken = false;
   for (const Contact& contact : touching_) {
@@ -113,40 +134,76 @@ void ContactStage::resolveStep(double time, const VectorX& before, VectorX& stat
         woken = true;
       }
   }
-  if (woken) findWithinReach(before, state, length);
+  if (woken) findHeld(before, state, length);
+}
+
+std::vector<ColliderPair> ContactStage::pairsNotHeld() const {
+  const std::vector<ColliderPair>& pairs = assembly_.geometry.pairs;
+  std::vector<char> isHeld(pairs.size(), 0);
+  for (const Contact& contact : touching_) isHeld[contact.pair] = 1;
+  std::vector<ColliderPair> others;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (!isHeld[i]) others.push_back(pairs[i]);
+  return others;
+}
+
+double ContactStage::firstLanding(const VectorX& before, const VectorX& state, double length) {
+  const double landingSpeed = kRestSpeedFloor + kLandingPart * assembly_.mechanism.gravity.norm() * timeStep_;
+  return stepping_.firstLanding(touching_, before, length, state, landingSpeed);
+}
+
+void ContactStage::hold(double time, const VectorX& before, double length, VectorX& state) {
+  stepPart_ = length / timeStep_;
   stepping_.resolve(touching_, before, length, state);
+  takeOutOverlaps(state);
   std::vector<Contact> acting;
   for (const SteppedContact& stepped : stepping_.contacts()) {
     const double impulse = stepped.contact.normal.dot(stepped.impulse);
-    if (impulse <= 0) continue;
+    if (impulse <= kRestSpeedFloor * lightest(stepped.contact)) continue;
     acting.push_back(stepped.contact);
     if (stepped.isImpact) log_.recordContact(time, EventKind::impact, stepped.contact, impulse);
   }
-  isCrowded_ = !acting.empty();
-  for (const int body : resting_.settle(time, acting, state))
+  if (isCrowded_) settle(time, acting, state);
+  becomesCrowded_ = isCrowded_ ? !acting.empty() : acting.size() > kFewLoaded;
+}
+
+/// Points that were not yet nearest when the step began, on rims and edges that turn, may have come too near at its
+/// end.
+void ContactStage::takeOutOverlaps(VectorX& state) {
+  findTouching(state, 0, overlapping_);
+  double deepest = 0;
+  for (const Contact& contact : overlapping_) deepest = std::max(deepest, -contact.separation);
+  if (deepest <= kLetBe * margin()) return;
+  findTouching(state, kNearOverlap * deepest, overlapping_);
+  stepping_.takeOut(overlapping_, state);
+}
+
+bool ContactStage::hasImpact() const {
+  const auto isImpact = [](const SteppedContact& stepped) { return stepped.isImpact; };
+  return std::any_of(stepping_.contacts().begin(), stepping_.contacts().end(), isImpact);
+}
+
+/// Mass (kg) of the lighter of the bodies at a contact.
+double ContactStage::lightest(const Contact& contact) const {
+  double mass = INFINITY;
+  for (const int body : {contact.bodyA, contact.bodyB})
+    if (body != kFixed) mass = std::min(mass, assembly_.mechanism.bodies[static_cast<std::size_t>(body)].mass);
+  return mass;
+}
+
+void ContactStage::settle(double time, const std::vector<Contact>& contacts, VectorX& state) {
+  for (const int body : resting_.settle(time, contacts, state))
     log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
 }
 
 /// Contacts of this instant in which something moves.
-void ContactStage::findTouching(const VectorX& state, double margin) {
-  findContacts(assembly_.geometry, state, margin, touching_);
-  std::erase_if(touching_, [this](const Contact& contact) {
+void ContactStage::findTouching(const VectorX& state, double margin, std::vector<Contact>& touching) const {
+  findContacts(assembly_.geometry, state, margin, touching);
+  std::erase_if(touching, [this](const Contact& contact) {
     const bool aLies = contact.bodyA == kFixed || resting_.isResting(contact.bodyA);
     const bool bLies = contact.bodyB == kFixed || resting_.isResting(contact.bodyB);
     return aLies && bLies;
   });
-}
-
-/// Bodies that contacts of this instant move, with those that are tied to them.
-std::vector<int> ContactStage::touchingBodies() const {
-  const Islands islands = findStruckTogether();
-  std::vector<char> isMoved(assembly_.mechanism.bodies.size(), 0);
-  for (const Contact& contact : touching_)
-    isMoved[static_cast<std::size_t>(islands.islandOf(contact.bodyA != kFixed ? contact.bodyA : contact.bodyB))] = 1;
-  std::vector<int> bodies;
-  for (int body = 0; body < std::ssize(isMoved); ++body)
-    if (isMoved[static_cast<std::size_t>(islands.islandOf(body))]) bodies.push_back(body);
-  return bodies;
 }
 
 void ContactStage::wakeTouched(double time, const VectorX& state) {
@@ -157,23 +214,24 @@ void ContactStage::wakeTouched(double time, const VectorX& state) {
         log_.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
         woken = true;
       }
-  if (woken) findTouching(state, touchTolerance_);
+  if (woken) findMeeting(state);
 }
 
-/// Restitution. A contact that closes faster than acceleration explains is an impact, and then all that touch each
-/// other there take part. What explains: the speed that it gained since the last step, part of a step as that may have
-/// been, would have in `kRestSteps` whole ones.
+/// All that touch each other where one closes take part. A contact that closes faster than acceleration explains
+/// rebounds. What explains: the speed that it gained since the last step, part of a step as that may have been, would
+/// have in `kRestSteps` whole ones.
 void ContactStage::resolveImpacts(double time, const VectorX& before, VectorX& state) {
   for (std::vector<ImpactContact>& impacts : findImpacts(before, state)) {
     if (impacts.empty()) continue;
     const VectorX approach = state;
     resolveImpact(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
+    const bool isHard = std::any_of(impacts.begin(), impacts.end(), [&](const ImpactContact& impact) {
+      return closingSpeed(impact.contact, approach) > leastImpactSpeed_;
+    });
     for (const ImpactContact& impact : impacts) {
-      // What a lasting contact took was an acceleration's, spread over the step.
-      const bool isLasting = closingSpeed(impact.contact, approach) <= impact.restSpeed;
-      dissipate(impact.contact, impact.impulse, isLasting ? before : approach, state);
+      dissipate(impact.contact, impact.impulse, approach, state);
       const double impulse = impact.contact.normal.dot(impact.impulse);
-      if (impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impulse);
+      if (isHard && impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impulse);
     }
   }
 }
@@ -198,7 +256,7 @@ std::vector<std::vector<ImpactContact>> ContactStage::findImpacts(const VectorX&
     const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
     const auto island = static_cast<std::size_t>(islands.islandOf(body));
     impacts[island].push_back({contact, assembly_.geometry.pairs[contact.pair].law, restSpeed, Vec3::Zero()});
-    if (closing > restSpeed) isStruck[island] = 1;
+    if (closing > leastClosingSpeed_) isStruck[island] = 1;
   }
   for (std::size_t island = 0; island < impacts.size(); ++island)
     if (!isStruck[island]) impacts[island].clear();
@@ -209,20 +267,6 @@ std::vector<std::vector<ImpactContact>> ContactStage::findImpacts(const VectorX&
 void ContactStage::dissipate(const Contact& contact, const Vec3& impulse, const VectorX& before, VectorX& state) {
   const Vec3 meanVelocity = (relativeVelocity(contact, state, before) + relativeVelocity(contact, state)) / 2;
   dissipatedEnergy(state) -= impulse.dot(meanVelocity);
-}
-
-void ContactStage::holdLasting(const VectorX& before, VectorX& state) {
-  std::vector<LastingContact> lasting;
-  for (const Contact& contact : touching_) {
-    const SurfaceLaw& law = assembly_.geometry.pairs[contact.pair].law;
-    const Vec3 velocity = relativeVelocity(contact, state, before);
-    const double sliding = (velocity - contact.normal.dot(velocity) * contact.normal).norm();
-    lasting.push_back({contact, sliding > kSlidingSpeed ? law.dynamicFriction : law.staticFriction, Vec3::Zero()});
-  }
-  solveLastingContacts(lasting, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
-  for (const LastingContact& contact : lasting) dissipate(contact.contact, contact.impulse, before, state);
-  const auto isLoaded = [](const LastingContact& contact) { return contact.impulse.dot(contact.contact.normal) > 0; };
-  isCrowded_ = std::count_if(lasting.begin(), lasting.end(), isLoaded) > kFewLoaded;
 }
 
 }  // namespace cradle

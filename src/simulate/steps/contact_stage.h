@@ -11,25 +11,37 @@
 
 namespace cradle {
 
-/// What happens where bodies touch at the end of a step: impacts rebound, lasting contacts hold, overlaps are taken
-/// out, and what lies still is put to rest.
+/// What happens where bodies touch: lasting contacts hold over steps, impacts rebound at their ends, and what lies
+/// still is put to rest.
 class ContactStage {
  public:
   /// Keeps a reference to `island`. `timeStep` (s) is the method's.
   ContactStage(MovingIsland& island, double timeStep);
 
-  /// `before` is the state at the step's start: lasting contacts did their work since then.
-  void resolve(double time, const VectorX& before, VectorX& state);
+  /// Finds what may touch within a step of free motion of `length` (s) from `before` to `state`.
+  void begin(double time, const VectorX& before, const VectorX& state, double length);
 
-  /// What touched at the last call of resolve, if something of it moved.
+  /// Near pairs but those that are held over the step.
+  std::vector<ColliderPair> pairsNotHeld() const;
+
+  /// The part of that step after which something lands that is then to strike; infinite if nothing does.
+  double firstLanding(const VectorX& before, const VectorX& state, double length);
+
+  /// What contact makes of a step that has begun, now of this `length`: one cone problem.
+  void hold(double time, const VectorX& before, double length, VectorX& state);
+
+  /// The impacts of this instant. `before` is the state at the step's start.
+  void strike(double time, const VectorX& before, VectorX& state);
+
+  /// What may have touched in the last step, or touched at its end, if something of it moved.
   const std::vector<Contact>& touching() const { return touching_; }
 
-  /// Many contacts last or chatter: the next step is to end without a search for impacts, by resolveStep.
-  bool isCrowded() const { return isCrowded_; }
-  void setCrowded() { isCrowded_ = true; }
+  /// Whether something struck within the last step, and not at its end.
+  bool hasImpact() const;
 
-  /// What happens over a whole step of free motion from `before` to `state`, as one cone problem.
-  void resolveStep(double time, const VectorX& before, VectorX& state);
+  /// Many contacts last or chatter: impacts are no longer searched for.
+  bool isCrowded() const { return isCrowded_; }
+  void setCrowded() { becomesCrowded_ = true; }
 
   /// Nearer than this (m) is touching.
   double touchTolerance() const { return touchTolerance_; }
@@ -38,26 +50,29 @@ class ContactStage {
   double margin() const { return std::max(touchTolerance_, resting_.supportMargin()); }
 
  private:
-  void findTouching(const VectorX& state, double margin);
+  void findTouching(const VectorX& state, double margin) { findTouching(state, margin, touching_); }
+  void findTouching(const VectorX& state, double margin, std::vector<Contact>& touching) const;
+  void takeOutOverlaps(VectorX& state);
   void findWithinReach(const VectorX& before, const VectorX& state, double length);
-  std::vector<int> touchingBodies() const;
+  void findHeld(const VectorX& before, const VectorX& state, double length);
+  void findMeeting(const VectorX& state);
+  double lightest(const Contact& contact) const;
+  void settle(double time, const std::vector<Contact>& contacts, VectorX& state);
   void wakeTouched(double time, const VectorX& state);
   void resolveImpacts(double time, const VectorX& before, VectorX& state);
   Islands findStruckTogether() const;
   std::vector<std::vector<ImpactContact>> findImpacts(const VectorX& before, const VectorX& state) const;
-  void holdLasting(const VectorX& before, VectorX& state);
   static void dissipate(const Contact& contact, const Vec3& impulse, const VectorX& before, VectorX& state);
 
   const Assembly& assembly_;
   EventLog& log_;
   RestingBodies& resting_;
   ConstraintSolver solver_;
-  double timeStep_, touchTolerance_, leastImpactSpeed_;
-  double lastTime_ = -INFINITY;  // s, of the last call of resolve
-  double stepPart_ = INFINITY;   // time since then, in steps
-  std::vector<Contact> touching_;
+  double timeStep_, touchTolerance_, leastClosingSpeed_, leastImpactSpeed_;
+  double stepPart_ = INFINITY;  // of a step, that the last one took
+  std::vector<Contact> touching_, overlapping_;
   ContactStepping stepping_;
-  bool isCrowded_ = false;
+  bool isCrowded_ = false, becomesCrowded_ = false;
 };
 
 }  // namespace cradle

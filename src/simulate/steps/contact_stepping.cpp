@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/invariants.h"
 #include "simulate/plan/islands.h"
-#include "simulate/steps/contact_energy.h"
 
 namespace cradle {
 namespace {
@@ -29,6 +27,7 @@ constexpr double kFarOverlaps = 10;         // of the deepest overlap: gaps that
 constexpr double kLessRestitution = 0.7;    // of the restitution that let energy grow
 constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
 constexpr double kSolvedPart = 1e-7;        // of the fastest velocity
+constexpr double kFreeClosing = 2;          // of the speed with which a contact lands: nothing makes it so fast
 
 double smallestSize(const ContactGeometry& geometry) {
   double smallest = 1;
@@ -47,24 +46,52 @@ ContactStepping::ContactStepping(const Assembly& assembly)
 void ContactStepping::resolve(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
                               VectorX& state) {
   previous_.swap(contacts_), previousSlips_.swap(slips_);
+  startPart_ = previousStep_ > 0 ? timeStep / previousStep_ : 1;
+  previousStep_ = timeStep;
+  begin(contacts, before, state);
+  slips_.assign(contacts.size(), Vec3::Zero());
+  lands_.resize(contacts.size(), 0);
+  if (contacts.empty()) return;
+  const Invariants free = invariantsOf(assembly_.mechanism, state);
+  const std::vector<Group> groups = findGroups();
+  std::vector<double> most;  // J, of each group
+  for (const Group& group : groups) {
+    most.push_back(energyOf(group.moved.bodies, assembly_.mechanism, state));
+    resolve(group, before, timeStep, state);
+  }
+  // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
+  if (solver_.hasConstraints()) {
+    solver_.project(state);
+    for (std::size_t i = 0; i < groups.size(); ++i) limitEnergy(groups[i].moved, most[i], assembly_.mechanism, state);
+  }
+  lands_.clear();
+  bookDifference(free, assembly_.mechanism, state);
+}
+
+void ContactStepping::begin(const std::vector<Contact>& contacts, const VectorX& before, const VectorX& state) {
   contacts_.clear();
   for (const Contact& contact : contacts) contacts_.push_back({contact, Vec3::Zero(), false});
-  slips_.assign(contacts.size(), Vec3::Zero());
-  if (contacts.empty()) return;
   free_ = state;
-  const Invariants free = invariantsOf(assembly_.mechanism, state);
-  if (solver_.hasConstraints()) solver_.factorize(before);
-  for (const Group& group : findGroups()) resolve(group, before, timeStep, state);
-  const Invariants held = invariantsOf(assembly_.mechanism, state);
-  dissipatedEnergy(state) += free.kinetic + free.potential - held.kinetic - held.potential;
+  if (solver_.hasConstraints() && !contacts.empty()) solver_.factorize(before);
+}
+
+void ContactStepping::setCones(const Group& group, const VectorX& state) {
+  cones_.set(group.contacts, assembly_.mechanism.bodies, state);
+  tied_.reset();
+  if (group.isTied) tied_.emplace(group.contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
 }
 
 /// Contacts whose bodies touch or are tied to each other.
 std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
   Islands islands(assembly_.mechanism.bodies.size());
-  std::vector<char> isTied(assembly_.mechanism.bodies.size(), 0);
+  std::vector<char> isTied(assembly_.mechanism.bodies.size(), 0), isGrounded = isTied;
+  const auto ground = [&](int bodyA, int bodyB) {
+    if (bodyA != kFixed && bodyB == kFixed) isGrounded[static_cast<std::size_t>(bodyA)] = 1;
+    if (bodyB != kFixed && bodyA == kFixed) isGrounded[static_cast<std::size_t>(bodyB)] = 1;
+  };
   forEachTie(assembly_.mechanism.constraints, [&](int bodyA, int bodyB) {
     islands.join(bodyA, bodyB);
+    ground(bodyA, bodyB);
     for (const int body : {bodyA, bodyB})
       if (body != kFixed) isTied[static_cast<std::size_t>(body)] = 1;
   });
@@ -74,12 +101,14 @@ std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
     const Contact& contact = contacts_[i].contact;
     const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
     Group& group = groups[islands.islandOf(body)];
+    ground(contact.bodyA, contact.bodyB);
     group.members.push_back(i);
     group.contacts.push_back(contact);
   }
   for (std::size_t body = 0; body < isTied.size(); ++body)
     if (const auto group = groups.find(islands.islandOf(static_cast<int>(body))); group != groups.end()) {
-      group->second.bodies.push_back(static_cast<int>(body));
+      group->second.moved.bodies.push_back(static_cast<int>(body));
+      group->second.moved.isGrounded = group->second.moved.isGrounded || isGrounded[body];
       group->second.isTied = group->second.isTied || isTied[body];
     }
   std::vector<Group> ordered;
@@ -108,6 +137,10 @@ ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion
     const double gap = std::max(0.0, group.contacts[i].separation), restitution = part * law.restitution;
     const bool touches = gap + motion.timeStep * motion.free[at + 2] < 0;
     const bool rebounds = touches && restitution * closing > restSpeed(pressing, motion.timeStep);
+    if (lands_[group.members[i]]) {
+      problem.free[at + 2] += kFreeClosing * (closing + pressing);
+      continue;
+    }
     problem.free[at + 2] -= rebounds ? restitution * closing - pressing : -gap / motion.timeStep;
     problem.hasRebounds = problem.hasRebounds || rebounds;
   }
@@ -117,20 +150,18 @@ ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion
 /// Energy does not grow: a restitution that would let it is made smaller (with friction it can), and what is left by
 /// rounding, by the order of the method, or by impulses that were not found is taken from the velocities.
 void ContactStepping::resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state) {
-  cones_.set(group.contacts, assembly_.mechanism.bodies, before);
-  tied_.reset();
-  if (group.isTied) tied_.emplace(group.contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), before);
+  setCones(group, before);
   const Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), timeStep};
-  const double most = energyOf(group.bodies, assembly_.mechanism, state);
+  const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
   for (double part = 1;; part = part > kLeastRestitution ? kLessRestitution * part : 0) {
     const Problem problem = posed(group, motion, part);
     const VectorX impulses = solve(group, problem);
     move(group, motion, impulses, state);
-    if (problem.hasRebounds && isGain(energyOf(group.bodies, assembly_.mechanism, state), most)) {
-      restore(group.bodies, state);
+    if (problem.hasRebounds && isGain(energyOf(group.moved.bodies, assembly_.mechanism, state), most)) {
+      restore(group.moved.bodies, state);
       continue;
     }
-    limitEnergy(group.bodies, most, assembly_.mechanism, state);
+    limitEnergy(group.moved, most, assembly_.mechanism, state);
     return keep(group, motion, problem, impulses, state);
   }
 }
@@ -171,7 +202,8 @@ ConeStart ContactStepping::startOf(const Group& group) const {
       const double distance = (other.point - contact.point).squaredNorm();
       if (distance >= nearest) continue;
       nearest = distance;
-      start.impulses.segment<3>(3 * static_cast<Index>(i)) = cones_.axes(i).transpose() * previous_[k].impulse;
+      start.impulses.segment<3>(3 * static_cast<Index>(i)) =
+          startPart_ * (cones_.axes(i).transpose() * previous_[k].impulse);
       start.velocities.segment<3>(3 * static_cast<Index>(i)) = cones_.axes(i).transpose() * previousSlips_[k];
     }
   }
@@ -179,7 +211,8 @@ ConeStart ContactStepping::startOf(const Group& group) const {
 }
 
 /// From free motion to where impulses lead: with the mean of the velocities at both ends, where that leads into no
-/// overlap: what lasts keeps order 2 and its energy. Else with those at the end, which the gaps were asked of.
+/// overlap, and nothing is pushed that leaves: what lasts keeps order 2 and its energy. Else with those at the end,
+/// which the gaps were asked of.
 void ContactStepping::move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state) {
   tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
   const VectorX end = cones_.velocitiesIn(state);
@@ -188,7 +221,8 @@ void ContactStepping::move(const Group& group, const Motion& motion, const Vecto
   for (Index i = 0; i < gaps.size(); ++i) {
     const double gap = group.contacts[static_cast<std::size_t>(i)].separation;
     gaps[i] = gap + motion.timeStep * 0.5 * (motion.start[3 * i + 2] + end[3 * i + 2]);
-    isSmooth = isSmooth && gaps[i] > std::min(0.0, gap) - kSmoothPart * overlapTolerance_;
+    const double most = impulses[3 * i + 2] > 0 ? gap + overlapTolerance_ : INFINITY;
+    isSmooth = isSmooth && gaps[i] > std::min(0.0, gap) - kSmoothPart * overlapTolerance_ && gaps[i] < most;
   }
   if (!isSmooth)
     for (Index i = 0; i < gaps.size(); ++i)
@@ -199,14 +233,16 @@ void ContactStepping::move(const Group& group, const Motion& motion, const Vecto
 
 void ContactStepping::moveByMean(const Group& group, const Motion& motion, VectorX& state) const {
   const double half = 0.5 * motion.timeStep;
-  for (const int body : group.bodies) {
-    centerOfMass(state, body) += half * (linearVelocity(state, body) - linearVelocity(free_, body));
+  for (const int body : group.moved.bodies) {
+    if (linearVelocity(state, body) != linearVelocity(free_, body))
+      centerOfMass(state, body) = centerOfMass(motion.before, body) +
+                                  half * (linearVelocity(motion.before, body) + linearVelocity(state, body));
     turnBody(state, body, half * (angularVelocity(state, body) - angularVelocity(free_, body)));
   }
 }
 
 void ContactStepping::moveByEnd(const Group& group, const Motion& motion, VectorX& state) const {
-  for (const int body : group.bodies) {
+  for (const int body : group.moved.bodies) {
     centerOfMass(state, body) = centerOfMass(motion.before, body) + motion.timeStep * linearVelocity(state, body);
     setOrientation(state, body, orientation(motion.before, body));
     turnBody(state, body, motion.timeStep * angularVelocity(state, body));
@@ -229,7 +265,7 @@ void ContactStepping::separate(const Group& group, const VectorX& gaps, VectorX&
     cones_.apply(cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations).impulses,
                  displacement);
   }
-  for (const int body : group.bodies) {
+  for (const int body : group.moved.bodies) {
     centerOfMass(state, body) += linearVelocity(displacement, body);
     turnBody(state, body, angularVelocity(displacement, body));
   }

@@ -7,6 +7,7 @@
 #include "impact/contact_cones.h"
 #include "impact/sparse_cones.h"
 #include "simulate/assembly.h"
+#include "simulate/steps/contact_energy.h"
 
 namespace cradle {
 
@@ -33,7 +34,20 @@ class ContactStepping {
 
   /// `contacts` are those of the step's start, with gaps that may close within it; `before` the state there; `state`
   /// where free motion led after `timeStep` (s), and after the call where contact did. Energy that went is booked.
+  /// What firstLanding found to land is not held before the step's end.
   void resolve(const std::vector<Contact>& contacts, const VectorX& before, double timeStep, VectorX& state);
+
+  /// The part of a step, with the same arguments, after which something lands first: what is apart meets, faster than
+  /// at `landingSpeed` (m/s), while what touches is held. Infinite if nothing does.
+  double firstLanding(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
+                      const VectorX& state, double landingSpeed);
+
+  /// Moves bodies apart that overlap in `state`; what lifts them is taken from their velocities.
+  void takeOut(const std::vector<Contact>& contacts, VectorX& state);
+
+  /// The impact of contacts that touch in `state`, all at once. Their impulses (N s, world, on B). Energy that went is
+  /// booked.
+  std::vector<Vec3> strike(const std::vector<Contact>& contacts, double timeStep, VectorX& state);
 
   /// Those of the last step.
   const std::vector<SteppedContact>& contacts() const { return contacts_; }
@@ -43,7 +57,7 @@ class ContactStepping {
   struct Group {
     std::vector<std::size_t> members;  // of contacts_
     std::vector<Contact> contacts;     // the same
-    std::vector<int> bodies;           // that their impulses move
+    MovedBodies moved;
     int firstBody = 0;
     bool isTied = false;
   };
@@ -57,10 +71,17 @@ class ContactStepping {
     std::vector<double> frictions;
     bool hasRebounds = false;
   };
+  void begin(const std::vector<Contact>& contacts, const VectorX& before, const VectorX& state);
+  void setCones(const Group& group, const VectorX& state);
   std::vector<Group> findGroups() const;
   double restSpeed(double pressing, double timeStep) const;
   void resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state);
   Problem posed(const Group& group, const Motion& motion, double part) const;
+  bool findLanding(const Group& group, const Motion& motion, double landingSpeed);
+  double landingPart(const Group& group, const Motion& motion, const VectorX& end);
+  Problem posedImpact(const Group& group, const VectorX& start, double timeStep, double part) const;
+  bool slide(const Group& group, const VectorX& end, Problem& problem) const;
+  VectorX strike(const Group& group, double timeStep, VectorX& state);
   VectorX solve(const Group& group, const Problem& problem);
   MatrixX inverseMass() const { return tied_ ? tied_->inverseMass() : cones_.inverseMass(); }
   void count(const ConeSolution& solution);
@@ -79,7 +100,9 @@ class ContactStepping {
   SparseCones cones_;
   std::optional<ContactCones> tied_;  // of a group that something ties
   std::vector<SteppedContact> contacts_, previous_;
+  std::vector<char> lands_;                  // contacts that are not held before the step's end
   std::vector<Vec3> slips_, previousSlips_;  // m/s, world: velocities of the contacts with De Saxce's correction
+  double previousStep_ = 0, startPart_ = 1;  // s; ratio of impulses now to those of the step before, if forces last
   std::map<int, double> penalties_;          // of each group's first body
   SteppingCount count_;
   VectorX free_;  // where free motion led

@@ -7,8 +7,10 @@
 
 #include "core/error.h"
 #include "dynamics/integrators/rk4.h"
+#include "dynamics/invariants.h"
 #include "simulate/contact_response.h"
 #include "simulate/events/event_location.h"
+#include "simulate/steps/contact_energy.h"
 
 namespace cradle {
 namespace {
@@ -19,6 +21,7 @@ constexpr double kTimeRounding = 1e-9;        // of a step: remainders below it 
 constexpr double kShortestPart = 1.0 / 1024;  // of a step: shorter ones are not cut for their error
 constexpr double kMostGrowth = 4;             // of a part of a step to the next
 constexpr int kMostServed = 12;               // contacts
+constexpr int kManyLandings = 2;              // events in a step: beyond, it is not cut where something lands
 constexpr int kManyEvents = 16;               // in a step: beyond, it is not cut any more
 constexpr int kMostEvents = 10000;            // within a step
 
@@ -35,7 +38,7 @@ SteppedMotion::SteppedMotion(MovingIsland& island, RopeStage& ropes, const Chose
       windowStart_(island.time) {
   ropes_.setTimeStep(method.timeStep);
   island_.step.startRateIsKnown = false;
-  contacts_.resolve(island_.time, island_.state, island_.state);
+  contacts_.strike(island_.time, island_.state, island_.state);
   ropes_.resolve(island_.time, island_.state);
   island_.beginAndEndPushes();
   island_.requireUnsolvedPairsApart();
@@ -45,10 +48,13 @@ void SteppedMotion::advance(double frame) {
   double& time = island_.time;
   Step& step = island_.step;
   const double stepEnd = nextStepEnd();
+  if (time > windowStart_ + method_.timeStep) windowStart_ = time, eventsInWindow_ = 0;
 
-  // How far do bodies move freely?
+  // How far do bodies move freely, and until what meets?
   moveFreely(stepEnd);
-  const bool atEvent = stopAtFirstEvent();
+  before_ = island_.state;
+  bool atEvent = stopAtFirstEvent();
+  atEvent = stopAtFirstLanding() || atEvent;
   time = step.time + step.timeStep;
   if (!atEvent && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
 
@@ -56,11 +62,11 @@ void SteppedMotion::advance(double frame) {
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
 
   // Take out what the step left wrong: lengths of rods, closing and overlapping contacts. Then what changes here?
-  before_ = island_.state;
   island_.state = step.state;
   if (solver_.hasConstraints()) solver_.project(island_.state);
   normalizeOrientations(island_.state);
-  resolveContacts();
+  holdContacts();
+  if (atEvent || !contacts_.isCrowded()) contacts_.strike(time, before_, island_.state);
   rodsBefore_ = ropes_.rods();
   ropes_.resolve(time, island_.state);
   keepsTies_ = ropes_.rods() == rodsBefore_;
@@ -75,17 +81,20 @@ void SteppedMotion::advance(double frame) {
 
 void SteppedMotion::hold(double fraction, VectorX& state) const {
   if (!isHeld_) return;
-  const VectorX& free = island_.step.state;
+  const Invariants free = invariantsOf(island_.assembly.mechanism, state);
+  const VectorX& led = island_.step.state;
   const double square = fraction * fraction;
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
-    centerOfMass(state, body) += square * (centerOfMass(held_, body) - centerOfMass(free, body));
-    const Quat turn = (orientation(held_, body) * orientation(free, body).conjugate()).normalized();
+    centerOfMass(state, body) += square * (centerOfMass(held_, body) - centerOfMass(led, body));
+    const Quat turn = (orientation(held_, body) * orientation(led, body).conjugate()).normalized();
     turnBody(state, body, square * 2 * turn.vec());
+    // Between the velocities before and after an impact there are none.
+    if (contacts_.hasImpact()) continue;
     const Eigen::Index velocity = velocityOffset(state, body);
     state.segment<kVelocitySize>(velocity) +=
-        fraction * (held_.segment<kVelocitySize>(velocity) - free.segment<kVelocitySize>(velocity));
+        fraction * (held_.segment<kVelocitySize>(velocity) - led.segment<kVelocitySize>(velocity));
   }
-  dissipatedEnergy(state) += fraction * (dissipatedEnergy(held_) - dissipatedEnergy(free));
+  bookDifference(free, island_.assembly.mechanism, state);
 }
 
 /// The end of the fixed step under way, or of the run; a push that begins or ends comes first.
@@ -96,16 +105,12 @@ double SteppedMotion::nextStepEnd() const {
   return std::min(end, island_.pushes.nextChange());
 }
 
-void SteppedMotion::resolveContacts() {
-  isHeld_ =
-      contacts_.isCrowded() && island_.step.timeStep > kTimeRounding * method_.timeStep;  // no gap closes in no time
-  if (isHeld_)
-    contacts_.resolveStep(island_.time, before_, island_.state);
-  else if (!contacts_.isCrowded())
-    contacts_.resolve(island_.time, before_, island_.state);
-  // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
-  if (solver_.hasConstraints() && !contacts_.touching().empty()) solver_.project(island_.state);
-  if (isHeld_) held_ = island_.state;
+void SteppedMotion::holdContacts() {
+  const double length = island_.step.timeStep;
+  isHeld_ = !contacts_.touching().empty() && length > kTimeRounding * method_.timeStep;  // no gap closes in no time
+  if (!isHeld_) return;
+  contacts_.hold(island_.time, before_, length, island_.state);
+  held_ = island_.state;
 }
 
 /// Takes a step to `stepEnd`, or a part of it where springs, ropes or spins are too fast for the whole.
@@ -124,12 +129,16 @@ void SteppedMotion::moveFreely(double stepEnd) {
   longest_ = kMostGrowth * length;
 }
 
-/// Cuts the step at the first event in it.
+/// Cuts the step at the first event in it. Free motion does not say when bodies meet that touch already: landings do.
 bool SteppedMotion::stopAtFirstEvent() {
   if (!island_.mayTouch() && !ropes_.hasRopes()) return false;
   Step& step = island_.step;
   prepareInterpolant(island_.rightHandSide, step);
   island_.findNearPairs(contacts_.margin());
+  contacts_.begin(island_.time, before_, step.state, step.timeStep);
+  std::vector<ColliderPair>& pairs = island_.assembly.geometry.pairs;
+  const std::vector<ColliderPair> all = pairs;
+  pairs = contacts_.pairsNotHeld();
   const auto impact = contacts_.isCrowded() ? std::nullopt : island_.search.first(step, {contacts_.touchTolerance()});
   const auto change = ropes_.firstChange(step);
   const double whole = step.timeStep;
@@ -141,7 +150,20 @@ bool SteppedMotion::stopAtFirstEvent() {
     endStepAtEvent(island_, method_.integrate, {change->fraction * whole, whole, kRopeTolerance},
                    [&](const VectorX& state) { return ropes_.margin(*change, state); });
   }
+  pairs = all;
   return impact || change;
+}
+
+/// Cuts the step where something lands while other contacts last.
+bool SteppedMotion::stopAtFirstLanding() {
+  Step& step = island_.step;
+  if (eventsInWindow_ >= kManyLandings) return false;
+  const double part = contacts_.firstLanding(before_, step.state, step.timeStep);
+  if (part > 1) return false;
+  const double length = part * step.timeStep;
+  keepStartRate(step);
+  method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
+  return true;
 }
 
 bool SteppedMotion::isAtRest() const {
@@ -160,7 +182,6 @@ void SteppedMotion::restUntil(double time) {
 }
 
 void SteppedMotion::countEvent() {
-  if (island_.time > windowStart_ + method_.timeStep) windowStart_ = island_.time, eventsInWindow_ = 0;
   if (++eventsInWindow_ <= kMostEvents) return;
   throw Error(ErrorKind::limit, "",
               fmt::format("more than {} impacts and pulls of ropes within {:.3g} s at {:.6g} s; lower a restitution of "

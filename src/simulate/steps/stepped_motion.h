@@ -10,8 +10,8 @@
 namespace cradle {
 
 /// Moves an island in steps of one length, for methods that a scene names and for contact that is too much for events.
-/// A step is cut where bodies meet, ropes go taut or slack, and pushes begin or end; lasting contact is resolved at its
-/// end.
+/// A step is cut where bodies meet or land, ropes go taut or slack, and pushes begin or end; lasting contact is held
+/// over it.
 class SteppedMotion {
  public:
   /// Keeps references to the island, which it moves, and its ropes. The method has a fixed step; the first begins now.
@@ -43,7 +43,8 @@ class SteppedMotion {
   double nextStepEnd() const;
   void moveFreely(double stepEnd);
   bool stopAtFirstEvent();
-  void resolveContacts();
+  bool stopAtFirstLanding();
+  void holdContacts();
   void countEvent();
 
   MovingIsland& island_;

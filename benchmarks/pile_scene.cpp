@@ -1,0 +1,160 @@
+#include "pile_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+
+namespace cradle {
+namespace {
+
+constexpr double kHalf = 0.1;      // m: radius of the spheres, half the side of the cubes
+constexpr double kDensity = 1000;  // kg/m^3, where bodies differ
+constexpr double kPi = 3.14159265358979324;
+constexpr double kLeastAxis = 1e-6;  // of a unit: edges that are parallel have no axis of their own
+constexpr int kSearchSteps = 60;     // of a golden section: 0.618^60 = 3e-13
+
+PileItem itemOf(const std::string& kind, std::mt19937& random) {
+  const auto between = [&](double least, double most) {
+    return least + (most - least) * static_cast<double>(random()) / 4294967295.0;
+  };
+  PileItem item;
+  if (kind == "spheres") item.radius = kHalf;
+  if (kind == "boxes" || kind == "turned") item.halfSize = Vec3::Constant(kHalf);
+  if (kind == "bars") item.halfSize = Vec3(0.04, 0.3, 0.05);
+  if (kind == "capsules") item.radius = 0.06, item.halfSize = Vec3(0, between(0.05, 0.2), 0);
+  if (kind == "mixed") {
+    const bool isBall = random() % 2 == 0;
+    const double x = between(0.04, 0.15), y = between(0.04, 0.15), z = between(0.04, 0.15);
+    if (isBall)
+      item.radius = x;
+    else
+      item.halfSize = Vec3(x, y, z);
+  }
+  if (kind == "bars" || kind == "capsules" || kind == "mixed") {
+    const double r = item.radius, length = 2 * item.halfSize.y();
+    item.mass = kDensity * (item.isBox() ? 8 * item.halfSize.prod() : kPi * r * r * (length + 4 * r / 3));
+  }
+  return item;
+}
+
+/// Depth of two boxes in each other: 15 axes (S. Gottschalk, M. Lin, D. Manocha, "OBBTree", SIGGRAPH 1996).
+double depthOfBoxes(const PileItem& first, const PileItem& second, const Vec3& offset, const Mat3& a, const Mat3& b) {
+  double least = 1e9;
+  const auto consider = [&](const Vec3& axis) {
+    const double length = axis.norm();
+    if (length < kLeastAxis) return;
+    const double reach =
+        (a.transpose() * axis).cwiseAbs().dot(first.halfSize) + (b.transpose() * axis).cwiseAbs().dot(second.halfSize);
+    least = std::min(least, (reach - std::abs(offset.dot(axis))) / length);
+  };
+  for (int i = 0; i < 3; ++i) {
+    consider(a.col(i)), consider(b.col(i));
+    for (int j = 0; j < 3; ++j) consider(a.col(i).cross(b.col(j)));
+  }
+  return least;
+}
+
+double distanceToBox(const Vec3& halfSize, const Vec3& point) {
+  const Vec3 beyond = point.cwiseAbs() - halfSize;
+  return beyond.cwiseMax(0).norm() + std::min(0.0, beyond.maxCoeff());
+}
+
+/// Least value of a convex function on [-1, 1].
+template <class Function>
+double leastOf(const Function& function) {
+  const double ratio = (std::sqrt(5.0) - 1) / 2;
+  double from = -1, to = 1;
+  for (int i = 0; i < kSearchSteps; ++i) {
+    const double low = to - ratio * (to - from), high = from + ratio * (to - from);
+    if (function(low) < function(high))
+      to = high;
+    else
+      from = low;
+  }
+  return function((from + to) / 2);
+}
+
+/// Depth of a round body in a box or another round one: distance is convex along both segments.
+double depthOfRound(const PileItem& round, const PileItem& other, const Vec3& offset, const Mat3& a, const Mat3& b) {
+  const Vec3 alongA = a.col(1) * round.halfSize.y(), alongB = b.col(1) * other.halfSize.y();
+  const auto fromA = [&](double s) {
+    const Vec3 point = s * alongA - offset;
+    if (other.isBox()) return distanceToBox(other.halfSize, b.transpose() * point);
+    const double length2 = alongB.squaredNorm();
+    const double t = length2 > 0 ? std::clamp(point.dot(alongB) / length2, -1.0, 1.0) : 0;
+    return (point - t * alongB).norm() - other.radius;
+  };
+  return round.radius - (round.halfSize.isZero() ? fromA(0) : leastOf(fromA));
+}
+
+double depthOf(const PileItem& first, const PileItem& second, const Vec3& offset, const Mat3& a, const Mat3& b) {
+  if (!first.isBox()) return depthOfRound(first, second, offset, a, b);
+  if (!second.isBox()) return depthOfRound(second, first, -offset, b, a);
+  return depthOfBoxes(first, second, offset, a, b);
+}
+
+}  // namespace
+
+const std::vector<std::string>& pileKinds() {
+  static const std::vector<std::string> kinds{"spheres", "boxes", "turned", "bars", "mixed", "capsules"};
+  return kinds;
+}
+
+PileScene makePileScene(int bodies, const std::string& kind) {
+  if (std::count(pileKinds().begin(), pileKinds().end(), kind) == 0) throw std::invalid_argument("no heap of " + kind);
+  PileScene scene;
+  std::mt19937 random(1), sizes(2);
+  const auto jitter = [&](double size) { return size * (static_cast<double>(random()) / 2147483648.0 - 1); };
+  const bool isTurned = kind != "spheres" && kind != "boxes";
+  const double pitch = !isTurned ? 0.22 : kind == "bars" ? 0.64 : kind == "mixed" || kind == "capsules" ? 0.55 : 0.36;
+  const double ofCubes = bodies <= 1000 ? 2.4 : 4.6, ofLongOnes = (bodies <= 1000 ? 7 : 12) * pitch + 0.1;
+  scene.width = pitch > 0.5 ? ofLongOnes : ofCubes;
+  const double lowest = std::max(0.2, pitch / 2 + 0.02);
+  const int side = static_cast<int>((scene.width - 0.1) / pitch);
+  for (int i = 0; i < bodies; ++i) {
+    const int layer = i / (side * side), row = i / side % side, column = i % side;
+    const double corner = -pitch * (side - 1) / 2;
+    PileItem item = itemOf(kind, sizes);
+    const double z = jitter(0.005), x = jitter(0.005);
+    item.position = Vec3(corner + pitch * column + x, lowest + 1.05 * pitch * layer, corner + pitch * row + z);
+    if (isTurned) {
+      const double turn[] = {jitter(1), jitter(1), jitter(1), jitter(1)};
+      item.turn = Quat(turn[3], turn[2], turn[1], turn[0]).normalized();
+    }
+    scene.items.push_back(item);
+  }
+  scene.planes = {{Vec3::Zero(), Vec3::UnitY(), 0}};
+  for (const Vec3& normal : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)})
+    scene.planes.push_back({-scene.width / 2 * normal, normal, 0});
+  return scene;
+}
+
+double deepestOverlap(const PileScene& scene, const PilePoses& poses) {
+  double most = 0, farthest = 0;
+  std::vector<std::size_t> order(poses.positions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return poses.positions[a].x() < poses.positions[b].x(); });
+  for (const std::size_t i : order) {
+    const PileItem& item = scene.items[i];
+    farthest = std::max(farthest, item.reach());
+    for (const PlaneCollider& plane : scene.planes) {
+      const double reach = item.radius + (poses.turns[i].transpose() * plane.normal).cwiseAbs().dot(item.halfSize);
+      most = std::max(most, reach - plane.normal.dot(poses.positions[i] - plane.point));
+    }
+  }
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (std::size_t j = i + 1; j < order.size(); ++j) {
+      const std::size_t a = order[i], b = order[j];
+      const Vec3 offset = poses.positions[b] - poses.positions[a];
+      const double reach = scene.items[a].reach() + scene.items[b].reach();
+      if (offset.x() > scene.items[a].reach() + farthest) break;
+      if (offset.squaredNorm() > reach * reach) continue;
+      most = std::max(most, depthOf(scene.items[a], scene.items[b], offset, poses.turns[a], poses.turns[b]));
+    }
+  return most;
+}
+
+}  // namespace cradle

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "collision/collider.h"
+#include "math/types.h"
+
+namespace cradle {
+
+/// A body of a heap: a box, or all points within `radius` of the segment from -halfSize to halfSize along y.
+struct PileItem {
+  double radius = 0;             // m; 0: a box
+  Vec3 halfSize = Vec3::Zero();  // m; of a ball zero, of a capsule its half length in y
+  double mass = 1;               // kg
+  Vec3 position = Vec3::Zero();  // m, of the centre
+  Quat turn = Quat::Identity();  // worldFromBody
+  bool isBox() const { return radius == 0; }
+  double reach() const { return radius + halfSize.norm(); }  // m, from the centre
+};
+
+/// Bodies on a jittered grid over a tray of five planes.
+struct PileScene {
+  double width = 2.4;  // m
+  std::vector<PileItem> items;
+  std::vector<PlaneCollider> planes;
+};
+
+/// The kinds of heaps that there are: "spheres", "boxes", "turned" (boxes), all of 0.2 m and 1 kg; and of 1000 kg/m^3
+/// and turned "bars", "mixed" (balls and boxes of many sizes) and "capsules".
+const std::vector<std::string>& pileKinds();
+
+/// Throws std::invalid_argument for another kind.
+PileScene makePileScene(int bodies, const std::string& kind);
+
+struct PilePoses {
+  std::vector<Vec3> positions;  // m
+  std::vector<Mat3> turns;      // worldFromBody
+};
+
+/// Depth (m) of the deepest overlap of two bodies or of a body and the tray, found from the poses alone.
+double deepestOverlap(const PileScene& scene, const PilePoses& poses);
+
+}  // namespace cradle

@@ -1,0 +1,159 @@
+// A body that lands on one end while another still carries loses what the impact takes from it, at an instant. Spread
+// over a step, in which the end that will leave is still held, more is lost: by a part of the step's length over the
+// time between landings. So a step ends where something lands.
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulate/steps/contact_stepping.h"
+
+namespace cradle {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kSlidingSpeed = 1e-6;      // m/s: slower counts as sticking
+constexpr double kLessRestitution = 0.7;    // of the restitution that let energy grow
+constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
+
+}  // namespace
+
+double ContactStepping::firstLanding(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
+                                     const VectorX& state, double landingSpeed) {
+  lands_.assign(contacts.size(), 0);
+  double first = INFINITY;
+  if (contacts.empty()) return first;
+  // The impulses of the step before are where that to come begins.
+  const std::vector<SteppedContact> last = contacts_;
+  begin(contacts, before, state);
+  previous_ = last, previousSlips_ = slips_;
+  startPart_ = previousStep_ > 0 ? timeStep / previousStep_ : 1;
+  for (const Group& group : findGroups()) {
+    setCones(group, before);
+    const Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), timeStep};
+    if (!findLanding(group, motion, landingSpeed)) continue;
+    VectorX path = state;
+    const VectorX impulses = solve(group, posed(group, motion, 1));
+    tied_ ? tied_->apply(impulses, path) : cones_.apply(impulses, path);
+    first = std::min(first, landingPart(group, motion, cones_.velocitiesIn(path)));
+  }
+  contacts_ = last;
+  return first;
+}
+
+/// What may land: apart, and closed at the step's end by free motion.
+bool ContactStepping::findLanding(const Group& group, const Motion& motion, double landingSpeed) {
+  bool isFound = false;
+  for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+    const Index normal = 3 * static_cast<Index>(i) + 2;
+    const double gap = group.contacts[i].separation;
+    const double closing = -motion.start[normal], fastest = std::max(closing, -motion.free[normal]);
+    const bool lands = gap > overlapTolerance_ && closing > landingSpeed && gap < motion.timeStep * fastest;
+    lands_[group.members[i]] = lands ? 1 : 0;
+    isFound = isFound || lands;
+  }
+  return isFound;
+}
+
+/// The first root of gap + v t + a t^2 / 2, in steps; what has none within the step does not land.
+double ContactStepping::landingPart(const Group& group, const Motion& motion, const VectorX& end) {
+  double first = INFINITY;
+  for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+    char& lands = lands_[group.members[i]];
+    if (!lands) continue;
+    const Index normal = 3 * static_cast<Index>(i) + 2;
+    const double gap = group.contacts[i].separation / motion.timeStep, closing = -motion.start[normal];
+    const double root = closing * closing - 2 * gap * (end[normal] + closing);
+    const double part = root < 0 ? INFINITY : 2 * gap / (closing + std::sqrt(root));
+    lands = part <= 1 ? 1 : 0;
+    if (lands) first = std::min(first, part);
+  }
+  return first;
+}
+
+void ContactStepping::takeOut(const std::vector<Contact>& contacts, VectorX& state) {
+  const std::vector<SteppedContact> last = contacts_;
+  begin(contacts, state, state);
+  const Invariants free = invariantsOf(assembly_.mechanism, state);
+  for (const Group& group : findGroups()) {
+    VectorX gaps(group.contacts.size());
+    for (Index i = 0; i < gaps.size(); ++i) gaps[i] = group.contacts[static_cast<std::size_t>(i)].separation;
+    if (gaps.minCoeff() >= -overlapTolerance_) continue;
+    setCones(group, state);
+    const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
+    separate(group, gaps, state);
+    if (group.isTied) solver_.project(state);
+    limitEnergy(group.moved, most, assembly_.mechanism, state);
+  }
+  contacts_ = last;
+  bookDifference(free, assembly_.mechanism, state);
+}
+
+std::vector<Vec3> ContactStepping::strike(const std::vector<Contact>& contacts, double timeStep, VectorX& state) {
+  std::vector<Vec3> impulses(contacts.size(), Vec3::Zero());
+  const std::vector<SteppedContact> last = contacts_;
+  begin(contacts, state, state);
+  const Invariants free = invariantsOf(assembly_.mechanism, state);
+  for (const Group& group : findGroups()) {
+    setCones(group, state);
+    const VectorX found = strike(group, timeStep, state);
+    for (std::size_t i = 0; i < group.members.size(); ++i)
+      impulses[group.members[i]] = cones_.axes(i) * found.segment<3>(3 * static_cast<Index>(i));
+  }
+  contacts_ = last;
+  bookDifference(free, assembly_.mechanism, state);
+  return impulses;
+}
+
+/// Newton's restitution as in the steps: of what closes faster than accelerations explain.
+ContactStepping::Problem ContactStepping::posedImpact(const Group& group, const VectorX& start, double timeStep,
+                                                      double part) const {
+  Problem problem{start, {}};
+  for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+    const SurfaceLaw& law = assembly_.geometry.pairs[group.contacts[i].pair].law;
+    problem.frictions.push_back(law.staticFriction);
+    const Index normal = 3 * static_cast<Index>(i) + 2;
+    const double rebound = -part * law.restitution * start[normal];
+    if (rebound <= restSpeed(0, timeStep)) continue;
+    problem.free[normal] -= rebound;
+    problem.hasRebounds = true;
+  }
+  return problem;
+}
+
+/// Dynamic friction where `end` slides. Whether that is another.
+bool ContactStepping::slide(const Group& group, const VectorX& end, Problem& problem) const {
+  bool isOther = false;
+  for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+    const SurfaceLaw& law = assembly_.geometry.pairs[group.contacts[i].pair].law;
+    if (law.dynamicFriction == law.staticFriction) continue;
+    if (end.segment<2>(3 * static_cast<Index>(i)).norm() <= kSlidingSpeed) continue;
+    problem.frictions[i] = law.dynamicFriction;
+    isOther = true;
+  }
+  return isOther;
+}
+
+/// With all friction static, then with dynamic friction where that slides.
+VectorX ContactStepping::strike(const Group& group, double timeStep, VectorX& state) {
+  const VectorX start = cones_.velocitiesIn(state);
+  const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
+  for (double part = 1;; part = part > kLeastRestitution ? kLessRestitution * part : 0) {
+    Problem problem = posedImpact(group, start, timeStep, part);
+    VectorX impulses = solve(group, problem);
+    tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
+    if (slide(group, cones_.velocitiesIn(state), problem)) {
+      restore(group.moved.bodies, state);
+      impulses = solve(group, problem);
+      tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
+    }
+    if (problem.hasRebounds && isGain(energyOf(group.moved.bodies, assembly_.mechanism, state), most)) {
+      restore(group.moved.bodies, state);
+      continue;
+    }
+    limitEnergy(group.moved, most, assembly_.mechanism, state);
+    return impulses;
+  }
+}
+
+}  // namespace cradle
