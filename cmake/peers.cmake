@@ -7,9 +7,6 @@ function(cradle_link_peers TARGET)
     target_compile_definitions(${TARGET} PRIVATE BT_USE_DOUBLE_PRECISION dIDEDOUBLE)  # as Debian builds them
     target_include_directories(${TARGET} SYSTEM PRIVATE ${PEER_INCLUDES})
     target_link_libraries(${TARGET} PRIVATE ${PEER_LIBRARIES})
-    # Simbody's headers compare its indices in a way that C++20 finds ambiguous.
-    set_source_files_properties(${PROJECT_SOURCE_DIR}/src/study/peers/simbody.cpp PROPERTIES COMPILE_OPTIONS -std=c++17
-      SKIP_PRECOMPILE_HEADERS ON)
   else()
     list(FILTER SOURCES EXCLUDE REGEX "/peers/(bullet|joint_tree|mujoco|ode|peer_shapes|peers|simbody)")
   endif()

@@ -39,6 +39,7 @@ LIBRARY_UNITS = {
     "ode/": ["study/peers/ode"],
     "mujoco/": ["study/peers/mujoco"],
     "Simbody": ["study/peers/simbody"],
+    "SimTK": ["study/peers/simbody"],
 }
 
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "collision/core.h"
 #include "collision/first_crossing.h"
@@ -126,15 +127,17 @@ class PairSearch {
   void findFace() {
     if (pair_.againstPlane) return;
     const Collider& b = geometry_.colliders[pair_.b];
+    const bool hasFacesA = a_.kind() == ColliderKind::polytope, hasFacesB = b.kind() == ColliderKind::polytope;
+    if (!hasFacesA && !hasFacesB) return;
     const double distance = (startA_.translation - startB_.translation).norm();
     const double turn = std::max(scratch_.turnOf(step_, a_.body).speed, scratch_.turnOf(step_, bodyB_).speed);
     const auto motionAlong = [&](const Vec3& normal) {
       if (a_.body == kFixed || bodyB_ == kFixed) return motionBoundAcross(step_, a_.body, bodyB_, normal);
       return 2 * bounds_.speed + turn * distance;
     };
-    face_ = faceBelow(a_, startA_, b, startB_, motionAlong);
-    if (face_) return;
-    face_ = faceBelow(b, startB_, a_, startA_, motionAlong);
+    if (hasFacesB) face_ = faceBelow(a_, startA_, b, startB_, std::cref(motionAlong));
+    if (face_ || !hasFacesA) return;
+    face_ = faceBelow(b, startB_, a_, startA_, std::cref(motionAlong));
     if (face_) face_->isOfA = true;
   }
 
@@ -255,7 +258,8 @@ class PairSearch {
       return heightOfCorner(*face_, feature_, {a_, poseAt(step_, a_.body, fraction)},
                             {geometry_.colliders[pair_.b], poseAt(step_, bodyB_, fraction)});
     if (held_) {
-      interpolate(step_, fraction, scratch_.sample_);
+      for (const int body : {a_.body, bodyB_})
+        if (body != kFixed) interpolatePose(step_, body, fraction, scratch_.sample_);
       return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, reach_);
     }
     // A gap of twice the way that can be gone in the step stays open, however large it is.
@@ -301,10 +305,18 @@ double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& to
 }
 
 std::optional<ImpactTime> ImpactSearch::first(const Step& step, const TouchingFeatures& touching) {
-  turns_.assign(static_cast<std::size_t>(bodyCount(step.state)), {});
+  const auto bodies = static_cast<std::size_t>(bodyCount(step.state));
+  turns_.assign(bodies, {});
+  sample_.resize(step.state.size());
+  isMoving_.resize(bodies);
+  for (std::size_t body = 0; body < bodies; ++body) isMoving_[body] = !isStill(step, static_cast<int>(body));
+  const auto moves = [this](int body) { return body != kFixed && isMoving_[static_cast<std::size_t>(body)]; };
   std::optional<ImpactTime> best;
-  for (std::size_t pair = 0; pair < geometry_.pairs.size(); ++pair)
-    PairSearch(*this, step, pair).search(touching, best);
+  for (std::size_t pair = 0; pair < geometry_.pairs.size(); ++pair) {
+    const ColliderPair& bodiesOf = geometry_.pairs[pair];
+    if (moves(geometry_.colliders[bodiesOf.a].body) || moves(bodyBOf(geometry_, bodiesOf)))
+      PairSearch(*this, step, pair).search(touching, best);
+  }
   return best;
 }
 

@@ -62,10 +62,11 @@ class ImpactSearch {
   double gapOfOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state, double margin);
 
   const ContactGeometry& geometry_;
-  std::vector<Turn> turns_;  // of the moving bodies, in the step that is searched
+  std::vector<Turn> turns_;     // of the moving bodies, in the step that is searched
+  std::vector<char> isMoving_;  // of the same
   std::vector<std::size_t> features_;
   std::vector<Contact> contacts_;
-  VectorX sample_;
+  VectorX sample_;  // with the poses of the pair that is searched
 };
 
 }  // namespace cradle

@@ -21,19 +21,39 @@ Ends endsOf(const Attachment& anchorA, const Attachment& anchorB, const VectorX&
           spinOf(anchorB.body, state)};
 }
 
-/// w x (w x r) of A minus that of B: relative acceleration of points that only turn.
-Vec3 centripetalAcceleration(const Ends& ends) {
-  return ends.spinA.cross(ends.spinA.cross(ends.a.arm)) - ends.spinB.cross(ends.spinB.cross(ends.b.arm));
+/// w x (w x r) of a point that only turns.
+Vec3 centripetalAcceleration(const Vec3& spin, const Vec3& arm) {
+  if (arm == Vec3::Zero()) return Vec3::Zero();
+  return spin.cross(spin.cross(arm));
 }
 
-ConstraintRow rowOf(const RodConstraint& rod, const Ends& ends) {
-  const Vec3 d = ends.a.position - ends.b.position, rate = ends.a.velocity - ends.b.velocity;
-  ConstraintRow row{rod.anchorA.body, rod.anchorB.body, d, ends.a.arm.cross(d), -d, -ends.b.arm.cross(d)};
+/// That of A minus that of B.
+Vec3 centripetalAcceleration(const Ends& ends) {
+  return centripetalAcceleration(ends.spinA, ends.a.arm) - centripetalAcceleration(ends.spinB, ends.b.arm);
+}
+
+bool isAtCenter(const Attachment& anchor) {
+  return anchor.body == kFixed || anchor.point == Vec3::Zero();
+}
+
+/// Filled in where it stands: rods are most of what ties the bodies of many scenes.
+void addRow(const RodConstraint& rod, const VectorX& state, const std::vector<BodyFrame>& frames,
+            std::vector<ConstraintRow>& rows) {
+  const AttachmentMotion a = motionOf(rod.anchorA, state, frames), b = motionOf(rod.anchorB, state, frames);
+  const Vec3 d = a.position - b.position;
+  ConstraintRow& row = rows.emplace_back();
+  row.bodyA = rod.anchorA.body, row.bodyB = rod.anchorB.body;
+  row.linearA = d, row.linearB = -d;
   row.value = 0.5 * (d.squaredNorm() - rod.length * rod.length);
-  row.curvature = rate.squaredNorm() + d.dot(centripetalAcceleration(ends));
+  row.curvature = (a.velocity - b.velocity).squaredNorm();
   row.scale = rod.length;
   row.rounding = kRounding * rod.length;
-  return row;
+  if (isAtCenter(rod.anchorA) && isAtCenter(rod.anchorB)) {
+    row.angularA.setZero(), row.angularB.setZero();
+    return;
+  }
+  row.angularA = a.arm.cross(d), row.angularB = -b.arm.cross(d);
+  row.curvature += d.dot(centripetalAcceleration({a, b, spinOf(row.bodyA, state), spinOf(row.bodyB, state)}));
 }
 
 void addPointRows(const Attachment& anchorA, const Attachment& anchorB, const Ends& ends,
@@ -73,7 +93,7 @@ void findRows(const Constraints& constraints, const VectorX& state, const std::v
   };
   rows.clear();
   for (const RodConstraint& rod : constraints.rods)
-    if (!isOut(rod)) rows.push_back(rowOf(rod, endsOf(rod.anchorA, rod.anchorB, state, frames)));
+    if (!isOut(rod)) addRow(rod, state, frames, rows);
   for (const BallJointConstraint& joint : constraints.ballJoints)
     if (!isOut(joint))
       addPointRows(joint.anchorA, joint.anchorB, endsOf(joint.anchorA, joint.anchorB, state, frames), rows);

@@ -32,8 +32,8 @@ void EquationsOfMotion::evaluate(const VectorX& state, VectorX& rate) {
   placeBodies(mechanism_.bodies, state, frames_);
   evaluatePoseRates(mechanism_.bodies, state, rate);
   applyGravityAndGyroscopicTerms(state, rate);
-  applySprings(state, rate);
-  applyPushes(state, rate);
+  if (!mechanism_.springs.empty()) applySprings(state, rate);
+  if (!mechanism_.pushes.empty()) applyPushes(state, rate);
   applyConstraints(state, rate);
   holdResting(state, rate);
 }
@@ -122,10 +122,11 @@ void EquationsOfMotion::addForce(int body, const Vec3& arm, const Vec3& force, V
 void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& state, VectorX& rate) {
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
     centerOfMass(rate, body) = linearVelocity(state, body);
-    if (bodies[static_cast<std::size_t>(body)].turns)
-      setOrientation(rate, body, orientationRate(orientation(state, body), angularVelocity(state, body)));
-    else
+    const Vec3 spin = angularVelocity(state, body);
+    if (!bodies[static_cast<std::size_t>(body)].turns || spin == Vec3::Zero())
       rate.segment<4>(body * kPoseSize + 3).setZero();
+    else
+      setOrientation(rate, body, orientationRate(orientation(state, body), spin));
   }
 }
 

@@ -5,8 +5,10 @@ namespace {
 
 /// Spin angular momentum about the centre of mass, world frame: R I R^T w.
 Vec3 spinMomentum(const RigidBody& body, const VectorX& state, Eigen::Index index) {
+  const Vec3 spin = angularVelocity(state, index);
+  if (spin == Vec3::Zero()) return spin;
   const Quat worldFromBody = orientation(state, index).normalized();
-  return worldFromBody * (body.inertiaTensor * (worldFromBody.conjugate() * Vec3(angularVelocity(state, index))));
+  return worldFromBody * (body.inertiaTensor * (worldFromBody.conjugate() * spin));
 }
 
 }  // namespace

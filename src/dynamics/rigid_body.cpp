@@ -1,6 +1,7 @@
 #include "dynamics/rigid_body.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "math/rotation.h"
 
@@ -24,6 +25,9 @@ void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std
   frames.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     BodyFrame& frame = frames[i];
+    const double* stored = state.data() + i * kPoseSize + 3;
+    if (std::equal(frame.orientation.begin(), frame.orientation.end(), stored)) continue;
+    std::copy_n(stored, frame.orientation.size(), frame.orientation.begin());
     frame.inverseInertia = bodies[i].inverseInertia;
     if (!bodies[i].turns) {
       frame.rotation.setIdentity();  // nothing is attached off its centre
@@ -37,6 +41,8 @@ void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std
 
 AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state, const std::vector<BodyFrame>& frames) {
   if (attachment.body == kFixed) return {Vec3::Zero(), attachment.point, Vec3::Zero()};
+  if (attachment.point == Vec3::Zero())
+    return {Vec3::Zero(), centerOfMass(state, attachment.body), linearVelocity(state, attachment.body)};
   const Vec3 arm = frames[static_cast<std::size_t>(attachment.body)].rotation * attachment.point;
   return {arm, centerOfMass(state, attachment.body) + arm,
           linearVelocity(state, attachment.body) + angularVelocity(state, attachment.body).cross(arm)};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "dynamics/state.h"
@@ -38,9 +39,12 @@ AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state);
 
 /// What all forces on a body need of its orientation: found once an instant.
 struct BodyFrame {
-  Mat3 rotation;        // worldFromBody
-  Mat3 inverseInertia;  // 1/(kg m^2), world
+  std::array<double, 4> orientation = {};  // w, x, y, z as stored, that the others were found for
+  Mat3 rotation;                           // worldFromBody
+  Mat3 inverseInertia;                     // 1/(kg m^2), world
 };
+
+/// Those of all bodies. `frames` are none, or those of the same bodies in another state: what has not turned is kept.
 void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std::vector<BodyFrame>& frames);
 
 /// The same motion from bodies that were placed for `state`.

@@ -7,11 +7,18 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <numeric>
 
 namespace cradle {
 void SparseLdlt::analyze(int size, const std::vector<std::pair<int, int>>& entries) {
   size_ = size;
-  order(entries);
+  if (entries.empty()) {
+    rowAt_.resize(static_cast<std::size_t>(size));
+    std::iota(rowAt_.begin(), rowAt_.end(), 0);
+    positionOf_ = rowAt_;
+  } else {
+    order(entries);
+  }
 
   rowStart_.assign(static_cast<std::size_t>(size) + 1, 0);
   std::vector<std::pair<std::pair<int, int>, int>> placed;

@@ -42,8 +42,9 @@ class ScaledProblem {
  public:
   ScaledProblem(const MatrixX& g, const VectorX& free, const std::vector<double>& frictions);
 
-  /// Impulses in the given units. Found: to rounding; else as near as was come.
-  VectorX solve();
+  /// Impulses in the given units. Found: to rounding; else as near as was come. `near`: those of a problem like this
+  /// one, or none.
+  VectorX solve(const VectorX& near);
 
   /// In the given units.
   ConeSolution judge(VectorX impulses) const;
@@ -58,6 +59,7 @@ class ScaledProblem {
   bool isConverged(double residual, const VectorX& z, const VectorX& u) const;
   bool finish(VectorX& impulses) const;
   void stepByNewton(VectorX& z) const;
+  VectorX scaled(const VectorX& impulses) const;
   VectorX unscaled(const VectorX& z) const;
 
   const MatrixX& givenMatrix_;
@@ -157,10 +159,14 @@ bool ScaledProblem::finish(VectorX& impulses) const {
   return false;
 }
 
-VectorX ScaledProblem::solve() {
+VectorX ScaledProblem::solve(const VectorX& near) {
   best_ = VectorX::Zero(cones_.free.size());
   leastResidual_ = residual(best_, cones_.free);
   if (isConverged(leastResidual_, best_, cones_.free)) return unscaled(best_);
+  if (near.size() > 0) {
+    VectorX z = scaled(near);
+    if (take(z)) return unscaled(best_);
+  }
   if (solveFrom(kFirstPenaltyParts[0] * largest_) || solveFromInside()) return unscaled(best_);
   if (scale_.size() > kFewContacts && leastResidual_ <= kGoodPart) return unscaled(best_);
   for (const double part : kFirstPenaltyParts)
@@ -212,6 +218,13 @@ bool ScaledProblem::solveFrom(double penalty) {
   return false;
 }
 
+VectorX ScaledProblem::scaled(const VectorX& impulses) const {
+  VectorX z(impulses.size());
+  for (Index i = 0; i < scale_.size(); ++i)
+    z.segment<3>(3 * i) = impulses.segment<3>(3 * i) / (scale_[i] * velocityScale_);
+  return z;
+}
+
 /// In the cones exactly.
 VectorX ScaledProblem::unscaled(const VectorX& z) const {
   VectorX impulses(z.size());
@@ -251,14 +264,15 @@ bool solveNormals(const MatrixX& G, const VectorX& g, VectorX& impulses) {
 
 }  // namespace
 
-ConeSolution solveConeProblem(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions) {
+ConeSolution solveConeProblem(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
+                              const VectorX& near) {
   if (frictions.empty()) return {};
   ScaledProblem problem(G, g, frictions);
   if (frictions.size() == 1) return problem.judge(solveSingleContact(G, g, frictions[0]));
   const bool hasFriction =
       std::any_of(frictions.begin(), frictions.end(), [](double friction) { return friction > 0; });
   VectorX impulses;
-  return problem.judge(!hasFriction && solveNormals(G, g, impulses) ? impulses : problem.solve());
+  return problem.judge(!hasFriction && solveNormals(G, g, impulses) ? impulses : problem.solve(near));
 }
 
 }  // namespace cradle

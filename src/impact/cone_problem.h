@@ -19,7 +19,9 @@ struct ConeSolution {
 /// then one of many. Impulses and velocities, or forces and accelerations: only their ratio G counts. The result does
 /// not depend on the units, and on the order of contacts only by rounding. Not every problem has a solution (what is
 /// wedged and cannot move), and none is always found: see `converged`. One contact takes a microsecond, a box on its
-/// four corners about 20, n contacts O(n^3).
-ConeSolution solveConeProblem(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions);
+/// four corners about 20, n contacts O(n^3). `near` may hold the impulses of a problem much like this one: a few steps
+/// of Newton's method from there are tried first.
+ConeSolution solveConeProblem(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
+                              const VectorX& near = {});
 
 }  // namespace cradle

@@ -28,6 +28,8 @@ class ImpulseResponse {
   ImpulseResponse(const std::vector<RigidBody>& bodies, ConstraintSolver& constraints)
       : bodies_(bodies), constraints_(constraints.hasConstraints() ? &constraints : nullptr) {}
 
+  bool areTied() const { return constraints_ != nullptr; }
+
   /// As above, with what ties the bodies.
   Mat3 inverseMassAt(const Contact& contact, const VectorX& state) const;
 

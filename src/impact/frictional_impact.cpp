@@ -2,7 +2,9 @@
 // J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988). Together they can gain energy;
 // then the restitution is scaled down: without rebound the change of energy is z (u + J v) / 2 = z_t u_t / 2 - z G z /
 // 2 <= 0. Rounds over the contacts that close are the reflections of generalized_reflections.h with friction: what hits
-// one end of a row of balls leaves at the other.
+// one end of a row of balls leaves at the other. With one restitution below 1 at all contacts these would be impacts
+// pair by pair: there the speeds with which the contacts open without friction, by that law's blend, stand in place of
+// - e (J v)_n, all at once. Where nothing slides this is that law; for one contact both are Newton's.
 
 #include "impact/frictional_impact.h"
 
@@ -11,6 +13,7 @@
 
 #include "impact/cone_problem.h"
 #include "impact/contact_cones.h"
+#include "impact/generalized_reflections.h"
 
 namespace cradle {
 namespace {
@@ -42,6 +45,8 @@ class FrictionalImpact {
 
  private:
   VectorX velocities() const { return start_ + cones_.inverseMass() * impulses_; }
+  bool hasCommonRestitution() const;
+  VectorX openingSpeeds() const;
   bool rebounds(std::size_t contact, const VectorX& speeds) const;
   std::vector<std::size_t> findMembers(const VectorX& speeds, bool withRebound) const;
   bool closes(const VectorX& speeds) const;
@@ -51,8 +56,29 @@ class FrictionalImpact {
   const std::vector<ImpactContact>& impacts_;
   const ContactCones& cones_;
   VectorX start_, impulses_;
+  VectorX opening_;     // m/s: of the contacts after the impact under way, or none: by their own restitution
   double fastest_ = 0;  // m/s
 };
+
+/// One of all contacts, neither none nor elastic.
+bool FrictionalImpact::hasCommonRestitution() const {
+  const double restitution = impacts_[0].law.restitution;
+  return impacts_.size() > 1 && restitution > 0 && restitution < 1 &&
+         std::all_of(impacts_.begin(), impacts_.end(),
+                     [&](const ImpactContact& impact) { return impact.law.restitution == restitution; });
+}
+
+/// How fast contacts open after an impact without friction.
+VectorX FrictionalImpact::openingSpeeds() const {
+  const Index contacts = std::ssize(impacts_);
+  std::vector<Index> normals;
+  for (Index i = 0; i < contacts; ++i) normals.push_back(3 * i + 2);
+  const MatrixX inverseMass = cones_.inverseMass()(normals, normals);
+  VectorX speeds = start_(normals);
+  for (Index i = 0; i < contacts; ++i)
+    if (cones_.isImmobile(static_cast<std::size_t>(i))) speeds[i] = 0;
+  return (speeds + inverseMass * reflectionImpulses(inverseMass, speeds, impacts_)).cwiseMax(0);
+}
 
 bool FrictionalImpact::rebounds(std::size_t i, const VectorX& speeds) const {
   return impacts_[i].law.restitution > 0 && -speeds[3 * static_cast<Index>(i) + 2] > impacts_[i].restSpeed;
@@ -89,9 +115,13 @@ bool FrictionalImpact::tryStrike(const std::vector<std::size_t>& members, const 
   const MatrixX matrix = cones_.inverseMass()(rows, rows);
   const VectorX before = speeds(rows);
   VectorX free = before;
-  for (std::size_t k = 0; k < members.size(); ++k)
-    if (rebounds(members[k], speeds))
-      free[3 * static_cast<Index>(k) + 2] *= 1 + part * impacts_[members[k]].law.restitution;
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    double& normal = free[3 * static_cast<Index>(k) + 2];
+    if (opening_.size() > 0)
+      normal -= part * opening_[static_cast<Index>(members[k])];
+    else if (rebounds(members[k], speeds))
+      normal *= 1 + part * impacts_[members[k]].law.restitution;
+  }
 
   ConeSolution solution = solveConeProblem(matrix, free, frictions);
   if (haveTwoFrictions) {
@@ -117,6 +147,11 @@ void FrictionalImpact::strike(const std::vector<std::size_t>& members, const Vec
 }
 
 VectorX FrictionalImpact::resolve() {
+  if (hasCommonRestitution() && closes(start_)) {
+    opening_ = openingSpeeds();
+    strike(findMembers(start_, false), start_, 1);
+    opening_.resize(0);
+  }
   for (int round = 0; round < kMostRounds; ++round) {
     const VectorX speeds = velocities();
     if (!closes(speeds)) return impulses_;

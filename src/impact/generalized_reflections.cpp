@@ -22,52 +22,37 @@ constexpr double kImmobilePart = 1e-12;      // of the inverse mass without ties
 constexpr long kMostReflections = 10000;     // for each contact; a row of n balls needs n
 constexpr long kMostMixedReflections = 100;  // restitutions that differ: then one impact without rebound ends it
 
-/// The contacts of an impact by their normals alone: speeds J v and inverse masses J W J^T.
+/// Whether what ties the bodies holds a contact with such an inverse mass (1/kg) along its normal.
+bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass) {
+  if (!response.areTied()) return false;
+  return inverseMass <=
+         kImmobilePart * contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
+}
+
+/// An impact by the normals of its contacts alone: speeds J v and inverse masses J W J^T.
 class NormalImpact {
  public:
-  NormalImpact(const std::vector<ImpactContact>& impacts, const ImpulseResponse& response, const VectorX& state);
+  NormalImpact(const MatrixX& inverseMass, const VectorX& speeds, const std::vector<ImpactContact>& impacts)
+      : inverseMass_(inverseMass), speeds_(speeds), restSpeeds_(speeds.size()) {
+    for (Index i = 0; i < speeds.size(); ++i) restSpeeds_[i] = impacts[static_cast<std::size_t>(i)].restSpeed;
+  }
 
   /// Impulses (N s) that end all closing without rebound, after `impulses`.
-  VectorX stop(const VectorX& impulses) const;
+  VectorX stop(const VectorX& impulses) const {
+    return impulses + solveLinearComplementarity(inverseMass_, speeds_ + inverseMass_ * impulses);
+  }
 
   /// Adds reflections to `impulses` until nothing closes, at most so many. False: something does still.
   bool reflect(const VectorX& restitutions, long most, VectorX& impulses) const;
-
-  void apply(const VectorX& impulses, std::vector<ImpactContact>& impacts, VectorX& state) const;
 
  private:
   void reflectOnce(const std::vector<Index>& closing, const VectorX& speeds, const VectorX& restitutions,
                    VectorX& impulses) const;
 
-  std::vector<VectorX> answers_;  // states: velocities from a unit impulse at each contact
-  MatrixX inverseMass_;           // 1/kg
-  VectorX speeds_, restSpeeds_;   // m/s; speeds: < 0 closing
+  const MatrixX& inverseMass_;  // 1/kg
+  const VectorX& speeds_;       // m/s: < 0 closing
+  VectorX restSpeeds_;          // m/s
 };
-
-NormalImpact::NormalImpact(const std::vector<ImpactContact>& impacts, const ImpulseResponse& response,
-                           const VectorX& state)
-    : inverseMass_(impacts.size(), impacts.size()), speeds_(impacts.size()), restSpeeds_(impacts.size()) {
-  for (const ImpactContact& impact : impacts)
-    answers_.push_back(response.answerTo(impact.contact, impact.contact.normal, state));
-  for (Index i = 0; i < speeds_.size(); ++i) {
-    const ImpactContact& impact = impacts[static_cast<std::size_t>(i)];
-    const Vec3& normal = impact.contact.normal;
-    speeds_[i] = normal.dot(relativeVelocity(impact.contact, state));
-    restSpeeds_[i] = impact.restSpeed;
-    for (Index j = 0; j < speeds_.size(); ++j)
-      inverseMass_(i, j) = normal.dot(relativeVelocity(impact.contact, state, answers_[static_cast<std::size_t>(j)]));
-  }
-  inverseMass_ = (0.5 * (inverseMass_ + inverseMass_.transpose())).eval();
-  for (Index i = 0; i < speeds_.size(); ++i) {
-    const Contact& contact = impacts[static_cast<std::size_t>(i)].contact;
-    const double untied = contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
-    if (inverseMass_(i, i) <= kImmobilePart * untied) speeds_[i] = 0;  // what ties the bodies holds the contact
-  }
-}
-
-VectorX NormalImpact::stop(const VectorX& impulses) const {
-  return impulses + solveLinearComplementarity(inverseMass_, speeds_ + inverseMass_ * impulses);
-}
 
 bool NormalImpact::reflect(const VectorX& restitutions, long most, VectorX& impulses) const {
   const double closed = kClosedPart * speeds_.cwiseAbs().maxCoeff();
@@ -90,15 +75,6 @@ void NormalImpact::reflectOnce(const std::vector<Index>& closing, const VectorX&
   impulses(closing) += solveLinearComplementarity(inverseMass_(closing, closing), VectorX(offset(closing)));
 }
 
-void NormalImpact::apply(const VectorX& impulses, std::vector<ImpactContact>& impacts, VectorX& state) const {
-  const Index velocities = state.size() - poseComponents(state);
-  for (std::size_t i = 0; i < impacts.size(); ++i) {
-    const double impulse = impulses[static_cast<Index>(i)];
-    state.tail(velocities) += impulse * answers_[i].tail(velocities);
-    impacts[i].impulse += impulse * impacts[i].contact.normal;
-  }
-}
-
 VectorX restitutionsOf(const std::vector<ImpactContact>& impacts) {
   VectorX restitutions(impacts.size());
   for (std::size_t i = 0; i < impacts.size(); ++i) restitutions[static_cast<Index>(i)] = impacts[i].law.restitution;
@@ -117,8 +93,7 @@ void reflectAlone(ImpactContact& impact, const ImpulseResponse& response, Vector
   if (!(speed < 0)) return;
   const VectorX answer = response.answerTo(contact, contact.normal, state);
   const double inverseMass = contact.normal.dot(relativeVelocity(contact, state, answer));
-  const double untied = contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
-  if (inverseMass <= kImmobilePart * untied) return;
+  if (isImmobile(contact, response, state, inverseMass)) return;
   const double restitution = -speed > impact.restSpeed ? impact.law.restitution : 0;
   const double impulse = -(1 + restitution) * speed / inverseMass;
   const Index velocities = state.size() - poseComponents(state);
@@ -128,10 +103,9 @@ void reflectAlone(ImpactContact& impact, const ImpulseResponse& response, Vector
 
 }  // namespace
 
-void resolveReflections(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
-  if (impacts.empty()) return;
-  if (impacts.size() == 1) return reflectAlone(impacts[0], response, state);
-  const NormalImpact impact(impacts, response, state);
+VectorX reflectionImpulses(const MatrixX& inverseMass, const VectorX& speeds,
+                           const std::vector<ImpactContact>& impacts) {
+  const NormalImpact impact(inverseMass, speeds, impacts);
   const VectorX restitutions = restitutionsOf(impacts), none = VectorX::Zero(restitutions.size());
   const double restitution = restitutions[0];
   VectorX impulses = none;
@@ -142,7 +116,33 @@ void resolveReflections(std::vector<ImpactContact>& impacts, const ImpulseRespon
   } else if (!impact.reflect(restitutions, kMostMixedReflections, impulses)) {
     impulses = impact.stop(impulses);
   }
-  impact.apply(impulses, impacts, state);
+  return impulses;
+}
+
+void resolveReflections(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
+  if (impacts.empty()) return;
+  if (impacts.size() == 1) return reflectAlone(impacts[0], response, state);
+  const Index size = std::ssize(impacts), velocities = state.size() - poseComponents(state);
+  std::vector<VectorX> answers;  // states: velocities from a unit impulse at each contact
+  for (const ImpactContact& impact : impacts)
+    answers.push_back(response.answerTo(impact.contact, impact.contact.normal, state));
+  MatrixX inverseMass(size, size);
+  VectorX speeds(size);
+  for (Index i = 0; i < size; ++i) {
+    const Contact& contact = impacts[static_cast<std::size_t>(i)].contact;
+    speeds[i] = contact.normal.dot(relativeVelocity(contact, state));
+    for (Index j = 0; j < size; ++j)
+      inverseMass(i, j) = contact.normal.dot(relativeVelocity(contact, state, answers[static_cast<std::size_t>(j)]));
+  }
+  inverseMass = (0.5 * (inverseMass + inverseMass.transpose())).eval();
+  for (Index i = 0; i < size; ++i)
+    if (isImmobile(impacts[static_cast<std::size_t>(i)].contact, response, state, inverseMass(i, i))) speeds[i] = 0;
+  const VectorX impulses = reflectionImpulses(inverseMass, speeds, impacts);
+  for (std::size_t i = 0; i < impacts.size(); ++i) {
+    const double impulse = impulses[static_cast<Index>(i)];
+    state.tail(velocities) += impulse * answers[i].tail(velocities);
+    impacts[i].impulse += impulse * impacts[i].contact.normal;
+  }
 }
 
 }  // namespace cradle

@@ -13,4 +13,9 @@ namespace cradle {
 /// O(contacts^3) a reflection.
 void resolveReflections(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state);
 
+/// The impulses (N s) along the normals by the same law, for contacts whose normals answer to them with `inverseMass`
+/// (1/kg) and open with `speeds` (m/s). O(contacts^3) a reflection.
+VectorX reflectionImpulses(const MatrixX& inverseMass, const VectorX& speeds,
+                           const std::vector<ImpactContact>& impacts);
+
 }  // namespace cradle

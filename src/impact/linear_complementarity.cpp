@@ -127,10 +127,23 @@ void Pivoting::satisfyPushing() {
   }
 }
 
+bool areUncoupled(const MatrixX& a) {
+  for (Index column = 0; column < a.cols(); ++column)
+    for (Index row = 0; row < column; ++row)
+      if (a(row, column) != 0) return false;
+  return true;
+}
+
+VectorX solveUncoupled(const MatrixX& a, const VectorX& b) {
+  VectorX lambda(b.size());
+  for (Index row = 0; row < b.size(); ++row) lambda[row] = a(row, row) > 0 ? std::max(0.0, -b[row] / a(row, row)) : 0.0;
+  return lambda;
+}
+
 }  // namespace
 
 VectorX solveLinearComplementarity(const MatrixX& a, const VectorX& b) {
-  if (b.size() == 1) return VectorX::Constant(1, a(0, 0) > 0 ? std::max(0.0, -b[0] / a(0, 0)) : 0.0);
+  if (areUncoupled(a)) return solveUncoupled(a, b);
   Pivoting pivoting(a, b);
   const long most = kMostPivotsPerRow * static_cast<long>(b.size());
   for (long pivots = 0; pivots <= most; ++pivots) {

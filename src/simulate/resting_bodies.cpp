@@ -144,6 +144,11 @@ bool RestingBodies::allRest() const {
   return true;
 }
 
+bool RestingBodies::anyRests() const {
+  const std::vector<char>& resting = equations_.resting();
+  return std::any_of(resting.begin(), resting.end(), [](char rests) { return rests != 0; });
+}
+
 std::vector<int> RestingBodies::wake(double time, int body) {
   std::vector<int> woken;
   if (!isResting(body)) return woken;

@@ -28,6 +28,7 @@ class RestingBodies {
   std::vector<int> wake(double time, int body);
 
   bool allRest() const;
+  bool anyRests() const;
   bool isResting(int body) const { return body != kFixed && equations_.isResting(static_cast<std::size_t>(body)); }
 
   /// How far (m) a point may hover and still carry.

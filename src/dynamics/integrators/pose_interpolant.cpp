@@ -33,6 +33,18 @@ Eigen::Matrix<double, kSize, 1> componentsAt(const Step& step, Eigen::Index at, 
   return part;
 }
 
+/// Whether the components from `at` on stay as they are.
+template <int kSize>
+bool isConstant(const Step& step, Eigen::Index at) {
+  const auto isZero = [at](const VectorX& vector) {
+    return vector.segment<kSize>(at) == Eigen::Matrix<double, kSize, 1>::Zero();
+  };
+  return isZero(step.startRate) && isZero(step.endRate) &&
+         step.startState.segment<kSize>(at) == step.state.segment<kSize>(at) &&
+         (step.interpolant != InterpolantKind::degreeSeven ||
+          std::all_of(step.corrections.begin(), step.corrections.end(), isZero));
+}
+
 /// The components of one vector from `at` on.
 template <int kSize>
 auto componentsFrom(Eigen::Index at) {
@@ -92,8 +104,16 @@ RigidTransform poseAt(const Step& step, int body, double fraction) {
   return {Quat(pose[3], pose[4], pose[5], pose[6]).normalized(), pose.head<3>()};
 }
 
+void interpolatePose(const Step& step, int body, double fraction, VectorX& state) {
+  state.segment<kPoseSize>(body * kPoseSize) = componentsAt<kPoseSize>(step, body * kPoseSize, fraction);
+}
+
+bool isStill(const Step& step, int body) {
+  return body == kFixed || isConstant<kPoseSize>(step, body * kPoseSize);
+}
+
 double motionBound(const Step& step, int body, double reach) {
-  return motionBounds(step, body, reach).speed;
+  return isStill(step, body) ? 0 : motionBounds(step, body, reach).speed;
 }
 
 // With p = q' / q and its rate q'' / q - p^2, a body turns at w = 2 Im p: |w| <= 2 |q'| / |q|, and |w'| <= 2 (|q''| /
@@ -102,6 +122,7 @@ double motionBound(const Step& step, int body, double reach) {
 MotionBounds turnBounds(const Step& step, int body) {
   if (body == kFixed) return {};
   const Eigen::Index at = body * kPoseSize + 3;
+  if (isConstant<4>(step, at)) return {};
   const double slope = slopeBound(step, componentsFrom<4>(at)), least = leastLength(step, at, slope);
   const double relative = slope / least, bend = bendBound(step, componentsFrom<4>(at)) / least;
   return {2 * relative, 2 * bend + 6 * relative * relative};

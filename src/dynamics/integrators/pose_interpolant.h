@@ -8,6 +8,12 @@ namespace cradle {
 /// Pose of a body's centre of mass frame at a fraction of the step, on the step's interpolant; identity if fixed.
 RigidTransform poseAt(const Step& step, int body, double fraction);
 
+/// Writes what `interpolate` gives for a body's position and orientation to its place in a state.
+void interpolatePose(const Step& step, int body, double fraction, VectorX& state);
+
+/// Whether a body stays where it is throughout the step, by its interpolant.
+bool isStill(const Step& step, int body);
+
 /// How far (m) any point within `reach` (m) of a body's centre of mass can move over the step, by its interpolant.
 double motionBound(const Step& step, int body, double reach);
 

@@ -52,6 +52,7 @@ Islands EventContacts::findRestGroups() const {
 
 /// Puts groups to rest that are still and that forces within the friction cones can hold; wakes those that are not.
 void EventContacts::settle() {
+  if (!island_.resting.anyRests() && !isAnySlow()) return;
   const std::size_t bodies = island_.assembly.mechanism.bodies.size();
   const Islands groups = findRestGroups();
   const auto groupOf = [&](std::size_t body) {
@@ -79,9 +80,14 @@ void EventContacts::settle() {
   }
 }
 
-/// Whether forces at the contacts of a group can balance all that acts on it.
+/// Whether forces at the contacts of a group can balance all that acts on it, if ties alone do not.
 bool EventContacts::isHeld(const Islands& groups, int group) {
   const Mechanism& mechanism = island_.assembly.mechanism;
+  std::vector<ContactConstraint> lasting;
+  std::swap(lasting, island_.assembly.mechanism.contacts);
+  island_.equations.evaluate(island_.state, rate_);
+  std::swap(lasting, island_.assembly.mechanism.contacts);
+  if (isBalanced(groups, group)) return true;
   placeBodies(mechanism.bodies, island_.state, frames_);
   std::vector<ContactRows> contacts;
   std::vector<double> frictions;
@@ -90,15 +96,16 @@ bool EventContacts::isHeld(const Islands& groups, int group) {
     contacts.push_back(rowsOf(contact, island_.state, frames_));
     frictions.push_back(island_.assembly.geometry.pairs[contact.pair].law.staticFriction);
   }
-  std::vector<ContactConstraint> lasting;
-  std::swap(lasting, island_.assembly.mechanism.contacts);
-  island_.equations.evaluate(island_.state, rate_);
-  std::swap(lasting, island_.assembly.mechanism.contacts);
-  if (!contacts.empty()) {
-    const ContactResponse response(contacts, mechanism.bodies, frames_, solver_);
-    const ConeSolution solution = solveConeProblem(response.inverseMass(), response.accelerations(rate_), frictions);
-    response.apply(solution.impulses, rate_);
-  }
+  if (contacts.empty()) return false;
+  const ContactResponse response(contacts, mechanism.bodies, frames_, solver_);
+  const ConeSolution solution = solveConeProblem(response.inverseMass(), response.accelerations(rate_), frictions);
+  response.apply(solution.impulses, rate_);
+  return isBalanced(groups, group);
+}
+
+/// Whether the accelerations in rate_ leave the bodies of a group where they are.
+bool EventContacts::isBalanced(const Islands& groups, int group) const {
+  const Mechanism& mechanism = island_.assembly.mechanism;
   const double most = std::min(kMostResidual, stillPart_) * mechanism.gravity.norm();
   for (std::size_t body = 0; body < mechanism.bodies.size(); ++body) {
     if (groups.islandOf(static_cast<int>(body)) != group) continue;

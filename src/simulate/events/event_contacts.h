@@ -47,6 +47,7 @@ class EventContacts {
   bool isAnySlow() const;
   bool isSlow(std::size_t body) const;
   bool isHeld(const Islands& groups, int group);
+  bool isBalanced(const Islands& groups, int group) const;
   void keepTogether();
   void recordRests(const std::vector<char>& restedBefore);
 

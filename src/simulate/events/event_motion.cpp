@@ -188,7 +188,8 @@ void EventMotion::stopAtImpact(const ImpactTime& impact, double latest) {
   evaluateEndRate(island_.rightHandSide, step);
   const double left = gap(step.state), before = kSlopePart * length;
   step.work = step.state - before * step.endRate;
-  const double correction = left * before / (gap(step.work) - left);
+  const double closed = gap(step.work) - left;
+  const double correction = closed > 0 ? left * before / closed : 0;  // not above 0: all of it is rounding
   step.work = step.state + correction * step.endRate;
   const double tolerance = kImpactPart * contacts_.margin();
   if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))

@@ -15,13 +15,14 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kSlowSliding = 1e-6;     // m/s: slower has no direction
-constexpr double kUnloadedPart = 1e-9;    // of the accelerations: a contact that takes less carries nothing
-constexpr double kReleasedPart = 1e-6;    // the same when another lets go: what is symmetric lets go together
-constexpr double kStillPart = 1e-7;       // of the accelerations: less is held
-constexpr double kLastBouncePart = 1e-7;  // of sqrt(g x size): what leaves so slowly is held by what presses
-constexpr double kSamePoint = 1e-4;       // of a size
-constexpr double kSameDirection = 0.999;  // cosine
+constexpr double kSlowSliding = 1e-6;            // m/s: slower has no direction
+constexpr double kUnloadedPart = 1e-9;           // of the accelerations: a contact that takes less carries nothing
+constexpr double kReleasedPart = 1e-6;           // the same when another lets go: what is symmetric lets go together
+constexpr double kAccelerationRounding = 1e-14;  // of gravity
+constexpr double kStillPart = 1e-7;              // of the accelerations: less is held
+constexpr double kLastBouncePart = 1e-7;         // of sqrt(g x size): what leaves so slowly is held by what presses
+constexpr double kSamePoint = 1e-4;              // of a size
+constexpr double kSameDirection = 0.999;         // cosine
 constexpr int kMostFrictionRounds = 200;
 constexpr double kFrictionConverged = 1e-10;
 constexpr int kMostRedundant = 12;
@@ -54,7 +55,8 @@ void LastingContacts::letGo(const std::optional<ContactChange>& change) {
 void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSolver& ties) {
   placeBodies(mechanism().bodies, island_.state, frames_);
   std::vector<Entry> entries = entriesOf(touching);
-  for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
+  if (!entries.empty())
+    for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
   for (const Entry& entry : entries)
     if (entry.isLoaded) add(entry);
   recordChanges();
@@ -132,8 +134,9 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
     rows.push_back(rowsOf(entries[i].contact, island_.state, frames_));
     members.push_back(&entries[i]);
   }
-  const ContactResponse response(rows, mechanism().bodies, frames_, ties);
   island_.equations.evaluate(island_.state, rate_);
+  if (nothingCloses(rows)) return;
+  const ContactResponse response(rows, mechanism().bodies, frames_, ties);
   const VectorX free = response.accelerations(rate_);
   const ConeSolution solution = solve(members, rows, response);
   const double most = std::max(free.cwiseAbs().maxCoeff(), mechanism().gravity.norm());
@@ -166,6 +169,14 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
   if (held.rows() - rank > kMostRedundant || rank > kMostIndependent) fault_ = "too many contacts press at once";
 }
 
+/// Whether the accelerations in rate_ press no contact together by more than rounding.
+bool LastingContacts::nothingCloses(const std::vector<ContactRows>& rows) const {
+  const double most = kAccelerationRounding * mechanism().gravity.norm();
+  return std::all_of(rows.begin(), rows.end(), [&](const ContactRows& contact) {
+    return rateOf(contact.rows[2], rate_) + contact.rows[2].curvature >= -most;
+  });
+}
+
 /// Forces and accelerations of contacts whose free accelerations are those in rate_. Those that slide have their
 /// friction against their direction, from the normal forces of the round before.
 ConeSolution LastingContacts::solve(const std::vector<const Entry*>& entries, const std::vector<ContactRows>& rows,
@@ -180,7 +191,8 @@ ConeSolution LastingContacts::solve(const std::vector<const Entry*>& entries, co
   VectorX friction = VectorX::Zero(free.size());
   ConeSolution solution;
   for (int round = 0; round < kMostFrictionRounds; ++round) {
-    solution = solveConeProblem(response.inverseMass(), free + response.inverseMass() * friction, frictions);
+    solution = solveConeProblem(response.inverseMass(), free + response.inverseMass() * friction, frictions,
+                                solution.impulses);
     if (!slides) break;
     double change = 0, largest = 0;
     for (std::size_t k = 0; k < entries.size(); ++k) {

@@ -83,6 +83,7 @@ class LastingContacts {
   std::vector<Entry> entriesOf(const std::vector<Contact>& touching) const;
   std::vector<Together> groupsOf(const std::vector<Entry>& entries) const;
   void decide(const Together& group, std::vector<Entry>& entries, ConstraintSolver& ties);
+  bool nothingCloses(const std::vector<ContactRows>& rows) const;
   ConeSolution solve(const std::vector<const Entry*>& entries, const std::vector<ContactRows>& rows,
                      const ContactResponse& response) const;
   void add(const Entry& entry);

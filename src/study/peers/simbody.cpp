@@ -3,6 +3,15 @@
 
 #include "study/peers/simbody.h"
 
+#include <SimTKcommon/internal/common.h>
+
+// Simbody's headers compare indices of a type in a way that C++20 finds ambiguous: the types get an operator that fits.
+#undef SimTK_DEFINE_UNIQUE_INDEX_TYPE
+#define SimTK_DEFINE_UNIQUE_INDEX_TYPE(NAME)                                                   \
+  SimTK_DEFINE_AND_EXPORT_UNIQUE_LOCAL_INDEX_TYPE(, , , NAME) static const NAME Invalid##NAME; \
+  inline bool operator==(NAME a, NAME b) {                                                     \
+    return int(a) == int(b);                                                                   \
+  }
 #include <Simbody.h>
 
 #include <cmath>
