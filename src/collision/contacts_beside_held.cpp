@@ -2,10 +2,23 @@
 // held one.
 
 #include <algorithm>
+#include <cmath>
 
 #include "collision/time_of_impact.h"
 
 namespace cradle {
+namespace {
+
+/// Where a contact is held together (m, world).
+Vec3 heldPlace(const ContactConstraint& contact, const VectorX& state) {
+  const RigidTransform worldFromB = poseOf(state, contact.surfaceB.body);
+  const Vec3 center = poseOf(state, contact.centerA.body) * contact.centerA.point;
+  const Vec3 normal = std::isinf(contact.radiusB) ? Vec3(worldFromB.rotation * contact.normalB)
+                                                  : (center - worldFromB * contact.surfaceB.point).normalized();
+  return center - contact.radiusA * normal;
+}
+
+}  // namespace
 
 /// Contacts of a pair that are not held, to contacts_.
 void ImpactSearch::findOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state,
@@ -18,7 +31,7 @@ void ImpactSearch::findOthers(std::size_t pair, const std::vector<HeldFeature>& 
   std::erase_if(contacts_, [&](const Contact& contact) {
     return std::any_of(held.begin(), held.end(), [&](const HeldFeature& feature) {
       if (feature.pair != pair) return false;
-      return (poseOf(state, feature.point.body) * feature.point.point - contact.point).norm() < near;
+      return (heldPlace(feature.contact, state) - contact.point).norm() < near;
     });
   });
 }

@@ -6,6 +6,7 @@
 #include "collision/core_separation.h"
 #include "collision/manifold.h"
 #include "collision/mesh_collider.h"
+#include "collision/mesh_nearest.h"
 
 namespace cradle {
 namespace {
@@ -170,6 +171,11 @@ double separation(const ContactGeometry& geometry, const ColliderPair& pair, std
                   const VectorX& state) {
   return separation(geometry, pair, feature, poseOf(state, geometry.colliders[pair.a].body),
                     poseOf(state, bodyBOf(geometry, pair)));
+}
+
+Vec3 nearestOnSurface(const Collider& collider, const Vec3& point) {
+  if (collider.kind() != ColliderKind::mesh) return nearestSurfacePoint(collider, point).nearest;
+  return collider.bodyFromMesh * nearestPoint(*collider.mesh, collider.bodyFromMesh.inverse() * point).point;
 }
 
 double separationBound(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,

@@ -36,6 +36,9 @@ double separation(const ContactGeometry& geometry, const ColliderPair& pair, std
                   double enough = std::numeric_limits<double>::infinity());
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature, const VectorX& state);
 
+/// The point of a collider's surface that is nearest to a point, both in its frame (m).
+Vec3 nearestOnSurface(const Collider& collider, const Vec3& point);
+
 /// Lower bound (m) of the separations of all features, from bounding spheres; -infinity for fixed bodies.
 double separationBound(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
                        const RigidTransform& worldFromB);

@@ -71,7 +71,7 @@ class PairSearch {
       feature_ = feature;
       held_ = isHeld(touching) ? touching.held : nullptr;
       if (held_ && hasOneContact()) continue;
-      if (held_ && apart_) lookBlindly();
+      if (held_ && (apart_ || hasMesh(a_, geometry_.colliders[pair_.b]))) lookBlindly();
       const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_, reach);
       if (start > bounds_.speed) continue;
       if (start > touching.tolerance)
@@ -101,9 +101,10 @@ class PairSearch {
     pull_ += turnB.acceleration * pointReach(b);
     const double radius = a_.radius + b.radius;
     if (radius > 0) bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / radius;
+    if (radius > 0) return;
     if (hasMesh(a_, b))
       lookBlindly();
-    else if (radius == 0)
+    else
       apart_.emplace(step_, a_, b,
                      DirectionBends{turnA.acceleration * pointReach(a_) + turnB.acceleration * pointReach(b),
                                     pull_ + bendInFrame(turnA, b), pull_ + bendInFrame(turnB, a_)});
@@ -161,8 +162,9 @@ class PairSearch {
   bool isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const {
     const double near = kHeldPlace * upper.boundingRadius;
     return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
-             return held.pair == pairIndex_ && held.point.body == upper.body &&
-                    (held.point.point - upper.points[feature_]).squaredNorm() < near * near;
+             const Attachment& corner = held.contact.centerA;
+             return held.pair == pairIndex_ && corner.body == upper.body &&
+                    (corner.point - upper.points[feature_]).squaredNorm() < near * near;
            });
   }
 
@@ -172,13 +174,18 @@ class PairSearch {
            });
   }
 
-  bool hasOneContact() const { return pair_.againstPlane || a_.isBall() || geometry_.colliders[pair_.b].isBall(); }
+  /// A ball may touch a mesh at two places, as in a groove.
+  bool hasOneContact() const {
+    if (pair_.againstPlane) return true;
+    const Collider& b = geometry_.colliders[pair_.b];
+    return (a_.isBall() || b.isBall()) && !hasMesh(a_, b);
+  }
 
   /// Whether the gap is that of one point, or bends downwards no more than one: of a ball and what is convex, of a
   /// corner over a plane. While one point of a rim leaves, another may come down.
   bool staysOnePoint() const {
     if (pair_.againstPlane) return a_.kind() != ColliderKind::cylinder;
-    return hasOneContact() && !hasMesh(a_, geometry_.colliders[pair_.b]);
+    return hasOneContact();
   }
 
   /// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not, or by

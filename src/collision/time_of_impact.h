@@ -6,6 +6,7 @@
 
 #include "collision/face_below.h"
 #include "collision/separation.h"
+#include "dynamics/contact_rows.h"
 #include "dynamics/integrators/pose_interpolant.h"
 
 namespace cradle {
@@ -24,7 +25,7 @@ constexpr double kHeldPlace = 1e-3;  // of a size: so near to a point that is he
 /// A feature of a pair, as separation.h numbers them, that something keeps together.
 struct HeldFeature {
   std::size_t pair = 0, feature = 0;
-  Attachment point;  // where they are held together
+  ContactConstraint contact;  // what does
 };
 
 /// What touches when a step begins.

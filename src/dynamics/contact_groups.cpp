@@ -20,7 +20,10 @@ int rootOf(std::vector<int>& parents, int body) {
 }  // namespace
 
 bool ContactSolver::hasKnownStructure(const std::vector<char>& resting) const {
-  if (joints_.size() != contacts_.size() + tieRows_.size() || resting != resting_) return false;
+  // One contact less and one tie more may join the same bodies.
+  if (forces_.size() != contacts_.size() || static_cast<std::size_t>(tieMultipliers_.size()) != tieRows_.size())
+    return false;
+  if (resting != resting_) return false;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const ContactConstraint& contact = contacts_[i];
     if (!(joints_[i] == Joint{contact.centerA.body, contact.surfaceB.body, contact.motion})) return false;

@@ -122,9 +122,8 @@ void EquationsOfMotion::addForce(int body, const Vec3& arm, const Vec3& force, V
 void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& state, VectorX& rate) {
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
     centerOfMass(rate, body) = linearVelocity(state, body);
-    if (!bodies[static_cast<std::size_t>(body)].turns) continue;
     const Vec3 spin = angularVelocity(state, body);
-    if (spin == Vec3::Zero())
+    if (!bodies[static_cast<std::size_t>(body)].turns || spin == Vec3::Zero())
       rate.segment<4>(body * kPoseSize + 3).setZero();
     else
       setOrientation(rate, body, orientationRate(orientation(state, body), spin));

@@ -25,7 +25,14 @@ bool canLast(const Contact& contact) {
 ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames) {
   SurfaceContact surfaces{contact.bodyA,      contact.bodyB,   contact.point,  contact.normal,
                           contact.separation, contact.radiusA, contact.radiusB};
-  if (!canLast(contact)) surfaces.radiusA = 0, surfaces.radiusB = INFINITY;
+  if (!canLast(contact)) {
+    // A ball turns around an edge that it comes to as around a corner; what is not round is as good as a corner on a
+    // face.
+    const bool isBallA = contact.radiusA > 0 && std::isfinite(contact.radiusA);
+    const bool isBallB = contact.radiusB > 0 && std::isfinite(contact.radiusB);
+    surfaces.radiusA = isBallA ? contact.radiusA : 0;
+    surfaces.radiusB = isBallB ? contact.radiusB : isBallA ? 0 : INFINITY;
+  }
   ContactRows result;
   result.constraint = constraintOf(surfaces, state);
   result.place = placeOf(result.constraint, state, frames);

@@ -18,6 +18,7 @@ constexpr double kRestPart = 1e-6;    // of sqrt(acceleration x length): a rebou
 constexpr double kLoadedPart = 1e-6;  // of gravity: a pull that is no rounding
 constexpr int kTensionSamples = 4;    // a step: it is at most a small part of a swing
 constexpr double kFirstLook = 1.0 / 1024;  // of a step
+constexpr double kLongestLook = 1.0 / 8;   // of a step, at a rope that nothing pulls at: what would is smooth
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
 constexpr double kSpeedRounding = 1e-12;   // of the speed before a pull
 constexpr int kMostRounds = 100;           // of pulls at one instant; those left over pull after the next step
@@ -65,27 +66,40 @@ RopeStage::RopeStage(MovingIsland& island)
 std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
   std::optional<RopeChange> first;
   for (std::size_t i = 0; i < assembly_.ropes.size(); ++i) {
-    const RopeLimit& rope = assembly_.ropes[i];
     const double end = first ? first->fraction : 1;
-    if (isTaut(i)) {
-      const auto fraction = firstPush(step, i);
-      if (fraction && *fraction < end) first = RopeChange{*fraction, i};
-      continue;
-    }
-    const auto slack = [&](double fraction) {
-      return rope.maxLength -
-             (positionAt(step, rope.anchorA, fraction) - positionAt(step, rope.anchorB, fraction)).norm();
-    };
-    // Of two points at distance d, -d'' is at most their relative acceleration.
-    const MotionBounds a = motionBounds(step, rope.anchorA), b = motionBounds(step, rope.anchorB);
-    const GapBounds bounds{a.speed + b.speed, a.acceleration + b.acceleration};
-    const double begin = firstSlack(slack, kTautPart * rope.maxLength, firstLook(rope, step)), start = slack(begin);
-    if (begin >= end || start > bounds.speed) continue;
-    if (const auto fraction = firstCrossing(slack, bounds, {begin, start, end, slack(end)}))
+    if (!isTaut(i)) {
+      if (const auto reached = firstReach(step, i, end)) first = reached;
+    } else if (const auto fraction = firstPush(step, i); fraction && *fraction < end) {
       first = RopeChange{*fraction, i};
+    }
   }
   if (first && isTaut(first->rope)) startTension_ = tension(first->rope, step.startState);
   return first;
+}
+
+/// Where a slack rope comes to its length, or one at its length that nothing pulled at goes beyond it.
+std::optional<RopeChange> RopeStage::firstReach(const Step& step, std::size_t index, double end) const {
+  const RopeLimit& rope = assembly_.ropes[index];
+  const auto slack = [&](double fraction) {
+    return rope.maxLength -
+           (positionAt(step, rope.anchorA, fraction) - positionAt(step, rope.anchorB, fraction)).norm();
+  };
+  // Of two points at distance d, -d'' is at most their relative acceleration.
+  const MotionBounds a = motionBounds(step, rope.anchorA), b = motionBounds(step, rope.anchorB);
+  GapBounds bounds{a.speed + b.speed, a.acceleration + b.acceleration};
+  const double least = kTautPart * rope.maxLength, start = slack(0);
+  if (start > bounds.speed) return std::nullopt;
+  const double begin = std::min(end, firstSlack(slack, least, firstLook(rope, step)));
+  if (begin < end) {
+    const auto fraction = firstCrossing(slack, bounds, {begin, slack(begin), end, slack(end)});
+    if (fraction) return RopeChange{*fraction, index};
+  }
+  if (start > least) return std::nullopt;
+  const double threshold = std::min(0.0, start) - least;
+  const auto above = [&](double fraction) { return slack(fraction) - threshold; };
+  bounds.finest = kLongestLook;
+  const auto fraction = firstCrossing(above, bounds, {0, above(0), begin, above(begin)});
+  return fraction ? std::optional(RopeChange{*fraction, index, threshold}) : std::nullopt;
 }
 
 /// Where the tension of a taut rope first falls below zero, looked for at a few points of the step.
@@ -103,7 +117,8 @@ std::optional<double> RopeStage::firstPush(const Step& step, std::size_t rope) {
 
 double RopeStage::margin(const RopeChange& change, const VectorX& state) {
   if (isTaut(change.rope)) return tension(change.rope, state) / startTension_;
-  return motionOf(assembly_.ropes[change.rope], state).slackLength / assembly_.ropes[change.rope].maxLength;
+  const RopeLimit& rope = assembly_.ropes[change.rope];
+  return (motionOf(rope, state).slackLength - change.threshold) / rope.maxLength;
 }
 
 /// Force (N) with which a taut rope pulls its ends together. Its row's multiplier pushes by multiplier x distance.
@@ -112,11 +127,17 @@ double RopeStage::tension(std::size_t rope, const VectorX& state) {
   return -equations_.multipliers()[tautRod_[rope]] * assembly_.ropes[rope].maxLength;
 }
 
+/// Whether it holds what lies still: nothing is computed for that.
+bool RopeStage::rests(std::size_t rope) const {
+  const RopeLimit& limit = assembly_.ropes[rope];
+  return island_.resting.isResting(limit.anchorA.body) || island_.resting.isResting(limit.anchorB.body);
+}
+
 bool RopeStage::resolve(double time, VectorX& state) {
   // Ropes that would have to push let go, even where others go taut; impacts may have shortened some.
   bool released = false;
   for (std::size_t i = 0; i < tautRod_.size(); ++i) {
-    if (!isTaut(i) || tension(i, state) > kTautPart * startTension_) continue;
+    if (!isTaut(i) || rests(i) || tension(i, state) > kTautPart * startTension_) continue;
     release(time, i, state);
     released = true;
   }

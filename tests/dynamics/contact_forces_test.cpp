@@ -98,6 +98,20 @@ TEST(ContactGroups, RodsHaveTheMultipliersThatConstraintSolverGives) {
   EXPECT_NEAR(onGround.contactForces()[0].normal, onRod.multipliers()[1] * far, 1e-6);
 }
 
+// The joining of three contacts with the ground reads like that of two and a rod to the world.
+TEST(ContactGroups, AreFoundAnewWhenATieTakesAContactsPlace) {
+  Row row(1);
+  EquationsOfMotion equations(row.mechanism);
+  VectorX rate;
+  equations.evaluate(row.state, rate);
+  row.mechanism.contacts.pop_back();
+  row.mechanism.constraints.rods = {{{0, Vec3(0.1, 0.2, 0)}, {kFixed, Vec3(0, 1, -0.1)}, 0.7}};
+  equations.evaluate(row.state, rate);
+  EXPECT_EQ(rate, rateOf(row.mechanism, row.state));
+  ASSERT_EQ(equations.multipliers().size(), 1);
+  EXPECT_NE(equations.multipliers()[0], 0);
+}
+
 TEST(ContactGroups, RestingBodiesActAsFixed) {
   Mechanism stack = onEarth(2), onGround = onEarth(2);
   const Vec3 points[] = {Vec3(0.2, -0.2, 0.1), Vec3(-0.2, -0.2, 0.1), Vec3(0.1, -0.2, -0.3)};

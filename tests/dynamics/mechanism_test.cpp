@@ -240,5 +240,18 @@ TEST(RestingBody, DoesNotMoveWhateverActsOnIt) {
   EXPECT_EQ(linearVelocity(rate, 0), mechanism.gravity);
 }
 
+// Methods that ask for the rates of positions alone step on with what is written there.
+TEST(RatesOfPositions, AreAllWrittenEvenOfBodiesThatDoNotTurn) {
+  Mechanism mechanism = twoBodies();
+  mechanism.bodies[1].turns = false;
+  EquationsOfMotion equations(mechanism);
+  const RightHandSide rightHandSide = equations.rightHandSide();
+  const VectorX state = someState();
+  VectorX rate = VectorX::Constant(state.size(), NAN);
+  rightHandSide.positionRate(state, rate);
+  EXPECT_TRUE(rate.head(rightHandSide.positions).allFinite());
+  EXPECT_EQ(rate.segment<4>(kPoseSize + 3).norm(), 0);
+}
+
 }  // namespace
 }  // namespace cradle

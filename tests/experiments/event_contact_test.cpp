@@ -31,6 +31,10 @@ const std::string kSlab =
     R"({"name": "floor", "shape": {"box": {"size": [20, 1, 20]}}, "motion": "static", "position": [0, -0.5, 0],
         "material": "m"})";
 
+const std::string kTable =
+    R"({"name": "table", "shape": {"box": {"size": [1, 0.2, 1]}}, "motion": "static", "position": [0, -0.1, 0],
+        "material": "m"})";
+
 std::vector<double> timesOf(const Trajectory& run, EventKind kind) {
   std::vector<double> times;
   for (const Event& event : run.events)
@@ -241,6 +245,88 @@ TEST(BallOnPlatform, LeavesWhereThePlatformFallsFasterThanItself) {
   const Trajectory run = simulate(sceneOf(sceneText(1e-10, 0.4, 10, materialText(0.5, 0), bodies, spring)));
   ASSERT_EQ(timesOf(run, EventKind::release).size(), 1u);
   EXPECT_NEAR(timesOf(run, EventKind::release)[0], std::acos(-kGravity / 80 / 0.2) / std::sqrt(80), 1e-9);
+}
+
+// At x = 0.5, after 0.1 s, the table ends: with v^2 / r = 40 m/s^2 > g nothing bends the ball around its edge. The
+// border is found to half of what touches, 1e-8 sizes: 5e-10 m, or 2.5e-10 s.
+TEST(BallOnATable, FliesOnInAParabolaWhereTheTableEnds) {
+  const double speed = 2, edge = 0.1;
+  const Trajectory run = simulate(sceneOf(sceneText(1e-8, 0.6, 10, materialText(0, 0), kTable + R"(,
+    {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "position": [0.3, 0.1, 0], "material": "m",
+     "linearVelocity": [2, 0, 0]})")));
+  for (const Frame& frame : run.frames) {
+    const double flight = std::max(0.0, frame.time - edge);
+    EXPECT_NEAR(frame.states[0].position.x(), 0.3 + speed * frame.time, 1e-8) << frame.time;
+    EXPECT_NEAR(frame.states[0].position.y(), 0.1 - kGravity * flight * flight / 2, 1e-8) << frame.time;
+  }
+}
+
+// Its centre of mass is carried until it is over the edge: at 0.2 s, were there no friction; then it tips and falls.
+TEST(BoxOnATable, TipsOverItsEdge) {
+  const Trajectory run = simulate(sceneOf(sceneText(1e-6, 0.6, 10, materialText(0, 0), kTable + R"(,
+    {"name": "box", "shape": {"box": {"size": [0.2, 0.1, 0.2]}}, "mass": 1, "position": [0.3, 0.05, 0],
+     "material": "m", "linearVelocity": [1, 0, 0]})")));
+  EXPECT_NEAR(run.frames[1].states[0].position.y(), 0.05, 1e-8);
+  EXPECT_LT(run.frames[3].states[0].angularVelocity.z(), -0.1);
+  EXPECT_LT(run.frames[6].states[0].position.y(), -0.3);
+}
+
+// A cube stands on a corner; a ball slides from its top corner, without friction, along a plane of symmetry towards the
+// edge between two faces. Around a corner it would leave at cos a = 2/3, where it would be (1 - cos 12.9) R = 2.5 mm
+// deep in that edge, which begins at a = 35.3 degrees. An edge is met by steps: they leave some micrometres.
+TEST(BallOnACorner, GoesOverAnEdgeWithoutSinkingIn) {
+  const double radius = 0.1, corner = std::sqrt(0.75), degree = std::numbers::pi / 180;  // m, m, rad
+  const Quat worldFromCube(Eigen::AngleAxisd(std::acos(1 / std::sqrt(3.)), Vec3(-1, 0, 1).normalized()));
+  const Vec3 overEdge = worldFromCube * Vec3(1, 1, 0).normalized(), aside = Vec3(overEdge.x(), 0, overEdge.z());
+  const Vec3 away = std::cos(10 * degree) * Vec3::UnitY() + std::sin(10 * degree) * aside.normalized();
+  const std::string bodies = fmt::format(
+      R"({{"name": "cube", "shape": {{"box": {{"size": [1, 1, 1]}}}}, "motion": "static", "material": "m",
+          "orientation": {{"w": {}, "x": {}, "y": {}, "z": {}}}}},
+         {{"name": "ball", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1, "position": {}, "material": "m"}})",
+      worldFromCube.w(), worldFromCube.x(), worldFromCube.y(), worldFromCube.z(),
+      vectorText(corner * Vec3::UnitY() + radius * away));
+  const Trajectory run = simulate(sceneOf(sceneText(1e-6, 0.4, 100, materialText(0, 0), bodies)));
+  for (const Frame& frame : run.frames) {
+    const Vec3 inCube = worldFromCube.conjugate() * frame.states[0].position;
+    const Vec3 fromEdge(inCube.x() - 0.5, inCube.y() - 0.5, std::max(0.0, inCube.z() - 0.5));
+    EXPECT_GT(fromEdge.norm(), radius - 1e-4) << frame.time;
+  }
+  EXPECT_LT(endOf(run).position.y(), corner);
+}
+
+// Along the foot of an L of 3 m x 2 m to its other arm, 0.9 m away, and back: what carries the ball is a row by then.
+TEST(BallInTheCornerOfAMesh, ReboundsFromTheArmThatItRollsAgainst) {
+  const double arm = 10. * 0.1F;  // m: its width, as files have it
+  const std::string bodies =
+      fmt::format(R"({{"name": "corner", "shape": {{"mesh": "{}/assets/l_prism.3ds", "scale": 10}},
+     "motion": "static", "material": "m"}},
+    {{"name": "ball", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1, "position": [2, {}, 0.5], "material": "m",
+     "linearVelocity": [-1, 0, 0]}})",
+                  CRADLE_SOURCE_DIR, arm + 0.1);
+  const std::string text = sceneText(1e-8, 1.5, 10, materialText(1, 0), bodies);
+  const Trajectory run = simulate(parseScene(text, "corner.json", modelFilesBeside("corner.json")).scene);
+  for (const Frame& frame : run.frames) {
+    EXPECT_NEAR(frame.states[0].position.x(), arm + 0.1 + std::abs(frame.time - 1.9 + arm), 1e-8) << frame.time;
+    EXPECT_NEAR(frame.states[0].position.y(), arm + 0.1, 1e-8) << frame.time;
+  }
+}
+
+// Past an edge of the same L, at a distance that is less than the radius by 1e-6 of it: for 2 sqrt(2e-6) R / v = 28 us.
+TEST(BallPastAMesh, IsSeenToGrazeItsEdge) {
+  const double edge = 10. * 0.3F, radius = 0.1;  // m: where the foot ends; its top is at 10 * 0.1F
+  for (const double overlap : {1e-6, -1e-6}) {
+    const Vec3 start(edge + radius * (1 - overlap) * std::sqrt(0.5) - 0.5,
+                     10. * 0.1F + radius * (1 - overlap) * std::sqrt(0.5) + 0.5, 0.5);
+    const std::string bodies =
+        fmt::format(R"({{"name": "corner", "shape": {{"mesh": "{}/assets/l_prism.3ds", "scale": 10}},
+       "motion": "static", "material": "m"}},
+      {{"name": "ball", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1, "position": {}, "material": "m",
+       "linearVelocity": [5, -5, 0]}})",
+                    CRADLE_SOURCE_DIR, vectorText(start));
+    const std::string text = sceneText(1e-4, 0.2, 10, materialText(1, 0), bodies, R"(, "gravity": [0, 0, 0])");
+    const Trajectory run = simulate(parseScene(text, "corner.json", modelFilesBeside("corner.json")).scene);
+    EXPECT_EQ(timesOf(run, EventKind::impact).size(), overlap > 0 ? 1u : 0u);
+  }
 }
 
 // 2 cm at 1000 m/s against 1 mm: passed in 21 us, whatever the step would be. Glancing, spinning and long bodies too.

@@ -73,8 +73,9 @@ TEST(LandingBar, LandsInStepsAsByEvents) {
               std::max(energyError, std::abs(mechanicalEnergy(run.frames[i]) - mechanicalEnergy(exact.frames[i])));
         }
         EXPECT_LT(deepest, 2e-5) << width << " " << restitution << " " << tilt;
-        if (restitution == 0)
-          EXPECT_LT(energyError, 2e-5) << width << " " << tilt;  // rebounds in a step are not told apart
+        if (restitution == 0) {  // rebounds in a step are not told apart
+          EXPECT_LT(energyError, 2e-5) << width << " " << tilt;
+        }
       }
 }
 

@@ -22,7 +22,7 @@ std::string turnText(const Quat& q) {
 
 class RandomScene {
  public:
-  explicit RandomScene(unsigned number) : number_(number), random_(number), hasMeshes_(chance(0.5)) {}
+  explicit RandomScene(unsigned number) : number_(number), random_(number) {}
 
   std::string text() {
     const bool isWeightless = chance(0.1);
@@ -68,13 +68,12 @@ class RandomScene {
 
   const char* someMaterial() { return chance(0.5) ? "a" : "b"; }
 
-  /// A shape in a ball of radius 0.25 m. Scenes have cylinders or concave meshes, whose contact with each other is
-  /// not simulated.
+  /// A shape in a ball of radius 0.25 m.
   std::string someShape() {
     const double a = number(0.06, 0.12), b = number(0.05, 0.2);
     const Vec3 size = Vec3::Constant(0.16) + random_.vector(0.1);
     const std::string mesh = fmt::format(R"({{"mesh": "{}/assets/l_prism.3ds", "scale": {}}})", CRADLE_SOURCE_DIR, a);
-    switch (upTo(5)) {
+    switch (upTo(6)) {
       case 0:
         return fmt::format(R"("shape": {{"sphere": {{"radius": {}}}}})", a);
       case 1:
@@ -83,9 +82,10 @@ class RandomScene {
         return fmt::format(R"("shape": {{"capsule": {{"radius": {}, "length": {}}}}})", a, b);
       case 3:
         return fmt::format(R"("shape": {}, "collision": "hull")", mesh);
+      case 4:
+        return fmt::format(R"("shape": {{"cylinder": {{"radius": {}, "length": {}}}}})", a, b);
       default:
-        return hasMeshes_ ? fmt::format(R"("shape": {})", mesh)
-                          : fmt::format(R"("shape": {{"cylinder": {{"radius": {}, "length": {}}}}})", a, b);
+        return fmt::format(R"("shape": {})", mesh);
     }
   }
 
@@ -225,7 +225,6 @@ class RandomScene {
 
   unsigned number_;
   RandomPoses random_;
-  bool hasMeshes_;
   std::vector<RigidTransform> places_;  // of the bodies that move
   std::vector<std::string> bodies_, springs_, ropes_, rods_, ballJoints_, hinges_;
   std::vector<int> ties_;  // of each body, then the world: another one that it is tied to, or -1

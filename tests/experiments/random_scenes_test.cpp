@@ -20,13 +20,11 @@ TEST_P(RandomScenes, StayFiniteKeepTheirTiesAndNeverGainEnergy) {
   EXPECT_THAT(faultsOf(runRandomScene(scene), scene.accuracy), testing::IsEmpty());
 }
 
-// Those first that once failed: ropes that rebound within a thousandth of a step, or go taut as others go slack; ties
-// all but jammed; springs, dampers and ropes too fast for a step; rims that come down on one side while the other
-// leaves.
+// Those first that once failed: ropes that come to be pulled at while they are at their length, rows that took the
+// place of others, frames in steps at whose end one rope goes taut and another slack.
 INSTANTIATE_TEST_SUITE_P(Sample, RandomScenes,
-                         testing::Values(265U, 14U, 292U, 622U, 28U, 135U, 60U, 219U, 333U, 363U, 214U, 649U, 1U, 2U,
-                                         3U, 4U, 5U, 9U, 10U, 11U, 12U, 13U, 15U, 16U, 17U, 18U, 21U, 22U, 23U, 24U,
-                                         26U));
+                         testing::Values(58U, 163U, 461U, 637U, 1201U, 1U, 2U, 3U, 4U, 5U, 9U, 10U, 11U, 12U, 13U, 15U,
+                                         16U, 17U, 18U, 21U, 22U, 23U, 24U, 26U));
 
 TEST(RandomScene, IsTheSameForTheSameNumber) {
   EXPECT_EQ(randomSceneText(7), randomSceneText(7));
@@ -38,7 +36,7 @@ TEST(RandomScene, ShowsWhatGoesWrong) {
   RandomSceneFigures figures;
   figures.energyScale = 1;
   EXPECT_TRUE(faultsOf(figures, 1e-5).empty());
-  figures.energyGain = figures.penetration = 2e-4;
+  figures.energyGain = figures.penetration = 5e-5;
   EXPECT_EQ(faultsOf(figures, 1e-5).size(), 2u);
   EXPECT_TRUE(faultsOf(figures, 1e-3).empty());
   figures.keepsAccuracy = false;

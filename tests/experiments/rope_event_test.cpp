@@ -226,5 +226,66 @@ TEST(RopeAndContactAtOnce, ATautRopeDoesNotHoldBackWhatIsStruckFromBelow) {
   EXPECT_NEAR(run.frames.back().states[1].position.y(), -0.2 - g * since * since / 2, 1e-9);
 }
 
+// A ball at rest on a rope just as long as the way to it, in no gravity: a spring to another ball, which flies off with
+// v, starts to pull at it once the flight has begun. The rope holds the ball, and the other one swings: v / w sin w t,
+// w = sqrt(k). Until 1e-9 m are gone the rope is not found to be pulled at; by then the ball has a speed of about
+// k v t^2 / 2 with k v t^3 / 6 = 1e-9 m: 1e-5 m/s at most, lost with 1e-10 J.
+TEST(RopeAtItsLength, HoldsWhatIsPulledOnlyLater) {
+  const double stiffness = 4, speed = 1, frequency = 2;
+  const Trajectory swing = simulate(sceneWith(fmt::format(
+      R"("duration": 1.5, "gravity": [0, 0, 0], "accuracy": 1e-10, "bodies": [{}, {}], "ropes": [{}],
+         "springs": [{{"bodyA": "held", "anchorA": [0, 0, 0], "bodyB": "flying", "anchorB": [0, 0, 0],
+                       "stiffness": {}, "restLength": 1}}])",
+      ball("held", Vec3(1, 0, 0)), ball("flying", Vec3(2, 0, 0), Vec3(speed, 0, 0)), rope("held", Vec3::Zero(), 0),
+      stiffness)));
+  for (const Frame& frame : swing.frames) {
+    EXPECT_NEAR(frame.states[0].position.x(), 1, 2e-9) << frame.time;
+    const double way = speed / frequency * std::sin(frequency * frame.time);
+    EXPECT_NEAR(frame.states[1].position.x(), 2 + way, 1e-8) << frame.time;
+  }
+}
+
+// A ball that spins on the ground, and a light rope up from it that another one, flying upwards, has just stretched:
+// while the first one stays there, the pull of gravity is the stronger one at the second, which nothing holds back; in
+// the air a spring pulls at the second alone. Both fly on together with m2 v / M, in the swing of M = m1 + m2 on the
+// spring.
+TEST(RopeAtItsLength, IsPulledAtOnceItHasLiftedWhatLay) {
+  const double masses = 3, stiffness = 10, speed = 2. / 3, time = 0.1;
+  const Trajectory lift = simulate(sceneWith(
+      R"("duration": 0.1, "accuracy": 1e-10, "output": {"framesPerSecond": 10},
+         "bodies": [{"name": "floor", "shape": {"plane": {"normal": [0, 1, 0]}}, "motion": "static"},
+                    {"name": "lying", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "position": [0, 0.1, 0],
+                     "angularVelocity": [0, 5, 0]},
+                    {"name": "flying", "shape": {"sphere": {"radius": 0.1}}, "mass": 2, "position": [0, 1.1, 0],
+                     "linearVelocity": [0, 1, 0]}],
+         "ropes": [{"bodyA": "lying", "anchorA": [0, 0, 0], "bodyB": "flying", "anchorB": [0, 0, 0], "maxLength": 1,
+                    "restitution": 0}],
+         "springs": [{"bodyA": "flying", "anchorA": [0, 0, 0], "anchorB": [0, 3.1, 0], "stiffness": 10,
+                      "restLength": 1}])"));
+  const double middle = 2.1 - masses * kGravity / stiffness, frequency = std::sqrt(stiffness / masses);
+  const double height =
+      middle + (1.1 - middle) * std::cos(frequency * time) + speed / frequency * std::sin(frequency * time);
+  const auto& states = lift.frames.back().states;
+  EXPECT_NEAR(states[1].position.y(), height, 1e-8);
+  EXPECT_NEAR(states[0].position.y(), height - 1, 1e-8);
+  EXPECT_LT(largestEnergyError(lift), 1e-8);
+}
+
+// Nothing is computed for what lies still; its rope is taut all the same while another ball of the same island bounces.
+TEST(TautRope, StaysTautWhileWhatItHoldsRests) {
+  const Trajectory fall = simulate(sceneWith(
+      R"("duration": 2, "accuracy": 1e-8, "materials": {"m": {"restitution": 0.8}},
+         "bodies": [{"name": "floor", "shape": {"plane": {"normal": [0, 1, 0]}}, "motion": "static", "material": "m"},
+                    {"name": "hung", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "position": [0, 1, 0]},
+                    {"name": "bouncing", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "position": [0.5, 1, 0],
+                     "material": "m"}],
+         "ropes": [{"bodyA": "hung", "anchorA": [0, 0, 0], "anchorB": [0, 2, 0], "maxLength": 1.2, "restitution": 0},
+                   {"bodyA": "hung", "anchorA": [0, 0, 0], "bodyB": "bouncing", "anchorB": [0, 0, 0], "maxLength": 2}])"));
+  EXPECT_EQ(eventsOf(fall, EventKind::taut).size(), 1u);
+  EXPECT_TRUE(eventsOf(fall, EventKind::slack).empty());
+  EXPECT_GE(eventsOf(fall, EventKind::impact).size(), 3u);
+  EXPECT_NEAR(endOf(fall).position.y(), 0.8, 1e-12);
+}
+
 }  // namespace
 }  // namespace cradle

@@ -19,7 +19,12 @@ constexpr double kFailedPart =
 constexpr double kLocated = 1e-11;  // of a step, on the interpolant
 constexpr int kMostCuts = 60;
 
-constexpr std::array<Kind, 3> kKinds = {Kind::release, Kind::slip, Kind::stick};
+constexpr double kLeavingPart = 0.5;  // of what touches yet: so far beyond a face a contact has left it
+// Of a margin: half of what touches yet is found to a thousandth. Bounded on both sides, it is halved rather than
+// followed down beyond the border, where it is steeper by orders.
+constexpr double kLeavingUnit = 1e-9;
+
+constexpr std::array<Kind, 4> kKinds = {Kind::release, Kind::slip, Kind::stick, Kind::leave};
 
 }  // namespace
 
@@ -31,15 +36,38 @@ Vec3 LastingContacts::givenDirection(std::size_t contact, const VectorX& state) 
   return orientation(state, body).normalized() * constraint.slidingDirection;
 }
 
+/// How far (m) the place where a contact's row keeps it is from where the surfaces are nearest: beyond the border of a
+/// face, or when a corner becomes an edge, that stays behind; in a hollow another part of a surface comes nearer. Needs
+/// frames_.
+double LastingContacts::distanceFromNearest(std::size_t contact, const VectorX& state) const {
+  const ContactConstraint& held = mechanism().contacts[contact];
+  const ColliderPair& pair = entries_[contact].pair;
+  if (pair.againstPlane) return 0;
+  const ContactGeometry& geometry = island_.assembly.geometry;
+  const bool isOfB = geometry.colliders[pair.a].body == held.centerA.body;
+  const Collider &a = geometry.colliders[isOfB ? pair.a : pair.b], &b = geometry.colliders[isOfB ? pair.b : pair.a];
+  const auto nearestOn = [&](const Collider& collider, const Attachment& center) {
+    const RigidTransform worldFromBody = poseOf(state, collider.body);
+    return worldFromBody *
+           nearestOnSurface(collider, worldFromBody.inverse() * (poseOf(state, center.body) * center.point));
+  };
+  const ContactPlace place = placeOf(held, state, frames_);
+  const double onB = (place.point - place.gap * place.normal - nearestOn(b, held.centerA)).norm();
+  if (std::isinf(held.radiusB)) return onB;
+  return std::max(onB, (place.point - nearestOn(a, held.surfaceB)).norm());
+}
+
 /// Of each contact, in the order of kKinds; infinite where there is nothing to change.
-void LastingContacts::findMargins(const VectorX& state, std::vector<std::array<double, 3>>& margins) {
+void LastingContacts::findMargins(const VectorX& state, std::vector<Margins>& margins) {
   island_.equations.evaluate(state, rate_);
+  placeBodies(mechanism().bodies, state, frames_);
   const std::vector<ContactForce>& forces = island_.equations.contactForces();
   margins.resize(entries_.size());
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const ContactMotion motion = mechanism().contacts[i].motion;
     const double limit = entries_[i].pair.law.staticFriction * forces[i].normal;
-    margins[i] = {forces[i].normal / entries_[i].force, INFINITY, INFINITY};
+    const double away = distanceFromNearest(i, state) / (kLeavingPart * reach_);
+    margins[i] = {forces[i].normal / entries_[i].force, INFINITY, INFINITY, kLeavingUnit * std::max(-1.0, 1 - away)};
     if (motion == ContactMotion::sticking) margins[i][1] = (limit - forces[i].tangential.norm()) / entries_[i].force;
     if (motion == ContactMotion::sliding) margins[i][2] = forces[i].tangentialVelocity.dot(givenDirection(i, state));
   }
@@ -54,7 +82,7 @@ std::optional<ContactChange> LastingContacts::firstChange() {
   if (empty()) return std::nullopt;
   const Step& step = island_.step;
   findMargins(step.startState, before_);
-  std::vector<std::array<double, 3>> after;
+  std::vector<Margins> after;
   for (int k = 1; k <= kSamples; ++k) {
     const double from = static_cast<double>(k - 1) / kSamples, to = static_cast<double>(k) / kSamples;
     interpolate(step, to, sample_);
@@ -64,7 +92,9 @@ std::optional<ContactChange> LastingContacts::firstChange() {
     for (std::size_t i = 0; i < entries_.size(); ++i)
       for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
         if (!(after[i][kind] < -kMarginRounding)) continue;
-        if (entries_[i].isRedundant && kKinds[kind] != Kind::stick) {
+        if (kKinds[kind] == Kind::leave && !(before_[i][kind] > 0)) continue;
+        const bool isOfForces = kKinds[kind] == Kind::release || kKinds[kind] == Kind::slip;
+        if (entries_[i].isRedundant && isOfForces) {
           isDoubtful = true;
           continue;
         }

@@ -83,13 +83,12 @@ int movingBodyOf(const Contact& contact) {
 EventContacts::EventContacts(MovingIsland& island, RopeStage& ropes, double accuracy)
     : island_(island),
       ropes_(ropes),
-      lasting_(island),
+      size_(smallestSize(island.assembly.geometry)),
+      touchTolerance_(size_ * std::clamp(kTouchPart * accuracy, kLeastTouchPart, kMostTouchPart)),
+      deadBand_(kDeadBandPart * size_),
+      lasting_(island, touchTolerance_),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
-      stillPart_(std::min(kMostStillPart, accuracy)) {
-  size_ = smallestSize(island.assembly.geometry);
-  touchTolerance_ = size_ * std::clamp(kTouchPart * accuracy, kLeastTouchPart, kMostTouchPart);
-  deadBand_ = kDeadBandPart * size_;
-}
+      stillPart_(std::min(kMostStillPart, accuracy)) {}
 
 TouchingFeatures EventContacts::touching() {
   return {touchTolerance_, deadBand_, &lasting_.held()};

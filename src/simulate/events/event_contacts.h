@@ -53,12 +53,12 @@ class EventContacts {
 
   MovingIsland& island_;
   RopeStage& ropes_;
-  LastingContacts lasting_;
-  ConstraintSolver solver_;
-  double stillPart_;                  // of the speed that a body gains when it falls by its size: slower is still
   double size_;                       // m: of the smallest body
   double touchTolerance_, deadBand_;  // m
-  double restDelay_ = 0;              // s: how long the bounces that are left out would take
+  LastingContacts lasting_;
+  ConstraintSolver solver_;
+  double stillPart_;      // of the speed that a body gains when it falls by its size: slower is still
+  double restDelay_ = 0;  // s: how long the bounces that are left out would take
   std::vector<Contact> touching_;
   std::vector<BodyFrame> frames_;
   VectorX rate_;

@@ -15,24 +15,23 @@ constexpr double kGrowingReach = 16;
 }  // namespace
 
 // The Illinois variant of regula falsi (M. Dowell, P. Jarratt, 1971).
-void endStepAtEvent(MovingIsland& island, Integrator integrate, double guess, double tolerance,
-                    const EventMargin& margin) {
+void endStepAtEvent(MovingIsland& island, Integrator integrate, const EventWindow& window, const EventMargin& margin) {
   Step& step = island.step;
-  const double whole = step.timeStep;
+  const double whole = step.timeStep, tolerance = window.tolerance;
   const auto marginAfter = [&](double part) {
     keepStartRate(step);
     integrate(island.rightHandSide, island.state, island.time, part, step);
     return margin(step.state);
   };
-  double late = guess, lateMargin = marginAfter(late);
+  double late = window.guess, lateMargin = marginAfter(late);
   if (std::abs(lateMargin) <= tolerance) return;
   double early = 0, earlyMargin = tolerance, reach = kFirstReach * whole;
-  while (lateMargin > 0 && late < whole) {  // the method is later than its interpolant
+  while (lateMargin > 0 && late < window.latest) {  // the method is later than its interpolant
     early = late, earlyMargin = lateMargin;
-    late = std::min(whole, late + reach), lateMargin = marginAfter(late), reach *= kGrowingReach;
+    late = std::min(window.latest, late + reach), lateMargin = marginAfter(late), reach *= kGrowingReach;
   }
   // Near the guess: a contact, or a rope, that has just rebounded has no margin at the start either.
-  for (double part = guess - reach; early == 0 && part > 0; part -= reach, reach *= kGrowingReach) {
+  for (double part = window.guess - reach; early == 0 && part > 0; part -= reach, reach *= kGrowingReach) {
     const double found = marginAfter(part);
     if (found > 0)
       early = part, earlyMargin = found;

@@ -9,9 +9,15 @@ namespace cradle {
 /// Zero at an event, positive before it.
 using EventMargin = std::function<double(const VectorX& state)>;
 
-/// Takes the island's step again with a length (s) at whose end `margin` is between 0 and `tolerance`. `guess` (s) is
-/// the interpolant's, not beyond the step's end; the state of an event is that of a step, never the interpolant's.
-void endStepAtEvent(MovingIsland& island, Integrator integrate, double guess, double tolerance,
-                    const EventMargin& margin);
+/// Where an event is looked for (s, from the step's start), and how well (in units of its margin).
+struct EventWindow {
+  double guess = 0;      // the interpolant's
+  double latest = 0;     // >= guess, not beyond the step's end: other events come then
+  double tolerance = 0;  // > 0
+};
+
+/// Takes the island's step again with a length at whose end `margin` is between 0 and the tolerance, or the longest
+/// one. The state of an event is that of a step, never the interpolant's.
+void endStepAtEvent(MovingIsland& island, Integrator integrate, const EventWindow& window, const EventMargin& margin);
 
 }  // namespace cradle

@@ -28,6 +28,8 @@ constexpr double kMostTieError = 1e-9;   // m (a m of coordinates) or rad: proje
 constexpr double kTieErrorPart = 0.1;    // of the accuracy: so much is left now and then where ties are all but jammed
 constexpr double kUnitLength = 1e-9;     // how far |q|^2 may be from 1 before it is made 1
 
+constexpr int kMostRounds = 100;  // of ropes and contacts at one instant; what is left comes after the next step
+
 constexpr int kMostEvents = 500;
 constexpr double kEventWindow = 1.0 / 60;  // s, in which there may be so many
 constexpr int kEventsAFailure = 50;        // that take no longer than to find where redundant contacts fail
@@ -56,7 +58,7 @@ EventMotion::EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMet
   island_.findNearPairsNow(contacts_.margin());
   ropes_.setTimeStep(0);
   contacts_.resolve();
-  ropes_.resolve(island_.time, island_.state);
+  settleRopes();
   if (island_.beginAndEndPushes()) contacts_.resolve();
   island_.requireUnsolvedPairsApart();
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
@@ -147,6 +149,8 @@ EventMotion::Event EventMotion::findFirstEvent() {
   if (rope > first) event.rope.reset();
   if (contact > first || event.rope) event.contact.reset();
   if (impact > first || event.rope || event.contact) event.impact.reset();
+  for (const double other : {impact, rope, contact})
+    if (other > first) event.latest = std::min(event.latest, other);
   return event;
 }
 
@@ -156,17 +160,17 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   if (!island_.mayTouch() && !ropes_.hasRopes()) return {};
   Step& step = island_.step;
   const Event event = findFirstEvent();
-  const double whole = step.timeStep;
+  const double whole = step.timeStep, latest = event.latest * whole;
   if (event.impact) {
-    stopAtImpact(*event.impact);
+    stopAtImpact(*event.impact, latest);
   } else if (event.rope) {
-    endStepAtEvent(island_, method_.integrate, event.rope->fraction * whole, kRopeTolerance,
+    endStepAtEvent(island_, method_.integrate, {event.rope->fraction * whole, latest, kRopeTolerance},
                    [&](const VectorX& state) { return ropes_.margin(*event.rope, state); });
   } else if (event.contact && event.contact->kind == ContactChange::Kind::redundant) {
     keepStartRate(step);
     method_.integrate(island_.rightHandSide, island_.state, island_.time, event.contact->fraction * whole, step);
   } else if (event.contact) {
-    endStepAtEvent(island_, method_.integrate, event.contact->fraction * whole, kContactTolerance,
+    endStepAtEvent(island_, method_.integrate, {event.contact->fraction * whole, latest, kContactTolerance},
                    [&](const VectorX& state) { return contacts_.lasting().margin(*event.contact, state); });
   }
   if (island_.mayTouch()) lengths_[lengthIndex_++ % lengths_.size()] = step.timeStep;
@@ -174,7 +178,7 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
 }
 
 /// Ends the step where a gap is closed. What the interpolant's error leaves of it is taken out along the rate there.
-void EventMotion::stopAtImpact(const ImpactTime& impact) {
+void EventMotion::stopAtImpact(const ImpactTime& impact, double latest) {
   const TouchingFeatures touching = contacts_.touching();
   const auto gap = [&](const VectorX& state) { return island_.search.margin(impact, touching, state); };
   Step& step = island_.step;
@@ -189,7 +193,7 @@ void EventMotion::stopAtImpact(const ImpactTime& impact) {
   step.work = step.state + correction * step.endRate;
   const double tolerance = kImpactPart * contacts_.margin();
   if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))
-    return endStepAtEvent(island_, method_.integrate, length, tolerance, gap);
+    return endStepAtEvent(island_, method_.integrate, {length, latest, tolerance}, gap);
   std::swap(step.state, step.work);
   step.timeStep += correction;
 }
@@ -227,16 +231,21 @@ void EventMotion::requireTiesKept() const {
 
 /// What acts from now on.
 void EventMotion::changeForces(const Event& event) {
+  rodsBefore_ = ropes_.rods();
   if (event.impact || event.contact || event.rope)  // a rope may go taut as bodies meet
     contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
   else
     contacts_.lasting().followSliding();
-  const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
-  const bool isPulled = ropes_.resolve(island_.time, island_.state);
-  keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
+  settleRopes();
+  keepsTies_ = ropes_.rods() == rodsBefore_;
   const bool isPushed = island_.beginAndEndPushes();
-  if (isPushed || isPulled) contacts_.resolve();
+  if (isPushed) contacts_.resolve();
   if (event.any() || isPushed) isContinuous_ = false;
+}
+
+/// What ropes do to contacts may load or release ropes, and the other way round.
+void EventMotion::settleRopes() {
+  for (int round = 0; round < kMostRounds && ropes_.resolve(island_.time, island_.state); ++round) contacts_.resolve();
 }
 
 bool EventMotion::isAtRest() const {

@@ -42,14 +42,16 @@ class EventMotion {
     std::optional<ImpactTime> impact;
     std::optional<RopeChange> rope;
     std::optional<ContactChange> contact;
+    double latest = 1;  // of the step: where the next one comes
     bool any() const { return impact || rope || contact; }
   };
   Event findFirstEvent();
   Event stopAtFirstEvent();
-  void stopAtImpact(const ImpactTime& impact);
+  void stopAtImpact(const ImpactTime& impact, double latest);
   void tidyState();
   void requireTiesKept() const;
   void changeForces(const Event& event);
+  void settleRopes();
   bool isStillAccurate();
   double longestStep() const;
   void countEvent(const Event& event);
@@ -61,7 +63,8 @@ class EventMotion {
   std::optional<EnergyGuard> guard_;  // always there once begun
   ConstraintSolver solver_;
   VectorX tolerance_;
-  double startTieError_ = 0;  // m or rad
+  double startTieError_ = 0;     // m or rad
+  std::vector<int> rodsBefore_;  // of ropes, before an event
   StepSize stepSize_;
   std::array<double, 8> lengths_;  // s: of the last steps, if bodies may touch
   std::size_t lengthIndex_ = 0;

@@ -273,12 +273,12 @@ const std::vector<HeldFeature>& LastingContacts::held() {
     };
     const auto pair = std::find_if(geometry.pairs.begin(), geometry.pairs.end(), isSame);
     if (pair == geometry.pairs.end()) continue;
-    const Attachment& center = mechanism().contacts[i].centerA;
-    HeldFeature feature{static_cast<std::size_t>(pair - geometry.pairs.begin()), 0, center};
+    HeldFeature feature{static_cast<std::size_t>(pair - geometry.pairs.begin()), 0, mechanism().contacts[i]};
     const Collider& a = geometry.colliders[held.a];
     if (held.againstPlane) {
       const auto nearer = [&](const Vec3& left, const Vec3& right) {
-        return (left - center.point).squaredNorm() < (right - center.point).squaredNorm();
+        return (left - feature.contact.centerA.point).squaredNorm() <
+               (right - feature.contact.centerA.point).squaredNorm();
       };
       feature.feature =
           static_cast<std::size_t>(std::min_element(a.points.begin(), a.points.end(), nearer) - a.points.begin());

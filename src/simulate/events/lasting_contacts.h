@@ -17,6 +17,7 @@ struct ContactChange {
     release,   // its force would have to pull
     slip,      // friction gives way
     stick,     // sliding stops
+    leave,     // the contact comes to the border of its face, or off its corner
     redundant  // no forces hold it together with others any more
   };
   Kind kind = Kind::release;
@@ -28,8 +29,8 @@ struct ContactChange {
 /// stay as they are within a step. What changes them is an event.
 class LastingContacts {
  public:
-  /// Keeps a reference to `island`.
-  explicit LastingContacts(MovingIsland& island) : island_(island) {}
+  /// Keeps a reference to `island`. What comes within `reach` (m) touches.
+  LastingContacts(MovingIsland& island, double reach) : island_(island), reach_(reach) {}
 
   /// Lets go of everything, until `decide`. `change` is what happens to one of the contacts now, if anything does.
   void letGo(const std::optional<ContactChange>& change);
@@ -91,13 +92,18 @@ class LastingContacts {
   bool turnsBack(const Former& former, const Entry& now) const;
   bool isAwake(const Contact& contact) const;
 
+  /// Of a contact's changes, in the order of their kinds.
+  using Margins = std::array<double, 4>;
+
   Vec3 givenDirection(std::size_t contact, const VectorX& state) const;
-  void findMargins(const VectorX& state, std::vector<std::array<double, 3>>& margins);
+  double distanceFromNearest(std::size_t contact, const VectorX& state) const;
+  void findMargins(const VectorX& state, std::vector<Margins>& margins);
   bool isHeldTogether(const VectorX& state);
   std::optional<double> firstFailure(double from, double to);
   double locate(const ContactChange& change, double from, double marginFrom, double to, double marginTo);
 
   MovingIsland& island_;
+  double reach_;                // m
   std::vector<Entry> entries_;  // of Mechanism::contacts
   std::vector<Former> former_;
   std::vector<HeldFeature> held_;
@@ -105,7 +111,7 @@ class LastingContacts {
   std::string_view fault_;
   bool isReleasing_ = false;
   VectorX rate_, sample_;
-  std::vector<std::array<double, 3>> before_, after_;
+  std::vector<Margins> before_, after_;
 };
 
 }  // namespace cradle

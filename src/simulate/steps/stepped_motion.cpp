@@ -67,9 +67,9 @@ void SteppedMotion::advance(double frame) {
   normalizeOrientations(island_.state);
   holdContacts();
   if (atEvent || !contacts_.isCrowded()) contacts_.strike(time, before_, island_.state);
-  const std::size_t rods = island_.assembly.mechanism.constraints.rods.size();
+  rodsBefore_ = ropes_.rods();
   ropes_.resolve(time, island_.state);
-  keepsTies_ = island_.assembly.mechanism.constraints.rods.size() == rods;
+  keepsTies_ = ropes_.rods() == rodsBefore_;
   island_.beginAndEndPushes();
   guard_.check(island_.state, time, step.timeStep);
   island_.requireUnsolvedPairsApart();
@@ -143,10 +143,11 @@ bool SteppedMotion::stopAtFirstEvent() {
   const auto change = ropes_.firstChange(step);
   const double whole = step.timeStep;
   if (impact && !(change && change->fraction < impact->fraction)) {
-    endStepAtEvent(island_, method_.integrate, impact->fraction * whole, kImpactPart * contacts_.touchTolerance(),
+    endStepAtEvent(island_, method_.integrate,
+                   {impact->fraction * whole, whole, kImpactPart * contacts_.touchTolerance()},
                    [&](const VectorX& state) { return island_.search.margin(*impact, {}, state); });
   } else if (change) {
-    endStepAtEvent(island_, method_.integrate, change->fraction * whole, kRopeTolerance,
+    endStepAtEvent(island_, method_.integrate, {change->fraction * whole, whole, kRopeTolerance},
                    [&](const VectorX& state) { return ropes_.margin(*change, state); });
   }
   pairs = all;

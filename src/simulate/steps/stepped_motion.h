@@ -60,8 +60,9 @@ class SteppedMotion {
   int eventsInWindow_ = 0;
   double windowStart_ = 0;  // s
   VectorX before_;
-  bool isHeld_ = false;  // contacts acted over all of the last step ...
-  VectorX held_;         // ... and led here
+  std::vector<int> rodsBefore_;  // of ropes, before the changes of a step
+  bool isHeld_ = false;          // contacts acted over all of the last step ...
+  VectorX held_;                 // ... and led here
 };
 
 }  // namespace cradle
