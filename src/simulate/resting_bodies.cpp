@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/invariants.h"
 #include "impact/cone_problem.h"
 #include "impact/contact_cones.h"
 #include "impact/sparse_cones.h"
@@ -132,6 +133,7 @@ std::vector<int> RestingBodies::settle(double time, const std::vector<Contact>& 
 
 void RestingBodies::bringToRest(const std::vector<int>& bodies, VectorX& state) {
   for (const int body : bodies) {
+    dissipatedEnergy(state) += kineticEnergy(mechanism_.bodies[static_cast<std::size_t>(body)], body, state);
     state.segment<kVelocitySize>(velocityOffset(state, body)).setZero();
     equations_.setResting(static_cast<std::size_t>(body), true);
     restingIsland_[static_cast<std::size_t>(body)] = bodies[0];
