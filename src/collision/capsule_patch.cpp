@@ -1,7 +1,8 @@
-// Contact of all that is near a segment: capsules, and balls as those without length. Capsules that lie along each other
-// touch in a line, and a single nearest point jumps from end to end of it with the least turn: they are held at both
-// ends of what they share. Seen from a point of one segment the distance to the other is convex along it, so that these
-// ends are the farthest and between them there is one nearest point, which is held too where it is clearly nearer.
+// Contact of all that is near a segment: capsules, and balls as those without length. Capsules that lie along each
+// other touch in a line, and a single nearest point jumps from end to end of it with the least turn: they are held at
+// both ends of what they share. Seen from a point of one segment the distance to the other is convex along it, so that
+// these ends are the farthest and between them there is one nearest point, which is held too where it is clearly
+// nearer.
 
 #include <algorithm>
 #include <array>
@@ -54,7 +55,8 @@ class CapsulePair {
       if (count == 1 && std::abs(part - ends[0].part) * length < onePoint_) continue;
       if (end.between.dot(normal_) >= kSameNormal * end.between.norm()) ends[count++] = end;
     }
-    const bool isBent = std::none_of(ends, ends + count, [&](const Near& end) { return end.separation < gap() + kBent; });
+    const bool isBent =
+        std::none_of(ends, ends + count, [&](const Near& end) { return end.separation < gap() + kBent; });
     if (isBent) add(nearest_, patch);
     for (std::size_t k = 0; k < count; ++k) {
       if (isBent && std::abs(ends[k].part - nearest_.part) * length < onePoint_) continue;
@@ -66,9 +68,9 @@ class CapsulePair {
  private:
   /// A point of A's segment and what is nearest to it of B's.
   struct Near {
-    double part = 0;               // of A's segment
-    Vec3 between = Vec3::Zero();   // m, from A's segment to B's
-    double separation = 0;         // m, of the surfaces
+    double part = 0;              // of A's segment
+    Vec3 between = Vec3::Zero();  // m, from A's segment to B's
+    double separation = 0;        // m, of the surfaces
   };
 
   Near nearAt(double part) const {
@@ -112,10 +114,10 @@ class CapsulePair {
     patch.points[patch.count++] = {onA, onB, near.separation - normal_.dot(ahead_)};
   }
 
-  Segment a_, b_;             // m
-  double radiusA_, reach_;    // m; both radii together
-  double onePoint_ = 0;       // m
-  Vec3 ahead_ = Vec3::Zero(); // m: B's motion until they meet
+  Segment a_, b_;              // m
+  double radiusA_, reach_;     // m; both radii together
+  double onePoint_ = 0;        // m
+  Vec3 ahead_ = Vec3::Zero();  // m: B's motion until they meet
   Near nearest_;
   Vec3 normal_;  // unit, from A to B
 };

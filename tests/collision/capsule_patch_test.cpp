@@ -9,9 +9,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kExact = 1e-13;  // m: rounding of coordinates below 1 m
-constexpr double kBent = 1e-4;    // m: what ends of a line of contact may miss of the deepest place between them
-constexpr double kMargin = 0.005; // m
+constexpr double kExact = 1e-13;   // m: rounding of coordinates below 1 m
+constexpr double kBent = 1e-4;     // m: what ends of a line of contact may miss of the deepest place between them
+constexpr double kMargin = 0.005;  // m
 const Vec3 kStill = Vec3::Zero();
 
 /// Least distance of the axes, less both radii, over points of A's axis and, by thirds, all of B's: convex in both.
@@ -68,7 +68,9 @@ TEST(CapsulesInContact, AreAsDeepAsSampledAxes) {
     ASSERT_GE(patch.count, 1u) << trial;
     EXPECT_LT(deepestOf(patch), gap + kBent + kExact);
     EXPECT_GT(deepestOf(patch), gap - kSampling);
-    if (length == 0) { EXPECT_EQ(patch.count, 1u); }
+    if (length == 0) {
+      EXPECT_EQ(patch.count, 1u);
+    }
     lines += patch.count >= 2;
   }
   EXPECT_GT(touching, 60);
@@ -156,11 +158,13 @@ TEST(CapsulesInContact, AreThoseOfTheInstantAtWhichTheyWillMeet) {
 
 TEST(CapsuleOnPlane, LiesOnBothEndsAndStandsOnOne) {
   const PlaneCollider plane{Vec3::Zero(), Vec3::UnitY(), 0};
-  const ContactPatch lying = contactOfCapsuleAndPlane({Vec3(0, 0.061, 0), Vec3(0.2, 0, 0), 0.06}, plane, kStill, kMargin);
+  const ContactPatch lying =
+      contactOfCapsuleAndPlane({Vec3(0, 0.061, 0), Vec3(0.2, 0, 0), 0.06}, plane, kStill, kMargin);
   ASSERT_EQ(lying.count, 2u);
   EXPECT_LT((lying.points[0].onB - Vec3(-0.2, 0, 0)).norm(), kExact);
   EXPECT_LT((lying.points[1].onA - Vec3(0.2, 0.001, 0)).norm(), kExact);
-  const ContactPatch standing = contactOfCapsuleAndPlane({Vec3(0, 0.259, 0), Vec3(0, 0.2, 0), 0.06}, plane, kStill, kMargin);
+  const ContactPatch standing =
+      contactOfCapsuleAndPlane({Vec3(0, 0.259, 0), Vec3(0, 0.2, 0), 0.06}, plane, kStill, kMargin);
   ASSERT_EQ(standing.count, 1u);
   EXPECT_NEAR(standing.points[0].separation, -0.001, kExact);
   const ContactPatch above = contactOfCapsuleAndPlane({Vec3(0, 0.3, 0), Vec3(0, 0.2, 0), 0.06}, plane, kStill, kMargin);
