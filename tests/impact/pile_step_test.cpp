@@ -12,13 +12,14 @@ namespace {
 const SurfaceLaw kLaw{0, 0.5, 0.5};
 constexpr double kDeepest = 3.5e-3;  // m: what the eye may see of 0.2 m
 
-enum class Kind { balls, cubes, turnedCubes };
+enum class Kind { balls, cubes, turnedCubes, capsules };
 
 /// 40 bodies in a tray 0.9 m wide, on a grid that is a little irregular.
 void drop(Kind kind, DroppedBodies& bodies) {
   bodies.addTray(0.9);
-  const double pitch = kind == Kind::turnedCubes ? 0.36 : 0.22;
-  const int side = kind == Kind::turnedCubes ? 2 : 3;
+  const bool isWide = kind == Kind::turnedCubes || kind == Kind::capsules;
+  const double pitch = isWide ? 0.36 : 0.22;
+  const int side = isWide ? 2 : 3;
   for (int i = 0; i < 40; ++i) {
     const int column = i % side, row = i / side % side, layer = i / (side * side);
     const double offset = 0.003 * (i * 7 % 5 - 2), first = -pitch * (side - 1) / 2;
@@ -26,6 +27,8 @@ void drop(Kind kind, DroppedBodies& bodies) {
     const Quat turn(0.3 + 0.1 * (i % 3), 0.2 * (i % 5) - 0.4, 0.3 * (i % 4) - 0.5, 0.1 * (i % 7));
     if (kind == Kind::balls)
       bodies.addBall(position);
+    else if (kind == Kind::capsules)
+      bodies.addCapsule(position, turn.normalized());
     else
       bodies.addCube(position, kind == Kind::cubes ? Quat::Identity() : turn.normalized());
   }
@@ -104,7 +107,7 @@ TEST_P(Piles, DoNotDependOnWhatStandsInTheOtherLane) {
   EXPECT_EQ(states[1], states[0]);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Piles, ::testing::Values(Kind::balls, Kind::cubes, Kind::turnedCubes));
+INSTANTIATE_TEST_SUITE_P(All, Piles, ::testing::Values(Kind::balls, Kind::cubes, Kind::turnedCubes, Kind::capsules));
 
 TEST(PileAtRest, IsLookedAtNoMoreUntilSomethingHitsIt) {
   DroppedBodies bodies;
