@@ -14,6 +14,12 @@ struct PosedBall {
   double radius;  // m
 };
 
+/// All within `radius` of the segment from center - half to center + half. Without length a ball.
+struct PosedCapsule {
+  Vec3 center, half;  // m, world
+  double radius;      // m
+};
+
 struct PosedBox {
   Vec3 center;    // m, world
   Mat3 axes;      // columns: unit, world
@@ -37,6 +43,8 @@ ContactPatch contactOfBalls(const PosedBall& a, const PosedBall& b, const Vec3& 
 ContactPatch contactOfBallAndBox(const PosedBall& a, const PosedBox& b, const Vec3& motion, double margin);
 ContactPatch contactOfBoxes(const PosedBox& a, const PosedBox& b, const Vec3& motion, double margin);
 ContactPatch contactOfBallAndPlane(const PosedBall& a, const PlaneCollider& b, const Vec3& motion, double margin);
+ContactPatch contactOfCapsules(const PosedCapsule& a, const PosedCapsule& b, const Vec3& motion, double margin);
+ContactPatch contactOfCapsuleAndPlane(const PosedCapsule& a, const PlaneCollider& b, const Vec3& motion, double margin);
 ContactPatch contactOfBoxAndPlane(const PosedBox& a, const PlaneCollider& b, const Vec3& motion, double margin);
 
 /// The same contact with A and B exchanged.

@@ -13,7 +13,8 @@ constexpr double kSameNormal = 0.9;  // cosine, at least, for contacts to be one
 PilePatches::PilePatches(const ContactGeometry& geometry) : geometry_(geometry) {
   for (const Collider& collider : geometry.colliders) {
     boxes_.push_back(boxOf(collider));
-    isFast_.push_back(boxes_.back().has_value() || collider.isBall());
+    const bool isBox = boxes_.back().has_value(), isCapsule = collider.kind() == ColliderKind::capsule;
+    shapes_.push_back(isBox ? Shape::box : collider.isBall() ? Shape::ball : isCapsule ? Shape::capsule : Shape::any);
   }
 }
 
@@ -51,7 +52,9 @@ PilePair PilePatches::pairOf(std::size_t index) const {
 }
 
 bool PilePatches::isFast(const PilePair& pair) const {
-  return isFast_[pair.shapeA] && (pair.againstPlane || isFast_[pair.shapeB]);
+  const Shape a = shapes_[pair.shapeA], b = pair.againstPlane ? Shape::ball : shapes_[pair.shapeB];
+  if (a == Shape::any || b == Shape::any) return false;
+  return !(a == Shape::capsule && b == Shape::box) && !(a == Shape::box && b == Shape::capsule);
 }
 
 ContactPatch PilePatches::patchOf(const PilePair& pair, const PileLook& look, std::vector<Contact>& scratch) const {
@@ -63,6 +66,11 @@ ContactPatch PilePatches::patchOfFastShapes(const PilePair& pair, const PileLook
   const auto ballAt = [&](const Collider& ball, const MovingPose& pose) {
     return PosedBall{pose.position + pose.rotation * ball.points[0], ball.radius};
   };
+  const auto capsuleAt = [](const Collider& capsule, const MovingPose& pose) {  // or a ball
+    const Vec3 &from = capsule.points.front(), &to = capsule.points.back();
+    return PosedCapsule{pose.position + pose.rotation * ((from + to) / 2), pose.rotation * ((to - from) / 2),
+                        capsule.radius};
+  };
   const auto boxAt = [](const BoxShape& box, const MovingPose& pose) {
     return PosedBox{pose.position + pose.rotation * box.center, pose.rotation * box.axes, box.halfSize};
   };
@@ -72,6 +80,8 @@ ContactPatch PilePatches::patchOfFastShapes(const PilePair& pair, const PileLook
   const auto& boxA = boxes_[pair.shapeA];
   if (pair.againstPlane) {
     const PlaneCollider& plane = geometry_.planes[pair.shapeB];
+    if (shapes_[pair.shapeA] == Shape::capsule)
+      return contactOfCapsuleAndPlane(capsuleAt(a, poseA), plane, motion, margin);
     return boxA ? contactOfBoxAndPlane(boxAt(*boxA, poseA), plane, motion, margin)
                 : contactOfBallAndPlane(ballAt(a, poseA), plane, motion, margin);
   }
@@ -80,6 +90,8 @@ ContactPatch PilePatches::patchOfFastShapes(const PilePair& pair, const PileLook
   if (boxA && boxB) return contactOfBoxes(boxAt(*boxA, poseA), boxAt(*boxB, poseB), motion, margin);
   if (boxB) return contactOfBallAndBox(ballAt(a, poseA), boxAt(*boxB, poseB), motion, margin);
   if (boxA) return exchanged(contactOfBallAndBox(ballAt(b, poseB), boxAt(*boxA, poseA), -motion, margin));
+  if (shapes_[pair.shapeA] == Shape::capsule || shapes_[pair.shapeB] == Shape::capsule)
+    return contactOfCapsules(capsuleAt(a, poseA), capsuleAt(b, poseB), motion, margin);
   return contactOfBalls(ballAt(a, poseA), ballAt(b, poseB), motion, margin);
 }
 

@@ -46,7 +46,8 @@ struct PilePair {
   bool againstPlane = false, isExchanged = false;
 };
 
-/// The contact patches of a pile's pairs: boxes and balls fast, other shapes through the general search.
+/// The contact patches of a pile's pairs: boxes, balls and capsules fast, but a capsule with a box and other
+/// shapes through the general search.
 class PilePatches {
  public:
   /// Keeps a reference to `geometry`.
@@ -58,6 +59,7 @@ class PilePatches {
   ContactPatch patchOf(const PilePair& pair, const PileLook& look, std::vector<Contact>& scratch) const;
 
  private:
+  enum class Shape : char { ball, capsule, box, any };
   struct BoxShape {
     Vec3 center;  // m, from the centre of mass, body's frame; world if fixed
     Mat3 axes;
@@ -71,7 +73,7 @@ class PilePatches {
 
   const ContactGeometry& geometry_;
   std::vector<std::optional<BoxShape>> boxes_;  // of each collider
-  std::vector<char> isFast_;                    // of each collider: a ball or a box
+  std::vector<Shape> shapes_;                   // of each collider
 };
 
 }  // namespace cradle

@@ -1,16 +1,20 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
 #include "impact/pile_step.h"
+#include "mesh/primitives.h"
 
 namespace cradle {
 
-/// Balls of radius 0.1 m and cubes of 0.2 m, 1 kg each, over planes, with a step of 1/60 s.
+/// Balls of radius 0.1 m, cubes of 0.2 m and capsules 0.32 m long and 0.12 m wide, 1 kg each, over planes, with a step
+/// of 1/60 s.
 class DroppedBodies {
  public:
-  static constexpr double kHalf = 0.1, kTimeStep = 1.0 / 60;
+  static constexpr double kHalf = 0.1, kCapsuleRadius = 0.06, kTimeStep = 1.0 / 60;
 
   void addPlane(const Vec3& point, const Vec3& normal) { geometry_.planes.push_back({point, normal, 0}); }
   /// A floor and four walls, `width` (m) apart.
@@ -25,6 +29,11 @@ class DroppedBodies {
   void addCube(const Vec3& position, const Quat& turn = Quat::Identity()) {
     const double inertia = 4 * kHalf * kHalf / 6;
     add(colliderOf(Box{Vec3::Constant(2 * kHalf)}, {}), inertia * Mat3::Identity(), position, turn, Vec3::Zero());
+  }
+  void addCapsule(const Vec3& position, const Quat& turn) {
+    const Capsule capsule{kCapsuleRadius, 2 * kHalf};
+    const MassProperties unit = massProperties(capsule, 1);
+    add(colliderOf(capsule, {}), unit.inertiaTensor / unit.mass, position, turn, Vec3::Zero());
   }
   void add(Collider collider, const Mat3& inertiaTensor, const Vec3& position, const Quat& turn, const Vec3& velocity) {
     collider.body = static_cast<int>(bodies_.size());
@@ -67,7 +76,8 @@ class DroppedBodies {
     return sum;
   }
 
-  /// The deepest overlap (m) of balls, cubes and planes, from the poses alone: cubes by all 15 axes.
+  /// The deepest overlap (m) of balls, cubes, capsules and planes, from the poses alone: cubes by all 15 axes,
+  /// capsules by points of one axis 5 mm apart, which miss 0.03 mm at most. Capsules do not meet other bodies.
   double deepestOverlap() {
     double most = 0;
     for (int i = 0; i < count(); ++i) {
@@ -80,12 +90,26 @@ class DroppedBodies {
 
  private:
   bool isBall(int body) const { return geometry_.colliders[static_cast<std::size_t>(body)].isBall(); }
+  bool isCapsule(int body) const {
+    return geometry_.colliders[static_cast<std::size_t>(body)].kind() == ColliderKind::capsule;
+  }
   Mat3 turnOf(int body) { return orientation(state_, body).toRotationMatrix(); }
   double reachAlong(int body, const Vec3& direction) {
+    if (isCapsule(body))
+      return kCapsuleRadius * direction.norm() + kHalf * std::abs(turnOf(body).col(1).dot(direction));
     return kHalf * (isBall(body) ? direction.norm() : (turnOf(body).transpose() * direction).cwiseAbs().sum());
+  }
+  double overlapOfCapsules(const Vec3& offset, const Vec3& axisA, const Vec3& axisB) const {
+    double least = offset.norm();
+    for (int k = -20; k <= 20 && offset.norm() < 2 * (kHalf + kCapsuleRadius); ++k) {
+      const Vec3 at = offset + k / 20.0 * kHalf * axisA;
+      least = std::min(least, (at - std::clamp(at.dot(axisB), -kHalf, kHalf) * axisB).norm());
+    }
+    return 2 * kCapsuleRadius - least;
   }
   double overlapOf(int i, int j) {
     const Vec3 offset = position(i) - position(j);
+    if (isCapsule(i)) return overlapOfCapsules(offset, turnOf(i).col(1), turnOf(j).col(1));
     std::vector<Vec3> axes{offset};
     const Mat3 a = turnOf(i), b = turnOf(j);
     for (int k = 0; k < 3; ++k) {
