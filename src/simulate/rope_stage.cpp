@@ -73,7 +73,8 @@ std::optional<RopeChange> RopeStage::firstChange(const Step& step) {
       first = RopeChange{*fraction, i};
     }
   }
-  if (first && isTaut(first->rope)) startTension_ = tension(first->rope, step.startState);
+  if (first && isTaut(first->rope))
+    tensionScale_ = std::max(tension(first->rope, step.startState), std::abs(tension(first->rope, step.state)));
   return first;
 }
 
@@ -116,7 +117,7 @@ std::optional<double> RopeStage::firstPush(const Step& step, std::size_t rope) {
 }
 
 double RopeStage::margin(const RopeChange& change, const VectorX& state) {
-  if (isTaut(change.rope)) return tension(change.rope, state) / startTension_;
+  if (isTaut(change.rope)) return tension(change.rope, state) / tensionScale_;
   const RopeLimit& rope = assembly_.ropes[change.rope];
   return (motionOf(rope, state).slackLength - change.threshold) / rope.maxLength;
 }
@@ -137,7 +138,7 @@ bool RopeStage::resolve(double time, VectorX& state) {
   // Ropes that would have to push let go, even where others go taut; impacts may have shortened some.
   bool released = false;
   for (std::size_t i = 0; i < tautRod_.size(); ++i) {
-    if (!isTaut(i) || rests(i) || tension(i, state) > kTautPart * startTension_) continue;
+    if (!isTaut(i) || rests(i) || tension(i, state) > kTautPart * tensionScale_) continue;
     release(time, i, state);
     released = true;
   }

@@ -29,8 +29,8 @@ class RopeStage {
   /// be there (prepareInterpolant).
   std::optional<RopeChange> firstChange(const Step& step);
 
-  /// Zero where the change happens, positive before: slack as a part of the length, or tension as a part of that at the
-  /// step's start.
+  /// Zero where the change happens, positive before: slack as a part of the length, or tension as a part of the
+  /// greater of those at both ends of the step.
   double margin(const RopeChange& change, const VectorX& state);
 
   /// What happens at the end of a step: impulses in ropes that are at their length, new rods, released ropes. True if
@@ -82,7 +82,9 @@ class RopeStage {
   };
   std::vector<Member> members_;    // of the impact under way
   std::vector<char> isStretched_;  // has reached its length and not been slack since
-  double startTension_ = 1;        // N, of the change under way
+  // N, of the change under way, the greater of both ends of its step: one that contacts keep just above zero is small
+  // at the start, and no measure of itself.
+  double tensionScale_ = 1;
   VectorX rate_, sample_;
 };
 
