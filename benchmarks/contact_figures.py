@@ -29,7 +29,7 @@ PEERS = (("bullet", 60), ("bulletTuned", 60), ("bulletTuned", 1000), ("bulletTun
 LEAST_RUNS, LONG_RUN = 3, 2.0  # CPU s
 LONGEST_RUN = 60  # s
 SETTLED = 5  # s: by then, what is dropped should lie still
-ROCKED = 20  # s: by then, a struck stack should; rocking as one block, it would take a few seconds more to lose its energy
+ROCKED = 22  # s: by then the struck stack rests
 FAR = 0.5  # m: a stack that has moved that far has collapsed
 
 
