@@ -12,7 +12,7 @@
 #include "collision/mesh_surface.h"
 #include "collision/separation.h"
 #include "core/error.h"
-#include "impact/lasting_contact.h"
+#include "impact/overlap.h"
 
 namespace cradle {
 namespace {
