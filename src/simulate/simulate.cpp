@@ -2,20 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <ctime>
-
+#include "core/cpu_stopwatch.h"
 #include "simulate/plan/plan_text.h"
 #include "simulate/run.h"
 
 namespace cradle {
 namespace {
-
-/// CPU time of this thread in s.
-double cpuSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 std::string shapeText(const Shape& shape) {
   if (const auto* sphere = std::get_if<Sphere>(&shape))
@@ -55,18 +47,18 @@ TrajectoryHeader headerOf(const Scene& scene) {
 RunCost simulate(const Scene& scene, const SimulationSink& sink) {
   refuseUnsupported(scene);
   Run run(scene);
-  double cpu = 0;
+  CpuStopwatch integration;
   for (const std::string& warning : run.startWarnings()) sink.warning(warning);
 
   for (long number = 0; number <= lastFrame(scene); ++number) {
-    const double before = cpuSeconds();
+    integration.start();
     const Frame frame = run.frameAt(number, frameTime(scene, number));
-    cpu += cpuSeconds() - before;
+    integration.stop();
     for (const Event& event : run.takeEvents(frame.time)) sink.event(event);
     for (const std::string& warning : run.takeWarnings()) sink.warning(warning);
     sink.frame(frame);
   }
-  return {cpu, run.evaluations()};
+  return {integration.seconds(), run.evaluations()};
 }
 
 Trajectory simulate(const Scene& scene) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <set>
 
+#include "core/cpu_stopwatch.h"
 #include "core/interruption.h"
 #include "dynamics/integrators/semi_implicit_euler.h"
 #include "dynamics/invariants.h"
@@ -15,13 +15,6 @@ namespace {
 
 constexpr double kSameTime = 1e-6;  // of a step
 constexpr double kFineStep = 1e-6;  // s: engines that choose their steps get no allowance for the error of a long one
-
-/// CPU time of this thread in s.
-double cpuSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 Frame frameOf(const Assembly& assembly, const VectorX& state, long number, double time) {
   Frame frame{number, time, {}, {}};
@@ -50,19 +43,18 @@ RunCost runPeer(const Peer& peer, double setting, const Scene& scene, const Asse
   const ChosenMethod method{MotionKind::fixedSteps, "semi-implicit Euler", timeStep, semiImplicitEuler};
   EnergyGuard guard(assembly, assembly.state, method, scene.duration);
   VectorX state = assembly.state;
-  RunCost cost;
+  CpuStopwatch integration;
   for (long number = 0; number <= lastFrame(scene); ++number) {
     const double time = frameTime(scene, number);
-    const double before = cpuSeconds();
+    integration.start();
     world->advance(time);
     world->read(state);
-    cost.cpuSeconds += cpuSeconds() - before;
+    integration.stop();
     guard.check(state, time, timeStep);
     take(frameOf(assembly, state, number, time));
     throwIfInterrupted();
   }
-  cost.evaluations = world->evaluations();
-  return cost;
+  return {integration.seconds(), world->evaluations()};
 }
 
 bool mayDissipate(const Assembly& assembly) {
