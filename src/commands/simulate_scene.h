@@ -2,9 +2,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "core/progress.h"
 #include "scene/scene.h"
-#include "trajectory/trajectory_file.h"
 
 namespace cradle {
 
@@ -34,7 +35,7 @@ void printPlan(const std::string& scenePath, const SceneOverrides& overrides);
 /// A scene file with its warnings printed to stderr, overrides applied.
 Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides);
 
-/// Simulates a scene into a trajectory file and finishes it, with progress and warnings on stderr.
-void simulateInto(TrajectoryWriter& writer, const Scene& scene, bool quiet);
+/// Prints warnings to stderr, below the line of `progress`.
+void printWarnings(const std::vector<std::string>& warnings, Progress& progress);
 
 }  // namespace cradle

@@ -5,13 +5,18 @@
 #include <algorithm>
 #include <sstream>
 #include <string_view>
+#include <vector>
 
 #include "core/error.h"
+#include "scene/fault_list.h"
+#include "scene/suggestion.h"
 
 namespace cradle {
 namespace {
 
 constexpr std::string_view kHeight = "plot=height:";
+
+constexpr std::size_t kMostNames = 12;  // that a message lists
 
 [[noreturn]] void refuse(const std::string& word, const std::string& why) {
   throw Error(ErrorKind::usage, "--overlay", fmt::format("found \"{}\"; {}", word, why));
@@ -42,6 +47,18 @@ void read(const std::string& word, OverlayChoice& choice) {
            "commas between them");
 }
 
+/// "; allowed are "ball1", "ball2"; did you mean "ball1"?"
+std::string allowedBodies(const OverlayChoice& choice, const Scene& scene) {
+  std::vector<std::string> names, quoted;
+  for (const Body& body : scene.bodies)
+    if (body.motion == Motion::dynamic) names.push_back(body.name);
+  for (const std::string& name : names)
+    if (quoted.size() < kMostNames) quoted.push_back(inQuotes(name));
+  if (quoted.empty()) return "; the scene has none that moves";
+  const std::string others = names.size() > kMostNames ? fmt::format(" and {} more", names.size() - kMostNames) : "";
+  return fmt::format("; allowed are {}{}{}", fmt::join(quoted, ", "), others, didYouMean(choice.plottedBody, names));
+}
+
 }  // namespace
 
 OverlayChoice parseOverlays(const std::string& text) {
@@ -51,12 +68,16 @@ OverlayChoice parseOverlays(const std::string& text) {
   return choice;
 }
 
+bool needsWholeFilm(const OverlayChoice& choice) {
+  return choice.contacts || choice.velocities || choice.plot;
+}
+
 int plottedBody(const OverlayChoice& choice, const Scene& scene) {
   const std::string word = std::string(kHeight) + choice.plottedBody;
   const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
                                  [&](const Body& candidate) { return candidate.name == choice.plottedBody; });
-  if (body == scene.bodies.end()) refuse(word, "there is no body of that name");
-  if (body->motion == Motion::fixed) refuse(word, "that body is static; name one that moves");
+  if (body == scene.bodies.end()) refuse(word, "there is no body of that name" + allowedBodies(choice, scene));
+  if (body->motion == Motion::fixed) refuse(word, "that body is static" + allowedBodies(choice, scene));
   return static_cast<int>(body - scene.bodies.begin());
 }
 

@@ -136,7 +136,8 @@ TrajectoryReader::TrajectoryReader(const std::string& path) : path_(path) {
   readMeta();
   readMeshes();
   readBodies();
-  readFrameTimes();
+  readNewFrames();
+  if (isFinished() && frameTimes_.empty()) session_->database.failDamaged("its frames are missing");
 }
 
 TrajectoryReader::TrajectoryReader(TrajectoryReader&&) noexcept = default;
@@ -197,16 +198,16 @@ void TrajectoryReader::readBodies() {
   }
 }
 
-void TrajectoryReader::readFrameTimes() {
+void TrajectoryReader::readNewFrames() {
   Database& database = session_->database;
-  Statement query = database.prepare("SELECT id, time FROM frame ORDER BY id");
+  Statement query = database.prepare("SELECT id, time FROM frame WHERE id >= ? ORDER BY id");
+  query.bind(1, frameCount());
   while (query.step()) {
     if (query.integer(0) != frameCount()) database.failDamaged(fmt::format("frame {} is missing", frameCount()));
     const double time = query.real(1);
     if (!frameTimes_.empty() && time <= frameTimes_.back()) database.failDamaged("its frames are not in order of time");
     frameTimes_.push_back(time);
   }
-  if (isFinished() && frameTimes_.empty()) database.failDamaged("its frames are missing");
 }
 
 Frame TrajectoryReader::readFrame(long number) const {

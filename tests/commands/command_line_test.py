@@ -405,7 +405,21 @@ class Pictures(InTemporaryFolder):
 
     def test_overlays_that_are_not_there_are_refused(self):
         self.refuses(2, ["--overlay", '"tme"', "allowed are time, contacts"], "render", self.scene, "-o", self.path("f"), "--overlay", "tme")
-        self.refuses(2, ["plot=height:bal", "no body"], "video", self.scene, "-o", self.path("f.mp4"), "--overlay", "plot=height:bal")
+        self.refuses(2, ["plot=height:bal", "no body", '"ball"'], "video", self.scene, "-o", self.path("f.mp4"), "--overlay", "plot=height:bal")
+
+    def test_what_is_wrong_with_pictures_is_told_before_a_long_simulation(self):
+        path = self.write("s.json", scene(duration=1e6))  # minutes
+        for exit_code, words, arguments in ((2, ["--overlay", "no body", '"ball"'], ["--overlay", "plot=height:bal"]),
+                                            (3, ["--size"], ["--size", "0x9"]),
+                                            (2, ["--frames", "60000001"], ["--frames", "5:60000009"])):
+            command = ["render", path, "-o", self.path("f"), *arguments]
+            self.assertLess(self.seconds_until_refused(exit_code, words, command), 5)
+        self.assertLess(self.seconds_until_refused(2, [".mp4"], ["video", path, "-o", self.path("f.avi")]), 5)
+
+    def seconds_until_refused(self, exit_code, words, command):
+        start = time.monotonic()
+        self.refuses(exit_code, words, *command)
+        return time.monotonic() - start
 
     def test_cameras_that_cannot_be_are_refused_before_anything_moves(self):
         for camera, words in (({"position": [0, 0.05, 0], "target": [0, 0, 5]}, ["/camera: ", 'inside body "ball"', "outside all bodies"]),

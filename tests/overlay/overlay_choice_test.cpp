@@ -40,8 +40,9 @@ TEST(OverlayChoice, AnythingElseIsRefusedWithWhatIsAllowed) {
   using testing::HasSubstr;
   for (const char* text : {"", "tme", "time,", "time trails", "plot", "plot=heat", "Time"})
     EXPECT_THAT(refusal(text), HasSubstr("allowed are time, contacts")) << text;
-  EXPECT_THAT(refusal("plot=height:bal"), HasSubstr("no body of that name"));
-  EXPECT_THAT(refusal("plot=height:ground"), HasSubstr("static"));
+  EXPECT_THAT(refusal("plot=height:bal"),
+              HasSubstr("no body of that name; allowed are \"ball\"; did you mean \"ball\"?"));
+  EXPECT_THAT(refusal("plot=height:ground"), HasSubstr("static; allowed are \"ball\""));
   EXPECT_THAT(refusal("plot=energy,plot=height:ball"), HasSubstr("one plot"));
 }
 
