@@ -8,7 +8,6 @@
 namespace cradle {
 
 View viewOf(const TrajectorySource& source, int width, int height) {
-  source.waitForEnd();
   const TrajectoryReader& reader = source.reader();
   const auto pushes = findShownPushes(source.scene(), reader.events(), [&reader](long frame) {
     return reader.readFrame(std::min(frame, reader.frameCount() - 1));

@@ -2,16 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <future>
 
 #include "commands/film_view.h"
-#include "commands/frame_folder.h"
-#include "commands/simulate_scene.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
 #include "core/progress.h"
+#include "image/png.h"
 #include "image/video.h"
 #include "overlay/film_overlay.h"
 #include "render/renderer.h"
@@ -19,10 +20,16 @@
 namespace cradle {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct Size {
   int width, height;  // pixels
 };
 constexpr int kLargestSize = 16384;  // pixels; as in scene files
+
+struct FrameRange {
+  long first, end;  // half-open
+};
 
 /// Two whole numbers around a separator; nothing else.
 std::optional<std::pair<long, long>> parsePair(const std::string& text, char separator) {
@@ -62,7 +69,57 @@ FrameRange parseFrames(const std::optional<std::string>& text, const TrajectoryS
   return *range;
 }
 
-/// What the command line says of pictures. Whatever is wrong with it shows before anything moves.
+constexpr long kMostFrames = 1'000'000;  // that file names have digits for
+
+/// The number of a frame's file, or of one that is being written; nothing for other names.
+std::optional<long> frameNumber(const std::string& name) {
+  const std::string whole = name.ends_with(".part") ? name.substr(0, name.size() - 5) : name;
+  const bool isFrame = whole.size() == 16 && whole.starts_with("frame_") && whole.ends_with(".png") &&
+                       whole.find_first_not_of("0123456789", 6) == 12;
+  return isFrame ? std::optional(std::stol(whole.substr(6, 6))) : std::nullopt;
+}
+
+std::string frameName(long frame) {
+  return fmt::format("frame_{:06}.png", frame);
+}
+
+/// Numbers of the frames in a folder that are in a range, ascending.
+std::vector<long> framesIn(const std::string& folder, const FrameRange& range) {
+  std::vector<long> numbers;
+  std::error_code missing;  // none in a folder that is still to be made
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, missing)) {
+    const auto number = frameNumber(entry.path().filename().string());
+    if (number && *number >= range.first && *number < range.end) numbers.push_back(*number);
+  }
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+/// Refuses a folder with frames that a run would replace without being told to. Without `range`, all frames are its
+/// own.
+void requireRoom(const std::string& folder, const std::optional<FrameRange>& range, const PictureOptions& options) {
+  requireOwnFolder(folder, "frame", [](const std::string& name) { return frameNumber(name).has_value(); });
+  const std::vector<long> there = framesIn(folder, range.value_or(FrameRange{0, kMostFrames}));
+  if (there.empty() || options.overwrite) return;
+  throw Error(
+      ErrorKind::output, folder,
+      fmt::format("holds {} of the frames to be drawn, {} to {}; name a new or empty folder, or say --overwrite to "
+                  "replace them",
+                  there.size(), frameName(there.front()), frameName(there.back())));
+}
+
+/// Frames that the film has not would get between its own when it is encoded.
+void requireNoOthers(const std::string& folder, long frameCount) {
+  const std::vector<long> others = framesIn(folder, {frameCount, kMostFrames});
+  if (others.empty()) return;
+  throw Error(
+      ErrorKind::output, folder,
+      fmt::format("holds {} to {}, which are of another film, for this one has {} frames; remove them, or name a "
+                  "new or empty folder",
+                  frameName(others.front()), frameName(others.back()), frameCount));
+}
+
+/// What the command line says of pictures. Whatever is wrong with it shows before anything is simulated.
 struct PictureOrder {
   PictureOrder(const PictureOptions& options, const Scene& scene)
       : size(parseSize(options.size, scene)), shaders(options.shaders.value_or("")) {
@@ -75,26 +132,26 @@ struct PictureOrder {
   std::optional<OverlayChoice> overlays;
 };
 
-/// What draws the frames of a film, beside the simulation if neither its view nor its overlays wait for the end.
+/// What draws the frames of a film: whatever is wrong with its camera or shaders shows before a picture is made.
 struct FilmDrawer {
   FilmDrawer(const TrajectorySource& trajectory, const PictureOrder& order)
       : source(trajectory),
         view(viewOf(source, order.size.width, order.size.height)),
         renderer(source.scene(), view, order.size.width, order.size.height, order.shaders) {
     if (!order.overlays) return;
-    if (needsWholeFilm(*order.overlays)) source.waitForEnd();
+    const TrajectoryReader& reader = source.reader();
     const FilmRecord film{source.scene(),
                           view,
                           order.size.width,
                           order.size.height,
-                          [this](long number) { return source.frame(number); },
-                          source.frameCount(),
-                          source.reader().events()};
+                          [&reader](long number) { return reader.readFrame(number); },
+                          reader.frameCount(),
+                          reader.events()};
     overlay.emplace(film, *order.overlays);
   }
 
   Image draw(long number) {
-    const Frame frame = source.frame(number);
+    const Frame frame = source.reader().readFrame(number);
     Image image = renderer.render(frame);
     if (overlay) overlay->draw(frame, image);
     return image;
@@ -106,52 +163,36 @@ struct FilmDrawer {
   std::optional<FilmOverlay> overlay;
 };
 
-/// Draws frames in order and hands each picture on in a thread beside the drawing of the next one; what is left of the
-/// simulation then goes on to its end.
+/// Draws frames in order and hands each picture on in a thread beside the drawing of the next one.
 template <class Take>
 void drawFrames(FilmDrawer& drawer, const FrameRange& range, bool quiet, const Take& take) {
-  {
-    Progress progress("Drawing", "pictures", range.end - range.first, quiet);
-    std::future<void> taken;
-    for (long frame = range.first; frame < range.end; ++frame) {
-      throwIfInterrupted();
-      Image image = drawer.draw(frame);
-      printWarnings(drawer.source.takeWarnings(), progress);
-      if (taken.valid()) taken.get();
-      taken = std::async(std::launch::async, [&take, frame, picture = std::move(image)] { take(frame, picture); });
-      progress.update(frame - range.first + 1);
-    }
-    taken.get();
+  Progress progress("Drawing", "pictures", range.end - range.first, quiet);
+  std::future<void> taken;
+  for (long frame = range.first; frame < range.end; ++frame) {
+    throwIfInterrupted();
+    Image image = drawer.draw(frame);
+    if (taken.valid()) taken.get();
+    taken = std::async(std::launch::async, [&take, frame, picture = std::move(image)] { take(frame, picture); });
+    progress.update(frame - range.first + 1);
   }
-  drawer.source.waitForEnd();
-}
-
-/// Whether the pictures drawn before an error are worth keeping: others could be drawn beside them.
-bool leavesGoodPictures(const Error& error, const TrajectorySource& source) {
-  return source.isComplete() && (error.kind() == ErrorKind::interrupted || error.kind() == ErrorKind::output);
+  taken.get();
 }
 
 }  // namespace
 
 void renderFrames(const std::string& input, const std::string& folder, const PictureOptions& options, bool quiet) {
-  FrameFolder frames(folder, parseRange(options.frames), options.overwrite);
+  requireRoom(folder, parseRange(options.frames), options);
   if (options.overlay) parseOverlays(*options.overlay);
   TrajectorySource source(input, quiet);
   const PictureOrder order(options, source.scene());
   const FrameRange range = parseFrames(options.frames, source);
-  frames.requireNoOthers(source.frameCount());
-
-  source.start();
-  if (options.overwrite) source.waitForEnd();  // a simulation that fails has replaced nothing
+  requireNoOthers(folder, source.frameCount());
+  source.simulate();
   FilmDrawer drawer(source, order);
-  frames.make();
-  try {
-    drawFrames(drawer, range, quiet, [&](long frame, const Image& picture) { frames.write(frame, picture); });
-    frames.keep();
-  } catch (const Error& error) {
-    if (leavesGoodPictures(error, source)) frames.keep();
-    throw;
-  }
+  makeFolder(folder);
+  drawFrames(drawer, range, quiet, [&](long frame, const Image& picture) {
+    writePng(picture, (fs::path(folder) / frameName(frame)).string());
+  });
 }
 
 void encodeFrames(const std::string& folder, const std::string& film, double framesPerSecond, bool quiet) {
@@ -169,8 +210,7 @@ void makeFilm(const std::string& input, const std::string& film, const PictureOp
   TrajectorySource source(input, quiet);
   const PictureOrder order(options, source.scene());
   VideoEncoder encoder(film, {order.size.width, order.size.height, source.scene().output.framesPerSecond});
-
-  source.start();
+  source.simulate();
   FilmDrawer drawer(source, order);
   drawFrames(drawer, {0, source.pictureCount()}, quiet, [&](long, const Image& picture) { encoder.add(picture); });
   encoder.finish();

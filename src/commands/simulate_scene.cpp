@@ -64,19 +64,6 @@ void apply(const SceneOverrides& overrides, Scene& scene) {
   scene.method->timeStep = requirePositive("--time-step", *overrides.timeStep);
 }
 
-/// Simulates a scene into a trajectory file and finishes it, with progress and warnings on stderr.
-void simulateInto(TrajectoryWriter& writer, const Scene& scene, bool quiet) {
-  Progress progress("Simulating", "frames", lastFrame(scene) + 1, quiet);
-  const SimulationSink sink{[&](const Frame& frame) {
-                              writer.append(frame);
-                              progress.update(frame.number + 1);
-                            },
-                            [&](const Event& event) { writer.append(event); },
-                            [&](const std::string& warning) { printWarnings({warning}, progress); }};
-  const RunCost cost = simulate(scene, sink);
-  writer.finish(cost);
-}
-
 void printAchievedAccuracy(const Scene& scene, const std::string& output, bool quiet) {
   const TrajectoryReader run(output);
   Progress progress("Checking", "frames", run.frameCount(), quiet);
@@ -94,17 +81,27 @@ void printAchievedAccuracy(const Scene& scene, const std::string& output, bool q
 
 }  // namespace
 
-void printWarnings(const std::vector<std::string>& warnings, Progress& progress) {
-  if (!warnings.empty()) progress.endLine();
-  for (const std::string& warning : warnings) warn(warning);
-}
-
 Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides) {
   LoadedScene loaded = loadScene(path);
   for (const std::string& warning : loaded.warnings) warn(warning);
   apply(overrides, loaded.scene);
   requireUsableCamera(loaded.scene);
   return std::move(loaded.scene);
+}
+
+void simulateInto(TrajectoryWriter& writer, const Scene& scene, bool quiet) {
+  Progress progress("Simulating", "frames", lastFrame(scene) + 1, quiet);
+  const SimulationSink sink{[&](const Frame& frame) {
+                              writer.append(frame);
+                              progress.update(frame.number + 1);
+                            },
+                            [&](const Event& event) { writer.append(event); },
+                            [&](const std::string& warning) {
+                              progress.endLine();
+                              warn(warning);
+                            }};
+  const RunCost cost = simulate(scene, sink);
+  writer.finish(cost);
 }
 
 void simulateScene(const std::string& scenePath, const std::string& output, const SimulateOptions& options,

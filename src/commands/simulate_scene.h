@@ -2,10 +2,9 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "core/progress.h"
 #include "scene/scene.h"
+#include "trajectory/trajectory_file.h"
 
 namespace cradle {
 
@@ -35,7 +34,7 @@ void printPlan(const std::string& scenePath, const SceneOverrides& overrides);
 /// A scene file with its warnings printed to stderr, overrides applied.
 Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides);
 
-/// Prints warnings to stderr, below the line of `progress`.
-void printWarnings(const std::vector<std::string>& warnings, Progress& progress);
+/// Simulates a scene into a trajectory file and finishes it, with progress and warnings on stderr.
+void simulateInto(TrajectoryWriter& writer, const Scene& scene, bool quiet);
 
 }  // namespace cradle

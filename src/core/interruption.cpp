@@ -1,6 +1,5 @@
 #include "core/interruption.h"
 
-#include <atomic>
 #include <csignal>
 
 #include "core/error.h"
@@ -8,9 +7,8 @@
 namespace cradle {
 namespace {
 
-// The only global: a signal handler has no other place to write to. All threads look at it.
-std::atomic<int> notedSignal = 0;
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler takes no lock");
+// The only global: a signal handler has no other place to write to.
+volatile std::sig_atomic_t notedSignal = 0;
 
 void note(int signal) {
   notedSignal = signal;

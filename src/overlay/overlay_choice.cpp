@@ -68,10 +68,6 @@ OverlayChoice parseOverlays(const std::string& text) {
   return choice;
 }
 
-bool needsWholeFilm(const OverlayChoice& choice) {
-  return choice.contacts || choice.velocities || choice.plot;
-}
-
 int plottedBody(const OverlayChoice& choice, const Scene& scene) {
   const std::string word = std::string(kHeight) + choice.plottedBody;
   const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),

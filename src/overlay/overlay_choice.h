@@ -23,9 +23,6 @@ struct OverlayChoice {
 /// Throws Error(usage) for anything else.
 OverlayChoice parseOverlays(const std::string& text);
 
-/// Whether an overlay shows how something compares with the rest of the film, so that all of it must be there first.
-bool needsWholeFilm(const OverlayChoice& choice);
-
 /// The index of the body whose height is plotted. Throws Error(usage) if the scene has none that moves of that name.
 int plottedBody(const OverlayChoice& choice, const Scene& scene);
 

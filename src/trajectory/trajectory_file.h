@@ -37,9 +37,6 @@ class TrajectoryWriter {
   /// Completes the file and gives it its name. There must be a frame. Throws Error(output).
   void finish(const RunCost& cost);
 
-  /// How many frames a reader of the file would find.
-  long readableFrames() const { return framesCommitted_; }
-
   /// Ends a run that is not finished, as the destructor does, and says where its frames are: FILE.part, or empty if
   /// nothing was kept (or the run is finished).
   std::string keptPath();
@@ -77,9 +74,6 @@ class TrajectoryReader {
   const std::vector<double>& frameTimes() const { return frameTimes_; }  // s, ascending
   long frameCount() const { return static_cast<long>(frameTimes_.size()); }
 
-  /// Takes in the frames that a run has written meanwhile. Throws as the constructor does. O(new frames).
-  void readNewFrames();
-
   /// Frame `number` of 0..frameCount()-1, in any order. Throws as the constructor does. O(bodies).
   Frame readFrame(long number) const;
   std::vector<Event> events() const;
@@ -97,6 +91,7 @@ class TrajectoryReader {
   void readMeta();
   void readMeshes();
   void readBodies();
+  void readFrameTimes();
 
   std::string path_;
   TrajectoryHeader header_;

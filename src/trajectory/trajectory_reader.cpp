@@ -136,8 +136,7 @@ TrajectoryReader::TrajectoryReader(const std::string& path) : path_(path) {
   readMeta();
   readMeshes();
   readBodies();
-  readNewFrames();
-  if (isFinished() && frameTimes_.empty()) session_->database.failDamaged("its frames are missing");
+  readFrameTimes();
 }
 
 TrajectoryReader::TrajectoryReader(TrajectoryReader&&) noexcept = default;
@@ -198,16 +197,16 @@ void TrajectoryReader::readBodies() {
   }
 }
 
-void TrajectoryReader::readNewFrames() {
+void TrajectoryReader::readFrameTimes() {
   Database& database = session_->database;
-  Statement query = database.prepare("SELECT id, time FROM frame WHERE id >= ? ORDER BY id");
-  query.bind(1, frameCount());
+  Statement query = database.prepare("SELECT id, time FROM frame ORDER BY id");
   while (query.step()) {
     if (query.integer(0) != frameCount()) database.failDamaged(fmt::format("frame {} is missing", frameCount()));
     const double time = query.real(1);
     if (!frameTimes_.empty() && time <= frameTimes_.back()) database.failDamaged("its frames are not in order of time");
     frameTimes_.push_back(time);
   }
+  if (isFinished() && frameTimes_.empty()) database.failDamaged("its frames are missing");
 }
 
 Frame TrajectoryReader::readFrame(long number) const {

@@ -416,6 +416,29 @@ class Pictures(InTemporaryFolder):
             self.assertLess(self.seconds_until_refused(exit_code, words, command), 5)
         self.assertLess(self.seconds_until_refused(2, [".mp4"], ["video", path, "-o", self.path("f.avi")]), 5)
 
+    def test_pictures_of_an_unstable_scene_end_with_7_and_leave_nothing(self):
+        spring = {"name": "stiff", "bodyA": "ball", "anchorA": [0, 0.1, 0], "anchorB": [0, 1, 0], "stiffness": 1e7, "restLength": 0.5}
+        path = self.write("s.json", scene(springs=[spring], duration=2, method={"name": "rk4"}, camera={"position": [0, 0, 5], "target": [0, 0, 0]}))
+        self.refuses(7, ["unstable at"], "video", path, "-o", self.path("f.mp4"))
+        self.refuses(7, ["unstable at"], "render", path, "-o", self.path("f"))
+
+    def test_an_interrupted_film_leaves_nothing_and_ends_at_once(self):
+        while_simulating = scene(duration=1e6)
+        while_drawing = scene(duration=100, output={"framesPerSecond": 60, "width": 640, "height": 360})
+        for document, number, exit_code in ((while_simulating, signal.SIGINT, 130), (while_drawing, signal.SIGTERM, 143)):
+            self.write("s.json", document)
+            os.makedirs(self.path("tmp"), exist_ok=True)
+            process = subprocess.Popen([PROGRAM, "video", self.scene, "-o", self.path("f.mp4")], stderr=subprocess.PIPE, text=True,
+                                       env={**os.environ, "TMPDIR": self.path("tmp")})
+            time.sleep(1.5)  # both take minutes
+            start = time.monotonic()
+            process.send_signal(number)
+            _, stderr = process.communicate(timeout=20)
+            self.assertEqual(process.returncode, exit_code, stderr)
+            self.assertLess(time.monotonic() - start, 10)
+            self.assertEqual(self.listing(), ["s.json", "tmp"])
+            self.assertEqual(os.listdir(self.path("tmp")), [])
+
     def seconds_until_refused(self, exit_code, words, command):
         start = time.monotonic()
         self.refuses(exit_code, words, *command)
