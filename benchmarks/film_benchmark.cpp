@@ -1,7 +1,8 @@
 // benchmark_film SCENE [WIDTH HEIGHT]: what `cradle video SCENE` costs beside drawing its pictures and encoding them
-// alone, one after the other in a run of their own (CPU time, all threads and ffmpeg), and how much of its CPU time goes
-// on at once: the elapsed time, which means something where nothing else runs, and the least that it can be on two cores,
-// from what must go on in the drawing thread. Medians of runs in turns. Films go to the folder for temporary files.
+// alone, one after the other in a run of their own (CPU time, all threads and ffmpeg), and how much of its CPU time
+// goes on at once: the elapsed time, which means something where nothing else runs, and the least that it can be on two
+// cores, from what must go on in the drawing thread. Medians of runs in turns. Films go to the folder for temporary
+// files.
 
 #include <fmt/format.h>
 #include <sys/resource.h>

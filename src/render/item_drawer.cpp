@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "render/occlusion.h"
 
 namespace cradle {
 namespace {
@@ -31,6 +34,31 @@ bool isSeenIn(const PixelRectangle& seen, const PixelRectangle* area) {
          (seen.left < area->right && seen.right > area->left && seen.bottom < area->top && seen.top > area->bottom);
 }
 
+/// Of the ball around the middle of its bounds that fits into a closed mesh, if it fills them as a box does: else 0.
+double radiusInside(const DrawnMesh& mesh) {
+  constexpr double kFull = 1 - 1e-9;
+  const Bounds bounds = boundsOf(mesh).whole;
+  double volume = 0;  // signed tetrahedra from a corner
+  for (const auto& [a, b, c] : mesh.triangles)
+    volume += (mesh.vertices[a] - bounds.min())
+                  .dot((mesh.vertices[b] - bounds.min()).cross(mesh.vertices[c] - bounds.min())) /
+              6;
+  return volume >= kFull * bounds.volume() ? bounds.sizes().minCoeff() / 2 : 0;
+}
+
+double nearestDepth(const DrawnHull& hull, const Occlusion& occlusion) {
+  constexpr double kOutermost = 1.06;  // of a radius: corners of polygons that stand for circles
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < hull.count; ++i) nearest = std::min(nearest, occlusion.depthOf(hull.centers[i]));
+  return nearest - kOutermost * hull.radius;
+}
+
+/// The pixels in which a hull may be seen: none, if something stands before it.
+PixelRectangle seenIn(const DrawnHull& hull, const Stage& stage, const Occlusion& occlusion) {
+  const PixelRectangle pixels = seenIn(hull, stage);
+  return occlusion.hides(pixels, nearestDepth(hull, occlusion)) ? PixelRectangle{} : pixels;
+}
+
 /// Calls draw(first, count) for each run of instances in [first, first + count) that are seen in `area`.
 template <typename Draw>
 void forSeen(const std::vector<PixelRectangle>& seen, std::size_t first, std::size_t count, const PixelRectangle* area,
@@ -53,7 +81,10 @@ ItemDrawer::ItemDrawer(const Appearance& appearance, const Stage& stage)
       coilMesh_(makeTube(kMostCoilTurns * kSegmentsPerTurn, kSegmentsAround)),
       ropeMesh_(makeTube(kRopeSegments, kSegmentsAround)),
       square_({-1, -1, 1, -1, 1, 1, -1, 1}, 2, {0, 1, 2, 0, 2, 3}) {
-  for (const DrawnMesh& mesh : appearance.meshes) meshes_.emplace_back(mesh);
+  for (std::size_t i = 0; i < appearance.meshes.size(); ++i) {
+    meshes_.emplace_back(appearance.meshes[i]);
+    radiusInside_.push_back(appearance.meshIsClosed[i] ? radiusInside(appearance.meshes[i]) : 0);
+  }
   for (const int outline : kOutlines) {
     halfBalls_.push_back(makeHalfBall(outline));
     halfCylinders_.push_back(makeHalfCylinder(outline));
@@ -68,11 +99,21 @@ void ItemDrawer::take(const DrawList& list, const std::vector<MeshBounds>& meshB
   cylinderInstances_.upload(packed_.cylinderInstances);
   tubeInstances_.upload(packed_.tubeInstances);
   contactInstances_.upload(packed_.contactInstances);
+  findSeen(list, meshBounds);
+}
+
+void ItemDrawer::findSeen(const DrawList& list, const std::vector<MeshBounds>& meshBounds) {
   for (Seen* seen : {&seenMeshes_, &seenSpheres_, &seenCylinders_, &seenTubes_}) seen->clear();
+  Occlusion occlusion(stage_);
+  for (const SphereItem& item : list.spheres) occlusion.add(item.center, item.radius);
+  for (const MeshItem& item : list.meshes)
+    if (const double radius = radiusInside_[static_cast<std::size_t>(item.mesh)]; radius > 0)
+      occlusion.add(item.bounds.center(), radius);
   for (const MeshItem& item : list.meshes)
     seenMeshes_.push_back(
-        seenIn(hullOf(meshBounds[static_cast<std::size_t>(item.mesh)].whole, item.worldFromMesh), stage_));
-  for (const std::size_t i : packed_.sphereItems) seenSpheres_.push_back(seenIn(hullOf(list.spheres[i]), stage_));
+        seenIn(hullOf(meshBounds[static_cast<std::size_t>(item.mesh)].whole, item.worldFromMesh), stage_, occlusion));
+  for (const std::size_t i : packed_.sphereItems)
+    seenSpheres_.push_back(seenIn(hullOf(list.spheres[i]), stage_, occlusion));
   for (const std::size_t i : packed_.cylinderItems) seenCylinders_.push_back(seenIn(hullOf(list.cylinders[i]), stage_));
   for (const TubeItem& item : list.tubes) seenTubes_.push_back(seenIn(hullOf(item), stage_));
 }

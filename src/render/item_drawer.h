@@ -18,7 +18,7 @@ class ItemDrawer {
   /// Takes a picture's items; `meshBounds` as in changedArea.
   void take(const DrawList& list, const std::vector<MeshBounds>& meshBounds);
 
-  /// Draws with the program in use what is seen in `area`, or all; walls apart.
+  /// Draws with the program in use what is seen in `area` of the picture, or all; walls apart.
   void drawMeshes(const PixelRectangle* area = nullptr) const;
   void drawWalls() const;
   void drawSpheres(const PixelRectangle* area = nullptr) const;
@@ -31,7 +31,8 @@ class ItemDrawer {
   const PackedDrawList& packed() const { return packed_; }
 
  private:
-  using Seen = std::vector<PixelRectangle>;  // by instance
+  using Seen = std::vector<PixelRectangle>;  // by instance; empty where something stands before it
+  void findSeen(const DrawList& list, const std::vector<MeshBounds>& meshBounds);
 
   const Appearance& appearance_;
   const Stage& stage_;
@@ -41,6 +42,7 @@ class ItemDrawer {
   GpuMesh coilMesh_, ropeMesh_, square_;
   PackedDrawList packed_;
   Seen seenMeshes_, seenSpheres_, seenCylinders_, seenTubes_;
+  std::vector<double> radiusInside_;  // m, by mesh: of a ball around the middle of its bounds that it contains, or 0
 };
 
 }  // namespace cradle

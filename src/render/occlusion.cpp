@@ -1,0 +1,71 @@
+// Mesa's software renderer computes the colour of every pixel of every triangle, hidden or not, where pixels have
+// several samples: it tests their depths first, but goes on with none left. So what is wholly hidden is found here, and
+// left out. The other way round from hierarchical depth buffers (N. Greene, M. Kass, G. Miller, "Hierarchical Z-buffer
+// visibility", SIGGRAPH 1993): not from what is drawn, but from discs that are surely inside of it.
+
+#include "render/occlusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/camera.h"
+
+namespace cradle {
+namespace {
+
+constexpr int kCell = 2;  // pixels a side
+// Of a ball's radius: the outlines of polygons that are drawn for it come as near to the centre as 0.974.
+constexpr double kSurelyFilled = 0.96;
+constexpr double kSurelyBehind = 1.002;  // ratio of depths that the depth buffer tells apart, wherever the scene is
+
+}  // namespace
+
+Occlusion::Occlusion(const Stage& stage)
+    : stage_(stage),
+      axes_(cameraAxes(stage.camera)),
+      focal_(stage.height / (2 * std::tan(stage.camera.verticalFieldOfView / 2))),
+      columns_((stage.width + kCell - 1) / kCell),
+      rows_((stage.height + kCell - 1) / kCell),
+      filledAt_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_),
+                std::numeric_limits<float>::infinity()) {}
+
+double Occlusion::depthOf(const Vec3& point) const {
+  return -axes_.col(2).dot(point - stage_.camera.position);
+}
+
+/// The disc through the centre, parallel to the picture, is inside the ball and a circle in the picture; what is seen
+/// of the ball there is nearer than the disc.
+void Occlusion::add(const Vec3& center, double radius) {
+  const Vec3 seen = axes_.transpose() * (center - stage_.camera.position);
+  const double depth = -seen.z(), inside = kSurelyFilled * radius;
+  if (depth <= 2 * radius) return;  // perhaps cut by the near plane
+  const double x = (stage_.width / 2.0 + focal_ * seen.x() / depth) / kCell;
+  const double y = (stage_.height / 2.0 + focal_ * seen.y() / depth) / kCell;
+  const double reach = focal_ * inside / depth / kCell;  // cells
+  const int firstRow = std::max(0, static_cast<int>(std::ceil(std::max(y - reach, -1.0))));
+  const int endRow = static_cast<int>(std::floor(std::min<double>(y + reach, rows_)));
+  for (int row = firstRow; row < endRow; ++row) {
+    const double away = std::max(std::abs(row - y), std::abs(row + 1 - y));
+    if (away >= reach) continue;
+    const double half = std::sqrt(reach * reach - away * away);
+    const int first = std::max(0, static_cast<int>(std::ceil(std::max(x - half, -1.0))));
+    const int end = static_cast<int>(std::floor(std::min<double>(x + half, columns_)));
+    float* cells = filledAt_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
+    for (int column = first; column < end; ++column) cells[column] = std::min(cells[column], static_cast<float>(depth));
+  }
+}
+
+bool Occlusion::hides(const PixelRectangle& pixels, double nearest) const {
+  const float behind = static_cast<float>(nearest / kSurelyBehind);
+  const int left = std::max(pixels.left, 0) / kCell, right = (std::min(pixels.right, stage_.width) - 1) / kCell;
+  const int bottom = std::max(pixels.bottom, 0) / kCell, top = (std::min(pixels.top, stage_.height) - 1) / kCell;
+  for (int row = bottom; row <= top; ++row) {
+    const float* cells = filledAt_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
+    for (int column = left; column <= right; ++column)
+      if (!(cells[column] < behind)) return false;
+  }
+  return true;
+}
+
+}  // namespace cradle
