@@ -1,0 +1,33 @@
+#include "study/stability/maps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "study/stability/smooth_motion_maps.h"
+
+namespace cradle {
+
+const std::vector<MapEntry>& stabilityMaps() {
+  static const std::vector<MapEntry> maps = {
+      {"step_stiffness", 5, stiffnessMap},     {"step_damping", 5, dampingMap}, {"free_rotation", 5, freeRotationMap},
+      {"rotation_drift", 1, rotationDriftMap}, {"logistic", 0.1, logisticMap},  {"logistic_step", 0.1, logisticStepMap},
+  };
+  return maps;
+}
+
+std::vector<MapEntry> stabilityMapsNamed(const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const MapEntry& map : stabilityMaps()) known.push_back(map.name);
+  for (const std::string& name : names)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error(ErrorKind::usage, "--maps",
+                  fmt::format("found \"{}\"; allowed are {}", name, fmt::join(known, ", ")));
+  std::vector<MapEntry> chosen;
+  for (const MapEntry& map : stabilityMaps())
+    if (names.empty() || std::find(names.begin(), names.end(), map.name) != names.end()) chosen.push_back(map);
+  return chosen;
+}
+
+}  // namespace cradle
