@@ -55,13 +55,10 @@ TEST(Sweeps, AreNotWhatOurSolversNeedAtAnyMass) {
   }
 }
 
-TEST(Sweeps, OfRodsThatOnlyPushNeverHoldAChain) {
-  StopProblem chain = chainToStop(3, 1);
-  for (ConstraintRow& row : chain.rows) row.linearA *= -1, row.linearB *= -1;  // now a multiplier > 0 would pull
-  EXPECT_LT(countSweeps(chain).sweeps, 50);
-  chain.kind = RowKind::pushes;
-  GaussSeidel solver(chain.rows, chain.kind, chain.assembly.mechanism.bodies, chain.state);
-  for (int i = 0; i < 100; ++i) solver.sweep();
+TEST(Sweeps, OfRodsThatOnlyPushDoNotHoldAChain) {
+  const StopProblem chain = chainToStop(3, 1);
+  GaussSeidel solver(chain.rows, RowKind::pushes, chain.assembly.mechanism.bodies, chain.state);
+  for (int i = 0; i < 50; ++i) solver.sweep();
   EXPECT_NEAR(linearVelocity(solver.state(), 2).norm(), 9.81 / 60, 1e-12);
 }
 

@@ -5,7 +5,12 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "study/stability/bounce_energy_map.h"
+#include "study/stability/coming_to_rest_map.h"
+#include "study/stability/cradle_map.h"
 #include "study/stability/smooth_motion_maps.h"
+#include "study/stability/sweeps_map.h"
+#include "study/stability/tunnelling_map.h"
 
 namespace cradle {
 
@@ -13,6 +18,11 @@ const std::vector<MapEntry>& stabilityMaps() {
   static const std::vector<MapEntry> maps = {
       {"step_stiffness", 5, stiffnessMap},     {"step_damping", 5, dampingMap}, {"free_rotation", 5, freeRotationMap},
       {"rotation_drift", 1, rotationDriftMap}, {"logistic", 0.1, logisticMap},  {"logistic_step", 0.1, logisticStepMap},
+      {"sweeps", 5, sweepsMap},
+      {"tunnelling", 5, tunnellingMap},
+      {"bounce_energy", 2, bounceEnergyMap},
+      {"coming_to_rest", 1, comingToRestMap},
+      {"cradle", 0.1, cradleMap},
   };
   return maps;
 }
