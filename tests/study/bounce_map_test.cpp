@@ -92,5 +92,14 @@ TEST(ComingToRest, OfTextbookCollisionsEndsInTheGround) {
   EXPECT_GT(fine.depth, 0.001);
 }
 
+// Some sixty bounces, each at a depth of its own: in the mean they take what theory says.
+TEST(ComingToRest, OfTextbookCollisionsIsEarlyByWhatBouncesLose) {
+  for (const double step : {1.0 / 240, 1.0 / 960}) {
+    const double expected = expectedTextbookRestTime(0.95, step);
+    EXPECT_LT(expected, 0.9 * zenoTime(0.95));
+    EXPECT_NEAR(textbookRest(0.95, step).time / expected, 1, 0.02) << step;
+  }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -13,7 +13,8 @@ auto isNear(const Speeds& expected) {
 
 // references.json, R7x.
 const std::vector<Speeds> kRight = {{0, 0, 0, 0, 1}, {0, 0, 0, 1, 1}, {0, 0, 1, 1, 1}};
-const std::vector<Speeds> kNewton = {{-0.6, 0.4, 0.4, 0.4, 0.4}, {-0.2, -0.2, 0.8, 0.8, 0.8}, {0.2, 0.2, 0.2, 1.2, 1.2}};
+const std::vector<Speeds> kNewton = {
+    {-0.6, 0.4, 0.4, 0.4, 0.4}, {-0.2, -0.2, 0.8, 0.8, 0.8}, {0.2, 0.2, 0.2, 1.2, 1.2}};
 
 TEST(CradleByLaw, LetsAsManyBallsLeaveAsCome) {
   for (int moving = 1; moving <= 3; ++moving) {

@@ -10,8 +10,8 @@ namespace {
 constexpr double kPi = 3.14159265358979324;
 
 double factorOf(const StopProblem& problem) {
-  return convergenceFactor(GaussSeidel(problem.rows, problem.kind, problem.assembly.mechanism.bodies, problem.state)
-                               .matrix());
+  return convergenceFactor(
+      GaussSeidel(problem.rows, problem.kind, problem.assembly.mechanism.bodies, problem.state).matrix());
 }
 
 /// Sweeps go as 1 / log(factor): both to 1 %.

@@ -42,5 +42,13 @@ TEST(Tunnelling, NeverHappensWhereStepsEndAtImpacts) {
     }
 }
 
+TEST(Tunnelling, IsTriedOnTheFastContactStepToo) {
+  Scene scene = marblesAtPlate(0.001, std::vector<Throw>(60, {1e-9, 1}));
+  scene.accuracy = 1e-3;
+  const Plan plan = planOf(scene);
+  ASSERT_EQ(plan.islands.size(), 1U);
+  EXPECT_EQ(plan.islands[0].method.kind, MotionKind::pile);
+}
+
 }  // namespace
 }  // namespace cradle

@@ -18,8 +18,8 @@ struct BounceMethod {
   MethodName name;
   Integrator integrate;
 
-  /// Change of the height that a bounce with speed s leaves, beside e^2, in parts of s h: from where in a step an impact
-  /// falls, in the mean, and from what the integrator does to a parabola.
+  /// Change of the height that a bounce with speed s leaves, beside e^2, in parts of s h: from where in a step an
+  /// impact falls, in the mean, and from what the integrator does to a parabola.
   double heightChange(double restitution) const;
 };
 const std::vector<BounceMethod>& bounceMethods();

@@ -22,6 +22,9 @@ struct TextbookRest {
 };
 TextbookRest textbookRest(double restitution, double timeStep);
 
+/// When that is to be expected: each bounce leaves the height that it does in the mean (bounce_energy_map.h).
+double expectedTextbookRestTime(double restitution, double timeStep);
+
 /// Restitution against the error of the time of rest.
 StabilityMap comingToRestMap(const MapProgress& progress);
 

@@ -11,21 +11,21 @@
 namespace cradle {
 namespace {
 
-constexpr double kBallRadius = 0.1;    // m
-constexpr double kPlateWidth = 100;    // m: no marble gets past its edge
-constexpr double kMarbleSpacing = 4;   // radii
+constexpr double kBallRadius = 0.1;      // m
+constexpr double kPlateWidth = 100;      // m: no marble gets past its edge
+constexpr double kMarbleSpacing = 4;     // radii
 constexpr double kRowBallRadius = 0.05;  // m
-constexpr double kTouching = 1e-9;  // m: rounding of places
+constexpr double kTouching = 1e-9;       // m: rounding of places
 
 Scene sceneOf(const std::string& name, double duration, const std::string& members) {
-  const std::string text = fmt::format(
-      R"({{"schema": "cradle-scene/1", "name": "{}", "duration": {}, {}}})", name, duration, members);
+  const std::string text =
+      fmt::format(R"({{"schema": "cradle-scene/1", "name": "{}", "duration": {}, {}}})", name, duration, members);
   return parseScene(text, name, [](const MeshReference&) { return LoadedModel{}; }).scene;
 }
 
 std::string smoothMaterial(double restitution) {
-  return fmt::format(
-      R"("materials": {{"smooth": {{"restitution": {}, "staticFriction": 0, "dynamicFriction": 0}}}})", restitution);
+  return fmt::format(R"("materials": {{"smooth": {{"restitution": {}, "staticFriction": 0, "dynamicFriction": 0}}}})",
+                     restitution);
 }
 
 const std::string kGround =
@@ -91,8 +91,9 @@ Scene hangingChain(int balls, double bobMass) {
                               "anchorB": [0, 0, 0]}})",
                                         i, i - 1));
   }
-  return sceneOf("hanging chain", 1,
-                 fmt::format("{}, {}, \"rods\": [{}]", smoothMaterial(0), bodiesText({}, chain), fmt::join(rods, ", ")));
+  return sceneOf(
+      "hanging chain", 1,
+      fmt::format("{}, {}, \"rods\": [{}]", smoothMaterial(0), bodiesText({}, chain), fmt::join(rods, ", ")));
 }
 
 Scene rowOfFiveBalls(int moving) {

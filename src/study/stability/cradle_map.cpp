@@ -122,14 +122,16 @@ StabilityMap cradleMap(const MapProgress& progress) {
   map.name = "cradle";
   map.title = "Newton's cradle: speeds of five touching balls after one hits the others at 1 m/s";
   map.subtitle =
-      "No gravity, no friction, restitution 1, equal balls. The other engines: steps of 1/1000 s, 0.1 s after the impact.";
+      "No gravity, no friction, restitution 1, equal balls. The other engines: steps of 1/1000 s, 0.1 s after the "
+      "impact.";
   map.paragraph =
       "Right is 0, 0, 0, 0, 1. Generalized reflections, which the plan uses, and impulses pair by pair give that. "
       "Newton's law for all contacts at once keeps momentum and energy as well, and throws the ball back at 3/5 of its "
-      "speed, with the other four at 2/5. The other engines, touching balls and steps of 1/1000 s, solve all contacts at "
+      "speed, with the other four at 2/5. The other engines, touching balls and steps of 1/1000 s, solve all contacts "
+      "at "
       "once too, or as soft ones.";
-  map.x = {{"ball", "", false}, {}};
-  map.y = {{"speed after the impact", "m/s", false}, {}};
+  map.x = linearAxis("ball", "", {0, 6});
+  map.y = linearAxis("speed after the impact", "m/s", {});
   map.panels = {
       {"generalized reflections",
        {},

@@ -33,8 +33,8 @@ void DiscreteCollisions::rebound() {
       if (body != kFixed) hasTouched_[static_cast<std::size_t>(body)] = 1;
   }
   resolvePairwise(impacts_, ImpulseResponse(assembly_.mechanism.bodies), state_);
-  const bool rebounds =
-      std::any_of(impacts_.begin(), impacts_.end(), [](const ImpactContact& impact) { return !impact.impulse.isZero(); });
+  const bool rebounds = std::any_of(impacts_.begin(), impacts_.end(),
+                                    [](const ImpactContact& impact) { return !impact.impulse.isZero(); });
   if (rebounds) ++bounces_;
 }
 

@@ -16,8 +16,12 @@ namespace cradle {
 
 const std::vector<MapEntry>& stabilityMaps() {
   static const std::vector<MapEntry> maps = {
-      {"step_stiffness", 5, stiffnessMap},     {"step_damping", 5, dampingMap}, {"free_rotation", 5, freeRotationMap},
-      {"rotation_drift", 1, rotationDriftMap}, {"logistic", 0.1, logisticMap},  {"logistic_step", 0.1, logisticStepMap},
+      {"step_stiffness", 5, stiffnessMap},
+      {"step_damping", 5, dampingMap},
+      {"free_rotation", 5, freeRotationMap},
+      {"rotation_drift", 1, rotationDriftMap},
+      {"logistic", 0.1, logisticMap},
+      {"logistic_step", 0.1, logisticStepMap},
       {"sweeps", 5, sweepsMap},
       {"tunnelling", 5, tunnellingMap},
       {"bounce_energy", 2, bounceEnergyMap},

@@ -194,7 +194,7 @@ std::string plotCommand(const StabilityMap& map, std::size_t number, const std::
     const auto entry = std::find_if(legend.begin(), legend.end(), [&](const LegendEntry& each) {
       return each.name == curve.name && each.kind == curve.kind;
     });
-    if (curve.kind == CurveKind::theory)
+    if (curve.kind == CurveKind::theory && !panel.cells.empty())
       text += fmt::format("$curve{}_{} using 1:2 with lines linewidth 6 linecolor rgb '#ffffff' notitle, ", number, j);
     text += fmt::format("$curve{}_{} using 1:2 {} notitle, ", number, j, styleOf(*entry));
   }
