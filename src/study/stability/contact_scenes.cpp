@@ -11,6 +11,7 @@
 namespace cradle {
 namespace {
 
+constexpr double kBoxGap = 0.01;         // m
 constexpr double kBallRadius = 0.1;      // m
 constexpr double kPlateWidth = 100;      // m: no marble gets past its edge
 constexpr double kMarbleSpacing = 4;     // radii
@@ -79,6 +80,16 @@ Scene stackOfBalls(int balls, double topMass) {
   for (int i = 0; i < balls; ++i)
     stack.push_back({kBallRadius, i == balls - 1 ? topMass : 1, Vec3(0, (2 * i + 1) * kBallRadius, 0)});
   return sceneOf("stack of balls", 1, smoothMaterial(0) + ", " + bodiesText({kGround}, stack));
+}
+
+Scene droppedStack(int boxes, double topMass) {
+  std::vector<std::string> bodies = {
+      R"({"name": "ground", "motion": "static", "shape": {"box": {"size": [50, 1, 50]}}, "position": [0, -0.5, 0]})"};
+  for (int i = 0; i < boxes; ++i)
+    bodies.push_back(fmt::format(
+        R"({{"name": "box{}", "shape": {{"box": {{"size": [1, 1, 1]}}}}, "mass": {}, "position": [0, {}, 0]}})", i,
+        i == boxes - 1 ? topMass : 1, (i + 1) * (1 + kBoxGap) - 0.5));
+  return sceneOf("dropped stack", 10, bodiesText(std::move(bodies), {}));
 }
 
 Scene hangingChain(int balls, double bobMass) {

@@ -27,6 +27,10 @@ Scene marblesAtPlate(double thickness, const std::vector<Throw>& throws);
 /// Touching balls of radius 0.1 m and 1 kg on top of each other, on a plane; the topmost has `topMass` (kg).
 Scene stackOfBalls(int balls, double topMass);
 
+/// Cubes of 1 m and 1 kg that fall onto each other and a slab, each by 1 cm more than the one below; the topmost has
+/// `topMass` (kg). Restitution 0, friction 0.5, 10 s.
+Scene droppedStack(int boxes, double topMass);
+
 /// Balls of radius 0.1 m and 1 kg, each hung by a rod of 1 m from the one above, the first from the world; the lowest
 /// has `bobMass` (kg). Nothing touches.
 Scene hangingChain(int balls, double bobMass);

@@ -9,6 +9,7 @@
 #include "study/stability/coming_to_rest_map.h"
 #include "study/stability/cradle_map.h"
 #include "study/stability/smooth_motion_maps.h"
+#include "study/stability/stacks_map.h"
 #include "study/stability/sweeps_map.h"
 #include "study/stability/tunnelling_map.h"
 
@@ -23,6 +24,7 @@ const std::vector<MapEntry>& stabilityMaps() {
       {"logistic", 0.1, logisticMap},
       {"logistic_step", 0.1, logisticStepMap},
       {"sweeps", 5, sweepsMap},
+      {"stacks", 10, stacksMap},
       {"tunnelling", 5, tunnellingMap},
       {"bounce_energy", 2, bounceEnergyMap},
       {"coming_to_rest", 1, comingToRestMap},
