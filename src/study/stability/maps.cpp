@@ -11,8 +11,16 @@ namespace cradle {
 
 const std::vector<MapEntry>& stabilityMaps() {
   static const std::vector<MapEntry> maps = {
-      {"step_stiffness", 5, stiffnessMap},     {"step_damping", 5, dampingMap}, {"free_rotation", 5, freeRotationMap},
-      {"rotation_drift", 1, rotationDriftMap}, {"logistic", 0.1, logisticMap},  {"logistic_step", 0.1, logisticStepMap},
+      {"step_stiffness", 3, stiffnessMap},
+      {"step_damping", 2, dampingMap},
+      {"hung_box_stiffness", 5, hungBoxStiffnessMap},
+      {"hung_box_damping", 5, hungBoxDampingMap},
+      {"free_rotation", 2, freeRotationMap},
+      {"rotation_drift", 0.4, rotationDriftMap},
+      {"rod_drift", 1, rodDriftMap},
+      {"accuracy", 0.3, accuracyMap},
+      {"logistic", 0.1, logisticMap},
+      {"logistic_step", 0.3, logisticStepMap},
   };
   return maps;
 }
