@@ -41,7 +41,7 @@ class MapClock {
   MapProgress of(const MapEntry& map) {
     return [this, &map](double part) {
       throwIfInterrupted();
-      progress_.update(static_cast<long>(100 * (done_ + part * map.seconds) / total_));
+      progress_.update(std::min(99L, static_cast<long>(100 * (done_ + part * map.seconds) / total_)));
     };
   }
   void finish(const MapEntry& map) {

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <set>
+
 #include "study/stability/logistic_equation.h"
 #include "study/stability/smooth_motion_maps.h"
 #include "study/stability/stability_region.h"
@@ -13,9 +16,9 @@ namespace {
 
 constexpr double kDuration = 8;  // s: all that settles has
 constexpr double kLeastValue = -50, kMostValue = 1250;
-constexpr int kTransient = 400, kShown = 32;  // steps
-constexpr double kLongestStep = 0.65;         // s
-constexpr int kStepCount = 260;
+constexpr int kTransient = 400, kShown = 32;                 // steps
+constexpr double kShortestStep = 0.025, kLongestStep = 1.1;  // s
+constexpr int kStepCount = 216;
 
 const std::vector<const char*> kMethods = {"explicitEuler", "rk4", "dop853FixedStep"};
 
@@ -44,11 +47,18 @@ MapPanel panelOf(const FixedStepMethod& method) {
                           {{limit, kLeastValue}, {limit, kMostValue}}});
   panel.curves.push_back({"equilibrium: 857.14", CurveKind::theory, {{0, kLogisticEnd}, {kLongestStep, kLogisticEnd}}});
   MapCurve dots{fmt::format("values of steps {} to {}", kTransient + 1, kTransient + kShown), CurveKind::dots, {}};
-  for (const double timeStep : evenlySpaced(kLongestStep / kStepCount, kLongestStep, kStepCount)) {
+  for (const double timeStep : evenlySpaced(kShortestStep, kLongestStep, kStepCount)) {
     const std::vector<double> values = logisticSteps(method.integrate, timeStep, kTransient + kShown);
-    for (std::size_t i = kTransient + 1; i < values.size(); ++i) dots.points.push_back({timeStep, values[i]});
+    std::set<long> shown;
+    for (std::size_t i = kTransient + 1; i < values.size(); ++i)
+      if (std::isfinite(values[i]) && shown.insert(std::lround(values[i])).second)
+        dots.points.push_back({timeStep, values[i]});
   }
   panel.curves.push_back(dots);
+  if (method.name == "rk4")
+    panel.curves.push_back({"RK4 at 0.5 s: 652.13",
+                            CurveKind::measured,
+                            {{0.5, logisticSteps(method.integrate, 0.5, kTransient).back()}}});
   return panel;
 }
 
@@ -64,7 +74,7 @@ StabilityMap logisticMap(const MapProgress& progress) {
       "settles too, smoothly and for ever, but at 652.13: a value where its step leads back to itself though y' is not "
       "0 there. Nothing blows up and nothing looks wrong; half the step shows it. Explicit Euler jumps about, since "
       "step x rate = 3 is beyond its limit of 2; it is beyond the 2.79 of RK4 too, which is why the true equilibrium "
-      "throws RK4 off. DOP853 has room to 5.2 and finds the equilibrium.";
+      "throws RK4 off. DOP853 has room to 6.4 and finds the equilibrium.";
   map.x = linearAxis("time", "s", {0, kDuration});
   map.y = linearAxis("y", "", {kLeastValue, kMostValue});
   map.panels = {panelOf(0.5), panelOf(0.25)};
@@ -77,14 +87,15 @@ StabilityMap logisticStepMap(const MapProgress& progress) {
   map.name = "logistic_step";
   map.title = "Where the logistic equation settles, by the step";
   map.subtitle = fmt::format(
-      "y' = 6 y - 0.007 y^2, y(0) = 10: what methods show after {} steps; one dot above a step is a method that has "
-      "settled, many are one that never does",
+      "y' = 6 y - 0.007 y^2, y(0) = 10: what is there after {} steps. One dot above a step: the method has settled; "
+      "many: "
+      "it never does",
       kTransient);
   map.paragraph =
       "Up to its limit each method ends at the equilibrium, whatever it does on the way there. Beyond, explicit Euler "
       "first swings between two values, then four, and then never repeats itself, the textbook road to chaos, made by "
       "nothing but the step. RK4 leaves the equilibrium for another value that moves with the step: 652.13 at 0.5 s. "
-      "The limits are where the stability polynomial R(-6 h) reaches 1 in size: step x rate = 2, 2.785 and 5.2.";
+      "The limits are where the stability polynomial R(-6 h) reaches 1 in size: step x rate = 2, 2.785 and 6.4.";
   map.x = linearAxis("time step", "s", {0, kLongestStep});
   map.y = linearAxis("y", "", {kLeastValue, kMostValue});
   for (std::size_t i = 0; i < kMethods.size(); ++i) {

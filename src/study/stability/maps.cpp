@@ -17,17 +17,21 @@ namespace cradle {
 
 const std::vector<MapEntry>& stabilityMaps() {
   static const std::vector<MapEntry> maps = {
-      {"step_stiffness", 5, stiffnessMap},
-      {"step_damping", 5, dampingMap},
-      {"free_rotation", 5, freeRotationMap},
-      {"rotation_drift", 1, rotationDriftMap},
+      {"step_stiffness", 3, stiffnessMap},
+      {"step_damping", 2, dampingMap},
+      {"hung_box_stiffness", 5, hungBoxStiffnessMap},
+      {"hung_box_damping", 5, hungBoxDampingMap},
+      {"free_rotation", 2, freeRotationMap},
+      {"rotation_drift", 0.4, rotationDriftMap},
+      {"rod_drift", 1, rodDriftMap},
+      {"accuracy", 0.3, accuracyMap},
       {"logistic", 0.1, logisticMap},
-      {"logistic_step", 0.1, logisticStepMap},
-      {"sweeps", 5, sweepsMap},
+      {"logistic_step", 0.3, logisticStepMap},
+      {"sweeps", 2, sweepsMap},
       {"stacks", 10, stacksMap},
-      {"tunnelling", 5, tunnellingMap},
-      {"bounce_energy", 2, bounceEnergyMap},
-      {"coming_to_rest", 1, comingToRestMap},
+      {"tunnelling", 2.5, tunnellingMap},
+      {"bounce_energy", 0.5, bounceEnergyMap},
+      {"coming_to_rest", 0.2, comingToRestMap},
       {"cradle", 0.1, cradleMap},
   };
   return maps;

@@ -13,7 +13,7 @@ constexpr long kLeastSteps = 300;    // a growth of 1 % a step is then one of 20
 constexpr long kMostFrames = 200;    // within ten periods
 constexpr double kInaccurate = 0.1;  // of the amplitude
 constexpr long kLimitSteps = 1000;   // a growth of 0.1 % a step is then one of 2.7
-constexpr double kFirstStep = 0.1;   // x omega
+constexpr double kFirstStep = 0.07;  // x omega
 
 }  // namespace
 

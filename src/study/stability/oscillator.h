@@ -20,7 +20,7 @@ double oscillatorStretch(const Oscillator& oscillator, double time);
 /// the amplitude at the end of a step within ten periods.
 Stability oscillatorStability(const Oscillator& oscillator, const FixedStepMethod& method, double timeStep);
 
-/// The longest stable step (s) as runs of 1000 steps show it, from step x omega = 0.1 on; 0 if that is not.
+/// The longest stable step (s) as runs of 1000 steps show it, from step x omega = 0.07 on; 0 if that is not.
 double measuredOscillatorLimit(const Oscillator& oscillator, const FixedStepMethod& method);
 
 }  // namespace cradle

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "study/stability/oscillator.h"
@@ -15,13 +17,16 @@ constexpr const char* kTheory = "limit by theory";
 constexpr const char* kMeasuredName = "limit as measured by bisection";
 
 MapPanel stiffnessPanel(const StabilityMap& map, const FixedStepMethod& method, const MapProgress& progress) {
-  MapPanel panel{method.title, {}, {}};
+  const double limit = oscillatorLimit(method, 0);
+  MapPanel panel{limit > 0 ? fmt::format("{}: step x omega < {:.3g}", method.title, limit)
+                           : fmt::format("{}: no step is stable", method.title),
+                 {},
+                 {}};
   const auto trial = [&](double stiffness, double timeStep) {
     return oscillatorStability({std::sqrt(stiffness), 0}, method, timeStep);
   };
   panel.cells = cellsOf(map, trial, progress);
   MapCurve theory{kTheory, CurveKind::theory, {}}, measured{kMeasuredName, CurveKind::measured, {}};
-  const double limit = oscillatorLimit(method, 0);
   for (const double stiffness : someOf(map.x, kMeasured)) {
     const double found = measuredOscillatorLimit({std::sqrt(stiffness), 0}, method);
     if (limit > 0) theory.points.push_back({stiffness, limit / std::sqrt(stiffness)});

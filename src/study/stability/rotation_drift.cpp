@@ -4,6 +4,7 @@
 
 #include "study/stability/rotation_drift.h"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -73,15 +74,15 @@ void TurnedOrientation::turnAngles() {
   angles_ += Vec3(rotation_.z() + along * pitch.sin / pitch.cos, across, along / pitch.cos);
 }
 
+/// Of a matrix the nearest rotation.
 Quat TurnedOrientation::rotationPart() const {
   if (storage_ == RotationStorage::eulerAngles)
     return turnedBy(Vec3::UnitZ(), angles_.x()) * turnedBy(Vec3::UnitY(), angles_.y()) *
            turnedBy(Vec3::UnitX(), angles_.z());
   if (storage_ == RotationStorage::quaternion || storage_ == RotationStorage::normalizedQuaternion)
     return quaternion_.normalized();
-  Mat3 matrix = matrix_;
-  orthogonalise(matrix);
-  return Quat(matrix).normalized();
+  const Eigen::JacobiSVD<Mat3> parts(matrix_, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return Quat(Mat3(parts.matrixU() * parts.matrixV().transpose())).normalized();
 }
 
 double TurnedOrientation::angleError() const {

@@ -20,7 +20,7 @@ struct Kept {
 };
 
 std::vector<Kept> allKept() {
-  const Vec3 oblique = Vec3(1, 2, 3).normalized(), nearPitch = Vec3(0.02, 1, 0).normalized();
+  const Vec3 oblique = Vec3(1, 2, 3).normalized(), nearPitch = Vec3(0.002, 1, 0).normalized();
   return {{"Euler angles", RotationStorage::eulerAngles, oblique},
           {"Euler angles, past gimbal lock", RotationStorage::eulerAngles, nearPitch},
           {"matrix", RotationStorage::matrix, oblique},
@@ -57,18 +57,20 @@ StabilityMap rotationDriftMap(const MapProgress& progress) {
   map.name = "rotation_drift";
   map.title = "A million small rotations: what angles, matrices and quaternions make of them";
   map.subtitle = fmt::format(
-      "Turns of {} rad about an axis of the world, against the closed form. No rotation: |R^T R - 1|, ||q|^2 - 1|",
+      "Turns of {} rad about an axis of the world, against the closed form. Below: |R^T R - 1| and ||q|^2 - 1|; 0 is "
+      "drawn at 1e-17",
       kAngle);
   map.paragraph =
       "Added up to first order (x += h x'), a matrix and a quaternion stop being rotations: after a million turns of "
-      "0.001 rad the matrix is 65 % too large, the quaternion 13 %. Gram-Schmidt and normalising keep the shape, but "
-      "not the angle: the matrix is 0.33 rad behind, the quaternion a quarter of that. Euler angles are worse, and "
-      "useless once the motion passes close to gimbal lock, where yaw and roll turn about the same axis and their "
-      "rates "
-      "grow without bound. As products with exact rotations nothing is left but rounding, and there normalising is "
-      "what "
-      "keeps a quaternion a rotation. Cradle keeps normalised quaternions, and integrates them at the order of its "
-      "method.";
+      "0.001 rad the matrix is 65 % too large, the quaternion 13 %. Normalising keeps a quaternion's length and costs "
+      "nothing: its angle is 8e-5 rad behind, the n a^3 / 12 of theory, four times less than the matrix. Gram-Schmidt "
+      "keeps a matrix orthogonal and spoils the orientation: its first column is favoured at every turn, and the "
+      "error, "
+      "of second order in the angle, adds up to 0.2 rad. Euler angles are off by 0.03 rad, and jump where the motion "
+      "passes gimbal lock: there, yaw and roll turn about the same axis, and their rates grow without bound. As "
+      "products "
+      "with exact rotations nothing is left but rounding. Cradle keeps normalised quaternions, and integrates them at "
+      "the order of its method.";
   map.x = logarithmicAxis("rotations", "", {});
   map.y = logarithmicAxis("error", "rad, or no unit", {kLeastError, kMostError});
   map.panels = {{"orientation (rad), first order", {}, {}},

@@ -23,6 +23,9 @@ StabilityMap rotationDriftMap(const MapProgress& progress);
 /// The length of a pendulum's rod, with and without projection.
 StabilityMap rodDriftMap(const MapProgress& progress);
 
+/// The error that an accuracy leads to.
+StabilityMap accuracyMap(const MapProgress& progress);
+
 /// The logistic equation in steps that are too long: where RK4 settles instead.
 StabilityMap logisticMap(const MapProgress& progress);
 

@@ -19,6 +19,7 @@ namespace {
 constexpr int kColorLevels = 64;           // of cells that are numbers
 constexpr double kOverlap = 0.1;           // of a cell, that its rectangle reaches beyond it: no gaps show between them
 constexpr double kWideSpan = 300;          // last to first value of a logarithmic axis: beyond, tics are powers of ten
+constexpr double kVeryWideSpan = 1e8;      // not every power has a tic, and none has smaller ones
 constexpr std::size_t kMostLetters = 120;  // of the legend in a line
 
 struct Range {
@@ -203,8 +204,10 @@ std::string plotCommand(const StabilityMap& map, std::size_t number, const std::
 
 std::string axisCommands(const char* letter, const Axis& axis, const Range& range) {
   const bool isWide = axis.quantity.isLogarithmic && range.last / range.first > kWideSpan;
-  return fmt::format("{3} logscale {0}\nset {0}range [{1}:{2}]\nset format {0} '{4}'\n", letter, range.first,
-                     range.last, axis.quantity.isLogarithmic ? "set" : "unset", isWide ? "10^{%T}" : "%g");
+  const bool isVeryWide = isWide && range.last / range.first > kVeryWideSpan;
+  return fmt::format("{3} logscale {0}\nset {0}range [{1}:{2}]\nset format {0} '{4}'\n{5} m{0}tics\n", letter,
+                     range.first, range.last, axis.quantity.isLogarithmic ? "set" : "unset", isWide ? "10^{%T}" : "%g",
+                     isVeryWide ? "unset" : "set");
 }
 
 std::string colorBox(const StabilityMap& map, const ColorScale& scale) {
@@ -212,7 +215,7 @@ std::string colorBox(const StabilityMap& map, const ColorScale& scale) {
   const bool isWide = map.cell.isLogarithmic && scale.range().last / scale.range().first > kWideSpan;
   return fmt::format(
       "set palette defined (0 '#2166ac', 1 '#a9d3ee', 2 '#f7f0c8', 3 '#f4a582', 4 '#b2182b')\n"
-      "set colorbox user origin screen 0.925, screen 0.175 size screen 0.014, screen 0.69\n"
+      "set colorbox user origin screen 0.925, screen 0.175 size screen 0.014, screen 0.675\n"
       "{} logscale cb\nset cbrange [{}:{}]\nset format cb '{}'\nset cblabel {} noenhanced\n",
       map.cell.isLogarithmic ? "set" : "unset", scale.range().first, scale.range().last, isWide ? "10^{%T}" : "%g",
       quotedForGnuplot(labelOf(map.cell)));
@@ -223,10 +226,10 @@ struct Grid {
   explicit Grid(const StabilityMap& map)
       : columns(map.panels.size() == 4 ? 2 : std::min<std::size_t>(map.panels.size(), 3)),
         rows((map.panels.size() + columns - 1) / columns),
-        right(map.outcomes.empty() && hasCells(map) ? 0.91 : 0.985) {}
+        right(map.outcomes.empty() && hasCells(map) ? 0.91 : 0.975) {}
 
   std::size_t columns, rows;
-  double left = 0.075, right, bottom = 0.175, top = 0.865;
+  double left = 0.075, right, bottom = 0.175, top = 0.85;
 
   std::string marginsOf(std::size_t panel) const {
     constexpr double kGapAcross = 0.05, kGapAlong = 0.1;
@@ -268,7 +271,7 @@ std::string legendCommands(const StabilityMap& map, const std::vector<LegendEntr
   };
   if (hasCells(map))
     for (const Outcome& outcome : map.outcomes)
-      add(fmt::format("with boxes fillstyle solid border linecolor rgb '{}'", outcome.color), outcome.name);
+      add(fmt::format("with boxes fillstyle solid noborder fillcolor rgb '{}'", outcome.color), outcome.name);
   for (const LegendEntry& entry : legend) add(styleOf(entry), entry.name);
   if (entries.empty()) return "";
   return fmt::format(
@@ -287,7 +290,7 @@ std::string chartCommands(const StabilityMap& map, const ChartFiles& files) {
   const ColorScale scale(map);
   const std::string drawing =
       fmt::format(
-          "set multiplot\nset border linecolor rgb '#404040'\nset tics nomirror front\nunset key\n"
+          "set multiplot\nset clip two\nset border linecolor rgb '#404040'\nset tics nomirror front\nunset key\n"
           "set grid xtics ytics linecolor rgb '#c8c8c8' linewidth 1 dashtype 1\n"
           "set label 1 {} at screen 0.5, 0.965 center font ',22' noenhanced\n"
           "set label 2 {} at screen 0.5, 0.922 center font ',14' noenhanced textcolor rgb '#505050'\n",

@@ -17,8 +17,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kTimeStep = 1.0 / 60;    // s
-constexpr double kVisualAccuracy = 1e-3;  // for which contact is resolved step by step
+constexpr double kTimeStep = 1.0 / 60;           // s
 constexpr double kStands = 0.01, kFallen = 0.1;  // m, of boxes of 1 m: what is seen, and what is no stack any more
 
 /// Box i, lowest first, belongs at i + 1/2 m above the ground.
@@ -64,7 +63,7 @@ constexpr std::array<PeerWay, 4> kPeerWays = {{{"bulletTuned", "Bullet, tuned"},
                                                {"mujocoTuned", "MuJoCo, implicit, stiff"}}};
 
 std::vector<std::pair<std::string, Stacker>> stackers() {
-  std::vector<std::pair<std::string, Stacker>> all = {{"cradle's plan, visual accuracy", farthestByPlan},
+  std::vector<std::pair<std::string, Stacker>> all = {{"cradle's contact step", farthestByContactStep},
                                                       {"cradle's fast contact step", farthestByPile}};
   for (const PeerWay& way : kPeerWays)
     for (const Peer& peer : peers())
@@ -81,9 +80,9 @@ StackOutcome outcomeOf(double farthest) {
   return farthest <= kStands ? StackOutcome::stands : farthest <= kFallen ? StackOutcome::leans : StackOutcome::fallen;
 }
 
-double farthestByPlan(int boxes, double topMass) {
+double farthestByContactStep(int boxes, double topMass) {
   Scene scene = droppedStack(boxes, topMass);
-  scene.accuracy = kVisualAccuracy;
+  scene.method = Method{MethodName::rk4, kTimeStep, "stability map"};
   scene.output.framesPerSecond = 1 / scene.duration;
   double farthest = 0;
   const auto take = [&](const Frame& frame) {
@@ -105,12 +104,23 @@ StabilityMap stacksMap(const MapProgress& progress) {
   map.name = "stacks";
   map.title = "Stacks of boxes with a heavy one on top: where they stand, 10 s after they were dropped";
   map.subtitle =
-      "Boxes of 1 m and 1 kg with gaps of 1 cm, friction 0.5; the topmost is heavier. Other engines and the fast contact "
-      "step: steps of 1/60 s.";
+      "Boxes of 1 m and 1 kg fall onto each other by 1 cm each, friction 0.5; the topmost is heavier. All go by steps "
+      "of "
+      "1/60 s.";
+  map.paragraph =
+      "Cradle's contact step solves all contacts of a step at once, to rounding, and stands at any mass. Solvers that "
+      "sweep (Bullet, ODE's quick step, cradle's fast contact step) leave each box a part of its speed at every step: "
+      "a "
+      "top of ten to thirty times the mass makes its way through the rest. Cradle's fast contact step ends with an "
+      "error there, since the overlap that it takes out gives energy; the plan takes it for fifty bodies and more, if "
+      "the accuracy asked is coarse. ODE's direct step stands at most masses and fails at some, MuJoCo's soft contacts "
+      "are pressed in or throw boxes off.";
   map.x = logarithmicAxis("mass of the topmost box / others", "", logarithmicallySpaced(1, 1e4, 9));
   map.y = linearAxis("boxes", "", {2, 4, 6, 8, 10, 12});
-  map.outcomes = {
-      {"stands to 1 cm", "#a9d3ee"}, {"leans, or has sunk, by up to 10 cm", "#f7dc8a"}, {"fallen", "#e79a7c"}, {"stopped with an error", "#c8c8c8"}};
+  map.outcomes = {{"stands to 1 cm", "#a9d3ee"},
+                  {"leans, or has sunk, by up to 10 cm", "#f7dc8a"},
+                  {"fallen", "#e79a7c"},
+                  {"stopped with an error", "#c8c8c8"}};
   const auto all = stackers();
   for (const auto& [title, farthest] : all) {
     MapPanel& panel = map.panels.emplace_back(MapPanel{title, {}, {}});

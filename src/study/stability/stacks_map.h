@@ -10,9 +10,9 @@ enum class StackOutcome { stands, leans, fallen, stopped };
 /// Of the farthest (m) that any box is from where it should lie; NaN: the method stopped with an error.
 StackOutcome outcomeOf(double farthest);
 
-/// The farthest (m) by cradle's plan at an accuracy for pictures, and by its fast contact step; a box of `topMass` (kg)
-/// on boxes of 1 kg.
-double farthestByPlan(int boxes, double topMass);
+/// The farthest (m) by cradle's contact step, which RK4 with a fixed step takes, and by its fast one; a box of
+/// `topMass` (kg) on boxes of 1 kg.
+double farthestByContactStep(int boxes, double topMass);
 double farthestByPile(int boxes, double topMass);
 
 /// Mass ratio against height of stacks: where they stand.
