@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "study/stability/bounce_energy_map.h"
+#include "study/stability/chains_map.h"
 #include "study/stability/coming_to_rest_map.h"
 #include "study/stability/cradle_map.h"
 #include "study/stability/smooth_motion_maps.h"
@@ -29,6 +30,7 @@ const std::vector<MapEntry>& stabilityMaps() {
       {"logistic_step", 0.3, logisticStepMap},
       {"sweeps", 2, sweepsMap},
       {"stacks", 10, stacksMap},
+      {"chains", 10, chainsMap},
       {"tunnelling", 2.5, tunnellingMap},
       {"bounce_energy", 0.5, bounceEnergyMap},
       {"coming_to_rest", 0.2, comingToRestMap},
