@@ -44,7 +44,8 @@ TEST(LogisticEquation, Rk4SettlesAtAFalseEquilibriumBeyondItsLimit) {
     return logisticSteps(fixedStepMethod(name).integrate, timeStep, 400).back();
   };
   EXPECT_NEAR(settled("rk4", 0.5), 652.13, 0.005);
-  EXPECT_NEAR(settled("rk4", 0.99 * decayLimit(fixedStepMethod("rk4")) / kLogisticGrowth), 857.14, 0.005);
+  // The false equilibrium is there a little before the true one is lost.
+  EXPECT_NEAR(settled("rk4", 0.97 * decayLimit(fixedStepMethod("rk4")) / kLogisticGrowth), 857.14, 0.005);
   EXPECT_LT(settled("rk4", 1.01 * decayLimit(fixedStepMethod("rk4")) / kLogisticGrowth), 850);
   EXPECT_NEAR(settled("dop853FixedStep", 0.5), 857.14, 0.005);
 }
