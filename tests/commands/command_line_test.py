@@ -311,7 +311,7 @@ class Stability(InTemporaryFolder):
         result = cradle("stability", "-o", self.path("m"), "--maps", "logistic")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(sorted(os.listdir(self.path("m"))), ["logistic.csv", "logistic.png", "logistic.svg"])
-        lines = content(self.path("m/logistic.csv")).splitlines()
+        lines = content(self.path("m/logistic.csv")).decode().splitlines()
         self.assertTrue(all(line.startswith("# ") for line in lines[:3]), lines[:3])
         self.assertEqual(lines[3], "panel,kind,name,time (s),y")
         self.assertEqual(png_size(self.path("m/logistic.png")), (1600, 900))
