@@ -19,9 +19,9 @@ constexpr double kAccuracy = 1e-6;                  // of the plan: its default
 constexpr double kHolds = 1e-3, kStretches = 1e-1;  // m, of rods of 1 m
 constexpr double kCpuLimit = 2;                     // s of a run; 0.1 s are usual
 
-constexpr double kGravity = 9.81;                   // m/s^2
+constexpr double kGravity = 9.81;                    // m/s^2
 const double kBottomPull = 3 - 2 * std::sqrt(0.75);  // of the weight: a pendulum's let go at 30 degrees
-constexpr double kRk4Limit = 2.828427124746190;     // of step x frequency
+constexpr double kRk4Limit = 2.828427124746190;      // of step x frequency
 constexpr int kBisections = 60;
 
 struct Way {
@@ -80,13 +80,17 @@ StabilityMap chainsMap(const MapProgress& progress) {
   map.name = "chains";
   map.title = "Chains with a heavy ball at the end, swinging: where their rods hold for 5 s";
   map.subtitle =
-      "Balls of 1 kg on rods of 1 m, let go at 30 degrees from the vertical, in a line; the last is heavier. All but the "
+      "Balls of 1 kg on rods of 1 m, let go at 30 degrees from the vertical, in a line; the last is heavier. All but "
+      "the "
       "plan go by steps of 1/60 s.";
   map.paragraph =
-      "Solvers that sweep leave rods a part of the pull at every step: the chain gets longer, and comes apart for a last "
+      "Solvers that sweep leave rods a part of the pull at every step: the chain gets longer, and comes apart for a "
+      "last "
       "ball of thirty to a hundred times the mass. Cradle factorises all rods at once and projects what steps leave: "
-      "rods hold to rounding. What bounds RK4 is not the rods but that light balls under a strong pull swing across the "
-      "chain as a string does, faster than steps can follow: it stops with an error there; the plan takes smaller steps.";
+      "rods hold to rounding. What bounds RK4 is not the rods but that light balls under a strong pull swing across "
+      "the "
+      "chain as a string does, faster than steps can follow: it stops with an error there; the plan takes smaller "
+      "steps.";
   map.x = logarithmicAxis("mass of the last ball / others", "", logarithmicallySpaced(1, 1e4, 9));
   map.y = linearAxis("balls", "", {2, 4, 6, 8, 10, 12});
   map.outcomes = {{"rods keep their length to 1 mm", "#a9d3ee"},

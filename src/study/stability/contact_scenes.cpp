@@ -63,8 +63,9 @@ Scene chainAlong(const Vec3& direction, int balls, double bobMass) {
                               "anchorB": [0, 0, 0]}})",
                                         i, i - 1));
   }
-  return sceneOf("chain", 5,
-                 fmt::format("{}, {}, \"rods\": [{}]", smoothMaterial(0), bodiesText({}, chain), fmt::join(rods, ", ")));
+  return sceneOf(
+      "chain", 5,
+      fmt::format("{}, {}, \"rods\": [{}]", smoothMaterial(0), bodiesText({}, chain), fmt::join(rods, ", ")));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ const std::vector<MapEntry>& stabilityMaps() {
       {"logistic_step", 0.3, logisticStepMap},
       {"sweeps", 2, sweepsMap},
       {"stacks", 10, stacksMap},
-      {"chains", 10, chainsMap},
+      {"chains", 18, chainsMap},
       {"tunnelling", 2.5, tunnellingMap},
       {"bounce_energy", 0.5, bounceEnergyMap},
       {"coming_to_rest", 0.2, comingToRestMap},
