@@ -20,7 +20,7 @@ const std::vector<MapEntry>& stabilityMaps() {
       {"rod_drift", 0.3, rodDriftMap},
       {"accuracy", 0.1, accuracyMap},
       {"logistic", 0.1, logisticMap},
-      {"logistic_step", 0.1, logisticStepMap},
+      {"logistic_step", 0.3, logisticStepMap},
   };
   return maps;
 }
