@@ -12,8 +12,8 @@
 namespace cradle {
 namespace {
 
-constexpr int kColorLevels = 64;   // of cells that are numbers
-constexpr double kOverlap = 0.05;  // of a cell, that its rectangle reaches beyond it: no gaps show between them
+constexpr int kColorLevels = 64;  // of cells that are numbers
+constexpr double kOverlap = 0.3;  // of the next cell, that a rectangle reaches into it: no gaps show between them
 
 double between(const Axis& axis, double a, double b) {
   return axis.quantity.isLogarithmic ? std::sqrt(a * b) : (a + b) / 2;
@@ -72,8 +72,8 @@ std::string cellRectangles(const StabilityMap& map, const MapPanel& panel, const
     if (std::isnan(cell) || map.outcomes.empty()) return std::isnan(cell) ? cell : scale.levelOf(cell);
     return static_cast<double>(colorNumber(map.outcomes.at(static_cast<std::size_t>(cell)).color));
   };
-  const auto beyond = [](const std::vector<double>& edges, std::size_t end) {
-    return end + 1 < edges.size() ? edges[end] + kOverlap * (edges[end + 1] - edges[end]) : edges[end];
+  const auto beyond = [](const std::vector<double>& edges, std::size_t end, bool isOverdrawn) {
+    return isOverdrawn ? edges[end] + kOverlap * (edges[end + 1] - edges[end]) : edges[end];
   };
   std::string text;
   for (std::size_t row = 0; row < rows; ++row) {
@@ -81,7 +81,11 @@ std::string cellRectangles(const StabilityMap& map, const MapPanel& panel, const
       const double color = colorOf(row, first);
       for (end = first + 1; end < columns && colorOf(row, end) == color;) ++end;
       if (std::isnan(color)) continue;
-      text += fmt::format("{} {} {} {} {}\n", xs[first], beyond(xs, end), ys[row], beyond(ys, row + 1), color);
+      bool isBelowCells = row + 1 < rows;
+      for (std::size_t i = first; i < end && isBelowCells; ++i) isBelowCells = !std::isnan(colorOf(row + 1, i));
+      const bool isBeforeCell = end < columns && !std::isnan(colorOf(row, end));
+      text += fmt::format("{} {} {} {} {}\n", xs[first], beyond(xs, end, isBeforeCell), ys[row],
+                          beyond(ys, row + 1, isBelowCells), color);
     }
   }
   return text;

@@ -9,12 +9,10 @@ constexpr double kShortestStep = 3e-3, kLongestStep = 1;  // s
 constexpr int kColumns = 31, kRows = 41;
 
 MapPanel panelOf(const StabilityMap& map, const FixedStepMethod& method, const MapProgress& progress) {
-  MapPanel panel{method.title, {}, {}};
-  for (std::size_t row = 0; row < map.y.values.size(); ++row) {
-    for (const double speed : map.x.values)
-      panel.cells.push_back(static_cast<double>(tumblingOf(speed, method, map.y.values[row])));
-    progress(static_cast<double>(row + 1) / static_cast<double>(map.y.values.size()));
-  }
+  const auto trial = [&](double speed, double timeStep) {
+    return static_cast<double>(tumblingOf(speed, method, timeStep));
+  };
+  MapPanel panel{method.title, cellsOf(map, trial, progress), {}};
   MapCurve radian{"1 rad in a step", CurveKind::theory, {}}, tenth{"0.1 rad in a step", CurveKind::theory, {}};
   for (const double speed : map.x.values) {
     radian.points.push_back({speed, 1 / speed});
@@ -35,12 +33,10 @@ StabilityMap freeRotationMap(const MapProgress& progress) {
       "truth: the closed form";
   map.paragraph =
       "Only the angle turned in a step counts, so all borders are lines of slope -1. Both Euler methods wind energy "
-      "into "
-      "the spin: semi-implicit Euler, which does so well on springs, has nothing to be symplectic about here, and is "
-      "right only below 0.03 rad in a step. RK4 is right up to 0.2 rad, DOP853 up to 1 rad. Between there and the "
-      "steps "
-      "at which energy shows that something is wrong, both turn the body over at the wrong time, or not at all: that "
-      "energy is kept does not mean that a motion is right.";
+      "into the spin: semi-implicit Euler, which does so well on springs, has nothing to be symplectic about here, and "
+      "is right only below 0.03 rad in a step. RK4 is right up to 0.2 rad, DOP853 up to 1 rad. Between there and the "
+      "steps at which energy shows that something is wrong, both turn the body over at the wrong time, or not at all: "
+      "that energy is kept does not mean that a motion is right.";
   map.x = logarithmicAxis("angular speed", "rad/s", logarithmicallySpaced(kLeastSpeed, kMostSpeed, kColumns));
   map.y = logarithmicAxis("time step", "s", logarithmicallySpaced(kShortestStep, kLongestStep, kRows));
   map.outcomes = {{"right", "#a9d3ee"},
