@@ -83,8 +83,13 @@ template <typename Work>
 double cpuSecondsApart(const Work& work) {
   const pid_t process = fork();
   if (process == 0) {
-    work();
-    _exit(0);
+    try {
+      work();
+      _exit(0);
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "{}\n", error.what());
+      _exit(1);
+    }
   }
   int status = 0;
   rusage usage{};
@@ -134,7 +139,9 @@ void run(const Job& job) {
   std::vector<Cost> costs;
   for (int i = 0; i < kRuns; ++i) costs.push_back(measure(job));
   fmt::print("{} at {}x{}, medians of {} runs\n", job.scene, job.width, job.height, kRuns);
-  fmt::print("  drawing alone    {:7.2f} s of CPU time\n", median(costs, [](const Cost& c) { return c.drawing; }));
+  fmt::print("  drawing alone    {:7.2f} s of CPU time, {:.2f} s in its own thread\n",
+             median(costs, [](const Cost& c) { return c.drawing; }),
+             median(costs, [](const Cost& c) { return c.drawingThread; }));
   fmt::print("  encoding alone   {:7.2f} s\n", median(costs, [](const Cost& c) { return c.encoding; }));
   fmt::print("  cradle video     {:7.2f} s, {:.3f} of both\n", median(costs, [](const Cost& c) { return c.film; }),
              median(costs, [](const Cost& c) { return c.film / (c.drawing + c.encoding); }));
