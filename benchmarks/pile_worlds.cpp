@@ -8,8 +8,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kFriction = 0.5;
-
 template <class Work>
 auto withShapeOf(const PileItem& item, const Work& work) {
   if (item.isBox()) return work(Box{2 * item.halfSize});
@@ -41,7 +39,7 @@ OurPile::OurPile(const PileScene& scene, int threads) {
     geometry_.colliders.push_back(collider);
   }
   geometry_.planes = scene.planes;
-  geometry_.laws = {{{0, kFriction, kFriction}}};
+  geometry_.laws = {{{0, kPileFriction, kPileFriction}}};
   state_.setZero(stateSize(std::ssize(bodies_)));
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     centerOfMass(state_, static_cast<Eigen::Index>(i)) = scene.items[i].position;
@@ -82,7 +80,7 @@ void BulletPile::add(double mass, btCollisionShape* shape, const Vec3& at, const
   bodies_.push_back(std::make_unique<btRigidBody>(mass, nullptr, shape, inertia));
   const btTransform place(btQuaternion(turn.x(), turn.y(), turn.z(), turn.w()), btVector3(at.x(), at.y(), at.z()));
   bodies_.back()->setWorldTransform(place);
-  bodies_.back()->setFriction(std::sqrt(kFriction));
+  bodies_.back()->setFriction(std::sqrt(kPileFriction));
   world_.addRigidBody(bodies_.back().get());
 }
 

@@ -10,6 +10,7 @@
 namespace cradle {
 
 constexpr double kPileTimeStep = 1.0 / 60;  // s
+constexpr double kPileFriction = 0.5;
 
 /// A heap by the fast contact step.
 class OurPile {

@@ -1,0 +1,42 @@
+"""Maps of stability, by `cradle stability`: NAME.csv begins with lines "# title", "# subtitle" and "# paragraph", NAME.svg is the
+chart."""
+import base64, html, os, subprocess, sys
+
+
+def measure(program, folder):
+    """Maps that are newer than the program stay. A program without maps has none."""
+    done = os.path.join(folder, "done")
+    if os.path.exists(done) and os.path.getmtime(done) > os.path.getmtime(program):
+        print(f"{folder} is newer than the program: not mapped again", file=sys.stderr)
+        return
+    if subprocess.run([program, "stability", "--help"], capture_output=True).returncode != 0:
+        return
+    os.makedirs(folder, exist_ok=True)
+    subprocess.run([program, "stability", "-o", os.path.join(folder, "maps")], check=True)
+    with open(done, "w"):
+        pass
+
+
+def read(folder):
+    """(title, subtitle, paragraph, svg) of each map, as cradle lists them: by the time they were made."""
+    place = os.path.join(folder, "maps")
+    names = [name for name in os.listdir(place) if name.endswith(".csv")] if os.path.isdir(place) else []
+    found = []
+    for name in sorted(names, key=lambda name: (os.path.getmtime(os.path.join(place, name)), name)):
+        with open(os.path.join(place, name)) as file:
+            heads = [line[2:].strip() for line in (file.readline() for _ in range(3)) if line.startswith("# ")]
+        with open(os.path.join(place, name[:-4] + ".svg"), "rb") as file:
+            found.append((*heads, file.read()))
+    return found
+
+
+def section(found):
+    """HTML; empty without maps."""
+    if not found:
+        return ""
+    parts = ['<h2 id="maps">Where methods fail<small>cradle stability</small></h2>']
+    for title, subtitle, paragraph, svg in found:
+        data = base64.b64encode(svg).decode()
+        parts.append(f'<h3>{html.escape(title)}</h3><p class="small">{html.escape(subtitle)}</p><p>{html.escape(paragraph)}</p>'
+                     f'<img class="map" alt="{html.escape(title)}" src="data:image/svg+xml;base64,{data}">')
+    return "\n".join(parts)
