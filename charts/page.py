@@ -3,6 +3,7 @@ import html, json, math, os
 
 from frontier import WORST_ERROR
 from looks import in_reading_order, look_of
+from markup import Behind, Link, boxed, table
 from scenes import SCENES
 from study_file import floor_of, order_of
 from svg_chart import Plot, error_chart, marks_once, sample, side_chart
@@ -22,30 +23,13 @@ def text_of(name):
         return file.read()
 
 
-def table(heads, lines):
-    def cells(tag, line):
-        return "".join(f"<{tag}{attributes(cell)}>{html.escape(str(cell), False)}</{tag}>" for cell in line)
-    return (f'<table><tr>{cells("th", heads)}</tr>' + "".join(f'<tr>{cells("td", line)}</tr>' for line in lines) + "</table>")
-
-
-class Behind(str):
-    """A cell that is marked: there somebody does better than we do."""
-
-
-def attributes(cell):
-    return ' class="behind"' if isinstance(cell, Behind) else ""
-
-
-def boxed(kind, sentences):
-    return f'<div class="{kind}">' + "".join(f"<p>{html.escape(text, False)}</p>" for text in sentences) + "</div>" if sentences else ""
-
-
 def legend(rows):
     methods, groups = {(row.engine, row.method) for row in rows}, {}
     for engine, method in in_reading_order(methods):
         look = look_of(engine, method)
         groups.setdefault(engine, []).append(f'<span data-m="{method}">{sample(look)}{html.escape(look.title, False)}</span>')
-    return '<div class="legend">' + "".join(f"<div>{''.join(names)}</div>" for names in groups.values()) + "</div>"
+    columns = (f"<div><b>{ENGINES[engine]}</b>{''.join(names)}</div>" for engine, names in groups.items())
+    return f'<div class="legend">{"".join(columns)}</div>'
 
 
 def data_of(rows, floor):
@@ -56,7 +40,7 @@ def data_of(rows, floor):
     for engine, method in {(row.engine, row.method) for row in rows}:
         look, own = look_of(engine, method), [row for row in rows if row.method == method]
         order = order_of(own, floor) if own[0].setting != 0.01 else None
-        title = look.title if engine == "cradle" or look.title.startswith(ENGINES[engine]) else f"{ENGINES[engine]}, {look.title}"
+        title = f"{ENGINES[engine]}: {look.title}"
         steps = method not in ("plan", "dop853", "simbody", "simbodyFehlberg")
         methods[method] = [title + (f" (order {order:.1f})" if order and steps else ""), "time step, s" if steps else "accuracy"]
     lines = [[row.method, *(value(x) for x in row[3:10]), row.status] for row in rows]
@@ -84,7 +68,7 @@ def overview(studies, references):
         for rival in rivals_of(rows, floor_of(references[name])):
             behind = bool(rival.lost) or not any(row.method == OURS and row.status == "ok" for row in rows)
             cells[rival.engine] = (Behind if behind else str)(span(rival.costs) if rival.costs else f"above {number(WORST_ERROR)}")
-        lines.append([f"{SCENES[name].label} {SCENES[name].title}"] + [cells.get(engine, "not its scene") for engine in engines])
+        lines.append([Link(name, f"{SCENES[name].label} {SCENES[name].title}")] + [cells.get(engine, "not its scene") for engine in engines])
     return table(["CPU time for the same error, in parts of Cradle’s"] + [ENGINES[engine] for engine in engines], lines)
 
 

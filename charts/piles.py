@@ -1,5 +1,7 @@
 """Heaps beside Bullet and ODE, by benchmark_pile: figures instead of curves, for the motion of a heap is chaotic and has no error."""
-import html, os, re, subprocess, sys
+import os, re, subprocess, sys
+
+from markup import boxed, table
 
 KINDS = {"spheres": "1000 spheres", "boxes": "1000 boxes", "turned": "1000 boxes, turned"}
 BODIES, SECONDS = "1000", "10"
@@ -56,11 +58,9 @@ def section(found):
             cells = [f"{x:.2f}" for x in numbers[:3]] + [f"{x:.1f}" for x in numbers[3:6]] + [rest(numbers[6])]
             lines.append([KINDS[kind], "Cradle" if engine == "cradle" else engine] + cells)
         sentences += [sentence(kind, engines["cradle"], engine, numbers) for engine, numbers in engines.items() if engine != "cradle"]
-    head = "".join(f"<th>{html.escape(cell)}</th>" for cell in HEADS)
-    body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in line) + "</tr>" for line in lines)
-    said = "".join(f'<div class="{"lost" if "loses" in text else "won"}"><p>{html.escape(text)}</p></div>' for text in sentences)
+    said = "".join(boxed(kind, [text for text in sentences if ("loses" in text) == (kind == "lost")]) for kind in ("won", "lost"))
     return (f'<section id="piles"><h2>Heaps<small>S7 · benchmark_pile</small></h2><p>A thousand bodies of 0.2 m drop into a tray, at a step of '
             "1/60 s, one thread. A heap is chaotic: no program is near another’s end, so that there is no error to draw. What counts is what a step "
             "costs, how deep bodies overlap (found from the poses alone), and when all of them lie still: what rests costs little or nothing. Falling is "
             "the first 1.5 s, in which contacts change all the time. Bullet has its defaults; ODE takes dWorldQuickStep with 20 iterations, and "
-            f"disables bodies that lie still.</p><table><tr>{head}</tr>{body}</table>{said}</section>")
+            f"disables bodies that lie still.</p>{table(HEADS, lines)}{said}</section>")

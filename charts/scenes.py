@@ -8,11 +8,11 @@ SCENES = {
     "free_rotation": Scene("S1", "Free box near the separatrix", """A box spins freely about its intermediate axis, so near the motion that
 separates turning over from not (4e-6) that a small error of its energy changes when it turns over. Nothing touches it and nothing
 pulls, so Cradle takes the closed form in Jacobi’s elliptic functions: its points lie on top of each other at rounding, whatever
-accuracy is asked. Engines step: those of order one go down with slope one; Bullet and MuJoCo take the same kind of step and lie on
-each other; ODE’s implicit gyroscopic term damps the motion across the separatrix, and does not converge in the twenty seconds.
-MuJoCo’s Runge-Kutta is of order two only in the orientation of an axis that turns."""),
-    "tennis_racket": Scene("R1", "Tennis racket", """Moments of inertia 1, 2 and 3, spun about the middle one: it turns over again and again. Far from
-the separatrix, so that every integrator shows its order: the slopes are those of the textbooks. The closed form is Cradle’s again."""),
+accuracy is asked. Engines step: those of order one go down with slope one; ODE’s implicit gyroscopic term damps the motion across the
+separatrix, so that its curve stays at the top. MuJoCo’s Runge-Kutta has only order two where axes of rotation turn."""),
+    "tennis_racket": Scene("R1", "Tennis racket", """Moments of inertia 1, 2 and 3, spun about the middle one: it turns over again and again. Each
+integrator shows its order as the slope of its curve. Cradle has the closed form again; the reference is an integration, and knows
+the end less well than it."""),
     "oscillator": Scene("S2", "Ball on a stiff spring", """A ball of 1 kg on a spring of 1000 N/m for 50 periods. An error of the frequency adds up to an error of the
 phase. Forces that are sampled once a step make Bullet and ODE of order one or two here; MuJoCo has the spring within its
 Runge-Kutta steps, and order four. Of the textbook methods explicit Euler blows up at every large step: it has no stable step on an
@@ -35,9 +35,9 @@ its steps resolve the time between them. After ten seconds of impacts that error
     "bounce_elastic": Scene("S5", "Ball that bounces for ever", """A ball on a hard floor, restitution 1. Between bounces a parabola, which all have exactly up to their order; what differs is
 when the bounce happens: engines bounce at the next step, so that the error goes down with the step at best, and in jumps. Bullet’s default creates the contact 2 cm
 ahead and loses the bounce. Cradle has the closed form between bounces, and finds their instants to rounding."""),
-    "bounce_fading": Scene("S5", "Ball that bounces ever lower", """The same with restitution 0.8: the ball comes to rest after infinitely many bounces in finite time. The error at the end is that of where it
-rests, so that engines which let it rest at all are right in the end: here a coarse step is enough, and what is measured is the slop of their
-contacts."""),
+    "bounce_fading_early": Scene("S5", "Ball that bounces ever lower, in flight", """The same with restitution 0.8, looked at after three seconds, between two bounces."""),
+    "bounce_fading": Scene("S5", "Ball that has bounced", """The same after ten seconds. The ball comes to rest after infinitely many bounces in finite time, and the error at the
+end is that of where it rests: whoever lets it rest at all is right in the end, with however coarse a step."""),
     "ball_on_platform": Scene("R12", "Ball onto a hanging platform", """A ball falls onto a platform that hangs from a spring; both swing, and bounce on each other, restitution 0.5. Impacts
 and a smooth force in one scene."""),
     "stack": Scene("S6", "Ten boxes", """Ten touching cubes. Nothing should happen, and the error is what does: boxes that creep, or a stack that falls. Cradle asks first

@@ -23,8 +23,9 @@ def read_references(path):
 
 
 def floor_of(reference):
-    """Errors below mean nothing."""
-    return max(reference.uncertainty, ROUNDING) if math.isfinite(reference.uncertainty) else ROUNDING
+    """Errors below mean nothing. The uncertainty is how far two runs end from each other: the reference, one of them, may be that
+    far off too, so that what is exact may seem to have twice that error."""
+    return max(2 * reference.uncertainty, ROUNDING) if math.isfinite(reference.uncertainty) else ROUNDING
 
 
 def points_of(rows, floor):

@@ -83,10 +83,9 @@ def notes(rivals, ours):
              for rival in rivals if rival.edge and rival.edge[-1][1] > WORST_ERROR]
     found += [f"{ENGINES[rival.engine]} fails at every setting." for rival in rivals if not rival.edge]
     for rival in rivals if ours else []:
-        cheaper = [point for point in rival.edge if point[0] < ours[0][0]]
+        cheaper = [error for cost, error in rival.edge if cost < ours[0][0] and WORST_ERROR < error < 1]
         if cheaper:
-            found.append(f"{ENGINES[rival.engine]} has runs that cost less than any of ours, with errors of "
-                         f"{number(cheaper[-1][1])} or more (our cheapest: {number(ours[0][1])}).")
+            found.append(f"{ENGINES[rival.engine]} has runs that cost less than any of ours, with errors of {number(cheaper[-1])} or more.")
     return found
 
 

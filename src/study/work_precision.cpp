@@ -55,7 +55,8 @@ void sweep(StudyScene& scene, const std::string& sceneName, const StudyMethod& m
     if (row.status == RunStatus::failed) return;
     const bool isUnstable = row.status == RunStatus::unstable;
     const double cpuSeconds = isUnstable ? 0 : row.cpuSecondsPerSimulatedSecond * scene.duration();
-    goesOn = (isUnstable || watch.goesOn(row.error, floor)) && ladder.descend(cpuSeconds, kCpuLimit);
+    const bool gains = isUnstable || watch.goesOn(row.error, floor) || method.isPlan();
+    goesOn = gains && ladder.descend(cpuSeconds, kCpuLimit);
   }
 }
 

@@ -32,8 +32,9 @@ struct RowStream {
 };
 
 /// Runs a scene by a method at finer and finer settings until the error is below the reference's uncertainty, does not
-/// become less, or the work too much; hands each row on. A method that fails is not tried again. A scene with something
-/// that the method's engine misses has no rows.
+/// become less, or the work too much; hands each row on. The plan goes through all accuracies: it may choose another
+/// way at each, and a finer one may cost less. A method that fails is not tried again. A scene with something that the
+/// method's engine misses has no rows.
 void sweep(StudyScene& scene, const std::string& sceneName, const StudyMethod& method, const Reference& reference,
            const RowStream& rows);
 

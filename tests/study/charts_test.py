@@ -105,7 +105,7 @@ class Words(unittest.TestCase):
 
     def test_errors_below_the_reference_are_the_floor(self):
         rows = rows_of(table(OURS, THEIRS))
-        floor = floor_of(Reference(1e-3, "RK4", ""))
+        floor = floor_of(Reference(5e-4, "RK4", ""))
         self.assertEqual(our_edge(rows, floor), [(1e-4, 1e-3)])
         self.assertEqual(floor_of(Reference(math.inf, "RK4", "")), 1e-16)
 

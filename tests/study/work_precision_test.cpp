@@ -96,6 +96,12 @@ TEST(WorkPrecision, RowsThatAreThereAreNotRunAgain) {
   }
 }
 
+TEST(WorkPrecision, ThePlanGoesThroughAllAccuracies) {
+  // Exact at the first: free fall has a closed form.
+  StudyScene scene(freeFall(1));
+  EXPECT_EQ(rowsOf(scene, "plan", findReference(scene, ignore)).size(), 11U);
+}
+
 TEST(WorkPrecision, ExplicitEulerIsUnstableAtItsLargestSteps) {
   // An undamped oscillator gains the factor 1 + (step x omega)^2 of its energy a step, 5 at the first rung: after 30
   // steps nothing explains it. The sweep ends where it follows the motion.
