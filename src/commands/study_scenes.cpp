@@ -19,6 +19,7 @@
 #include "core/interruption.h"
 #include "core/output_path.h"
 #include "core/progress.h"
+#include "study/gnuplot.h"
 #include "study/growing_table.h"
 #include "study/unfinished_study.h"
 #include "study/work_precision_chart.h"

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "study/gnuplot.h"
+
 namespace cradle {
 namespace {
 
@@ -146,8 +148,8 @@ Decades decadesOf(const std::vector<Curve>& curves, const Side& side) {
 }  // namespace
 
 ChartLayout layoutOf(const std::vector<Curve>& curves) {
-  if (sidesOf(curves).empty()) return {1600, 960, 0.045, 0.2, 0, 0, 0.28, 0.885, 0.022, 0.923, 0.965};
-  return {1600, 1320, 0.03, 0.15, 0.215, 0.385, 0.475, 0.915, 0.018, 0.944, 0.974};
+  if (sidesOf(curves).empty()) return {960, 0.045, 0.2, 0, 0, 0.28, 0.885, 0.022, 0.923, 0.965};
+  return {1320, 0.03, 0.15, 0.215, 0.385, 0.475, 0.915, 0.018, 0.944, 0.974};
 }
 
 std::string dataBlocks(const std::vector<Curve>& curves, double uncertainty) {
@@ -198,7 +200,7 @@ std::string sidePanels(const std::vector<Curve>& curves, const ChartLayout& layo
     text += fmt::format(
         "set lmargin at screen {}\nset rmargin at screen {}\nset yrange [{}:{}]\n{}set label 6 {} at graph 0, 1.06 "
         "font ',14'\n{}",
-        left, left + kWidth, decades.bottom, decades.top, decades.tics(kSideLabels), quoted(sides[i].title),
+        left, left + kWidth, decades.bottom, decades.top, decades.tics(kSideLabels), quotedForGnuplot(sides[i].title),
         plotCommand(curves, sides[i].columns, false));
   }
   return text + "unset label\n";
@@ -228,17 +230,11 @@ std::string legend(const std::vector<Curve>& curves, const ChartLayout& layout) 
           "NaN with linespoints dashtype {} linewidth {} pointtype {} pointsize {}*markerScale linecolor rgb '{}' "
           "title {}, ",
           curve->look.dash, curve->look.lineWidth, curve->look.marker, curve->look.size, curve->look.color,
-          quoted(curve->title));
+          quotedForGnuplot(curve->title));
     for (std::size_t i = column.size(); i < rows && !isOneEngine; ++i)
       text += "NaN with dots linecolor rgb 'white' title ' ', ";
   }
   return text + "NaN notitle\n";
-}
-
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? "''" : c == '\n' ? " " : std::string(1, c);
-  return result + "'";
 }
 
 }  // namespace cradle

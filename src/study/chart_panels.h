@@ -9,7 +9,7 @@ namespace cradle {
 
 /// Where the parts of a chart are, in parts of the screen from its bottom.
 struct ChartLayout {
-  int width = 1600, height = 0;  // pixels
+  int height = 0;  // pixels
   double legendBottom = 0, legendTop = 0, sidesBottom = 0, sidesTop = 0, errorsBottom = 0, errorsTop = 0;
   double note = 0, subtitle = 0, title = 0;
 };
@@ -30,8 +30,5 @@ std::string sidePanels(const std::vector<Curve>& curves, const ChartLayout& layo
 
 /// Names and looks below all panels, a column an engine.
 std::string legend(const std::vector<Curve>& curves, const ChartLayout& layout);
-
-/// A text for gnuplot, in quotes and without commands.
-std::string quoted(const std::string& text);
 
 }  // namespace cradle

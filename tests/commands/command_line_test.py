@@ -56,7 +56,7 @@ class InTemporaryFolder(unittest.TestCase):
 
 class Usage(InTemporaryFolder):
     def test_help_of_every_command_has_an_example(self):
-        for command in ("simulate", "render", "encode", "video", "inspect", "check", "compare", "export", "study"):
+        for command in ("simulate", "render", "encode", "video", "inspect", "check", "compare", "export", "study", "stability"):
             result = cradle(command, "--help")
             self.assertEqual(result.returncode, 0)
             self.assertIn("Example:\n  cradle " + command, result.stdout)
