@@ -23,22 +23,30 @@ def arguments():
     return parser.parse_args()
 
 
-def newest(paths):
-    return max(os.path.getmtime(path) for path in paths)
-
-
 def study(program, scenes, methods, folder):
-    """study.csv and references.csv; what an older program, or one with other scenes, has left is begun anew."""
-    done, part = os.path.join(folder, "study.csv"), os.path.join(folder, "study.csv.part")
-    since = newest([program, *scenes])
-    if os.path.exists(part) and os.path.getmtime(part) < since:
-        print(f"{part} is older than the program or a scene: the study starts again", file=sys.stderr)
-        os.remove(part)
-    if os.path.exists(done) and not os.path.exists(part) and os.path.getmtime(done) > since:
+    """study.csv and references.csv; what an older program, or one that was asked for something else, has left is begun anew."""
+    place = os.path.join(folder, "study")
+    done, part, asked = os.path.join(place, "study.csv"), os.path.join(place, "study.csv.part"), os.path.join(folder, "study_asked")
+    os.makedirs(place, exist_ok=True)
+    command = [program, "study", *scenes, "-o", place] + (["--methods", methods] if methods else [])
+    since = max(os.path.getmtime(path) for path in [program, *scenes])
+    for path in (done, part):
+        if os.path.exists(path) and (os.path.getmtime(path) < since or text_of(asked) != " ".join(command)):
+            print(f"{path} is of an older program or scene, or of others: measured again", file=sys.stderr)
+            os.remove(path)
+    if os.path.exists(done) and not os.path.exists(part):
         print(f"{done} is newer than the program and the scenes: not measured again", file=sys.stderr)
         return
-    command = [program, "study", *scenes, "-o", folder] + (["--methods", methods] if methods else [])
+    with open(asked, "w") as file:
+        file.write(" ".join(command))
     subprocess.run(command, check=True)
+
+
+def text_of(path):
+    if not os.path.exists(path):
+        return ""
+    with open(path) as file:
+        return file.read()
 
 
 def by_scene(rows):
@@ -49,11 +57,10 @@ def by_scene(rows):
 
 
 def write_page(options, folder, path):
-    studies, references = by_scene(read_rows(os.path.join(folder, "study", "study.csv"))), \
-        read_references(os.path.join(folder, "study", "references.csv"))
+    place = os.path.join(folder, "study")
+    studies, references = by_scene(read_rows(os.path.join(place, "study.csv"))), read_references(os.path.join(place, "references.csv"))
     facts = machine.machine(options.build, options.source, time.strftime("%Y-%m-%d"))
-    text = page(studies, references, piles.section(piles.read(folder)),
-                maps.section(maps.read(os.path.join(folder, "maps"))), facts)
+    text = page(studies, references, piles.section(piles.read(folder)), maps.section(maps.read(folder)), facts)
     with open(path + ".part", "w") as file:
         file.write(text)
     os.rename(path + ".part", path)
@@ -68,12 +75,11 @@ def show_in_docs(folder, docs):
 def main():
     options = arguments()
     folder, html = os.path.join(options.output, "charts"), os.path.join(options.output, "charts.html")
-    os.makedirs(os.path.join(folder, "study"), exist_ok=True)
     scenes = [os.path.join(options.source, "benchmarks", "scenes", name + ".json") for name in options.scenes.split(",")]
     program = os.path.join(options.build, "bin", "cradle")
-    study(program, scenes, options.methods, os.path.join(folder, "study"))
+    study(program, scenes, options.methods, folder)
     piles.measure(os.path.join(options.build, "benchmarks", "benchmark_pile"), folder)
-    maps.measure(program, os.path.join(folder, "maps"))
+    maps.measure(program, folder)
     write_page(options, folder, html)
     browser.take_picture(html, browser.check(html), html[:-5] + ".png")
     if options.scenes == ",".join(SCENES) and not options.methods:
@@ -82,4 +88,9 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit("interrupted; the same command goes on from here")
+    except (subprocess.CalledProcessError, browser.PageError) as error:
+        sys.exit(f"charts: {error}")

@@ -4,15 +4,12 @@ import base64, html, os, subprocess, sys
 
 
 def measure(program, folder):
-    """Maps that are newer than the program stay. A program without maps has none."""
-    done = os.path.join(folder, "done")
+    """Maps that are newer than the program stay."""
+    place, done = os.path.join(folder, "maps"), os.path.join(folder, "maps_done")
     if os.path.exists(done) and os.path.getmtime(done) > os.path.getmtime(program):
-        print(f"{folder} is newer than the program: not mapped again", file=sys.stderr)
+        print(f"{place} is newer than the program: not mapped again", file=sys.stderr)
         return
-    if subprocess.run([program, "stability", "--help"], capture_output=True).returncode != 0:
-        return
-    os.makedirs(folder, exist_ok=True)
-    subprocess.run([program, "stability", "-o", os.path.join(folder, "maps")], check=True)
+    subprocess.run([program, "stability", "-o", place], check=True, stdout=subprocess.DEVNULL)
     with open(done, "w"):
         pass
 
@@ -20,7 +17,7 @@ def measure(program, folder):
 def read(folder):
     """(title, subtitle, paragraph, svg) of each map, as cradle lists them: by the time they were made."""
     place = os.path.join(folder, "maps")
-    names = [name for name in os.listdir(place) if name.endswith(".csv")] if os.path.isdir(place) else []
+    names = [name for name in os.listdir(place) if name.endswith(".csv")]
     found = []
     for name in sorted(names, key=lambda name: (os.path.getmtime(os.path.join(place, name)), name)):
         with open(os.path.join(place, name)) as file:
@@ -31,10 +28,9 @@ def read(folder):
 
 
 def section(found):
-    """HTML; empty without maps."""
-    if not found:
-        return ""
-    parts = ['<h2 id="maps">Where methods fail<small>cradle stability</small></h2>']
+    """HTML."""
+    parts = ['<h2 id="maps">Where methods fail<small>cradle stability</small></h2><p>Each map is what small scenes do in the program '
+             "itself, over two quantities; the borders that theory has are drawn over it.</p>"]
     for title, subtitle, paragraph, svg in found:
         data = base64.b64encode(svg).decode()
         parts.append(f'<h3>{html.escape(title)}</h3><p class="small">{html.escape(subtitle)}</p><p>{html.escape(paragraph)}</p>'

@@ -43,6 +43,10 @@ def span(factors):
     return values[0] if values[0] == values[1] else f"{values[0]} to {values[1]}"
 
 
+def listed(names):
+    return " and ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
+
+
 def losses(rivals, ours):
     """A sentence for each thing that another engine does better than we do."""
     found = []
@@ -68,7 +72,7 @@ def wins(rivals, ours):
     beside = [(factor.value, factor.at, ENGINES[rival.engine]) for rival in ahead for factor in rival.costs]
     least, most = min(beside), max(beside)
     everyone = len(ahead) == len(able) and len(able) > 1
-    who = "every engine" if everyone else " and ".join(ENGINES[rival.engine] for rival in ahead)
+    who = "every engine" if everyone else listed([ENGINES[rival.engine] for rival in ahead])
     text = (f"Cradle costs {'less' if least[0] > 1 else 'no more'} than {who} at every error up to {number(WORST_ERROR)} that "
             f"{'they reach: they cost' if len(ahead) > 1 else 'it reaches: it costs'} {number(least[0])} times as much "
             f"({least[2]}, at an error of {number(least[1])})")

@@ -201,6 +201,15 @@ TEST_F(Peers, RowsNameTheEngine) {
   EXPECT_EQ(rows.back().evaluations * rows.back().setting, 0.5);  // steps
 }
 
+TEST_F(Peers, TheCostIsThatOfARunThatWentWell) {
+  // Looked at in 17 frames it has not more energy than it may; the runs for the time, in two, are taken for unstable.
+  StudyScene scene(fileOf("benchmarks/scenes/bounce_elastic.json"));
+  const StudyRun run = scene.run(methodOf("bulletTuned"), 1.0 / 60, 10);
+  EXPECT_EQ(run.status, RunStatus::ok);
+  EXPECT_EQ(run.cost.evaluations, 600);
+  EXPECT_GT(run.cost.cpuSeconds, 0);
+}
+
 TEST_F(Peers, EnergyIsNotJudgedWhereContactMayTakeIt) {
   StudyScene sliding(blockOnSlope(0.5)), swinging(oscillator(5, 0.5));
   EXPECT_TRUE(std::isnan(sliding.run(methodOf("bullet"), 0.01, 10).energyDrift));
