@@ -7,7 +7,7 @@ from looks import MARKS, in_drawing_order, look_of
 
 Size = namedtuple("Size", "width height left right top bottom")  # pixels; the last four are margins
 LARGE = Size(700, 500, 74, 14, 14, 52)
-SMALL = Size(300, 225, 56, 10, 26, 42)
+SMALL = Size(300, 225, 56, 16, 26, 42)
 STRIP = 30  # pixels, for runs that blew up
 LEAST, MOST = 1e-17, 1e4  # of error axes: what is beyond stands on the edge
 

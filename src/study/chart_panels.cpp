@@ -148,8 +148,8 @@ Decades decadesOf(const std::vector<Curve>& curves, const Side& side) {
 }  // namespace
 
 ChartLayout layoutOf(const std::vector<Curve>& curves) {
-  if (sidesOf(curves).empty()) return {960, 0.045, 0.2, 0, 0, 0.28, 0.885, 0.022, 0.923, 0.965};
-  return {1320, 0.03, 0.15, 0.215, 0.385, 0.475, 0.915, 0.018, 0.944, 0.974};
+  if (sidesOf(curves).empty()) return {960, 0.18, 0, 0, 0.28, 0.885, 0.022, 0.923, 0.965};
+  return {1320, 0.145, 0.215, 0.385, 0.475, 0.915, 0.018, 0.944, 0.974};
 }
 
 std::string dataBlocks(const std::vector<Curve>& curves, double uncertainty) {
@@ -207,34 +207,33 @@ std::string sidePanels(const std::vector<Curve>& curves, const ChartLayout& layo
 }
 
 std::string legend(const std::vector<Curve>& curves, const ChartLayout& layout) {
-  std::vector<std::vector<const Curve*>> columns;
-  for (const Curve& curve : curves) {
-    if (columns.empty() || columns.back().front()->engine != curve.engine) columns.emplace_back();
-    columns.back().push_back(&curve);
-  }
-  const bool isOneEngine = columns.size() == 1;
-  std::size_t rows = isOneEngine ? (curves.size() + 2) / 3 : 0;
-  for (const auto& column : columns)
-    if (!isOneEngine) rows = std::max(rows, column.size());
+  constexpr double kLeft = 0.04, kColumn = 0.192, kSample = 0.024, kRow = 0.02;  // in parts of the screen
+  // gnuplot's own key has columns as wide as it guesses a text to be, and other guesses for other terminals.
   std::string text = fmt::format(
       "unset border\nunset tics\nunset xlabel\nunset ylabel\nunset grid\nunset logscale\n"
-      "set key center center vertical Left reverse maxrows {} samplen 3 width 1 noenhanced font ',12'\n"
-      "set lmargin at screen 0.03\nset rmargin at screen 0.97\nset bmargin at screen {}\nset tmargin at screen {}\n"
-      "set label 1 'One marker a run: from each to the next, the time step is halved, or the accuracy asked for ten "
-      "times finer. Crosses blew up.' at screen 0.5, {} center font ',13' textcolor rgb '#505050'\n"
-      "plot [0:1][0:1] ",
-      rows, layout.legendBottom, layout.legendTop, layout.note);
-  for (const auto& column : columns) {
-    for (const Curve* curve : column)
-      text += fmt::format(
-          "NaN with linespoints dashtype {} linewidth {} pointtype {} pointsize {}*markerScale linecolor rgb '{}' "
-          "title {}, ",
-          curve->look.dash, curve->look.lineWidth, curve->look.marker, curve->look.size, curve->look.color,
-          quotedForGnuplot(curve->title));
-    for (std::size_t i = column.size(); i < rows && !isOneEngine; ++i)
-      text += "NaN with dots linecolor rgb 'white' title ' ', ";
+      "set label 'One marker a run: from each to the next, the time step is halved, or the accuracy asked for ten "
+      "times finer. Crosses blew up.' at screen 0.5, {} center font ',13' textcolor rgb '#505050'\n",
+      layout.note);
+  const bool isOneEngine = curves.front().engine == curves.back().engine;
+  const std::size_t rows = isOneEngine ? 2 : curves.size();  // in a column, at the most
+  int column = -1;
+  std::size_t row = 0;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const bool isNext = i == 0 || row + 1 == rows || curves[i].engine != curves[i - 1].engine;
+    column += isNext ? 1 : 0;
+    row = isNext ? 0 : row + 1;
+    const double left = kLeft + kColumn * column, height = layout.legendTop - kRow * static_cast<double>(row);
+    const CurveLook& look = curves[i].look;
+    text += fmt::format(
+        "set arrow from screen {0}, {2} to screen {1}, {2} nohead dashtype {3} linewidth {4} linecolor rgb '{5}'\n"
+        "set label '' at screen {6}, {2} point pointtype {7} pointsize {8}*markerScale linecolor rgb '{5}'\n"
+        "set label {9} at screen {10}, {2} left noenhanced font ',12'\n",
+        left, left + kSample, height, look.dash, look.lineWidth, look.color, left + kSample / 2, look.marker, look.size,
+        quotedForGnuplot(curves[i].title), left + kSample + 0.006);
   }
-  return text + "NaN notitle\n";
+  return text +
+         "set lmargin at screen 0.1\nset rmargin at screen 0.9\nset bmargin at screen 0.001\nset tmargin at "
+         "screen 0.002\nplot [0:1][0:1] NaN notitle\n";
 }
 
 }  // namespace cradle

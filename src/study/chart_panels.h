@@ -10,7 +10,7 @@ namespace cradle {
 /// Where the parts of a chart are, in parts of the screen from its bottom.
 struct ChartLayout {
   int height = 0;  // pixels
-  double legendBottom = 0, legendTop = 0, sidesBottom = 0, sidesTop = 0, errorsBottom = 0, errorsTop = 0;
+  double legendTop = 0, sidesBottom = 0, sidesTop = 0, errorsBottom = 0, errorsTop = 0;
   double note = 0, subtitle = 0, title = 0;
 };
 
