@@ -81,7 +81,8 @@ StabilityMap comingToRestMap(const MapProgress& progress) {
       "to 1e-7 of the speed and add what is left in closed form. Steps give up when a bounce takes no more than two of "
       "them, early by some steps. Textbook collisions with semi-implicit Euler lose height at each bounce, the more of "
       "it the lower the ball is, and end far too early. They have no rest at all: their time is when the ball was last "
-      "faster than gravity makes it in two steps; afterwards it goes on sinking through the ground.";
+      "faster than gravity makes it in two steps; afterwards it goes on sinking through the ground. Where a line "
+      "dips, its error changes sign.";
   map.x = linearAxis("restitution", "", {});
   map.y = logarithmicAxis("|time of rest / Zeno's time - 1|", "", {});
   const std::vector<double> restitutions = evenlySpaced(0.1, 0.95, 18);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "collision/broad_phase.h"
@@ -51,6 +52,22 @@ std::string bodiesText(std::vector<std::string> first, const std::vector<Ball>& 
   return fmt::format("\"bodies\": [{}]", fmt::join(first, ", "));
 }
 
+/// From the origin, by rods of 1 m.
+Scene chainAlong(const Vec3& direction, int balls, double bobMass) {
+  std::vector<Ball> chain;
+  std::vector<std::string> rods;
+  for (int i = 0; i < balls; ++i) {
+    chain.push_back({kBallRadius, i == balls - 1 ? bobMass : 1, (i + 1) * direction});
+    rods.push_back(i == 0 ? R"({"bodyA": "ball0", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0]})"
+                          : fmt::format(R"({{"bodyA": "ball{}", "anchorA": [0, 0, 0], "bodyB": "ball{}",
+                              "anchorB": [0, 0, 0]}})",
+                                        i, i - 1));
+  }
+  return sceneOf(
+      "chain", 5,
+      fmt::format("{}, {}, \"rods\": [{}]", smoothMaterial(0), bodiesText({}, chain), fmt::join(rods, ", ")));
+}
+
 }  // namespace
 
 Scene bouncingBall(double restitution, double height, double duration) {
@@ -93,18 +110,11 @@ Scene droppedStack(int boxes, double topMass) {
 }
 
 Scene hangingChain(int balls, double bobMass) {
-  std::vector<Ball> chain;
-  std::vector<std::string> rods;
-  for (int i = 0; i < balls; ++i) {
-    chain.push_back({kBallRadius, i == balls - 1 ? bobMass : 1, Vec3(0, -i - 1, 0)});
-    rods.push_back(i == 0 ? R"({"bodyA": "ball0", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0]})"
-                          : fmt::format(R"({{"bodyA": "ball{}", "anchorA": [0, 0, 0], "bodyB": "ball{}",
-                              "anchorB": [0, 0, 0]}})",
-                                        i, i - 1));
-  }
-  return sceneOf(
-      "hanging chain", 1,
-      fmt::format("{}, {}, \"rods\": [{}]", smoothMaterial(0), bodiesText({}, chain), fmt::join(rods, ", ")));
+  return chainAlong(-Vec3::UnitY(), balls, bobMass);
+}
+
+Scene swingingChain(int balls, double bobMass) {
+  return chainAlong(Vec3(0.5, -std::sqrt(0.75), 0), balls, bobMass);
 }
 
 Scene rowOfFiveBalls(int moving) {

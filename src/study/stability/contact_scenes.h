@@ -35,6 +35,9 @@ Scene droppedStack(int boxes, double topMass);
 /// has `bobMass` (kg). Nothing touches.
 Scene hangingChain(int balls, double bobMass);
 
+/// The same chain in a straight line at 30 degrees from the vertical, at rest. 5 s.
+Scene swingingChain(int balls, double bobMass);
+
 /// Five touching balls of radius 0.05 m and 0.2 kg along x, without gravity and restitution 1: the first `moving` of
 /// them go at 1 m/s at the others, which are at rest.
 Scene rowOfFiveBalls(int moving);

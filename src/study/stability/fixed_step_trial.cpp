@@ -51,11 +51,11 @@ bool isStableFor(Scene& scene, const FixedStepMethod& method, double timeStep, l
   return !tryFixedSteps(scene, method, {timeStep, steps, 1}).isUnstable;
 }
 
-std::vector<double> cellsOf(const StabilityMap& map, const std::function<Stability(double, double)>& trial,
+std::vector<double> cellsOf(const StabilityMap& map, const std::function<double(double, double)>& trial,
                             const MapProgress& done) {
   std::vector<double> cells;
   for (std::size_t row = 0; row < map.y.values.size(); ++row) {
-    for (const double x : map.x.values) cells.push_back(static_cast<double>(trial(x, map.y.values[row])));
+    for (const double x : map.x.values) cells.push_back(trial(x, map.y.values[row]));
     done(static_cast<double>(row + 1) / static_cast<double>(map.y.values.size()));
   }
   return cells;

@@ -35,15 +35,14 @@ double measuredLimit(const std::function<bool(double timeStep)>& isStable, doubl
 bool isStableFor(Scene& scene, const FixedStepMethod& method, double timeStep, long steps);
 
 /// The cells of a panel, each by a trial of its own. `done` is told of each row, 0..1.
-std::vector<double> cellsOf(const StabilityMap& map, const std::function<Stability(double x, double y)>& trial,
+std::vector<double> cellsOf(const StabilityMap& map, const std::function<double(double x, double y)>& trial,
                             const MapProgress& done);
 
 /// Adds a panel for each of fixedStepMethods().
 void addPanels(StabilityMap& map, const std::function<MapPanel(const FixedStepMethod&, const MapProgress&)>& make,
                const MapProgress& progress);
 
-/// Part of their ranges that `count` values of an axis with equal distances have: for boundaries that are measured at a
-/// few places.
+/// `count` values from end to end of an axis, for boundaries that need others than the cells have.
 std::vector<double> someOf(const Axis& axis, int count);
 
 }  // namespace cradle

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "study/stability/bounce_energy_map.h"
+#include "study/stability/chains_map.h"
 #include "study/stability/coming_to_rest_map.h"
 #include "study/stability/cradle_map.h"
 #include "study/stability/smooth_motion_maps.h"
@@ -18,17 +19,18 @@ namespace cradle {
 const std::vector<MapEntry>& stabilityMaps() {
   static const std::vector<MapEntry> maps = {
       {"step_stiffness", 3, stiffnessMap},
-      {"step_damping", 2, dampingMap},
-      {"hung_box_stiffness", 5, hungBoxStiffnessMap},
+      {"step_damping", 2.5, dampingMap},
+      {"hung_box_stiffness", 8, hungBoxStiffnessMap},
       {"hung_box_damping", 5, hungBoxDampingMap},
       {"free_rotation", 2, freeRotationMap},
       {"rotation_drift", 0.4, rotationDriftMap},
-      {"rod_drift", 1, rodDriftMap},
-      {"accuracy", 0.3, accuracyMap},
+      {"rod_drift", 0.3, rodDriftMap},
+      {"accuracy", 0.1, accuracyMap},
       {"logistic", 0.1, logisticMap},
       {"logistic_step", 0.3, logisticStepMap},
       {"sweeps", 2, sweepsMap},
       {"stacks", 10, stacksMap},
+      {"chains", 18, chainsMap},
       {"tunnelling", 2.5, tunnellingMap},
       {"bounce_energy", 0.5, bounceEnergyMap},
       {"coming_to_rest", 0.2, comingToRestMap},

@@ -23,7 +23,7 @@ MapPanel stiffnessPanel(const StabilityMap& map, const FixedStepMethod& method, 
                  {},
                  {}};
   const auto trial = [&](double stiffness, double timeStep) {
-    return oscillatorStability({std::sqrt(stiffness), 0}, method, timeStep);
+    return static_cast<double>(oscillatorStability({std::sqrt(stiffness), 0}, method, timeStep));
   };
   panel.cells = cellsOf(map, trial, progress);
   MapCurve theory{kTheory, CurveKind::theory, {}}, measured{kMeasuredName, CurveKind::measured, {}};
@@ -39,7 +39,7 @@ MapPanel stiffnessPanel(const StabilityMap& map, const FixedStepMethod& method, 
 MapPanel dampingPanel(const StabilityMap& map, const FixedStepMethod& method, const MapProgress& progress) {
   MapPanel panel{method.title, {}, {}};
   const auto trial = [&](double dampingRatio, double stepOmega) {
-    return oscillatorStability({1, dampingRatio}, method, stepOmega);
+    return static_cast<double>(oscillatorStability({1, dampingRatio}, method, stepOmega));
   };
   panel.cells = cellsOf(map, trial, progress);
   MapCurve theory{kTheory, CurveKind::theory, {}}, measured{kMeasuredName, CurveKind::measured, {}};
@@ -88,10 +88,9 @@ StabilityMap dampingMap(const MapProgress& progress) {
       "A damper takes energy out of the motion, and for that very reason limits the step: what it takes in a step that "
       "is too long is more than there was. A little damping is what explicit Euler lives on (step x omega < 2 zeta); "
       "strong damping shortens the step of every method. Semi-implicit Euler takes the damper's force from the start "
-      "of "
-      "the step, and its limit falls from 2 at once: 2 (sqrt(1 + zeta^2) - zeta). RK4 and DOP853 follow the borders of "
-      "their stability regions along the roots of the damped oscillator. Beyond critical damping (zeta = 1) one root "
-      "is fast and does nothing but limit the step.";
+      "of the step, and its limit falls from 2 at once: 2 (sqrt(1 + zeta^2) - zeta). RK4 and DOP853 follow the borders "
+      "of their stability regions along the roots of the damped oscillator. Beyond critical damping (zeta = 1) one "
+      "root is fast and does nothing but limit the step.";
   map.x = linearAxis("damping ratio zeta (1: critical)", "", evenlySpaced(0, kMostDamping, kColumns));
   map.y = logarithmicAxis("step x omega", "rad", logarithmicallySpaced(kLeastStepOmega, kMostStepOmega, kRows));
   map.outcomes = stabilityOutcomes();

@@ -65,12 +65,10 @@ StabilityMap rotationDriftMap(const MapProgress& progress) {
       "0.001 rad the matrix is 65 % too large, the quaternion 13 %. Normalising keeps a quaternion's length and costs "
       "nothing: its angle is 8e-5 rad behind, the n a^3 / 12 of theory, four times less than the matrix. Gram-Schmidt "
       "keeps a matrix orthogonal and spoils the orientation: its first column is favoured at every turn, and the "
-      "error, "
-      "of second order in the angle, adds up to 0.2 rad. Euler angles are off by 0.03 rad, and jump where the motion "
-      "passes gimbal lock: there, yaw and roll turn about the same axis, and their rates grow without bound. As "
-      "products "
-      "with exact rotations nothing is left but rounding. Cradle keeps normalised quaternions, and integrates them at "
-      "the order of its method.";
+      "error, of second order in the angle, adds up to 0.2 rad. Euler angles are off by 0.03 rad, and jump where the "
+      "motion passes gimbal lock: there, yaw and roll turn about the same axis, and their rates grow without bound. As "
+      "products with exact rotations nothing is left but rounding. Cradle keeps normalised quaternions, and integrates "
+      "them at the order of its method.";
   map.x = logarithmicAxis("rotations", "", {});
   map.y = logarithmicAxis("error", "rad, or no unit", {kLeastError, kMostError});
   map.panels = {{"orientation (rad), first order", {}, {}},

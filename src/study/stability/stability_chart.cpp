@@ -1,6 +1,3 @@
-// Cells are rectangles of their own, since gnuplot's images need axes with equal steps; neighbours of one colour in a
-// row are one rectangle, or files would have megabytes.
-
 #include "study/stability/stability_chart.h"
 
 #include <fmt/format.h>
@@ -8,53 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <limits>
 
 #include "core/error.h"
+#include "study/stability/cell_rectangles.h"
 
 namespace cradle {
 namespace {
 
-constexpr int kColorLevels = 64;           // of cells that are numbers
-constexpr double kOverlap = 0.1;           // of a cell, that its rectangle reaches beyond it: no gaps show between them
 constexpr double kWideSpan = 300;          // last to first value of a logarithmic axis: beyond, tics are powers of ten
 constexpr double kVeryWideSpan = 1e8;      // not every power has a tic, and none has smaller ones
 constexpr std::size_t kMostLetters = 120;  // of the legend in a line
-
-struct Range {
-  double first = std::numeric_limits<double>::infinity(), last = -std::numeric_limits<double>::infinity();
-
-  void include(double value) {
-    if (!std::isfinite(value)) return;
-    first = std::min(first, value);
-    last = std::max(last, value);
-  }
-};
-
-double between(const Axis& axis, double a, double b) {
-  return axis.quantity.isLogarithmic ? std::sqrt(a * b) : (a + b) / 2;
-}
-
-/// The value as far from a as that is from b, on the other side.
-double mirrored(const Axis& axis, double a, double b) {
-  return axis.quantity.isLogarithmic ? a * a / b : 2 * a - b;
-}
-
-/// Borders of the cells: one more than values.
-std::vector<double> edgesOf(const Axis& axis) {
-  const std::vector<double>& values = axis.values;
-  CRADLE_CHECK(values.size() >= 2);
-  std::vector<double> edges;
-  for (std::size_t i = 1; i < values.size(); ++i) edges.push_back(between(axis, values[i - 1], values[i]));
-  edges.insert(edges.begin(), mirrored(axis, values.front(), edges.front()));
-  edges.push_back(mirrored(axis, values.back(), edges.back()));
-  return edges;
-}
-
-bool hasCells(const StabilityMap& map) {
-  return std::any_of(map.panels.begin(), map.panels.end(), [](const MapPanel& panel) { return !panel.cells.empty(); });
-}
 
 /// Around all curves, with room at both ends.
 Range rangeOfCurves(const StabilityMap& map, const Axis& axis, double MapPoint::*coordinate, double room) {
@@ -76,62 +36,6 @@ Range rangeOf(const StabilityMap& map, const Axis& axis, double MapPoint::*coord
   if (hasCells(map)) return {edgesOf(axis).front(), edgesOf(axis).back()};
   if (!axis.values.empty()) return {axis.values.front(), axis.values.back()};
   return rangeOfCurves(map, axis, coordinate, room);
-}
-
-/// Colours of cells that are numbers, with colours in equal steps of the number or of its logarithm.
-class ColorScale {
- public:
-  explicit ColorScale(const StabilityMap& map) : isLogarithmic_(map.cell.isLogarithmic) {
-    for (const MapPanel& panel : map.panels)
-      for (const double cell : panel.cells)
-        if (!isLogarithmic_ || cell > 0) range_.include(cell);
-  }
-  const Range& range() const { return range_; }
-
-  /// The number that stands for all of its level; those beyond the scale belong to its ends.
-  double levelOf(double number) const {
-    if (!(range_.first < range_.last)) return range_.first;
-    const double inside = std::clamp(number, range_.first, range_.last);
-    const double part = (scaled(inside) - scaled(range_.first)) / (scaled(range_.last) - scaled(range_.first));
-    const double level = std::round(part * kColorLevels) / kColorLevels;
-    const double value = scaled(range_.first) + level * (scaled(range_.last) - scaled(range_.first));
-    return isLogarithmic_ ? std::pow(10, value) : value;
-  }
-
- private:
-  double scaled(double number) const { return isLogarithmic_ ? std::log10(number) : number; }
-
-  bool isLogarithmic_;
-  Range range_;
-};
-
-long colorNumber(const std::string& color) {
-  return std::strtol(color.c_str() + 1, nullptr, 16);
-}
-
-/// Rectangles of a panel: left, right, bottom, top, colour.
-std::string cellBlock(const StabilityMap& map, const MapPanel& panel, const ColorScale& scale) {
-  const std::vector<double> xs = edgesOf(map.x), ys = edgesOf(map.y);
-  const std::size_t columns = map.x.values.size(), rows = map.y.values.size();
-  CRADLE_CHECK(panel.cells.size() == columns * rows);
-  const auto colorOf = [&](std::size_t row, std::size_t column) {
-    const double cell = panel.cells[row * columns + column];
-    if (std::isnan(cell) || map.outcomes.empty()) return std::isnan(cell) ? cell : scale.levelOf(cell);
-    return static_cast<double>(colorNumber(map.outcomes.at(static_cast<std::size_t>(cell)).color));
-  };
-  const auto beyond = [](const std::vector<double>& edges, std::size_t end) {
-    return end + 1 < edges.size() ? edges[end] + kOverlap * (edges[end + 1] - edges[end]) : edges[end];
-  };
-  std::string text;
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t first = 0, end = 0; first < columns; first = end) {
-      const double color = colorOf(row, first);
-      for (end = first + 1; end < columns && colorOf(row, end) == color;) ++end;
-      if (std::isnan(color)) continue;
-      text += fmt::format("{} {} {} {} {}\n", xs[first], beyond(xs, end), ys[row], beyond(ys, row + 1), color);
-    }
-  }
-  return text;
 }
 
 /// A name with its look, once for all panels.
@@ -171,7 +75,7 @@ std::string dataBlocks(const StabilityMap& map, const ColorScale& scale) {
   std::string text;
   for (std::size_t i = 0; i < map.panels.size(); ++i) {
     const MapPanel& panel = map.panels[i];
-    if (!panel.cells.empty()) text += fmt::format("$cells{} << EOD\n{}EOD\n", i, cellBlock(map, panel, scale));
+    if (!panel.cells.empty()) text += fmt::format("$cells{} << EOD\n{}EOD\n", i, cellRectangles(map, panel, scale));
     for (std::size_t j = 0; j < panel.curves.size(); ++j) {
       text += fmt::format("$curve{}_{} << EOD\n", i, j);
       for (const MapPoint& point : panel.curves[j].points)

@@ -112,9 +112,8 @@ StabilityMap stacksMap(const MapProgress& progress) {
       "sweep (Bullet, ODE's quick step, cradle's fast contact step) leave each box a part of its speed at every step: "
       "a "
       "top of ten to thirty times the mass makes its way through the rest. Cradle's fast contact step ends with an "
-      "error there, since the overlap that it takes out gives energy; the plan takes it for fifty bodies and more, if "
-      "the accuracy asked is coarse. ODE's direct step stands at most masses and fails at some, MuJoCo's soft contacts "
-      "are pressed in or throw boxes off.";
+      "error there rather than gain energy; the plan takes it for fifty bodies and more, if the accuracy asked is "
+      "coarse. ODE's direct step and MuJoCo's soft contacts hold some stacks and lose others next to them.";
   map.x = logarithmicAxis("mass of the topmost box / others", "", logarithmicallySpaced(1, 1e4, 9));
   map.y = linearAxis("boxes", "", {2, 4, 6, 8, 10, 12});
   map.outcomes = {{"stands to 1 cm", "#a9d3ee"},
