@@ -63,10 +63,12 @@ BulletPile::BulletPile(const PileScene& scene) {
     shapes_.push_back(bulletShapeOf(item));
     add(item.mass, shapes_.back().get(), item.position, item.turn);
   }
+  // Walls are boxes: Bullet finds one point a step where a box touches a plane, and heaps of boxes are pressed through.
   for (const PlaneCollider& plane : scene.planes) {
-    const Vec3& n = plane.normal;
-    shapes_.push_back(std::make_unique<btStaticPlaneShape>(btVector3(n.x(), n.y(), n.z()), n.dot(plane.point)));
-    add(0, shapes_.back().get(), Vec3::Zero(), Quat::Identity());
+    constexpr double kReach = 20, kHalfThickness = 1;  // m
+    const Quat turn = Quat::FromTwoVectors(Vec3::UnitY(), plane.normal);
+    shapes_.push_back(std::make_unique<btBoxShape>(btVector3(kReach, kHalfThickness, kReach)));
+    add(0, shapes_.back().get(), plane.point - kHalfThickness * plane.normal, turn);
   }
 }
 
