@@ -15,15 +15,15 @@ def measure(program, folder):
 
 
 def read(folder):
-    """(title, subtitle, paragraph, svg) of each map, as cradle lists them: by the time they were made."""
+    """(title, paragraph, svg) of each map, as cradle lists them: by the time they were made."""
     place = os.path.join(folder, "maps")
     names = [name for name in os.listdir(place) if name.endswith(".csv")]
     found = []
     for name in sorted(names, key=lambda name: (os.path.getmtime(os.path.join(place, name)), name)):
         with open(os.path.join(place, name)) as file:
-            heads = [line[2:].strip() for line in (file.readline() for _ in range(3)) if line.startswith("# ")]
+            title, _, paragraph = (file.readline()[2:].strip() for _ in range(3))
         with open(os.path.join(place, name[:-4] + ".svg"), "rb") as file:
-            found.append((*heads, file.read()))
+            found.append((title, paragraph, file.read()))
     return found
 
 
@@ -31,8 +31,8 @@ def section(found):
     """HTML."""
     parts = ['<h2 id="maps">Where methods fail<small>cradle stability</small></h2><p>Each map is what small scenes do in the program '
              "itself, over two quantities; the borders that theory has are drawn over it.</p>"]
-    for title, subtitle, paragraph, svg in found:
+    for title, paragraph, svg in found:
         data = base64.b64encode(svg).decode()
-        parts.append(f'<h3>{html.escape(title)}</h3><p class="small">{html.escape(subtitle)}</p><p>{html.escape(paragraph)}</p>'
+        parts.append(f'<h3>{html.escape(title)}</h3><p>{html.escape(paragraph)}</p>'
                      f'<img class="map" alt="{html.escape(title)}" src="data:image/svg+xml;base64,{data}">')
     return "\n".join(parts)

@@ -9,7 +9,7 @@ import json, math, os, re, sys, tempfile, unittest
 SOURCE = os.path.abspath(sys.argv[1])
 sys.path.insert(0, os.path.join(SOURCE, "charts"))
 
-import browser, maps, piles
+import maps, piles
 from frontier import cost_at, cost_factors, error_at, error_factors, frontier, lost_levels
 from page import page
 from study_file import Reference, floor_of, order_of, points_of, read_rows
@@ -130,6 +130,18 @@ class Words(unittest.TestCase):
         said = piles.sentence("turned", found["cradle"], "Bullet", found["Bullet"])
         self.assertIn("Cradle loses: while they fall", said)
         self.assertEqual(piles.rest(found["Bullet"][6]), "never")
+
+
+class Maps(unittest.TestCase):
+    def test_are_embedded_with_their_words(self):
+        with tempfile.TemporaryDirectory() as folder:
+            os.mkdir(os.path.join(folder, "maps"))
+            for name, text in (("a.csv", "# Step < stiffness\n# ten periods\n# Why & how\nx,y\n1,2\n"), ("a.svg", "<svg/>")):
+                with open(os.path.join(folder, "maps", name), "w") as file:
+                    file.write(text)
+            section = maps.section(maps.read(folder))
+        self.assertIn("<h3>Step &lt; stiffness</h3><p>Why &amp; how</p>", section)
+        self.assertIn('src="data:image/svg+xml;base64,PHN2Zy8+"', section)
 
 
 class Page(unittest.TestCase):
