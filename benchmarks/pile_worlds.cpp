@@ -63,12 +63,22 @@ BulletPile::BulletPile(const PileScene& scene) {
     shapes_.push_back(bulletShapeOf(item));
     add(item.mass, shapes_.back().get(), item.position, item.turn);
   }
-  // Walls are boxes: Bullet finds one point a step where a box touches a plane, and heaps of boxes are pressed through.
-  for (const PlaneCollider& plane : scene.planes) {
-    constexpr double kReach = 20, kHalfThickness = 1;  // m
-    const Quat turn = Quat::FromTwoVectors(Vec3::UnitY(), plane.normal);
+  const bool hasBoxes =
+      std::any_of(scene.items.begin(), scene.items.end(), [](const PileItem& item) { return item.isBox(); });
+  for (const PlaneCollider& plane : scene.planes) addWall(plane, hasBoxes);
+}
+
+// Bullet finds one point a step where a box touches a plane, and heaps of boxes are pressed through: they get walls of
+// boxes. For balls, planes are cheaper.
+void BulletPile::addWall(const PlaneCollider& plane, bool isBox) {
+  constexpr double kReach = 20, kHalfThickness = 1;  // m
+  const Vec3& n = plane.normal;
+  if (isBox) {
     shapes_.push_back(std::make_unique<btBoxShape>(btVector3(kReach, kHalfThickness, kReach)));
-    add(0, shapes_.back().get(), plane.point - kHalfThickness * plane.normal, turn);
+    add(0, shapes_.back().get(), plane.point - kHalfThickness * n, Quat::FromTwoVectors(Vec3::UnitY(), n));
+  } else {
+    shapes_.push_back(std::make_unique<btStaticPlaneShape>(btVector3(n.x(), n.y(), n.z()), n.dot(plane.point)));
+    add(0, shapes_.back().get(), Vec3::Zero(), Quat::Identity());
   }
 }
 

@@ -42,6 +42,7 @@ class BulletPile {
 
  private:
   void add(double mass, btCollisionShape* shape, const Vec3& at, const Quat& turn);
+  void addWall(const PlaneCollider& plane, bool isBox);
 
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
