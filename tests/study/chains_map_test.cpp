@@ -18,8 +18,8 @@ ChainOutcome outcomeOf(const char* method, double setting, int balls, double mas
   return outcomeOf(StudyScene(std::move(scene)).run(methodOf(method), setting, 1));
 }
 
-// One ball between the world and the heavy one, M: both rods pull it, w^2 = (T1 + T2) / m, and 1/2 p g / m more since the
-// heavy one gives way; T1 = p g (M + m), T2 = p g M, p = 3 - 2 cos 30 degrees. What is left is 1/M^2 of it.
+// One ball between the world and the heavy one, M: both rods pull it, w^2 = (T1 + T2) / m, and 1/2 p g / m more since
+// the heavy one gives way; T1 = p g (M + m), T2 = p g M, p = 3 - 2 cos 30 degrees. What is left is 1/M^2 of it.
 TEST(Chains, OfTwoBallsSwingAcrossAsTheHeavyOnePulls) {
   const double step = 1.0 / 60, pull = (3 - std::sqrt(3)) * 9.81;
   EXPECT_NEAR(heaviestForRk4(2, step) / ((8 / (step * step * pull) - 1.5) / 2), 1, 1e-5);

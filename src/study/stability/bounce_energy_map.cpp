@@ -144,16 +144,16 @@ StabilityMap bounceEnergyMap(const MapProgress& progress) {
   map.name = "bounce_energy";
   map.title = "A ball dropped from 1 m: its height after five bounces, in parts of the right one";
   map.subtitle =
-      "Textbook collisions are looked for at the ends of steps alone; the mean of 16 drops, whose impacts fall at all "
-      "moments of a step.";
+      "Textbook collisions are looked for at the ends of steps alone; the mean of 16 drops, whose impacts fall at "
+      "all moments of a step.";
   map.paragraph =
-      "Textbook collisions turn the velocity round where a step happens to end, below the ground, and Euler's methods "
-      "keep an energy of their own, which the turn changes. In the mean over all moments of a step a bounce with speed "
-      "s changes the height by s h (1 + e) (a e - (1 - e) / 2), h the step, e the restitution: a = 1/2 for explicit "
-      "Euler (the ball gains height, also with e = 1), -1/2 for semi-implicit Euler (it loses), 0 for RK4 (right for "
-      "e = 1; with loss it loses more than it should). With e = 0.6 and steps "
-      "of 0.014 s semi-implicit Euler leaves less than a hundredth of the height. "
-      "Steps that end at impacts are right to 1e-11 at any step and restitution.";
+      "Textbook collisions turn the velocity round where a step happens to end, below the ground, and Euler's "
+      "methods keep an energy of their own, which the turn changes. In the mean over all moments of a step a bounce "
+      "with speed s changes the height by s h (1 + e) (a e - (1 - e) / 2), h the step, e the restitution: a = 1/2 "
+      "for explicit Euler (the ball gains height, also with e = 1), -1/2 for semi-implicit Euler (it loses), 0 for "
+      "RK4 (right for e = 1; with loss it loses more than it should). With e = 0.6 and steps of 0.014 s "
+      "semi-implicit Euler leaves less than a hundredth of the height. Steps that end at impacts are right to 1e-11 "
+      "at any step and restitution.";
   map.x = logarithmicAxis("time step", "s", {});
   map.y = linearAxis("height / right height", "", {0, kHighest});
   const std::vector<double> steps = logarithmicallySpaced(3e-4, 3e-2, 7);

@@ -75,22 +75,34 @@ double heaviestForRk4(int balls, double timeStep) {
   return light;
 }
 
+namespace {
+
+std::vector<double> cellsOf(const StabilityMap& map, const StudyMethod& method) {
+  const double setting = method.setting == SettingKind::timeStep ? kTimeStep : kAccuracy;
+  std::vector<double> cells;
+  for (const double balls : map.y.values)
+    for (const double mass : map.x.values) {
+      StudyScene scene(swingingChain(static_cast<int>(balls), mass));
+      cells.push_back(static_cast<double>(outcomeOf(scene.run(method, setting, kCpuLimit))));
+    }
+  return cells;
+}
+
+}  // namespace
+
 StabilityMap chainsMap(const MapProgress& progress) {
   StabilityMap map;
   map.name = "chains";
   map.title = "Chains with a heavy ball at the end, swinging: where their rods hold for 5 s";
   map.subtitle =
-      "Balls of 1 kg on rods of 1 m, let go at 30 degrees from the vertical, in a line; the last is heavier. All but "
-      "the "
-      "plan go by steps of 1/60 s.";
+      "Balls of 1 kg on rods of 1 m, let go at 30 degrees from the vertical, in a line; the last is heavier. All "
+      "but the plan go by steps of 1/60 s.";
   map.paragraph =
       "Solvers that sweep leave rods a part of the pull at every step: the chain gets longer, and comes apart for a "
-      "last "
-      "ball of thirty to a hundred times the mass. Cradle factorises all rods at once and projects what steps leave: "
-      "rods hold to rounding. What bounds RK4 is not the rods but that light balls under a strong pull swing across "
-      "the "
-      "chain as a string does, faster than steps can follow: it stops with an error there; the plan takes smaller "
-      "steps.";
+      "last ball of thirty to a hundred times the mass. Cradle factorises all rods at once and projects what steps "
+      "leave: rods hold to rounding. What bounds RK4 is not the rods but that light balls under a strong pull swing "
+      "across the chain as a string does, faster than steps can follow: it stops with an error there; the plan "
+      "takes smaller steps.";
   map.x = logarithmicAxis("mass of the last ball / others", "", logarithmicallySpaced(1, 1e4, 9));
   map.y = linearAxis("balls", "", {2, 4, 6, 8, 10, 12});
   map.outcomes = {{"rods keep their length to 1 mm", "#a9d3ee"},
@@ -98,21 +110,12 @@ StabilityMap chainsMap(const MapProgress& progress) {
                   {"come apart", "#e79a7c"},
                   {"energy from nowhere, or stopped with an error", "#c8c8c8"}};
   for (const Way& way : kWays)
-    for (const StudyMethod& method : studyMethods())
-      if (method.name == way.method) {
-        MapPanel& panel = map.panels.emplace_back(MapPanel{way.title, {}, {}});
-        if (method.name == "rk4") panel.curves = {theoryOf(map)};
-        for (const double balls : map.y.values) {
-          for (const double mass : map.x.values) {
-            StudyScene scene(swingingChain(static_cast<int>(balls), mass));
-            const double setting = method.setting == SettingKind::timeStep ? kTimeStep : kAccuracy;
-            panel.cells.push_back(static_cast<double>(outcomeOf(scene.run(method, setting, kCpuLimit))));
-          }
-          const double rows = static_cast<double>(panel.cells.size() / map.x.values.size() +
-                                                  (map.panels.size() - 1) * map.y.values.size());
-          progress(std::min(1.0, rows / static_cast<double>(kWays.size() * map.y.values.size())));
-        }
-      }
+    for (const StudyMethod& method : studyMethods()) {
+      if (method.name != way.method) continue;
+      map.panels.push_back({way.title, cellsOf(map, method), {}});
+      if (method.name == "rk4") map.panels.back().curves = {theoryOf(map)};
+      progress(static_cast<double>(map.panels.size()) / static_cast<double>(kWays.size()));
+    }
   return map;
 }
 

@@ -73,16 +73,15 @@ StabilityMap comingToRestMap(const MapProgress& progress) {
   map.name = "coming_to_rest";
   map.title = "Infinitely many bounces: error of the time at which a ball lies still";
   map.subtitle =
-      "Zeno's time for a drop from 1 m: 0.4515 s (1 + e) / (1 - e). Textbook: semi-implicit Euler, impacts at the ends "
-      "of steps.";
+      "Zeno's time for a drop from 1 m: 0.4515 s (1 + e) / (1 - e). Textbook: semi-implicit Euler, impacts at the "
+      "ends of steps.";
   map.paragraph =
       "A ball dropped from 1 m bounces infinitely often in the time t1 (1 + e) / (1 - e). Events follow the bounces "
-      "down "
-      "to 1e-7 of the speed and add what is left in closed form. Steps give up when a bounce takes no more than two of "
-      "them, early by some steps. Textbook collisions with semi-implicit Euler lose height at each bounce, the more of "
-      "it the lower the ball is, and end far too early. They have no rest at all: their time is when the ball was last "
-      "faster than gravity makes it in two steps; afterwards it goes on sinking through the ground. Where a line "
-      "dips, its error changes sign.";
+      "down to 1e-7 of the speed and add what is left in closed form. Steps give up when a bounce takes no more "
+      "than two of them, early by some steps. Textbook collisions with semi-implicit Euler lose height at each "
+      "bounce, the more of it the lower the ball is, and end far too early. They have no rest at all: their time is "
+      "when the ball was last faster than gravity makes it in two steps; afterwards it goes on sinking through the "
+      "ground. Where a line dips, its error changes sign.";
   map.x = linearAxis("restitution", "", {});
   map.y = logarithmicAxis("|time of rest / Zeno's time - 1|", "", {});
   const std::vector<double> restitutions = evenlySpaced(0.1, 0.95, 18);

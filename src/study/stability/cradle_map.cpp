@@ -126,10 +126,9 @@ StabilityMap cradleMap(const MapProgress& progress) {
       "impact.";
   map.paragraph =
       "Right is 0, 0, 0, 0, 1. Generalized reflections, which the plan uses, and impulses pair by pair give that. "
-      "Newton's law for all contacts at once keeps momentum and energy as well, and throws the ball back at 3/5 of its "
-      "speed, with the other four at 2/5. The other engines, touching balls and steps of 1/1000 s, solve all contacts "
-      "at "
-      "once too, or as soft ones.";
+      "Newton's law for all contacts at once keeps momentum and energy as well, and throws the ball back at 3/5 of "
+      "its speed, with the other four at 2/5. The other engines, touching balls and steps of 1/1000 s, solve all "
+      "contacts at once too, or as soft ones.";
   map.x = linearAxis("ball", "", {0, 6});
   map.y = linearAxis("speed after the impact", "m/s", {});
   map.panels = {

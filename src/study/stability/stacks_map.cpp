@@ -104,16 +104,15 @@ StabilityMap stacksMap(const MapProgress& progress) {
   map.name = "stacks";
   map.title = "Stacks of boxes with a heavy one on top: where they stand, 10 s after they were dropped";
   map.subtitle =
-      "Boxes of 1 m and 1 kg fall onto each other by 1 cm each, friction 0.5; the topmost is heavier. All go by steps "
-      "of "
-      "1/60 s.";
+      "Boxes of 1 m and 1 kg fall onto each other by 1 cm each, friction 0.5; the topmost is heavier. All go by "
+      "steps of 1/60 s.";
   map.paragraph =
-      "Cradle's contact step solves all contacts of a step at once, to rounding, and stands at any mass. Solvers that "
-      "sweep (Bullet, ODE's quick step, cradle's fast contact step) leave each box a part of its speed at every step: "
-      "a "
-      "top of ten to thirty times the mass makes its way through the rest. Cradle's fast contact step ends with an "
-      "error there rather than gain energy; the plan takes it for fifty bodies and more, if the accuracy asked is "
-      "coarse. ODE's direct step and MuJoCo's soft contacts hold some stacks and lose others next to them.";
+      "Cradle's contact step solves all contacts of a step at once, to rounding, and stands at any mass. Solvers "
+      "that sweep (Bullet, ODE's quick step, cradle's fast contact step) leave each box a part of its speed at "
+      "every step: a top of ten to thirty times the mass makes its way through the rest. Cradle's fast contact step "
+      "mostly ends with an error there rather than gain energy, and twice does not notice; the plan takes it for "
+      "fifty bodies and more, if the accuracy asked is coarse. ODE's direct step and MuJoCo's soft contacts hold "
+      "some stacks and lose others next to them.";
   map.x = logarithmicAxis("mass of the topmost box / others", "", logarithmicallySpaced(1, 1e4, 9));
   map.y = linearAxis("boxes", "", {2, 4, 6, 8, 10, 12});
   map.outcomes = {{"stands to 1 cm", "#a9d3ee"},

@@ -98,6 +98,35 @@ DirectSolution solveDirectly(const StopProblem& problem) {
   return problem.kind == RowKind::holds ? solveRods(problem) : solveContacts(problem);
 }
 
+namespace {
+
+MapPanel panelOf(const std::string& title, StopProblem (*problemOf)(int balls, double mass),
+                 const MapProgress& progress) {
+  const std::vector<double> ratios = logarithmicallySpaced(1, 1e4, 9);
+  MapPanel panel{title, {}, {}};
+  std::vector<MapCurve> theories;
+  MapCurve direct{"cradle's solver, any number of balls", CurveKind::series, {}};
+  for (const double ratio : ratios) direct.points.push_back({ratio, 0});
+  for (const int length : kLengths) {
+    MapCurve theory{"theory", CurveKind::theory, {}};
+    MapCurve swept{fmt::format("{} balls", length), CurveKind::series, {}};
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+      const StopProblem problem = problemOf(length, ratios[i]);
+      const GaussSeidel solver(problem.rows, problem.kind, problem.assembly.mechanism.bodies, problem.state);
+      theory.points.push_back({ratios[i], std::log(kStoppedPart) / std::log(convergenceFactor(solver.matrix()))});
+      swept.points.push_back({ratios[i], countSweeps(problem).sweeps});
+      direct.points[i].y = std::max(direct.points[i].y, solveDirectly(problem).solves);
+    }
+    panel.curves.push_back(swept), theories.push_back(theory);
+    progress(static_cast<double>(length) / kLengths.back());
+  }
+  panel.curves.push_back(direct);
+  panel.curves.insert(panel.curves.end(), theories.begin(), theories.end());
+  return panel;
+}
+
+}  // namespace
+
 StabilityMap sweepsMap(const MapProgress& progress) {
   StabilityMap map;
   map.name = "sweeps";
@@ -106,38 +135,16 @@ StabilityMap sweepsMap(const MapProgress& progress) {
       "Balls of 1 kg, and one that is heavier, have fallen freely for 1/60 s and are to be stopped, all at once.";
   map.paragraph =
       "A stack of balls lands, or a chain of balls comes taut: all but one weigh 1 kg. Gauss-Seidel satisfies one "
-      "contact or rod after the other, and hands momentum on by one ball a sweep: a mass M on a mass m is left with M "
-      "/ "
-      "(M + m) of its speed, and each ball between them makes it worse. Sweeps are counted until nothing is faster "
-      "than "
-      "a thousandth of the fall; theory is ln(1/1000) / ln(largest eigenvalue of a sweep). Bullet takes 10, ODE's "
-      "quick step 20. "
-      "Our own solvers (one factorisation of all rods, one cone problem of all contacts) do not depend on the masses.";
+      "contact or rod after the other, and hands momentum on by one ball a sweep: a mass M on a mass m is left with "
+      "M / (M + m) of its speed, and each ball between them makes it worse. Sweeps are counted until nothing is "
+      "faster than a thousandth of the fall; theory is ln(1/1000) / ln(largest eigenvalue of a sweep). Bullet takes "
+      "10, ODE's quick step 20. Our own solvers (one factorisation of all rods, one cone problem of all contacts) "
+      "do not depend on the masses.";
   map.x = logarithmicAxis("heaviest mass / others", "", {});
   map.y = logarithmicAxis("sweeps, or iterations", "", {});
-  const std::vector<double> ratios = logarithmicallySpaced(1, 1e4, 9);
-  for (const bool isStack : {true, false}) {
-    MapPanel panel{isStack ? "stack, the heavy ball on top" : "hanging chain, the heavy ball lowest", {}, {}};
-    std::vector<MapCurve> theories;
-    MapCurve direct{"cradle's solver, any number of balls", CurveKind::series, {}};
-    for (const double ratio : ratios) direct.points.push_back({ratio, 0});
-    for (const int length : kLengths) {
-      MapCurve theory{"theory", CurveKind::theory, {}};
-      MapCurve swept{fmt::format("{} balls", length), CurveKind::series, {}};
-      for (std::size_t i = 0; i < ratios.size(); ++i) {
-        const StopProblem problem = isStack ? stackToStop(length, ratios[i]) : chainToStop(length, ratios[i]);
-        const GaussSeidel solver(problem.rows, problem.kind, problem.assembly.mechanism.bodies, problem.state);
-        theory.points.push_back({ratios[i], std::log(kStoppedPart) / std::log(convergenceFactor(solver.matrix()))});
-        swept.points.push_back({ratios[i], countSweeps(problem).sweeps});
-        direct.points[i].y = std::max(direct.points[i].y, solveDirectly(problem).solves);
-      }
-      panel.curves.push_back(swept), theories.push_back(theory);
-      progress((isStack ? 0 : 0.5) + 0.5 * length / kLengths.back());
-    }
-    panel.curves.push_back(direct);
-    panel.curves.insert(panel.curves.end(), theories.begin(), theories.end());
-    map.panels.push_back(panel);
-  }
+  map.panels = {
+      panelOf("stack, the heavy ball on top", stackToStop, [&](double part) { progress(part / 2); }),
+      panelOf("hanging chain, the heavy ball lowest", chainToStop, [&](double part) { progress(0.5 + part / 2); })};
   return map;
 }
 

@@ -145,11 +145,11 @@ StabilityMap tunnellingMap(const MapProgress& progress) {
   map.title = "Marbles of radius 1 cm at a plate: where they get through, with steps of 1/60 s";
   map.subtitle = "A cell is four marbles, thrown at four moments of a step; it shows the worst of them. No gravity.";
   map.paragraph =
-      "Each cell is a marble thrown at the plate, at four moments of a step; it shows the worst. Collisions that are "
-      "looked for at the ends of steps alone miss what passes between them: v h > d + 2 r; and what is seen beyond the "
-      "middle of the plate is let out on the wrong side: v h > d/2 + r. The plan goes from impact to impact, the fast "
-      "contact step looks ahead by a step's way: nothing gets through at any speed. The other engines run with their "
-      "defaults: ODE does as the textbook says, Bullet looks 2 cm ahead, MuJoCo's soft contacts give way long before.";
+      "Collisions that are looked for at the ends of steps alone miss what passes between them: v h > d + 2 r; and "
+      "what is seen beyond the middle of the plate is let out on the wrong side: v h > d/2 + r. The plan goes from "
+      "impact to impact, the fast contact step looks ahead by a step's way: nothing gets through. The other engines "
+      "run with their defaults: ODE does as the textbook says, Bullet looks 2 cm ahead, MuJoCo's soft contacts give "
+      "way long before.";
   map.x = logarithmicAxis("thickness of the plate", "m", logarithmicallySpaced(1e-3, 1, 25));
   map.y = logarithmicAxis("speed", "m/s", logarithmicallySpaced(0.3, 300, 31));
   map.outcomes = {{"stopped", "#a9d3ee"}, {"let out on the far side", "#f7dc8a"}, {"passed", "#e79a7c"}};
