@@ -149,7 +149,7 @@ Decades decadesOf(const std::vector<Curve>& curves, const Side& side) {
 
 ChartLayout layoutOf(const std::vector<Curve>& curves) {
   if (sidesOf(curves).empty()) return {960, 0.18, 0, 0, 0.28, 0.885, 0.022, 0.923, 0.965};
-  return {1320, 0.145, 0.215, 0.385, 0.475, 0.915, 0.018, 0.944, 0.974};
+  return {1320, 0.139, 0.215, 0.385, 0.475, 0.915, 0.018, 0.944, 0.974};
 }
 
 std::string dataBlocks(const std::vector<Curve>& curves, double uncertainty) {
