@@ -91,6 +91,7 @@ if __name__ == "__main__":
     try:
         main()
     except KeyboardInterrupt:
-        sys.exit("interrupted; the same command goes on from here")
+        print("interrupted; the same command goes on from here", file=sys.stderr)
+        sys.exit(130)
     except (subprocess.CalledProcessError, browser.PageError) as error:
         sys.exit(f"charts: {error}")

@@ -14,7 +14,7 @@ separatrix, so that its curve stays at the top. MuJoCo’s Runge-Kutta has only 
 integrator shows its order as the slope of its curve. Cradle has the closed form again; the reference is an integration, and knows
 the end less well than it."""),
     "oscillator": Scene("S2", "Ball on a stiff spring", """A ball of 1 kg on a spring of 1000 N/m for 50 periods. An error of the frequency adds up to an error of the
-phase. Forces that are sampled once a step make Bullet and ODE of order one or two here; MuJoCo has the spring within its
+phase. Forces that are sampled once a step make Bullet and ODE of order two at best; MuJoCo has the spring within its
 Runge-Kutta steps, and order four. Of the textbook methods explicit Euler blows up at every large step: it has no stable step on an
 undamped spring at all. Cradle’s DOP853 is of order eight: it halves its error for a tenth more of cost."""),
     "hung_box": Scene("R3a", "Box hung by a corner", """A box hangs by one corner from a spring and tumbles while it bounces: the force depends on the orientation, and
@@ -22,7 +22,8 @@ the torque is what engines that freeze it for a step get wrong."""),
     "chain_on_joints": Scene("S3", "Chain on joints", """Three arms in a row, let go from the horizontal. MuJoCo and Simbody write the chain in its joints’ angles: they have no
 constraints to drift, and Runge-Kutta. Bullet and ODE have six coordinates a body and pull joints together again by a spring:
 that is of order one, and the drift of the joints stands in the panel below. Cradle has six coordinates a body too, but exact
-constraint forces within each stage of DOP853 and a projection after each step: joints hold to rounding at any accuracy."""),
+constraint forces within each stage of DOP853 and a projection after each step: joints hold to rounding. (The drift of the coarsest
+runs is that of frames inside long steps, which are interpolated.)"""),
     "chain_on_rods": Scene("S3", "Chain on rods", """The same with rods between the balls’ centres. MuJoCo’s rods are soft, Bullet has none (the row is ours)."""),
     "double_rod_pendulum": Scene("R4a", "Double rod pendulum", """Two balls on rods: a motion that is about to be chaotic, but is not in five seconds."""),
     "cradle_on_joints": Scene("S4", "Newton’s cradle, balls touching", """The first ball is lifted by 45 degrees and falls onto four that touch. What happens is decided in one instant: a
