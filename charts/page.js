@@ -4,7 +4,7 @@
 (() => {
   const tip = document.getElementById("tip");
   const reach = 20;  // pixels, from the pointer to a mark
-  const said = value => value === null ? "-" : Number(value).toPrecision(3).replace(/\.?0+(e|$)/, "$1");
+  const said = value => value === null ? "-" : String(Number(value.toPrecision(3)));
 
   const columns = (data, row) => {
     const [method, setting, error, cost, evaluations, energy, constraint, penetration, status] = row;

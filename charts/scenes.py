@@ -20,8 +20,8 @@ undamped spring at all. Cradle’s DOP853 is of order eight: it halves its error
     "hung_box": Scene("R3a", "Box hung by a corner", """A box hangs by one corner from a spring and tumbles while it bounces: the force depends on the orientation, and
 the torque is what engines that freeze it for a step get wrong."""),
     "chain_on_joints": Scene("S3", "Chain on joints", """Three arms in a row, let go from the horizontal. MuJoCo and Simbody write the chain in its joints’ angles: they have no
-constraints to drift, and Runge-Kutta. Bullet and ODE have six coordinates a body and pull joints together again by a spring:
-that is of order one, and the drift of the joints stands in the panel below. Cradle has six coordinates a body too, but exact
+constraints to drift, and Runge-Kutta. Bullet and ODE have six coordinates a body, and pull joints
+together again after they have parted: by how much stands in the panel below. Cradle has six coordinates a body too, but exact
 constraint forces within each stage of DOP853 and a projection after each step: joints hold to rounding. (The drift of the coarsest
 runs is that of frames inside long steps, which are interpolated.)"""),
     "chain_on_rods": Scene("S3", "Chain on rods", """The same with rods between the balls’ centres. MuJoCo’s rods are soft, Bullet has none (the row is ours)."""),
