@@ -4,6 +4,11 @@ import os, re, subprocess, sys
 from markup import boxed, table
 
 KINDS = {"spheres": "1000 spheres", "boxes": "1000 boxes", "turned": "1000 boxes, turned"}
+TEXT = """A thousand bodies of 0.2 m drop into a tray, at a step of 1/60 s, one thread. A heap is chaotic: no program is near
+another’s end, so that there is no error to draw. What counts is what a step costs, how deep bodies overlap (found from the poses
+alone), and when all of them lie still: what rests costs little or nothing. Falling is the first 1.5 s, in which contacts change all
+the time. Bullet has its defaults, and a tray of boxes where bodies are boxes; ODE takes dWorldQuickStep with 20 iterations, and
+disables bodies that lie still."""
 BODIES, SECONDS = "1000", "10"
 HEADS = ["", "", "falling, ms a step", "until rest", "ten seconds", "deepest while falling, mm", "later", "at the end", "at rest after, s"]
 NUMBER = r"(-?[\d.]+|nan|inf)"
@@ -59,8 +64,4 @@ def section(found):
             lines.append([KINDS[kind], "Cradle" if engine == "cradle" else engine] + cells)
         sentences += [sentence(kind, engines["cradle"], engine, numbers) for engine, numbers in engines.items() if engine != "cradle"]
     said = "".join(boxed(kind, [text for text in sentences if ("loses" in text) == (kind == "lost")]) for kind in ("won", "lost"))
-    return (f'<section id="piles"><h2>Heaps<small>S7 · benchmark_pile</small></h2><p>A thousand bodies of 0.2 m drop into a tray, at a step of '
-            "1/60 s, one thread. A heap is chaotic: no program is near another’s end, so that there is no error to draw. What counts is what a step "
-            "costs, how deep bodies overlap (found from the poses alone), and when all of them lie still: what rests costs little or nothing. Falling is "
-            "the first 1.5 s, in which contacts change all the time. Bullet has its defaults; ODE takes dWorldQuickStep with 20 iterations, and "
-            f"disables bodies that lie still.</p>{table(HEADS, lines)}{said}</section>")
+    return (f'<section id="piles"><h2>Heaps<small>S7 · benchmark_pile</small></h2><p>{TEXT}</p>{table(HEADS, lines)}{said}</section>')
