@@ -93,5 +93,8 @@ if __name__ == "__main__":
     except KeyboardInterrupt:
         print("interrupted; the same command goes on from here", file=sys.stderr)
         sys.exit(130)
-    except (subprocess.CalledProcessError, browser.PageError) as error:
+    except subprocess.CalledProcessError as error:
+        print(f"charts: {os.path.basename(error.cmd[0])} ended with {error.returncode}", file=sys.stderr)
+        sys.exit(error.returncode)
+    except browser.PageError as error:
         sys.exit(f"charts: {error}")

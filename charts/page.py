@@ -50,7 +50,8 @@ def data_of(rows, floor):
 def section(name, rows, reference):
     scene, floor = SCENES[name], floor_of(reference)
     won, lost, others = verdict(rows, floor)
-    sides = [side_chart(rows, plot) for plot in SIDES]
+    evaluations = SIDES[0]._replace(y_of=lambda row: max(row.error, floor / 10))
+    sides = [side_chart(rows, plot) for plot in [evaluations, *SIDES[1:]]]
     heads = ["", "least error", "its cost, ms/s", "Cradle’s for it, ms/s", "cost ×", "error ×"]
     return (f'<section class="scene" id="{name}"><h2>{scene.title}<small>{scene.label} · {name}.json</small></h2><p>{scene.text}</p>'
             f'<div class="beside"><div>{error_chart(rows, floor, MAIN)}</div><div>{boxed("won", won)}{boxed("lost", lost)}'

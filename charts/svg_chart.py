@@ -108,14 +108,14 @@ def blown_up(size, rows, x, plot):
 
 
 def error_chart(rows, floor, plot):
-    """The large chart of a scene: errors that are less than the floor stand where they are, in the band below it."""
+    """The large chart of a scene: errors below a tenth of the floor stand on the edge (what made the reference has none at all)."""
     size = LARGE
     good = [(number, row) for number, row in enumerate(rows) if row.status == "ok" and math.isfinite(row.error)]
     if not good:
         return ""
     strip = STRIP if any(row.status == "unstable" for row in rows) else 0
     x = LogAxis([plot.x_of(row) for _, row in good], size.left, size.width - size.right)
-    y = LogAxis([min(max(plot.y_of(row), LEAST), MOST) for _, row in good] + [floor], size.height - size.bottom, size.top + strip)
+    y = LogAxis([min(max(plot.y_of(row), floor / 10), MOST) for _, row in good] + [floor], size.height - size.bottom, size.top + strip)
     top = (f'<rect class="strip" x="{size.left}" y="{size.top}" width="{size.width - size.left - size.right}" height="{strip}"/>'
            f'<text class="note" x="{size.width - size.right - 6}" y="{size.top + 18}" text-anchor="end">blew up</text>') if strip else ""
     return (svg(size) + top + uncertainty_band(size, y, floor) + axes(size, x, y, plot) + curves(good, x, y, plot) +

@@ -47,9 +47,11 @@ ErrorAxis errorAxisOf(const std::vector<Curve>& curves, double uncertainty) {
   constexpr double kStrip = 0.1;  // as part of the axis
   ErrorAxis axis{{1e-1, 1}, 1};
   bool hasBlowUps = false;
+  // What made the reference has no error of its own, and would draw the axis down to nothing.
+  const double least = std::isfinite(uncertainty) ? uncertainty / 10 : 0;
   if (std::isfinite(uncertainty)) axis.decades.include(uncertainty);
   for (const Curve& curve : curves) {
-    for (const ChartPoint& point : curve.points) axis.decades.include(point.error);
+    for (const ChartPoint& point : curve.points) axis.decades.include(std::max(point.error, least));
     hasBlowUps = hasBlowUps || !curve.blowUps.empty();
   }
   const double top = axis.decades.top;
