@@ -104,10 +104,10 @@ Cost measure(const Job& job) {
   if (pipe(ends.data()) != 0) throw Error(ErrorKind::limit, "benchmark_film", "no pipe");
   cpuSecondsApart([&] {
     const Parts parts = drawAndEncode(job);
-    if (write(ends[1], parts.data(), sizeof(parts)) != sizeof(parts)) _exit(1);
+    if (write(ends[1], parts.data(), sizeof(parts)) != static_cast<ssize_t>(sizeof(parts))) _exit(1);
   });
   Parts parts{};
-  if (read(ends[0], parts.data(), sizeof(parts)) != sizeof(parts))
+  if (read(ends[0], parts.data(), sizeof(parts)) != static_cast<ssize_t>(sizeof(parts)))
     throw Error(ErrorKind::limit, "benchmark_film", "no figures");
   close(ends[0]), close(ends[1]);
   const auto start = std::chrono::steady_clock::now();
