@@ -37,6 +37,9 @@ class ContactStepping {
   /// What firstLanding found to land is not held before the step's end.
   void resolve(const std::vector<Contact>& contacts, const VectorX& before, double timeStep, VectorX& state);
 
+  /// How far (m or rad) the last call left ties from where they should be.
+  double tieError() const { return solver_.hasConstraints() ? solver_.largestError() : 0; }
+
   /// The part of a step, with the same arguments, after which something lands first: what is apart meets, faster than
   /// at `landingSpeed` (m/s), while what touches is held. Infinite if nothing does.
   double firstLanding(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
