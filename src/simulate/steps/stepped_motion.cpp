@@ -20,7 +20,7 @@ constexpr double kRopeTolerance = 1e-13;      // of the length, or of the tensio
 constexpr double kTimeRounding = 1e-9;        // of a step: remainders below it are rounding
 constexpr double kShortestPart = 1.0 / 1024;  // of a step: shorter ones are not cut for their error
 constexpr double kMostGrowth = 4;             // of a part of a step to the next
-constexpr double kMostTieError = 1e-9;        // m (a m of coordinates) or rad: projection leaves 1e-15
+constexpr double kMostTieError = 1e-7;        // m (a m of coordinates) or rad: a thousandth of what is seen
 constexpr double kMostTieGrowth = 2;          // times what free motion leaves of ties that contradict each other
 constexpr double kShortestHeld = 1.0 / 32;    // of a step: shorter ones are not cut for the sake of ties
 constexpr int kMostServed = 12;               // contacts
@@ -111,8 +111,8 @@ double SteppedMotion::nextStepEnd() const {
 }
 
 /// Takes out what the step left wrong: lengths of rods, closing and overlapping contacts. False if a shorter step would
-/// keep ties that this one does not: contact moves bodies along straight lines, which those of light ones on long arms
-/// do not follow far.
+/// keep ties that this one does not: what contact makes of free motion does not follow the arcs of light bodies on long
+/// arms far.
 bool SteppedMotion::holdContacts() {
   const double length = island_.step.timeStep;
   VectorX& state = island_.state;
