@@ -166,7 +166,13 @@ void ContactStepping::resolve(const Group& group, const VectorX& before, double 
 
 VectorX ContactStepping::solve(const Group& group, const Problem& problem) {
   if (tied_ || group.contacts.size() <= kFewContacts) {
-    const ConeSolution solution = solveConeProblem(inverseMass(), problem.free, problem.frictions);
+    const MatrixX inverseMass = this->inverseMass();
+    const double most = problem.free.cwiseAbs().maxCoeff();
+    ConeSolution solution = solveConeProblem(inverseMass, problem.free, problem.frictions);
+    // What is wedged may have no solution, and the search for one may lead beyond all bounds.
+    if (!(solution.residual <= most))
+      solution = solveConeProblem(inverseMass, problem.free, std::vector<double>(problem.frictions.size(), 0));
+    if (!(solution.residual <= most)) solution.impulses.setZero();
     count(solution);
     return solution.impulses;
   }
