@@ -65,19 +65,22 @@ bool Simulation::keepsTies() const {
   return std::get<SteppedMotion>(motion_).keepsTies();
 }
 
-/// Steps of one length take over where events do not serve, and give back where nothing touches, or after a while.
+/// Steps of one length take over where events do not serve, and give back where nothing touches, or after a while; not
+/// where a look is enough: trials cost more than they may save.
 void Simulation::changeMotion() {
   if (const auto* events = std::get_if<EventMotion>(&motion_)) {
     const std::string_view fault = events->fault();
     if (fault.empty()) return;
+    const bool isLook = island_.scene.accuracy > kLookAccuracy;
     if (!std::exchange(isWarned_, true))
-      island_.log.warn(
-          fmt::format("{}: the accuracy asked is not promised from {:.6g} s on: {}; contact is resolved "
-                      "every {:.3g} s as long as that lasts",
-                      island_.scene.path, island_.time, fault, kContactTimeStep));
+      island_.log.warn(fmt::format(
+          "{}: the accuracy asked is not promised from {:.6g} s on: {}; contact is resolved "
+          "every {:.3g} s {}",
+          island_.scene.path, island_.time, fault, kContactTimeStep, isLook ? "to the end" : "as long as that lasts"));
     island_.assembly.mechanism.contacts.clear();
     nextTrial_ = island_.time + trialTime_;
     trialTime_ *= 2;
+    if (isLook) method_ = contactSteps();
     motion_.emplace<SteppedMotion>(island_, ropes_, contactSteps());
     return;
   }

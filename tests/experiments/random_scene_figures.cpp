@@ -9,7 +9,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kEventAccuracy = 1e-4;  // the plan takes events up to here
+constexpr double kEventAccuracy = 1e-4;  // coarser ones ask for a look, and may be moved by steps
 // Times the accuracy. A step's error is a tenth of it: a hundred of them a run, of random signs, make up one of speeds,
 // and energy has their square. Frames between steps, which end where ties and contacts hold, have less than one.
 constexpr double kMostEnergyErrors = 2, kMostPlaceErrors = 1;

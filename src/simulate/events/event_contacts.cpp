@@ -10,6 +10,7 @@
 #include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
 #include "simulate/contact_response.h"
+#include "simulate/steps/contact_energy.h"
 
 namespace cradle {
 namespace {
@@ -117,10 +118,9 @@ void EventContacts::resolve(const std::optional<ContactChange>& change, const st
 /// Lasting contacts have no gap and do not leave each other, to rounding; those that stick do not slide.
 void EventContacts::keepTogether() {
   if (lasting_.empty()) return;
-  VectorX& state = island_.state;
-  const double before = kineticEnergy(island_.assembly.mechanism.bodies, state);
-  island_.equations.project(state);
-  dissipatedEnergy(state) += before - kineticEnergy(island_.assembly.mechanism.bodies, state);
+  const Invariants before = invariantsOf(island_.assembly.mechanism, island_.state);
+  island_.equations.project(island_.state);
+  bookDifference(before, island_.assembly.mechanism, island_.state);
 }
 
 /// What meets now touches, if its gap is known to that or not.

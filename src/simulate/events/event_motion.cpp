@@ -30,9 +30,11 @@ constexpr double kUnitLength = 1e-9;     // how far |q|^2 may be from 1 before i
 
 constexpr int kMostRounds = 100;  // of ropes and contacts at one instant; what is left comes after the next step
 
-constexpr int kMostEvents = 500;
-constexpr double kEventWindow = 1.0 / 60;  // s, in which there may be so many
-constexpr int kEventsAFailure = 50;        // that take no longer than to find where redundant contacts fail
+// A failure of redundant contacts takes as long to find as 50 events. Where a look is enough, what chatters costs less
+// in steps; a burst, as at the end of bounces, does not.
+constexpr EventPatience kPatience{500, 50, 1.0 / 60,
+                                  "contacts change more than 500 times in 1/60 s, or redundant ones 10 times"};
+constexpr EventPatience kLookPatience{60, 50, 0.25, "contacts change more than 60 times in 1/4 s"};
 
 /// Errors of orientations add up over the turns: those of bodies that turn by more than 100 rad are kept smaller.
 VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double duration) {
@@ -51,6 +53,7 @@ EventMotion::EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMet
       method_(method),
       contacts_(island, ropes, island.scene.accuracy),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
+      patience_(island.scene.accuracy > kLookAccuracy ? kLookPatience : kPatience),
       tolerance_(toleranceOf(method, island.state, island.scene.duration)),
       windowStart_(island.time) {
   lengths_.fill(island_.scene.duration);
@@ -259,13 +262,13 @@ void EventMotion::restUntil(double time) {
 }
 
 void EventMotion::countEvent(const Event& event) {
-  if (island_.time > windowStart_ + kEventWindow) windowStart_ = island_.time, eventsInWindow_ = 0;
+  if (island_.time > windowStart_ + patience_.window) windowStart_ = island_.time, eventsInWindow_ = 0;
   const bool isFailure = event.contact && event.contact->kind == ContactChange::Kind::redundant;
-  eventsInWindow_ += isFailure ? kEventsAFailure : 1;
+  eventsInWindow_ += isFailure ? patience_.ofAFailure : 1;
 }
 
 std::string_view EventMotion::fault() const {
-  if (eventsInWindow_ > kMostEvents) return "contacts change more than 500 times in 1/60 s, or redundant ones 10 times";
+  if (eventsInWindow_ > patience_.most) return patience_.fault;
   return contacts_.fault();
 }
 

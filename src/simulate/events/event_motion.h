@@ -12,6 +12,13 @@
 
 namespace cradle {
 
+/// How many events are too many.
+struct EventPatience {
+  int most = 0, ofAFailure = 0;  // in a window; events that a failure of redundant contacts counts for
+  double window = 0;             // s
+  std::string_view fault;
+};
+
 /// Moves an island with DOP853 in steps as long as the accuracy allows. Each step ends at the first event in it: bodies
 /// meet, ropes go taut or slack, pushes begin or end. Between events the motion is of order 8.
 class EventMotion {
@@ -62,6 +69,7 @@ class EventMotion {
   EventContacts contacts_;
   std::optional<EnergyGuard> guard_;  // always there once begun
   ConstraintSolver solver_;
+  EventPatience patience_;
   VectorX tolerance_;
   double startTieError_ = 0;     // m or rad
   std::vector<int> rodsBefore_;  // of ropes, before an event

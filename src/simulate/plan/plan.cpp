@@ -2,8 +2,8 @@
 //   1. the scene names a method: that one, for studies
 //   2. balls bounce without loss, and nothing acts but uniform gravity: closed form between collisions
 //   3. many bodies may touch, only gravity acts, and the accuracy asked is coarse: the fast contact step
-//   4. something may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved once a
-//   step
+//   4. models with hollows may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved
+//   once a step, for their edges meet too often
 //   5. nothing acts but uniform gravity: closed form
 //   6. else DOP853 with steps as long as the accuracy allows; contact changes at events
 
@@ -17,16 +17,16 @@
 #include "dynamics/integrators/semi_implicit_euler.h"
 #include "dynamics/rigid_body.h"
 #include "simulate/balls/flying_balls.h"
+#include "simulate/colliders.h"
 #include "simulate/plan/plan_islands.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kEventAccuracy = 1e-4;         // at coarser ones contact is resolved once a step
-constexpr double kPileTimeStep = 1.0 / 60;      // s, at most
-constexpr std::size_t kPileBodies = 50;         // with fewer, RK4 costs less than the pictures of its frames
-constexpr double kContactStepTolerance = 1e-5;  // of the local error, where contact decides how good a step is
-constexpr double kTolerancePart = 0.1;          // of the accuracy: the local errors of about ten steps add up to it
+constexpr double kPileTimeStep = 1.0 / 60;  // s, at most
+constexpr std::size_t kPileBodies = 50;     // with fewer, RK4 costs less than the pictures of its frames
+constexpr double kContactTolerance = 1e-5;  // of the local error, at most: contact decides how good a step is
+constexpr double kTolerancePart = 0.1;      // of the accuracy: the local errors of about ten steps add up to it
 
 ChosenMethod errorSteps(const Scene& scene) {
   return {MotionKind::errorSteps, "DOP853", 0, dop853, kTolerancePart * scene.accuracy};
@@ -79,6 +79,14 @@ void findUnturned(const Scene& scene, IslandPlan& island) {
       island.unturned.push_back(body);
 }
 
+/// Whether something that may touch is a mesh for contact, not a shape with a name or a hull.
+bool hasMesh(const Scene& scene, const IslandPlan& island) {
+  return std::any_of(island.touching.begin(), island.touching.end(), [&](int body) {
+    const auto collider = colliderOf(scene.bodies[static_cast<std::size_t>(body)], scene, kFixed);
+    return collider && collider->kind() == ColliderKind::mesh;
+  });
+}
+
 void choose(const Scene& scene, IslandPlan& island) {
   findUnturned(scene, island);
   if (!island.unturned.empty()) island.leftOut.push_back("no rotation of balls held at their centres: no torque");
@@ -91,16 +99,18 @@ void choose(const Scene& scene, IslandPlan& island) {
     island.method = {MotionKind::elasticFlight, "closed form between collisions"};
     island.reason = "elastic balls in flight: parabolas, and collisions in the order of time";
     island.leftOut.push_back("no steps, no rotation: nothing turns balls that touch without friction");
-  } else if (mayTouchSomething && scene.accuracy > kEventAccuracy && island.bodies.size() >= kPileBodies &&
+  } else if (mayTouchSomething && scene.accuracy > kLookAccuracy && island.bodies.size() >= kPileBodies &&
              !isActedUpon(scene, island)) {
     island.method = {MotionKind::pile, "fast contact step", kPileTimeStep};
     island.reason = "many bodies may touch: soft contacts, sub-stepped; the accuracy asked is not promised";
     island.leftOut.push_back("no motion of bodies that lie still");
-  } else if (mayTouchSomething && scene.accuracy > kEventAccuracy) {
+  } else if (mayTouchSomething && scene.accuracy > kLookAccuracy && hasMesh(scene, island)) {
     island.method = contactSteps();
-    island.reason = "something may touch: contact is resolved once a step, the accuracy asked is not promised";
+    island.reason =
+        "models with hollows may touch: contact is resolved once a step, the accuracy asked is not promised";
   } else if (mayTouchSomething) {
     island.method = errorSteps(scene);
+    island.method.tolerance = std::min(island.method.tolerance, kContactTolerance);
     island.reason = "something may touch: contact changes at events, with steps as long as the accuracy allows between";
   } else if (!isActedUpon(scene, island)) {
     island.method = {MotionKind::freeFlight, "closed form"};
@@ -115,7 +125,7 @@ void choose(const Scene& scene, IslandPlan& island) {
 }  // namespace
 
 ChosenMethod contactSteps() {
-  return {MotionKind::fixedSteps, "RK4", kContactTimeStep, rk4, kContactStepTolerance};
+  return {MotionKind::fixedSteps, "RK4", kContactTimeStep, rk4, kContactTolerance};
 }
 
 Plan planOf(const Scene& scene) {

@@ -11,6 +11,9 @@ namespace cradle {
 
 constexpr double kContactTimeStep = 1.0 / 960;  // s, of contact that events do not serve: 16 steps a frame at 60/s
 
+/// Accuracies coarser than this ask for no more than a look: events make way for contact steps where these cost less.
+constexpr double kLookAccuracy = 1e-4;
+
 /// How bodies are moved, from the least work to the most.
 enum class MotionKind {
   freeFlight,     // closed form

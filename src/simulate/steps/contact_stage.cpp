@@ -152,10 +152,13 @@ double ContactStage::firstLanding(const VectorX& before, const VectorX& state, d
   return stepping_.firstLanding(touching_, before, length, state, landingSpeed);
 }
 
-void ContactStage::hold(double time, const VectorX& before, double length, VectorX& state) {
+void ContactStage::hold(const VectorX& before, double length, VectorX& state) {
   stepPart_ = length / timeStep_;
   stepping_.resolve(touching_, before, length, state);
   takeOutOverlaps(state);
+}
+
+void ContactStage::settleHeld(double time, VectorX& state) {
   std::vector<Contact> acting;
   for (const SteppedContact& stepped : stepping_.contacts()) {
     const double impulse = stepped.contact.normal.dot(stepped.impulse);

@@ -28,7 +28,13 @@ class ContactStage {
   double firstLanding(const VectorX& before, const VectorX& state, double length);
 
   /// What contact makes of a step that has begun, now of this `length`: one cone problem.
-  void hold(double time, const VectorX& before, double length, VectorX& state);
+  void hold(const VectorX& before, double length, VectorX& state);
+
+  /// How far (m or rad) that left ties from where they should be.
+  double tieError() const { return stepping_.tieError(); }
+
+  /// Records what hit within the step that was held last, if one was, and puts to rest what lies still at its end.
+  void settleHeld(double time, VectorX& state);
 
   /// The impacts of this instant. `before` is the state at the step's start.
   void strike(double time, const VectorX& before, VectorX& state);

@@ -20,13 +20,10 @@ constexpr double kRestSpeedFloor = 1e-12;   // m/s: rounding
 constexpr double kRestSpeedPart = 0.01;     // of the speed that gravity gives in a step: slower is no impact
 constexpr double kOverlapPart = 1e-9;       // of the smallest body's size: deeper overlaps are taken out
 constexpr double kSmoothPart = 1e-2;        // of that: overlaps that the mean velocity may add in a step
-constexpr std::size_t kFewContacts = 6;     // solved densely, to rounding
-constexpr double kSeparatedPart = 0.1;      // of the overlaps that are let be: how well others are taken out, ...
-constexpr double kSeparatedError = 1e-3;    // ... or of the deepest
-constexpr double kFarOverlaps = 10;         // of the deepest overlap: gaps that are as good as any wider ones
 constexpr double kLessRestitution = 0.7;    // of the restitution that let energy grow
 constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
 constexpr double kSolvedPart = 1e-7;        // of the fastest velocity
+constexpr double kStraightTies = 1e-6;      // m or rad: more of an error may take turns of a radian to mend
 constexpr double kFreeClosing = 2;          // of the speed with which a contact lands: nothing makes it so fast
 
 double smallestSize(const ContactGeometry& geometry) {
@@ -41,6 +38,7 @@ double smallestSize(const ContactGeometry& geometry) {
 ContactStepping::ContactStepping(const Assembly& assembly)
     : assembly_(assembly),
       solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),
+      ends_(assembly.mechanism.constraints, assembly.mechanism.bodies),
       overlapTolerance_(kOverlapPart * smallestSize(assembly.geometry)) {}
 
 void ContactStepping::resolve(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
@@ -168,7 +166,13 @@ void ContactStepping::resolve(const Group& group, const VectorX& before, double 
 
 VectorX ContactStepping::solve(const Group& group, const Problem& problem) {
   if (tied_ || group.contacts.size() <= kFewContacts) {
-    const ConeSolution solution = solveConeProblem(inverseMass(), problem.free, problem.frictions);
+    const MatrixX inverseMass = this->inverseMass();
+    const double most = problem.free.cwiseAbs().maxCoeff();
+    ConeSolution solution = solveConeProblem(inverseMass, problem.free, problem.frictions);
+    // What is wedged may have no solution, and the search for one may lead beyond all bounds.
+    if (!(solution.residual <= most))
+      solution = solveConeProblem(inverseMass, problem.free, std::vector<double>(problem.frictions.size(), 0));
+    if (!(solution.residual <= most)) solution.impulses.setZero();
     count(solution);
     return solution.impulses;
   }
@@ -212,28 +216,39 @@ ConeStart ContactStepping::startOf(const Group& group) const {
 
 /// From free motion to where impulses lead: with the mean of the velocities at both ends, where that leads into no
 /// overlap, and nothing is pushed that leaves: what lasts keeps order 2 and its energy. Else with those at the end,
-/// which the gaps were asked of.
+/// which the gaps were asked of; but not where that leads away from joints on long arms, which move on arcs.
 void ContactStepping::move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state) {
   tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
   const VectorX end = cones_.velocitiesIn(state);
+  VectorX gaps = gapsAfter(group, motion.timeStep, 0.5 * (motion.start + end));
   bool isSmooth = true;
-  VectorX gaps(group.contacts.size());
   for (Index i = 0; i < gaps.size(); ++i) {
     const double gap = group.contacts[static_cast<std::size_t>(i)].separation;
-    gaps[i] = gap + motion.timeStep * 0.5 * (motion.start[3 * i + 2] + end[3 * i + 2]);
     const double most = impulses[3 * i + 2] > 0 ? gap + overlapTolerance_ : INFINITY;
     isSmooth = isSmooth && gaps[i] > std::min(0.0, gap) - kSmoothPart * overlapTolerance_ && gaps[i] < most;
   }
-  if (!isSmooth)
-    for (Index i = 0; i < gaps.size(); ++i)
-      gaps[i] = group.contacts[static_cast<std::size_t>(i)].separation + motion.timeStep * end[3 * i + 2];
-  isSmooth ? moveByMean(group, motion, state) : moveByEnd(group, motion, state);
+  if (!isSmooth) {
+    moveByEnd(group, motion, state);
+    if (tied_) ends_.factorize(state);
+    isSmooth = tied_ && ends_.largestError() > kStraightTies;
+    if (!isSmooth) gaps = gapsAfter(group, motion.timeStep, end);
+  }
+  if (isSmooth) moveByMean(group, motion, state);
   if (gaps.minCoeff() < -overlapTolerance_) separate(group, gaps, state);
+}
+
+/// m: of the contacts after a step with velocities in their axes.
+VectorX ContactStepping::gapsAfter(const Group& group, double timeStep, const VectorX& velocities) {
+  VectorX gaps(group.contacts.size());
+  for (Index i = 0; i < gaps.size(); ++i)
+    gaps[i] = group.contacts[static_cast<std::size_t>(i)].separation + timeStep * velocities[3 * i + 2];
+  return gaps;
 }
 
 void ContactStepping::moveByMean(const Group& group, const Motion& motion, VectorX& state) const {
   const double half = 0.5 * motion.timeStep;
   for (const int body : group.moved.bodies) {
+    state.segment<kPoseSize>(body * kPoseSize) = free_.segment<kPoseSize>(body * kPoseSize);
     if (linearVelocity(state, body) != linearVelocity(free_, body))
       centerOfMass(state, body) = centerOfMass(motion.before, body) +
                                   half * (linearVelocity(motion.before, body) + linearVelocity(state, body));
@@ -246,28 +261,6 @@ void ContactStepping::moveByEnd(const Group& group, const Motion& motion, Vector
     centerOfMass(state, body) = centerOfMass(motion.before, body) + motion.timeStep * linearVelocity(state, body);
     setOrientation(state, body, orientation(motion.before, body));
     turnBody(state, body, motion.timeStep * angularVelocity(state, body));
-  }
-}
-
-/// Moves bodies apart where `gaps` (m) at the step's end are negative, without touching velocities.
-void ContactStepping::separate(const Group& group, const VectorX& gaps, VectorX& state) {
-  const double deepest = -gaps.minCoeff();
-  Problem problem{VectorX::Zero(3 * gaps.size()), std::vector<double>(group.contacts.size(), 0)};
-  for (Index i = 0; i < gaps.size(); ++i) problem.free[3 * i + 2] = std::min(gaps[i], kFarOverlaps * deepest);
-  VectorX displacement = state;
-  displacement.tail(state.size() - poseComponents(state)).setZero();
-  if (tied_ || group.contacts.size() <= kFewContacts) {
-    const VectorX pushes = solveConeProblem(inverseMass(), problem.free, problem.frictions).impulses;
-    tied_ ? tied_->apply(pushes, displacement) : cones_.apply(pushes, displacement);
-  } else {
-    ConeStart start{VectorX::Zero(3 * gaps.size()), VectorX::Zero(3 * gaps.size()), 0};
-    const double tolerance = std::max(kSeparatedPart * overlapTolerance_, kSeparatedError * deepest);
-    cones_.apply(cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations).impulses,
-                 displacement);
-  }
-  for (const int body : group.moved.bodies) {
-    centerOfMass(state, body) += linearVelocity(displacement, body);
-    turnBody(state, body, angularVelocity(displacement, body));
   }
 }
 

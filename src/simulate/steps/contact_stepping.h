@@ -37,6 +37,9 @@ class ContactStepping {
   /// What firstLanding found to land is not held before the step's end.
   void resolve(const std::vector<Contact>& contacts, const VectorX& before, double timeStep, VectorX& state);
 
+  /// How far (m or rad) the last call left ties from where they should be.
+  double tieError() const { return solver_.hasConstraints() ? solver_.largestError() : 0; }
+
   /// The part of a step, with the same arguments, after which something lands first: what is apart meets, faster than
   /// at `landingSpeed` (m/s), while what touches is held. Infinite if nothing does.
   double firstLanding(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
@@ -54,6 +57,7 @@ class ContactStepping {
   const SteppingCount& count() const { return count_; }
 
  private:
+  static constexpr std::size_t kFewContacts = 6;  // solved densely, to rounding
   struct Group {
     std::vector<std::size_t> members;  // of contacts_
     std::vector<Contact> contacts;     // the same
@@ -87,6 +91,7 @@ class ContactStepping {
   void count(const ConeSolution& solution);
   ConeStart startOf(const Group& group) const;
   void move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state);
+  static VectorX gapsAfter(const Group& group, double timeStep, const VectorX& velocities);
   void moveByMean(const Group& group, const Motion& motion, VectorX& state) const;
   void moveByEnd(const Group& group, const Motion& motion, VectorX& state) const;
   void separate(const Group& group, const VectorX& gaps, VectorX& state);
@@ -95,8 +100,8 @@ class ContactStepping {
             const VectorX& state);
 
   const Assembly& assembly_;
-  ConstraintSolver solver_;
-  double overlapTolerance_ = 0;  // m
+  ConstraintSolver solver_, ends_;  // of the step's start; where straight lines lead
+  double overlapTolerance_ = 0;     // m
   SparseCones cones_;
   std::optional<ContactCones> tied_;  // of a group that something ties
   std::vector<SteppedContact> contacts_, previous_;

@@ -20,6 +20,9 @@ constexpr double kRopeTolerance = 1e-13;      // of the length, or of the tensio
 constexpr double kTimeRounding = 1e-9;        // of a step: remainders below it are rounding
 constexpr double kShortestPart = 1.0 / 1024;  // of a step: shorter ones are not cut for their error
 constexpr double kMostGrowth = 4;             // of a part of a step to the next
+constexpr double kMostTieError = 1e-7;        // m (a m of coordinates) or rad: a thousandth of what is seen
+constexpr double kMostTieGrowth = 2;          // times what free motion leaves of ties that contradict each other
+constexpr double kShortestHeld = 1.0 / 32;    // of a step: shorter ones are not cut for the sake of ties
 constexpr int kMostServed = 12;               // contacts
 constexpr int kManyLandings = 2;              // events in a step: beyond, it is not cut where something lands
 constexpr int kManyEvents = 16;               // in a step: beyond, it is not cut any more
@@ -55,17 +58,19 @@ void SteppedMotion::advance(double frame) {
   before_ = island_.state;
   bool atEvent = stopAtFirstEvent();
   atEvent = stopAtFirstLanding() || atEvent;
+  while (!holdContacts()) {
+    shorten();
+    atEvent = false;
+  }
   time = step.time + step.timeStep;
   if (!atEvent && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
 
   // What the step's interpolant needs belongs to the forces of now.
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
 
-  // Take out what the step left wrong: lengths of rods, closing and overlapping contacts. Then what changes here?
-  island_.state = step.state;
-  if (solver_.hasConstraints()) solver_.project(island_.state);
-  normalizeOrientations(island_.state);
-  holdContacts();
+  // What changes here?
+  if (isHeld_) contacts_.settleHeld(time, island_.state);
+  if (isHeld_) held_ = island_.state;
   if (atEvent || !contacts_.isCrowded()) contacts_.strike(time, before_, island_.state);
   rodsBefore_ = ropes_.rods();
   ropes_.resolve(time, island_.state);
@@ -105,12 +110,29 @@ double SteppedMotion::nextStepEnd() const {
   return std::min(end, island_.pushes.nextChange());
 }
 
-void SteppedMotion::holdContacts() {
+/// Takes out what the step left wrong: lengths of rods, closing and overlapping contacts. False if a shorter step would
+/// keep ties that this one does not: what contact makes of free motion does not follow the arcs of light bodies on long
+/// arms far.
+bool SteppedMotion::holdContacts() {
   const double length = island_.step.timeStep;
+  VectorX& state = island_.state;
+  state = island_.step.state;
+  if (solver_.hasConstraints()) solver_.project(state);
+  normalizeOrientations(state);
   isHeld_ = !contacts_.touching().empty() && length > kTimeRounding * method_.timeStep;  // no gap closes in no time
-  if (!isHeld_) return;
-  contacts_.hold(island_.time, before_, length, island_.state);
-  held_ = island_.state;
+  if (!isHeld_) return true;
+  const double free = solver_.hasConstraints() ? solver_.largestError() : 0;
+  const double size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
+  contacts_.hold(before_, length, state);
+  return contacts_.tieError() <= std::max(kMostTieError * (1 + size), kMostTieGrowth * free) ||
+         length < kShortestHeld * method_.timeStep;
+}
+
+void SteppedMotion::shorten() {
+  Step& step = island_.step;
+  const double half = step.timeStep / 2;
+  keepStartRate(step);
+  method_.integrate(island_.rightHandSide, before_, island_.time, half, step);
 }
 
 /// Takes a step to `stepEnd`, or a part of it where springs, ropes or spins are too fast for the whole.

@@ -44,7 +44,8 @@ class SteppedMotion {
   void moveFreely(double stepEnd);
   bool stopAtFirstEvent();
   bool stopAtFirstLanding();
-  void holdContacts();
+  bool holdContacts();
+  void shorten();
   void countEvent();
 
   MovingIsland& island_;
