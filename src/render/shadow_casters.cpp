@@ -43,19 +43,27 @@ std::pair<double, double> distancesOfOverlap(const Bounds& box, const Vec3& dire
   return {first, last};
 }
 
-std::optional<PixelRectangle> shadowTexels(const std::vector<DrawnHull>& casters, const Stage& stage) {
-  if (casters.empty()) return std::nullopt;
+PixelRectangle shadowTexels(const DrawnHull& hull, const Stage& stage) {
   Eigen::AlignedBox2d texels;
-  for (const DrawnHull& hull : casters)
-    for (std::size_t i = 0; i < hull.count; ++i) {
-      const Eigen::Vector4d place = (hull.centers[i] - stage.origin).homogeneous();
-      const Eigen::Vector2d texel = kShadowMapSize * (stage.shadow.textureFromWorld.cast<double>() * place).head<2>();
-      const double around = hull.radius / stage.shadow.texel + kMapMargin;
-      texels.extend(Eigen::Vector2d(texel.array() - around)), texels.extend(Eigen::Vector2d(texel.array() + around));
-    }
+  const double around = hull.radius / stage.shadow.texel + kMapMargin;
+  for (std::size_t i = 0; i < hull.count; ++i) {
+    const Eigen::Vector4d place = (hull.centers[i] - stage.origin).homogeneous();
+    const Eigen::Vector2d texel = kShadowMapSize * (stage.shadow.textureFromWorld.cast<double>() * place).head<2>();
+    texels.extend(Eigen::Vector2d(texel.array() - around)), texels.extend(Eigen::Vector2d(texel.array() + around));
+  }
   const auto whole = [](double place) { return static_cast<int>(std::clamp(place, 0.0, double{kShadowMapSize})); };
-  return PixelRectangle{whole(texels.min().x()), whole(texels.min().y()), whole(texels.max().x() + 1),
-                        whole(texels.max().y() + 1)};
+  return {whole(texels.min().x()), whole(texels.min().y()), whole(texels.max().x() + 1), whole(texels.max().y() + 1)};
+}
+
+std::optional<PixelRectangle> shadowTexels(const std::vector<DrawnHull>& casters, const Stage& stage) {
+  std::optional<PixelRectangle> all;
+  for (const DrawnHull& hull : casters) {
+    const PixelRectangle one = shadowTexels(hull, stage);
+    all = all ? PixelRectangle{std::min(all->left, one.left), std::min(all->bottom, one.bottom),
+                               std::max(all->right, one.right), std::max(all->top, one.top)}
+              : one;
+  }
+  return all;
 }
 
 }  // namespace cradle

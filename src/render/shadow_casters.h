@@ -16,6 +16,9 @@ void appendCaster(const DrawnHull& hull, std::vector<DrawnHull>& casters);
 /// (in lengths of `direction`); none if the first is greater.
 std::pair<double, double> distancesOfOverlap(const Bounds& box, const Vec3& direction, const Bounds& other);
 
+/// Where a caster stands in the shadow map, with what rounding may add.
+PixelRectangle shadowTexels(const DrawnHull& hull, const Stage& stage);
+
 /// Where casters stand in the shadow map, with what rounding may add; none for no casters.
 std::optional<PixelRectangle> shadowTexels(const std::vector<DrawnHull>& casters, const Stage& stage);
 
