@@ -8,41 +8,21 @@
 #include <cmath>
 
 #include "render/instances.h"
+#include "render/mirror_image.h"
+#include "render/moved_shadows.h"
+#include "render/same_items.h"
 #include "render/shadow_casters.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kWholeFrom = 0.6;  // of the picture: from there on, drawing all of it costs less than finding out
-// As in shadow.glsl: the disc over which shadows are looked up, what it is widened by (look-ups between texels, and
-// beside the surface), and what whole blocks add where its size is found out; texels of the shadow map.
-constexpr double kLightRadius = 0.03, kWidestRadius = 16, kAroundDisc = 6, kAroundBlocks = 20;
+constexpr double kWholeFrom = 0.6;     // of the picture: from there on, drawing all of it costs less than finding out
 constexpr double kBlurredTexels = 12;  // as in environment.glsl
-constexpr double kLeastTurn = 0.5;     // of a ball's normal from pixel to pixel: a mesh turns by facets
+constexpr double kLeastTurn = 0.9, kLeastTurnOfMesh = 0.5;  // of a ball's normal, in terms of pixels a radius
+constexpr double kQuickShadow = 4;                          // texels around a shadow that is mirrored
 constexpr double kEdgePixels = 32;
+constexpr double kTurnedAway = 1e-3;  // sine: so far from edge-on, rounding does not tell the sides apart wrongly
 constexpr double kContactTexels = 2;  // of the contact map, which is interpolated
-
-/// Alike for OpenGL, which computes in single precision; balls near them apart.
-template <typename Item>
-bool isSame(const Item& a, const Item& b, const Stage& stage) {
-  Instance first = instanceOf(a, stage), second = instanceOf(b, stage);
-  for (const std::size_t number : kNearBallNumbers) first[number] = second[number] = 0;
-  if constexpr (std::is_same_v<Item, MeshItem>)
-    if (a.mesh != b.mesh || a.firstTriangle != b.firstTriangle || a.triangleCount != b.triangleCount) return false;
-  if constexpr (std::is_same_v<Item, SphereItem> || std::is_same_v<Item, CylinderItem>)
-    if (outlineLevel(a, stage) != outlineLevel(b, stage)) return false;
-  return first == second;
-}
-
-bool isSame(const NeighbourItem& a, const NeighbourItem& b, const Stage& stage) {
-  return numbersOf(a, stage) == numbersOf(b, stage);
-}
-
-bool isSame(const ContactItem& a, const ContactItem& b, const Stage& stage) {
-  const auto first = darkenedSquare(a, stage), second = darkenedSquare(b, stage);
-  if (!first || !second) return !first && !second;
-  return instanceOf(a, *first, stage) == instanceOf(b, *second, stage);
-}
 
 /// Size of a pixel at distance 1, in the middle of the picture.
 double pixelAngle(const Stage& stage) {
@@ -67,6 +47,9 @@ class ChangeFinder {
   struct Receiver {
     TileSpans spans;
     Bounds bounds;  // m, world
+    DrawnHull hull;
+    double wider;  // m, by which shading may take place beyond it
+    std::optional<std::array<Vec3, 3>> triangle;
   };
 
   DrawnHull hull(const MeshItem& item) const {
@@ -81,18 +64,24 @@ class ChangeFinder {
   template <typename Item>
   void compareItems(const std::vector<Item>& before, const std::vector<Item>& now, bool throwsShadow);
   template <typename Item>
-  void addReceivers(const Item& item);
-  void addReceiver(const DrawnHull& hull);
+  void addReceivers(const Item& item) {
+    addReceiver(hullOf(item));
+  }
+  void addReceivers(const MeshItem& item);
+  void addReceiver(const DrawnHull& hull, const std::optional<std::array<Vec3, 3>>& triangle = {});
   template <typename Item>
   void compareNearBalls(const Item& before, const Item& now, std::size_t first);
   void addAround(const NeighbourItem& item, std::size_t first);
   void compareContacts();
   void addDarkened(const ContactItem& item);
   void addCommon(const TileSpans& item, const DrawnHull& hull);
-  void addShadowOnGround(const DrawnHull& caster);
-  void addShadowOnItems(const DrawnHull& caster);
-  void addMirrors(const Surface& surface, const DrawnHull& ball);
-  double shadowMargin(double distance) const;
+  void addShadows();
+  void addShadowsOnGround(const MovedShadows& shadows);
+  void addShadowsOnItems(const MovedShadows& shadows);
+  void addMirroredShadow(const DrawnHull& caster);
+  template <typename Item>
+  void addMirrors(const Item& item, const DrawnHull& ball, double leastTurn);
+  void addImages(const SphereItem& item, const BoundingBall& patch);
 
   const DrawList &before_, &now_;
   const Stage& stage_;
@@ -100,7 +89,7 @@ class ChangeFinder {
   ChangedArea area_;
   std::vector<DrawnHull> casters_;  // that moved, at both places
   std::vector<Receiver> receivers_;
-  std::vector<std::pair<Vec3, double>> groundPatches_;  // m; middles and sizes of the changed parts of the ground
+  std::vector<BoundingBall> groundPatches_;  // around changed shadows on the ground, as mirrors show them
   bool isWhole_ = false;
 };
 
@@ -134,22 +123,32 @@ void ChangeFinder::compareItems(const std::vector<Item>& before, const std::vect
 
 /// At the edge of a triangle seen edge-on, the middle of a pixel may lie far beyond it in depth: shading takes place
 /// there.
-void ChangeFinder::addReceiver(const DrawnHull& hull) {
+void ChangeFinder::addReceiver(const DrawnHull& hull, const std::optional<std::array<Vec3, 3>>& triangle) {
   DrawnHull wide = hull;
   const double distance = (hull.middle() - stage_.camera.position).norm();
-  wide.radius += kEdgePixels * distance * pixelAngle(stage_);
-  receivers_.push_back({spansOf(hull), wide.bounds()});
+  const double wider = kEdgePixels * distance * pixelAngle(stage_);
+  wide.radius += wider;
+  receivers_.push_back({spansOf(hull), wide.bounds(), hull, wider, triangle});
 }
 
-template <typename Item>
-void ChangeFinder::addReceivers(const Item& item) {
-  if constexpr (std::is_same_v<Item, MeshItem>) {
-    const MeshBounds& bounds = meshBounds_[static_cast<std::size_t>(item.mesh)];
-    const std::uint32_t last = item.firstTriangle + item.triangleCount - 1;
-    for (std::uint32_t run = item.firstTriangle / kTrianglesPerRun; run <= last / kTrianglesPerRun; ++run)
-      addReceiver(hullOf(bounds.runs[run], item.worldFromMesh));
-  } else {
-    addReceiver(hullOf(item));
+/// Whether only the inner side of a triangle can be seen.
+bool isTurnedAway(const std::array<Vec3, 3>& triangle, const Stage& stage) {
+  const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+  const Vec3 to = triangle[0] - stage.camera.position;
+  return normal.dot(to) > kTurnedAway * normal.norm() * to.norm();
+}
+
+void ChangeFinder::addReceivers(const MeshItem& item) {
+  const MeshBounds& bounds = meshBounds_[static_cast<std::size_t>(item.mesh)];
+  const std::uint32_t last = item.firstTriangle + item.triangleCount - 1;
+  for (std::uint32_t run = item.firstTriangle / kTrianglesPerRun; run <= last / kTrianglesPerRun; ++run)
+    if (!bounds.smallOfRuns[run].isEmpty()) addReceiver(hullOf(bounds.smallOfRuns[run], item.worldFromMesh));
+  for (const LargeTriangle& large : bounds.large) {
+    if (large.index < item.firstTriangle || large.index > last) continue;
+    std::array<Vec3, 3> triangle;
+    DrawnHull hull;
+    for (std::size_t i = 0; i < 3; ++i) hull.add(triangle[i] = item.worldFromMesh * large.corners[i]);
+    if (!(bounds.isClosed && isTurnedAway(triangle, stage_))) addReceiver(hull, triangle);
   }
 }
 
@@ -203,58 +202,43 @@ void ChangeFinder::addDarkened(const ContactItem& item) {
     for (const double v : {-square->halfV - texel, square->halfV + texel})
       darkened.add(foot + u * region.axisU + v * region.axisV);
   area_.picture.add(spansOf(darkened));
-  groundPatches_.emplace_back(darkened.middle(), darkened.reach());
+  groundPatches_.push_back({darkened.middle(), darkened.reach()});
 }
 
-/// How far beside a caster's outline in the light its shadow may change, `distance` m behind it.
-double ChangeFinder::shadowMargin(double distance) const {
-  const double cone = std::min(kLightRadius * std::max(distance, 0.0) / stage_.shadow.texel, kWidestRadius);
-  return stage_.shadow.texel * std::max(kWidestRadius + kAroundDisc, cone + kAroundBlocks);
+void ChangeFinder::addShadowsOnGround(const MovedShadows& shadows) {
+  const Ground& ground = *stage_.ground;
+  if (ground.normal.dot(stage_.lighting.lamps[0].towards) <= 0) return;
+  for (const std::vector<Vec3>& part : shadows.partsOf(shadows.surfaceOf(ground.normal, ground.point))) {
+    auto outline = outlineOf(part, stage_);
+    if (!outline) return void(isWhole_ = true);
+    area_.picture.add(area_.picture.spansOf(std::move(*outline)));
+  }
 }
 
-/// A ball's shadow on the ground is an ellipse, as long as the light is low.
-void ChangeFinder::addShadowOnGround(const DrawnHull& caster) {
+/// On all that stands behind it in the light.
+void ChangeFinder::addShadowsOnItems(const MovedShadows& shadows) {
+  for (const Receiver& receiver : receivers_) {
+    const LitSurface surface = receiver.triangle ? shadows.surfaceOf(*receiver.triangle, receiver.wider)
+                                                 : shadows.surfaceOf(receiver.hull, receiver.wider);
+    for (const std::vector<Vec3>& part : shadows.partsOf(surface)) {
+      auto outline = outlineOf(part, stage_);
+      area_.picture.add(outline ? commonTiles(receiver.spans, area_.picture.spansOf(std::move(*outline)))
+                                : receiver.spans);
+    }
+  }
+}
+
+/// Around a caster's shadow on the ground, as mirrors show it.
+void ChangeFinder::addMirroredShadow(const DrawnHull& caster) {
   const Vec3 light = stage_.lighting.lamps[0].towards;
   const Ground& ground = *stage_.ground;
   const double steepness = ground.normal.dot(light);
   if (steepness <= 0) return;
-  const Vec3 level = light - steepness * ground.normal;
-  const Vec3 along = level.norm() > 0 ? Vec3(level.normalized()) : stage_.shaded.axisU;
-  const Vec3 across = ground.normal.cross(along);
-  double highest = 0;
-  for (std::size_t i = 0; i < caster.count; ++i)
-    highest = std::max(highest, ground.normal.dot(caster.centers[i] - ground.point) + caster.radius);
-  const double halfWidth = caster.radius + shadowMargin(highest / steepness), halfLength = halfWidth / steepness;
-  std::vector<Eigen::Vector2d> outline;
   DrawnHull feet;
-  for (std::size_t i = 0; i < caster.count; ++i) {
-    const Vec3 center = caster.centers[i];
-    const Vec3 foot = center - ground.normal.dot(center - ground.point) / steepness * light;
-    DrawnHull corners;
-    for (const double a : {-halfLength, halfLength})
-      for (const double b : {-halfWidth, halfWidth}) corners.add(foot + a * along + b * across);
-    const auto seen = outlineOf(corners, stage_);
-    if (!seen) return void(isWhole_ = true);
-    outline.insert(outline.end(), seen->begin(), seen->end());
-    feet.add(foot);
-    feet.radius = corners.reach();
-  }
-  area_.picture.add(area_.picture.spansOf(std::move(outline)));
-  groundPatches_.emplace_back(feet.middle(), feet.reach());
-}
-
-/// On all that stands behind it in the light.
-void ChangeFinder::addShadowOnItems(const DrawnHull& caster) {
-  const Vec3 light = stage_.lighting.lamps[0].towards;
-  const double nearest = light.dot(caster.middle()) + caster.reach();
-  for (const Receiver& receiver : receivers_) {
-    const Vec3 middle = receiver.bounds.center(), half = receiver.bounds.sizes() / 2;
-    DrawnHull wide = caster;
-    wide.radius += shadowMargin(nearest - light.dot(middle) + light.cwiseAbs().dot(half));
-    const Bounds box = wide.bounds();
-    const auto [first, last] = distancesOfOverlap(box, -light, receiver.bounds);
-    if (first <= last) addCommon(receiver.spans, swept(wide, -first * light, -last * light));
-  }
+  for (std::size_t i = 0; i < caster.count; ++i)
+    feet.add(caster.centers[i] - ground.normal.dot(caster.centers[i] - ground.point) / steepness * light);
+  feet.radius = (caster.radius + kQuickShadow * stage_.shadow.texel) / steepness;
+  groundPatches_.push_back({feet.middle(), feet.reach()});
 }
 
 /// The part of a hull that lies in an item's tiles; all of these if the hull is not in front of the camera.
@@ -266,15 +250,31 @@ void ChangeFinder::addCommon(const TileSpans& item, const DrawnHull& hull) {
 /// Balls that mirror the changed ground. They show its shadows only as far as these are not blurred: where a ray is
 /// wider than kBlurredTexels (environment.glsl). It widens with the surface's roughness, and with how the normal turns
 /// from pixel to pixel.
-void ChangeFinder::addMirrors(const Surface& surface, const DrawnHull& ball) {
-  if (!mirrorsShadows(surface)) return;
+template <typename Item>
+void ChangeFinder::addMirrors(const Item& item, const DrawnHull& ball, double leastTurn) {
+  if (!mirrorsShadows(item.surface)) return;
   const Vec3 center = ball.middle();
   const double radius = ball.reach();
   const double pixel = pixelAngle(stage_) * std::max((center - stage_.camera.position).norm() - radius, 0.0);
-  const double spread = surface.roughness * surface.roughness + kLeastTurn * 2 * pixel / radius;
-  const double reach = kBlurredTexels * stage_.shadow.texel / spread + radius;
-  for (const auto& [middle, size] : groundPatches_)
-    if ((middle - center).norm() < size + reach) return area_.picture.add(spansOf(ball));
+  const double spread = item.surface.roughness * item.surface.roughness + leastTurn * 2 * pixel / radius;
+  const double reach = kBlurredTexels * stage_.shadow.texel / spread;
+  for (const BoundingBall& patch : groundPatches_) {
+    if ((patch.center - center).norm() > patch.radius + reach + radius) continue;
+    if constexpr (std::is_same_v<Item, SphereItem>)
+      addImages(item, patch);
+    else
+      return area_.picture.add(spansOf(ball));
+  }
+}
+
+void ChangeFinder::addImages(const SphereItem& item, const BoundingBall& patch) {
+  const TileSpans whole = spansOf(hullOf(item));
+  for (const BoundingBall& image : imagesOnBall(item, patch, now_, stage_)) {
+    DrawnHull hull;
+    hull.add(image.center);
+    hull.radius = image.radius;
+    addCommon(whole, hull);
+  }
 }
 
 ChangedArea ChangeFinder::find() {
@@ -285,15 +285,21 @@ ChangedArea ChangeFinder::find() {
   compareItems(before_.tubes, now_.tubes, true);
   compareContacts();
   area_.shadows = shadowTexels(casters_, stage_);
-  for (std::size_t i = 0; i < casters_.size() && !isWhole_; ++i) {
-    if (stage_.ground) addShadowOnGround(casters_[i]);
-    addShadowOnItems(casters_[i]);
-    if (area_.picture.coverage() > kWholeFrom) isWhole_ = true;
-  }
-  for (const SphereItem& item : now_.spheres) addMirrors(item.surface, hull(item));
-  for (const MeshItem& item : now_.meshes)
-    if (item.isBall) addMirrors(item.surface, hull(item));
+  if (!casters_.empty() && !isWhole_) addShadows();
+  if (area_.picture.coverage() > kWholeFrom) isWhole_ = true;
   return isWhole_ ? wholePicture(stage_) : std::move(area_);
+}
+
+/// And what mirrors show of the ground.
+void ChangeFinder::addShadows() {
+  const MovedShadows shadows(casters_, stage_);
+  addShadowsOnItems(shadows);
+  if (!stage_.ground) return;
+  addShadowsOnGround(shadows);
+  for (const DrawnHull& caster : casters_) addMirroredShadow(caster);
+  for (const SphereItem& item : now_.spheres) addMirrors(item, hullOf(item), kLeastTurn);
+  for (const MeshItem& item : now_.meshes)
+    if (item.isBall) addMirrors(item, hull(item), kLeastTurnOfMesh);
 }
 
 }  // namespace

@@ -11,6 +11,8 @@ namespace {
 constexpr double kNearest =
     1e-3;  // of the distance to a ball's centre: what is nearer to the camera's plane is not bounded
 
+constexpr double kLargeArea = 0.003;  // of the square of the mesh's size: a wall of a box, not a facet of a tube
+
 /// Slopes, sideways over forwards, of the two lines from the eye that touch a circle of radius r at (side, depth).
 std::optional<std::pair<double, double>> tangentSlopes(double side, double depth, double r) {
   if (depth - r <= kNearest * depth) return std::nullopt;
@@ -41,13 +43,22 @@ double DrawnHull::reach() const {
   return farthest + radius;
 }
 
-MeshBounds boundsOf(const DrawnMesh& mesh) {
+MeshBounds boundsOf(const DrawnMesh& mesh, bool isClosed) {
   MeshBounds bounds;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (i % kTrianglesPerRun == 0) bounds.runs.emplace_back();
-    for (const std::uint32_t vertex : mesh.triangles[i]) bounds.runs.back().extend(mesh.vertices[vertex]);
+  bounds.isClosed = isClosed;
+  for (const Vec3& vertex : mesh.vertices) bounds.whole.extend(vertex);
+  const double largeArea = bounds.whole.isEmpty() ? 0 : kLargeArea * bounds.whole.sizes().squaredNorm();
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (i % kTrianglesPerRun == 0) bounds.runs.emplace_back(), bounds.smallOfRuns.emplace_back();
+    std::array<Vec3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[mesh.triangles[i][k]];
+    const bool isLarge = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2 > largeArea;
+    if (isLarge) bounds.large.push_back({i, corners});
+    for (const Vec3& corner : corners) {
+      bounds.runs.back().extend(corner);
+      if (!isLarge) bounds.smallOfRuns.back().extend(corner);
+    }
   }
-  for (const Bounds& run : bounds.runs) bounds.whole.extend(run);
   return bounds;
 }
 
@@ -100,6 +111,20 @@ std::optional<std::vector<Eigen::Vector2d>> outlineOf(const DrawnHull& hull, con
     if (!across || !up) return std::nullopt;
     for (const double x : {across->first, across->second})
       for (const double y : {up->first, up->second}) outline.emplace_back(column(x), row(y));
+  }
+  return outline;
+}
+
+std::optional<std::vector<Eigen::Vector2d>> outlineOf(const std::vector<Vec3>& polygon, const Stage& stage) {
+  const Mat3 axes = cameraAxes(stage.camera);
+  const double pixelsPerSlope = stage.height / (2 * std::tan(stage.camera.verticalFieldOfView / 2));
+  const double nearest = kNearest * (stage.origin - stage.camera.position).norm();
+  std::vector<Eigen::Vector2d> outline;
+  for (const Vec3& corner : polygon) {
+    const Vec3 seen = axes.transpose() * (corner - stage.camera.position);
+    if (-seen.z() <= nearest) return std::nullopt;
+    outline.emplace_back(stage.width / 2.0 + pixelsPerSlope * seen.x() / -seen.z(),
+                         stage.height / 2.0 + pixelsPerSlope * seen.y() / -seen.z());
   }
   return outline;
 }

@@ -22,13 +22,21 @@ struct DrawnHull {
   double reach() const;
 };
 
-/// Boxes around a mesh and around each run of kTrianglesPerRun triangles, in the mesh's frame.
+/// A triangle of a mesh that is large beside the mesh.
+struct LargeTriangle {
+  std::uint32_t index = 0;
+  std::array<Vec3, 3> corners;  // m, mesh's frame, counter-clockwise from outside
+};
+
+/// Where a mesh's triangles are, in its frame: all, in runs of kTrianglesPerRun, and the large ones apart.
 struct MeshBounds {
   Bounds whole;
-  std::vector<Bounds> runs;
+  std::vector<Bounds> runs, smallOfRuns;  // boxes around all triangles of each run, and around all but the large ones
+  std::vector<LargeTriangle> large;       // in order
+  bool isClosed = false;                  // then its inside is never seen
 };
 constexpr std::uint32_t kTrianglesPerRun = 64;
-MeshBounds boundsOf(const DrawnMesh& mesh);
+MeshBounds boundsOf(const DrawnMesh& mesh, bool isClosed);
 
 DrawnHull hullOf(const Bounds& local, const RigidTransform& worldFromLocal);
 DrawnHull hullOf(const SphereItem& item);
@@ -41,5 +49,8 @@ DrawnHull swept(const DrawnHull& hull, const Vec3& first, const Vec3& last);
 /// Points in the picture (pixels from the lower left corner) whose convex hull contains what is seen of a hull; none if
 /// part of it is not in front of the camera.
 std::optional<std::vector<Eigen::Vector2d>> outlineOf(const DrawnHull& hull, const Stage& stage);
+
+/// The same of a polygon (m, world).
+std::optional<std::vector<Eigen::Vector2d>> outlineOf(const std::vector<Vec3>& polygon, const Stage& stage);
 
 }  // namespace cradle

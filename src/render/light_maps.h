@@ -11,8 +11,8 @@
 
 namespace cradle {
 
-/// What the shaders look up light in: the shadow map with the least depths of its blocks, and how much of the sky bodies
-/// hide from the ground. Needs a current context.
+/// What the shaders look up light in: the shadow map with the least depths of its blocks, and how much of the sky
+/// bodies hide from the ground. Needs a current context.
 class LightMaps {
  public:
   LightMaps(const ShaderSource& source, const Stage& stage);

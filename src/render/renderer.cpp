@@ -68,9 +68,10 @@ GpuMesh makeFarGround(const Stage& stage) {
   return {vertices, 4, indices};
 }
 
-std::vector<MeshBounds> boundsOf(const std::vector<DrawnMesh>& meshes) {
+std::vector<MeshBounds> boundsOfMeshes(const Appearance& appearance) {
   std::vector<MeshBounds> all;
-  for (const DrawnMesh& mesh : meshes) all.push_back(boundsOf(mesh));
+  for (std::size_t i = 0; i < appearance.meshes.size(); ++i)
+    all.push_back(boundsOf(appearance.meshes[i], appearance.meshIsClosed[i]));
   return all;
 }
 
@@ -123,7 +124,7 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
                                const std::string& shaderFolder)
     : sizeCheck(width, height),
       appearance(makeAppearance(scene, view, pixelsPerMetre(view, height))),
-      meshBounds(boundsOf(appearance.meshes)),
+      meshBounds(boundsOfMeshes(appearance)),
       stage(makeStage(scene, view, appearance.ground, width, height)),
       programs({shaderFolder, shaderDefinitions(stage)}, stage),
       maps({shaderFolder, shaderDefinitions(stage)}, stage),
