@@ -18,9 +18,13 @@ namespace {
 
 constexpr double kWholeFrom = 0.6;     // of the picture: from there on, drawing all of it costs less than finding out
 constexpr double kBlurredTexels = 12;  // as in environment.glsl
-constexpr double kLeastTurn = 0.9, kLeastTurnOfMesh = 0.5;  // of a ball's normal, in terms of pixels a radius
-constexpr double kQuickShadow = 4;                          // texels around a shadow that is mirrored
-constexpr double kEdgePixels = 32;
+// Pixels a radius by which a mirrored ray widens a metre at least, as environment.glsl counts: twice the turn of the
+// normal from pixel to pixel and, but for pixels on the edge of a ball drawn exactly round, as much as the rays of
+// neighbouring pixels part, which is more than 1.
+constexpr double kWideningOfSphere = 1.8, kWideningOfSmoothMesh = 2.8, kWideningOfFacets = 1;
+constexpr double kSmooth = 0.05;                      // greatest error of a smooth ball's normals
+constexpr double kQuickShadow = 4;                    // texels around a shadow that is mirrored
+constexpr double kEdgePixels = 32, kRoundPixels = 2;  // what is round is met exactly by rays
 constexpr double kTurnedAway = 1e-3;  // sine: so far from edge-on, rounding does not tell the sides apart wrongly
 constexpr double kContactTexels = 2;  // of the contact map, which is interpolated
 
@@ -63,12 +67,11 @@ class ChangeFinder {
   TileSpans spansOf(const DrawnHull& hull);
   template <typename Item>
   void compareItems(const std::vector<Item>& before, const std::vector<Item>& now, bool throwsShadow);
-  template <typename Item>
-  void addReceivers(const Item& item) {
-    addReceiver(hullOf(item));
-  }
   void addReceivers(const MeshItem& item);
-  void addReceiver(const DrawnHull& hull, const std::optional<std::array<Vec3, 3>>& triangle = {});
+  void addReceivers(const CylinderItem& item);
+  void addReceivers(const SphereItem& item) { addReceiver(hullOf(item), kRoundPixels); }
+  void addReceivers(const TubeItem& item) { addReceiver(hullOf(item), kEdgePixels); }
+  void addReceiver(const DrawnHull& hull, double edgePixels, const std::optional<std::array<Vec3, 3>>& triangle = {});
   template <typename Item>
   void compareNearBalls(const Item& before, const Item& now, std::size_t first);
   void addAround(const NeighbourItem& item, std::size_t first);
@@ -76,11 +79,12 @@ class ChangeFinder {
   void addDarkened(const ContactItem& item);
   void addCommon(const TileSpans& item, const DrawnHull& hull);
   void addShadows();
+  TileMask hiddenGround();
   void addShadowsOnGround(const MovedShadows& shadows);
   void addShadowsOnItems(const MovedShadows& shadows);
   void addMirroredShadow(const DrawnHull& caster);
   template <typename Item>
-  void addMirrors(const Item& item, const DrawnHull& ball, double leastTurn);
+  void addMirrors(const Item& item, const DrawnHull& ball, double widening);
   void addImages(const SphereItem& item, const BoundingBall& patch);
 
   const DrawList &before_, &now_;
@@ -122,34 +126,44 @@ void ChangeFinder::compareItems(const std::vector<Item>& before, const std::vect
 }
 
 /// At the edge of a triangle seen edge-on, the middle of a pixel may lie far beyond it in depth: shading takes place
-/// there.
-void ChangeFinder::addReceiver(const DrawnHull& hull, const std::optional<std::array<Vec3, 3>>& triangle) {
+/// there, up to `edgePixels` away.
+void ChangeFinder::addReceiver(const DrawnHull& hull, double edgePixels,
+                               const std::optional<std::array<Vec3, 3>>& triangle) {
   DrawnHull wide = hull;
   const double distance = (hull.middle() - stage_.camera.position).norm();
-  const double wider = kEdgePixels * distance * pixelAngle(stage_);
+  const double wider = edgePixels * distance * pixelAngle(stage_);
   wide.radius += wider;
   receivers_.push_back({spansOf(hull), wide.bounds(), hull, wider, triangle});
 }
 
-/// Whether only the inner side of a triangle can be seen.
-bool isTurnedAway(const std::array<Vec3, 3>& triangle, const Stage& stage) {
+/// Sine of the angle in which a triangle's outer side is seen; negative if its inner side is.
+double facing(const std::array<Vec3, 3>& triangle, const Stage& stage) {
   const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-  const Vec3 to = triangle[0] - stage.camera.position;
-  return normal.dot(to) > kTurnedAway * normal.norm() * to.norm();
+  const Vec3 to = stage.camera.position - triangle[0];
+  return normal.dot(to) / (normal.norm() * to.norm());
 }
 
 void ChangeFinder::addReceivers(const MeshItem& item) {
   const MeshBounds& bounds = meshBounds_[static_cast<std::size_t>(item.mesh)];
-  const std::uint32_t last = item.firstTriangle + item.triangleCount - 1;
-  for (std::uint32_t run = item.firstTriangle / kTrianglesPerRun; run <= last / kTrianglesPerRun; ++run)
-    if (!bounds.smallOfRuns[run].isEmpty()) addReceiver(hullOf(bounds.smallOfRuns[run], item.worldFromMesh));
-  for (const LargeTriangle& large : bounds.large) {
-    if (large.index < item.firstTriangle || large.index > last) continue;
+  const std::uint32_t begin = item.firstTriangle, end = begin + item.triangleCount;
+  for (const TriangleGroup& group : bounds.groups)
+    if (group.first < end && group.first + group.count > begin)
+      addReceiver(hullOf(group.box, item.worldFromMesh), kEdgePixels);
+  for (const LongTriangle& one : bounds.longTriangles) {
+    if (one.index < begin || one.index >= end) continue;
     std::array<Vec3, 3> triangle;
     DrawnHull hull;
-    for (std::size_t i = 0; i < 3; ++i) hull.add(triangle[i] = item.worldFromMesh * large.corners[i]);
-    if (!(bounds.isClosed && isTurnedAway(triangle, stage_))) addReceiver(hull, triangle);
+    for (std::size_t i = 0; i < 3; ++i) hull.add(triangle[i] = item.worldFromMesh * one.corners[i]);
+    if (bounds.isClosed && facing(triangle, stage_) < -kTurnedAway) continue;
+    addReceiver(hull, kEdgePixels, triangle);
   }
+}
+
+/// A rod piece by piece.
+void ChangeFinder::addReceivers(const CylinderItem& item) {
+  std::vector<DrawnHull> pieces;
+  appendPieces(hullOf(item), pieces);
+  for (const DrawnHull& piece : pieces) addReceiver(piece, kRoundPixels);
 }
 
 /// Balls whose images or shade an item shows where they are near. A ball that is not near multiplies light by 1, so
@@ -205,13 +219,28 @@ void ChangeFinder::addDarkened(const ContactItem& item) {
   groundPatches_.push_back({darkened.middle(), darkened.reach()});
 }
 
+/// Tiles in which a long triangle that did not move, such as that of a base, hides the ground.
+TileMask ChangeFinder::hiddenGround() {
+  TileMask hidden(stage_.width, stage_.height);
+  const Ground& ground = *stage_.ground;
+  const auto isAbove = [&](const Vec3& point) { return ground.normal.dot(point - ground.point) > 0; };
+  if (!isAbove(stage_.camera.position)) return hidden;
+  for (const Receiver& receiver : receivers_) {
+    if (!receiver.triangle || !std::all_of(receiver.triangle->begin(), receiver.triangle->end(), isAbove)) continue;
+    if (auto outline = outlineOf({receiver.triangle->begin(), receiver.triangle->end()}, stage_))
+      hidden.add(hidden.spansInside(std::move(*outline)));
+  }
+  return hidden;
+}
+
 void ChangeFinder::addShadowsOnGround(const MovedShadows& shadows) {
   const Ground& ground = *stage_.ground;
   if (ground.normal.dot(stage_.lighting.lamps[0].towards) <= 0) return;
+  const TileMask hidden = hiddenGround();
   for (const std::vector<Vec3>& part : shadows.partsOf(shadows.surfaceOf(ground.normal, ground.point))) {
     auto outline = outlineOf(part, stage_);
     if (!outline) return void(isWhole_ = true);
-    area_.picture.add(area_.picture.spansOf(std::move(*outline)));
+    area_.picture.add(area_.picture.spansOf(std::move(*outline)), &hidden);
   }
 }
 
@@ -251,12 +280,12 @@ void ChangeFinder::addCommon(const TileSpans& item, const DrawnHull& hull) {
 /// wider than kBlurredTexels (environment.glsl). It widens with the surface's roughness, and with how the normal turns
 /// from pixel to pixel.
 template <typename Item>
-void ChangeFinder::addMirrors(const Item& item, const DrawnHull& ball, double leastTurn) {
+void ChangeFinder::addMirrors(const Item& item, const DrawnHull& ball, double widening) {
   if (!mirrorsShadows(item.surface)) return;
   const Vec3 center = ball.middle();
   const double radius = ball.reach();
   const double pixel = pixelAngle(stage_) * std::max((center - stage_.camera.position).norm() - radius, 0.0);
-  const double spread = item.surface.roughness * item.surface.roughness + leastTurn * 2 * pixel / radius;
+  const double spread = item.surface.roughness * item.surface.roughness + widening * pixel / radius;
   const double reach = kBlurredTexels * stage_.shadow.texel / spread;
   for (const BoundingBall& patch : groundPatches_) {
     if ((patch.center - center).norm() > patch.radius + reach + radius) continue;
@@ -297,9 +326,12 @@ void ChangeFinder::addShadows() {
   if (!stage_.ground) return;
   addShadowsOnGround(shadows);
   for (const DrawnHull& caster : casters_) addMirroredShadow(caster);
-  for (const SphereItem& item : now_.spheres) addMirrors(item, hullOf(item), kLeastTurn);
+  for (const SphereItem& item : now_.spheres) addMirrors(item, hullOf(item), kWideningOfSphere);
   for (const MeshItem& item : now_.meshes)
-    if (item.isBall) addMirrors(item, hull(item), kLeastTurnOfMesh);
+    if (item.isBall) {
+      const bool isSmooth = meshBounds_[static_cast<std::size_t>(item.mesh)].normalError < kSmooth;
+      addMirrors(item, hull(item), isSmooth ? kWideningOfSmoothMesh : kWideningOfFacets);
+    }
 }
 
 }  // namespace

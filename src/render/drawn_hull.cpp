@@ -11,7 +11,7 @@ namespace {
 constexpr double kNearest =
     1e-3;  // of the distance to a ball's centre: what is nearer to the camera's plane is not bounded
 
-constexpr double kLargeArea = 0.003;  // of the square of the mesh's size: a wall of a box, not a facet of a tube
+constexpr double kLong = 0.12;  // of the mesh's size: groups of triangles are as large as that
 
 /// Slopes, sideways over forwards, of the two lines from the eye that touch a circle of radius r at (side, depth).
 std::optional<std::pair<double, double>> tangentSlopes(double side, double depth, double r) {
@@ -47,17 +47,27 @@ MeshBounds boundsOf(const DrawnMesh& mesh, bool isClosed) {
   MeshBounds bounds;
   bounds.isClosed = isClosed;
   for (const Vec3& vertex : mesh.vertices) bounds.whole.extend(vertex);
-  const double largeArea = bounds.whole.isEmpty() ? 0 : kLargeArea * bounds.whole.sizes().squaredNorm();
+  if (mesh.triangles.empty()) return bounds;
+  const double longest = kLong * bounds.whole.diagonal().norm();
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (i % kTrianglesPerRun == 0) bounds.runs.emplace_back(), bounds.smallOfRuns.emplace_back();
     std::array<Vec3, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[mesh.triangles[i][k]];
-    const bool isLarge = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2 > largeArea;
-    if (isLarge) bounds.large.push_back({i, corners});
-    for (const Vec3& corner : corners) {
-      bounds.runs.back().extend(corner);
-      if (!isLarge) bounds.smallOfRuns.back().extend(corner);
+    Bounds box;
+    for (std::size_t k = 0; k < 3; ++k) box.extend(corners[k] = mesh.vertices[mesh.triangles[i][k]]);
+    if (i % kTrianglesPerRun == 0) bounds.runs.emplace_back();
+    bounds.runs.back().extend(box);
+    if (box.diagonal().norm() > longest) {
+      bounds.longTriangles.push_back({i, corners});
+      continue;
     }
+    if (bounds.groups.empty() || bounds.groups.back().box.merged(box).diagonal().norm() > longest)
+      bounds.groups.push_back({i, 0, {}});
+    bounds.groups.back().box.extend(box);
+    bounds.groups.back().count = i + 1 - bounds.groups.back().first;
+  }
+  const Vec3 middle = bounds.whole.center();
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Vec3 outwards = (mesh.vertices[i] - middle).normalized();
+    bounds.normalError = std::max(bounds.normalError, (mesh.normals[i].cast<double>() - outwards).norm());
   }
   return bounds;
 }

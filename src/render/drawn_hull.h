@@ -22,18 +22,26 @@ struct DrawnHull {
   double reach() const;
 };
 
-/// A triangle of a mesh that is large beside the mesh.
-struct LargeTriangle {
+/// A triangle of a mesh that is long beside the mesh.
+struct LongTriangle {
   std::uint32_t index = 0;
   std::array<Vec3, 3> corners;  // m, mesh's frame, counter-clockwise from outside
 };
 
-/// Where a mesh's triangles are, in its frame: all, in runs of kTrianglesPerRun, and the large ones apart.
+/// Triangles [first, first + count) without the long ones, in a box that is small beside the mesh.
+struct TriangleGroup {
+  std::uint32_t first = 0, count = 0;
+  Bounds box;  // m, mesh's frame
+};
+
+/// Where a mesh's triangles are, in its frame.
 struct MeshBounds {
   Bounds whole;
-  std::vector<Bounds> runs, smallOfRuns;  // boxes around all triangles of each run, and around all but the large ones
-  std::vector<LargeTriangle> large;       // in order
-  bool isClosed = false;                  // then its inside is never seen
+  std::vector<Bounds> runs;  // of kTrianglesPerRun triangles each
+  std::vector<TriangleGroup> groups;
+  std::vector<LongTriangle> longTriangles;  // in order
+  bool isClosed = false;                    // then its inside is never seen
+  double normalError = 0;                   // greatest distance of a unit normal from the direction out of the middle
 };
 constexpr std::uint32_t kTrianglesPerRun = 64;
 MeshBounds boundsOf(const DrawnMesh& mesh, bool isClosed);

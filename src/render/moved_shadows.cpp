@@ -88,7 +88,8 @@ MovedShadows::MovedShadows(const std::vector<DrawnHull>& casters, const Stage& s
     const TileSpans spans = blocks.spansOf(std::move(outline));
     for (std::size_t i = 0; i < spans.rows.size(); ++i)
       for (int column = spans.rows[i].first; column <= spans.rows[i].second; ++column) {
-        double& least = nearest[(static_cast<std::size_t>(spans.firstRow) + i) * kBlocks + static_cast<std::size_t>(column)];
+        double& least =
+            nearest[(static_cast<std::size_t>(spans.firstRow) + i) * kBlocks + static_cast<std::size_t>(column)];
         least = std::min(least, depth);
       }
   }
@@ -145,8 +146,7 @@ void MovedShadows::appendPart(const Run& run, const LitSurface& surface, std::ve
     farthest = std::min(farthest, atCorners + most);
   }
   if (farthest + kBehind < run.nearest) return;
-  const double around =
-      std::max(coneAt(farthest - run.nearest) + kHalfBlock, coneAt(farthest) + kAroundDisc) + kAside;
+  const double around = std::max(coneAt(farthest - run.nearest) + kHalfBlock, coneAt(farthest) + kAroundDisc) + kAside;
   const Eigen::AlignedBox2d reached(Eigen::Vector2d(run.texels.min().array() - around),
                                     Eigen::Vector2d(run.texels.max().array() + around));
   const auto area = cut(rounded(reached, around), surface.bounds);

@@ -14,33 +14,21 @@ constexpr double kMapMargin = 2;  // texels: rounding
 
 }  // namespace
 
-void appendCaster(const DrawnHull& hull, std::vector<DrawnHull>& casters) {
-  const double radius = cornerOfEqualArea(kOutlines.front()) * hull.radius;  // rounds are drawn as polygons
-  if (hull.count != 2) {
-    casters.push_back(hull);
-    casters.back().radius = radius;
-    return;
-  }
+void appendPieces(const DrawnHull& hull, std::vector<DrawnHull>& pieces) {
+  if (hull.count != 2) return pieces.push_back(hull);
   const Vec3 step = (hull.centers[1] - hull.centers[0]) / kRodPieces;
   for (int i = 0; i < kRodPieces; ++i) {
-    DrawnHull& piece = casters.emplace_back();
+    DrawnHull& piece = pieces.emplace_back();
     piece.add(hull.centers[0] + i * step);
     piece.add(hull.centers[0] + (i + 1) * step);
-    piece.radius = radius;
+    piece.radius = hull.radius;
   }
 }
 
-std::pair<double, double> distancesOfOverlap(const Bounds& box, const Vec3& direction, const Bounds& other) {
-  double first = 0, last = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double begin = other.min()[axis] - box.max()[axis], end = other.max()[axis] - box.min()[axis];
-    const double speed = direction[axis];
-    if (speed == 0 && (begin > 0 || end < 0)) return {1, 0};
-    if (speed == 0) continue;
-    first = std::max(first, std::min(begin / speed, end / speed));
-    last = std::min(last, std::max(begin / speed, end / speed));
-  }
-  return {first, last};
+void appendCaster(const DrawnHull& hull, std::vector<DrawnHull>& casters) {
+  DrawnHull drawn = hull;
+  drawn.radius *= cornerOfEqualArea(kOutlines.front());  // rounds are drawn as polygons
+  appendPieces(drawn, casters);
 }
 
 PixelRectangle shadowTexels(const DrawnHull& hull, const Stage& stage) {

@@ -118,10 +118,31 @@ TileSpans TileMask::spansOf(std::vector<Point> polygon) const {
   return spans;
 }
 
-void TileMask::add(const TileSpans& spans) {
+TileSpans TileMask::spansInside(std::vector<Point> polygon) const {
+  const std::vector<Point> hull = hullOf(std::move(polygon));
+  TileSpans spans{0, {}};
+  for (int row = 0; row < rows_; ++row) {
+    double left = -std::numeric_limits<double>::infinity(), right = -left;
+    for (const double y : {kTile * row - kMargin, kTile * (row + 1) + kMargin}) {
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      for (std::size_t i = 0; i < hull.size(); ++i) includeEdge(hull[i], hull[(i + 1) % hull.size()], y, y, low, high);
+      left = std::max(left, low), right = std::min(right, high);
+    }
+    if (left < right)
+      spans.rows.emplace_back(std::max(clampedTile(left + kMargin, columns_) + 1, 0),
+                              clampedTile(right - kMargin, columns_) - 1);
+    else
+      spans.rows.emplace_back(0, -1);
+  }
+  return spans;
+}
+
+void TileMask::add(const TileSpans& spans, const TileMask* except) {
   for (std::size_t i = 0; i < spans.rows.size(); ++i) {
-    char* const row = isSet_.data() + (static_cast<std::ptrdiff_t>(i) + spans.firstRow) * columns_;
+    const std::ptrdiff_t first = (static_cast<std::ptrdiff_t>(i) + spans.firstRow) * columns_;
+    char* const row = isSet_.data() + first;
     for (int column = spans.rows[i].first; column <= spans.rows[i].second; ++column) {
+      if (except && except->isSet_[static_cast<std::size_t>(first + column)]) continue;
       count_ += !row[column];
       row[column] = 1;
     }

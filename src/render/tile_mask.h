@@ -30,7 +30,10 @@ class TileMask {
 
   /// `polygon` is convex, in pixels from the lower left corner, at least one point in any order. O(points log points).
   TileSpans spansOf(std::vector<Eigen::Vector2d> polygon) const;
-  void add(const TileSpans& spans);
+  /// Those that lie wholly in it, with a pixel around each.
+  TileSpans spansInside(std::vector<Eigen::Vector2d> polygon) const;
+  /// But for tiles of `except`, a mask of the same size.
+  void add(const TileSpans& spans, const TileMask* except = nullptr);
   void addAll();
 
   bool isEmpty() const { return count_ == 0; }
