@@ -136,26 +136,40 @@ void ChangeFinder::addReceiver(const DrawnHull& hull, double edgePixels,
   receivers_.push_back({spansOf(hull), wide.bounds(), hull, wider, triangle});
 }
 
-/// Sine of the angle in which a triangle's outer side is seen; negative if its inner side is.
-double facing(const std::array<Vec3, 3>& triangle, const Stage& stage) {
-  const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-  const Vec3 to = stage.camera.position - triangle[0];
-  return normal.dot(to) / (normal.norm() * to.norm());
+/// Sines of the angles in which triangles are seen: least and greatest; negative from inside.
+struct Facing {
+  double least, greatest;
+  bool isAway() const { return greatest < -kTurnedAway; }
+  /// How far beside their edges, in pixels, they are shaded.
+  double edgePixels() const { return least > 1 / kEdgePixels ? 1 / least : kEdgePixels; }
+};
+
+/// Of triangles within `box` whose unit normals differ by `spread` at most.
+Facing facing(const DrawnHull& box, const Vec3& normal, double spread, const Stage& stage) {
+  const Vec3 to = stage.camera.position - box.middle();
+  const double sine = normal.dot(to.normalized()), around = spread + 2 * box.reach() / to.norm();
+  return {sine - around, sine + around};
 }
 
 void ChangeFinder::addReceivers(const MeshItem& item) {
   const MeshBounds& bounds = meshBounds_[static_cast<std::size_t>(item.mesh)];
   const std::uint32_t begin = item.firstTriangle, end = begin + item.triangleCount;
-  for (const TriangleGroup& group : bounds.groups)
-    if (group.first < end && group.first + group.count > begin)
-      addReceiver(hullOf(group.box, item.worldFromMesh), kEdgePixels);
+  for (const TriangleGroup& group : bounds.groups) {
+    if (group.first >= end || group.first + group.count <= begin) continue;
+    const DrawnHull box = hullOf(group.box, item.worldFromMesh);
+    const Facing seen = facing(box, item.worldFromMesh.rotation * group.normal, group.normalSpread, stage_);
+    if (!(bounds.isClosed && seen.isAway())) addReceiver(box, seen.edgePixels());
+  }
   for (const LongTriangle& one : bounds.longTriangles) {
     if (one.index < begin || one.index >= end) continue;
     std::array<Vec3, 3> triangle;
     DrawnHull hull;
     for (std::size_t i = 0; i < 3; ++i) hull.add(triangle[i] = item.worldFromMesh * one.corners[i]);
-    if (bounds.isClosed && facing(triangle, stage_) < -kTurnedAway) continue;
-    addReceiver(hull, kEdgePixels, triangle);
+    const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalized();
+    const double farthest = (stage_.camera.position - hull.middle()).norm() + hull.reach();
+    const double sine = normal.dot(stage_.camera.position - triangle[0]) / farthest;  // where it is seen least
+    const Facing seen{sine, sine};
+    if (!(bounds.isClosed && seen.isAway())) addReceiver(hull, seen.edgePixels(), triangle);
   }
 }
 
@@ -329,8 +343,9 @@ void ChangeFinder::addShadows() {
   for (const SphereItem& item : now_.spheres) addMirrors(item, hullOf(item), kWideningOfSphere);
   for (const MeshItem& item : now_.meshes)
     if (item.isBall) {
-      const bool isSmooth = meshBounds_[static_cast<std::size_t>(item.mesh)].normalError < kSmooth;
-      addMirrors(item, hull(item), isSmooth ? kWideningOfSmoothMesh : kWideningOfFacets);
+      const MeshBounds& bounds = meshBounds_[static_cast<std::size_t>(item.mesh)];
+      const SphereItem ball{item.worldFromMesh * Vec3(bounds.whole.center()), bounds.whole.sizes().maxCoeff() / 2};
+      addMirrors(item, hullOf(ball), bounds.normalError < kSmooth ? kWideningOfSmoothMesh : kWideningOfFacets);
     }
 }
 

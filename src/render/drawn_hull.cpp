@@ -21,6 +21,35 @@ std::optional<std::pair<double, double>> tangentSlopes(double side, double depth
                    (side * tangent + r * depth) / (depth * tangent - r * side));
 }
 
+std::array<Vec3, 3> cornersOf(const DrawnMesh& mesh, std::uint32_t triangle) {
+  const Triangle& corners = mesh.triangles[triangle];
+  return {mesh.vertices[corners[0]], mesh.vertices[corners[1]], mesh.vertices[corners[2]]};
+}
+
+Bounds boxOf(const std::array<Vec3, 3>& corners) {
+  Bounds box;
+  for (const Vec3& corner : corners) box.extend(corner);
+  return box;
+}
+
+Vec3 normalOf(const std::array<Vec3, 3>& corners) {
+  return (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+}
+
+void findNormals(const DrawnMesh& mesh, TriangleGroup& group) {
+  for (std::uint32_t i = group.first; i < group.first + group.count; ++i) group.normal += normalOf(cornersOf(mesh, i));
+  group.normal.normalize();
+  for (std::uint32_t i = group.first; i < group.first + group.count; ++i)
+    group.normalSpread = std::max(group.normalSpread, (normalOf(cornersOf(mesh, i)) - group.normal).norm());
+}
+
+double greatestNormalError(const DrawnMesh& mesh, const Vec3& middle) {
+  double greatest = 0;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    greatest = std::max(greatest, (mesh.normals[i].cast<double>() - (mesh.vertices[i] - middle).normalized()).norm());
+  return greatest;
+}
+
 }  // namespace
 
 Vec3 DrawnHull::middle() const {
@@ -50,9 +79,8 @@ MeshBounds boundsOf(const DrawnMesh& mesh, bool isClosed) {
   if (mesh.triangles.empty()) return bounds;
   const double longest = kLong * bounds.whole.diagonal().norm();
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    std::array<Vec3, 3> corners;
-    Bounds box;
-    for (std::size_t k = 0; k < 3; ++k) box.extend(corners[k] = mesh.vertices[mesh.triangles[i][k]]);
+    const std::array<Vec3, 3> corners = cornersOf(mesh, i);
+    const Bounds box = boxOf(corners);
     if (i % kTrianglesPerRun == 0) bounds.runs.emplace_back();
     bounds.runs.back().extend(box);
     if (box.diagonal().norm() > longest) {
@@ -64,11 +92,8 @@ MeshBounds boundsOf(const DrawnMesh& mesh, bool isClosed) {
     bounds.groups.back().box.extend(box);
     bounds.groups.back().count = i + 1 - bounds.groups.back().first;
   }
-  const Vec3 middle = bounds.whole.center();
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const Vec3 outwards = (mesh.vertices[i] - middle).normalized();
-    bounds.normalError = std::max(bounds.normalError, (mesh.normals[i].cast<double>() - outwards).norm());
-  }
+  for (TriangleGroup& group : bounds.groups) findNormals(mesh, group);
+  bounds.normalError = greatestNormalError(mesh, bounds.whole.center());
   return bounds;
 }
 

@@ -31,7 +31,9 @@ struct LongTriangle {
 /// Triangles [first, first + count) without the long ones, in a box that is small beside the mesh.
 struct TriangleGroup {
   std::uint32_t first = 0, count = 0;
-  Bounds box;  // m, mesh's frame
+  Bounds box;                  // m, mesh's frame
+  Vec3 normal = Vec3::Zero();  // unit, outwards: in the middle of all triangles'
+  double normalSpread = 0;     // greatest distance of theirs from it
 };
 
 /// Where a mesh's triangles are, in its frame.
