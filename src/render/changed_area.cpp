@@ -25,6 +25,9 @@ constexpr double kWideningOfSphere = 1.8, kWideningOfSmoothMesh = 2.8, kWidening
 constexpr double kSmooth = 0.05;                      // greatest error of a smooth ball's normals
 constexpr double kQuickShadow = 4;                    // texels around a shadow that is mirrored
 constexpr double kEdgePixels = 32, kRoundPixels = 2;  // what is round is met exactly by rays
+constexpr long kFewTiles = 12;
+constexpr double kHidingPixels =
+    4000;                             // twice the area of the least triangle that is asked whether it hides the ground
 constexpr double kTurnedAway = 1e-3;  // sine: so far from edge-on, rounding does not tell the sides apart wrongly
 constexpr double kContactTexels = 2;  // of the contact map, which is interpolated
 
@@ -49,11 +52,10 @@ class ChangeFinder {
  private:
   /// Something that is drawn as before, or a part of it.
   struct Receiver {
-    TileSpans spans;
-    Bounds bounds;  // m, world
     DrawnHull hull;
     double wider;  // m, by which shading may take place beyond it
     std::optional<std::array<Vec3, 3>> triangle;
+    std::optional<TileSpans> spans = std::nullopt;  // once they are asked for
   };
 
   DrawnHull hull(const MeshItem& item) const {
@@ -65,6 +67,7 @@ class ChangeFinder {
   }
 
   TileSpans spansOf(const DrawnHull& hull);
+  const TileSpans& spansOf(Receiver& receiver);
   template <typename Item>
   void compareItems(const std::vector<Item>& before, const std::vector<Item>& now, bool throwsShadow);
   void addReceivers(const MeshItem& item);
@@ -103,6 +106,11 @@ TileSpans ChangeFinder::spansOf(const DrawnHull& hull) {
   return outline ? area_.picture.spansOf(std::move(*outline)) : TileSpans{};
 }
 
+const TileSpans& ChangeFinder::spansOf(Receiver& receiver) {
+  if (!receiver.spans) receiver.spans = spansOf(receiver.hull);
+  return *receiver.spans;
+}
+
 template <typename Item>
 void ChangeFinder::compareItems(const std::vector<Item>& before, const std::vector<Item>& now, bool throwsShadow) {
   const std::size_t size = std::max(before.size(), now.size());
@@ -129,11 +137,8 @@ void ChangeFinder::compareItems(const std::vector<Item>& before, const std::vect
 /// there, up to `edgePixels` away.
 void ChangeFinder::addReceiver(const DrawnHull& hull, double edgePixels,
                                const std::optional<std::array<Vec3, 3>>& triangle) {
-  DrawnHull wide = hull;
   const double distance = (hull.middle() - stage_.camera.position).norm();
-  const double wider = edgePixels * distance * pixelAngle(stage_);
-  wide.radius += wider;
-  receivers_.push_back({spansOf(hull), wide.bounds(), hull, wider, triangle});
+  receivers_.push_back({hull, edgePixels * distance * pixelAngle(stage_), triangle});
 }
 
 /// Sines of the angles in which triangles are seen: least and greatest; negative from inside.
@@ -201,8 +206,14 @@ void ChangeFinder::addAround(const NeighbourItem& item, std::size_t first) {
   DrawnHull around = hullOf(Bounds(-item.half, item.half), {item.rotation, item.center});
   around.radius = item.isBall() ? kBallReach * item.radius : item.radius;
   const Bounds reach = item.reach();
-  for (std::size_t i = first; i < receivers_.size(); ++i)
-    if (receivers_[i].bounds.intersects(reach)) addCommon(receivers_[i].spans, around);
+  auto outline = outlineOf(around, stage_);
+  std::optional<TileSpans> tiles;
+  if (outline) tiles = area_.picture.spansOf(std::move(*outline));
+  for (std::size_t i = first; i < receivers_.size(); ++i) {
+    const Bounds box = receivers_[i].hull.bounds();
+    if (box.exteriorDistance(reach) > receivers_[i].wider) continue;
+    area_.picture.add(tiles ? commonTiles(spansOf(receivers_[i]), *tiles) : spansOf(receivers_[i]));
+  }
 }
 
 void ChangeFinder::compareContacts() {
@@ -241,6 +252,10 @@ TileMask ChangeFinder::hiddenGround() {
   if (!isAbove(stage_.camera.position)) return hidden;
   for (const Receiver& receiver : receivers_) {
     if (!receiver.triangle || !std::all_of(receiver.triangle->begin(), receiver.triangle->end(), isAbove)) continue;
+    const Vec3 normal =
+        ((*receiver.triangle)[1] - (*receiver.triangle)[0]).cross((*receiver.triangle)[2] - (*receiver.triangle)[0]);
+    const double pixel = pixelAngle(stage_) * (receiver.hull.middle() - stage_.camera.position).norm();
+    if (normal.norm() < kHidingPixels * pixel * pixel) continue;
     if (auto outline = outlineOf({receiver.triangle->begin(), receiver.triangle->end()}, stage_))
       hidden.add(hidden.spansInside(std::move(*outline)));
   }
@@ -258,15 +273,20 @@ void ChangeFinder::addShadowsOnGround(const MovedShadows& shadows) {
   }
 }
 
-/// On all that stands behind it in the light.
+/// On all that stands behind it in the light: on small things as a whole.
 void ChangeFinder::addShadowsOnItems(const MovedShadows& shadows) {
-  for (const Receiver& receiver : receivers_) {
+  for (Receiver& receiver : receivers_) {
     const LitSurface surface = receiver.triangle ? shadows.surfaceOf(*receiver.triangle, receiver.wider)
                                                  : shadows.surfaceOf(receiver.hull, receiver.wider);
+    if (!shadows.reach(surface)) continue;
+    const TileSpans& spans = spansOf(receiver);
+    if (spans.count() <= kFewTiles) {
+      area_.picture.add(spans);
+      continue;
+    }
     for (const std::vector<Vec3>& part : shadows.partsOf(surface)) {
       auto outline = outlineOf(part, stage_);
-      area_.picture.add(outline ? commonTiles(receiver.spans, area_.picture.spansOf(std::move(*outline)))
-                                : receiver.spans);
+      area_.picture.add(outline ? commonTiles(spans, area_.picture.spansOf(std::move(*outline))) : spans);
     }
   }
 }

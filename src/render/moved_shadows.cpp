@@ -19,6 +19,9 @@ constexpr double kAside = 2;         // surfaces stand off from their depths by 
 constexpr double kBehind = 2;        // what lies so far in front of a caster is surely not in its shadow
 constexpr double kSteepest = 50;     // slope in the light's frame: beyond, a surface is bounded by a box
 
+constexpr double kMostReach = kWidestRadius + kHalfBlock + kAside;
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr int kBlocks = kShadowMapSize / kShadowBlock;
 
 /// Corners of an octagon around a disc.
@@ -64,6 +67,18 @@ std::vector<Eigen::Vector2d> cut(std::vector<Eigen::Vector2d> polygon, const Bou
   return polygon;
 }
 
+/// Whether what moved in `texels` is near enough to change light within `bounds`.
+bool mayReach(const Eigen::AlignedBox2d& texels, const Bounds& bounds, double around = kMostReach) {
+  const auto overlaps = [&](int axis) {
+    return texels.min()[axis] - around <= bounds.max()[axis] && texels.max()[axis] + around >= bounds.min()[axis];
+  };
+  return overlaps(0) && overlaps(1);
+}
+
+double depthAt(const Eigen::Vector2d& place, const Vec3& plane) {
+  return plane.head<2>().dot(place) + plane.z();
+}
+
 }  // namespace
 
 MovedShadows::MovedShadows(const std::vector<DrawnHull>& casters, const Stage& stage) {
@@ -73,36 +88,41 @@ MovedShadows::MovedShadows(const std::vector<DrawnHull>& casters, const Stage& s
   worldFromLight_ = lightFromWorld_.inverse();
   lightOrigin_ = scale.cwiseProduct(texture.topRightCorner<3, 1>()) - lightFromWorld_ * stage.origin;
 
-  const TileMask blocks(kShadowMapSize, kShadowMapSize);
-  constexpr double kNone = std::numeric_limits<double>::infinity();
   std::vector<double> nearest(kBlocks * kBlocks, kNone);
-  for (const DrawnHull& caster : casters) {
-    const double radius = caster.radius / stage.shadow.texel;
-    std::vector<Eigen::Vector2d> outline;
-    double depth = kNone;
-    for (std::size_t i = 0; i < caster.count; ++i) {
-      const Vec3 center = inLight(caster.centers[i]);
-      appendDisc(center.head<2>(), radius, outline);
-      depth = std::min(depth, center.z() - radius);
-    }
-    const TileSpans spans = blocks.spansOf(std::move(outline));
-    for (std::size_t i = 0; i < spans.rows.size(); ++i)
-      for (int column = spans.rows[i].first; column <= spans.rows[i].second; ++column) {
-        double& least =
-            nearest[(static_cast<std::size_t>(spans.firstRow) + i) * kBlocks + static_cast<std::size_t>(column)];
-        least = std::min(least, depth);
-      }
+  const TileMask blocks(kShadowMapSize, kShadowMapSize);
+  for (const DrawnHull& caster : casters) putBlocks(caster, stage.shadow.texel, blocks, nearest);
+  for (int row = 0; row < kBlocks; ++row) appendRuns(row, &nearest[static_cast<std::size_t>(row) * kBlocks]);
+}
+
+/// Gives the blocks in which a caster stands its least depth.
+void MovedShadows::putBlocks(const DrawnHull& caster, double texel, const TileMask& blocks,
+                             std::vector<double>& nearest) const {
+  const double radius = caster.radius / texel;
+  std::vector<Eigen::Vector2d> outline;
+  double depth = kNone;
+  for (std::size_t i = 0; i < caster.count; ++i) {
+    const Vec3 center = inLight(caster.centers[i]);
+    appendDisc(center.head<2>(), radius, outline);
+    depth = std::min(depth, center.z() - radius);
   }
-  for (int row = 0; row < kBlocks; ++row)
-    for (int column = 0; column < kBlocks; ++column) {
-      const double* const depths = &nearest[static_cast<std::size_t>(row) * kBlocks];
-      if (depths[column] == kNone) continue;
-      Run run{{}, kNone};
-      run.texels.extend(Eigen::Vector2d(kShadowBlock * column, kShadowBlock * row));
-      for (; column < kBlocks && depths[column] != kNone; ++column) run.nearest = std::min(run.nearest, depths[column]);
-      run.texels.extend(Eigen::Vector2d(kShadowBlock * column, kShadowBlock * (row + 1)));
-      runs_.push_back(run);
+  const TileSpans spans = blocks.spansOf(std::move(outline));
+  for (std::size_t i = 0; i < spans.rows.size(); ++i)
+    for (int column = spans.rows[i].first; column <= spans.rows[i].second; ++column) {
+      double& least =
+          nearest[(static_cast<std::size_t>(spans.firstRow) + i) * kBlocks + static_cast<std::size_t>(column)];
+      least = std::min(least, depth);
     }
+}
+
+void MovedShadows::appendRuns(int row, const double* nearest) {
+  for (int column = 0; column < kBlocks; ++column) {
+    if (nearest[column] == kNone) continue;
+    Run run{{}, kNone};
+    run.texels.extend(Eigen::Vector2d(kShadowBlock * column, kShadowBlock * row));
+    for (; column < kBlocks && nearest[column] != kNone; ++column) run.nearest = std::min(run.nearest, nearest[column]);
+    run.texels.extend(Eigen::Vector2d(kShadowBlock * column, kShadowBlock * (row + 1)));
+    runs_.push_back(run);
+  }
 }
 
 LitSurface MovedShadows::surfaceOf(const DrawnHull& box, double wider) const {
@@ -134,19 +154,31 @@ LitSurface MovedShadows::surfaceOf(const Vec3& normal, const Vec3& point) const 
   return surface;
 }
 
-void MovedShadows::appendPart(const Run& run, const LitSurface& surface, std::vector<std::vector<Vec3>>& parts) const {
-  const auto depthAt = [&](const Eigen::Vector2d& p) { return surface.plane->head<2>().dot(p) + surface.plane->z(); };
+/// Texels around a run within which light changes on a surface; negative if nowhere.
+double MovedShadows::reachOf(const Run& run, const LitSurface& surface) const {
   double farthest = surface.bounds.max().z();
+  if (farthest + kBehind < run.nearest || !mayReach(run.texels, surface.bounds)) return -1;
   if (surface.plane) {
-    const double most = surface.plane->head<2>().cwiseAbs().sum() * (kWidestRadius + kHalfBlock + kAside);
     double atCorners = -std::numeric_limits<double>::infinity();
     for (const double x : {run.texels.min().x(), run.texels.max().x()})
       for (const double y : {run.texels.min().y(), run.texels.max().y()})
-        atCorners = std::max(atCorners, depthAt({x, y}));
-    farthest = std::min(farthest, atCorners + most);
+        atCorners = std::max(atCorners, depthAt({x, y}, *surface.plane));
+    farthest = std::min(farthest, atCorners + kMostReach * surface.plane->head<2>().cwiseAbs().sum());
+    if (farthest + kBehind < run.nearest) return -1;
   }
-  if (farthest + kBehind < run.nearest) return;
-  const double around = std::max(coneAt(farthest - run.nearest) + kHalfBlock, coneAt(farthest) + kAroundDisc) + kAside;
+  return std::max(coneAt(farthest - run.nearest) + kHalfBlock, coneAt(farthest) + kAroundDisc) + kAside;
+}
+
+bool MovedShadows::reach(const LitSurface& surface) const {
+  return std::any_of(runs_.begin(), runs_.end(), [&](const Run& run) {
+    const double around = reachOf(run, surface);
+    return around >= 0 && mayReach(run.texels, surface.bounds, around);
+  });
+}
+
+void MovedShadows::appendPart(const Run& run, const LitSurface& surface, std::vector<std::vector<Vec3>>& parts) const {
+  const double around = reachOf(run, surface);
+  if (around < 0) return;
   const Eigen::AlignedBox2d reached(Eigen::Vector2d(run.texels.min().array() - around),
                                     Eigen::Vector2d(run.texels.max().array() + around));
   const auto area = cut(rounded(reached, around), surface.bounds);
@@ -154,7 +186,7 @@ void MovedShadows::appendPart(const Run& run, const LitSurface& surface, std::ve
   std::vector<Vec3>& part = parts.emplace_back();
   for (const Eigen::Vector2d& corner : area) {
     if (surface.plane) {
-      part.push_back(inWorld({corner.x(), corner.y(), depthAt(corner)}));
+      part.push_back(inWorld({corner.x(), corner.y(), depthAt(corner, *surface.plane)}));
       continue;
     }
     for (const double depth : {surface.bounds.min().z(), surface.bounds.max().z()})

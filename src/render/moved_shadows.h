@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/drawn_hull.h"
+#include "render/tile_mask.h"
 
 namespace cradle {
 
@@ -25,6 +26,9 @@ class MovedShadows {
   /// Of an endless plane through a point.
   LitSurface surfaceOf(const Vec3& normal, const Vec3& point) const;
 
+  /// Whether light may change anywhere on a surface.
+  bool reach(const LitSurface& surface) const;
+
   /// Points (m, world) around each part of a surface on which light may change; together they hold all that changes.
   std::vector<std::vector<Vec3>> partsOf(const LitSurface& surface) const;
 
@@ -37,6 +41,9 @@ class MovedShadows {
 
   Vec3 inLight(const Vec3& point) const { return lightFromWorld_ * point + lightOrigin_; }
   Vec3 inWorld(const Vec3& place) const { return worldFromLight_ * (place - lightOrigin_); }
+  void putBlocks(const DrawnHull& caster, double texel, const TileMask& blocks, std::vector<double>& nearest) const;
+  void appendRuns(int row, const double* nearest);
+  double reachOf(const Run& run, const LitSurface& surface) const;
   void appendPart(const Run& run, const LitSurface& surface, std::vector<std::vector<Vec3>>& parts) const;
 
   Mat3 lightFromWorld_, worldFromLight_;

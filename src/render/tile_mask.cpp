@@ -91,6 +91,12 @@ void merge(std::vector<TileRectangle>& found) {
 
 }  // namespace
 
+long TileSpans::count() const {
+  long tiles = 0;
+  for (const auto& [first, last] : rows) tiles += std::max(last - first + 1, 0);
+  return tiles;
+}
+
 TileMask::TileMask(int width, int height)
     : width_(width),
       height_(height),

@@ -19,6 +19,7 @@ struct PixelRectangle {
 struct TileSpans {
   int firstRow = 0;
   std::vector<std::pair<int, int>> rows;
+  long count() const;
 };
 
 /// A part of a picture, in tiles that OpenGL's groups of pixels do not straddle: derivatives inside it are the same
