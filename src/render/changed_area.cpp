@@ -160,7 +160,7 @@ void ChangeFinder::addReceivers(const MeshItem& item) {
   const MeshBounds& bounds = meshBounds_[static_cast<std::size_t>(item.mesh)];
   const std::uint32_t begin = item.firstTriangle, end = begin + item.triangleCount;
   for (const TriangleGroup& group : bounds.groups) {
-    if (group.first >= end || group.first + group.count <= begin) continue;
+    if (group.first >= end || group.last < begin) continue;
     const DrawnHull box = hullOf(group.box, item.worldFromMesh);
     const Facing seen = facing(box, item.worldFromMesh.rotation * group.normal, group.normalSpread, stage_);
     if (!(bounds.isClosed && seen.isAway())) addReceiver(box, seen.edgePixels());
@@ -185,20 +185,32 @@ void ChangeFinder::addReceivers(const CylinderItem& item) {
   for (const DrawnHull& piece : pieces) addReceiver(piece, kRoundPixels);
 }
 
-/// Balls whose images or shade an item shows where they are near. A ball that is not near multiplies light by 1, so
-/// that only the order of those that stay matters: where their number changes, all of them count. The item's receivers
-/// stand from `first` on.
+/// Balls whose images or shade an item shows where they are near. A ball that is not near multiplies light by 1: where
+/// one comes or goes or moves, only its surroundings count, and the others as long as they keep their order. The item's
+/// receivers stand from `first` on.
 template <typename Item>
 void ChangeFinder::compareNearBalls(const Item& before, const Item& now, std::size_t first) {
-  const auto ballOf = [](const DrawList& list, const Item& item, int i) -> const NeighbourItem& {
-    return list.neighbours[static_cast<std::size_t>(list.nearBalls[static_cast<std::size_t>(item.firstNearBall + i)])];
+  const auto ballsOf = [](const DrawList& list, const Item& item) {
+    std::vector<const NeighbourItem*> balls;
+    for (int i = item.firstNearBall; i < item.firstNearBall + item.nearBalls; ++i)
+      balls.push_back(&list.neighbours[static_cast<std::size_t>(list.nearBalls[static_cast<std::size_t>(i)])]);
+    return balls;
   };
-  const bool sameNumber = before.nearBalls == now.nearBalls;
-  for (int i = 0; i < std::max(before.nearBalls, now.nearBalls); ++i) {
-    if (sameNumber && isSame(ballOf(before_, before, i), ballOf(now_, now, i), stage_)) continue;
-    if (i < before.nearBalls) addAround(ballOf(before_, before, i), first);
-    if (i < now.nearBalls) addAround(ballOf(now_, now, i), first);
-  }
+  const auto areSame = [&](const NeighbourItem* a, const NeighbourItem* b) { return isSame(*a, *b, stage_); };
+  std::vector<const NeighbourItem*> old = ballsOf(before_, before), current = ballsOf(now_, now);
+  if (std::equal(old.begin(), old.end(), current.begin(), current.end(), areSame)) return;
+  const auto addThoseNotIn = [&](const std::vector<const NeighbourItem*>& others,
+                                 std::vector<const NeighbourItem*>& balls) {
+    std::erase_if(balls, [&](const NeighbourItem* ball) {
+      const bool stays = std::any_of(others.begin(), others.end(), [&](auto* other) { return areSame(ball, other); });
+      if (!stays) addAround(*ball, first);
+      return !stays;
+    });
+  };
+  addThoseNotIn(current, old);
+  addThoseNotIn(old, current);
+  if (!std::equal(old.begin(), old.end(), current.begin(), current.end(), areSame))
+    for (const NeighbourItem* ball : old) addAround(*ball, first);
 }
 
 /// What of the receivers from `first` on a neighbour reaches.

@@ -1,6 +1,7 @@
 #include "render/drawn_hull.h"
 
 #include <cmath>
+#include <map>
 
 #include "render/camera.h"
 #include "render/tube_curve.h"
@@ -36,11 +37,30 @@ Vec3 normalOf(const std::array<Vec3, 3>& corners) {
   return (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
 }
 
-void findNormals(const DrawnMesh& mesh, TriangleGroup& group) {
-  for (std::uint32_t i = group.first; i < group.first + group.count; ++i) group.normal += normalOf(cornersOf(mesh, i));
+/// What triangles of a group have in common: the cell in which their middle is, and about where they face.
+using GroupKey = std::array<int, 4>;
+
+GroupKey groupKey(const Vec3& middle, const Vec3& normal, double cell) {
+  Eigen::Index axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  int side = static_cast<int>(axis);
+  for (const double number : normal) side = 2 * side + (number > 0);
+  const auto at = [&](int i) { return static_cast<int>(std::floor(middle[i] / cell)); };
+  return {at(0), at(1), at(2), side};
+}
+
+TriangleGroup groupOf(const DrawnMesh& mesh, const std::vector<std::uint32_t>& triangles) {
+  TriangleGroup group;
+  group.first = triangles.front(), group.last = triangles.back();
+  for (const std::uint32_t i : triangles) {
+    const std::array<Vec3, 3> corners = cornersOf(mesh, i);
+    group.box.extend(boxOf(corners));
+    group.normal += normalOf(corners);
+  }
   group.normal.normalize();
-  for (std::uint32_t i = group.first; i < group.first + group.count; ++i)
+  for (const std::uint32_t i : triangles)
     group.normalSpread = std::max(group.normalSpread, (normalOf(cornersOf(mesh, i)) - group.normal).norm());
+  return group;
 }
 
 double greatestNormalError(const DrawnMesh& mesh, const Vec3& middle) {
@@ -78,6 +98,7 @@ MeshBounds boundsOf(const DrawnMesh& mesh, bool isClosed) {
   for (const Vec3& vertex : mesh.vertices) bounds.whole.extend(vertex);
   if (mesh.triangles.empty()) return bounds;
   const double longest = kLong * bounds.whole.diagonal().norm();
+  std::map<GroupKey, std::vector<std::uint32_t>> groups;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     const std::array<Vec3, 3> corners = cornersOf(mesh, i);
     const Bounds box = boxOf(corners);
@@ -87,12 +108,9 @@ MeshBounds boundsOf(const DrawnMesh& mesh, bool isClosed) {
       bounds.longTriangles.push_back({i, corners});
       continue;
     }
-    if (bounds.groups.empty() || bounds.groups.back().box.merged(box).diagonal().norm() > longest)
-      bounds.groups.push_back({i, 0, {}});
-    bounds.groups.back().box.extend(box);
-    bounds.groups.back().count = i + 1 - bounds.groups.back().first;
+    groups[groupKey(box.center() - bounds.whole.min(), normalOf(corners), longest)].push_back(i);
   }
-  for (TriangleGroup& group : bounds.groups) findNormals(mesh, group);
+  for (const auto& [key, triangles] : groups) bounds.groups.push_back(groupOf(mesh, triangles));
   bounds.normalError = greatestNormalError(mesh, bounds.whole.center());
   return bounds;
 }

@@ -28,19 +28,19 @@ struct LongTriangle {
   std::array<Vec3, 3> corners;  // m, mesh's frame, counter-clockwise from outside
 };
 
-/// Triangles [first, first + count) without the long ones, in a box that is small beside the mesh.
+/// Triangles that are near each other and face about the same way.
 struct TriangleGroup {
-  std::uint32_t first = 0, count = 0;
-  Bounds box;                  // m, mesh's frame
-  Vec3 normal = Vec3::Zero();  // unit, outwards: in the middle of all triangles'
-  double normalSpread = 0;     // greatest distance of theirs from it
+  std::uint32_t first = 0, last = 0;  // the least and the greatest of their indices
+  Bounds box;                         // m, mesh's frame
+  Vec3 normal = Vec3::Zero();         // unit, outwards: in the middle of theirs
+  double normalSpread = 0;            // greatest distance of theirs from it
 };
 
 /// Where a mesh's triangles are, in its frame.
 struct MeshBounds {
   Bounds whole;
-  std::vector<Bounds> runs;  // of kTrianglesPerRun triangles each
-  std::vector<TriangleGroup> groups;
+  std::vector<Bounds> runs;                 // of kTrianglesPerRun triangles each
+  std::vector<TriangleGroup> groups;        // of all but the long ones
   std::vector<LongTriangle> longTriangles;  // in order
   bool isClosed = false;                    // then its inside is never seen
   double normalError = 0;                   // greatest distance of a unit normal from the direction out of the middle
