@@ -223,7 +223,9 @@ void ChangeFinder::addAround(const NeighbourItem& item, std::size_t first) {
   if (outline) tiles = area_.picture.spansOf(std::move(*outline));
   for (std::size_t i = first; i < receivers_.size(); ++i) {
     const Bounds box = receivers_[i].hull.bounds();
-    if (box.exteriorDistance(reach) > receivers_[i].wider) continue;
+    const double apart =
+        item.isBall() ? box.exteriorDistance(item.center) - around.radius : box.exteriorDistance(reach);
+    if (apart > receivers_[i].wider) continue;
     area_.picture.add(tiles ? commonTiles(spansOf(receivers_[i]), *tiles) : spansOf(receivers_[i]));
   }
 }
