@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/chart_stability.h"
 #include "commands/compare.h"
 #include "commands/inspect_mesh.h"
 #include "commands/pictures.h"
@@ -26,7 +27,7 @@ constexpr int kTerminatedExit = 143;
 /// Everything that the command line can say, and the command that it asks for.
 struct CommandLine {
   std::string input, output, expected, actual;
-  std::vector<std::string> scenes, methods;
+  std::vector<std::string> scenes, methods, maps;
   SimulateOptions simulation;
   PictureOptions pictures;
   CompareOptions comparison;
@@ -89,6 +90,14 @@ void addStudy(CLI::App& app, CommandLine& line) {
       ->add_option("--methods", line.methods, "of explicitEuler, semiImplicitEuler, rk4, dop853FixedStep, dop853, plan")
       ->delimiter(',')
       ->allow_extra_args(false);
+
+  auto* stability = addCommand(app, line, "stability", "Map where methods hold and where they fail, with charts",
+                               "cradle stability -o maps --maps step_stiffness,logistic",
+                               [&] { chartStability(line.output, line.maps, line.quiet); });
+  addOutput(stability, line, "folder for the maps (CSV, SVG, PNG)");
+  std::string names;
+  for (const MapEntry& map : stabilityMaps()) names += (names.empty() ? "" : ", ") + map.name;
+  stability->add_option("--maps", line.maps, "of " + names)->delimiter(',')->allow_extra_args(false);
 }
 
 void addPictures(CLI::App& app, CommandLine& line) {

@@ -17,6 +17,7 @@
 #include "core/interruption.h"
 #include "core/output_path.h"
 #include "core/progress.h"
+#include "study/gnuplot.h"
 #include "study/study_table.h"
 #include "study/work_precision_chart.h"
 

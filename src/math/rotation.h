@@ -10,6 +10,10 @@ namespace cradle {
 /// Rotation by `angle` (rad) about `axis` (any non-zero length), counter-clockwise seen from its tip.
 Quat rotationAbout(const Vec3& axis, double angle);
 
+/// The shortest rotation that takes the direction of `from` to that of `to` (any non-zero lengths); of opposite
+/// directions (sum of unit vectors below 1e-4), about half a turn about some axis across them.
+Quat rotationBetween(const Vec3& from, const Vec3& to);
+
 /// Euler angles in any order: "zyx" is R = Rz(angles[0]) Ry(angles[1]) Rx(angles[2]), angles in rad. `order` is three
 /// letters of x, y, z, neighbours different (Tait-Bryan "zyx" or proper Euler "zxz").
 Quat rotationFromEuler(const std::array<double, 3>& angles, const std::string& order);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 
+#include "math/rotation.h"
 #include "mesh/convex.h"
 #include "mesh/mass_properties.h"
 #include "mesh/solid.h"
@@ -138,8 +139,7 @@ AxialExtent measureAlong(const Vec3& direction, const Candidate& candidate) {
 }
 
 RigidTransform placedAlong(const AxialExtent& extent) {
-  return {Quat::FromTwoVectors(Vec3::UnitY(), extent.axis),
-          extent.through + (extent.low + extent.high) / 2 * extent.axis};
+  return {rotationBetween(Vec3::UnitY(), extent.axis), extent.through + (extent.low + extent.high) / 2 * extent.axis};
 }
 
 // Of a point in the shape's frame: how far outside the surface it is.

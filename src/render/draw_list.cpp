@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "math/rotation.h"
 #include "render/body_place.h"
 #include "render/link_items.h"
 #include "render/push_arrows.h"
@@ -54,7 +55,7 @@ void appendWall(const Scene& scene, const Appearance& appearance, const View& vi
   const DrawnMesh& mesh = appearance.meshes[static_cast<std::size_t>(appearance.wallMesh)];
   MeshItem item{appearance.wallMesh, 0, static_cast<std::uint32_t>(mesh.triangles.size())};
   const Vec3 middle = view.bounds.isEmpty() ? place.translation : Vec3(view.bounds.center());
-  item.worldFromMesh = {Quat::FromTwoVectors(Vec3::UnitY(), normal),
+  item.worldFromMesh = {rotationBetween(Vec3::UnitY(), normal),
                         middle - normal.dot(middle - place.translation) * normal};
   item.surface = appearance.bodies[body].surface;
   for (const Vec3& vertex : mesh.vertices) item.bounds.extend(item.worldFromMesh * vertex);

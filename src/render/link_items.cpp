@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/rotation.h"
 #include "render/body_place.h"
 #include "render/tube_curve.h"
 
@@ -67,7 +68,7 @@ Vec3 sideOf(const Vec3& directionAtStart, const Vec3& direction) {
   Vec3::Index smallest;
   directionAtStart.cwiseAbs().minCoeff(&smallest);
   const Vec3 side = directionAtStart.cross(Vec3::Unit(smallest)).normalized();
-  return Quat::FromTwoVectors(directionAtStart, direction) * side;
+  return rotationBetween(directionAtStart, direction) * side;
 }
 
 Vec3 directionBetween(const Vec3& a, const Vec3& b) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/rotation.h"
+
 namespace cradle {
 namespace {
 
@@ -51,7 +53,7 @@ void appendPushArrows(const Appearance& appearance, const View& view, const Fram
 
     const DrawnMesh& head = appearance.meshes[static_cast<std::size_t>(appearance.arrowHeadMesh)];
     MeshItem item{appearance.arrowHeadMesh, 0, static_cast<std::uint32_t>(head.triangles.size())};
-    item.worldFromMesh = {Quat::FromTwoVectors(Vec3::UnitY(), direction), tip};
+    item.worldFromMesh = {rotationBetween(Vec3::UnitY(), direction), tip};
     item.surface = kSignalRed;
     for (const Vec3& vertex : head.vertices) item.bounds.extend(item.worldFromMesh * vertex);
     list.meshes.push_back(item);

@@ -4,32 +4,22 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <map>
 
-#include "core/error.h"
-#include "core/output_path.h"
-#include "image/child_process.h"
+#include "study/gnuplot.h"
 
 namespace cradle {
 namespace {
 
-constexpr StartFailure kNoGnuplot{ErrorKind::output, "gnuplot-nox"};
-
-/// A colour (M. Okabe, K. Ito, "Color Universal Design", 2008: told apart by all eyes) and a marker a method. The
-/// plan's open circles go around the markers of what it chose. Peers have a colour an engine, open markers and dashed
-/// lines.
+/// A colour and a marker a method. The plan's open circles go around the markers of what it chose. Peers have a colour
+/// an engine, open markers and dashed lines.
 struct Look {
   const char* color;
   int marker;  // gnuplot's pointtype
   double size = 1.1, lineWidth = 2.5;
   int dash = 1;  // gnuplot's dashtype
 };
-constexpr std::array<Look, 6> kLooks = {
-    {{"#D55E00", 9}, {"#E69F00", 5}, {"#0072B2", 7}, {"#56B4E9", 13}, {"#009E73", 11}, {"#CC79A7", 6, 2, 1.2}}};
+constexpr Look kPlanLook = {kChartColors[5], 6, 2, 1.2};
 constexpr std::array<const char*, 4> kEngineColors = {"#000000", "#7A5195", "#8C510A", "#7F7F7F"};
 constexpr std::array<int, 4> kPeerMarkers = {4, 8, 6, 12};  // of an engine's methods
 constexpr std::array<int, 4> kPeerDashes = {2, 4, 3, 5};
@@ -45,7 +35,7 @@ std::vector<Look> looksOf(const std::vector<StudyMethod>& methods) {
     if (methods[i].peer)
       looks.push_back({kEngineColors.at(engine), kPeerMarkers.at(inEngine), 1.2, 1.6, kPeerDashes.at(inEngine)});
     else
-      looks.push_back(kLooks.at(i));
+      looks.push_back(methods[i].method ? Look{kChartColors.at(i), kChartMarkers.at(i)} : kPlanLook);
   }
   return looks;
 }
@@ -122,13 +112,6 @@ double blowUpHeight(const ErrorAxis& axis, std::size_t curve, std::size_t curves
   return axis.top * std::pow(axis.end / axis.top, part);
 }
 
-/// A text for gnuplot, in quotes and without commands.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? "''" : c == '\n' ? " " : std::string(1, c);
-  return result + "'";
-}
-
 std::string dataBlocks(const std::vector<Curve>& curves, const ErrorAxis& axis) {
   std::string text;
   const auto addBlock = [&](const char* name, std::size_t curve, const std::vector<Point>& points, bool areBlowUps) {
@@ -156,7 +139,7 @@ std::string headings(const WorkPrecisionChart& chart) {
   return fmt::format(
       "set label 1 {} at screen 0.5, 0.965 center font ',22' noenhanced textcolor rgb '{}'\n"
       "set label 2 {} at screen 0.5, 0.918 center font ',14' noenhanced textcolor rgb '#505050'\n",
-      quoted(title), isTrusted ? "#000000" : "#c00000", quoted(subtitle));
+      quotedForGnuplot(title), isTrusted ? "#000000" : "#c00000", quotedForGnuplot(subtitle));
 }
 
 std::string uncertaintyLine(const ErrorAxis& axis, double uncertainty) {
@@ -235,7 +218,7 @@ std::string legend(const std::vector<Curve>& curves) {
         "NaN with linespoints dashtype {} linewidth {} pointtype {} pointsize {}*markerScale linecolor rgb '{}' title "
         "{}, ",
         curve.look.dash, curve.look.lineWidth, curve.look.marker, curve.look.size, curve.look.color,
-        quoted(curve.title));
+        quotedForGnuplot(curve.title));
   const bool hasBlowUps =
       std::any_of(curves.begin(), curves.end(), [](const Curve& curve) { return !curve.blowUps.empty(); });
   if (!hasBlowUps) return text + "NaN notitle\n";
@@ -264,50 +247,18 @@ std::string panels(const WorkPrecisionChart& chart, const std::vector<Curve>& cu
   return text + legend(curves) + "unset multiplot\nunset output\n";
 }
 
-void finishFile(const std::string& path) {
-  if (std::rename(partPath(path).c_str(), path.c_str()) != 0)
-    throw Error(ErrorKind::output, path, std::string("cannot be written: ") + std::strerror(errno));
-}
-
 }  // namespace
-
-bool canDrawCharts() {
-  try {
-    return ChildProcess({"gnuplot", "--version"}, kNoGnuplot).finish() == 0;
-  } catch (const Error&) {
-    return false;
-  }
-}
 
 std::string chartCommands(const WorkPrecisionChart& chart, const std::string& svgPath, const std::string& pngPath) {
   const std::vector<Curve> curves = curvesOf(chart.rows);
   const ErrorAxis axis = errorAxisOf(curves, chart.reference.uncertainty);
   const std::string drawing = panels(chart, curves, axis);
-  return dataBlocks(curves, axis) +
-         fmt::format(
-             "set terminal svg size 1600,900 font 'DejaVu Sans,15' fontscale 1.3 background 'white'\nmarkerScale = "
-             "0.7\nset output {}\n",
-             quoted(svgPath)) +
-         drawing + "reset\n" +
-         fmt::format("set terminal pngcairo size 1600,900 font 'DejaVu Sans,15'\nmarkerScale = 1\nset output {}\n",
-                     quoted(pngPath)) +
-         drawing;
+  return dataBlocks(curves, axis) + drawingCommands(drawing, {svgPath, pngPath});
 }
 
 void drawChart(const WorkPrecisionChart& chart, const std::string& stem) {
   if (curvesOf(chart.rows).empty()) return;
-  const std::string svg = stem + ".svg", png = stem + ".png";
-  for (const std::string& path : {svg, png}) {
-    requireWritableFile(path);
-    requireWritableFile(partPath(path));
-  }
-  const std::string commands = chartCommands(chart, partPath(svg), partPath(png));
-  ChildProcess gnuplot({"gnuplot"}, kNoGnuplot);
-  const bool taken = gnuplot.write(commands.data(), commands.size());
-  if (gnuplot.finish() != 0 || !taken)
-    throw Error(ErrorKind::output, png, "gnuplot failed: " + gnuplot.standardError());
-  finishFile(svg);
-  finishFile(png);
+  drawWithGnuplot(stem, [&](const ChartFiles& files) { return chartCommands(chart, files.svg, files.png); });
 }
 
 }  // namespace cradle

@@ -15,9 +15,6 @@ struct WorkPrecisionChart {
   double duration = 0;  // s
 };
 
-/// Whether the program that draws charts (gnuplot) can be started.
-bool canDrawCharts();
-
 /// The commands that make gnuplot draw the chart into an SVG and a PNG file. Blow-ups have no cost of their own: they
 /// stand where a run of that step would, from the cost of the coarsest run that went well.
 std::string chartCommands(const WorkPrecisionChart& chart, const std::string& svgPath, const std::string& pngPath);

@@ -6,6 +6,7 @@
 #include "collision/mesh_nearest.h"
 #include "collision/random_poses.h"
 #include "collision/separation.h"
+#include "math/rotation.h"
 #include "mesh/sample_meshes.h"
 
 // An L is two boxes, so that its distance from a cylinder is the smaller of theirs, which convex cores are proven for;
@@ -68,7 +69,7 @@ TEST(CylinderOnMesh, SeparationIsTheDistanceFromTheBoxesThatTheMeshIsMadeOf) {
     for (int i = 0; i < 60; ++i) {
       RigidTransform pose = random.pose(2.5);
       pose.translation += Vec3(1.2, 0.8, 0.5);
-      if (i % 3 == 0) pose.rotation = Quat::FromTwoVectors(Vec3::UnitY(), Vec3::Unit(i / 3 % 3));
+      if (i % 3 == 0) pose.rotation = rotationBetween(Vec3::UnitY(), Vec3::Unit(i / 3 % 3));
       const double expected = boxes.gap(cylinder, pose).separation;
       const Pair pair(mesh, cylinder, pose);
       expected > 0 ? ++apart : ++overlapping;

@@ -216,7 +216,7 @@ TEST(BoxContacts, OfACornerAndOfAnEdgeOnAFace) {
     for (const Vec3& vertex : box.points) lowest = std::min(lowest, (turn * vertex).y());
     return contactsOf(floor, box, {}, {turn, Vec3(0.2, 0.5 - lowest, 0.1)}, 1e-8);
   };
-  const auto corner = contactsWhen(Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3(0, -1, 0)));
+  const auto corner = contactsWhen(rotationBetween(Vec3(1, 1, 1), Vec3(0, -1, 0)));
   ASSERT_EQ(corner.size(), 1u);
   EXPECT_LT((corner[0].point - Vec3(0.2, 0.5, 0.1)).norm(), 1e-12);
   EXPECT_LT((corner[0].normal - Vec3::UnitY()).norm(), 1e-12);

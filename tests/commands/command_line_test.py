@@ -56,7 +56,7 @@ class InTemporaryFolder(unittest.TestCase):
 
 class Usage(InTemporaryFolder):
     def test_help_of_every_command_has_an_example(self):
-        for command in ("simulate", "render", "encode", "video", "inspect", "check", "compare", "export", "study"):
+        for command in ("simulate", "render", "encode", "video", "inspect", "check", "compare", "export", "study", "stability"):
             result = cradle(command, "--help")
             self.assertEqual(result.returncode, 0)
             self.assertIn("Example:\n  cradle " + command, result.stdout)
@@ -304,6 +304,30 @@ class Studies(InTemporaryFolder):
         self.assertIn("study.csv.part", stderr)
         self.assertEqual(os.listdir(self.path("s")), ["study.csv.part"])
         self.assertGreater(len(self.rows("s/study.csv.part")), 2)
+
+
+class Stability(InTemporaryFolder):
+    def test_a_map_is_a_table_and_two_pictures(self):
+        result = cradle("stability", "-o", self.path("m"), "--maps", "logistic")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(sorted(os.listdir(self.path("m"))), ["logistic.csv", "logistic.png", "logistic.svg"])
+        lines = content(self.path("m/logistic.csv")).decode().splitlines()
+        self.assertTrue(all(line.startswith("# ") for line in lines[:3]), lines[:3])
+        self.assertEqual(lines[3], "panel,kind,name,time (s),y")
+        self.assertEqual(png_size(self.path("m/logistic.png")), (1600, 900))
+        again = cradle("stability", "-o", self.path("m"), "--maps", "logistic")
+        self.assertEqual(again.returncode, 0, again.stderr)
+
+    def test_faults_are_told_before_anything_is_made(self):
+        self.refuses(2, ["--maps", "logistics", "step_stiffness"], "stability", "-o", self.path("m"), "--maps", "logistics")
+        self.write("mine.json", scene())
+        self.refuses(5, ["mine.json"], "stability", "-o", self.folder)
+
+    def test_without_gnuplot_there_is_a_table_and_exit_5(self):
+        os.mkdir(self.path("bin"))
+        result = cradle("stability", "-o", self.path("m"), "--maps", "logistic", env={**os.environ, "PATH": self.path("bin")})
+        self.assertEqual(result.returncode, 5, result.stderr)
+        self.assertEqual(os.listdir(self.path("m")), ["logistic.csv"])
 
 
 def png_size(path):

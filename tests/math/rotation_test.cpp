@@ -67,6 +67,20 @@ TEST(Rotation, SkewMatrixIsTheCrossProduct) {
   EXPECT_EQ(Mat3(skew(a).transpose()), Mat3(-skew(a)));
 }
 
+TEST(Rotation, BetweenTwoDirectionsIsTheShortest) {
+  // Of nearly opposite directions the axis is lost: rounding is divided by the length of their sum, 1e-4 at the least.
+  for (const double angle : {0.0, 1e-9, 0.3, 2.5, pi - 1e-3, pi - 1e-6, pi}) {
+    const Vec3 axis = Vec3(1, -2, 0.5).normalized(), from = axis.cross(Vec3(0.2, 0.3, 1)).normalized();
+    const Vec3 to = std::cos(angle) * from + std::sin(angle) * axis.cross(from);
+    const Quat rotation = rotationBetween(3 * from, 0.2 * to);
+    EXPECT_NEAR(rotation.norm(), 1, 3e-12) << angle;
+    EXPECT_LE((rotation * from - to).norm(), 3e-12) << angle;
+    const double rounding = angle < pi - 1e-2 ? 10 * kRounding : 3;  // of the axis; a rotation by pi may have another
+    EXPECT_LE((rotation * axis - axis).norm(), rounding) << angle;
+    EXPECT_NEAR(std::abs(rotation.w()), std::cos(angle / 2), 1e-6) << angle;
+  }
+}
+
 TEST(RotationDeathTest, OrderOfThreeLettersIsRequired) {
   EXPECT_EXIT(rotationFromEuler({0, 0, 0}, "zy"), testing::ExitedWithCode(1), "internal check failed");
   EXPECT_EXIT(rotationFromEuler({0, 0, 0}, "zya"), testing::ExitedWithCode(1), "internal check failed");

@@ -91,7 +91,7 @@ TEST(RecogniseShape, CylinderIsFoundInAnyDirection) {
   for (const double length : {0.1, 1.0, 0.5 * std::sqrt(3), 7.0}) {
     const TriangleMesh mesh = solidOf(tessellate(Cylinder{0.5, length}, 48));
     for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(1, 2, -3)}) {
-      const RigidTransform place{Quat::FromTwoVectors(Vec3::UnitY(), axis), Vec3(0.2, -0.4, 0.6)};
+      const RigidTransform place{rotationBetween(Vec3::UnitY(), axis), Vec3(0.2, -0.4, 0.6)};
       const TriangleMesh turned = asFloats(placed(mesh, place));
       const Cylinder found = expectRecognised<Cylinder>(turned, place.translation);
       EXPECT_NEAR(found.radius, 0.5, 1e-6);
@@ -123,7 +123,7 @@ TEST(RecogniseShape, CapsuleIsFoundInAnyDirection) {
   for (const double length : {0.05, 1.0, 7.0}) {
     const TriangleMesh mesh = solidOf(tessellate(Capsule{0.5, length}, 48));
     for (const Vec3& axis : {Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(1, 2, -3)}) {
-      const RigidTransform place{Quat::FromTwoVectors(Vec3::UnitY(), axis), Vec3(0.2, -0.4, 0.6)};
+      const RigidTransform place{rotationBetween(Vec3::UnitY(), axis), Vec3(0.2, -0.4, 0.6)};
       const Capsule found = expectRecognised<Capsule>(asFloats(placed(mesh, place)), place.translation);
       EXPECT_NEAR(found.radius, 0.5, 1e-6);
       EXPECT_NEAR(found.length, length, 2e-6 * (1 + length));

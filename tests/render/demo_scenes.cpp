@@ -35,7 +35,7 @@ Body& addBody(Scene& scene, const std::string& name, const Shape& shape, int mat
 }
 
 void addBar(Scene& scene, const Vec3& a, const Vec3& b, double radius) {
-  const RigidTransform place{Quat::FromTwoVectors(Vec3::UnitY(), b - a), (a + b) / 2};
+  const RigidTransform place{rotationBetween(Vec3::UnitY(), b - a), (a + b) / 2};
   addBody(scene, "bar", Cylinder{radius, (b - a).norm()}, 2, Motion::fixed, place);
 }
 

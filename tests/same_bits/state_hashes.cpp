@@ -1,13 +1,15 @@
-// Prints "NAME SECONDS HASH" for each scene: the stateHash of its first seconds. Only the physics is linked, so that
-// one more compiler, or one more level of optimisation, costs a small build.
+// Prints "NAME SECONDS HASH" for each scene and each of the ascending times: the stateHash of the frames until then.
+// Only the physics is linked, so that one more compiler, or one more level of optimisation, costs a small build.
 //
-//     state_hashes SECONDS SCENE...
+//     state_hashes SECONDS... -- SCENE...
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "scene/load_scene.h"
@@ -17,20 +19,24 @@
 namespace cradle {
 namespace {
 
-std::string stateHash(const std::string& path, double seconds) {
-  Scene scene = loadScene(path).scene;
-  scene.duration = std::min(scene.duration, seconds);
-  Hash hash;
-  simulate(scene, {[&](const Frame& frame) { addFrame(frame, hash); }, [](const Event&) {}, [](const std::string&) {}});
-  return hash.hex();
-}
+constexpr double kRounding = 1e-9;  // s, of frame times
 
-void printHashes(int count, const char* const* arguments) {
-  const double seconds = std::stod(arguments[1]);
-  for (int i = 2; i < count; ++i) {
-    const std::string name = std::filesystem::path(arguments[i]).stem().string();
-    fmt::print("{} {} {}\n", name, seconds, stateHash(arguments[i], seconds));
-  }
+/// One run a scene: times are looked at on the way.
+void printHashes(const std::string& path, const std::vector<double>& times) {
+  Scene scene = loadScene(path).scene;
+  scene.duration = std::min(scene.duration, times.back());
+  const std::string name = std::filesystem::path(path).stem().string();
+  Hash hash;
+  std::size_t next = 0;
+  const auto printUntil = [&](double time) {
+    for (; next < times.size() && times[next] < time; ++next) fmt::print("{} {} {}\n", name, times[next], hash.hex());
+  };
+  simulate(scene, {[&](const Frame& frame) {
+                     printUntil(frame.time - kRounding);
+                     addFrame(frame, hash);
+                   },
+                   [](const Event&) {}, [](const std::string&) {}});
+  printUntil(std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
@@ -38,7 +44,11 @@ void printHashes(int count, const char* const* arguments) {
 
 int main(int count, char** arguments) {
   try {
-    cradle::printHashes(count, arguments);
+    char** const end = arguments + count;
+    char** const scenes = std::find(arguments + 1, end, std::string("--"));
+    std::vector<double> times;
+    for (char** time = arguments + 1; time != scenes; ++time) times.push_back(std::stod(*time));
+    for (char** scene = scenes + 1; scene < end; ++scene) cradle::printHashes(*scene, times);
   } catch (const cradle::Error& error) {
     fmt::print(stderr, "{}\n", error.what());
     return static_cast<int>(error.kind());

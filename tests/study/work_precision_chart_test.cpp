@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "study/gnuplot.h"
 
 namespace cradle {
 namespace {

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "math/principal_axes.h"
+#include "math/rotation.h"
 #include "study/peers/peer_shapes.h"
 
 namespace cradle {
@@ -47,7 +48,7 @@ struct GeomText {
     return fmt::format(R"(type="capsule" size="{} {}" {})", capsule.radius, capsule.length / 2, placed(kLongAxis));
   }
   std::string operator()(const Plane& plane) const {
-    return fmt::format(R"(type="plane" size="0 0 1" {})", placed(Quat::FromTwoVectors(Vec3::UnitZ(), plane.normal)));
+    return fmt::format(R"(type="plane" size="0 0 1" {})", placed(rotationBetween(Vec3::UnitZ(), plane.normal)));
   }
   std::string placed(const Quat& shapeFromGeom) const {
     return place(frameFromShape.translation, frameFromShape.rotation * shapeFromGeom);

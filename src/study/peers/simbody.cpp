@@ -18,6 +18,7 @@
 
 #include "core/error.h"
 #include "math/principal_axes.h"
+#include "math/rotation.h"
 #include "study/peers/joint_tree.h"
 
 namespace cradle {
@@ -38,7 +39,7 @@ enum class SimbodyIntegrator { merson, feldberg };
 
 /// A turn that takes z to a unit direction: Simbody's pins turn about z.
 Quat fromZ(const Vec3& direction) {
-  return Quat::FromTwoVectors(Vec3::UnitZ(), direction);
+  return rotationBetween(Vec3::UnitZ(), direction);
 }
 
 class SimbodyWorld : public PeerWorld {

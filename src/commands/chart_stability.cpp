@@ -1,0 +1,82 @@
+#include "commands/chart_stability.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "core/error.h"
+#include "core/interruption.h"
+#include "core/output_path.h"
+#include "core/part_file.h"
+#include "core/progress.h"
+#include "study/stability/stability_chart.h"
+
+namespace cradle {
+namespace {
+
+constexpr std::array<const char*, 3> kEndings = {".csv", ".svg", ".png"};
+
+bool isResultName(const std::string& name) {
+  for (const MapEntry& map : stabilityMaps())
+    for (const char* ending : kEndings)
+      if (name == map.name + ending || name == partPath(map.name + ending)) return true;
+  return false;
+}
+
+void writeTable(const StabilityMap& map, const std::string& path) {
+  PartFile file(path);
+  file.write(tableOf(map));
+  file.complete();
+}
+
+/// The time that all maps take, in percent of which progress is told.
+class MapClock {
+ public:
+  MapClock(const std::vector<MapEntry>& maps, bool quiet) : progress_("Mapping", "%", 100, quiet) {
+    for (const MapEntry& map : maps) total_ += map.seconds;
+  }
+
+  MapProgress of(const MapEntry& map) {
+    return [this, &map](double part) {
+      throwIfInterrupted();
+      progress_.update(std::min(99L, static_cast<long>(100 * (done_ + part * map.seconds) / total_)));
+    };
+  }
+  void finish(const MapEntry& map) {
+    done_ += map.seconds;
+    progress_.update(static_cast<long>(100 * done_ / total_ + 1e-6));
+    progress_.endLine();
+  }
+
+ private:
+  Progress progress_;
+  double total_ = 0, done_ = 0;  // s
+};
+
+}  // namespace
+
+void chartStability(const std::string& folder, const std::vector<std::string>& names, bool quiet) {
+  namespace fs = std::filesystem;
+  const std::vector<MapEntry> maps = stabilityMapsNamed(names);
+  requireOwnFolder(folder, "stability map", isResultName);
+  makeFolder(folder);
+  const bool drawsCharts = canDrawCharts();
+  if (!drawsCharts) fmt::print(stderr, "warning: gnuplot is missing: there will be tables, but no charts\n");
+  MapClock clock(maps, quiet);
+  for (const MapEntry& entry : maps) {
+    const StabilityMap map = entry.make(clock.of(entry));
+    CRADLE_CHECK(map.name == entry.name);
+    const std::string stem = (fs::path(folder) / map.name).string();
+    writeTable(map, stem + ".csv");
+    if (drawsCharts) drawChart(map, stem);
+    clock.finish(entry);
+    fmt::print("{}: {}\n", map.name, map.title);
+  }
+  if (!drawsCharts)
+    throw Error(ErrorKind::output, folder,
+                "has tables, but no charts: gnuplot cannot be started; install the package gnuplot-nox");
+}
+
+}  // namespace cradle

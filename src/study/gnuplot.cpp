@@ -1,0 +1,65 @@
+#include "study/gnuplot.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "core/error.h"
+#include "core/output_path.h"
+#include "image/child_process.h"
+
+namespace cradle {
+namespace {
+
+constexpr StartFailure kNoGnuplot{ErrorKind::output, "gnuplot-nox"};
+
+void finishFile(const std::string& path) {
+  if (std::rename(partPath(path).c_str(), path.c_str()) != 0)
+    throw Error(ErrorKind::output, path, std::string("cannot be written: ") + std::strerror(errno));
+}
+
+}  // namespace
+
+bool canDrawCharts() {
+  try {
+    return ChildProcess({"gnuplot", "--version"}, kNoGnuplot).finish() == 0;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+std::string quotedForGnuplot(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? "''" : c == '\n' ? " " : std::string(1, c);
+  return result + "'";
+}
+
+std::string drawingCommands(const std::string& drawing, const ChartFiles& files) {
+  return fmt::format(
+             "set terminal svg size 1600,900 font 'DejaVu Sans,15' fontscale 1.3 background 'white'\nmarkerScale = "
+             "0.7\nset output {}\n",
+             quotedForGnuplot(files.svg)) +
+         drawing + "reset\n" +
+         fmt::format("set terminal pngcairo size 1600,900 font 'DejaVu Sans,15'\nmarkerScale = 1\nset output {}\n",
+                     quotedForGnuplot(files.png)) +
+         drawing;
+}
+
+void drawWithGnuplot(const std::string& stem, const std::function<std::string(const ChartFiles&)>& commands) {
+  const ChartFiles files{stem + ".svg", stem + ".png"};
+  for (const std::string& path : {files.svg, files.png}) {
+    requireWritableFile(path);
+    requireWritableFile(partPath(path));
+  }
+  const std::string text = commands({partPath(files.svg), partPath(files.png)});
+  ChildProcess gnuplot({"gnuplot"}, kNoGnuplot);
+  const bool taken = gnuplot.write(text.data(), text.size());
+  if (gnuplot.finish() != 0 || !taken)
+    throw Error(ErrorKind::output, files.png, "gnuplot failed: " + gnuplot.standardError());
+  finishFile(files.svg);
+  finishFile(files.png);
+}
+
+}  // namespace cradle

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "study/gnuplot.h"
+#include "study/stability/stability_map.h"
+
+namespace cradle {
+
+/// The commands that make gnuplot draw the map into both files: a panel beside the other, axes and legend shared.
+std::string chartCommands(const StabilityMap& map, const ChartFiles& files);
+
+/// Draws stem.svg and stem.png. Throws Error(output) if gnuplot is missing or fails.
+void drawChart(const StabilityMap& map, const std::string& stem);
+
+}  // namespace cradle
