@@ -5,10 +5,10 @@
 #include "render/changed_area.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "render/instances.h"
-#include "render/mirror_image.h"
+#include "render/light_receiver.h"
+#include "render/mirrored_shadows.h"
 #include "render/moved_shadows.h"
 #include "render/same_items.h"
 #include "render/shadow_casters.h"
@@ -16,25 +16,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kWholeFrom = 0.6;     // of the picture: from there on, drawing all of it costs less than finding out
-constexpr double kBlurredTexels = 12;  // as in environment.glsl
-// Pixels a radius by which a mirrored ray widens a metre at least, as environment.glsl counts: twice the turn of the
-// normal from pixel to pixel and, but for pixels on the edge of a ball drawn exactly round, as much as the rays of
-// neighbouring pixels part, which is more than 1.
-constexpr double kWideningOfSphere = 1.8, kWideningOfSmoothMesh = 2.8, kWideningOfFacets = 1;
-constexpr double kSmooth = 0.05;                      // greatest error of a smooth ball's normals
-constexpr double kQuickShadow = 4;                    // texels around a shadow that is mirrored
-constexpr double kEdgePixels = 32, kRoundPixels = 2;  // what is round is met exactly by rays
-constexpr long kFewTiles = 12;
-constexpr double kHidingPixels =
-    4000;                             // twice the area of the least triangle that is asked whether it hides the ground
-constexpr double kTurnedAway = 1e-3;  // sine: so far from edge-on, rounding does not tell the sides apart wrongly
-constexpr double kContactTexels = 2;  // of the contact map, which is interpolated
-
-/// Size of a pixel at distance 1, in the middle of the picture.
-double pixelAngle(const Stage& stage) {
-  return 2 * std::tan(stage.camera.verticalFieldOfView / 2) / stage.height;
-}
+constexpr double kWholeFrom = 0.6;      // of the picture: from there on, drawing all of it costs less than finding out
+constexpr long kFewTiles = 12;          // what is seen in so many is drawn as a whole: its parts are no smaller
+constexpr double kHidingPixels = 2000;  // area of the least triangle that is asked whether it hides the ground
+constexpr double kContactTexels = 2;    // of the contact map, which is interpolated
 
 /// Collects the area; once it is nearly everything, it is everything.
 class ChangeFinder {
@@ -45,19 +30,12 @@ class ChangeFinder {
         now_(now),
         stage_(stage),
         meshBounds_(meshBounds),
-        area_{{stage.width, stage.height}, {}, false} {}
+        area_{{stage.width, stage.height}, {}, false},
+        mirrored_(stage) {}
 
   ChangedArea find();
 
  private:
-  /// Something that is drawn as before, or a part of it.
-  struct Receiver {
-    DrawnHull hull;
-    double wider;  // m, by which shading may take place beyond it
-    std::optional<std::array<Vec3, 3>> triangle;
-    std::optional<TileSpans> spans = std::nullopt;  // once they are asked for
-  };
-
   DrawnHull hull(const MeshItem& item) const {
     return hullOf(meshBounds_[static_cast<std::size_t>(item.mesh)].whole, item.worldFromMesh);
   }
@@ -67,14 +45,16 @@ class ChangeFinder {
   }
 
   TileSpans spansOf(const DrawnHull& hull);
-  const TileSpans& spansOf(Receiver& receiver);
+  const TileSpans& spansOf(LightReceiver& receiver);
   template <typename Item>
   void compareItems(const std::vector<Item>& before, const std::vector<Item>& now, bool throwsShadow);
-  void addReceivers(const MeshItem& item);
-  void addReceivers(const CylinderItem& item);
-  void addReceivers(const SphereItem& item) { addReceiver(hullOf(item), kRoundPixels); }
-  void addReceivers(const TubeItem& item) { addReceiver(hullOf(item), kEdgePixels); }
-  void addReceiver(const DrawnHull& hull, double edgePixels, const std::optional<std::array<Vec3, 3>>& triangle = {});
+  template <typename Item>
+  void addReceivers(const Item& item) {
+    appendReceivers(item, stage_, receivers_);
+  }
+  void addReceivers(const MeshItem& item) {
+    appendReceivers(item, meshBounds_[static_cast<std::size_t>(item.mesh)], stage_, receivers_);
+  }
   template <typename Item>
   void compareNearBalls(const Item& before, const Item& now, std::size_t first);
   void addAround(const NeighbourItem& item, std::size_t first);
@@ -85,18 +65,14 @@ class ChangeFinder {
   TileMask hiddenGround();
   void addShadowsOnGround(const MovedShadows& shadows);
   void addShadowsOnItems(const MovedShadows& shadows);
-  void addMirroredShadow(const DrawnHull& caster);
-  template <typename Item>
-  void addMirrors(const Item& item, const DrawnHull& ball, double widening);
-  void addImages(const SphereItem& item, const BoundingBall& patch);
 
   const DrawList &before_, &now_;
   const Stage& stage_;
   const std::vector<MeshBounds>& meshBounds_;
   ChangedArea area_;
   std::vector<DrawnHull> casters_;  // that moved, at both places
-  std::vector<Receiver> receivers_;
-  std::vector<BoundingBall> groundPatches_;  // around changed shadows on the ground, as mirrors show them
+  std::vector<LightReceiver> receivers_;
+  MirroredShadows mirrored_;
   bool isWhole_ = false;
 };
 
@@ -106,7 +82,7 @@ TileSpans ChangeFinder::spansOf(const DrawnHull& hull) {
   return outline ? area_.picture.spansOf(std::move(*outline)) : TileSpans{};
 }
 
-const TileSpans& ChangeFinder::spansOf(Receiver& receiver) {
+const TileSpans& ChangeFinder::spansOf(LightReceiver& receiver) {
   if (!receiver.spans) receiver.spans = spansOf(receiver.hull);
   return *receiver.spans;
 }
@@ -131,58 +107,6 @@ void ChangeFinder::compareItems(const std::vector<Item>& before, const std::vect
     }
   }
   if (area_.picture.coverage() > kWholeFrom) isWhole_ = true;
-}
-
-/// At the edge of a triangle seen edge-on, the middle of a pixel may lie far beyond it in depth: shading takes place
-/// there, up to `edgePixels` away.
-void ChangeFinder::addReceiver(const DrawnHull& hull, double edgePixels,
-                               const std::optional<std::array<Vec3, 3>>& triangle) {
-  const double distance = (hull.middle() - stage_.camera.position).norm();
-  receivers_.push_back({hull, edgePixels * distance * pixelAngle(stage_), triangle});
-}
-
-/// Sines of the angles in which triangles are seen: least and greatest; negative from inside.
-struct Facing {
-  double least, greatest;
-  bool isAway() const { return greatest < -kTurnedAway; }
-  /// How far beside their edges, in pixels, they are shaded.
-  double edgePixels() const { return least > 1 / kEdgePixels ? 1 / least : kEdgePixels; }
-};
-
-/// Of triangles within `box` whose unit normals differ by `spread` at most.
-Facing facing(const DrawnHull& box, const Vec3& normal, double spread, const Stage& stage) {
-  const Vec3 to = stage.camera.position - box.middle();
-  const double sine = normal.dot(to.normalized()), around = spread + 2 * box.reach() / to.norm();
-  return {sine - around, sine + around};
-}
-
-void ChangeFinder::addReceivers(const MeshItem& item) {
-  const MeshBounds& bounds = meshBounds_[static_cast<std::size_t>(item.mesh)];
-  const std::uint32_t begin = item.firstTriangle, end = begin + item.triangleCount;
-  for (const TriangleGroup& group : bounds.groups) {
-    if (group.first >= end || group.last < begin) continue;
-    const DrawnHull box = hullOf(group.box, item.worldFromMesh);
-    const Facing seen = facing(box, item.worldFromMesh.rotation * group.normal, group.normalSpread, stage_);
-    if (!(bounds.isClosed && seen.isAway())) addReceiver(box, seen.edgePixels());
-  }
-  for (const LongTriangle& one : bounds.longTriangles) {
-    if (one.index < begin || one.index >= end) continue;
-    std::array<Vec3, 3> triangle;
-    DrawnHull hull;
-    for (std::size_t i = 0; i < 3; ++i) hull.add(triangle[i] = item.worldFromMesh * one.corners[i]);
-    const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalized();
-    const double farthest = (stage_.camera.position - hull.middle()).norm() + hull.reach();
-    const double sine = normal.dot(stage_.camera.position - triangle[0]) / farthest;  // where it is seen least
-    const Facing seen{sine, sine};
-    if (!(bounds.isClosed && seen.isAway())) addReceiver(hull, seen.edgePixels(), triangle);
-  }
-}
-
-/// A rod piece by piece.
-void ChangeFinder::addReceivers(const CylinderItem& item) {
-  std::vector<DrawnHull> pieces;
-  appendPieces(hullOf(item), pieces);
-  for (const DrawnHull& piece : pieces) addReceiver(piece, kRoundPixels);
 }
 
 /// Balls whose images or shade an item shows where they are near. A ball that is not near multiplies light by 1: where
@@ -255,7 +179,7 @@ void ChangeFinder::addDarkened(const ContactItem& item) {
     for (const double v : {-square->halfV - texel, square->halfV + texel})
       darkened.add(foot + u * region.axisU + v * region.axisV);
   area_.picture.add(spansOf(darkened));
-  groundPatches_.push_back({darkened.middle(), darkened.reach()});
+  mirrored_.addDarkened(darkened);
 }
 
 /// Tiles in which a long triangle that did not move, such as that of a base, hides the ground.
@@ -264,12 +188,12 @@ TileMask ChangeFinder::hiddenGround() {
   const Ground& ground = *stage_.ground;
   const auto isAbove = [&](const Vec3& point) { return ground.normal.dot(point - ground.point) > 0; };
   if (!isAbove(stage_.camera.position)) return hidden;
-  for (const Receiver& receiver : receivers_) {
+  for (const LightReceiver& receiver : receivers_) {
     if (!receiver.triangle || !std::all_of(receiver.triangle->begin(), receiver.triangle->end(), isAbove)) continue;
     const Vec3 normal =
         ((*receiver.triangle)[1] - (*receiver.triangle)[0]).cross((*receiver.triangle)[2] - (*receiver.triangle)[0]);
     const double pixel = pixelAngle(stage_) * (receiver.hull.middle() - stage_.camera.position).norm();
-    if (normal.norm() < kHidingPixels * pixel * pixel) continue;
+    if (normal.norm() / 2 < kHidingPixels * pixel * pixel) continue;
     if (auto outline = outlineOf({receiver.triangle->begin(), receiver.triangle->end()}, stage_))
       hidden.add(hidden.spansInside(std::move(*outline)));
   }
@@ -289,7 +213,7 @@ void ChangeFinder::addShadowsOnGround(const MovedShadows& shadows) {
 
 /// On all that stands behind it in the light: on small things as a whole.
 void ChangeFinder::addShadowsOnItems(const MovedShadows& shadows) {
-  for (Receiver& receiver : receivers_) {
+  for (LightReceiver& receiver : receivers_) {
     const LitSurface surface = receiver.triangle ? shadows.surfaceOf(*receiver.triangle, receiver.wider)
                                                  : shadows.surfaceOf(receiver.hull, receiver.wider);
     if (!shadows.reach(surface)) continue;
@@ -305,53 +229,10 @@ void ChangeFinder::addShadowsOnItems(const MovedShadows& shadows) {
   }
 }
 
-/// Around a caster's shadow on the ground, as mirrors show it.
-void ChangeFinder::addMirroredShadow(const DrawnHull& caster) {
-  const Vec3 light = stage_.lighting.lamps[0].towards;
-  const Ground& ground = *stage_.ground;
-  const double steepness = ground.normal.dot(light);
-  if (steepness <= 0) return;
-  DrawnHull feet;
-  for (std::size_t i = 0; i < caster.count; ++i)
-    feet.add(caster.centers[i] - ground.normal.dot(caster.centers[i] - ground.point) / steepness * light);
-  feet.radius = (caster.radius + kQuickShadow * stage_.shadow.texel) / steepness;
-  groundPatches_.push_back({feet.middle(), feet.reach()});
-}
-
 /// The part of a hull that lies in an item's tiles; all of these if the hull is not in front of the camera.
 void ChangeFinder::addCommon(const TileSpans& item, const DrawnHull& hull) {
   auto outline = outlineOf(hull, stage_);
   area_.picture.add(outline ? commonTiles(item, area_.picture.spansOf(std::move(*outline))) : item);
-}
-
-/// Balls that mirror the changed ground. They show its shadows only as far as these are not blurred: where a ray is
-/// wider than kBlurredTexels (environment.glsl). It widens with the surface's roughness, and with how the normal turns
-/// from pixel to pixel.
-template <typename Item>
-void ChangeFinder::addMirrors(const Item& item, const DrawnHull& ball, double widening) {
-  if (!mirrorsShadows(item.surface)) return;
-  const Vec3 center = ball.middle();
-  const double radius = ball.reach();
-  const double pixel = pixelAngle(stage_) * std::max((center - stage_.camera.position).norm() - radius, 0.0);
-  const double spread = item.surface.roughness * item.surface.roughness + widening * pixel / radius;
-  const double reach = kBlurredTexels * stage_.shadow.texel / spread;
-  for (const BoundingBall& patch : groundPatches_) {
-    if ((patch.center - center).norm() > patch.radius + reach + radius) continue;
-    if constexpr (std::is_same_v<Item, SphereItem>)
-      addImages(item, patch);
-    else
-      return area_.picture.add(spansOf(ball));
-  }
-}
-
-void ChangeFinder::addImages(const SphereItem& item, const BoundingBall& patch) {
-  const TileSpans whole = spansOf(hullOf(item));
-  for (const BoundingBall& image : imagesOnBall(item, patch, now_, stage_)) {
-    DrawnHull hull;
-    hull.add(image.center);
-    hull.radius = image.radius;
-    addCommon(whole, hull);
-  }
 }
 
 ChangedArea ChangeFinder::find() {
@@ -373,14 +254,12 @@ void ChangeFinder::addShadows() {
   addShadowsOnItems(shadows);
   if (!stage_.ground) return;
   addShadowsOnGround(shadows);
-  for (const DrawnHull& caster : casters_) addMirroredShadow(caster);
-  for (const SphereItem& item : now_.spheres) addMirrors(item, hullOf(item), kWideningOfSphere);
+  for (const DrawnHull& caster : casters_) mirrored_.addCaster(caster);
+  for (const SphereItem& item : now_.spheres)
+    for (const DrawnHull& image : mirrored_.imagesOn(item, now_)) addCommon(spansOf(hullOf(item)), image);
   for (const MeshItem& item : now_.meshes)
-    if (item.isBall) {
-      const MeshBounds& bounds = meshBounds_[static_cast<std::size_t>(item.mesh)];
-      const SphereItem ball{item.worldFromMesh * Vec3(bounds.whole.center()), bounds.whole.sizes().maxCoeff() / 2};
-      addMirrors(item, hullOf(ball), bounds.normalError < kSmooth ? kWideningOfSmoothMesh : kWideningOfFacets);
-    }
+    if (mirrored_.areSeenOn(item, meshBounds_[static_cast<std::size_t>(item.mesh)]))
+      area_.picture.add(spansOf(hull(item)));
 }
 
 }  // namespace
