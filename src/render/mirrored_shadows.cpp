@@ -1,6 +1,6 @@
 // Balls show the shadows on the ground only as far as these are not blurred: where a mirrored ray is wider than
-// kBlurredTexels (environment.glsl). It widens with the surface's roughness, and with how the normal turns from pixel to
-// pixel.
+// kBlurredTexels (environment.glsl). It widens with the surface's roughness, and with how the normal turns from pixel
+// to pixel.
 
 #include "render/mirrored_shadows.h"
 
@@ -17,7 +17,7 @@ constexpr double kBlurredTexels = 12;  // as in environment.glsl
 // normal from pixel to pixel and, but for pixels on the edge of a ball drawn exactly round, as much as the rays of
 // neighbouring pixels part, which is more than 1.
 constexpr double kWideningOfSphere = 1.8, kWideningOfSmoothMesh = 2.8, kWideningOfFacets = 1;
-constexpr double kSmooth = 0.05;   // greatest error of a smooth ball's normals
+constexpr double kSmooth = 0.05;    // greatest error of a smooth ball's normals
 constexpr double kQuickShadow = 4;  // texels around a shadow that is mirrored
 
 }  // namespace
