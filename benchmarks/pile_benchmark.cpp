@@ -1,8 +1,8 @@
-// Bodies dropped into a tray, ours beside Bullet in one run: CPU time a step of 1/60 s, the deepest overlap (found from
-// the poses alone, each step), and when all lie still. Usage: benchmark_pile BODIES KIND SECONDS (pile_scene.h names
-// the kinds); benchmark_pile ours BODIES KIND SECONDS: without Bullet; benchmark_pile sizes: 5000 bodies beside 1000;
-// benchmark_pile threads BODIES: two threads beside two runs at once; without arguments spheres and boxes, sizes and
-// threads, one after the other.
+// Bodies dropped into a tray, ours beside Bullet and ODE in one run: CPU time a step of 1/60 s, the deepest overlap
+// (found from the poses alone, each step), and when all lie still. Usage: benchmark_pile BODIES KIND SECONDS
+// (pile_scene.h names the kinds); benchmark_pile ours BODIES KIND SECONDS: without others; benchmark_pile sizes: 5000
+// bodies beside 1000; benchmark_pile threads BODIES: two threads beside two runs at once; without arguments spheres and
+// boxes, sizes and threads, one after the other.
 
 #include <fmt/format.h>
 
@@ -12,6 +12,7 @@
 #include <string>
 #include <thread>
 
+#include "ode_pile.h"
 #include "pile_worlds.h"
 
 namespace cradle {
@@ -66,11 +67,14 @@ void compare(int bodies, const std::string& kind, int steps) {
   const PileScene scene = makePileScene(bodies, kind);
   OurPile ours(scene, 1);
   BulletPile bullet(scene);
+  OdePile ode(scene);
   const Figures our = measure(scene, ours, steps), theirs = measure(scene, bullet, steps);
+  const Figures odes = measure(scene, ode, steps);
   fmt::print("Bullet {} with {} precision\n", btGetVersion(), sizeof(btScalar) == 8 ? "double" : "single");
   fmt::print("{} {}, {} steps, one thread\n", bodies, kind, steps);
   print("cradle", our, theirs);
   print("Bullet", theirs, theirs);
+  print("ODE", odes, theirs);
 }
 
 /// Ours alone.

@@ -8,8 +8,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kFriction = 0.5;
-
 template <class Work>
 auto withShapeOf(const PileItem& item, const Work& work) {
   if (item.isBox()) return work(Box{2 * item.halfSize});
@@ -41,7 +39,7 @@ OurPile::OurPile(const PileScene& scene, int threads) {
     geometry_.colliders.push_back(collider);
   }
   geometry_.planes = scene.planes;
-  geometry_.laws = {{{0, kFriction, kFriction}}};
+  geometry_.laws = {{{0, kPileFriction, kPileFriction}}};
   state_.setZero(stateSize(std::ssize(bodies_)));
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     centerOfMass(state_, static_cast<Eigen::Index>(i)) = scene.items[i].position;
@@ -65,8 +63,20 @@ BulletPile::BulletPile(const PileScene& scene) {
     shapes_.push_back(bulletShapeOf(item));
     add(item.mass, shapes_.back().get(), item.position, item.turn);
   }
-  for (const PlaneCollider& plane : scene.planes) {
-    const Vec3& n = plane.normal;
+  const bool hasBoxes =
+      std::any_of(scene.items.begin(), scene.items.end(), [](const PileItem& item) { return item.isBox(); });
+  for (const PlaneCollider& plane : scene.planes) addWall(plane, hasBoxes);
+}
+
+// Bullet finds one point a step where a box touches a plane, and heaps of boxes are pressed through: they get walls of
+// boxes. For balls, planes are cheaper.
+void BulletPile::addWall(const PlaneCollider& plane, bool isBox) {
+  constexpr double kReach = 20, kHalfThickness = 1;  // m
+  const Vec3& n = plane.normal;
+  if (isBox) {
+    shapes_.push_back(std::make_unique<btBoxShape>(btVector3(kReach, kHalfThickness, kReach)));
+    add(0, shapes_.back().get(), plane.point - kHalfThickness * n, Quat::FromTwoVectors(Vec3::UnitY(), n));
+  } else {
     shapes_.push_back(std::make_unique<btStaticPlaneShape>(btVector3(n.x(), n.y(), n.z()), n.dot(plane.point)));
     add(0, shapes_.back().get(), Vec3::Zero(), Quat::Identity());
   }
@@ -82,7 +92,7 @@ void BulletPile::add(double mass, btCollisionShape* shape, const Vec3& at, const
   bodies_.push_back(std::make_unique<btRigidBody>(mass, nullptr, shape, inertia));
   const btTransform place(btQuaternion(turn.x(), turn.y(), turn.z(), turn.w()), btVector3(at.x(), at.y(), at.z()));
   bodies_.back()->setWorldTransform(place);
-  bodies_.back()->setFriction(std::sqrt(kFriction));
+  bodies_.back()->setFriction(std::sqrt(kPileFriction));
   world_.addRigidBody(bodies_.back().get());
 }
 

@@ -10,6 +10,7 @@
 namespace cradle {
 
 constexpr double kPileTimeStep = 1.0 / 60;  // s
+constexpr double kPileFriction = 0.5;
 
 /// A heap by the fast contact step.
 class OurPile {
@@ -41,6 +42,7 @@ class BulletPile {
 
  private:
   void add(double mass, btCollisionShape* shape, const Vec3& at, const Quat& turn);
+  void addWall(const PlaneCollider& plane, bool isBox);
 
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};

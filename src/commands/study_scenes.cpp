@@ -7,6 +7,8 @@
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -18,8 +20,10 @@
 #include "core/output_path.h"
 #include "core/progress.h"
 #include "study/gnuplot.h"
-#include "study/study_table.h"
+#include "study/growing_table.h"
+#include "study/unfinished_study.h"
 #include "study/work_precision_chart.h"
+#include "trajectory/state_hash.h"
 
 namespace cradle {
 namespace {
@@ -27,28 +31,41 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kTableName = "study.csv";
+constexpr const char* kReferencesName = "references.csv";
 constexpr const char* kChartPrefix = "work_precision_";
 constexpr std::array<double, 3> kWantedErrors = {1e-3, 1e-6, 1e-9};  // whose cost is printed
 
 /// A scene to study, named in the table as its file is.
 struct NamedScene {
-  NamedScene(std::string fileName, Scene loaded) : name(std::move(fileName)), scene(std::move(loaded)) {}
+  NamedScene(StudyOrigin of, Scene loaded) : origin(std::move(of)), scene(std::move(loaded)) {}
 
-  std::string name;
+  StudyOrigin origin;
   StudyScene scene;
 };
 
 bool isResultName(const std::string& name) {
-  return name == kTableName || name == partPath(kTableName) || name.starts_with(kChartPrefix);
+  for (const char* table : {kTableName, kReferencesName})
+    if (name == table || name == partPath(table)) return true;
+  return name.starts_with(kChartPrefix);
 }
 
-void loadScenes(const std::vector<std::string>& paths, std::deque<NamedScene>& scenes) {
+/// Of the running program's file and the methods: what rows follow from beside their scene.
+std::string hashOfProgram(const std::vector<StudyMethod>& methods) {
+  std::ifstream file("/proc/self/exe", std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  for (const StudyMethod& method : methods) text += method.name + "\n";
+  return textHash(text);
+}
+
+void loadScenes(const std::vector<std::string>& paths, const std::string& programHash, std::deque<NamedScene>& scenes) {
   std::set<std::string> names;
   for (const std::string& path : paths) {
     const std::string name = fs::path(path).stem().string();
     if (!names.insert(name).second)
       throw Error(ErrorKind::usage, path, fmt::format("a second scene file named \"{}\"; rename one", name));
-    scenes.emplace_back(name, loadSceneAndWarn(path, {}));
+    Scene scene = loadSceneAndWarn(path, {});
+    const std::string hash = textHash(programHash + scene.text);
+    scenes.emplace_back(StudyOrigin{name, hash}, std::move(scene));
   }
 }
 
@@ -63,7 +80,7 @@ std::string cheapest(const std::vector<StudyRow>& rows, const StudyMethod& metho
 
 void printFindings(const NamedScene& named, const Reference& reference, const std::vector<StudyMethod>& methods,
                    const std::vector<StudyRow>& rows) {
-  fmt::print("{}: reference {}; {}\n", named.name, reference.madeBy, reference.confirmation);
+  fmt::print("{}: reference {}; {}\n", named.origin.scene, reference.madeBy, reference.confirmation);
   if (!(reference.uncertainty <= kTrustedUncertainty))
     fmt::print("  THE REFERENCE IS UNCERTAIN: errors below {:.1e} mean nothing\n", reference.uncertainty);
   fmt::print("  {:<20}{:>12}   CPU s a simulated s for error <= {:.0e}{:>12.0e}{:>12.0e}\n", "", "least error",
@@ -93,40 +110,45 @@ void printPeers(const std::vector<StudyMethod>& methods) {
                  method.peer->configuration);
 }
 
-/// A study of some scenes under way.
+/// A study of some scenes under way, from where an interrupted one stopped.
 class Study {
  public:
-  Study(std::string folder, std::vector<StudyMethod> methods, std::size_t scenes, bool quiet)
+  Study(std::string folder, std::vector<StudyMethod> methods, const std::deque<NamedScene>& scenes, bool quiet)
       : folder_(std::move(folder)),
         methods_(std::move(methods)),
         drawsCharts_(canDrawCharts()),
-        table_((fs::path(folder_) / kTableName).string()),
-        progress_("Studying", "methods", static_cast<long>(scenes * (methods_.size() + 1)), quiet) {
+        earlier_(readUnfinishedStudy(pathOf(kTableName), pathOf(kReferencesName), originsOf(scenes))),
+        table_(pathOf(kTableName), kStudyColumns, earlier_.rowBytes),
+        references_(pathOf(kReferencesName), kReferenceColumns, earlier_.referenceBytes),
+        progress_("Studying", "methods", std::ssize(scenes) * turnsOfScene(), quiet) {
     if (peers().empty())
       fmt::print(stderr, "note: built without other engines (CMake: CRADLE_PEERS); only our own methods run\n");
     if (!drawsCharts_) fmt::print(stderr, "warning: gnuplot is missing: there will be a table, but no charts\n");
+    if (!earlier_.rows.empty())
+      fmt::print(stderr, "note: going on after the {} rows of {}; remove it to start over\n", earlier_.rows.size(),
+                 partPath(pathOf(kTableName)));
   }
 
   /// A scene without a reference, or a chart that cannot be drawn, is a fault to tell in the end: the rest is done.
   void add(NamedScene& named) {
+    const std::string& name = named.origin.scene;
     WorkPrecisionChart chart{named.scene.name(), {}, {}, named.scene.duration()};
-    try {
-      chart.reference = findReference(named.scene, [this] { progress_.update(turns_); });
-    } catch (const Error& error) {
-      if (error.kind() != ErrorKind::limit) throw;
-      note(error);
-      turns_ += static_cast<long>(methods_.size()) + 1;
+    if (earlier_.hasFinished(name)) {
+      chart.reference = earlier_.referenceOf(name)->reference;
+      chart.rows = earlier_.rowsOf(name);
+      turns_ += turnsOfScene();
+      progress_.skipTo(turns_);
+    } else if (!study(named, chart)) {
       return;
     }
-    progress_.update(++turns_);
-    for (const StudyMethod& method : methods_) sweepInto(chart, named, method);
     progress_.endLine();
     printFindings(named, chart.reference, methods_, chart.rows);
-    draw(chart, named.name);
+    draw(chart, name);
   }
 
   /// Throws the first fault.
   void finish() {
+    references_.complete();
     table_.complete();
     if (fault_) throw Error(*fault_);
     if (!drawsCharts_)
@@ -135,13 +157,41 @@ class Study {
   }
 
  private:
-  void sweepInto(WorkPrecisionChart& chart, NamedScene& named, const StudyMethod& method) {
-    sweep(named.scene, named.name, method, chart.reference, [&](const StudyRow& row) {
-      table_.append(row);
-      chart.rows.push_back(row);
-      progress_.update(turns_);
-    });
+  static std::vector<StudyOrigin> originsOf(const std::deque<NamedScene>& scenes) {
+    std::vector<StudyOrigin> origins;
+    for (const NamedScene& named : scenes) origins.push_back(named.origin);
+    return origins;
+  }
+
+  std::string pathOf(const char* name) const { return (fs::path(folder_) / name).string(); }
+
+  /// The methods and the reference.
+  long turnsOfScene() const { return std::ssize(methods_) + 1; }
+
+  /// False, and a fault noted, if there is no reference.
+  bool study(NamedScene& named, WorkPrecisionChart& chart) {
+    try {
+      chart.reference = findReference(named.scene, [this] { progress_.update(turns_); });
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::limit) throw;
+      note(error);
+      turns_ += turnsOfScene();
+      return false;
+    }
     progress_.update(++turns_);
+    const std::string& name = named.origin.scene;
+    if (earlier_.referenceOf(name) == nullptr)
+      references_.append(tableLine(ReferenceLine{named.origin, chart.reference}));
+    const RowStream rows{earlier_.rowsOf(name), [&](const StudyRow& row) {
+                           if (!row.isEarlier) table_.append(tableLine(row));
+                           chart.rows.push_back(row);
+                           progress_.update(turns_);
+                         }};
+    for (const StudyMethod& method : methods_) {
+      sweep(named.scene, name, method, chart.reference, rows);
+      progress_.update(++turns_);
+    }
+    return true;
   }
 
   void draw(const WorkPrecisionChart& chart, const std::string& name) {
@@ -162,7 +212,8 @@ class Study {
   std::string folder_;
   std::vector<StudyMethod> methods_;
   bool drawsCharts_;
-  StudyTable table_;
+  UnfinishedStudy earlier_;
+  GrowingTable table_, references_;
   Progress progress_;
   long turns_ = 0;  // methods and references that are done
   std::optional<Error> fault_;
@@ -175,15 +226,17 @@ void studyScenes(const std::vector<std::string>& paths, const std::string& folde
   const std::vector<StudyMethod> methods = studyMethodsNamed(methodNames);
   requireOwnFolder(folder, "result of a study", isResultName);
   std::deque<NamedScene> scenes;
-  loadScenes(paths, scenes);
+  loadScenes(paths, hashOfProgram(methods), scenes);
   makeFolder(folder);
+  Study study(folder, methods, scenes, quiet);
   printPeers(methods);
-  Study study(folder, methods, scenes.size(), quiet);
   try {
     for (NamedScene& named : scenes) study.add(named);
   } catch (const Error& error) {
     const std::string part = partPath((fs::path(folder) / kTableName).string());
-    throw Error(error.kind(), "", fmt::format("{}; the rows up to then are in {}", error.what(), part));
+    throw Error(
+        error.kind(), "",
+        fmt::format("{}; the rows up to then are in {}, and the same command goes on from there", error.what(), part));
   }
   study.finish();
 }

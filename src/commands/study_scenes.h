@@ -7,7 +7,7 @@ namespace cradle {
 
 /// `cradle study SCENE... -o FOLDER`: study.csv, and a chart of each scene. `methods` are names, all of them if empty.
 /// Prints what was found to stdout. Without gnuplot the table is written, and Error(output) thrown in the end;
-/// interrupted, study.csv.part keeps what is done.
+/// interrupted, study.csv.part keeps what is done, and the same command goes on from there.
 void studyScenes(const std::vector<std::string>& scenes, const std::string& folder,
                  const std::vector<std::string>& methods, bool quiet);
 

@@ -1,13 +1,37 @@
+// RFC 4180, section 2, rules 5 to 7; lines end with a line feed alone.
+
 #include "core/csv_field.h"
 
 namespace cradle {
 
-// RFC 4180, section 2, rules 5 to 7.
 std::string csvField(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string field = "\"";
   for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
   return field + "\"";
+}
+
+CsvLines csvLines(const std::string& table) {
+  CsvLines found;
+  std::vector<std::string> line(1);
+  bool isQuoted = false;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const char c = table[i];
+    if (c == '"' && isQuoted && i + 1 < table.size() && table[i + 1] == '"') {
+      line.back() += table[++i];
+    } else if (c == '"') {
+      isQuoted = !isQuoted;
+    } else if (isQuoted || (c != ',' && c != '\n')) {
+      line.back() += c;
+    } else if (c == ',') {
+      line.emplace_back();
+    } else {
+      found.lines.push_back(std::move(line));
+      found.bytes = i + 1;
+      line.assign(1, "");
+    }
+  }
+  return found;
 }
 
 }  // namespace cradle

@@ -40,8 +40,14 @@ void Progress::endLine() {
 std::string Progress::line(long done) const {
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   if (done >= total_) return fmt::format("{}: {} {} in {}", task_, total_, unit_, minutesAndSeconds(elapsed));
-  const double left = done > 0 ? elapsed * static_cast<double>(total_ - done) / static_cast<double>(done) : 0;
-  return fmt::format("{}: {}/{} {}, {} left", task_, done, total_, unit_, done > 0 ? minutesAndSeconds(left) : "?");
+  const long own = done - skipped_;
+  const double left = own > 0 ? elapsed * static_cast<double>(total_ - done) / static_cast<double>(own) : 0;
+  return fmt::format("{}: {}/{} {}, {} left", task_, done, total_, unit_, own > 0 ? minutesAndSeconds(left) : "?");
+}
+
+void Progress::skipTo(long done) {
+  skipped_ = done;
+  start_ = Clock::now();
 }
 
 void Progress::update(long done) {

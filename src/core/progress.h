@@ -18,6 +18,9 @@ class Progress {
   /// `done` of `total` are finished. Cheap enough to call for every frame.
   void update(long done);
 
+  /// `done` of `total` were finished already, by an earlier run: they say nothing about the time left.
+  void skipTo(long done);
+
   /// Ends a line that is being redrawn, so that something else can be printed.
   void endLine();
 
@@ -26,7 +29,7 @@ class Progress {
   std::string line(long done) const;
 
   std::string task_, unit_;
-  long total_;
+  long total_, skipped_ = 0;
   bool quiet_, animated_, drawn_ = false;
   Clock::time_point start_, lastDrawn_;
 };

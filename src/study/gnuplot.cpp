@@ -36,14 +36,12 @@ std::string quotedForGnuplot(const std::string& text) {
   return result + "'";
 }
 
-std::string drawingCommands(const std::string& drawing, const ChartFiles& files) {
-  return fmt::format(
-             "set terminal svg size 1600,900 font 'DejaVu Sans,15' fontscale 1.3 background 'white'\nmarkerScale = "
-             "0.7\nset output {}\n",
-             quotedForGnuplot(files.svg)) +
+std::string drawingCommands(const std::string& drawing, const ChartFiles& files, int height) {
+  const std::string size = fmt::format("size 1600,{} font 'DejaVu Sans,15'", height);
+  return fmt::format("set terminal svg {} fontscale 1.3 background 'white'\nmarkerScale = 0.7\nset output {}\n", size,
+                     quotedForGnuplot(files.svg)) +
          drawing + "reset\n" +
-         fmt::format("set terminal pngcairo size 1600,900 font 'DejaVu Sans,15'\nmarkerScale = 1\nset output {}\n",
-                     quotedForGnuplot(files.png)) +
+         fmt::format("set terminal pngcairo {}\nmarkerScale = 1\nset output {}\n", size, quotedForGnuplot(files.png)) +
          drawing;
 }
 

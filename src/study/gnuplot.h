@@ -22,9 +22,9 @@ struct ChartFiles {
   std::string svg, png;
 };
 
-/// Commands for gnuplot that make the same `drawing` into both files, 1600 x 900; it may use markerScale, by which the
-/// sizes of markers look the same in both.
-std::string drawingCommands(const std::string& drawing, const ChartFiles& files);
+/// Commands for gnuplot that make the same `drawing` into both files, 1600 pixels wide; it may use markerScale, by
+/// which the sizes of markers look the same in both.
+std::string drawingCommands(const std::string& drawing, const ChartFiles& files, int height = 900);
 
 /// Draws stem.svg and stem.png by the commands that it is given for such files. Throws Error(output) if gnuplot is
 /// missing or fails.

@@ -18,6 +18,7 @@ struct StudyMethod {
   double stabilityLimit = 0;         // of step x omega; 0: unstable at any step, or the step is not ours to choose
   const Peer* peer = nullptr;        // set: the way of another engine
 
+  bool isPlan() const { return !method && !peer; }
   std::string engine() const { return peer ? peer->engine : "cradle"; }
 };
 

@@ -64,9 +64,11 @@ StudyRun StudyScene::run(const StudyMethod& method, double setting, double cpuLi
   double sum = 0;
   for (int i = 0; i < kMostRepeats && result.status == RunStatus::ok && result.cost.cpuSeconds < kShortRun; ++i) {
     if (i >= kLeastRepeats && sum > kRepeatFor) break;
-    const RunCost cost = runOnce(method, setting, 1, cpuLimit).cost;
-    sum += cost.cpuSeconds;
-    result.cost = {i == 0 ? cost.cpuSeconds : std::min(result.cost.cpuSeconds, cost.cpuSeconds), cost.evaluations};
+    const StudyRun again = runOnce(method, setting, 1, cpuLimit);
+    if (again.status != RunStatus::ok) break;  // two frames show less kinetic energy, by which what appears is measured
+    sum += again.cost.cpuSeconds;
+    result.cost = {i == 0 ? again.cost.cpuSeconds : std::min(result.cost.cpuSeconds, again.cost.cpuSeconds),
+                   again.cost.evaluations};
   }
   result.setting = setting;
   return result;

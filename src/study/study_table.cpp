@@ -2,23 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
+#include <cstdlib>
 
 #include "core/csv_field.h"
-#include "core/error.h"
-#include "core/output_path.h"
 
 namespace cradle {
 namespace {
 
-constexpr const char* kColumns =
-    "scene,engine,method,setting,error,cpu_seconds_per_simulated_second,evaluations,energy_drift,constraint_drift,"
-    "penetration,status\n";
 constexpr std::array<const char*, 3> kStatusNames = {"ok", "unstable", "failed"};  // in the order of RunStatus
+constexpr std::size_t kFields = 11, kFirstNumber = 3;
 
 }  // namespace
+
+const char* const kStudyColumns =
+    "scene,engine,method,setting,error,cpu_seconds_per_simulated_second,evaluations,energy_drift,constraint_drift,"
+    "penetration,status\n";
 
 std::string tableLine(const StudyRow& row) {
   return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", csvField(row.scene), row.engine, row.method, row.setting,
@@ -26,33 +26,24 @@ std::string tableLine(const StudyRow& row) {
                      row.penetration, kStatusNames.at(static_cast<std::size_t>(row.status)));
 }
 
-StudyTable::StudyTable(const std::string& path) : path_(path) {
-  requireWritableFile(path_);
-  requireWritableFile(partPath(path_));
-  file_ = std::fopen(partPath(path_).c_str(), "wb");
-  if (file_ == nullptr) fail();
-  write(kColumns);
-}
-
-StudyTable::~StudyTable() {
-  if (file_ != nullptr) std::fclose(file_);
-}
-
-void StudyTable::append(const StudyRow& row) {
-  write(tableLine(row));
-}
-
-void StudyTable::complete() {
-  std::FILE* file = std::exchange(file_, nullptr);
-  if (std::fclose(file) != 0 || std::rename(partPath(path_).c_str(), path_.c_str()) != 0) fail();
-}
-
-void StudyTable::write(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size() || std::fflush(file_) != 0) fail();
-}
-
-void StudyTable::fail() const {
-  throw Error(ErrorKind::output, partPath(path_), std::string("cannot be written: ") + std::strerror(errno));
+std::optional<StudyRow> rowOf(const std::vector<std::string>& fields) {
+  if (fields.size() != kFields) return std::nullopt;
+  const auto* const status = std::find(kStatusNames.begin(), kStatusNames.end(), fields.back());
+  if (status == kStatusNames.end()) return std::nullopt;
+  StudyRow row;
+  row.scene = fields[0];
+  row.engine = fields[1];
+  row.method = fields[2];
+  row.status = static_cast<RunStatus>(status - kStatusNames.begin());
+  std::size_t field = kFirstNumber;
+  for (double* number : {&row.setting, &row.error, &row.cpuSecondsPerSimulatedSecond, &row.evaluations,
+                         &row.energyDrift, &row.constraintDrift, &row.penetration}) {
+    char* end = nullptr;
+    *number = std::strtod(fields[field].c_str(), &end);
+    if (fields[field].empty() || *end != '\0') return std::nullopt;
+    ++field;
+  }
+  return row;
 }
 
 }  // namespace cradle

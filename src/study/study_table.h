@@ -1,33 +1,20 @@
 #pragma once
 
-#include <cstdio>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "study/work_precision.h"
 
 namespace cradle {
 
+/// The first line of study.csv, with the newline.
+extern const char* const kStudyColumns;
+
 /// A row as study.csv has it, with the newline; numbers read back to the same bits, `nan` where there is none.
 std::string tableLine(const StudyRow& row);
 
-/// study.csv while it grows: FILE.part holds all rows so far at any moment, and becomes FILE when complete.
-class StudyTable {
- public:
-  /// Throws Error(output) if it cannot be written; an earlier FILE.part is replaced.
-  explicit StudyTable(const std::string& path);
-  ~StudyTable();
-  StudyTable(const StudyTable&) = delete;
-  StudyTable& operator=(const StudyTable&) = delete;
-
-  void append(const StudyRow& row);
-  void complete();
-
- private:
-  void write(const std::string& text);
-  [[noreturn]] void fail() const;
-
-  std::string path_;
-  std::FILE* file_ = nullptr;
-};
+/// The row of such a line's fields; nothing if they are not one. It has no message.
+std::optional<StudyRow> rowOf(const std::vector<std::string>& fields);
 
 }  // namespace cradle

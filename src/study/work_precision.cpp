@@ -1,5 +1,6 @@
 #include "study/work_precision.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "study/ladder.h"
@@ -8,13 +9,38 @@
 namespace cradle {
 namespace {
 
-constexpr double kCpuLimit = 6;  // s, of one run: with its coarser ones, 12 s a method
+constexpr double kCpuLimit = 3;  // s, of one run: with its coarser ones, 6 s a method
 constexpr double kExactEnough = 1e-12;
+
+StudyRow runRow(StudyScene& scene, const StudyMethod& method, double setting, const Reference& reference) {
+  const StudyRun run = scene.run(method, setting, kCpuLimit);
+  StudyRow row;
+  row.engine = method.engine();
+  row.method = method.name;
+  row.setting = run.setting;
+  row.status = run.status;
+  row.message = run.message;
+  if (run.status != RunStatus::ok) return row;
+  row.error = motionError(run.end, reference.end);
+  row.cpuSecondsPerSimulatedSecond = run.cost.cpuSeconds / scene.duration();
+  row.evaluations = static_cast<double>(run.cost.evaluations);
+  row.energyDrift = run.energyDrift;
+  row.constraintDrift = run.constraintDrift;
+  row.penetration = run.penetration;
+  return row;
+}
+
+const StudyRow* findRow(const std::vector<StudyRow>& rows, const StudyMethod& method, double setting) {
+  const auto found = std::find_if(rows.begin(), rows.end(), [&](const StudyRow& row) {
+    return row.method == method.name && row.setting == setting;
+  });
+  return found == rows.end() ? nullptr : &*found;
+}
 
 }  // namespace
 
 void sweep(StudyScene& scene, const std::string& sceneName, const StudyMethod& method, const Reference& reference,
-           const std::function<void(const StudyRow&)>& take) {
+           const RowStream& rows) {
   if (!scene.missingIn(method).empty()) return;
   const double floor =
       std::isfinite(reference.uncertainty) ? std::max(reference.uncertainty, kExactEnough) : kExactEnough;
@@ -22,26 +48,15 @@ void sweep(StudyScene& scene, const std::string& sceneName, const StudyMethod& m
   GainWatch watch;
   bool goesOn = true;
   while (goesOn) {
-    const StudyRun run = scene.run(method, ladder.setting(), kCpuLimit);
-    StudyRow row;
+    const StudyRow* earlier = findRow(rows.earlier, method, ladder.setting());
+    StudyRow row = earlier != nullptr ? *earlier : runRow(scene, method, ladder.setting(), reference);
     row.scene = sceneName;
-    row.engine = method.engine();
-    row.method = method.name;
-    row.setting = run.setting;
-    row.status = run.status;
-    row.message = run.message;
-    if (run.status == RunStatus::ok) {
-      row.error = motionError(run.end, reference.end);
-      row.cpuSecondsPerSimulatedSecond = run.cost.cpuSeconds / scene.duration();
-      row.evaluations = static_cast<double>(run.cost.evaluations);
-      row.energyDrift = run.energyDrift;
-      row.constraintDrift = run.constraintDrift;
-      row.penetration = run.penetration;
-    }
-    take(row);
-    if (run.status == RunStatus::failed) return;
-    goesOn = (run.status == RunStatus::unstable || watch.goesOn(row.error, floor)) &&
-             ladder.descend(run.cost.cpuSeconds, kCpuLimit);
+    rows.take(row);
+    if (row.status == RunStatus::failed) return;
+    const bool isUnstable = row.status == RunStatus::unstable;
+    const double cpuSeconds = isUnstable ? 0 : row.cpuSecondsPerSimulatedSecond * scene.duration();
+    const bool gains = isUnstable || watch.goesOn(row.error, floor) || method.isPlan();
+    goesOn = gains && ladder.descend(cpuSeconds, kCpuLimit);
   }
 }
 

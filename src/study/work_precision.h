@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -19,13 +20,22 @@ struct StudyRow {
   double constraintDrift = std::numeric_limits<double>::quiet_NaN();  // m
   double penetration = std::numeric_limits<double>::quiet_NaN();      // m
   RunStatus status = RunStatus::failed;
-  std::string message;  // why it is not ok
+  std::string message;     // why it is not ok
+  bool isEarlier = false;  // read from the table of an interrupted study
+};
+
+/// The rows of a scene: those that an interrupted study has, which are handed on instead of being run again, and who
+/// takes all of them.
+struct RowStream {
+  std::vector<StudyRow> earlier;
+  std::function<void(const StudyRow&)> take;
 };
 
 /// Runs a scene by a method at finer and finer settings until the error is below the reference's uncertainty, does not
-/// become less, or the work too much; hands each row on. A method that fails is not tried again. A scene with something
-/// that the method's engine misses has no rows.
+/// become less, or the work too much; hands each row on. The plan goes through all accuracies: it may choose another
+/// way at each, and a finer one may cost less. A method that fails is not tried again. A scene with something that the
+/// method's engine misses has no rows.
 void sweep(StudyScene& scene, const std::string& sceneName, const StudyMethod& method, const Reference& reference,
-           const std::function<void(const StudyRow&)>& take);
+           const RowStream& rows);
 
 }  // namespace cradle

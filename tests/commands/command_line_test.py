@@ -263,23 +263,34 @@ class Studies(InTemporaryFolder):
     def test_a_study_has_a_row_a_run_and_charts(self):
         result = cradle("study", self.spring_scene(duration=0.5), "-o", self.path("s"), "--methods", "rk4")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual(sorted(os.listdir(self.path("s"))), ["study.csv", "work_precision_hung.png", "work_precision_hung.svg"])
+        self.assertEqual(sorted(os.listdir(self.path("s"))), ["references.csv", "study.csv", "work_precision_hung.png", "work_precision_hung.svg"])
+        self.assertRegex(content(self.path("s/references.csv")).decode(), r"\nhung,\d")
         rows = self.rows("s/study.csv")
         self.assertEqual({(row["scene"], row["engine"], row["method"]) for row in rows}, {("hung", "cradle", "rk4")})
         steps, errors = [float(row["setting"]) for row in rows], [float(row["error"]) for row in rows]
         self.assertTrue(all(abs(b - a / 2) < 1e-15 for a, b in zip(steps, steps[1:])), steps)
         self.assertLess(errors[-1], 1e-9)
-        self.assertEqual(png_size(self.path("s/work_precision_hung.png")), (1600, 900))
+        self.assertEqual(png_size(self.path("s/work_precision_hung.png")), (1600, 1320))
         self.assertIn("hung: reference ", result.stdout)
         again = cradle("study", self.path("hung.json"), "-o", self.path("s"), "--methods", "rk4")
         self.assertEqual(again.returncode, 0, again.stderr)
+        lines = content(self.path("s/study.csv")).decode().splitlines(keepends=True)
+        os.rename(self.path("s/references.csv"), self.path("s/references.csv.part"))
+        os.remove(self.path("s/study.csv"))
+        with open(self.path("s/study.csv.part"), "w") as part:  # as if it had been ended in the third row
+            part.write("".join(lines[:3]) + lines[3][:9])
+        gone_on = cradle("study", self.path("hung.json"), "-o", self.path("s"), "--methods", "rk4")
+        self.assertIn("going on after the 2 rows", gone_on.stderr)
+        after = content(self.path("s/study.csv")).decode().splitlines(keepends=True)
+        self.assertEqual(after[:3], lines[:3])
+        self.assertEqual([line.split(",")[3:5] for line in after], [line.split(",")[3:5] for line in lines])
 
     def test_without_gnuplot_there_is_a_table_and_exit_5(self):
         os.mkdir(self.path("bin"))
         result = cradle("study", self.spring_scene(), "-o", self.path("s"), "--methods", "rk4", env={**os.environ, "PATH": self.path("bin")})
         self.assertEqual(result.returncode, 5, result.stderr)
         self.assertIn("gnuplot-nox", result.stderr)
-        self.assertEqual(os.listdir(self.path("s")), ["study.csv"])
+        self.assertEqual(sorted(os.listdir(self.path("s"))), ["references.csv", "study.csv"])
         self.assertGreater(len(self.rows("s/study.csv")), 3)
 
     def test_faults_are_told_before_anything_is_made(self):
@@ -302,8 +313,9 @@ class Studies(InTemporaryFolder):
         _, stderr = process.communicate(timeout=20)
         self.assertEqual(process.returncode, 130, stderr)
         self.assertIn("study.csv.part", stderr)
-        self.assertEqual(os.listdir(self.path("s")), ["study.csv.part"])
+        self.assertEqual(sorted(os.listdir(self.path("s"))), ["references.csv.part", "study.csv.part"])
         self.assertGreater(len(self.rows("s/study.csv.part")), 2)
+        self.refuses(5, ["study.csv.part", "another study"], "study", path, "-o", self.path("s"), "--methods", "rk4")
 
 
 class Stability(InTemporaryFolder):

@@ -5,13 +5,15 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
+
+#include "core/csv_field.h"
+#include "core/error.h"
+#include "study/growing_table.h"
+#include "study/unfinished_study.h"
 
 namespace cradle {
 namespace {
-
-constexpr const char* kHeader =
-    "scene,engine,method,setting,error,cpu_seconds_per_simulated_second,evaluations,energy_drift,constraint_drift,"
-    "penetration,status\n";
 
 StudyRow goodRow() {
   StudyRow row;
@@ -34,6 +36,9 @@ std::string content(const std::string& path) {
 }
 
 TEST(StudyTable, ARowHasTheContractedColumns) {
+  EXPECT_STREQ(kStudyColumns,
+               "scene,engine,method,setting,error,cpu_seconds_per_simulated_second,evaluations,energy_drift,"
+               "constraint_drift,penetration,status\n");
   EXPECT_EQ(tableLine(goodRow()), "pendulum,cradle,rk4,0.001,2.5e-11,0.0625,4000,1e-09,0,0,ok\n");
 }
 
@@ -46,21 +51,75 @@ TEST(StudyTable, ARunWithoutAnEndHasNoNumbers) {
   EXPECT_EQ(tableLine(row), "\"two, joined\",cradle,explicitEuler,0.5,nan,nan,nan,nan,nan,nan,unstable\n");
 }
 
-TEST(StudyTable, RowsAreInThePartAtOnceAndInTheFileInTheEnd) {
-  const std::string path = ::testing::TempDir() + "study_table_test.csv", part = path + ".part";
+TEST(StudyTable, ALineReadsBackToTheSameRow) {
+  StudyRow row = goodRow();
+  row.scene = "a \"b\", c";
+  row.error = 1.0 / 3;
+  row.energyDrift = std::numeric_limits<double>::quiet_NaN();
+  const CsvLines lines = csvLines(tableLine(row));
+  const std::optional<StudyRow> read = rowOf(lines.lines.at(0));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->scene, row.scene);
+  EXPECT_EQ(tableLine(*read), tableLine(row));
+  EXPECT_FALSE(rowOf({"a", "b"}));
+}
+
+TEST(GrowingTable, LinesAreInThePartAtOnceAndInTheFileInTheEnd) {
+  const std::string path = ::testing::TempDir() + "growing_table_test.csv", part = path + ".part";
   std::filesystem::remove(path);
   {
-    StudyTable table(path);
-    table.append(goodRow());
-    EXPECT_EQ(content(part), kHeader + tableLine(goodRow()));
+    GrowingTable table(path, "x,y\n");
+    table.append("1,2\n");
+    EXPECT_EQ(content(part), "x,y\n1,2\n");
     EXPECT_FALSE(std::filesystem::exists(path));
   }
-  EXPECT_EQ(content(part), kHeader + tableLine(goodRow()));
-  StudyTable table(path);
+  GrowingTable table(path, "x,y\n", 4);
+  table.append("3,4\n");
   table.complete();
-  EXPECT_EQ(content(path), kHeader);
+  EXPECT_EQ(content(path), "x,y\n3,4\n");
   EXPECT_FALSE(std::filesystem::exists(part));
   std::filesystem::remove(path);
+}
+
+/// What a study of the scenes `begun` leaves when it is stopped in the middle of a line.
+std::string interruptedStudy(const std::vector<StudyOrigin>& begun) {
+  const std::string folder = ::testing::TempDir();
+  GrowingTable rows(folder + "unfinished.csv", kStudyColumns);
+  GrowingTable references(folder + "unfinished_references.csv", kReferenceColumns);
+  for (const StudyOrigin& origin : begun) {
+    references.append(tableLine(ReferenceLine{origin, {{}, 2e-13, "DOP853, fine", "RK4 agrees"}}));
+    StudyRow row = goodRow();
+    row.scene = origin.scene;
+    rows.append(tableLine(row));
+  }
+  rows.append("pendulum,cradle,rk4,0.00");
+  return folder;
+}
+
+UnfinishedStudy readIn(const std::string& folder, const std::vector<StudyOrigin>& origins) {
+  return readUnfinishedStudy(folder + "unfinished.csv", folder + "unfinished_references.csv", origins);
+}
+
+TEST(UnfinishedStudy, HasTheRowsThatAreWhole) {
+  const std::vector<StudyOrigin> scenes = {{"a", "1"}, {"b", "2"}, {"c", "3"}};
+  const UnfinishedStudy study = readIn(interruptedStudy({scenes[0], scenes[1]}), scenes);
+  ASSERT_EQ(study.rows.size(), 2U);
+  EXPECT_TRUE(study.rows[0].isEarlier);
+  EXPECT_EQ(study.rowsOf("b").size(), 1U);
+  EXPECT_TRUE(study.hasFinished("a"));
+  EXPECT_FALSE(study.hasFinished("b"));
+  EXPECT_FALSE(study.hasFinished("c"));
+  EXPECT_EQ(study.referenceOf("a")->reference.uncertainty, 2e-13);
+  EXPECT_EQ(study.referenceOf("a")->reference.madeBy, "DOP853, fine");
+  EXPECT_EQ(study.referenceOf("c"), nullptr);
+}
+
+TEST(UnfinishedStudy, OfOtherScenesOrAnotherProgramIsRefused) {
+  const std::string folder = interruptedStudy({{"a", "1"}, {"b", "2"}});
+  for (const std::vector<StudyOrigin>& others : std::vector<std::vector<StudyOrigin>>{
+           {{"a", "1"}}, {{"b", "2"}, {"a", "1"}}, {{"a", "1"}, {"b", "another"}}, {{"c", "1"}, {"b", "2"}}})
+    EXPECT_THROW(readIn(folder, others), Error);
+  EXPECT_NO_THROW(readIn(folder, {{"before", "0"}, {"a", "1"}, {"b", "2"}}));
 }
 
 }  // namespace

@@ -14,9 +14,10 @@ namespace {
 
 void ignore() {}
 
-std::vector<StudyRow> rowsOf(StudyScene& scene, const char* method, const Reference& reference) {
+std::vector<StudyRow> rowsOf(StudyScene& scene, const char* method, const Reference& reference,
+                             const std::vector<StudyRow>& earlier = {}) {
   std::vector<StudyRow> rows;
-  sweep(scene, "test", methodOf(method), reference, [&](const StudyRow& row) { rows.push_back(row); });
+  sweep(scene, "test", methodOf(method), reference, {earlier, [&](const StudyRow& row) { rows.push_back(row); }});
   return rows;
 }
 
@@ -77,6 +78,28 @@ TEST(WorkPrecision, CostAndErrorGoOppositeWays) {
     EXPECT_LT(rows[i].error, rows[i - 1].error);
   }
   EXPECT_GT(rows.back().cpuSecondsPerSimulatedSecond, rows[1].cpuSecondsPerSimulatedSecond);
+}
+
+TEST(WorkPrecision, RowsThatAreThereAreNotRunAgain) {
+  StudyScene scene(oscillator(5, 2));
+  const Reference reference = coarselyKnown(scene, 1e-6);
+  const std::vector<StudyRow> whole = rowsOf(scene, "rk4", reference);
+  ASSERT_GE(whole.size(), 4U);
+  std::vector<StudyRow> half(whole.begin(), whole.begin() + 3);
+  for (StudyRow& row : half) row.isEarlier = true;
+  const std::vector<StudyRow> goneOn = rowsOf(scene, "rk4", reference, half);
+  ASSERT_EQ(goneOn.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_EQ(goneOn[i].isEarlier, i < half.size());
+    EXPECT_EQ(goneOn[i].setting, whole[i].setting);
+    EXPECT_EQ(fieldsOf(tableLine(goneOn[i]))[4], fieldsOf(tableLine(whole[i]))[4]);  // the error, NaN among them
+  }
+}
+
+TEST(WorkPrecision, ThePlanGoesThroughAllAccuracies) {
+  // Exact at the first: free fall has a closed form.
+  StudyScene scene(freeFall(1));
+  EXPECT_EQ(rowsOf(scene, "plan", findReference(scene, ignore)).size(), 11U);
 }
 
 TEST(WorkPrecision, ExplicitEulerIsUnstableAtItsLargestSteps) {

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+namespace cradle {
+
+/// A table of comma-separated values that grows: FILE.part holds all lines so far at any moment, and becomes FILE when
+/// complete.
+class GrowingTable {
+ public:
+  /// Begins FILE.part with `columns`, or goes on after its first `keptBytes`, if that is not 0. Throws Error(output) if
+  /// it cannot be written.
+  GrowingTable(const std::string& path, const std::string& columns, std::size_t keptBytes = 0);
+  ~GrowingTable();
+  GrowingTable(const GrowingTable&) = delete;
+  GrowingTable& operator=(const GrowingTable&) = delete;
+
+  /// `line` has its newline.
+  void append(const std::string& line);
+  void complete();
+
+ private:
+  [[noreturn]] void fail() const;
+
+  std::string path_;
+  std::FILE* file_ = nullptr;
+};
+
+}  // namespace cradle
