@@ -5,49 +5,21 @@
 #include "render/changed_area.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "render/instances.h"
+#include "render/light_receiver.h"
+#include "render/mirrored_shadows.h"
+#include "render/moved_shadows.h"
+#include "render/same_items.h"
 #include "render/shadow_casters.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kWholeFrom = 0.6;  // of the picture: from there on, drawing all of it costs less than finding out
-// As in shadow.glsl: the disc over which shadows are looked up, what it is widened by (look-ups between texels, and
-// beside the surface), and what whole blocks add where its size is found out; texels of the shadow map.
-constexpr double kLightRadius = 0.03, kWidestRadius = 16, kAroundDisc = 6, kAroundBlocks = 20;
-constexpr double kBlurredTexels = 12;  // as in environment.glsl
-constexpr double kLeastTurn = 0.5;     // of a ball's normal from pixel to pixel: a mesh turns by facets
-constexpr double kEdgePixels = 32;
-constexpr double kContactTexels = 2;  // of the contact map, which is interpolated
-
-/// Alike for OpenGL, which computes in single precision; balls near them apart.
-template <typename Item>
-bool isSame(const Item& a, const Item& b, const Stage& stage) {
-  Instance first = instanceOf(a, stage), second = instanceOf(b, stage);
-  for (const std::size_t number : kNearBallNumbers) first[number] = second[number] = 0;
-  if constexpr (std::is_same_v<Item, MeshItem>)
-    if (a.mesh != b.mesh || a.firstTriangle != b.firstTriangle || a.triangleCount != b.triangleCount) return false;
-  if constexpr (std::is_same_v<Item, SphereItem> || std::is_same_v<Item, CylinderItem>)
-    if (outlineLevel(a, stage) != outlineLevel(b, stage)) return false;
-  return first == second;
-}
-
-bool isSame(const NeighbourItem& a, const NeighbourItem& b, const Stage& stage) {
-  return numbersOf(a, stage) == numbersOf(b, stage);
-}
-
-bool isSame(const ContactItem& a, const ContactItem& b, const Stage& stage) {
-  const auto first = darkenedSquare(a, stage), second = darkenedSquare(b, stage);
-  if (!first || !second) return !first && !second;
-  return instanceOf(a, *first, stage) == instanceOf(b, *second, stage);
-}
-
-/// Size of a pixel at distance 1, in the middle of the picture.
-double pixelAngle(const Stage& stage) {
-  return 2 * std::tan(stage.camera.verticalFieldOfView / 2) / stage.height;
-}
+constexpr double kWholeFrom = 0.6;      // of the picture: from there on, drawing all of it costs less than finding out
+constexpr long kFewTiles = 12;          // what is seen in so many is drawn as a whole: its parts are no smaller
+constexpr double kHidingPixels = 2000;  // area of the least triangle that is asked whether it hides the ground
+constexpr double kContactTexels = 2;    // of the contact map, which is interpolated
 
 /// Collects the area; once it is nearly everything, it is everything.
 class ChangeFinder {
@@ -58,17 +30,12 @@ class ChangeFinder {
         now_(now),
         stage_(stage),
         meshBounds_(meshBounds),
-        area_{{stage.width, stage.height}, {}, false} {}
+        area_{{stage.width, stage.height}, {}, false},
+        mirrored_(stage) {}
 
   ChangedArea find();
 
  private:
-  /// Something that is drawn as before, or a part of it.
-  struct Receiver {
-    TileSpans spans;
-    Bounds bounds;  // m, world
-  };
-
   DrawnHull hull(const MeshItem& item) const {
     return hullOf(meshBounds_[static_cast<std::size_t>(item.mesh)].whole, item.worldFromMesh);
   }
@@ -78,29 +45,34 @@ class ChangeFinder {
   }
 
   TileSpans spansOf(const DrawnHull& hull);
+  const TileSpans& spansOf(LightReceiver& receiver);
   template <typename Item>
   void compareItems(const std::vector<Item>& before, const std::vector<Item>& now, bool throwsShadow);
   template <typename Item>
-  void addReceivers(const Item& item);
-  void addReceiver(const DrawnHull& hull);
+  void addReceivers(const Item& item) {
+    appendReceivers(item, stage_, receivers_);
+  }
+  void addReceivers(const MeshItem& item) {
+    appendReceivers(item, meshBounds_[static_cast<std::size_t>(item.mesh)], stage_, receivers_);
+  }
   template <typename Item>
   void compareNearBalls(const Item& before, const Item& now, std::size_t first);
   void addAround(const NeighbourItem& item, std::size_t first);
   void compareContacts();
   void addDarkened(const ContactItem& item);
   void addCommon(const TileSpans& item, const DrawnHull& hull);
-  void addShadowOnGround(const DrawnHull& caster);
-  void addShadowOnItems(const DrawnHull& caster);
-  void addMirrors(const Surface& surface, const DrawnHull& ball);
-  double shadowMargin(double distance) const;
+  void addShadows();
+  TileMask hiddenGround();
+  void addShadowsOnGround(const MovedShadows& shadows);
+  void addShadowsOnItems(const MovedShadows& shadows);
 
   const DrawList &before_, &now_;
   const Stage& stage_;
   const std::vector<MeshBounds>& meshBounds_;
   ChangedArea area_;
   std::vector<DrawnHull> casters_;  // that moved, at both places
-  std::vector<Receiver> receivers_;
-  std::vector<std::pair<Vec3, double>> groundPatches_;  // m; middles and sizes of the changed parts of the ground
+  std::vector<LightReceiver> receivers_;
+  MirroredShadows mirrored_;
   bool isWhole_ = false;
 };
 
@@ -108,6 +80,11 @@ TileSpans ChangeFinder::spansOf(const DrawnHull& hull) {
   auto outline = outlineOf(hull, stage_);
   if (!outline) isWhole_ = true;
   return outline ? area_.picture.spansOf(std::move(*outline)) : TileSpans{};
+}
+
+const TileSpans& ChangeFinder::spansOf(LightReceiver& receiver) {
+  if (!receiver.spans) receiver.spans = spansOf(receiver.hull);
+  return *receiver.spans;
 }
 
 template <typename Item>
@@ -132,41 +109,32 @@ void ChangeFinder::compareItems(const std::vector<Item>& before, const std::vect
   if (area_.picture.coverage() > kWholeFrom) isWhole_ = true;
 }
 
-/// At the edge of a triangle seen edge-on, the middle of a pixel may lie far beyond it in depth: shading takes place
-/// there.
-void ChangeFinder::addReceiver(const DrawnHull& hull) {
-  DrawnHull wide = hull;
-  const double distance = (hull.middle() - stage_.camera.position).norm();
-  wide.radius += kEdgePixels * distance * pixelAngle(stage_);
-  receivers_.push_back({spansOf(hull), wide.bounds()});
-}
-
-template <typename Item>
-void ChangeFinder::addReceivers(const Item& item) {
-  if constexpr (std::is_same_v<Item, MeshItem>) {
-    const MeshBounds& bounds = meshBounds_[static_cast<std::size_t>(item.mesh)];
-    const std::uint32_t last = item.firstTriangle + item.triangleCount - 1;
-    for (std::uint32_t run = item.firstTriangle / kTrianglesPerRun; run <= last / kTrianglesPerRun; ++run)
-      addReceiver(hullOf(bounds.runs[run], item.worldFromMesh));
-  } else {
-    addReceiver(hullOf(item));
-  }
-}
-
-/// Balls whose images or shade an item shows where they are near. A ball that is not near multiplies light by 1, so
-/// that only the order of those that stay matters: where their number changes, all of them count. The item's receivers
-/// stand from `first` on.
+/// Balls whose images or shade an item shows where they are near. A ball that is not near multiplies light by 1: where
+/// one comes or goes or moves, only its surroundings count, and the others as long as they keep their order. The item's
+/// receivers stand from `first` on.
 template <typename Item>
 void ChangeFinder::compareNearBalls(const Item& before, const Item& now, std::size_t first) {
-  const auto ballOf = [](const DrawList& list, const Item& item, int i) -> const NeighbourItem& {
-    return list.neighbours[static_cast<std::size_t>(list.nearBalls[static_cast<std::size_t>(item.firstNearBall + i)])];
+  const auto ballsOf = [](const DrawList& list, const Item& item) {
+    std::vector<const NeighbourItem*> balls;
+    for (int i = item.firstNearBall; i < item.firstNearBall + item.nearBalls; ++i)
+      balls.push_back(&list.neighbours[static_cast<std::size_t>(list.nearBalls[static_cast<std::size_t>(i)])]);
+    return balls;
   };
-  const bool sameNumber = before.nearBalls == now.nearBalls;
-  for (int i = 0; i < std::max(before.nearBalls, now.nearBalls); ++i) {
-    if (sameNumber && isSame(ballOf(before_, before, i), ballOf(now_, now, i), stage_)) continue;
-    if (i < before.nearBalls) addAround(ballOf(before_, before, i), first);
-    if (i < now.nearBalls) addAround(ballOf(now_, now, i), first);
-  }
+  const auto areSame = [&](const NeighbourItem* a, const NeighbourItem* b) { return isSame(*a, *b, stage_); };
+  std::vector<const NeighbourItem*> old = ballsOf(before_, before), current = ballsOf(now_, now);
+  if (std::equal(old.begin(), old.end(), current.begin(), current.end(), areSame)) return;
+  const auto addThoseNotIn = [&](const std::vector<const NeighbourItem*>& others,
+                                 std::vector<const NeighbourItem*>& balls) {
+    std::erase_if(balls, [&](const NeighbourItem* ball) {
+      const bool stays = std::any_of(others.begin(), others.end(), [&](auto* other) { return areSame(ball, other); });
+      if (!stays) addAround(*ball, first);
+      return !stays;
+    });
+  };
+  addThoseNotIn(current, old);
+  addThoseNotIn(old, current);
+  if (!std::equal(old.begin(), old.end(), current.begin(), current.end(), areSame))
+    for (const NeighbourItem* ball : old) addAround(*ball, first);
 }
 
 /// What of the receivers from `first` on a neighbour reaches.
@@ -174,8 +142,16 @@ void ChangeFinder::addAround(const NeighbourItem& item, std::size_t first) {
   DrawnHull around = hullOf(Bounds(-item.half, item.half), {item.rotation, item.center});
   around.radius = item.isBall() ? kBallReach * item.radius : item.radius;
   const Bounds reach = item.reach();
-  for (std::size_t i = first; i < receivers_.size(); ++i)
-    if (receivers_[i].bounds.intersects(reach)) addCommon(receivers_[i].spans, around);
+  auto outline = outlineOf(around, stage_);
+  std::optional<TileSpans> tiles;
+  if (outline) tiles = area_.picture.spansOf(std::move(*outline));
+  for (std::size_t i = first; i < receivers_.size(); ++i) {
+    const Bounds box = receivers_[i].hull.bounds();
+    const double apart =
+        item.isBall() ? box.exteriorDistance(item.center) - around.radius : box.exteriorDistance(reach);
+    if (apart > receivers_[i].wider) continue;
+    area_.picture.add(tiles ? commonTiles(spansOf(receivers_[i]), *tiles) : spansOf(receivers_[i]));
+  }
 }
 
 void ChangeFinder::compareContacts() {
@@ -203,57 +179,53 @@ void ChangeFinder::addDarkened(const ContactItem& item) {
     for (const double v : {-square->halfV - texel, square->halfV + texel})
       darkened.add(foot + u * region.axisU + v * region.axisV);
   area_.picture.add(spansOf(darkened));
-  groundPatches_.emplace_back(darkened.middle(), darkened.reach());
+  mirrored_.addDarkened(darkened);
 }
 
-/// How far beside a caster's outline in the light its shadow may change, `distance` m behind it.
-double ChangeFinder::shadowMargin(double distance) const {
-  const double cone = std::min(kLightRadius * std::max(distance, 0.0) / stage_.shadow.texel, kWidestRadius);
-  return stage_.shadow.texel * std::max(kWidestRadius + kAroundDisc, cone + kAroundBlocks);
-}
-
-/// A ball's shadow on the ground is an ellipse, as long as the light is low.
-void ChangeFinder::addShadowOnGround(const DrawnHull& caster) {
-  const Vec3 light = stage_.lighting.lamps[0].towards;
+/// Tiles in which a long triangle that did not move, such as that of a base, hides the ground.
+TileMask ChangeFinder::hiddenGround() {
+  TileMask hidden(stage_.width, stage_.height);
   const Ground& ground = *stage_.ground;
-  const double steepness = ground.normal.dot(light);
-  if (steepness <= 0) return;
-  const Vec3 level = light - steepness * ground.normal;
-  const Vec3 along = level.norm() > 0 ? Vec3(level.normalized()) : stage_.shaded.axisU;
-  const Vec3 across = ground.normal.cross(along);
-  double highest = 0;
-  for (std::size_t i = 0; i < caster.count; ++i)
-    highest = std::max(highest, ground.normal.dot(caster.centers[i] - ground.point) + caster.radius);
-  const double halfWidth = caster.radius + shadowMargin(highest / steepness), halfLength = halfWidth / steepness;
-  std::vector<Eigen::Vector2d> outline;
-  DrawnHull feet;
-  for (std::size_t i = 0; i < caster.count; ++i) {
-    const Vec3 center = caster.centers[i];
-    const Vec3 foot = center - ground.normal.dot(center - ground.point) / steepness * light;
-    DrawnHull corners;
-    for (const double a : {-halfLength, halfLength})
-      for (const double b : {-halfWidth, halfWidth}) corners.add(foot + a * along + b * across);
-    const auto seen = outlineOf(corners, stage_);
-    if (!seen) return void(isWhole_ = true);
-    outline.insert(outline.end(), seen->begin(), seen->end());
-    feet.add(foot);
-    feet.radius = corners.reach();
+  const auto isAbove = [&](const Vec3& point) { return ground.normal.dot(point - ground.point) > 0; };
+  if (!isAbove(stage_.camera.position)) return hidden;
+  for (const LightReceiver& receiver : receivers_) {
+    if (!receiver.triangle || !std::all_of(receiver.triangle->begin(), receiver.triangle->end(), isAbove)) continue;
+    const Vec3 normal =
+        ((*receiver.triangle)[1] - (*receiver.triangle)[0]).cross((*receiver.triangle)[2] - (*receiver.triangle)[0]);
+    const double pixel = pixelAngle(stage_) * (receiver.hull.middle() - stage_.camera.position).norm();
+    if (normal.norm() / 2 < kHidingPixels * pixel * pixel) continue;
+    if (auto outline = outlineOf({receiver.triangle->begin(), receiver.triangle->end()}, stage_))
+      hidden.add(hidden.spansInside(std::move(*outline)));
   }
-  area_.picture.add(area_.picture.spansOf(std::move(outline)));
-  groundPatches_.emplace_back(feet.middle(), feet.reach());
+  return hidden;
 }
 
-/// On all that stands behind it in the light.
-void ChangeFinder::addShadowOnItems(const DrawnHull& caster) {
-  const Vec3 light = stage_.lighting.lamps[0].towards;
-  const double nearest = light.dot(caster.middle()) + caster.reach();
-  for (const Receiver& receiver : receivers_) {
-    const Vec3 middle = receiver.bounds.center(), half = receiver.bounds.sizes() / 2;
-    DrawnHull wide = caster;
-    wide.radius += shadowMargin(nearest - light.dot(middle) + light.cwiseAbs().dot(half));
-    const Bounds box = wide.bounds();
-    const auto [first, last] = distancesOfOverlap(box, -light, receiver.bounds);
-    if (first <= last) addCommon(receiver.spans, swept(wide, -first * light, -last * light));
+void ChangeFinder::addShadowsOnGround(const MovedShadows& shadows) {
+  const Ground& ground = *stage_.ground;
+  if (ground.normal.dot(stage_.lighting.lamps[0].towards) <= 0) return;
+  const TileMask hidden = hiddenGround();
+  for (const std::vector<Vec3>& part : shadows.partsOf(shadows.surfaceOf(ground.normal, ground.point))) {
+    auto outline = outlineOf(part, stage_);
+    if (!outline) return void(isWhole_ = true);
+    area_.picture.add(area_.picture.spansOf(std::move(*outline)), &hidden);
+  }
+}
+
+/// On all that stands behind it in the light: on small things as a whole.
+void ChangeFinder::addShadowsOnItems(const MovedShadows& shadows) {
+  for (LightReceiver& receiver : receivers_) {
+    const LitSurface surface = receiver.triangle ? shadows.surfaceOf(*receiver.triangle, receiver.wider)
+                                                 : shadows.surfaceOf(receiver.hull, receiver.wider);
+    if (!shadows.reach(surface)) continue;
+    const TileSpans& spans = spansOf(receiver);
+    if (spans.count() <= kFewTiles) {
+      area_.picture.add(spans);
+      continue;
+    }
+    for (const std::vector<Vec3>& part : shadows.partsOf(surface)) {
+      auto outline = outlineOf(part, stage_);
+      area_.picture.add(outline ? commonTiles(spans, area_.picture.spansOf(std::move(*outline))) : spans);
+    }
   }
 }
 
@@ -261,20 +233,6 @@ void ChangeFinder::addShadowOnItems(const DrawnHull& caster) {
 void ChangeFinder::addCommon(const TileSpans& item, const DrawnHull& hull) {
   auto outline = outlineOf(hull, stage_);
   area_.picture.add(outline ? commonTiles(item, area_.picture.spansOf(std::move(*outline))) : item);
-}
-
-/// Balls that mirror the changed ground. They show its shadows only as far as these are not blurred: where a ray is
-/// wider than kBlurredTexels (environment.glsl). It widens with the surface's roughness, and with how the normal turns
-/// from pixel to pixel.
-void ChangeFinder::addMirrors(const Surface& surface, const DrawnHull& ball) {
-  if (!mirrorsShadows(surface)) return;
-  const Vec3 center = ball.middle();
-  const double radius = ball.reach();
-  const double pixel = pixelAngle(stage_) * std::max((center - stage_.camera.position).norm() - radius, 0.0);
-  const double spread = surface.roughness * surface.roughness + kLeastTurn * 2 * pixel / radius;
-  const double reach = kBlurredTexels * stage_.shadow.texel / spread + radius;
-  for (const auto& [middle, size] : groundPatches_)
-    if ((middle - center).norm() < size + reach) return area_.picture.add(spansOf(ball));
 }
 
 ChangedArea ChangeFinder::find() {
@@ -285,15 +243,23 @@ ChangedArea ChangeFinder::find() {
   compareItems(before_.tubes, now_.tubes, true);
   compareContacts();
   area_.shadows = shadowTexels(casters_, stage_);
-  for (std::size_t i = 0; i < casters_.size() && !isWhole_; ++i) {
-    if (stage_.ground) addShadowOnGround(casters_[i]);
-    addShadowOnItems(casters_[i]);
-    if (area_.picture.coverage() > kWholeFrom) isWhole_ = true;
-  }
-  for (const SphereItem& item : now_.spheres) addMirrors(item.surface, hull(item));
-  for (const MeshItem& item : now_.meshes)
-    if (item.isBall) addMirrors(item.surface, hull(item));
+  if (!casters_.empty() && !isWhole_) addShadows();
+  if (area_.picture.coverage() > kWholeFrom) isWhole_ = true;
   return isWhole_ ? wholePicture(stage_) : std::move(area_);
+}
+
+/// And what mirrors show of the ground.
+void ChangeFinder::addShadows() {
+  const MovedShadows shadows(casters_, stage_);
+  addShadowsOnItems(shadows);
+  if (!stage_.ground) return;
+  addShadowsOnGround(shadows);
+  for (const DrawnHull& caster : casters_) mirrored_.addCaster(caster);
+  for (const SphereItem& item : now_.spheres)
+    for (const DrawnHull& image : mirrored_.imagesOn(item, now_)) addCommon(spansOf(hullOf(item)), image);
+  for (const MeshItem& item : now_.meshes)
+    if (mirrored_.areSeenOn(item, meshBounds_[static_cast<std::size_t>(item.mesh)]))
+      area_.picture.add(spansOf(hull(item)));
 }
 
 }  // namespace

@@ -22,13 +22,31 @@ struct DrawnHull {
   double reach() const;
 };
 
-/// Boxes around a mesh and around each run of kTrianglesPerRun triangles, in the mesh's frame.
+/// A triangle of a mesh that is long beside the mesh.
+struct LongTriangle {
+  std::uint32_t index = 0;
+  std::array<Vec3, 3> corners;  // m, mesh's frame, counter-clockwise from outside
+};
+
+/// Triangles that are near each other and face about the same way.
+struct TriangleGroup {
+  std::uint32_t first = 0, last = 0;  // the least and the greatest of their indices
+  Bounds box;                         // m, mesh's frame
+  Vec3 normal = Vec3::Zero();         // unit, outwards: in the middle of theirs
+  double normalSpread = 0;            // greatest distance of theirs from it
+};
+
+/// Where a mesh's triangles are, in its frame.
 struct MeshBounds {
   Bounds whole;
-  std::vector<Bounds> runs;
+  std::vector<Bounds> runs;                 // of kTrianglesPerRun triangles each
+  std::vector<TriangleGroup> groups;        // of all but the long ones
+  std::vector<LongTriangle> longTriangles;  // in order
+  bool isClosed = false;                    // then its inside is never seen
+  double normalError = 0;                   // greatest distance of a unit normal from the direction out of the middle
 };
 constexpr std::uint32_t kTrianglesPerRun = 64;
-MeshBounds boundsOf(const DrawnMesh& mesh);
+MeshBounds boundsOf(const DrawnMesh& mesh, bool isClosed);
 
 DrawnHull hullOf(const Bounds& local, const RigidTransform& worldFromLocal);
 DrawnHull hullOf(const SphereItem& item);
@@ -41,5 +59,8 @@ DrawnHull swept(const DrawnHull& hull, const Vec3& first, const Vec3& last);
 /// Points in the picture (pixels from the lower left corner) whose convex hull contains what is seen of a hull; none if
 /// part of it is not in front of the camera.
 std::optional<std::vector<Eigen::Vector2d>> outlineOf(const DrawnHull& hull, const Stage& stage);
+
+/// The same of a polygon (m, world).
+std::optional<std::vector<Eigen::Vector2d>> outlineOf(const std::vector<Vec3>& polygon, const Stage& stage);
 
 }  // namespace cradle

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "render/occlusion.h"
+#include "render/shadow_casters.h"
 
 namespace cradle {
 namespace {
@@ -29,9 +30,12 @@ PixelRectangle seenIn(const DrawnHull& hull, const Stage& stage) {
           pixel(box.max().x() + kMargin, stage.width) + 1, pixel(box.max().y() + kMargin, stage.height) + 1};
 }
 
-bool isSeenIn(const PixelRectangle& seen, const PixelRectangle* area) {
-  return area == nullptr ||
-         (seen.left < area->right && seen.right > area->left && seen.bottom < area->top && seen.top > area->bottom);
+bool isSeenIn(const PixelRectangle& seen, const PixelRectangle& area) {
+  return seen.left < area.right && seen.right > area.left && seen.bottom < area.top && seen.top > area.bottom;
+}
+
+bool isInside(const PixelRectangle& seen, const PixelRectangle& area) {
+  return seen.left >= area.left && seen.right <= area.right && seen.bottom >= area.bottom && seen.top <= area.top;
 }
 
 /// Of the ball around the middle of its bounds that fits into a closed mesh, if it fills them as a box does: else 0.
@@ -53,15 +57,9 @@ double nearestDepth(const DrawnHull& hull, const Occlusion& occlusion) {
   return nearest - kOutermost * hull.radius;
 }
 
-/// The pixels in which a hull may be seen: none, if something stands before it.
-PixelRectangle seenIn(const DrawnHull& hull, const Stage& stage, const Occlusion& occlusion) {
-  const PixelRectangle pixels = seenIn(hull, stage);
-  return occlusion.hides(pixels, nearestDepth(hull, occlusion)) ? PixelRectangle{} : pixels;
-}
-
 /// Calls draw(first, count) for each run of instances in [first, first + count) that are seen in `area`.
 template <typename Draw>
-void forSeen(const std::vector<PixelRectangle>& seen, std::size_t first, std::size_t count, const PixelRectangle* area,
+void forSeen(const std::vector<PixelRectangle>& seen, std::size_t first, std::size_t count, const PixelRectangle& area,
              const Draw& draw) {
   const std::size_t end = first + count;
   for (std::size_t i = first; i < end; ++i) {
@@ -99,31 +97,78 @@ void ItemDrawer::take(const DrawList& list, const std::vector<MeshBounds>& meshB
   cylinderInstances_.upload(packed_.cylinderInstances);
   tubeInstances_.upload(packed_.tubeInstances);
   contactInstances_.upload(packed_.contactInstances);
-  findSeen(list, meshBounds);
+  findSeen(
+      list, meshBounds, [&](const DrawnHull& hull) { return seenIn(hull, stage_); }, inPicture_);
+  leaveOutHidden(list, meshBounds);
+  const auto inLight = [&](DrawnHull hull) {
+    hull.radius *= cornerOfEqualArea(kOutlines.front());  // rounds are drawn as polygons
+    return shadowTexels(hull, stage_);
+  };
+  findSeen(list, meshBounds, inLight, inShadowMap_);
 }
 
-void ItemDrawer::findSeen(const DrawList& list, const std::vector<MeshBounds>& meshBounds) {
-  for (Seen* seen : {&seenMeshes_, &seenSpheres_, &seenCylinders_, &seenTubes_}) seen->clear();
+template <typename Place>
+void ItemDrawer::findSeen(const DrawList& list, const std::vector<MeshBounds>& meshBounds, const Place& place,
+                          SeenItems& seen) const {
+  for (auto* items : {&seen.meshes, &seen.spheres, &seen.cylinders, &seen.tubes}) items->clear();
+  seen.meshRuns.assign(list.meshes.size(), {});
+  for (std::size_t i = 0; i < list.meshes.size(); ++i) {
+    const MeshItem& item = list.meshes[i];
+    const MeshBounds& bounds = meshBounds[static_cast<std::size_t>(item.mesh)];
+    seen.meshes.push_back(place(hullOf(bounds.whole, item.worldFromMesh)));
+    if (item.triangleCount <= kTrianglesPerRun) continue;
+    const std::uint32_t last = item.firstTriangle + item.triangleCount - 1;
+    for (std::uint32_t run = item.firstTriangle / kTrianglesPerRun; run <= last / kTrianglesPerRun; ++run)
+      seen.meshRuns[i].push_back(place(hullOf(bounds.runs[run], item.worldFromMesh)));
+  }
+  for (const std::size_t i : packed_.sphereItems) seen.spheres.push_back(place(hullOf(list.spheres[i])));
+  for (const std::size_t i : packed_.cylinderItems) seen.cylinders.push_back(place(hullOf(list.cylinders[i])));
+  for (const TubeItem& item : list.tubes) seen.tubes.push_back(place(hullOf(item)));
+}
+
+/// Meshes and balls that balls stand before are seen nowhere in the picture.
+void ItemDrawer::leaveOutHidden(const DrawList& list, const std::vector<MeshBounds>& meshBounds) {
   Occlusion occlusion(stage_);
   for (const SphereItem& item : list.spheres) occlusion.add(item.center, item.radius);
   for (const MeshItem& item : list.meshes)
     if (const double radius = radiusInside_[static_cast<std::size_t>(item.mesh)]; radius > 0)
       occlusion.add(item.bounds.center(), radius);
-  for (const MeshItem& item : list.meshes)
-    seenMeshes_.push_back(
-        seenIn(hullOf(meshBounds[static_cast<std::size_t>(item.mesh)].whole, item.worldFromMesh), stage_, occlusion));
-  for (const std::size_t i : packed_.sphereItems)
-    seenSpheres_.push_back(seenIn(hullOf(list.spheres[i]), stage_, occlusion));
-  for (const std::size_t i : packed_.cylinderItems) seenCylinders_.push_back(seenIn(hullOf(list.cylinders[i]), stage_));
-  for (const TubeItem& item : list.tubes) seenTubes_.push_back(seenIn(hullOf(item), stage_));
+  const auto leaveOut = [&](const DrawnHull& hull, PixelRectangle& pixels) {
+    if (occlusion.hides(pixels, nearestDepth(hull, occlusion))) pixels = {};
+  };
+  for (std::size_t i = 0; i < list.meshes.size(); ++i) {
+    const MeshItem& item = list.meshes[i];
+    leaveOut(hullOf(meshBounds[static_cast<std::size_t>(item.mesh)].whole, item.worldFromMesh), inPicture_.meshes[i]);
+  }
+  for (std::size_t i = 0; i < packed_.sphereItems.size(); ++i)
+    leaveOut(hullOf(list.spheres[packed_.sphereItems[i]]), inPicture_.spheres[i]);
 }
 
-void ItemDrawer::drawMeshes(const PixelRectangle* area) const {
+/// Of one mesh, the runs of triangles that are seen.
+void ItemDrawer::drawMesh(const Batch& batch, std::size_t instance, const SeenItems& seen,
+                          const PixelRectangle& area) const {
+  const std::uint32_t begin = batch.firstTriangle, end = begin + batch.triangleCount;
+  const std::uint32_t firstRun = begin / kTrianglesPerRun * kTrianglesPerRun;
+  const auto triangleOf = [&](std::size_t run) {
+    return std::clamp(firstRun + static_cast<std::uint32_t>(run) * kTrianglesPerRun, begin, end);
+  };
+  const std::vector<PixelRectangle>& runs = seen.meshRuns[instance];
+  forSeen(runs, 0, runs.size(), area, [&](std::size_t first, std::size_t count) {
+    const std::uint32_t triangle = triangleOf(first);
+    meshes_[static_cast<std::size_t>(batch.mesh)].draw(triangle, triangleOf(first + count) - triangle, meshInstances_,
+                                                       instance, 1);
+  });
+}
+
+void ItemDrawer::drawMeshes(const SeenItems& seen, const PixelRectangle& area) const {
   for (const Batch& batch : packed_.meshBatches) {
     const auto mesh = static_cast<std::size_t>(batch.mesh);
     if (appearance_.meshIsClosed[mesh]) glEnable(GL_CULL_FACE);
-    forSeen(seenMeshes_, batch.firstInstance, batch.instanceCount, area, [&](std::size_t first, std::size_t count) {
-      meshes_[mesh].draw(batch.firstTriangle, batch.triangleCount, meshInstances_, first, count);
+    forSeen(seen.meshes, batch.firstInstance, batch.instanceCount, area, [&](std::size_t first, std::size_t count) {
+      if (count == 1 && !seen.meshRuns[first].empty() && !isInside(seen.meshes[first], area))
+        drawMesh(batch, first, seen, area);
+      else
+        meshes_[mesh].draw(batch.firstTriangle, batch.triangleCount, meshInstances_, first, count);
     });
     glDisable(GL_CULL_FACE);
   }
@@ -135,30 +180,30 @@ void ItemDrawer::drawWalls() const {
   wall.draw(0, wall.triangleCount(), wallInstances_, 0, packed_.wallInstances.size());
 }
 
-void ItemDrawer::drawSpheres(const PixelRectangle* area) const {
+void ItemDrawer::drawSpheres(const SeenItems& seen, const PixelRectangle& area) const {
   for (const Batch& batch : packed_.sphereBatches) {
     const GpuMesh& mesh = halfBalls_[static_cast<std::size_t>(batch.mesh)];
-    forSeen(seenSpheres_, batch.firstInstance, batch.instanceCount, area, [&](std::size_t first, std::size_t count) {
+    forSeen(seen.spheres, batch.firstInstance, batch.instanceCount, area, [&](std::size_t first, std::size_t count) {
       mesh.draw(0, mesh.triangleCount(), sphereInstances_, first, count);
     });
   }
 }
 
-void ItemDrawer::drawCylinders(const PixelRectangle* area) const {
+void ItemDrawer::drawCylinders(const SeenItems& seen, const PixelRectangle& area) const {
   for (const Batch& batch : packed_.cylinderBatches) {
     const GpuMesh& mesh = halfCylinders_[static_cast<std::size_t>(batch.mesh)];
-    forSeen(seenCylinders_, batch.firstInstance, batch.instanceCount, area, [&](std::size_t first, std::size_t count) {
+    forSeen(seen.cylinders, batch.firstInstance, batch.instanceCount, area, [&](std::size_t first, std::size_t count) {
       mesh.draw(0, mesh.triangleCount(), cylinderInstances_, first, count);
     });
   }
 }
 
-void ItemDrawer::drawTubes(const PixelRectangle* area) const {
+void ItemDrawer::drawTubes(const SeenItems& seen, const PixelRectangle& area) const {
   // Springs stand before ropes in the list.
   std::size_t coils = 0;
   while (coils < packed_.tubeInstances.size() && packed_.tubeInstances[coils][11] > 0) ++coils;
   const auto draw = [&](const GpuMesh& mesh, std::size_t begin, std::size_t size) {
-    forSeen(seenTubes_, begin, size, area, [&](std::size_t first, std::size_t count) {
+    forSeen(seen.tubes, begin, size, area, [&](std::size_t first, std::size_t count) {
       mesh.draw(0, mesh.triangleCount(), tubeInstances_, first, count);
     });
   };

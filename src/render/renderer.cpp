@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "render/changed_area.h"
 #include "render/item_drawer.h"
+#include "render/light_maps.h"
 #include "render/offscreen_context.h"
 #include "render/render_targets.h"
 #include "render/shader_program.h"
@@ -67,48 +68,33 @@ GpuMesh makeFarGround(const Stage& stage) {
   return {vertices, 4, indices};
 }
 
-std::vector<MeshBounds> boundsOf(const std::vector<DrawnMesh>& meshes) {
+std::vector<MeshBounds> boundsOfMeshes(const Appearance& appearance) {
   std::vector<MeshBounds> all;
-  for (const DrawnMesh& mesh : meshes) all.push_back(boundsOf(mesh));
+  for (std::size_t i = 0; i < appearance.meshes.size(); ++i)
+    all.push_back(boundsOf(appearance.meshes[i], appearance.meshIsClosed[i]));
   return all;
 }
 
 }  // namespace
 
-/// The shaders of all stages.
+/// The shaders of what the camera sees.
 struct Renderer::Programs {
   Programs(const ShaderSource& source, const Stage& stage)
       : surface(source, "surface.vert", "surface.frag"),
         ball(source, "ball.vert", "ball.frag"),
         cylinder(source, "cylinder.vert", "cylinder.frag"),
         tube(source, "tube.vert", "surface.frag"),
-        surfaceDepth(source, "surface.vert", "depth.frag"),
-        ballDepth(source, "ball.vert", "depth.frag"),
-        cylinderDepth(source, "cylinder.vert", "depth.frag"),
-        tubeDepth(source, "tube.vert", "depth.frag"),
         ground(source, "ground.vert", "ground.frag"),
         groundFar(source, "ground.vert", "ground_far.frag"),
-        shadowBlocks(source, "sky.vert", "shadow_blocks.frag"),
-        contact(source, "contact.vert", "contact.frag"),
         sky(source, "sky.vert", "sky.frag") {
-    for (const ShaderProgram* program : seen()) setStage(stage, *program);
-    setStage(stage, shadowBlocks);
-    for (const ShaderProgram* program : {&surfaceDepth, &ballDepth, &cylinderDepth, &tubeDepth}) {
-      program->use();
-      program->set("clipFromWorld", stage.shadow.clipFromWorld);
-      program->set("viewer", stage.shadow.viewer);
-      program->set("pixelSize", 0.0f);
-    }
+    for (const ShaderProgram* program : all()) setStage(stage, *program);
   }
 
-  /// Those of what the camera sees.
-  std::array<const ShaderProgram*, 8> seen() const {
-    return {&surface, &ball, &cylinder, &tube, &ground, &groundFar, &contact, &sky};
+  std::array<const ShaderProgram*, 7> all() const {
+    return {&surface, &ball, &cylinder, &tube, &ground, &groundFar, &sky};
   }
 
-  ShaderProgram surface, ball, cylinder, tube;
-  ShaderProgram surfaceDepth, ballDepth, cylinderDepth, tubeDepth;  // the same for the shadow map
-  ShaderProgram ground, groundFar, shadowBlocks, contact, sky;
+  ShaderProgram surface, ball, cylinder, tube, ground, groundFar, sky;
 };
 
 /// All that lives on the side of OpenGL, and the picture drawn last; the context goes last.
@@ -123,8 +109,8 @@ struct Renderer::Resources {
   std::vector<MeshBounds> meshBounds;
   Stage stage;
   Programs programs;
+  LightMaps maps;
   PictureTarget picture;
-  MapTarget shadowMap, shadowBlocks, contactMap;
   NumberTexture balls, nearBalls;
   ItemDrawer items;
   GpuMesh triangle;
@@ -138,13 +124,11 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
                                const std::string& shaderFolder)
     : sizeCheck(width, height),
       appearance(makeAppearance(scene, view, pixelsPerMetre(view, height))),
-      meshBounds(boundsOf(appearance.meshes)),
+      meshBounds(boundsOfMeshes(appearance)),
       stage(makeStage(scene, view, appearance.ground, width, height)),
       programs({shaderFolder, shaderDefinitions(stage)}, stage),
+      maps({shaderFolder, shaderDefinitions(stage)}, stage),
       picture(width, height),
-      shadowMap(MapTarget::Kind::depth, kShadowMapSize),
-      shadowBlocks(MapTarget::Kind::leastDepth, kShadowMapSize / kShadowBlock),
-      contactMap(MapTarget::Kind::share, kContactMapSize),
       balls(4),
       nearBalls(1),
       items(appearance, stage),
@@ -187,7 +171,7 @@ void Renderer::aim(const Camera& camera) {
   Resources& r = *resources_;
   if (camera == r.stage.camera) return;
   aimCamera(camera, r.stage);
-  for (const ShaderProgram* program : r.programs.seen()) setCamera(r.stage, *program);
+  for (const ShaderProgram* program : r.programs.all()) setCamera(r.stage, *program);
   r.drawn.reset();
 }
 
@@ -196,11 +180,8 @@ void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
   r.items.take(list, r.meshBounds);
   r.balls.upload(r.items.packed().neighbours);
   r.nearBalls.upload(r.items.packed().nearBalls);
-  if (changed.shadows) {
-    drawShadowMap(*changed.shadows);
-    drawShadowBlocks(*changed.shadows);
-  }
-  if (changed.contactsChanged) drawContactMap();
+  if (changed.shadows) r.maps.drawShadows(r.items, *changed.shadows);
+  if (changed.contactsChanged) r.maps.drawContacts(r.items);
   finishStage(times_.maps);
   const std::vector<PixelRectangle> areas = changed.picture.rectangles();
   for (const PixelRectangle& area : areas) {
@@ -222,72 +203,27 @@ void Renderer::finishStage(double& seconds) {
   resources_->stageStart = now;
 }
 
-void Renderer::drawShadowMap(const PixelRectangle& area) {
-  const Resources& r = *resources_;
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LEQUAL);
-  glDepthMask(GL_TRUE);
-  glDisable(GL_BLEND);
-  glEnable(GL_DEPTH_CLAMP);  // what stands outside the view still throws its shadow into it
-  r.shadowMap.begin(area);
-  r.programs.surfaceDepth.use();
-  r.items.drawMeshes();
-  r.programs.ballDepth.use();
-  r.items.drawSpheres();
-  r.programs.cylinderDepth.use();
-  r.items.drawCylinders();
-  r.programs.tubeDepth.use();
-  r.items.drawTubes();
-  glDisable(GL_DEPTH_CLAMP);
-  r.shadowMap.end();
-}
-
-/// `area` is of the shadow map.
-void Renderer::drawShadowBlocks(const PixelRectangle& area) {
-  const Resources& r = *resources_;
-  const auto after = [](int texel) { return (texel + kShadowBlock - 1) / kShadowBlock; };
-  r.shadowBlocks.begin({area.left / kShadowBlock, area.bottom / kShadowBlock, after(area.right), after(area.top)});
-  glDisable(GL_DEPTH_TEST);
-  r.shadowMap.bindTexture(kShadowUnit);
-  r.programs.shadowBlocks.use();
-  r.triangle.draw();
-  r.shadowBlocks.end();
-}
-
-void Renderer::drawContactMap() {
-  const Resources& r = *resources_;
-  r.contactMap.begin(r.contactMap.inside());
-  glDisable(GL_DEPTH_TEST);
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE_MINUS_DST_COLOR, GL_ONE);  // what two things leave open is the product of what each does
-  r.programs.contact.use();
-  r.items.drawContacts();
-  glDisable(GL_BLEND);
-  r.contactMap.end();
-}
-
 void Renderer::drawPicture(const PixelRectangle& area) {
   const Resources& r = *resources_;
-  r.shadowMap.bindTexture(kShadowUnit);
-  r.shadowBlocks.bindTexture(kBlockUnit);
-  r.contactMap.bindTexture(kContactUnit);
+  const SeenItems& seen = r.items.inPicture();
+  r.maps.bindTextures();
   r.balls.bindTexture(kBallUnit);
   r.nearBalls.bindTexture(kNearBallUnit);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   r.picture.begin(area);
   r.programs.ball.use();
-  r.items.drawSpheres(&area);
+  r.items.drawSpheres(seen, area);
   r.programs.surface.use();
-  r.items.drawMeshes(&area);
+  r.items.drawMeshes(seen, area);
   r.items.drawWalls();
   // Lines thinner than a pixel take fewer of its samples: blending would ask for an order.
   glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
   r.programs.cylinder.use();
-  r.items.drawCylinders(&area);
+  r.items.drawCylinders(seen, area);
   glEnable(GL_CULL_FACE);
   r.programs.tube.use();
-  r.items.drawTubes(&area);
+  r.items.drawTubes(seen, area);
   glDisable(GL_CULL_FACE);
   glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
   // Late what fills the picture: hidden pixels are not computed.

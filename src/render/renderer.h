@@ -49,9 +49,6 @@ class Renderer {
   struct Resources;
   void aim(const Camera& camera);
   void draw(const DrawList& list, const ChangedArea& changed);
-  void drawShadowMap(const PixelRectangle& area);
-  void drawShadowBlocks(const PixelRectangle& area);
-  void drawContactMap();
   void drawPicture(const PixelRectangle& area);
   void finishStage(double& seconds);
 

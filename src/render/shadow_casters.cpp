@@ -14,48 +14,44 @@ constexpr double kMapMargin = 2;  // texels: rounding
 
 }  // namespace
 
-void appendCaster(const DrawnHull& hull, std::vector<DrawnHull>& casters) {
-  const double radius = cornerOfEqualArea(kOutlines.front()) * hull.radius;  // rounds are drawn as polygons
-  if (hull.count != 2) {
-    casters.push_back(hull);
-    casters.back().radius = radius;
-    return;
-  }
+void appendPieces(const DrawnHull& hull, std::vector<DrawnHull>& pieces) {
+  if (hull.count != 2) return pieces.push_back(hull);
   const Vec3 step = (hull.centers[1] - hull.centers[0]) / kRodPieces;
   for (int i = 0; i < kRodPieces; ++i) {
-    DrawnHull& piece = casters.emplace_back();
+    DrawnHull& piece = pieces.emplace_back();
     piece.add(hull.centers[0] + i * step);
     piece.add(hull.centers[0] + (i + 1) * step);
-    piece.radius = radius;
+    piece.radius = hull.radius;
   }
 }
 
-std::pair<double, double> distancesOfOverlap(const Bounds& box, const Vec3& direction, const Bounds& other) {
-  double first = 0, last = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double begin = other.min()[axis] - box.max()[axis], end = other.max()[axis] - box.min()[axis];
-    const double speed = direction[axis];
-    if (speed == 0 && (begin > 0 || end < 0)) return {1, 0};
-    if (speed == 0) continue;
-    first = std::max(first, std::min(begin / speed, end / speed));
-    last = std::min(last, std::max(begin / speed, end / speed));
+void appendCaster(const DrawnHull& hull, std::vector<DrawnHull>& casters) {
+  DrawnHull drawn = hull;
+  drawn.radius *= cornerOfEqualArea(kOutlines.front());  // rounds are drawn as polygons
+  appendPieces(drawn, casters);
+}
+
+PixelRectangle shadowTexels(const DrawnHull& hull, const Stage& stage) {
+  Eigen::AlignedBox2d texels;
+  const double around = hull.radius / stage.shadow.texel + kMapMargin;
+  for (std::size_t i = 0; i < hull.count; ++i) {
+    const Eigen::Vector4d place = (hull.centers[i] - stage.origin).homogeneous();
+    const Eigen::Vector2d texel = kShadowMapSize * (stage.shadow.textureFromWorld.cast<double>() * place).head<2>();
+    texels.extend(Eigen::Vector2d(texel.array() - around)), texels.extend(Eigen::Vector2d(texel.array() + around));
   }
-  return {first, last};
+  const auto whole = [](double place) { return static_cast<int>(std::clamp(place, 0.0, double{kShadowMapSize})); };
+  return {whole(texels.min().x()), whole(texels.min().y()), whole(texels.max().x() + 1), whole(texels.max().y() + 1)};
 }
 
 std::optional<PixelRectangle> shadowTexels(const std::vector<DrawnHull>& casters, const Stage& stage) {
-  if (casters.empty()) return std::nullopt;
-  Eigen::AlignedBox2d texels;
-  for (const DrawnHull& hull : casters)
-    for (std::size_t i = 0; i < hull.count; ++i) {
-      const Eigen::Vector4d place = (hull.centers[i] - stage.origin).homogeneous();
-      const Eigen::Vector2d texel = kShadowMapSize * (stage.shadow.textureFromWorld.cast<double>() * place).head<2>();
-      const double around = hull.radius / stage.shadow.texel + kMapMargin;
-      texels.extend(Eigen::Vector2d(texel.array() - around)), texels.extend(Eigen::Vector2d(texel.array() + around));
-    }
-  const auto whole = [](double place) { return static_cast<int>(std::clamp(place, 0.0, double{kShadowMapSize})); };
-  return PixelRectangle{whole(texels.min().x()), whole(texels.min().y()), whole(texels.max().x() + 1),
-                        whole(texels.max().y() + 1)};
+  std::optional<PixelRectangle> all;
+  for (const DrawnHull& hull : casters) {
+    const PixelRectangle one = shadowTexels(hull, stage);
+    all = all ? PixelRectangle{std::min(all->left, one.left), std::min(all->bottom, one.bottom),
+                               std::max(all->right, one.right), std::max(all->top, one.top)}
+              : one;
+  }
+  return all;
 }
 
 }  // namespace cradle

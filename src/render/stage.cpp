@@ -191,6 +191,10 @@ double farthestTarget(const View& view) {
 
 }  // namespace
 
+double pixelAngle(const Stage& stage) {
+  return 2 * std::tan(stage.camera.verticalFieldOfView / 2) / stage.height;
+}
+
 void aimCamera(const Camera& camera, Stage& stage) {
   stage.camera = camera;
   const double nearest = std::max(stage.bounds.exteriorDistance(camera.position), kNearShare * sizeOf(stage));

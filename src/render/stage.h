@@ -62,6 +62,9 @@ enum TextureUnit { kShadowUnit = 0, kBlockUnit, kContactUnit, kBallUnit, kNearBa
 
 Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground>& ground, int width, int height);
 
+/// Size of a pixel at distance 1, in the middle of the picture.
+double pixelAngle(const Stage& stage);
+
 /// Turns the stage to another camera.
 void aimCamera(const Camera& camera, Stage& stage);
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kTile = 8;              // pixels
 constexpr double kMargin = 2;         // pixels: samples lie beside the centres, and rounding
-constexpr long kRectangleCost = 24;   // tiles: what drawing one more rectangle costs
+constexpr long kRectangleCost = 16;   // tiles: what drawing one more rectangle costs
 constexpr int kMostRectangles = 256;  // before they are merged: the merging is quadratic
 
 using Point = Eigen::Vector2d;
@@ -91,6 +91,12 @@ void merge(std::vector<TileRectangle>& found) {
 
 }  // namespace
 
+long TileSpans::count() const {
+  long tiles = 0;
+  for (const auto& [first, last] : rows) tiles += std::max(last - first + 1, 0);
+  return tiles;
+}
+
 TileMask::TileMask(int width, int height)
     : width_(width),
       height_(height),
@@ -118,10 +124,31 @@ TileSpans TileMask::spansOf(std::vector<Point> polygon) const {
   return spans;
 }
 
-void TileMask::add(const TileSpans& spans) {
+TileSpans TileMask::spansInside(std::vector<Point> polygon) const {
+  const std::vector<Point> hull = hullOf(std::move(polygon));
+  TileSpans spans{0, {}};
+  for (int row = 0; row < rows_; ++row) {
+    double left = -std::numeric_limits<double>::infinity(), right = -left;
+    for (const double y : {kTile * row - kMargin, kTile * (row + 1) + kMargin}) {
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      for (std::size_t i = 0; i < hull.size(); ++i) includeEdge(hull[i], hull[(i + 1) % hull.size()], y, y, low, high);
+      left = std::max(left, low), right = std::min(right, high);
+    }
+    if (left < right)
+      spans.rows.emplace_back(std::max(clampedTile(left + kMargin, columns_) + 1, 0),
+                              clampedTile(right - kMargin, columns_) - 1);
+    else
+      spans.rows.emplace_back(0, -1);
+  }
+  return spans;
+}
+
+void TileMask::add(const TileSpans& spans, const TileMask* except) {
   for (std::size_t i = 0; i < spans.rows.size(); ++i) {
-    char* const row = isSet_.data() + (static_cast<std::ptrdiff_t>(i) + spans.firstRow) * columns_;
+    const std::ptrdiff_t first = (static_cast<std::ptrdiff_t>(i) + spans.firstRow) * columns_;
+    char* const row = isSet_.data() + first;
     for (int column = spans.rows[i].first; column <= spans.rows[i].second; ++column) {
+      if (except && except->isSet_[static_cast<std::size_t>(first + column)]) continue;
       count_ += !row[column];
       row[column] = 1;
     }

@@ -19,6 +19,7 @@ struct PixelRectangle {
 struct TileSpans {
   int firstRow = 0;
   std::vector<std::pair<int, int>> rows;
+  long count() const;
 };
 
 /// A part of a picture, in tiles that OpenGL's groups of pixels do not straddle: derivatives inside it are the same
@@ -30,7 +31,10 @@ class TileMask {
 
   /// `polygon` is convex, in pixels from the lower left corner, at least one point in any order. O(points log points).
   TileSpans spansOf(std::vector<Eigen::Vector2d> polygon) const;
-  void add(const TileSpans& spans);
+  /// Those that lie wholly in it, with a pixel around each.
+  TileSpans spansInside(std::vector<Eigen::Vector2d> polygon) const;
+  /// But for tiles of `except`, a mask of the same size.
+  void add(const TileSpans& spans, const TileMask* except = nullptr);
   void addAll();
 
   bool isEmpty() const { return count_ == 0; }

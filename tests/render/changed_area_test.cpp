@@ -6,6 +6,7 @@
 #include <random>
 
 #include "render/camera.h"
+#include "render/mirror_image.h"
 #include "render/scene_builder.h"
 
 namespace cradle {
@@ -26,6 +27,13 @@ double outside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2
 bool contains(const std::vector<PixelRectangle>& rectangles, int x, int y) {
   return std::any_of(rectangles.begin(), rectangles.end(),
                      [&](const PixelRectangle& r) { return r.left <= x && x < r.right && r.bottom <= y && y < r.top; });
+}
+
+/// Whether nothing is left of a tile where those of a mask are left out.
+bool isSet(const TileMask& mask, int x, int y) {
+  TileMask one(200, 111);
+  one.add({y, {{x, x}}}, &mask);
+  return one.isEmpty();
 }
 
 TEST(TileMask, ContainsEveryPixelOfAPolygonAndLittleElse) {
@@ -67,6 +75,55 @@ TEST(TileMask, RectanglesCoverTheTilesAndStayInThePicture) {
     EXPECT_LE(one.top, 50);
   }
   EXPECT_TRUE(TileMask(100, 50).rectangles().empty());
+}
+
+TEST(TileMask, TilesInsideAPolygonAreWhollyInItAndMany) {
+  const std::vector<Eigen::Vector2d> triangle = {{13, 7}, {190, 21}, {60, 105}};
+  TileMask inside(200, 111);
+  inside.add(inside.spansInside(triangle));
+  double within = 0;
+  for (int y = 0; y < 14; ++y)
+    for (int x = 0; x < 25; ++x) {
+      double farthest = -INFINITY;  // of the tile's corners
+      for (const double u : {kTile * x, kTile * (x + 1)})
+        for (const double v : {kTile * y, kTile * (y + 1)}) farthest = std::max(farthest, outside(triangle, {u, v}));
+      if (isSet(inside, x, y)) {
+        EXPECT_LE(farthest, 0);
+      }
+      within += farthest < -3.5;  // further in than the margin of 2 pixels to each side
+    }
+  EXPECT_GE(inside.coverage() * 14 * 25, within);
+  TileMask all(200, 111), rest(200, 111);
+  all.add(all.spansOf(triangle));
+  rest.add(rest.spansOf(triangle), &inside);
+  EXPECT_NEAR(rest.coverage() + inside.coverage(), all.coverage(), 1e-12);
+}
+
+// A picture of a point in a ball is where the normal halves the angle between the directions to the eye and the point:
+// looked for among normals all over the ball.
+TEST(MirrorImage, BoundsWhereAPointIsSeenInABall) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> number(-1, 1);
+  const auto vector = [&] {
+    const double x = number(random), y = number(random), z = number(random);
+    return Vec3(x, y, z);
+  };
+  int small = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const BoundingBall mirror{vector(), 0.2}, eye{mirror.center + 4 * vector().normalized(), 0};
+    const BoundingBall seen{mirror.center + (0.5 + std::abs(number(random))) * vector().normalized(), 0.05};
+    const BoundingBall image = imageIn(mirror, eye, seen);
+    small += image.radius < 0.5 * mirror.radius;
+    for (int i = 0; i < 8000; ++i) {
+      const Vec3 normal = vector().normalized(), place = mirror.center + mirror.radius * normal;
+      const Vec3 toEye = (eye.center - place).normalized();
+      if (normal.dot(toEye) <= 0) continue;
+      const Vec3 ray = 2 * normal.dot(toEye) * normal - toEye, to = seen.center - place;
+      if (to.dot(ray) <= 0 || (to - to.dot(ray) * ray).norm() > seen.radius) continue;
+      EXPECT_LE((place - image.center).norm(), image.radius + 1e-12) << trial;
+    }
+  }
+  EXPECT_GT(small, 12);
 }
 
 TEST(DrawnHull, OutlineOfABallIsItsSilhouette) {

@@ -1,0 +1,76 @@
+#include "render/light_maps.h"
+
+#include <GL/glew.h>
+
+namespace cradle {
+
+LightMaps::LightMaps(const ShaderSource& source, const Stage& stage)
+    : surfaceDepth_(source, "surface.vert", "depth.frag"),
+      ballDepth_(source, "ball.vert", "depth.frag"),
+      cylinderDepth_(source, "cylinder.vert", "depth.frag"),
+      tubeDepth_(source, "tube.vert", "depth.frag"),
+      leastDepth_(source, "sky.vert", "shadow_blocks.frag"),
+      contact_(source, "contact.vert", "contact.frag"),
+      shadowMap_(MapTarget::Kind::depth, kShadowMapSize),
+      blocks_(MapTarget::Kind::leastDepth, kShadowMapSize / kShadowBlock),
+      contactMap_(MapTarget::Kind::share, kContactMapSize),
+      triangle_({0, 0, 0}, 1, {0, 1, 2}) {
+  for (const ShaderProgram* program : {&leastDepth_, &contact_}) setStage(stage, *program);
+  for (const ShaderProgram* program : {&surfaceDepth_, &ballDepth_, &cylinderDepth_, &tubeDepth_}) {
+    program->use();
+    program->set("clipFromWorld", stage.shadow.clipFromWorld);
+    program->set("viewer", stage.shadow.viewer);
+    program->set("pixelSize", 0.0f);
+  }
+}
+
+void LightMaps::drawShadows(const ItemDrawer& items, const PixelRectangle& shadows) const {
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_CLAMP);  // what stands outside the view still throws its shadow into it
+  shadowMap_.begin(shadows);
+  surfaceDepth_.use();
+  const SeenItems& seen = items.inShadowMap();
+  items.drawMeshes(seen, shadows);
+  ballDepth_.use();
+  items.drawSpheres(seen, shadows);
+  cylinderDepth_.use();
+  items.drawCylinders(seen, shadows);
+  tubeDepth_.use();
+  items.drawTubes(seen, shadows);
+  glDisable(GL_DEPTH_CLAMP);
+  shadowMap_.end();
+  drawBlocks(shadows);
+}
+
+void LightMaps::drawBlocks(const PixelRectangle& shadows) const {
+  const auto after = [](int texel) { return (texel + kShadowBlock - 1) / kShadowBlock; };
+  blocks_.begin({shadows.left / kShadowBlock, shadows.bottom / kShadowBlock, after(shadows.right), after(shadows.top)});
+  glDisable(GL_DEPTH_TEST);
+  shadowMap_.bindTexture(kShadowUnit);
+  leastDepth_.use();
+  triangle_.draw();
+  blocks_.end();
+}
+
+const LightMaps::Contacts& LightMaps::drawContacts(const ItemDrawer& items) {
+  contactMap_.begin(contactMap_.inside());
+  glDisable(GL_DEPTH_TEST);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE_MINUS_DST_COLOR, GL_ONE);  // what two things leave open is the product of what each does
+  contact_.use();
+  items.drawContacts();
+  glDisable(GL_BLEND);
+  contactMap_.end();
+  return contacts_;
+}
+
+void LightMaps::bindTextures() const {
+  shadowMap_.bindTexture(kShadowUnit);
+  blocks_.bindTexture(kBlockUnit);
+  contactMap_.bindTexture(kContactUnit);
+}
+
+}  // namespace cradle
