@@ -41,7 +41,7 @@ bool isInside(const PixelRectangle& seen, const PixelRectangle& area) {
 /// Of the ball around the middle of its bounds that fits into a closed mesh, if it fills them as a box does: else 0.
 double radiusInside(const DrawnMesh& mesh) {
   constexpr double kFull = 1 - 1e-9;
-  const Bounds bounds = boundsOf(mesh).whole;
+  const Bounds bounds = boundsOf(mesh, true).whole;
   double volume = 0;  // signed tetrahedra from a corner
   for (const auto& [a, b, c] : mesh.triangles)
     volume += (mesh.vertices[a] - bounds.min())

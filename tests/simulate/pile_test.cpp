@@ -34,6 +34,21 @@ TEST(PlanOfPiles, TakesTheFastStepForManyBodiesAndCoarseAccuracyOnly) {
               testing::HasSubstr("not promised"));
 }
 
+// Steel among wood of the same size is more than the fast step's sweeps carry: it made energy from nowhere.
+TEST(PlanOfPiles, LeavesDenseBodiesAmongLightOnesToOtherSteps) {
+  const auto with = [](double size, double mass) {
+    std::string members = heap(13, "\"visual\"");
+    members.insert(members.rfind(']'), fmt::format(R"(, {{"name": "other", "mass": {}, "position": [0, 9, 0],
+      "shape": {{"box": {{"size": [{}, {}, {}]}}}}}})",
+                                                   mass, size, size / 2, size));
+    return methodOf(members);
+  };
+  const double boxMass = 1000 * 0.2 * 0.1 * 0.2;  // kg, at the density of no material
+  EXPECT_EQ(with(0.2, 9 * boxMass), "fast contact step");
+  EXPECT_NE(with(0.2, 11 * boxMass), "fast contact step");
+  EXPECT_EQ(with(0.6, 27 * boxMass), "fast contact step");  // as dense, but larger
+}
+
 // The sum is constant by the way that it is booked; what the test asks is that nothing is ever gained.
 TEST(Pile, DissipatesAndComesToRestWithEvents) {
   const Trajectory trajectory = simulate(sceneWith(heap(13, "\"visual\"")));

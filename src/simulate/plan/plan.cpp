@@ -1,7 +1,8 @@
 // Rules of the plan. The first that applies to an island is taken:
 //   1. the scene names a method: that one, for studies
 //   2. balls bounce without loss, and nothing acts but uniform gravity: closed form between collisions
-//   3. many bodies may touch, only gravity acts, and the accuracy asked is coarse: the fast contact step
+//   3. many bodies of like density may touch, only gravity acts, and the accuracy asked is coarse: the fast contact
+//   step
 //   4. models with hollows may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved
 //   once a step, for their edges meet too often
 //   5. nothing acts but uniform gravity: closed form
@@ -10,6 +11,8 @@
 #include "simulate/plan/plan.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "dynamics/integrators/dop853.h"
 #include "dynamics/integrators/explicit_euler.h"
@@ -25,6 +28,8 @@ namespace {
 
 constexpr double kPileTimeStep = 1.0 / 60;  // s, at most
 constexpr std::size_t kPileBodies = 50;     // with fewer, RK4 costs less than the pictures of its frames
+constexpr double kMostRatio = 10;           // of masses and of densities in a pile
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kContactTolerance = 1e-5;  // of the local error, at most: contact decides how good a step is
 constexpr double kTolerancePart = 0.1;      // of the accuracy: the local errors of about ten steps add up to it
 
@@ -87,6 +92,20 @@ bool hasMesh(const Scene& scene, const IslandPlan& island) {
   });
 }
 
+/// Whether some bodies are much heavier than others, and not for their size: of a dense body on a light one sweeps
+/// carry too little, large bodies among small ones of the same stuff come out well. (docs/stability.md, stacks)
+bool hasDenseOnes(const Scene& scene, const IslandPlan& island) {
+  double lightest = kInfinity, heaviest = 0, thinnest = kInfinity, densest = 0;
+  for (const int body : island.bodies) {
+    const MassProperties& mass = scene.bodies[static_cast<std::size_t>(body)].massProperties;
+    const double gyration = std::sqrt(mass.inertiaTensor.trace() / mass.mass);
+    const double density = mass.mass / (gyration * gyration * gyration);  // kg/m^3, times a number of the shape
+    lightest = std::min(lightest, mass.mass), heaviest = std::max(heaviest, mass.mass);
+    thinnest = std::min(thinnest, density), densest = std::max(densest, density);
+  }
+  return heaviest > kMostRatio * lightest && densest > kMostRatio * thinnest;
+}
+
 void choose(const Scene& scene, IslandPlan& island) {
   findUnturned(scene, island);
   if (!island.unturned.empty()) island.leftOut.push_back("no rotation of balls held at their centres: no torque");
@@ -100,7 +119,7 @@ void choose(const Scene& scene, IslandPlan& island) {
     island.reason = "elastic balls in flight: parabolas, and collisions in the order of time";
     island.leftOut.push_back("no steps, no rotation: nothing turns balls that touch without friction");
   } else if (mayTouchSomething && scene.accuracy > kLookAccuracy && island.bodies.size() >= kPileBodies &&
-             !isActedUpon(scene, island)) {
+             !isActedUpon(scene, island) && !hasDenseOnes(scene, island)) {
     island.method = {MotionKind::pile, "fast contact step", kPileTimeStep};
     island.reason = "many bodies may touch: soft contacts, sub-stepped; the accuracy asked is not promised";
     island.leftOut.push_back("no motion of bodies that lie still");
