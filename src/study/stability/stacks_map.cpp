@@ -111,8 +111,8 @@ StabilityMap stacksMap(const MapProgress& progress) {
       "that sweep (Bullet, ODE's quick step, cradle's fast contact step) leave each box a part of its speed at "
       "every step: a top of ten to thirty times the mass makes its way through the rest. Cradle's fast contact step "
       "mostly ends with an error there rather than gain energy, and twice does not notice; the plan takes it for "
-      "fifty bodies and more, if the accuracy asked is coarse. ODE's direct step and MuJoCo's soft contacts hold "
-      "some stacks and lose others next to them.";
+      "fifty bodies and more, if the accuracy asked is coarse and none is ten times as dense as others. ODE's direct "
+      "step and MuJoCo's soft contacts hold some stacks and lose others next to them.";
   map.x = logarithmicAxis("mass of the topmost box / others", "", logarithmicallySpaced(1, 1e4, 9));
   map.y = linearAxis("boxes", "", {2, 4, 6, 8, 10, 12});
   map.outcomes = {{"stands to 1 cm", "#a9d3ee"},
