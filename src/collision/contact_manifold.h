@@ -3,6 +3,7 @@
 #include <array>
 
 #include "collision/contact_patch.h"
+#include "core/large_array.h"
 
 namespace cradle {
 
@@ -16,5 +17,7 @@ struct ContactManifold {
   double friction = 0;                                       // coefficient of now
   SurfaceLaw law;
 };
+
+using ContactManifolds = LargeArray<ContactManifold>;
 
 }  // namespace cradle
