@@ -3,7 +3,6 @@
 #include <array>
 
 #include "collision/contact_patch.h"
-#include "core/large_array.h"
 
 namespace cradle {
 
@@ -17,7 +16,5 @@ struct ContactManifold {
   double friction = 0;                                       // coefficient of now
   SurfaceLaw law;
 };
-
-using ContactManifolds = LargeArray<ContactManifold>;
 
 }  // namespace cradle

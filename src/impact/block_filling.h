@@ -108,7 +108,7 @@ void emptyLane(std::int32_t stillBody, int lane, Block& block) {
 }
 
 template <class Block>
-void storeImpulses(const Block& block, ContactManifolds& manifolds) {
+void storeImpulses(const Block& block, std::vector<ContactManifold>& manifolds) {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.manifolds[lane] < 0) continue;
     ContactManifold& manifold = manifolds[static_cast<std::size_t>(block.manifolds[lane])];

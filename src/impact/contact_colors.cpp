@@ -14,8 +14,8 @@ bool isAgainstFixed(const ContactManifold& manifold) {
 
 }  // namespace
 
-const ContactColors& ContactColoring::color(const ContactManifolds& manifolds, const std::vector<std::int32_t>& active,
-                                            std::size_t bodies) {
+const ContactColors& ContactColoring::color(const std::vector<ContactManifold>& manifolds,
+                                            const std::vector<std::int32_t>& active, std::size_t bodies) {
   used_.assign(bodies, 0);
   colorOf_.resize(active.size());
   std::int32_t overflow = 2 * kColors;

@@ -18,7 +18,7 @@ struct ContactColors {
 /// one. `bodies`: number of moving bodies. O(active).
 class ContactColoring {
  public:
-  const ContactColors& color(const ContactManifolds& manifolds, const std::vector<std::int32_t>& active,
+  const ContactColors& color(const std::vector<ContactManifold>& manifolds, const std::vector<std::int32_t>& active,
                              std::size_t bodies);
 
   /// Whether a body had a contact in the last colouring.

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "collision/contact_manifold.h"
-#include "core/large_array.h"
 #include "core/worker_threads.h"
 #include "impact/pile_patches.h"
 
@@ -27,8 +26,8 @@ class PileContacts {
   /// Contacts of now, and those that come about within the step. Pairs of bodies asleep stay as they are.
   void update(const PileLook& look, WorkerThreads& threads);
 
-  ContactManifolds& manifolds() { return manifolds_; }
-  const ContactManifolds& manifolds() const { return manifolds_; }
+  std::vector<ContactManifold>& manifolds() { return manifolds_; }
+  const std::vector<ContactManifold>& manifolds() const { return manifolds_; }
   /// The manifolds that have points and a body awake, in the order of pairs.
   const std::vector<std::int32_t>& active() const { return active_; }
 
@@ -80,9 +79,9 @@ class PileContacts {
   PilePatches patches_;
   std::vector<std::vector<Contact>> scratch_;  // of each thread
   std::vector<ColliderPair> listed_;           // geometry.pairs as last taken
-  LargeArray<NearPair> pairs_, taken_;         // taken_: scratch
-  ContactManifolds manifolds_;
-  LargeArray<Anchors> anchors_;
+  std::vector<NearPair> pairs_, taken_;        // taken_: scratch
+  std::vector<ContactManifold> manifolds_;
+  std::vector<Anchors> anchors_;
   std::vector<std::size_t> near_, nearOfPart_;  // indices into pairs_ of the last update, and how many of each part
   std::vector<std::int32_t> free_, active_;
 };

@@ -44,7 +44,7 @@ void SoftContactSolver::BlockList<Block>::add(std::int32_t manifold, std::int32_
   blocks[size - 1].manifolds[lane++] = manifold;
 }
 
-void SoftContactSolver::arrange(const ContactColors& colors, const ContactManifolds& manifolds,
+void SoftContactSolver::arrange(const ContactColors& colors, const std::vector<ContactManifold>& manifolds,
                                 std::int32_t stillBody) {
   forEachList(lists_, [](auto& list) { list.size = 0, list.starts.clear(); });
   for (std::size_t color = 0; color + 1 < colors.starts.size(); ++color) {
@@ -60,7 +60,7 @@ void SoftContactSolver::arrange(const ContactColors& colors, const ContactManifo
   forEachList(lists_, [](auto& list) { list.starts.push_back(list.size); });
 }
 
-void SoftContactSolver::prepare(const ContactColors& colors, const ContactManifolds& manifolds,
+void SoftContactSolver::prepare(const ContactColors& colors, const std::vector<ContactManifold>& manifolds,
                                 const std::vector<SolverBody>& bodies, double subStep, WorkerThreads& threads) {
   const double impulseScale = subStep_ > 0 ? subStep / subStep_ : 1;
   subStep_ = subStep;
@@ -149,7 +149,7 @@ void SoftContactSolver::solve(const Steps& steps, const Vec3& gravity, SolverMot
   });
 }
 
-void SoftContactSolver::store(ContactManifolds& manifolds, WorkerThreads& threads) const {
+void SoftContactSolver::store(std::vector<ContactManifold>& manifolds, WorkerThreads& threads) const {
   threads.run([&](int thread) {
     forEachList(lists_, [&](const auto& list) {
       const auto [first, last] = threads.partOf(list.size, thread);

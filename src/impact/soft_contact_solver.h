@@ -3,7 +3,6 @@
 #include <tuple>
 #include <vector>
 
-#include "core/large_array.h"
 #include "core/worker_threads.h"
 #include "impact/contact_blocks.h"
 #include "impact/contact_colors.h"
@@ -15,8 +14,8 @@ namespace cradle {
 class SoftContactSolver {
  public:
   /// Arranges the manifolds for sub-steps of that length (s).
-  void prepare(const ContactColors& colors, const ContactManifolds& manifolds, const std::vector<SolverBody>& bodies,
-               double subStep, WorkerThreads& threads);
+  void prepare(const ContactColors& colors, const std::vector<ContactManifold>& manifolds,
+               const std::vector<SolverBody>& bodies, double subStep, WorkerThreads& threads);
 
   struct Steps {
     double subStep;  // s
@@ -27,12 +26,12 @@ class SoftContactSolver {
   void solve(const Steps& steps, const Vec3& gravity, SolverMotions& motions, WorkerThreads& threads);
 
   /// Impulses of the step, for the next one.
-  void store(ContactManifolds& manifolds, WorkerThreads& threads) const;
+  void store(std::vector<ContactManifold>& manifolds, WorkerThreads& threads) const;
 
  private:
   template <class Block>
   struct BlockList {
-    LargeArray<Block> blocks;  // at least `size`
+    std::vector<Block> blocks;  // at least `size`
     std::size_t size = 0;
     std::vector<std::size_t> starts;  // of each colour, and the end
     int lane = kLanes;                // next free one of the last block
@@ -44,7 +43,7 @@ class SoftContactSolver {
                  BlockList<ContactBlock<4, true>>, BlockList<ContactBlock<1, false>>, BlockList<ContactBlock<2, false>>,
                  BlockList<ContactBlock<3, false>>, BlockList<ContactBlock<4, false>>>;
 
-  void arrange(const ContactColors& colors, const ContactManifolds& manifolds, std::int32_t stillBody);
+  void arrange(const ContactColors& colors, const std::vector<ContactManifold>& manifolds, std::int32_t stillBody);
   void arrangeTasks();
   template <class Pass>
   void sweep(WorkerThreads& threads, int thread, const Pass& pass);

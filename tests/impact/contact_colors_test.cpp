@@ -12,7 +12,7 @@ namespace {
 // 30 bodies at random, a fixed one, and a body that touches 90 others: more than there are colours.
 TEST(ContactColors, HaveNoMovingBodyTwiceAndEveryContactOnce) {
   std::mt19937 random(3);
-  ContactManifolds manifolds;
+  std::vector<ContactManifold> manifolds;
   const auto add = [&](int a, int b) {
     manifolds.emplace_back();
     manifolds.back().bodyA = a, manifolds.back().bodyB = b;
