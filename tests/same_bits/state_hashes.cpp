@@ -20,22 +20,29 @@ namespace cradle {
 namespace {
 
 constexpr double kRounding = 1e-9;  // s, of frame times
+constexpr double kDuration = 2;     // s, of all runs, whatever is asked: bits depend on where a run would end
 
-/// One run a scene: times are looked at on the way.
+struct Done {};
+
+/// One run a scene, until all times are past: they are looked at on the way.
 void printHashes(const std::string& path, const std::vector<double>& times) {
   Scene scene = loadScene(path).scene;
-  scene.duration = std::min(scene.duration, times.back());
+  scene.duration = std::min(scene.duration, kDuration);
   const std::string name = std::filesystem::path(path).stem().string();
   Hash hash;
   std::size_t next = 0;
   const auto printUntil = [&](double time) {
     for (; next < times.size() && times[next] < time; ++next) fmt::print("{} {} {}\n", name, times[next], hash.hex());
   };
-  simulate(scene, {[&](const Frame& frame) {
-                     printUntil(frame.time - kRounding);
-                     addFrame(frame, hash);
-                   },
-                   [](const Event&) {}, [](const std::string&) {}});
+  const auto take = [&](const Frame& frame) {
+    printUntil(frame.time - kRounding);
+    if (next == times.size()) throw Done();
+    addFrame(frame, hash);
+  };
+  try {
+    simulate(scene, {take, [](const Event&) {}, [](const std::string&) {}});
+  } catch (const Done&) {
+  }
   printUntil(std::numeric_limits<double>::infinity());
 }
 
