@@ -1,0 +1,58 @@
+// Overlaps are taken out by displacements that solve the cone problem without friction: the least that makes gaps zero.
+
+#include <algorithm>
+
+#include "simulate/steps/contact_stepping.h"
+
+namespace cradle {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kSeparatedPart = 0.1;    // of the overlaps that are let be: how well others are taken out, ...
+constexpr double kSeparatedError = 1e-3;  // ... or of the deepest
+constexpr double kFarOverlaps = 10;       // of the deepest overlap: gaps that are as good as any wider ones
+
+}  // namespace
+
+void ContactStepping::takeOut(const std::vector<Contact>& contacts, VectorX& state) {
+  const std::vector<SteppedContact> last = contacts_;
+  begin(contacts, state, state);
+  const Invariants free = invariantsOf(assembly_.mechanism, state);
+  for (const Group& group : findGroups()) {
+    VectorX gaps(group.contacts.size());
+    for (Index i = 0; i < gaps.size(); ++i) gaps[i] = group.contacts[static_cast<std::size_t>(i)].separation;
+    if (gaps.minCoeff() >= -overlapTolerance_) continue;
+    setCones(group, state);
+    const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
+    separate(group, gaps, state);
+    if (group.isTied) solver_.project(state);
+    limitEnergy(group.moved, most, assembly_.mechanism, state);
+  }
+  contacts_ = last;
+  bookDifference(free, assembly_.mechanism, state);
+}
+
+/// Moves bodies apart where `gaps` (m) at the step's end are negative, without touching velocities.
+void ContactStepping::separate(const Group& group, const VectorX& gaps, VectorX& state) {
+  const double deepest = -gaps.minCoeff();
+  Problem problem{VectorX::Zero(3 * gaps.size()), std::vector<double>(group.contacts.size(), 0)};
+  for (Index i = 0; i < gaps.size(); ++i) problem.free[3 * i + 2] = std::min(gaps[i], kFarOverlaps * deepest);
+  VectorX displacement = state;
+  displacement.tail(state.size() - poseComponents(state)).setZero();
+  if (tied_ || group.contacts.size() <= kFewContacts) {
+    const VectorX pushes = solveConeProblem(inverseMass(), problem.free, problem.frictions).impulses;
+    tied_ ? tied_->apply(pushes, displacement) : cones_.apply(pushes, displacement);
+  } else {
+    ConeStart start{VectorX::Zero(3 * gaps.size()), VectorX::Zero(3 * gaps.size()), 0};
+    const double tolerance = std::max(kSeparatedPart * overlapTolerance_, kSeparatedError * deepest);
+    cones_.apply(cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations).impulses,
+                 displacement);
+  }
+  for (const int body : group.moved.bodies) {
+    centerOfMass(state, body) += linearVelocity(displacement, body);
+    turnBody(state, body, angularVelocity(displacement, body));
+  }
+}
+
+}  // namespace cradle
