@@ -26,13 +26,6 @@ constexpr double kSolvedPart = 1e-7;        // of the fastest velocity
 constexpr double kStraightTies = 1e-6;      // m or rad: more of an error may take turns of a radian to mend
 constexpr double kFreeClosing = 2;          // of the speed with which a contact lands: nothing makes it so fast
 
-double smallestSize(const ContactGeometry& geometry) {
-  double smallest = 1;
-  for (const Collider& collider : geometry.colliders)
-    if (collider.body != kFixed) smallest = std::min(smallest, collider.boundingRadius);
-  return smallest;
-}
-
 }  // namespace
 
 ContactStepping::ContactStepping(const Assembly& assembly)
@@ -97,8 +90,7 @@ std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
   std::map<int, Group> groups;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& contact = contacts_[i].contact;
-    const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
-    Group& group = groups[islands.islandOf(body)];
+    Group& group = groups[islands.islandOf(contact.movingBody())];
     ground(contact.bodyA, contact.bodyB);
     group.members.push_back(i);
     group.contacts.push_back(contact);
