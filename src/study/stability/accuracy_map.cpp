@@ -93,8 +93,9 @@ StabilityMap accuracyMap(const MapProgress& progress) {
   map.paragraph =
       "The accuracy that a scene asks for bounds the error of each step, and the error at the end goes down with it, a "
       "tenth for a tenth, as far as rounding allows. How far above or below it lies is the scene's own: a damped "
-      "spring forgets its errors, a pendulum keeps them, and a free body that turns over makes them 5000 times larger "
-      "in 10 s, since a small error in the time of each turn over is a large one in where the body points. `cradle "
+      "spring forgets its errors, a pendulum keeps them, and a free body that turns over makes of them 4000 times the "
+      "accuracy in 10 s, since a small error in the time of each turn over is a large one in where the body points. "
+      "`cradle "
       "simulate --check-accuracy` finds that factor for any scene.";
   map.x = logarithmicAxis("accuracy asked", "", {std::pow(10, -kLastTenths - 0.3), std::pow(10, -kFirstTenths + 0.3)});
   map.y = logarithmicAxis("error at the end", "", {kLeastError, 1});
