@@ -37,7 +37,7 @@ def data_of(rows, floor):
     def value(x):
         return x if math.isfinite(x) else None
     methods = {}
-    for engine, method in {(row.engine, row.method) for row in rows}:
+    for engine, method in in_reading_order({(row.engine, row.method) for row in rows}):
         look, own = look_of(engine, method), [row for row in rows if row.method == method]
         title = f"{ENGINES[engine]}: {look.title}"
         steps = method not in ("plan", "dop853", "simbody", "simbodyFehlberg")
