@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs all studies and writes the page that shows them: charts.html, and its picture charts.png.
+"""Runs all studies and writes the page that shows them: charts.html, and its picture charts.png; and what the README shows of it.
 
     make_charts.py BUILD_FOLDER SOURCE_FOLDER OUTPUT_FOLDER [--scenes NAME,...] [--methods NAME,...]
 
@@ -8,7 +8,7 @@ program and its scenes is not measured again. With --scenes or --methods, only a
 """
 import argparse, os, shutil, subprocess, sys, time
 
-import browser, machine, maps, piles
+import browser, machine, maps, piles, readme
 from page import page
 from scenes import SCENES
 from study_file import read_references, read_rows
@@ -56,9 +56,13 @@ def by_scene(rows):
     return found
 
 
-def write_page(options, folder, path):
+def read_studies(folder):
+    """Rows and references, each by scene."""
     place = os.path.join(folder, "study")
-    studies, references = by_scene(read_rows(os.path.join(place, "study.csv"))), read_references(os.path.join(place, "references.csv"))
+    return by_scene(read_rows(os.path.join(place, "study.csv"))), read_references(os.path.join(place, "references.csv"))
+
+
+def write_page(options, folder, studies, references, path):
     facts = machine.machine(options.build, options.source, time.strftime("%Y-%m-%d"))
     text = page(studies, references, piles.section(piles.read(folder)), maps.section(maps.read(folder)), facts)
     with open(path + ".part", "w") as file:
@@ -80,10 +84,12 @@ def main():
     study(program, scenes, options.methods, folder)
     piles.measure(os.path.join(options.build, "benchmarks", "benchmark_pile"), folder)
     maps.measure(program, folder)
-    write_page(options, folder, html)
+    studies, references = read_studies(folder)
+    write_page(options, folder, studies, references, html)
     browser.take_picture(html, browser.check(html), html[:-5] + ".png")
     if options.scenes == ",".join(SCENES) and not options.methods:
         show_in_docs(folder, os.path.join(options.source, "docs", "charts"))
+        readme.update(os.path.join(options.source, "README.md"), studies, references)
     print(f"{html}\n{html[:-5]}.png")
 
 
@@ -96,5 +102,5 @@ if __name__ == "__main__":
     except subprocess.CalledProcessError as error:
         print(f"charts: {os.path.basename(error.cmd[0])} ended with {error.returncode}", file=sys.stderr)
         sys.exit(error.returncode)
-    except browser.PageError as error:
+    except (browser.PageError, readme.MarkError) as error:
         sys.exit(f"charts: {error}")

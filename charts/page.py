@@ -37,12 +37,12 @@ def data_of(rows, floor):
     def value(x):
         return x if math.isfinite(x) else None
     methods = {}
-    for engine, method in {(row.engine, row.method) for row in rows}:
+    for engine, method in in_reading_order({(row.engine, row.method) for row in rows}):
         look, own = look_of(engine, method), [row for row in rows if row.method == method]
-        order = order_of(own, floor) if own[0].setting != 0.01 else None
         title = f"{ENGINES[engine]}: {look.title}"
         steps = method not in ("plan", "dop853", "simbody", "simbodyFehlberg")
-        methods[method] = [title + (f" (order {order:.1f})" if order and steps else ""), "time step, s" if steps else "accuracy"]
+        order = order_of(own, floor) if steps else None
+        methods[method] = [title + (f" (order {order:.1f})" if order else ""), "time step, s" if steps else "accuracy"]
     lines = [[row.method, *(value(x) for x in row[3:10]), row.status] for row in rows]
     return json.dumps({"methods": methods, "rows": lines}, separators=(",", ":")).replace("</", "<\\/")
 

@@ -17,6 +17,8 @@
 #include "commands/study_scenes.h"
 #include "core/error.h"
 #include "core/interruption.h"
+#include "scene/suggestion.h"
+#include "study/study_method.h"
 #include "trajectory/export.h"
 
 namespace cradle {
@@ -57,7 +59,8 @@ void addPictureOptions(CLI::App* command, CommandLine& line) {
 }
 
 void addOverrides(CLI::App* command, CommandLine& line) {
-  command->add_option("--accuracy", line.simulation.overrides.accuracy, "in place of the scene's accuracy");
+  command->add_option("--accuracy", line.simulation.overrides.accuracy,
+                      "in place of the scene's: 1e-12 to 1e-2, visual, default or reference");
   command->add_option("--method", line.simulation.overrides.method, "explicitEuler, semiImplicitEuler, rk4 or dop853");
   command->add_option("--time-step", line.simulation.overrides.timeStep, "step of --method in s; dop853 needs none");
   command->add_option("--duration", line.simulation.overrides.duration, "in place of the scene's duration, in s");
@@ -80,14 +83,21 @@ void addSimulate(CLI::App& app, CommandLine& line) {
   addOverrides(plan, line);
 }
 
+/// With commas between them.
+template <class Named>
+std::string namesOf(const std::vector<Named>& all) {
+  std::string names;
+  for (const Named& one : all) names += (names.empty() ? "" : ", ") + one.name;
+  return names;
+}
+
 void addStudy(CLI::App& app, CommandLine& line) {
   auto* study = addCommand(app, line, "study", "Chart error against cost of all methods on scenes, with study.csv",
                            "cradle study scenes/suspended_model.json scenes/rod_pendulum.json -o study",
                            [&] { studyScenes(line.scenes, line.output, line.methods, line.quiet); });
   study->add_option("scenes", line.scenes, "scene files (JSON)")->required();
   addOutput(study, line, "folder for study.csv and charts (SVG, PNG)");
-  study
-      ->add_option("--methods", line.methods, "of explicitEuler, semiImplicitEuler, rk4, dop853FixedStep, dop853, plan")
+  study->add_option("--methods", line.methods, "of " + namesOf(studyMethods()))
       ->delimiter(',')
       ->allow_extra_args(false);
 
@@ -95,9 +105,7 @@ void addStudy(CLI::App& app, CommandLine& line) {
                                "cradle stability -o maps --maps step_stiffness,logistic",
                                [&] { chartStability(line.output, line.maps, line.quiet); });
   addOutput(stability, line, "folder for the maps (CSV, SVG, PNG)");
-  std::string names;
-  for (const MapEntry& map : stabilityMaps()) names += (names.empty() ? "" : ", ") + map.name;
-  stability->add_option("--maps", line.maps, "of " + names)->delimiter(',')->allow_extra_args(false);
+  stability->add_option("--maps", line.maps, "of " + namesOf(stabilityMaps()))->delimiter(',')->allow_extra_args(false);
 }
 
 void addPictures(CLI::App& app, CommandLine& line) {
@@ -160,6 +168,18 @@ void addQuestions(CLI::App& app, CommandLine& line) {
   addOutput(exported, line, "table to write (.csv)");
 }
 
+/// Says so if what was taken for a command is none; CLI11 would only ask for one.
+void refuseUnknownCommand(const CLI::App& app) {
+  if (!app.get_subcommands().empty()) return;
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  for (const std::string& word : app.remaining()) {
+    if (word.starts_with('-')) continue;
+    throw Error(ErrorKind::usage, word,
+                fmt::format("is no command; allowed are {}{}", fmt::join(commands, ", "), didYouMean(word, commands)));
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Cradle: rigid-body physics from a scene file, and pictures of it.", "cradle");
   CommandLine line;
@@ -174,6 +194,9 @@ int run(int argc, char** argv) {
   addQuestions(app, line);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    refuseUnknownCommand(app);
+    return app.exit(error), static_cast<int>(ErrorKind::usage);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
   }

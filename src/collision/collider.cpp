@@ -127,4 +127,11 @@ Collider colliderOf(const ConvexHull& hull, const RigidTransform& bodyFromShape)
   return colliderOf(polytopeOf(placed));
 }
 
+double smallestSize(const ContactGeometry& geometry) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Collider& collider : geometry.colliders)
+    if (collider.body != kFixed) smallest = std::min(smallest, collider.boundingRadius);
+  return std::isfinite(smallest) ? smallest : 1;
+}
+
 }  // namespace cradle

@@ -77,4 +77,7 @@ struct ContactGeometry {
   std::vector<ColliderPair> unsolvedPairs;  // contact that cannot be computed: must stay out of each other's reach
 };
 
+/// The least bounding radius (m) of what moves; 1 if nothing does.
+double smallestSize(const ContactGeometry& geometry);
+
 }  // namespace cradle

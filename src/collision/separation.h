@@ -16,6 +16,9 @@ struct Contact {
   double separation = 0;       // m, < 0: overlap
   // m: radius of the ball that each surface is there: 0 a corner, infinite a flat face; NaN: neither (edge, side, rim).
   double radiusA = std::numeric_limits<double>::quiet_NaN(), radiusB = radiusA;
+
+  /// A if it moves, else B.
+  int movingBody() const { return bodyA != kFixed ? bodyA : bodyB; }
 };
 
 /// Pose of a moving body's centre of mass frame in `state`; identity if fixed.

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 
 #include "core/error.h"
 #include "core/interruption.h"
@@ -11,6 +14,7 @@
 #include "core/progress.h"
 #include "render/camera_path.h"
 #include "scene/load_scene.h"
+#include "scene/named_accuracy.h"
 #include "simulate/assembly.h"
 #include "simulate/plan/plan_text.h"
 #include "simulate/simulate.h"
@@ -26,7 +30,6 @@ constexpr std::array<std::pair<const char*, MethodName>, 4> kMethodNames = {
      {"semiImplicitEuler", MethodName::semiImplicitEuler},
      {"rk4", MethodName::rk4},
      {"dop853", MethodName::dop853}}};
-constexpr double kFinestAccuracy = 1e-12, kCoarsestAccuracy = 1e-2;  // as in scene files
 
 void warn(const std::string& warning) {
   fmt::print(stderr, "warning: {}\n", warning);
@@ -39,6 +42,18 @@ MethodName methodNamed(const std::string& name) {
               fmt::format("found \"{}\"; allowed are explicitEuler, semiImplicitEuler, rk4, dop853", name));
 }
 
+/// A number, or a word as in scene files.
+double accuracyOf(const std::string& text) {
+  if (const std::optional<double> named = accuracyNamed(text)) return *named;
+  char* end = nullptr;
+  const double accuracy = std::strtod(text.c_str(), &end);
+  const bool isNumber = end != text.c_str() && *end == '\0';
+  if (isNumber && accuracy >= kFinestAccuracy && accuracy <= kCoarsestAccuracy) return accuracy;
+  throw Error(
+      ErrorKind::usage, "--accuracy",
+      fmt::format("found {}; allowed are {} to {}, {}", text, kFinestAccuracy, kCoarsestAccuracy, kAccuracyWords));
+}
+
 double requirePositive(const char* option, double value) {
   if (value > 0 && std::isfinite(value)) return value;
   throw Error(ErrorKind::usage, option, fmt::format("found {}; allowed are numbers of seconds > 0", value));
@@ -46,11 +61,7 @@ double requirePositive(const char* option, double value) {
 
 void apply(const SceneOverrides& overrides, Scene& scene) {
   if (overrides.accuracy) {
-    if (!(*overrides.accuracy >= kFinestAccuracy && *overrides.accuracy <= kCoarsestAccuracy))
-      throw Error(
-          ErrorKind::usage, "--accuracy",
-          fmt::format("found {}; allowed are {} to {}", *overrides.accuracy, kFinestAccuracy, kCoarsestAccuracy));
-    scene.accuracy = *overrides.accuracy;
+    scene.accuracy = accuracyOf(*overrides.accuracy);
     scene.namesAccuracy = true;
   }
   if (overrides.duration) scene.duration = requirePositive("--duration", *overrides.duration);
@@ -62,6 +73,30 @@ void apply(const SceneOverrides& overrides, Scene& scene) {
   if (!overrides.timeStep) return;
   if (!scene.method) throw Error(ErrorKind::usage, "--time-step", "found without --method; name the method it is for");
   scene.method->timeStep = requirePositive("--time-step", *overrides.timeStep);
+}
+
+/// A slip of the command line does not cost a file of another kind, the scene's own for one.
+void requireNoOtherFile(const std::string& path) {
+  std::error_code failed;
+  const auto size = std::filesystem::file_size(path, failed);
+  if (failed || size == 0 || isTrajectoryFile(path)) return;
+  throw Error(ErrorKind::output, path, "is there, and is no trajectory: it is not replaced; give another name");
+}
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+/// ", 10 rods, 1 push": what there is of each kind.
+std::string linksOf(const Scene& scene) {
+  std::string text;
+  const auto add = [&](std::size_t count, const char* one, const char* many) {
+    if (count > 0) text += ", " + counted(count, one, many);
+  };
+  add(scene.springs.size(), "spring", "springs"), add(scene.rods.size(), "rod", "rods");
+  add(scene.ropes.size(), "rope", "ropes"), add(scene.ballJoints.size(), "ball joint", "ball joints");
+  add(scene.hinges.size(), "hinge", "hinges"), add(scene.pushes.size(), "push", "pushes");
+  return text;
 }
 
 void printAchievedAccuracy(const Scene& scene, const std::string& output, bool quiet) {
@@ -107,6 +142,7 @@ void simulateInto(TrajectoryWriter& writer, const Scene& scene, bool quiet) {
 void simulateScene(const std::string& scenePath, const std::string& output, const SimulateOptions& options,
                    bool quiet) {
   requireWritableFile(output);
+  requireNoOtherFile(output);
   const Scene scene = loadSceneAndWarn(scenePath, options.overrides);
   refuseUnsupported(scene);
   TrajectoryWriter writer(output, headerOf(scene));
@@ -124,7 +160,8 @@ void printPlan(const std::string& scenePath, const SceneOverrides& overrides) {
   const Scene scene = loadSceneAndWarn(scenePath, overrides);
   refuseUnsupported(scene);
   const Plan plan = planOf(scene);
-  fmt::print("{}: accuracy {:.3g} asked, {}\n{}\n", scenePath, plan.accuracy, accuracyPromised(plan),
+  const std::string asked = fmt::format("{:.3g}", plan.accuracy), promised = accuracyPromised(plan);
+  fmt::print("{}: accuracy {} asked, {}\n{}\n", scenePath, asked, promised == asked ? "and promised" : promised,
              describe(plan, scene));
 }
 
@@ -136,10 +173,10 @@ void checkScene(const std::string& scenePath) {
   settleStartOverlaps(scene, islands);
   for (const Assembly& assembly : islands)
     for (const std::string& warning : assembly.warnings) warn(warning);
-  std::size_t dynamic = 0;
-  for (const Body& body : scene.bodies) dynamic += body.motion == Motion::dynamic ? 1 : 0;
-  fmt::print("{}: \"{}\" is in order: {} bodies ({} dynamic), {} springs, {} rods; {} s, {} frames\n", scenePath,
-             scene.name, scene.bodies.size(), dynamic, scene.springs.size(), scene.rods.size(), scene.duration,
+  const auto dynamic = std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                                     [](const Body& body) { return body.motion == Motion::dynamic; });
+  fmt::print("{}: \"{}\" is in order: {} ({} dynamic){}; {} s, {} frames\n", scenePath, scene.name,
+             counted(scene.bodies.size(), "body", "bodies"), dynamic, linksOf(scene), scene.duration,
              lastFrame(scene) + 1);
 }
 

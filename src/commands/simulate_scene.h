@@ -10,7 +10,7 @@ namespace cradle {
 
 /// What the command line may put in place of what the scene says.
 struct SceneOverrides {
-  std::optional<double> accuracy;
+  std::optional<std::string> accuracy;  // a number, or a word of a scene's
   std::optional<std::string> method;
   std::optional<double> timeStep;  // s
   std::optional<double> duration;  // s

@@ -27,6 +27,15 @@ ModelSource modelsOf(const TrajectoryHeader& header) {
   };
 }
 
+std::string temporaryPath() {
+  std::error_code failed;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(failed);
+  if (failed)
+    throw Error(ErrorKind::output, "TMPDIR",
+                "names no folder, and a scene is simulated into a file there: make it, or name another");
+  return (folder / fmt::format("cradle-{}.sqlite", getpid())).string();
+}
+
 }  // namespace
 
 TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool quiet) : quiet_(quiet) {
@@ -55,7 +64,7 @@ void TrajectorySource::open(const std::string& trajectory) {
 
 void TrajectorySource::simulate() {
   if (reader_) return;
-  temporary_ = (std::filesystem::temp_directory_path() / fmt::format("cradle-{}.sqlite", getpid())).string();
+  temporary_ = temporaryPath();
   {
     TrajectoryWriter writer(temporary_, headerOf(scene_));
     simulateInto(writer, scene_, quiet_);

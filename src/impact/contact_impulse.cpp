@@ -33,6 +33,10 @@ Vec3 relativeVelocity(const Contact& contact, const VectorX& places, const Vecto
          pointVelocity(contact, contact.bodyA, places, velocities);
 }
 
+double openingSpeed(const Contact& contact, const VectorX& state) {
+  return contact.normal.dot(relativeVelocity(contact, state));
+}
+
 Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state) {
   return inverseMassOf(contact, contact.bodyA, bodies, state) + inverseMassOf(contact, contact.bodyB, bodies, state);
 }

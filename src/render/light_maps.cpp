@@ -55,7 +55,7 @@ void LightMaps::drawBlocks(const PixelRectangle& shadows) const {
   blocks_.end();
 }
 
-const LightMaps::Contacts& LightMaps::drawContacts(const ItemDrawer& items) {
+void LightMaps::drawContacts(const ItemDrawer& items) const {
   contactMap_.begin(contactMap_.inside());
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
@@ -64,7 +64,6 @@ const LightMaps::Contacts& LightMaps::drawContacts(const ItemDrawer& items) {
   items.drawContacts();
   glDisable(GL_BLEND);
   contactMap_.end();
-  return contacts_;
 }
 
 void LightMaps::bindTextures() const {

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <vector>
-
 #include "render/item_drawer.h"
 #include "render/render_targets.h"
 #include "render/shader_program.h"
@@ -20,11 +16,8 @@ class LightMaps {
   /// Draws the part `shadows` (texels) of the shadow map anew.
   void drawShadows(const ItemDrawer& items, const PixelRectangle& shadows) const;
 
-  /// Draws the map of contacts anew. Its texels before and after, by row: where they are the same, the ground is.
-  struct Contacts {
-    std::vector<std::uint8_t> before, now;  // kContactMapSize squared, or none while none was drawn
-  };
-  const Contacts& drawContacts(const ItemDrawer& items);
+  /// Draws the map of contacts anew.
+  void drawContacts(const ItemDrawer& items) const;
 
   /// Lets the shaders of a picture look them up.
   void bindTextures() const;
@@ -36,7 +29,6 @@ class LightMaps {
   ShaderProgram leastDepth_, contact_;
   MapTarget shadowMap_, blocks_, contactMap_;
   GpuMesh triangle_;
-  Contacts contacts_;
 };
 
 }  // namespace cradle

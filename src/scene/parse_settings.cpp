@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "scene/named_accuracy.h"
+
 namespace cradle {
 namespace {
 
 constexpr const char* kSchema = "cradle-scene/1";
-constexpr Range kAccuracies{1e-12, 1e-2};
+constexpr Range kAccuracies{kFinestAccuracy, kCoarsestAccuracy};
 constexpr int kLargestPicture = 16384;  // pixels; Mesa's limit
 constexpr double kMostFrames = 1e9;     // a year at 30 a second; keeps frame numbers far from overflow
 
@@ -20,15 +22,14 @@ void parseSchema(ObjectReader& root) {
 
 double parseAccuracy(const Field& field, FaultList& faults) {
   const auto* word = std::get_if<std::string>(&field.value->content);
-  if (word == nullptr) return readNumber(field, kAccuracies, "or a word", faults).value_or(kAccuracies.most);
-  if (*word == "visual") return 1e-3;
-  if (*word == "default") return 1e-6;
-  if (*word == "reference") return 1e-10;
-  addFault(faults, field,
-           fmt::format("accuracy is {}; allowed is a number in 1e-12..1e-2, \"visual\" (1e-3), \"default\" (1e-6) or "
-                       "\"reference\" (1e-10)",
-                       inQuotes(*word)));
-  return kAccuracies.most;
+  const std::string orWords = fmt::format("or {}", kAccuracyWords);
+  if (word == nullptr) return readNumber(field, kAccuracies, orWords.c_str(), faults).value_or(kAccuracies.most);
+  const std::optional<double> accuracy = accuracyNamed(*word);
+  if (!accuracy)
+    addFault(faults, field,
+             fmt::format("accuracy is {}; allowed is a number in {}..{}, {}", inQuotes(*word), kAccuracies.least,
+                         kAccuracies.most, kAccuracyWords));
+  return accuracy.value_or(kAccuracies.most);
 }
 
 Method parseMethod(const Field& field, FaultList& faults) {

@@ -70,8 +70,7 @@ bool RestingBodies::canBeHeld(const std::vector<int>& islands, int island, const
   std::vector<double> frictions;
   findContacts(geometry_, state, supportMargin_, near);
   for (const Contact& contact : near) {
-    const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
-    if (islands[static_cast<std::size_t>(body)] != island) continue;
+    if (islands[static_cast<std::size_t>(contact.movingBody())] != island) continue;
     supports.push_back(contact);
     frictions.push_back(geometry_.pairs[contact.pair].law.staticFriction);
   }

@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <iterator>
+#include <utility>
 
 #include "core/error.h"
 #include "core/output_path.h"
@@ -14,6 +18,14 @@ namespace cradle {
 namespace {
 
 constexpr StartFailure kNoGnuplot{ErrorKind::output, "gnuplot-nox"};
+constexpr std::size_t kLastBytes = 16;  // of a file: its end is among them
+
+/// Whether a file has its last bytes: gnuplot says nothing of a full disk.
+bool endsWith(const std::string& path, const std::string& end) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return text.find(end, text.size() - std::min(text.size(), kLastBytes)) != std::string::npos;
+}
 
 void finishFile(const std::string& path) {
   if (std::rename(partPath(path).c_str(), path.c_str()) != 0)
@@ -56,6 +68,9 @@ void drawWithGnuplot(const std::string& stem, const std::function<std::string(co
   const bool taken = gnuplot.write(text.data(), text.size());
   if (gnuplot.finish() != 0 || !taken)
     throw Error(ErrorKind::output, files.png, "gnuplot failed: " + gnuplot.standardError());
+  for (const auto& [path, end] : {std::pair(files.svg, "</svg>"), std::pair(files.png, "IEND")})
+    if (!endsWith(partPath(path), end))
+      throw Error(ErrorKind::output, path, "could not be written to its end; is the disk full?");
   finishFile(files.svg);
   finishFile(files.png);
 }

@@ -27,7 +27,7 @@ struct ChartFiles {
 std::string drawingCommands(const std::string& drawing, const ChartFiles& files, int height = 900);
 
 /// Draws stem.svg and stem.png by the commands that it is given for such files. Throws Error(output) if gnuplot is
-/// missing or fails.
+/// missing or fails, or the files are not whole.
 void drawWithGnuplot(const std::string& stem, const std::function<std::string(const ChartFiles&)>& commands);
 
 }  // namespace cradle

@@ -69,6 +69,10 @@ class Usage(InTemporaryFolder):
                           ("inspect", BALL, "--scale", "x")):
             self.assertEqual(cradle(*arguments).returncode, 2, arguments)
 
+    def test_a_command_that_is_none_is_named(self):
+        self.refuses(2, ["simulat: is no command", 'did you mean "simulate"?'], "simulat", "a.json", "-o", "a.sqlite")
+        self.refuses(2, ["is required"], "simulate", "a.json")
+
     def test_options_come_in_any_order(self):
         path = self.write("s.json", scene())
         self.assertEqual(cradle("simulate", "-o", self.path("a.sqlite"), "--quiet", path).returncode, 0)
@@ -76,9 +80,14 @@ class Usage(InTemporaryFolder):
 
     def test_bad_overrides_are_named(self):
         path = self.write("s.json", scene())
-        for option, value in (("--accuracy", "1"), ("--duration", "-1"), ("--duration", "nan"), ("--method", "euler")):
+        for option, value in (("--accuracy", "1"), ("--accuracy", "fine"), ("--accuracy", "1e-6x"), ("--duration", "-1"), ("--duration", "nan"), ("--method", "euler")):
             self.refuses(2, [option, value], "simulate", path, "-o", self.path("x.sqlite"), option, value)
         self.refuses(2, ["--time-step", "--method"], "simulate", path, "-o", self.path("x.sqlite"), "--time-step", "0.1")
+
+    def test_accuracies_have_names(self):
+        path = self.write("s.json", scene())
+        for name, number in (("visual", "0.001"), ("default", "1e-06"), ("reference", "1e-10")):
+            self.assertIn(f"accuracy {number} asked", cradle("plan", path, "--accuracy", name).stdout)
 
 
 class Scenes(InTemporaryFolder):
@@ -112,6 +121,11 @@ class Scenes(InTemporaryFolder):
         words = ["s.json:", "/bodies/1: ", '"a" and "b" overlap by 70 mm', '"a" is 70 mm deep in the plane "ground"']
         self.refuses(3, words, "simulate", path, "-o", self.path("x.sqlite"))
         self.refuses(3, words, "check", path)
+
+    def test_what_is_in_order_is_counted(self):
+        rods = [{"bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, y, 0]} for y in (1, 2)]
+        result = cradle("check", self.write("s.json", scene(rods=rods, ropes=rods[:1])))
+        self.assertIn("1 body (1 dynamic), 2 rods, 1 rope;", result.stdout)
 
     def test_a_ray_that_misses_is_warned_about_even_if_quiet(self):
         push = {"body": "ball", "ray": {"origin": [0, 9, 5], "direction": [0, 0, -1]}, "force": [0, 0, -3], "start": 0.05, "duration": 0.02}
@@ -171,6 +185,14 @@ class Meshes(InTemporaryFolder):
 
 
 class Trajectories(InTemporaryFolder):
+    def test_a_file_of_another_kind_is_not_replaced(self):
+        path = self.write("s.json", scene())
+        self.refuses(5, ["s.json: ", "no trajectory"], "simulate", path, "-o", path)
+        with open(path) as file:
+            self.assertEqual(json.load(file), scene())
+        for _ in range(2):
+            self.assertEqual(cradle("simulate", path, "-o", self.path("a.sqlite")).returncode, 0)
+
     def simulate(self, name, *options, **changes):
         path = self.write(name + ".json", scene(**changes))
         result = cradle("simulate", path, "-o", self.path(name + ".sqlite"), *options)
@@ -341,6 +363,18 @@ class Stability(InTemporaryFolder):
         self.assertEqual(result.returncode, 5, result.stderr)
         self.assertEqual(os.listdir(self.path("m")), ["logistic.csv"])
 
+    def test_charts_that_were_cut_off_are_told(self):
+        # As on a full disk, of which gnuplot says nothing: files without an end.
+        os.mkdir(self.path("bin"))
+        with open(self.path("bin/gnuplot"), "w") as file:
+            file.write("#!/bin/sh\nsed -n \"s/^set output '\\(.*\\)'$/\\1/p\" | while read -r name; do echo '<svg>' > \"$name\"; done\n")
+        os.chmod(self.path("bin/gnuplot"), 0o755)
+        path = self.path("bin") + os.pathsep + os.environ["PATH"]
+        result = cradle("stability", "-o", self.path("m"), "--maps", "logistic", env={**os.environ, "PATH": path})
+        self.assertEqual(result.returncode, 5, result.stdout)
+        self.assertIn("logistic.svg: could not be written to its end", result.stderr)
+        self.assertNotIn("logistic.svg", os.listdir(self.path("m")))
+
 
 def png_size(path):
     with open(path, "rb") as file:
@@ -359,6 +393,11 @@ class Pictures(InTemporaryFolder):
     def setUp(self):
         super().setUp()
         self.scene = self.write("s.json", scene())
+
+    def test_a_temporary_folder_that_is_none_is_named(self):
+        result = cradle("video", self.scene, "-o", self.path("f.mp4"), env={**os.environ, "TMPDIR": self.path("none")})
+        self.assertEqual(result.returncode, 5, result.stderr)
+        self.assertIn("TMPDIR: ", result.stderr)
 
     def test_render_writes_frames_0_to_n_minus_1(self):
         self.assertEqual(cradle("render", self.scene, "-o", self.path("all")).returncode, 0)

@@ -46,7 +46,8 @@ TEST(PlanOfPiles, LeavesDenseBodiesAmongLightOnesToOtherSteps) {
   const double boxMass = 1000 * 0.2 * 0.1 * 0.2;  // kg, at the density of no material
   EXPECT_EQ(with(0.2, 9 * boxMass), "fast contact step");
   EXPECT_NE(with(0.2, 11 * boxMass), "fast contact step");
-  EXPECT_EQ(with(0.6, 27 * boxMass), "fast contact step");  // as dense, but larger
+  EXPECT_EQ(with(0.6, 27 * boxMass), "fast contact step");        // as dense, but larger
+  EXPECT_EQ(with(0.05, 20 * boxMass / 64), "fast contact step");  // denser, but not as heavy
 }
 
 // The sum is constant by the way that it is booked; what the test asks is that nothing is ever gained.

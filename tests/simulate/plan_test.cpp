@@ -120,6 +120,22 @@ TEST(Joints, ExcludeContactOfTheBodiesThatTheyJoin) {
   }
 }
 
+/// A prism with a hollow, an L, over the floor.
+MotionKind methodOfPrism(double accuracy, const std::string& collision) {
+  const std::string text = fmt::format(R"({{"schema": "cradle-scene/1", "name": "prism", "duration": 1, "accuracy": {},
+    "bodies": [{}, {{"name": "prism", "shape": {{"mesh": "{}/assets/l_prism.3ds"}}, "collision": "{}",
+      "position": [0, 1, 0]}}]}})",
+                                       accuracy, kFloor, CRADLE_SOURCE_DIR, collision);
+  return planOf(parseScene(text, "prism.json", modelFilesBeside("prism.json")).scene).islands.at(0).method.kind;
+}
+
+TEST(Plan, TakesContactStepsForMeshesThatMayTouchWhereALookIsEnough) {
+  EXPECT_EQ(methodOfPrism(1e-3, "auto"), MotionKind::fixedSteps);
+  EXPECT_EQ(methodOfPrism(1e-4, "auto"), MotionKind::errorSteps);
+  EXPECT_EQ(methodOfPrism(1e-3, "hull"), MotionKind::errorSteps);
+  EXPECT_EQ(methodOfPrism(1e-3, "none"), MotionKind::freeFlight);
+}
+
 long evaluationsOf(const std::string& members) {
   return simulate(sceneWith(members)).cost.evaluations;
 }

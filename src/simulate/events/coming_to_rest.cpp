@@ -15,10 +15,6 @@ namespace {
 constexpr double kMostResidual = 1e-6;    // of gravity: what forces may leave of bodies at rest
 constexpr double kSpeedRounding = 1e-12;  // m/s
 
-int movingBodyOf(const Contact& contact) {
-  return contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
-}
-
 }  // namespace
 
 bool EventContacts::isAnySlow() const {
@@ -40,10 +36,9 @@ Islands EventContacts::findRestGroups() const {
   const Mechanism& mechanism = island_.assembly.mechanism;
   Islands groups(mechanism.bodies.size());
   for (const Contact& contact : touching_) {
-    const double size = island_.assembly.radii[static_cast<std::size_t>(movingBodyOf(contact))];
+    const double size = island_.assembly.radii[static_cast<std::size_t>(contact.movingBody())];
     const double still = kSpeedRounding + stillPart_ * std::sqrt(mechanism.gravity.norm() * size);
-    if (contact.normal.dot(relativeVelocity(contact, island_.state)) <= still)
-      groups.join(contact.bodyA, contact.bodyB);
+    if (openingSpeed(contact, island_.state) <= still) groups.join(contact.bodyA, contact.bodyB);
   }
   for (const SpringForce& spring : mechanism.springs) groups.join(spring.anchorA.body, spring.anchorB.body);
   forEachTie(mechanism.constraints, [&](int bodyA, int bodyB) { groups.join(bodyA, bodyB); });
@@ -92,7 +87,7 @@ bool EventContacts::isHeld(const Islands& groups, int group) {
   std::vector<ContactRows> contacts;
   std::vector<double> frictions;
   for (const Contact& contact : touching_) {
-    if (groups.islandOf(movingBodyOf(contact)) != group) continue;
+    if (groups.islandOf(contact.movingBody()) != group) continue;
     contacts.push_back(rowsOf(contact, island_.state, frames_));
     frictions.push_back(island_.assembly.geometry.pairs[contact.pair].law.staticFriction);
   }

@@ -25,18 +25,7 @@ constexpr double kLastBouncePart = 1e-7;   // of sqrt(acceleration x size): boun
 constexpr double kMostStillPart = 1e-7;    // of sqrt(g x size)
 constexpr double kSameCorner = 1e-6;       // of a size
 
-double smallestSize(const ContactGeometry& geometry) {
-  double smallest = INFINITY;
-  for (const Collider& collider : geometry.colliders)
-    if (collider.body != kFixed) smallest = std::min(smallest, collider.boundingRadius);
-  return std::isfinite(smallest) ? smallest : 1;
-}
-
-double openingSpeed(const Contact& contact, const VectorX& state) {
-  return contact.normal.dot(relativeVelocity(contact, state));
-}
-
-/// The fastest that any point moves at a contact, in m/s.
+/// m/s: of the faster of the two bodies' centres.
 double contactSpeed(const Contact& contact, const VectorX& state) {
   double speed = 0;
   for (const int body : {contact.bodyA, contact.bodyB})
@@ -73,10 +62,6 @@ void findCorner(const ContactGeometry& geometry, const VectorX& state, Contact& 
     contact.radiusA = 0;
   else if (hasCornerAt(geometry.colliders[pair.b], contact.point, state))
     contact.radiusB = 0;
-}
-
-int movingBodyOf(const Contact& contact) {
-  return contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
 }
 
 }  // namespace
@@ -156,7 +141,7 @@ void EventContacts::collide() {
   const Islands together = findStruckTogether(ropes);
   std::vector<char> isStruck(island_.assembly.mechanism.bodies.size(), 0);
   for (const Contact& contact : touching_)
-    if (closes(contact)) isStruck[static_cast<std::size_t>(together.islandOf(movingBodyOf(contact)))] = 1;
+    if (closes(contact)) isStruck[static_cast<std::size_t>(together.islandOf(contact.movingBody()))] = 1;
   for (std::size_t group = 0; group < isStruck.size(); ++group)
     if (isStruck[group]) strike(together, static_cast<int>(group), ropes);
   ropes_.endImpact(island_.time, ropes, island_.state);
@@ -175,7 +160,7 @@ Islands EventContacts::findStruckTogether(const std::vector<ImpactContact>& rope
 }
 
 void EventContacts::strike(const Islands& together, int group, std::vector<ImpactContact>& ropes) {
-  const auto isIn = [&](const Contact& contact) { return together.islandOf(movingBodyOf(contact)) == group; };
+  const auto isIn = [&](const Contact& contact) { return together.islandOf(contact.movingBody()) == group; };
   std::vector<ImpactContact> impacts;
   for (const Contact& contact : touching_)
     if (isIn(contact)) impacts.push_back({contact, island_.assembly.geometry.pairs[contact.pair].law, 0, Vec3::Zero()});
@@ -227,7 +212,7 @@ bool EventContacts::endBounces(const VectorX& approach, std::vector<ImpactContac
     if (!isEvaluated) island_.equations.evaluate(state, rate_);
     isEvaluated = true;
     const double closing = -openingAcceleration(impact.contact, state, rate_);
-    const double size = island_.assembly.radii[static_cast<std::size_t>(movingBodyOf(impact.contact))];
+    const double size = island_.assembly.radii[static_cast<std::size_t>(impact.contact.movingBody())];
     if (!(closing > 0) || speed > kLastBouncePart * std::sqrt(closing * size)) continue;
     impact.restSpeed = INFINITY;
     restDelay_ = std::max(restDelay_, 2 * speed / (closing * (1 - restitution)));

@@ -15,42 +15,19 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kSlowSliding = 1e-6;            // m/s: slower has no direction
 constexpr double kUnloadedPart = 1e-9;           // of the accelerations: a contact that takes less carries nothing
 constexpr double kReleasedPart = 1e-6;           // the same when another lets go: what is symmetric lets go together
 constexpr double kAccelerationRounding = 1e-14;  // of gravity
 constexpr double kStillPart = 1e-7;              // of the accelerations: less is held
 constexpr double kLastBouncePart = 1e-7;         // of sqrt(g x size): what leaves so slowly is held by what presses
-constexpr double kSamePoint = 1e-4;              // of a size
-constexpr double kSameDirection = 0.999;         // cosine
-constexpr int kMostFrictionRounds = 200;
-constexpr double kFrictionConverged = 1e-10;
-constexpr int kMostRedundant = 12;
-constexpr int kMostIndependent = 40;
-constexpr double kRankPart = 1e-9;
-
-double openingSpeed(const Contact& contact, const VectorX& state) {
-  return contact.normal.dot(relativeVelocity(contact, state));
-}
+constexpr double kSpeedRounding = 1e-12;         // m/s
+constexpr int kMostFrictionRounds = 200;         // of normal forces from friction, and friction from these
+constexpr double kFrictionConverged = 1e-10;     // of the largest normal force
+constexpr int kMostRedundant = 12;               // rows: with more, contact steps cost less
+constexpr int kMostIndependent = 40;             // the same
+constexpr double kRankPart = 1e-9;               // of the largest pivot: less is none
 
 }  // namespace
-
-void LastingContacts::letGo(const std::optional<ContactChange>& change) {
-  former_.clear();
-  if (change && change->kind == ContactChange::Kind::slip) island_.equations.evaluate(island_.state, rate_);
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    Former former{entries_[i], mechanism().contacts[i]};
-    if (change && change->kind == ContactChange::Kind::slip && change->contact == i) {
-      former.isSlipping = true;
-      former.slipping = -island_.equations.contactForces()[i].tangential.normalized();
-    }
-    former_.push_back(former);
-  }
-  isReleasing_ = change && change->kind == ContactChange::Kind::release;
-  mechanism().contacts.clear();
-  entries_.clear();
-  fault_ = {};
-}
 
 void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSolver& ties) {
   placeBodies(mechanism().bodies, island_.state, frames_);
@@ -83,9 +60,8 @@ std::vector<LastingContacts::Entry> LastingContacts::entriesOf(const std::vector
   std::vector<Entry> entries;
   for (const Contact& contact : touching) {
     if (!isAwake(contact)) continue;
-    const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
-    const double size = island_.assembly.radii[static_cast<std::size_t>(body)];
-    const double still = kLastBouncePart * std::sqrt(mechanism().gravity.norm() * size) + 1e-12;
+    const double size = island_.assembly.radii[static_cast<std::size_t>(contact.movingBody())];
+    const double still = kLastBouncePart * std::sqrt(mechanism().gravity.norm() * size) + kSpeedRounding;
     if (openingSpeed(contact, island_.state) > still) continue;
     Entry entry{contact, island_.assembly.geometry.pairs[contact.pair]};
     const ContactRows rows = rowsOf(contact, island_.state, frames_);
@@ -99,29 +75,14 @@ std::vector<LastingContacts::Entry> LastingContacts::entriesOf(const std::vector
   return entries;
 }
 
-/// The contact that lasted until now at the same place, or null.
-const LastingContacts::Former* LastingContacts::formerOf(const Entry& entry) const {
-  for (const Former& former : former_) {
-    const ColliderPair &a = former.entry.pair, &b = entry.pair;
-    if (a.a != b.a || a.b != b.b || a.againstPlane != b.againstPlane) continue;
-    const ContactPlace place = placeOf(former.constraint, island_.state, frames_);
-    const double size = island_.assembly.geometry.colliders[a.a].boundingRadius;
-    if (std::abs(place.normal.dot(entry.contact.normal)) > kSameDirection &&
-        (place.point - entry.contact.point).norm() < kSamePoint * size)
-      return &former;
-  }
-  return nullptr;
-}
-
 std::vector<LastingContacts::Together> LastingContacts::groupsOf(const std::vector<Entry>& entries) const {
   Islands islands(mechanism().bodies.size());
   for (const Entry& entry : entries) islands.join(entry.contact.bodyA, entry.contact.bodyB);
   forEachTie(mechanism().constraints, [&](int bodyA, int bodyB) { islands.join(bodyA, bodyB); });
   std::vector<Together> groups(mechanism().bodies.size());
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const Contact& contact = entries[i].contact;
-    const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
-    groups[static_cast<std::size_t>(islands.islandOf(body))].push_back(i);
+    const int first = islands.islandOf(entries[i].contact.movingBody());
+    groups[static_cast<std::size_t>(first)].push_back(i);
   }
   std::erase_if(groups, [](const Together& group) { return group.empty(); });
   return groups;
@@ -160,8 +121,11 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
     heldRows.push_back(at + 2);
     if (entry.sticks) heldRows.push_back(at), heldRows.push_back(at + 1);
   }
-  if (heldRows.empty()) return;
-  const MatrixX held = inverseMass(heldRows, heldRows);
+  if (!heldRows.empty()) countRows(group, inverseMass(heldRows, heldRows), entries);
+}
+
+/// Notes whose forces are not unique, and whether rows are too many. `held`: J M^-1 J^T of the rows that hold.
+void LastingContacts::countRows(const Together& group, const MatrixX& held, std::vector<Entry>& entries) {
   Eigen::ColPivHouseholderQR<MatrixX> factor(held);
   factor.setThreshold(kRankPart);
   const Index rank = factor.rank();
@@ -222,45 +186,6 @@ void LastingContacts::add(const Entry& entry) {
   }
   mechanism().contacts.push_back(constraint);
   entries_.push_back(entry);
-}
-
-/// Whether what slid slides the other way now.
-bool LastingContacts::turnsBack(const Former& former, const Entry& now) const {
-  const int body = former.constraint.surfaceB.body;
-  const Vec3& given = former.constraint.slidingDirection;
-  const Vec3 before = body == kFixed ? given : Vec3(orientation(island_.state, body).normalized() * given);
-  return before.dot(now.direction) < 0;
-}
-
-/// What is new of the contacts that lasted before.
-void LastingContacts::recordChanges() {
-  for (const Former& former : former_) {
-    const Entry* now = nullptr;
-    for (const Entry& entry : entries_)
-      if (formerOf(entry) == &former) now = &entry;
-    const Contact& contact = former.entry.contact;
-    const auto record = [&](EventKind kind) {
-      const auto [a, b] = bodiesOf(island_.assembly, former.entry.pair);
-      const ContactPlace place = placeOf(former.constraint, island_.state, frames_);
-      island_.log.record({island_.time, kind, a, b, place.point, contact.normal, 0});
-    };
-    const bool slid = former.constraint.motion == ContactMotion::sliding;
-    const bool stuck = former.constraint.motion == ContactMotion::sticking;
-    if (!isAwake(contact)) {
-      if (slid) record(EventKind::stick);
-    } else if (!now) {
-      record(EventKind::release);
-    } else if (slid && now->sticks) {
-      Vec3 spin = Vec3::Zero();
-      if (contact.bodyA != kFixed) spin -= angularVelocity(island_.state, contact.bodyA);
-      if (contact.bodyB != kFixed) spin += angularVelocity(island_.state, contact.bodyB);
-      const double size = island_.assembly.geometry.colliders[former.entry.pair.a].boundingRadius;
-      record(spin.norm() * size > kSlowSliding ? EventKind::roll : EventKind::stick);
-    } else if (now->slides && (stuck || (slid && turnsBack(former, *now)))) {
-      record(EventKind::slip);
-    }
-  }
-  former_.clear();
 }
 
 const std::vector<HeldFeature>& LastingContacts::held() {

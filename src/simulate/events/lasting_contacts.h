@@ -11,6 +11,8 @@
 
 namespace cradle {
 
+constexpr double kSlowSliding = 1e-6;  // m/s: slower has no direction
+
 /// What happens to a lasting contact inside a step.
 struct ContactChange {
   enum class Kind {
@@ -83,6 +85,7 @@ class LastingContacts {
   std::vector<Entry> entriesOf(const std::vector<Contact>& touching) const;
   std::vector<Together> groupsOf(const std::vector<Entry>& entries) const;
   void decide(const Together& group, std::vector<Entry>& entries, ConstraintSolver& ties);
+  void countRows(const Together& group, const MatrixX& held, std::vector<Entry>& entries);
   bool nothingCloses(const std::vector<ContactRows>& rows) const;
   ConeSolution solve(const std::vector<const Entry*>& entries, const std::vector<ContactRows>& rows,
                      const ContactResponse& response) const;

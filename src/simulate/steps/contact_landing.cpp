@@ -12,10 +12,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kSlidingSpeed = 1e-6;      // m/s: slower counts as sticking
-constexpr double kLessRestitution = 0.7;    // of the restitution that let energy grow
-constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
-
 }  // namespace
 
 double ContactStepping::firstLanding(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,

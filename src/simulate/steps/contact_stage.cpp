@@ -24,15 +24,8 @@ constexpr double kClosedPart = 1e-6;       // of the speed that gravity gives in
 constexpr double kLeastImpactPart = 0.01;  // of the speed that gravity gives in a step: slower is no impact
 constexpr double kLandingPart = 0.1;       // of the same: slower landings are not worth ending a step for
 
-double touchTolerance(const ContactGeometry& geometry) {
-  double smallest = 1;
-  for (const Collider& balls : geometry.colliders)
-    if (balls.body != kFixed) smallest = std::min(smallest, balls.boundingRadius);
-  return kTouchPart * smallest;
-}
-
 double closingSpeed(const Contact& contact, const VectorX& state) {
-  return -contact.normal.dot(relativeVelocity(contact, state));
+  return -openingSpeed(contact, state);
 }
 
 /// Without friction by reflections; with it by the same on Coulomb's cones.
@@ -51,7 +44,7 @@ ContactStage::ContactStage(MovingIsland& island, double timeStep)
       resting_(island.resting),
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       timeStep_(timeStep),
-      touchTolerance_(cradle::touchTolerance(assembly_.geometry)),
+      touchTolerance_(kTouchPart * smallestSize(assembly_.geometry)),
       leastClosingSpeed_(kRestSpeedFloor + kClosedPart * assembly_.mechanism.gravity.norm() * timeStep),
       leastImpactSpeed_(kRestSpeedFloor + kLeastImpactPart * assembly_.mechanism.gravity.norm() * timeStep),
       stepping_(assembly_) {
@@ -256,8 +249,7 @@ std::vector<std::vector<ImpactContact>> ContactStage::findImpacts(const VectorX&
     const double closing = closingSpeed(contact, state);
     const double gained = closing + contact.normal.dot(relativeVelocity(contact, state, before));
     const double restSpeed = std::max(kRestSteps * std::max(0.0, gained / stepPart_), leastImpactSpeed_);
-    const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
-    const auto island = static_cast<std::size_t>(islands.islandOf(body));
+    const auto island = static_cast<std::size_t>(islands.islandOf(contact.movingBody()));
     impacts[island].push_back({contact, assembly_.geometry.pairs[contact.pair].law, restSpeed, Vec3::Zero()});
     if (closing > leastClosingSpeed_) isStruck[island] = 1;
   }

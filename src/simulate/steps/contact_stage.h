@@ -74,8 +74,9 @@ class ContactStage {
   EventLog& log_;
   RestingBodies& resting_;
   ConstraintSolver solver_;
-  double timeStep_, touchTolerance_, leastClosingSpeed_, leastImpactSpeed_;
-  double stepPart_ = INFINITY;  // of a step, that the last one took
+  double timeStep_, touchTolerance_;             // s, m
+  double leastClosingSpeed_, leastImpactSpeed_;  // m/s
+  double stepPart_ = INFINITY;                   // of a step, that the last one took
   std::vector<Contact> touching_, overlapping_;
   ContactStepping stepping_;
   bool isCrowded_ = false, becomesCrowded_ = false;

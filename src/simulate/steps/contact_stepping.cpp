@@ -14,24 +14,14 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kSlidingSpeed = 1e-6;      // m/s: slower counts as sticking
-constexpr double kRestSteps = 2;            // a rebound that ends within as many steps is not resolved
-constexpr double kRestSpeedFloor = 1e-12;   // m/s: rounding
-constexpr double kRestSpeedPart = 0.01;     // of the speed that gravity gives in a step: slower is no impact
-constexpr double kOverlapPart = 1e-9;       // of the smallest body's size: deeper overlaps are taken out
-constexpr double kSmoothPart = 1e-2;        // of that: overlaps that the mean velocity may add in a step
-constexpr double kLessRestitution = 0.7;    // of the restitution that let energy grow
-constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
-constexpr double kSolvedPart = 1e-7;        // of the fastest velocity
-constexpr double kStraightTies = 1e-6;      // m or rad: more of an error may take turns of a radian to mend
-constexpr double kFreeClosing = 2;          // of the speed with which a contact lands: nothing makes it so fast
-
-double smallestSize(const ContactGeometry& geometry) {
-  double smallest = 1;
-  for (const Collider& collider : geometry.colliders)
-    if (collider.body != kFixed) smallest = std::min(smallest, collider.boundingRadius);
-  return smallest;
-}
+constexpr double kRestSteps = 2;           // a rebound that ends within as many steps is not resolved
+constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
+constexpr double kRestSpeedPart = 0.01;    // of the speed that gravity gives in a step: slower is no impact
+constexpr double kOverlapPart = 1e-9;      // of the smallest body's size: deeper overlaps are taken out
+constexpr double kSmoothPart = 1e-2;       // of that: overlaps that the mean velocity may add in a step
+constexpr double kSolvedPart = 1e-7;       // of the fastest velocity
+constexpr double kStraightTies = 1e-6;     // m or rad: more of an error may take turns of a radian to mend
+constexpr double kFreeClosing = 2;         // of the speed with which a contact lands: nothing makes it so fast
 
 }  // namespace
 
@@ -97,8 +87,7 @@ std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
   std::map<int, Group> groups;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& contact = contacts_[i].contact;
-    const int body = contact.bodyA != kFixed ? contact.bodyA : contact.bodyB;
-    Group& group = groups[islands.islandOf(body)];
+    Group& group = groups[islands.islandOf(contact.movingBody())];
     ground(contact.bodyA, contact.bodyB);
     group.members.push_back(i);
     group.contacts.push_back(contact);

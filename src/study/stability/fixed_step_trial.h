@@ -27,11 +27,11 @@ struct TrialLength {
 };
 FixedStepTrial tryFixedSteps(Scene& scene, const FixedStepMethod& method, const TrialLength& length);
 
-/// The longest step that is stable, to 1e-3, found by trials alone: doubled from `first` on, then bisected. 0 if
-/// already that is not.
+/// The longest step (s) that is stable, to 1e-3 of it, found by trials alone: doubled from `first` on, then bisected. 0
+/// if already that is not.
 double measuredLimit(const std::function<bool(double timeStep)>& isStable, double first);
 
-/// Whether the scene goes through `steps` steps of that length without being stopped.
+/// Whether the scene goes through `steps` steps of that length (s) without being stopped.
 bool isStableFor(Scene& scene, const FixedStepMethod& method, double timeStep, long steps);
 
 /// The cells of a panel, each by a trial of its own. `done` is told of each row, 0..1.

@@ -10,14 +10,14 @@ namespace cradle {
 /// constraints are projected only if wanted. For what goes wrong without.
 class IslandSteps {
  public:
-  /// Throws what assembling throws.
+  /// `timeStep` in s. Throws what assembling throws.
   IslandSteps(const Scene& scene, Integrator integrate, double timeStep, bool projects);
   IslandSteps(const IslandSteps&) = delete;
   IslandSteps& operator=(const IslandSteps&) = delete;
 
   void advance();
 
-  double time() const { return static_cast<double>(steps_) * timeStep_; }
+  double time() const { return static_cast<double>(steps_) * timeStep_; }  // s
   const VectorX& state() const { return state_; }
   const Assembly& assembly() const { return assembly_; }
 

@@ -8,7 +8,7 @@ namespace cradle {
 constexpr double kLogisticGrowth = 6, kLogisticLoss = 0.007, kLogisticStart = 10;  // 1/s, 1/s, -
 constexpr double kLogisticEnd = kLogisticGrowth / kLogisticLoss;
 
-/// In closed form.
+/// y at a time (s) in closed form.
 double logisticSolution(double time);
 
 /// y after 0, 1, ... `steps` steps of `timeStep` (s) of a method.

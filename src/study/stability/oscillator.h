@@ -13,7 +13,7 @@ constexpr double kOscillatorAmplitude = 0.01;  // m: 1 % of the rest length
 
 Scene oscillatorScene(const Oscillator& oscillator);
 
-/// How far (m) its spring is pulled out, in closed form.
+/// How far (m) its spring is pulled out at a time (s), in closed form.
 double oscillatorStretch(const Oscillator& oscillator, double time);
 
 /// Unstable if a run of ten periods, and of 300 steps at the least, is stopped; inaccurate if off by more than 10 % of

@@ -18,6 +18,13 @@ constexpr long kMostFrames = 200;  // looked at
 constexpr double kClear = 0.5;     // of the spin: about the middle axis, between two turns over
 constexpr double kEnergyError = 0.1;
 
+/// Parts of the spin about the body's axes.
+Vec3 spinOf(const Quat& worldFromBody, const Vec3& angularVelocity, double speed) {
+  return worldFromBody.conjugate() * angularVelocity / speed;
+}
+
+}  // namespace
+
 Scene tumblingScene(double speed) {
   static const Scene prototype = sceneOfText(
       R"({"schema": "cradle-scene/1", "name": "tumbling", "duration": 1, "gravity": [0, 0, 0],
@@ -27,13 +34,6 @@ Scene tumblingScene(double speed) {
   scene.bodies[0].angularVelocity = speed * Vec3(kTilt, 1, kTilt);
   return scene;
 }
-
-/// Parts of the spin about the body's axes.
-Vec3 spinOf(const Quat& worldFromBody, const Vec3& angularVelocity, double speed) {
-  return worldFromBody.conjugate() * angularVelocity / speed;
-}
-
-}  // namespace
 
 Tumbling tumblingOf(double speed, const FixedStepMethod& method, double timeStep) {
   const long steps = std::max(kLeastSteps, static_cast<long>(std::ceil(kTurned / (speed * timeStep))));

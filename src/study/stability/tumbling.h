@@ -12,8 +12,11 @@ enum class Tumbling {
   stopped       // as unstable
 };
 
-/// A body with moments of inertia 1, 2 and 3 kg m^2 that spins at `speed` (rad/s) about the middle axis, tilted by 1 %,
-/// until it has turned by 60 rad and turned over three times; at least 30 steps. The truth is the closed form.
+/// A body with moments of inertia 1, 2 and 3 kg m^2 that spins at `speed` (rad/s) about the middle axis, tilted by 1 %.
+Scene tumblingScene(double speed);
+
+/// That body until it has turned by 60 rad and turned over three times; at least 30 steps. The truth is the closed
+/// form.
 Tumbling tumblingOf(double speed, const FixedStepMethod& method, double timeStep);
 
 }  // namespace cradle

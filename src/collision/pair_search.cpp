@@ -1,0 +1,264 @@
+#include "collision/pair_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "collision/core.h"
+#include "collision/mesh_collider.h"
+
+namespace cradle {
+namespace {
+
+// Of the smaller radius: edges of meshes may graze each other so deep unseen. What does is apart at two looks, and at
+// the rates of a body in free motion by far less.
+constexpr double kGrazePart = 1e-4;
+constexpr int kMostLooks = 1000;           // for directions, at a pair whose edges stay within a hair of each other
+constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
+
+Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
+  if (body == kFixed) return Vec3::Zero();
+  return linearVelocity(state, body) + angularVelocity(state, body).cross(point - centerOfMass(state, body));
+}
+
+/// m/s at which a contact opens.
+double openingSpeed(const Contact& contact, const VectorX& state) {
+  return contact.normal.dot(pointVelocity(contact.bodyB, contact.point, state) -
+                            pointVelocity(contact.bodyA, contact.point, state));
+}
+
+/// How far (m) from the centre of mass the points of a collider are, without the balls around them.
+double pointReach(const Collider& collider) {
+  return collider.boundingRadius - collider.radius;
+}
+
+}  // namespace
+
+double heightOfCorner(const FaceBelow& face, std::size_t corner, const std::pair<const Collider&, RigidTransform>& a,
+                      const std::pair<const Collider&, RigidTransform>& b) {
+  const auto& [upper, worldFromUpper] = face.isOfA ? b : a;
+  const RigidTransform& worldFromLower = face.isOfA ? a.second : b.second;
+  return heightOver(face, worldFromLower, worldFromUpper * upper.points[corner]) - upper.radius;
+}
+
+PairSearch::PairSearch(ImpactSearch& scratch, const Step& step, std::size_t pair)
+    : geometry_(scratch.geometry_),
+      scratch_(scratch),
+      step_(step),
+      pairIndex_(pair),
+      pair_(geometry_.pairs[pair]),
+      a_(geometry_.colliders[pair_.a]),
+      bodyB_(bodyBOf(geometry_, pair_)),
+      startA_(poseAt(step, a_.body, 0)),
+      startB_(poseAt(step, bodyB_, 0)) {}
+
+void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
+  findBounds();
+  const double reach = bounds_.speed + touching.tolerance;
+  if (separationBound(geometry_, pair_, startA_, startB_) > reach) return;
+  reach_ = reach;
+  findFace();
+  if (face_) return searchCorners(touching, best);
+  scratch_.features_.clear();
+  appendFeaturesWithin(geometry_, pair_, startA_, reach, scratch_.features_);
+  for (const std::size_t feature : scratch_.features_) {
+    feature_ = feature;
+    held_ = isHeld(touching) ? touching.held : nullptr;
+    if (held_ && hasOneContact()) continue;
+    if (held_ && (apart_ || hasMesh(a_, geometry_.colliders[pair_.b]))) lookBlindly();
+    const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_, reach);
+    searchFeature(start, touching, best);
+  }
+}
+
+/// A feature whose gap is `start` (m) as the step begins.
+void PairSearch::searchFeature(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
+  if (start > bounds_.speed) return;
+  if (start > touching.tolerance)
+    searchFrom(0, start, 0, best);
+  else if (std::isfinite(touching.deadBand))
+    searchTouching(start, touching, best);
+}
+
+/// A gap is the least of those between all points of the two cores, less the balls' radii. Of two points at distance
+/// d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's sum before they touch; and the
+/// least of many bends upwards no more than they do. Without balls nothing bounds it where d goes to zero: then
+/// directions tell whether convex bodies stay apart.
+void PairSearch::findBounds() {
+  const MotionBounds shift = relativeMotionBounds(step_, a_.body, bodyB_);
+  const MotionBounds& turnA = scratch_.turnOf(step_, a_.body);
+  bounds_.speed = shift.speed + turnA.speed * pointReach(a_);
+  pull_ = shift.acceleration + turnA.acceleration * pointReach(a_);
+  if (pair_.againstPlane) {
+    bounds_.acceleration = pull_;
+    return;
+  }
+  const Collider& b = geometry_.colliders[pair_.b];
+  const MotionBounds& turnB = scratch_.turnOf(step_, bodyB_);
+  bounds_.speed += turnB.speed * pointReach(b);
+  pull_ += turnB.acceleration * pointReach(b);
+  const double radius = a_.radius + b.radius;
+  if (radius > 0) bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / radius;
+  if (radius > 0) return;
+  if (hasMesh(a_, b))
+    lookBlindly();
+  else
+    apart_.emplace(step_, a_, b,
+                   DirectionBends{turnA.acceleration * pointReach(a_) + turnB.acceleration * pointReach(b),
+                                  pull_ + bendInFrame(turnA, b), pull_ + bendInFrame(turnB, a_)});
+}
+
+/// What the turning of a frame adds to the bend of the other body's points along a direction in it.
+double PairSearch::bendInFrame(const MotionBounds& turn, const Collider& other) const {
+  const double distance = (startA_.translation - startB_.translation).norm() + other.boundingRadius + bounds_.speed;
+  return 2 * turn.speed * bounds_.speed + turn.acceleration * distance;
+}
+
+/// With a bound on the gap's speed alone.
+void PairSearch::lookBlindly() {
+  bounds_.graze = kGrazePart * std::min(a_.boundingRadius, geometry_.colliders[pair_.b].boundingRadius);
+  if (!std::isfinite(bounds_.acceleration)) bounds_.finest = kFinestBlindApproach;
+  apart_.reset();
+}
+
+/// Whether one body is above a face of the other all the time.
+void PairSearch::findFace() {
+  if (pair_.againstPlane) return;
+  const Collider& b = geometry_.colliders[pair_.b];
+  const bool hasFacesA = a_.kind() == ColliderKind::polytope, hasFacesB = b.kind() == ColliderKind::polytope;
+  if (!hasFacesA && !hasFacesB) return;
+  const double distance = (startA_.translation - startB_.translation).norm();
+  const double turn = std::max(scratch_.turnOf(step_, a_.body).speed, scratch_.turnOf(step_, bodyB_).speed);
+  const auto motionAlong = [&](const Vec3& normal) {
+    if (a_.body == kFixed || bodyB_ == kFixed) return motionBoundAcross(step_, a_.body, bodyB_, normal);
+    return 2 * bounds_.speed + turn * distance;
+  };
+  if (hasFacesB) face_ = faceBelow(a_, startA_, b, startB_, std::cref(motionAlong));
+  if (face_ || !hasFacesA) return;
+  face_ = faceBelow(b, startB_, a_, startA_, std::cref(motionAlong));
+  if (face_) face_->isOfA = true;
+}
+
+/// Corners over a face that may turn: h'' of their height h has parts from the normal's turning.
+void PairSearch::searchCorners(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
+  const Collider& upper = face_->isOfA ? geometry_.colliders[pair_.b] : a_;
+  pull_ += bendInFrame(scratch_.turnOf(step_, face_->isOfA ? a_.body : bodyB_), upper);
+  bounds_.acceleration = pull_;
+  apart_.reset();
+  for (std::size_t corner = 0; corner < upper.points.size(); ++corner) {
+    feature_ = corner;
+    if (isCornerHeld(touching, upper)) continue;
+    const double start = gap(0);
+    searchFeature(start, touching, best);
+  }
+}
+
+bool PairSearch::isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const {
+  const double near = kHeldPlace * upper.boundingRadius;
+  return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
+           const Attachment& corner = held.contact.centerA;
+           return held.pair == pairIndex_ && corner.body == upper.body &&
+                  (corner.point - upper.points[feature_]).squaredNorm() < near * near;
+         });
+}
+
+bool PairSearch::isHeld(const TouchingFeatures& touching) const {
+  return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [this](const HeldFeature& held) {
+           return held.pair == pairIndex_ && held.feature == feature_;
+         });
+}
+
+/// A ball may touch a mesh at two places, as in a groove.
+bool PairSearch::hasOneContact() const {
+  if (pair_.againstPlane) return true;
+  const Collider& b = geometry_.colliders[pair_.b];
+  return (a_.isBall() || b.isBall()) && !hasMesh(a_, b);
+}
+
+/// Whether the gap is that of one point, or bends downwards no more than one: of a ball and what is convex, of a
+/// corner over a plane. While one point of a rim leaves, another may come down.
+bool PairSearch::staysOnePoint() const {
+  if (pair_.againstPlane) return a_.kind() != ColliderKind::cylinder;
+  return hasOneContact();
+}
+
+/// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not, or by
+/// no more than the dead band, has that.
+void PairSearch::searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
+  const double lowest = std::min(0.0, start), speed = leavingSpeed(touching.tolerance) * step_.timeStep;
+  if (apart_) bounds_.graze = touching.tolerance;  // flush faces would be looked at for ever
+  if (!(speed > touching.deadBand)) return searchFrom(0, start, lowest - touching.deadBand, best);
+  const bool hasOnePoint = std::isfinite(bounds_.acceleration) && staysOnePoint();
+  if (hasOnePoint && speed >= 0.5 * pull_) return;
+  const double from = std::min(speed / pull_, hasOnePoint ? 1 : kFirstLook);
+  const double away = gap(from);
+  if (away > lowest)
+    searchFrom(from, away, lowest, best);
+  else
+    searchFrom(0, start, lowest - touching.deadBand, best);  // a leap within rounding
+}
+
+/// Where the gap falls to `threshold` (m).
+void PairSearch::searchFrom(double from, double gapFrom, double threshold, std::optional<ImpactTime>& best) {
+  const double end = best ? best->fraction : 1;
+  if (from >= end) return;
+  const auto above = [&](double fraction) { return gap(fraction) - threshold; };
+  const auto areApart = [&](const Bracket& ends) {
+    if (apart_ && apart_->looks() > kMostLooks) lookBlindly();
+    return apart_ && apart_->during(ends, threshold, bounds_);
+  };
+  if (const auto fraction = firstCrossing(above, bounds_, areApart, {from, gapFrom - threshold, end, above(end)}))
+    best = ImpactTime{*fraction, pairIndex_, feature_, threshold, held_ != nullptr, face_};
+}
+
+/// m/s; of the point of the feature that leaves slowest.
+double PairSearch::leavingSpeed(double tolerance) {
+  if (pair_.againstPlane) {
+    const Vec3& normal = geometry_.planes[pair_.b].normal;
+    return normal.dot(pointVelocity(a_.body, lowestPoint(normal), step_.startState));
+  }
+  if (face_) {
+    const Vec3 normal = (face_->isOfA ? startA_ : startB_).rotation * face_->normal;
+    const double radius = (face_->isOfA ? geometry_.colliders[pair_.b] : a_).radius;
+    const Vec3 place =
+        face_->isOfA ? startB_ * geometry_.colliders[pair_.b].points[feature_] : startA_ * a_.points[feature_];
+    const Vec3 corner = place - radius * normal;
+    const int upper = face_->isOfA ? bodyB_ : a_.body, lower = face_->isOfA ? a_.body : bodyB_;
+    return normal.dot(pointVelocity(upper, corner, step_.startState) - pointVelocity(lower, corner, step_.startState));
+  }
+  if (held_) {
+    scratch_.findOthers(pairIndex_, *held_, step_.startState, tolerance);
+  } else {
+    scratch_.contacts_.clear();
+    appendContacts(geometry_, pairIndex_, step_.startState, tolerance, scratch_.contacts_);
+  }
+  double least = 0;
+  for (std::size_t i = 0; i < scratch_.contacts_.size(); ++i) {
+    const double speed = openingSpeed(scratch_.contacts_[i], step_.startState);
+    least = i == 0 ? speed : std::min(least, speed);
+  }
+  return least;
+}
+
+/// m, world: of the feature, over a plane.
+Vec3 PairSearch::lowestPoint(const Vec3& planeNormal) const {
+  if (a_.kind() == ColliderKind::cylinder) return Core(a_, startA_).rimPoint(feature_ == 0 ? 1 : -1, -planeNormal);
+  return startA_ * a_.points[feature_] - a_.radius * planeNormal;
+}
+
+double PairSearch::gap(double fraction) {
+  if (face_)
+    return heightOfCorner(*face_, feature_, {a_, poseAt(step_, a_.body, fraction)},
+                          {geometry_.colliders[pair_.b], poseAt(step_, bodyB_, fraction)});
+  if (held_) {
+    for (const int body : {a_.body, bodyB_})
+      if (body != kFixed) interpolatePose(step_, body, fraction, scratch_.sample_);
+    return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, reach_);
+  }
+  // A gap of twice the way that can be gone in the step stays open, however large it is.
+  const double enough = 2 * bounds_.speed;
+  return std::min(2 * enough, separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction),
+                                         poseAt(step_, bodyB_, fraction), enough));
+}
+
+}  // namespace cradle
