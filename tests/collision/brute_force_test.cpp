@@ -55,14 +55,14 @@ Solid someMesh(RandomPoses& random) {
 }
 
 /// The solids as the program has them: two moving bodies, or one and a plane.
-struct Pair {
+struct SolidPair {
   ContactGeometry geometry;
   VectorX state;
   Solid a, b;
   PlaneCollider plane;
 };
 
-void addCollider(Pair& pair, const Solid& solid, int body) {
+void addCollider(SolidPair& pair, const Solid& solid, int body) {
   Collider collider{body, solid.corners, solid.radius, 0, {}};
   for (const Vec3& corner : solid.corners)
     collider.boundingRadius = std::max(collider.boundingRadius, corner.norm() + solid.radius);
@@ -75,57 +75,57 @@ void addCollider(Pair& pair, const Solid& solid, int body) {
   setOrientation(pair.state, body, solid.worldFromBody.rotation);
 }
 
-Pair pairOf(const Solid& a, const Solid& b) {
-  Pair pair{{}, VectorX::Zero(stateSize(2)), a, b, {}};
+SolidPair pairOf(const Solid& a, const Solid& b) {
+  SolidPair pair{{}, VectorX::Zero(stateSize(2)), a, b, {}};
   addCollider(pair, a, 0);
   addCollider(pair, b, 1);
   pair.geometry.pairs = {{0, 1, false, {}}};
   return pair;
 }
 
-Pair pairOf(const Solid& a, const PlaneCollider& plane) {
-  Pair pair{{}, VectorX::Zero(stateSize(1)), a, {}, plane};
+SolidPair pairOf(const Solid& a, const PlaneCollider& plane) {
+  SolidPair pair{{}, VectorX::Zero(stateSize(1)), a, {}, plane};
   addCollider(pair, a, 0);
   pair.geometry.planes = {plane};
   pair.geometry.pairs = {{0, 0, true, {}}};
   return pair;
 }
 
-double gapAlong(const Pair& pair, const Vec3& direction) {
+double gapAlong(const SolidPair& pair, const Vec3& direction) {
   return -pair.a.reach(direction) - pair.b.reach(-direction);
 }
 
 /// Of 2000 directions, 3 degrees apart, the 12 best improved.
-Vec3 widestGap(const Pair& pair) {
-  return cradle::widestGap([&](const Vec3& direction) { return gapAlong(pair, direction); }, {2000, 12, 1e-5});
+Vec3 directionOfWidestGap(const SolidPair& pair) {
+  return widestGap([&](const Vec3& direction) { return gapAlong(pair, direction); }, {2000, 12, 1e-5});
 }
 
-std::vector<Contact> contactsOf(const Pair& pair, double margin) {
+std::vector<Contact> contactsOf(const SolidPair& pair, double margin) {
   std::vector<Contact> contacts;
   findContacts(pair.geometry, pair.state, margin, contacts);
   return contacts;
 }
 
-double separationOf(const Pair& pair) {
+double separationOf(const SolidPair& pair) {
   return separation(pair.geometry, pair.geometry.pairs[0], 0, pair.state);
 }
 
-constexpr double kRounding = 1e-13;  // m: sums and products of lengths of some metres
+constexpr double kSumRounding = 1e-13;  // m: sums and products of lengths of some metres
 // Climbing gets stuck on ridges, where two faces meet, up to about its smallest useful step from the top.
 constexpr double kSearchError = 1e-3;  // m
 
 /// The separation is what the normal sees, and no other direction sees more.
-void expectWidest(const Pair& pair, double separation, const Vec3& normal) {
-  EXPECT_NEAR(gapAlong(pair, normal), separation, kRounding);
-  const double searched = gapAlong(pair, widestGap(pair));
-  EXPECT_LE(searched, separation + kRounding);
+void expectWidest(const SolidPair& pair, double separation, const Vec3& normal) {
+  EXPECT_NEAR(gapAlong(pair, normal), separation, kSumRounding);
+  const double searched = gapAlong(pair, directionOfWidestGap(pair));
+  EXPECT_LE(searched, separation + kSumRounding);
   EXPECT_GE(searched, separation - kSearchError);
 }
 
 /// What makes a contact of convex solids right: the normal sees the gap, and each surface point is on its solid where
 /// that reaches farthest along the normal.
-void expectRightContact(const Pair& pair, const Contact& contact, double tolerance = kRounding) {
-  EXPECT_NEAR(contact.normal.norm(), 1, kRounding);
+void expectRightContact(const SolidPair& pair, const Contact& contact, double tolerance = kSumRounding) {
+  EXPECT_NEAR(contact.normal.norm(), 1, kSumRounding);
   const Vec3 onA = contact.point - contact.separation / 2 * contact.normal;
   const Vec3 onB = contact.point + contact.separation / 2 * contact.normal;
   EXPECT_NEAR(pair.a.reach(contact.normal), contact.normal.dot(onA), tolerance);
@@ -139,7 +139,7 @@ TEST(BruteForce, SphereOnSphere) {
   for (int i = 0; i < 20; ++i) {
     Solid a = sphereOf(random.number(0.1, 1)), b = sphereOf(random.number(0.1, 1));
     a.worldFromBody = {random.turn(), random.vector(1)}, b.worldFromBody = {random.turn(), random.vector(1)};
-    const Pair pair = pairOf(a, b);
+    const SolidPair pair = pairOf(a, b);
     const auto contacts = contactsOf(pair, 10);
     ASSERT_EQ(contacts.size(), 1u);
     expectWidest(pair, separationOf(pair), contacts[0].normal);
@@ -166,7 +166,7 @@ TEST(BruteForce, SphereOnBoxBesideFaceEdgeAndCornerAndInside) {
       Solid ball = sphereOf(random.number(0.05, 0.5)), box = boxOf(Vec3(0.6, 1, 1.7));
       box.worldFromBody = {random.turn(), random.vector(1)};
       ball.worldFromBody = {random.turn(), box.worldFromBody * besideBox(box.boxSize, beyond, random)};
-      for (const Pair& pair : {pairOf(ball, box), pairOf(box, ball)}) {
+      for (const SolidPair& pair : {pairOf(ball, box), pairOf(box, ball)}) {
         const auto contacts = contactsOf(pair, 10);
         ASSERT_EQ(contacts.size(), 1u);
         expectWidest(pair, separationOf(pair), contacts[0].normal);
@@ -180,7 +180,7 @@ constexpr double kHalfThickness = 0.25;  // m: of the thinner box
 
 /// Contacts of boxes that overlap: all along the normal that sees the overlap, the deepest as deep as that, and each in
 /// both solids.
-void expectBoxesRight(const Pair& pair) {
+void expectBoxesRight(const SolidPair& pair) {
   const auto contacts = contactsOf(pair, 0);
   ASSERT_FALSE(contacts.empty());
   expectWidest(pair, separationOf(pair), contacts[0].normal);
@@ -193,9 +193,9 @@ void expectBoxesRight(const Pair& pair) {
     if (separationOf(pair) < -kHalfThickness) continue;
     const Vec3 half = contact.separation / 2 * contact.normal;
     const auto depth = [&](const Vec3& point) { return std::max(pair.a.outside(point), pair.b.outside(point)); };
-    EXPECT_LT(std::min(depth(contact.point - half), depth(contact.point + half)), kRounding);
+    EXPECT_LT(std::min(depth(contact.point - half), depth(contact.point + half)), kSumRounding);
   }
-  EXPECT_NEAR(deepest, separationOf(pair), kRounding);
+  EXPECT_NEAR(deepest, separationOf(pair), kSumRounding);
 }
 
 TEST(BruteForce, BoxesThatOverlapAnyhow) {
@@ -204,9 +204,9 @@ TEST(BruteForce, BoxesThatOverlapAnyhow) {
   for (int i = 0; i < 60; ++i) {
     Solid a = boxOf(Vec3(1, 0.6, 1.4)), b = boxOf(Vec3(0.5, 1.1, 0.8));
     a.worldFromBody = {random.turn(), random.vector(0.5)}, b.worldFromBody = {random.turn(), random.vector(0.5)};
-    const Pair pair = pairOf(a, b);
+    const SolidPair pair = pairOf(a, b);
     if (separationOf(pair) >= 0) {
-      EXPECT_GE(gapAlong(pair, widestGap(pair)), 0);
+      EXPECT_GE(gapAlong(pair, directionOfWidestGap(pair)), 0);
       continue;
     }
     ++overlapping;
@@ -216,9 +216,9 @@ TEST(BruteForce, BoxesThatOverlapAnyhow) {
 }
 
 /// Moves B along the widest gap until it overlaps A by `depth`, as the climbing knows it.
-Pair touching(Solid a, Solid b, double depth) {
-  const Pair apart = pairOf(a, b);
-  const Vec3 direction = widestGap(apart);
+SolidPair touching(Solid a, Solid b, double depth) {
+  const SolidPair apart = pairOf(a, b);
+  const Vec3 direction = directionOfWidestGap(apart);
   b.worldFromBody.translation -= (gapAlong(apart, direction) + depth) * direction;
   return pairOf(a, b);
 }
@@ -232,10 +232,10 @@ TEST(BruteForce, BoxesThatTouchByAVertexOnAFaceOrByTwoEdges) {
     Solid a = boxOf(Vec3(1, 0.6, 1.4)), b = boxOf(Vec3(0.5, 1.1, 0.8));
     a.worldFromBody = {random.turn(), random.vector(0.3)};
     b.worldFromBody = {random.turn(), random.vector(0.5)};
-    const Pair pair = touching(a, b, 1e-3);
+    const SolidPair pair = touching(a, b, 1e-3);
     expectBoxesRight(pair);
     const double depth = separationOf(pair);
-    const auto deepest = contactsOf(pair, depth + kRounding);
+    const auto deepest = contactsOf(pair, depth + kSumRounding);
     ASSERT_EQ(deepest.size(), 1u) << i;
     expectRightContact(pair, deepest[0]);
     const auto isAxisOf = [&](const Solid& box) {
@@ -259,12 +259,12 @@ TEST(BruteForce, BoxesWithParallelFacesShareTheWholePolygon) {
     const Vec3 across{random.number(-0.5, 0.5), 0, random.number(-0.7, 0.7)};
     b.worldFromBody =
         frame * RigidTransform{rotationAbout(Vec3::UnitY(), random.number(0, 6)), across + Vec3(0, 0.85 - 1e-4, 0)};
-    const Pair pair = pairOf(a, b);
+    const SolidPair pair = pairOf(a, b);
     const auto contacts = contactsOf(pair, 0);
     ASSERT_GE(contacts.size(), 3u);
     for (const Contact& contact : contacts) {
-      EXPECT_NEAR(contact.separation, -1e-4, kRounding);
-      EXPECT_LT((contact.normal - frame.rotation * Vec3::UnitY()).norm(), kRounding);
+      EXPECT_NEAR(contact.separation, -1e-4, kSumRounding);
+      EXPECT_LT((contact.normal - frame.rotation * Vec3::UnitY()).norm(), kSumRounding);
     }
     const Vec3 sideways = frame.rotation * Vec3(std::cos(i), 0, std::sin(i));
     double farthest = -INFINITY, sampled = -INFINITY;
@@ -287,14 +287,14 @@ TEST(BruteForce, EveryShapeOnAPlane) {
     const PlaneCollider plane{random.vector(1), random.direction()};
     for (Solid solid : {sphereOf(0.4), boxOf(Vec3(0.6, 1, 1.7)), capsuleOf(0.3, 1.2), someMesh(random)}) {
       solid.worldFromBody = {random.turn(), random.vector(1.5)};
-      const Pair pair = pairOf(solid, plane);
+      const SolidPair pair = pairOf(solid, plane);
       const double gap = -solid.reach(-plane.normal) - plane.normal.dot(plane.point);
       double least = INFINITY;
       std::vector<std::size_t> features;
       appendFeaturesWithin(pair.geometry, pair.geometry.pairs[0], solid.worldFromBody, gap + 1e-6, features);
       for (const std::size_t feature : features)
         least = std::min(least, separation(pair.geometry, pair.geometry.pairs[0], feature, pair.state));
-      EXPECT_NEAR(least, gap, kRounding);
+      EXPECT_NEAR(least, gap, kSumRounding);
 
       // One contact for each corner that is near enough, below it on the surface, and the normal into the ground.
       const double margin = gap + 0.5;
@@ -312,17 +312,17 @@ TEST(BruteForce, EveryShapeOnAPlane) {
         ++expected;
         if (solid.corners.size() > 8) continue;  // of a mesh with many, few stand for all
         const auto at = std::find_if(contacts.begin(), contacts.end(), [&](const Contact& contact) {
-          return (contact.point - (lowest - height / 2 * plane.normal)).norm() < kRounding;
+          return (contact.point - (lowest - height / 2 * plane.normal)).norm() < kSumRounding;
         });
         ASSERT_NE(at, contacts.end());
-        EXPECT_NEAR(at->separation, height, kRounding);
-        EXPECT_LT((at->normal + plane.normal).norm(), kRounding);
+        EXPECT_NEAR(at->separation, height, kSumRounding);
+        EXPECT_LT((at->normal + plane.normal).norm(), kSumRounding);
       }
       if (solid.corners.size() > 8)
         EXPECT_NEAR(std::min_element(contacts.begin(), contacts.end(),
                                      [](const Contact& x, const Contact& y) { return x.separation < y.separation; })
                         ->separation,
-                    gap, kRounding);
+                    gap, kSumRounding);
       else
         EXPECT_EQ(contacts.size(), expected);
     }

@@ -9,7 +9,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kExact = 1e-13;   // m: rounding of coordinates below 1 m
+constexpr double kPatchRounding = 1e-13;  // m: rounding of coordinates below 1 m
 constexpr double kBent = 1e-4;     // m: what ends of a line of contact may miss of the deepest place between them
 constexpr double kMargin = 0.005;  // m
 const Vec3 kStill = Vec3::Zero();
@@ -61,12 +61,12 @@ TEST(CapsulesInContact, AreAsDeepAsSampledAxes) {
     const ContactPatch patch = contactOfCapsules(a, b, kStill, kMargin);
     if (gap > kMargin + kSampling) {
       EXPECT_EQ(patch.count, 0u);
-      EXPECT_LT(patch.clearance, gap + kExact);
+      EXPECT_LT(patch.clearance, gap + kPatchRounding);
       continue;
     }
     ++touching;
     ASSERT_GE(patch.count, 1u) << trial;
-    EXPECT_LT(deepestOf(patch), gap + kBent + kExact);
+    EXPECT_LT(deepestOf(patch), gap + kBent + kPatchRounding);
     EXPECT_GT(deepestOf(patch), gap - kSampling);
     if (length == 0) {
       EXPECT_EQ(patch.count, 1u);
@@ -82,11 +82,11 @@ TEST(CapsulesInContact, HoldBothEndsOfWhatParallelOnesShare) {
   const PosedCapsule a{Vec3::Zero(), Vec3(0.2, 0, 0), 0.06}, b{Vec3(0.1, 0.119, 0), Vec3(-0.2, 0, 0), 0.06};
   const ContactPatch patch = contactOfCapsules(a, b, kStill, kMargin);
   ASSERT_EQ(patch.count, 2u);
-  EXPECT_LT((patch.normal - Vec3::UnitY()).norm(), kExact);
-  EXPECT_LT((patch.points[0].onA - Vec3(-0.1, 0.06, 0)).norm(), kExact);
-  EXPECT_LT((patch.points[1].onA - Vec3(0.2, 0.06, 0)).norm(), kExact);
-  EXPECT_LT((patch.points[0].onB - Vec3(-0.1, 0.059, 0)).norm(), kExact);
-  for (const std::size_t k : {0u, 1u}) EXPECT_NEAR(patch.points[k].separation, -0.001, kExact);
+  EXPECT_LT((patch.normal - Vec3::UnitY()).norm(), kPatchRounding);
+  EXPECT_LT((patch.points[0].onA - Vec3(-0.1, 0.06, 0)).norm(), kPatchRounding);
+  EXPECT_LT((patch.points[1].onA - Vec3(0.2, 0.06, 0)).norm(), kPatchRounding);
+  EXPECT_LT((patch.points[0].onB - Vec3(-0.1, 0.059, 0)).norm(), kPatchRounding);
+  for (const std::size_t k : {0u, 1u}) EXPECT_NEAR(patch.points[k].separation, -0.001, kPatchRounding);
 }
 
 // Tilted by 1e-9 rad this way or that the nearest points are at one end or the other: both ends are held all the same.
@@ -106,13 +106,13 @@ TEST(CapsulesInContact, TouchInOnePointCrossingAndEndToEnd) {
   const PosedCapsule a{Vec3::Zero(), Vec3(0.2, 0, 0), 0.06};
   const ContactPatch crossing = contactOfCapsules(a, {Vec3(0.05, 0.118, 0.02), Vec3(0, 0, 0.2), 0.06}, kStill, kMargin);
   ASSERT_EQ(crossing.count, 1u);
-  EXPECT_LT((crossing.normal - Vec3::UnitY()).norm(), kExact);
-  EXPECT_LT((crossing.points[0].onA - Vec3(0.05, 0.06, 0)).norm(), kExact);
-  EXPECT_NEAR(crossing.points[0].separation, -0.002, kExact);
+  EXPECT_LT((crossing.normal - Vec3::UnitY()).norm(), kPatchRounding);
+  EXPECT_LT((crossing.points[0].onA - Vec3(0.05, 0.06, 0)).norm(), kPatchRounding);
+  EXPECT_NEAR(crossing.points[0].separation, -0.002, kPatchRounding);
   const ContactPatch inLine = contactOfCapsules(a, {Vec3(0.517, 0, 0), Vec3(0.2, 0, 0), 0.06}, kStill, kMargin);
   ASSERT_EQ(inLine.count, 1u);
-  EXPECT_LT((inLine.normal - Vec3::UnitX()).norm(), kExact);
-  EXPECT_NEAR(inLine.points[0].separation, -0.003, kExact);
+  EXPECT_LT((inLine.normal - Vec3::UnitX()).norm(), kPatchRounding);
+  EXPECT_NEAR(inLine.points[0].separation, -0.003, kPatchRounding);
 }
 
 // Crossing at 0.02 rad: 0.2 m from the nearest place the axes are 4 mm aside, and the surfaces 0.07 mm farther apart.
@@ -123,7 +123,7 @@ TEST(CapsulesInContact, HoldTheNearestPlaceToo) {
     const PosedCapsule b{Vec3(0, 0.12, 0), Vec3(0.2, 0, 0.2 * angle), 0.06};
     const ContactPatch patch = contactOfCapsules(a, b, kStill, kMargin);
     ASSERT_EQ(patch.count, angle < 0.05 ? 2u : 3u);
-    EXPECT_LT((patch.normal - Vec3::UnitY()).norm(), kExact);
+    EXPECT_LT((patch.normal - Vec3::UnitY()).norm(), kPatchRounding);
     EXPECT_NEAR(deepestOf(patch), angle < 0.05 ? 6.6e-5 : 0, 1e-6);
   }
 }
@@ -134,9 +134,9 @@ TEST(CapsulesInContact, PartAcrossBothAxesWhereTheseMeet) {
   for (const Vec3& half : {Vec3(0.1, 0, 0), Vec3(0, 0, 0.1), Vec3(0, 0, 0)}) {
     const ContactPatch patch = contactOfCapsules(a, {Vec3(0.02, 0, 0), half, 0.05}, kStill, kMargin);
     ASSERT_GE(patch.count, 1u);
-    EXPECT_NEAR(patch.normal.dot(half), 0, kExact);
-    EXPECT_NEAR(patch.normal.x(), 0, kExact);
-    EXPECT_NEAR(deepestOf(patch), -0.11, kExact);
+    EXPECT_NEAR(patch.normal.dot(half), 0, kPatchRounding);
+    EXPECT_NEAR(patch.normal.x(), 0, kPatchRounding);
+    EXPECT_NEAR(deepestOf(patch), -0.11, kPatchRounding);
   }
 }
 
@@ -161,15 +161,15 @@ TEST(CapsuleOnPlane, LiesOnBothEndsAndStandsOnOne) {
   const ContactPatch lying =
       contactOfCapsuleAndPlane({Vec3(0, 0.061, 0), Vec3(0.2, 0, 0), 0.06}, plane, kStill, kMargin);
   ASSERT_EQ(lying.count, 2u);
-  EXPECT_LT((lying.points[0].onB - Vec3(-0.2, 0, 0)).norm(), kExact);
-  EXPECT_LT((lying.points[1].onA - Vec3(0.2, 0.001, 0)).norm(), kExact);
+  EXPECT_LT((lying.points[0].onB - Vec3(-0.2, 0, 0)).norm(), kPatchRounding);
+  EXPECT_LT((lying.points[1].onA - Vec3(0.2, 0.001, 0)).norm(), kPatchRounding);
   const ContactPatch standing =
       contactOfCapsuleAndPlane({Vec3(0, 0.259, 0), Vec3(0, 0.2, 0), 0.06}, plane, kStill, kMargin);
   ASSERT_EQ(standing.count, 1u);
-  EXPECT_NEAR(standing.points[0].separation, -0.001, kExact);
+  EXPECT_NEAR(standing.points[0].separation, -0.001, kPatchRounding);
   const ContactPatch above = contactOfCapsuleAndPlane({Vec3(0, 0.3, 0), Vec3(0, 0.2, 0), 0.06}, plane, kStill, kMargin);
   EXPECT_EQ(above.count, 0u);
-  EXPECT_NEAR(above.clearance, 0.04, kExact);
+  EXPECT_NEAR(above.clearance, 0.04, kPatchRounding);
 }
 
 }  // namespace

@@ -90,13 +90,14 @@ std::vector<Shape> allShapes() {
 }
 
 /// Two shapes in their poses.
-struct Pair {
+struct ShapePair {
   const Shape &a, &b;
   RigidTransform poseA, poseB;
   ContactGeometry geometry;
   VectorX state = VectorX::Zero(stateSize(2));
 
-  Pair(const Shape& shapeA, const Shape& shapeB, const RigidTransform& worldFromA, const RigidTransform& worldFromB)
+  ShapePair(const Shape& shapeA, const Shape& shapeB, const RigidTransform& worldFromA,
+            const RigidTransform& worldFromB)
       : a(shapeA), b(shapeB) {
     geometry.colliders = {a.collider, b.collider};
     geometry.colliders[0].body = 0, geometry.colliders[1].body = 1;
@@ -120,15 +121,15 @@ struct Pair {
   }
 };
 
-constexpr double kRounding = 2e-14;  // m: of sums of products of lengths of some metres
+constexpr double kProductRounding = 2e-14;  // m: of sums of products of lengths of some metres
 
 /// The largest gap that a search over the sphere of directions sees.
-double widestGapSearched(const Pair& pair) {
+double widestGapSearched(const ShapePair& pair) {
   const auto gapAlong = [&](const Vec3& direction) { return pair.gapAlong(direction); };
   return gapAlong(widestGap(gapAlong, {700, 6, 1e-4}));
 }
 
-std::string describe(const Pair& pair) {
+std::string describe(const ShapePair& pair) {
   return pair.a.name + " on " + pair.b.name;
 }
 
@@ -139,12 +140,12 @@ const Contact& deepestOf(const std::vector<Contact>& contacts) {
 }
 
 /// `preference` (m): what a contact may give away for the normal of a face.
-void expectProven(const Pair& pair, double preference) {
+void expectProven(const ShapePair& pair, double preference) {
   const double separation = pair.separation();
   const auto contacts = pair.contacts(separation + 1e-9);
   ASSERT_FALSE(contacts.empty()) << describe(pair) << ' ' << separation;
   const Contact& contact = deepestOf(contacts);
-  EXPECT_NEAR(contact.normal.norm(), 1, kRounding);
+  EXPECT_NEAR(contact.normal.norm(), 1, kProductRounding);
   EXPECT_NEAR(contact.separation, separation, preference) << describe(pair);
   // The corner that is deepest may be beside the face that it is held against: then others stand in, if as deep to
   // 1e-9.
@@ -169,10 +170,10 @@ TEST(ConvexPairs, DistancesApartAreProvenBySurfacePointsAndNormal) {
     int apart = 0;
     for (int i = 0; apart < 10 && i < 200; ++i) {
       const RigidTransform poseA = random.pose(1), poseB = random.pose(1.5);
-      const Pair pair(a, b, poseA, poseB);
+      const ShapePair pair(a, b, poseA, poseB);
       if (pair.separation() <= 0.02) continue;
       ++apart;
-      expectProven(pair, kRounding);
+      expectProven(pair, kProductRounding);
     }
     EXPECT_EQ(apart, 10);
   });
@@ -185,7 +186,7 @@ TEST(ConvexPairs, SeparationGoesThroughZeroAlongTheNormal) {
     int apart = 0;
     for (int i = 0; apart < 4 && i < 200; ++i) {
       const RigidTransform poseA = random.pose(1), poseB = random.pose(1.5);
-      Pair pair(a, b, poseA, poseB);
+      ShapePair pair(a, b, poseA, poseB);
       const double distance = pair.separation();
       if (distance <= 0.02) continue;
       ++apart;
@@ -216,11 +217,11 @@ TEST(ConvexPairs, NoDirectionSeesALargerGapWhereTheyOverlap) {
     int overlapping = 0;
     for (int i = 0; overlapping < 3 && i < 100; ++i) {
       const RigidTransform poseA = random.pose(0.4), poseB = random.pose(0.5);
-      const Pair pair(a, b, poseA, poseB);
+      const ShapePair pair(a, b, poseA, poseB);
       const double separation = pair.separation();
       if (separation >= 0) continue;
       ++overlapping;
-      EXPECT_LE(widestGapSearched(pair), separation + kRounding) << describe(pair);
+      EXPECT_LE(widestGapSearched(pair), separation + kProductRounding) << describe(pair);
       const Contact deepest = deepestOf(pair.contacts(0));
       EXPECT_NEAR(pair.gapAlong(deepest.normal), separation, 1e-7) << describe(pair);
     }
@@ -234,9 +235,9 @@ TEST(ConvexPairs, DoNotDependOnOrderOrFrame) {
   forAllPairs([&](const Shape& a, const Shape& b) {
     for (int i = 0; i < 10; ++i) {
       const RigidTransform poseA = random.pose(1), poseB = random.pose(1), frame = random.pose(2);
-      const double separation = Pair(a, b, poseA, poseB).separation();
-      EXPECT_NEAR(Pair(b, a, poseB, poseA).separation(), separation, 1e-13) << a.name << " on " << b.name;
-      EXPECT_NEAR(Pair(a, b, frame * poseA, frame * poseB).separation(), separation, 1e-13) << a.name << b.name;
+      const double separation = ShapePair(a, b, poseA, poseB).separation();
+      EXPECT_NEAR(ShapePair(b, a, poseB, poseA).separation(), separation, 1e-13) << a.name << " on " << b.name;
+      EXPECT_NEAR(ShapePair(a, b, frame * poseA, frame * poseB).separation(), separation, 1e-13) << a.name << b.name;
     }
   });
 }
@@ -249,7 +250,7 @@ TEST(ConvexPairs, SlopeOfTheSeparationIsTheRelativeVelocityAtTheContact) {
     int apart = 0;
     for (int i = 0; apart < 5 && i < 100; ++i) {
       const RigidTransform poseA = random.pose(1), poseB = random.pose(1.5);
-      Pair pair(a, b, poseA, poseB);
+      ShapePair pair(a, b, poseA, poseB);
       const double separation = pair.separation();
       if (separation <= 0.05) continue;
       ++apart;
@@ -286,7 +287,7 @@ TEST(ConvexPairs, AlignedPosesPassThroughEachOtherWithoutAJump) {
   const std::vector<Quat> turns = alignedTurns();
   std::size_t next = 0;  // five for each pair, others for the next
   forAllPairs([&](const Shape& a, const Shape& b) {
-    Pair pair(a, b, {}, {});
+    ShapePair pair(a, b, {}, {});
     for (int trial = 0; trial < 5; ++trial, next += 7) {
       const Quat& turn = turns[next % turns.size()];
       const Vec3 way = Vec3::Unit(trial % 3);
@@ -301,7 +302,7 @@ TEST(ConvexPairs, AlignedPosesPassThroughEachOtherWithoutAJump) {
         }
         last = separation;
         for (const Contact& contact : pair.contacts(separation + 1e-9)) {
-          EXPECT_NEAR(contact.normal.norm(), 1, kRounding);
+          EXPECT_NEAR(contact.normal.norm(), 1, kProductRounding);
           EXPECT_TRUE(contact.point.allFinite());
           EXPECT_GE(contact.separation, separation - 2e-7) << describe(pair);
         }

@@ -24,11 +24,11 @@ Collider meshCollider(const TriangleMesh& mesh) {
 }
 
 /// A mesh, and a cylinder in its pose.
-struct Pair {
+struct MeshAndCylinder {
   ContactGeometry geometry;
   VectorX state = VectorX::Zero(stateSize(2));
 
-  Pair(const Collider& mesh, const Collider& cylinder, const RigidTransform& pose, bool isSwapped = false) {
+  MeshAndCylinder(const Collider& mesh, const Collider& cylinder, const RigidTransform& pose, bool isSwapped = false) {
     geometry.colliders = {mesh, cylinder};
     for (int i = 0; i < 2; ++i) setOrientation(state, i, Quat::Identity());
     const int meshBody = isSwapped ? 1 : 0, cylinderBody = 1 - meshBody;
@@ -45,7 +45,7 @@ struct Pair {
   }
 };
 
-const Quat kAlongX = rotationAbout(Vec3::UnitZ(), M_PI / 2);  // turns the axis y to -x
+const Quat kLyingDown = rotationAbout(Vec3::UnitZ(), M_PI / 2);  // turns the axis y to -x
 
 /// The boxes that an L is made of.
 struct LOfBoxes {
@@ -71,14 +71,14 @@ TEST(CylinderOnMesh, SeparationIsTheDistanceFromTheBoxesThatTheMeshIsMadeOf) {
       pose.translation += Vec3(1.2, 0.8, 0.5);
       if (i % 3 == 0) pose.rotation = rotationBetween(Vec3::UnitY(), Vec3::Unit(i / 3 % 3));
       const double expected = boxes.gap(cylinder, pose).separation;
-      const Pair pair(mesh, cylinder, pose);
+      const MeshAndCylinder pair(mesh, cylinder, pose);
       expected > 0 ? ++apart : ++overlapping;
       if (expected > 0) {
         EXPECT_NEAR(pair.separation(), expected, 1e-11) << i;  // of what directions of rims are found by
       } else {
         EXPECT_LT(pair.separation(), 0) << i;
       }
-      EXPECT_NEAR(Pair(mesh, cylinder, pose, true).separation(), pair.separation(), 1e-11);
+      EXPECT_NEAR(MeshAndCylinder(mesh, cylinder, pose, true).separation(), pair.separation(), 1e-11);
     }
   }
   EXPECT_GT(apart, 60);
@@ -101,7 +101,7 @@ TEST(CylinderOnMesh, PassesThroughZeroWithAContactOnBothSurfaces) {
     const Vec3 start = pose.translation;
     for (const double left : {1e-3, 1e-9, -1e-9, -1e-6}) {
       pose.translation = start - (gap.separation - left) * gap.normal;
-      const Pair pair(mesh, cylinder, pose);
+      const MeshAndCylinder pair(mesh, cylinder, pose);
       const double separation = pair.separation();
       EXPECT_GT(separation * left, 0) << i << ' ' << left;
       EXPECT_LE(std::abs(separation), std::abs(left) + 1e-12) << i << ' ' << left;
@@ -138,7 +138,7 @@ TEST(CylinderOnMesh, StandsOnItsRimOverInnerEdges) {
   for (const double gap : {0.0, 1e-10, -1e-10, 1e-4, -1e-4})
     for (double shift = -0.6; shift < 0.61; shift += 0.3) {
       const RigidTransform pose{rotationAbout(Vec3::UnitY(), shift), Vec3(shift, 1.5 + gap, 0.1)};
-      const auto contacts = Pair(table, cylinder, pose).contacts(1e-3);
+      const auto contacts = MeshAndCylinder(table, cylinder, pose).contacts(1e-3);
       EXPECT_GE(contacts.size(), 6u);
       for (const Contact& contact : contacts) {
         EXPECT_NEAR(contact.separation, gap, 1e-14);
@@ -155,8 +155,8 @@ TEST(CylinderOnMesh, LiesOnItsSideAndRollsOverInnerEdgesAsOnAPlane) {
   const Collider table = meshCollider(boxMesh(Vec3(4, 1, 4))), cylinder = colliderOf(Cylinder{0.5, 2}, {});
   for (const double gap : {0.0, 1e-10, -1e-10, 1e-4, -1e-4})
     for (double shift = -1; shift < 1.01; shift += 0.125) {
-      const RigidTransform pose{rotationAbout(Vec3::UnitX(), shift) * kAlongX, Vec3(0.1, 1 + gap, shift)};
-      const auto contacts = Pair(table, cylinder, pose).contacts(1e-3);
+      const RigidTransform pose{rotationAbout(Vec3::UnitX(), shift) * kLyingDown, Vec3(0.1, 1 + gap, shift)};
+      const auto contacts = MeshAndCylinder(table, cylinder, pose).contacts(1e-3);
       ASSERT_EQ(contacts.size(), 2u) << gap << ' ' << shift;
       EXPECT_NEAR(contacts[0].point.x() + contacts[1].point.x(), 0.2, 1e-12);
       EXPECT_NEAR(std::abs(contacts[0].point.x() - contacts[1].point.x()), 2, 1e-12);
@@ -172,7 +172,7 @@ TEST(CylinderOnMesh, LiesOnItsSideAndRollsOverInnerEdgesAsOnAPlane) {
 TEST(CylinderOnMesh, InTheInnerCornerOfAnLTouchesBothWalls) {
   const Collider mesh = meshCollider(lPrismMesh()), cylinder = colliderOf(Cylinder{0.25, 0.6}, {});
   const Quat alongZ = rotationAbout(Vec3::UnitX(), M_PI / 2);
-  const auto contacts = Pair(mesh, cylinder, {alongZ, Vec3(1.25, 1.25, 0.5)}).contacts(1e-9);
+  const auto contacts = MeshAndCylinder(mesh, cylinder, {alongZ, Vec3(1.25, 1.25, 0.5)}).contacts(1e-9);
   int up = 0, aside = 0;
   for (const Contact& contact : contacts) {
     up += (contact.normal - Vec3::UnitY()).norm() < 1e-12;
@@ -187,7 +187,7 @@ TEST(CylinderOnMesh, InTheInnerCornerOfAnLTouchesBothWalls) {
 // Over the rim of the table the table's edge is what holds it.
 TEST(CylinderOnMesh, ReachingOverAnEdgeIsHeldThere) {
   const Collider table = meshCollider(boxMesh(Vec3(4, 1, 4))), cylinder = colliderOf(Cylinder{0.5, 2}, {});
-  const auto contacts = Pair(table, cylinder, {kAlongX, Vec3(1.5, 1, 0.3)}).contacts(1e-9);
+  const auto contacts = MeshAndCylinder(table, cylinder, {kLyingDown, Vec3(1.5, 1, 0.3)}).contacts(1e-9);
   ASSERT_EQ(contacts.size(), 2u);
   EXPECT_NEAR(std::max(contacts[0].point.x(), contacts[1].point.x()), 2, 1e-12);
   EXPECT_NEAR(std::min(contacts[0].point.x(), contacts[1].point.x()), 0.5, 1e-12);

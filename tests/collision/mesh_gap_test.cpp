@@ -15,7 +15,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kRounding = 1e-14;  // m: some sums and products of lengths of about 1 m
+constexpr double kGapRounding = 1e-14;  // m: some sums and products of lengths of about 1 m
 
 using Corners = std::array<Vec3, 3>;
 
@@ -113,49 +113,49 @@ TriangleMesh lumpMesh(RandomPoses& random) {
   return mesh;
 }
 
-struct Solid {
+struct MeshSolid {
   TriangleMesh mesh;
   MeshSurface surface;
-  explicit Solid(const TriangleMesh& given) : mesh(given), surface(surfaceOf(given)) {}
+  explicit MeshSolid(const TriangleMesh& given) : mesh(given), surface(surfaceOf(given)) {}
 };
 
-MeshGap gapOf(const Solid& a, const Solid& b, const RigidTransform& aFromB, double enough = INFINITY) {
+MeshGap gapOf(const MeshSolid& a, const MeshSolid& b, const RigidTransform& aFromB, double enough = INFINITY) {
   return gapBetween(MeshPair(a.surface, b.surface, aFromB), enough);
 }
 
-std::vector<Solid> sampleSolids(RandomPoses& random) {
-  return {Solid(lPrismMesh()), Solid(lumpMesh(random)), Solid(boxMesh(Vec3(0.5, 1.2, 0.8)))};
+std::vector<MeshSolid> sampleSolids(RandomPoses& random) {
+  return {MeshSolid(lPrismMesh()), MeshSolid(lumpMesh(random)), MeshSolid(boxMesh(Vec3(0.5, 1.2, 0.8)))};
 }
 
 TEST(MeshGap, IsTheDistanceOfTheTrianglesApartAndNegativeExactlyIfTheSolidsOverlap) {
   RandomPoses random(1);
   int apart = 0, overlapping = 0;
-  for (const Solid& a : sampleSolids(random))
-    for (const Solid& b : sampleSolids(random))
+  for (const MeshSolid& a : sampleSolids(random))
+    for (const MeshSolid& b : sampleSolids(random))
       for (int i = 0; i < 25; ++i) {
         const RigidTransform pose = random.pose(1.5);
         const auto cornersOfA = cornersOf(a.mesh, {}), cornersOfB = cornersOf(b.mesh, pose);
         const MeshGap gap = gapOf(a, b, pose);
-        EXPECT_NEAR(gap.normal.norm(), 1, kRounding);
+        EXPECT_NEAR(gap.normal.norm(), 1, kGapRounding);
         if (overlap(cornersOfA, cornersOfB)) {
           ++overlapping;
           EXPECT_LT(gap.separation, 0);
           continue;
         }
         ++apart;
-        EXPECT_NEAR(gap.separation, soupDistance(cornersOfA, cornersOfB), kRounding);
-        EXPECT_LT((gap.pointA + gap.separation * gap.normal - gap.pointB).norm(), 10 * kRounding);
+        EXPECT_NEAR(gap.separation, soupDistance(cornersOfA, cornersOfB), kGapRounding);
+        EXPECT_LT((gap.pointA + gap.separation * gap.normal - gap.pointB).norm(), 10 * kGapRounding);
       }
   EXPECT_GT(apart, 50);
   EXPECT_GT(overlapping, 50);
 }
 
 TEST(MeshGap, OneSolidInsideAnotherIsNegative) {
-  const Solid box(boxMesh(Vec3::Ones())), small(boxMesh(Vec3(0.2, 0.1, 0.3)));
+  const MeshSolid box(boxMesh(Vec3::Ones())), small(boxMesh(Vec3(0.2, 0.1, 0.3)));
   // Two parts, of which the nearer one is outside.
-  const Solid twoParts(joined(boxMesh(Vec3::Constant(0.1)), moved(boxMesh(Vec3::Constant(0.1)), [](const Vec3& p) {
-                                return Vec3(p.x() + 1, p.y(), p.z());
-                              })));
+  const MeshSolid twoParts(joined(boxMesh(Vec3::Constant(0.1)), moved(boxMesh(Vec3::Constant(0.1)), [](const Vec3& p) {
+                                    return Vec3(p.x() + 1, p.y(), p.z());
+                                  })));
   const RigidTransform pose{rotationAbout(Vec3(1, 2, 3).normalized(), 0.3), Vec3(0.1, 0.05, -0.1)};
   EXPECT_LT(gapOf(box, small, pose).separation, 0);
   EXPECT_LT(gapOf(small, box, pose).separation, 0);
@@ -166,10 +166,10 @@ TEST(MeshGap, OneSolidInsideAnotherIsNegative) {
 }
 
 TEST(MeshGap, HollowSolidHoldsAnotherWithoutTouchingIt) {
-  const Solid shell(joined(boxMesh(Vec3::Ones()), insideOut(boxMesh(Vec3::Constant(0.8)))));
-  const Solid small(boxMesh(Vec3::Constant(0.2)));
-  EXPECT_NEAR(gapOf(shell, small, {Quat::Identity(), Vec3(0.1, 0, 0)}).separation, 0.2, kRounding);
-  EXPECT_NEAR(gapOf(small, shell, {Quat::Identity(), Vec3(-0.1, 0, 0)}).separation, 0.2, kRounding);
+  const MeshSolid shell(joined(boxMesh(Vec3::Ones()), insideOut(boxMesh(Vec3::Constant(0.8)))));
+  const MeshSolid small(boxMesh(Vec3::Constant(0.2)));
+  EXPECT_NEAR(gapOf(shell, small, {Quat::Identity(), Vec3(0.1, 0, 0)}).separation, 0.2, kGapRounding);
+  EXPECT_NEAR(gapOf(small, shell, {Quat::Identity(), Vec3(-0.1, 0, 0)}).separation, 0.2, kGapRounding);
   EXPECT_LT(gapOf(shell, small, {Quat::Identity(), Vec3(0.35, 0, 0)}).separation, 0);
 }
 
@@ -178,7 +178,7 @@ TEST(MeshGap, HollowSolidHoldsAnotherWithoutTouchingIt) {
 TEST(MeshGap, BoxesAsMeshesOverlapAsPolytopesDo) {
   RandomPoses random(2);
   const Vec3 sizeA(1, 0.6, 1.4), sizeB(0.5, 1.1, 0.8);
-  const Solid a(boxMesh(sizeA)), b(boxMesh(sizeB));
+  const MeshSolid a(boxMesh(sizeA)), b(boxMesh(sizeB));
   const Collider boxA = colliderOf(Box{sizeA}, {}), boxB = colliderOf(Box{sizeB}, {});
   const auto axisAt = [&](const RigidTransform& pose) { return contactAxis(Core(boxA, {}), Core(boxB, pose)); };
   int edges = 0;
@@ -196,7 +196,7 @@ TEST(MeshGap, BoxesAsMeshesOverlapAsPolytopesDo) {
     pose.translation += far * way;
     const double expected = axisAt(pose).separation;
     const MeshGap gap = gapOf(a, b, pose);
-    EXPECT_NEAR(gap.separation, expected, 1e-9 * depth + kRounding) << i;
+    EXPECT_NEAR(gap.separation, expected, 1e-9 * depth + kGapRounding) << i;
     const Vec3 normal = axisAt(pose).normal;
     if (depth > 1e-9) {
       EXPECT_LT((gap.normal - normal).norm(), 1e-6) << i << " " << depth;
@@ -207,7 +207,7 @@ TEST(MeshGap, BoxesAsMeshesOverlapAsPolytopesDo) {
 }
 
 /// Where along `way` (m, from far to near) the solids first touch.
-double touchingAt(const Solid& a, const Solid& b, RigidTransform pose, const Vec3& way) {
+double touchingAt(const MeshSolid& a, const MeshSolid& b, RigidTransform pose, const Vec3& way) {
   const Vec3 start = pose.translation;
   double gone = 0;
   for (int i = 0; i < 10000; ++i) {
@@ -221,9 +221,9 @@ double touchingAt(const Solid& a, const Solid& b, RigidTransform pose, const Vec
 
 TEST(MeshGap, ChangesByTheNormalTimesTheMotionAndPassesThroughZero) {
   RandomPoses random(3);
-  const std::vector<Solid> solids = sampleSolids(random);
+  const std::vector<MeshSolid> solids = sampleSolids(random);
   for (int i = 0; i < 60; ++i) {
-    const Solid &a = solids[static_cast<std::size_t>(i) % 3], &b = solids[static_cast<std::size_t>(i / 3) % 3];
+    const MeshSolid &a = solids[static_cast<std::size_t>(i) % 3], &b = solids[static_cast<std::size_t>(i / 3) % 3];
     const RigidTransform start{random.turn(), 7 * random.direction()};  // none reaches farther than 3.4 m
     const Vec3 way = (random.vector(0.3) - start.translation).normalized();
     const double touch = touchingAt(a, b, start, way);
@@ -232,7 +232,7 @@ TEST(MeshGap, ChangesByTheNormalTimesTheMotionAndPassesThroughZero) {
       RigidTransform pose{start.rotation, start.translation + (touch + beyond) * way};
       const MeshGap gap = gapOf(a, b, pose);
       EXPECT_GT(gap.separation * -beyond, 0) << i;
-      EXPECT_LE(std::abs(gap.separation), std::abs(beyond) + kRounding);
+      EXPECT_LE(std::abs(gap.separation), std::abs(beyond) + kGapRounding);
       EXPECT_NEAR(gap.separation, gap.normal.dot(way) * beyond, 1e-3 * std::abs(beyond)) << i << " " << beyond;
     }
   }
@@ -253,7 +253,7 @@ TEST(MeshGap, NearlyParallelEdgesKeepTheExactDistance) {
 
 TEST(MeshGap, EnoughEndsTheSearchWithoutChangingSmallerGaps) {
   RandomPoses random(5);
-  const Solid gear(loadObjects(CRADLE_SOURCE_DIR "/assets/gear.3ds", 1, ModelParts::solidAlone)[0].model.solid);
+  const MeshSolid gear(loadObjects(CRADLE_SOURCE_DIR "/assets/gear.3ds", 1, ModelParts::solidAlone)[0].model.solid);
   for (int i = 0; i < 30; ++i) {
     const RigidTransform pose{random.turn(), 0.3 * random.direction()};
     const double gap = gapOf(gear, gear, pose).separation;
@@ -264,7 +264,7 @@ TEST(MeshGap, EnoughEndsTheSearchWithoutChangingSmallerGaps) {
   }
   const RigidTransform pose{random.turn(), Vec3(0.1, 0.25, 0.05)};
   EXPECT_NEAR(gapOf(gear, gear, pose).separation, soupDistance(cornersOf(gear.mesh, {}), cornersOf(gear.mesh, pose)),
-              kRounding);
+              kGapRounding);
 }
 
 }  // namespace

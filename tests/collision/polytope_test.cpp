@@ -10,7 +10,7 @@
 namespace cradle {
 namespace {
 
-Polytope boxOf(const Vec3& size) {
+Polytope boxPolytope(const Vec3& size) {
   return polytopeOf(Box{size}, {});
 }
 
@@ -19,11 +19,11 @@ Collider colliderOfSize(const Vec3& size) {
 }
 
 /// Two moving colliders in their poses.
-struct Pair {
+struct ColliderPair {
   ContactGeometry geometry;
   VectorX state = VectorX::Zero(stateSize(2));
 
-  Pair(const Collider& a, const Collider& b, const RigidTransform& poseA, const RigidTransform& poseB) {
+  ColliderPair(const Collider& a, const Collider& b, const RigidTransform& poseA, const RigidTransform& poseB) {
     geometry.colliders = {a, b};
     geometry.pairs = {{0, 1, false, {}}};
     int body = 0;
@@ -37,13 +37,13 @@ struct Pair {
 };
 
 double separationOf(const Collider& a, const Collider& b, const RigidTransform& poseA, const RigidTransform& poseB) {
-  const Pair pair(a, b, poseA, poseB);
+  const ColliderPair pair(a, b, poseA, poseB);
   return separation(pair.geometry, pair.geometry.pairs[0], 0, pair.state);
 }
 
 std::vector<Contact> contactsOf(const Collider& a, const Collider& b, const RigidTransform& poseA,
                                 const RigidTransform& poseB, double margin) {
-  const Pair pair(a, b, poseA, poseB);
+  const ColliderPair pair(a, b, poseA, poseB);
   std::vector<Contact> contacts;
   findContacts(pair.geometry, pair.state, margin, contacts);
   return contacts;
@@ -81,7 +81,7 @@ TEST(NearestSurfacePoint, OfABoxIsItsClosedForm) {
 }
 
 TEST(Polytope, OfABoxIsClosedAndWoundOutwards) {
-  const Polytope box = boxOf(Vec3(1, 2, 3));
+  const Polytope box = boxPolytope(Vec3(1, 2, 3));
   EXPECT_EQ(box.edges.size(), 12u);
   double volume = 0;
   for (const Polytope::Face& face : box.faces) {
@@ -121,7 +121,7 @@ double segmentDistance(const Segment& a, const Segment& b) {
 
 /// Distance of two boxes, 0 if they overlap, by all their corners and edges: shares nothing with separating axes.
 double distanceOfBoxes(const Vec3& sizeA, const Vec3& sizeB, const RigidTransform& aFromB) {
-  const Polytope a = boxOf(sizeA), b = boxOf(sizeB);
+  const Polytope a = boxPolytope(sizeA), b = boxPolytope(sizeB);
   const RigidTransform bFromA = aFromB.inverse();
   double least = INFINITY;
   for (const Vec3& corner : b.vertices)

@@ -9,7 +9,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kTolerance = 1e-12;  // m
+constexpr double kTouchTolerance = 1e-12;  // m
 
 /// One RK4 step of free bodies under gravity: exact for balls without spin.
 Step stepOf(Mechanism mechanism, const VectorX& start, double timeStep) {
@@ -57,7 +57,7 @@ ContactGeometry twoBalls(double radius) {
 // A ball falls 1 m: t = sqrt(2 h / g). The fraction is found to 1e-12.
 TEST(TimeOfImpact, OfAFallingBallIsTheClosedForm) {
   const Step step = stepOf(balls(1), stateOf({{Vec3(0, 1.1, 0), Vec3::Zero()}}), 1);
-  const auto impact = ImpactSearch(floorAndBall(0.1)).first(step, {kTolerance});
+  const auto impact = ImpactSearch(floorAndBall(0.1)).first(step, {kTouchTolerance});
   ASSERT_TRUE(impact);
   EXPECT_NEAR(impact->fraction, std::sqrt(2 / 9.81), 2e-12);
 }
@@ -65,19 +65,19 @@ TEST(TimeOfImpact, OfAFallingBallIsTheClosedForm) {
 TEST(TimeOfImpact, IsNoneForABallThatTurnsBackBeforeTheFloor) {
   // Thrown down from 1.1 m it would reach the floor; thrown up within the step it does not.
   const Step step = stepOf(balls(1), stateOf({{Vec3(0, 1.1, 0), Vec3(0, 4, 0)}}), 0.8);
-  EXPECT_FALSE(ImpactSearch(floorAndBall(0.1)).first(step, {kTolerance}));
+  EXPECT_FALSE(ImpactSearch(floorAndBall(0.1)).first(step, {kTouchTolerance}));
 }
 
 TEST(TimeOfImpact, IgnoresWhatTouchesAtTheStart) {
   const Step step = stepOf(balls(1), stateOf({{Vec3(0, 0.1, 0), Vec3(0, 1, 0)}}), 0.01);
-  EXPECT_FALSE(ImpactSearch(floorAndBall(0.1)).first(step, {kTolerance}));
+  EXPECT_FALSE(ImpactSearch(floorAndBall(0.1)).first(step, {kTouchTolerance}));
 }
 
 // Two balls of radius 1 cm meet at 600 m/s within a step in which they pass each other by a metre.
 TEST(TimeOfImpact, FastBallsDoNotPassThroughEachOther) {
   const Step step =
       stepOf(balls(2), stateOf({{Vec3(-0.5, 0, 0), Vec3(300, 0, 0)}, {Vec3(0.5, 0, 0), Vec3(-300, 0, 0)}}), 1.0 / 300);
-  const auto impact = ImpactSearch(twoBalls(0.01)).first(step, {kTolerance});
+  const auto impact = ImpactSearch(twoBalls(0.01)).first(step, {kTouchTolerance});
   ASSERT_TRUE(impact);
   EXPECT_NEAR(impact->fraction * step.timeStep, 0.98 / 600, 1e-14);
 }
@@ -90,7 +90,7 @@ TEST(TimeOfImpact, GlancingHitsAndMissesAreToldApart) {
     const double offset = part * 2 * radius;
     const Step step =
         stepOf(balls(2), stateOf({{Vec3(-0.5, offset, 0), Vec3(1, 0, 0)}, {Vec3(0.5, 0, 0), Vec3(-1, 0, 0)}}), 1);
-    const auto impact = ImpactSearch(twoBalls(radius)).first(step, {kTolerance});
+    const auto impact = ImpactSearch(twoBalls(radius)).first(step, {kTouchTolerance});
     EXPECT_EQ(impact.has_value(), part < 1) << part;
     if (impact) {
       const double meeting = (1 - std::sqrt(4 * radius * radius - offset * offset)) / 2;
@@ -108,7 +108,7 @@ TEST(TimeOfImpact, CountsTheWayBetweenSlowEnds) {
   step.state = stateOf({{Vec3(1, 0, 0), Vec3::Zero()}, {Vec3(0.5, 0, 0), Vec3::Zero()}});
   step.startRate = step.endRate = VectorX::Zero(step.state.size());
   step.hasEndRate = true;
-  const auto impact = ImpactSearch(twoBalls(0.05)).first(step, {kTolerance});
+  const auto impact = ImpactSearch(twoBalls(0.05)).first(step, {kTouchTolerance});
   ASSERT_TRUE(impact);
   const double s = impact->fraction;
   EXPECT_NEAR(3 * s * s - 2 * s * s * s, 0.4, 1e-11);
@@ -119,7 +119,7 @@ TEST(TimeOfImpact, TakesTheEarliestOfSeveralPairs) {
   geometry.planes = {{Vec3::Zero(), Vec3::UnitY()}};
   geometry.pairs = {{0, 0, true, {}}, {1, 0, true, {}}, {0, 1, false, {}}};
   const Step step = stepOf(balls(2), stateOf({{Vec3(0, 1.1, 0), Vec3::Zero()}, {Vec3(2, 0.6, 0), Vec3::Zero()}}), 1);
-  const auto impact = ImpactSearch(geometry).first(step, {kTolerance});
+  const auto impact = ImpactSearch(geometry).first(step, {kTouchTolerance});
   ASSERT_TRUE(impact);
   EXPECT_EQ(impact->pair, 1u);
   EXPECT_NEAR(impact->fraction, std::sqrt(2 * 0.5 / 9.81), 2e-12);
@@ -139,7 +139,7 @@ TEST(TimeOfImpact, OfASpinningTipIsWhenItReachesTheFloor) {
   setOrientation(state, 0, Quat(std::cos(start / 2), 0, 0, std::sin(start / 2)));
   angularVelocity(state, 0) = Vec3(0, 0, -3);
   const Step step = stepOf(mechanism, state, 0.1);
-  const auto impact = ImpactSearch(geometry).first(step, {kTolerance});
+  const auto impact = ImpactSearch(geometry).first(step, {kTouchTolerance});
   ASSERT_TRUE(impact);
   EXPECT_EQ(impact->feature, 0u);
   EXPECT_NEAR(impact->fraction * 0.1, (std::asin(0.6) - 0.5) / 3, 2e-5 / 3);

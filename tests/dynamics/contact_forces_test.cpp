@@ -9,15 +9,11 @@
 namespace cradle {
 namespace {
 
-constexpr auto kFrictionless = ContactMotion::frictionless;
-constexpr auto kSliding = ContactMotion::sliding;
-constexpr auto kSticking = ContactMotion::sticking;
-
 double largestDifference(const VectorX& a, const VectorX& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
 
-Mechanism onEarth(std::size_t bodies) {
+Mechanism manyOnEarth(std::size_t bodies) {
   Mechanism mechanism;
   mechanism.gravity = Vec3(1, -kGravity, -0.5);
   mechanism.bodies.assign(bodies, lopsided(2));
@@ -35,7 +31,7 @@ struct Row {
   VectorX state;
 
   explicit Row(int bodies)
-      : mechanism(onEarth(static_cast<std::size_t>(bodies))), state(restingState(mechanism.bodies.size())) {
+      : mechanism(manyOnEarth(static_cast<std::size_t>(bodies))), state(restingState(mechanism.bodies.size())) {
     for (int body = 0; body < bodies; ++body) {
       centerOfMass(state, body) = Vec3(body, 0.2, 0);
       linearVelocity(state, body) = Vec3(0.3 + body, 0, 0.1);
@@ -113,7 +109,7 @@ TEST(ContactGroups, AreFoundAnewWhenATieTakesAContactsPlace) {
 }
 
 TEST(ContactGroups, RestingBodiesActAsFixed) {
-  Mechanism stack = onEarth(2), onGround = onEarth(2);
+  Mechanism stack = manyOnEarth(2), onGround = manyOnEarth(2);
   const Vec3 points[] = {Vec3(0.2, -0.2, 0.1), Vec3(-0.2, -0.2, 0.1), Vec3(0.1, -0.2, -0.3)};
   for (const Vec3& point : points) {
     stack.contacts.push_back(ballOnFace({0, point}, 0, {1, Vec3(0, 0.3, 0)}, Vec3::UnitY(), kSliding, 0.3));
@@ -165,7 +161,7 @@ TEST(RedundantContacts, DoWhatIndependentOnesDo) {
 
 // Four equal corners about the centre of mass share the weight: the shortest of all multipliers.
 TEST(RedundantContacts, ShareTheWeightEqually) {
-  Mechanism mechanism = onEarth(1);
+  Mechanism mechanism = manyOnEarth(1);
   mechanism.gravity = Vec3(0, -kGravity, 0);
   for (const double x : {-0.3, 0.3})
     for (const double z : {-0.2, 0.2}) mechanism.contacts.push_back(corner(0, Vec3(x, -0.2, z), kSticking));
@@ -182,7 +178,7 @@ TEST(RedundantContacts, ShareTheWeightEqually) {
 // Three boxes of 1 kg under one of 1000: the light ones are in balance between 1e4 N above and below, rounded by 1e-12
 // N; what decides about these forces is a thousandth of the matrix.
 TEST(RedundantContacts, CarryAHeavyBodyOnLightOnes) {
-  Mechanism mechanism = onEarth(4);
+  Mechanism mechanism = manyOnEarth(4);
   mechanism.gravity = Vec3(0, -kGravity, 0);
   VectorX state = restingState(4), rate;
   for (int body = 0; body < 4; ++body) {
@@ -206,7 +202,7 @@ TEST(RedundantContacts, CarryAHeavyBodyOnLightOnes) {
 
 // Feet that stick to two plates which move apart: no motion keeps both; the box goes with their mean.
 TEST(RedundantContacts, ThatContradictEachOtherAreHeldInTheMean) {
-  Mechanism mechanism = onEarth(3);
+  Mechanism mechanism = manyOnEarth(3);
   mechanism.gravity.setZero();
   for (const int plate : {1, 2}) {
     mechanism.bodies[static_cast<std::size_t>(plate)] = lopsided(1e9, Quat::Identity());

@@ -15,7 +15,12 @@
 
 namespace cradle {
 
-constexpr double kGravity = 9.81;  // m/s^2
+constexpr double kGravity = 9.81;          // m/s^2
+constexpr double kMotionRounding = 1e-13;  // sums of a few accelerations of about 10, by forces a few times larger
+
+constexpr auto kFrictionless = ContactMotion::frictionless;
+constexpr auto kSliding = ContactMotion::sliding;
+constexpr auto kSticking = ContactMotion::sticking;
 
 inline RigidBody bodyOf(double mass, const Mat3& inertiaTensor) {
   return makeRigidBody({mass, Vec3::Zero(), inertiaTensor});

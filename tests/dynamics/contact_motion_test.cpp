@@ -11,13 +11,6 @@
 namespace cradle {
 namespace {
 
-constexpr auto kFrictionless = ContactMotion::frictionless;
-constexpr auto kSliding = ContactMotion::sliding;
-constexpr auto kSticking = ContactMotion::sticking;
-
-// Sums of a few accelerations of about 10, by forces a few times larger.
-constexpr double kRounding = 1e-13;
-
 /// Adds the four lower corners of a box of body 0, half as wide as `x` and `z`, `height` below its centre of mass and
 /// off it by `offset`, on the ground or on a face of body B.
 void standOn(Mechanism& mechanism, const Attachment& face, ContactMotion motion, double friction,
@@ -39,15 +32,15 @@ TEST(Block, SlidesDownASlopeAtGravityTimesSineLessFrictionTimesCosine) {
   for (const double speed : {0.0, 1e-9, 1e-6, 0.3, 3.0}) {
     linearVelocity(state, 0).x() = speed;
     equations.evaluate(state, rate);
-    EXPECT_LT((linearVelocity(rate, 0) - Vec3(expected, 0, 0)).norm(), kRounding) << speed;
-    EXPECT_LT(angularVelocity(rate, 0).norm(), 10 * kRounding) << speed;  // inverse inertias of up to 20
+    EXPECT_LT((linearVelocity(rate, 0) - Vec3(expected, 0, 0)).norm(), kMotionRounding) << speed;
+    EXPECT_LT(angularVelocity(rate, 0).norm(), 10 * kMotionRounding) << speed;  // inverse inertias of up to 20
   }
   double normal = 0;
   for (const ContactForce& force : equations.contactForces()) {
     normal += force.normal;
-    EXPECT_LT((force.tangential + 0.2 * force.normal * Vec3::UnitX()).norm(), kRounding);
+    EXPECT_LT((force.tangential + 0.2 * force.normal * Vec3::UnitX()).norm(), kMotionRounding);
   }
-  EXPECT_NEAR(normal, 2.5 * kGravity * std::cos(kSlope), 2 * kRounding);
+  EXPECT_NEAR(normal, 2.5 * kGravity * std::cos(kSlope), 2 * kMotionRounding);
 }
 
 // A trial step that goes past the stop goes on as before: one right-hand side on both sides of it.
@@ -59,8 +52,8 @@ TEST(Block, DeceleratesThroughZeroWithoutAJump) {
   for (const double speed : {1e-3, 1e-7, 1e-18, 0.0, -1e-18, -1e-7, -1e-3, -1.0}) {
     linearVelocity(state, 0).x() = speed;
     const VectorX rate = rateOf(mechanism, state);
-    EXPECT_LT((linearVelocity(rate, 0) - Vec3(-0.3 * kGravity, 0, 0)).norm(), kRounding) << speed;
-    EXPECT_NEAR(dissipatedEnergy(rate), 2.5 * 0.3 * kGravity * speed, 10 * kRounding) << speed;
+    EXPECT_LT((linearVelocity(rate, 0) - Vec3(-0.3 * kGravity, 0, 0)).norm(), kMotionRounding) << speed;
+    EXPECT_NEAR(dissipatedEnergy(rate), 2.5 * 0.3 * kGravity * speed, 10 * kMotionRounding) << speed;
   }
   linearVelocity(state, 0).x() = 1;
   const VectorX end = integrated(mechanism, state, 1, 1e-10);  // x = v t - mu g t^2 / 2, polynomials: to rounding
@@ -85,8 +78,8 @@ TEST(Box, StandsOnAPlatformThatIsPushed) {
   equations.evaluate(state, rate);
   const Vec3 expected = Vec3(3, 0, -1.5) / 7;
   for (const Eigen::Index body : {0, 1}) {
-    EXPECT_LT((linearVelocity(rate, body) - expected).norm(), kRounding);
-    EXPECT_LT(angularVelocity(rate, body).norm(), 10 * kRounding);
+    EXPECT_LT((linearVelocity(rate, body) - expected).norm(), kMotionRounding);
+    EXPECT_LT(angularVelocity(rate, body).norm(), 10 * kMotionRounding);
   }
   Vec3 friction = Vec3::Zero();
   double onBox = 0, onGround = 0;
@@ -94,9 +87,9 @@ TEST(Box, StandsOnAPlatformThatIsPushed) {
     (i < 4 ? onBox : onGround) += equations.contactForces()[i].normal;
     friction += equations.contactForces()[i].tangential;
   }
-  EXPECT_LT((friction - 2 * expected).norm(), kRounding);
-  EXPECT_NEAR(onBox, 2 * kGravity, 10 * kRounding);
-  EXPECT_NEAR(onGround, 7 * kGravity, 10 * kRounding);
+  EXPECT_LT((friction - 2 * expected).norm(), kMotionRounding);
+  EXPECT_NEAR(onBox, 2 * kGravity, 10 * kMotionRounding);
+  EXPECT_NEAR(onGround, 7 * kGravity, 10 * kMotionRounding);
 }
 
 // A thin rod of length L against a smooth wall and floor, leaning by a: a'^2 = 3 g / L (cos a0 - cos a), and the wall
@@ -155,7 +148,7 @@ TEST(Box, SpinningOnFourCornersSlowsDown) {
     setSlidingDirection(contact, Vec3::UnitY().cross(contact.centerA.point), state);
   const double deceleration = 6 * friction * kGravity / std::sqrt(a * a + b * b);
   const VectorX rate = rateOf(mechanism, state);
-  EXPECT_NEAR(angularVelocity(rate, 0).y(), -deceleration, 10 * kRounding);
+  EXPECT_NEAR(angularVelocity(rate, 0).y(), -deceleration, 10 * kMotionRounding);
   const double time = 0.25;  // s, just before it stops: it turns by 1.27 rad, further than the directions given reach
   VectorX end = state;
   for (int i = 1; i <= 10; ++i) {

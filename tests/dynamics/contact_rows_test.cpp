@@ -57,7 +57,7 @@ struct Touching {
 
 /// Central difference of fourth order of a function of the state along its rate: its time derivative.
 template <class Function>
-auto timeDerivative(const VectorX& state, const VectorX& rate, const Function& function) {
+auto fourthOrderDerivative(const VectorX& state, const VectorX& rate, const Function& function) {
   const double step = 1e-4;  // s
   using Value = decltype(function(state));
   const auto at = [&](double steps) { return function(VectorX(state + steps * step * rate)); };
@@ -78,9 +78,10 @@ TEST(ContactRows, GapAndItsTwoDerivativesAgreeForAllKindsOfSurfaces) {
       const ConstraintRow row = rowIn(pair.state);
       EXPECT_NEAR(row.value, 0, 3e-15) << kind.name;
       const auto gap = [&](const VectorX& state) { return rowIn(state).value; };
-      EXPECT_NEAR(rateOf(row, pair.state), timeDerivative(pair.state, pair.rate, gap), kDifference) << kind.name;
+      EXPECT_NEAR(rateOf(row, pair.state), fourthOrderDerivative(pair.state, pair.rate, gap), kDifference) << kind.name;
       const auto gapRate = [&](const VectorX& state) { return rateOf(rowIn(state), state); };
-      EXPECT_NEAR(rateOf(row, pair.rate) + row.curvature, timeDerivative(pair.state, pair.rate, gapRate), kDifference)
+      EXPECT_NEAR(rateOf(row, pair.rate) + row.curvature, fourthOrderDerivative(pair.state, pair.rate, gapRate),
+                  kDifference)
           << kind.name;
     }
 }
@@ -114,7 +115,7 @@ TEST(ContactRows, RateOfTheTangentialVelocityAgreesForAllKindsOfSurfaces) {
   for (const Kind& kind : kKinds)
     for (int i = 0; i < 20; ++i) {
       const Touching pair(kind, random);
-      const Vec3 expected = timeDerivative(pair.state, pair.rate, [&](const VectorX& state) {
+      const Vec3 expected = fourthOrderDerivative(pair.state, pair.rate, [&](const VectorX& state) {
         return Vec3(tangentialVelocity(placeIn(pair.mechanism, 0, state)));
       });
       for (const ConstraintRow& row : tangentRows(pair.mechanism.contacts[0], placeIn(pair.mechanism, 0, pair.state)))
@@ -161,7 +162,7 @@ TEST(ContactForces, KeepGapAndMomentaForAllKindsOfSurfaces) {
       }
       if (kind.bodyA == kFixed || kind.bodyB == kFixed) continue;
       const auto sum = [&](auto member) {
-        return Vec3(timeDerivative(
+        return Vec3(fourthOrderDerivative(
             pair.state, rate, [&](const VectorX& state) { return Vec3(invariantsOf(pair.mechanism, state).*member); }));
       };
       EXPECT_LT(sum(&Invariants::momentum).norm(), kDifference) << kind.name;
@@ -183,8 +184,8 @@ TEST(ContactForces, TakeNoEnergyButBySliding) {
       VectorX rate;
       equations.evaluate(pair.state, rate);
       const ContactForce& force = equations.contactForces()[0];
-      const double power =
-          timeDerivative(pair.state, rate, [&](const VectorX& state) { return energyConstant(pair.mechanism, state); });
+      const double power = fourthOrderDerivative(
+          pair.state, rate, [&](const VectorX& state) { return energyConstant(pair.mechanism, state); });
       EXPECT_NEAR(power, 0, kDifference) << kind.name;
       if (motion != ContactMotion::sliding) {
         EXPECT_EQ(dissipatedEnergy(rate), 0);

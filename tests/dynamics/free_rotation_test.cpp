@@ -5,15 +5,13 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "dynamics/free_bodies.h"
+#include "rounding.h"
 
 namespace cradle {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 Vec3 momentumOf(const Case& body, const RotationState& state) {
   const Quat& q = state.worldFromBody;

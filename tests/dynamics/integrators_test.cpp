@@ -9,10 +9,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kGravity = 9.81;
+constexpr double kPull = 9.81;
 
-/// x'' = -omega^2 x + g as (x, v): an oscillator, or free fall for omega = 0.
-RightHandSide oscillator(double omega, double gravity) {
+/// x'' = -omega^2 x + g as (x, v): an pulledOscillator, or free fall for omega = 0.
+RightHandSide pulledOscillator(double omega, double gravity) {
   return {[=](double, const VectorX& state, VectorX& rate) {
             rate[0] = state[1];
             rate[1] = -omega * omega * state[0] + gravity;
@@ -38,22 +38,22 @@ double energy(const VectorX& state, double omega) {
 // n steps of semi-implicit Euler from rest: v_n = g n h, x_n = g h^2 n (n + 1) / 2 = g t^2 / 2 + g h t / 2.
 TEST(SemiImplicitEuler, FreeFallErrorIsHalfGravityTimesStepTimesTime) {
   const double timeStep = 0.01, time = 1;
-  const VectorX end = run(semiImplicitEuler, oscillator(0, kGravity), Eigen::Vector2d(0, 0), timeStep, 100);
+  const VectorX end = run(semiImplicitEuler, pulledOscillator(0, kPull), Eigen::Vector2d(0, 0), timeStep, 100);
   // 100 additions of numbers below 10: rounding below 100 * 1e-15.
-  EXPECT_NEAR(end[0], kGravity * time * time / 2 + kGravity * timeStep * time / 2, 1e-13);
-  EXPECT_NEAR(end[1], kGravity * time, 1e-13);
+  EXPECT_NEAR(end[0], kPull * time * time / 2 + kPull * timeStep * time / 2, 1e-13);
+  EXPECT_NEAR(end[1], kPull * time, 1e-13);
 }
 
 // The same sum with the old velocity: x_n = g h^2 n (n - 1) / 2.
 TEST(ExplicitEuler, FreeFallErrorIsMinusHalfGravityTimesStepTimesTime) {
   const double timeStep = 0.01, time = 1;
-  const VectorX end = run(explicitEuler, oscillator(0, kGravity), Eigen::Vector2d(0, 0), timeStep, 100);
-  EXPECT_NEAR(end[0], kGravity * time * time / 2 - kGravity * timeStep * time / 2, 1e-13);
+  const VectorX end = run(explicitEuler, pulledOscillator(0, kPull), Eigen::Vector2d(0, 0), timeStep, 100);
+  EXPECT_NEAR(end[0], kPull * time * time / 2 - kPull * timeStep * time / 2, 1e-13);
 }
 
 TEST(ExplicitEuler, OscillatorEnergyGrowsByOnePlusStepTimesOmegaSquaredAStep) {
   const double omega = 3, timeStep = 0.01;
-  const VectorX end = run(explicitEuler, oscillator(omega, 0), Eigen::Vector2d(1, 0), timeStep, 200);
+  const VectorX end = run(explicitEuler, pulledOscillator(omega, 0), Eigen::Vector2d(1, 0), timeStep, 200);
   const double growth = std::pow(1 + std::pow(timeStep * omega, 2), 200);
   EXPECT_NEAR(energy(end, omega) / energy(Eigen::Vector2d(1, 0), omega), growth, growth * 1e-12);
 }
@@ -64,13 +64,13 @@ TEST(SemiImplicitEuler, OscillatorKeepsItsModifiedEnergy) {
   const double omega = 3, timeStep = 0.1;
   const auto modified = [=](const VectorX& s) { return 2 * energy(s, omega) - timeStep * omega * omega * s[0] * s[1]; };
   const Eigen::Vector2d start(1, 0.3);
-  const VectorX end = run(semiImplicitEuler, oscillator(omega, 0), start, timeStep, 1000);
+  const VectorX end = run(semiImplicitEuler, pulledOscillator(omega, 0), start, timeStep, 1000);
   EXPECT_NEAR(modified(end), modified(start), 1e-11);
 }
 
 TEST(SemiImplicitEuler, OscillatorIsStableUpToStepTimesOmegaTwo) {
   const auto farthest = [](double omega) {
-    return run(semiImplicitEuler, oscillator(omega, 0), Eigen::Vector2d(1, 0), 1, 1000).cwiseAbs().maxCoeff();
+    return run(semiImplicitEuler, pulledOscillator(omega, 0), Eigen::Vector2d(1, 0), 1, 1000).cwiseAbs().maxCoeff();
   };
   EXPECT_LT(farthest(1.99), 1e3);
   EXPECT_GT(farthest(2.01), 1e6);
@@ -84,8 +84,8 @@ TEST(RungeKutta4, ErrorEstimateMatchesTheClosedFormAndBoundsTheError) {
   for (const double timeStep : {0.1, 0.01}) {
     const double z = timeStep * omega;
     Step step;
-    rk4(oscillator(omega, 0), Eigen::Vector2d(1, 0), 0, timeStep, step);
-    prepareInterpolant(oscillator(omega, 0), step);
+    rk4(pulledOscillator(omega, 0), Eigen::Vector2d(1, 0), 0, timeStep, step);
+    prepareInterpolant(pulledOscillator(omega, 0), step);
     const double inX = std::pow(z, 4) / 72 / (1 + std::abs(step.state[0]));
     const double inV = omega * std::pow(z, 5) / 144 / (1 + std::abs(step.state[1]));
     EXPECT_NEAR(rk4Error(step), std::max(inX, inV), 1e-16);
@@ -100,7 +100,7 @@ TEST(RungeKutta4, ErrorEstimateMatchesTheClosedFormAndBoundsTheError) {
 // = h omega, which is below 1 up to z = 2 sqrt(2).
 TEST(Rk4, OscillatorEnergyChangesAsItsTaylorPolynomialSays) {
   for (const double z : {0.5, 2.8, 2.9}) {
-    const VectorX end = run(rk4, oscillator(z, 0), Eigen::Vector2d(1, 0), 1, 10);
+    const VectorX end = run(rk4, pulledOscillator(z, 0), Eigen::Vector2d(1, 0), 1, 10);
     const double expected = std::pow(1 - std::pow(z, 6) / 72 + std::pow(z, 8) / 576, 10);
     EXPECT_NEAR(energy(end, z) / energy(Eigen::Vector2d(1, 0), z), expected, expected * 1e-12) << z;
   }

@@ -49,7 +49,7 @@ Vec3 accelerationOfFirst(const Mechanism& mechanism, const VectorX& state) {
 
 /// Central difference of a function of the state along its rate: its time derivative.
 template <class Function>
-auto timeDerivative(const VectorX& state, const VectorX& rate, const Function& function) {
+auto secondOrderDerivative(const VectorX& state, const VectorX& rate, const Function& function) {
   const double step = 1e-5;  // error ~ step^2 f'''/6 + rounding 1e-16 / step: about 1e-10
   using Value = decltype(function(state));
   return Value((function(VectorX(state + step * rate)) - function(VectorX(state - step * rate))) / (2 * step));
@@ -58,10 +58,11 @@ auto timeDerivative(const VectorX& state, const VectorX& rate, const Function& f
 TEST(GyroscopicTerm, KeepsAngularMomentumAndEnergyOfAFreeAsymmetricBody) {
   const Mechanism mechanism = twoBodies();
   const VectorX state = someState(), rate = stateRate(mechanism, state);
-  const Vec3 torque =
-      timeDerivative(state, rate, [&](const VectorX& s) { return Vec3(invariantsOf(mechanism, s).angularMomentum); });
+  const Vec3 torque = secondOrderDerivative(
+      state, rate, [&](const VectorX& s) { return Vec3(invariantsOf(mechanism, s).angularMomentum); });
   EXPECT_LT(torque.norm(), 1e-8);
-  EXPECT_NEAR(timeDerivative(state, rate, [&](const VectorX& s) { return energyConstant(mechanism, s); }), 0, 1e-8);
+  EXPECT_NEAR(secondOrderDerivative(state, rate, [&](const VectorX& s) { return energyConstant(mechanism, s); }), 0,
+              1e-8);
   EXPECT_GT(angularVelocity(rate, 0).norm(), 0.1);  // the term is there at all
 }
 
@@ -71,11 +72,12 @@ TEST(Spring, KeepsEnergyMomentumAndAngularMomentumBetweenTwoAsymmetricBodies) {
   const VectorX state = someState(), rate = stateRate(mechanism, state);
   const auto derivativeOf = [&](auto member) {
     return Vec3(
-        timeDerivative(state, rate, [&](const VectorX& s) { return Vec3(invariantsOf(mechanism, s).*member); }));
+        secondOrderDerivative(state, rate, [&](const VectorX& s) { return Vec3(invariantsOf(mechanism, s).*member); }));
   };
   EXPECT_LT(derivativeOf(&Invariants::momentum).norm(), 1e-8);
   EXPECT_LT(derivativeOf(&Invariants::angularMomentum).norm(), 1e-8);
-  EXPECT_NEAR(timeDerivative(state, rate, [&](const VectorX& s) { return energyConstant(mechanism, s); }), 0, 1e-7);
+  EXPECT_NEAR(secondOrderDerivative(state, rate, [&](const VectorX& s) { return energyConstant(mechanism, s); }), 0,
+              1e-7);
   EXPECT_GT(dissipatedEnergy(rate), 0);
 }
 
@@ -161,11 +163,12 @@ TEST(ConstraintRows, RateAndCurvatureAreTheTimeDerivativesOfTheirValues) {
     evaluatePoseRates(mechanism.bodies, state, rate);
     const std::vector<ConstraintRow> rows = rowsIn(mechanism, state);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double first = timeDerivative(state, rate, [&](const VectorX& s) { return rowsIn(mechanism, s)[i].value; });
+      const double first =
+          secondOrderDerivative(state, rate, [&](const VectorX& s) { return rowsIn(mechanism, s)[i].value; });
       EXPECT_NEAR(rateOf(rows[i], state), first, 1e-8) << i;
       // With constant velocities d^2C/dt^2 is the curvature alone: rates of positions move, velocities stay.
       const double second =
-          timeDerivative(state, rate, [&](const VectorX& s) { return rateOf(rowsIn(mechanism, s)[i], s); });
+          secondOrderDerivative(state, rate, [&](const VectorX& s) { return rateOf(rowsIn(mechanism, s)[i], s); });
       EXPECT_NEAR(rows[i].curvature, second, 1e-8) << i;
     }
   }
@@ -182,10 +185,12 @@ TEST(ConstraintForces, KeepConstraintsToSecondOrderAndDoNoWork) {
     const std::vector<ConstraintRow> rows = rowsIn(mechanism, state);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       EXPECT_NEAR(rateOf(rows[i], state), 0, 1e-13);
-      EXPECT_NEAR(timeDerivative(state, rate, [&](const VectorX& s) { return rateOf(rowsIn(mechanism, s)[i], s); }), 0,
-                  1e-7);
+      EXPECT_NEAR(
+          secondOrderDerivative(state, rate, [&](const VectorX& s) { return rateOf(rowsIn(mechanism, s)[i], s); }), 0,
+          1e-7);
     }
-    EXPECT_NEAR(timeDerivative(state, rate, [&](const VectorX& s) { return energyConstant(mechanism, s); }), 0, 1e-7);
+    EXPECT_NEAR(secondOrderDerivative(state, rate, [&](const VectorX& s) { return energyConstant(mechanism, s); }), 0,
+                1e-7);
   }
 }
 

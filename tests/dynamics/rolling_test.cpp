@@ -11,12 +11,6 @@
 namespace cradle {
 namespace {
 
-constexpr auto kSliding = ContactMotion::sliding;
-constexpr auto kSticking = ContactMotion::sticking;
-
-// Sums of a few accelerations of about 10, by forces a few times larger.
-constexpr double kRounding = 1e-13;
-
 TEST(Sphere, RollsDownASlopeAtFiveSeventhsOfGravity) {
   Mechanism mechanism = onEarth({solidSphere(0.7, 0.15)});
   mechanism.gravity = tiltedGravity();
@@ -25,8 +19,8 @@ TEST(Sphere, RollsDownASlopeAtFiveSeventhsOfGravity) {
   centerOfMass(state, 0).y() = 0.15;
   const VectorX rate = rateOf(mechanism, state), end = integrated(mechanism, state, 1, 1e-10);
   const double expected = 5.0 / 7 * kGravity * std::sin(kSlope);
-  EXPECT_LT((linearVelocity(rate, 0) - Vec3(expected, 0, 0)).norm(), kRounding);
-  EXPECT_LT((angularVelocity(rate, 0) - Vec3(0, 0, -expected / 0.15)).norm(), 10 * kRounding);
+  EXPECT_LT((linearVelocity(rate, 0) - Vec3(expected, 0, 0)).norm(), kMotionRounding);
+  EXPECT_LT((angularVelocity(rate, 0) - Vec3(0, 0, -expected / 0.15)).norm(), 10 * kMotionRounding);
   EXPECT_NEAR(centerOfMass(end, 0).x(), expected / 2, 1e-12);  // uniform acceleration: no error but rounding
   EXPECT_NEAR(centerOfMass(end, 0).y(), 0.15, 1e-13);
 }
@@ -46,8 +40,8 @@ TEST(Sphere, ThrownSlidesUntilItRolls) {
     angularVelocity(state, 0) = Vec3(0.4, 7, -ball.spin);  // and some spin that sliding along x does not touch
     angularVelocity(state, 0).x() = 0;
     const VectorX rate = rateOf(mechanism, state);
-    EXPECT_NEAR(linearVelocity(rate, 0).x(), -0.3 * kGravity, kRounding);
-    EXPECT_NEAR(angularVelocity(rate, 0).z(), -2.5 * 0.3 * kGravity / 0.1, 10 * kRounding);
+    EXPECT_NEAR(linearVelocity(rate, 0).x(), -0.3 * kGravity, kMotionRounding);
+    EXPECT_NEAR(angularVelocity(rate, 0).z(), -2.5 * 0.3 * kGravity / 0.1, 10 * kMotionRounding);
     const VectorX end = integrated(mechanism, state, ball.timeOfRolling(), 1e-10);
     const double rolling = (5 * ball.speed + 2 * ball.radius * ball.spin) / 7;
     EXPECT_NEAR(linearVelocity(end, 0).x(), rolling, 1e-12);
@@ -107,7 +101,7 @@ TEST(Sphere, RollsDownASphere) {
   VectorX state = restingState(1);
   centerOfMass(state, 0) = bottom + reach * Vec3(std::sin(start), std::cos(start), 0);
   const VectorX startRate = rateOf(mechanism, state);
-  EXPECT_NEAR(linearVelocity(startRate, 0).norm(), 5.0 / 7 * kGravity * std::sin(start), kRounding);
+  EXPECT_NEAR(linearVelocity(startRate, 0).norm(), 5.0 / 7 * kGravity * std::sin(start), kMotionRounding);
   const VectorX end = integrated(mechanism, state, 0.6, 1e-10);
   const Vec3 place = centerOfMass(end, 0) - bottom;
   const double square = linearVelocity(end, 0).squaredNorm(), cosine = place.y() / reach;

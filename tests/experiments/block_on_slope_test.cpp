@@ -14,11 +14,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kGravity = 9.81, kSlope = M_PI / 6;
-constexpr double kStep = 1.0 / 1000;  // s: frames, 50 a second, lie on steps
+constexpr double kSlope = M_PI / 6;
+constexpr double kBlockStep = 1.0 / 1000;  // s: frames, 50 a second, lie on steps
 constexpr const char* kSurfaces[] = {"plane", "box"};
 
-Trajectory slide(const std::string& surface, double friction, double speed, double duration, double step = kStep) {
+Trajectory slide(const std::string& surface, double friction, double speed, double duration, double step = kBlockStep) {
   const double c = std::cos(kSlope), s = std::sin(kSlope);
   const std::string slope = surface == "plane"
                                 ? fmt::format(R"("shape": {{"plane": {{"normal": [{:.17g}, {:.17g}, 0]}}}})", -s, c)
@@ -50,13 +50,15 @@ double speedUp(const Trajectory& run, std::size_t frame) {
 double frictionOf(double coefficient) {
   return coefficient * kGravity * std::cos(kSlope);
 }
-constexpr double kSolverError = 1e-8;  // m, m/s: sweeps over four corners end at 1e-12 of the largest change, a step
+constexpr double kBlockSolverError =
+    1e-8;  // m, m/s: sweeps over four corners end at 1e-12 of the largest change, a step
 
 TEST(BlockOnSlope, SlidesDownByTheClosedForm) {
   for (const char* surface : kSurfaces) {
     const Trajectory run = slide(surface, 0.2, 0, 1);
-    EXPECT_NEAR(wayUp(run, 50), -1.6029290788874656875, frictionOf(0.2) * kStep / 2 + kSolverError) << surface;
-    EXPECT_NEAR(speedUp(run, 50), -3.2058581577749313750, kSolverError) << surface;
+    EXPECT_NEAR(wayUp(run, 50), -1.6029290788874656875, frictionOf(0.2) * kBlockStep / 2 + kBlockSolverError)
+        << surface;
+    EXPECT_NEAR(speedUp(run, 50), -3.2058581577749313750, kBlockSolverError) << surface;
   }
 }
 
@@ -66,8 +68,8 @@ double errorOfSliding(double step) {
 
 TEST(BlockOnSlope, HalvesItsErrorAtLeastWithTheStep) {
   const double coarse = errorOfSliding(1.0 / 200), fine = errorOfSliding(1.0 / 400), finest = errorOfSliding(1.0 / 800);
-  EXPECT_LT(fine, 0.51 * coarse + kSolverError);
-  EXPECT_LT(finest, 0.51 * fine + kSolverError);
+  EXPECT_LT(fine, 0.51 * coarse + kBlockSolverError);
+  EXPECT_LT(finest, 0.51 * fine + kBlockSolverError);
 }
 
 TEST(BlockOnSlope, SticksWhereFrictionIsMoreThanTheTangent) {
@@ -86,15 +88,17 @@ TEST(BlockThrownUpASlope, StopsAndSlidesBack) {
   const double down = kGravity * std::sin(kSlope) - frictionOf(0.2);
   for (const char* surface : kSurfaces) {
     const Trajectory run = slide(surface, 0.2, 3, 1.2);
-    const double end = 1.2 - stop, speedError = 2 * frictionOf(0.2) * kStep;
+    const double end = 1.2 - stop, speedError = 2 * frictionOf(0.2) * kBlockStep;
     EXPECT_NEAR(speedUp(run, 60), -down * end, speedError) << surface;
-    EXPECT_NEAR(wayUp(run, 60), highest - down * end * end / 2, frictionOf(0.2) * kStep * 1.2 / 2 + speedError * end)
+    EXPECT_NEAR(wayUp(run, 60), highest - down * end * end / 2,
+                frictionOf(0.2) * kBlockStep * 1.2 / 2 + speedError * end)
         << surface;
     double top = 0;
     for (std::size_t frame = 0; frame <= 60; ++frame) top = std::max(top, wayUp(run, frame));
     // The nearest frame is at most 10 ms from the stop; the block is then lower by its slower way, upwards.
     const double up = kGravity * std::sin(kSlope) + frictionOf(0.2);
-    EXPECT_NEAR(top, highest, frictionOf(0.2) * kStep * stop / 2 + up * 0.01 * 0.01 / 2 + kSolverError) << surface;
+    EXPECT_NEAR(top, highest, frictionOf(0.2) * kBlockStep * stop / 2 + up * 0.01 * 0.01 / 2 + kBlockSolverError)
+        << surface;
   }
 }
 
@@ -102,12 +106,12 @@ TEST(BlockThrownUpASlope, StopsAndSlidesBack) {
 TEST(BlockThrownUpASlope, StopsAndSticks) {
   for (const char* surface : kSurfaces) {
     const Trajectory run = slide(surface, 0.7, 3, 1.2);
-    const double stop = 0.27644682841852313810, bound = frictionOf(0.7) * kStep * (stop / 2 + 2 * kStep);
-    EXPECT_NEAR(wayUp(run, 60), 0.41467024262778470714, bound + kSolverError) << surface;
+    const double stop = 0.27644682841852313810, bound = frictionOf(0.7) * kBlockStep * (stop / 2 + 2 * kBlockStep);
+    EXPECT_NEAR(wayUp(run, 60), 0.41467024262778470714, bound + kBlockSolverError) << surface;
     const auto rest = std::find_if(run.events.begin(), run.events.end(),
                                    [](const Event& event) { return event.kind == EventKind::rest; });
     ASSERT_NE(rest, run.events.end()) << surface;
-    EXPECT_NEAR(rest->time, stop, kStep + 1e-9) << surface;
+    EXPECT_NEAR(rest->time, stop, kBlockStep + 1e-9) << surface;
     for (std::size_t frame = 15; frame <= 60; ++frame)
       EXPECT_EQ(run.frames[frame].states[0].position, run.frames[60].states[0].position) << surface << frame;
   }

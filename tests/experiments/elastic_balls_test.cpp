@@ -13,11 +13,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kRadius = 0.1;
+constexpr double kBallRadius = 0.1;
 
 struct Ball {
   Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
-  double mass = 1, radius = kRadius;
+  double mass = 1, radius = kBallRadius;
 };
 
 std::string bodyText(const std::string& name, const std::string& shape, const Vec3& position, const std::string& more) {
@@ -40,7 +40,7 @@ std::string planeText(const std::string& name, const Vec3& position, const Vec3&
   return fixedText(name, R"({"plane": {"normal": )" + vectorText(normal) + "}}", position);
 }
 
-const std::string kFloor = planeText("floor", Vec3::Zero(), Vec3::UnitY());
+const std::string kFloorText = planeText("floor", Vec3::Zero(), Vec3::UnitY());
 
 struct Setting {
   double duration = 1;
@@ -49,7 +49,7 @@ struct Setting {
   double restitution = 1;
 };
 
-Scene sceneWith(const std::vector<Ball>& balls, const std::vector<std::string>& fixed, const Setting& setting) {
+Scene sceneOfBalls(const std::vector<Ball>& balls, const std::vector<std::string>& fixed, const Setting& setting) {
   std::string bodies;
   for (std::size_t i = 0; i < balls.size(); ++i) bodies += (i ? ", " : "") + ballText(static_cast<int>(i), balls[i]);
   for (const std::string& body : fixed) bodies += ", " + body;
@@ -60,19 +60,19 @@ Scene sceneWith(const std::vector<Ball>& balls, const std::vector<std::string>& 
 }
 
 /// Fails if another method was taken.
-Trajectory run(const std::vector<Ball>& balls, const std::vector<std::string>& fixed, const Setting& setting) {
-  Trajectory trajectory = simulate(sceneWith(balls, fixed, setting));
+Trajectory runOf(const std::vector<Ball>& balls, const std::vector<std::string>& fixed, const Setting& setting) {
+  Trajectory trajectory = simulate(sceneOfBalls(balls, fixed, setting));
   EXPECT_EQ(trajectory.header.method, "closed form between collisions");
   return trajectory;
 }
 
 constexpr double kFloorFall = 0.45152364098573090445;  // s: sqrt(2 / 9.81)
-const Vec3 kGravity(0, -9.81, 0);
+const Vec3 kPull(0, -9.81, 0);
 
 // They meet when the centres are two radii apart, wherever both have fallen to by then.
 TEST(ElasticBalls, ExchangeMomentumHeadOnAsTheirMassesTell) {
   const Trajectory trajectory =
-      run({{Vec3(-1, 0, 0), Vec3(3, 0, 0), 2}, {Vec3(1, 0, 0), Vec3(-1, 0, 0), 5}}, {}, {1, kGravity, 10});
+      runOf({{Vec3(-1, 0, 0), Vec3(3, 0, 0), 2}, {Vec3(1, 0, 0), Vec3(-1, 0, 0), 5}}, {}, {1, kPull, 10});
   ASSERT_EQ(trajectory.events.size(), 1u);
   const Event& event = trajectory.events[0];
   const double time = (2 - 0.2) / 4;
@@ -88,20 +88,20 @@ TEST(ElasticBalls, ExchangeMomentumHeadOnAsTheirMassesTell) {
 // Equal balls that meet under 30 degrees, one of them at rest: they exchange what is along the line of centres and part
 // at a right angle.
 TEST(ElasticBalls, PartAtARightAngleAfterAnObliqueHit) {
-  const double lever = 2 * kRadius * 0.5;
-  const Trajectory trajectory = run({{Vec3(-1, lever, 0), Vec3(2, 0, 0)}, {}}, {}, {1, Vec3::Zero(), 10});
+  const double lever = 2 * kBallRadius * 0.5;
+  const Trajectory trajectory = runOf({{Vec3(-1, lever, 0), Vec3(2, 0, 0)}, {}}, {}, {1, Vec3::Zero(), 10});
   const Vec3 line(std::sqrt(0.75), -0.5, 0);
   const Vec3 first = trajectory.frames.back().states[0].linearVelocity;
   const Vec3 second = trajectory.frames.back().states[1].linearVelocity;
-  EXPECT_NEAR(trajectory.events.at(0).time, (1 - 2 * kRadius * std::sqrt(0.75)) / 2, 1e-15);
+  EXPECT_NEAR(trajectory.events.at(0).time, (1 - 2 * kBallRadius * std::sqrt(0.75)) / 2, 1e-15);
   EXPECT_LT((second - 2 * std::sqrt(0.75) * line).norm(), 1e-14);
   EXPECT_NEAR(first.dot(second), 0, 1e-14);
 }
 
 TEST(ElasticBalls, PassMomentumThroughATouchingRow) {
   std::vector<Ball> row = {{Vec3(-1, 0, 0), Vec3(1, 0, 0)}};
-  for (int i = 0; i < 4; ++i) row.push_back({Vec3(2 * kRadius * i, 0, 0)});
-  const Trajectory trajectory = run(row, {}, {1, Vec3::Zero(), 10});
+  for (int i = 0; i < 4; ++i) row.push_back({Vec3(2 * kBallRadius * i, 0, 0)});
+  const Trajectory trajectory = runOf(row, {}, {1, Vec3::Zero(), 10});
   for (std::size_t i = 0; i < 5; ++i)
     EXPECT_LT((trajectory.frames.back().states[i].linearVelocity - (i == 4 ? Vec3(1, 0, 0) : Vec3(0, 0, 0))).norm(),
               1e-12);
@@ -112,14 +112,14 @@ TEST(ElasticBalls, PassMomentumThroughATouchingRow) {
 // A rack of ten on a table: all touch at once, and the table carries them. Mirrored in the cue ball's line the picture
 // stays the same.
 TEST(ElasticBalls, BreakARackSymmetrically) {
-  std::vector<Ball> balls = {{Vec3(-2, kRadius, 0), Vec3(3, 0, 0)}};
+  std::vector<Ball> balls = {{Vec3(-2, kBallRadius, 0), Vec3(3, 0, 0)}};
   std::vector<std::pair<std::size_t, std::size_t>> mirrored;
   for (int row = 0; row < 4; ++row)
     for (int i = 0; i <= row; ++i) {
       mirrored.emplace_back(balls.size(), balls.size() + static_cast<std::size_t>(row - 2 * i));
-      balls.push_back({Vec3(kRadius * std::sqrt(3.0) * row, kRadius, kRadius * (2 * i - row))});
+      balls.push_back({Vec3(kBallRadius * std::sqrt(3.0) * row, kBallRadius, kBallRadius * (2 * i - row))});
     }
-  const Trajectory trajectory = run(balls, {kFloor}, {1.5, kGravity, 20});
+  const Trajectory trajectory = runOf(balls, {kFloorText}, {1.5, kPull, 20});
   double spread = 0;
   for (const Frame& frame : trajectory.frames) {
     EXPECT_NEAR(frame.energy.kinetic, 4.5, 1e-13);
@@ -127,7 +127,7 @@ TEST(ElasticBalls, BreakARackSymmetrically) {
       const BodyState &first = frame.states[a], &second = frame.states[b];
       EXPECT_LT((first.position - Vec3(1, 1, -1).cwiseProduct(second.position)).norm(), 1e-12);
       EXPECT_LT((first.linearVelocity - Vec3(1, 1, -1).cwiseProduct(second.linearVelocity)).norm(), 1e-12);
-      EXPECT_NEAR(first.position.y(), kRadius, 1e-15);
+      EXPECT_NEAR(first.position.y(), kBallRadius, 1e-15);
       spread = std::max(spread, first.linearVelocity.z());
     }
   }
@@ -135,7 +135,7 @@ TEST(ElasticBalls, BreakARackSymmetrically) {
 }
 
 TEST(ElasticBalls, BounceOnAPlaneLikeTheReference) {
-  const Trajectory trajectory = run({{Vec3(0, 1.1, 0)}}, {kFloor}, {10, kGravity, 60});
+  const Trajectory trajectory = runOf({{Vec3(0, 1.1, 0)}}, {kFloorText}, {10, kPull, 60});
   ASSERT_EQ(trajectory.events.size(), 11u);
   for (std::size_t n = 0; n < 11; ++n)
     EXPECT_NEAR(trajectory.events[n].time, kFloorFall * (1 + 2 * static_cast<double>(n)), 1e-13) << n;
@@ -150,11 +150,11 @@ TEST(ElasticBalls, ReboundFromEdgesAndCornersAlongTheNormalThere) {
   for (const Vec3& feature : {Vec3(1, 1, 0), Vec3(1, 1, 1)}) {
     const Vec3 outward = feature.normalized(), aside = Vec3(1, -1, 0).normalized();
     const Trajectory trajectory =
-        run({{feature + outward + kRadius / 4 * aside, -2 * outward}}, {box}, {1, Vec3::Zero(), 10});
+        runOf({{feature + outward + kBallRadius / 4 * aside, -2 * outward}}, {box}, {1, Vec3::Zero(), 10});
     const double cosine = std::sqrt(1 - 1.0 / 16);
     const Vec3 normal = cosine * outward + aside / 4;
     ASSERT_EQ(trajectory.events.size(), 1u);
-    EXPECT_NEAR(trajectory.events[0].time, (1 - kRadius * cosine) / 2, 1e-14);
+    EXPECT_NEAR(trajectory.events[0].time, (1 - kBallRadius * cosine) / 2, 1e-14);
     EXPECT_LT((trajectory.events[0].normal + normal).norm(), 1e-13);
     EXPECT_LT((trajectory.events[0].point - feature).norm(), 1e-14);
     const Vec3 expected = -2 * outward + 4 * cosine * normal;
@@ -168,7 +168,7 @@ TEST(ElasticBalls, CountTheDigitsOfPi) {
   const std::string wall = planeText("wall", Vec3(-1, 0, 0), Vec3::UnitX());
   for (const auto& [ratio, expected] : {std::pair(1e2, 31), std::pair(1e4, 314), std::pair(1e6, 3141)}) {
     const Trajectory trajectory =
-        run({{Vec3::Zero()}, {Vec3(1, 0, 0), Vec3(-1, 0, 0), ratio}}, {wall}, {10, Vec3::Zero(), 1});
+        runOf({{Vec3::Zero()}, {Vec3(1, 0, 0), Vec3(-1, 0, 0), ratio}}, {wall}, {10, Vec3::Zero(), 1});
     EXPECT_EQ(trajectory.events.size(), static_cast<std::size_t>(expected));
     EXPECT_NEAR(trajectory.frames.back().energy.kinetic, ratio / 2, 1e-12 * ratio);
   }
@@ -179,7 +179,7 @@ TEST(ElasticBalls, CountTheDigitsOfPi) {
 TEST(ElasticBalls, LieOnAPlaneOnceTheyHaveGivenAwayAllTheirSpeed) {
   const double fall = kFloorFall, speed = 9.81 * fall;
   const Trajectory trajectory =
-      run({{Vec3(0, 1.1, 0), Vec3::Zero(), 3}, {Vec3(0, 1.3, 0)}}, {kFloor}, {6 * fall, kGravity, 4 / fall});
+      runOf({{Vec3(0, 1.1, 0), Vec3::Zero(), 3}, {Vec3(0, 1.3, 0)}}, {kFloorText}, {6 * fall, kPull, 4 / fall});
   const Frame& top = trajectory.frames[12];  // 2 v up for 2 fall times
   EXPECT_NEAR(trajectory.events.at(0).time, fall, 1e-14);
   EXPECT_LT((top.states[0].position - Vec3(0, 0.1, 0)).norm(), 1e-13);
@@ -195,7 +195,7 @@ TEST(ElasticBalls, LieOnAPlaneOnceTheyHaveGivenAwayAllTheirSpeed) {
 TEST(ElasticBalls, SayThatTheyCannotLieOnABox) {
   const std::string box = fixedText("box", R"({"box": {"size": [2, 2, 2]}})", Vec3(0, -1, 0));
   try {
-    run({{Vec3(0, 1.1, 0), Vec3::Zero(), 3}, {Vec3(0, 1.3, 0)}}, {box}, {2, kGravity, 60});
+    runOf({{Vec3(0, 1.1, 0), Vec3::Zero(), 3}, {Vec3(0, 1.3, 0)}}, {box}, {2, kPull, 60});
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::limit);
@@ -265,7 +265,7 @@ std::vector<Ball> replay(const Trajectory& trajectory, std::vector<Ball> balls, 
 TEST(ElasticBalls, OfAGasKeepTheirEnergyAndApart) {
   std::vector<Ball> balls = gas(4, Vec3(-0.45, -0.45, -0.45));
   for (std::size_t i = 0; i < balls.size(); i += 3) balls[i].radius = 0.05;
-  const Trajectory trajectory = run(balls, cubeOfPlanes(0.6), {3, kGravity, 20});
+  const Trajectory trajectory = runOf(balls, cubeOfPlanes(0.6), {3, kPull, 20});
   EXPECT_GT(trajectory.events.size(), 1000u);
   const double energy = energyConstantOf(trajectory.frames[0]);
   for (const Frame& frame : trajectory.frames) {
@@ -273,7 +273,7 @@ TEST(ElasticBalls, OfAGasKeepTheirEnergyAndApart) {
     EXPECT_GT(leastGapOf(frame, balls), -1e-13);
     for (const BodyState& state : frame.states) EXPECT_LT(state.position.cwiseAbs().maxCoeff(), 0.55 + 1e-13);
   }
-  const std::vector<Ball> replayed = replay(trajectory, balls, kGravity);
+  const std::vector<Ball> replayed = replay(trajectory, balls, kPull);
   for (std::size_t i = 0; i < balls.size(); ++i)
     EXPECT_LT((replayed[i].position - trajectory.frames.back().states[i].position).norm(), 1e-12);
   EXPECT_TRUE(std::is_sorted(trajectory.events.begin(), trajectory.events.end(),
@@ -284,7 +284,7 @@ TEST(ElasticBalls, OfAGasKeepTheirEnergyAndApart) {
 TEST(ElasticBalls, ThatBurstApartKeepTheirMomenta) {
   std::vector<Ball> balls = gas(3, Vec3(-0.3, -0.3, -0.3));
   for (Ball& ball : balls) ball.velocity -= 3 * ball.position;  // inwards first
-  const Trajectory trajectory = run(balls, {}, {3, Vec3::Zero(), 2});
+  const Trajectory trajectory = runOf(balls, {}, {3, Vec3::Zero(), 2});
   EXPECT_GT(trajectory.events.size(), 27u);
   for (const Frame& frame : trajectory.frames) {
     EXPECT_LT((frame.energy.momentum - trajectory.frames[0].energy.momentum).norm(), 1e-12);
@@ -305,7 +305,7 @@ TEST(ElasticBalls, BounceOffEverythingFixed) {
                                 sign * 2 * Vec3::Unit(axis)));
     }
   const std::vector<Ball> balls = gas(3, Vec3(-0.3, 0.2, -0.3));
-  const Trajectory trajectory = run(balls, fixed, {3, kGravity, 20});
+  const Trajectory trajectory = runOf(balls, fixed, {3, kPull, 20});
   const double energy = energyConstantOf(trajectory.frames[0]);
   std::vector<int> hits(fixed.size(), 0);
   for (const Event& event : trajectory.events)
@@ -327,15 +327,15 @@ TEST(ElasticBalls, BounceOffEverythingFixed) {
 TEST(ElasticBalls, ComeBackWhenTimeRunsBackwards) {
   std::vector<Ball> balls = gas(2, Vec3(-0.15, -0.15, -0.15));
   for (Ball& ball : balls) ball.velocity -= 4 * ball.position;
-  const Setting setting{0.6, kGravity, 10};
+  const Setting setting{0.6, kPull, 10};
   const std::vector<std::string> walls = cubeOfPlanes(0.5);
-  const Trajectory forth = run(balls, walls, setting);
+  const Trajectory forth = runOf(balls, walls, setting);
   std::vector<Ball> reversed = balls;
   for (std::size_t i = 0; i < balls.size(); ++i) {
     reversed[i].position = forth.frames.back().states[i].position;
     reversed[i].velocity = -forth.frames.back().states[i].linearVelocity;
   }
-  const Trajectory back = run(reversed, walls, setting);
+  const Trajectory back = runOf(reversed, walls, setting);
   EXPECT_GT(forth.events.size(), 15u);
   EXPECT_EQ(back.events.size(), forth.events.size());
   for (std::size_t i = 0; i < balls.size(); ++i)
@@ -345,10 +345,10 @@ TEST(ElasticBalls, ComeBackWhenTimeRunsBackwards) {
 // The order of bodies in the scene decides nothing but the order of sums.
 TEST(ElasticBalls, MoveTheSameInAnyOrder) {
   std::vector<Ball> balls = gas(3, Vec3(-0.3, -0.3, -0.3));
-  const Setting setting{0.3, kGravity, 10};
-  const Trajectory trajectory = run(balls, cubeOfPlanes(0.45), setting);
+  const Setting setting{0.3, kPull, 10};
+  const Trajectory trajectory = runOf(balls, cubeOfPlanes(0.45), setting);
   std::reverse(balls.begin(), balls.end());
-  const Trajectory other = run(balls, cubeOfPlanes(0.45), setting);
+  const Trajectory other = runOf(balls, cubeOfPlanes(0.45), setting);
   EXPECT_GT(trajectory.events.size(), 50u);
   EXPECT_EQ(trajectory.events.size(), other.events.size());
   for (std::size_t i = 0; i < balls.size(); ++i)
@@ -363,40 +363,40 @@ TEST(ElasticBalls, KeepTheirSpins) {
       bodyText("ball", R"({"sphere": {"radius": 0.1}})", Vec3(0, 0.3, 0), R"("angularVelocity": [0, 0, 2])");
   const Trajectory trajectory = simulate(cradle::sceneWith(fmt::format(R"("duration": 1,
     "materials": {{"m": {{"restitution": 1, "staticFriction": 0, "dynamicFriction": 0}}}}, "bodies": [{}, {}])",
-                                                                       spinning, kFloor)));
+                                                                       spinning, kFloorText)));
   EXPECT_EQ(trajectory.header.method, "closed form between collisions");
   EXPECT_GT(trajectory.events.size(), 1u);
   EXPECT_EQ(endOf(trajectory).angularVelocity, Vec3(0, 0, 2));
   EXPECT_NEAR(orientationError(endOf(trajectory).orientation, Quat(std::cos(1), 0, 0, std::sin(1))), 0, 1e-15);
 }
 
-std::string methodOf(const std::vector<Ball>& balls, const std::vector<std::string>& fixed, const Setting& setting) {
-  return simulate(sceneWith(balls, fixed, setting)).header.method.substr(0, 6);
+std::string methodFor(const std::vector<Ball>& balls, const std::vector<std::string>& fixed, const Setting& setting) {
+  return simulate(sceneOfBalls(balls, fixed, setting)).header.method.substr(0, 6);
 }
 
 // Lying on a plane is sliding along it; lying on a ball or a box is no straight line in general.
 TEST(ElasticBalls, ThatLieOnEachOtherAreLeftToOtherMethods) {
   const std::string box = fixedText("box", R"({"box": {"size": [2, 2, 2]}})", Vec3(0, -1, 0));
-  const Setting setting{0.05, kGravity, 60};
+  const Setting setting{0.05, kPull, 60};
   const std::vector<Ball> alone = {{Vec3(0, 0.1, 0)}}, pair = {{Vec3(0, 0.1, 0)}, {Vec3(0, 0.3, 0)}};
-  EXPECT_EQ(methodOf(alone, {kFloor}, setting), "closed");
-  EXPECT_NE(methodOf(alone, {box}, setting), "closed");
-  EXPECT_NE(methodOf(pair, {kFloor}, setting), "closed");
-  EXPECT_EQ(methodOf(pair, {kFloor}, {0.05, Vec3::Zero(), 60}), "closed");
-  EXPECT_NE(methodOf(alone, {kFloor}, {0.05, kGravity, 60, 0.9}), "closed");
+  EXPECT_EQ(methodFor(alone, {kFloorText}, setting), "closed");
+  EXPECT_NE(methodFor(alone, {box}, setting), "closed");
+  EXPECT_NE(methodFor(pair, {kFloorText}, setting), "closed");
+  EXPECT_EQ(methodFor(pair, {kFloorText}, {0.05, Vec3::Zero(), 60}), "closed");
+  EXPECT_NE(methodFor(alone, {kFloorText}, {0.05, kPull, 60, 0.9}), "closed");
 }
 
 // Down a slope of 30 degrees with g sin 30 = 4.905 m/s^2, on one plane; in a gutter of two, at rest across it.
 TEST(ElasticBalls, SlideDownPlanesThatCarryThem) {
   const double root = std::sqrt(0.5);
   const Vec3 slope(-0.5, std::sqrt(0.75), 0), left(0, root, root), right(0, root, -root);
-  const Trajectory plane = run({{kRadius * slope}}, {planeText("slope", Vec3::Zero(), slope)}, {1, kGravity, 1});
-  const Vec3 expected = kRadius * slope - 4.905 / 2 * Vec3(std::sqrt(0.75), 0.5, 0);
+  const Trajectory plane = runOf({{kBallRadius * slope}}, {planeText("slope", Vec3::Zero(), slope)}, {1, kPull, 1});
+  const Vec3 expected = kBallRadius * slope - 4.905 / 2 * Vec3(std::sqrt(0.75), 0.5, 0);
   EXPECT_LT((endOf(plane).position - expected).norm(), 1e-14);
   const Trajectory gutter =
-      run({{Vec3(0, kRadius / root, 0), Vec3(2, 0, 0)}},
-          {planeText("left", Vec3::Zero(), left), planeText("right", Vec3::Zero(), right)}, {1, kGravity, 1});
-  EXPECT_LT((endOf(gutter).position - Vec3(2, kRadius / root, 0)).norm(), 1e-14);
+      runOf({{Vec3(0, kBallRadius / root, 0), Vec3(2, 0, 0)}},
+            {planeText("left", Vec3::Zero(), left), planeText("right", Vec3::Zero(), right)}, {1, kPull, 1});
+  EXPECT_LT((endOf(gutter).position - Vec3(2, kBallRadius / root, 0)).norm(), 1e-14);
   EXPECT_TRUE(gutter.events.empty());
 }
 

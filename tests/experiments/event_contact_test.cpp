@@ -12,8 +12,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s^2
-
 std::string sceneText(double accuracy, double duration, double framesPerSecond, const std::string& material,
                       const std::string& bodies, const std::string& more = "") {
   return fmt::format(R"({{"schema": "cradle-scene/1", "name": "Events", "accuracy": {}, "duration": {},

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,8 @@
 // Experiments run a scene text through the whole of the physics.
 
 namespace cradle {
+
+constexpr double kGravity = 9.81;  // m/s^2
 
 /// The scene of a JSON text; no meshes.
 inline Scene sceneOf(const std::string& text) {
@@ -34,9 +38,28 @@ inline std::string methodText(const std::string& name, double timeStep) {
   return fmt::format(R"("method": {{"name": "{}", "timeStep": {}}})", name, timeStep);
 }
 
+/// A ball of 1 kg for a scene text, small and touching nothing.
+inline std::string ball(const std::string& name, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+  return fmt::format(R"({{"name": "{}", "shape": {{"sphere": {{"radius": 0.01}}}}, "collision": "none", "mass": 1,
+    "position": {}, "linearVelocity": {}}})",
+                     name, vectorText(position), vectorText(velocity));
+}
+
+inline std::vector<Event> eventsOf(const Trajectory& run, EventKind kind) {
+  std::vector<Event> events;
+  std::copy_if(run.events.begin(), run.events.end(), std::back_inserter(events),
+               [kind](const Event& event) { return event.kind == kind; });
+  return events;
+}
+
 /// The state of the first dynamic body in the last frame.
 inline BodyState endOf(const Trajectory& trajectory) {
   return trajectory.frames.back().states[0];
+}
+
+/// J
+inline double mechanicalEnergy(const Frame& frame) {
+  return frame.energy.kinetic + frame.energy.potential;
 }
 
 inline double energyConstantOf(const Frame& frame) {

@@ -106,7 +106,7 @@ std::string textOf(const Thing& thing) {
                      vectorText(thing.velocity), vectorText(thing.spin));
 }
 
-Trajectory run(const Yard& yard, double accuracy) {
+Trajectory runOf(const Yard& yard, double accuracy) {
   std::vector<std::string> bodies, links;
   for (const Thing& thing : yard.things) bodies.push_back(textOf(thing));
   for (const Link& link : yard.links) links.push_back(textOf(link));
@@ -138,28 +138,28 @@ double difference(const Yard& yard, const Trajectory& run, const Yard& other, co
 class Invariance : public testing::TestWithParam<double> {
  protected:
   const Yard yard_ = makeYard();
-  const Trajectory run_ = run(yard_, GetParam());
+  const Trajectory run_ = runOf(yard_, GetParam());
   // Errors of a step in either run; the impacts and the rope's pulls double them some times.
   const double tolerance_ = 100 * GetParam();
 };
 
 TEST_P(Invariance, OfAMirrorImage) {
   const Yard other = mirrored(yard_);
-  EXPECT_LT(
-      difference(yard_, run_, other, run(other, GetParam()), [](const Vec3& v) { return Vec3(v.x(), v.y(), -v.z()); }),
-      tolerance_);
+  EXPECT_LT(difference(yard_, run_, other, runOf(other, GetParam()),
+                       [](const Vec3& v) { return Vec3(v.x(), v.y(), -v.z()); }),
+            tolerance_);
 }
 
 TEST_P(Invariance, OfATurnedScene) {
   const Quat turn = rotationAbout(Vec3(1, -2, 0.5).normalized(), 1.1);
   const Yard other = turned(yard_, turn);
-  EXPECT_LT(difference(yard_, run_, other, run(other, GetParam()), [&](const Vec3& v) { return Vec3(turn * v); }),
+  EXPECT_LT(difference(yard_, run_, other, runOf(other, GetParam()), [&](const Vec3& v) { return Vec3(turn * v); }),
             tolerance_);
 }
 
 TEST_P(Invariance, OfAnotherOrder) {
   const Yard other = renumbered(yard_);
-  EXPECT_LT(difference(yard_, run_, other, run(other, GetParam()), [](const Vec3& v) { return v; }), tolerance_);
+  EXPECT_LT(difference(yard_, run_, other, runOf(other, GetParam()), [](const Vec3& v) { return v; }), tolerance_);
 }
 
 // The scene is worth it: things strike the floor, slide on it, and the rope goes taut.

@@ -10,7 +10,6 @@
 namespace cradle {
 namespace {
 
-const double kGravity = 9.81;
 const Mat3 kLopsided = (Mat3() << 0.08, 0.01, -0.02, 0.01, 0.05, 0.005, -0.02, 0.005, 0.07).finished();
 constexpr const char* kLopsidedText =
     R"("inertiaTensor": [[0.08, 0.01, -0.02], [0.01, 0.05, 0.005], [-0.02, 0.005, 0.07]])";

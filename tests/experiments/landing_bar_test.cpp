@@ -40,10 +40,6 @@ double depthOf(const BodyState& bar, double width) {
   return depth;
 }
 
-double mechanicalEnergy(const Frame& frame) {
-  return frame.energy.kinetic + frame.energy.potential;
-}
-
 // Frames every ms: nothing overlaps by more than the interpolant's error. The plate is wider than the bar, whose
 // corners touch then, or smaller, and its corners touch the bar's face.
 TEST(LandingBar, IsNeverInThePlate) {

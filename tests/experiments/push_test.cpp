@@ -16,13 +16,6 @@ Trajectory pushBox(const std::string& push, const std::string& method = methodTe
     "pushes": [)" + push + "]}"));
 }
 
-std::vector<Event> eventsOf(const Trajectory& run, EventKind kind) {
-  std::vector<Event> events;
-  std::copy_if(run.events.begin(), run.events.end(), std::back_inserter(events),
-               [kind](const Event& event) { return event.kind == kind; });
-  return events;
-}
-
 // 3 N for 0.25 s through the centre: v = F t / m, and the way is F t^2 / 2 m during and v t after the push. The step of
 // 0.7 ms does not fit the push: a method that stepped across its end would be off by up to F h / m = 1e-3 m/s.
 TEST(Push, ThroughTheCentreGivesForceTimesTimeForAnyMethod) {

@@ -19,10 +19,6 @@ constexpr double kMostEnergyErrors = 2, kMostPlaceErrors = 1;
 constexpr double kSteppedGain = 3e-4, kSteppedError = 2e-3;                  // of the energy
 constexpr double kSteppedTieError = 20. / 960, kSteppedPenetration = 0.005;  // m
 
-double mechanicalEnergy(const Frame& frame) {
-  return frame.energy.kinetic + frame.energy.potential;
-}
-
 bool isFinite(const Frame& frame) {
   const auto finite = [](const BodyState& state) {
     return state.position.allFinite() && state.orientation.coeffs().allFinite() && state.linearVelocity.allFinite() &&

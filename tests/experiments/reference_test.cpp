@@ -24,10 +24,10 @@ const Json& reference(const std::string& name) {
   throw std::out_of_range(name);
 }
 
-Scene sceneOf(const Json& problem, double accuracy) {
+Scene sceneOfProblem(const Json& problem, double accuracy) {
   Json scene = problem["scene"];
   scene["accuracy"] = accuracy;
-  return cradle::sceneOf(scene.dump());
+  return sceneOf(scene.dump());
 }
 
 Vec3 vectorOf(const Json& numbers) {
@@ -62,7 +62,7 @@ class Reference : public testing::TestWithParam<std::string> {};
 TEST_P(Reference, IsMetAtEveryAccuracy) {
   const Json& problem = reference(GetParam());
   for (const double accuracy : {1e-3, 1e-6, 1e-8, 1e-10}) {
-    const Scene scene = sceneOf(problem, accuracy);
+    const Scene scene = sceneOfProblem(problem, accuracy);
     const Trajectory run = simulate(scene);
     for (const Json& expected : problem["expected"]) {
       const double sensitivity = expected["sensitivity"];
@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(OfTheTable, Reference,
 // the steps' own.
 TEST(Ties, HoldInEveryFrameAtTheFinestAccuracy) {
   for (const char* name : {"Lagrange top", "Double rod pendulum", "Simple pendulum"}) {
-    Scene scene = sceneOf(reference(name), 1e-10);
+    Scene scene = sceneOfProblem(reference(name), 1e-10);
     scene.output.framesPerSecond = 61;
     EXPECT_LE(largestTieError(simulate(scene), scene), 1e-10) << name;
   }
@@ -98,7 +98,7 @@ TEST(Ties, HoldInEveryFrameAtTheFinestAccuracy) {
 // Each later time is off by the error of the swing before: sensitivity 19 of 1e-10 in all.
 TEST(BallOnARope, GoesTautAndSlackAtTheReferencesTimes) {
   const Json& problem = reference("Ball on a rope");
-  const Trajectory run = simulate(sceneOf(problem, 1e-10));
+  const Trajectory run = simulate(sceneOfProblem(problem, 1e-10));
   ASSERT_EQ(run.events.size(), problem["events"].size());
   for (std::size_t i = 0; i < run.events.size(); ++i) {
     const Json& expected = problem["events"][i];

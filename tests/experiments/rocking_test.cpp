@@ -10,8 +10,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s^2
-
 /// Boxes above each other, 1 m wide and 10 kg together, turned as one about an edge on the floor and let go.
 struct Tower {
   int boxes = 1;

@@ -9,37 +9,23 @@
 namespace cradle {
 namespace {
 
-constexpr double kGravity = 9.81;
-
-std::string ball(const std::string& name, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
-  return fmt::format(R"({{"name": "{}", "shape": {{"sphere": {{"radius": 0.01}}}}, "collision": "none", "mass": 1,
-    "position": {}, "linearVelocity": {}}})",
-                     name, vectorText(position), vectorText(velocity));
-}
-
 std::string rope(const std::string& body, const Vec3& anchor, double restitution) {
   return fmt::format(R"({{"bodyA": "{}", "anchorA": [0, 0, 0], "anchorB": {}, "maxLength": 1, "restitution": {}}})",
                      body, vectorText(anchor), restitution);
 }
 
-Trajectory run(double duration, const std::string& bodies, const std::string& ropes, double framesPerSecond = 10) {
+Trajectory runOnRopes(double duration, const std::string& bodies, const std::string& ropes,
+                      double framesPerSecond = 10) {
   return simulate(sceneWith(fmt::format(
       R"("duration": {}, "accuracy": 1e-10, "output": {{"framesPerSecond": {}}}, "bodies": [{}], "ropes": [{}])",
       duration, framesPerSecond, bodies, ropes)));
-}
-
-std::vector<Event> eventsOf(const Trajectory& run, EventKind kind) {
-  std::vector<Event> events;
-  std::copy_if(run.events.begin(), run.events.end(), std::back_inserter(events),
-               [kind](const Event& event) { return event.kind == kind; });
-  return events;
 }
 
 const double kDrop = 0.8;  // m
 const double kFall = std::sqrt(2 * kDrop / kGravity), kSpeed = kGravity * kFall;
 
 Trajectory dropBelowItsAnchor(double restitution, double duration) {
-  return run(duration, ball("ball", Vec3(0, kDrop - 1, 0)), rope("ball", Vec3::Zero(), restitution));
+  return runOnRopes(duration, ball("ball", Vec3(0, kDrop - 1, 0)), rope("ball", Vec3::Zero(), restitution));
 }
 
 TEST(FallIntoARope, WithoutRestitutionEndsThere) {
@@ -94,7 +80,7 @@ TEST(FallIntoARope, WithAllItsSpeedRepeatsItself) {
 // The ball of the reference goes slack at 0.96 s and taut again at 1.26 s: a parabola in between.
 TEST(SlackRope, LeavesAParabola) {
   const Trajectory thrown =
-      run(1.25, ball("ball", Vec3(0.9, 0, 0), Vec3(0, -2, 0)), rope("ball", Vec3::Zero(), 0), 100);
+      runOnRopes(1.25, ball("ball", Vec3(0.9, 0, 0), Vec3(0, -2, 0)), rope("ball", Vec3::Zero(), 0), 100);
   ASSERT_EQ(thrown.events.size(), 2u);
   const Event& slack = thrown.events[1];
   ASSERT_EQ(slack.kind, EventKind::slack);
@@ -129,8 +115,8 @@ TEST(RopeOnARodPendulum, PullsAsHardAsTheRodLetsTheBobAnswer) {
 
 /// A ball that falls from between two anchors, on a rope from each.
 Trajectory dropBetweenAnchors(double restitution, double duration) {
-  return run(duration, ball("ball", Vec3::Zero()),
-             rope("ball", Vec3(0.6, 0, 0), restitution) + ", " + rope("ball", Vec3(-0.6, 0, 0), restitution));
+  return runOnRopes(duration, ball("ball", Vec3::Zero()),
+                    rope("ball", Vec3(0.6, 0, 0), restitution) + ", " + rope("ball", Vec3(-0.6, 0, 0), restitution));
 }
 
 // Both ropes are straight 0.8 m below.

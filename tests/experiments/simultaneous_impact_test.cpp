@@ -12,7 +12,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kRadius = 0.1;       // m
+constexpr double kPuckRadius = 0.1;   // m
 constexpr double kImpactTime = 0.25;  // s
 // Velocities of some m/s: the instant is found to 1e-16 s, ten impulses round to 1e-15 each.
 constexpr double kRounding = 1e-12;
@@ -27,7 +27,7 @@ const Way kWays[] = {{"", 0}, {R"("method": {"name": "dop853"},)", 0}, {R"("meth
 std::string ballText(std::size_t number, double mass, const Vec3& position, const Vec3& velocity) {
   return fmt::format(R"({{"name": "b{}", "shape": {{"sphere": {{"radius": {}}}}}, "mass": {:.17g}, "material": "m",
     "position": {}, "linearVelocity": {}}})",
-                     number, kRadius, mass, vectorText(position), vectorText(velocity));
+                     number, kPuckRadius, mass, vectorText(position), vectorText(velocity));
 }
 
 /// The frame of the impact.
@@ -46,7 +46,7 @@ using Speeds = std::vector<double>;
 Speeds rowAfterImpact(const Way& way, double restitution, const Speeds& before) {
   std::vector<std::string> balls;
   for (std::size_t i = 0; i < before.size(); ++i) {
-    const double place = 2 * kRadius * static_cast<double>(i) - before[i] * kImpactTime;
+    const double place = 2 * kPuckRadius * static_cast<double>(i) - before[i] * kImpactTime;
     balls.push_back(ballText(i, 1, Vec3(place, 0, 0), Vec3(before[i], 0, 0)));
   }
   Speeds after;
@@ -86,7 +86,7 @@ TEST(RowsOfBalls, LeaveTheirImpactAsTheRationalsSay) {
 std::vector<Vec3> rackOf(int rows) {
   std::vector<Vec3> places;
   for (int row = 0; row < rows; ++row)
-    for (int i = 0; i <= row; ++i) places.push_back(2 * kRadius * Vec3(row * std::sqrt(0.75), 0, i - 0.5 * row));
+    for (int i = 0; i <= row; ++i) places.push_back(2 * kPuckRadius * Vec3(row * std::sqrt(0.75), 0, i - 0.5 * row));
   return places;
 }
 
@@ -104,7 +104,7 @@ TEST(BilliardBreak, OfTwoBallsMatchesTheClosedForm) {
     // The pair opens along x: rows 2 and 3 of a rack without its first ball, struck from there.
     std::vector<std::string> balls;
     for (const double side : {1.0, -1.0})
-      balls.push_back(ballText(balls.size(), 1, 2 * kRadius * Vec3(std::sqrt(0.75), 0, side / 2), Vec3::Zero()));
+      balls.push_back(ballText(balls.size(), 1, 2 * kPuckRadius * Vec3(std::sqrt(0.75), 0, side / 2), Vec3::Zero()));
     balls.push_back(ballText(2, 1, -kImpactTime * Vec3::UnitX(), Vec3::UnitX()));
     const Frame frame = impactOf(way, 1, fmt::format("{}", fmt::join(balls, ", ")));
     const Vec3 expected[] = {{0.6, 0, std::sqrt(3) / 5}, {0.6, 0, -std::sqrt(3) / 5}, {-0.2, 0, 0}};
@@ -123,7 +123,7 @@ double asymmetryOf(const Frame& frame, int rows) {
       const BodyState &ball = frame.states[first + i], &image = frame.states[first + count - 1 - i];
       const Vec3 v = image.linearVelocity, w = image.angularVelocity;  // axial: x and y change sign
       asymmetry = std::max(asymmetry, (ball.linearVelocity - Vec3(v.x(), v.y(), -v.z())).norm());
-      asymmetry = std::max(asymmetry, kRadius * (ball.angularVelocity - Vec3(-w.x(), -w.y(), w.z())).norm());
+      asymmetry = std::max(asymmetry, kPuckRadius * (ball.angularVelocity - Vec3(-w.x(), -w.y(), w.z())).norm());
     }
     first += count;
   }
@@ -133,7 +133,7 @@ double asymmetryOf(const Frame& frame, int rows) {
 TEST(BilliardBreak, HeadOnIsMirrorSymmetric) {
   for (const Way& way : kWays)
     for (const int rows : {2, 3, 5}) {
-      const Frame frame = breakOf(way, rows, -2 * kRadius * Vec3::UnitX());
+      const Frame frame = breakOf(way, rows, -2 * kPuckRadius * Vec3::UnitX());
       EXPECT_LT(asymmetryOf(frame, rows), kRounding) << way.method << " friction " << way.friction << " rows " << rows;
       EXPECT_GT(frame.states[0].linearVelocity.norm() + frame.states[1].linearVelocity.norm(), 0.1);
       EXPECT_NEAR(frame.energy.momentum.x(), 1, kRounding);
@@ -147,7 +147,7 @@ struct Dumbbell {
   Vec3 rod;                   // m, from ball 1 to ball 2
   Vec3 velocity1, velocity2;  // m/s; the rod keeps its length
   double mass() const { return mass1 + mass2; }
-  Vec3 center() const { return Vec3(0, kRadius, 0) + mass2 / mass() * rod; }
+  Vec3 center() const { return Vec3(0, kPuckRadius, 0) + mass2 / mass() * rod; }
   Vec3 velocity() const { return (mass1 * velocity1 + mass2 * velocity2) / mass(); }
   Vec3 spin() const { return rod.cross(velocity2 - velocity1) / rod.squaredNorm(); }
 

@@ -8,14 +8,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kGravity = 9.81;
-
-std::string ball(const std::string& name, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
-  return fmt::format(R"({{"name": "{}", "shape": {{"sphere": {{"radius": 0.01}}}}, "collision": "none", "mass": 1,
-    "position": {}, "linearVelocity": {}}})",
-                     name, vectorText(position), vectorText(velocity));
-}
-
 std::string rodToWorld(const std::string& body, const Vec3& end) {
   return fmt::format(R"({{"bodyA": "{}", "anchorA": [0, 0, 0], "anchorB": {}}})", body, vectorText(end));
 }
@@ -23,7 +15,7 @@ std::string rodBetween(const std::string& a, const std::string& b) {
   return fmt::format(R"({{"bodyA": "{}", "anchorA": [0, 0, 0], "bodyB": "{}", "anchorB": [0, 0, 0]}})", a, b);
 }
 
-Scene sceneOf(double duration, const Vec3& gravity, const std::string& members) {
+Scene sceneUnder(double duration, const Vec3& gravity, const std::string& members) {
   return sceneWith(
       fmt::format(R"("duration": {}, "accuracy": 1e-10, "gravity": {}, {})", duration, vectorText(gravity), members));
 }
@@ -35,7 +27,7 @@ const std::string kChain = R"("bodies": [)" + ball("a", Vec3(1, 0, 0)) + ", " + 
                            rodBetween("b", "a") + ", " + rodBetween("c", "b");
 
 TEST(StraightChain, StaysStraightUnderTension) {
-  const Trajectory run = simulate(sceneOf(
+  const Trajectory run = simulate(sceneUnder(
       1, kNone,
       kChain + R"(], "pushes": [{"body": "c", "point": [0, 0, 0], "force": [50, 0, 0], "start": 0, "duration": 1}])"));
   for (const Frame& frame : run.frames)
@@ -44,7 +36,7 @@ TEST(StraightChain, StaysStraightUnderTension) {
 }
 
 TEST(StraightChain, FallsWithItsEnergy) {
-  const Scene scene = sceneOf(2, kDown, kChain + "]");
+  const Scene scene = sceneUnder(2, kDown, kChain + "]");
   const Trajectory run = simulate(scene);
   EXPECT_GT(run.frames[40].energy.kinetic, 5);
   EXPECT_LT(largestEnergyError(run), 1e-8);
@@ -65,12 +57,12 @@ void expectLock(const Scene& scene) {
 // Stretched to its full length between fixed points a chain cannot move, and no finite tension carries its weight.
 TEST(ChainAtItsFullLength, IsRefusedAsSoonAsSomethingActsAcrossIt) {
   const std::string held = kChain + ", " + rodToWorld("c", Vec3(4, 0, 0)) + "]";
-  const Trajectory still = simulate(sceneOf(1, kNone, held));
+  const Trajectory still = simulate(sceneUnder(1, kNone, held));
   EXPECT_LT((still.frames.back().states[1].position - Vec3(2, 0, 0)).norm(), 1e-14);
-  expectLock(sceneOf(1, kDown, held));
-  expectLock(sceneOf(1, kNone,
-                     R"("bodies": [)" + ball("a", Vec3(1, 0, 0), Vec3(0, 1, 0)) + R"(], "rods": [)" +
-                         rodToWorld("a", Vec3::Zero()) + ", " + rodToWorld("a", Vec3(2, 0, 0)) + "]"));
+  expectLock(sceneUnder(1, kDown, held));
+  expectLock(sceneUnder(1, kNone,
+                        R"("bodies": [)" + ball("a", Vec3(1, 0, 0), Vec3(0, 1, 0)) + R"(], "rods": [)" +
+                            rodToWorld("a", Vec3::Zero()) + ", " + rodToWorld("a", Vec3(2, 0, 0)) + "]"));
 }
 
 // A parallelogram of rods of 1 m and 2 m, in line twice a turn: there it could go on as a parallelogram or crosswise.
@@ -78,10 +70,10 @@ TEST(ChainAtItsFullLength, IsRefusedAsSoonAsSomethingActsAcrossIt) {
 TEST(Parallelogram, PassesItsFlatPositions) {
   const double speed = 4;
   const Scene scene =
-      sceneOf(5, kNone,
-              R"("bodies": [)" + ball("a", Vec3(0, -1, 0), Vec3(speed, 0, 0)) + ", " +
-                  ball("b", Vec3(2, -1, 0), Vec3(speed, 0, 0)) + R"(], "rods": [)" + rodToWorld("a", Vec3::Zero()) +
-                  ", " + rodToWorld("b", Vec3(2, 0, 0)) + ", " + rodBetween("a", "b") + "]");
+      sceneUnder(5, kNone,
+                 R"("bodies": [)" + ball("a", Vec3(0, -1, 0), Vec3(speed, 0, 0)) + ", " +
+                     ball("b", Vec3(2, -1, 0), Vec3(speed, 0, 0)) + R"(], "rods": [)" + rodToWorld("a", Vec3::Zero()) +
+                     ", " + rodToWorld("b", Vec3(2, 0, 0)) + ", " + rodBetween("a", "b") + "]");
   const Trajectory run = simulate(scene);
   for (const Frame& frame : run.frames) {
     const double angle = speed * frame.time;
@@ -98,7 +90,7 @@ TEST(HingedParallelogram, PassesItsFlatPositionsWithItsEnergy) {
     return fmt::format(R"({{"name": "{}", "shape": {{"box": {{"size": {}}}}}, "collision": "none", "mass": 1, {}}})",
                        name, vectorText(size), motion);
   };
-  const Scene scene = sceneOf(
+  const Scene scene = sceneUnder(
       3, kDown,
       R"("bodies": [)" +
           bar("left", Vec3(0.1, 1, 0.1),
@@ -126,9 +118,9 @@ TEST(HingedParallelogram, PassesItsFlatPositionsWithItsEnergy) {
 TEST(RodPendulum, ReachesTheTopOrDoesNot) {
   const double frequency = std::sqrt(kGravity);
   const auto thrown = [&](double part, double duration) {
-    return simulate(sceneOf(duration, kDown,
-                            R"("bodies": [)" + ball("bob", Vec3(0, -1, 0), Vec3(2 * frequency * part, 0, 0)) +
-                                R"(], "rods": [)" + rodToWorld("bob", Vec3::Zero()) + "]"));
+    return simulate(sceneUnder(duration, kDown,
+                               R"("bodies": [)" + ball("bob", Vec3(0, -1, 0), Vec3(2 * frequency * part, 0, 0)) +
+                                   R"(], "rods": [)" + rodToWorld("bob", Vec3::Zero()) + "]"));
   };
   // A disturbance grows as e^(w0 t): 500 times in 2 s.
   for (const Frame& frame : thrown(1, 2).frames) {

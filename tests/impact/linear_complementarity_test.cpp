@@ -25,7 +25,7 @@ double violation(const MatrixX& a, const VectorX& b, const VectorX& lambda) {
 
 // A Cholesky solution of n rows is off by some n eps of the terms times the growth of rounding in the rows that do not
 // push: 50 x 2e-16 x 100.
-constexpr double kRounding = 1e-12;
+constexpr double kPivotRounding = 1e-12;
 
 TEST(LinearComplementarity, OfOneRowPushesOrNot) {
   const MatrixX a = MatrixX::Constant(1, 1, 4);
@@ -48,7 +48,7 @@ TEST(LinearComplementarity, HoldsToRoundingForRandomDefiniteMatrices) {
     const MatrixX root = randomMatrix(size, size + 5, random);
     const MatrixX a = root * root.transpose();
     const VectorX b = randomMatrix(size, 1, random);
-    EXPECT_LT(violation(a, b, solveLinearComplementarity(a, b)), kRounding) << trial;
+    EXPECT_LT(violation(a, b, solveLinearComplementarity(a, b)), kPivotRounding) << trial;
   }
 }
 
@@ -63,9 +63,9 @@ TEST(LinearComplementarity, HoldsToRoundingForSingularMatricesAndAnyOrderOfRows)
     const MatrixX a = rows * rows.transpose();
     const VectorX b = rows * randomMatrix(rank, 1, random);
     const VectorX lambda = solveLinearComplementarity(a, b);
-    EXPECT_LT(violation(a, b, lambda), kRounding) << trial;
+    EXPECT_LT(violation(a, b, lambda), kPivotRounding) << trial;
     const VectorX reversed = solveLinearComplementarity(a.reverse(), b.reverse());
-    EXPECT_LT((a * (lambda - reversed.reverse())).norm(), kRounding * size * b.norm()) << trial;
+    EXPECT_LT((a * (lambda - reversed.reverse())).norm(), kPivotRounding * size * b.norm()) << trial;
   }
 }
 
@@ -81,7 +81,7 @@ TEST(LinearComplementarity, HoldsToRoundingForHeavyOnLight) {
     for (int i = 0; i < size; ++i) rows(i, i) = -1, rows(i, i + 1) = 1;
     const MatrixX a = rows * inverseMasses.asDiagonal() * rows.transpose();
     const VectorX b = rows * randomMatrix(size + 1, 1, random);
-    EXPECT_LT(violation(a, b, solveLinearComplementarity(a, b)), kRounding) << trial;
+    EXPECT_LT(violation(a, b, solveLinearComplementarity(a, b)), kPivotRounding) << trial;
   }
 }
 

@@ -3,15 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "rounding.h"
 
 namespace cradle {
 namespace {
 
 using std::numbers::pi;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 // K for k^2 = 1/2 is Gamma(1/4)^2 / (4 sqrt(pi)); next to k = 1 it is ln(4 / k'), up to k'^2 ln(4 / k') / 4.
 TEST(JacobiElliptic, QuarterPeriodMatchesClosedForms) {

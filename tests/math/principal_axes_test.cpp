@@ -2,14 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "math/rotation.h"
+#include "rounding.h"
 
 namespace cradle {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 TEST(PrincipalAxes, DiagonalTensorKeepsItsBits) {
   const Vec3 moments(0.4 / 12, 1.36 / 12, 1.04 / 12);

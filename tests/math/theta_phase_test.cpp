@@ -4,15 +4,15 @@
 
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
+
+#include "rounding.h"
 
 namespace cradle {
 namespace {
 
 using std::numbers::pi;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr QuarterPeriods kBelow{2, 1 - 1e-12}, kAbove{2, 1 + 1e-12};  // on either side of the change of series
 
 double phaseOf(const ThetaPhase::Direction& direction) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "mesh/sample_meshes.h"
+
 namespace cradle {
 namespace {
 
@@ -35,10 +37,6 @@ TEST(RayCast, FromInsideHitsTheFarWall) {
   EXPECT_NEAR(castRay(ray, Box{Vec3(2, 2, 2)}).value(), 0.9, 1e-15);
   EXPECT_NEAR(castRay(ray, Cylinder{1, 1}).value(), 0.9, 1e-15);
   EXPECT_NEAR(castRay(ray, Capsule{1, 1}).value(), 0.9, 1e-15);
-}
-
-TriangleMesh solidOf(const DrawnMesh& drawn) {
-  return weld(drawn.vertices, drawn.triangles);
 }
 
 // Random rays against primitives and their tessellations: two independent computations. A facet of n around lies within

@@ -12,7 +12,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kRounding = 4e-16;  // of values near 1, after a product or a square root or two
+constexpr double kRoundingNearOne = 4e-16;  // of values near 1, after a product or a square root or two
 
 // Every value of every_key.json, by hand.
 class EveryKey : public testing::Test {
@@ -45,7 +45,7 @@ TEST_F(EveryKey, CameraAndLightsAreThoseOfTheFile) {
   ASSERT_TRUE(scene_.camera.has_value());
   EXPECT_EQ(scene_.camera->position, Vec3(1, 2, 8));
   EXPECT_EQ(scene_.camera->target, Vec3(0, 2, 0));
-  EXPECT_NEAR(scene_.camera->verticalFieldOfView, std::numbers::pi / 3, kRounding);
+  EXPECT_NEAR(scene_.camera->verticalFieldOfView, std::numbers::pi / 3, kRoundingNearOne);
   ASSERT_EQ(scene_.lights.size(), 1U);
   EXPECT_EQ(scene_.lights[0].direction, Vec3(0, -1, 0));
   EXPECT_EQ(scene_.lights[0].color, Vec3f(1, 128.0F / 255, 0));
@@ -76,7 +76,7 @@ TEST_F(EveryKey, PairsAreAsNamedOrCombined) {
   EXPECT_EQ(scene_.surfacePairs[2][0].staticFriction, std::sqrt(0.5 * 1.5));
   EXPECT_EQ(scene_.surfacePairs[0][2].dynamicFriction, std::sqrt(0.5 * 0.9));
   EXPECT_EQ(scene_.surfacePairs[1][1].restitution, 0.9);
-  EXPECT_NEAR(scene_.surfacePairs[1][1].staticFriction, 0.6, kRounding);
+  EXPECT_NEAR(scene_.surfacePairs[1][1].staticFriction, 0.6, kRoundingNearOne);
 }
 
 TEST_F(EveryKey, MeshBodyHasWhatItWasGiven) {
@@ -95,7 +95,7 @@ TEST_F(EveryKey, MeshBodyHasWhatItWasGiven) {
   EXPECT_EQ(crate.massProperties.centerOfMass, Vec3(0.9, 1, 1.1));
   EXPECT_EQ(crate.massProperties.inertiaTensor, (Mat3() << 2, 0.1, 0, 0.1, 2.5, -0.2, 0, -0.2, 3).finished());
   EXPECT_EQ(crate.worldFromBody.translation, Vec3(0, 5, 0));
-  EXPECT_TRUE(crate.worldFromBody.rotation.coeffs().isApprox(Quat(0.8, 0.6, 0, 0).coeffs(), kRounding));
+  EXPECT_TRUE(crate.worldFromBody.rotation.coeffs().isApprox(Quat(0.8, 0.6, 0, 0).coeffs(), kRoundingNearOne));
   EXPECT_EQ(crate.linearVelocity, Vec3(1, 2, 3));
   EXPECT_EQ(crate.angularVelocity, Vec3(4, 5, 6));
 }
@@ -145,7 +145,7 @@ TEST_F(EveryKey, LinksJoinWhatTheyName) {
   EXPECT_EQ(scene_.ballJoints.at(0).anchorA.body, 7);
   EXPECT_EQ(scene_.ballJoints.at(0).anchorB.body, 6);
   EXPECT_EQ(scene_.hinges.at(0).anchorA.body, 2);
-  EXPECT_TRUE(scene_.hinges.at(0).axis.isApprox(Vec3(0, 0.6, 0.8), kRounding));
+  EXPECT_TRUE(scene_.hinges.at(0).axis.isApprox(Vec3(0, 0.6, 0.8), kRoundingNearOne));
 }
 
 TEST_F(EveryKey, PushesActWhereTheySay) {
@@ -172,7 +172,7 @@ TEST(SceneDefaults, AreThoseOfTheTable) {
   EXPECT_EQ(scene.output.playbackSpeed, 1);
   EXPECT_FALSE(scene.camera.has_value());
   ASSERT_EQ(scene.lights.size(), 1U);
-  EXPECT_TRUE(scene.lights[0].direction.isApprox(Vec3(-1, -2, -1) / std::sqrt(6.0), kRounding));
+  EXPECT_TRUE(scene.lights[0].direction.isApprox(Vec3(-1, -2, -1) / std::sqrt(6.0), kRoundingNearOne));
   EXPECT_EQ(scene.lights[0].color, Vec3f(1, 1, 1));
   EXPECT_EQ(scene.lights[0].intensity, 3);
   EXPECT_EQ(scene.look, Look::light);

@@ -32,19 +32,19 @@ Outcome outcomeOf(const Scene& scene) {
   return outcome;
 }
 
-Scene sceneWith(const std::string& method, double duration, const std::string& rest) {
+Scene sceneMovedBy(const std::string& method, double duration, const std::string& rest) {
   return sceneOf(
       fmt::format(R"({{"schema": "cradle-scene/1", "name": "t", "duration": {}, {}, {}}})", duration, method, rest));
 }
 
 /// A ball of 2 kg on a spring of 0.9 m, stretched by 0.1 m.
 Scene hungBall(const std::string& method, double timeStep, double stiffness, double damping) {
-  return sceneWith(methodText(method, timeStep), 600 * timeStep,
-                   fmt::format(R"(
+  return sceneMovedBy(methodText(method, timeStep), 600 * timeStep,
+                      fmt::format(R"(
     "bodies": [{{"name": "ball", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 2, "position": [0, -1, 0]}}],
     "springs": [{{"name": "s", "bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0], "stiffness": {},
                   "damping": {}, "restLength": 0.9}}])",
-                               stiffness, damping));
+                                  stiffness, damping));
 }
 
 /// 1 % on either side of a limit: silence and a run to its end below, warning and stop above.
@@ -99,8 +99,8 @@ TEST(SpringModes, AreThoseOfAllSpringsTogether) {
     springs += fmt::format(
         R"({}{{"bodyA": "plate", "anchorA": [{}], "anchorB": [{}], "stiffness": 100, "damping": 3, "restLength": 0.1}})",
         springs.empty() ? "" : ", ", corner, std::string(corner).replace(std::string(corner).find(", 0,") + 2, 1, "1"));
-  const Scene scene = sceneWith(methodText("rk4", 0.001), 1,
-                                R"("bodies": [{"name": "plate", "shape": {"box": {"size": [1, 1, 1]}}, "mass": 2,
+  const Scene scene = sceneMovedBy(methodText("rk4", 0.001), 1,
+                                   R"("bodies": [{"name": "plate", "shape": {"box": {"size": [1, 1, 1]}}, "mass": 2,
       "centerOfMass": [0, 0, 0], "inertiaTensor": [[0.166666666666666667, 0, 0], [0, 0.3, 0], [0, 0, 0.166666666666666667]]}],
     "springs": [)" + springs + "]");
   const Assembly assembly = assemble(scene, planOf(scene).islands.at(0));
@@ -110,7 +110,7 @@ TEST(SpringModes, AreThoseOfAllSpringsTogether) {
 
 // Two rods leave a ball the x axis alone, at 30 degrees to the spring: cos(30 degrees)^2 = 3/4 of its stiffness.
 TEST(SpringModes, KnowWhatRodsLeave) {
-  const Scene scene = sceneWith(methodText("rk4", 0.001), 1, R"(
+  const Scene scene = sceneMovedBy(methodText("rk4", 0.001), 1, R"(
     "bodies": [{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 2}],
     "rods": [{"bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 1, 0]},
              {"bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 0, 1]}],
@@ -121,7 +121,7 @@ TEST(SpringModes, KnowWhatRodsLeave) {
 
 TEST(Guard, NamesARodThatTurnsTooFarInAStep) {
   for (const char* method : {"explicitEuler", "rk4", "dop853"}) {
-    const Outcome outcome = outcomeOf(sceneWith(methodText(method, 0.5), 100, R"(
+    const Outcome outcome = outcomeOf(sceneMovedBy(methodText(method, 0.5), 100, R"(
       "bodies": [{"name": "bob", "shape": {"sphere": {"radius": 0.01}}, "mass": 1, "position": [-1, 0, 0],
                   "linearVelocity": [0, -5, 0]}],
       "rods": [{"name": "bar", "bodyA": "bob", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0]}])"));
@@ -133,7 +133,7 @@ TEST(Guard, NamesARodThatTurnsTooFarInAStep) {
 
 TEST(Guard, NamesABodyThatSpinsTooFarInAStep) {
   for (const char* method : {"explicitEuler", "semiImplicitEuler", "rk4", "dop853"}) {
-    const Outcome outcome = outcomeOf(sceneWith(methodText(method, 0.3), 20, R"("gravity": [0, 0, 0],
+    const Outcome outcome = outcomeOf(sceneMovedBy(methodText(method, 0.3), 20, R"("gravity": [0, 0, 0],
       "bodies": [{"name": "box", "shape": {"box": {"size": [0.1, 0.2, 0.3]}}, "angularVelocity": [10, 0.1, 20]}])"));
     EXPECT_THAT(outcome.failure, AllOf(HasSubstr("unstable at"), HasSubstr("body \"box\" turns by"))) << method;
   }
@@ -142,7 +142,7 @@ TEST(Guard, NamesABodyThatSpinsTooFarInAStep) {
 /// A ball of 1 kg at rest on a spring without tension.
 class AdaptiveGuard : public ::testing::Test {
  protected:
-  Scene scene_ = sceneWith(R"("accuracy": 1e-6)", 1, R"(
+  Scene scene_ = sceneMovedBy(R"("accuracy": 1e-6)", 1, R"(
     "bodies": [{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1}],
     "springs": [{"name": "s", "bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 1, 0], "stiffness": 10}])");
   IslandPlan plan_ = planOf(scene_).islands.at(0);

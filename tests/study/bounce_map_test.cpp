@@ -11,7 +11,7 @@
 namespace cradle {
 namespace {
 
-const BounceMethod& methodOf(MethodName name) {
+const BounceMethod& bounceMethod(MethodName name) {
   for (const BounceMethod& method : bounceMethods())
     if (method.name == name) return method;
   throw std::logic_error("no such method");
@@ -22,15 +22,15 @@ const BounceMethod& methodOf(MethodName name) {
 TEST(BounceEnergy, OfElasticBouncesIsWhatEulersOwnEnergyLosesOrGains) {
   const double step = 2e-4;
   for (const MethodName name : {MethodName::explicitEuler, MethodName::semiImplicitEuler}) {
-    const double expected = expectedHeightError(methodOf(name), 1, step);
+    const double expected = expectedHeightError(bounceMethod(name), 1, step);
     EXPECT_GT(std::abs(expected), 5 * step);
-    EXPECT_NEAR(meanHeightError(methodOf(name), 1, step, 1) / expected, 1, 0.01);
+    EXPECT_NEAR(meanHeightError(bounceMethod(name), 1, step, 1) / expected, 1, 0.01);
   }
 }
 
 TEST(BounceEnergy, OfElasticBouncesIsKeptByRk4) {
   // 1600 steps a bounce, rounding of each 1e-16 of 1 m.
-  EXPECT_NEAR(meanHeightError(methodOf(MethodName::rk4), 1, 1e-3, 1), 0, 1e-11);
+  EXPECT_NEAR(meanHeightError(bounceMethod(MethodName::rk4), 1, 1e-3, 1), 0, 1e-11);
 }
 
 // One bounce, with the depth d and the speed s that it had: H e^2 - (1 - e^2) d + a s h e (1 + e), and a little at both
@@ -58,7 +58,7 @@ TEST(BounceEnergy, WithLossIsWhatTheMeanDepthTakes) {
 }
 
 TEST(BounceEnergy, MovesWithAnIntegratorThatIsAnother) {
-  BounceMethod wrong = methodOf(MethodName::semiImplicitEuler);
+  BounceMethod wrong = bounceMethod(MethodName::semiImplicitEuler);
   wrong.integrate = explicitEuler;
   EXPECT_LT(meanHeightError(wrong, 1, 1e-3, 1) / expectedHeightError(wrong, 1, 1e-3), -0.9);
 }

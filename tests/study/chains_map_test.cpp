@@ -12,7 +12,7 @@ namespace cradle {
 namespace {
 
 /// After 2 s: half a swing of the longest.
-ChainOutcome outcomeOf(const char* method, double setting, int balls, double mass) {
+ChainOutcome chainOutcome(const char* method, double setting, int balls, double mass) {
   Scene scene = swingingChain(balls, mass);
   scene.duration = 2;
   return outcomeOf(StudyScene(std::move(scene)).run(methodOf(method), setting, 1));
@@ -29,13 +29,13 @@ TEST(Chains, OfTwoBallsSwingAcrossAsTheHeavyOnePulls) {
 // and does not blow up.
 TEST(Chains, HoldByRk4UpToTheFastestSwingAcross) {
   const double step = 1.0 / 60, limit = heaviestForRk4(2, step);
-  EXPECT_EQ(outcomeOf("rk4", step, 2, 0.9 * limit), ChainOutcome::holds);
-  EXPECT_EQ(outcomeOf("rk4", step, 2, 1.5 * limit), ChainOutcome::stopped);
-  EXPECT_EQ(outcomeOf("rk4", step, 8, 1.5 * heaviestForRk4(8, step)), ChainOutcome::stopped);
+  EXPECT_EQ(chainOutcome("rk4", step, 2, 0.9 * limit), ChainOutcome::holds);
+  EXPECT_EQ(chainOutcome("rk4", step, 2, 1.5 * limit), ChainOutcome::stopped);
+  EXPECT_EQ(chainOutcome("rk4", step, 8, 1.5 * heaviestForRk4(8, step)), ChainOutcome::stopped);
 }
 
 TEST(Chains, HoldByThePlanAtAnyMass) {
-  EXPECT_EQ(outcomeOf("plan", 1e-4, 3, 300), ChainOutcome::holds);
+  EXPECT_EQ(chainOutcome("plan", 1e-4, 3, 300), ChainOutcome::holds);
 }
 
 }  // namespace
