@@ -28,10 +28,6 @@ constexpr std::array<std::pair<const char*, MethodName>, 4> kMethodNames = {
      {"dop853", MethodName::dop853}}};
 constexpr double kFinestAccuracy = 1e-12, kCoarsestAccuracy = 1e-2;  // as in scene files
 
-void warn(const std::string& warning) {
-  fmt::print(stderr, "warning: {}\n", warning);
-}
-
 MethodName methodNamed(const std::string& name) {
   for (const auto& [text, method] : kMethodNames)
     if (name == text) return method;
@@ -80,6 +76,10 @@ void printAchievedAccuracy(const Scene& scene, const std::string& output, bool q
 }
 
 }  // namespace
+
+void warn(const std::string& warning) {
+  fmt::print(stderr, "warning: {}\n", warning);
+}
 
 Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides) {
   LoadedScene loaded = loadScene(path);

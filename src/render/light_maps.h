@@ -17,8 +17,11 @@ class LightMaps {
  public:
   LightMaps(const ShaderSource& source, const Stage& stage);
 
-  /// Draws the part `shadows` (texels) of the shadow map anew.
-  void drawShadows(const ItemDrawer& items, const PixelRectangle& shadows) const;
+  /// For maps that have moved.
+  void move(const Stage& stage) const;
+
+  /// Draws the part `shadows` (texels) of the shadow map anew, as far as anything stands or stood there.
+  void drawShadows(const ItemDrawer& items, const PixelRectangle& shadows);
 
   /// Draws the map of contacts anew. Its texels before and after, by row: where they are the same, the ground is.
   struct Contacts {
@@ -37,6 +40,7 @@ class LightMaps {
   MapTarget shadowMap_, blocks_, contactMap_;
   GpuMesh triangle_;
   Contacts contacts_;
+  PixelRectangle occupied_;  // texels of the shadow map: beyond, it is clear
 };
 
 }  // namespace cradle
