@@ -63,11 +63,12 @@ Parts drawAndEncode(const Job& job) {
   const View view = viewOf(source, job.width, job.height);
   Renderer renderer(source.scene(), view, job.width, job.height);
   VideoEncoder encoder(job.film, {job.width, job.height, source.scene().output.framesPerSecond});
+  FilmCamera camera = cameraOf(source, view);
   double drawing = 0, drawingThread = 0, handing = 0;
   for (long number = 0; number < source.pictureCount(); ++number) {
     const Frame frame = source.reader().readFrame(number);
     const double start = cpuSeconds(RUSAGE_SELF), threadStart = cpuSeconds(RUSAGE_THREAD);
-    const Image picture = renderer.render(frame);
+    const Image picture = renderer.render(frame, camera.at(frame));
     const double drawn = cpuSeconds(RUSAGE_SELF);
     drawingThread += cpuSeconds(RUSAGE_THREAD) - threadStart;
     encoder.add(picture);

@@ -25,22 +25,25 @@ double median(std::vector<double> values) {
 }
 
 void run(const std::string& trajectory, int width, int height) {
-  const TrajectorySource source(trajectory, true);
+  TrajectorySource source(trajectory, true);
   const TrajectoryReader& reader = source.reader();
   const View view = viewOf(source, width, height);
   Renderer changing(source.scene(), view, width, height), whole(source.scene(), view, width, height);
+  FilmCamera camera = cameraOf(source, view);
   whole.render(reader.readFrame(0));  // compiles shaders
   std::vector<double> changedTimes, wholeTimes, shares;
   for (long run = 0; run < kRuns; ++run) {
     const long first = run * (reader.frameCount() - kFrames - 1) / kRuns;
-    changing.render(reader.readFrame(first));
+    const Frame before = reader.readFrame(first);
+    changing.render(before, camera.at(before));
     for (long number = first + 1; number <= first + kFrames; ++number) {
       const Frame frame = reader.readFrame(number);
+      const Camera& seenFrom = camera.at(frame);
       const double start = cpuSeconds();
-      changing.render(frame);
+      changing.render(frame, seenFrom);
       const double middle = cpuSeconds();
       whole.forgetPicture();
-      whole.render(frame);
+      whole.render(frame, seenFrom);
       changedTimes.push_back(middle - start);
       wholeTimes.push_back(cpuSeconds() - middle);
       shares.push_back(changing.drawnShare());

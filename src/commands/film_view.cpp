@@ -2,31 +2,26 @@
 
 #include <algorithm>
 
-#include "render/body_place.h"
-#include "render/camera_path.h"
-
 namespace cradle {
 
-View viewOf(const TrajectorySource& source, int width, int height) {
-  const TrajectoryReader& reader = source.reader();
-  const auto pushes = findShownPushes(source.scene(), reader.events(), [&reader](long frame) {
-    return reader.readFrame(std::min(frame, reader.frameCount() - 1));
-  });
-  Framing framing(source.scene(), width, height, pushes);
-  std::vector<Camera> cameras;
-  std::optional<CameraPath> path;
-  if (source.scene().camera) path.emplace(source.scene());
-  for (long number = 0; number < reader.frameCount(); ++number) {
-    const Frame frame = reader.readFrame(number);
-    framing.add(frame);
-    if (path) cameras.push_back(path->next(frame.time, placeBodies(source.scene(), frame)));
-  }
-  View view = framing.view();
-  if (!source.scene().cameraMotion.isNone()) {
-    view.camera = cameras.front();
-    view.cameras = std::move(cameras);
-  }
-  return view;
+View viewOf(TrajectorySource& source, int width, int height) {
+  std::vector<ShownPush> pushes;
+  if (source.isWhole())
+    pushes = findShownPushes(source.scene(), source.reader().events(), [&source](long frame) {
+      return source.frameAt(std::min(frame, source.frameCount() - 1));
+    });
+  Framing framing(source.scene(), width, height, std::move(pushes));
+  const long frames = source.scene().camera ? 1 : source.frameCount();
+  for (long number = 0; number < frames; ++number) framing.add(source.frameAt(number));
+  return framing.view();
+}
+
+bool isSeenFromTheStart(const Scene& scene) {
+  return scene.camera && scene.pushes.empty();
+}
+
+FilmCamera cameraOf(TrajectorySource& source, const View& view) {
+  return {source.scene(), view.camera, [&source](long number) { return source.frameAt(number); }};
 }
 
 }  // namespace cradle

@@ -1,11 +1,19 @@
 #pragma once
 
 #include "commands/trajectory_source.h"
+#include "render/camera_path.h"
 #include "render/framing.h"
 
 namespace cradle {
 
-/// The one view of a whole film, from all of its frames; sizes in pixels.
-View viewOf(const TrajectorySource& source, int width, int height);
+/// The view of a film; sizes in pixels. Reads all frames of a scene that names no camera, else the first.
+View viewOf(TrajectorySource& source, int width, int height);
+
+/// Whether pictures can be drawn while the scene is simulated: not if the camera is to keep all in view, nor where an
+/// arrow shows a push before it takes place.
+bool isSeenFromTheStart(const Scene& scene);
+
+/// The camera of each frame. `source` must outlive it.
+FilmCamera cameraOf(TrajectorySource& source, const View& view);
 
 }  // namespace cradle

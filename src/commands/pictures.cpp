@@ -8,6 +8,7 @@
 #include <future>
 
 #include "commands/film_view.h"
+#include "commands/simulate_scene.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
@@ -132,41 +133,43 @@ struct PictureOrder {
   std::optional<OverlayChoice> overlays;
 };
 
-/// What draws the frames of a film: whatever is wrong with its camera or shaders shows before a picture is made.
+/// What draws the frames of a film: whatever is wrong with its shaders, and with its camera as far as its way is known,
+/// shows before a picture is made.
 struct FilmDrawer {
-  FilmDrawer(const TrajectorySource& trajectory, const PictureOrder& order)
+  FilmDrawer(TrajectorySource& trajectory, const PictureOrder& order)
       : source(trajectory),
         view(viewOf(source, order.size.width, order.size.height)),
+        camera(cameraOf(source, view)),
         renderer(source.scene(), view, order.size.width, order.size.height, order.shaders) {
+    if (source.isWhole() && source.scene().camera) camera.at(source.frameAt(source.frameCount() - 1));
     if (!order.overlays) return;
-    const TrajectoryReader& reader = source.reader();
     const FilmRecord film{source.scene(),
                           view,
                           order.size.width,
                           order.size.height,
-                          [&reader](long number) { return reader.readFrame(number); },
-                          reader.frameCount(),
-                          reader.events()};
+                          [this](long number) { return source.frameAt(number); },
+                          source.frameCount(),
+                          source.isWhole() ? source.reader().events() : std::vector<Event>()};
     overlay.emplace(film, *order.overlays);
   }
 
   Image draw(long number) {
-    const Frame frame = source.reader().readFrame(number);
-    Image image = renderer.render(frame);
+    const Frame frame = source.frameAt(number);
+    Image image = renderer.render(frame, camera.at(frame));
     if (overlay) overlay->draw(frame, image);
     return image;
   }
 
-  const TrajectorySource& source;
+  TrajectorySource& source;
   View view;
+  FilmCamera camera;
   Renderer renderer;
   std::optional<FilmOverlay> overlay;
 };
 
 /// Draws frames in order and hands each picture on in a thread beside the drawing of the next one.
 template <class Take>
-void drawFrames(FilmDrawer& drawer, const FrameRange& range, bool quiet, const Take& take) {
-  Progress progress("Drawing", "pictures", range.end - range.first, quiet);
+void drawFrames(FilmDrawer& drawer, const FrameRange& range, Progress& progress, const Take& take) {
   std::future<void> taken;
   for (long frame = range.first; frame < range.end; ++frame) {
     throwIfInterrupted();
@@ -190,7 +193,8 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
   source.simulate();
   FilmDrawer drawer(source, order);
   makeFolder(folder);
-  drawFrames(drawer, range, quiet, [&](long frame, const Image& picture) {
+  Progress progress("Drawing", "pictures", range.end - range.first, quiet);
+  drawFrames(drawer, range, progress, [&](long frame, const Image& picture) {
     writePng(picture, (fs::path(folder) / frameName(frame)).string());
   });
 }
@@ -210,9 +214,17 @@ void makeFilm(const std::string& input, const std::string& film, const PictureOp
   TrajectorySource source(input, quiet);
   const PictureOrder order(options, source.scene());
   VideoEncoder encoder(film, {order.size.width, order.size.height, source.scene().output.framesPerSecond});
-  source.simulate();
+  const bool drawsBeside = isSeenFromTheStart(source.scene()) && !(order.overlays && order.overlays->needsWholeFilm());
+  if (!drawsBeside) source.simulate();
+  Progress progress("Drawing", "pictures", source.pictureCount(), quiet);
+  if (drawsBeside)
+    source.simulateBeside([&progress](const std::string& warning) {
+      progress.endLine();
+      warn(warning);
+    });
   FilmDrawer drawer(source, order);
-  drawFrames(drawer, {0, source.pictureCount()}, quiet, [&](long, const Image& picture) { encoder.add(picture); });
+  drawFrames(drawer, {0, source.pictureCount()}, progress, [&](long, const Image& picture) { encoder.add(picture); });
+  source.finish();
   encoder.finish();
 }
 

@@ -31,10 +31,6 @@ constexpr std::array<std::pair<const char*, MethodName>, 4> kMethodNames = {
      {"rk4", MethodName::rk4},
      {"dop853", MethodName::dop853}}};
 
-void warn(const std::string& warning) {
-  fmt::print(stderr, "warning: {}\n", warning);
-}
-
 MethodName methodNamed(const std::string& name) {
   for (const auto& [text, method] : kMethodNames)
     if (name == text) return method;
@@ -115,6 +111,10 @@ void printAchievedAccuracy(const Scene& scene, const std::string& output, bool q
 }
 
 }  // namespace
+
+void warn(const std::string& warning) {
+  fmt::print(stderr, "warning: {}\n", warning);
+}
 
 Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides) {
   LoadedScene loaded = loadScene(path);

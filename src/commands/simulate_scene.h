@@ -34,6 +34,9 @@ void printPlan(const std::string& scenePath, const SceneOverrides& overrides);
 /// A scene file with its warnings printed to stderr, overrides applied.
 Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides);
 
+/// Tells a warning on stderr.
+void warn(const std::string& warning);
+
 /// Simulates a scene into a trajectory file and finishes it, with progress and warnings on stderr.
 void simulateInto(TrajectoryWriter& writer, const Scene& scene, bool quiet);
 

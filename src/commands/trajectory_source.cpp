@@ -72,6 +72,26 @@ void TrajectorySource::simulate() {
   open(temporary_);
 }
 
+void TrajectorySource::simulateBeside(std::function<void(const std::string&)> warn) {
+  if (reader_) return;
+  warn_ = std::move(warn);
+  latest_.number = -1;
+  stream_.emplace(scene_);
+}
+
+Frame TrajectorySource::frameAt(long number) {
+  if (reader_) return reader_->readFrame(number);
+  if (number != latest_.number) {
+    CRADLE_CHECK(number == latest_.number + 1);
+    latest_ = stream_->next(warn_);
+  }
+  return latest_;
+}
+
+void TrajectorySource::finish() {
+  while (stream_ && latest_.number + 1 < frameCount_) frameAt(latest_.number + 1);
+}
+
 long TrajectorySource::pictureCount() const {
   return std::max(1L, frameCount_ - 1);
 }

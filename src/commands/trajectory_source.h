@@ -1,15 +1,17 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "scene/scene.h"
+#include "simulate/frame_stream.h"
 #include "trajectory/trajectory_file.h"
 
 namespace cradle {
 
-/// The trajectory that a command draws: a file, or a scene to be simulated into a temporary file that goes with the
-/// object.
+/// The trajectory that a command draws: a file; or a scene to be simulated, into a temporary file that goes with the
+/// object, or beside the drawing.
 class TrajectorySource {
  public:
   /// Opens the trajectory, or loads the scene, with its warnings on stderr.
@@ -27,7 +29,20 @@ class TrajectorySource {
   /// Simulates the scene; with a trajectory there is nothing to do. To be called once, before frames are read.
   void simulate();
 
+  /// The same, but the simulation goes on while its frames are asked for, in order; the latest
+  /// may be asked for again. Warnings are told
+  /// with the frame that they belong to.
+  void simulateBeside(std::function<void(const std::string&)> warn);
+
+  /// Throws what reading throws, or simulating.
+  Frame frameAt(long number);
+
+  /// Takes the frames that nobody has asked for: throws what is wrong with them.
+  void finish();
+
+  /// Needs a whole trajectory.
   const TrajectoryReader& reader() const { return *reader_; }
+  bool isWhole() const { return reader_.has_value(); }
 
   /// Number of pictures: frames 0..N-1, at least one.
   long pictureCount() const;
@@ -40,6 +55,9 @@ class TrajectorySource {
   std::optional<TrajectoryReader> reader_;
   Scene scene_;
   long frameCount_ = 0;
+  std::function<void(const std::string&)> warn_;
+  Frame latest_;                       // of the stream, number -1 before the first
+  std::optional<FrameStream> stream_;  // of scene_
 };
 
 }  // namespace cradle

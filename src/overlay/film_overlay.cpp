@@ -39,13 +39,13 @@ constexpr std::array<PlotCorner, 3> kCorners = {PlotCorner::upperRight, PlotCorn
 
 /// What arrows are measured by (m): the size of what the film shows, or as much of it as its camera ever sees at once.
 double arrowUnit(const View& view) {
-  double unit = view.bounds.isEmpty() ? std::numeric_limits<double>::infinity() : view.bounds.diagonal().norm();
+  double unit = view.bounds.isEmpty() ? std::numeric_limits<double>::infinity() : view.size();
   const auto include = [&unit](const Camera& camera) {
     const double distance = (camera.target - camera.position).norm();
     unit = std::min(unit, 2 * std::tan(camera.verticalFieldOfView / 2) * distance);
   };
   include(view.camera);
-  for (const Camera& camera : view.cameras) include(camera);
+  for (const Camera& camera : view.keys) include(camera);
   return unit;
 }
 
@@ -74,7 +74,11 @@ TimedPoint between(const Frame& before, const Frame& after, std::size_t body, do
 }  // namespace
 
 FilmOverlay::FilmOverlay(const FilmRecord& film, const OverlayChoice& choice)
-    : scene_(film.scene), choice_(choice), view_(film.view), frameAt_(film.frameAt) {
+    : scene_(film.scene),
+      choice_(choice),
+      view_(film.view),
+      frameAt_(film.frameAt),
+      camera_(scene_, view_.camera, frameAt_) {
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
     if (scene_.bodies[i].motion == Motion::dynamic) dynamicBodies_.push_back(static_cast<int>(i));
   for (const Event& event : film.events)
@@ -100,7 +104,7 @@ void FilmOverlay::readFilm(const FilmRecord& film) {
     for (const BodyState& state : frame.states) greatestSpeed_ = std::max(greatestSpeed_, state.linearVelocity.norm());
     if (!choice_.plot) continue;
     addToPlot(frame);
-    countHidden(frame, {view_.cameraAt(number), film.width, film.height}, hidden);
+    countHidden(frame, {camera_.at(frame), film.width, film.height}, hidden);
   }
   plot_.corner = kCorners[static_cast<std::size_t>(std::min_element(hidden.begin(), hidden.end()) - hidden.begin())];
   if (choice_.plot != PlotKind::energy) return;
@@ -142,7 +146,7 @@ void FilmOverlay::addToPlot(const Frame& frame) {
 }
 
 void FilmOverlay::draw(const Frame& frame, Image& image) {
-  const Lens lens{view_.cameraAt(frame.number), image.width, image.height};
+  const Lens lens{camera_.at(frame), image.width, image.height};
   Canvas canvas(image);
   if (choice_.trails) drawTrails(frame, lens, canvas);
   if (choice_.velocities) drawVelocities(frame, lens, canvas);
@@ -164,7 +168,7 @@ void FilmOverlay::readTrail(long now) {
     trailFrames_.push_back(frameAt_(next));
 }
 
-/// Thinner and fainter the older they are.
+/// Thinner and fainter the older they are. A frame of a trail is kept from when it is drawn.
 void FilmOverlay::drawTrails(const Frame& frame, const Lens& lens, Canvas& canvas) {
   readTrail(frame.number);
   const double width = kTrailWidth * lens.height, span = kTrailSeconds * scene_.output.playbackSpeed;
@@ -184,6 +188,7 @@ void FilmOverlay::drawTrails(const Frame& frame, const Lens& lens, Canvas& canva
     canvas.line(halo, kHalo);
     canvas.line(line, kTrailInks[body % kTrailInks.size()]);
   }
+  if (frame.number % trailStride_ == 0) trailFrames_.push_back(frame);
 }
 
 /// From the centre of mass; lengths go with the speed, the film's greatest being the longest.

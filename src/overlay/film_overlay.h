@@ -6,6 +6,7 @@
 #include "overlay/lens.h"
 #include "overlay/overlay_choice.h"
 #include "overlay/plot_panel.h"
+#include "render/camera_path.h"
 #include "render/framing.h"
 #include "trajectory/trajectory.h"
 
@@ -25,7 +26,8 @@ struct FilmRecord {
 /// alone, not on which frames are drawn before.
 class FilmOverlay {
  public:
-  /// Reads all frames once if the choice needs it (velocities, plot). A plot goes to the corner where it hides the
+  /// Reads all frames once if the choice needs it (velocities, plot), and later those that it has not drawn (trails, or
+  /// a camera that follows): none at all in a film drawn in order. A plot goes to the corner where it hides the
   /// centres of mass of dynamic bodies the least often.
   FilmOverlay(const FilmRecord& film, const OverlayChoice& choice);
 
@@ -52,6 +54,7 @@ class FilmOverlay {
   const OverlayChoice choice_;
   const View view_;
   const FrameSource frameAt_;
+  FilmCamera camera_;
   std::vector<Event> impacts_;  // with an impulse, in order of time
   std::vector<int> dynamicBodies_;
   double arrowUnit_ = 1;        // m

@@ -17,6 +17,9 @@ struct OverlayChoice {
   bool trails = false;      // of their centres of mass
   std::optional<PlotKind> plot;
   std::string plottedBody;  // name, of PlotKind::height
+
+  /// Whether the film has to be known to its end before its first picture: sizes go with its greatest speed or impulse.
+  bool needsWholeFilm() const { return contacts || velocities || plot; }
 };
 
 /// Reads "time,contacts,velocities,trails,plot=WHAT", in any order and number, WHAT energy, energyError or height:BODY.

@@ -237,7 +237,7 @@ Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPer
   Catalogue catalogue(scene, pixelsPerMetre);
   const auto ballOfModel = findBalls(scene.models);
   for (const Body& body : scene.bodies) appearance.bodies.push_back(lookOf(scene, body, ballOfModel, catalogue));
-  const double size = view.bounds.isEmpty() ? 1 : view.bounds.diagonal().norm();
+  const double size = view.size();
   appearance.ground = findGround(scene, size);
   catalogue.moveTo(appearance);
   appearance.wallMesh = static_cast<int>(appearance.meshes.size());

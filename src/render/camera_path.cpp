@@ -137,6 +137,22 @@ void CameraPath::requireUsable(const Camera& camera, double time,
   }
 }
 
+FilmCamera::FilmCamera(const Scene& scene, const Camera& still, std::function<Frame(long)> frameAt)
+    : scene_(scene), frameAt_(std::move(frameAt)), camera_(still) {}
+
+const Camera& FilmCamera::at(const Frame& frame) {
+  if (!scene_.camera || frame.number + 1 == next_) return camera_;
+  if (!path_ || frame.number < next_) {
+    path_.emplace(scene_);
+    next_ = 0;
+  }
+  const auto follow = [this](const Frame& next) { camera_ = path_->next(next.time, placeBodies(scene_, next)); };
+  while (next_ < frame.number) follow(frameAt_(next_)), ++next_;
+  follow(frame);
+  next_ = frame.number + 1;
+  return camera_;
+}
+
 void requireUsableCamera(const Scene& scene) {
   if (scene.camera) CameraPath(scene).next(0, placeBodiesAtStart(scene));
 }

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <functional>
+#include <optional>
+
 #include "scene/scene.h"
+#include "trajectory/trajectory.h"
 
 namespace cradle {
 
@@ -28,6 +32,23 @@ class CameraPath {
   Vec3 leaderStart_, leader_;     // m, world: of the body that is followed
   Vec3 behind_;                   // m, from the end of the spring to the body
   Vec3 velocity_ = Vec3::Zero();  // m/s, of the end of the spring
+};
+
+/// The camera of each frame of a film: the one that the scene names, as it moves, else one that stands still.
+class FilmCamera {
+ public:
+  /// `frameAt` reads the frames before one that is asked for out of turn. The scene must outlive this object.
+  FilmCamera(const Scene& scene, const Camera& still, std::function<Frame(long)> frameAt);
+
+  /// Throws as CameraPath::next does. O(bodies) for the frame after the one before.
+  const Camera& at(const Frame& frame);
+
+ private:
+  const Scene& scene_;
+  const std::function<Frame(long)> frameAt_;
+  std::optional<CameraPath> path_;
+  Camera camera_;  // of frame next_ - 1
+  long next_ = 0;
 };
 
 /// Throws Error(scene) if the scene names a camera that cannot be used at its start.

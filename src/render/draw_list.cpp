@@ -161,8 +161,8 @@ Bounds NeighbourItem::reach() const {
   return {center - extent, center + extent};
 }
 
-DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const View& view, const Frame& frame) {
-  const auto places = placeBodies(scene, frame);
+DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const View& view, const SeenFrame& seen) {
+  const auto places = placeBodies(scene, seen.frame);
   DrawList list;
   std::vector<int> bodyOfMesh, bodyOfSphere, bodyOfCylinder;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -170,7 +170,7 @@ DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const Vi
     appendBody(appearance.bodies[i], places[i], list);
     appendRound(appearance.bodies[i], places[i], body, list);
     appendSolids(appearance.bodies[i], places[i], body, list);
-    appendWall(scene, appearance, view, i, view.cameraAt(frame.number).position, list);
+    appendWall(scene, appearance, view, i, seen.viewpoint, list);
     bodyOfMesh.resize(list.meshes.size(), body);
     bodyOfSphere.resize(list.spheres.size(), body);
     bodyOfCylinder.resize(list.cylinders.size(), body);
@@ -180,7 +180,7 @@ DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const Vi
   findNearBalls(bodyOfSphere, search, list.spheres, list);
   findNearBalls(bodyOfCylinder, search, list.cylinders, list);
   appendLinks(scene, appearance, view, places, list);
-  appendPushArrows(appearance, view, frame, places, list);
+  appendPushArrows(appearance, view, seen.frame, places, list);
   std::stable_sort(list.meshes.begin(), list.meshes.end(), [](const MeshItem& a, const MeshItem& b) {
     return std::pair(a.mesh, a.firstTriangle) < std::pair(b.mesh, b.firstTriangle);
   });

@@ -90,7 +90,13 @@ struct DrawList {
   std::vector<ContactItem> contacts;
 };
 
-/// What is to be drawn at `frame`. Items stand in the order of the scene. O(bodies x balls).
-DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const View& view, const Frame& frame);
+/// A frame, and from where it is seen (m, world).
+struct SeenFrame {
+  const Frame& frame;
+  Vec3 viewpoint;
+};
+
+/// What is to be drawn. Items stand in the order of the scene. O(bodies x balls).
+DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const View& view, const SeenFrame& seen);
 
 }  // namespace cradle

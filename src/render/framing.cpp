@@ -8,9 +8,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/error.h"
 #include "math/rotation.h"
 #include "render/body_place.h"
 #include "render/camera.h"
+#include "render/camera_path.h"
 
 namespace cradle {
 namespace {
@@ -35,6 +37,7 @@ constexpr double kFilled = 0.84;         // share of the picture that things may
 constexpr double kLargestFixed = 3;      // fixed bodies larger than so many times what moves are scenery
 constexpr double kLongestArrow = 0.2;    // of the size of what moves
 constexpr double kShortestArrow = 0.45;  // of the longest one
+constexpr double kSizeOfSeen = 1.5;      // of the height of the picture: what moves will fill it
 constexpr double kSmallestReach = 1e-6;  // m, of a scene that shows nothing
 
 Mat3 axesFrom(double azimuth, double elevation) {
@@ -62,6 +65,11 @@ double Framing::Solid::support(const Vec3& direction) const {
   if (radius > 0) return atOrigin + radius * direction.norm();
   const Vec3 inward = worldFromLocal.rotation.conjugate() * direction;
   return atOrigin + inward.dot(local.center()) + inward.cwiseAbs().dot(local.sizes() / 2);
+}
+
+double View::size() const {
+  const double shown = std::max(bounds.isEmpty() ? 0 : bounds.diagonal().norm(), kSizeOfSeen * seen);
+  return shown > 0 ? shown : 1;
 }
 
 double View::arrowLength(const ShownPush& push) const {
@@ -119,6 +127,7 @@ void Framing::includeMoving(const Solid& solid) {
 
 void Framing::add(const Frame& frame) {
   const auto places = placeBodies(scene_, frame);
+  if (scene_.camera && !start_) start_ = CameraPath(scene_).next(frame.time, places);
   for (std::size_t i = 0; i < pushes_.size(); ++i)
     if (pushes_[i].isShownAt(frame.time)) arrowPlaces_.push_back({i, pushes_[i].pointAt(frame.time, places)});
   for (const Solid& solid : solidsOf(places, Motion::dynamic)) {
@@ -157,9 +166,22 @@ const Framing::Candidate& Framing::bestCandidate() const {
   return candidates_[first];
 }
 
+/// The scene's camera, what it looks at, and where it is going to be: nothing of it asks how the motion goes on.
+void Framing::lookFromScene(View& view) const {
+  const Camera& camera = view.camera = *start_;
+  if (view.bounds.isEmpty()) view.bounds.extend(camera.target);
+  view.seen = 2 * std::tan(camera.verticalFieldOfView / 2) * (view.bounds.center() - camera.position).norm();
+  view.longestArrow = kLongestArrow * view.size();
+  for (const CameraMotion::Key& key : scene_.cameraMotion.keys) {
+    Camera& then = view.keys.emplace_back(camera);
+    then.position = key.position;
+    then.target = scene_.cameraMotion.targetBody == kWorld ? key.target : Vec3(view.bounds.center());
+    then.verticalFieldOfView = key.verticalFieldOfView;
+  }
+}
+
 /// Arrows are as long as the motion of the whole film says, which is known after its last frame only.
 void Framing::includeArrows(View& view, std::vector<Solid>& shown) const {
-  view.pushes = pushes_;
   if (!movingBounds_.isEmpty()) view.longestArrow = kLongestArrow * movingBounds_.diagonal().norm();
   for (const ArrowPlace& place : arrowPlaces_) {
     const ShownPush& push = pushes_[place.push];
@@ -189,8 +211,10 @@ Camera Framing::automaticCamera(const std::vector<Solid>& others) const {
 }
 
 View Framing::view() const {
+  CRADLE_CHECK(start_.has_value() == scene_.camera.has_value());
   View view;
   view.bounds = movingBounds_;
+  view.pushes = pushes_;
   std::vector<Solid> shown;
   for (const Solid& solid : solidsOf(placeBodiesAtStart(scene_), Motion::fixed)) {
     const Bounds bounds = transformed(solid.local, solid.worldFromLocal);
@@ -199,8 +223,12 @@ View Framing::view() const {
     shown.push_back(solid);
     view.bounds.extend(bounds);
   }
-  includeArrows(view, shown);
-  view.camera = scene_.camera ? *scene_.camera : automaticCamera(shown);
+  if (start_) {
+    lookFromScene(view);
+  } else {
+    includeArrows(view, shown);
+    view.camera = automaticCamera(shown);
+  }
   return view;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "render/shown_push.h"
@@ -10,30 +11,31 @@
 
 namespace cradle {
 
-/// What a whole film looks at: one camera, or one for each frame; and a box around all that it shows (ground apart).
+/// What a film looks at, as far as it is known before its first picture: sizes that stay the same follow from it.
 struct View {
   Camera camera;                       // at the start
-  Bounds bounds;                       // m, world
+  Bounds bounds;                       // m, world: around what is shown (ground apart)
   std::vector<ShownPush> pushes = {};  // drawn as arrows
   double longestArrow = 0;             // m, of the push with the greatest force
-  std::vector<Camera> cameras = {};    // of all frames; none if the camera stands still
+  std::vector<Camera> keys = {};       // where else the camera is going to be, as far as the scene says so
+  double seen = 0;                     // m: height of the picture where `bounds` is; 0 if these are of the whole film
 
-  const Camera& cameraAt(long frame) const {
-    return cameras.empty() ? camera : cameras.at(static_cast<std::size_t>(frame));
-  }
+  /// What thin things and patterns are measured by; m.
+  double size() const;
 
   /// m, from the tail to the point that is pushed; 0 for a push without a force.
   double arrowLength(const ShownPush& push) const;
 };
 
-/// Finds the view of a film from its frames, one by one. Unless the scene names a camera, all that moves stays in the
-/// picture, seen from slightly above and aside; fixed bodies too, unless they are much larger than what moves.
+/// Finds the view of a film. Where the scene names a camera, that and the first frame decide. Else all frames do: all
+/// that moves stays in the picture, seen from slightly above and aside; fixed bodies too, unless they are much larger
+/// than what moves.
 class Framing {
  public:
   /// The scene must outlive this object. Sizes in pixels.
   Framing(const Scene& scene, int width, int height, std::vector<ShownPush> pushes = {});
 
-  /// O(bodies).
+  /// To be called for the first frame, and, unless the scene names a camera, for all others. O(bodies).
   void add(const Frame& frame);
 
   View view() const;
@@ -66,6 +68,7 @@ class Framing {
   const Candidate& bestCandidate() const;
   void includeArrows(View& view, std::vector<Solid>& shown) const;
   Camera automaticCamera(const std::vector<Solid>& others) const;
+  void lookFromScene(View& view) const;
 
   struct ArrowPlace {
     std::size_t push;  // index into pushes_
@@ -78,6 +81,7 @@ class Framing {
   double tanHalfX_, tanHalfY_;
   std::vector<Bounds> localBounds_;  // of every body
   std::vector<Candidate> candidates_;
+  std::optional<Camera> start_;  // that the scene names, in the first frame
   Bounds movingBounds_;
   long places_ = 0;  // of bodies that move, over all frames
   Vec3 placeSum_ = Vec3::Zero(), placeSquareSum_ = Vec3::Zero();

@@ -2,7 +2,34 @@
 
 #include <GL/glew.h>
 
+#include <algorithm>
+
 namespace cradle {
+
+namespace {
+
+bool isEmpty(const PixelRectangle& area) {
+  return area.width() <= 0 || area.height() <= 0;
+}
+
+PixelRectangle joined(const PixelRectangle& a, const PixelRectangle& b) {
+  if (isEmpty(a)) return b;
+  if (isEmpty(b)) return a;
+  return {std::min(a.left, b.left), std::min(a.bottom, b.bottom), std::max(a.right, b.right), std::max(a.top, b.top)};
+}
+
+PixelRectangle common(const PixelRectangle& a, const PixelRectangle& b) {
+  return {std::max(a.left, b.left), std::max(a.bottom, b.bottom), std::min(a.right, b.right), std::min(a.top, b.top)};
+}
+
+PixelRectangle aroundAll(const SeenItems& seen) {
+  PixelRectangle all{};
+  for (const auto* items : {&seen.meshes, &seen.spheres, &seen.cylinders, &seen.tubes})
+    for (const PixelRectangle& one : *items) all = joined(all, one);
+  return all;
+}
+
+}  // namespace
 
 LightMaps::LightMaps(const ShaderSource& source, const Stage& stage)
     : surfaceDepth_(source, "surface.vert", "depth.frag"),
@@ -18,13 +45,25 @@ LightMaps::LightMaps(const ShaderSource& source, const Stage& stage)
   for (const ShaderProgram* program : {&leastDepth_, &contact_}) setStage(stage, *program);
   for (const ShaderProgram* program : {&surfaceDepth_, &ballDepth_, &cylinderDepth_, &tubeDepth_}) {
     program->use();
-    program->set("clipFromWorld", stage.shadow.clipFromWorld);
     program->set("viewer", stage.shadow.viewer);
     program->set("pixelSize", 0.0f);
   }
+  move(stage);
 }
 
-void LightMaps::drawShadows(const ItemDrawer& items, const PixelRectangle& shadows) const {
+void LightMaps::move(const Stage& stage) const {
+  setMaps(stage, contact_);
+  for (const ShaderProgram* program : {&surfaceDepth_, &ballDepth_, &cylinderDepth_, &tubeDepth_}) {
+    program->use();
+    program->set("clipFromWorld", stage.shadow.clipFromWorld);
+  }
+}
+
+void LightMaps::drawShadows(const ItemDrawer& items, const PixelRectangle& changed) {
+  const PixelRectangle now = aroundAll(items.inShadowMap());
+  const PixelRectangle shadows = common(changed, joined(occupied_, now));
+  occupied_ = now;
+  if (isEmpty(shadows)) return;
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   glDepthMask(GL_TRUE);

@@ -13,8 +13,11 @@ class LightMaps {
  public:
   LightMaps(const ShaderSource& source, const Stage& stage);
 
-  /// Draws the part `shadows` (texels) of the shadow map anew.
-  void drawShadows(const ItemDrawer& items, const PixelRectangle& shadows) const;
+  /// For maps that have moved.
+  void move(const Stage& stage) const;
+
+  /// Draws the part `shadows` (texels) of the shadow map anew, as far as anything stands or stood there.
+  void drawShadows(const ItemDrawer& items, const PixelRectangle& shadows);
 
   /// Draws the map of contacts anew.
   void drawContacts(const ItemDrawer& items) const;
@@ -29,6 +32,7 @@ class LightMaps {
   ShaderProgram leastDepth_, contact_;
   MapTarget shadowMap_, blocks_, contactMap_;
   GpuMesh triangle_;
+  PixelRectangle occupied_;  // texels of the shadow map: beyond, it is clear
 };
 
 }  // namespace cradle

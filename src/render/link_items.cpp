@@ -112,7 +112,7 @@ class LinkBuilder {
               const std::vector<RigidTransform>& places, DrawList& list)
       : scene_(scene), appearance_(appearance), places_(places), start_(placeBodiesAtStart(scene)), list_(list) {
     body_ = typicalRadius(scene, appearance);
-    size_ = view.bounds.isEmpty() ? 1 : view.bounds.diagonal().norm();
+    size_ = view.size();
     rod_ = std::max(kRodOfBody * body_, kRodOfView * size_);
     coil_ = body_ > 0 ? std::min(kCoilOfBody * body_, kCoilOfView * size_) : kCoilOfView * size_;
   }

@@ -45,7 +45,7 @@ std::optional<BoundingBall> behindSide(const NeighbourItem& box, int axis, doubl
 /// The lowest part of a ball, where it nearly touches the ground; of no size if it does not.
 BoundingBall bottomOf(const SphereItem& ball, const Stage& stage) {
   const Ground& ground = *stage.ground;
-  const double highest = 2 * kLeastApproach * stage.bounds.diagonal().norm();
+  const double highest = 2 * kLeastApproach * stage.size;
   const double height = highest - (ground.normal.dot(ball.center - ground.point) - ball.radius);
   return {ball.center - ball.radius * ground.normal, std::sqrt(2 * ball.radius * std::max(height, 0.0))};
 }

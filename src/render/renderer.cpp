@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "render/changed_area.h"
+#include "render/frame_layout.h"
 #include "render/item_drawer.h"
 #include "render/light_maps.h"
 #include "render/offscreen_context.h"
@@ -29,7 +30,7 @@ double pixelsPerMetre(const Camera& camera, const Bounds& bounds, int height) {
 /// Where the scene looks largest.
 double pixelsPerMetre(const View& view, int height) {
   double most = pixelsPerMetre(view.camera, view.bounds, height);
-  for (const Camera& camera : view.cameras) most = std::max(most, pixelsPerMetre(camera, view.bounds, height));
+  for (const Camera& camera : view.keys) most = std::max(most, pixelsPerMetre(camera, view.bounds, height));
   return most;
 }
 
@@ -100,6 +101,7 @@ struct Renderer::Programs {
 /// All that lives on the side of OpenGL, and the picture drawn last; the context goes last.
 struct Renderer::Resources {
   Resources(const Scene& scene, const View& view, int width, int height, const std::string& shaderFolder);
+  void layGround();
 
   OffscreenContext context;
   struct SizeCheck {
@@ -134,6 +136,10 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
       items(appearance, stage),
       triangle({0, 0, 0}, 1, {0, 1, 2}),
       image(width, height) {
+  layGround();
+}
+
+void Renderer::Resources::layGround() {
   if (!stage.ground) return;
   nearGround.emplace(makeNearGround(stage));
   farGround.emplace(makeFarGround(stage));
@@ -150,13 +156,13 @@ void Renderer::forgetPicture() {
   resources_->drawn.reset();
 }
 
-Image Renderer::render(const Frame& frame) {
+Image Renderer::render(const Frame& frame, const Camera& camera) {
   Resources& r = *resources_;
   r.context.makeCurrent();
   times_ = {};
   r.stageStart = Clock::now();
-  aim(view_.cameraAt(frame.number));
-  DrawList list = makeDrawList(scene_, r.appearance, view_, frame);
+  DrawList list = makeDrawList(scene_, r.appearance, view_, {frame, camera.position});
+  aim(camera, list);
   const ChangedArea changed = r.drawn ? changedArea(*r.drawn, list, r.stage, r.meshBounds) : wholePicture(r.stage);
   r.drawn.reset();  // until the picture is complete
   finishStage(times_.drawList);
@@ -166,13 +172,25 @@ Image Renderer::render(const Frame& frame) {
   return r.image;
 }
 
-/// From another place everything looks different.
-void Renderer::aim(const Camera& camera) {
+/// From another place, or in other maps, everything is drawn anew.
+void Renderer::aim(const Camera& camera, const DrawList& list) {
   Resources& r = *resources_;
-  if (camera == r.stage.camera) return;
-  aimCamera(camera, r.stage);
+  const FrameLayout layout = layoutOf(list, r.meshBounds, camera, r.stage);
+  if (camera == r.stage.camera && layout == r.stage.layout) return;
+  const FrameLayout& before = r.stage.layout;
+  const bool movesMaps =
+      layout.shadows != before.shadows || layout.ground != before.ground || layout.depth != before.depth;
+  layOut(camera, layout, r.stage);
   for (const ShaderProgram* program : r.programs.all()) setCamera(r.stage, *program);
+  if (movesMaps) moveMaps();
   r.drawn.reset();
+}
+
+void Renderer::moveMaps() {
+  Resources& r = *resources_;
+  for (const ShaderProgram* program : r.programs.all()) setMaps(r.stage, *program);
+  r.maps.move(r.stage);
+  r.layGround();
 }
 
 void Renderer::draw(const DrawList& list, const ChangedArea& changed) {

@@ -31,8 +31,9 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Draws what differs from the picture before, and copies the rest.
-  Image render(const Frame& frame);
+  /// Draws what differs from the picture before, and copies the rest. Without a camera, from where the film begins.
+  Image render(const Frame& frame, const Camera& camera);
+  Image render(const Frame& frame) { return render(frame, view_.camera); }
 
   /// The next picture is drawn whole.
   void forgetPicture();
@@ -47,7 +48,8 @@ class Renderer {
  private:
   struct Programs;
   struct Resources;
-  void aim(const Camera& camera);
+  void aim(const Camera& camera, const DrawList& list);
+  void moveMaps();
   void draw(const DrawList& list, const ChangedArea& changed);
   void drawPicture(const PixelRectangle& area);
   void finishStage(double& seconds);

@@ -43,11 +43,13 @@ const Palette kDarkStudio{{0.020f, 0.026f, 0.040f},
 const Vec3f kKeyTint(1.10f, 1.02f, 0.91f);  // of a white lamp of the scene: warmer than the sky, as the sun is
 constexpr float kBounceFromGround = 0.42f;  // shadows and distance take the rest
 constexpr float kSkySlope = 0.30f;          // how much brighter it is towards the key light than on average
-constexpr double kNearShare = 0.02;         // of the camera's distance to what is shown
-constexpr double kFadeDistance = 9;         // in sizes of the scene
-constexpr double kContactMargin = 0.15;     // of the scene's size
-constexpr double kLowestLight = 0.05;       // sine of the height below which the ground has no shadows
-constexpr double kShadowMargin = 0.03;      // of the scene's size: links and soft edges
+constexpr double kNearShare = 0.02;      // of the distance of the nearest thing, which is so much of the scene's size
+constexpr double kFadeDistance = 9;      // in sizes of the scene
+constexpr double kContactMargin = 0.15;  // of the scene's size
+constexpr double kLowestLight = 0.05;    // sine of the height below which the ground has no shadows
+constexpr double kShadowTexel = 1.0 / 800;  // of the height of the picture where what is shown is
+constexpr double kShadedOfSeen = 1;         // of it, too: so much ground at least is ready for shadows
+constexpr double kShadowDepth = 16;         // of the shadow map's width: what stands high above still throws a shadow
 
 Lighting makeLighting(const Scene& scene, const std::optional<Ground>& ground) {
   const bool isDark = scene.look == Look::dark;
@@ -79,47 +81,68 @@ Eigen::Vector4f joined(const Vec3& vector, double last) {
           static_cast<float>(last)};
 }
 
-ShadowView makeShadowView(const Vec3& towardsLight, const Bounds& bounds, const Vec3& origin) {
-  const Mat3 axes = cameraAxes(towardsLight, Vec3::Zero());
-  const Bounds seen = inAxes(bounds, axes, origin);
-  const double margin = kShadowMargin * seen.diagonal().norm();
-  // Square, so that edges are equally soft both ways.
-  const double half = std::max(seen.sizes().x(), seen.sizes().y()) / 2 + margin;
-  const double deep = seen.sizes().z() / 2 + margin;
-  const Vec3 center = seen.center();
-  Eigen::Matrix4d clip = Eigen::Matrix4d::Identity();
-  clip.topLeftCorner<3, 3>() = Vec3(1 / half, 1 / half, -1 / deep).asDiagonal() * axes.transpose();
-  clip.topRightCorner<3, 1>() = Vec3(-center.x() / half, -center.y() / half, center.z() / deep);
-  Eigen::Matrix4d texture = Eigen::Matrix4d::Identity();
-  texture.topLeftCorner<3, 3>() *= 0.5;
-  texture.topRightCorner<3, 1>().setConstant(0.5);
-  return {clip.cast<float>(), (texture * clip).cast<float>(), joined(towardsLight, 0), 2 * half / kShadowMapSize,
-          2 * deep};
+/// Square, so that edges are equally soft both ways, around the stage's origin.
+ShadowView makeShadowView(const Vec3& towardsLight, double heightOfPicture) {
+  ShadowView view;
+  view.axes = cameraAxes(towardsLight, Vec3::Zero());
+  view.viewer = joined(towardsLight, 0);
+  const auto half = Eigen::Vector2d::Constant(kShadowMapSize * kShadowTexel * heightOfPicture / 2);
+  view.home = Box2(-half, half);
+  return view;
 }
 
-/// Around all that the film shows, and its shadow.
-ShadedRegion makeShadedRegion(const Ground& ground, const Vec3& towardsLight, const Bounds& bounds,
-                              const Vec3& origin) {
+/// The part of its plane that a map covers.
+Box2 placed(const Box2& home, const MapPlace& place) {
+  const Eigen::Vector2d sizes = std::ldexp(1.0, place.level) * home.sizes();
+  const Eigen::Vector2d moved(place.quarters[0], place.quarters[1]);
+  const Eigen::Vector2d center = home.center() + sizes.cwiseProduct(moved) / 4;
+  return {center - sizes / 2, center + sizes / 2};
+}
+
+void placeShadows(const FrameLayout& layout, ShadowView& view) {
+  const Box2 seen = placed(view.home, layout.shadows);
+  view.deep = depthOfMap(view, layout.shadows);
+  const double half = seen.sizes().x() / 2, deep = view.deep / 2;
+  Eigen::Matrix4d clip = Eigen::Matrix4d::Identity();
+  clip.topLeftCorner<3, 3>() = Vec3(1 / half, 1 / half, -1 / deep).asDiagonal() * view.axes.transpose();
+  clip.topRightCorner<3, 1>() = Vec3(-seen.center().x() / half, -seen.center().y() / half, layout.depth / 2.0);
+  const Eigen::Affine3d texture = Eigen::Translation3d(0.5, 0.5, 0.5) * Eigen::Scaling(0.5);
+  view.clipFromWorld = clip.cast<float>();
+  view.textureFromWorld = (texture.matrix() * clip).cast<float>();
+  view.texel = 2 * half / kShadowMapSize;
+}
+
+/// Around what is shown and its shadow, and the middle of the picture.
+ShadedRegion makeShadedRegion(const Ground& ground, const Stage& stage, const Bounds& bounds, double heightOfPicture) {
+  const Vec3& towardsLight = stage.lighting.lamps[0].towards;
   ShadedRegion region;
   const Vec3 along = std::abs(ground.normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitZ();
   region.axisU = (along - along.dot(ground.normal) * ground.normal).normalized();
   region.axisV = ground.normal.cross(region.axisU);
   Mat3 axes;
   axes << region.axisU, region.axisV, ground.normal;
-  const Bounds shown = inAxes(bounds, axes, origin);
+  const Bounds shown = inAxes(bounds, axes, stage.origin);
   const Vec3 light = axes.transpose() * towardsLight;
-  const double height = ground.normal.dot(ground.point - origin);
+  const double height = ground.normal.dot(ground.point - stage.origin);
   Bounds shaded = shown;
   for (int corner = 0; corner < 8 && light.z() > kLowestLight; ++corner) {
     const Vec3 point = shown.corner(static_cast<Bounds::CornerType>(corner));
     shaded.extend(Vec3(point - (point.z() - height) / light.z() * light));
   }
-  region.margin = kContactMargin * shown.diagonal().norm();
-  region.firstU = shaded.min().x() - region.margin;
-  region.firstV = shaded.min().y() - region.margin;
-  region.sizeU = shaded.sizes().x() + 2 * region.margin;
-  region.sizeV = shaded.sizes().y() + 2 * region.margin;
+  const Vec3 seen = Vec3::Constant(kShadedOfSeen * heightOfPicture / 2);
+  shaded.extend(shown.center() - seen), shaded.extend(shown.center() + seen);
+  region.margin = kContactMargin * stage.size;
+  const Eigen::Vector2d around = Eigen::Vector2d::Constant(region.margin);
+  region.home = Box2(shaded.min().head<2>() - around, shaded.max().head<2>() + around);
   return region;
+}
+
+void placeGround(const MapPlace& place, ShadedRegion& region) {
+  const Box2 shaded = placed(region.home, place);
+  region.firstU = shaded.min().x();
+  region.firstV = shaded.min().y();
+  region.sizeU = shaded.sizes().x();
+  region.sizeV = shaded.sizes().y();
 }
 
 /// Position of the stage's origin within the pattern of squares along `axis`: repeats after ten squares.
@@ -169,6 +192,12 @@ void setGround(const Stage& stage, const ShaderProgram& program) {
   program.set("darkSquare", ground.darkColor);
   program.set("lineShade", ground.lineShade);
   program.set("fadeDistance", static_cast<float>(stage.fadeDistance));
+}
+
+void setGroundMap(const Stage& stage, const ShaderProgram& program) {
+  if (!stage.ground) return;
+  const Ground& ground = *stage.ground;
+  const ShadedRegion& region = stage.shaded;
   program.set("contactFromWorldU", joined(region.axisU / region.sizeU, -region.firstU / region.sizeU));
   program.set("contactFromWorldV", joined(region.axisV / region.sizeV, -region.firstV / region.sizeV));
   const Vec3 foot = ground.normal * ground.normal.dot(ground.point - stage.origin);
@@ -178,14 +207,20 @@ void setGround(const Stage& stage, const ShaderProgram& program) {
   program.set("mapV", Vec3f((region.sizeV * region.axisV).cast<float>()));
 }
 
-double sizeOf(const Stage& stage) {
-  return stage.bounds.diagonal().norm();
+/// How high a picture is at the distance of what is shown, where the camera is farthest from it; m.
+double heightOfPicture(const View& view, const Vec3& middle) {
+  const auto height = [&](const Camera& camera) {
+    return 2 * std::tan(camera.verticalFieldOfView / 2) * (camera.position - middle).norm();
+  };
+  double greatest = height(view.camera);
+  for (const Camera& camera : view.keys) greatest = std::max(greatest, height(camera));
+  return greatest;
 }
 
 /// The same in all frames, so that the ground does not change where a camera comes near.
 double farthestTarget(const View& view) {
   double farthest = (view.camera.position - view.camera.target).norm();
-  for (const Camera& camera : view.cameras) farthest = std::max(farthest, (camera.position - camera.target).norm());
+  for (const Camera& camera : view.keys) farthest = std::max(farthest, (camera.position - camera.target).norm());
   return farthest;
 }
 
@@ -195,10 +230,20 @@ double pixelAngle(const Stage& stage) {
   return 2 * std::tan(stage.camera.verticalFieldOfView / 2) / stage.height;
 }
 
-void aimCamera(const Camera& camera, Stage& stage) {
+double depthOfMap(const ShadowView& view, const MapPlace& place) {
+  return kShadowDepth * std::ldexp(view.home.sizes().x(), place.level);
+}
+
+double nearPlaneFor(double nearest, const Stage& stage) {
+  return kNearShare * std::max(nearest, kNearShare * stage.size);
+}
+
+void layOut(const Camera& camera, const FrameLayout& layout, Stage& stage) {
   stage.camera = camera;
-  const double nearest = std::max(stage.bounds.exteriorDistance(camera.position), kNearShare * sizeOf(stage));
-  stage.clipFromWorld = clipFromWorld(camera, stage.origin, stage.width, stage.height, kNearShare * nearest);
+  stage.layout = layout;
+  stage.clipFromWorld = clipFromWorld(camera, stage.origin, stage.width, stage.height, layout.nearPlane);
+  placeShadows(layout, stage.shadow);
+  if (stage.ground) placeGround(layout.ground, stage.shaded);
 }
 
 Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground>& ground, int width, int height) {
@@ -206,14 +251,15 @@ Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground
   Stage stage;
   stage.width = width;
   stage.height = height;
-  stage.bounds = bounds;
+  stage.size = view.size();
   stage.origin = bounds.center();
-  aimCamera(view.camera, stage);
   stage.lighting = makeLighting(scene, ground);
-  stage.shadow = makeShadowView(stage.lighting.lamps[0].towards, bounds, stage.origin);
+  const double seen = heightOfPicture(view, stage.origin);
+  stage.shadow = makeShadowView(stage.lighting.lamps[0].towards, seen);
   stage.ground = ground;
-  if (ground) stage.shaded = makeShadedRegion(*ground, stage.lighting.lamps[0].towards, bounds, stage.origin);
-  stage.fadeDistance = kFadeDistance * std::max(sizeOf(stage), farthestTarget(view) / 3);
+  if (ground) stage.shaded = makeShadedRegion(*ground, stage, bounds, seen);
+  stage.fadeDistance = kFadeDistance * std::max(stage.size, farthestTarget(view) / 3);
+  layOut(view.camera, {nearPlaneFor(0, stage), {}, {}, 0}, stage);
   return stage;
 }
 
@@ -230,13 +276,19 @@ void setCamera(const Stage& stage, const ShaderProgram& program) {
   setRays(stage, program);
 }
 
+void setMaps(const Stage& stage, const ShaderProgram& program) {
+  program.use();
+  setGroundMap(stage, program);
+  program.set("shadowFromWorld", stage.shadow.textureFromWorld);
+  program.set("shadowTexel", static_cast<float>(stage.shadow.texel));
+}
+
 void setStage(const Stage& stage, const ShaderProgram& program) {
   setCamera(stage, program);
   setLighting(stage.lighting, program);
   setGround(stage, program);
-  program.set("shadowFromWorld", stage.shadow.textureFromWorld);
+  setMaps(stage, program);
   program.set("shadowSize", static_cast<float>(kShadowMapSize));
-  program.set("shadowTexel", static_cast<float>(stage.shadow.texel));
   program.set("shadowDeep", static_cast<float>(stage.shadow.deep / stage.shadow.texel));
   program.set("shadowMap", static_cast<int>(kShadowUnit));
   program.set("shadowBlocks", static_cast<int>(kBlockUnit));

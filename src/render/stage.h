@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "render/appearance.h"
@@ -21,8 +22,28 @@ struct Lighting {
   Vec3f skySlope;     // relative change of both with the direction of the surface
 };
 
-/// Where the shadow map looks: along the light, at all that the film shows.
+using Box2 = Eigen::AlignedBox2d;
+
+/// Where a map is: its home, or beside it by whole quarters of its size, and perhaps larger; so that its texels stay
+/// where they are in the world as long as it does.
+struct MapPlace {
+  int level = 0;                     // 2^level times as large as at home
+  std::array<int, 2> quarters = {};  // of its size then, from home
+  bool operator==(const MapPlace&) const = default;
+};
+
+/// What follows from where things are in a frame.
+struct FrameLayout {
+  double nearPlane = 0;  // m, before the camera
+  MapPlace shadows, ground;
+  int depth = 0;  // of the shadow map from home, in quarters of its depth towards the light
+  bool operator==(const FrameLayout&) const = default;
+};
+
+/// Where the shadow map looks: along the light, at what throws shadows into the picture.
 struct ShadowView {
+  Box2 home;  // m, along `axes` from the stage's origin
+  Mat3 axes;  // right, up, towards the light
   Eigen::Matrix4f clipFromWorld, textureFromWorld;
   Eigen::Vector4f viewer;  // the light's direction, as ball.vert takes it
   double texel = 0;        // m
@@ -31,18 +52,20 @@ struct ShadowView {
 
 /// The part of the ground on which shadows fall and contacts are drawn.
 struct ShadedRegion {
+  Box2 home;                                            // m, as below
   Vec3 axisU, axisV;                                    // unit, in the ground
   double firstU = 0, firstV = 0, sizeU = 1, sizeV = 1;  // m, along the axes, from the stage's origin
-  double margin = 0;                                    // m, from what is shown to the region's border
+  double margin = 0;                                    // m: farther from a thing, it darkens nothing
 };
 
-/// All that stays the same from frame to frame, but for a camera that moves. World coordinates for OpenGL are relative
-/// to `origin`.
+/// What a picture is drawn with, apart from its items. World coordinates for OpenGL are relative to `origin`. All but
+/// camera and layout, and what follows from them, stays the same from frame to frame.
 struct Stage {
   int width = 0, height = 0;
   Camera camera;
-  Bounds bounds;  // m, world
-  Vec3 origin;    // m, world
+  FrameLayout layout;
+  double size = 1;  // m: View::size()
+  Vec3 origin;      // m, world
   Eigen::Matrix4f clipFromWorld;
   Lighting lighting;
   ShadowView shadow;
@@ -53,7 +76,7 @@ struct Stage {
   Vec3f relative(const Vec3& point) const { return (point - origin).cast<float>(); }
 };
 
-constexpr int kShadowMapSize = 1024;
+constexpr int kShadowMapSize = 2048;
 constexpr int kShadowBlock = 8;  // texels of the shadow map a side; the map of blocks has the least depth of each
 constexpr int kContactMapSize = 256;
 
@@ -65,8 +88,14 @@ Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground
 /// Size of a pixel at distance 1, in the middle of the picture.
 double pixelAngle(const Stage& stage);
 
-/// Turns the stage to another camera.
-void aimCamera(const Camera& camera, Stage& stage);
+/// Turns the stage to another camera, and its maps to other places.
+void layOut(const Camera& camera, const FrameLayout& layout, Stage& stage);
+
+/// From the least to the greatest depth of the shadow map; m.
+double depthOfMap(const ShadowView& view, const MapPlace& place);
+
+/// Distance of the near plane from the camera where nothing is nearer than `nearest`; m.
+double nearPlaneFor(double nearest, const Stage& stage);
 
 /// What the shaders need to know of the stage before they are compiled.
 std::string shaderDefinitions(const Stage& stage);
@@ -74,7 +103,10 @@ std::string shaderDefinitions(const Stage& stage);
 /// Gives a program all the uniforms of the stage.
 void setStage(const Stage& stage, const ShaderProgram& program);
 
-/// Gives it those that change with the camera.
+/// Gives it those that change with the camera and the near plane.
 void setCamera(const Stage& stage, const ShaderProgram& program);
+
+/// Gives it those that change with the places of the maps.
+void setMaps(const Stage& stage, const ShaderProgram& program);
 
 }  // namespace cradle

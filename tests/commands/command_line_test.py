@@ -481,6 +481,24 @@ class Pictures(InTemporaryFolder):
             self.assertEqual(content(self.path("parts/" + name)), content(self.path("whole/" + name)), name)
         self.assertEqual(len({content(self.path("whole/" + name)) for name in names}), 18)
 
+    def test_a_film_drawn_beside_its_simulation_is_that_of_the_trajectory_and_of_frames_drawn_apart(self):
+        bodies = [{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0.4, 0], "linearVelocity": [3, 0, 0]},
+                  {"name": "ground", "shape": {"plane": {}}, "motion": "static"}]
+        keys = [{"time": 0, "position": [0, 1, 3]}, {"time": 0.4, "position": [0.5, 1, 2], "target": [1, 0, 0]}]
+        for kind in ({}, {"orbit": {"period": 2}}, {"keyFrames": keys}, {"follow": {"body": "ball"}}, {"target": "ball"}):
+            path = self.write("s.json", scene(duration=0.5, output={"width": 128, "height": 72}, bodies=bodies,
+                                              camera={"position": [0, 1, 3], "target": [0, 0.3, 0], **kind}))
+            overlay = ["--overlay", "time,trails"]
+            for name, *command in (("beside.mp4", "video", path, *overlay), ("run.sqlite", "simulate", path),
+                                   ("after.mp4", "video", self.path("run.sqlite"), *overlay),
+                                   ("frames", "render", self.path("run.sqlite"), "--overwrite", "--frames", "17:30", *overlay),
+                                   ("frames", "render", self.path("run.sqlite"), "--overwrite", "--frames", "0:17", *overlay),
+                                   ("frames.mp4", "encode", self.path("frames"))):
+                result = cradle(*command, "-o", self.path(name))
+                self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(content(self.path("beside.mp4")), content(self.path("after.mp4")), kind)
+            self.assertEqual(content(self.path("beside.mp4")), content(self.path("frames.mp4")), kind)
+
     def test_overlays_that_are_not_there_are_refused(self):
         self.refuses(2, ["--overlay", '"tme"', "allowed are time, contacts"], "render", self.scene, "-o", self.path("f"), "--overlay", "tme")
         self.refuses(2, ["plot=height:bal", "no body", '"ball"'], "video", self.scene, "-o", self.path("f.mp4"), "--overlay", "plot=height:bal")
@@ -503,16 +521,19 @@ class Pictures(InTemporaryFolder):
     def test_an_interrupted_film_leaves_nothing_and_ends_at_once(self):
         while_simulating = scene(duration=1e6)
         while_drawing = scene(duration=100, output={"framesPerSecond": 60, "width": 640, "height": 360})
-        for document, number, exit_code in ((while_simulating, signal.SIGINT, 130), (while_drawing, signal.SIGTERM, 143)):
+        beside = scene(duration=1e6, camera={"position": [0, 0, 5], "target": [0, 0, 0]})
+        for document, number, exit_code in ((while_simulating, signal.SIGINT, 130), (while_drawing, signal.SIGTERM, 143),
+                                            (beside, signal.SIGINT, 130)):
             self.write("s.json", document)
             os.makedirs(self.path("tmp"), exist_ok=True)
             process = subprocess.Popen([PROGRAM, "video", self.scene, "-o", self.path("f.mp4")], stderr=subprocess.PIPE, text=True,
                                        env={**os.environ, "TMPDIR": self.path("tmp")})
-            time.sleep(1.5)  # both take minutes
+            time.sleep(1.5)  # all take minutes
             start = time.monotonic()
             process.send_signal(number)
             _, stderr = process.communicate(timeout=20)
             self.assertEqual(process.returncode, exit_code, stderr)
+            self.assertRegex(stderr.splitlines()[-1], "^(interrupted|terminated)$")
             self.assertLess(time.monotonic() - start, 10)
             self.assertEqual(self.listing(), ["s.json", "tmp"])
             self.assertEqual(os.listdir(self.path("tmp")), [])
@@ -536,6 +557,7 @@ class Pictures(InTemporaryFolder):
         path = self.write("s.json", scene(duration=0.5, camera={"position": [0, -0.5, 0], "target": [0, -0.5, 5]}))
         self.assertEqual(cradle("check", path).returncode, 0)
         self.refuses(3, ["/camera: at 0.3", 'inside body "ball"'], "render", path, "-o", self.path("f"))
+        self.refuses(3, ["/camera: at 0.3", 'inside body "ball"'], "video", path, "-o", self.path("f.mp4"))
 
     def test_report_of_pictures_holds_what_it_was_made_of(self):
         path = self.write("s.json", scene(duration=0.05))

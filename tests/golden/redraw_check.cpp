@@ -22,19 +22,20 @@ long differingPixels(const Image& a, const Image& b) {
 }
 
 bool check(const std::string& trajectory, const std::vector<long>& frames) {
-  const TrajectorySource source(trajectory, true);
+  TrajectorySource source(trajectory, true);
   const TrajectoryReader& reader = source.reader();
   const View view = viewOf(source, kWidth, kHeight);
   Renderer changing(source.scene(), view, kWidth, kHeight), whole(source.scene(), view, kWidth, kHeight);
+  FilmCamera camera = cameraOf(source, view);
   bool same = true;
   double share = 0;
   long pictures = 0;
   for (const long first : frames)
     for (long number = first; number < std::min(first + kFrames, reader.frameCount()); ++number) {
       const Frame frame = reader.readFrame(number);
-      const Image changed = changing.render(frame);
+      const Image changed = changing.render(frame, camera.at(frame));
       whole.forgetPicture();
-      const long different = differingPixels(changed, whole.render(frame));
+      const long different = differingPixels(changed, whole.render(frame, camera.at(frame)));
       if (different > 0) fmt::print("{}, frame {}: {} pixels differ\n", trajectory, number, different);
       same = same && different == 0;
       if (number > first) share += changing.drawnShare(), ++pictures;

@@ -260,24 +260,22 @@ TEST(CameraPath, CameraOfTheStartIsCheckedBeforeAnythingMoves) {
 
 TEST(Renderer, MovingCameraDrawsTheBytesOfOneThatStandsThere) {
   Scene scene = makeCradleScene();
-  View view = viewOfStart(scene, 160, 90);
-  for (int i = 0; i < 3; ++i) {
-    view.cameras.push_back(view.camera);
-    view.cameras.back().position.x() += 0.03 * i * i;  // 0, 0.03, 0.12
-  }
-  view.cameras.push_back(view.cameras.back());  // stands still
+  const View view = viewOfStart(scene, 160, 90);
+  std::vector<Camera> cameras(4, view.camera);
+  cameras[1].position.x() += 0.03;
+  cameras[2].position.x() += 0.12;
+  cameras[3].position.x() += 0.12;  // stands still
   Renderer moving(scene, view, 160, 90);
   Frame frame = startFrame(scene);
   Image before;
-  for (const long number : {0, 1, 2, 3}) {
-    frame.number = number;
+  for (std::size_t number = 0; number < cameras.size(); ++number) {
     frame.states[0].position.x() += 0.01;
-    const Image film = moving.render(frame);
+    const Image film = moving.render(frame, cameras[number]);
     EXPECT_NE(film, before);
     before = film;
     if (number % 2 == 0) continue;
     Renderer alone(scene, view, 160, 90);
-    EXPECT_EQ(alone.render(frame), film) << number;
+    EXPECT_EQ(alone.render(frame, cameras[number]), film) << number;
   }
   EXPECT_LT(moving.drawnShare(), 1);  // the last one again as a change
 }

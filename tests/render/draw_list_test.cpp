@@ -16,7 +16,7 @@ DrawList listOf(const Scene& scene, const Frame& frame) {
   Framing framing(scene, 640, 360);
   framing.add(frame);
   const View view = framing.view();
-  return makeDrawList(scene, makeAppearance(scene, view, 100), view, frame);
+  return makeDrawList(scene, makeAppearance(scene, view, 100), view, {frame, view.camera.position});
 }
 
 Scene springScene(double height) {

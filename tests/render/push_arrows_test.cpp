@@ -62,7 +62,8 @@ View viewOf(const Scene& scene) {
 
 DrawList listAt(const Scene& scene, long frame) {
   const View view = viewOf(scene);
-  return makeDrawList(scene, makeAppearance(scene, view, 100), view, frameOfFlight(frame));
+  const Frame shown = frameOfFlight(frame);
+  return makeDrawList(scene, makeAppearance(scene, view, 100), view, {shown, view.camera.position});
 }
 
 /// Where the head of the only arrow has its point: the box is mesh 0 of the list, the head a later one.

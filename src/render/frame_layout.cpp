@@ -1,0 +1,162 @@
+#include "render/frame_layout.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "render/camera.h"
+#include "render/instances.h"
+
+namespace cradle {
+namespace {
+
+constexpr int kGreatestLevel = 3;      // 8 times as large as at home: shadows are hardly sharp enough
+constexpr double kFarthest = 1e5;      // quarters of a map from home: beyond, numbers do not tell its texels apart
+constexpr double kLargestCaster = 1;   // of the width of the shadow map's home
+constexpr double kBorder = 10;         // texels of the shadow map: its edge stays clear, by whole blocks
+constexpr double kPenumbra = 24;       // texels beside a shadow that may be half lit
+constexpr double kLowestLight = 0.05;  // sine of the height below which the ground has no shadows
+
+/// Half of space: where normal . (x - the camera) is positive.
+using Side = Vec3;
+
+/// The sides of what a camera sees, and all that is before it.
+std::array<Side, 5> sidesOfView(const Camera& camera, const Stage& stage) {
+  const Mat3 axes = cameraAxes(camera);
+  const double y = std::tan(camera.verticalFieldOfView / 2), x = y * stage.width / stage.height;
+  const Vec3 right = axes.col(0), up = axes.col(1), ahead = -axes.col(2);
+  return {(x * ahead - right).normalized(), (x * ahead + right).normalized(), (y * ahead - up).normalized(),
+          (y * ahead + up).normalized(), ahead};
+}
+
+/// Collects what counts.
+class LayoutFinder {
+ public:
+  LayoutFinder(const Camera& camera, const Stage& stage)
+      : stage_(stage), eye_(camera.position), towards_(stage.shadow.axes.col(2)), sides_(sidesOfView(camera, stage)) {}
+
+  void add(const DrawnHull& hull);
+  void add(const ContactItem& item);
+  FrameLayout layout() const;
+
+ private:
+  bool isBeyond(const Side& side, const DrawnHull& hull) const;
+  bool isSeen(const DrawnHull& hull) const;
+  bool mayThrowShadowIntoView(const DrawnHull& hull) const;
+  void addToGround(const DrawnHull& hull);
+  void extendGround(const Vec3& point, const Eigen::Vector2d& around);
+
+  const Stage& stage_;
+  const Vec3 eye_, towards_;
+  const std::array<Side, 5> sides_;
+  double nearest_ = std::numeric_limits<double>::infinity();  // m
+  Bounds casters_;                                            // m, along the shadow map's axes from the stage's origin
+  Box2 ground_;
+};
+
+bool LayoutFinder::isBeyond(const Side& side, const DrawnHull& hull) const {
+  for (std::size_t i = 0; i < hull.count; ++i)
+    if (side.dot(hull.centers[i] - eye_) + hull.radius >= 0) return false;
+  return true;
+}
+
+bool LayoutFinder::isSeen(const DrawnHull& hull) const {
+  return std::none_of(sides_.begin(), sides_.end(), [&](const Side& side) { return isBeyond(side, hull); });
+}
+
+/// Not if it is beyond a side of the view, and its shadow goes on from there.
+bool LayoutFinder::mayThrowShadowIntoView(const DrawnHull& hull) const {
+  return std::none_of(sides_.begin(), sides_.end(),
+                      [&](const Side& side) { return side.dot(towards_) >= 0 && isBeyond(side, hull); });
+}
+
+void LayoutFinder::add(const DrawnHull& hull) {
+  if (2 * hull.reach() > kLargestCaster * stage_.shadow.home.sizes().x() || !mayThrowShadowIntoView(hull)) return;
+  if (isSeen(hull)) nearest_ = std::min(nearest_, hull.bounds().exteriorDistance(eye_));
+  const double around = cornerOfEqualArea(kOutlines.front()) * hull.radius + kBorder * stage_.shadow.texel;
+  for (std::size_t i = 0; i < hull.count; ++i) {
+    const Vec3 place = stage_.shadow.axes.transpose() * (hull.centers[i] - stage_.origin);
+    casters_.extend(Vec3(place.array() - around)), casters_.extend(Vec3(place.array() + around));
+  }
+  if (stage_.ground) addToGround(hull);
+}
+
+/// Its shadow on the ground.
+void LayoutFinder::addToGround(const DrawnHull& hull) {
+  const Ground& ground = *stage_.ground;
+  const double steepness = ground.normal.dot(towards_);
+  const auto heightOf = [&](const Vec3& point) { return ground.normal.dot(point - ground.point); };
+  if (steepness <= kLowestLight || heightOf(hull.middle()) + hull.reach() < 0) return;
+  const double around = (hull.radius + kPenumbra * stage_.shadow.texel) / steepness;
+  for (std::size_t i = 0; i < hull.count; ++i)
+    extendGround(hull.centers[i] - heightOf(hull.centers[i]) / steepness * towards_, {around, around});
+}
+
+void LayoutFinder::extendGround(const Vec3& point, const Eigen::Vector2d& around) {
+  const Vec3 from = point - stage_.origin;
+  const Eigen::Vector2d place(stage_.shaded.axisU.dot(from), stage_.shaded.axisV.dot(from));
+  ground_.extend(place - around), ground_.extend(place + around);
+}
+
+/// The ground that it darkens.
+void LayoutFinder::add(const ContactItem& item) {
+  const auto square = darkenedSquare(item, stage_);
+  const Vec3& middle = item.worldFromBox.translation;
+  if (!square || 2 * item.half.norm() > kLargestCaster * stage_.shadow.home.sizes().x()) return;
+  DrawnHull darkened;
+  darkened.add(middle);
+  darkened.radius = std::hypot(square->halfU, square->halfV) + item.half.norm();
+  if (isSeen(darkened)) extendGround(middle, {square->halfU, square->halfV});
+}
+
+/// Quarters of `size` from home, the fewest, so that a map there holds first..last (from the middle of home); none if
+/// it is too small, or that would be too far.
+std::optional<int> quartersFor(double first, double last, double size) {
+  const double most = std::floor((first + size / 2) / (size / 4)), least = std::ceil((last - size / 2) / (size / 4));
+  const double quarters = std::clamp(0.0, std::min(least, most), most);
+  if (!(least <= most) || std::abs(quarters) > kFarthest) return std::nullopt;
+  return static_cast<int>(quarters);
+}
+
+FrameLayout LayoutFinder::layout() const {
+  FrameLayout layout;
+  // In powers of two, as all that must not change often.
+  const double nearest = std::isfinite(nearest_) && nearest_ > 0 ? std::exp2(std::floor(std::log2(nearest_))) : 0;
+  layout.nearPlane = nearPlaneFor(nearest, stage_);
+  if (!casters_.isEmpty()) {
+    layout.shadows = placeAround({casters_.min().head<2>(), casters_.max().head<2>()}, stage_.shadow.home);
+    const double deep = depthOfMap(stage_.shadow, layout.shadows);
+    layout.depth = quartersFor(casters_.min().z(), casters_.max().z(), deep).value_or(0);
+  }
+  if (stage_.ground) layout.ground = placeAround(ground_, stage_.shaded.home);
+  return layout;
+}
+
+}  // namespace
+
+MapPlace placeAround(const Box2& needed, const Box2& home) {
+  if (needed.isEmpty()) return {};
+  const Eigen::Vector2d first = needed.min() - home.center(), last = needed.max() - home.center();
+  for (int level = 0; level <= kGreatestLevel; ++level) {
+    const Eigen::Vector2d size = std::ldexp(1.0, level) * home.sizes();
+    const auto x = quartersFor(first.x(), last.x(), size.x()), y = quartersFor(first.y(), last.y(), size.y());
+    if (x && y) return {level, {*x, *y}};
+  }
+  return {kGreatestLevel, {}};
+}
+
+FrameLayout layoutOf(const DrawList& list, const std::vector<MeshBounds>& meshBounds, const Camera& camera,
+                     const Stage& stage) {
+  LayoutFinder finder(camera, stage);
+  for (const MeshItem& item : list.meshes)
+    finder.add(hullOf(meshBounds[static_cast<std::size_t>(item.mesh)].whole, item.worldFromMesh));
+  for (const SphereItem& item : list.spheres) finder.add(hullOf(item));
+  for (const CylinderItem& item : list.cylinders) finder.add(hullOf(item));
+  for (const TubeItem& item : list.tubes) finder.add(hullOf(item));
+  if (stage.ground)
+    for (const ContactItem& item : list.contacts) finder.add(item);
+  return finder.layout();
+}
+
+}  // namespace cradle

@@ -1,0 +1,56 @@
+#include "simulate/frame_stream.h"
+
+#include "simulate/simulate.h"
+
+namespace cradle {
+
+FrameStream::FrameStream(const Scene& scene) : thread_([this, &scene] { run(scene); }) {}
+
+FrameStream::~FrameStream() {
+  {
+    const std::lock_guard lock(mutex_);
+    isClosed_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void FrameStream::run(const Scene& scene) {
+  try {
+    simulate(scene, {[this](const Frame& frame) { put(frame); }, [](const Event&) {},
+                     [this](const std::string& warning) { put(warning); }});
+  } catch (const Closed&) {
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    items_.emplace_back(std::current_exception());
+    changed_.notify_all();
+  }
+}
+
+void FrameStream::put(Item item) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return isClosed_ || items_.size() < kFramesAhead; });
+  if (isClosed_) throw Closed();
+  items_.push_back(std::move(item));
+  changed_.notify_all();
+}
+
+FrameStream::Item FrameStream::take() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return !items_.empty(); });
+  Item item = std::move(items_.front());
+  items_.pop_front();
+  changed_.notify_all();
+  return item;
+}
+
+Frame FrameStream::next(const std::function<void(const std::string&)>& warn) {
+  for (;;) {
+    Item item = take();
+    if (auto* frame = std::get_if<Frame>(&item)) return std::move(*frame);
+    if (const auto* error = std::get_if<std::exception_ptr>(&item)) std::rethrow_exception(*error);
+    warn(std::get<std::string>(item));
+  }
+}
+
+}  // namespace cradle

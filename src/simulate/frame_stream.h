@@ -1,0 +1,48 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <variant>
+
+#include "scene/scene.h"
+#include "trajectory/trajectory.h"
+
+namespace cradle {
+
+/// A simulation in a thread of its own. It is kFramesAhead frames ahead of who takes them at most, and then waits.
+class FrameStream {
+ public:
+  static constexpr std::size_t kFramesAhead = 16;
+
+  /// Begins. `scene` must outlive this object.
+  explicit FrameStream(const Scene& scene);
+
+  /// Ends the simulation, with the frame under way at the latest.
+  ~FrameStream();
+  FrameStream(const FrameStream&) = delete;
+  FrameStream& operator=(const FrameStream&) = delete;
+
+  /// Waits for the next frame; `warn` is told what the user should know of it. Throws what the simulation throws. Not
+  /// to be called again after the last frame, or after an error.
+  Frame next(const std::function<void(const std::string&)>& warn);
+
+ private:
+  using Item = std::variant<Frame, std::string, std::exception_ptr>;  // frame, warning, end
+  struct Closed {};
+  void run(const Scene& scene);
+  void put(Item item);
+  Item take();
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Item> items_;
+  bool isClosed_ = false;
+  std::thread thread_;
+};
+
+}  // namespace cradle
