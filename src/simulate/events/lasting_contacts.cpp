@@ -37,6 +37,7 @@ double openingSpeed(const Contact& contact, const VectorX& state) {
 
 void LastingContacts::letGo(const std::optional<ContactChange>& change) {
   former_.clear();
+  knownTime_ = NAN;
   if (change && change->kind == ContactChange::Kind::slip) island_.equations.evaluate(island_.state, rate_);
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     Former former{entries_[i], mechanism().contacts[i]};
