@@ -96,11 +96,11 @@ void EquationsOfMotion::applyGravityAndGyroscopicTerms(const VectorX& state, Vec
 
 void EquationsOfMotion::applySprings(const VectorX& state, VectorX& rate) const {
   for (const SpringForce& spring : mechanism_.springs) {
-    const SpringAction action =
-        actionOf(spring, motionOf(spring.anchorA, state, frames_), motionOf(spring.anchorB, state, frames_));
-    addForce(spring.anchorA.body, action.a.arm, action.forceOnA, rate);
-    addForce(spring.anchorB.body, action.b.arm, -action.forceOnA, rate);
-    dissipatedEnergy(rate) += action.dissipation;
+    const AttachmentMotion a = motionOf(spring.anchorA, state, frames_), b = motionOf(spring.anchorB, state, frames_);
+    const SpringPull pull = pullOf(spring, a, b);
+    addForce(spring.anchorA.body, a.arm, pull.forceOnA, rate);
+    addForce(spring.anchorB.body, b.arm, -pull.forceOnA, rate);
+    dissipatedEnergy(rate) += pull.dissipation;
   }
 }
 

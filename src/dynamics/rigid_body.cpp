@@ -39,15 +39,6 @@ void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std
   }
 }
 
-AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state, const std::vector<BodyFrame>& frames) {
-  if (attachment.body == kFixed) return {Vec3::Zero(), attachment.point, Vec3::Zero()};
-  if (attachment.point == Vec3::Zero())
-    return {Vec3::Zero(), centerOfMass(state, attachment.body), linearVelocity(state, attachment.body)};
-  const Vec3 arm = frames[static_cast<std::size_t>(attachment.body)].rotation * attachment.point;
-  return {arm, centerOfMass(state, attachment.body) + arm,
-          linearVelocity(state, attachment.body) + angularVelocity(state, attachment.body).cross(arm)};
-}
-
 Vec3 pointAcceleration(int body, const Vec3& point, const VectorX& state, const VectorX& rate) {
   if (body == kFixed) return Vec3::Zero();
   const Vec3 arm = point - centerOfMass(state, body), spin = angularVelocity(state, body);

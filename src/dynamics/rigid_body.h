@@ -48,7 +48,15 @@ struct BodyFrame {
 void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std::vector<BodyFrame>& frames);
 
 /// The same motion from bodies that were placed for `state`.
-AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state, const std::vector<BodyFrame>& frames);
+inline AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state,
+                                 const std::vector<BodyFrame>& frames) {
+  const int body = attachment.body;
+  if (body == kFixed) return {Vec3::Zero(), attachment.point, Vec3::Zero()};
+  if (attachment.point == Vec3::Zero()) return {Vec3::Zero(), centerOfMass(state, body), linearVelocity(state, body)};
+  const Vec3 arm = frames[static_cast<std::size_t>(body)].rotation * attachment.point;
+  return {arm, centerOfMass(state, body) + arm,
+          linearVelocity(state, body) + Vec3(angularVelocity(state, body)).cross(arm)};
+}
 
 /// Acceleration (m/s^2, world) of a body's material point that is at `point` (m, world), for the rates of all
 /// velocities in `rate`; zero if fixed.

@@ -7,9 +7,18 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace cradle {
+namespace {
+
+// Where most of L is filled, the places of its entries cost more than those that are not.
+constexpr std::size_t kMostDense = 16;  // rows
+constexpr double kDensePart = 0.5;      // of the entries below the diagonal
+
+}  // namespace
+
 void SparseLdlt::analyze(int size, const std::vector<std::pair<int, int>>& entries) {
   size_ = size;
   if (entries.empty()) {
@@ -78,10 +87,13 @@ void SparseLdlt::findFill() {
   for (std::size_t i = 0; i < size; ++i) columnStart_[i + 1] = columnStart_[i] + columnCount_[i];
   lowerRows_.assign(static_cast<std::size_t>(columnStart_[size]), 0);
   lower_.assign(lowerRows_.size(), 0);
+  isDense_ = size <= kMostDense && columnStart_[size] >= kDensePart * (size_ * (size_ - 1) / 2);
+  if (isDense_) dense_.assign(size * size, 0);
 }
 
 void SparseLdlt::factorize(const std::vector<double>& diagonal, const std::vector<double>& entries) {
   leastPivot_ = 1;
+  if (isDense_) return factorizeDense(diagonal, entries);
   std::fill(columnCount_.begin(), columnCount_.end(), 0);
   std::fill(marks_.begin(), marks_.end(), -1);
   for (int row = 0; row < size_; ++row) {
@@ -91,6 +103,53 @@ void SparseLdlt::factorize(const std::vector<double>& diagonal, const std::vecto
       work_[static_cast<std::size_t>(entry.column)] += entries[static_cast<std::size_t>(entry.source)];
     }
     eliminate(row, reach(row), diagonal[static_cast<std::size_t>(rowAt_[at])]);
+  }
+}
+
+/// The same where L is stored whole, column by column: each takes its part of those behind it.
+void SparseLdlt::factorizeDense(const std::vector<double>& diagonal, const std::vector<double>& entries) {
+  const std::size_t size = static_cast<std::size_t>(size_);
+  std::fill(dense_.begin(), dense_.end(), 0.0);
+  for (std::size_t row = 0; row < size; ++row) {
+    dense_[row * size + row] = diagonal[static_cast<std::size_t>(rowAt_[row])];
+    for (int e = rowStart_[row]; e < rowStart_[row + 1]; ++e) {
+      const Entry& entry = rowEntries_[static_cast<std::size_t>(e)];
+      dense_[static_cast<std::size_t>(entry.column) * size + row] += entries[static_cast<std::size_t>(entry.source)];
+    }
+  }
+  std::array<double, kMostDense> factors;
+  for (std::size_t k = 0; k < size; ++k) {
+    double* const column = &dense_[k * size];
+    const double pivot = column[k], before = diagonal[static_cast<std::size_t>(rowAt_[k])];
+    const double inverse = pivot > 0 ? 1 / pivot : 0;
+    leastPivot_ = std::min(leastPivot_, before > 0 ? pivot / before : 0);
+    inversePivots_[k] = inverse;
+    for (std::size_t i = k + 1; i < size; ++i) factors[i] = column[i] * inverse;
+    for (std::size_t j = k + 1; j < size; ++j) {
+      double* const behind = &dense_[j * size];
+      const double factor = factors[j];
+#pragma GCC ivdep
+      for (std::size_t i = j; i < size; ++i) behind[i] -= factor * column[i];
+    }
+    for (std::size_t i = k + 1; i < size; ++i) column[i] = factors[i];
+  }
+}
+
+/// Of work_, in the order of elimination.
+void SparseLdlt::solveDense() {
+  const std::size_t size = static_cast<std::size_t>(size_);
+  double* const x = work_.data();
+  for (std::size_t k = 0; k < size; ++k) {
+    const double* const column = &dense_[k * size];
+    const double value = x[k];
+#pragma GCC ivdep
+    for (std::size_t i = k + 1; i < size; ++i) x[i] -= column[i] * value;
+  }
+  for (std::size_t k = size; k-- > 0;) {
+    const double* const column = &dense_[k * size];
+    double value = x[k] * inversePivots_[k];
+    for (std::size_t i = k + 1; i < size; ++i) value -= column[i] * x[i];
+    x[k] = value;
   }
 }
 
@@ -132,6 +191,11 @@ void SparseLdlt::eliminate(int row, int first, double diagonal) {
 void SparseLdlt::solve(VectorX& x) {
   const std::size_t size = static_cast<std::size_t>(size_);
   for (std::size_t i = 0; i < size; ++i) work_[i] = x[rowAt_[i]];
+  if (isDense_) {
+    solveDense();
+    for (std::size_t i = 0; i < size; ++i) x[rowAt_[i]] = std::exchange(work_[i], 0.0);
+    return;
+  }
   for (std::size_t i = 0; i < size; ++i)
     for (int p = columnStart_[i]; p < columnStart_[i + 1]; ++p)
       work_[static_cast<std::size_t>(lowerRows_[static_cast<std::size_t>(p)])] -=

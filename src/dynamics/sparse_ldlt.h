@@ -8,7 +8,8 @@
 namespace cradle {
 
 /// Factorisation L D L^T of a sparse symmetric positive definite matrix, with an order of elimination that keeps L
-/// sparse: O(n) for chains and trees. A row without any entry gets the unknown 0. Allocates in `analyze` alone.
+/// sparse: O(n) for chains and trees. A small one that fills up is stored whole. A row without any entry gets the
+/// unknown 0. Allocates in `analyze` alone.
 class SparseLdlt {
  public:
   /// Takes the places of the entries below the diagonal, each once, row > column.
@@ -31,6 +32,8 @@ class SparseLdlt {
   void findFill();
   int reach(int row);
   void eliminate(int row, int first, double diagonal);
+  void factorizeDense(const std::vector<double>& diagonal, const std::vector<double>& entries);
+  void solveDense();
 
   int size_ = 0;
   double leastPivot_ = 1;
@@ -42,6 +45,8 @@ class SparseLdlt {
   std::vector<int> lowerRows_;
   std::vector<double> lower_, inversePivots_;
   std::vector<int> marks_, pattern_;
+  bool isDense_ = false;
+  std::vector<double> dense_;  // then L, by columns of `size_`, its diagonal left out
   std::vector<double> work_;
 };
 

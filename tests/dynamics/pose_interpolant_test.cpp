@@ -6,6 +6,7 @@
 
 #include "dynamics/equations_of_motion.h"
 #include "dynamics/integrators/dop853.h"
+#include "dynamics/integrators/dormand_prince5.h"
 #include "dynamics/integrators/rk4.h"
 #include "math/rotation.h"
 
@@ -96,6 +97,11 @@ TEST(MotionBound, HoldsForTheCubicOfRk4) {
   expectBound(rk4, 20, 0.05, 2);
 }
 
+TEST(MotionBound, HoldsForTheInterpolantOfDormandPrince5) {
+  expectBound(dormandPrince5, 5, 0.02, 1.5);
+  expectBound(dormandPrince5, 20, 0.05, 2);
+}
+
 TEST(MotionBound, HoldsForTheInterpolantOfDop853) {
   expectBound(dop853, 5, 0.02, 1.5);
   expectBound(dop853, 20, 0.05, 2);
@@ -153,7 +159,7 @@ TEST(MotionBound, IsTheWayItselfOfAnEvenMotion) {
   linearVelocity(state, 0) = Vec3(0, 3, 0);
   angularVelocity(state, 0) = Vec3(0, 0, 4);
   const double timeStep = 1e-3, way = timeStep * (3 + 4 * 0.5);
-  for (const Integrator integrate : {rk4, dop853}) {
+  for (const Integrator integrate : {rk4, dormandPrince5, dop853}) {
     Step step;
     integrate(equations.rightHandSide(), state, 0, timeStep, step);
     prepareInterpolant(equations.rightHandSide(), step);
@@ -164,7 +170,7 @@ TEST(MotionBound, IsTheWayItselfOfAnEvenMotion) {
 
 TEST(PoseAt, AgreesWithTheInterpolatedState) {
   std::mt19937 random(2);
-  for (const Integrator integrate : {rk4, dop853}) {
+  for (const Integrator integrate : {rk4, dormandPrince5, dop853}) {
     const Step step = stepOf(integrate, randomState(random, 10), 0.1);
     VectorX state;
     interpolate(step, 0.3, state);

@@ -78,6 +78,15 @@ TEST(StepSize, GrowsAndShrinksWithTheEighthRootOfTheError) {
   EXPECT_DOUBLE_EQ(size.timeStep, 0.9 * 0.9 / 1.5);
 }
 
+TEST(StepSize, OfOrderFiveGoesWithTheFifthRootOfTheError) {
+  StepSize size{0.5, 5};
+  EXPECT_TRUE(acceptStep(1.0 / 32, 0.5, size));  // (1/32)^(1/5) = 1/2
+  EXPECT_DOUBLE_EQ(size.timeStep, 0.5 * 0.9 * 2);
+  EXPECT_TRUE(acceptStep(0, 0.5, size));
+  EXPECT_FALSE(acceptStep(7.59375, 0.9, size));  // 1.5^5
+  EXPECT_DOUBLE_EQ(size.timeStep, 0.9 * 0.9 / 1.5);
+}
+
 TEST(StepSize, ChangesByNoMoreThanAThirdAndSix) {
   StepSize size{1};
   EXPECT_TRUE(acceptStep(0, 1, size));

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
+#include "dynamics/integrators/stages.h"
 
 // The coefficients of DOP853: E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd
 // ed., II.5 and II.6; to 30 digits in their program dop853.f. A test holds them against the order conditions.
@@ -11,8 +10,7 @@ namespace cradle::dop853_table {
 constexpr std::size_t kRates = 16;  // f at 12 stages, at the end of the step, and at 3 stages of the interpolant
 constexpr std::size_t kEndRate = 12;
 
-/// Weights of the rates in a sum; those left out are 0.
-using Weights = std::array<double, kRates>;
+using Weights = RateWeights<kRates>;
 
 /// Instant of each rate, as a fraction of the step.
 inline constexpr Weights kNodes = {0.0,

@@ -18,6 +18,12 @@ constexpr std::array<double, 4> kCorrectionBends = {2, 2, 0.375, 0.243};
 
 constexpr double kShortestQuaternion = 0.5;  // on the interpolant of any step worth taking
 
+/// How many corrections the interpolant has.
+std::size_t correctionsOf(const Step& step) {
+  if (step.interpolant == InterpolantKind::degreeFour) return 1;
+  return step.interpolant == InterpolantKind::degreeSeven ? 4 : 0;
+}
+
 /// Components of the interpolant from `at` on. The quaternion is not of unit length.
 template <int kSize>
 Eigen::Matrix<double, kSize, 1> componentsAt(const Step& step, Eigen::Index at, double fraction) {
@@ -26,10 +32,10 @@ Eigen::Matrix<double, kSize, 1> componentsAt(const Step& step, Eigen::Index at, 
       (r * r * (1 + 2 * s)) * step.startState.segment<kSize>(at) +
       (s * s * (1 + 2 * r)) * step.state.segment<kSize>(at) +
       (step.timeStep * s * r) * (r * step.startRate.segment<kSize>(at) - s * step.endRate.segment<kSize>(at));
-  if (step.interpolant == InterpolantKind::degreeSeven) {
-    const auto c = [&](std::size_t i) { return step.corrections[i].segment<kSize>(at); };
+  const auto c = [&](std::size_t i) { return step.corrections[i].segment<kSize>(at); };
+  if (step.interpolant == InterpolantKind::degreeFour) part += (s * s * r * r) * c(0);
+  if (step.interpolant == InterpolantKind::degreeSeven)
     part += (s * s * r * r) * (c(0) + s * (c(1) + r * (c(2) + s * c(3))));
-  }
   return part;
 }
 
@@ -41,8 +47,8 @@ bool isConstant(const Step& step, Eigen::Index at) {
   };
   return isZero(step.startRate) && isZero(step.endRate) &&
          step.startState.segment<kSize>(at) == step.state.segment<kSize>(at) &&
-         (step.interpolant != InterpolantKind::degreeSeven ||
-          std::all_of(step.corrections.begin(), step.corrections.end(), isZero));
+         std::all_of(step.corrections.begin(), step.corrections.begin() + static_cast<int>(correctionsOf(step)),
+                     isZero);
 }
 
 /// The components of one vector from `at` on.
@@ -62,15 +68,14 @@ auto difference(int bodyA, int bodyB) {
 }
 
 /// Bound on the slope of the interpolant of a part of the state over the unit interval. That of the cubic is h (r f0 +
-/// s f1) + 6 s r (y1 - y0 - h (f0 + f1) / 2), with 6 s r <= 3/2; the curve of degree 7 adds its corrections.
+/// s f1) + 6 s r (y1 - y0 - h (f0 + f1) / 2), with 6 s r <= 3/2; curves of degree 4 and 7 add their corrections.
 template <class Part>
 double slopeBound(const Step& step, const Part& part) {
   const auto start = (step.timeStep * part(step.startRate)).eval(), end = (step.timeStep * part(step.endRate)).eval();
   const auto bend = (part(step.state) - part(step.startState) - 0.5 * (start + end)).eval();
   double bound = std::max(start.norm(), end.norm()) + 1.5 * bend.norm();
-  if (step.interpolant == InterpolantKind::degreeSeven)
-    for (std::size_t i = 0; i < kCorrectionSlopes.size(); ++i)
-      bound += kCorrectionSlopes[i] * part(step.corrections[i]).norm();
+  for (std::size_t i = 0; i < correctionsOf(step); ++i)
+    bound += kCorrectionSlopes[i] * part(step.corrections[i]).norm();
   return bound;
 }
 
@@ -80,9 +85,7 @@ double bendBound(const Step& step, const Part& part) {
   const auto start = (step.timeStep * part(step.startRate)).eval(), end = (step.timeStep * part(step.endRate)).eval();
   const auto way = (part(step.state) - part(step.startState)).eval();
   double bound = std::max((6 * way - 4 * start - 2 * end).norm(), (6 * way - 2 * start - 4 * end).norm());
-  if (step.interpolant == InterpolantKind::degreeSeven)
-    for (std::size_t i = 0; i < kCorrectionBends.size(); ++i)
-      bound += kCorrectionBends[i] * part(step.corrections[i]).norm();
+  for (std::size_t i = 0; i < correctionsOf(step); ++i) bound += kCorrectionBends[i] * part(step.corrections[i]).norm();
   return bound;
 }
 

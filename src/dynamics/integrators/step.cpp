@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "dynamics/integrators/dop853.h"
+#include "dynamics/integrators/dormand_prince5.h"
 
 namespace cradle {
 
@@ -44,9 +45,12 @@ void evaluateEndRate(const RightHandSide& rightHandSide, Step& step) {
 
 void prepareInterpolant(const RightHandSide& rightHandSide, Step& step) {
   evaluateEndRate(rightHandSide, step);
-  if (step.interpolant != InterpolantKind::degreeSeven || step.hasCorrections) return;
+  if (step.interpolant == InterpolantKind::cubicHermite || step.hasCorrections) return;
   step.hasCorrections = true;
-  computeCorrections(rightHandSide, step);
+  if (step.interpolant == InterpolantKind::degreeFour)
+    computeDormandPrince5Correction(step);
+  else
+    computeCorrections(rightHandSide, step);
 }
 
 void interpolate(const Step& step, double fraction, VectorX& state) {
@@ -54,10 +58,23 @@ void interpolate(const Step& step, double fraction, VectorX& state) {
   const double s = fraction, r = 1 - fraction;
   state = (r * r * (1 + 2 * s)) * step.startState + (s * s * (1 + 2 * r)) * step.state +
           (step.timeStep * s * r) * (r * step.startRate - s * step.endRate);
-  if (step.interpolant == InterpolantKind::degreeSeven) {
-    const auto& c = step.corrections;
+  const auto& c = step.corrections;
+  if (step.interpolant == InterpolantKind::degreeFour) state += (s * s * r * r) * c[0];
+  if (step.interpolant == InterpolantKind::degreeSeven)
     state += (s * s * r * r) * (c[0] + s * (c[1] + r * (c[2] + s * c[3])));
-  }
+}
+
+// The part of a polynomial of degree 4 has the fourth power of its length as the factor of its leading coefficient.
+void cutStep(double fraction, Step& step) {
+  CRADLE_CHECK(step.interpolant == InterpolantKind::degreeFour && step.hasCorrections);
+  const double s = fraction, r = 1 - fraction;
+  interpolate(step, fraction, step.stage);
+  step.work = (6 * s * r / step.timeStep) * (step.state - step.startState) + (r * (r - 2 * s)) * step.startRate +
+              (s * (s - 2 * r)) * step.endRate + (2 * s * r * (r - s) / step.timeStep) * step.corrections[0];
+  std::swap(step.state, step.stage);
+  std::swap(step.endRate, step.work);
+  step.corrections[0] *= s * s * s * s;
+  step.timeStep *= fraction;
 }
 
 }  // namespace cradle

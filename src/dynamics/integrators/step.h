@@ -18,8 +18,9 @@ struct RightHandSide {
 
 /// What goes through a step, with s = fraction of the step, r = 1 - s:
 ///   cubicHermite  the cubic through state and rate at both ends; order 3
+///   degreeFour    that cubic + s^2 r^2 c0, c0 = Step::corrections[0]; Dormand and Prince's of order 4
 ///   degreeSeven   that cubic + s^2 r^2 (c0 + s (c1 + r (c2 + s c3))), c0 ... c3 = Step::corrections; DOP853's, order 7
-enum class InterpolantKind { cubicHermite, degreeSeven };
+enum class InterpolantKind { cubicHermite, degreeFour, degreeSeven };
 
 /// One step of an integrator: the new state, and what is needed to interpolate inside it and to judge it.
 struct Step {
@@ -31,13 +32,17 @@ struct Step {
   bool startRateIsKnown = false;  // startRate already holds the rate at the start of the step to come
   InterpolantKind interpolant = InterpolantKind::cubicHermite;
   std::array<VectorX, 4> corrections;
-  std::vector<VectorX> stageRates;  // DOP853's, numbered as in dop853_table.h; start and end have their own fields
+  std::vector<VectorX> stageRates;  // numbered as in dop853_table.h; start and end have their own fields
   VectorX work, stage;              // scratch, kept so that a step allocates nothing
 };
 
 /// An integrator advances `state` by `timeStep` and leaves the result in `step`.
 using Integrator = void (*)(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep,
                             Step& step);
+
+/// Local error of a step that an integrator has taken, in units of the tolerance of each component. Above 1 the step is
+/// to be taken again; NaN if it left the finite numbers.
+using ErrorNorm = double (*)(const Step& step, const VectorX& tolerance);
 
 /// What all integrators begin with: notes the start and evaluates its rate, unless that is known.
 void beginStep(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep, Step& step);
@@ -60,5 +65,8 @@ void prepareInterpolant(const RightHandSide& rightHandSide, Step& step);
 
 /// State at time + fraction * timeStep by the step's interpolant, exact at both ends. 0 <= fraction <= 1.
 void interpolate(const Step& step, double fraction, VectorX& state);
+
+/// Ends a step whose interpolant is of degree 4, and prepared, at a fraction of it: what is left is the same curve.
+void cutStep(double fraction, Step& step);
 
 }  // namespace cradle

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "math/elementary.h"
 
 namespace cradle {
 namespace {
@@ -21,8 +22,9 @@ constexpr double kBlindTimeStep = 1e-6;  // s: taken when they say nothing
 constexpr double kStraightRate = 1e-15;  // in tolerances: a motion without curvature
 
 /// Square roots are rounded the same everywhere, powers are not.
-double eighthRoot(double x) {
-  return std::sqrt(std::sqrt(std::sqrt(x)));
+double rootOf(double x, int order) {
+  CRADLE_CHECK(order == 8 || order == 5);
+  return order == 8 ? std::sqrt(std::sqrt(std::sqrt(x))) : exp(log(x) / 5);
 }
 
 /// Largest component in units of the tolerance at `state`.
@@ -39,7 +41,7 @@ double sizeOf(const Vector& vector, const VectorX& state, const VectorX& toleran
 bool acceptStep(double errorNorm, double taken, StepSize& size) {
   const bool accepted = errorNorm <= 1;
   const double growth = std::isfinite(errorNorm)
-                            ? std::clamp(kSafety / eighthRoot(errorNorm), kMostShrinking, kMostGrowth)
+                            ? std::clamp(kSafety / rootOf(errorNorm, size.order), kMostShrinking, kMostGrowth)
                             : kMostShrinking;
   const double planned = size.timeStep;
   size.timeStep = taken * growth;
@@ -51,7 +53,7 @@ bool acceptStep(double errorNorm, double taken, StepSize& size) {
   return accepted;
 }
 
-double firstTimeStep(const RightHandSide& rightHandSide, const VectorX& tolerance, Step& step) {
+double firstTimeStep(const RightHandSide& rightHandSide, const VectorX& tolerance, Step& step, int order) {
   CRADLE_CHECK(tolerance.size() == step.startState.size());
   const VectorX& start = step.startState;
   const double size = sizeOf(start, start, tolerance), rate = sizeOf(step.startRate, start, tolerance);
@@ -65,7 +67,7 @@ double firstTimeStep(const RightHandSide& rightHandSide, const VectorX& toleranc
   keepStartRate(step);
   const double fastest = std::max(rate, curvature);
   if (fastest <= kStraightRate) return std::max(kBlindTimeStep, guess * 1e-3);
-  return std::min(100 * guess, eighthRoot(kFirstPart / fastest));
+  return std::min(100 * guess, rootOf(kFirstPart / fastest, order));
 }
 
 }  // namespace cradle

@@ -6,9 +6,10 @@ namespace cradle {
 
 constexpr double kShortestTimeStep = 1e-14;  // of a run's duration: shorter steps are rounding, the run has to stop
 
-/// Step-size control of DOP853: the step to try next, and whether the last try failed.
+/// Step-size control: the step to try next, and whether the last try failed.
 struct StepSize {
   double timeStep = 0;  // s
+  int order = 8;        // 8 or 5: the power of a step's length that its error norm goes with
   bool afterRejection = false;
 };
 
@@ -17,8 +18,9 @@ struct StepSize {
 /// could have been longer by more than one step may grow. An error norm that is not finite counts as rejection.
 bool acceptStep(double errorNorm, double taken, StepSize& size);
 
-/// A first step (s) for which DOP853's error norm is about 1 or less, with one more evaluation. Needs a `step` begun
-/// with beginStep at the start, whatever its length; it keeps its start rate for the first step itself.
-double firstTimeStep(const RightHandSide& rightHandSide, const VectorX& tolerance, Step& step);
+/// A first step (s) for which the error norm of a method, DOP853 or one of another `order`, is about 1 or less, with
+/// one more evaluation. Needs a `step` begun with beginStep at the start, whatever its length; it keeps its start rate
+/// for the first step itself.
+double firstTimeStep(const RightHandSide& rightHandSide, const VectorX& tolerance, Step& step, int order = 8);
 
 }  // namespace cradle

@@ -12,7 +12,8 @@ namespace {
 
 using Kind = ContactChange::Kind;
 
-constexpr int kSamples = 4;                // of a step
+constexpr int kSamples = 4;                // of a step of order 8
+constexpr int kFewSamples = 2;             // of one of order 5, which is half as long
 constexpr double kMarginRounding = 1e-12;  // of the force, or m/s
 constexpr double kFailedPart =
     1e-6;  // of the accelerations: less that forces leave is held; more than when it was decided
@@ -81,17 +82,18 @@ double LastingContacts::margin(const ContactChange& change, const VectorX& state
 std::optional<ContactChange> LastingContacts::firstChange() {
   if (empty()) return std::nullopt;
   const Step& step = island_.step;
-  findMargins(step.startState, before_);
-  std::vector<Margins> after;
-  for (int k = 1; k <= kSamples; ++k) {
-    const double from = static_cast<double>(k - 1) / kSamples, to = static_cast<double>(k) / kSamples;
+  if (knownTime_ != step.time) findMargins(step.startState, before_);
+  knownTime_ = NAN;
+  const int samples = step.interpolant == InterpolantKind::degreeSeven ? kSamples : kFewSamples;
+  for (int k = 1; k <= samples; ++k) {
+    const double from = static_cast<double>(k - 1) / samples, to = static_cast<double>(k) / samples;
     interpolate(step, to, sample_);
-    findMargins(sample_, after);
+    findMargins(sample_, ahead_);
     std::optional<ContactChange> first;
     bool isDoubtful = false;
     for (std::size_t i = 0; i < entries_.size(); ++i)
       for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
-        if (!(after[i][kind] < -kMarginRounding)) continue;
+        if (!(ahead_[i][kind] < -kMarginRounding)) continue;
         if (kKinds[kind] == Kind::leave && !(before_[i][kind] > 0)) continue;
         const bool isOfForces = kKinds[kind] == Kind::release || kKinds[kind] == Kind::slip;
         if (entries_[i].isRedundant && isOfForces) {
@@ -99,7 +101,7 @@ std::optional<ContactChange> LastingContacts::firstChange() {
           continue;
         }
         ContactChange change{kKinds[kind], 0, i};
-        change.fraction = locate(change, from, before_[i][kind], to, after[i][kind]);
+        change.fraction = locate(change, from, before_[i][kind], to, ahead_[i][kind]);
         if (!first || change.fraction < first->fraction) first = change;
       }
     if (isDoubtful) {
@@ -107,8 +109,9 @@ std::optional<ContactChange> LastingContacts::firstChange() {
       if (const auto failure = firstFailure(from, end)) first = ContactChange{Kind::redundant, *failure, 0};
     }
     if (first) return first;
-    std::swap(before_, after);
+    std::swap(before_, ahead_);
   }
+  knownTime_ = step.time + step.timeStep;
   return std::nullopt;
 }
 

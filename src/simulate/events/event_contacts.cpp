@@ -18,12 +18,13 @@ namespace {
 constexpr double kTouchPart = 0.1;         // of the accuracy, in sizes of a body: nearer is touching ...
 constexpr double kLeastTouchPart = 1e-11;  // ... but not within rounding
 constexpr double kMostTouchPart = 1e-8;
-constexpr double kMostTouchError = 1e-6;   // of a size: so well two ways to find a gap agree
-constexpr double kDeadBandPart = 1e-12;    // of the smallest size
-constexpr double kStandstillPart = 1e-12;  // of the fastest speed at an impact: what is left is rounding
-constexpr double kLastBouncePart = 1e-7;   // of sqrt(acceleration x size): bounces lower than 5e-15 of the size
-constexpr double kMostStillPart = 1e-7;    // of sqrt(g x size)
-constexpr double kSameCorner = 1e-6;       // of a size
+constexpr double kMostTouchError = 1e-6;    // of a size: so well two ways to find a gap agree
+constexpr double kDeadBandPart = 1e-12;     // of the smallest size
+constexpr double kStandstillPart = 1e-12;   // of the fastest speed at an impact: what is left is rounding
+constexpr double kLastBouncePart = 1e-7;    // of sqrt(acceleration x size): bounces lower than 5e-15 of the size
+constexpr double kBounceOfAccuracy = 1e-2;  // the same, of the accuracy: 5e-9 of the size at the coarsest
+constexpr double kMostStillPart = 1e-7;     // of sqrt(g x size)
+constexpr double kSameCorner = 1e-6;        // of a size
 
 /// m/s: of the faster of the two bodies' centres.
 double contactSpeed(const Contact& contact, const VectorX& state) {
@@ -204,6 +205,7 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
 /// time as all of them would take. True if there are any.
 bool EventContacts::endBounces(const VectorX& approach, std::vector<ImpactContact>& impacts) {
   const VectorX& state = island_.state;
+  const double lastBounce = std::max(kLastBouncePart, kBounceOfAccuracy * island_.scene.accuracy);
   bool isEvaluated = false, found = false;
   for (ImpactContact& impact : impacts) {
     const double speed = openingSpeed(impact.contact, state), restitution = impact.law.restitution;
@@ -213,7 +215,7 @@ bool EventContacts::endBounces(const VectorX& approach, std::vector<ImpactContac
     isEvaluated = true;
     const double closing = -openingAcceleration(impact.contact, state, rate_);
     const double size = island_.assembly.radii[static_cast<std::size_t>(impact.contact.movingBody())];
-    if (!(closing > 0) || speed > kLastBouncePart * std::sqrt(closing * size)) continue;
+    if (!(closing > 0) || speed > lastBounce * std::sqrt(closing * size)) continue;
     impact.restSpeed = INFINITY;
     restDelay_ = std::max(restDelay_, 2 * speed / (closing * (1 - restitution)));
     found = true;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "dynamics/integrators/dop853.h"
 #include "simulate/events/event_location.h"
 
 namespace cradle {
@@ -57,6 +56,7 @@ EventMotion::EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMet
       tolerance_(toleranceOf(method, island.state, island.scene.duration)),
       windowStart_(island.time) {
   lengths_.fill(island_.scene.duration);
+  stepSize_.order = method_.order;
   island_.step.startRateIsKnown = false;
   island_.findNearPairsNow(contacts_.margin());
   ropes_.setTimeStep(0);
@@ -103,13 +103,13 @@ void EventMotion::takeStep(double stepEnd) {
   if (std::exchange(isContinuous_, false)) carryEndRate(step);
   if (stepSize_.timeStep == 0) {
     beginStep(island_.rightHandSide, island_.state, island_.time, stepEnd - island_.time, step);
-    stepSize_.timeStep = firstTimeStep(island_.rightHandSide, tolerance_, step);
+    stepSize_.timeStep = firstTimeStep(island_.rightHandSide, tolerance_, step, method_.order);
   }
   while (true) {
     const double planned = std::min(stepSize_.timeStep, longestStep()), left = stepEnd - island_.time;
     const double length = planned >= left * (1 - kTimeRounding) ? left : planned;
     method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
-    if (acceptStep(errorNorm(step, tolerance_), step.timeStep, stepSize_)) break;
+    if (acceptStep(method_.errorNorm(step, tolerance_), step.timeStep, stepSize_)) break;
     keepStartRate(step);
     if (stepSize_.timeStep < kShortestTimeStep * island_.scene.duration)
       guard_->failAtShortestStep(island_.state, island_.time);
@@ -122,7 +122,8 @@ void EventMotion::takeStep(double stepEnd) {
 /// not, shorter ones are tried.
 bool EventMotion::isStillAccurate() {
   Step& step = island_.step;
-  const double error = errorNorm(step, tolerance_);
+  if (hasExactInterpolant()) return true;
+  const double error = method_.errorNorm(step, tolerance_);
   if (error <= 1) return true;
   acceptStep(error, step.timeStep, stepSize_);
   keepStartRate(step);
@@ -135,6 +136,11 @@ bool EventMotion::isStillAccurate() {
 double EventMotion::longestStep() const {
   return std::max(kMostGrowth * *std::max_element(lengths_.begin(), lengths_.end()),
                   kLeastLookahead * stepSize_.timeStep);
+}
+
+/// Whether the interpolant is as good as the error estimate.
+bool EventMotion::hasExactInterpolant() const {
+  return island_.step.interpolant == InterpolantKind::degreeFour;
 }
 
 EventMotion::Event EventMotion::findFirstEvent() {
@@ -157,14 +163,16 @@ EventMotion::Event EventMotion::findFirstEvent() {
   return event;
 }
 
-/// Cuts the step at the first event in it. The state there is a step of its own, never the interpolant, whose error
-/// would let bodies overlap.
+/// Cuts the step at the first event in it. The state there is a step of its own, not the interpolant's, whose error
+/// would let bodies overlap; unless the step is known no better than its interpolant.
 EventMotion::Event EventMotion::stopAtFirstEvent() {
   if (!island_.mayTouch() && !ropes_.hasRopes()) return {};
   Step& step = island_.step;
   const Event event = findFirstEvent();
   const double whole = step.timeStep, latest = event.latest * whole;
-  if (event.impact) {
+  if (event.any() && hasExactInterpolant()) {
+    cutStep(event.impact ? event.impact->fraction : event.rope ? event.rope->fraction : event.contact->fraction, step);
+  } else if (event.impact) {
     stopAtImpact(*event.impact, latest);
   } else if (event.rope) {
     endStepAtEvent(island_, method_.integrate, {event.rope->fraction * whole, latest, kRopeTolerance},
@@ -235,10 +243,12 @@ void EventMotion::requireTiesKept() const {
 /// What acts from now on.
 void EventMotion::changeForces(const Event& event) {
   rodsBefore_ = ropes_.rods();
+  const bool lasted = !contacts_.lasting().empty();
   if (event.impact || event.contact || event.rope)  // a rope may go taut as bodies meet
     contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
   else
     contacts_.lasting().followSliding();
+  if (!lasted && !contacts_.lasting().empty()) lengths_.fill(island_.scene.duration);  // bounces are over
   settleRopes();
   keepsTies_ = ropes_.rods() == rodsBefore_;
   const bool isPushed = island_.beginAndEndPushes();

@@ -19,8 +19,8 @@ struct EventPatience {
   std::string_view fault;
 };
 
-/// Moves an island with DOP853 in steps as long as the accuracy allows. Each step ends at the first event in it: bodies
-/// meet, ropes go taut or slack, pushes begin or end. Between events the motion is of order 8.
+/// Moves an island in steps as long as the accuracy allows. Each step ends at the first event in it: bodies meet, ropes
+/// go taut or slack, pushes begin or end. Between events the motion is of order 8, or 5 where the plan says so.
 class EventMotion {
  public:
   /// Keeps references to the island, which it moves, and its ropes.
@@ -59,6 +59,7 @@ class EventMotion {
   void requireTiesKept() const;
   void changeForces(const Event& event);
   void settleRopes();
+  bool hasExactInterpolant() const;
   bool isStillAccurate();
   double longestStep() const;
   void countEvent(const Event& event);

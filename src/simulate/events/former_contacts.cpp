@@ -15,6 +15,7 @@ constexpr double kSameDirection = 0.999;  // cosine
 
 void LastingContacts::letGo(const std::optional<ContactChange>& change) {
   former_.clear();
+  knownTime_ = NAN;
   if (change && change->kind == ContactChange::Kind::slip) island_.equations.evaluate(island_.state, rate_);
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     Former former{entries_[i], mechanism().contacts[i]};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -114,7 +115,8 @@ class LastingContacts {
   std::string_view fault_;
   bool isReleasing_ = false;
   VectorX rate_, sample_;
-  std::vector<Margins> before_, after_;
+  std::vector<Margins> before_, ahead_, after_;
+  double knownTime_ = NAN;  // s: of the margins in before_, if a step that changed nothing has ended there
 };
 
 }  // namespace cradle

@@ -6,7 +6,8 @@
 //   4. models with hollows may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved
 //   once a step, for their edges meet too often
 //   5. nothing acts but uniform gravity: closed form
-//   6. else DOP853 with steps as long as the accuracy allows; contact changes at events
+//   6. else DOP853 with steps as long as the accuracy allows; contact changes at events, and where something may touch
+//   and the accuracy asked is coarse, the method of order 5 of the same authors takes its place
 
 #include "simulate/plan/plan.h"
 
@@ -15,6 +16,7 @@
 #include <limits>
 
 #include "dynamics/integrators/dop853.h"
+#include "dynamics/integrators/dormand_prince5.h"
 #include "dynamics/integrators/explicit_euler.h"
 #include "dynamics/integrators/rk4.h"
 #include "dynamics/integrators/semi_implicit_euler.h"
@@ -31,10 +33,26 @@ constexpr std::size_t kPileBodies = 50;     // with fewer, RK4 costs less than t
 constexpr double kMostRatio = 10;           // of masses and of densities in a pile
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kContactTolerance = 1e-5;  // of the local error, at most: contact decides how good a step is
-constexpr double kTolerancePart = 0.1;      // of the accuracy: the local errors of about ten steps add up to it
+constexpr double kCoarsestAccuracy = 1e-2;
+constexpr double kTolerancePart = 0.1;  // of the accuracy: the local errors of about ten steps add up to it
+
+/// Of the local error. The coarser the accuracy, the longer the steps, and of long ones DOP853's estimate is too high,
+/// at the coarsest by a factor of ten and more.
+double smoothTolerance(double accuracy) {
+  return std::max(kTolerancePart * accuracy, accuracy * accuracy / kCoarsestAccuracy);
+}
 
 ChosenMethod errorSteps(const Scene& scene) {
-  return {MotionKind::errorSteps, "DOP853", 0, dop853, kTolerancePart * scene.accuracy};
+  return {MotionKind::errorSteps, "DOP853", 0, dop853, smoothTolerance(scene.accuracy), errorNorm, 8};
+}
+
+/// Where contact ends steps before their time, those of order 5 cost half: they can end anywhere on their interpolant.
+/// Only at coarse accuracies are they long enough.
+ChosenMethod stepsToEvents(const Scene& scene) {
+  const double tolerance = kTolerancePart * scene.accuracy;
+  if (scene.accuracy > kLookAccuracy)
+    return {MotionKind::errorSteps, "DOPRI5", 0, dormandPrince5, tolerance, dormandPrince5Error, 5};
+  return {MotionKind::errorSteps, "DOP853", 0, dop853, std::min(tolerance, kContactTolerance), errorNorm, 8};
 }
 
 ChosenMethod namedMethod(const Scene& scene) {
@@ -128,8 +146,7 @@ void choose(const Scene& scene, IslandPlan& island) {
     island.reason =
         "models with hollows may touch: contact is resolved once a step, the accuracy asked is not promised";
   } else if (mayTouchSomething) {
-    island.method = errorSteps(scene);
-    island.method.tolerance = std::min(island.method.tolerance, kContactTolerance);
+    island.method = stepsToEvents(scene);
     island.reason = "something may touch: contact changes at events, with steps as long as the accuracy allows between";
   } else if (!isActedUpon(scene, island)) {
     island.method = {MotionKind::freeFlight, "closed form"};

@@ -30,6 +30,8 @@ struct ChosenMethod {
   double timeStep = 0;             // s, of piles and fixed steps
   Integrator integrate = nullptr;  // of fixed steps and error steps
   double tolerance = 0;            // of the local error, scaled 1 + |x|; 0: fixed steps are never cut for it
+  ErrorNorm errorNorm = nullptr;   // of error steps
+  int order = 0;                   // of that
 
   bool isClosedForm() const { return kind == MotionKind::freeFlight || kind == MotionKind::elasticFlight; }
   bool isAdaptive() const { return kind == MotionKind::errorSteps; }

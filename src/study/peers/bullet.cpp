@@ -208,11 +208,10 @@ AttachmentMotion BulletWorld::motionOf(const Attachment& attachment) const {
 
 void BulletWorld::addForces() {
   for (const SpringForce& spring : assembly_.mechanism.springs) {
-    const SpringAction action = actionOf(spring, motionOf(spring.anchorA), motionOf(spring.anchorB));
-    if (spring.anchorA.body != kFixed)
-      bodyOf(spring.anchorA).applyForce(toBullet(action.forceOnA), toBullet(action.a.arm));
-    if (spring.anchorB.body != kFixed)
-      bodyOf(spring.anchorB).applyForce(toBullet(-action.forceOnA), toBullet(action.b.arm));
+    const AttachmentMotion a = motionOf(spring.anchorA), b = motionOf(spring.anchorB);
+    const Vec3 forceOnA = pullOf(spring, a, b).forceOnA;
+    if (spring.anchorA.body != kFixed) bodyOf(spring.anchorA).applyForce(toBullet(forceOnA), toBullet(a.arm));
+    if (spring.anchorB.body != kFixed) bodyOf(spring.anchorB).applyForce(toBullet(-forceOnA), toBullet(b.arm));
   }
 }
 

@@ -1,0 +1,63 @@
+// J. R. Dormand, P. J. Prince, 1980, in the form of E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential
+// Equations I", 2nd ed., II.5 (method, error estimate 5(4)) and II.6 (interpolant).
+
+#include "dynamics/integrators/dormand_prince5.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "dynamics/integrators/dormand_prince5_table.h"
+
+namespace cradle {
+namespace {
+
+using namespace dormand_prince5_table;
+
+auto rates(const Step& step) {
+  return ratesOf<kRates, kEndRate>(step);
+}
+
+template <std::size_t kRow>
+void evaluateStage(const RightHandSide& rightHandSide, Step& step) {
+  addRates<kStages, kRow>(rates(step), step.timeStep, step.startState, step.stage);
+  step.stageRates[kRow].resize(step.stage.size());
+  rightHandSide.rate(step.time + kNodes[kRow] * step.timeStep, step.stage, step.stageRates[kRow]);
+}
+
+}  // namespace
+
+void dormandPrince5(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep,
+                    Step& step) {
+  beginStep(rightHandSide, state, time, timeStep, step);
+  step.interpolant = InterpolantKind::degreeFour;
+  if (step.stageRates.size() < kRates) step.stageRates.resize(kRates);
+  [&]<std::size_t... kStage>(std::index_sequence<kStage...>) {
+    (evaluateStage<kStage + 1>(rightHandSide, step), ...);
+  }
+  (std::make_index_sequence<kEndRate - 1>());
+  addRates<kStages, kEndRate>(rates(step), timeStep, step.startState, step.state);
+  evaluateEndRate(rightHandSide, step);
+}
+
+double dormandPrince5Error(const Step& step, const VectorX& tolerance) {
+  CRADLE_CHECK(step.interpolant == InterpolantKind::degreeFour && step.hasEndRate);
+  CRADLE_CHECK(tolerance.size() == step.state.size());
+  const auto rate = rates(step);
+  double largest = 0, finite = 0;
+  for (Eigen::Index i = 0; i < step.state.size(); ++i) {
+    const double size = std::max(std::abs(step.startState[i]), std::abs(step.state[i]));
+    largest = std::max(largest, std::abs(weightedSum<kErrors, 0>(rate, i)) / (tolerance[i] * (1 + size)));
+    finite += 0 * step.state[i];  // NaN as soon as a component is not finite; std::max would pass over it
+  }
+  if (finite != 0) return std::numeric_limits<double>::quiet_NaN();
+  return std::abs(step.timeStep) * largest;
+}
+
+void computeDormandPrince5Correction(Step& step) {
+  step.work.setZero(step.startState.size());
+  addRates<kCorrections, 0>(rates(step), step.timeStep, step.work, step.corrections[0]);
+}
+
+}  // namespace cradle

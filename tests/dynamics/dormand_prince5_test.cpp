@@ -1,0 +1,151 @@
+#include "dynamics/integrators/dormand_prince5.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "dynamics/dop853_problems.h"
+#include "dynamics/integrators/dormand_prince5_table.h"
+
+namespace cradle {
+namespace {
+
+using namespace dormand_prince5_table;
+
+constexpr double kRounding = 1e-14;  // sums of 7 products of numbers up to 12, against 1e-16 each
+
+double sumOf(const Weights& weights, int power) {
+  double sum = 0;
+  for (std::size_t i = 0; i < kRates; ++i) sum += weights[i] * std::pow(kNodes[i], power);
+  return sum;
+}
+
+TEST(DormandPrince5Table, EveryStageUsesOnlyRatesBeforeItAndItsWeightsAddUpToItsNode) {
+  for (std::size_t i = 0; i < kRates; ++i) {
+    for (std::size_t j = i; j < kRates; ++j) EXPECT_EQ(kStages[i][j], 0) << i << " " << j;
+    EXPECT_NEAR(sumOf(kStages[i], 0), kNodes[i], kRounding) << i;
+  }
+}
+
+// y' = t^k is exact for k < 5 with the result, and for k < 4 with the embedded formula; not beyond.
+TEST(DormandPrince5Table, ResultIsOfOrderFiveAndItsErrorEstimateOfOrderFour) {
+  for (int k = 0; k < 5; ++k) EXPECT_NEAR(sumOf(kStages[kEndRate], k), 1.0 / (k + 1), kRounding) << k;
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(sumOf(kErrors[0], k), 0, kRounding) << k;
+  EXPECT_GT(std::abs(sumOf(kStages[kEndRate], 5) - 1.0 / 6), 1e-4);
+  EXPECT_GT(std::abs(sumOf(kErrors[0], 4)), 1e-4);
+}
+
+VectorX run(const RightHandSide& rightHandSide, const VectorX& start, double duration, int steps) {
+  Step step;
+  VectorX state = start;
+  const double timeStep = duration / steps;
+  for (int i = 0; i < steps; ++i) {
+    dormandPrince5(rightHandSide, state, i * timeStep, timeStep, step);
+    state = step.state;
+  }
+  return state;
+}
+
+/// log2 of the ratio of two errors: the order, if the second belongs to half the step.
+double orderOf(double error, double errorOfHalf) {
+  return std::log2(error / errorOfHalf);
+}
+
+Step keplerStep(double time, double timeStep) {
+  Step step;
+  dormandPrince5(kepler(), keplerAt(time), time, timeStep, step);
+  prepareInterpolant(kepler(), step);
+  return step;
+}
+
+double interpolationError(double timeStep) {
+  const Step step = keplerStep(0.4, timeStep);
+  VectorX state;
+  double most = 0;
+  for (int i = 1; i < 20; ++i) {
+    interpolate(step, i / 20.0, state);
+    most = std::max(most, (state - keplerAt(0.4 + i / 20.0 * timeStep)).norm());
+  }
+  return most;
+}
+
+TEST(DormandPrince5, IsOfOrderFive) {
+  const auto error = [](int steps) { return (run(kepler(), keplerAt(0), 2, steps) - keplerAt(2)).norm(); };
+  EXPECT_NEAR(orderOf(error(40), error(80)), 5, 0.6);
+  EXPECT_LT(error(80), 1e-7);
+  const auto swing = [](int steps) {
+    return (run(oscillator(1), oscillatorAt(1, 0), 10, steps) - oscillatorAt(1, 10)).norm();
+  };
+  EXPECT_NEAR(orderOf(swing(40), swing(80)), 5, 0.3);
+}
+
+// The local error of an interpolant of order 4.
+TEST(DormandPrince5, InterpolantHasALocalErrorOfTheFifthPower) {
+  EXPECT_NEAR(orderOf(interpolationError(0.2), interpolationError(0.1)), 5, 0.3);
+  EXPECT_LT(interpolationError(0.1), 1e-6);
+}
+
+// So that a state within a step is nearly as good as the step is judged to be: that falls as fast, and stays of its
+// size.
+TEST(DormandPrince5, ErrorEstimateIsOfTheSizeOfTheInterpolantsError) {
+  const VectorX tolerance = VectorX::Constant(4, 1e-8);
+  const auto norm = [&](double timeStep) { return dormandPrince5Error(keplerStep(0.4, timeStep), tolerance); };
+  EXPECT_NEAR(orderOf(norm(0.1), norm(0.05)), 5, 0.3);
+  for (const double timeStep : {0.2, 0.1, 0.05}) {
+    const double estimate = norm(timeStep) * 1e-8 * 2.4;  // components of size 1.4 at most
+    EXPECT_LT(interpolationError(timeStep), 3 * estimate) << timeStep;
+    EXPECT_GT(interpolationError(timeStep), 0.3 * estimate) << timeStep;
+  }
+  const double error = (keplerStep(0.4, 0.1).state - keplerAt(0.5)).norm();
+  EXPECT_LT(error, norm(0.1) * 1e-8 * 2.4);
+}
+
+TEST(DormandPrince5, ErrorIsNotANumberWhereTheStateIsNotFinite) {
+  const RightHandSide explosion{
+      [](double, const VectorX& state, VectorX& rate) { rate = 1e300 * state.cwiseProduct(state); }, nullptr, 0};
+  Step step;
+  dormandPrince5(explosion, Eigen::Vector2d(1, 1), 0, 1, step);
+  EXPECT_TRUE(std::isnan(dormandPrince5Error(step, VectorX::Constant(2, 1e-6))));
+}
+
+// Six rates, the last of which the next step begins with; its interpolant needs none.
+TEST(DormandPrince5, TakesSixEvaluations) {
+  int evaluations = 0;
+  const RightHandSide counted{[&](double time, const VectorX& state, VectorX& rate) {
+                                ++evaluations;
+                                kepler().rate(time, state, rate);
+                              },
+                              nullptr, 0};
+  Step step;
+  dormandPrince5(counted, keplerAt(0), 0, 0.1, step);
+  prepareInterpolant(counted, step);
+  EXPECT_EQ(evaluations, 7);
+  const VectorX end = step.state;
+  carryEndRate(step);
+  dormandPrince5(counted, end, 0.1, 0.1, step);
+  EXPECT_EQ(evaluations, 13);
+}
+
+// Both are polynomials of degree 4 with the same values: the same to rounding.
+TEST(DormandPrince5, WhatIsCutOffAStepLeavesTheRestOfItsCurve) {
+  const double timeStep = 0.8, cut = 0.3;
+  const Step whole = keplerStep(0.4, timeStep);
+  Step part = whole;
+  cutStep(cut, part);
+  EXPECT_DOUBLE_EQ(part.timeStep, cut * timeStep);
+  VectorX state, of;
+  for (const double fraction : {0.0, 0.2, 0.5, 0.9, 1.0}) {
+    interpolate(part, fraction, of);
+    interpolate(whole, fraction * cut, state);
+    EXPECT_LT((of - state).norm(), 1e-15) << fraction;
+  }
+  const double delta = 1e-6;  // of the step: the difference is good to delta^2 and to rounding over delta
+  VectorX before, after;
+  interpolate(whole, cut - delta, before);
+  interpolate(whole, cut + delta, after);
+  EXPECT_LT(((after - before) / (2 * delta * timeStep) - part.endRate).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace cradle
