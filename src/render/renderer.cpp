@@ -161,7 +161,8 @@ Image Renderer::render(const Frame& frame) {
   r.drawn.reset();  // until the picture is complete
   finishStage(times_.drawList);
   drawnShare_ = 0;
-  if (!changed.picture.isEmpty()) draw(list, changed);
+  // Maps too if nothing of them is seen yet: later pictures look things up there.
+  if (!changed.picture.isEmpty() || changed.shadows || changed.contactsChanged) draw(list, changed);
   r.drawn = std::move(list);
   return r.image;
 }
@@ -210,7 +211,9 @@ void Renderer::drawPicture(const PixelRectangle& area) {
   r.balls.bindTexture(kBallUnit);
   r.nearBalls.bindTexture(kNearBallUnit);
   glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LEQUAL);
+  // Where depths are equal, what is drawn first stays: Mesa's software renderer lets samples up to half a pixel beyond
+  // the area through, and what is drawn there for a second time must change nothing.
+  glDepthFunc(GL_LESS);
   r.picture.begin(area);
   r.programs.ball.use();
   r.items.drawSpheres(seen, area);
@@ -235,6 +238,7 @@ void Renderer::drawPicture(const PixelRectangle& area) {
     r.farGround->draw();
     glDisable(GL_CULL_FACE);
   }
+  glDepthFunc(GL_LEQUAL);  // as far away as nothing
   r.programs.sky.use();
   r.triangle.draw();
   r.picture.end();
