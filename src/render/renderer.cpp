@@ -185,14 +185,16 @@ void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
   if (changed.contactsChanged) r.maps.drawContacts(r.items);
   finishStage(times_.maps);
   const std::vector<PixelRectangle> areas = changed.picture.rectangles();
+  // Resolved one by one: Mesa's software renderer lets samples up to half a pixel beyond an area through, and what is
+  // drawn there once more takes the place of what is as far away and was drawn later.
   for (const PixelRectangle& area : areas) {
     drawPicture(area);
+    finishStage(times_.main);
+    r.picture.resolve(area);
+    finishStage(times_.resolve);
     drawnShare_ +=
         static_cast<double>(area.width()) * area.height() / (static_cast<double>(r.image.width) * r.image.height);
   }
-  finishStage(times_.main);
-  for (const PixelRectangle& area : areas) r.picture.resolve(area);
-  finishStage(times_.resolve);
   for (const PixelRectangle& area : areas) r.picture.read(area, r.image);
   finishStage(times_.readBack);
 }
@@ -200,7 +202,7 @@ void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
 void Renderer::finishStage(double& seconds) {
   if (measuring_) glFinish();
   const auto now = Clock::now();
-  seconds = std::chrono::duration<double>(now - resources_->stageStart).count();
+  seconds += std::chrono::duration<double>(now - resources_->stageStart).count();
   resources_->stageStart = now;
 }
 
@@ -211,9 +213,7 @@ void Renderer::drawPicture(const PixelRectangle& area) {
   r.balls.bindTexture(kBallUnit);
   r.nearBalls.bindTexture(kNearBallUnit);
   glEnable(GL_DEPTH_TEST);
-  // Where depths are equal, what is drawn first stays: Mesa's software renderer lets samples up to half a pixel beyond
-  // the area through, and what is drawn there for a second time must change nothing.
-  glDepthFunc(GL_LESS);
+  glDepthFunc(GL_LEQUAL);
   r.picture.begin(area);
   r.programs.ball.use();
   r.items.drawSpheres(seen, area);
@@ -238,7 +238,6 @@ void Renderer::drawPicture(const PixelRectangle& area) {
     r.farGround->draw();
     glDisable(GL_CULL_FACE);
   }
-  glDepthFunc(GL_LEQUAL);  // as far away as nothing
   r.programs.sky.use();
   r.triangle.draw();
   r.picture.end();
