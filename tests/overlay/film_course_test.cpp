@@ -69,6 +69,14 @@ TEST_F(Film, ArrowsFitWhatTheNearestCameraSees) {
   EXPECT_FALSE(isMarked(image, tail + Vec3(1.2 * length, 0, 0)));
 }
 
+TEST_F(Film, WhatHardlyMovesHasNoArrow) {
+  // 1/60 m/s is 0.7 pixels, where 2 m/s are 79; the shaft is 2.7 wide.
+  const Image image = draw({false, false, true, false, std::nullopt, ""}, 1);
+  const Vec3 place = frameAt(1).states[1].position;
+  for (const double aside : {-0.01, 0.0, 0.01})
+    for (const double below : {-0.01, 0.0, 0.01}) EXPECT_FALSE(isMarked(image, place + Vec3(aside, below, 0)));
+}
+
 TEST_F(Film, PlotLiesWhereTheMovingCameraSeesFewestBodies) {
   // From 6 m, the balls stay clear of the upper right corner; from 3.2 m, they do not.
   view_.cameras.assign(static_cast<std::size_t>(kFrames), view_.camera);
