@@ -167,7 +167,8 @@ Image Renderer::render(const Frame& frame, const Camera& camera) {
   r.drawn.reset();  // until the picture is complete
   finishStage(times_.drawList);
   drawnShare_ = 0;
-  if (!changed.picture.isEmpty()) draw(list, changed);
+  // Maps too if nothing of them is seen yet: later pictures look things up there.
+  if (!changed.picture.isEmpty() || changed.shadows || changed.contactsChanged) draw(list, changed);
   r.drawn = std::move(list);
   return r.image;
 }
@@ -202,14 +203,16 @@ void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
   if (changed.contactsChanged) r.maps.drawContacts(r.items);
   finishStage(times_.maps);
   const std::vector<PixelRectangle> areas = changed.picture.rectangles();
+  // Resolved one by one: Mesa's software renderer lets samples up to half a pixel beyond an area through, and what is
+  // drawn there once more takes the place of what is as far away and was drawn later.
   for (const PixelRectangle& area : areas) {
     drawPicture(area);
+    finishStage(times_.main);
+    r.picture.resolve(area);
+    finishStage(times_.resolve);
     drawnShare_ +=
         static_cast<double>(area.width()) * area.height() / (static_cast<double>(r.image.width) * r.image.height);
   }
-  finishStage(times_.main);
-  for (const PixelRectangle& area : areas) r.picture.resolve(area);
-  finishStage(times_.resolve);
   for (const PixelRectangle& area : areas) r.picture.read(area, r.image);
   finishStage(times_.readBack);
 }
@@ -217,7 +220,7 @@ void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
 void Renderer::finishStage(double& seconds) {
   if (measuring_) glFinish();
   const auto now = Clock::now();
-  seconds = std::chrono::duration<double>(now - resources_->stageStart).count();
+  seconds += std::chrono::duration<double>(now - resources_->stageStart).count();
   resources_->stageStart = now;
 }
 

@@ -87,12 +87,43 @@ TEST(Canvas, AreasAreThoseOfTheShapes) {
   }
 }
 
+TEST(Canvas, LinesWidthAndOpacityChangeEvenlyOnItsWay) {
+  // 50 pixels from the middle of one half disc to that of the other.
+  const auto lightOf = [](const LinePoint& from, const LinePoint& to) {
+    Image image(64, 64);
+    Canvas(image).line({from, to}, kWhite);
+    return lightIn(image);
+  };
+  const PicturePoint start{12, 14}, end{42, 54};
+  // The sides of a line that grows by 2 pixels on either side are 0.1 % longer than it, its half discs as little off.
+  EXPECT_NEAR(lightOf({start, 2}, {end, 6}), 50 * 4 + std::numbers::pi * (1 + 9) / 2, 2);
+  EXPECT_NEAR(lightOf({start, 6, 1}, {end, 6, 0}), 50 * 6 * 0.5 + std::numbers::pi * 9 / 2, 2);
+}
+
+TEST(Canvas, LineOfTwoPiecesIsThatOfOne) {
+  Image whole(40, 40), pieces(40, 40);
+  Canvas(whole).line({{{5, 5}, 6}, {{35, 25}, 6}}, kWhite);
+  Canvas(pieces).line({{{5, 5}, 6}, {{20, 15}, 6}, {{35, 25}, 6}}, kWhite);
+  for (std::size_t i = 0; i < whole.pixels.size(); ++i) EXPECT_NEAR(whole.pixels[i], pieces.pixels[i], 1);
+}
+
 TEST(Canvas, LineCoversNoMoreThanOnceWhereItCrossesItself) {
   Image once(40, 40), twice(40, 40);
   const Ink half{{255, 255, 255}, 0.5};
   Canvas(once).line({{{5, 5}, 4}, {{30, 25}, 4}}, half);
   Canvas(twice).line({{{5, 5}, 4}, {{30, 25}, 4}, {{5, 5}, 4}, {{30, 25}, 4}}, half);
   EXPECT_EQ(once, twice);
+}
+
+TEST(Canvas, LineKnowsNothingOfThoseBefore) {
+  Image one(40, 40), two(40, 40);
+  const Ink half{{255, 255, 255}, 0.5};
+  Canvas canvas(one);
+  for (int i = 0; i < 2; ++i) {
+    canvas.line({{{5, 5}, 4}, {{30, 25}, 4}}, half);
+    Canvas(two).line({{{5, 5}, 4}, {{30, 25}, 4}}, half);
+  }
+  EXPECT_EQ(one, two);
 }
 
 TEST(Canvas, ShapesLeaveTheRestAlone) {

@@ -24,19 +24,20 @@ std::array<int, 4> changedBox(const Image& before, const Image& after) {
 
 TEST(Font, InkLiesWhereTheFontHasIt) {
   // Capital H of DejaVu Sans: from 201 to 1338 of 2048 to the right, up to 1493, its advance 1540.
-  for (const double em : {12.0, 23.0, 60.0}) {
-    const TextSize size = crispTextSize(em);
-    Image image(100, 80);
-    Canvas canvas(image);
-    drawText(canvas, "H", size, {20, 70}, kInk);
-    const auto box = changedBox(Image(100, 80), image);
-    EXPECT_EQ(box[0], std::floor(20 + 201 * size.em / 2048)) << em;
-    EXPECT_EQ(box[1], std::floor(70 - 1493 * size.em / 2048)) << em;
-    EXPECT_EQ(box[2], std::ceil(20 + 1338 * size.em / 2048) - 1) << em;
-    EXPECT_EQ(box[3], 69) << em;
-    EXPECT_NEAR(textWidth("H", size), 1540 * size.em / 2048, 1e-4);
-    EXPECT_NEAR(size.ascent, 1493 * size.em / 2048, 1e-9);
-  }
+  for (const double em : {12.0, 23.0, 60.0})
+    for (const double start : {20.0, 20.3, 20.5, 20.8}) {
+      const TextSize size = crispTextSize(em);
+      Image image(100, 80);
+      Canvas canvas(image);
+      drawText(canvas, "H", size, {start, start > 20.4 ? 69.6 : 70.4}, kInk);  // the baseline at 70
+      const auto box = changedBox(Image(100, 80), image);
+      EXPECT_EQ(box[0], std::floor(start + 201 * size.em / 2048)) << em << " " << start;
+      EXPECT_EQ(box[1], std::floor(70 - 1493 * size.em / 2048)) << em << " " << start;
+      EXPECT_EQ(box[2], std::ceil(start + 1338 * size.em / 2048) - 1) << em << " " << start;
+      EXPECT_EQ(box[3], 69) << em << " " << start;
+      EXPECT_NEAR(textWidth("H", size), 1540 * size.em / 2048, 1e-4);
+      EXPECT_NEAR(size.ascent, 1493 * size.em / 2048, 1e-9);
+    }
 }
 
 TEST(Font, NothingOutsideTheTextChanges) {
@@ -59,6 +60,7 @@ TEST(Font, SmallLettersEndOnPixels) {
     EXPECT_NEAR(letters, std::round(letters), 1e-12);
     EXPECT_NEAR(crispTextSize(em).em, em, 2048.0 / 1120 / 2 + 1e-9);
   }
+  EXPECT_NEAR(crispTextSize(0.1).em * 1120 / 2048, 1, 1e-12);  // a pixel at least
 }
 
 TEST(Font, InsideOfALetterHasTheInkItself) {
@@ -68,6 +70,27 @@ TEST(Font, InsideOfALetterHasTheInkItself) {
   // Capital I: a bar from 201 to 403 of 2048.
   const int x = static_cast<int>(10 + 302 * crispTextSize(50).em / 2048);
   EXPECT_EQ(std::vector<int>(image.at(x, 35), image.at(x, 35) + 3), (std::vector<int>{250, 40, 10}));
+}
+
+TEST(Font, LetterIsAsDarkAsItIsLarge) {
+  // Capital I, a bar of 202 x 1493 of 2048: pixels at its edge take their share. Rounding to 1 of 255 levels is off by
+  // up to half of the widest step in light, 0.009, in some 90 of them.
+  Image image(60, 60);
+  Canvas canvas(image);
+  const TextSize size = crispTextSize(50);
+  drawText(canvas, "I", size, {10.3, 50}, {{255, 255, 255}, 1});
+  double light = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
+    const double c = image.pixels[i] / 255.0;
+    light += c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  }
+  EXPECT_NEAR(light, 202 * 1493 * std::pow(size.em / 2048, 2), 0.4);
+}
+
+TEST(Font, NeighboursMoveTogetherAsTheFontWants) {
+  const TextSize size = crispTextSize(30);
+  EXPECT_LT(textWidth("AV", size), textWidth("A", size) + textWidth("V", size) - 1);
+  EXPECT_EQ(textWidth("HH", size), 2 * textWidth("H", size));
 }
 
 TEST(Font, DigitsAreAllAsWide) {
@@ -82,12 +105,16 @@ TEST(Font, LongTextsAreCutToFit) {
   EXPECT_EQ(fittedText(text, size, textWidth("r\xC3\xA9...", size)), "r\xC3\xA9...");
   EXPECT_EQ(fittedText(text, size, textWidth("r\xC3\xA9...", size) - 1), "r...");  // never half a character
   EXPECT_EQ(fittedText(text, size, 0), "...");
+  // A long arrow is wider than the sign for half of it.
+  const std::string arrow = "r\xE2\x9F\xB5s and more";
+  EXPECT_EQ(fittedText(arrow, size, textWidth("r\xE2\x9F\xB5...", size) - 1), "r...");
 }
 
 TEST(Font, TextIsReadAsUtf8) {
   const TextSize size = crispTextSize(17);
   EXPECT_EQ(textWidth("\xC3\xA9", size), textWidth("e", size));                // e with an accent
   EXPECT_EQ(textWidth("\xCE\xBC", size), textWidth("\xC2\xB5", size));         // mu, and the sign for a millionth
+  EXPECT_EQ(textWidth("\xE2\x88\x92", size), textWidth("+", size));            // minus
   EXPECT_GT(textWidth("\xF0\x9D\x94\xB8", size), 0);                           // four bytes
   for (const char* broken : {"\xFF", "\xC3", "\xE2\x82", "\x80", "\xF8\x88"})  // each a sign of its own, and no crash
     EXPECT_GE(textWidth(std::string("a") + broken, size), textWidth("a\xEF\xBF\xBD", size) - 1e-6);

@@ -51,6 +51,26 @@ TEST(PlotPanel, CurvesPassThroughTheirPixelsUpToNow) {
   for (const double time : {2.7, 3.5}) EXPECT_FALSE(colored(time, std::sin(2 * time), 0) || colored(time, time / 4, 1));
 }
 
+TEST(PlotPanel, HasATitleNamesAndRules) {
+  const PlotContent content = waveAndLine();
+  const PlotArea area = plotAreaOf(content, kWidth, kHeight);
+  Image image(kWidth, kHeight);
+  Canvas canvas(image);
+  drawPlot(canvas, content, 150);
+  const auto [low, high] = plotPanelAt(PlotCorner::upperRight, kWidth, kHeight);
+  bool hasTitle = false, hasName = false;
+  for (double y = low.y; y < area.top - 1; ++y)
+    for (double x = low.x; x < high.x; ++x) {
+      const auto pixel = pixelAt(image, {x, y});
+      hasTitle |= x < area.left && pixel[0] > 200 && pixel[1] > 200;
+      hasName |= x > area.left && pixel[1] > 180 && pixel[0] < 60;
+    }
+  EXPECT_TRUE(hasTitle);
+  EXPECT_TRUE(hasName);
+  const PicturePoint rule = area.at(3.7, 0.5);  // after the curves' end
+  EXPECT_GT(pixelAt(image, {rule.x, std::round(rule.y)})[0], pixelAt(image, {rule.x, rule.y + 5})[0] + 40);
+}
+
 TEST(PlotPanel, LiesInTheUpperRightCornerAndLeavesTheRestAlone) {
   for (const auto& [width, height] : {std::pair(1280, 720), std::pair(640, 360), std::pair(300, 600)}) {
     Image image(width, height);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "math/rotation.h"
 #include "render/camera.h"
 #include "render/mirror_image.h"
 #include "render/scene_builder.h"
@@ -169,6 +170,55 @@ TEST(ChangedArea, HasTheBytesOfThePictureDrawnWhole) {
       EXPECT_EQ(renderer.render(frame), changed) << step;
     }
   }
+}
+
+// Boxes of several heights whose front sides lie in one plane across the view: their depths are equal to the last bit,
+// and which of two is seen depends on the order of drawing alone. A rod before their upper ends lets many small areas
+// be drawn next to each other.
+TEST(ChangedArea, HasTheBytesOfThePictureDrawnWholeWhereDepthsAreEqual) {
+  Scene scene = emptyScene();
+  scene.materials.resize(2, scene.materials[0]);
+  scene.materials[1].baseColor = Vec3f(0.9f, 0.1f, 0.1f);
+  addBody(scene, Box{{3, 2, 0.2}}, {Quat::Identity(), {0, 0, -0.1}}, Motion::fixed);
+  constexpr int kBoxes = 120;
+  const double slope = std::tan(0.5);
+  for (int i = 0; i < kBoxes; ++i) {
+    const double place = 2.4 * (static_cast<double>(i) / kBoxes - 0.5), top = slope * place + 0.02 * ((i * 7) % 11 - 5);
+    Body& box = addBody(scene, Box{{0.015, 0.8, 0.2}}, {Quat::Identity(), {place, top - 0.4, -0.1}}, Motion::fixed);
+    box.material = 1;
+  }
+  addBody(scene, Cylinder{0.005, 3}, {rotationAbout(Vec3::UnitZ(), 0.5 - M_PI / 2), {0, 0.055, 0.1}});
+  const View view{cameraAt({0, 0, 5}, Vec3::Zero(), 0.4), Bounds(Vec3(-1.5, -1, -0.2), Vec3(1.5, 1, 1))};
+  Renderer renderer(scene, view, 640, 360);
+  Frame frame = startFrame(scene);
+  renderer.render(frame);
+  for (int step = 0; step < 3; ++step) {
+    frame.states[0].position += Vec3(0, 0.011, 0);
+    const Image changed = renderer.render(frame);
+    EXPECT_LT(renderer.drawnShare(), 1);
+    renderer.forgetPicture();
+    EXPECT_EQ(renderer.render(frame), changed) << step;
+  }
+}
+
+// What moves outside the picture, and throws its shadow on nothing that is seen, changes no pixel; but what comes into
+// its shadow later does.
+TEST(ChangedArea, ShadowsOfWhatMovedUnseenAreThereLater) {
+  Scene scene = emptyScene();
+  scene.lights[0].direction = Vec3(0, -1, 0);
+  addBody(scene, Sphere{0.3}, {Quat::Identity(), {-0.6, 1.5, 0}});
+  addBody(scene, Sphere{0.2}, {Quat::Identity(), {0.2, 0, 0}});
+  const View view{cameraAt({0, 0, 5}, Vec3::Zero(), 0.2), Bounds(Vec3(-1, -1, -1), Vec3(1, 2, 1))};
+  Renderer renderer(scene, view, 320, 180);
+  Frame frame = startFrame(scene);
+  renderer.render(frame);
+  frame.states[0].position = Vec3(-0.5, 1.5, 0);
+  renderer.render(frame);
+  EXPECT_EQ(renderer.drawnShare(), 0);
+  frame.states[1].position = Vec3(-0.02, 0, 0);
+  const Image changed = renderer.render(frame);
+  renderer.forgetPicture();
+  EXPECT_EQ(renderer.render(frame), changed);
 }
 
 }  // namespace

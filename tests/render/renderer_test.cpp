@@ -97,6 +97,25 @@ TEST(Renderer, SceneWithoutBodiesIsDrawn) {
   EXPECT_GT(*std::min_element(image.pixels.begin(), image.pixels.end()), 50);
 }
 
+TEST(Renderer, DarkLookTakesLightFromTheSurroundingsNotFromBodies) {
+  for (const bool hasGround : {true, false}) {
+    Scene scene = emptyScene();
+    scene.lights[0].direction = Vec3(0, -1, -1).normalized();
+    scene.materials.resize(2, scene.materials[0]);
+    scene.materials[1].baseColor = Vec3f(0.9f, 0.9f, 0.9f);
+    if (hasGround) addBody(scene, Plane{}, {Quat::Identity(), {0, -1, 0}}, Motion::fixed);
+    addBody(scene, Sphere{0.5}, {}).material = 1;
+    const View view{cameraAt({0, 0.5, 5}, Vec3::Zero(), 0.8), Bounds(Vec3(-1, -1, -1), Vec3(1, 1, 1))};
+    const auto draw = [&](Look look) {
+      scene.look = look;
+      return Renderer(scene, view, 160, 90).render(startFrame(scene));
+    };
+    const Image light = draw(Look::light), dark = draw(Look::dark);
+    for (const int row : {2, 87}) EXPECT_LT(dark.at(10, row)[1], light.at(10, row)[1] / 2) << hasGround << row;
+    EXPECT_NEAR(dark.at(80, 38)[1], light.at(80, 38)[1], 25) << hasGround;
+  }
+}
+
 class ShaderFolder : public ::testing::Test {
  protected:
   void SetUp() override {
