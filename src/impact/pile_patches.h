@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -39,9 +40,9 @@ struct PileLook {
 
 /// A pair with a moving body first.
 struct PilePair {
-  std::size_t pair = 0;    // index into ContactGeometry::pairs
-  std::size_t shapeA = 0;  // collider
-  std::size_t shapeB = 0;  // collider or plane
+  std::uint32_t pair = 0;    // index into ContactGeometry::pairs
+  std::uint32_t shapeA = 0;  // collider
+  std::uint32_t shapeB = 0;  // collider or plane
   int bodyA = kFixed, bodyB = kFixed;
   bool againstPlane = false, isExchanged = false;
 };

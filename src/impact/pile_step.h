@@ -70,6 +70,7 @@ class PileStep {
   PileSleep sleep_;
   std::vector<double> speeds_;  // m/s, of each body's fastest point; infinite if it touches nothing
   double slowestRebound_ = 0;   // m/s
+  bool rebounds_ = false;       // by some law
   double margin_ = 0;           // m: nearer bodies are in contact
   double slow_ = 0;             // m/s: slower is as good as still
   long looks_ = 0;
