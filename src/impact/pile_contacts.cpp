@@ -88,6 +88,22 @@ bool PileContacts::areNear(const NearPair& pair, const PileLook& look, double re
   return (b.position - a.position).squaredNorm() < most * most && meet(b.boxCenter, b.boxHalf);
 }
 
+/// A bound on how far (m) points of a pair come nearer to each other in the step, and the margin.
+double PileContacts::reachOf(const NearPair& pair, const PileLook& look) {
+  const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
+  const double speed = (b.linearVelocity - a.linearVelocity).norm() + a.spinSpeed + b.spinSpeed;
+  return look.margin + speed * look.timeStep;
+}
+
+/// What most pairs are: too far from each other along some axis. Without a root.
+bool PileContacts::areFar(const NearPair& pair, const PileLook& look) {
+  if (pair.bodyB == kFixed) return false;
+  const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
+  const double speed = (b.linearVelocity - a.linearVelocity).lpNorm<1>() + a.spinSpeed + b.spinSpeed;
+  const double reach = look.margin + speed * look.timeStep;
+  return ((b.boxCenter - a.boxCenter).cwiseAbs() - b.boxHalf - a.boxHalf).maxCoeff() >= reach;
+}
+
 /// How fast bodies approach each other, at most; 0 if they do not come near within the step.
 double PileContacts::approachOf(const NearPair& pair, const PileLook& look) const {
   const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
@@ -96,7 +112,7 @@ double PileContacts::approachOf(const NearPair& pair, const PileLook& look) cons
   const bool areBalls = a.spinRadius == 0 && (pair.againstPlane || b.spinRadius == 0);
   const double part = areBalls ? kBallPart : 1;
   const Vec3 velocity = b.linearVelocity - a.linearVelocity;
-  if (!areNear(pair, look, look.margin + look.timeStep * (velocity.norm() + a.spinSpeed + b.spinSpeed))) return 0;
+  if (areFar(pair, look) || !areNear(pair, look, reachOf(pair, look))) return 0;
   if (pair.againstPlane) return part * std::max(0.0, geometry_.planes[pair.shapeB].normal.dot(velocity)) + spin;
   if (pair.bodyB == kFixed) return part * velocity.norm() + spin;
   const Vec3 offset = b.position - a.position;
@@ -117,8 +133,8 @@ bool PileContacts::mayTouch(const NearPair& pair, const PileLook& look) const {
   const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
   if (a.isAsleep && (pair.bodyB == kFixed || b.isAsleep)) return false;
   if (!pair.isEmpty) return true;
-  const double speed = (b.linearVelocity - a.linearVelocity).norm() + a.spinSpeed + b.spinSpeed;
-  const double reach = look.margin + speed * look.timeStep;
+  if (areFar(pair, look)) return false;
+  const double reach = reachOf(pair, look);
   return clearanceOf(pair, a, b) <= reach && areNear(pair, look, reach);
 }
 
@@ -128,9 +144,7 @@ void PileContacts::update(const PileLook& look, WorkerThreads& threads) {
   giveManifolds();
   threads.share(near_.size(), kNearGrain, [&](int thread, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      if (i + kAhead < last) {
-        fetchAhead<true>(manifolds_[static_cast<std::size_t>(active_[i + kAhead].manifold)]);
-      }
+      if (i + kAhead < last) fetchAhead<true>(manifolds_[static_cast<std::size_t>(active_[i + kAhead].manifold)]);
       updatePair(pairs_[near_[i]], look, scratch_[static_cast<std::size_t>(thread)]);
       const NearPair& pair = pairs_[near_[i]];
       active_[i].count = pair.isEmpty ? 0 : manifolds_[static_cast<std::size_t>(pair.manifold)].count;

@@ -62,6 +62,8 @@ class PileContacts {
   void giveManifold(NearPair& pair);
   static double clearanceOf(const NearPair& pair, const MovingPose& a, const MovingPose& b);
   bool areNear(const NearPair& pair, const PileLook& look, double reach) const;
+  static double reachOf(const NearPair& pair, const PileLook& look);
+  static bool areFar(const NearPair& pair, const PileLook& look);
   bool mayTouch(const NearPair& pair, const PileLook& look) const;
   double approachOf(const NearPair& pair, const PileLook& look) const;
   void updatePair(NearPair& pair, const PileLook& look, std::vector<Contact>& scratch);

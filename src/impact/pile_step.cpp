@@ -101,14 +101,15 @@ void PileStep::advance(double timeStep, VectorX& state) {
 
   for (int piece = 0; piece < pieces; ++piece) {
     if (pieces > 1) placeBodies(timeStep / pieces, state);
-    takePiece(timeStep / pieces, subSteps, state);
+    takePiece(timeStep / pieces, subSteps, pieces - piece, state);
   }
   letSleep(timeStep, state);
 }
 
-/// A step with one look for contacts.
-void PileStep::takePiece(double timeStep, int subSteps, VectorX& state) {
-  if (broadPhase_.update({state, reaches_, drifts_}, margin_, geometry_)) contacts_.takePairs();
+/// A step with one look for contacts, the first of so many pieces that are left.
+void PileStep::takePiece(double timeStep, int subSteps, int pieces, VectorX& state) {
+  const double ahead = pieces;
+  if (broadPhase_.update({state, reaches_, drifts_, ahead}, margin_, geometry_)) contacts_.takePairs();
   contacts_.update({poses_, state, timeStep, margin_}, threads_);
   wakeTouched(timeStep, state);
   ++looks_;

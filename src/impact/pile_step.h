@@ -43,7 +43,7 @@ class PileStep {
  private:
   void placeBodies(double timeStep, const VectorX& state);
   void placeBody(std::size_t index, const VectorX& state);
-  void takePiece(double timeStep, int subSteps, VectorX& state);
+  void takePiece(double timeStep, int subSteps, int pieces, VectorX& state);
   void moveBody(std::size_t index, double timeStep, double subStep, VectorX& state);
   void recordImpacts(int subSteps);
   void wakeTouched(double timeStep, const VectorX& state);
