@@ -112,14 +112,16 @@ class BoxPair {
     const double sine2 = 1 - aFromB_(i, j) * aFromB_(i, j);
     if (sine2 < kParallelSine2) return true;
     const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-    const double scale = 1 / std::sqrt(sine2);
-    const double distance = (offset_[i2] * aFromB_(i1, j) - offset_[i1] * aFromB_(i2, j)) * scale;
-    const double motion = (motion_[i2] * aFromB_(i1, j) - motion_[i1] * aFromB_(i2, j)) * scale;
-    const double reach = (a_.halfSize[i1] * cosines_(i2, j) + a_.halfSize[i2] * cosines_(i1, j) +
-                          b_.halfSize[j1] * cosines_(i, j2) + b_.halfSize[j2] * cosines_(i, j1)) *
-                         scale;
-    const double sign = distance < 0 ? -1 : 1;
-    return consider({sign * distance - reach, -sign * motion, sign, i, j}, edges_, hasEdges_);
+    // Of the cross product, which is no unit vector.
+    const double distance = offset_[i2] * aFromB_(i1, j) - offset_[i1] * aFromB_(i2, j);
+    const double reach = a_.halfSize[i1] * cosines_(i2, j) + a_.halfSize[i2] * cosines_(i1, j) +
+                         b_.halfSize[j1] * cosines_(i, j2) + b_.halfSize[j2] * cosines_(i, j1);
+    const double separation = std::abs(distance) - reach;
+    if (hasEdges_ && separation <= std::min(0.0, edges_.separation))
+      return true;  // with a unit vector it is less still
+    const double scale = 1 / std::sqrt(sine2), sign = distance < 0 ? -1 : 1;
+    const double motion = motion_[i2] * aFromB_(i1, j) - motion_[i1] * aFromB_(i2, j);
+    return consider({separation * scale, -sign * motion * scale, sign, i, j}, edges_, hasEdges_);
   }
 
   ContactPatch edgeContact(const Axis& axis, const Vec3& ahead) const {

@@ -106,8 +106,9 @@ void BroadPhase::enclose(const Ways& ways, double margin, const ContactGeometry&
     }
   poses_.clear(), slacks_.clear(), centers_.clear();
   for (std::size_t body = 0; body < count; ++body) {
-    const Vec3 drift = driftOf(ways, body);
-    const double motion = ways.motions[body] < kFarthest ? ways.motions[body] : kFarthest, way = drift.norm();
+    const Vec3 drift = ways.ahead * driftOf(ways, body);
+    const double aside = ways.ahead * ways.motions[body];
+    const double motion = aside < kFarthest ? aside : kFarthest, way = drift.norm();
     const double ahead = std::min(kSlackMotions * (motion + way), kMostSlack * radii_[body]);
     poses_.push_back(poseOf(ways.state, static_cast<int>(body)));
     slacks_.push_back(margin + std::max({motion + kDeflection * way, ahead, kLeastSlack * radii_[body]}));
@@ -123,7 +124,7 @@ void BroadPhase::encloseColliders(const ContactGeometry& geometry, const Ways& w
     Bounds box = collider.body == kFixed ? collider.bounds : turnedBounds(collider.bounds, poses_[body]);
     double grown = kBoxRounding * (box.min().cwiseAbs() + box.max().cwiseAbs()).maxCoeff();
     Vec3 drift = Vec3::Zero();
-    if (collider.body != kFixed) grown += slacks_[body], drift = driftOf(ways, body);
+    if (collider.body != kFixed) grown += slacks_[body], drift = ways.ahead * driftOf(ways, body);
     boxes_.emplace_back(Vec3(box.min() + drift.cwiseMin(0) - Vec3::Constant(grown)),
                         Vec3(box.max() + drift.cwiseMax(0) + Vec3::Constant(grown)));
     roundings_.push_back(collider.isBall() ? collider.radius + grown : 0);

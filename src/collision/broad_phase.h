@@ -28,6 +28,7 @@ class BroadPhase {
     const VectorX& state;
     const std::vector<double>& motions;  // m
     const std::vector<Vec3>& drifts;     // m; empty: none
+    double ahead = 1;                    // a new list is made for so many times these ways, one after the other
   };
   /// The same, where motions[i] is how far points of body i move at most beside the way drifts[i] (m) that all of them
   /// go together.

@@ -1,20 +1,36 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "collision/contact_patch.h"
 
 namespace cradle {
 
-/// The contact of two bodies that lasts over steps, and the impulses that held it in the last one.
-struct ContactManifold {
-  int bodyA = kFixed, bodyB = kFixed;  // A moves
-  ContactPatch patch;
-  std::array<double, ContactPatch::kMostPoints> impulses{};  // N s, along the normal, of each point
-  Vec3 frictionImpulse = Vec3::Zero();                       // N s, world, on B at the patch's middle
-  double twistImpulse = 0;                                   // N m s, about the normal, on B
-  double friction = 0;                                       // coefficient of now
-  SurfaceLaw law;
+/// The contact of two bodies that lasts over steps, and the impulses that held it in the last one. As small as can be:
+/// of the many of a heap each is in memory far away. Single precision holds points to 6e-8 of the body's size.
+struct alignas(64) ContactManifold {
+  using Anchor = Eigen::Vector3f;  // from the centre of mass, in the body's frame
+
+  int bodyA = kFixed, bodyB = kFixed;                 // A moves
+  std::int32_t count = 0;                             // of points
+  Anchor normalOnA = Anchor::UnitY();                 // unit, A's frame
+  std::array<Anchor, ContactPatch::kMostPoints> onA;  // m
+  std::array<Anchor, ContactPatch::kMostPoints> onB;  // m; if B is fixed, world from where A was when they were found
+  const SurfaceLaw* law = nullptr;
+  Vec3 normal = Vec3::UnitY();                                  // unit, world, from A to B
+  std::array<double, ContactPatch::kMostPoints> separations{};  // m, along the normal, < 0: overlap
+  std::array<double, ContactPatch::kMostPoints> impulses{};     // N s, along the normal, of each point
+  Vec3 frictionImpulse = Vec3::Zero();                          // N s, world, on B at the middle of the points
+  double twistImpulse = 0;                                      // N m s, about the normal, on B
+  double friction = 0;                                          // coefficient of now
+};
+
+/// A manifold among others: what it ties together.
+struct ManifoldLink {
+  std::int32_t manifold = -1;  // index
+  int bodyA = kFixed, bodyB = kFixed;
+  std::int32_t count = 0;  // of points
 };
 
 }  // namespace cradle

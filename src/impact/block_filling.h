@@ -32,22 +32,22 @@ double couplingOf(const LaneVector (&a)[Block::kMovers], const LaneVector (&b)[B
 }
 
 template <class Block>
-void fillFriction(const ContactManifold& manifold, const SolverBody* const (&bodies)[Block::kMovers],
-                  double impulseScale, int lane, Block& block) {
-  const ContactPatch& patch = manifold.patch;
-  Vec3 middles[2] = {Vec3::Zero(), Vec3::Zero()};
-  for (std::size_t i = 0; i < patch.count; ++i) middles[0] += patch.points[i].onA, middles[1] += patch.points[i].onB;
-  Vec3 arms[Block::kMovers];
-  for (int k = 0; k < Block::kMovers; ++k)
-    arms[k] = middles[k] / static_cast<double>(patch.count) - bodies[k]->position;
+void fillFriction(const ContactManifold& manifold, const Vec3 (&arms)[Block::kPoints][Block::kMovers],
+                  const SolverBody* const (&bodies)[Block::kMovers], double impulseScale, int lane, Block& block) {
+  Vec3 middle[Block::kMovers];
+  for (int k = 0; k < Block::kMovers; ++k) {
+    Vec3 sum = arms[0][k];
+    for (int i = 1; i < Block::kPoints; ++i) sum += arms[i][k];
+    middle[k] = sum / Block::kPoints;
+  }
 
   auto& friction = block.friction;
-  const Vec3 tangent1 = patch.normal.unitOrthogonal(), tangent2 = patch.normal.cross(tangent1);
+  const Vec3 tangent1 = manifold.normal.unitOrthogonal(), tangent2 = manifold.normal.cross(tangent1);
   double inverse[2];
   for (int i = 0; i < 2; ++i) {
     const Vec3& tangent = i == 0 ? tangent1 : tangent2;
     setLane(friction.tangents[i], lane, tangent);
-    inverse[i] = fillTurns<Block>(friction.turns[i], tangent, arms, bodies, lane);
+    inverse[i] = fillTurns<Block>(friction.turns[i], tangent, middle, bodies, lane);
     friction.impulses[i][lane] = impulseScale * manifold.frictionImpulse.dot(tangent);
   }
   const double coupling = couplingOf<Block>(friction.turns[0], friction.turns[1], lane);
@@ -60,15 +60,13 @@ void fillFriction(const ContactManifold& manifold, const SolverBody* const (&bod
   if constexpr (Block::kPoints > 1) {
     double inverseTwist = 0;
     for (int k = 0; k < Block::kMovers; ++k) {
-      const Vec3 turn = bodies[k]->scaledFromWorld * patch.normal;
+      const Vec3 turn = bodies[k]->scaledFromWorld * manifold.normal;
       setLane(block.twist.turns[k], lane, turn);
       inverseTwist += turn.squaredNorm();
     }
     block.twist.mass[lane] = 1 / inverseTwist;
     block.twist.impulse[lane] = impulseScale * manifold.twistImpulse;
-    const Vec3 middle = middles[0] / static_cast<double>(patch.count);
-    for (int i = 0; i < Block::kPoints; ++i)
-      block.twist.levers[i][lane] = (patch.points[static_cast<std::size_t>(i)].onA - middle).norm();
+    for (int i = 0; i < Block::kPoints; ++i) block.twist.levers[i][lane] = (arms[i][0] - middle[0]).norm();
   }
 }
 
@@ -76,7 +74,6 @@ void fillFriction(const ContactManifold& manifold, const SolverBody* const (&bod
 template <class Block>
 void fillLane(const ContactManifold& manifold, std::int32_t index, const std::vector<SolverBody>& bodies,
               double impulseScale, int lane, Block& block) {
-  const ContactPatch& patch = manifold.patch;
   const int indices[2] = {manifold.bodyA, manifold.bodyB};
   const SolverBody* movers[Block::kMovers];
   for (int k = 0; k < Block::kMovers; ++k) {
@@ -85,19 +82,19 @@ void fillLane(const ContactManifold& manifold, std::int32_t index, const std::ve
     block.inverseMasses[k][lane] = movers[k]->inverseMass;
   }
   block.manifolds[lane] = index;
-  setLane(block.normal, lane, patch.normal);
-  block.restitution[lane] = manifold.law.restitution;
+  setLane(block.normal, lane, manifold.normal);
+  block.restitution[lane] = manifold.law->restitution;
+  Vec3 arms[Block::kPoints][Block::kMovers];
   for (int i = 0; i < Block::kPoints; ++i) {
-    const ContactPatch::Point& from = patch.points[static_cast<std::size_t>(i)];
+    const std::size_t at = static_cast<std::size_t>(i);
     auto& point = block.points[i];
-    Vec3 arms[Block::kMovers];
-    arms[0] = from.onA - movers[0]->position;
-    if constexpr (Block::kBothMove) arms[1] = from.onB - movers[1]->position;
-    point.mass[lane] = 1 / fillTurns<Block>(point.turns, patch.normal, arms, movers, lane);
-    point.separation[lane] = from.separation;
-    point.impulse[lane] = impulseScale * manifold.impulses[static_cast<std::size_t>(i)];
+    arms[i][0] = movers[0]->worldFromBody * manifold.onA[at].template cast<double>();
+    if constexpr (Block::kBothMove) arms[i][1] = movers[1]->worldFromBody * manifold.onB[at].template cast<double>();
+    point.mass[lane] = 1 / fillTurns<Block>(point.turns, manifold.normal, arms[i], movers, lane);
+    point.separation[lane] = manifold.separations[at];
+    point.impulse[lane] = impulseScale * manifold.impulses[at];
   }
-  fillFriction(manifold, movers, impulseScale, lane, block);
+  fillFriction(manifold, arms, movers, impulseScale, lane, block);
 }
 
 /// A lane that stands for nothing: its body never moves.

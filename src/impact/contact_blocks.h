@@ -15,9 +15,9 @@ namespace cradle {
 
 /// A moving body as the solver sees it.
 struct SolverBody {
-  Vec3 position;         // m, world, of the centre of mass
   double inverseMass;    // 1/kg
   Mat3 scaledFromWorld;  // 1/sqrt(kg) / m: of angular impulses
+  Mat3 worldFromBody;
 };
 
 /// How a contact yields: as a damped spring that stiffens with the overlap.
@@ -65,10 +65,11 @@ struct SolverMotions {
   std::vector<BodyMotion> velocities;     // m/s, scaled rad/s
   std::vector<BodyMotion> displacements;  // m, scaled rad: since the step began
   std::vector<BodyMotion> starts;         // velocities before the step
+  std::vector<BodyMotion> fallen;         // velocities before contacts push in a sub-step
   std::vector<char> falls;                // 0: gravity does not move this body
 
   void resize(std::size_t bodies) {
-    for (auto* motions : {&velocities, &displacements, &starts}) motions->resize(bodies + 1);
+    for (auto* motions : {&velocities, &displacements, &starts, &fallen}) motions->resize(bodies + 1);
     falls.assign(bodies, 1);
   }
 };

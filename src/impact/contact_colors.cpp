@@ -8,23 +8,22 @@ namespace {
 
 constexpr int kColors = 64;  // a bit each
 
-bool isAgainstFixed(const ContactManifold& manifold) {
-  return manifold.bodyB == kFixed;
+bool isAgainstFixed(const ManifoldLink& link) {
+  return link.bodyB == kFixed;
 }
 
 }  // namespace
 
-const ContactColors& ContactColoring::color(const std::vector<ContactManifold>& manifolds,
-                                            const std::vector<std::int32_t>& active, std::size_t bodies) {
+const ContactColors& ContactColoring::color(const std::vector<ManifoldLink>& active, std::size_t bodies) {
   used_.assign(bodies, 0);
   colorOf_.resize(active.size());
   std::int32_t overflow = 2 * kColors;
   for (const bool againstFixed : {false, true})
     for (std::size_t i = 0; i < active.size(); ++i) {
-      const ContactManifold& manifold = manifolds[static_cast<std::size_t>(active[i])];
-      if (isAgainstFixed(manifold) != againstFixed) continue;
-      std::uint64_t& usedA = used_[static_cast<std::size_t>(manifold.bodyA)];
-      std::uint64_t& usedB = againstFixed ? usedA : used_[static_cast<std::size_t>(manifold.bodyB)];
+      const ManifoldLink& link = active[i];
+      if (isAgainstFixed(link) != againstFixed) continue;
+      std::uint64_t& usedA = used_[static_cast<std::size_t>(link.bodyA)];
+      std::uint64_t& usedB = againstFixed ? usedA : used_[static_cast<std::size_t>(link.bodyB)];
       const int color = std::countr_one(usedA | usedB);
       if (color == kColors) {
         colorOf_[i] = overflow++;
@@ -47,9 +46,9 @@ const ContactColors& ContactColoring::color(const std::vector<ContactManifold>& 
     start += size;
   }
   colors_.starts.push_back(start);
-  colors_.manifolds.resize(active.size());
+  colors_.links.resize(active.size());
   for (std::size_t i = 0; i < active.size(); ++i)
-    colors_.manifolds[next_[static_cast<std::size_t>(colorOf_[i])]++] = active[i];
+    colors_.links[next_[static_cast<std::size_t>(colorOf_[i])]++] = active[i];
   return colors_;
 }
 

@@ -56,6 +56,12 @@ struct LaneMotion {
 struct alignas(64) BodyMotion {
   Lanes xy{}, zu{}, vw{};  // linear x, y, z; angular u, v, w
 };
+inline BodyMotion operator+(const BodyMotion& a, const BodyMotion& b) {
+  return {a.xy + b.xy, a.zu + b.zu, a.vw + b.vw};
+}
+inline BodyMotion operator-(const BodyMotion& a, const BodyMotion& b) {
+  return {a.xy - b.xy, a.zu - b.zu, a.vw - b.vw};
+}
 
 inline LaneMotion gather(const BodyMotion& first, const BodyMotion& second) {
   const auto low = [](Lanes a, Lanes b) { return Lanes{a[0], b[0]}; };

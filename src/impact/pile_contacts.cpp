@@ -21,8 +21,20 @@ constexpr std::size_t kGrain = 512;     // pairs that a thread takes at once: te
 constexpr std::size_t kAhead = 2;       // pairs: what they need is asked for in time, for it lies anywhere
 constexpr std::size_t kNearGrain = 64;  // those among them that are near take longer
 
-auto orderOf(const ColliderPair& pair) {
-  return std::tuple(!pair.againstPlane, pair.againstPlane ? pair.b : pair.a, pair.againstPlane ? pair.a : pair.b);
+/// Pairs come from the broad phase in this order.
+auto orderOf(std::size_t a, std::size_t b, bool againstPlane) {
+  return std::tuple(!againstPlane, againstPlane ? b : a, againstPlane ? a : b);
+}
+auto orderOf(const PilePair& pair) {
+  return pair.isExchanged ? orderOf(pair.shapeB, pair.shapeA, pair.againstPlane)
+                          : orderOf(pair.shapeA, pair.shapeB, pair.againstPlane);
+}
+
+Vec3 inWorld(const MovingPose& pose, const ContactManifold::Anchor& anchor) {
+  return pose.rotation * anchor.cast<double>();
+}
+ContactManifold::Anchor inBody(const MovingPose& pose, const Vec3& vector) {
+  return (pose.rotation.transpose() * vector).cast<float>();
 }
 
 }  // namespace
@@ -36,17 +48,17 @@ void PileContacts::takePairs() {
     if (pair.manifold >= 0) free_.push_back(pair.manifold);
   };
   for (std::size_t i = 0; i < geometry_.pairs.size(); ++i) {
-    const auto order = orderOf(geometry_.pairs[i]);
-    while (old < listed_.size() && orderOf(listed_[old]) < order) release(pairs_[old++]);
-    if (old < listed_.size() && orderOf(listed_[old]) == order) {
+    const ColliderPair& pair = geometry_.pairs[i];
+    const auto order = orderOf(pair.a, pair.b, pair.againstPlane);
+    while (old < pairs_.size() && orderOf(pairs_[old]) < order) release(pairs_[old++]);
+    if (old < pairs_.size() && orderOf(pairs_[old]) == order) {
       taken_.push_back(pairs_[old++]);
-      taken_.back().pair = i;
+      taken_.back().pair = static_cast<std::uint32_t>(i);
     } else {
       taken_.push_back({patches_.pairOf(i)});
     }
   }
-  while (old < listed_.size()) release(pairs_[old++]);
-  listed_ = geometry_.pairs;
+  while (old < pairs_.size()) release(pairs_[old++]);
   pairs_.swap(taken_);
 }
 
@@ -76,6 +88,22 @@ bool PileContacts::areNear(const NearPair& pair, const PileLook& look, double re
   return (b.position - a.position).squaredNorm() < most * most && meet(b.boxCenter, b.boxHalf);
 }
 
+/// A bound on how far (m) points of a pair come nearer to each other in the step, and the margin.
+double PileContacts::reachOf(const NearPair& pair, const PileLook& look) {
+  const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
+  const double speed = (b.linearVelocity - a.linearVelocity).norm() + a.spinSpeed + b.spinSpeed;
+  return look.margin + speed * look.timeStep;
+}
+
+/// What most pairs are: too far from each other along some axis. Without a root.
+bool PileContacts::areFar(const NearPair& pair, const PileLook& look) {
+  if (pair.bodyB == kFixed) return false;
+  const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
+  const double speed = (b.linearVelocity - a.linearVelocity).lpNorm<1>() + a.spinSpeed + b.spinSpeed;
+  const double reach = look.margin + speed * look.timeStep;
+  return ((b.boxCenter - a.boxCenter).cwiseAbs() - b.boxHalf - a.boxHalf).maxCoeff() >= reach;
+}
+
 /// How fast bodies approach each other, at most; 0 if they do not come near within the step.
 double PileContacts::approachOf(const NearPair& pair, const PileLook& look) const {
   const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
@@ -84,7 +112,7 @@ double PileContacts::approachOf(const NearPair& pair, const PileLook& look) cons
   const bool areBalls = a.spinRadius == 0 && (pair.againstPlane || b.spinRadius == 0);
   const double part = areBalls ? kBallPart : 1;
   const Vec3 velocity = b.linearVelocity - a.linearVelocity;
-  if (!areNear(pair, look, look.margin + look.timeStep * (velocity.norm() + a.spinSpeed + b.spinSpeed))) return 0;
+  if (areFar(pair, look) || !areNear(pair, look, reachOf(pair, look))) return 0;
   if (pair.againstPlane) return part * std::max(0.0, geometry_.planes[pair.shapeB].normal.dot(velocity)) + spin;
   if (pair.bodyB == kFixed) return part * velocity.norm() + spin;
   const Vec3 offset = b.position - a.position;
@@ -105,8 +133,8 @@ bool PileContacts::mayTouch(const NearPair& pair, const PileLook& look) const {
   const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
   if (a.isAsleep && (pair.bodyB == kFixed || b.isAsleep)) return false;
   if (!pair.isEmpty) return true;
-  const double speed = (b.linearVelocity - a.linearVelocity).norm() + a.spinSpeed + b.spinSpeed;
-  const double reach = look.margin + speed * look.timeStep;
+  if (areFar(pair, look)) return false;
+  const double reach = reachOf(pair, look);
   return clearanceOf(pair, a, b) <= reach && areNear(pair, look, reach);
 }
 
@@ -116,17 +144,13 @@ void PileContacts::update(const PileLook& look, WorkerThreads& threads) {
   giveManifolds();
   threads.share(near_.size(), kNearGrain, [&](int thread, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      if (i + kAhead < last) {
-        const std::size_t next = static_cast<std::size_t>(pairs_[near_[i + kAhead]].manifold);
-        fetchAhead<true>(manifolds_[next]);
-        fetchAhead<true>(anchors_[next]);
-      }
+      if (i + kAhead < last) fetchAhead<true>(manifolds_[static_cast<std::size_t>(active_[i + kAhead].manifold)]);
       updatePair(pairs_[near_[i]], look, scratch_[static_cast<std::size_t>(thread)]);
+      const NearPair& pair = pairs_[near_[i]];
+      active_[i].count = pair.isEmpty ? 0 : manifolds_[static_cast<std::size_t>(pair.manifold)].count;
     }
   });
-  active_.clear();
-  for (const std::size_t index : near_)
-    if (!pairs_[index].isEmpty) active_.push_back(pairs_[index].manifold);
+  std::erase_if(active_, [](const ManifoldLink& link) { return link.count == 0; });
 }
 
 /// Each part of the pairs lists its own in place; put together they are in the order of pairs.
@@ -147,84 +171,94 @@ void PileContacts::findNear(const PileLook& look, WorkerThreads& threads) {
 
 /// Room for the manifolds of pairs that have come near.
 void PileContacts::giveManifolds() {
+  active_.clear();
   for (const std::size_t index : near_) {
     NearPair& pair = pairs_[index];
-    if (pair.manifold >= 0) continue;
-    if (free_.empty()) {
-      free_.push_back(static_cast<std::int32_t>(manifolds_.size()));
-      manifolds_.emplace_back();
-      anchors_.emplace_back();
-    }
-    pair.manifold = free_.back();
-    free_.pop_back();
-    ContactManifold& manifold = manifolds_[static_cast<std::size_t>(pair.manifold)];
-    manifold.bodyA = pair.bodyA, manifold.bodyB = pair.bodyB;
-    manifold.law = geometry_.pairs[pair.pair].law;
+    if (pair.manifold < 0) giveManifold(pair);
+    active_.push_back({pair.manifold, pair.bodyA, pair.bodyB, 0});
   }
+}
+
+void PileContacts::giveManifold(NearPair& pair) {
+  if (free_.empty()) {
+    free_.push_back(static_cast<std::int32_t>(manifolds_.size()));
+    manifolds_.emplace_back();
+  }
+  pair.manifold = free_.back();
+  free_.pop_back();
+  ContactManifold& manifold = manifolds_[static_cast<std::size_t>(pair.manifold)];
+  manifold.bodyA = pair.bodyA, manifold.bodyB = pair.bodyB;
+  const int surfaceB =
+      pair.againstPlane ? geometry_.planes[pair.shapeB].surface : geometry_.colliders[pair.shapeB].surface;
+  manifold.law = &geometry_.laws[static_cast<std::size_t>(geometry_.colliders[pair.shapeA].surface)]
+                                [static_cast<std::size_t>(surfaceB)];
 }
 
 void PileContacts::updatePair(NearPair& pair, const PileLook& look, std::vector<Contact>& scratch) {
   const MovingPose &poseA = look.poseOf(pair.bodyA), &poseB = look.poseOf(pair.bodyB);
   ContactManifold& manifold = manifolds_[static_cast<std::size_t>(pair.manifold)];
-  Anchors& anchors = anchors_[static_cast<std::size_t>(pair.manifold)];
   const Vec3 offset = poseB.position - poseA.position;
   const double turned = poseA.turned + poseB.turned;
   if (!pair.isEmpty && (offset - pair.offset).squaredNorm() <= kKeptMotion * kKeptMotion &&
       turned - pair.turned <= kKeptTurn) {
-    follow(poseA, poseB, anchors, manifold);
+    follow(pair, poseA, poseB, manifold);
   } else {
     const ContactPatch patch = patches_.patchOf(pair, look, scratch);
     const bool wasEmpty = pair.isEmpty;
     pair.isEmpty = patch.count == 0;
     pair.offset = offset, pair.turned = turned, pair.clearance = patch.clearance;
     if (pair.isEmpty) return;
-    renew(patch, poseA, poseB, wasEmpty, manifold, anchors);
+    renew(patch, poseA, poseB, wasEmpty, manifold);
   }
-  const ContactPatch::Point& point = manifold.patch.points[0];
   const Vec3 sliding = poseB.linearVelocity - poseA.linearVelocity +
-                       poseB.angularVelocity.cross(point.onB - poseB.position) -
-                       poseA.angularVelocity.cross(point.onA - poseA.position);
-  const double approach = -manifold.patch.normal.dot(sliding);
+                       poseB.angularVelocity.cross(inWorld(poseB, manifold.onB[0])) -
+                       poseA.angularVelocity.cross(inWorld(poseA, manifold.onA[0]));
+  const double approach = -manifold.normal.dot(sliding);
   const double across2 = sliding.squaredNorm() - approach * approach;
   const auto& impulses = manifold.impulses;
-  pair.approach = std::all_of(impulses.begin(), impulses.end(), [](double p) { return p == 0; }) ? approach : 0;
+  const bool isPressed = std::any_of(impulses.begin(), impulses.end(), [](double p) { return p != 0; });
+  pair.approach = isPressed ? 0 : static_cast<float>(approach);
   manifold.friction =
-      across2 < kSlowSliding * kSlowSliding ? manifold.law.staticFriction : manifold.law.dynamicFriction;
+      across2 < kSlowSliding * kSlowSliding ? manifold.law->staticFriction : manifold.law->dynamicFriction;
 }
 
-/// Where a manifold's points are after a small motion. What is fixed keeps its normal.
-void PileContacts::follow(const MovingPose& poseA, const MovingPose& poseB, const Anchors& anchors,
+/// How far a manifold's points are apart after a small motion. What is fixed keeps its normal.
+void PileContacts::follow(const NearPair& pair, const MovingPose& poseA, const MovingPose& poseB,
                           ContactManifold& manifold) {
-  ContactPatch& patch = manifold.patch;
-  if (manifold.bodyB != kFixed) patch.normal = poseA.rotation * anchors.normal;
-  for (std::size_t i = 0; i < patch.count; ++i) {
-    ContactPatch::Point& point = patch.points[i];
-    point.onA = poseA.position + poseA.rotation * anchors.onA[i];
-    point.onB = poseB.position + poseB.rotation * anchors.onB[i];
-    point.separation = patch.normal.dot(point.onB - point.onA);
-  }
+  const bool isFixed = manifold.bodyB == kFixed;
+  if (!isFixed) manifold.normal = inWorld(poseA, manifold.normalOnA);
+  const Vec3 offset = poseB.position - poseA.position - (isFixed ? pair.offset : Vec3(Vec3::Zero()));
+  const Vec3 normalOnA = poseA.rotation.transpose() * manifold.normal;
+  const Vec3 normalOnB = poseB.rotation.transpose() * manifold.normal;
+  const double apart = manifold.normal.dot(offset);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i)
+    manifold.separations[i] =
+        apart + normalOnB.dot(manifold.onB[i].cast<double>()) - normalOnA.dot(manifold.onA[i].cast<double>());
 }
 
 /// Takes a new patch; points that were there before keep their impulses.
 void PileContacts::renew(const ContactPatch& patch, const MovingPose& poseA, const MovingPose& poseB, bool wasEmpty,
-                         ContactManifold& manifold, Anchors& anchors) const {
-  const bool goesOn = !wasEmpty && manifold.patch.normal.dot(patch.normal) > kSameNormal;
-  const std::array<double, ContactPatch::kMostPoints> before = manifold.impulses;
-  const Anchors old = anchors;
-  const double near = kSamePoint * poseA.radius;
+                         ContactManifold& manifold) {
+  const bool goesOn = !wasEmpty && manifold.normal.dot(patch.normal) > kSameNormal;
+  const auto impulses = manifold.impulses;
+  const auto onA = manifold.onA;
+  const std::size_t count = static_cast<std::size_t>(manifold.count);
+  const float near2 = static_cast<float>(kSamePoint * kSamePoint * poseA.radius * poseA.radius);
+  const Vec3& from = manifold.bodyB == kFixed ? poseA.position : poseB.position;
   manifold.impulses.fill(0);
   if (!goesOn) manifold.frictionImpulse.setZero(), manifold.twistImpulse = 0;
-  anchors.normal = poseA.rotation.transpose() * patch.normal;
+  manifold.normal = patch.normal, manifold.normalOnA = inBody(poseA, patch.normal);
+  manifold.count = static_cast<std::int32_t>(patch.count);
   for (std::size_t i = 0; i < patch.count; ++i) {
-    anchors.onA[i] = poseA.rotation.transpose() * (patch.points[i].onA - poseA.position);
-    anchors.onB[i] = poseB.rotation.transpose() * (patch.points[i].onB - poseB.position);
-    for (std::size_t k = 0; goesOn && k < manifold.patch.count; ++k)
-      if (patch.count == 1 && manifold.patch.count == 1)
-        manifold.impulses[0] = before[0];
-      else if ((anchors.onA[i] - old.onA[k]).squaredNorm() < near * near)
-        manifold.impulses[i] = before[k];
+    manifold.onA[i] = inBody(poseA, patch.points[i].onA - poseA.position);
+    manifold.onB[i] = inBody(poseB, patch.points[i].onB - from);
+    manifold.separations[i] = patch.points[i].separation;
+    for (std::size_t k = 0; goesOn && k < count; ++k)
+      if (patch.count == 1 && count == 1)
+        manifold.impulses[0] = impulses[0];
+      else if ((manifold.onA[i] - onA[k]).squaredNorm() < near2)
+        manifold.impulses[i] = impulses[k];
   }
-  manifold.patch = patch;
 }
 
 std::vector<PileContacts::Meeting> PileContacts::meetings(double slowest) const {

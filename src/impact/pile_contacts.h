@@ -29,7 +29,7 @@ class PileContacts {
   std::vector<ContactManifold>& manifolds() { return manifolds_; }
   const std::vector<ContactManifold>& manifolds() const { return manifolds_; }
   /// The manifolds that have points and a body awake, in the order of pairs.
-  const std::vector<std::int32_t>& active() const { return active_; }
+  const std::vector<ManifoldLink>& active() const { return active_; }
 
   /// Contacts among them that were not pressed in the step before and close faster than `slowest` (m/s), as pairs of
   /// colliders.
@@ -50,40 +50,35 @@ class PileContacts {
  private:
   /// A pair, and what is known of it from the steps before.
   struct NearPair : PilePair {
-    std::int32_t manifold = -1;
     bool isEmpty = true;
-    double approach = 0;         // m/s, of a contact that was not pressed in the step before
+    std::int32_t manifold = -1;
+    float approach = 0;          // m/s, of a contact that was not pressed in the step before
     Vec3 offset = Vec3::Zero();  // m, from A to B when its patch was found
     double turned = 0;           // rad, of both, then
     double clearance = -std::numeric_limits<double>::infinity();  // m: how far apart they were then, at least
   };
-  /// A manifold's points in their bodies' frames.
-  struct Anchors {
-    Vec3 normal = Vec3::UnitY();  // in A's
-    std::array<Vec3, ContactPatch::kMostPoints> onA{}, onB{};
-  };
-
   void findNear(const PileLook& look, WorkerThreads& threads);
   void giveManifolds();
+  void giveManifold(NearPair& pair);
   static double clearanceOf(const NearPair& pair, const MovingPose& a, const MovingPose& b);
   bool areNear(const NearPair& pair, const PileLook& look, double reach) const;
+  static double reachOf(const NearPair& pair, const PileLook& look);
+  static bool areFar(const NearPair& pair, const PileLook& look);
   bool mayTouch(const NearPair& pair, const PileLook& look) const;
   double approachOf(const NearPair& pair, const PileLook& look) const;
   void updatePair(NearPair& pair, const PileLook& look, std::vector<Contact>& scratch);
-  static void follow(const MovingPose& poseA, const MovingPose& poseB, const Anchors& anchors,
-                     ContactManifold& manifold);
-  void renew(const ContactPatch& patch, const MovingPose& poseA, const MovingPose& poseB, bool wasEmpty,
-             ContactManifold& manifold, Anchors& anchors) const;
+  static void follow(const NearPair& pair, const MovingPose& poseA, const MovingPose& poseB, ContactManifold& manifold);
+  static void renew(const ContactPatch& patch, const MovingPose& poseA, const MovingPose& poseB, bool wasEmpty,
+                    ContactManifold& manifold);
 
   const ContactGeometry& geometry_;
   PilePatches patches_;
   std::vector<std::vector<Contact>> scratch_;  // of each thread
-  std::vector<ColliderPair> listed_;           // geometry.pairs as last taken
-  std::vector<NearPair> pairs_, taken_;        // taken_: scratch
+  std::vector<NearPair> pairs_, taken_;        // those of geometry.pairs as last taken; taken_: scratch
   std::vector<ContactManifold> manifolds_;
-  std::vector<Anchors> anchors_;
   std::vector<std::size_t> near_, nearOfPart_;  // indices into pairs_ of the last update, and how many of each part
-  std::vector<std::int32_t> free_, active_;
+  std::vector<ManifoldLink> active_;            // and while pairs are looked at, of all that are near
+  std::vector<std::int32_t> free_;
 };
 
 }  // namespace cradle

@@ -43,8 +43,8 @@ std::optional<PilePatches::BoxShape> PilePatches::boxOf(const Collider& collider
 PilePair PilePatches::pairOf(std::size_t index) const {
   const ColliderPair& pair = geometry_.pairs[index];
   PilePair oriented;
-  oriented.pair = index, oriented.againstPlane = pair.againstPlane;
-  oriented.shapeA = pair.a, oriented.shapeB = pair.b;
+  oriented.pair = static_cast<std::uint32_t>(index), oriented.againstPlane = pair.againstPlane;
+  oriented.shapeA = static_cast<std::uint32_t>(pair.a), oriented.shapeB = static_cast<std::uint32_t>(pair.b);
   oriented.bodyA = geometry_.colliders[pair.a].body, oriented.bodyB = bodyBOf(geometry_, pair);
   oriented.isExchanged = oriented.bodyA == kFixed;
   if (oriented.isExchanged) std::swap(oriented.shapeA, oriented.shapeB), std::swap(oriented.bodyA, oriented.bodyB);

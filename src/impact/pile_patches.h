@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -8,20 +9,19 @@
 
 namespace cradle {
 
-/// Where and how fast a moving body is.
-struct MovingPose {
-  // What tells whether a pair is near stands together.
-  Vec3 position = Vec3::Zero();        // m, world, of the centre of mass
+/// Where and how fast a moving body is. What tells whether a pair is near stands in the first two lines of memory.
+struct alignas(64) MovingPose {
+  Vec3 boxCenter = Vec3::Zero();       // m, world: of a box along the world's axes around the collider
+  Vec3 boxHalf = Vec3::Zero();         // m
   Vec3 linearVelocity = Vec3::Zero();  // m/s, world
   double spinSpeed = 0;                // m/s: of the surface by turning, at most
+  Vec3 position = Vec3::Zero();        // m, world, of the centre of mass
   double turned = 0;                   // rad, since the start, to and fro
-  double spinRadius = 0;               // m: how far from it turning moves the surface; 0 for a ball about its centre
+  double radius = 0;                   // m, of the collider about the centre of mass
   bool isAsleep = false;
-  double radius = 0;                    // m, of the collider about the centre of mass
-  Vec3 boxCenter = Vec3::Zero();        // m, world: of a box along the world's axes around the collider
-  Vec3 boxHalf = Vec3::Zero();          // m
-  Mat3 rotation = Mat3::Identity();     // worldFromBody
+  double spinRadius = 0;                // m: how far from it turning moves the surface; 0 for a ball about its centre
   Vec3 angularVelocity = Vec3::Zero();  // rad/s, world
+  Mat3 rotation = Mat3::Identity();     // worldFromBody
 };
 
 /// A pile at the begin of a step.
@@ -39,9 +39,9 @@ struct PileLook {
 
 /// A pair with a moving body first.
 struct PilePair {
-  std::size_t pair = 0;    // index into ContactGeometry::pairs
-  std::size_t shapeA = 0;  // collider
-  std::size_t shapeB = 0;  // collider or plane
+  std::uint32_t pair = 0;    // index into ContactGeometry::pairs
+  std::uint32_t shapeA = 0;  // collider
+  std::uint32_t shapeB = 0;  // collider or plane
   int bodyA = kFixed, bodyB = kFixed;
   bool againstPlane = false, isExchanged = false;
 };

@@ -7,16 +7,16 @@ namespace {
 
 constexpr double kCalmTime = 0.5;  // s: slow for so long is at rest
 
-bool bothMove(const ContactManifold& manifold) {
-  return manifold.bodyB != kFixed;
+bool bothMove(const ManifoldLink& link) {
+  return link.bodyB != kFixed;
 }
 
 /// Speed (m/s) at which a contact closes at its first point.
 double closingSpeed(const ContactManifold& manifold, const MovingPose& a, const MovingPose& b) {
-  const ContactPatch::Point& point = manifold.patch.points[0];
-  const Vec3 relative = b.linearVelocity - a.linearVelocity + b.angularVelocity.cross(point.onB - b.position) -
-                        a.angularVelocity.cross(point.onA - a.position);
-  return std::max(0.0, -manifold.patch.normal.dot(relative));
+  const Vec3 armA = a.rotation * manifold.onA[0].cast<double>(), armB = b.rotation * manifold.onB[0].cast<double>();
+  const Vec3 relative =
+      b.linearVelocity - a.linearVelocity + b.angularVelocity.cross(armB) - a.angularVelocity.cross(armA);
+  return std::max(0.0, -manifold.normal.dot(relative));
 }
 
 }  // namespace
@@ -32,15 +32,15 @@ void PileSleep::wakeTouched(const PileContacts& contacts, const std::vector<Movi
                             std::vector<int>& woken) {
   if (awake_ == masses_.size()) return;
   bool isListed = false;
-  for (const std::int32_t index : contacts.active()) {
-    const ContactManifold& manifold = contacts.manifolds()[static_cast<std::size_t>(index)];
-    if (!bothMove(manifold)) continue;
-    const std::size_t a = static_cast<std::size_t>(manifold.bodyA), b = static_cast<std::size_t>(manifold.bodyB);
+  for (const ManifoldLink& link : contacts.active()) {
+    if (!bothMove(link)) continue;
+    const std::size_t a = static_cast<std::size_t>(link.bodyA), b = static_cast<std::size_t>(link.bodyB);
     if (isAsleep_[a] == isAsleep_[b]) continue;
     const std::size_t mover = isAsleep_[a] ? b : a, sleeper = isAsleep_[a] ? a : b;
     if (calmTimes_[mover] > 0) continue;
     if (!isListed) listNeighbors(contacts);
     isListed = true;
+    const ContactManifold& manifold = contacts.manifolds()[static_cast<std::size_t>(link.manifold)];
     const double momentum = masses_[mover] * closingSpeed(manifold, poses[a], poses[b]);
     wakeAround(static_cast<int>(sleeper), momentum / slow, woken);
   }
@@ -96,10 +96,9 @@ void PileSleep::letSleep(const PileContacts& contacts, const std::vector<double>
   if (!someAreCalm) return;
   std::fill(hasRestlessNeighbor_.begin(), hasRestlessNeighbor_.end(), 0);
   const auto isRestless = [&](std::size_t body) { return !isAsleep_[body] && calmTimes_[body] < kCalmTime; };
-  for (const std::int32_t index : contacts.active()) {
-    const ContactManifold& manifold = contacts.manifolds()[static_cast<std::size_t>(index)];
-    if (!bothMove(manifold)) continue;
-    const std::size_t a = static_cast<std::size_t>(manifold.bodyA), b = static_cast<std::size_t>(manifold.bodyB);
+  for (const ManifoldLink& link : contacts.active()) {
+    if (!bothMove(link)) continue;
+    const std::size_t a = static_cast<std::size_t>(link.bodyA), b = static_cast<std::size_t>(link.bodyB);
     if (isRestless(a)) hasRestlessNeighbor_[b] = 1;
     if (isRestless(b)) hasRestlessNeighbor_[a] = 1;
   }

@@ -32,6 +32,10 @@ Quat turned(const Quat& worldFromBody, const Vec3& rotation) {
   return sum.normalized();
 }
 
+Vec3 pointOf(const MovingPose& pose, const ContactManifold::Anchor& anchor) {
+  return pose.position + pose.rotation * anchor.cast<double>();
+}
+
 BodyMotion motionOf(const Vec3& linear, const Vec3& angular) {
   return BodyMotion{Lanes{linear.x(), linear.y()}, Lanes{linear.z(), angular.x()}, Lanes{angular.y(), angular.z()}};
 }
@@ -70,6 +74,8 @@ PileStep::PileStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
       pose.spinRadius = collider.isBall() && collider.points[0].isZero() ? 0 : pose.radius;
       isBall_[static_cast<std::size_t>(collider.body)] = collider.isBall();
     }
+  for (const std::vector<SurfaceLaw>& row : geometry.laws)
+    for (const SurfaceLaw& law : row) rebounds_ = rebounds_ || law.restitution > 0;
   worldFromPrincipal_.assign(count, Mat3::Identity());
   solverBodies_.resize(count);
   motions_.resize(count);
@@ -95,21 +101,22 @@ void PileStep::advance(double timeStep, VectorX& state) {
 
   for (int piece = 0; piece < pieces; ++piece) {
     if (pieces > 1) placeBodies(timeStep / pieces, state);
-    takePiece(timeStep / pieces, subSteps, state);
+    takePiece(timeStep / pieces, subSteps, pieces - piece, state);
   }
   letSleep(timeStep, state);
 }
 
-/// A step with one look for contacts.
-void PileStep::takePiece(double timeStep, int subSteps, VectorX& state) {
-  if (broadPhase_.update({state, reaches_, drifts_}, margin_, geometry_)) contacts_.takePairs();
+/// A step with one look for contacts, the first of so many pieces that are left.
+void PileStep::takePiece(double timeStep, int subSteps, int pieces, VectorX& state) {
+  const double ahead = pieces;
+  if (broadPhase_.update({state, reaches_, drifts_, ahead}, margin_, geometry_)) contacts_.takePairs();
   contacts_.update({poses_, state, timeStep, margin_}, threads_);
   wakeTouched(timeStep, state);
   ++looks_;
-  const ContactColors& colors = coloring_.color(contacts_.manifolds(), contacts_.active(), bodies_.size());
+  const ContactColors& colors = coloring_.color(contacts_.active(), bodies_.size());
   const double subStep = timeStep / subSteps;
   solver_.prepare(colors, contacts_.manifolds(), solverBodies_, subStep, threads_);
-  solver_.solve({subStep, subSteps, slowestRebound_}, gravity_, motions_, threads_);
+  solver_.solve({subStep, subSteps, slowestRebound_, rebounds_}, gravity_, motions_, threads_);
   solver_.store(contacts_.manifolds(), threads_);
   recordImpacts(subSteps);
   threads_.share(bodies_.size(), kGrain, [&](int, std::size_t first, std::size_t last) {
@@ -144,8 +151,8 @@ void PileStep::placeBody(std::size_t index, const VectorX& state) {
   Mat3& axes = worldFromPrincipal_[index];
   if (!bodies_[index].isSpherical) axes = pose.rotation * principalAxes_[index];
   const Vec3& roots = rootMoments_[index];
-  solverBodies_[index] = {pose.position, bodies_[index].inverseMass,
-                          Mat3(roots.cwiseInverse().asDiagonal() * axes.transpose())};
+  solverBodies_[index] = {bodies_[index].inverseMass, Mat3(roots.cwiseInverse().asDiagonal() * axes.transpose()),
+                          pose.rotation};
   motions_.starts[index] = motionOf(pose.linearVelocity, roots.cwiseProduct(axes.transpose() * pose.angularVelocity));
 }
 
@@ -181,11 +188,14 @@ void PileStep::recordImpacts(int subSteps) {
   for (const PileContacts::Meeting& meeting : contacts_.meetings(slowestRebound_)) {
     const ContactManifold& manifold = contacts_.manifolds()[static_cast<std::size_t>(meeting.manifold)];
     double impulse = 0;
-    for (std::size_t i = 0; i < manifold.patch.count; ++i) impulse += subSteps * manifold.impulses[i];
+    for (std::int32_t i = 0; i < manifold.count; ++i)
+      impulse += subSteps * manifold.impulses[static_cast<std::size_t>(i)];
     if (impulse <= 0) continue;
-    const ContactPatch::Point& point = manifold.patch.points[0];
-    impacts_.push_back(
-        {meeting.pair, (point.onA + point.onB) / 2, (meeting.isExchanged ? -1 : 1) * manifold.patch.normal, impulse});
+    const Vec3 onA = pointOf(poses_[static_cast<std::size_t>(manifold.bodyA)], manifold.onA[0]);
+    const Vec3 onB = manifold.bodyB == kFixed
+                         ? Vec3(onA + manifold.separations[0] * manifold.normal)
+                         : pointOf(poses_[static_cast<std::size_t>(manifold.bodyB)], manifold.onB[0]);
+    impacts_.push_back({meeting.pair, (onA + onB) / 2, (meeting.isExchanged ? -1 : 1) * manifold.normal, impulse});
   }
 }
 
@@ -221,7 +231,7 @@ void PileStep::letSleep(double timeStep, VectorX& state) {
     poses_[sleeper].linearVelocity.setZero(), poses_[sleeper].angularVelocity.setZero();
     poses_[sleeper].spinSpeed = 0;
     poses_[sleeper].isAsleep = true, motions_.falls[sleeper] = 0, motions_.starts[sleeper] = {};
-    solverBodies_[sleeper] = {centerOfMass(state, fallenAsleep_[i]), 0, Mat3(Mat3::Zero())};
+    solverBodies_[sleeper] = {0, Mat3(Mat3::Zero()), poses_[sleeper].rotation};
   }
 }
 

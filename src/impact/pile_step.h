@@ -43,7 +43,7 @@ class PileStep {
  private:
   void placeBodies(double timeStep, const VectorX& state);
   void placeBody(std::size_t index, const VectorX& state);
-  void takePiece(double timeStep, int subSteps, VectorX& state);
+  void takePiece(double timeStep, int subSteps, int pieces, VectorX& state);
   void moveBody(std::size_t index, double timeStep, double subStep, VectorX& state);
   void recordImpacts(int subSteps);
   void wakeTouched(double timeStep, const VectorX& state);
@@ -70,6 +70,7 @@ class PileStep {
   PileSleep sleep_;
   std::vector<double> speeds_;  // m/s, of each body's fastest point; infinite if it touches nothing
   double slowestRebound_ = 0;   // m/s
+  bool rebounds_ = false;       // by some law
   double margin_ = 0;           // m: nearer bodies are in contact
   double slow_ = 0;             // m/s: slower is as good as still
   long looks_ = 0;

@@ -21,6 +21,7 @@ class SoftContactSolver {
     double subStep;  // s
     int count;
     double slowestRebound;  // m/s: contacts that close more slowly do not rebound
+    bool rebounds;          // whether some contacts do
   };
   /// From the velocities in `motions` and displacements of zero to the velocities and displacements at the end.
   void solve(const Steps& steps, const Vec3& gravity, SolverMotions& motions, WorkerThreads& threads);
@@ -43,7 +44,7 @@ class SoftContactSolver {
                  BlockList<ContactBlock<4, true>>, BlockList<ContactBlock<1, false>>, BlockList<ContactBlock<2, false>>,
                  BlockList<ContactBlock<3, false>>, BlockList<ContactBlock<4, false>>>;
 
-  void arrange(const ContactColors& colors, const std::vector<ContactManifold>& manifolds, std::int32_t stillBody);
+  void arrange(const ContactColors& colors, std::int32_t stillBody);
   void arrangeTasks();
   template <class Pass>
   void sweep(WorkerThreads& threads, int thread, const Pass& pass);
@@ -56,7 +57,6 @@ class SoftContactSolver {
   BlockLists lists_;
   std::vector<Task> tasks_;
   std::size_t colors_ = 0;
-  bool rebounds_ = false;
   double subStep_ = 0;  // s, that the manifolds' impulses belong to
 };
 

@@ -130,6 +130,21 @@ TEST(BroadPhase, MissesNoPairThatMayMeetOnTheirWays) {
   }
 }
 
+// A list for four steps along ways of (0.3, 0.4) m: bodies may also go a quarter of these 2 m aside, or further. It
+// serves while 0.4 n <= 1.6 + 0.5: five steps.
+TEST(BroadPhase, KeepsItsListAsFarAheadAsItWasMadeFor) {
+  std::mt19937 random(6);
+  Crowd crowd = crowdOf(40, 2, random);
+  const std::vector<Vec3> drifts(40, Vec3(0.3, -0.4, 0));
+  const std::vector<double> beside(40, 0.0);
+  BroadPhase broadPhase;
+  for (int step = 0; step < 6; ++step) {
+    const bool isNew = broadPhase.update({crowd.state, beside, drifts, 4.0}, 0.02, crowd.geometry);
+    EXPECT_EQ(isNew, step == 0 || step == 5) << step;
+    for (int body = 0; body < 40; ++body) centerOfMass(crowd.state, body) += drifts[static_cast<std::size_t>(body)];
+  }
+}
+
 TEST(BroadPhase, HasTheSameListForAnyNumberOfThreads) {
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> lists;
   for (const int count : {1, 3}) {
