@@ -116,8 +116,14 @@ TEST(StabilityMaps, AreCompleteAndWithinTheirAxes) {
       for (const MapCurve& curve : panel.curves)
         for (const MapPoint& point : curve.points) {
           if (curve.kind != CurveKind::series) continue;
-          if (!map.x.values.empty()) EXPECT_TRUE(point.x >= map.x.values[0] && point.x <= map.x.values.back());
-          if (!map.y.values.empty()) EXPECT_TRUE(point.y >= map.y.values[0] && point.y <= map.y.values.back());
+          if (!map.x.values.empty()) {
+            EXPECT_GE(point.x, map.x.values[0]);
+            EXPECT_LE(point.x, map.x.values.back());
+          }
+          if (!map.y.values.empty()) {
+            EXPECT_GE(point.y, map.y.values[0]);
+            EXPECT_LE(point.y, map.y.values.back());
+          }
         }
     }
   }
