@@ -64,6 +64,8 @@ TEST_F(Film, ArrowsFitWhatTheNearestCameraSees) {
   halfway.position.z() = 4.5;
   const double angle = view_.camera.verticalFieldOfView;
   scene_.cameraMotion.keys = {{0, {0, 0, 6}, Vec3::Zero(), angle}, {2, {0, 0, 3}, Vec3::Zero(), angle}};
+  view_.keys = {view_.camera};
+  view_.keys[0].position.z() = 3;
   const Image image = draw({false, false, true, false, std::nullopt, ""}, 60);
   const double length = 0.22 * kSeenHeight / 2;  // at the end half as much is seen
   const Vec3 tail = frameAt(60).states[0].position;
