@@ -2,7 +2,7 @@
 
 #include "allocation/allocations.h"
 #include "dynamics/contact_motion.h"
-#include "dynamics/dop853_problems.h"
+#include "dynamics/integrator_problems.h"
 #include "dynamics/integrators/dop853.h"
 #include "dynamics/integrators/explicit_euler.h"
 #include "dynamics/integrators/rk4.h"

@@ -5,64 +5,33 @@
 #include <cmath>
 #include <limits>
 
-#include "dynamics/dop853_problems.h"
+#include "dynamics/integrator_problems.h"
 #include "dynamics/integrators/dop853_table.h"
 
 namespace cradle {
 namespace {
 
-VectorX run(const RightHandSide& rightHandSide, const VectorX& start, double duration, int steps) {
-  Step step;
-  VectorX state = start;
-  const double timeStep = duration / steps;
-  for (int i = 0; i < steps; ++i) {
-    dop853(rightHandSide, state, i * timeStep, timeStep, step);
-    state = step.state;
-  }
-  return state;
-}
-
-/// log2 of the ratio of two errors: the order, if the second belongs to half the step.
-double orderOf(double error, double errorOfHalf) {
-  return std::log2(error / errorOfHalf);
-}
-
-Step keplerStep(double time, double timeStep) {
-  Step step;
-  dop853(kepler(), keplerAt(time), time, timeStep, step);
-  prepareInterpolant(kepler(), step);
-  return step;
-}
-
-double interpolationError(double timeStep) {
-  const double time = 0.4;
-  const Step step = keplerStep(time, timeStep);
-  VectorX state;
-  double most = 0;
-  for (int i = 1; i < 20; ++i) {
-    interpolate(step, i / 20.0, state);
-    most = std::max(most, (state - keplerAt(time + i / 20.0 * timeStep)).norm());
-  }
-  return most;
-}
-
 TEST(Dop853, IsOfOrderEightOnTheOscillator) {
   const auto error = [](int steps) {
-    return (run(oscillator(1), oscillatorAt(1, 0), 10, steps) - oscillatorAt(1, 10)).norm();
+    return (stateAfter(dop853, oscillator(1), oscillatorAt(1, 0), 10, steps) - oscillatorAt(1, 10)).norm();
   };
   EXPECT_NEAR(orderOf(error(10), error(20)), 8, 0.3);
   EXPECT_LT(error(20), 1e-6);
 }
 
 TEST(Dop853, IsOfOrderEightOnAnEllipse) {
-  const auto error = [](int steps) { return (run(kepler(), keplerAt(0), 2, steps) - keplerAt(2)).norm(); };
+  const auto error = [](int steps) {
+    return (stateAfter(dop853, kepler(), keplerAt(0), 2, steps) - keplerAt(2)).norm();
+  };
   EXPECT_NEAR(orderOf(error(8), error(16)), 8, 0.5);
   EXPECT_LT(error(8), 1e-7);
 }
 
 // |R(i z)| of its stability polynomial is 1 at z = 5.9606: 0.90 at 5.9, 1.077 at 6.
 TEST(Dop853, OscillatorIsStableUpToStepTimesOmegaFivePointNineSix) {
-  const auto farthest = [](double omega) { return run(oscillator(omega), oscillatorAt(omega, 0), 100, 100).norm(); };
+  const auto farthest = [](double omega) {
+    return stateAfter(dop853, oscillator(omega), oscillatorAt(omega, 0), 100, 100).norm();
+  };
   EXPECT_LT(farthest(5.96), 6);
   EXPECT_LT(farthest(5.9), 1e-3);
   EXPECT_GT(farthest(6.0), 1e3);
@@ -70,12 +39,12 @@ TEST(Dop853, OscillatorIsStableUpToStepTimesOmegaFivePointNineSix) {
 
 // The local error of an interpolant of order 7.
 TEST(Dop853, InterpolantHasALocalErrorOfTheEighthPower) {
-  EXPECT_NEAR(orderOf(interpolationError(0.2), interpolationError(0.1)), 8, 0.5);
-  EXPECT_LT(interpolationError(0.2), 1e-7);
+  EXPECT_NEAR(orderOf(interpolationError(dop853, 0.2), interpolationError(dop853, 0.1)), 8, 0.5);
+  EXPECT_LT(interpolationError(dop853, 0.2), 1e-7);
 }
 
 TEST(Dop853, InterpolantIsExactAtBothEndsWithItsSlope) {
-  const Step step = keplerStep(1, 0.5);
+  const Step step = keplerStep(dop853, 1, 0.5);
   VectorX state, near;
   interpolate(step, 0, state);
   EXPECT_EQ(state, step.startState);
@@ -92,10 +61,10 @@ TEST(Dop853, InterpolantIsExactAtBothEndsWithItsSlope) {
 // larger the smaller the step.
 TEST(Dop853, ErrorNormIsOfTheEighthPowerAndAboveTheError) {
   const VectorX tolerance = VectorX::Constant(4, 1e-8);
-  const auto norm = [&](double timeStep) { return errorNorm(keplerStep(0.4, timeStep), tolerance); };
+  const auto norm = [&](double timeStep) { return errorNorm(keplerStep(dop853, 0.4, timeStep), tolerance); };
   EXPECT_NEAR(orderOf(norm(0.1), norm(0.05)), 8, 0.3);
   for (const double timeStep : {0.8, 0.4, 0.2}) {
-    const Step step = keplerStep(0.4, timeStep);
+    const Step step = keplerStep(dop853, 0.4, timeStep);
     const VectorX exact = keplerAt(0.4 + timeStep);
     const double error =
         ((step.state - exact).array() / (tolerance.array() * (1 + exact.array().abs()))).abs().maxCoeff();

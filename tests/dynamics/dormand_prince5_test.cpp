@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "dynamics/dop853_problems.h"
+#include "dynamics/integrator_problems.h"
 #include "dynamics/integrators/dormand_prince5_table.h"
 
 namespace cradle {
@@ -36,68 +36,38 @@ TEST(DormandPrince5Table, ResultIsOfOrderFiveAndItsErrorEstimateOfOrderFour) {
   EXPECT_GT(std::abs(sumOf(kErrors[0], 4)), 1e-4);
 }
 
-VectorX run(const RightHandSide& rightHandSide, const VectorX& start, double duration, int steps) {
-  Step step;
-  VectorX state = start;
-  const double timeStep = duration / steps;
-  for (int i = 0; i < steps; ++i) {
-    dormandPrince5(rightHandSide, state, i * timeStep, timeStep, step);
-    state = step.state;
-  }
-  return state;
-}
-
-/// log2 of the ratio of two errors: the order, if the second belongs to half the step.
-double orderOf(double error, double errorOfHalf) {
-  return std::log2(error / errorOfHalf);
-}
-
-Step keplerStep(double time, double timeStep) {
-  Step step;
-  dormandPrince5(kepler(), keplerAt(time), time, timeStep, step);
-  prepareInterpolant(kepler(), step);
-  return step;
-}
-
-double interpolationError(double timeStep) {
-  const Step step = keplerStep(0.4, timeStep);
-  VectorX state;
-  double most = 0;
-  for (int i = 1; i < 20; ++i) {
-    interpolate(step, i / 20.0, state);
-    most = std::max(most, (state - keplerAt(0.4 + i / 20.0 * timeStep)).norm());
-  }
-  return most;
-}
-
 TEST(DormandPrince5, IsOfOrderFive) {
-  const auto error = [](int steps) { return (run(kepler(), keplerAt(0), 2, steps) - keplerAt(2)).norm(); };
+  const auto error = [](int steps) {
+    return (stateAfter(dormandPrince5, kepler(), keplerAt(0), 2, steps) - keplerAt(2)).norm();
+  };
   EXPECT_NEAR(orderOf(error(40), error(80)), 5, 0.6);
   EXPECT_LT(error(80), 1e-7);
   const auto swing = [](int steps) {
-    return (run(oscillator(1), oscillatorAt(1, 0), 10, steps) - oscillatorAt(1, 10)).norm();
+    return (stateAfter(dormandPrince5, oscillator(1), oscillatorAt(1, 0), 10, steps) - oscillatorAt(1, 10)).norm();
   };
   EXPECT_NEAR(orderOf(swing(40), swing(80)), 5, 0.3);
 }
 
 // The local error of an interpolant of order 4.
 TEST(DormandPrince5, InterpolantHasALocalErrorOfTheFifthPower) {
-  EXPECT_NEAR(orderOf(interpolationError(0.2), interpolationError(0.1)), 5, 0.3);
-  EXPECT_LT(interpolationError(0.1), 1e-6);
+  EXPECT_NEAR(orderOf(interpolationError(dormandPrince5, 0.2), interpolationError(dormandPrince5, 0.1)), 5, 0.3);
+  EXPECT_LT(interpolationError(dormandPrince5, 0.1), 1e-6);
 }
 
 // So that a state within a step is nearly as good as the step is judged to be: that falls as fast, and stays of its
 // size.
 TEST(DormandPrince5, ErrorEstimateIsOfTheSizeOfTheInterpolantsError) {
   const VectorX tolerance = VectorX::Constant(4, 1e-8);
-  const auto norm = [&](double timeStep) { return dormandPrince5Error(keplerStep(0.4, timeStep), tolerance); };
+  const auto norm = [&](double timeStep) {
+    return dormandPrince5Error(keplerStep(dormandPrince5, 0.4, timeStep), tolerance);
+  };
   EXPECT_NEAR(orderOf(norm(0.1), norm(0.05)), 5, 0.3);
   for (const double timeStep : {0.2, 0.1, 0.05}) {
     const double estimate = norm(timeStep) * 1e-8 * 2.4;  // components of size 1.4 at most
-    EXPECT_LT(interpolationError(timeStep), 3 * estimate) << timeStep;
-    EXPECT_GT(interpolationError(timeStep), 0.3 * estimate) << timeStep;
+    EXPECT_LT(interpolationError(dormandPrince5, timeStep), 3 * estimate) << timeStep;
+    EXPECT_GT(interpolationError(dormandPrince5, timeStep), 0.3 * estimate) << timeStep;
   }
-  const double error = (keplerStep(0.4, 0.1).state - keplerAt(0.5)).norm();
+  const double error = (keplerStep(dormandPrince5, 0.4, 0.1).state - keplerAt(0.5)).norm();
   EXPECT_LT(error, norm(0.1) * 1e-8 * 2.4);
 }
 
@@ -130,7 +100,7 @@ TEST(DormandPrince5, TakesSixEvaluations) {
 // Both are polynomials of degree 4 with the same values: the same to rounding.
 TEST(DormandPrince5, WhatIsCutOffAStepLeavesTheRestOfItsCurve) {
   const double timeStep = 0.8, cut = 0.3;
-  const Step whole = keplerStep(0.4, timeStep);
+  const Step whole = keplerStep(dormandPrince5, 0.4, timeStep);
   Step part = whole;
   cutStep(cut, part);
   EXPECT_DOUBLE_EQ(part.timeStep, cut * timeStep);

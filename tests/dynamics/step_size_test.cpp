@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "dynamics/dop853_problems.h"
+#include "dynamics/integrator_problems.h"
 #include "dynamics/integrators/dop853.h"
 
 namespace cradle {

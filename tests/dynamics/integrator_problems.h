@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -41,6 +42,45 @@ inline VectorX keplerAt(double time) {
   for (int i = 0; i < 20; ++i) anomaly -= (anomaly - e * std::sin(anomaly) - mean) / (1 - e * std::cos(anomaly));
   const double c = std::cos(anomaly), s = std::sin(anomaly), speed = 1 / (1 - e * c);
   return Eigen::Vector4d(c - e, axis * s, -s * speed, axis * c * speed);
+}
+
+/// The state after `steps` equal steps from time 0.
+inline VectorX stateAfter(Integrator integrate, const RightHandSide& rightHandSide, const VectorX& start,
+                          double duration, int steps) {
+  Step step;
+  VectorX state = start;
+  const double timeStep = duration / steps;
+  for (int i = 0; i < steps; ++i) {
+    integrate(rightHandSide, state, i * timeStep, timeStep, step);
+    state = step.state;
+  }
+  return state;
+}
+
+/// log2 of the ratio of two errors: the order, if the second belongs to half the step.
+inline double orderOf(double error, double errorOfHalf) {
+  return std::log2(error / errorOfHalf);
+}
+
+/// A step of the planet, ready to be interpolated.
+inline Step keplerStep(Integrator integrate, double time, double timeStep) {
+  Step step;
+  integrate(kepler(), keplerAt(time), time, timeStep, step);
+  prepareInterpolant(kepler(), step);
+  return step;
+}
+
+/// The largest error at 19 places inside a step of the planet.
+inline double interpolationError(Integrator integrate, double timeStep) {
+  const double time = 0.4;
+  const Step step = keplerStep(integrate, time, timeStep);
+  VectorX state;
+  double most = 0;
+  for (int i = 1; i < 20; ++i) {
+    interpolate(step, i / 20.0, state);
+    most = std::max(most, (state - keplerAt(time + i / 20.0 * timeStep)).norm());
+  }
+  return most;
 }
 
 }  // namespace cradle
