@@ -9,7 +9,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kEventAccuracy = 1e-4;  // coarser ones ask for a look, and may be moved by steps
 // Times the accuracy. A step's error is a tenth of it: a hundred of them a run, of random signs, make up one of speeds,
 // and energy has their square. Frames between steps, which end where ties and contacts hold, have less than one.
 constexpr double kMostEnergyErrors = 2, kMostPlaceErrors = 1;
@@ -66,7 +65,7 @@ RandomSceneFigures runRandomScene(const Scene& scene) {
 }
 
 std::vector<std::string> faultsOf(const RandomSceneFigures& figures, double accuracy) {
-  const bool keeps = figures.keepsAccuracy && accuracy <= kEventAccuracy;
+  const bool keeps = figures.keepsAccuracy;
   const double mostEnergy = kMostEnergyErrors * accuracy, mostPlace = kMostPlaceErrors * accuracy;
   const double gain = figures.energyGain / figures.energyScale, error = figures.energyError / figures.energyScale;
   std::vector<std::string> faults;
