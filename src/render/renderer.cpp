@@ -2,9 +2,12 @@
 
 #include <GL/glew.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "render/changed_area.h"
@@ -203,15 +206,26 @@ void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
   if (changed.contactsChanged) r.maps.drawContacts(r.items);
   finishStage(times_.maps);
   const std::vector<PixelRectangle> areas = changed.picture.rectangles();
-  // Resolved one by one: Mesa's software renderer lets samples up to half a pixel beyond an area through, and what is
-  // drawn there once more takes the place of what is as far away and was drawn later.
-  for (const PixelRectangle& area : areas) {
-    drawPicture(area);
+  // Mesa's software renderer lets samples up to half a pixel beyond an area through, and what is drawn there once more
+  // takes the place of what is as far away and was drawn later: areas that touch are not drawn before both are
+  // resolved.
+  for (std::vector<PixelRectangle> left = areas, later; !left.empty(); left = std::exchange(later, {})) {
+    std::vector<PixelRectangle> apart;
+    for (const PixelRectangle& area : left) {
+      const auto touches = [&area](const PixelRectangle& other) {
+        return area.left <= other.right && other.left <= area.right && area.bottom <= other.top &&
+               other.bottom <= area.top;
+      };
+      (std::any_of(apart.begin(), apart.end(), touches) ? later : apart).push_back(area);
+    }
+    for (const PixelRectangle& area : apart) {
+      drawPicture(area);
+      drawnShare_ +=
+          static_cast<double>(area.width()) * area.height() / (static_cast<double>(r.image.width) * r.image.height);
+    }
     finishStage(times_.main);
-    r.picture.resolve(area);
+    for (const PixelRectangle& area : apart) r.picture.resolve(area);
     finishStage(times_.resolve);
-    drawnShare_ +=
-        static_cast<double>(area.width()) * area.height() / (static_cast<double>(r.image.width) * r.image.height);
   }
   for (const PixelRectangle& area : areas) r.picture.read(area, r.image);
   finishStage(times_.readBack);
