@@ -101,8 +101,11 @@ class TrajectoryReader {
   std::unique_ptr<Session> session_;
 };
 
-/// Whether `path` is a SQLite file, so that a command can tell a trajectory from a scene. Throws nothing: a file that
-/// cannot be read is none.
+/// Whether `path` is a SQLite file, so that a command can tell a trajectory, also one that is damaged or of another
+/// program, from a scene. Throws nothing: a file that cannot be read is none.
+bool isDatabaseFile(const std::string& path);
+
+/// Whether it is one of cradle's, complete or not.
 bool isTrajectoryFile(const std::string& path);
 
 }  // namespace cradle

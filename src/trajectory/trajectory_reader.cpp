@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -19,6 +18,19 @@
 
 namespace cradle {
 namespace {
+
+// The header of a SQLite file. ("Database File Format" on sqlite.org, section 1.3)
+constexpr std::string_view kMagic("SQLite format 3\0", 16);
+constexpr std::size_t kHeaderSize = 100, kApplicationIdAt = 68;  // bytes; the id is big-endian
+
+/// The first bytes of a file; empty if it has not so many, or cannot be read.
+std::string fileHeaderOf(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return "";
+  std::string header(kHeaderSize, '\0');
+  std::ifstream file(path, std::ios::binary);
+  return file.read(header.data(), kHeaderSize) ? header : "";
+}
 
 std::int64_t oneInteger(Database& database, const std::string& sql) {
   Statement query = database.prepare(sql);
@@ -131,7 +143,7 @@ struct TrajectoryReader::Session {
 
 TrajectoryReader::TrajectoryReader(const std::string& path) : path_(path) {
   // Asked first because SQLite takes an empty file for a database.
-  if (!isTrajectoryFile(path)) throw Error(ErrorKind::usage, path, "is not a trajectory (or cannot be read)");
+  if (!isDatabaseFile(path)) throw Error(ErrorKind::usage, path, "is not a trajectory (or cannot be read)");
   session_ = std::make_unique<Session>(path);
   readMeta();
   readMeshes();
@@ -273,13 +285,16 @@ RunCost TrajectoryReader::cost() const {
   return {query.real(0), query.integer(1)};
 }
 
+bool isDatabaseFile(const std::string& path) {
+  return fileHeaderOf(path).starts_with(kMagic);
+}
+
 bool isTrajectoryFile(const std::string& path) {
-  constexpr std::string_view kMagic("SQLite format 3\0", 16);
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;
-  std::array<char, kMagic.size()> start{};
-  std::ifstream file(path, std::ios::binary);
-  return file.read(start.data(), start.size()) && std::string_view(start.data(), start.size()) == kMagic;
+  const std::string header = fileHeaderOf(path);
+  if (!header.starts_with(kMagic)) return false;
+  std::uint32_t id = 0;
+  for (std::size_t i = 0; i < 4; ++i) id = id << 8 | static_cast<unsigned char>(header[kApplicationIdAt + i]);
+  return id == kApplicationId;
 }
 
 }  // namespace cradle

@@ -27,7 +27,7 @@ void removeOldPart(const std::string& part) {
   const auto status = fs::symlink_status(part);
   if (fs::exists(status) && !fs::is_regular_file(status))
     throw Error(ErrorKind::output, part, "is in the way and is not a regular file; remove it or choose another name");
-  if (isTrajectoryFile(part) && isBeingWritten(part))
+  if (isDatabaseFile(part) && isBeingWritten(part))
     throw Error(ErrorKind::output, part, "is being written by another run; wait for its end or choose another name");
   fs::remove(part);
 }

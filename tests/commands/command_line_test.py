@@ -190,6 +190,12 @@ class Trajectories(InTemporaryFolder):
         self.refuses(5, ["s.json: ", "no trajectory"], "simulate", path, "-o", path)
         with open(path) as file:
             self.assertEqual(json.load(file), scene())
+        others = self.path("others.sqlite")
+        database = sqlite3.connect(others)
+        database.executescript("CREATE TABLE thesis (chapter TEXT); INSERT INTO thesis VALUES ('one');")
+        database.close()
+        self.refuses(5, ["others.sqlite: ", "no trajectory"], "simulate", path, "-o", others)
+        self.assertEqual(sqlite3.connect(others).execute("SELECT chapter FROM thesis").fetchall(), [("one",)])
         for _ in range(2):
             self.assertEqual(cradle("simulate", path, "-o", self.path("a.sqlite")).returncode, 0)
 
@@ -485,11 +491,19 @@ class Pictures(InTemporaryFolder):
         bodies = [{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0.4, 0], "linearVelocity": [3, 0, 0]},
                   {"name": "ground", "shape": {"plane": {}}, "motion": "static"}]
         keys = [{"time": 0, "position": [0, 1, 3]}, {"time": 0.4, "position": [0.5, 1, 2], "target": [1, 0, 0]}]
-        for kind in ({}, {"orbit": {"period": 2}}, {"keyFrames": keys}, {"follow": {"body": "ball"}}, {"target": "ball"}):
-            path = self.write("s.json", scene(duration=0.5, output={"width": 128, "height": 72}, bodies=bodies,
+        # The arrow of the second is shown from the first picture on; the first misses.
+        pushes = [{"body": "ball", "ray": {"origin": [0, 5, 0], "direction": [0, 1, 0]}, "force": [0, 9, 0], "start": 0.1, "duration": 0.1},
+                  {"body": "ball", "point": [0, 0, 0.1], "force": [2, 0, -3], "start": 0.2, "duration": 0.05},
+                  {"body": "ball", "ray": {"origin": [0, 0.1, 0], "direction": [1, 0, 0]}, "force": [-5, 0, 0], "start": 0.3, "duration": 0.1}]
+        for kind, pushed in (({}, []), ({"orbit": {"period": 2}}, []), ({"keyFrames": keys}, []), ({"follow": {"body": "ball"}}, pushes),
+                             ({"target": "ball"}, []), ({}, pushes)):
+            path = self.write("s.json", scene(duration=0.5, output={"width": 128, "height": 72}, bodies=bodies, pushes=pushed,
                                               camera={"position": [0, 1, 3], "target": [0, 0.3, 0], **kind}))
             overlay = ["--overlay", "time,trails"]
-            for name, *command in (("beside.mp4", "video", path, *overlay), ("run.sqlite", "simulate", path),
+            no_folder = {**os.environ, "TMPDIR": self.path("none")}  # for a trajectory
+            result = cradle("video", path, "-o", self.path("beside.mp4"), *overlay, env=no_folder)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            for name, *command in (("run.sqlite", "simulate", path),
                                    ("after.mp4", "video", self.path("run.sqlite"), *overlay),
                                    ("frames", "render", self.path("run.sqlite"), "--overwrite", "--frames", "17:30", *overlay),
                                    ("frames", "render", self.path("run.sqlite"), "--overwrite", "--frames", "0:17", *overlay),
@@ -498,6 +512,14 @@ class Pictures(InTemporaryFolder):
                 self.assertEqual(result.returncode, 0, result.stderr)
             self.assertEqual(content(self.path("beside.mp4")), content(self.path("after.mp4")), kind)
             self.assertEqual(content(self.path("beside.mp4")), content(self.path("frames.mp4")), kind)
+
+    def test_frames_before_a_late_push_wait_on_the_disk(self):
+        push = {"body": "ball", "point": [0, 0, 0], "force": [1, 0, 0], "start": 1e5, "duration": 1}
+        path = self.write("s.json", scene(duration=2e5, pushes=[push], camera={"position": [0, 1, 3], "target": [0, 0, 0]}))
+        no_folder = {**os.environ, "TMPDIR": self.path("none")}
+        result = cradle("video", path, "-o", self.path("f.mp4"), env=no_folder)
+        self.assertEqual(result.returncode, 5)
+        self.assertIn("TMPDIR", result.stderr)
 
     def test_overlays_that_are_not_there_are_refused(self):
         self.refuses(2, ["--overlay", '"tme"', "allowed are time, contacts"], "render", self.scene, "-o", self.path("f"), "--overlay", "tme")

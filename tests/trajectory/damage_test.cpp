@@ -33,7 +33,7 @@ TEST_F(DamagedTrajectory, OtherFilesAreNone) {
   writeContent(folder_.file("empty"), "");
   ASSERT_EQ(mkfifo(folder_.file("pipe").c_str(), 0600), 0);
   for (const std::string name : {"scene.json", "empty", "missing", "pipe", "."}) {
-    EXPECT_FALSE(isTrajectoryFile(folder_.file(name))) << name;
+    EXPECT_FALSE(isDatabaseFile(folder_.file(name))) << name;
     expectError(ErrorKind::usage, folder_.file(name) + ": is not a trajectory", [&] { readAll(folder_.file(name)); });
   }
 }
@@ -43,7 +43,8 @@ TEST_F(DamagedTrajectory, OtherDatabasesAreNone) {
   ASSERT_EQ(sqlite3_open(path_.c_str(), &database), SQLITE_OK);
   sqlite3_exec(database, "CREATE TABLE frame (id, time)", nullptr, nullptr, nullptr);
   sqlite3_close(database);
-  EXPECT_TRUE(isTrajectoryFile(path_));
+  EXPECT_TRUE(isDatabaseFile(path_));
+  EXPECT_FALSE(isTrajectoryFile(path_));
   expectError(ErrorKind::usage, "not a trajectory", [&] { readAll(path_); });
 }
 
