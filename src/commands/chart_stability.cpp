@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array<const char*, 3> kEndings = {".csv", ".svg", ".png"};
 
-bool isResultName(const std::string& name) {
+bool isMapResultName(const std::string& name) {
   for (const MapEntry& map : stabilityMaps())
     for (const char* ending : kEndings)
       if (name == map.name + ending || name == partPath(map.name + ending)) return true;
@@ -60,7 +60,7 @@ class MapClock {
 void chartStability(const std::string& folder, const std::vector<std::string>& names, bool quiet) {
   namespace fs = std::filesystem;
   const std::vector<MapEntry> maps = stabilityMapsNamed(names);
-  requireOwnFolder(folder, "stability map", isResultName);
+  requireOwnFolder(folder, "stability map", isMapResultName);
   makeFolder(folder);
   const bool drawsCharts = canDrawCharts();
   if (!drawsCharts) fmt::print(stderr, "warning: gnuplot is missing: there will be tables, but no charts\n");

@@ -129,7 +129,7 @@ bool compareAny(const std::string& expected, const std::string& actual, const Co
   if (fs::is_directory(expected) != fs::is_directory(actual))
     throw Error(ErrorKind::usage, actual, "a folder can only be compared with a folder");
   if (fs::is_directory(expected)) return comparePictures(pairPictures(expected, actual), expected, options);
-  if (isTrajectoryFile(expected) && isTrajectoryFile(actual)) {
+  if (isDatabaseFile(expected) && isDatabaseFile(actual)) {
     if (options.report) throw Error(ErrorKind::usage, "--report", "shows pictures; these are trajectories");
     return compareTrajectoryFiles(expected, actual, options.tolerance);
   }

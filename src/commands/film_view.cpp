@@ -3,13 +3,16 @@
 #include <algorithm>
 
 namespace cradle {
+namespace {
+
+constexpr double kMostWaiting = 1e6;  // states of bodies, 0.1 GB: of the frames until the last push
+
+}  // namespace
 
 View viewOf(TrajectorySource& source, int width, int height) {
-  std::vector<ShownPush> pushes;
-  if (source.isWhole())
-    pushes = findShownPushes(source.scene(), source.reader().events(), [&source](long frame) {
-      return source.frameAt(std::min(frame, source.frameCount() - 1));
-    });
+  std::vector<ShownPush> pushes = findShownPushes(source.scene(), source.pushEvents(), [&source](long frame) {
+    return source.frameAt(std::min(frame, source.frameCount() - 1));
+  });
   Framing framing(source.scene(), width, height, std::move(pushes));
   const long frames = source.scene().camera ? 1 : source.frameCount();
   for (long number = 0; number < frames; ++number) framing.add(source.frameAt(number));
@@ -17,7 +20,10 @@ View viewOf(TrajectorySource& source, int width, int height) {
 }
 
 bool isSeenFromTheStart(const Scene& scene) {
-  return scene.camera && scene.pushes.empty();
+  double lastStart = 0;  // s
+  for (const Push& push : scene.pushes) lastStart = std::max(lastStart, push.start);
+  const double frames = lastStart / frameTime(scene, 1);
+  return scene.camera && frames * static_cast<double>(scene.bodies.size()) <= kMostWaiting;
 }
 
 FilmCamera cameraOf(TrajectorySource& source, const View& view) {

@@ -155,6 +155,7 @@ struct FilmDrawer {
 
   Image draw(long number) {
     const Frame frame = source.frameAt(number);
+    source.forgetBefore(number);
     Image image = renderer.render(frame, camera.at(frame));
     if (overlay) overlay->draw(frame, image);
     return image;

@@ -39,7 +39,7 @@ std::string temporaryPath() {
 }  // namespace
 
 TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool quiet) : quiet_(quiet) {
-  if (isTrajectoryFile(sceneOrTrajectory)) {
+  if (isDatabaseFile(sceneOrTrajectory)) {
     open(sceneOrTrajectory);
     return;
   }
@@ -75,21 +75,33 @@ void TrajectorySource::simulate() {
 void TrajectorySource::simulateBeside(std::function<void(const std::string&)> warn) {
   if (reader_) return;
   warn_ = std::move(warn);
-  latest_.number = -1;
   stream_.emplace(scene_);
 }
 
 Frame TrajectorySource::frameAt(long number) {
   if (reader_) return reader_->readFrame(number);
-  if (number != latest_.number) {
-    CRADLE_CHECK(number == latest_.number + 1);
-    latest_ = stream_->next(warn_);
-  }
-  return latest_;
+  while (waiting_.empty() || waiting_.back().number < number) waiting_.push_back(stream_->next(warn_));
+  CRADLE_CHECK(number >= waiting_.front().number);
+  return waiting_[static_cast<std::size_t>(number - waiting_.front().number)];
+}
+
+void TrajectorySource::forgetBefore(long number) {
+  while (waiting_.size() > 1 && waiting_.front().number < number) waiting_.pop_front();
+}
+
+std::vector<Event> TrajectorySource::pushEvents() {
+  if (reader_) return reader_->events();
+  for (long number = 0; number < frameCount_ && stream_->pushEvents().size() < scene_.pushes.size(); ++number)
+    frameAt(number);
+  return stream_->pushEvents();
 }
 
 void TrajectorySource::finish() {
-  while (stream_ && latest_.number + 1 < frameCount_) frameAt(latest_.number + 1);
+  if (!stream_) return;
+  for (long number = waiting_.back().number + 1; number < frameCount_; ++number) {
+    frameAt(number);
+    forgetBefore(number);
+  }
 }
 
 long TrajectorySource::pictureCount() const {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 #include "simulate/frame_stream.h"
@@ -29,13 +31,18 @@ class TrajectorySource {
   /// Simulates the scene; with a trajectory there is nothing to do. To be called once, before frames are read.
   void simulate();
 
-  /// The same, but the simulation goes on while its frames are asked for, in order; the latest
-  /// may be asked for again. Warnings are told
-  /// with the frame that they belong to.
+  /// The same, but the simulation goes on while its frames are asked for, until forgetBefore(): it is as far as the
+  /// latest of them. Warnings are told with the frame that they belong to.
   void simulateBeside(std::function<void(const std::string&)> warn);
 
   /// Throws what reading throws, or simulating.
   Frame frameAt(long number);
+
+  /// The frames before are not asked for again.
+  void forgetBefore(long number);
+
+  /// The events of pushes that began or missed their bodies, perhaps among others. Simulates until all pushes did.
+  std::vector<Event> pushEvents();
 
   /// Takes the frames that nobody has asked for: throws what is wrong with them.
   void finish();
@@ -56,7 +63,7 @@ class TrajectorySource {
   Scene scene_;
   long frameCount_ = 0;
   std::function<void(const std::string&)> warn_;
-  Frame latest_;                       // of the stream, number -1 before the first
+  std::deque<Frame> waiting_;          // of the stream: those that may be asked for again, at least the latest
   std::optional<FrameStream> stream_;  // of scene_
 };
 

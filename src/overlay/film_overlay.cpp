@@ -22,14 +22,15 @@ constexpr double kSmoothTurn = 0.7;  // change of velocity between frames, of th
 // Of arrowUnit().
 constexpr double kLongestVelocity = 0.22, kLongestImpulse = 0.14;
 // Of the picture's height.
-constexpr double kTrailWidth = 0.008, kArrowWidth = 0.0075, kDotRadius = 0.006, kFromEdge = 0.03, kPadding = 0.014;
+constexpr double kTrailWidth = 0.008, kArrowWidth = 0.0075, kDotRadius = 0.006, kLabelFromEdge = 0.03,
+                 kLabelPadding = 0.014;
 constexpr double kNameText = 0.036, kTimeText = 0.033, kImpulseText = 0.028;
 constexpr double kWidestName = 0.45;          // of the picture's width, so that a plot fits beside it
 constexpr double kLeastMark = 0.35;           // of an impact, in terms of that of the film's greatest
 constexpr std::size_t kMostImpulseTexts = 4;  // the greatest ones of a picture: more would hide each other
 constexpr double kShortestText = 0.05;        // of the film's greatest impulse: below, a number says nothing
 const Ink kVelocity{{0, 128, 96}, 1}, kImpulse{{200, 16, 46}, 1};
-const Ink kPanel{{18, 22, 30}, 0.88}, kWords{{255, 255, 255}, 1}, kHalo{{255, 255, 255}, 0.7};
+const Ink kLabelPanel{{18, 22, 30}, 0.88}, kLabelWords{{255, 255, 255}, 1}, kHalo{{255, 255, 255}, 0.7};
 // Colours that people with any colour vision tell apart (M. Okabe, K. Ito, "Color Universal Design", 2008).
 const std::array<Ink, 6> kTrailInks = {Ink{{0, 114, 178}},   Ink{{230, 159, 0}},  Ink{{120, 94, 240}},
                                        Ink{{204, 121, 167}}, Ink{{86, 180, 233}}, Ink{{70, 70, 70}}};
@@ -37,7 +38,8 @@ const Ink kFirstCurve{{86, 180, 233}, 1}, kSecondCurve{{255, 176, 64}, 1}, kSumC
 
 constexpr std::array<PlotCorner, 3> kCorners = {PlotCorner::upperRight, PlotCorner::lowerRight, PlotCorner::lowerLeft};
 
-/// What arrows are measured by (m): the size of what the film shows, or as much of it as its camera ever sees at once.
+/// What arrows are measured by (m): the size of what the film shows, or as much of it as the cameras that the scene
+/// names see at once.
 double arrowUnit(const View& view) {
   double unit = view.bounds.isEmpty() ? std::numeric_limits<double>::infinity() : view.size();
   const auto include = [&unit](const Camera& camera) {
@@ -246,8 +248,8 @@ void FilmOverlay::drawImpulseTexts(std::vector<ImpulseText> texts, Canvas& canva
     starts.push_back(start);
     canvas.rectangle({start.x - padding, start.y - size.ascent - padding},
                      {start.x + width + padding, start.y + padding}, padding,
-                     {kPanel.color, kPanel.opacity * label.opacity});
-    drawText(canvas, text, size, start, {kWords.color, label.opacity});
+                     {kLabelPanel.color, kLabelPanel.opacity * label.opacity});
+    drawText(canvas, text, size, start, {kLabelWords.color, label.opacity});
   }
 }
 
@@ -261,14 +263,14 @@ void FilmOverlay::drawTime(const Frame& frame, Canvas& canvas) const {
   // As wide as the longest time, so that the panel does not tremble.
   const std::string last = fmt::format("t = {:.{}f} s{}", scene_.duration, timeDigits(scene_),
                                        speed == 1 ? "" : fmt::format("   speed {:g}", speed));
-  const double padding = kPadding * unit, edge = std::round(kFromEdge * unit);
+  const double padding = kLabelPadding * unit, edge = std::round(kLabelFromEdge * unit);
   const double breadth = std::max(textWidth(name, nameSize), textWidth(last, timeSize));
   const double nameLine = edge + std::round(padding + nameSize.ascent);
   const double timeLine = nameLine + std::round(0.75 * nameSize.em + timeSize.ascent / 2 + 0.2 * timeSize.em);
   canvas.rectangle({edge, edge}, {edge + std::round(breadth + 2 * padding), std::round(timeLine + padding)}, padding,
-                   kPanel);
-  drawText(canvas, name, nameSize, {edge + padding, nameLine}, kWords);
-  drawText(canvas, time, timeSize, {edge + padding, timeLine}, kWords);
+                   kLabelPanel);
+  drawText(canvas, name, nameSize, {edge + padding, nameLine}, kLabelWords);
+  drawText(canvas, time, timeSize, {edge + padding, timeLine}, kLabelWords);
 }
 
 }  // namespace cradle

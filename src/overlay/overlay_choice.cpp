@@ -14,7 +14,7 @@
 namespace cradle {
 namespace {
 
-constexpr std::string_view kHeight = "plot=height:";
+constexpr std::string_view kHeightPlot = "plot=height:";
 
 constexpr std::size_t kMostNames = 12;  // that a message lists
 
@@ -39,8 +39,8 @@ void read(const std::string& word, OverlayChoice& choice) {
     plot(PlotKind::energy);
   else if (word == "plot=energyError")
     plot(PlotKind::energyError);
-  else if (word.starts_with(kHeight))
-    plot(PlotKind::height), choice.plottedBody = word.substr(kHeight.size());
+  else if (word.starts_with(kHeightPlot))
+    plot(PlotKind::height), choice.plottedBody = word.substr(kHeightPlot.size());
   else
     refuse(word,
            "allowed are time, contacts, velocities, trails, plot=energy, plot=energyError and plot=height:BODY, with "
@@ -69,7 +69,7 @@ OverlayChoice parseOverlays(const std::string& text) {
 }
 
 int plottedBody(const OverlayChoice& choice, const Scene& scene) {
-  const std::string word = std::string(kHeight) + choice.plottedBody;
+  const std::string word = std::string(kHeightPlot) + choice.plottedBody;
   const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
                                  [&](const Body& candidate) { return candidate.name == choice.plottedBody; });
   if (body == scene.bodies.end()) refuse(word, "there is no body of that name" + allowedBodies(choice, scene));

@@ -11,12 +11,11 @@
 namespace cradle {
 namespace {
 
-constexpr int kGreatestLevel = 3;      // 8 times as large as at home: shadows are hardly sharp enough
-constexpr double kFarthest = 1e5;      // quarters of a map from home: beyond, numbers do not tell its texels apart
-constexpr double kLargestCaster = 1;   // of the width of the shadow map's home
-constexpr double kBorder = 10;         // texels of the shadow map: its edge stays clear, by whole blocks
-constexpr double kPenumbra = 24;       // texels beside a shadow that may be half lit
-constexpr double kLowestLight = 0.05;  // sine of the height below which the ground has no shadows
+constexpr int kGreatestLevel = 3;     // 8 times as large as at home: shadows are hardly sharp enough
+constexpr double kFarthest = 4096;    // quarters of a map from home: there, floats are an eighth of a texel apart
+constexpr double kLargestCaster = 1;  // of the width of the shadow map's home
+constexpr double kBorder = 10.0 / kShadowMapSize;  // of its size: the shadow map's edge stays clear, by whole blocks
+constexpr double kPenumbra = 24;                   // texels beside a shadow that may be half lit
 
 /// Half of space: where normal . (x - the camera) is positive.
 using Side = Vec3;
@@ -36,7 +35,8 @@ class LayoutFinder {
   LayoutFinder(const Camera& camera, const Stage& stage)
       : stage_(stage), eye_(camera.position), towards_(stage.shadow.axes.col(2)), sides_(sidesOfView(camera, stage)) {}
 
-  void add(const DrawnHull& hull);
+  /// What is `distance` (m) from the camera, or farther.
+  void add(const DrawnHull& hull, double distance);
   void add(const ContactItem& item);
   FrameLayout layout() const;
 
@@ -45,14 +45,15 @@ class LayoutFinder {
   bool isSeen(const DrawnHull& hull) const;
   bool mayThrowShadowIntoView(const DrawnHull& hull) const;
   void addToGround(const DrawnHull& hull);
-  void extendGround(const Vec3& point, const Eigen::Vector2d& around);
+  void extend(Box2& box, const Vec3& point, const Eigen::Vector2d& around) const;
+  Box2 groundAround(const MapPlace& shadowMap) const;
 
   const Stage& stage_;
   const Vec3 eye_, towards_;
   const std::array<Side, 5> sides_;
   double nearest_ = std::numeric_limits<double>::infinity();  // m
   Bounds casters_;                                            // m, along the shadow map's axes from the stage's origin
-  Box2 ground_;
+  Box2 shadows_, contacts_;                                   // m, as ShadedRegion::home
 };
 
 bool LayoutFinder::isBeyond(const Side& side, const DrawnHull& hull) const {
@@ -71,10 +72,10 @@ bool LayoutFinder::mayThrowShadowIntoView(const DrawnHull& hull) const {
                       [&](const Side& side) { return side.dot(towards_) >= 0 && isBeyond(side, hull); });
 }
 
-void LayoutFinder::add(const DrawnHull& hull) {
+void LayoutFinder::add(const DrawnHull& hull, double distance) {
+  if (isSeen(hull)) nearest_ = std::min(nearest_, distance);
   if (2 * hull.reach() > kLargestCaster * stage_.shadow.home.sizes().x() || !mayThrowShadowIntoView(hull)) return;
-  if (isSeen(hull)) nearest_ = std::min(nearest_, hull.bounds().exteriorDistance(eye_));
-  const double around = cornerOfEqualArea(kOutlines.front()) * hull.radius + kBorder * stage_.shadow.texel;
+  const double around = cornerOfEqualArea(kOutlines.front()) * hull.radius;
   for (std::size_t i = 0; i < hull.count; ++i) {
     const Vec3 place = stage_.shadow.axes.transpose() * (hull.centers[i] - stage_.origin);
     casters_.extend(Vec3(place.array() - around)), casters_.extend(Vec3(place.array() + around));
@@ -88,15 +89,16 @@ void LayoutFinder::addToGround(const DrawnHull& hull) {
   const double steepness = ground.normal.dot(towards_);
   const auto heightOf = [&](const Vec3& point) { return ground.normal.dot(point - ground.point); };
   if (steepness <= kLowestLight || heightOf(hull.middle()) + hull.reach() < 0) return;
-  const double around = (hull.radius + kPenumbra * stage_.shadow.texel) / steepness;
+  const double around = hull.radius / steepness;
   for (std::size_t i = 0; i < hull.count; ++i)
-    extendGround(hull.centers[i] - heightOf(hull.centers[i]) / steepness * towards_, {around, around});
+    extend(shadows_, hull.centers[i] - heightOf(hull.centers[i]) / steepness * towards_, {around, around});
 }
 
-void LayoutFinder::extendGround(const Vec3& point, const Eigen::Vector2d& around) {
+/// By a rectangle on the ground around a point.
+void LayoutFinder::extend(Box2& box, const Vec3& point, const Eigen::Vector2d& around) const {
   const Vec3 from = point - stage_.origin;
   const Eigen::Vector2d place(stage_.shaded.axisU.dot(from), stage_.shaded.axisV.dot(from));
-  ground_.extend(place - around), ground_.extend(place + around);
+  box.extend(place - around), box.extend(place + around);
 }
 
 /// The ground that it darkens.
@@ -107,13 +109,14 @@ void LayoutFinder::add(const ContactItem& item) {
   DrawnHull darkened;
   darkened.add(middle);
   darkened.radius = std::hypot(square->halfU, square->halfV) + item.half.norm();
-  if (isSeen(darkened)) extendGround(middle, {square->halfU, square->halfV});
+  if (isSeen(darkened)) extend(contacts_, middle, {square->halfU, square->halfV});
 }
 
-/// Quarters of `size` from home, the fewest, so that a map there holds first..last (from the middle of home); none if
-/// it is too small, or that would be too far.
-std::optional<int> quartersFor(double first, double last, double size) {
-  const double most = std::floor((first + size / 2) / (size / 4)), least = std::ceil((last - size / 2) / (size / 4));
+/// Quarters of `size` from home, the fewest, so that a map there holds first..last (from the middle of home) and has
+/// `border` (m) beside them; none if it is too small, or that would be too far.
+std::optional<int> quartersFor(double first, double last, double size, double border) {
+  const double half = size / 2 - border;
+  const double most = std::floor((first + half) / (size / 4)), least = std::ceil((last - half) / (size / 4));
   const double quarters = std::clamp(0.0, std::min(least, most), most);
   if (!(least <= most) || std::abs(quarters) > kFarthest) return std::nullopt;
   return static_cast<int>(quarters);
@@ -125,22 +128,34 @@ FrameLayout LayoutFinder::layout() const {
   const double nearest = std::isfinite(nearest_) && nearest_ > 0 ? std::exp2(std::floor(std::log2(nearest_))) : 0;
   layout.nearPlane = nearPlaneFor(nearest, stage_);
   if (!casters_.isEmpty()) {
-    layout.shadows = placeAround({casters_.min().head<2>(), casters_.max().head<2>()}, stage_.shadow.home);
+    layout.shadows = placeAround({casters_.min().head<2>(), casters_.max().head<2>()}, stage_.shadow.home, kBorder);
     const double deep = depthOfMap(stage_.shadow, layout.shadows);
-    layout.depth = quartersFor(casters_.min().z(), casters_.max().z(), deep).value_or(0);
+    layout.depth = quartersFor(casters_.min().z(), casters_.max().z(), deep, kBorder * deep).value_or(0);
   }
-  if (stage_.ground) layout.ground = placeAround(ground_, stage_.shaded.home);
+  if (stage_.ground) layout.ground = placeAround(groundAround(layout.shadows), stage_.shaded.home, 0);
   return layout;
+}
+
+/// What shadows and contacts darken.
+Box2 LayoutFinder::groundAround(const MapPlace& shadowMap) const {
+  Box2 ground = contacts_;
+  if (shadows_.isEmpty()) return ground;
+  const double texel = std::ldexp(stage_.shadow.home.sizes().x(), shadowMap.level) / kShadowMapSize;
+  const double halfLit = kPenumbra * texel / stage_.ground->normal.dot(towards_);
+  const Eigen::Vector2d around(halfLit, halfLit);
+  ground.extend(Box2(shadows_.min() - around, shadows_.max() + around));
+  return ground;
 }
 
 }  // namespace
 
-MapPlace placeAround(const Box2& needed, const Box2& home) {
+MapPlace placeAround(const Box2& needed, const Box2& home, double border) {
   if (needed.isEmpty()) return {};
   const Eigen::Vector2d first = needed.min() - home.center(), last = needed.max() - home.center();
   for (int level = 0; level <= kGreatestLevel; ++level) {
     const Eigen::Vector2d size = std::ldexp(1.0, level) * home.sizes();
-    const auto x = quartersFor(first.x(), last.x(), size.x()), y = quartersFor(first.y(), last.y(), size.y());
+    const auto x = quartersFor(first.x(), last.x(), size.x(), border * size.x()),
+               y = quartersFor(first.y(), last.y(), size.y(), border * size.y());
     if (x && y) return {level, {*x, *y}};
   }
   return {kGreatestLevel, {}};
@@ -149,11 +164,15 @@ MapPlace placeAround(const Box2& needed, const Box2& home) {
 FrameLayout layoutOf(const DrawList& list, const std::vector<MeshBounds>& meshBounds, const Camera& camera,
                      const Stage& stage) {
   LayoutFinder finder(camera, stage);
-  for (const MeshItem& item : list.meshes)
-    finder.add(hullOf(meshBounds[static_cast<std::size_t>(item.mesh)].whole, item.worldFromMesh));
-  for (const SphereItem& item : list.spheres) finder.add(hullOf(item));
-  for (const CylinderItem& item : list.cylinders) finder.add(hullOf(item));
-  for (const TubeItem& item : list.tubes) finder.add(hullOf(item));
+  for (const MeshItem& item : list.meshes) {
+    const Bounds& whole = meshBounds[static_cast<std::size_t>(item.mesh)].whole;
+    finder.add(hullOf(whole, item.worldFromMesh),
+               whole.exteriorDistance(item.worldFromMesh.inverse() * camera.position));
+  }
+  const auto add = [&](const DrawnHull& hull) { finder.add(hull, hull.bounds().exteriorDistance(camera.position)); };
+  for (const SphereItem& item : list.spheres) add(hullOf(item));
+  for (const CylinderItem& item : list.cylinders) add(hullOf(item));
+  for (const TubeItem& item : list.tubes) add(hullOf(item));
   if (stage.ground)
     for (const ContactItem& item : list.contacts) finder.add(item);
   return finder.layout();

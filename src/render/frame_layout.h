@@ -14,7 +14,8 @@ namespace cradle {
 FrameLayout layoutOf(const DrawList& list, const std::vector<MeshBounds>& meshBounds, const Camera& camera,
                      const Stage& stage);
 
-/// The place nearest to home where a map holds `needed`, as large as it has to be, up to a limit; beyond that, at home.
-MapPlace placeAround(const Box2& needed, const Box2& home);
+/// The place nearest to home where a map holds `needed` and has `border` (of its size) beside it, as large as it has to
+/// be, up to a limit; beyond that, at home.
+MapPlace placeAround(const Box2& needed, const Box2& home, double border);
 
 }  // namespace cradle

@@ -21,15 +21,15 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kFieldOfView = 32 * kDegree;  // long enough that balls at the border stay round
 constexpr double kElevation = 10 * kDegree;    // from above, with the horizon still in the picture
 // Turned so far aside from the axes of the world; against the default light first, so that shadows fall aside, too.
-constexpr double kAside = 24 * kDegree;
-constexpr std::array<double, 8> kAzimuths = {-kAside,
-                                             kAside,
-                                             180 * kDegree + kAside,
-                                             180 * kDegree - kAside,
-                                             90 * kDegree + kAside,
-                                             90 * kDegree - kAside,
-                                             270 * kDegree - kAside,
-                                             270 * kDegree + kAside};
+constexpr double kAsideAngle = 24 * kDegree;
+constexpr std::array<double, 8> kAzimuths = {-kAsideAngle,
+                                             kAsideAngle,
+                                             180 * kDegree + kAsideAngle,
+                                             180 * kDegree - kAsideAngle,
+                                             90 * kDegree + kAsideAngle,
+                                             90 * kDegree - kAsideAngle,
+                                             270 * kDegree - kAsideAngle,
+                                             270 * kDegree + kAsideAngle};
 constexpr std::size_t kFirstAlongX = 4;  // azimuths from there on look along x, those before along z
 constexpr double kSlopeInView = 0.1;     // sine of the least height of the camera over a slope
 constexpr double kClearlyAlong = 1.5;    // times the spread across

@@ -15,7 +15,7 @@ namespace {
 constexpr int kSegmentsPerTurn = 20;  // of a coil: its chords miss the circle by 1 % of its radius
 constexpr int kRopeSegments = 64;
 constexpr int kSegmentsAround = 10;  // of a wire
-constexpr double kMargin = 2;        // pixels: samples lie beside centres, and rounding
+constexpr double kBoxMargin = 2;     // pixels: samples lie beside centres, and rounding
 
 /// The pixels in which a hull may be seen: all, if it is not wholly in front of the camera.
 PixelRectangle seenIn(const DrawnHull& hull, const Stage& stage) {
@@ -24,10 +24,10 @@ PixelRectangle seenIn(const DrawnHull& hull, const Stage& stage) {
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& point : *outline) box.extend(point);
   const auto pixel = [](double place, int size) {
-    return static_cast<int>(std::floor(std::clamp(place, -kMargin, size + kMargin)));
+    return static_cast<int>(std::floor(std::clamp(place, -kBoxMargin, size + kBoxMargin)));
   };
-  return {pixel(box.min().x() - kMargin, stage.width), pixel(box.min().y() - kMargin, stage.height),
-          pixel(box.max().x() + kMargin, stage.width) + 1, pixel(box.max().y() + kMargin, stage.height) + 1};
+  return {pixel(box.min().x() - kBoxMargin, stage.width), pixel(box.min().y() - kBoxMargin, stage.height),
+          pixel(box.max().x() + kBoxMargin, stage.width) + 1, pixel(box.max().y() + kBoxMargin, stage.height) + 1};
 }
 
 bool isSeenIn(const PixelRectangle& seen, const PixelRectangle& area) {

@@ -8,20 +8,6 @@ namespace cradle {
 
 namespace {
 
-bool isEmpty(const PixelRectangle& area) {
-  return area.width() <= 0 || area.height() <= 0;
-}
-
-PixelRectangle joined(const PixelRectangle& a, const PixelRectangle& b) {
-  if (isEmpty(a)) return b;
-  if (isEmpty(b)) return a;
-  return {std::min(a.left, b.left), std::min(a.bottom, b.bottom), std::max(a.right, b.right), std::max(a.top, b.top)};
-}
-
-PixelRectangle common(const PixelRectangle& a, const PixelRectangle& b) {
-  return {std::max(a.left, b.left), std::max(a.bottom, b.bottom), std::min(a.right, b.right), std::min(a.top, b.top)};
-}
-
 PixelRectangle aroundAll(const SeenItems& seen) {
   PixelRectangle all{};
   for (const auto* items : {&seen.meshes, &seen.spheres, &seen.cylinders, &seen.tubes})
@@ -63,7 +49,7 @@ void LightMaps::drawShadows(const ItemDrawer& items, const PixelRectangle& chang
   const PixelRectangle now = aroundAll(items.inShadowMap());
   const PixelRectangle shadows = common(changed, joined(occupied_, now));
   occupied_ = now;
-  if (isEmpty(shadows)) return;
+  if (shadows.isEmpty()) return;
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   glDepthMask(GL_TRUE);

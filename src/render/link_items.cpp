@@ -25,7 +25,7 @@ constexpr double kKnobOfRod = 1.8;                       // radius of the ball a
 constexpr double kBallOfRod = 4;                         // radius of a ball joint
 constexpr double kPinOfRod = 2.5, kPinLengthOfRod = 12;  // radius, of an axle too; length of a hinge's pin
 constexpr double kPlateOfKnob = 3.2, kPlateThickness = 0.9;
-constexpr int kHalvings = 40, kThirds = 50;  // to find where a rope lies on the ground
+constexpr int kGroundHalvings = 40, kThirds = 50;  // to find where a rope lies on the ground
 
 const Surface kSteel{Vec3f(0.56f, 0.57f, 0.58f), 1.0f, 0.28f};
 const Surface kDarkSteel{Vec3f(0.16f, 0.165f, 0.175f), 0.6f, 0.45f};
@@ -99,7 +99,7 @@ Vec3 laidOnGround(const Ground& ground, const TubeItem& rope) {
   };
   double low = 0, high = std::numbers::pi / 2;
   if (lowestHeight(ground, rope, rope.sag) >= rope.wireRadius) return rope.sag;
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kGroundHalvings; ++i) {
     const double angle = (low + high) / 2;
     (lowestHeight(ground, rope, turned(angle)) < rope.wireRadius ? low : high) = angle;
   }

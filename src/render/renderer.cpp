@@ -2,11 +2,9 @@
 
 #include <GL/glew.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -30,7 +28,7 @@ double pixelsPerMetre(const Camera& camera, const Bounds& bounds, int height) {
   return height / (2 * std::max(distance, 1e-9) * std::tan(camera.verticalFieldOfView / 2));
 }
 
-/// Where the scene looks largest.
+/// Where the scene looks largest, of the cameras that it names.
 double pixelsPerMetre(const View& view, int height) {
   double most = pixelsPerMetre(view.camera, view.bounds, height);
   for (const Camera& camera : view.keys) most = std::max(most, pixelsPerMetre(camera, view.bounds, height));
@@ -207,28 +205,18 @@ void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
   finishStage(times_.maps);
   const std::vector<PixelRectangle> areas = changed.picture.rectangles();
   // Mesa's software renderer lets samples up to half a pixel beyond an area through, and what is drawn there once more
-  // takes the place of what is as far away and was drawn later: areas that touch are not drawn before both are
-  // resolved.
-  for (std::vector<PixelRectangle> left = areas, later; !left.empty(); left = std::exchange(later, {})) {
-    std::vector<PixelRectangle> apart;
-    for (const PixelRectangle& area : left) {
-      const auto touches = [&area](const PixelRectangle& other) {
-        return area.left <= other.right && other.left <= area.right && area.bottom <= other.top &&
-               other.bottom <= area.top;
-      };
-      (std::any_of(apart.begin(), apart.end(), touches) ? later : apart).push_back(area);
-    }
-    for (const PixelRectangle& area : apart) {
-      drawPicture(area);
-      drawnShare_ +=
-          static_cast<double>(area.width()) * area.height() / (static_cast<double>(r.image.width) * r.image.height);
-    }
+  // takes the place of what is as far away and was drawn later: of areas that touch, one is resolved before the other
+  // is drawn.
+  for (const std::vector<PixelRectangle>& apart : groupsApart(areas)) {
+    for (const PixelRectangle& area : apart) drawPicture(area);
     finishStage(times_.main);
     for (const PixelRectangle& area : apart) r.picture.resolve(area);
     finishStage(times_.resolve);
   }
   for (const PixelRectangle& area : areas) r.picture.read(area, r.image);
   finishStage(times_.readBack);
+  const double pixels = static_cast<double>(r.image.width) * r.image.height;
+  for (const PixelRectangle& area : areas) drawnShare_ += static_cast<double>(area.width()) * area.height() / pixels;
 }
 
 void Renderer::finishStage(double& seconds) {

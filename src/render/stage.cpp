@@ -46,9 +46,7 @@ constexpr float kSkySlope = 0.30f;          // how much brighter it is towards t
 constexpr double kNearShare = 0.02;      // of the distance of the nearest thing, which is so much of the scene's size
 constexpr double kFadeDistance = 9;      // in sizes of the scene
 constexpr double kContactMargin = 0.15;  // of the scene's size
-constexpr double kLowestLight = 0.05;    // sine of the height below which the ground has no shadows
 constexpr double kShadowTexel = 1.0 / 800;  // of the height of the picture where what is shown is
-constexpr double kShadedOfSeen = 1;         // of it, too: so much ground at least is ready for shadows
 constexpr double kShadowDepth = 16;         // of the shadow map's width: what stands high above still throws a shadow
 
 Lighting makeLighting(const Scene& scene, const std::optional<Ground>& ground) {
@@ -129,7 +127,7 @@ ShadedRegion makeShadedRegion(const Ground& ground, const Stage& stage, const Bo
     const Vec3 point = shown.corner(static_cast<Bounds::CornerType>(corner));
     shaded.extend(Vec3(point - (point.z() - height) / light.z() * light));
   }
-  const Vec3 seen = Vec3::Constant(kShadedOfSeen * heightOfPicture / 2);
+  const Vec3 seen = Vec3::Constant(heightOfPicture / 2);
   shaded.extend(shown.center() - seen), shaded.extend(shown.center() + seen);
   region.margin = kContactMargin * stage.size;
   const Eigen::Vector2d around = Eigen::Vector2d::Constant(region.margin);
@@ -207,7 +205,7 @@ void setGroundMap(const Stage& stage, const ShaderProgram& program) {
   program.set("mapV", Vec3f((region.sizeV * region.axisV).cast<float>()));
 }
 
-/// How high a picture is at the distance of what is shown, where the camera is farthest from it; m.
+/// How high a picture is at the distance of what is shown, of the camera named that is farthest from it; m.
 double heightOfPicture(const View& view, const Vec3& middle) {
   const auto height = [&](const Camera& camera) {
     return 2 * std::tan(camera.verticalFieldOfView / 2) * (camera.position - middle).norm();

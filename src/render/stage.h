@@ -79,6 +79,7 @@ struct Stage {
 constexpr int kShadowMapSize = 2048;
 constexpr int kShadowBlock = 8;  // texels of the shadow map a side; the map of blocks has the least depth of each
 constexpr int kContactMapSize = 256;
+constexpr double kLowestLight = 0.05;  // sine of the height below which the ground has no shadows
 
 /// Texture units that the shaders' samplers are bound to.
 enum TextureUnit { kShadowUnit = 0, kBlockUnit, kContactUnit, kBallUnit, kNearBallUnit };

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kTile = 8;              // pixels
 constexpr double kMargin = 2;         // pixels: samples lie beside the centres, and rounding
-constexpr long kRectangleCost = 16;   // tiles: what drawing one more rectangle costs
+constexpr long kRectangleCost = 10;   // tiles: what drawing one more rectangle costs
 constexpr int kMostRectangles = 256;  // before they are merged: the merging is quadratic
 
 using Point = Eigen::Vector2d;

@@ -4,15 +4,9 @@
 #include <vector>
 
 #include "math/types.h"
+#include "render/pixel_rectangle.h"
 
 namespace cradle {
-
-/// Columns and rows of pixels, first included, last not; rows from the bottom, as OpenGL counts.
-struct PixelRectangle {
-  int left = 0, bottom = 0, right = 0, top = 0;
-  int width() const { return right - left; }
-  int height() const { return top - bottom; }
-};
 
 /// Tiles of 8 x 8 pixels that a convex polygon meets, with a pixel around it: in row `firstRow` + i from tile first to
 /// tile last, both included; none where last < first.

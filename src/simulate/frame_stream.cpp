@@ -17,7 +17,10 @@ FrameStream::~FrameStream() {
 
 void FrameStream::run(const Scene& scene) {
   try {
-    simulate(scene, {[this](const Frame& frame) { put(frame); }, [](const Event&) {},
+    const auto putPush = [this](const Event& event) {
+      if (event.kind == EventKind::pushStart || event.kind == EventKind::pushMissed) put(event);
+    };
+    simulate(scene, {[this](const Frame& frame) { put(frame); }, putPush,
                      [this](const std::string& warning) { put(warning); }});
   } catch (const Closed&) {
   } catch (...) {
@@ -49,7 +52,10 @@ Frame FrameStream::next(const std::function<void(const std::string&)>& warn) {
     Item item = take();
     if (auto* frame = std::get_if<Frame>(&item)) return std::move(*frame);
     if (const auto* error = std::get_if<std::exception_ptr>(&item)) std::rethrow_exception(*error);
-    warn(std::get<std::string>(item));
+    if (const auto* push = std::get_if<Event>(&item))
+      pushEvents_.push_back(*push);
+    else
+      warn(std::get<std::string>(item));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 #include <variant>
+#include <vector>
 
 #include "scene/scene.h"
 #include "trajectory/trajectory.h"
@@ -31,8 +32,11 @@ class FrameStream {
   /// to be called again after the last frame, or after an error.
   Frame next(const std::function<void(const std::string&)>& warn);
 
+  /// Of pushes that began or missed their bodies, up to the latest frame.
+  const std::vector<Event>& pushEvents() const { return pushEvents_; }
+
  private:
-  using Item = std::variant<Frame, std::string, std::exception_ptr>;  // frame, warning, end
+  using Item = std::variant<Frame, Event, std::string, std::exception_ptr>;  // the last two: warning, end
   struct Closed {};
   void run(const Scene& scene);
   void put(Item item);
@@ -42,6 +46,7 @@ class FrameStream {
   std::condition_variable changed_;
   std::deque<Item> items_;
   bool isClosed_ = false;
+  std::vector<Event> pushEvents_;  // taken
   std::thread thread_;
 };
 

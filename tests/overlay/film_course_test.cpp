@@ -1,5 +1,6 @@
 // What goes along with the film: cameras that move, curves between frames, what a plot is fed with, the time.
 
+#include "image/font.h"
 #include "overlay/film.h"
 
 namespace cradle {
@@ -111,6 +112,31 @@ TEST_F(Film, PlotsHaveWhatTheyAreNamedFor) {
   EXPECT_EQ(draw({false, false, false, false, PlotKind::energyError, ""}, 90), drawn(error));
 }
 
+// From 3 % of the picture's height at the left, 1.4 % beside the longer of its lines, which are the scene's name (3.6 %
+// high, as much as 45 % of the width hold) and the time at the end (3.3 %).
+TEST_F(Film, PanelOfTimeIsAsWideAsItsLongerLine) {
+  scene_.duration = 1234;
+  const std::string most(60, 'm');
+  const TextSize nameSize = crispTextSize(0.036 * kHeight), timeSize = crispTextSize(0.033 * kHeight);
+  const double timeWidth = textWidth("t = 1234.00 s", timeSize);
+  const std::string name = "Film of a name that is longer";
+  const std::string fitted = fittedText(most, nameSize, 0.45 * kWidth);
+  ASSERT_LT(textWidth("Film", nameSize), timeWidth);
+  ASSERT_GT(textWidth(name, nameSize), timeWidth);
+  for (const auto& [shown, width] :
+       {std::pair(std::string("Film"), timeWidth), std::pair(name, textWidth(name, nameSize)),
+        std::pair(most, textWidth(fitted, nameSize))}) {
+    scene_.name = shown;
+    const Image image = draw({true, false, false, false, std::nullopt, ""}, 30);
+    int left = kWidth, right = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x)
+        if (image.at(x, y)[2] > 0) left = std::min(left, x), right = std::max(right, x + 1);
+    EXPECT_EQ(left, 11) << shown;
+    EXPECT_EQ(right, 11 + std::round(width + 2 * 0.014 * kHeight)) << shown;
+  }
+}
+
 TEST_F(Film, TimeTellsNeighbouringFramesApart) {
   for (const double perSecond : {60.0, 2000.0}) {
     scene_.output.framesPerSecond = perSecond;
@@ -151,6 +177,28 @@ TEST_F(Film, GreatestImpulsesHaveTheirNumbers) {
   const double half = 0.14 * kSeenHeight / 2;
   EXPECT_TRUE(isMarked(image, {1, -1 - 0.93 * half, 0}));
   EXPECT_FALSE(isMarked(image, {1, -1 - 1.15 * half, 0}));
+}
+
+// Three digits and the unit, in white on dark, in the middle above the dot: the baseline is 1.6 em above it. No arrow
+// or dot comes near: the normal goes along the view.
+TEST_F(Film, NumbersOfImpulsesAreWritten) {
+  const TextSize size = crispTextSize(0.028 * kHeight);
+  const double padding = 0.35 * size.em;
+  for (const auto& [impulse, text] : {std::pair(12.3456, "12.3 N s"), std::pair(0.0456789, "0.0457 N s")}) {
+    events_ = {{0.5, EventKind::impact, 0, 1, Vec3::Zero(), Vec3::UnitZ(), impulse}};
+    const Image image = draw({false, true, false, false, std::nullopt, ""}, 30);
+    const double half = textWidth(text, size) / 2, baseline = kHeight / 2 - 1.6 * size.em;
+    const PicturePoint low{kWidth / 2 - half - padding, baseline - size.ascent - padding},
+        high{kWidth / 2 + half + padding, baseline + padding};
+    Image expected(kWidth, kHeight);
+    Canvas canvas(expected);
+    canvas.rectangle(low, high, padding, {{18, 22, 30}, 0.88});
+    drawText(canvas, text, size, {kWidth / 2 - half, baseline}, {{255, 255, 255}, 1});
+    long differ = 0;
+    for (int y = 0; y < static_cast<int>(high.y) + 2; ++y)
+      for (int x = 0; x < kWidth; ++x) differ += !std::equal(image.at(x, y), image.at(x, y) + 3, expected.at(x, y));
+    EXPECT_EQ(differ, 0) << text;
+  }
 }
 
 TEST_F(Film, ImpactsAreShownAsLongInSlowMotion) {

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "image/font.h"
+
 namespace cradle {
 namespace {
 
@@ -23,17 +25,21 @@ PlotContent waveAndLine() {
   return content;
 }
 
+Image drawn(const PlotContent& content, std::size_t now, int width = kWidth, int height = kHeight) {
+  Image image(width, height);
+  Canvas canvas(image);
+  drawPlot(canvas, content, now);
+  return image;
+}
+
 std::vector<int> pixelAt(const Image& image, const PicturePoint& place) {
   const auto* pixel = image.at(static_cast<int>(std::floor(place.x)), static_cast<int>(std::floor(place.y)));
   return {pixel[0], pixel[1], pixel[2]};
 }
 
 TEST(PlotPanel, CurvesPassThroughTheirPixelsUpToNow) {
-  const PlotContent content = waveAndLine();
-  const PlotArea area = plotAreaOf(content, kWidth, kHeight);
-  Image image(kWidth, kHeight);
-  Canvas canvas(image);
-  drawPlot(canvas, content, 150);
+  const PlotArea area = plotAreaOf(waveAndLine(), kWidth, kHeight);
+  const Image image = drawn(waveAndLine(), 150);
   const auto colored = [&](double time, double value, std::size_t channel) {
     // Linear maps: the whole film from side to side; the values' range with 6 % above and below (line: 0..1, wave
     // -1..1).
@@ -52,11 +58,8 @@ TEST(PlotPanel, CurvesPassThroughTheirPixelsUpToNow) {
 }
 
 TEST(PlotPanel, HasATitleNamesAndRules) {
-  const PlotContent content = waveAndLine();
-  const PlotArea area = plotAreaOf(content, kWidth, kHeight);
-  Image image(kWidth, kHeight);
-  Canvas canvas(image);
-  drawPlot(canvas, content, 150);
+  const PlotArea area = plotAreaOf(waveAndLine(), kWidth, kHeight);
+  const Image image = drawn(waveAndLine(), 150);
   const auto [low, high] = plotPanelAt(PlotCorner::upperRight, kWidth, kHeight);
   bool hasTitle = false, hasName = false;
   for (double y = low.y; y < area.top - 1; ++y)
@@ -71,11 +74,46 @@ TEST(PlotPanel, HasATitleNamesAndRules) {
   EXPECT_GT(pixelAt(image, {rule.x, std::round(rule.y)})[0], pixelAt(image, {rule.x, rule.y + 5})[0] + 40);
 }
 
+// Of three times the line's width, 0.42 % of the picture's height: 4.5 pixels around the end, where the line is 1.5
+// above and below.
+TEST(PlotPanel, CurvesEndInADot) {
+  const PlotArea area = plotAreaOf(waveAndLine(), 1280, 720);
+  const Image image = drawn(waveAndLine(), 150, 1280, 720);
+  const auto isGreen = [&](double time, double x, double y) {
+    const PicturePoint on = area.at(time, time / 4);
+    const auto pixel = pixelAt(image, {on.x + x, on.y + y});
+    return pixel[1] > 200 && pixel[0] < 100;
+  };
+  for (const double way : {-1.0, 1.0}) {
+    EXPECT_TRUE(isGreen(2.5, 0, 3.4 * way));
+    EXPECT_FALSE(isGreen(2.5, 0, 6 * way));
+    EXPECT_FALSE(isGreen(1.2, 0, 3.4 * way));
+  }
+  EXPECT_TRUE(isGreen(2.5, 3.4, 0));
+  EXPECT_FALSE(isGreen(2.5, 6, 0));
+}
+
+// As in a plot of energies: nothing is below 0, but for the room below the curve. Numbers end 0.4 em before the curves.
+TEST(PlotPanel, ZeroHasNoSign) {
+  const PlotContent content{"", {0, 1}, {{"", {0, 1}, kRed}}};
+  const PlotArea area = plotAreaOf(content, 1280, 720);
+  const Image image = drawn(content, 1, 1280, 720);
+  const TextSize size = crispTextSize(0.028 * 720);
+  const double end = area.left - 0.4 * size.em, start = end - textWidth("0", size), row = std::round(area.at(0, 0).y);
+  const auto brightest = [&](double from, double to) {
+    int most = 0;
+    for (double x = from; x < to; ++x)
+      for (double y = row - size.ascent / 2; y < row + size.ascent / 2; ++y)
+        most = std::max(most, pixelAt(image, {x, y})[1]);
+    return most;
+  };
+  EXPECT_GT(brightest(start, end), 200);
+  EXPECT_LT(brightest(start - 2 * size.em, start - 1), 60);
+}
+
 TEST(PlotPanel, LiesInTheUpperRightCornerAndLeavesTheRestAlone) {
   for (const auto& [width, height] : {std::pair(1280, 720), std::pair(640, 360), std::pair(300, 600)}) {
-    Image image(width, height);
-    Canvas canvas(image);
-    drawPlot(canvas, waveAndLine(), 240);
+    const Image image = drawn(waveAndLine(), 240, width, height);
     int left = width, top = height, right = 0, bottom = 0;
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x)
@@ -104,16 +142,10 @@ TEST(PlotPanel, CornersAreThoseOfThePicture) {
 TEST(PlotPanel, ValuesThatNeverChangeAreDrawn) {
   for (const double value : {0.0, 5.0, -1e-9}) {
     const PlotContent content{"c", {0, 1, 2}, {{"", {value, value, value}, kRed}}};
-    Image image(kWidth, kHeight);
-    Canvas canvas(image);
-    drawPlot(canvas, content, 2);
     const PlotArea area = plotAreaOf(content, kWidth, kHeight);
-    EXPECT_GT(pixelAt(image, area.at(1, value))[0], 200) << value;
+    EXPECT_GT(pixelAt(drawn(content, 2), area.at(1, value))[0], 200) << value;
   }
-  const PlotContent single{"one frame", {0}, {{"", {1}, kRed}}};
-  Image image(kWidth, kHeight);
-  Canvas canvas(image);
-  drawPlot(canvas, single, 0);
+  drawn({"one frame", {0}, {{"", {1}, kRed}}}, 0);
 }
 
 TEST(PlotPanel, RoundNumbersAreOneTwoOrFiveTimesAPowerOfTenApart) {

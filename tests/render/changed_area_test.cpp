@@ -157,18 +157,23 @@ TEST(ChangedArea, NothingMovedIsACopy) {
   EXPECT_EQ(renderer.drawnShare(), 0);
 }
 
+/// Expects pictures in which the first body goes on by `way` (m), drawn as changes of those before, to be those drawn
+/// whole.
+void expectBytesOfWhole(Renderer& renderer, Frame frame, const Vec3& way) {
+  renderer.render(frame);
+  for (int step = 0; step < 4; ++step) {
+    frame.states[0].position += way;
+    const Image changed = renderer.render(frame);
+    EXPECT_LT(renderer.drawnShare(), 1);
+    renderer.forgetPicture();
+    EXPECT_EQ(renderer.render(frame), changed) << step;
+  }
+}
+
 TEST(ChangedArea, HasTheBytesOfThePictureDrawnWhole) {
   for (const Scene& scene : {makeCradleScene(), makeSpringScene()}) {
     Renderer renderer(scene, viewOfStart(scene, 320, 180), 320, 180);
-    Frame frame = startFrame(scene);
-    renderer.render(frame);
-    for (int step = 0; step < 5; ++step) {
-      frame.states[0].position += Vec3(0.004, 0.003, -0.002);
-      const Image changed = renderer.render(frame);
-      EXPECT_LT(renderer.drawnShare(), 1);
-      renderer.forgetPicture();
-      EXPECT_EQ(renderer.render(frame), changed) << step;
-    }
+    expectBytesOfWhole(renderer, startFrame(scene), {0.004, 0.003, -0.002});
   }
 }
 
@@ -190,15 +195,7 @@ TEST(ChangedArea, HasTheBytesOfThePictureDrawnWholeWhereDepthsAreEqual) {
   addBody(scene, Cylinder{0.005, 3}, {rotationAbout(Vec3::UnitZ(), 0.5 - M_PI / 2), {0, 0.055, 0.1}});
   const View view{cameraAt({0, 0, 5}, Vec3::Zero(), 0.4), Bounds(Vec3(-1.5, -1, -0.2), Vec3(1.5, 1, 1))};
   Renderer renderer(scene, view, 640, 360);
-  Frame frame = startFrame(scene);
-  renderer.render(frame);
-  for (int step = 0; step < 3; ++step) {
-    frame.states[0].position += Vec3(0, 0.011, 0);
-    const Image changed = renderer.render(frame);
-    EXPECT_LT(renderer.drawnShare(), 1);
-    renderer.forgetPicture();
-    EXPECT_EQ(renderer.render(frame), changed) << step;
-  }
+  expectBytesOfWhole(renderer, startFrame(scene), {0, 0.011, 0});
 }
 
 // What moves outside the picture, and throws its shadow on nothing that is seen, changes no pixel; but what comes into

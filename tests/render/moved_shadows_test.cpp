@@ -19,10 +19,7 @@ constexpr double kLightRadius = 0.03, kWidest = 16, kNarrowest = 1.3, kBias = 0.
 constexpr double kAside = 1.5;                                                                      // surface.glsl
 constexpr int kSamplePairs = 12;
 
-struct Ball {
-  Vec3 center;  // m, world
-  double radius;
-};
+using Ball = SphereItem;
 
 /// The light's frame: texels across, and as many in depth.
 struct LightFrame {
@@ -152,13 +149,6 @@ std::vector<std::vector<Eigen::Vector2d>> marked(const MovedShadows& shadows, co
     for (const Vec3& point : part) corners.push_back(light.placeOf(point).head<2>());
   }
   return parts;
-}
-
-DrawnHull hullOf(const Ball& ball) {
-  DrawnHull hull;
-  hull.add(ball.center);
-  hull.radius = ball.radius;
-  return hull;
 }
 
 /// Balls are placed in the light's frame: what is behind what, and how near the edges of blocks, is random.

@@ -45,6 +45,22 @@ TEST(FrameStream, GivesTheFramesOfTheSimulationBitByBit) {
   EXPECT_EQ(streamed.hex(), expected.hex());
 }
 
+TEST(FrameStream, TellsPushesUpToTheLatestFrame) {
+  const Scene scene = sceneWith(R"("duration": 1, "output": {"framesPerSecond": 60},
+    "bodies": [{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1}],
+    "pushes": [
+      {"body": "ball", "ray": {"origin": [5, 0, 0], "direction": [1, 0, 0]}, "force": [1, 0, 0], "start": 0.29, "duration": 0.1},
+      {"body": "ball", "point": [0, 0, 0], "force": [1, 0, 0], "start": 0.11, "duration": 0.1}])");
+  FrameStream stream(scene);
+  for (long number = 0; number < 20; ++number) {
+    const double time = stream.next([](const std::string&) {}).time;
+    ASSERT_EQ(stream.pushEvents().size(), std::size_t{time > 0.11} + std::size_t{time > 0.29}) << time;
+  }
+  EXPECT_EQ(stream.pushEvents()[0].kind, EventKind::pushStart);
+  EXPECT_EQ(stream.pushEvents()[0].time, 0.11);
+  EXPECT_EQ(stream.pushEvents()[1].kind, EventKind::pushMissed);
+}
+
 // One that went on alone would work for half a second, on frames that nobody has asked for.
 TEST(FrameStream, WaitsForThoseWhoTakeItsFrames) {
   const Scene scene = bouncingBall(1e6);
