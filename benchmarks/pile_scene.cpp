@@ -102,10 +102,10 @@ const std::vector<std::string>& pileKinds() {
   return kinds;
 }
 
-PileScene makePileScene(int bodies, const std::string& kind) {
+PileScene makePileScene(int bodies, const std::string& kind, unsigned start) {
   if (std::count(pileKinds().begin(), pileKinds().end(), kind) == 0) throw std::invalid_argument("no heap of " + kind);
   PileScene scene;
-  std::mt19937 random(1), sizes(2);
+  std::mt19937 random(start), sizes(start + 1);
   const auto jitter = [&](double size) { return size * (static_cast<double>(random()) / 2147483648.0 - 1); };
   const bool isTurned = kind != "spheres" && kind != "boxes";
   const double pitch = !isTurned ? 0.22 : kind == "bars" ? 0.64 : kind == "mixed" || kind == "capsules" ? 0.55 : 0.36;

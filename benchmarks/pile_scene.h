@@ -30,8 +30,8 @@ struct PileScene {
 /// and turned "bars", "mixed" (balls and boxes of many sizes) and "capsules".
 const std::vector<std::string>& pileKinds();
 
-/// Throws std::invalid_argument for another kind.
-PileScene makePileScene(int bodies, const std::string& kind);
+/// `start` makes their places and turns others. Throws std::invalid_argument for another kind.
+PileScene makePileScene(int bodies, const std::string& kind, unsigned start = 1);
 
 struct PilePoses {
   std::vector<Vec3> positions;  // m

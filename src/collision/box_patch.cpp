@@ -17,7 +17,8 @@ namespace cradle {
 namespace {
 
 constexpr double kApart = 1e-3;           // m: boxes nearer than that touch, and their axis is that of least overlap
-constexpr double kFacePreference = 5e-4;  // m: edges carry contact only where they are clearly farther apart than sides
+constexpr double kSidePreference = 5e-4;  // m: edges carry contact only where they are clearly farther apart than sides
+constexpr double kBeside = 2e-3;          // m: so much farther apart are edges of sides that are beside each other
 constexpr double kAligned = 0.95;         // cosine: edges that face as a side does are covered by that side
 constexpr double kAlignedSliding = 0.98;  // cosine: what slides up a slope that a side does not see sinks in
 constexpr double kSliding = 2e-3;         // m in a step: less is no sliding
@@ -66,13 +67,11 @@ class BoxPair {
     const double aligned = motion_.squaredNorm() > kSliding * kSliding ? kAlignedSliding : kAligned;
     const bool byEdges = hasEdges_ && edgeNormal().dot(sideNormal()) < aligned &&
                          (areApart ? closingTime(edges_) > closingTime(side_) && edges_.separation > 0
-                                   : edges_.separation > side_.separation + kFacePreference);
-    const Axis& axis = byEdges ? edges_ : side_;
-    const double part = areApart ? std::min(1.0, std::max(0.0, closingTime(axis))) : 0;
-    const Vec3 ahead = part * motion_;
-    return byEdges         ? edgeContact(axis, ahead)
-           : axis.ofA >= 0 ? sideContact(a_, b_, axis.ofA, axis.sign, ahead, true)
-                           : sideContact(b_, a_, axis.ofB, -axis.sign, -ahead, false);
+                                   : edges_.separation > side_.separation + kSidePreference);
+    if (byEdges) return edgeContact(edges_, wayUntilClosed(edges_, areApart));
+    const Vec3 ahead = wayUntilClosed(side_, areApart);
+    return side_.ofA >= 0 ? sideContact(a_, b_, side_.ofA, side_.sign, ahead, true)
+                          : sideContact(b_, a_, side_.ofB, -side_.sign, -ahead, false);
   }
 
  private:
@@ -81,6 +80,10 @@ class BoxPair {
   }
   Vec3 edgeNormal() const {  // A's frame
     return edges_.sign * Vec3(Vec3::Unit(edges_.ofA)).cross(aFromB_.col(edges_.ofB)).normalized();
+  }
+
+  Vec3 wayUntilClosed(const Axis& axis, bool areApart) const {  // m, A's frame, of B
+    return areApart ? Vec3(std::clamp(closingTime(axis), 0.0, 1.0) * motion_) : Vec3(Vec3::Zero());
   }
 
   bool consider(const Axis& axis, Axis& best, bool& known) {
@@ -165,7 +168,7 @@ struct Corner {
 
 /// Cuts what lies beyond `limit` along sign * coordinate.
 template <double Corner::*coordinate>
-std::size_t clip(const Corner* from, std::size_t count, double sign, double limit, Corner* to) {
+std::size_t clipCorners(const Corner* from, std::size_t count, double sign, double limit, Corner* to) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Corner &here = from[i], &next = from[i + 1 < count ? i + 1 : 0];
@@ -208,13 +211,18 @@ ContactPatch BoxPair::sideContact(const PosedBox& reference, const PosedBox& inc
   const Corner* lowest = std::min_element(
       corners, corners + 4, [](const Corner& left, const Corner& right) { return left.height < right.height; });
   const Corner lowestCorner = *lowest;
-  std::size_t count = clip<&Corner::u>(corners, 4, 1, limitU, clipped);
-  count = clip<&Corner::u>(clipped, count, -1, limitU, corners);
-  count = clip<&Corner::v>(corners, count, 1, limitV, clipped);
-  count = clip<&Corner::v>(clipped, count, -1, limitV, corners);
+  std::size_t count = clipCorners<&Corner::u>(corners, 4, 1, limitU, clipped);
+  count = clipCorners<&Corner::u>(clipped, count, -1, limitU, corners);
+  count = clipCorners<&Corner::v>(corners, count, 1, limitV, clipped);
+  count = clipCorners<&Corner::v>(clipped, count, -1, limitV, corners);
 
-  // Beside each other on this side, yet not separated along any axis: the lowest corner must not come below the side.
-  if (count == 0) corners[0] = lowestCorner, count = 1;
+  if (count == 0) {
+    // Beside each other on this side: where edges are clearly farther apart they are what is between the boxes, or what
+    // touches would be thrown out of a depth that is none; else the lowest corner must not come below the side.
+    if (hasEdges_ && edges_.separation > side_.separation + kBeside)
+      return edgeContact(edges_, wayUntilClosed(edges_, std::max(side_.separation, edges_.separation) > kApart));
+    corners[0] = lowestCorner, count = 1;
+  }
 
   const double aheadAlong = ahead.dot(normal);
   ContactPatch::Point points[8];

@@ -9,6 +9,8 @@
 
 namespace cradle {
 
+inline constexpr double kBeyondEnd = 1e-9;  // of a side: points as far outside a triangle or beyond an edge are on it
+
 /// A straight line's part from `from` to from + along.
 struct Segment {
   Vec3 from, along;  // m

@@ -7,8 +7,8 @@
 
 namespace cradle {
 
-/// The contact of two bodies that lasts over steps, and the impulses that held it in the last one. As small as can be:
-/// of the many of a heap each is in memory far away. Single precision holds points to 6e-8 of the body's size.
+/// The contact of two bodies that lasts over steps, and the forces that held it when it was last solved. As small as
+/// can be: of the many of a heap each is in memory far away. Single precision holds points to 6e-8 of the body's size.
 struct alignas(64) ContactManifold {
   using Anchor = Eigen::Vector3f;  // from the centre of mass, in the body's frame
 
@@ -20,9 +20,9 @@ struct alignas(64) ContactManifold {
   const SurfaceLaw* law = nullptr;
   Vec3 normal = Vec3::UnitY();                                  // unit, world, from A to B
   std::array<double, ContactPatch::kMostPoints> separations{};  // m, along the normal, < 0: overlap
-  std::array<double, ContactPatch::kMostPoints> impulses{};     // N s, along the normal, of each point
-  Vec3 frictionImpulse = Vec3::Zero();                          // N s, world, on B at the middle of the points
-  double twistImpulse = 0;                                      // N m s, about the normal, on B
+  std::array<double, ContactPatch::kMostPoints> forces{};       // N, along the normal, at each point
+  Vec3 frictionForce = Vec3::Zero();                            // N, world, on B at the middle of the points
+  double twist = 0;                                             // N m, about the normal, on B
   double friction = 0;                                          // coefficient of now
 };
 

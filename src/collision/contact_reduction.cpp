@@ -6,8 +6,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kSameNormal = 1 - 1e-4;  // cosine: within 0.8 degrees
-constexpr double kSamePart = 1e-9;        // of the size: points as near are one, and heights as near are level
+constexpr double kSameFaceNormal = 1 - 1e-4;  // cosine: within 0.8 degrees
+constexpr double kSamePart = 1e-9;            // of the size: points as near are one, and heights as near are level
 
 constexpr double kHalf = 0.5, kRoot = std::numbers::sqrt3 / 2;
 constexpr std::array<std::array<double, 2>, 6> kDirections = {
@@ -51,7 +51,8 @@ void reduceContacts(std::size_t first, double size, std::vector<ContactPoint>& c
   std::vector<Cluster> clusters;
   for (std::size_t i = first; i < contacts.size(); ++i) {
     std::size_t at = 0;
-    while (at < clusters.size() && contacts[clusters[at].members[0]].normal.dot(contacts[i].normal) < kSameNormal) ++at;
+    while (at < clusters.size() && contacts[clusters[at].members[0]].normal.dot(contacts[i].normal) < kSameFaceNormal)
+      ++at;
     if (at == clusters.size()) clusters.push_back({contacts, {}, kSamePart * size});
     clusters[at].members.push_back(i);
   }

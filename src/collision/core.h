@@ -27,10 +27,11 @@ class Core {
   Vec3 turnedBack(const Vec3& direction) const { return turn_.transpose() * direction; }
 
   // Of a cylinder and a segment:
-  const Vec3& axis() const { return axis_; }                                    // unit
-  const Vec3& center() const { return center_; }                                // m
-  double halfLength() const { return halfLength_; }                             // m
-  double rimRadius() const { return collider_.rimRadius; }                      // m
+  const Vec3& axis() const { return axis_; }                // unit
+  const Vec3& center() const { return center_; }            // m
+  double halfLength() const { return halfLength_; }         // m
+  double rimRadius() const { return collider_.rimRadius; }  // m
+  bool isRound() const { return rimRadius() > 0; }
   Vec3 end(double side) const { return center_ + side * halfLength_ * axis_; }  // m; side 1 or -1
   Vec3 rimPoint(double side, const Vec3& direction) const;                      // m: farthest of that rim
 

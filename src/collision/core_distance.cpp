@@ -11,8 +11,8 @@
 namespace cradle {
 namespace {
 
-constexpr int kMostRounds = 60;
-constexpr double kRounding = 4e-16;       // of the size: what differences of coordinates are uncertain by
+constexpr int kMostSimplexRounds = 60;
+constexpr double kCoordinateRounding = 4e-16;  // of the size: what differences of coordinates are uncertain by
 constexpr double kRoundTolerance = 1e-8;  // of the distance, where a core is round: others finish (see core_separation)
 
 /// A point of A - B, and where it comes from.
@@ -116,10 +116,6 @@ bool holds(const Simplex& simplex, const Difference& difference) {
   return false;
 }
 
-bool isRound(const Core& core) {
-  return core.rimRadius() > 0;
-}
-
 }  // namespace
 
 CoreDistance distanceOf(const Core& a, const Core& b) {
@@ -127,25 +123,25 @@ CoreDistance distanceOf(const Core& a, const Core& b) {
     const Vec3 onA = a.farthest(direction), onB = b.farthest(-direction);
     return Difference{onA - onB, onA, onB};
   };
-  const double tolerance = isRound(a) || isRound(b) ? kRoundTolerance : 0;
+  const double tolerance = a.isRound() || b.isRound() ? kRoundTolerance : 0;
   CoreDistance best;
   best.distance = std::numeric_limits<double>::infinity();
   Simplex simplex;
   simplex.corners[0] = farthest(b.placed(b.collider().points[0]) - a.placed(a.collider().points[0]));
   simplex.count = 1;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMostSimplexRounds; ++round) {
     if (!findNearest(simplex)) return {};
     simplex.reduce();
     const Vec3 nearest = simplex.nearest(&Difference::point);
     const double distance = nearest.norm();
     double size = 0;
     for (std::size_t i = 0; i < simplex.count; ++i) size = std::max(size, simplex.corners[i].onA.cwiseAbs().maxCoeff());
-    if (distance <= kRounding * size) return {};
+    if (distance <= kCoordinateRounding * size) return {};
     if (distance >= best.distance) break;  // rounding: no more gain
     best = {distance, -nearest / distance, 0, simplex.nearest(&Difference::onA), simplex.nearest(&Difference::onB)};
     const Difference next = farthest(-nearest);
     best.seen = next.point.dot(nearest) / distance;
-    if (distance - best.seen <= kRounding * size + tolerance * distance || holds(simplex, next)) break;
+    if (distance - best.seen <= kCoordinateRounding * size + tolerance * distance || holds(simplex, next)) break;
     simplex.corners[simplex.count++] = next;
   }
   return best;

@@ -23,10 +23,6 @@ double sizeOf(const Core& a, const Core& b) {
   return std::min(a.collider().boundingRadius, b.collider().boundingRadius);
 }
 
-bool isRound(const Core& core) {
-  return core.rimRadius() > 0;
-}
-
 bool isSegment(const Core& core) {
   return core.collider().kind() == ColliderKind::capsule;
 }
@@ -59,7 +55,7 @@ SeparatingAxis ofNearest(const CoreDistance& apart, const Core& a, const Core& b
 SeparatingAxis bestFlat(const Core& a, const Core& b, const Vec3& near, double leastCosine) {
   SeparatingAxis best;
   const auto look = [&](const Core& core, double sign) {
-    if (isRound(core)) {
+    if (core.isRound()) {
       const Vec3 normal = (core.axis().dot(near) < 0 ? -1 : 1) * core.axis();
       if (normal.dot(near) > leastCosine) best = better(best, {gapAlong(a, b, normal), normal});
     } else if (core.collider().kind() == ColliderKind::polytope) {
@@ -91,7 +87,7 @@ SeparatingAxis ofRoundCores(const CoreDistance& apart, const Core& a, const Core
 
 SeparatingAxis separationOf(const Core& a, const Core& b) {
   const CoreDistance apart = distanceOf(a, b);
-  if (isRound(a) || isRound(b)) return ofRoundCores(apart, a, b);
+  if (a.isRound() || b.isRound()) return ofRoundCores(apart, a, b);
   if (apart.distance > kTouching * sizeOf(a, b)) return ofNearest(apart, a, b);
   if (isSegment(a) && isSegment(b)) return ofCrossingSegments(a, b);
   const SeparatingAxes axes = separatingAxes(a, b);
@@ -101,7 +97,7 @@ SeparatingAxis separationOf(const Core& a, const Core& b) {
 SeparatingAxis contactAxis(const Core& a, const Core& b) {
   const CoreDistance apart = distanceOf(a, b);
   const double preference = kFacePreference * sizeOf(a, b);
-  if (isRound(a) || isRound(b)) {
+  if (a.isRound() || b.isRound()) {
     const SeparatingAxis best = ofRoundCores(apart, a, b), flat = bestFlat(a, b, best.normal, kLeastCosine);
     return flat.separation >= best.separation - preference ? flat : best;
   }

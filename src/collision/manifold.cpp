@@ -21,8 +21,8 @@ constexpr double kTiltedCosine = 0.5;    // between a face's normal and the cont
 constexpr double kStandingCosine = 0.7;  // between a cylinder's axis and the contact's normal: its end carries
 constexpr double kOuterPart = 1.0195911582083184;  // 1 / cos(pi / 16): polygon around a disc to the one in it
 constexpr double kDeeperPart = 1e-9;               // of the size: a manifold must hold a point so near to the deepest
-constexpr double kPulledPart = 0.01;               // of the size: far enough to tell places of nearest points
-constexpr std::size_t kMostPoints = 8;
+constexpr double kPlacePulledPart = 0.01;          // of the size: far enough to tell places of nearest points
+constexpr std::size_t kMostPatchPoints = 8;
 constexpr double kLying =
     1e-5;  // rad: a cylinder so little tilted is a ball of its radius at both rims, to 1e-10 of it
 
@@ -111,7 +111,7 @@ struct Reference {
 /// Contacts of what is left of an incident patch on a face of A.
 void appendOnFace(const Reference& face, Patch& incident, double margin, std::vector<ContactPoint>& points) {
   std::erase_if(incident.points, [&](const Vec3& point) { return face.normal.dot(point) - face.offset > margin; });
-  thinOut(kMostPoints, incident.points);
+  thinOut(kMostPatchPoints, incident.points);
   for (const Vec3& point : incident.points) {
     const double separation = face.normal.dot(point) - face.offset;
     points.push_back({point - separation / 2 * face.normal, face.normal, separation, kFlat, incident.radius});
@@ -205,7 +205,7 @@ double radiusOfCorner(const Core& core) {
 
 /// Where the cores are nearest when they are moved apart along the axis; as seen before that.
 Vec3 middlePulledApart(const Core& a, const Core& b, const SeparatingAxis& axis) {
-  const double way = kPulledPart * std::min(sizeOf(a), sizeOf(b)) - axis.separation;
+  const double way = kPlacePulledPart * std::min(sizeOf(a), sizeOf(b)) - axis.separation;
   const CoreDistance apart = distanceOf(a, b.moved(way * axis.normal));
   return (apart.onA + apart.onB - way * axis.normal) / 2;
 }

@@ -7,10 +7,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kDeepPart = 0.01;       // of the size: deeper, features do not tell where to
-constexpr double kRoundingPart = 1e-12;  // of the size
-constexpr double kBeyondEnd = 1e-9;      // of a side: points as far outside a triangle or beyond an edge are on it
-constexpr double kParallelSine = 1e-6;   // edges at a smaller angle have no crossing: their ends touch instead
+constexpr double kDeepPart = 0.01;           // of the size: deeper, features do not tell where to
+constexpr double kPairRoundingPart = 1e-12;  // of the size
+constexpr double kParallelEdgeSine = 1e-6;   // edges at a smaller angle have no crossing: their ends touch instead
 
 /// A contact with its features, by which contacts are ordered whatever the way they were found.
 struct Candidate {
@@ -52,7 +51,7 @@ struct ContactVisit {
     Vec3 normal = a.along.cross(b.along);
     const Vec3 between = b.from - a.from;
     const double sine2 = normal.squaredNorm();
-    if (!(sine2 > kParallelSine * kParallelSine * a.along.squaredNorm() * b.along.squaredNorm())) return;
+    if (!(sine2 > kParallelEdgeSine * kParallelEdgeSine * a.along.squaredNorm() * b.along.squaredNorm())) return;
     const double partA = between.cross(b.along).dot(normal) / sine2, partB = between.cross(a.along).dot(normal) / sine2;
     if (std::max(std::abs(partA - 0.5), std::abs(partB - 0.5)) > 0.5 + kBeyondEnd) return;
     normal /= edgeA.normal.dot(normal) < 0 ? -std::sqrt(sine2) : std::sqrt(sine2);
@@ -72,7 +71,7 @@ void appendContacts(const MeshPair& pair, double margin, std::vector<ContactPoin
   const MeshGap gap = gapBetween(pair, margin);
   if (!(gap.separation <= margin)) return;
   const std::size_t first = contacts.size();
-  const double size = std::min(pair.a.size, pair.b.size), rounding = kRoundingPart * size;
+  const double size = std::min(pair.a.size, pair.b.size), rounding = kPairRoundingPart * size;
   double least = std::numeric_limits<double>::infinity();
   if (gap.separation > -kDeepPart * size) {
     ContactVisit visit{pair, margin, std::max(0.0, -gap.separation) + rounding};

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kNoDirection = 1e-9;                    // of the size: nearer points do not tell the normal well
 constexpr double kFirstReach = 1e-4, kLongerReach = 16;  // of the size; then how much longer each time
-constexpr double kTouching = 1e-10;                      // of the size: gaps as small as that are always looked for
+constexpr double kTouchingGap = 1e-10;                   // of the size: gaps as small as that are always looked for
 
 using Feature = MeshPoint::Feature;
 
@@ -172,9 +172,9 @@ GapVisit searchNearest(const MeshPair& pair, const TreePair& trees, double enoug
 MeshGap gapBetween(const MeshPair& pair, double enough) {
   const TreePair trees(pair.a.tree, pair.b.tree, pair.aFromB);
   const double size = std::min(pair.a.size, pair.b.size);
-  const GapVisit nearest = searchNearest(pair, trees, std::max(enough, kTouching * size));
+  const GapVisit nearest = searchNearest(pair, trees, std::max(enough, kTouchingGap * size));
   if (nearest.intersect) {
-    OverlapVisit overlap{pair, kTouching * size * kTouching * size, {}};
+    OverlapVisit overlap{pair, kTouchingGap * size * kTouchingGap * size, {}};
     overlap.deepest.separation = 0;
     trees.visitNear(overlap);
     return overlap.deepest;

@@ -5,8 +5,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kSameDirection = 1e-6;  // rad: the normal of an edge or vertex inside a flat face is exact
-constexpr double kRoundingPart = 1e-15;  // of the size, of a difference of points
+constexpr double kFlatAngle = 1e-6;            // rad: the normal of an edge or vertex inside a flat face is exact
+constexpr double kDifferenceRounding = 1e-15;  // of the size, of a difference of points
 
 struct NearestVisit {
   const MeshSurface& surface;
@@ -59,7 +59,7 @@ SignedHeight heightOver(const MeshSurface& surface, const Vec3& point) {
   const Vec3 away = point - nearest.point;
   const double distance = std::sqrt(nearest.distance2), side = away.dot(nearest.normal) < 0 ? -1 : 1;
   const Vec3 outward = distance > 0 ? Vec3(side / distance * away) : nearest.normal;
-  const double noise = std::max(kSameDirection, kRoundingPart * surface.size / distance);
+  const double noise = std::max(kFlatAngle, kDifferenceRounding * surface.size / distance);
   const bool isFeatures = nearest.feature == MeshPoint::Feature::face || !((outward - nearest.normal).norm() > noise);
   return {side * distance, isFeatures ? nearest.normal : outward, nearest.point, nearest.feature};
 }

@@ -21,12 +21,6 @@ Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
   return linearVelocity(state, body) + angularVelocity(state, body).cross(point - centerOfMass(state, body));
 }
 
-/// m/s at which a contact opens.
-double openingSpeed(const Contact& contact, const VectorX& state) {
-  return contact.normal.dot(pointVelocity(contact.bodyB, contact.point, state) -
-                            pointVelocity(contact.bodyA, contact.point, state));
-}
-
 /// How far (m) from the centre of mass the points of a collider are, without the balls around them.
 double pointReach(const Collider& collider) {
   return collider.boundingRadius - collider.radius;
@@ -53,6 +47,8 @@ PairSearch::PairSearch(ImpactSearch& scratch, const Step& step, std::size_t pair
       startB_(poseAt(step, bodyB_, 0)) {}
 
 void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
+  feature_ = 0;
+  if (isHeld(touching) && !pair_.againstPlane && hasOneContact()) return;  // there is no other
   findBounds();
   const double reach = bounds_.speed + touching.tolerance;
   if (separationBound(geometry_, pair_, startA_, startB_) > reach) return;

@@ -160,13 +160,14 @@ std::size_t farthestVertex(const Polytope& polytope, const Vec3& direction, std:
 
 SurfacePoint nearestSurfacePoint(const Polytope& polytope, const Vec3& point) {
   // Inside, the nearest face's plane is nearest; outside, the nearest of the faces that see the point.
-  SurfacePoint result;
-  result.distance = -std::numeric_limits<double>::infinity();
+  const Polytope::Face* highest = polytope.faces.data();
+  double most = -std::numeric_limits<double>::infinity();
   for (const Polytope::Face& face : polytope.faces) {
     const double height = face.normal.dot(point) - face.offset;
-    if (height > result.distance) result = {height, point - height * face.normal, face.normal, kFlat};
+    if (height > most) most = height, highest = &face;
   }
-  if (result.distance <= 0) return result;
+  SurfacePoint result{most, point - most * highest->normal, highest->normal, kFlat};
+  if (most <= 0) return result;
   double least = std::numeric_limits<double>::infinity();
   for (const Polytope::Face& face : polytope.faces) {
     const double height = face.normal.dot(point) - face.offset;

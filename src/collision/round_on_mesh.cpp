@@ -9,8 +9,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kBeyondEnd = 1e-9;      // of a side: points as far outside a triangle or beyond an edge are on it
-constexpr double kRoundingPart = 1e-12;  // of the size
+constexpr double kMeshRoundingPart = 1e-12;  // of the size
 
 /// Where a core is nearest to a mesh that it does not go through.
 struct CoreGap {
@@ -184,7 +183,7 @@ void appendContacts(const RoundSolid& round, const MeshSurface& mesh, double mar
   const CoreGap gap = gapOf(round.core, mesh, reach);
   if (gap.intersects || isInside(round.core, mesh))
     return contacts.push_back(deepestContact(round, deepestPlace(round.core, mesh, gap)));
-  const double distance = std::sqrt(gap.distance2), rounding = kRoundingPart * mesh.size;
+  const double distance = std::sqrt(gap.distance2), rounding = kMeshRoundingPart * mesh.size;
   if (!gap.isFound || distance - round.radius > margin) return;
   RoundVisit visit{round, mesh, margin, contacts};
   visitNear(mesh.tree, boundsOf(round.core), visit);

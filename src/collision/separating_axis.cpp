@@ -14,7 +14,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kParallelSine = 1e-7;  // edges at a smaller angle give no axis: faces and other edges cover them
+constexpr double kNoAxisSine = 1e-7;  // edges at a smaller angle give no axis: faces and other edges cover them
 
 /// Seen from B's frame.
 class AxisSearch {
@@ -91,7 +91,7 @@ class AxisSearch {
     const Vec3 alongB = coreB_.turned(b_.vertices[toB] - b_.vertices[fromB]);
     Vec3 normal = alongA.cross(alongB);
     const double length = normal.norm();
-    if (length <= kParallelSine * alongA.norm() * alongB.norm()) return;
+    if (length <= kNoAxisSine * alongA.norm() * alongB.norm()) return;
     normal /= normal.dot(near) < 0 ? -length : length;
     const Vec3 between = coreB_.placed(b_.vertices[fromB]) - coreA_.placed(a_.vertices[edge.from]);
     keep(axes_.edges, normal.dot(between), normal);

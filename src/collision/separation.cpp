@@ -11,8 +11,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kTurnRounding = 1e-14;  // of the distances that enter: a height taken in another frame is as good
-constexpr std::size_t kMostPoints = 8;   // of a polytope on a plane: the rest of a face with more does not support it
+constexpr double kTurnRounding = 1e-14;     // of the distances that enter: a height taken in another frame is as good
+constexpr std::size_t kMostFacePoints = 8;  // of a polytope on a plane: the rest of a larger face does not support it
 
 /// The two colliders of a pair that is not against a plane, in their poses.
 struct PosedPair {
@@ -96,11 +96,11 @@ double rimSeparation(const Collider& cylinder, std::size_t rim, const RigidTrans
 
 void appendOnPlane(const Collider& a, const RigidTransform& worldFromA, const PlaneCollider& plane,
                    const std::vector<std::size_t>& near, double margin, std::vector<ContactPoint>& points) {
-  const bool hasManyCorners = a.polytope && near.size() > kMostPoints;
+  const bool hasManyCorners = a.polytope && near.size() > kMostFacePoints;
   if (a.kind() == ColliderKind::cylinder || hasManyCorners)
     return appendManifold(Core(a, worldFromA), plane.point, plane.normal, margin, points);
   for (const std::size_t point : near) points.push_back(ballOnPlane(worldFromA * a.points[point], a.radius, plane));
-  if (near.size() > kMostPoints) reduceContacts(0, a.boundingRadius, points);
+  if (near.size() > kMostFacePoints) reduceContacts(0, a.boundingRadius, points);
 }
 
 std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const ColliderPair& pair,
@@ -124,7 +124,26 @@ std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const C
   return points;
 }
 
+Vec3 pointVelocity(const Contact& contact, int body, const VectorX& places, const VectorX& velocities) {
+  if (body == kFixed) return Vec3::Zero();
+  const Vec3 arm = contact.point - centerOfMass(places, body);
+  return linearVelocity(velocities, body) + angularVelocity(velocities, body).cross(arm);
+}
+
 }  // namespace
+
+Vec3 relativeVelocity(const Contact& contact, const VectorX& state) {
+  return relativeVelocity(contact, state, state);
+}
+
+Vec3 relativeVelocity(const Contact& contact, const VectorX& places, const VectorX& velocities) {
+  return pointVelocity(contact, contact.bodyB, places, velocities) -
+         pointVelocity(contact, contact.bodyA, places, velocities);
+}
+
+double openingSpeed(const Contact& contact, const VectorX& state) {
+  return contact.normal.dot(relativeVelocity(contact, state));
+}
 
 RigidTransform poseOf(const VectorX& state, int body) {
   if (body == kFixed) return {};

@@ -21,6 +21,15 @@ struct Contact {
   int movingBody() const { return bodyA != kFixed ? bodyA : bodyB; }
 };
 
+/// Velocity (m/s, world) of B's surface relative to A's at a contact: contactNormal . velocity < 0 is closing.
+Vec3 relativeVelocity(const Contact& contact, const VectorX& state);
+
+/// The same for velocities of another instant, at the contact where it is in `places`: both are states.
+Vec3 relativeVelocity(const Contact& contact, const VectorX& places, const VectorX& velocities);
+
+/// Speed (m/s) with which the surfaces leave each other at a contact; < 0 is closing.
+double openingSpeed(const Contact& contact, const VectorX& state);
+
 /// Pose of a moving body's centre of mass frame in `state`; identity if fixed.
 RigidTransform poseOf(const VectorX& state, int body);
 

@@ -33,7 +33,7 @@ double couplingOf(const LaneVector (&a)[Block::kMovers], const LaneVector (&b)[B
 
 template <class Block>
 void fillFriction(const ContactManifold& manifold, const Vec3 (&arms)[Block::kPoints][Block::kMovers],
-                  const SolverBody* const (&bodies)[Block::kMovers], double impulseScale, int lane, Block& block) {
+                  const SolverBody* const (&bodies)[Block::kMovers], double subStep, int lane, Block& block) {
   Vec3 middle[Block::kMovers];
   for (int k = 0; k < Block::kMovers; ++k) {
     Vec3 sum = arms[0][k];
@@ -48,7 +48,7 @@ void fillFriction(const ContactManifold& manifold, const Vec3 (&arms)[Block::kPo
     const Vec3& tangent = i == 0 ? tangent1 : tangent2;
     setLane(friction.tangents[i], lane, tangent);
     inverse[i] = fillTurns<Block>(friction.turns[i], tangent, middle, bodies, lane);
-    friction.impulses[i][lane] = impulseScale * manifold.frictionImpulse.dot(tangent);
+    friction.impulses[i][lane] = subStep * manifold.frictionForce.dot(tangent);
   }
   const double coupling = couplingOf<Block>(friction.turns[0], friction.turns[1], lane);
   const double determinant = inverse[0] * inverse[1] - coupling * coupling;
@@ -65,15 +65,15 @@ void fillFriction(const ContactManifold& manifold, const Vec3 (&arms)[Block::kPo
       inverseTwist += turn.squaredNorm();
     }
     block.twist.mass[lane] = 1 / inverseTwist;
-    block.twist.impulse[lane] = impulseScale * manifold.twistImpulse;
+    block.twist.impulse[lane] = subStep * manifold.twist;
     for (int i = 0; i < Block::kPoints; ++i) block.twist.levers[i][lane] = (arms[i][0] - middle[0]).norm();
   }
 }
 
-/// Puts a manifold of the block's kind into one lane, with its last impulses times `impulseScale`.
+/// Puts a manifold of the block's kind into one lane, with the impulses of its last forces in `subStep` (s).
 template <class Block>
 void fillLane(const ContactManifold& manifold, std::int32_t index, const std::vector<SolverBody>& bodies,
-              double impulseScale, int lane, Block& block) {
+              double subStep, int lane, Block& block) {
   const int indices[2] = {manifold.bodyA, manifold.bodyB};
   const SolverBody* movers[Block::kMovers];
   for (int k = 0; k < Block::kMovers; ++k) {
@@ -92,9 +92,9 @@ void fillLane(const ContactManifold& manifold, std::int32_t index, const std::ve
     if constexpr (Block::kBothMove) arms[i][1] = movers[1]->worldFromBody * manifold.onB[at].template cast<double>();
     point.mass[lane] = 1 / fillTurns<Block>(point.turns, manifold.normal, arms[i], movers, lane);
     point.separation[lane] = manifold.separations[at];
-    point.impulse[lane] = impulseScale * manifold.impulses[at];
+    point.impulse[lane] = subStep * manifold.forces[at];
   }
-  fillFriction(manifold, arms, movers, impulseScale, lane, block);
+  fillFriction(manifold, arms, movers, subStep, lane, block);
 }
 
 /// A lane that stands for nothing: its body never moves.
@@ -104,20 +104,22 @@ void emptyLane(std::int32_t stillBody, int lane, Block& block) {
   for (int k = 0; k < Block::kMovers; ++k) block.bodies[k][lane] = stillBody;
 }
 
+/// Puts a block's impulses into its manifolds, as forces.
 template <class Block>
-void storeImpulses(const Block& block, std::vector<ContactManifold>& manifolds) {
+void storeForces(const Block& block, double subStep, std::vector<ContactManifold>& manifolds) {
+  const double rate = 1 / subStep;
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.manifolds[lane] < 0) continue;
     ContactManifold& manifold = manifolds[static_cast<std::size_t>(block.manifolds[lane])];
     for (int i = 0; i < Block::kPoints; ++i)
-      manifold.impulses[static_cast<std::size_t>(i)] = block.points[i].impulse[lane];
+      manifold.forces[static_cast<std::size_t>(i)] = rate * block.points[i].impulse[lane];
     const auto& friction = block.friction;
     const auto tangent = [&](int i) {
       const LaneVector& t = friction.tangents[i];
       return Vec3(t.x[lane], t.y[lane], t.z[lane]);
     };
-    manifold.frictionImpulse = friction.impulses[0][lane] * tangent(0) + friction.impulses[1][lane] * tangent(1);
-    if constexpr (Block::kPoints > 1) manifold.twistImpulse = block.twist.impulse[lane];
+    manifold.frictionForce = rate * (friction.impulses[0][lane] * tangent(0) + friction.impulses[1][lane] * tangent(1));
+    if constexpr (Block::kPoints > 1) manifold.twist = rate * block.twist.impulse[lane];
   }
 }
 

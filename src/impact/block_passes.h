@@ -107,7 +107,7 @@ void softenBlock(Block& block, const Softness& soft, double subStep, SolverMotio
     const Lanes separation = point.separation + displacements.along(block.normal, point.turns);
     const auto apart = separation > none;
     const Lanes overlap = larger(none, -separation) * same(soft.hardening);
-    const Lanes turn = same(soft.turn) * (same(1) + overlap + overlap * overlap);
+    const Lanes turn = same(soft.turn) * (same(1) + overlap * (same(1) + overlap * (same(1) + overlap)));
     const Lanes damping = same(soft.damping) + turn, stiffness = turn * damping;
     const Lanes yielding = same(1) / (same(1) + stiffness);
     const Lanes wanted = apart ? separation * rate : larger(separation * rate * turn / damping, same(-soft.mostPush));

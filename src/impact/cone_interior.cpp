@@ -16,7 +16,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr int kMostIterations = 40;
+constexpr int kMostInteriorIterations = 40;
 constexpr double kLeastGap = 1e-22;  // of the squared velocities: complementarity where rounding rules
 constexpr double kStay = 0.99;       // of the way to the boundary
 constexpr double kSmoothing = 0.1;   // of the root of complementarity
@@ -165,7 +165,7 @@ int InteriorPoint::run(double tolerance, VectorX& impulses) {
   std::vector<Mat3> stiffnesses(pairs_.size());
   int iteration = 0;
   double least = INFINITY;
-  for (; iteration < kMostIterations; ++iteration) {
+  for (; iteration < kMostInteriorIterations; ++iteration) {
     const double complementarity = gap();
     smoothing_ = kSmoothing * std::sqrt(complementarity);
     findResidual();

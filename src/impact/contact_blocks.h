@@ -24,7 +24,7 @@ struct SolverBody {
 struct Softness {
   double turn;       // rad: of the spring's oscillation, in a sub-step
   double damping;    // twice the damping ratio
-  double hardening;  // 1/m: an overlap s raises the frequency 1 + hardening s + (hardening s)^2 times
+  double hardening;  // 1/m: an overlap s raises the frequency 1 + x + x^2 + x^3 times, x = hardening s
   double mostPush;   // m/s, apart
 };
 

@@ -13,9 +13,9 @@ struct ContactColors {
   std::vector<std::size_t> starts;  // of each group in `links`, and their end
 };
 
-/// Colours manifolds, each with the first colour that neither of its bodies has; contacts with
-/// fixed bodies come last, so that what is held against the world holds best. Beyond 64 contacts of one body, groups of
-/// one. `bodies`: number of moving bodies. O(active).
+/// Colours manifolds, each with the first colour that neither of its bodies has; contacts with fixed bodies come last,
+/// so that what is held against the world holds best. Beyond 64 contacts of one body, groups of one. `bodies`: number
+/// of moving bodies. O(active).
 class ContactColoring {
  public:
   const ContactColors& color(const std::vector<ManifoldLink>& active, std::size_t bodies);

@@ -9,11 +9,6 @@ Vec3 armOf(const Contact& contact, int body, const VectorX& state) {
   return body == kFixed ? Vec3::Zero() : Vec3(contact.point - centerOfMass(state, body));
 }
 
-Vec3 pointVelocity(const Contact& contact, int body, const VectorX& places, const VectorX& velocities) {
-  if (body == kFixed) return Vec3::Zero();
-  return linearVelocity(velocities, body) + angularVelocity(velocities, body).cross(armOf(contact, body, places));
-}
-
 Mat3 inverseMassOf(const Contact& contact, int body, const std::vector<RigidBody>& bodies, const VectorX& state) {
   if (body == kFixed) return Mat3::Zero();
   const RigidBody& inertia = bodies[static_cast<std::size_t>(body)];
@@ -23,19 +18,6 @@ Mat3 inverseMassOf(const Contact& contact, int body, const std::vector<RigidBody
 }
 
 }  // namespace
-
-Vec3 relativeVelocity(const Contact& contact, const VectorX& state) {
-  return relativeVelocity(contact, state, state);
-}
-
-Vec3 relativeVelocity(const Contact& contact, const VectorX& places, const VectorX& velocities) {
-  return pointVelocity(contact, contact.bodyB, places, velocities) -
-         pointVelocity(contact, contact.bodyA, places, velocities);
-}
-
-double openingSpeed(const Contact& contact, const VectorX& state) {
-  return contact.normal.dot(relativeVelocity(contact, state));
-}
 
 Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state) {
   return inverseMassOf(contact, contact.bodyA, bodies, state) + inverseMassOf(contact, contact.bodyB, bodies, state);

@@ -7,15 +7,6 @@
 
 namespace cradle {
 
-/// Velocity (m/s, world) of B's surface relative to A's at a contact: contactNormal . velocity < 0 is closing.
-Vec3 relativeVelocity(const Contact& contact, const VectorX& state);
-
-/// The same for velocities of another instant, at the contact where it is in `places`: both are states.
-Vec3 relativeVelocity(const Contact& contact, const VectorX& places, const VectorX& velocities);
-
-/// Speed (m/s) with which the surfaces leave each other at a contact; < 0 is closing.
-double openingSpeed(const Contact& contact, const VectorX& state);
-
 /// The 3x3 matrix that maps an impulse on B (and its opposite on A) at the contact to the change of B's velocity
 /// relative to A there, in 1/kg, for bodies that nothing ties.
 Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state);

@@ -20,7 +20,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();  // of the terms of a row, for each of them
+constexpr double kRowRounding = 64 * std::numeric_limits<double>::epsilon();  // of the terms of a row, for each of them
 constexpr double kSingularPart = 1e-12;  // of a diagonal element: less left after elimination is rounding
 constexpr long kMostPivotsPerRow = 100;  // 1 or 2 are usual
 
@@ -57,7 +57,7 @@ Index Pivoting::mostViolated() const {
     if (lambda_[row] > 0 || isLeft_[static_cast<std::size_t>(row)]) continue;
     const double terms = std::abs(b_[row]) + a_.row(row).cwiseAbs().dot(lambda_);
     const double violation = -residual(row);
-    if (violation <= std::max(largest, kRounding * static_cast<double>(b_.size()) * terms)) continue;
+    if (violation <= std::max(largest, kRowRounding * static_cast<double>(b_.size()) * terms)) continue;
     most = row, largest = violation;
   }
   return most;

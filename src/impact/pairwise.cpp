@@ -9,9 +9,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kClosedPart = 1e-12;         // of the fastest closing speed: what is left is rounding
-constexpr long kMostImpulsesPerPair = 10000;  // a row of n balls needs n, a box on its corners tens
-constexpr double kEnergyRounding = 1e-12;     // of the energy that the impulse moves
+constexpr double kPairClosedPart = 1e-12;      // of the fastest closing speed: what is left is rounding
+constexpr long kMostImpulsesPerPair = 10000;   // a row of n balls needs n, a box on its corners tens
+constexpr double kPairEnergyRounding = 1e-12;  // of the energy that the impulse moves
 
 double closingSpeed(const Contact& contact, const VectorX& state) {
   return -contact.normal.dot(relativeVelocity(contact, state));
@@ -52,7 +52,7 @@ Vec3 pairImpulse(const ImpactContact& impact, const ImpulseResponse& response, c
     impulse = slidingImpulse(contact, inverseMass, velocity, law.dynamicFriction, restitution);
 
   const double gained = impulse.dot(velocity + 0.5 * (inverseMass * impulse));
-  const bool addsEnergy = gained > kEnergyRounding * std::abs(impulse.dot(velocity));
+  const bool addsEnergy = gained > kPairEnergyRounding * std::abs(impulse.dot(velocity));
   return addsEnergy ? frictionless : impulse;
 }
 
@@ -66,7 +66,7 @@ void resolvePairwise(std::vector<ImpactContact>& impacts, const ImpulseResponse&
     if (next == impacts.end()) return;
     const double closing = closingSpeed(next->contact, state);
     fastest = std::max(fastest, closing);
-    if (closing <= kClosedPart * fastest) return;
+    if (closing <= kPairClosedPart * fastest) return;
     const Vec3 impulse = pairImpulse(*next, response, state);
     response.apply(next->contact, impulse, state);
     next->impulse += impulse;

@@ -10,16 +10,18 @@
 namespace cradle {
 namespace {
 
-constexpr double kSamePoint = 0.1;      // of the body's radius: points as near as that are one from step to step
-constexpr double kSameNormal = 0.9;     // cosine, at least, for impulses to go on
-constexpr double kSlowSliding = 0.1;    // m/s: slower, static friction holds; a step's gain by gravity is 0.16
-constexpr double kKeptMotion = 1e-3;    // m: what two bodies may move against each other with one manifold
-constexpr double kKeptTurn = 0.01;      // rad: both together
-constexpr double kBallPart = 0.8;       // that counts of their approach: balls have no edges that could be missed
-constexpr double kSpinPart = 0.5;       // of the speed of the farthest point: few touch with that one
-constexpr std::size_t kGrain = 512;     // pairs that a thread takes at once: tens of microseconds
-constexpr std::size_t kAhead = 2;       // pairs: what they need is asked for in time, for it lies anywhere
-constexpr std::size_t kNearGrain = 64;  // those among them that are near take longer
+constexpr double kSamePoint = 0.1;       // of the body's radius: points as near as that are one from step to step
+constexpr double kSameNormal = 0.9;      // cosine, at least, for forces to go on
+constexpr double kSlowSliding = 0.1;     // m/s: slower, static friction holds; a step's gain by gravity is 0.16
+constexpr double kKeptMotion = 1e-3;     // m: what two bodies may move against each other with one manifold
+constexpr double kKeptTurn = 0.01;       // rad: both together
+constexpr double kBallPart = 0.8;        // that counts of their approach: balls have no edges that could be missed
+constexpr double kPressed = 1.5;         // m/s: others that approach more slowly may be pressed, and slip and tilt
+constexpr double kQuickPart = 0.5;       // of what is faster: it meets where it was seen to, corners around that too
+constexpr double kSpinPart = 0.5;        // of the speed of the farthest point: few touch with that one
+constexpr std::size_t kPairGrain = 512;  // pairs that a thread takes at once: tens of microseconds
+constexpr std::size_t kAhead = 4;        // pairs: what they need is asked for in time, for it lies anywhere
+constexpr std::size_t kNearGrain = 64;   // those among them that are near take longer
 
 /// Pairs come from the broad phase in this order.
 auto orderOf(std::size_t a, std::size_t b, bool againstPlane) {
@@ -60,6 +62,9 @@ void PileContacts::takePairs() {
   }
   while (old < pairs_.size()) release(pairs_[old++]);
   pairs_.swap(taken_);
+  bodies_.clear();
+  for (const NearPair& pair : pairs_) bodies_.push_back({pair.bodyA, pair.bodyB});
+  beginStep();
 }
 
 /// A lower bound (m) of how far a pair's surfaces are apart now.
@@ -108,21 +113,23 @@ bool PileContacts::areFar(const NearPair& pair, const PileLook& look) {
 double PileContacts::approachOf(const NearPair& pair, const PileLook& look) const {
   const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
   if (a.isAsleep && (pair.bodyB == kFixed || b.isAsleep)) return 0;
-  const double spin = kSpinPart * (a.spinSpeed + b.spinSpeed);
   const bool areBalls = a.spinRadius == 0 && (pair.againstPlane || b.spinRadius == 0);
-  const double part = areBalls ? kBallPart : 1;
+  const auto counted = [&](double speed) {
+    return areBalls ? kBallPart * speed : std::min(speed, kPressed) + kQuickPart * std::max(0.0, speed - kPressed);
+  };
+  const double spin = kSpinPart * (a.spinSpeed + b.spinSpeed);
   const Vec3 velocity = b.linearVelocity - a.linearVelocity;
   if (areFar(pair, look) || !areNear(pair, look, reachOf(pair, look))) return 0;
-  if (pair.againstPlane) return part * std::max(0.0, geometry_.planes[pair.shapeB].normal.dot(velocity)) + spin;
-  if (pair.bodyB == kFixed) return part * velocity.norm() + spin;
+  if (pair.againstPlane) return counted(std::max(0.0, geometry_.planes[pair.shapeB].normal.dot(velocity))) + spin;
+  if (pair.bodyB == kFixed) return counted(velocity.norm()) + spin;
   const Vec3 offset = b.position - a.position;
   const double distance = offset.norm();
-  return distance > 0 ? part * std::max(0.0, -offset.dot(velocity) / distance) + spin : 0;
+  return distance > 0 ? counted(std::max(0.0, -offset.dot(velocity) / distance)) + spin : 0;
 }
 
 double PileContacts::fastestApproach(const PileLook& look, WorkerThreads& threads) const {
   std::vector<double> fastest(static_cast<std::size_t>(threads.count()), 0);
-  threads.share(pairs_.size(), kGrain, [&](int thread, std::size_t first, std::size_t last) {
+  threads.share(pairs_.size(), kPairGrain, [&](int thread, std::size_t first, std::size_t last) {
     double& most = fastest[static_cast<std::size_t>(thread)];
     for (std::size_t i = first; i < last; ++i) most = std::max(most, approachOf(pairs_[i], look));
   });
@@ -144,7 +151,11 @@ void PileContacts::update(const PileLook& look, WorkerThreads& threads) {
   giveManifolds();
   threads.share(near_.size(), kNearGrain, [&](int thread, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      if (i + kAhead < last) fetchAhead<true>(manifolds_[static_cast<std::size_t>(active_[i + kAhead].manifold)]);
+      if (i + kAhead < last) {
+        fetchAhead<true>(manifolds_[static_cast<std::size_t>(active_[i + kAhead].manifold)]);
+        fetchAhead<true>(pairs_[near_[i + kAhead]]);
+        fetchAhead<false>(look.poseOf(active_[i + kAhead].bodyB));
+      }
       updatePair(pairs_[near_[i]], look, scratch_[static_cast<std::size_t>(thread)]);
       const NearPair& pair = pairs_[near_[i]];
       active_[i].count = pair.isEmpty ? 0 : manifolds_[static_cast<std::size_t>(pair.manifold)].count;
@@ -153,19 +164,33 @@ void PileContacts::update(const PileLook& look, WorkerThreads& threads) {
   std::erase_if(active_, [](const ManifoldLink& link) { return link.count == 0; });
 }
 
+/// Most pairs cannot come near within the step: looked at once, and when one of the bodies is deflected.
+bool PileContacts::isInReach(std::size_t index, const PileLook& look) {
+  const auto [a, b] = bodies_[index];
+  if (!inReach_[index] && (b == kFixed || courses_.areRenewed(a, b)))
+    inReach_[index] = b == kFixed || !pairs_[index].isEmpty || courses_.mayMeet(a, b, look);
+  return inReach_[index];
+}
+
 /// Each part of the pairs lists its own in place; put together they are in the order of pairs.
 void PileContacts::findNear(const PileLook& look, WorkerThreads& threads) {
+  const bool isOnlyLook = courses_.areForgotten() && look.timeLeft == look.timeStep;
+  if (!isOnlyLook) courses_.renew(look, threads);
   near_.resize(pairs_.size());
-  nearOfPart_.assign(pairs_.size() / kGrain + 1, 0);
-  threads.share(pairs_.size(), kGrain, [&](int, std::size_t first, std::size_t last) {
-    std::size_t count = 0;
+  nearOfPart_.assign(pairs_.size() / kPairGrain + 1, 0);
+  threads.share(pairs_.size(), kPairGrain, [&](int, std::size_t first, std::size_t last) {
+    std::size_t inReach = 0, count = 0;
     for (std::size_t i = first; i < last; ++i)
-      if (mayTouch(pairs_[i], look)) near_[first + count++] = i;
-    nearOfPart_[first / kGrain] = count;
+      if (isOnlyLook || isInReach(i, look)) near_[first + inReach++] = i;
+    for (std::size_t i = first; i < first + inReach; ++i) {
+      if (i + kAhead < first + inReach) fetchAhead<false>(pairs_[near_[i + kAhead]]);
+      if (mayTouch(pairs_[near_[i]], look)) near_[first + count++] = near_[i];
+    }
+    nearOfPart_[first / kPairGrain] = count;
   });
   std::size_t count = 0;
   for (std::size_t part = 0; part < nearOfPart_.size(); ++part)
-    for (std::size_t i = 0; i < nearOfPart_[part]; ++i) near_[count++] = near_[part * kGrain + i];
+    for (std::size_t i = 0; i < nearOfPart_[part]; ++i) near_[count++] = near_[part * kPairGrain + i];
   near_.resize(count);
 }
 
@@ -215,8 +240,7 @@ void PileContacts::updatePair(NearPair& pair, const PileLook& look, std::vector<
                        poseA.angularVelocity.cross(inWorld(poseA, manifold.onA[0]));
   const double approach = -manifold.normal.dot(sliding);
   const double across2 = sliding.squaredNorm() - approach * approach;
-  const auto& impulses = manifold.impulses;
-  const bool isPressed = std::any_of(impulses.begin(), impulses.end(), [](double p) { return p != 0; });
+  const bool isPressed = std::any_of(manifold.forces.begin(), manifold.forces.end(), [](double f) { return f != 0; });
   pair.approach = isPressed ? 0 : static_cast<float>(approach);
   manifold.friction =
       across2 < kSlowSliding * kSlowSliding ? manifold.law->staticFriction : manifold.law->dynamicFriction;
@@ -236,17 +260,17 @@ void PileContacts::follow(const NearPair& pair, const MovingPose& poseA, const M
         apart + normalOnB.dot(manifold.onB[i].cast<double>()) - normalOnA.dot(manifold.onA[i].cast<double>());
 }
 
-/// Takes a new patch; points that were there before keep their impulses.
+/// Takes a new patch; points that were there before keep their forces.
 void PileContacts::renew(const ContactPatch& patch, const MovingPose& poseA, const MovingPose& poseB, bool wasEmpty,
                          ContactManifold& manifold) {
   const bool goesOn = !wasEmpty && manifold.normal.dot(patch.normal) > kSameNormal;
-  const auto impulses = manifold.impulses;
+  const auto forces = manifold.forces;
   const auto onA = manifold.onA;
   const std::size_t count = static_cast<std::size_t>(manifold.count);
   const float near2 = static_cast<float>(kSamePoint * kSamePoint * poseA.radius * poseA.radius);
   const Vec3& from = manifold.bodyB == kFixed ? poseA.position : poseB.position;
-  manifold.impulses.fill(0);
-  if (!goesOn) manifold.frictionImpulse.setZero(), manifold.twistImpulse = 0;
+  manifold.forces.fill(0);
+  if (!goesOn) manifold.frictionForce.setZero(), manifold.twist = 0;
   manifold.normal = patch.normal, manifold.normalOnA = inBody(poseA, patch.normal);
   manifold.count = static_cast<std::int32_t>(patch.count);
   for (std::size_t i = 0; i < patch.count; ++i) {
@@ -255,9 +279,9 @@ void PileContacts::renew(const ContactPatch& patch, const MovingPose& poseA, con
     manifold.separations[i] = patch.points[i].separation;
     for (std::size_t k = 0; goesOn && k < count; ++k)
       if (patch.count == 1 && count == 1)
-        manifold.impulses[0] = impulses[0];
+        manifold.forces[0] = forces[0];
       else if ((manifold.onA[i] - onA[k]).squaredNorm() < near2)
-        manifold.impulses[i] = impulses[k];
+        manifold.forces[i] = forces[k];
   }
 }
 

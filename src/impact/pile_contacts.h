@@ -6,6 +6,7 @@
 
 #include "collision/contact_manifold.h"
 #include "core/worker_threads.h"
+#include "impact/pile_courses.h"
 #include "impact/pile_patches.h"
 
 namespace cradle {
@@ -19,11 +20,18 @@ class PileContacts {
   /// To be called when geometry.pairs is a new list: manifolds of pairs that stay are kept.
   void takePairs();
 
+  /// To be called before the first look of a step.
+  void beginStep() {
+    courses_.forget();
+    inReach_.assign(pairs_.size(), 0);
+  }
+
   /// The speed (m/s) at which bodies approach each other that may touch within the step, for how often they must be
   /// looked at: more than that between balls.
   double fastestApproach(const PileLook& look, WorkerThreads& threads) const;
 
-  /// Contacts of now, and those that come about within the step. Pairs of bodies asleep stay as they are.
+  /// Contacts of now, and those that come about within the step or piece. Pairs of bodies asleep stay as they are.
+  /// Pieces of a step have the same length and margin.
   void update(const PileLook& look, WorkerThreads& threads);
 
   std::vector<ContactManifold>& manifolds() { return manifolds_; }
@@ -58,6 +66,7 @@ class PileContacts {
     double clearance = -std::numeric_limits<double>::infinity();  // m: how far apart they were then, at least
   };
   void findNear(const PileLook& look, WorkerThreads& threads);
+  bool isInReach(std::size_t index, const PileLook& look);
   void giveManifolds();
   void giveManifold(NearPair& pair);
   static double clearanceOf(const NearPair& pair, const MovingPose& a, const MovingPose& b);
@@ -75,6 +84,12 @@ class PileContacts {
   PilePatches patches_;
   std::vector<std::vector<Contact>> scratch_;  // of each thread
   std::vector<NearPair> pairs_, taken_;        // those of geometry.pairs as last taken; taken_: scratch
+  struct BodyPair {
+    int a, b;
+  };
+  std::vector<BodyPair> bodies_;  // of pairs_
+  std::vector<char> inReach_;     // of pairs_: may come near before the step ends
+  PileCourses courses_;
   std::vector<ContactManifold> manifolds_;
   std::vector<std::size_t> near_, nearOfPart_;  // indices into pairs_ of the last update, and how many of each part
   std::vector<ManifoldLink> active_;            // and while pairs are looked at, of all that are near

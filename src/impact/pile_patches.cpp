@@ -5,8 +5,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kRounding = 1e-9;   // of a unit axis or a side
-constexpr double kSameNormal = 0.9;  // cosine, at least, for contacts to be one patch
+constexpr double kAxisRounding = 1e-9;    // of a unit axis or a side
+constexpr double kSamePatchNormal = 0.9;  // cosine, at least, for contacts to be one patch
 
 }  // namespace
 
@@ -34,9 +34,9 @@ std::optional<PilePatches::BoxShape> PilePatches::boxOf(const Collider& collider
   }
   box.center = (corners[0] + opposite) / 2;
   const double size = box.halfSize.norm();
-  if (!((box.axes.transpose() * box.axes - Mat3::Identity()).norm() < kRounding)) return {};
-  if ((opposite - corners[7]).norm() > kRounding * size) return {};
-  if ((corners[3] - corners[1] - corners[2] + corners[0]).norm() > kRounding * size) return {};
+  if (!((box.axes.transpose() * box.axes - Mat3::Identity()).norm() < kAxisRounding)) return {};
+  if ((opposite - corners[7]).norm() > kAxisRounding * size) return {};
+  if ((corners[3] - corners[1] - corners[2] + corners[0]).norm() > kAxisRounding * size) return {};
   return box;
 }
 
@@ -113,7 +113,7 @@ ContactPatch PilePatches::patchOfAnyShapes(const PilePair& pair, const PileLook&
   ContactPatch::Point points[kMostCandidates];
   std::size_t count = 0;
   for (const Contact& contact : scratch) {
-    if (contact.normal.dot(patch.normal) < kSameNormal || count == kMostCandidates) continue;
+    if (contact.normal.dot(patch.normal) < kSamePatchNormal || count == kMostCandidates) continue;
     const Vec3 half = contact.separation / 2 * contact.normal;
     points[count++] = {contact.point - half, contact.point + half, contact.separation};
   }

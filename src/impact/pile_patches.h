@@ -24,12 +24,13 @@ struct alignas(64) MovingPose {
   Mat3 rotation = Mat3::Identity();     // worldFromBody
 };
 
-/// A pile at the begin of a step.
+/// A pile at the begin of a step, or of a piece of one.
 struct PileLook {
   const std::vector<MovingPose>& poses;
-  const VectorX& state;  // the same poses
-  double timeStep;       // s, of the step to come
-  double margin;         // m: what comes nearer than that in the step is in contact
+  const VectorX& state;        // the same poses
+  double timeStep;             // s, of the step or piece to come
+  double margin;               // m: what comes nearer than that in it is in contact
+  double timeLeft = timeStep;  // s, until the step ends of which it is a piece
 
   const MovingPose& poseOf(int body) const {
     static const MovingPose fixed{};

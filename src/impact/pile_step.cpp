@@ -16,7 +16,7 @@ constexpr int kMostPieces = 32;                  // looks a step
 constexpr int kSubSteps = 8;         // a step, at least: with fewer, contacts must be so soft that piles sink
 constexpr double kStillPart = 0.25;  // of the speed that gravity gives a body in a step: contacts at rest have as much
 constexpr double kContactMargin = 5e-3;  // m: contacts are known before bodies touch
-constexpr std::size_t kGrain = 256;      // bodies that a thread takes at once: tens of microseconds
+constexpr std::size_t kBodyGrain = 256;  // bodies that a thread takes at once: tens of microseconds
 
 std::vector<double> massesOf(const std::vector<RigidBody>& bodies) {
   std::vector<double> masses;
@@ -99,6 +99,7 @@ void PileStep::advance(double timeStep, VectorX& state) {
   const int subSteps = std::max((kSubSteps + pieces - 1) / pieces, fewest);
   margin_ = kContactMargin + kDeflected * std::min(approach / pieces, kMostApproach);
 
+  contacts_.beginStep();
   for (int piece = 0; piece < pieces; ++piece) {
     if (pieces > 1) placeBodies(timeStep / pieces, state);
     takePiece(timeStep / pieces, subSteps, pieces - piece, state);
@@ -109,23 +110,24 @@ void PileStep::advance(double timeStep, VectorX& state) {
 /// A step with one look for contacts, the first of so many pieces that are left.
 void PileStep::takePiece(double timeStep, int subSteps, int pieces, VectorX& state) {
   const double ahead = pieces;
+  const PileLook look{poses_, state, timeStep, margin_, pieces * timeStep};
   if (broadPhase_.update({state, reaches_, drifts_, ahead}, margin_, geometry_)) contacts_.takePairs();
-  contacts_.update({poses_, state, timeStep, margin_}, threads_);
-  wakeTouched(timeStep, state);
+  contacts_.update(look, threads_);
+  wakeTouched(look);
   ++looks_;
   const ContactColors& colors = coloring_.color(contacts_.active(), bodies_.size());
   const double subStep = timeStep / subSteps;
   solver_.prepare(colors, contacts_.manifolds(), solverBodies_, subStep, threads_);
   solver_.solve({subStep, subSteps, slowestRebound_, rebounds_}, gravity_, motions_, threads_);
   solver_.store(contacts_.manifolds(), threads_);
-  recordImpacts(subSteps);
-  threads_.share(bodies_.size(), kGrain, [&](int, std::size_t first, std::size_t last) {
+  recordImpacts(timeStep);
+  threads_.share(bodies_.size(), kBodyGrain, [&](int, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) moveBody(i, timeStep, subStep, state);
   });
 }
 
 void PileStep::placeBodies(double timeStep, const VectorX& state) {
-  threads_.share(bodies_.size(), kGrain, [&](int, std::size_t first, std::size_t last) {
+  threads_.share(bodies_.size(), kBodyGrain, [&](int, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (!poses_[i].isAsleep) placeBody(i, state);
       const MovingPose& pose = poses_[i];
@@ -183,13 +185,13 @@ void PileStep::moveBody(std::size_t index, double timeStep, double subStep, Vect
   angularVelocity(state, body) = spin;
 }
 
-/// The impulse of the last sub-step stands for each: where bodies meet fast, a look has but one.
-void PileStep::recordImpacts(int subSteps) {
+/// The force of the last sub-step stands for all: where bodies meet fast, a look has few.
+void PileStep::recordImpacts(double timeStep) {
   for (const PileContacts::Meeting& meeting : contacts_.meetings(slowestRebound_)) {
     const ContactManifold& manifold = contacts_.manifolds()[static_cast<std::size_t>(meeting.manifold)];
     double impulse = 0;
     for (std::int32_t i = 0; i < manifold.count; ++i)
-      impulse += subSteps * manifold.impulses[static_cast<std::size_t>(i)];
+      impulse += timeStep * manifold.forces[static_cast<std::size_t>(i)];
     if (impulse <= 0) continue;
     const Vec3 onA = pointOf(poses_[static_cast<std::size_t>(manifold.bodyA)], manifold.onA[0]);
     const Vec3 onB = manifold.bodyB == kFixed
@@ -200,16 +202,16 @@ void PileStep::recordImpacts(int subSteps) {
 }
 
 /// Wakes what is disturbed, and finds what it touches.
-void PileStep::wakeTouched(double timeStep, const VectorX& state) {
+void PileStep::wakeTouched(const PileLook& look) {
   const std::size_t before = woken_.size();
   sleep_.wakeTouched(contacts_, poses_, slow_, woken_);
   if (woken_.size() == before) return;
   for (std::size_t i = before; i < woken_.size(); ++i) {
     const std::size_t body = static_cast<std::size_t>(woken_[i]);
     poses_[body].isAsleep = false, motions_.falls[body] = 1;
-    placeBody(body, state);
+    placeBody(body, look.state);
   }
-  contacts_.update({poses_, state, timeStep, margin_}, threads_);
+  contacts_.update(look, threads_);
 }
 
 /// Slow: as fast as gravity makes a body in a part of a step, which the contacts of a pile at rest cannot be told from.

@@ -45,8 +45,8 @@ class PileStep {
   void placeBody(std::size_t index, const VectorX& state);
   void takePiece(double timeStep, int subSteps, int pieces, VectorX& state);
   void moveBody(std::size_t index, double timeStep, double subStep, VectorX& state);
-  void recordImpacts(int subSteps);
-  void wakeTouched(double timeStep, const VectorX& state);
+  void recordImpacts(double timeStep);
+  void wakeTouched(const PileLook& look);
   void letSleep(double timeStep, VectorX& state);
 
   const std::vector<RigidBody>& bodies_;

@@ -9,9 +9,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kSingularPart = 1e-13;  // of the trace: less is rounding
-constexpr double kRootPart = 4e-16;      // of alpha
-constexpr int kMostSteps = 200;          // 5 are usual; bisection alone ends after about 100
+constexpr double kSingularTracePart = 1e-13;  // of the trace: less is rounding
+constexpr double kRootPart = 4e-16;           // of alpha
+constexpr int kMostSteps = 200;               // 5 are usual; bisection alone ends after about 100
 
 /// The tangential problem after elimination of the normal part, in its principal axes.
 class Sliding {
@@ -29,7 +29,7 @@ class Sliding {
     axis_ = length > 0 ? Vec2(x / length, y / length) : Vec2(1, 0);
     const Vec2 offset(free.x() + free.z() * coupling_[0], free.y() + free.z() * coupling_[1]);
     offset_ = {axis_.dot(offset), axis_.x() * offset.y() - axis_.y() * offset.x()};
-    const double rounding = kSingularPart * (g(0, 0) + g(1, 1));
+    const double rounding = kSingularTracePart * (g(0, 0) + g(1, 1));
     for (int i = 0; i < 2; ++i)
       if (moments_[i] < rounding) moments_[i] = 0;
   }

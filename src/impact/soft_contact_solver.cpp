@@ -17,14 +17,24 @@ namespace {
 
 constexpr double kFrequencies[] = {240, 170, 100, 100};  // Hz: of contacts as springs, by their number of points
 constexpr double kDampingRatio = 2;
-constexpr double kHardening = 300;        // 1/m: three times the frequency at 3.3 mm of overlap, and more below
+constexpr double kHardening = 300;        // 1/m: four times the frequency at 3.3 mm of overlap, and more below
 constexpr double kMostPush = 4;           // m/s
 constexpr std::size_t kLeastShared = 16;  // blocks: a microsecond of work
+constexpr std::size_t kAhead = 2;         // blocks: the motions that they need are asked for in time
 constexpr double kPi = 3.14159265358979324;
 
 /// A damped spring, implicit in the sub-step (E. Catto, "Soft Constraints", GDC 2011).
 Softness softnessOf(int points, double subStep) {
   return {2 * kPi * kFrequencies[points - 1] * subStep, 2 * kDampingRatio, kHardening, kMostPush};
+}
+
+template <class Block>
+void fetchMotions(const Block& block, const SolverMotions& motions) {
+  for (const auto& bodies : block.bodies)
+    for (const std::int32_t body : bodies) {
+      fetchAhead<true>(motions.velocities[static_cast<std::size_t>(body)]);
+      fetchAhead<false>(motions.displacements[static_cast<std::size_t>(body)]);
+    }
 }
 
 template <class Lists, class Work>
@@ -63,7 +73,6 @@ void SoftContactSolver::arrange(const ContactColors& colors, std::int32_t stillB
 
 void SoftContactSolver::prepare(const ContactColors& colors, const std::vector<ContactManifold>& manifolds,
                                 const std::vector<SolverBody>& bodies, double subStep, WorkerThreads& threads) {
-  const double impulseScale = subStep_ > 0 ? subStep / subStep_ : 1;
   subStep_ = subStep;
   colors_ = colors.starts.size() - 1;
   const std::int32_t stillBody = static_cast<std::int32_t>(bodies.size());
@@ -81,7 +90,7 @@ void SoftContactSolver::prepare(const ContactColors& colors, const std::vector<C
           const std::int32_t index = list.blocks[i].manifolds[lane];
           if (index < 0) continue;
           const ContactManifold& manifold = manifolds[static_cast<std::size_t>(index)];
-          fillLane(manifold, index, bodies, impulseScale, lane, list.blocks[i]);
+          fillLane(manifold, index, bodies, subStep, lane, list.blocks[i]);
         }
       }
     });
@@ -102,13 +111,16 @@ void SoftContactSolver::arrangeTasks() {
 
 /// Lets `pass` work on all blocks, colour by colour, together with the other threads.
 template <class Pass>
-void SoftContactSolver::sweep(WorkerThreads& threads, int thread, const Pass& pass) {
+void SoftContactSolver::sweep(const SolverMotions& motions, WorkerThreads& threads, int thread, const Pass& pass) {
   for (const Task& task : tasks_) {
     for (std::size_t color = task.firstColor; color < task.lastColor && (task.isShared || thread == 0); ++color)
       forEachList(lists_, [&](auto& list) {
         const std::size_t start = list.starts[color], count = list.starts[color + 1] - start;
         const auto [first, last] = task.isShared ? threads.partOf(count, thread) : WorkerThreads::Part{0, count};
-        for (std::size_t i = start + first; i < start + last; ++i) pass(list.blocks[i]);
+        for (std::size_t i = start + first; i < start + last; ++i) {
+          if (i + kAhead < start + last) fetchMotions(list.blocks[i + kAhead], motions);
+          pass(list.blocks[i]);
+        }
       });
     threads.meet();
   }
@@ -133,8 +145,8 @@ void SoftContactSolver::solve(const Steps& steps, const Vec3& gravity, SolverMot
         velocity = velocity + pushed;
       }
       threads.meet();
-      if (i == 0) sweep(threads, thread, [&](auto& block) { warmBlock(block, motions); });
-      sweep(threads, thread, [&](auto& block) {
+      if (i == 0) sweep(motions, threads, thread, [&](auto& block) { warmBlock(block, motions); });
+      sweep(motions, threads, thread, [&](auto& block) {
         softenBlock(block, soft[std::decay_t<decltype(block)>::kPoints - 1], steps.subStep, motions);
       });
       for (std::size_t body = first; body < last; ++body) {
@@ -145,10 +157,10 @@ void SoftContactSolver::solve(const Steps& steps, const Vec3& gravity, SolverMot
         displacement.vw += subStep * velocity.vw;
       }
       threads.meet();
-      sweep(threads, thread, [&](auto& block) { relaxBlock(block, motions); });
+      sweep(motions, threads, thread, [&](auto& block) { relaxBlock(block, motions); });
     }
     if (steps.rebounds)
-      sweep(threads, thread, [&](auto& block) { reboundBlock(block, steps.slowestRebound, motions); });
+      sweep(motions, threads, thread, [&](auto& block) { reboundBlock(block, steps.slowestRebound, motions); });
   });
 }
 
@@ -156,7 +168,7 @@ void SoftContactSolver::store(std::vector<ContactManifold>& manifolds, WorkerThr
   threads.run([&](int thread) {
     forEachList(lists_, [&](const auto& list) {
       const auto [first, last] = threads.partOf(list.size, thread);
-      for (std::size_t i = first; i < last; ++i) storeImpulses(list.blocks[i], manifolds);
+      for (std::size_t i = first; i < last; ++i) storeForces(list.blocks[i], subStep_, manifolds);
     });
   });
 }

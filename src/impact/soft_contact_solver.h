@@ -26,7 +26,7 @@ class SoftContactSolver {
   /// From the velocities in `motions` and displacements of zero to the velocities and displacements at the end.
   void solve(const Steps& steps, const Vec3& gravity, SolverMotions& motions, WorkerThreads& threads);
 
-  /// Impulses of the step, for the next one.
+  /// Forces of the last sub-step, for the next step.
   void store(std::vector<ContactManifold>& manifolds, WorkerThreads& threads) const;
 
  private:
@@ -47,7 +47,7 @@ class SoftContactSolver {
   void arrange(const ContactColors& colors, std::int32_t stillBody);
   void arrangeTasks();
   template <class Pass>
-  void sweep(WorkerThreads& threads, int thread, const Pass& pass);
+  void sweep(const SolverMotions& motions, WorkerThreads& threads, int thread, const Pass& pass);
 
   struct Task {
     std::size_t firstColor, lastColor;  // [first, last)
@@ -57,7 +57,7 @@ class SoftContactSolver {
   BlockLists lists_;
   std::vector<Task> tasks_;
   std::size_t colors_ = 0;
-  double subStep_ = 0;  // s, that the manifolds' impulses belong to
+  double subStep_ = 0;  // s, of the blocks' impulses
 };
 
 }  // namespace cradle

@@ -21,9 +21,9 @@ constexpr int kMostTrials = 10;         // to come near enough for Newton's meth
 constexpr int kInteriorTrial = 1;       // of them: by the interior point method, the others by ADMM
 constexpr int kIterations = 10;         // of ADMM before Newton's method is tried again; then twice as many, and so on
 constexpr double kHardFactor = 10;      // of the tolerance: enough where the interior point method was not
-constexpr double kInteriorPart = 0.5;   // of the tolerance: where the interior point method ends
-constexpr double kRegular = 1e-9;       // scaled inverse mass: makes redundant contacts solvable
-constexpr int kMostNewtonSteps = 6;     // 1 or 2 from the step before, where nothing changes
+constexpr double kSparseInteriorPart = 0.5;  // of the tolerance: where the interior point method ends
+constexpr double kRegular = 1e-9;            // scaled inverse mass: makes redundant contacts solvable
+constexpr int kMostSparseNewtonSteps = 6;    // 1 or 2 from the step before, where nothing changes
 
 }  // namespace
 
@@ -60,7 +60,7 @@ void SparseCones::stepByNewton(VectorX& z, VectorX& u) {
 /// Changes the impulses only if it converges.
 bool SparseCones::finish(VectorX& impulses, VectorX& velocities, double tolerance) {
   VectorX z = impulses, u = velocities;
-  for (int step = 0; step < kMostNewtonSteps; ++step) {
+  for (int step = 0; step < kMostSparseNewtonSteps; ++step) {
     stepByNewton(z, u);
     const double left = residual(z, u);
     if (!(left < INFINITY)) return false;
@@ -107,7 +107,7 @@ long SparseCones::approachFromInside(double tolerance, ConeIterate& at) {
   };
   double least = INFINITY;
   for (const Row& row : contacts_) least = std::min(least, row.scale);
-  const long iterations = solveByInteriorPoint(cones_, op, kInteriorPart * least * tolerance, at.impulses);
+  const long iterations = solveByInteriorPoint(cones_, op, kSparseInteriorPart * least * tolerance, at.impulses);
   VectorX u;
   multiply(at.impulses, u);
   takeVelocities(u, at);

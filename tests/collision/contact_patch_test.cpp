@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <random>
 
 namespace cradle {
 namespace {
@@ -59,6 +61,47 @@ TEST(BoxesInContact, LieOnSidesNotOnCrossingEdgesWhenNearlyLevel) {
         const ContactPatch patch = contactOfBoxes(below, above, Vec3(0, 0.197 - height, 0), 0.005);
         EXPECT_EQ(patch.count, 4u) << height << " " << yaw << " " << about;
       }
+}
+
+/// Separation (m, < 0: overlap) along the axis that tells most, of all 15. (S. Gottschalk, M. C. Lin, D. Manocha,
+/// "OBBTree", SIGGRAPH 1996)
+double greatestSeparation(const PosedBox& a, const PosedBox& b) {
+  std::vector<Vec3> axes;
+  for (int i = 0; i < 3; ++i) {
+    axes.push_back(a.axes.col(i)), axes.push_back(b.axes.col(i));
+    for (int j = 0; j < 3; ++j) axes.push_back(a.axes.col(i).cross(b.axes.col(j)));
+  }
+  double greatest = -std::numeric_limits<double>::infinity();
+  for (const Vec3& axis : axes) {
+    if (axis.norm() < 1e-3) continue;
+    const Vec3 unit = axis.normalized();
+    const double reach =
+        (a.axes.transpose() * unit).cwiseAbs().dot(a.halfSize) + (b.axes.transpose() * unit).cwiseAbs().dot(b.halfSize);
+    greatest = std::max(greatest, std::abs(unit.dot(b.center - a.center)) - reach);
+  }
+  return greatest;
+}
+
+// Boxes that are apart, or all but, are not pushed out of a depth that is none: by less than the margin within which
+// contact is seen. (Sides carry contact in place of edges that face as they do; where boxes beside each other count as
+// lying on each other, it is 20 mm.)
+TEST(BoxesInContact, AreNoDeeperThanTheBoxes) {
+  std::mt19937 engine(11);
+  std::uniform_real_distribution<double> number(-1, 1);
+  const auto vector = [&] { return Vec3(number(engine), number(engine), number(engine)); };
+  int met = 0;
+  double deepest = 0;
+  for (int trial = 0; trial < 400000; ++trial) {
+    const PosedBox a{Vec3::Zero(), turnedAbout(vector(), 3 * number(engine)), Vec3::Constant(0.1)};
+    const PosedBox b{0.3 * vector(), turnedAbout(vector(), 3 * number(engine)), Vec3::Constant(0.1)};
+    const double separation = greatestSeparation(a, b);
+    if (separation < -0.005 || separation > 0.005) continue;
+    const ContactPatch patch = contactOfBoxes(a, b, Vec3::Zero(), 0.005);
+    for (std::size_t i = 0; i < patch.count; ++i) deepest = std::max(deepest, separation - patch.points[i].separation);
+    met += patch.count > 0;
+  }
+  EXPECT_GT(met, 5000);
+  EXPECT_LT(deepest, 0.005);
 }
 
 // A patch without points tells how far apart the surfaces are at least: 50 mm and less.

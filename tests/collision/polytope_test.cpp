@@ -19,11 +19,11 @@ Collider colliderOfSize(const Vec3& size) {
 }
 
 /// Two moving colliders in their poses.
-struct ColliderPair {
+struct PosedColliders {
   ContactGeometry geometry;
   VectorX state = VectorX::Zero(stateSize(2));
 
-  ColliderPair(const Collider& a, const Collider& b, const RigidTransform& poseA, const RigidTransform& poseB) {
+  PosedColliders(const Collider& a, const Collider& b, const RigidTransform& poseA, const RigidTransform& poseB) {
     geometry.colliders = {a, b};
     geometry.pairs = {{0, 1, false, {}}};
     int body = 0;
@@ -37,13 +37,13 @@ struct ColliderPair {
 };
 
 double separationOf(const Collider& a, const Collider& b, const RigidTransform& poseA, const RigidTransform& poseB) {
-  const ColliderPair pair(a, b, poseA, poseB);
+  const PosedColliders pair(a, b, poseA, poseB);
   return separation(pair.geometry, pair.geometry.pairs[0], 0, pair.state);
 }
 
 std::vector<Contact> contactsOf(const Collider& a, const Collider& b, const RigidTransform& poseA,
                                 const RigidTransform& poseB, double margin) {
-  const ColliderPair pair(a, b, poseA, poseB);
+  const PosedColliders pair(a, b, poseA, poseB);
   std::vector<Contact> contacts;
   findContacts(pair.geometry, pair.state, margin, contacts);
   return contacts;
