@@ -29,6 +29,15 @@ constexpr double kFarthest = 1e-3;            // if it moved nothing farther tha
 constexpr double kMoreRegular = 1000;         // factor on the regularisation after a failure
 constexpr double kMostRegularisation = 1e-1;  // with it, every direction that is left is a singular one
 
+/// The three rows of a joint.
+auto partOf(VectorX& multipliers, std::size_t joint) {
+  return multipliers.segment<3>(static_cast<Eigen::Index>(3 * joint));
+}
+
+double largestOf(const Vec3& vector) {
+  return vector.lpNorm<Eigen::Infinity>();
+}
+
 }  // namespace
 
 void ConstraintSolver::factorize(const VectorX& state) {
@@ -37,8 +46,24 @@ void ConstraintSolver::factorize(const VectorX& state) {
 }
 
 void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFrame>& frames) {
+  if (!hasJointsAlone()) return factorizeRows(state, frames);
+  isInBlocks_ = joints_.factorize(constraints_.ballJoints, bodies_, state, frames) > kRegularPivot;
+  multipliers_.resize(static_cast<Eigen::Index>(3 * joints_.size()));
+  areJointsDependent_ = !isInBlocks_;
+  if (areJointsDependent_) factorizeRows(state, frames);
+}
+
+/// Ball joints that do not depend on each other are all that ties bodies.
+bool ConstraintSolver::hasJointsAlone() const {
+  return constraints_.rods.empty() && constraints_.hinges.empty() && !constraints_.ballJoints.empty() && !leavesOut_ &&
+         !areJointsDependent_;
+}
+
+void ConstraintSolver::factorizeRows(const VectorX& state, const std::vector<BodyFrame>& frames) {
+  isInBlocks_ = false;
   findRows(constraints_, state, frames, rows_, leftOut_);
   if (!hasKnownStructure()) analyze();
+  multipliers_.resize(static_cast<Eigen::Index>(rows_.size()));  // blocks may have had others since
   respond(frames);
   for (std::size_t i = 0; i < rows_.size(); ++i) diagonal_[i] = couple(static_cast<int>(i), static_cast<int>(i));
   for (std::size_t i = 0; i < couplings_.size(); ++i) entries_[i] = couple(couplings_[i].row, couplings_[i].column);
@@ -50,6 +75,11 @@ void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFra
 void ConstraintSolver::regularize(double regularisation) {
   for (std::size_t i = 0; i < rows_.size(); ++i) regularDiagonal_[i] = diagonal_[i] * (1 + regularisation);
   factor_.factorize(regularDiagonal_, entries_);
+}
+
+void ConstraintSolver::leaveOut(const std::vector<char>& bodies) {
+  leftOut_ = bodies;
+  leavesOut_ = std::any_of(bodies.begin(), bodies.end(), [](char isOut) { return isOut; });
 }
 
 bool ConstraintSolver::isLeftOut(const ConstraintRow& row) const {
@@ -89,9 +119,8 @@ void ConstraintSolver::analyze() {
   diagonal_.resize(rows_.size());
   regularDiagonal_.resize(rows_.size());
   entries_.resize(places.size());
-  multipliers_.resize(static_cast<Eigen::Index>(rows_.size()));
-  rightHandSide_.resize(multipliers_.size());
-  correction_.resize(multipliers_.size());
+  rightHandSide_.resize(static_cast<Eigen::Index>(rows_.size()));
+  correction_.resize(rightHandSide_.size());
 }
 
 void ConstraintSolver::respond(const std::vector<BodyFrame>& frames) {
@@ -125,6 +154,7 @@ double ConstraintSolver::couple(int row, int column) const {
 
 /// Overwrites the right-hand side in multipliers_ by the solution, refined iteratively if it has to be.
 void ConstraintSolver::solve() {
+  if (isInBlocks_) return joints_.solve(multipliers_);
   if (isRegular_) return factor_.solve(multipliers_);
   rightHandSide_ = multipliers_;
   factor_.solve(multipliers_);
@@ -154,6 +184,7 @@ void ConstraintSolver::findResidual() {
 /// Calls add(body, linear, angular) with the parts of M^-1 J^T multipliers, row by row.
 template <class Add>
 void ConstraintSolver::addResponse(const Add& add) const {
+  if (isInBlocks_) return joints_.addResponse(multipliers_, add);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const double multiplier = multipliers_[static_cast<Eigen::Index>(i)];
     const RowResponse& response = responses_[i];
@@ -162,9 +193,21 @@ void ConstraintSolver::addResponse(const Add& add) const {
   }
 }
 
+/// Sets multipliers_ to -J v for the velocities, or accelerations, in `state`.
+void ConstraintSolver::opposeRates(const VectorX& state) {
+  if (isInBlocks_)
+    for (std::size_t i = 0; i < joints_.size(); ++i) partOf(multipliers_, i) = -joints_.rateOf(i, state);
+  else
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      multipliers_[static_cast<Eigen::Index>(i)] = -rateOf(rows_[i], state);
+}
+
 const VectorX& ConstraintSolver::constrainAccelerations(VectorX& rate) {
-  for (std::size_t i = 0; i < rows_.size(); ++i)
-    multipliers_[static_cast<Eigen::Index>(i)] = -(rows_[i].curvature + rateOf(rows_[i], rate));
+  opposeRates(rate);
+  if (isInBlocks_)
+    for (std::size_t i = 0; i < joints_.size(); ++i) partOf(multipliers_, i) -= joints_.curvature(i);
+  else
+    for (std::size_t i = 0; i < rows_.size(); ++i) multipliers_[static_cast<Eigen::Index>(i)] -= rows_[i].curvature;
   solve();
   addResponse([&rate](int body, const Vec3& linear, const Vec3& angular) {
     linearVelocity(rate, body) += linear;
@@ -174,7 +217,7 @@ const VectorX& ConstraintSolver::constrainAccelerations(VectorX& rate) {
 }
 
 void ConstraintSolver::constrainVelocities(VectorX& state) {
-  for (std::size_t i = 0; i < rows_.size(); ++i) multipliers_[static_cast<Eigen::Index>(i)] = -rateOf(rows_[i], state);
+  opposeRates(state);
   solve();
   addResponse([&state](int body, const Vec3& linear, const Vec3& angular) {
     linearVelocity(state, body) += linear;
@@ -202,7 +245,8 @@ double ConstraintSolver::project(VectorX& state) {
     if (isSound && left < error) break;  // at the limit of rounding
     state = undisplaced_;
     regularisation *= kMoreRegular;
-    factorize(state);
+    placeBodies(bodies_, state, frames_);
+    factorizeRows(state, frames_);
     if (regularisation > kMostRegularisation) break;
     regularize(regularisation);
   }
@@ -212,8 +256,11 @@ double ConstraintSolver::project(VectorX& state) {
 
 /// One step of Newton's method. Returns how far the body that moved most was shifted (m) or turned (rad).
 double ConstraintSolver::displace(VectorX& state) {
-  for (std::size_t i = 0; i < rows_.size(); ++i) multipliers_[static_cast<Eigen::Index>(i)] = -rows_[i].value;
-  factor_.solve(multipliers_);
+  if (isInBlocks_)
+    for (std::size_t i = 0; i < joints_.size(); ++i) partOf(multipliers_, i) = -joints_.value(i);
+  else
+    for (std::size_t i = 0; i < rows_.size(); ++i) multipliers_[static_cast<Eigen::Index>(i)] = -rows_[i].value;
+  isInBlocks_ ? joints_.solve(multipliers_) : factor_.solve(multipliers_);
   double farthest = 0;
   addResponse([&](int body, const Vec3& shift, const Vec3& turn) {
     centerOfMass(state, body) += shift;
@@ -225,18 +272,27 @@ double ConstraintSolver::displace(VectorX& state) {
 
 double ConstraintSolver::largestError() const {
   double error = 0;
-  for (const ConstraintRow& row : rows_) error = std::max(error, std::abs(row.value) / row.scale);
+  if (isInBlocks_)
+    for (std::size_t i = 0; i < joints_.size(); ++i) error = std::max(error, largestOf(joints_.value(i)));
+  else
+    for (const ConstraintRow& row : rows_) error = std::max(error, std::abs(row.value) / row.scale);
   return error;
 }
 
 bool ConstraintSolver::isRounding() const {
-  return std::all_of(rows_.begin(), rows_.end(),
-                     [](const ConstraintRow& row) { return std::abs(row.value) <= row.rounding * row.scale; });
+  for (std::size_t i = 0; isInBlocks_ && i < joints_.size(); ++i)
+    if (!(largestOf(joints_.value(i)) <= joints_.rounding(i))) return false;
+  return isInBlocks_ || std::all_of(rows_.begin(), rows_.end(), [](const ConstraintRow& row) {
+           return std::abs(row.value) <= row.rounding * row.scale;
+         });
 }
 
 double ConstraintSolver::largestRate(const VectorX& state) const {
   double largest = 0;
-  for (const ConstraintRow& row : rows_) largest = std::max(largest, std::abs(rateOf(row, state)) / row.scale);
+  if (isInBlocks_)
+    for (std::size_t i = 0; i < joints_.size(); ++i) largest = std::max(largest, largestOf(joints_.rateOf(i, state)));
+  else
+    for (const ConstraintRow& row : rows_) largest = std::max(largest, std::abs(rateOf(row, state)) / row.scale);
   return largest;
 }
 

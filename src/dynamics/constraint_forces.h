@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "dynamics/constraint_rows.h"
+#include "dynamics/joint_blocks.h"
 #include "dynamics/sparse_ldlt.h"
 
 namespace cradle {
@@ -21,14 +21,12 @@ class ConstraintSolver {
   bool hasConstraints() const { return !constraints_.empty(); }
 
   /// Leaves out the rows of some bodies from the next factorize or project on.
-  void leaveOut(const std::vector<char>& bodies) { leftOut_ = bodies; }
+  void leaveOut(const std::vector<char>& bodies);
   bool isLeftOut(const ConstraintRow& row) const;
 
   /// Takes the rows in `state`, in which the bodies have `frames`, and factorises.
   void factorize(const VectorX& state, const std::vector<BodyFrame>& frames);
   void factorize(const VectorX& state);
-
-  const std::vector<ConstraintRow>& rows() const { return rows_; }
 
   /// Adds to the accelerations in `rate` what keeps d^2C/dt^2 = 0. Returns the multipliers: a rod pushes its ends apart
   /// with the force (N) multiplier x length.
@@ -55,6 +53,8 @@ class ConstraintSolver {
   struct Coupling {
     int row, column;
   };
+  bool hasJointsAlone() const;
+  void factorizeRows(const VectorX& state, const std::vector<BodyFrame>& frames);
   bool hasKnownStructure() const;
   void analyze();
   void respond(const std::vector<BodyFrame>& frames);
@@ -62,6 +62,7 @@ class ConstraintSolver {
   template <class Add>
   void addResponse(const Add& add) const;
   void regularize(double regularisation);
+  void opposeRates(const VectorX& state);
   void solve();
   void findResidual();
   double displace(VectorX& state);
@@ -70,6 +71,10 @@ class ConstraintSolver {
   const Constraints& constraints_;
   const std::vector<RigidBody>& bodies_;
   std::vector<char> leftOut_;  // by body, or none
+  bool leavesOut_ = false;     // any of them
+  JointBlocks joints_;
+  bool isInBlocks_ = false;          // the last factorisation is that of joints_, not of the rows
+  bool areJointsDependent_ = false;  // one of them was singular
   std::vector<BodyFrame> frames_;
   std::vector<ConstraintRow> rows_;
   std::vector<RowResponse> responses_;

@@ -17,7 +17,6 @@ namespace cradle {
 namespace {
 
 constexpr double kRounding = 1e-15;    // of the lengths that enter a gap: a few units in their last place
-constexpr double kSlowSliding = 1e-6;  // m/s: below, velocities have no direction that could be trusted
 constexpr double kFastSliding = 1e-4;  // m/s: above, the weight of the direction given is below rounding
 
 bool isFace(double radius) {
@@ -132,8 +131,8 @@ Vec3 slidingDirection(const ContactConstraint& contact, const ContactPlace& plac
   if (velocity.dot(given) > 0 && velocity.squaredNorm() > kFastSliding * kFastSliding) return velocity.normalized();
   const Vec3 side = (given - given.dot(place.normal) * place.normal).normalized();
   const double along = velocity.dot(side);
-  const double speed = 1 + velocity.squaredNorm() / (kSlowSliding * kSlowSliding);
-  const double weight = kSlowSliding / (speed * speed * speed * speed);
+  const double speed = 1 + velocity.squaredNorm() / (kSlowestSliding * kSlowestSliding);
+  const double weight = kSlowestSliding / (speed * speed * speed * speed);
   return (velocity + (std::abs(along) - along + weight) * side).normalized();
 }
 

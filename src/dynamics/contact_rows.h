@@ -8,6 +8,8 @@
 
 namespace cradle {
 
+constexpr double kSlowestSliding = 1e-6;  // m/s: slower has no direction that could be trusted
+
 /// How two bodies in lasting contact may move along each other.
 enum class ContactMotion {
   frictionless,

@@ -88,9 +88,10 @@ void EquationsOfMotion::applyGravityAndGyroscopicTerms(const VectorX& state, Vec
   for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
     linearVelocity(rate, body) = mechanism_.gravity;
-    if (!mechanism_.bodies[i].isSpherical)
-      angularVelocity(rate, body) =
-          gyroscopicAcceleration(mechanism_.bodies[i], frames_[i].rotation, angularVelocity(state, body));
+    if (mechanism_.bodies[i].isSpherical) continue;
+    const Vec3 spin = angularVelocity(state, body);
+    if (spin != Vec3::Zero())
+      angularVelocity(rate, body) = gyroscopicAcceleration(mechanism_.bodies[i], frames_[i].rotation, spin);
   }
 }
 

@@ -58,6 +58,15 @@ void MinimumNormSolver::factorize(int size, bool isCoupled) {
 }
 
 void MinimumNormSolver::findLower() {
+  if (size_ == 1 && symmetric_[0] > 0) {  // a contact by itself: all there is in many scenes
+    const double scale = 1 / std::sqrt(symmetric_[0]);
+    isWellConditioned_ = true;
+    rank_ = 1;
+    pivots_[0] = 0;
+    lower_[0] = symmetric_[0] * scale;
+    inverseBegin_[0] = scale;
+    return;
+  }
   for (int row = 0; row < size_; ++row) {
     const double diagonal = symmetric_[at(row, row)];
     remaining_[static_cast<std::size_t>(row)] = diagonal;

@@ -19,15 +19,29 @@ constexpr double kDensePart = 0.5;      // of the entries below the diagonal
 
 }  // namespace
 
+std::vector<int> eliminationOrder(int size, const std::vector<std::pair<int, int>>& entries) {
+  std::vector<int> order(static_cast<std::size_t>(size));
+  std::iota(order.begin(), order.end(), 0);
+  if (entries.empty()) return order;
+  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+  std::vector<Eigen::Triplet<double>> triplets;
+  for (const auto& [row, column] : entries)
+    triplets.emplace_back(row, column, 1), triplets.emplace_back(column, row, 1);
+  for (int row = 0; row < size; ++row) triplets.emplace_back(row, row, 1);
+  Matrix matrix(size, size);
+  matrix.setFromTriplets(triplets.begin(), triplets.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
+  Eigen::AMDOrdering<int>()(matrix, permutation);
+  std::copy_n(permutation.indices().data(), size, order.begin());
+  return order;
+}
+
 void SparseLdlt::analyze(int size, const std::vector<std::pair<int, int>>& entries) {
   size_ = size;
-  if (entries.empty()) {
-    rowAt_.resize(static_cast<std::size_t>(size));
-    std::iota(rowAt_.begin(), rowAt_.end(), 0);
-    positionOf_ = rowAt_;
-  } else {
-    order(entries);
-  }
+  rowAt_ = eliminationOrder(size, entries);
+  positionOf_.resize(rowAt_.size());
+  for (std::size_t position = 0; position < rowAt_.size(); ++position)
+    positionOf_[static_cast<std::size_t>(rowAt_[position])] = static_cast<int>(position);
 
   rowStart_.assign(static_cast<std::size_t>(size) + 1, 0);
   std::vector<std::pair<std::pair<int, int>, int>> placed;
@@ -45,22 +59,6 @@ void SparseLdlt::analyze(int size, const std::vector<std::pair<int, int>>& entri
   for (std::size_t row = 1; row < rowStart_.size(); ++row)
     rowStart_[row] = std::max(rowStart_[row], rowStart_[row - 1]);
   findFill();
-}
-
-void SparseLdlt::order(const std::vector<std::pair<int, int>>& entries) {
-  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
-  std::vector<Eigen::Triplet<double>> triplets;
-  for (const auto& [row, column] : entries)
-    triplets.emplace_back(row, column, 1), triplets.emplace_back(column, row, 1);
-  for (int row = 0; row < size_; ++row) triplets.emplace_back(row, row, 1);
-  Matrix matrix(size_, size_);
-  matrix.setFromTriplets(triplets.begin(), triplets.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-  Eigen::AMDOrdering<int>()(matrix, permutation);
-  rowAt_.assign(permutation.indices().data(), permutation.indices().data() + size_);
-  positionOf_.resize(static_cast<std::size_t>(size_));
-  for (int position = 0; position < size_; ++position)
-    positionOf_[static_cast<std::size_t>(rowAt_[static_cast<std::size_t>(position)])] = position;
 }
 
 /// Elimination tree, and the number of entries in each column of L.

@@ -7,6 +7,10 @@
 
 namespace cradle {
 
+/// An order in which the rows of a sparse symmetric matrix are best eliminated: few entries are filled. `entries` are
+/// the places below its diagonal, each once.
+std::vector<int> eliminationOrder(int size, const std::vector<std::pair<int, int>>& entries);
+
 /// Factorisation L D L^T of a sparse symmetric positive definite matrix, with an order of elimination that keeps L
 /// sparse: O(n) for chains and trees. A small one that fills up is stored whole. A row without any entry gets the
 /// unknown 0. Allocates in `analyze` alone.
@@ -28,7 +32,6 @@ class SparseLdlt {
   struct Entry {
     int column, source;  // position of the column; index into the entries of analyze
   };
-  void order(const std::vector<std::pair<int, int>>& entries);
   void findFill();
   int reach(int row);
   void eliminate(int row, int first, double diagonal);
@@ -46,7 +49,7 @@ class SparseLdlt {
   std::vector<double> lower_, inversePivots_;
   std::vector<int> marks_, pattern_;
   bool isDense_ = false;
-  std::vector<double> dense_;  // then L, by columns of `size_`, its diagonal left out
+  std::vector<double> dense_;  // by columns of `size_`: the matrix, then L below the pivots
   std::vector<double> work_;
 };
 

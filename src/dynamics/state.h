@@ -64,7 +64,7 @@ inline double pushWork(const VectorX& state) {
   return state[state.size() - 1];
 }
 
-/// Tolerances for errorNorm (integrators/dop853.h): one for orientations, one for all else.
+/// Tolerances for an ErrorNorm (integrators/step.h): one for orientations, one for all else.
 inline VectorX stateTolerance(Eigen::Index bodies, double tolerance, double orientationTolerance) {
   VectorX tolerances = VectorX::Constant(stateSize(bodies), tolerance);
   for (Eigen::Index body = 0; body < bodies; ++body)

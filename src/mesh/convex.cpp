@@ -5,7 +5,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // of the diagonal of the bounds
+constexpr double kPlaneTolerance = 1e-6;  // of the diagonal of the bounds
 
 struct FacePlane {
   Vec3 normal;  // unit
@@ -27,11 +27,11 @@ bool isConvex(const TriangleMesh& mesh) {
     const Vec3 normal = edgeB.cross(edgeC);
     // The plane of a sliver (height below the tolerance) is rounding; its neighbours hold its corners.
     const double longest = std::max({edgeB.norm(), edgeC.norm(), (edgeC - edgeB).norm()});
-    if (normal.norm() > kTolerance * longest) planes.push_back({normal.normalized(), normal.normalized().dot(a)});
+    if (normal.norm() > kPlaneTolerance * longest) planes.push_back({normal.normalized(), normal.normalized().dot(a)});
   }
 
   // A dent shows most often between near vertices: those of the next triangles. Then all against all.
-  const double limit = kTolerance * size;
+  const double limit = kPlaneTolerance * size;
   for (std::size_t t = 0; t + 1 < planes.size() && planes.size() == mesh.triangles.size(); ++t)
     for (const std::uint32_t vertex : mesh.triangles[t + 1])
       if (planes[t].normal.dot(mesh.vertices[vertex]) - planes[t].offset > limit) return false;

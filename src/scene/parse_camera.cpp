@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
+#include "scene/parse_pose.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 constexpr Range kFieldsOfView{0, 180, true};  // degrees
 
 /// One or two faults of a camera whose target is a point: as much as the text alone says.

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "math/rotation.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 constexpr double kLengthTolerance = 1e-6;  // of a quaternion: six digits are enough to write one down
 
 std::optional<Quat> readQuaternion(ObjectReader& reader) {

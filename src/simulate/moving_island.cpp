@@ -22,6 +22,8 @@ MovingIsland::MovingIsland(const Scene& source, Assembly parts)
       motions_(assembly.mechanism.bodies.size()) {}
 
 void MovingIsland::findNearPairs(double margin) {
+  const ContactGeometry& geometry = assembly.geometry;
+  if (geometry.colliders.size() + geometry.planes.size() == 2 && geometry.pairs.size() == 1) return;  // all there is
   for (std::size_t body = 0; body < motions_.size(); ++body)
     motions_[body] = motionBound(step, static_cast<int>(body), assembly.radii[body]);
   broadPhase_.update(step.startState, motions_, margin, assembly.geometry);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/named_accuracy.h"
 #include "simulate/run.h"
 #include "simulate/simulate.h"
 #include "study/motion_error.h"
@@ -13,7 +14,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kFinestAccuracy = 1e-12;     // as in scene files
 constexpr double kFiner = 100;                // times
 constexpr double kLargestDisturbance = 1e-5;  // m/s and rad/s
 constexpr double kSteadyGrowth = 100;         // times 1 + t: phases that drift apart grow like time alone

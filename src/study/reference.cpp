@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "scene/named_accuracy.h"
 #include "study/ladder.h"
 #include "study/motion_error.h"
 
@@ -16,8 +17,7 @@ namespace {
 
 constexpr double kConverged = 1e-11;  // between two runs at h and h/2
 constexpr double kCpuLimit = 20;      // s, of one run
-constexpr double kFinestAccuracy = 1e-12;
-constexpr double kRounding = 1e-15;  // no motion is known better
+constexpr double kRounding = 1e-15;   // no motion is known better
 
 /// The best of the runs of a method at halved steps, and how far the one before was from it.
 struct Converged {

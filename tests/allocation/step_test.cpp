@@ -4,6 +4,7 @@
 #include "dynamics/contact_motion.h"
 #include "dynamics/integrator_problems.h"
 #include "dynamics/integrators/dop853.h"
+#include "dynamics/integrators/dormand_prince5.h"
 #include "dynamics/integrators/explicit_euler.h"
 #include "dynamics/integrators/rk4.h"
 #include "dynamics/integrators/step_size.h"
@@ -15,15 +16,18 @@ TEST(Step, AllocatesNothingAfterTheFirst) {
   const RightHandSide rightHandSide = kepler();
   const VectorX tolerance = VectorX::Constant(4, 1e-8), start = keplerAt(0);
   VectorX interpolated;
-  for (const Integrator integrate : {Integrator(explicitEuler), Integrator(rk4), Integrator(dop853)}) {
+  for (const Integrator integrate :
+       {Integrator(explicitEuler), Integrator(rk4), Integrator(dormandPrince5), Integrator(dop853)}) {
     Step step;
     StepSize size{0.1};
     const auto once = [&] {
       const long before = allocations();
       integrate(rightHandSide, start, 0, 0.1, step);
       if (integrate == dop853) acceptStep(errorNorm(step, tolerance), 0.1, size);
+      if (integrate == dormandPrince5) acceptStep(dormandPrince5Error(step, tolerance), 0.1, size);
       prepareInterpolant(rightHandSide, step);
       interpolate(step, 0.4, interpolated);
+      if (integrate == dormandPrince5) cutStep(0.5, step);
       carryEndRate(step);
       return allocations() - before;
     };

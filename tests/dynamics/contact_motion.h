@@ -90,7 +90,7 @@ inline VectorX integrated(const Mechanism& mechanism, VectorX state, double dura
   const VectorX tolerances = VectorX::Constant(state.size(), tolerance);
   Step step;
   beginStep(rightHandSide, state, 0, duration, step);
-  StepSize size{std::min(duration, firstTimeStep(rightHandSide, tolerances, step))};
+  StepSize size{std::min(duration, firstTimeStep(rightHandSide, tolerances, step, 8))};
   double time = 0;
   while (time < duration) {
     const double taken = std::min(size.timeStep, duration - time);

@@ -83,4 +83,16 @@ inline double interpolationError(Integrator integrate, double timeStep) {
   return most;
 }
 
+/// A step of y' = 1e300 y^2 out of the finite numbers, beside a component that stays where it is.
+inline Step stepOutOfFiniteNumbers(Integrator integrate) {
+  const RightHandSide explosion{[](double, const VectorX& state, VectorX& rate) {
+                                  rate[0] = 0;
+                                  rate[1] = 1e300 * state[1] * state[1];
+                                },
+                                nullptr, 1};
+  Step step;
+  integrate(explosion, Eigen::Vector2d(1, 1), 0, 1, step);
+  return step;
+}
+
 }  // namespace cradle

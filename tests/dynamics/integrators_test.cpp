@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPull = 9.81;
 
-/// x'' = -omega^2 x + g as (x, v): an pulledOscillator, or free fall for omega = 0.
+/// x'' = -omega^2 x + g as (x, v): an oscillator, or free fall for omega = 0.
 RightHandSide pulledOscillator(double omega, double gravity) {
   return {[=](double, const VectorX& state, VectorX& rate) {
             rate[0] = state[1];

@@ -62,8 +62,8 @@ TEST(AccuracyMap, HasErrorsThatGoDownATenthForATenth) {
 }
 
 // The tolerance of a step is a tenth of the accuracy, scaled by 1 + |x|, at 5 rad/s 6: ten steps at the worst time
-// leave 6 accuracies, and less if not all are at the worst. Of a damped spring's errors exp(-0.05 x 2 pi x 10) = 0.04
-// is left.
+// leave 6 accuracies, and less if not all are at the worst; the error of one there, of a component near zero, leaves a
+// tenth. Of a damped spring's errors exp(-0.05 x 2 pi x 10) = 0.04 is left.
 TEST(AccuracyMap, HasErrorsAsTheMotionMakesThemGrow) {
   const StabilityMap map = accuracyMap(noProgress);
   const double growth = growthOfErrors();
@@ -71,7 +71,7 @@ TEST(AccuracyMap, HasErrorsAsTheMotionMakesThemGrow) {
   for (const double accuracy : {1e-5, 1e-7, 1e-9}) {
     EXPECT_LT(errorAt(curveOf(map, "mass on a damped spring"), accuracy), 0.1 * accuracy);
     EXPECT_LT(errorAt(curveOf(map, "free body that turns over"), accuracy), 6 * growth * accuracy);
-    EXPECT_GT(errorAt(curveOf(map, "free body that turns over"), accuracy), growth * accuracy);
+    EXPECT_GT(errorAt(curveOf(map, "free body that turns over"), accuracy), 0.1 * growth * accuracy);
   }
 }
 

@@ -15,34 +15,19 @@ namespace {
 
 using namespace dop853_table;
 
-auto rates(const Step& step) {
-  return ratesOf<kRates, kEndRate>(step);
-}
-
-template <std::size_t kRow>
-void evaluateStage(const RightHandSide& rightHandSide, Step& step) {
-  addRates<kStages, kRow>(rates(step), step.timeStep, step.startState, step.stage);
-  step.stageRates[kRow].resize(step.stage.size());
-  rightHandSide.rate(step.time + kNodes[kRow] * step.timeStep, step.stage, step.stageRates[kRow]);
-}
+using Method = RungeKutta<kStages, kNodes, kEndRate>;
 
 }  // namespace
 
 void dop853(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep, Step& step) {
-  beginStep(rightHandSide, state, time, timeStep, step);
+  Method::advance(rightHandSide, state, time, timeStep, step);
   step.interpolant = InterpolantKind::degreeSeven;
-  if (step.stageRates.size() < kRates) step.stageRates.resize(kRates);
-  [&]<std::size_t... kStage>(std::index_sequence<kStage...>) {
-    (evaluateStage<kStage + 1>(rightHandSide, step), ...);
-  }
-  (std::make_index_sequence<kEndRate - 1>());
-  addRates<kStages, kEndRate>(rates(step), timeStep, step.startState, step.state);
 }
 
 double errorNorm(const Step& step, const VectorX& tolerance) {
   CRADLE_CHECK(step.interpolant == InterpolantKind::degreeSeven);
   CRADLE_CHECK(tolerance.size() == step.state.size());
-  const auto rate = rates(step);
+  const auto rate = Method::rates(step);
   double fifth = 0, third = 0, finite = 0;
   for (Eigen::Index i = 0; i < step.state.size(); ++i) {
     const double size = std::max(std::abs(step.startState[i]), std::abs(step.state[i]));
@@ -57,12 +42,12 @@ double errorNorm(const Step& step, const VectorX& tolerance) {
 }
 
 void computeCorrections(const RightHandSide& rightHandSide, Step& step) {
-  evaluateStage<kEndRate + 1>(rightHandSide, step);
-  evaluateStage<kEndRate + 2>(rightHandSide, step);
-  evaluateStage<kEndRate + 3>(rightHandSide, step);
+  Method::evaluateStage<kEndRate + 1>(rightHandSide, step);
+  Method::evaluateStage<kEndRate + 2>(rightHandSide, step);
+  Method::evaluateStage<kEndRate + 3>(rightHandSide, step);
   step.work.setZero(step.startState.size());
   [&]<std::size_t... kRow>(std::index_sequence<kRow...>) {
-    (addRates<kCorrections, kRow>(rates(step), step.timeStep, step.work, step.corrections[kRow]), ...);
+    (addRates<kCorrections, kRow>(Method::rates(step), step.timeStep, step.work, step.corrections[kRow]), ...);
   }
   (std::make_index_sequence<kCorrections.size()>());
 }

@@ -15,36 +15,21 @@ namespace {
 
 using namespace dormand_prince5_table;
 
-auto rates(const Step& step) {
-  return ratesOf<kRates, kEndRate>(step);
-}
-
-template <std::size_t kRow>
-void evaluateStage(const RightHandSide& rightHandSide, Step& step) {
-  addRates<kStages, kRow>(rates(step), step.timeStep, step.startState, step.stage);
-  step.stageRates[kRow].resize(step.stage.size());
-  rightHandSide.rate(step.time + kNodes[kRow] * step.timeStep, step.stage, step.stageRates[kRow]);
-}
+using Method = RungeKutta<kStages, kNodes, kEndRate>;
 
 }  // namespace
 
 void dormandPrince5(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep,
                     Step& step) {
-  beginStep(rightHandSide, state, time, timeStep, step);
+  Method::advance(rightHandSide, state, time, timeStep, step);
   step.interpolant = InterpolantKind::degreeFour;
-  if (step.stageRates.size() < kRates) step.stageRates.resize(kRates);
-  [&]<std::size_t... kStage>(std::index_sequence<kStage...>) {
-    (evaluateStage<kStage + 1>(rightHandSide, step), ...);
-  }
-  (std::make_index_sequence<kEndRate - 1>());
-  addRates<kStages, kEndRate>(rates(step), timeStep, step.startState, step.state);
   evaluateEndRate(rightHandSide, step);
 }
 
 double dormandPrince5Error(const Step& step, const VectorX& tolerance) {
   CRADLE_CHECK(step.interpolant == InterpolantKind::degreeFour && step.hasEndRate);
   CRADLE_CHECK(tolerance.size() == step.state.size());
-  const auto rate = rates(step);
+  const auto rate = Method::rates(step);
   double largest = 0, finite = 0;
   for (Eigen::Index i = 0; i < step.state.size(); ++i) {
     const double size = std::max(std::abs(step.startState[i]), std::abs(step.state[i]));
@@ -57,7 +42,7 @@ double dormandPrince5Error(const Step& step, const VectorX& tolerance) {
 
 void computeDormandPrince5Correction(Step& step) {
   step.work.setZero(step.startState.size());
-  addRates<kCorrections, 0>(rates(step), step.timeStep, step.work, step.corrections[0]);
+  addRates<kCorrections, 0>(Method::rates(step), step.timeStep, step.work, step.corrections[0]);
 }
 
 }  // namespace cradle

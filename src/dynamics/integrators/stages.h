@@ -52,4 +52,30 @@ void addRates(const Rates& rates, double timeStep, const VectorX& start, VectorX
   for (Eigen::Index i = 0; i < size; ++i) to[i] = from[i] + timeStep * weightedSum<kTable, kRow>(rates, i);
 }
 
+/// An explicit Runge-Kutta method by its table: kStages and kNodes as in dormand_prince5_table.h, row kEndRate its
+/// result.
+template <const auto& kStages, const auto& kNodes, std::size_t kEndRate>
+struct RungeKutta {
+  static auto rates(const Step& step) { return ratesOf<kNodes.size(), kEndRate>(step); }
+
+  template <std::size_t kRow>
+  static void evaluateStage(const RightHandSide& rightHandSide, Step& step) {
+    addRates<kStages, kRow>(rates(step), step.timeStep, step.startState, step.stage);
+    step.stageRates[kRow].resize(step.stage.size());
+    rightHandSide.rate(step.time + kNodes[kRow] * step.timeStep, step.stage, step.stageRates[kRow]);
+  }
+
+  /// The state at the end of the step, and all rates before that.
+  static void advance(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep,
+                      Step& step) {
+    beginStep(rightHandSide, state, time, timeStep, step);
+    if (step.stageRates.size() < kNodes.size()) step.stageRates.resize(kNodes.size());
+    [&]<std::size_t... kStage>(std::index_sequence<kStage...>) {
+      (evaluateStage<kStage + 1>(rightHandSide, step), ...);
+    }
+    (std::make_index_sequence<kEndRate - 1>());
+    addRates<kStages, kEndRate>(rates(step), timeStep, step.startState, step.state);
+  }
+};
+
 }  // namespace cradle

@@ -32,7 +32,7 @@ struct Step {
   bool startRateIsKnown = false;  // startRate already holds the rate at the start of the step to come
   InterpolantKind interpolant = InterpolantKind::cubicHermite;
   std::array<VectorX, 4> corrections;
-  std::vector<VectorX> stageRates;  // numbered as in dop853_table.h; start and end have their own fields
+  std::vector<VectorX> stageRates;  // numbered as in the table of the method; start and end have their own fields
   VectorX work, stage;              // scratch, kept so that a step allocates nothing
 };
 

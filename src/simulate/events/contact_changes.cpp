@@ -47,10 +47,12 @@ double LastingContacts::distanceFromNearest(std::size_t contact, const VectorX& 
   const ContactGeometry& geometry = island_.assembly.geometry;
   const bool isOfB = geometry.colliders[pair.a].body == held.centerA.body;
   const Collider &a = geometry.colliders[isOfB ? pair.a : pair.b], &b = geometry.colliders[isOfB ? pair.b : pair.a];
-  const auto nearestOn = [&](const Collider& collider, const Attachment& center) {
-    const RigidTransform worldFromBody = poseOf(state, collider.body);
-    return worldFromBody *
-           nearestOnSurface(collider, worldFromBody.inverse() * (poseOf(state, center.body) * center.point));
+  const auto nearestOn = [&](const Collider& collider, const Attachment& anchor) {
+    const Vec3 center = motionOf(anchor, state, frames_).position;
+    if (collider.body == kFixed) return nearestOnSurface(collider, center);
+    const Mat3& worldFromBody = frames_[static_cast<std::size_t>(collider.body)].rotation;
+    const Vec3 origin = centerOfMass(state, collider.body);
+    return Vec3(origin + worldFromBody * nearestOnSurface(collider, worldFromBody.transpose() * (center - origin)));
   };
   const ContactPlace place = placeOf(held, state, frames_);
   const double onB = (place.point - place.gap * place.normal - nearestOn(b, held.centerA)).norm();
@@ -58,9 +60,14 @@ double LastingContacts::distanceFromNearest(std::size_t contact, const VectorX& 
   return std::max(onB, (place.point - nearestOn(a, held.surfaceB)).norm());
 }
 
-/// Of each contact, in the order of kKinds; infinite where there is nothing to change.
 void LastingContacts::findMargins(const VectorX& state, std::vector<Margins>& margins) {
   island_.equations.evaluate(state, rate_);
+  takeMargins(state, margins);
+}
+
+/// Of each contact, in the order of kKinds; infinite where there is nothing to change. `state` is the one that was
+/// evaluated last.
+void LastingContacts::takeMargins(const VectorX& state, std::vector<Margins>& margins) {
   placeBodies(mechanism().bodies, state, frames_);
   const std::vector<ContactForce>& forces = island_.equations.contactForces();
   margins.resize(entries_.size());
@@ -79,16 +86,25 @@ double LastingContacts::margin(const ContactChange& change, const VectorX& state
   return after_[change.contact][static_cast<std::size_t>(change.kind)];
 }
 
+void LastingContacts::noteEnd() {
+  if (!empty()) takeMargins(island_.step.state, atEnd_);
+}
+
 std::optional<ContactChange> LastingContacts::firstChange() {
   if (empty()) return std::nullopt;
   const Step& step = island_.step;
   if (knownTime_ != step.time) findMargins(step.startState, before_);
   knownTime_ = NAN;
-  const int samples = step.interpolant == InterpolantKind::degreeSeven ? kSamples : kFewSamples;
+  const bool isEndKnown = step.interpolant == InterpolantKind::degreeFour;
+  const int samples = isEndKnown ? kFewSamples : kSamples;
   for (int k = 1; k <= samples; ++k) {
     const double from = static_cast<double>(k - 1) / samples, to = static_cast<double>(k) / samples;
-    interpolate(step, to, sample_);
-    findMargins(sample_, ahead_);
+    if (k == samples && isEndKnown) {
+      std::swap(ahead_, atEnd_);
+    } else {
+      interpolate(step, to, sample_);
+      findMargins(sample_, ahead_);
+    }
     std::optional<ContactChange> first;
     bool isDoubtful = false;
     for (std::size_t i = 0; i < entries_.size(); ++i)

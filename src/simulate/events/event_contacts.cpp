@@ -22,7 +22,8 @@ constexpr double kMostTouchError = 1e-6;    // of a size: so well two ways to fi
 constexpr double kDeadBandPart = 1e-12;     // of the smallest size
 constexpr double kStandstillPart = 1e-12;   // of the fastest speed at an impact: what is left is rounding
 constexpr double kLastBouncePart = 1e-7;    // of sqrt(acceleration x size): bounces lower than 5e-15 of the size
-constexpr double kBounceOfAccuracy = 1e-2;  // the same, of the accuracy: 5e-9 of the size at the coarsest
+constexpr double kBounceOfAccuracy = 1e-2;  // the same, of the accuracy ...
+constexpr double kBounceOfSquare = 100;     // ... or of its square, if that is more: 5e-5 of the size at the coarsest
 constexpr double kMostStillPart = 1e-7;     // of sqrt(g x size)
 constexpr double kSameCorner = 1e-6;        // of a size
 
@@ -205,7 +206,9 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
 /// time as all of them would take. True if there are any.
 bool EventContacts::endBounces(const VectorX& approach, std::vector<ImpactContact>& impacts) {
   const VectorX& state = island_.state;
-  const double lastBounce = std::max(kLastBouncePart, kBounceOfAccuracy * island_.scene.accuracy);
+  const double accuracy = island_.scene.accuracy;
+  const double lastBounce =
+      std::max({kLastBouncePart, kBounceOfAccuracy * accuracy, kBounceOfSquare * accuracy * accuracy});
   bool isEvaluated = false, found = false;
   for (ImpactContact& impact : impacts) {
     const double speed = openingSpeed(impact.contact, state), restitution = impact.law.restitution;

@@ -19,13 +19,14 @@ constexpr double kMostGrowth = 2;  // of the longest of the last steps: farther 
 
 constexpr double kLeastLookahead = 1.0 / 64;  // of the step that the accuracy allows
 
-constexpr double kManyTurns = 100;       // rad: beyond, orientations need a tighter tolerance
-constexpr double kTurningPart = 0.1;     // of the tolerance, for these
-constexpr double kShortTimeStep = 1e-9;  // of the run's duration: nobody waits for so many steps
-constexpr int kMostShortSteps = 1000;    // in a row; after an event some are short
-constexpr double kMostTieError = 1e-9;   // m (a m of coordinates) or rad: projection leaves 1e-15
-constexpr double kTieErrorPart = 0.1;    // of the accuracy: so much is left now and then where ties are all but jammed
-constexpr double kUnitLength = 1e-9;     // how far |q|^2 may be from 1 before it is made 1
+constexpr double kManyTurns = 100;        // rad: beyond, orientations need a tighter tolerance
+constexpr double kTurningPart = 0.1;      // of the tolerance, for these
+constexpr double kShortTimeStep = 1e-9;   // of the run's duration: nobody waits for so many steps
+constexpr int kMostShortSteps = 1000;     // in a row; after an event some are short
+constexpr double kMostTieError = 1e-9;    // m (a m of coordinates) or rad: projection leaves 1e-15
+constexpr double kTieErrorPart = 0.1;     // of the accuracy: so much is left now and then where ties are all but jammed
+constexpr double kStateRounding = 1e-14;  // of a state: projection that moves it less leaves the rate as it was
+constexpr double kUnitLength = 1e-9;      // how far |q|^2 may be from 1 before it is made 1
 
 constexpr int kMostRounds = 100;  // of ropes and contacts at one instant; what is left comes after the next step
 
@@ -34,6 +35,11 @@ constexpr int kMostRounds = 100;  // of ropes and contacts at one instant; what 
 constexpr EventPatience kPatience{500, 50, 1.0 / 60,
                                   "contacts change more than 500 times in 1/60 s, or redundant ones 10 times"};
 constexpr EventPatience kLookPatience{60, 50, 0.25, "contacts change more than 60 times in 1/4 s"};
+
+/// Whether two states differ by rounding alone.
+bool isSame(const VectorX& a, const VectorX& b) {
+  return ((a - b).array().abs() <= kStateRounding * (1 + b.array().abs())).all();
+}
 
 /// Errors of orientations add up over the turns: those of bodies that turn by more than 100 rad are kept smaller.
 VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double duration) {
@@ -145,6 +151,7 @@ bool EventMotion::hasExactInterpolant() const {
 
 EventMotion::Event EventMotion::findFirstEvent() {
   Step& step = island_.step;
+  if (hasExactInterpolant()) contacts_.lasting().noteEnd();
   prepareInterpolant(island_.rightHandSide, step);
   Event event;
   if (island_.mayTouch()) {
@@ -215,16 +222,13 @@ void EventMotion::stopAtImpact(const ImpactTime& impact, double latest) {
 void EventMotion::tidyState() {
   VectorX& state = island_.state;
   bool isTouched = false;
-  if (!contacts_.lasting().empty()) {
-    island_.equations.project(state);
-    isTouched = true;
-  }
+  if (!contacts_.lasting().empty()) island_.equations.project(state);
   if (solver_.hasConstraints()) {
     solver_.leaveOut(island_.equations.resting());
     solver_.project(state);
     requireTiesKept();
-    isTouched = true;
   }
+  if (!contacts_.lasting().empty() || solver_.hasConstraints()) isTouched = !isSame(state, island_.step.state);
   for (Eigen::Index body = 0; body < bodyCount(state); ++body)
     isTouched = isTouched || std::abs(orientation(state, body).squaredNorm() - 1) > kUnitLength;
   if (isTouched) normalizeOrientations(state);

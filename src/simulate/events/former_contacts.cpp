@@ -76,7 +76,7 @@ void LastingContacts::recordChanges() {
       if (contact.bodyA != kFixed) spin -= angularVelocity(island_.state, contact.bodyA);
       if (contact.bodyB != kFixed) spin += angularVelocity(island_.state, contact.bodyB);
       const double size = island_.assembly.geometry.colliders[former.entry.pair.a].boundingRadius;
-      record(spin.norm() * size > kSlowSliding ? EventKind::roll : EventKind::stick);
+      record(spin.norm() * size > kSlowestSliding ? EventKind::roll : EventKind::stick);
     } else if (now->slides && (stuck || (slid && turnsBack(former, *now)))) {
       record(EventKind::slip);
     }

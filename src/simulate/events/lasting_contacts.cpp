@@ -66,7 +66,7 @@ std::vector<LastingContacts::Entry> LastingContacts::entriesOf(const std::vector
     Entry entry{contact, island_.assembly.geometry.pairs[contact.pair]};
     const ContactRows rows = rowsOf(contact, island_.state, frames_);
     const Vec3 sliding = tangentialVelocity(rows.place);
-    entry.slides = sliding.norm() > kSlowSliding;
+    entry.slides = sliding.norm() > kSlowestSliding;
     if (entry.slides) entry.direction = sliding.normalized();
     const Former* former = formerOf(entry);
     if (former && former->isSlipping && !entry.slides) entry.slides = true, entry.direction = former->slipping;
@@ -220,7 +220,7 @@ void LastingContacts::followSliding() {
     if (!isPlaced) placeBodies(mechanism().bodies, island_.state, frames_);
     isPlaced = true;
     const Vec3 sliding = tangentialVelocity(placeOf(contact, island_.state, frames_));
-    if (sliding.norm() > kSlowSliding) setSlidingDirection(contact, sliding.normalized(), island_.state);
+    if (sliding.norm() > kSlowestSliding) setSlidingDirection(contact, sliding.normalized(), island_.state);
   }
 }
 

@@ -12,8 +12,6 @@
 
 namespace cradle {
 
-constexpr double kSlowSliding = 1e-6;  // m/s: slower has no direction
-
 /// What happens to a lasting contact inside a step.
 struct ContactChange {
   enum class Kind {
@@ -49,6 +47,10 @@ class LastingContacts {
 
   /// Features that lasting contacts hold together, for the pairs of now.
   const std::vector<HeldFeature>& held();
+
+  /// Takes the forces that were found last for those at the end of the island's step. To be called after steps of order
+  /// 5, which end with them, before firstChange.
+  void noteEnd();
 
   /// The first change of a lasting contact within the island's step, whose end rate must be there.
   std::optional<ContactChange> firstChange();
@@ -102,6 +104,7 @@ class LastingContacts {
   Vec3 givenDirection(std::size_t contact, const VectorX& state) const;
   double distanceFromNearest(std::size_t contact, const VectorX& state) const;
   void findMargins(const VectorX& state, std::vector<Margins>& margins);
+  void takeMargins(const VectorX& state, std::vector<Margins>& margins);
   bool isHeldTogether(const VectorX& state);
   std::optional<double> firstFailure(double from, double to);
   double locate(const ContactChange& change, double from, double marginFrom, double to, double marginTo);
@@ -115,7 +118,7 @@ class LastingContacts {
   std::string_view fault_;
   bool isReleasing_ = false;
   VectorX rate_, sample_;
-  std::vector<Margins> before_, ahead_, after_;
+  std::vector<Margins> before_, ahead_, after_, atEnd_;
   double knownTime_ = NAN;  // s: of the margins in before_, if a step that changed nothing has ended there
 };
 

@@ -105,7 +105,7 @@ bool ContactStepping::slide(const Group& group, const VectorX& end, Problem& pro
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const SurfaceLaw& law = assembly_.geometry.pairs[group.contacts[i].pair].law;
     if (law.dynamicFriction == law.staticFriction) continue;
-    if (end.segment<2>(3 * static_cast<Index>(i)).norm() <= kSlidingSpeed) continue;
+    if (end.segment<2>(3 * static_cast<Index>(i)).norm() <= kSlowestSliding) continue;
     problem.frictions[i] = law.dynamicFriction;
     isOther = true;
   }

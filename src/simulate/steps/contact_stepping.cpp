@@ -118,7 +118,7 @@ ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
     const SurfaceLaw& law = assembly_.geometry.pairs[group.contacts[i].pair].law;
-    const bool slides = motion.start.segment<2>(at).norm() > kSlidingSpeed;
+    const bool slides = motion.start.segment<2>(at).norm() > kSlowestSliding;
     problem.frictions.push_back(slides ? law.dynamicFriction : law.staticFriction);
     const double closing = -motion.start[at + 2], pressing = std::max(0.0, -closing - motion.free[at + 2]);
     const double gap = std::max(0.0, group.contacts[i].separation), restitution = part * law.restitution;

@@ -58,7 +58,6 @@ class ContactStepping {
 
  private:
   static constexpr std::size_t kFewContacts = 6;     // solved densely, to rounding
-  static constexpr double kSlidingSpeed = 1e-6;      // m/s: slower counts as sticking
   static constexpr double kLessRestitution = 0.7;    // of the restitution that let energy grow
   static constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
   struct Group {

@@ -92,11 +92,14 @@ StabilityMap accuracyMap(const MapProgress& progress) {
       "run";
   map.paragraph =
       "The accuracy that a scene asks for bounds the error of each step, and the error at the end goes down with it, a "
-      "tenth for a tenth, as far as rounding allows. How far above or below it lies is the scene's own: a damped "
-      "spring forgets its errors, a pendulum keeps them, and a free body that turns over makes of them 4000 times the "
-      "accuracy in 10 s, since a small error in the time of each turn over is a large one in where the body points. "
-      "`cradle "
-      "simulate --check-accuracy` finds that factor for any scene.";
+      "tenth for a tenth, as far as rounding allows; from 1e-2 to 1e-3 more than that, for the longest steps are "
+      "judged "
+      "less strictly. How far above or below it lies is the scene's own: a damped spring forgets its errors, a "
+      "pendulum "
+      "keeps them, and a free body that turns over is off by 4000 times the accuracy after 10 s, since a small error "
+      "in "
+      "the time of each turn over is a large one in where the body points. `cradle simulate --check-accuracy` finds "
+      "that factor for any scene.";
   map.x = logarithmicAxis("accuracy asked", "", {std::pow(10, -kLastTenths - 0.3), std::pow(10, -kFirstTenths + 0.3)});
   map.y = logarithmicAxis("error at the end", "", {kLeastError, 1});
   MapPanel panel{"", {}, {{"error = accuracy", CurveKind::theory, {{1e-13, 1e-13}, {1, 1}}}}};
