@@ -19,16 +19,17 @@ void countToThree(bool quiet) {
 
 // What `work` writes to a stderr that is a terminal.
 std::string onTerminal(const std::function<void()>& work) {
-  const int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  const int master = posix_openpt(O_RDWR | O_NOCTTY);
   EXPECT_TRUE(master >= 0 && grantpt(master) == 0 && unlockpt(master) == 0);
   const int terminal = open(ptsname(master), O_RDWR | O_NOCTTY), before = dup(STDERR_FILENO);
   dup2(terminal, STDERR_FILENO);
   work();
   dup2(before, STDERR_FILENO);
-  std::string text(1000, '\0');
-  const ssize_t length = read(master, text.data(), text.size());
-  text.resize(length < 0 ? 0 : static_cast<std::size_t>(length));
-  for (const int file : {before, terminal, master}) close(file);
+  for (const int file : {before, terminal}) close(file);
+  std::string text;
+  char piece;
+  while (read(master, &piece, 1) == 1) text += piece;  // until all is read from a terminal that is closed
+  close(master);
   return text;
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <string>
 #include <vector>
 
@@ -9,14 +7,6 @@
 #include "study/sample_scenes.h"
 
 namespace cradle {
-
-/// Tests of other engines, in programs that have them.
-class PeerTest : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (peers().empty()) GTEST_SKIP() << "built without other engines (CMake: CRADLE_PEERS)";
-  }
-};
 
 inline const Peer& peerNamed(const std::string& name) {
   return *methodOf(name).peer;

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "peers/peer_frames.h"
 #include "simulate/simulate.h"
 #include "study/motion_error.h"
-#include "study/peer_frames.h"
 #include "study/study_table.h"
 
 // What the adapters of other engines make of a scene, against closed forms and against our own motion.
@@ -13,12 +13,11 @@ namespace cradle {
 namespace {
 
 /// A test for each of some methods.
-class Peers : public PeerTest {};
-class SteppedOnce : public PeerTest, public ::testing::WithParamInterface<const char*> {};
+class SteppedOnce : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(, SteppedOnce, ::testing::Values("bullet", "ode", "odeQuick", "mujoco"));
-class Tied : public PeerTest, public ::testing::WithParamInterface<const char*> {};
+class Tied : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(, Tied, ::testing::Values("bullet100", "ode", "odeTuned", "mujocoTuned"));
-class Touching : public PeerTest, public ::testing::WithParamInterface<const char*> {};
+class Touching : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(, Touching, ::testing::Values("bulletTuned100", "ode", "odeQuick", "mujoco"));
 
 Scene fileOf(const std::string& name) {
@@ -95,7 +94,7 @@ TEST_P(SteppedOnce, SpringForcesActOnceAStep) {
   EXPECT_NEAR(end.energy.potential, omega * omega * away * away / 2, 1e-8);
 }
 
-TEST_F(Peers, BodiesStartWhereTheSceneHasThem) {
+TEST(Peers, BodiesStartWhereTheSceneHasThem) {
   const Scene alone = sceneOf(R"({"schema": "cradle-scene/1", "name": "start", "duration": 1,
     "bodies": [{"name": "a", "shape": {"box": {"size": [1, 0.6, 0.2]}}, "mass": 2, "centerOfMass": [0.2, -0.1, 0.05],
                 "inertiaTensor": [[0.4, 0.05, 0.02], [0.05, 0.5, -0.03], [0.02, -0.03, 0.6]], "position": [1, 2, 3],
@@ -148,14 +147,14 @@ double gain(const std::string& peer, const Scene& scene) {
   return errorAtEnd(scene, peer, 1.0 / 128, exact) / errorAtEnd(scene, peer, 1.0 / 256, exact);
 }
 
-TEST_F(Peers, RungeKuttaOfMujocoIsOfOrderFourUnlessAxesOfRotationTurn) {
+TEST(Peers, RungeKuttaOfMujocoIsOfOrderFourUnlessAxesOfRotationTurn) {
   // It adds the stages' rotation vectors as if they were numbers: right to order 2 where their directions change.
   EXPECT_NEAR(gain("mujocoRk4", oscillator(5, 0.5)), 16, 1);
   EXPECT_NEAR(gain("mujocoRk4", planarChain()), 16, 1);
   EXPECT_NEAR(gain("mujocoRk4", tiedBodies(false)), 4, 0.2);
 }
 
-TEST_F(Peers, JointsThatCloseALoopHoldInReducedCoordinates) {
+TEST(Peers, JointsThatCloseALoopHoldInReducedCoordinates) {
   // A bar on two ball joints of one axis swings as on a hinge, where the second closes a loop.
   const Scene scene = sceneOf(R"({"schema": "cradle-scene/1", "name": "loop", "duration": 0.5,
     "bodies": [{"name": "bar", "shape": {"box": {"size": [1, 0.2, 0.4]}}, "collision": "none", "mass": 2, "position": [0.5, 0, 0]},
@@ -169,7 +168,7 @@ TEST_F(Peers, JointsThatCloseALoopHoldInReducedCoordinates) {
   EXPECT_LT(errorAtEnd(scene, "simbody", 1e-8, exact), 1e-6);
 }
 
-TEST_F(Peers, SimbodyIsAsExactAsItIsAskedToBe) {
+TEST(Peers, SimbodyIsAsExactAsItIsAskedToBe) {
   // Accuracies are local: the error at the end may be some times as large, and goes with them.
   for (const Scene& scene : {oscillator(20, 0.5), tiedBodies(true)}) {
     SCOPED_TRACE(scene.name);
@@ -180,7 +179,7 @@ TEST_F(Peers, SimbodyIsAsExactAsItIsAskedToBe) {
   }
 }
 
-TEST_F(Peers, WhatTheyDoNotHaveIsNamed) {
+TEST(Peers, WhatTheyDoNotHaveIsNamed) {
   EXPECT_EQ(missingIn("bullet", fileOf("scenes/slack_rope.json")), "ropes");
   EXPECT_EQ(missingIn("ode", fileOf("scenes/struck_model.json")), "pushes");
   EXPECT_THAT(missingIn("bullet", fileOf("scenes/gears_fall.json")), ::testing::HasSubstr("concave mesh"));
@@ -191,7 +190,7 @@ TEST_F(Peers, WhatTheyDoNotHaveIsNamed) {
   EXPECT_EQ(missingIn("simbody", fileOf("scenes/coupled_pendulums.json")), "");
 }
 
-TEST_F(Peers, RowsNameTheEngine) {
+TEST(Peers, RowsNameTheEngine) {
   StudyScene scene(oscillator(5, 0.5));
   const Reference reference{scene.run(methodOf("dop853"), 1e-12, 10).end, 1e-2, "", ""};
   std::vector<StudyRow> rows;
@@ -201,7 +200,7 @@ TEST_F(Peers, RowsNameTheEngine) {
   EXPECT_EQ(rows.back().evaluations * rows.back().setting, 0.5);  // steps
 }
 
-TEST_F(Peers, TheCostIsThatOfARunThatWentWell) {
+TEST(Peers, TheCostIsThatOfARunThatWentWell) {
   // Looked at in 17 frames it has not more energy than it may; the runs for the time, in two, are taken for unstable.
   StudyScene scene(fileOf("benchmarks/scenes/bounce_elastic.json"));
   const StudyRun run = scene.run(methodOf("bulletTuned"), 1.0 / 60, 10);
@@ -210,13 +209,13 @@ TEST_F(Peers, TheCostIsThatOfARunThatWentWell) {
   EXPECT_GT(run.cost.cpuSeconds, 0);
 }
 
-TEST_F(Peers, EnergyIsNotJudgedWhereContactMayTakeIt) {
+TEST(Peers, EnergyIsNotJudgedWhereContactMayTakeIt) {
   StudyScene sliding(blockOnSlope(0.5)), swinging(oscillator(5, 0.5));
   EXPECT_TRUE(std::isnan(sliding.run(methodOf("bullet"), 0.01, 10).energyDrift));
   EXPECT_GT(swinging.run(methodOf("bullet"), 0.01, 10).energyDrift, 0);
 }
 
-TEST_F(Peers, AScenePartThatIsMissingLeavesNoRows) {
+TEST(Peers, AScenePartThatIsMissingLeavesNoRows) {
   StudyScene scene(fileOf("scenes/rope_slack_taut.json"));
   sweep(scene, "ropes", methodOf("bullet"), {}, {{}, [](const StudyRow&) { FAIL(); }});
   EXPECT_EQ(scene.missingIn(methodOf("bullet")), "ropes");
@@ -233,7 +232,7 @@ double errorOfFreeRotation(const std::string& peer, double setting) {
   return angleBetween(frames.back().states[0].orientation, exact);
 }
 
-TEST_F(Peers, FreeRotationIsAsExactAsTheyAreKnownToBe) {
+TEST(Peers, FreeRotationIsAsExactAsTheyAreKnownToBe) {
   EXPECT_NEAR(errorOfFreeRotation("mujoco", 1e-3), 0.040, 0.002);
   EXPECT_NEAR(errorOfFreeRotation("bullet", 1e-3), 0.040, 0.002);
   EXPECT_NEAR(errorOfFreeRotation("mujocoRk4", 1.0 / 60), 2.3e-4, 0.1e-4);
@@ -250,7 +249,7 @@ double errorOfOscillator(const std::string& peer, double stepsPerSecond) {
   return largest;
 }
 
-TEST_F(Peers, AnOscillatorIsAsExactAsTheyAreKnownToBe) {
+TEST(Peers, AnOscillatorIsAsExactAsTheyAreKnownToBe) {
   EXPECT_NEAR(errorOfOscillator("mujocoRk4", 240), 7.9e-5, 0.4e-5);
   EXPECT_NEAR(errorOfOscillator("ode", 1000), 0.0029, 0.00015);
   EXPECT_NEAR(errorOfOscillator("bullet", 1000), 0.0029, 0.00015);
@@ -264,7 +263,7 @@ double errorOfChain(const std::string& peer, double setting) {
   return (frames.back().states[2].position - exact).norm();
 }
 
-TEST_F(Peers, AChainIsAsExactAsTheyAreKnownToBe) {
+TEST(Peers, AChainIsAsExactAsTheyAreKnownToBe) {
   EXPECT_NEAR(errorOfChain("odeTuned", 1.0 / 60), 0.085, 0.004);
   EXPECT_NEAR(errorOfChain("odeTuned", 1e-3), 0.0016, 0.0001);
   EXPECT_NEAR(errorOfChain("mujocoRk4", 1.0 / 60), 1.0e-4, 0.05e-4);
