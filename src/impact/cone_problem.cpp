@@ -34,6 +34,7 @@ constexpr double kGoodPart = 1e-9;              // of the largest velocity: good
 constexpr int kMostIterations = 500;            // from each of them
 constexpr double kInteriorPart = 1e-9;          // of the largest velocity: where the interior point method ends
 constexpr double kRegularPart = 1e-9;           // of the largest inverse mass: what makes Newton's matrix regular
+constexpr int kProximalSteps = 3;               // each leaves a billionth of the error, or of one in a stiff direction
 constexpr int kMostNewtonSteps = 20, kFewNewtonSteps = 6;  // with few contacts, and with more
 
 /// Impulses and velocities multiplied contact by contact so that each has inverse mass 1 and the largest free velocity
@@ -248,18 +249,32 @@ ConeSolution ScaledProblem::judge(VectorX impulses) const {
   return solution;
 }
 
-/// Without friction: the normal parts alone, by pivoting. False if they are not the only ones; then the load is better
-/// shared than put on as few contacts as can carry it.
-bool solveNormals(const MatrixX& G, const VectorX& g, VectorX& impulses) {
-  const auto normals = Eigen::seq(2, Eigen::last, 3);
-  const MatrixX matrix = G(normals, normals);
+bool isRegular(const MatrixX& matrix) {
   const Eigen::LLT<MatrixX> factor(matrix);
   if (factor.info() != Eigen::Success) return false;
-  for (Index i = 0; i < matrix.rows(); ++i)
-    if (factor.matrixLLT()(i, i) * factor.matrixLLT()(i, i) <= kRegularPart * matrix(i, i)) return false;
-  impulses.setZero(g.size());
-  impulses(normals) = solveLinearComplementarity(matrix, VectorX(g(normals)));
-  return true;
+  const auto left = factor.matrixLLT().diagonal().cwiseAbs2();
+  return (left.array() > kRegularPart * matrix.diagonal().array()).all();
+}
+
+/// Without friction: the normal parts alone, by pivoting. Where redundant contacts leave a choice, the load is shared
+/// as evenly as can be, by the proximal point method (R. T. Rockafellar, "Monotone operators and the proximal point
+/// algorithm", 1976), which where nothing solves the problem comes as near as can be.
+VectorX solveNormals(const MatrixX& G, const VectorX& g) {
+  const auto normals = Eigen::seq(2, Eigen::last, 3);
+  MatrixX matrix = G(normals, normals);
+  const VectorX free = g(normals);
+  VectorX pushes = VectorX::Zero(free.size());
+  if (isRegular(matrix)) {
+    pushes = solveLinearComplementarity(matrix, free);
+  } else {
+    const VectorX shift = kRegularPart * matrix.diagonal();
+    matrix.diagonal() += shift;
+    for (int i = 0; i < kProximalSteps; ++i)
+      pushes = solveLinearComplementarity(matrix, VectorX(free - shift.cwiseProduct(pushes)));
+  }
+  VectorX impulses = VectorX::Zero(g.size());
+  impulses(normals) = pushes;
+  return impulses;
 }
 
 }  // namespace
@@ -271,8 +286,7 @@ ConeSolution solveConeProblem(const MatrixX& G, const VectorX& g, const std::vec
   if (frictions.size() == 1) return problem.judge(solveSingleContact(G, g, frictions[0]));
   const bool hasFriction =
       std::any_of(frictions.begin(), frictions.end(), [](double friction) { return friction > 0; });
-  VectorX impulses;
-  return problem.judge(!hasFriction && solveNormals(G, g, impulses) ? impulses : problem.solve(near));
+  return problem.judge(hasFriction ? problem.solve(near) : solveNormals(G, g));
 }
 
 }  // namespace cradle

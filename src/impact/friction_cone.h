@@ -9,8 +9,8 @@ namespace cradle {
 /// The point nearest to `z` = (t1, t2, n) in Coulomb's cone |t| <= friction n.
 inline Vec3 projectOnCone(const Vec3& z, double friction) {
   const double tangential = std::sqrt(z.x() * z.x() + z.y() * z.y()), normal = z.z();
-  if (tangential <= friction * normal) return z;
   if (friction * tangential <= -normal) return Vec3::Zero();
+  if (tangential <= friction * normal) return z;
   const double nearest = (friction * tangential + normal) / (1 + friction * friction);
   const double part = tangential > 0 ? friction * nearest / tangential : 0;
   return {part * z.x(), part * z.y(), nearest};

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "impact/friction_cone.h"
+
 namespace cradle {
 namespace {
 
@@ -212,6 +214,40 @@ TEST(ConeProblem, WithoutFrictionIsTheLinearComplementarityProblem) {
     const VectorX left = complementaryByEnumeration(a, rows.free()(normals));
     EXPECT_LT((solution.velocities(normals) - left).norm(), 1e-10) << trial;
   }
+}
+
+// One contact pushes, the other, without friction, separates without sliding: no residual is left.
+TEST(ConeProblem, WhatSeparatesStraightWithoutFrictionObeysCoulomb) {
+  EXPECT_EQ(coulombResidual(Vec3::Zero(), Vec3(0, 0, 2), 0), Vec3(Vec3::Zero()));
+  EXPECT_EQ(projectOnCone(Vec3(0, 0, -2), 0), Vec3(Vec3::Zero()));
+  EXPECT_EQ(projectOnCone(Vec3(0, 3, 2), 0), Vec3(0, 0, 2));
+}
+
+// Heavy on light, four contacts each where three would do: each carries a quarter, to the rounding over 1e-9.
+TEST(ConeProblem, WithoutFrictionRedundantContactsShareTheLoad) {
+  for (const double top : {1.0, 1000.0}) {
+    Rows stack = stackOf({1, 1, top}, 0);
+    for (Eigen::Index body = 0; body < 3; ++body) stack.velocities[6 * body + 2] = -kGravity;
+    const ConeSolution solution = stack.solve();
+    EXPECT_TRUE(solution.converged);
+    for (Eigen::Index i = 0; i < 12; ++i) {
+      const double quarter = (top + static_cast<double>(2 - i / 4)) * kGravity / 4;
+      EXPECT_NEAR(solution.impulses[3 * i + 2], quarter, 1e-6 * quarter) << i;
+    }
+  }
+}
+
+// Between two walls that close on it with 1 and 3 a ball cannot give way to both: it moves with their mean, and the
+// impulses, which grow with every attempt, balance.
+TEST(ConeProblem, WedgedWithoutFrictionIsLeftBetween) {
+  Rows ball{MatrixX::Zero(6, 3), VectorX::Constant(3, 1.0), VectorX::Zero(3), {0, 0}};
+  ball.j << 0, 1, 0, 0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 0, 1, -1, 0, 0;
+  VectorX free = VectorX::Zero(6);
+  free[2] = -1, free[5] = -3;
+  const ConeSolution solution = solveConeProblem(ball.matrix(), free, ball.frictions);
+  EXPECT_FALSE(solution.converged);
+  EXPECT_NEAR(solution.residual, 2, 1e-6) << solution.impulses << solution.velocities;
+  EXPECT_LT((ball.velocitiesAfter(solution) - Vec3(-1, 0, 0)).norm(), 1e-6);
 }
 
 }  // namespace
