@@ -13,7 +13,6 @@ namespace cradle {
 namespace {
 
 constexpr double kVelocityRounding = 1e-12;  // m/s a m of rod: less is no violation, only decimal digits
-constexpr std::size_t kMostFaults = 50;
 
 /// Index of each scene body among those of an island, or kFixed.
 std::vector<int> movingIndices(const Scene& scene, const IslandPlan& island) {
@@ -202,14 +201,17 @@ std::pair<int, int> bodiesOf(const Assembly& assembly, const ColliderPair& pair)
           (pair.againstPlane ? assembly.planeBodies : assembly.colliderBodies)[pair.b]};
 }
 
-void refuseUnsupported(const Scene& scene) {
-  std::vector<std::string> faults;
-  for (const std::string& fault : unsupportedContacts(scene)) faults.push_back(fault);
+void refuse(const std::vector<std::string>& faults) {
+  constexpr std::size_t kMost = 50;
   if (faults.empty()) return;
-  std::string text = faults[0];
-  for (std::size_t i = 1; i < std::min(faults.size(), kMostFaults); ++i) text += "\n" + faults[i];
-  if (faults.size() > kMostFaults) text += fmt::format("\nand {} more", faults.size() - kMostFaults);
+  const std::size_t told = std::min(faults.size(), kMost);
+  std::string text = fmt::format("{}", fmt::join(faults.begin(), faults.begin() + static_cast<long>(told), "\n"));
+  if (faults.size() > told) text += fmt::format("\nand {} more", faults.size() - told);
   throw Error(ErrorKind::scene, "", text);
+}
+
+void refuseUnsupported(const Scene& scene) {
+  refuse(unsupportedContacts(scene));
 }
 
 }  // namespace cradle

@@ -42,4 +42,7 @@ Assembly assemble(const Scene& scene, const IslandPlan& island);
 /// Throws Error(scene) that names everything in the scene that no method simulates yet, one a line.
 void refuseUnsupported(const Scene& scene);
 
+/// Throws Error(scene) that tells of the first 50 faults, if there are any.
+void refuse(const std::vector<std::string>& faults);
+
 }  // namespace cradle

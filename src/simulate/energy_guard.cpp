@@ -11,12 +11,12 @@
 namespace cradle {
 namespace {
 
-constexpr double kUnexplained = 2;        // times the energy that can be explained: nothing is left of the motion
-constexpr double kMostLocalErrors = 100;  // times their sum: they are estimates; 0.1 of it has been seen
-constexpr double kRounding = 1e-13;       // of a component in a step: finer tolerances are not kept
-constexpr double kCalmPart = 0.1;         // of what stops a run: before, the motion is still the scene's own
-constexpr double kSafeTurn = 0.1;         // rad a step: RK4 is then right to 1e-7 a step; slower turns are no cause
-constexpr double kCollapsed = 1e-3;       // of its rest length: a spring without direction
+constexpr double kUnexplained = 2;          // times the energy that can be explained: nothing is left of the motion
+constexpr double kMostLocalErrors = 100;    // times their sum: they are estimates; 0.1 of it has been seen
+constexpr double kFinestTolerance = 1e-13;  // of a component in a step: finer tolerances are not kept
+constexpr double kCalmPart = 0.1;           // of what stops a run: before, the motion is still the scene's own
+constexpr double kSafeTurn = 0.1;           // rad a step: RK4 is then right to 1e-7 a step; slower turns are no cause
+constexpr double kCollapsed = 1e-3;         // of its rest length: a spring without direction
 
 /// What an error of 1 + |y| in each component y of a state can change of its energy (J).
 double energySensitivity(const Mechanism& mechanism, const VectorX& state) {
@@ -70,7 +70,7 @@ void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
   if (!state.allFinite()) fail(state, time, "is not finite any more", cause(state));
   double most = mostError_ * explainedEnergy(state, timeStep);
   if (method_.isAdaptive()) {
-    errorSum_ += std::max(method_.tolerance, kRounding) * energySensitivity(mechanism_, state);
+    errorSum_ += std::max(method_.tolerance, kFinestTolerance) * energySensitivity(mechanism_, state);
     most = std::min(most, kMostLocalErrors * errorSum_);
   }
   const double change = std::abs(energyConstant(mechanism_, state) - startConstant_);

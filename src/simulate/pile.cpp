@@ -9,11 +9,11 @@
 #include "core/error.h"
 #include "core/interruption.h"
 #include "dynamics/invariants.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kSameTime = 1e-12;           // s, relative beyond 1 s
 constexpr double kEnergyRounding = 1e-9;      // of the energy that there is
 constexpr std::size_t kBodiesAThread = 2000;  // with fewer, threads wait for each other longer than they work
 
@@ -37,7 +37,7 @@ Pile::Pile(Assembly assembly, double longestStep, int threads)
 }
 
 const VectorX& Pile::stateAt(double time) {
-  const double same = kSameTime * std::max(1.0, time);
+  const double same = sameTime(time);
   if (time <= time_ + same) return state_;
   const int steps = std::max(1, static_cast<int>(std::ceil((time - time_) / longestStep_ - same)));
   const double timeStep = (time - time_) / steps;

@@ -12,10 +12,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kLiftablePart = 1e-7;    // of its size: the height that a slow body's kinetic energy could lift it
-constexpr double kSupportPart = 1e-6;     // of its size: how far a point may hover and still carry
-constexpr std::size_t kFewSupports = 12;  // whose forces are found densely
-constexpr double kSolvedPart = 1e-2;      // of the residual: how well forces of many are found
+constexpr double kLiftablePart = 1e-7;      // of its size: the height that a slow body's kinetic energy could lift it
+constexpr double kSupportPart = 1e-6;       // of its size: how far a point may hover and still carry
+constexpr std::size_t kFewSupports = 12;    // whose forces are found densely
+constexpr double kForcesSolvedPart = 1e-2;  // of the residual: how well forces of many are found
 constexpr double kResidualAcceleration = 1e-6;  // of gravity: what supporting forces may leave
 
 }  // namespace
@@ -100,7 +100,7 @@ void RestingBodies::hold(const std::vector<Contact>& supports, const std::vector
   const Eigen::Index size = 3 * static_cast<Eigen::Index>(supports.size());
   ConeStart start{VectorX::Zero(size), VectorX::Zero(size), 0};
   long iterations = 0;
-  const double tolerance = kSolvedPart * kResidualAcceleration * mechanism_.gravity.norm();
+  const double tolerance = kForcesSolvedPart * kResidualAcceleration * mechanism_.gravity.norm();
   cones.apply(cones.solve(cones.velocitiesIn(accelerations), frictions, tolerance, start, iterations).impulses,
               accelerations);
 }

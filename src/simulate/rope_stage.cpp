@@ -8,20 +8,20 @@
 #include "dynamics/integrators/pose_interpolant.h"
 #include "dynamics/invariants.h"
 #include "impact/rope_impulse.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kTautPart = 1e-9;    // of its length: a rope this near to it is at its length
-constexpr double kSlackPart = 1e-6;   // of its length: a rope this much shorter is slack again
-constexpr double kRestPart = 1e-6;    // of sqrt(acceleration x length): a rebound that rises by 5e-13 of the length
-constexpr double kLoadedPart = 1e-6;  // of gravity: a pull that is no rounding
-constexpr int kTensionSamples = 4;    // a step: it is at most a small part of a swing
+constexpr double kTautPart = 1e-9;       // of its length: a rope this near to it is at its length
+constexpr double kSlackPart = 1e-6;      // of its length: a rope this much shorter is slack again
+constexpr double kLowestRebound = 1e-6;  // of sqrt(acceleration x length): a rebound that rises by 5e-13 of the length
+constexpr double kLeastPull = 1e-6;      // of gravity: a pull that is no rounding
+constexpr int kTensionSamples = 4;       // a step: it is at most a small part of a swing
 constexpr double kFirstLook = 1.0 / 1024;  // of a step
 constexpr double kLongestLook = 1.0 / 8;   // of a step, at a rope that nothing pulls at: what would is smooth
-constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
-constexpr double kSpeedRounding = 1e-12;   // of the speed before a pull
-constexpr int kMostRounds = 100;           // of pulls at one instant; those left over pull after the next step
+constexpr double kPullRounding = 1e-12;    // of the speed before a pull
+constexpr int kMostPullRounds = 100;       // of pulls at one instant; those left over pull after the next step
 
 Vec3 positionAt(const Step& step, const Attachment& attachment, double fraction) {
   return poseAt(step, attachment.body, fraction) * attachment.point;
@@ -147,7 +147,7 @@ bool RopeStage::resolve(double time, VectorX& state) {
     if (!isTaut(i) && motionOf(assembly_.ropes[i], state).slackLength > kSlackPart * assembly_.ropes[i].maxLength)
       loosen(time, i, state);
   // A pull may stretch another rope that is at its length, or load it.
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMostPullRounds; ++round) {
     const std::vector<Stretch> stretches = findStretches(state);
     if (stretches.empty()) return released || round > 0;
     pull(time, stretches, state);
@@ -167,10 +167,10 @@ std::vector<RopeStage::Stretch> RopeStage::findStretches(const VectorX& state) {
     if (motion.slackLength > kTautPart * rope.maxLength || motion.lengthening < -kRestSpeedFloor) continue;
     if (!std::exchange(isEvaluated, true)) equations_.evaluate(state, rate_);
     const double acceleration = lengtheningAcceleration(rope, state, rate_), pulling = std::max(0.0, acceleration);
-    const bool isLoaded = acceleration > kLoadedPart * assembly_.mechanism.gravity.norm();
+    const bool isLoaded = acceleration > kLeastPull * assembly_.mechanism.gravity.norm();
     if (!isLoaded && motion.lengthening <= kRestSpeedFloor) continue;
     const double restSpeed =
-        2 * pulling * timeStep_ + kRestPart * std::sqrt(pulling * rope.maxLength) + kRestSpeedFloor;
+        2 * pulling * timeStep_ + kLowestRebound * std::sqrt(pulling * rope.maxLength) + kRestSpeedFloor;
     const double rebound = rope.restitution * motion.lengthening;
     stretches.push_back({i, motion.lengthening, rebound > restSpeed ? rebound : 0, isLoaded});
   }
@@ -193,7 +193,7 @@ void RopeStage::pull(double time, const std::vector<Stretch>& stretches, VectorX
     const auto& [rope, speed, reboundSpeed, isLoaded] = stretches[i];
     const bool rebounds = reboundSpeed > 0;
     const double lengthening = motionOf(assembly_.ropes[rope], state).lengthening;
-    if (lengthening < -(reboundSpeed + kRestSpeedFloor + kSpeedRounding * speed)) continue;  // others pulled it short
+    if (lengthening < -(reboundSpeed + kRestSpeedFloor + kPullRounding * speed)) continue;  // others pulled it short
     if (!isStretched_[rope] || rebounds) record(time, EventKind::taut, rope, pulls[i].impulse, state);
     isStretched_[rope] = !rebounds;
     if (!rebounds && isLoaded) tautRod_[rope] = 0;
@@ -230,7 +230,7 @@ void RopeStage::endImpact(double time, const std::vector<ImpactContact>& impacts
     const auto [rope, wasTaut] = members_[k];
     const RopeMotion motion = motionOf(assembly_.ropes[rope], state);
     const double speed = motion.a.velocity.norm() + motion.b.velocity.norm();
-    const bool shortens = motion.lengthening < -(kRestSpeedFloor + kSpeedRounding * speed);
+    const bool shortens = motion.lengthening < -(kRestSpeedFloor + kPullRounding * speed);
     const double impulse = impacts[k].impulse.norm();
     if (wasTaut && shortens) loosen(time, rope, state);
     if (wasTaut && !shortens) tautRod_[rope] = 0;

@@ -5,11 +5,10 @@
 #include "core/interruption.h"
 #include "dynamics/invariants.h"
 #include "simulate/start_overlaps.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
-
-constexpr double kSameTime = 1e-12;  // s, relative beyond 1 s: an event this near to a frame is at it
 
 void add(const Invariants& sums, const VectorX& state, EnergyBalance& balance) {
   balance.kinetic += sums.kinetic;
@@ -90,7 +89,7 @@ void Run::addTo(Frame& frame, const Assembly& assembly, const VectorX& state) co
 }
 
 std::vector<Event> Run::takeEvents(double time) {
-  const double until = time + kSameTime * std::max(1.0, time);
+  const double until = time + sameTime(time);
   std::stable_sort(events_.begin(), events_.end(), [](const Event& a, const Event& b) { return a.time < b.time; });
   const auto later =
       std::find_if(events_.begin(), events_.end(), [&](const Event& event) { return event.time > until; });

@@ -6,13 +6,9 @@
 #include <utility>
 
 #include "core/interruption.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
-namespace {
-
-constexpr double kSameTime = 1e-12;  // s, relative beyond 1 s
-
-}  // namespace
 
 Simulation::Simulation(const Scene& scene, Assembly assembly, const ChosenMethod& method)
     : island_(scene, std::move(assembly)),
@@ -27,7 +23,7 @@ Simulation::Simulation(const Scene& scene, Assembly assembly, const ChosenMethod
 }
 
 const VectorX& Simulation::stateAt(double time) {
-  const double same = kSameTime * std::max(1.0, time);
+  const double same = sameTime(time);
   while (island_.time < time - same) {
     throwIfInterrupted();
     advance(time);

@@ -20,8 +20,7 @@ namespace {
 constexpr double kTouchingPart = 1e-9;                                // of the smaller body's size
 constexpr double kModelPart = std::numeric_limits<float>::epsilon();  // of a model's: its vertices are that exact
 constexpr double kMostPart = 0.5;                                     // of the smaller body's inner radius
-constexpr int kMostRounds = 20;                                       // of moving apart: each may bring others together
-constexpr std::size_t kMostFaults = 50;
+constexpr int kMostPushRounds = 20;                                   // of moving apart: each may bring others together
 
 /// The deepest overlap (m) of a pair; < 0 or -infinity if it has none.
 double depthOf(const ContactGeometry& geometry, const ColliderPair& pair, const VectorX& state) {
@@ -123,7 +122,7 @@ void settle(const Scene& scene, Assembly& assembly, std::vector<std::string>& fa
     if (overlap.depth > overlap.mendable) faults.push_back(faultOf(overlap));
   if (overlaps.empty() || faults.size() > before) return;
   std::vector<Overlap> left = overlaps;
-  for (int round = 0; round < kMostRounds && !left.empty(); ++round) {
+  for (int round = 0; round < kMostPushRounds && !left.empty(); ++round) {
     moveApart(assembly);
     left = overlapsOf(scene, assembly);
   }
@@ -137,12 +136,7 @@ void settle(const Scene& scene, Assembly& assembly, std::vector<std::string>& fa
 void settleStartOverlaps(const Scene& scene, std::vector<Assembly>& islands) {
   std::vector<std::string> faults;
   for (Assembly& assembly : islands) settle(scene, assembly, faults);
-  if (faults.empty()) return;
-  if (faults.size() > kMostFaults) {
-    faults[kMostFaults] = fmt::format("and {} more", faults.size() - kMostFaults);
-    faults.resize(kMostFaults + 1);
-  }
-  throw Error(ErrorKind::scene, "", fmt::format("{}", fmt::join(faults, "\n")));
+  refuse(faults);
 }
 
 }  // namespace cradle

@@ -15,9 +15,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kConverged = 1e-11;  // between two runs at h and h/2
-constexpr double kCpuLimit = 20;      // s, of one run
-constexpr double kRounding = 1e-15;   // no motion is known better
+constexpr double kConverged = 1e-11;       // between two runs at h and h/2
+constexpr double kReferenceCpuLimit = 20;  // s, of one run
+constexpr double kBestKnown = 1e-15;       // no motion is known better
 
 /// The best of the runs of a method at halved steps, and how far the one before was from it.
 struct Converged {
@@ -36,7 +36,7 @@ Converged converge(StudyScene& scene, const StudyMethod& method, const std::func
   Converged best;
   std::optional<StudyRun> last;
   while (true) {
-    StudyRun run = scene.run(method, ladder.setting(), kCpuLimit);
+    StudyRun run = scene.run(method, ladder.setting(), kReferenceCpuLimit);
     tick();
     if (run.status == RunStatus::failed) return best;
     bool goesOn = true;
@@ -46,7 +46,7 @@ Converged converge(StudyScene& scene, const StudyMethod& method, const std::func
       if (!best.run || change <= best.change) best = {run, change};
       last = run;
     }
-    if (!goesOn || !ladder.descend(run.cost.cpuSeconds, kCpuLimit)) return best;
+    if (!goesOn || !ladder.descend(run.cost.cpuSeconds, kReferenceCpuLimit)) return best;
   }
 }
 
@@ -55,17 +55,17 @@ Converged converge(StudyScene& scene, const StudyMethod& method, const std::func
 Reference findReference(StudyScene& scene, const std::function<void()>& tick) {
   const StudyMethod &rk4 = methodNamed("rk4"), &dop853 = methodNamed("dop853");
   const Converged check = converge(scene, rk4, tick);
-  const StudyRun adaptive = scene.run(dop853, kFinestAccuracy, kCpuLimit);
+  const StudyRun adaptive = scene.run(dop853, kFinestAccuracy, kReferenceCpuLimit);
   tick();
   if (!check.run && adaptive.status != RunStatus::ok)
     throw Error(ErrorKind::limit, "", fmt::format("\"{}\" has no reference: no method reaches its end", scene.name()));
   if (adaptive.status != RunStatus::ok)
-    return {check.run->end, std::max(check.change, kRounding), fmt::format("RK4, step {:.3g} s", check.run->setting),
+    return {check.run->end, std::max(check.change, kBestKnown), fmt::format("RK4, step {:.3g} s", check.run->setting),
             fmt::format("at twice the step it ends {:.1e} away", check.change)};
   const std::string madeBy = fmt::format("DOP853, accuracy {}", kFinestAccuracy);
   if (!check.run)
     return {adaptive.end, std::numeric_limits<double>::infinity(), madeBy, "no second method confirms it"};
-  const double distance = std::max(motionError(check.run->end, adaptive.end), kRounding);
+  const double distance = std::max(motionError(check.run->end, adaptive.end), kBestKnown);
   return {adaptive.end, distance, madeBy,
           fmt::format("RK4, step {:.3g} s, ends {:.1e} away", check.run->setting, distance)};
 }

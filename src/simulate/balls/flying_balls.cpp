@@ -14,11 +14,11 @@
 
 #include "core/error.h"
 #include "core/interruption.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kSameTime = 1e-12;           // s, relative beyond 1 s
 constexpr double kHitWindow = 1.0 / 960;      // s
 constexpr long kMostHits = 1000000;           // of a ball in a window: a second of computing
 constexpr long kEventsBetweenChecks = 10000;  // for a signal: some ms
@@ -45,7 +45,7 @@ FlyingBalls::FlyingBalls(const Scene& scene, Assembly assembly, BallWorld world)
 }
 
 const VectorX& FlyingBalls::stateAt(double time) {
-  const double same = kSameTime * std::max(1.0, time);
+  const double same = sameTime(time);
   while (queue_.firstTime() <= sinceOrigin(time) + same) advance();
   for (int ball = 0; ball < world_.ballCount(); ++ball) {
     const UniformMotion motion = flights_.motionAt(ball, sinceOrigin(time));

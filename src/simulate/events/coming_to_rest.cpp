@@ -8,12 +8,12 @@
 #include "impact/contact_impulse.h"
 #include "simulate/contact_response.h"
 #include "simulate/events/event_contacts.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kMostResidual = 1e-6;    // of gravity: what forces may leave of bodies at rest
-constexpr double kSpeedRounding = 1e-12;  // m/s
+constexpr double kMostResidual = 1e-6;  // of gravity: what forces may leave of bodies at rest
 
 }  // namespace
 
@@ -26,7 +26,7 @@ bool EventContacts::isAnySlow() const {
 bool EventContacts::isSlow(std::size_t body) const {
   const Eigen::Index index = static_cast<Eigen::Index>(body);
   const double size = island_.assembly.radii[body], gravity = island_.assembly.mechanism.gravity.norm();
-  const double most = kSpeedRounding + stillPart_ * std::sqrt(gravity * size);
+  const double most = kRestSpeedFloor + stillPart_ * std::sqrt(gravity * size);
   return std::max(linearVelocity(island_.state, index).norm(), size * angularVelocity(island_.state, index).norm()) <=
          most;
 }
@@ -37,7 +37,7 @@ Islands EventContacts::findRestGroups() const {
   Islands groups(mechanism.bodies.size());
   for (const Contact& contact : touching_) {
     const double size = island_.assembly.radii[static_cast<std::size_t>(contact.movingBody())];
-    const double still = kSpeedRounding + stillPart_ * std::sqrt(mechanism.gravity.norm() * size);
+    const double still = kRestSpeedFloor + stillPart_ * std::sqrt(mechanism.gravity.norm() * size);
     if (openingSpeed(contact, island_.state) <= still) groups.join(contact.bodyA, contact.bodyB);
   }
   for (const SpringForce& spring : mechanism.springs) groups.join(spring.anchorA.body, spring.anchorB.body);

@@ -11,6 +11,7 @@
 #include "impact/generalized_reflections.h"
 #include "simulate/contact_response.h"
 #include "simulate/steps/contact_energy.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
@@ -21,7 +22,6 @@ constexpr double kMostTouchPart = 1e-8;
 constexpr double kMostTouchError = 1e-6;    // of a size: so well two ways to find a gap agree
 constexpr double kDeadBandPart = 1e-12;     // of the smallest size
 constexpr double kStandstillPart = 1e-12;   // of the fastest speed at an impact: what is left is rounding
-constexpr double kLastBouncePart = 1e-7;    // of sqrt(acceleration x size): bounces lower than 5e-15 of the size
 constexpr double kBounceOfAccuracy = 1e-2;  // the same, of the accuracy ...
 constexpr double kBounceOfSquare = 100;     // ... or of its square, if that is more: 5e-5 of the size at the coarsest
 constexpr double kMostStillPart = 1e-7;     // of sqrt(g x size)

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kMostCorrections = 60;  // steps tried to find an event; 3 are usual
 
-constexpr double kTimeRounding = 1e-14;  // of the step: nearer, the margin is as good as it gets
+constexpr double kStepRounding = 1e-14;  // of the step: nearer, the margin is as good as it gets
 constexpr double kFirstReach = 1e-6;     // of the step: so far around the guess an event is looked for at first
 constexpr double kGrowingReach = 16;
 
@@ -39,7 +39,7 @@ void endStepAtEvent(MovingIsland& island, Integrator integrate, const EventWindo
       late = part, lateMargin = found;
   }
   double earlyWeight = earlyMargin, lateWeight = lateMargin;
-  for (int i = 0; i < kMostCorrections && lateMargin < -tolerance && late - early > kTimeRounding * whole; ++i) {
+  for (int i = 0; i < kMostCorrections && lateMargin < -tolerance && late - early > kStepRounding * whole; ++i) {
     const double part = late + (early - late) * lateWeight / (lateWeight - earlyWeight);
     const double found = marginAfter(part);
     if (std::abs(found) <= tolerance) return;

@@ -5,13 +5,12 @@
 #include <utility>
 
 #include "simulate/events/event_location.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kRopeTolerance = 1e-13;     // of the length, or of the tension that is left
 constexpr double kContactTolerance = 1e-12;  // of the force, or m/s
-constexpr double kTimeRounding = 1e-9;       // of a step: remainders below it are rounding
 constexpr double kImpactPart = 1e-3;  // of the margin of contacts: a gap left that the step has to be taken anew for
 constexpr double kShortCorrection = 1e-3;  // of the step: so far the state at an impact is corrected along its rate
 constexpr double kSlopePart = 1e-6;        // of the step, to find the slope of a gap

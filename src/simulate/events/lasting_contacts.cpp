@@ -9,6 +9,7 @@
 
 #include "impact/contact_impulse.h"
 #include "simulate/plan/islands.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
@@ -19,8 +20,6 @@ constexpr double kUnloadedPart = 1e-9;           // of the accelerations: a cont
 constexpr double kReleasedPart = 1e-6;           // the same when another lets go: what is symmetric lets go together
 constexpr double kAccelerationRounding = 1e-14;  // of gravity
 constexpr double kStillPart = 1e-7;              // of the accelerations: less is held
-constexpr double kLastBouncePart = 1e-7;         // of sqrt(g x size): what leaves so slowly is held by what presses
-constexpr double kSpeedRounding = 1e-12;         // m/s
 constexpr int kMostFrictionRounds = 200;         // of normal forces from friction, and friction from these
 constexpr double kFrictionConverged = 1e-10;     // of the largest normal force
 constexpr int kMostRedundant = 12;               // rows: with more, contact steps cost less
@@ -61,7 +60,7 @@ std::vector<LastingContacts::Entry> LastingContacts::entriesOf(const std::vector
   for (const Contact& contact : touching) {
     if (!isAwake(contact)) continue;
     const double size = island_.assembly.radii[static_cast<std::size_t>(contact.movingBody())];
-    const double still = kLastBouncePart * std::sqrt(mechanism().gravity.norm() * size) + kSpeedRounding;
+    const double still = kLastBouncePart * std::sqrt(mechanism().gravity.norm() * size) + kRestSpeedFloor;
     if (openingSpeed(contact, island_.state) > still) continue;
     Entry entry{contact, island_.assembly.geometry.pairs[contact.pair]};
     const ContactRows rows = rowsOf(contact, island_.state, frames_);

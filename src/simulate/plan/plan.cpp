@@ -33,7 +33,7 @@ constexpr double kPileTimeStep = 1.0 / 60;  // s, at most
 constexpr std::size_t kPileBodies = 50;     // with fewer, RK4 costs less than the pictures of its frames
 constexpr double kMostRatio = 10;           // of masses and of densities in a pile
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kContactTolerance = 1e-5;  // of the local error of RK4, at most: contact decides how good a step is
+constexpr double kSteppedTolerance = 1e-5;  // of the local error of RK4, at most: contact decides how good a step is
 constexpr double kTolerancePart = 0.1;      // of the accuracy: the local errors of about ten steps add up to it
 
 /// Of the local error. The coarser the accuracy, the longer the steps, and of long ones DOP853's estimate is too high:
@@ -164,7 +164,7 @@ void choose(const Scene& scene, IslandPlan& island) {
 }  // namespace
 
 ChosenMethod contactSteps() {
-  return {MotionKind::fixedSteps, "RK4", kContactTimeStep, rk4, kContactTolerance};
+  return {MotionKind::fixedSteps, "RK4", kContactTimeStep, rk4, kSteppedTolerance};
 }
 
 Plan planOf(const Scene& scene) {

@@ -6,7 +6,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of the radius: bounds are met by motions that stretch them fully
+constexpr double kReachRounding = 1e-6;  // of the radius: bounds are met by motions that stretch them fully
 
 /// Two anchors that stay within `length` (m) of each other.
 struct Tie {
@@ -51,7 +51,7 @@ Reach reachOfAnchor(const Anchor& anchor, const Scene& scene, const std::vector<
 bool narrow(const Anchor& end, const Anchor& other, double length, const Scene& scene, std::vector<Reach>& reaches) {
   if (isFixed(end, scene)) return false;
   const Reach from = reachOfAnchor(other, scene, reaches);
-  const double radius = (from.radius + length + armOf(end, scene)) * (1 + kRounding);
+  const double radius = (from.radius + length + armOf(end, scene)) * (1 + kReachRounding);
   Reach& reach = reaches[static_cast<std::size_t>(end.body)];
   if (!(radius < reach.radius)) return false;
   reach = {from.center, radius};
@@ -118,7 +118,7 @@ void narrowByFlight(const Scene& scene, const std::vector<char>& isHeld, std::ve
     const Vec3 way = flying.linearVelocity * scene.duration + 0.5 * scene.duration * scene.duration * scene.gravity;
     const double sag = scene.gravity.norm() * scene.duration * scene.duration / 8;
     const Vec3 start = flying.worldFromBody * flying.massProperties.centerOfMass;
-    const double radius = (way.norm() / 2 + sag) * (1 + kRounding);
+    const double radius = (way.norm() / 2 + sag) * (1 + kReachRounding);
     if (radius < reaches[body].radius) reaches[body] = {start + way / 2, radius};
   }
 }

@@ -6,7 +6,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kRounding = 1e-13;  // of the energy
+constexpr double kEnergyRounding = 1e-13;  // of the energy
 
 double kineticEnergyOf(const std::vector<int>& bodies, const Mechanism& mechanism, const VectorX& state) {
   double energy = 0;
@@ -40,7 +40,7 @@ void bookDifference(const Invariants& before, const Mechanism& mechanism, Vector
 }
 
 bool isGain(double energy, double most) {
-  return energy > most + kRounding * std::abs(most);
+  return energy > most + kEnergyRounding * std::abs(most);
 }
 
 void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state) {

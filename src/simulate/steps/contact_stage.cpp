@@ -6,20 +6,19 @@
 #include "impact/contact_impulse.h"
 #include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kTouchPart = 1e-9;        // of the smallest body's size: nearer counts as touching
+constexpr double kStepTouchPart = 1e-9;    // of the smallest body's size: nearer counts as touching
 constexpr std::size_t kFewLoaded = 8;      // contacts that last: more are resolved step by step
 constexpr double kTogetherPart = 1e-3;     // of a step: what touches within it touches together
 constexpr double kReach = 2;               // of the way that a body goes freely: what others may make of it
 constexpr double kReachPart = 1e-3;        // of its size: the same, for bodies at rest
 constexpr double kCalmSteps = 20;          // awake at least so long: a rattle is no row of rests
-constexpr double kRestSteps = 2;           // a rebound that ends within as many steps is not resolved
 constexpr double kLetBe = 0.1;             // of what carries at rest: overlaps that the next step may take out
 constexpr double kNearOverlap = 10;        // of the deepest overlap: so near others may be pushed into
-constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
 constexpr double kClosedPart = 1e-6;       // of the speed that gravity gives in a step: slower does not close
 constexpr double kLeastImpactPart = 0.01;  // of the speed that gravity gives in a step: slower is no impact
 constexpr double kLandingPart = 0.1;       // of the same: slower landings are not worth ending a step for
@@ -44,7 +43,7 @@ ContactStage::ContactStage(MovingIsland& island, double timeStep)
       resting_(island.resting),
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       timeStep_(timeStep),
-      touchTolerance_(kTouchPart * smallestSize(assembly_.geometry)),
+      touchTolerance_(kStepTouchPart * smallestSize(assembly_.geometry)),
       leastClosingSpeed_(kRestSpeedFloor + kClosedPart * assembly_.mechanism.gravity.norm() * timeStep),
       leastImpactSpeed_(kRestSpeedFloor + kLeastImpactPart * assembly_.mechanism.gravity.norm() * timeStep),
       stepping_(assembly_) {

@@ -8,20 +8,19 @@
 #include <cmath>
 
 #include "simulate/plan/islands.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kRestSteps = 2;           // a rebound that ends within as many steps is not resolved
-constexpr double kRestSpeedFloor = 1e-12;  // m/s: rounding
-constexpr double kRestSpeedPart = 0.01;    // of the speed that gravity gives in a step: slower is no impact
-constexpr double kOverlapPart = 1e-9;      // of the smallest body's size: deeper overlaps are taken out
-constexpr double kSmoothPart = 1e-2;       // of that: overlaps that the mean velocity may add in a step
-constexpr double kSolvedPart = 1e-7;       // of the fastest velocity
-constexpr double kStraightTies = 1e-6;     // m or rad: more of an error may take turns of a radian to mend
-constexpr double kFreeClosing = 2;         // of the speed with which a contact lands: nothing makes it so fast
+constexpr double kRestSpeedPart = 0.01;  // of the speed that gravity gives in a step: slower is no impact
+constexpr double kOverlapPart = 1e-9;    // of the smallest body's size: deeper overlaps are taken out
+constexpr double kSmoothPart = 1e-2;     // of that: overlaps that the mean velocity may add in a step
+constexpr double kSolvedPart = 1e-7;     // of the fastest velocity
+constexpr double kStraightTies = 1e-6;   // m or rad: more of an error may take turns of a radian to mend
+constexpr double kFreeClosing = 2;       // of the speed with which a contact lands: nothing makes it so fast
 
 }  // namespace
 

@@ -14,7 +14,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kRounding = 1e-7;         // of growth: roots of a double eigenvalue are that exact
+constexpr double kGrowthRounding = 1e-7;   // of growth: roots of a double eigenvalue are that exact
 constexpr double kVisibleGain = 0.1;       // of the energy, during a run
 constexpr double kSafePart = 0.5;          // of the limit: stable, and a few per cent accurate in frequency
 constexpr double kShortestStep = 1e-3;     // of the mode's time: what is unstable there has no limit
@@ -72,7 +72,7 @@ double shortestTime(const SpringMode& mode) {
 }
 
 bool isStable(const SpringMode& mode, Integrator integrate, double timeStep) {
-  return spectralRadius(stepMapOf(mode, integrate, timeStep).motion) <= 1 + kRounding;
+  return spectralRadius(stepMapOf(mode, integrate, timeStep).motion) <= 1 + kGrowthRounding;
 }
 
 std::string safeStepText(double limit) {
@@ -100,7 +100,7 @@ std::string faultText(const SpringMode& mode, const ChosenMethod& method, double
 ModeTrial tryMode(const SpringMode& mode, const ChosenMethod& method, double duration) {
   const StepMap map = stepMapOf(mode, method.integrate, method.timeStep);
   ModeTrial trial{spectralRadius(map.motion), 0};
-  if (!(trial.growth <= 1 + kRounding)) return trial;
+  if (!(trial.growth <= 1 + kGrowthRounding)) return trial;
   const double steps = std::min(std::ceil(duration / method.timeStep), kMostTrialSteps);
   const double speed = std::max(std::sqrt(mode.stiffness), 1e-3 * mode.damping);  // of the unit of x
   for (const Eigen::Vector2d& start :
@@ -131,7 +131,7 @@ std::optional<StepFault> stepFault(const Mechanism& mechanism, const VectorX& st
     if (mode.stiffness == 0 && mode.damping == 0) continue;
     const double growth = tryMode(mode, method, duration).growth;
     const double steps = duration / method.timeStep;
-    const double energyGain = growth <= 1 + kRounding ? 1 : cradle::exp(2 * steps * cradle::log(growth));
+    const double energyGain = growth <= 1 + kGrowthRounding ? 1 : cradle::exp(2 * steps * cradle::log(growth));
     if (energyGain < 1 + kVisibleGain) continue;
     return StepFault{mode.spring, faultText(mode, method, energyGain)};
   }

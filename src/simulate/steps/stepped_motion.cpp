@@ -11,22 +11,21 @@
 #include "simulate/contact_response.h"
 #include "simulate/events/event_location.h"
 #include "simulate/steps/contact_energy.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kImpactPart = 1e-3;          // of the touching tolerance: how well an impact's gap is closed
-constexpr double kRopeTolerance = 1e-13;      // of the length, or of the tension that is left
-constexpr double kTimeRounding = 1e-9;        // of a step: remainders below it are rounding
-constexpr double kShortestPart = 1.0 / 1024;  // of a step: shorter ones are not cut for their error
-constexpr double kMostGrowth = 4;             // of a part of a step to the next
-constexpr double kMostTieError = 1e-7;        // m (a m of coordinates) or rad: a thousandth of what is seen
-constexpr double kMostTieGrowth = 2;          // times what free motion leaves of ties that contradict each other
-constexpr double kShortestHeld = 1.0 / 32;    // of a step: shorter ones are not cut for the sake of ties
-constexpr int kMostServed = 12;               // contacts
-constexpr int kManyLandings = 2;              // events in a step: beyond, it is not cut where something lands
-constexpr int kManyEvents = 16;               // in a step: beyond, it is not cut any more
-constexpr int kMostEvents = 10000;            // within a step
+constexpr double kClosedGapPart = 1e-3;        // of the touching tolerance: how well an impact's gap is closed
+constexpr double kShortestPart = 1.0 / 1024;   // of a step: shorter ones are not cut for their error
+constexpr double kMostPartGrowth = 4;          // of a part of a step to the next
+constexpr double kMostSteppedTieError = 1e-7;  // m (a m of coordinates) or rad: a thousandth of what is seen
+constexpr double kMostTieGrowth = 2;           // times what free motion leaves of ties that contradict each other
+constexpr double kShortestHeld = 1.0 / 32;     // of a step: shorter ones are not cut for the sake of ties
+constexpr int kMostServed = 12;                // contacts
+constexpr int kManyLandings = 2;               // events in a step: beyond, it is not cut where something lands
+constexpr int kManyEvents = 16;                // in a step: beyond, it is not cut any more
+constexpr int kMostEvents = 10000;             // within a step
 
 }  // namespace
 
@@ -124,7 +123,7 @@ bool SteppedMotion::holdContacts() {
   const double free = solver_.hasConstraints() ? solver_.largestError() : 0;
   const double size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
   contacts_.hold(before_, length, state);
-  return contacts_.tieError() <= std::max(kMostTieError * (1 + size), kMostTieGrowth * free) ||
+  return contacts_.tieError() <= std::max(kMostSteppedTieError * (1 + size), kMostTieGrowth * free) ||
          length < kShortestHeld * method_.timeStep;
 }
 
@@ -148,7 +147,7 @@ void SteppedMotion::moveFreely(double stepEnd) {
     method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
     prepareInterpolant(island_.rightHandSide, step);
   }
-  longest_ = kMostGrowth * length;
+  longest_ = kMostPartGrowth * length;
 }
 
 /// Cuts the step at the first event in it. Free motion does not say when bodies meet that touch already: landings do.
@@ -166,7 +165,7 @@ bool SteppedMotion::stopAtFirstEvent() {
   const double whole = step.timeStep;
   if (impact && !(change && change->fraction < impact->fraction)) {
     endStepAtEvent(island_, method_.integrate,
-                   {impact->fraction * whole, whole, kImpactPart * contacts_.touchTolerance()},
+                   {impact->fraction * whole, whole, kClosedGapPart * contacts_.touchTolerance()},
                    [&](const VectorX& state) { return island_.search.margin(*impact, {}, state); });
   } else if (change) {
     endStepAtEvent(island_, method_.integrate, {change->fraction * whole, whole, kRopeTolerance},

@@ -14,7 +14,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kBounceFrom = 0.01;          // m/s; ODE has no default
+constexpr double kOdeBounceFrom = 0.01;       // m/s; ODE has no default
 constexpr int kMostContacts = 8;              // of a pair: those of a face on a face
 constexpr double kTunedErrorReduction = 0.8;  // the largest that the guide advises
 constexpr unsigned long kSeed = 0;            // of the order in which iterations go through rows
@@ -221,7 +221,7 @@ void OdeWorld::addContacts(dGeomID a, dGeomID b) {
     if (law.restitution > 0) {
       contact.surface.mode |= dContactBounce;
       contact.surface.bounce = law.restitution;
-      contact.surface.bounce_vel = kBounceFrom;
+      contact.surface.bounce_vel = kOdeBounceFrom;
     }
     contact.geom = found[static_cast<std::size_t>(i)];
     dJointAttach(dJointCreateContact(world_, contacts_, &contact), dGeomGetBody(a), dGeomGetBody(b));
@@ -259,7 +259,7 @@ Peer peerOf(const std::string& name, const std::string& title, const OdeSettings
   peer.configuration =
       settings.iterations > 0 ? fmt::format("dWorldQuickStep, {} iterations", settings.iterations) : "dWorldStep";
   peer.configuration += fmt::format(", ERP {}, CFM 1e-10, friction pyramid (dContactApprox1), bounces from {} m/s",
-                                    settings.errorReduction.value_or(0.2), kBounceFrom);
+                                    settings.errorReduction.value_or(0.2), kOdeBounceFrom);
   peer.open = [settings](const Scene& scene, const Assembly& assembly, double timeStep) {
     return std::make_unique<OdeWorld>(scene, assembly, settings, timeStep);
   };

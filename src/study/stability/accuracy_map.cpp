@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "dynamics/free_rotation.h"
@@ -16,7 +17,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kFirstTenths = 2, kLastTenths = 12;  // accuracies 10^-2 ... 10^-12
 constexpr double kLeastError = 1e-15;              // shown
 
@@ -36,7 +36,7 @@ std::vector<BodyState> endOf(Scene scene, double accuracy) {
 
 /// Ten periods.
 KnownScene knownOscillator() {
-  const Oscillator oscillator{2 * kPi, 0.05};
+  const Oscillator oscillator{2 * std::numbers::pi, 0.05};
   KnownScene known{"mass on a damped spring, 10 s", oscillatorScene(oscillator), {}};
   known.scene.duration = 10;
   known.end = {{{1 + oscillatorStretch(oscillator, 10), 0, 0}, Quat::Identity()}};

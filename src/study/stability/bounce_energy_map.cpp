@@ -21,7 +21,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s^2, of all scenes
 constexpr double kDropHeight = 1;  // m
 constexpr double kPatience = 20;   // s: five bounces from 1 m take 5 s at the most
 constexpr double kPhaseSteps = 4;  // over which drops are spread
@@ -32,7 +31,7 @@ constexpr std::array<double, 4> kRestitutions = {1, 0.9, 0.8, 0.6};
 /// Height (m) that a ball in flight comes from, or goes to.
 double apexOf(const VectorX& state, double radius) {
   const double speed = linearVelocity(state, 0).y();
-  return centerOfMass(state, 0).y() - radius + speed * speed / (2 * kGravity);
+  return centerOfMass(state, 0).y() - radius + speed * speed / (2 * kSceneGravity);
 }
 
 double rightPart(double restitution) {
@@ -41,7 +40,7 @@ double rightPart(double restitution) {
 
 /// When the ball is at its highest after the last bounce counted.
 double apexTime(double restitution) {
-  const double fall = std::sqrt(2 * kDropHeight / kGravity);
+  const double fall = std::sqrt(2 * kDropHeight / kSceneGravity);
   double time = fall;
   for (int bounce = 1; bounce < kCountedBounces; ++bounce) time += 2 * fall * std::pow(restitution, bounce);
   return time + fall * std::pow(restitution, kCountedBounces);
@@ -107,7 +106,7 @@ double heightAfterBounces(const BounceMethod& method, double restitution, double
 }
 
 double meanHeightError(const BounceMethod& method, double restitution, double timeStep, int drops) {
-  const double speed = std::sqrt(2 * kGravity * kDropHeight);
+  const double speed = std::sqrt(2 * kSceneGravity * kDropHeight);
   double sum = 0;
   for (int drop = 0; drop < drops; ++drop) {
     const double height = kDropHeight + kPhaseSteps * speed * timeStep * drop / drops;
@@ -119,7 +118,7 @@ double meanHeightError(const BounceMethod& method, double restitution, double ti
 double expectedHeightError(const BounceMethod& method, double restitution, double timeStep) {
   double height = kDropHeight;
   for (int bounce = 0; bounce < kCountedBounces; ++bounce) {
-    const double speed = std::sqrt(2 * kGravity * height);
+    const double speed = std::sqrt(2 * kSceneGravity * height);
     height = std::max(0.0, restitution * restitution * height + method.heightChange(restitution) * speed * timeStep);
   }
   return height / kDropHeight / rightPart(restitution) - 1;
@@ -133,7 +132,7 @@ double heightErrorWithEvents(double restitution, const std::optional<Method>& me
   const double radius = std::get<Sphere>(scene.bodies[1].shape).radius;
   const auto take = [&](const Frame& frame) {
     const BodyState& ball = frame.states[0];
-    height = ball.position.y() - radius + ball.linearVelocity.y() * ball.linearVelocity.y() / (2 * kGravity);
+    height = ball.position.y() - radius + ball.linearVelocity.y() * ball.linearVelocity.y() / (2 * kSceneGravity);
   };
   simulate(scene, {take, [](const Event&) {}, [](const std::string&) {}});
   return height / kDropHeight / rightPart(restitution) - 1;

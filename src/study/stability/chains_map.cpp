@@ -14,12 +14,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kTimeStep = 1.0 / 60;              // s
 constexpr double kAccuracy = 1e-6;                  // of the plan: its default
 constexpr double kHolds = 1e-3, kStretches = 1e-1;  // m, of rods of 1 m
-constexpr double kCpuLimit = 2;                     // s of a run; 0.1 s are usual
+constexpr double kChainCpuLimit = 2;                // s of a run; 0.1 s are usual
 
-constexpr double kGravity = 9.81;                    // m/s^2
 const double kBottomPull = 3 - 2 * std::sqrt(0.75);  // of the weight: a pendulum's let go at 30 degrees
 constexpr double kRk4Limit = 2.828427124746190;      // of step x frequency
 constexpr int kBisections = 60;
@@ -40,7 +38,7 @@ double fastestSwing(int balls, double bobMass) {
   const auto pullOn = [&](int ball) {  // N, of the rod above the ball
     double mass = 0;
     for (int below = ball; below < balls; ++below) mass += massOf(below);
-    return kBottomPull * kGravity * mass;
+    return kBottomPull * kSceneGravity * mass;
   };
   MatrixX stiffness = MatrixX::Zero(balls, balls);  // scaled to masses of 1
   for (int i = 0; i < balls; ++i) {
@@ -53,7 +51,7 @@ double fastestSwing(int balls, double bobMass) {
 MapCurve theoryOf(const StabilityMap& map) {
   MapCurve theory{"theory of RK4: step x fastest swing across = 2.83", CurveKind::theory, {}};
   for (const double balls : map.y.values)
-    theory.points.push_back({heaviestForRk4(static_cast<int>(balls), kTimeStep), balls});
+    theory.points.push_back({heaviestForRk4(static_cast<int>(balls), kUsualStep), balls});
   return theory;
 }
 
@@ -78,12 +76,12 @@ double heaviestForRk4(int balls, double timeStep) {
 namespace {
 
 std::vector<double> cellsOf(const StabilityMap& map, const StudyMethod& method) {
-  const double setting = method.setting == SettingKind::timeStep ? kTimeStep : kAccuracy;
+  const double setting = method.setting == SettingKind::timeStep ? kUsualStep : kAccuracy;
   std::vector<double> cells;
   for (const double balls : map.y.values)
     for (const double mass : map.x.values) {
       StudyScene scene(swingingChain(static_cast<int>(balls), mass));
-      cells.push_back(static_cast<double>(outcomeOf(scene.run(method, setting, kCpuLimit))));
+      cells.push_back(static_cast<double>(outcomeOf(scene.run(method, setting, kChainCpuLimit))));
     }
   return cells;
 }

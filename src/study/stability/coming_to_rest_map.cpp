@@ -18,8 +18,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kGravity = 9.81;     // m/s^2
-constexpr double kDropHeight = 1;     // m
+constexpr double kFallHeight = 1;     // m
 constexpr double kLonger = 2;         // times as long as it should take
 constexpr double kSettledSteps = 2;   // of gravity: a slower rebound is over within a step or two
 constexpr double kAfterwards = 1;     // s
@@ -29,11 +28,11 @@ constexpr std::array<int, 3> kStepsPerSecond = {60, 240, 960};
 }  // namespace
 
 double zenoTime(double restitution) {
-  return std::sqrt(2 * kDropHeight / kGravity) * (1 + restitution) / (1 - restitution);
+  return std::sqrt(2 * kFallHeight / kSceneGravity) * (1 + restitution) / (1 - restitution);
 }
 
 double measuredRestTime(double restitution, const std::optional<Method>& method) {
-  Scene scene = bouncingBall(restitution, kDropHeight, kLonger * zenoTime(restitution));
+  Scene scene = bouncingBall(restitution, kFallHeight, kLonger * zenoTime(restitution));
   scene.method = method;
   scene.output.framesPerSecond = 1 / scene.duration;
   double rest = NAN;
@@ -46,12 +45,12 @@ double measuredRestTime(double restitution, const std::optional<Method>& method)
 
 TextbookRest textbookRest(double restitution, double timeStep) {
   const double end = kLonger * zenoTime(restitution) + kAfterwards;
-  DiscreteCollisions run(bouncingBall(restitution, kDropHeight, end), semiImplicitEuler, timeStep);
+  DiscreteCollisions run(bouncingBall(restitution, kFallHeight, end), semiImplicitEuler, timeStep);
   const double radius = run.assembly().radii[0];
   TextbookRest rest;
   while (run.time() < end && run.time() < rest.time + kAfterwards) {
     run.step();
-    if (std::abs(linearVelocity(run.state(), 0).y()) > kSettledSteps * kGravity * timeStep) rest.time = run.time();
+    if (std::abs(linearVelocity(run.state(), 0).y()) > kSettledSteps * kSceneGravity * timeStep) rest.time = run.time();
   }
   rest.depth = radius - centerOfMass(run.state(), 0).y();
   return rest;
@@ -59,12 +58,12 @@ TextbookRest textbookRest(double restitution, double timeStep) {
 
 double expectedTextbookRestTime(double restitution, double timeStep) {
   const BounceMethod& method = bounceMethods()[1];
-  double height = kDropHeight, time = std::sqrt(2 * kDropHeight / kGravity);
+  double height = kFallHeight, time = std::sqrt(2 * kFallHeight / kSceneGravity);
   while (true) {
-    const double speed = std::sqrt(2 * kGravity * height);
+    const double speed = std::sqrt(2 * kSceneGravity * height);
     height = restitution * restitution * height + method.heightChange(restitution) * speed * timeStep;
-    if (height <= 0 || std::sqrt(2 * kGravity * height) < kSettledSteps * kGravity * timeStep) return time;
-    time += 2 * std::sqrt(2 * height / kGravity);
+    if (height <= 0 || std::sqrt(2 * kSceneGravity * height) < kSettledSteps * kSceneGravity * timeStep) return time;
+    time += 2 * std::sqrt(2 * height / kSceneGravity);
   }
 }
 

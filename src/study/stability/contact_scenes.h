@@ -9,6 +9,9 @@
 
 namespace cradle {
 
+constexpr double kSceneGravity = 9.81;   // m/s^2, of all of them that have any
+constexpr double kUsualStep = 1.0 / 60;  // s, of programs that step contact
+
 /// A ball of 1 kg and radius 0.1 m, at rest, whose lowest point is `height` (m) above a plane. Gravity 9.81 m/s^2.
 Scene bouncingBall(double restitution, double height, double duration);
 

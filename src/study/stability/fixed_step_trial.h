@@ -11,6 +11,9 @@
 
 namespace cradle {
 
+constexpr long kTrialSteps = 300;         // at least: a growth of 1 % a step is then one of 20
+constexpr double kFirstTrialStep = 0.07;  // x omega: where the search for a limit begins
+
 /// A scene of a JSON text without meshes.
 Scene sceneOfText(const std::string& text);
 

@@ -7,13 +7,6 @@
 #include "simulate/assembly.h"
 
 namespace cradle {
-namespace {
-
-constexpr long kLeastSteps = 300;    // a growth of 1 % a step is then one of 20
-constexpr double kFirstStep = 0.07;  // x omega
-
-}  // namespace
-
 Scene hungBox(double stiffness, double dampingRatio) {
   static const Scene prototype = sceneOfText(
       R"({"schema": "cradle-scene/1", "name": "hung box", "duration": 1, "gravity": [0, 0, -9.81],
@@ -33,12 +26,12 @@ double boxOmega(const Scene& scene) {
 }
 
 bool isBoxStable(Scene& scene, const FixedStepMethod& method, double timeStep) {
-  return isStableFor(scene, method, timeStep, std::max(kLeastSteps, static_cast<long>(kBoxDuration / timeStep)));
+  return isStableFor(scene, method, timeStep, std::max(kTrialSteps, static_cast<long>(kBoxDuration / timeStep)));
 }
 
 double measuredBoxLimit(Scene& scene, const FixedStepMethod& method) {
   return measuredLimit([&](double timeStep) { return isBoxStable(scene, method, timeStep); },
-                       kFirstStep / boxOmega(scene));
+                       kFirstTrialStep / boxOmega(scene));
 }
 
 }  // namespace cradle

@@ -8,16 +8,14 @@
 namespace cradle {
 namespace {
 
-constexpr double kInaccurate = 0.01;  // m, or of a quaternion
+constexpr double kInaccuratePlace = 0.01;  // m, or of a quaternion
 constexpr double kReferenceAccuracy = 1e-10;
-constexpr double kLeastStiffness = 1e3, kMostStiffness = 1e9;  // N/m
-constexpr double kShortestStep = 5e-5, kLongestStep = 0.5;     // s
-constexpr double kDampedStiffness = 1e6;                       // N/m
-constexpr double kMostDamping = 2;                             // times critical
-constexpr double kLeastStepOmega = 0.2, kMostStepOmega = 10;
-constexpr int kColumns = 26, kRows = 41, kMeasured = 9, kTheoryPoints = 65;
-constexpr const char* kTheory = "limit by theory, at the start";
-constexpr const char* kMeasuredName = "limit as measured by bisection";
+constexpr double kSoftestSpring = 1e3, kStiffestSpring = 1e9;     // N/m
+constexpr double kShortestBoxStep = 5e-5, kLongestBoxStep = 0.5;  // s
+constexpr double kDampedStiffness = 1e6;                          // N/m
+constexpr double kLeastBoxStepOmega = 0.2;
+constexpr int kBoxColumns = 26, kBoxRows = 41, kBoxTheoryPoints = 65;
+constexpr const char* kTheoryAtStart = "limit by theory, at the start";
 
 std::vector<BodyState> referenceEnd(Scene scene) {
   scene.method.reset();
@@ -52,7 +50,8 @@ Stability boxStability(Column& column, const FixedStepMethod& method, double tim
   const double steps = std::ceil(kBoxDuration / timeStep);
   const FixedStepTrial trial = tryFixedSteps(column.scene, method, {kBoxDuration / steps, static_cast<long>(steps), 1});
   if (trial.isUnstable) return Stability::unstable;
-  return motionError(trial.frames.back().states, column.end) <= kInaccurate ? Stability::stable : Stability::inaccurate;
+  return motionError(trial.frames.back().states, column.end) <= kInaccuratePlace ? Stability::stable
+                                                                                 : Stability::inaccurate;
 }
 
 std::vector<double> boxCells(BoxMap& box, const FixedStepMethod& method, const MapProgress& progress) {
@@ -70,8 +69,8 @@ MapPanel panelOf(BoxMap& box, const FixedStepMethod& method, const MapProgress& 
   const bool isEverStable = oscillatorLimit(method, axes.dampingRatio(x.values.back())) > 0;
   MapPanel panel{
       isEverStable ? method.title : method.title + ": no step is stable for long", boxCells(box, method, progress), {}};
-  MapCurve theory{kTheory, CurveKind::theory, {}}, measured{kMeasuredName, CurveKind::measured, {}};
-  for (const double value : someOf(x, kTheoryPoints)) {
+  MapCurve theory{kTheoryAtStart, CurveKind::theory, {}}, measured{kMeasuredName, CurveKind::measured, {}};
+  for (const double value : someOf(x, kBoxTheoryPoints)) {
     const Scene scene = axes.scene(value);
     if (const double limit = oscillatorLimit(method, axes.dampingRatio(value)); limit > 0)
       theory.points.push_back({value, limit / boxOmega(scene) / axes.stepUnit(scene)});
@@ -111,8 +110,8 @@ StabilityMap hungBoxStiffnessMap(const MapProgress& progress) {
       "soft spring the box turns far within a few steps, and that ends semi-implicit Euler and DOP853 earlier than the "
       "spring would. Explicit Euler only seems stable: half a second is too short to show what it gains. What is asked "
       "here is where the box is, to a centimetre; how the spring trembles counts for little.";
-  map.x = logarithmicAxis("stiffness", "N/m", logarithmicallySpaced(kLeastStiffness, kMostStiffness, kColumns));
-  map.y = logarithmicAxis("time step", "s", logarithmicallySpaced(kShortestStep, kLongestStep, kRows));
+  map.x = logarithmicAxis("stiffness", "N/m", logarithmicallySpaced(kSoftestSpring, kStiffestSpring, kBoxColumns));
+  map.y = logarithmicAxis("time step", "s", logarithmicallySpaced(kShortestBoxStep, kLongestBoxStep, kBoxRows));
   addBoxPanels(map,
                {[](double stiffness) { return hungBox(stiffness, 0); }, [](const Scene&) { return 1.0; },
                 [](double) { return 0.0; }},
@@ -129,8 +128,8 @@ StabilityMap hungBoxDampingMap(const MapProgress& progress) {
       "oscillator, for the mass that the spring moves at the start: explicit Euler needs the damper to be stable at "
       "all, and every method pays for strong damping with shorter steps. Semi-implicit Euler takes the damper's force "
       "from the start of the step, as explicit Euler does.";
-  map.x = linearAxis("damping ratio zeta (1: critical)", "", evenlySpaced(0, kMostDamping, kColumns));
-  map.y = logarithmicAxis("step x omega", "rad", logarithmicallySpaced(kLeastStepOmega, kMostStepOmega, kRows));
+  map.x = linearAxis("damping ratio zeta (1: critical)", "", evenlySpaced(0, kMostDamping, kBoxColumns));
+  map.y = logarithmicAxis("step x omega", "rad", logarithmicallySpaced(kLeastBoxStepOmega, kMostStepOmega, kBoxRows));
   addBoxPanels(map,
                {[](double ratio) { return hungBox(kDampedStiffness, ratio); },
                 [](const Scene& scene) { return 1 / boxOmega(scene); }, [](double ratio) { return ratio; }},

@@ -14,22 +14,22 @@
 namespace cradle {
 namespace {
 
-constexpr double kDuration = 8;  // s: all that settles has
+constexpr double kGrowthTime = 8;  // s: all that settles has
 constexpr double kLeastValue = -50, kMostValue = 1250;
-constexpr int kTransient = 400, kShown = 32;                 // steps
-constexpr double kShortestStep = 0.025, kLongestStep = 1.1;  // s
+constexpr int kTransient = 400, kShown = 32;                             // steps
+constexpr double kShortestGrowthStep = 0.025, kLongestGrowthStep = 1.1;  // s
 constexpr int kStepCount = 216;
 
 const std::vector<const char*> kMethods = {"explicitEuler", "rk4", "dop853FixedStep"};
 
 MapPanel panelOf(double timeStep) {
   MapPanel panel{fmt::format("step {} s", timeStep), {}, {{"exact: 857.14 at the end", CurveKind::theory, {}}}};
-  for (const double time : evenlySpaced(0, kDuration, 400))
+  for (const double time : evenlySpaced(0, kGrowthTime, 400))
     panel.curves[0].points.push_back({time, logisticSolution(time)});
   for (const char* name : kMethods) {
     const FixedStepMethod& method = fixedStepMethod(name);
     MapCurve curve{method.title, CurveKind::series, {}};
-    const int steps = static_cast<int>(kDuration / timeStep + 0.5);
+    const int steps = static_cast<int>(kGrowthTime / timeStep + 0.5);
     const std::vector<double> values = logisticSteps(method.integrate, timeStep, steps);
     for (std::size_t i = 0; i < values.size(); ++i)
       curve.points.push_back({static_cast<double>(i) * timeStep, values[i]});
@@ -45,9 +45,10 @@ MapPanel panelOf(const FixedStepMethod& method) {
   panel.curves.push_back({"longest step that settles at the equilibrium, by theory",
                           CurveKind::theory,
                           {{limit, kLeastValue}, {limit, kMostValue}}});
-  panel.curves.push_back({"equilibrium: 857.14", CurveKind::theory, {{0, kLogisticEnd}, {kLongestStep, kLogisticEnd}}});
+  panel.curves.push_back(
+      {"equilibrium: 857.14", CurveKind::theory, {{0, kLogisticEnd}, {kLongestGrowthStep, kLogisticEnd}}});
   MapCurve dots{fmt::format("values of steps {} to {}", kTransient + 1, kTransient + kShown), CurveKind::dots, {}};
-  for (const double timeStep : evenlySpaced(kShortestStep, kLongestStep, kStepCount)) {
+  for (const double timeStep : evenlySpaced(kShortestGrowthStep, kLongestGrowthStep, kStepCount)) {
     const std::vector<double> values = logisticSteps(method.integrate, timeStep, kTransient + kShown);
     std::set<long> shown;
     for (std::size_t i = kTransient + 1; i < values.size(); ++i)
@@ -75,7 +76,7 @@ StabilityMap logisticMap(const MapProgress& progress) {
       "0 there. Nothing blows up and nothing looks wrong; half the step shows it. Explicit Euler jumps about, since "
       "step x rate = 3 is beyond its limit of 2; it is beyond the 2.79 of RK4 too, which is why the true equilibrium "
       "throws RK4 off. DOP853 has room to 6.4 and finds the equilibrium.";
-  map.x = linearAxis("time", "s", {0, kDuration});
+  map.x = linearAxis("time", "s", {0, kGrowthTime});
   map.y = linearAxis("y", "", {kLeastValue, kMostValue});
   map.panels = {panelOf(0.5), panelOf(0.25)};
   progress(1);
@@ -96,7 +97,7 @@ StabilityMap logisticStepMap(const MapProgress& progress) {
       "first swings between two values, then four, and then never repeats itself, the textbook road to chaos, made by "
       "nothing but the step. RK4 leaves the equilibrium for another value that moves with the step: 652.13 at 0.5 s. "
       "The limits are where the stability polynomial R(-6 h) reaches 1 in size: step x rate = 2, 2.785 and 6.4.";
-  map.x = linearAxis("time step", "s", {0, kLongestStep});
+  map.x = linearAxis("time step", "s", {0, kLongestGrowthStep});
   map.y = linearAxis("y", "", {kLeastValue, kMostValue});
   for (std::size_t i = 0; i < kMethods.size(); ++i) {
     map.panels.push_back(panelOf(fixedStepMethod(kMethods[i])));

@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numbers>
 
 namespace cradle {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kPeriods = 10;
-constexpr long kLeastSteps = 300;    // a growth of 1 % a step is then one of 20
 constexpr long kMostFrames = 200;    // within ten periods
 constexpr double kInaccurate = 0.1;  // of the amplitude
 constexpr long kLimitSteps = 1000;   // a growth of 0.1 % a step is then one of 2.7
-constexpr double kFirstStep = 0.07;  // x omega
 
 }  // namespace
 
@@ -38,10 +36,10 @@ double oscillatorStretch(const Oscillator& oscillator, double time) {
 }
 
 Stability oscillatorStability(const Oscillator& oscillator, const FixedStepMethod& method, double timeStep) {
-  const double asked = kPeriods * 2 * kPi / oscillator.omega;
+  const double asked = kPeriods * 2 * std::numbers::pi / oscillator.omega;
   const long steps = static_cast<long>(std::ceil(asked / timeStep));
   const long stepsAFrame = std::max(1L, steps / kMostFrames);
-  const long frames = std::max(steps, kLeastSteps) / stepsAFrame;
+  const long frames = std::max(steps, kTrialSteps) / stepsAFrame;
   Scene scene = oscillatorScene(oscillator);
   const FixedStepTrial trial = tryFixedSteps(scene, method, {timeStep, stepsAFrame, frames});
   if (trial.isUnstable) return Stability::unstable;
@@ -57,7 +55,7 @@ Stability oscillatorStability(const Oscillator& oscillator, const FixedStepMetho
 double measuredOscillatorLimit(const Oscillator& oscillator, const FixedStepMethod& method) {
   Scene scene = oscillatorScene(oscillator);
   return measuredLimit([&](double timeStep) { return isStableFor(scene, method, timeStep, kLimitSteps); },
-                       kFirstStep / oscillator.omega);
+                       kFirstTrialStep / oscillator.omega);
 }
 
 }  // namespace cradle

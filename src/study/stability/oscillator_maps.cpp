@@ -10,11 +10,9 @@ namespace {
 
 constexpr double kLeastStiffness = 10, kMostStiffness = 1e5;  // N/m, of 1 kg
 constexpr double kShortestStep = 1e-3, kLongestStep = 1;      // s
-constexpr double kLeastStepOmega = 0.03, kMostStepOmega = 10;
-constexpr double kMostDamping = 2;  // times critical
-constexpr int kColumns = 33, kRows = 49, kMeasured = 9, kTheoryPoints = 129;
+constexpr double kLeastStepOmega = 0.03;
+constexpr int kColumns = 33, kRows = 49, kTheoryPoints = 129;
 constexpr const char* kTheory = "limit by theory";
-constexpr const char* kMeasuredName = "limit as measured by bisection";
 
 MapPanel stiffnessPanel(const StabilityMap& map, const FixedStepMethod& method, const MapProgress& progress) {
   const double limit = oscillatorLimit(method, 0);

@@ -14,9 +14,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kDuration = 100;  // s
-constexpr double kFirst = 0.1;     // s
-constexpr int kPointsADecade = 8;
+constexpr double kDriftTime = 100;  // s
+constexpr double kFirst = 0.1;      // s
+constexpr int kTimesADecade = 8;
 constexpr double kLeastDrift = 1e-17, kMostDrift = 1e2;  // m, shown
 constexpr double kLostLength = 10;                       // m: the rod of 1 m has come apart
 
@@ -33,7 +33,7 @@ std::vector<MapPoint> driftOf(const FixedStepMethod& method, double timeStep, bo
   IslandSteps steps(rodPendulum(), method.integrate, timeStep, projects);
   std::vector<MapPoint> points;
   double largest = 0, next = kFirst;
-  while (steps.time() < kDuration) {
+  while (steps.time() < kDriftTime) {
     steps.advance();
     const double length = centerOfMass(steps.state(), 0).norm();
     if (!(length < kLostLength)) {
@@ -41,8 +41,8 @@ std::vector<MapPoint> driftOf(const FixedStepMethod& method, double timeStep, bo
       return points;
     }
     largest = std::max(largest, std::abs(length - 1));
-    if (steps.time() < next && steps.time() < kDuration) continue;
-    while (next <= steps.time()) next *= std::pow(10, 1.0 / kPointsADecade);
+    if (steps.time() < next && steps.time() < kDriftTime) continue;
+    while (next <= steps.time()) next *= std::pow(10, 1.0 / kTimesADecade);
     points.push_back({steps.time(), std::max(largest, kLeastDrift)});
   }
   return points;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kAngle = 1e-3;  // rad, of one turn
 constexpr int kMostTurns = 1000000, kPointsADecade = 5;
-constexpr double kLeastError = 1e-17, kMostError = 10;  // shown
+constexpr double kLeastTurnError = 1e-17, kMostTurnError = 10;  // shown
 
 struct Kept {
   const char* name;
@@ -43,9 +43,9 @@ Drift driftOf(const Kept& kept, bool isExact) {
     if (turns < next && turns < kMostTurns) continue;
     while (next <= turns) next *= std::pow(10, 1.0 / kPointsADecade);
     const double angle = orientation.angleError(), shape = orientation.shapeError();
-    drift.angle.points.push_back({static_cast<double>(turns), std::max(angle, kLeastError)});
+    drift.angle.points.push_back({static_cast<double>(turns), std::max(angle, kLeastTurnError)});
     if (kept.storage != RotationStorage::eulerAngles)
-      drift.shape.points.push_back({static_cast<double>(turns), std::max(shape, kLeastError)});
+      drift.shape.points.push_back({static_cast<double>(turns), std::max(shape, kLeastTurnError)});
   }
   return drift;
 }
@@ -70,7 +70,7 @@ StabilityMap rotationDriftMap(const MapProgress& progress) {
       "products with exact rotations nothing is left but rounding. Cradle keeps normalised quaternions, and integrates "
       "them at the order of its method.";
   map.x = logarithmicAxis("rotations", "", {});
-  map.y = logarithmicAxis("error", "rad, or no unit", {kLeastError, kMostError});
+  map.y = logarithmicAxis("error", "rad, or no unit", {kLeastTurnError, kMostTurnError});
   map.panels = {{"orientation (rad), first order", {}, {}},
                 {"orientation (rad), exact products", {}, {}},
                 {"how far from a rotation, first order", {}, {}},

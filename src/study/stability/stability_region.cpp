@@ -18,9 +18,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kLongest = 20;      // step x omega: beyond the limits of all methods
-constexpr double kScan = 1e-3;       // of step x omega: gaps in stability that are narrower are not seen
-constexpr double kRounding = 1e-12;  // of growth
+constexpr double kLongest = 20;            // step x omega: beyond the limits of all methods
+constexpr double kScan = 1e-3;             // of step x omega: gaps in stability that are narrower are not seen
+constexpr double kGrowthRounding = 1e-12;  // of growth
 
 /// R of DOP853 from its tableau: the stages of y' = lambda y are polynomials in z, Y_i = 1 + z sum_j a_ij Y_j.
 std::vector<double> dop853Polynomial() {
@@ -46,7 +46,7 @@ double semiImplicitGrowth(double z, double dampingRatio) {
 /// The least z at which `growth` is above 1, found by steps and bisection; 0 if it is at once.
 template <class Growth>
 double limitOf(const Growth& growth) {
-  const auto grows = [&](double z) { return growth(z) > 1 + kRounding; };
+  const auto grows = [&](double z) { return growth(z) > 1 + kGrowthRounding; };
   double stable = 0, unstable = kScan;
   while (unstable < kLongest && !grows(unstable)) stable = unstable, unstable += kScan;
   if (stable == 0) return 0;

@@ -17,7 +17,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kTimeStep = 1.0 / 60;           // s
 constexpr double kStands = 0.01, kFallen = 0.1;  // m, of boxes of 1 m: what is seen, and what is no stack any more
 
 /// Box i, lowest first, belongs at i + 1/2 m above the ground.
@@ -47,25 +46,25 @@ double farthestInPeer(const Peer& peer, int boxes, double topMass) {
   const Scene scene = droppedStack(boxes, topMass);
   const Assembly assembly = assemble(scene, wholeScene(scene));
   VectorX state = assembly.state;
-  const auto world = peer.open(scene, assembly, kTimeStep);
+  const auto world = peer.open(scene, assembly, kUsualStep);
   world->advance(scene.duration);
   world->read(state);
   return farthestOf(boxes, [&](int box) { return Vec3(centerOfMass(state, box)); });
 }
 
 /// An engine that is compared, where the program was built with it.
-struct PeerWay {
+struct StackingPeer {
   const char *name, *title;
 };
-constexpr std::array<PeerWay, 4> kPeerWays = {{{"bulletTuned", "Bullet, tuned"},
-                                               {"ode", "ODE, step"},
-                                               {"odeQuick", "ODE, quick step"},
-                                               {"mujocoTuned", "MuJoCo, implicit, stiff"}}};
+constexpr std::array<StackingPeer, 4> kStackingPeers = {{{"bulletTuned", "Bullet, tuned"},
+                                                         {"ode", "ODE, step"},
+                                                         {"odeQuick", "ODE, quick step"},
+                                                         {"mujocoTuned", "MuJoCo, implicit, stiff"}}};
 
 std::vector<std::pair<std::string, Stacker>> stackers() {
   std::vector<std::pair<std::string, Stacker>> all = {{"cradle's contact step", farthestByContactStep},
                                                       {"cradle's fast contact step", farthestByPile}};
-  for (const PeerWay& way : kPeerWays)
+  for (const StackingPeer& way : kStackingPeers)
     for (const Peer& peer : peers())
       if (peer.name == way.name)
         all.emplace_back(way.title,
@@ -82,7 +81,7 @@ StackOutcome outcomeOf(double farthest) {
 
 double farthestByContactStep(int boxes, double topMass) {
   Scene scene = droppedStack(boxes, topMass);
-  scene.method = Method{MethodName::rk4, kTimeStep, "stability map"};
+  scene.method = Method{MethodName::rk4, kUsualStep, "stability map"};
   scene.output.framesPerSecond = 1 / scene.duration;
   double farthest = 0;
   const auto take = [&](const Frame& frame) {
@@ -94,7 +93,7 @@ double farthestByContactStep(int boxes, double topMass) {
 
 double farthestByPile(int boxes, double topMass) {
   const Scene scene = droppedStack(boxes, topMass);
-  Pile pile(assemble(scene, wholeScene(scene)), kTimeStep, 1);
+  Pile pile(assemble(scene, wholeScene(scene)), kUsualStep, 1);
   const VectorX& state = pile.stateAt(scene.duration);
   return farthestOf(boxes, [&](int box) { return Vec3(centerOfMass(state, box)); });
 }

@@ -18,11 +18,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kTimeStep = 1.0 / 60;                           // s
 constexpr double kNoGap = 1e-9;                                  // m
 constexpr std::array<double, 4> kPhases = {0, 0.25, 0.5, 0.75};  // of a step's way: gaps that throws begin with
 constexpr std::size_t kSpeedsTogether = 16;  // in a scene: enough marbles for the fast contact step, few for MuJoCo
-constexpr int kBisections = 40;
+constexpr int kSpeedBisections = 40;
 constexpr double kVisualAccuracy = 1e-3;  // for which the plan takes the fast contact step
 
 /// What becomes of each marble of a scene.
@@ -63,7 +62,7 @@ std::vector<Passage> throwVisually(Scene scene) {
 
 std::vector<Passage> throwInPeer(const Peer& peer, const Scene& scene) {
   const Assembly assembly = assemble(scene, wholeScene(scene));
-  const auto world = peer.open(scene, assembly, kTimeStep);
+  const auto world = peer.open(scene, assembly, kUsualStep);
   VectorX state = assembly.state;
   world->advance(scene.duration);
   world->read(state);
@@ -77,7 +76,7 @@ std::vector<Passage> throwInPeer(const Peer& peer, const Scene& scene) {
 std::vector<Throw> throwsOf(const std::vector<double>& speeds, std::size_t first, std::size_t end) {
   std::vector<Throw> throws;
   for (std::size_t i = first; i < end; ++i)
-    for (const double phase : kPhases) throws.push_back({kNoGap + phase * speeds[i] * kTimeStep, speeds[i]});
+    for (const double phase : kPhases) throws.push_back({kNoGap + phase * speeds[i] * kUsualStep, speeds[i]});
   return throws;
 }
 
@@ -101,7 +100,7 @@ MapPanel panelOf(const std::string& title, const Thrower& thrower, const Stabili
 double fastest(const PlateTrial& trial, const std::function<bool(Passage)>& isGood) {
   const double seen = (trial.thickness + 2 * kMarbleRadius) / trial.timeStep;
   double good = 0.01 * seen, bad = 10 * seen;
-  for (int i = 0; i < kBisections; ++i) {
+  for (int i = 0; i < kSpeedBisections; ++i) {
     const double speed = std::sqrt(good * bad);
     const Scene scene = marblesAtPlate(trial.thickness, {{kNoGap, speed}});
     (isGood(throwDiscretely(scene, trial.timeStep, trial.integrate)[0]) ? good : bad) = speed;
@@ -110,11 +109,11 @@ double fastest(const PlateTrial& trial, const std::function<bool(Passage)>& isGo
 }
 
 /// Of textbook collisions, that engines which look at the ends of steps alone have too.
-std::vector<MapCurve> theoryOf(const StabilityMap& map) {
+std::vector<MapCurve> throughTheory(const StabilityMap& map) {
   MapCurve stopped{"theory: v h = d/2 + r, v h = d + 2 r", CurveKind::theory, {}}, seen = stopped;
   for (const double thickness : map.x.values) {
-    stopped.points.push_back({thickness, (thickness / 2 + kMarbleRadius) / kTimeStep});
-    seen.points.push_back({thickness, (thickness + 2 * kMarbleRadius) / kTimeStep});
+    stopped.points.push_back({thickness, (thickness / 2 + kMarbleRadius) / kUsualStep});
+    seen.points.push_back({thickness, (thickness + 2 * kMarbleRadius) / kUsualStep});
   }
   return {stopped, seen};
 }
@@ -122,7 +121,7 @@ std::vector<MapCurve> theoryOf(const StabilityMap& map) {
 MapCurve measuredBoundary(const StabilityMap& map) {
   MapCurve measured{"found by bisection", CurveKind::measured, {}};
   for (const double thickness : map.x.values) {
-    const PlateTrial trial{thickness, kTimeStep, semiImplicitEuler};
+    const PlateTrial trial{thickness, kUsualStep, semiImplicitEuler};
     measured.points.push_back({thickness, fastestStopped(trial)});
     measured.points.push_back({thickness, fastestSeen(trial)});
   }
@@ -155,7 +154,7 @@ StabilityMap tunnellingMap(const MapProgress& progress) {
   map.outcomes = {{"stopped", "#a9d3ee"}, {"let out on the far side", "#f7dc8a"}, {"passed", "#e79a7c"}};
   std::vector<std::pair<std::string, Thrower>> throwers = {
       {"textbook: at the ends of steps",
-       [](const Scene& scene) { return throwDiscretely(scene, kTimeStep, semiImplicitEuler); }},
+       [](const Scene& scene) { return throwDiscretely(scene, kUsualStep, semiImplicitEuler); }},
       {"cradle's plan: time of impact", throwByPlan},
       {"cradle's fast contact step", throwVisually}};
   for (const Peer& peer : peers())
@@ -166,7 +165,7 @@ StabilityMap tunnellingMap(const MapProgress& progress) {
     progress(static_cast<double>(map.panels.size()) / static_cast<double>(throwers.size()));
   }
   for (MapPanel& panel : map.panels)
-    if (!panel.title.starts_with("cradle")) panel.curves = theoryOf(map);
+    if (!panel.title.starts_with("cradle")) panel.curves = throughTheory(map);
   map.panels.front().curves.push_back(measuredBoundary(map));
   return map;
 }

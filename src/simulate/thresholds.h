@@ -1,0 +1,18 @@
+#pragma once
+
+#include <algorithm>
+
+namespace cradle {
+
+constexpr double kTimeRounding = 1e-9;     // of a step: remainders below it are rounding
+constexpr double kRestSteps = 2;           // a rebound that ends within as many steps is not resolved
+constexpr double kRestSpeedFloor = 1e-12;  // m/s: slower is rounding
+constexpr double kLastBouncePart = 1e-7;   // of sqrt(acceleration x size): bounces lower than 5e-15 of the size
+constexpr double kRopeTolerance = 1e-13;   // of the length, or of the tension that is left
+
+/// s: what is nearer to `time` (s) than that is at the same time.
+inline double sameTime(double time) {
+  return 1e-12 * std::max(1.0, time);
+}
+
+}  // namespace cradle
