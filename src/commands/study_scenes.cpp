@@ -191,6 +191,10 @@ class Study {
       sweep(named.scene, name, method, chart.reference, rows);
       progress_.update(++turns_);
     }
+    timeInAnotherTurn(named.scene, methods_, chart.rows, [this] { progress_.update(turns_); });
+    std::vector<std::string> lines;
+    for (const StudyRow& row : chart.rows) lines.push_back(tableLine(row));
+    table_.replaceLast(lines);
     return true;
   }
 

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <string>
+#include <vector>
 
 namespace cradle {
 
@@ -18,6 +19,8 @@ class GrowingTable {
 
   /// `line` has its newline.
   void append(const std::string& line);
+  /// Ends with the last of `lines`, which stand in for as many as were appended last.
+  void replaceLast(const std::vector<std::string>& lines);
   void complete();
 
  private:

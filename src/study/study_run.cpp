@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <limits>
 #include <utility>
@@ -61,17 +62,30 @@ double StudyScene::fastestFrequency() const {
 StudyRun StudyScene::run(const StudyMethod& method, double setting, double cpuLimit) {
   if (!method.peer) choose(method, setting, scene_);
   StudyRun result = runOnce(method, setting, kDriftFrames, cpuLimit);
+  if (result.status == RunStatus::ok && result.cost.cpuSeconds < kShortRun)
+    result.cost = leastCost(method, setting, cpuLimit).value_or(result.cost);
+  result.setting = setting;
+  return result;
+}
+
+std::optional<double> StudyScene::costInAnotherTurn(const StudyMethod& method, double setting, double cpuSeconds) {
+  if (!(cpuSeconds < kShortRun)) return std::nullopt;
+  if (!method.peer) choose(method, setting, scene_);
+  const std::optional<RunCost> cost = leastCost(method, setting, INFINITY);
+  return cost ? std::optional(cost->cpuSeconds) : std::nullopt;
+}
+
+std::optional<RunCost> StudyScene::leastCost(const StudyMethod& method, double setting, double cpuLimit) {
+  std::optional<RunCost> least;
   double sum = 0;
-  for (int i = 0; i < kMostRepeats && result.status == RunStatus::ok && result.cost.cpuSeconds < kShortRun; ++i) {
+  for (int i = 0; i < kMostRepeats; ++i) {
     if (i >= kLeastRepeats && sum > kRepeatFor) break;
     const StudyRun again = runOnce(method, setting, 1, cpuLimit);
     if (again.status != RunStatus::ok) break;  // two frames show less kinetic energy, by which what appears is measured
     sum += again.cost.cpuSeconds;
-    result.cost = {i == 0 ? again.cost.cpuSeconds : std::min(result.cost.cpuSeconds, again.cost.cpuSeconds),
-                   again.cost.evaluations};
+    if (!least || again.cost.cpuSeconds < least->cpuSeconds) least = again.cost;
   }
-  result.setting = setting;
-  return result;
+  return least;
 }
 
 StudyRun StudyScene::runOnce(const StudyMethod& method, double setting, long frames, double cpuLimit) {

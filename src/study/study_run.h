@@ -1,6 +1,6 @@
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,7 +43,12 @@ class StudyScene {
   /// on the way, for the least CPU time. Fails if it takes more than `cpuLimit` (s). Throws Error(interrupted) alone.
   StudyRun run(const StudyMethod& method, double setting, double cpuLimit);
 
+  /// The least CPU time (s) of some more of the short runs, for one that took `cpuSeconds`. Nothing if it was long, and
+  /// exact enough.
+  std::optional<double> costInAnotherTurn(const StudyMethod& method, double setting, double cpuSeconds);
+
  private:
+  std::optional<RunCost> leastCost(const StudyMethod& method, double setting, double cpuLimit);
   StudyRun runOnce(const StudyMethod& method, double setting, long frames, double cpuLimit);
 
   Scene scene_;

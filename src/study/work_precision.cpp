@@ -60,4 +60,17 @@ void sweep(StudyScene& scene, const std::string& sceneName, const StudyMethod& m
   }
 }
 
+void timeInAnotherTurn(StudyScene& scene, const std::vector<StudyMethod>& methods, std::vector<StudyRow>& rows,
+                       const std::function<void()>& done) {
+  for (StudyRow& row : rows) {
+    done();
+    const auto method =
+        std::find_if(methods.begin(), methods.end(), [&](const StudyMethod& one) { return one.name == row.method; });
+    if (row.status != RunStatus::ok || method == methods.end()) continue;
+    double& cost = row.cpuSecondsPerSimulatedSecond;
+    if (const auto again = scene.costInAnotherTurn(*method, row.setting, cost * scene.duration()))
+      cost = std::min(cost, *again / scene.duration());
+  }
+}
+
 }  // namespace cradle

@@ -38,4 +38,10 @@ struct RowStream {
 void sweep(StudyScene& scene, const std::string& sceneName, const StudyMethod& method, const Reference& reference,
            const RowStream& rows);
 
+/// Times the short runs of a scene once more, in the order of the rows, and keeps what is less: a machine that others
+/// use is slow for seconds at a time, and methods that were run at different times are to have the same chance.
+/// `done` is told of each row.
+void timeInAnotherTurn(StudyScene& scene, const std::vector<StudyMethod>& methods, std::vector<StudyRow>& rows,
+                       const std::function<void()>& done);
+
 }  // namespace cradle

@@ -51,6 +51,17 @@ TEST(StudyTable, ARunWithoutAnEndHasNoNumbers) {
   EXPECT_EQ(tableLine(row), "\"two, joined\",cradle,explicitEuler,0.5,nan,nan,nan,nan,nan,nan,unstable\n");
 }
 
+TEST(StudyTable, ItsLastLinesAreReplacedAndItGoesOn) {
+  const std::string path = (std::filesystem::temp_directory_path() / "cradle_growing_table.csv").string();
+  GrowingTable table(path, "columns\n");
+  for (const char* line : {"one\n", "two\n", "three\n"}) table.append(line);
+  table.replaceLast({"second\n", "3\n"});
+  table.append("four\n");
+  table.complete();
+  EXPECT_EQ(content(path), "columns\none\nsecond\n3\nfour\n");
+  std::filesystem::remove(path);
+}
+
 TEST(StudyTable, ALineReadsBackToTheSameRow) {
   StudyRow row = goodRow();
   row.scene = "a \"b\", c";

@@ -96,6 +96,21 @@ TEST(WorkPrecision, RowsThatAreThereAreNotRunAgain) {
   }
 }
 
+// Two oscillations take far less than 0.1 s. What took 0.3 s is exact enough, and an unstable run has no cost.
+TEST(WorkPrecision, AnotherTurnFindsLessTimeForShortRuns) {
+  StudyScene scene(oscillator(5, 2));
+  std::vector<StudyRow> rows = rowsOf(scene, "rk4", coarselyKnown(scene, 1e-6));
+  ASSERT_GE(rows.size(), 5U);
+  rows.erase(rows.begin(), rows.end() - 4);
+  const std::vector<double> seconds = {0.1, 0.3, 1e-12, 0.1};
+  for (std::size_t i = 0; i < 4; ++i) rows[i].cpuSecondsPerSimulatedSecond = seconds[i] / scene.duration();
+  rows[3].status = RunStatus::unstable;
+  timeInAnotherTurn(scene, {methodOf("rk4")}, rows, ignore);
+  EXPECT_LT(rows[0].cpuSecondsPerSimulatedSecond, 0.1 / scene.duration());
+  for (const std::size_t i : {1U, 2U, 3U})
+    EXPECT_EQ(rows[i].cpuSecondsPerSimulatedSecond, seconds[i] / scene.duration()) << i;
+}
+
 TEST(WorkPrecision, ThePlanGoesThroughAllAccuracies) {
   // Exact at the first: free fall has a closed form.
   StudyScene scene(freeFall(1));
