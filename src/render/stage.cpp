@@ -43,9 +43,10 @@ const Palette kDarkStudio{{0.020f, 0.026f, 0.040f},
 const Vec3f kKeyTint(1.10f, 1.02f, 0.91f);  // of a white lamp of the scene: warmer than the sky, as the sun is
 constexpr float kBounceFromGround = 0.42f;  // shadows and distance take the rest
 constexpr float kSkySlope = 0.30f;          // how much brighter it is towards the key light than on average
-constexpr double kNearShare = 0.02;      // of the distance of the nearest thing, which is so much of the scene's size
-constexpr double kFadeDistance = 9;      // in sizes of the scene
-constexpr double kContactMargin = 0.15;  // of the scene's size
+constexpr double kNearShare = 0.02;         // of the distance of the nearest thing
+constexpr double kNearestShare = 0.02;      // of the scene's size: nearer things do not count
+constexpr double kFadeDistance = 9;         // in sizes of the scene
+constexpr double kContactMargin = 0.15;     // of the scene's size
 constexpr double kShadowTexel = 1.0 / 800;  // of the height of the picture where what is shown is
 constexpr double kShadowDepth = 16;         // of the shadow map's width: what stands high above still throws a shadow
 
@@ -233,7 +234,7 @@ double depthOfMap(const ShadowView& view, const MapPlace& place) {
 }
 
 double nearPlaneFor(double nearest, const Stage& stage) {
-  return kNearShare * std::max(nearest, kNearShare * stage.size);
+  return kNearShare * std::max(nearest, kNearestShare * stage.size);
 }
 
 void layOut(const Camera& camera, const FrameLayout& layout, Stage& stage) {

@@ -95,7 +95,7 @@ inline VectorX integrated(const Mechanism& mechanism, VectorX state, double dura
   while (time < duration) {
     const double taken = std::min(size.timeStep, duration - time);
     dop853(rightHandSide, state, time, taken, step);
-    if (!acceptStep(errorNorm(step, tolerances), taken, size)) {
+    if (!acceptStep(dop853Error(step, tolerances), taken, size)) {
       keepStartRate(step);
       continue;
     }

@@ -61,7 +61,7 @@ TEST(Dop853, InterpolantIsExactAtBothEndsWithItsSlope) {
 // larger the smaller the step.
 TEST(Dop853, ErrorNormIsOfTheEighthPowerAndAboveTheError) {
   const VectorX tolerance = VectorX::Constant(4, 1e-8);
-  const auto norm = [&](double timeStep) { return errorNorm(keplerStep(dop853, 0.4, timeStep), tolerance); };
+  const auto norm = [&](double timeStep) { return dop853Error(keplerStep(dop853, 0.4, timeStep), tolerance); };
   EXPECT_NEAR(orderOf(norm(0.1), norm(0.05)), 8, 0.3);
   for (const double timeStep : {0.8, 0.4, 0.2}) {
     const Step step = keplerStep(dop853, 0.4, timeStep);
@@ -88,7 +88,7 @@ TEST(Dop853, ErrorNormCombinesBothEstimatesAsPublished) {
   };
   const double fifth = estimate(0), third = estimate(1);
   // e5 is what sums of numbers of size 1 leave of 1e-5 or more: 11 digits.
-  EXPECT_NEAR(errorNorm(step, VectorX::Constant(1, tolerance)) / (fifth * fifth / std::hypot(fifth, 0.1 * third)), 1,
+  EXPECT_NEAR(dop853Error(step, VectorX::Constant(1, tolerance)) / (fifth * fifth / std::hypot(fifth, 0.1 * third)), 1,
               1e-10);
 }
 
@@ -105,11 +105,11 @@ TEST(Dop853, ErrorNormDoesNotAverageAStiffComponentAway) {
   start.head(2) = oscillatorAt(3, 0);
   dop853(one, start.head(2), 0, 0.3, alone);
   dop853(among, start, 0, 0.3, crowd);
-  EXPECT_EQ(errorNorm(alone, VectorX::Constant(2, 1e-6)), errorNorm(crowd, VectorX::Constant(1000, 1e-6)));
+  EXPECT_EQ(dop853Error(alone, VectorX::Constant(2, 1e-6)), dop853Error(crowd, VectorX::Constant(1000, 1e-6)));
 }
 
 TEST(Dop853, ErrorNormOfAStepOutOfTheFiniteNumbersIsNotANumber) {
-  EXPECT_TRUE(std::isnan(errorNorm(stepOutOfFiniteNumbers(dop853), VectorX::Constant(2, 1e-6))));
+  EXPECT_TRUE(std::isnan(dop853Error(stepOutOfFiniteNumbers(dop853), VectorX::Constant(2, 1e-6))));
 }
 
 // Two steps one after the other, with and without the rate at the point between: the same bits, one evaluation less.

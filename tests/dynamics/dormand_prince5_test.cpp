@@ -36,26 +36,28 @@ TEST(DormandPrince5Table, ResultIsOfOrderFiveAndItsErrorEstimateOfOrderFour) {
   EXPECT_GT(std::abs(sumOf(kErrors[0], 4)), 1e-4);
 }
 
+// The error is C h^5 (1 + c h + ...): of an ellipse's nearest point, halving steps of 1/40 shows c h as a fifth of an
+// order, and steps of a circle, whose errors of odd orders cancel, (c h)^2 as a fortieth.
 TEST(DormandPrince5, IsOfOrderFive) {
   const auto error = [](int steps) {
     return (stateAfter(dormandPrince5, kepler(), keplerAt(0), 2, steps) - keplerAt(2)).norm();
   };
-  EXPECT_NEAR(orderOf(error(40), error(80)), 5, 0.6);
+  EXPECT_NEAR(orderOf(error(80), error(160)), 5, 0.3);
   EXPECT_LT(error(80), 1e-7);
   const auto swing = [](int steps) {
     return (stateAfter(dormandPrince5, oscillator(1), oscillatorAt(1, 0), 10, steps) - oscillatorAt(1, 10)).norm();
   };
-  EXPECT_NEAR(orderOf(swing(40), swing(80)), 5, 0.3);
+  EXPECT_NEAR(orderOf(swing(40), swing(80)), 5, 0.03);
 }
 
 // The local error of an interpolant of order 4.
 TEST(DormandPrince5, InterpolantHasALocalErrorOfTheFifthPower) {
-  EXPECT_NEAR(orderOf(interpolationError(dormandPrince5, 0.2), interpolationError(dormandPrince5, 0.1)), 5, 0.3);
+  EXPECT_NEAR(orderOf(interpolationError(dormandPrince5, 0.2), interpolationError(dormandPrince5, 0.1)), 5, 0.2);
   EXPECT_LT(interpolationError(dormandPrince5, 0.1), 1e-6);
 }
 
-// So that a state within a step is nearly as good as the step is judged to be: that falls as fast, and stays of its
-// size.
+// So that a state within a step is nearly as good as the step is judged to be: both fall as the fifth power of the
+// step, and their ratio, that of two constants, stays between 2 and 3.
 TEST(DormandPrince5, ErrorEstimateIsOfTheSizeOfTheInterpolantsError) {
   const VectorX tolerance = VectorX::Constant(4, 1e-8);
   const auto norm = [&](double timeStep) {
@@ -65,7 +67,7 @@ TEST(DormandPrince5, ErrorEstimateIsOfTheSizeOfTheInterpolantsError) {
   for (const double timeStep : {0.2, 0.1, 0.05}) {
     const double estimate = norm(timeStep) * 1e-8 * 2.4;  // components of size 1.4 at most
     EXPECT_LT(interpolationError(dormandPrince5, timeStep), 3 * estimate) << timeStep;
-    EXPECT_GT(interpolationError(dormandPrince5, timeStep), 0.3 * estimate) << timeStep;
+    EXPECT_GT(interpolationError(dormandPrince5, timeStep), 2 * estimate) << timeStep;
   }
   const double error = (keplerStep(dormandPrince5, 0.4, 0.1).state - keplerAt(0.5)).norm();
   EXPECT_LT(error, norm(0.1) * 1e-8 * 2.4);

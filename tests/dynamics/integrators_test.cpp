@@ -9,7 +9,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kPull = 9.81;
+constexpr double kAcceleration = 9.81;
 
 /// x'' = -omega^2 x + g as (x, v): an oscillator, or free fall for omega = 0.
 RightHandSide pulledOscillator(double omega, double gravity) {
@@ -38,17 +38,17 @@ double energy(const VectorX& state, double omega) {
 // n steps of semi-implicit Euler from rest: v_n = g n h, x_n = g h^2 n (n + 1) / 2 = g t^2 / 2 + g h t / 2.
 TEST(SemiImplicitEuler, FreeFallErrorIsHalfGravityTimesStepTimesTime) {
   const double timeStep = 0.01, time = 1;
-  const VectorX end = run(semiImplicitEuler, pulledOscillator(0, kPull), Eigen::Vector2d(0, 0), timeStep, 100);
+  const VectorX end = run(semiImplicitEuler, pulledOscillator(0, kAcceleration), Eigen::Vector2d(0, 0), timeStep, 100);
   // 100 additions of numbers below 10: rounding below 100 * 1e-15.
-  EXPECT_NEAR(end[0], kPull * time * time / 2 + kPull * timeStep * time / 2, 1e-13);
-  EXPECT_NEAR(end[1], kPull * time, 1e-13);
+  EXPECT_NEAR(end[0], kAcceleration * time * time / 2 + kAcceleration * timeStep * time / 2, 1e-13);
+  EXPECT_NEAR(end[1], kAcceleration * time, 1e-13);
 }
 
 // The same sum with the old velocity: x_n = g h^2 n (n - 1) / 2.
 TEST(ExplicitEuler, FreeFallErrorIsMinusHalfGravityTimesStepTimesTime) {
   const double timeStep = 0.01, time = 1;
-  const VectorX end = run(explicitEuler, pulledOscillator(0, kPull), Eigen::Vector2d(0, 0), timeStep, 100);
-  EXPECT_NEAR(end[0], kPull * time * time / 2 - kPull * timeStep * time / 2, 1e-13);
+  const VectorX end = run(explicitEuler, pulledOscillator(0, kAcceleration), Eigen::Vector2d(0, 0), timeStep, 100);
+  EXPECT_NEAR(end[0], kAcceleration * time * time / 2 - kAcceleration * timeStep * time / 2, 1e-13);
 }
 
 TEST(ExplicitEuler, OscillatorEnergyGrowsByOnePlusStepTimesOmegaSquaredAStep) {

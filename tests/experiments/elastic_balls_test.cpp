@@ -67,12 +67,12 @@ Trajectory runOf(const std::vector<Ball>& balls, const std::vector<std::string>&
 }
 
 constexpr double kFloorFall = 0.45152364098573090445;  // s: sqrt(2 / 9.81)
-const Vec3 kPull(0, -9.81, 0);
+const Vec3 kGravityDown(0, -9.81, 0);
 
 // They meet when the centres are two radii apart, wherever both have fallen to by then.
 TEST(ElasticBalls, ExchangeMomentumHeadOnAsTheirMassesTell) {
   const Trajectory trajectory =
-      runOf({{Vec3(-1, 0, 0), Vec3(3, 0, 0), 2}, {Vec3(1, 0, 0), Vec3(-1, 0, 0), 5}}, {}, {1, kPull, 10});
+      runOf({{Vec3(-1, 0, 0), Vec3(3, 0, 0), 2}, {Vec3(1, 0, 0), Vec3(-1, 0, 0), 5}}, {}, {1, kGravityDown, 10});
   ASSERT_EQ(trajectory.events.size(), 1u);
   const Event& event = trajectory.events[0];
   const double time = (2 - 0.2) / 4;
@@ -119,7 +119,7 @@ TEST(ElasticBalls, BreakARackSymmetrically) {
       mirrored.emplace_back(balls.size(), balls.size() + static_cast<std::size_t>(row - 2 * i));
       balls.push_back({Vec3(kBallRadius * std::sqrt(3.0) * row, kBallRadius, kBallRadius * (2 * i - row))});
     }
-  const Trajectory trajectory = runOf(balls, {kFloorText}, {1.5, kPull, 20});
+  const Trajectory trajectory = runOf(balls, {kFloorText}, {1.5, kGravityDown, 20});
   double spread = 0;
   for (const Frame& frame : trajectory.frames) {
     EXPECT_NEAR(frame.energy.kinetic, 4.5, 1e-13);
@@ -135,7 +135,7 @@ TEST(ElasticBalls, BreakARackSymmetrically) {
 }
 
 TEST(ElasticBalls, BounceOnAPlaneLikeTheReference) {
-  const Trajectory trajectory = runOf({{Vec3(0, 1.1, 0)}}, {kFloorText}, {10, kPull, 60});
+  const Trajectory trajectory = runOf({{Vec3(0, 1.1, 0)}}, {kFloorText}, {10, kGravityDown, 60});
   ASSERT_EQ(trajectory.events.size(), 11u);
   for (std::size_t n = 0; n < 11; ++n)
     EXPECT_NEAR(trajectory.events[n].time, kFloorFall * (1 + 2 * static_cast<double>(n)), 1e-13) << n;
@@ -179,7 +179,7 @@ TEST(ElasticBalls, CountTheDigitsOfPi) {
 TEST(ElasticBalls, LieOnAPlaneOnceTheyHaveGivenAwayAllTheirSpeed) {
   const double fall = kFloorFall, speed = 9.81 * fall;
   const Trajectory trajectory =
-      runOf({{Vec3(0, 1.1, 0), Vec3::Zero(), 3}, {Vec3(0, 1.3, 0)}}, {kFloorText}, {6 * fall, kPull, 4 / fall});
+      runOf({{Vec3(0, 1.1, 0), Vec3::Zero(), 3}, {Vec3(0, 1.3, 0)}}, {kFloorText}, {6 * fall, kGravityDown, 4 / fall});
   const Frame& top = trajectory.frames[12];  // 2 v up for 2 fall times
   EXPECT_NEAR(trajectory.events.at(0).time, fall, 1e-14);
   EXPECT_LT((top.states[0].position - Vec3(0, 0.1, 0)).norm(), 1e-13);
@@ -195,7 +195,7 @@ TEST(ElasticBalls, LieOnAPlaneOnceTheyHaveGivenAwayAllTheirSpeed) {
 TEST(ElasticBalls, SayThatTheyCannotLieOnABox) {
   const std::string box = fixedText("box", R"({"box": {"size": [2, 2, 2]}})", Vec3(0, -1, 0));
   try {
-    runOf({{Vec3(0, 1.1, 0), Vec3::Zero(), 3}, {Vec3(0, 1.3, 0)}}, {box}, {2, kPull, 60});
+    runOf({{Vec3(0, 1.1, 0), Vec3::Zero(), 3}, {Vec3(0, 1.3, 0)}}, {box}, {2, kGravityDown, 60});
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::limit);
@@ -265,7 +265,7 @@ std::vector<Ball> replay(const Trajectory& trajectory, std::vector<Ball> balls, 
 TEST(ElasticBalls, OfAGasKeepTheirEnergyAndApart) {
   std::vector<Ball> balls = gas(4, Vec3(-0.45, -0.45, -0.45));
   for (std::size_t i = 0; i < balls.size(); i += 3) balls[i].radius = 0.05;
-  const Trajectory trajectory = runOf(balls, cubeOfPlanes(0.6), {3, kPull, 20});
+  const Trajectory trajectory = runOf(balls, cubeOfPlanes(0.6), {3, kGravityDown, 20});
   EXPECT_GT(trajectory.events.size(), 1000u);
   const double energy = energyConstantOf(trajectory.frames[0]);
   for (const Frame& frame : trajectory.frames) {
@@ -273,7 +273,7 @@ TEST(ElasticBalls, OfAGasKeepTheirEnergyAndApart) {
     EXPECT_GT(leastGapOf(frame, balls), -1e-13);
     for (const BodyState& state : frame.states) EXPECT_LT(state.position.cwiseAbs().maxCoeff(), 0.55 + 1e-13);
   }
-  const std::vector<Ball> replayed = replay(trajectory, balls, kPull);
+  const std::vector<Ball> replayed = replay(trajectory, balls, kGravityDown);
   for (std::size_t i = 0; i < balls.size(); ++i)
     EXPECT_LT((replayed[i].position - trajectory.frames.back().states[i].position).norm(), 1e-12);
   EXPECT_TRUE(std::is_sorted(trajectory.events.begin(), trajectory.events.end(),
@@ -305,7 +305,7 @@ TEST(ElasticBalls, BounceOffEverythingFixed) {
                                 sign * 2 * Vec3::Unit(axis)));
     }
   const std::vector<Ball> balls = gas(3, Vec3(-0.3, 0.2, -0.3));
-  const Trajectory trajectory = runOf(balls, fixed, {3, kPull, 20});
+  const Trajectory trajectory = runOf(balls, fixed, {3, kGravityDown, 20});
   const double energy = energyConstantOf(trajectory.frames[0]);
   std::vector<int> hits(fixed.size(), 0);
   for (const Event& event : trajectory.events)
@@ -327,7 +327,7 @@ TEST(ElasticBalls, BounceOffEverythingFixed) {
 TEST(ElasticBalls, ComeBackWhenTimeRunsBackwards) {
   std::vector<Ball> balls = gas(2, Vec3(-0.15, -0.15, -0.15));
   for (Ball& ball : balls) ball.velocity -= 4 * ball.position;
-  const Setting setting{0.6, kPull, 10};
+  const Setting setting{0.6, kGravityDown, 10};
   const std::vector<std::string> walls = cubeOfPlanes(0.5);
   const Trajectory forth = runOf(balls, walls, setting);
   std::vector<Ball> reversed = balls;
@@ -345,7 +345,7 @@ TEST(ElasticBalls, ComeBackWhenTimeRunsBackwards) {
 // The order of bodies in the scene decides nothing but the order of sums.
 TEST(ElasticBalls, MoveTheSameInAnyOrder) {
   std::vector<Ball> balls = gas(3, Vec3(-0.3, -0.3, -0.3));
-  const Setting setting{0.3, kPull, 10};
+  const Setting setting{0.3, kGravityDown, 10};
   const Trajectory trajectory = runOf(balls, cubeOfPlanes(0.45), setting);
   std::reverse(balls.begin(), balls.end());
   const Trajectory other = runOf(balls, cubeOfPlanes(0.45), setting);
@@ -377,25 +377,26 @@ std::string methodFor(const std::vector<Ball>& balls, const std::vector<std::str
 // Lying on a plane is sliding along it; lying on a ball or a box is no straight line in general.
 TEST(ElasticBalls, ThatLieOnEachOtherAreLeftToOtherMethods) {
   const std::string box = fixedText("box", R"({"box": {"size": [2, 2, 2]}})", Vec3(0, -1, 0));
-  const Setting setting{0.05, kPull, 60};
+  const Setting setting{0.05, kGravityDown, 60};
   const std::vector<Ball> alone = {{Vec3(0, 0.1, 0)}}, pair = {{Vec3(0, 0.1, 0)}, {Vec3(0, 0.3, 0)}};
   EXPECT_EQ(methodFor(alone, {kFloorText}, setting), "closed");
   EXPECT_NE(methodFor(alone, {box}, setting), "closed");
   EXPECT_NE(methodFor(pair, {kFloorText}, setting), "closed");
   EXPECT_EQ(methodFor(pair, {kFloorText}, {0.05, Vec3::Zero(), 60}), "closed");
-  EXPECT_NE(methodFor(alone, {kFloorText}, {0.05, kPull, 60, 0.9}), "closed");
+  EXPECT_NE(methodFor(alone, {kFloorText}, {0.05, kGravityDown, 60, 0.9}), "closed");
 }
 
 // Down a slope of 30 degrees with g sin 30 = 4.905 m/s^2, on one plane; in a gutter of two, at rest across it.
 TEST(ElasticBalls, SlideDownPlanesThatCarryThem) {
   const double root = std::sqrt(0.5);
   const Vec3 slope(-0.5, std::sqrt(0.75), 0), left(0, root, root), right(0, root, -root);
-  const Trajectory plane = runOf({{kBallRadius * slope}}, {planeText("slope", Vec3::Zero(), slope)}, {1, kPull, 1});
+  const Trajectory plane =
+      runOf({{kBallRadius * slope}}, {planeText("slope", Vec3::Zero(), slope)}, {1, kGravityDown, 1});
   const Vec3 expected = kBallRadius * slope - 4.905 / 2 * Vec3(std::sqrt(0.75), 0.5, 0);
   EXPECT_LT((endOf(plane).position - expected).norm(), 1e-14);
   const Trajectory gutter =
       runOf({{Vec3(0, kBallRadius / root, 0), Vec3(2, 0, 0)}},
-            {planeText("left", Vec3::Zero(), left), planeText("right", Vec3::Zero(), right)}, {1, kPull, 1});
+            {planeText("left", Vec3::Zero(), left), planeText("right", Vec3::Zero(), right)}, {1, kGravityDown, 1});
   EXPECT_LT((endOf(gutter).position - Vec3(2, kBallRadius / root, 0)).norm(), 1e-14);
   EXPECT_TRUE(gutter.events.empty());
 }

@@ -24,7 +24,7 @@ void dop853(const RightHandSide& rightHandSide, const VectorX& state, double tim
   step.interpolant = InterpolantKind::degreeSeven;
 }
 
-double errorNorm(const Step& step, const VectorX& tolerance) {
+double dop853Error(const Step& step, const VectorX& tolerance) {
   CRADLE_CHECK(step.interpolant == InterpolantKind::degreeSeven);
   CRADLE_CHECK(tolerance.size() == step.state.size());
   const auto rate = Method::rates(step);
@@ -41,7 +41,7 @@ double errorNorm(const Step& step, const VectorX& tolerance) {
   return std::abs(step.timeStep) * fifth * fifth / std::sqrt(fifth * fifth + 0.01 * third * third);
 }
 
-void computeCorrections(const RightHandSide& rightHandSide, Step& step) {
+void dop853Corrections(const RightHandSide& rightHandSide, Step& step) {
   Method::evaluateStage<kEndRate + 1>(rightHandSide, step);
   Method::evaluateStage<kEndRate + 2>(rightHandSide, step);
   Method::evaluateStage<kEndRate + 3>(rightHandSide, step);

@@ -9,7 +9,7 @@ namespace cradle {
 /// estimate, for no more.
 void dormandPrince5(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep, Step& step);
 
-/// Local error of such a step in units of the tolerance, as errorNorm has it for DOP853. Proportional to timeStep^5.
+/// Local error of such a step in units of the tolerance, as dop853Error has it for DOP853. Proportional to timeStep^5.
 double dormandPrince5Error(const Step& step, const VectorX& tolerance);
 
 /// The correction of the interpolant, from the rates of the step; part of prepareInterpolant.

@@ -50,7 +50,7 @@ void prepareInterpolant(const RightHandSide& rightHandSide, Step& step) {
   if (step.interpolant == InterpolantKind::degreeFour)
     computeDormandPrince5Correction(step);
   else
-    computeCorrections(rightHandSide, step);
+    dop853Corrections(rightHandSide, step);
 }
 
 void interpolate(const Step& step, double fraction, VectorX& state) {

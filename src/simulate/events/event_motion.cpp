@@ -127,7 +127,7 @@ void EventMotion::takeStep(double stepEnd) {
 /// not, shorter ones are tried.
 bool EventMotion::isStillAccurate() {
   Step& step = island_.step;
-  if (hasExactInterpolant()) return true;
+  if (mayEndAnywhere()) return true;
   const double error = method_.errorNorm(step, tolerance_);
   if (error <= 1) return true;
   acceptStep(error, step.timeStep, stepSize_);
@@ -143,14 +143,14 @@ double EventMotion::longestStep() const {
                   kLeastLookahead * stepSize_.timeStep);
 }
 
-/// Whether the interpolant is as good as the error estimate.
-bool EventMotion::hasExactInterpolant() const {
+/// Whether the step may end where its interpolant is: that is as good as the error estimate.
+bool EventMotion::mayEndAnywhere() const {
   return island_.step.interpolant == InterpolantKind::degreeFour;
 }
 
 EventMotion::Event EventMotion::findFirstEvent() {
   Step& step = island_.step;
-  if (hasExactInterpolant()) contacts_.lasting().noteEnd();
+  if (mayEndAnywhere()) contacts_.lasting().noteEnd();
   prepareInterpolant(island_.rightHandSide, step);
   Event event;
   if (island_.mayTouch()) {
@@ -176,7 +176,7 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   Step& step = island_.step;
   const Event event = findFirstEvent();
   const double whole = step.timeStep, latest = event.latest * whole;
-  if (event.any() && hasExactInterpolant()) {
+  if (event.any() && mayEndAnywhere()) {
     cutStep(event.impact ? event.impact->fraction : event.rope ? event.rope->fraction : event.contact->fraction, step);
   } else if (event.impact) {
     stopAtImpact(*event.impact, latest);

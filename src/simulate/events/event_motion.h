@@ -59,7 +59,7 @@ class EventMotion {
   void requireTiesKept() const;
   void changeForces(const Event& event);
   void settleRopes();
-  bool hasExactInterpolant() const;
+  bool mayEndAnywhere() const;
   bool isStillAccurate();
   double longestStep() const;
   void countEvent(const Event& event);

@@ -43,7 +43,7 @@ double smoothTolerance(double accuracy) {
 }
 
 ChosenMethod errorSteps(const Scene& scene) {
-  return {MotionKind::errorSteps, "DOP853", 0, dop853, smoothTolerance(scene.accuracy), errorNorm, 8};
+  return {MotionKind::errorSteps, "DOP853", 0, dop853, smoothTolerance(scene.accuracy), dop853Error, 8};
 }
 
 /// Where contact ends steps before their time, those of order 5 cost half: they can end anywhere on their interpolant.
