@@ -60,11 +60,22 @@ void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTi
   for (const std::size_t feature : scratch_.features_) {
     feature_ = feature;
     held_ = isHeld(touching) ? touching.held : nullptr;
+    if (held_ && pair_.againstPlane && a_.kind() == ColliderKind::cylinder) {
+      searchHeldRim(touching, best);
+      continue;
+    }
     if (held_ && hasOneContact()) continue;
     if (held_ && (apart_ || hasMesh(a_, geometry_.colliders[pair_.b]))) lookBlindly();
     const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_, reach);
     searchFeature(start, touching, best);
   }
+}
+
+/// A rim over a plane: points of it are held, and the lowest may become another.
+void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
+  held_ = nullptr;
+  const double start = gap(0);
+  if (std::isfinite(touching.deadBand)) searchFrom(0, start, std::min(0.0, start) - touching.tolerance, best);
 }
 
 /// A feature whose gap is `start` (m) as the step begins.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/core.h"
 #include "impact/contact_impulse.h"
 #include "simulate/plan/islands.h"
 #include "simulate/thresholds.h"
@@ -24,6 +25,7 @@ constexpr int kMostFrictionRounds = 200;         // of normal forces from fricti
 constexpr double kFrictionConverged = 1e-10;     // of the largest normal force
 constexpr int kMostRedundant = 12;               // rows: with more, contact steps cost less
 constexpr int kMostIndependent = 40;             // the same
+constexpr double kSameSide = 0.99;               // cosine between normals: a mesh may be touched on several
 constexpr double kRankPart = 1e-9;               // of the largest pivot: less is none
 
 }  // namespace
@@ -33,6 +35,7 @@ void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSol
   std::vector<Entry> entries = entriesOf(touching);
   if (!entries.empty())
     for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
+  noteTipping(entries);
   for (const Entry& entry : entries)
     if (entry.isLoaded) add(entry);
   recordChanges();
@@ -59,9 +62,7 @@ std::vector<LastingContacts::Entry> LastingContacts::entriesOf(const std::vector
   std::vector<Entry> entries;
   for (const Contact& contact : touching) {
     if (!isAwake(contact)) continue;
-    const double size = island_.assembly.radii[static_cast<std::size_t>(contact.movingBody())];
-    const double still = kLastBouncePart * std::sqrt(mechanism().gravity.norm() * size) + kRestSpeedFloor;
-    if (openingSpeed(contact, island_.state) > still) continue;
+    if (openingSpeed(contact, island_.state) > stillSpeed(contact)) continue;
     Entry entry{contact, island_.assembly.geometry.pairs[contact.pair]};
     const ContactRows rows = rowsOf(contact, island_.state, frames_);
     const Vec3 sliding = tangentialVelocity(rows.place);
@@ -109,6 +110,7 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
     const Vec3 motion = solution.velocities.segment<3>(at);
     entry.force = most / inverseMass(at + 2, at + 2);
     entry.isLoaded = solution.impulses[at + 2] > unloaded / inverseMass(at + 2, at + 2);
+    entry.opens = !entry.isLoaded && motion.z() > kStillPart * most;
     if (!entry.isLoaded) continue;
     if (!canLast(entry.contact)) fault_ = "edges touch and press";
     const bool hasFriction = entry.pair.law.staticFriction > 0;
@@ -121,6 +123,55 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
     if (entry.sticks) heldRows.push_back(at), heldRows.push_back(at + 1);
   }
   if (!heldRows.empty()) countRows(group, inverseMass(heldRows, heldRows), entries);
+}
+
+/// m/s: what leaves more slowly does not leave.
+double LastingContacts::stillSpeed(const Contact& contact) const {
+  const double size = island_.assembly.radii[static_cast<std::size_t>(contact.movingBody())];
+  return kLastBouncePart * std::sqrt(mechanism().gravity.norm() * size) + kRestSpeedFloor;
+}
+
+/// Whether a cylinder touches by its rim or its side.
+bool LastingContacts::isOfRim(const Contact& contact) const {
+  const ContactGeometry& geometry = island_.assembly.geometry;
+  const ColliderPair& pair = geometry.pairs[contact.pair];
+  const auto isCylinder = [&](std::size_t collider) {
+    return geometry.colliders[collider].kind() == ColliderKind::cylinder;
+  };
+  return (isCylinder(pair.a) && std::isfinite(contact.radiusA)) ||
+         (!pair.againstPlane && isCylinder(pair.b) && std::isfinite(contact.radiusB));
+}
+
+/// m/s, at its rim: how fast a cylinder leaves the position in which it touches.
+double LastingContacts::tippingSpeed(const Contact& contact) const {
+  const ContactGeometry& geometry = island_.assembly.geometry;
+  const ColliderPair& pair = geometry.pairs[contact.pair];
+  const bool isA = geometry.colliders[pair.a].kind() == ColliderKind::cylinder && std::isfinite(contact.radiusA);
+  const Collider& cylinder = geometry.colliders[isA ? pair.a : pair.b];
+  const auto spinOf = [&](int body) -> Vec3 {
+    return body == kFixed ? Vec3(Vec3::Zero()) : Vec3(angularVelocity(island_.state, body));
+  };
+  const Vec3 axis = Core(cylinder, poseOf(island_.state, cylinder.body)).axis();
+  const Vec3 turning = (spinOf(contact.bodyA) - spinOf(contact.bodyB)).cross(axis);
+  const bool isLying = std::abs(axis.dot(contact.normal)) < 0.5;
+  return cylinder.boundingRadius * (isLying ? std::abs(turning.dot(contact.normal)) : turning.norm());
+}
+
+/// A corner stays one when the face beside it tips, but a cylinder rolls on over its rim: rows hold points of it only
+/// as long as it stands or lies still, on two of them at least.
+void LastingContacts::noteTipping(const std::vector<Entry>& entries) {
+  for (const Entry& entry : entries) {
+    if (!entry.isLoaded || !isOfRim(entry.contact)) continue;
+    const auto isBeside = [&](const Entry& other) {
+      return other.contact.pair == entry.contact.pair && isOfRim(other.contact) &&
+             other.contact.normal.dot(entry.contact.normal) > kSameSide;
+    };
+    const auto isHeld = [&](const Entry& other) { return isBeside(other) && other.isLoaded; };
+    const auto opens = [&](const Entry& other) { return isBeside(other) && other.opens; };
+    if (std::count_if(entries.begin(), entries.end(), isHeld) < 2 ||
+        std::any_of(entries.begin(), entries.end(), opens) || tippingSpeed(entry.contact) > stillSpeed(entry.contact))
+      fault_ = "a cylinder tips over its rim";
+  }
 }
 
 /// Notes whose forces are not unique, and whether rows are too many. `held`: J M^-1 J^T of the rows that hold.

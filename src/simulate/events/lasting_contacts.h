@@ -72,6 +72,7 @@ class LastingContacts {
     bool slides = false;
     Vec3 direction = Vec3::Zero();  // unit, world, of A's sliding, if it slides
     bool isLoaded = false, sticks = false;
+    bool opens = false;        // carries nothing, and the accelerations open it
     bool isRedundant = false;  // its forces are not unique
     double force = 1;          // N, that margins are measured by
   };
@@ -88,6 +89,10 @@ class LastingContacts {
   std::vector<Entry> entriesOf(const std::vector<Contact>& touching) const;
   std::vector<Together> groupsOf(const std::vector<Entry>& entries) const;
   void decide(const Together& group, std::vector<Entry>& entries, ConstraintSolver& ties);
+  void noteTipping(const std::vector<Entry>& entries);
+  bool isOfRim(const Contact& contact) const;
+  double tippingSpeed(const Contact& contact) const;
+  double stillSpeed(const Contact& contact) const;
   void countRows(const Together& group, const MatrixX& held, std::vector<Entry>& entries);
   bool nothingCloses(const std::vector<ContactRows>& rows) const;
   ConeSolution solve(const std::vector<const Entry*>& entries, const std::vector<ContactRows>& rows,
