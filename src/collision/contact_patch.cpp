@@ -152,6 +152,10 @@ ContactPatch exchanged(ContactPatch patch) {
 /// Patches are kept while bodies tilt a little. If points that are pressed then were left out for others that are
 /// farther away, bodies would fall on them, the next patch would have them instead of others, and heaps would tremble.
 void appendSpanning(const ContactPatch::Point* points, std::size_t count, ContactPatch& patch) {
+  if (count <= ContactPatch::kMostPoints) {
+    for (std::size_t k = 0; k < count; ++k) patch.points[patch.count++] = points[k];
+    return;
+  }
   double deepest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < count; ++k) deepest = std::min(deepest, points[k].separation);
   const auto mayCarry = [&](const ContactPatch::Point& p) { return p.separation < deepest + kMayCarry; };
@@ -161,7 +165,7 @@ void appendSpanning(const ContactPatch::Point* points, std::size_t count, Contac
   }
   for (std::size_t k = 0; k < count; ++k)
     if (mayCarry(points[k])) patch.points[patch.count++] = points[k];
-  while (patch.count < std::min(count, ContactPatch::kMostPoints)) appendFarthest(points, count, patch);
+  while (patch.count < ContactPatch::kMostPoints) appendFarthest(points, count, patch);
 }
 
 }  // namespace cradle
