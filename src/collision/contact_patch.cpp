@@ -7,6 +7,8 @@
 namespace cradle {
 namespace {
 
+constexpr double kMayCarry = 5e-3;  // m farther apart than the deepest: such points carry when bodies tilt a little
+
 ContactPatch single(const Vec3& normal, const Vec3& onA, const Vec3& onB) {
   ContactPatch patch;
   patch.normal = normal;
@@ -37,6 +39,47 @@ NearestOfBox nearestOf(const PosedBox& box, const Vec3& from) {
   const double depth = (box.halfSize - local.cwiseAbs()).minCoeff(&axis);
   const Vec3 normal = (local[axis] < 0 ? -1 : 1) * box.axes.col(axis);
   return {-depth, normal, from + depth * normal};
+}
+
+/// Appends the point of which `measure` is greatest, and returns where it is.
+template <class Measure>
+Vec3 appendGreatest(const ContactPatch::Point* points, std::size_t count, const Measure& measure, ContactPatch& patch) {
+  std::size_t best = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < count; ++k)
+    if (const double value = measure(points[k]); value > most) most = value, best = k;
+  patch.points[patch.count++] = points[best];
+  return points[best].onA;
+}
+
+/// Appends four of those that are eligible: the deepest, the farthest from it, and the farthest on either side of both.
+template <class IsEligible>
+void appendLargest(const ContactPatch::Point* points, std::size_t count, const IsEligible& isEligible,
+                   ContactPatch& patch) {
+  const auto append = [&](const auto& measure) {
+    return appendGreatest(
+        points, count,
+        [&](const ContactPatch::Point& p) {
+          return isEligible(p) ? measure(p) : -std::numeric_limits<double>::infinity();
+        },
+        patch);
+  };
+  const Vec3 first = append([](const ContactPatch::Point& p) { return -p.separation; });
+  const Vec3 second = append([&](const ContactPatch::Point& p) { return (p.onA - first).squaredNorm(); });
+  const Vec3 across = patch.normal.cross(second - first);
+  const auto height = [&](const ContactPatch::Point& p) { return across.dot(p.onA - first); };
+  append(height);
+  append([&](const ContactPatch::Point& p) { return -height(p); });
+}
+
+/// Appends the point that is farthest from those of the patch.
+void appendFarthest(const ContactPatch::Point* points, std::size_t count, ContactPatch& patch) {
+  const auto distance2 = [&](const ContactPatch::Point& p) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < patch.count; ++k) least = std::min(least, (p.onA - patch.points[k].onA).squaredNorm());
+    return least;
+  };
+  appendGreatest(points, count, distance2, patch);
 }
 
 }  // namespace
@@ -106,25 +149,23 @@ ContactPatch exchanged(ContactPatch patch) {
   return patch;
 }
 
+/// Patches are kept while bodies tilt a little. If points that are pressed then were left out for others that are
+/// farther away, bodies would fall on them, the next patch would have them instead of others, and heaps would tremble.
 void appendSpanning(const ContactPatch::Point* points, std::size_t count, ContactPatch& patch) {
   if (count <= ContactPatch::kMostPoints) {
     for (std::size_t k = 0; k < count; ++k) patch.points[patch.count++] = points[k];
     return;
   }
-  const auto farthest = [&](const auto& measure) {
-    std::size_t best = 0;
-    double most = -std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < count; ++k)
-      if (const double value = measure(points[k]); value > most) most = value, best = k;
-    patch.points[patch.count++] = points[best];
-    return points[best].onA;
-  };
-  const Vec3 first = farthest([](const ContactPatch::Point& p) { return -p.separation; });
-  const Vec3 second = farthest([&](const ContactPatch::Point& p) { return (p.onA - first).squaredNorm(); });
-  const Vec3 across = patch.normal.cross(second - first);
-  const auto height = [&](const ContactPatch::Point& p) { return across.dot(p.onA - first); };
-  farthest(height);
-  farthest([&](const ContactPatch::Point& p) { return -height(p); });
+  double deepest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < count; ++k) deepest = std::min(deepest, points[k].separation);
+  const auto mayCarry = [&](const ContactPatch::Point& p) { return p.separation < deepest + kMayCarry; };
+  if (std::count_if(points, points + count, mayCarry) > std::ssize(patch.points)) {
+    appendLargest(points, count, mayCarry, patch);
+    return;
+  }
+  for (std::size_t k = 0; k < count; ++k)
+    if (mayCarry(points[k])) patch.points[patch.count++] = points[k];
+  while (patch.count < ContactPatch::kMostPoints) appendFarthest(points, count, patch);
 }
 
 }  // namespace cradle

@@ -50,7 +50,8 @@ ContactPatch contactOfBoxAndPlane(const PosedBox& a, const PlaneCollider& b, con
 /// The same contact with A and B exchanged.
 ContactPatch exchanged(ContactPatch patch);
 
-/// Adds the four of `count` points that hold a patch best: the deepest, the farthest from it, and those that span the
+/// Adds the four of `count` points that hold a patch best. Points that may carry come first: what is a little farther
+/// apart than the deepest. Of more than four of them the deepest, the farthest from it, and those that span the
 /// largest areas on either side. All of them if there are no more.
 void appendSpanning(const ContactPatch::Point* points, std::size_t count, ContactPatch& patch);
 

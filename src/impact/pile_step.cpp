@@ -13,8 +13,10 @@ constexpr double kMostApproach = 10e-3;  // m: bodies that come nearer to each o
 constexpr double kMostSubStepApproach = 3.4e-3;  // m: in a sub-step, as far as an impact goes on into the next bodies
 constexpr double kDeflected = 0.5;               // of the approach is added to the margin: an impact turns bodies aside
 constexpr int kMostPieces = 32;                  // looks a step
-constexpr int kSubSteps = 8;         // a step, at least: with fewer, contacts must be so soft that piles sink
-constexpr double kStillPart = 0.25;  // of the speed that gravity gives a body in a step: contacts at rest have as much
+constexpr int kSubSteps = 8;          // a step, at least: with fewer, contacts must be so soft that piles sink
+constexpr int kStirredSubSteps = 16;  // with fewer, friction gives way little by little: turned boxes creep for seconds
+constexpr double kManyBalls = 0.25;   // of all bodies
+constexpr double kStillPart = 0.25;   // of the speed that gravity gives a body in a step: contacts at rest have as much
 constexpr double kContactMargin = 5e-3;  // m: contacts are known before bodies touch
 constexpr std::size_t kBodyGrain = 256;  // bodies that a thread takes at once: tens of microseconds
 
@@ -74,6 +76,8 @@ PileStep::PileStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
       pose.spinRadius = collider.isBall() && collider.points[0].isZero() ? 0 : pose.radius;
       isBall_[static_cast<std::size_t>(collider.body)] = collider.isBall();
     }
+  hasManyBalls_ =
+      static_cast<double>(std::count(isBall_.begin(), isBall_.end(), 1)) > kManyBalls * static_cast<double>(count);
   for (const std::vector<SurfaceLaw>& row : geometry.laws)
     for (const SurfaceLaw& law : row) rebounds_ = rebounds_ || law.restitution > 0;
   worldFromPrincipal_.assign(count, Mat3::Identity());
@@ -96,7 +100,7 @@ void PileStep::advance(double timeStep, VectorX& state) {
   const double approach = timeStep * contacts_.fastestApproach({poses_, state, timeStep, mostMargin}, threads_);
   const int pieces = std::clamp(static_cast<int>(std::ceil(approach / kMostApproach)), 1, kMostPieces);
   const int fewest = static_cast<int>(std::ceil(std::min(approach / pieces, kMostApproach) / kMostSubStepApproach));
-  const int subSteps = std::max((kSubSteps + pieces - 1) / pieces, fewest);
+  const int subSteps = std::max(((isStirred_ ? kStirredSubSteps : kSubSteps) + pieces - 1) / pieces, fewest);
   margin_ = kContactMargin + kDeflected * std::min(approach / pieces, kMostApproach);
 
   contacts_.beginStep();
@@ -216,13 +220,17 @@ void PileStep::wakeTouched(const PileLook& look) {
 
 /// Slow: as fast as gravity makes a body in a part of a step, which the contacts of a pile at rest cannot be told from.
 /// The spin of a ball that stays in place does not count: nothing in the laws of contact would ever stop it.
+/// A heap is stirred while something else than balls moves in it. Many balls go on rolling for long whatever is done:
+/// with them it counts as still.
 void PileStep::letSleep(double timeStep, VectorX& state) {
+  isStirred_ = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (poses_[i].isAsleep) continue;
     const Eigen::Index body = static_cast<Eigen::Index>(i);
     const double spin = isBall_[i] ? 0 : poses_[i].radius * angularVelocity(state, body).norm();
     speeds_[i] = coloring_.isTouched(i) ? std::max(linearVelocity(state, body).norm(), spin)
                                         : std::numeric_limits<double>::infinity();
+    isStirred_ = isStirred_ || (coloring_.isTouched(i) && speeds_[i] >= slow_ && !isBall_[i] && !hasManyBalls_);
   }
   const std::size_t before = fallenAsleep_.size();
   sleep_.letSleep(contacts_, speeds_, slow_, timeStep, fallenAsleep_);

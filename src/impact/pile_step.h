@@ -71,8 +71,10 @@ class PileStep {
   std::vector<double> speeds_;  // m/s, of each body's fastest point; infinite if it touches nothing
   double slowestRebound_ = 0;   // m/s
   bool rebounds_ = false;       // by some law
-  double margin_ = 0;           // m: nearer bodies are in contact
-  double slow_ = 0;             // m/s: slower is as good as still
+  bool hasManyBalls_ = false;
+  bool isStirred_ = false;  // at the end of the last step
+  double margin_ = 0;       // m: nearer bodies are in contact
+  double slow_ = 0;         // m/s: slower is as good as still
   long looks_ = 0;
   std::vector<Impact> impacts_;
   std::vector<int> fallenAsleep_, woken_;

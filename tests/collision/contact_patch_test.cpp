@@ -165,5 +165,38 @@ TEST(BoxOnPlane, StandsOnItsFourLowestCorners) {
   for (const ContactPatch::Point& point : patch.points) EXPECT_NEAR(point.separation, 0.001, kExact);
 }
 
+// Three points in a row and three on the other side, which is the larger area: but those are 10 mm farther away.
+TEST(Patch, KeepsAllPointsThatMayCarryBeforeItSpansWhatIsFarther) {
+  ContactPatch::Point points[6];
+  const double separations[] = {-1e-3, 1e-3, 0, 0.01, 0.011, 0.012};
+  for (int k = 0; k < 6; ++k) {
+    const double x = 0.02 * (k % 3), z = k < 3 ? 0 : 0.1;
+    points[k] = {Vec3(x, 0, z), Vec3(x, separations[k], z), separations[k]};
+  }
+  ContactPatch patch;
+  appendSpanning(points, 6, patch);
+  ASSERT_EQ(patch.count, 4u);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(patch.points[static_cast<std::size_t>(k)].onA, points[k].onA);
+  EXPECT_EQ(patch.points[3].onA.z(), 0.1);
+}
+
+// A hexagon of 0.1 m, all of which may carry, and a corner 0.3 m away that does not touch.
+TEST(Patch, SpansTheLargestAreaOfManyPointsThatMayCarry) {
+  ContactPatch::Point points[7];
+  for (int k = 0; k < 6; ++k) {
+    const double angle = k * std::acos(0.5);
+    points[k] = {0.1 * Vec3(std::cos(angle), 0, std::sin(angle)), Vec3::Zero(), k == 2 ? -1e-3 : 0};
+  }
+  points[6] = {Vec3(-0.3, 0, 0), Vec3::Zero(), 0.01};
+  ContactPatch patch;
+  appendSpanning(points, 7, patch);
+  ASSERT_EQ(patch.count, 4u);
+  EXPECT_EQ(patch.points[0].onA, points[2].onA);
+  EXPECT_EQ(patch.points[1].onA, points[5].onA);
+  const Vec3 across = points[2].onA.normalized().cross(Vec3::UnitY());
+  EXPECT_NEAR(std::abs(across.dot(patch.points[2].onA)), 0.1 * std::sqrt(0.75), 1e-15);
+  EXPECT_NEAR(across.dot(patch.points[3].onA), -across.dot(patch.points[2].onA), 1e-15);
+}
+
 }  // namespace
 }  // namespace cradle
