@@ -165,9 +165,10 @@ void addQuestions(CLI::App& app, CommandLine& line) {
                               "cradle export cradle.sqlite -o cradle.csv\n  cradle export cradle.sqlite -o cradle.glb",
                               [&] { exportTrajectory(line.input, line.output, line.quiet); });
   exported->add_option("trajectory", line.input, "trajectory file")->required();
-  addOutput(exported, line,
-            ".csv: table of the states. .glb: glTF 2.0, for Blender and other viewers; bodies move in simulated time, "
-            "springs, rods and ropes are straight, joints are left out");
+  addOutput(
+      exported, line,
+      ".csv: a table of states; .glb: glTF 2.0, moving in simulated time, springs, rods and ropes drawn straight, "
+      "without joints, pushes, camera and lights");
 }
 
 /// Says so if what was taken for a command is none; CLI11 would only ask for one.

@@ -21,6 +21,7 @@ constexpr double kPlaneOfScene = 4;  // width of a plane, in diagonals of the bo
 // least.
 constexpr double kLinkOfBody = 0.055, kLinkOfScene = 0.002;
 constexpr int kLinkFacets = 16;
+constexpr double kRounding = 1e-7;  // of a body's size: a centre of mass so near to the origin is there, in 32 bits
 
 const Surface kSpringSteel{Vec3f(0.16f, 0.165f, 0.175f), 0.6f, 0.45f};
 const Surface kRodSteel{Vec3f(0.56f, 0.57f, 0.58f), 1.0f, 0.28f};
@@ -119,12 +120,14 @@ void GlbExport::addBodies(const std::vector<RigidTransform>& places) {
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
     const Body& body = scene_.bodies[i];
     if (std::holds_alternative<Plane>(body.shape)) continue;
-    bounds_.extend(transformed(localBounds(scene_, body), places[i]));
+    const Bounds local = localBounds(scene_, body);
+    bounds_.extend(transformed(local, places[i]));
     const bool isDynamic = body.motion == Motion::dynamic;
     const Vec3 center = isDynamic ? body.massProperties.centerOfMass : Vec3::Zero();
     int node = file_.addNode(body.name, {places[i].rotation, places[i] * center});
     if (isDynamic) bodyTracks_.push_back(addTrack(node));
-    if (!center.isZero(0)) node = file_.addNode(body.name + " shape", {Quat::Identity(), -center}, node);
+    if (center.norm() > kRounding * local.diagonal().norm())
+      node = file_.addNode(body.name + " shape", {Quat::Identity(), -center}, node);
     file_.setMesh(node, meshes_.ofBody(i));
   }
 }
@@ -207,7 +210,7 @@ void GlbExport::build(bool quiet) {
   addLinks(scene_.rods, "rod", kRodSteel);
   addLinks(scene_.ropes, "rope", kHemp);
 
-  Progress progress("export", "frames", reader_.frameCount(), quiet);
+  Progress progress("Exporting", "frames", reader_.frameCount(), quiet);
   for (long number = 0; number < reader_.frameCount(); ++number) {
     throwIfInterrupted();
     addFrame(reader_.readFrame(number));
