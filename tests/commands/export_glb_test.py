@@ -177,6 +177,9 @@ class ExportGlb(unittest.TestCase):
                  "linearVelocity": [3, -1, 0.5], "angularVelocity": [9, 4, 2]}
         box = {"name": "box", "shape": {"box": {"size": [0.1, 0.2, 0.3]}}, "position": [-1, 0, 0], "angularVelocity": [20, 1, 0]}
         self.simulate([prism, box], duration=2)
+        database = sqlite3.connect(self.path("a.sqlite"))
+        database.execute("UPDATE state SET qw = -qw, qx = -qx, qy = -qy, qz = -qz WHERE frame % 3 = 1")  # as q and -q are the same
+        database.commit()
         glb = self.export()
         self.assertEqual(len(self.states["prism"]), 121)
         self.moves_as_in_the_table(glb, "prism")
@@ -184,7 +187,6 @@ class ExportGlb(unittest.TestCase):
         self.assertEqual(glb.json["scenes"][0]["name"], 'Käse "moves"')
 
         # A vertex of the file at the point p + q (r - com) q*, as docs/trajectory_file.md says, in every frame.
-        database = sqlite3.connect(self.path("a.sqlite"))
         com = database.execute("SELECT comx, comy, comz FROM body WHERE name = 'prism'").fetchone()
         blob, normals, triangles = database.execute("SELECT vertices, normals, triangles FROM mesh").fetchone()
         vertices = [struct.unpack_from("<3d", blob, at) for at in range(0, len(blob), 24)]
@@ -310,6 +312,15 @@ class ExportGlb(unittest.TestCase):
             color = glb.json["materials"][primitive["material"]]["pbrMetallicRoughness"]["baseColorFactor"]
             self.assertLess(difference(color, [*linear(part["baseColor"]), 1]), 1e-6)
         self.assertEqual({glb.json["materials"][primitive["material"]]["name"] for primitive in glb.shape("painted")[0]["primitives"]}, {"red"})
+
+    def test_only_models_that_are_open_show_their_inside(self):
+        with open(self.path("open.obj"), "w") as file:
+            file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.simulate([{"name": "open", "shape": {"mesh": self.path("open.obj")}, "motion": "static", "collision": "none"},
+                       {"name": "closed", "shape": {"mesh": os.path.join(SOURCE, "assets", "ball.3ds")}}])
+        glb = self.export()
+        self.assertIs(glb.material("open").get("doubleSided"), True)
+        self.assertNotIn("doubleSided", glb.material("closed"))
 
     def test_names_in_mesh_files_need_not_be_utf_8(self):
         self.simulate([{"name": "frame", "shape": {"mesh": os.path.join(SOURCE, "assets", "cradle_frame.3ds")}, "motion": "static", "collision": "none"}])
