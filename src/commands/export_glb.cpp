@@ -8,10 +8,12 @@
 #include "commands/glb_file.h"
 #include "commands/glb_meshes.h"
 #include "commands/trajectory_source.h"
+#include "core/error.h"
 #include "core/interruption.h"
 #include "core/progress.h"
 #include "math/rotation.h"
 #include "render/body_place.h"
+#include "render/link_items.h"
 
 namespace cradle {
 namespace {
@@ -22,10 +24,6 @@ constexpr double kPlaneOfScene = 4;  // width of a plane, in diagonals of the bo
 constexpr double kLinkOfBody = 0.055, kLinkOfScene = 0.002;
 constexpr int kLinkFacets = 16;
 constexpr double kRounding = 1e-7;  // of a body's size: a centre of mass so near to the origin is there, in 32 bits
-
-const Surface kSpringSteel{Vec3f(0.16f, 0.165f, 0.175f), 0.6f, 0.45f};
-const Surface kRodSteel{Vec3f(0.56f, 0.57f, 0.58f), 1.0f, 0.28f};
-const Surface kHemp{Vec3f(0.36f, 0.26f, 0.15f), 0.0f, 0.85f};
 
 /// Arrays of what moves a node, an entry a frame.
 struct Track {
@@ -88,7 +86,7 @@ class GlbExport {
 
 /// Before memory is taken. What else is in the file is little, and counted when it is written.
 void GlbExport::requireFits() const {
-  const std::uint64_t bodies = std::ranges::count(scene_.bodies, Motion::dynamic, &Body::motion);
+  const auto bodies = static_cast<std::uint64_t>(std::ranges::count(scene_.bodies, Motion::dynamic, &Body::motion));
   const std::uint64_t links = scene_.springs.size() + scene_.rods.size() + scene_.ropes.size();
   GlbFile::requireFits(sizeof(float) * frameCount() * (1 + 7 * bodies + 10 * links), path_);
 }
@@ -206,8 +204,8 @@ void GlbExport::build(bool quiet) {
   addTimes();
   addBodies(placeBodies(scene_, reader_.readFrame(0)));
   linkRadius_ = linkRadius();
-  addLinks(scene_.springs, "spring", kSpringSteel);
-  addLinks(scene_.rods, "rod", kRodSteel);
+  addLinks(scene_.springs, "spring", kDarkSteel);
+  addLinks(scene_.rods, "rod", kSteel);
   addLinks(scene_.ropes, "rope", kHemp);
 
   Progress progress("Exporting", "frames", reader_.frameCount(), quiet);
