@@ -11,6 +11,7 @@
 
 #include "commands/chart_stability.h"
 #include "commands/compare.h"
+#include "commands/export_trajectory.h"
 #include "commands/inspect_mesh.h"
 #include "commands/pictures.h"
 #include "commands/simulate_scene.h"
@@ -19,7 +20,6 @@
 #include "core/interruption.h"
 #include "scene/suggestion.h"
 #include "study/study_method.h"
-#include "trajectory/export.h"
 
 namespace cradle {
 namespace {
@@ -161,11 +161,14 @@ void addQuestions(CLI::App& app, CommandLine& line) {
   compare->add_option("--tolerance", line.comparison.tolerance, "for trajectories: max |x-x_ref|/(1+|x_ref|)")
       ->capture_default_str();
 
-  auto* exported =
-      addCommand(app, line, "export", "Write a trajectory as a table", "cradle export cradle.sqlite -o cradle.csv",
-                 [&] { exportTrajectory(line.input, line.output); });
+  auto* exported = addCommand(app, line, "export", "Write a trajectory as a table, or as a model that moves",
+                              "cradle export cradle.sqlite -o cradle.csv\n  cradle export cradle.sqlite -o cradle.glb",
+                              [&] { exportTrajectory(line.input, line.output, line.quiet); });
   exported->add_option("trajectory", line.input, "trajectory file")->required();
-  addOutput(exported, line, "table to write (.csv)");
+  addOutput(
+      exported, line,
+      ".csv: a table of states; .glb: glTF 2.0, moving in simulated time, springs, rods and ropes drawn straight, "
+      "without joints, pushes, camera and lights");
 }
 
 /// Says so if what was taken for a command is none; CLI11 would only ask for one.

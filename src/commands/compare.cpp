@@ -13,7 +13,7 @@
 #include "image/comparison_report.h"
 #include "image/png.h"
 #include "trajectory/compare_trajectories.h"
-#include "trajectory/export.h"
+#include "trajectory/trajectory_file.h"
 
 namespace cradle {
 namespace {
@@ -143,12 +143,6 @@ void compareResults(const std::string& expected, const std::string& actual, cons
   if (!compareAny(expected, actual, options))
     throw Error(ErrorKind::different, "", fmt::format("{} differs from {}", actual, expected));
   fmt::print("the same\n");
-}
-
-void exportTrajectory(const std::string& trajectory, const std::string& output) {
-  if (fs::path(output).extension() != ".csv")
-    throw Error(ErrorKind::usage, output, "cannot tell the format from the name; allowed is FILE.csv");
-  exportCsv(TrajectoryReader(trajectory), output);
 }
 
 }  // namespace cradle

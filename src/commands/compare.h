@@ -16,7 +16,4 @@ struct CompareOptions {
 /// stdout, and how new pictures are accepted; throws Error(different) if they differ.
 void compareResults(const std::string& expected, const std::string& actual, const CompareOptions& options);
 
-/// `cradle export TRAJECTORY -o FILE.csv`.
-void exportTrajectory(const std::string& trajectory, const std::string& output);
-
 }  // namespace cradle

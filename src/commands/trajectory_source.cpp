@@ -38,6 +38,10 @@ std::string temporaryPath() {
 
 }  // namespace
 
+Scene sceneOf(const TrajectoryHeader& header) {
+  return parseScene(header.scene, header.scenePath, modelsOf(header)).scene;
+}
+
 TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool quiet) : quiet_(quiet) {
   if (isDatabaseFile(sceneOrTrajectory)) {
     open(sceneOrTrajectory);
@@ -58,7 +62,7 @@ TrajectorySource::~TrajectorySource() {
 
 void TrajectorySource::open(const std::string& trajectory) {
   reader_.emplace(trajectory);
-  scene_ = parseScene(reader_->header().scene, reader_->header().scenePath, modelsOf(reader_->header())).scene;
+  scene_ = sceneOf(reader_->header());
   frameCount_ = reader_->frameCount();
 }
 

@@ -12,6 +12,9 @@
 
 namespace cradle {
 
+/// The scene as a trajectory holds it: its text, with the meshes of the file. Throws as loading a scene does.
+Scene sceneOf(const TrajectoryHeader& header);
+
 /// The trajectory that a command draws: a file; or a scene to be simulated, into a temporary file that goes with the
 /// object, or beside the drawing.
 class TrajectorySource {

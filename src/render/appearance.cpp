@@ -33,11 +33,6 @@ int facetsFor(double radius) {
   return 256;
 }
 
-Surface surfaceOf(const Material& material, const std::optional<Vec3f>& fileColor) {
-  const Vec3f color = material.baseColor ? *material.baseColor : fileColor.value_or(Vec3f::Constant(0.69f));
-  return {linearFromSrgb(color), static_cast<float>(material.metallic), static_cast<float>(material.roughness)};
-}
-
 bool isDrawnAsMesh(const Shape& shape) {
   return std::holds_alternative<Box>(shape) || std::holds_alternative<Capsule>(shape) ||
          std::holds_alternative<ModelShape>(shape);
@@ -227,6 +222,11 @@ DrawnMesh makeWall(double size) {
 }
 
 }  // namespace
+
+Surface surfaceOf(const Material& material, const std::optional<Vec3f>& fileColor) {
+  const Vec3f color = material.baseColor ? *material.baseColor : fileColor.value_or(Vec3f::Constant(0.69f));
+  return {linearFromSrgb(color), static_cast<float>(material.metallic), static_cast<float>(material.roughness)};
+}
 
 Vec3f linearFromSrgb(const Vec3f& color) {
   return color.unaryExpr([](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); });

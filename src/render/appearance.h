@@ -72,6 +72,9 @@ struct Appearance {
 /// `pixelsPerMetre` at the distance of the scene decides how finely round things are divided.
 Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPerMetre);
 
+/// Of a scene's material; where it names no colour, that of a model's file (sRGB) stands.
+Surface surfaceOf(const Material& material, const std::optional<Vec3f>& fileColor);
+
 /// Linear colour of an sRGB one, channels 0..1.
 Vec3f linearFromSrgb(const Vec3f& color);
 

@@ -27,10 +27,6 @@ constexpr double kPinOfRod = 2.5, kPinLengthOfRod = 12;  // radius, of an axle t
 constexpr double kPlateOfKnob = 3.2, kPlateThickness = 0.9;
 constexpr int kGroundHalvings = 40, kThirds = 50;  // to find where a rope lies on the ground
 
-const Surface kSteel{Vec3f(0.56f, 0.57f, 0.58f), 1.0f, 0.28f};
-const Surface kDarkSteel{Vec3f(0.16f, 0.165f, 0.175f), 0.6f, 0.45f};
-const Surface kHemp{Vec3f(0.36f, 0.26f, 0.15f), 0.0f, 0.85f};
-
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -1,0 +1,230 @@
+#include "commands/export_glb.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "commands/glb_file.h"
+#include "commands/glb_meshes.h"
+#include "commands/trajectory_source.h"
+#include "core/error.h"
+#include "core/interruption.h"
+#include "core/progress.h"
+#include "math/rotation.h"
+#include "render/body_place.h"
+#include "render/link_items.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kPlaneOfScene = 4;  // width of a plane, in diagonals of the box around all bodies
+// Links have no thickness in physics: theirs is a share of a typical body's radius, and of the scene's diagonal at
+// least.
+constexpr double kLinkOfBody = 0.055, kLinkOfScene = 0.002;
+constexpr int kLinkFacets = 16;
+constexpr double kRounding = 1e-7;  // of a body's size: a centre of mass so near to the origin is there, in 32 bits
+
+/// Arrays of what moves a node, an entry a frame.
+struct Track {
+  int translation = 0, rotation = 0, scale = 0;
+  Quat last = Quat::Identity();  // in the frame before
+};
+
+/// A spring, rod or rope.
+struct Link {
+  const Anchor &anchorA, &anchorB;
+  Track track;
+};
+
+/// A square of width 1 that faces Y.
+DrawnMesh square() {
+  DrawnMesh mesh;
+  mesh.vertices = {{-0.5, 0, -0.5}, {-0.5, 0, 0.5}, {0.5, 0, 0.5}, {0.5, 0, -0.5}};
+  mesh.normals.assign(4, Vec3f::UnitY());
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+class GlbExport {
+ public:
+  GlbExport(const TrajectoryReader& reader, const std::string& path)
+      : reader_(reader),
+        path_(path),
+        scene_(sceneOf(reader.header())),
+        file_(scene_.name),
+        meshes_(reader.header(), scene_, file_) {}
+
+  void build(bool quiet);
+  void write(PartFile& file) { file_.write(path_, file); }
+
+ private:
+  std::size_t frameCount() const { return reader_.frameTimes().size(); }
+  void requireFits() const;
+  void addTimes();
+  void addBodies(const std::vector<RigidTransform>& places);
+  template <typename Links>
+  void addLinks(const Links& links, const std::string& material, const Surface& surface);
+  void addFrame(const Frame& frame);
+  void addPlanes();
+  Track addTrack(int node);
+  void setPose(std::size_t frame, const Vec3& position, const Quat& orientation, Track& track);
+  void setLink(std::size_t frame, const std::vector<RigidTransform>& places, Link& link);
+  double linkRadius() const;
+
+  const TrajectoryReader& reader_;
+  const std::string path_;
+  const Scene scene_;
+  GlbFile file_;
+  GlbMeshes meshes_;
+  int times_ = 0;
+  std::vector<Track> bodyTracks_;  // of dynamic bodies
+  std::vector<Link> links_;
+  Bounds bounds_;  // m, world, of bodies at the start, and then of their places
+  double linkRadius_ = 0;
+};
+
+/// Before memory is taken. What else is in the file is little, and counted when it is written.
+void GlbExport::requireFits() const {
+  const auto bodies = static_cast<std::uint64_t>(std::ranges::count(scene_.bodies, Motion::dynamic, &Body::motion));
+  const std::uint64_t links = scene_.springs.size() + scene_.rods.size() + scene_.ropes.size();
+  GlbFile::requireFits(sizeof(float) * frameCount() * (1 + 7 * bodies + 10 * links), path_);
+}
+
+void GlbExport::addTimes() {
+  const std::vector<double>& times = reader_.frameTimes();
+  if (times.empty()) throw Error(ErrorKind::usage, reader_.path(), "has no frames yet");
+  times_ = file_.addVectors(times.size(), 1);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (i > 0 && static_cast<float>(times[i]) <= static_cast<float>(times[i - 1]))
+      throw Error(ErrorKind::usage, reader_.path(),
+                  fmt::format("has frames at {} and {} s, which the 32-bit times of a .glb cannot tell apart; export "
+                              "FILE.csv, or simulate with fewer frames per second",
+                              times[i - 1], times[i]));
+    file_.set(times_, i, Eigen::Matrix<double, 1, 1>(times[i]));
+  }
+}
+
+Track GlbExport::addTrack(int node) {
+  Track track;
+  track.translation = file_.addVectors(frameCount(), 3);
+  track.rotation = file_.addVectors(frameCount(), 4);
+  file_.animate(node, "translation", times_, track.translation);
+  file_.animate(node, "rotation", times_, track.rotation);
+  return track;
+}
+
+void GlbExport::addBodies(const std::vector<RigidTransform>& places) {
+  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+    const Body& body = scene_.bodies[i];
+    if (std::holds_alternative<Plane>(body.shape)) continue;
+    const Bounds local = localBounds(scene_, body);
+    bounds_.extend(transformed(local, places[i]));
+    const bool isDynamic = body.motion == Motion::dynamic;
+    const Vec3 center = isDynamic ? body.massProperties.centerOfMass : Vec3::Zero();
+    int node = file_.addNode(body.name, {places[i].rotation, places[i] * center});
+    if (isDynamic) bodyTracks_.push_back(addTrack(node));
+    if (center.norm() > kRounding * local.diagonal().norm())
+      node = file_.addNode(body.name + " shape", {Quat::Identity(), -center}, node);
+    file_.setMesh(node, meshes_.ofBody(i));
+  }
+}
+
+double GlbExport::linkRadius() const {
+  std::vector<double> radii;
+  for (const Body& body : scene_.bodies)
+    if (body.motion == Motion::dynamic) radii.push_back(localBounds(scene_, body).sizes().minCoeff() / 2);
+  const auto middle = radii.begin() + std::ssize(radii) / 2;
+  std::nth_element(radii.begin(), middle, radii.end());
+  return std::max(radii.empty() ? 0 : kLinkOfBody * *middle, kLinkOfScene * bounds_.diagonal().norm());
+}
+
+template <typename Links>
+void GlbExport::addLinks(const Links& links, const std::string& material, const Surface& surface) {
+  if (links.empty()) return;
+  const int mesh = meshes_.add(material, tessellate(Cylinder{1, 1}, kLinkFacets), material, surface);
+  for (const auto& link : links) {
+    const int node = file_.addNode(link.name, {});
+    file_.setMesh(node, mesh);
+    Track track = addTrack(node);
+    track.scale = file_.addVectors(frameCount(), 3);
+    file_.animate(node, "scale", times_, track.scale);
+    links_.push_back({link.anchorA, link.anchorB, track});
+  }
+}
+
+/// Of q and -q, the one next to that of the frame before, so that what lies between is the short way.
+void GlbExport::setPose(std::size_t frame, const Vec3& position, const Quat& orientation, Track& track) {
+  const double sign = track.last.dot(orientation) < 0 ? -1 : 1;
+  track.last.coeffs() = sign * orientation.coeffs();
+  file_.set(track.translation, frame, position);
+  file_.set(track.rotation, frame, track.last.coeffs());
+}
+
+/// The unit cylinder between the ends. It turns from frame to frame as little as it can.
+void GlbExport::setLink(std::size_t frame, const std::vector<RigidTransform>& places, Link& link) {
+  const Vec3 a = worldPoint(link.anchorA, places), b = worldPoint(link.anchorB, places);
+  const double length = (a - b).norm();
+  const Vec3 axis = link.track.last * Vec3::UnitY();
+  const Quat turn = length > 0 ? rotationBetween(axis, a - b) : Quat::Identity();
+  setPose(frame, (a + b) / 2, (turn * link.track.last).normalized(), link.track);
+  file_.set(link.track.scale, frame, Vec3(linkRadius_, length, linkRadius_));
+}
+
+void GlbExport::addFrame(const Frame& frame) {
+  const auto number = static_cast<std::size_t>(frame.number);
+  for (std::size_t i = 0; i < bodyTracks_.size(); ++i) {
+    const BodyState& state = frame.states.at(i);
+    setPose(number, state.position, state.orientation, bodyTracks_[i]);
+    bounds_.extend(state.position);
+  }
+  if (links_.empty()) return;
+  const std::vector<RigidTransform> places = placeBodies(scene_, frame);
+  for (Link& link : links_) setLink(number, places, link);
+}
+
+void GlbExport::addPlanes() {
+  const double width = bounds_.isEmpty() ? 1 : kPlaneOfScene * bounds_.diagonal().norm();
+  DrawnMesh drawn = square();
+  for (Vec3& vertex : drawn.vertices) vertex *= width;
+  for (const Body& body : scene_.bodies) {
+    const Plane* plane = std::get_if<Plane>(&body.shape);
+    if (plane == nullptr) continue;
+    const Material& material = scene_.materials.at(static_cast<std::size_t>(body.material));
+    const Vec3 normal = body.worldFromBody.rotation * plane->normal, point = body.worldFromBody.translation;
+    const Vec3 middle = bounds_.isEmpty() ? point : Vec3(bounds_.center());
+    const int node = file_.addNode(
+        body.name, {rotationBetween(Vec3::UnitY(), normal), middle - normal.dot(middle - point) * normal});
+    file_.setMesh(node, meshes_.add("plane", drawn, material.name, surfaceOf(material, {})));
+  }
+}
+
+void GlbExport::build(bool quiet) {
+  requireFits();
+  addTimes();
+  addBodies(placeBodies(scene_, reader_.readFrame(0)));
+  linkRadius_ = linkRadius();
+  addLinks(scene_.springs, "spring", kDarkSteel);
+  addLinks(scene_.rods, "rod", kSteel);
+  addLinks(scene_.ropes, "rope", kHemp);
+
+  Progress progress("Exporting", "frames", reader_.frameCount(), quiet);
+  for (long number = 0; number < reader_.frameCount(); ++number) {
+    throwIfInterrupted();
+    addFrame(reader_.readFrame(number));
+    progress.update(number + 1);
+  }
+  addPlanes();
+}
+
+}  // namespace
+
+void exportGlb(const TrajectoryReader& reader, const std::string& path, bool quiet) {
+  PartFile file(path);
+  GlbExport glb(reader, path);
+  glb.build(quiet);
+  glb.write(file);
+  file.complete();
+}
+
+}  // namespace cradle

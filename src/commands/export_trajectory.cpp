@@ -1,0 +1,21 @@
+#include "commands/export_trajectory.h"
+
+#include <filesystem>
+
+#include "commands/export_glb.h"
+#include "core/error.h"
+#include "trajectory/export.h"
+
+namespace cradle {
+
+void exportTrajectory(const std::string& trajectory, const std::string& output, bool quiet) {
+  const std::filesystem::path ending = std::filesystem::path(output).extension();
+  if (ending == ".csv")
+    exportCsv(TrajectoryReader(trajectory), output);
+  else if (ending == ".glb")
+    exportGlb(TrajectoryReader(trajectory), output, quiet);
+  else
+    throw Error(ErrorKind::usage, output, "cannot tell the format from the name; allowed are FILE.csv and FILE.glb");
+}
+
+}  // namespace cradle
