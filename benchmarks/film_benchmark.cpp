@@ -156,6 +156,10 @@ void run(const Job& job) {
 }  // namespace cradle
 
 int main(int count, char** arguments) {
+  if (count != 2 && count != 4) {
+    fmt::print(stderr, "usage: benchmark_film SCENE [WIDTH HEIGHT]\n");
+    return 2;
+  }
   const int width = count > 3 ? std::atoi(arguments[2]) : 1280, height = count > 3 ? std::atoi(arguments[3]) : 720;
   const auto folder = std::filesystem::temp_directory_path();
   cradle::run({arguments[1], (folder / fmt::format("benchmark-film-{}.mp4", getpid())).string(), width, height});

@@ -63,6 +63,10 @@ void run(const std::string& trajectory, int width, int height) {
 }  // namespace cradle
 
 int main(int count, char** arguments) {
+  if (count != 2 && count != 4) {
+    fmt::print(stderr, "usage: benchmark_redraw TRAJECTORY [WIDTH HEIGHT]\n");
+    return 2;
+  }
   const int width = count > 3 ? std::atoi(arguments[2]) : 1280, height = count > 3 ? std::atoi(arguments[3]) : 720;
   cradle::run(arguments[1], width, height);
 }

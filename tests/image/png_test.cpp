@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "core/error.h"
 #include "image/temporary_folder.h"
@@ -59,6 +60,20 @@ TEST(Png, PictureReadsBackAsItWasWritten) {
 TEST(Png, SamePictureGivesSameBytes) {
   EXPECT_EQ(encodePng(makeTestPicture(300, 200, 1)), encodePng(makeTestPicture(300, 200, 1)));
   EXPECT_NE(encodePng(makeTestPicture(300, 200, 1)), encodePng(makeTestPicture(300, 200, 2)));
+}
+
+TEST(Png, BytesDoNotDependOnThePicturesBefore) {
+  std::vector<std::vector<std::uint8_t>> first;
+  const std::vector<std::pair<int, int>> sizes = {{300, 200}, {9, 5}, {640, 361}, {31, 400}};
+  for (int round = 0; round < 3; ++round)
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      const std::vector<std::uint8_t> bytes = encodePng(makeTestPicture(sizes[i].first, sizes[i].second, 1));
+      if (round == 0) first.push_back(bytes);
+      EXPECT_EQ(bytes, first[i]) << i;
+    }
+  std::vector<std::uint8_t> elsewhere;
+  std::thread([&] { elsewhere = encodePng(makeTestPicture(640, 361, 1)); }).join();
+  EXPECT_EQ(elsewhere, first[2]);
 }
 
 TEST(Png, EveryRowIsFilteredByTheDifferenceToTheLeft) {
