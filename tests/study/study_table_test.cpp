@@ -9,6 +9,7 @@
 
 #include "core/csv_field.h"
 #include "core/error.h"
+#include "image/temporary_folder.h"
 #include "study/growing_table.h"
 #include "study/unfinished_study.h"
 
@@ -52,14 +53,14 @@ TEST(StudyTable, ARunWithoutAnEndHasNoNumbers) {
 }
 
 TEST(StudyTable, ItsLastLinesAreReplacedAndItGoesOn) {
-  const std::string path = (std::filesystem::temp_directory_path() / "cradle_growing_table.csv").string();
+  const TemporaryFolder folder;
+  const std::string path = folder / "growing.csv";
   GrowingTable table(path, "columns\n");
   for (const char* line : {"one\n", "two\n", "three\n"}) table.append(line);
   table.replaceLast({"second\n", "3\n"});
   table.append("four\n");
   table.complete();
   EXPECT_EQ(content(path), "columns\none\nsecond\n3\nfour\n");
-  std::filesystem::remove(path);
 }
 
 TEST(StudyTable, ALineReadsBackToTheSameRow) {
@@ -76,8 +77,8 @@ TEST(StudyTable, ALineReadsBackToTheSameRow) {
 }
 
 TEST(GrowingTable, LinesAreInThePartAtOnceAndInTheFileInTheEnd) {
-  const std::string path = ::testing::TempDir() + "growing_table_test.csv", part = path + ".part";
-  std::filesystem::remove(path);
+  const TemporaryFolder folder;
+  const std::string path = folder / "growing.csv", part = path + ".part";
   {
     GrowingTable table(path, "x,y\n");
     table.append("1,2\n");
@@ -89,14 +90,12 @@ TEST(GrowingTable, LinesAreInThePartAtOnceAndInTheFileInTheEnd) {
   table.complete();
   EXPECT_EQ(content(path), "x,y\n3,4\n");
   EXPECT_FALSE(std::filesystem::exists(part));
-  std::filesystem::remove(path);
 }
 
 /// What a study of the scenes `begun` leaves when it is stopped in the middle of a line.
-std::string interruptedStudy(const std::vector<StudyOrigin>& begun) {
-  const std::string folder = ::testing::TempDir();
-  GrowingTable rows(folder + "unfinished.csv", kStudyColumns);
-  GrowingTable references(folder + "unfinished_references.csv", kReferenceColumns);
+void leaveInterruptedStudy(const TemporaryFolder& folder, const std::vector<StudyOrigin>& begun) {
+  GrowingTable rows(folder / "unfinished.csv", kStudyColumns);
+  GrowingTable references(folder / "unfinished_references.csv", kReferenceColumns);
   for (const StudyOrigin& origin : begun) {
     references.append(tableLine(ReferenceLine{origin, {{}, 2e-13, "DOP853, fine", "RK4 agrees"}}));
     StudyRow row = goodRow();
@@ -104,16 +103,17 @@ std::string interruptedStudy(const std::vector<StudyOrigin>& begun) {
     rows.append(tableLine(row));
   }
   rows.append("pendulum,cradle,rk4,0.00");
-  return folder;
 }
 
-UnfinishedStudy readIn(const std::string& folder, const std::vector<StudyOrigin>& origins) {
-  return readUnfinishedStudy(folder + "unfinished.csv", folder + "unfinished_references.csv", origins);
+UnfinishedStudy readIn(const TemporaryFolder& folder, const std::vector<StudyOrigin>& origins) {
+  return readUnfinishedStudy(folder / "unfinished.csv", folder / "unfinished_references.csv", origins);
 }
 
 TEST(UnfinishedStudy, HasTheRowsThatAreWhole) {
   const std::vector<StudyOrigin> scenes = {{"a", "1"}, {"b", "2"}, {"c", "3"}};
-  const UnfinishedStudy study = readIn(interruptedStudy({scenes[0], scenes[1]}), scenes);
+  const TemporaryFolder folder;
+  leaveInterruptedStudy(folder, {scenes[0], scenes[1]});
+  const UnfinishedStudy study = readIn(folder, scenes);
   ASSERT_EQ(study.rows.size(), 2U);
   EXPECT_TRUE(study.rows[0].isEarlier);
   EXPECT_EQ(study.rowsOf("b").size(), 1U);
@@ -126,7 +126,8 @@ TEST(UnfinishedStudy, HasTheRowsThatAreWhole) {
 }
 
 TEST(UnfinishedStudy, OfOtherScenesOrAnotherProgramIsRefused) {
-  const std::string folder = interruptedStudy({{"a", "1"}, {"b", "2"}});
+  const TemporaryFolder folder;
+  leaveInterruptedStudy(folder, {{"a", "1"}, {"b", "2"}});
   for (const std::vector<StudyOrigin>& others : std::vector<std::vector<StudyOrigin>>{
            {{"a", "1"}}, {{"b", "2"}, {"a", "1"}}, {{"a", "1"}, {"b", "another"}}, {{"c", "1"}, {"b", "2"}}})
     EXPECT_THROW(readIn(folder, others), Error);
