@@ -127,6 +127,13 @@ Collider colliderOf(const ConvexHull& hull, const RigidTransform& bodyFromShape)
   return colliderOf(polytopeOf(placed));
 }
 
+bool isPinned(const Collider& collider, const Vec3& point, double tolerance) {
+  return std::any_of(collider.pins.begin(), collider.pins.end(), [&](const PinnedPlace& pin) {
+    const Vec3 arm = point - pin.point;
+    return (arm - pin.axis.dot(arm) * pin.axis).norm() <= tolerance;
+  });
+}
+
 double smallestSize(const ContactGeometry& geometry) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const Collider& collider : geometry.colliders)

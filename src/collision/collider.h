@@ -12,6 +12,13 @@ namespace cradle {
 
 struct MeshSurface;
 
+/// A place of a moving body that a joint with something fixed keeps where it is: its anchor, and with a hinge all of
+/// the axis through it. Surfaces that touch something fixed there can neither part nor close.
+struct PinnedPlace {
+  Vec3 point = Vec3::Zero();  // m, from the centre of mass in the body's frame
+  Vec3 axis = Vec3::Zero();   // unit, body's frame: of a hinge; zero: a ball joint
+};
+
 enum class ColliderKind { ball, capsule, cylinder, polytope, mesh };
 
 /// The shape of a body for contact: a core, and a ball of `radius` around each of its points. The core of a ball is a
@@ -29,6 +36,7 @@ struct Collider {
   std::shared_ptr<const MeshSurface> mesh =
       {};  // of a mesh, shared by all bodies of a model; of a polytope that meets meshes
   RigidTransform bodyFromMesh = {};
+  std::vector<PinnedPlace> pins = {};
 
   bool isBall() const { return points.size() == 1; }
   ColliderKind kind() const {
@@ -44,6 +52,9 @@ Collider colliderOf(const Box& box, const RigidTransform& bodyFromShape);
 Collider colliderOf(const Cylinder& cylinder, const RigidTransform& bodyFromShape);
 Collider colliderOf(const Capsule& capsule, const RigidTransform& bodyFromShape);
 Collider colliderOf(const ConvexHull& hull, const RigidTransform& bodyFromShape);
+
+/// Whether a joint keeps a point of a collider (m, its frame) where it is, to `tolerance` (m) however the body turns.
+bool isPinned(const Collider& collider, const Vec3& point, double tolerance);
 
 /// Of a point in the collider's frame. Exact, inside and outside.
 SurfacePoint nearestSurfacePoint(const Collider& collider, const Vec3& point);

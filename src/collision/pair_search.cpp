@@ -13,7 +13,10 @@ namespace {
 // Of the smaller radius: edges of meshes may graze each other so deep unseen. What does is apart at two looks, and at
 // the rates of a body in free motion by far less.
 constexpr double kGrazePart = 1e-4;
-constexpr int kMostLooks = 1000;           // for directions, at a pair whose edges stay within a hair of each other
+constexpr int kMostLooks = 1000;  // for directions, at a pair whose edges stay within a hair of each other
+// Of a size: how far round surfaces sink in where a joint holds them before they press. From there the arm to the joint
+// is long enough for an impulse to turn the body: 3e-5 of the size.
+constexpr double kPinnedBand = 5e-10;
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
 Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
@@ -48,6 +51,7 @@ PairSearch::PairSearch(ImpactSearch& scratch, const Step& step, std::size_t pair
 
 void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   feature_ = 0;
+  const bool isPinned = !pair_.againstPlane && hasPinnedPlaces(geometry_, pair_);
   if (isHeld(touching) && !pair_.againstPlane && hasOneContact()) return;  // there is no other
   findBounds();
   const double reach = bounds_.speed + touching.tolerance;
@@ -59,12 +63,12 @@ void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTi
   appendFeaturesWithin(geometry_, pair_, startA_, reach, scratch_.features_);
   for (const std::size_t feature : scratch_.features_) {
     feature_ = feature;
-    held_ = isHeld(touching) ? touching.held : nullptr;
+    held_ = isPinned || isHeld(touching) ? &touching.heldFeatures() : nullptr;
     if (held_ && pair_.againstPlane && a_.kind() == ColliderKind::cylinder) {
       searchHeldRim(touching, best);
       continue;
     }
-    if (held_ && hasOneContact()) continue;
+    if (isHeld(touching) && hasOneContact()) continue;
     if (held_ && (apart_ || hasMesh(a_, geometry_.colliders[pair_.b]))) lookBlindly();
     const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_, reach);
     searchFeature(start, touching, best);
@@ -162,6 +166,8 @@ void PairSearch::searchCorners(const TouchingFeatures& touching, std::optional<I
 
 bool PairSearch::isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const {
   const double near = kHeldPlace * upper.boundingRadius;
+  if (hasPinnedPlaces(geometry_, pair_) && isPinned(upper, upper.points[feature_], kPinnedPart * upper.boundingRadius))
+    return true;
   return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
            const Attachment& corner = held.contact.centerA;
            return held.pair == pairIndex_ && corner.body == upper.body &&
@@ -193,8 +199,9 @@ bool PairSearch::staysOnePoint() const {
 /// no more than the dead band, has that.
 void PairSearch::searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   const double lowest = std::min(0.0, start), speed = leavingSpeed(touching.tolerance) * step_.timeStep;
+  const double band = deadBand(touching);
   if (apart_) bounds_.graze = touching.tolerance;  // flush faces would be looked at for ever
-  if (!(speed > touching.deadBand)) return searchFrom(0, start, lowest - touching.deadBand, best);
+  if (!(speed > band)) return searchFrom(0, start, lowest - band, best);
   const bool hasOnePoint = std::isfinite(bounds_.acceleration) && staysOnePoint();
   if (hasOnePoint && speed >= 0.5 * pull_) return;
   const double from = std::min(speed / pull_, hasOnePoint ? 1 : kFirstLook);
@@ -202,7 +209,14 @@ void PairSearch::searchTouching(double start, const TouchingFeatures& touching, 
   if (away > lowest)
     searchFrom(from, away, lowest, best);
   else
-    searchFrom(0, start, lowest - touching.deadBand, best);  // a leap within rounding
+    searchFrom(0, start, lowest - band, best);  // a leap within rounding
+}
+
+/// m: how far a feature that touches without a load may sink in.
+double PairSearch::deadBand(const TouchingFeatures& touching) const {
+  if (!hasPinnedPlaces(geometry_, pair_)) return touching.deadBand;
+  return std::max(touching.deadBand,
+                  kPinnedBand * (a_.body != kFixed ? a_ : geometry_.colliders[pair_.b]).boundingRadius);
 }
 
 /// Where the gap falls to `threshold` (m).

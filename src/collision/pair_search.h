@@ -38,6 +38,7 @@ class PairSearch {
   bool isHeld(const TouchingFeatures& touching) const;
   bool hasOneContact() const;
   bool staysOnePoint() const;
+  double deadBand(const TouchingFeatures& touching) const;
   double leavingSpeed(double tolerance);
   Vec3 lowestPoint(const Vec3& planeNormal) const;
   double gap(double fraction);

@@ -1,5 +1,6 @@
 #include "collision/separation.h"
 
+#include <cmath>
 #include <limits>
 
 #include "collision/contact_reduction.h"
@@ -130,7 +131,39 @@ Vec3 pointVelocity(const Contact& contact, int body, const VectorX& places, cons
   return linearVelocity(velocities, body) + angularVelocity(velocities, body).cross(arm);
 }
 
+/// Whether the surface of a moving collider turns about a joint where it is at a contact: about a ball's centre, or
+/// about the point itself.
+bool isPinnedAt(const Collider& collider, const ContactPoint& contact, double radius, const RigidTransform& frame,
+                double side) {
+  if (collider.pins.empty()) return false;
+  const double depth = std::isfinite(radius) ? radius : 0;
+  const Vec3 center = contact.point + side * (depth + contact.separation / 2) * contact.normal;
+  return isPinned(collider, frame.inverse() * center, kPinnedPart * collider.boundingRadius);
+}
+
+/// Of a contact with something fixed.
+bool isPinnedContact(const ContactGeometry& geometry, const ColliderPair& pair, const ContactPoint& contact,
+                     const RigidTransform& worldFromA, const RigidTransform& worldFromB) {
+  if (!hasPinnedPlaces(geometry, pair)) return false;
+  const Collider& a = geometry.colliders[pair.a];
+  if (a.body != kFixed) return isPinnedAt(a, contact, contact.radiusA, worldFromA, -1);
+  return isPinnedAt(geometry.colliders[pair.b], contact, contact.radiusB, worldFromB, 1);
+}
+
 }  // namespace
+
+bool hasPinnedPlaces(const ContactGeometry& geometry, const ColliderPair& pair) {
+  const Collider& a = geometry.colliders[pair.a];
+  const int bodyB = bodyBOf(geometry, pair);
+  if (a.body != kFixed && bodyB != kFixed) return false;
+  return !a.pins.empty() || (!pair.againstPlane && !geometry.colliders[pair.b].pins.empty());
+}
+
+bool isPinnedFeature(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature) {
+  const Collider& a = geometry.colliders[pair.a];
+  return pair.againstPlane && !a.pins.empty() && a.kind() != ColliderKind::cylinder &&
+         isPinned(a, a.points[feature], kPinnedPart * a.boundingRadius);
+}
 
 Vec3 relativeVelocity(const Contact& contact, const VectorX& state) {
   return relativeVelocity(contact, state, state);
@@ -170,7 +203,7 @@ void appendFeaturesWithin(const ContactGeometry& geometry, const ColliderPair& p
   const double rounding = kTurnRounding * (distance + a.boundingRadius);
   const double highest = reach + a.radius - plane.normal.dot(worldFromA.translation - plane.point) + rounding;
   for (std::size_t i = 0; i < a.points.size(); ++i)
-    if (normal.dot(a.points[i]) <= highest) features.push_back(i);
+    if (normal.dot(a.points[i]) <= highest && !isPinnedFeature(geometry, pair, i)) features.push_back(i);
 }
 
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature,
@@ -217,7 +250,7 @@ void appendContacts(const ContactGeometry& geometry, std::size_t index, const Ve
   const RigidTransform worldFromA = poseOf(state, bodyA), worldFromB = poseOf(state, bodyB);
   if (separationBound(geometry, pair, worldFromA, worldFromB) > margin) return;
   for (const ContactPoint& found : contactPoints(geometry, pair, worldFromA, worldFromB, margin))
-    if (found.separation <= margin)
+    if (found.separation <= margin && !isPinnedContact(geometry, pair, found, worldFromA, worldFromB))
       contacts.push_back(
           {index, bodyA, bodyB, found.point, found.normal, found.separation, found.radiusA, found.radiusB});
 }

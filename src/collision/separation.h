@@ -21,6 +21,16 @@ struct Contact {
   int movingBody() const { return bodyA != kFixed ? bodyA : bodyB; }
 };
 
+constexpr double kPinnedPart = 1e-8;  // of a size: what turns about a joint so near to it stays where it is
+
+/// Whether a joint holds feature number `feature` of a pair (a corner, or the ball around an end, over a plane), so
+/// that its gap stays as it is.
+bool isPinnedFeature(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature);
+
+/// Whether a joint holds places of a pair where its surfaces may touch: then its separation may be theirs for ever, and
+/// contacts beside them are those that appendContacts finds.
+bool hasPinnedPlaces(const ContactGeometry& geometry, const ColliderPair& pair);
+
 /// Velocity (m/s, world) of B's surface relative to A's at a contact: contactNormal . velocity < 0 is closing.
 Vec3 relativeVelocity(const Contact& contact, const VectorX& state);
 
@@ -55,7 +65,8 @@ Vec3 nearestOnSurface(const Collider& collider, const Vec3& point);
 double separationBound(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
                        const RigidTransform& worldFromB);
 
-/// Appends the contacts of one pair with separation <= margin (m). Two balls with one centre get the normal +y.
+/// Appends the contacts of one pair with separation <= margin (m), but those that a joint holds as they are. Two balls
+/// with one centre get the normal +y.
 void appendContacts(const ContactGeometry& geometry, std::size_t pair, const VectorX& state, double margin,
                     std::vector<Contact>& contacts);
 

@@ -21,7 +21,7 @@ double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& to
            impact.threshold;
   }
   if (!impact.isOfOthers) return separation(geometry_, pair, impact.feature, state) - impact.threshold;
-  return gapOfOthers(impact.pair, *touching.held, state, a.boundingRadius) - impact.threshold;
+  return gapOfOthers(impact.pair, touching.heldFeatures(), state, a.boundingRadius) - impact.threshold;
 }
 
 std::optional<ImpactTime> ImpactSearch::first(const Step& step, const TouchingFeatures& touching) {

@@ -35,6 +35,11 @@ struct TouchingFeatures {
   double deadBand = std::numeric_limits<double>::infinity();
   const std::vector<HeldFeature>* held =
       nullptr;  // passed over; other points of the same pair are not: something keeps them together
+
+  const std::vector<HeldFeature>& heldFeatures() const {
+    static const std::vector<HeldFeature> none;
+    return held ? *held : none;
+  }
 };
 
 /// Searches steps for the first instant at which two features come together: apart by more than the tolerance, leaving

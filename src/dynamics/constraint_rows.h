@@ -18,7 +18,8 @@ struct BallJointConstraint {
   Attachment anchorA, anchorB;
 };
 
-/// A ball joint that turns about one axis only: C = axis . across = 0 for two directions across it. Five rows.
+/// A ball joint that turns about one axis only: C = axis . across = 0 for two directions across it. Five rows. With a
+/// zero in place of one of them the axis stays across the other alone.
 struct HingeConstraint {
   Attachment anchorA, anchorB;
   Vec3 axisA = Vec3::UnitZ();     // unit, in body A's frame

@@ -3,13 +3,8 @@
 #include <cmath>
 
 namespace cradle {
-namespace {
 
 using Index = Eigen::Index;
-
-constexpr double kImmobilePart = 1e-12;  // of the inverse mass without ties, which take part to 1e-16
-
-}  // namespace
 
 Mat3 contactAxes(const Vec3& normal) {
   // Gram-Schmidt on the world's axis that is farthest from the normal.
@@ -33,9 +28,10 @@ ContactCones::ContactCones(const std::vector<Contact>& contacts, const ImpulseRe
     inverseMass_.col(static_cast<Index>(column)) = velocitiesIn(answers_[column]);
   inverseMass_ = (0.5 * (inverseMass_ + inverseMass_.transpose())).eval();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const double untied = contacts[i].normal.dot(response.untiedInverseMassAt(contacts[i], state) * contacts[i].normal);
     const Index normal = 3 * static_cast<Index>(i) + 2;
-    isImmobile_.push_back(inverseMass_(normal, normal) <= kImmobilePart * untied);
+    isImmobile_.push_back(cradle::isImmobile(contacts[i], response, state, inverseMass_(normal, normal)));
+    const Mat3 untied = response.untiedInverseMassAt(contacts[i], state);
+    leverages_.push_back(inverseMass_(normal, normal) / contacts[i].normal.dot(untied * contacts[i].normal));
   }
 }
 

@@ -22,6 +22,10 @@ class ContactCones {
   /// What ties the bodies lets a contact neither open nor close.
   bool isImmobile(std::size_t contact) const { return isImmobile_[contact] != 0; }
 
+  /// The inverse mass along a contact's normal in parts of what it were without ties: about (arm / size)^2 where a
+  /// joint holds the body near the contact.
+  double leverage(std::size_t contact) const { return leverages_[contact]; }
+
   /// Velocities (m/s) of all contacts, of bodies at the places of the start that move as in `velocities`, a state.
   VectorX velocitiesIn(const VectorX& velocities) const;
 
@@ -40,6 +44,7 @@ class ContactCones {
   std::vector<VectorX> answers_;  // velocities that a unit impulse gives, three for each contact
   MatrixX inverseMass_;
   std::vector<char> isImmobile_;
+  std::vector<double> leverages_;
 };
 
 }  // namespace cradle

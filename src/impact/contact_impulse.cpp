@@ -5,6 +5,8 @@
 namespace cradle {
 namespace {
 
+constexpr double kImmobilePart = 1e-12;  // of the inverse mass without ties, which take part to 1e-16
+
 Vec3 armOf(const Contact& contact, int body, const VectorX& state) {
   return body == kFixed ? Vec3::Zero() : Vec3(contact.point - centerOfMass(state, body));
 }
@@ -21,6 +23,20 @@ Mat3 inverseMassOf(const Contact& contact, int body, const std::vector<RigidBody
 
 Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state) {
   return inverseMassOf(contact, contact.bodyA, bodies, state) + inverseMassOf(contact, contact.bodyB, bodies, state);
+}
+
+bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass) {
+  if (!response.areTied()) return false;
+  return inverseMass <=
+         kImmobilePart * contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
+}
+
+void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts) {
+  if (!response.areTied()) return;
+  std::erase_if(contacts, [&](const Contact& contact) {
+    const VectorX answer = response.answerTo(contact, contact.normal, state);
+    return isImmobile(contact, response, state, contact.normal.dot(relativeVelocity(contact, state, answer)));
+  });
 }
 
 Mat3 ImpulseResponse::inverseMassAt(const Contact& contact, const VectorX& state) const {

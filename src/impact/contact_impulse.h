@@ -11,6 +11,15 @@ namespace cradle {
 /// relative to A there, in 1/kg, for bodies that nothing ties.
 Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state);
 
+class ImpulseResponse;
+
+/// Whether what ties the bodies holds a contact whose inverse mass along its normal is `inverseMass` (1/kg): it can
+/// neither open nor close.
+bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass);
+
+/// Erases such contacts.
+void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts);
+
 /// How bodies answer to impulses at contacts. What ties them answers within the same impulse: W = M^-1 - M^-1 B^T
 /// (B M^-1 B^T)^-1 B M^-1 stands in place of M^-1, B the rows of their constraints.
 class ImpulseResponse {

@@ -18,16 +18,8 @@ namespace {
 using Index = Eigen::Index;
 
 constexpr double kReflectionClosedPart = 1e-12;  // of the fastest speed: what is left is rounding
-constexpr double kImmobileRowPart = 1e-12;       // of the inverse mass without ties, which take part to 1e-16
 constexpr long kMostReflections = 10000;         // for each contact; a row of n balls needs n
 constexpr long kMostMixedReflections = 100;      // restitutions that differ: then one impact without rebound ends it
-
-/// Whether what ties the bodies holds a contact with such an inverse mass (1/kg) along its normal.
-bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass) {
-  if (!response.areTied()) return false;
-  return inverseMass <=
-         kImmobileRowPart * contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
-}
 
 /// An impact by the normals of its contacts alone: speeds J v and inverse masses J W J^T.
 class NormalImpact {

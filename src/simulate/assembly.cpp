@@ -7,6 +7,7 @@
 #include "collision/broad_phase.h"
 #include "core/error.h"
 #include "simulate/colliders.h"
+#include "simulate/pinned_contacts.h"
 #include "simulate/steps/step_limit.h"
 
 namespace cradle {
@@ -189,6 +190,7 @@ Assembly assemble(const Scene& scene, const IslandPlan& island) {
   excludeUnsolved(assembly.geometry);
   std::sort(assembly.geometry.excluded.begin(), assembly.geometry.excluded.end());
   BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0, assembly.geometry);
+  constrainPinnedContacts(assembly);
   satisfyConstraints(scene, assembly);
   if (const auto fault = stepFault(assembly.mechanism, assembly.state, island.method, scene.duration))
     assembly.warnings.push_back(

@@ -88,8 +88,8 @@ void EventContacts::resolve(const std::optional<ContactChange>& change, const st
   for (std::size_t body = 0; body < island_.assembly.mechanism.bodies.size(); ++body)
     rested.push_back(island_.equations.isResting(body));
   restDelay_ = 0;
-  findTouching(meeting);
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
+  findTouching(meeting);
   collide();
   lasting_.letGo(change);
   settle();
@@ -110,23 +110,25 @@ void EventContacts::keepTogether() {
   bookDifference(before, island_.assembly.mechanism, island_.state);
 }
 
-/// What meets now touches, if its gap is known to that or not.
+/// What touches and can part or close: a place that ties hold where it is does neither, whatever acts.
 void EventContacts::findTouching(const std::optional<std::size_t>& meeting) {
+  findNear(meeting);
+  eraseImmobile(ImpulseResponse(island_.assembly.mechanism.bodies, solver_), island_.state, touching_);
+  for (Contact& contact : touching_) findCorner(island_.assembly.geometry, island_.state, contact);
+}
+
+/// What meets now touches, if its gap is known to that or not.
+void EventContacts::findNear(const std::optional<std::size_t>& meeting) {
   const ContactGeometry& geometry = island_.assembly.geometry;
   findContacts(geometry, island_.state, touchTolerance_, touching_);
   const auto isOfMeeting = [&](const Contact& contact) { return contact.pair == *meeting; };
-  if (!meeting || std::any_of(touching_.begin(), touching_.end(), isOfMeeting)) return findCorners();
+  if (!meeting || std::any_of(touching_.begin(), touching_.end(), isOfMeeting)) return;
   std::vector<Contact> near;
   appendContacts(geometry, *meeting, island_.state, kMostTouchError * size_, near);
   const auto nearest = std::min_element(near.begin(), near.end(), [](const Contact& left, const Contact& right) {
     return left.separation < right.separation;
   });
   if (nearest != near.end()) touching_.push_back(*nearest);
-  findCorners();
-}
-
-void EventContacts::findCorners() {
-  for (Contact& contact : touching_) findCorner(island_.assembly.geometry, island_.state, contact);
 }
 
 /// Contacts that close are impacts, and then all that touch each other there, and all ropes that cannot lengthen, take

@@ -35,7 +35,7 @@ class EventContacts {
 
  private:
   void findTouching(const std::optional<std::size_t>& meeting);
-  void findCorners();
+  void findNear(const std::optional<std::size_t>& meeting);
   void collide();
   Islands findStruckTogether(const std::vector<ImpactContact>& ropes) const;
   void strike(const Islands& together, int group, std::vector<ImpactContact>& ropes);

@@ -15,7 +15,8 @@ constexpr double kGrowingReach = 16;
 }  // namespace
 
 // The Illinois variant of regula falsi (M. Dowell, P. Jarratt, 1971).
-void endStepAtEvent(MovingIsland& island, Integrator integrate, const EventWindow& window, const EventMargin& margin) {
+double endStepAtEvent(MovingIsland& island, Integrator integrate, const EventWindow& window,
+                      const EventMargin& margin) {
   Step& step = island.step;
   const double whole = step.timeStep, tolerance = window.tolerance;
   const auto marginAfter = [&](double part) {
@@ -24,7 +25,7 @@ void endStepAtEvent(MovingIsland& island, Integrator integrate, const EventWindo
     return margin(step.state);
   };
   double late = window.guess, lateMargin = marginAfter(late);
-  if (std::abs(lateMargin) <= tolerance) return;
+  if (std::abs(lateMargin) <= tolerance || (lateMargin > 0 && late >= window.latest)) return lateMargin;
   double early = 0, earlyMargin = tolerance, reach = kFirstReach * whole;
   while (lateMargin > 0 && late < window.latest) {  // the method is later than its interpolant
     early = late, earlyMargin = lateMargin;
@@ -42,15 +43,14 @@ void endStepAtEvent(MovingIsland& island, Integrator integrate, const EventWindo
   for (int i = 0; i < kMostCorrections && lateMargin < -tolerance && late - early > kStepRounding * whole; ++i) {
     const double part = late + (early - late) * lateWeight / (lateWeight - earlyWeight);
     const double found = marginAfter(part);
-    if (std::abs(found) <= tolerance) return;
+    if (std::abs(found) <= tolerance) return found;
     if (found > 0) {
       early = part, earlyWeight = found, lateWeight /= 2;
     } else {
       late = part, lateMargin = lateWeight = found, earlyWeight /= 2;
     }
   }
-  keepStartRate(step);
-  integrate(island.rightHandSide, island.state, island.time, late, step);
+  return marginAfter(late);
 }
 
 }  // namespace cradle

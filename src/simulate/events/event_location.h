@@ -16,8 +16,9 @@ struct EventWindow {
   double tolerance = 0;  // > 0
 };
 
-/// Takes the island's step again with a length at whose end `margin` is between 0 and the tolerance, or the longest
-/// one. The state of an event is that of a step, never the interpolant's.
-void endStepAtEvent(MovingIsland& island, Integrator integrate, const EventWindow& window, const EventMargin& margin);
+/// Takes the island's step again with a length at whose end `margin` is 0 to the tolerance, or the longest one, and
+/// returns the margin there: beyond the tolerance the event has not come yet. The state of an event is that of a step,
+/// never the interpolant's.
+double endStepAtEvent(MovingIsland& island, Integrator integrate, const EventWindow& window, const EventMargin& margin);
 
 }  // namespace cradle

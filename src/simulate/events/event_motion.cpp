@@ -174,12 +174,12 @@ EventMotion::Event EventMotion::findFirstEvent() {
 EventMotion::Event EventMotion::stopAtFirstEvent() {
   if (!island_.mayTouch() && !ropes_.hasRopes()) return {};
   Step& step = island_.step;
-  const Event event = findFirstEvent();
+  Event event = findFirstEvent();
   const double whole = step.timeStep, latest = event.latest * whole;
   if (event.any() && mayEndAnywhere()) {
     cutStep(event.impact ? event.impact->fraction : event.rope ? event.rope->fraction : event.contact->fraction, step);
   } else if (event.impact) {
-    stopAtImpact(*event.impact, latest);
+    if (!stopAtImpact(*event.impact)) event.impact.reset();
   } else if (event.rope) {
     endStepAtEvent(island_, method_.integrate, {event.rope->fraction * whole, latest, kRopeTolerance},
                    [&](const VectorX& state) { return ropes_.margin(*event.rope, state); });
@@ -195,7 +195,9 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
 }
 
 /// Ends the step where a gap is closed. What the interpolant's error leaves of it is taken out along the rate there.
-void EventMotion::stopAtImpact(const ImpactTime& impact, double latest) {
+/// False if it is not closed yet where the interpolant says so: beyond that nobody has looked for what else meets, so
+/// the step ends there without an event.
+bool EventMotion::stopAtImpact(const ImpactTime& impact) {
   const TouchingFeatures touching = contacts_.touching();
   const auto gap = [&](const VectorX& state) { return island_.search.margin(impact, touching, state); };
   Step& step = island_.step;
@@ -210,9 +212,10 @@ void EventMotion::stopAtImpact(const ImpactTime& impact, double latest) {
   step.work = step.state + correction * step.endRate;
   const double tolerance = kImpactPart * contacts_.margin();
   if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))
-    return endStepAtEvent(island_, method_.integrate, {length, latest, tolerance}, gap);
+    return endStepAtEvent(island_, method_.integrate, {length, length, tolerance}, gap) <= tolerance;
   std::swap(step.state, step.work);
   step.timeStep += correction;
+  return true;
 }
 
 /// Constraints hold to rounding after each step. Orientations are of unit length nearly enough for the equations, which

@@ -54,7 +54,7 @@ class EventMotion {
   };
   Event findFirstEvent();
   Event stopAtFirstEvent();
-  void stopAtImpact(const ImpactTime& impact, double latest);
+  bool stopAtImpact(const ImpactTime& impact);
   void tidyState();
   void requireTiesKept() const;
   void changeForces(const Event& event);

@@ -191,14 +191,17 @@ void ContactStage::settle(double time, const std::vector<Contact>& contacts, Vec
     log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
 }
 
-/// Contacts of this instant in which something moves.
-void ContactStage::findTouching(const VectorX& state, double margin, std::vector<Contact>& touching) const {
+/// Contacts of this instant in which something moves, and that ties do not hold as they are.
+void ContactStage::findTouching(const VectorX& state, double margin, std::vector<Contact>& touching) {
   findContacts(assembly_.geometry, state, margin, touching);
   std::erase_if(touching, [this](const Contact& contact) {
     const bool aLies = contact.bodyA == kFixed || resting_.isResting(contact.bodyA);
     const bool bLies = contact.bodyB == kFixed || resting_.isResting(contact.bodyB);
     return aLies && bLies;
   });
+  if (touching.empty() || !solver_.hasConstraints()) return;
+  solver_.factorize(state);
+  eraseImmobile(ImpulseResponse(assembly_.mechanism.bodies, solver_), state, touching);
 }
 
 void ContactStage::wakeTouched(double time, const VectorX& state) {

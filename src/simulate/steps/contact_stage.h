@@ -57,7 +57,7 @@ class ContactStage {
 
  private:
   void findTouching(const VectorX& state, double margin) { findTouching(state, margin, touching_); }
-  void findTouching(const VectorX& state, double margin, std::vector<Contact>& touching) const;
+  void findTouching(const VectorX& state, double margin, std::vector<Contact>& touching);
   void takeOutOverlaps(VectorX& state);
   void findWithinReach(const VectorX& before, const VectorX& state, double length);
   void findHeld(const VectorX& before, const VectorX& state, double length);

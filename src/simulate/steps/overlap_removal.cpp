@@ -11,7 +11,10 @@ using Index = Eigen::Index;
 
 constexpr double kSeparatedPart = 0.1;    // of the overlaps that are let be: how well others are taken out, ...
 constexpr double kSeparatedError = 1e-3;  // ... or of the deepest
-constexpr double kFarOverlaps = 10;       // of the deepest overlap: gaps that are as good as any wider ones
+// Of the inverse mass without ties: where a joint is nearer to a contact than 1e-3 of the size, an overlap is let be.
+// Taking it out would lift the body by more than a thousand times as much, against all forces.
+constexpr double kLeastLeverage = 1e-6;
+constexpr double kFarOverlaps = 10;  // of the deepest overlap: gaps that are as good as any wider ones
 
 }  // namespace
 
@@ -37,7 +40,10 @@ void ContactStepping::takeOut(const std::vector<Contact>& contacts, VectorX& sta
 void ContactStepping::separate(const Group& group, const VectorX& gaps, VectorX& state) {
   const double deepest = -gaps.minCoeff();
   Problem problem{VectorX::Zero(3 * gaps.size()), std::vector<double>(group.contacts.size(), 0)};
-  for (Index i = 0; i < gaps.size(); ++i) problem.free[3 * i + 2] = std::min(gaps[i], kFarOverlaps * deepest);
+  for (Index i = 0; i < gaps.size(); ++i) {
+    const bool hasLeverage = !tied_ || tied_->leverage(static_cast<std::size_t>(i)) > kLeastLeverage;
+    problem.free[3 * i + 2] = hasLeverage ? std::min(gaps[i], kFarOverlaps * deepest) : kFarOverlaps * deepest;
+  }
   VectorX displacement = state;
   displacement.tail(state.size() - poseComponents(state)).setZero();
   if (tied_ || group.contacts.size() <= kFewContacts) {
