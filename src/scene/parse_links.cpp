@@ -85,13 +85,16 @@ Rope parseRope(ObjectReader& reader, LinkDraft& draft) {
   return rope;
 }
 
-BallJoint parseBallJoint(ObjectReader&, LinkDraft&) {
-  return {};
+BallJoint parseBallJoint(ObjectReader& reader, LinkDraft&) {
+  BallJoint joint;
+  joint.collide = reader.boolean("collide", false);
+  return joint;
 }
 
 Hinge parseHinge(ObjectReader& reader, LinkDraft&) {
   Hinge hinge;
   hinge.axis = reader.direction("axis", hinge.axis);
+  hinge.collide = reader.boolean("collide", false);
   return hinge;
 }
 

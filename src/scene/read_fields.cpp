@@ -93,6 +93,12 @@ std::optional<std::string> readText(const Field& field, FaultList& faults) {
   return std::nullopt;
 }
 
+std::optional<bool> readBoolean(const Field& field, FaultList& faults) {
+  if (const auto* found = std::get_if<bool>(&field.value->content)) return *found;
+  addFault(faults, field, fmt::format("{} is {}; allowed is true or false", keyOf(field), described(*field.value)));
+  return std::nullopt;
+}
+
 std::optional<Vec3> readVector(const Field& field, const char* unit, FaultList& faults) {
   const std::vector<Field> items = readItems(field, 3, faults);
   if (items.empty()) return std::nullopt;
@@ -188,6 +194,11 @@ std::optional<double> ObjectReader::optionalNumber(const char* key, const Range&
 
 int ObjectReader::integer(const char* key, int least, int most, int fallback) {
   return static_cast<int>(number(key, {double(least), double(most), false, true}, "", fallback));
+}
+
+bool ObjectReader::boolean(const char* key, bool fallback) {
+  const auto found = find(key);
+  return found ? readBoolean(*found, faults_).value_or(fallback) : fallback;
 }
 
 std::string ObjectReader::text(const char* key, const std::string& fallback) {

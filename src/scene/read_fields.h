@@ -44,6 +44,7 @@ std::string described(const JsonValue& value);
 
 /// `unit` is only for messages ("kg"; empty if there is none).
 std::optional<double> readNumber(const Field& field, const Range& range, const char* unit, FaultList& faults);
+std::optional<bool> readBoolean(const Field& field, FaultList& faults);
 std::optional<std::string> readText(const Field& field, FaultList& faults);
 /// Three numbers.
 std::optional<Vec3> readVector(const Field& field, const char* unit, FaultList& faults);
@@ -69,6 +70,7 @@ class ObjectReader {
   double number(const char* key, const Range& range, const char* unit, double fallback);
   std::optional<double> optionalNumber(const char* key, const Range& range, const char* unit);
   int integer(const char* key, int least, int most, int fallback);
+  bool boolean(const char* key, bool fallback);
   std::string text(const char* key, const std::string& fallback);
   Vec3 vector(const char* key, const char* unit, const Vec3& fallback);
   Vec3 direction(const char* key, const Vec3& fallback);

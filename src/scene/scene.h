@@ -93,12 +93,14 @@ struct Rope {
 struct BallJoint {
   std::string name, where;
   Anchor anchorA, anchorB;
+  bool collide = false;  // whether its bodies touch each other
 };
 
 struct Hinge {
   std::string name, where;
   Anchor anchorA, anchorB;
   Vec3 axis = Vec3::UnitZ();  // unit, frame of body A
+  bool collide = false;       // whether its bodies touch each other
 };
 
 /// A force for a time at a point of a body, or at the first hit of a ray on its surface.

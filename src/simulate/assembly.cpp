@@ -152,15 +152,11 @@ int colliderIndex(const Assembly& assembly, int body) {
   return found != bodies.end() && *found == body ? static_cast<int>(found - bodies.begin()) : -1;
 }
 
-/// Bodies that a joint joins do not touch each other.
 void excludeJoined(const Scene& scene, Assembly& assembly) {
-  const auto exclude = [&](const auto& joints) {
-    for (const auto& joint : joints) {
-      const int a = colliderIndex(assembly, joint.anchorA.body), b = colliderIndex(assembly, joint.anchorB.body);
-      if (a >= 0 && b >= 0) assembly.geometry.excluded.emplace_back(std::min(a, b), std::max(a, b));
-    }
-  };
-  exclude(scene.ballJoints), exclude(scene.hinges);
+  for (const auto& [bodyA, bodyB] : pairsKeptFromTouching(scene)) {
+    const int a = colliderIndex(assembly, bodyA), b = colliderIndex(assembly, bodyB);
+    if (a >= 0 && b >= 0) assembly.geometry.excluded.emplace_back(std::min(a, b), std::max(a, b));
+  }
 }
 
 /// Contact that cannot be computed is not looked for, but must not come about.

@@ -98,6 +98,17 @@ void addSurfaces(const Scene& scene, const std::vector<int>& bodies, std::vector
   }
 }
 
+std::set<std::pair<int, int>> pairsKeptFromTouching(const Scene& scene) {
+  std::set<std::pair<int, int>> joined, colliding;
+  const auto add = [&](const auto& joints) {
+    for (const auto& joint : joints)
+      (joint.collide ? colliding : joined).insert(std::minmax(joint.anchorA.body, joint.anchorB.body));
+  };
+  add(scene.ballJoints), add(scene.hinges);
+  for (const auto& pair : colliding) joined.erase(pair);
+  return joined;
+}
+
 bool mayTouch(const Body& a, const Body& b) {
   return a.collision != CollisionChoice::none && b.collision != CollisionChoice::none &&
          (a.motion == Motion::dynamic || b.motion == Motion::dynamic);

@@ -92,10 +92,19 @@ void Simulation::interpolateAt(double time, bool keepsTies) {
   const double fraction = (time - island_.step.time) / island_.step.timeStep;
   interpolate(island_.step, fraction, reported_);
   if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->hold(fraction, reported_);
+  const auto* events = std::get_if<EventMotion>(&motion_);
+  if (events && keepsTies && !events->contactsOfStep().empty()) return keepTogether(events->contactsOfStep());
   if (!keepsTies || !solver_.hasConstraints()) return;
   findStill();
   solver_.leaveOut(still_);
   solver_.project(reported_);
+}
+
+/// Takes out of the interpolated state what it leaves of gaps of contacts that last, and of ties.
+void Simulation::keepTogether(const std::vector<ContactConstraint>& contacts) {
+  const Mechanism& mechanism = island_.assembly.mechanism;
+  findStill();
+  ContactSolver(contacts, mechanism.constraints, mechanism.bodies).project(reported_, still_);
 }
 
 /// What has not moved within the step is where its ties hold it.

@@ -38,6 +38,7 @@ class Simulation {
   static void advance(double time, Motion& motion);
   bool keepsTies() const;
   void interpolateAt(double time, bool keepsTies);
+  void keepTogether(const std::vector<ContactConstraint>& contacts);
   void findStill();
   void spin(Eigen::Index body, double time, VectorX& state) const;
 

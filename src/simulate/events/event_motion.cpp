@@ -92,6 +92,7 @@ void EventMotion::advance(double frame) {
 
   // What the step's interpolant needs belongs to the forces of now.
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
+  contactsOfStep_ = island_.assembly.mechanism.contacts;
 
   // Take out what the step left wrong. Then what changes here?
   island_.state = step.state;
