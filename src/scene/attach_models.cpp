@@ -134,7 +134,17 @@ MassProperties massOf(const BodyDraft& draft, const ModelFacts& facts, SceneDraf
   return completeMass(draft, facts.uniform, density, faults);
 }
 
+/// A mesh may come in any units; as a body it has a size like the other shapes.
+bool hasUsableSize(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults) {
+  if (kLengths.holds(facts.size)) return true;
+  addFault(faults, *draft.meshField,
+           fmt::format("the mesh has a radius of {:g} m at scale {:g}; allowed are {:g}..{:g} m; change \"scale\"",
+                       facts.size, draft.mesh.scale, kLengths.least, kLengths.most));
+  return false;
+}
+
 void complete(BodyDraft& draft, ModelFacts& facts, SceneDraft& scene, Faults faults) {
+  if (!hasUsableSize(draft, facts, faults.text)) return;
   if (draft.body.motion == Motion::dynamic && !canMove(draft, facts, faults.mesh)) return;
   settleCollision(draft, facts, scene.scene, faults.text);
   const MassProperties properties = massOf(draft, facts, scene, faults.text);

@@ -135,6 +135,27 @@ TEST(Guard, NamesARodThatTurnsTooFarInAStep) {
   }
 }
 
+TEST(Guard, BlamesAPushOfWhatNothingElseCouldDo) {
+  // Whoever stands in the list first, and whatever the others are tied by.
+  for (const char* pushed : {"a", "b", "c"})
+    for (const char* direction : {"0, 1e20, 0", "1e20, 0, 0", "0, 0, 1e20"})
+      for (const char* ties : {"rods", "ballJoints"}) {
+        const bool isRod = std::string(ties) == "rods";
+        const Outcome outcome = outcomeOf(sceneWith(fmt::format(
+            R"("duration": 2, "bodies": [
+              {{"name": "a", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1, "position": [0, 1, 0]}},
+              {{"name": "b", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1, "position": [1, 1, 0]}},
+              {{"name": "c", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1, "position": [2, 1, 0]}}],
+            "{}": [{{"bodyA": "a", "bodyB": "b", "anchorA": [{}, 0, 0], "anchorB": [{}, 0, 0]}},
+                   {{"bodyA": "b", "bodyB": "c", "anchorA": [{}, 0, 0], "anchorB": [{}, 0, 0]}}],
+            "pushes": [{{"body": "{}", "point": [0, 0, 0.05], "force": [{}], "start": 0.1, "duration": 0.02}}])",
+            ties, isRod ? 0 : 0.5, isRod ? 0 : -0.5, isRod ? 0 : 0.5, isRod ? 0 : -0.5, pushed, direction)));
+        EXPECT_THAT(outcome.failure, AllOf(HasSubstr(fmt::format("body \"{}\"", pushed)),
+                                           HasSubstr("a push of 1e+20 N"), HasSubstr("less force")))
+            << pushed << direction << ties;
+      }
+}
+
 TEST(Guard, NamesABodyThatSpinsTooFarInAStep) {
   for (const char* method : {"explicitEuler", "semiImplicitEuler", "rk4", "dop853"}) {
     const Outcome outcome = outcomeOf(sceneMovedBy(methodText(method, 0.3), 20, R"("gravity": [0, 0, 0],

@@ -35,15 +35,15 @@ struct Swing {
 /// The swing by a method with step x omega = `z`, for whole steps of about `periods`.
 Swing swingBy(const std::string& method, double z, double dampingRatio = 0, double periods = 8) {
   const double step = z / kOmega, steps = std::ceil(periods * kPeriod / step);
-  const Scene scene = sceneWith(fmt::format(R"("duration": {}, "output": {{"framesPerSecond": {}}}, {}, {})", steps * step,
-                                            1 / step, methodText(method, step), swing(dampingRatio)));
+  const Scene scene = sceneWith(fmt::format(R"("duration": {}, "output": {{"framesPerSecond": {}}}, {}, {})",
+                                            steps * step, 1 / step, methodText(method, step), swing(dampingRatio)));
   Swing result;
   std::vector<Frame> frames;
   simulate(scene, {[&](const Frame& frame) { frames.push_back(frame); }, [](const Event&) {},
                    [&](const std::string& warning) { result.warnings.push_back(warning); }});
   const auto energyOf = [](const Frame& frame) { return frame.energy.kinetic + frame.energy.potential; };
-  result.energyAPeriod =
-      std::pow(energyOf(frames.back()) / energyOf(frames.front()), kPeriod / (frames.back().time - frames.front().time));
+  result.energyAPeriod = std::pow(energyOf(frames.back()) / energyOf(frames.front()),
+                                  kPeriod / (frames.back().time - frames.front().time));
   return result;
 }
 
