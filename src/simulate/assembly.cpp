@@ -172,6 +172,15 @@ void excludeUnsolved(ContactGeometry& geometry) {
     }
 }
 
+/// Springs that fixed steps are too long for: they blow up, or keep still where they should swing.
+void warnOfSteps(const Scene& scene, const ChosenMethod& method, Assembly& assembly) {
+  auto fault = stepFault(assembly.mechanism, assembly.state, method, scene.duration);
+  if (!fault) fault = energyChangeByStep(assembly.mechanism, assembly.state, method, scene.duration);
+  if (!fault) return;
+  assembly.warnings.push_back(
+      fmt::format("{}: spring \"{}\" {}", scene.path, assembly.names.springs[fault->spring], fault->text));
+}
+
 }  // namespace
 
 Assembly assemble(const Scene& scene, const IslandPlan& island) {
@@ -188,9 +197,7 @@ Assembly assemble(const Scene& scene, const IslandPlan& island) {
   BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0, assembly.geometry);
   constrainPinnedContacts(assembly);
   satisfyConstraints(scene, assembly);
-  if (const auto fault = stepFault(assembly.mechanism, assembly.state, island.method, scene.duration))
-    assembly.warnings.push_back(
-        fmt::format("{}: spring \"{}\" {}", scene.path, assembly.names.springs[fault->spring], fault->text));
+  warnOfSteps(scene, island.method, assembly);
   return assembly;
 }
 

@@ -91,7 +91,7 @@ void addSurfaces(const Scene& scene, const std::vector<int>& bodies, std::vector
     const Body& body = scene.bodies[static_cast<std::size_t>(bodies[i])];
     const auto model = static_cast<std::size_t>(std::get<ModelShape>(body.shape).model);
     const TriangleMesh& mesh = scene.models[model].solid;
-    if (!surfaces[model] && checkSolid(mesh).isSolid)
+    if (!surfaces[model] && checkSolid(mesh).isClosed)
       surfaces[model] = std::make_shared<const MeshSurface>(surfaceOf(mesh));
     collider.mesh = surfaces[model];
     collider.bodyFromMesh = colliderFromShape(body, collider.body);

@@ -16,6 +16,8 @@ constexpr double kMostLocalErrors = 100;    // times their sum: they are estimat
 constexpr double kFinestTolerance = 1e-13;  // of a component in a step: finer tolerances are not kept
 constexpr double kCalmPart = 0.1;           // of what stops a run: before, the motion is still the scene's own
 constexpr double kSafeTurn = 0.1;           // rad a step: RK4 is then right to 1e-7 a step; slower turns are no cause
+constexpr double kOverwhelming = 1e6;       // times all weights and springs: nothing else moves its body
+constexpr double kPlainAcceleration = 1;    // m/s^2: of weights where there is no gravity
 constexpr double kCollapsed = 1e-3;         // of its rest length: a spring without direction
 
 /// What an error of 1 + |y| in each component y of a state can change of its energy (J).
@@ -128,8 +130,29 @@ void EnergyGuard::fail(const VectorX& state, double time, const std::string& wha
     const double size = std::isfinite(energy) ? energy : INFINITY;
     if (size > most) most = size, worst = i;
   }
+  std::string why = cause;
+  if (const PushForce* push = overwhelmingPush()) {
+    worst = static_cast<std::size_t>(push->point.body);
+    why = fmt::format(
+        "a push of {:.3g} N accelerates it by {:.3g} m/s^2: give the push less force, or the body more mass",
+        push->force.norm(), push->force.norm() / mechanism_.bodies[worst].mass);
+  }
   throw Error(ErrorKind::unstable, "",
-              fmt::format("unstable at {:.6g} s: body \"{}\" {}; {}", time, names_.bodies[worst], what, cause));
+              fmt::format("unstable at {:.6g} s: body \"{}\" {}; {}", time, names_.bodies[worst], what, why));
+}
+
+/// The strongest push that acts, if weights and springs are next to nothing beside it. What it does may show first in
+/// bodies that its own pulls along.
+const PushForce* EnergyGuard::overwhelmingPush() const {
+  double others = 0;  // N
+  for (const RigidBody& body : mechanism_.bodies)
+    others += body.mass * std::max(mechanism_.gravity.norm(), kPlainAcceleration);
+  for (const SpringForce& spring : mechanism_.springs) others += actionOf(spring, start_).forceOnA.norm();
+  const PushForce* strongest = nullptr;
+  double most = kOverwhelming * others;
+  for (const PushForce& push : mechanism_.pushes)
+    if (push.force.norm() > most) most = push.force.norm(), strongest = &push;
+  return strongest;
 }
 
 /// Why steps have to be so short.

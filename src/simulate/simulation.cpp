@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/error.h"
 #include "core/interruption.h"
 #include "simulate/thresholds.h"
 
@@ -24,6 +25,7 @@ Simulation::Simulation(const Scene& scene, Assembly assembly, const ChosenMethod
 
 const VectorX& Simulation::stateAt(double time) {
   const double same = sameTime(time);
+  CRADLE_CHECK(time <= island_.scene.duration + same);  // no step goes beyond the end: that would take for ever
   while (island_.time < time - same) {
     throwIfInterrupted();
     advance(time);

@@ -19,9 +19,9 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// The state at `time` (s), not earlier than in the call before; orientations of unit length. At an instant of events
-  /// the state after them. Throws Error(unstable) if the state blows up, Error(limit) if a step has too many impacts,
-  /// Error(interrupted).
+  /// The state at `time` (s), not earlier than in the call before, and not after the end of the scene; orientations of
+  /// unit length. At an instant of events the state after them. Throws Error(unstable) if the state blows up,
+  /// Error(limit) if a step has too many impacts, Error(interrupted).
   const VectorX& stateAt(double time);
 
   const Assembly& assembly() const { return island_.assembly; }
