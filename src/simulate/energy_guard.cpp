@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "dynamics/invariants.h"
@@ -11,8 +12,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kUnexplained = 2;          // times the energy that can be explained: nothing is left of the motion
-constexpr double kMostLocalErrors = 100;    // times their sum: they are estimates; 0.1 of it has been seen
+constexpr double kUnexplained = 2;        // times the energy that can be explained: nothing is left of the motion
+constexpr double kMostLocalErrors = 100;  // times their sum: they are estimates; 0.1 of it has been seen
+constexpr double kPlaceRounding = 64 * std::numeric_limits<double>::epsilon();  // of a place, over a run's steps
 constexpr double kFinestTolerance = 1e-13;  // of a component in a step: finer tolerances are not kept
 constexpr double kCalmPart = 0.1;           // of what stops a run: before, the motion is still the scene's own
 constexpr double kSafeTurn = 0.1;           // rad a step: RK4 is then right to 1e-7 a step; slower turns are no cause
@@ -34,6 +36,25 @@ double energySensitivity(const Mechanism& mechanism, const VectorX& state) {
     const SpringAction action = actionOf(spring, state);
     const double arms = action.a.arm.norm() + action.b.arm.norm();
     sum += action.forceOnA.norm() * (2 + action.a.position.norm() + action.b.position.norm() + 2 * arms);
+  }
+  return sum;
+}
+
+/// What rounding of places and lengths makes of the energy (J) that is summed from them: all that bodies have which do
+/// not move, and more than nothing where a spring is stiff.
+double energyRounding(const Mechanism& mechanism, const VectorX& state) {
+  double sum = 0;
+  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    sum += mechanism.bodies[i].mass * mechanism.gravity.norm() * centerOfMass(state, body).norm();
+  }
+  sum *= kPlaceRounding;
+  for (const SpringForce& spring : mechanism.springs) {
+    const SpringAction action = actionOf(spring, state);
+    const double size = action.a.position.norm() + action.b.position.norm() + action.a.arm.norm() +
+                        action.b.arm.norm() + spring.restLength;
+    const double rounding = kPlaceRounding * size;
+    sum += (action.forceOnA.norm() + spring.stiffness * rounding) * rounding;
   }
   return sum;
 }
@@ -75,6 +96,7 @@ void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
     errorSum_ += std::max(method_.tolerance, kFinestTolerance) * energySensitivity(mechanism_, state);
     most = std::min(most, kMostLocalErrors * errorSum_);
   }
+  most += energyRounding(mechanism_, state);
   const double change = std::abs(energyConstant(mechanism_, state) - startConstant_);
   if (!(change <= most))
     fail(state, time, fmt::format("has energy from nowhere ({:.3g} J; {:.3g} J can be explained)", change, most),

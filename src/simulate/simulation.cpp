@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/error.h"
@@ -10,6 +11,20 @@
 #include "simulate/thresholds.h"
 
 namespace cradle {
+namespace {
+
+constexpr double kFallPart = 1.0 / 300;  // of sqrt(size / g), in which a body falls by half its size
+constexpr std::size_t kFewBodies = 4;    // that move: many cost more than such steps are worth
+
+/// s: of contact that events do not serve. A few bodies move as fast as gravity moves them through their own size: the
+/// same ones, smaller, take the same steps in less time.
+double contactTimeStep(const Assembly& assembly) {
+  const double gravity = assembly.mechanism.gravity.norm();
+  if (gravity == 0 || assembly.mechanism.bodies.size() > kFewBodies) return kContactTimeStep;
+  return std::min(kContactTimeStep, kFallPart * std::sqrt(smallestSize(assembly.geometry) / gravity));
+}
+
+}  // namespace
 
 Simulation::Simulation(const Scene& scene, Assembly assembly, const ChosenMethod& method)
     : island_(scene, std::move(assembly)),
@@ -70,16 +85,17 @@ void Simulation::changeMotion() {
     const std::string_view fault = events->fault();
     if (fault.empty()) return;
     const bool isLook = island_.scene.accuracy > kLookAccuracy;
+    const ChosenMethod steps = contactSteps(isLook ? kContactTimeStep : contactTimeStep(island_.assembly));
     if (!std::exchange(isWarned_, true))
       island_.log.warn(fmt::format(
           "{}: the accuracy asked is not promised from {:.6g} s on: {}; contact is resolved "
           "every {:.3g} s {}",
-          island_.scene.path, island_.time, fault, kContactTimeStep, isLook ? "to the end" : "as long as that lasts"));
+          island_.scene.path, island_.time, fault, steps.timeStep, isLook ? "to the end" : "as long as that lasts"));
     island_.assembly.mechanism.contacts.clear();
     nextTrial_ = island_.time + trialTime_;
     trialTime_ *= 2;
-    if (isLook) method_ = contactSteps();
-    motion_.emplace<SteppedMotion>(island_, ropes_, contactSteps());
+    if (isLook) method_ = steps;
+    motion_.emplace<SteppedMotion>(island_, ropes_, steps);
     return;
   }
   const auto& steps = std::get<SteppedMotion>(motion_);

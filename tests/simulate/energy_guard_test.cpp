@@ -123,6 +123,24 @@ TEST(SpringModes, KnowWhatRodsLeave) {
   EXPECT_NEAR(stiffestMode(assembly.mechanism, assembly.state).stiffness, 0.75 * 100 / 2, 1e-9);
 }
 
+// A body in its place, on a spring of its rest length to the last bit or nearly so: what rounding makes of that length
+// is no energy, however stiff the spring is.
+TEST(Guard, AllowsTheRoundingOfStiffSpringsAtRest) {
+  for (const double stiffness : {1e3, 1e6, 1e9, 1e12})
+    for (const double size : {0.01, 1.0, 100.0}) {
+      const double length = std::sqrt(0.5) * size;
+      const std::string text =
+          fmt::format(R"("gravity": [0, 0, 0], "bodies": [{{"name": "b",
+        "shape": {{"cylinder": {{"radius": {0}, "length": {1}}}}}, "position": [{2}, {3}, {4}],
+        "orientation": {{"axis": [1, 0, 0], "angleDegrees": 90}}}}], "springs": [{{"bodyA": "b",
+        "anchorA": [{5}, {6}, {7}], "anchorB": [{8}, {9}, {10}], "stiffness": {11}, "restLength": {12}}}])",
+                      0.5 * size, size, -0.6263 * size, 0.7142 * size, -1.0789 * size, 0.3096 * size, 0.4957 * size,
+                      0.3574 * size, -0.3167 * size, (0.7142 - 0.3574) * size + 0.1 * length,
+                      (-1.0789 + 0.4957) * size + std::sqrt(0.99) * length, stiffness, length);
+      EXPECT_EQ(outcomeOf(sceneWith("\"duration\": 0.02, " + text)).failure, "") << stiffness << " " << size;
+    }
+}
+
 TEST(Guard, NamesARodThatTurnsTooFarInAStep) {
   for (const char* method : {"explicitEuler", "rk4", "dop853"}) {
     const Outcome outcome = outcomeOf(sceneMovedBy(methodText(method, 0.5), 100, R"(
