@@ -48,6 +48,7 @@ void fillFriction(const ContactManifold& manifold, const Vec3 (&arms)[Block::kPo
     const Vec3& tangent = i == 0 ? tangent1 : tangent2;
     setLane(friction.tangents[i], lane, tangent);
     inverse[i] = fillTurns<Block>(friction.turns[i], tangent, middle, bodies, lane);
+    friction.totals[i][lane] = 0;
     friction.impulses[i][lane] = subStep * manifold.frictionForce.dot(tangent);
   }
   const double coupling = couplingOf<Block>(friction.turns[0], friction.turns[1], lane);
@@ -65,6 +66,7 @@ void fillFriction(const ContactManifold& manifold, const Vec3 (&arms)[Block::kPo
       inverseTwist += turn.squaredNorm();
     }
     block.twist.mass[lane] = 1 / inverseTwist;
+    block.twist.total[lane] = 0;
     block.twist.impulse[lane] = subStep * manifold.twist;
     for (int i = 0; i < Block::kPoints; ++i) block.twist.levers[i][lane] = (arms[i][0] - middle[0]).norm();
   }
@@ -92,6 +94,7 @@ void fillLane(const ContactManifold& manifold, std::int32_t index, const std::ve
     if constexpr (Block::kBothMove) arms[i][1] = movers[1]->worldFromBody * manifold.onB[at].template cast<double>();
     point.mass[lane] = 1 / fillTurns<Block>(point.turns, manifold.normal, arms[i], movers, lane);
     point.separation[lane] = manifold.separations[at];
+    point.total[lane] = 0;
     point.impulse[lane] = subStep * manifold.forces[at];
   }
   fillFriction(manifold, arms, movers, subStep, lane, block);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tuple>
+
 #include "impact/contact_blocks.h"
 
 // What a pass does to one contact block. E. Catto, "Solver2D" (box2d.org, 2024) names the passes: soft contacts that
@@ -137,6 +139,10 @@ void relaxBlock(Block& block, SolverMotions& motions) {
   }
   rubBlock(block, velocities);
   velocities.store(block, motions.velocities);
+  // A sub-step's impulses hold those of the one before, which it began with.
+  for (auto& point : block.points) point.total += point.impulse;
+  for (int i = 0; i < 2; ++i) block.friction.totals[i] += block.friction.impulses[i];
+  if constexpr (Block::kPoints > 1) block.twist.total += block.twist.impulse;
 }
 
 /// Rebounds contacts that closed faster than `slowest` (m/s) and were pressed in this step.
@@ -154,9 +160,34 @@ void reboundBlock(Block& block, double slowest, SolverMotions& motions) {
     const Lanes free = point.impulse - point.mass * (speed + restitution * before);
     const Lanes held = rebounds ? larger(same(0), free) : point.impulse;
     velocities.push(block, held - point.impulse, block.normal, point.turns);
+    point.total += held - point.impulse;
     point.impulse = held;
   }
   velocities.store(block, motions.velocities);
+}
+
+/// Finds what a contact's impulses took: their sum works with the mean of the velocities before the step and now, for
+/// rows stay as they are. What closed faster than `slowest` (m/s) is an impact, with its friction; so is the closing
+/// that others still had.
+template <class Block>
+void weighBlock(Block& block, double slowest, const SolverMotions& motions) {
+  const MotionsOf<Block> starts(block, motions.starts), ends(block, motions.velocities);
+  const Lanes none = same(0), half = same(-0.5);
+  Lanes pressed = none, rubbed = none, fastest = none;
+  for (const auto& point : block.points) {
+    const Lanes before = starts.along(block.normal, point.turns);
+    pressed += half * point.total * (before + ends.along(block.normal, point.turns));
+    fastest = larger(fastest, -before);
+  }
+  for (int i = 0; i < 2; ++i) {
+    const auto& [direction, turns] = std::tie(block.friction.tangents[i], block.friction.turns[i]);
+    rubbed += half * block.friction.totals[i] * (starts.along(direction, turns) + ends.along(direction, turns));
+  }
+  if constexpr (Block::kPoints > 1)
+    rubbed += half * block.twist.total * (starts.twist(block.twist.turns) + ends.twist(block.twist.turns));
+  const auto strikes = fastest > same(slowest);
+  block.struck = pressed + (strikes ? rubbed : none);
+  block.rubbed = strikes ? none : rubbed;
 }
 
 }  // namespace cradle

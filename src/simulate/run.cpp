@@ -15,6 +15,10 @@ void add(const Invariants& sums, const VectorX& state, EnergyBalance& balance) {
   balance.kinetic += sums.kinetic;
   balance.potential += sums.potential;
   balance.dissipated += dissipatedEnergy(state);
+  balance.impact += impactEnergy(state);
+  balance.friction += frictionEnergy(state);
+  balance.damping += dampingEnergy(state);
+  balance.numerical += numericalEnergy(state);
   balance.work += pushWork(state);
   balance.momentum += sums.momentum;
   balance.angularMomentum += sums.angularMomentum;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/interruption.h"
+#include "dynamics/invariants.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -92,10 +93,14 @@ void Simulation::interpolateAt(double time, bool keepsTies) {
   const double fraction = (time - island_.step.time) / island_.step.timeStep;
   interpolate(island_.step, fraction, reported_);
   if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->hold(fraction, reported_);
-  if (!keepsTies || !solver_.hasConstraints()) return;
-  findStill();
-  solver_.leaveOut(still_);
-  solver_.project(reported_);
+  if (keepsTies && solver_.hasConstraints()) {
+    findStill();
+    solver_.leaveOut(still_);
+    solver_.project(reported_);
+  }
+  numericalEnergy(reported_) = numericalEnergy(island_.step.startState);
+  const Mechanism& mechanism = island_.assembly.mechanism;
+  bookNumerical(energyConstant(mechanism, island_.step.startState), mechanism, reported_);
 }
 
 /// What has not moved within the step is where its ties hold it.

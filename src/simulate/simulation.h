@@ -38,6 +38,7 @@ class Simulation {
   template <class Motion>
   static void advance(double time, Motion& motion);
   bool keepsTies() const;
+  /// A frame inside a step: what its state is off the energy of the step's start is an error of that frame alone.
   void interpolateAt(double time, bool keepsTies);
   void findStill();
   void spin(Eigen::Index body, double time, VectorX& state) const;

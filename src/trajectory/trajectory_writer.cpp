@@ -120,9 +120,10 @@ std::string countsAsJson(const std::map<std::string, long>& counts) {
   return "{" + json + "}";
 }
 
-std::array<double, 10> energyNumbers(const EnergyBalance& energy) {
+std::array<double, 14> energyNumbers(const EnergyBalance& energy) {
   const Vec3 &p = energy.momentum, &l = energy.angularMomentum;
-  return {energy.kinetic, energy.potential, energy.dissipated, energy.work, p.x(), p.y(), p.z(), l.x(), l.y(), l.z()};
+  return {energy.kinetic, energy.potential, energy.dissipated, energy.work,     p.x(),          p.y(), p.z(), l.x(), l.y(),
+          l.z(), energy.impact, energy.friction, energy.damping, energy.numerical};
 }
 
 template <std::size_t N>
@@ -149,7 +150,7 @@ struct TrajectoryWriter::Session {
       : database(part, DatabaseAccess::create),
         frame(createTables(database).prepare("INSERT INTO frame VALUES (?, ?)")),
         state(database.prepare("INSERT INTO state VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
-        energy(database.prepare("INSERT INTO energy VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
+        energy(database.prepare("INSERT INTO energy VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         event(database.prepare("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")) {}
 
   Database database;

@@ -34,11 +34,6 @@ double energyOf(const std::vector<int>& bodies, const Mechanism& mechanism, cons
   return energy;
 }
 
-void bookDifference(const Invariants& before, const Mechanism& mechanism, VectorX& state) {
-  const Invariants now = invariantsOf(mechanism, state);
-  dissipatedEnergy(state) += before.kinetic + before.potential - now.kinetic - now.potential;
-}
-
 bool isGain(double energy, double most) {
   return energy > most + kEnergyRounding * std::abs(most);
 }

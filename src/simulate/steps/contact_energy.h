@@ -21,9 +21,6 @@ struct MovedBodies {
 /// and slides as before; nothing fixed takes the momentum of bodies that touch only each other, which is kept.
 void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state);
 
-/// Books as dissipated what `state` has less than it had with the energies `before`.
-void bookDifference(const Invariants& before, const Mechanism& mechanism, VectorX& state);
-
 /// Whether energies (J) differ by more than rounding.
 bool isGain(double energy, double most);
 

@@ -6,6 +6,7 @@
 #include "impact/contact_impulse.h"
 #include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
+#include "impact/impact_energy.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -226,8 +227,9 @@ void ContactStage::resolveImpacts(double time, const VectorX& before, VectorX& s
     const bool isHard = std::any_of(impacts.begin(), impacts.end(), [&](const ImpactContact& impact) {
       return closingSpeed(impact.contact, approach) > leastImpactSpeed_;
     });
+    bookImpact(impacts, approach, state);
+    bookNumerical(energyConstant(assembly_.mechanism, approach), assembly_.mechanism, state);
     for (const ImpactContact& impact : impacts) {
-      dissipate(impact.contact, impact.impulse, approach, state);
       const double impulse = impact.contact.normal.dot(impact.impulse);
       if (isHard && impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impulse);
     }
@@ -258,12 +260,6 @@ std::vector<std::vector<ImpactContact>> ContactStage::findImpacts(const VectorX&
   for (std::size_t island = 0; island < impacts.size(); ++island)
     if (!isStruck[island]) impacts[island].clear();
   return impacts;
-}
-
-/// Books what an impulse (N s, on B) took: it works with the mean of the velocities before and after it.
-void ContactStage::dissipate(const Contact& contact, const Vec3& impulse, const VectorX& before, VectorX& state) {
-  const Vec3 meanVelocity = (relativeVelocity(contact, state, before) + relativeVelocity(contact, state)) / 2;
-  dissipatedEnergy(state) -= impulse.dot(meanVelocity);
 }
 
 }  // namespace cradle

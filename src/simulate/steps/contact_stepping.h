@@ -52,6 +52,12 @@ class ContactStepping {
   /// booked.
   std::vector<Vec3> strike(const std::vector<Contact>& contacts, double timeStep, VectorX& state);
 
+  /// J: what the friction of lasting contacts took in the last step, and would have at the velocities of its start.
+  struct HeldFriction {
+    double atStart = 0, taken = 0;
+  };
+  HeldFriction friction() const { return friction_; }
+
   /// Those of the last step.
   const std::vector<SteppedContact>& contacts() const { return contacts_; }
   const SteppingCount& count() const { return count_; }
@@ -92,7 +98,7 @@ class ContactStepping {
   MatrixX inverseMass() const { return tied_ ? tied_->inverseMass() : cones_.inverseMass(); }
   void count(const ConeSolution& solution);
   ConeStart startOf(const Group& group) const;
-  void move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state);
+  VectorX move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state);
   static VectorX gapsAfter(const Group& group, double timeStep, const VectorX& velocities);
   void moveByMean(const Group& group, const Motion& motion, VectorX& state) const;
   void moveByEnd(const Group& group, const Motion& motion, VectorX& state) const;
@@ -100,6 +106,9 @@ class ContactStepping {
   void restore(const std::vector<int>& bodies, VectorX& state) const;
   void keep(const Group& group, const Motion& motion, const Problem& problem, const VectorX& impulses,
             const VectorX& state);
+
+  void book(const Group& group, const Motion& motion, const VectorX& impulses, const VectorX& end, VectorX& state);
+  void bookForces(double timeStep, VectorX& state) const;
 
   const Assembly& assembly_;
   ConstraintSolver solver_, ends_;  // of the step's start; where straight lines lead
@@ -112,6 +121,7 @@ class ContactStepping {
   double previousStep_ = 0, startPart_ = 1;  // s; ratio of impulses now to those of the step before, if forces last
   std::map<int, double> penalties_;          // of each group's first body
   SteppingCount count_;
+  HeldFriction friction_;
   VectorX free_;  // where free motion led
 };
 

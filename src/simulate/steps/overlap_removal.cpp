@@ -21,7 +21,7 @@ constexpr double kFarOverlaps = 10;  // of the deepest overlap: gaps that are as
 void ContactStepping::takeOut(const std::vector<Contact>& contacts, VectorX& state) {
   const std::vector<SteppedContact> last = contacts_;
   begin(contacts, state, state);
-  const Invariants free = invariantsOf(assembly_.mechanism, state);
+  const double constant = energyConstant(assembly_.mechanism, state);
   for (const Group& group : findGroups()) {
     VectorX gaps(group.contacts.size());
     for (Index i = 0; i < gaps.size(); ++i) gaps[i] = group.contacts[static_cast<std::size_t>(i)].separation;
@@ -33,7 +33,7 @@ void ContactStepping::takeOut(const std::vector<Contact>& contacts, VectorX& sta
     limitEnergy(group.moved, most, assembly_.mechanism, state);
   }
   contacts_ = last;
-  bookDifference(free, assembly_.mechanism, state);
+  bookNumerical(constant, assembly_.mechanism, state);
 }
 
 /// Moves bodies apart where `gaps` (m) at the step's end are negative, without touching velocities.
