@@ -22,6 +22,7 @@ using Index = Eigen::Index;
 
 constexpr double kClosedPart = 1e-11;  // of the fastest speed: what is left is rounding
 constexpr double kSlidingPart = 1e-9;  // of the same: slower sticks
+constexpr double kSolvedPart = 1e-7;   // of the same: an error of Coulomb's law that nobody sees
 constexpr int kMostRounds = 100;       // then one without rebound ends it
 constexpr double kLessRestitution = 0.7;
 constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
@@ -42,6 +43,7 @@ class FrictionalImpact {
   }
 
   VectorX resolve();
+  const ImpactFaults& faults() const { return faults_; }
 
  private:
   VectorX velocities() const { return start_ + cones_.inverseMass() * impulses_; }
@@ -58,6 +60,7 @@ class FrictionalImpact {
   VectorX start_, impulses_;
   VectorX opening_;     // m/s: of the contacts after the impact under way, or none: by their own restitution
   double fastest_ = 0;  // m/s
+  ImpactFaults faults_;
 };
 
 /// One of all contacts, neither none nor elastic.
@@ -134,6 +137,8 @@ bool FrictionalImpact::tryStrike(const std::vector<std::size_t>& members, const 
   const double response = 0.5 * z.dot(matrix * z), gain = z.dot(before) + response;
   const bool gains = gain > kEnergyRounding * response;
   if (gains && part > 0) return false;
+  if (!(solution.residual <= kSolvedPart * fastest_)) faults_.residual = std::max(faults_.residual, solution.residual);
+  if (gains) faults_.scaledEnergy = std::max(faults_.scaledEnergy, gain);
   // Without rebound only what was not solved gains: as much of it as takes the most energy.
   impulses_(rows) += gains ? VectorX(std::max(0.0, -z.dot(before) / (2 * response)) * z) : z;
   return true;
@@ -158,19 +163,23 @@ VectorX FrictionalImpact::resolve() {
     strike(findMembers(speeds, true), speeds, 1);
   }
   const VectorX speeds = velocities();
+  faults_.rounds = kMostRounds;
   strike(findMembers(speeds, false), speeds, 0);
   return impulses_;
 }
 
 }  // namespace
 
-void resolveFrictionalImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
-  if (impacts.empty()) return;
+ImpactFaults resolveFrictionalImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response,
+                                     VectorX& state) {
+  if (impacts.empty()) return {};
   const std::vector<Contact> contacts = contactsOf(impacts);
   const ContactCones cones(contacts, response, state);
-  const VectorX impulses = FrictionalImpact(impacts, cones, cones.velocitiesIn(state)).resolve();
+  FrictionalImpact impact(impacts, cones, cones.velocitiesIn(state));
+  const VectorX impulses = impact.resolve();
   cones.apply(impulses, state);
   for (std::size_t i = 0; i < impacts.size(); ++i) impacts[i].impulse += cones.worldImpulse(i, impulses);
+  return impact.faults();
 }
 
 }  // namespace cradle

@@ -35,7 +35,8 @@ const char* textOf(CorrectionKind kind) {
 std::string describe(const Correction& correction, const Scene& scene) {
   std::string names;
   for (std::size_t i = 0; i < std::min(correction.bodies.size(), kNamedBodies); ++i)
-    names += fmt::format("{}\"{}\"", i > 0 ? ", " : "", scene.bodies[static_cast<std::size_t>(correction.bodies[i])].name);
+    names +=
+        fmt::format("{}\"{}\"", i > 0 ? ", " : "", scene.bodies[static_cast<std::size_t>(correction.bodies[i])].name);
   if (correction.bodies.size() > kNamedBodies)
     names += fmt::format(" and {} more", correction.bodies.size() - kNamedBodies);
   return fmt::format("{}: at {:.6g} s {}; told once, counted in the trajectory's \"corrections\"", scene.path,
@@ -43,8 +44,8 @@ std::string describe(const Correction& correction, const Scene& scene) {
 }
 
 std::string correctionName(CorrectionKind kind) {
-  constexpr std::array<const char*, kCorrectionKinds> kNames = {"clampedEnergy",   "unsolvedContacts", "omittedFriction",
-                                                                "omittedContacts", "scaledImpulses",   "endlessImpacts"};
+  constexpr std::array<const char*, kCorrectionKinds> kNames = {
+      "clampedEnergy", "unsolvedContacts", "omittedFriction", "omittedContacts", "scaledImpulses", "endlessImpacts"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 

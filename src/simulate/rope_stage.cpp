@@ -58,8 +58,8 @@ double energyTakenBy(const std::vector<RopePull>& pulls, const VectorX& before, 
   double taken = 0;
   for (const RopePull& pull : pulls) {
     const RopeMotion from = motionOf(*pull.rope, before), to = motionOf(*pull.rope, after);
-    taken += energyTaken(-pull.impulse * from.direction, from.a.velocity - from.b.velocity,
-                         to.a.velocity - to.b.velocity);
+    taken +=
+        energyTaken(-pull.impulse * from.direction, from.a.velocity - from.b.velocity, to.a.velocity - to.b.velocity);
   }
   return taken;
 }

@@ -128,8 +128,9 @@ MassProperties massPropertiesAt(const Statement& row, int first) {
 std::string energyQuery(Database& database) {
   const bool hasCauses =
       oneInteger(database, "SELECT count(*) FROM pragma_table_info('energy') WHERE name = 'numerical'") == 1;
-  return fmt::format("SELECT kinetic, potential, dissipated, work, px, py, pz, lx, ly, lz, {} FROM energy WHERE frame = ?",
-                     hasCauses ? "impact, friction, damping, numerical" : "NULL, NULL, NULL, NULL");
+  return fmt::format(
+      "SELECT kinetic, potential, dissipated, work, px, py, pz, lx, ly, lz, {} FROM energy WHERE frame = ?",
+      hasCauses ? "impact, friction, damping, numerical" : "NULL, NULL, NULL, NULL");
 }
 
 }  // namespace
@@ -251,7 +252,7 @@ Frame TrajectoryReader::readFrame(long number) const {
   energy.bind(1, number);
   if (!energy.step()) fail("the energies");
   const auto cause = [&](int column) { return energy.isNull(column) ? NAN : energy.real(column); };
-  frame.energy = {energy.real(0), energy.real(1), energy.real(2),  cause(10),           cause(11),
+  frame.energy = {energy.real(0), energy.real(1), energy.real(2), cause(10),           cause(11),
                   cause(12),      cause(13),      energy.real(3), vectorAt(energy, 4), vectorAt(energy, 7)};
   energy.reset();
   return frame;

@@ -122,8 +122,9 @@ std::string countsAsJson(const std::map<std::string, long>& counts) {
 
 std::array<double, 14> energyNumbers(const EnergyBalance& energy) {
   const Vec3 &p = energy.momentum, &l = energy.angularMomentum;
-  return {energy.kinetic, energy.potential, energy.dissipated, energy.work,     p.x(),          p.y(), p.z(), l.x(), l.y(),
-          l.z(), energy.impact, energy.friction, energy.damping, energy.numerical};
+  return {
+      energy.kinetic, energy.potential, energy.dissipated, energy.work,    p.x(),           p.y(), p.z(), l.x(), l.y(),
+      l.z(),          energy.impact,    energy.friction,   energy.damping, energy.numerical};
 }
 
 template <std::size_t N>

@@ -49,13 +49,14 @@ TEST_F(TrajectorySchema, HasTheColumnsOfTheContractInItsOrder) {
   EXPECT_EQ(columnsOf(path_, "frame"), "id time");
   EXPECT_EQ(columnsOf(path_, "state"), "frame body px py pz qw qx qy qz vx vy vz wx wy wz");
   EXPECT_EQ(columnsOf(path_, "event"), "time kind a b x y z nx ny nz impulse");
-  EXPECT_EQ(columnsOf(path_, "energy"), "frame kinetic potential dissipated work px py pz lx ly lz impact friction damping numerical");
+  EXPECT_EQ(columnsOf(path_, "energy"),
+            "frame kinetic potential dissipated work px py pz lx ly lz impact friction damping numerical");
 }
 
 TEST_F(TrajectorySchema, HasTheKeysOfTheContract) {
   EXPECT_EQ(rows("SELECT key FROM meta ORDER BY key"),
-            (std::vector<std::string>{"accuracy", "corrections", "cpuSeconds", "evaluations", "method", "plan", "scene", "sceneHash",
-                                      "scenePath", "stateHash", "version"}));
+            (std::vector<std::string>{"accuracy", "corrections", "cpuSeconds", "evaluations", "method", "plan", "scene",
+                                      "sceneHash", "scenePath", "stateHash", "version"}));
   EXPECT_EQ(rows("SELECT value FROM meta WHERE key = 'sceneHash'"),
             std::vector<std::string>{textHash(sampleHeader().scene)});
 }

@@ -188,8 +188,12 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
   const bool hasFriction = std::any_of(impacts.begin(), impacts.end(), [](const ImpactContact& impact) {
     return impact.law.staticFriction > 0 || impact.law.dynamicFriction > 0;
   });
+  ImpactFaults faults;
   const auto solve = [&] {
-    hasFriction ? resolveFrictionalImpact(impacts, response, state) : resolveReflections(impacts, response, state);
+    if (hasFriction)
+      faults = resolveFrictionalImpact(impacts, response, state);
+    else
+      resolveReflections(impacts, response, state);
   };
   solve();
   if (endBounces(approach, impacts)) {
@@ -197,6 +201,7 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
     for (ImpactContact& impact : impacts) impact.impulse.setZero();
     solve();
   }
+  island_.log.recordFaults(island_.time, impacts, faults);
   bookImpact(impacts, approach, state);
   bookNumerical(energyConstant(island_.assembly.mechanism, approach), island_.assembly.mechanism, state);
 }

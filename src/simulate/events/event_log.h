@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collision/separation.h"
+#include "impact/pairwise.h"
 #include "simulate/assembly.h"
 #include "simulate/corrections.h"
 #include "trajectory/trajectory.h"
@@ -25,6 +26,8 @@ class EventLog {
 
   /// What was done to moving bodies of the island beside the laws of mechanics.
   void recordCorrection(double time, CorrectionKind kind, const std::vector<int>& movingBodies, double amount);
+  /// The same for a simultaneous impact.
+  void recordFaults(double time, const std::vector<ImpactContact>& impacts, const ImpactFaults& faults);
   Corrections& corrections() { return corrections_; }
 
   /// Events since the last call, in the order in which they were recorded.

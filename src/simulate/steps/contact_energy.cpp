@@ -38,9 +38,9 @@ bool isGain(double energy, double most) {
   return energy > most + kEnergyRounding * std::abs(most);
 }
 
-void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state) {
+double limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state) {
   const double energy = energyOf(moved.bodies, mechanism, state);
-  if (!isGain(energy, most)) return;
+  if (!isGain(energy, most)) return 0;
   const Vec3 kept = moved.isGrounded ? Vec3::Zero() : meanVelocity(moved.bodies, mechanism, state);
   for (const int body : moved.bodies) linearVelocity(state, body) -= kept;
   const double kinetic = kineticEnergyOf(moved.bodies, mechanism, state);
@@ -49,6 +49,7 @@ void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechani
     state.segment<kVelocitySize>(velocityOffset(state, body)) *= part;
     linearVelocity(state, body) += kept;
   }
+  return energy - energyOf(moved.bodies, mechanism, state);
 }
 
 }  // namespace cradle

@@ -18,8 +18,9 @@ struct MovedBodies {
 
 /// Contact gives no energy: what bodies have more than `most` (J), by rounding, by the order of a method or by impulses
 /// that were not found, is taken from their velocities. All become smaller by the same part, so that what touches opens
-/// and slides as before; nothing fixed takes the momentum of bodies that touch only each other, which is kept.
-void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state);
+/// and slides as before; nothing fixed takes the momentum of bodies that touch only each other, which is kept. Returns
+/// how much energy (J) that took.
+double limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state);
 
 /// Whether energies (J) differ by more than rounding.
 bool isGain(double energy, double most);

@@ -43,6 +43,7 @@ double ContactStepping::firstLanding(const std::vector<Contact>& contacts, const
     first = std::min(first, landingPart(group, motion, cones_.velocitiesIn(path)));
   }
   contacts_ = last;
+  faults_.clear();  // of a trial
   return first;
 }
 
@@ -139,7 +140,7 @@ VectorX ContactStepping::strike(const Group& group, double timeStep, VectorX& st
       continue;
     }
     impactEnergy(state) += std::max(0.0, energyTakenBy(impulses, start, cones_.velocitiesIn(state)));
-    limitEnergy(group.moved, most, assembly_.mechanism, state);
+    limit(group, most, state);
     return impulses;
   }
 }

@@ -29,11 +29,13 @@ double closingSpeed(const Contact& contact, const VectorX& state) {
 }
 
 /// Without friction by reflections; with it by the same on Coulomb's cones.
-void resolveImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
+ImpactFaults resolveImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
   const bool hasFriction = std::any_of(impacts.begin(), impacts.end(), [](const ImpactContact& impact) {
     return impact.law.staticFriction > 0 || impact.law.dynamicFriction > 0;
   });
-  hasFriction ? resolveFrictionalImpact(impacts, response, state) : resolveReflections(impacts, response, state);
+  if (hasFriction) return resolveFrictionalImpact(impacts, response, state);
+  resolveReflections(impacts, response, state);
+  return {};
 }
 
 }  // namespace
@@ -62,6 +64,7 @@ void ContactStage::strike(double time, const VectorX& before, VectorX& state) {
     return settle(time, touching_, state);
   }
   const std::vector<Vec3> impulses = stepping_.strike(touching_, timeStep_, state);
+  recordFaults(time);
   for (std::size_t i = 0; i < impulses.size(); ++i) {
     const double impulse = touching_[i].normal.dot(impulses[i]);
     if (impulse > 0) log_.recordContact(time, EventKind::impact, touching_[i], impulse);
@@ -152,6 +155,7 @@ void ContactStage::hold(const VectorX& before, double length, VectorX& state) {
 }
 
 void ContactStage::settleHeld(double time, VectorX& state) {
+  recordFaults(time);
   std::vector<Contact> acting;
   for (const SteppedContact& stepped : stepping_.contacts()) {
     const double impulse = stepped.contact.normal.dot(stepped.impulse);
@@ -185,6 +189,11 @@ double ContactStage::lightest(const Contact& contact) const {
   for (const int body : {contact.bodyA, contact.bodyB})
     if (body != kFixed) mass = std::min(mass, assembly_.mechanism.bodies[static_cast<std::size_t>(body)].mass);
   return mass;
+}
+
+void ContactStage::recordFaults(double time) {
+  for (const SteppingFault& fault : stepping_.takeFaults())
+    log_.recordCorrection(time, fault.kind, fault.bodies, fault.amount);
 }
 
 void ContactStage::settle(double time, const std::vector<Contact>& contacts, VectorX& state) {
@@ -223,7 +232,8 @@ void ContactStage::resolveImpacts(double time, const VectorX& before, VectorX& s
   for (std::vector<ImpactContact>& impacts : findImpacts(before, state)) {
     if (impacts.empty()) continue;
     const VectorX approach = state;
-    resolveImpact(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
+    log_.recordFaults(time, impacts,
+                      resolveImpact(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state));
     const bool isHard = std::any_of(impacts.begin(), impacts.end(), [&](const ImpactContact& impact) {
       return closingSpeed(impact.contact, approach) > leastImpactSpeed_;
     });

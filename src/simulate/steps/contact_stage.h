@@ -67,6 +67,7 @@ class ContactStage {
   void findMeeting(const VectorX& state);
   double lightest(const Contact& contact) const;
   void settle(double time, const std::vector<Contact>& contacts, VectorX& state);
+  void recordFaults(double time);
   void wakeTouched(double time, const VectorX& state);
   void resolveImpacts(double time, const VectorX& before, VectorX& state);
   Islands findStruckTogether() const;

@@ -37,6 +37,7 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const Vector
   startPart_ = previousStep_ > 0 ? timeStep / previousStep_ : 1;
   previousStep_ = timeStep;
   friction_ = {};
+  faults_.clear();
   begin(contacts, before, state);
   slips_.assign(contacts.size(), Vec3::Zero());
   lands_.resize(contacts.size(), 0);
@@ -51,7 +52,7 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const Vector
   // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
   if (solver_.hasConstraints()) {
     solver_.project(state);
-    for (std::size_t i = 0; i < groups.size(); ++i) limitEnergy(groups[i].moved, most[i], assembly_.mechanism, state);
+    for (std::size_t i = 0; i < groups.size(); ++i) limit(groups[i], most[i], state);
   }
   lands_.clear();
   bookForces(timeStep, state);
@@ -150,7 +151,7 @@ void ContactStepping::resolve(const Group& group, const VectorX& before, double 
       restore(group.moved.bodies, state);
       continue;
     }
-    limitEnergy(group.moved, most, assembly_.mechanism, state);
+    limit(group, most, state);
     keep(group, motion, problem, impulses, state);
     return book(group, motion, impulses, end, state);
   }
@@ -162,25 +163,37 @@ VectorX ContactStepping::solve(const Group& group, const Problem& problem) {
     const double most = problem.free.cwiseAbs().maxCoeff();
     ConeSolution solution = solveConeProblem(inverseMass, problem.free, problem.frictions);
     // What is wedged may have no solution, and the search for one may lead beyond all bounds.
-    if (!(solution.residual <= most))
+    if (!(solution.residual <= most)) {
+      faults_.push_back({CorrectionKind::omittedFriction, group.moved.bodies, solution.residual});
       solution = solveConeProblem(inverseMass, problem.free, std::vector<double>(problem.frictions.size(), 0));
-    if (!(solution.residual <= most)) solution.impulses.setZero();
-    count(solution);
+    }
+    if (!(solution.residual <= most)) {
+      faults_.push_back({CorrectionKind::omittedContacts, group.moved.bodies, solution.residual});
+      solution.impulses.setZero();
+    }
+    count(group, solution, most);
     return solution.impulses;
   }
-  const double tolerance = kSolvedPart * problem.free.cwiseAbs().maxCoeff();
+  const double fastest = problem.free.cwiseAbs().maxCoeff(), tolerance = kSolvedPart * fastest;
   ConeStart start = startOf(group);
   const ConeSolution solution = cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations);
   penalties_[group.firstBody] = start.penalty;
-  count(solution);
+  count(group, solution, fastest);
   return solution.impulses;
 }
 
-void ContactStepping::count(const ConeSolution& solution) {
+void ContactStepping::count(const Group& group, const ConeSolution& solution, double fastest) {
   ++count_.problems;
   if (solution.converged) return;
   ++count_.unsolved;
+  if (!(solution.residual <= kSolvedPart * fastest))
+    faults_.push_back({CorrectionKind::unsolvedContacts, group.moved.bodies, solution.residual});
   count_.worstResidual = std::max(count_.worstResidual, solution.residual);
+}
+
+void ContactStepping::limit(const Group& group, double most, VectorX& state) {
+  const double taken = limitEnergy(group.moved, most, assembly_.mechanism, state);
+  if (taken > 0) faults_.push_back({CorrectionKind::clampedEnergy, group.moved.bodies, taken});
 }
 
 /// Impulses and velocities of the step before, by the nearest contact of the same bodies.
@@ -290,7 +303,8 @@ void ContactStepping::book(const Group& group, const Motion& motion, const Vecto
 void ContactStepping::bookForces(double timeStep, VectorX& state) const {
   const Mechanism& mechanism = assembly_.mechanism;
   for (const SpringForce& spring : mechanism.springs)
-    dampingEnergy(state) += 0.5 * timeStep * (actionOf(spring, state).dissipation - actionOf(spring, free_).dissipation);
+    dampingEnergy(state) +=
+        0.5 * timeStep * (actionOf(spring, state).dissipation - actionOf(spring, free_).dissipation);
   for (const PushForce& push : mechanism.pushes)
     pushWork(state) += 0.5 * timeStep * (powerOf(push, state) - powerOf(push, free_));
 }

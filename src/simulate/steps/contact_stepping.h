@@ -2,11 +2,13 @@
 
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "impact/contact_cones.h"
 #include "impact/sparse_cones.h"
 #include "simulate/assembly.h"
+#include "simulate/corrections.h"
 #include "simulate/steps/contact_energy.h"
 
 namespace cradle {
@@ -22,6 +24,13 @@ struct SteppedContact {
 struct SteppingCount {
   long problems = 0, unsolved = 0, iterations = 0;
   double worstResidual = 0;  // m/s, of those that were not solved
+};
+
+/// What had to be done to a step beside the laws of contact.
+struct SteppingFault {
+  CorrectionKind kind;
+  std::vector<int> bodies;  // moving
+  double amount;            // in the unit of its kind
 };
 
 /// The contact step for many contacts that last or chatter: all contacts within reach of the step are one cone problem
@@ -62,6 +71,9 @@ class ContactStepping {
   const std::vector<SteppedContact>& contacts() const { return contacts_; }
   const SteppingCount& count() const { return count_; }
 
+  /// Faults since the last step began, or the last call.
+  std::vector<SteppingFault> takeFaults() { return std::exchange(faults_, {}); }
+
  private:
   static constexpr std::size_t kFewContacts = 6;     // solved densely, to rounding
   static constexpr double kLessRestitution = 0.7;    // of the restitution that let energy grow
@@ -96,7 +108,8 @@ class ContactStepping {
   VectorX strike(const Group& group, double timeStep, VectorX& state);
   VectorX solve(const Group& group, const Problem& problem);
   MatrixX inverseMass() const { return tied_ ? tied_->inverseMass() : cones_.inverseMass(); }
-  void count(const ConeSolution& solution);
+  void count(const Group& group, const ConeSolution& solution, double fastest);
+  void limit(const Group& group, double most, VectorX& state);
   ConeStart startOf(const Group& group) const;
   VectorX move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state);
   static VectorX gapsAfter(const Group& group, double timeStep, const VectorX& velocities);
@@ -121,6 +134,7 @@ class ContactStepping {
   double previousStep_ = 0, startPart_ = 1;  // s; ratio of impulses now to those of the step before, if forces last
   std::map<int, double> penalties_;          // of each group's first body
   SteppingCount count_;
+  std::vector<SteppingFault> faults_;
   HeldFriction friction_;
   VectorX free_;  // where free motion led
 };

@@ -148,7 +148,8 @@ void SteppedMotion::moveFreely(double stepEnd) {
   method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
   if (method_.tolerance == 0) return;
   prepareInterpolant(island_.rightHandSide, step);
-  while (!(rk4Error(step, motionComponents(step.state)) <= method_.tolerance) && length > kShortestPart * method_.timeStep) {
+  while (!(rk4Error(step, motionComponents(step.state)) <= method_.tolerance) &&
+         length > kShortestPart * method_.timeStep) {
     length /= 2;
     keepStartRate(step);
     method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
