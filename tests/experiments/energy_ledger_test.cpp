@@ -94,8 +94,8 @@ TEST(EnergyLedger, ImpactsOfABouncingBallTakeAllButTheSquareOfTheRestitution) {
   const std::vector<Event> bounces = eventsOf(run, EventKind::impact);
   ASSERT_GE(bounces.size(), 2u);
   for (const Frame& frame : run.frames) {
-    const auto count = std::count_if(bounces.begin(), bounces.end(),
-                                     [&](const Event& bounce) { return bounce.time <= frame.time; });
+    const auto count =
+        std::count_if(bounces.begin(), bounces.end(), [&](const Event& bounce) { return bounce.time <= frame.time; });
     const double left = std::pow(restitution, 2 * static_cast<double>(count));
     EXPECT_NEAR(frame.energy.impact, (1 - left) * energy, 1e-8 * energy) << frame.time;
     EXPECT_EQ(frame.energy.friction, 0);
@@ -146,15 +146,15 @@ TEST(EnergyLedger, ARopeThatCatchesIsAnImpact) {
 TEST(EnergyLedger, ARodThatHitsWithFrictionIsOneImpactWhoseFrictionAloneMayGive) {
   const double mass = 2, inertia = 0.3, restitution = 0.5, length = 1, radius = 0.05, angle = 0.7;
   const Vec3 velocity(-0.1, -2, 0);
-  const Trajectory run = simulate(sceneWith(fmt::format(R"("duration": 0.1, "accuracy": 1e-8, "gravity": [0, 0, 0],
+  const Trajectory run = simulate(
+      sceneWith(fmt::format(R"("duration": 0.1, "accuracy": 1e-8, "gravity": [0, 0, 0],
     "materials": {{"m": {{"restitution": {}, "staticFriction": 5, "dynamicFriction": 5}}}},
     "bodies": [{{"name": "rod", "material": "m", "shape": {{"capsule": {{"radius": {}, "length": {}}}}}, "mass": {},
                 "inertiaTensor": [[{},0,0],[0,0.01,0],[0,0,{}]], "position": [0, {}, 0],
                 "orientation": {{"axis": [0, 0, 1], "angleDegrees": {}}}, "linearVelocity": {}}},
                {{"name": "ground", "material": "m", "shape": {{"plane": {{}}}}, "motion": "static"}}])",
-                                                        restitution, radius, length, mass, inertia, inertia,
-                                                        0.05 + radius + 0.5 * length * std::cos(angle),
-                                                        angle * 180 / M_PI, vectorText(velocity))));
+                            restitution, radius, length, mass, inertia, inertia,
+                            0.05 + radius + 0.5 * length * std::cos(angle), angle * 180 / M_PI, vectorText(velocity))));
   ASSERT_EQ(eventsOf(run, EventKind::impact).size(), 1u);
   const double x = 0.5 * length * std::sin(angle), y = -0.5 * length * std::cos(angle) - radius;
   Eigen::Matrix2d inverseMass;
@@ -191,7 +191,8 @@ TEST(EnergyLedger, AHeapLosesItsEnergyToContacts) {
 
 // Ropes, rods, contacts that come and go, chatter and rest: operations of all kinds.
 TEST(EnergyLedger, BalancesInEveryFrameWhateverHappens) {
-  for (const char* method : {R"("accuracy": 1e-3)", R"("accuracy": 1e-6)", R"("method": {"name": "rk4", "timeStep": 0.001})"}) {
+  for (const char* method :
+       {R"("accuracy": 1e-3)", R"("accuracy": 1e-6)", R"("method": {"name": "rk4", "timeStep": 0.001})"}) {
     const Trajectory run = simulate(sceneWith(fmt::format(R"("duration": 2, {}, "output": {{"framesPerSecond": 240}},
     "materials": {{"m": {{"restitution": 0.4, "staticFriction": 0.4, "dynamicFriction": 0.3}}}},
     "bodies": [{{"name": "a", "material": "m", "shape": {{"box": {{"size": [0.3, 0.2, 0.4]}}}}, "mass": 2,

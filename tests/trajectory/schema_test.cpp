@@ -61,6 +61,28 @@ TEST_F(TrajectorySchema, HasTheKeysOfTheContract) {
             std::vector<std::string>{textHash(sampleHeader().scene)});
 }
 
+TEST_F(TrajectorySchema, CountsCorrectionsByKindAsJson) {
+  EXPECT_EQ(rows("SELECT json_extract(value, '$.clampedEnergy'), json_extract(value, '$.unsolvedContacts') FROM meta "
+                 "WHERE key = 'corrections'"),
+            std::vector<std::string>{"2|1"});
+}
+
+// What files of the time before the causes of what was dissipated have.
+TEST_F(TrajectorySchema, WithoutCausesIsReadAllTheSame) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open_v2(path_.c_str(), &database, SQLITE_OPEN_READWRITE, nullptr), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database,
+                         "ALTER TABLE energy RENAME TO full; CREATE TABLE energy AS SELECT frame, kinetic, potential, "
+                         "dissipated, work, px, py, pz, lx, ly, lz FROM full; DROP TABLE full",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(database);
+  const EnergyBalance energy = TrajectoryReader(path_).readFrame(1).energy;
+  expectSameBits(energy.dissipated, sampleFrame(1).energy.dissipated);
+  for (const double cause : {energy.impact, energy.friction, energy.damping, energy.numerical})
+    EXPECT_TRUE(std::isnan(cause));
+}
+
 TEST_F(TrajectorySchema, HoldsBodiesAsOthersReadThem) {
   const auto bodies = rows("SELECT id, name, motion, mesh, shape, mass, comy, iyy, ixz, iyz FROM body ORDER BY id");
   ASSERT_EQ(bodies.size(), 3u);
