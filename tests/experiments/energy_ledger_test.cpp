@@ -70,14 +70,15 @@ TEST(EnergyLedger, FrictionOfASlidingBlockIsItsForceTimesTheWay) {
   for (const std::string& method : {std::string(R"("accuracy": 1e-8)"), methodText("rk4", timeStep)}) {
     const Trajectory run = slidingBox(method);
     expectBalance(run);
+    const double accuracy = 1e-8 * 9;  // J: of all that there is
     const double lastStep = method.find("rk4") == std::string::npos ? 0 : force * 0.3 * kGravity * timeStep * timeStep;
     for (const Frame& frame : run.frames) {
-      EXPECT_NEAR(frame.energy.friction, force * frame.states[0].position.x(), 1e-9 + lastStep) << frame.time;
+      EXPECT_NEAR(frame.energy.friction, force * frame.states[0].position.x(), accuracy + lastStep) << frame.time;
       EXPECT_NEAR(frame.energy.impact, 0, 1e-12) << frame.time;
       EXPECT_EQ(frame.energy.damping, 0);
-      EXPECT_NEAR(frame.energy.numerical, 0, 1e-9 + lastStep) << frame.time;
+      EXPECT_NEAR(frame.energy.numerical, 0, accuracy + lastStep) << frame.time;
     }
-    EXPECT_NEAR(run.frames.back().energy.friction, 9, 1e-9 + lastStep);
+    EXPECT_NEAR(run.frames.back().energy.friction, 9, accuracy + lastStep);
   }
 }
 
@@ -172,7 +173,8 @@ TEST(EnergyLedger, ARodThatHitsWithFrictionIsOneImpactWhoseFrictionAloneMayGive)
   EXPECT_NEAR(end.numerical, 0, 1e-9);
 }
 
-// A heap is right to what pictures show: contacts, not errors, take what it loses.
+// A heap is right to what pictures show: contacts, not errors, take what it loses. Taking out overlaps and sinking into
+// each other is worth about half a percent.
 TEST(EnergyLedger, AHeapLosesItsEnergyToContacts) {
   const Trajectory run = simulate(sceneWith(fmt::format(R"("duration": 3, "accuracy": "visual",
     "materials": {{"m": {{"restitution": 0.2, "staticFriction": 0.5, "dynamicFriction": 0.5}}}},
@@ -184,7 +186,7 @@ TEST(EnergyLedger, AHeapLosesItsEnergyToContacts) {
   double kinetic = 0;
   for (const Frame& frame : run.frames) kinetic = std::max(kinetic, frame.energy.kinetic);
   const EnergyBalance& end = run.frames.back().energy;
-  EXPECT_LT(largestNumerical(run), 5e-3 * kinetic);
+  EXPECT_LT(largestNumerical(run), 1e-2 * kinetic);
   EXPECT_GT(end.impact, 0.5 * kinetic);
   EXPECT_GT(end.friction, 0.01 * kinetic);
 }

@@ -26,8 +26,8 @@ TEST(Corrections, AreCountedByKindAndToldOnceOfEach) {
 }
 
 TEST(Corrections, AreDescribedWithTimeAndBodies) {
-  const Scene scene = sceneWith(fmt::format(R"("duration": 1, "bodies": [{}, {}])", ball("first", Vec3::Zero()),
-                                            ball("second", Vec3::UnitX())));
+  const Scene scene = sceneWith(
+      fmt::format(R"("duration": 1, "bodies": [{}, {}])", ball("first", Vec3::Zero()), ball("second", Vec3::UnitX())));
   for (std::size_t kind = 0; kind < kCorrectionKinds; ++kind) {
     const std::string text = describe({static_cast<CorrectionKind>(kind), 0.25, {0, 1}, 7}, scene);
     EXPECT_THAT(text, HasSubstr("at 0.25 s "));
