@@ -192,7 +192,7 @@ void ContactSolver::takeForces(const Group& group, VectorX& rate) {
     force.normal = multipliers_[index(row++)];
     if (contact.motion == ContactMotion::sliding) {
       force.tangential = -contact.friction * force.normal * force.slidingDirection;
-      dissipatedEnergy(rate) -= force.tangential.dot(force.tangentialVelocity);
+      frictionEnergy(rate) -= force.tangential.dot(force.tangentialVelocity);
     }
     if (contact.motion != ContactMotion::sticking) continue;
     for (int k = 0; k < 2; ++k, ++tangentRow)

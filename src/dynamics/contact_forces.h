@@ -35,7 +35,7 @@ class ContactSolver {
   /// Takes the rows in `state`, in which the bodies have `frames`, and factorises. `resting` bodies act as fixed.
   void factorize(const VectorX& state, const std::vector<BodyFrame>& frames, const std::vector<char>& resting);
 
-  /// Adds to the accelerations in `rate` what contacts and ties give, and to the dissipated energy what sliding takes.
+  /// Adds to the accelerations in `rate` what contacts and ties give, and to the energy of friction what sliding takes.
   /// The accelerations of resting bodies must be zero; they stay so.
   void constrainAccelerations(VectorX& rate);
 

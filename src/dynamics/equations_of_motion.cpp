@@ -101,7 +101,7 @@ void EquationsOfMotion::applySprings(const VectorX& state, VectorX& rate) const 
     const SpringPull pull = pullOf(spring, a, b);
     addForce(spring.anchorA.body, a.arm, pull.forceOnA, rate);
     addForce(spring.anchorB.body, b.arm, -pull.forceOnA, rate);
-    dissipatedEnergy(rate) += pull.dissipation;
+    dampingEnergy(rate) += pull.dissipation;
   }
 }
 

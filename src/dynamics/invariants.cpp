@@ -40,9 +40,24 @@ Invariants invariantsOf(const Mechanism& mechanism, const VectorX& state) {
   return sums;
 }
 
+double mechanicalEnergy(const Mechanism& mechanism, const VectorX& state) {
+  double energy = kineticEnergy(mechanism.bodies, state);
+  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i)
+    energy -= mechanism.bodies[i].mass * mechanism.gravity.dot(centerOfMass(state, static_cast<Eigen::Index>(i)));
+  for (const SpringForce& spring : mechanism.springs) energy += actionOf(spring, state).potential;
+  return energy;
+}
+
 double energyConstant(const Mechanism& mechanism, const VectorX& state) {
-  const Invariants sums = invariantsOf(mechanism, state);
-  return sums.kinetic + sums.potential + dissipatedEnergy(state) - pushWork(state);
+  return mechanicalEnergy(mechanism, state) + dissipatedEnergy(state) - pushWork(state) + numericalEnergy(state);
+}
+
+void bookNumerical(double constant, const Mechanism& mechanism, VectorX& state) {
+  numericalEnergy(state) += constant - energyConstant(mechanism, state);
+}
+
+void bookStep(const Mechanism& mechanism, Step& step) {
+  bookNumerical(energyConstant(mechanism, step.startState), mechanism, step.state);
 }
 
 }  // namespace cradle

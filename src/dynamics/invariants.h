@@ -17,7 +17,18 @@ Invariants invariantsOf(const Mechanism& mechanism, const VectorX& state);
 double kineticEnergy(const RigidBody& body, Eigen::Index index, const VectorX& state);
 double kineticEnergy(const std::vector<RigidBody>& bodies, const VectorX& state);
 
-/// kinetic + potential + dissipated - work in J: constant up to the error of the method.
+/// Kinetic and potential energy in J.
+double mechanicalEnergy(const Mechanism& mechanism, const VectorX& state);
+
+/// kinetic + potential + dissipated - work + numerical in J: constant to rounding if each operation that changes a
+/// state books what it does.
 double energyConstant(const Mechanism& mechanism, const VectorX& state);
+
+/// Books as numerical what the energy constant of `state` lacks of `constant` (J): its value before an operation whose
+/// laws have booked their part already.
+void bookNumerical(double constant, const Mechanism& mechanism, VectorX& state);
+
+/// The same for an integrator's step: books its error at its end.
+void bookStep(const Mechanism& mechanism, Step& step);
 
 }  // namespace cradle

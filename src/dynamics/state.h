@@ -1,27 +1,30 @@
 #pragma once
 
+#include <limits>
+
 #include "math/types.h"
 
 // The state of n moving bodies is one contiguous vector:
 //   for each body  centre of mass x, y, z (m, world); orientation worldFromBody w, x, y, z
 //   for each body  linear velocity x, y, z (m/s); angular velocity x, y, z (rad/s), both world frame
-//   dissipated energy (J) and work of pushes (J) since the start
+//   energy ledger (J since the start): what impacts, friction and damping took, what numerical error took, and what
+//   pushes gave. Friction, damping and work have rates; impacts and numerical error are booked as they happen.
 // Rates have the same layout.
 
 namespace cradle {
 
 constexpr Eigen::Index kPoseSize = 7;
 constexpr Eigen::Index kVelocitySize = 6;
-constexpr Eigen::Index kBalanceSize = 2;
+constexpr Eigen::Index kLedgerSize = 5;
 
 inline Eigen::Index bodyCount(const VectorX& state) {
-  return (state.size() - kBalanceSize) / (kPoseSize + kVelocitySize);
+  return (state.size() - kLedgerSize) / (kPoseSize + kVelocitySize);
 }
 inline Eigen::Index stateSize(Eigen::Index bodies) {
-  return bodies * (kPoseSize + kVelocitySize) + kBalanceSize;
+  return bodies * (kPoseSize + kVelocitySize) + kLedgerSize;
 }
 
-/// Number of leading components that are positions: the rest are velocities and balances.
+/// Number of leading components that are positions: the rest are velocities and the ledger.
 inline Eigen::Index poseComponents(const VectorX& state) {
   return bodyCount(state) * kPoseSize;
 }
@@ -51,10 +54,32 @@ inline void setOrientation(VectorX& state, Eigen::Index body, const Quat& worldF
   state.segment<4>(body * kPoseSize + 3) << worldFromBody.w(), worldFromBody.x(), worldFromBody.y(), worldFromBody.z();
 }
 
-inline double& dissipatedEnergy(VectorX& state) {
+/// By impacts of contacts and ropes: each takes something, whatever single contacts of it do.
+inline double& impactEnergy(VectorX& state) {
+  return state[state.size() - 5];
+}
+inline double impactEnergy(const VectorX& state) {
+  return state[state.size() - 5];
+}
+/// By lasting contacts.
+inline double& frictionEnergy(VectorX& state) {
+  return state[state.size() - 4];
+}
+inline double frictionEnergy(const VectorX& state) {
+  return state[state.size() - 4];
+}
+/// By springs' dampers.
+inline double& dampingEnergy(VectorX& state) {
+  return state[state.size() - 3];
+}
+inline double dampingEnergy(const VectorX& state) {
+  return state[state.size() - 3];
+}
+/// Lost (> 0) or gained (< 0) by what no law asks for: errors of steps, projection, clamping, interpolation.
+inline double& numericalEnergy(VectorX& state) {
   return state[state.size() - 2];
 }
-inline double dissipatedEnergy(const VectorX& state) {
+inline double numericalEnergy(const VectorX& state) {
   return state[state.size() - 2];
 }
 inline double& pushWork(VectorX& state) {
@@ -64,11 +89,22 @@ inline double pushWork(const VectorX& state) {
   return state[state.size() - 1];
 }
 
-/// Tolerances for an ErrorNorm (integrators/step.h): one for orientations, one for all else.
+inline double dissipatedEnergy(const VectorX& state) {
+  return impactEnergy(state) + frictionEnergy(state) + dampingEnergy(state);
+}
+
+/// Number of leading components that are the motion, without the ledger.
+inline Eigen::Index motionComponents(const VectorX& state) {
+  return state.size() - kLedgerSize;
+}
+
+/// Tolerances for an ErrorNorm (integrators/step.h): one for orientations, one for all else; none for the ledger, which
+/// is to follow the steps that the motion needs.
 inline VectorX stateTolerance(Eigen::Index bodies, double tolerance, double orientationTolerance) {
   VectorX tolerances = VectorX::Constant(stateSize(bodies), tolerance);
   for (Eigen::Index body = 0; body < bodies; ++body)
     tolerances.segment<4>(body * kPoseSize + 3).setConstant(orientationTolerance);
+  tolerances.tail<kLedgerSize>().setConstant(std::numeric_limits<double>::infinity());
   return tolerances;
 }
 

@@ -96,6 +96,7 @@ void fillFriction(const ContactManifold& manifold, const ArmsOf<Block>& arms,
   for (int i = 0; i < 2; ++i) {
     setLane(friction.tangents[i], lane, tangents[i]);
     inverse[i] = fillTurns<Block>(friction.turns[i], tangents[i], arms.middle, bodies, lane);
+    friction.totals[i][lane] = 0;
     friction.impulses[i][lane] = subStep * manifold.frictionForce.dot(tangents[i]);
   }
   const double coupling = couplingOf<Block>(friction.turns[0], friction.turns[1], lane);
@@ -113,6 +114,7 @@ void fillFriction(const ContactManifold& manifold, const ArmsOf<Block>& arms,
       inverseTwist += turn.squaredNorm();
     }
     block.twist.mass[lane] = 1 / inverseTwist;
+    block.twist.total[lane] = 0;
     block.twist.impulse[lane] = subStep * manifold.twist;
     for (int i = 0; i < Block::kPoints; ++i) block.twist.levers[i][lane] = (arms.points[i][0] - arms.middle[0]).norm();
   }
@@ -135,6 +137,7 @@ void fillLane(const ContactManifold& manifold, std::int32_t index, const std::ve
   for (int i = 0; i < Block::kPoints; ++i) {
     const std::size_t at = static_cast<std::size_t>(i);
     block.points[i].separation[lane] = manifold.separations[at];
+    block.points[i].total[lane] = 0;
     block.points[i].impulse[lane] = subStep * manifold.forces[at];
   }
   const ArmsOf<Block> arms(manifold, movers);

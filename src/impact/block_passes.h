@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tuple>
+
 #include "impact/block_normals.h"
 
 // What a pass does to one contact block. E. Catto, "Solver2D" (box2d.org, 2024) names the passes: soft contacts that
@@ -238,6 +240,10 @@ void relaxBlock(Block& block, SolverMotions& motions) {
     press(block, speeds, laws, velocities);
   }
   rubAndStore(block, wasPressed, velocities, motions);
+  // A sub-step's impulses hold those of the one before, which it began with.
+  for (auto& point : block.points) point.total += point.impulse;
+  for (int i = 0; i < 2; ++i) block.friction.totals[i] += block.friction.impulses[i];
+  if constexpr (Block::kPoints > 1) block.twist.total += block.twist.impulse;
 }
 
 /// Rebounds contacts that closed faster than `slowest` (m/s) and were pressed in this step.
@@ -247,6 +253,7 @@ void reboundBlock(Block& block, double slowest, SolverMotions& motions) {
   MotionsOf<Block> velocities(block, motions.velocities);
   const PlaneSpeeds starts = MotionsOf<Block>(block, motions.starts).apart(block), speeds = velocities.apart(block);
   NormalLaws<Block::kPoints> laws;
+  for (auto& point : block.points) point.total -= point.impulse;
   for (int i = 0; i < Block::kPoints; ++i) {
     const auto& point = block.points[i];
     const Lanes before = starts.at(point.u, point.v);
@@ -260,7 +267,33 @@ void reboundBlock(Block& block, double slowest, SolverMotions& motions) {
     }
   }
   if constexpr (Block::kPoints > 1) press(block, speeds, laws, velocities);
+  for (auto& point : block.points) point.total += point.impulse;
   velocities.store(block, motions.velocities);
+}
+
+/// Finds what a contact's impulses took: their sum works with the mean of the velocities before the step and now, for
+/// rows stay as they are. What closed faster than `slowest` (m/s) is an impact, with its friction; so is the closing
+/// that others still had.
+template <class Block>
+void weighBlock(Block& block, double slowest, const SolverMotions& motions) {
+  const MotionsOf<Block> starts(block, motions.starts), ends(block, motions.velocities);
+  const Lanes none = same(0), half = same(-0.5);
+  Lanes pressed = none, rubbed = none, fastest = none;
+  const PlaneSpeeds first = starts.apart(block), last = ends.apart(block);
+  for (const auto& point : block.points) {
+    const Lanes before = first.at(point.u, point.v), after = last.at(point.u, point.v);
+    pressed += half * point.total * (before + after);
+    fastest = larger(fastest, -before);
+  }
+  for (int i = 0; i < 2; ++i) {
+    const auto& [direction, turns] = std::tie(block.friction.tangents[i], block.friction.turns[i]);
+    rubbed += half * block.friction.totals[i] * (starts.along(direction, turns) + ends.along(direction, turns));
+  }
+  if constexpr (Block::kPoints > 1)
+    rubbed += half * block.twist.total * (starts.twist(block.twist.turns) + ends.twist(block.twist.turns));
+  const auto strikes = fastest > same(slowest);
+  block.struck = pressed + (strikes ? rubbed : none);
+  block.rubbed = strikes ? none : rubbed;
 }
 
 }  // namespace cradle

@@ -50,6 +50,7 @@ struct ContactBlock {
   struct Point {
     Lanes u, v;  // m, from the middle of the points along the tangents
     Lanes mass, separation, impulse;
+    Lanes total;  // N s: impulses of all sub-steps
     Lanes slack;  // m/s: closing speed that is left until the next sub-step
   };
   struct Plane {
@@ -60,11 +61,11 @@ struct ContactBlock {
   struct Friction {
     LaneVector tangents[2];
     LaneVector turns[2][kMovers];
-    Lanes mass11, mass12, mass22, impulses[2], coefficient;
+    Lanes mass11, mass12, mass22, impulses[2], totals[2], coefficient;
   };
   struct Twist {
     LaneVector turns[kMovers];
-    Lanes mass, impulse;
+    Lanes mass, impulse, total;
     Lanes levers[kPoints];  // m, of the points about the middle
   };
 
@@ -77,6 +78,7 @@ struct ContactBlock {
   Plane plane;
   Friction friction;
   Twist twist;
+  Lanes struck, rubbed;  // J: what all took, as impacts and as friction of lasting contacts
 };
 
 /// Bodies' motions while a step is solved. The last entry of each stands still, for lanes without a contact.

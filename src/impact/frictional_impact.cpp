@@ -29,6 +29,7 @@ using Index = Eigen::Index;
 
 constexpr double kClosedPart = 1e-11;      // of the fastest speed: what is left is rounding
 constexpr double kSlidingPart = 1e-9;      // of the same: slower sticks
+constexpr double kSolvedPart = 1e-7;       // of the same: an error of Coulomb's law that nobody sees
 constexpr int kMostRounds = 10;            // of what was not solved: each leaves less
 constexpr double kEnergyRounding = 1e-13;  // of the energy that moves
 constexpr double kSumRounding = 4 * std::numeric_limits<double>::epsilon();  // of the terms of an energy
@@ -44,6 +45,8 @@ struct Strike {
   VectorX impulses, velocities;
   double gain = 0, moved = 0;  // moved: what the impulses would give to bodies at rest
   double rounding = 0;         // J: of the gain
+  double residual = 0;         // m/s: of the cone problem
+  double scaledEnergy = 0;     // J: that the impulses found would have given
 
   bool gains() const { return gain > kEnergyRounding * moved; }
   double certainLoss() const { return -gain - rounding; }
@@ -55,7 +58,8 @@ class FrictionalImpact {
   FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactCones& cones, VectorX velocities);
 
   /// Impulses (N s) after which nothing closes.
-  VectorX resolve() const;
+  VectorX resolve();
+  const ImpactFaults& faults() const { return faults_; }
 
  private:
   bool closes(const VectorX& velocities) const;
@@ -69,6 +73,7 @@ class FrictionalImpact {
   double fastest_ = 0;                 // m/s
   std::vector<Index> members_;         // contacts that can move
   std::vector<Index> rows_, normals_;  // theirs
+  ImpactFaults faults_;
 };
 
 FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactCones& cones,
@@ -113,6 +118,7 @@ Strike FrictionalImpact::strike(const VectorX& velocities, const VectorX& openin
   strike.velocities = before + matrix * solution.impulses;
   strike.moved = 0.5 * solution.impulses.dot(matrix * solution.impulses);
   strike.gain = solution.impulses.dot(before) + strike.moved;
+  strike.residual = solution.residual;
   const VectorX terms = solution.impulses.cwiseAbs();
   strike.rounding = kSumRounding * terms.dot(matrix.cwiseAbs() * terms);
   return strike;
@@ -122,6 +128,7 @@ Strike FrictionalImpact::strike(const VectorX& velocities, const VectorX& openin
 Strike FrictionalImpact::strikeWithoutRebound(const VectorX& velocities) const {
   Strike found = strike(velocities, VectorX::Zero(std::ssize(members_)));
   if (!found.gains()) return found;
+  found.scaledEnergy = found.gain;
   const double part = std::max(0.0, (found.moved - found.gain) / (2 * found.moved));
   found.impulses *= part;
   found.velocities = velocities(rows_) + part * (found.velocities - velocities(rows_));
@@ -159,26 +166,32 @@ Strike FrictionalImpact::rebound(const Strike& plastic) const {
   return kept;
 }
 
-VectorX FrictionalImpact::resolve() const {
+VectorX FrictionalImpact::resolve() {
   VectorX impulses = VectorX::Zero(start_.size()), velocities = start_;
   for (int round = 0; round < kMostRounds && closes(velocities); ++round) {
     Strike found = strikeWithoutRebound(velocities);
     if (round == 0) found = rebound(found);
+    if (!(found.residual <= kSolvedPart * fastest_)) faults_.residual = std::max(faults_.residual, found.residual);
+    faults_.scaledEnergy = std::max(faults_.scaledEnergy, found.scaledEnergy);
     for (std::size_t k = 0; k < rows_.size(); ++k) impulses[rows_[k]] += found.impulses[static_cast<Index>(k)];
     velocities = start_ + cones_.inverseMass() * impulses;
   }
+  if (closes(velocities)) faults_.rounds = kMostRounds;
   return impulses;
 }
 
 }  // namespace
 
-void resolveFrictionalImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
-  if (impacts.empty()) return;
+ImpactFaults resolveFrictionalImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response,
+                                     VectorX& state) {
+  if (impacts.empty()) return {};
   const std::vector<Contact> contacts = contactsOf(impacts);
   const ContactCones cones(contacts, response, state);
-  const VectorX impulses = FrictionalImpact(impacts, cones, cones.velocitiesIn(state)).resolve();
+  FrictionalImpact impact(impacts, cones, cones.velocitiesIn(state));
+  const VectorX impulses = impact.resolve();
   cones.apply(impulses, state);
   for (std::size_t i = 0; i < impacts.size(); ++i) impacts[i].impulse += cones.worldImpulse(i, impulses);
+  return impact.faults();
 }
 
 }  // namespace cradle

@@ -10,6 +10,7 @@ namespace cradle {
 /// they do without friction. Symmetry is kept, the order of contacts does not count, energy is never gained: a
 /// restitution that would is made smaller, no more than it must. What ties the bodies takes part. O(contacts^3) for
 /// each reflection without friction and each of a few cone problems.
-void resolveFrictionalImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state);
+ImpactFaults resolveFrictionalImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response,
+                                     VectorX& state);
 
 }  // namespace cradle

@@ -14,6 +14,13 @@ struct ImpactContact {
   Vec3 impulse = Vec3::Zero();  // N s, world, on B: what was applied in all
 };
 
+/// What had to be done to an impact beside its law.
+struct ImpactFaults {
+  double residual = 0;      // m/s: of the worst cone problem that was not solved
+  double scaledEnergy = 0;  // J: that the impulses found would have given
+  int rounds = 0;           // that did not end the impact: what was left did not rebound
+};
+
 /// The textbook law of simultaneous impacts: the pair that closes fastest gets its two-body impulse (Newton's
 /// restitution, Coulomb's friction), again and again until no pair closes. Friction never adds energy: an impulse that
 /// would is replaced by the one without friction. Throws Error(unstable) if it does not come to an end.

@@ -90,6 +90,7 @@ PileStep::PileStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
 
 void PileStep::advance(double timeStep, VectorX& state) {
   impacts_.clear(), fallenAsleep_.clear(), woken_.clear();
+  taken_ = {};
   if (allAsleep()) return;
   slowestRebound_ = timeStep * gravity_.norm(), slow_ = kStillPart * slowestRebound_;
 
@@ -124,6 +125,7 @@ void PileStep::takePiece(double timeStep, int subSteps, int pieces, VectorX& sta
   solver_.prepare(colors, contacts_.manifolds(), solverBodies_, subStep, threads_);
   solver_.solve({subStep, subSteps, slowestRebound_, rebounds_}, gravity_, motions_, threads_);
   solver_.store(contacts_.manifolds(), threads_);
+  taken_.byImpact += solver_.taken().byImpact, taken_.byFriction += solver_.taken().byFriction;
   recordImpacts(timeStep);
   threads_.share(bodies_.size(), kBodyGrain, [&](int, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) moveBody(i, timeStep, subStep, state);

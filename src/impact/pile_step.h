@@ -19,7 +19,7 @@ class PileStep {
   PileStep(const std::vector<RigidBody>& bodies, ContactGeometry& geometry, const Vec3& gravity, int threads);
 
   /// Moves the state (layout of dynamics/state.h; orientations of unit length) on by `timeStep` (s), at most 1/60 for
-  /// piles to stay still. Orientations stay of unit length; dissipated energy and work are left as they are.
+  /// piles to stay still. Orientations stay of unit length; the ledger is left as it is.
   void advance(double timeStep, VectorX& state);
 
   bool allAsleep() const { return sleep_.awake() == 0; }
@@ -39,6 +39,9 @@ class PileStep {
   const std::vector<Impact>& impacts() const { return impacts_; }
   const std::vector<int>& fallenAsleep() const { return fallenAsleep_; }
   const std::vector<int>& woken() const { return woken_; }
+
+  /// What contacts took of the energy in the last step.
+  const SoftContactSolver::Taken& taken() const { return taken_; }
 
  private:
   void placeBodies(double timeStep, const VectorX& state);
@@ -78,6 +81,7 @@ class PileStep {
   long looks_ = 0;
   std::vector<Impact> impacts_;
   std::vector<int> fallenAsleep_, woken_;
+  SoftContactSolver::Taken taken_;
 };
 
 }  // namespace cradle

@@ -161,7 +161,24 @@ void SoftContactSolver::solve(const Steps& steps, const Vec3& gravity, SolverMot
     }
     if (steps.rebounds)
       sweep(motions, threads, thread, [&](auto& block) { reboundBlock(block, steps.slowestRebound, motions); });
+    forEachList(lists_, [&](auto& list) {
+      const auto [from, to] = threads.partOf(list.size, thread);
+      for (std::size_t i = from; i < to; ++i) weighBlock(list.blocks[i], steps.slowestRebound, motions);
+    });
   });
+}
+
+SoftContactSolver::Taken SoftContactSolver::taken() const {
+  Taken sum;
+  forEachList(lists_, [&](const auto& list) {
+    for (std::size_t i = 0; i < list.size; ++i)
+      for (int lane = 0; lane < kLanes; ++lane) {
+        if (list.blocks[i].manifolds[lane] < 0) continue;
+        sum.byImpact += list.blocks[i].struck[lane];
+        sum.byFriction += list.blocks[i].rubbed[lane];
+      }
+  });
+  return sum;
 }
 
 void SoftContactSolver::store(std::vector<ContactManifold>& manifolds, WorkerThreads& threads) const {

@@ -26,6 +26,12 @@ class SoftContactSolver {
   /// From the velocities in `motions` and displacements of zero to the velocities and displacements at the end.
   void solve(const Steps& steps, const Vec3& gravity, SolverMotions& motions, WorkerThreads& threads);
 
+  /// Energy (J) that contacts took in the last step. < 0: gave.
+  struct Taken {
+    double byImpact = 0, byFriction = 0;  // of contacts that met faster than the slowest rebound, of others
+  };
+  Taken taken() const;
+
   /// Forces of the last sub-step, for the next step.
   void store(std::vector<ContactManifold>& manifolds, WorkerThreads& threads) const;
 

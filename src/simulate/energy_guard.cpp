@@ -59,6 +59,11 @@ double energyRounding(const Mechanism& mechanism, const VectorX& state) {
   return sum;
 }
 
+/// Kinetic + potential + dissipated - work (J).
+double explainedConstant(const Mechanism& mechanism, const VectorX& state) {
+  return energyConstant(mechanism, state) - numericalEnergy(state);
+}
+
 /// Angle (rad) by which the line between two attachments turns in a time.
 double turnOf(const Attachment& anchorA, const Attachment& anchorB, const VectorX& state, double time) {
   const AttachmentMotion a = motionOf(anchorA, state), b = motionOf(anchorB, state);
@@ -82,7 +87,7 @@ EnergyGuard::EnergyGuard(const Assembly& assembly, const VectorX& start, const C
       calm_(start_),
       method_(method),
       duration_(duration),
-      startConstant_(energyConstant(mechanism_, start_)),
+      startConstant_(explainedConstant(mechanism_, start_)),
       startEnergy_(kineticEnergy(mechanism_.bodies, start_)),
       mostError_(kUnexplained * (1 + springEnergyError(mechanism_, start_, method, duration))),
       excursions_(mechanism_.bodies.size(), 0.0) {
@@ -97,7 +102,7 @@ void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
     most = std::min(most, kMostLocalErrors * errorSum_);
   }
   most += energyRounding(mechanism_, state);
-  const double change = std::abs(energyConstant(mechanism_, state) - startConstant_);
+  const double change = std::abs(explainedConstant(mechanism_, state) - startConstant_);
   if (!(change <= most))
     fail(state, time, fmt::format("has energy from nowhere ({:.3g} J; {:.3g} J can be explained)", change, most),
          cause(state));

@@ -8,10 +8,10 @@
 
 namespace cradle {
 
-/// Watches kinetic + potential + dissipated - work, which no method may change by more than its own error. That error
-/// is, with steps chosen by the error, what the accepted local errors can add up to; with a fixed step, what the method
-/// does to a mass on the fastest spring, in parts of all energy that there was to begin with, that pushes gave, or that
-/// gravity can have given on the way travelled.
+/// Watches the numerical energy, by what kinetic + potential + dissipated - work changes, which no method may change by
+/// more than its own error. That error is, with steps chosen by the error, what the accepted local errors can add up
+/// to; with a fixed step, what the method does to a mass on the fastest spring, in parts of all energy that there was
+/// to begin with, that pushes gave, or that gravity can have given on the way travelled.
 class EnergyGuard {
  public:
   /// Keeps a reference to `assembly`. `start` is the state to begin with; `duration` (s) is the run's.

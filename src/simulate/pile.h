@@ -18,8 +18,7 @@ class Pile {
   Pile(const Pile&) = delete;
   Pile& operator=(const Pile&) = delete;
 
-  /// The state at `time` (s), not earlier than in the call before. What contact takes of the energy is dissipated;
-  /// taking out overlap gives at most 1.5 % of the kinetic energy back. Throws Error(unstable) if the state is not
+  /// The state at `time` (s), not earlier than in the call before. Throws Error(unstable) if the state is not
   /// finite, or there is more energy than at the start.
   const VectorX& stateAt(double time);
 
@@ -33,7 +32,8 @@ class Pile {
 
  private:
   void takeStep(double timeStep);
-  void bookDissipation();
+  void book(double constant);
+  void requireNoGain() const;
   void record();
 
   Assembly assembly_;

@@ -132,7 +132,7 @@ std::vector<int> RestingBodies::settle(double time, const std::vector<Contact>& 
 
 void RestingBodies::bringToRest(const std::vector<int>& bodies, VectorX& state) {
   for (const int body : bodies) {
-    dissipatedEnergy(state) += kineticEnergy(mechanism_.bodies[static_cast<std::size_t>(body)], body, state);
+    numericalEnergy(state) += kineticEnergy(mechanism_.bodies[static_cast<std::size_t>(body)], body, state);
     state.segment<kVelocitySize>(velocityOffset(state, body)).setZero();
     equations_.setResting(static_cast<std::size_t>(body), true);
     restingIsland_[static_cast<std::size_t>(body)] = bodies[0];

@@ -21,7 +21,7 @@ class RestingBodies {
   /// contacts of this instant. Returns the bodies that came to rest.
   std::vector<int> settle(double time, const std::vector<Contact>& contacts, VectorX& state);
 
-  /// Stops bodies that rest together from now on; what they still had of kinetic energy is dissipated.
+  /// Stops bodies that rest together from now on; what they still had of kinetic energy is numerical.
   void bringToRest(const std::vector<int>& bodies, VectorX& state);
 
   /// Wakes the island of a body. Returns the bodies that were woken.

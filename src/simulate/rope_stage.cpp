@@ -7,6 +7,7 @@
 #include "collision/first_crossing.h"
 #include "dynamics/integrators/pose_interpolant.h"
 #include "dynamics/invariants.h"
+#include "impact/impact_energy.h"
 #include "impact/rope_impulse.h"
 #include "simulate/thresholds.h"
 
@@ -50,6 +51,17 @@ double firstLook(const RopeLimit& rope, const Step& step) {
   // The distance d of two points: d'' <= relative acceleration + (speed across)^2 / d.
   const double across = a.speed + b.speed;
   return std::min(kFirstLook / 2, speed / (a.acceleration + b.acceleration + across * across / rope.maxLength));
+}
+
+/// J: of ropes' impulses.
+double energyTakenBy(const std::vector<RopePull>& pulls, const VectorX& before, const VectorX& after) {
+  double taken = 0;
+  for (const RopePull& pull : pulls) {
+    const RopeMotion from = motionOf(*pull.rope, before), to = motionOf(*pull.rope, after);
+    taken +=
+        energyTaken(-pull.impulse * from.direction, from.a.velocity - from.b.velocity, to.a.velocity - to.b.velocity);
+  }
+  return taken;
 }
 
 }  // namespace
@@ -186,9 +198,10 @@ void RopeStage::pull(double time, const std::vector<Stretch>& stretches, VectorX
     for (const int body : {rope.anchorA.body, rope.anchorB.body}) island_.wake(body);
     pulls.push_back({&rope, stretch.reboundSpeed});
   }
-  const double before = kineticEnergy(assembly_.mechanism.bodies, state);
+  const VectorX before = state;
   if (solver_.hasConstraints()) solver_.factorize(state);
   applyPulls(pulls, assembly_.mechanism.bodies, solver_, state);
+  impactEnergy(state) += energyTakenBy(pulls, before, state);
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const auto& [rope, speed, reboundSpeed, isLoaded] = stretches[i];
     const bool rebounds = reboundSpeed > 0;
@@ -203,7 +216,7 @@ void RopeStage::pull(double time, const std::vector<Stretch>& stretches, VectorX
     solver_.factorize(state);
     solver_.constrainVelocities(state);
   }
-  dissipatedEnergy(state) += before - kineticEnergy(assembly_.mechanism.bodies, state);
+  bookNumerical(energyConstant(assembly_.mechanism, before), assembly_.mechanism, state);
 }
 
 // An impulse along the line of both ends has the same effect wherever on that line it acts: at end A for both bodies.

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/interruption.h"
+#include "dynamics/invariants.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -110,12 +111,17 @@ void Simulation::interpolateAt(double time, bool keepsTies) {
   const double fraction = (time - island_.step.time) / island_.step.timeStep;
   interpolate(island_.step, fraction, reported_);
   if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->hold(fraction, reported_);
+  const Mechanism& mechanism = island_.assembly.mechanism;
   const auto* events = std::get_if<EventMotion>(&motion_);
-  if (events && keepsTies && !events->contactsOfStep().empty()) return keepTogether(events->contactsOfStep());
-  if (!keepsTies || !solver_.hasConstraints()) return;
-  findStill();
-  solver_.leaveOut(still_);
-  solver_.project(reported_);
+  if (events && keepsTies && !events->contactsOfStep().empty()) {
+    keepTogether(events->contactsOfStep());
+  } else if (keepsTies && solver_.hasConstraints()) {
+    findStill();
+    solver_.leaveOut(still_);
+    solver_.project(reported_);
+  }
+  numericalEnergy(reported_) = numericalEnergy(island_.step.startState);
+  bookNumerical(energyConstant(mechanism, island_.step.startState), mechanism, reported_);
 }
 
 /// Takes out of the interpolated state what it leaves of gaps of contacts that last, and of ties.

@@ -30,6 +30,7 @@ class Simulation {
   /// Events since the last call: up to the end of the step under way.
   std::vector<Event> takeEvents() { return island_.log.take(); }
   std::vector<std::string> takeWarnings() { return island_.log.takeWarnings(); }
+  Corrections& corrections() { return island_.log.corrections(); }
 
  private:
   void advance(double time);
@@ -37,6 +38,7 @@ class Simulation {
   template <class Motion>
   static void advance(double time, Motion& motion);
   bool keepsTies() const;
+  /// A frame inside a step: what its state is off the energy of the step's start is an error of that frame alone.
   void interpolateAt(double time, bool keepsTies);
   void keepTogether(const std::vector<ContactConstraint>& contacts);
   void findStill();

@@ -21,11 +21,15 @@ struct BodyState {
   Vec3 angularVelocity = Vec3::Zero();  // rad/s, world
 };
 
-/// kinetic + potential + dissipated - work is constant.
+/// kinetic + potential + dissipated - work + numerical is constant.
 struct EnergyBalance {
   double kinetic = 0;                   // J
   double potential = 0;                 // J, -sum m g.x + springs
-  double dissipated = 0;                // J, by dampers, impacts, friction, ropes since the start
+  double dissipated = 0;                // J since the start: impact + friction + damping
+  double impact = 0;                    // J since the start, by impacts of contacts and ropes; NaN: not known, as below
+  double friction = 0;                  // J since the start, by lasting contacts
+  double damping = 0;                   // J since the start, by springs' dampers
+  double numerical = 0;                 // J since the start, by errors of the method; < 0: gained
   double work = 0;                      // J, by pushes since the start
   Vec3 momentum = Vec3::Zero();         // kg m/s
   Vec3 angularMomentum = Vec3::Zero();  // kg m^2/s, about the world origin
@@ -69,8 +73,9 @@ struct TrajectoryHeader {
 
 /// What is known after the last step.
 struct RunCost {
-  double cpuSeconds = 0;  // integration alone
-  long evaluations = 0;   // of the right-hand side
+  double cpuSeconds = 0;                         // integration alone
+  long evaluations = 0;                          // of the right-hand side
+  std::map<std::string, long> corrections = {};  // how often each kind was needed: what the motion owes to no law
 };
 
 struct Trajectory {

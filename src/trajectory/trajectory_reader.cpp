@@ -124,6 +124,15 @@ MassProperties massPropertiesAt(const Statement& row, int first) {
   return properties;
 }
 
+/// Earlier versions did not write the causes of what was dissipated.
+std::string energyQuery(Database& database) {
+  const bool hasCauses =
+      oneInteger(database, "SELECT count(*) FROM pragma_table_info('energy') WHERE name = 'numerical'") == 1;
+  return fmt::format(
+      "SELECT kinetic, potential, dissipated, work, px, py, pz, lx, ly, lz, {} FROM energy WHERE frame = ?",
+      hasCauses ? "impact, friction, damping, numerical" : "NULL, NULL, NULL, NULL");
+}
+
 }  // namespace
 
 struct TrajectoryReader::Session {
@@ -132,9 +141,7 @@ struct TrajectoryReader::Session {
     state.emplace(
         database.prepare("SELECT body, px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz FROM state "
                          "WHERE frame = ? ORDER BY body"));
-    energy.emplace(
-        database.prepare("SELECT kinetic, potential, dissipated, work, px, py, pz, lx, ly, lz FROM energy "
-                         "WHERE frame = ?"));
+    energy.emplace(database.prepare(energyQuery(database)));
   }
 
   Database database;
@@ -244,8 +251,9 @@ Frame TrajectoryReader::readFrame(long number) const {
   energy.reset();
   energy.bind(1, number);
   if (!energy.step()) fail("the energies");
-  frame.energy = {energy.real(0), energy.real(1),      energy.real(2),
-                  energy.real(3), vectorAt(energy, 4), vectorAt(energy, 7)};
+  const auto cause = [&](int column) { return energy.isNull(column) ? NAN : energy.real(column); };
+  frame.energy = {energy.real(0), energy.real(1), energy.real(2), cause(10),           cause(11),
+                  cause(12),      cause(13),      energy.real(3), vectorAt(energy, 4), vectorAt(energy, 7)};
   energy.reset();
   return frame;
 }

@@ -37,7 +37,9 @@ CREATE TABLE event (time, kind TEXT,
   impulse);              -- N s
 CREATE TABLE energy (frame INTEGER PRIMARY KEY, kinetic, potential, dissipated, work,  -- J
   px, py, pz,   -- kg m/s
-  lx, ly, lz);  -- kg m^2/s, about the world origin
+  lx, ly, lz,   -- kg m^2/s, about the world origin
+  impact, friction, damping,  -- J, parts of dissipated
+  numerical);                 -- J, lost by errors of the method
 )sql";
 
 }  // namespace cradle

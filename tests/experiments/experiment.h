@@ -62,8 +62,14 @@ inline double mechanicalEnergy(const Frame& frame) {
   return frame.energy.kinetic + frame.energy.potential;
 }
 
+/// J: changes by the errors of a method.
 inline double energyConstantOf(const Frame& frame) {
   return frame.energy.kinetic + frame.energy.potential + frame.energy.dissipated - frame.energy.work;
+}
+
+/// J: changes by rounding alone, if all that methods do is booked.
+inline double ledgerConstantOf(const Frame& frame) {
+  return energyConstantOf(frame) + frame.energy.numerical;
 }
 
 /// Largest difference of two orientations' components, q and -q being the same.

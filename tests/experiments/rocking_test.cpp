@@ -131,7 +131,9 @@ TEST(RockingDisc, ComesToLieWithoutGainOfEnergyOrSinking) {
   for (const Frame& frame : run.frames) {
     const double energy = frame.energy.kinetic + frame.energy.potential - kGravity * 0.025;  // J, above rest
     EXPECT_LE(energy, before * (1 + 1e-6) + 1e-7) << frame.time;
-    EXPECT_NEAR(energyConstantOf(frame), energyConstantOf(run.frames[0]), 1e-6) << frame.time;
+    // Steps in which something strikes are of order 1: m g times the change of speed times a step, 2 mJ, for each.
+    EXPECT_NEAR(energyConstantOf(frame), energyConstantOf(run.frames[0]), 4e-3) << frame.time;
+    EXPECT_NEAR(ledgerConstantOf(frame), ledgerConstantOf(run.frames[0]), 1e-12) << frame.time;
     before = energy;
     const double tilt = (frame.states[0].orientation * Vec3::UnitY()).y();
     const double low = 0.025 * std::abs(tilt) + 0.1 * std::sqrt(std::max(0.0, 1 - tilt * tilt));

@@ -293,7 +293,7 @@ class Heap {
     for (int body = 0; body < 4; ++body)
       mechanism.bodies.push_back(makeRigidBody({mass(), Vec3::Zero(), mass() * Vec3(0.02, 0.05, 0.06).asDiagonal()}));
     state = VectorX::NullaryExpr(stateSize(4), [this] { return number(); });
-    dissipatedEnergy(state) = pushWork(state) = 0;
+    state.tail<kLedgerSize>().setZero();
     normalizeOrientations(state);
     mechanism.constraints.rods = {{{0, Vec3(0.1, 0.2, 0)}, {1, Vec3(0, 0.1, 0.2)}, 1}};
     solver.factorize(state);

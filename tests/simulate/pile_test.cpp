@@ -50,13 +50,15 @@ TEST(PlanOfPiles, LeavesDenseBodiesAmongLightOnesToOtherSteps) {
   EXPECT_EQ(with(0.05, 20 * boxMass / 64), "fast contact step");  // denser, but not as heavy
 }
 
-// The sum is constant by the way that it is booked; what the test asks is that nothing is ever gained.
+// Contacts take what the heap loses; overlaps and their removal change the energy by far less, one way or the other.
 TEST(Pile, DissipatesAndComesToRestWithEvents) {
   const Trajectory trajectory = simulate(sceneWith(heap(13, "\"visual\"")));
   const double start = energyConstantOf(trajectory.frames[0]);
   for (const Frame& frame : trajectory.frames) {
-    EXPECT_NEAR(energyConstantOf(frame), start, 1e-9 * start);
-    EXPECT_GE(frame.energy.dissipated, -1e-9 * start);
+    EXPECT_NEAR(energyConstantOf(frame) + frame.energy.numerical, start, 1e-12 * start);
+    EXPECT_NEAR(energyConstantOf(frame), start, 2e-3 * start);
+    EXPECT_GE(frame.energy.impact, 0);
+    EXPECT_GE(frame.energy.friction, 0);
   }
   int impacts = 0;
   for (const Event& event : trajectory.events) {

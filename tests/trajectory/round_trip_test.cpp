@@ -85,7 +85,8 @@ TEST(TrajectoryFile, KeepsTheBitsOfExtremeNumbers) {
   for (BodyState& state : frame.states)
     state = {vector(), Quat{extreme(), extreme(), extreme(), extreme()}, vector(), vector()};
   frame.time = -0.0;
-  frame.energy = {extreme(), extreme(), extreme(), extreme(), vector(), vector()};
+  frame.energy = {extreme(), extreme(), extreme(), extreme(), extreme(),
+                  extreme(), extreme(), extreme(), vector(),  vector()};
   {
     TrajectoryWriter writer(folder.file("a.sqlite"), sampleHeader());
     writer.append(frame);

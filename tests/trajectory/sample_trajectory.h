@@ -86,7 +86,7 @@ inline Frame sampleFrame(long number) {
     state.angularVelocity = vector();
     frame.states.push_back(state);
   }
-  frame.energy = {value(), value(), value(), value(), vector(), vector()};
+  frame.energy = {value(), value(), value(), value(), value(), value(), value(), value(), vector(), vector()};
   return frame;
 }
 
@@ -96,7 +96,7 @@ inline void writeSample(const std::string& path, long frames, const TrajectoryHe
   for (long number = 0; number < frames; ++number) writer.append(sampleFrame(number));
   writer.append(Event{0.1, EventKind::impact, 0, 2, Vec3(1, 2, 3), Vec3(0, 1, 0), 0.7});
   writer.append(Event{0.2, EventKind::taut, 2, -1, Vec3(-0.0, 0, 0.25), Vec3(0, 0, 1), 1e300});
-  writer.finish({0.125, 12345678901});
+  writer.finish({0.125, 12345678901, {{"clampedEnergy", 2}, {"unsolvedContacts", 1}}});
 }
 
 inline void expectSameBits(double a, double b) {
@@ -115,6 +115,10 @@ inline void expectSameBits(const Frame& a, const Frame& b) {
   expectSameBits(a.energy.potential, b.energy.potential);
   expectSameBits(a.energy.dissipated, b.energy.dissipated);
   expectSameBits(a.energy.work, b.energy.work);
+  expectSameBits(a.energy.impact, b.energy.impact);
+  expectSameBits(a.energy.friction, b.energy.friction);
+  expectSameBits(a.energy.damping, b.energy.damping);
+  expectSameBits(a.energy.numerical, b.energy.numerical);
   for (int i = 0; i < 3; ++i) {
     expectSameBits(a.energy.momentum[i], b.energy.momentum[i]);
     expectSameBits(a.energy.angularMomentum[i], b.energy.angularMomentum[i]);

@@ -49,15 +49,38 @@ TEST_F(TrajectorySchema, HasTheColumnsOfTheContractInItsOrder) {
   EXPECT_EQ(columnsOf(path_, "frame"), "id time");
   EXPECT_EQ(columnsOf(path_, "state"), "frame body px py pz qw qx qy qz vx vy vz wx wy wz");
   EXPECT_EQ(columnsOf(path_, "event"), "time kind a b x y z nx ny nz impulse");
-  EXPECT_EQ(columnsOf(path_, "energy"), "frame kinetic potential dissipated work px py pz lx ly lz");
+  EXPECT_EQ(columnsOf(path_, "energy"),
+            "frame kinetic potential dissipated work px py pz lx ly lz impact friction damping numerical");
 }
 
 TEST_F(TrajectorySchema, HasTheKeysOfTheContract) {
   EXPECT_EQ(rows("SELECT key FROM meta ORDER BY key"),
-            (std::vector<std::string>{"accuracy", "cpuSeconds", "evaluations", "method", "plan", "scene", "sceneHash",
-                                      "scenePath", "stateHash", "version"}));
+            (std::vector<std::string>{"accuracy", "corrections", "cpuSeconds", "evaluations", "method", "plan", "scene",
+                                      "sceneHash", "scenePath", "stateHash", "version"}));
   EXPECT_EQ(rows("SELECT value FROM meta WHERE key = 'sceneHash'"),
             std::vector<std::string>{textHash(sampleHeader().scene)});
+}
+
+TEST_F(TrajectorySchema, CountsCorrectionsByKindAsJson) {
+  EXPECT_EQ(rows("SELECT json_extract(value, '$.clampedEnergy'), json_extract(value, '$.unsolvedContacts') FROM meta "
+                 "WHERE key = 'corrections'"),
+            std::vector<std::string>{"2|1"});
+}
+
+// What files of the time before the causes of what was dissipated have.
+TEST_F(TrajectorySchema, WithoutCausesIsReadAllTheSame) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open_v2(path_.c_str(), &database, SQLITE_OPEN_READWRITE, nullptr), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database,
+                         "ALTER TABLE energy RENAME TO full; CREATE TABLE energy AS SELECT frame, kinetic, potential, "
+                         "dissipated, work, px, py, pz, lx, ly, lz FROM full; DROP TABLE full",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(database);
+  const EnergyBalance energy = TrajectoryReader(path_).readFrame(1).energy;
+  expectSameBits(energy.dissipated, sampleFrame(1).energy.dissipated);
+  for (const double cause : {energy.impact, energy.friction, energy.damping, energy.numerical})
+    EXPECT_TRUE(std::isnan(cause));
 }
 
 TEST_F(TrajectorySchema, HoldsBodiesAsOthersReadThem) {

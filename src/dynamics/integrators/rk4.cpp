@@ -28,9 +28,9 @@ void rk4(const RightHandSide& rightHandSide, const VectorX& state, double time, 
   step.state += (timeStep / 6) * k;
 }
 
-double rk4Error(const Step& step) {
+double rk4Error(const Step& step, Eigen::Index components) {
   double largest = 0;
-  for (Eigen::Index i = 0; i < step.state.size(); ++i) {
+  for (Eigen::Index i = 0; i < components; ++i) {
     const double error = step.timeStep / 6 * std::abs(step.work[i] - step.endRate[i]) / (1 + std::abs(step.state[i]));
     if (!std::isfinite(error)) return NAN;
     largest = std::max(largest, error);

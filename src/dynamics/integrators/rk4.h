@@ -9,6 +9,6 @@ void rk4(const RightHandSide& rightHandSide, const VectorX& state, double time, 
 
 /// Estimate of the local error of a step that rk4 has just taken, scaled 1 + |x|: that of order 3, which is larger. NaN
 /// if that is not finite. The step's end rate must be there (prepareInterpolant).
-double rk4Error(const Step& step);
+double rk4Error(const Step& step, Eigen::Index components);
 
 }  // namespace cradle

@@ -37,6 +37,8 @@ void BallImpact::begin() {
 void BallImpact::resolve(int ball, int other, double time) {
   findTouching(ball, other, time);
   moveHere(time);
+  const double kinetic = kineticEnergy();
+  const VectorX speeds = openingSpeeds();
   if (contacts_.size() == 1) {
     reflectAlone(0);
   } else if (!reflectAll()) {
@@ -47,8 +49,26 @@ void BallImpact::resolve(int ball, int other, double time) {
     reflectAlone(
         static_cast<std::size_t>(std::find_if(contacts_.begin(), contacts_.end(), isStruck) - contacts_.begin()));
   }
+  energyTaken_ = -0.5 * Eigen::Map<const VectorX>(impulses_.data(), speeds.size()).dot(speeds + openingSpeeds());
   findSupports();
+  energyLost_ = kinetic - kineticEnergy() - energyTaken_;
   for (std::size_t i = 0; i < balls_.size(); ++i) flights_.strike(balls_[i], time, motions_[i], supports_[i]);
+}
+
+/// J: of the centres' motion.
+double BallImpact::kineticEnergy() const {
+  double energy = 0;
+  for (std::size_t i = 0; i < balls_.size(); ++i)
+    energy += 0.5 / inverseMassOf(balls_[i]) * motions_[i].velocity.squaredNorm();
+  return energy;
+}
+
+/// m/s: of the contacts.
+VectorX BallImpact::openingSpeeds() const {
+  VectorX speeds(contacts_.size());
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    speeds[static_cast<Eigen::Index>(i)] = contacts_[i].normal.dot(relativeVelocity(contacts_[i]));
+  return speeds;
 }
 
 /// The contact itself, however its gap was rounded, and what hangs together with it.

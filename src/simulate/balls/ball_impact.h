@@ -24,6 +24,10 @@ class BallImpact {
   const std::vector<BallContact>& contacts() const { return contacts_; }
   const std::vector<double>& impulses() const { return impulses_; }
 
+  /// What its impulses took of the energy (J), and what rounding and planes that stop slow balls took beside them.
+  double energyTaken() const { return energyTaken_; }
+  double energyLost() const { return energyLost_; }
+
   /// A contact of the last call that would last under load, and is none with a plane: no parabola is its motion.
   std::optional<BallContact> lastingContact() const;
 
@@ -33,6 +37,8 @@ class BallImpact {
   void moveHere(double time);
   void reflectAlone(std::size_t contact);
   bool reflectAll();
+  double kineticEnergy() const;
+  VectorX openingSpeeds() const;
   void findSupports();
   void carry(std::size_t index, const std::vector<int>& planes);
   bool isSlow(const BallContact& contact, double speed) const;
@@ -45,6 +51,7 @@ class BallImpact {
   std::vector<int> balls_;
   std::vector<BallContact> contacts_, found_;
   std::vector<double> impulses_;
+  double energyTaken_ = 0, energyLost_ = 0;   // J
   std::vector<UniformMotion> motions_;        // by place in balls_
   std::vector<std::array<int, 3>> supports_;  // the same
 };

@@ -102,6 +102,8 @@ void FlyingBalls::cross(int ball) {
 void FlyingBalls::collide(int ball) {
   impact_.resolve(ball, meetings_[static_cast<std::size_t>(ball)].other, time_);
   refuseLastingContact();
+  impactEnergy(state_) += impact_.energyTaken();
+  numericalEnergy(state_) += impact_.energyLost();
   record();
   for (const int struck : impact_.balls()) countHit(struck);
   for (const int struck : impact_.balls()) foresee(struck);

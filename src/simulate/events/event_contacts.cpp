@@ -9,8 +9,8 @@
 #include "impact/contact_impulse.h"
 #include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
+#include "impact/impact_energy.h"
 #include "simulate/contact_response.h"
-#include "simulate/steps/contact_energy.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -105,9 +105,9 @@ void EventContacts::resolve(const std::optional<ContactChange>& change, const st
 /// Lasting contacts have no gap and do not leave each other, to rounding; those that stick do not slide.
 void EventContacts::keepTogether() {
   if (lasting_.empty()) return;
-  const Invariants before = invariantsOf(island_.assembly.mechanism, island_.state);
+  const double constant = energyConstant(island_.assembly.mechanism, island_.state);
   island_.equations.project(island_.state);
-  bookDifference(before, island_.assembly.mechanism, island_.state);
+  bookNumerical(constant, island_.assembly.mechanism, island_.state);
 }
 
 /// What touches and can part or close: a place that ties hold where it is does neither, whatever acts.
@@ -188,8 +188,12 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
   const bool hasFriction = std::any_of(impacts.begin(), impacts.end(), [](const ImpactContact& impact) {
     return impact.law.staticFriction > 0 || impact.law.dynamicFriction > 0;
   });
+  ImpactFaults faults;
   const auto solve = [&] {
-    hasFriction ? resolveFrictionalImpact(impacts, response, state) : resolveReflections(impacts, response, state);
+    if (hasFriction)
+      faults = resolveFrictionalImpact(impacts, response, state);
+    else
+      resolveReflections(impacts, response, state);
   };
   solve();
   if (endBounces(approach, impacts)) {
@@ -197,11 +201,9 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
     for (ImpactContact& impact : impacts) impact.impulse.setZero();
     solve();
   }
-  for (const ImpactContact& impact : impacts) {
-    const Vec3 meanVelocity =
-        (relativeVelocity(impact.contact, approach) + relativeVelocity(impact.contact, state)) / 2;
-    dissipatedEnergy(state) -= impact.impulse.dot(meanVelocity);
-  }
+  island_.log.recordFaults(island_.time, impacts, faults);
+  bookImpact(impacts, approach, state);
+  bookNumerical(energyConstant(island_.assembly.mechanism, approach), island_.assembly.mechanism, state);
 }
 
 /// Rebounds that are over before they are seen are left out: an accumulation of bounces ends here, as long before its

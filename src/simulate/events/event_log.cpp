@@ -1,5 +1,6 @@
 #include "simulate/events/event_log.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace cradle {
@@ -12,6 +13,25 @@ void EventLog::recordContact(double time, EventKind kind, const Contact& contact
 void EventLog::recordBody(double time, EventKind kind, int movingBody, const Vec3& point) {
   events_.push_back(
       {time, kind, assembly_.sceneBodies[static_cast<std::size_t>(movingBody)], kWorld, point, Vec3::Zero(), 0});
+}
+
+void EventLog::recordCorrection(double time, CorrectionKind kind, const std::vector<int>& movingBodies, double amount) {
+  Correction correction{kind, time, {}, amount};
+  for (const int body : movingBodies)
+    correction.bodies.push_back(assembly_.sceneBodies[static_cast<std::size_t>(body)]);
+  corrections_.record(std::move(correction));
+}
+
+void EventLog::recordFaults(double time, const std::vector<ImpactContact>& impacts, const ImpactFaults& faults) {
+  std::vector<int> bodies;
+  for (const ImpactContact& impact : impacts)
+    for (const int body : {impact.contact.bodyA, impact.contact.bodyB})
+      if (body != kFixed) bodies.push_back(body);
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  if (faults.residual > 0) recordCorrection(time, CorrectionKind::unsolvedContacts, bodies, faults.residual);
+  if (faults.scaledEnergy > 0) recordCorrection(time, CorrectionKind::scaledImpulses, bodies, faults.scaledEnergy);
+  if (faults.rounds > 0) recordCorrection(time, CorrectionKind::endlessImpacts, bodies, faults.rounds);
 }
 
 std::vector<Event> EventLog::take() {

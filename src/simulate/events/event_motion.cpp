@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "dynamics/invariants.h"
 #include "simulate/events/event_location.h"
 #include "simulate/thresholds.h"
 
@@ -93,6 +94,8 @@ void EventMotion::advance(double frame) {
   // What the step's interpolant needs belongs to the forces of now.
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
   contactsOfStep_ = island_.assembly.mechanism.contacts;
+
+  bookStep(island_.assembly.mechanism, step);
 
   // Take out what the step left wrong. Then what changes here?
   island_.state = step.state;
@@ -232,6 +235,8 @@ void EventMotion::tidyState() {
     requireTiesKept();
   }
   if (!contacts_.lasting().empty() || solver_.hasConstraints()) isTouched = !isSame(state, island_.step.state);
+  if (!contacts_.lasting().empty() || solver_.hasConstraints())
+    bookNumerical(energyConstant(island_.assembly.mechanism, island_.step.state), island_.assembly.mechanism, state);
   for (Eigen::Index body = 0; body < bodyCount(state); ++body)
     isTouched = isTouched || std::abs(orientation(state, body).squaredNorm() - 1) > kUnitLength;
   if (isTouched) normalizeOrientations(state);

@@ -101,6 +101,7 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
   const VectorX free = response.accelerations(rate_);
   const ConeSolution solution = solve(members, rows, response);
   const double most = std::max(free.cwiseAbs().maxCoeff(), mechanism().gravity.norm());
+  if (!(solution.residual <= kStillPart * most)) noteUnsolved(members, solution.residual);
   const double unloaded = (isReleasing_ ? kReleasedPart : kUnloadedPart) * most;
   const MatrixX& inverseMass = response.inverseMass();
   std::vector<Index> heldRows;
@@ -123,6 +124,13 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
     if (entry.sticks) heldRows.push_back(at), heldRows.push_back(at + 1);
   }
   if (!heldRows.empty()) countRows(group, inverseMass(heldRows, heldRows), entries);
+}
+
+/// Forces that were not found decide all the same what lasts, and how.
+void LastingContacts::noteUnsolved(const std::vector<const Entry*>& entries, double residual) const {
+  std::vector<int> bodies;
+  for (const Entry* entry : entries) bodies.push_back(entry->contact.movingBody());
+  island_.log.recordCorrection(island_.time, CorrectionKind::unsolvedContacts, bodies, residual);
 }
 
 /// m/s: what leaves more slowly does not leave.

@@ -89,6 +89,7 @@ class LastingContacts {
   std::vector<Entry> entriesOf(const std::vector<Contact>& touching) const;
   std::vector<Together> groupsOf(const std::vector<Entry>& entries) const;
   void decide(const Together& group, std::vector<Entry>& entries, ConstraintSolver& ties);
+  void noteUnsolved(const std::vector<const Entry*>& entries, double residual) const;
   void noteTipping(const std::vector<Entry>& entries);
   bool isOfRim(const Contact& contact) const;
   double tippingSpeed(const Contact& contact) const;

@@ -66,18 +66,13 @@ double energyOf(const std::vector<int>& bodies, const Mechanism& mechanism, cons
   return energy;
 }
 
-void bookDifference(const Invariants& before, const Mechanism& mechanism, VectorX& state) {
-  const Invariants now = invariantsOf(mechanism, state);
-  dissipatedEnergy(state) += before.kinetic + before.potential - now.kinetic - now.potential;
-}
-
 bool isGain(double energy, double most) {
   return energy > most + kEnergyRounding * std::abs(most);
 }
 
-void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state) {
+double limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state) {
   const double energy = energyOf(moved.bodies, mechanism, state);
-  if (!isGain(energy, most)) return;
+  if (!isGain(energy, most)) return 0;
   const RigidMotion kept = moved.isGrounded ? RigidMotion() : rigidMotionOf(moved.bodies, mechanism, state);
   const Vec3 spin = moved.isGrounded ? Vec3::Zero() : kept.spin();
   addRigidMotion(moved.bodies, kept.center, -kept.velocity, -spin, state);
@@ -85,6 +80,7 @@ void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechani
   const double part = kinetic > 0 ? std::sqrt(std::max(0.0, 1 - (energy - most) / kinetic)) : 0;
   for (const int body : moved.bodies) state.segment<kVelocitySize>(velocityOffset(state, body)) *= part;
   addRigidMotion(moved.bodies, kept.center, kept.velocity, spin, state);
+  return energy - energyOf(moved.bodies, mechanism, state);
 }
 
 void keepMomenta(const MovedBodies& moved, const VectorX& free, const Mechanism& mechanism, VectorX& state) {

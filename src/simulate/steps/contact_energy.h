@@ -24,11 +24,8 @@ void keepMomenta(const MovedBodies& moved, const VectorX& free, const Mechanism&
 /// Contact gives no energy: what bodies have more than `most` (J), by rounding, by the order of a method or by impulses
 /// that were not found, is taken from their velocities. All become smaller by the same part, so that what touches opens
 /// and slides as before; of bodies that touch only each other, relative to their motion as one rigid body, which has
-/// their momenta.
-void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state);
-
-/// Books as dissipated what `state` has less than it had with the energies `before`.
-void bookDifference(const Invariants& before, const Mechanism& mechanism, VectorX& state);
+/// their momenta. Returns how much energy (J) that took.
+double limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state);
 
 /// Whether energies (J) differ by more than rounding.
 bool isGain(double energy, double most);

@@ -5,12 +5,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "impact/impact_energy.h"
 #include "simulate/steps/contact_stepping.h"
 
 namespace cradle {
 namespace {
 
 using Index = Eigen::Index;
+
+/// J: of impulses between contacts' velocities.
+double energyTakenBy(const VectorX& impulses, const VectorX& before, const VectorX& after) {
+  double taken = 0;
+  for (Index at = 0; at < impulses.size(); at += 3)
+    taken += energyTaken(impulses.segment<3>(at), before.segment<3>(at), after.segment<3>(at));
+  return taken;
+}
 
 }  // namespace
 
@@ -34,6 +43,7 @@ double ContactStepping::firstLanding(const std::vector<Contact>& contacts, const
     first = std::min(first, landingPart(group, motion, cones_.velocitiesIn(path)));
   }
   contacts_ = last;
+  faults_.clear();  // of a trial
   return first;
 }
 
@@ -71,7 +81,7 @@ std::vector<Vec3> ContactStepping::strike(const std::vector<Contact>& contacts, 
   std::vector<Vec3> impulses(contacts.size(), Vec3::Zero());
   const std::vector<SteppedContact> last = contacts_;
   begin(contacts, state, state);
-  const Invariants free = invariantsOf(assembly_.mechanism, state);
+  const double constant = energyConstant(assembly_.mechanism, state);
   for (const Group& group : findGroups()) {
     setCones(group, state);
     const VectorX found = strike(group, timeStep, state);
@@ -79,7 +89,7 @@ std::vector<Vec3> ContactStepping::strike(const std::vector<Contact>& contacts, 
       impulses[group.members[i]] = cones_.axes(i) * found.segment<3>(3 * static_cast<Index>(i));
   }
   contacts_ = last;
-  bookDifference(free, assembly_.mechanism, state);
+  bookNumerical(constant, assembly_.mechanism, state);
   return impulses;
 }
 
@@ -131,7 +141,8 @@ VectorX ContactStepping::strike(const Group& group, double timeStep, VectorX& st
   };
   const double loss = lossWith(1);
   if (problem.hasRebounds && isGain(most - loss, most)) lossWith(partThatGainsNothing(lossWith, loss));
-  limitEnergy(group.moved, most, assembly_.mechanism, state);
+  impactEnergy(state) += std::max(0.0, energyTakenBy(impulses, start, cones_.velocitiesIn(state)));
+  limit(group, most, state);
   return impulses;
 }
 

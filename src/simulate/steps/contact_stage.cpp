@@ -6,6 +6,7 @@
 #include "impact/contact_impulse.h"
 #include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
+#include "impact/impact_energy.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -28,11 +29,13 @@ double closingSpeed(const Contact& contact, const VectorX& state) {
 }
 
 /// Without friction by reflections; with it by the same on Coulomb's cones.
-void resolveImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
+ImpactFaults resolveImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
   const bool hasFriction = std::any_of(impacts.begin(), impacts.end(), [](const ImpactContact& impact) {
     return impact.law.staticFriction > 0 || impact.law.dynamicFriction > 0;
   });
-  hasFriction ? resolveFrictionalImpact(impacts, response, state) : resolveReflections(impacts, response, state);
+  if (hasFriction) return resolveFrictionalImpact(impacts, response, state);
+  resolveReflections(impacts, response, state);
+  return {};
 }
 
 }  // namespace
@@ -61,6 +64,7 @@ void ContactStage::strike(double time, const VectorX& before, VectorX& state) {
     return settle(time, touching_, state);
   }
   const std::vector<Vec3> impulses = stepping_.strike(touching_, timeStep_, state);
+  recordFaults(time);
   for (std::size_t i = 0; i < impulses.size(); ++i) {
     const double impulse = touching_[i].normal.dot(impulses[i]);
     if (impulse > 0) log_.recordContact(time, EventKind::impact, touching_[i], impulse);
@@ -151,6 +155,7 @@ void ContactStage::hold(const VectorX& before, double length, VectorX& state) {
 }
 
 void ContactStage::settleHeld(double time, VectorX& state) {
+  recordFaults(time);
   std::vector<Contact> acting;
   for (const SteppedContact& stepped : stepping_.contacts()) {
     const double impulse = stepped.contact.normal.dot(stepped.impulse);
@@ -184,6 +189,11 @@ double ContactStage::lightest(const Contact& contact) const {
   for (const int body : {contact.bodyA, contact.bodyB})
     if (body != kFixed) mass = std::min(mass, assembly_.mechanism.bodies[static_cast<std::size_t>(body)].mass);
   return mass;
+}
+
+void ContactStage::recordFaults(double time) {
+  for (const SteppingFault& fault : stepping_.takeFaults())
+    log_.recordCorrection(time, fault.kind, fault.bodies, fault.amount);
 }
 
 void ContactStage::settle(double time, const std::vector<Contact>& contacts, VectorX& state) {
@@ -222,12 +232,14 @@ void ContactStage::resolveImpacts(double time, const VectorX& before, VectorX& s
   for (std::vector<ImpactContact>& impacts : findImpacts(before, state)) {
     if (impacts.empty()) continue;
     const VectorX approach = state;
-    resolveImpact(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
+    log_.recordFaults(time, impacts,
+                      resolveImpact(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state));
     const bool isHard = std::any_of(impacts.begin(), impacts.end(), [&](const ImpactContact& impact) {
       return closingSpeed(impact.contact, approach) > leastImpactSpeed_;
     });
+    bookImpact(impacts, approach, state);
+    bookNumerical(energyConstant(assembly_.mechanism, approach), assembly_.mechanism, state);
     for (const ImpactContact& impact : impacts) {
-      dissipate(impact.contact, impact.impulse, approach, state);
       const double impulse = impact.contact.normal.dot(impact.impulse);
       if (isHard && impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impulse);
     }
@@ -258,12 +270,6 @@ std::vector<std::vector<ImpactContact>> ContactStage::findImpacts(const VectorX&
   for (std::size_t island = 0; island < impacts.size(); ++island)
     if (!isStruck[island]) impacts[island].clear();
   return impacts;
-}
-
-/// Books what an impulse (N s, on B) took: it works with the mean of the velocities before and after it.
-void ContactStage::dissipate(const Contact& contact, const Vec3& impulse, const VectorX& before, VectorX& state) {
-  const Vec3 meanVelocity = (relativeVelocity(contact, state, before) + relativeVelocity(contact, state)) / 2;
-  dissipatedEnergy(state) -= impulse.dot(meanVelocity);
 }
 
 }  // namespace cradle

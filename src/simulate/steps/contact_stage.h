@@ -30,6 +30,9 @@ class ContactStage {
   /// What contact makes of a step that has begun, now of this `length`: one cone problem.
   void hold(const VectorX& before, double length, VectorX& state);
 
+  /// What friction took (J) in the step that was held last, and would have at the velocities of its start.
+  ContactStepping::HeldFriction frictionOfHeld() const { return stepping_.friction(); }
+
   /// How far (m or rad) that left ties from where they should be.
   double tieError() const { return stepping_.tieError(); }
 
@@ -64,11 +67,11 @@ class ContactStage {
   void findMeeting(const VectorX& state);
   double lightest(const Contact& contact) const;
   void settle(double time, const std::vector<Contact>& contacts, VectorX& state);
+  void recordFaults(double time);
   void wakeTouched(double time, const VectorX& state);
   void resolveImpacts(double time, const VectorX& before, VectorX& state);
   Islands findStruckTogether() const;
   std::vector<std::vector<ImpactContact>> findImpacts(const VectorX& before, const VectorX& state) const;
-  static void dissipate(const Contact& contact, const Vec3& impulse, const VectorX& before, VectorX& state);
 
   const Assembly& assembly_;
   EventLog& log_;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "impact/impact_energy.h"
 #include "simulate/plan/islands.h"
 #include "simulate/thresholds.h"
 
@@ -35,11 +36,13 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const Vector
   previous_.swap(contacts_), previousSlips_.swap(slips_);
   startPart_ = previousStep_ > 0 ? timeStep / previousStep_ : 1;
   previousStep_ = timeStep;
+  friction_ = {};
+  faults_.clear();
   begin(contacts, before, state);
   slips_.assign(contacts.size(), Vec3::Zero());
   lands_.resize(contacts.size(), 0);
   if (contacts.empty()) return;
-  const Invariants free = invariantsOf(assembly_.mechanism, state);
+  const double constant = energyConstant(assembly_.mechanism, state);
   const std::vector<Group> groups = findGroups();
   std::vector<double> most;  // J, of each group
   for (const Group& group : groups) {
@@ -51,11 +54,12 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const Vector
     solver_.project(state);
     for (std::size_t i = 0; i < groups.size(); ++i) {
       keepMomenta(groups[i].moved, free_, assembly_.mechanism, state);
-      limitEnergy(groups[i].moved, most[i], assembly_.mechanism, state);
+      limit(groups[i], most[i], state);
     }
   }
   lands_.clear();
-  bookDifference(free, assembly_.mechanism, state);
+  bookForces(timeStep, state);
+  bookNumerical(constant, assembly_.mechanism, state);
 }
 
 void ContactStepping::begin(const std::vector<Contact>& contacts, const VectorX& before, const VectorX& state) {
@@ -143,19 +147,20 @@ void ContactStepping::resolve(const Group& group, const VectorX& before, double 
   const Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), timeStep};
   const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
   Problem problem;
-  VectorX impulses;
+  VectorX impulses, end;
   const auto lossWith = [&](double part) {
     restore(group.moved.bodies, state);
     problem = posed(group, motion, part);
     impulses = solve(group, problem);
-    move(group, motion, impulses, state);
+    end = move(group, motion, impulses, state);
     return most - energyOf(group.moved.bodies, assembly_.mechanism, state);
   };
   const double loss = lossWith(1);
   if (problem.hasRebounds && isGain(most - loss, most)) lossWith(partThatGainsNothing(lossWith, loss));
   keepMomenta(group.moved, free_, assembly_.mechanism, state);
-  limitEnergy(group.moved, most, assembly_.mechanism, state);
+  limit(group, most, state);
   keep(group, motion, problem, impulses, state);
+  book(group, motion, impulses, end, state);
 }
 
 VectorX ContactStepping::solve(const Group& group, const Problem& problem) {
@@ -164,25 +169,37 @@ VectorX ContactStepping::solve(const Group& group, const Problem& problem) {
     const double most = problem.free.cwiseAbs().maxCoeff();
     ConeSolution solution = solveConeProblem(inverseMass, problem.free, problem.frictions);
     // What is wedged may have no solution, and the search for one may lead beyond all bounds.
-    if (!(solution.residual <= most))
+    if (!(solution.residual <= most)) {
+      faults_.push_back({CorrectionKind::omittedFriction, group.moved.bodies, solution.residual});
       solution = solveConeProblem(inverseMass, problem.free, std::vector<double>(problem.frictions.size(), 0));
-    if (!(solution.residual <= most)) solution.impulses.setZero();
-    count(solution);
+    }
+    if (!(solution.residual <= most)) {
+      faults_.push_back({CorrectionKind::omittedContacts, group.moved.bodies, solution.residual});
+      solution.impulses.setZero();
+    }
+    count(group, solution, most);
     return solution.impulses;
   }
-  const double tolerance = kSolvedPart * problem.free.cwiseAbs().maxCoeff();
+  const double fastest = problem.free.cwiseAbs().maxCoeff(), tolerance = kSolvedPart * fastest;
   ConeStart start = startOf(group);
   const ConeSolution solution = cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations);
   penalties_[group.firstBody] = start.penalty;
-  count(solution);
+  count(group, solution, fastest);
   return solution.impulses;
 }
 
-void ContactStepping::count(const ConeSolution& solution) {
+void ContactStepping::count(const Group& group, const ConeSolution& solution, double fastest) {
   ++count_.problems;
   if (solution.converged) return;
   ++count_.unsolved;
+  if (!(solution.residual <= kSolvedPart * fastest))
+    faults_.push_back({CorrectionKind::unsolvedContacts, group.moved.bodies, solution.residual});
   count_.worstResidual = std::max(count_.worstResidual, solution.residual);
+}
+
+void ContactStepping::limit(const Group& group, double most, VectorX& state) {
+  const double taken = limitEnergy(group.moved, most, assembly_.mechanism, state);
+  if (taken > 0) faults_.push_back({CorrectionKind::clampedEnergy, group.moved.bodies, taken});
 }
 
 /// Impulses and velocities of the step before, by the nearest contact of the same bodies.
@@ -211,7 +228,8 @@ ConeStart ContactStepping::startOf(const Group& group) const {
 /// From free motion to where impulses lead: with the mean of the velocities at both ends, where that leads into no
 /// overlap, and nothing is pushed that leaves: what lasts keeps order 2 and its energy. Else with those at the end,
 /// which the gaps were asked of; but not where that leads away from joints on long arms, which move on arcs.
-void ContactStepping::move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state) {
+/// Returns the contacts' velocities then.
+VectorX ContactStepping::move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state) {
   tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
   const VectorX end = cones_.velocitiesIn(state);
   VectorX gaps = gapsAfter(group, motion.timeStep, 0.5 * (motion.start + end));
@@ -229,6 +247,7 @@ void ContactStepping::move(const Group& group, const Motion& motion, const Vecto
   }
   if (isSmooth) moveByMean(group, motion, state);
   if (gaps.minCoeff() < -overlapTolerance_) separate(group, gaps, state);
+  return end;
 }
 
 /// m: of the contacts after a step with velocities in their axes.
@@ -264,6 +283,36 @@ void ContactStepping::restore(const std::vector<int>& bodies, VectorX& state) co
     state.segment<kVelocitySize>(velocityOffset(state, body)) =
         free_.segment<kVelocitySize>(velocityOffset(state, body));
   }
+}
+
+/// What struck is an impact, with its friction, and so is the closing that others still had; the rest of their work is
+/// friction. What contacts would give of energy, in all, is an error and none of theirs.
+void ContactStepping::book(const Group& group, const Motion& motion, const VectorX& impulses, const VectorX& end,
+                           VectorX& state) {
+  double struck = 0, rubbed = 0, rubbedAtStart = 0;
+  for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+    const Index at = 3 * static_cast<Index>(i);
+    const Vec3 impulse = impulses.segment<3>(at), before = motion.start.segment<3>(at), after = end.segment<3>(at);
+    const bool isImpact = contacts_[group.members[i]].isImpact;
+    const Vec3 pressing = isImpact ? impulse : Vec3(0, 0, impulse.z()), rubbing = impulse - pressing;
+    struck += energyTaken(pressing, before, after);
+    rubbed += energyTaken(rubbing, before, after);
+    rubbedAtStart += energyTaken(rubbing, before, before);
+  }
+  impactEnergy(state) += std::max(0.0, struck);
+  if (rubbed <= 0) return;
+  frictionEnergy(state) += rubbed;
+  friction_.taken += rubbed, friction_.atStart += rubbedAtStart;
+}
+
+/// Dampers and pushes worked along free motion; contact changed velocities little by little.
+void ContactStepping::bookForces(double timeStep, VectorX& state) const {
+  const Mechanism& mechanism = assembly_.mechanism;
+  for (const SpringForce& spring : mechanism.springs)
+    dampingEnergy(state) +=
+        0.5 * timeStep * (actionOf(spring, state).dissipation - actionOf(spring, free_).dissipation);
+  for (const PushForce& push : mechanism.pushes)
+    pushWork(state) += 0.5 * timeStep * (powerOf(push, state) - powerOf(push, free_));
 }
 
 /// What the next step begins with, and who is told.

@@ -2,12 +2,14 @@
 
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "collision/first_crossing.h"
 #include "impact/contact_cones.h"
 #include "impact/sparse_cones.h"
 #include "simulate/assembly.h"
+#include "simulate/corrections.h"
 #include "simulate/steps/contact_energy.h"
 
 namespace cradle {
@@ -23,6 +25,13 @@ struct SteppedContact {
 struct SteppingCount {
   long problems = 0, unsolved = 0, iterations = 0;
   double worstResidual = 0;  // m/s, of those that were not solved
+};
+
+/// What had to be done to a step beside the laws of contact.
+struct SteppingFault {
+  CorrectionKind kind;
+  std::vector<int> bodies;  // moving
+  double amount;            // in the unit of its kind
 };
 
 /// The contact step for many contacts that last or chatter: all contacts within reach of the step are one cone problem
@@ -53,9 +62,18 @@ class ContactStepping {
   /// booked.
   std::vector<Vec3> strike(const std::vector<Contact>& contacts, double timeStep, VectorX& state);
 
+  /// J: what the friction of lasting contacts took in the last step, and would have at the velocities of its start.
+  struct HeldFriction {
+    double atStart = 0, taken = 0;
+  };
+  HeldFriction friction() const { return friction_; }
+
   /// Those of the last step.
   const std::vector<SteppedContact>& contacts() const { return contacts_; }
   const SteppingCount& count() const { return count_; }
+
+  /// Faults since the last step began, or the last call.
+  std::vector<SteppingFault> takeFaults() { return std::exchange(faults_, {}); }
 
  private:
   static constexpr std::size_t kFewContacts = 6;  // solved densely, to rounding
@@ -92,9 +110,10 @@ class ContactStepping {
   static double partThatGainsNothing(const LossWith& lossWith, double lossOfAll);
   VectorX solve(const Group& group, const Problem& problem);
   MatrixX inverseMass() const { return tied_ ? tied_->inverseMass() : cones_.inverseMass(); }
-  void count(const ConeSolution& solution);
+  void count(const Group& group, const ConeSolution& solution, double fastest);
+  void limit(const Group& group, double most, VectorX& state);
   ConeStart startOf(const Group& group) const;
-  void move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state);
+  VectorX move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state);
   static VectorX gapsAfter(const Group& group, double timeStep, const VectorX& velocities);
   void moveByMean(const Group& group, const Motion& motion, VectorX& state) const;
   void moveByEnd(const Group& group, const Motion& motion, VectorX& state) const;
@@ -102,6 +121,9 @@ class ContactStepping {
   void restore(const std::vector<int>& bodies, VectorX& state) const;
   void keep(const Group& group, const Motion& motion, const Problem& problem, const VectorX& impulses,
             const VectorX& state);
+
+  void book(const Group& group, const Motion& motion, const VectorX& impulses, const VectorX& end, VectorX& state);
+  void bookForces(double timeStep, VectorX& state) const;
 
   const Assembly& assembly_;
   ConstraintSolver solver_, ends_;  // of the step's start; where straight lines lead
@@ -114,6 +136,8 @@ class ContactStepping {
   double previousStep_ = 0, startPart_ = 1;  // s; ratio of impulses now to those of the step before, if forces last
   std::map<int, double> penalties_;          // of each group's first body
   SteppingCount count_;
+  std::vector<SteppingFault> faults_;
+  HeldFriction friction_;
   VectorX free_;  // where free motion led
 };
 

@@ -21,7 +21,7 @@ constexpr double kFarOverlaps = 10;  // of the deepest overlap: gaps that are as
 void ContactStepping::takeOut(const std::vector<Contact>& contacts, VectorX& state) {
   const std::vector<SteppedContact> last = contacts_;
   begin(contacts, state, state);
-  const Invariants free = invariantsOf(assembly_.mechanism, state);
+  const double constant = energyConstant(assembly_.mechanism, state);
   for (const Group& group : findGroups()) {
     VectorX gaps(group.contacts.size());
     for (Index i = 0; i < gaps.size(); ++i) gaps[i] = group.contacts[static_cast<std::size_t>(i)].separation;
@@ -31,10 +31,10 @@ void ContactStepping::takeOut(const std::vector<Contact>& contacts, VectorX& sta
     separate(group, gaps, state);
     if (group.isTied) solver_.project(state);
     keepMomenta(group.moved, free_, assembly_.mechanism, state);
-    limitEnergy(group.moved, most, assembly_.mechanism, state);
+    limit(group, most, state);
   }
   contacts_ = last;
-  bookDifference(free, assembly_.mechanism, state);
+  bookNumerical(constant, assembly_.mechanism, state);
 }
 
 /// Moves bodies apart where `gaps` (m) at the step's end are negative, without touching velocities.

@@ -10,7 +10,6 @@
 #include "dynamics/invariants.h"
 #include "simulate/contact_response.h"
 #include "simulate/events/event_location.h"
-#include "simulate/steps/contact_energy.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -85,7 +84,6 @@ void SteppedMotion::advance(double frame) {
 
 void SteppedMotion::hold(double fraction, VectorX& state) const {
   if (!isHeld_) return;
-  const Invariants free = invariantsOf(island_.assembly.mechanism, state);
   const VectorX& led = island_.step.state;
   const double square = fraction * fraction;
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
@@ -98,7 +96,11 @@ void SteppedMotion::hold(double fraction, VectorX& state) const {
     state.segment<kVelocitySize>(velocity) +=
         fraction * (held_.segment<kVelocitySize>(velocity) - led.segment<kVelocitySize>(velocity));
   }
-  bookDifference(free, island_.assembly.mechanism, state);
+  // Forces of contacts are constant within the step; they change velocities in proportion to its fraction.
+  const auto [atStart, atEnd] = contacts_.frictionOfHeld();
+  frictionEnergy(state) += fraction * atStart + square * (atEnd - atStart);
+  dampingEnergy(state) += square * (dampingEnergy(held_) - dampingEnergy(led));
+  pushWork(state) += square * (pushWork(held_) - pushWork(led));
 }
 
 /// The end of the fixed step under way, or of the run; a push that begins or ends comes first.
@@ -115,8 +117,13 @@ double SteppedMotion::nextStepEnd() const {
 bool SteppedMotion::holdContacts() {
   const double length = island_.step.timeStep;
   VectorX& state = island_.state;
+  const Mechanism& mechanism = island_.assembly.mechanism;
+  bookStep(mechanism, island_.step);
   state = island_.step.state;
-  if (solver_.hasConstraints()) solver_.project(state);
+  if (solver_.hasConstraints()) {
+    solver_.project(state);
+    bookNumerical(energyConstant(mechanism, island_.step.state), mechanism, state);
+  }
   normalizeOrientations(state);
   isHeld_ = !contacts_.touching().empty() && length > kTimeRounding * method_.timeStep;  // no gap closes in no time
   if (!isHeld_) return true;
@@ -141,7 +148,8 @@ void SteppedMotion::moveFreely(double stepEnd) {
   method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
   if (method_.tolerance == 0) return;
   prepareInterpolant(island_.rightHandSide, step);
-  while (!(rk4Error(step) <= method_.tolerance) && length > kShortestPart * method_.timeStep) {
+  while (!(rk4Error(step, motionComponents(step.state)) <= method_.tolerance) &&
+         length > kShortestPart * method_.timeStep) {
     length /= 2;
     keepStartRate(step);
     method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);

@@ -22,7 +22,8 @@ Frame frameOf(const Assembly& assembly, const VectorX& state, long number, doubl
     frame.states.push_back({centerOfMass(state, body), orientation(state, body), linearVelocity(state, body),
                             angularVelocity(state, body)});
   const Invariants sums = invariantsOf(assembly.mechanism, state);
-  frame.energy = {sums.kinetic, sums.potential, 0, 0, sums.momentum, sums.angularMomentum};
+  frame.energy.kinetic = sums.kinetic, frame.energy.potential = sums.potential;
+  frame.energy.momentum = sums.momentum, frame.energy.angularMomentum = sums.angularMomentum;
   return frame;
 }
 
