@@ -40,9 +40,9 @@ double energySensitivity(const Mechanism& mechanism, const VectorX& state) {
   return sum;
 }
 
-/// What rounding of places and lengths makes of the energy (J) that is summed from them: all that bodies have which do
-/// not move, and more than nothing where a spring is stiff.
-double energyRounding(const Mechanism& mechanism, const VectorX& state) {
+/// What errors of `tolerance` (of 1 m and more) or rounding of places make of the energy (J) that is summed from them:
+/// all that bodies have which do not move, and more than nothing where a spring is stiff.
+double energyOfPlaceErrors(const Mechanism& mechanism, const VectorX& state, double tolerance) {
   double sum = 0;
   for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
@@ -53,8 +53,8 @@ double energyRounding(const Mechanism& mechanism, const VectorX& state) {
     const SpringAction action = actionOf(spring, state);
     const double size = action.a.position.norm() + action.b.position.norm() + action.a.arm.norm() +
                         action.b.arm.norm() + spring.restLength;
-    const double rounding = kPlaceRounding * size;
-    sum += (action.forceOnA.norm() + spring.stiffness * rounding) * rounding;
+    const double rounding = kPlaceRounding * size, error = std::max(rounding, tolerance * (1 + size));
+    sum += action.forceOnA.norm() * rounding + spring.stiffness * error * error;
   }
   return sum;
 }
@@ -101,7 +101,7 @@ void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
     errorSum_ += std::max(method_.tolerance, kFinestTolerance) * energySensitivity(mechanism_, state);
     most = std::min(most, kMostLocalErrors * errorSum_);
   }
-  most += energyRounding(mechanism_, state);
+  most += energyOfPlaceErrors(mechanism_, state, method_.isAdaptive() ? method_.tolerance : 0);
   const double change = std::abs(explainedConstant(mechanism_, state) - startConstant_);
   if (!(change <= most))
     fail(state, time, fmt::format("has energy from nowhere ({:.3g} J; {:.3g} J can be explained)", change, most),

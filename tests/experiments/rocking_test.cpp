@@ -121,7 +121,7 @@ TEST(RockingTower, ComesToRestWhenItsEnergyIsGone) {
 // Each frame has no more energy than the one before, in parts of what is left: integration with an accuracy of 1e-6.
 TEST(RockingDisc, ComesToLieWithoutGainOfEnergyOrSinking) {
   const Trajectory run = simulate(sceneWith(
-      R"("duration": 0.4, "accuracy": 1e-6, "output": {"framesPerSecond": 960},
+      R"("duration": 1.2, "accuracy": 1e-6, "output": {"framesPerSecond": 960},
          "materials": {"m": {"restitution": 0.3, "staticFriction": 0, "dynamicFriction": 0}},
          "bodies": [{"name": "floor", "shape": {"plane": {}}, "motion": "static", "material": "m"},
                     {"name": "disc", "shape": {"cylinder": {"radius": 0.1, "length": 0.05}}, "mass": 1, "material": "m",

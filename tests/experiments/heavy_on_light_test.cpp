@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "experiments/experiment.h"
+
+// A ball that lies on a light body, which lies on the floor: what closes is slow, and the masses differ by up to a
+// million.
+
+namespace cradle {
+namespace {
+
+struct Case {
+  double ratio, restitution, friction;  // of the densities
+};
+
+/// A ball of 50 mm off the middle of a cylinder that lies, turning slowly. Densities from 8000 kg/m^3.
+Scene ballOnCylinder(const Case& given) {
+  const std::string law = fmt::format(R"("restitution": {}, "staticFriction": {}, "dynamicFriction": {})",
+                                      given.restitution, given.friction, given.friction);
+  return sceneWith(fmt::format(R"("duration": 0.02, "materials": {{"light": {{"density": 8000, {0}}},
+    "heavy": {{"density": {1}, {0}}}}}, "bodies": [
+    {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "light"}},
+    {{"name": "cylinder", "shape": {{"cylinder": {{"radius": 0.0336, "length": 0.0336}}}}, "material": "light",
+      "position": [0, 0.033600000004, 0], "orientation": {{"axis": [0, 0, 1], "angleDegrees": 90}}}},
+    {{"name": "ball", "shape": {{"sphere": {{"radius": 0.05}}}}, "material": "heavy",
+      "position": [-0.0125, 0.117200000006, 0], "angularVelocity": [0.0069, 0.00007, -0.0036]}}])",
+                               law, 8000 * given.ratio));
+}
+
+TEST(DenseBallOnALyingCylinder, ComesToTheEndOfItsImpactsAndGainsNoEnergy) {
+  for (const double ratio : {1.0, 100.0, 1e4, 1e6})
+    for (const double restitution : {0.0, 0.3, 1.0})
+      for (const double friction : {0.0, 0.5, 1.5}) {
+        const std::string what = fmt::format("{} {} {}", ratio, restitution, friction);
+        Trajectory run;
+        ASSERT_NO_THROW(run = simulate(ballOnCylinder({ratio, restitution, friction}))) << what;
+        // What falls by the whole 20 ms has m g (g t^2 / 2): nothing may have more than that beside its start.
+        const double fall = 0.5 * kGravity * 0.02 * 0.02, mass = 8000 * ratio * 5.24e-4;
+        const double start = mechanicalEnergy(run.frames.front());
+        for (const Frame& frame : run.frames)
+          EXPECT_LE(mechanicalEnergy(frame), start + 1e-6 * mass * kGravity * fall) << what;
+        EXPECT_GT(run.frames.back().states[1].position.y(), 0.1172 - 1.1 * fall) << what;
+      }
+}
+
+/// The x of a capsule that another one, on top of it, pushes aside after 0.3 s, in parts of the scale; in a scene of
+/// lengths times `scale`, and times times its root.
+double pushedAside(double scale) {
+  const double root = std::sqrt(scale);
+  const Trajectory run = simulate(sceneWith(fmt::format(
+      R"("duration": {0}, "output": {{"framesPerSecond": {1}}}, "bodies": [
+    {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}},
+    {{"name": "lower", "shape": {{"capsule": {{"radius": {2}, "length": {2}}}}}, "material": "m",
+      "position": [0, {2}, {3}], "orientation": {{"axis": [1, 0, 0], "angleDegrees": 90}}}},
+    {{"name": "upper", "shape": {{"capsule": {{"radius": {4}, "length": {4}}}}}, "material": "m",
+      "position": [{5}, {6}, {7}], "orientation": {{"axis": [-0.598708, 0.120354, 0.791816], "angleDegrees": 196.671}}}}],
+    "materials": {{"m": {{"staticFriction": 0, "dynamicFriction": 0}}}})",
+      0.3 * root, 10 / root, 0.025 * scale, -0.0043 * scale, 0.05 * scale, -0.00215 * scale, 0.12324 * scale,
+      -0.013265 * scale)));
+  return run.frames.back().states[0].position.x() / scale;
+}
+
+// Lengths by a factor, times by its root: gravity is the same, and so is what happens (W. Froude's law), but for the
+// instants at which contact steps try whether events serve again: 1e-3 of the way.
+TEST(CapsuleOnACapsule, MovesAlikeAtEveryScale) {
+  const double aside = pushedAside(1);
+  EXPECT_GT(std::abs(aside), 0.1);
+  for (const double scale : {0.01, 0.1, 4.0}) EXPECT_NEAR(pushedAside(scale), aside, 1e-3 * std::abs(aside)) << scale;
+}
+
+}  // namespace
+}  // namespace cradle
