@@ -182,6 +182,11 @@ double openingSpeed(const Contact& contact, const VectorX& state) {
   return contact.normal.dot(relativeVelocity(contact, state));
 }
 
+double openingAcceleration(const Contact& contact, const VectorX& state, const VectorX& rate) {
+  return contact.normal.dot(pointAcceleration(contact.bodyB, contact.point, state, rate) -
+                            pointAcceleration(contact.bodyA, contact.point, state, rate));
+}
+
 RigidTransform poseOf(const VectorX& state, int body) {
   if (body == kFixed) return {};
   return {orientation(state, body).normalized(), centerOfMass(state, body)};

@@ -40,6 +40,10 @@ Vec3 relativeVelocity(const Contact& contact, const VectorX& places, const Vecto
 /// Speed (m/s) with which the surfaces leave each other at a contact; < 0 is closing.
 double openingSpeed(const Contact& contact, const VectorX& state);
 
+/// Acceleration (m/s^2) with which the two material points of a contact leave each other along its normal, for the
+/// rates of all velocities in `rate`.
+double openingAcceleration(const Contact& contact, const VectorX& state, const VectorX& rate);
+
 /// Pose of a moving body's centre of mass frame in `state`; identity if fixed.
 RigidTransform poseOf(const VectorX& state, int body);
 

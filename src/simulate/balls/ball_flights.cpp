@@ -7,6 +7,10 @@ namespace {
 
 constexpr double kSlowPart = 1e-14;  // of the speeds: what touches and closes more slowly does so by rounding
 
+// Of the smaller radius: nearer is touching. Places are known to rounding at any accuracy, and of balls of different
+// masses the order of collisions counts.
+constexpr double kBallTouchPart = 1e-11;
+
 constexpr double kMostChange = 1.5;  // of the cells' size: then they are made anew
 
 double timeLeft(double until, double now) {
@@ -142,7 +146,7 @@ bool BallFlights::holds(const Meeting& meeting) const {
 }
 
 double BallFlights::touchingGap(int ball, int other) const {
-  return world_.touchPart * (other < 0 ? radiusOf(ball) : std::min(radiusOf(ball), radiusOf(other)));
+  return kBallTouchPart * (other < 0 ? radiusOf(ball) : std::min(radiusOf(ball), radiusOf(other)));
 }
 
 BallContact BallFlights::contactOf(int ball, int other, double now) const {

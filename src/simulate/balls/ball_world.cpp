@@ -6,9 +6,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kBallTouchPart = 0.1;                    // of the accuracy
-constexpr double kLeastTouch = 1e-11, kMostTouch = 1e-8;  // of the radius: rounding; what nobody would call a gap
-
 const Body& bodyAt(const Scene& scene, int body) {
   return scene.bodies[static_cast<std::size_t>(body)];
 }
@@ -82,7 +79,6 @@ std::optional<BallWorld> ballWorldOf(const Scene& scene, const IslandPlan& islan
   if (!areLossless(scene, island.touching)) return std::nullopt;
   BallWorld world;
   world.gravity = scene.gravity;
-  world.touchPart = std::clamp(kBallTouchPart * scene.accuracy, kLeastTouch, kMostTouch);
   for (const int body : island.bodies) addBall(bodyAt(scene, body), body, scene.gravity, world);
   if (!addObstacles(scene, island.touching, world)) return std::nullopt;
   return world;

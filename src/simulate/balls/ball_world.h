@@ -11,7 +11,6 @@ namespace cradle {
 /// Balls that bounce without loss, and what is fixed around them. All vectors of balls are in the order of the island.
 struct BallWorld {
   Vec3 gravity = Vec3::Zero();  // m/s^2
-  double touchPart = 0;         // of the smaller radius: nearer is touching
   std::vector<int> sceneBodies;
   std::vector<double> radii, inverseMasses;  // m, 1/kg
   std::vector<UniformMotion> starts;         // of the centres, at time 0

@@ -19,26 +19,16 @@ namespace {
 constexpr double kTouchPart = 0.1;         // of the accuracy, in sizes of a body: nearer is touching ...
 constexpr double kLeastTouchPart = 1e-11;  // ... but not within rounding
 constexpr double kMostTouchPart = 1e-8;
+// In a sequence of impacts bodies move so far at most while normals stay as they are; farther where a look is enough,
+// as events are counted there.
+constexpr double kMostReachPart = 1e-8;
+constexpr double kMostLookReachPart = 1e-5;
 constexpr double kMostTouchError = 1e-6;    // of a size: so well two ways to find a gap agree
 constexpr double kDeadBandPart = 1e-12;     // of the smallest size
-constexpr double kStandstillPart = 1e-12;   // of the fastest speed at an impact: what is left is rounding
 constexpr double kBounceOfAccuracy = 1e-2;  // the same, of the accuracy ...
 constexpr double kBounceOfSquare = 100;     // ... or of its square, if that is more: 5e-5 of the size at the coarsest
 constexpr double kMostStillPart = 1e-7;     // of sqrt(g x size)
 constexpr double kSameCorner = 1e-6;        // of a size
-
-/// m/s: of the faster of the two bodies' centres.
-double contactSpeed(const Contact& contact, const VectorX& state) {
-  double speed = 0;
-  for (const int body : {contact.bodyA, contact.bodyB})
-    if (body != kFixed) speed = std::max(speed, linearVelocity(state, body).norm());
-  return speed;
-}
-
-double openingAcceleration(const Contact& contact, const VectorX& state, const VectorX& rate) {
-  return contact.normal.dot(pointAcceleration(contact.bodyB, contact.point, state, rate) -
-                            pointAcceleration(contact.bodyA, contact.point, state, rate));
-}
 
 /// Whether a collider with corners has one at `point` (m, world).
 bool hasCornerAt(const Collider& collider, const Vec3& point, const VectorX& state) {
@@ -74,6 +64,8 @@ EventContacts::EventContacts(MovingIsland& island, RopeStage& ropes, double accu
       size_(smallestSize(island.assembly.geometry)),
       touchTolerance_(size_ * std::clamp(kTouchPart * accuracy, kLeastTouchPart, kMostTouchPart)),
       deadBand_(kDeadBandPart * size_),
+      reach_(size_ * std::clamp(kTouchPart * accuracy, kLeastTouchPart,
+                                accuracy > kLookAccuracy ? kMostLookReachPart : kMostReachPart)),
       lasting_(island, touchTolerance_),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       stillPart_(std::min(kMostStillPart, accuracy)) {}
@@ -90,7 +82,7 @@ void EventContacts::resolve(const std::optional<ContactChange>& change, const st
   restDelay_ = 0;
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
   findTouching(meeting);
-  collide();
+  collide(meeting);
   lasting_.letGo(change);
   settle();
   lasting_.decide(touching_, solver_);
@@ -129,56 +121,6 @@ void EventContacts::findNear(const std::optional<std::size_t>& meeting) {
     return left.separation < right.separation;
   });
   if (nearest != near.end()) touching_.push_back(*nearest);
-}
-
-/// Contacts that close are impacts, and then all that touch each other there, and all ropes that cannot lengthen, take
-/// part.
-void EventContacts::collide() {
-  double fastest = 0;
-  for (const Contact& contact : touching_) fastest = std::max(fastest, contactSpeed(contact, island_.state));
-  const auto closes = [&](const Contact& contact) {
-    return openingSpeed(contact, island_.state) < -kStandstillPart * fastest;
-  };
-  if (std::none_of(touching_.begin(), touching_.end(), closes)) return;
-  std::vector<ImpactContact> ropes = ropes_.beginImpact(island_.state);
-  if (!ropes.empty() && solver_.hasConstraints()) solver_.factorize(island_.state);
-  const Islands together = findStruckTogether(ropes);
-  std::vector<char> isStruck(island_.assembly.mechanism.bodies.size(), 0);
-  for (const Contact& contact : touching_)
-    if (closes(contact)) isStruck[static_cast<std::size_t>(together.islandOf(contact.movingBody()))] = 1;
-  for (std::size_t group = 0; group < isStruck.size(); ++group)
-    if (isStruck[group]) strike(together, static_cast<int>(group), ropes);
-  ropes_.endImpact(island_.time, ropes, island_.state);
-  if (!ropes.empty() && solver_.hasConstraints()) solver_.factorize(island_.state);
-  for (const Contact& contact : touching_) wakeStruck(contact);
-  for (const ImpactContact& rope : ropes) wakeStruck(rope.contact);
-}
-
-/// Bodies that an impact at one of them moves.
-Islands EventContacts::findStruckTogether(const std::vector<ImpactContact>& ropes) const {
-  Islands islands(island_.assembly.mechanism.bodies.size());
-  for (const Contact& contact : touching_) islands.join(contact.bodyA, contact.bodyB);
-  for (const ImpactContact& rope : ropes) islands.join(rope.contact.bodyA, rope.contact.bodyB);
-  forEachTie(island_.assembly.mechanism.constraints, [&](int bodyA, int bodyB) { islands.join(bodyA, bodyB); });
-  return islands;
-}
-
-void EventContacts::strike(const Islands& together, int group, std::vector<ImpactContact>& ropes) {
-  const auto isIn = [&](const Contact& contact) { return together.islandOf(contact.movingBody()) == group; };
-  std::vector<ImpactContact> impacts;
-  for (const Contact& contact : touching_)
-    if (isIn(contact)) impacts.push_back({contact, island_.assembly.geometry.pairs[contact.pair].law, 0, Vec3::Zero()});
-  const std::size_t contacts = impacts.size();
-  for (const ImpactContact& rope : ropes)
-    if (isIn(rope.contact)) impacts.push_back(rope);
-  resolveImpact(impacts);
-  for (std::size_t i = 0; i < contacts; ++i) {
-    const double impulse = impacts[i].contact.normal.dot(impacts[i].impulse);
-    if (impulse > 0) island_.log.recordContact(island_.time, EventKind::impact, impacts[i].contact, impulse);
-  }
-  std::size_t next = contacts;
-  for (ImpactContact& rope : ropes)
-    if (isIn(rope.contact)) rope.impulse = impacts[next++].impulse;
 }
 
 void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {

@@ -3,12 +3,19 @@
 #include <vector>
 
 #include "impact/pairwise.h"
+#include "simulate/events/impact_sequence.h"
 #include "simulate/events/lasting_contacts.h"
 #include "simulate/moving_island.h"
 #include "simulate/plan/islands.h"
 #include "simulate/rope_stage.h"
 
 namespace cradle {
+
+/// What a contact of a sequence of impacts got in all.
+struct ContactImpulse {
+  std::size_t contact = 0;  // of ImpactSequence::contacts()
+  double impulse = 0;       // N s, along the normal
+};
 
 /// What happens where bodies touch at an event: impacts rebound, what forces hold comes to rest, and what they press
 /// together lasts.
@@ -26,7 +33,10 @@ class EventContacts {
   std::string_view fault() const { return lasting_.fault(); }
 
   /// Farther apart (m) nothing is looked at.
-  double margin() const { return touchTolerance_; }
+  double margin() const { return reach_; }
+
+  /// Nearer (m) is touching.
+  double touchTolerance() const { return touchTolerance_; }
 
   /// Contacts in the island's state now: changes its velocities. `change` is what happens to a lasting one, if
   /// anything does; `meeting` the pair that comes together.
@@ -36,9 +46,13 @@ class EventContacts {
  private:
   void findTouching(const std::optional<std::size_t>& meeting);
   void findNear(const std::optional<std::size_t>& meeting);
-  void collide();
-  Islands findStruckTogether(const std::vector<ImpactContact>& ropes) const;
-  void strike(const Islands& together, int group, std::vector<ImpactContact>& ropes);
+  void collide(const std::optional<std::size_t>& meeting);
+  std::vector<Contact> contactsInReach();
+  SequenceLimits limitsOf(const std::vector<Contact>& near, double stillSpeed);
+  Islands connect(const std::vector<Contact>& contacts) const;
+  void strike(const ImpactSequence& sequence, double still, std::vector<ContactImpulse>& impulses);
+  void strike(const Islands& together, int group, const ImpactSequence& sequence, std::vector<ImpactContact>& ropes,
+              std::vector<ContactImpulse>& impulses);
   void resolveImpact(std::vector<ImpactContact>& impacts);
   bool endBounces(const VectorX& approach, std::vector<ImpactContact>& impacts);
   void wakeStruck(const Contact& contact);
@@ -55,6 +69,7 @@ class EventContacts {
   RopeStage& ropes_;
   double size_;                       // m: of the smallest body
   double touchTolerance_, deadBand_;  // m
+  double reach_;                      // m: of the contacts that may take part in a sequence of impacts
   LastingContacts lasting_;
   ConstraintSolver solver_;
   double stillPart_;      // of the speed that a body gains when it falls by its size: slower is still

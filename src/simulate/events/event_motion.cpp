@@ -214,7 +214,7 @@ bool EventMotion::stopAtImpact(const ImpactTime& impact) {
   const double closed = gap(step.work) - left;
   const double correction = closed > 0 ? left * before / closed : 0;  // not above 0: all of it is rounding
   step.work = step.state + correction * step.endRate;
-  const double tolerance = kImpactPart * contacts_.margin();
+  const double tolerance = kImpactPart * contacts_.touchTolerance();
   if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))
     return endStepAtEvent(island_, method_.integrate, {length, length, tolerance}, gap) <= tolerance;
   std::swap(step.state, step.work);

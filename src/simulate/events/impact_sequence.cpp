@@ -1,0 +1,164 @@
+// Inelastic collapse: S. McNamara, W. R. Young, "Inelastic collapse and clumping in a one-dimensional granular medium",
+// Physics of Fluids A 4(3), 1992. In a round of impacts the speeds of the contacts change by a fixed matrix; where its
+// eigenvalues are real, the round repeats for ever. For a ball of mass m between a fixed floor and a mass M these are
+// the roots of x^2 - ((1 + e)^2 M / (m + M) - 2 e) x + e^2: real if (1 + e)^2 M / (m + M) >= 4 e. Speeds shrink by the
+// larger root a round, gaps about as fast as by the smaller one. All impulses together end all closing: without
+// friction they are those of one impact without rebound, whenever in the sequence that comes.
+
+#include "simulate/events/impact_sequence.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace cradle {
+namespace {
+
+constexpr double kGapGrowthError = 1e-9;         // of the way that the fastest contact closes by meanwhile
+constexpr double kOpeningPart = 1e-6;            // of the fastest closing: a contact that opens faster has let go
+constexpr std::size_t kCollapseImpacts = 200;    // enough to tell intervals that shrink for ever from a few short ones
+constexpr std::size_t kImpactsOfAContact = 20;   // the same, for each contact
+constexpr double kCollapsePart = 1e-12;          // of the time elapsed: so little so many impacts take
+constexpr std::size_t kMaxSequenceImpacts = 100000;  // a row of 40 balls takes a thousand
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+ImpactSequence::ImpactSequence(std::vector<Contact> contacts, const std::optional<std::size_t>& meeting,
+                               const Islands& groups, const std::vector<double>& radii, const SequenceLimits& limits,
+                               const VectorX& state)
+    : contacts_(std::move(contacts)),
+      groups_(groups),
+      radii_(radii),
+      limits_(limits),
+      gapErrors_(contacts_.size(), limits.gapRounding),
+      speeds_(contacts_.size()),
+      leftSpeeds_(contacts_.size(), 0.0),
+      lastImpacts_(contacts_.size(), 0),
+      displacements_(VectorX::Zero(bodyCount(state) * kVelocitySize)),
+      isStruck_(radii.size(), 0) {
+  for (const Contact& contact : contacts_) gaps_.push_back(contact.separation);
+  findSpeeds(state);
+  if (meeting) takeMeetingAsClosed(*meeting);
+}
+
+/// The event's time is rounded: all gaps are taken as they are when the meeting's nearest contact has none.
+void ImpactSequence::takeMeetingAsClosed(std::size_t pair) {
+  std::size_t nearest = contacts_.size();
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    if (contacts_[i].pair == pair && closes(i) && (nearest == contacts_.size() || gaps_[i] < gaps_[nearest]))
+      nearest = i;
+  if (nearest == contacts_.size()) return;
+  const double most = limits_.touchTolerance / fastestClosing_;
+  const double time = std::clamp(gaps_[nearest] / -speeds_[nearest], -most, most);
+  for (std::size_t i = 0; i < contacts_.size(); ++i) gaps_[i] += time * speeds_[i];
+  gaps_[nearest] = 0;
+}
+
+void ImpactSequence::findSpeeds(const VectorX& state) {
+  fastestClosing_ = 0;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    speeds_[i] = openingSpeed(contacts_[i], state);
+    fastestClosing_ = std::max(fastestClosing_, -speeds_[i]);
+  }
+}
+
+bool ImpactSequence::closes(std::size_t contact) const {
+  return speeds_[contact] < leftSpeeds_[contact] - limits_.stillSpeed;
+}
+
+bool ImpactSequence::next(const VectorX& state) {
+  findSpeeds(state);
+  isCollapse_ = hasCollapsed();
+  if (isCollapse_) {
+    members_.clear();
+    const std::size_t first = times_.size() - std::max(kCollapseImpacts, kImpactsOfAContact * contacts_.size());
+    for (std::size_t i = 0; i < contacts_.size(); ++i)
+      if (lastImpacts_[i] > first) members_.push_back(i);
+    collapses_ = times_.size();
+    return true;
+  }
+  if (times_.size() > kMaxSequenceImpacts) return false;
+  const double time = timeToNextImpact();
+  if (time == kNever || (time > 0 && !mayAdvance(state, time))) return false;
+  advance(state, time);
+  findMembers();
+  return true;
+}
+
+bool ImpactSequence::hasCollapsed() const {
+  const std::size_t count = std::max(kCollapseImpacts, kImpactsOfAContact * contacts_.size());
+  return times_.size() >= collapses_ + count &&
+         elapsed_ - times_[times_.size() - count] <= kCollapsePart * elapsed_;
+}
+
+/// s; infinite if nothing closes.
+double ImpactSequence::timeToNextImpact() const {
+  double time = kNever;
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    if (closes(i)) time = std::min(time, gaps_[i] <= gapErrors_[i] ? 0 : gaps_[i] / -speeds_[i]);
+  return time;
+}
+
+bool ImpactSequence::mayAdvance(const VectorX& state, double time) const {
+  if (!(elapsed_ + time <= limits_.duration)) return false;
+  const Eigen::Index velocities = poseComponents(state);
+  for (const Contact& contact : contacts_)
+    for (const int body : {contact.bodyA, contact.bodyB}) {
+      if (body == kFixed) continue;
+      const Eigen::Index at = body * kVelocitySize;
+      const Eigen::Vector<double, kVelocitySize> way =
+          displacements_.segment<kVelocitySize>(at) + time * state.segment<kVelocitySize>(velocities + at);
+      const double turn = radii_[static_cast<std::size_t>(body)] * way.tail<3>().norm();
+      if (way.head<3>().norm() + turn > limits_.reach / 2) return false;
+    }
+  return true;
+}
+
+void ImpactSequence::advance(const VectorX& state, double time) {
+  if (time == 0) return;
+  elapsed_ += time;
+  displacements_ += time * state.segment(poseComponents(state), displacements_.size());
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    gaps_[i] += time * speeds_[i];
+    gapErrors_[i] += kGapGrowthError * fastestClosing_ * time;
+  }
+}
+
+/// What has just let go is not touched: its gap is smaller than can be measured, but it grows.
+void ImpactSequence::findMembers() {
+  members_.clear();
+  const auto isClosed = [this](std::size_t i) { return gaps_[i] <= gapErrors_[i]; };
+  const auto isOfClosingPair = [&](std::size_t i) {
+    for (std::size_t other = 0; other < contacts_.size(); ++other)
+      if (contacts_[other].pair == contacts_[i].pair && isClosed(other) && closes(other)) return true;
+    return false;
+  };
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    if (speeds_[i] > kOpeningPart * fastestClosing_) continue;
+    if (isClosed(i) || (gaps_[i] <= limits_.touchTolerance && isOfClosingPair(i))) members_.push_back(i);
+  }
+}
+
+void ImpactSequence::finishImpact(const VectorX& state) {
+  times_.push_back(elapsed_);
+  for (const std::size_t i : members_) {
+    gaps_[i] = gapErrors_[i] = 0;
+    leftSpeeds_[i] = std::min(0.0, openingSpeed(contacts_[i], state));
+    lastImpacts_[i] = times_.size();
+    isStruck_[static_cast<std::size_t>(groups_.islandOf(contacts_[i].movingBody()))] = 1;
+  }
+}
+
+bool ImpactSequence::moveBodies(VectorX& state) const {
+  if (elapsed_ == 0) return false;
+  for (std::size_t body = 0; body < radii_.size(); ++body) {
+    const auto index = static_cast<Eigen::Index>(body);
+    if (!isStruck_[static_cast<std::size_t>(groups_.islandOf(static_cast<int>(body)))]) continue;
+    centerOfMass(state, index) += displacements_.segment<3>(index * kVelocitySize);
+    turnBody(state, index, displacements_.segment<3>(index * kVelocitySize + 3));
+  }
+  return true;
+}
+
+}  // namespace cradle

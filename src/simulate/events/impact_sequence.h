@@ -1,0 +1,79 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "collision/separation.h"
+#include "simulate/plan/islands.h"
+
+namespace cradle {
+
+/// What bounds a sequence of impacts at frozen places.
+struct SequenceLimits {
+  double touchTolerance = 0;  // m: points of one pair nearer than that meet at once
+  double gapRounding = 0;     // m: gaps below it are zero
+  double reach = 0;           // m: contacts farther apart are not known, so bodies move by half of it at most
+  double duration = 0;        // s: in a longer time forces would count
+  double stillSpeed = 0;      // m/s: closing more slowly is rounding
+};
+
+/// Impacts that follow each other faster than bodies move: contacts close in the order in which their gaps say, while
+/// places, and with them normals and inverse masses, stay as they are. Gaps are variables of their own: a gap that an
+/// impact has closed is zero, and grows from there by speed x time, exact to a relative rounding however small it is.
+/// Contacts whose gaps close at one instant, and those without a gap that do not open, are one impact.
+///
+/// Impacts may be infinitely many in a finite time (inelastic collapse: a light ball between the floor and a heavy one,
+/// with a small restitution). Neither gaps nor speeds tell that, but the history does: the intervals shrink
+/// geometrically. What is left then is one impact without rebound.
+class ImpactSequence {
+ public:
+  /// `meeting`: the pair that an event has brought together, whose nearest contact has no gap. `groups`: bodies that
+  /// contacts and joints connect; `radii` (m): of all moving bodies.
+  ImpactSequence(std::vector<Contact> contacts, const std::optional<std::size_t>& meeting, const Islands& groups,
+                 const std::vector<double>& radii, const SequenceLimits& limits, const VectorX& state);
+
+  const std::vector<Contact>& contacts() const { return contacts_; }
+
+  /// Goes on to the next impact; false if there is none within the limits. `state` has the velocities of now.
+  bool next(const VectorX& state);
+
+  /// The contacts of that impact, indices of contacts(): some close, the others touch.
+  const std::vector<std::size_t>& members() const { return members_; }
+
+  /// Whether that impact ends a collapse: nothing rebounds.
+  bool isCollapse() const { return isCollapse_; }
+
+  /// Takes the velocities after that impact.
+  void finishImpact(const VectorX& state);
+
+  /// Moves the bodies that were struck to where the sequence has brought them. False if it took no time.
+  bool moveBodies(VectorX& state) const;
+
+ private:
+  void takeMeetingAsClosed(std::size_t pair);
+  void findSpeeds(const VectorX& state);
+  bool closes(std::size_t contact) const;
+  bool hasCollapsed() const;
+  double timeToNextImpact() const;
+  bool mayAdvance(const VectorX& state, double time) const;
+  void advance(const VectorX& state, double time);
+  void findMembers();
+
+  std::vector<Contact> contacts_;
+  const Islands& groups_;
+  const std::vector<double>& radii_;
+  SequenceLimits limits_;
+  std::vector<double> gaps_, gapErrors_;   // m
+  std::vector<double> speeds_;             // m/s, of opening
+  std::vector<double> leftSpeeds_;         // m/s, <= 0: of closing that its last impact could not end
+  std::vector<std::size_t> lastImpacts_;   // of each contact: number of its last impact, from 1; 0: none
+  std::vector<double> times_;              // s: of the impacts, from the sequence's start
+  std::size_t collapses_ = 0;              // number of the impact that ended the last collapse
+  double elapsed_ = 0, fastestClosing_ = 0;  // s, m/s
+  std::vector<std::size_t> members_;
+  bool isCollapse_ = false;
+  VectorX displacements_;      // m and rad: six of each body
+  std::vector<char> isStruck_;  // groups
+};
+
+}  // namespace cradle

@@ -1,0 +1,269 @@
+// Impacts that follow each other at gaps far smaller than bodies: infinitely many in a finite time, as of a light ball
+// between a floor and a heavier ball that falls on it (S. McNamara, W. R. Young, Physics of Fluids A 4(3), 1992), and
+// those of rows of balls with gaps of nanometres. References: closed forms, and impacts pair by pair in the order of
+// time, with the gaps as variables, at places that do not change.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "experiments/experiment.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kColumnRadius = 0.05;  // m
+const double kCollapseAccuracies[] = {1e-3, 1e-6, 1e-10};
+
+/// Balls along y above a fixed floor, or in a row without one: from the lowest to the highest.
+struct BallColumn {
+  bool hasFloor = true;
+  double restitution = 0, friction = 0;
+  std::vector<double> masses, speeds, gaps;  // kg, m/s, m; with a floor the first gap is that over it
+  std::vector<double> sideSpeeds;            // m/s along x; none: all 0
+  double gravity = 0;                        // m/s^2
+};
+
+/// What velocity and spin a ball has after the impacts.
+struct BallAfter {
+  double speed, sideSpeed, spin;  // m/s along y and x, rad/s about z
+};
+
+std::string columnText(const BallColumn& column, const char* shape) {
+  std::string text = column.hasFloor ? R"({"name": "floor", "shape": {"plane": {}}, "motion": "static",
+    "material": "m"})" : R"({"name": "far", "shape": {"plane": {}}, "position": [0, -100, 0], "motion": "static",
+    "material": "m"})";
+  double height = column.hasFloor ? kColumnRadius + column.gaps[0] : 0;
+  for (std::size_t i = 0; i < column.masses.size(); ++i) {
+    if (i > 0) height += 2 * kColumnRadius + column.gaps[column.hasFloor ? i : i - 1];
+    const double side = column.sideSpeeds.empty() ? 0 : column.sideSpeeds[i];
+    text += fmt::format(R"(, {{"name": "b{}", "shape": {}, "mass": {:.17g}, "material": "m", "position": {},
+      "linearVelocity": {}}})",
+                        i, shape, column.masses[i], vectorText(Vec3(0, height, 0)),
+                        vectorText(Vec3(side, column.speeds[i], 0)));
+  }
+  return text;
+}
+
+constexpr const char* kColumnBall = R"({"sphere": {"radius": 0.05}})";
+constexpr const char* kColumnBox = R"({"box": {"size": [0.1, 0.1, 0.1]}})";
+
+Trajectory runColumn(const BallColumn& column, double accuracy, double duration, const char* shape = kColumnBall) {
+  return simulate(sceneWith(fmt::format(
+      R"("duration": {}, "accuracy": {}, "gravity": [0, {}, 0], "output": {{"framesPerSecond": {:.17g}}},
+      "materials": {{"m": {{"restitution": {:.17g}, "staticFriction": {}, "dynamicFriction": {}}}}}, "bodies": [{}])",
+      duration, accuracy, -column.gravity, 1 / duration, column.restitution, column.friction, column.friction,
+      columnText(column, shape))));
+}
+
+/// The column's impacts one by one, in long double: the contact that closes first gets its two-body impulse, Newton's
+/// restitution and Coulomb's friction, until nothing closes by more than 1e-14 of the speeds.
+class PairByPair {
+ public:
+  using Real = long double;
+
+  explicit PairByPair(const BallColumn& column) : column_(column), gaps_(column.gaps.begin(), column.gaps.end()) {
+    for (std::size_t i = 0; i < column.masses.size(); ++i)
+      balls_.push_back({column.speeds[i], column.sideSpeeds.empty() ? 0 : column.sideSpeeds[i], 0});
+  }
+
+  /// The number of impacts, at most so many.
+  int resolve(int most) {
+    for (int count = 0; count < most; ++count) {
+      std::size_t next = gaps_.size();
+      Real wait = std::numeric_limits<Real>::infinity();
+      for (std::size_t i = 0; i < gaps_.size(); ++i)
+        if (opening(i) < -1e-14L && gaps_[i] / -opening(i) < wait) next = i, wait = gaps_[i] / -opening(i);
+      if (next == gaps_.size()) return count;
+      for (std::size_t i = 0; i < gaps_.size(); ++i) gaps_[i] += wait * opening(i);
+      gaps_[next] = 0;
+      strike(next);
+    }
+    return most;
+  }
+
+  BallAfter of(std::size_t ball) const {
+    return {static_cast<double>(balls_[ball].y), static_cast<double>(balls_[ball].x),
+            static_cast<double>(balls_[ball].spin)};
+  }
+
+ private:
+  struct Ball {
+    Real y, x, spin;
+  };
+  bool isOnFloor(std::size_t contact) const { return column_.hasFloor && contact == 0; }
+  std::size_t upper(std::size_t contact) const { return column_.hasFloor ? contact : contact + 1; }
+  Real opening(std::size_t contact) const {
+    const Real below = isOnFloor(contact) ? 0 : balls_[upper(contact) - 1].y;
+    return balls_[upper(contact)].y - below;
+  }
+
+  /// A solid ball: its spin answers to friction with 5/2 of what its centre does.
+  void strike(std::size_t contact) {
+    Ball& above = balls_[upper(contact)];
+    const Real inverseAbove = 1 / Real(column_.masses[upper(contact)]);
+    const Real inverseBelow = isOnFloor(contact) ? 0 : 1 / Real(column_.masses[upper(contact) - 1]);
+    const Real radius = kColumnRadius, closing = -opening(contact);
+    const Real normal = (1 + Real(column_.restitution)) * closing / (inverseAbove + inverseBelow);
+    Real sliding = above.x + radius * above.spin;
+    if (!isOnFloor(contact)) sliding -= balls_[upper(contact) - 1].x - radius * balls_[upper(contact) - 1].spin;
+    const Real stopping = sliding / (3.5L * (inverseAbove + inverseBelow));
+    const Real most = Real(column_.friction) * normal;
+    const Real side = std::abs(stopping) <= most ? stopping : std::copysign(most, sliding);
+    above.y += normal * inverseAbove, above.x -= side * inverseAbove;
+    above.spin -= 2.5L * side * inverseAbove / radius;
+    if (isOnFloor(contact)) return;
+    Ball& below = balls_[upper(contact) - 1];
+    below.y -= normal * inverseBelow, below.x += side * inverseBelow;
+    below.spin -= 2.5L * side * inverseBelow / radius;
+  }
+
+  const BallColumn& column_;
+  std::vector<Real> gaps_;
+  std::vector<Ball> balls_;
+};
+
+// m/s. Closing by 1e-12 of the fastest speed, 4 m/s, is none; a heavy body's velocity is rounded to 1e-15 m/s, which a
+// body 4000 times as light answers to with 4e-12 m/s.
+constexpr double kCollapseRounding = 1e-11;
+
+/// Whether two contacts of a ball between a floor and a mass M times its own repeat their impacts for ever: the
+/// eigenvalues of a round are real.
+bool collapses(double restitution, double ratio) {
+  return (1 + restitution) * (1 + restitution) * ratio / (1 + ratio) >= 4 * restitution;
+}
+
+TEST(InelasticCollapse, ABallBetweenTheFloorAndAHeavyBodyStopsWithIt) {
+  for (const char* shape : {kColumnBall, kColumnBox})
+    for (const double accuracy : kCollapseAccuracies)
+      for (const double restitution : {0.05, 0.1, 0.3, 0.5})
+        for (const double ratio : {12.0, 100.0, 4000.0}) {
+          ASSERT_TRUE(collapses(restitution, ratio));
+          const BallColumn column{true, restitution, 0, {2, 2 * ratio}, {-1, -4}, {0.04, 0.05}, {}, 0};
+          const Trajectory trajectory = runColumn(column, accuracy, 0.05, shape);
+          const Frame &start = trajectory.frames.front(), &end = trajectory.frames.back();
+          SCOPED_TRACE(fmt::format("{} accuracy {} e {} ratio {}", shape, accuracy, restitution, ratio));
+          for (const BodyState& body : end.states) {
+            EXPECT_LT(body.linearVelocity.norm(), kCollapseRounding);
+            EXPECT_LT(kColumnRadius * body.angularVelocity.norm(), kCollapseRounding);
+          }
+          EXPECT_NEAR(end.energy.dissipated, start.energy.kinetic, 1e-12 * start.energy.kinetic);
+        }
+}
+
+// Gravity presses on what has collapsed: it rests, the upper ball on the lower one, as deep as gaps are found.
+TEST(InelasticCollapse, UnderGravityTheBallsRestOnEachOther) {
+  for (const double accuracy : kCollapseAccuracies)
+    for (const double restitution : {0.1, 0.3}) {
+      const BallColumn column{true, restitution, 0, {2, 31}, {-1, -4}, {0.04, 0.05}, {}, kGravity};
+      const Frame end = runColumn(column, accuracy, 0.1).frames.back();
+      for (const BodyState& body : end.states) EXPECT_LT(body.linearVelocity.norm(), kCollapseRounding);
+      EXPECT_NEAR(end.states[0].position.y(), kColumnRadius, 1e-9 * kColumnRadius);
+      EXPECT_NEAR(end.states[1].position.y(), 3 * kColumnRadius, 1e-9 * kColumnRadius);
+    }
+}
+
+TEST(InelasticCollapse, ABallBetweenTwoHeavyOnesEndsWithTheirCommonVelocity) {
+  for (const double accuracy : kCollapseAccuracies)
+    for (const double restitution : {0.05, 0.1, 0.3}) {
+      const BallColumn column{false, restitution, 0, {40, 1, 90}, {2, 0.3, -3}, {0.02, 0.03}, {}, 0};
+      const double common = (40 * 2 + 0.3 - 90 * 3) / 131;  // momentum stays
+      const Frame end = runColumn(column, accuracy, 0.05).frames.back();
+      for (const BodyState& body : end.states) EXPECT_NEAR(body.linearVelocity.y(), common, kCollapseRounding);
+    }
+}
+
+// Below the critical mass, or above the critical restitution, the impacts come to an end.
+TEST(InelasticCollapse, WhatDoesNotCollapseRebounds) {
+  for (const double accuracy : kCollapseAccuracies)
+    for (const auto& [restitution, ratio] : {std::pair(0.5, 6.0), {0.5, 1.3}, {0.3, 1.5}, {0.8, 50.0}, {0.95, 100.0}}) {
+      ASSERT_FALSE(collapses(restitution, ratio));
+      const BallColumn column{true, restitution, 0, {2, 2 * ratio}, {-1, -4}, {0.04, 0.05}, {}, 0};
+      PairByPair reference(column);
+      ASSERT_LT(reference.resolve(1000), 1000);
+      const Frame end = runColumn(column, accuracy, 2).frames.back();
+      SCOPED_TRACE(fmt::format("accuracy {} e {} ratio {}", accuracy, restitution, ratio));
+      for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_NEAR(end.states[i].linearVelocity.y(), reference.of(i).speed, kCollapseRounding);
+    }
+}
+
+// The heavy ball also moves sideways, over a gap so small that it stays above the other: in 1e-7 s by 3e-7 m, which
+// turns the normal by 3e-6. What is left of 4000 impacts by the reference is below that.
+TEST(InelasticCollapse, FrictionGivesWhatItGivesImpactByImpact) {
+  for (const double accuracy : kCollapseAccuracies)
+    for (const double friction : {0.02, 0.1, 0.6})
+      for (const double restitution : {0.1, 0.3}) {
+        const BallColumn column{true, restitution, friction, {2, 31}, {-1, -4}, {1e-7, 2e-7}, {0.5, 3}, 0};
+        PairByPair reference(column);
+        reference.resolve(4000);
+        const Frame end = runColumn(column, accuracy, 1e-5).frames.back();
+        SCOPED_TRACE(fmt::format("accuracy {} friction {} e {}", accuracy, friction, restitution));
+        for (std::size_t i = 0; i < 2; ++i) {
+          const auto [speed, sideSpeed, spin] = reference.of(i);
+          EXPECT_NEAR(end.states[i].linearVelocity.y(), speed, 2e-5);
+          EXPECT_NEAR(end.states[i].linearVelocity.x(), sideSpeed, 2e-5);
+          EXPECT_NEAR(kColumnRadius * end.states[i].angularVelocity.z(), kColumnRadius * spin, 4e-5);
+        }
+      }
+}
+
+/// A ball that hits a row at rest: `count` balls whose gaps are `gap`, more or less.
+BallColumn rowWithGaps(std::size_t count, double restitution, double gap, bool haveOneMass) {
+  BallColumn row{false, restitution, 0, {1}, {1}, {0.02}, {}, 0};
+  for (std::size_t i = 1; i < count; ++i) {
+    row.masses.push_back(haveOneMass ? 1 : 1 + 0.3 * std::fmod(2.7 * static_cast<double>(i), 2.0));
+    row.speeds.push_back(0);
+    if (i > 1) row.gaps.push_back(gap * (1 + std::fmod(0.37 * static_cast<double>(i), 1.0)));
+  }
+  return row;
+}
+
+// Places are rounded to 1e-16 m, a part of 1e-6 of the least gap, and impacts are found to 5e-14 m: the order of the few
+// dozen impacts is that of the reference.
+TEST(RowOfBalls, GapsSayWhichImpactComesFirst) {
+  for (const double accuracy : {1e-3, 1e-6, 1e-9})
+    for (const double gap : {1e-6, 1e-8, 1e-9})
+      for (const auto& [count, restitution] :
+           {std::pair(std::size_t{3}, 0.3), {4, 0.7}, {5, 0.9}, {8, 0.9}, {6, 1.0}})
+        for (const bool haveOneMass : {true, false}) {
+          const BallColumn row = rowWithGaps(count, restitution, gap, haveOneMass);
+          PairByPair reference(row);
+          ASSERT_LT(reference.resolve(1000), 1000);
+          const Trajectory trajectory = runColumn(row, accuracy, 0.1);
+          SCOPED_TRACE(fmt::format("accuracy {} gap {} e {} balls {}", accuracy, gap, restitution, count));
+          for (std::size_t i = 0; i < count; ++i)
+            EXPECT_NEAR(trajectory.frames.back().states[i].linearVelocity.y(), reference.of(i).speed, 1e-11);
+        }
+}
+
+// A ball comes down on two that lie side by side, both gaps the same: the impacts are at one instant.
+TEST(RowOfBalls, EqualGapsOnBothSidesStaySymmetric) {
+  const double side = 1.5 * kColumnRadius, height = std::sqrt(4 * kColumnRadius * kColumnRadius - side * side);
+  for (const double accuracy : kCollapseAccuracies)
+    for (const double gap : {0.0, 1e-10, 1e-9, 1e-7})
+      for (const double restitution : {0.2, 0.6, 1.0}) {
+        const auto ballText = [&](const char* name, double mass, const Vec3& place, double speed) {
+          return fmt::format(R"({{"name": "{}", "shape": {}, "mass": {}, "material": "m", "position": {},
+            "linearVelocity": {}}})",
+                             name, kColumnBall, mass, vectorText(place), vectorText(Vec3(0, speed, 0)));
+        };
+        const Trajectory trajectory = simulate(sceneWith(fmt::format(
+            R"("duration": 0.02, "accuracy": {}, "gravity": [0, 0, 0], "output": {{"framesPerSecond": 50}},
+            "materials": {{"m": {{"restitution": {}, "staticFriction": 0, "dynamicFriction": 0}}}},
+            "bodies": [{{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}}, {}, {}, {}])",
+            accuracy, restitution, ballText("left", 1, Vec3(-side, kColumnRadius + gap, 0), 0),
+            ballText("right", 1, Vec3(side, kColumnRadius + gap, 0), 0),
+            ballText("top", 20, Vec3(0, kColumnRadius + 2 * gap + height + 0.01, 0), -2))));
+        const std::vector<BodyState>& states = trajectory.frames.back().states;
+        SCOPED_TRACE(fmt::format("accuracy {} gap {} e {}", accuracy, gap, restitution));
+        EXPECT_NEAR(states[0].linearVelocity.x(), -states[1].linearVelocity.x(), kCollapseRounding);
+        EXPECT_NEAR(states[0].linearVelocity.y(), states[1].linearVelocity.y(), kCollapseRounding);
+        EXPECT_NEAR(states[2].linearVelocity.x(), 0, kCollapseRounding);
+        EXPECT_GT(states[1].linearVelocity.x(), 0.1);
+      }
+}
+
+}  // namespace
+}  // namespace cradle
