@@ -55,9 +55,9 @@ void EventContacts::collide(const std::optional<std::size_t>& meeting) {
   for (const ContactImpulse& struck : impulses)
     island_.log.recordContact(island_.time, EventKind::impact, near[struck.contact], struck.impulse);
   for (const Contact& contact : near) wakeStruck(contact);
-  const Invariants before = invariantsOf(island_.assembly.mechanism, island_.state);
+  const double constant = energyConstant(island_.assembly.mechanism, island_.state);
   if (sequence.moveBodies(island_.state)) {
-    bookDifference(before, island_.assembly.mechanism, island_.state);
+    bookNumerical(constant, island_.assembly.mechanism, island_.state);
     if (solver_.hasConstraints()) solver_.factorize(island_.state);
     findTouching(std::nullopt);
   }
