@@ -1,6 +1,7 @@
 #include "simulate/run.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/interruption.h"
 #include "dynamics/invariants.h"
@@ -103,6 +104,22 @@ std::vector<std::string> Run::takeWarnings() {
   for (const auto& simulation : simulations_)
     for (std::string& warning : simulation->takeWarnings()) warnings.push_back(std::move(warning));
   return warnings;
+}
+
+std::vector<Correction> Run::takeCorrections() {
+  std::vector<Correction> all, first;
+  for (const auto& simulation : simulations_)
+    for (Correction& correction : simulation->corrections().takeFirst()) all.push_back(std::move(correction));
+  std::stable_sort(all.begin(), all.end(), [](const Correction& a, const Correction& b) { return a.time < b.time; });
+  for (Correction& correction : all)
+    if (!std::exchange(isToldOf_[static_cast<std::size_t>(correction.kind)], 1)) first.push_back(std::move(correction));
+  return first;
+}
+
+std::map<std::string, long> Run::correctionCounts() const {
+  std::map<std::string, long> counts;
+  for (const auto& simulation : simulations_) simulation->corrections().addCounts(counts);
+  return counts;
 }
 
 long Run::evaluations() const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,6 +31,12 @@ class Run {
   /// Warnings since the last call.
   std::vector<std::string> takeWarnings();
 
+  /// Corrections since the last call that were the first of their kind in the run, in the order of time.
+  std::vector<Correction> takeCorrections();
+
+  /// How often each kind of correction has happened so far.
+  std::map<std::string, long> correctionCounts() const;
+
   /// Evaluations of equations of motion, and of closed forms, so far.
   long evaluations() const;
 
@@ -50,7 +58,8 @@ class Run {
   std::vector<std::unique_ptr<Pile>> piles_;
   std::vector<int> stateOfBody_;  // of each scene body in a frame's states, or -1
   std::size_t moving_ = 0;
-  std::vector<Event> events_;  // known, but not yet taken
+  std::array<char, kCorrectionKinds> isToldOf_ = {};  // kinds of corrections
+  std::vector<Event> events_;                         // known, but not yet taken
 };
 
 }  // namespace cradle

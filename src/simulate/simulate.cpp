@@ -56,9 +56,13 @@ RunCost simulate(const Scene& scene, const SimulationSink& sink) {
     integration.stop();
     for (const Event& event : run.takeEvents(frame.time)) sink.event(event);
     for (const std::string& warning : run.takeWarnings()) sink.warning(warning);
+    for (const Correction& correction : run.takeCorrections()) {
+      if (sink.correction) sink.correction(correction);
+      sink.warning(describe(correction, scene));
+    }
     sink.frame(frame);
   }
-  return {integration.seconds(), run.evaluations()};
+  return {integration.seconds(), run.evaluations(), run.correctionCounts()};
 }
 
 Trajectory simulate(const Scene& scene) {

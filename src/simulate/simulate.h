@@ -4,6 +4,7 @@
 #include <string>
 
 #include "scene/scene.h"
+#include "simulate/corrections.h"
 #include "trajectory/trajectory.h"
 
 namespace cradle {
@@ -12,7 +13,8 @@ namespace cradle {
 struct SimulationSink {
   std::function<void(const Frame&)> frame;
   std::function<void(const Event&)> event;
-  std::function<void(const std::string&)> warning;  // what the user should know, as soon as it is known
+  std::function<void(const std::string&)> warning;         // what the user should know, as soon as it is known
+  std::function<void(const Correction&)> correction = {};  // the first of each kind, before its warning; may be none
 };
 
 /// What a trajectory says before its first frame.

@@ -30,6 +30,7 @@ class Simulation {
   /// Events since the last call: up to the end of the step under way.
   std::vector<Event> takeEvents() { return island_.log.take(); }
   std::vector<std::string> takeWarnings() { return island_.log.takeWarnings(); }
+  Corrections& corrections() { return island_.log.corrections(); }
 
  private:
   void advance(double time);

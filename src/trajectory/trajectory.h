@@ -69,8 +69,9 @@ struct TrajectoryHeader {
 
 /// What is known after the last step.
 struct RunCost {
-  double cpuSeconds = 0;  // integration alone
-  long evaluations = 0;   // of the right-hand side
+  double cpuSeconds = 0;                         // integration alone
+  long evaluations = 0;                          // of the right-hand side
+  std::map<std::string, long> corrections = {};  // how often each kind was needed: what the motion owes to no law
 };
 
 struct Trajectory {

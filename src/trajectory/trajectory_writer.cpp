@@ -113,6 +113,13 @@ void insertHeader(Database& database, const TrajectoryHeader& header) {
   insertBodies(database, header);
 }
 
+/// {"name": count, ...}; names are plain words.
+std::string countsAsJson(const std::map<std::string, long>& counts) {
+  std::string json;
+  for (const auto& [name, count] : counts) json += fmt::format("{}\"{}\": {}", json.empty() ? "" : ", ", name, count);
+  return "{" + json + "}";
+}
+
 std::array<double, 10> energyNumbers(const EnergyBalance& energy) {
   const Vec3 &p = energy.momentum, &l = energy.angularMomentum;
   return {energy.kinetic, energy.potential, energy.dissipated, energy.work, p.x(), p.y(), p.z(), l.x(), l.y(), l.z()};
@@ -241,6 +248,7 @@ void TrajectoryWriter::finish(const RunCost& cost) {
   CRADLE_CHECK(session_ && transactionWhole_ && framesAppended_ > 0);
   insertMeta(session_->database, "cpuSeconds", cost.cpuSeconds);
   insertMeta(session_->database, "evaluations", cost.evaluations);
+  insertMeta(session_->database, "corrections", countsAsJson(cost.corrections));
   insertMeta(session_->database, "stateHash", stateHash_.hex());
   session_->database.commit();
   framesCommitted_ = framesAppended_;

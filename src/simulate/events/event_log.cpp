@@ -14,6 +14,13 @@ void EventLog::recordBody(double time, EventKind kind, int movingBody, const Vec
       {time, kind, assembly_.sceneBodies[static_cast<std::size_t>(movingBody)], kWorld, point, Vec3::Zero(), 0});
 }
 
+void EventLog::recordCorrection(double time, CorrectionKind kind, const std::vector<int>& movingBodies, double amount) {
+  Correction correction{kind, time, {}, amount};
+  for (const int body : movingBodies)
+    correction.bodies.push_back(assembly_.sceneBodies[static_cast<std::size_t>(body)]);
+  corrections_.record(std::move(correction));
+}
+
 std::vector<Event> EventLog::take() {
   return std::exchange(events_, {});
 }

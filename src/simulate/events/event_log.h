@@ -5,6 +5,7 @@
 
 #include "collision/separation.h"
 #include "simulate/assembly.h"
+#include "simulate/corrections.h"
 #include "trajectory/trajectory.h"
 
 namespace cradle {
@@ -22,6 +23,10 @@ class EventLog {
   void record(const Event& event) { events_.push_back(event); }
   void warn(const std::string& warning) { warnings_.push_back(warning); }
 
+  /// What was done to moving bodies of the island beside the laws of mechanics.
+  void recordCorrection(double time, CorrectionKind kind, const std::vector<int>& movingBodies, double amount);
+  Corrections& corrections() { return corrections_; }
+
   /// Events since the last call, in the order in which they were recorded.
   std::vector<Event> take();
   /// Warnings since the last call.
@@ -31,6 +36,7 @@ class EventLog {
   const Assembly& assembly_;
   std::vector<Event> events_;
   std::vector<std::string> warnings_;
+  Corrections corrections_;
 };
 
 }  // namespace cradle
