@@ -16,7 +16,7 @@ AchievedAccuracy check(const Scene& scene, std::vector<Frame>* frames = nullptr)
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   const std::string path = std::filesystem::path(testing::TempDir()) / (std::string(test->name()) + ".sqlite");
   {
-    TrajectoryWriter writer(path, headerOf(scene));
+    TrajectoryWriter writer(path, headerOf(scene, planOf(scene)));
     const Trajectory run = simulate(scene);
     for (const Frame& frame : run.frames) writer.append(frame);
     writer.finish(run.cost);
