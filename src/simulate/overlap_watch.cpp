@@ -5,11 +5,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kTouchingPart = 1e-9;     // of a half extent: an overlap up to that is touching (docs/scene_file.md)
-constexpr double kModelPart = 1.2e-7;      // the same of models: their vertices have single precision
-constexpr double kUnpromisedPart = 0.1;    // of a half extent: how deep bodies may be in others without a promise
+constexpr double kTouchingOverlap = 1e-9;   // of a half extent: an overlap up to that is touching (docs/scene_file.md)
+constexpr double kModelOverlap = 1.2e-7;    // the same of models: their vertices have single precision
+constexpr double kUnpromisedOverlap = 0.1;  // of a half extent: how deep bodies may be in others without a promise
 
-bool isModel(const Body& body) {
+bool hasMeshShape(const Body& body) {
   return std::holds_alternative<ModelShape>(body.shape);
 }
 
@@ -40,8 +40,8 @@ double OverlapWatch::allowedDepth(const Contact& contact) const {
   const Body &bodyA = scene_.bodies[static_cast<std::size_t>(a)], &bodyB = scene_.bodies[static_cast<std::size_t>(b)];
   const bool isPromised = isPromised_[static_cast<std::size_t>(bodyA.motion == Motion::dynamic ? a : b)];
   const double extent = meter_.halfExtent(contact);
-  if (!isPromised) return kUnpromisedPart * extent;
-  const double touching = (isModel(bodyA) || isModel(bodyB) ? kModelPart : kTouchingPart) * extent;
+  if (!isPromised) return kUnpromisedOverlap * extent;
+  const double touching = (hasMeshShape(bodyA) || hasMeshShape(bodyB) ? kModelOverlap : kTouchingOverlap) * extent;
   return scene_.accuracy * (1 + contact.point.norm()) + touching;
 }
 

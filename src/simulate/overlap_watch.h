@@ -15,8 +15,8 @@ struct Overlap {
   double depth = 0, allowed = 0;  // m
 };
 
-/// Compares overlaps in frames with what the plan of a run allows: up to the accuracy where it is promised, elsewhere up
-/// to a tenth of a body's half extent, for nothing passes through anything.
+/// Compares overlaps in frames with what the plan of a run allows: up to the accuracy where it is promised, elsewhere
+/// up to a tenth of a body's half extent, for nothing passes through anything.
 class OverlapWatch {
  public:
   /// Keeps a reference to `scene`.

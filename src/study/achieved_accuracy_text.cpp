@@ -57,8 +57,7 @@ std::string describe(const AchievedAccuracy& accuracy) {
     text += fmt::format("  {:<{}}  {:8.1e}  at {:.6g} s\n", body.body, width, body.error, body.time);
   text += evidenceText(accuracy);
   if (accuracy.fault.empty()) return text + sensitivityText(accuracy);
-  return text + fmt::format("A fault, not chaos: {}. No accuracy is known from there on.",
-                            accuracy.fault);
+  return text + fmt::format("A fault, not chaos: {}. No accuracy is known from there on.", accuracy.fault);
 }
 
 }  // namespace cradle

@@ -10,8 +10,9 @@ namespace {
 
 constexpr double kOtherTimeStep = 1.0 / 3840;  // s: a quarter of what contact steps have
 constexpr double kBeyondOwnError = 30;         // times what twice the step changes: no error of the steps any more
-constexpr double kSeenDifference = 1e-2;       // of two methods, in the second digit; less is what their laws of impact leave open
-constexpr double kLawDifference = 1e-4;        // times the growth of small differences: the same where these grow
+constexpr double kSeenDifference =
+    1e-2;  // of two methods, in the second digit; less is what their laws of impact leave open
+constexpr double kLawDifference = 1e-4;  // times the growth of small differences: the same where these grow
 
 Scene withSteps(Scene scene, double timeStep) {
   scene.method = Method{MethodName::rk4, timeStep, "the check of accuracy"};

@@ -19,8 +19,8 @@ struct OtherMethod {
   std::string failure;     // why it ended before its time, if it did
 };
 
-/// Two runs by steps of one length, one twice as long as the other, beside a run by events. Where the two agree and events
-/// do not, it is no sensitivity of the scene: the method of one of them is wrong there.
+/// Two runs by steps of one length, one twice as long as the other, beside a run by events. Where the two agree and
+/// events do not, it is no sensitivity of the scene: the method of one of them is wrong there.
 class SteppedRuns {
  public:
   explicit SteppedRuns(const Scene& scene);

@@ -58,11 +58,11 @@ TEST(Promise, OfBodiesThatNothingCanTouchHasNoConditions) {
   const std::string free = R"("collision": "none")";
   EXPECT_EQ(describe(promiseOfOnly(bodyOf("a", kCube, Vec3(0, 1, 0), free))), "promised");
   EXPECT_EQ(describe(promiseOfOnly(bodyOf("a", kCube, Vec3(0, 1, 0), free),
-                               R"(, "springs": [{"bodyA": "a", "anchorA": [0, 0.1, 0], "anchorB": [0, 2, 0],
+                                   R"(, "springs": [{"bodyA": "a", "anchorA": [0, 0.1, 0], "anchorB": [0, 2, 0],
                                     "stiffness": 50}])")),
             "promised");
   EXPECT_EQ(describe(promiseOfOnly(bodyOf("a", kCube, Vec3(0, 1, 0), free),
-                               R"(, "ropes": [{"bodyA": "a", "anchorA": [0, 0.1, 0], "anchorB": [0, 2, 0]}])")),
+                                   R"(, "ropes": [{"bodyA": "a", "anchorA": [0, 0.1, 0], "anchorB": [0, 2, 0]}])")),
             "promised");
 }
 
@@ -102,8 +102,8 @@ TEST(Promise, OfACubeOnAPlaneIsOfTheRateOfChangesAlone) {
 }
 
 TEST(Promise, OfCubesNamesThoseWhoseEdgesMayPress) {
-  const Promise promise =
-      promiseOfOnly(bodyOf("a", kCube, Vec3(0, 1, 0)) + bodyOf("b", kCube, Vec3(0, 2, 0)) + bodyOf("s", kSphere, Vec3(0, 3, 0)));
+  const Promise promise = promiseOfOnly(bodyOf("a", kCube, Vec3(0, 1, 0)) + bodyOf("b", kCube, Vec3(0, 2, 0)) +
+                                        bodyOf("s", kSphere, Vec3(0, 3, 0)));
   ASSERT_EQ(promise.conditions.size(), 3u);
   EXPECT_THAT(promise.conditions[0].what, StartsWith("no edge or round side of a, b presses"));
   EXPECT_THAT(promise.conditions[0].bodies, ElementsAre(1, 2));
@@ -163,7 +163,8 @@ TEST(Promise, ThatIsKeptSaysSoInTheTrajectory) {
   EXPECT_EQ(simulate(sceneOfBodies(spheres(2))).cost.promise, "s0, s1: promised; kept");
 }
 
-// A sphere of restitution 1 that leaves the ground with v = 3e-6 m/s hops g / 2v = 1.6e6 times in a second: its promise cannot be given up.
+// A sphere of restitution 1 that leaves the ground with v = 3e-6 m/s hops g / 2v = 1.6e6 times in a second: its promise
+// cannot be given up.
 TEST(Promise, WithoutConditionsIsKeptOrTheRunEnds) {
   const Scene scene = bouncingSphere(1, 3e-6);
   ASSERT_EQ(describe(planOf(scene).islands.at(0).promise), "promised");

@@ -57,7 +57,8 @@ TEST(StrictWatch, TellsTheFirstFaultInTheOrderOfTimeOnceAFrameShowsIt) {
   watch.note(PromiseEnd{0.4, "edges touch and press", {0, 1}});
   watch.note(Correction{CorrectionKind::clampedEnergy, 0.3, {1}, 2});
   EXPECT_EQ(saidOf(0, watch, 0.29), "");
-  EXPECT_THAT(saidOf(0, watch, 0.5), HasSubstr("strict: experiment.json: at 0.3 s contact would have given \"sphere\""));
+  EXPECT_THAT(saidOf(0, watch, 0.5),
+              HasSubstr("strict: experiment.json: at 0.3 s contact would have given \"sphere\""));
   StrictWatch other(scene, planOf(scene));
   other.note(PromiseEnd{0.4, "edges touch and press", {0, 1}});
   EXPECT_THAT(saidOf(0, other, 0.4),

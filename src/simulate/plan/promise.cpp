@@ -83,13 +83,14 @@ class ContactSurvey {
   const Body& bodyOf(int body) const { return scene_.bodies[static_cast<std::size_t>(body)]; }
 
   void add(int a, int b) {
-    const Surface &surfaceA = surfaces_[static_cast<std::size_t>(a)], &surfaceB = surfaces_[static_cast<std::size_t>(b)];
+    const Surface &surfaceA = surfaces_[static_cast<std::size_t>(a)],
+                  &surfaceB = surfaces_[static_cast<std::size_t>(b)];
     for (const int body : {a, b})
       if (bodyOf(body).motion == Motion::dynamic) found_.movers.push_back(body);
     addEdges(a, surfaceA, surfaceB);
     addEdges(b, surfaceB, surfaceA);
-    const SurfacePair& law = scene_.surfacePairs[static_cast<std::size_t>(bodyOf(a).material)]
-                                                [static_cast<std::size_t>(bodyOf(b).material)];
+    const SurfacePair& law =
+        scene_.surfacePairs[static_cast<std::size_t>(bodyOf(a).material)][static_cast<std::size_t>(bodyOf(b).material)];
     found_.hasFriction = found_.hasFriction || law.staticFriction > 0;
     if (law.restitution < 1) found_.restitution = std::max(found_.restitution, law.restitution);
     const int rowsOfOne = law.staticFriction > 0 ? 3 : 1;
@@ -121,7 +122,7 @@ class ContactSurvey {
 };
 
 /// Whether ties hold a body of the island: rows of contacts may depend on each other through them.
-bool isTied(const Scene& scene, const IslandPlan& island) {
+bool hasTies(const Scene& scene, const IslandPlan& island) {
   const auto isIn = [&](const Anchor& anchor) {
     return std::binary_search(island.bodies.begin(), island.bodies.end(), anchor.body);
   };
@@ -157,9 +158,9 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
         {fmt::format("no edge or round side of {} presses on another body", namesOfBodies(contacts.edgeOwners, scene)),
          contacts.edgeOwners});
   if (!contacts.tippers.empty())
-    conditions.push_back({fmt::format("no cylinder of {} tips over its rim", namesOfBodies(contacts.tippers, scene)),
-                          contacts.tippers});
-  if (mayHaveManyRows(contacts, isTied(scene, island)))
+    conditions.push_back(
+        {fmt::format("no cylinder of {} tips over its rim", namesOfBodies(contacts.tippers, scene)), contacts.tippers});
+  if (mayHaveManyRows(contacts, hasTies(scene, island)))
     conditions.push_back({fmt::format("no more than {} redundant or {} independent forces press {} at once",
                                       kMostRedundant, kMostIndependent, namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
@@ -169,7 +170,7 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
   return conditions;
 }
 
-Promise none(std::string reason) {
+Promise notPromised(std::string reason) {
   return {Promise::Kind::none, {}, std::move(reason)};
 }
 
@@ -178,13 +179,13 @@ Promise none(std::string reason) {
 Promise promiseOf(const Scene& scene, const IslandPlan& island, const Meetings& meetings) {
   const ChosenMethod& method = island.method;
   if (method.kind == MotionKind::pile)
-    return none(fmt::format("many bodies may touch: soft contacts decide, in steps of {:.3g} s at most",
-                            method.timeStep));
+    return notPromised(
+        fmt::format("many bodies may touch: soft contacts decide, in steps of {:.3g} s at most", method.timeStep));
   if (method.kind == MotionKind::fixedSteps && scene.method)
-    return none(fmt::format("the scene names the method: its time step of {:.3g} s decides", method.timeStep));
+    return notPromised(fmt::format("the scene names the method: its time step of {:.3g} s decides", method.timeStep));
   if (method.kind == MotionKind::fixedSteps)
-    return none(fmt::format("models with hollows may touch: their contact is resolved every {:.3g} s",
-                            method.timeStep));
+    return notPromised(
+        fmt::format("models with hollows may touch: their contact is resolved every {:.3g} s", method.timeStep));
   if (method.isClosedForm() || island.touching.empty()) return {};
   const ContactSurvey survey(scene, island, meetings);
   if (areFewBalls(survey.found())) return {};
