@@ -27,7 +27,7 @@ void runInto(const std::string& scenePath, const std::string& methodName, double
   if (const std::string what = method.peer->missingIn(scene, assembly); !what.empty())
     throw Error(ErrorKind::scene, scenePath, method.peer->engine + " does not have " + what);
 
-  TrajectoryHeader header = headerOf(scene);
+  TrajectoryHeader header = headerOf(scene, planOf(scene));
   header.method = header.plan = fmt::format("{} at {}", method.title, setting);
   header.accuracy = "not promised";
   TrajectoryWriter writer(path, header);

@@ -14,6 +14,7 @@
 #include "commands/export_trajectory.h"
 #include "commands/inspect_mesh.h"
 #include "commands/pictures.h"
+#include "commands/plan_scene.h"
 #include "commands/simulate_scene.h"
 #include "commands/study_scenes.h"
 #include "core/error.h"
@@ -68,19 +69,25 @@ void addOverrides(CLI::App* command, CommandLine& line) {
 
 void addSimulate(CLI::App& app, CommandLine& line) {
   auto* simulate = addCommand(app, line, "simulate", "Simulate a scene into a trajectory file",
-                              "cradle simulate scenes/newtons_cradle.json -o cradle.sqlite",
+                              "cradle simulate scenes/newtons_cradle.json -o cradle.sqlite\n"
+                              "  cradle simulate scenes/newtons_cradle.json -o cradle.sqlite --strict",
                               [&] { simulateScene(line.input, line.output, line.simulation, line.quiet); });
   simulate->add_option("scene", line.input, "scene file (JSON)")->required();
   addOutput(simulate, line, "trajectory file to write");
   addOverrides(simulate, line);
+  simulate->add_flag("--strict", line.simulation.isStrict,
+                     "end with exit code 7 at the first thing that is not as the plan says: a promise given up, a "
+                     "correction of the motion, bodies too deep in each other");
   simulate->add_flag("--check-accuracy", line.simulation.checksAccuracy,
                      "run again, finer, and print the error of each body; where the scene is chaotic, say so");
 
   auto* plan =
-      addCommand(app, line, "plan", "Say how a scene would be simulated, why, and what is left out",
-                 "cradle plan scenes/spinning_handle.json", [&] { printPlan(line.input, line.simulation.overrides); });
+      addCommand(app, line, "plan", "Say how a scene would be simulated, why, what is promised, and what is left out",
+                 "cradle plan scenes/spinning_handle.json\n  cradle plan scenes/arch.json --json",
+                 [&] { printPlan(line.input, line.simulation.overrides, line.json); });
   plan->add_option("scene", line.input, "scene file (JSON)")->required();
   addOverrides(plan, line);
+  plan->add_flag("--json", line.json, "print JSON");
 }
 
 /// With commas between them.

@@ -26,7 +26,7 @@ MAY_INCLUDE = {
 LIBRARY_UNITS = {
     "assimp/": ["mesh"],
     "libqhull_r/": ["mesh/convex_hull"],
-    "nlohmann/": ["scene/json_document", "commands/inspect_mesh", "commands/glb_file"],
+    "nlohmann/": ["scene/json_document", "commands/inspect_mesh", "commands/glb_file", "commands/plan_scene"],
     "CLI/": ["main.cpp"],
     "sqlite3.h": ["trajectory/database"],
     "stb/": ["image/png", "image/font"],

@@ -17,9 +17,10 @@
 #include "scene/named_accuracy.h"
 #include "scene/ranges.h"
 #include "simulate/assembly.h"
-#include "simulate/plan/plan_text.h"
+#include "simulate/run.h"
 #include "simulate/simulate.h"
 #include "simulate/start_overlaps.h"
+#include "simulate/strict_watch.h"
 #include "study/achieved_accuracy.h"
 #include "trajectory/trajectory_file.h"
 
@@ -127,18 +128,25 @@ Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides)
   return std::move(loaded.scene);
 }
 
-void simulateInto(TrajectoryWriter& writer, const Scene& scene, bool quiet) {
+void simulateInto(TrajectoryWriter& writer, const Scene& scene, Run& run, StrictWatch* watch, bool quiet) {
   Progress progress("Simulating", "frames", lastFrame(scene) + 1, quiet);
   const SimulationSink sink{[&](const Frame& frame) {
                               writer.append(frame);
                               progress.update(frame.number + 1);
+                              if (watch) watch->check(frame);
                             },
                             [&](const Event& event) { writer.append(event); },
                             [&](const std::string& warning) {
                               progress.endLine();
                               warn(warning);
+                            },
+                            [&](const Correction& correction) {
+                              if (watch) watch->note(correction);
+                            },
+                            [&](const PromiseEnd& end) {
+                              if (watch) watch->note(end);
                             }};
-  const RunCost cost = simulate(scene, sink);
+  const RunCost cost = simulate(scene, run, sink);
   writer.finish(cost);
 }
 
@@ -148,24 +156,18 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
   requireNoOtherFile(output);
   const Scene scene = loadSceneAndWarn(scenePath, options.overrides);
   refuseUnsupported(scene);
-  TrajectoryWriter writer(output, headerOf(scene));
+  Run run(scene);
+  TrajectoryWriter writer(output, headerOf(scene, run.plan()));
+  std::optional<StrictWatch> watch;
+  if (options.isStrict) watch.emplace(scene, run.plan());
   try {
-    simulateInto(writer, scene, quiet);
+    simulateInto(writer, scene, run, watch ? &*watch : nullptr, quiet);
   } catch (const Error& error) {
     const std::string kept = writer.keptPath();
     if (kept.empty()) throw;
     throw Error(error.kind(), "", fmt::format("{}; the frames up to then are in {}", error.what(), kept));
   }
   if (options.checksAccuracy) printAchievedAccuracy(scene, output, quiet);
-}
-
-void printPlan(const std::string& scenePath, const SceneOverrides& overrides) {
-  const Scene scene = loadSceneAndWarn(scenePath, overrides);
-  refuseUnsupported(scene);
-  const Plan plan = planOf(scene);
-  const std::string asked = fmt::format("{:.3g}", plan.accuracy), promised = accuracyPromised(plan);
-  fmt::print("{}: accuracy {} asked, {}\n{}\n", scenePath, asked, promised == asked ? "and promised" : promised,
-             describe(plan, scene));
 }
 
 void checkScene(const std::string& scenePath) {

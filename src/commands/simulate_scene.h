@@ -8,6 +8,9 @@
 
 namespace cradle {
 
+class Run;
+class StrictWatch;
+
 /// What the command line may put in place of what the scene says.
 struct SceneOverrides {
   std::optional<std::string> accuracy;  // a number, or a word of a scene's
@@ -19,6 +22,7 @@ struct SceneOverrides {
 struct SimulateOptions {
   SceneOverrides overrides;
   bool checksAccuracy = false;  // afterwards, by finer runs; printed
+  bool isStrict = false;  // ends at the first broken promise or correction, or where bodies are too deep in others
 };
 
 /// `cradle simulate SCENE -o FILE.sqlite`. Throws as loading, simulating and writing do; an unfinished run says what it
@@ -28,16 +32,14 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
 /// `cradle check SCENE`: loads the scene and its meshes and says what is in it.
 void checkScene(const std::string& scenePath);
 
-/// `cradle plan SCENE`: prints what was chosen to simulate it, why, and what was left out.
-void printPlan(const std::string& scenePath, const SceneOverrides& overrides);
-
 /// A scene file with its warnings printed to stderr, overrides applied.
 Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides);
 
 /// Tells a warning on stderr.
 void warn(const std::string& warning);
 
-/// Simulates a scene into a trajectory file and finishes it, with progress and warnings on stderr.
-void simulateInto(TrajectoryWriter& writer, const Scene& scene, bool quiet);
+/// Simulates a scene into a trajectory file and finishes it, with progress and warnings on stderr. `run` is at its
+/// start; `watch` may be null.
+void simulateInto(TrajectoryWriter& writer, const Scene& scene, Run& run, StrictWatch* watch, bool quiet);
 
 }  // namespace cradle

@@ -11,6 +11,7 @@
 #include "core/output_path.h"
 #include "scene/load_scene.h"
 #include "simulate/assembly.h"
+#include "simulate/run.h"
 #include "simulate/simulate.h"
 
 namespace cradle {
@@ -70,8 +71,9 @@ void TrajectorySource::simulate() {
   if (reader_) return;
   temporary_ = temporaryPath();
   {
-    TrajectoryWriter writer(temporary_, headerOf(scene_));
-    simulateInto(writer, scene_, quiet_);
+    Run run(scene_);
+    TrajectoryWriter writer(temporary_, headerOf(scene_, run.plan()));
+    simulateInto(writer, scene_, run, nullptr, quiet_);
   }
   open(temporary_);
 }

@@ -1,5 +1,7 @@
 #include "simulate/run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -26,20 +28,47 @@ void add(const Invariants& sums, const VectorX& state, EnergyBalance& balance) {
 
 }  // namespace
 
-Run::Run(const Scene& scene) {
+Run::Run(const Scene& scene) : plan_(planOf(scene)) {
   for (const Body& body : scene.bodies)
     stateOfBody_.push_back(body.motion == Motion::dynamic ? static_cast<int>(moving_++) : -1);
-  const Plan plan = planOf(scene);
   std::vector<Assembly> assemblies;
-  for (const IslandPlan& island : plan.islands) assemblies.push_back(assemble(scene, island));
+  for (const IslandPlan& island : plan_.islands) assemblies.push_back(assemble(scene, island));
   settleStartOverlaps(scene, assemblies);
   for (std::size_t i = 0; i < assemblies.size(); ++i) {
     startWarnings_.insert(startWarnings_.end(), assemblies[i].warnings.begin(), assemblies[i].warnings.end());
-    move(scene, plan.islands[i], std::move(assemblies[i]));
+    move(scene, i, std::move(assemblies[i]));
+  }
+  decideStartPromises(scene);
+}
+
+void Run::decideStartPromises(const Scene& scene) {
+  promiseEnds_.resize(plan_.islands.size());
+  notePromiseEnds();
+  for (std::size_t i = 0; i < promiseEnds_.size(); ++i) {
+    if (!promiseEnds_[i]) continue;
+    const std::string names = namesOfBodies(promiseEnds_[i]->bodies, scene);
+    plan_.islands[i].promise = {
+        Promise::Kind::none, {}, fmt::format("{} ({}) at the start", promiseEnds_[i]->reason, names)};
   }
 }
 
-void Run::move(const Scene& scene, const IslandPlan& island, Assembly assembly) {
+void Run::notePromiseEnds() {
+  for (std::size_t i = 0; i < simulations_.size(); ++i) {
+    std::optional<PromiseEnd>& known = promiseEnds_[islandOfSimulation_[i]];
+    if (known || !simulations_[i]->promiseEnd()) continue;
+    known = simulations_[i]->promiseEnd();
+    newEnds_.push_back(*known);
+  }
+}
+
+std::vector<PromiseEnd> Run::takePromiseEnds() {
+  std::vector<PromiseEnd> ends = std::exchange(newEnds_, {});
+  std::stable_sort(ends.begin(), ends.end(), [](const PromiseEnd& a, const PromiseEnd& b) { return a.time < b.time; });
+  return ends;
+}
+
+void Run::move(const Scene& scene, std::size_t index, Assembly assembly) {
+  const IslandPlan& island = plan_.islands[index];
   switch (island.method.kind) {
     case MotionKind::freeFlight:
       return addFlight(std::move(assembly));
@@ -52,6 +81,7 @@ void Run::move(const Scene& scene, const IslandPlan& island, Assembly assembly) 
     case MotionKind::fixedSteps:
     case MotionKind::errorSteps:
       simulations_.push_back(std::make_unique<Simulation>(scene, std::move(assembly), island.method));
+      islandOfSimulation_.push_back(index);
   }
 }
 
@@ -73,6 +103,7 @@ Frame Run::frameAt(long number, double time) {
     events_.insert(events_.end(), events.begin(), events.end());
   };
   for (const auto& simulation : simulations_) add(simulation);
+  notePromiseEnds();
   for (const auto& balls : balls_) add(balls);
   for (const auto& pile : piles_) add(pile);
   for (FlyingIsland& island : flying_) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,15 @@ class Run {
  public:
   /// Keeps a reference to `scene`. Throws Error(scene) for bodies that overlap.
   explicit Run(const Scene& scene);
+
+  /// How the scene is simulated; what the first instant decides of its promises is in it.
+  const Plan& plan() const { return plan_; }
+
+  /// Of each island of the plan, when events gave it up; none while they serve, or if they never were to.
+  const std::vector<std::optional<PromiseEnd>>& promiseEnds() const { return promiseEnds_; }
+
+  /// Those since the last call, in the order of time.
+  std::vector<PromiseEnd> takePromiseEnds();
 
   /// Warnings about the start.
   const std::vector<std::string>& startWarnings() const { return startWarnings_; }
@@ -47,12 +57,18 @@ class Run {
     std::vector<FreeFlight> flights;
     long evaluations = 0;
   };
-  void move(const Scene& scene, const IslandPlan& island, Assembly assembly);
+  void move(const Scene& scene, std::size_t island, Assembly assembly);
+  void decideStartPromises(const Scene& scene);
+  void notePromiseEnds();
   void addFlight(Assembly assembly);
   void addTo(Frame& frame, const Assembly& assembly, const VectorX& state) const;
 
+  Plan plan_;
   std::vector<std::string> startWarnings_;
   std::vector<std::unique_ptr<Simulation>> simulations_;
+  std::vector<std::size_t> islandOfSimulation_;         // of the plan
+  std::vector<std::optional<PromiseEnd>> promiseEnds_;  // by island
+  std::vector<PromiseEnd> newEnds_;                     // not yet taken
   std::vector<FlyingIsland> flying_;
   std::vector<std::unique_ptr<FlyingBalls>> balls_;
   std::vector<std::unique_ptr<Pile>> piles_;

@@ -26,8 +26,7 @@ std::string shapeText(const Shape& shape) {
 
 }  // namespace
 
-TrajectoryHeader headerOf(const Scene& scene) {
-  const Plan plan = planOf(scene);
+TrajectoryHeader headerOf(const Scene& scene, const Plan& plan) {
   TrajectoryHeader header;
   header.version = CRADLE_VERSION;
   header.scene = scene.text;
@@ -47,6 +46,10 @@ TrajectoryHeader headerOf(const Scene& scene) {
 RunCost simulate(const Scene& scene, const SimulationSink& sink) {
   refuseUnsupported(scene);
   Run run(scene);
+  return simulate(scene, run, sink);
+}
+
+RunCost simulate(const Scene& scene, Run& run, const SimulationSink& sink) {
   CpuStopwatch integration;
   for (const std::string& warning : run.startWarnings()) sink.warning(warning);
 
@@ -55,6 +58,8 @@ RunCost simulate(const Scene& scene, const SimulationSink& sink) {
     const Frame frame = run.frameAt(number, frameTime(scene, number));
     integration.stop();
     for (const Event& event : run.takeEvents(frame.time)) sink.event(event);
+    for (const PromiseEnd& end : run.takePromiseEnds())
+      if (sink.promiseEnd) sink.promiseEnd(end);
     for (const std::string& warning : run.takeWarnings()) sink.warning(warning);
     for (const Correction& correction : run.takeCorrections()) {
       if (sink.correction) sink.correction(correction);
@@ -62,15 +67,18 @@ RunCost simulate(const Scene& scene, const SimulationSink& sink) {
     }
     sink.frame(frame);
   }
-  return {integration.seconds(), run.evaluations(), run.correctionCounts()};
+  return {integration.seconds(), run.evaluations(), run.correctionCounts(),
+          describeOutcome(run.plan(), run.promiseEnds(), scene)};
 }
 
 Trajectory simulate(const Scene& scene) {
+  refuseUnsupported(scene);
+  Run run(scene);
   Trajectory trajectory;
-  trajectory.header = headerOf(scene);
+  trajectory.header = headerOf(scene, run.plan());
   const SimulationSink sink{[&](const Frame& frame) { trajectory.frames.push_back(frame); },
                             [&](const Event& event) { trajectory.events.push_back(event); }, [](const std::string&) {}};
-  trajectory.cost = simulate(scene, sink);
+  trajectory.cost = simulate(scene, run, sink);
   return trajectory;
 }
 

@@ -5,9 +5,12 @@
 
 #include "scene/scene.h"
 #include "simulate/corrections.h"
+#include "simulate/plan/plan.h"
 #include "trajectory/trajectory.h"
 
 namespace cradle {
+
+class Run;
 
 /// Where the results of a run go, in the order of time: events of an instant before the frame of that instant.
 struct SimulationSink {
@@ -15,15 +18,19 @@ struct SimulationSink {
   std::function<void(const Event&)> event;
   std::function<void(const std::string&)> warning;         // what the user should know, as soon as it is known
   std::function<void(const Correction&)> correction = {};  // the first of each kind, before its warning; may be none
+  std::function<void(const PromiseEnd&)> promiseEnd = {};  // of each island, before the warning; may be none
 };
 
 /// What a trajectory says before its first frame.
-TrajectoryHeader headerOf(const Scene& scene);
+TrajectoryHeader headerOf(const Scene& scene, const Plan& plan);
 
 /// Runs the scene from frame 0 to lastFrame(scene) and hands on what happens. Throws Error(scene) for what cannot be
 /// simulated yet (before the first frame), Error(unstable), Error(limit), Error(interrupted), and whatever the sink
 /// throws.
 RunCost simulate(const Scene& scene, const SimulationSink& sink);
+
+/// The same for a run that has been begun, and is at its start. `scene` has passed refuseUnsupported.
+RunCost simulate(const Scene& scene, Run& run, const SimulationSink& sink);
 
 /// The whole run in memory.
 Trajectory simulate(const Scene& scene);

@@ -85,17 +85,12 @@ void Simulation::changeMotion() {
   if (const auto* events = std::get_if<EventMotion>(&motion_)) {
     const std::string_view fault = events->fault();
     if (fault.empty()) return;
-    const bool isLook = island_.scene.accuracy > kLookAccuracy;
-    const ChosenMethod steps = contactSteps(isLook ? kContactTimeStep : contactTimeStep(island_.assembly));
-    if (!std::exchange(isWarned_, true))
-      island_.log.warn(fmt::format(
-          "{}: the accuracy asked is not promised from {:.6g} s on: {}; contact is resolved "
-          "every {:.3g} s {}",
-          island_.scene.path, island_.time, fault, steps.timeStep, isLook ? "to the end" : "as long as that lasts"));
+    const ChosenMethod steps = contactSteps(isLook() ? kContactTimeStep : contactTimeStep(island_.assembly));
+    if (!promiseEnd_) endPromise(*events, steps.timeStep);
     island_.assembly.mechanism.contacts.clear();
     nextTrial_ = island_.time + trialTime_;
     trialTime_ *= 2;
-    if (isLook) method_ = steps;
+    if (isLook()) method_ = steps;
     motion_.emplace<SteppedMotion>(island_, ropes_, steps);
     return;
   }
@@ -105,6 +100,14 @@ void Simulation::changeMotion() {
   nextTrial_ = island_.time + trialTime_;
   if (steps.isFree()) trialTime_ = kTrialTime;
   if (steps.isFree() || steps.mayServeEvents()) motion_.emplace<EventMotion>(island_, ropes_, method_);
+}
+
+void Simulation::endPromise(const EventMotion& events, double timeStep) {
+  promiseEnd_ = {island_.time, std::string(events.fault()), events.faultBodies()};
+  island_.log.warn(fmt::format(
+      "{}: the accuracy asked is not promised from {:.6g} s on: {} ({}); contact is resolved every {:.3g} s {}",
+      island_.scene.path, island_.time, promiseEnd_->reason, namesOfBodies(promiseEnd_->bodies, island_.scene),
+      timeStep, isLook() ? "to the end" : "as long as that lasts"));
 }
 
 void Simulation::interpolateAt(double time, bool keepsTies) {

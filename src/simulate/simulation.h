@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -32,12 +33,17 @@ class Simulation {
   std::vector<std::string> takeWarnings() { return island_.log.takeWarnings(); }
   Corrections& corrections() { return island_.log.corrections(); }
 
+  /// Set from when on the accuracy asked is not promised any more.
+  const std::optional<PromiseEnd>& promiseEnd() const { return promiseEnd_; }
+
  private:
   void advance(double time);
   void changeMotion();
+  void endPromise(const EventMotion& events, double timeStep);
   template <class Motion>
   static void advance(double time, Motion& motion);
   bool keepsTies() const;
+  bool isLook() const { return island_.scene.accuracy > kLookAccuracy; }
   /// A frame inside a step: what its state is off the energy of the step's start is an error of that frame alone.
   void interpolateAt(double time, bool keepsTies);
   void keepTogether(const std::vector<ContactConstraint>& contacts);
@@ -49,7 +55,7 @@ class Simulation {
   ConstraintSolver solver_;
   std::variant<std::monostate, EventMotion, SteppedMotion> motion_;
   ChosenMethod method_;
-  bool isWarned_ = false;          // that the accuracy is not kept any more
+  std::optional<PromiseEnd> promiseEnd_;
   double nextTrial_ = 0;           // s: when events may serve again
   double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not
   std::vector<char> still_;        // bodies that the step has not moved

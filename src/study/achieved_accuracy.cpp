@@ -9,6 +9,8 @@
 #include "simulate/run.h"
 #include "simulate/simulate.h"
 #include "study/motion_error.h"
+#include "study/run_evidence.h"
+#include "study/stepped_runs.h"
 #include "trajectory/compare_trajectories.h"
 
 namespace cradle {
@@ -16,9 +18,7 @@ namespace {
 
 constexpr double kFiner = 100;                // times
 constexpr double kLargestDisturbance = 1e-5;  // m/s and rad/s
-constexpr double kSteadyGrowth = 100;         // times 1 + t: phases that drift apart grow like time alone
-constexpr double kFirstGrowth = 10;           // times the disturbance: from there on, growth is measured
-constexpr double kSecondDigit = 1e-2;
+constexpr std::size_t kFramesBefore = 6;      // a fault comes at once: growth is what it was before
 
 /// By how much a fixed time step has to be divided for a hundredth of the error.
 double divisorOf(MethodName method) {
@@ -68,38 +68,117 @@ void compare(const Frame& frame, const Frame& finer, std::vector<BodyError>& bod
   }
 }
 
-/// Follows how a small difference grows.
-class GrowthMeter {
- public:
-  explicit GrowthMeter(double disturbance) : disturbance_(disturbance) {}
+/// Whether contact that may come about is found as events.
+bool hasEvents(const Scene& scene) {
+  const Plan plan = planOf(scene);
+  return !scene.method && std::any_of(plan.islands.begin(), plan.islands.end(), [](const IslandPlan& island) {
+    return island.method.isAdaptive() && !island.touching.empty();
+  });
+}
 
-  void take(double time, double difference) {
-    largest_ = std::max(largest_, difference);
-    isFast_ = isFast_ || difference > kSteadyGrowth * disturbance_ * (1 + time);
-    if (meaninglessFrom_) return;
-    const Point now{time, difference};
-    if (first_.difference == 0 && difference > kFirstGrowth * disturbance_) first_ = last_ = now;
-    if (first_.difference > 0 && difference > last_.difference) last_ = now;
-    if (difference > kSecondDigit) meaninglessFrom_ = time;
+/// The run of a trajectory file, frame by frame with what came before each.
+class ReadRun {
+ public:
+  explicit ReadRun(const TrajectoryReader& run) : run_(run), events_(run.events()) {}
+
+  Frame frameAt(long number, RunEvidence& evidence) {
+    Frame frame = run_.readFrame(number);
+    for (; next_ < events_.size() && events_[next_].time <= frame.time; ++next_) evidence.add(events_[next_]);
+    evidence.add(frame);
+    return frame;
   }
 
-  double largest() const { return largest_; }
-  bool isMeaningless() const { return isFast_ && meaninglessFrom_; }
-  std::optional<Divergence> divergence() const {
-    if (!isFast_) return std::nullopt;
-    const double seconds = last_.time - first_.time;
-    const double rate = seconds > 0 ? std::log(last_.difference / first_.difference) / seconds : HUGE_VAL;
-    return Divergence{rate, meaninglessFrom_};
+  bool keptPromises() const {
+    const auto promise = run_.meta().find("promise");
+    return promise == run_.meta().end() || promise->second.find("given up") == std::string::npos;
   }
 
  private:
-  struct Point {
-    double time = 0, difference = 0;  // s; 0: not yet
+  const TrajectoryReader& run_;
+  std::vector<Event> events_;
+  std::size_t next_ = 0;
+};
+
+std::string textOf(const std::optional<TouchDifference>& difference, const Scene& scene) {
+  if (!difference) return "";
+  const auto nameOf = [&](int body) { return scene.bodies[static_cast<std::size_t>(body)].name; };
+  return fmt::format("\"{}\" and \"{}\" at {:.6g} s, in {}", nameOf(difference->bodyA), nameOf(difference->bodyB),
+                     difference->time, difference->isInFirst ? "the run alone" : "the finer run alone");
+}
+
+std::string faultOf(const AchievedAccuracy& accuracy, const RunEvidence& run, const RunEvidence& finer) {
+  const auto isTooDeep = [](const RunEvidence& evidence) {
+    return evidence.overlap() && evidence.overlap()->depth > evidence.overlap()->allowed;
   };
-  double disturbance_, largest_ = 0;
-  bool isFast_ = false;
-  Point first_, last_;  // between which growth is measured
-  std::optional<double> meaninglessFrom_;
+  if (isTooDeep(run)) return accuracy.overlap;
+  if (isTooDeep(finer)) return "in the finer run, " + accuracy.finerOverlap;
+  if (accuracy.other && accuracy.other->disagrees)
+    return fmt::format("the two methods disagree by {:.1e} at {:.6g} s, more than steps and accuracy explain",
+                       accuracy.other->difference, accuracy.other->time);
+  return "";
+}
+
+/// All that is compared, frame by frame.
+class Comparison {
+ public:
+  Comparison(const Scene& scene, const TrajectoryReader& run, AchievedAccuracy& result)
+      : result_(result),
+        run_(run),
+        finerScene_(scene),
+        runEvidence_(scene, planOf(scene)),
+        finerEvidence_(scene, planOf(scene)),
+        growth_(result.disturbance) {
+    result.isHeap = isHeap(scene);
+    result.finerRun = result.isHeap ? "" : refine(finerScene_);
+    disturbedScene_ = finerScene_;
+    disturb(disturbedScene_, result.disturbance);
+    finer_.emplace(finerScene_), disturbed_.emplace(disturbedScene_);
+    if (hasEvents(scene)) stepped_.emplace(scene);
+    if (!run_.keptPromises()) runEvidence_.endPromises();
+  }
+
+  void take(long number, double time) {
+    const Frame frame = run_.frameAt(number, runEvidence_);
+    const Frame finer = finer_->frameAt(number, time), disturbed = disturbed_->frameAt(number, time);
+    for (const Event& event : finer_->takeEvents(time)) finerEvidence_.add(event);
+    disturbed_->takeEvents(time);
+    if (!finer_->takePromiseEnds().empty()) finerEvidence_.endPromises();
+    finerEvidence_.add(finer);
+    const std::size_t before = largest_.size() < kFramesBefore ? 0 : largest_.size() - kFramesBefore;
+    if (stepped_) stepped_->take(finer, largest_.empty() ? 0 : largest_[before] / result_.disturbance);
+    growth_.take(time, motionError(disturbed.states, finer.states));
+    largest_.push_back(growth_.largest());
+    const Frame& reference = result_.isHeap ? disturbed : finer;
+    compare(frame, reference, whole_);
+    if (!growth_.isMeaningless()) compare(frame, reference, result_.bodies);
+  }
+
+  void finish(const Scene& scene, double end) {
+    result_.largestDifference = growth_.largest();
+    result_.divergence = growth_.divergence();
+    if (runEvidence_.overlap()) result_.overlap = cradle::describe(*runEvidence_.overlap(), scene);
+    if (finerEvidence_.overlap()) result_.finerOverlap = cradle::describe(*finerEvidence_.overlap(), scene);
+    result_.numericalEnergy = runEvidence_.numericalEnergy();
+    result_.finerEnergy = finerEvidence_.numericalEnergy();
+    if (stepped_) result_.other = stepped_->result();
+    result_.fault = faultOf(result_, runEvidence_, finerEvidence_);
+    const bool isChaos = result_.fault.empty() && growth_.isMeaningless();
+    const double until = isChaos ? *result_.divergence->meaninglessFrom : end;
+    if (!result_.isHeap)
+      result_.touchDifference = textOf(RunEvidence::difference(runEvidence_, finerEvidence_, until), scene);
+    if (!result_.fault.empty()) result_.bodies = whole_;
+  }
+
+ private:
+  AchievedAccuracy& result_;
+  ReadRun run_;
+  Scene finerScene_, disturbedScene_;
+  std::optional<Run> finer_, disturbed_;
+  std::optional<SteppedRuns> stepped_;
+  RunEvidence runEvidence_, finerEvidence_;
+  GrowthMeter growth_;
+  std::vector<double> largest_;                    // differences that the disturbance made until each frame
+  std::vector<BodyError> whole_ = result_.bodies;  // errors over the whole run
 };
 
 }  // namespace
@@ -109,47 +188,13 @@ AchievedAccuracy achievedAccuracy(const Scene& scene, const TrajectoryReader& ru
   AchievedAccuracy result;
   result.bodies = bodiesOf(scene);
   result.disturbance = std::min(scene.accuracy, kLargestDisturbance);
-  Scene finerScene = scene;
-  result.isHeap = isHeap(scene);
-  result.finerRun = result.isHeap ? "" : refine(finerScene);
-  Scene disturbedScene = finerScene;
-  disturb(disturbedScene, result.disturbance);
-  Run finerRun(finerScene), disturbedRun(disturbedScene);
-  GrowthMeter growth(result.disturbance);
+  Comparison comparison(scene, run, result);
   for (long number = 0; number < run.frameCount(); ++number) {
-    const double time = frameTime(scene, number);
-    const Frame finer = finerRun.frameAt(number, time), disturbed = disturbedRun.frameAt(number, time);
-    finerRun.takeEvents(time);
-    disturbedRun.takeEvents(time);
-    growth.take(time, motionError(disturbed.states, finer.states));
-    if (!growth.isMeaningless()) compare(run.readFrame(number), result.isHeap ? disturbed : finer, result.bodies);
+    comparison.take(number, frameTime(scene, number));
     tick(number + 1);
   }
-  result.largestDifference = growth.largest();
-  result.divergence = growth.divergence();
+  comparison.finish(scene, frameTime(scene, std::max(0L, run.frameCount() - 2)));
   return result;
-}
-
-std::string describe(const AchievedAccuracy& accuracy) {
-  std::size_t width = 4;
-  for (const BodyError& body : accuracy.bodies) width = std::max(width, body.body.size());
-  const std::string by = accuracy.isHeap ? "one that starts a little faster, for a heap has no finer run"
-                                         : "a run at " + accuracy.finerRun;
-  std::string text =
-      fmt::format("Checked by {}: largest |x - x_ref| / (1 + |x_ref|) of positions (m) and orientations\n", by);
-  for (const BodyError& body : accuracy.bodies)
-    text += fmt::format("  {:<{}}  {:8.1e}  at {:.6g} s\n", body.body, width, body.error, body.time);
-  if (!accuracy.divergence)
-    return text + fmt::format("{:.0e} m/s and rad/s more at the start make a difference of {:.1e}: not chaotic.",
-                              accuracy.disturbance, accuracy.largestDifference);
-  const Divergence& divergence = *accuracy.divergence;
-  text += fmt::format("Chaotic: {:.0e} m/s and rad/s more at the start grow by e in {:.3g} s (rate {:.3g} 1/s)",
-                      accuracy.disturbance, 1 / divergence.rate, divergence.rate);
-  if (!divergence.meaninglessFrom) return text + fmt::format(", to {:.1e} by the end.", accuracy.largestDifference);
-  return text + fmt::format(
-                    ",\nto more than {} at {:.6g} s: from there on, states are one possible motion of many, and "
-                    "no error is given.",
-                    kSecondDigit, *divergence.meaninglessFrom);
 }
 
 }  // namespace cradle

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "study/growth_meter.h"
+#include "study/stepped_runs.h"
 #include "trajectory/trajectory_file.h"
 
 namespace cradle {
@@ -17,12 +19,6 @@ struct BodyError {
   double time = 0;   // s, of that error
 };
 
-/// A scene that makes small differences large.
-struct Divergence {
-  double rate = 0;                        // 1/s: a small difference grows by e in 1 / rate
-  std::optional<double> meaninglessFrom;  // s: by then the small difference is seen in the second digit
-};
-
 /// What the states of a run are worth.
 struct AchievedAccuracy {
   bool isHeap = false;                   // it has no finer run at its speed: errors are what the disturbance changes
@@ -31,13 +27,19 @@ struct AchievedAccuracy {
   double disturbance = 0;                // m/s and rad/s that a third run starts with, above the scene's velocities
   double largestDifference = 0;          // that it makes, in the measure of errors
   std::optional<Divergence> divergence;  // set if it grows more than a hundred times faster than time
+
+  std::string overlap, finerOverlap;            // deepest, in words; empty if nothing overlaps
+  double numericalEnergy = 0, finerEnergy = 0;  // changes of the energies' sum, parts of the largest kinetic one
+  std::string touchDifference;                  // what touched in one of the two runs alone, in words; or empty
+  std::optional<OtherMethod> other;             // if contact that may come about is found as events
+  std::string fault;                            // what no sensitivity explains, in words; or empty
 };
 
 /// Compares a finished run of `scene` with one at a hundredth of the accuracy (1e-12 at the least), or of the error
 /// that the named method's time step has by its order; and that one with a third, whose velocities differ a little at
-/// the start: the rate at which neighbouring motions part is the largest Lyapunov exponent, as far as one run shows it
-/// (Benettin et al., Meccanica 15, 1980). The two go side by side: memory O(bodies). `tick` is told the frames done,
-/// and may throw. Throws what simulating throws.
+/// the start. Where contact is found as events, two more runs take steps of one length: a fault of events, which two
+/// accuracies may share, differs from these, and so it is told from chaos. All go side by side: memory O(bodies).
+/// `tick` is told the frames done, and may throw. Throws what simulating throws.
 AchievedAccuracy achievedAccuracy(const Scene& scene, const TrajectoryReader& run,
                                   const std::function<void(long)>& tick);
 

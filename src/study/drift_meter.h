@@ -1,8 +1,6 @@
 #pragma once
 
-#include "collision/broad_phase.h"
-#include "simulate/assembly.h"
-#include "trajectory/trajectory.h"
+#include "simulate/overlap_meter.h"
 
 namespace cradle {
 
@@ -10,7 +8,7 @@ namespace cradle {
 class DriftMeter {
  public:
   /// Keeps a reference.
-  explicit DriftMeter(const Assembly& assembly) : assembly_(assembly), geometry_(assembly.geometry) {}
+  explicit DriftMeter(const Assembly& assembly) : assembly_(assembly), overlaps_(assembly) {}
 
   void add(const Frame& frame);
 
@@ -22,11 +20,8 @@ class DriftMeter {
   double penetration() const { return penetration_; }
 
  private:
-  VectorX stateOf(const Frame& frame) const;
-
   const Assembly& assembly_;
-  ContactGeometry geometry_;
-  BroadPhase broadPhase_;
+  OverlapMeter overlaps_;
   bool isFirst_ = true;
   double startConstant_ = 0, energyChange_ = 0, largestKinetic_ = 0;  // J
   double constraintDrift_ = 0, penetration_ = 0;

@@ -76,6 +76,7 @@ struct RunCost {
   double cpuSeconds = 0;                         // integration alone
   long evaluations = 0;                          // of the right-hand side
   std::map<std::string, long> corrections = {};  // how often each kind was needed: what the motion owes to no law
+  std::string promise = {};                      // what came of the promise of each group of bodies, one a line
 };
 
 struct Trajectory {

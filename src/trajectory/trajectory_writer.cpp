@@ -251,6 +251,7 @@ void TrajectoryWriter::finish(const RunCost& cost) {
   insertMeta(session_->database, "cpuSeconds", cost.cpuSeconds);
   insertMeta(session_->database, "evaluations", cost.evaluations);
   insertMeta(session_->database, "corrections", countsAsJson(cost.corrections));
+  insertMeta(session_->database, "promise", cost.promise);
   insertMeta(session_->database, "stateHash", stateHash_.hex());
   session_->database.commit();
   framesCommitted_ = framesAppended_;

@@ -192,6 +192,19 @@ TEST(StartOverlaps, OfBodiesOnRodsAndJointsKeepTheirTies) {
   }
 }
 
+// Elastic balls of 1 and 3 kg that overlap by 40 mm, without gravity: whatever method moves them, they part by 30
+// and 10.
+TEST(StartOverlaps, OfBallsThatLoseNothingAreMovedApart) {
+  const std::string hard = R"(, "material": "hard", "mass": )";
+  const Scene scene = sceneOf(R"({"schema": "cradle-scene/1", "name": "t", "duration": 0.01, "gravity": [0, 0, 0],
+    "materials": {"hard": {"restitution": 1, "staticFriction": 0, "dynamicFriction": 0}}, "bodies": [)" +
+                              all({ball("a", 0, hard + "1"), ball("b", 0.16, hard + "3")}) + "]}");
+  ASSERT_EQ(planOf(scene).islands.at(0).method.kind, MotionKind::elasticFlight);
+  const Frame start = simulate(scene).frames.at(0);
+  EXPECT_NEAR(start.states[0].position.x(), -0.03, 1e-9);
+  EXPECT_NEAR(start.states[1].position.x(), 0.17, 1e-9);
+}
+
 // What overlapped lies still afterwards: nothing was thrown out of anything. The crate lost no height to the count.
 TEST(StartOverlaps, AreMendedWithoutAJumpInEnergy) {
   for (const char* accuracy : {"1e-3", "1e-6"}) {

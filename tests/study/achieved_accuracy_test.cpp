@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -11,21 +12,35 @@
 namespace cradle {
 namespace {
 
-/// Runs a scene into a file, and checks it.
-AchievedAccuracy check(const Scene& scene, std::vector<Frame>* frames = nullptr) {
+/// Writes a run into a file, and checks it.
+AchievedAccuracy checkRun(const Scene& scene, const Trajectory& run) {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   const std::string path = std::filesystem::path(testing::TempDir()) / (std::string(test->name()) + ".sqlite");
   {
-    TrajectoryWriter writer(path, headerOf(scene));
-    const Trajectory run = simulate(scene);
+    TrajectoryWriter writer(path, headerOf(scene, planOf(scene)));
+    for (const Event& event : run.events) writer.append(event);
     for (const Frame& frame : run.frames) writer.append(frame);
     writer.finish(run.cost);
-    if (frames != nullptr) *frames = run.frames;
   }
   const TrajectoryReader reader(path);
   const AchievedAccuracy accuracy = achievedAccuracy(scene, reader, [](long) {});
   std::filesystem::remove(path);
   return accuracy;
+}
+
+AchievedAccuracy check(const Scene& scene, std::vector<Frame>* frames = nullptr) {
+  const Trajectory run = simulate(scene);
+  if (frames != nullptr) *frames = run.frames;
+  return checkRun(scene, run);
+}
+
+/// Two spheres of 0.1 m fall side by side onto the ground, and bounce.
+Scene fallingSpheres() {
+  return sceneOf(R"({"schema": "cradle-scene/1", "name": "spheres", "duration": 1,
+    "materials": {"rubber": {"restitution": 0.5}}, "bodies": [
+    {"name": "ground", "shape": {"plane": {}}, "motion": "static", "material": "rubber"},
+    {"name": "a", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0.6, 0], "material": "rubber"},
+    {"name": "b", "shape": {"sphere": {"radius": 0.1}}, "position": [1, 0.6, 0], "material": "rubber"}]})");
 }
 
 /// A rod pendulum of 1 m, upside down but for a small angle.
@@ -86,6 +101,67 @@ TEST(AchievedAccuracy, ErrorsAreGivenUpToWhereTheyMeanSomething) {
   EXPECT_LT(accuracy.bodies[0].time, *accuracy.divergence->meaninglessFrom);
   EXPECT_LT(accuracy.bodies[0].error, 1e-2);
   EXPECT_NE(describe(accuracy).find("Chaotic"), std::string::npos);
+}
+
+TEST(AchievedAccuracy, OfBouncingSpheresIsConfirmedByAnotherMethod) {
+  const AchievedAccuracy accuracy = check(fallingSpheres());
+  EXPECT_EQ(accuracy.fault, "");
+  EXPECT_EQ(accuracy.touchDifference, "");
+  ASSERT_TRUE(accuracy.other);
+  EXPECT_EQ(accuracy.other->failure, "");
+  EXPECT_LT(accuracy.other->difference, 1e-9);  // parabolas are exact, and impacts are located
+  EXPECT_LT(accuracy.numericalEnergy, 1e-9);
+  EXPECT_FALSE(check(oscillator(10, 3)).other);
+}
+
+// Towards the end one sphere is put 5 mm into the ground.
+TEST(AchievedAccuracy, ThatAFaultSpoilsIsNotCalledChaos) {
+  const Scene scene = fallingSpheres();
+  Trajectory run = simulate(scene);
+  for (Frame& frame : run.frames)
+    if (frame.time > 0.9) frame.states[1].position.y() = 0.095;
+  const AchievedAccuracy accuracy = checkRun(scene, run);
+  EXPECT_NE(accuracy.fault.find("\"b\" is 0.005 m deep in \"ground\""), std::string::npos) << accuracy.fault;
+  EXPECT_NE(describe(accuracy).find("A fault, not chaos: at "), std::string::npos);
+  EXPECT_EQ(describe(accuracy).find("Chaotic"), std::string::npos);
+}
+
+TEST(AchievedAccuracy, NamesEnergyThatNothingExplains) {
+  const Scene scene = fallingSpheres();
+  Trajectory run = simulate(scene);
+  double largest = 0;
+  for (const Frame& frame : run.frames) largest = std::max(largest, frame.energy.kinetic);
+  run.frames.back().energy.dissipated += 0.01 * largest;
+  EXPECT_NEAR(checkRun(scene, run).numericalEnergy, 0.01, 1e-8);
+}
+
+TEST(AchievedAccuracy, SaysWhatTouchedInOneRunAlone) {
+  const Scene scene = fallingSpheres();
+  Trajectory run = simulate(scene);
+  ASSERT_FALSE(run.events.empty());
+  Event touch = run.events.front();
+  touch.bodyA = 2, touch.bodyB = 1;
+  run.events.insert(run.events.begin() + 1, touch);
+  const AchievedAccuracy accuracy = checkRun(scene, run);
+  EXPECT_EQ(accuracy.touchDifference, fmt::format("\"a\" and \"b\" at {:.6g} s, in the run alone", touch.time));
+  EXPECT_NE(describe(accuracy).find("The two runs differ in what touched"), std::string::npos);
+}
+
+// Of frames that are what the steps make of the scene, and of such in which a sphere lies elsewhere.
+TEST(SteppedRuns, DisagreeWithAFaultOfEventsAndWithNothingElse) {
+  const Scene scene = fallingSpheres();
+  const Trajectory run = simulate(scene);
+  SteppedRuns right(scene), wrong(scene);
+  for (const Frame& frame : run.frames) {
+    right.take(frame, 1);
+    Frame other = frame;
+    if (frame.time > 0.5) other.states[0].position.x() += 0.05;
+    wrong.take(other, 1);
+  }
+  EXPECT_FALSE(right.result().disagrees);
+  EXPECT_TRUE(wrong.result().disagrees);
+  EXPECT_NEAR(wrong.result().time, 31.0 / 60, 1e-9);
+  EXPECT_NEAR(wrong.result().difference, 0.05 / 1.05, 0.003);  // relative to 1 + |x_ref|, x about 0 or 0.05
 }
 
 }  // namespace

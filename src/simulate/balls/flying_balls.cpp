@@ -24,12 +24,19 @@ constexpr long kMostHits = 1000000;           // of a ball in a window: a second
 constexpr long kEventsBetweenChecks = 10000;  // for a signal: some ms
 constexpr long kEventsAnOrigin = 8;           // a ball: moving the origin costs about one for each
 
+/// The world with its balls where the run begins: what the scene lets overlap has been moved apart.
+BallWorld placed(BallWorld world, const VectorX& state) {
+  for (int ball = 0; ball < world.ballCount(); ++ball)
+    world.starts[static_cast<std::size_t>(ball)].position = centerOfMass(state, ball);
+  return world;
+}
+
 }  // namespace
 
 FlyingBalls::FlyingBalls(const Scene& scene, Assembly assembly, BallWorld world)
     : scene_(scene),
       assembly_(std::move(assembly)),
-      world_(std::move(world)),
+      world_(placed(std::move(world), assembly_.state)),
       flights_(world_, scene.duration),
       impact_(world_, flights_),
       queue_(world_.ballCount()),

@@ -5,14 +5,25 @@
 
 namespace cradle {
 
+void EventLog::record(const Event& event) {
+  events_.push_back(event);
+  if (event.bodyB != kWorld) latestBodies_ = {event.bodyA, event.bodyB};
+}
+
 void EventLog::recordContact(double time, EventKind kind, const Contact& contact, double impulse) {
   const auto [a, b] = bodiesOf(assembly_, assembly_.geometry.pairs[contact.pair]);
-  events_.push_back({time, kind, a, b, contact.point, contact.normal, impulse});
+  record({time, kind, a, b, contact.point, contact.normal, impulse});
 }
 
 void EventLog::recordBody(double time, EventKind kind, int movingBody, const Vec3& point) {
-  events_.push_back(
-      {time, kind, assembly_.sceneBodies[static_cast<std::size_t>(movingBody)], kWorld, point, Vec3::Zero(), 0});
+  record({time, kind, assembly_.sceneBodies[static_cast<std::size_t>(movingBody)], kWorld, point, Vec3::Zero(), 0});
+}
+
+void EventLog::recordCorrection(double time, CorrectionKind kind, const std::vector<int>& movingBodies, double amount) {
+  Correction correction{kind, time, {}, amount};
+  for (const int body : movingBodies)
+    correction.bodies.push_back(assembly_.sceneBodies[static_cast<std::size_t>(body)]);
+  corrections_.record(std::move(correction));
 }
 
 void EventLog::recordCorrection(double time, CorrectionKind kind, const std::vector<int>& movingBodies, double amount) {

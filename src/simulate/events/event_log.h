@@ -21,7 +21,7 @@ class EventLog {
   /// Something that happens to one moving body, at `point` (m, world).
   void recordBody(double time, EventKind kind, int movingBody, const Vec3& point);
 
-  void record(const Event& event) { events_.push_back(event); }
+  void record(const Event& event);
   void warn(const std::string& warning) { warnings_.push_back(warning); }
 
   /// What was done to moving bodies of the island beside the laws of mechanics.
@@ -29,6 +29,9 @@ class EventLog {
   /// The same for a simultaneous impact.
   void recordFaults(double time, const std::vector<ImpactContact>& impacts, const ImpactFaults& faults);
   Corrections& corrections() { return corrections_; }
+
+  /// The scene's bodies of the last event that was between two; none before the first.
+  const std::vector<int>& latestBodies() const { return latestBodies_; }
 
   /// Events since the last call, in the order in which they were recorded.
   std::vector<Event> take();
@@ -38,6 +41,7 @@ class EventLog {
  private:
   const Assembly& assembly_;
   std::vector<Event> events_;
+  std::vector<int> latestBodies_;
   std::vector<std::string> warnings_;
   Corrections corrections_;
 };

@@ -1,9 +1,12 @@
 #include "simulate/events/event_motion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/error.h"
 #include "dynamics/invariants.h"
 #include "simulate/events/event_location.h"
 #include "simulate/thresholds.h"
@@ -30,11 +33,10 @@ constexpr double kUnitLength = 1e-9;      // how far |q|^2 may be from 1 before 
 
 constexpr int kMostRounds = 100;  // of ropes and contacts at one instant; what is left comes after the next step
 
-// A failure of redundant contacts takes as long to find as 50 events. Where a look is enough, what chatters costs less
-// in steps; a burst, as at the end of bounces, does not.
-constexpr EventPatience kPatience{500, 50, 1.0 / 60,
-                                  "contacts change more than 500 times in 1/60 s, or redundant ones 10 times"};
-constexpr EventPatience kLookPatience{60, 50, 0.25, "contacts change more than 60 times in 1/4 s"};
+const EventPatience& patienceOf(const ChosenMethod& method, double accuracy) {
+  if (method.keepsPromise) return kLongPatience;
+  return accuracy > kLookAccuracy ? kLookPatience : kPatience;
+}
 
 /// Whether two states differ by rounding alone.
 bool isSame(const VectorX& a, const VectorX& b) {
@@ -58,7 +60,7 @@ EventMotion::EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMet
       method_(method),
       contacts_(island, ropes, island.scene.accuracy),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
-      patience_(island.scene.accuracy > kLookAccuracy ? kLookPatience : kPatience),
+      patience_(patienceOf(method, island.scene.accuracy)),
       tolerance_(toleranceOf(method, island.state, island.scene.duration)),
       windowStart_(island.time) {
   lengths_.fill(island_.scene.duration);
@@ -287,11 +289,25 @@ void EventMotion::countEvent(const Event& event) {
   if (island_.time > windowStart_ + patience_.window) windowStart_ = island_.time, eventsInWindow_ = 0;
   const bool isFailure = event.contact && event.contact->kind == ContactChange::Kind::redundant;
   eventsInWindow_ += isFailure ? patience_.ofAFailure : 1;
+  if (method_.keepsPromise && eventsInWindow_ > patience_.most) failAtManyEvents();
+}
+
+/// What is promised whatever comes is not given up: the run ends instead.
+void EventMotion::failAtManyEvents() const {
+  throw Error(ErrorKind::limit, "",
+              fmt::format("more than {} impacts, pulls of ropes and changes of contacts in {:.3g} s at {:.6g} s, at "
+                          "last of {}; lower a restitution near 1, or damp what jerks at ropes",
+                          patience_.most, patience_.window, island_.time, namesOfBodies(faultBodies(), island_.scene)));
 }
 
 std::string_view EventMotion::fault() const {
+  if (method_.keepsPromise) return {};
   if (eventsInWindow_ > patience_.most) return patience_.fault;
   return contacts_.fault();
+}
+
+std::vector<int> EventMotion::faultBodies() const {
+  return contacts_.fault().empty() ? island_.log.latestBodies() : contacts_.faultBodies();
 }
 
 }  // namespace cradle

@@ -8,16 +8,10 @@
 #include "simulate/energy_guard.h"
 #include "simulate/events/event_contacts.h"
 #include "simulate/moving_island.h"
+#include "simulate/plan/event_limits.h"
 #include "simulate/rope_stage.h"
 
 namespace cradle {
-
-/// How many events are too many.
-struct EventPatience {
-  int most = 0, ofAFailure = 0;  // in a window; events that a failure of redundant contacts counts for
-  double window = 0;             // s
-  std::string_view fault;
-};
 
 /// Moves an island in steps as long as the accuracy allows. Each step ends at the first event in it: bodies meet, ropes
 /// go taut or slack, pushes begin or end. Between events the motion is of order 8, or 5 where the plan says so.
@@ -32,6 +26,9 @@ class EventMotion {
   /// Why events serve the island no more, if they don't: what lasts are not contacts of balls, corners and faces, they
   /// are too many, or events follow each other too fast. Empty if they do.
   std::string_view fault() const;
+
+  /// The bodies of the scene that this is about.
+  std::vector<int> faultBodies() const;
 
   /// Whether the last step kept what ties the bodies: its interpolant may be projected.
   bool keepsTies() const { return keepsTies_; }
@@ -66,6 +63,7 @@ class EventMotion {
   bool isStillAccurate();
   double longestStep() const;
   void countEvent(const Event& event);
+  [[noreturn]] void failAtManyEvents() const;
 
   MovingIsland& island_;
   RopeStage& ropes_;

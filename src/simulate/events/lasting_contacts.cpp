@@ -9,6 +9,7 @@
 
 #include "collision/core.h"
 #include "impact/contact_impulse.h"
+#include "simulate/plan/event_limits.h"
 #include "simulate/plan/islands.h"
 #include "simulate/thresholds.h"
 
@@ -23,10 +24,9 @@ constexpr double kAccelerationRounding = 1e-14;  // of gravity
 constexpr double kStillPart = 1e-7;              // of the accelerations: less is held
 constexpr int kMostFrictionRounds = 200;         // of normal forces from friction, and friction from these
 constexpr double kFrictionConverged = 1e-10;     // of the largest normal force
-constexpr int kMostRedundant = 12;               // rows: with more, contact steps cost less
-constexpr int kMostIndependent = 40;             // the same
 constexpr double kSameSide = 0.99;               // cosine between normals: a mesh may be touched on several
 constexpr double kRankPart = 1e-9;               // of the largest pivot: less is none
+constexpr const char* kTips = "a cylinder tips over its rim";
 
 }  // namespace
 
@@ -113,7 +113,8 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
     entry.isLoaded = solution.impulses[at + 2] > unloaded / inverseMass(at + 2, at + 2);
     entry.opens = !entry.isLoaded && motion.z() > kStillPart * most;
     if (!entry.isLoaded) continue;
-    if (!canLast(entry.contact)) fault_ = "edges touch and press";
+    if (!canLast(entry.contact))  // on planes only rims are neither corners nor round
+      noteFault(entry.pair.againstPlane ? kTips : "edges touch and press", {&entry.contact});
     const bool hasFriction = entry.pair.law.staticFriction > 0;
     entry.sticks = hasFriction && !entry.slides && motion.head<2>().norm() <= kStillPart * most;
     if (hasFriction && !entry.slides && !entry.sticks) {
@@ -178,7 +179,7 @@ void LastingContacts::noteTipping(const std::vector<Entry>& entries) {
     const auto opens = [&](const Entry& other) { return isBeside(other) && other.opens; };
     if (std::count_if(entries.begin(), entries.end(), isHeld) < 2 ||
         std::any_of(entries.begin(), entries.end(), opens) || tippingSpeed(entry.contact) > stillSpeed(entry.contact))
-      fault_ = "a cylinder tips over its rim";
+      noteFault(kTips, {&entry.contact});
   }
 }
 
@@ -188,7 +189,22 @@ void LastingContacts::countRows(const Together& group, const MatrixX& held, std:
   factor.setThreshold(kRankPart);
   const Index rank = factor.rank();
   for (const std::size_t i : group) entries[i].isRedundant = rank < held.rows();
-  if (held.rows() - rank > kMostRedundant || rank > kMostIndependent) fault_ = "too many contacts press at once";
+  if (held.rows() - rank <= kMostRedundant && rank <= kMostIndependent) return;
+  std::vector<const Contact*> contacts;
+  for (const std::size_t i : group) contacts.push_back(&entries[i].contact);
+  noteFault("too many contacts press at once", contacts);
+}
+
+/// Bodies of the scene are named: those of pairs that have gone may be told later.
+void LastingContacts::noteFault(std::string_view fault, const std::vector<const Contact*>& contacts) {
+  fault_ = fault;
+  faultBodies_.clear();
+  for (const Contact* contact : contacts) {
+    const auto [a, b] = bodiesOf(island_.assembly, island_.assembly.geometry.pairs[contact->pair]);
+    faultBodies_.push_back(a), faultBodies_.push_back(b);
+  }
+  std::sort(faultBodies_.begin(), faultBodies_.end());
+  faultBodies_.erase(std::unique(faultBodies_.begin(), faultBodies_.end()), faultBodies_.end());
 }
 
 /// Whether the accelerations in rate_ press no contact together by more than rounding.

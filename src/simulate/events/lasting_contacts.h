@@ -64,6 +64,9 @@ class LastingContacts {
   /// Why rows do not serve, if they don't: they are for few contacts, and only those between balls, corners and faces.
   std::string_view fault() const { return fault_; }
 
+  /// The bodies of the scene whose contacts these are.
+  const std::vector<int>& faultBodies() const { return faultBodies_; }
+
  private:
   /// A contact that touches, on its way to a decision; and what is known of one that lasts, beside its constraint.
   struct Entry {
@@ -95,6 +98,7 @@ class LastingContacts {
   double tippingSpeed(const Contact& contact) const;
   double stillSpeed(const Contact& contact) const;
   void countRows(const Together& group, const MatrixX& held, std::vector<Entry>& entries);
+  void noteFault(std::string_view fault, const std::vector<const Contact*>& contacts);
   bool nothingCloses(const std::vector<ContactRows>& rows) const;
   ConeSolution solve(const std::vector<const Entry*>& entries, const std::vector<ContactRows>& rows,
                      const ContactResponse& response) const;
@@ -122,6 +126,7 @@ class LastingContacts {
   std::vector<HeldFeature> held_;
   std::vector<BodyFrame> frames_;
   std::string_view fault_;
+  std::vector<int> faultBodies_;
   bool isReleasing_ = false;
   VectorX rate_, sample_;
   std::vector<Margins> before_, ahead_, after_, atEnd_;

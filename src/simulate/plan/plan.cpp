@@ -142,12 +142,11 @@ void choose(const Scene& scene, IslandPlan& island) {
   } else if (mayTouchSomething && scene.accuracy > kLookAccuracy && island.bodies.size() >= kPileBodies &&
              !isActedUpon(scene, island) && !hasDenseOnes(scene, island)) {
     island.method = {MotionKind::pile, "fast contact step", kPileTimeStep};
-    island.reason = "many bodies may touch: soft contacts, sub-stepped; the accuracy asked is not promised";
+    island.reason = "many bodies may touch: soft contacts, sub-stepped";
     island.leftOut.push_back("no motion of bodies that lie still");
   } else if (mayTouchSomething && scene.accuracy > kLookAccuracy && hasMesh(scene, island)) {
     island.method = contactSteps();
-    island.reason =
-        "models with hollows may touch: contact is resolved once a step, the accuracy asked is not promised";
+    island.reason = "models with hollows may touch: contact is resolved once a step";
   } else if (mayTouchSomething) {
     island.method = stepsToEvents(scene);
     island.reason = "something may touch: contact changes at events, with steps as long as the accuracy allows between";
@@ -168,8 +167,13 @@ ChosenMethod contactSteps(double timeStep) {
 }
 
 Plan planOf(const Scene& scene) {
-  Plan plan{findIslands(scene), scene.accuracy};
-  for (IslandPlan& island : plan.islands) choose(scene, island);
+  const Meetings meetings(scene);
+  Plan plan{findIslands(scene, meetings), scene.accuracy};
+  for (IslandPlan& island : plan.islands) {
+    choose(scene, island);
+    island.promise = promiseOf(scene, island, meetings);
+    island.method.keepsPromise = island.promise.kind == Promise::Kind::kept;
+  }
   return plan;
 }
 

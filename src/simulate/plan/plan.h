@@ -6,6 +6,7 @@
 
 #include "dynamics/integrators/step.h"
 #include "scene/scene.h"
+#include "simulate/plan/promise.h"
 
 namespace cradle {
 
@@ -32,6 +33,7 @@ struct ChosenMethod {
   double tolerance = 0;            // of the local error, scaled 1 + |x|; 0: fixed steps are never cut for it
   ErrorNorm errorNorm = nullptr;   // of error steps
   int order = 0;                   // of that
+  bool keepsPromise = false;       // events serve all that may come: they are never given up
 
   bool isClosedForm() const { return kind == MotionKind::freeFlight || kind == MotionKind::elasticFlight; }
   bool isAdaptive() const { return kind == MotionKind::errorSteps; }
@@ -48,6 +50,7 @@ struct IslandPlan {
   ChosenMethod method;
   std::string_view reason;
   std::vector<std::string_view> leftOut;  // what these bodies do not need
+  Promise promise;                        // of the accuracy
 };
 
 /// What a scene needs, and no more.

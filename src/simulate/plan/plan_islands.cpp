@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 #include "simulate/colliders.h"
 #include "simulate/plan/islands.h"
-#include "simulate/plan/reach.h"
 
 namespace cradle {
 namespace {
@@ -43,31 +41,6 @@ bool canMeetPlane(const Reach& reach, double size, const Body& plane) {
   return normal.dot(reach.center - plane.worldFromBody.translation) <= reach.radius + size;
 }
 
-/// Which bodies may touch each other, as far as their reaches tell.
-class Meetings {
- public:
-  Meetings(const Scene& scene, const std::vector<Reach>& reaches)
-      : scene_(scene), reaches_(reaches), sizes_(sizesOf(scene)), joined_(pairsKeptFromTouching(scene)) {}
-
-  void setReaches(const std::vector<Reach>& reaches) { reaches_ = reaches; }
-
-  bool mayMeet(int first, int second) const {
-    const auto i = static_cast<std::size_t>(first), j = static_cast<std::size_t>(second);
-    const Body &a = scene_.bodies[i], &b = scene_.bodies[j];
-    if (!mayTouch(a, b)) return false;
-    const bool meet = std::holds_alternative<Plane>(a.shape) ? canMeetPlane(reaches_[j], sizes_[j], a)
-                      : std::holds_alternative<Plane>(b.shape)
-                          ? canMeetPlane(reaches_[i], sizes_[i], b)
-                          : canMeet(reaches_[i], sizes_[i], reaches_[j], sizes_[j]);
-    return meet && (joined_.empty() || !joined_.contains(std::minmax(first, second)));
-  }
-
- private:
-  const Scene& scene_;
-  std::vector<Reach> reaches_;
-  std::vector<double> sizes_;
-  std::set<std::pair<int, int>> joined_;
-};
 
 /// Bodies that touch something, by body.
 std::vector<char> findTouching(const Scene& scene, const Meetings& meetings) {
@@ -78,18 +51,6 @@ std::vector<char> findTouching(const Scene& scene, const Meetings& meetings) {
       if (!(first && second) && meetings.mayMeet(i, j)) first = second = 1;
     }
   return touches;
-}
-
-/// Bodies that touch something may be thrown anywhere that their ties allow: the search goes on until it finds no more.
-Meetings findMeetings(const Scene& scene) {
-  std::vector<char> touches(scene.bodies.size(), 0);
-  Meetings meetings(scene, reachOf(scene, touches));
-  while (true) {
-    const std::vector<char> found = findTouching(scene, meetings);
-    if (found == touches) return meetings;
-    touches = found;
-    meetings.setReaches(reachOf(scene, touches));
-  }
 }
 
 int movingOr(const Scene& scene, int body) {
@@ -125,8 +86,28 @@ std::vector<int> touchingOf(const Scene& scene, const IslandPlan& island, const 
 
 }  // namespace
 
-std::vector<IslandPlan> findIslands(const Scene& scene) {
-  const Meetings meetings = findMeetings(scene);
+Meetings::Meetings(const Scene& scene) : scene_(scene), sizes_(sizesOf(scene)), joined_(pairsKeptFromTouching(scene)) {
+  std::vector<char> touches(scene.bodies.size(), 0);
+  reaches_ = reachOf(scene, touches);
+  while (true) {
+    const std::vector<char> found = findTouching(scene, *this);
+    if (found == touches) return;
+    touches = found;
+    reaches_ = reachOf(scene, touches);
+  }
+}
+
+bool Meetings::mayMeet(int first, int second) const {
+  const auto i = static_cast<std::size_t>(first), j = static_cast<std::size_t>(second);
+  const Body &a = scene_.bodies[i], &b = scene_.bodies[j];
+  if (!mayTouch(a, b)) return false;
+  const bool meet = std::holds_alternative<Plane>(a.shape)   ? canMeetPlane(reaches_[j], sizes_[j], a)
+                    : std::holds_alternative<Plane>(b.shape) ? canMeetPlane(reaches_[i], sizes_[i], b)
+                                                             : canMeet(reaches_[i], sizes_[i], reaches_[j], sizes_[j]);
+  return meet && (joined_.empty() || !joined_.contains(std::minmax(first, second)));
+}
+
+std::vector<IslandPlan> findIslands(const Scene& scene, const Meetings& meetings) {
   const Islands joined = joinIslands(scene, meetings);
   std::map<int, IslandPlan> islands;
   for (int body = 0; body < std::ssize(scene.bodies); ++body)

@@ -8,21 +8,6 @@
 namespace cradle {
 namespace {
 
-std::string bodyNames(const IslandPlan& island, const Scene& scene) {
-  constexpr std::size_t kMostNames = 4;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(kMostNames, island.bodies.size()); ++i)
-    names += fmt::format("{}{}", i ? ", " : "", scene.bodies[static_cast<std::size_t>(island.bodies[i])].name);
-  if (island.bodies.size() > kMostNames) names += fmt::format(" and {} more", island.bodies.size() - kMostNames);
-  return names;
-}
-
-std::string methodText(const ChosenMethod& method) {
-  if (method.isClosedForm()) return std::string(method.name);
-  if (method.isAdaptive()) return fmt::format("{}, local error below {:.3g} (1 + |x|)", method.name, method.tolerance);
-  return fmt::format("{}, step {} s", method.name, method.timeStep);
-}
-
 /// What a model's body is for contact.
 std::string collisionName(const Body& body, const ModelCollision& model) {
   if (body.collision == CollisionChoice::hull) return "its hull";
@@ -30,8 +15,38 @@ std::string collisionName(const Body& body, const ModelCollision& model) {
   return asPrimitive ? shapeName(model.recognised) : "convex";
 }
 
-/// "gear.3ds as mesh": the models that may touch something, each way once.
-std::string collisionText(const Scene& scene) {
+/// Islands of which the same is said are told together, in the order of the first of each.
+class AlikeIslands {
+ public:
+  void add(const IslandPlan& island, const std::string& said) {
+    if (!islands_.contains(said)) order_.push_back(said);
+    islands_[said].push_back(&island);
+  }
+
+  /// Calls tell(names, said) for each kind.
+  template <class Tell>
+  void forEach(const Scene& scene, const Tell& tell) const {
+    for (const std::string& said : order_) {
+      const auto& islands = islands_.at(said);
+      const std::string more = islands.size() > 1 ? fmt::format("; {} more islands alike", islands.size() - 1) : "";
+      tell(namesOfBodies(islands[0]->bodies, scene) + more, said);
+    }
+  }
+
+ private:
+  std::map<std::string, std::vector<const IslandPlan*>> islands_;
+  std::vector<std::string> order_;
+};
+
+}  // namespace
+
+std::string describe(const ChosenMethod& method) {
+  if (method.isClosedForm()) return std::string(method.name);
+  if (method.isAdaptive()) return fmt::format("{}, local error below {:.3g} (1 + |x|)", method.name, method.tolerance);
+  return fmt::format("{}, step {} s", method.name, method.timeStep);
+}
+
+std::vector<std::string> collisionOfModels(const Scene& scene) {
   std::vector<std::string> found;
   for (const Body& body : scene.bodies) {
     const auto* shape = std::get_if<ModelShape>(&body.shape);
@@ -41,15 +56,13 @@ std::string collisionText(const Scene& scene) {
         fmt::format("{} as {}", scene.models[model].name, collisionName(body, scene.modelCollisions[model]));
     if (std::find(found.begin(), found.end(), text) == found.end()) found.push_back(text);
   }
-  return found.empty() ? "" : fmt::format("\ncollision of models: {}", fmt::join(found, ", "));
+  return found;
 }
-
-}  // namespace
 
 std::string methodNames(const Plan& plan) {
   std::vector<std::string> names;
   for (const IslandPlan& island : plan.islands) {
-    const std::string name = methodText(island.method);
+    const std::string name = describe(island.method);
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   return fmt::format("{}", fmt::join(names, "; "));
@@ -57,8 +70,19 @@ std::string methodNames(const Plan& plan) {
 
 std::string accuracyPromised(const Plan& plan) {
   for (const IslandPlan& island : plan.islands)
-    if (!island.method.isClosedForm() && !island.method.isAdaptive()) return "not promised: decided by the time step";
+    if (island.promise.kind == Promise::Kind::none) return describe(island.promise);
   return fmt::format("{:.3g}", plan.accuracy);
+}
+
+std::string promiseOfAll(const Plan& plan) {
+  const auto isAny = [&](Promise::Kind kind) {
+    return std::any_of(plan.islands.begin(), plan.islands.end(),
+                       [kind](const IslandPlan& island) { return island.promise.kind == kind; });
+  };
+  if (isAny(Promise::Kind::none))
+    return isAny(Promise::Kind::kept) || isAny(Promise::Kind::conditional) ? "promised of some bodies only"
+                                                                           : "not promised";
+  return isAny(Promise::Kind::conditional) ? "promised while conditions hold" : "promised";
 }
 
 std::string describe(const Plan& plan, const Scene& scene) {
@@ -67,21 +91,30 @@ std::string describe(const Plan& plan, const Scene& scene) {
   std::size_t fixed = 0;
   for (const Body& body : scene.bodies) fixed += body.motion == Motion::fixed;
   if (fixed > 0) text += fmt::format(", {} fixed", fixed);
-  text += collisionText(scene);
-  // Islands that are moved alike are told together.
-  std::map<std::string, std::vector<const IslandPlan*>> alike;
-  std::vector<std::string> order;
+  const std::vector<std::string> collisions = collisionOfModels(scene);
+  if (!collisions.empty()) text += fmt::format("\ncollision of models: {}", fmt::join(collisions, ", "));
+  AlikeIslands alike;
   for (const IslandPlan& island : plan.islands) {
-    std::string how = fmt::format("\n  method    {}\n  why       {}", methodText(island.method), island.reason);
+    std::string how = fmt::format("\n  method    {}\n  why       {}\n  accuracy  {}", describe(island.method),
+                                  island.reason, describe(island.promise));
     for (const std::string_view leftOut : island.leftOut) how += fmt::format("\n  left out  {}", leftOut);
-    if (!alike.contains(how)) order.push_back(how);
-    alike[how].push_back(&island);
+    alike.add(island, how);
   }
-  for (const std::string& how : order) {
-    const auto& islands = alike[how];
-    const std::string more = islands.size() > 1 ? fmt::format("; {} more islands alike", islands.size() - 1) : "";
-    text += fmt::format("\n{}{}{}", bodyNames(*islands[0], scene), more, how);
+  alike.forEach(scene, [&](const std::string& names, const std::string& how) { text += "\n" + names + how; });
+  return text;
+}
+
+std::string describeOutcome(const Plan& plan, const std::vector<std::optional<PromiseEnd>>& ends, const Scene& scene) {
+  AlikeIslands alike;
+  for (std::size_t i = 0; i < plan.islands.size(); ++i) {
+    const Promise& promise = plan.islands[i].promise;
+    const std::string outcome = outcomeOf(promise, ends[i], scene);
+    alike.add(plan.islands[i], describe(promise) + (outcome.empty() ? "" : "; " + outcome));
   }
+  std::string text;
+  alike.forEach(scene, [&](const std::string& names, const std::string& said) {
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "\n", names, said);
+  });
   return text;
 }
 

@@ -1,0 +1,65 @@
+#include "commands/plan_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "simulate/assembly.h"
+#include "simulate/plan/plan_text.h"
+#include "simulate/run.h"
+
+namespace cradle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json namesIn(const std::vector<int>& bodies, const Scene& scene) {
+  Json names = Json::array();
+  for (const int body : bodies) names.push_back(scene.bodies[static_cast<std::size_t>(body)].name);
+  return names;
+}
+
+Json jsonOf(const IslandPlan& island, const Scene& scene) {
+  Json conditions = Json::array();
+  for (const PromiseCondition& condition : island.promise.conditions)
+    conditions.push_back({{"while", condition.what}, {"bodies", namesIn(condition.bodies, scene)}});
+  return {{"bodies", namesIn(island.bodies, scene)},
+          {"mayTouch", namesIn(island.touching, scene)},
+          {"method", describe(island.method)},
+          {"reason", island.reason},
+          {"promise", describe(island.promise)},
+          {"conditions", conditions},
+          {"leftOut", island.leftOut}};
+}
+
+Json jsonOf(const Plan& plan, const Scene& scene, const std::string& scenePath) {
+  Json groups = Json::array();
+  for (const IslandPlan& island : plan.islands) groups.push_back(jsonOf(island, scene));
+  const auto fixed = std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                                   [](const Body& body) { return body.motion == Motion::fixed; });
+  return {{"scene", scenePath},
+          {"accuracy", plan.accuracy},
+          {"promise", promiseOfAll(plan)},
+          {"bodies", scene.bodies.size()},
+          {"fixed", fixed},
+          {"collisionOfModels", collisionOfModels(scene)},
+          {"groups", groups}};
+}
+
+}  // namespace
+
+void printPlan(const std::string& scenePath, const SceneOverrides& overrides, bool asJson) {
+  const Scene scene = loadSceneAndWarn(scenePath, overrides);
+  refuseUnsupported(scene);
+  const Run run(scene);
+  for (const std::string& warning : run.startWarnings()) warn(warning);
+  const Plan& plan = run.plan();
+  if (asJson)
+    fmt::print("{}\n", jsonOf(plan, scene, scenePath).dump(2));
+  else
+    fmt::print("{}: accuracy {:.3g} asked, {}\n{}\n", scenePath, plan.accuracy, promiseOfAll(plan),
+               describe(plan, scene));
+}
+
+}  // namespace cradle

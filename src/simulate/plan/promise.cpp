@@ -1,0 +1,220 @@
+// Events serve contacts of balls, corners and faces (simulate/contact_response.h, canLast) while their rows are few and
+// do not change too fast (simulate/plan/event_limits.h). Bounds here are on the safe side: a promise without conditions
+// is one that the run never gives up.
+
+#include "simulate/plan/promise.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulate/colliders.h"
+#include "simulate/plan/event_limits.h"
+#include "simulate/plan/islands.h"
+#include "simulate/plan/plan.h"
+#include "simulate/plan/plan_islands.h"
+
+namespace cradle {
+namespace {
+
+constexpr int kFewRows = 60;         // of balls that touch: the most that can be independent, solved in 1 ms
+constexpr double kBounces = 16;      // times 1 / (1 - e): bounces of a ball from 1/60 s before its rest, e near 1
+constexpr double kFewBounces = 5e3;  // a quarter of those that kLongPatience has
+constexpr int kFaceContacts = 8;     // of two faces, or of a face and a plane: patches have no more points
+constexpr int kManyContacts = 64;    // of a mesh
+
+/// What may touch, and how: bounds over all that may come about.
+struct PossibleContacts {
+  std::vector<int> edgeOwners, tippers, movers;  // scene bodies; cylinders that may tip; what moves and may touch
+  bool hasFriction = false, areRound = true;     // round: of balls with each other and with planes alone
+  double restitution = 0;                        // largest below 1
+  int rows = 0, treeRows = 0;  // of all contacts; of one contact of each pair, as long as pairs close no loop
+};
+
+/// What counts of a body's shape.
+struct Surface {
+  std::optional<ColliderKind> kind;  // none: a plane
+  int faceCorners = kFaceContacts;   // of the largest face
+
+  bool isPlane() const { return !kind; }
+  bool isRound() const { return !kind || kind == ColliderKind::ball; }
+};
+
+Surface surfaceOf(const Body& body, const Scene& scene) {
+  const auto collider = colliderOf(body, scene, kFixed);
+  if (!collider) return {};
+  Surface surface{collider->kind()};
+  if (surface.kind != ColliderKind::polytope) return surface;
+  std::size_t corners = 0;
+  for (const Polytope::Face& face : collider->polytope->faces) corners = std::max(corners, face.loop.size());
+  surface.faceCorners = std::min(kFaceContacts, static_cast<int>(corners));
+  return surface;
+}
+
+/// Contacts that two surfaces can have at once.
+int contactsOf(const Surface& a, const Surface& b) {
+  const auto is = [&](ColliderKind kind) { return a.kind == kind || b.kind == kind; };
+  const bool isOnPlane = a.isPlane() || b.isPlane();
+  if (is(ColliderKind::mesh) && !isOnPlane) return kManyContacts;
+  if (is(ColliderKind::ball)) return 1;
+  if (is(ColliderKind::capsule)) return 2;
+  return isOnPlane ? std::min(a.faceCorners, b.faceCorners) : kFaceContacts;
+}
+
+/// Looks at all pairs of an island that may meet.
+class ContactSurvey {
+ public:
+  ContactSurvey(const Scene& scene, const IslandPlan& island, const Meetings& meetings)
+      : scene_(scene), loops_(scene.bodies.size() + 1), surfaces_(scene.bodies.size()) {
+    for (const int body : island.touching) surfaces_[static_cast<std::size_t>(body)] = surfaceOf(bodyOf(body), scene);
+    for (std::size_t i = 0; i < island.touching.size(); ++i)
+      for (std::size_t j = i + 1; j < island.touching.size(); ++j)
+        if (meetings.mayMeet(island.touching[i], island.touching[j])) add(island.touching[i], island.touching[j]);
+    for (std::vector<int>* bodies : {&found_.edgeOwners, &found_.tippers, &found_.movers}) {
+      std::sort(bodies->begin(), bodies->end());
+      bodies->erase(std::unique(bodies->begin(), bodies->end()), bodies->end());
+    }
+  }
+
+  const PossibleContacts& found() const { return found_; }
+
+ private:
+  const Body& bodyOf(int body) const { return scene_.bodies[static_cast<std::size_t>(body)]; }
+
+  void add(int a, int b) {
+    const Surface &surfaceA = surfaces_[static_cast<std::size_t>(a)],
+                  &surfaceB = surfaces_[static_cast<std::size_t>(b)];
+    for (const int body : {a, b})
+      if (bodyOf(body).motion == Motion::dynamic) found_.movers.push_back(body);
+    addEdges(a, surfaceA, surfaceB);
+    addEdges(b, surfaceB, surfaceA);
+    const SurfacePair& law =
+        scene_.surfacePairs[static_cast<std::size_t>(bodyOf(a).material)][static_cast<std::size_t>(bodyOf(b).material)];
+    found_.hasFriction = found_.hasFriction || law.staticFriction > 0;
+    if (law.restitution < 1) found_.restitution = std::max(found_.restitution, law.restitution);
+    const int rowsOfOne = law.staticFriction > 0 ? 3 : 1;
+    found_.rows = std::min(found_.rows + rowsOfOne * contactsOf(surfaceA, surfaceB), kManyRows);
+    const int placeA = placeOf(a), placeB = placeOf(b);
+    if (loops_.islandOf(placeA) == loops_.islandOf(placeB)) return;
+    loops_.join(placeA, placeB);
+    found_.treeRows += rowsOfOne;
+  }
+
+  /// What of a body's surface rows cannot hold against the other.
+  void addEdges(int body, const Surface& own, const Surface& other) {
+    if (own.isRound()) return;
+    found_.areRound = false;
+    if (!other.isPlane()) found_.edgeOwners.push_back(body);
+    if (own.kind == ColliderKind::cylinder) found_.tippers.push_back(body);
+  }
+
+  /// All that is fixed is one.
+  int placeOf(int body) const {
+    return bodyOf(body).motion == Motion::dynamic ? body : static_cast<int>(scene_.bodies.size());
+  }
+
+  static constexpr int kManyRows = 1000000;  // far beyond what is few
+  const Scene& scene_;
+  Islands loops_;
+  std::vector<Surface> surfaces_;  // by scene body
+  PossibleContacts found_;
+};
+
+/// Whether ties hold a body of the island: rows of contacts may depend on each other through them.
+bool hasTies(const Scene& scene, const IslandPlan& island) {
+  const auto isIn = [&](const Anchor& anchor) {
+    return std::binary_search(island.bodies.begin(), island.bodies.end(), anchor.body);
+  };
+  const auto holds = [&](const auto& ties) {
+    return std::any_of(ties.begin(), ties.end(),
+                       [&](const auto& tie) { return isIn(tie.anchorA) || isIn(tie.anchorB); });
+  };
+  return holds(scene.rods) || holds(scene.ropes) || holds(scene.ballJoints) || holds(scene.hinges);
+}
+
+int independentRows(const PossibleContacts& contacts) {
+  const int ofABody = contacts.areRound && !contacts.hasFriction ? 3 : 6;  // balls without friction do not turn
+  return std::min(contacts.rows, ofABody * static_cast<int>(contacts.movers.size()));
+}
+
+/// Few balls, whose contacts are served whatever comes, at a cost that is worth it.
+bool areFewBalls(const PossibleContacts& contacts) {
+  const double bounces = kBounces * static_cast<double>(contacts.movers.size()) / (1 - contacts.restitution);
+  return contacts.areRound && independentRows(contacts) <= kFewRows && bounces <= kFewBounces;
+}
+
+/// Leaf by leaf, the contacts of a tree of bodies are independent of each other, unless ties hold these.
+bool mayHaveManyRows(const PossibleContacts& contacts, bool isTied) {
+  const int redundant = contacts.rows - (isTied ? 0 : contacts.treeRows);
+  return redundant > kMostRedundant || independentRows(contacts) > kMostIndependent;
+}
+
+std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan& island,
+                                           const PossibleContacts& contacts) {
+  std::vector<PromiseCondition> conditions;
+  if (!contacts.edgeOwners.empty())
+    conditions.push_back(
+        {fmt::format("no edge or round side of {} presses on another body", namesOfBodies(contacts.edgeOwners, scene)),
+         contacts.edgeOwners});
+  if (!contacts.tippers.empty())
+    conditions.push_back(
+        {fmt::format("no cylinder of {} tips over its rim", namesOfBodies(contacts.tippers, scene)), contacts.tippers});
+  if (mayHaveManyRows(contacts, hasTies(scene, island)))
+    conditions.push_back({fmt::format("no more than {} redundant or {} independent forces press {} at once",
+                                      kMostRedundant, kMostIndependent, namesOfBodies(contacts.movers, scene)),
+                          contacts.movers});
+  const EventPatience& patience = scene.accuracy > kLookAccuracy ? kLookPatience : kPatience;
+  conditions.push_back(
+      {fmt::format("{} among {}", patience.limit, namesOfBodies(contacts.movers, scene)), contacts.movers});
+  return conditions;
+}
+
+Promise notPromised(std::string reason) {
+  return {Promise::Kind::none, {}, std::move(reason)};
+}
+
+}  // namespace
+
+Promise promiseOf(const Scene& scene, const IslandPlan& island, const Meetings& meetings) {
+  const ChosenMethod& method = island.method;
+  if (method.kind == MotionKind::pile)
+    return notPromised(
+        fmt::format("many bodies may touch: soft contacts decide, in steps of {:.3g} s at most", method.timeStep));
+  if (method.kind == MotionKind::fixedSteps && scene.method)
+    return notPromised(fmt::format("the scene names the method: its time step of {:.3g} s decides", method.timeStep));
+  if (method.kind == MotionKind::fixedSteps)
+    return notPromised(
+        fmt::format("models with hollows may touch: their contact is resolved every {:.3g} s", method.timeStep));
+  if (method.isClosedForm() || island.touching.empty()) return {};
+  const ContactSurvey survey(scene, island, meetings);
+  if (areFewBalls(survey.found())) return {};
+  return {Promise::Kind::conditional, conditionsOf(scene, island, survey.found()), {}};
+}
+
+std::string namesOfBodies(const std::vector<int>& bodies, const Scene& scene) {
+  constexpr std::size_t kMostNames = 4;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(kMostNames, bodies.size()); ++i)
+    names += fmt::format("{}{}", i ? ", " : "", scene.bodies[static_cast<std::size_t>(bodies[i])].name);
+  if (bodies.size() > kMostNames) names += fmt::format(" and {} more", bodies.size() - kMostNames);
+  return names;
+}
+
+std::string describe(const Promise& promise) {
+  if (promise.kind == Promise::Kind::kept) return "promised";
+  if (promise.kind == Promise::Kind::none) return "not promised, because " + promise.reason;
+  std::string text = "promised while ";
+  for (std::size_t i = 0; i < promise.conditions.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < promise.conditions.size() ? ", " : ", and ") + promise.conditions[i].what;
+  return text;
+}
+
+std::string outcomeOf(const Promise& promise, const std::optional<PromiseEnd>& end, const Scene& scene) {
+  if (promise.kind == Promise::Kind::none) return "";
+  if (!end) return "kept";
+  const std::string names = end->bodies.empty() ? "" : fmt::format(" ({})", namesOfBodies(end->bodies, scene));
+  return fmt::format("given up at {:.6g} s, because {}{}", end->time, end->reason, names);
+}
+
+}  // namespace cradle

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace cradle {
+
+struct IslandPlan;
+class Meetings;
+
+/// A condition of a promise, and the bodies that it is about.
+struct PromiseCondition {
+  std::string what;         // behind "while", with names of at most a few bodies
+  std::vector<int> bodies;  // of the scene, ascending
+};
+
+/// Whether a group of bodies keeps the accuracy asked: always, as long as conditions hold, or from the start not.
+struct Promise {
+  enum class Kind { kept, conditional, none };
+  Kind kind = Kind::kept;
+  std::vector<PromiseCondition> conditions;  // of a conditional one
+  std::string reason;                        // why there is none
+};
+
+/// When and why a run gave up the accuracy asked, and what bodies were in the way.
+struct PromiseEnd {
+  double time = 0;  // s
+  std::string reason;
+  std::vector<int> bodies;  // of the scene
+};
+
+/// What can be promised of an island whose method is chosen, as far as its bodies' shapes and reaches tell: events have
+/// an answer to balls, corners and faces, as long as there are few of them.
+Promise promiseOf(const Scene& scene, const IslandPlan& island, const Meetings& meetings);
+
+/// "promised", "promised while ...", "not promised, because ...".
+std::string describe(const Promise& promise);
+
+/// What a promise came to: "kept", "given up at 0.2 s, because ..."; empty if there was none.
+std::string outcomeOf(const Promise& promise, const std::optional<PromiseEnd>& end, const Scene& scene);
+
+/// `a, b, c, d and 3 more`.
+std::string namesOfBodies(const std::vector<int>& bodies, const Scene& scene);
+
+}  // namespace cradle

@@ -1,0 +1,181 @@
+// What a plan promises of its groups of bodies, and what the run makes of it.
+
+#include "simulate/plan/promise.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "experiments/experiment.h"
+#include "simulate/run.h"
+
+namespace cradle {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+const std::string kLevelGround = R"({"name": "ground", "shape": {"plane": {}}, "motion": "static"})";
+
+std::string bodyOf(const std::string& name, const std::string& shape, const Vec3& position,
+                   const std::string& more = "") {
+  return fmt::format(R"(, {{"name": "{}", "shape": {{{}}}, "position": {}{}}})", name, shape, vectorText(position),
+                     more.empty() ? "" : ", " + more);
+}
+const std::string kSphere = R"("sphere": {"radius": 0.1})", kCube = R"("box": {"size": [0.2, 0.2, 0.2]})",
+                  kStatic = R"("motion": "static")";
+
+std::string spheres(int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += bodyOf(fmt::format("s{}", i), kSphere, Vec3(0.3 * i, 1, 0));
+  return text;
+}
+
+Scene sceneOfBodies(const std::string& bodies, const std::string& more = "") {
+  return sceneWith(R"("duration": 1, "bodies": [)" + kLevelGround + bodies + "]" + more);
+}
+
+/// Of the only group.
+Promise promiseOfOnly(const std::string& bodies, const std::string& more = "") {
+  const Scene scene = sceneOfBodies(bodies, more);
+  const cradle::Run run(scene);
+  EXPECT_EQ(run.plan().islands.size(), 1u);
+  return run.plan().islands.at(0).promise;
+}
+
+std::vector<std::string> conditionsOf(const std::string& bodies, const std::string& more = "") {
+  const Promise promise = promiseOfOnly(bodies, more);
+  EXPECT_EQ(promise.kind, Promise::Kind::conditional);
+  std::vector<std::string> conditions;
+  for (const PromiseCondition& condition : promise.conditions) conditions.push_back(condition.what);
+  return conditions;
+}
+
+const auto kRate = StartsWith("contacts change at most 500 times in 1/60 s");
+
+TEST(Promise, OfBodiesThatNothingCanTouchHasNoConditions) {
+  const std::string free = R"("collision": "none")";
+  EXPECT_EQ(describe(promiseOfOnly(bodyOf("a", kCube, Vec3(0, 1, 0), free))), "promised");
+  EXPECT_EQ(describe(promiseOfOnly(bodyOf("a", kCube, Vec3(0, 1, 0), free),
+                                   R"(, "springs": [{"bodyA": "a", "anchorA": [0, 0.1, 0], "anchorB": [0, 2, 0],
+                                    "stiffness": 50}])")),
+            "promised");
+  EXPECT_EQ(describe(promiseOfOnly(bodyOf("a", kCube, Vec3(0, 1, 0), free),
+                                   R"(, "ropes": [{"bodyA": "a", "anchorA": [0, 0.1, 0], "anchorB": [0, 2, 0]}])")),
+            "promised");
+}
+
+TEST(Promise, OfFewSpheresOnPlanesHasNoConditions) {
+  EXPECT_EQ(describe(promiseOfOnly(spheres(1))), "promised");
+  EXPECT_EQ(describe(promiseOfOnly(spheres(6))), "promised");
+  EXPECT_THAT(conditionsOf(spheres(12)), ElementsAre(HasSubstr("redundant"), kRate));
+}
+
+/// A sphere on the ground that leaves it with `speed` (m/s).
+Scene bouncingSphere(double restitution, double speed) {
+  return sceneWith(fmt::format(R"("duration": 1, "materials": {{"hard": {{"restitution": {}}}}}, "bodies": [
+    {{"name": "ground", "shape": {{"plane": {{}}}}, "motion": "static", "material": "hard"}},
+    {{"name": "s", "shape": {{"sphere": {{"radius": 0.1}}}}, "material": "hard", "position": [0, 0.1, 0],
+      "linearVelocity": [0, {}, 0]}}])",
+                               restitution, speed));
+}
+
+// A sphere of restitution e bounces about 16 / (1 - e) times before it rests.
+TEST(Promise, OfASphereThatBouncesTooOftenIsForAtMostFiveHundredChanges) {
+  const auto promise = [](double restitution) {
+    return describe(planOf(bouncingSphere(restitution, 1)).islands.at(0).promise);
+  };
+  EXPECT_EQ(promise(0.99), "promised");
+  EXPECT_THAT(promise(0.9999), StartsWith("promised while contacts change at most 500 times"));
+}
+
+TEST(Promise, OfASphereOnABoxIsWhileItsEdgesDoNotPress) {
+  const std::string table = bodyOf("table", R"("box": {"size": [1, 0.1, 1]})", Vec3(0, 0.5, 0), kStatic);
+  EXPECT_THAT(conditionsOf(table + spheres(1)),
+              ElementsAre(StartsWith("no edge or round side of table presses"), kRate));
+}
+
+// A cube has four corners on a plane: twelve rows, of which any three are independent.
+TEST(Promise, OfACubeOnAPlaneIsOfTheRateOfChangesAlone) {
+  EXPECT_THAT(conditionsOf(bodyOf("a", kCube, Vec3(0, 1, 0))), ElementsAre(kRate));
+}
+
+TEST(Promise, OfCubesNamesThoseWhoseEdgesMayPress) {
+  const Promise promise = promiseOfOnly(bodyOf("a", kCube, Vec3(0, 1, 0)) + bodyOf("b", kCube, Vec3(0, 2, 0)) +
+                                        bodyOf("s", kSphere, Vec3(0, 3, 0)));
+  ASSERT_EQ(promise.conditions.size(), 3u);
+  EXPECT_THAT(promise.conditions[0].what, StartsWith("no edge or round side of a, b presses"));
+  EXPECT_THAT(promise.conditions[0].bodies, ElementsAre(1, 2));
+  EXPECT_THAT(promise.conditions[1].what, HasSubstr("redundant"));
+  EXPECT_THAT(promise.conditions[1].bodies, ElementsAre(1, 2, 3));
+}
+
+TEST(Promise, OfACylinderIsWhileItDoesNotTip) {
+  EXPECT_THAT(conditionsOf(bodyOf("can", R"("cylinder": {"radius": 0.1, "length": 0.3})", Vec3(0, 1, 0))),
+              testing::Contains("no cylinder of can tips over its rim"));
+}
+
+TEST(Promise, IsNotMadeWhereTimeStepsDecide) {
+  EXPECT_THAT(describe(promiseOfOnly(spheres(1), R"(, "method": {"name": "rk4", "timeStep": 0.001})")),
+              "not promised, because the scene names the method: its time step of 0.001 s decides");
+  EXPECT_THAT(describe(promiseOfOnly(spheres(60), R"(, "accuracy": "visual")")),
+              StartsWith("not promised, because many bodies may touch"));
+}
+
+/// Cubes on each other, sliding on the ground together: four corners slide, four of each other cube stick.
+std::string slidingStack(int count, double height = 0.1) {
+  std::string text;
+  for (int i = 0; i < count; ++i)
+    text += bodyOf(fmt::format("cube{}", i), kCube, Vec3(0, height + 0.2 * i, 0), R"("linearVelocity": [1, 0, 0])");
+  return text;
+}
+
+// Four cubes: 4 + 36 rows, of which at most 24 are independent. Two: 4 + 12 rows and 12.
+TEST(Promise, IsDecidedAtTheFirstInstantWhereMoreTouchThanEventsServe) {
+  EXPECT_THAT(describe(promiseOfOnly(slidingStack(4))),
+              "not promised, because too many contacts press at once (ground, cube0, cube1, cube2 and 1 more) at the "
+              "start");
+  EXPECT_EQ(promiseOfOnly(slidingStack(2)).kind, Promise::Kind::conditional);
+}
+
+// The stack falls by 5 mm before it slides; only the run can tell.
+TEST(Promise, IsGivenUpInTheRunWithTimeReasonAndBodies) {
+  const Scene scene = sceneOfBodies(slidingStack(4, 0.105));
+  cradle::Run run(scene);
+  ASSERT_EQ(run.plan().islands.at(0).promise.kind, Promise::Kind::conditional);
+  run.frameAt(0, 0);
+  EXPECT_THAT(run.takePromiseEnds(), IsEmpty());
+  run.frameAt(1, 0.1);
+  const std::vector<PromiseEnd> ends = run.takePromiseEnds();
+  ASSERT_EQ(ends.size(), 1u);
+  EXPECT_NEAR(ends[0].time, std::sqrt(2 * 0.005 / kGravity), 1e-6);
+  EXPECT_EQ(ends[0].reason, "too many contacts press at once");
+  EXPECT_THAT(ends[0].bodies, ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(run.takeWarnings(), ElementsAre(HasSubstr("not promised from 0.0319275 s on: too many contacts press")));
+  EXPECT_THAT(outcomeOf(run.plan().islands[0].promise, run.promiseEnds()[0], scene),
+              "given up at 0.0319275 s, because too many contacts press at once (ground, cube0, cube1, cube2 and 1 "
+              "more)");
+  EXPECT_THAT(run.takePromiseEnds(), IsEmpty());
+}
+
+TEST(Promise, ThatIsKeptSaysSoInTheTrajectory) {
+  EXPECT_EQ(simulate(sceneOfBodies(spheres(2))).cost.promise, "s0, s1: promised; kept");
+}
+
+// A sphere of restitution 1 that leaves the ground with v = 3e-6 m/s hops g / 2v = 1.6e6 times in a second: its promise
+// cannot be given up.
+TEST(Promise, WithoutConditionsIsKeptOrTheRunEnds) {
+  const Scene scene = bouncingSphere(1, 3e-6);
+  ASSERT_EQ(describe(planOf(scene).islands.at(0).promise), "promised");
+  try {
+    simulate(scene);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::limit);
+    EXPECT_THAT(error.what(), HasSubstr("more than 20000 impacts"));
+  }
+}
+
+}  // namespace
+}  // namespace cradle
