@@ -5,6 +5,7 @@
 
 #include "collision/contact_point.h"
 #include "collision/core.h"
+#include "collision/mesh_surface.h"
 
 namespace cradle {
 namespace {
@@ -132,6 +133,20 @@ bool isPinned(const Collider& collider, int other, const Vec3& point, double tol
     const Vec3 arm = point - pin.point;
     return pin.other == other && (arm - pin.axis.dot(arm) * pin.axis).norm() <= tolerance;
   });
+}
+
+double innerRadius(const Collider& collider) {
+  if (collider.kind() != ColliderKind::mesh) return -nearestSurfacePoint(collider, collider.bounds.center()).distance;
+  if (!collider.mesh) return collider.boundingRadius;
+  if (collider.mesh->isSheet) return std::numeric_limits<double>::infinity();
+  double volume = 0, area = 0;
+  for (const MeshSurface::Face& face : collider.mesh->faces) {
+    const Vec3 &a = collider.mesh->vertices[face.vertices[0]], &b = collider.mesh->vertices[face.vertices[1]],
+               &c = collider.mesh->vertices[face.vertices[2]];
+    volume += a.dot(b.cross(c)) / 6;
+    area += (b - a).cross(c - a).norm() / 2;
+  }
+  return area > 0 ? std::abs(volume) / area : collider.boundingRadius;
 }
 
 double smallestSize(const ContactGeometry& geometry) {

@@ -90,6 +90,10 @@ struct ContactGeometry {
   std::vector<ColliderPair> unsolvedPairs;  // contact that cannot be computed: must stay out of each other's reach
 };
 
+/// Radius (m) of a ball inside a collider: around its middle, of a mesh at least its volume by its surface's area;
+/// infinite of a sheet, which nothing is inside of.
+double innerRadius(const Collider& collider);
+
 /// The least bounding radius (m) of what moves; 1 if nothing does.
 double smallestSize(const ContactGeometry& geometry);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 
 #include "math/types.h"
@@ -16,6 +17,10 @@ struct ContactPoint {
   double separation = 0;       // m, < 0: overlap
   // m: radius of the ball that each surface is there: 0 a corner, kFlat, or kNotRound.
   double radiusA = kNotRound, radiusB = kNotRound;
+  // Where a ball touches a mesh: the unit direction of the edge, else zero; and the number of the edge, of the vertex
+  // (whose radius is 0) or of a face (whose radius is kFlat).
+  Vec3 edge = Vec3::Zero();
+  std::uint32_t feature = 0;
 };
 
 }  // namespace cradle

@@ -77,6 +77,11 @@ bool isFarInside(const FlatTriangle& triangle, const Vec3& point, double distanc
   return true;
 }
 
+/// Whether a triangle is the side of a sheet that a cylinder is not on.
+bool isTurnedAway(const MeshSurface& mesh, const FlatTriangle& triangle, const Core& cylinder) {
+  return mesh.isSheet && triangle.heightOf(cylinder.center()) < 0;
+}
+
 /// Height (m) of a cylinder's lowest points over a triangle's plane.
 double heightOver(const FlatTriangle& triangle, const Core& cylinder) {
   return -cylinder.reach(-triangle.normal) - triangle.normal.dot(triangle.a);
@@ -108,6 +113,7 @@ struct CylinderVisit {
 
   void operator()(std::uint32_t index) {
     const FlatTriangle triangle = triangleOf(mesh, index);
+    if (isTurnedAway(mesh, triangle, cylinder)) return;
     const double height = heightOver(triangle, cylinder), size = cylinder.collider().boundingRadius;
     // The height bounds the distance from below, and the way out along the normal is one.
     if (triangle.normal == Vec3::Zero() || height >= least.separation - kLevelPart * size) return;
@@ -195,6 +201,7 @@ void appendCylinderContacts(const Core& cylinder, const MeshSurface& mesh, doubl
     const FlatTriangle triangle = triangleOf(mesh, index);
     const double height = heightOver(triangle, cylinder);
     if (triangle.normal == Vec3::Zero() || height > reach || isUnder(triangle, cylinder, reach)) continue;
+    if (isTurnedAway(mesh, triangle, cylinder)) continue;
     const Core core = solid.coreOf(triangle);
     const SeparatingAxis axis = isLowestAbove(triangle, cylinder, height) ? SeparatingAxis{height, triangle.normal}
                                                                           : contactAxis(core, cylinder);

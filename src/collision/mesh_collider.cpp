@@ -66,6 +66,7 @@ std::vector<ContactPoint> meshContacts(const Collider& a, const Collider& b, con
     if (isRound(b) || isCylinder(a)) turnAround(contact);
     contact.point = aFromContacts * contact.point;
     contact.normal = aFromContacts.rotation * contact.normal;
+    contact.edge = aFromContacts.rotation * contact.edge;
   }
   return contacts;
 }

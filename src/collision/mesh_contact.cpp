@@ -54,7 +54,8 @@ struct ContactVisit {
     if (!(sine2 > kParallelEdgeSine * kParallelEdgeSine * a.along.squaredNorm() * b.along.squaredNorm())) return;
     const double partA = between.cross(b.along).dot(normal) / sine2, partB = between.cross(a.along).dot(normal) / sine2;
     if (std::max(std::abs(partA - 0.5), std::abs(partB - 0.5)) > 0.5 + kBeyondEnd) return;
-    normal /= edgeA.normal.dot(normal) < 0 ? -std::sqrt(sine2) : std::sqrt(sine2);
+    const Vec3 outOfA = pair.a.isSheet ? Vec3(-pair.turned(edgeB.normal)) : edgeA.normal;
+    normal /= outOfA.dot(normal) < 0 ? -std::sqrt(sine2) : std::sqrt(sine2);
     const double separation = between.dot(normal);
     if (!counts(separation) || !isForemost(pair.a, edgeA, normal, margin) ||
         !isForemost(pair.b, edgeB, -pair.turnedBack(normal), margin))

@@ -1,5 +1,7 @@
 #include "collision/mesh_gap.h"
 
+#include <optional>
+
 #include "collision/mesh_overlap.h"
 
 namespace cradle {
@@ -83,24 +85,58 @@ struct OverlapVisit {
   const MeshPair& pair;
   double rounding2;  // m^2
   MeshGap deepest;
+  MeshGap leaving = {0, {}, {}, Vec3::Zero()};     // a sheet, straight ...
+  MeshGap pastBorder = {0, {}, {}, Vec3::Zero()};  // ... or past its border
 
   double reach() const { return rounding2; }
 
   void operator()(std::uint32_t indexA, std::uint32_t indexB) {
     const MeshSurface::Face &faceA = pair.a.faces[indexA], &faceB = pair.b.faces[indexB];
     const FlatTriangle a = triangleOf(pair.a, indexA), b = pair.triangleOfB(indexB);
-    forEachPiercing(faceA, a, heightsOver(b, a), b, [&](std::size_t i, double) {
+    const CornerHeights ofA = heightsOver(b, a), ofB = heightsOver(a, b);
+    forEachPiercing(faceA, a, ofA, b, [&](std::size_t i, double) {
+      if (pair.b.isSheet) {
+        const std::optional<Vec3> inner = pair.a.inner;
+        return tryLeaving(a, i, ofA, b.normal, inner ? std::optional(b.heightOf(*inner)) : std::nullopt, -1);
+      }
       const Segment edge = segmentOf(pair.a, faceA.edges[i]);
       const Segment seen{pair.placedBack(edge.from), pair.turnedBack(edge.along)};
       const EdgeDepth found = depthOfEdge(pair.b, seen, partAt(seen, indexB, pair.b), indexB);
       const Vec3 normal = pair.turned(found.normal), point = pair.placed(found.deepest);
-      keep({-found.depth, point, point + found.depth * normal, -normal});
+      keep({-found.depth, point, point + found.depth * normal, -normal}, pair.a.edges[faceA.edges[i]]);
     });
-    forEachPiercing(faceB, b, heightsOver(a, b), a, [&](std::size_t i, double) {
+    forEachPiercing(faceB, b, ofB, a, [&](std::size_t i, double) {
+      if (pair.a.isSheet) {
+        const std::optional<Vec3> inner = pair.b.inner;
+        return tryLeaving(b, i, ofB, a.normal, inner ? std::optional(a.heightOf(pair.placed(*inner))) : std::nullopt,
+                          1);
+      }
       const Segment edge = pair.segmentOfB(faceB.edges[i]);
       const EdgeDepth found = depthOfEdge(pair.a, edge, partAt(edge, indexA, pair.a), indexA);
-      keep({-found.depth, found.deepest + found.depth * found.normal, found.deepest, found.normal});
+      keep({-found.depth, found.deepest + found.depth * found.normal, found.deepest, found.normal},
+           pair.b.edges[faceB.edges[i]]);
     });
+  }
+
+  /// A side of a solid's triangle that goes through a sheet, whose normal is given: it may leave towards the side on
+  /// which the solid's inner point is, or where that is not known, most of the edge. `sign`: 1 if A is the sheet.
+  void tryLeaving(const FlatTriangle& triangle, std::size_t side, const CornerHeights& heights, const Vec3& normal,
+                  const std::optional<double>& innerHeight, double sign) {
+    const std::size_t next = (side + 1) % 3;
+    const double middle = innerHeight ? *innerHeight : heights[side] + heights[next];
+    const double towards = middle < 0 ? -1 : 1;
+    const std::size_t beyond = towards * heights[side] < towards * heights[next] ? side : next;
+    const double separation = std::min(0.0, towards * heights[beyond]);
+    if (leaving.normal != Vec3::Zero() && separation >= leaving.separation) return;
+    const Vec3 outward = towards * normal, &point = cornerOf(triangle, beyond), onSheet = point - separation * outward;
+    const bool isOfA = sign > 0;
+    leaving = {separation, isOfA ? onSheet : point, isOfA ? point : onSheet, sign * outward};
+  }
+
+  /// The shorter of the ways out, straight from a sheet and past its border.
+  MeshGap shortest() const {
+    if (leaving.normal == Vec3::Zero()) return deepest;
+    return pastBorder.normal != Vec3::Zero() && pastBorder.separation > leaving.separation ? pastBorder : leaving;
   }
 
   /// Where an edge goes through a face, in the direction of the edge.
@@ -110,18 +146,25 @@ struct OverlapVisit {
     return slope != 0 ? std::clamp(-triangle.heightOf(edge.from) / slope, 0.0, 1.0) : 0;
   }
 
-  void keep(const MeshGap& found) {
+  void keep(const MeshGap& found, const MeshSurface::Edge& edge) {
     if (found.separation < deepest.separation || deepest.normal == Vec3::Zero()) deepest = found;
+    if (!edge.isBorder) return;
+    if (found.separation < pastBorder.separation || pastBorder.normal == Vec3::Zero()) pastBorder = found;
   }
 };
 
 /// What two nearest points, of surfaces that do not intersect, say.
 MeshGap gapOf(const MeshPair& pair, const GapVisit& nearest) {
   const Witness &onA = nearest.onA, &onB = nearest.onB;
-  const Vec3 between = onB.point - onA.point, outOfA = normalAt(pair.a, onA),
-             outOfB = pair.turned(normalAt(pair.b, onB));
+  const Vec3 between = onB.point - onA.point;
+  const auto facing = [](const MeshSurface& surface, const Vec3& outward, const Vec3& way) {
+    return surface.isSheet && outward.dot(way) < 0 ? Vec3(-outward) : outward;
+  };
+  const Vec3 outOfA = facing(pair.a, normalAt(pair.a, onA), between),
+             outOfB = facing(pair.b, pair.turned(normalAt(pair.b, onB)), -between);
   const double distance = std::sqrt(nearest.distance2);
-  const bool aIsInside = between.dot(outOfB) > 0, bIsInside = between.dot(outOfA) < 0;
+  const bool aIsInside = between.dot(outOfB) > 0 && !pair.b.isSheet,
+             bIsInside = between.dot(outOfA) < 0 && !pair.a.isSheet;
   const double sign = aIsInside || bIsInside ? -1 : 1;
   const Vec3 apart = aIsInside ? Vec3(-outOfB) : bIsInside ? outOfA : Vec3((outOfA - outOfB).normalized());
   MeshGap gap{sign * distance, onA.point, onB.point, apart};
@@ -177,7 +220,7 @@ MeshGap gapBetween(const MeshPair& pair, double enough) {
     OverlapVisit overlap{pair, kTouchingGap * size * kTouchingGap * size, {}};
     overlap.deepest.separation = 0;
     trees.visitNear(overlap);
-    return overlap.deepest;
+    return overlap.shortest();
   }
   MeshGap gap;
   const bool isNear = nearest.onA.feature != Feature::none;

@@ -14,8 +14,9 @@ struct MeshGap {
 /// Signed separation of two closed surfaces. Apart: the distance, exact to rounding. Where they intersect: minus the
 /// depth of the edge or vertex that is deepest inside the other solid, among those whose edges go through its surface;
 /// exact while that is less than the triangles' size, continuous through 0 (to 1e-14 of the sizes), and never positive.
-/// One inside the other: minus the distance of the surfaces. Separations above `enough` (m) are not looked for: then
-/// infinite. O(log triangles) for pairs near in few places.
+/// Of a sheet and a solid that it goes through: minus the way out to the side on which more of the solid is, or past
+/// the sheet's border. One inside the other: minus the distance of the surfaces. Separations above `enough` (m) are not
+/// looked for: then infinite. O(log triangles) for pairs near in few places.
 MeshGap gapBetween(const MeshPair& pair, double enough);
 
 }  // namespace cradle

@@ -57,11 +57,13 @@ MeshPoint nearestPoint(const MeshSurface& surface, const Vec3& point, double rea
 SignedHeight heightOver(const MeshSurface& surface, const Vec3& point) {
   const MeshPoint nearest = nearestPoint(surface, point);
   const Vec3 away = point - nearest.point;
-  const double distance = std::sqrt(nearest.distance2), side = away.dot(nearest.normal) < 0 ? -1 : 1;
-  const Vec3 outward = distance > 0 ? Vec3(side / distance * away) : nearest.normal;
+  const bool isUnder = away.dot(nearest.normal) < 0;
+  const double distance = std::sqrt(nearest.distance2), side = isUnder && !surface.isSheet ? -1 : 1;
+  const Vec3 normal = isUnder && surface.isSheet ? Vec3(-nearest.normal) : nearest.normal;
+  const Vec3 outward = distance > 0 ? Vec3(side / distance * away) : normal;
   const double noise = std::max(kFlatAngle, kDifferenceRounding * surface.size / distance);
-  const bool isFeatures = nearest.feature == MeshPoint::Feature::face || !((outward - nearest.normal).norm() > noise);
-  return {side * distance, isFeatures ? nearest.normal : outward, nearest.point, nearest.feature};
+  const bool isFeatures = nearest.feature == MeshPoint::Feature::face || !((outward - normal).norm() > noise);
+  return {side * distance, isFeatures ? normal : outward, nearest.point, nearest.feature};
 }
 
 }  // namespace cradle

@@ -29,7 +29,7 @@ struct SignedHeight {
   MeshPoint::Feature feature = MeshPoint::Feature::none;
 };
 
-/// Of a point over the surface. Exact on both sides.
+/// Of a point over the surface. Exact on both sides; nothing is inside a sheet.
 SignedHeight heightOver(const MeshSurface& surface, const Vec3& point);
 
 /// Corners and normal of a face.

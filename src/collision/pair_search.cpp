@@ -6,6 +6,7 @@
 
 #include "collision/core.h"
 #include "collision/mesh_collider.h"
+#include "collision/mesh_surface.h"
 
 namespace cradle {
 namespace {
@@ -69,7 +70,8 @@ void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTi
       continue;
     }
     if (isHeld(touching) && hasOneContact()) continue;
-    if (held_ && (apart_ || hasMesh(a_, geometry_.colliders[pair_.b]))) lookBlindly();
+    if (held_ && (apart_ || (hasMesh(a_, geometry_.colliders[pair_.b]) && !(hasBall() && isHeld(touching)))))
+      lookBlindly();
     const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_, reach);
     searchFeature(start, touching, best);
   }
@@ -128,7 +130,12 @@ double PairSearch::bendInFrame(const MotionBounds& turn, const Collider& other) 
 /// With a bound on the gap's speed alone.
 void PairSearch::lookBlindly() {
   bounds_.graze = kGrazePart * std::min(a_.boundingRadius, geometry_.colliders[pair_.b].boundingRadius);
-  if (!std::isfinite(bounds_.acceleration)) bounds_.finest = kFinestBlindApproach;
+  const auto isSheet = [](const Collider& collider) {
+    return collider.kind() == ColliderKind::mesh && collider.mesh->isSheet;
+  };
+  // What goes through a sheet is soon on its other side, and apart again.
+  const bool isThin = isSheet(a_) || isSheet(geometry_.colliders[pair_.b]);
+  if (!std::isfinite(bounds_.acceleration) && !isThin) bounds_.finest = kFinestBlindApproach;
   apart_.reset();
 }
 
@@ -184,8 +191,11 @@ bool PairSearch::isHeld(const TouchingFeatures& touching) const {
 /// A ball may touch a mesh at two places, as in a groove.
 bool PairSearch::hasOneContact() const {
   if (pair_.againstPlane) return true;
-  const Collider& b = geometry_.colliders[pair_.b];
-  return (a_.isBall() || b.isBall()) && !hasMesh(a_, b);
+  return hasBall() && !hasMesh(a_, geometry_.colliders[pair_.b]);
+}
+
+bool PairSearch::hasBall() const {
+  return a_.isBall() || geometry_.colliders[pair_.b].isBall();
 }
 
 /// Whether the gap is that of one point, or bends downwards no more than one: of a ball and what is convex, of a

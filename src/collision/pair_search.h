@@ -37,6 +37,7 @@ class PairSearch {
   bool isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const;
   bool isHeld(const TouchingFeatures& touching) const;
   bool hasOneContact() const;
+  bool hasBall() const;
   bool staysOnePoint() const;
   double deadBand(const TouchingFeatures& touching) const;
   double leavingSpeed(double tolerance);

@@ -1,13 +1,17 @@
 #include "collision/round_on_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "collision/contact_reduction.h"
+#include "collision/mesh_feature.h"
 #include "collision/mesh_overlap.h"
 #include "collision/tangent_plane.h"
 
 namespace cradle {
 namespace {
+
+using Feature = MeshPoint::Feature;
 
 constexpr double kMeshRoundingPart = 1e-12;  // of the size
 
@@ -65,8 +69,17 @@ CoreGap gapOf(const Segment& core, const MeshSurface& mesh, double reach) {
   return visit.gap;
 }
 
+/// Where a core that goes through a sheet is farthest on the side on which less of it is.
+SignedHeight farSide(const Segment& core, const MeshSurface& mesh, const CoreGap& gap) {
+  const FlatTriangle triangle = triangleOf(mesh, gap.face);
+  const Vec3 end = core.at(gap.part > 0.5 ? 1 : 0);
+  const double height = triangle.heightOf(end), side = height > 0 ? -1 : 1;
+  return {-std::abs(height), side * triangle.normal, end - height * triangle.normal, MeshPoint::Feature::face};
+}
+
 /// Where a core that goes through the surface, or is inside, is deepest: at an end, or where it passes beneath an edge.
 SignedHeight deepestPlace(const Segment& core, const MeshSurface& mesh, const CoreGap& gap) {
+  if (mesh.isSheet && gap.intersects) return farSide(core, mesh, gap);
   const SignedHeight start = heightOver(mesh, core.from), end = heightOver(mesh, core.at(1));
   const SignedHeight& deeper = end.height < start.height ? end : start;
   if (!gap.intersects) return deeper;
@@ -94,7 +107,7 @@ struct RoundVisit {
     const FlatTriangle triangle = triangleOf(mesh, index);
     for (const double part : {0.0, 1.0}) {
       if (part > 0 && round.isBall()) break;
-      tryEnd(part, face, triangle);
+      tryEnd(part, index, triangle);
     }
     if (round.isBall()) return;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -104,10 +117,12 @@ struct RoundVisit {
   }
 
   /// The end of the core that is at `part`.
-  void tryEnd(double part, const MeshSurface::Face& face, const FlatTriangle& triangle) {
+  void tryEnd(double part, std::uint32_t index, const FlatTriangle& triangle) {
+    const MeshSurface::Face& face = mesh.faces[index];
     const Vec3 point = round.core.at(part);
     const double height = triangle.heightOf(point);
-    if (height > 0 && triangle.isAbove(point, kBeyondEnd)) add(part, point - height * triangle.normal, kFlat);
+    if (height > 0 && triangle.isAbove(point, kBeyondEnd))
+      add(part, point - height * triangle.normal, {Feature::face, index});
     for (std::size_t i = 0; i < 3; ++i) {
       if (face.ownsEdge[i]) tryEdge(part, face.edges[i]);
       if (face.ownsVertex[i]) tryVertex(part, face.vertices[i]);
@@ -120,14 +135,14 @@ struct RoundVisit {
     const double distance = away.norm();
     const bool isWithin = std::abs(away.dot(edge.along)) <= kBeyondEnd * distance * edge.along.norm();
     if (distance > 0 && isWithin && isForemost(mesh, mesh.edges[index], away / distance, 0))
-      add(part, nearest, kNotRound);
+      add(part, nearest, {Feature::edge, index});
   }
 
   void tryVertex(double part, std::uint32_t index) {
     const Vec3& vertex = mesh.vertices[index];
     const Vec3 away = round.core.at(part) - vertex;
     const double distance = away.norm();
-    if (distance > 0 && isForemost(mesh, index, away / distance, 0)) add(part, vertex, 0);
+    if (distance > 0 && isForemost(mesh, index, away / distance, 0)) add(part, vertex, {Feature::vertex, index});
   }
 
   /// The core across an edge.
@@ -138,11 +153,12 @@ struct RoundVisit {
     const double distance = away.norm();
     const bool isInner = parts.a > 0 && parts.a < 1 && parts.b > 0 && parts.b < 1;
     if (isInner && distance > 0 && isForemost(mesh, mesh.edges[index], away / distance, margin))
-      add(parts.a, edge.at(parts.b), kNotRound);
+      add(parts.a, edge.at(parts.b), {});
   }
 
-  /// A contact at a point of the mesh, if that is where the core is nearest to it.
-  void add(double part, const Vec3& onMesh, double radius) {
+  /// A contact at a point of the mesh, if that is where the core is nearest to it. A ball touches a feature only where
+  /// that is nearer than those that meet at it: on the way from one to the next, it touches one of them.
+  void add(double part, const Vec3& onMesh, const TouchedFeature& touched) {
     const Vec3 away = round.core.at(part) - onMesh;
     const double distance = away.norm(), separation = distance - round.radius;
     if (separation > margin) return;
@@ -150,11 +166,43 @@ struct RoundVisit {
     const double length = round.core.along.norm(), rise = (part > 0 ? -1 : 1) * outward.dot(round.core.along);
     const bool isAtEnd = part <= 0 || part >= 1;
     if (isAtEnd && rise < -allowedAhead(margin, length)) return;
-    contacts.push_back(
-        {onMesh + separation / 2 * outward, -outward, separation, isAtEnd ? round.radius : kNotRound, radius});
+    if (round.isBall() && isBeyond(touched)) return;
+    const double radius = touched.feature == Feature::face ? kFlat : touched.feature == Feature::vertex ? 0 : kNotRound;
+    ContactPoint contact{onMesh + separation / 2 * outward, -outward, separation, isAtEnd ? round.radius : kNotRound,
+                         radius};
+    if (round.isBall()) {
+      contact.feature = touched.index;
+      if (touched.feature == Feature::edge) contact.edge = segmentOf(mesh, touched.index).along.normalized();
+    }
+    contacts.push_back(contact);
     least = std::min(least, separation);
   }
+
+  /// Whether a ball's centre is nearer to a neighbour of an edge or vertex.
+  bool isBeyond(const TouchedFeature& touched) const {
+    if (touched.feature == Feature::face) return false;
+    return insideRegion(mesh, touched, round.core.from) < -kBeyondEnd * mesh.size;
+  }
 };
+
+/// Of what a ball touches at one place, beside the border between a face, an edge and a vertex, the first of them.
+void keepOneOfPlace(std::size_t first, double near, std::vector<ContactPoint>& contacts) {
+  const auto rank = [](const ContactPoint& contact) {
+    return contact.radiusB > 0 ? 0 : contact.edge != Vec3::Zero() ? 1 : 2;
+  };
+  std::size_t end = first;
+  for (std::size_t i = first; i < contacts.size(); ++i) {
+    const ContactPoint contact = contacts[i];
+    const auto isSame = [&](const ContactPoint& other) { return (other.point - contact.point).norm() <= near; };
+    const auto at = std::find_if(contacts.begin() + static_cast<std::ptrdiff_t>(first),
+                                 contacts.begin() + static_cast<std::ptrdiff_t>(end), isSame);
+    if (at == contacts.begin() + static_cast<std::ptrdiff_t>(end))
+      contacts[end++] = contact;
+    else if (rank(contact) < rank(*at))
+      *at = contact;
+  }
+  contacts.resize(end);
+}
 
 /// One contact at the deepest place.
 ContactPoint deepestContact(const RoundSolid& round, const SignedHeight& place) {
@@ -187,6 +235,7 @@ void appendContacts(const RoundSolid& round, const MeshSurface& mesh, double mar
   if (!gap.isFound || distance - round.radius > margin) return;
   RoundVisit visit{round, mesh, margin, contacts};
   visitNear(mesh.tree, boundsOf(round.core), visit);
+  if (round.isBall()) keepOneOfPlace(first, borderWidth(mesh), contacts);
   if (visit.least > distance - round.radius + rounding) {
     const Vec3 outward =
         distance > 0 ? Vec3((gap.onCore - gap.onMesh) / distance) : deepestPlace(round.core, mesh, gap).normal;

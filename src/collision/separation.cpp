@@ -75,6 +75,7 @@ void placeInWorld(const PosedPair& pair, std::vector<ContactPoint>& points) {
   for (ContactPoint& contact : points) {
     contact.point = pair.worldFromA * contact.point;
     contact.normal = pair.worldFromA.rotation * contact.normal;
+    contact.edge = pair.worldFromA.rotation * contact.edge;
   }
 }
 
@@ -234,6 +235,30 @@ double separation(const ContactGeometry& geometry, const ColliderPair& pair, std
                     poseOf(state, bodyBOf(geometry, pair)));
 }
 
+TouchedFeature touchedFeature(const Contact& contact) {
+  using Feature = MeshPoint::Feature;
+  if (contact.edge != Vec3::Zero()) return {Feature::edge, contact.feature};
+  if (std::isinf(contact.radiusA) || std::isinf(contact.radiusB)) return {Feature::face, contact.feature};
+  return {contact.radiusA == 0 || contact.radiusB == 0 ? Feature::vertex : Feature::none, contact.feature};
+}
+
+BallOverMesh ballOverMesh(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
+                          const RigidTransform& worldFromB) {
+  if (pair.againstPlane) return {};
+  const Collider &a = geometry.colliders[pair.a], &b = geometry.colliders[pair.b];
+  const Collider &ball = a.isBall() ? a : b, &mesh = a.isBall() ? b : a;
+  if (!ball.isBall() || mesh.kind() != ColliderKind::mesh) return {};
+  const RigidTransform &worldFromBall = a.isBall() ? worldFromA : worldFromB,
+                       &worldFromMesh = a.isBall() ? worldFromB : worldFromA;
+  return {mesh.mesh.get(), (worldFromMesh * mesh.bodyFromMesh).inverse() * (worldFromBall * ball.points[0]),
+          ball.radius};
+}
+
+BallOverMesh ballOverMesh(const ContactGeometry& geometry, const ColliderPair& pair, const VectorX& state) {
+  return ballOverMesh(geometry, pair, poseOf(state, geometry.colliders[pair.a].body),
+                      poseOf(state, bodyBOf(geometry, pair)));
+}
+
 Vec3 nearestOnSurface(const Collider& collider, const Vec3& point) {
   if (collider.kind() != ColliderKind::mesh) return nearestSurfacePoint(collider, point).nearest;
   return collider.bodyFromMesh * nearestPoint(*collider.mesh, collider.bodyFromMesh.inverse() * point).point;
@@ -260,8 +285,8 @@ void appendContacts(const ContactGeometry& geometry, std::size_t index, const Ve
   if (separationBound(geometry, pair, worldFromA, worldFromB) > margin) return;
   for (const ContactPoint& found : contactPoints(geometry, pair, worldFromA, worldFromB, margin))
     if (found.separation <= margin && !isPinnedContact(geometry, pair, found, worldFromA, worldFromB))
-      contacts.push_back(
-          {index, bodyA, bodyB, found.point, found.normal, found.separation, found.radiusA, found.radiusB});
+      contacts.push_back({index, bodyA, bodyB, found.point, found.normal, found.separation, found.radiusA,
+                          found.radiusB, found.edge, found.feature});
 }
 
 void findContacts(const ContactGeometry& geometry, const VectorX& state, double margin,

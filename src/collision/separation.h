@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "collision/collider.h"
+#include "collision/contact_point.h"
+#include "collision/mesh_feature.h"
 
 namespace cradle {
 
@@ -15,7 +17,9 @@ struct Contact {
   Vec3 normal = Vec3::Zero();  // unit, world, from A to B
   double separation = 0;       // m, < 0: overlap
   // m: radius of the ball that each surface is there: 0 a corner, infinite a flat face; NaN: neither (edge, side, rim).
-  double radiusA = std::numeric_limits<double>::quiet_NaN(), radiusB = radiusA;
+  double radiusA = kNotRound, radiusB = kNotRound;
+  Vec3 edge = Vec3::Zero();   // unit, world: of the edge of a mesh that a ball touches; else zero
+  std::uint32_t feature = 0;  // of the mesh that a ball touches, as in ContactPoint
 
   /// A if it moves, else B.
   int movingBody() const { return bodyA != kFixed ? bodyA : bodyB; }
@@ -61,6 +65,19 @@ double separation(const ContactGeometry& geometry, const ColliderPair& pair, std
                   const RigidTransform& worldFromA, const RigidTransform& worldFromB,
                   double enough = std::numeric_limits<double>::infinity());
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature, const VectorX& state);
+
+/// The feature of a mesh that a ball touches.
+TouchedFeature touchedFeature(const Contact& contact);
+
+/// The centre of a ball and the surface of a mesh that it may touch, as the mesh's frame sees them.
+struct BallOverMesh {
+  const MeshSurface* mesh = nullptr;  // null: a pair of other colliders
+  Vec3 center = Vec3::Zero();         // m
+  double radius = 0;                  // m
+};
+BallOverMesh ballOverMesh(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
+                          const RigidTransform& worldFromB);
+BallOverMesh ballOverMesh(const ContactGeometry& geometry, const ColliderPair& pair, const VectorX& state);
 
 /// The point of a collider's surface that is nearest to a point, both in its frame (m).
 Vec3 nearestOnSurface(const Collider& collider, const Vec3& point);

@@ -23,7 +23,8 @@ bool isForemost(const MeshSurface& surface, std::uint32_t vertex, const Vec3& ah
 }
 
 bool isForemost(const MeshSurface& surface, const MeshSurface::Edge& edge, const Vec3& ahead, double margin) {
-  if (!edge.isConvex || edge.normal.dot(ahead) <= 0) return false;
+  // At a sheet's border what is straight over one of its sides is ahead too.
+  if (!edge.isConvex || edge.normal.dot(ahead) <= (edge.isBorder ? -kLeastTilt : 0)) return false;
   const Vec3& from = surface.vertices[edge.vertices[0]];
   const Vec3 along = (surface.vertices[edge.vertices[1]] - from).normalized();
   for (const std::uint32_t across : edge.across) {

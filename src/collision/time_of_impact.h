@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collision/face_below.h"
+#include "collision/mesh_feature.h"
 #include "collision/separation.h"
 #include "dynamics/contact_rows.h"
 #include "dynamics/integrators/pose_interpolant.h"
@@ -25,7 +26,8 @@ constexpr double kHeldPlace = 1e-3;  // of a size: so near to a point that is he
 /// A feature of a pair, as separation.h numbers them, that something keeps together.
 struct HeldFeature {
   std::size_t pair = 0, feature = 0;
-  ContactConstraint contact;  // what does
+  ContactConstraint contact;   // what does
+  TouchedFeature onMesh = {};  // where a ball is held on a mesh
 };
 
 /// What touches when a step begins.
@@ -65,6 +67,10 @@ class ImpactSearch {
   const MotionBounds& turnOf(const Step& step, int body);
   void findOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state, double margin);
   double gapOfOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state, double margin);
+  std::optional<double> gapBesideFace(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state,
+                                      double margin) const;
+  static double gapBesideFeatures(std::size_t pair, const std::vector<HeldFeature>& held, const BallOverMesh& ball,
+                                  double margin);
 
   const ContactGeometry& geometry_;
   std::vector<Turn> turns_;     // of the moving bodies, in the step that is searched

@@ -1,10 +1,13 @@
-// Kinematics of a ball on a face or on a ball. The rows are those of the relative velocity of the bodies' material at
-// the point of contact; their curvature terms let that point move over both surfaces (rolling), and the normal turn.
+// Kinematics of a ball on a face, a ball or an edge. The rows are those of the relative velocity of the bodies'
+// material at the point of contact; their curvature terms let that point move over both surfaces (rolling), and the
+// normal turn.
 //
 // With n out of B, c the centre of A's ball, a = c - r_A n - x_A and b = c - r_A n - x_B the arms, u the velocity:
 //   u = v_A + w_A x a - v_B - w_B x b,   gap' = n.u,   gap'' = n'.u + n.u',
 //   u' = J (accelerations) + w_A x a' - w_B x b',   a' = w_A x (c - x_A) - r_A n',   b' = a' + v_A - v_B,
-// n' = w_B x n on a face, and the part of the centres' relative velocity across n over their distance on a ball.
+// n' = w_B x n on a face, and the part of the centres' relative velocity across n over their distance on a ball. On an
+// edge along e, s = c - b less its part along e takes the place of the centres' difference: s' = w - w_e with
+// w_e = e (e.w) + e' (e.(c - b)) + e (e'.(c - b)), w = (c - b)'.
 // Tangential: the rate of u - n (n.u) has the part u' - n' (n.u) along the surfaces, whatever spans them.
 
 #include "dynamics/contact_rows.h"
@@ -54,12 +57,17 @@ void placeNormal(const ContactConstraint& contact, const AttachmentMotion& a, co
     place.leverB = (b.arm + apart).cross(place.normal);
     return;
   }
-  const double distance = apart.norm();
-  const Vec3 velocity = a.velocity - b.velocity;
-  place.normal = apart / distance;
+  Vec3 across = apart, velocity = a.velocity - b.velocity;
+  if (contact.edgeB != Vec3::Zero()) {
+    const Vec3 along = turned(contact.surfaceB.body, contact.edgeB, frames), rate = spinB.cross(along);
+    across -= along.dot(apart) * along;
+    velocity -= (along.dot(velocity) + rate.dot(apart)) * along + along.dot(apart) * rate;
+  }
+  const double distance = across.norm();
+  place.normal = across / distance;
   place.normalRate = (velocity - velocity.dot(place.normal) * place.normal) / distance;
   place.gap = distance - (contact.radiusA + contact.radiusB);
-  place.leverB = b.arm.cross(place.normal);
+  place.leverB = (b.arm + (apart - across)).cross(place.normal);
 }
 
 /// A unit vector across another (T. Duff et al., "Building an Orthonormal Basis, Revisited", J. Computer Graphics
@@ -79,18 +87,19 @@ ConstraintRow tangentRow(const ContactConstraint& contact, const ContactPlace& p
 }  // namespace
 
 ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& state) {
-  CRADLE_CHECK(!(isFace(contact.radiusA) && isFace(contact.radiusB)));
-  if (isFace(contact.radiusA))
+  CRADLE_CHECK(std::isfinite(contact.radiusA) || std::isfinite(contact.radiusB));
+  if (isFace(contact.radiusA) || std::isnan(contact.radiusA))
     return constraintOf({contact.bodyB, contact.bodyA, contact.point, -contact.normal, contact.separation,
-                         contact.radiusB, contact.radiusA},
+                         contact.radiusB, contact.radiusA, contact.edge},
                         state);
   const double half = 0.5 * contact.separation;
-  const double depthB = isFace(contact.radiusB) ? 0 : contact.radiusB;
+  const double depthB = contact.radiusB > 0 && !isFace(contact.radiusB) ? contact.radiusB : 0;
   ContactConstraint constraint;
   constraint.centerA = attachmentAt(contact.bodyA, contact.point - (half + contact.radiusA) * contact.normal, state);
   constraint.radiusA = contact.radiusA;
   constraint.surfaceB = attachmentAt(contact.bodyB, contact.point + (half + depthB) * contact.normal, state);
-  constraint.radiusB = contact.radiusB;
+  constraint.radiusB = std::isnan(contact.radiusB) ? 0 : contact.radiusB;
+  constraint.edgeB = inFrameOf(contact.bodyB, contact.edge, state);
   constraint.normalB = inFrameOf(contact.bodyB, -contact.normal, state);
   return constraint;
 }

@@ -17,7 +17,8 @@ enum class ContactMotion {
   sticking  // no tangential velocity where they touch: at rest on each other, or rolling
 };
 
-/// A ball of body A that stays on a surface of body B: on a flat face, or on a ball. A corner is a ball of radius 0.
+/// A ball of body A that stays on a surface of body B: on a flat face, a ball or a straight edge. A corner is a ball of
+/// radius 0.
 /// What touches may roll, slide or spin; it is released only by being taken away.
 struct ContactConstraint {
   Attachment centerA;                                        // of A's ball
@@ -25,6 +26,7 @@ struct ContactConstraint {
   Attachment surfaceB;                                       // a point of B's face, or the centre of B's ball
   double radiusB = std::numeric_limits<double>::infinity();  // m, >= 0; infinite: a flat face
   Vec3 normalB = Vec3::UnitY();                              // of a face, outward, unit; in B's frame, or the world
+  Vec3 edgeB = Vec3::Zero();  // of a straight edge through surfaceB, unit, same frame; radiusB is 0 then; else zero
   ContactMotion motion = ContactMotion::frictionless;
   double friction = 0;  // coefficient, >= 0; of sliding alone
 
@@ -42,10 +44,11 @@ struct SurfaceContact {
   Vec3 normal = Vec3::Zero();  // unit, world, from A to B
   double separation = 0;       // m
   double radiusA = 0, radiusB = 0;
+  Vec3 edge = Vec3::Zero();  // unit, world: direction of a straight edge, whose radius is NaN; else zero
 };
 
-/// The frictionless constraint that keeps a contact. If A's surface is a face, the bodies change places in it: its A is
-/// the contact's B. One of the radii must be finite.
+/// The frictionless constraint that keeps a contact. If A's surface is a face or an edge, the bodies change places in
+/// it: its A is the contact's B. One of the radii must be finite.
 ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& state);
 
 /// Sets the way A slides from a direction in the world.

@@ -58,7 +58,7 @@ Collider shapedLike(const Body& body, const Scene& scene, const RigidTransform& 
       body.shape);
 }
 
-/// That of a mesh that is no solid is not known.
+/// That of a mesh that is no solid and moves is not known.
 bool hasSurface(const Collider& collider) {
   return collider.kind() != ColliderKind::mesh || collider.mesh;
 }
@@ -91,8 +91,9 @@ void addSurfaces(const Scene& scene, const std::vector<int>& bodies, std::vector
     const Body& body = scene.bodies[static_cast<std::size_t>(bodies[i])];
     const auto model = static_cast<std::size_t>(std::get<ModelShape>(body.shape).model);
     const TriangleMesh& mesh = scene.models[model].solid;
-    if (!surfaces[model] && checkSolid(mesh).isClosed)
-      surfaces[model] = std::make_shared<const MeshSurface>(surfaceOf(mesh));
+    if (!surfaces[model])
+      surfaces[model] = std::make_shared<const MeshSurface>(checkSolid(mesh).isClosed ? surfaceOf(mesh) : sheetOf(mesh));
+    if (surfaces[model]->isSheet && body.motion == Motion::dynamic) continue;
     collider.mesh = surfaces[model];
     collider.bodyFromMesh = colliderFromShape(body, collider.body);
   }
@@ -145,8 +146,8 @@ std::vector<std::string> unsupportedContacts(const Scene& scene) {
       const auto &first = isPlane(a) ? colliders[j] : colliders[i], &second = isPlane(a) ? colliders[i] : colliders[j];
       if (!canSolveContact(*first, second ? &*second : nullptr))
         faults.push_back(
-            fmt::format("{}: contact between \"{}\" and \"{}\" cannot be simulated: a mesh that is no solid can touch "
-                        "nothing but planes; give one of them \"collision\": \"none\"",
+            fmt::format("{}: contact between \"{}\" and \"{}\" cannot be simulated: a mesh that moves and is no solid "
+                        "can touch nothing but planes; give one of them \"collision\": \"none\"",
                         b.where, a.name, b.name));
     }
   return faults;

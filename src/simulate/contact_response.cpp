@@ -18,13 +18,14 @@ void applyTo(int body, const Vec3& impulse, const Vec3& angularImpulse, const st
 }  // namespace
 
 bool canLast(const Contact& contact) {
-  return !std::isnan(contact.radiusA) && !std::isnan(contact.radiusB) &&
+  const bool isEdge = contact.edge != Vec3::Zero();
+  return (isEdge || (!std::isnan(contact.radiusA) && !std::isnan(contact.radiusB))) &&
          (std::isfinite(contact.radiusA) || std::isfinite(contact.radiusB));
 }
 
 ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames) {
-  SurfaceContact surfaces{contact.bodyA,      contact.bodyB,   contact.point,  contact.normal,
-                          contact.separation, contact.radiusA, contact.radiusB};
+  SurfaceContact surfaces{contact.bodyA,      contact.bodyB,   contact.point,   contact.normal,
+                          contact.separation, contact.radiusA, contact.radiusB, contact.edge};
   if (!canLast(contact)) {
     // A ball turns around an edge that it comes to as around a corner; what is not round is as good as a corner on a
     // face.

@@ -46,20 +46,6 @@ std::string lengthText(double meters) {
   return meters < 1 ? fmt::format("{:.4g} mm", 1000 * meters) : fmt::format("{:.4g} m", meters);
 }
 
-/// Radius (m) of a ball inside a collider: around its middle, of a mesh at least its volume by its surface's area.
-double innerRadius(const Collider& collider) {
-  if (collider.kind() != ColliderKind::mesh) return -nearestSurfacePoint(collider, collider.bounds.center()).distance;
-  if (!collider.mesh) return collider.boundingRadius;
-  double volume = 0, area = 0;
-  for (const MeshSurface::Face& face : collider.mesh->faces) {
-    const Vec3 &a = collider.mesh->vertices[face.vertices[0]], &b = collider.mesh->vertices[face.vertices[1]],
-               &c = collider.mesh->vertices[face.vertices[2]];
-    volume += a.dot(b.cross(c)) / 6;
-    area += (b - a).cross(c - a).norm() / 2;
-  }
-  return area > 0 ? std::abs(volume) / area : collider.boundingRadius;
-}
-
 /// How deep (m) a pair may overlap to be moved apart.
 double mendableDepth(const ContactGeometry& geometry, const ColliderPair& pair) {
   const double radiusA = innerRadius(geometry.colliders[pair.a]);
@@ -69,19 +55,31 @@ double mendableDepth(const ContactGeometry& geometry, const ColliderPair& pair) 
 /// Two bodies of an island that overlap.
 struct Overlap {
   const Body &a, &b;
-  bool againstPlane;
+  bool againstPlane, isThroughSheet;
   double depth, mendable;  // m
 };
 
 std::string textOf(const Overlap& overlap) {
-  const auto& [a, b, againstPlane, depth, mendable] = overlap;
+  const auto& [a, b, againstPlane, isThroughSheet, depth, mendable] = overlap;
   if (againstPlane)
     return fmt::format("{}: \"{}\" is {} deep in the plane \"{}\" at the start", a.where, a.name, lengthText(depth),
                        b.name);
   return fmt::format("{}: \"{}\" and \"{}\" overlap by {} at the start", b.where, a.name, b.name, lengthText(depth));
 }
 
+bool isSheet(const ContactGeometry& geometry, std::size_t collider) {
+  const Collider& mesh = geometry.colliders[collider];
+  return mesh.kind() == ColliderKind::mesh && mesh.mesh && mesh.mesh->isSheet;
+}
+
 std::string faultOf(const Overlap& overlap) {
+  if (overlap.isThroughSheet)
+    return fmt::format(
+        "{}; one of them is a mesh that is not closed, a sheet with two sides, and the other has to be on one of them; "
+        "at most {}, half of the radius inside it, is mended; move it by {} to the side of its middle, or give one of "
+        "them "
+        "\"collision\": \"none\"",
+        textOf(overlap), lengthText(overlap.mendable), lengthText(overlap.depth));
   return fmt::format(
       "{}; at most {}, half of the radius inside the smaller one, is mended; move {} by {}, or give one "
       "of them \"collision\": \"none\"",
@@ -99,7 +97,9 @@ std::vector<Overlap> overlapsOf(const Scene& scene, const Assembly& assembly) {
     if (separationBound(geometry, pair, worldFromA, poseOf(assembly.state, bodyBOf(geometry, pair))) > 0) continue;
     const double depth = depthOf(geometry, pair, assembly.state);
     if (depth > touchingDepth(geometry, pair, a, b))
-      overlaps.push_back({a, b, pair.againstPlane, depth, mendableDepth(geometry, pair)});
+      overlaps.push_back({a, b, pair.againstPlane,
+                          !pair.againstPlane && (isSheet(geometry, pair.a) || isSheet(geometry, pair.b)), depth,
+                          mendableDepth(geometry, pair)});
   }
   return overlaps;
 }

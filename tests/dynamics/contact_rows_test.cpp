@@ -17,7 +17,7 @@ struct Kind {
   int bodyA, bodyB;
   double radiusA, radiusB;
 };
-constexpr double kFace = std::numeric_limits<double>::infinity();
+constexpr double kFace = std::numeric_limits<double>::infinity(), kEdge = std::numeric_limits<double>::quiet_NaN();
 const std::vector<Kind> kKinds = {{"corner on fixed face", 0, kFixed, 0, kFace},
                                   {"ball on fixed face", 0, kFixed, 0.3, kFace},
                                   {"corner on face", 0, 1, 0, kFace},
@@ -25,7 +25,13 @@ const std::vector<Kind> kKinds = {{"corner on fixed face", 0, kFixed, 0, kFace},
                                   {"fixed ball on face", kFixed, 1, 0.3, kFace},
                                   {"ball on fixed ball", 0, kFixed, 0.3, 0.7},
                                   {"ball on ball", 0, 1, 0.3, 0.7},
-                                  {"corner on ball", 0, 1, 0, 0.7}};
+                                  {"corner on ball", 0, 1, 0, 0.7},
+                                  {"ball on fixed edge", 0, kFixed, 0.7, kEdge},
+                                  {"ball on edge", 0, 1, 0.7, kEdge}};
+
+Vec3 edgeOf(const Kind& kind, const Vec3& normal) {
+  return std::isnan(kind.radiusB) ? Vec3(normal.unitOrthogonal()) : Vec3(Vec3::Zero());
+}
 
 /// Two lopsided bodies that move at random and touch in a contact of that kind, somewhere.
 struct Touching {
@@ -46,8 +52,8 @@ struct Touching {
     }
     evaluatePoseRates(mechanism.bodies, state, rate);
     const Vec3 normal = random.vector().normalized();
-    ContactConstraint contact =
-        constraintOf({kind.bodyA, kind.bodyB, random.vector(), normal, 0, kind.radiusA, kind.radiusB}, state);
+    ContactConstraint contact = constraintOf(
+        {kind.bodyA, kind.bodyB, random.vector(), normal, 0, kind.radiusA, kind.radiusB, edgeOf(kind, normal)}, state);
     contact.motion = motion;
     contact.friction = 0.4;
     setSlidingDirection(contact, normal.cross(random.vector()), state);
@@ -139,9 +145,11 @@ TEST(ContactRows, SurfacesApartKeepTheirDistanceInTheGap) {
   const VectorX state = restingState(2);
   for (const Kind& kind : kKinds) {
     Mechanism mechanism;
+    const Vec3 normal = Vec3(2, -1, 2) / 3;
     mechanism.bodies = {lopsided(1), lopsided(1)};
     mechanism.contacts = {constraintOf(
-        {kind.bodyA, kind.bodyB, Vec3(1, 2, 3), Vec3(2, -1, 2) / 3, 0.01, kind.radiusA, kind.radiusB}, state)};
+        {kind.bodyA, kind.bodyB, Vec3(1, 2, 3), normal, 0.01, kind.radiusA, kind.radiusB, edgeOf(kind, normal)},
+        state)};
     EXPECT_NEAR(placeIn(mechanism, 0, state).gap, 0.01, 3e-15) << kind.name;
   }
 }

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "experiments/experiment.h"
+#include "experiments/ridged_ground.h"
 #include "simulate/plan/plan.h"
 
 namespace cradle {
@@ -134,6 +134,24 @@ TEST(Plan, TakesContactStepsForMeshesThatMayTouchWhereALookIsEnough) {
   EXPECT_EQ(methodOfPrism(1e-4, "auto"), MotionKind::errorSteps);
   EXPECT_EQ(methodOfPrism(1e-3, "hull"), MotionKind::errorSteps);
   EXPECT_EQ(methodOfPrism(1e-3, "none"), MotionKind::freeFlight);
+}
+
+// Sixty balls over the same ground, closed and as a sheet.
+TEST(Plan, TakesNoSoftContactsWithAMeshThatIsNotClosed) {
+  for (const bool isSheet : {false, true}) {
+    const std::string text = fmt::format(
+        R"({{"schema": "cradle-scene/1", "name": "ground", "duration": 1, "accuracy": 1e-3,
+      "bodies": [{{"name": "ground", "shape": {{"mesh": "ground.obj"}}, "collision": "mesh", "motion": "static"}},
+        {{"name": "ball", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1, "position": [-1, 0.2, 0],
+         "copies": {{"count": [6, 10, 1], "spacing": [0.3, 0.3, 1]}}}}]}})");
+    const LoadedModel ground = ridgedGround({{-3, 0.1}, {0, 0}, {3, 0.1}}, isSheet);
+    const Plan plan = planOf(parseScene(text, "ground.json", [&](const MeshReference&) { return ground; }).scene);
+    ASSERT_EQ(plan.islands.size(), 1u);
+    EXPECT_EQ(plan.islands[0].method.kind, isSheet ? MotionKind::fixedSteps : MotionKind::pile);
+    EXPECT_EQ(std::any_of(plan.islands[0].leftOut.begin(), plan.islands[0].leftOut.end(),
+                          [](std::string_view line) { return line.find("not closed") != std::string_view::npos; }),
+              isSheet);
+  }
 }
 
 long evaluationsOf(const std::string& members) {

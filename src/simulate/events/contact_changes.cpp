@@ -18,7 +18,7 @@ constexpr double kMarginRounding = 1e-12;  // of the force, or m/s
 constexpr double kFailedPart =
     1e-6;  // of the accelerations: less that forces leave is held; more than when it was decided
 constexpr double kLocated = 1e-11;  // of a step, on the interpolant
-constexpr int kMostCuts = 60;
+constexpr int kMostBorderCuts = 60;
 
 constexpr double kLeavingPart = 0.5;  // of what touches yet: so far beyond a face a contact has left it
 // Of a margin: half of what touches yet is found to a thousandth. Bounded on both sides, it is halved rather than
@@ -74,14 +74,19 @@ void LastingContacts::takeMargins(const VectorX& state, std::vector<Margins>& ma
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const ContactMotion motion = mechanism().contacts[i].motion;
     const double limit = entries_[i].pair.law.staticFriction * forces[i].normal;
-    const double away = distanceFromNearest(i, state) / (kLeavingPart * reach_);
-    margins[i] = {forces[i].normal / entries_[i].force, INFINITY, INFINITY, kLeavingUnit * std::max(-1.0, 1 - away)};
+    margins[i] = {forces[i].normal / entries_[i].force, INFINITY, INFINITY, INFINITY};
+    if (!ballOverMesh(island_.assembly.geometry, entries_[i].pair, state).mesh)
+      margins[i][3] = kLeavingUnit * std::max(-1.0, 1 - distanceFromNearest(i, state) / (kLeavingPart * reach_));
     if (motion == ContactMotion::sticking) margins[i][1] = (limit - forces[i].tangential.norm()) / entries_[i].force;
     if (motion == ContactMotion::sliding) margins[i][2] = forces[i].tangentialVelocity.dot(givenDirection(i, state));
   }
 }
 
 double LastingContacts::margin(const ContactChange& change, const VectorX& state) {
+  const Entry& entry = entries_[change.contact];
+  if (change.kind == Kind::leave)
+    if (const BallOverMesh ball = ballOverMesh(island_.assembly.geometry, entry.pair, state); ball.mesh)
+      return insideBorder(entry.contact, ball);
   findMargins(state, after_);
   return after_[change.contact][static_cast<std::size_t>(change.kind)];
 }
@@ -95,6 +100,7 @@ std::optional<ContactChange> LastingContacts::firstChange() {
   const Step& step = island_.step;
   if (knownTime_ != step.time) findMargins(step.startState, before_);
   knownTime_ = NAN;
+  const std::optional<ContactChange> leaving = firstLeaving();
   const bool isEndKnown = step.interpolant == InterpolantKind::degreeFour;
   const int samples = isEndKnown ? kFewSamples : kSamples;
   for (int k = 1; k <= samples; ++k) {
@@ -124,6 +130,7 @@ std::optional<ContactChange> LastingContacts::firstChange() {
       const double end = first ? first->fraction : to;
       if (const auto failure = firstFailure(from, end)) first = ContactChange{Kind::redundant, *failure, 0};
     }
+    if (leaving && leaving->fraction <= (first ? first->fraction : to)) return leaving;
     if (first) return first;
     std::swap(before_, ahead_);
   }
@@ -135,7 +142,7 @@ std::optional<ContactChange> LastingContacts::firstChange() {
 double LastingContacts::locate(const ContactChange& change, double from, double marginFrom, double to,
                                double marginTo) {
   double weightFrom = std::max(marginFrom, kMarginRounding), weightTo = marginTo;
-  for (int i = 0; i < kMostCuts && to - from > kLocated; ++i) {
+  for (int i = 0; i < kMostBorderCuts && to - from > kLocated; ++i) {
     const double cut = to - (to - from) * weightTo / (weightTo - weightFrom);
     interpolate(island_.step, cut, sample_);
     const double found = margin(change, sample_);

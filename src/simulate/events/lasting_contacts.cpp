@@ -36,6 +36,7 @@ void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSol
   if (!entries.empty())
     for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
   noteTipping(entries);
+  noteMeshes(entries);
   for (const Entry& entry : entries)
     if (entry.isLoaded) add(entry);
   recordChanges();
@@ -272,7 +273,8 @@ const std::vector<HeldFeature>& LastingContacts::held() {
     };
     const auto pair = std::find_if(geometry.pairs.begin(), geometry.pairs.end(), isSame);
     if (pair == geometry.pairs.end()) continue;
-    HeldFeature feature{static_cast<std::size_t>(pair - geometry.pairs.begin()), 0, mechanism().contacts[i]};
+    HeldFeature feature{static_cast<std::size_t>(pair - geometry.pairs.begin()), 0, mechanism().contacts[i],
+                        touchedFeature(entries_[i].contact)};
     const Collider& a = geometry.colliders[held.a];
     if (held.againstPlane) {
       const auto nearer = [&](const Vec3& left, const Vec3& right) {

@@ -18,7 +18,7 @@ struct ContactChange {
     release,   // its force would have to pull
     slip,      // friction gives way
     stick,     // sliding stops
-    leave,     // the contact comes to the border of its face, or off its corner
+    leave,     // the contact comes to the border of its face or edge, or off its corner
     redundant  // no forces hold it together with others any more
   };
   Kind kind = Kind::release;
@@ -113,6 +113,9 @@ class LastingContacts {
 
   Vec3 givenDirection(std::size_t contact, const VectorX& state) const;
   double distanceFromNearest(std::size_t contact, const VectorX& state) const;
+  static double insideBorder(const Contact& contact, const BallOverMesh& ball);
+  std::optional<ContactChange> firstLeaving() const;
+  void noteMeshes(const std::vector<Entry>& entries);
   void findMargins(const VectorX& state, std::vector<Margins>& margins);
   void takeMargins(const VectorX& state, std::vector<Margins>& margins);
   bool isHeldTogether(const VectorX& state);

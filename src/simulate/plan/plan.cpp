@@ -1,8 +1,8 @@
 // Rules of the plan. The first that applies to an island is taken:
 //   1. the scene names a method: that one, for studies
 //   2. balls bounce without loss, and nothing acts but uniform gravity: closed form between collisions
-//   3. many bodies of like density may touch, only gravity acts, and the accuracy asked is coarse: the fast contact
-//   step
+//   3. many bodies of like density may touch, only gravity acts, no mesh that is not closed is among them, and the
+//   accuracy asked is coarse: the fast contact step, whose overlaps would not tell the sides of a sheet apart
 //   4. models with hollows may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved
 //   once a step, for their edges meet too often
 //   5. nothing acts but uniform gravity: closed form
@@ -21,6 +21,7 @@
 #include "dynamics/integrators/rk4.h"
 #include "dynamics/integrators/semi_implicit_euler.h"
 #include "dynamics/rigid_body.h"
+#include "mesh/solid.h"
 #include "scene/named_accuracy.h"
 #include "simulate/balls/flying_balls.h"
 #include "simulate/colliders.h"
@@ -109,6 +110,17 @@ bool hasMesh(const Scene& scene, const IslandPlan& island) {
   });
 }
 
+/// Whether a mesh that may be touched is not closed.
+bool hasSheet(const Scene& scene, const IslandPlan& island) {
+  return std::any_of(island.touching.begin(), island.touching.end(), [&](int index) {
+    const Body& body = scene.bodies[static_cast<std::size_t>(index)];
+    const auto collider = colliderOf(body, scene, kFixed);
+    if (!collider || collider->kind() != ColliderKind::mesh) return false;
+    const auto model = static_cast<std::size_t>(std::get<ModelShape>(body.shape).model);
+    return !checkSolid(scene.models[model].solid).isSolid;
+  });
+}
+
 /// Whether a body is much heavier and much denser than others: of a dense body on a light one sweeps carry too little,
 /// large bodies among small ones of the same stuff come out well. (docs/stability.md, stacks)
 bool hasDenseOnes(const Scene& scene, const IslandPlan& island) {
@@ -140,12 +152,13 @@ void choose(const Scene& scene, IslandPlan& island) {
     island.reason = "elastic balls in flight: parabolas, and collisions in the order of time";
     island.leftOut.push_back("no steps, no rotation: nothing turns balls that touch without friction");
   } else if (mayTouchSomething && scene.accuracy > kLookAccuracy && island.bodies.size() >= kPileBodies &&
-             !isActedUpon(scene, island) && !hasDenseOnes(scene, island)) {
+             !isActedUpon(scene, island) && !hasDenseOnes(scene, island) && !hasSheet(scene, island)) {
     island.method = {MotionKind::pile, "fast contact step", kPileTimeStep};
     island.reason = "many bodies may touch: soft contacts, sub-stepped";
     island.leftOut.push_back("no motion of bodies that lie still");
   } else if (mayTouchSomething && scene.accuracy > kLookAccuracy && hasMesh(scene, island)) {
     island.method = contactSteps();
+    if (hasSheet(scene, island)) island.leftOut.push_back("no soft contacts: a mesh that is not closed has two sides");
     island.reason = "models with hollows may touch: contact is resolved once a step";
   } else if (mayTouchSomething) {
     island.method = stepsToEvents(scene);

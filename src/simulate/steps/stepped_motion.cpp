@@ -22,6 +22,7 @@ constexpr double kMostSteppedTieError = 1e-7;  // m (a m of coordinates) or rad:
 constexpr double kMostTieGrowth = 2;           // times what free motion leaves of ties that contradict each other
 constexpr double kShortestHeld = 1.0 / 32;     // of a step: shorter ones are not cut for the sake of ties
 constexpr int kMostServed = 12;                // contacts
+constexpr double kSheetPart = 0.5;             // of the radius inside a body: so far it may go in a step beside a sheet
 constexpr int kManyLandings = 2;               // events in a step: beyond, it is not cut where something lands
 constexpr int kManyEvents = 16;                // in a step: beyond, it is not cut any more
 constexpr int kMostEvents = 10000;             // within a step
@@ -37,6 +38,7 @@ SteppedMotion::SteppedMotion(MovingIsland& island, RopeStage& ropes, const Chose
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       start_(island.time),
       windowStart_(island.time) {
+  for (const Collider& collider : island.assembly.geometry.colliders) innerRadii_.push_back(innerRadius(collider));
   ropes_.setTimeStep(method.timeStep);
   island_.step.startRateIsKnown = false;
   contacts_.strike(island_.time, island_.state, island_.state);
@@ -141,10 +143,27 @@ void SteppedMotion::shorten() {
   method_.integrate(island_.rightHandSide, before_, island_.time, half, step);
 }
 
+/// s: so that nothing that is near a sheet, and may touch it already, comes to its other side within a step.
+double SteppedMotion::longestBesideSheets() const {
+  const ContactGeometry& geometry = island_.assembly.geometry;
+  double longest = INFINITY;
+  for (const ColliderPair& pair : geometry.pairs) {
+    if (pair.againstPlane) continue;
+    const Collider &a = geometry.colliders[pair.a], &b = geometry.colliders[pair.b];
+    const bool isOnB = b.kind() == ColliderKind::mesh && b.mesh->isSheet;
+    if (!isOnB && !(a.kind() == ColliderKind::mesh && a.mesh->isSheet)) continue;
+    const Collider& solid = isOnB ? a : b;
+    const double speed = linearVelocity(island_.state, solid.body).norm() +
+                         solid.boundingRadius * angularVelocity(island_.state, solid.body).norm();
+    longest = std::min(longest, kSheetPart * innerRadii_[isOnB ? pair.a : pair.b] / speed);
+  }
+  return longest;
+}
+
 /// Takes a step to `stepEnd`, or a part of it where springs, ropes or spins are too fast for the whole.
 void SteppedMotion::moveFreely(double stepEnd) {
   Step& step = island_.step;
-  double length = std::min(stepEnd - island_.time, longest_);
+  double length = std::min({stepEnd - island_.time, longest_, longestBesideSheets()});
   method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
   if (method_.tolerance == 0) return;
   prepareInterpolant(island_.rightHandSide, step);

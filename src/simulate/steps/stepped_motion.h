@@ -42,6 +42,7 @@ class SteppedMotion {
  private:
   double nextStepEnd() const;
   void moveFreely(double stepEnd);
+  double longestBesideSheets() const;
   bool stopAtFirstEvent();
   bool stopAtFirstLanding();
   bool holdContacts();
@@ -61,9 +62,10 @@ class SteppedMotion {
   int eventsInWindow_ = 0;
   double windowStart_ = 0;  // s
   VectorX before_;
-  std::vector<int> rodsBefore_;  // of ropes, before the changes of a step
-  bool isHeld_ = false;          // contacts acted over all of the last step ...
-  VectorX held_;                 // ... and led here
+  std::vector<int> rodsBefore_;     // of ropes, before the changes of a step
+  bool isHeld_ = false;             // contacts acted over all of the last step ...
+  VectorX held_;                    // ... and led here
+  std::vector<double> innerRadii_;  // m, of the colliders
 };
 
 }  // namespace cradle

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/mesh_nearest.h"
+
+namespace cradle {
+
+// Where a ball touches a mesh: on a flat region of its surface (index: one of its faces), an edge or a vertex. All
+// points and distances are in the mesh's frame (m).
+
+/// A feature, and which way it looks: what touches it is ahead.
+struct TouchedFeature {
+  MeshPoint::Feature feature = MeshPoint::Feature::none;
+  std::uint32_t index = 0;
+};
+
+/// How far (m) a point is inside of the places from which the feature is the nearest of those that meet at it (its
+/// Voronoi region); < 0 outside. Changes no faster than the point moves. O(borders of the flat region).
+double insideRegion(const MeshSurface& surface, const TouchedFeature& touched, const Vec3& point);
+
+/// Nearer (m) to the border of a region than this, a contact may be found on either side.
+double borderWidth(const MeshSurface& surface);
+
+/// The half-spaces behind a feature: normal . x <= offset holds for all that a ball, which stays on the feature, cannot
+/// come nearer to than to the feature itself.
+struct HalfSpace {
+  Vec3 normal = Vec3::Zero();  // unit
+  double offset = 0;           // m
+};
+std::vector<HalfSpace> spaceBehind(const MeshSurface& surface, const TouchedFeature& touched);
+
+/// Distance (m) of a point from those triangles that are not wholly behind any one of the features; infinite if above
+/// `reach` (m).
+double distanceBeside(const MeshSurface& surface, const std::vector<std::vector<HalfSpace>>& touched, const Vec3& point,
+                      double reach);
+
+}  // namespace cradle
