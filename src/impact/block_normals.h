@@ -8,8 +8,8 @@
 
 namespace cradle {
 
-/// Rigid contacts are taken as this much stiffer than the bodies are heavy, about the impulses so far (a proximal step):
-/// four points on two rigid bodies have more impulses than the bodies have ways to move.
+/// Rigid contacts are taken as this much stiffer than the bodies are heavy, about the impulses so far (a proximal
+/// step): four points on two rigid bodies have more impulses than the bodies have ways to move.
 constexpr double kRigid = 10;
 constexpr int kNewtonSteps = 2;  // more find hardly other points: the next pass guesses again
 

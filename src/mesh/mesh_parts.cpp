@@ -16,8 +16,8 @@ namespace {
 // Volume over surface times size: below this a part is a sheet, and its volume is rounding.
 constexpr double kSheetVolume = 1e-12;
 
-/// Sets that are joined in pairs (R. E. Tarjan, "Efficiency of a good but not linear set union algorithm", J. ACM 22(2),
-/// 1975, with path halving).
+/// Sets that are joined in pairs (R. E. Tarjan, "Efficiency of a good but not linear set union algorithm", J. ACM
+/// 22(2), 1975, with path halving).
 class DisjointTriangles {
  public:
   explicit DisjointTriangles(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
@@ -67,7 +67,10 @@ void measure(const TriangleMesh& mesh, MeshPart& part) {
       part.bounds.extend(mesh.vertices[corner]);
     }
     alone.triangles.push_back({first, first + 1, first + 2});
-    area += (alone.vertices[first + 1] - alone.vertices[first]).cross(alone.vertices[first + 2] - alone.vertices[first]).norm() / 2;
+    area += (alone.vertices[first + 1] - alone.vertices[first])
+                .cross(alone.vertices[first + 2] - alone.vertices[first])
+                .norm() /
+            2;
   }
   const double volume = signedVolume(alone);
   part.volume = std::abs(volume) > kSheetVolume * area * part.bounds.diagonal().norm() ? volume : 0;

@@ -15,10 +15,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kTouching = 1e-6;          // of the smaller part's diagonal: as near, surfaces touch
-constexpr double kSinglePrecision = 1.2e-7;  // of coordinates: two roundings of single precision, in which files hold them
-constexpr double kOnBorder = 1e-9;          // of a triangle or an edge: a crossing as near to its border is on it
-constexpr std::size_t kMostSamples = 64;    // points of a part: if none is clear of the other, the surfaces coincide
+constexpr double kTouching = 1e-6;  // of the smaller part's diagonal: as near, surfaces touch
+constexpr double kSinglePrecision =
+    1.2e-7;                               // of coordinates: two roundings of single precision, in which files hold them
+constexpr double kOnBorder = 1e-9;        // of a triangle or an edge: a crossing as near to its border is on it
+constexpr std::size_t kMostSamples = 64;  // points of a part: if none is clear of the other, the surfaces coincide
 
 struct TriangleCorners {
   Vec3 a, b, c;
@@ -72,7 +73,8 @@ double squaredDistance(const Vec3& point, const TriangleCorners& triangle) {
   return isAbove ? height * height / square : nearest;
 }
 
-/// Whether two triangles in one plane have a common area, more than `tolerance` (m) across: no side of either parts them.
+/// Whether two triangles in one plane have a common area, more than `tolerance` (m) across: no side of either parts
+/// them.
 bool haveCommonArea(const TriangleCorners& p, const TriangleCorners& q, double tolerance) {
   for (const auto& [one, other] : {std::pair(&p, &q), std::pair(&q, &p)})
     for (std::size_t i = 0; i < 3; ++i) {
@@ -116,8 +118,9 @@ class Encounter {
     judgeCuts(secondCuts_, first_, secondSides_);
     sample(first_, second_, firstSides_);
     sample(second_, first_, secondSides_);
-    const std::optional<Vec3> place =
-        firstSides_.inside ? firstSides_.inside : secondSides_.inside ? secondSides_.inside : flush_;
+    const std::optional<Vec3> place = firstSides_.inside    ? firstSides_.inside
+                                      : secondSides_.inside ? secondSides_.inside
+                                                            : flush_;
     if (!place) return {};
     if (!firstSides_.outside) return {PartRelation::firstInside, *place};
     if (!secondSides_.outside) return {PartRelation::secondInside, *place};

@@ -92,7 +92,8 @@ void addSurfaces(const Scene& scene, const std::vector<int>& bodies, std::vector
     const auto model = static_cast<std::size_t>(std::get<ModelShape>(body.shape).model);
     const TriangleMesh& mesh = scene.models[model].solid;
     if (!surfaces[model])
-      surfaces[model] = std::make_shared<const MeshSurface>(checkSolid(mesh).isClosed ? surfaceOf(mesh) : sheetOf(mesh));
+      surfaces[model] =
+          std::make_shared<const MeshSurface>(checkSolid(mesh).isClosed ? surfaceOf(mesh) : sheetOf(mesh));
     if (surfaces[model]->isSheet && body.motion == Motion::dynamic) continue;
     collider.mesh = surfaces[model];
     collider.bodyFromMesh = colliderFromShape(body, collider.body);

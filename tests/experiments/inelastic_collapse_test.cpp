@@ -31,8 +31,10 @@ struct BallAfter {
 };
 
 std::string columnText(const BallColumn& column, const char* shape) {
-  std::string text = column.hasFloor ? R"({"name": "floor", "shape": {"plane": {}}, "motion": "static",
-    "material": "m"})" : R"({"name": "far", "shape": {"plane": {}}, "position": [0, -100, 0], "motion": "static",
+  std::string text = column.hasFloor
+                         ? R"({"name": "floor", "shape": {"plane": {}}, "motion": "static",
+    "material": "m"})"
+                         : R"({"name": "far", "shape": {"plane": {}}, "position": [0, -100, 0], "motion": "static",
     "material": "m"})";
   double height = column.hasFloor ? kColumnRadius + column.gaps[0] : 0;
   for (std::size_t i = 0; i < column.masses.size(); ++i) {
@@ -220,13 +222,12 @@ BallColumn rowWithGaps(std::size_t count, double restitution, double gap, bool h
   return row;
 }
 
-// Places are rounded to 1e-16 m, a part of 1e-6 of the least gap, and impacts are found to 5e-14 m: the order of the few
-// dozen impacts is that of the reference.
+// Places are rounded to 1e-16 m, a part of 1e-6 of the least gap, and impacts are found to 5e-14 m: the order of the
+// few dozen impacts is that of the reference.
 TEST(RowOfBalls, GapsSayWhichImpactComesFirst) {
   for (const double accuracy : {1e-3, 1e-6, 1e-9})
     for (const double gap : {1e-6, 1e-8, 1e-9})
-      for (const auto& [count, restitution] :
-           {std::pair(std::size_t{3}, 0.3), {4, 0.7}, {5, 0.9}, {8, 0.9}, {6, 1.0}})
+      for (const auto& [count, restitution] : {std::pair(std::size_t{3}, 0.3), {4, 0.7}, {5, 0.9}, {8, 0.9}, {6, 1.0}})
         for (const bool haveOneMass : {true, false}) {
           const BallColumn row = rowWithGaps(count, restitution, gap, haveOneMass);
           PairByPair reference(row);

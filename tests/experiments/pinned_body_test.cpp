@@ -7,8 +7,8 @@
 #include "experiments/experiment.h"
 #include "math/rotation.h"
 
-// Bodies whose joint is where they touch something: flaps, doors, lids, pendulums at walls, bodies that stand on a pinned
-// corner, rim or round end. The contact at the joint is there for ever, and must hide no other.
+// Bodies whose joint is where they touch something: flaps, doors, lids, pendulums at walls, bodies that stand on a
+// pinned corner, rim or round end. The contact at the joint is there for ever, and must hide no other.
 
 namespace cradle {
 namespace {
@@ -90,15 +90,18 @@ TEST_P(FlapOnGround, LiesShutAtLast) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Grounds, FlapOnGround,
-    testing::Values(FlapCase{"Plane", kPlane, 0, 60, 0.5}, FlapCase{"PlaneWithoutFriction", kPlane, 0, 60, 0},
-                    FlapCase{"PlaneNearlyShut", kPlane, 0, 5, 0.5}, FlapCase{"PlaneGapOfNanometre", kPlane, 1e-9, 60, 0.5},
-                    FlapCase{"PlaneGapOfMicrometre", kPlane, 1e-6, 60, 0.5},
-                    FlapCase{"PlaneGapOfMillimetre", kPlane, 1e-3, 60, 0.5}, FlapCase{"Box", kBox, 0, 60, 0.5},
-                    FlapCase{"BoxGapOfMicrometre", kBox, 1e-6, 60, 0}, FlapCase{"EdgeOfBlock", kBlockUnderFlap, 0, 60, 0.5},
-                    FlapCase{"EdgeOfBlockGapOfNanometre", kBlockUnderFlap, 1e-9, 80, 0.5}),
-    [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Grounds, FlapOnGround,
+                         testing::Values(FlapCase{"Plane", kPlane, 0, 60, 0.5},
+                                         FlapCase{"PlaneWithoutFriction", kPlane, 0, 60, 0},
+                                         FlapCase{"PlaneNearlyShut", kPlane, 0, 5, 0.5},
+                                         FlapCase{"PlaneGapOfNanometre", kPlane, 1e-9, 60, 0.5},
+                                         FlapCase{"PlaneGapOfMicrometre", kPlane, 1e-6, 60, 0.5},
+                                         FlapCase{"PlaneGapOfMillimetre", kPlane, 1e-3, 60, 0.5},
+                                         FlapCase{"Box", kBox, 0, 60, 0.5},
+                                         FlapCase{"BoxGapOfMicrometre", kBox, 1e-6, 60, 0},
+                                         FlapCase{"EdgeOfBlock", kBlockUnderFlap, 0, 60, 0.5},
+                                         FlapCase{"EdgeOfBlockGapOfNanometre", kBlockUnderFlap, 1e-9, 80, 0.5}),
+                         [](const auto& info) { return std::string(info.param.name); });
 
 // A capsule hinged by the centre of its upper cap, which touches the wall all the time. Between impacts its energy is
 // constant, so it comes back as fast as it left: each impulse is e times the one before. The first speed follows from
@@ -119,7 +122,8 @@ TEST(PinnedBody, PendulumAtAWallBouncesWithItsRestitution) {
       const std::vector<Event> impacts = eventsOf(run, EventKind::impact);
       ASSERT_EQ(impacts.size(), 4u) << gap << " " << accuracy;
       const double fall = 0.5 * (std::cos(std::asin(gap)) - std::cos(std::numbers::pi / 3));
-      double impulse = (1 + kRestitution) * std::sqrt(2 * kMass * kGravity * fall * kInertia) / std::cos(std::asin(gap));
+      double impulse =
+          (1 + kRestitution) * std::sqrt(2 * kMass * kGravity * fall * kInertia) / std::cos(std::asin(gap));
       for (const Event& impact : impacts) {
         EXPECT_NEAR(impact.impulse, impulse, 20 * accuracy * impulse) << gap << " " << accuracy;
         impulse *= kRestitution;

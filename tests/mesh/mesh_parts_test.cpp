@@ -52,14 +52,14 @@ void expectRelation(const TriangleMesh& a, const TriangleMesh& b, PartRelation e
 
 TEST(PartRelation, OverlapIsFoundHoweverTheSurfacesMeet) {
   const TriangleMesh unit = boxMesh({1, 1, 1});
-  expectRelation(unit, boxAt({0.7, 0.3, 0.2}, {1, 1, 1}), PartRelation::crossing);    // corner in corner
-  expectRelation(unit, boxAt({0.5, 0, 0}, {1, 1, 1}), PartRelation::crossing);        // four sides flush
-  expectRelation(unit, boxAt({0.999, 0, 0}, {1, 1, 1}), PartRelation::crossing);      // a thousandth deep
+  expectRelation(unit, boxAt({0.7, 0.3, 0.2}, {1, 1, 1}), PartRelation::crossing);  // corner in corner
+  expectRelation(unit, boxAt({0.5, 0, 0}, {1, 1, 1}), PartRelation::crossing);      // four sides flush
+  expectRelation(unit, boxAt({0.999, 0, 0}, {1, 1, 1}), PartRelation::crossing);    // a thousandth deep
   expectRelation(unit, boxAt({0.999, 0.999, 0.999}, {1, 1, 1}), PartRelation::crossing);
-  expectRelation(boxMesh({4, 1, 1}), boxMesh({1, 4, 0.5}), PartRelation::crossing);   // no corner inside
-  expectRelation(boxMesh({4, 1, 1}), boxMesh({1, 4, 1}), PartRelation::crossing);     // the same, two sides flush
-  expectRelation(unit, boxAt({0, 0.5, 0}, {0.5, 1, 0.5}), PartRelation::crossing);    // a peg in a side
-  expectRelation(unit, boxAt({0, 0.25, 0}, {0.5, 1, 1}), PartRelation::crossing);     // the same, two sides flush
+  expectRelation(boxMesh({4, 1, 1}), boxMesh({1, 4, 0.5}), PartRelation::crossing);  // no corner inside
+  expectRelation(boxMesh({4, 1, 1}), boxMesh({1, 4, 1}), PartRelation::crossing);    // the same, two sides flush
+  expectRelation(unit, boxAt({0, 0.5, 0}, {0.5, 1, 0.5}), PartRelation::crossing);   // a peg in a side
+  expectRelation(unit, boxAt({0, 0.25, 0}, {0.5, 1, 1}), PartRelation::crossing);    // the same, two sides flush
   expectRelation(ballAt({0, 0, 0}, 1), ballAt({1.9, 0.1, 0.2}, 1), PartRelation::crossing);
   expectRelation(lPrismMesh(), boxAt({0.5, 1.5, 0.5}, {0.4, 2, 0.4}), PartRelation::crossing);
 }
@@ -71,7 +71,8 @@ TEST(PartRelation, TouchingIsNoOverlap) {
     expectRelation(unit, boxAt({offset, 0.3, 0.2}, {1, 1, 1}), PartRelation::apart);
     expectRelation(unit, boxAt({offset, 0, 0}, {1, 3, 3}), PartRelation::apart);
     expectRelation(unit, boxAt({offset, offset, 0.4}, {1, 1, 1}), PartRelation::apart);  // along an edge
-    expectRelation(lPrismMesh(), boxAt({1 + offset, 2 - (1 - offset), 0.5}, {2, 2, 1}), PartRelation::apart);  // in its bend
+    expectRelation(lPrismMesh(), boxAt({1 + offset, 2 - (1 - offset), 0.5}, {2, 2, 1}),
+                   PartRelation::apart);  // in its bend
   }
   expectRelation(unit, ballAt({1, 0, 0}, 0.5), PartRelation::apart);
 }
@@ -131,15 +132,15 @@ TEST(Parts, FaceOutwardsInwardsAndOutwardsAgain) {
   };
   for (const Case& known : std::vector<Case>{{{1}, {}, 0},
                                              {{-1}, {0}, 0},
-                                             {{1, -1}, {}, 0},              // a cavity
-                                             {{1, -1, 1}, {}, 0},           // an island in it
-                                             {{1, -1, 1, -1}, {}, 0},       // with a cavity of its own
-                                             {{1, -1, -1}, {2}, 0},         // an island inside-out
-                                             {{1, -1, -1, -1}, {2}, 0},     // with a cavity
-                                             {{-1, -1}, {0}, 0},            // only the outer one is wrong
-                                             {{-1, 1}, {0, 1}, 0},          // all of it is inside-out
-                                             {{-1, 1, -1}, {0, 1, 2}, 0},   // the same
-                                             {{1, 1}, {}, 1}}) {            // volume that counts twice
+                                             {{1, -1}, {}, 0},             // a cavity
+                                             {{1, -1, 1}, {}, 0},          // an island in it
+                                             {{1, -1, 1, -1}, {}, 0},      // with a cavity of its own
+                                             {{1, -1, -1}, {2}, 0},        // an island inside-out
+                                             {{1, -1, -1, -1}, {2}, 0},    // with a cavity
+                                             {{-1, -1}, {0}, 0},           // only the outer one is wrong
+                                             {{-1, 1}, {0, 1}, 0},         // all of it is inside-out
+                                             {{-1, 1, -1}, {0, 1, 2}, 0},  // the same
+                                             {{1, 1}, {}, 1}}) {           // volume that counts twice
     const PartReport report = examineParts(nested(known.ways));
     EXPECT_EQ(report.insideOut, known.insideOut) << testing::PrintToString(known.ways);
     EXPECT_THAT(report.overlaps, SizeIs(known.overlaps)) << testing::PrintToString(known.ways);
@@ -149,7 +150,9 @@ TEST(Parts, FaceOutwardsInwardsAndOutwardsAgain) {
 TEST(Parts, AreJudgedEachByItsOwnSurroundings) {
   // Inside-out beside one that is right, both hollow; the cavities stay.
   const TriangleMesh hollow = nested({1, -1});
-  const auto beside = [](const TriangleMesh& mesh) { return moved(mesh, [](const Vec3& v) { return Vec3(v + Vec3(40, 0, 0)); }); };
+  const auto beside = [](const TriangleMesh& mesh) {
+    return moved(mesh, [](const Vec3& v) { return Vec3(v + Vec3(40, 0, 0)); });
+  };
   EXPECT_THAT(examineParts(joined(hollow, beside(nested({-1, -1})))).insideOut, ElementsAre(2));
   EXPECT_THAT(examineParts(joined(hollow, beside(insideOut(hollow)))).insideOut, ElementsAre(2, 3));
   EXPECT_THAT(examineParts(joined(hollow, beside(hollow))).insideOut, IsEmpty());

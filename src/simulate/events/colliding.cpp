@@ -10,10 +10,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kStandstillPart = 1e-12;    // of the fastest speed at an impact: what is left is rounding
-constexpr double kSequencePart = 1e-9;       // of the time of a fall by the smallest size: as long it may take always
-constexpr double kGapRoundingPart = 4e-12;   // of the smallest size: beyond the dead band, a gap is one ...
-constexpr double kPlaceRounding = 1e-15;     // ... unless the places around it are rounded that coarsely
+constexpr double kStandstillPart = 1e-12;   // of the fastest speed at an impact: what is left is rounding
+constexpr double kSequencePart = 1e-9;      // of the time of a fall by the smallest size: as long it may take always
+constexpr double kGapRoundingPart = 4e-12;  // of the smallest size: beyond the dead band, a gap is one ...
+constexpr double kPlaceRounding = 1e-15;    // ... unless the places around it are rounded that coarsely
 
 /// m/s: of the faster of the two bodies' centres.
 double contactSpeed(const Contact& contact, const VectorX& state) {
@@ -62,9 +62,8 @@ void EventContacts::collide(const std::optional<std::size_t>& meeting) {
     findTouching(std::nullopt);
   }
   // A gap that closes later is an event of its own.
-  std::erase_if(touching_, [&](const Contact& contact) {
-    return contact.separation > limits.gapRounding && closes(contact);
-  });
+  std::erase_if(touching_,
+                [&](const Contact& contact) { return contact.separation > limits.gapRounding && closes(contact); });
 }
 
 /// What touches, and what may come to touch while a sequence of impacts lasts.

@@ -26,13 +26,6 @@ void EventLog::recordCorrection(double time, CorrectionKind kind, const std::vec
   corrections_.record(std::move(correction));
 }
 
-void EventLog::recordCorrection(double time, CorrectionKind kind, const std::vector<int>& movingBodies, double amount) {
-  Correction correction{kind, time, {}, amount};
-  for (const int body : movingBodies)
-    correction.bodies.push_back(assembly_.sceneBodies[static_cast<std::size_t>(body)]);
-  corrections_.record(std::move(correction));
-}
-
 void EventLog::recordFaults(double time, const std::vector<ImpactContact>& impacts, const ImpactFaults& faults) {
   std::vector<int> bodies;
   for (const ImpactContact& impact : impacts)

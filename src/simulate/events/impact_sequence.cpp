@@ -13,11 +13,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kGapGrowthError = 1e-9;         // of the way that the fastest contact closes by meanwhile
-constexpr double kOpeningPart = 1e-6;            // of the fastest closing: a contact that opens faster has let go
-constexpr std::size_t kCollapseImpacts = 200;    // enough to tell intervals that shrink for ever from a few short ones
-constexpr std::size_t kImpactsOfAContact = 20;   // the same, for each contact
-constexpr double kCollapsePart = 1e-12;          // of the time elapsed: so little so many impacts take
+constexpr double kGapGrowthError = 1e-9;        // of the way that the fastest contact closes by meanwhile
+constexpr double kOpeningPart = 1e-6;           // of the fastest closing: a contact that opens faster has let go
+constexpr std::size_t kCollapseImpacts = 200;   // enough to tell intervals that shrink for ever from a few short ones
+constexpr std::size_t kImpactsOfAContact = 20;  // the same, for each contact
+constexpr double kCollapsePart = 1e-12;         // of the time elapsed: so little so many impacts take
 constexpr std::size_t kMaxSequenceImpacts = 100000;  // a row of 40 balls takes a thousand
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -88,8 +88,7 @@ bool ImpactSequence::next(const VectorX& state) {
 
 bool ImpactSequence::hasCollapsed() const {
   const std::size_t count = std::max(kCollapseImpacts, kImpactsOfAContact * contacts_.size());
-  return times_.size() >= collapses_ + count &&
-         elapsed_ - times_[times_.size() - count] <= kCollapsePart * elapsed_;
+  return times_.size() >= collapses_ + count && elapsed_ - times_[times_.size() - count] <= kCollapsePart * elapsed_;
 }
 
 /// s; infinite if nothing closes.

@@ -63,16 +63,16 @@ class ImpactSequence {
   const Islands& groups_;
   const std::vector<double>& radii_;
   SequenceLimits limits_;
-  std::vector<double> gaps_, gapErrors_;   // m
-  std::vector<double> speeds_;             // m/s, of opening
-  std::vector<double> leftSpeeds_;         // m/s, <= 0: of closing that its last impact could not end
-  std::vector<std::size_t> lastImpacts_;   // of each contact: number of its last impact, from 1; 0: none
-  std::vector<double> times_;              // s: of the impacts, from the sequence's start
-  std::size_t collapses_ = 0;              // number of the impact that ended the last collapse
+  std::vector<double> gaps_, gapErrors_;     // m
+  std::vector<double> speeds_;               // m/s, of opening
+  std::vector<double> leftSpeeds_;           // m/s, <= 0: of closing that its last impact could not end
+  std::vector<std::size_t> lastImpacts_;     // of each contact: number of its last impact, from 1; 0: none
+  std::vector<double> times_;                // s: of the impacts, from the sequence's start
+  std::size_t collapses_ = 0;                // number of the impact that ended the last collapse
   double elapsed_ = 0, fastestClosing_ = 0;  // s, m/s
   std::vector<std::size_t> members_;
   bool isCollapse_ = false;
-  VectorX displacements_;      // m and rad: six of each body
+  VectorX displacements_;       // m and rad: six of each body
   std::vector<char> isStruck_;  // groups
 };
 

@@ -41,7 +41,6 @@ bool canMeetPlane(const Reach& reach, double size, const Body& plane) {
   return normal.dot(reach.center - plane.worldFromBody.translation) <= reach.radius + size;
 }
 
-
 /// Bodies that touch something, by body.
 std::vector<char> findTouching(const Scene& scene, const Meetings& meetings) {
   std::vector<char> touches(scene.bodies.size(), 0);
