@@ -127,10 +127,10 @@ Collider colliderOf(const ConvexHull& hull, const RigidTransform& bodyFromShape)
   return colliderOf(polytopeOf(placed));
 }
 
-bool isPinned(const Collider& collider, const Vec3& point, double tolerance) {
+bool isPinned(const Collider& collider, int other, const Vec3& point, double tolerance) {
   return std::any_of(collider.pins.begin(), collider.pins.end(), [&](const PinnedPlace& pin) {
     const Vec3 arm = point - pin.point;
-    return (arm - pin.axis.dot(arm) * pin.axis).norm() <= tolerance;
+    return pin.other == other && (arm - pin.axis.dot(arm) * pin.axis).norm() <= tolerance;
   });
 }
 

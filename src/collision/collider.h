@@ -12,9 +12,10 @@ namespace cradle {
 
 struct MeshSurface;
 
-/// A place of a moving body that a joint with something fixed keeps where it is: its anchor, and with a hinge all of
-/// the axis through it. Surfaces that touch something fixed there can neither part nor close.
+/// A place of a body that a joint keeps where it is on another body, or on all that is fixed: its anchor, and with a
+/// hinge all of the axis through it. Surfaces that touch each other there can neither part nor close.
 struct PinnedPlace {
+  int other = kFixed;         // moving body that it is joined to, or kFixed
   Vec3 point = Vec3::Zero();  // m, from the centre of mass in the body's frame
   Vec3 axis = Vec3::Zero();   // unit, body's frame: of a hinge; zero: a ball joint
 };
@@ -53,8 +54,9 @@ Collider colliderOf(const Cylinder& cylinder, const RigidTransform& bodyFromShap
 Collider colliderOf(const Capsule& capsule, const RigidTransform& bodyFromShape);
 Collider colliderOf(const ConvexHull& hull, const RigidTransform& bodyFromShape);
 
-/// Whether a joint keeps a point of a collider (m, its frame) where it is, to `tolerance` (m) however the body turns.
-bool isPinned(const Collider& collider, const Vec3& point, double tolerance);
+/// Whether a joint with body `other` keeps a point of a collider (m, its frame) where it is, to `tolerance` (m) however
+/// the body turns.
+bool isPinned(const Collider& collider, int other, const Vec3& point, double tolerance);
 
 /// Of a point in the collider's frame. Exact, inside and outside.
 SurfacePoint nearestSurfacePoint(const Collider& collider, const Vec3& point);

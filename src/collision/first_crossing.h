@@ -44,12 +44,12 @@ inline double crossingOfParabola(const Bracket& bracket, double third, double ga
   return bracket.before + 2 * bracket.gapBefore / (std::sqrt(std::max(0.0, root)) - slope);
 }
 
-/// Closes a bracket around a crossing to kFinestCrossing by parabolas (D. E. Muller, 1956): a gap in free fall is one.
-/// Where they do not halve the bracket in three cuts, it is halved.
+/// Closes a bracket around a crossing to `finest` by parabolas (D. E. Muller, 1956): a gap in free fall is one. Where
+/// they do not halve the bracket in three cuts, it is halved.
 template <class Gap>
-void closeBracket(const Gap& gap, Bracket& bracket) {
+void closeBracket(const Gap& gap, Bracket& bracket, double finest = kFinestCrossing) {
   double third = 0, gapThird = 0, widthBefore = INFINITY;
-  for (int i = 0; i < kMostCuts && bracket.after - bracket.before > kFinestCrossing; ++i) {
+  for (int i = 0; i < kMostCuts && bracket.after - bracket.before > finest; ++i) {
     const double width = bracket.after - bracket.before;
     double cut = bracket.before + width * bracket.gapBefore / (bracket.gapBefore - bracket.gapAfter);
     if (i > 0) cut = crossingOfParabola(bracket, third, gapThird);
@@ -58,8 +58,8 @@ void closeBracket(const Gap& gap, Bracket& bracket) {
       widthBefore = width;
     }
     // Half the resolution to the inside, so that both ends come to the crossing.
-    if (!(cut > bracket.before + 0.5 * kFinestCrossing)) cut = bracket.before + 0.5 * kFinestCrossing;
-    if (!(cut < bracket.after - 0.5 * kFinestCrossing)) cut = bracket.after - 0.5 * kFinestCrossing;
+    if (!(cut > bracket.before + 0.5 * finest)) cut = bracket.before + 0.5 * finest;
+    if (!(cut < bracket.after - 0.5 * finest)) cut = bracket.after - 0.5 * finest;
     const double found = gap(cut);
     double& end = found > 0 ? bracket.before : bracket.after;
     double& gapEnd = found > 0 ? bracket.gapBefore : bracket.gapAfter;

@@ -166,8 +166,8 @@ void PairSearch::searchCorners(const TouchingFeatures& touching, std::optional<I
 
 bool PairSearch::isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const {
   const double near = kHeldPlace * upper.boundingRadius;
-  if (hasPinnedPlaces(geometry_, pair_) && isPinned(upper, upper.points[feature_], kPinnedPart * upper.boundingRadius))
-    return true;
+  const int lower = face_->isOfA ? a_.body : bodyB_;
+  if (isPinned(upper, lower, upper.points[feature_], kPinnedPart * upper.boundingRadius)) return true;
   return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
            const Attachment& corner = held.contact.centerA;
            return held.pair == pairIndex_ && corner.body == upper.body &&
@@ -215,8 +215,9 @@ void PairSearch::searchTouching(double start, const TouchingFeatures& touching, 
 /// m: how far a feature that touches without a load may sink in.
 double PairSearch::deadBand(const TouchingFeatures& touching) const {
   if (!hasPinnedPlaces(geometry_, pair_)) return touching.deadBand;
-  return std::max(touching.deadBand,
-                  kPinnedBand * (a_.body != kFixed ? a_ : geometry_.colliders[pair_.b]).boundingRadius);
+  double size = a_.boundingRadius;
+  if (!pair_.againstPlane) size = std::min(size, geometry_.colliders[pair_.b].boundingRadius);
+  return std::max(touching.deadBand, kPinnedBand * size);
 }
 
 /// Where the gap falls to `threshold` (m).

@@ -1,5 +1,6 @@
 #include "collision/separation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -131,38 +132,41 @@ Vec3 pointVelocity(const Contact& contact, int body, const VectorX& places, cons
   return linearVelocity(velocities, body) + angularVelocity(velocities, body).cross(arm);
 }
 
-/// Whether the surface of a moving collider turns about a joint where it is at a contact: about a ball's centre, or
-/// about the point itself.
-bool isPinnedAt(const Collider& collider, const ContactPoint& contact, double radius, const RigidTransform& frame,
-                double side) {
-  if (collider.pins.empty()) return false;
-  const double depth = std::isfinite(radius) ? radius : 0;
-  const Vec3 center = contact.point + side * (depth + contact.separation / 2) * contact.normal;
-  return isPinned(collider, frame.inverse() * center, kPinnedPart * collider.boundingRadius);
+bool isPinnedTo(const Collider& collider, int other) {
+  return std::any_of(collider.pins.begin(), collider.pins.end(),
+                     [&](const PinnedPlace& pin) { return pin.other == other; });
 }
 
-/// Of a contact with something fixed.
+/// Whether the surface of a collider turns about a joint where it is at a contact: about a ball's centre, or about the
+/// point itself. `inwards` (unit) points into the collider.
+bool isPinnedAt(const Collider& collider, int other, const ContactPoint& contact, double radius,
+                const RigidTransform& frame, const Vec3& inwards) {
+  if (!isPinnedTo(collider, other)) return false;
+  const double depth = std::isfinite(radius) ? radius : 0;
+  const Vec3 center = contact.point + (depth + contact.separation / 2) * inwards;
+  return isPinned(collider, other, frame.inverse() * center, kPinnedPart * collider.boundingRadius);
+}
+
 bool isPinnedContact(const ContactGeometry& geometry, const ColliderPair& pair, const ContactPoint& contact,
                      const RigidTransform& worldFromA, const RigidTransform& worldFromB) {
-  if (!hasPinnedPlaces(geometry, pair)) return false;
   const Collider& a = geometry.colliders[pair.a];
-  if (a.body != kFixed) return isPinnedAt(a, contact, contact.radiusA, worldFromA, -1);
-  return isPinnedAt(geometry.colliders[pair.b], contact, contact.radiusB, worldFromB, 1);
+  if (isPinnedAt(a, bodyBOf(geometry, pair), contact, contact.radiusA, worldFromA, -contact.normal)) return true;
+  return !pair.againstPlane &&
+         isPinnedAt(geometry.colliders[pair.b], a.body, contact, contact.radiusB, worldFromB, contact.normal);
 }
 
 }  // namespace
 
 bool hasPinnedPlaces(const ContactGeometry& geometry, const ColliderPair& pair) {
   const Collider& a = geometry.colliders[pair.a];
-  const int bodyB = bodyBOf(geometry, pair);
-  if (a.body != kFixed && bodyB != kFixed) return false;
-  return !a.pins.empty() || (!pair.againstPlane && !geometry.colliders[pair.b].pins.empty());
+  return isPinnedTo(a, bodyBOf(geometry, pair)) ||
+         (!pair.againstPlane && isPinnedTo(geometry.colliders[pair.b], a.body));
 }
 
 bool isPinnedFeature(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature) {
   const Collider& a = geometry.colliders[pair.a];
   return pair.againstPlane && !a.pins.empty() && a.kind() != ColliderKind::cylinder &&
-         isPinned(a, a.points[feature], kPinnedPart * a.boundingRadius);
+         isPinned(a, kFixed, a.points[feature], kPinnedPart * a.boundingRadius);
 }
 
 Vec3 relativeVelocity(const Contact& contact, const VectorX& state) {

@@ -22,7 +22,7 @@ View viewOf(TrajectorySource& source, int width, int height) {
 bool isSeenFromTheStart(const Scene& scene) {
   double lastStart = 0;  // s
   for (const Push& push : scene.pushes) lastStart = std::max(lastStart, push.start);
-  const double frames = lastStart / frameTime(scene, 1);
+  const double frames = lastStart / frameInterval(scene);
   return scene.camera && frames * static_cast<double>(scene.bodies.size()) <= kMostWaiting;
 }
 

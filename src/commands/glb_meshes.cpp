@@ -49,7 +49,7 @@ GlbMeshes::Geometry GlbMeshes::addShape(const Shape& shape) {
   const NamedMesh mesh = std::visit(MeshOfShape{scene_}, shape);
   Geometry geometry = addGeometry(mesh.name, mesh.drawn);
   if (const auto* model = std::get_if<ModelShape>(&shape))
-    geometry.isClosed = checkSolid(scene_.models[static_cast<std::size_t>(model->model)].solid).isSolid;
+    geometry.isClosed = checkSolid(scene_.models[static_cast<std::size_t>(model->model)].solid).isClosed;
   return geometry;
 }
 

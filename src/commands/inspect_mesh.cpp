@@ -9,6 +9,7 @@
 #include "mesh/mass_properties.h"
 #include "mesh/recognise_shape.h"
 #include "mesh/solid.h"
+#include "scene/ranges.h"
 
 namespace cradle {
 namespace {
@@ -76,8 +77,10 @@ void printText(const Inspection& inspection) {
 }  // namespace
 
 void inspectMesh(const std::string& path, double scale, bool asJson) {
-  if (!(scale > 0 && std::isfinite(scale)))
-    throw Error(ErrorKind::usage, "--scale", fmt::format("found {}; allowed are numbers > 0", scale));
+  if (!kScales.holds(scale))
+    throw Error(
+        ErrorKind::usage, "--scale",
+        fmt::format("found {}; allowed are numbers > 0, from {:g} to {:g}", scale, kScales.least, kScales.most));
   const std::vector<LoadedModel> objects = loadObjects(path, scale, ModelParts::solidAlone);
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const LoadedModel& object : objects) {

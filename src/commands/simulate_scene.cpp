@@ -15,6 +15,7 @@
 #include "render/camera_path.h"
 #include "scene/load_scene.h"
 #include "scene/named_accuracy.h"
+#include "scene/ranges.h"
 #include "simulate/assembly.h"
 #include "simulate/plan/plan_text.h"
 #include "simulate/simulate.h"
@@ -50,9 +51,11 @@ double accuracyOf(const std::string& text) {
       fmt::format("found {}; allowed are {} to {}, {}", text, kFinestAccuracy, kCoarsestAccuracy, kAccuracyWords));
 }
 
-double requirePositive(const char* option, double value) {
-  if (value > 0 && std::isfinite(value)) return value;
-  throw Error(ErrorKind::usage, option, fmt::format("found {}; allowed are numbers of seconds > 0", value));
+double requireIn(const Range& range, const char* option, double value) {
+  if (range.holds(value)) return value;
+  throw Error(
+      ErrorKind::usage, option,
+      fmt::format("found {}; allowed are numbers of seconds > 0, from {:g} to {:g}", value, range.least, range.most));
 }
 
 void apply(const SceneOverrides& overrides, Scene& scene) {
@@ -60,7 +63,7 @@ void apply(const SceneOverrides& overrides, Scene& scene) {
     scene.accuracy = accuracyOf(*overrides.accuracy);
     scene.namesAccuracy = true;
   }
-  if (overrides.duration) scene.duration = requirePositive("--duration", *overrides.duration);
+  if (overrides.duration) scene.duration = requireIn(kDurations, "--duration", *overrides.duration);
   if (overrides.method) {
     scene.method = Method{};
     scene.method->name = methodNamed(*overrides.method);
@@ -68,7 +71,7 @@ void apply(const SceneOverrides& overrides, Scene& scene) {
   }
   if (!overrides.timeStep) return;
   if (!scene.method) throw Error(ErrorKind::usage, "--time-step", "found without --method; name the method it is for");
-  scene.method->timeStep = requirePositive("--time-step", *overrides.timeStep);
+  scene.method->timeStep = requireIn(kTimeSteps, "--time-step", *overrides.timeStep);
 }
 
 /// A slip of the command line does not cost a file of another kind, the scene's own for one.

@@ -31,25 +31,73 @@ double couplingOf(const LaneVector (&a)[Block::kMovers], const LaneVector (&b)[B
   return sum;
 }
 
+/// Moment arms (m) of a manifold's points and their middle, of each mover.
 template <class Block>
-void fillFriction(const ContactManifold& manifold, const Vec3 (&arms)[Block::kPoints][Block::kMovers],
-                  const SolverBody* const (&bodies)[Block::kMovers], double subStep, int lane, Block& block) {
+struct ArmsOf {
+  Vec3 points[Block::kPoints][Block::kMovers];
   Vec3 middle[Block::kMovers];
-  for (int k = 0; k < Block::kMovers; ++k) {
-    Vec3 sum = arms[0][k];
-    for (int i = 1; i < Block::kPoints; ++i) sum += arms[i][k];
-    middle[k] = sum / Block::kPoints;
+
+  ArmsOf(const ContactManifold& manifold, const SolverBody* const (&bodies)[Block::kMovers]) {
+    for (int k = 0; k < Block::kMovers; ++k) {
+      const auto& anchors = k == 0 ? manifold.onA : manifold.onB;
+      Vec3 sum = Vec3::Zero();
+      for (int i = 0; i < Block::kPoints; ++i)
+        sum += points[i][k] = bodies[k]->worldFromBody * anchors[static_cast<std::size_t>(i)].template cast<double>();
+      middle[k] = sum / Block::kPoints;
+    }
   }
 
+  /// From the middle, seen from both bodies alike.
+  Vec3 fromMiddle(int point) const {
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < Block::kMovers; ++k) sum += points[point][k] - middle[k];
+    return sum / Block::kMovers;
+  }
+};
+
+/// The rows of the contact plane: a point at (u, v) turns the bodies by turns + u slopeTurns[0] + v slopeTurns[1].
+template <class Block>
+void fillPlane(const ContactManifold& manifold, const ArmsOf<Block>& arms,
+               const SolverBody* const (&bodies)[Block::kMovers], const Vec3 (&tangents)[2], int lane, Block& block) {
+  auto& plane = block.plane;
+  const double inverseMass = fillTurns<Block>(plane.turns, manifold.normal, arms.middle, bodies, lane);
+  if constexpr (Block::kPoints == 1) {
+    block.points[0].mass[lane] = 1 / inverseMass;
+  } else {
+    for (int i = 0; i < 2; ++i)
+      for (int k = 0; k < Block::kMovers; ++k)
+        setLane(plane.slopeTurns[i][k], lane, bodies[k]->scaledFromWorld * tangents[i].cross(manifold.normal));
+    Mat3 operatorOfRows;
+    operatorOfRows(0, 0) = inverseMass;
+    for (int i = 0; i < 2; ++i) {
+      operatorOfRows(0, i + 1) = couplingOf<Block>(plane.turns, plane.slopeTurns[i], lane);
+      for (int j = i; j < 2; ++j)
+        operatorOfRows(i + 1, j + 1) = couplingOf<Block>(plane.slopeTurns[i], plane.slopeTurns[j], lane);
+    }
+    const Mat3 delassus = operatorOfRows.selfadjointView<Eigen::Upper>(), inertia = delassus.inverse();
+    plane.inertia.xx[lane] = inertia(0, 0), plane.inertia.xy[lane] = inertia(0, 1);
+    plane.inertia.xz[lane] = inertia(0, 2), plane.inertia.yy[lane] = inertia(1, 1);
+    plane.inertia.yz[lane] = inertia(1, 2), plane.inertia.zz[lane] = inertia(2, 2);
+    for (int i = 0; i < Block::kPoints; ++i) {
+      auto& point = block.points[i];
+      const Vec3 arm = arms.fromMiddle(i), place(1, arm.dot(tangents[0]), arm.dot(tangents[1]));
+      point.u[lane] = place[1], point.v[lane] = place[2];
+      point.mass[lane] = 1 / place.dot(delassus * place);
+    }
+  }
+}
+
+template <class Block>
+void fillFriction(const ContactManifold& manifold, const ArmsOf<Block>& arms,
+                  const SolverBody* const (&bodies)[Block::kMovers], const Vec3 (&tangents)[2], double subStep,
+                  int lane, Block& block) {
   auto& friction = block.friction;
-  const Vec3 tangent1 = manifold.normal.unitOrthogonal(), tangent2 = manifold.normal.cross(tangent1);
   double inverse[2];
   for (int i = 0; i < 2; ++i) {
-    const Vec3& tangent = i == 0 ? tangent1 : tangent2;
-    setLane(friction.tangents[i], lane, tangent);
-    inverse[i] = fillTurns<Block>(friction.turns[i], tangent, middle, bodies, lane);
+    setLane(friction.tangents[i], lane, tangents[i]);
+    inverse[i] = fillTurns<Block>(friction.turns[i], tangents[i], arms.middle, bodies, lane);
     friction.totals[i][lane] = 0;
-    friction.impulses[i][lane] = subStep * manifold.frictionForce.dot(tangent);
+    friction.impulses[i][lane] = subStep * manifold.frictionForce.dot(tangents[i]);
   }
   const double coupling = couplingOf<Block>(friction.turns[0], friction.turns[1], lane);
   const double determinant = inverse[0] * inverse[1] - coupling * coupling;
@@ -68,7 +116,7 @@ void fillFriction(const ContactManifold& manifold, const Vec3 (&arms)[Block::kPo
     block.twist.mass[lane] = 1 / inverseTwist;
     block.twist.total[lane] = 0;
     block.twist.impulse[lane] = subStep * manifold.twist;
-    for (int i = 0; i < Block::kPoints; ++i) block.twist.levers[i][lane] = (arms[i][0] - middle[0]).norm();
+    for (int i = 0; i < Block::kPoints; ++i) block.twist.levers[i][lane] = (arms.points[i][0] - arms.middle[0]).norm();
   }
 }
 
@@ -86,24 +134,24 @@ void fillLane(const ContactManifold& manifold, std::int32_t index, const std::ve
   block.manifolds[lane] = index;
   setLane(block.normal, lane, manifold.normal);
   block.restitution[lane] = manifold.law->restitution;
-  Vec3 arms[Block::kPoints][Block::kMovers];
   for (int i = 0; i < Block::kPoints; ++i) {
     const std::size_t at = static_cast<std::size_t>(i);
-    auto& point = block.points[i];
-    arms[i][0] = movers[0]->worldFromBody * manifold.onA[at].template cast<double>();
-    if constexpr (Block::kBothMove) arms[i][1] = movers[1]->worldFromBody * manifold.onB[at].template cast<double>();
-    point.mass[lane] = 1 / fillTurns<Block>(point.turns, manifold.normal, arms[i], movers, lane);
-    point.separation[lane] = manifold.separations[at];
-    point.total[lane] = 0;
-    point.impulse[lane] = subStep * manifold.forces[at];
+    block.points[i].separation[lane] = manifold.separations[at];
+    block.points[i].total[lane] = 0;
+    block.points[i].impulse[lane] = subStep * manifold.forces[at];
   }
-  fillFriction(manifold, arms, movers, subStep, lane, block);
+  const ArmsOf<Block> arms(manifold, movers);
+  const Vec3 tangent = manifold.normal.unitOrthogonal();
+  const Vec3 tangents[] = {tangent, manifold.normal.cross(tangent)};
+  fillPlane(manifold, arms, movers, tangents, lane, block);
+  fillFriction(manifold, arms, movers, tangents, subStep, lane, block);
 }
 
 /// A lane that stands for nothing: its body never moves.
 template <class Block>
 void emptyLane(std::int32_t stillBody, int lane, Block& block) {
   block.manifolds[lane] = -1;
+  block.plane.inertia.xx[lane] = block.plane.inertia.yy[lane] = block.plane.inertia.zz[lane] = 1;
   for (int k = 0; k < Block::kMovers; ++k) block.bodies[k][lane] = stillBody;
 }
 

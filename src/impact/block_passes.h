@@ -2,7 +2,7 @@
 
 #include <tuple>
 
-#include "impact/contact_blocks.h"
+#include "impact/block_normals.h"
 
 // What a pass does to one contact block. E. Catto, "Solver2D" (box2d.org, 2024) names the passes: soft contacts that
 // take out overlap a little at a time, relaxed by rigid ones without it, so that taking out overlap leaves no speed.
@@ -42,12 +42,33 @@ struct MotionsOf {
       return -dot(turns[0], movers[0].angular);
   }
 
+  /// Along the normal, over the contact plane.
+  PlaneSpeeds apart(const Block& block) const {
+    const Lanes middle = along(block.normal, block.plane.turns);
+    if constexpr (Block::kPoints == 1)
+      return {middle, same(0), same(0)};
+    else
+      return {middle, twist(block.plane.slopeTurns[0]), twist(block.plane.slopeTurns[1])};
+  }
+
   /// An impulse along a row, on B and backwards on A.
   void push(const Block& block, Lanes impulse, const LaneVector& direction, const LaneVector (&turns)[Block::kMovers]) {
     movers[0].linear = movers[0].linear - (impulse * block.inverseMasses[0]) * direction;
     if constexpr (Block::kBothMove)
       movers[1].linear = movers[1].linear + (impulse * block.inverseMasses[1]) * direction;
     turn(impulse, turns);
+  }
+  void pushApart(const Block& block, const Lanes (&impulses)[Block::kPoints]) {
+    Lanes sum = impulses[0];
+    for (int i = 1; i < Block::kPoints; ++i) sum += impulses[i];
+    push(block, sum, block.normal, block.plane.turns);
+    if constexpr (Block::kPoints > 1) {
+      Lanes alongU = impulses[0] * block.points[0].u, alongV = impulses[0] * block.points[0].v;
+      for (int i = 1; i < Block::kPoints; ++i)
+        alongU += impulses[i] * block.points[i].u, alongV += impulses[i] * block.points[i].v;
+      turn(alongU, block.plane.slopeTurns[0]);
+      turn(alongV, block.plane.slopeTurns[1]);
+    }
   }
   void turn(Lanes impulse, const LaneVector (&turns)[Block::kMovers]) {
     movers[0].angular = movers[0].angular - impulse * turns[0];
@@ -89,56 +110,136 @@ void rubBlock(Block& block, MotionsOf<Block>& velocities) {
 template <class Block>
 void warmBlock(Block& block, SolverMotions& motions) {
   MotionsOf<Block> velocities(block, motions.velocities);
-  for (int i = 0; i < Block::kPoints; ++i) {
-    velocities.push(block, block.points[i].impulse, block.normal, block.points[i].turns);
-  }
+  Lanes impulses[Block::kPoints];
+  for (int i = 0; i < Block::kPoints; ++i) impulses[i] = block.points[i].impulse;
+  velocities.pushApart(block, impulses);
   for (int i = 0; i < 2; ++i)
     velocities.push(block, block.friction.impulses[i], block.friction.tangents[i], block.friction.turns[i]);
   if constexpr (Block::kPoints > 1) velocities.turn(block.twist.impulse, block.twist.turns);
   velocities.store(block, motions.velocities);
 }
 
+template <class Block>
+bool isPressed(const Block& block) {
+  LaneMask pressed{};
+  for (const auto& point : block.points) pressed |= point.impulse > same(0);
+  return pressed[0] | pressed[1];
+}
+
+/// Lets what is pressed rub. What neither is nor was pressed leaves the bodies as they are.
+template <class Block>
+void rubAndStore(Block& block, bool wasPressed, MotionsOf<Block>& velocities, SolverMotions& motions) {
+  auto& friction = block.friction;
+  LaneMask rubs = (friction.impulses[0] != same(0)) | (friction.impulses[1] != same(0));
+  if constexpr (Block::kPoints > 1) rubs |= block.twist.impulse != same(0);
+  if (!wasPressed && !(rubs[0] | rubs[1]) && !isPressed(block)) return;
+  rubBlock(block, velocities);
+  velocities.store(block, motions.velocities);
+}
+
+/// Gives the bodies the impulses that obey the laws. Returns the speeds that follow.
+template <class Block>
+PlaneSpeeds press(Block& block, const PlaneSpeeds& speeds, const NormalLaws<Block::kPoints>& laws,
+                  MotionsOf<Block>& velocities) {
+  Lanes impulses[Block::kPoints];
+  const PlaneSpeeds after = solveNormals(block, speeds, laws, impulses);
+  for (int i = 0; i < Block::kPoints; ++i) {
+    const Lanes held = impulses[i];
+    impulses[i] = held - block.points[i].impulse;
+    block.points[i].impulse = held;
+  }
+  velocities.pushApart(block, impulses);
+  return after;
+}
+
+/// How an overlapping contact of `separation` (m) yields: the spring's oscillation in the sub-step with its damping,
+/// and the speed (m/s) at which it is to open.
+struct Yielding {
+  Lanes stiffness;  // of the bodies' mass
+  Lanes wanted;
+
+  Yielding(const Softness& soft, Lanes separation, Lanes rate) {
+    const Lanes overlap = larger(same(0), -separation) * same(soft.hardening);
+    const Lanes turn = same(soft.turn) * (same(1) + overlap * (same(1) + overlap * (same(1) + overlap)));
+    const Lanes damping = same(soft.damping) + turn;
+    stiffness = turn * damping;
+    wanted = larger(separation * rate * turn / damping, same(-soft.mostPush));
+  }
+};
+
+/// The only point of a manifold gets an impulse.
+template <class Block>
+void pressSingle(Block& block, Lanes free, MotionsOf<Block>& velocities) {
+  auto& point = block.points[0];
+  const Lanes held = larger(same(0), free);
+  velocities.push(block, held - point.impulse, block.normal, block.plane.turns);
+  point.impulse = held;
+}
+
+template <class Block>
+void softenNormals(Block& block, const Softness& soft, Lanes rate, const PlaneSpeeds& moved,
+                   MotionsOf<Block>& velocities) {
+  const Lanes none = same(0);
+  const PlaneSpeeds speeds = velocities.apart(block);
+  if constexpr (Block::kPoints == 1) {
+    auto& point = block.points[0];
+    const Lanes separation = point.separation + moved.middle;
+    const auto apart = separation > none;
+    const Yielding yielding(soft, separation, rate);
+    const Lanes share = same(1) / (same(1) + yielding.stiffness);
+    const Lanes wanted = apart ? separation * rate : yielding.wanted;
+    const Lanes massScale = apart ? same(1) : yielding.stiffness * share;
+    const Lanes impulseScale = apart ? none : share;
+    pressSingle(block, point.impulse - point.mass * massScale * (speeds.middle + wanted) - impulseScale * point.impulse,
+                velocities);
+    point.slack = point.impulse > none ? none : larger(none, separation * rate + speeds.middle);
+  } else {
+    NormalLaws<Block::kPoints> laws;
+    for (int i = 0; i < Block::kPoints; ++i) {
+      auto& point = block.points[i];
+      const Lanes separation = point.separation + moved.at(point.u, point.v);
+      const auto apart = separation > none;
+      const Yielding yielding(soft, separation, rate);
+      laws.stiffness[i] = point.mass * (apart ? same(kRigid) : yielding.stiffness);
+      laws.offset[i] =
+          (apart ? point.impulse : none) - laws.stiffness[i] * (apart ? separation * rate : yielding.wanted);
+      point.slack = separation * rate;
+    }
+    const PlaneSpeeds after = press(block, speeds, laws, velocities);
+    for (auto& point : block.points)
+      point.slack = point.impulse > none ? none : larger(none, point.slack + after.at(point.u, point.v));
+  }
+}
+
 /// Lets contacts that are apart close within the sub-step at most, and pushes overlapping ones apart gently.
 template <class Block>
 void softenBlock(Block& block, const Softness& soft, double subStep, SolverMotions& motions) {
   MotionsOf<Block> velocities(block, motions.velocities);
-  const MotionsOf<Block> displacements(block, motions.displacements);
-  const Lanes rate = same(1 / subStep), none = same(0);
-  for (int i = 0; i < Block::kPoints; ++i) {
-    auto& point = block.points[i];
-    const Lanes separation = point.separation + displacements.along(block.normal, point.turns);
-    const auto apart = separation > none;
-    const Lanes overlap = larger(none, -separation) * same(soft.hardening);
-    const Lanes turn = same(soft.turn) * (same(1) + overlap * (same(1) + overlap * (same(1) + overlap)));
-    const Lanes damping = same(soft.damping) + turn, stiffness = turn * damping;
-    const Lanes yielding = same(1) / (same(1) + stiffness);
-    const Lanes wanted = apart ? separation * rate : larger(separation * rate * turn / damping, same(-soft.mostPush));
-    const Lanes massScale = apart ? same(1) : stiffness * yielding;
-    const Lanes impulseScale = apart ? none : yielding;
-    const Lanes speed = velocities.along(block.normal, point.turns);
-    const Lanes free = point.impulse - point.mass * massScale * (speed + wanted) - impulseScale * point.impulse;
-    const Lanes held = larger(none, free);
-    point.slack = held > none ? none : larger(none, separation * rate + speed);
-    velocities.push(block, held - point.impulse, block.normal, point.turns);
-    point.impulse = held;
-  }
-  rubBlock(block, velocities);
-  velocities.store(block, motions.velocities);
+  const PlaneSpeeds moved = MotionsOf<Block>(block, motions.displacements).apart(block);
+  const bool wasPressed = isPressed(block);
+  softenNormals(block, soft, same(1 / subStep), moved, velocities);
+  rubAndStore(block, wasPressed, velocities, motions);
 }
 
 /// Stops what closes, whatever the overlap, but lets contacts that are still apart close.
 template <class Block>
 void relaxBlock(Block& block, SolverMotions& motions) {
   MotionsOf<Block> velocities(block, motions.velocities);
-  for (int i = 0; i < Block::kPoints; ++i) {
-    auto& point = block.points[i];
-    const Lanes speed = velocities.along(block.normal, point.turns);
-    const Lanes held = larger(same(0), point.impulse - point.mass * (speed + point.slack));
-    velocities.push(block, held - point.impulse, block.normal, point.turns);
-    point.impulse = held;
+  const PlaneSpeeds speeds = velocities.apart(block);
+  const bool wasPressed = isPressed(block);
+  if constexpr (Block::kPoints == 1) {
+    const auto& point = block.points[0];
+    pressSingle(block, point.impulse - point.mass * (speeds.middle + point.slack), velocities);
+  } else {
+    NormalLaws<Block::kPoints> laws;
+    for (int i = 0; i < Block::kPoints; ++i) {
+      const auto& point = block.points[i];
+      laws.stiffness[i] = same(kRigid) * point.mass;
+      laws.offset[i] = point.impulse - laws.stiffness[i] * point.slack;
+    }
+    press(block, speeds, laws, velocities);
   }
-  rubBlock(block, velocities);
-  velocities.store(block, motions.velocities);
+  rubAndStore(block, wasPressed, velocities, motions);
   // A sub-step's impulses hold those of the one before, which it began with.
   for (auto& point : block.points) point.total += point.impulse;
   for (int i = 0; i < 2; ++i) block.friction.totals[i] += block.friction.impulses[i];
@@ -150,19 +251,23 @@ template <class Block>
 void reboundBlock(Block& block, double slowest, SolverMotions& motions) {
   if (block.restitution[0] == 0 && block.restitution[1] == 0) return;
   MotionsOf<Block> velocities(block, motions.velocities);
-  const MotionsOf<Block> starts(block, motions.starts);
+  const PlaneSpeeds starts = MotionsOf<Block>(block, motions.starts).apart(block), speeds = velocities.apart(block);
+  for (auto& point : block.points) point.total -= point.impulse;
+  NormalLaws<Block::kPoints> laws;
   for (int i = 0; i < Block::kPoints; ++i) {
-    auto& point = block.points[i];
-    const Lanes before = starts.along(block.normal, point.turns);
-    const Lanes speed = velocities.along(block.normal, point.turns);
+    const auto& point = block.points[i];
+    const Lanes before = starts.at(point.u, point.v);
     const auto rebounds = (before < same(-slowest)) & (point.impulse > same(0));
-    const Lanes restitution = rebounds ? block.restitution : same(0);
-    const Lanes free = point.impulse - point.mass * (speed + restitution * before);
-    const Lanes held = rebounds ? larger(same(0), free) : point.impulse;
-    velocities.push(block, held - point.impulse, block.normal, point.turns);
-    point.total += held - point.impulse;
-    point.impulse = held;
+    if constexpr (Block::kPoints == 1) {
+      const Lanes free = point.impulse - point.mass * (speeds.middle + block.restitution * before);
+      pressSingle(block, rebounds ? free : point.impulse, velocities);
+    } else {
+      laws.stiffness[i] = rebounds ? same(kRigid) * point.mass : same(0);
+      laws.offset[i] = point.impulse - laws.stiffness[i] * block.restitution * before;
+    }
   }
+  if constexpr (Block::kPoints > 1) press(block, speeds, laws, velocities);
+  for (auto& point : block.points) point.total += point.impulse;
   velocities.store(block, motions.velocities);
 }
 
@@ -174,9 +279,10 @@ void weighBlock(Block& block, double slowest, const SolverMotions& motions) {
   const MotionsOf<Block> starts(block, motions.starts), ends(block, motions.velocities);
   const Lanes none = same(0), half = same(-0.5);
   Lanes pressed = none, rubbed = none, fastest = none;
+  const PlaneSpeeds opening = starts.apart(block), opened = ends.apart(block);
   for (const auto& point : block.points) {
-    const Lanes before = starts.along(block.normal, point.turns);
-    pressed += half * point.total * (before + ends.along(block.normal, point.turns));
+    const Lanes before = opening.at(point.u, point.v);
+    pressed += half * point.total * (before + opened.at(point.u, point.v));
     fastest = larger(fastest, -before);
   }
   for (int i = 0; i < 2; ++i) {

@@ -28,6 +28,19 @@ struct Softness {
   double mostPush;   // m/s, apart
 };
 
+/// The relative speed along the normal (m/s, apart) over the contact plane, linear in the place.
+struct PlaneSpeeds {
+  Lanes middle;          // m/s: in the middle of the points
+  Lanes slopeU, slopeV;  // 1/s: along the tangents
+
+  Lanes at(Lanes u, Lanes v) const { return middle + u * slopeU + v * slopeV; }
+};
+
+/// A symmetric matrix: the impulse (N s, N m s) that changes the speeds over the contact plane.
+struct PlaneInertia {
+  Lanes xx, xy, xz, yy, yz, zz;  // kg, kg m, kg m^2
+};
+
 template <int pointCount, bool bothMove>
 struct ContactBlock {
   static constexpr int kPoints = pointCount;
@@ -35,10 +48,15 @@ struct ContactBlock {
   static constexpr int kMovers = bothMove ? 2 : 1;
 
   struct Point {
-    LaneVector turns[kMovers];  // of A and B
+    Lanes u, v;  // m, from the middle of the points along the tangents
     Lanes mass, separation, impulse;
     Lanes total;  // N s: impulses of all sub-steps
     Lanes slack;  // m/s: closing speed that is left until the next sub-step
+  };
+  struct Plane {
+    LaneVector turns[kMovers];  // of A and B, by an impulse in the middle of the points
+    LaneVector slopeTurns[2][kMovers];
+    PlaneInertia inertia;
   };
   struct Friction {
     LaneVector tangents[2];
@@ -57,6 +75,7 @@ struct ContactBlock {
   Lanes inverseMasses[kMovers];
   Lanes restitution;
   Point points[kPoints];
+  Plane plane;
   Friction friction;
   Twist twist;
   Lanes struck, rubbed;  // J: what all took, as impacts and as friction of lasting contacts

@@ -57,14 +57,6 @@ Mat3 ImpulseResponse::untiedInverseMassAt(const Contact& contact, const VectorX&
   return cradle::inverseMassAt(contact, bodies_, state);
 }
 
-void ImpulseResponse::displace(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const {
-  const VectorX answer = answerTo(contact, impulseOnB, state);
-  for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
-    centerOfMass(state, body) += linearVelocity(answer, body);
-    turnBody(state, body, angularVelocity(answer, body));
-  }
-}
-
 void ImpulseResponse::apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const {
   applyImpulse(bodies_, contact.bodyA, armOf(contact, contact.bodyA, state), -impulseOnB, state);
   applyImpulse(bodies_, contact.bodyB, armOf(contact, contact.bodyB, state), impulseOnB, state);

@@ -45,9 +45,6 @@ class ImpulseResponse {
   /// `state` with the velocities that such an impulse gives to bodies at rest.
   VectorX answerTo(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const;
 
-  /// Moves the bodies as far as the velocities that such an impulse gives would in 1 s. Velocities stay.
-  void displace(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const;
-
  private:
   const std::vector<RigidBody>& bodies_;
   ConstraintSolver* constraints_ = nullptr;

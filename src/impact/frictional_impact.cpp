@@ -1,16 +1,23 @@
-// Newton's restitution with Coulomb's friction, all contacts at once: u = G z + J v + e (J v)_n in the cone problem (J.
-// J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988). Together they can gain energy;
-// then the restitution is scaled down: without rebound the change of energy is z (u + J v) / 2 = z_t u_t / 2 - z G z /
-// 2 <= 0. Rounds over the contacts that close are the reflections of generalized_reflections.h with friction: what hits
-// one end of a row of balls leaves at the other. With one restitution below 1 at all contacts these would be impacts
-// pair by pair: there the speeds with which the contacts open without friction, by that law's blend, stand in place of
-// - e (J v)_n, all at once. Where nothing slides this is that law; for one contact both are Newton's.
+// Newton's restitution with Coulomb's friction, all contacts at once, as a cone problem (J. J. Moreau, "Unilateral
+// contact and dry friction in finite freedom dynamics", 1988): u = G z + v - (0, 0, w), w the speed with which a
+// contact is to open. For one contact w = - e v_n. For more, contact by contact that would be what throws back the
+// first ball of a row; the speeds with which contacts open after the impact without friction
+// (generalized_reflections.h), as far as that rebounds, stand in its place, and for the rest those after the impact
+// with friction and without rebound:
+//   w = sum over the parts s of the rebound of s w_s, plus (1 - sum of s) w_0.
+// So w and what follows from it is continuous in the restitutions, is the plastic impact without any, and the impact
+// without friction where nothing slides.
+// Restitution with friction can add energy; without it the change z (u + v) / 2 = z_t u_t / 2 - z G z / 2 is <= 0. Then
+// all restitutions are scaled by one factor, with which the impact gains nothing: a root, so that what is kept of the
+// energy is continuous too. It may jump where static and dynamic friction differ and a contact begins to slide, and
+// where the cone problem has more than one solution.
 
 #include "impact/frictional_impact.h"
 
 #include <algorithm>
 #include <limits>
 
+#include "collision/first_crossing.h"
 #include "impact/cone_problem.h"
 #include "impact/contact_cones.h"
 #include "impact/generalized_reflections.h"
@@ -20,13 +27,12 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kClosedPart = 1e-11;  // of the fastest speed: what is left is rounding
-constexpr double kSlidingPart = 1e-9;  // of the same: slower sticks
-constexpr double kSolvedPart = 1e-7;   // of the same: an error of Coulomb's law that nobody sees
-constexpr int kMostRounds = 100;       // then one without rebound ends it
-constexpr double kLessRestitution = 0.7;
-constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
-constexpr double kEnergyRounding = 1e-13;   // of the energy that moves
+constexpr double kClosedPart = 1e-11;      // of the fastest speed: what is left is rounding
+constexpr double kSlidingPart = 1e-9;      // of the same: slower sticks
+constexpr double kSolvedPart = 1e-7;       // of the same: an error of Coulomb's law that nobody sees
+constexpr int kMostRounds = 10;            // of what was not solved: each leaves less
+constexpr double kEnergyRounding = 1e-13;  // of the energy that moves
+constexpr double kSumRounding = 4 * std::numeric_limits<double>::epsilon();  // of the terms of an energy
 
 std::vector<Contact> contactsOf(const std::vector<ImpactContact>& impacts) {
   std::vector<Contact> contacts;
@@ -34,138 +40,142 @@ std::vector<Contact> contactsOf(const std::vector<ImpactContact>& impacts) {
   return contacts;
 }
 
-/// The impulses of one impact as they add up.
+/// What an impact comes to: impulses (N s), velocities (m/s) and the energy (J) that it adds, < 0 if it takes any.
+struct Strike {
+  VectorX impulses, velocities;
+  double gain = 0, moved = 0;  // moved: what the impulses would give to bodies at rest
+  double rounding = 0;         // J: of the gain
+  double residual = 0;         // m/s: of what was not solved
+  double scaledEnergy = 0;     // J: that all of the impulses found would have added
+
+  bool gains() const { return gain > kEnergyRounding * moved; }
+  double certainLoss() const { return -gain - rounding; }
+};
+
+/// Contacts with their velocities before an impact.
 class FrictionalImpact {
  public:
-  FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactCones& cones, VectorX velocities)
-      : impacts_(impacts), cones_(cones), start_(std::move(velocities)), impulses_(VectorX::Zero(start_.size())) {
-    fastest_ = start_.cwiseAbs().maxCoeff();
-  }
+  FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactCones& cones, VectorX velocities);
 
-  VectorX resolve();
-  const ImpactFaults& faults() const { return faults_; }
+  /// Impulses (N s) after which nothing closes; notes what had to be done to find them.
+  VectorX resolve(ImpactFaults& faults) const;
 
  private:
-  VectorX velocities() const { return start_ + cones_.inverseMass() * impulses_; }
-  bool hasCommonRestitution() const;
-  VectorX openingSpeeds() const;
-  bool rebounds(std::size_t contact, const VectorX& speeds) const;
-  std::vector<std::size_t> findMembers(const VectorX& speeds, bool withRebound) const;
-  bool closes(const VectorX& speeds) const;
-  void strike(const std::vector<std::size_t>& members, const VectorX& speeds, double restitutionPart);
-  bool tryStrike(const std::vector<std::size_t>& members, const VectorX& speeds, double restitutionPart);
+  bool closes(const VectorX& velocities) const;
+  Strike strike(const VectorX& velocities, const VectorX& opening) const;
+  Strike strikeWithoutRebound(const VectorX& velocities) const;
+  Strike rebound(const Strike& plastic) const;
 
   const std::vector<ImpactContact>& impacts_;
   const ContactCones& cones_;
-  VectorX start_, impulses_;
-  VectorX opening_;     // m/s: of the contacts after the impact under way, or none: by their own restitution
-  double fastest_ = 0;  // m/s
-  ImpactFaults faults_;
+  VectorX start_;                      // m/s
+  double fastest_ = 0;                 // m/s
+  std::vector<Index> members_;         // contacts that can move
+  std::vector<Index> rows_, normals_;  // theirs
 };
 
-/// One of all contacts, neither none nor elastic.
-bool FrictionalImpact::hasCommonRestitution() const {
-  const double restitution = impacts_[0].law.restitution;
-  return impacts_.size() > 1 && restitution > 0 && restitution < 1 &&
-         std::all_of(impacts_.begin(), impacts_.end(),
-                     [&](const ImpactContact& impact) { return impact.law.restitution == restitution; });
-}
-
-/// How fast contacts open after an impact without friction.
-VectorX FrictionalImpact::openingSpeeds() const {
-  const Index contacts = std::ssize(impacts_);
-  std::vector<Index> normals;
-  for (Index i = 0; i < contacts; ++i) normals.push_back(3 * i + 2);
-  const MatrixX inverseMass = cones_.inverseMass()(normals, normals);
-  VectorX speeds = start_(normals);
-  for (Index i = 0; i < contacts; ++i)
-    if (cones_.isImmobile(static_cast<std::size_t>(i))) speeds[i] = 0;
-  return (speeds + inverseMass * reflectionImpulses(inverseMass, speeds, impacts_)).cwiseMax(0);
-}
-
-bool FrictionalImpact::rebounds(std::size_t i, const VectorX& speeds) const {
-  return impacts_[i].law.restitution > 0 && -speeds[3 * static_cast<Index>(i) + 2] > impacts_[i].restSpeed;
-}
-
-bool FrictionalImpact::closes(const VectorX& speeds) const {
-  for (std::size_t i = 0; i < impacts_.size(); ++i)
-    if (!cones_.isImmobile(i) && speeds[3 * static_cast<Index>(i) + 2] < -kClosedPart * fastest_) return true;
-  return false;
-}
-
-/// Contacts that close, and those that touch and do not rebound.
-std::vector<std::size_t> FrictionalImpact::findMembers(const VectorX& speeds, bool withRebound) const {
-  std::vector<std::size_t> members;
-  for (std::size_t i = 0; i < impacts_.size(); ++i) {
-    if (cones_.isImmobile(i)) continue;
-    const bool isClosing = speeds[3 * static_cast<Index>(i) + 2] < -kClosedPart * fastest_;
-    if (isClosing || !withRebound || impacts_[i].law.restitution == 0) members.push_back(i);
+FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactCones& cones,
+                                   VectorX velocities)
+    : impacts_(impacts), cones_(cones), start_(std::move(velocities)), fastest_(start_.cwiseAbs().maxCoeff()) {
+  for (std::size_t i = 0; i < impacts.size(); ++i) {
+    if (cones.isImmobile(i)) continue;
+    const Index contact = static_cast<Index>(i);
+    members_.push_back(contact);
+    for (Index axis = 0; axis < 3; ++axis) rows_.push_back(3 * contact + axis);
+    normals_.push_back(rows_.back());
   }
-  return members;
 }
 
-/// With all friction static, then with dynamic friction where that slides.
-bool FrictionalImpact::tryStrike(const std::vector<std::size_t>& members, const VectorX& speeds, double part) {
-  std::vector<Index> rows;
+bool FrictionalImpact::closes(const VectorX& velocities) const {
+  return std::any_of(members_.begin(), members_.end(),
+                     [&](Index i) { return velocities[3 * i + 2] < -kClosedPart * fastest_; });
+}
+
+/// With all friction static, then with dynamic friction where that slides. Contacts open with `opening` (m/s) at least.
+Strike FrictionalImpact::strike(const VectorX& velocities, const VectorX& opening) const {
   std::vector<double> frictions;
   bool haveTwoFrictions = false;
-  for (const std::size_t i : members) {
-    const Index row = 3 * static_cast<Index>(i);
-    rows.insert(rows.end(), {row, row + 1, row + 2});
-    frictions.push_back(impacts_[i].law.staticFriction);
-    haveTwoFrictions = haveTwoFrictions || impacts_[i].law.staticFriction != impacts_[i].law.dynamicFriction;
+  for (const Index i : members_) {
+    const SurfaceLaw& law = impacts_[static_cast<std::size_t>(i)].law;
+    frictions.push_back(law.staticFriction);
+    haveTwoFrictions = haveTwoFrictions || law.staticFriction != law.dynamicFriction;
   }
-  const MatrixX matrix = cones_.inverseMass()(rows, rows);
-  const VectorX before = speeds(rows);
+  const MatrixX matrix = cones_.inverseMass()(rows_, rows_);
+  const VectorX before = velocities(rows_);
   VectorX free = before;
-  for (std::size_t k = 0; k < members.size(); ++k) {
-    double& normal = free[3 * static_cast<Index>(k) + 2];
-    if (opening_.size() > 0)
-      normal -= part * opening_[static_cast<Index>(members[k])];
-    else if (rebounds(members[k], speeds))
-      normal *= 1 + part * impacts_[members[k]].law.restitution;
-  }
-
+  free(Eigen::seq(2, Eigen::last, 3)) -= opening;
   ConeSolution solution = solveConeProblem(matrix, free, frictions);
   if (haveTwoFrictions) {
-    for (std::size_t k = 0; k < members.size(); ++k)
+    for (std::size_t k = 0; k < members_.size(); ++k)
       if (solution.velocities.segment<2>(3 * static_cast<Index>(k)).norm() > kSlidingPart * fastest_)
-        frictions[k] = impacts_[members[k]].law.dynamicFriction;
+        frictions[k] = impacts_[static_cast<std::size_t>(members_[k])].law.dynamicFriction;
     solution = solveConeProblem(matrix, free, frictions);
   }
-  const VectorX& z = solution.impulses;
-  const double response = 0.5 * z.dot(matrix * z), gain = z.dot(before) + response;
-  const bool gains = gain > kEnergyRounding * response;
-  if (gains && part > 0) return false;
-  if (!(solution.residual <= kSolvedPart * fastest_)) faults_.residual = std::max(faults_.residual, solution.residual);
-  if (gains) faults_.scaledEnergy = std::max(faults_.scaledEnergy, gain);
-  // Without rebound only what was not solved gains: as much of it as takes the most energy.
-  impulses_(rows) += gains ? VectorX(std::max(0.0, -z.dot(before) / (2 * response)) * z) : z;
-  return true;
+  Strike strike;
+  strike.impulses = solution.impulses;
+  strike.velocities = before + matrix * solution.impulses;
+  strike.moved = 0.5 * solution.impulses.dot(matrix * solution.impulses);
+  strike.gain = solution.impulses.dot(before) + strike.moved;
+  const VectorX terms = solution.impulses.cwiseAbs();
+  strike.residual = solution.residual <= kSolvedPart * fastest_ ? 0 : solution.residual;
+  strike.rounding = kSumRounding * terms.dot(matrix.cwiseAbs() * terms);
+  return strike;
 }
 
-void FrictionalImpact::strike(const std::vector<std::size_t>& members, const VectorX& speeds, double part) {
-  while (!tryStrike(members, speeds, part)) {
-    part *= kLessRestitution;
-    if (part < kLeastRestitution) part = 0;
-  }
+/// Only what was not solved gains: as much of it as takes the most energy.
+Strike FrictionalImpact::strikeWithoutRebound(const VectorX& velocities) const {
+  Strike found = strike(velocities, VectorX::Zero(std::ssize(members_)));
+  if (!found.gains()) return found;
+  found.scaledEnergy = found.gain;
+  const double part = std::max(0.0, (found.moved - found.gain) / (2 * found.moved));
+  found.impulses *= part;
+  found.velocities = velocities(rows_) + part * (found.velocities - velocities(rows_));
+  found.gain = part * (found.gain - (1 - part) * found.moved);
+  found.moved *= part * part;
+  return found;
 }
 
-VectorX FrictionalImpact::resolve() {
-  if (hasCommonRestitution() && closes(start_)) {
-    opening_ = openingSpeeds();
-    strike(findMembers(start_, false), start_, 1);
-    opening_.resize(0);
+/// With as much of the restitutions as gains no energy.
+Strike FrictionalImpact::rebound(const Strike& plastic) const {
+  const VectorX speeds = start_(normals_);
+  const VectorX slowest = plastic.velocities(Eigen::seq(2, Eigen::last, 3)).cwiseMax(0);
+  const MatrixX inverseMass = cones_.inverseMass()(normals_, normals_);
+  std::vector<ImpactContact> members;
+  for (const Index i : members_) members.push_back(impacts_[static_cast<std::size_t>(i)]);
+  VectorX opening = VectorX::Zero(speeds.size());
+  double part = 0;
+  for (const Rebound& rebound : reboundsOf(inverseMass, speeds, members)) {
+    opening += rebound.part * (speeds + inverseMass * rebound.impulses).cwiseMax(0);
+    part += rebound.part;
   }
-  for (int round = 0; round < kMostRounds; ++round) {
-    const VectorX speeds = velocities();
-    if (!closes(speeds)) return impulses_;
-    strike(findMembers(speeds, true), speeds, 1);
+  if (part == 0) return plastic;
+  const auto strikeWith = [&](double scale) { return strike(start_, scale * opening + (1 - scale * part) * slowest); };
+  Strike kept = strikeWith(1);
+  if (!kept.gains()) return kept;
+  Bracket scales{0, plastic.certainLoss(), 1, kept.certainLoss()};
+  kept = plastic;
+  if (!(scales.gapBefore > 0)) return kept;
+  const auto lossWith = [&](double scale) {
+    const Strike tried = strikeWith(scale);
+    if (tried.certainLoss() > 0) kept = tried;
+    return tried.certainLoss();
+  };
+  closeBracket(lossWith, scales);
+  return kept;
+}
+
+VectorX FrictionalImpact::resolve(ImpactFaults& faults) const {
+  VectorX impulses = VectorX::Zero(start_.size()), velocities = start_;
+  for (int round = 0; round < kMostRounds && closes(velocities); ++round) {
+    Strike found = strikeWithoutRebound(velocities);
+    if (round == 0) found = rebound(found);
+    faults.residual = std::max(faults.residual, found.residual);
+    faults.scaledEnergy = std::max(faults.scaledEnergy, found.scaledEnergy);
+    for (std::size_t k = 0; k < rows_.size(); ++k) impulses[rows_[k]] += found.impulses[static_cast<Index>(k)];
+    velocities = start_ + cones_.inverseMass() * impulses;
   }
-  const VectorX speeds = velocities();
-  faults_.rounds = kMostRounds;
-  strike(findMembers(speeds, false), speeds, 0);
-  return impulses_;
+  if (closes(velocities)) faults.rounds = kMostRounds;
+  return impulses;
 }
 
 }  // namespace
@@ -175,11 +185,11 @@ ImpactFaults resolveFrictionalImpact(std::vector<ImpactContact>& impacts, const 
   if (impacts.empty()) return {};
   const std::vector<Contact> contacts = contactsOf(impacts);
   const ContactCones cones(contacts, response, state);
-  FrictionalImpact impact(impacts, cones, cones.velocitiesIn(state));
-  const VectorX impulses = impact.resolve();
+  ImpactFaults faults;
+  const VectorX impulses = FrictionalImpact(impacts, cones, cones.velocitiesIn(state)).resolve(faults);
   cones.apply(impulses, state);
   for (std::size_t i = 0; i < impacts.size(); ++i) impacts[i].impulse += cones.worldImpulse(i, impulses);
-  return impact.faults();
+  return faults;
 }
 
 }  // namespace cradle

@@ -1,15 +1,17 @@
 // B. Smith, D. M. Kaufman, E. Vouga, R. Tamstorf, E. Grinspun, "Reflections on Simultaneous Impact", ACM Trans. Graph.
 // 31(4), 2012. With J the contacts' normals, v -> v+ = v + W J^T lambda. A reflection: 0 <= lambda perp J (v+ + v) >= 0
 // on the contacts that close. Restitution e: the blend (1 - e) v_LCP + e v_GR of the same paper, v_LCP with
-// 0 <= lambda perp J v+ >= 0 on all contacts. A blend contact by contact can gain energy; so with different e each
-// reflection takes 0 <= lambda perp J v+ + E J v >= 0: where lambda > 0, it does the work -(1 - e) |J v| lambda / 2 <=
-// 0.
+// 0 <= lambda perp J v+ >= 0 on all contacts. A blend contact by contact can gain energy. With different e the blend is
+// the mean, over levels s uniform in 0..1, of impacts in which contacts with e > s are elastic and the others plastic:
+// each of them gains none, nor does their mean, as kinetic energy is convex; equal e make it the blend above; and it is
+// linear in each e between the others. In these impacts a reflection takes 0 <= lambda perp J v+ + E J v >= 0, E = 0 or
+// 1: where lambda > 0, it does the work -(1 - E) |J v| lambda / 2 <= 0.
 
 #include "impact/generalized_reflections.h"
 
 #include <algorithm>
+#include <limits>
 
-#include "core/error.h"
 #include "impact/linear_complementarity.h"
 
 namespace cradle {
@@ -18,8 +20,10 @@ namespace {
 using Index = Eigen::Index;
 
 constexpr double kReflectionClosedPart = 1e-12;  // of the fastest speed: what is left is rounding
-constexpr long kMostReflections = 10000;         // for each contact; a row of n balls needs n
-constexpr long kMostMixedReflections = 100;      // restitutions that differ: then one impact without rebound ends it
+constexpr double kSpeedRounding = 16 * std::numeric_limits<double>::epsilon();  // of the terms of a speed
+constexpr long kMostReflections = 10000;     // for each contact; a row of n balls needs n, then one impact without
+                                             // rebound ends it
+constexpr long kMostMixedReflections = 100;  // where some contacts are plastic: more would but slow down what is left
 
 /// An impact by the normals of its contacts alone: speeds J v and inverse masses J W J^T.
 class NormalImpact {
@@ -34,48 +38,64 @@ class NormalImpact {
     return impulses + solveLinearComplementarity(inverseMass_, speeds_ + inverseMass_ * impulses);
   }
 
-  /// Adds reflections to `impulses` until nothing closes, at most so many. False: something does still.
-  bool reflect(const VectorX& restitutions, long most, VectorX& impulses) const;
+  /// Impulses (N s) of reflections until nothing closes, with restitutions 1 or 0.
+  VectorX reflect(const VectorX& restitutions) const;
 
  private:
-  void reflectOnce(const std::vector<Index>& closing, const VectorX& speeds, const VectorX& restitutions,
-                   VectorX& impulses) const;
+  std::vector<Index> closingAfter(const VectorX& impulses) const;
+  VectorX reflectOnce(std::vector<Index> closing, const VectorX& speeds, const VectorX& restitutions) const;
 
   const MatrixX& inverseMass_;  // 1/kg
   const VectorX& speeds_;       // m/s: < 0 closing
   VectorX restSpeeds_;          // m/s
 };
 
-bool NormalImpact::reflect(const VectorX& restitutions, long most, VectorX& impulses) const {
+std::vector<Index> NormalImpact::closingAfter(const VectorX& impulses) const {
   const double closed = kReflectionClosedPart * speeds_.cwiseAbs().maxCoeff();
+  const VectorX speeds = speeds_ + inverseMass_ * impulses, terms = inverseMass_.cwiseAbs() * impulses;
+  std::vector<Index> closing;
+  for (Index i = 0; i < speeds.size(); ++i)
+    if (speeds[i] < -std::max(closed, kSpeedRounding * terms[i])) closing.push_back(i);
+  return closing;
+}
+
+VectorX NormalImpact::reflect(const VectorX& restitutions) const {
+  const bool isElastic = restitutions.minCoeff() == 1;
+  const long most = isElastic ? kMostReflections * static_cast<long>(speeds_.size()) : kMostMixedReflections;
+  VectorX impulses = VectorX::Zero(speeds_.size());
   for (long count = 0; count <= most; ++count) {
-    const VectorX speeds = speeds_ + inverseMass_ * impulses;
-    std::vector<Index> closing;
-    for (Index i = 0; i < speeds.size(); ++i)
-      if (speeds[i] < -closed) closing.push_back(i);
-    if (closing.empty()) return true;
-    reflectOnce(closing, speeds, restitutions, impulses);
+    const std::vector<Index> closing = closingAfter(impulses);
+    if (closing.empty()) return impulses;
+    impulses += reflectOnce(closing, speeds_ + inverseMass_ * impulses, restitutions);
   }
-  return false;
+  return stop(impulses);
 }
 
-void NormalImpact::reflectOnce(const std::vector<Index>& closing, const VectorX& speeds, const VectorX& restitutions,
-                               VectorX& impulses) const {
-  VectorX offset = speeds;
-  for (const Index i : closing)
-    if (-speeds[i] > restSpeeds_[i]) offset[i] *= 1 + restitutions[i];
-  impulses(closing) += solveLinearComplementarity(inverseMass_(closing, closing), VectorX(offset(closing)));
-}
-
-VectorX restitutionsOf(const std::vector<ImpactContact>& impacts) {
-  VectorX restitutions(impacts.size());
-  for (std::size_t i = 0; i < impacts.size(); ++i) restitutions[static_cast<Index>(i)] = impacts[i].law.restitution;
-  return restitutions;
-}
-
-[[noreturn]] void failEndless(std::size_t contacts) {
-  throw Error(ErrorKind::unstable, "",
-              "an impact among " + std::to_string(contacts) + " contacts does not come to an end by reflections");
+/// Where nothing rebounds, what that makes close and does not rebound either is stopped at once too: one after the
+/// other, a light body between heavy ones would need as many reflections as the masses differ.
+VectorX NormalImpact::reflectOnce(std::vector<Index> closing, const VectorX& speeds,
+                                  const VectorX& restitutions) const {
+  const auto rebounds = [&](Index i, double speed) { return restitutions[i] > 0 && -speed > restSpeeds_[i]; };
+  VectorX offset = speeds, impulses = VectorX::Zero(speeds.size());
+  bool isPlastic = true;
+  for (const Index i : closing) {
+    if (!rebounds(i, speeds[i])) continue;
+    offset[i] *= 1 + restitutions[i];
+    isPlastic = false;
+  }
+  while (true) {
+    impulses(closing) = solveLinearComplementarity(inverseMass_(closing, closing), VectorX(offset(closing)));
+    if (!isPlastic) return impulses;
+    const VectorX after = speeds + inverseMass_ * impulses, terms = inverseMass_.cwiseAbs() * impulses;
+    const std::size_t before = closing.size();
+    for (Index i = 0; i < after.size(); ++i) {
+      if (std::find(closing.begin(), closing.end(), i) != closing.end()) continue;
+      if (!(after[i] < -kSpeedRounding * (std::abs(speeds[i]) + terms[i]))) continue;
+      if (rebounds(i, after[i])) return impulses;
+      closing.push_back(i);
+    }
+    if (closing.size() == before) return impulses;
+  }
 }
 
 /// What all of the above comes to for one contact.
@@ -95,19 +115,33 @@ void reflectAlone(ImpactContact& impact, const ImpulseResponse& response, Vector
 
 }  // namespace
 
+std::vector<Rebound> reboundsOf(const MatrixX& inverseMass, const VectorX& speeds,
+                                const std::vector<ImpactContact>& impacts) {
+  std::vector<double> levels{0};
+  for (const ImpactContact& impact : impacts) levels.push_back(impact.law.restitution);
+  std::sort(levels.begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  const NormalImpact impact(inverseMass, speeds, impacts);
+  std::vector<Rebound> rebounds;
+  for (std::size_t level = 1; level < levels.size(); ++level) {
+    VectorX elastic(speeds.size());
+    for (Index i = 0; i < elastic.size(); ++i)
+      elastic[i] = impacts[static_cast<std::size_t>(i)].law.restitution >= levels[level] ? 1 : 0;
+    rebounds.push_back({levels[level] - levels[level - 1], impact.reflect(elastic)});
+  }
+  return rebounds;
+}
+
 VectorX reflectionImpulses(const MatrixX& inverseMass, const VectorX& speeds,
                            const std::vector<ImpactContact>& impacts) {
-  const NormalImpact impact(inverseMass, speeds, impacts);
-  const VectorX restitutions = restitutionsOf(impacts), none = VectorX::Zero(restitutions.size());
-  const double restitution = restitutions[0];
+  const VectorX none = VectorX::Zero(speeds.size());
   VectorX impulses = none;
-  if ((restitutions.array() == restitution).all()) {
-    const long most = kMostReflections * static_cast<long>(impacts.size());
-    if (restitution > 0 && !impact.reflect(VectorX::Ones(none.size()), most, impulses)) failEndless(impacts.size());
-    if (restitution < 1) impulses = (restitution * impulses + (1 - restitution) * impact.stop(none)).eval();
-  } else if (!impact.reflect(restitutions, kMostMixedReflections, impulses)) {
-    impulses = impact.stop(impulses);
+  double plastic = 1;
+  for (const Rebound& rebound : reboundsOf(inverseMass, speeds, impacts)) {
+    impulses += rebound.part * rebound.impulses;
+    plastic -= rebound.part;
   }
+  if (plastic > 0) impulses += plastic * NormalImpact(inverseMass, speeds, impacts).stop(none);
   return impulses;
 }
 

@@ -17,6 +17,7 @@ void fetchAhead(const Thing& thing) {
 /// lane by lane.
 using Lanes = double __attribute__((vector_size(16)));
 constexpr int kLanes = 2;
+using LaneMask = decltype(Lanes{} < Lanes{});
 
 inline Lanes same(double value) {
   return Lanes{value, value};

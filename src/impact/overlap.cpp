@@ -7,6 +7,23 @@ namespace {
 
 constexpr int kMostOverlapSweeps = 20;
 constexpr double kOverlapLeft = 1e-15;  // m
+constexpr double kLeastWay = 1e-9;  // of the inverse mass without ties: less is rounding, and the ties hold the pair
+
+/// The displacement, in place of velocities, that takes the overlaps of one pair out. Many with one normal are one:
+/// what the deepest needs is enough for all.
+VectorX displacementOf(const std::vector<Contact>& overlaps, const ImpulseResponse& response, const VectorX& state) {
+  VectorX displacement = state;
+  displacement.tail(state.size() - poseComponents(state)).setZero();
+  for (const Contact& overlap : overlaps) {
+    const double left = -overlap.separation - openingSpeed(overlap, displacement);
+    if (left <= 0) continue;
+    const double inverseMass = overlap.normal.dot(response.inverseMassAt(overlap, state) * overlap.normal);
+    const double untied = overlap.normal.dot(response.untiedInverseMassAt(overlap, state) * overlap.normal);
+    if (!(inverseMass > kLeastWay * untied)) continue;
+    response.apply(overlap, left / inverseMass * overlap.normal, displacement);
+  }
+  return displacement;
+}
 
 }  // namespace
 
@@ -21,11 +38,14 @@ void resolveOverlaps(const ContactGeometry& geometry, const std::vector<Contact>
     for (const std::size_t pair : pairs) {
       overlaps.clear();
       appendContacts(geometry, pair, state, 0, overlaps);
-      // What earlier contacts of the same bodies did since it was found is seen in the next sweep.
-      for (const Contact& overlap : overlaps) {
-        deepest = std::max(deepest, -overlap.separation);
-        const double inverseMass = overlap.normal.dot(response.inverseMassAt(overlap, state) * overlap.normal);
-        response.displace(overlap, -overlap.separation / inverseMass * overlap.normal, state);
+      if (overlaps.empty()) continue;
+      std::stable_sort(overlaps.begin(), overlaps.end(),
+                       [](const Contact& a, const Contact& b) { return a.separation < b.separation; });
+      deepest = std::max(deepest, -overlaps[0].separation);
+      const VectorX displacement = displacementOf(overlaps, response, state);
+      for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
+        centerOfMass(state, body) += linearVelocity(displacement, body);
+        turnBody(state, body, angularVelocity(displacement, body));
       }
     }
     if (deepest <= kOverlapLeft) return;

@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "mesh/mass_properties.h"
-#include "mesh/solid.h"
 
 namespace cradle {
 namespace {
@@ -102,22 +100,6 @@ TriangleMesh solidOf(const Numbering& positions, const DrawnMesh& corners) {
   return solid;
 }
 
-void turnInsideOut(Model& model) {
-  for (Triangle& triangle : model.solid.triangles) std::swap(triangle[1], triangle[2]);
-  for (Triangle& triangle : model.drawn.triangles) std::swap(triangle[1], triangle[2]);
-}
-
-// Normals that the file computed from its winding were inside-out too; those that an artist set may not have been.
-void turnNormalsOutwards(DrawnMesh& drawn) {
-  double agreement = 0;
-  for (const Triangle& triangle : drawn.triangles) {
-    const Vec3f outward = triangleNormal(drawn, triangle).cast<float>();
-    for (const std::uint32_t corner : triangle) agreement += outward.dot(drawn.normals[corner]);
-  }
-  if (agreement < 0)
-    for (Vec3f& normal : drawn.normals) normal = -normal;
-}
-
 std::string plural(std::size_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
@@ -150,15 +132,6 @@ LoadedModel assembleModel(const std::string& name, std::vector<MeshPiece> pieces
   }
 
   if (degenerate > 0) loaded.notes.push_back(plural(degenerate, "degenerate triangle") + " dropped");
-  if (signedVolume(loaded.model.solid) < 0) {
-    turnInsideOut(loaded.model);
-    if (checkSolid(loaded.model.solid).isSolid) {
-      turnNormalsOutwards(drawn);
-      loaded.notes.emplace_back("was inside-out: turned");
-    } else {
-      turnInsideOut(loaded.model);  // back
-    }
-  }
   return loaded;
 }
 

@@ -19,8 +19,8 @@ struct MeshPiece {
 };
 
 /// Joins the pieces of an object: drops degenerate triangles, shares corners with equal position and normal, orders by
-/// material, welds the solid, and turns both if the surface is closed and inside-out; `notes` says what was mended.
-/// The result's solid is weld(drawn.vertices, drawn.triangles). If the solid alone is wanted, nothing is drawn. O(n).
+/// material, and welds the solid; `notes` says what was mended. The result's solid is weld(drawn.vertices,
+/// drawn.triangles). If the solid alone is wanted, nothing is drawn. O(n).
 LoadedModel assembleModel(const std::string& name, std::vector<MeshPiece> pieces, ModelParts parts);
 
 /// Several objects as one model, in their order.

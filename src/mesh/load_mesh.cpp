@@ -26,7 +26,9 @@
 #include "mesh/assemble_model.h"
 #include "mesh/check_3ds.h"
 #include "mesh/read_file.h"
+#include "mesh/solid.h"
 #include "mesh/trial.h"
+#include "mesh/turn_parts.h"
 
 namespace cradle {
 namespace {
@@ -250,9 +252,8 @@ std::vector<std::string> namesOf(const std::vector<LoadedModel>& objects) {
   return names;
 }
 
-}  // namespace
-
-std::vector<LoadedModel> loadObjects(const std::string& path, double scale, ModelParts parts) {
+/// The objects of a file as they are wound there.
+std::vector<LoadedModel> readObjects(const std::string& path, double scale, ModelParts parts) {
   CRADLE_CHECK(scale > 0);
   ImportedFile file;
   importFile(path, file);
@@ -283,14 +284,39 @@ std::vector<LoadedModel> loadObjects(const std::string& path, double scale, Mode
   return objects;
 }
 
+/// All objects as one model. Which way a part must face depends on those around it, of other objects too; objects that
+/// do not make a closed surface together may still be closed each.
+LoadedModel joinOutwards(const std::string& name, std::vector<LoadedModel> objects) {
+  LoadedModel joined = joinModels(name, objects);
+  if (hasMatchingEdges(joined.model.solid)) {
+    turnPartsOutwards(joined);
+    return joined;
+  }
+  for (LoadedModel& object : objects) turnPartsOutwards(object);
+  return joinModels(name, objects);
+}
+
+}  // namespace
+
+std::vector<LoadedModel> loadObjects(const std::string& path, double scale, ModelParts parts) {
+  std::vector<LoadedModel> objects = readObjects(path, scale, parts);
+  for (LoadedModel& object : objects) turnPartsOutwards(object);
+  return objects;
+}
+
 LoadedModel loadModel(const MeshReference& reference) {
-  std::vector<LoadedModel> objects = loadObjects(reference.path, reference.scale);
+  std::vector<LoadedModel> objects = readObjects(reference.path, reference.scale, ModelParts::solidAndDrawn);
+  if (reference.object.empty() && objects.size() > 1)
+    return joinOutwards(std::filesystem::path(reference.path).stem().string(), std::move(objects));
   if (reference.object.empty()) {
-    if (objects.size() == 1) return std::move(objects.front());
-    return joinModels(std::filesystem::path(reference.path).stem().string(), objects);
+    turnPartsOutwards(objects.front());
+    return std::move(objects.front());
   }
   for (LoadedModel& object : objects)
-    if (object.model.name == reference.object) return std::move(object);
+    if (object.model.name == reference.object) {
+      turnPartsOutwards(object);
+      return std::move(object);
+    }
   throw Error(ErrorKind::mesh, reference.path,
               fmt::format("has no object \"{}\"; it has {}", reference.object, fmt::join(namesOf(objects), ", ")));
 }

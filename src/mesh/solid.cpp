@@ -10,12 +10,15 @@
 #include <optional>
 
 #include "mesh/mass_properties.h"
+#include "mesh/mesh_parts.h"
 
 namespace cradle {
 namespace {
 
 // Volume over surface times size: below this a mesh is a sheet, and its volume is rounding.
 constexpr double kFlat = 1e-12;
+
+constexpr std::size_t kMostTold = 10;  // pairs of parts that overlap
 
 struct Edge {
   std::uint32_t low, high;  // vertices, low < high
@@ -119,7 +122,40 @@ void checkVolume(const TriangleMesh& mesh, std::vector<std::string>& problems) {
     problems.push_back(fmt::format("is inside-out: its volume is {:.6g} m^3; turn its faces", volume));
 }
 
+void tellInsideOut(const PartReport& parts, std::vector<std::string>& problems) {
+  for (const std::size_t part : parts.insideOut)
+    problems.push_back(describePart(parts, part) + " is inside-out, and counts against the others; turn its faces");
+}
+
+void tellOverlaps(const PartReport& parts, std::vector<std::string>& problems) {
+  if (parts.overlaps.empty()) return;
+  const std::size_t told = std::min(parts.overlaps.size(), kMostTold);
+  problems.insert(problems.end(), parts.overlaps.begin(), parts.overlaps.begin() + static_cast<std::ptrdiff_t>(told));
+  if (told < parts.overlaps.size())
+    problems.push_back(fmt::format("and {} more pairs of parts overlap", parts.overlaps.size() - told));
+  problems.emplace_back(
+      "where parts overlap their volume counts twice: unite them in the modelling program, use one object of the file, "
+      "make the body static, or give it `mass` with `inertiaTensor`");
+}
+
+/// Parts that face different ways have no volume together that could be judged.
+void checkClosed(const TriangleMesh& mesh, SolidReport& report) {
+  const PartReport parts = examineParts(mesh);
+  if (parts.parts.size() > 1 && !parts.insideOut.empty())
+    tellInsideOut(parts, report.problems);
+  else
+    checkVolume(mesh, report.problems);
+  report.isClosed = report.problems.empty();
+  tellOverlaps(parts, report.problems);
+}
+
 }  // namespace
+
+bool hasMatchingEdges(const TriangleMesh& mesh) {
+  std::vector<std::string> problems;
+  if (checkNumbers(mesh, problems)) checkEdges(mesh, problems);
+  return problems.empty();
+}
 
 SolidReport checkSolid(const TriangleMesh& mesh) {
   SolidReport report;
@@ -127,10 +163,13 @@ SolidReport checkSolid(const TriangleMesh& mesh) {
     report.problems.emplace_back("has no triangles");
   else if (checkNumbers(mesh, report.problems)) {
     checkEdges(mesh, report.problems);
-    checkVolume(mesh, report.problems);
+    if (report.problems.empty())
+      checkClosed(mesh, report);
+    else
+      checkVolume(mesh, report.problems);
   }
   report.isSolid = report.problems.empty();
-  if (!report.isSolid)
+  if (!report.isClosed)
     report.problems.emplace_back(
         "without a closed surface there is no volume, and so no mass: make the body static, give it `mass` with "
         "`inertiaTensor`, or use `collision: hull`");

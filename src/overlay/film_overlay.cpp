@@ -53,7 +53,7 @@ double arrowUnit(const View& view) {
 
 /// Digits after the point that tell neighbouring frames apart.
 int timeDigits(const Scene& scene) {
-  return static_cast<int>(std::clamp(std::ceil(-std::log10(frameTime(scene, 1))), 0.0, 9.0));
+  return static_cast<int>(std::clamp(std::ceil(-std::log10(frameInterval(scene))), 0.0, 9.0));
 }
 
 struct TimedPoint {

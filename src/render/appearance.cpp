@@ -136,7 +136,7 @@ void Catalogue::moveTo(Appearance& appearance) {
   for (const Key& key : keys_) {
     const bool isModel = key.kind == Shape(ModelShape{}).index();
     const auto model = static_cast<std::size_t>(isModel ? key.numbers.x() : 0);
-    appearance.meshIsClosed.push_back(!isModel || checkSolid(scene_.models[model].solid).isSolid);
+    appearance.meshIsClosed.push_back(!isModel || checkSolid(scene_.models[model].solid).isClosed);
   }
   appearance.meshes = std::move(meshes_);
 }
@@ -156,7 +156,7 @@ std::vector<std::optional<BodyBall>> findBalls(const std::vector<Model>& models)
   std::vector<std::optional<BodyBall>> balls;
   for (const Model& model : models) {
     balls.emplace_back();
-    if (!checkSolid(model.solid).isSolid) continue;
+    if (!checkSolid(model.solid).isClosed) continue;
     const auto primitive = recogniseShape(model.solid).primitive;
     const Sphere* sphere = primitive ? std::get_if<Sphere>(&primitive->shape) : nullptr;
     if (sphere != nullptr) balls.back() = BodyBall{primitive->bodyFromShape.translation, sphere->radius};

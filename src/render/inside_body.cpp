@@ -18,7 +18,7 @@ double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 bool isInside(const TriangleMesh& solid, const Vec3& point) {
-  if (!checkSolid(solid).isSolid) return false;
+  if (!checkSolid(solid).isClosed) return false;
   double angle = 0;
   for (const auto& triangle : solid.triangles)
     angle += solidAngle(solid.vertices[triangle[0]] - point, solid.vertices[triangle[1]] - point,

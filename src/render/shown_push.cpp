@@ -22,7 +22,7 @@ Frame blend(Frame before, const Frame& after, double share) {
 }
 
 std::vector<RigidTransform> placeBodiesAt(double time, const Scene& scene, const FrameSource& frameAt) {
-  const double interval = frameTime(scene, 1);
+  const double interval = frameInterval(scene);
   const long number = static_cast<long>(std::floor(time / interval));
   const Frame before = frameAt(number);
   return placeBodies(scene, blend(before, frameAt(number + 1), (time - before.time) / interval));

@@ -17,6 +17,7 @@ namespace {
 /// What there is to know of a model, found once for all bodies that use it.
 struct ModelFacts {
   int index = 0;                          // in Scene::models
+  bool isClosed = false;                  // has an inner side
   bool isSolid = false;                   // bounds a volume
   std::string problems;                   // why not
   std::optional<MassProperties> uniform;  // at density 1, if it is a solid
@@ -34,6 +35,7 @@ struct Faults {
 
 ModelFacts examine(const Model& model, const SolidReport& report) {
   ModelFacts facts;
+  facts.isClosed = report.isClosed;
   facts.isSolid = report.isSolid;
   facts.problems = fmt::format("{}", fmt::join(report.problems, "; "));
   if (report.isSolid) facts.uniform = computeMassProperties(model.solid, 1);
@@ -76,6 +78,7 @@ bool canMove(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults)
   if (facts.isSolid) return true;
   const bool givesMass = draft.mass && draft.inertiaTensor;
   const CollisionChoice choice = draft.body.collision;
+  if (givesMass && facts.isClosed) return true;
   if (givesMass && (choice == CollisionChoice::none || choice == CollisionChoice::hull)) return true;
   const char* lacks = givesMass    ? "its collision needs a closed surface"
                       : draft.mass ? "mass alone needs a volume for its inertia"
@@ -100,9 +103,9 @@ void findHull(const BodyDraft& draft, const TriangleMesh& solid, ModelCollision&
 }
 
 // sphere and box are promises about the mesh that it must keep.
-void checkPromise(const BodyDraft& draft, bool isSolid, const RecognisedShape& recognised, FaultList& faults) {
+void checkPromise(const BodyDraft& draft, bool isClosed, const RecognisedShape& recognised, FaultList& faults) {
   const std::string wanted = draft.body.collision == CollisionChoice::sphere ? "sphere" : "box";
-  const std::string shape = isSolid ? shapeName(recognised) : "an open surface";
+  const std::string shape = isClosed ? shapeName(recognised) : "an open surface";
   if (shape == wanted) return;
   addFault(
       faults, *draft.collision,
@@ -119,7 +122,7 @@ void settleCollision(const BodyDraft& draft, ModelFacts& facts, Scene& scene, Fa
   if (facts.isSolid && !facts.isRecognised) collision.recognised = recogniseShape(solid);
   facts.isRecognised = true;
   if (choice == CollisionChoice::sphere || choice == CollisionChoice::box)
-    checkPromise(draft, facts.isSolid, collision.recognised, faults);
+    checkPromise(draft, facts.isClosed, collision.recognised, faults);
   const bool takesPrimitive = collision.recognised.primitive && choice != CollisionChoice::mesh;
   if (collision.recognised.isConvex && !takesPrimitive) findHull(draft, solid, collision, faults);
 }
@@ -134,7 +137,17 @@ MassProperties massOf(const BodyDraft& draft, const ModelFacts& facts, SceneDraf
   return completeMass(draft, facts.uniform, density, faults);
 }
 
+/// A mesh may come in any units; as a body it has a size like the other shapes.
+bool hasUsableSize(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults) {
+  if (kLengths.holds(facts.size)) return true;
+  addFault(faults, *draft.meshField,
+           fmt::format("the mesh has a radius of {:g} m at scale {:g}; allowed are {:g}..{:g} m; change \"scale\"",
+                       facts.size, draft.mesh.scale, kLengths.least, kLengths.most));
+  return false;
+}
+
 void complete(BodyDraft& draft, ModelFacts& facts, SceneDraft& scene, Faults faults) {
+  if (!hasUsableSize(draft, facts, faults.text)) return;
   if (draft.body.motion == Motion::dynamic && !canMove(draft, facts, faults.mesh)) return;
   settleCollision(draft, facts, scene.scene, faults.text);
   const MassProperties properties = massOf(draft, facts, scene, faults.text);

@@ -18,7 +18,7 @@ std::optional<Mat3> readMatrix(const Field& field, FaultList& faults) {
   Mat3 matrix;
   bool isSound = true;
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto row = readVector(rows[i], "kg m^2", faults);
+    const auto row = readVector(rows[i], kMomentEntries, "kg m^2", faults);
     isSound = isSound && row.has_value();
     matrix.row(static_cast<Eigen::Index>(i)) = row.value_or(Vec3::Zero());
   }
@@ -40,6 +40,10 @@ std::string inertiaFault(const Mat3& inertia) {
   if (moments[0] <= kComputedRounding) {
     return "the principal moments of inertia are " + principal + "; all must be > 0";
   }
+  if (!kMoments.holds(moments[0] * largest)) {
+    return fmt::format("the principal moments of inertia are {}; all must be in {:g}..{:g}", principal, kMoments.least,
+                       kMoments.most);
+  }
   if (moments[0] + moments[1] < moments[2] * (1 - kWrittenRounding)) {
     return "the principal moments of inertia are " + principal +
            "; the largest must not exceed the sum of the others (no body has such moments)";
@@ -49,8 +53,9 @@ std::string inertiaFault(const Mat3& inertia) {
 
 bool isUsable(const MassProperties& properties) {
   const Vec3 diagonal = properties.inertiaTensor.diagonal();
-  return std::isfinite(properties.mass) && properties.mass > 0 && properties.centerOfMass.allFinite() &&
-         properties.inertiaTensor.allFinite() && diagonal.minCoeff() > 0;
+  return kMasses.holds(properties.mass) && properties.centerOfMass.allFinite() &&
+         properties.inertiaTensor.allFinite() && kMoments.holds(diagonal.minCoeff()) &&
+         kMoments.holds(diagonal.maxCoeff());
 }
 
 }  // namespace
@@ -58,9 +63,9 @@ bool isUsable(const MassProperties& properties) {
 void parseGivenMass(ObjectReader& reader, BodyDraft& draft) {
   FaultList& faults = reader.faults();
   const auto mass = reader.find("mass");
-  draft.mass = reader.optionalNumber("mass", kPositive, "kg");
+  draft.mass = reader.optionalNumber("mass", kMasses, "kg");
   const auto centerOfMass = reader.find("centerOfMass"), inertiaTensor = reader.find("inertiaTensor");
-  if (centerOfMass) draft.centerOfMass = readVector(*centerOfMass, "m", faults);
+  if (centerOfMass) draft.centerOfMass = readVector(*centerOfMass, kCoordinates, "m", faults);
   if (inertiaTensor) {
     draft.inertiaTensor = readMatrix(*inertiaTensor, faults);
     const std::string fault = draft.inertiaTensor ? inertiaFault(*draft.inertiaTensor) : "";
@@ -87,9 +92,10 @@ MassProperties completeMass(const BodyDraft& draft, const std::optional<MassProp
   if (!isUsable(result)) {
     const Vec3 diagonal = result.inertiaTensor.diagonal();
     addFault(faults, draft.field,
-             fmt::format("the mass comes out as {} kg and the moments of inertia as {}, {}, {} kg m^2; they must be "
-                         "finite and > 0; check size, scale and density",
-                         result.mass, diagonal.x(), diagonal.y(), diagonal.z()));
+             fmt::format("the mass comes out as {} kg and the moments of inertia as {}, {}, {} kg m^2; allowed "
+                         "are {:g}..{:g} kg and {:g}..{:g} kg m^2; check size, scale, density and mass",
+                         result.mass, diagonal.x(), diagonal.y(), diagonal.z(), kMasses.least, kMasses.most,
+                         kMoments.least, kMoments.most));
   }
   return result;
 }

@@ -28,7 +28,7 @@ Copies parseCopies(const Field& field, FaultList& faults) {
       copies.count[i] = static_cast<int>(readNumber(items[i], counts, "", faults).value_or(1));
     }
   }
-  copies.spacing = reader.vector("spacing", "m", copies.spacing);
+  copies.spacing = reader.vector("spacing", kCoordinates, "m", copies.spacing);
   reader.rejectUnknownKeys();
   return copies;
 }
@@ -106,6 +106,19 @@ void addCopies(const Copies& copies, const BodyDraft& draft, SceneDraft& scene, 
   }
 }
 
+// Copies may be far from the first.
+void checkPlaces(const Copies& copies, const BodyDraft& draft, const Field& field, FaultList& faults) {
+  const Vec3 last(copies.count[0] - 1, copies.count[1] - 1, copies.count[2] - 1);
+  const Vec3 place = draft.body.worldFromBody.translation + copies.spacing.cwiseProduct(last);
+  for (const double coordinate : place) {
+    if (kCoordinates.holds(coordinate)) continue;
+    addFault(faults, field,
+             fmt::format("the last copy is at {:g} m; allowed are {:g}..{:g} m; bring copies closer", coordinate,
+                         kCoordinates.least, kCoordinates.most));
+    return;
+  }
+}
+
 void writeOutBodies(ObjectReader& reader, BodyDraft& draft, SceneDraft& scene) {
   FaultList& faults = reader.faults();
   const auto copiesField = reader.find("copies");
@@ -119,6 +132,7 @@ void writeOutBodies(ObjectReader& reader, BodyDraft& draft, SceneDraft& scene) {
     addFault(faults, copiesField.value_or(draft.field),
              fmt::format("the scene would have {} bodies; at most {} are allowed", total, kMostBodies));
   } else if (copiesField) {
+    checkPlaces(copies, draft, *copiesField, faults);
     addCopies(copies, draft, scene, *name, faults);
   } else {
     addBody(draft.body, scene, *name, faults);

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "scene/parse_pose.h"
 
 namespace cradle {
 namespace {
 
 constexpr Range kFieldsOfView{0, 180, true};  // degrees
+constexpr double kShortestPeriod = 1e-9;      // s
 
 /// One or two faults of a camera whose target is a point: as much as the text alone says.
 void checkView(const Camera& camera, const Field& field, FaultList& faults) {
@@ -26,9 +29,9 @@ CameraMotion::Key parseKey(const Field& field, const SceneDraft& draft, FaultLis
   ObjectReader reader(field, faults);
   reader.require("time");
   CameraMotion::Key key;
-  key.time = reader.number("time", kAnyNumber, "s", 0);
-  key.position = reader.vector("position", "m", camera.position);
-  key.target = reader.vector("target", "m", camera.target);
+  key.time = reader.number("time", kKeyTimes, "s", 0);
+  key.position = reader.vector("position", kCoordinates, "m", camera.position);
+  key.target = reader.vector("target", kCoordinates, "m", camera.target);
   if (const auto target = reader.find("target"); target && looksAtBody)
     addFault(faults, *target, "a key frame has a target though the camera's target is a body; allowed is one of them");
   key.verticalFieldOfView = kRadiansPerDegree * reader.number("verticalFieldOfViewDegrees", kFieldsOfView, "degrees",
@@ -58,7 +61,7 @@ CameraMotion::Follow parseFollow(const Field& field, const SceneDraft& draft, Fa
   CameraMotion::Follow follow;
   const auto name = reader.require("body");
   follow.body = (name ? findNamed(*name, draft.bodyIndex, "body", faults) : std::nullopt).value_or(kWorld);
-  follow.lag = reader.number("lag", kNotNegative, "s", follow.lag);
+  follow.lag = reader.number("lag", kInstants, "s", follow.lag);
   reader.rejectUnknownKeys();
   return follow;
 }
@@ -68,7 +71,7 @@ void parseTarget(const Field& field, SceneDraft& draft, FaultList& faults) {
   if (std::holds_alternative<std::string>(field.value->content))
     draft.scene.cameraMotion.targetBody = findNamed(field, draft.bodyIndex, "body", faults).value_or(kWorld);
   else if (std::holds_alternative<JsonValue::Array>(field.value->content))
-    draft.scene.camera->target = readVector(field, "m", faults).value_or(Vec3::UnitY());
+    draft.scene.camera->target = readVector(field, kCoordinates, "m", faults).value_or(Vec3::UnitY());
   else
     addFault(
         faults, field,
@@ -78,10 +81,13 @@ void parseTarget(const Field& field, SceneDraft& draft, FaultList& faults) {
 std::optional<double> parseOrbit(const Field& field, FaultList& faults) {
   ObjectReader reader(field, faults);
   const auto period = reader.require("period");
-  const auto seconds = period ? readNumber(*period, kAnyNumber, "s", faults) : std::nullopt;
-  if (seconds == 0.0)
-    addFault(faults, *period,
-             "period is 0; allowed is any other number (s); negative turns clockwise, seen from above");
+  const auto seconds = period ? readNumber(*period, kPeriods, "s", faults) : std::nullopt;
+  if (seconds && std::abs(*seconds) < kShortestPeriod)
+    addFault(
+        faults, *period,
+        fmt::format("period is {}; allowed is any other number (s), of {:g} at least; negative turns clockwise, seen "
+                    "from above",
+                    *seconds, kShortestPeriod));
   reader.rejectUnknownKeys();
   return seconds;
 }
@@ -107,7 +113,7 @@ void parseCamera(ObjectReader& root, SceneDraft& draft) {
   Camera& camera = draft.scene.camera.emplace();
   camera.where = faults.where(field->place(), field->pointer);
   ObjectReader reader(*field, faults);
-  camera.position = reader.vector("position", "m", camera.position);
+  camera.position = reader.vector("position", kCoordinates, "m", camera.position);
   camera.up = reader.direction("up", camera.up);
   camera.verticalFieldOfView =
       kRadiansPerDegree * reader.number("verticalFieldOfViewDegrees", kFieldsOfView, "degrees", 40);

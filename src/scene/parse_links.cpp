@@ -36,7 +36,7 @@ AnchorDraft parseAnchor(ObjectReader& reader, const char* key, int body, const V
   if (std::holds_alternative<JsonValue::Object>(field->value->content)) {
     draft.vertex = readVertex(*field, body, scene, reader.faults());
   } else {
-    draft.anchor.point = readVector(*field, "m", reader.faults()).value_or(fallback);
+    draft.anchor.point = readVector(*field, kCoordinates, "m", reader.faults()).value_or(fallback);
   }
   return draft;
 }
@@ -63,35 +63,38 @@ void parseEnds(ObjectReader& reader, const Vec3& usualAnchorB, const SceneDraft&
 
 Spring parseSpring(ObjectReader& reader, LinkDraft& draft) {
   Spring spring;
-  spring.stiffness = reader.number("stiffness", kNotNegative, "N/m", 100);
-  spring.damping = reader.number("damping", kNotNegative, "N s/m", 0);
+  spring.stiffness = reader.number("stiffness", kStiffnesses, "N/m", 100);
+  spring.damping = reader.number("damping", kDampings, "N s/m", 0);
   draft.length = reader.find("restLength");
-  spring.restLength = reader.number("restLength", kNotNegative, "m", 0);
+  spring.restLength = reader.number("restLength", kLengthsOrZero, "m", 0);
   return spring;
 }
 
 Rod parseRod(ObjectReader& reader, LinkDraft& draft) {
   Rod rod;
   draft.length = reader.find("length");
-  rod.length = reader.number("length", kPositive, "m", 1);
+  rod.length = reader.number("length", kLengths, "m", 1);
   return rod;
 }
 
 Rope parseRope(ObjectReader& reader, LinkDraft& draft) {
   Rope rope;
   draft.length = reader.find("maxLength");
-  rope.maxLength = reader.number("maxLength", kPositive, "m", 1);
+  rope.maxLength = reader.number("maxLength", kLengths, "m", 1);
   rope.restitution = reader.number("restitution", kFraction, "", 0);
   return rope;
 }
 
-BallJoint parseBallJoint(ObjectReader&, LinkDraft&) {
-  return {};
+BallJoint parseBallJoint(ObjectReader& reader, LinkDraft&) {
+  BallJoint joint;
+  joint.collide = reader.boolean("collide", false);
+  return joint;
 }
 
 Hinge parseHinge(ObjectReader& reader, LinkDraft&) {
   Hinge hinge;
   hinge.axis = reader.direction("axis", hinge.axis);
+  hinge.collide = reader.boolean("collide", false);
   return hinge;
 }
 

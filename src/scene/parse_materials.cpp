@@ -24,10 +24,10 @@ Material parseMaterial(const Field& field, const std::string& name, FaultList& f
   Material material;
   material.name = name;
   ObjectReader reader(field, faults);
-  material.density = reader.number("density", kPositive, "kg/m^3", material.density);
+  material.density = reader.number("density", kDensities, "kg/m^3", material.density);
   material.restitution = reader.number("restitution", kFraction, "", material.restitution);
-  material.staticFriction = reader.number("staticFriction", kNotNegative, "", material.staticFriction);
-  material.dynamicFriction = reader.number("dynamicFriction", kNotNegative, "", material.dynamicFriction);
+  material.staticFriction = reader.number("staticFriction", kFrictions, "", material.staticFriction);
+  material.dynamicFriction = reader.number("dynamicFriction", kFrictions, "", material.dynamicFriction);
   material.baseColor = reader.color("baseColor");
   material.metallic = reader.number("metallic", kFraction, "", material.metallic);
   material.roughness = reader.number("roughness", kFraction, "", material.roughness);
@@ -77,8 +77,8 @@ void parsePair(const Field& field, SceneDraft& draft, std::set<IndexPair>& named
   SurfacePair pair;
   if (indices) pair = draft.scene.surfacePairs[indices->first][indices->second];
   pair.restitution = reader.number("restitution", kFraction, "", pair.restitution);
-  pair.staticFriction = reader.number("staticFriction", kNotNegative, "", pair.staticFriction);
-  pair.dynamicFriction = reader.number("dynamicFriction", kNotNegative, "", pair.dynamicFriction);
+  pair.staticFriction = reader.number("staticFriction", kFrictions, "", pair.staticFriction);
+  pair.dynamicFriction = reader.number("dynamicFriction", kFrictions, "", pair.dynamicFriction);
   reader.rejectUnknownKeys();
   if (!indices || faults.count() != faultsBefore) return;
   checkFrictions(pair.staticFriction, pair.dynamicFriction, field, faults);

@@ -41,7 +41,7 @@ std::optional<Quat> readAxisAngle(ObjectReader& reader) {
   const auto axis = reader.require("axis");
   reader.require("angleDegrees");
   const Vec3 direction = axis ? readDirection(*axis, reader.faults()).value_or(Vec3::UnitX()) : Vec3::UnitX();
-  const double angle = reader.number("angleDegrees", kAnyNumber, "degrees", 0);
+  const double angle = reader.number("angleDegrees", kAngles, "degrees", 0);
   return rotationAbout(direction, angle * kRadiansPerDegree);
 }
 
@@ -53,7 +53,7 @@ bool isEulerOrder(const std::string& order) {
 std::optional<Quat> readEulerAngles(ObjectReader& reader) {
   FaultList& faults = reader.faults();
   reader.require("eulerDegrees");
-  const Vec3 degrees = reader.vector("eulerDegrees", "degrees", Vec3::Zero());
+  const Vec3 degrees = reader.vector("eulerDegrees", kAngles, "degrees", Vec3::Zero());
   const std::string order = reader.text("order", "zyx");
   if (!isEulerOrder(order)) {
     addFault(
@@ -96,18 +96,18 @@ Quat parseOrientation(const Field& field, FaultList& faults) {
 
 void parsePose(ObjectReader& reader, BodyDraft& draft) {
   Body& body = draft.body;
-  body.worldFromBody.translation = reader.vector("position", "m", Vec3::Zero());
+  body.worldFromBody.translation = reader.vector("position", kCoordinates, "m", Vec3::Zero());
   if (const auto field = reader.find("orientation")) {
     body.worldFromBody.rotation = parseOrientation(*field, reader.faults());
   }
-  body.linearVelocity = reader.vector("linearVelocity", "m/s", Vec3::Zero());
+  body.linearVelocity = reader.vector("linearVelocity", kSpeeds, "m/s", Vec3::Zero());
   const auto inWorld = reader.find("angularVelocity"), inBody = reader.find("angularVelocityBody");
   if (inWorld && inBody) {
     addFault(reader.faults(), *inBody,
              "both angularVelocity and angularVelocityBody are given; allowed is one of them");
   }
-  body.angularVelocity = reader.vector("angularVelocity", "rad/s", Vec3::Zero());
-  const Vec3 bodyVelocity = reader.vector("angularVelocityBody", "rad/s", Vec3::Zero());
+  body.angularVelocity = reader.vector("angularVelocity", kAngularSpeeds, "rad/s", Vec3::Zero());
+  const Vec3 bodyVelocity = reader.vector("angularVelocityBody", kAngularSpeeds, "rad/s", Vec3::Zero());
   if (inBody) body.angularVelocity = body.worldFromBody.rotation * bodyVelocity;
 }
 

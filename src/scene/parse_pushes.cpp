@@ -8,7 +8,7 @@ namespace {
 Push::Ray parseRay(const Field& field, FaultList& faults) {
   ObjectReader reader(field, faults);
   Push::Ray ray;
-  ray.origin = reader.vector("origin", "m", Vec3(0, 0, 5));
+  ray.origin = reader.vector("origin", kCoordinates, "m", Vec3(0, 0, 5));
   ray.direction = reader.direction("direction", -Vec3::UnitZ());
   reader.rejectUnknownKeys();
   return ray;
@@ -17,7 +17,7 @@ Push::Ray parseRay(const Field& field, FaultList& faults) {
 // A body point, or the ray that finds one.
 void parseTarget(ObjectReader& reader, Push& push) {
   const auto point = reader.find("point"), ray = reader.find("ray");
-  if (point) push.target = readVector(*point, "m", reader.faults()).value_or(Vec3::Zero());
+  if (point) push.target = readVector(*point, kCoordinates, "m", reader.faults()).value_or(Vec3::Zero());
   if (ray) push.target = parseRay(*ray, reader.faults());
   if (point && ray) {
     addFault(reader.faults(), *ray, "both point and ray are given; allowed is one of them");
@@ -41,9 +41,9 @@ Push parsePush(const Field& field, SceneDraft& scene, FaultList& faults) {
   const auto name = reader.require("body");
   const auto body = name ? findNamed(*name, scene.bodyIndex, "body", faults) : std::nullopt;
   parseTarget(reader, push);
-  push.force = reader.vector("force", "N", Vec3(0, 0, -3));
-  push.start = reader.number("start", kNotNegative, "s", 0.5);
-  push.duration = reader.number("duration", kPositive, "s", 0.02);
+  push.force = reader.vector("force", kForces, "N", Vec3(0, 0, -3));
+  push.start = reader.number("start", kInstants, "s", 0.5);
+  push.duration = reader.number("duration", kPushDurations, "s", 0.02);
   reader.rejectUnknownKeys();
   push.body = body.value_or(kWorld);
   if (push.body != kWorld) warnIfFixed(push, scene);

@@ -10,6 +10,7 @@ namespace {
 constexpr const char* kSchema = "cradle-scene/1";
 constexpr Range kAccuracies{kFinestAccuracy, kCoarsestAccuracy};
 constexpr int kLargestPicture = 16384;  // pixels; Mesa's limit
+constexpr double kMostSteps = 1e10;     // a day of computing for one body; times still differ from step to step
 constexpr double kMostFrames = 1e9;     // a year at 30 a second; keeps frame numbers far from overflow
 
 void parseSchema(ObjectReader& root) {
@@ -43,7 +44,7 @@ Method parseMethod(const Field& field, FaultList& faults) {
                                            {"rk4", MethodName::rk4},
                                            {"dop853", MethodName::dop853}},
                                           method.name);
-  method.timeStep = reader.optionalNumber("timeStep", kPositive, "s");
+  method.timeStep = reader.optionalNumber("timeStep", kTimeSteps, "s");
   reader.rejectUnknownKeys();
   return method;
 }
@@ -52,10 +53,10 @@ Output parseOutput(const Field& field, FaultList& faults) {
   Output output;
   output.where = faults.where(field.place(), field.pointer);
   ObjectReader reader(field, faults);
-  output.framesPerSecond = reader.number("framesPerSecond", kPositive, "1/s", output.framesPerSecond);
+  output.framesPerSecond = reader.number("framesPerSecond", kRates, "1/s", output.framesPerSecond);
   output.width = reader.integer("width", 1, kLargestPicture, output.width);
   output.height = reader.integer("height", 1, kLargestPicture, output.height);
-  output.playbackSpeed = reader.number("playbackSpeed", kPositive, "", output.playbackSpeed);
+  output.playbackSpeed = reader.number("playbackSpeed", kRates, "", output.playbackSpeed);
   reader.rejectUnknownKeys();
   return output;
 }
@@ -65,7 +66,7 @@ Light parseLight(const Field& field, FaultList& faults) {
   ObjectReader reader(field, faults);
   light.direction = reader.direction("direction", light.direction);
   light.color = reader.color("color").value_or(light.color);
-  light.intensity = reader.number("intensity", kNotNegative, "", light.intensity);
+  light.intensity = reader.number("intensity", kIntensities, "", light.intensity);
   reader.rejectUnknownKeys();
   return light;
 }
@@ -91,6 +92,15 @@ void checkFrameCount(const Scene& scene, const Field& root, FaultList& faults) {
                        kMostFrames));
 }
 
+// A run that no one would wait for, told before it starts.
+void checkStepCount(const Scene& scene, const Field& root, FaultList& faults) {
+  if (!scene.method || !scene.method->timeStep) return;
+  const double count = scene.duration / *scene.method->timeStep;
+  if (count <= kMostSteps) return;
+  addFault(faults, *ObjectReader(root, faults).find("method"),
+           fmt::format("duration / timeStep gives {:.3g} steps; at most {:g} are allowed", count, kMostSteps));
+}
+
 }  // namespace
 
 void parseSettings(ObjectReader& root, Scene& scene) {
@@ -102,8 +112,8 @@ void parseSettings(ObjectReader& root, Scene& scene) {
   scene.name = root.text("name", "");
   scene.description = root.text("description", "");
   root.require("duration");
-  scene.duration = root.number("duration", kPositive, "s", 1);
-  scene.gravity = root.vector("gravity", "m/s^2", scene.gravity);
+  scene.duration = root.number("duration", kDurations, "s", 1);
+  scene.gravity = root.vector("gravity", kAccelerations, "m/s^2", scene.gravity);
   if (const auto field = root.find("accuracy")) {
     scene.accuracy = parseAccuracy(*field, faults);
     scene.accuracyWhere = faults.where(field->place(), field->pointer);
@@ -113,7 +123,9 @@ void parseSettings(ObjectReader& root, Scene& scene) {
   if (const auto field = root.find("output")) scene.output = parseOutput(*field, faults);
   parseLights(root, scene);
   scene.look = root.choice<Look>("look", {{"light", Look::light}, {"dark", Look::dark}}, scene.look);
-  if (faults.count() == faultsBefore) checkFrameCount(scene, root.field(), faults);
+  if (faults.count() != faultsBefore) return;
+  checkFrameCount(scene, root.field(), faults);
+  checkStepCount(scene, root.field(), faults);
 }
 
 }  // namespace cradle

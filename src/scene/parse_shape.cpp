@@ -12,7 +12,7 @@ constexpr std::array kShapeKeys{"mesh", "sphere", "box", "cylinder", "capsule", 
 Sphere parseSphere(const Field& field, FaultList& faults) {
   ObjectReader reader(field, faults);
   Sphere sphere;
-  sphere.radius = reader.number("radius", kPositive, "m", sphere.radius);
+  sphere.radius = reader.number("radius", kLengths, "m", sphere.radius);
   reader.rejectUnknownKeys();
   return sphere;
 }
@@ -23,7 +23,7 @@ Box parseBox(const Field& field, FaultList& faults) {
   if (const auto size = reader.find("size")) {
     const std::vector<Field> items = readItems(*size, 3, faults);
     for (std::size_t i = 0; i < items.size(); ++i) {
-      box.size[static_cast<Eigen::Index>(i)] = readNumber(items[i], kPositive, "m", faults).value_or(1);
+      box.size[static_cast<Eigen::Index>(i)] = readNumber(items[i], kLengths, "m", faults).value_or(1);
     }
   }
   reader.rejectUnknownKeys();
@@ -34,8 +34,8 @@ template <typename RoundShape>
 RoundShape parseRoundShape(const Field& field, FaultList& faults) {
   ObjectReader reader(field, faults);
   RoundShape shape;
-  shape.radius = reader.number("radius", kPositive, "m", shape.radius);
-  shape.length = reader.number("length", kPositive, "m", shape.length);
+  shape.radius = reader.number("radius", kLengths, "m", shape.radius);
+  shape.length = reader.number("length", kLengths, "m", shape.length);
   reader.rejectUnknownKeys();
   return shape;
 }
@@ -105,7 +105,7 @@ void readShape(const Field& field, BodyDraft& draft, FaultList& faults) {
   if (!std::holds_alternative<JsonValue::Object>(field.value->content)) return;
   readShapeKeys(reader, draft);
   draft.mesh.object = reader.text("object", "");
-  draft.mesh.scale = reader.number("scale", kPositive, "", 1);
+  draft.mesh.scale = reader.number("scale", kScales, "", 1);
   for (const char* key : {"object", "scale"}) {
     const auto given = reader.find(key);
     if (given && !draft.meshField) addFault(faults, *given, fmt::format("{} goes with mesh only; remove it", key));

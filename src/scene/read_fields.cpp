@@ -3,32 +3,41 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdlib>
+#include <regex>
 
 #include "scene/suggestion.h"
 
 namespace cradle {
 namespace {
 
+constexpr double kFarEnd = 1e6;  // of a range: who has got a sign wrong need not know of it
+
 constexpr std::size_t kMostItems = 1'000'000;  // of an array; as many bodies as a scene may have
 
-// "a number > 0 (kg)", "a whole number in 1..16384"
-std::string describedRange(const Range& range, const char* unit) {
+// "1e9" for 1000000000, "16384" for 16384.
+std::string describedBound(double bound) {
+  static const std::regex kExponent("e([-+])0*");
+  const std::string shortened = fmt::format("{:g}", bound);
+  if (std::strtod(shortened.c_str(), nullptr) != bound) return fmt::format("{}", bound);
+  return std::regex_replace(std::regex_replace(shortened, kExponent, "e$1"), std::regex("e\\+"), "e");
+}
+
+// "a number in 1e-36..1e36 (kg)", "a whole number in 1..16384"; "a number > 0 (kg)" of a wrong sign, when the ends of
+// the range are far away.
+std::string describedRange(const Range& range, const char* unit, double number) {
   std::string text = range.wantsInteger ? "a whole number" : "a number";
   const bool hasMost = range.most != kUnbounded, hasLeast = range.least != -kUnbounded;
-  if (hasLeast && hasMost && !range.excludesEnds) {
-    text += fmt::format(" in {}..{}", range.least, range.most);
+  const bool hasWrongSign = range.least > 0 ? number <= 0 : range.least == 0 && number < 0;
+  if (hasWrongSign && range.most >= kFarEnd && !range.wantsInteger) {
+    text += range.least > 0 ? " > 0" : " >= 0";
+  } else if (hasLeast && hasMost && !range.excludesEnds) {
+    text += fmt::format(" in {}..{}", describedBound(range.least), describedBound(range.most));
   } else {
     if (hasLeast) text += fmt::format(" {} {}", range.excludesEnds ? ">" : ">=", range.least);
     if (hasMost) text += fmt::format("{} {} {}", hasLeast ? " and" : "", range.excludesEnds ? "<" : "<=", range.most);
   }
   return *unit == 0 ? text : fmt::format("{} ({})", text, unit);
-}
-
-bool holds(const Range& range, double number) {
-  if (range.wantsInteger && std::floor(number) != number) return false;
-  if (range.excludesEnds) return number > range.least && number < range.most;
-  return number >= range.least && number <= range.most;
 }
 
 std::string joinedInQuotes(const std::vector<std::string>& words) {
@@ -81,9 +90,11 @@ std::string described(const JsonValue& value) {
 
 std::optional<double> readNumber(const Field& field, const Range& range, const char* unit, FaultList& faults) {
   const double* number = std::get_if<double>(&field.value->content);
-  if (number != nullptr && holds(range, *number)) return *number;
+  if (number != nullptr && range.holds(*number)) return *number;
   const std::string found = number == nullptr ? described(*field.value) : fmt::format("{}", *number);
-  addFault(faults, field, fmt::format("{} is {}; allowed is {}", keyOf(field), found, describedRange(range, unit)));
+  addFault(faults, field,
+           fmt::format("{} is {}; allowed is {}", keyOf(field), found,
+                       describedRange(range, unit, number == nullptr ? -1 : *number)));
   return std::nullopt;
 }
 
@@ -93,13 +104,19 @@ std::optional<std::string> readText(const Field& field, FaultList& faults) {
   return std::nullopt;
 }
 
-std::optional<Vec3> readVector(const Field& field, const char* unit, FaultList& faults) {
+std::optional<bool> readBoolean(const Field& field, FaultList& faults) {
+  if (const auto* found = std::get_if<bool>(&field.value->content)) return *found;
+  addFault(faults, field, fmt::format("{} is {}; allowed is true or false", keyOf(field), described(*field.value)));
+  return std::nullopt;
+}
+
+std::optional<Vec3> readVector(const Field& field, const Range& range, const char* unit, FaultList& faults) {
   const std::vector<Field> items = readItems(field, 3, faults);
   if (items.empty()) return std::nullopt;
   Vec3 vector;
   bool isSound = true;
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto number = readNumber(items[i], kAnyNumber, unit, faults);
+    const auto number = readNumber(items[i], range, unit, faults);
     isSound = isSound && number.has_value();
     vector[static_cast<Eigen::Index>(i)] = number.value_or(0);
   }
@@ -107,7 +124,7 @@ std::optional<Vec3> readVector(const Field& field, const char* unit, FaultList& 
 }
 
 std::optional<Vec3> readDirection(const Field& field, FaultList& faults) {
-  const auto vector = readVector(field, "", faults);
+  const auto vector = readVector(field, kAnyNumber, "", faults);
   if (!vector) return std::nullopt;
   if (*vector != Vec3::Zero()) return vector->stableNormalized();
   addFault(faults, field, keyOf(field) + " is zero; allowed is any length but zero");
@@ -190,14 +207,19 @@ int ObjectReader::integer(const char* key, int least, int most, int fallback) {
   return static_cast<int>(number(key, {double(least), double(most), false, true}, "", fallback));
 }
 
+bool ObjectReader::boolean(const char* key, bool fallback) {
+  const auto found = find(key);
+  return found ? readBoolean(*found, faults_).value_or(fallback) : fallback;
+}
+
 std::string ObjectReader::text(const char* key, const std::string& fallback) {
   const auto found = find(key);
   return found ? readText(*found, faults_).value_or(fallback) : fallback;
 }
 
-Vec3 ObjectReader::vector(const char* key, const char* unit, const Vec3& fallback) {
+Vec3 ObjectReader::vector(const char* key, const Range& range, const char* unit, const Vec3& fallback) {
   const auto found = find(key);
-  return found ? readVector(*found, unit, faults_).value_or(fallback) : fallback;
+  return found ? readVector(*found, range, unit, faults_).value_or(fallback) : fallback;
 }
 
 Vec3 ObjectReader::direction(const char* key, const Vec3& fallback) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "math/types.h"
 #include "scene/fault_list.h"
 #include "scene/json_document.h"
+#include "scene/ranges.h"
 
 // Typed reading of JSON values. Whatever is wrong goes to the fault list; the reader then gets nothing, or the default,
 // and goes on, so that one run finds all faults.
@@ -23,19 +23,6 @@ struct Field {
   const TextPlace& place() const { return value->place; }
 };
 
-/// Numbers that are allowed.
-struct Range {
-  double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();
-  bool excludesEnds = false;
-  bool wantsInteger = false;
-};
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-constexpr Range kAnyNumber{};
-constexpr Range kPositive{0, kUnbounded, true};
-constexpr Range kNotNegative{0, kUnbounded};
-constexpr Range kFraction{0, 1};
-
 /// Adds a fault at the value of `field`.
 void addFault(FaultList& faults, const Field& field, const std::string& what);
 
@@ -44,9 +31,10 @@ std::string described(const JsonValue& value);
 
 /// `unit` is only for messages ("kg"; empty if there is none).
 std::optional<double> readNumber(const Field& field, const Range& range, const char* unit, FaultList& faults);
+std::optional<bool> readBoolean(const Field& field, FaultList& faults);
 std::optional<std::string> readText(const Field& field, FaultList& faults);
-/// Three numbers.
-std::optional<Vec3> readVector(const Field& field, const char* unit, FaultList& faults);
+/// Three numbers, each in `range`.
+std::optional<Vec3> readVector(const Field& field, const Range& range, const char* unit, FaultList& faults);
 /// Three numbers, not all zero, scaled to length 1.
 std::optional<Vec3> readDirection(const Field& field, FaultList& faults);
 /// "#rrggbb" as sRGB, 0..1.
@@ -69,8 +57,9 @@ class ObjectReader {
   double number(const char* key, const Range& range, const char* unit, double fallback);
   std::optional<double> optionalNumber(const char* key, const Range& range, const char* unit);
   int integer(const char* key, int least, int most, int fallback);
+  bool boolean(const char* key, bool fallback);
   std::string text(const char* key, const std::string& fallback);
-  Vec3 vector(const char* key, const char* unit, const Vec3& fallback);
+  Vec3 vector(const char* key, const Range& range, const char* unit, const Vec3& fallback);
   Vec3 direction(const char* key, const Vec3& fallback);
   std::optional<Vec3f> color(const char* key);
   std::vector<Field> items(const char* key);

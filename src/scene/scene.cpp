@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cradle {
@@ -18,8 +19,14 @@ long lastFrame(const Scene& scene) {
   return static_cast<long>(std::floor(scene.duration * output.framesPerSecond / output.playbackSpeed + kRounding));
 }
 
+// N whole frames may be longer than the duration by rounding, and nothing is simulated beyond it.
 double frameTime(const Scene& scene, long frame) {
-  return static_cast<double>(frame) * scene.output.playbackSpeed / scene.output.framesPerSecond;
+  const double time = static_cast<double>(frame) * scene.output.playbackSpeed / scene.output.framesPerSecond;
+  return std::min(time, scene.duration);
+}
+
+double frameInterval(const Scene& scene) {
+  return scene.output.playbackSpeed / scene.output.framesPerSecond;
 }
 
 }  // namespace cradle

@@ -93,12 +93,14 @@ struct Rope {
 struct BallJoint {
   std::string name, where;
   Anchor anchorA, anchorB;
+  bool collide = false;  // whether its bodies touch each other
 };
 
 struct Hinge {
   std::string name, where;
   Anchor anchorA, anchorB;
   Vec3 axis = Vec3::UnitZ();  // unit, frame of body A
+  bool collide = false;       // whether its bodies touch each other
 };
 
 /// A force for a time at a point of a body, or at the first hit of a ray on its surface.
@@ -204,7 +206,10 @@ bool looksAlongUp(const Camera& camera);
 /// N: a trajectory has frames 0..N, a film pictures 0..N-1 (at least one).
 long lastFrame(const Scene& scene);
 
-/// Time of frame k in s.
+/// Time of frame k of 0..N in s: not later than the duration.
 double frameTime(const Scene& scene, long frame);
+
+/// Simulated time from a frame to the next in s.
+double frameInterval(const Scene& scene);
 
 }  // namespace cradle

@@ -152,15 +152,11 @@ int colliderIndex(const Assembly& assembly, int body) {
   return found != bodies.end() && *found == body ? static_cast<int>(found - bodies.begin()) : -1;
 }
 
-/// Bodies that a joint joins do not touch each other.
 void excludeJoined(const Scene& scene, Assembly& assembly) {
-  const auto exclude = [&](const auto& joints) {
-    for (const auto& joint : joints) {
-      const int a = colliderIndex(assembly, joint.anchorA.body), b = colliderIndex(assembly, joint.anchorB.body);
-      if (a >= 0 && b >= 0) assembly.geometry.excluded.emplace_back(std::min(a, b), std::max(a, b));
-    }
-  };
-  exclude(scene.ballJoints), exclude(scene.hinges);
+  for (const auto& [bodyA, bodyB] : pairsKeptFromTouching(scene)) {
+    const int a = colliderIndex(assembly, bodyA), b = colliderIndex(assembly, bodyB);
+    if (a >= 0 && b >= 0) assembly.geometry.excluded.emplace_back(std::min(a, b), std::max(a, b));
+  }
 }
 
 /// Contact that cannot be computed is not looked for, but must not come about.
@@ -174,6 +170,15 @@ void excludeUnsolved(ContactGeometry& geometry) {
       geometry.unsolvedPairs.push_back({a, b, false, {}});
       geometry.excluded.emplace_back(a, b);
     }
+}
+
+/// Springs that fixed steps are too long for: they blow up, or keep still where they should swing.
+void warnOfSteps(const Scene& scene, const ChosenMethod& method, Assembly& assembly) {
+  auto fault = stepFault(assembly.mechanism, assembly.state, method, scene.duration);
+  if (!fault) fault = energyChangeByStep(assembly.mechanism, assembly.state, method, scene.duration);
+  if (!fault) return;
+  assembly.warnings.push_back(
+      fmt::format("{}: spring \"{}\" {}", scene.path, assembly.names.springs[fault->spring], fault->text));
 }
 
 }  // namespace
@@ -192,9 +197,7 @@ Assembly assemble(const Scene& scene, const IslandPlan& island) {
   BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0, assembly.geometry);
   constrainPinnedContacts(assembly);
   satisfyConstraints(scene, assembly);
-  if (const auto fault = stepFault(assembly.mechanism, assembly.state, island.method, scene.duration))
-    assembly.warnings.push_back(
-        fmt::format("{}: spring \"{}\" {}", scene.path, assembly.names.springs[fault->spring], fault->text));
+  warnOfSteps(scene, island.method, assembly);
   return assembly;
 }
 

@@ -91,11 +91,22 @@ void addSurfaces(const Scene& scene, const std::vector<int>& bodies, std::vector
     const Body& body = scene.bodies[static_cast<std::size_t>(bodies[i])];
     const auto model = static_cast<std::size_t>(std::get<ModelShape>(body.shape).model);
     const TriangleMesh& mesh = scene.models[model].solid;
-    if (!surfaces[model] && checkSolid(mesh).isSolid)
+    if (!surfaces[model] && checkSolid(mesh).isClosed)
       surfaces[model] = std::make_shared<const MeshSurface>(surfaceOf(mesh));
     collider.mesh = surfaces[model];
     collider.bodyFromMesh = colliderFromShape(body, collider.body);
   }
+}
+
+std::set<std::pair<int, int>> pairsKeptFromTouching(const Scene& scene) {
+  std::set<std::pair<int, int>> joined, colliding;
+  const auto add = [&](const auto& joints) {
+    for (const auto& joint : joints)
+      (joint.collide ? colliding : joined).insert(std::minmax(joint.anchorA.body, joint.anchorB.body));
+  };
+  add(scene.ballJoints), add(scene.hinges);
+  for (const auto& pair : colliding) joined.erase(pair);
+  return joined;
 }
 
 bool mayTouch(const Body& a, const Body& b) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "collision/collider.h"
@@ -22,6 +24,9 @@ bool canSolveContact(const Collider& a, const Collider* b);
 
 /// Faults of pairs whose contact cannot be simulated yet. Two moving bodies are no fault: they may stay apart.
 std::vector<std::string> unsupportedContacts(const Scene& scene);
+
+/// Pairs of scene bodies that joints join and none of these joints lets touch each other: the smaller index first.
+std::set<std::pair<int, int>> pairsKeptFromTouching(const Scene& scene);
 
 /// Do two bodies have to be watched for contact? (One moves, both collide.)
 bool mayTouch(const Body& a, const Body& b);

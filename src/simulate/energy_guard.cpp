@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "dynamics/invariants.h"
@@ -11,11 +12,14 @@
 namespace cradle {
 namespace {
 
-constexpr double kUnexplained = 2;          // times the energy that can be explained: nothing is left of the motion
-constexpr double kMostLocalErrors = 100;    // times their sum: they are estimates; 0.1 of it has been seen
+constexpr double kUnexplained = 2;        // times the energy that can be explained: nothing is left of the motion
+constexpr double kMostLocalErrors = 100;  // times their sum: they are estimates; 0.1 of it has been seen
+constexpr double kPlaceRounding = 64 * std::numeric_limits<double>::epsilon();  // of a place, over a run's steps
 constexpr double kFinestTolerance = 1e-13;  // of a component in a step: finer tolerances are not kept
 constexpr double kCalmPart = 0.1;           // of what stops a run: before, the motion is still the scene's own
 constexpr double kSafeTurn = 0.1;           // rad a step: RK4 is then right to 1e-7 a step; slower turns are no cause
+constexpr double kOverwhelming = 1e6;       // times all weights and springs: nothing else moves its body
+constexpr double kPlainAcceleration = 1;    // m/s^2: of weights where there is no gravity
 constexpr double kCollapsed = 1e-3;         // of its rest length: a spring without direction
 
 /// What an error of 1 + |y| in each component y of a state can change of its energy (J).
@@ -39,6 +43,25 @@ double energySensitivity(const Mechanism& mechanism, const VectorX& state) {
 /// Kinetic + potential + dissipated - work (J).
 double explainedConstant(const Mechanism& mechanism, const VectorX& state) {
   return energyConstant(mechanism, state) - numericalEnergy(state);
+}
+
+/// What rounding of places and lengths makes of the energy (J) that is summed from them: all that bodies have which do
+/// not move, and more than nothing where a spring is stiff.
+double energyRounding(const Mechanism& mechanism, const VectorX& state) {
+  double sum = 0;
+  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    sum += mechanism.bodies[i].mass * mechanism.gravity.norm() * centerOfMass(state, body).norm();
+  }
+  sum *= kPlaceRounding;
+  for (const SpringForce& spring : mechanism.springs) {
+    const SpringAction action = actionOf(spring, state);
+    const double size = action.a.position.norm() + action.b.position.norm() + action.a.arm.norm() +
+                        action.b.arm.norm() + spring.restLength;
+    const double rounding = kPlaceRounding * size;
+    sum += (action.forceOnA.norm() + spring.stiffness * rounding) * rounding;
+  }
+  return sum;
 }
 
 /// Angle (rad) by which the line between two attachments turns in a time.
@@ -78,6 +101,7 @@ void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
     errorSum_ += std::max(method_.tolerance, kFinestTolerance) * energySensitivity(mechanism_, state);
     most = std::min(most, kMostLocalErrors * errorSum_);
   }
+  most += energyRounding(mechanism_, state);
   const double change = std::abs(explainedConstant(mechanism_, state) - startConstant_);
   if (!(change <= most))
     fail(state, time, fmt::format("has energy from nowhere ({:.3g} J; {:.3g} J can be explained)", change, most),
@@ -133,8 +157,29 @@ void EnergyGuard::fail(const VectorX& state, double time, const std::string& wha
     const double size = std::isfinite(energy) ? energy : INFINITY;
     if (size > most) most = size, worst = i;
   }
+  std::string why = cause;
+  if (const PushForce* push = overwhelmingPush()) {
+    worst = static_cast<std::size_t>(push->point.body);
+    why = fmt::format(
+        "a push of {:.3g} N accelerates it by {:.3g} m/s^2: give the push less force, or the body more mass",
+        push->force.norm(), push->force.norm() / mechanism_.bodies[worst].mass);
+  }
   throw Error(ErrorKind::unstable, "",
-              fmt::format("unstable at {:.6g} s: body \"{}\" {}; {}", time, names_.bodies[worst], what, cause));
+              fmt::format("unstable at {:.6g} s: body \"{}\" {}; {}", time, names_.bodies[worst], what, why));
+}
+
+/// The strongest push that acts, if weights and springs are next to nothing beside it. What it does may show first in
+/// bodies that its own pulls along.
+const PushForce* EnergyGuard::overwhelmingPush() const {
+  double others = 0;  // N
+  for (const RigidBody& body : mechanism_.bodies)
+    others += body.mass * std::max(mechanism_.gravity.norm(), kPlainAcceleration);
+  for (const SpringForce& spring : mechanism_.springs) others += actionOf(spring, start_).forceOnA.norm();
+  const PushForce* strongest = nullptr;
+  double most = kOverwhelming * others;
+  for (const PushForce& push : mechanism_.pushes)
+    if (push.force.norm() > most) most = push.force.norm(), strongest = &push;
+  return strongest;
 }
 
 /// Why steps have to be so short.

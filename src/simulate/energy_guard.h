@@ -34,6 +34,7 @@ class EnergyGuard {
   double explainedEnergy(const VectorX& state, double timeStep);
   double firstStepEnergy(double timeStep) const;
   [[noreturn]] void fail(const VectorX& state, double time, const std::string& what, const std::string& cause) const;
+  const PushForce* overwhelmingPush() const;
   std::string cause(const VectorX& state) const;
   std::string stiffCause(const VectorX& state) const;
   std::string fastestTurn(const VectorX& state) const;

@@ -24,14 +24,12 @@ int threadsFor(std::size_t bodies) {
 
 }  // namespace
 
-Pile::Pile(Assembly assembly, double longestStep)
-    : Pile(std::move(assembly), longestStep, threadsFor(assembly.mechanism.bodies.size())) {}
-
-Pile::Pile(Assembly assembly, double longestStep, int threads)
+Pile::Pile(Assembly assembly, double longestStep, std::optional<int> threads)
     : assembly_(std::move(assembly)),
       state_(assembly_.state),
       longestStep_(longestStep),
-      step_(assembly_.mechanism.bodies, assembly_.geometry, assembly_.mechanism.gravity, threads),
+      step_(assembly_.mechanism.bodies, assembly_.geometry, assembly_.mechanism.gravity,
+            threads.value_or(threadsFor(assembly_.mechanism.bodies.size()))),
       startEnergy_(energyConstant(assembly_.mechanism, state_)) {
   normalizeOrientations(state_);
 }

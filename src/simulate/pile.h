@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "impact/pile_step.h"
@@ -11,10 +12,9 @@ namespace cradle {
 /// An island of many bodies that gravity and contact move, in motion: by the fast contact step.
 class Pile {
  public:
-  /// Steps end at the times asked for, and are no longer than `longestStep` (s). As many threads as the machine has
-  /// for large piles; the result is the same for any number.
-  Pile(Assembly assembly, double longestStep);
-  Pile(Assembly assembly, double longestStep, int threads);
+  /// Steps end at the times asked for, and are no longer than `longestStep` (s). Without `threads`, large piles take as
+  /// many as the machine has; the result is the same for any number.
+  Pile(Assembly assembly, double longestStep, std::optional<int> threads = std::nullopt);
   Pile(const Pile&) = delete;
   Pile& operator=(const Pile&) = delete;
 

@@ -34,7 +34,8 @@ Roundness roundnessAt(const Collider& collider, const Vec3& point, const Vec3& n
   const Vec3 arm = point - (collider.points[0] + std::clamp(part, 0.0, 1.0) * along);
   if (std::abs(arm.norm() - radius) > near) return {};
   const Vec3 tangent = along.cross(arm).normalized();
-  if (kind == ColliderKind::cylinder) return {false, std::abs(tangent.dot(normal)) <= kSamePlaceAtPin ? tangent : Vec3(Vec3::Zero())};
+  if (kind == ColliderKind::cylinder)
+    return {false, std::abs(tangent.dot(normal)) <= kSamePlaceAtPin ? tangent : Vec3(Vec3::Zero())};
   if ((arm - radius * normal).norm() > near) return {};
   const double rest = near / along.norm();
   return part > rest && part < 1 - rest ? Roundness{false, tangent} : Roundness{true, {}};
@@ -94,50 +95,43 @@ bool forbidRolling(std::size_t index, const PinnedPlace& pin, const std::string&
   return isForbidden;
 }
 
-/// The end of a joint that moves, if the other is fixed; else none.
-const Attachment* movingEnd(const Attachment& anchorA, const Attachment& anchorB) {
-  if (anchorA.body != kFixed && anchorB.body == kFixed) return &anchorA;
-  return anchorB.body != kFixed && anchorA.body == kFixed ? &anchorB : nullptr;
-}
-
-/// Of the body, or none.
-std::vector<std::size_t> collidersOf(const Assembly& assembly, int body) {
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < assembly.geometry.colliders.size(); ++i)
-    if (assembly.geometry.colliders[i].body == body) found.push_back(i);
-  return found;
+/// Tells the colliders of a joint's body of its anchor, which `other` (a moving body, or kFixed) holds. True if rolling
+/// about it is forbidden from now on.
+bool pin(const Attachment& anchor, int other, const Vec3& axis, const std::string& name, Assembly& assembly) {
+  if (anchor.body == kFixed) return false;
+  bool isForbidden = false;
+  for (std::size_t i = 0; i < assembly.geometry.colliders.size(); ++i) {
+    Collider& collider = assembly.geometry.colliders[i];
+    if (collider.body != anchor.body) continue;
+    collider.pins.push_back({other, anchor.point, axis});
+    if (other == kFixed) isForbidden = forbidRolling(i, {other, anchor.point, axis}, name, assembly);
+  }
+  return isForbidden;
 }
 
 }  // namespace
 
 void constrainPinnedContacts(Assembly& assembly) {
   Constraints& constraints = assembly.mechanism.constraints;
+  const std::vector<HingeConstraint> hinges = constraints.hinges;
+  const std::vector<std::string> hingeNames = assembly.names.hinges;
   std::vector<BallJointConstraint> ballJoints;
   std::vector<std::string> names;
-  const std::size_t hinges = constraints.hinges.size();
   for (std::size_t i = 0; i < constraints.ballJoints.size(); ++i) {
     const BallJointConstraint& joint = constraints.ballJoints[i];
-    bool isReplaced = false;
-    if (const Attachment* end = movingEnd(joint.anchorA, joint.anchorB))
-      for (const std::size_t collider : collidersOf(assembly, end->body)) {
-        assembly.geometry.colliders[collider].pins.push_back({end->point, Vec3::Zero()});
-        isReplaced = forbidRolling(collider, {end->point, Vec3::Zero()}, assembly.names.ballJoints[i], assembly);
-      }
-    if (isReplaced) continue;
+    const std::string& name = assembly.names.ballJoints[i];
+    const bool isReplacedA = pin(joint.anchorA, joint.anchorB.body, Vec3::Zero(), name, assembly);
+    const bool isReplacedB = pin(joint.anchorB, joint.anchorA.body, Vec3::Zero(), name, assembly);
+    if (isReplacedA || isReplacedB) continue;
     ballJoints.push_back(joint);
-    names.push_back(assembly.names.ballJoints[i]);
+    names.push_back(name);
   }
   constraints.ballJoints = std::move(ballJoints);
   assembly.names.ballJoints = std::move(names);
-  for (std::size_t i = 0; i < hinges; ++i) {
-    const HingeConstraint hinge = constraints.hinges[i];
-    const Attachment* end = movingEnd(hinge.anchorA, hinge.anchorB);
-    if (!end) continue;
-    const Vec3 axis = end == &hinge.anchorA ? hinge.axisA : hinge.acrossB[0].cross(hinge.acrossB[1]);
-    for (const std::size_t collider : collidersOf(assembly, end->body)) {
-      assembly.geometry.colliders[collider].pins.push_back({end->point, axis});
-      forbidRolling(collider, {end->point, axis}, assembly.names.hinges[i], assembly);
-    }
+  for (std::size_t i = 0; i < hinges.size(); ++i) {
+    const HingeConstraint& hinge = hinges[i];
+    pin(hinge.anchorA, hinge.anchorB.body, hinge.axisA, hingeNames[i], assembly);
+    pin(hinge.anchorB, hinge.anchorA.body, hinge.acrossB[0].cross(hinge.acrossB[1]), hingeNames[i], assembly);
   }
 }
 

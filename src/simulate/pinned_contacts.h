@@ -4,7 +4,7 @@
 
 namespace cradle {
 
-/// Joints with something fixed whose anchor is where their body touches something fixed: tells colliders of the anchors
+/// Joints whose anchor is where their bodies touch something: tells colliders of the anchors
 /// (Collider::pins), and adds to the constraints what such a contact forbids for ever. A surface that is round at the
 /// anchor cannot roll on a flat one: with the anchor at height 0 its lowest point would sink by R (1 - cos angle), for
 /// turns of either sense. The contact has no arm about the anchor to prevent that by a finite force, so it is a

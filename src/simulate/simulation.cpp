@@ -3,13 +3,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "core/error.h"
 #include "core/interruption.h"
 #include "dynamics/invariants.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
+namespace {
+
+constexpr double kFallPart = 1.0 / 300;  // of sqrt(size / g), in which a body falls by half its size
+constexpr std::size_t kFewBodies = 4;    // that move: many cost more than such steps are worth
+
+/// s: of contact that events do not serve. A few bodies move as fast as gravity moves them through their own size: the
+/// same ones, smaller, take the same steps in less time.
+double contactTimeStep(const Assembly& assembly) {
+  const double gravity = assembly.mechanism.gravity.norm();
+  if (gravity == 0 || assembly.mechanism.bodies.size() > kFewBodies) return kContactTimeStep;
+  return std::min(kContactTimeStep, kFallPart * std::sqrt(smallestSize(assembly.geometry) / gravity));
+}
+
+}  // namespace
 
 Simulation::Simulation(const Scene& scene, Assembly assembly, const ChosenMethod& method)
     : island_(scene, std::move(assembly)),
@@ -25,6 +41,7 @@ Simulation::Simulation(const Scene& scene, Assembly assembly, const ChosenMethod
 
 const VectorX& Simulation::stateAt(double time) {
   const double same = sameTime(time);
+  CRADLE_CHECK(time <= island_.scene.duration + same);  // no step goes beyond the end: that would take for ever
   while (island_.time < time - same) {
     throwIfInterrupted();
     advance(time);
@@ -69,16 +86,17 @@ void Simulation::changeMotion() {
     const std::string_view fault = events->fault();
     if (fault.empty()) return;
     const bool isLook = island_.scene.accuracy > kLookAccuracy;
+    const ChosenMethod steps = contactSteps(isLook ? kContactTimeStep : contactTimeStep(island_.assembly));
     if (!std::exchange(isWarned_, true))
       island_.log.warn(fmt::format(
           "{}: the accuracy asked is not promised from {:.6g} s on: {}; contact is resolved "
           "every {:.3g} s {}",
-          island_.scene.path, island_.time, fault, kContactTimeStep, isLook ? "to the end" : "as long as that lasts"));
+          island_.scene.path, island_.time, fault, steps.timeStep, isLook ? "to the end" : "as long as that lasts"));
     island_.assembly.mechanism.contacts.clear();
     nextTrial_ = island_.time + trialTime_;
     trialTime_ *= 2;
-    if (isLook) method_ = contactSteps();
-    motion_.emplace<SteppedMotion>(island_, ropes_, contactSteps());
+    if (isLook) method_ = steps;
+    motion_.emplace<SteppedMotion>(island_, ropes_, steps);
     return;
   }
   const auto& steps = std::get<SteppedMotion>(motion_);
@@ -93,7 +111,10 @@ void Simulation::interpolateAt(double time, bool keepsTies) {
   const double fraction = (time - island_.step.time) / island_.step.timeStep;
   interpolate(island_.step, fraction, reported_);
   if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->hold(fraction, reported_);
-  if (keepsTies && solver_.hasConstraints()) {
+  const auto* events = std::get_if<EventMotion>(&motion_);
+  if (events && keepsTies && !events->contactsOfStep().empty()) {
+    keepTogether(events->contactsOfStep());
+  } else if (keepsTies && solver_.hasConstraints()) {
     findStill();
     solver_.leaveOut(still_);
     solver_.project(reported_);
@@ -101,6 +122,13 @@ void Simulation::interpolateAt(double time, bool keepsTies) {
   numericalEnergy(reported_) = numericalEnergy(island_.step.startState);
   const Mechanism& mechanism = island_.assembly.mechanism;
   bookNumerical(energyConstant(mechanism, island_.step.startState), mechanism, reported_);
+}
+
+/// Takes out of the interpolated state what it leaves of gaps of contacts that last, and of ties.
+void Simulation::keepTogether(const std::vector<ContactConstraint>& contacts) {
+  const Mechanism& mechanism = island_.assembly.mechanism;
+  findStill();
+  ContactSolver(contacts, mechanism.constraints, mechanism.bodies).project(reported_, still_);
 }
 
 /// What has not moved within the step is where its ties hold it.

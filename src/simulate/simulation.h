@@ -19,9 +19,9 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// The state at `time` (s), not earlier than in the call before; orientations of unit length. At an instant of events
-  /// the state after them. Throws Error(unstable) if the state blows up, Error(limit) if a step has too many impacts,
-  /// Error(interrupted).
+  /// The state at `time` (s), not earlier than in the call before, and not after the end of the scene; orientations of
+  /// unit length. At an instant of events the state after them. Throws Error(unstable) if the state blows up,
+  /// Error(limit) if a step has too many impacts, Error(interrupted).
   const VectorX& stateAt(double time);
 
   const Assembly& assembly() const { return island_.assembly; }
@@ -40,6 +40,7 @@ class Simulation {
   bool keepsTies() const;
   /// A frame inside a step: what its state is off the energy of the step's start is an error of that frame alone.
   void interpolateAt(double time, bool keepsTies);
+  void keepTogether(const std::vector<ContactConstraint>& contacts);
   void findStill();
   void spin(Eigen::Index body, double time, VectorX& state) const;
 

@@ -104,12 +104,27 @@ std::vector<Overlap> overlapsOf(const Scene& scene, const Assembly& assembly) {
   return overlaps;
 }
 
+/// The bodies with an infinite inertia where nothing ties them: an overlap says how far bodies are to be moved, but not
+/// how they are to be turned, and what was put straight is to stay straight. Ties leave some bodies no other way.
+std::vector<RigidBody> bodiesThatKeepUpright(const Mechanism& mechanism) {
+  std::vector<RigidBody> bodies = mechanism.bodies;
+  for (RigidBody& body : bodies) body.inverseInertia.setZero();
+  const auto free = [&](int body) {
+    const std::size_t index = static_cast<std::size_t>(body);
+    if (body != kFixed) bodies[index].inverseInertia = mechanism.bodies[index].inverseInertia;
+  };
+  forEachTie(mechanism.constraints, [&](int a, int b) { free(a), free(b); });
+  return bodies;
+}
+
 void moveApart(Assembly& assembly) {
+  const std::vector<RigidBody> bodies = bodiesThatKeepUpright(assembly.mechanism);
   ConstraintSolver solver(assembly.mechanism.constraints, assembly.mechanism.bodies);
   if (solver.hasConstraints()) solver.factorize(assembly.state);
   std::vector<Contact> contacts;
   findContacts(assembly.geometry, assembly.state, 0, contacts);
-  resolveOverlaps(assembly.geometry, contacts, ImpulseResponse(assembly.mechanism.bodies, solver), assembly.state);
+  resolveOverlaps(assembly.geometry, contacts, ImpulseResponse(bodies, solver), assembly.state);
+  if (solver.hasConstraints()) solver.project(assembly.state);
   // What was moved may be near others now.
   BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0, assembly.geometry);
 }

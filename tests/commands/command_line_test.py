@@ -229,6 +229,21 @@ class Trajectories(InTemporaryFolder):
         self.assertIn("Checked by a run at accuracy 1e-08", run.stdout)
         self.assertIn("not chaotic", run.stdout)
 
+    def test_a_duration_a_little_short_of_its_last_frame_ends_with_that_frame(self):
+        ball = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "position": [0, 1, 0]}
+        spring = {"bodyA": "ball", "anchorB": [0, 2, 0], "stiffness": 100}
+        short = self.write("short.json", scene(duration=0.16666666666, bodies=[ball], springs=[spring]))
+        run = cradle("simulate", short, "-o", self.path("short.sqlite"), "--check-accuracy")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(cradle("export", self.path("short.sqlite"), "-o", self.path("short.csv")).returncode, 0)
+        with open(self.path("short.csv")) as table:
+            rows = list(csv.DictReader(table))
+        self.assertEqual(len(rows), 11)
+        self.assertEqual(float(rows[-1]["time_s"]), 0.16666666666)
+        self.assertEqual(cradle("export", self.path("short.sqlite"), "-o", self.path("short.glb")).returncode, 0)
+        film = cradle("video", short, "-o", self.path("short.mp4"))
+        self.assertEqual(film.returncode, 0, film.stderr)
+
     def test_export_writes_a_row_for_every_frame_and_body(self):
         trajectory = self.simulate("a")
         self.assertEqual(cradle("export", trajectory, "-o", self.path("a.csv")).returncode, 0)

@@ -13,8 +13,8 @@ namespace {
 // and energy has their square. Frames between steps, which end where ties and contacts hold, have less than one.
 constexpr double kMostEnergyErrors = 2, kMostPlaceErrors = 1;
 // Steps of one length promise no accuracy, but that pictures are right. What they gain is RK4's with springs and ropes;
-// what errors lose is of order 1 in steps in which something strikes: g times the change of speed times a step; ropes are drawn too long by what contact does to speeds of 20 m/s within a step of 1/960 s; penetration is
-// as in piles.
+// what errors lose is of order 1 in steps in which something strikes: g times the change of speed times a step; ropes
+// are drawn too long by what contact does to speeds of 20 m/s within a step of 1/960 s; penetration is as in piles.
 constexpr double kSteppedGain = 3e-4, kSteppedError = 5e-3;                  // of the energy
 constexpr double kSteppedTieError = 20. / 960, kSteppedPenetration = 0.005;  // m
 

@@ -170,5 +170,94 @@ TEST(FrictionalImpact, KeepsMirrorSymmetry) {
   EXPECT_GT(linearVelocity(row.state, 1).x(), 0.5);
 }
 
+/// A ball of radius 0.1 m that comes into a corner between a floor and a wall, spinning.
+struct Corner {
+  double floorRestitution = 0.5, wallRestitution = 0.5, friction = 0.4;
+  double mass = 2;     // kg
+  double angle = 0;    // rad: how far the wall leans
+  double drift = 0.5;  // m/s, along the corner
+
+  /// The velocities (m/s, rad/s) with which the ball leaves, and its kinetic energy (J) in parts of that before.
+  Eigen::Matrix<double, 7, 1> outcome() const {
+    RowOfBalls row({mass}, 0);
+    const Vec3 wall(std::cos(angle), std::sin(angle), 0);
+    row.impacts = {{{0, 0, kFixed, Vec3(0, -0.1, 0), -Vec3::UnitY(), 0}, {floorRestitution, friction, friction}},
+                   {{1, 0, kFixed, -0.1 * wall, -wall, 0}, {wallRestitution, friction, friction}}};
+    linearVelocity(row.state, 0) = Vec3(-2, -3, drift);
+    const double before = kineticEnergy(row.bodies, row.state);
+    resolveFrictionalImpact(row.impacts, row.bodies, row.state);
+    Eigen::Matrix<double, 7, 1> outcome;
+    outcome << row.state.segment<6>(velocityOffset(row.state, 0)), kineticEnergy(row.bodies, row.state) / before;
+    return outcome;
+  }
+};
+
+/// The largest change of the outcome when a datum of the corner goes from one value to another in so many steps.
+template <class Set>
+double largestChange(const Set& set, double from, double to, int steps) {
+  Corner corner;
+  VectorX last;
+  double largest = 0;
+  for (int i = 0; i <= steps; ++i) {
+    set(from + (to - from) * i / steps, corner);
+    const VectorX now = corner.outcome();
+    EXPECT_LE(now[6], 1 + 1e-12);
+    if (i > 0) largest = std::max(largest, (now - last).cwiseAbs().maxCoeff());
+    last = now;
+  }
+  return largest;
+}
+
+// What is continuous, and smooth but for kinks, changes by a tenth over a tenth of the way; a jump stays. (With
+// friction of 1 and more the ball is wedged: neither surface lets it slide along the other.)
+template <class Set>
+void expectContinuous(const Set& set, double from, double to, const char* what) {
+  EXPECT_LT(largestChange(set, from, to, 200), 0.2 * largestChange(set, from, to, 20)) << what;
+}
+
+TEST(BallInACorner, ReboundsContinuouslyInAllData) {
+  expectContinuous([](double e, Corner& corner) { corner.floorRestitution = corner.wallRestitution = e; }, 0, 1, "e");
+  expectContinuous([](double e, Corner& corner) { corner.wallRestitution = e; }, 0, 1, "e of the wall");
+  for (const double e : {0.3, 0.97, 1.0}) {
+    const auto with = [e](const auto& set) {
+      return [e, set](double value, Corner& corner) {
+        corner.floorRestitution = corner.wallRestitution = e;
+        set(value, corner);
+      };
+    };
+    expectContinuous(with([](double mu, Corner& corner) { corner.friction = mu; }), 0, 0.95, "friction");
+    expectContinuous(with([](double angle, Corner& corner) { corner.angle = angle; }), -0.2, 0.5, "angle");
+    expectContinuous(with([](double drift, Corner& corner) { corner.drift = drift; }), -2, 2, "drift");
+  }
+}
+
+// As much restitution as gains nothing: where the full one would gain, nothing is lost either.
+TEST(BallInACorner, KeepsAllEnergyWhereItsRestitutionWouldGainSome) {
+  Corner corner;
+  for (const double e : {0.975, 0.98, 0.99, 1.0}) {
+    corner.floorRestitution = corner.wallRestitution = e;
+    EXPECT_NEAR(corner.outcome()[6], 1, 1e-11) << e;  // 1e-12 of the restitution, and twice that of the energy
+  }
+  corner.floorRestitution = corner.wallRestitution = 0.9;
+  EXPECT_NEAR(corner.outcome()[1], 0.9 * 3, 1e-12);
+}
+
+// Two laws for restitutions that are equal and that are not would part here.
+TEST(FrictionalImpact, HardlyDependsOnARestitutionThatHardlyDiffers) {
+  for (const double friction : {0.0, 0.3})
+    for (const double e : {0.0, 0.3, 0.5, 1 - 1e-12}) {
+      RowOfBalls one({1, 2, 1, 1, 3}, e), other({1, 2, 1, 1, 3}, e);
+      other.impacts[1].law.restitution = e + 1e-12;
+      for (RowOfBalls* row : {&one, &other}) {
+        for (ImpactContact& impact : row->impacts) impact.law.staticFriction = impact.law.dynamicFriction = friction;
+        row->setSpeeds({1, 0.5, 0, 0, 0});
+        for (Eigen::Index ball = 0; ball < 5; ++ball) linearVelocity(row->state, ball).z() = 0.3 * std::pow(-1, ball);
+        resolveFrictionalImpact(row->impacts, row->bodies, row->state);
+      }
+      // Cone problems are solved to 1e-12 of the speeds, reflections end at 1e-12 of them.
+      EXPECT_LT((one.state - other.state).norm(), 1e-10) << friction << " " << e;
+    }
+}
+
 }  // namespace
 }  // namespace cradle

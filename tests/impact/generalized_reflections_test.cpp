@@ -128,6 +128,55 @@ TEST(Reflections, ReboundWhereALastingContactIsStruck) {
   EXPECT_THAT(row.speeds(), isNear({0, 0, 1}));
 }
 
+// Equal restitutions take the blend, different ones the mean over levels: between them there is no step.
+TEST(Reflections, HardlyDependOnARestitutionThatHardlyDiffers) {
+  for (const double e : {0.0, 0.5, 1 - 1e-12}) {
+    RowOfBalls one({1, 2, 1, 3}, e), other({1, 2, 1, 3}, e);
+    other.impacts[1].law.restitution = e + 1e-12;
+    for (RowOfBalls* row : {&one, &other}) {
+      row->setSpeeds({1, 0.5, 0, 0});
+      resolveReflections(row->impacts, row->bodies, row->state);
+    }
+    for (int ball = 0; ball < 4; ++ball) EXPECT_NEAR(one.speed(ball), other.speed(ball), 1e-11) << e;
+  }
+}
+
+// The mean over levels in the open: ball 1 hits 2 and 3 at rest, e1 = 1/4, e2 = 3/4. Below 1/4 both contacts are
+// elastic: (0, 0, 1). From there to 3/4 only the second: the first stops, (1/2, 1/2, 0), and the second passes on
+// (1/2, 0, 1/2); then 1 closes with 2: (1/4, 1/4, 1/2). Above: (1/3, 1/3, 1/3).
+TEST(Reflections, WithDifferentRestitutionsAreTheMeanOverLevels) {
+  RowOfBalls row({1, 1, 1}, 0);
+  row.impacts[0].law.restitution = 0.25, row.impacts[1].law.restitution = 0.75;
+  row.setSpeeds({1, 0, 0});
+  resolveReflections(row.impacts, row.bodies, row.state);
+  const double slow = 0.5 * 0.25 + 0.25 / 3;
+  EXPECT_THAT(row.speeds(), isNear({slow, slow, 0.25 + 0.5 * 0.5 + 0.25 / 3}));
+}
+
+// A heavy body on a light one on a floor that closes slowly, so that nothing rebounds: both stop, whatever the masses.
+// One contact after the other, the heavy one would lose (light / heavy) of its speed in each round.
+TEST(Reflections, OfAHeavyBodyOnALightOneComeToAnEnd) {
+  for (const double e : {0.0, 0.3, 1.0})
+    for (const double heavy : {1.0, 440.0, 1e4, 1e6})
+      for (const double restSpeed : {0.0, 0.1, 10.0}) {
+        RowOfBalls row({1, heavy}, e);
+        row.impacts.push_back({{1, kFixed, 0, Vec3(-0.1, 0, 0), Vec3::UnitX(), 0}, {e, 0, 0}, 0, Vec3::Zero()});
+        for (ImpactContact& impact : row.impacts) impact.restSpeed = restSpeed;
+        row.setSpeeds({0, -1});
+        resolveReflections(row.impacts, row.bodies, row.state);
+        EXPECT_GE(row.speed(0), -1e-9) << heavy;
+        EXPECT_GE(row.speed(1) - row.speed(0), -1e-9) << heavy;
+        const double energy = row.speed(0) * row.speed(0) + heavy * row.speed(1) * row.speed(1);
+        EXPECT_LE(energy, heavy * (1 + 1e-9)) << heavy;
+        if (e == 0 || restSpeed == 10) {
+          EXPECT_LT(energy, 1e-18 * heavy) << heavy;
+        }
+        if (e == 1 && restSpeed == 0) {
+          EXPECT_NEAR(energy, heavy, 1e-9 * heavy);
+        }
+      }
+}
+
 /// A disc that moves along x hits two that touch each other, both at once.
 struct Break {
   std::vector<RigidBody> bodies{ball(1), ball(1), ball(1)};

@@ -42,5 +42,26 @@ TEST(Overlap, WithAPlaneMovesTheBodyAlone) {
   EXPECT_LT((centerOfMass(state, 0) - Vec3(3, 1.1, 2)).norm(), 1e-15);
 }
 
+// A cube 0.03 m deep in the ground has four corners there, all as deep: one that does not turn comes up by 0.03, not by
+// four times as much.
+TEST(Overlap, IsTakenOutOnceWhereManyPointsShareIt) {
+  ContactGeometry geometry;
+  geometry.colliders = {colliderOf(Box{Vec3::Constant(0.2)}, {})};
+  geometry.colliders[0].body = 0;
+  geometry.planes = {{Vec3::Zero(), Vec3(0, 1, 0)}};
+  geometry.pairs = {{0, 0, true, {}}};
+  VectorX state = VectorX::Zero(stateSize(1));
+  setOrientation(state, 0, Quat::Identity());
+  centerOfMass(state, 0) = Vec3(0.5, 0.07, 0.25);
+  std::vector<Contact> contacts;
+  findContacts(geometry, state, 0, contacts);
+  EXPECT_EQ(contacts.size(), 4u);
+  RigidBody upright = cube(1, 0.2);
+  upright.inverseInertia.setZero();
+  resolveOverlaps(geometry, contacts, std::vector{upright}, state);
+  EXPECT_LT((centerOfMass(state, 0) - Vec3(0.5, 0.1, 0.25)).norm(), 1e-15);
+  EXPECT_LT(orientation(state, 0).vec().norm(), 1e-15);
+}
+
 }  // namespace
 }  // namespace cradle

@@ -163,6 +163,53 @@ TEST(LoadMesh, InsideOutMeshIsTurnedWithItsNormals) {
   EXPECT_EQ(again.triangles, loaded.model.solid.triangles);
 }
 
+// The L prism of volume 4 below, a box of volume 1 above it, inside-out.
+TriangleMesh prismAndTurnedBox() {
+  return joined(lPrismMesh(),
+                insideOut(moved(boxMesh({1, 1, 1}), [](const Vec3& v) { return Vec3(v + Vec3(0.5, 5, 0)); })));
+}
+
+TEST(LoadMesh, APartThatIsInsideOutIsTurnedAlone) {
+  for (const ModelParts parts : {ModelParts::solidAlone, ModelParts::solidAndDrawn}) {
+    const LoadedModel loaded = loadObjects(writeFile("two.obj", objText(prismAndTurnedBox(), "two")), 1, parts).at(0);
+    EXPECT_THAT(loaded.notes, ElementsAre("part 2 of 2 (12 triangles around (0.5, 5, 0)) was inside-out: turned"));
+    EXPECT_NEAR(signedVolume(loaded.model.solid), 5, 1e-14);
+    EXPECT_TRUE(checkSolid(loaded.model.solid).isSolid);
+    expectOutwardNormals(loaded.model.drawn);
+  }
+}
+
+TEST(LoadMesh, EqualPartsOfWhichOneIsInsideOutHaveBothVolumes) {
+  const TriangleMesh both =
+      joined(lPrismMesh(), insideOut(moved(lPrismMesh(), [](const Vec3& v) { return Vec3(v + Vec3(0, 5, 0)); })));
+  const LoadedModel loaded = loadModel({writeFile("two.obj", objText(both, "two")), "", 1});
+  EXPECT_NEAR(signedVolume(loaded.model.solid), 8, 1e-14);
+  EXPECT_TRUE(checkSolid(loaded.model.solid).isSolid);
+}
+
+TEST(LoadMesh, ACavityStaysInItsObjectAndAmongObjects) {
+  const TriangleMesh outer = boxMesh({4, 4, 4}), cavity = insideOut(boxMesh({1, 2, 3}));
+  const LoadedModel one = loadModel({writeFile("one.obj", objText(joined(outer, cavity), "one")), "", 1});
+  EXPECT_THAT(one.notes, IsEmpty());
+  EXPECT_NEAR(signedVolume(one.model.solid), 64 - 6, 1e-13);
+  EXPECT_TRUE(checkSolid(one.model.solid).isSolid);
+  // A cavity as an object of its own is one in what holds it, and a box that is inside-out by itself.
+  std::string second = "o cavity\n" + objText(cavity, "cavity").substr(9);
+  for (const auto& [a, b, c] : cavity.triangles) {
+    const std::string was =
+        "f " + std::to_string(a + 1) + " " + std::to_string(b + 1) + " " + std::to_string(c + 1) + "\n";
+    second.replace(second.find(was), was.size(),
+                   "f " + std::to_string(a + 9) + " " + std::to_string(b + 9) + " " + std::to_string(c + 9) + "\n");
+  }
+  const std::string path = writeFile("apart.obj", objText(outer, "outer") + second);
+  const LoadedModel whole = loadModel({path, "", 1});
+  EXPECT_NEAR(signedVolume(whole.model.solid), 64 - 6, 1e-13);
+  EXPECT_TRUE(checkSolid(whole.model.solid).isSolid);
+  const TriangleMesh again = weld(whole.model.drawn.vertices, whole.model.drawn.triangles);
+  EXPECT_EQ(again.triangles, whole.model.solid.triangles);
+  EXPECT_NEAR(signedVolume(loadModel({path, "cavity", 1}).model.solid), 6, 1e-14);
+}
+
 TEST(LoadMesh, OpenMeshIsNotTurned) {
   TriangleMesh open = insideOut(lPrismMesh());
   open.triangles.pop_back();

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <set>
 
 #include "mesh/mass_properties.h"
 #include "mesh/recognise_shape.h"
@@ -67,7 +68,10 @@ TEST(PackageModels, Plain3dsFilesHaveTheirExactVolume) {
   expectSolid({kAsteroid, "Icosphere.00", 3.632410376803803}, 1e-14, "mesh");
 }
 
-TEST(PackageModels, All3dsFilesAreSolidsAsAWhole) {
+TEST(PackageModels, All3dsFilesAreSolidsAsAWholeUnlessTheirBoxesOverlap) {
+  // By sizes and centres of their boxes alone: those of the first overlap by 14 to 30 units of 100 and more in all
+  // three axes, the walls of the second by up to 0.4 x 20 x 0.06 at their corners.
+  const std::set<std::string> overlapping = {"cubes_with_alpha.3DS", "test1.3ds"};
   const std::string folder = kModels + "3DS";
   ASSERT_TRUE(std::filesystem::exists(folder)) << "install the package assimp-testmodels (./run packages)";
   int files = 0;
@@ -75,7 +79,9 @@ TEST(PackageModels, All3dsFilesAreSolidsAsAWhole) {
     const std::string extension = entry.path().extension();
     if (extension != ".3ds" && extension != ".3DS") continue;
     ++files;
-    EXPECT_TRUE(checkSolid(loadModel({entry.path(), "", 1}).model.solid).isSolid) << entry.path();
+    const SolidReport report = checkSolid(loadModel({entry.path(), "", 1}).model.solid);
+    EXPECT_TRUE(report.isClosed) << entry.path();
+    EXPECT_EQ(report.isSolid, !overlapping.contains(entry.path().filename())) << entry.path();
   }
   EXPECT_EQ(files, 9);
 }

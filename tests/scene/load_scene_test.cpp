@@ -236,6 +236,25 @@ TEST(Frames, BothEndsAreIncluded) {
   EXPECT_EQ(frameTime(scene, 3), 0.05);
 }
 
+TEST(Frames, NoneIsLaterThanTheDuration) {
+  // N frames may be longer than the duration: by the rounding of k * playbackSpeed / framesPerSecond, and by the 1e-9
+  // of a frame that N = floor(duration * framesPerSecond / playbackSpeed + 1e-9) forgives.
+  Scene scene;
+  for (const double framesPerSecond : {0.7, 30.0, 60.0, 1000.0 / 3, 9999.0})
+    for (const double playbackSpeed : {1.0, 0.1, 7.0})
+      for (const long frames : {1L, 3L, 100L, 12345L})
+        for (const double missing : {0.0, 1e-15, 1e-12, 0.9e-9}) {  // of a frame
+          scene.output.framesPerSecond = framesPerSecond;
+          scene.output.playbackSpeed = playbackSpeed;
+          scene.duration = (static_cast<double>(frames) - missing) * playbackSpeed / framesPerSecond;
+          ASSERT_EQ(lastFrame(scene), frames);
+          EXPECT_LE(frameTime(scene, frames), scene.duration);
+          EXPECT_NEAR(frameTime(scene, frames), scene.duration, 1e-15 * scene.duration);
+          EXPECT_LT(frameTime(scene, frames - 1), scene.duration);
+          EXPECT_EQ(frameInterval(scene), playbackSpeed / framesPerSecond);
+        }
+}
+
 TEST(SceneFile, CommentsAndAByteOrderMarkAreAllowed) {
   const Scene scene = parse("\xEF\xBB\xBF// a scene\n" + sceneWith("/* no\nbodies */ \"bodies\": [] // yet\n")).scene;
   EXPECT_TRUE(scene.bodies.empty());

@@ -1,5 +1,6 @@
 // Bodies whose shape is a mesh: what only the mesh can show. The models are those of cubeModel.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,6 +69,25 @@ TEST(MeshBody, OpenOneWithGivenInertiaMayMoveUnlessItsSurfaceMustCollide) {
   const Error error = errorOf(meshScene("open.3ds", kGivenMass));
   EXPECT_EQ(error.kind(), ErrorKind::mesh);
   EXPECT_THAT(error.what(), HasSubstr("collision needs a closed surface"));
+}
+
+TEST(MeshBody, PartsThatOverlapHaveNoMassUnlessItIsGiven) {
+  const Error error = errorOf(meshScene("overlap.3ds", ""));
+  EXPECT_EQ(error.kind(), ErrorKind::mesh);
+  for (const char* words : {"is no solid", "part 1 of 2", "part 2 of 2", "overlap at", "inertiaTensor"})
+    EXPECT_THAT(error.what(), HasSubstr(words));
+  EXPECT_EQ(parse(meshScene("overlap.3ds", kGivenMass)).scene.bodies.at(0).massProperties.mass, 2);
+  EXPECT_EQ(parse(meshScene("overlap.3ds", R"(, "motion": "static")")).scene.bodies.size(), 1U);
+}
+
+TEST(MeshBody, SizeIsThatOfOtherShapes) {
+  for (const char* scale : {"1e-10", "1e10"}) {
+    const Error error = errorOf(sceneWith(fmt::format(
+        R"("bodies": [{{"name": "a", "motion": "static", "shape": {{"mesh": "models/cube.3ds", "scale": {}}}}}])",
+        scale)));
+    EXPECT_EQ(error.kind(), ErrorKind::scene);
+    EXPECT_THAT(error.what(), HasSubstr("allowed are 1e-09..1e+09 m; change \"scale\""));
+  }
 }
 
 TEST(MeshBody, EachModelIsLoadedOnce) {

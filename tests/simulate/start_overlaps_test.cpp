@@ -109,6 +109,89 @@ TEST(StartOverlaps, UpToHalfTheInnerRadiusAreMovedApart) {
   EXPECT_NEAR(centerOfMass(crate.state, 0).y(), 0.5, 1e-12);
 }
 
+/// Bodies of 1 and 4 kg that overlap beside their centres.
+struct Eccentric {
+  const char *a, *b;       // shapes
+  Vec3 offset, direction;  // m: from a to b; in which they part
+  double depth;            // m
+};
+
+// The direction of least overlap is that of the sides, or of the line between the centres; the overlap is shared as
+// 4 to 1. Nothing asks for a turn.
+TEST(StartOverlaps, AreTakenOutByInverseMassWithoutATurn) {
+  const char* const cube = R"({"box": {"size": [1, 1, 1]}})";
+  const char* const plate = R"({"box": {"size": [2, 0.4, 1]}})";
+  const char* const ball = R"({"sphere": {"radius": 0.5}})";
+  const char* const tube = R"({"cylinder": {"radius": 0.5, "length": 1}})";
+  for (const Eccentric& pair : {
+           Eccentric{cube, cube, {0.9, 0.4, 0}, {1, 0, 0}, 0.1},
+           Eccentric{cube, cube, {0.9, 0, 0}, {1, 0, 0}, 0.1},
+           Eccentric{cube, cube, {0.3, -0.999, 0.45}, {0, -1, 0}, 1e-3},
+           Eccentric{plate, cube, {1.2, 0.65, -0.7}, {0, 1, 0}, 0.05},
+           Eccentric{cube, ball, {0.4, 0.3, 0.9}, {0, 0, 1}, 0.1},
+           Eccentric{tube, cube, {0.3, 0.92, 0.3}, {0, 1, 0}, 0.08},
+           Eccentric{ball, ball, {0.57, 0.76, 0}, {0.6, 0.8, 0}, 0.05},
+       }) {
+    const Start start = startOf(all({fmt::format(R"({{"name": "a", "mass": 1, "shape": {}}})", pair.a),
+                                     fmt::format(R"({{"name": "b", "mass": 4, "shape": {}, "position": [{}, {}, {}]}})",
+                                                 pair.b, pair.offset.x(), pair.offset.y(), pair.offset.z())}));
+    ASSERT_THAT(start.warnings, ElementsAre(HasSubstr("they were moved apart before the run")));
+    EXPECT_LT((centerOfMass(start.state, 0) + 0.8 * pair.depth * pair.direction).norm(), 1e-9) << pair.a << pair.b;
+    EXPECT_LT((centerOfMass(start.state, 1) - pair.offset - 0.2 * pair.depth * pair.direction).norm(), 1e-9)
+        << pair.a << pair.b;
+    for (int body = 0; body < 2; ++body)
+      EXPECT_LT(orientation(start.state, body).vec().norm(), 1e-15) << pair.a << pair.b;
+  }
+}
+
+// The body that moves alone takes all of it, tilted too: the lowest corner of a cube of 1 m turned by 20 degrees is
+// (cos 20 + sin 20) / 2 below its centre.
+TEST(StartOverlaps, WithWhatIsFixedMoveOneBodyAlone) {
+  const Start shelf = startOf(all({box("shelf", 0, R"(, "motion": "static")"), R"({"name": "a", "position":
+    [0.4, 0.95, 0.3], "shape": {"box": {"size": [1, 1, 1]}}})"}));
+  EXPECT_LT((centerOfMass(shelf.state, 0) - Vec3(0.4, 1, 0.3)).norm(), 1e-12);
+  EXPECT_LT(orientation(shelf.state, 0).vec().norm(), 1e-15);
+
+  const double angle = 20 * 3.14159265358979324 / 180, reach = (std::cos(angle) + std::sin(angle)) / 2;
+  const Start tilted = startOf(all({kGround, R"({"name": "a", "position": [0, 0.5, 0], "orientation":
+    {"axis": [0, 0, 1], "angleDegrees": 20}, "shape": {"box": {"size": [1, 1, 1]}}})"}));
+  EXPECT_LT((centerOfMass(tilted.state, 0) - Vec3(0, reach, 0)).norm(), 1e-12);
+  EXPECT_NEAR(orientation(tilted.state, 0).z(), std::sin(angle / 2), 1e-14);
+}
+
+// Three equal cubes in a row, each 0.06 m deep in the next: the outer ones move by 0.06, the least that parts them.
+TEST(StartOverlaps, OfARowPartWithTheCentreOfMassWhereItWas) {
+  const Start start = startOf(all({box("a", 0), box("b", 0.94), box("c", 1.88)}));
+  EXPECT_THAT(start.warnings, testing::SizeIs(2));
+  EXPECT_LT((centerOfMass(start.state, 0) - Vec3(-0.06, 0, 0)).norm(), 1e-8);
+  EXPECT_LT((centerOfMass(start.state, 1) - Vec3(0.94, 0, 0)).norm(), 1e-8);
+  EXPECT_LT((centerOfMass(start.state, 2) - Vec3(1.94, 0, 0)).norm(), 1e-8);
+  for (int body = 0; body < 3; ++body) EXPECT_LT(orientation(start.state, body).vec().norm(), 1e-15);
+}
+
+// A ball on a rod of 1 m reaches 40 mm into a wall: the rod lets it go aside on its circle alone, and keeps its length.
+TEST(StartOverlaps, OfBodiesOnRodsAndJointsKeepTheirTies) {
+  for (const char* tie : {R"("rods": [{"bodyA": "a", "anchorB": [0.3, 1, 0], "length": 1}])",
+                          R"("ballJoints": [{"bodyA": "a", "anchorA": [0, 1, 0], "anchorB": [0.3, 1, 0]}])",
+                          R"("hinges": [{"bodyA": "a", "anchorA": [0, 1, 0], "anchorB": [0.3, 1, 0],
+                              "axis": [0, 0, 1]}])"}) {
+    const Scene scene = sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "t", "duration": 0.01,
+      "bodies": [{}, {}], {}}})",
+                                            box("wall", -0.26, R"(, "motion": "static")"), ball("a", 0.3), tie));
+    std::vector<Assembly> islands;
+    for (const IslandPlan& island : planOf(scene).islands) islands.push_back(assemble(scene, island));
+    settleStartOverlaps(scene, islands);
+    Assembly& island = islands.at(0);
+    EXPECT_THAT(island.warnings, ElementsAre(HasSubstr("overlap by 40 mm")));
+    const Vec3 center = centerOfMass(island.state, 0);
+    EXPECT_NEAR(center.x(), 0.34, 1e-8) << tie;
+    EXPECT_NEAR((center - Vec3(0.3, 1, 0)).norm(), 1, 1e-12) << tie;
+    ConstraintSolver ties(island.mechanism.constraints, island.mechanism.bodies);
+    ties.factorize(island.state);
+    EXPECT_LT(ties.largestError(), 1e-12) << tie;
+  }
+}
+
 // What overlapped lies still afterwards: nothing was thrown out of anything. The crate lost no height to the count.
 TEST(StartOverlaps, AreMendedWithoutAJumpInEnergy) {
   for (const char* accuracy : {"1e-3", "1e-6"}) {

@@ -93,6 +93,7 @@ void EventMotion::advance(double frame) {
 
   // What the step's interpolant needs belongs to the forces of now.
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
+  contactsOfStep_ = island_.assembly.mechanism.contacts;
 
   bookStep(island_.assembly.mechanism, step);
 

@@ -36,6 +36,9 @@ class EventMotion {
   /// Whether the last step kept what ties the bodies: its interpolant may be projected.
   bool keepsTies() const { return keepsTies_; }
 
+  /// Contacts that lasted over the last step.
+  const std::vector<ContactConstraint>& contactsOfStep() const { return contactsOfStep_; }
+
   /// Whether all bodies of the island lie still.
   bool isAtRest() const;
 
@@ -74,6 +77,7 @@ class EventMotion {
   VectorX tolerance_;
   double startTieError_ = 0;     // m or rad
   std::vector<int> rodsBefore_;  // of ropes, before an event
+  std::vector<ContactConstraint> contactsOfStep_;
   StepSize stepSize_;
   std::array<double, 8> lengths_;  // s: of the last steps, if bodies may touch
   std::size_t lengthIndex_ = 0;

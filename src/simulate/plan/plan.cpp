@@ -163,8 +163,8 @@ void choose(const Scene& scene, IslandPlan& island) {
 
 }  // namespace
 
-ChosenMethod contactSteps() {
-  return {MotionKind::fixedSteps, "RK4", kContactTimeStep, rk4, kSteppedTolerance};
+ChosenMethod contactSteps(double timeStep) {
+  return {MotionKind::fixedSteps, "RK4", timeStep, rk4, kSteppedTolerance};
 }
 
 Plan planOf(const Scene& scene) {

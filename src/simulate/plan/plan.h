@@ -38,7 +38,7 @@ struct ChosenMethod {
 };
 
 /// What moves bodies whose contact is resolved once a step: RK4, with shorter steps only where its error asks for them.
-ChosenMethod contactSteps();
+ChosenMethod contactSteps(double timeStep = kContactTimeStep);
 
 /// Bodies that depend on each other, by ties, springs or contact that may come about, and how they are moved.
 struct IslandPlan {

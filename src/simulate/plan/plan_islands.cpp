@@ -43,21 +43,11 @@ bool canMeetPlane(const Reach& reach, double size, const Body& plane) {
   return normal.dot(reach.center - plane.worldFromBody.translation) <= reach.radius + size;
 }
 
-/// Bodies that a ball joint or a hinge joins do not touch each other.
-std::set<std::pair<int, int>> joinedPairs(const Scene& scene) {
-  std::set<std::pair<int, int>> pairs;
-  const auto add = [&](const auto& joints) {
-    for (const auto& joint : joints) pairs.insert(std::minmax(joint.anchorA.body, joint.anchorB.body));
-  };
-  add(scene.ballJoints), add(scene.hinges);
-  return pairs;
-}
-
 /// Which bodies may touch each other, as far as their reaches tell.
 class Meetings {
  public:
   Meetings(const Scene& scene, const std::vector<Reach>& reaches)
-      : scene_(scene), reaches_(reaches), sizes_(sizesOf(scene)), joined_(joinedPairs(scene)) {}
+      : scene_(scene), reaches_(reaches), sizes_(sizesOf(scene)), joined_(pairsKeptFromTouching(scene)) {}
 
   void setReaches(const std::vector<Reach>& reaches) { reaches_ = reaches; }
 

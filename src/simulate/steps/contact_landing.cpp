@@ -126,23 +126,26 @@ bool ContactStepping::slide(const Group& group, const VectorX& end, Problem& pro
 VectorX ContactStepping::strike(const Group& group, double timeStep, VectorX& state) {
   const VectorX start = cones_.velocitiesIn(state);
   const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
-  for (double part = 1;; part = part > kLeastRestitution ? kLessRestitution * part : 0) {
-    Problem problem = posedImpact(group, start, timeStep, part);
-    VectorX impulses = solve(group, problem);
+  Problem problem;
+  VectorX impulses;
+  const auto solveAndApply = [&] {
+    restore(group.moved.bodies, state);
+    impulses = solve(group, problem);
     tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
-    if (slide(group, cones_.velocitiesIn(state), problem)) {
-      restore(group.moved.bodies, state);
-      impulses = solve(group, problem);
-      tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
-    }
-    if (problem.hasRebounds && isGain(energyOf(group.moved.bodies, assembly_.mechanism, state), most)) {
-      restore(group.moved.bodies, state);
-      continue;
-    }
-    impactEnergy(state) += std::max(0.0, energyTakenBy(impulses, start, cones_.velocitiesIn(state)));
-    limit(group, most, state);
-    return impulses;
-  }
+  };
+  const std::size_t faults = faults_.size();
+  const auto lossWith = [&](double part) {
+    forgetFaults(faults);
+    problem = posedImpact(group, start, timeStep, part);
+    solveAndApply();
+    if (slide(group, cones_.velocitiesIn(state), problem)) solveAndApply();
+    return most - energyOf(group.moved.bodies, assembly_.mechanism, state);
+  };
+  const double loss = lossWith(1);
+  if (problem.hasRebounds && isGain(most - loss, most)) lossWith(partThatGainsNothing(lossWith, loss));
+  impactEnergy(state) += std::max(0.0, energyTakenBy(impulses, start, cones_.velocitiesIn(state)));
+  limit(group, most, state);
+  return impulses;
 }
 
 }  // namespace cradle

@@ -52,7 +52,10 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const Vector
   // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
   if (solver_.hasConstraints()) {
     solver_.project(state);
-    for (std::size_t i = 0; i < groups.size(); ++i) limit(groups[i], most[i], state);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      keepMomenta(groups[i].moved, free_, assembly_.mechanism, state);
+      limit(groups[i], most[i], state);
+    }
   }
   lands_.clear();
   bookForces(timeStep, state);
@@ -137,24 +140,29 @@ ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion
   return problem;
 }
 
-/// Energy does not grow: a restitution that would let it is made smaller (with friction it can), and what is left by
+/// Energy does not grow: a restitution that would let it (with friction it can) is made smaller, and what is left by
 /// rounding, by the order of the method, or by impulses that were not found is taken from the velocities.
 void ContactStepping::resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state) {
   setCones(group, before);
   const Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), timeStep};
   const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
-  for (double part = 1;; part = part > kLeastRestitution ? kLessRestitution * part : 0) {
-    const Problem problem = posed(group, motion, part);
-    const VectorX impulses = solve(group, problem);
-    const VectorX end = move(group, motion, impulses, state);
-    if (problem.hasRebounds && isGain(energyOf(group.moved.bodies, assembly_.mechanism, state), most)) {
-      restore(group.moved.bodies, state);
-      continue;
-    }
-    limit(group, most, state);
-    keep(group, motion, problem, impulses, state);
-    return book(group, motion, impulses, end, state);
-  }
+  Problem problem;
+  VectorX impulses, end;
+  const std::size_t faults = faults_.size();
+  const auto lossWith = [&](double part) {
+    forgetFaults(faults);
+    restore(group.moved.bodies, state);
+    problem = posed(group, motion, part);
+    impulses = solve(group, problem);
+    end = move(group, motion, impulses, state);
+    return most - energyOf(group.moved.bodies, assembly_.mechanism, state);
+  };
+  const double loss = lossWith(1);
+  if (problem.hasRebounds && isGain(most - loss, most)) lossWith(partThatGainsNothing(lossWith, loss));
+  keepMomenta(group.moved, free_, assembly_.mechanism, state);
+  limit(group, most, state);
+  keep(group, motion, problem, impulses, state);
+  book(group, motion, impulses, end, state);
 }
 
 VectorX ContactStepping::solve(const Group& group, const Problem& problem) {

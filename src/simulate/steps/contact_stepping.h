@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/first_crossing.h"
 #include "impact/contact_cones.h"
 #include "impact/sparse_cones.h"
 #include "simulate/assembly.h"
@@ -75,9 +76,8 @@ class ContactStepping {
   std::vector<SteppingFault> takeFaults() { return std::exchange(faults_, {}); }
 
  private:
-  static constexpr std::size_t kFewContacts = 6;     // solved densely, to rounding
-  static constexpr double kLessRestitution = 0.7;    // of the restitution that let energy grow
-  static constexpr double kLeastRestitution = 1e-2;  // part of it: less is none
+  static constexpr std::size_t kFewContacts = 6;  // solved densely, to rounding
+  static constexpr double kPartError = 1e-6;      // of restitutions that are scaled: impulses are found no better
   struct Group {
     std::vector<std::size_t> members;  // of contacts_
     std::vector<Contact> contacts;     // the same
@@ -106,10 +106,15 @@ class ContactStepping {
   Problem posedImpact(const Group& group, const VectorX& start, double timeStep, double part) const;
   bool slide(const Group& group, const VectorX& end, Problem& problem) const;
   VectorX strike(const Group& group, double timeStep, VectorX& state);
+  template <class LossWith>
+  static double partThatGainsNothing(const LossWith& lossWith, double lossOfAll);
   VectorX solve(const Group& group, const Problem& problem);
   MatrixX inverseMass() const { return tied_ ? tied_->inverseMass() : cones_.inverseMass(); }
   void count(const Group& group, const ConeSolution& solution, double fastest);
   void limit(const Group& group, double most, VectorX& state);
+  void forgetFaults(std::size_t kept) {
+    faults_.erase(faults_.begin() + static_cast<std::ptrdiff_t>(kept), faults_.end());
+  }
   ConeStart startOf(const Group& group) const;
   VectorX move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state);
   static VectorX gapsAfter(const Group& group, double timeStep, const VectorX& velocities);
@@ -138,5 +143,14 @@ class ContactStepping {
   HeldFriction friction_;
   VectorX free_;  // where free motion led
 };
+
+/// The largest part of the restitutions with which no energy is gained. `lossWith(part)` is what an impact then takes
+/// (J), < 0 with all of them.
+template <class LossWith>
+double ContactStepping::partThatGainsNothing(const LossWith& lossWith, double lossOfAll) {
+  Bracket parts{0, lossWith(0), 1, lossOfAll};
+  if (parts.gapBefore > 0) closeBracket(lossWith, parts, kPartError);
+  return parts.before;
+}
 
 }  // namespace cradle

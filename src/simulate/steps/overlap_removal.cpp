@@ -30,6 +30,7 @@ void ContactStepping::takeOut(const std::vector<Contact>& contacts, VectorX& sta
     const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
     separate(group, gaps, state);
     if (group.isTied) solver_.project(state);
+    keepMomenta(group.moved, free_, assembly_.mechanism, state);
     limit(group, most, state);
   }
   contacts_ = last;

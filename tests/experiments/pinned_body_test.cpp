@@ -1,0 +1,252 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "experiments/experiment.h"
+#include "math/rotation.h"
+
+// Bodies whose joint is where they touch something: flaps, doors, lids, pendulums at walls, bodies that stand on a
+// pinned corner, rim or round end. The contact at the joint is there for ever, and must hide no other.
+
+namespace cradle {
+namespace {
+
+const std::string kPlane = R"({"name": "ground", "shape": {"plane": {}}, "motion": "static", "material": "m"})";
+const std::string kBox =
+    R"({"name": "ground", "shape": {"box": {"size": [4, 1, 4]}}, "position": [0, -0.5, 0], "motion": "static",
+    "material": "m"})";
+/// The flap's hinge is at its edge.
+const std::string kBlockUnderFlap =
+    R"({"name": "ground", "shape": {"box": {"size": [1, 1, 1]}}, "position": [0.5, -0.5, 0], "motion": "static",
+    "material": "m"})";
+
+std::string orientationText(const Quat& q) {
+  return fmt::format(R"({{"w": {}, "x": {}, "y": {}, "z": {}}})", q.w(), q.x(), q.y(), q.z());
+}
+
+std::string materialText(double restitution, double friction) {
+  return fmt::format(R"("materials": {{"m": {{"restitution": {0}, "staticFriction": {1}, "dynamicFriction": {1}}}}})",
+                     restitution, friction);
+}
+
+/// A box of 1 x 0.05 x 0.5 m, hinged by its lower left edge at a height `gap` (m) over the ground, open by an angle.
+struct Flap {
+  std::string ground = kPlane;
+  double accuracy = 1e-6, gap = 0, angle = 60, friction = 0.5;  // -, m, degrees, -
+
+  static constexpr double kThickness = 0.05;
+
+  Quat turn(double degrees) const { return Quat(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vec3::UnitZ())); }
+  Vec3 edge() const { return {-0.5, -kThickness / 2, 0}; }
+  /// rad: the angle at which the lower edge at its end touches the ground.
+  double shut() const { return -std::asin(gap); }
+
+  Trajectory run() const {
+    const Quat open = turn(angle);
+    return simulate(sceneWith(fmt::format(
+        R"("duration": 2, "accuracy": {}, "output": {{"framesPerSecond": 100}}, {}, "bodies": [{}, {{"name": "flap",
+        "shape": {{"box": {{"size": [1, {}, 0.5]}}}}, "material": "m", "position": {}, "orientation": {}}}],
+        "hinges": [{{"bodyA": "flap", "anchorA": {}, "anchorB": [0, {}, 0]}}])",
+        accuracy, materialText(0, friction), ground, kThickness, vectorText(Vec3(0, gap, 0) - open * edge()),
+        orientationText(open), vectorText(edge()), gap)));
+  }
+};
+
+/// Lowest height (m) of the flap's corners.
+double lowestCorner(const BodyState& state) {
+  double lowest = INFINITY;
+  for (const double x : {-0.5, 0.5})
+    for (const double y : {-Flap::kThickness / 2, Flap::kThickness / 2})
+      for (const double z : {-0.25, 0.25})
+        lowest = std::min(lowest, (state.position + state.orientation * Vec3(x, y, z)).y());
+  return lowest;
+}
+
+struct FlapCase {
+  const char* name;
+  std::string ground;
+  double gap, angle, friction;
+};
+
+class FlapOnGround : public testing::TestWithParam<FlapCase> {};
+
+// Shut, the far lower edge lies on the ground: the angle is -asin(gap / 1 m). What is promised is the accuracy in parts
+// of 1 + |x|; in a frame inside a step the corners keep the ground as the joint does.
+TEST_P(FlapOnGround, LiesShutAtLast) {
+  for (const double accuracy : {1e-3, 1e-4, 1e-6, 1e-8}) {
+    Flap flap{GetParam().ground, accuracy, GetParam().gap, GetParam().angle, GetParam().friction};
+    const Trajectory run = flap.run();
+    const BodyState end = endOf(run);
+    const Quat shut(Eigen::AngleAxisd(flap.shut(), Vec3::UnitZ()));
+    const Vec3 place = Vec3(0, flap.gap, 0) - shut * flap.edge();
+    EXPECT_LT((end.position - place).norm(), accuracy) << accuracy;
+    EXPECT_LT(orientationError(end.orientation, shut), accuracy) << accuracy;
+    EXPECT_EQ(end.linearVelocity.norm(), 0) << accuracy;
+    for (const Frame& frame : run.frames) EXPECT_GT(lowestCorner(frame.states[0]), -0.1 * accuracy) << frame.time;
+    for (std::size_t i = 1; i < run.frames.size(); ++i)
+      EXPECT_GE(run.frames[i].energy.dissipated, run.frames[i - 1].energy.dissipated - accuracy) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Grounds, FlapOnGround,
+                         testing::Values(FlapCase{"Plane", kPlane, 0, 60, 0.5},
+                                         FlapCase{"PlaneWithoutFriction", kPlane, 0, 60, 0},
+                                         FlapCase{"PlaneNearlyShut", kPlane, 0, 5, 0.5},
+                                         FlapCase{"PlaneGapOfNanometre", kPlane, 1e-9, 60, 0.5},
+                                         FlapCase{"PlaneGapOfMicrometre", kPlane, 1e-6, 60, 0.5},
+                                         FlapCase{"PlaneGapOfMillimetre", kPlane, 1e-3, 60, 0.5},
+                                         FlapCase{"Box", kBox, 0, 60, 0.5},
+                                         FlapCase{"BoxGapOfMicrometre", kBox, 1e-6, 60, 0},
+                                         FlapCase{"EdgeOfBlock", kBlockUnderFlap, 0, 60, 0.5},
+                                         FlapCase{"EdgeOfBlockGapOfNanometre", kBlockUnderFlap, 1e-9, 80, 0.5}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+// A capsule hinged by the centre of its upper cap, which touches the wall all the time. Between impacts its energy is
+// constant, so it comes back as fast as it left: each impulse is e times the one before. The first speed follows from
+// the fall: w^2 = 2 m g h / I about the hinge, at the lower cap I w / l = impulse / (1 + e).
+TEST(PinnedBody, PendulumAtAWallBouncesWithItsRestitution) {
+  constexpr double kRestitution = 0.7, kMass = 2, kInertia = kMass / 12 + kMass / 4;
+  for (const double gap : {0.0, 1e-9, 1e-6, 1e-3})
+    for (const double accuracy : {1e-4, 1e-6, 1e-8}) {
+      const Quat open(Eigen::AngleAxisd(std::numbers::pi / 3, Vec3::UnitZ()));
+      const Trajectory run = simulate(sceneWith(fmt::format(
+          R"("duration": 3, "accuracy": {}, "output": {{"framesPerSecond": 200}}, {}, "bodies": [{{"name": "wall",
+          "shape": {{"plane": {{"normal": [1, 0, 0]}}}}, "position": [{}, 0, 0], "motion": "static", "material": "m"}},
+          {{"name": "p", "shape": {{"capsule": {{"radius": 0.05, "length": 1}}}}, "mass": 2, "centerOfMass": [0, 0, 0],
+          "inertiaTensor": [[{}, 0, 0], [0, 0.02, 0], [0, 0, {}]], "position": {}, "orientation": {},
+          "material": "m"}}], "hinges": [{{"bodyA": "p", "anchorA": [0, 0.5, 0], "anchorB": [0, 0, 0]}}])",
+          accuracy, materialText(kRestitution, 0), -0.05 - gap, kMass / 12, kMass / 12,
+          vectorText(open * Vec3(0, -0.5, 0)), orientationText(open))));
+      const std::vector<Event> impacts = eventsOf(run, EventKind::impact);
+      ASSERT_EQ(impacts.size(), 4u) << gap << " " << accuracy;
+      const double fall = 0.5 * (std::cos(std::asin(gap)) - std::cos(std::numbers::pi / 3));
+      double impulse =
+          (1 + kRestitution) * std::sqrt(2 * kMass * kGravity * fall * kInertia) / std::cos(std::asin(gap));
+      for (const Event& impact : impacts) {
+        EXPECT_NEAR(impact.impulse, impulse, 20 * accuracy * impulse) << gap << " " << accuracy;
+        impulse *= kRestitution;
+      }
+      for (const Frame& frame : run.frames) {
+        const BodyState& state = frame.states[0];
+        const double foot = (state.position + state.orientation * Vec3(0, -0.5, 0)).x();
+        EXPECT_GT(foot, -gap - accuracy) << frame.time;
+      }
+    }
+}
+
+const Quat kTilt(Eigen::AngleAxisd(0.23, Vec3(0.6, 0, 0.8)));
+
+/// A body that touches a tilted floor at the origin, on a ball joint there.
+Trajectory pinnedOnSlope(const std::string& shape, const Vec3& touching, const Quat& orientation, double accuracy,
+                         double restitution) {
+  return simulate(sceneWith(fmt::format(
+      R"("duration": 0.3, "accuracy": {}, "output": {{"framesPerSecond": 480}}, {}, "bodies": [{{"name": "floor",
+      "shape": {{"plane": {{}}}}, "orientation": {}, "motion": "static", "material": "m"}}, {{"name": "b", "shape": {},
+      "material": "m", "position": {}, "orientation": {}}}],
+      "ballJoints": [{{"bodyA": "b", "anchorA": {}, "anchorB": [0, 0, 0]}}])",
+      accuracy, materialText(restitution, 0.5), orientationText(kTilt), shape, vectorText(-(orientation * touching)),
+      orientationText(orientation), vectorText(touching))));
+}
+
+// A round end cannot roll about a point of its surface without sinking in: it turns about the floor's normal n alone.
+// Its energy is that of a pendulum with the inertia n.I n about the anchor.
+TEST(PinnedBody, RoundEndTurnsAboutTheFloorsNormalAlone) {
+  const Quat orientation = Quat(Eigen::AngleAxisd(0.3, Vec3(0.8, 0, 0.6))) * kTilt;
+  const Vec3 normal = kTilt * Vec3::UnitY(), inBody = orientation.conjugate() * normal;
+  const Vec3 touching = Vec3(0, -0.1, 0) - 0.02 * inBody;
+  for (const double accuracy : {1e-4, 1e-6, 1e-8})
+    for (const double restitution : {0.0, 1.0}) {
+      const Trajectory run = pinnedOnSlope(R"({"capsule": {"radius": 0.02, "length": 0.2}})", touching, orientation,
+                                           accuracy, restitution);
+      EXPECT_GT(endOf(run).angularVelocity.norm(), 1);
+      for (const Frame& frame : run.frames) {
+        const BodyState& state = frame.states[0];
+        EXPECT_LT((state.orientation * inBody - normal).norm(), 1e-9) << frame.time;
+        EXPECT_LT((state.position + state.orientation * touching).norm(), 1e-9) << frame.time;
+        EXPECT_NEAR(mechanicalEnergy(frame), mechanicalEnergy(run.frames[0]), accuracy) << frame.time;
+      }
+      EXPECT_TRUE(eventsOf(run, EventKind::impact).empty());
+    }
+}
+
+TEST(PinnedBody, BallStaysOnThePlaceWhereItsSurfaceIsPinned) {
+  const Trajectory run =
+      pinnedOnSlope(R"({"sphere": {"radius": 0.1}})", kTilt * Vec3(0, -0.1, 0), Quat::Identity(), 1e-6, 0.5);
+  for (const Frame& frame : run.frames) {
+    EXPECT_LT((frame.states[0].position - run.frames[0].states[0].position).norm(), 1e-12);
+    EXPECT_LT(frame.energy.kinetic, 1e-20);
+  }
+}
+
+// A rim at a pinned point of it can tip about its tangent t there, and turn about the floor's normal n; then t stays
+// across n. Until the base lands, energy is kept.
+TEST(PinnedBody, CylinderOnAPinnedPointOfItsRimTipsAboutItsTangent) {
+  const Quat orientation = Quat(Eigen::AngleAxisd(0.4, Vec3(0, 0.6, 0.8))) * kTilt;
+  const Vec3 normal = kTilt * Vec3::UnitY(), inBody = orientation.conjugate() * normal;
+  const Vec3 outward = -Vec3(inBody.x(), 0, inBody.z()).normalized(), touching = 0.1 * outward + Vec3(0, -0.05, 0);
+  const Vec3 tangent = outward.cross(Vec3::UnitY());
+  for (const double accuracy : {1e-4, 1e-6, 1e-8}) {
+    const Trajectory run =
+        pinnedOnSlope(R"({"cylinder": {"radius": 0.1, "length": 0.1}})", touching, orientation, accuracy, 1);
+    EXPECT_GT(endOf(run).angularVelocity.norm(), 0.5);
+    for (const Frame& frame : run.frames) {
+      const BodyState& state = frame.states[0];
+      EXPECT_LT(std::abs((state.orientation * tangent).dot(normal)), 1e-9) << frame.time;
+      for (int i = 0; i < 36; ++i) {
+        const double angle = i * std::numbers::pi / 18;
+        const Vec3 rim(0.1 * std::cos(angle), -0.05, 0.1 * std::sin(angle));
+        EXPECT_GT(normal.dot(state.position + state.orientation * rim), -accuracy) << frame.time;
+      }
+      EXPECT_NEAR(energyConstantOf(frame), energyConstantOf(run.frames[0]), accuracy);
+    }
+    for (std::size_t i = 1; i < run.frames.size(); ++i)
+      EXPECT_GE(run.frames[i].energy.dissipated, run.frames[i - 1].energy.dissipated - accuracy) << i;
+  }
+}
+
+// A lid hinged to the edge of a box that moves freely, with "collide": it lands on the box, which rests on the floor.
+TEST(PinnedBody, LidLandsOnTheBoxThatItIsHingedTo) {
+  for (const double accuracy : {1e-3, 1e-4, 1e-6}) {
+    const Quat open(Eigen::AngleAxisd(std::numbers::pi / 3, Vec3::UnitZ()));
+    const Vec3 edge(-0.25, -0.01, 0);
+    const Trajectory run = simulate(sceneWith(fmt::format(
+        R"("duration": 2, "accuracy": {}, "output": {{"framesPerSecond": 100}}, {}, "bodies": [{}, {{"name": "box",
+        "shape": {{"box": {{"size": [0.5, 0.3, 0.4]}}}}, "material": "m", "position": [0.25, 0.15, 0]}}, {{"name": "lid",
+        "shape": {{"box": {{"size": [0.5, 0.02, 0.4]}}}}, "material": "m", "position": {}, "orientation": {}}}],
+        "hinges": [{{"bodyA": "lid", "anchorA": {}, "bodyB": "box", "anchorB": [-0.25, 0.15, 0], "collide": true}}])",
+        accuracy, materialText(0, 0.5), kPlane, vectorText(Vec3(0, 0.3, 0) - open * edge), orientationText(open),
+        vectorText(edge))));
+    const BodyState box = run.frames.back().states[0], lid = run.frames.back().states[1];
+    const Vec3 onBox = box.orientation.conjugate() * (lid.position - box.position);
+    EXPECT_LT((onBox - Vec3(0, 0.16, 0)).norm(), 1e-3) << accuracy;
+    EXPECT_LT(lid.linearVelocity.norm(), 1e-6) << accuracy;
+    EXPECT_LT(lid.angularVelocity.norm(), 1e-6) << accuracy;
+  }
+}
+
+// A ladder without friction slides down a wall: while both ends touch, frames inside of steps keep them, as the rows of
+// the contacts do at the steps' ends.
+TEST(SlidingLadder, TouchesWallAndFloorInEveryFrame) {
+  const Quat lean(Eigen::AngleAxisd(0.4, Vec3::UnitZ()));
+  for (const double accuracy : {1e-3, 1e-4, 1e-6}) {
+    const Trajectory run = simulate(sceneWith(fmt::format(
+        R"("duration": 0.5, "accuracy": {}, "output": {{"framesPerSecond": 480}}, {}, "bodies": [{}, {{"name": "wall",
+        "shape": {{"plane": {{"normal": [1, 0, 0]}}}}, "motion": "static", "material": "m"}}, {{"name": "ladder",
+        "shape": {{"capsule": {{"radius": 0.02, "length": 1}}}}, "material": "m", "position": {}, "orientation": {}}}])",
+        accuracy, materialText(0, 0), kPlane,
+        vectorText(Vec3(0.02 + 0.5 * std::sin(0.4), 0.02 + 0.5 * std::cos(0.4), 0)), orientationText(lean))));
+    ASSERT_TRUE(eventsOf(run, EventKind::release).empty());
+    for (const Frame& frame : run.frames) {
+      const BodyState& state = frame.states[0];
+      const Vec3 up = state.position + state.orientation * Vec3(0, 0.5, 0);
+      const Vec3 down = state.position + state.orientation * Vec3(0, -0.5, 0);
+      EXPECT_NEAR(std::min(up.x(), down.x()), 0.02, 1e-9) << accuracy << " " << frame.time;
+      EXPECT_NEAR(std::min(up.y(), down.y()), 0.02, 1e-9) << accuracy << " " << frame.time;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cradle
