@@ -252,6 +252,7 @@ void reboundBlock(Block& block, double slowest, SolverMotions& motions) {
   if (block.restitution[0] == 0 && block.restitution[1] == 0) return;
   MotionsOf<Block> velocities(block, motions.velocities);
   const PlaneSpeeds starts = MotionsOf<Block>(block, motions.starts).apart(block), speeds = velocities.apart(block);
+  for (auto& point : block.points) point.total -= point.impulse;
   NormalLaws<Block::kPoints> laws;
   for (auto& point : block.points) point.total -= point.impulse;
   for (int i = 0; i < Block::kPoints; ++i) {

@@ -120,6 +120,7 @@ Strike FrictionalImpact::strike(const VectorX& velocities, const VectorX& openin
   strike.gain = solution.impulses.dot(before) + strike.moved;
   strike.residual = solution.residual;
   const VectorX terms = solution.impulses.cwiseAbs();
+  strike.residual = solution.residual <= kSolvedPart * fastest_ ? 0 : solution.residual;
   strike.rounding = kSumRounding * terms.dot(matrix.cwiseAbs() * terms);
   return strike;
 }
@@ -187,11 +188,11 @@ ImpactFaults resolveFrictionalImpact(std::vector<ImpactContact>& impacts, const 
   if (impacts.empty()) return {};
   const std::vector<Contact> contacts = contactsOf(impacts);
   const ContactCones cones(contacts, response, state);
-  FrictionalImpact impact(impacts, cones, cones.velocitiesIn(state));
-  const VectorX impulses = impact.resolve();
+  ImpactFaults faults;
+  const VectorX impulses = FrictionalImpact(impacts, cones, cones.velocitiesIn(state)).resolve(faults);
   cones.apply(impulses, state);
   for (std::size_t i = 0; i < impacts.size(); ++i) impacts[i].impulse += cones.worldImpulse(i, impulses);
-  return impact.faults();
+  return faults;
 }
 
 }  // namespace cradle

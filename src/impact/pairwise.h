@@ -18,7 +18,7 @@ struct ImpactContact {
 struct ImpactFaults {
   double residual = 0;      // m/s: of the worst cone problem that was not solved
   double scaledEnergy = 0;  // J: that the impulses found would have given
-  int rounds = 0;           // that did not end the impact: what was left did not rebound
+  int rounds = 0;           // that did not end the impact: contacts still close
 };
 
 /// The textbook law of simultaneous impacts: the pair that closes fastest gets its two-body impulse (Newton's

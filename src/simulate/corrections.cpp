@@ -25,7 +25,7 @@ const char* textOf(CorrectionKind kind) {
     case CorrectionKind::scaledImpulses:
       return "the impulses found for an impact of {0} would have given energy: they were made smaller (by {1:.3g} J)";
     case CorrectionKind::endlessImpacts:
-      return "impacts of {0} did not come to an end ({1:.0f} rounds): what was left was ended without rebound";
+      return "an impact of {0} did not come to an end ({1:.0f} rounds): contacts still close";
   }
   return "";
 }

@@ -16,7 +16,7 @@ enum class CorrectionKind {
   omittedFriction,   // contacts solved without friction: with it, no forces were found (m/s)
   omittedContacts,   // contacts without any force: none were found (m/s)
   scaledImpulses,    // impulses made smaller: those found would have given energy (J)
-  endlessImpacts,    // impacts ended without rebound, or left to the next step: they did not come to an end (rounds)
+  endlessImpacts,    // impacts that did not come to an end: contacts still close (rounds)
 };
 constexpr std::size_t kCorrectionKinds = 6;
 

@@ -133,7 +133,9 @@ VectorX ContactStepping::strike(const Group& group, double timeStep, VectorX& st
     impulses = solve(group, problem);
     tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
   };
+  const std::size_t faults = faults_.size();
   const auto lossWith = [&](double part) {
+    forgetFaults(faults);
     problem = posedImpact(group, start, timeStep, part);
     solveAndApply();
     if (slide(group, cones_.velocitiesIn(state), problem)) solveAndApply();

@@ -149,6 +149,7 @@ void ContactStepping::resolve(const Group& group, const VectorX& before, double 
   Problem problem;
   VectorX impulses, end;
   const auto lossWith = [&](double part) {
+    forgetFaults(faults);
     restore(group.moved.bodies, state);
     problem = posed(group, motion, part);
     impulses = solve(group, problem);

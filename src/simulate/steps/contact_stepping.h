@@ -112,6 +112,9 @@ class ContactStepping {
   MatrixX inverseMass() const { return tied_ ? tied_->inverseMass() : cones_.inverseMass(); }
   void count(const Group& group, const ConeSolution& solution, double fastest);
   void limit(const Group& group, double most, VectorX& state);
+  void forgetFaults(std::size_t kept) {
+    faults_.erase(faults_.begin() + static_cast<std::ptrdiff_t>(kept), faults_.end());
+  }
   ConeStart startOf(const Group& group) const;
   VectorX move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state);
   static VectorX gapsAfter(const Group& group, double timeStep, const VectorX& velocities);
