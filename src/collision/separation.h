@@ -16,6 +16,7 @@ struct Contact {
   double separation = 0;       // m, < 0: overlap
   // m: radius of the ball that each surface is there: 0 a corner, infinite a flat face; NaN: neither (edge, side, rim).
   double radiusA = std::numeric_limits<double>::quiet_NaN(), radiusB = radiusA;
+  Vec3 rimAxisA = Vec3::Zero();  // unit, world: A is a tilted disc of that radius there, across this; zero: it is not
 
   /// A if it moves, else B.
   int movingBody() const { return bodyA != kFixed ? bodyA : bodyB; }

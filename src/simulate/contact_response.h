@@ -18,7 +18,8 @@ struct ContactRows {
 /// Surfaces that are neither ball, corner nor face (edges) are taken as a corner on a face: good for one instant.
 ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames);
 
-/// Whether a contact can last: its kinematics are those of a ball or corner on a face, a corner or a ball.
+/// Whether a contact can last: its kinematics are those of a ball or corner on a face, a corner or a ball,
+/// or of a disc's rim on a face.
 bool canLast(const Contact& contact);
 
 /// How contacts answer to each other's impulses, with what ties the bodies: three rows of each in turn.

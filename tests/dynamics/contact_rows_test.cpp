@@ -16,6 +16,7 @@ struct Kind {
   std::string name;
   int bodyA, bodyB;
   double radiusA, radiusB;
+  bool isRim = false;
 };
 constexpr double kFace = std::numeric_limits<double>::infinity();
 const std::vector<Kind> kKinds = {{"corner on fixed face", 0, kFixed, 0, kFace},
@@ -25,7 +26,10 @@ const std::vector<Kind> kKinds = {{"corner on fixed face", 0, kFixed, 0, kFace},
                                   {"fixed ball on face", kFixed, 1, 0.3, kFace},
                                   {"ball on fixed ball", 0, kFixed, 0.3, 0.7},
                                   {"ball on ball", 0, 1, 0.3, 0.7},
-                                  {"corner on ball", 0, 1, 0, 0.7}};
+                                  {"corner on ball", 0, 1, 0, 0.7},
+                                  {"rim on fixed face", 0, kFixed, 0.3, kFace, true},
+                                  {"rim on face", 0, 1, 0.3, kFace, true},
+                                  {"fixed rim on face", kFixed, 1, 0.3, kFace, true}};
 
 /// Two lopsided bodies that move at random and touch in a contact of that kind, somewhere.
 struct Touching {
@@ -46,8 +50,10 @@ struct Touching {
     }
     evaluatePoseRates(mechanism.bodies, state, rate);
     const Vec3 normal = random.vector().normalized();
-    ContactConstraint contact =
-        constraintOf({kind.bodyA, kind.bodyB, random.vector(), normal, 0, kind.radiusA, kind.radiusB}, state);
+    SurfaceContact surfaces{kind.bodyA, kind.bodyB, random.vector(), normal, 0, kind.radiusA, kind.radiusB};
+    // A disc 30 degrees from upright, whose lowest point moves around it.
+    if (kind.isRim) surfaces.rimAxisA = (std::sqrt(3.0) * normal.cross(random.vector()).normalized() + normal) / 2;
+    ContactConstraint contact = constraintOf(surfaces, state);
     contact.motion = motion;
     contact.friction = 0.4;
     setSlidingDirection(contact, normal.cross(random.vector()), state);

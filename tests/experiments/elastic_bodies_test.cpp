@@ -24,14 +24,11 @@ Scene crowdIn(double accuracy, unsigned seed) {
       wall.worldFromBody = {Quat::FromTwoVectors(Vec3::UnitY(), -side * Vec3::Unit(axis)), side * Vec3::Unit(axis)};
       sketch.bodies.push_back(wall);
     }
-  const std::pair<SketchShape, Vec3> shapes[] = {{SketchShape::sphere, Vec3::Constant(0.25)},
-                                                 {SketchShape::box, Vec3(0.3, 0.4, 0.2)},
-                                                 {SketchShape::cylinder, Vec3(0.2, 0.3, 0)},
-                                                 {SketchShape::capsule, Vec3(0.15, 0.3, 0)},
-                                                 {SketchShape::prismHull, Vec3::Constant(1.2)},
-                                                 {SketchShape::prism, Vec3::Constant(1.2)},
-                                                 {SketchShape::box, Vec3(0.1, 0.5, 0.3)},
-                                                 {SketchShape::capsule, Vec3(0.2, 0.1, 0)}};
+  const std::pair<SketchShape, Vec3> shapes[] = {
+      {SketchShape::sphere, Vec3::Constant(0.25)},   {SketchShape::box, Vec3(0.3, 0.4, 0.2)},
+      {SketchShape::cylinder, Vec3(0.2, 0.3, 0)},    {SketchShape::capsule, Vec3(0.15, 0.3, 0)},
+      {SketchShape::prismHull, Vec3::Constant(1.2)}, {SketchShape::prism, Vec3::Constant(1.2)},
+      {SketchShape::box, Vec3(0.1, 0.5, 0.3)},       {SketchShape::capsule, Vec3(0.2, 0.1, 0)}};
   for (int i = 0; i < 8; ++i) {
     SketchBody body;
     body.shape = shapes[i].first, body.size = shapes[i].second;

@@ -19,7 +19,8 @@ Trajectory fallOf(double accuracy, double gap, double duration) {
         {{"name": "chimney", "shape": {{"box": {{"size": [{}, {}, {}]}}}}, "position": [{}, {}, 0],
           "angularVelocity": [0, 0, -0.5]}}],
       "hinges": [{{"bodyA": "chimney", "anchorA": [{}, {}, 0], "anchorB": [0, {}, 0], "axis": [0, 0, 1]}}])",
-      duration, accuracy, kChimneyWidth, kChimneyHeight, kChimneyWidth, -kChimneyWidth / 2, kChimneyHeight / 2 + gap, kChimneyWidth / 2, -kChimneyHeight / 2, gap)));
+      duration, accuracy, kChimneyWidth, kChimneyHeight, kChimneyWidth, -kChimneyWidth / 2, kChimneyHeight / 2 + gap,
+      kChimneyWidth / 2, -kChimneyHeight / 2, gap)));
 }
 
 /// Angle (rad) of the centre of mass from straight above the edge, towards +x.

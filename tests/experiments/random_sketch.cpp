@@ -100,14 +100,15 @@ void addLink(SceneSketch& sketch, SketchDraws& draws) {
   if (draws.chance(0.6)) link.anchorA = draws.vector(0.3 * size);
   link.anchorB = body.worldFromBody.translation + above;
   if (isToOther && other != link.bodyA) link.bodyB = other, link.anchorB = draws.vector(0.2 * size);
-  const double distance = (anchorInWorld(sketch, link.bodyA, link.anchorA) -
-                           anchorInWorld(sketch, link.bodyB, link.anchorB)).norm();
+  const double distance =
+      (anchorInWorld(sketch, link.bodyA, link.anchorA) - anchorInWorld(sketch, link.bodyB, link.anchorB)).norm();
   if (distance < 0.3 * size) return;
   link.kind = draws.one({SketchLinkKind::spring, SketchLinkKind::rod, SketchLinkKind::rope});
   link.length = distance;
   if (link.kind == SketchLinkKind::spring) link.length *= draws.one({1.0, 0.8, 1.1});
   if (link.kind == SketchLinkKind::rope) link.length *= draws.one({1.0, 1.0, 1.001, 1.1});
-  link.stiffness = body.mass * 9.81 / size * draws.magnitude(0, 3), link.damping = draws.one({0.0, 0.0, 1.0}) * body.mass;
+  link.stiffness = body.mass * 9.81 / size * draws.magnitude(0, 3),
+  link.damping = draws.one({0.0, 0.0, 1.0}) * body.mass;
   link.restitution = draws.one({0.0, 0.0, 0.5, 1.0});
   sketch.links.push_back(link);
 }
@@ -153,7 +154,8 @@ SceneSketch drawPinned(unsigned number, SketchDraws& draws) {
 
 /// Balls of which each impact is known.
 SceneSketch drawSqueezedBalls(SceneSketch sketch, SketchDraws& draws) {
-  const double scale = draws.magnitude(-1.5, -0.7), ratio = draws.magnitude(0.5, 4), size = scale * draws.number(0.5, 2);
+  const double scale = draws.magnitude(-1.5, -0.7), ratio = draws.magnitude(0.5, 4),
+               size = scale * draws.number(0.5, 2);
   const double restitution = draws.one({0.05, 0.1, 0.3, 0.5, draws.number(0, 1)});
   const double friction = draws.one({0.0, 0.0, 0.5});
   SqueezedBalls balls{{0.1, 0.1 * ratio}, {}, {}, restitution, 9.81};
@@ -233,7 +235,8 @@ void addMiddle(SceneSketch& sketch, SketchDraws& draws, double scale) {
   SketchBody body;
   do body = draws.body(scale);
   while (body.shape > SketchShape::capsule);
-  body.worldFromBody.rotation = rotationAbout(Vec3::UnitX(), draws.one({0.0, 0.0, 1.5707963267948966, draws.number(0, 3)}));
+  body.worldFromBody.rotation =
+      rotationAbout(Vec3::UnitX(), draws.one({0.0, 0.0, 1.5707963267948966, draws.number(0, 3)}));
   body.worldFromBody.translation = Vec3(0, 0, draws.one({0.0, draws.number(-scale, scale) / 4}));
   sketch.bodies.push_back(body);
   const double gap = draws.gap() * sizeOf(body);

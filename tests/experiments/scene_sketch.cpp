@@ -86,9 +86,11 @@ std::string textOf(const SceneSketch& sketch) {
   }
   for (std::size_t i = 0; i < sketch.bodies.size(); ++i) bodies.push_back(bodyText(sketch.bodies[i], i));
   std::string lists;
-  for (const auto& [kind, name] :
-       {std::pair{SketchLinkKind::spring, "springs"}, {SketchLinkKind::rod, "rods"}, {SketchLinkKind::rope, "ropes"},
-        {SketchLinkKind::ballJoint, "ballJoints"}, {SketchLinkKind::hinge, "hinges"}}) {
+  for (const auto& [kind, name] : {std::pair{SketchLinkKind::spring, "springs"},
+                                   {SketchLinkKind::rod, "rods"},
+                                   {SketchLinkKind::rope, "ropes"},
+                                   {SketchLinkKind::ballJoint, "ballJoints"},
+                                   {SketchLinkKind::hinge, "hinges"}}) {
     std::vector<std::string> links;
     for (const SketchLink& link : sketch.links)
       if (link.kind == kind) links.push_back(linkText(link));

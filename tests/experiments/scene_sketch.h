@@ -32,10 +32,10 @@ struct SketchLink {
   SketchLinkKind kind = SketchLinkKind::ballJoint;
   int bodyA = 0, bodyB = -1;  // -1: the world
   Vec3 anchorA = Vec3::Zero(), anchorB = Vec3::Zero();
-  Vec3 axis = Vec3::UnitZ();                             // of a hinge, frame of A
-  double length = 0;                                     // m: of a rod, at rest, or at most
-  double stiffness = 0, damping = 0;                     // N/m, N s/m
-  double restitution = 0;                                // of a rope
+  Vec3 axis = Vec3::UnitZ();          // of a hinge, frame of A
+  double length = 0;                  // m: of a rod, at rest, or at most
+  double stiffness = 0, damping = 0;  // N/m, N s/m
+  double restitution = 0;             // of a rope
 };
 
 /// A scene as what stands in it, so that it can be seen in a mirror, turned, made larger, or put in another order.

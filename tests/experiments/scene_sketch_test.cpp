@@ -126,9 +126,9 @@ void expectFault(const std::vector<SketchFault>& faults, const std::string& orac
 }
 
 TEST(SketchOracles, ShowWhatIsWrong) {
-  expectFault(faultsOfChanged([](SceneSketch&, SketchRun& run) {
-                run.frames.back().states[0].angularVelocity.x() = std::nan("");
-              }), "finite");
+  expectFault(faultsOfChanged(
+                  [](SceneSketch&, SketchRun& run) { run.frames.back().states[0].angularVelocity.x() = std::nan(""); }),
+              "finite");
   expectFault(faultsOfChanged([](SceneSketch&, SketchRun& run) { run.frames.back().energy.kinetic *= 1.001; }), "gain");
   expectFault(faultsOfChanged([](SceneSketch&, SketchRun& run) { run.frames.back().energy.dissipated += 1e-3; }),
               "balance");
@@ -138,13 +138,16 @@ TEST(SketchOracles, ShowWhatIsWrong) {
   expectFault(faultsOfChanged([](SceneSketch&, SketchRun& run) { run.frames.back().states[1].position.x() += 1e-6; }),
               "ties");
   expectFault(faultsOfChanged([](SceneSketch& sketch, SketchRun&) { sketch.images = {0, 1, 2}; }), "symmetry");
-  expectFault(faultsOfChanged([](SceneSketch& sketch, SketchRun&) { sketch.displacements.push_back({1, Vec3(1, 0, 0)}); }),
+  expectFault(faultsOfChanged([](SceneSketch& sketch, SketchRun&) {
+                sketch.displacements.push_back({1, Vec3(1, 0, 0)});
+              }),
               "closed form");
   expectFault(faultsOfChanged([](SceneSketch&, SketchRun& run) { run.cpuSeconds = 3; }), "cpu");
   expectFault(faultsOfChanged([](SceneSketch& sketch, SketchRun& run) {
                 sketch.links.clear(), sketch.materials[0].staticFriction = 0;
                 run.frames.back().energy.momentum.x() += 1e-3;
-              }), "momentum");
+              }),
+              "momentum");
 }
 
 }  // namespace

@@ -13,9 +13,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kTurn = 37 * 3.14159265358979324 / 180;             // rad
-constexpr double kScale = 100, kTimes = 10, kMasses = 1e6;           // Froude: times as the root of lengths
-constexpr double kPrismMiddle = static_cast<double>(0.1f) / 2;       // m: the L prism stands on z = 0, 0.1 m high
+constexpr double kTurn = 37 * 3.14159265358979324 / 180;        // rad
+constexpr double kScale = 100, kTimes = 10, kMasses = 1e6;      // Froude: times as the root of lengths
+constexpr double kPrismMiddle = static_cast<double>(0.1f) / 2;  // m: the L prism stands on z = 0, 0.1 m high
 
 Vec3 flipped(Vec3 v, int axis) {
   v[axis] = -v[axis];

@@ -12,7 +12,7 @@ namespace cradle {
 struct SceneTwin {
   std::string name;
   SceneSketch sketch;
-  std::vector<std::size_t> bodies;                                      // of each body of the first: its number here
+  std::vector<std::size_t> bodies;                                         // of each body of the first: its number here
   std::function<RigidTransform(const RigidTransform&, std::size_t)> back;  // a pose here to that of the first's body
 };
 

@@ -25,9 +25,9 @@ constexpr double kMostErrors = 10;
 constexpr double kMostTwinErrors = 10, kMostGrowth = 10;
 // Where steps of one length promise nothing, but that pictures are right: parts of the energy, the size.
 constexpr double kStepsGain = 1e-3, kStepsBalance = 5e-3, kStepsPlace = 0.02, kStepsMomentum = 1e-6;
-constexpr double kChaos = 0.05;       // of the size: where disturbances grow to that, runs are not compared
-constexpr double kCpuPerSecond = 5;   // s of CPU time per simulated second, beside
-constexpr double kCpuAtStart = 0.1;   // s
+constexpr double kChaos = 0.05;      // of the size: where disturbances grow to that, runs are not compared
+constexpr double kCpuPerSecond = 5;  // s of CPU time per simulated second, beside
+constexpr double kCpuAtStart = 0.1;  // s
 constexpr double kReferenceAccuracy = 1e-9;
 
 double massOf(const SceneSketch& sketch) {
@@ -58,8 +58,7 @@ class RunOracles {
     energyScale_ = massOf(sketch) * (gravity * largestSizeOf(sketch) + speed * speed);
     const double potential = run.frames[0].energy.potential;
     for (const Frame& frame : run.frames)
-      energyScale_ =
-          std::max({energyScale_, frame.energy.kinetic, std::abs(frame.energy.potential - potential)});
+      energyScale_ = std::max({energyScale_, frame.energy.kinetic, std::abs(frame.energy.potential - potential)});
   }
 
   std::vector<SketchFault> faults() {
@@ -70,15 +69,16 @@ class RunOracles {
     checkSymmetry();
     checkDisplacements();
     const double most = kCpuAtStart + kCpuPerSecond * sketch_.duration;
-    require(run_.cpuSeconds < most, "cpu", fmt::format("{:.2g} s of CPU for {:.3g} s", run_.cpuSeconds, sketch_.duration));
+    require(run_.cpuSeconds < most, "cpu",
+            fmt::format("{:.2g} s of CPU for {:.3g} s", run_.cpuSeconds, sketch_.duration));
     return faults_;
   }
 
  private:
   void require(bool holds, const std::string& oracle, const std::string& text) {
     if (!holds)
-      faults_.push_back({oracle, fmt::format("{}, accuracy {:g}{}", text, sketch_.accuracy,
-                                             run_.keepsAccuracy ? "" : " not kept")});
+      faults_.push_back(
+          {oracle, fmt::format("{}, accuracy {:g}{}", text, sketch_.accuracy, run_.keepsAccuracy ? "" : " not kept")});
   }
   double bound(double stepped) const { return run_.keepsAccuracy ? kMostErrors * sketch_.accuracy : stepped; }
 
@@ -97,7 +97,8 @@ class RunOracles {
       most = std::max(most, frame.energy.dissipated);
       balance = std::max(balance, std::abs(energyConstantOf(frame) - energyConstantOf(run_.frames[0])));
     }
-    require(gain <= bound(kStepsGain) * energyScale_, "gain", fmt::format("gains {:.2g} of its energy", gain / energyScale_));
+    require(gain <= bound(kStepsGain) * energyScale_, "gain",
+            fmt::format("gains {:.2g} of its energy", gain / energyScale_));
     require(fall <= bound(kStepsGain) * energyScale_, "ledger",
             fmt::format("dissipated falls by {:.2g} of the energy", fall / energyScale_));
     require(balance <= bound(kStepsBalance) * energyScale_, "balance",
@@ -107,7 +108,8 @@ class RunOracles {
   /// Momentum along what no fixed thing can change, and angular momentum about the vertical through the origin: of all
   /// directions without fixed things, of level ones over level floors without friction.
   void checkMomentum() {
-    const bool isTied = std::any_of(sketch_.links.begin(), sketch_.links.end(), [](const SketchLink& link) { return link.bodyB < 0; });
+    const bool isTied =
+        std::any_of(sketch_.links.begin(), sketch_.links.end(), [](const SketchLink& link) { return link.bodyB < 0; });
     bool isFree = !isTied, isLevel = !isTied;
     for (const SketchBody& body : sketch_.bodies) {
       if (!body.isStatic) continue;
@@ -171,10 +173,11 @@ class RunOracles {
   void checkDisplacements() {
     for (const SceneSketch::Displacement& known : sketch_.displacements) {
       const auto body = static_cast<std::size_t>(known.body);
-      const Vec3 way = placesIn(run_.frames.back(), run_.scene)[body].translation -
-                       sketch_.bodies[body].worldFromBody.translation;
+      const Vec3 way =
+          placesIn(run_.frames.back(), run_.scene)[body].translation - sketch_.bodies[body].worldFromBody.translation;
       const double error = (way - known.value).norm(), most = bound(kStepsPlace * smallestSizeOf(sketch_));
-      require(error <= most, "closed form", fmt::format("goes {:.3g} m, {:.2g} m off the closed form", way.norm(), error));
+      require(error <= most, "closed form",
+              fmt::format("goes {:.3g} m, {:.2g} m off the closed form", way.norm(), error));
     }
   }
 
@@ -258,7 +261,8 @@ class SketchCheck {
   }
 
   /// Whether two runs of the scene differ by more than `most` (m) and what disturbances of `disturbance` (m/s) explain.
-  bool isBeyondSensitivity(const SceneSketch& sketch, const SketchRun& run, double difference, double most, double disturbance) {
+  bool isBeyondSensitivity(const SceneSketch& sketch, const SketchRun& run, double difference, double most,
+                           double disturbance) {
     if (difference <= most) return false;
     begin_("the scene, disturbed");
     try {
@@ -324,9 +328,9 @@ SketchRun runSketch(const SceneSketch& sketch) {
     if (text.find("not promised") != std::string::npos) run.keepsAccuracy = false;
   };
   listen(accuracyPromised(planOf(run.scene)));
-  run.cpuSeconds = simulate(run.scene, {[&](const Frame& frame) { run.frames.push_back(frame); }, [](const Event&) {},
-                                        listen})
-                       .cpuSeconds;
+  run.cpuSeconds =
+      simulate(run.scene, {[&](const Frame& frame) { run.frames.push_back(frame); }, [](const Event&) {}, listen})
+          .cpuSeconds;
   return run;
 }
 
@@ -351,7 +355,8 @@ SceneSketch reduceSketch(const SceneSketch& sketch, const std::string& oracle) {
   }
   for (int i = static_cast<int>(least.bodies.size()); i-- > 0 && least.bodies.size() > 1;) {
     const SceneSketch less = withoutBody(least, i);
-    if (std::all_of(less.bodies.begin(), less.bodies.end(), [](const SketchBody& body) { return body.isStatic; })) continue;
+    if (std::all_of(less.bodies.begin(), less.bodies.end(), [](const SketchBody& body) { return body.isStatic; }))
+      continue;
     if (stillFails(less)) least = less;
   }
   return least;

@@ -8,8 +8,8 @@ namespace {
 
 using Real = long double;
 
-constexpr Real kAtOnce = 1e-200L;     // s: of impacts that come as fast
-constexpr Real kSlow = 1e-9L;         // m/s: a rebound that dies away by itself
+constexpr Real kAtOnce = 1e-200L;  // s: of impacts that come as fast
+constexpr Real kSlow = 1e-9L;      // m/s: a rebound that dies away by itself
 constexpr int kMostImpacts = 1000000;
 
 /// Time until a gap that changes at `rate` and shrinks by `gravity` t^2 / 2 closes; infinite if it never does.

@@ -9,9 +9,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kCylinderRadius = 0.1;                      // m
-const double kSide = 2 - std::sqrt(3.0);             // tan 15 degrees
-const double kFloor = kSide / 3;                     // see below
+constexpr double kCylinderRadius = 0.1;   // m
+const double kSide = 2 - std::sqrt(3.0);  // tan 15 degrees
+const double kFloor = kSide / 3;          // see below
 
 /// Of cylinders apart by `gap` (m) below; frictions between them, and between them and the floor.
 Trajectory runOf(double side, double floor, double accuracy, double duration) {
@@ -27,15 +27,16 @@ Trajectory runOf(double side, double floor, double accuracy, double duration) {
       "pairs": [{{"materials": ["wood", "earth"], "staticFriction": {}, "dynamicFriction": {}}}],
       "bodies": [{{"name": "floor", "material": "earth", "shape": {{"plane": {{}}}}, "motion": "static"}}, {}, {}, {}])",
       duration, accuracy, side, side, floor, floor, floor, floor, cylinder("left", -kCylinderRadius, kCylinderRadius),
-      cylinder("right", kCylinderRadius, kCylinderRadius), cylinder("top", 0, (1 + std::sqrt(3.0)) * kCylinderRadius))));
+      cylinder("right", kCylinderRadius, kCylinderRadius),
+      cylinder("top", 0, (1 + std::sqrt(3.0)) * kCylinderRadius))));
 }
 
 double fallOfTop(const Trajectory& run) {
   return run.frames.front().states[2].position.y() - run.frames.back().states[2].position.y();
 }
 
-// A lower cylinder is touched by the upper one 30 degrees off the vertical, and by the floor. The torques about its axis
-// vanish if both friction forces F are equal, those about its point on the floor if the upper contact's force goes
+// A lower cylinder is touched by the upper one 30 degrees off the vertical, and by the floor. The torques about its
+// axis vanish if both friction forces F are equal, those about its point on the floor if the upper contact's force goes
 // through that point: F / N = tan 15 degrees there. Above, 2 (N cos 30 + F sin 30) = m g, so F = m g (2 - sqrt 3) / 2 =
 // N_floor (2 - sqrt 3) / 3 with N_floor = 3/2 m g.
 TEST(ThreeCylinders, StandWhileBothFrictionsSuffice) {

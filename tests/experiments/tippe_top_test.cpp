@@ -1,4 +1,5 @@
-// A ball whose centre of mass lies off its middle, spun up on a floor: it slides, and its spin turns it over (tippe-top).
+// A ball whose centre of mass lies off its middle, spun up on a floor: it slides, and its spin turns it over
+// (tippe-top).
 
 #include <gtest/gtest.h>
 
@@ -62,8 +63,7 @@ TEST(TippeTop, KeepsJellettsIntegralWhileItTurnsOver) {
     const Trajectory run = top.run(10, 200, 0.3, 0, 0, accuracy);
     EXPECT_LT(top.jellettError(run), kTurns * accuracy);
     double lowest = 1;  // cosine of the axis' tilt: the top turns over
-    for (const Frame& frame : run.frames)
-      lowest = std::min(lowest, (frame.states[0].orientation * Vec3::UnitY()).y());
+    for (const Frame& frame : run.frames) lowest = std::min(lowest, (frame.states[0].orientation * Vec3::UnitY()).y());
     EXPECT_LT(lowest, -0.5);
   }
 }

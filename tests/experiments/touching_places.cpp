@@ -9,9 +9,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kFar = 4;             // m: from where a body comes, and beyond which it has missed
-constexpr double kGapRounding = 4e-16; // m
-constexpr int kMostMoves = 40;       // each leaves less than half, where surfaces meet steeper than 60 degrees
+constexpr double kFar = 4;              // m: from where a body comes, and beyond which it has missed
+constexpr double kGapRounding = 4e-16;  // m
+constexpr int kMostMoves = 40;          // each leaves less than half, where surfaces meet steeper than 60 degrees
 
 Scene sceneOfBodies(SceneSketch sketch) {
   sketch.links.clear();
@@ -48,8 +48,7 @@ class LastBody {
     std::vector<std::size_t> features;
     for (std::size_t pair = 0; pair < geometry.pairs.size(); ++pair) {
       features.clear();
-      const RigidTransform worldFromA =
-          poseOf(assembly_.state, geometry.colliders[geometry.pairs[pair].a].body);
+      const RigidTransform worldFromA = poseOf(assembly_.state, geometry.colliders[geometry.pairs[pair].a].body);
       appendFeaturesWithin(geometry, geometry.pairs[pair], worldFromA, 2 * kFar, features);
       for (const std::size_t feature : features) {
         const double found = cradle::separation(geometry, geometry.pairs[pair], feature, assembly_.state);

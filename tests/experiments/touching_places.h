@@ -12,9 +12,9 @@ IslandPlan touchingScene(const Scene& scene);
 
 /// Where the last body of a sketch is nearest to the others.
 struct NearestPlace {
-  double separation = 0;  // m
-  int other = 0;          // body
-  Vec3 point = Vec3::Zero();  // m, world
+  double separation = 0;       // m
+  int other = 0;               // body
+  Vec3 point = Vec3::Zero();   // m, world
   Vec3 normal = Vec3::Zero();  // unit, from the last body to the other
 };
 
