@@ -34,7 +34,8 @@ Roundness roundnessAt(const Collider& collider, const Vec3& point, const Vec3& n
   const Vec3 arm = point - (collider.points[0] + std::clamp(part, 0.0, 1.0) * along);
   if (std::abs(arm.norm() - radius) > near) return {};
   const Vec3 tangent = along.cross(arm).normalized();
-  if (kind == ColliderKind::cylinder) return {false, std::abs(tangent.dot(normal)) <= kSamePlaceAtPin ? tangent : Vec3(Vec3::Zero())};
+  if (kind == ColliderKind::cylinder)
+    return {false, std::abs(tangent.dot(normal)) <= kSamePlaceAtPin ? tangent : Vec3(Vec3::Zero())};
   if ((arm - radius * normal).norm() > near) return {};
   const double rest = near / along.norm();
   return part > rest && part < 1 - rest ? Roundness{false, tangent} : Roundness{true, {}};
