@@ -1,32 +1,72 @@
-// Scenes thrown together at random, each in a process of its own, two at a time: what goes wrong in them. Usage:
-// random_scenes COUNT [FIRST] runs scenes FIRST (0) to FIRST + COUNT - 1; random_scenes --text NUMBER prints the scene;
-// random_scenes --file SCENE runs a scene file in its place.
+// Scenes thrown together at random, each in a process of its own: what goes wrong in them. Usage:
+//   random_scenes [--family FAMILY] [-j PROCESSES] [-o FOLDER] [COUNT [FIRST]]
+//     runs scenes FIRST (0) to FIRST + COUNT - 1 of a family: thrown (default), touch, pinned, squeezed, symmetric,
+//     threshold, or all, which take turns. What fails is written to FOLDER as FAMILY_NUMBER_ORACLE.json, reduced.
+//   random_scenes [--family FAMILY] --text NUMBER     prints the scene
+//   random_scenes --file SCENE                        runs a scene file with the oracles of the family thrown
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <map>
+#include <optional>
 
 #include "core/error.h"
 #include "core/progress.h"
 #include "experiments/random_scene.h"
 #include "experiments/random_scene_figures.h"
+#include "experiments/random_sketch.h"
+#include "experiments/sketch_oracles.h"
 #include "scene/load_scene.h"
 
 namespace cradle {
 namespace {
 
-constexpr rlim_t kMostSeconds = 20;  // CPU time of a scene
-constexpr int kAtOnce = 2;
+constexpr rlim_t kMostThrownSeconds = 20;     // CPU time of a scene
+constexpr rlim_t kMostSketchSeconds = 8;      // with all its runs
+constexpr std::size_t kMostCharacters = 600;  // of a message: a pipe holds them all
+constexpr unsigned kFamilies = kSketchFamilyNames.size();
 
-Scene randomScene(unsigned number) {
-  return parseScene(randomSceneText(number), "random.json", modelFilesBeside("random.json")).scene;
+/// What to run, and where to leave it.
+struct Order {
+  std::string family = "thrown", folder, text, file;
+  int atOnce = 2;
+  unsigned count = 1000, first = 0;
+};
+
+/// One scene of an order: thrown, or of a family of sketches.
+struct Task {
+  std::optional<SketchFamily> family;
+  unsigned number = 0;
+
+  std::string name() const {
+    return fmt::format("{} {}", family ? kSketchFamilyNames[static_cast<std::size_t>(*family)] : "thrown", number);
+  }
+  rlim_t mostSeconds() const { return family ? kMostSketchSeconds : kMostThrownSeconds; }
+  std::string text() const { return family ? textOf(randomSketch(*family, number)) : randomSceneText(number); }
+};
+
+Task taskOf(const Order& order, unsigned number) {
+  if (order.family == "thrown") return {{}, number};
+  if (order.family == "all") {
+    const unsigned kind = number % (kFamilies + 1);
+    if (kind == kFamilies) return {{}, number / (kFamilies + 1)};
+    return {static_cast<SketchFamily>(kind), number / (kFamilies + 1)};
+  }
+  const auto found = std::find(kSketchFamilyNames.begin(), kSketchFamilyNames.end(), order.family);
+  if (found == kSketchFamilyNames.end()) {
+    fmt::print(stderr, "no family {}\n", order.family);
+    std::exit(2);
+  }
+  return {static_cast<SketchFamily>(found - kSketchFamilyNames.begin()), number};
 }
 
 /// One line; what is wrong comes first.
@@ -49,16 +89,51 @@ std::string lineOrError(const MakeScene& makeScene) {
   }
 }
 
+void save(const Order& order, const Task& task, const std::string& oracle, const std::string& text) {
+  if (order.folder.empty()) return;
+  std::string name = task.name() + " " + oracle;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  std::ofstream(order.folder + "/" + name + ".json") << text;
+}
+
+/// "begin WHAT" lines, and at last what comes of it, as in lineOf; a process that is killed has told what it began.
+std::string checkLine(const Order& order, const Task& task, const std::function<void(const std::string&)>& begin) {
+  const SceneSketch sketch = randomSketch(*task.family, task.number);
+  const std::vector<SketchFault> faults = checkSketch(sketch, begin);
+  std::string line;
+  for (const SketchFault& fault : faults) {
+    save(order, task, fault.oracle, textOf(sketch));
+    line += fmt::format("{}{}: {}", line.empty() ? "" : "; ", fault.oracle, fault.text.substr(0, kMostCharacters));
+  }
+  if (order.folder.empty() || faults.empty()) return line + "|";
+  begin(line + "|not reduced");
+  for (const SketchFault& fault : faults) save(order, task, fault.oracle, textOf(reduceSketch(sketch, fault.oracle)));
+  return line + "|";
+}
+
+void runTask(const Order& order, const Task& task, int pipeEnd) {
+  const auto say = [&](const std::string& line) {
+    if (write(pipeEnd, line.data(), line.size()) < 0) _exit(1);
+  };
+  if (!task.family) {
+    const auto scene = [&] {
+      return parseScene(randomSceneText(task.number), "random.json", modelFilesBeside("random.json")).scene;
+    };
+    say(lineOrError(scene).substr(0, 4 * kMostCharacters));
+    return;
+  }
+  say(checkLine(order, task, [&](const std::string& what) { say(what + "\n"); }));
+}
+
 /// Runs in a process of its own; the end of its pipe that is read comes back.
-int start(unsigned number, pid_t& process) {
+int start(const Order& order, const Task& task, pid_t& process) {
   std::array<int, 2> pipeEnds{};
   if (pipe(pipeEnds.data()) != 0) std::abort();
   process = fork();
   if (process == 0) {
-    const rlimit limit{kMostSeconds, kMostSeconds + 1};
+    const rlimit limit{task.mostSeconds(), task.mostSeconds() + 1};
     setrlimit(RLIMIT_CPU, &limit);
-    const std::string line = lineOrError([&] { return randomScene(number); }).substr(0, 4000);  // a pipe holds more
-    if (write(pipeEnds[1], line.data(), line.size()) < 0) _exit(1);
+    runTask(order, task, pipeEnds[1]);
     _exit(0);
   }
   close(pipeEnds[1]);
@@ -66,64 +141,108 @@ int start(unsigned number, pid_t& process) {
 }
 
 std::string readAll(int end) {
+  std::string all;
   std::array<char, 4096> buffer{};
-  const ssize_t size = read(end, buffer.data(), buffer.size());
+  for (ssize_t size = 0; (size = read(end, buffer.data(), buffer.size())) > 0;)
+    all.append(buffer.data(), static_cast<std::size_t>(size));
   close(end);
-  return {buffer.data(), size > 0 ? static_cast<std::size_t>(size) : 0};
+  return all;
 }
 
+/// The last line of a text that may end with an end of line.
+std::string lastLine(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text.substr(text.rfind('\n') + 1);
+}
+
+struct Running {
+  Task task;
+  int pipeEnd = 0;
+};
+
 /// Waits for a scene to end; prints what went wrong. True if nothing did.
-bool finish(std::map<pid_t, std::pair<unsigned, int>>& running, Progress& progress) {
+bool finish(const Order& order, std::map<pid_t, Running>& running, Progress& progress) {
   int status = 0;
   const pid_t ended = wait(&status);
-  const auto [number, end] = running.at(ended);
+  const auto [task, end] = running.at(ended);
   running.erase(ended);
-  std::string line = readAll(end);
-  if (WIFSIGNALED(status))
+  std::string line = lastLine(readAll(end));
+  // What a scene showed before it took too long to reduce is all that there is to know.
+  const bool isKnown = line.ends_with("|not reduced");
+  const std::string begun = task.family ? fmt::format("|in {}", line) : "|";
+  const bool isKilled = WIFSIGNALED(status), isFailed = isKilled || WEXITSTATUS(status) != 0;
+  if (isKilled && !isKnown)
     line = WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL
-               ? fmt::format("takes more than {} s|", kMostSeconds)
-               : fmt::format("crashes with signal {}|", WTERMSIG(status));
-  else if (WEXITSTATUS(status) != 0)
-    line = fmt::format("ends with exit code {}|", WEXITSTATUS(status));
+               ? fmt::format("takes more than {} s{}", task.mostSeconds(), begun)
+               : fmt::format("crashes with signal {}{}", WTERMSIG(status), begun);
+  else if (isFailed && !isKnown)
+    line = fmt::format("ends with exit code {}{}", WEXITSTATUS(status), begun);
+  if (isFailed && !isKnown) save(order, task, "ends badly", task.text());
   const std::size_t bar = line.find('|');
   if (bar == 0) return true;
   progress.endLine();
-  fmt::print("scene {}: {}\n    {}\n", number, line.substr(0, bar), line.substr(bar + 1));
+  fmt::print("{}: {}\n    {}\n", task.name(), line.substr(0, bar), line.substr(bar + 1));
   std::fflush(stdout);
   return false;
 }
 
-int runScenes(unsigned count, unsigned first) {
-  Progress progress("Random scenes", "scenes", count, false);
-  std::map<pid_t, std::pair<unsigned, int>> running;
+int runScenes(const Order& order) {
+  Progress progress("Random scenes", "scenes", order.count, false);
+  std::map<pid_t, Running> running;
   unsigned done = 0, bad = 0;
-  for (unsigned next = 0; done < count;) {
-    while (next < count && std::ssize(running) < kAtOnce) {
+  for (unsigned next = 0; done < order.count;) {
+    while (next < order.count && std::ssize(running) < order.atOnce) {
+      const Task task = taskOf(order, order.first + next);
       pid_t process = 0;
-      const int end = start(first + next, process);
-      running[process] = {first + next, end};
+      const int end = start(order, task, process);
+      running[process] = {task, end};
       ++next;
     }
-    bad += finish(running, progress) ? 0U : 1U;
+    bad += finish(order, running, progress) ? 0U : 1U;
     progress.update(++done);
   }
   progress.endLine();
-  fmt::print("{} of {} scenes are as they should be\n", count - bad, count);
+  fmt::print("{} of {} scenes are as they should be\n", order.count - bad, order.count);
   return bad == 0 ? 0 : 1;
+}
+
+Order readOrder(int count, char** arguments) {
+  Order order;
+  std::vector<std::string> numbers;
+  for (int i = 1; i < count; ++i) {
+    const std::string what = arguments[i];
+    const auto value = [&] { return ++i < count ? std::string(arguments[i]) : std::string(); };
+    if (what == "--family")
+      order.family = value();
+    else if (what == "-o")
+      order.folder = value();
+    else if (what == "-j")
+      order.atOnce = std::stoi(value());
+    else if (what == "--text")
+      order.text = value();
+    else if (what == "--file")
+      order.file = value();
+    else
+      numbers.push_back(what);
+  }
+  const auto number = [](const std::string& text) { return static_cast<unsigned>(std::stoul(text)); };
+  if (!numbers.empty()) order.count = number(numbers[0]);
+  if (numbers.size() > 1) order.first = number(numbers[1]);
+  return order;
 }
 
 }  // namespace
 }  // namespace cradle
 
 int main(int count, char** arguments) {
-  const std::string what = count > 1 ? arguments[1] : "1000", which = count > 2 ? arguments[2] : "0";
-  if (what == "--text") {
-    fmt::print("{}\n", cradle::randomSceneText(static_cast<unsigned>(std::stoul(which))));
+  const cradle::Order order = cradle::readOrder(count, arguments);
+  if (!order.text.empty()) {
+    fmt::print("{}\n", cradle::taskOf(order, static_cast<unsigned>(std::stoul(order.text))).text());
     return 0;
   }
-  if (what == "--file") {
-    fmt::print("{}\n", cradle::lineOrError([&] { return cradle::loadScene(which).scene; }));
+  if (!order.file.empty()) {
+    fmt::print("{}\n", cradle::lineOrError([&] { return cradle::loadScene(order.file).scene; }));
     return 0;
   }
-  return cradle::runScenes(static_cast<unsigned>(std::stoul(what)), static_cast<unsigned>(std::stoul(which)));
+  return cradle::runScenes(order);
 }

@@ -77,9 +77,13 @@ void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTi
   }
 }
 
-/// A rim over a plane: points of it are held, and the lowest may become another.
+/// A rim over a plane: points of it are held, and the lowest may become another, unless that itself is held.
 void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   held_ = nullptr;
+  if (std::any_of(touching.held->begin(), touching.held->end(), [this](const HeldFeature& held) {
+        return held.pair == pairIndex_ && held.feature == feature_ && !held.contact.rimAxisA.isZero(0);
+      }))
+    return;
   const double start = gap(0);
   if (std::isfinite(touching.deadBand)) searchFrom(0, start, std::min(0.0, start) - touching.tolerance, best);
 }

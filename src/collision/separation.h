@@ -20,6 +20,7 @@ struct Contact {
   double radiusA = kNotRound, radiusB = kNotRound;
   Vec3 edge = Vec3::Zero();   // unit, world: of the edge of a mesh that a ball touches; else zero
   std::uint32_t feature = 0;  // of the mesh that a ball touches, as in ContactPoint
+  Vec3 rimAxisA = Vec3::Zero();  // unit, world: A is a tilted disc of that radius there, across this; zero: it is not
 
   /// A if it moves, else B.
   int movingBody() const { return bodyA != kFixed ? bodyA : bodyB; }

@@ -1,6 +1,6 @@
-// Kinematics of a ball on a face, a ball or an edge. The rows are those of the relative velocity of the bodies'
-// material at the point of contact; their curvature terms let that point move over both surfaces (rolling), and the
-// normal turn.
+// Kinematics of a ball on a face, a ball or an edge, and of a disc's rim on a face. The rows are those of the relative
+// velocity of the bodies' material at the point of contact; their curvature terms let that point move over both
+// surfaces (rolling), and the normal turn.
 //
 // With n out of B, c the centre of A's ball, a = c - r_A n - x_A and b = c - r_A n - x_B the arms, u the velocity:
 //   u = v_A + w_A x a - v_B - w_B x b,   gap' = n.u,   gap'' = n'.u + n.u',
@@ -8,6 +8,8 @@
 // n' = w_B x n on a face, and the part of the centres' relative velocity across n over their distance on a ball. On an
 // edge along e, s = c - b less its part along e takes the place of the centres' difference: s' = w - w_e with
 // w_e = e (e.w) + e' (e.(c - b)) + e (e'.(c - b)), w = (c - b)'.
+// A disc across the unit vector d touches a face by c - r_A m, m = (n - (n.d) d) / |n - (n.d) d|: m and m' stand for n
+// and n' in the arms then.
 // Tangential: the rate of u - n (n.u) has the part u' - n' (n.u) along the surfaces, whatever spans them.
 
 #include "dynamics/contact_rows.h"
@@ -70,6 +72,29 @@ void placeNormal(const ContactConstraint& contact, const AttachmentMotion& a, co
   place.leverB = (b.arm + (apart - across)).cross(place.normal);
 }
 
+bool isRim(const ContactConstraint& contact) {
+  return !contact.rimAxisA.isZero(0);
+}
+
+/// From the place where A touches to the centre of its ball or disc (m), and the rate of that (m/s).
+struct Ascent {
+  Vec3 way, rate;
+};
+
+Ascent ascentOf(const ContactConstraint& contact, const ContactPlace& place, const Vec3& spinA,
+                const std::vector<BodyFrame>& frames) {
+  const double radius = contact.radiusA;
+  if (!isRim(contact)) return {radius * place.normal, radius * place.normalRate};
+  const Vec3 axis = turned(contact.centerA.body, contact.rimAxisA, frames), axisRate = spinA.cross(axis);
+  const double cosine = place.normal.dot(axis);
+  const double cosineRate = place.normalRate.dot(axis) + place.normal.dot(axisRate);
+  const Vec3 across = place.normal - cosine * axis;
+  const Vec3 acrossRate = place.normalRate - cosineRate * axis - cosine * axisRate;
+  const double sine = across.norm();
+  const Vec3 up = across / sine;
+  return {radius * up, radius / sine * (acrossRate - up.dot(acrossRate) * up)};
+}
+
 /// A unit vector across another (T. Duff et al., "Building an Orthonormal Basis, Revisited", J. Computer Graphics
 /// Techniques 6(1), 2017).
 Vec3 across(const Vec3& n) {
@@ -96,6 +121,13 @@ ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& sta
   const double depthB = contact.radiusB > 0 && !isFace(contact.radiusB) ? contact.radiusB : 0;
   ContactConstraint constraint;
   constraint.centerA = attachmentAt(contact.bodyA, contact.point - (half + contact.radiusA) * contact.normal, state);
+  if (!contact.rimAxisA.isZero(0)) {
+    const Vec3& axis = contact.rimAxisA;
+    const Vec3 down = (contact.normal - contact.normal.dot(axis) * axis).normalized();
+    constraint.centerA =
+        attachmentAt(contact.bodyA, contact.point - half * contact.normal - contact.radiusA * down, state);
+    constraint.rimAxisA = inFrameOf(contact.bodyA, axis, state);
+  }
   constraint.radiusA = contact.radiusA;
   constraint.surfaceB = attachmentAt(contact.bodyB, contact.point + (half + depthB) * contact.normal, state);
   constraint.radiusB = std::isnan(contact.radiusB) ? 0 : contact.radiusB;
@@ -115,13 +147,17 @@ ContactPlace placeOf(const ContactConstraint& contact, const VectorX& state, con
   const Vec3 velocity = velocityOf(bodyA, state) - velocityOf(bodyB, state);
   ContactPlace place;
   placeNormal(contact, a, b, spinB, frames, place);
-  const Vec3 down = contact.radiusA * place.normal;
+  const Ascent ascent = ascentOf(contact, place, spinA, frames);
   place.leverA = a.arm.cross(place.normal);
-  place.point = a.position - down;
-  place.armA = a.arm - down;
+  place.point = a.position - ascent.way;
+  place.armA = a.arm - ascent.way;
   place.armB = place.point - centerOf(bodyB, state);
   place.velocity = velocity + spinA.cross(place.armA) - spinB.cross(place.armB);
-  const Vec3 armRateA = spinA.cross(a.arm) - contact.radiusA * place.normalRate;
+  if (isRim(contact)) {
+    place.gap = (a.position - b.position).dot(place.normal) - ascent.way.dot(place.normal);
+    place.leverA = place.armA.cross(place.normal), place.leverB = place.armB.cross(place.normal);
+  }
+  const Vec3 armRateA = spinA.cross(a.arm) - ascent.rate;
   place.drift = spinA.cross(armRateA) - spinB.cross(armRateA + velocity);
   place.rounding = kRounding * (a.position.norm() + a.arm.norm() + b.arm.norm() + contact.radiusA);
   return place;

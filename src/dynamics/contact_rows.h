@@ -18,11 +18,12 @@ enum class ContactMotion {
 };
 
 /// A ball of body A that stays on a surface of body B: on a flat face, a ball or a straight edge. A corner is a ball of
-/// radius 0.
-/// What touches may roll, slide or spin; it is released only by being taken away.
+/// radius 0. On a face it may be the rim of a disc as well, by its lowest point. What touches may roll, slide or spin;
+/// it is released only by being taken away.
 struct ContactConstraint {
-  Attachment centerA;                                        // of A's ball
+  Attachment centerA;                                        // of A's ball or disc
   double radiusA = 0;                                        // m, >= 0
+  Vec3 rimAxisA = Vec3::Zero();                              // unit, across the disc, in A's frame; zero: a ball
   Attachment surfaceB;                                       // a point of B's face, or the centre of B's ball
   double radiusB = std::numeric_limits<double>::infinity();  // m, >= 0; infinite: a flat face
   Vec3 normalB = Vec3::UnitY();                              // of a face, outward, unit; in B's frame, or the world
@@ -45,6 +46,7 @@ struct SurfaceContact {
   double separation = 0;       // m
   double radiusA = 0, radiusB = 0;
   Vec3 edge = Vec3::Zero();  // unit, world: direction of a straight edge, whose radius is NaN; else zero
+  Vec3 rimAxisA = Vec3::Zero();  // unit, world: A touches a face by the rim of a disc across this; zero: it does not
 };
 
 /// The frictionless constraint that keeps a contact. If A's surface is a face or an edge, the bodies change places in
@@ -55,7 +57,7 @@ ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& sta
 void setSlidingDirection(ContactConstraint& contact, const Vec3& direction, const VectorX& state);
 
 /// How the surfaces of a contact are placed and move, in the world's frame. They touch at `point`, the place of A's
-/// ball nearest to B.
+/// ball, or of its disc's rim, nearest to B.
 struct ContactPlace {
   Vec3 normal;          // unit, out of B: A is pushed along it
   Vec3 normalRate;      // 1/s

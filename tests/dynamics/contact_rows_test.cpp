@@ -16,6 +16,7 @@ struct Kind {
   std::string name;
   int bodyA, bodyB;
   double radiusA, radiusB;
+  bool isRim = false;
 };
 constexpr double kFace = std::numeric_limits<double>::infinity(), kEdge = std::numeric_limits<double>::quiet_NaN();
 const std::vector<Kind> kKinds = {{"corner on fixed face", 0, kFixed, 0, kFace},
@@ -27,7 +28,10 @@ const std::vector<Kind> kKinds = {{"corner on fixed face", 0, kFixed, 0, kFace},
                                   {"ball on ball", 0, 1, 0.3, 0.7},
                                   {"corner on ball", 0, 1, 0, 0.7},
                                   {"ball on fixed edge", 0, kFixed, 0.7, kEdge},
-                                  {"ball on edge", 0, 1, 0.7, kEdge}};
+                                  {"ball on edge", 0, 1, 0.7, kEdge},
+                                  {"rim on fixed face", 0, kFixed, 0.3, kFace, true},
+                                  {"rim on face", 0, 1, 0.3, kFace, true},
+                                  {"fixed rim on face", kFixed, 1, 0.3, kFace, true}};
 
 Vec3 edgeOf(const Kind& kind, const Vec3& normal) {
   return std::isnan(kind.radiusB) ? Vec3(normal.unitOrthogonal()) : Vec3(Vec3::Zero());
@@ -52,8 +56,11 @@ struct Touching {
     }
     evaluatePoseRates(mechanism.bodies, state, rate);
     const Vec3 normal = random.vector().normalized();
-    ContactConstraint contact = constraintOf(
-        {kind.bodyA, kind.bodyB, random.vector(), normal, 0, kind.radiusA, kind.radiusB, edgeOf(kind, normal)}, state);
+    SurfaceContact surfaces{kind.bodyA,   kind.bodyB,   random.vector(),     normal, 0,
+                            kind.radiusA, kind.radiusB, edgeOf(kind, normal)};
+    // A disc 30 degrees from upright, whose lowest point moves around it.
+    if (kind.isRim) surfaces.rimAxisA = (std::sqrt(3.0) * normal.cross(random.vector()).normalized() + normal) / 2;
+    ContactConstraint contact = constraintOf(surfaces, state);
     contact.motion = motion;
     contact.friction = 0.4;
     setSlidingDirection(contact, normal.cross(random.vector()), state);

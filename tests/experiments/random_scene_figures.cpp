@@ -18,6 +18,8 @@ constexpr double kMostEnergyErrors = 2, kMostPlaceErrors = 1;
 constexpr double kSteppedGain = 3e-4, kSteppedError = 5e-3;                  // of the energy
 constexpr double kSteppedTieError = 20. / 960, kSteppedPenetration = 0.005;  // m
 
+}  // namespace
+
 bool isFinite(const Frame& frame) {
   const auto finite = [](const BodyState& state) {
     return state.position.allFinite() && state.orientation.coeffs().allFinite() && state.linearVelocity.allFinite() &&
@@ -33,8 +35,6 @@ double ropeExcess(const Frame& frame, const Scene& scene) {
     excess = std::max(excess, distanceOfEnds(rope.anchorA, rope.anchorB, places) - rope.maxLength);
   return excess;
 }
-
-}  // namespace
 
 RandomSceneFigures runRandomScene(const Scene& scene) {
   RandomSceneFigures figures;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "trajectory/trajectory.h"
 
 namespace cradle {
 
@@ -18,6 +19,12 @@ struct RandomSceneFigures {
   bool isFinite = true;       // every number of every frame
   bool keepsAccuracy = true;  // no warning said that it is not promised
 };
+
+/// Whether every number of a frame is.
+bool isFinite(const Frame& frame);
+
+/// By how much (m) a rope of a frame is longer than it may be, at most; 0 if none is.
+double ropeExcess(const Frame& frame, const Scene& scene);
 
 /// Runs a scene without pushes. Throws what simulate throws.
 RandomSceneFigures runRandomScene(const Scene& scene);

@@ -5,6 +5,8 @@
 #include "experiments/experiment.h"
 #include "experiments/random_scene.h"
 #include "experiments/random_scene_figures.h"
+#include "experiments/random_sketch.h"
+#include "experiments/sketch_oracles.h"
 
 namespace cradle {
 namespace {
@@ -26,6 +28,17 @@ TEST_P(RandomScenes, StayFiniteKeepTheirTiesAndNeverGainEnergy) {
 INSTANTIATE_TEST_SUITE_P(Sample, RandomScenes,
                          testing::Values(58U, 163U, 323U, 461U, 637U, 1201U, 1U, 2U, 3U, 4U, 5U, 9U, 10U, 11U, 12U, 13U,
                                          15U, 16U, 17U, 18U, 21U, 22U, 23U, 24U, 26U));
+
+// Of each family a few, with all their twins.
+TEST(RandomSketches, PassAllOracles) {
+  for (const SketchFamily family : {SketchFamily::touch, SketchFamily::pinned, SketchFamily::squeezed,
+                                    SketchFamily::symmetric, SketchFamily::threshold})
+    for (const unsigned number : {1U, 4U}) {
+      const SceneSketch sketch = randomSketch(family, number);
+      for (const SketchFault& fault : checkSketch(sketch, [](const std::string&) {}))
+        ADD_FAILURE() << sketch.name << ": " << fault.oracle << ": " << fault.text;
+    }
+}
 
 TEST(RandomScene, IsTheSameForTheSameNumber) {
   EXPECT_EQ(randomSceneText(7), randomSceneText(7));

@@ -25,6 +25,8 @@ constexpr double kLeavingPart = 0.5;  // of what touches yet: so far beyond a fa
 // followed down beyond the border, where it is steeper by orders.
 constexpr double kLeavingUnit = 1e-9;
 
+constexpr double kJustFlat = 1 - 1e-6;  // a disc that lies down is seen to: it ends a little flatter than it may be
+
 constexpr std::array<Kind, 4> kKinds = {Kind::release, Kind::slip, Kind::stick, Kind::leave};
 
 }  // namespace
@@ -37,13 +39,21 @@ Vec3 LastingContacts::givenDirection(std::size_t contact, const VectorX& state) 
   return orientation(state, body).normalized() * constraint.slidingDirection;
 }
 
+/// 0 for a steep disc on its rim, 1 where it is as flat as a row may follow. Needs frames_.
+double LastingContacts::flatnessOf(const ContactConstraint& rim, const VectorX& state) const {
+  const ContactPlace place = placeOf(rim, state, frames_);
+  const Mat3& worldFromBody = frames_[static_cast<std::size_t>(rim.centerA.body)].rotation;
+  const double sine = place.normal.cross(worldFromBody * rim.rimAxisA).norm();
+  return kLeavingPart * kJustFlat * kFlatRim / sine;
+}
+
 /// How far (m) the place where a contact's row keeps it is from where the surfaces are nearest: beyond the border of a
 /// face, or when a corner becomes an edge, that stays behind; in a hollow another part of a surface comes nearer. Needs
 /// frames_.
 double LastingContacts::distanceFromNearest(std::size_t contact, const VectorX& state) const {
   const ContactConstraint& held = mechanism().contacts[contact];
   const ColliderPair& pair = entries_[contact].pair;
-  if (pair.againstPlane) return 0;
+  if (pair.againstPlane) return held.rimAxisA.isZero(0) ? 0 : reach_ * flatnessOf(held, state);
   const ContactGeometry& geometry = island_.assembly.geometry;
   const bool isOfB = geometry.colliders[pair.a].body == held.centerA.body;
   const Collider &a = geometry.colliders[isOfB ? pair.a : pair.b], &b = geometry.colliders[isOfB ? pair.b : pair.a];

@@ -56,6 +56,25 @@ void findCorner(const ContactGeometry& geometry, const VectorX& state, Contact& 
     contact.radiusB = 0;
 }
 
+/// A tilted cylinder on a plane touches by the lowest point of a disc, which rolls along its rim.
+void findRim(const ContactGeometry& geometry, const VectorX& state, Contact& contact) {
+  const ColliderPair& pair = geometry.pairs[contact.pair];
+  const Collider& cylinder = geometry.colliders[pair.a];
+  if (!pair.againstPlane || cylinder.kind() != ColliderKind::cylinder || !std::isnan(contact.radiusA)) return;
+  const Core core(cylinder, poseOf(state, cylinder.body));
+  if (core.axis().cross(contact.normal).norm() < kFlatRim) return;
+  const double side = core.axis().dot(contact.point - core.center()) < 0 ? -1 : 1;
+  const Vec3 lowest = core.rimPoint(side, contact.normal);
+  contact.point = lowest + contact.separation / 2 * contact.normal;
+  contact.radiusA = cylinder.rimRadius, contact.rimAxisA = core.axis();
+}
+
+/// Whether two contacts are at the lowest point of one rim.
+bool isSameRim(const Contact& one, const Contact& other) {
+  return one.pair == other.pair && !one.rimAxisA.isZero(0) && one.rimAxisA == other.rimAxisA &&
+         one.point == other.point;
+}
+
 }  // namespace
 
 EventContacts::EventContacts(MovingIsland& island, RopeStage& ropes, double accuracy)
@@ -107,6 +126,8 @@ void EventContacts::findTouching(const std::optional<std::size_t>& meeting) {
   findNear(meeting);
   eraseImmobile(ImpulseResponse(island_.assembly.mechanism.bodies, solver_), island_.state, touching_);
   for (Contact& contact : touching_) findCorner(island_.assembly.geometry, island_.state, contact);
+  for (Contact& contact : touching_) findRim(island_.assembly.geometry, island_.state, contact);
+  touching_.erase(std::unique(touching_.begin(), touching_.end(), isSameRim), touching_.end());
 }
 
 /// What meets now touches, if its gap is known to that or not.

@@ -141,8 +141,9 @@ double LastingContacts::stillSpeed(const Contact& contact) const {
   return kLastBouncePart * std::sqrt(mechanism().gravity.norm() * size) + kRestSpeedFloor;
 }
 
-/// Whether a cylinder touches by its rim or its side.
+/// Whether a cylinder touches by points of its rims, or its side, that stay the same as long as it stands or lies.
 bool LastingContacts::isOfRim(const Contact& contact) const {
+  if (!contact.rimAxisA.isZero(0)) return false;
   const ContactGeometry& geometry = island_.assembly.geometry;
   const ColliderPair& pair = geometry.pairs[contact.pair];
   const auto isCylinder = [&](std::size_t collider) {

@@ -12,13 +12,15 @@
 
 namespace cradle {
 
+constexpr double kFlatRim = 1e-3;  // sine of a disc's tilt: flatter, its lowest point runs too fast around its rim
+
 /// What happens to a lasting contact inside a step.
 struct ContactChange {
   enum class Kind {
     release,   // its force would have to pull
     slip,      // friction gives way
     stick,     // sliding stops
-    leave,     // the contact comes to the border of its face or edge, or off its corner
+    leave,     // the contact comes to the border of its face or edge, or off its corner, or a disc lies down
     redundant  // no forces hold it together with others any more
   };
   Kind kind = Kind::release;
@@ -116,6 +118,7 @@ class LastingContacts {
   static double insideBorder(const Contact& contact, const BallOverMesh& ball);
   std::optional<ContactChange> firstLeaving() const;
   void noteMeshes(const std::vector<Entry>& entries);
+  double flatnessOf(const ContactConstraint& rim, const VectorX& state) const;
   void findMargins(const VectorX& state, std::vector<Margins>& margins);
   void takeMargins(const VectorX& state, std::vector<Margins>& margins);
   bool isHeldTogether(const VectorX& state);
