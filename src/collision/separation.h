@@ -18,8 +18,8 @@ struct Contact {
   double separation = 0;       // m, < 0: overlap
   // m: radius of the ball that each surface is there: 0 a corner, infinite a flat face; NaN: neither (edge, side, rim).
   double radiusA = kNotRound, radiusB = kNotRound;
-  Vec3 edge = Vec3::Zero();   // unit, world: of the edge of a mesh that a ball touches; else zero
-  std::uint32_t feature = 0;  // of the mesh that a ball touches, as in ContactPoint
+  Vec3 edge = Vec3::Zero();      // unit, world: of the edge of a mesh that a ball touches; else zero
+  std::uint32_t feature = 0;     // of the mesh that a ball touches, as in ContactPoint
   Vec3 rimAxisA = Vec3::Zero();  // unit, world: A is a tilted disc of that radius there, across this; zero: it is not
 
   /// A if it moves, else B.

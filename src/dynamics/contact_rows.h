@@ -45,7 +45,7 @@ struct SurfaceContact {
   Vec3 normal = Vec3::Zero();  // unit, world, from A to B
   double separation = 0;       // m
   double radiusA = 0, radiusB = 0;
-  Vec3 edge = Vec3::Zero();  // unit, world: direction of a straight edge, whose radius is NaN; else zero
+  Vec3 edge = Vec3::Zero();      // unit, world: direction of a straight edge, whose radius is NaN; else zero
   Vec3 rimAxisA = Vec3::Zero();  // unit, world: A touches a face by the rim of a disc across this; zero: it does not
 };
 

@@ -254,7 +254,6 @@ void reboundBlock(Block& block, double slowest, SolverMotions& motions) {
   const PlaneSpeeds starts = MotionsOf<Block>(block, motions.starts).apart(block), speeds = velocities.apart(block);
   for (auto& point : block.points) point.total -= point.impulse;
   NormalLaws<Block::kPoints> laws;
-  for (auto& point : block.points) point.total -= point.impulse;
   for (int i = 0; i < Block::kPoints; ++i) {
     const auto& point = block.points[i];
     const Lanes before = starts.at(point.u, point.v);
@@ -280,10 +279,10 @@ void weighBlock(Block& block, double slowest, const SolverMotions& motions) {
   const MotionsOf<Block> starts(block, motions.starts), ends(block, motions.velocities);
   const Lanes none = same(0), half = same(-0.5);
   Lanes pressed = none, rubbed = none, fastest = none;
-  const PlaneSpeeds first = starts.apart(block), last = ends.apart(block);
+  const PlaneSpeeds opening = starts.apart(block), opened = ends.apart(block);
   for (const auto& point : block.points) {
-    const Lanes before = first.at(point.u, point.v), after = last.at(point.u, point.v);
-    pressed += half * point.total * (before + after);
+    const Lanes before = opening.at(point.u, point.v);
+    pressed += half * point.total * (before + opened.at(point.u, point.v));
     fastest = larger(fastest, -before);
   }
   for (int i = 0; i < 2; ++i) {

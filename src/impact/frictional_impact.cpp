@@ -45,8 +45,8 @@ struct Strike {
   VectorX impulses, velocities;
   double gain = 0, moved = 0;  // moved: what the impulses would give to bodies at rest
   double rounding = 0;         // J: of the gain
-  double residual = 0;         // m/s: of the cone problem
-  double scaledEnergy = 0;     // J: that the impulses found would have given
+  double residual = 0;         // m/s: of what was not solved
+  double scaledEnergy = 0;     // J: that all of the impulses found would have added
 
   bool gains() const { return gain > kEnergyRounding * moved; }
   double certainLoss() const { return -gain - rounding; }
@@ -57,9 +57,8 @@ class FrictionalImpact {
  public:
   FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactCones& cones, VectorX velocities);
 
-  /// Impulses (N s) after which nothing closes.
-  VectorX resolve();
-  const ImpactFaults& faults() const { return faults_; }
+  /// Impulses (N s) after which nothing closes; notes what had to be done to find them.
+  VectorX resolve(ImpactFaults& faults) const;
 
  private:
   bool closes(const VectorX& velocities) const;
@@ -73,7 +72,6 @@ class FrictionalImpact {
   double fastest_ = 0;                 // m/s
   std::vector<Index> members_;         // contacts that can move
   std::vector<Index> rows_, normals_;  // theirs
-  ImpactFaults faults_;
 };
 
 FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactCones& cones,
@@ -118,7 +116,6 @@ Strike FrictionalImpact::strike(const VectorX& velocities, const VectorX& openin
   strike.velocities = before + matrix * solution.impulses;
   strike.moved = 0.5 * solution.impulses.dot(matrix * solution.impulses);
   strike.gain = solution.impulses.dot(before) + strike.moved;
-  strike.residual = solution.residual;
   const VectorX terms = solution.impulses.cwiseAbs();
   strike.residual = solution.residual <= kSolvedPart * fastest_ ? 0 : solution.residual;
   strike.rounding = kSumRounding * terms.dot(matrix.cwiseAbs() * terms);
@@ -167,17 +164,17 @@ Strike FrictionalImpact::rebound(const Strike& plastic) const {
   return kept;
 }
 
-VectorX FrictionalImpact::resolve() {
+VectorX FrictionalImpact::resolve(ImpactFaults& faults) const {
   VectorX impulses = VectorX::Zero(start_.size()), velocities = start_;
   for (int round = 0; round < kMostRounds && closes(velocities); ++round) {
     Strike found = strikeWithoutRebound(velocities);
     if (round == 0) found = rebound(found);
-    if (!(found.residual <= kSolvedPart * fastest_)) faults_.residual = std::max(faults_.residual, found.residual);
-    faults_.scaledEnergy = std::max(faults_.scaledEnergy, found.scaledEnergy);
+    faults.residual = std::max(faults.residual, found.residual);
+    faults.scaledEnergy = std::max(faults.scaledEnergy, found.scaledEnergy);
     for (std::size_t k = 0; k < rows_.size(); ++k) impulses[rows_[k]] += found.impulses[static_cast<Index>(k)];
     velocities = start_ + cones_.inverseMass() * impulses;
   }
-  if (closes(velocities)) faults_.rounds = kMostRounds;
+  if (closes(velocities)) faults.rounds = kMostRounds;
   return impulses;
 }
 

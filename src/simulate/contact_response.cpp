@@ -24,8 +24,8 @@ bool canLast(const Contact& contact) {
 }
 
 ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames) {
-  SurfaceContact surfaces{contact.bodyA,      contact.bodyB,   contact.point,   contact.normal,
-                          contact.separation, contact.radiusA, contact.radiusB, contact.edge, contact.rimAxisA};
+  SurfaceContact surfaces{contact.bodyA,   contact.bodyB,   contact.point, contact.normal,  contact.separation,
+                          contact.radiusA, contact.radiusB, contact.edge,  contact.rimAxisA};
   if (!canLast(contact)) {
     // A ball turns around an edge that it comes to as around a corner; what is not round is as good as a corner on a
     // face.

@@ -19,8 +19,8 @@ struct ContactRows {
 /// one instant.
 ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames);
 
-/// Whether a contact can last: its kinematics are those of a ball or corner on a face, a corner or a ball, of a ball on a
-/// straight edge, or of a disc's rim on a face.
+/// Whether a contact can last: its kinematics are those of a ball or corner on a face, a corner or a ball, of a ball on
+/// a straight edge, or of a disc's rim on a face.
 bool canLast(const Contact& contact);
 
 /// How contacts answer to each other's impulses, with what ties the bodies: three rows of each in turn.

@@ -56,8 +56,8 @@ struct Touching {
     }
     evaluatePoseRates(mechanism.bodies, state, rate);
     const Vec3 normal = random.vector().normalized();
-    SurfaceContact surfaces{kind.bodyA,   kind.bodyB,   random.vector(),     normal, 0,
-                            kind.radiusA, kind.radiusB, edgeOf(kind, normal)};
+    SurfaceContact surfaces{kind.bodyA, kind.bodyB,   random.vector(), normal,
+                            0,          kind.radiusA, kind.radiusB,    edgeOf(kind, normal)};
     // A disc 30 degrees from upright, whose lowest point moves around it.
     if (kind.isRim) surfaces.rimAxisA = (std::sqrt(3.0) * normal.cross(random.vector()).normalized() + normal) / 2;
     ContactConstraint contact = constraintOf(surfaces, state);

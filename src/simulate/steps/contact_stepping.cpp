@@ -148,6 +148,7 @@ void ContactStepping::resolve(const Group& group, const VectorX& before, double 
   const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
   Problem problem;
   VectorX impulses, end;
+  const std::size_t faults = faults_.size();
   const auto lossWith = [&](double part) {
     forgetFaults(faults);
     restore(group.moved.bodies, state);
