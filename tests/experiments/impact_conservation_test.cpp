@@ -93,7 +93,7 @@ constexpr double kInterpolated = 1.2e-4;
 // A spring between a body's middle and a point off the other's draws bodies onto and along each other: all forces are
 // between the two, and their momenta stay zero, relative to what each of them has.
 TEST(BodiesThatASpringPressesTogether, KeepTheirMomentaWhateverTheirShapes) {
-  for (const std::string& shape :
+  for (const char* const shape :
        {R"({"capsule": {"radius": 0.25, "length": 0.125}})", R"({"cylinder": {"radius": 0.25, "length": 0.4}})",
         R"({"box": {"size": [0.4, 0.5, 0.3]}})", R"({"sphere": {"radius": 0.25}})"})
     for (const double friction : {0.0, 0.6})

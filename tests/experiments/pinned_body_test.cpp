@@ -232,7 +232,7 @@ TEST(SlidingLadder, TouchesWallAndFloorInEveryFrame) {
   const Quat lean(Eigen::AngleAxisd(0.4, Vec3::UnitZ()));
   for (const double accuracy : {1e-3, 1e-4, 1e-6}) {
     const Trajectory run = simulate(sceneWith(fmt::format(
-        R"("duration": 0.5, "accuracy": {}, "output": {{"framesPerSecond": 480}}, {}, "bodies": [{}, {{"name": "wall",
+        R"("duration": 0.3, "accuracy": {}, "output": {{"framesPerSecond": 480}}, {}, "bodies": [{}, {{"name": "wall",
         "shape": {{"plane": {{"normal": [1, 0, 0]}}}}, "motion": "static", "material": "m"}}, {{"name": "ladder",
         "shape": {{"capsule": {{"radius": 0.02, "length": 1}}}}, "material": "m", "position": {}, "orientation": {}}}])",
         accuracy, materialText(0, 0), kPlane,

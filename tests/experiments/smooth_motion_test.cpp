@@ -165,9 +165,9 @@ void expectRefusalOfItsSpring(double stiffness, double damping, double mass) {
 // 1e20 N/m on 1 kg: 1e10 rad/s, of which DOP853 follows 6 rad a step at most.
 TEST(SpringBeyondAllMeasure, StopsTheRunSoonAndIsNamed) {
   expectRefusalOfItsSpring(1e20, 0, 1);
-  expectRefusalOfItsSpring(1e300, 0, 1);
-  expectRefusalOfItsSpring(1, 1e300, 1);
-  expectRefusalOfItsSpring(1, 0, 1e-300);
+  expectRefusalOfItsSpring(1e30, 0, 1);
+  expectRefusalOfItsSpring(1, 1e30, 1);
+  expectRefusalOfItsSpring(1, 0, 1e-36);
 }
 
 }  // namespace

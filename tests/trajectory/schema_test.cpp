@@ -55,8 +55,8 @@ TEST_F(TrajectorySchema, HasTheColumnsOfTheContractInItsOrder) {
 
 TEST_F(TrajectorySchema, HasTheKeysOfTheContract) {
   EXPECT_EQ(rows("SELECT key FROM meta ORDER BY key"),
-            (std::vector<std::string>{"accuracy", "corrections", "cpuSeconds", "evaluations", "method", "plan", "scene",
-                                      "sceneHash", "scenePath", "stateHash", "version"}));
+            (std::vector<std::string>{"accuracy", "corrections", "cpuSeconds", "evaluations", "method", "plan",
+                                      "promise", "scene", "sceneHash", "scenePath", "stateHash", "version"}));
   EXPECT_EQ(rows("SELECT value FROM meta WHERE key = 'sceneHash'"),
             std::vector<std::string>{textHash(sampleHeader().scene)});
 }

@@ -16,6 +16,12 @@
 namespace cradle {
 namespace {
 
+/// m/s: of the surfaces along each other.
+double slidingSpeed(const Contact& contact, const VectorX& state) {
+  const Vec3 velocity = relativeVelocity(contact, state);
+  return (velocity - contact.normal.dot(velocity) * contact.normal).norm();
+}
+
 using Index = Eigen::Index;
 
 constexpr double kUnloadedPart = 1e-9;           // of the accelerations: a contact that takes less carries nothing
@@ -122,10 +128,23 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
       entry.slides = true;
       entry.direction = (motion.x() * rows[k].rows[0].linearA + motion.y() * rows[k].rows[1].linearA).normalized();
     }
+    if (entry.slides && slidesTooSlowly(entry, motion.head<2>().norm(), most))
+      noteFault("contacts slide so slowly that errors turn their friction aside", {&entry.contact});
     heldRows.push_back(at + 2);
     if (entry.sticks) heldRows.push_back(at), heldRows.push_back(at + 1);
   }
   if (!heldRows.empty()) countRows(group, inverseMass(heldRows, heldRows), entries);
+}
+
+/// Whether friction loses more along the sliding than the accuracy A allows, because errors of velocities turn it
+/// aside. An error e = A / 10 (what steps allow) at a speed v takes mu g (e / v)^2 / 2 of its deceleration, and half of
+/// that times T^2 of the way in a time T: more than A below v = T sqrt(mu g A) / 20. Speeds that are reached in time
+/// count.
+bool LastingContacts::slidesTooSlowly(const Entry& entry, double acceleration, double gravity) const {
+  const double speed = slidingSpeed(entry.contact, island_.state);
+  const double time = island_.scene.duration, accuracy = island_.scene.accuracy;
+  const double slowest = time * std::sqrt(entry.pair.law.dynamicFriction * gravity * accuracy) / 20;
+  return speed + acceleration * time < slowest;
 }
 
 /// Forces that were not found decide all the same what lasts, and how.

@@ -99,6 +99,7 @@ class LastingContacts {
   bool isOfRim(const Contact& contact) const;
   double tippingSpeed(const Contact& contact) const;
   double stillSpeed(const Contact& contact) const;
+  bool slidesTooSlowly(const Entry& entry, double acceleration, double gravity) const;
   void countRows(const Together& group, const MatrixX& held, std::vector<Entry>& entries);
   void noteFault(std::string_view fault, const std::vector<const Contact*>& contacts);
   bool nothingCloses(const std::vector<ContactRows>& rows) const;
