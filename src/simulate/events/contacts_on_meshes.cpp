@@ -61,7 +61,8 @@ void LastingContacts::noteMeshes(const std::vector<Entry>& entries) {
     if (a.kind() == ColliderKind::cylinder || b.kind() == ColliderKind::cylinder) continue;
     const OverFace over =
         overFace(geometry, pair, rowsOf(entry.contact, island_.state, frames_).constraint, island_.state);
-    if (!over.solid || roomBeside(over, 2 * reach_) <= reach_) fault_ = "a body moves over the edges of a mesh";
+    if (!over.solid || roomBeside(over, 2 * reach_) <= reach_)
+      noteFault("a body moves over the edges of a mesh", {&entry.contact});
   }
 }
 

@@ -139,8 +139,11 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
 /// Whether friction loses more along the sliding than the accuracy A allows, because errors of velocities turn it
 /// aside. An error e = A / 10 (what steps allow) at a speed v takes mu g (e / v)^2 / 2 of its deceleration, and half of
 /// that times T^2 of the way in a time T: more than A below v = T sqrt(mu g A) / 20. Speeds that are reached in time
-/// count.
+/// count. A ball soon rolls.
 bool LastingContacts::slidesTooSlowly(const Entry& entry, double acceleration, double gravity) const {
+  if (island_.assembly.geometry.colliders[entry.pair.a].isBall()) return false;
+  const ContactGeometry& geometry = island_.assembly.geometry;
+  if (geometry.colliders[entry.pair.a].isBall()) return false;
   const double speed = slidingSpeed(entry.contact, island_.state);
   const double time = island_.scene.duration, accuracy = island_.scene.accuracy;
   const double slowest = time * std::sqrt(entry.pair.law.dynamicFriction * gravity * accuracy) / 20;
