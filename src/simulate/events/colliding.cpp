@@ -10,10 +10,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kStandstillPart = 1e-12;   // of the fastest speed at an impact: what is left is rounding
-constexpr double kSequencePart = 1e-9;      // of the time of a fall by the smallest size: as long it may take always
-constexpr double kGapRoundingPart = 4e-12;  // of the smallest size: beyond the dead band, a gap is one ...
-constexpr double kPlaceRounding = 1e-15;    // ... unless the places around it are rounded that coarsely
+constexpr double kStandstillPart = 1e-12;    // of the fastest speed at an impact: what is left is rounding
+constexpr double kSequencePart = 1e-9;       // of the time of a fall by the smallest size: as long it may take always
+constexpr double kGapRoundingPart = 4e-12;   // of the smallest size: beyond the dead band, a gap is one ...
+constexpr double kGapPlaceRounding = 1e-15;  // ... unless the places around it are rounded that coarsely
 
 /// m/s: of the faster of the two bodies' centres.
 double contactSpeed(const Contact& contact, const VectorX& state) {
@@ -80,7 +80,7 @@ std::vector<Contact> EventContacts::contactsInReach() {
 SequenceLimits EventContacts::limitsOf(const std::vector<Contact>& near, double stillSpeed) {
   SequenceLimits limits{touchTolerance_, kGapRoundingPart * size_, reach_, INFINITY, stillSpeed};
   for (const Contact& contact : near)
-    limits.gapRounding = std::max(limits.gapRounding, kPlaceRounding * contact.point.cwiseAbs().maxCoeff());
+    limits.gapRounding = std::max(limits.gapRounding, kGapPlaceRounding * contact.point.cwiseAbs().maxCoeff());
   const auto isClosed = [&](const Contact& contact) { return contact.separation <= limits.gapRounding; };
   if (std::all_of(near.begin(), near.end(), isClosed)) return limits;
   island_.equations.evaluate(island_.state, rate_);
