@@ -164,7 +164,7 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
     conditions.push_back({fmt::format("no more than {} redundant or {} independent forces press {} at once",
                                       kMostRedundant, kMostIndependent, namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
-  if (contacts.hasFriction)
+  if (contacts.hasFriction && !contacts.areRound)
     conditions.push_back({fmt::format("no contact of {} slides so slowly that errors turn its friction aside",
                                       namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
