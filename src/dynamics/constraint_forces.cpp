@@ -24,10 +24,15 @@ constexpr int kMostRefinements = 3;
 constexpr int kMostProjectionSteps = 20;      // quadratic convergence needs 1 or 2 from a step's error
 constexpr double kStalled = 0.5;              // an iteration that leaves more of an error has failed
 constexpr double kFar = 1000;                 // times the error: few sound mechanisms move farther to mend it
-constexpr double kConverged = 0.1;            // an iteration that leaves less of an error was sound,
+constexpr double kConverged = 0.2;            // an iteration that leaves less of an error (0.25 at a jam) was sound,
 constexpr double kFarthest = 1e-3;            // if it moved nothing farther than this (m or rad)
 constexpr double kMoreRegular = 1000;         // factor on the regularisation after a failure
 constexpr double kMostRegularisation = 1e-1;  // with it, every direction that is left is a singular one
+
+constexpr double kLeftRoundings = 1e4;          // of constraints after projection, which leaves a few
+constexpr double kJammedRegularisation = 1e-4;  // of the diagonal: a hundredth of a size from where no motion is left
+constexpr double kContradicted = 0.1;           // of what is asked: locked mechanisms leave 0.999, others up to 0.02
+constexpr double kTakesPart = 1e-3;             // of the largest residual: rows with less contradict nothing
 
 /// The three rows of a joint.
 auto partOf(VectorX& multipliers, std::size_t joint) {
@@ -232,7 +237,7 @@ double ConstraintSolver::project(VectorX& state) {
   factorize(state);
   const double found = largestError();
   double error = found;
-  for (int i = 0; i < kMostProjectionSteps && !isRounding(); ++i) {
+  for (int i = 0; i < kMostProjectionSteps && !holdWithin(0, 1); ++i) {
     undisplaced_ = state;
     const double farthest = displace(state);
     factorize(state);
@@ -279,12 +284,39 @@ double ConstraintSolver::largestError() const {
   return error;
 }
 
-bool ConstraintSolver::isRounding() const {
+bool ConstraintSolver::holdWithin(double error, double roundings) const {
   for (std::size_t i = 0; isInBlocks_ && i < joints_.size(); ++i)
-    if (!(largestOf(joints_.value(i)) <= joints_.rounding(i))) return false;
-  return isInBlocks_ || std::all_of(rows_.begin(), rows_.end(), [](const ConstraintRow& row) {
-           return std::abs(row.value) <= row.rounding * row.scale;
+    if (!(largestOf(joints_.value(i)) <= error + roundings * joints_.rounding(i))) return false;
+  return isInBlocks_ || std::all_of(rows_.begin(), rows_.end(), [=](const ConstraintRow& row) {
+           return std::abs(row.value) <= (error + roundings * row.rounding) * row.scale;
          });
+}
+
+bool ConstraintSolver::leaveNoMotion(const VectorX& state, double error) {
+  return !holdWithin(error, kLeftRoundings) && contradiction(state) > kContradicted;
+}
+
+/// How much of what the velocities ask of the constraints is left, in m/s^2 of each m/s^2 asked: about 1 where there is
+/// no motion, about 0 where it can go on. A direction that is constrained by less than the square root of the
+/// regularisation counts as not constrained: what is asked along it is left.
+double ConstraintSolver::contradiction(const VectorX& state) {
+  placeBodies(bodies_, state, frames_);
+  factorizeRows(state, frames_);
+  if (isRegular_) return 0;
+  regularize(kJammedRegularisation);
+  for (std::size_t i = 0; i < rows_.size(); ++i) multipliers_[static_cast<Eigen::Index>(i)] = -rows_[i].curvature;
+  rightHandSide_ = multipliers_;
+  factor_.solve(multipliers_);
+  findResidual();
+  const double least = kTakesPart * correction_.lpNorm<Eigen::Infinity>();
+  double left = 0, asked = 0;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const double residual = std::abs(correction_[static_cast<Eigen::Index>(i)]) / rows_[i].scale;
+    if (!(residual * rows_[i].scale > least)) continue;
+    left += residual;
+    asked += std::abs(rows_[i].curvature) / rows_[i].scale;
+  }
+  return asked > 0 ? left / asked : 0;
 }
 
 double ConstraintSolver::largestRate(const VectorX& state) const {

@@ -42,6 +42,11 @@ class ConstraintSolver {
   /// The largest error, in m or rad, that factorize or project left.
   double largestError() const;
 
+  /// Whether the constraints leave no motion where they are, in the state of the last project: it left one of them off
+  /// by more than `error` (m or rad) and rounding, and no force can give the accelerations that the velocities ask for.
+  /// Where motion only passes a place at which it could take another way, forces can.
+  bool leaveNoMotion(const VectorX& state, double error);
+
   /// How far the velocities are from keeping the constraints: max |J v| / scale, in m/s or rad/s.
   double largestRate(const VectorX& state) const;
 
@@ -66,7 +71,8 @@ class ConstraintSolver {
   void solve();
   void findResidual();
   double displace(VectorX& state);
-  bool isRounding() const;
+  bool holdWithin(double error, double roundings) const;
+  double contradiction(const VectorX& state);
 
   const Constraints& constraints_;
   const std::vector<RigidBody>& bodies_;

@@ -27,7 +27,7 @@ constexpr double kTurningPart = 0.1;      // of the tolerance, for these
 constexpr double kShortTimeStep = 1e-9;   // of the run's duration: nobody waits for so many steps
 constexpr int kMostShortSteps = 1000;     // in a row; after an event some are short
 constexpr double kMostTieError = 1e-9;    // m (a m of coordinates) or rad: projection leaves 1e-15
-constexpr double kTieErrorPart = 0.1;     // of the accuracy: so much is left now and then where ties are all but jammed
+constexpr double kTieErrorPart = 0.1;     // of the accuracy: left for a few steps where motion could take two ways
 constexpr double kStateRounding = 1e-14;  // of a state: projection that moves it less leaves the rate as it was
 constexpr double kUnitLength = 1e-9;      // how far |q|^2 may be from 1 before it is made 1
 
@@ -247,11 +247,12 @@ void EventMotion::tidyState() {
 
 /// Where ties leave no motion, forces without bound stop the bodies: what would follow is no motion of theirs. Anchors
 /// that did not quite meet at the start never will.
-void EventMotion::requireTiesKept() const {
+void EventMotion::requireTiesKept() {
   const VectorX& state = island_.state;
   const double error = solver_.largestError(), size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
   const double most = std::max(kMostTieError, kTieErrorPart * island_.scene.accuracy);
-  if (error > startTieError_ + most * (1 + size)) guard_->failAtTies(state, island_.time, error);
+  if (error > startTieError_ + most * (1 + size) || solver_.leaveNoMotion(state, startTieError_))
+    guard_->failAtTies(state, island_.time, error);
 }
 
 /// What acts from now on.

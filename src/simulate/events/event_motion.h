@@ -56,7 +56,7 @@ class EventMotion {
   Event stopAtFirstEvent();
   bool stopAtImpact(const ImpactTime& impact);
   void tidyState();
-  void requireTiesKept() const;
+  void requireTiesKept();
   void changeForces(const Event& event);
   void settleRopes();
   bool mayEndAnywhere() const;

@@ -45,6 +45,8 @@ SteppedMotion::SteppedMotion(MovingIsland& island, RopeStage& ropes, const Chose
   ropes_.resolve(island_.time, island_.state);
   island_.beginAndEndPushes();
   island_.requireUnsolvedPairsApart();
+  if (solver_.hasConstraints()) solver_.factorize(island_.state);
+  startTieError_ = solver_.largestError();
 }
 
 void SteppedMotion::advance(double frame) {
@@ -125,6 +127,8 @@ bool SteppedMotion::holdContacts() {
   if (solver_.hasConstraints()) {
     solver_.project(state);
     bookNumerical(energyConstant(mechanism, island_.step.state), mechanism, state);
+    if (solver_.leaveNoMotion(state, startTieError_))
+      guard_.failAtTies(state, island_.step.time, solver_.largestError());
   }
   normalizeOrientations(state);
   isHeld_ = !contacts_.touching().empty() && length > kTimeRounding * method_.timeStep;  // no gap closes in no time

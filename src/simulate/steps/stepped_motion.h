@@ -60,7 +60,8 @@ class SteppedMotion {
   double longest_ = INFINITY;  // s: what the error allowed last, and more
   bool keepsTies_ = true;      // no rope went taut or slack at the last step's end
   int eventsInWindow_ = 0;
-  double windowStart_ = 0;  // s
+  double windowStart_ = 0;    // s
+  double startTieError_ = 0;  // m or rad
   VectorX before_;
   std::vector<int> rodsBefore_;     // of ropes, before the changes of a step
   bool isHeld_ = false;             // contacts acted over all of the last step ...
