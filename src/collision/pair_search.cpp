@@ -18,6 +18,7 @@ constexpr int kMostLooks = 1000;  // for directions, at a pair whose edges stay 
 // Of a size: how far round surfaces sink in where a joint holds them before they press. From there the arm to the joint
 // is long enough for an impulse to turn the body: 3e-5 of the size.
 constexpr double kPinnedBand = 5e-10;
+constexpr double kFinestTurn = 1.0 / 16;   // of a step: polytopes that turn about a joint are looked at so often
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
 Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
@@ -64,6 +65,7 @@ void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTi
   appendFeaturesWithin(geometry_, pair_, startA_, reach, scratch_.features_);
   for (const std::size_t feature : scratch_.features_) {
     feature_ = feature;
+    if (isPinned && !isHeld(touching)) searchTurningAboutPin(touching, best);
     held_ = isPinned || isHeld(touching) ? &touching.heldFeatures() : nullptr;
     if (held_ && pair_.againstPlane && a_.kind() == ColliderKind::cylinder) {
       searchHeldRim(touching, best);
@@ -86,6 +88,37 @@ void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<I
     return;
   const double start = gap(0);
   if (std::isfinite(touching.deadBand)) searchFrom(0, start, std::min(0.0, start) - touching.tolerance, best);
+}
+
+/// Polytopes that touch where a joint holds them stay on two sides of a plane as long as nothing else of them meets:
+/// their separation is then that of the place held, and falls below it where anything does. (What contacts there are
+/// beside the place does not tell: far corners are in none of them until the turning brings them near.)
+void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
+  if (pair_.againstPlane || !std::isfinite(touching.deadBand)) return;
+  const Collider& b = geometry_.colliders[pair_.b];
+  if (a_.kind() != ColliderKind::polytope || b.kind() != ColliderKind::polytope) return;
+  const auto pin =
+      std::find_if(a_.pins.begin(), a_.pins.end(), [&](const PinnedPlace& place) { return place.other == bodyB_; });
+  const auto pinB =
+      std::find_if(b.pins.begin(), b.pins.end(), [&](const PinnedPlace& place) { return place.other == a_.body; });
+  const Vec3 place = pin != a_.pins.end() ? startA_ * pin->point : startB_ * pinB->point;  // m, world
+  const Vec3 inA = startA_.inverse() * place, inB = startB_.inverse() * place;
+  // Between its ends the step keeps joints only as well as its interpolant: A is moved back to its anchor.
+  const auto separationAt = [&](double fraction) {
+    RigidTransform poseA = poseAt(step_, a_.body, fraction);
+    const RigidTransform poseB = poseAt(step_, bodyB_, fraction);
+    poseA.translation += poseB * inB - poseA * inA;
+    return separation(geometry_, pair_, 0, poseA, poseB, reach_);
+  };
+  const double start = separationAt(0);
+  if (start > touching.tolerance) return;
+  const double threshold = std::min(0.0, start) - deadBand(touching), end = best ? best->fraction : 1;
+  GapBounds bounds = bounds_;
+  bounds.acceleration = GapBounds().acceleration;
+  bounds.finest = kFinestTurn;
+  const auto above = [&](double fraction) { return separationAt(fraction) - threshold; };
+  if (const auto fraction = firstCrossing(above, bounds, {0, above(0), end, above(end)}))
+    best = ImpactTime{*fraction, pairIndex_, feature_, threshold, true, {}};
 }
 
 /// A feature whose gap is `start` (m) as the step begins.

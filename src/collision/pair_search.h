@@ -31,6 +31,7 @@ class PairSearch {
   void findFace();
   void searchCorners(const TouchingFeatures& touching, std::optional<ImpactTime>& best);
   void searchFeature(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best);
+  void searchTurningAboutPin(const TouchingFeatures& touching, std::optional<ImpactTime>& best);
   void searchHeldRim(const TouchingFeatures& touching, std::optional<ImpactTime>& best);
   void searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best);
   void searchFrom(double from, double gapFrom, double threshold, std::optional<ImpactTime>& best);
