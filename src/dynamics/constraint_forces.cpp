@@ -30,8 +30,8 @@ constexpr double kMoreRegular = 1000;         // factor on the regularisation af
 constexpr double kMostRegularisation = 1e-1;  // with it, every direction that is left is a singular one
 
 constexpr double kLeftRoundings = 1e4;          // of constraints after projection, which leaves a few
-constexpr double kJammedRegularisation = 1e-4;  // of the diagonal: a hundredth of a size from where no motion is left
-constexpr double kContradicted = 0.1;           // of what is asked: locked mechanisms leave 0.999, others up to 0.02
+constexpr double kJammedRegularisation = 1e-7;  // of the diagonal: 3e-4 of a size from where no motion is left
+constexpr double kContradicted = 0.5;           // of what is asked: locked mechanisms leave 0.95, others up to 0.02
 constexpr double kTakesPart = 1e-3;             // of the largest residual: rows with less contradict nothing
 
 /// The three rows of a joint.
