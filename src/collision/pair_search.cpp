@@ -96,7 +96,10 @@ void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<I
 void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   if (pair_.againstPlane || !std::isfinite(touching.deadBand)) return;
   const Collider& b = geometry_.colliders[pair_.b];
-  if (a_.kind() != ColliderKind::polytope || b.kind() != ColliderKind::polytope) return;
+  const auto isFlat = [](const Collider& c) {
+    return c.kind() == ColliderKind::polytope || (c.kind() == ColliderKind::mesh && !c.mesh->isSheet);
+  };
+  if (!isFlat(a_) || !isFlat(b)) return;
   const auto pin =
       std::find_if(a_.pins.begin(), a_.pins.end(), [&](const PinnedPlace& place) { return place.other == bodyB_; });
   const auto pinB =
