@@ -21,6 +21,8 @@ constexpr double kLeastPull = 1e-6;      // of gravity: a pull that is no roundi
 constexpr int kTensionSamples = 4;       // a step: it is at most a small part of a swing
 constexpr double kFirstLook = 1.0 / 1024;  // of a step
 constexpr double kLongestLook = 1.0 / 8;   // of a step, at a rope that nothing pulls at: what would is smooth
+constexpr double kReach = 2;               // of the way that ends go freely in a step: what contacts may make of it
+constexpr double kNearPart = 1e-3;         // of its length: ropes so near to it take part in a step's contacts
 constexpr double kPullRounding = 1e-12;    // of the speed before a pull
 constexpr int kMostPullRounds = 100;       // of pulls at one instant; those left over pull after the next step
 
@@ -219,7 +221,29 @@ void RopeStage::pull(double time, const std::vector<Stretch>& stretches, VectorX
   bookNumerical(energyConstant(assembly_.mechanism, before), assembly_.mechanism, state);
 }
 
-// An impulse along the line of both ends has the same effect wherever on that line it acts: at end A for both bodies.
+/// A rope closes as a contact where it lengthens. An impulse along the line of both ends has the same effect wherever
+/// on that line it acts: at end A for both bodies.
+ImpactContact RopeStage::contactOf(const RopeLimit& rope, const RopeMotion& motion) {
+  Contact contact;
+  contact.bodyA = rope.anchorA.body, contact.bodyB = rope.anchorB.body;
+  contact.point = motion.a.position, contact.normal = motion.direction;
+  contact.separation = motion.slackLength;
+  return {contact, {rope.restitution, 0, 0}, 0, Vec3::Zero()};
+}
+
+std::vector<ImpactContact> RopeStage::withinReach(const VectorX& before, const VectorX& state, double length) const {
+  std::vector<ImpactContact> ropes;
+  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
+    const RopeLimit& rope = assembly_.ropes[i];
+    if (isTaut(i) || rests(i)) continue;
+    const RopeMotion from = motionOf(rope, before), to = motionOf(rope, state);
+    const auto speed = [](const RopeMotion& motion) { return motion.a.velocity.norm() + motion.b.velocity.norm(); };
+    if (from.slackLength > kReach * length * std::max(speed(from), speed(to)) + kNearPart * rope.maxLength) continue;
+    ropes.push_back(contactOf(rope, from));
+  }
+  return ropes;
+}
+
 std::vector<ImpactContact> RopeStage::beginImpact(const VectorX& state) {
   std::vector<ImpactContact> impacts;
   members_.clear();
@@ -229,10 +253,8 @@ std::vector<ImpactContact> RopeStage::beginImpact(const VectorX& state) {
     if (!isTaut(i) && motion.slackLength > kTautPart * rope.maxLength) continue;
     members_.push_back({i, isTaut(i)});
     tautRod_[i] = -1;
-    Contact contact;
-    contact.bodyA = rope.anchorA.body, contact.bodyB = rope.anchorB.body;
-    contact.point = motion.a.position, contact.normal = motion.direction;
-    impacts.push_back({contact, {rope.restitution, 0, 0}, 0, Vec3::Zero()});
+    impacts.push_back(contactOf(rope, motion));
+    impacts.back().contact.separation = 0;
   }
   rebuildRods();
   return impacts;

@@ -32,7 +32,7 @@ TEST(ContactStepping, LeavesOutImpulsesThatAreWorseThanNone) {
   VectorX state = before;
   linearVelocity(state, 0) -= timeStep * Vec3(0.3, 1.1, 0);  // 1 rad/s, towards the joint
   ContactStepping stepping(assembly);
-  stepping.resolve(contacts, before, timeStep, state);
+  stepping.resolve(contacts, {}, before, timeStep, state);
   EXPECT_LT((centerOfMass(state, 0) - centerOfMass(before, 0)).norm(), 2 * timeStep);  // at 1.14 m/s
   EXPECT_LE(kineticEnergy(assembly.mechanism.bodies[0], 0, state),
             kineticEnergy(assembly.mechanism.bodies[0], 0, before));

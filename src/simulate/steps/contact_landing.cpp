@@ -30,7 +30,7 @@ double ContactStepping::firstLanding(const std::vector<Contact>& contacts, const
   if (contacts.empty()) return first;
   // The impulses of the step before are where that to come begins.
   const std::vector<SteppedContact> last = contacts_;
-  begin(contacts, before, state);
+  begin(contacts, {}, before, state);
   previous_ = last, previousSlips_ = slips_;
   startPart_ = previousStep_ > 0 ? timeStep / previousStep_ : 1;
   for (const Group& group : findGroups()) {
@@ -80,7 +80,7 @@ double ContactStepping::landingPart(const Group& group, const Motion& motion, co
 std::vector<Vec3> ContactStepping::strike(const std::vector<Contact>& contacts, double timeStep, VectorX& state) {
   std::vector<Vec3> impulses(contacts.size(), Vec3::Zero());
   const std::vector<SteppedContact> last = contacts_;
-  begin(contacts, state, state);
+  begin(contacts, {}, state, state);
   const double constant = energyConstant(assembly_.mechanism, state);
   for (const Group& group : findGroups()) {
     setCones(group, state);
@@ -98,7 +98,7 @@ ContactStepping::Problem ContactStepping::posedImpact(const Group& group, const 
                                                       double part) const {
   Problem problem{start, {}};
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
-    const SurfaceLaw& law = assembly_.geometry.pairs[group.contacts[i].pair].law;
+    const SurfaceLaw& law = lawOf(group.members[i]);
     problem.frictions.push_back(law.staticFriction);
     const Index normal = 3 * static_cast<Index>(i) + 2;
     const double rebound = -part * law.restitution * start[normal];
@@ -113,7 +113,7 @@ ContactStepping::Problem ContactStepping::posedImpact(const Group& group, const 
 bool ContactStepping::slide(const Group& group, const VectorX& end, Problem& problem) const {
   bool isOther = false;
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
-    const SurfaceLaw& law = assembly_.geometry.pairs[group.contacts[i].pair].law;
+    const SurfaceLaw& law = lawOf(group.members[i]);
     if (law.dynamicFriction == law.staticFriction) continue;
     if (end.segment<2>(3 * static_cast<Index>(i)).norm() <= kSlowestSliding) continue;
     problem.frictions[i] = law.dynamicFriction;

@@ -148,10 +148,10 @@ double ContactStage::firstLanding(const VectorX& before, const VectorX& state, d
   return stepping_.firstLanding(touching_, before, length, state, landingSpeed);
 }
 
-void ContactStage::hold(const VectorX& before, double length, VectorX& state) {
+void ContactStage::hold(const VectorX& before, double length, const RopeStage& ropes, VectorX& state) {
   stepPart_ = length / timeStep_;
-  stepping_.resolve(touching_, before, length, state);
-  takeOutOverlaps(state);
+  stepping_.resolve(touching_, ropes.withinReach(before, state, length), before, length, state);
+  takeOutOverlaps(ropes, state);
 }
 
 void ContactStage::settleHeld(double time, VectorX& state) {
@@ -169,13 +169,13 @@ void ContactStage::settleHeld(double time, VectorX& state) {
 
 /// Points that were not yet nearest when the step began, on rims and edges that turn, may have come too near at its
 /// end.
-void ContactStage::takeOutOverlaps(VectorX& state) {
+void ContactStage::takeOutOverlaps(const RopeStage& ropes, VectorX& state) {
   findTouching(state, 0, overlapping_);
   double deepest = 0;
   for (const Contact& contact : overlapping_) deepest = std::max(deepest, -contact.separation);
   if (deepest <= kLetBe * margin()) return;
   findTouching(state, kNearOverlap * deepest, overlapping_);
-  stepping_.takeOut(overlapping_, state);
+  stepping_.takeOut(overlapping_, ropes.withinReach(state, state, 0), state);
 }
 
 bool ContactStage::hasImpact() const {

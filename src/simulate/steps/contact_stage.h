@@ -7,6 +7,7 @@
 #include "impact/pairwise.h"
 #include "simulate/moving_island.h"
 #include "simulate/plan/islands.h"
+#include "simulate/rope_stage.h"
 #include "simulate/steps/contact_stepping.h"
 
 namespace cradle {
@@ -27,8 +28,9 @@ class ContactStage {
   /// The part of that step after which something lands that is then to strike; infinite if nothing does.
   double firstLanding(const VectorX& before, const VectorX& state, double length);
 
-  /// What contact makes of a step that has begun, now of this `length`: one cone problem.
-  void hold(const VectorX& before, double length, VectorX& state);
+  /// What contact makes of a step that has begun, now of this `length`: one cone problem, with `ropes` that may be
+  /// stretched in it.
+  void hold(const VectorX& before, double length, const RopeStage& ropes, VectorX& state);
 
   /// What friction took (J) in the step that was held last, and would have at the velocities of its start.
   ContactStepping::HeldFriction frictionOfHeld() const { return stepping_.friction(); }
@@ -61,7 +63,7 @@ class ContactStage {
  private:
   void findTouching(const VectorX& state, double margin) { findTouching(state, margin, touching_); }
   void findTouching(const VectorX& state, double margin, std::vector<Contact>& touching);
-  void takeOutOverlaps(VectorX& state);
+  void takeOutOverlaps(const RopeStage& ropes, VectorX& state);
   void findWithinReach(const VectorX& before, const VectorX& state, double length);
   void findHeld(const VectorX& before, const VectorX& state, double length);
   void findMeeting(const VectorX& state);

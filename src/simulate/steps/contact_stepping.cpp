@@ -31,16 +31,16 @@ ContactStepping::ContactStepping(const Assembly& assembly)
       ends_(assembly.mechanism.constraints, assembly.mechanism.bodies),
       overlapTolerance_(kOverlapPart * smallestSize(assembly.geometry)) {}
 
-void ContactStepping::resolve(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
-                              VectorX& state) {
+void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::vector<ImpactContact>& ropes,
+                              const VectorX& before, double timeStep, VectorX& state) {
   previous_.swap(contacts_), previousSlips_.swap(slips_);
   startPart_ = previousStep_ > 0 ? timeStep / previousStep_ : 1;
   previousStep_ = timeStep;
   friction_ = {};
   faults_.clear();
-  begin(contacts, before, state);
-  slips_.assign(contacts.size(), Vec3::Zero());
-  lands_.resize(contacts.size(), 0);
+  begin(contacts, ropes, before, state);
+  slips_.assign(contacts_.size(), Vec3::Zero());
+  lands_.resize(contacts_.size(), 0);
   if (contacts.empty()) return;
   const double constant = energyConstant(assembly_.mechanism, state);
   const std::vector<Group> groups = findGroups();
@@ -58,15 +58,29 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const Vector
     }
   }
   lands_.clear();
+  contacts_.resize(contacts.size());
   bookForces(timeStep, state);
   bookNumerical(constant, assembly_.mechanism, state);
 }
 
-void ContactStepping::begin(const std::vector<Contact>& contacts, const VectorX& before, const VectorX& state) {
+void ContactStepping::begin(const std::vector<Contact>& contacts, const std::vector<ImpactContact>& ropes,
+                            const VectorX& before, const VectorX& state) {
   contacts_.clear();
+  ropeLaws_.clear();
   for (const Contact& contact : contacts) contacts_.push_back({contact, Vec3::Zero(), false});
+  if (!contacts.empty())
+    for (const ImpactContact& rope : ropes) {
+      contacts_.push_back({rope.contact, Vec3::Zero(), false});
+      ropeLaws_.push_back(rope.law);
+    }
   free_ = state;
   if (solver_.hasConstraints() && !contacts.empty()) solver_.factorize(before);
+}
+
+const SurfaceLaw& ContactStepping::lawOf(std::size_t member) const {
+  const std::size_t firstRope = contacts_.size() - ropeLaws_.size();
+  if (member >= firstRope) return ropeLaws_[member - firstRope];
+  return assembly_.geometry.pairs[contacts_[member].contact.pair].law;
 }
 
 void ContactStepping::setCones(const Group& group, const VectorX& state) {
@@ -123,7 +137,7 @@ ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion
   Problem problem{motion.free, {}};
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
-    const SurfaceLaw& law = assembly_.geometry.pairs[group.contacts[i].pair].law;
+    const SurfaceLaw& law = lawOf(group.members[i]);
     const bool slides = motion.start.segment<2>(at).norm() > kSlowestSliding;
     problem.frictions.push_back(slides ? law.dynamicFriction : law.staticFriction);
     const double closing = -motion.start[at + 2], pressing = std::max(0.0, -closing - motion.free[at + 2]);

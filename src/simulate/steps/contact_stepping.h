@@ -7,6 +7,7 @@
 
 #include "collision/first_crossing.h"
 #include "impact/contact_cones.h"
+#include "impact/pairwise.h"
 #include "impact/sparse_cones.h"
 #include "simulate/assembly.h"
 #include "simulate/corrections.h"
@@ -44,8 +45,10 @@ class ContactStepping {
 
   /// `contacts` are those of the step's start, with gaps that may close within it; `before` the state there; `state`
   /// where free motion led after `timeStep` (s), and after the call where contact did. Energy that went is booked.
-  /// What firstLanding found to land is not held before the step's end.
-  void resolve(const std::vector<Contact>& contacts, const VectorX& before, double timeStep, VectorX& state);
+  /// What firstLanding found to land is not held before the step's end. `ropes` that are no rods take part: they may be
+  /// as long as they are, as contacts may close.
+  void resolve(const std::vector<Contact>& contacts, const std::vector<ImpactContact>& ropes, const VectorX& before,
+               double timeStep, VectorX& state);
 
   /// How far (m or rad) the last call left ties from where they should be.
   double tieError() const { return solver_.hasConstraints() ? solver_.largestError() : 0; }
@@ -56,7 +59,7 @@ class ContactStepping {
                       const VectorX& state, double landingSpeed);
 
   /// Moves bodies apart that overlap in `state`; what lifts them is taken from their velocities.
-  void takeOut(const std::vector<Contact>& contacts, VectorX& state);
+  void takeOut(const std::vector<Contact>& contacts, const std::vector<ImpactContact>& ropes, VectorX& state);
 
   /// The impact of contacts that touch in `state`, all at once. Their impulses (N s, world, on B). Energy that went is
   /// booked.
@@ -95,7 +98,9 @@ class ContactStepping {
     std::vector<double> frictions;
     bool hasRebounds = false;
   };
-  void begin(const std::vector<Contact>& contacts, const VectorX& before, const VectorX& state);
+  void begin(const std::vector<Contact>& contacts, const std::vector<ImpactContact>& ropes, const VectorX& before,
+             const VectorX& state);
+  const SurfaceLaw& lawOf(std::size_t member) const;
   void setCones(const Group& group, const VectorX& state);
   std::vector<Group> findGroups() const;
   double restSpeed(double pressing, double timeStep) const;
@@ -134,6 +139,7 @@ class ContactStepping {
   SparseCones cones_;
   std::optional<ContactCones> tied_;  // of a group that something ties
   std::vector<SteppedContact> contacts_, previous_;
+  std::vector<SurfaceLaw> ropeLaws_;         // of ropes, which are the last of contacts_ within a step
   std::vector<char> lands_;                  // contacts that are not held before the step's end
   std::vector<Vec3> slips_, previousSlips_;  // m/s, world: velocities of the contacts with De Saxce's correction
   double previousStep_ = 0, startPart_ = 1;  // s; ratio of impulses now to those of the step before, if forces last

@@ -14,13 +14,15 @@ constexpr double kSeparatedError = 1e-3;  // ... or of the deepest
 // Of the inverse mass without ties: where a joint is nearer to a contact than 1e-3 of the size, an overlap is let be.
 // Taking it out would lift the body by more than a thousand times as much, against all forces.
 constexpr double kLeastLeverage = 1e-6;
-constexpr double kFarOverlaps = 10;  // of the deepest overlap: gaps that are as good as any wider ones
+constexpr double kFarthestSeparation = 0.05;  // sizes, or rad: the rest is left to the steps to come
+constexpr double kFarOverlaps = 10;           // of the deepest overlap: gaps that are as good as any wider ones
 
 }  // namespace
 
-void ContactStepping::takeOut(const std::vector<Contact>& contacts, VectorX& state) {
+void ContactStepping::takeOut(const std::vector<Contact>& contacts, const std::vector<ImpactContact>& ropes,
+                              VectorX& state) {
   const std::vector<SteppedContact> last = contacts_;
-  begin(contacts, state, state);
+  begin(contacts, ropes, state, state);
   const double constant = energyConstant(assembly_.mechanism, state);
   for (const Group& group : findGroups()) {
     VectorX gaps(group.contacts.size());
@@ -56,9 +58,17 @@ void ContactStepping::separate(const Group& group, const VectorX& gaps, VectorX&
     cones_.apply(cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations).impulses,
                  displacement);
   }
+  double farthest = 0;  // in sizes, or rad: what leads far along straight lines leads astray
   for (const int body : group.moved.bodies) {
-    centerOfMass(state, body) += linearVelocity(displacement, body);
-    turnBody(state, body, angularVelocity(displacement, body));
+    const double radius = assembly_.radii[static_cast<std::size_t>(body)];
+    if (radius == 0) continue;  // without a collider
+    farthest = std::max({farthest, linearVelocity(displacement, body).norm() / radius,
+                         angularVelocity(displacement, body).norm()});
+  }
+  const double part = std::min(1.0, kFarthestSeparation / farthest);
+  for (const int body : group.moved.bodies) {
+    centerOfMass(state, body) += part * linearVelocity(displacement, body);
+    turnBody(state, body, part * angularVelocity(displacement, body));
   }
 }
 

@@ -135,7 +135,7 @@ bool SteppedMotion::holdContacts() {
   if (!isHeld_) return true;
   const double free = solver_.hasConstraints() ? solver_.largestError() : 0;
   const double size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
-  contacts_.hold(before_, length, state);
+  contacts_.hold(before_, length, ropes_, state);
   return contacts_.tieError() <= std::max(kMostSteppedTieError * (1 + size), kMostTieGrowth * free) ||
          length < kShortestHeld * method_.timeStep;
 }

@@ -54,7 +54,7 @@ DirectSolution solveContacts(StopProblem problem) {
   const std::vector<Contact> contacts = contactsAtStart(problem.assembly);
   ContactStepping stepping(problem.assembly);
   VectorX state = problem.state;
-  stepping.resolve(contacts, problem.assembly.state, kFallTime, state);
+  stepping.resolve(contacts, {}, problem.assembly.state, kFallTime, state);
   return {static_cast<double>(std::max(1L, stepping.count().iterations)), largestSpeed(state)};
 }
 
