@@ -10,7 +10,7 @@ SCENES = os.path.join(SOURCE, "scenes")
 # The condition that is broken, by the reason that a run gives.
 CONDITION_OF = {"edges touch and press": "no edge or round side",
                 "a body moves over the edges of a mesh": "no edge or round side",
-                "contacts slide so slowly": "no contact", "a cylinder tips over its rim": "no cylinder",
+                "contacts slide so slowly": "no contact", "friction jams": "no contact", "a cylinder tips over its rim": "no cylinder",
                 "too many contacts press at once": "no more than 12 redundant", "contacts change more": "contacts change at most"}
 GIVEN_UP = r"not promised from (\S+) s on: (.*) \((.*)\); contact is resolved"
 NOTHING_TOUCHES = ["coupled_pendulums", "double_pendulum", "hanging_chain", "lagrange_top", "rod_pendulum", "rope_slack_taut",

@@ -84,10 +84,10 @@ void EventMotion::advance(double frame) {
   const double stepEnd = std::min(island_.scene.duration, island_.pushes.nextChange());
 
   // How far do bodies move freely?
-  takeStep(stepEnd);
+  if (!takeStep(stepEnd)) return;
   Event event = stopAtFirstEvent();
   while (event.any() && !isStillAccurate()) {
-    takeStep(stepEnd);
+    if (!takeStep(stepEnd)) return;
     event = stopAtFirstEvent();
   }
   time = step.time + step.timeStep;
@@ -108,25 +108,40 @@ void EventMotion::advance(double frame) {
   if (event.any()) countEvent(event);
 }
 
-/// Steps until one is as accurate as asked.
-void EventMotion::takeStep(double stepEnd) {
+/// Steps until one is as accurate as asked. False if friction jams: then none is, and the state stays as it is.
+bool EventMotion::takeStep(double stepEnd) {
   Step& step = island_.step;
   if (std::exchange(isContinuous_, false)) carryEndRate(step);
   if (stepSize_.timeStep == 0) {
     beginStep(island_.rightHandSide, island_.state, island_.time, stepEnd - island_.time, step);
     stepSize_.timeStep = firstTimeStep(island_.rightHandSide, tolerance_, step, method_.order);
   }
-  while (true) {
+  while (!isTooShort()) {
     const double planned = std::min(stepSize_.timeStep, longestStep()), left = stepEnd - island_.time;
     const double length = planned >= left * (1 - kTimeRounding) ? left : planned;
     method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
     if (acceptStep(method_.errorNorm(step, tolerance_), step.timeStep, stepSize_)) break;
     keepStartRate(step);
-    if (stepSize_.timeStep < kShortestTimeStep * island_.scene.duration)
-      guard_->failAtShortestStep(island_.state, island_.time);
   }
+  if (isJammed_) return false;
   shortSteps_ = stepSize_.timeStep < kShortTimeStep * island_.scene.duration ? shortSteps_ + 1 : 0;
-  if (shortSteps_ > kMostShortSteps) guard_->failAtShortSteps(island_.state, island_.time, step.timeStep);
+  if (shortSteps_ > kMostShortSteps && !mayJam()) guard_->failAtShortSteps(island_.state, island_.time, step.timeStep);
+  return true;
+}
+
+/// Whether steps have become too short to go on, as friction jams.
+bool EventMotion::isTooShort() {
+  if (!stepSize_.afterRejection || stepSize_.timeStep >= kShortestTimeStep * island_.scene.duration) return false;
+  if (!mayJam()) guard_->failAtShortestStep(island_.state, island_.time);
+  return true;
+}
+
+/// Where friction at a sliding contact presses it together, its forces may grow without bound, or be none that finite
+/// forces are (P. Painleve, 1895): velocities jump there without an impact. Contact steps, whose unknowns are impulses,
+/// find the jump.
+bool EventMotion::mayJam() {
+  isJammed_ = !method_.keepsPromise && contacts_.lasting().noteJam();
+  return isJammed_;
 }
 
 /// Whether a step that was cut short is accurate too: where forces turn quickly, the long one may have been by luck. If
@@ -138,8 +153,6 @@ bool EventMotion::isStillAccurate() {
   if (error <= 1) return true;
   acceptStep(error, step.timeStep, stepSize_);
   keepStartRate(step);
-  if (stepSize_.timeStep < kShortestTimeStep * island_.scene.duration)
-    guard_->failAtShortestStep(island_.state, island_.time);
   return false;
 }
 

@@ -43,7 +43,9 @@ class EventMotion {
   void restUntil(double time);
 
  private:
-  void takeStep(double stepEnd);
+  bool takeStep(double stepEnd);
+  bool isTooShort();
+  bool mayJam();
   /// What ends a step: at most one of them.
   struct Event {
     std::optional<ImpactTime> impact;
@@ -80,6 +82,7 @@ class EventMotion {
   std::array<double, 8> lengths_;  // s: of the last steps, if bodies may touch
   std::size_t lengthIndex_ = 0;
   int shortSteps_ = 0;         // in a row
+  bool isJammed_ = false;      // friction is: no step is accurate
   bool isContinuous_ = false;  // nothing has changed the state since the last step's end
   bool keepsTies_ = true;      // no rope went taut or slack at the last step's end
   int eventsInWindow_ = 0;

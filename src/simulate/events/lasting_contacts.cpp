@@ -219,6 +219,15 @@ void LastingContacts::countRows(const Together& group, const MatrixX& held, std:
   noteFault("too many contacts press at once", contacts);
 }
 
+bool LastingContacts::noteJam() {
+  std::vector<const Contact*> sliding;
+  for (const Entry& entry : entries_)
+    if (entry.isLoaded && entry.slides && entry.pair.law.dynamicFriction > 0) sliding.push_back(&entry.contact);
+  if (sliding.empty()) return false;
+  noteFault("friction jams where contacts slide", sliding);
+  return true;
+}
+
 /// Bodies of the scene are named: those of pairs that have gone may be told later.
 void LastingContacts::noteFault(std::string_view fault, const std::vector<const Contact*>& contacts) {
   fault_ = fault;

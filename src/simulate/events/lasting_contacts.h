@@ -66,6 +66,9 @@ class LastingContacts {
   /// Why rows do not serve, if they don't: they are for few contacts, and only those between balls, corners and faces.
   std::string_view fault() const { return fault_; }
 
+  /// Notes as a fault that friction jams where contacts slide now. False if none does.
+  bool noteJam();
+
   /// The bodies of the scene whose contacts these are.
   const std::vector<int>& faultBodies() const { return faultBodies_; }
 

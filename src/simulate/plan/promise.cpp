@@ -165,7 +165,7 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
                                       kMostRedundant, kMostIndependent, namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
   if (contacts.hasFriction && !contacts.areRound)
-    conditions.push_back({fmt::format("no contact of {} slides so slowly that errors turn its friction aside",
+    conditions.push_back({fmt::format("no contact of {} jams, or slides so slowly that errors turn its friction aside",
                                       namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
   const EventPatience& patience = scene.accuracy > kLookAccuracy ? kLookPatience : kPatience;
