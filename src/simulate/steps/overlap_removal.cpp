@@ -62,8 +62,8 @@ void ContactStepping::separate(const Group& group, const VectorX& gaps, VectorX&
   for (const int body : group.moved.bodies) {
     const double radius = assembly_.radii[static_cast<std::size_t>(body)];
     if (radius == 0) continue;  // without a collider
-    farthest = std::max({farthest, linearVelocity(displacement, body).norm() / radius,
-                         angularVelocity(displacement, body).norm()});
+    farthest = std::max(
+        {farthest, linearVelocity(displacement, body).norm() / radius, angularVelocity(displacement, body).norm()});
   }
   const double part = std::min(1.0, kFarthestSeparation / farthest);
   for (const int body : group.moved.bodies) {
