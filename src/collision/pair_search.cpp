@@ -18,7 +18,7 @@ constexpr int kMostLooks = 1000;  // for directions, at a pair whose edges stay 
 // Of a size: how far round surfaces sink in where a joint holds them before they press. From there the arm to the joint
 // is long enough for an impulse to turn the body: 3e-5 of the size.
 constexpr double kPinnedBand = 5e-10;
-constexpr double kFinestTurn = 1.0 / 16;   // of a step: polytopes that turn about a joint are looked at so often
+constexpr double kFinestTurn = 1.0 / 16;   // of a step: solids that turn about a joint are looked at so often
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
 Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
@@ -90,9 +90,10 @@ void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<I
   if (std::isfinite(touching.deadBand)) searchFrom(0, start, std::min(0.0, start) - touching.tolerance, best);
 }
 
-/// Polytopes that touch where a joint holds them stay on two sides of a plane as long as nothing else of them meets:
-/// their separation is then that of the place held, and falls below it where anything does. (What contacts there are
-/// beside the place does not tell: far corners are in none of them until the turning brings them near.)
+/// Solids without round sides that touch where a joint holds them stay on two sides of a plane as long as nothing else
+/// of them meets: their separation is then that of the place held, and falls below it where anything does. (What
+/// contacts there are beside the place does not tell: far corners are in none of them until the turning brings them
+/// near.)
 void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   if (pair_.againstPlane || !std::isfinite(touching.deadBand)) return;
   const Collider& b = geometry_.colliders[pair_.b];
