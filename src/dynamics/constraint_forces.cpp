@@ -21,7 +21,7 @@ constexpr double kRegularisation = 1e-8;
 constexpr double kRefined = 1e-15;  // residual that is left, as a part of the right-hand side
 constexpr int kMostRefinements = 3;
 
-constexpr int kMostProjectionSteps = 20;      // quadratic convergence needs 1 or 2 from a step's error
+constexpr int kMaxProjectionSteps = 20;       // quadratic convergence needs 1 or 2 from a step's error
 constexpr double kStalled = 0.5;              // an iteration that leaves more of an error has failed
 constexpr double kFar = 1000;                 // times the error: few sound mechanisms move farther to mend it
 constexpr double kConverged = 0.2;            // an iteration that leaves less of an error (0.25 at a jam) was sound,
@@ -32,7 +32,7 @@ constexpr double kMostRegularisation = 1e-1;  // with it, every direction that i
 constexpr double kLeftRoundings = 1e4;          // of constraints after projection, which leaves a few
 constexpr double kJammedRegularisation = 1e-7;  // of the diagonal: 3e-4 of a size from where no motion is left
 constexpr double kContradicted = 0.5;           // of what is asked: locked mechanisms leave 0.95, others up to 0.02
-constexpr double kTakesPart = 1e-3;             // of the largest residual: rows with less contradict nothing
+constexpr double kContradictingRatio = 1e-3;    // of the largest residual: rows with less contradict nothing
 
 /// The three rows of a joint.
 auto partOf(VectorX& multipliers, std::size_t joint) {
@@ -237,7 +237,7 @@ double ConstraintSolver::project(VectorX& state) {
   factorize(state);
   const double found = largestError();
   double error = found;
-  for (int i = 0; i < kMostProjectionSteps && !holdWithin(0, 1); ++i) {
+  for (int i = 0; i < kMaxProjectionSteps && !holdWithin(0, 1); ++i) {
     undisplaced_ = state;
     const double farthest = displace(state);
     factorize(state);
@@ -308,7 +308,7 @@ double ConstraintSolver::contradiction(const VectorX& state) {
   rightHandSide_ = multipliers_;
   factor_.solve(multipliers_);
   findResidual();
-  const double least = kTakesPart * correction_.lpNorm<Eigen::Infinity>();
+  const double least = kContradictingRatio * correction_.lpNorm<Eigen::Infinity>();
   double left = 0, asked = 0;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const double residual = std::abs(correction_[static_cast<Eigen::Index>(i)]) / rows_[i].scale;

@@ -8,8 +8,8 @@
 namespace cradle {
 namespace {
 
-constexpr int kMostProjectionSteps = 20;  // quadratic convergence needs 1 or 2 from a step's error
-constexpr double kStalled = 0.5;          // a step that leaves more of an error has met rounding, or contradictions
+constexpr int kMaxProjectionSteps = 20;  // quadratic convergence needs 1 or 2 from a step's error
+constexpr double kStalled = 0.5;         // a step that leaves more of an error has met rounding, or contradictions
 
 }  // namespace
 
@@ -22,7 +22,7 @@ double ContactSolver::project(VectorX& state, const std::vector<char>& resting) 
     found = std::max(found, group.error);
   }
   const auto isPlaced = [](const Group& group) { return group.isPlaced; };
-  for (int i = 0; i < kMostProjectionSteps && !std::all_of(groups_.begin(), groups_.end(), isPlaced); ++i) {
+  for (int i = 0; i < kMaxProjectionSteps && !std::all_of(groups_.begin(), groups_.end(), isPlaced); ++i) {
     undisplaced_ = state;
     for (Group& group : groups_)
       if (!group.isPlaced) displace(group, state);

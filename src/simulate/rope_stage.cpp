@@ -22,7 +22,7 @@ constexpr int kTensionSamples = 4;       // a step: it is at most a small part o
 constexpr double kFirstLook = 1.0 / 1024;  // of a step
 constexpr double kLongestLook = 1.0 / 8;   // of a step, at a rope that nothing pulls at: what would is smooth
 constexpr double kReach = 2;               // of the way that ends go freely in a step: what contacts may make of it
-constexpr double kNearPart = 1e-3;         // of its length: ropes so near to it take part in a step's contacts
+constexpr double kNearRatio = 1e-3;        // of its length: ropes so near to it take part in a step's contacts
 constexpr double kPullRounding = 1e-12;    // of the speed before a pull
 constexpr int kMostPullRounds = 100;       // of pulls at one instant; those left over pull after the next step
 
@@ -238,7 +238,7 @@ std::vector<ImpactContact> RopeStage::withinReach(const VectorX& before, const V
     if (isTaut(i) || rests(i)) continue;
     const RopeMotion from = motionOf(rope, before), to = motionOf(rope, state);
     const auto speed = [](const RopeMotion& motion) { return motion.a.velocity.norm() + motion.b.velocity.norm(); };
-    if (from.slackLength > kReach * length * std::max(speed(from), speed(to)) + kNearPart * rope.maxLength) continue;
+    if (from.slackLength > kReach * length * std::max(speed(from), speed(to)) + kNearRatio * rope.maxLength) continue;
     ropes.push_back(contactOf(rope, from));
   }
   return ropes;

@@ -25,9 +25,9 @@ constexpr double kLeastLookahead = 1.0 / 64;  // of the step that the accuracy a
 constexpr double kManyTurns = 100;        // rad: beyond, orientations need a tighter tolerance
 constexpr double kTurningPart = 0.1;      // of the tolerance, for these
 constexpr double kShortTimeStep = 1e-9;   // of the run's duration: nobody waits for so many steps
-constexpr int kMostShortSteps = 1000;     // in a row; after an event some are short
+constexpr int kMaxShortSteps = 1000;      // in a row; after an event some are short
 constexpr double kMostTieError = 1e-9;    // m (a m of coordinates) or rad: projection leaves 1e-15
-constexpr double kTieErrorPart = 0.1;     // of the accuracy: left for a few steps where motion could take two ways
+constexpr double kTieErrorRatio = 0.1;    // of the accuracy: left for a few steps where motion could take two ways
 constexpr double kStateRounding = 1e-14;  // of a state: projection that moves it less leaves the rate as it was
 constexpr double kUnitLength = 1e-9;      // how far |q|^2 may be from 1 before it is made 1
 
@@ -125,8 +125,9 @@ bool EventMotion::takeStep(double stepEnd) {
   }
   if (isJammed_) return false;
   shortSteps_ = stepSize_.timeStep < kShortTimeStep * island_.scene.duration ? shortSteps_ + 1 : 0;
-  if (shortSteps_ > kMostShortSteps && !mayJam()) guard_->failAtShortSteps(island_.state, island_.time, step.timeStep);
-  return true;
+  if (shortSteps_ <= kMaxShortSteps) return true;
+  if (!mayJam()) guard_->failAtShortSteps(island_.state, island_.time, step.timeStep);
+  return false;
 }
 
 /// Whether steps have become too short to go on, as friction jams.
@@ -263,7 +264,7 @@ void EventMotion::tidyState() {
 void EventMotion::requireTiesKept() {
   const VectorX& state = island_.state;
   const double error = solver_.largestError(), size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
-  const double most = std::max(kMostTieError, kTieErrorPart * island_.scene.accuracy);
+  const double most = std::max(kMostTieError, kTieErrorRatio * island_.scene.accuracy);
   if (error > startTieError_ + most * (1 + size) || solver_.leaveNoMotion(state, startTieError_))
     guard_->failAtTies(state, island_.time, error);
 }
