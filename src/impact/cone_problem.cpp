@@ -29,8 +29,8 @@ constexpr double kFirstPenaltyParts[] = {1e-5, 1e-3,
                                          0.1};  // of the same; heavy on light wants it small, many contacts large
 constexpr int kFirstRound = 10;                 // iterations before Newton's method is tried
 constexpr double kRoundGrowth = 1.2;            // and before each further trial: far from the end, trials are waste
-constexpr Index kFewContacts = 12;              // more are often redundant, and rounding is far off:
-constexpr double kGoodPart = 1e-9;              // of the largest velocity: good enough for them
+constexpr Index kFewContacts = 12;              // more are often redundant
+constexpr double kGoodPart = 1e-9;              // of the largest velocity: good enough where rounding is far off
 constexpr int kMostIterations = 500;            // from each of them
 constexpr double kInteriorPart = 1e-9;          // of the largest velocity: where the interior point method ends
 constexpr double kRegularPart = 1e-9;           // of the largest inverse mass: what makes Newton's matrix regular
@@ -169,7 +169,7 @@ VectorX ScaledProblem::solve(const VectorX& near) {
     if (take(z)) return unscaled(best_);
   }
   if (solveFrom(kFirstPenaltyParts[0] * largest_) || solveFromInside()) return unscaled(best_);
-  if (scale_.size() > kFewContacts && leastResidual_ <= kGoodPart) return unscaled(best_);
+  if (leastResidual_ <= kGoodPart) return unscaled(best_);
   for (const double part : kFirstPenaltyParts)
     if (solveFrom(part * largest_)) break;
   return unscaled(best_);

@@ -15,6 +15,17 @@ void applyTo(int body, const Vec3& impulse, const Vec3& angularImpulse, const st
   angularVelocity(velocities, body) += frames[index].inverseInertia * angularImpulse;
 }
 
+SurfaceContact surfacesOf(const Contact& contact) {
+  return {contact.bodyA,   contact.bodyB,   contact.point, contact.normal,  contact.separation,
+          contact.radiusA, contact.radiusB, contact.edge,  contact.rimAxisA};
+}
+
+ContactRows rowsOf(const ContactConstraint& constraint, const VectorX& state, const std::vector<BodyFrame>& frames) {
+  const ContactPlace place = placeOf(constraint, state, frames);
+  const auto tangents = tangentRows(constraint, place);
+  return {constraint, place, {tangents[0], tangents[1], normalRow(constraint, place)}};
+}
+
 }  // namespace
 
 bool canLast(const Contact& contact) {
@@ -24,8 +35,7 @@ bool canLast(const Contact& contact) {
 }
 
 ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames) {
-  SurfaceContact surfaces{contact.bodyA,   contact.bodyB,   contact.point, contact.normal,  contact.separation,
-                          contact.radiusA, contact.radiusB, contact.edge,  contact.rimAxisA};
+  SurfaceContact surfaces = surfacesOf(contact);
   if (!canLast(contact)) {
     // A ball turns around an edge that it comes to as around a corner; what is not round is as good as a corner on a
     // face.
@@ -34,12 +44,23 @@ ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vect
     surfaces.radiusA = isBallA ? contact.radiusA : 0;
     surfaces.radiusB = isBallB ? contact.radiusB : isBallA ? 0 : INFINITY;
   }
-  ContactRows result;
-  result.constraint = constraintOf(surfaces, state);
-  result.place = placeOf(result.constraint, state, frames);
-  const auto tangents = tangentRows(result.constraint, result.place);
-  result.rows = {tangents[0], tangents[1], normalRow(result.constraint, result.place)};
-  return result;
+  return rowsOf(constraintOf(surfaces, state), state, frames);
+}
+
+Vec3 followContact(const VectorX& before, const VectorX& state, const std::vector<BodyFrame>& frames,
+                   Contact& contact) {
+  if (!canLast(contact)) {
+    const auto along = [&](int body) { return poseOf(state, body) * (poseOf(before, body).inverse() * contact.point); };
+    contact.point = 0.5 * (along(contact.bodyA) + along(contact.bodyB));
+    return Vec3::Zero();
+  }
+  const ContactRows rows = rowsOf(constraintOf(surfacesOf(contact), before), state, frames);
+  const double sense = rows.constraint.centerA.body == contact.bodyA ? -1 : 1;
+  contact.point = rows.place.point - 0.5 * rows.place.gap * rows.place.normal;
+  contact.normal = sense * rows.place.normal;
+  Vec3 drift = Vec3::Zero();
+  for (const ConstraintRow& row : rows.rows) drift += sense * row.curvature * row.linearA;
+  return drift;
 }
 
 ContactResponse::ContactResponse(const std::vector<ContactRows>& contacts, const std::vector<RigidBody>& bodies,

@@ -23,6 +23,11 @@ ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vect
 /// a straight edge, or of a disc's rim on a face.
 bool canLast(const Contact& contact);
 
+/// Moves a contact of `before` with its bodies, which are at `state` now, where `frames` are theirs; its separation
+/// stays. Returns the rate (m/s^2, world) of B's velocity relative to A's there if the bodies kept theirs; zero if the
+/// contact cannot last, and goes along with the mean of its bodies.
+Vec3 followContact(const VectorX& before, const VectorX& state, const std::vector<BodyFrame>& frames, Contact& contact);
+
 /// How contacts answer to each other's impulses, with what ties the bodies: three rows of each in turn.
 class ContactResponse {
  public:

@@ -223,7 +223,8 @@ void RopeStage::pull(double time, const std::vector<Stretch>& stretches, VectorX
 
 /// A rope closes as a contact where it lengthens. An impulse along the line of both ends has the same effect wherever
 /// on that line it acts: at end A for both bodies.
-ImpactContact RopeStage::contactOf(const RopeLimit& rope, const RopeMotion& motion) {
+ImpactContact RopeStage::contactOf(const RopeLimit& rope, const VectorX& state) {
+  const RopeMotion motion = motionOf(rope, state);
   Contact contact;
   contact.bodyA = rope.anchorA.body, contact.bodyB = rope.anchorB.body;
   contact.point = motion.a.position, contact.normal = motion.direction;
@@ -231,15 +232,15 @@ ImpactContact RopeStage::contactOf(const RopeLimit& rope, const RopeMotion& moti
   return {contact, {rope.restitution, 0, 0}, 0, Vec3::Zero()};
 }
 
-std::vector<ImpactContact> RopeStage::withinReach(const VectorX& before, const VectorX& state, double length) const {
-  std::vector<ImpactContact> ropes;
+std::vector<const RopeLimit*> RopeStage::withinReach(const VectorX& before, const VectorX& state, double length) const {
+  std::vector<const RopeLimit*> ropes;
   for (std::size_t i = 0; i < tautRod_.size(); ++i) {
     const RopeLimit& rope = assembly_.ropes[i];
     if (isTaut(i) || rests(i)) continue;
     const RopeMotion from = motionOf(rope, before), to = motionOf(rope, state);
     const auto speed = [](const RopeMotion& motion) { return motion.a.velocity.norm() + motion.b.velocity.norm(); };
     if (from.slackLength > kReach * length * std::max(speed(from), speed(to)) + kNearRatio * rope.maxLength) continue;
-    ropes.push_back(contactOf(rope, from));
+    ropes.push_back(&rope);
   }
   return ropes;
 }
@@ -253,7 +254,7 @@ std::vector<ImpactContact> RopeStage::beginImpact(const VectorX& state) {
     if (!isTaut(i) && motion.slackLength > kTautPart * rope.maxLength) continue;
     members_.push_back({i, isTaut(i)});
     tautRod_[i] = -1;
-    impacts.push_back(contactOf(rope, motion));
+    impacts.push_back(contactOf(rope, state));
     impacts.back().contact.separation = 0;
   }
   rebuildRods();

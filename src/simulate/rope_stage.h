@@ -42,8 +42,11 @@ class RopeStage {
   std::vector<ImpactContact> beginImpact(const VectorX& state);
 
   /// Ropes that are no rods and may come to their length within a step of `length` (s) whose free motion led from
-  /// `before` to `state`, as contacts at its start that may close by what is slack.
-  std::vector<ImpactContact> withinReach(const VectorX& before, const VectorX& state, double length) const;
+  /// `before` to `state`.
+  std::vector<const RopeLimit*> withinReach(const VectorX& before, const VectorX& state, double length) const;
+
+  /// A rope as a contact of the bodies at its ends that may close by what is slack.
+  static ImpactContact contactOf(const RopeLimit& rope, const VectorX& state);
 
   /// Takes the impulses that the same members got. What lengthens no more and shortens is slack now.
   void endImpact(double time, const std::vector<ImpactContact>& members, const VectorX& state);
@@ -56,7 +59,6 @@ class RopeStage {
  private:
   bool isTaut(std::size_t rope) const { return tautRod_[rope] >= 0; }
   bool rests(std::size_t rope) const;
-  static ImpactContact contactOf(const RopeLimit& rope, const RopeMotion& motion);
   double tension(std::size_t rope, const VectorX& state);
   std::optional<double> firstPush(const Step& step, std::size_t rope);
   std::optional<RopeChange> firstReach(const Step& step, std::size_t rope, double end) const;

@@ -30,17 +30,16 @@ double ContactStepping::firstLanding(const std::vector<Contact>& contacts, const
   if (contacts.empty()) return first;
   // The impulses of the step before are where that to come begins.
   const std::vector<SteppedContact> last = contacts_;
-  begin(contacts, {}, before, state);
+  begin(contacts, {}, before, timeStep, state);
   previous_ = last, previousSlips_ = slips_;
   startPart_ = previousStep_ > 0 ? timeStep / previousStep_ : 1;
   for (const Group& group : findGroups()) {
-    setCones(group, before);
-    const Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), timeStep};
+    const Motion motion = motionOf(group, before, timeStep, state);
     if (!findLanding(group, motion, landingSpeed)) continue;
     VectorX path = state;
     const VectorX impulses = solve(group, posed(group, motion, 1));
     tied_ ? tied_->apply(impulses, path) : cones_.apply(impulses, path);
-    first = std::min(first, landingPart(group, motion, cones_.velocitiesIn(path)));
+    first = std::min(first, landingPart(group, motion, cones_.velocitiesIn(path) + motion.turning));
   }
   contacts_ = last;
   faults_.clear();  // of a trial
@@ -53,7 +52,7 @@ bool ContactStepping::findLanding(const Group& group, const Motion& motion, doub
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const Index normal = 3 * static_cast<Index>(i) + 2;
     const double gap = group.contacts[i].separation;
-    const double closing = -motion.start[normal], fastest = std::max(closing, -motion.free[normal]);
+    const double closing = motion.closing(normal), fastest = closing + motion.pressing(normal);
     const bool lands = gap > overlapTolerance_ && closing > landingSpeed && gap < motion.timeStep * fastest;
     lands_[group.members[i]] = lands ? 1 : 0;
     isFound = isFound || lands;
@@ -68,7 +67,7 @@ double ContactStepping::landingPart(const Group& group, const Motion& motion, co
     char& lands = lands_[group.members[i]];
     if (!lands) continue;
     const Index normal = 3 * static_cast<Index>(i) + 2;
-    const double gap = group.contacts[i].separation / motion.timeStep, closing = -motion.start[normal];
+    const double gap = group.contacts[i].separation / motion.timeStep, closing = motion.closing(normal);
     const double root = closing * closing - 2 * gap * (end[normal] + closing);
     const double part = root < 0 ? INFINITY : 2 * gap / (closing + std::sqrt(root));
     lands = part <= 1 ? 1 : 0;
@@ -80,7 +79,7 @@ double ContactStepping::landingPart(const Group& group, const Motion& motion, co
 std::vector<Vec3> ContactStepping::strike(const std::vector<Contact>& contacts, double timeStep, VectorX& state) {
   std::vector<Vec3> impulses(contacts.size(), Vec3::Zero());
   const std::vector<SteppedContact> last = contacts_;
-  begin(contacts, {}, state, state);
+  begin(contacts, {}, state, 0, state);
   const double constant = energyConstant(assembly_.mechanism, state);
   for (const Group& group : findGroups()) {
     setCones(group, state);

@@ -20,6 +20,7 @@ constexpr double kReachPart = 1e-3;        // of its size: the same, for bodies 
 constexpr double kCalmSteps = 20;          // awake at least so long: a rattle is no row of rests
 constexpr double kLetBe = 0.1;             // of what carries at rest: overlaps that the next step may take out
 constexpr double kNearOverlap = 10;        // of the deepest overlap: so near others may be pushed into
+constexpr int kMaxRemovals = 2;            // of overlaps in a step: each leaves the square of a part of what was there
 constexpr double kClosedPart = 1e-6;       // of the speed that gravity gives in a step: slower does not close
 constexpr double kLeastImpactPart = 0.01;  // of the speed that gravity gives in a step: slower is no impact
 constexpr double kLandingPart = 0.1;       // of the same: slower landings are not worth ending a step for
@@ -170,12 +171,14 @@ void ContactStage::settleHeld(double time, VectorX& state) {
 /// Points that were not yet nearest when the step began, on rims and edges that turn, may have come too near at its
 /// end.
 void ContactStage::takeOutOverlaps(const RopeStage& ropes, VectorX& state) {
-  findTouching(state, 0, overlapping_);
-  double deepest = 0;
-  for (const Contact& contact : overlapping_) deepest = std::max(deepest, -contact.separation);
-  if (deepest <= kLetBe * margin()) return;
-  findTouching(state, kNearOverlap * deepest, overlapping_);
-  stepping_.takeOut(overlapping_, ropes.withinReach(state, state, 0), state);
+  for (int round = 0; round < kMaxRemovals; ++round) {
+    findTouching(state, 0, overlapping_);
+    double deepest = 0;
+    for (const Contact& contact : overlapping_) deepest = std::max(deepest, -contact.separation);
+    if (deepest <= kLetBe * margin()) return;
+    findTouching(state, kNearOverlap * deepest, overlapping_);
+    stepping_.takeOut(overlapping_, ropes.withinReach(state, state, 0), state);
+  }
 }
 
 bool ContactStage::hasImpact() const {

@@ -1,6 +1,10 @@
 // J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988; M. Jean, "The non-smooth
 // contact dynamics method", Comput. Methods Appl. Mech. Engrg. 177, 1999: velocities at the step's end are the
 // unknowns, impulses of a step may be forces or shocks. What is apart by a gap s may close with s/h at most.
+//
+// For order 2 where contacts last: normals and arms are those of the step's middle, to which bodies go with the
+// velocities of its start, and the contact's velocity at the step's ends is J v -+ (h/2) dJ/dt v there; bodies go on
+// with the mean of the velocities at both ends, which then leaves gaps as they are, and impulses do no work on them.
 
 #include "simulate/steps/contact_stepping.h"
 
@@ -8,6 +12,7 @@
 #include <cmath>
 
 #include "impact/impact_energy.h"
+#include "simulate/contact_response.h"
 #include "simulate/plan/islands.h"
 #include "simulate/thresholds.h"
 
@@ -18,9 +23,7 @@ using Index = Eigen::Index;
 
 constexpr double kRestSpeedPart = 0.01;  // of the speed that gravity gives in a step: slower is no impact
 constexpr double kOverlapPart = 1e-9;    // of the smallest body's size: deeper overlaps are taken out
-constexpr double kSmoothPart = 1e-2;     // of that: overlaps that the mean velocity may add in a step
 constexpr double kSolvedPart = 1e-7;     // of the fastest velocity
-constexpr double kStraightTies = 1e-6;   // m or rad: more of an error may take turns of a radian to mend
 constexpr double kFreeClosing = 2;       // of the speed with which a contact lands: nothing makes it so fast
 
 }  // namespace
@@ -28,17 +31,16 @@ constexpr double kFreeClosing = 2;       // of the speed with which a contact la
 ContactStepping::ContactStepping(const Assembly& assembly)
     : assembly_(assembly),
       solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),
-      ends_(assembly.mechanism.constraints, assembly.mechanism.bodies),
       overlapTolerance_(kOverlapPart * smallestSize(assembly.geometry)) {}
 
-void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::vector<ImpactContact>& ropes,
+void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes,
                               const VectorX& before, double timeStep, VectorX& state) {
   previous_.swap(contacts_), previousSlips_.swap(slips_);
   startPart_ = previousStep_ > 0 ? timeStep / previousStep_ : 1;
   previousStep_ = timeStep;
   friction_ = {};
   faults_.clear();
-  begin(contacts, ropes, before, state);
+  begin(contacts, ropes, before, timeStep, state);
   slips_.assign(contacts_.size(), Vec3::Zero());
   lands_.resize(contacts_.size(), 0);
   if (contacts.empty()) return;
@@ -63,30 +65,67 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::v
   bookNumerical(constant, assembly_.mechanism, state);
 }
 
-void ContactStepping::begin(const std::vector<Contact>& contacts, const std::vector<ImpactContact>& ropes,
-                            const VectorX& before, const VectorX& state) {
+void ContactStepping::begin(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes,
+                            const VectorX& before, double timeStep, const VectorX& state) {
+  setMiddle(before, timeStep);
   contacts_.clear();
-  ropeLaws_.clear();
+  ropes_.clear(), ropeLaws_.clear();
   for (const Contact& contact : contacts) contacts_.push_back({contact, Vec3::Zero(), false});
   if (!contacts.empty())
-    for (const ImpactContact& rope : ropes) {
-      contacts_.push_back({rope.contact, Vec3::Zero(), false});
-      ropeLaws_.push_back(rope.law);
+    for (const RopeLimit* rope : ropes) {
+      const ImpactContact contact = RopeStage::contactOf(*rope, before);
+      contacts_.push_back({contact.contact, Vec3::Zero(), false});
+      ropes_.push_back(rope), ropeLaws_.push_back(contact.law);
     }
   free_ = state;
-  if (solver_.hasConstraints() && !contacts.empty()) solver_.factorize(before);
+  if (solver_.hasConstraints() && !contacts.empty()) solver_.factorize(middle_);
 }
 
 const SurfaceLaw& ContactStepping::lawOf(std::size_t member) const {
-  const std::size_t firstRope = contacts_.size() - ropeLaws_.size();
-  if (member >= firstRope) return ropeLaws_[member - firstRope];
+  if (isRope(member)) return ropeLaws_[member - firstRope()];
   return assembly_.geometry.pairs[contacts_[member].contact.pair].law;
 }
 
 void ContactStepping::setCones(const Group& group, const VectorX& state) {
-  cones_.set(group.contacts, assembly_.mechanism.bodies, state);
+  setCones(group, group.contacts, state);
+}
+
+void ContactStepping::setCones(const Group& group, const std::vector<Contact>& contacts, const VectorX& state) {
+  cones_.set(contacts, assembly_.mechanism.bodies, state);
   tied_.reset();
-  if (group.isTied) tied_.emplace(group.contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
+  if (group.isTied) tied_.emplace(contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
+}
+
+/// Where bodies are in the middle of a step if nothing acts on them.
+void ContactStepping::setMiddle(const VectorX& before, double timeStep) {
+  middle_ = before;
+  for (Index body = 0; body < bodyCount(before); ++body) {
+    centerOfMass(middle_, body) += 0.5 * timeStep * linearVelocity(before, body);
+    turnBody(middle_, body, 0.5 * timeStep * angularVelocity(before, body));
+  }
+  placeBodies(assembly_.mechanism.bodies, middle_, frames_);
+}
+
+/// Moves a contact of the step's start to its middle. Returns the rate (m/s^2, world) of its velocity there if its
+/// bodies keep theirs.
+Vec3 ContactStepping::follow(std::size_t member, const VectorX& before, Contact& contact) const {
+  if (!isRope(member)) return followContact(before, middle_, frames_, contact);
+  const RopeLimit& rope = *ropes_[member - firstRope()];
+  contact = RopeStage::contactOf(rope, middle_).contact;
+  return -lengtheningAcceleration(rope, middle_, VectorX::Zero(middle_.size())) * contact.normal;
+}
+
+/// What contacts see of a step, with the cones set to where they are in its middle.
+ContactStepping::Motion ContactStepping::motionOf(const Group& group, const VectorX& before, double timeStep,
+                                                  const VectorX& state) {
+  std::vector<Contact> contacts = group.contacts;
+  std::vector<Vec3> drifts;  // m/s^2, world
+  for (std::size_t i = 0; i < contacts.size(); ++i) drifts.push_back(follow(group.members[i], before, contacts[i]));
+  setCones(group, contacts, middle_);
+  Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), VectorX(3 * drifts.size()), timeStep};
+  for (std::size_t i = 0; i < drifts.size(); ++i)
+    motion.turning.segment<3>(3 * static_cast<Index>(i)) = 0.5 * timeStep * (cones_.axes(i).transpose() * drifts[i]);
+  return motion;
 }
 
 /// Contacts whose bodies touch or are tied to each other.
@@ -131,24 +170,26 @@ double ContactStepping::restSpeed(double pressing, double timeStep) const {
   return kRestSteps * pressing + kRestSpeedPart * assembly_.mechanism.gravity.norm() * timeStep + kRestSpeedFloor;
 }
 
-/// The cone problem: what is left of the gap, or the rebound, is taken from the normal velocities. Of the restitution
-/// only a part counts.
+/// The cone problem for velocities at the step's end: what is left of the gap, or the rebound, is taken from the normal
+/// ones. A contact that opens when the step begins may come back as fast, so that the mean leaves its gap as it was. Of
+/// the restitution only a part counts.
 ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion& motion, double part) const {
-  Problem problem{motion.free, {}};
+  Problem problem{motion.free + motion.turning, {}};
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
     const SurfaceLaw& law = lawOf(group.members[i]);
-    const bool slides = motion.start.segment<2>(at).norm() > kSlowestSliding;
+    const bool slides = (motion.start - motion.turning).segment<2>(at).norm() > kSlowestSliding;
     problem.frictions.push_back(slides ? law.dynamicFriction : law.staticFriction);
-    const double closing = -motion.start[at + 2], pressing = std::max(0.0, -closing - motion.free[at + 2]);
+    const double closing = motion.closing(at + 2), pressing = motion.pressing(at + 2);
     const double gap = std::max(0.0, group.contacts[i].separation), restitution = part * law.restitution;
-    const bool touches = gap + motion.timeStep * motion.free[at + 2] < 0;
+    const bool touches = gap + motion.timeStep * problem.free[at + 2] < 0;
     const bool rebounds = touches && restitution * closing > restSpeed(pressing, motion.timeStep);
     if (lands_[group.members[i]]) {
       problem.free[at + 2] += kFreeClosing * (closing + pressing);
       continue;
     }
-    problem.free[at + 2] -= rebounds ? restitution * closing - pressing : -gap / motion.timeStep;
+    const double returning = std::min(std::max(0.0, -closing), pressing);  // of what opens, and is pressed back
+    problem.free[at + 2] += rebounds ? pressing - restitution * closing : gap / motion.timeStep + returning;
     problem.hasRebounds = problem.hasRebounds || rebounds;
   }
   return problem;
@@ -157,8 +198,7 @@ ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion
 /// Energy does not grow: a restitution that would let it (with friction it can) is made smaller, and what is left by
 /// rounding, by the order of the method, or by impulses that were not found is taken from the velocities.
 void ContactStepping::resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state) {
-  setCones(group, before);
-  const Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), timeStep};
+  const Motion motion = motionOf(group, before, timeStep, state);
   const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
   Problem problem;
   VectorX impulses, end;
@@ -241,28 +281,18 @@ ConeStart ContactStepping::startOf(const Group& group) const {
   return start;
 }
 
-/// From free motion to where impulses lead: with the mean of the velocities at both ends, where that leads into no
-/// overlap, and nothing is pushed that leaves: what lasts keeps order 2 and its energy. Else with those at the end,
-/// which the gaps were asked of; but not where that leads away from joints on long arms, which move on arcs.
-/// Returns the contacts' velocities then.
+/// From free motion to where impulses lead, with the mean of the velocities at both ends: what lasts keeps order 2 and
+/// its energy. Overlaps to which that leads where something strikes are taken out, and what lifts from the velocities.
+/// Returns the contacts' velocities at the end.
 VectorX ContactStepping::move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state) {
   tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
   const VectorX end = cones_.velocitiesIn(state);
-  VectorX gaps = gapsAfter(group, motion.timeStep, 0.5 * (motion.start + end));
-  bool isSmooth = true;
-  for (Index i = 0; i < gaps.size(); ++i) {
-    const double gap = group.contacts[static_cast<std::size_t>(i)].separation;
-    const double most = impulses[3 * i + 2] > 0 ? gap + overlapTolerance_ : INFINITY;
-    isSmooth = isSmooth && gaps[i] > std::min(0.0, gap) - kSmoothPart * overlapTolerance_ && gaps[i] < most;
-  }
-  if (!isSmooth) {
-    moveByEnd(group, motion, state);
-    if (tied_) ends_.factorize(state);
-    isSmooth = tied_ && ends_.largestError() > kStraightTies;
-    if (!isSmooth) gaps = gapsAfter(group, motion.timeStep, end);
-  }
-  if (isSmooth) moveByMean(group, motion, state);
-  if (gaps.minCoeff() < -overlapTolerance_) separate(group, gaps, state);
+  moveByMean(group, motion, state);
+  const VectorX gaps = gapsAfter(group, motion.timeStep, 0.5 * (motion.start + end));
+  if (gaps.minCoeff() >= -overlapTolerance_) return end;
+  const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
+  separate(group, gaps, state);
+  limit(group, most, state);
   return end;
 }
 
@@ -282,14 +312,6 @@ void ContactStepping::moveByMean(const Group& group, const Motion& motion, Vecto
       centerOfMass(state, body) = centerOfMass(motion.before, body) +
                                   half * (linearVelocity(motion.before, body) + linearVelocity(state, body));
     turnBody(state, body, half * (angularVelocity(state, body) - angularVelocity(free_, body)));
-  }
-}
-
-void ContactStepping::moveByEnd(const Group& group, const Motion& motion, VectorX& state) const {
-  for (const int body : group.moved.bodies) {
-    centerOfMass(state, body) = centerOfMass(motion.before, body) + motion.timeStep * linearVelocity(state, body);
-    setOrientation(state, body, orientation(motion.before, body));
-    turnBody(state, body, motion.timeStep * angularVelocity(state, body));
   }
 }
 
@@ -339,7 +361,7 @@ void ContactStepping::keep(const Group& group, const Motion& motion, const Probl
     const Index at = 3 * static_cast<Index>(i);
     SteppedContact& stepped = contacts_[group.members[i]];
     stepped.impulse = cones_.axes(i) * impulses.segment<3>(at);
-    const double closing = -motion.start[at + 2], pressing = std::max(0.0, -closing - motion.free[at + 2]);
+    const double closing = motion.closing(at + 2), pressing = motion.pressing(at + 2);
     stepped.isImpact = impulses[at + 2] > 0 && closing > restSpeed(pressing, motion.timeStep);
     const Vec3 slip = end.segment<3>(at) + problem.free.segment<3>(at) - motion.free.segment<3>(at);
     slips_[group.members[i]] = cones_.axes(i) * correctedVelocity(slip, problem.frictions[i]);

@@ -1,16 +1,19 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "collision/first_crossing.h"
+#include "dynamics/rigid_body.h"
 #include "impact/contact_cones.h"
 #include "impact/pairwise.h"
 #include "impact/sparse_cones.h"
 #include "simulate/assembly.h"
 #include "simulate/corrections.h"
+#include "simulate/rope_stage.h"
 #include "simulate/steps/contact_energy.h"
 
 namespace cradle {
@@ -47,7 +50,7 @@ class ContactStepping {
   /// where free motion led after `timeStep` (s), and after the call where contact did. Energy that went is booked.
   /// What firstLanding found to land is not held before the step's end. `ropes` that are no rods take part: they may be
   /// as long as they are, as contacts may close.
-  void resolve(const std::vector<Contact>& contacts, const std::vector<ImpactContact>& ropes, const VectorX& before,
+  void resolve(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes, const VectorX& before,
                double timeStep, VectorX& state);
 
   /// How far (m or rad) the last call left ties from where they should be.
@@ -59,7 +62,7 @@ class ContactStepping {
                       const VectorX& state, double landingSpeed);
 
   /// Moves bodies apart that overlap in `state`; what lifts them is taken from their velocities.
-  void takeOut(const std::vector<Contact>& contacts, const std::vector<ImpactContact>& ropes, VectorX& state);
+  void takeOut(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes, VectorX& state);
 
   /// The impact of contacts that touch in `state`, all at once. Their impulses (N s, world, on B). Energy that went is
   /// booked.
@@ -90,18 +93,29 @@ class ContactStepping {
   };
   struct Motion {
     const VectorX& before;  // the state at the step's start
-    VectorX start, free;    // m/s, of the contacts there and after free motion
-    double timeStep;        // s
+    VectorX start, free;  // m/s: of the contacts where they are in its middle, for velocities there and of free motion
+    VectorX turning;      // m/s: what bodies that keep their velocities add to that in half the step
+    double timeStep;      // s
+    double closing(Eigen::Index normal) const { return turning[normal] - start[normal]; }  // m/s, at the step's start
+    double pressing(Eigen::Index normal) const {  // m/s: what the step adds to that
+      return std::max(0.0, -closing(normal) - free[normal] - turning[normal]);
+    }
   };
   struct Problem {
     VectorX free;  // m/s, less the speeds that must remain
     std::vector<double> frictions;
     bool hasRebounds = false;
   };
-  void begin(const std::vector<Contact>& contacts, const std::vector<ImpactContact>& ropes, const VectorX& before,
-             const VectorX& state);
+  void setMiddle(const VectorX& before, double timeStep);
+  void begin(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes, const VectorX& before,
+             double timeStep, const VectorX& state);
+  std::size_t firstRope() const { return contacts_.size() - ropes_.size(); }
+  bool isRope(std::size_t member) const { return member >= firstRope(); }
+  Vec3 follow(std::size_t member, const VectorX& before, Contact& contact) const;
   const SurfaceLaw& lawOf(std::size_t member) const;
   void setCones(const Group& group, const VectorX& state);
+  void setCones(const Group& group, const std::vector<Contact>& contacts, const VectorX& state);
+  Motion motionOf(const Group& group, const VectorX& before, double timeStep, const VectorX& state);
   std::vector<Group> findGroups() const;
   double restSpeed(double pressing, double timeStep) const;
   void resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state);
@@ -124,7 +138,6 @@ class ContactStepping {
   VectorX move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state);
   static VectorX gapsAfter(const Group& group, double timeStep, const VectorX& velocities);
   void moveByMean(const Group& group, const Motion& motion, VectorX& state) const;
-  void moveByEnd(const Group& group, const Motion& motion, VectorX& state) const;
   void separate(const Group& group, const VectorX& gaps, VectorX& state);
   void restore(const std::vector<int>& bodies, VectorX& state) const;
   void keep(const Group& group, const Motion& motion, const Problem& problem, const VectorX& impulses,
@@ -134,12 +147,13 @@ class ContactStepping {
   void bookForces(double timeStep, VectorX& state) const;
 
   const Assembly& assembly_;
-  ConstraintSolver solver_, ends_;  // of the step's start; where straight lines lead
-  double overlapTolerance_ = 0;     // m
+  ConstraintSolver solver_;      // of the step's middle
+  double overlapTolerance_ = 0;  // m
   SparseCones cones_;
   std::optional<ContactCones> tied_;  // of a group that something ties
   std::vector<SteppedContact> contacts_, previous_;
-  std::vector<SurfaceLaw> ropeLaws_;         // of ropes, which are the last of contacts_ within a step
+  std::vector<const RopeLimit*> ropes_;      // the last of contacts_ within a step
+  std::vector<SurfaceLaw> ropeLaws_;         // theirs
   std::vector<char> lands_;                  // contacts that are not held before the step's end
   std::vector<Vec3> slips_, previousSlips_;  // m/s, world: velocities of the contacts with De Saxce's correction
   double previousStep_ = 0, startPart_ = 1;  // s; ratio of impulses now to those of the step before, if forces last
@@ -147,7 +161,9 @@ class ContactStepping {
   SteppingCount count_;
   std::vector<SteppingFault> faults_;
   HeldFriction friction_;
-  VectorX free_;  // where free motion led
+  VectorX free_;                   // where free motion led
+  VectorX middle_;                 // where bodies are in the middle of the step, with the velocities of its start
+  std::vector<BodyFrame> frames_;  // there
 };
 
 /// The largest part of the restitutions with which no energy is gained. `lossWith(part)` is what an impact then takes

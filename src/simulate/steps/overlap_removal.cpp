@@ -19,10 +19,10 @@ constexpr double kFarOverlaps = 10;           // of the deepest overlap: gaps th
 
 }  // namespace
 
-void ContactStepping::takeOut(const std::vector<Contact>& contacts, const std::vector<ImpactContact>& ropes,
+void ContactStepping::takeOut(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes,
                               VectorX& state) {
   const std::vector<SteppedContact> last = contacts_;
-  begin(contacts, ropes, state, state);
+  begin(contacts, ropes, state, 0, state);
   const double constant = energyConstant(assembly_.mechanism, state);
   for (const Group& group : findGroups()) {
     VectorX gaps(group.contacts.size());
