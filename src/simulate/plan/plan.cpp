@@ -34,13 +34,14 @@ constexpr double kPileTimeStep = 1.0 / 60;  // s, at most
 constexpr std::size_t kPileBodies = 50;     // with fewer, RK4 costs less than the pictures of its frames
 constexpr double kMostRatio = 10;           // of masses and of densities in a pile
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSteppedTolerance = 1e-5;  // of the local error of RK4, at most: contact decides how good a step is
-constexpr double kTolerancePart = 0.1;      // of the accuracy: the local errors of about ten steps add up to it
+constexpr double kSteppedTolerance = 1e-5;    // of the local error of RK4, at most: contact decides how good a step is
+constexpr double kTolerancePart = 0.02;       // of the accuracy: local errors of tens of steps add up, and take energy
+constexpr double kCoarseTolerancePart = 0.2;  // of the coarsest accuracy
 
-/// Of the local error. The coarser the accuracy, the longer the steps, and of long ones DOP853's estimate is too high:
-/// with this, errors at 1e-2 are 0.03 to 1.8 of it in motions that do not make them grow (map of accuracies).
+/// Of the local error. The coarser the accuracy, the longer the steps, and of long ones DOP853's estimate is too high
+/// (map of accuracies).
 double smoothTolerance(double accuracy) {
-  return std::max(kTolerancePart * accuracy, accuracy * accuracy / kCoarsestAccuracy);
+  return accuracy * std::max(kTolerancePart, kCoarseTolerancePart * accuracy / kCoarsestAccuracy);
 }
 
 ChosenMethod errorSteps(const Scene& scene) {

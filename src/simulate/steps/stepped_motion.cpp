@@ -36,9 +36,9 @@ SteppedMotion::SteppedMotion(MovingIsland& island, RopeStage& ropes, const Chose
       contacts_(island, method.timeStep),
       guard_(island.assembly, island.state, method, island.scene.duration),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
-      start_(island.time),
       windowStart_(island.time) {
   for (const Collider& collider : island.assembly.geometry.colliders) innerRadii_.push_back(innerRadius(collider));
+  countSteps();
   ropes_.setTimeStep(method.timeStep);
   island_.step.startRateIsKnown = false;
   contacts_.strike(island_.time, island_.state, island_.state);
@@ -83,7 +83,7 @@ void SteppedMotion::advance(double frame) {
 
   if (atEvent) countEvent();
   if (eventsInWindow_ > kManyEvents) contacts_.setCrowded();
-  if (time >= start_ + static_cast<double>(stepNumber_ + 1) * method_.timeStep) ++stepNumber_;
+  if (time >= static_cast<double>(stepNumber_ + 1) * method_.timeStep) ++stepNumber_;
 }
 
 void SteppedMotion::hold(double fraction, VectorX& state) const {
@@ -107,10 +107,15 @@ void SteppedMotion::hold(double fraction, VectorX& state) const {
   pushWork(state) += square * (pushWork(held_) - pushWork(led));
 }
 
+/// Steps are counted from the run's start, so that frames whose times are theirs lie at their ends.
+void SteppedMotion::countSteps() {
+  stepNumber_ = static_cast<long>(std::floor(island_.time / method_.timeStep + kTimeRounding));
+}
+
 /// The end of the fixed step under way, or of the run; a push that begins or ends comes first.
 double SteppedMotion::nextStepEnd() const {
   double end = island_.scene.duration;
-  const double gridEnd = start_ + static_cast<double>(stepNumber_ + 1) * method_.timeStep;
+  const double gridEnd = static_cast<double>(stepNumber_ + 1) * method_.timeStep;
   if (gridEnd <= end - kTimeRounding * method_.timeStep) end = gridEnd;
   return std::min(end, island_.pushes.nextChange());
 }
@@ -229,7 +234,7 @@ bool SteppedMotion::mayServeEvents() const {
 
 void SteppedMotion::restUntil(double time) {
   island_.time = std::min(time, island_.pushes.nextChange());
-  stepNumber_ = static_cast<long>(std::floor((island_.time - start_) / method_.timeStep + kTimeRounding));
+  countSteps();
   island_.beginAndEndPushes();
 }
 

@@ -40,6 +40,7 @@ class SteppedMotion {
   void restUntil(double time);
 
  private:
+  void countSteps();
   double nextStepEnd() const;
   void moveFreely(double stepEnd);
   double longestBesideSheets() const;
@@ -55,8 +56,7 @@ class SteppedMotion {
   ContactStage contacts_;
   EnergyGuard guard_;
   ConstraintSolver solver_;
-  double start_ = 0;           // s: where the steps begin to be counted
-  long stepNumber_ = 0;        // the step under way covers start + [stepNumber_, stepNumber_ + 1] x timeStep
+  long stepNumber_ = 0;        // the step under way covers [stepNumber_, stepNumber_ + 1] x timeStep
   double longest_ = INFINITY;  // s: what the error allowed last, and more
   bool keepsTies_ = true;      // no rope went taut or slack at the last step's end
   int eventsInWindow_ = 0;
