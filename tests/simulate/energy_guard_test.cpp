@@ -195,7 +195,7 @@ class AdaptiveGuard : public ::testing::Test {
   EnergyGuard guard_{assembly_, assembly_.state, plan_.method, scene_.duration};
 };
 
-// One step with local errors of 1e-7 (1 + |y|): the weight of 9.81 N and the dissipated joule have a part of 1.1e-6 J,
+// One step with local errors of 2e-8 (1 + |y|): the weight of 9.81 N and the dissipated joule have a part of 2.2e-7 J,
 // and a hundred times that is allowed.
 TEST_F(AdaptiveGuard, AllowsNoMoreThanTheLocalErrorsDo) {
   VectorX state = assembly_.state;
