@@ -24,6 +24,8 @@ using Index = Eigen::Index;
 constexpr double kRestSpeedPart = 0.01;  // of the speed that gravity gives in a step: slower is no impact
 constexpr double kOverlapPart = 1e-9;    // of the smallest body's size: deeper overlaps are taken out
 constexpr double kSolvedPart = 1e-7;     // of the fastest velocity
+constexpr double kSameSide = 0.99;       // cosine: normals that turn farther in half a step are another contact's
+constexpr double kSeenWay = 1e5;         // overlap tolerances: over a shorter way, errors of gaps hide how it turns
 constexpr double kFreeClosing = 2;       // of the speed with which a contact lands: nothing makes it so fast
 
 }  // namespace
@@ -108,11 +110,38 @@ void ContactStepping::setMiddle(const VectorX& before, double timeStep) {
 
 /// Moves a contact of the step's start to its middle. Returns the rate (m/s^2, world) of its velocity there if its
 /// bodies keep theirs.
-Vec3 ContactStepping::follow(std::size_t member, const VectorX& before, Contact& contact) const {
-  if (!isRope(member)) return followContact(before, middle_, frames_, contact);
+Vec3 ContactStepping::follow(std::size_t member, const VectorX& before, double timeStep, Contact& contact) const {
+  if (!isRope(member)) {
+    const Vec3 drift = followContact(before, middle_, frames_, contact);
+    return canLast(contact) ? drift : followSides(timeStep, contact);
+  }
   const RopeLimit& rope = *ropes_[member - firstRope()];
   contact = RopeStage::contactOf(rope, middle_).contact;
   return -lengtheningAcceleration(rope, middle_, VectorX::Zero(middle_.size())) * contact.normal;
+}
+
+/// The same for the sides of two capsules, whose gap is smooth, by where they are found in the middle. With gaps s
+/// there and s0 at the start, and the rate s' in the middle: s - s0 = s' h/2 - s'' h^2/8. Zero for edges of others.
+Vec3 ContactStepping::followSides(double timeStep, Contact& contact) const {
+  const ContactGeometry& geometry = assembly_.geometry;
+  const ColliderPair& pair = geometry.pairs[contact.pair];
+  const auto isCapsule = [&](std::size_t i) { return geometry.colliders[i].kind() == ColliderKind::capsule; };
+  const double half = 0.5 * timeStep, speed = relativeVelocity(contact, middle_).norm();
+  const bool areCapsules = !pair.againstPlane && isCapsule(pair.a) && isCapsule(pair.b);
+  if (!areCapsules || half * speed < kSeenWay * overlapTolerance_) return Vec3::Zero();
+  std::vector<Contact> found;
+  appendContacts(geometry, contact.pair, middle_, std::max(0.0, contact.separation) + half * speed, found);
+  const Contact* nearest = nullptr;
+  for (const Contact& other : found)
+    if (!nearest || (other.point - contact.point).squaredNorm() < (nearest->point - contact.point).squaredNorm())
+      nearest = &other;
+  if (!nearest || nearest->normal.dot(contact.normal) < kSameSide) return Vec3::Zero();
+  const double rate = openingSpeed(*nearest, middle_), gap = contact.separation;
+  const double turning = 2 * (rate - (nearest->separation - gap) / half);  // m/s: s'' h/2
+  if (std::abs(turning) > speed) return Vec3::Zero();
+  contact = *nearest;
+  contact.separation = gap;
+  return turning / half * contact.normal;
 }
 
 /// What contacts see of a step, with the cones set to where they are in its middle.
@@ -120,7 +149,8 @@ ContactStepping::Motion ContactStepping::motionOf(const Group& group, const Vect
                                                   const VectorX& state) {
   std::vector<Contact> contacts = group.contacts;
   std::vector<Vec3> drifts;  // m/s^2, world
-  for (std::size_t i = 0; i < contacts.size(); ++i) drifts.push_back(follow(group.members[i], before, contacts[i]));
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    drifts.push_back(follow(group.members[i], before, timeStep, contacts[i]));
   setCones(group, contacts, middle_);
   Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), VectorX(3 * drifts.size()), timeStep};
   for (std::size_t i = 0; i < drifts.size(); ++i)

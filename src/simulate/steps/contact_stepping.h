@@ -111,7 +111,8 @@ class ContactStepping {
              double timeStep, const VectorX& state);
   std::size_t firstRope() const { return contacts_.size() - ropes_.size(); }
   bool isRope(std::size_t member) const { return member >= firstRope(); }
-  Vec3 follow(std::size_t member, const VectorX& before, Contact& contact) const;
+  Vec3 follow(std::size_t member, const VectorX& before, double timeStep, Contact& contact) const;
+  Vec3 followSides(double timeStep, Contact& contact) const;
   const SurfaceLaw& lawOf(std::size_t member) const;
   void setCones(const Group& group, const VectorX& state);
   void setCones(const Group& group, const std::vector<Contact>& contacts, const VectorX& state);
