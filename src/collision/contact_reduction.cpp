@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kSameFaceNormal = 1 - 1e-4;  // cosine: within 0.8 degrees
 constexpr double kSamePart = 1e-9;            // of the size: points as near are one, and heights as near are level
+constexpr double kRounding = 1e-14;           // of unit normals
 
 constexpr double kHalf = 0.5, kRoot = std::numbers::sqrt3 / 2;
 constexpr std::array<std::array<double, 2>, 6> kDirections = {
@@ -43,6 +44,19 @@ struct Cluster {
     }
     if (least < leastKept - same) isKept[deepest] = 1;
   }
+
+  /// The mean of the normals that were found at a place: of two mirrored edges that meet each finds its own face's.
+  Vec3 normalAt(std::size_t place) const {
+    const Vec3 &point = contacts[place].point, &first = contacts[place].normal;
+    Vec3 sum = Vec3::Zero();
+    bool doDiffer = false;
+    for (const std::size_t member : members)
+      if ((contacts[member].point - point).norm() <= same) {
+        sum += contacts[member].normal;
+        doDiffer = doDiffer || (contacts[member].normal - first).norm() > kRounding;
+      }
+    return doDiffer ? sum.normalized() : first;
+  }
 };
 
 }  // namespace
@@ -57,10 +71,17 @@ void reduceContacts(std::size_t first, double size, std::vector<ContactPoint>& c
     clusters[at].members.push_back(i);
   }
   std::vector<char> isKept(contacts.size(), 0);
-  for (const Cluster& cluster : clusters) cluster.markKept(isKept);
+  std::vector<Vec3> normals(contacts.size());
+  for (const Cluster& cluster : clusters) {
+    cluster.markKept(isKept);
+    for (const std::size_t member : cluster.members) normals[member] = cluster.normalAt(member);
+  }
   std::size_t end = first;
   for (std::size_t i = first; i < contacts.size(); ++i)
-    if (isKept[i]) contacts[end++] = contacts[i];
+    if (isKept[i]) {
+      contacts[end] = contacts[i];
+      contacts[end++].normal = normals[i];
+    }
   contacts.erase(contacts.begin() + static_cast<std::ptrdiff_t>(end), contacts.end());
 }
 

@@ -1,6 +1,7 @@
 #include "collision/core_separation.h"
 
 #include <cmath>
+#include <numeric>
 
 #include "collision/axis_ascent.h"
 #include "collision/core_depth.h"
@@ -18,6 +19,11 @@ constexpr double kFacePreference = 1e-7;  // of the size
 constexpr double kFlatError = 1e-13;      // of the size: a face that misses no more of the distance is the nearest
 constexpr double kLeastCosine = 0.5;      // between a face's normal and one that sees as much
 constexpr double kSameCosine = 0.999;     // where that is known: the direction to nearest points is uncertain by less
+constexpr double kMeeting = 1e-9;         // of the size: corners as near meet,
+constexpr double kMet = 1e-13;            // and normals that see gaps as equal are alike,
+constexpr double kOtherWay = 4;           // or a gap so many times as wide: corners that overlap see it from aside
+constexpr double kSameNormal = 1e-8;      // between unit normals: those of one face
+constexpr double kMovedPart = 0.01;       // of the way between the middles
 
 double sizeOf(const Core& a, const Core& b) {
   return std::min(a.collider().boundingRadius, b.collider().boundingRadius);
@@ -83,18 +89,7 @@ SeparatingAxis ofRoundCores(const CoreDistance& apart, const Core& a, const Core
   return better(best, deepestAxis(a, b));
 }
 
-}  // namespace
-
-SeparatingAxis separationOf(const Core& a, const Core& b) {
-  const CoreDistance apart = distanceOf(a, b);
-  if (a.isRound() || b.isRound()) return ofRoundCores(apart, a, b);
-  if (apart.distance > kTouching * sizeOf(a, b)) return ofNearest(apart, a, b);
-  if (isSegment(a) && isSegment(b)) return ofCrossingSegments(a, b);
-  const SeparatingAxes axes = separatingAxes(a, b);
-  return better(better(axes.faceOfA, axes.faceOfB), axes.edges);
-}
-
-SeparatingAxis contactAxis(const Core& a, const Core& b) {
+SeparatingAxis axisOfFeatures(const Core& a, const Core& b) {
   const CoreDistance apart = distanceOf(a, b);
   const double preference = kFacePreference * sizeOf(a, b);
   if (a.isRound() || b.isRound()) {
@@ -109,6 +104,38 @@ SeparatingAxis contactAxis(const Core& a, const Core& b) {
   if (!isApart || feature.separation >= apart.distance - preference) return feature;
   const SeparatingAxis nearest = ofNearest(apart, a, b);
   return nearest.separation > feature.separation + preference ? nearest : feature;
+}
+
+Vec3 middleOf(const Core& core) {
+  const std::vector<Vec3>& points = core.collider().points;
+  return core.placed(std::accumulate(points.begin(), points.end(), Vec3(Vec3::Zero())) / double(points.size()));
+}
+
+/// Corners that meet, or a corner and an edge, have a fan of normals. Of them the one that nearest points have once the
+/// cores are moved apart along the line of their middles: that turns and mirrors with them. Any other core keeps its
+/// own, since such a direction sees less.
+SeparatingAxis amongEqual(const SeparatingAxis& axis, const Core& a, const Core& b) {
+  if (std::abs(axis.separation) > kMeeting * sizeOf(a, b)) return axis;
+  const Vec3 normal = separationOf(a, b.moved(kMovedPart * (middleOf(b) - middleOf(a)))).normal;
+  if ((normal - axis.normal).squaredNorm() < kSameNormal * kSameNormal) return axis;
+  const SeparatingAxis between{gapAlong(a, b, normal), normal};
+  const double less = axis.separation - between.separation;
+  return less <= kOtherWay * std::abs(axis.separation) + kMet * sizeOf(a, b) ? between : axis;
+}
+
+}  // namespace
+
+SeparatingAxis separationOf(const Core& a, const Core& b) {
+  const CoreDistance apart = distanceOf(a, b);
+  if (a.isRound() || b.isRound()) return ofRoundCores(apart, a, b);
+  if (apart.distance > kTouching * sizeOf(a, b)) return ofNearest(apart, a, b);
+  if (isSegment(a) && isSegment(b)) return ofCrossingSegments(a, b);
+  const SeparatingAxes axes = separatingAxes(a, b);
+  return better(better(axes.faceOfA, axes.faceOfB), axes.edges);
+}
+
+SeparatingAxis contactAxis(const Core& a, const Core& b) {
+  return amongEqual(axisOfFeatures(a, b), a, b);
 }
 
 }  // namespace cradle

@@ -11,7 +11,7 @@ namespace cradle {
 SeparatingAxis separationOf(const Core& a, const Core& b);
 
 /// The same for contact: where several directions see the same gap up to 1e-7 of the size, one that is normal to a face
-/// is taken.
+/// is taken; where corners meet to 1e-9 of it, one that turns and mirrors with the cores.
 SeparatingAxis contactAxis(const Core& a, const Core& b);
 
 }  // namespace cradle

@@ -211,6 +211,24 @@ TEST(ConvexPairs, SeparationGoesThroughZeroAlongTheNormal) {
   });
 }
 
+// A shape and its mirror image that meet in the mirror's plane, mostly with a corner or a rim: a contact's normal is
+// the plane's, or the contacts come in mirrored pairs. Up to the 1e-9 of the size that corners meet within.
+TEST(ConvexPairs, MirrorImagesThatMeetHaveAMirroredNormal) {
+  RandomPoses random(4);
+  for (const Shape& shape : {capsule(0.3, 1.2), cylinder(0.5, 0.8), cylinder(0.2, 1.6), box(Vec3(1, 0.6, 1.4))})
+    for (int i = 0; i < 40; ++i)
+      for (const double gap : {0.0, 1e-16, -1e-16, 1e-13, -1e-13, 1e-11, -1e-11, 1e-10, -1e-10}) {
+        const Quat turn = random.turn();
+        const Vec3 place(gap / 2 + shape.reach(turn.conjugate() * Vec3::UnitX()), random.number(-1, 1), 0.3);
+        const ShapePair pair(shape, shape, {turn, place},
+                             {Quat(turn.w(), turn.x(), -turn.y(), -turn.z()), Vec3(-place.x(), place.y(), place.z())});
+        Vec3 sum = Vec3::Zero();
+        const std::vector<Contact> contacts = pair.contacts(1e-9);
+        for (const Contact& contact : contacts) sum += contact.normal;
+        EXPECT_NEAR(sum.x(), -double(contacts.size()), 1e-10) << describe(pair) << ' ' << gap;
+      }
+}
+
 TEST(ConvexPairs, NoDirectionSeesALargerGapWhereTheyOverlap) {
   RandomPoses random(3);
   forAllPairs([&](const Shape& a, const Shape& b) {
