@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "collision/contact_reduction.h"
+#include "collision/core_distance.h"
 #include "collision/core_separation.h"
 #include "collision/manifold.h"
 #include "collision/tangent_plane.h"
@@ -87,6 +88,19 @@ double heightOver(const FlatTriangle& triangle, const Core& cylinder) {
   return -cylinder.reach(-triangle.normal) - triangle.normal.dot(triangle.a);
 }
 
+/// Gap (m) that a unit normal sees from a triangle to a cylinder.
+double gapAlong(const FlatTriangle& triangle, const Core& cylinder, const Vec3& normal) {
+  const double top = std::max({normal.dot(triangle.a), normal.dot(triangle.b), normal.dot(triangle.c)});
+  return -cylinder.reach(-normal) - top;
+}
+
+/// Unit vector from a triangle's middle to the nearest point of a cylinder's axis.
+Vec3 towardsAxis(const FlatTriangle& triangle, const Core& cylinder) {
+  const Segment axis{cylinder.end(-1), cylinder.end(1) - cylinder.end(-1)};
+  const Vec3 middle = (triangle.a + triangle.b + triangle.c) / 3;
+  return (axis.at(axis.nearestPart(middle)) - middle).normalized();
+}
+
 /// Whether one of a cylinder's lowest points, at that height, is above a triangle, as far from its sides as no way out
 /// sideways is shorter.
 bool isLowestAbove(const FlatTriangle& triangle, const Core& cylinder, double height) {
@@ -122,7 +136,13 @@ struct CylinderVisit {
       least = {height, triangle.normal}, isFound = true;
       return;
     }
+    // So does what any direction sees: that of the nearest so far, that to the axis, that between nearest points.
+    const auto isFarther = [&](double gap) { return gap >= least.separation - kLevelPart * size; };
+    if (isFound && isFarther(gapAlong(triangle, cylinder, least.normal))) return;
+    if (isFarther(gapAlong(triangle, cylinder, towardsAxis(triangle, cylinder)))) return;
     const Core core = solid.coreOf(triangle);
+    const CoreDistance apart = distanceOf(core, cylinder);
+    if (apart.distance > 0 && isFarther(apart.seen)) return;
     const SeparatingAxis axis = separationOf(core, cylinder);
     if (axis.separation <= 0 && axis.normal.dot(triangle.normal) < 0) {
       if (axis.separation > -kRoundingPart * size) return;  // beside its edge
@@ -202,6 +222,7 @@ void appendCylinderContacts(const Core& cylinder, const MeshSurface& mesh, doubl
     const double height = heightOver(triangle, cylinder);
     if (triangle.normal == Vec3::Zero() || height > reach || isUnder(triangle, cylinder, reach)) continue;
     if (isTurnedAway(mesh, triangle, cylinder)) continue;
+    if (visit.isFound && gapAlong(triangle, cylinder, visit.least.normal) > reach) continue;
     const Core core = solid.coreOf(triangle);
     const SeparatingAxis axis = isLowestAbove(triangle, cylinder, height) ? SeparatingAxis{height, triangle.normal}
                                                                           : contactAxis(core, cylinder);
