@@ -166,6 +166,25 @@ TEST(InelasticCollapse, UnderGravityTheBallsRestOnEachOther) {
     }
 }
 
+// Fast sideways, frozen places last for less time than the collapse: it goes on from impact to impact wherever it is
+// cut.
+TEST(InelasticCollapse, FastMotionAcrossDoesNotCutItShort) {
+  for (const double accuracy : {1e-8, 1e-9, 1e-10})
+    for (const double restitution : {0.1, 0.3, 0.5})
+      for (int i = 0; i < 16; ++i) {
+        const double part = i / 16.0, ratio = 12 + 40 * part, side = 3 + 20 * part;
+        const BallColumn column{
+            true, restitution, 0, {2, 2 * ratio}, {-1, -3 - part}, {1e-5, 1e-3 * (1 + part)}, {side, side}, kGravity};
+        SCOPED_TRACE(fmt::format("accuracy {} e {} ratio {}", accuracy, restitution, ratio));
+        const Frame end = runColumn(column, accuracy, 0.1).frames.back();
+        for (const BodyState& body : end.states) {
+          EXPECT_NEAR(body.linearVelocity.y(), 0, kCollapseRounding);
+          EXPECT_NEAR(body.linearVelocity.x(), side, kCollapseRounding);
+        }
+        EXPECT_LT(std::abs(end.energy.numerical), accuracy * end.energy.kinetic);
+      }
+}
+
 TEST(InelasticCollapse, ABallBetweenTwoHeavyOnesEndsWithTheirCommonVelocity) {
   for (const double accuracy : kCollapseAccuracies)
     for (const double restitution : {0.05, 0.1, 0.3}) {

@@ -18,6 +18,7 @@ constexpr double kOpeningPart = 1e-6;           // of the fastest closing: a con
 constexpr std::size_t kCollapseImpacts = 200;   // enough to tell intervals that shrink for ever from a few short ones
 constexpr std::size_t kImpactsOfAContact = 20;  // the same, for each contact
 constexpr double kCollapsePart = 1e-12;         // of the time elapsed: so little so many impacts take
+constexpr double kHiddenGap = 2;                // times a gap's rounding: measured, it may be within that
 constexpr std::size_t kMaxSequenceImpacts = 100000;  // a row of 40 balls takes a thousand
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -79,11 +80,27 @@ bool ImpactSequence::next(const VectorX& state) {
     return true;
   }
   if (times_.size() > kMaxSequenceImpacts) return false;
-  const double time = timeToNextImpact();
-  if (time == kNever || (time > 0 && !mayAdvance(state, time))) return false;
+  double time = timeToNextImpact();
+  if (time == kNever) return false;
+  if (time > 0 && !mayAdvance(state, time)) {
+    if (!closeWithinRounding()) return false;
+    time = 0;
+  }
   advance(state, time);
   findMembers();
   return true;
+}
+
+/// Where the limits end a sequence, a gap that rounding would hide from the event that is to come closes now: true if
+/// there is one.
+bool ImpactSequence::closeWithinRounding() {
+  bool isAnyClosed = false;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    if (!closes(i) || gaps_[i] > kHiddenGap * limits_.gapRounding) continue;
+    gaps_[i] = 0;
+    isAnyClosed = true;
+  }
+  return isAnyClosed;
 }
 
 bool ImpactSequence::hasCollapsed() const {

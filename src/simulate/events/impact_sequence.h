@@ -54,6 +54,7 @@ class ImpactSequence {
   void findSpeeds(const VectorX& state);
   bool closes(std::size_t contact) const;
   bool hasCollapsed() const;
+  bool closeWithinRounding();
   double timeToNextImpact() const;
   bool mayAdvance(const VectorX& state, double time) const;
   void advance(const VectorX& state, double time);
