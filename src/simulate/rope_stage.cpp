@@ -160,10 +160,14 @@ bool RopeStage::resolve(double time, VectorX& state) {
   for (std::size_t i = 0; i < tautRod_.size(); ++i)
     if (!isTaut(i) && motionOf(assembly_.ropes[i], state).slackLength > kSlackPart * assembly_.ropes[i].maxLength)
       loosen(time, i, state);
-  // A pull may stretch another rope that is at its length, or load it.
+  return pullStretched(time, state) || released;
+}
+
+/// A pull may stretch another rope that is at its length, or load it.
+bool RopeStage::pullStretched(double time, VectorX& state) {
   for (int round = 0; round < kMostPullRounds; ++round) {
     const std::vector<Stretch> stretches = findStretches(state);
-    if (stretches.empty()) return released || round > 0;
+    if (stretches.empty()) return round > 0;
     pull(time, stretches, state);
   }
   return true;

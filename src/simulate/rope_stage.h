@@ -37,6 +37,9 @@ class RopeStage {
   /// anything does.
   bool resolve(double time, VectorX& state);
 
+  /// Impulses and new rods alone, of ropes at their length that lengthen. True if there are any.
+  bool pullStretched(double time, VectorX& state);
+
   /// Ropes at their length as members of an impact: they lengthen as contacts close, along the line of their ends.
   /// Those that are taut are no rods until endImpact.
   std::vector<ImpactContact> beginImpact(const VectorX& state);

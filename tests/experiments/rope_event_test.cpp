@@ -273,5 +273,35 @@ TEST(TautRope, StaysTautWhileWhatItHoldsRests) {
   EXPECT_NEAR(endOf(fall).position.y(), 0.8, 1e-12);
 }
 
+// A ball whose rope is taut already pulls at it before it has gone the way that is left to the floor, however short
+// that is: first the rope, with its direction d, then the floor, and both again as long as they close.
+TEST(RopeAtItsLength, PullsBeforeAGapCloses) {
+  constexpr double kRadius = 0.05, kOfRope = 0.5, kOfFloor = 0.3;
+  const Vec3 along = Vec3(-0.9, 1, 0).normalized(), before(1, -0.8, 0.3);
+  Vec3 expected = before;
+  for (int i = 0; i < 100; ++i) {
+    if (expected.dot(along) < 0) expected -= (1 + kOfRope) * expected.dot(along) * along;
+    if (expected.y() < 0) expected.y() *= -kOfFloor;
+  }
+  ASSERT_GE(expected.dot(along), 0);
+  for (const double accuracy : {1e-3, 1e-6, 1e-9})
+    for (const double gap : {1e-11, 1e-10, 1e-9}) {
+      SCOPED_TRACE(fmt::format("accuracy {} gap {} m", accuracy, gap));
+      const Vec3 place(0, kRadius + gap, 0);
+      const Trajectory run = simulate(sceneWith(fmt::format(
+          R"("duration": 1e-4, "accuracy": {}, "gravity": [0, 0, 0], "materials": {{"m": {{"restitution": {},
+          "staticFriction": 0, "dynamicFriction": 0}}}}, "bodies": [
+          {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}},
+          {{"name": "ball", "shape": {{"sphere": {{"radius": {}}}}}, "mass": 1, "material": "m", "position": {},
+            "linearVelocity": {}}}],
+          "ropes": [{{"bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": {}, "maxLength": 0.4, "restitution": {}}}])",
+          accuracy, kOfFloor, kRadius, vectorText(place), vectorText(before), vectorText(place + 0.4 * along),
+          kOfRope)));
+      // In 1e-4 s the rope's direction turns by 1e-4 at most, which no impulse is left to see: what is left is the
+      // rounding of the gaps' order.
+      EXPECT_LT((endOf(run).linearVelocity - expected).norm(), 1e-6);
+    }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -48,6 +48,8 @@ void EventContacts::collide(const std::optional<std::size_t>& meeting) {
   const SequenceLimits limits = limitsOf(near, still);
   ImpactSequence sequence(near, meeting, groups, island_.assembly.radii, limits, island_.state);
   std::vector<ContactImpulse> impulses;
+  if (!sequence.beginsNow() && ropes_.pullStretched(island_.time, island_.state) && solver_.hasConstraints())
+    solver_.factorize(island_.state);
   while (sequence.next(island_.state)) {
     strike(sequence, still, impulses);
     sequence.finishImpact(island_.state);

@@ -34,6 +34,9 @@ class ImpactSequence {
 
   const std::vector<Contact>& contacts() const { return contacts_; }
 
+  /// Whether its first impact takes place at once: else ropes at their length pull before it.
+  bool beginsNow() const { return timeToNextImpact() == 0; }
+
   /// Goes on to the next impact; false if there is none within the limits. `state` has the velocities of now.
   bool next(const VectorX& state);
 
