@@ -20,6 +20,7 @@ constexpr std::size_t kMostFaces = 2 * kMostPoints - 4;
 constexpr std::size_t kMostClimbs = 8;
 constexpr double kProven = 1e-3;        // of the depth: faces so near to it leave no better way out
 constexpr double kRounding = 1e-14;     // of the size
+constexpr double kGrazing = 1e-12;      // of the size: cores as deep in each other only touch
 constexpr double kPromising = 0.2;      // of the depth: normals that see an overlap larger by less are climbed from,
 constexpr double kShallow = 0.002;      // of the size: as if it were no less deep,
 constexpr double kCoarse = 0.05;        // of depth and size: faces farther inside the surface have another normal
@@ -110,6 +111,7 @@ class Search {
     Hull hull(firstCorners(), size_);
     Vec3 normal = Vec3::UnitY();
     while (hull.isSound() && !hull.isFull()) {
+      if (best_.separation >= -kGrazing * size_) break;  // no way out is shorter by more than that
       const Hull::Face& face = hull.nearest();
       if (face.offset >= -best_.separation - kProven * std::abs(best_.separation) - kRounding * size_) break;
       normal = face.normal;
