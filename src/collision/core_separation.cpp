@@ -23,7 +23,7 @@ constexpr double kMeeting = 1e-9;         // of the size: corners as near meet,
 constexpr double kMet = 1e-13;            // and normals that see gaps as equal are alike,
 constexpr double kOtherWay = 4;           // or a gap so many times as wide: corners that overlap see it from aside
 constexpr double kSameNormal = 1e-8;      // between unit normals: those of one face
-constexpr double kMovedPart = 0.01;       // of the way between the middles
+constexpr double kMovedRatio = 0.01;      // of the way between the middles
 
 double sizeOf(const Core& a, const Core& b) {
   return std::min(a.collider().boundingRadius, b.collider().boundingRadius);
@@ -111,12 +111,12 @@ Vec3 middleOf(const Core& core) {
   return core.placed(std::accumulate(points.begin(), points.end(), Vec3(Vec3::Zero())) / double(points.size()));
 }
 
-/// Corners that meet, or a corner and an edge, have a fan of normals. Of them the one that nearest points have once the
-/// cores are moved apart along the line of their middles: that turns and mirrors with them. Any other core keeps its
-/// own, since such a direction sees less.
+/// Corners that meet, or a corner and an edge, have a fan of normals. The one taken is the normal between the nearest
+/// points of the cores moved apart along the line of their middles: it turns and mirrors with them. Elsewhere that
+/// normal sees a smaller gap than the features' own, which stays.
 SeparatingAxis amongEqual(const SeparatingAxis& axis, const Core& a, const Core& b) {
   if (std::abs(axis.separation) > kMeeting * sizeOf(a, b)) return axis;
-  const Vec3 normal = separationOf(a, b.moved(kMovedPart * (middleOf(b) - middleOf(a)))).normal;
+  const Vec3 normal = separationOf(a, b.moved(kMovedRatio * (middleOf(b) - middleOf(a)))).normal;
   if ((normal - axis.normal).squaredNorm() < kSameNormal * kSameNormal) return axis;
   const SeparatingAxis between{gapAlong(a, b, normal), normal};
   const double less = axis.separation - between.separation;

@@ -94,7 +94,7 @@ double gapAlong(const FlatTriangle& triangle, const Core& cylinder, const Vec3& 
   return -cylinder.reach(-normal) - top;
 }
 
-/// Unit vector from a triangle's middle to the nearest point of a cylinder's axis.
+/// Unit vector from a triangle's middle to the nearest point of a cylinder's axis; zero if that is the middle.
 Vec3 towardsAxis(const FlatTriangle& triangle, const Core& cylinder) {
   const Segment axis{cylinder.end(-1), cylinder.end(1) - cylinder.end(-1)};
   const Vec3 middle = (triangle.a + triangle.b + triangle.c) / 3;
@@ -136,10 +136,12 @@ struct CylinderVisit {
       least = {height, triangle.normal}, isFound = true;
       return;
     }
-    // So does what any direction sees: that of the nearest so far, that to the axis, that between nearest points.
+    // A gap along any unit vector bounds the distance too: along the nearest triangle's normal so far, towards the
+    // axis, between nearest points.
     const auto isFarther = [&](double gap) { return gap >= least.separation - kLevelPart * size; };
     if (isFound && isFarther(gapAlong(triangle, cylinder, least.normal))) return;
-    if (isFarther(gapAlong(triangle, cylinder, towardsAxis(triangle, cylinder)))) return;
+    const Vec3 outward = towardsAxis(triangle, cylinder);
+    if (outward != Vec3::Zero() && isFarther(gapAlong(triangle, cylinder, outward))) return;
     const Core core = solid.coreOf(triangle);
     const CoreDistance apart = distanceOf(core, cylinder);
     if (apart.distance > 0 && isFarther(apart.seen)) return;

@@ -14,7 +14,7 @@ namespace {
 // Of the smaller radius: edges of meshes may graze each other so deep unseen. What does is apart at two looks, and at
 // the rates of a body in free motion by far less.
 constexpr double kGrazePart = 1e-4;
-constexpr int kMostLooks = 128;  // for directions, at a pair whose edges stay within a hair of each other
+constexpr int kMaxLooks = 128;  // for directions, at a pair whose edges stay within a hair of each other
 // Of a size: how far round surfaces sink in where a joint holds them before they press. From there the arm to the joint
 // is long enough for an impulse to turn the body: 3e-5 of the size.
 constexpr double kPinnedBand = 5e-10;
@@ -277,7 +277,7 @@ void PairSearch::searchFrom(double from, double gapFrom, double threshold, std::
   if (from >= end) return;
   const auto above = [&](double fraction) { return gap(fraction) - threshold; };
   const auto areApart = [&](const Bracket& ends) {
-    if (apart_ && apart_->looks() > kMostLooks) lookBlindly();
+    if (apart_ && apart_->looks() > kMaxLooks) lookBlindly();
     return apart_ && apart_->during(ends, threshold, bounds_);
   };
   if (const auto fraction = firstCrossing(above, bounds_, areApart, {from, gapFrom - threshold, end, above(end)}))

@@ -297,8 +297,7 @@ TEST(RopeAtItsLength, PullsBeforeAGapCloses) {
           "ropes": [{{"bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": {}, "maxLength": 0.4, "restitution": {}}}])",
           accuracy, kOfFloor, kRadius, vectorText(place), vectorText(before), vectorText(place + 0.4 * along),
           kOfRope)));
-      // In 1e-4 s the rope's direction turns by 1e-4 at most, which no impulse is left to see: what is left is the
-      // rounding of the gaps' order.
+      // In 1e-4 s the rope's direction turns by 1e-4 at most, which no impulse is left to see.
       EXPECT_LT((endOf(run).linearVelocity - expected).norm(), 1e-6);
     }
 }
