@@ -285,5 +285,90 @@ TEST(RowOfBalls, EqualGapsOnBothSidesStaySymmetric) {
       }
 }
 
+/// A cube of 0.1 m and 1 kg, turned about z by 0.3, its lowest edge over a floor, and a ball over its highest edge: all
+/// impulses are vertical.
+struct TiltedCubeUnderABall {
+  double gap = 0, ballGap = 0;         // m
+  double ballMass = 0, ballSpeed = 0;  // kg; m/s, downwards
+  double restitution = 0;
+};
+
+constexpr double kCubeTilt = 0.3;
+const double kCubeEdge = kColumnRadius * (std::cos(kCubeTilt) - std::sin(kCubeTilt)),  // m from the centre, along x
+    kCubeHeight = kColumnRadius * (std::cos(kCubeTilt) + std::sin(kCubeTilt));         // m from the centre, along y
+
+/// m/s: of the cube, of its edges by its spin, and of the ball, upwards, after all impacts in the order of time.
+Vec3 speedsAfterImpacts(const TiltedCubeUnderABall& scene) {
+  const double inertia = 4 * kColumnRadius * kColumnRadius / 6, turning = kCubeEdge * kCubeEdge / inertia;
+  Vec3 speeds(0, 0, -scene.ballSpeed);  // of the highest edge by the spin
+  double gap = scene.gap, ballGap = scene.ballGap;
+  while (true) {
+    const double opening = speeds[0] - speeds[1], ballOpening = speeds[2] - speeds[0] - speeds[1];
+    const double time = opening < -1e-14 ? gap / -opening : INFINITY,
+                 ballTime = ballOpening < -1e-14 ? ballGap / -ballOpening : INFINITY;
+    const double next = std::min(time, ballTime);
+    if (std::isinf(next)) return speeds;
+    gap = time == next ? 0 : gap + next * opening;
+    ballGap = ballTime <= time ? 0 : ballGap + next * ballOpening;
+    if (ballTime <= time) {
+      const double impulse = -(1 + scene.restitution) * ballOpening / (1 + turning + 1 / scene.ballMass);
+      speeds += impulse * Vec3(-1, -turning, 1 / scene.ballMass);
+    } else {
+      speeds += -(1 + scene.restitution) * opening / (1 + turning) * Vec3(1, -turning, 0);
+    }
+  }
+}
+
+// A cube that floats over the floor by less than any accuracy is not on it when the ball hits: the impacts follow each
+// other. Until then, 1e-7 s, it falls by less than 1e-13 m; to the end speeds change by 1e-4 m/s.
+TEST(SmallGaps, AreNotClosedBeforeTheImpact) {
+  for (const double accuracy : {1e-4, 1e-6, 1e-8, 1e-10})
+    for (const double gap : {2e-11, 1e-10, 3e-10})
+      for (const double restitution : {0.5, 0.8, 1.0}) {
+        const TiltedCubeUnderABall column{gap, 1e-7, 3, 1, restitution};
+        const Frame end = simulate(sceneWith(fmt::format(
+                                       R"("duration": 1e-5, "accuracy": {}, "output": {{"framesPerSecond": 1e5}},
+            "materials": {{"m": {{"restitution": {}, "staticFriction": 0, "dynamicFriction": 0}}}}, "bodies": [
+            {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}},
+            {{"name": "cube", "shape": {}, "mass": 1, "material": "m", "position": [0, {:.17g}, 0],
+              "orientation": {{"w": {:.17g}, "x": 0, "y": 0, "z": {:.17g}}}}},
+            {{"name": "ball", "shape": {}, "mass": {}, "material": "m", "position": [{:.17g}, {:.17g}, 0],
+              "linearVelocity": [0, {}, 0]}}])",
+                                       accuracy, restitution, kColumnBox, kCubeHeight + gap, std::cos(kCubeTilt / 2),
+                                       std::sin(kCubeTilt / 2), kColumnBall, column.ballMass, kCubeEdge,
+                                       2 * kCubeHeight + kColumnRadius + gap + column.ballGap, -column.ballSpeed)))
+                              .frames.back();
+        SCOPED_TRACE(fmt::format("accuracy {} gap {} e {}", accuracy, gap, restitution));
+        const Vec3 expected = speedsAfterImpacts(column);
+        EXPECT_NEAR(end.states[0].linearVelocity.y(), expected[0], 1e-3);
+        EXPECT_NEAR(kCubeEdge * end.states[0].angularVelocity.z(), expected[1], 1e-3);
+        EXPECT_NEAR(end.states[1].linearVelocity.y(), expected[2], 1e-3);
+      }
+}
+
+// A cube's two lower edges, one lower than the other by the tilt: an impulse j at one changes its speed by
+// (1/m + r^2 / I) j = 2.5 j/m and that of the other by (1/m - r^2 / I) j = -0.5 j/m. From 1 m/s, the first goes up by
+// e, the other comes down by 1.2 + 0.2 e, and its rebound leaves the first e - 0.2 (1 + e) (1.2 + 0.2 e), upwards.
+TEST(SmallGaps, EdgesOfATiltedCubeMeetTheFloorOneAfterTheOther) {
+  for (const double accuracy : {1e-3, 1e-4, 1e-6, 1e-8, 1e-10})
+    for (const double tilt : {1e-9, 1e-8, 1e-7, 1e-6})
+      for (const double restitution : {0.5, 0.8, 1.0}) {
+        const double half = kColumnRadius, height = half * (std::cos(tilt) + std::sin(tilt));
+        const Trajectory run = simulate(sceneWith(fmt::format(
+            R"("duration": 2e-4, "accuracy": {}, "gravity": [0, 0, 0], "output": {{"framesPerSecond": 5000}},
+            "materials": {{"m": {{"restitution": {}, "staticFriction": 0, "dynamicFriction": 0}}}}, "bodies": [
+            {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}},
+            {{"name": "cube", "shape": {}, "mass": 2, "material": "m", "position": [0, {:.17g}, 0],
+              "orientation": {{"w": {:.17g}, "x": 0, "y": 0, "z": {:.17g}}}, "linearVelocity": [0, -1, 0]}}])",
+            accuracy, restitution, kColumnBox, height + 1e-5, std::cos(tilt / 2), std::sin(tilt / 2))));
+        const double second = restitution * (1.2 + 0.2 * restitution),
+                     first = restitution - 0.2 * (1 + restitution) * (1.2 + 0.2 * restitution);
+        const BodyState end = endOf(run);
+        SCOPED_TRACE(fmt::format("accuracy {} tilt {} e {}", accuracy, tilt, restitution));
+        EXPECT_NEAR(end.linearVelocity.y(), (first + second) / 2, 1e-5);
+        EXPECT_NEAR(half * std::abs(end.angularVelocity.z()), (second - first) / 2, 1e-5);
+      }
+}
+
 }  // namespace
 }  // namespace cradle

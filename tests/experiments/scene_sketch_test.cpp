@@ -111,6 +111,11 @@ TEST(SqueezedBalls, ComeToRestAfterInfinitelyManyImpacts) {
   }
 }
 
+// The lower one's bounces are over after (2 / 9.81) 0.1 / (1 - 0.1) s = 0.023 s; the upper one comes 1.3 s later.
+TEST(SqueezedBalls, AreNotKnownWhereTheLowerOneRestsBeforeTheUpperOneComes) {
+  EXPECT_FALSE(waysOf({{0.1, 10}, {0, 10}, {-1, -1}, 0.1, 9.81}, 0.5));
+}
+
 /// What a run shows if it is changed afterwards.
 template <class Change>
 std::vector<SketchFault> faultsOfChanged(const Change& change) {

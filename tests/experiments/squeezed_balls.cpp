@@ -9,7 +9,7 @@ namespace {
 using Real = long double;
 
 constexpr Real kAtOnce = 1e-200L;  // s: of impacts that come as fast
-constexpr Real kSlow = 1e-9L;      // m/s: a rebound that dies away by itself
+constexpr Real kSlow = 1e-9L;      // m/s: a rebound that may die away by itself
 constexpr int kMostImpacts = 1000000;
 
 /// Time until a gap that changes at `rate` and shrinks by `gravity` t^2 / 2 closes; infinite if it never does.
@@ -38,7 +38,8 @@ std::optional<std::array<double, 2>> waysOf(SqueezedBalls balls, double time) {
     }
     if (isOnFloor) {
       below = 0, v *= -e;
-      if (v < kSlow && w > -kSlow) return {};
+      const Real bouncing = 2 * v / (gravity * (1 - e));  // s, until it rests
+      if (v < kSlow && between > -2 * (w - kSlow) * bouncing) return {};
     } else {
       const Real change = (1 + e) * (v - w) / (1 / lower + 1 / upper);
       between = 0, v -= change / lower, w += change / upper;

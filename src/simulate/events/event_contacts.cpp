@@ -16,13 +16,15 @@
 namespace cradle {
 namespace {
 
-constexpr double kTouchPart = 0.1;         // of the accuracy, in sizes of a body: nearer is touching ...
-constexpr double kLeastTouchPart = 1e-11;  // ... but not within rounding
-constexpr double kMostTouchPart = 1e-8;
+// Nearer (in sizes of a body) is touching: hardly more than rounding, whatever the accuracy, as what comes of a gap and
+// of none may differ by everything. A look takes more together.
+constexpr double kTouchPart = 1e-11;
+constexpr double kLookTouchPart = 1e-8;
 // In a sequence of impacts bodies move so far at most while normals stay as they are; farther where a look is enough,
 // as events are counted there.
-constexpr double kMostReachPart = 1e-8;
-constexpr double kMostLookReachPart = 1e-5;
+constexpr double kReachRatio = 0.1;  // of the accuracy
+constexpr double kMaxReachPart = 1e-8;
+constexpr double kMaxLookReachPart = 1e-5;
 constexpr double kMostTouchError = 1e-6;    // of a size: so well two ways to find a gap agree
 constexpr double kDeadBandPart = 1e-12;     // of the smallest size
 constexpr double kBounceOfAccuracy = 1e-2;  // the same, of the accuracy ...
@@ -81,10 +83,10 @@ EventContacts::EventContacts(MovingIsland& island, RopeStage& ropes, double accu
     : island_(island),
       ropes_(ropes),
       size_(smallestSize(island.assembly.geometry)),
-      touchTolerance_(size_ * std::clamp(kTouchPart * accuracy, kLeastTouchPart, kMostTouchPart)),
+      touchTolerance_(size_ * (accuracy > kLookAccuracy ? kLookTouchPart : kTouchPart)),
       deadBand_(kDeadBandPart * size_),
-      reach_(size_ * std::clamp(kTouchPart * accuracy, kLeastTouchPart,
-                                accuracy > kLookAccuracy ? kMostLookReachPart : kMostReachPart)),
+      reach_(size_ * std::clamp(kReachRatio * accuracy, kTouchPart,
+                                accuracy > kLookAccuracy ? kMaxLookReachPart : kMaxReachPart)),
       lasting_(island, touchTolerance_),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       stillPart_(std::min(kMostStillPart, accuracy)) {}

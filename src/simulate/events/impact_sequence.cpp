@@ -18,7 +18,7 @@ constexpr double kOpeningPart = 1e-6;           // of the fastest closing: a con
 constexpr std::size_t kCollapseImpacts = 200;   // enough to tell intervals that shrink for ever from a few short ones
 constexpr std::size_t kImpactsOfAContact = 20;  // the same, for each contact
 constexpr double kCollapsePart = 1e-12;         // of the time elapsed: so little so many impacts take
-constexpr double kHiddenGap = 2;                // times a gap's rounding: measured, it may be within that
+constexpr double kHiddenGap = 2;                // times a gap's rounding: measured, it may be none
 constexpr std::size_t kMaxSequenceImpacts = 100000;  // a row of 40 balls takes a thousand
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -68,6 +68,11 @@ bool ImpactSequence::closes(std::size_t contact) const {
   return speeds_[contact] < leftSpeeds_[contact] - limits_.stillSpeed;
 }
 
+/// Whether the gap, measured anew, might be none.
+bool ImpactSequence::isWithinRounding(std::size_t contact) const {
+  return gaps_[contact] <= kHiddenGap * limits_.gapRounding;
+}
+
 bool ImpactSequence::next(const VectorX& state) {
   findSpeeds(state);
   isCollapse_ = hasCollapsed();
@@ -96,7 +101,7 @@ bool ImpactSequence::next(const VectorX& state) {
 bool ImpactSequence::closeWithinRounding() {
   bool isAnyClosed = false;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (!closes(i) || gaps_[i] > kHiddenGap * limits_.gapRounding) continue;
+    if (!closes(i) || !isWithinRounding(i)) continue;
     gaps_[i] = 0;
     isAnyClosed = true;
   }
@@ -141,7 +146,8 @@ void ImpactSequence::advance(const VectorX& state, double time) {
   }
 }
 
-/// What has just let go is not touched: its gap is smaller than can be measured, but it grows.
+/// What has just let go is not touched: its gap is smaller than can be measured, but it grows. Corners of a face that
+/// lands flat meet at once, as nearly as rounding tells; in other ways each has its own instant, at every accuracy.
 void ImpactSequence::findMembers() {
   members_.clear();
   const auto isClosed = [this](std::size_t i) { return gaps_[i] <= gapErrors_[i]; };
@@ -152,7 +158,7 @@ void ImpactSequence::findMembers() {
   };
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     if (speeds_[i] > kOpeningPart * fastestClosing_) continue;
-    if (isClosed(i) || (gaps_[i] <= limits_.touchTolerance && isOfClosingPair(i))) members_.push_back(i);
+    if (isClosed(i) || (isWithinRounding(i) && isOfClosingPair(i))) members_.push_back(i);
   }
 }
 

@@ -10,7 +10,7 @@ namespace cradle {
 
 /// What bounds a sequence of impacts at frozen places.
 struct SequenceLimits {
-  double touchTolerance = 0;  // m: points of one pair nearer than that meet at once
+  double touchTolerance = 0;  // m: so far apart, what an event has brought together may seem to be
   double gapRounding = 0;     // m: gaps below it are zero
   double reach = 0;           // m: contacts farther apart are not known, so bodies move by half of it at most
   double duration = 0;        // s: in a longer time forces would count
@@ -56,6 +56,7 @@ class ImpactSequence {
   void takeMeetingAsClosed(std::size_t pair);
   void findSpeeds(const VectorX& state);
   bool closes(std::size_t contact) const;
+  bool isWithinRounding(std::size_t contact) const;
   bool hasCollapsed() const;
   bool closeWithinRounding();
   double timeToNextImpact() const;
