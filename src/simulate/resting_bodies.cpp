@@ -17,6 +17,7 @@ constexpr double kSupportPart = 1e-6;       // of its size: how far a point may 
 constexpr std::size_t kFewSupports = 12;    // whose forces are found densely
 constexpr double kForcesSolvedPart = 1e-2;  // of the residual: how well forces of many are found
 constexpr double kResidualAcceleration = 1e-6;  // of gravity: what supporting forces may leave
+constexpr double kSmoothSlip = 1e-7;            // of sqrt(g x size): sliding without friction, which nothing stops
 
 }  // namespace
 
@@ -73,6 +74,10 @@ bool RestingBodies::canBeHeld(const std::vector<int>& islands, int island, const
     if (islands[static_cast<std::size_t>(contact.movingBody())] != island) continue;
     supports.push_back(contact);
     frictions.push_back(geometry_.pairs[contact.pair].law.staticFriction);
+    const Vec3 velocity = relativeVelocity(contact, state),
+               slip = velocity - contact.normal.dot(velocity) * contact.normal;
+    const double size = sizes_[static_cast<std::size_t>(contact.movingBody())];
+    if (frictions.back() == 0 && slip.norm() > kSmoothSlip * std::sqrt(mechanism_.gravity.norm() * size)) return false;
   }
   hold(supports, frictions, state, accelerations);
 

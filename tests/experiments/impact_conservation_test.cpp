@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -116,6 +117,51 @@ TEST(BodiesThatASpringPressesTogether, KeepTheirMomentaWhateverTheirShapes) {
           EXPECT_LT(frame.energy.angularMomentum.norm(), kInterpolated * most) << shape << friction << " " << density;
         }
       }
+}
+
+// Bodies that fall on and lean against each other, on a floor without friction and with friction between them: nothing
+// acts along the floor, nor turns them about the vertical, whatever contact steps do of their energy, and until they
+// rest.
+TEST(BodiesOnASmoothFloor, KeepTheirMomentaAlongItInContactSteps) {
+  for (const char* const shape :
+       {R"({"capsule": {"radius": 0.1, "length": 0.2}})", R"({"cylinder": {"radius": 0.15, "length": 0.1}})",
+        R"({"box": {"size": [0.3, 0.2, 0.1]}})"})
+    for (const double friction : {0.0, 0.5})
+      for (const double speed : {0.0, 0.002, 0.3})
+        for (const double duration : {0.1, 0.2, 0.3}) {
+          // A step ends with the run: states there are not interpolated.
+          const Trajectory run = simulate(sceneWith(fmt::format(
+              R"("duration": {}, {}, "output": {{"framesPerSecond": {:.17g}}},
+      "materials": {{"ice": {{"staticFriction": 0, "dynamicFriction": 0, "restitution": 0}},
+                     "m": {{"staticFriction": {}, "dynamicFriction": {}, "restitution": 0}}}},
+      "bodies": [{{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "ice"}},
+                 {{"name": "a", "shape": {{"box": {{"size": [0.3, 0.3, 0.3]}}}}, "material": "m", "mass": 20,
+                   "position": [0, 0.15, 0], "linearVelocity": [{}, 0, 0.1]}},
+                 {{"name": "b", "shape": {}, "material": "m", "mass": 5, "position": [0.36, 0.25, 0.03],
+                   "orientation": {{"axis": [1, 2, 3], "angleDegrees": 50}}, "linearVelocity": [-0.3, 0, 0]}},
+                 {{"name": "c", "shape": {}, "material": "m", "mass": 1, "position": [0.05, 0.52, 0.02],
+                   "orientation": {{"axis": [1, 0, 3], "angleDegrees": 20}}}}])",
+              duration, methodText("rk4", 1.0 / 960), 1 / duration, friction, friction, speed, shape, shape)));
+          SCOPED_TRACE(fmt::format("{} friction {} speed {} duration {}", shape, friction, speed, duration));
+          const EnergyBalance &start = run.frames.front().energy, &end = run.frames.back().energy;
+          const Vec3 change = end.momentum - start.momentum;
+          EXPECT_LT(Vec3(change.x(), 0, change.z()).norm(), kMomentumError * 20);
+          EXPECT_NEAR(end.angularMomentum.y(), start.angularMomentum.y(), kTurningError * 20);
+        }
+}
+
+// Too slow to lift it by 1e-7 of its size, a box on a floor without friction goes on for ever.
+TEST(BodiesOnASmoothFloor, GoOnHoweverSlowTheyAre) {
+  for (const double speed : {1e-5, 1e-4, 1e-3}) {
+    const Trajectory run = simulate(sceneWith(fmt::format(
+        R"("duration": 0.5, {}, "materials": {{"ice": {{"staticFriction": 0, "dynamicFriction": 0, "restitution": 0}}}},
+      "bodies": [{{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "ice"}},
+                 {{"name": "box", "shape": {{"box": {{"size": [0.3, 0.3, 0.3]}}}}, "material": "ice", "mass": 2,
+                   "position": [0, 0.15, 0], "linearVelocity": [{}, 0, 0]}}])",
+        methodText("rk4", 1.0 / 960), speed)));
+    EXPECT_NEAR(endOf(run).position.x(), 0.5 * speed, 1e-10 * speed);
+    EXPECT_THAT(eventsOf(run, EventKind::rest), testing::IsEmpty());
+  }
 }
 
 TEST(Impact, WithoutLossKeepsMomentumAngularMomentumAndEnergyForEveryPairOfShapes) {

@@ -8,6 +8,7 @@ namespace cradle {
 namespace {
 
 constexpr double kEnergyRounding = 1e-13;  // of the energy
+constexpr double kSameNormal = 1e-12;      // sine of the angle between two
 
 double kineticEnergyOf(const std::vector<int>& bodies, const Mechanism& mechanism, const VectorX& state) {
   double energy = 0;
@@ -15,43 +16,54 @@ double kineticEnergyOf(const std::vector<int>& bodies, const Mechanism& mechanis
   return energy;
 }
 
-/// The motion of bodies as if they were one rigid body with the same momenta: what it has of kinetic energy, relative
-/// motions add to (J. Koenig's theorem, for the angular momentum too).
-struct RigidMotion {
-  double mass = 0;                                                           // kg
-  Vec3 center = Vec3::Zero();                                                // m
-  Vec3 velocity = Vec3::Zero();                                              // m/s
-  Vec3 angularMomentum = Vec3::Zero();                                       // kg m^2/s, about the centre
-  Mat3 inertiaTensor = Mat3::Zero();                                         // kg m^2, about the centre, world
-  Vec3 spin() const { return inertiaTensor.ldlt().solve(angularMomentum); }  // rad/s
+using Vec6 = Eigen::Vector<double, 6>;
+
+/// Bodies as if they were one rigid body: what their motion as one has of kinetic energy, relative motions add to
+/// (J. Koenig's theorem, for the angular momentum too).
+struct WholeOfBodies {
+  double mass = 0;                    // kg
+  Vec3 center = Vec3::Zero();         // m
+  Vec6 momenta = Vec6::Zero();        // kg m/s; kg m^2/s about the centre
+  Mat3 inertiaTensor = Mat3::Zero();  // kg m^2, about the centre, world
+
+  /// The motion among `motions` that has the momenta of these.
+  Vec6 motionAmong(const RigidMotions& motions) const {
+    RigidMotions momentaOf = motions;
+    momentaOf.topRows<3>() *= mass;
+    momentaOf.bottomRows<3>() = inertiaTensor * motions.bottomRows<3>();
+    if (motions.cols() == 0) return Vec6::Zero();
+    return motions * (motions.transpose() * momentaOf).ldlt().solve(motions.transpose() * momenta);
+  }
 };
 
-RigidMotion rigidMotionOf(const std::vector<int>& bodies, const Mechanism& mechanism, const VectorX& state) {
-  RigidMotion motion;
+WholeOfBodies wholeOf(const std::vector<int>& bodies, const Mechanism& mechanism, const VectorX& state) {
+  WholeOfBodies whole;
+  Vec3 momentum = Vec3::Zero(), angularMomentum = Vec3::Zero();
   for (const int body : bodies) {
     const double mass = mechanism.bodies[static_cast<std::size_t>(body)].mass;
-    motion.mass += mass;
-    motion.center += mass * centerOfMass(state, body);
-    motion.velocity += mass * linearVelocity(state, body);
+    whole.mass += mass;
+    whole.center += mass * centerOfMass(state, body);
+    momentum += mass * linearVelocity(state, body);
   }
-  motion.center /= motion.mass, motion.velocity /= motion.mass;
+  whole.center /= whole.mass;
   for (const int body : bodies) {
     const RigidBody& inertia = mechanism.bodies[static_cast<std::size_t>(body)];
-    const Vec3 arm = centerOfMass(state, body) - motion.center;
+    const Vec3 arm = centerOfMass(state, body) - whole.center;
     const Mat3 rotation = orientation(state, body).normalized().toRotationMatrix();
     const Mat3 own = rotation * inertia.inertiaTensor * rotation.transpose();
-    motion.inertiaTensor += own + inertia.mass * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
-    motion.angularMomentum += own * Vec3(angularVelocity(state, body)) +
-                              inertia.mass * arm.cross(linearVelocity(state, body) - motion.velocity);
+    whole.inertiaTensor += own + inertia.mass * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+    angularMomentum += own * Vec3(angularVelocity(state, body)) +
+                       inertia.mass * arm.cross(linearVelocity(state, body) - momentum / whole.mass);
   }
-  return motion;
+  whole.momenta << momentum, angularMomentum;
+  return whole;
 }
 
 /// Adds velocities of bodies that move as one.
-void addRigidMotion(const std::vector<int>& bodies, const Vec3& center, const Vec3& velocity, const Vec3& spin,
-                    VectorX& state) {
+void addMotion(const std::vector<int>& bodies, const Vec3& center, const Vec6& motion, VectorX& state) {
+  const Vec3 spin = motion.tail<3>();
   for (const int body : bodies) {
-    linearVelocity(state, body) += velocity + spin.cross(centerOfMass(state, body) - center);
+    linearVelocity(state, body) += motion.head<3>() + spin.cross(centerOfMass(state, body) - center);
     angularVelocity(state, body) += spin;
   }
 }
@@ -70,27 +82,39 @@ bool isGain(double energy, double most) {
   return energy > most + kEnergyRounding * std::abs(most);
 }
 
+void hinderByPlane(const Vec3& normal, RigidMotions& kept) {
+  const bool isHinderedSo = kept.cols() == 3 && kept.col(2).tail<3>().cross(normal).isZero(kSameNormal);
+  if (isHinderedSo) return;
+  const bool isFree = kept.cols() == 6;
+  kept.setZero(6, isFree ? 3 : 0);
+  if (!isFree) return;
+  kept.col(0).head<3>() = normal.unitOrthogonal();
+  kept.col(1).head<3>() = normal.cross(kept.col(0).head<3>());
+  kept.col(2).tail<3>() = normal;
+}
+
 double limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state) {
   const double energy = energyOf(moved.bodies, mechanism, state);
   if (!isGain(energy, most)) return 0;
-  const RigidMotion kept = moved.isGrounded ? RigidMotion() : rigidMotionOf(moved.bodies, mechanism, state);
-  const Vec3 spin = moved.isGrounded ? Vec3::Zero() : kept.spin();
-  addRigidMotion(moved.bodies, kept.center, -kept.velocity, -spin, state);
+  const WholeOfBodies whole = wholeOf(moved.bodies, mechanism, state);
+  const Vec6 kept = whole.motionAmong(moved.kept);
+  addMotion(moved.bodies, whole.center, -kept, state);
   const double kinetic = kineticEnergyOf(moved.bodies, mechanism, state);
   const double part = kinetic > 0 ? std::sqrt(std::max(0.0, 1 - (energy - most) / kinetic)) : 0;
   for (const int body : moved.bodies) state.segment<kVelocitySize>(velocityOffset(state, body)) *= part;
-  addRigidMotion(moved.bodies, kept.center, kept.velocity, spin, state);
+  addMotion(moved.bodies, whole.center, kept, state);
   return energy - energyOf(moved.bodies, mechanism, state);
 }
 
 void keepMomenta(const MovedBodies& moved, const VectorX& free, const Mechanism& mechanism, VectorX& state) {
-  if (moved.isGrounded) return;
-  const RigidMotion before = rigidMotionOf(moved.bodies, mechanism, free);
-  const Vec3 shift = before.center - rigidMotionOf(moved.bodies, mechanism, state).center;
-  for (const int body : moved.bodies) centerOfMass(state, body) += shift;
-  RigidMotion missing = rigidMotionOf(moved.bodies, mechanism, state);
-  missing.angularMomentum = before.angularMomentum - missing.angularMomentum;
-  addRigidMotion(moved.bodies, missing.center, before.velocity - missing.velocity, missing.spin(), state);
+  if (moved.kept.cols() == 0) return;
+  const WholeOfBodies before = wholeOf(moved.bodies, mechanism, free);
+  const auto shifts = moved.kept.topRows<3>();
+  const Vec3 missing = before.center - wholeOf(moved.bodies, mechanism, state).center;
+  for (const int body : moved.bodies) centerOfMass(state, body) += shifts * (shifts.transpose() * missing);
+  WholeOfBodies whole = wholeOf(moved.bodies, mechanism, state);
+  whole.momenta = before.momenta - whole.momenta;
+  addMotion(moved.bodies, whole.center, whole.motionAmong(moved.kept), state);
 }
 
 }  // namespace cradle

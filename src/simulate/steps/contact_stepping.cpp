@@ -158,33 +158,41 @@ ContactStepping::Motion ContactStepping::motionOf(const Group& group, const Vect
   return motion;
 }
 
+/// Whether the member is a contact with a fixed plane without friction.
+bool ContactStepping::isOnSmoothPlane(std::size_t member) const {
+  if (isRope(member) || lawOf(member).staticFriction > 0 || lawOf(member).dynamicFriction > 0) return false;
+  return assembly_.geometry.pairs[contacts_[member].contact.pair].againstPlane;
+}
+
 /// Contacts whose bodies touch or are tied to each other.
 std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
   Islands islands(assembly_.mechanism.bodies.size());
-  std::vector<char> isTied(assembly_.mechanism.bodies.size(), 0), isGrounded = isTied;
-  const auto ground = [&](int bodyA, int bodyB) {
-    if (bodyA != kFixed && bodyB == kFixed) isGrounded[static_cast<std::size_t>(bodyA)] = 1;
-    if (bodyB != kFixed && bodyA == kFixed) isGrounded[static_cast<std::size_t>(bodyB)] = 1;
-  };
+  std::vector<char> isTied(assembly_.mechanism.bodies.size(), 0), isTiedToFixed = isTied;
   forEachTie(assembly_.mechanism.constraints, [&](int bodyA, int bodyB) {
     islands.join(bodyA, bodyB);
-    ground(bodyA, bodyB);
-    for (const int body : {bodyA, bodyB})
-      if (body != kFixed) isTied[static_cast<std::size_t>(body)] = 1;
+    for (const auto& [body, other] : {std::pair(bodyA, bodyB), {bodyB, bodyA}}) {
+      if (body == kFixed) continue;
+      isTied[static_cast<std::size_t>(body)] = 1;
+      if (other == kFixed) isTiedToFixed[static_cast<std::size_t>(body)] = 1;
+    }
   });
   for (const SteppedContact& stepped : contacts_) islands.join(stepped.contact.bodyA, stepped.contact.bodyB);
   std::map<int, Group> groups;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& contact = contacts_[i].contact;
     Group& group = groups[islands.islandOf(contact.movingBody())];
-    ground(contact.bodyA, contact.bodyB);
     group.members.push_back(i);
     group.contacts.push_back(contact);
+    if (contact.bodyA != kFixed && contact.bodyB != kFixed) continue;
+    if (isOnSmoothPlane(i))
+      hinderByPlane(contact.normal, group.moved.kept);
+    else
+      group.moved.kept.resize(6, 0);
   }
   for (std::size_t body = 0; body < isTied.size(); ++body)
     if (const auto group = groups.find(islands.islandOf(static_cast<int>(body))); group != groups.end()) {
       group->second.moved.bodies.push_back(static_cast<int>(body));
-      group->second.moved.isGrounded = group->second.moved.isGrounded || isGrounded[body];
+      if (isTiedToFixed[body]) group->second.moved.kept.resize(6, 0);
       group->second.isTied = group->second.isTied || isTied[body];
     }
   std::vector<Group> ordered;

@@ -117,6 +117,7 @@ class ContactStepping {
   void setCones(const Group& group, const VectorX& state);
   void setCones(const Group& group, const std::vector<Contact>& contacts, const VectorX& state);
   Motion motionOf(const Group& group, const VectorX& before, double timeStep, const VectorX& state);
+  bool isOnSmoothPlane(std::size_t member) const;
   std::vector<Group> findGroups() const;
   double restSpeed(double pressing, double timeStep) const;
   void resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state);
