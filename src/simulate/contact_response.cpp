@@ -29,8 +29,8 @@ ContactRows rowsOf(const ContactConstraint& constraint, const VectorX& state, co
 }  // namespace
 
 bool canLast(const Contact& contact) {
-  const bool isEdge = contact.edge != Vec3::Zero();
-  return (isEdge || (!std::isnan(contact.radiusA) && !std::isnan(contact.radiusB))) &&
+  const bool isEdge = contact.edge != Vec3::Zero(), isSharp = !(contact.radiusA > 0 || contact.radiusB > 0);
+  return !isSharp && (isEdge || (!std::isnan(contact.radiusA) && !std::isnan(contact.radiusB))) &&
          (std::isfinite(contact.radiusA) || std::isfinite(contact.radiusB));
 }
 

@@ -115,9 +115,10 @@ void EventContacts::resolve(const std::optional<ContactChange>& change, const st
   recordRests(rested);
 }
 
-/// Lasting contacts have no gap and do not leave each other, to rounding; those that stick do not slide.
+/// Lasting contacts have no gap and do not leave each other, to rounding; those that stick do not slide. What cannot
+/// last, as two corners that meet, has no rows for that.
 void EventContacts::keepTogether() {
-  if (lasting_.empty()) return;
+  if (lasting_.empty() || !lasting_.fault().empty()) return;
   const double constant = energyConstant(island_.assembly.mechanism, island_.state);
   island_.equations.project(island_.state);
   bookNumerical(constant, island_.assembly.mechanism, island_.state);
@@ -167,7 +168,7 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
     solve();
   }
   island_.log.recordFaults(island_.time, impacts, faults);
-  bookImpact(impacts, approach, state);
+  bookImpact(impacts, island_.assembly.mechanism.bodies, approach, state);
   bookNumerical(energyConstant(island_.assembly.mechanism, approach), island_.assembly.mechanism, state);
 }
 

@@ -240,7 +240,7 @@ void ContactStage::resolveImpacts(double time, const VectorX& before, VectorX& s
     const bool isHard = std::any_of(impacts.begin(), impacts.end(), [&](const ImpactContact& impact) {
       return closingSpeed(impact.contact, approach) > leastImpactSpeed_;
     });
-    bookImpact(impacts, approach, state);
+    bookImpact(impacts, assembly_.mechanism.bodies, approach, state);
     bookNumerical(energyConstant(assembly_.mechanism, approach), assembly_.mechanism, state);
     for (const ImpactContact& impact : impacts) {
       const double impulse = impact.contact.normal.dot(impact.impulse);

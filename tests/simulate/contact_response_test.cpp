@@ -1,0 +1,67 @@
+#include "simulate/contact_response.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace cradle {
+namespace {
+
+constexpr double kFlat = std::numeric_limits<double>::infinity();
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Two bodies that touch in the middle between them.
+struct Touching {
+  VectorX state = VectorX::Zero(stateSize(2));
+  std::vector<RigidBody> bodies = std::vector<RigidBody>(2);
+  std::vector<BodyFrame> frames;
+  Contact contact;
+
+  Touching() {
+    centerOfMass(state, 0) = Vec3(0, 1, 0);
+    for (const Eigen::Index body : {0, 1}) setOrientation(state, body, Quat(1, 0, 0, 0));
+    linearVelocity(state, 0) = Vec3(0.3, -0.1, 0.2), angularVelocity(state, 1) = Vec3(1, 2, -1);
+    contact.bodyA = 0, contact.bodyB = 1;
+    contact.point = Vec3(0.02, 0.5, 0.1), contact.normal = -Vec3::UnitY();
+    placeBodies(bodies, state, frames);
+  }
+};
+
+// A corner on a corner, or on an edge, has no normal once they meet: whatever presses there is for one instant.
+TEST(ContactsThatLast, HaveASurfaceThatIsRoundOrFlat) {
+  Contact contact;
+  for (const double radiusA : {0.0, 0.1, kFlat, kNone})
+    for (const double radiusB : {0.0, 0.1, kFlat, kNone})
+      for (const bool isEdge : {false, true}) {
+        contact.radiusA = radiusA, contact.radiusB = radiusB;
+        contact.edge = (isEdge ? 1.0 : 0.0) * Vec3::UnitX();
+        const bool hasNormal = radiusA > 0 || radiusB > 0;
+        EXPECT_FALSE(canLast(contact) && !hasNormal) << radiusA << " " << radiusB << " " << isEdge;
+      }
+  contact.edge.setZero();
+  contact.radiusA = 0, contact.radiusB = kFlat;
+  EXPECT_TRUE(canLast(contact));
+  contact.radiusB = 0.1;
+  EXPECT_TRUE(canLast(contact));
+  contact.radiusB = kNone, contact.radiusA = 0.1, contact.edge = Vec3::UnitX();
+  EXPECT_TRUE(canLast(contact));
+}
+
+TEST(RowsOfContacts, AreFiniteWhateverTouches) {
+  for (const double radiusA : {0.0, 0.1, kFlat, kNone})
+    for (const double radiusB : {0.0, 0.1, kFlat, kNone})
+      for (const bool isEdge : {false, true}) {
+        Touching touching;
+        touching.contact.radiusA = radiusA, touching.contact.radiusB = radiusB;
+        touching.contact.edge = (isEdge && std::isnan(radiusB) ? 1.0 : 0.0) * Vec3::UnitX();
+        const ContactRows rows = rowsOf(touching.contact, touching.state, touching.frames);
+        SCOPED_TRACE(::testing::Message() << radiusA << " " << radiusB << " " << isEdge);
+        EXPECT_TRUE(rows.place.normal.allFinite());
+        EXPECT_NEAR(std::abs(rows.place.normal.y()), 1, 1e-12);
+        for (const ConstraintRow& row : rows.rows) EXPECT_TRUE(std::isfinite(row.curvature));
+      }
+}
+
+}  // namespace
+}  // namespace cradle
