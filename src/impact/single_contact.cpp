@@ -5,12 +5,14 @@
 #include "impact/single_contact.h"
 
 #include <cmath>
+#include <optional>
 
 namespace cradle {
 namespace {
 
 constexpr double kSingularTracePart = 1e-13;  // of the trace: less is rounding
 constexpr double kRootPart = 4e-16;           // of alpha
+constexpr double kOnCone = 1e-12;             // of its width: an impulse on its side is in it
 constexpr int kMostSteps = 200;               // 5 are usual; bisection alone ends after about 100
 
 /// The tangential problem after elimination of the normal part, in its principal axes.
@@ -29,20 +31,27 @@ class Sliding {
     axis_ = length > 0 ? Vec2(x / length, y / length) : Vec2(1, 0);
     const Vec2 offset(free.x() + free.z() * coupling_[0], free.y() + free.z() * coupling_[1]);
     offset_ = {axis_.dot(offset), axis_.x() * offset.y() - axis_.y() * offset.x()};
-    const double rounding = kSingularTracePart * (g(0, 0) + g(1, 1));
-    for (int i = 0; i < 2; ++i)
-      if (moments_[i] < rounding) moments_[i] = 0;
+    const double rounding = kSingularTracePart * (g(0, 0) + g(1, 1)),
+                 stopped = kSingularTracePart * (free.norm() + std::abs(free.z()) * coupling_.norm());
+    for (int i = 0; i < 2; ++i) {
+      if (moments_[i] >= rounding) continue;
+      moments_[i] = 0;
+      if (std::abs(offset_[i]) <= stopped) offset_[i] = 0;
+    }
   }
 
-  Vec3 at(double alpha) const {
-    const Vec2 along(part(0, alpha), part(1, alpha));
-    const Vec2 tangential(axis_.x() * along.x() - axis_.y() * along.y(), axis_.y() * along.x() + axis_.x() * along.y());
-    return {tangential.x(), tangential.y(), pressing_ + coupling_.dot(tangential)};
-  }
-  bool sticks(const Vec3& z) const {
+  /// Impulses that stop all motion, if there are any in the cone. Where ties leave a direction no motion, its part of
+  /// them is free: the least that makes the others fit.
+  std::optional<Vec3> sticking() const {
+    Vec2 along(part(0, 0), part(1, 0));
+    if (moments_[1] == 0 && offset_[1] == 0) along[1] = leastWedging(along[0]);
+    const Vec3 z = from(along);
     const double size = std::sqrt(z.x() * z.x() + z.y() * z.y());
-    return std::isfinite(size) && size <= friction_ * z.z();
+    if (std::isfinite(size) && size <= friction_ * z.z() * (1 + kOnCone)) return z;
+    return {};
   }
+
+  Vec3 at(double alpha) const { return from(Vec2(part(0, alpha), part(1, alpha))); }
 
   /// |z_t| - friction z_n, > 0 outside the cone, and its derivative.
   double excess(double alpha, double& slope) const {
@@ -57,6 +66,27 @@ class Sliding {
 
  private:
   using Vec2 = Eigen::Vector2d;
+
+  Vec3 from(const Vec2& along) const {
+    const Vec2 tangential(axis_.x() * along.x() - axis_.y() * along.y(), axis_.y() * along.x() + axis_.x() * along.y());
+    return {tangential.x(), tangential.y(), pressing_ + coupling_.dot(tangential)};
+  }
+
+  /// The smallest part s along the second axis that brings the impulse into the cone, from `first` along the first one:
+  /// first^2 + s^2 = (friction (n + c s))^2, n + c s >= 0. Zero if none is needed, or none does.
+  double leastWedging(double first) const {
+    const double perSecond = coupling_.dot(Vec2(-axis_.y(), axis_.x()));
+    const double normal = pressing_ + coupling_.dot(axis_) * first, square = friction_ * friction_;
+    const double a = 1 - square * perSecond * perSecond, b = -square * normal * perSecond,
+                 c = first * first - square * normal * normal, root = std::sqrt(b * b - a * c);
+    if ((c <= 0 && normal >= 0) || !(root >= 0)) return 0;
+    const double sum = -(b + std::copysign(root, b));
+    double least = 0;
+    for (const double s : {sum / a, c / sum})
+      if (std::isfinite(s) && normal + perSecond * s >= 0 && (least == 0 || std::abs(s) < std::abs(least))) least = s;
+    return least;
+  }
+
   double part(int i, double alpha) const {
     const double divisor = moments_[i] + alpha;
     return offset_[i] == 0 ? 0 : -offset_[i] / divisor;  // infinite: a direction without inertia that does not stop
@@ -91,8 +121,7 @@ Vec3 solveSingleContact(const Mat3& g, const Vec3& free, double friction) {
   if (free.z() >= 0 || !(g(2, 2) > 0)) return Vec3::Zero();
   if (friction == 0) return {0, 0, -free.z() / g(2, 2)};
   const Sliding sliding(g, free, friction);
-  const Vec3 sticking = sliding.at(0);
-  if (sliding.sticks(sticking)) return sticking;
+  if (const std::optional<Vec3> sticking = sliding.sticking()) return *sticking;
   Vec3 z = sliding.at(findRoot(sliding));
   const double size = std::sqrt(z.x() * z.x() + z.y() * z.y());
   if (size > 0) z.head<2>() *= friction * z.z() / size;

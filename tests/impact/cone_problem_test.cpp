@@ -250,5 +250,32 @@ TEST(ConeProblem, WedgedWithoutFrictionIsLeftBetween) {
   EXPECT_LT((ball.velocitiesAfter(solution) - Vec3(-1, 0, 0)).norm(), 1e-6);
 }
 
+// A body on a ball joint, touched at r from it: nothing moves along r. Where that lies in the cone of friction, or its
+// opposite does, whatever comes is stopped: pushes along r are free, and wedge it. Elsewhere Coulomb's law holds.
+TEST(ConeProblem, OfOneContactOnABallJointSticksWhereTheArmLiesInTheCone) {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> number(-1, 1);
+  int wedged = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 arm(number(generator), number(generator), number(generator)),
+        spin(number(generator), number(generator), number(generator));
+    const double friction = 1.5 * std::abs(number(generator));
+    const Mat3 inverseInertia = Vec3(1 + number(generator) / 2, 1 + number(generator) / 2, 1).asDiagonal();
+    Mat3 lever;
+    for (int axis = 0; axis < 3; ++axis) lever.col(axis) = arm.cross(Vec3::Unit(axis));
+    const Mat3 matrix = lever.transpose() * inverseInertia * lever;
+    const Vec3 free = spin.cross(arm);
+    const ConeSolution solution = solveConeProblem(matrix, free, {friction});
+    SCOPED_TRACE(::testing::Message() << arm.transpose() << " friction " << friction);
+    const double beside = arm.head<2>().norm() / std::abs(arm.z());
+    if (std::abs(beside - friction) < 0.01 * friction || arm.squaredNorm() < 0.01) continue;  // nearly singular
+    expectCoulomb(solution, {friction}, 1e-8);
+    if (beside > friction || free.z() >= 0) continue;
+    EXPECT_LT(solution.velocities.norm(), 1e-12 * (1 + solution.impulses.norm()));
+    ++wedged;
+  }
+  EXPECT_GT(wedged, 100);
+}
+
 }  // namespace
 }  // namespace cradle
