@@ -103,8 +103,9 @@ bool pin(const Attachment& anchor, int other, const Vec3& axis, const std::strin
   for (std::size_t i = 0; i < assembly.geometry.colliders.size(); ++i) {
     Collider& collider = assembly.geometry.colliders[i];
     if (collider.body != anchor.body) continue;
-    collider.pins.push_back({other, anchor.point, axis});
+    // The contact at the anchor is not found any more once the collider knows of it.
     if (other == kFixed) isForbidden = forbidRolling(i, {other, anchor.point, axis}, name, assembly);
+    collider.pins.push_back({other, anchor.point, axis});
   }
   return isForbidden;
 }
