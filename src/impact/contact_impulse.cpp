@@ -5,7 +5,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kImmobilePart = 1e-12;  // of the inverse mass without ties, which take part to 1e-16
+// Of the inverse mass without ties, which take part to 1e-16: the square of a lever, in sizes of a body.
+constexpr double kImmobilePart = 1e-12;
+constexpr double kShortLeverPart = 1e-7;
 
 Vec3 armOf(const Contact& contact, int body, const VectorX& state) {
   return body == kFixed ? Vec3::Zero() : Vec3(contact.point - centerOfMass(state, body));
@@ -19,6 +21,16 @@ Mat3 inverseMassOf(const Contact& contact, int body, const std::vector<RigidBody
          lever * worldInverseInertia(inertia, orientation(state, body)) * lever;
 }
 
+/// 1/kg.
+double inverseMassAlongNormal(const Contact& contact, const ImpulseResponse& response, const VectorX& state) {
+  const VectorX answer = response.answerTo(contact, contact.normal, state);
+  return contact.normal.dot(relativeVelocity(contact, state, answer));
+}
+
+double untiedInverseMassAlongNormal(const Contact& contact, const ImpulseResponse& response, const VectorX& state) {
+  return contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
+}
+
 }  // namespace
 
 Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state) {
@@ -26,16 +38,18 @@ Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies,
 }
 
 bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass) {
-  if (!response.areTied()) return false;
-  return inverseMass <=
-         kImmobilePart * contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
+  return response.areTied() && inverseMass <= kImmobilePart * untiedInverseMassAlongNormal(contact, response, state);
+}
+
+bool hasShortLever(const Contact& contact, const ImpulseResponse& response, const VectorX& state) {
+  return response.areTied() && inverseMassAlongNormal(contact, response, state) <=
+                                   kShortLeverPart * untiedInverseMassAlongNormal(contact, response, state);
 }
 
 void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts) {
   if (!response.areTied()) return;
   std::erase_if(contacts, [&](const Contact& contact) {
-    const VectorX answer = response.answerTo(contact, contact.normal, state);
-    return isImmobile(contact, response, state, contact.normal.dot(relativeVelocity(contact, state, answer)));
+    return isImmobile(contact, response, state, inverseMassAlongNormal(contact, response, state));
   });
 }
 

@@ -17,7 +17,11 @@ class ImpulseResponse;
 /// neither open nor close.
 bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass);
 
-/// Erases such contacts.
+/// Whether joints leave a contact hardly any lever: its normal goes by an anchor so near that impulses there are
+/// thousands of times as large as those that the motion asks for. It touches and is not immobile.
+bool hasShortLever(const Contact& contact, const ImpulseResponse& response, const VectorX& state);
+
+/// Erases those that are immobile.
 void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts);
 
 /// How bodies answer to impulses at contacts. What ties them answers within the same impulse: W = M^-1 - M^-1 B^T

@@ -18,7 +18,8 @@ constexpr double kSlope = M_PI / 6;
 constexpr double kBlockStep = 1.0 / 1000;  // s: frames, 50 a second, lie on steps
 constexpr const char* kSurfaces[] = {"plane", "box"};
 
-Trajectory slide(const std::string& surface, double friction, double speed, double duration, double step = kBlockStep) {
+Scene slopeScene(const std::string& surface, double friction, double speed, double duration,
+                 const std::string& method) {
   const double c = std::cos(kSlope), s = std::sin(kSlope);
   const std::string slope = surface == "plane"
                                 ? fmt::format(R"("shape": {{"plane": {{"normal": [{:.17g}, {:.17g}, 0]}}}})", -s, c)
@@ -26,15 +27,18 @@ Trajectory slide(const std::string& surface, double friction, double speed, doub
                                       R"("shape": {{"box": {{"size": [20, 1, 2]}}}}, "position": [{:.17g}, {:.17g}, 0],
                    "orientation": {{"axis": [0, 0, 1], "angleDegrees": 30}})",
                                       0.5 * s, -0.5 * c);
-  return simulate(sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Slope", "duration": {0},
+  return sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "Slope", "duration": {0},
     "output": {{"framesPerSecond": 50}}, {1},
     "materials": {{"m": {{"restitution": 0, "staticFriction": {2}, "dynamicFriction": {2}}}}},
     "bodies": [{{"name": "slope", {3}, "motion": "static", "material": "m"}},
       {{"name": "block", "shape": {{"box": {{"size": [0.5, 0.2, 0.4]}}}}, "mass": 1, "material": "m",
         "position": [{4:.17g}, {5:.17g}, 0], "orientation": {{"axis": [0, 0, 1], "angleDegrees": 30}},
         "linearVelocity": [{6:.17g}, {7:.17g}, 0]}}]}})",
-                                      duration, methodText("rk4", step), friction, slope, -0.1 * s, 0.1 * c, speed * c,
-                                      speed * s)));
+                             duration, method, friction, slope, -0.1 * s, 0.1 * c, speed * c, speed * s));
+}
+
+Trajectory slide(const std::string& surface, double friction, double speed, double duration, double step = kBlockStep) {
+  return simulate(slopeScene(surface, friction, speed, duration, methodText("rk4", step)));
 }
 
 /// How far up the slope a frame's block is from its start.
@@ -115,6 +119,30 @@ TEST(BlockThrownUpASlope, StopsAndSticks) {
     for (std::size_t frame = 15; frame <= 60; ++frame)
       EXPECT_EQ(run.frames[frame].states[0].position, run.frames[60].states[0].position) << surface << frame;
   }
+}
+
+// Friction a part p below the limit: the block slides with p g sin. Friction turns its sliding at the rate mu g cos /
+// v, which steps of about six times its inverse follow: at p = 1e-6 some 1e6 of them in a second. Then the accuracy is
+// not promised, and the block is where it started, at most.
+TEST(BlockOnSlope, SlidesAccuratelyOrSaysThatItIsTooSlow) {
+  for (const char* surface : kSurfaces)
+    for (const double part : {1e-2, 1e-3, 1e-5, 1e-6})
+      for (const double accuracy : {1e-6, 1e-8, 1e-10}) {
+        std::vector<std::string> warnings;
+        Trajectory run;
+        simulate(slopeScene(surface, std::tan(kSlope) * (1 - part), 0, 1, fmt::format(R"("accuracy": {})", accuracy)),
+                 {[&](const Frame& frame) { run.frames.push_back(frame); }, [](const Event&) {},
+                  [&](const std::string& text) { warnings.push_back(text); }});
+        const double way = -part * kGravity * std::sin(kSlope) / 2;
+        if (part > 1e-4) {
+          EXPECT_TRUE(warnings.empty()) << part << " " << accuracy << " " << surface;
+          EXPECT_NEAR(wayUp(run, 50), way, accuracy) << part << " " << surface;
+        } else {
+          ASSERT_EQ(warnings.size(), 1u) << part << " " << accuracy << " " << surface;
+          EXPECT_NE(warnings[0].find("contacts slide so slowly"), std::string::npos) << warnings[0];
+          EXPECT_NEAR(wayUp(run, 50), way / 2, std::abs(way)) << part << " " << surface;
+        }
+      }
 }
 
 }  // namespace

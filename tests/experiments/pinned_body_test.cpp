@@ -1,4 +1,4 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <array>
 #include <cmath>
@@ -141,7 +141,7 @@ const Quat kTilt(Eigen::AngleAxisd(0.23, Vec3(0.6, 0, 0.8)));
 
 const std::string kSlopeOfAPlane = R"("shape": {"plane": {}})",
                   kSlopeOfABox = fmt::format(R"("shape": {{"box": {{"size": [2, 1, 2]}}}}, "position": {})",
-                                             vectorText(kTilt * Vec3(0.3, -0.5, 0.2)));
+                                             vectorText(kTilt*Vec3(0.3, -0.5, 0.2)));
 
 /// A body that touches a tilted floor at the origin, on a ball joint there.
 Trajectory pinnedOnSlope(const std::string& slope, const std::string& shape, const Vec3& touching,
@@ -216,6 +216,34 @@ TEST(PinnedBody, CylinderOnAPinnedPointOfItsRimTipsAboutItsTangent) {
     for (std::size_t i = 1; i < run.frames.size(); ++i)
       EXPECT_GE(run.frames[i].energy.dissipated, run.frames[i - 1].energy.dissipated - accuracy) << i;
   }
+}
+
+// A ball pinned a hair above the place of its surface that comes to touch: it rattles within an angle of sqrt(2 gap /
+// R), where forces have levers of as much of R. Nothing moves that is seen, and no energy comes of it.
+TEST(PinnedBody, BallPinnedAHairOffThePlaneIsNotPromised) {
+  constexpr double kRadius = 0.1, kMass = 1;
+  for (const double gap : {3e-9, 1e-8, 3e-8})
+    for (const double accuracy : {1e-3, 1e-6, 1e-9}) {
+      const Quat turn(Eigen::AngleAxisd(0.4, Vec3(0.6, 0.8, 0)));
+      std::vector<std::string> warnings;
+      std::vector<Frame> frames;
+      simulate(sceneWith(fmt::format(R"("duration": 0.1, "accuracy": {}, {}, "bodies": [{}, {{"name": "b", "mass": {},
+               "shape": {{"sphere": {{"radius": {}}}}}, "material": "m", "position": [0, {}, 0], "orientation": {},
+               "angularVelocity": [1, 0, 0.5]}}], "ballJoints": [{{"bodyA": "b", "anchorA": {}, "anchorB": [0, {}, 0]}}])",
+                                     accuracy, materialText(0.8, 0), kPlane, kMass, kRadius, kRadius + gap * kRadius,
+                                     orientationText(turn), vectorText(turn.conjugate() * Vec3(0, -kRadius, 0)),
+                                     gap * kRadius)),
+               {[&](const Frame& frame) { frames.push_back(frame); }, [](const Event&) {},
+                [&](const std::string& text) { warnings.push_back(text); }});
+      EXPECT_THAT(warnings,
+                  testing::Contains(testing::HasSubstr("within a thousandth of its size of a joint (ground, b)")))
+          << gap << " " << accuracy;
+      const double start = mechanicalEnergy(frames[0]);
+      for (const Frame& frame : frames) {
+        EXPECT_LT(mechanicalEnergy(frame) - start, 1e-9 * kMass * kGravity * kRadius) << gap << " " << accuracy;
+        EXPECT_LT((frame.states[0].position - frames[0].states[0].position).norm(), 2 * std::sqrt(2 * gap) * kRadius);
+      }
+    }
 }
 
 // A lid hinged to the edge of a box that moves freely, with "collide": it lands on the box, which rests on the floor.

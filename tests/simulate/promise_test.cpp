@@ -73,6 +73,18 @@ TEST(Promise, OfFewSpheresOnPlanesHasNoConditions) {
   EXPECT_THAT(conditionsOf(spheres(12)), ElementsAre(HasSubstr("redundant"), kRate));
 }
 
+// On level ground a ball soon rolls; on a slope it may slide slowly for long.
+TEST(Promise, OfASphereOnARoughSlopeIsWhileItDoesNotSlideSlowly) {
+  const std::string slope = bodyOf("slope", R"("plane": {"normal": [0.1, 1, 0]})", Vec3::Zero(), kStatic);
+  EXPECT_THAT(conditionsOf(slope + spheres(1)), ElementsAre(kSlow, kRate));
+}
+
+TEST(Promise, OfBodiesOnJointsIsWhileTheyTouchNothingBesideThem) {
+  EXPECT_THAT(conditionsOf(spheres(1), R"(, "ballJoints": [{"bodyA": "s0", "anchorA": [0, -0.9, 0],
+                                           "anchorB": [0, 0.1, 0]}])"),
+              ElementsAre(StartsWith("nothing touches s0 within a thousandth of its size of a joint"), kRate));
+}
+
 /// A sphere on the ground that leaves it with `speed` (m/s).
 Scene bouncingSphere(double restitution, double speed) {
   return sceneWith(fmt::format(R"("duration": 1, "materials": {{"hard": {{"restitution": {}}}}}, "bodies": [

@@ -32,6 +32,7 @@ constexpr int kMostFrictionRounds = 200;         // of normal forces from fricti
 constexpr double kFrictionConverged = 1e-10;     // of the largest normal force
 constexpr double kSameSide = 0.99;               // cosine between normals: a mesh may be touched on several
 constexpr double kRankPart = 1e-9;               // of the largest pivot: less is none
+constexpr double kTurningTime = 2e-5;            // s: friction that turns sliding as fast costs 4 s of CPU a second
 constexpr const char* kTips = "a cylinder tips over its rim";
 
 }  // namespace
@@ -41,6 +42,7 @@ void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSol
   std::vector<Entry> entries = entriesOf(touching);
   if (!entries.empty())
     for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
+  noteShortLevers(touching, ties);
   noteTipping(entries);
   noteMeshes(entries);
   for (const Entry& entry : entries)
@@ -129,25 +131,24 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
       entry.direction = (motion.x() * rows[k].rows[0].linearA + motion.y() * rows[k].rows[1].linearA).normalized();
     }
     if (entry.slides && slidesTooSlowly(entry, motion.head<2>().norm(), most))
-      noteFault("contacts slide so slowly that errors turn their friction aside", {&entry.contact});
+      noteFault("contacts slide so slowly that their friction has no sure direction", {&entry.contact});
     heldRows.push_back(at + 2);
     if (entry.sticks) heldRows.push_back(at), heldRows.push_back(at + 1);
   }
   if (!heldRows.empty()) countRows(group, inverseMass(heldRows, heldRows), entries);
 }
 
-/// Whether friction loses more along the sliding than the accuracy A allows, because errors of velocities turn it
-/// aside. An error e = A / 10 (what steps allow) at a speed v takes mu g (e / v)^2 / 2 of its deceleration, and half of
-/// that times T^2 of the way in a time T: more than A below v = T sqrt(mu g A) / 20. Speeds that are reached in time
-/// count. A ball soon rolls.
+/// Whether sliding stays so slow that the direction of its friction is not known, or costs too much to follow. Errors
+/// of velocities turn friction aside: an error e = A / 10 (what steps allow) at a speed v takes mu g (e / v)^2 / 2 of
+/// its deceleration, and half of that times T^2 of the way in a time T: more than the accuracy A below v = T sqrt(mu g
+/// A) / 20; not of a ball, which soon rolls. And friction turns the sliding at a rate of mu g / v, which steps of some
+/// 6 v / (mu g) follow at the most. Speeds that are reached in time count.
 bool LastingContacts::slidesTooSlowly(const Entry& entry, double acceleration, double gravity) const {
-  if (island_.assembly.geometry.colliders[entry.pair.a].isBall()) return false;
-  const ContactGeometry& geometry = island_.assembly.geometry;
-  if (geometry.colliders[entry.pair.a].isBall()) return false;
-  const double speed = slidingSpeed(entry.contact, island_.state);
+  const double friction = entry.pair.law.dynamicFriction * gravity;  // m/s^2
   const double time = island_.scene.duration, accuracy = island_.scene.accuracy;
-  const double slowest = time * std::sqrt(entry.pair.law.dynamicFriction * gravity * accuracy) / 20;
-  return speed + acceleration * time < slowest;
+  const bool rolls = island_.assembly.geometry.colliders[entry.pair.a].isBall();
+  const double slowest = std::max(rolls ? 0 : time * std::sqrt(friction * accuracy) / 20, kTurningTime * friction);
+  return slidingSpeed(entry.contact, island_.state) + acceleration * time < slowest;
 }
 
 /// Forces that were not found decide all the same what lasts, and how.
@@ -217,6 +218,14 @@ void LastingContacts::countRows(const Together& group, const MatrixX& held, std:
   std::vector<const Contact*> contacts;
   for (const std::size_t i : group) contacts.push_back(&entries[i].contact);
   noteFault("too many contacts press at once", contacts);
+}
+
+/// What forces with hardly any lever do is not known to the accuracy.
+void LastingContacts::noteShortLevers(const std::vector<Contact>& touching, ConstraintSolver& ties) {
+  const ImpulseResponse response(mechanism().bodies, ties);
+  for (const Contact& contact : touching)
+    if (hasShortLever(contact, response, island_.state))
+      noteFault("something touches within a thousandth of its size of a joint", {&contact});
 }
 
 bool LastingContacts::noteJam() {

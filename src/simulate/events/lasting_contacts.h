@@ -99,6 +99,7 @@ class LastingContacts {
   void decide(const Together& group, std::vector<Entry>& entries, ConstraintSolver& ties);
   void noteUnsolved(const std::vector<const Entry*>& entries, double residual) const;
   void noteTipping(const std::vector<Entry>& entries);
+  void noteShortLevers(const std::vector<Contact>& touching, ConstraintSolver& ties);
   bool isOfRim(const Contact& contact) const;
   double tippingSpeed(const Contact& contact) const;
   double stillSpeed(const Contact& contact) const;

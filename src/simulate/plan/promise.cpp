@@ -18,16 +18,18 @@
 namespace cradle {
 namespace {
 
-constexpr int kFewRows = 60;         // of balls that touch: the most that can be independent, solved in 1 ms
-constexpr double kBounces = 16;      // times 1 / (1 - e): bounces of a ball from 1/60 s before its rest, e near 1
-constexpr double kFewBounces = 5e3;  // a quarter of those that kLongPatience has
-constexpr int kFaceContacts = 8;     // of two faces, or of a face and a plane: patches have no more points
-constexpr int kManyContacts = 64;    // of a mesh
+constexpr int kFewRows = 60;          // of balls that touch: the most that can be independent, solved in 1 ms
+constexpr double kBounces = 16;       // times 1 / (1 - e): bounces of a ball from 1/60 s before its rest, e near 1
+constexpr double kFewBounces = 5e3;   // a quarter of those that kLongPatience has
+constexpr double kLevelSlope = 1e-9;  // sine: flatter is level
+constexpr int kFaceContacts = 8;      // of two faces, or of a face and a plane: patches have no more points
+constexpr int kManyContacts = 64;     // of a mesh
 
 /// What may touch, and how: bounds over all that may come about.
 struct PossibleContacts {
   std::vector<int> edgeOwners, tippers, movers;  // scene bodies; cylinders that may tip; what moves and may touch
   bool hasFriction = false, areRound = true;     // round: of balls with each other and with planes alone
+  bool hasSlopes = false;                        // planes with friction that are not level
   double restitution = 0;                        // largest below 1
   int rows = 0, treeRows = 0;  // of all contacts; of one contact of each pair, as long as pairs close no loop
 };
@@ -92,6 +94,7 @@ class ContactSurvey {
     const SurfacePair& law =
         scene_.surfacePairs[static_cast<std::size_t>(bodyOf(a).material)][static_cast<std::size_t>(bodyOf(b).material)];
     found_.hasFriction = found_.hasFriction || law.staticFriction > 0;
+    found_.hasSlopes = found_.hasSlopes || (law.staticFriction > 0 && (isSlope(a) || isSlope(b)));
     if (law.restitution < 1) found_.restitution = std::max(found_.restitution, law.restitution);
     const int rowsOfOne = law.staticFriction > 0 ? 3 : 1;
     found_.rows = std::min(found_.rows + rowsOfOne * contactsOf(surfaceA, surfaceB), kManyRows);
@@ -99,6 +102,13 @@ class ContactSurvey {
     if (loops_.islandOf(placeA) == loops_.islandOf(placeB)) return;
     loops_.join(placeA, placeB);
     found_.treeRows += rowsOfOne;
+  }
+
+  /// On a slope a ball may slide slowly for long.
+  bool isSlope(int body) const {
+    const auto* plane = std::get_if<Plane>(&bodyOf(body).shape);
+    return plane && (bodyOf(body).worldFromBody.rotation * plane->normal).cross(scene_.gravity).norm() >
+                        kLevelSlope * scene_.gravity.norm();
   }
 
   /// What of a body's surface rows cannot hold against the other.
@@ -121,16 +131,22 @@ class ContactSurvey {
   PossibleContacts found_;
 };
 
-/// Whether ties hold a body of the island: rows of contacts may depend on each other through them.
-bool hasTies(const Scene& scene, const IslandPlan& island) {
+/// Whether any of some ties holds a body of the island.
+template <class Tie>
+bool areHeldBy(const std::vector<Tie>& ties, const IslandPlan& island) {
   const auto isIn = [&](const Anchor& anchor) {
     return std::binary_search(island.bodies.begin(), island.bodies.end(), anchor.body);
   };
-  const auto holds = [&](const auto& ties) {
-    return std::any_of(ties.begin(), ties.end(),
-                       [&](const auto& tie) { return isIn(tie.anchorA) || isIn(tie.anchorB); });
-  };
-  return holds(scene.rods) || holds(scene.ropes) || holds(scene.ballJoints) || holds(scene.hinges);
+  return std::any_of(ties.begin(), ties.end(), [&](const Tie& tie) { return isIn(tie.anchorA) || isIn(tie.anchorB); });
+}
+
+bool hasJoints(const Scene& scene, const IslandPlan& island) {
+  return areHeldBy(scene.ballJoints, island) || areHeldBy(scene.hinges, island);
+}
+
+/// Whether ties hold a body of the island: rows of contacts may depend on each other through them.
+bool hasTies(const Scene& scene, const IslandPlan& island) {
+  return hasJoints(scene, island) || areHeldBy(scene.rods, island) || areHeldBy(scene.ropes, island);
 }
 
 int independentRows(const PossibleContacts& contacts) {
@@ -141,7 +157,7 @@ int independentRows(const PossibleContacts& contacts) {
 /// Few balls, whose contacts are served whatever comes, at a cost that is worth it.
 bool areFewBalls(const PossibleContacts& contacts) {
   const double bounces = kBounces * static_cast<double>(contacts.movers.size()) / (1 - contacts.restitution);
-  return contacts.areRound && independentRows(contacts) <= kFewRows && bounces <= kFewBounces;
+  return contacts.areRound && !contacts.hasSlopes && independentRows(contacts) <= kFewRows && bounces <= kFewBounces;
 }
 
 /// Leaf by leaf, the contacts of a tree of bodies are independent of each other, unless ties hold these.
@@ -164,8 +180,13 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
     conditions.push_back({fmt::format("no more than {} redundant or {} independent forces press {} at once",
                                       kMostRedundant, kMostIndependent, namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
-  if (contacts.hasFriction && !contacts.areRound)
-    conditions.push_back({fmt::format("no contact of {} jams, or slides so slowly that errors turn its friction aside",
+  if (contacts.hasFriction && (!contacts.areRound || contacts.hasSlopes))
+    conditions.push_back(
+        {fmt::format("no contact of {} jams, or slides so slowly that its friction has no sure direction",
+                     namesOfBodies(contacts.movers, scene)),
+         contacts.movers});
+  if (hasJoints(scene, island))
+    conditions.push_back({fmt::format("nothing touches {} within a thousandth of its size of a joint",
                                       namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
   const EventPatience& patience = scene.accuracy > kLookAccuracy ? kLookPatience : kPatience;
@@ -192,7 +213,7 @@ Promise promiseOf(const Scene& scene, const IslandPlan& island, const Meetings& 
         fmt::format("models with hollows may touch: their contact is resolved every {:.3g} s", method.timeStep));
   if (method.isClosedForm() || island.touching.empty()) return {};
   const ContactSurvey survey(scene, island, meetings);
-  if (areFewBalls(survey.found())) return {};
+  if (areFewBalls(survey.found()) && !hasJoints(scene, island)) return {};
   return {Promise::Kind::conditional, conditionsOf(scene, island, survey.found()), {}};
 }
 
