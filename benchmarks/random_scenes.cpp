@@ -31,7 +31,7 @@ namespace cradle {
 namespace {
 
 constexpr rlim_t kMostThrownSeconds = 20;     // CPU time of a scene
-constexpr rlim_t kMostSketchSeconds = 16;     // with all its runs, up to some twenty
+constexpr rlim_t kMostSketchSeconds = 60;     // with all its runs, up to some thirty
 constexpr std::size_t kMostCharacters = 600;  // of a message: a pipe holds them all
 constexpr unsigned kFamilies = kSketchFamilyNames.size();
 

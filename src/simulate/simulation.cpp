@@ -33,7 +33,7 @@ Simulation::Simulation(const Scene& scene, Assembly assembly, const ChosenMethod
       solver_(island_.assembly.mechanism.constraints, island_.assembly.mechanism.bodies),
       method_(method) {
   if (method.isAdaptive())
-    motion_.emplace<EventMotion>(island_, ropes_, method);
+    motion_.emplace<EventMotion>(island_, ropes_, method, false);
   else
     motion_.emplace<SteppedMotion>(island_, ropes_, method);
   changeMotion();
@@ -99,7 +99,7 @@ void Simulation::changeMotion() {
   if (!steps.isFree() && island_.time < nextTrial_) return;
   nextTrial_ = island_.time + trialTime_;
   if (steps.isFree()) trialTime_ = kTrialTime;
-  if (steps.isFree() || steps.mayServeEvents()) motion_.emplace<EventMotion>(island_, ropes_, method_);
+  if (steps.isFree() || steps.mayServeEvents()) motion_.emplace<EventMotion>(island_, ropes_, method_, true);
 }
 
 void Simulation::endPromise(const EventMotion& events, double timeStep) {

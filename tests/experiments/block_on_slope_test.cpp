@@ -126,8 +126,8 @@ TEST(BlockThrownUpASlope, StopsAndSticks) {
 // not promised, and the block is where it started, at most.
 TEST(BlockOnSlope, SlidesAccuratelyOrSaysThatItIsTooSlow) {
   for (const char* surface : kSurfaces)
-    for (const double part : {1e-2, 1e-3, 1e-5, 1e-6})
-      for (const double accuracy : {1e-6, 1e-8, 1e-10}) {
+    for (const double part : {1e-2, 1e-5, 1e-6})
+      for (const double accuracy : {1e-6, 1e-9}) {
         std::vector<std::string> warnings;
         Trajectory run;
         simulate(slopeScene(surface, std::tan(kSlope) * (1 - part), 0, 1, fmt::format(R"("accuracy": {})", accuracy)),

@@ -28,7 +28,7 @@ constexpr double kMostTwinErrors = 10, kMostGrowth = 10;
 constexpr double kStepsGain = 1e-3, kStepsBalance = 5e-3, kStepsPlace = 0.02, kStepsMomentum = 1e-6;
 constexpr double kChaos = 0.05;      // of the size: where disturbances grow to that, runs are not compared
 constexpr double kCpuPerSecond = 5;  // s of CPU time per simulated second, beside
-constexpr double kCpuAtStart = 0.1;  // s
+constexpr double kCpuAtStart = 0.5;  // s: of 500 changes of contacts, which end the promise
 constexpr double kReferenceAccuracy = 1e-9;
 constexpr double kRoundedSpeed = 1e-12;   // m/s: what rounding may do to a mirror image
 constexpr double kFileRounding = 1.2e-7;  // of models: files have single precision

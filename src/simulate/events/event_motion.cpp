@@ -33,8 +33,9 @@ constexpr double kUnitLength = 1e-9;      // how far |q|^2 may be from 1 before 
 
 constexpr int kMostRounds = 100;  // of ropes and contacts at one instant; what is left comes after the next step
 
-const EventPatience& patienceOf(const ChosenMethod& method, double accuracy) {
+const EventPatience& patienceOf(const ChosenMethod& method, double accuracy, bool isTrial) {
   if (method.keepsPromise) return kLongPatience;
+  if (isTrial) return kTrialPatience;
   return accuracy > kLookAccuracy ? kLookPatience : kPatience;
 }
 
@@ -54,13 +55,13 @@ VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double dur
 
 }  // namespace
 
-EventMotion::EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method)
+EventMotion::EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method, bool isTrial)
     : island_(island),
       ropes_(ropes),
       method_(method),
       contacts_(island, ropes, island.scene.accuracy),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
-      patience_(patienceOf(method, island.scene.accuracy)),
+      patience_(patienceOf(method, island.scene.accuracy, isTrial)),
       tolerance_(toleranceOf(method, island.state, island.scene.duration)),
       windowStart_(island.time) {
   lengths_.fill(island_.scene.duration);

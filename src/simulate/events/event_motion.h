@@ -17,8 +17,8 @@ namespace cradle {
 /// go taut or slack, pushes begin or end. Between events the motion is of order 8, or 5 where the plan says so.
 class EventMotion {
  public:
-  /// Keeps references to the island, which it moves, and its ropes.
-  EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method);
+  /// Keeps references to the island, which it moves, and its ropes. A trial: whether the promise is given up.
+  EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method, bool isTrial);
 
   /// Takes a step. `frame` (s) is the next time whose state is asked for. Throws Error(unstable) if the state blows up.
   void advance(double frame);

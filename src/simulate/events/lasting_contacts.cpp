@@ -9,6 +9,7 @@
 
 #include "collision/core.h"
 #include "impact/contact_impulse.h"
+#include "math/anderson_mixing.h"
 #include "simulate/plan/event_limits.h"
 #include "simulate/plan/islands.h"
 #include "simulate/thresholds.h"
@@ -28,7 +29,10 @@ constexpr double kUnloadedPart = 1e-9;           // of the accelerations: a cont
 constexpr double kReleasedPart = 1e-6;           // the same when another lets go: what is symmetric lets go together
 constexpr double kAccelerationRounding = 1e-14;  // of gravity
 constexpr double kStillPart = 1e-7;              // of the accelerations: less is held
-constexpr int kMostFrictionRounds = 200;         // of normal forces from friction, and friction from these
+constexpr int kMaxFrictionRounds = 200;          // of normal forces from friction, and friction from these
+constexpr int kPlainFrictionRounds = 10;         // before they are mixed: most end sooner
+constexpr int kMaxRoundsInVain = 10;             // without progress: in each of these ...
+constexpr double kProgress = 0.9;                // ... the change is no smaller a part of the smallest
 constexpr double kFrictionConverged = 1e-10;     // of the largest normal force
 constexpr double kSameSide = 0.99;               // cosine between normals: a mesh may be touched on several
 constexpr double kRankPart = 1e-9;               // of the largest pivot: less is none
@@ -257,8 +261,31 @@ bool LastingContacts::nothingCloses(const std::vector<ContactRows>& rows) const 
   });
 }
 
+/// N: the normal forces of those that slide.
+VectorX LastingContacts::pressingOf(const std::vector<const Entry*>& entries, const VectorX& impulses) {
+  VectorX pressing = VectorX::Zero(std::ssize(entries));
+  for (Index k = 0; k < pressing.size(); ++k)
+    if (entries[static_cast<std::size_t>(k)]->slides) pressing[k] = impulses[3 * k + 2];
+  return pressing;
+}
+
+/// N: friction of those that slide, in the rows of all, for these normal forces.
+VectorX LastingContacts::frictionOf(const std::vector<const Entry*>& entries, const std::vector<ContactRows>& rows,
+                                    const VectorX& pressing) {
+  VectorX friction = VectorX::Zero(3 * pressing.size());
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    if (!entries[k]->slides) continue;
+    const Index contact = static_cast<Index>(k);
+    const double size = entries[k]->pair.law.dynamicFriction * pressing[contact];
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
+      friction[3 * contact + static_cast<Index>(i)] = -size * entries[k]->direction.dot(rows[k].rows[i].linearA);
+  }
+  return friction;
+}
+
 /// Forces and accelerations of contacts whose free accelerations are those in rate_. Those that slide have their
-/// friction against their direction, from the normal forces of the round before.
+/// friction against their direction, from the normal forces of the round before. Where friction and normal forces drive
+/// each other, rounds alone come to an end slowly, or not at all; where friction jams there is no end.
 ConeSolution LastingContacts::solve(const std::vector<const Entry*>& entries, const std::vector<ContactRows>& rows,
                                     const ContactResponse& response) const {
   const VectorX free = response.accelerations(rate_);
@@ -268,25 +295,24 @@ ConeSolution LastingContacts::solve(const std::vector<const Entry*>& entries, co
     frictions.push_back(entry->slides ? 0 : entry->pair.law.staticFriction);
     slides = slides || (entry->slides && entry->pair.law.dynamicFriction > 0);
   }
-  VectorX friction = VectorX::Zero(free.size());
+  VectorX normals = VectorX::Zero(std::ssize(entries)), friction = VectorX::Zero(free.size());
   ConeSolution solution;
-  for (int round = 0; round < kMostFrictionRounds; ++round) {
+  AndersonMixing mixing;
+  double least = INFINITY;
+  int roundsInVain = 0;
+  for (int round = 0; round < kMaxFrictionRounds; ++round) {
     solution = solveConeProblem(response.inverseMass(), free + response.inverseMass() * friction, frictions,
                                 solution.impulses);
     if (!slides) break;
-    double change = 0, largest = 0;
-    for (std::size_t k = 0; k < entries.size(); ++k) {
-      if (!entries[k]->slides) continue;
-      const Index at = 3 * static_cast<Index>(k);
-      const double size = entries[k]->pair.law.dynamicFriction * solution.impulses[at + 2];
-      for (int i = 0; i < 2; ++i) {
-        const double wanted = -size * entries[k]->direction.dot(rows[k].rows[static_cast<std::size_t>(i)].linearA);
-        change = std::max(change, std::abs(wanted - friction[at + i]));
-        friction[at + i] = wanted;
-      }
-      largest = std::max(largest, solution.impulses[at + 2]);
-    }
-    if (change <= kFrictionConverged * largest) break;
+    const VectorX pressing = pressingOf(entries, solution.impulses), next = frictionOf(entries, rows, pressing);
+    const double change = (next - friction).cwiseAbs().maxCoeff();
+    friction = next;
+    if (change <= kFrictionConverged * pressing.maxCoeff()) break;
+    roundsInVain = change < kProgress * least ? 0 : roundsInVain + 1;
+    least = std::min(least, change);
+    if (roundsInVain == kMaxRoundsInVain) break;
+    normals = round < kPlainFrictionRounds ? pressing : VectorX(mixing.next(normals, pressing).cwiseMax(0));
+    if (round >= kPlainFrictionRounds) friction = frictionOf(entries, rows, normals);
   }
   solution.impulses += friction;
   return solution;

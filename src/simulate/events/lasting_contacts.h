@@ -106,6 +106,9 @@ class LastingContacts {
   bool slidesTooSlowly(const Entry& entry, double acceleration, double gravity) const;
   void countRows(const Together& group, const MatrixX& held, std::vector<Entry>& entries);
   void noteFault(std::string_view fault, const std::vector<const Contact*>& contacts);
+  static VectorX pressingOf(const std::vector<const Entry*>& entries, const VectorX& impulses);
+  static VectorX frictionOf(const std::vector<const Entry*>& entries, const std::vector<ContactRows>& rows,
+                            const VectorX& pressing);
   bool nothingCloses(const std::vector<ContactRows>& rows) const;
   ConeSolution solve(const std::vector<const Entry*>& entries, const std::vector<ContactRows>& rows,
                      const ContactResponse& response) const;

@@ -21,6 +21,9 @@ constexpr EventPatience kPatience{500, 50, 1.0 / 60, "contacts change at most 50
 constexpr EventPatience kLookPatience{60, 50, 0.25, "contacts change at most 60 times in 1/4 s",
                                       "contacts change more than 60 times in 1/4 s"};
 
+/// Once the promise is given up: what chatters again costs less in steps.
+constexpr EventPatience kTrialPatience{60, 50, 1.0 / 60, kPatience.limit, kPatience.fault};
+
 /// With bodies whose promise holds whatever comes: some 0.2 s of computing.
 constexpr EventPatience kLongPatience{20000, 50, 1.0 / 60, "", ""};
 

@@ -1,0 +1,31 @@
+#include "math/anderson_mixing.h"
+
+#include <Eigen/QR>
+
+namespace cradle {
+namespace {
+
+constexpr std::size_t kMaxPoints = 9;   // kept: eight differences
+constexpr double kRankRatio = 1e-12;    // of the largest pivot of differences: less is rounding
+
+}  // namespace
+
+VectorX AndersonMixing::next(const VectorX& x, const VectorX& image) {
+  if (points_.size() == kMaxPoints) points_.erase(points_.begin()), steps_.erase(steps_.begin());
+  points_.push_back(x), steps_.push_back(image - x);
+  const auto count = static_cast<Eigen::Index>(points_.size()) - 1;
+  if (count == 0) return image;
+  // The weights w for which the step at x - dX w is shortest, if f is linear: dF w = f(x) - x.
+  MatrixX pointChanges(x.size(), count), stepChanges(x.size(), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto earlier = static_cast<std::size_t>(i);
+    pointChanges.col(i) = x - points_[earlier];
+    stepChanges.col(i) = steps_.back() - steps_[earlier];
+  }
+  Eigen::ColPivHouseholderQR<MatrixX> factor(stepChanges);
+  factor.setThreshold(kRankRatio);
+  const VectorX weights = factor.solve(steps_.back());
+  return image - (pointChanges + stepChanges) * weights;
+}
+
+}  // namespace cradle
