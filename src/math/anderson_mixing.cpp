@@ -5,8 +5,8 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kMaxPoints = 9;   // kept: eight differences
-constexpr double kRankRatio = 1e-12;    // of the largest pivot of differences: less is rounding
+constexpr std::size_t kMaxPoints = 9;  // kept: eight differences
+constexpr double kRankRatio = 1e-12;   // of the largest pivot of differences: less is rounding
 
 }  // namespace
 

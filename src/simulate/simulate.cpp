@@ -5,6 +5,7 @@
 #include "core/cpu_stopwatch.h"
 #include "simulate/plan/plan_text.h"
 #include "simulate/run.h"
+#include "simulate/step_loss.h"
 
 namespace cradle {
 namespace {
@@ -51,6 +52,7 @@ RunCost simulate(const Scene& scene, const SimulationSink& sink) {
 
 RunCost simulate(const Scene& scene, Run& run, const SimulationSink& sink) {
   CpuStopwatch integration;
+  StepLoss loss(scene);
   for (const std::string& warning : run.startWarnings()) sink.warning(warning);
 
   for (long number = 0; number <= lastFrame(scene); ++number) {
@@ -65,8 +67,10 @@ RunCost simulate(const Scene& scene, Run& run, const SimulationSink& sink) {
       if (sink.correction) sink.correction(correction);
       sink.warning(describe(correction, scene));
     }
+    loss.add(frame);
     sink.frame(frame);
   }
+  if (const auto warning = loss.warning()) sink.warning(*warning);
   return {integration.seconds(), run.evaluations(), run.correctionCounts(),
           describeOutcome(run.plan(), run.promiseEnds(), scene)};
 }

@@ -1,0 +1,49 @@
+#include "simulate/step_loss.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+constexpr double kToldRatio = 0.1;      // of the largest kinetic energy
+constexpr double kHarmlessRatio = 0.01;  // the same
+
+/// The power of the step that errors in a given time go with, at least.
+int orderOf(MethodName method) {
+  switch (method) {
+    case MethodName::explicitEuler:
+    case MethodName::semiImplicitEuler:
+      return 1;
+    case MethodName::rk4:
+      return 4;
+    case MethodName::dop853:
+      return 8;
+  }
+  return 1;
+}
+
+}  // namespace
+
+void StepLoss::add(const Frame& frame) {
+  largestKinetic_ = std::max(largestKinetic_, frame.energy.kinetic);
+  if (2 * frame.time < scene_.duration) return;
+  sum_ += frame.energy.numerical;
+  ++frames_;
+}
+
+std::optional<std::string> StepLoss::warning() const {
+  if (!scene_.method || !scene_.method->timeStep || !scene_.springs.empty() || frames_ == 0) return std::nullopt;
+  const double lost = sum_ / static_cast<double>(frames_), ratio = std::abs(lost) / largestKinetic_;
+  if (!(ratio > kToldRatio)) return std::nullopt;
+  const double timeStep = *scene_.method->timeStep;
+  return fmt::format(
+      "{}: the steps of {:.3g} s alone {} {:.3g} J, {:.0f} % of the largest kinetic energy; with a \"timeStep\" of "
+      "{:.2g} s it is about 1 %",
+      scene_.path, timeStep, lost > 0 ? "take" : "add", std::abs(lost), 100 * ratio,
+      timeStep * std::pow(kHarmlessRatio / ratio, 1.0 / orderOf(scene_.method->name)));
+}
+
+}  // namespace cradle
