@@ -7,6 +7,8 @@ namespace {
 
 using Index = Eigen::Index;
 
+constexpr double kSameInertia = 1e-9;  // relative: what bodies that are meant to be equal differ by, and more
+
 void applyTo(int body, const Vec3& impulse, const Vec3& angularImpulse, const std::vector<RigidBody>& bodies,
              const std::vector<BodyFrame>& frames, VectorX& velocities) {
   if (body == kFixed) return;
@@ -26,6 +28,24 @@ ContactRows rowsOf(const ContactConstraint& constraint, const VectorX& state, co
   return {constraint, place, {tangents[0], tangents[1], normalRow(constraint, place)}};
 }
 
+/// 1/(kg m^2): how easily a body turns, whatever its orientation.
+double easeOfTurning(int body, const std::vector<BodyFrame>& frames) {
+  return body == kFixed ? 0 : frames[static_cast<std::size_t>(body)].inverseInertia.trace();
+}
+
+double spinOf(int body, const VectorX& state) {
+  return body == kFixed ? 0 : angularVelocity(state, body).norm();
+}
+
+/// Whether body `a` turns the normal of a contact less than `b`: not a matter of their order. Of two that differ by
+/// rounding alone neither does.
+bool isSteadier(int a, int b, const VectorX& state, const std::vector<BodyFrame>& frames) {
+  const double easeA = easeOfTurning(a, frames), easeB = easeOfTurning(b, frames);
+  if (std::abs(easeA - easeB) > kSameInertia * (easeA + easeB)) return easeA < easeB;
+  const double spinA = spinOf(a, state), spinB = spinOf(b, state);
+  return spinA < spinB - kSameInertia * (spinA + spinB);
+}
+
 }  // namespace
 
 bool canLast(const Contact& contact) {
@@ -37,12 +57,13 @@ bool canLast(const Contact& contact) {
 ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames) {
   SurfaceContact surfaces = surfacesOf(contact);
   if (!canLast(contact)) {
-    // A ball turns around an edge that it comes to as around a corner; what is not round is as good as a corner on a
-    // face.
+    // A ball turns around an edge that it comes to as around a corner; what is not round is as good as a corner of one
+    // body on a face of the other.
     const bool isBallA = contact.radiusA > 0 && std::isfinite(contact.radiusA);
     const bool isBallB = contact.radiusB > 0 && std::isfinite(contact.radiusB);
-    surfaces.radiusA = isBallA ? contact.radiusA : 0;
-    surfaces.radiusB = isBallB ? contact.radiusB : isBallA ? 0 : INFINITY;
+    const bool isFaceOfA = !isBallA && !isBallB && isSteadier(contact.bodyA, contact.bodyB, state, frames);
+    surfaces.radiusA = isBallA ? contact.radiusA : isFaceOfA ? INFINITY : 0;
+    surfaces.radiusB = isBallB ? contact.radiusB : isBallA || isFaceOfA ? 0 : INFINITY;
   }
   return rowsOf(constraintOf(surfaces, state), state, frames);
 }

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace cradle {
 namespace {
 
-constexpr double kToldRatio = 0.1;      // of the largest kinetic energy
+constexpr double kToldRatio = 0.1;       // of the largest kinetic energy
 constexpr double kHarmlessRatio = 0.01;  // the same
 
 /// The power of the step that errors in a given time go with, at least.
@@ -43,7 +45,7 @@ std::optional<std::string> StepLoss::warning() const {
       "{}: the steps of {:.3g} s alone {} {:.3g} J, {:.0f} % of the largest kinetic energy; with a \"timeStep\" of "
       "{:.2g} s it is about 1 %",
       scene_.path, timeStep, lost > 0 ? "take" : "add", std::abs(lost), 100 * ratio,
-      timeStep * std::pow(kHarmlessRatio / ratio, 1.0 / orderOf(scene_.method->name)));
+      timeStep * cradle::exp(cradle::log(kHarmlessRatio / ratio) / orderOf(scene_.method->name)));
 }
 
 }  // namespace cradle

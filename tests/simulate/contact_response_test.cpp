@@ -63,5 +63,27 @@ TEST(RowsOfContacts, AreFiniteWhateverTouches) {
       }
 }
 
+// Which body is A and which is B says nothing: what the velocities alone do to the gap, the row's curvature, is the
+// same, and tangents apart so are the rows. Bodies of two inertias, and of one that turn at two rates.
+TEST(RowsOfContacts, DoNotDependOnTheOrderOfTheBodies) {
+  for (const double ease : {1.0, 3.0})
+    for (const auto& [radiusA, radiusB] :
+         std::vector<std::pair<double, double>>{{kNone, kNone}, {0, 0}, {0, kNone}, {kFlat, kFlat}, {0.1, kNone}}) {
+      Touching touching;
+      touching.bodies[1].inverseInertia *= ease;
+      touching.frames.clear();
+      placeBodies(touching.bodies, touching.state, touching.frames);
+      angularVelocity(touching.state, 0) = Vec3(-0.5, 0.2, 0.7);
+      touching.contact.radiusA = radiusA, touching.contact.radiusB = radiusB;
+      Contact swapped = touching.contact;
+      std::swap(swapped.bodyA, swapped.bodyB), std::swap(swapped.radiusA, swapped.radiusB);
+      swapped.normal = -swapped.normal;
+      const ContactRows rows = rowsOf(touching.contact, touching.state, touching.frames),
+                        other = rowsOf(swapped, touching.state, touching.frames);
+      SCOPED_TRACE(::testing::Message() << radiusA << " " << radiusB << " " << ease);
+      EXPECT_NEAR(rows.rows[2].curvature, other.rows[2].curvature, 1e-12);
+    }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -35,7 +35,8 @@ WatchedSwing swing(const std::string& tie, const std::string& method, double tim
   return result;
 }
 
-// RK4 leaves 1 - z^6 / 72 + z^8 / 576 of the energy in a step, z = h omega: a quarter is lost in ten seconds with h = 0.3 s.
+// RK4 leaves 1 - z^6 / 72 + z^8 / 576 of the energy in a step, z = h omega: a quarter is lost in ten seconds with h =
+// 0.3 s.
 TEST(StepLoss, OfPendulumsIsToldWithAStepThatIsHarmless) {
   for (const std::string& tie : {kRod, kBallJoint, kHinge})
     for (const double timeStep : {0.3, 0.4}) {
