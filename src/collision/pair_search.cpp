@@ -90,8 +90,9 @@ void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<I
   if (std::isfinite(touching.deadBand)) searchFrom(0, start, std::min(0.0, start) - touching.tolerance, best);
 }
 
-/// Solids without round sides that touch where a joint holds them stay on two sides of a plane as long as nothing else
-/// of them meets: their separation is then that of the place held, and falls below it where anything does. (What
+/// Solids without round sides that touch where a joint holds them, or nearly so, stay on two sides of a plane as long
+/// as nothing else of them meets: their separation is then that of the place held, and falls below it where anything
+/// does. (What
 /// contacts there are beside the place does not tell: far corners are in none of them until the turning brings them
 /// near.)
 void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
@@ -115,8 +116,9 @@ void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::op
     return separation(geometry_, pair_, 0, poseA, poseB, reach_);
   };
   const double start = separationAt(0);
-  if (start > touching.tolerance) return;
-  const double threshold = std::min(0.0, start) - deadBand(touching), end = best ? best->fraction : 1;
+  const double size = std::max(a_.boundingRadius, b.boundingRadius), end = best ? best->fraction : 1;
+  const bool touches = start <= std::max(touching.tolerance, kPinnedPart * size);
+  const double threshold = touches ? std::min(0.0, start) - deadBand(touching) : 0;
   GapBounds bounds = bounds_;
   bounds.acceleration = GapBounds().acceleration;
   bounds.finest = kFinestTurn;
