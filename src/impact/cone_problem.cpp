@@ -24,6 +24,8 @@ using Index = Eigen::Index;
 
 constexpr double kConvergedPart = 1e-12;                                   // of the largest velocity
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // of the sums in G z
+constexpr double kWorstPart =
+    1e-6;  // of the largest velocity: more is no rounding, but impulses that grow without bound
 constexpr double kProximalPart = 1e-7;  // of the largest inverse mass: makes singular problems regular
 constexpr double kFirstPenaltyParts[] = {1e-5, 1e-3,
                                          0.1};  // of the same; heavy on light wants it small, many contacts large
@@ -113,6 +115,7 @@ double ScaledProblem::residual(const VectorX& z, const VectorX& u) const {
 }
 
 bool ScaledProblem::isConverged(double residual, const VectorX& z, const VectorX& u) const {
+  if (!(residual <= kWorstPart)) return false;
   if (residual <= kConvergedPart * std::max(1.0, u.cwiseAbs().maxCoeff())) return true;
   return residual <= kRounding * (g_.cwiseAbs() * z.cwiseAbs()).maxCoeff();
 }
@@ -283,10 +286,15 @@ ConeSolution solveConeProblem(const MatrixX& G, const VectorX& g, const std::vec
                               const VectorX& near) {
   if (frictions.empty()) return {};
   ScaledProblem problem(G, g, frictions);
-  if (frictions.size() == 1) return problem.judge(solveSingleContact(G, g, frictions[0]));
   const bool hasFriction =
       std::any_of(frictions.begin(), frictions.end(), [](double friction) { return friction > 0; });
-  return problem.judge(hasFriction ? problem.solve(near) : solveNormals(G, g));
+  if (!hasFriction) return problem.judge(solveNormals(G, g));
+  const ConeSolution solution =
+      problem.judge(frictions.size() == 1 ? VectorX(solveSingleContact(G, g, frictions[0])) : problem.solve(near));
+  if (solution.residual <= g.cwiseAbs().maxCoeff()) return solution;
+  // Impulses that wedge a body grow without bound, and say nothing.
+  const ConeSolution smooth = problem.judge(solveNormals(G, g));
+  return smooth.residual < solution.residual ? smooth : solution;
 }
 
 }  // namespace cradle

@@ -10,10 +10,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kSingularTracePart = 1e-13;  // of the trace: less is rounding
-constexpr double kRootPart = 4e-16;           // of alpha
-constexpr double kOnCone = 1e-12;             // of its width: an impulse on its side is in it
-constexpr int kMostSteps = 200;               // 5 are usual; bisection alone ends after about 100
+constexpr double kSingularTracePart = 1e-9;  // of the trace: less is rounding, which ties leave of far larger parts
+constexpr double kRootPart = 4e-16;          // of alpha
+constexpr double kOnCone = 1e-12;            // of its width: an impulse on its side is in it
+constexpr int kMostSteps = 200;              // 5 are usual; bisection alone ends after about 100
 
 /// The tangential problem after elimination of the normal part, in its principal axes.
 class Sliding {

@@ -277,5 +277,25 @@ TEST(ConeProblem, OfOneContactOnABallJointSticksWhereTheArmLiesInTheCone) {
   EXPECT_GT(wedged, 100);
 }
 
+// A body on a hinge moves along one direction w, W = w w^T; what ties leave of far larger numbers is noise of 1e-16 of
+// these. A push along the normal stops it, whatever the friction.
+TEST(ConeProblem, OfOneContactOnAHingeStopsItThroughTheNoiseOfTies) {
+  std::mt19937 generator(6);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int i = 0; i < 2000; ++i) {
+    Vec3 along(number(generator), number(generator), 0.2 + std::abs(number(generator)));
+    along *= 1e-2;  // of a lever far shorter than the body, whose untied inverse mass is about 1
+    Mat3 noise = Mat3::NullaryExpr([&]() { return 1e-16 * number(generator); });
+    const Mat3 matrix = along * along.transpose() + noise + noise.transpose();
+    const Vec3 free = -along + Vec3(number(generator), number(generator), number(generator)) * 1e-14;
+    const double friction = 3 * std::abs(number(generator));
+    const ConeSolution solution = solveConeProblem(matrix, free, {friction});
+    SCOPED_TRACE(::testing::Message() << along.transpose() << " friction " << friction);
+    // z_n along.z() = 1 without friction; friction can make it more or less, and stops it all the same.
+    EXPECT_LT(solution.velocities.norm(), 1e-9 * free.norm());
+    EXPECT_LT(solution.impulses.norm(), 1e6);
+  }
+}
+
 }  // namespace
 }  // namespace cradle
