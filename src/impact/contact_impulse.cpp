@@ -7,7 +7,7 @@ namespace {
 
 // Of the inverse mass without ties, which take part to 1e-16: the square of a lever, in sizes of a body.
 constexpr double kImmobilePart = 1e-12;
-constexpr double kShortLeverPart = 1e-7;
+constexpr double kShortLeverPart = 1e-5;
 
 Vec3 armOf(const Contact& contact, int body, const VectorX& state) {
   return body == kFixed ? Vec3::Zero() : Vec3(contact.point - centerOfMass(state, body));

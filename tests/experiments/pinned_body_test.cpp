@@ -236,7 +236,7 @@ TEST(PinnedBody, BallPinnedAHairOffThePlaneIsNotPromised) {
                {[&](const Frame& frame) { frames.push_back(frame); }, [](const Event&) {},
                 [&](const std::string& text) { warnings.push_back(text); }});
       EXPECT_THAT(warnings,
-                  testing::Contains(testing::HasSubstr("within a thousandth of its size of a joint (ground, b)")))
+                  testing::Contains(testing::HasSubstr("within a few thousandths of its size of a joint (ground, b)")))
           << gap << " " << accuracy;
       const double start = mechanicalEnergy(frames[0]);
       for (const Frame& frame : frames) {
