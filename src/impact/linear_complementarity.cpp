@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/error.h"
@@ -23,6 +24,8 @@ using Index = Eigen::Index;
 constexpr double kRowRounding = 64 * std::numeric_limits<double>::epsilon();  // of the terms of a row, for each of them
 constexpr double kSingularPart = 1e-12;  // of a diagonal element: less left after elimination is rounding
 constexpr long kMostPivotsPerRow = 100;  // 1 or 2 are usual
+// Of the diagonal, which is made larger by as much: where rounding decides about rows that hold each other, in turn.
+constexpr double kRegularParts[] = {0, 1e-11, 1e-9, 1e-7};
 
 class Pivoting {
  public:
@@ -140,16 +143,26 @@ VectorX solveUncoupled(const MatrixX& a, const VectorX& b) {
   return lambda;
 }
 
-}  // namespace
-
-VectorX solveLinearComplementarity(const MatrixX& a, const VectorX& b) {
-  if (areUncoupled(a)) return solveUncoupled(a, b);
+/// None if rounding lets pivots come back.
+std::optional<VectorX> solveByPivots(const MatrixX& a, const VectorX& b) {
   Pivoting pivoting(a, b);
   const long most = kMostPivotsPerRow * static_cast<long>(b.size());
   for (long pivots = 0; pivots <= most; ++pivots) {
     const Index row = pivoting.mostViolated();
     if (row < 0) return pivoting.lambda();
     pivoting.drive(row);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+VectorX solveLinearComplementarity(const MatrixX& a, const VectorX& b) {
+  if (areUncoupled(a)) return solveUncoupled(a, b);
+  for (const double part : kRegularParts) {
+    MatrixX regular = a;
+    regular.diagonal() *= 1 + part;
+    if (const auto lambda = solveByPivots(regular, b)) return *lambda;
   }
   throw Error(ErrorKind::unstable, "",
               "the forces among " + std::to_string(b.size()) + " contacts cannot be found: rounding hides them");

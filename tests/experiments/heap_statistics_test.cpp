@@ -79,8 +79,8 @@ std::vector<HeapFigures> heapsOf(HeapTwin twin) {
   return heaps;
 }
 
-// Means of twelve differences lie within four of their standard errors (once in 500 times they would not, Student's t of
-// 11; the seeds are fixed). A preferred side of a third of what single heaps differ by is more.
+// Means of twelve differences lie within four of their standard errors (once in 500 times they would not, Student's t
+// of 11; the seeds are fixed). A preferred side of a third of what single heaps differ by is more.
 TEST(HeapStatistics, OfMirrorImagesAndOfAnotherOrderAreTheSame) {
   const std::vector<HeapFigures> heaps = heapsOf(HeapTwin::same);
   for (const HeapTwin twin : {HeapTwin::mirrored, HeapTwin::renumbered}) {

@@ -93,5 +93,18 @@ TEST(LinearComplementarity, LeavesARowThatNothingSatisfies) {
   EXPECT_EQ(solveLinearComplementarity(MatrixX::Zero(1, 1), VectorX::Constant(1, -1))[0], 0);
 }
 
+// Rows that hold each other through ties: what is left of them is the rounding of far larger numbers. A set of pushing
+// rows may come back then; a diagonal larger by 1e-7 at the most ends that, and the solution is off by as much.
+TEST(LinearComplementarity, ComesToAnEndWhereRoundingDecides) {
+  std::mt19937 random(7);
+  for (int trial = 0; trial < 3000; ++trial) {
+    const int size = 4 + trial % 11, rank = 1 + trial % 4;
+    const MatrixX rows = randomMatrix(size, rank, random), noise = 1e-12 * randomMatrix(size, size, random);
+    const MatrixX a = rows * rows.transpose() + noise + noise.transpose();
+    const VectorX b = rows * randomMatrix(rank, 1, random) + 1e-12 * randomMatrix(size, 1, random);
+    EXPECT_LT(violation(a, b, solveLinearComplementarity(a, b)), 1e-6) << trial;
+  }
+}
+
 }  // namespace
 }  // namespace cradle
