@@ -33,7 +33,7 @@ double easeOfTurning(int body, const std::vector<BodyFrame>& frames) {
   return body == kFixed ? 0 : frames[static_cast<std::size_t>(body)].inverseInertia.trace();
 }
 
-double spinOf(int body, const VectorX& state) {
+double turningRateOf(int body, const VectorX& state) {
   return body == kFixed ? 0 : angularVelocity(state, body).norm();
 }
 
@@ -42,7 +42,7 @@ double spinOf(int body, const VectorX& state) {
 bool isSteadier(int a, int b, const VectorX& state, const std::vector<BodyFrame>& frames) {
   const double easeA = easeOfTurning(a, frames), easeB = easeOfTurning(b, frames);
   if (std::abs(easeA - easeB) > kSameInertia * (easeA + easeB)) return easeA < easeB;
-  const double spinA = spinOf(a, state), spinB = spinOf(b, state);
+  const double spinA = turningRateOf(a, state), spinB = turningRateOf(b, state);
   return spinA < spinB - kSameInertia * (spinA + spinB);
 }
 
