@@ -92,8 +92,7 @@ void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<I
 
 /// Solids without round sides that touch where a joint holds them, or nearly so, stay on two sides of a plane as long
 /// as nothing else of them meets: their separation is then that of the place held, and falls below it where anything
-/// does. (What
-/// contacts there are beside the place does not tell: far corners are in none of them until the turning brings them
+/// does. (Contacts beside the place do not tell that: far corners are in none of them until the turning brings them
 /// near.)
 void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   if (pair_.againstPlane || !std::isfinite(touching.deadBand)) return;
@@ -117,7 +116,7 @@ void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::op
   };
   const double start = separationAt(0);
   const double size = std::max(a_.boundingRadius, b.boundingRadius), end = best ? best->fraction : 1;
-  const bool touches = start <= std::max(touching.tolerance, kPinnedPart * size);
+  const bool touches = start <= std::max(touching.tolerance, kPinnedRatio * size);
   const double threshold = touches ? std::min(0.0, start) - deadBand(touching) : 0;
   GapBounds bounds = bounds_;
   bounds.acceleration = GapBounds().acceleration;
@@ -217,7 +216,7 @@ void PairSearch::searchCorners(const TouchingFeatures& touching, std::optional<I
 bool PairSearch::isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const {
   const double near = kHeldPlace * upper.boundingRadius;
   const int lower = face_->isOfA ? a_.body : bodyB_;
-  if (isPinned(upper, lower, upper.points[feature_], kPinnedPart * upper.boundingRadius)) return true;
+  if (isPinned(upper, lower, upper.points[feature_], kPinnedRatio * upper.boundingRadius)) return true;
   return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
            const Attachment& corner = held.contact.centerA;
            return held.pair == pairIndex_ && corner.body == upper.body &&

@@ -145,7 +145,7 @@ bool isPinnedAt(const Collider& collider, int other, const ContactPoint& contact
   if (!isPinnedTo(collider, other)) return false;
   const double depth = std::isfinite(radius) ? radius : 0;
   const Vec3 center = contact.point + (depth + contact.separation / 2) * inwards;
-  return isPinned(collider, other, frame.inverse() * center, kPinnedPart * collider.boundingRadius);
+  return isPinned(collider, other, frame.inverse() * center, kPinnedRatio * collider.boundingRadius);
 }
 
 bool isPinnedContact(const ContactGeometry& geometry, const ColliderPair& pair, const ContactPoint& contact,
@@ -167,7 +167,7 @@ bool hasPinnedPlaces(const ContactGeometry& geometry, const ColliderPair& pair) 
 bool isPinnedFeature(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature) {
   const Collider& a = geometry.colliders[pair.a];
   return pair.againstPlane && !a.pins.empty() && a.kind() != ColliderKind::cylinder &&
-         isPinned(a, kFixed, a.points[feature], kPinnedPart * a.boundingRadius);
+         isPinned(a, kFixed, a.points[feature], kPinnedRatio * a.boundingRadius);
 }
 
 Vec3 relativeVelocity(const Contact& contact, const VectorX& state) {

@@ -26,7 +26,7 @@ struct Contact {
   int movingBody() const { return bodyA != kFixed ? bodyA : bodyB; }
 };
 
-constexpr double kPinnedPart = 1e-8;  // of a size: what turns about a joint so near to it stays where it is
+constexpr double kPinnedRatio = 1e-8;  // of a size: what turns about a joint so near to it stays where it is
 
 /// Whether a joint holds feature number `feature` of a pair (a corner, or the ball around an end, over a plane), so
 /// that its gap stays as it is.

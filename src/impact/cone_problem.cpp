@@ -24,7 +24,7 @@ using Index = Eigen::Index;
 
 constexpr double kConvergedPart = 1e-12;                                   // of the largest velocity
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // of the sums in G z
-constexpr double kWorstPart =
+constexpr double kMaxRoundingRatio =
     1e-6;  // of the largest velocity: more is no rounding, but impulses that grow without bound
 constexpr double kProximalPart = 1e-7;  // of the largest inverse mass: makes singular problems regular
 constexpr double kFirstPenaltyParts[] = {1e-5, 1e-3,
@@ -115,7 +115,7 @@ double ScaledProblem::residual(const VectorX& z, const VectorX& u) const {
 }
 
 bool ScaledProblem::isConverged(double residual, const VectorX& z, const VectorX& u) const {
-  if (!(residual <= kWorstPart)) return false;
+  if (!(residual <= kMaxRoundingRatio)) return false;
   if (residual <= kConvergedPart * std::max(1.0, u.cwiseAbs().maxCoeff())) return true;
   return residual <= kRounding * (g_.cwiseAbs() * z.cwiseAbs()).maxCoeff();
 }

@@ -6,8 +6,8 @@ namespace cradle {
 namespace {
 
 // Of the inverse mass without ties, which take part to 1e-16: the square of a lever, in sizes of a body.
-constexpr double kImmobilePart = 1e-12;
-constexpr double kShortLeverPart = 1e-5;
+constexpr double kImmobileRatio = 1e-12;
+constexpr double kShortLeverRatio = 1e-7;  // a hinge a thousandth of a flap inside its edge is an ordinary one
 
 Vec3 armOf(const Contact& contact, int body, const VectorX& state) {
   return body == kFixed ? Vec3::Zero() : Vec3(contact.point - centerOfMass(state, body));
@@ -38,12 +38,12 @@ Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies,
 }
 
 bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass) {
-  return response.areTied() && inverseMass <= kImmobilePart * untiedInverseMassAlongNormal(contact, response, state);
+  return response.areTied() && inverseMass <= kImmobileRatio * untiedInverseMassAlongNormal(contact, response, state);
 }
 
 bool hasShortLever(const Contact& contact, const ImpulseResponse& response, const VectorX& state) {
   return response.areTied() && inverseMassAlongNormal(contact, response, state) <=
-                                   kShortLeverPart * untiedInverseMassAlongNormal(contact, response, state);
+                                   kShortLeverRatio * untiedInverseMassAlongNormal(contact, response, state);
 }
 
 void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts) {

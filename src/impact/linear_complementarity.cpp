@@ -25,7 +25,7 @@ constexpr double kRowRounding = 64 * std::numeric_limits<double>::epsilon();  //
 constexpr double kSingularPart = 1e-12;  // of a diagonal element: less left after elimination is rounding
 constexpr long kMostPivotsPerRow = 100;  // 1 or 2 are usual
 // Of the diagonal, which is made larger by as much: where rounding decides about rows that hold each other, in turn.
-constexpr double kRegularParts[] = {0, 1e-11, 1e-9, 1e-7};
+constexpr double kRegularRatios[] = {1e-11, 1e-9, 1e-7};
 
 class Pivoting {
  public:
@@ -159,9 +159,10 @@ std::optional<VectorX> solveByPivots(const MatrixX& a, const VectorX& b) {
 
 VectorX solveLinearComplementarity(const MatrixX& a, const VectorX& b) {
   if (areUncoupled(a)) return solveUncoupled(a, b);
-  for (const double part : kRegularParts) {
+  if (const auto lambda = solveByPivots(a, b)) return *lambda;
+  for (const double ratio : kRegularRatios) {
     MatrixX regular = a;
-    regular.diagonal() *= 1 + part;
+    regular.diagonal() *= 1 + ratio;
     if (const auto lambda = solveByPivots(regular, b)) return *lambda;
   }
   throw Error(ErrorKind::unstable, "",

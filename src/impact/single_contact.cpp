@@ -10,10 +10,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kSingularTracePart = 1e-9;  // of the trace: less is rounding, which ties leave of far larger parts
-constexpr double kRootPart = 4e-16;          // of alpha
-constexpr double kOnCone = 1e-12;            // of its width: an impulse on its side is in it
-constexpr int kMostSteps = 200;              // 5 are usual; bisection alone ends after about 100
+constexpr double kSingularTraceRatio = 1e-9;  // of the trace: less is rounding, which ties leave of far larger parts
+constexpr double kRootRatio = 4e-16;          // of alpha
+constexpr double kOnCone = 1e-12;             // of its width: an impulse on its side is in it
+constexpr int kMaxRootSteps = 200;            // 5 are usual; bisection alone ends after about 100
 
 /// The tangential problem after elimination of the normal part, in its principal axes.
 class Sliding {
@@ -31,8 +31,8 @@ class Sliding {
     axis_ = length > 0 ? Vec2(x / length, y / length) : Vec2(1, 0);
     const Vec2 offset(free.x() + free.z() * coupling_[0], free.y() + free.z() * coupling_[1]);
     offset_ = {axis_.dot(offset), axis_.x() * offset.y() - axis_.y() * offset.x()};
-    const double rounding = kSingularTracePart * (g(0, 0) + g(1, 1)),
-                 stopped = kSingularTracePart * (free.norm() + std::abs(free.z()) * coupling_.norm());
+    const double rounding = kSingularTraceRatio * (g(0, 0) + g(1, 1)),
+                 stopped = kSingularTraceRatio * (free.norm() + std::abs(free.z()) * coupling_.norm());
     for (int i = 0; i < 2; ++i) {
       if (moments_[i] >= rounding) continue;
       moments_[i] = 0;
@@ -101,15 +101,15 @@ class Sliding {
 /// Newton's method between bounds that halve where it does not help.
 double findRoot(const Sliding& sliding) {
   double slope = 0, low = 0, high = sliding.start();
-  for (int i = 0; i < kMostSteps && sliding.excess(high, slope) > 0; ++i) low = high, high *= 2;
+  for (int i = 0; i < kMaxRootSteps && sliding.excess(high, slope) > 0; ++i) low = high, high *= 2;
   double alpha = high;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxRootSteps; ++i) {
     const double excess = sliding.excess(alpha, slope);
     if (excess == 0) return alpha;
     (excess > 0 ? low : high) = alpha;
     double next = alpha - excess / slope;
     if (!(next > low && next < high)) next = low + 0.5 * (high - low);
-    if (std::abs(next - alpha) <= kRootPart * alpha || next == low || next == high) return next;
+    if (std::abs(next - alpha) <= kRootRatio * alpha || next == low || next == high) return next;
     alpha = next;
   }
   return alpha;

@@ -11,7 +11,7 @@ SCENES = os.path.join(SOURCE, "scenes")
 CONDITION_OF = {"edges touch and press": "no edge or round side",
                 "a body moves over the edges of a mesh": "no edge or round side",
                 "contacts slide so slowly": "no contact", "friction jams": "no contact", "a cylinder tips over its rim": "no cylinder",
-                "too many contacts press at once": "no more than 12 redundant", "something touches within a few thousandths": "nothing touches", "contacts change more": "contacts change at most"}
+                "too many contacts press at once": "no more than 12 redundant", "something touches within a thousandth": "nothing touches", "contacts change more": "contacts change at most"}
 GIVEN_UP = r"not promised from (\S+) s on: (.*) \((.*)\); contact is resolved"
 NOTHING_TOUCHES = ["coupled_pendulums", "double_pendulum", "hanging_chain", "lagrange_top", "rod_pendulum", "rope_slack_taut",
                    "spinning_handle", "suspended_model_rod", "two_models_one_spring"]

@@ -82,7 +82,7 @@ TEST(Promise, OfASphereOnARoughSlopeIsWhileItDoesNotSlideSlowly) {
 TEST(Promise, OfBodiesOnJointsIsWhileTheyTouchNothingBesideThem) {
   EXPECT_THAT(conditionsOf(spheres(1), R"(, "ballJoints": [{"bodyA": "s0", "anchorA": [0, -0.9, 0],
                                            "anchorB": [0, 0.1, 0]}])"),
-              ElementsAre(StartsWith("nothing touches s0 within a few thousandths of its size of a joint"), kRate));
+              ElementsAre(StartsWith("nothing touches s0 within a thousandth of its size of a joint"), kRate));
 }
 
 /// A sphere on the ground that leaves it with `speed` (m/s).

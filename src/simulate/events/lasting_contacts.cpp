@@ -229,7 +229,7 @@ void LastingContacts::noteShortLevers(const std::vector<Contact>& touching, Cons
   const ImpulseResponse response(mechanism().bodies, ties);
   for (const Contact& contact : touching)
     if (hasShortLever(contact, response, island_.state))
-      noteFault("something touches within a few thousandths of its size of a joint", {&contact});
+      noteFault("something touches within a thousandth of its size of a joint", {&contact});
 }
 
 bool LastingContacts::noteJam() {

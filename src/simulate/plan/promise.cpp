@@ -186,7 +186,7 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
                      namesOfBodies(contacts.movers, scene)),
          contacts.movers});
   if (hasJoints(scene, island))
-    conditions.push_back({fmt::format("nothing touches {} within a few thousandths of its size of a joint",
+    conditions.push_back({fmt::format("nothing touches {} within a thousandth of its size of a joint",
                                       namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
   const EventPatience& patience = scene.accuracy > kLookAccuracy ? kLookPatience : kPatience;
