@@ -7,7 +7,6 @@ namespace {
 
 // Of the inverse mass without ties, which take part to 1e-16: the square of a lever, in sizes of a body.
 constexpr double kImmobileRatio = 1e-12;
-constexpr double kShortLeverRatio = 1e-7;  // a hinge a thousandth of a flap inside its edge is an ordinary one
 
 Vec3 armOf(const Contact& contact, int body, const VectorX& state) {
   return body == kFixed ? Vec3::Zero() : Vec3(contact.point - centerOfMass(state, body));
@@ -41,9 +40,9 @@ bool isImmobile(const Contact& contact, const ImpulseResponse& response, const V
   return response.areTied() && inverseMass <= kImmobileRatio * untiedInverseMassAlongNormal(contact, response, state);
 }
 
-bool hasShortLever(const Contact& contact, const ImpulseResponse& response, const VectorX& state) {
+bool hasShortLever(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double lever) {
   return response.areTied() && inverseMassAlongNormal(contact, response, state) <=
-                                   kShortLeverRatio * untiedInverseMassAlongNormal(contact, response, state);
+                                   lever * lever * untiedInverseMassAlongNormal(contact, response, state);
 }
 
 void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts) {

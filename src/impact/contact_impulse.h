@@ -17,9 +17,9 @@ class ImpulseResponse;
 /// neither open nor close.
 bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass);
 
-/// Whether joints leave a contact hardly any lever: its normal goes by an anchor so near that impulses there are
-/// thousands of times as large as those that the motion asks for. It touches and is not immobile.
-bool hasShortLever(const Contact& contact, const ImpulseResponse& response, const VectorX& state);
+/// Whether joints leave a contact a lever of hardly more than `lever`, in sizes of its bodies: its normal goes by an
+/// anchor so near that impulses there are 1 / lever times as large as those that the motion asks for.
+bool hasShortLever(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double lever);
 
 /// Erases those that are immobile.
 void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts);

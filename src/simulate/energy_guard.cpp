@@ -19,6 +19,7 @@ constexpr double kFinestTolerance = 1e-13;  // of a component in a step: finer t
 constexpr double kCalmPart = 0.1;           // of what stops a run: before, the motion is still the scene's own
 constexpr double kSafeTurn = 0.1;           // rad a step: RK4 is then right to 1e-7 a step; slower turns are no cause
 constexpr double kOverwhelming = 1e6;       // times all weights and springs: nothing else moves its body
+constexpr double kUnseenFall = 0.01;        // of a body's size: bodies that rattle at rest may have as much of energy
 constexpr double kPlainAcceleration = 1;    // m/s^2: of weights where there is no gravity
 constexpr double kCollapsed = 1e-3;         // of its rest length: a spring without direction
 
@@ -83,6 +84,7 @@ const char* const kTiesCause =
 EnergyGuard::EnergyGuard(const Assembly& assembly, const VectorX& start, const ChosenMethod& method, double duration)
     : mechanism_(assembly.mechanism),
       names_(assembly.names),
+      radii_(assembly.radii),
       start_(start),
       calm_(start_),
       method_(method),
@@ -116,7 +118,8 @@ double EnergyGuard::explainedEnergy(const VectorX& state, double timeStep) {
   for (std::size_t i = 0; i < excursions_.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
     excursions_[i] = std::max(excursions_[i], (centerOfMass(state, body) - centerOfMass(start_, body)).norm());
-    explained += mechanism_.bodies[i].mass * gravity * excursions_[i];
+    const double unseen = method_.isAdaptive() ? 0 : kUnseenFall * radii_[i];
+    explained += mechanism_.bodies[i].mass * gravity * (excursions_[i] + unseen);
   }
   return explained;
 }

@@ -41,7 +41,8 @@ class EnergyGuard {
 
   const Mechanism& mechanism_;
   const PartNames& names_;
-  VectorX start_, calm_;  // calm: the last state whose energy was nearly all explained
+  const std::vector<double>& radii_;  // m
+  VectorX start_, calm_;              // calm: the last state whose energy was nearly all explained
   ChosenMethod method_;
   double duration_;
   double startConstant_, startEnergy_;  // J

@@ -66,12 +66,19 @@ void Simulation::advance(double time, Motion& motion) {
 }
 
 void Simulation::advance(double time) {
+  if (mayNotGoOn()) changeMotion();
   if (auto* events = std::get_if<EventMotion>(&motion_))
     advance(time, *events);
   else
     advance(time, std::get<SteppedMotion>(motion_));
   // The step under way ends later than `time`: its interpolant is needed as it is.
   if (method_.isAdaptive()) changeMotion();
+}
+
+/// Whether a trial of events showed at its start that they do not serve.
+bool Simulation::mayNotGoOn() const {
+  const auto* events = std::get_if<EventMotion>(&motion_);
+  return promiseEnd_ && events && !events->fault().empty();
 }
 
 bool Simulation::keepsTies() const {

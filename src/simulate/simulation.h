@@ -42,6 +42,7 @@ class Simulation {
   void endPromise(const EventMotion& events, double timeStep);
   template <class Motion>
   static void advance(double time, Motion& motion);
+  bool mayNotGoOn() const;
   bool keepsTies() const;
   bool isLook() const { return island_.scene.accuracy > kLookAccuracy; }
   /// A frame inside a step: what its state is off the energy of the step's start is an error of that frame alone.

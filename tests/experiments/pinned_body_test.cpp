@@ -245,9 +245,10 @@ TEST(PinnedBody, FlapHingedALittleInsideItsEdgeIsPromised) {
 }
 
 // A ball pinned a hair above the place of its surface that comes to touch: it rattles within an angle of sqrt(2 gap /
-// R), where forces have levers of as much of R. Nothing moves that is seen, and no energy comes of it.
+// R), where forces have levers of as much of R. Contact steps let it sink in by 1e-6 R more, for a lever that they can
+// follow. Nothing moves that is seen, and no energy comes of it.
 TEST(PinnedBody, BallPinnedAHairOffThePlaneIsNotPromised) {
-  constexpr double kRadius = 0.1, kMass = 1;
+  constexpr double kRadius = 0.1, kMass = 1, kLoosened = 1e-6;
   for (const double gap : {3e-9, 1e-8, 3e-8})
     for (const double accuracy : {1e-3, 1e-6, 1e-9}) {
       const Quat turn(Eigen::AngleAxisd(0.4, Vec3(0.6, 0.8, 0)));
@@ -267,7 +268,8 @@ TEST(PinnedBody, BallPinnedAHairOffThePlaneIsNotPromised) {
       const double start = mechanicalEnergy(frames[0]);
       for (const Frame& frame : frames) {
         EXPECT_LT(mechanicalEnergy(frame) - start, 1e-9 * kMass * kGravity * kRadius) << gap << " " << accuracy;
-        EXPECT_LT((frame.states[0].position - frames[0].states[0].position).norm(), 2 * std::sqrt(2 * gap) * kRadius);
+        EXPECT_LT((frame.states[0].position - frames[0].states[0].position).norm(),
+                  2 * std::sqrt(2 * (gap + kLoosened)) * kRadius);
       }
     }
 }

@@ -31,6 +31,8 @@ constexpr double kBounceOfAccuracy = 1e-2;  // the same, of the accuracy ...
 constexpr double kBounceOfSquare = 100;     // ... or of its square, if that is more: 5e-5 of the size at the coarsest
 constexpr double kMostStillPart = 1e-7;     // of sqrt(g x size)
 constexpr double kSameCorner = 1e-6;        // of a size
+constexpr double kShortLever = 3e-4;        // sizes of a body: hinges of flaps are a thousandth inside their edges ...
+constexpr double kUnboundedLever = 3e-3;    // ... and where forces grow without bound, such levers are why
 
 /// Whether a collider with corners has one at `point` (m, world).
 bool hasCornerAt(const Collider& collider, const Vec3& point, const VectorX& state) {
@@ -79,7 +81,7 @@ bool isSameRim(const Contact& one, const Contact& other) {
 
 }  // namespace
 
-EventContacts::EventContacts(MovingIsland& island, RopeStage& ropes, double accuracy)
+EventContacts::EventContacts(MovingIsland& island, RopeStage& ropes, double accuracy, bool isTrial)
     : island_(island),
       ropes_(ropes),
       size_(smallestSize(island.assembly.geometry)),
@@ -89,7 +91,8 @@ EventContacts::EventContacts(MovingIsland& island, RopeStage& ropes, double accu
                                 accuracy > kLookAccuracy ? kMaxLookReachPart : kMaxReachPart)),
       lasting_(island, touchTolerance_),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
-      stillPart_(std::min(kMostStillPart, accuracy)) {}
+      stillPart_(std::min(kMostStillPart, accuracy)),
+      shortLever_(isTrial ? kUnboundedLever : kShortLever) {}
 
 TouchingFeatures EventContacts::touching() {
   return {touchTolerance_, deadBand_, &lasting_.held()};
@@ -107,12 +110,29 @@ void EventContacts::resolve(const std::optional<ContactChange>& change, const st
   lasting_.letGo(change);
   settle();
   lasting_.decide(touching_, solver_);
+  lasting_.noteShortLevers(touching_, solver_, shortLever_);
   keepTogether();
   if (!lasting_.empty() && isAnySlow()) {  // what sticks is still now
     settle();
     lasting_.letGoResting();
   }
   recordRests(rested);
+}
+
+void EventContacts::noteShortLevers() {
+  noteShortLevers(shortLever_);
+}
+
+bool EventContacts::noteUnboundedForces() {
+  if (!lasting_.noteJam()) noteShortLevers(kUnboundedLever);
+  return !lasting_.fault().empty();
+}
+
+void EventContacts::noteShortLevers(double lever) {
+  if (lasting_.empty() || !solver_.hasConstraints()) return;
+  solver_.factorize(island_.state);
+  findTouching({});
+  lasting_.noteShortLevers(touching_, solver_, lever);
 }
 
 /// Lasting contacts have no gap and do not leave each other, to rounding; those that stick do not slide. What cannot

@@ -21,8 +21,8 @@ struct ContactImpulse {
 /// together lasts.
 class EventContacts {
  public:
-  /// Keeps references to both. `accuracy` is the scene's.
-  EventContacts(MovingIsland& island, RopeStage& ropes, double accuracy);
+  /// Keeps references to both. `accuracy` is the scene's. A trial is made where contacts had to be resolved otherwise.
+  EventContacts(MovingIsland& island, RopeStage& ropes, double accuracy, bool isTrial);
 
   /// What touches as the island's step begins.
   TouchingFeatures touching();
@@ -44,7 +44,14 @@ class EventContacts {
   void resolve(const std::optional<ContactChange>& change = std::nullopt,
                const std::optional<std::size_t>& meeting = std::nullopt);
 
+  /// Notes as a fault that a joint leaves what touches now hardly any lever, if one does.
+  void noteShortLevers();
+
+  /// Notes as a fault why forces of lasting contacts grow without bound. False if there is no reason.
+  bool noteUnboundedForces();
+
  private:
+  void noteShortLevers(double lever);
   void findTouching(const std::optional<std::size_t>& meeting);
   void findNear(const std::optional<std::size_t>& meeting);
   void collide(const std::optional<std::size_t>& meeting);
@@ -74,6 +81,7 @@ class EventContacts {
   LastingContacts lasting_;
   ConstraintSolver solver_;
   double stillPart_;      // of the speed that a body gains when it falls by its size: slower is still
+  double shortLever_;     // sizes of a body: contacts do not serve that a joint leaves less
   double restDelay_ = 0;  // s: how long the bounces that are left out would take
   std::vector<Contact> touching_;
   std::vector<BodyFrame> frames_;

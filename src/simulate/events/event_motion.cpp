@@ -59,7 +59,7 @@ EventMotion::EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMet
     : island_(island),
       ropes_(ropes),
       method_(method),
-      contacts_(island, ropes, island.scene.accuracy),
+      contacts_(island, ropes, island.scene.accuracy, isTrial),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       patience_(patienceOf(method, island.scene.accuracy, isTrial)),
       tolerance_(toleranceOf(method, island.state, island.scene.duration)),
@@ -124,26 +124,26 @@ bool EventMotion::takeStep(double stepEnd) {
     if (acceptStep(method_.errorNorm(step, tolerance_), step.timeStep, stepSize_)) break;
     keepStartRate(step);
   }
-  if (isJammed_) return false;
+  if (areForcesUnbounded_) return false;
   shortSteps_ = stepSize_.timeStep < kShortTimeStep * island_.scene.duration ? shortSteps_ + 1 : 0;
   if (shortSteps_ <= kMaxShortSteps) return true;
-  if (!mayJam()) guard_->failAtShortSteps(island_.state, island_.time, step.timeStep);
+  if (!noteUnboundedForces()) guard_->failAtShortSteps(island_.state, island_.time, step.timeStep);
   return false;
 }
 
 /// Whether steps have become too short to go on, as friction jams.
 bool EventMotion::isTooShort() {
   if (!stepSize_.afterRejection || stepSize_.timeStep >= kShortestTimeStep * island_.scene.duration) return false;
-  if (!mayJam()) guard_->failAtShortestStep(island_.state, island_.time);
+  if (!noteUnboundedForces()) guard_->failAtShortestStep(island_.state, island_.time);
   return true;
 }
 
 /// Where friction at a sliding contact presses it together, its forces may grow without bound, or be none that finite
-/// forces are (P. Painleve, 1895): velocities jump there without an impact. Contact steps, whose unknowns are impulses,
-/// find the jump.
-bool EventMotion::mayJam() {
-  isJammed_ = !method_.keepsPromise && contacts_.lasting().noteJam();
-  return isJammed_;
+/// forces are (P. Painleve, 1895): velocities jump there without an impact. So they grow where the lever about a joint
+/// goes to nothing. Contact steps, whose unknowns are impulses, find what follows.
+bool EventMotion::noteUnboundedForces() {
+  areForcesUnbounded_ = !method_.keepsPromise && contacts_.noteUnboundedForces();
+  return areForcesUnbounded_;
 }
 
 /// Whether a step that was cut short is accurate too: where forces turn quickly, the long one may have been by luck. If
@@ -277,13 +277,19 @@ void EventMotion::changeForces(const Event& event) {
   if (event.impact || event.contact || event.rope)  // a rope may go taut as bodies meet
     contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
   else
-    contacts_.lasting().followSliding();
+    followLasting();
   if (!lasted && !contacts_.lasting().empty()) lengths_.fill(island_.scene.duration);  // bounces are over
   settleRopes();
   keepsTies_ = ropes_.rods() == rodsBefore_;
   const bool isPushed = island_.beginAndEndPushes();
   if (isPushed) contacts_.resolve();
   if (event.any() || isPushed) isContinuous_ = false;
+}
+
+/// Nothing changes for contacts that last, but where they are.
+void EventMotion::followLasting() {
+  contacts_.lasting().followSliding();
+  if (!method_.keepsPromise) contacts_.noteShortLevers();
 }
 
 /// What ropes do to contacts may load or release ropes, and the other way round.

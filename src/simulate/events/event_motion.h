@@ -45,7 +45,7 @@ class EventMotion {
  private:
   bool takeStep(double stepEnd);
   bool isTooShort();
-  bool mayJam();
+  bool noteUnboundedForces();
   /// What ends a step: at most one of them.
   struct Event {
     std::optional<ImpactTime> impact;
@@ -60,6 +60,7 @@ class EventMotion {
   void tidyState();
   void requireTiesKept();
   void changeForces(const Event& event);
+  void followLasting();
   void settleRopes();
   bool mayEndAnywhere() const;
   bool isStillAccurate();
@@ -81,10 +82,10 @@ class EventMotion {
   StepSize stepSize_;
   std::array<double, 8> lengths_;  // s: of the last steps, if bodies may touch
   std::size_t lengthIndex_ = 0;
-  int shortSteps_ = 0;         // in a row
-  bool isJammed_ = false;      // friction is: no step is accurate
-  bool isContinuous_ = false;  // nothing has changed the state since the last step's end
-  bool keepsTies_ = true;      // no rope went taut or slack at the last step's end
+  int shortSteps_ = 0;               // in a row
+  bool areForcesUnbounded_ = false;  // friction is: no step is accurate
+  bool isContinuous_ = false;        // nothing has changed the state since the last step's end
+  bool keepsTies_ = true;            // no rope went taut or slack at the last step's end
   int eventsInWindow_ = 0;
   double windowStart_ = 0;  // s
 };

@@ -46,7 +46,6 @@ void LastingContacts::decide(const std::vector<Contact>& touching, ConstraintSol
   std::vector<Entry> entries = entriesOf(touching);
   if (!entries.empty())
     for (const Together& group : groupsOf(entries)) decide(group, entries, ties);
-  noteShortLevers(touching, ties);
   noteTipping(entries);
   noteMeshes(entries);
   for (const Entry& entry : entries)
@@ -225,10 +224,10 @@ void LastingContacts::countRows(const Together& group, const MatrixX& held, std:
 }
 
 /// What forces with hardly any lever do is not known to the accuracy.
-void LastingContacts::noteShortLevers(const std::vector<Contact>& touching, ConstraintSolver& ties) {
+void LastingContacts::noteShortLevers(const std::vector<Contact>& touching, ConstraintSolver& ties, double lever) {
   const ImpulseResponse response(mechanism().bodies, ties);
   for (const Contact& contact : touching)
-    if (hasShortLever(contact, response, island_.state))
+    if (hasShortLever(contact, response, island_.state, lever))
       noteFault("something touches within a thousandth of its size of a joint", {&contact});
 }
 

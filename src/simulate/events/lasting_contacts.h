@@ -69,6 +69,10 @@ class LastingContacts {
   /// Notes as a fault that friction jams where contacts slide now. False if none does.
   bool noteJam();
 
+  /// Notes as a fault that joints leave one of these contacts a lever of less than `lever`, in sizes of its bodies.
+  /// `ties` are factorised for the state.
+  void noteShortLevers(const std::vector<Contact>& touching, ConstraintSolver& ties, double lever);
+
   /// The bodies of the scene whose contacts these are.
   const std::vector<int>& faultBodies() const { return faultBodies_; }
 
@@ -99,7 +103,6 @@ class LastingContacts {
   void decide(const Together& group, std::vector<Entry>& entries, ConstraintSolver& ties);
   void noteUnsolved(const std::vector<const Entry*>& entries, double residual) const;
   void noteTipping(const std::vector<Entry>& entries);
-  void noteShortLevers(const std::vector<Contact>& touching, ConstraintSolver& ties);
   bool isOfRim(const Contact& contact) const;
   double tippingSpeed(const Contact& contact) const;
   double stillSpeed(const Contact& contact) const;

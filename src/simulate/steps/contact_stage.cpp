@@ -15,6 +15,8 @@ namespace {
 constexpr double kStepTouchPart = 1e-9;    // of the smallest body's size: nearer counts as touching
 constexpr std::size_t kFewLoaded = 8;      // contacts that last: more are resolved step by step
 constexpr double kTogetherPart = 1e-3;     // of a step: what touches within it touches together
+constexpr double kShortLever = 3e-3;       // sizes of a body: shorter levers about a joint leave hardly any turning,
+constexpr double kLoosened = 1e-6;         // and contacts there may overlap by so many
 constexpr double kReach = 2;               // of the way that a body goes freely: what others may make of it
 constexpr double kReachPart = 1e-3;        // of its size: the same, for bodies at rest
 constexpr double kCalmSteps = 20;          // awake at least so long: a rattle is no row of rests
@@ -107,11 +109,21 @@ void ContactStage::findWithinReach(const VectorX& before, const VectorX& state, 
 /// one.
 void ContactStage::findHeld(const VectorX& before, const VectorX& state, double length) {
   findWithinReach(before, state, length);
-  if (isCrowded_) return;
+  if (isCrowded_) return loosenShortLevers(before, touching_);
   std::vector<char> touches(assembly_.geometry.pairs.size(), 0);
   for (const Contact& contact : touching_)
     if (contact.separation <= touchTolerance_) touches[contact.pair] = 1;
   std::erase_if(touching_, [&](const Contact& contact) { return !touches[contact.pair]; });
+  loosenShortLevers(before, touching_);
+}
+
+/// Where a joint leaves a contact hardly any lever, impulses turn bodies farther than steps can follow. Such contacts
+/// may overlap a little: bodies that do turn give them a lever.
+void ContactStage::loosenShortLevers(const VectorX& state, std::vector<Contact>& contacts) {
+  if (contacts.empty() || !solver_.hasConstraints()) return;
+  const ImpulseResponse response(assembly_.mechanism.bodies, solver_);
+  for (Contact& contact : contacts)
+    if (hasShortLever(contact, response, state, kShortLever)) contact.separation += kLoosened * sizeAt(contact);
 }
 
 void ContactStage::begin(double time, const VectorX& before, const VectorX& state, double length) {
@@ -173,10 +185,12 @@ void ContactStage::settleHeld(double time, VectorX& state) {
 void ContactStage::takeOutOverlaps(const RopeStage& ropes, VectorX& state) {
   for (int round = 0; round < kMaxRemovals; ++round) {
     findTouching(state, 0, overlapping_);
+    loosenShortLevers(state, overlapping_);
     double deepest = 0;
     for (const Contact& contact : overlapping_) deepest = std::max(deepest, -contact.separation);
     if (deepest <= kLetBe * margin()) return;
     findTouching(state, kNearOverlap * deepest, overlapping_);
+    loosenShortLevers(state, overlapping_);
     stepping_.takeOut(overlapping_, ropes.withinReach(state, state, 0), state);
   }
 }
@@ -184,6 +198,14 @@ void ContactStage::takeOutOverlaps(const RopeStage& ropes, VectorX& state) {
 bool ContactStage::hasImpact() const {
   const auto isImpact = [](const SteppedContact& stepped) { return stepped.isImpact; };
   return std::any_of(stepping_.contacts().begin(), stepping_.contacts().end(), isImpact);
+}
+
+/// Size (m) of the smaller of the bodies at a contact.
+double ContactStage::sizeAt(const Contact& contact) const {
+  double size = INFINITY;
+  for (const int body : {contact.bodyA, contact.bodyB})
+    if (body != kFixed) size = std::min(size, assembly_.radii[static_cast<std::size_t>(body)]);
+  return size;
 }
 
 /// Mass (kg) of the lighter of the bodies at a contact.

@@ -63,10 +63,12 @@ class ContactStage {
  private:
   void findTouching(const VectorX& state, double margin) { findTouching(state, margin, touching_); }
   void findTouching(const VectorX& state, double margin, std::vector<Contact>& touching);
+  void loosenShortLevers(const VectorX& state, std::vector<Contact>& contacts);
   void takeOutOverlaps(const RopeStage& ropes, VectorX& state);
   void findWithinReach(const VectorX& before, const VectorX& state, double length);
   void findHeld(const VectorX& before, const VectorX& state, double length);
   void findMeeting(const VectorX& state);
+  double sizeAt(const Contact& contact) const;
   double lightest(const Contact& contact) const;
   void settle(double time, const std::vector<Contact>& contacts, VectorX& state);
   void recordFaults(double time);
