@@ -90,17 +90,15 @@ void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<I
   if (std::isfinite(touching.deadBand)) searchFrom(0, start, std::min(0.0, start) - touching.tolerance, best);
 }
 
-/// Solids without round sides that touch where a joint holds them, or nearly so, stay on two sides of a plane as long
-/// as nothing else of them meets: their separation is then that of the place held, and falls below it where anything
+/// Solids that touch where a joint holds them, or nearly so, stay on two sides of a plane there, as they cannot roll:
+/// as long as nothing else of them meets, their separation is that of the place held, and falls below it where anything
 /// does. (Contacts beside the place do not tell that: far corners are in none of them until the turning brings them
 /// near.)
 void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   if (pair_.againstPlane || !std::isfinite(touching.deadBand)) return;
   const Collider& b = geometry_.colliders[pair_.b];
-  const auto isFlat = [](const Collider& c) {
-    return c.kind() == ColliderKind::polytope || (c.kind() == ColliderKind::mesh && !c.mesh->isSheet);
-  };
-  if (!isFlat(a_) || !isFlat(b)) return;
+  const auto isSheet = [](const Collider& c) { return c.kind() == ColliderKind::mesh && c.mesh->isSheet; };
+  if (isSheet(a_) || isSheet(b)) return;
   const auto pin =
       std::find_if(a_.pins.begin(), a_.pins.end(), [&](const PinnedPlace& place) { return place.other == bodyB_; });
   const auto pinB =

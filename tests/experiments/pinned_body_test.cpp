@@ -6,7 +6,9 @@
 
 #include "experiments/experiment.h"
 #include "experiments/random_scene_figures.h"
+#include "experiments/touching_places.h"
 #include "math/rotation.h"
+#include "study/drift_meter.h"
 
 // Bodies whose joint is where they touch something: flaps, doors, lids, pendulums at walls, bodies that stand on a
 // pinned corner, rim or round end. The contact at the joint is there for ever, and must hide no other.
@@ -272,6 +274,56 @@ TEST(PinnedBody, BallPinnedAHairOffThePlaneIsNotPromised) {
                   2 * std::sqrt(2 * (gap + kLoosened)) * kRadius);
       }
     }
+}
+
+/// A body of which a round side, or a face, touches something at the origin that has there the normal kTouchedNormal.
+struct TouchingBody {
+  const char* shape;
+  Vec3 touching;  // m, body's frame
+  Quat orientation;
+};
+
+const Vec3 kTouchedNormal(0, std::cos(0.6), std::sin(0.6));
+
+std::vector<TouchingBody> bodiesThatTouch() {
+  const Vec3 across(std::cos(0.9), -std::sin(0.9) * kTouchedNormal.z(), std::sin(0.9) * kTouchedNormal.y());
+  Mat3 lying;  // the axis y of the body across the normal, and askew to the edge
+  lying << -kTouchedNormal, across, -kTouchedNormal.cross(across);
+  const Quat askew(lying), turn(Eigen::AngleAxisd(0.7, Vec3(0.6, 0, 0.8)));
+  return {{R"({"sphere": {"radius": 0.1}})", turn.conjugate() * Vec3(-0.1 * kTouchedNormal), turn},
+          {R"({"cylinder": {"radius": 0.1, "length": 0.3}})", {0.1, 0.03, 0}, askew},
+          {R"({"capsule": {"radius": 0.1, "length": 0.3}})", {0.1, 0.03, 0}, askew},
+          {R"({"box": {"size": [0.2, 0.3, 0.1]}})", {0.1, 0.03, 0.01}, askew}};
+}
+
+// What is round at a joint's anchor cannot roll along an edge there, nor on what is round itself; about an edge it can,
+// until its end lands (at 0.2 s a ball would have come to lie on the face beside). Nothing sinks in, and energy is
+// kept.
+TEST(PinnedBody, RollsNeitherAlongAnEdgeNorOnWhatIsRound) {
+  const std::string edge = R"("shape": {"box": {"size": [2, 1, 1]}}, "position": [0.1, -0.5, -0.5])";
+  const std::string ball =
+      fmt::format(R"("shape": {{"sphere": {{"radius": 0.3}}}}, "position": {})", vectorText(-0.3 * kTouchedNormal));
+  const std::string pole = fmt::format(R"("shape": {{"capsule": {{"radius": 0.3, "length": 3}}}}, "position": {},
+      "orientation": {{"axis": [0, 0, 1], "angleDegrees": 90}})",
+                                       vectorText(-0.3 * kTouchedNormal));
+  for (const std::string& ground : {edge, ball, pole})
+    for (const TouchingBody& body : bodiesThatTouch())
+      for (const double accuracy : {1e-4, 1e-8}) {
+        const Scene scene = sceneWith(fmt::format(
+            R"("duration": 0.2, "accuracy": {}, {}, "bodies": [{{"name": "ground", {}, "motion": "static",
+            "material": "m"}}, {{"name": "b", "shape": {}, "material": "m", "position": {}, "orientation": {}}}],
+            "ballJoints": [{{"bodyA": "b", "anchorA": {}, "anchorB": [0, 0, 0]}}])",
+            accuracy, materialText(0.5, 0.3), ground, body.shape, vectorText(-(body.orientation * body.touching)),
+            orientationText(body.orientation), vectorText(body.touching)));
+        const Trajectory run = simulate(scene);
+        const Assembly assembly = assemble(scene, touchingScene(scene));
+        DriftMeter meter(assembly);
+        for (const Frame& frame : run.frames) {
+          meter.add(frame);
+          EXPECT_NEAR(energyConstantOf(frame), energyConstantOf(run.frames[0]), accuracy) << ground << body.shape;
+        }
+        EXPECT_LT(meter.penetration(), 1e-10) << ground << body.shape << accuracy;
+      }
 }
 
 // A lid hinged to the edge of a box that moves freely, with "collide": it lands on the box, which rests on the floor.
