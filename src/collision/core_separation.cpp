@@ -22,6 +22,7 @@ constexpr double kSameCosine = 0.999;     // where that is known: the direction 
 constexpr double kMeeting = 1e-9;         // of the size: corners as near meet,
 constexpr double kMet = 1e-13;            // and normals that see gaps as equal are alike,
 constexpr double kOtherWay = 4;           // or a gap so many times as wide: corners that overlap see it from aside
+constexpr double kNearlyParallel = 1e-7;  // rad: faces so little tilted touch as faces
 constexpr double kSameNormal = 1e-8;      // between unit normals: those of one face
 constexpr double kMovedRatio = 0.01;      // of the way between the middles
 
@@ -35,6 +36,15 @@ bool isSegment(const Core& core) {
 
 SeparatingAxis better(const SeparatingAxis& first, const SeparatingAxis& second) {
   return second.separation > first.separation ? second : first;
+}
+
+/// Of faces that see the same gap, as those of mirror images that tilt a little, the mean.
+SeparatingAxis betterFace(const SeparatingAxis& first, const SeparatingAxis& second, const Core& a, const Core& b) {
+  const bool isSame = std::abs(first.separation - second.separation) <= kMet * sizeOf(a, b) &&
+                      (first.normal - second.normal).norm() < kNearlyParallel;
+  if (!isSame) return better(first, second);
+  const Vec3 mean = (first.normal + second.normal).normalized();
+  return {gapAlong(a, b, mean), mean};
 }
 
 /// Crossing segments have no inside: any direction across both.
@@ -63,11 +73,11 @@ SeparatingAxis bestFlat(const Core& a, const Core& b, const Vec3& near, double l
   const auto look = [&](const Core& core, double sign) {
     if (core.isRound()) {
       const Vec3 normal = (core.axis().dot(near) < 0 ? -1 : 1) * core.axis();
-      if (normal.dot(near) > leastCosine) best = better(best, {gapAlong(a, b, normal), normal});
+      if (normal.dot(near) > leastCosine) best = betterFace(best, {gapAlong(a, b, normal), normal}, a, b);
     } else if (core.collider().kind() == ColliderKind::polytope) {
       for (const Polytope::Face& face : core.collider().polytope->faces) {
         const Vec3 normal = sign * core.turned(face.normal);
-        if (normal.dot(near) > leastCosine) best = better(best, {gapAlong(a, b, normal), normal});
+        if (normal.dot(near) > leastCosine) best = betterFace(best, {gapAlong(a, b, normal), normal}, a, b);
       }
     }
   };
@@ -99,7 +109,7 @@ SeparatingAxis axisOfFeatures(const Core& a, const Core& b) {
   const bool isApart = apart.distance > kTouching * sizeOf(a, b);
   if (isSegment(a) && isSegment(b)) return isApart ? ofNearest(apart, a, b) : ofCrossingSegments(a, b);
   const SeparatingAxes axes = separatingAxes(a, b);
-  const SeparatingAxis face = better(axes.faceOfA, axes.faceOfB);
+  const SeparatingAxis face = betterFace(axes.faceOfA, axes.faceOfB, a, b);
   const SeparatingAxis feature = axes.edges.separation > face.separation + preference ? axes.edges : face;
   if (!isApart || feature.separation >= apart.distance - preference) return feature;
   const SeparatingAxis nearest = ofNearest(apart, a, b);

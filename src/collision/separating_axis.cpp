@@ -14,7 +14,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kNoAxisSine = 1e-7;  // edges at a smaller angle give no axis: faces and other edges cover them
+constexpr double kGapRounding = 1e-13;  // of the size
+constexpr double kNoAxisSine = 1e-7;    // edges at a smaller angle give no axis: faces and other edges cover them
 
 /// Seen from B's frame.
 class AxisSearch {
@@ -53,7 +54,7 @@ class AxisSearch {
     std::size_t vertex = 0;
     for (const Polytope::Face& face : b_.faces) {
       const Vec3 normal = coreB_.turned(face.normal), onFace = coreB_.placed(face.offset * face.normal);
-      if (normal.dot(onA - onFace) <= best_) continue;
+      if (normal.dot(onA - onFace) < best_ - rounding_) continue;  // one that sees as much is told too
       vertex = farthestVertex(a_, coreA_.turnedBack(-normal), vertex);
       keep(axes_.faceOfB, normal.dot(coreA_.placed(a_.vertices[vertex]) - onFace), -normal);
     }
@@ -104,7 +105,8 @@ class AxisSearch {
   std::pmr::monotonic_buffer_resource pool_{memory_.data(), memory_.size()};
   std::pmr::vector<double> heights_;                        // m: of a point of B over each face of A
   double best_ = -std::numeric_limits<double>::infinity();  // m: largest gap found
-  std::size_t lastStart_ = 0;                               // vertex of B where the last arc began
+  double rounding_ = kGapRounding * std::min(coreA_.collider().boundingRadius, coreB_.collider().boundingRadius);  // m
+  std::size_t lastStart_ = 0;  // vertex of B where the last arc began
 };
 
 }  // namespace

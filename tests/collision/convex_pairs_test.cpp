@@ -229,6 +229,24 @@ TEST(ConvexPairs, MirrorImagesThatMeetHaveAMirroredNormal) {
       }
 }
 
+// The same where they meet with faces that tilt a little: neither face has the normal, but their mean.
+TEST(ConvexPairs, MirrorImagesThatMeetWithTiltedFacesHaveAMirroredNormal) {
+  RandomPoses random(6);
+  for (const Shape& shape : {cylinder(0.5, 0.8), cylinder(0.2, 1.6), box(Vec3(1, 0.6, 1.4))})
+    for (const double tilt : {1e-10, 1e-9, 4e-9, 1e-8, 3e-8})
+      for (const double gap : {0.0, 1e-13, -1e-13, 1e-11, -1e-11}) {
+        const Quat turn = rotationAbout(Vec3(0, 1, random.number(-1, 1)).normalized(), tilt) *
+                          rotationAbout(Vec3::UnitX(), random.number(-1, 1)) * rotationAbout(Vec3::UnitZ(), M_PI / 2);
+        const Vec3 place(gap / 2 + shape.reach(turn.conjugate() * Vec3::UnitX()), random.number(-1, 1), 0.3);
+        const ShapePair pair(shape, shape, {turn, place},
+                             {Quat(turn.w(), turn.x(), -turn.y(), -turn.z()), Vec3(-place.x(), place.y(), place.z())});
+        Vec3 sum = Vec3::Zero();
+        for (const Contact& contact : pair.contacts(1e-9)) sum += contact.normal;
+        EXPECT_LT(sum.x(), -0.9) << describe(pair) << ' ' << gap;
+        EXPECT_LT(std::hypot(sum.y(), sum.z()), 1e-13) << describe(pair) << ' ' << tilt << ' ' << gap;
+      }
+}
+
 TEST(ConvexPairs, NoDirectionSeesALargerGapWhereTheyOverlap) {
   RandomPoses random(3);
   forAllPairs([&](const Shape& a, const Shape& b) {
