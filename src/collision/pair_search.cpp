@@ -18,6 +18,7 @@ constexpr int kMaxLooks = 128;  // for directions, at a pair whose edges stay wi
 // Of a size: how far round surfaces sink in where a joint holds them before they press. From there the arm to the joint
 // is long enough for an impulse to turn the body: 3e-5 of the size.
 constexpr double kPinnedBand = 5e-10;
+constexpr double kFlushArea = 1e-3;        // of a size, squared: corners that span more keep a body from tilting
 constexpr double kFinestTurn = 1.0 / 16;   // of a step: solids that turn about a joint are looked at so often
 constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
 
@@ -61,6 +62,7 @@ void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTi
   reach_ = reach;
   findFace();
   if (face_) return searchCorners(touching, best);
+  if (pair_.againstPlane && isFlush(touching, a_)) return;
   scratch_.features_.clear();
   appendFeaturesWithin(geometry_, pair_, startA_, reach, scratch_.features_);
   for (const std::size_t feature : scratch_.features_) {
@@ -200,6 +202,7 @@ void PairSearch::findFace() {
 /// Corners over a face that may turn: h'' of their height h has parts from the normal's turning.
 void PairSearch::searchCorners(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   const Collider& upper = face_->isOfA ? geometry_.colliders[pair_.b] : a_;
+  if (isFlush(touching, upper)) return;
   pull_ += bendInFrame(scratch_.turnOf(step_, face_->isOfA ? a_.body : bodyB_), upper);
   bounds_.acceleration = pull_;
   apart_.reset();
@@ -220,6 +223,21 @@ bool PairSearch::isCornerHeld(const TouchingFeatures& touching, const Collider& 
            return held.pair == pairIndex_ && corner.body == upper.body &&
                   (corner.point - upper.points[feature_]).squaredNorm() < near * near;
          });
+}
+
+/// Whether corners of a body are held that span an area: then it does not tilt, and no other comes any nearer.
+bool PairSearch::isFlush(const TouchingFeatures& touching, const Collider& upper) const {
+  if (!touching.held || upper.radius > 0 || upper.rimRadius > 0) return false;
+  std::vector<Vec3> arms;  // m, from the first of them
+  const Vec3* first = nullptr;
+  for (const HeldFeature& held : *touching.held) {
+    const Attachment& corner = held.contact.centerA;
+    if (held.pair != pairIndex_ || corner.body != upper.body || !std::isinf(held.contact.radiusB)) continue;
+    if (first) arms.push_back(corner.point - *first);
+    first = first ? first : &corner.point;
+  }
+  const double area = kFlushArea * upper.boundingRadius * upper.boundingRadius;
+  return std::any_of(arms.begin(), arms.end(), [&](const Vec3& arm) { return arm.cross(arms[0]).norm() > area; });
 }
 
 bool PairSearch::isHeld(const TouchingFeatures& touching) const {
@@ -250,7 +268,7 @@ bool PairSearch::staysOnePoint() const {
 void PairSearch::searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   const double lowest = std::min(0.0, start), speed = leavingSpeed(touching.tolerance) * step_.timeStep;
   const double band = deadBand(touching);
-  if (apart_) bounds_.graze = touching.tolerance;  // flush faces would be looked at for ever
+  bounds_.graze = std::max(bounds_.graze, touching.tolerance);  // what stays flush would be looked at for ever
   if (!(speed > band)) return searchFrom(0, start, lowest - band, best);
   const bool hasOnePoint = std::isfinite(bounds_.acceleration) && staysOnePoint();
   if (hasOnePoint && speed >= 0.5 * pull_) return;

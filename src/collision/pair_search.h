@@ -36,6 +36,7 @@ class PairSearch {
   void searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best);
   void searchFrom(double from, double gapFrom, double threshold, std::optional<ImpactTime>& best);
   bool isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const;
+  bool isFlush(const TouchingFeatures& touching, const Collider& upper) const;
   bool isHeld(const TouchingFeatures& touching) const;
   bool hasOneContact() const;
   bool hasBall() const;

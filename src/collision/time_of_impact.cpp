@@ -3,6 +3,11 @@
 #include "collision/pair_search.h"
 
 namespace cradle {
+namespace {
+
+constexpr double kFirstReach = 1e-4, kReachGrowth = 10;  // of a size
+
+}  // namespace
 
 const MotionBounds& ImpactSearch::turnOf(const Step& step, int body) {
   static constexpr MotionBounds kStill;
@@ -21,7 +26,13 @@ double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& to
            impact.threshold;
   }
   if (!impact.isOfOthers) return separation(geometry_, pair, impact.feature, state) - impact.threshold;
-  return gapOfOthers(impact.pair, touching.heldFeatures(), state, a.boundingRadius) - impact.threshold;
+  // What is near an impact is close: all that is within a size may be thousands of triangles.
+  double gap = 0;
+  for (double reach = kFirstReach * a.boundingRadius;; reach *= kReachGrowth) {
+    gap = gapOfOthers(impact.pair, touching.heldFeatures(), state, reach);
+    if (gap < reach || reach >= a.boundingRadius) break;
+  }
+  return gap - impact.threshold;
 }
 
 std::optional<ImpactTime> ImpactSearch::first(const Step& step, const TouchingFeatures& touching) {

@@ -23,6 +23,7 @@ using Index = Eigen::Index;
 
 constexpr double kRowRounding = 64 * std::numeric_limits<double>::epsilon();  // of the terms of a row, for each of them
 constexpr double kSingularPart = 1e-12;  // of a diagonal element: less left after elimination is rounding
+constexpr int kFewRows = 8;              // are solved without a search, if all push
 constexpr long kMostPivotsPerRow = 100;  // 1 or 2 are usual
 // Of the diagonal, which is made larger by as much: where rounding decides about rows that hold each other, in turn.
 constexpr double kRegularRatios[] = {1e-11, 1e-9, 1e-7};
@@ -143,6 +144,20 @@ VectorX solveUncoupled(const MatrixX& a, const VectorX& b) {
   return lambda;
 }
 
+/// What few rows need if all of them push, as they mostly do: no search. None if they do not, or hold each other.
+std::optional<VectorX> solveForAll(const MatrixX& a, const VectorX& b) {
+  if (b.size() > kFewRows) return std::nullopt;
+  using Few = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kFewRows, kFewRows>;
+  const Eigen::LLT<Few> factor{Few(a)};
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  for (Index row = 0; row < b.size(); ++row)
+    if (!(factor.matrixLLT()(row, row) * factor.matrixLLT()(row, row) > kSingularPart * a(row, row)))
+      return std::nullopt;
+  VectorX lambda = factor.solve(-b);
+  if (!(lambda.minCoeff() > 0)) return std::nullopt;
+  return lambda;
+}
+
 /// None if rounding lets pivots come back.
 std::optional<VectorX> solveByPivots(const MatrixX& a, const VectorX& b) {
   Pivoting pivoting(a, b);
@@ -159,6 +174,7 @@ std::optional<VectorX> solveByPivots(const MatrixX& a, const VectorX& b) {
 
 VectorX solveLinearComplementarity(const MatrixX& a, const VectorX& b) {
   if (areUncoupled(a)) return solveUncoupled(a, b);
+  if (const auto lambda = solveForAll(a, b)) return *lambda;
   if (const auto lambda = solveByPivots(a, b)) return *lambda;
   for (const double ratio : kRegularRatios) {
     MatrixX regular = a;
