@@ -15,6 +15,7 @@ namespace {
 constexpr double kUnexplained = 2;        // times the energy that can be explained: nothing is left of the motion
 constexpr double kMostLocalErrors = 100;  // times their sum: they are estimates; 0.1 of it has been seen
 constexpr double kPlaceRounding = 64 * std::numeric_limits<double>::epsilon();  // of a place, over a run's steps
+constexpr double kTouchingGap = 1e-8;       // of a size: gaps are closed that are no wider
 constexpr double kFinestTolerance = 1e-13;  // of a component in a step: finer tolerances are not kept
 constexpr double kCalmPart = 0.1;           // of what stops a run: before, the motion is still the scene's own
 constexpr double kSafeTurn = 0.1;           // rad a step: RK4 is then right to 1e-7 a step; slower turns are no cause
@@ -41,15 +42,17 @@ double energySensitivity(const Mechanism& mechanism, const VectorX& state) {
   return sum;
 }
 
-/// What errors of `tolerance` (of 1 m and more) or rounding of places make of the energy (J) that is summed from them:
-/// all that bodies have which do not move, and more than nothing where a spring is stiff.
-double energyOfPlaceErrors(const Mechanism& mechanism, const VectorX& state, double tolerance) {
+/// What errors of `tolerance` (of 1 m and more), rounding of places, or gaps that count as touching make of the energy
+/// (J) that is summed from them: all that bodies of these radii (m) have which do not move, and more than nothing where
+/// a spring is stiff.
+double energyOfPlaceErrors(const Mechanism& mechanism, const std::vector<double>& radii, const VectorX& state,
+                           double tolerance) {
   double sum = 0;
   for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
-    sum += mechanism.bodies[i].mass * mechanism.gravity.norm() * centerOfMass(state, body).norm();
+    const double error = kPlaceRounding * centerOfMass(state, body).norm() + kTouchingGap * radii[i];
+    sum += mechanism.bodies[i].mass * mechanism.gravity.norm() * error;
   }
-  sum *= kPlaceRounding;
   for (const SpringForce& spring : mechanism.springs) {
     const SpringAction action = actionOf(spring, state);
     const double size = action.a.position.norm() + action.b.position.norm() + action.a.arm.norm() +
@@ -103,7 +106,7 @@ void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
     errorSum_ += std::max(method_.tolerance, kFinestTolerance) * energySensitivity(mechanism_, state);
     most = std::min(most, kMostLocalErrors * errorSum_);
   }
-  most += energyOfPlaceErrors(mechanism_, state, method_.isAdaptive() ? method_.tolerance : 0);
+  most += energyOfPlaceErrors(mechanism_, radii_, state, method_.isAdaptive() ? method_.tolerance : 0);
   const double change = std::abs(explainedConstant(mechanism_, state) - startConstant_);
   if (!(change <= most))
     fail(state, time, fmt::format("has energy from nowhere ({:.3g} J; {:.3g} J can be explained)", change, most),

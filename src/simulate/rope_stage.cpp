@@ -19,6 +19,7 @@ constexpr double kSlackPart = 1e-6;      // of its length: a rope this much shor
 constexpr double kLowestRebound = 1e-6;  // of sqrt(acceleration x length): a rebound that rises by 5e-13 of the length
 constexpr double kLeastPull = 1e-6;      // of gravity: a pull that is no rounding
 constexpr int kTensionSamples = 4;       // a step: it is at most a small part of a swing
+constexpr double kShortestLook = 1e-9;   // of a step: a rebound that is over sooner is none
 constexpr double kFirstLook = 1.0 / 1024;  // of a step
 constexpr double kLongestLook = 1.0 / 8;   // of a step, at a rope that nothing pulls at: what would is smooth
 constexpr double kReach = 2;               // of the way that ends go freely in a step: what contacts may make of it
@@ -52,7 +53,8 @@ double firstLook(const RopeLimit& rope, const Step& step) {
   const MotionBounds a = motionBounds(step, rope.anchorA), b = motionBounds(step, rope.anchorB);
   // The distance d of two points: d'' <= relative acceleration + (speed across)^2 / d.
   const double across = a.speed + b.speed;
-  return std::min(kFirstLook / 2, speed / (a.acceleration + b.acceleration + across * across / rope.maxLength));
+  const double part = speed / (a.acceleration + b.acceleration + across * across / rope.maxLength);
+  return std::clamp(part, kShortestLook, kFirstLook / 2);
 }
 
 /// J: of ropes' impulses.

@@ -254,7 +254,7 @@ void ContactStepping::resolve(const Group& group, const VectorX& before, double 
   keepMomenta(group.moved, free_, assembly_.mechanism, state);
   limit(group, most, state);
   keep(group, motion, problem, impulses, state);
-  book(group, motion, impulses, end, state);
+  book(group, motion, impulses, end, most - energyOf(group.moved.bodies, assembly_.mechanism, state), state);
 }
 
 VectorX ContactStepping::solve(const Group& group, const Problem& problem) {
@@ -362,9 +362,10 @@ void ContactStepping::restore(const std::vector<int>& bodies, VectorX& state) co
 }
 
 /// What struck is an impact, with its friction, and so is the closing that others still had; the rest of their work is
-/// friction. What contacts would give of energy, in all, is an error and none of theirs.
+/// friction. What contacts would give of energy, in all, is an error and none of theirs; nor do they take more than
+/// what ties, whose impulses are as large where contacts have short levers about a joint, leave of `loss` (J).
 void ContactStepping::book(const Group& group, const Motion& motion, const VectorX& impulses, const VectorX& end,
-                           VectorX& state) {
+                           double loss, VectorX& state) {
   double struck = 0, rubbed = 0, rubbedAtStart = 0;
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
@@ -375,10 +376,13 @@ void ContactStepping::book(const Group& group, const Motion& motion, const Vecto
     rubbed += energyTaken(rubbing, before, after);
     rubbedAtStart += energyTaken(rubbing, before, before);
   }
-  impactEnergy(state) += std::max(0.0, struck);
-  if (rubbed <= 0) return;
-  frictionEnergy(state) += rubbed;
-  friction_.taken += rubbed, friction_.atStart += rubbedAtStart;
+  struck = std::max(0.0, struck), rubbed = std::max(0.0, rubbed);
+  const double taken = struck + rubbed, left = std::max(0.0, loss);
+  const double part = group.isTied && taken > left ? left / taken : 1;
+  impactEnergy(state) += part * struck;
+  if (rubbed == 0) return;
+  frictionEnergy(state) += part * rubbed;
+  friction_.taken += part * rubbed, friction_.atStart += part * rubbedAtStart;
 }
 
 /// Dampers and pushes worked along free motion; contact changed velocities little by little.

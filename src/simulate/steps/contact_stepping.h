@@ -145,7 +145,8 @@ class ContactStepping {
   void keep(const Group& group, const Motion& motion, const Problem& problem, const VectorX& impulses,
             const VectorX& state);
 
-  void book(const Group& group, const Motion& motion, const VectorX& impulses, const VectorX& end, VectorX& state);
+  void book(const Group& group, const Motion& motion, const VectorX& impulses, const VectorX& end, double loss,
+            VectorX& state);
   void bookForces(double timeStep, VectorX& state) const;
 
   const Assembly& assembly_;
