@@ -1,15 +1,11 @@
-// Scenes thrown together at random, each in a process of its own: what goes wrong in them. Usage:
-//   random_scenes [--family FAMILY] [-j PROCESSES] [-o FOLDER] [COUNT [FIRST]]
-//     runs scenes FIRST (0) to FIRST + COUNT - 1 of a family: thrown (default), touch, pinned, squeezed, symmetric,
-//     threshold, or all, which take turns. What fails is written to FOLDER as FAMILY_NUMBER_ORACLE.json, reduced.
-//   random_scenes [--family FAMILY] --text NUMBER     prints the scene
-//   random_scenes --file SCENE                        runs a scene file with the oracles of the family thrown
+// Scenes thrown together at random, each in a process of its own: what goes wrong in them (--help).
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <csignal>
@@ -37,7 +33,8 @@ constexpr unsigned kFamilies = kSketchFamilyNames.size();
 
 /// What to run, and where to leave it.
 struct Order {
-  std::string family = "thrown", folder, text, file;
+  std::string family = "thrown", folder, file;
+  std::optional<unsigned> text;
   int atOnce = 2;
   unsigned count = 1000, first = 0;
 };
@@ -62,10 +59,6 @@ Task taskOf(const Order& order, unsigned number) {
     return {static_cast<SketchFamily>(kind), number / (kFamilies + 1)};
   }
   const auto found = std::find(kSketchFamilyNames.begin(), kSketchFamilyNames.end(), order.family);
-  if (found == kSketchFamilyNames.end()) {
-    fmt::print(stderr, "no family {}\n", order.family);
-    std::exit(2);
-  }
   return {static_cast<SketchFamily>(found - kSketchFamilyNames.begin()), number};
 }
 
@@ -206,38 +199,33 @@ int runScenes(const Order& order) {
   return bad == 0 ? 0 : 1;
 }
 
-Order readOrder(int count, char** arguments) {
-  Order order;
-  std::vector<std::string> numbers;
-  for (int i = 1; i < count; ++i) {
-    const std::string what = arguments[i];
-    const auto value = [&] { return ++i < count ? std::string(arguments[i]) : std::string(); };
-    if (what == "--family")
-      order.family = value();
-    else if (what == "-o")
-      order.folder = value();
-    else if (what == "-j")
-      order.atOnce = std::stoi(value());
-    else if (what == "--text")
-      order.text = value();
-    else if (what == "--file")
-      order.file = value();
-    else
-      numbers.push_back(what);
-  }
-  const auto number = [](const std::string& text) { return static_cast<unsigned>(std::stoul(text)); };
-  if (!numbers.empty()) order.count = number(numbers[0]);
-  if (numbers.size() > 1) order.first = number(numbers[1]);
-  return order;
-}
-
 }  // namespace
 }  // namespace cradle
 
 int main(int count, char** arguments) {
-  const cradle::Order order = cradle::readOrder(count, arguments);
-  if (!order.text.empty()) {
-    fmt::print("{}\n", cradle::taskOf(order, static_cast<unsigned>(std::stoul(order.text))).text());
+  CLI::App app("Scenes thrown together at random, each in a process of its own, and what goes wrong in them.");
+  cradle::Order order;
+  std::vector<std::string> families{"thrown", "all"};
+  families.insert(families.end(), cradle::kSketchFamilyNames.begin(), cradle::kSketchFamilyNames.end());
+  app.add_option("--family", order.family, "a family of scenes; of all, each in its turn")
+      ->check(CLI::IsMember(families))
+      ->capture_default_str();
+  app.add_option("-j", order.atOnce, "processes at once")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("-o", order.folder, "a folder for what fails: FAMILY_NUMBER_ORACLE.json, reduced")
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--text", order.text, "prints the scene of that number, and runs nothing");
+  app.add_option("--file", order.file, "runs a scene file with the oracles of the family thrown")
+      ->check(CLI::ExistingFile);
+  app.add_option("COUNT", order.count, "how many scenes")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("FIRST", order.first, "number of the first")->capture_default_str();
+  app.footer("Example: random_scenes --family pinned -j 4 120 33000");
+  try {
+    app.parse(count, arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (order.text) {
+    fmt::print("{}\n", cradle::taskOf(order, *order.text).text());
     return 0;
   }
   if (!order.file.empty()) {

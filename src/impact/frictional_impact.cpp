@@ -11,11 +11,15 @@
 // all restitutions are scaled by one factor, with which the impact gains nothing: a root, so that what is kept of the
 // energy is continuous too. It may jump where static and dynamic friction differ and a contact begins to slide, and
 // where the cone problem has more than one solution.
+// It has none where friction wedges what is to rebound: of a ball in a right-angled corner, from a coefficient of 1 on,
+// each contact's friction holds back all that the other pushes. Impulses grow without bound as friction comes near to
+// that, and velocities have a limit: all frictions are cut by one factor, with which impulses are still bounded.
 
 #include "impact/frictional_impact.h"
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "collision/first_crossing.h"
 #include "impact/cone_problem.h"
@@ -31,6 +35,8 @@ constexpr double kClosedPart = 1e-11;      // of the fastest speed: what is left
 constexpr double kSlidingPart = 1e-9;      // of the same: slower sticks
 constexpr double kSolvedPart = 1e-7;       // of the same: an error of Coulomb's law that nobody sees
 constexpr int kMostRounds = 10;            // of what was not solved: each leaves less
+constexpr double kFrictionError = 1e-6;    // of friction that wedges: so near to the most that does not
+constexpr double kWedgedEnergies = 1e8;    // energies of each impulse by itself, in those of all: more wedge
 constexpr double kEnergyRounding = 1e-13;  // of the energy that moves
 constexpr double kSumRounding = 4 * std::numeric_limits<double>::epsilon();  // of the terms of an energy
 
@@ -47,6 +53,7 @@ struct Strike {
   double rounding = 0;         // J: of the gain
   double residual = 0;         // m/s: of what was not solved
   double scaledEnergy = 0;     // J: that all of the impulses found would have added
+  double frictionFactor = 1;   // below 1: more of the frictions would wedge
 
   bool gains() const { return gain > kEnergyRounding * moved; }
   double certainLoss() const { return -gain - rounding; }
@@ -62,7 +69,10 @@ class FrictionalImpact {
 
  private:
   bool closes(const VectorX& velocities) const;
-  Strike strike(const VectorX& velocities, const VectorX& opening) const;
+  bool isSolved(const ConeSolution& solution) const { return solution.residual <= kSolvedPart * fastest_; }
+  ConeSolution solve(const MatrixX& matrix, const VectorX& free, const std::vector<double>& frictions,
+                     double& factor) const;
+  Strike strike(const VectorX& velocities, const VectorX& opening, double frictionFactor = 1) const;
   Strike strikeWithoutRebound(const VectorX& velocities) const;
   Strike rebound(const Strike& plastic) const;
 
@@ -91,8 +101,33 @@ bool FrictionalImpact::closes(const VectorX& velocities) const {
                      [&](Index i) { return velocities[3 * i + 2] < -kClosedPart * fastest_; });
 }
 
-/// With all friction static, then with dynamic friction where that slides. Contacts open with `opening` (m/s) at least.
-Strike FrictionalImpact::strike(const VectorX& velocities, const VectorX& opening) const {
+/// With these frictions times `factor`, or where that wedges, with the largest factor that does not.
+ConeSolution FrictionalImpact::solve(const MatrixX& matrix, const VectorX& free, const std::vector<double>& frictions,
+                                     double& factor) const {
+  ConeSolution solution;
+  const auto isUnwedgedWith = [&](double tried) {
+    std::vector<double> cut = frictions;
+    for (double& friction : cut) friction *= tried;
+    ConeSolution found = solveConeProblem(matrix, free, cut);
+    const VectorX sizes = found.impulses.cwiseAbs();
+    const double all = found.impulses.dot(matrix * found.impulses), each = sizes.dot(matrix.cwiseAbs() * sizes);
+    const bool isUnwedged = isSolved(found) && each <= kWedgedEnergies * all;
+    if (isUnwedged || solution.impulses.size() == 0) solution = std::move(found);
+    return isUnwedged;
+  };
+  if (isUnwedgedWith(factor)) return solution;
+  double least = 0;
+  for (double most = factor; most - least > kFrictionError;) {
+    const double tried = std::midpoint(least, most);
+    (isUnwedgedWith(tried) ? least : most) = tried;
+  }
+  if (least > 0) factor = least;  // else it is not friction that makes impulses large
+  return solution;
+}
+
+/// With all friction static, then with dynamic friction where that slides; times `frictionFactor` at most. Contacts
+/// open with `opening` (m/s) at least.
+Strike FrictionalImpact::strike(const VectorX& velocities, const VectorX& opening, double frictionFactor) const {
   std::vector<double> frictions;
   bool haveTwoFrictions = false;
   for (const Index i : members_) {
@@ -104,20 +139,21 @@ Strike FrictionalImpact::strike(const VectorX& velocities, const VectorX& openin
   const VectorX before = velocities(rows_);
   VectorX free = before;
   free(Eigen::seq(2, Eigen::last, 3)) -= opening;
-  ConeSolution solution = solveConeProblem(matrix, free, frictions);
+  ConeSolution solution = solve(matrix, free, frictions, frictionFactor);
   if (haveTwoFrictions) {
     for (std::size_t k = 0; k < members_.size(); ++k)
       if (solution.velocities.segment<2>(3 * static_cast<Index>(k)).norm() > kSlidingPart * fastest_)
         frictions[k] = impacts_[static_cast<std::size_t>(members_[k])].law.dynamicFriction;
-    solution = solveConeProblem(matrix, free, frictions);
+    solution = solve(matrix, free, frictions, frictionFactor);
   }
   Strike strike;
+  strike.frictionFactor = frictionFactor;
   strike.impulses = solution.impulses;
   strike.velocities = before + matrix * solution.impulses;
   strike.moved = 0.5 * solution.impulses.dot(matrix * solution.impulses);
   strike.gain = solution.impulses.dot(before) + strike.moved;
   const VectorX terms = solution.impulses.cwiseAbs();
-  strike.residual = solution.residual <= kSolvedPart * fastest_ ? 0 : solution.residual;
+  strike.residual = isSolved(solution) ? 0 : solution.residual;
   strike.rounding = kSumRounding * terms.dot(matrix.cwiseAbs() * terms);
   return strike;
 }
@@ -149,14 +185,17 @@ Strike FrictionalImpact::rebound(const Strike& plastic) const {
     part += rebound.part;
   }
   if (part == 0) return plastic;
-  const auto strikeWith = [&](double scale) { return strike(start_, scale * opening + (1 - scale * part) * slowest); };
-  Strike kept = strikeWith(1);
+  const auto strikeWith = [&](double scale, double frictionFactor) {
+    return strike(start_, scale * opening + (1 - scale * part) * slowest, frictionFactor);
+  };
+  Strike kept = strikeWith(1, 1);
   if (!kept.gains()) return kept;
+  const double frictionFactor = kept.frictionFactor;
   Bracket scales{0, plastic.certainLoss(), 1, kept.certainLoss()};
   kept = plastic;
   if (!(scales.gapBefore > 0)) return kept;
   const auto lossWith = [&](double scale) {
-    const Strike tried = strikeWith(scale);
+    const Strike tried = strikeWith(scale, frictionFactor);
     if (tried.certainLoss() > 0) kept = tried;
     return tried.certainLoss();
   };

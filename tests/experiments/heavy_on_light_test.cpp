@@ -69,5 +69,39 @@ TEST(CapsuleOnACapsule, MovesAlikeAtEveryScale) {
   for (const double scale : {0.01, 0.1, 4.0}) EXPECT_NEAR(pushedAside(scale), aside, 1e-3 * std::abs(aside)) << scale;
 }
 
+/// A box of 1 kg that a ball `ratio` times as heavy slides over, with a friction that just holds the box, or not.
+Scene boxUnderASlidingBall(double ratio, double friction, double accuracy) {
+  return sceneWith(fmt::format(R"("duration": 0.05, "accuracy": {0}, "materials": {{"m": {{
+    "restitution": 0, "staticFriction": {1}, "dynamicFriction": {1}}}}}, "bodies": [
+    {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}},
+    {{"name": "box", "shape": {{"box": {{"size": [0.36, 0.19, 0.55]}}}}, "material": "m", "mass": 1,
+      "position": [0, 0.095, 0], "linearVelocity": [0, 0, -0.95]}},
+    {{"name": "ball", "shape": {{"sphere": {{"radius": 0.12}}}}, "material": "m", "mass": {2},
+      "position": [-0.06, 0.31, -0.04], "linearVelocity": [-0.55, 0, 0.7]}}])",
+                               accuracy, friction, ratio));
+}
+
+// The floor's friction is that of the ball and the box's weight: under a ball of a hundred times its mass the box all
+// but slides. Its corners creep, and friction turns their sliding at mu N / (m v), up to 1e7 times in a second. Where
+// steps cannot follow that, the promise ends: some thousands of steps, not 1e5. No contact is named by nobody.
+TEST(LightBoxUnderAHeavySlidingBall, EndsThePromiseWhereItsCornersCreep) {
+  int crept = 0;
+  for (const double ratio : {30.0, 105.0, 300.0})
+    for (const double friction : {0.3, 0.616, 0.95})
+      for (const double accuracy : {1e-3, 1e-4, 1e-6}) {
+        const std::string what = fmt::format("{} {} {}", ratio, friction, accuracy);
+        std::vector<std::string> warnings;
+        const RunCost cost = simulate(
+            boxUnderASlidingBall(ratio, friction, accuracy),
+            {[](const Frame&) {}, [](const Event&) {}, [&](const std::string& text) { warnings.push_back(text); }});
+        EXPECT_LT(cost.evaluations, 100'000) << what;
+        for (const std::string& warning : warnings) {
+          EXPECT_EQ(warning.find("()"), std::string::npos) << what << warning;
+          crept += warning.find("slide so slowly") != std::string::npos;
+        }
+      }
+  EXPECT_GT(crept, 0);
+}
+
 }  // namespace
 }  // namespace cradle

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "experiments/tie_error.h"
+#include "simulate/plan/plan_text.h"
+#include "simulate/simulate.h"
 #include "study/drift_meter.h"
 
 namespace cradle {
@@ -36,14 +38,21 @@ double ropeExcess(const Frame& frame, const Scene& scene) {
   return excess;
 }
 
+SceneRun runOf(const Scene& scene) {
+  SceneRun run{scene, {}};
+  const auto listen = [&](const std::string& text) {
+    if (text.find("not promised") != std::string::npos) run.keepsAccuracy = false;
+  };
+  listen(accuracyPromised(planOf(scene)));
+  const SimulationSink sink{[&](const Frame& frame) { run.frames.push_back(frame); }, [](const Event&) {}, listen};
+  run.cpuSeconds = simulate(scene, sink).cpuSeconds;
+  return run;
+}
+
 RandomSceneFigures runRandomScene(const Scene& scene) {
+  const auto [ran, frames, keepsAccuracy, cpuSeconds] = runOf(scene);
   RandomSceneFigures figures;
-  std::vector<Frame> frames;
-  const SimulationSink sink{[&](const Frame& frame) { frames.push_back(frame); }, [](const Event&) {},
-                            [&](const std::string& warning) {
-                              if (warning.find("not promised") != std::string::npos) figures.keepsAccuracy = false;
-                            }};
-  figures.cpuSeconds = simulate(scene, sink).cpuSeconds;
+  figures.keepsAccuracy = keepsAccuracy, figures.cpuSeconds = cpuSeconds;
 
   const Assembly assembly = assemble(scene, wholeScene(scene));
   DriftMeter meter(assembly);

@@ -17,8 +17,19 @@ struct RandomSceneFigures {
   double tieError = 0;        // m or rad: of rods, joints, and ropes beyond their length
   double cpuSeconds = 0;      // of the integration
   bool isFinite = true;       // every number of every frame
-  bool keepsAccuracy = true;  // no warning said that it is not promised
+  bool keepsAccuracy = true;  // as of SceneRun
 };
+
+/// What a run of a scene left, and what it said of itself.
+struct SceneRun {
+  Scene scene;
+  std::vector<Frame> frames;
+  bool keepsAccuracy = true;  // neither the plan nor a warning said that it is not promised
+  double cpuSeconds = 0;      // of the integration
+};
+
+/// Throws what simulate throws.
+SceneRun runOf(const Scene& scene);
 
 /// Whether every number of a frame is.
 bool isFinite(const Frame& frame);

@@ -120,7 +120,7 @@ TEST(SqueezedBalls, AreNotKnownWhereTheLowerOneRestsBeforeTheUpperOneComes) {
 template <class Change>
 std::vector<SketchFault> faultsOfChanged(const Change& change) {
   SceneSketch sketch = flyingSketch();
-  SketchRun run = runSketch(sketch);
+  SceneRun run = runSketch(sketch);
   EXPECT_THAT(faultsOfRun(sketch, run), IsEmpty());
   change(sketch, run);
   return faultsOfRun(sketch, run);
@@ -132,23 +132,23 @@ void expectFault(const std::vector<SketchFault>& faults, const std::string& orac
 
 TEST(SketchOracles, ShowWhatIsWrong) {
   expectFault(faultsOfChanged(
-                  [](SceneSketch&, SketchRun& run) { run.frames.back().states[0].angularVelocity.x() = std::nan(""); }),
+                  [](SceneSketch&, SceneRun& run) { run.frames.back().states[0].angularVelocity.x() = std::nan(""); }),
               "finite");
-  expectFault(faultsOfChanged([](SceneSketch&, SketchRun& run) { run.frames.back().energy.kinetic *= 1.001; }), "gain");
-  expectFault(faultsOfChanged([](SceneSketch&, SketchRun& run) { run.frames.back().energy.dissipated += 1e-3; }),
+  expectFault(faultsOfChanged([](SceneSketch&, SceneRun& run) { run.frames.back().energy.kinetic *= 1.001; }), "gain");
+  expectFault(faultsOfChanged([](SceneSketch&, SceneRun& run) { run.frames.back().energy.dissipated += 1e-3; }),
               "balance");
-  expectFault(faultsOfChanged([](SceneSketch&, SketchRun& run) { run.frames[3].energy.dissipated += 1e-3; }), "ledger");
-  expectFault(faultsOfChanged([](SceneSketch&, SketchRun& run) { run.frames.back().states[0].position.y() = 0.01; }),
+  expectFault(faultsOfChanged([](SceneSketch&, SceneRun& run) { run.frames[3].energy.dissipated += 1e-3; }), "ledger");
+  expectFault(faultsOfChanged([](SceneSketch&, SceneRun& run) { run.frames.back().states[0].position.y() = 0.01; }),
               "penetration");
-  expectFault(faultsOfChanged([](SceneSketch&, SketchRun& run) { run.frames.back().states[1].position.x() += 1e-6; }),
+  expectFault(faultsOfChanged([](SceneSketch&, SceneRun& run) { run.frames.back().states[1].position.x() += 1e-6; }),
               "ties");
-  expectFault(faultsOfChanged([](SceneSketch& sketch, SketchRun&) { sketch.images = {0, 1, 2}; }), "symmetry");
-  expectFault(faultsOfChanged([](SceneSketch& sketch, SketchRun&) {
+  expectFault(faultsOfChanged([](SceneSketch& sketch, SceneRun&) { sketch.images = {0, 1, 2}; }), "symmetry");
+  expectFault(faultsOfChanged([](SceneSketch& sketch, SceneRun&) {
                 sketch.displacements.push_back({1, Vec3(1, 0, 0)});
               }),
               "closed form");
-  expectFault(faultsOfChanged([](SceneSketch&, SketchRun& run) { run.cpuSeconds = 3; }), "cpu");
-  expectFault(faultsOfChanged([](SceneSketch& sketch, SketchRun& run) {
+  expectFault(faultsOfChanged([](SceneSketch&, SceneRun& run) { run.cpuSeconds = 3; }), "cpu");
+  expectFault(faultsOfChanged([](SceneSketch& sketch, SceneRun& run) {
                 sketch.links.clear(), sketch.materials[0].staticFriction = 0;
                 run.frames.back().energy.momentum.x() += 1e-3;
               }),

@@ -4,22 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "experiments/random_scene_figures.h"
 #include "experiments/scene_sketch.h"
-#include "scene/scene.h"
-#include "trajectory/trajectory.h"
 
 namespace cradle {
 
-/// What a run left, and what it said of itself.
-struct SketchRun {
-  Scene scene;
-  std::vector<Frame> frames;
-  bool keepsAccuracy = true;  // neither the plan nor a warning said that it is not promised
-  double cpuSeconds = 0;      // of the integration
-};
-
 /// Throws what parseScene and simulate throw.
-SketchRun runSketch(const SceneSketch& sketch);
+SceneRun runSketch(const SceneSketch& sketch);
 
 /// Something that a scene should not do.
 struct SketchFault {
@@ -30,7 +21,7 @@ struct SketchFault {
 /// What one run shows by itself: states that are not finite, energy gained or lost without a cause, dissipated energy
 /// that comes back, momentum that changes where nothing can change it, penetration, ties that do not hold, broken
 /// symmetry, a way that the closed form does not know, CPU time.
-std::vector<SketchFault> faultsOfRun(const SceneSketch& sketch, const SketchRun& run);
+std::vector<SketchFault> faultsOfRun(const SceneSketch& sketch, const SceneRun& run);
 
 /// All oracles: the run itself, its twins, and where accuracies are promised, runs at 1e-4 and 1e-6 against 1e-9. Each
 /// oracle speaks once. `begin` hears of each run before it starts, so that one that does not end can be named.

@@ -208,8 +208,7 @@ double largestChange(const Set& set, double from, double to, int steps) {
   return largest;
 }
 
-// What is continuous, and smooth but for kinks, changes by a tenth over a tenth of the way; a jump stays. (With
-// friction of 1 and more the ball is wedged: neither surface lets it slide along the other.)
+// What is continuous, and smooth but for kinks, changes by a tenth over a tenth of the way; a jump stays.
 template <class Set>
 void expectContinuous(const Set& set, double from, double to, const char* what) {
   EXPECT_LT(largestChange(set, from, to, 200), 0.2 * largestChange(set, from, to, 20)) << what;
@@ -226,8 +225,25 @@ TEST(BallInACorner, ReboundsContinuouslyInAllData) {
       };
     };
     expectContinuous(with([](double mu, Corner& corner) { corner.friction = mu; }), 0, 0.95, "friction");
+    expectContinuous(with([](double mu, Corner& corner) { corner.friction = mu; }), 0.95, 1.1, "friction that wedges");
     expectContinuous(with([](double angle, Corner& corner) { corner.angle = angle; }), -0.2, 0.5, "angle");
     expectContinuous(with([](double drift, Corner& corner) { corner.drift = drift; }), -2, 2, "drift");
+  }
+}
+
+// Neither surface lets it slide along the other: Coulomb's law has no solution with any rebound, and the limit of those
+// with less friction is taken.
+TEST(BallInACorner, ReboundsContinuouslyWhereFrictionWedgesIt) {
+  for (const double friction : {1.0, 1.5}) {
+    const auto with = [friction](const auto& set) {
+      return [friction, set](double value, Corner& corner) { corner.friction = friction, set(value, corner); };
+    };
+    expectContinuous(with([](double e, Corner& corner) { corner.floorRestitution = corner.wallRestitution = e; }), 0, 1,
+                     "e");
+    expectContinuous(with([](double angle, Corner& corner) { corner.angle = angle; }), -0.2, 0.5, "angle");
+    Corner corner;
+    corner.friction = friction;
+    EXPECT_NEAR(corner.outcome()[1], 0.5 * 3, 1e-10);  // impulses are 1e4 times as large as without wedging
   }
 }
 

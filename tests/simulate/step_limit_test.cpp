@@ -127,5 +127,17 @@ TEST(StepWarning, NamesTheSpringThatLosesMost) {
   EXPECT_THAT(warnings, testing::Not(testing::Contains(HasSubstr("spring \"stiff\" loses"))));
 }
 
+// The steps of a pendulum are of some 0.05 s in a run of thirty years, too.
+TEST(LongRuns, AreNotStiff) {
+  const Scene scene = sceneWith(R"("duration": 1e9, "output": {"framesPerSecond": 0.1}, "bodies": [{"name": "ball",
+      "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "position": [1, 0, 0]}],
+    "rods": [{"bodyA": "ball", "anchorB": [0, 0, 0]}])");
+  struct Done {};
+  const auto take = [](const Frame& frame) {
+    if (frame.time > 1000) throw Done();
+  };
+  EXPECT_THROW(simulate(scene, {take, [](const Event&) {}, [](const std::string&) {}}), Done);
+}
+
 }  // namespace
 }  // namespace cradle

@@ -32,6 +32,7 @@ class EventContacts {
   /// Why contacts cannot last as rows, if they can't; else empty.
   std::string_view fault() const { return lasting_.fault(); }
   const std::vector<int>& faultBodies() const { return lasting_.faultBodies(); }
+  std::vector<int> sceneBodies() const { return lasting_.sceneBodies(); }
 
   /// Farther apart (m) nothing is looked at.
   double margin() const { return reach_; }

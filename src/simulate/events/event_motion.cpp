@@ -25,6 +25,7 @@ constexpr double kLeastLookahead = 1.0 / 64;  // of the step that the accuracy a
 constexpr double kManyTurns = 100;        // rad: beyond, orientations need a tighter tolerance
 constexpr double kTurningPart = 0.1;      // of the tolerance, for these
 constexpr double kShortTimeStep = 1e-9;   // of the run's duration: nobody waits for so many steps
+constexpr double kLongRun = 1000;         // s: in longer ones, steps are short that would be in this one
 constexpr int kMaxShortSteps = 1000;      // in a row; after an event some are short
 constexpr double kMostTieError = 1e-9;    // m (a m of coordinates) or rad: projection leaves 1e-15
 constexpr double kTieErrorRatio = 0.1;    // of the accuracy: left for a few steps where motion could take two ways
@@ -125,7 +126,7 @@ bool EventMotion::takeStep(double stepEnd) {
     keepStartRate(step);
   }
   if (areForcesUnbounded_) return false;
-  shortSteps_ = stepSize_.timeStep < kShortTimeStep * island_.scene.duration ? shortSteps_ + 1 : 0;
+  shortSteps_ = stepSize_.timeStep < kShortTimeStep * std::min(island_.scene.duration, kLongRun) ? shortSteps_ + 1 : 0;
   if (shortSteps_ <= kMaxShortSteps) return true;
   if (!noteUnboundedForces()) guard_->failAtShortSteps(island_.state, island_.time, step.timeStep);
   return false;
@@ -133,7 +134,8 @@ bool EventMotion::takeStep(double stepEnd) {
 
 /// Whether steps have become too short to go on, as friction jams.
 bool EventMotion::isTooShort() {
-  if (!stepSize_.afterRejection || stepSize_.timeStep >= kShortestTimeStep * island_.scene.duration) return false;
+  const double shortest = kShortestTimeStep * std::min(island_.scene.duration, kLongRun);
+  if (!stepSize_.afterRejection || stepSize_.timeStep >= shortest) return false;
   if (!noteUnboundedForces()) guard_->failAtShortestStep(island_.state, island_.time);
   return true;
 }
@@ -329,7 +331,9 @@ std::string_view EventMotion::fault() const {
 }
 
 std::vector<int> EventMotion::faultBodies() const {
-  return contacts_.fault().empty() ? island_.log.latestBodies() : contacts_.faultBodies();
+  if (!contacts_.fault().empty()) return contacts_.faultBodies();
+  // Changes of redundant contacts name none: there may have been no others.
+  return island_.log.latestBodies().empty() ? contacts_.sceneBodies() : island_.log.latestBodies();
 }
 
 }  // namespace cradle

@@ -37,7 +37,9 @@ constexpr double kFrictionConverged = 1e-10;     // of the largest normal force
 constexpr double kSameSide = 0.99;               // cosine between normals: a mesh may be touched on several
 constexpr double kRankPart = 1e-9;               // of the largest pivot: less is none
 constexpr double kTurningTime = 2e-5;            // s: friction that turns sliding as fast costs 4 s of CPU a second
+constexpr int kMaxTurningSteps = 1000;           // in a row: sliding that ends does so in some hundred
 constexpr const char* kTips = "a cylinder tips over its rim";
+constexpr const char* kSlidesTooSlowly = "contacts slide so slowly that their friction has no sure direction";
 
 }  // namespace
 
@@ -121,7 +123,7 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
     Entry& entry = entries[group[k]];
     const Index at = 3 * static_cast<Index>(k);
     const Vec3 motion = solution.velocities.segment<3>(at);
-    entry.force = most / inverseMass(at + 2, at + 2);
+    entry.mass = 1 / inverseMass(at + 2, at + 2), entry.force = most * entry.mass;
     entry.isLoaded = solution.impulses[at + 2] > unloaded / inverseMass(at + 2, at + 2);
     entry.opens = !entry.isLoaded && motion.z() > kStillPart * most;
     if (!entry.isLoaded) continue;
@@ -134,7 +136,7 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
       entry.direction = (motion.x() * rows[k].rows[0].linearA + motion.y() * rows[k].rows[1].linearA).normalized();
     }
     if (entry.slides && slidesTooSlowly(entry, motion.head<2>().norm(), most))
-      noteFault("contacts slide so slowly that their friction has no sure direction", {&entry.contact});
+      noteFault(kSlidesTooSlowly, {&entry.contact});
     heldRows.push_back(at + 2);
     if (entry.sticks) heldRows.push_back(at), heldRows.push_back(at + 1);
   }
@@ -243,13 +245,25 @@ bool LastingContacts::noteJam() {
 /// Bodies of the scene are named: those of pairs that have gone may be told later.
 void LastingContacts::noteFault(std::string_view fault, const std::vector<const Contact*>& contacts) {
   fault_ = fault;
-  faultBodies_.clear();
+  faultBodies_ = sceneBodiesOf(contacts);
+}
+
+std::vector<int> LastingContacts::sceneBodies() const {
+  std::vector<const Contact*> contacts;
+  for (const Entry& entry : entries_) contacts.push_back(&entry.contact);
+  return sceneBodiesOf(contacts);
+}
+
+/// In the order of the scene.
+std::vector<int> LastingContacts::sceneBodiesOf(const std::vector<const Contact*>& contacts) const {
+  std::vector<int> bodies;
   for (const Contact* contact : contacts) {
     const auto [a, b] = bodiesOf(island_.assembly, island_.assembly.geometry.pairs[contact->pair]);
-    faultBodies_.push_back(a), faultBodies_.push_back(b);
+    bodies.push_back(a), bodies.push_back(b);
   }
-  std::sort(faultBodies_.begin(), faultBodies_.end());
-  faultBodies_.erase(std::unique(faultBodies_.begin(), faultBodies_.end()), faultBodies_.end());
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  return bodies;
 }
 
 /// Whether the accelerations in rate_ press no contact together by more than rounding.
@@ -356,14 +370,22 @@ const std::vector<HeldFeature>& LastingContacts::held() {
 }
 
 void LastingContacts::followSliding() {
+  const Entry* turning = nullptr;
   bool isPlaced = false;
-  for (ContactConstraint& contact : mechanism().contacts) {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    ContactConstraint& contact = mechanism().contacts[i];
     if (contact.motion != ContactMotion::sliding) continue;
     if (!isPlaced) placeBodies(mechanism().bodies, island_.state, frames_);
     isPlaced = true;
     const Vec3 sliding = tangentialVelocity(placeOf(contact, island_.state, frames_));
-    if (sliding.norm() > kSlowestSliding) setSlidingDirection(contact, sliding.normalized(), island_.state);
+    const double speed = sliding.norm();
+    if (speed > kSlowestSliding) setSlidingDirection(contact, sliding / speed, island_.state);
+    const Entry& entry = entries_[i];
+    const double normal = before_[i][0] * entry.force;  // N: at the end of the step that changed nothing
+    if (speed < kTurningTime * entry.pair.law.dynamicFriction * normal / entry.mass) turning = &entry;
   }
+  turningSteps_ = turning ? turningSteps_ + 1 : 0;
+  if (turningSteps_ > kMaxTurningSteps) noteFault(kSlidesTooSlowly, {&turning->contact});
 }
 
 }  // namespace cradle

@@ -60,7 +60,8 @@ class LastingContacts {
   /// Zero where the change happens, positive before. Not for redundant ones.
   double margin(const ContactChange& change, const VectorX& state);
 
-  /// Directions of sliding follow the motion from step to step.
+  /// Directions of sliding follow the motion from step to step. Notes as a fault that friction goes on turning them
+  /// faster than steps follow at a bearable cost: a body that creeps under a load.
   void followSliding();
 
   /// Why rows do not serve, if they don't: they are for few contacts, and only those between balls, corners and faces.
@@ -73,8 +74,9 @@ class LastingContacts {
   /// `ties` are factorised for the state.
   void noteShortLevers(const std::vector<Contact>& touching, ConstraintSolver& ties, double lever);
 
-  /// The bodies of the scene whose contacts these are.
+  /// The bodies of the scene whose contacts the fault is about, and those of all that last.
   const std::vector<int>& faultBodies() const { return faultBodies_; }
+  std::vector<int> sceneBodies() const;
 
  private:
   /// A contact that touches, on its way to a decision; and what is known of one that lasts, beside its constraint.
@@ -86,6 +88,7 @@ class LastingContacts {
     bool isLoaded = false, sticks = false;
     bool opens = false;        // carries nothing, and the accelerations open it
     bool isRedundant = false;  // its forces are not unique
+    double mass = 1;           // kg, against being pushed apart there
     double force = 1;          // N, that margins are measured by
   };
   /// A contact that lasted until now.
@@ -109,6 +112,7 @@ class LastingContacts {
   bool slidesTooSlowly(const Entry& entry, double acceleration, double gravity) const;
   void countRows(const Together& group, const MatrixX& held, std::vector<Entry>& entries);
   void noteFault(std::string_view fault, const std::vector<const Contact*>& contacts);
+  std::vector<int> sceneBodiesOf(const std::vector<const Contact*>& contacts) const;
   static VectorX pressingOf(const std::vector<const Entry*>& entries, const VectorX& impulses);
   static VectorX frictionOf(const std::vector<const Entry*>& entries, const std::vector<ContactRows>& rows,
                             const VectorX& pressing);
@@ -145,6 +149,7 @@ class LastingContacts {
   std::string_view fault_;
   std::vector<int> faultBodies_;
   bool isReleasing_ = false;
+  int turningSteps_ = 0;  // in a row, in which friction turned some sliding
   VectorX rate_, sample_;
   std::vector<Margins> before_, ahead_, after_, atEnd_;
   double knownTime_ = NAN;  // s: of the margins in before_, if a step that changed nothing has ended there
