@@ -80,23 +80,39 @@ void comparePair(ComparedPicture& pair, const ImageLimits& limits) {
     pair.comparison = compareImages(readPng(pair.expectedPath), readPng(pair.actualPath), limits);
 }
 
+/// As one word for a shell, whatever is in it.
+std::string quotedForShell(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
 void printAcceptance(const std::vector<ComparedPicture>& pictures, const std::string& expected) {
   fmt::print("To accept what you have looked at and found right:\n");
   for (const ComparedPicture& picture : pictures) {
     if (picture.comparison.passes) continue;
     if (picture.actualPath.empty())
-      fmt::print("  rm '{}'\n", picture.expectedPath);
+      fmt::print("  rm {}\n", quotedForShell(picture.expectedPath));
     else
-      fmt::print("  cp '{}' '{}'\n", picture.actualPath,
-                 picture.expectedPath.empty() ? expected : picture.expectedPath);
+      fmt::print("  cp {} {}\n", quotedForShell(picture.actualPath),
+                 quotedForShell(picture.expectedPath.empty() ? expected : picture.expectedPath));
   }
+}
+
+/// A slip of the command line does not cost a file of another kind.
+void requireReportPlace(const std::string& path) {
+  requireWritableFile(path);
+  std::error_code failed;
+  const auto size = std::filesystem::file_size(path, failed);
+  if (failed || size == 0 || isComparisonReport(path)) return;
+  throw Error(ErrorKind::output, path, "is there, and is no report of pictures: it is not replaced; give another name");
 }
 
 /// All pictures of both, compared; the outcome is printed, and shown in the report if one is asked for.
 bool comparePictures(std::vector<ComparedPicture> pictures, const std::string& expected,
                      const CompareOptions& options) {
   const ImageLimits limits = parseLimits(options);
-  if (options.report) requireWritableFile(*options.report);
+  if (options.report) requireReportPlace(*options.report);
   long different = 0;
   for (ComparedPicture& picture : pictures) {
     comparePair(picture, limits);

@@ -8,14 +8,20 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <string_view>
 
 #include "core/error.h"
+#include "core/output_path.h"
 
 namespace cradle {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int kPatience = 30000;  // ms to wait for another program; queries of others seldom take longer
 
@@ -23,6 +29,41 @@ std::string_view bytesOrEmpty(std::span<const std::byte> bytes) {
   // SQLite takes a null pointer for null, not for zero bytes.
   return bytes.empty() ? std::string_view("")
                        : std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+/// The name of an existing file that is not to change, with no journal, no locks: an SQLite URI of its whole path.
+std::string immutableUri(const fs::path& path) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789/._-";
+  std::string uri = "file:";
+  for (const char c : path.string())
+    uri += kPlain.find(c) != kPlain.npos ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  return uri + "?immutable=1";
+}
+
+fs::path journalOf(const fs::path& database) {
+  return database.string() + "-journal";
+}
+
+/// Whether a rollback journal names a super-journal, which SQLite deletes when it has taken back what the journal
+/// holds: it ends with eight bytes then. (sqlite.org, "Atomic Commit In SQLite", section 5; the bytes are those of the
+/// "Database File Format", section 3)
+bool namesSuperJournal(const fs::path& journal) {
+  constexpr std::array<unsigned char, 8> kMark{0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
+  std::ifstream file(journal, std::ios::binary);
+  std::array<unsigned char, 8> end{};
+  file.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
+  file.read(reinterpret_cast<char*>(end.data()), end.size());
+  return file && end == kMark;
+}
+
+/// Ours never do: a writer has one file open.
+void requireOwnJournal(const fs::path& database, ErrorKind kind) {
+  const fs::path journal = journalOf(database);
+  const fs::file_status status = fs::symlink_status(journal);
+  if (!fs::exists(status) || (fs::is_regular_file(status) && !namesSuperJournal(journal))) return;
+  throw Error(
+      kind, journal.string(),
+      "is none of cradle's: it names another file, which would be deleted; remove it, or choose another folder");
 }
 
 }  // namespace
@@ -119,22 +160,35 @@ void Database::Close::operator()(sqlite3* handle) const {
 }
 
 Database::Database(const std::string& path, DatabaseAccess access) : path_(path), access_(access) {
-  const bool creates = access == DatabaseAccess::create;
-  sqlite3* handle = nullptr;
-  // A reader too opens for writing where it may: SQLite must be able to take back what a killed writer left half-done.
-  const int code =
-      sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READWRITE | (creates ? SQLITE_OPEN_CREATE : 0), nullptr);
-  handle_.reset(handle);
-  if (code != SQLITE_OK) fail(code);
-  sqlite3_busy_timeout(handle, kPatience);
-  if (creates) {
+  if (access == DatabaseAccess::create) {
+    open(fs::absolute(path).string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     execute("PRAGMA journal_mode = DELETE; PRAGMA cache_spill = OFF; PRAGMA synchronous = NORMAL");
     return;
   }
+  std::error_code failed;
+  const fs::path file = fs::canonical(path, failed);
+  if (failed) failReading(SQLITE_CANTOPEN);
+  if (!isPartPath(file.string())) {
+    open(immutableUri(file), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+  } else if (fs::exists(journalOf(file))) {
+    requireOwnJournal(file, ErrorKind::usage);
+    open(file.string(), SQLITE_OPEN_READWRITE);
+  } else {
+    open(file.string(), SQLITE_OPEN_READONLY);
+  }
   // The file may come from anywhere: what it holds is data, never something to be run.
-  sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-  sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   execute("PRAGMA query_only = ON; PRAGMA cell_size_check = ON");
+}
+
+/// `name`: a whole path, which no name of a file can make a URI, or a URI.
+void Database::open(const std::string& name, int flags) {
+  sqlite3* handle = nullptr;
+  const int code = sqlite3_open_v2(name.c_str(), &handle, flags, nullptr);
+  handle_.reset(handle);
+  if (code != SQLITE_OK) fail(code);
+  sqlite3_busy_timeout(handle, kPatience);
 }
 
 void Database::execute(const std::string& sql) {
@@ -181,6 +235,8 @@ void Database::fail(int code) const {
 void Database::failReading(int code) const {
   if (code == SQLITE_BUSY)
     throw Error(ErrorKind::usage, path_, "another program keeps it locked; try again when that has ended");
+  if (code == SQLITE_READONLY)
+    throw Error(ErrorKind::usage, path_, "was being written when that program ended; try again");
   if (code == SQLITE_CANTOPEN)
     throw Error(ErrorKind::usage, path_, "cannot be opened; it must be an existing file that may be read");
   throw Error(ErrorKind::usage, path_,
@@ -193,9 +249,11 @@ void Database::failDamaged(const std::string& what) const {
 }
 
 bool isBeingWritten(const std::string& path) {
+  const fs::path file = fs::absolute(path);
+  requireOwnJournal(file, ErrorKind::output);
   sqlite3* handle = nullptr;
   bool busy = false;
-  if (sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READWRITE, nullptr) == SQLITE_OK)
+  if (sqlite3_open_v2(file.c_str(), &handle, SQLITE_OPEN_READWRITE, nullptr) == SQLITE_OK)
     busy = sqlite3_exec(handle, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr) == SQLITE_BUSY;
   sqlite3_close(handle);
   return busy;

@@ -59,8 +59,9 @@ enum class DatabaseAccess { create, read };
 /// One SQLite file. Statements must not outlive it.
 class Database {
  public:
-  /// create: a new file at `path`, where nothing may be. read: an existing file, never changed, save that what a killed
-  /// writer left half-done is taken back.
+  /// create: a new file at `path`, where nothing may be. read: an existing file, which may come from anywhere: what is
+  /// beside it is not looked at, and neither is changed; save that in a FILE.part what a killed writer left half-done
+  /// is taken back. A journal of such that names a file to be deleted, which ours never do, is refused.
   Database(const std::string& path, DatabaseAccess access);
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
@@ -84,6 +85,7 @@ class Database {
   struct Close {
     void operator()(sqlite3* handle) const;
   };
+  void open(const std::string& name, int flags);
   [[noreturn]] void failReading(int code) const;
 
   std::string path_;
@@ -92,6 +94,7 @@ class Database {
 };
 
 /// Whether another writer has a transaction open on the SQLite file at `path`. False for anything else at that place.
+/// Throws Error(output) if a journal beside it is none of ours.
 bool isBeingWritten(const std::string& path);
 
 }  // namespace cradle

@@ -21,6 +21,10 @@ struct BodyState {
   Vec3 angularVelocity = Vec3::Zero();  // rad/s, world
 };
 
+/// Whether a body can have that state: its numbers are finite and below 1e30, which no motion within the ranges of
+/// scene files reaches, and its orientation is a rotation to 1e-3.
+bool isPossible(const BodyState& state);
+
 /// kinetic + potential + dissipated - work + numerical is constant.
 struct EnergyBalance {
   double kinetic = 0;                   // J

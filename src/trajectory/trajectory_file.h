@@ -80,8 +80,10 @@ class TrajectoryReader {
 
   /// Everything of the table `meta`, as text.
   const std::map<std::string, std::string>& meta() const { return meta_; }
-  /// Of all frames; empty if the run was not finished.
+  /// Of all frames, as the file says; empty if the run was not finished.
   std::string stateHash() const;
+  /// Of the frames that are there: reads all of them, and throws where the file says another hash.
+  std::string hashOfFrames() const;
   bool isFinished() const { return !stateHash().empty(); }
   /// Zero if the run was not finished.
   RunCost cost() const;

@@ -22,6 +22,8 @@ namespace {
 // The header of a SQLite file. ("Database File Format" on sqlite.org, section 1.3)
 constexpr std::string_view kMagic("SQLite format 3\0", 16);
 constexpr std::size_t kHeaderSize = 100, kApplicationIdAt = 68;  // bytes; the id is big-endian
+constexpr std::size_t kVersionsAt = 18;                          // of writing and reading: 1, or 2 with a log beside
+constexpr const char* kTableNames = "('meta', 'mesh', 'body', 'frame', 'state', 'event', 'energy')";
 
 /// The first bytes of a file; empty if it has not so many, or cannot be read.
 std::string fileHeaderOf(const std::string& path) {
@@ -40,10 +42,16 @@ std::int64_t oneInteger(Database& database, const std::string& sql) {
 
 void requireTrajectory(Database& database, const std::string& path) {
   const bool isOurs = oneInteger(database, "PRAGMA application_id") == kApplicationId &&
-                      oneInteger(database,
-                                 "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN "
-                                 "('meta', 'mesh', 'body', 'frame', 'state', 'event', 'energy')") == 7;
+                      oneInteger(database, fmt::format("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND "
+                                                       "name IN {}",
+                                                       kTableNames)) == 7;
   if (!isOurs) throw Error(ErrorKind::usage, path, "is a SQLite database, but not a trajectory of cradle");
+  // Tables that compute what they give could give without end.
+  const bool isStored = oneInteger(database, fmt::format("SELECT count(*) FROM sqlite_master AS t, "
+                                                         "pragma_table_xinfo(t.name) AS c WHERE t.type = 'table' AND "
+                                                         "t.name IN {} AND (c.hidden <> 0 OR t.rootpage = 0)",
+                                                         kTableNames)) == 0;
+  if (!isStored) database.failDamaged("a table computes its columns instead of holding them");
   const std::int64_t version = oneInteger(database, "PRAGMA user_version");
   if (version != kSchemaVersion)
     throw Error(
@@ -151,6 +159,12 @@ struct TrajectoryReader::Session {
 TrajectoryReader::TrajectoryReader(const std::string& path) : path_(path) {
   // Asked first because SQLite takes an empty file for a database.
   if (!isDatabaseFile(path)) throw Error(ErrorKind::usage, path, "is not a trajectory (or cannot be read)");
+  const std::string header = fileHeaderOf(path);
+  if (header[kVersionsAt] != 1 || header[kVersionsAt + 1] != 1)
+    throw Error(
+        ErrorKind::usage, path,
+        "keeps its changes in a log beside it, which cradle never does and does not read; `sqlite3 FILE 'PRAGMA "
+        "journal_mode = DELETE'` takes them in");
   session_ = std::make_unique<Session>(path);
   readMeta();
   readMeshes();
@@ -210,9 +224,13 @@ void TrajectoryReader::readBodies() {
     if (motion != "dynamic" && motion != "static") database.failDamaged("a body is neither dynamic nor static");
     if (hasMesh && (mesh < 0 || mesh >= static_cast<std::int64_t>(header_.meshes.size())))
       database.failDamaged("a body has a mesh that is not there");
+    const MassProperties properties = massPropertiesAt(query, 5);
+    if (motion == "dynamic" && !(properties.mass > 0 && properties.inertiaTensor.diagonal().minCoeff() > 0))
+      database.failDamaged(
+          fmt::format("body \"{}\" has a mass or a moment of inertia that is not above 0", query.text(1)));
     if (motion == "dynamic") dynamicBodies_.push_back(static_cast<int>(id));
-    header_.bodies.push_back({query.text(1), motion == "dynamic", static_cast<int>(mesh), hasMesh ? "" : query.text(4),
-                              massPropertiesAt(query, 5)});
+    header_.bodies.push_back(
+        {query.text(1), motion == "dynamic", static_cast<int>(mesh), hasMesh ? "" : query.text(4), properties});
   }
 }
 
@@ -243,6 +261,9 @@ Frame TrajectoryReader::readFrame(long number) const {
   for (const int body : dynamicBodies_) {
     if (!state.step() || state.integer(0) != body) fail("the states");
     frame.states.push_back(stateAt(state, 1));
+    if (!isPossible(frame.states.back()))
+      session_->database.failDamaged(fmt::format("frame {} has a state of body \"{}\" that no body can have", number,
+                                                 header_.bodies[static_cast<std::size_t>(body)].name));
   }
   if (state.step()) fail("the states");
   state.reset();
@@ -284,6 +305,14 @@ std::vector<Event> TrajectoryReader::events() const {
 std::string TrajectoryReader::stateHash() const {
   const auto found = meta_.find("stateHash");
   return found == meta_.end() ? "" : found->second;
+}
+
+std::string TrajectoryReader::hashOfFrames() const {
+  Hash hash;
+  for (long number = 0; number < frameCount(); ++number) addFrame(readFrame(number), hash);
+  if (isFinished() && hash.hex() != stateHash())
+    session_->database.failDamaged("its frames are not those that were written (stateHash)");
+  return hash.hex();
 }
 
 RunCost TrajectoryReader::cost() const {

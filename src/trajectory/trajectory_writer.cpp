@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/output_path.h"
+#include "core/part_lock.h"
 #include "trajectory/database.h"
 #include "trajectory/trajectory_file.h"
 #include "trajectory/trajectory_schema.h"
@@ -28,7 +29,9 @@ void removeOldPart(const std::string& part) {
   if (fs::exists(status) && !fs::is_regular_file(status))
     throw Error(ErrorKind::output, part, "is in the way and is not a regular file; remove it or choose another name");
   if (isDatabaseFile(part) && isBeingWritten(part))
-    throw Error(ErrorKind::output, part, "is being written by another run; wait for its end or choose another name");
+    throw Error(ErrorKind::output, part,
+                fmt::format("is being written by another run ({}); wait for its end or choose another name",
+                            lockHolderOf(part)));
   fs::remove(part);
 }
 
@@ -199,7 +202,7 @@ void TrajectoryWriter::append(const Frame& frame) {
 
 void TrajectoryWriter::requireFinite(const Frame& frame) const {
   for (std::size_t i = 0; i < frame.states.size(); ++i)
-    if (!allFinite(stateNumbers(frame.states[i])))
+    if (!isPossible(frame.states[i]))
       failNotFinite(frame.time, "state of body " + bodyNames_[static_cast<std::size_t>(dynamicBodies_[i])]);
   if (!allFinite(energyNumbers(frame.energy))) failNotFinite(frame.time, "energy or momentum of the scene");
 }

@@ -1,5 +1,7 @@
 #include "trajectory/compare_trajectories.h"
 
+#include <sqlite3.h>
+
 #include "sample_trajectory.h"
 
 namespace cradle {
@@ -36,6 +38,25 @@ TEST_F(CompareTrajectories, SameHashIsEqual) {
   EXPECT_TRUE(result.equal);
   EXPECT_TRUE(result.sameStateHash);
   expectWords(result, "equal");
+}
+
+// The hash that a file names is not taken for that of its frames.
+TEST_F(CompareTrajectories, FramesThatAreNotThoseOfTheHashAreDamage) {
+  const TrajectoryReader expected = unchanged(), actual = unchanged();
+  for (const std::string sql :
+       {"UPDATE state SET px = px + 1 WHERE frame = 3", "UPDATE frame SET time = 0.51 WHERE id = 4",
+        "DELETE FROM state WHERE frame = 4; DELETE FROM energy WHERE frame = 4; "
+        "DELETE FROM frame WHERE id = 4"}) {
+    const std::string path = folder_.file("changed.sqlite");
+    std::filesystem::copy_file(actual.path(), path, std::filesystem::copy_options::overwrite_existing);
+    sqlite3* database = nullptr;
+    ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+    EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
+    sqlite3_close(database);
+    const TrajectoryReader changed(path);
+    expectError(ErrorKind::usage, "stateHash", [&] { compareTrajectories(expected, changed, 1); });
+    expectError(ErrorKind::usage, "stateHash", [&] { compareTrajectories(changed, expected, 1); });
+  }
 }
 
 TEST_F(CompareTrajectories, FindsAKnownDifference) {

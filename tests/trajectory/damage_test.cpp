@@ -83,6 +83,13 @@ TEST_F(DamagedTrajectory, WithMissingTablesIsRefused) {
 TEST_F(DamagedTrajectory, WithWrongValuesIsRefused) {
   expectRefused("UPDATE state SET vx = NULL WHERE frame = 1", "vx");
   expectRefused("UPDATE state SET vx = 9e999 WHERE frame = 1", "vx");
+  expectRefused("UPDATE state SET px = 1e308 WHERE frame = 1", "frame 1");
+  expectRefused("UPDATE state SET wz = -1e30 WHERE frame = 2 AND body = 2", "frame 2 has a state of body \"wedge\"");
+  expectRefused("UPDATE state SET qw = 0.0, qx = 0.0, qy = 0.0, qz = 0.0 WHERE frame = 3", "frame 3");
+  expectRefused("UPDATE state SET qw = 1e200 WHERE frame = 3", "frame 3");
+  expectRefused("UPDATE body SET mass = 0.0 WHERE id = 0", "ball");
+  expectRefused("UPDATE body SET mass = -1.0 WHERE id = 2", "wedge");
+  expectRefused("UPDATE body SET iyy = 0.0 WHERE id = 2", "wedge");
   expectRefused("UPDATE frame SET time = 'noon' WHERE id = 1", "time");
   expectRefused("UPDATE frame SET time = 0.0 WHERE id = 1", "order");
   expectRefused("UPDATE event SET kind = 'crash'", "crash");
@@ -92,6 +99,18 @@ TEST_F(DamagedTrajectory, WithWrongValuesIsRefused) {
   expectRefused("UPDATE body SET motion = 'lazy' WHERE id = 2", "dynamic");
   expectRefused("UPDATE body SET shape = NULL WHERE id = 0", "shape");
   expectRefused("UPDATE meta SET value = value || ' ' WHERE key = 'scene'", "scene");
+}
+
+// Rows of 40 bytes would give gigabytes.
+TEST_F(DamagedTrajectory, WithComputedColumnsIsRefused) {
+  const std::string rest = "kind TEXT, a INTEGER, b INTEGER, x, y, z, nx, ny, nz, impulse";
+  expectRefused("ALTER TABLE event ADD COLUMN more AS (zeroblob(1000000000))", "computes");
+  expectRefused("DROP TABLE event; CREATE TABLE event (time AS (1.0) STORED, " + rest + ")", "computes");
+  expectRefused("DROP TABLE event; CREATE VIRTUAL TABLE event USING fts5(time)", "computes");
+}
+
+TEST_F(DamagedTrajectory, WithALogBesideItIsRefused) {
+  expectRefused("PRAGMA journal_mode = WAL", "log");
 }
 
 TEST_F(DamagedTrajectory, WithWrongMeshesIsRefused) {

@@ -67,23 +67,15 @@ TEST(TrajectoryFile, GivesFramesBackBitByBitInAnyOrder) {
 
 TEST(TrajectoryFile, KeepsTheBitsOfExtremeNumbers) {
   using limits = std::numeric_limits<double>;
-  const double extremes[] = {-0.0,
-                             0.0,
-                             limits::denorm_min(),
-                             -limits::denorm_min(),
-                             limits::min(),
-                             limits::max(),
-                             -limits::max(),
-                             std::nextafter(1.0, 2),
-                             9007199254740993.0,
-                             -3.0};
+  const double extremes[] = {-0.0,    0.0,      limits::denorm_min(),   -limits::denorm_min(), limits::min(),
+                             9.99e29, -9.99e29, std::nextafter(1.0, 2), 9007199254740993.0,    -3.0};
   const TemporaryFolder folder;
   Frame frame = sampleFrame(0);
   std::size_t next = 0;
   const auto extreme = [&] { return extremes[next++ % std::size(extremes)]; };
   const auto vector = [&] { return Vec3{extreme(), extreme(), extreme()}; };
   for (BodyState& state : frame.states)
-    state = {vector(), Quat{extreme(), extreme(), extreme(), extreme()}, vector(), vector()};
+    state = {vector(), Quat{-0.0, limits::denorm_min(), 1, -limits::denorm_min()}, vector(), vector()};
   frame.time = -0.0;
   frame.energy = {extreme(), extreme(), extreme(), extreme(), extreme(),
                   extreme(), extreme(), extreme(), vector(),  vector()};
@@ -142,6 +134,12 @@ TEST(TrajectoryFile, RefusesStatesThatAreNotFiniteAndNamesTheBody) {
     TrajectoryWriter writer(folder.file("a.sqlite"), sampleHeader());
     Frame frame = sampleFrame(0);
     frame.states[1].angularVelocity.z() = number;
+    expectError(ErrorKind::unstable, "wedge", [&] { writer.append(frame); });
+    frame = sampleFrame(0);
+    frame.states[1].position.x() = 1e30;
+    expectError(ErrorKind::unstable, "wedge", [&] { writer.append(frame); });
+    frame = sampleFrame(0);
+    frame.states[1].orientation.coeffs() *= 1.01;
     expectError(ErrorKind::unstable, "wedge", [&] { writer.append(frame); });
     frame = sampleFrame(0);
     frame.energy.work = number;

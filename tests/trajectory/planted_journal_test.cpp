@@ -1,0 +1,97 @@
+#include <sqlite3.h>
+
+#include <cstdint>
+
+#include "sample_trajectory.h"
+
+// A file may come from a stranger, and a journal beside it. SQLite takes back what a journal holds, and deletes the
+// super-journal that it names when that names no other journal: any file of the user's.
+
+namespace cradle {
+namespace {
+
+namespace fs = std::filesystem;
+
+void appendBigEndian(std::uint32_t number, std::string& bytes) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift & 0xff);
+}
+
+/// A rollback journal without pages for a database of `pages` pages of 4096 bytes, which names `superJournal`.
+/// ("Database File Format" on sqlite.org, section 3; "Atomic Commit In SQLite", section 5)
+std::string journalNaming(const std::string& superJournal, std::uint32_t pages) {
+  const std::string magic("\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", 8);
+  std::string journal = magic;
+  for (const std::uint32_t number : {0u, 0u, pages, 512u, 4096u}) appendBigEndian(number, journal);
+  journal.resize(512);
+  const std::uint32_t lockPage = 0x40000000 / 4096 + 1;
+  appendBigEndian(lockPage, journal);
+  journal += superJournal;
+  std::uint32_t sum = 0;
+  for (const char c : superJournal) sum += static_cast<unsigned char>(c);
+  appendBigEndian(static_cast<std::uint32_t>(superJournal.size()), journal);
+  appendBigEndian(sum, journal);
+  return journal + magic;
+}
+
+class PlantedJournal : public testing::Test {
+ protected:
+  /// Puts a file of the user's, and a journal that names it beside the database at `path`.
+  void plant(const std::string& path) const {
+    writeContent(victim_, "dear diary");
+    writeContent(path + "-journal", journalNaming(victim_, static_cast<std::uint32_t>(fs::file_size(path) / 4096)));
+  }
+
+  TemporaryFolder folder_, users_;
+  std::string victim_ = users_.file("diary.txt"), path_ = folder_.file("a.sqlite");
+};
+
+// Else the tests below would hold whatever was read.
+TEST_F(PlantedJournal, DeletesAFileWhereSqliteReadsAsItDoesByItself) {
+  writeSample(path_, 3);
+  plant(path_);
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path_.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, "SELECT count(*) FROM frame", nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(database);
+  EXPECT_FALSE(fs::exists(victim_));
+}
+
+TEST_F(PlantedJournal, IsNotLookedAtBesideAFinishedTrajectory) {
+  writeSample(path_, 3);
+  const std::string before = contentOf(path_);
+  plant(path_);
+  const std::string journal = contentOf(path_ + "-journal");
+  readAll(path_);
+  EXPECT_EQ(contentOf(victim_), "dear diary");
+  EXPECT_EQ(contentOf(path_), before);
+  EXPECT_EQ(contentOf(path_ + "-journal"), journal);
+  EXPECT_EQ(folder_.count(), 2);
+}
+
+TEST_F(PlantedJournal, OfAPartIsRefusedByReadersAndWriters) {
+  writeSample(path_, 3);
+  fs::rename(path_, path_ + ".part");
+  plant(path_ + ".part");
+  expectError(ErrorKind::usage, ".part-journal: is none of cradle's", [&] { readAll(path_ + ".part"); });
+  expectError(ErrorKind::output, ".part-journal: is none of cradle's",
+              [&] { TrajectoryWriter(path_, sampleHeader()); });
+  fs::create_symlink(path_ + ".part", folder_.file("link.sqlite"));
+  expectError(ErrorKind::usage, ".part-journal: is none of cradle's", [&] { readAll(folder_.file("link.sqlite")); });
+  EXPECT_EQ(contentOf(victim_), "dear diary");
+}
+
+// Names that SQLite takes for addresses, or would if they were not written out.
+TEST_F(PlantedJournal, NamesOfFilesAreNames) {
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_.path());
+  for (const std::string name : {"file:b.sqlite", "c?mode=memory#d%41.sqlite", "e f\xc3\xa9.sqlite", ":memory:"}) {
+    writeSample(name, 3);
+    EXPECT_TRUE(fs::exists(folder_.file(name))) << name;
+    EXPECT_EQ(TrajectoryReader(name).frameCount(), 3) << name;
+  }
+  fs::current_path(before);
+  EXPECT_EQ(folder_.count(), 4);
+}
+
+}  // namespace
+}  // namespace cradle
