@@ -17,6 +17,7 @@ endif()
 find_library(GLEW NAMES libGLEW.a REQUIRED)
 find_path(STB_INCLUDE stb/stb_image_write.h REQUIRED)
 find_package(Qhull 8 REQUIRED)
+find_library(LIBSECCOMP seccomp REQUIRED)
 find_file(FONT DejaVuSans.ttf PATHS /usr/share/fonts/truetype/dejavu REQUIRED)  # fonts-dejavu-core
 
 if(CRADLE_PEERS)

@@ -1,4 +1,4 @@
-// The command line: options to commands, errors to exit codes. The only unit that sees CLI11.
+// The command line: options to commands, errors to exit codes. The only unit of the program that sees CLI11.
 
 #include <fmt/format.h>
 
@@ -51,20 +51,26 @@ void addOutput(CLI::App* command, CommandLine& line, const char* what) {
   command->add_option("-o,--output", line.output, what)->required();
 }
 
+void addAssetRoot(CLI::App* command, std::string& assetRoot) {
+  command->add_option("--asset-root", assetRoot, "folder that the scene's meshes must be below (default: anywhere)");
+}
+
 void addPictureOptions(CLI::App* command, CommandLine& line) {
   command->add_option("--size", line.pictures.size, "WIDTHxHEIGHT in pixels (default: the scene's)");
   command->add_option("--overlay", line.pictures.overlay,
                       "what lies on the pictures, with commas: time, contacts, velocities, trails, plot=energy, "
                       "plot=energyError, plot=height:BODY");
   command->add_option("--shaders", line.pictures.shaders, "folder with shaders to use instead of the built-in ones");
+  addAssetRoot(command, line.pictures.assetRoot);
 }
 
 void addOverrides(CLI::App* command, CommandLine& line) {
-  command->add_option("--accuracy", line.simulation.overrides.accuracy,
+  command->add_option("--accuracy", line.simulation.scene.accuracy,
                       "in place of the scene's: 1e-12 to 1e-2, visual, default or reference");
-  command->add_option("--method", line.simulation.overrides.method, "explicitEuler, semiImplicitEuler, rk4 or dop853");
-  command->add_option("--time-step", line.simulation.overrides.timeStep, "step of --method in s; dop853 needs none");
-  command->add_option("--duration", line.simulation.overrides.duration, "in place of the scene's duration, in s");
+  command->add_option("--method", line.simulation.scene.method, "explicitEuler, semiImplicitEuler, rk4 or dop853");
+  command->add_option("--time-step", line.simulation.scene.timeStep, "step of --method in s; dop853 needs none");
+  command->add_option("--duration", line.simulation.scene.duration, "in place of the scene's duration, in s");
+  addAssetRoot(command, line.simulation.scene.assetRoot);
 }
 
 void addSimulate(CLI::App& app, CommandLine& line) {
@@ -84,7 +90,7 @@ void addSimulate(CLI::App& app, CommandLine& line) {
   auto* plan =
       addCommand(app, line, "plan", "Say how a scene would be simulated, why, what is promised, and what is left out",
                  "cradle plan scenes/spinning_handle.json\n  cradle plan scenes/arch.json --json",
-                 [&] { printPlan(line.input, line.simulation.overrides, line.json); });
+                 [&] { printPlan(line.input, line.simulation.scene, line.json); });
   plan->add_option("scene", line.input, "scene file (JSON)")->required();
   addOverrides(plan, line);
   plan->add_flag("--json", line.json, "print JSON");
@@ -99,11 +105,13 @@ std::string namesOf(const std::vector<Named>& all) {
 }
 
 void addStudy(CLI::App& app, CommandLine& line) {
-  auto* study = addCommand(app, line, "study", "Chart error against cost of all methods on scenes, with study.csv",
-                           "cradle study scenes/suspended_model.json scenes/rod_pendulum.json -o study",
-                           [&] { studyScenes(line.scenes, line.output, line.methods, line.quiet); });
+  auto* study = addCommand(
+      app, line, "study", "Chart error against cost of all methods on scenes, with study.csv",
+      "cradle study scenes/suspended_model.json scenes/rod_pendulum.json -o study",
+      [&] { studyScenes(line.scenes, line.simulation.scene.assetRoot, line.output, line.methods, line.quiet); });
   study->add_option("scenes", line.scenes, "scene files (JSON)")->required();
   addOutput(study, line, "folder for study.csv and charts (SVG, PNG)");
+  addAssetRoot(study, line.simulation.scene.assetRoot);
   study->add_option("--methods", line.methods, "of " + namesOf(studyMethods()))
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -148,9 +156,11 @@ void addQuestions(CLI::App& app, CommandLine& line) {
   inspect->add_option("--scale", line.scale, "file's units to metres")->capture_default_str();
   inspect->add_flag("--json", line.json, "print JSON");
 
-  auto* check = addCommand(app, line, "check", "Check a scene and its meshes without simulating",
-                           "cradle check scenes/newtons_cradle.json", [&] { checkScene(line.input); });
+  auto* check =
+      addCommand(app, line, "check", "Check a scene and its meshes without simulating",
+                 "cradle check scenes/newtons_cradle.json", [&] { checkScene(line.input, line.simulation.scene); });
   check->add_option("scene", line.input, "scene file (JSON)")->required();
+  addAssetRoot(check, line.simulation.scene.assetRoot);
 
   auto* compare =
       addCommand(app, line, "compare", "Compare images, folders of images, or trajectories (exit 9: different)",

@@ -17,6 +17,7 @@
 #include "image/video.h"
 #include "overlay/film_overlay.h"
 #include "render/renderer.h"
+#include "scene/ranges.h"
 
 namespace cradle {
 namespace {
@@ -26,7 +27,8 @@ namespace fs = std::filesystem;
 struct Size {
   int width, height;  // pixels
 };
-constexpr int kLargestSize = 16384;  // pixels; as in scene files
+constexpr Range kFilmRates{1e-3, 1e5};  // 1/s
+constexpr int kLargestSize = 16384;     // pixels; as in scene files
 
 struct FrameRange {
   long first, end;  // half-open
@@ -187,7 +189,7 @@ void drawFrames(FilmDrawer& drawer, const FrameRange& range, Progress& progress,
 void renderFrames(const std::string& input, const std::string& folder, const PictureOptions& options, bool quiet) {
   requireRoom(folder, parseRange(options.frames), options);
   if (options.overlay) parseOverlays(*options.overlay);
-  TrajectorySource source(input, quiet);
+  TrajectorySource source(input, quiet, options.assetRoot);
   const PictureOrder order(options, source.scene());
   const FrameRange range = parseFrames(options.frames, source);
   requireNoOthers(folder, source.frameCount());
@@ -201,6 +203,10 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
 }
 
 void encodeFrames(const std::string& folder, const std::string& film, double framesPerSecond, bool quiet) {
+  if (!kFilmRates.holds(framesPerSecond))
+    throw Error(ErrorKind::usage, "--frames-per-second",
+                fmt::format("found {}; allowed are numbers from {:g} to {:g}", framesPerSecond, kFilmRates.least,
+                            kFilmRates.most));
   std::optional<Progress> progress;
   encodeFolder(folder, film, framesPerSecond, [&](long done, long total) {
     throwIfInterrupted();
@@ -212,7 +218,7 @@ void encodeFrames(const std::string& folder, const std::string& film, double fra
 void makeFilm(const std::string& input, const std::string& film, const PictureOptions& options, bool quiet) {
   requireWritableFile(film);
   if (options.overlay) parseOverlays(*options.overlay);
-  TrajectorySource source(input, quiet);
+  TrajectorySource source(input, quiet, options.assetRoot);
   const PictureOrder order(options, source.scene());
   VideoEncoder encoder(film, {order.size.width, order.size.height, source.scene().output.framesPerSecond});
   const bool drawsBeside = isSeenFromTheStart(source.scene()) && !(order.overlays && order.overlays->needsWholeFilm());

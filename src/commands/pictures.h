@@ -11,6 +11,7 @@ struct PictureOptions {
   std::optional<std::string> frames;   // "FIRST:END", half-open
   std::optional<std::string> overlay;  // as parseOverlays() reads it
   std::optional<std::string> shaders;  // folder
+  std::string assetRoot;               // folder that a scene's meshes must be below; empty: they may be anywhere
   bool overwrite = false;              // of `render`
   double framesPerSecond = 60;         // of `encode`
 };

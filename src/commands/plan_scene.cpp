@@ -49,8 +49,8 @@ Json jsonOf(const Plan& plan, const Scene& scene, const std::string& scenePath) 
 
 }  // namespace
 
-void printPlan(const std::string& scenePath, const SceneOverrides& overrides, bool asJson) {
-  const Scene scene = loadSceneAndWarn(scenePath, overrides);
+void printPlan(const std::string& scenePath, const SceneOptions& options, bool asJson) {
+  const Scene scene = loadSceneAndWarn(scenePath, options);
   refuseUnsupported(scene);
   const Run run(scene);
   for (const std::string& warning : run.startWarnings()) warn(warning);

@@ -15,6 +15,7 @@
 #include "render/camera_path.h"
 #include "scene/load_scene.h"
 #include "scene/named_accuracy.h"
+#include "scene/parse_settings.h"
 #include "scene/ranges.h"
 #include "simulate/assembly.h"
 #include "simulate/run.h"
@@ -59,20 +60,25 @@ double requireIn(const Range& range, const char* option, double value) {
       fmt::format("found {}; allowed are numbers of seconds > 0, from {:g} to {:g}", value, range.least, range.most));
 }
 
-void apply(const SceneOverrides& overrides, Scene& scene) {
-  if (overrides.accuracy) {
-    scene.accuracy = accuracyOf(*overrides.accuracy);
+void apply(const SceneOptions& options, Scene& scene) {
+  if (options.accuracy) {
+    scene.accuracy = accuracyOf(*options.accuracy);
     scene.namesAccuracy = true;
   }
-  if (overrides.duration) scene.duration = requireIn(kDurations, "--duration", *overrides.duration);
-  if (overrides.method) {
+  if (options.duration) scene.duration = requireIn(kDurations, "--duration", *options.duration);
+  if (options.method) {
     scene.method = Method{};
-    scene.method->name = methodNamed(*overrides.method);
+    scene.method->name = methodNamed(*options.method);
     scene.method->where = "--method";
   }
-  if (!overrides.timeStep) return;
-  if (!scene.method) throw Error(ErrorKind::usage, "--time-step", "found without --method; name the method it is for");
-  scene.method->timeStep = requireIn(kTimeSteps, "--time-step", *overrides.timeStep);
+  if (options.timeStep) {
+    if (!scene.method)
+      throw Error(ErrorKind::usage, "--time-step", "found without --method; name the method it is for");
+    scene.method->timeStep = requireIn(kTimeSteps, "--time-step", *options.timeStep);
+  }
+  if (const auto fault = frameCountFault(scene)) throw Error(ErrorKind::usage, "--duration", *fault);
+  if (const auto fault = stepCountFault(scene))
+    throw Error(ErrorKind::usage, options.timeStep ? "--time-step" : "--duration", *fault);
 }
 
 /// A slip of the command line does not cost a file of another kind, the scene's own for one.
@@ -120,10 +126,10 @@ void warn(const std::string& warning) {
   fmt::print(stderr, "warning: {}\n", warning);
 }
 
-Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides) {
-  LoadedScene loaded = loadScene(path);
+Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
+  LoadedScene loaded = loadScene(path, options.assetRoot);
   for (const std::string& warning : loaded.warnings) warn(warning);
-  apply(overrides, loaded.scene);
+  apply(options, loaded.scene);
   requireUsableCamera(loaded.scene);
   return std::move(loaded.scene);
 }
@@ -154,7 +160,7 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
                    bool quiet) {
   requireWritableFile(output);
   requireNoOtherFile(output);
-  const Scene scene = loadSceneAndWarn(scenePath, options.overrides);
+  const Scene scene = loadSceneAndWarn(scenePath, options.scene);
   refuseUnsupported(scene);
   Run run(scene);
   TrajectoryWriter writer(output, headerOf(scene, run.plan()));
@@ -170,8 +176,8 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
   if (options.checksAccuracy) printAchievedAccuracy(scene, output, quiet);
 }
 
-void checkScene(const std::string& scenePath) {
-  const Scene scene = loadSceneAndWarn(scenePath, {});
+void checkScene(const std::string& scenePath, const SceneOptions& options) {
+  const Scene scene = loadSceneAndWarn(scenePath, options);
   refuseUnsupported(scene);
   std::vector<Assembly> islands;
   for (const IslandPlan& island : planOf(scene).islands) islands.push_back(assemble(scene, island));

@@ -11,16 +11,17 @@ namespace cradle {
 class Run;
 class StrictWatch;
 
-/// What the command line may put in place of what the scene says.
-struct SceneOverrides {
-  std::optional<std::string> accuracy;  // a number, or a word of a scene's
-  std::optional<std::string> method;
-  std::optional<double> timeStep;  // s
-  std::optional<double> duration;  // s
+/// How a scene is read: what the command line puts in place of what it says, and where its meshes may be.
+struct SceneOptions {
+  std::optional<std::string> accuracy = {};  // a number, or a word of a scene's
+  std::optional<std::string> method = {};
+  std::optional<double> timeStep = {};  // s
+  std::optional<double> duration = {};  // s
+  std::string assetRoot;                // folder that meshes must be below; empty: they may be anywhere
 };
 
 struct SimulateOptions {
-  SceneOverrides overrides;
+  SceneOptions scene;
   bool checksAccuracy = false;  // afterwards, by finer runs; printed
   bool isStrict = false;  // ends at the first broken promise or correction, or where bodies are too deep in others
 };
@@ -30,10 +31,10 @@ struct SimulateOptions {
 void simulateScene(const std::string& scenePath, const std::string& output, const SimulateOptions& options, bool quiet);
 
 /// `cradle check SCENE`: loads the scene and its meshes and says what is in it.
-void checkScene(const std::string& scenePath);
+void checkScene(const std::string& scenePath, const SceneOptions& options);
 
-/// A scene file with its warnings printed to stderr, overrides applied.
-Scene loadSceneAndWarn(const std::string& path, const SceneOverrides& overrides);
+/// A scene file with its warnings printed to stderr, options applied.
+Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options);
 
 /// Tells a warning on stderr.
 void warn(const std::string& warning);

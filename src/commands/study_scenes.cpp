@@ -57,13 +57,14 @@ std::string hashOfProgram(const std::vector<StudyMethod>& methods) {
   return textHash(text);
 }
 
-void loadScenes(const std::vector<std::string>& paths, const std::string& programHash, std::deque<NamedScene>& scenes) {
+void loadScenes(const std::vector<std::string>& paths, const std::string& assetRoot, const std::string& programHash,
+                std::deque<NamedScene>& scenes) {
   std::set<std::string> names;
   for (const std::string& path : paths) {
     const std::string name = fs::path(path).stem().string();
     if (!names.insert(name).second)
       throw Error(ErrorKind::usage, path, fmt::format("a second scene file named \"{}\"; rename one", name));
-    Scene scene = loadSceneAndWarn(path, {});
+    Scene scene = loadSceneAndWarn(path, {.assetRoot = assetRoot});
     const std::string hash = textHash(programHash + scene.text);
     scenes.emplace_back(StudyOrigin{name, hash}, std::move(scene));
   }
@@ -225,12 +226,12 @@ class Study {
 
 }  // namespace
 
-void studyScenes(const std::vector<std::string>& paths, const std::string& folder,
+void studyScenes(const std::vector<std::string>& paths, const std::string& assetRoot, const std::string& folder,
                  const std::vector<std::string>& methodNames, bool quiet) {
   const std::vector<StudyMethod> methods = studyMethodsNamed(methodNames);
   requireOwnFolder(folder, "result of a study", isResultName);
   std::deque<NamedScene> scenes;
-  loadScenes(paths, hashOfProgram(methods), scenes);
+  loadScenes(paths, assetRoot, hashOfProgram(methods), scenes);
   makeFolder(folder);
   Study study(folder, methods, scenes, quiet);
   printPeers(methods);

@@ -43,12 +43,13 @@ Scene sceneOf(const TrajectoryHeader& header) {
   return parseScene(header.scene, header.scenePath, modelsOf(header)).scene;
 }
 
-TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool quiet) : quiet_(quiet) {
+TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool quiet, const std::string& assetRoot)
+    : quiet_(quiet) {
   if (isDatabaseFile(sceneOrTrajectory)) {
     open(sceneOrTrajectory);
     return;
   }
-  scene_ = loadSceneAndWarn(sceneOrTrajectory, {});
+  scene_ = loadSceneAndWarn(sceneOrTrajectory, {.assetRoot = assetRoot});
   refuseUnsupported(scene_);
   frameCount_ = lastFrame(scene_) + 1;
 }

@@ -19,8 +19,9 @@ Scene sceneOf(const TrajectoryHeader& header);
 /// object, or beside the drawing.
 class TrajectorySource {
  public:
-  /// Opens the trajectory, or loads the scene, with its warnings on stderr.
-  TrajectorySource(const std::string& sceneOrTrajectory, bool quiet);
+  /// Opens the trajectory, or loads the scene, with its warnings on stderr; its meshes are below `assetRoot`, if that
+  /// is not empty.
+  TrajectorySource(const std::string& sceneOrTrajectory, bool quiet, const std::string& assetRoot = "");
   ~TrajectorySource();
   TrajectorySource(const TrajectorySource&) = delete;
   TrajectorySource& operator=(const TrajectorySource&) = delete;

@@ -20,6 +20,7 @@ namespace {
 enum ChunkId : std::uint16_t {
   kMain = 0x4D4D,
   kEditor = 0x3D3D,
+  kMaterial = 0xAFFF,
   kObject = 0x4000,
   kTriangleMesh = 0x4100,
   kVertices = 0x4110,
@@ -28,6 +29,7 @@ enum ChunkId : std::uint16_t {
   kSmoothingGroups = 0x4150,
   kMeshMatrix = 0x4160,
   kKeyframer = 0xB000,
+  kNodeName = 0xB010,
   kFirstTrackNode = 0xB001,  // ambient, object, camera, target, light, target, spot
   kLastTrackNode = 0xB007,
   kPositionTrack = 0xB020,
@@ -39,6 +41,7 @@ constexpr std::size_t kHeaderSize = 6;
 constexpr std::size_t kTrackHeaderSize = 14;  // flags, unused, number of keys
 constexpr std::size_t kSmallestKey = 6;       // frame number and flags
 constexpr std::size_t kMostNodes = 4096;      // the importer walks the tree recursively
+constexpr std::size_t kMostMaterials = 4096;  // it takes 1400 bytes for 7 of one, and compares all with all
 
 struct Chunk {
   std::uint16_t id;
@@ -102,6 +105,8 @@ class Reader {
 
   void readEditor(const Chunk& editor) {
     forEachChild(editor.begin, editor.end, [&](const Chunk& object) {
+      if (object.id == kMaterial && ++materials_ > kMostMaterials)
+        fail(object.begin, fmt::format("has more than {} materials", kMostMaterials));
       if (object.id != kObject) return;
       const std::string name = getText(object.begin, object.end);
       forEachChild(object.begin + name.size() + 1, object.end, [&](const Chunk& chunk) {
@@ -175,7 +180,9 @@ class Reader {
     forEachChild(keyframer.begin, keyframer.end, [&](const Chunk& node) {
       if (node.id < kFirstTrackNode || node.id > kLastTrackNode) return;
       if (++nodes > kMostNodes) fail(node.begin, fmt::format("has more than {} animated nodes", kMostNodes));
+      std::size_t names = 0;
       forEachChild(node.begin, node.end, [&](const Chunk& track) {
+        if (track.id == kNodeName && ++names > 1) fail(track.begin, "an animated node has two names");
         if (track.id != kPositionTrack && track.id != kRotationTrack && track.id != kRollTrack) return;
         const std::size_t keys = get<std::uint32_t>(track.begin + kTrackHeaderSize - 4, track.end);
         if (keys > (track.end - track.begin - kTrackHeaderSize) / kSmallestKey)
@@ -188,6 +195,7 @@ class Reader {
   const std::string& bytes_;
   const std::string& path_;
   Summary3ds summary_;
+  std::size_t materials_ = 0;
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace cradle {
 namespace {
 
 constexpr std::size_t kMostLevels = 64;
-constexpr std::size_t kMostValues = 20'000'000;  // some 1.5 GB; a text of 64 MB that is a scene has fewer
+constexpr std::size_t kMostValues = 8'000'000;  // some 600 MB; a hundred thousand bodies have fewer
 
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 
+#include "core/read_file.h"
 #include "scene/attach_models.h"
+#include "scene/json_document.h"
 #include "scene/parse_bodies.h"
 #include "scene/parse_camera.h"
 #include "scene/parse_links.h"
@@ -17,18 +18,11 @@
 namespace cradle {
 namespace {
 
-// One byte more than is allowed is read, so that the text is seen to be too long without reading a device for ever.
-std::string readFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text;
-  char buffer[1 << 16];
-  while (file && text.size() <= kLongestText) {
-    file.read(buffer, sizeof buffer);
-    text.append(buffer, static_cast<std::size_t>(file.gcount()));
-  }
-  if (!file.eof() && text.size() <= kLongestText) {
-    throw Error(ErrorKind::scene, path, "cannot read this scene file; check the path and its permissions");
-  }
+/// Of a scene file. A trajectory holds a scene, but is none.
+std::string textOf(const std::string& path) {
+  std::string text = readFile(path, kLongestText, ErrorKind::scene);
+  if (text.starts_with("SQLite format 3"))
+    throw Error(ErrorKind::scene, path, "is a trajectory or another database, not a scene file (JSON)");
   return text;
 }
 
@@ -53,10 +47,19 @@ std::string modelName(const MeshReference& reference) {
   return fmt::format("{}#{}@{}", reference.path, reference.object, reference.scale);
 }
 
-ModelSource modelFilesBeside(const std::string& scenePath) {
-  const auto folder = std::filesystem::path(scenePath).parent_path();
-  return [folder](const MeshReference& reference) {
-    return loadModel({(folder / reference.path).string(), reference.object, reference.scale});
+ModelSource modelFilesBeside(const std::string& scenePath, const std::string& assetRoot) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(scenePath).parent_path();
+  std::error_code failed;
+  const fs::path root = assetRoot.empty() ? fs::path() : fs::canonical(assetRoot, failed);
+  if (!assetRoot.empty() && !fs::is_directory(root, failed))
+    throw Error(ErrorKind::usage, assetRoot, "is no folder; name one that the meshes are in");
+  return [folder, root](const MeshReference& reference) {
+    const std::string path = (folder / reference.path).string();
+    if (!root.empty() && !isBelow(path, root))
+      throw Error(ErrorKind::mesh, path,
+                  fmt::format("is not below {}, and no other meshes are allowed here", root.string()));
+    return loadModel({path, reference.object, reference.scale});
   };
 }
 
@@ -77,8 +80,8 @@ LoadedScene parseScene(const std::string& text, const std::string& path, const M
   return {std::move(draft.scene), std::move(draft.warnings)};
 }
 
-LoadedScene loadScene(const std::string& path) {
-  return parseScene(readFile(path), path, modelFilesBeside(path));
+LoadedScene loadScene(const std::string& path, const std::string& assetRoot) {
+  return parseScene(textOf(path), path, modelFilesBeside(path, assetRoot));
 }
 
 }  // namespace cradle

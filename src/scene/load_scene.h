@@ -14,8 +14,9 @@ using ModelSource = std::function<LoadedModel(const MeshReference&)>;
 /// Name of the model in Scene::models and in trajectories: "path#object@scale", the path as the scene file has it.
 std::string modelName(const MeshReference& reference);
 
-/// Reads models from files; relative paths start from the folder of the scene file.
-ModelSource modelFilesBeside(const std::string& scenePath);
+/// Reads models from files; relative paths start from the folder of the scene file. Files must be below `assetRoot`,
+/// through all links, unless that is empty. Throws Error(usage) if it is no folder.
+ModelSource modelFilesBeside(const std::string& scenePath, const std::string& assetRoot = "");
 
 /// A scene, and what the user should know about it that is no error.
 struct LoadedScene {
@@ -26,8 +27,8 @@ struct LoadedScene {
 /// Reads a scene file and the meshes that it names. Throws Error(scene) with every fault of the text (at most 50, one a
 /// line: "FILE:LINE:COLUMN /json/pointer: what was found; what is allowed; hint"), else Error(mesh) with every mesh
 /// that cannot be used. Meshes are looked at only if the text has no faults; the faults of the text that only they can
-/// show (a vertex that is not there) are then thrown first.
-LoadedScene loadScene(const std::string& path);
+/// show (a vertex that is not there) are then thrown first. `assetRoot` is that of modelFilesBeside.
+LoadedScene loadScene(const std::string& path, const std::string& assetRoot = "");
 
 /// The same for a text that is already in memory; `path` is for messages.
 LoadedScene parseScene(const std::string& text, const std::string& path, const ModelSource& models);

@@ -83,24 +83,6 @@ void parseLights(ObjectReader& root, Scene& scene) {
   }
 }
 
-// Frames are counted in whole numbers.
-void checkFrameCount(const Scene& scene, const Field& root, FaultList& faults) {
-  const double count = scene.duration * scene.output.framesPerSecond / scene.output.playbackSpeed;
-  if (count <= kMostFrames) return;
-  addFault(faults, root,
-           fmt::format("duration x framesPerSecond / playbackSpeed gives {} frames; at most {} are allowed", count,
-                       kMostFrames));
-}
-
-// A run that no one would wait for, told before it starts.
-void checkStepCount(const Scene& scene, const Field& root, FaultList& faults) {
-  if (!scene.method || !scene.method->timeStep) return;
-  const double count = scene.duration / *scene.method->timeStep;
-  if (count <= kMostSteps) return;
-  addFault(faults, *ObjectReader(root, faults).find("method"),
-           fmt::format("duration / timeStep gives {:.3g} steps; at most {:g} are allowed", count, kMostSteps));
-}
-
 }  // namespace
 
 void parseSettings(ObjectReader& root, Scene& scene) {
@@ -124,8 +106,22 @@ void parseSettings(ObjectReader& root, Scene& scene) {
   parseLights(root, scene);
   scene.look = root.choice<Look>("look", {{"light", Look::light}, {"dark", Look::dark}}, scene.look);
   if (faults.count() != faultsBefore) return;
-  checkFrameCount(scene, root.field(), faults);
-  checkStepCount(scene, root.field(), faults);
+  if (const auto fault = frameCountFault(scene)) addFault(faults, root.field(), *fault);
+  if (const auto fault = stepCountFault(scene)) addFault(faults, *root.find("method"), *fault);
+}
+
+std::optional<std::string> frameCountFault(const Scene& scene) {
+  const double count = scene.duration * scene.output.framesPerSecond / scene.output.playbackSpeed;
+  if (count <= kMostFrames) return {};
+  return fmt::format("duration x framesPerSecond / playbackSpeed gives {} frames; at most {} are allowed", count,
+                     kMostFrames);
+}
+
+std::optional<std::string> stepCountFault(const Scene& scene) {
+  if (!scene.method || !scene.method->timeStep) return {};
+  const double count = scene.duration / *scene.method->timeStep;
+  if (count <= kMostSteps) return {};
+  return fmt::format("duration / timeStep gives {:.3g} steps; at most {:g} are allowed", count, kMostSteps);
 }
 
 }  // namespace cradle

@@ -83,6 +83,9 @@ class Usage(InTemporaryFolder):
         for option, value in (("--accuracy", "1"), ("--accuracy", "fine"), ("--accuracy", "1e-6x"), ("--duration", "-1"), ("--duration", "nan"), ("--method", "euler")):
             self.refuses(2, [option, value], "simulate", path, "-o", self.path("x.sqlite"), option, value)
         self.refuses(2, ["--time-step", "--method"], "simulate", path, "-o", self.path("x.sqlite"), "--time-step", "0.1")
+        self.refuses(2, ["--duration", "6000000000 frames", "1000000000"], "simulate", path, "-o", self.path("x.sqlite"), "--duration", "1e8")
+        self.refuses(2, ["--time-step", "1e+11 steps", "1e+10"], "simulate", path, "-o", self.path("x.sqlite"), "--method", "rk4",
+                     "--time-step", "1e-12")
 
     def test_accuracies_have_names(self):
         path = self.write("s.json", scene())

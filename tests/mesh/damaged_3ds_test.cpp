@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
-#include <cstring>
 #include <random>
 
+#include "chunks_3ds.h"
 #include "mesh/check_3ds.h"
 #include "mesh/mass_properties.h"
 #include "mesh/solid.h"
@@ -23,24 +23,6 @@ using testing::HasSubstr;
 std::size_t dataOf(const std::string& bytes, std::uint16_t id, std::size_t from = 0) {
   const std::string needle{static_cast<char>(id & 0xFF), static_cast<char>(id >> 8)};
   return bytes.find(needle, from) + 6;
-}
-
-template <typename T>
-void put(std::string& bytes, std::size_t where, T value) {
-  std::memcpy(bytes.data() + where, &value, sizeof value);
-}
-
-std::string appendedToMain(std::string bytes, const std::string& chunk) {
-  bytes += chunk;
-  put(bytes, 2, static_cast<std::uint32_t>(bytes.size()));
-  return bytes;
-}
-
-std::string chunk(std::uint16_t id, const std::string& data) {
-  std::string bytes(6, '\0');
-  put(bytes, 0, id);
-  put(bytes, 2, static_cast<std::uint32_t>(data.size() + 6));
-  return bytes + data;
 }
 
 // A keyframer section that animates the object Box with one position track.

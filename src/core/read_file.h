@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "core/error.h"
+
+namespace cradle {
+
+/// All bytes of a regular file. Throws an Error of `kind` that says what to do if it is missing, a folder, a pipe or
+/// device (which may never end), unreadable, empty, or larger than `limit` bytes; then nothing of it is read.
+std::string readFile(const std::string& path, std::uint64_t limit, ErrorKind kind);
+
+/// Whether what `path` leads to, through all links, is below `folder`, which has none; nothing need be there.
+bool isBelow(const std::string& path, const std::filesystem::path& folder);
+
+}  // namespace cradle

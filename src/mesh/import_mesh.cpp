@@ -1,0 +1,305 @@
+// assimp never touches the disk: all files, also those that a file names in turn (.mtl, .bin), reach it through
+// MeshFiles, which reads regular files only and limits their size.
+// No aiProcess_PreTransformVertices (it merges objects and works in float), no aiProcess_JoinIdenticalVertices (it
+// compares normals too, so that cubes stay open, and joins what is closer than an absolute distance).
+
+#include "mesh/import_mesh.h"
+
+#include <assimp/MemoryIOWrapper.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <map>
+
+#include "core/error.h"
+#include "core/read_file.h"
+#include "math/elementary.h"
+#include "mesh/check_3ds.h"
+#include "mesh/confined_child.h"
+#include "mesh/imported_bytes.h"
+
+namespace cradle {
+namespace {
+
+namespace fs = std::filesystem;
+using Affine = Eigen::Affine3d;
+
+// What importers need, with room to spare: larger files among assimp's test models take up to 31 bytes a byte and 0.07
+// s a MB.
+constexpr std::uint64_t kMemoryPerByte = 100;
+constexpr std::uint64_t kMemoryForAnyFile = 256 << 20;  // bytes
+constexpr std::uint64_t kMostMemory = 8ULL << 30;       // bytes
+constexpr std::uint64_t kBytesPerSecond = 1 << 20;
+constexpr std::uint64_t kSecondsForAnyFile = 3;       // s, of computing
+constexpr std::uint64_t kLargestFiles = 256'000'000;  // bytes, a mesh file and those it names together
+constexpr std::size_t kLongestReason = 300;           // bytes of an importer's words
+
+/// The file itself, and those below its folder.
+class MeshFiles : public Assimp::IOSystem {
+ public:
+  explicit MeshFiles(const std::string& path) : path_(path), folder_(folderOf(path)) {}
+
+  // The bytes stay valid as long as this object. Throws Error(mesh).
+  const std::string& read(const std::string& path) {
+    const auto known = bytesOf_.find(path);
+    if (known != bytesOf_.end()) return known->second;
+    std::string bytes = readFile(path, kLargestFiles - total_, ErrorKind::mesh);
+    total_ += bytes.size();
+    limitMemory(std::min(kMostMemory, kMemoryForAnyFile + kMemoryPerByte * total_));
+    return bytesOf_[path] = std::move(bytes);
+  }
+
+  bool Exists(const char* path) const override { return fs::is_regular_file(path) && isAllowed(path); }
+  char getOsSeparator() const override { return '/'; }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+  Assimp::IOStream* Open(const char* path, const char*) override {
+    if (!fs::is_regular_file(path)) return nullptr;  // a missing .mtl is no error: the importer goes on without
+    if (!isAllowed(path)) {
+      outside_ = path;
+      return nullptr;
+    }
+    const std::string& bytes = read(path);
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  }
+
+  /// A file that was asked for, but is not below the folder; empty if none was.
+  const std::string& outside() const { return outside_; }
+
+ private:
+  static fs::path folderOf(const std::string& path) {
+    std::error_code ignored;  // what is not there is told when it is read
+    return fs::canonical(fs::absolute(path).parent_path(), ignored);
+  }
+  bool isAllowed(const std::string& path) const { return path == path_ || isBelow(path, folder_); }
+
+  std::string path_, outside_;
+  fs::path folder_;
+  std::map<std::string, std::string> bytesOf_;  // by path
+  std::size_t total_ = 0;
+};
+
+std::string lowerExtension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return extension;
+}
+
+// A file as assimp understood it.
+struct ImportedFile {
+  std::string path;
+  Assimp::Importer importer;  // owns the scene
+  const aiScene* scene = nullptr;
+  Summary3ds summary;  // empty unless a 3ds file
+};
+
+/// An importer's words may quote the file: one line of it, of letters.
+std::string reasonOf(std::string words) {
+  for (char& c : words)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
+  if (words.size() > kLongestReason) words = words.substr(0, kLongestReason) + " ...";
+  return words;
+}
+
+void importFile(const std::string& path, ImportedFile& file) {
+  file.path = path;
+  auto* files = new MeshFiles(path);  // the importer deletes it
+  file.importer.SetIOHandler(files);
+  const std::string& bytes = files->read(path);
+  const bool looksLike3ds = bytes.starts_with("MM") && !file.importer.IsExtensionSupported(lowerExtension(path));
+  if (lowerExtension(path) == ".3ds" || looksLike3ds) file.summary = check3ds(bytes, path);
+  file.scene = file.importer.ReadFile(path, aiProcess_Triangulate);
+  if (!files->outside().empty())
+    throw Error(ErrorKind::mesh, path,
+                fmt::format("names the file \"{}\", which is not below its folder; a mesh may not reach outside of it",
+                            files->outside()));
+  if (file.scene == nullptr || file.scene->mRootNode == nullptr)
+    throw Error(ErrorKind::mesh, path,
+                fmt::format("cannot be read as a mesh: {} (no mesh found); check the file, or export it again as 3ds "
+                            "or obj",
+                            reasonOf(file.importer.GetErrorString())));
+}
+
+Affine toAffine(const aiMatrix4x4& m) {
+  Affine affine;
+  affine.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, 0, 0, 0, 1;
+  return affine;
+}
+
+Vec3 toVec3(const aiVector3D& v) {
+  return {v.x, v.y, v.z};
+}
+
+// A mesh of the file where a node places it.
+struct Placement {
+  std::string object;
+  const aiMesh* mesh;
+  Affine fileFromMesh;
+};
+
+// The importer names the meshes of a 3ds file by their number.
+std::size_t numberIn3ds(const aiMesh& mesh) {
+  return std::strtoul(mesh.mName.C_Str(), nullptr, 10);
+}
+
+std::string objectName(const ImportedFile& file, const aiNode* node, const aiMesh& mesh) {
+  const std::string meshName = mesh.mName.C_Str(), nodeName = node == nullptr ? "" : node->mName.C_Str();
+  const bool isDummy = nodeName.empty() || nodeName.starts_with("3DSMesh_");  // no keyframer section
+  if (isDummy && numberIn3ds(mesh) < file.summary.meshes.size()) return file.summary.meshes[numberIn3ds(mesh)].name;
+  // Names in <> are importers' own; so are the ends of names of nodes that fbx files need for their many transforms.
+  if (!nodeName.empty() && !nodeName.starts_with("<")) return nodeName.substr(0, nodeName.find("_$AssimpFbx$"));
+  return meshName.empty() ? std::filesystem::path(file.path).stem().string() : meshName;
+}
+
+void placeMeshes(const ImportedFile& file, const aiNode* node, const Affine& fileFromParent,
+                 std::vector<Placement>& placements) {
+  if (node == nullptr) return;  // the .raw importer promises children that it does not have
+  const Affine fileFromNode = fileFromParent * toAffine(node->mTransformation);
+  for (unsigned m = 0; m < node->mNumMeshes; ++m) {
+    const aiMesh* mesh = file.scene->mMeshes[node->mMeshes[m]];
+    placements.push_back({objectName(file, node, *mesh), mesh, fileFromNode});
+  }
+  for (unsigned c = 0; c < node->mNumChildren; ++c) placeMeshes(file, node->mChildren[c], fileFromNode, placements);
+}
+
+// The keyframer section of a 3ds file may leave meshes out; they are where their vertices are.
+void placeForgottenMeshes(const ImportedFile& file, std::vector<Placement>& placements) {
+  if (file.summary.meshes.empty()) return;
+  for (unsigned m = 0; m < file.scene->mNumMeshes; ++m) {
+    const aiMesh* mesh = file.scene->mMeshes[m];
+    if (std::none_of(placements.begin(), placements.end(), [&](const Placement& p) { return p.mesh == mesh; }))
+      placements.push_back({objectName(file, nullptr, *mesh), mesh, toAffine(file.scene->mRootNode->mTransformation)});
+  }
+}
+
+float encodedAsSrgb(float linear) {
+  if (linear <= 0.0031308f) return 12.92f * linear;  // IEC 61966-2-1
+  return static_cast<float>(1.055 * exp(log(linear) / 2.4) - 0.055);
+}
+
+std::string materialName(const aiMaterial& material) {
+  aiString name;
+  material.Get(AI_MATKEY_NAME, name);
+  return name.C_Str();
+}
+
+ModelMaterial readMaterial(const ImportedFile& file, unsigned index) {
+  ModelMaterial look;
+  if (index >= file.scene->mNumMaterials) return look;
+  const aiMaterial& material = *file.scene->mMaterials[index];
+  look.name = materialName(material);
+  const bool isMadeUp = look.name == "%%%DEFAULT" || look.name == AI_DEFAULT_MATERIAL_NAME;
+  aiColor3D color;
+  if (isMadeUp || material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != aiReturn_SUCCESS) return look;
+  Vec3f base(color.r, color.g, color.b);
+  if (!base.allFinite()) return look;
+  base = base.cwiseMax(0).cwiseMin(1);
+  const bool isLinear = lowerExtension(file.path) == ".gltf" || lowerExtension(file.path) == ".glb";
+  look.baseColor = isLinear ? base.unaryExpr(&encodedAsSrgb) : base;
+  return look;
+}
+
+// How the triangles of a 3ds piece are smooth where the importer's normals ignore what the file says; else empty. A
+// file without smoothing groups leaves it open, and the importer smooths every edge.
+std::vector<Smoothing> smoothingOf3ds(const ImportedFile& file, const aiMesh& mesh) {
+  const std::size_t number = numberIn3ds(mesh);
+  if (number >= file.summary.meshes.size()) return {};
+  const auto& inFile = file.summary.meshes[number].smoothingGroups;
+  if (inFile.empty()) return std::vector<Smoothing>(mesh.mNumFaces, kSmoothingUnknown);
+  if (std::count(inFile.begin(), inFile.end(), 0U) == 0) return {};
+  std::vector<std::string> materials;
+  for (unsigned m = 0; m < file.scene->mNumMaterials; ++m)
+    materials.push_back(materialName(*file.scene->mMaterials[m]));
+  const auto groups = file.summary.smoothingOfPiece(number, materials, mesh.mMaterialIndex, mesh.mNumFaces);
+  return {groups.begin(), groups.end()};
+}
+
+// Normals turn with the inverse transpose. The cofactors are its multiple by the determinant, and exist for flat
+// transforms too; a mirroring one swaps the winding, and keeps outward normals outward.
+Mat3 normalTransform(const Mat3& linear) {
+  Mat3 cofactors;
+  cofactors << linear.col(1).cross(linear.col(2)), linear.col(2).cross(linear.col(0)),
+      linear.col(0).cross(linear.col(1));
+  if (linear.determinant() < 0) cofactors = -cofactors;
+  return cofactors / std::max(cofactors.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+}
+
+std::array<unsigned, 3> cornersOf(const ImportedFile& file, const Placement& placement, unsigned face) {
+  const aiMesh& mesh = *placement.mesh;
+  const unsigned* indices = mesh.mFaces[face].mIndices;
+  for (unsigned corner = 0; corner < 3; ++corner)
+    if (indices[corner] >= mesh.mNumVertices)
+      throw Error(ErrorKind::mesh, file.path,
+                  fmt::format("face {} of \"{}\" names vertex {}, but there are only {}; the file is damaged", face,
+                              placement.object, indices[corner], mesh.mNumVertices));
+  if (placement.fileFromMesh.linear().determinant() < 0) return {indices[0], indices[2], indices[1]};
+  return {indices[0], indices[1], indices[2]};
+}
+
+MeshPiece readPiece(const ImportedFile& file, const Placement& placement, double scale) {
+  const aiMesh& mesh = *placement.mesh;
+  const Mat3 turnNormal = normalTransform(placement.fileFromMesh.linear());
+  MeshPiece piece;
+  piece.material = static_cast<int>(mesh.mMaterialIndex);
+  piece.look = readMaterial(file, mesh.mMaterialIndex);
+  const std::vector<Smoothing> smoothing = smoothingOf3ds(file, mesh);
+  const bool hasNormals = mesh.HasNormals() && smoothing.empty();
+  piece.corners.reserve(3 * std::size_t{mesh.mNumFaces});
+  if (hasNormals) piece.normals.reserve(3 * std::size_t{mesh.mNumFaces});
+  for (unsigned face = 0; face < mesh.mNumFaces; ++face) {
+    if (mesh.mFaces[face].mNumIndices != 3) continue;  // points and lines
+    piece.smoothing.push_back(smoothing.empty() ? kSmoothingUnknown : smoothing[face]);
+    for (const unsigned vertex : cornersOf(file, placement, face)) {
+      piece.corners.push_back(scale * (placement.fileFromMesh * toVec3(mesh.mVertices[vertex])));
+      if (!piece.corners.back().allFinite())
+        throw Error(ErrorKind::mesh, file.path,
+                    fmt::format("vertex {} of \"{}\" is not finite; the file is damaged", vertex, placement.object));
+      if (hasNormals) piece.normals.push_back((turnNormal * toVec3(mesh.mNormals[vertex])).cast<float>());
+    }
+  }
+  return piece;
+}
+
+std::vector<ImportedObject> objectsOf(const std::string& path, double scale) {
+  ImportedFile file;
+  importFile(path, file);
+  std::vector<Placement> placements;
+  placeMeshes(file, file.scene->mRootNode, Affine::Identity(), placements);
+  placeForgottenMeshes(file, placements);
+
+  std::vector<ImportedObject> objects;  // pieces of one name are one
+  for (const Placement& placement : placements) {
+    const auto isNamed = [&](const ImportedObject& object) { return object.name == placement.object; };
+    auto object = std::find_if(objects.begin(), objects.end(), isNamed);
+    if (object == objects.end()) object = objects.insert(objects.end(), {placement.object, {}});
+    object->pieces.push_back(readPiece(file, placement, scale));
+  }
+  return objects;
+}
+
+}  // namespace
+
+std::vector<ImportedObject> importObjects(const std::string& path, double scale) {
+  CRADLE_CHECK(scale > 0);
+  std::error_code failed;
+  const std::uint64_t size = fs::file_size(path, failed);
+  const ChildLimits limits{kMemoryForAnyFile, kMostMemory,
+                           kSecondsForAnyFile + (failed ? 0 : std::min(size, kLargestFiles) / kBytesPerSecond)};
+  const auto answer = answerOfChild([&] { return bytesOf(objectsOf(path, scale)); }, limits);
+  if (!answer.failure.empty())
+    throw Error(
+        ErrorKind::mesh, path,
+        fmt::format("cannot be read as a mesh: {}; check the file, or export it again as 3ds or obj", answer.failure));
+  return objectsFromBytes(answer.bytes, path);
+}
+
+}  // namespace cradle

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh/assemble_model.h"
+
+namespace cradle {
+
+/// An object of a mesh file.
+struct ImportedObject {
+  std::string name;
+  std::vector<MeshPiece> pieces;
+};
+
+/// The objects of a mesh file, in the order in which they first appear; see loadObjects. A child process parses the
+/// file, with limits of memory and time: what comes back are triangles. Files that it names in turn are read only below
+/// its folder. Throws Error(mesh).
+std::vector<ImportedObject> importObjects(const std::string& path, double scale);
+
+}  // namespace cradle

@@ -1,0 +1,329 @@
+#!/usr/bin/env python3
+"""Files of strangers, and what a machine may do to a run: nothing leaks, nothing is overwritten, nothing hangs.
+
+    hostile_files_test.py PROGRAM SOURCE_FOLDER
+
+Each file is made here, in code. A refusal has an exit code, a message of one line that names the file, little memory and
+little time; and every file that was there before is as it was.
+"""
+import json, os, shutil, sqlite3, struct, subprocess, sys, tempfile, threading, time, unittest
+
+PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+BALL = os.path.join(SOURCE, "assets", "ball.3ds")
+MOST_MEMORY = 1 << 30  # bytes
+MOST_SECONDS = 2.0     # of CPU time, before a file is refused
+PATIENCE = 60          # s, for machines that do other things
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def scene(*bodies, **changes):
+    document = {"schema": "cradle-scene/1", "name": "test", "duration": 0.1, "output": {"framesPerSecond": 60},
+                "bodies": list(bodies) or [{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1}]}
+    document.update(changes)
+    return document
+
+
+def with_mesh(path):
+    return scene({"name": "b", "shape": {"mesh": path}})
+
+
+def gltf(uri):
+    return {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"name": "t", "mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+                           "max": [1, 1, 0]}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": uri}]}
+
+
+def chunk(identifier, data):
+    """Of a 3ds file."""
+    return struct.pack("<HI", identifier, len(data) + 6) + data
+
+
+def journal_naming(victim, pages):
+    """A rollback journal that asks SQLite to delete the file `victim`."""
+    magic, name = bytes.fromhex("d9d505f920a163d7"), os.fsencode(victim)
+    header = magic + struct.pack(">5I", 0, 0, pages, 512, 4096)
+    tail = struct.pack(">I", 0x40000000 // 4096 + 1) + name + struct.pack(">II", len(name), sum(name)) + magic
+    return header.ljust(512, b"\0") + tail
+
+
+class Ended:
+    """A run that has ended: exit code (minus the signal that killed it), texts, CPU time (s) and memory (bytes)."""
+    def __init__(self, arguments, folder):
+        with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as error:
+            process = subprocess.Popen([PROGRAM, *arguments], stdin=subprocess.DEVNULL, stdout=out, stderr=error, cwd=folder)
+            timer = threading.Timer(PATIENCE, process.kill)
+            timer.start()
+            _, status, usage = os.wait4(process.pid, 0)
+            timer.cancel()
+            process.returncode = self.code = os.waitstatus_to_exitcode(status)
+            self.seconds, self.memory = usage.ru_utime + usage.ru_stime, 1024 * usage.ru_maxrss
+            for file in (out, error):
+                file.seek(0)
+            self.out, self.error = out.read().decode(errors="replace"), error.read().decode(errors="replace")
+
+
+class HostileTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.secret = self.write("users/secret.txt", "dear diary")
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, content):
+        os.makedirs(os.path.dirname(self.path(name)), exist_ok=True)
+        data = json.dumps(content) if isinstance(content, dict) else content
+        with open(self.path(name), "wb") as file:
+            file.write(data.encode() if isinstance(data, str) else data)
+        return self.path(name)
+
+    def everything(self):
+        """Name and content of all that is in the folder."""
+        found = {}
+        for folder, _, names in os.walk(self.folder):
+            for name in names:
+                path = os.path.join(folder, name)
+                if os.path.islink(path):
+                    found[path] = os.readlink(path)
+                elif os.path.isfile(path):
+                    found[path] = read(path) if os.path.getsize(path) < 1 << 26 else os.path.getsize(path)
+                else:
+                    found[path] = None
+        return found
+
+    def run_cradle(self, *arguments):
+        return Ended(arguments, self.folder)
+
+    def refuses(self, code, words, *arguments):
+        before = self.everything()
+        ended = self.run_cradle(*arguments)
+        self.assertEqual(ended.code, code, ended.error)
+        for word in words:
+            self.assertIn(word, ended.error)
+        self.assertTrue(ended.error.endswith("\n") and all(c == "\n" or c.isprintable() for c in ended.error), ended.error)
+        self.assertLess(ended.memory, MOST_MEMORY, arguments)
+        self.assertLess(ended.seconds, MOST_SECONDS, arguments)
+        self.assertEqual(self.everything(), before)
+        return ended
+
+    def trajectory(self, name="a.sqlite"):
+        path = self.write("scene.json", scene())
+        self.assertEqual(self.run_cradle("simulate", path, "-q", "-o", self.path(name)).code, 0)
+        return self.path(name)
+
+
+class Trajectories(HostileTest):
+    def test_a_journal_that_names_a_file_deletes_none(self):
+        for suffix, code in (("", 0), (".part", 2)):
+            path = self.trajectory()
+            os.rename(path, path + suffix)
+            path += suffix
+            self.write(os.path.basename(path) + "-journal", journal_naming(self.secret, os.path.getsize(path) // 4096))
+            before = self.everything()
+            for arguments in (("compare", path, path), ("export", path, "-o", "/dev/null/x.csv"),
+                              ("render", path, "-o", "/dev/null/frames")):
+                ended = self.run_cradle(*arguments)
+                if arguments[0] == "compare":
+                    self.assertEqual(ended.code, code, ended.error)
+                self.assertEqual(self.everything(), before, arguments)
+            if suffix:
+                self.refuses(5, ["a.sqlite.part-journal", "none of cradle's"], "simulate", self.path("scene.json"), "-o",
+                             self.path("a.sqlite"))
+            os.remove(path + "-journal")
+
+    def test_tables_that_compute_their_columns_take_no_memory(self):
+        path = self.trajectory()
+        with sqlite3.connect(path) as database:
+            database.execute("ALTER TABLE event ADD COLUMN more AS (zeroblob(1000000000))")
+        for arguments in (("compare", path, path), ("export", path, "-o", self.path("x.csv"))):
+            self.refuses(2, [path, "computes"], *arguments)
+
+    def test_damage_is_seen_where_it_is_used(self):
+        for change in ("qw = 0.0, qx = 0.0, qy = 0.0, qz = 0.0", "qw = 1e200", "px = 1e308", "vy = -1e31"):
+            path = self.trajectory()
+            with sqlite3.connect(path) as database:
+                database.execute("UPDATE state SET %s WHERE frame = 3" % change)
+            for arguments in (("compare", path, path), ("export", path, "-o", self.path("x.csv")),
+                              ("export", path, "-o", self.path("x.glb"))):
+                self.refuses(2, [path, "damaged"], *arguments)
+            os.remove(path)
+        path = self.trajectory()
+        with sqlite3.connect(path) as database:
+            database.execute("UPDATE body SET mass = 0.0")
+        self.refuses(2, [path, '"ball"', "mass"], "compare", path, path)
+
+    def test_states_that_are_not_those_of_the_hash_are_no_equal_ones(self):
+        path = self.trajectory()
+        shutil.copy(path, self.path("b.sqlite"))
+        with sqlite3.connect(self.path("b.sqlite")) as database:
+            database.execute("UPDATE state SET px = px + 1")
+        self.refuses(2, ["b.sqlite", "stateHash"], "compare", path, self.path("b.sqlite"))
+
+
+class Meshes(HostileTest):
+    def test_no_file_outside_of_the_meshs_folder_is_read(self):
+        os.makedirs(self.path("strangers/deep"))
+        os.symlink("../users", self.path("strangers/up"))
+        for uri in ("../users/secret.txt", "deep/../../users/secret.txt", "up/secret.txt"):
+            mesh = self.write("strangers/t.gltf", gltf(uri))
+            self.refuses(4, [mesh, "not below its folder"], "inspect", mesh)
+            path = self.write("strangers/scene.json", with_mesh("t.gltf"))
+            self.refuses(4, [mesh, "not below its folder"], "simulate", path, "-o", self.path("x.sqlite"))
+        mesh = self.write("strangers/t.obj", "mtllib ../users/secret.txt\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.assertNotIn("dear", self.refuses(4, [mesh, "not below its folder"], "inspect", mesh).error)
+
+    def test_meshes_of_a_scene_are_below_the_asset_root(self):
+        shutil.copy(BALL, self.path("users/ball.3ds"))
+        shutil.copy(BALL, self.write("strangers/ball.3ds", ""))
+        os.symlink("../users/ball.3ds", self.path("strangers/link.3ds"))
+        root = self.path("strangers")
+        for mesh, code in (("ball.3ds", 0), ("../users/ball.3ds", 4), (self.path("users/ball.3ds"), 4), ("link.3ds", 4),
+                           ("../users/none.3ds", 4)):
+            path = self.write("strangers/scene.json", with_mesh(mesh))
+            commands = {"check": (), "plan": (), "simulate": ("-o", self.path("x.sqlite")),
+                        "render": ("-o", self.path("frames")), "video": ("-o", self.path("x.mp4"))}
+            for command, output in commands.items():
+                if code == 0 and command not in ("check", "plan"):
+                    continue
+                arguments = (command, path, "--asset-root", root, *output)
+                if code:
+                    self.refuses(code, ["not below", root], *arguments)
+                else:
+                    self.assertEqual(self.run_cradle(*arguments).code, 0)
+        self.refuses(2, ["nowhere", "folder"], "check", path, "--asset-root", self.path("nowhere"))
+
+    def test_3ds_files_do_not_fill_stack_or_memory(self):
+        ball = read(BALL)
+        name = chunk(0xB010, b"Box\0" + bytes(4) + b"\xff\xff")
+        deep = ball + chunk(0xB000, chunk(0xB002, 20_000 * name))
+        deep = deep[:2] + struct.pack("<I", len(deep)) + deep[6:]
+        wide = {count: chunk(0x4D4D, chunk(0x3D3D, count * chunk(0xAFFF, b"m"))) for count in (100_000, 1_000_000)}
+        for content in (deep, *wide.values()):
+            mesh = self.write("m.3ds", content)
+            self.refuses(4, [mesh], "inspect", mesh)
+
+
+class Places(HostileTest):
+    def test_pipes_folders_and_trajectories_are_no_scenes(self):
+        os.mkfifo(self.path("pipe"))
+        os.mkdir(self.path("folder"))
+        texts = set()
+        for name, words in (("pipe", "regular file"), ("folder", "directory"), ("none.json", "no such file"),
+                            (os.path.basename(self.trajectory()), "trajectory")):
+            for command in ("check", "plan"):
+                ended = self.refuses(3, [self.path(name), words], command, self.path(name))
+            texts.add(ended.error.replace(self.path(name), ""))
+        self.assertEqual(len(texts), 4)
+
+    def test_links_in_the_way_are_not_followed(self):
+        path = self.trajectory()
+        os.mkdir(self.path("frames"))
+        for name, arguments in (("x.csv", ("export", path, "-o", self.path("x.csv"))),
+                                ("x.glb", ("export", path, "-o", self.path("x.glb"))),
+                                ("x.mp4", ("video", path, "-q", "--size", "32x32", "-o", self.path("x.mp4"))),
+                                ("frames/frame_000000.png", ("render", path, "-q", "--size", "32x32", "--frames", "0:1", "--overwrite",
+                                                             "-o", self.path("frames"))),
+                                ("x.sqlite", ("simulate", self.path("scene.json"), "-q", "-o", self.path("x.sqlite")))):
+            part = self.path(name + ".part")
+            for plant in (os.symlink, os.link):
+                if name == "x.sqlite" and plant is os.link:
+                    continue  # an earlier part is removed, not written into
+                plant(self.secret, part)
+                ended = self.run_cradle(*arguments)
+                self.assertEqual(ended.code, 5, ended.error)
+                self.assertIn(os.path.basename(part), ended.error)
+                self.assertEqual(read(self.secret), b"dear diary")
+                self.assertFalse(os.path.exists(self.path(name)))
+                os.remove(part)
+            self.assertEqual(self.run_cradle(*arguments).code, 0, name)
+
+    def test_a_second_run_with_the_same_output_says_who_holds_it(self):
+        path = self.write("long.json", scene(duration=60, output={"framesPerSecond": 240, "width": 320, "height": 240}))
+        for name, arguments in (("x.mp4", ("video", path, "-q", "-o", self.path("x.mp4"))),
+                                ("x.sqlite", ("simulate", path, "-q", "--method", "rk4", "--time-step", "1e-6", "-o",
+                                              self.path("x.sqlite")))):
+            first = subprocess.Popen([PROGRAM, *arguments], stderr=subprocess.DEVNULL)
+            try:
+                deadline = time.monotonic() + PATIENCE
+                while not os.path.exists(self.path(name + ".part")) or not os.path.getsize(self.path(name + ".part")):
+                    self.assertLess(time.monotonic(), deadline)
+                    self.assertIsNone(first.poll())
+                    time.sleep(0.01)
+                ended = self.run_cradle(*arguments)
+                self.assertEqual(ended.code, 5, ended.error)
+                self.assertIn("process %d" % first.pid, ended.error)
+            finally:
+                first.terminate()
+                first.wait()
+
+    def test_names_that_are_none_are_refused(self):
+        path = self.trajectory()
+        frames = self.path("frames")
+        self.assertEqual(self.run_cradle("render", path, "-q", "--size", "32x32", "-o", frames).code, 0)
+        endings = {"simulate": "", "render": "", "export": ".csv", "video": ".mp4", "encode": ".mp4"}
+        for command, ending in endings.items():
+            source = {"simulate": self.path("scene.json"), "encode": frames}.get(command, path)
+            for name in ("", (251 - len(ending)) * "a" + ending, (300 - len(ending)) * "a" + ending, 1000 * "a/" + ending):
+                ended = self.run_cradle(command, source, "-q", "-o", name)
+                self.assertIn(ended.code, (2, 5), (command, name, ended.error))
+        for rate in ("0", "-1", "nan", "1e300", "inf"):
+            self.refuses(2, ["--frames-per-second", "allowed"], "encode", frames, "-o", self.path("x.mp4"),
+                         "--frames-per-second", rate)
+
+    def test_a_report_replaces_reports_only(self):
+        path = self.trajectory()
+        for folder, size in (("a", "32x32"), ("b", "32x32")):
+            self.assertEqual(self.run_cradle("render", path, "-q", "--frames", "0:1", "--size", size, "-o", self.path(folder)).code, 0)
+        for report in ("scene.json", "a.sqlite", "users/secret.txt", "a/frame_000000.png"):
+            self.refuses(5, [report, "no report"], "compare", self.path("a"), self.path("b"), "--report", self.path(report))
+        for _ in range(2):
+            self.assertEqual(self.run_cradle("compare", self.path("a"), self.path("b"), "--report", self.path("r.html")).code, 0)
+
+    def test_what_is_to_be_pasted_is_quoted(self):
+        path = self.trajectory()
+        evil = self.path("a'; touch 'evil")
+        for folder, command in ((evil, "a"), (self.path("b"), "b")):
+            self.assertEqual(self.run_cradle("render", path, "-q", "--size", "32x32", "--frames", "0:%d" % (1 + (command == "b")),
+                                             "-o", folder).code, 0)
+        ended = self.run_cradle("compare", evil, self.path("b"))
+        self.assertEqual(ended.code, 9)
+        lines = [line for line in ended.out.splitlines() if line.startswith("  cp ")]
+        self.assertTrue(lines)
+        subprocess.run(["sh", "-c", "\n".join(lines)], cwd=self.folder, check=True)
+        self.assertFalse(os.path.exists(self.path("evil")))
+        self.assertEqual(self.run_cradle("compare", evil, self.path("b")).code, 0)
+
+    def test_a_folder_with_a_bar_runs_no_command(self):
+        path = self.write("scene.json", scene())
+        os.mkdir(self.path("evil"))
+        ended = self.run_cradle("study", path, "-q", "--methods", "rk4", "-o", "|touch evil")
+        self.assertIn(ended.code, (0, 2, 5), ended.error)
+        self.assertEqual(os.listdir(self.path("evil")), [])
+
+    def test_sizes_are_those_of_the_files(self):
+        for name, code, size in (("a.json", 3, 100_000_000), ("m.stl", 4, 300_000_000)):
+            path = self.write(name, "")
+            os.truncate(path, size)
+            self.refuses(code, [path, "%d.0 MB" % (size // 1_000_000)], "check" if code == 3 else "inspect", path)
+
+    def test_many_values_take_little_memory(self):
+        path = self.write("a.json", "[" + 31_000_000 * "0," + "0]")
+        self.refuses(3, [path, "values"], "check", path)
+
+    def test_names_are_no_addresses(self):
+        path = self.write("scene.json", scene())
+        for name in ("file:x.sqlite", ":memory:", "a?mode=memory.sqlite"):
+            self.assertEqual(self.run_cradle("simulate", path, "-q", "-o", name).code, 0)
+            self.assertTrue(os.path.isfile(self.path(name)), name)
+            self.assertEqual(self.run_cradle("compare", name, name).code, 0, name)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)
