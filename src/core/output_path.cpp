@@ -1,8 +1,11 @@
 #include "core/output_path.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <climits>
 #include <filesystem>
+#include <string_view>
 
 #include "core/error.h"
 
@@ -10,10 +13,31 @@ namespace cradle {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+constexpr std::string_view kPart = ".part";
+// SQLite's journal of FILE.part has the longest name of those beside a file.
+constexpr std::size_t kLongestName = NAME_MAX - std::string_view(".part-journal").size();  // bytes
+constexpr std::size_t kLongestPath = PATH_MAX - 64;                                        // bytes
+
+void requireUsableName(const std::string& path) {
+  if (path.empty()) throw Error(ErrorKind::output, "the output", "has an empty name; give one");
+  const std::size_t length = fs::path(path).filename().string().size();
+  if (length > kLongestName)
+    throw Error(ErrorKind::output, path,
+                fmt::format("has a name of {} bytes; at most {} are allowed", length, kLongestName));
+  if (path.size() > kLongestPath)
+    throw Error(ErrorKind::output, path,
+                fmt::format("has a path of {} bytes; at most {} are allowed", path.size(), kLongestPath));
+}
+
+}  // namespace
+
 void requireWritableFile(const std::string& path) {
+  requireUsableName(path.ends_with(kPart) ? path.substr(0, path.size() - kPart.size()) : path);
   std::error_code failed;
   const fs::file_status there = fs::status(path, failed);
-  if (path.empty() || fs::path(path).filename().empty() || fs::is_directory(there))
+  if (fs::path(path).filename().empty() || fs::is_directory(there))
     throw Error(ErrorKind::output, path, "is a folder; give the name of a file");
   if (fs::exists(there) && !fs::is_regular_file(there))
     throw Error(ErrorKind::output, path, "is not a regular file and is not replaced; give another name");
@@ -28,6 +52,7 @@ void requireWritableFile(const std::string& path) {
 
 void requireOwnFolder(const std::string& folder, const std::string& kind,
                       const std::function<bool(const std::string& name)>& isOurs) {
+  requireUsableName(folder);
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error))
     throw Error(ErrorKind::output, folder, "is no folder; name a new or empty one");
@@ -51,7 +76,11 @@ void makeFolder(const std::string& folder) {
 }
 
 std::string partPath(const std::string& path) {
-  return path + ".part";
+  return path + std::string(kPart);
+}
+
+bool isPartPath(const std::string& path) {
+  return path.ends_with(kPart);
 }
 
 }  // namespace cradle

@@ -19,5 +19,6 @@ void makeFolder(const std::string& folder);
 
 /// Where the file that will be `path` is written until it is complete.
 std::string partPath(const std::string& path);
+bool isPartPath(const std::string& path);
 
 }  // namespace cradle

@@ -1,41 +1,38 @@
 #include "core/part_file.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 #include "core/error.h"
-#include "core/output_path.h"
 
 namespace cradle {
+namespace {
 
-PartFile::PartFile(const std::string& path) : path_(path), part_(partPath(path)) {
-  requireWritableFile(path_);
-  requireWritableFile(part_);
-  file_ = std::fopen(part_.c_str(), "wbe");  // e: a program started meanwhile does not hold it open
-  if (file_ == nullptr) fail();
-}
+constexpr std::size_t kMostWaiting = 1 << 16;  // bytes
 
-PartFile::~PartFile() {
-  if (file_ != nullptr) std::fclose(file_);
-  if (!isComplete_) std::remove(part_.c_str());
-}
+}  // namespace
 
 void PartFile::write(std::string_view bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail();
+  waiting_ += bytes;
+  if (waiting_.size() > kMostWaiting) flush();
 }
 
 void PartFile::complete() {
-  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail();
-  requireWritableFile(path_);
-  if (std::rename(part_.c_str(), path_.c_str()) != 0) fail();
-  isComplete_ = true;
+  flush();
+  lock_.finish();
 }
 
-void PartFile::fail() const {
-  throw Error(ErrorKind::output, path_, fmt::format("cannot be written: {}", std::strerror(errno)));
+void PartFile::flush() {
+  for (std::size_t written = 0; written < waiting_.size();) {
+    const ssize_t length = ::write(lock_.file(), waiting_.data() + written, waiting_.size() - written);
+    if (length < 0 && errno == EINTR) continue;
+    if (length < 0) throw Error(ErrorKind::output, path_, fmt::format("cannot be written: {}", std::strerror(errno)));
+    written += static_cast<std::size_t>(length);
+  }
+  waiting_.clear();
 }
 
 }  // namespace cradle

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <string_view>
 
 #include "core/part_file.h"
@@ -174,6 +175,13 @@ void writeComparisonReport(const std::vector<ComparedPicture>& pictures, const I
   for (const ComparedPicture* picture : shown) file.write(sectionOf(*picture));
   file.write(kTail);
   file.complete();
+}
+
+bool isComparisonReport(const std::string& path) {
+  const std::string_view title = kHead.substr(0, kHead.find('\n', kHead.find("<title>")));
+  std::string start(title.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  return file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == title;
 }
 
 }  // namespace cradle

@@ -19,4 +19,7 @@ struct ComparedPicture {
 void writeComparisonReport(const std::vector<ComparedPicture>& pictures, const ImageLimits& limits,
                            const std::string& path);
 
+/// Whether the file at `path` is such a page.
+bool isComparisonReport(const std::string& path);
+
 }  // namespace cradle

@@ -95,15 +95,12 @@ Image paddedToEven(const Image& image) {
 VideoEncoder::VideoEncoder(std::string path, const VideoFormat& format) : path_(std::move(path)), format_(format) {
   CRADLE_CHECK(format.width > 0 && format.height > 0 && format.framesPerSecond > 0);
   const std::string muxer = muxerFor(path_);
-  requireWritableFile(path_);
-  requireWritableFile(partPath(path_));
+  lock_.emplace(path_);  // ffmpeg writes into that file
   ffmpeg_ = std::make_unique<ChildProcess>(ffmpegCommand(partPath(path_), muxer, format_));
 }
 
 VideoEncoder::~VideoEncoder() {
-  if (finished_) return;
-  ffmpeg_.reset();
-  unlink(partPath(path_).c_str());
+  ffmpeg_.reset();  // before its file goes
 }
 
 void VideoEncoder::add(const Image& image) {
@@ -125,8 +122,7 @@ void VideoEncoder::finish() {
   if (count != frames_)
     throw Error(ErrorKind::encoder, path_,
                 fmt::format("ffmpeg was given {} pictures, and {} can be read back", frames_, count));
-  if (std::rename(part.c_str(), path_.c_str()) != 0)
-    throw Error(ErrorKind::output, path_, std::string("cannot be renamed from ") + part + ": " + std::strerror(errno));
+  lock_->finish();
   finished_ = true;
 }
 

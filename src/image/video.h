@@ -2,8 +2,10 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "core/part_lock.h"
 #include "image/child_process.h"
 #include "image/image.h"
 
@@ -40,6 +42,7 @@ class VideoEncoder {
 
   std::string path_;
   VideoFormat format_;
+  std::optional<PartLock> lock_;
   std::unique_ptr<ChildProcess> ffmpeg_;
   long frames_ = 0;
   bool finished_ = false;

@@ -6,12 +6,14 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <utility>
 
 #include "core/error.h"
 #include "core/output_path.h"
+#include "core/part_lock.h"
 #include "image/child_process.h"
 
 namespace cradle {
@@ -25,11 +27,6 @@ bool endsWith(const std::string& path, const std::string& end) {
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   return text.find(end, text.size() - std::min(text.size(), kLastBytes)) != std::string::npos;
-}
-
-void finishFile(const std::string& path) {
-  if (std::rename(partPath(path).c_str(), path.c_str()) != 0)
-    throw Error(ErrorKind::output, path, std::string("cannot be written: ") + std::strerror(errno));
 }
 
 }  // namespace
@@ -58,11 +55,10 @@ std::string drawingCommands(const std::string& drawing, const ChartFiles& files,
 }
 
 void drawWithGnuplot(const std::string& stem, const std::function<std::string(const ChartFiles&)>& commands) {
-  const ChartFiles files{stem + ".svg", stem + ".png"};
-  for (const std::string& path : {files.svg, files.png}) {
-    requireWritableFile(path);
-    requireWritableFile(partPath(path));
-  }
+  // Whole paths: gnuplot runs what stands behind a | in front.
+  const std::string whole = std::filesystem::absolute(stem).string();
+  const ChartFiles files{whole + ".svg", whole + ".png"};
+  PartLock svg(files.svg), png(files.png);
   const std::string text = commands({partPath(files.svg), partPath(files.png)});
   ChildProcess gnuplot({"gnuplot"}, kNoGnuplot);
   const bool taken = gnuplot.write(text.data(), text.size());
@@ -71,8 +67,8 @@ void drawWithGnuplot(const std::string& stem, const std::function<std::string(co
   for (const auto& [path, end] : {std::pair(files.svg, "</svg>"), std::pair(files.png, "IEND")})
     if (!endsWith(partPath(path), end))
       throw Error(ErrorKind::output, path, "could not be written to its end; is the disk full?");
-  finishFile(files.svg);
-  finishFile(files.png);
+  svg.finish();
+  png.finish();
 }
 
 }  // namespace cradle

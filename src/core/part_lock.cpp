@@ -1,0 +1,89 @@
+// Locks are POSIX's: they end with their process, and tell which it is.
+
+#include "core/part_lock.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "core/error.h"
+#include "core/output_path.h"
+
+namespace cradle {
+namespace {
+
+/// Of the whole file.
+struct flock writeLock() {
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
+std::string holderOf(int file) {
+  struct flock lock = writeLock();
+  const bool isHeld = fcntl(file, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK && lock.l_pid > 0;
+  return isHeld ? fmt::format("process {}", lock.l_pid) : "another process";
+}
+
+bool isTheOneAt(const std::string& path, const struct stat& file) {
+  struct stat there {};
+  return lstat(path.c_str(), &there) == 0 && there.st_dev == file.st_dev && there.st_ino == file.st_ino;
+}
+
+int openLocked(const std::string& part) {
+  for (;;) {
+    const int file = open(part.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+    const auto fail = [&](const std::string& what) {
+      if (file >= 0) close(file);
+      throw Error(ErrorKind::output, part, what);
+    };
+    if (file < 0 && errno == ELOOP) fail("is a link; it is not followed: remove it, or choose another name");
+    if (file < 0) fail(fmt::format("cannot be written: {}", std::strerror(errno)));
+    struct stat status {};
+    if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) fail("is not a regular file and is not replaced");
+    if (status.st_nlink > 1) fail("is a file with another name, too; remove it, or choose another name");
+    struct flock lock = writeLock();
+    const bool isTaken = fcntl(file, F_SETLK, &lock) != 0 && (errno == EACCES || errno == EAGAIN);
+    if (isTaken) fail(fmt::format("is being written by {}; wait for its end or choose another name", holderOf(file)));
+    if (isTheOneAt(part, status)) {
+      if (ftruncate(file, 0) != 0) fail(fmt::format("cannot be written: {}", std::strerror(errno)));
+      return file;
+    }
+    close(file);  // its writer has just given it its name, or removed it: another is to be made
+  }
+}
+
+}  // namespace
+
+PartLock::PartLock(const std::string& path) : path_(path), part_(partPath(path)) {
+  requireWritableFile(path_);
+  requireWritableFile(part_);
+  file_ = openLocked(part_);
+}
+
+PartLock::~PartLock() {
+  if (!isFinished_) unlink(part_.c_str());  // while it is locked: later it may be another run's
+  close(file_);
+}
+
+void PartLock::finish() {
+  requireWritableFile(path_);  // what stands in the way may have changed; rename itself would replace a device
+  if (std::rename(part_.c_str(), path_.c_str()) != 0)
+    throw Error(ErrorKind::output, path_, fmt::format("cannot be put in place: {}", std::strerror(errno)));
+  isFinished_ = true;
+}
+
+std::string lockHolderOf(const std::string& path) {
+  const int file = open(path.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
+  const std::string holder = holderOf(file);
+  if (file >= 0) close(file);
+  return holder;
+}
+
+}  // namespace cradle

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+namespace cradle {
+
+/// The place of a file that is whole or not there: FILE.part, empty, open for writing and locked against other runs,
+/// which becomes FILE when complete, and goes when not.
+class PartLock {
+ public:
+  /// Throws Error(output) if `path` or its part is anything but a regular file of one name (what a link leads to is not
+  /// overwritten), cannot be written, or is being written by another process, which is named. An earlier part is
+  /// emptied.
+  explicit PartLock(const std::string& path);
+  ~PartLock();
+  PartLock(const PartLock&) = delete;
+  PartLock& operator=(const PartLock&) = delete;
+
+  int file() const { return file_; }  // descriptor
+
+  /// Gives the part its name. Throws Error(output).
+  void finish();
+
+ private:
+  std::string path_, part_;
+  int file_ = -1;
+  bool isFinished_ = false;
+};
+
+/// "process 4711", that holds a lock on the file at `path`, or "another process".
+std::string lockHolderOf(const std::string& path);
+
+}  // namespace cradle
