@@ -1,14 +1,9 @@
 #include "commands/trajectory_source.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <filesystem>
 
 #include "commands/simulate_scene.h"
 #include "core/error.h"
-#include "core/output_path.h"
 #include "scene/load_scene.h"
 #include "simulate/assembly.h"
 #include "simulate/run.h"
@@ -28,15 +23,6 @@ ModelSource modelsOf(const TrajectoryHeader& header) {
   };
 }
 
-std::string temporaryPath() {
-  std::error_code failed;
-  const std::filesystem::path folder = std::filesystem::temp_directory_path(failed);
-  if (failed)
-    throw Error(ErrorKind::output, "TMPDIR",
-                "names no folder, and a scene is simulated into a file there: make it, or name another");
-  return (folder / fmt::format("cradle-{}.sqlite", getpid())).string();
-}
-
 }  // namespace
 
 Scene sceneOf(const TrajectoryHeader& header) {
@@ -46,7 +32,7 @@ Scene sceneOf(const TrajectoryHeader& header) {
 TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool quiet, const std::string& assetRoot)
     : quiet_(quiet) {
   if (isDatabaseFile(sceneOrTrajectory)) {
-    open(sceneOrTrajectory);
+    open(TrajectoryReader(sceneOrTrajectory));
     return;
   }
   scene_ = loadSceneAndWarn(sceneOrTrajectory, {.assetRoot = assetRoot});
@@ -54,29 +40,18 @@ TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool qu
   frameCount_ = lastFrame(scene_) + 1;
 }
 
-TrajectorySource::~TrajectorySource() {
-  reader_.reset();
-  if (temporary_.empty()) return;
-  std::error_code ignored;  // a temporary file that cannot be removed is no reason to fail
-  std::filesystem::remove(temporary_, ignored);
-  std::filesystem::remove(partPath(temporary_), ignored);
-}
-
-void TrajectorySource::open(const std::string& trajectory) {
-  reader_.emplace(trajectory);
+void TrajectorySource::open(TrajectoryReader trajectory) {
+  reader_.emplace(std::move(trajectory));
   scene_ = sceneOf(reader_->header());
   frameCount_ = reader_->frameCount();
 }
 
 void TrajectorySource::simulate() {
   if (reader_) return;
-  temporary_ = temporaryPath();
-  {
-    Run run(scene_);
-    TrajectoryWriter writer(temporary_, headerOf(scene_, run.plan()));
-    simulateInto(writer, scene_, run, nullptr, quiet_);
-  }
-  open(temporary_);
+  Run run(scene_);
+  TrajectoryWriter writer(headerOf(scene_, run.plan()));
+  simulateInto(writer, scene_, run, nullptr, quiet_);
+  open(TrajectoryReader(writer));
 }
 
 void TrajectorySource::simulateBeside(std::function<void(const std::string&)> warn) {

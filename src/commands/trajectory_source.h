@@ -15,14 +15,13 @@ namespace cradle {
 /// The scene as a trajectory holds it: its text, with the meshes of the file. Throws as loading a scene does.
 Scene sceneOf(const TrajectoryHeader& header);
 
-/// The trajectory that a command draws: a file; or a scene to be simulated, into a temporary file that goes with the
-/// object, or beside the drawing.
+/// The trajectory that a command draws: a file; or a scene to be simulated, into a file without a name that goes with
+/// the object, or beside the drawing.
 class TrajectorySource {
  public:
   /// Opens the trajectory, or loads the scene, with its warnings on stderr; its meshes are below `assetRoot`, if that
   /// is not empty.
   TrajectorySource(const std::string& sceneOrTrajectory, bool quiet, const std::string& assetRoot = "");
-  ~TrajectorySource();
   TrajectorySource(const TrajectorySource&) = delete;
   TrajectorySource& operator=(const TrajectorySource&) = delete;
 
@@ -59,10 +58,9 @@ class TrajectorySource {
   long pictureCount() const;
 
  private:
-  void open(const std::string& trajectory);
+  void open(TrajectoryReader trajectory);
 
   bool quiet_;
-  std::string temporary_;  // path, or empty
   std::optional<TrajectoryReader> reader_;
   Scene scene_;
   long frameCount_ = 0;

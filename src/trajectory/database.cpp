@@ -165,6 +165,16 @@ Database::Database(const std::string& path, DatabaseAccess access) : path_(path)
     execute("PRAGMA journal_mode = DELETE; PRAGMA cache_spill = OFF; PRAGMA synchronous = NORMAL");
     return;
   }
+  if (access == DatabaseAccess::unnamed) {
+    std::error_code failed;
+    path_ = fs::temp_directory_path(failed).string();
+    if (failed)
+      throw Error(ErrorKind::output, "TMPDIR",
+                  "names no folder, and a scene is simulated into a file there: make it, or name another");
+    open("", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    execute("PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF");
+    return;
+  }
   std::error_code failed;
   const fs::path file = fs::canonical(path, failed);
   if (failed) failReading(SQLITE_CANTOPEN);

@@ -54,14 +54,15 @@ class Statement {
 
 /// What a file is opened for. What fails while writing throws Error(output), what fails while reading Error(usage): it
 /// is then a file named on the command line that is wrong.
-enum class DatabaseAccess { create, read };
+enum class DatabaseAccess { create, read, unnamed };
 
 /// One SQLite file. Statements must not outlive it.
 class Database {
  public:
   /// create: a new file at `path`, where nothing may be. read: an existing file, which may come from anywhere: what is
   /// beside it is not looked at, and neither is changed; save that in a FILE.part what a killed writer left half-done
-  /// is taken back. A journal of such that names a file to be deleted, which ours never do, is refused.
+  /// is taken back. A journal of such that names a file to be deleted, which ours never do, is refused. unnamed: a
+  /// new one below TMPDIR that no name leads to, and that goes with the object or the process; `path` is not used.
   Database(const std::string& path, DatabaseAccess access);
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;

@@ -13,6 +13,8 @@
 
 namespace cradle {
 
+class Database;
+
 /// How often a running simulation's frames become visible to others, and safe from its sudden end.
 constexpr std::chrono::milliseconds kCommitInterval{500};
 
@@ -24,6 +26,8 @@ class TrajectoryWriter {
   /// file, or is being written by another run.
   TrajectoryWriter(const std::string& path, const TrajectoryHeader& header,
                    std::chrono::milliseconds commitInterval = kCommitInterval);
+  /// Into a file without a name, below TMPDIR, for a TrajectoryReader. Throws Error(output).
+  explicit TrajectoryWriter(const TrajectoryHeader& header);
   ~TrajectoryWriter();
   TrajectoryWriter(const TrajectoryWriter&) = delete;
   TrajectoryWriter& operator=(const TrajectoryWriter&) = delete;
@@ -34,7 +38,7 @@ class TrajectoryWriter {
   /// Events in order of time.
   void append(const Event& event);
 
-  /// Completes the file and gives it its name. There must be a frame. Throws Error(output).
+  /// Completes the file and gives it its name, if it is to have one. There must be a frame. Throws Error(output).
   void finish(const RunCost& cost);
 
   /// Ends a run that is not finished, as the destructor does, and says where its frames are: FILE.part, or empty if
@@ -42,7 +46,10 @@ class TrajectoryWriter {
   std::string keptPath();
 
  private:
+  friend class TrajectoryReader;
   struct Session;
+  void begin(std::unique_ptr<Database> database, const TrajectoryHeader& header);
+  std::unique_ptr<Database> release();
   void requireFinite(const Frame& frame) const;
   void writeFrame(const Frame& frame);
   void commitIfDue();
@@ -66,6 +73,8 @@ class TrajectoryWriter {
 class TrajectoryReader {
  public:
   explicit TrajectoryReader(const std::string& path);
+  /// Of the file without a name that `finished` wrote, which has ended then.
+  explicit TrajectoryReader(TrajectoryWriter& finished);
   TrajectoryReader(TrajectoryReader&&) noexcept;
   ~TrajectoryReader();
 
@@ -90,6 +99,7 @@ class TrajectoryReader {
 
  private:
   struct Session;
+  void readAll();
   void readMeta();
   void readMeshes();
   void readBodies();

@@ -144,15 +144,14 @@ std::string energyQuery(Database& database) {
 }  // namespace
 
 struct TrajectoryReader::Session {
-  explicit Session(const std::string& path) : database(path, DatabaseAccess::read) {
-    requireTrajectory(database, path);
+  explicit Session(std::unique_ptr<Database> whole) : database(std::move(whole)) {
     state.emplace(
-        database.prepare("SELECT body, px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz FROM state "
-                         "WHERE frame = ? ORDER BY body"));
-    energy.emplace(database.prepare(energyQuery(database)));
+        database->prepare("SELECT body, px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz FROM state "
+                          "WHERE frame = ? ORDER BY body"));
+    energy.emplace(database->prepare(energyQuery(*database)));
   }
 
-  Database database;
+  std::unique_ptr<Database> database;
   std::optional<Statement> state, energy;
 };
 
@@ -165,7 +164,17 @@ TrajectoryReader::TrajectoryReader(const std::string& path) : path_(path) {
         ErrorKind::usage, path,
         "keeps its changes in a log beside it, which cradle never does and does not read; `sqlite3 FILE 'PRAGMA "
         "journal_mode = DELETE'` takes them in");
-  session_ = std::make_unique<Session>(path);
+  auto database = std::make_unique<Database>(path, DatabaseAccess::read);
+  requireTrajectory(*database, path);
+  session_ = std::make_unique<Session>(std::move(database));
+  readAll();
+}
+
+TrajectoryReader::TrajectoryReader(TrajectoryWriter& finished) : session_(new Session(finished.release())) {
+  readAll();
+}
+
+void TrajectoryReader::readAll() {
   readMeta();
   readMeshes();
   readBodies();
@@ -176,11 +185,11 @@ TrajectoryReader::TrajectoryReader(TrajectoryReader&&) noexcept = default;
 TrajectoryReader::~TrajectoryReader() = default;
 
 void TrajectoryReader::readMeta() {
-  Statement query = session_->database.prepare("SELECT key, value FROM meta");
+  Statement query = session_->database->prepare("SELECT key, value FROM meta");
   while (query.step()) meta_[query.text(0)] = query.anyAsText(1);
   const auto value = [&](const char* key) {
     const auto found = meta_.find(key);
-    if (found == meta_.end()) session_->database.failDamaged(fmt::format("its table meta has no {}", key));
+    if (found == meta_.end()) session_->database->failDamaged(fmt::format("its table meta has no {}", key));
     return found->second;
   };
   header_.scene = value("scene");
@@ -190,11 +199,11 @@ void TrajectoryReader::readMeta() {
   header_.accuracy = value("accuracy");
   header_.method = value("method");
   if (textHash(header_.scene) != value("sceneHash"))
-    session_->database.failDamaged("its scene is not the one that was run (sceneHash)");
+    session_->database->failDamaged("its scene is not the one that was run (sceneHash)");
 }
 
 void TrajectoryReader::readMeshes() {
-  Database& database = session_->database;
+  Database& database = *session_->database;
   Statement query = database.prepare("SELECT id, name, vertices, normals, triangles FROM mesh ORDER BY id");
   while (query.step()) {
     if (query.integer(0) != static_cast<std::int64_t>(header_.meshes.size())) database.failDamaged("a mesh is missing");
@@ -211,7 +220,7 @@ void TrajectoryReader::readMeshes() {
 }
 
 void TrajectoryReader::readBodies() {
-  Database& database = session_->database;
+  Database& database = *session_->database;
   Statement query = database.prepare(
       "SELECT id, name, motion, mesh, shape, mass, comx, comy, comz, ixx, iyy, izz, ixy, ixz, iyz FROM body ORDER BY "
       "id");
@@ -235,7 +244,7 @@ void TrajectoryReader::readBodies() {
 }
 
 void TrajectoryReader::readFrameTimes() {
-  Database& database = session_->database;
+  Database& database = *session_->database;
   Statement query = database.prepare("SELECT id, time FROM frame ORDER BY id");
   while (query.step()) {
     if (query.integer(0) != frameCount()) database.failDamaged(fmt::format("frame {} is missing", frameCount()));
@@ -252,7 +261,7 @@ Frame TrajectoryReader::readFrame(long number) const {
   frame.number = number;
   frame.time = frameTimes_[static_cast<std::size_t>(number)];
   const auto fail = [&](const char* what) {
-    session_->database.failDamaged(fmt::format("{} of frame {} are not those of its bodies", what, number));
+    session_->database->failDamaged(fmt::format("{} of frame {} are not those of its bodies", what, number));
   };
 
   Statement& state = *session_->state;
@@ -262,8 +271,8 @@ Frame TrajectoryReader::readFrame(long number) const {
     if (!state.step() || state.integer(0) != body) fail("the states");
     frame.states.push_back(stateAt(state, 1));
     if (!isPossible(frame.states.back()))
-      session_->database.failDamaged(fmt::format("frame {} has a state of body \"{}\" that no body can have", number,
-                                                 header_.bodies[static_cast<std::size_t>(body)].name));
+      session_->database->failDamaged(fmt::format("frame {} has a state of body \"{}\" that no body can have", number,
+                                                  header_.bodies[static_cast<std::size_t>(body)].name));
   }
   if (state.step()) fail("the states");
   state.reset();
@@ -280,7 +289,7 @@ Frame TrajectoryReader::readFrame(long number) const {
 }
 
 std::vector<Event> TrajectoryReader::events() const {
-  Database& database = session_->database;
+  Database& database = *session_->database;
   Statement query = database.prepare("SELECT time, kind, a, b, x, y, z, nx, ny, nz, impulse FROM event ORDER BY rowid");
   const auto body = [&](int column) {
     const std::int64_t id = query.integer(column);
@@ -311,12 +320,12 @@ std::string TrajectoryReader::hashOfFrames() const {
   Hash hash;
   for (long number = 0; number < frameCount(); ++number) addFrame(readFrame(number), hash);
   if (isFinished() && hash.hex() != stateHash())
-    session_->database.failDamaged("its frames are not those that were written (stateHash)");
+    session_->database->failDamaged("its frames are not those that were written (stateHash)");
   return hash.hex();
 }
 
 RunCost TrajectoryReader::cost() const {
-  Statement query = session_->database.prepare(
+  Statement query = session_->database->prepare(
       "SELECT (SELECT value FROM meta WHERE key = 'cpuSeconds'), (SELECT value FROM meta WHERE key = 'evaluations')");
   if (!isFinished() || !query.step()) return {};
   return {query.real(0), query.integer(1)};

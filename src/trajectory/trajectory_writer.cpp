@@ -150,14 +150,14 @@ Database& createTables(Database& database) {
 }  // namespace
 
 struct TrajectoryWriter::Session {
-  explicit Session(const std::string& part)
-      : database(part, DatabaseAccess::create),
-        frame(createTables(database).prepare("INSERT INTO frame VALUES (?, ?)")),
-        state(database.prepare("INSERT INTO state VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
-        energy(database.prepare("INSERT INTO energy VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
-        event(database.prepare("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")) {}
+  explicit Session(std::unique_ptr<Database> empty)
+      : database(std::move(empty)),
+        frame(createTables(*database).prepare("INSERT INTO frame VALUES (?, ?)")),
+        state(database->prepare("INSERT INTO state VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
+        energy(database->prepare("INSERT INTO energy VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
+        event(database->prepare("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")) {}
 
-  Database database;
+  std::unique_ptr<Database> database;
   Statement frame, state, energy, event;
 };
 
@@ -166,19 +166,27 @@ TrajectoryWriter::TrajectoryWriter(const std::string& path, const TrajectoryHead
     : path_(path), part_(partPath(path)), commitInterval_(commitInterval) {
   requireWritableFile(path_);
   removeOldPart(part_);
-  for (std::size_t id = 0; id < header.bodies.size(); ++id) {
-    bodyNames_.push_back(header.bodies[id].name);
-    if (header.bodies[id].isDynamic) dynamicBodies_.push_back(static_cast<int>(id));
-  }
   try {
-    session_ = std::make_unique<Session>(part_);
-    insertHeader(session_->database, header);
-    session_->database.commit();
-    session_->database.execute("BEGIN IMMEDIATE");
+    begin(std::make_unique<Database>(part_, DatabaseAccess::create), header);
   } catch (...) {
     endUnfinished();
     throw;
   }
+}
+
+TrajectoryWriter::TrajectoryWriter(const TrajectoryHeader& header) : commitInterval_(kCommitInterval) {
+  begin(std::make_unique<Database>("", DatabaseAccess::unnamed), header);
+}
+
+void TrajectoryWriter::begin(std::unique_ptr<Database> database, const TrajectoryHeader& header) {
+  for (std::size_t id = 0; id < header.bodies.size(); ++id) {
+    bodyNames_.push_back(header.bodies[id].name);
+    if (header.bodies[id].isDynamic) dynamicBodies_.push_back(static_cast<int>(id));
+  }
+  session_ = std::make_unique<Session>(std::move(database));
+  insertHeader(*session_->database, header);
+  session_->database->commit();
+  session_->database->execute("BEGIN IMMEDIATE");
   lastCommit_ = std::chrono::steady_clock::now();
 }
 
@@ -243,21 +251,22 @@ void TrajectoryWriter::append(const Event& event) {
 
 void TrajectoryWriter::commitIfDue() {
   const auto now = std::chrono::steady_clock::now();
-  if (now - lastCommit_ < commitInterval_ || !session_->database.tryCommit()) return;
+  if (now - lastCommit_ < commitInterval_ || !session_->database->tryCommit()) return;
   framesCommitted_ = framesAppended_;
   lastCommit_ = now;
-  session_->database.execute("BEGIN IMMEDIATE");
+  session_->database->execute("BEGIN IMMEDIATE");
 }
 
 void TrajectoryWriter::finish(const RunCost& cost) {
   CRADLE_CHECK(session_ && transactionWhole_ && framesAppended_ > 0);
-  insertMeta(session_->database, "cpuSeconds", cost.cpuSeconds);
-  insertMeta(session_->database, "evaluations", cost.evaluations);
-  insertMeta(session_->database, "corrections", countsAsJson(cost.corrections));
-  insertMeta(session_->database, "promise", cost.promise);
-  insertMeta(session_->database, "stateHash", stateHash_.hex());
-  session_->database.commit();
+  insertMeta(*session_->database, "cpuSeconds", cost.cpuSeconds);
+  insertMeta(*session_->database, "evaluations", cost.evaluations);
+  insertMeta(*session_->database, "corrections", countsAsJson(cost.corrections));
+  insertMeta(*session_->database, "promise", cost.promise);
+  insertMeta(*session_->database, "stateHash", stateHash_.hex());
+  session_->database->commit();
   framesCommitted_ = framesAppended_;
+  if (path_.empty()) return;
   session_.reset();
   // What stands in the way may have changed since the start; rename itself would replace a device.
   requireWritableFile(path_);
@@ -269,6 +278,14 @@ void TrajectoryWriter::finish(const RunCost& cost) {
   isFinished_ = true;
 }
 
+/// The database of a file without a name.
+std::unique_ptr<Database> TrajectoryWriter::release() {
+  CRADLE_CHECK(session_ && path_.empty());
+  std::unique_ptr<Database> database = std::move(session_->database);
+  session_.reset();
+  return database;
+}
+
 std::string TrajectoryWriter::keptPath() {
   endUnfinished();
   return isFinished_ || framesCommitted_ == 0 ? "" : part_;
@@ -277,12 +294,12 @@ std::string TrajectoryWriter::keptPath() {
 void TrajectoryWriter::endUnfinished() noexcept {
   if (session_ && framesAppended_ > 0) {
     try {
-      if (transactionWhole_) session_->database.commit();
+      if (transactionWhole_) session_->database->commit();
       framesCommitted_ = transactionWhole_ ? framesAppended_ : framesCommitted_;
     } catch (const Error&) {
       // The run is over already for another reason, which is the one to tell; the frames since the last commit go.
     }
-    session_->database.rollback();
+    session_->database->rollback();
   }
   session_.reset();
   std::error_code ignored;
