@@ -17,6 +17,7 @@
 #include "commands/plan_scene.h"
 #include "commands/simulate_scene.h"
 #include "commands/study_scenes.h"
+#include "core/console.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "scene/suggestion.h"
@@ -221,12 +222,12 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
   }
   line.command();
-  if (std::fflush(stdout) != 0) throw Error(ErrorKind::output, "standard output", "cannot be written");
+  flushOutput();
   return 0;
 }
 
 int report(const Error& error) {
-  fmt::print(stderr, "{}\n", error.what());
+  show(stderr, "{}\n", error.what());
   if (error.kind() == ErrorKind::interrupted && interruptingSignal() == SIGTERM) return kTerminatedExit;
   return static_cast<int>(error.kind());
 }
@@ -243,7 +244,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return cradle::report({cradle::ErrorKind::limit, "", "out of memory; make the scene or the picture smaller"});
   } catch (const std::exception& error) {
-    fmt::print(stderr, "cradle: {}. This is a bug in cradle.\n", error.what());
+    cradle::show(stderr, "cradle: {}. This is a bug in cradle.\n", error.what());
     return 1;
   }
 }

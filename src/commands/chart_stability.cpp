@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 
+#include "core/console.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
@@ -63,7 +64,7 @@ void chartStability(const std::string& folder, const std::vector<std::string>& n
   requireOwnFolder(folder, "stability map", isMapResultName);
   makeFolder(folder);
   const bool drawsCharts = canDrawCharts();
-  if (!drawsCharts) fmt::print(stderr, "warning: gnuplot is missing: there will be tables, but no charts\n");
+  if (!drawsCharts) show(stderr, "warning: gnuplot is missing: there will be tables, but no charts\n");
   MapClock clock(maps, quiet);
   for (const MapEntry& entry : maps) {
     const StabilityMap map = entry.make(clock.of(entry));
@@ -72,7 +73,7 @@ void chartStability(const std::string& folder, const std::vector<std::string>& n
     writeTable(map, stem + ".csv");
     if (drawsCharts) drawChart(map, stem);
     clock.finish(entry);
-    fmt::print("{}: {}\n", map.name, map.title);
+    show("{}: {}\n", map.name, map.title);
   }
   if (!drawsCharts)
     throw Error(ErrorKind::output, folder,

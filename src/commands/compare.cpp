@@ -8,6 +8,7 @@
 #include <iterator>
 #include <vector>
 
+#include "core/console.h"
 #include "core/error.h"
 #include "core/output_path.h"
 #include "image/comparison_report.h"
@@ -88,14 +89,14 @@ std::string quotedForShell(const std::string& text) {
 }
 
 void printAcceptance(const std::vector<ComparedPicture>& pictures, const std::string& expected) {
-  fmt::print("To accept what you have looked at and found right:\n");
+  show("To accept what you have looked at and found right:\n");
   for (const ComparedPicture& picture : pictures) {
     if (picture.comparison.passes) continue;
     if (picture.actualPath.empty())
-      fmt::print("  rm {}\n", quotedForShell(picture.expectedPath));
+      show("  rm {}\n", quotedForShell(picture.expectedPath));
     else
-      fmt::print("  cp {} {}\n", quotedForShell(picture.actualPath),
-                 quotedForShell(picture.expectedPath.empty() ? expected : picture.expectedPath));
+      show("  cp {} {}\n", quotedForShell(picture.actualPath),
+           quotedForShell(picture.expectedPath.empty() ? expected : picture.expectedPath));
   }
 }
 
@@ -117,14 +118,13 @@ bool comparePictures(std::vector<ComparedPicture> pictures, const std::string& e
   for (ComparedPicture& picture : pictures) {
     comparePair(picture, limits);
     if (!picture.comparison.isSame)
-      fmt::print("{}: {}\n", picture.actualPath.empty() ? picture.name : picture.actualPath,
-                 picture.comparison.sentence);
+      show("{}: {}\n", picture.actualPath.empty() ? picture.name : picture.actualPath, picture.comparison.sentence);
     different += !picture.comparison.passes;
   }
-  fmt::print("{} of {} pictures differ\n", different, pictures.size());
+  show("{} of {} pictures differ\n", different, pictures.size());
   if (options.report) {
     writeComparisonReport(pictures, limits, *options.report);
-    fmt::print("{}\n", *options.report);
+    show("{}\n", *options.report);
   }
   if (different > 0) printAcceptance(pictures, expected);
   return different == 0;
@@ -135,7 +135,7 @@ bool compareTrajectoryFiles(const std::string& expected, const std::string& actu
     throw Error(ErrorKind::usage, "--tolerance", fmt::format("found {}; allowed are numbers >= 0", tolerance));
   const TrajectoryComparison comparison =
       compareTrajectories(TrajectoryReader(expected), TrajectoryReader(actual), tolerance);
-  fmt::print("{}\n", comparison.describe());
+  show("{}\n", comparison.describe());
   return comparison.equal;
 }
 
@@ -158,7 +158,7 @@ bool compareAny(const std::string& expected, const std::string& actual, const Co
 void compareResults(const std::string& expected, const std::string& actual, const CompareOptions& options) {
   if (!compareAny(expected, actual, options))
     throw Error(ErrorKind::different, "", fmt::format("{} differs from {}", actual, expected));
-  fmt::print("the same\n");
+  show("the same\n");
 }
 
 }  // namespace cradle

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/console.h"
 #include "core/error.h"
 #include "mesh/load_mesh.h"
 #include "mesh/mass_properties.h"
@@ -60,18 +61,18 @@ nlohmann::ordered_json jsonOf(const Inspection& inspection) {
 void printText(const Inspection& inspection) {
   const Model& model = inspection.loaded.model;
   const auto triple = [](const Vec3& v) { return fmt::format("{:.9g} {:.9g} {:.9g}", v.x(), v.y(), v.z()); };
-  fmt::print("{}: {} vertices, {} triangles, {}, {}\n", model.name, model.solid.vertices.size(),
-             model.solid.triangles.size(), inspection.report.isSolid ? "solid" : "not a solid", inspection.shape);
-  fmt::print("  size            {}\n", triple(inspection.size));
+  show("{}: {} vertices, {} triangles, {}, {}\n", model.name, model.solid.vertices.size(), model.solid.triangles.size(),
+       inspection.report.isSolid ? "solid" : "not a solid", inspection.shape);
+  show("  size            {}\n", triple(inspection.size));
   if (inspection.report.isSolid) {
-    fmt::print("  volume          {:.9g}\n", inspection.properties.mass);
-    fmt::print("  center of mass  {}\n", triple(inspection.properties.centerOfMass));
+    show("  volume          {:.9g}\n", inspection.properties.mass);
+    show("  center of mass  {}\n", triple(inspection.properties.centerOfMass));
     for (int row = 0; row < 3; ++row)
-      fmt::print("  {}  {}\n", row == 0 ? "inertia tensor" : "              ",
-                 triple(inspection.properties.inertiaTensor.row(row)));
+      show("  {}  {}\n", row == 0 ? "inertia tensor" : "              ",
+           triple(inspection.properties.inertiaTensor.row(row)));
   }
-  for (const std::string& problem : inspection.report.problems) fmt::print("  problem: {}\n", problem);
-  for (const std::string& note : inspection.loaded.notes) fmt::print("  note: {}\n", note);
+  for (const std::string& problem : inspection.report.problems) show("  problem: {}\n", problem);
+  for (const std::string& note : inspection.loaded.notes) show("  note: {}\n", note);
 }
 
 }  // namespace
@@ -90,7 +91,9 @@ void inspectMesh(const std::string& path, double scale, bool asJson) {
     else
       printText(inspection);
   }
-  if (asJson) fmt::print("{}\n", nlohmann::ordered_json{{"objects", list}}.dump(1));
+  if (asJson)
+    show("{}\n",
+         nlohmann::ordered_json{{"objects", list}}.dump(1, ' ', true, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace cradle

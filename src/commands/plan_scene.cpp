@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/console.h"
 #include "simulate/assembly.h"
 #include "simulate/plan/plan_text.h"
 #include "simulate/run.h"
@@ -56,10 +57,9 @@ void printPlan(const std::string& scenePath, const SceneOptions& options, bool a
   for (const std::string& warning : run.startWarnings()) warn(warning);
   const Plan& plan = run.plan();
   if (asJson)
-    fmt::print("{}\n", jsonOf(plan, scene, scenePath).dump(2));
+    show("{}\n", jsonOf(plan, scene, scenePath).dump(2, ' ', true, nlohmann::json::error_handler_t::replace));
   else
-    fmt::print("{}: accuracy {:.3g} asked, {}\n{}\n", scenePath, plan.accuracy, promiseOfAll(plan),
-               describe(plan, scene));
+    show("{}: accuracy {:.3g} asked, {}\n{}\n", scenePath, plan.accuracy, promiseOfAll(plan), describe(plan, scene));
 }
 
 }  // namespace cradle

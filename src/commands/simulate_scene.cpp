@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "core/console.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
@@ -114,7 +115,7 @@ void printAchievedAccuracy(const Scene& scene, const std::string& output, bool q
       progress.update(done);
     });
     progress.endLine();
-    fmt::print("{}\n", describe(accuracy));
+    show("{}\n", describe(accuracy));
   } catch (const Error& error) {
     throw Error(error.kind(), "", fmt::format("{}; {} is whole, but its accuracy is not known", error.what(), output));
   }
@@ -123,7 +124,7 @@ void printAchievedAccuracy(const Scene& scene, const std::string& output, bool q
 }  // namespace
 
 void warn(const std::string& warning) {
-  fmt::print(stderr, "warning: {}\n", warning);
+  show(stderr, "warning: {}\n", warning);
 }
 
 Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
@@ -186,9 +187,8 @@ void checkScene(const std::string& scenePath, const SceneOptions& options) {
     for (const std::string& warning : assembly.warnings) warn(warning);
   const auto dynamic = std::count_if(scene.bodies.begin(), scene.bodies.end(),
                                      [](const Body& body) { return body.motion == Motion::dynamic; });
-  fmt::print("{}: \"{}\" is in order: {} ({} dynamic){}; {} s, {} frames\n", scenePath, scene.name,
-             counted(scene.bodies.size(), "body", "bodies"), dynamic, linksOf(scene), scene.duration,
-             lastFrame(scene) + 1);
+  show("{}: \"{}\" is in order: {} ({} dynamic){}; {} s, {} frames\n", scenePath, scene.name,
+       counted(scene.bodies.size(), "body", "bodies"), dynamic, linksOf(scene), scene.duration, lastFrame(scene) + 1);
 }
 
 }  // namespace cradle

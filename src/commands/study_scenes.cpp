@@ -15,6 +15,7 @@
 #include <set>
 
 #include "commands/simulate_scene.h"
+#include "core/console.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
@@ -81,34 +82,33 @@ std::string cheapest(const std::vector<StudyRow>& rows, const StudyMethod& metho
 
 void printFindings(const NamedScene& named, const Reference& reference, const std::vector<StudyMethod>& methods,
                    const std::vector<StudyRow>& rows) {
-  fmt::print("{}: reference {}; {}\n", named.origin.scene, reference.madeBy, reference.confirmation);
+  show("{}: reference {}; {}\n", named.origin.scene, reference.madeBy, reference.confirmation);
   if (!(reference.uncertainty <= kTrustedUncertainty))
-    fmt::print("  THE REFERENCE IS UNCERTAIN: errors below {:.1e} mean nothing\n", reference.uncertainty);
-  fmt::print("  {:<20}{:>12}   CPU s a simulated s for error <= {:.0e}{:>12.0e}{:>12.0e}\n", "", "least error",
-             kWantedErrors[0], kWantedErrors[1], kWantedErrors[2]);
+    show("  THE REFERENCE IS UNCERTAIN: errors below {:.1e} mean nothing\n", reference.uncertainty);
+  show("  {:<20}{:>12}   CPU s a simulated s for error <= {:.0e}{:>12.0e}{:>12.0e}\n", "", "least error",
+       kWantedErrors[0], kWantedErrors[1], kWantedErrors[2]);
   for (const StudyMethod& method : methods) {
     if (!named.scene.missingIn(method).empty()) continue;
     double least = std::numeric_limits<double>::infinity();
     for (const StudyRow& row : rows)
       if (row.method == method.name && row.status == RunStatus::ok) least = std::min(least, row.error);
-    fmt::print("  {:<20}{:>12}{:>41}{:>12}{:>12}\n", method.name,
-               std::isfinite(least) ? fmt::format("{:.1e}", least) : "-", cheapest(rows, method, kWantedErrors[0]),
-               cheapest(rows, method, kWantedErrors[1]), cheapest(rows, method, kWantedErrors[2]));
+    show("  {:<20}{:>12}{:>41}{:>12}{:>12}\n", method.name, std::isfinite(least) ? fmt::format("{:.1e}", least) : "-",
+         cheapest(rows, method, kWantedErrors[0]), cheapest(rows, method, kWantedErrors[1]),
+         cheapest(rows, method, kWantedErrors[2]));
   }
   std::map<std::string, std::string> missing;  // by engine
   for (const StudyMethod& method : methods)
     if (const std::string what = named.scene.missingIn(method); !what.empty()) missing[method.engine()] = what;
-  for (const auto& [engine, what] : missing) fmt::print("  {} is left out: it does not have {}\n", engine, what);
+  for (const auto& [engine, what] : missing) show("  {} is left out: it does not have {}\n", engine, what);
   for (const StudyRow& row : rows)
-    if (row.status == RunStatus::failed) fmt::print("  {} at {}: {}\n", row.method, row.setting, row.message);
+    if (row.status == RunStatus::failed) show("  {} at {}: {}\n", row.method, row.setting, row.message);
 }
 
 /// How each of the other engines' methods is set up.
 void printPeers(const std::vector<StudyMethod>& methods) {
   for (const StudyMethod& method : methods)
     if (method.peer)
-      fmt::print("{:<20}{} {}: {}\n", method.name, method.peer->engine, method.peer->version,
-                 method.peer->configuration);
+      show("{:<20}{} {}: {}\n", method.name, method.peer->engine, method.peer->version, method.peer->configuration);
 }
 
 /// A study of some scenes under way, from where an interrupted one stopped.
@@ -123,11 +123,11 @@ class Study {
         references_(pathOf(kReferencesName), kReferenceColumns, earlier_.referenceBytes),
         progress_("Studying", "methods", std::ssize(scenes) * turnsOfScene(), quiet) {
     if (peers().empty())
-      fmt::print(stderr, "note: built without other engines (CMake: CRADLE_PEERS); only our own methods run\n");
-    if (!drawsCharts_) fmt::print(stderr, "warning: gnuplot is missing: there will be a table, but no charts\n");
+      show(stderr, "note: built without other engines (CMake: CRADLE_PEERS); only our own methods run\n");
+    if (!drawsCharts_) show(stderr, "warning: gnuplot is missing: there will be a table, but no charts\n");
     if (!earlier_.rows.empty())
-      fmt::print(stderr, "note: going on after the {} rows of {}; remove it to start over\n", earlier_.rows.size(),
-                 partPath(pathOf(kTableName)));
+      show(stderr, "note: going on after the {} rows of {}; remove it to start over\n", earlier_.rows.size(),
+           partPath(pathOf(kTableName)));
   }
 
   /// A scene without a reference, or a chart that cannot be drawn, is a fault to tell in the end: the rest is done.
@@ -210,7 +210,7 @@ class Study {
 
   void note(const Error& error) {
     progress_.endLine();
-    fmt::print(stderr, "{}\n", error.what());
+    show(stderr, "{}\n", error.what());
     if (!fault_) fault_ = error;
   }
 

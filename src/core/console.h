@@ -1,0 +1,33 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace cradle {
+
+/// `text` with nothing that a terminal obeys: control characters (save line feeds), and bytes that are no UTF-8, as
+/// \x1b. Names in strangers' files may hold such.
+std::string printable(std::string_view text);
+
+/// Writes to standard output or standard error what printable() gives of it; nothing more once nobody reads there.
+/// Throws Error(output) if standard output cannot be written.
+void showText(std::FILE* file, std::string_view text);
+
+/// As fmt::print, by showText.
+template <class... Arguments>
+void show(std::FILE* file, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  showText(file, fmt::format(format, std::forward<Arguments>(arguments)...));
+}
+template <class... Arguments>
+void show(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  showText(stdout, fmt::format(format, std::forward<Arguments>(arguments)...));
+}
+
+/// What was printed has left the program. Throws as showText does.
+void flushOutput();
+
+}  // namespace cradle
