@@ -2,12 +2,28 @@
 
 #include "core/csv_field.h"
 
+#include <string_view>
+
 namespace cradle {
+namespace {
+
+constexpr std::string_view kFormulaStarts = "=+-@\t\r";  // of spreadsheets
+
+bool looksLikeFormula(std::string_view text) {
+  return !text.empty() && kFormulaStarts.find(text[0]) != std::string_view::npos;
+}
+
+std::string withoutApostrophe(const std::string& field) {
+  return field.starts_with('\'') && looksLikeFormula(field.substr(1)) ? field.substr(1) : field;
+}
+
+}  // namespace
 
 std::string csvField(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  const std::string plain = looksLikeFormula(text) ? "'" + text : text;
+  if (plain.find_first_of(",\"\r\n") == std::string::npos) return plain;
   std::string field = "\"";
-  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  for (const char c : plain) field += c == '"' ? std::string("\"\"") : std::string(1, c);
   return field + "\"";
 }
 
@@ -23,9 +39,12 @@ CsvLines csvLines(const std::string& table) {
       isQuoted = !isQuoted;
     } else if (isQuoted || (c != ',' && c != '\n')) {
       line.back() += c;
-    } else if (c == ',') {
-      line.emplace_back();
     } else {
+      line.back() = withoutApostrophe(line.back());
+      if (c == ',') {
+        line.emplace_back();
+        continue;
+      }
       found.lines.push_back(std::move(line));
       found.bytes = i + 1;
       line.assign(1, "");

@@ -21,6 +21,7 @@ void noteInterruptions() {
   std::signal(SIGINT, note);
   std::signal(SIGTERM, note);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 int interruptingSignal() {

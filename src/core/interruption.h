@@ -3,7 +3,8 @@
 namespace cradle {
 
 /// From now on SIGINT and SIGTERM are noted instead of ending the program at once, so that files are left in order;
-/// a second signal ends it at once. SIGPIPE is ignored: a broken pipe shows as a failed write.
+/// a second signal ends it at once. SIGPIPE and SIGXFSZ are ignored: a broken pipe, or a file beyond the shell's limit
+/// (ulimit -f), shows as a failed write.
 void noteInterruptions();
 
 /// The signal that was noted (SIGINT or SIGTERM), or 0.

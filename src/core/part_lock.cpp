@@ -36,7 +36,12 @@ bool isTheOneAt(const std::string& path, const struct stat& file) {
   return lstat(path.c_str(), &there) == 0 && there.st_dev == file.st_dev && there.st_ino == file.st_ino;
 }
 
-int openLocked(const std::string& part) {
+}  // namespace
+
+int openLockedPart(const std::string& path) {
+  const std::string part = partPath(path);
+  requireWritableFile(path);
+  requireWritableFile(part);
   for (;;) {
     const int file = open(part.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     const auto fail = [&](const std::string& what) {
@@ -51,20 +56,22 @@ int openLocked(const std::string& part) {
     struct flock lock = writeLock();
     const bool isTaken = fcntl(file, F_SETLK, &lock) != 0 && (errno == EACCES || errno == EAGAIN);
     if (isTaken) fail(fmt::format("is being written by {}; wait for its end or choose another name", holderOf(file)));
-    if (isTheOneAt(part, status)) {
-      if (ftruncate(file, 0) != 0) fail(fmt::format("cannot be written: {}", std::strerror(errno)));
-      return file;
-    }
+    if (isTheOneAt(part, status)) return file;
     close(file);  // its writer has just given it its name, or removed it: another is to be made
   }
 }
 
-}  // namespace
+void flushToDisk(int file, const std::string& path) {
+  // What is no disk has nothing to wait for.
+  if (fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP) return;
+  throw Error(ErrorKind::output, path, fmt::format("cannot be written: {}", std::strerror(errno)));
+}
 
-PartLock::PartLock(const std::string& path) : path_(path), part_(partPath(path)) {
-  requireWritableFile(path_);
-  requireWritableFile(part_);
-  file_ = openLocked(part_);
+PartLock::PartLock(const std::string& path) : path_(path), part_(partPath(path)), file_(openLockedPart(path)) {
+  if (ftruncate(file_, 0) == 0) return;
+  const int cause = errno;
+  close(file_);
+  throw Error(ErrorKind::output, part_, fmt::format("cannot be written: {}", std::strerror(cause)));
 }
 
 PartLock::~PartLock() {
@@ -73,6 +80,7 @@ PartLock::~PartLock() {
 }
 
 void PartLock::finish() {
+  flushToDisk(file_, path_);
   requireWritableFile(path_);  // what stands in the way may have changed; rename itself would replace a device
   if (std::rename(part_.c_str(), path_.c_str()) != 0)
     throw Error(ErrorKind::output, path_, fmt::format("cannot be put in place: {}", std::strerror(errno)));

@@ -27,6 +27,13 @@ class PartLock {
   bool isFinished_ = false;
 };
 
+/// The part of `path` as it is, or new and empty, open for reading and writing, and locked against other runs until it
+/// is closed. Throws as PartLock does.
+int openLockedPart(const std::string& path);
+
+/// What is on the disk outlives a loss of power. Throws Error(output), naming `path`.
+void flushToDisk(int file, const std::string& path);
+
 /// "process 4711", that holds a lock on the file at `path`, or "another process".
 std::string lockHolderOf(const std::string& path);
 

@@ -1,54 +1,68 @@
 #include "study/growing_table.h"
 
+#include <unistd.h>
+
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <numeric>
 #include <utility>
 
 #include "core/error.h"
 #include "core/output_path.h"
+#include "core/part_lock.h"
 
 namespace cradle {
 
-GrowingTable::GrowingTable(const std::string& path, const std::string& columns, std::size_t keptBytes) : path_(path) {
-  const std::string part = partPath(path_);
-  requireWritableFile(path_);
-  requireWritableFile(part);
-  std::error_code failed;
-  if (keptBytes > 0) std::filesystem::resize_file(part, keptBytes, failed);
-  if (failed) throw Error(ErrorKind::output, part, failed.message());
-  if (keptBytes == 0) std::remove(part.c_str());
-  file_ = std::fopen(part.c_str(), "ab");  // at the end, wherever that is
-  if (file_ == nullptr) fail();
-  if (keptBytes == 0) append(columns);
+GrowingTable::GrowingTable(const std::string& path, const std::string& columns, std::size_t keptBytes)
+    : path_(path), file_(openLockedPart(path)) {
+  try {
+    cutTo(keptBytes);
+    if (keptBytes == 0) append(columns);
+  } catch (...) {
+    close(file_);
+    throw;
+  }
 }
 
 GrowingTable::~GrowingTable() {
-  if (file_ != nullptr) std::fclose(file_);
+  if (file_ >= 0) close(file_);
 }
 
 void GrowingTable::append(const std::string& line) {
-  if (std::fwrite(line.data(), 1, line.size(), file_) != line.size() || std::fflush(file_) != 0) fail();
+  for (std::size_t written = 0; written < line.size();) {
+    const ssize_t length = write(file_, line.data() + written, line.size() - written);
+    if (length < 0 && errno != EINTR) fail();
+    if (length > 0) written += static_cast<std::size_t>(length);
+  }
 }
 
 void GrowingTable::replaceLast(const std::vector<std::string>& lines) {
-  const std::string part = partPath(path_);
-  std::ifstream file(part, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::string text = wholeText();
   std::size_t kept = text.size();
   for (std::size_t i = 0; i < lines.size(); ++i) kept = text.rfind('\n', kept - 2) + 1;
-  std::error_code failed;
-  std::filesystem::resize_file(part, kept, failed);
-  if (failed) throw Error(ErrorKind::output, part, failed.message());
+  cutTo(kept);
   append(std::accumulate(lines.begin(), lines.end(), std::string()));
 }
 
 void GrowingTable::complete() {
-  std::FILE* file = std::exchange(file_, nullptr);
-  if (std::fclose(file) != 0 || std::rename(partPath(path_).c_str(), path_.c_str()) != 0) fail();
+  flushToDisk(file_, path_);
+  if (std::rename(partPath(path_).c_str(), path_.c_str()) != 0) fail();
+  close(std::exchange(file_, -1));
+}
+
+std::string GrowingTable::wholeText() const {
+  const off_t size = lseek(file_, 0, SEEK_END);
+  if (size < 0) fail();
+  std::string text(static_cast<std::size_t>(size), '\0');
+  if (pread(file_, text.data(), text.size(), 0) != size) fail();
+  return text;
+}
+
+/// What is appended comes after the first `bytes`.
+void GrowingTable::cutTo(std::size_t bytes) {
+  const off_t end = static_cast<off_t>(bytes);
+  if (ftruncate(file_, end) != 0 || lseek(file_, end, SEEK_SET) != end) fail();
 }
 
 void GrowingTable::fail() const {

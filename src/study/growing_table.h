@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -11,7 +10,7 @@ namespace cradle {
 class GrowingTable {
  public:
   /// Begins FILE.part with `columns`, or goes on after its first `keptBytes`, if that is not 0. Throws Error(output) if
-  /// it cannot be written.
+  /// it cannot be written, or another run writes it.
   GrowingTable(const std::string& path, const std::string& columns, std::size_t keptBytes = 0);
   ~GrowingTable();
   GrowingTable(const GrowingTable&) = delete;
@@ -25,9 +24,11 @@ class GrowingTable {
 
  private:
   [[noreturn]] void fail() const;
+  std::string wholeText() const;
+  void cutTo(std::size_t bytes);
 
   std::string path_;
-  std::FILE* file_ = nullptr;
+  int file_ = -1;  // descriptor; locked: no other of that file may be closed
 };
 
 }  // namespace cradle
