@@ -6,6 +6,7 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(SQLite3 3.40 REQUIRED)
 find_package(Threads REQUIRED)
+find_package(PNG 1.6 REQUIRED)
 find_library(LIBDEFLATE deflate REQUIRED)
 if(CRADLE_TESTS OR NOT CRADLE_EGL)  # the tests hold one context against the other
   find_library(OSMESA OSMesa REQUIRED)

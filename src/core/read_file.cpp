@@ -10,15 +10,21 @@
 
 namespace cradle {
 
-std::string readFile(const std::string& path, std::uint64_t limit, ErrorKind kind) {
+void requireRegularFile(const std::string& path, ErrorKind kind) {
   const auto fail = [&](const std::string& what) { throw Error(kind, path, what); };
-  constexpr double kMegabyte = 1e6;
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) fail("no such file; check the path");
   if (error) fail("cannot be read: " + error.message());
   if (std::filesystem::is_directory(status)) fail("is a directory; name a file in it");
   if (!std::filesystem::is_regular_file(status)) fail("is not a regular file; write its content into one");
+}
+
+std::string readFile(const std::string& path, std::uint64_t limit, ErrorKind kind) {
+  const auto fail = [&](const std::string& what) { throw Error(kind, path, what); };
+  constexpr double kMegabyte = 1e6;
+  std::error_code error;
+  requireRegularFile(path, kind);
 
   const std::uint64_t size = std::filesystem::file_size(path, error);
   if (error) fail("cannot be read: " + error.message());

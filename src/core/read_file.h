@@ -8,8 +8,12 @@
 
 namespace cradle {
 
-/// All bytes of a regular file. Throws an Error of `kind` that says what to do if it is missing, a folder, a pipe or
-/// device (which may never end), unreadable, empty, or larger than `limit` bytes; then nothing of it is read.
+/// Throws an Error of `kind` that says what to do if the file is missing, a folder, or a pipe or device (which may
+/// never end).
+void requireRegularFile(const std::string& path, ErrorKind kind);
+
+/// All bytes of a regular file. Throws as requireRegularFile does, and if it is unreadable, empty, or larger than
+/// `limit` bytes; then nothing of it is read.
 std::string readFile(const std::string& path, std::uint64_t limit, ErrorKind kind);
 
 /// Whether what `path` leads to, through all links, is below `folder`, which has none; nothing need be there.

@@ -86,15 +86,10 @@ unsigned int crc32(unsigned char* data, int size) {
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STBI_WRITE_NO_STDIO
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_PNG
-#define STBI_MAX_DIMENSIONS 16384
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#include <stb/stb_image.h>
 #include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
 
@@ -125,17 +120,6 @@ void writePng(const Image& image, const std::string& path) {
   const std::vector<std::uint8_t> bytes = encodePng(image);
   file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   file.complete();
-}
-
-Image readPng(const std::string& path) {
-  int width = 0, height = 0, channels = 0;
-  const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
-      stbi_load(path.c_str(), &width, &height, &channels, 3), stbi_image_free);
-  if (!pixels)
-    throw Error(ErrorKind::usage, path, std::string("is not a picture that can be read: ") + stbi_failure_reason());
-  Image image(width, height);
-  std::memcpy(image.pixels.data(), pixels.get(), image.pixels.size());
-  return image;
 }
 
 }  // namespace cradle

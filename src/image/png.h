@@ -16,7 +16,15 @@ std::vector<std::uint8_t> encodePng(const Image& image);
 void writePng(const Image& image, const std::string& path);
 
 /// Reads any PNG; 16 bits, grey and palettes become 8-bit RGB, transparency is dropped. Throws Error(usage) if the file
-/// is missing, no PNG, damaged, or larger than 16384 pixels a side.
+/// is missing, no PNG, damaged (all checksums are held against it), or larger than 16384 pixels a side.
 Image readPng(const std::string& path);
+
+struct PictureSize {
+  int width = 0, height = 0;  // pixels
+  bool operator==(const PictureSize&) const = default;
+};
+
+/// Of the picture that readPng would read; its rows are not looked at. Throws as readPng does.
+PictureSize readPngSize(const std::string& path);
 
 }  // namespace cradle

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/output_path.h"
@@ -70,12 +71,12 @@ bool speaksOfFullDisk(const std::string& text) {
 
 /// Number of pictures in a film, or -1 if it is no film.
 long countFrames(const std::string& path) {
-  ChildProcess ffprobe({"ffprobe", "-v", "error", "-select_streams", "v:0", "-count_packets", "-show_entries",
-                        "stream=nb_read_packets", "-of", "csv=p=0", "file:" + path});
-  if (ffprobe.finish() != 0) return -1;
-  const std::string text = ffprobe.standardOutput();
-  long count = -1;
-  std::from_chars(text.data(), text.data() + text.size(), count);
+  ChildProcess reader(
+      {"ffmpeg", "-v", "error", "-i", "file:" + path, "-map", "0:v:0", "-c", "copy", "-f", "framecrc", "-"});
+  if (reader.finish() != 0) return -1;
+  std::istringstream lines(reader.standardOutput());
+  long count = 0;
+  for (std::string line; std::getline(lines, line);) count += !line.starts_with('#');
   return count;
 }
 
@@ -166,15 +167,17 @@ long encodeFolder(const std::string& folder, const std::string& path, double fra
                   const std::function<void(long done, long total)>& progress) {
   const auto frames = findFrames(folder);
   requireNoGap(frames, folder);
-  const Image first = readPng(frames.begin()->second);
-  VideoEncoder encoder(path, {first.width, first.height, framesPerSecond});
+  const PictureSize size = readPngSize(frames.begin()->second);
+  for (const auto& [number, name] : frames)
+    if (const PictureSize other = readPngSize(name); other != size)
+      throw Error(ErrorKind::usage, name,
+                  fmt::format("is {}x{} pixels, the first picture {}x{}; all must have one size", other.width,
+                              other.height, size.width, size.height));
+  VideoEncoder encoder(path, {size.width, size.height, framesPerSecond});
   long done = 0;
   for (const auto& [number, name] : frames) {
     const Image image = readPng(name);
-    if (image.width != first.width || image.height != first.height)
-      throw Error(ErrorKind::usage, name,
-                  fmt::format("is {}x{} pixels, the first picture {}x{}; all must have one size", image.width,
-                              image.height, first.width, first.height));
+    if (PictureSize{image.width, image.height} != size) throw Error(ErrorKind::usage, name, "has changed its size");
     encoder.add(image);
     progress(++done, static_cast<long>(frames.size()));
   }

@@ -1,0 +1,116 @@
+// The only unit that sees libpng, which holds each part of a file against its checksum. (stb_image, which has no
+// dependency, checks none, and takes three times the memory of a picture.)
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <cerrno>
+#include <csetjmp>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "core/error.h"
+#include "core/read_file.h"
+#include "image/png.h"
+
+namespace cradle {
+namespace {
+
+constexpr int kMostPixels = 16384;     // a side
+constexpr png_uint_32 kAnySize = PNG_UINT_31_MAX;
+
+/// A file that is being read. libpng tells of a fault by a jump: no function between that and its target has an object
+/// with a destructor.
+class PngReading {
+ public:
+  explicit PngReading(const std::string& path) : path_(path) {
+    requireRegularFile(path, ErrorKind::usage);
+    file_.reset(std::fopen(path.c_str(), "rb"));
+    if (!file_) throw Error(ErrorKind::usage, path, std::string("cannot be opened: ") + std::strerror(errno));
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, noteFault, [](png_structp, png_const_charp) {});
+    info_ = png_ == nullptr ? nullptr : png_create_info_struct(png_);
+    if (info_ == nullptr) {
+      png_destroy_read_struct(&png_, &info_, nullptr);
+      throw std::bad_alloc();
+    }
+  }
+  ~PngReading() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  PngReading(const PngReading&) = delete;
+  PngReading& operator=(const PngReading&) = delete;
+
+  /// All up to the rows. Returns the size in pixels.
+  PictureSize readHeader() {
+    step([this] {
+      png_set_read_fn(png_, this, readBytes);
+      png_set_user_limits(png_, kAnySize, kAnySize);  // told below, in words
+      png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+      png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);  // of texts and profiles, only the checksums
+      png_set_benign_errors(png_, 0);
+      png_read_info(png_, info_);
+    });
+    const png_uint_32 width = png_get_image_width(png_, info_), height = png_get_image_height(png_, info_);
+    if (width > kMostPixels || height > kMostPixels)
+      throw Error(ErrorKind::usage, path_,
+                  fmt::format("is {}x{} pixels; allowed are 1..{} a side", width, height, kMostPixels));
+    return {static_cast<int>(width), static_cast<int>(height)};
+  }
+
+  void readRows(Image& image) {
+    std::vector<png_bytep> rows;
+    for (int y = 0; y < image.height; ++y) rows.push_back(image.at(0, y));
+    step([this, &rows] {
+      png_set_strip_16(png_);
+      png_set_expand_gray_1_2_4_to_8(png_);
+      png_set_palette_to_rgb(png_);
+      png_set_gray_to_rgb(png_);
+      png_set_strip_alpha(png_);
+      png_set_interlace_handling(png_);
+      png_read_update_info(png_, info_);
+      png_read_image(png_, rows.data());
+      png_read_end(png_, nullptr);
+    });
+  }
+
+ private:
+  template <class Step>
+  void step(Step calls) {
+    if (setjmp(png_jmpbuf(png_)) == 0)
+      calls();
+    else
+      throw Error(ErrorKind::usage, path_, fmt::format("is not a picture that can be read: {}", fault_));
+  }
+
+  [[noreturn]] static void noteFault(png_structp png, png_const_charp fault) {
+    char* kept = static_cast<PngReading*>(png_get_error_ptr(png))->fault_;
+    std::strncpy(kept, fault, sizeof(fault_) - 1);
+    png_longjmp(png, 1);
+  }
+
+  static void readBytes(png_structp png, png_bytep bytes, std::size_t count) {
+    std::FILE* file = static_cast<PngReading*>(png_get_io_ptr(png))->file_.get();
+    if (std::fread(bytes, 1, count, file) != count) png_error(png, "it ends too early");
+  }
+
+  std::string path_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_{nullptr, std::fclose};
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+  char fault_[120] = "";
+};
+
+}  // namespace
+
+PictureSize readPngSize(const std::string& path) {
+  return PngReading(path).readHeader();
+}
+
+Image readPng(const std::string& path) {
+  PngReading reading(path);
+  const PictureSize size = reading.readHeader();
+  Image image(size.width, size.height);
+  reading.readRows(image);
+  return image;
+}
+
+}  // namespace cradle
