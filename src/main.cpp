@@ -18,6 +18,7 @@
 #include "commands/simulate_scene.h"
 #include "commands/study_scenes.h"
 #include "core/console.h"
+#include "core/crash.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "scene/suggestion.h"
@@ -232,11 +233,21 @@ int report(const Error& error) {
   return static_cast<int>(error.kind());
 }
 
+/// A thread that cannot be started for lack of memory, or a bug.
+int reportUnforeseen(const std::exception& error) {
+  const auto* ofSystem = dynamic_cast<const std::system_error*>(&error);
+  if (ofSystem != nullptr && ofSystem->code() == std::errc::resource_unavailable_try_again)
+    return report({ErrorKind::limit, "", "no memory or threads are left; make the scene or the picture smaller"});
+  show(stderr, "cradle: {}. This is a bug in cradle.\n", error.what());
+  return 1;
+}
+
 }  // namespace
 }  // namespace cradle
 
 int main(int argc, char** argv) {
   cradle::noteInterruptions();
+  cradle::noteCrashes();
   try {
     return cradle::run(argc, argv);
   } catch (const cradle::Error& error) {
@@ -244,7 +255,6 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return cradle::report({cradle::ErrorKind::limit, "", "out of memory; make the scene or the picture smaller"});
   } catch (const std::exception& error) {
-    cradle::show(stderr, "cradle: {}. This is a bug in cradle.\n", error.what());
-    return 1;
+    return cradle::reportUnforeseen(error);
   }
 }

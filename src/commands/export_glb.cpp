@@ -51,7 +51,7 @@ class GlbExport {
   GlbExport(const TrajectoryReader& reader, const std::string& path)
       : reader_(reader),
         path_(path),
-        scene_(sceneOf(reader.header())),
+        scene_(sceneOf(reader)),
         file_(scene_.name),
         meshes_(reader.header(), scene_, file_) {}
 

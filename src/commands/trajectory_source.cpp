@@ -23,10 +23,45 @@ ModelSource modelsOf(const TrajectoryHeader& header) {
   };
 }
 
+Scene parsedScene(const TrajectoryReader& trajectory) {
+  const TrajectoryHeader& header = trajectory.header();
+  try {
+    return parseScene(header.scene, header.scenePath, modelsOf(header)).scene;
+  } catch (const Error& error) {
+    const std::string faults = error.what();
+    throw Error(ErrorKind::usage, trajectory.path(),
+                "holds a scene that cannot be read: " + faults.substr(0, faults.find('\n')));
+  }
+}
+
+/// Name of the model that a body has; empty if it has another shape.
+std::string modelOf(const Body& body, const Scene& scene) {
+  const auto* shape = std::get_if<ModelShape>(&body.shape);
+  return shape == nullptr ? "" : scene.models[static_cast<std::size_t>(shape->model)].name;
+}
+
+std::string modelOf(const BodyRecord& body, const TrajectoryHeader& header) {
+  return body.mesh < 0 ? "" : header.meshes[static_cast<std::size_t>(body.mesh)].name;
+}
+
+/// Anyone can write both.
+void requireSameBodies(const Scene& scene, const TrajectoryReader& trajectory) {
+  const TrajectoryHeader& header = trajectory.header();
+  const auto fits = [&](const Body& body, const BodyRecord& record) {
+    return body.name == record.name && (body.motion == Motion::dynamic) == record.isDynamic &&
+           modelOf(body, scene) == modelOf(record, header);
+  };
+  if (std::equal(scene.bodies.begin(), scene.bodies.end(), header.bodies.begin(), header.bodies.end(), fits)) return;
+  throw Error(ErrorKind::usage, trajectory.path(),
+              "is damaged: its bodies are not those of its scene; make it again with `cradle simulate`");
+}
+
 }  // namespace
 
-Scene sceneOf(const TrajectoryHeader& header) {
-  return parseScene(header.scene, header.scenePath, modelsOf(header)).scene;
+Scene sceneOf(const TrajectoryReader& trajectory) {
+  Scene scene = parsedScene(trajectory);
+  requireSameBodies(scene, trajectory);
+  return scene;
 }
 
 TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool quiet, const std::string& assetRoot)
@@ -42,7 +77,7 @@ TrajectorySource::TrajectorySource(const std::string& sceneOrTrajectory, bool qu
 
 void TrajectorySource::open(TrajectoryReader trajectory) {
   reader_.emplace(std::move(trajectory));
-  scene_ = sceneOf(reader_->header());
+  scene_ = sceneOf(*reader_);
   frameCount_ = reader_->frameCount();
 }
 

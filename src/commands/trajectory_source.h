@@ -12,8 +12,9 @@
 
 namespace cradle {
 
-/// The scene as a trajectory holds it: its text, with the meshes of the file. Throws as loading a scene does.
-Scene sceneOf(const TrajectoryHeader& header);
+/// The scene as a trajectory holds it: its text, with the meshes of the file. Throws Error(usage) if it cannot be read,
+/// or has other bodies than the file.
+Scene sceneOf(const TrajectoryReader& trajectory);
 
 /// The trajectory that a command draws: a file; or a scene to be simulated, into a file without a name that goes with
 /// the object, or beside the drawing.

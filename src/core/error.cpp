@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "core/crash.h"
+
 namespace cradle {
 
 Error::Error(ErrorKind kind, const std::string& where, const std::string& what)
@@ -11,6 +13,7 @@ Error::Error(ErrorKind kind, const std::string& where, const std::string& what)
 void failCheck(const char* condition, const char* file, int line) {
   std::fprintf(stderr, "cradle: internal check failed: %s (%s:%d). This is a bug in cradle, not in your scene.\n",
                condition, file, line);
+  removeRemains();
   std::_Exit(1);
 }
 

@@ -31,6 +31,11 @@ void requireUsableName(const std::string& path) {
                 fmt::format("has a path of {} bytes; at most {} are allowed", path.size(), kLongestPath));
 }
 
+/// Whether files can be made in a folder.
+bool mayBeWrittenTo(const fs::path& folder) {
+  return access(folder.c_str(), W_OK | X_OK) == 0;
+}
+
 }  // namespace
 
 void requireWritableFile(const std::string& path) {
@@ -46,7 +51,7 @@ void requireWritableFile(const std::string& path) {
   const std::string folder = parent.empty() ? "." : parent.string();
   if (!fs::is_directory(folder, failed))
     throw Error(ErrorKind::output, path, "the folder " + folder + " does not exist; make it first");
-  if (access(folder.c_str(), W_OK | X_OK) != 0)
+  if (!mayBeWrittenTo(folder))
     throw Error(ErrorKind::output, path, "the folder " + folder + " may not be written to; choose another");
 }
 
@@ -58,21 +63,25 @@ void requireOwnFolder(const std::string& folder, const std::string& kind,
     throw Error(ErrorKind::output, folder, "is no folder; name a new or empty one");
   if (!fs::exists(folder, error)) {
     const fs::path parent = fs::absolute(folder).parent_path();
-    if (!fs::is_directory(parent, error)) throw Error(ErrorKind::output, folder, "its parent folder does not exist");
+    if (!fs::is_directory(parent, error))
+      throw Error(ErrorKind::output, folder, "its parent folder does not exist; make it first");
+    if (!mayBeWrittenTo(parent))
+      throw Error(ErrorKind::output, folder, "its parent folder may not be written to; choose another");
     return;
   }
+  if (!mayBeWrittenTo(folder)) throw Error(ErrorKind::output, folder, "may not be written to; choose another");
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename().string();
     if (isOurs(name)) continue;
     throw Error(ErrorKind::output, folder, "holds " + name + ", which is no " + kind + "; name a new or empty folder");
   }
-  if (error) throw Error(ErrorKind::output, folder, error.message());
+  if (error) throw Error(ErrorKind::output, folder, "cannot be read: " + error.message());
 }
 
 void makeFolder(const std::string& folder) {
   std::error_code error;
   fs::create_directory(folder, error);
-  if (error) throw Error(ErrorKind::output, folder, error.message());
+  if (error) throw Error(ErrorKind::output, folder, "cannot be made: " + error.message());
 }
 
 std::string partPath(const std::string& path) {

@@ -68,7 +68,10 @@ void flushToDisk(int file, const std::string& path) {
 }
 
 PartLock::PartLock(const std::string& path) : path_(path), part_(partPath(path)), file_(openLockedPart(path)) {
-  if (ftruncate(file_, 0) == 0) return;
+  if (ftruncate(file_, 0) == 0) {
+    remains_.emplace(part_.c_str());
+    return;
+  }
   const int cause = errno;
   close(file_);
   throw Error(ErrorKind::output, part_, fmt::format("cannot be written: {}", std::strerror(cause)));
@@ -85,6 +88,7 @@ void PartLock::finish() {
   if (std::rename(part_.c_str(), path_.c_str()) != 0)
     throw Error(ErrorKind::output, path_, fmt::format("cannot be put in place: {}", std::strerror(errno)));
   isFinished_ = true;
+  remains_.reset();
 }
 
 std::string lockHolderOf(const std::string& path) {

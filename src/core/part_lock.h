@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <string>
+
+#include "core/crash.h"
 
 namespace cradle {
 
@@ -25,6 +28,7 @@ class PartLock {
   std::string path_, part_;
   int file_ = -1;
   bool isFinished_ = false;
+  std::optional<Remains> remains_;  // the part
 };
 
 /// The part of `path` as it is, or new and empty, open for reading and writing, and locked against other runs until it

@@ -87,7 +87,8 @@ class SpawnRequest {
   posix_spawnattr_t attributes_;
 };
 
-/// Processor time of all processes of a group, and of those that they have waited for, in clock ticks. (proc(5), /proc/PID/stat)
+/// Processor time of all processes of a group, and of those that they have waited for, in clock ticks. (proc(5),
+/// /proc/PID/stat)
 long ticksOfGroup(pid_t group) {
   long sum = 0;
   std::error_code failed;
@@ -132,6 +133,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, const StartF
     closeInput();
     failStart(command[0], failure, error);
   }
+  remains_.emplace(process_);
 }
 
 ChildProcess::~ChildProcess() {
@@ -188,6 +190,7 @@ int ChildProcess::waitForEnd() {
       turn = std::min(2 * turn, kTurn);
     } else if (ended == process_) {
       process_ = -1;
+      remains_.reset();
       return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     } else if (errno != EINTR) {
       return 127;  // nobody there to wait for

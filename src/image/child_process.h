@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/crash.h"
 #include "core/error.h"
 
 namespace cradle {
@@ -59,6 +61,7 @@ class ChildProcess {
   File output_, error_;   // files rather than pipes: a program that prints much is never blocked
   int input_ = -1;
   pid_t process_ = -1;
+  std::optional<Remains> remains_;  // its group
 };
 
 }  // namespace cradle

@@ -17,7 +17,7 @@
 namespace cradle {
 namespace {
 
-constexpr int kMostPixels = 16384;     // a side
+constexpr int kMostPixels = 16384;  // a side
 constexpr png_uint_32 kAnySize = PNG_UINT_31_MAX;
 
 /// A file that is being read. libpng tells of a fault by a jump: no function between that and its target has an object
@@ -45,7 +45,8 @@ class PngReading {
       png_set_read_fn(png_, this, readBytes);
       png_set_user_limits(png_, kAnySize, kAnySize);  // told below, in words
       png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-      png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);  // of texts and profiles, only the checksums
+      png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr,
+                                  -1);  // of texts and profiles, only the checksums
       png_set_benign_errors(png_, 0);
       png_read_info(png_, info_);
     });

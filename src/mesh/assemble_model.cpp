@@ -17,12 +17,12 @@ Vec3f unitOrZero(const Vec3f& normal) {
   return length > kShortestNormal && std::isfinite(length) ? Vec3f(normal / length) : Vec3f(Vec3f::Zero());
 }
 
-// Drops triangles with two equal corners; returns how many there were.
+// Drops triangles with two equal corners; returns how many there were, with those left out before.
 std::size_t dropDegenerate(MeshPiece& piece) {
   std::size_t kept = 0;
   for (std::size_t t = 0; t < piece.smoothing.size(); ++t) {
     const Vec3 &a = piece.corners[3 * t], &b = piece.corners[3 * t + 1], &c = piece.corners[3 * t + 2];
-    if (a == b || b == c || c == a) continue;
+    if (isDegenerate(a, b, c)) continue;
     if (kept != t) {
       std::copy_n(piece.corners.begin() + static_cast<std::ptrdiff_t>(3 * t), 3,
                   piece.corners.begin() + static_cast<std::ptrdiff_t>(3 * kept));
@@ -36,7 +36,7 @@ std::size_t dropDegenerate(MeshPiece& piece) {
   piece.corners.resize(3 * kept);
   piece.normals.resize(3 * kept);
   piece.smoothing.resize(kept);
-  return dropped;
+  return piece.degenerate + dropped;
 }
 
 template <typename T>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,15 @@ struct MeshPiece {
   std::vector<Vec3> corners;         // m, finite, three a triangle
   std::vector<Vec3f> normals;        // one a corner, of any length; zero, or all left out: to be computed
   std::vector<Smoothing> smoothing;  // one a triangle
+  std::uint64_t degenerate = 0;      // triangles with two equal corners, left out already
   int material = 0;                  // pieces of one number become one range
   ModelMaterial look;
 };
+
+/// Whether a triangle has two equal corners: it is no part of a surface.
+inline bool isDegenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return a == b || b == c || c == a;
+}
 
 /// Joins the pieces of an object: drops degenerate triangles, shares corners with equal position and normal, orders by
 /// material, and welds the solid; `notes` says what was mended. The result's solid is weld(drawn.vertices,

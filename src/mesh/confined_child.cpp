@@ -14,6 +14,7 @@
 #include <fstream>
 #include <new>
 
+#include "core/crash.h"
 #include "core/error.h"
 
 namespace cradle {
@@ -92,6 +93,7 @@ bool send(const std::string& bytes) {
 }
 
 [[noreturn]] void runChild(const std::function<std::string()>& work, const ChildLimits& limits, int answer) {
+  ignoreCrashes();
   confine(limits, answer);
   bool isSent = false;
   try {

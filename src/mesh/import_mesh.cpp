@@ -257,14 +257,24 @@ MeshPiece readPiece(const ImportedFile& file, const Placement& placement, double
   if (hasNormals) piece.normals.reserve(3 * std::size_t{mesh.mNumFaces});
   for (unsigned face = 0; face < mesh.mNumFaces; ++face) {
     if (mesh.mFaces[face].mNumIndices != 3) continue;  // points and lines
-    piece.smoothing.push_back(smoothing.empty() ? kSmoothingUnknown : smoothing[face]);
-    for (const unsigned vertex : cornersOf(file, placement, face)) {
-      piece.corners.push_back(scale * (placement.fileFromMesh * toVec3(mesh.mVertices[vertex])));
-      if (!piece.corners.back().allFinite())
-        throw Error(ErrorKind::mesh, file.path,
-                    fmt::format("vertex {} of \"{}\" is not finite; the file is damaged", vertex, placement.object));
-      if (hasNormals) piece.normals.push_back((turnNormal * toVec3(mesh.mNormals[vertex])).cast<float>());
+    const std::array<unsigned, 3> vertices = cornersOf(file, placement, face);
+    std::array<Vec3, 3> corners;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      corners[corner] = scale * (placement.fileFromMesh * toVec3(mesh.mVertices[vertices[corner]]));
+      if (!corners[corner].allFinite())
+        throw Error(
+            ErrorKind::mesh, file.path,
+            fmt::format("vertex {} of \"{}\" is not finite; the file is damaged", vertices[corner], placement.object));
     }
+    if (isDegenerate(corners[0], corners[1], corners[2])) {
+      ++piece.degenerate;
+      continue;
+    }
+    piece.smoothing.push_back(smoothing.empty() ? kSmoothingUnknown : smoothing[face]);
+    piece.corners.insert(piece.corners.end(), corners.begin(), corners.end());
+    if (!hasNormals) continue;
+    for (const unsigned vertex : vertices)
+      piece.normals.push_back((turnNormal * toVec3(mesh.mNormals[vertex])).cast<float>());
   }
   return piece;
 }

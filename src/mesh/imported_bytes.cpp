@@ -84,6 +84,7 @@ void appendPiece(const MeshPiece& piece, std::string& bytes) {
   appendAll(piece.corners, bytes);
   appendAll(piece.normals, bytes);
   appendAll(piece.smoothing, bytes);
+  append(piece.degenerate, bytes);
   append(piece.material, bytes);
   appendAll(piece.look.name, bytes);
   for (const float channel : piece.look.baseColor) append(channel, bytes);
@@ -94,6 +95,7 @@ MeshPiece readPiece(Source& source) {
   piece.corners = source.all<std::vector<Vec3>>();
   piece.normals = source.all<std::vector<Vec3f>>();
   piece.smoothing = source.all<std::vector<Smoothing>>();
+  piece.degenerate = source.number<std::uint64_t>();
   piece.material = source.number<int>();
   piece.look.name = source.all<std::string>();
   for (float& channel : piece.look.baseColor) channel = source.number<float>();

@@ -110,6 +110,7 @@ bool TreeBuilder::key(string_t& key) {
 bool TreeBuilder::parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) {
   const std::string reason = error.what();
   const bool isBadByte = reason.find("ill-formed UTF-8") != reason.npos;
+  cursor_.returnToTokenWith(position - 1);  // 0x10 is a number, 0, and more
   TextPlace place = cursor_.findToken();
   const bool followsComma = cursor_.followsComma();
   const std::string token(cursor_.rest().substr(0, kLongestOffender));

@@ -76,7 +76,8 @@ void TokenCursor::passString() {
 }
 
 TextPlace TokenCursor::takeToken() {
-  const TextPlace place = findToken();
+  const TextPlace place = takenPlace_ = findToken();
+  takenOffset_ = offset_;
   if (offset_ == text_.size()) return place;
   const char first = text_[offset_];
   if (first == '"') {
@@ -87,6 +88,12 @@ TextPlace TokenCursor::takeToken() {
     while (offset_ < text_.size() && !isOneOf(text_[offset_], kDelimiters)) passByte();
   }
   return place;
+}
+
+void TokenCursor::returnToTokenWith(std::size_t offset) {
+  if (offset < takenOffset_ || offset >= offset_) return;
+  offset_ = takenOffset_;
+  place_ = takenPlace_;
 }
 
 TextPlace TokenCursor::advanceTo(std::size_t offset) {

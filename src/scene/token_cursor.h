@@ -20,6 +20,9 @@ class TokenCursor {
   /// Place of the byte at `offset`, which must not lie before the cursor; the cursor moves there.
   TextPlace advanceTo(std::size_t offset);
 
+  /// Goes back before the token that was taken last if the byte at `offset` is part of it.
+  void returnToTokenWith(std::size_t offset);
+
   /// What the cursor has not passed yet.
   std::string_view rest() const { return text_.substr(offset_); }
   /// True if a comma was the last separator before the token that findToken found.
@@ -31,8 +34,8 @@ class TokenCursor {
   void passString();
 
   std::string_view text_;
-  std::size_t offset_ = 0;
-  TextPlace place_;
+  std::size_t offset_ = 0, takenOffset_ = 0;
+  TextPlace place_, takenPlace_;
   bool followsComma_ = false;
 };
 

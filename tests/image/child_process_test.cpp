@@ -1,7 +1,10 @@
 #include "image/child_process.h"
 
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <fstream>
 #include <optional>
@@ -62,6 +65,24 @@ TEST(ChildProcess, EndsWithAllThatItHasStarted) {
     std::this_thread::sleep_for(1ms);
   }
   EXPECT_NE(kill(second, 0), 0);
+}
+
+TEST(ChildProcessDeathTest, CrashEndsItToo) {
+  // A pipe that this process alone holds open at its end: it closes when that is no more.
+  std::array<int, 2> ends;
+  ASSERT_EQ(pipe(ends.data()), 0);
+  EXPECT_EXIT(
+      {
+        noteCrashes();
+        close(ends[0]);
+        const ChildProcess process(shell("exec 2>&-; sleep 1000"));
+        std::raise(SIGSEGV);
+      },
+      testing::KilledBySignal(SIGSEGV), "");
+  close(ends[1]);
+  pollfd closed{ends[0], POLLIN, 0};
+  EXPECT_EQ(poll(&closed, 1, 10'000), 1);
+  close(ends[0]);
 }
 
 TEST(ChildProcessDeathTest, SignalEndsTheWaiting) {

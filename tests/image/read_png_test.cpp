@@ -74,7 +74,7 @@ class ReadPng : public ::testing::Test {
 
 TEST_F(ReadPng, AllKindsBecomeRgbOfEightBits) {
   using Colour = std::vector<int>;
-  const std::string none(1, '\0');  // no filter
+  const std::string none(1, '\0');                                                       // no filter
   const Image grey = read(pngFile(header(2, 1, 16, kGrey), none + "\x12\xff\xab\x01"));  // the low byte goes
   EXPECT_EQ(pixel(grey, 0, 0), Colour({0x12, 0x12, 0x12}));
   EXPECT_EQ(pixel(grey, 1, 0), Colour({0xab, 0xab, 0xab}));
@@ -116,8 +116,7 @@ TEST_F(ReadPng, ChecksumOfTheRowsIsHeldAgainstThem) {
 
 TEST_F(ReadPng, CutAnywhereIsRefused) {
   const std::string good = pngFile(header(2, 2, 8, kRgb), std::string("\0abcdef\0ghijkl", 14));
-  for (std::size_t size = 0; size < good.size(); ++size)
-    ASSERT_NE(refusal(good.substr(0, size)), "accepted") << size;
+  for (std::size_t size = 0; size < good.size(); ++size) ASSERT_NE(refusal(good.substr(0, size)), "accepted") << size;
 }
 
 TEST_F(ReadPng, LargestSideIsNamed) {

@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <filesystem>
 
+#include "core/crash.h"
+#include "core/part_lock.h"
 #include "mesh/confined_child.h"
 #include "test_files.h"
 
@@ -112,6 +114,19 @@ TEST(ConfinedChild, AnswersWithMuch) {
   const ChildAnswer answer = answerOfChild([] { return std::string(50 << 20, 'y'); }, kLimits);
   EXPECT_EQ(answer.bytes.size(), std::size_t{50} << 20);
   EXPECT_EQ(answer.failure, "");
+}
+
+// The handler of the process that asked would remove what that is about to write.
+TEST(ConfinedChildDeathTest, CrashIsNoneOfTheProcessThatAsked) {
+  const std::string path = testing::TempDir() + "asked_" + std::to_string(getpid());
+  EXPECT_EXIT(
+      {
+        noteCrashes();
+        const PartLock lock(path);
+        answerOfChild([]() -> std::string { std::abort(); }, kLimits);
+        std::_Exit(std::filesystem::remove(path + ".part") ? 0 : 2);
+      },
+      testing::ExitedWithCode(0), "^$");
 }
 
 }  // namespace
