@@ -28,7 +28,8 @@ int takePlace() {
 
 void endCrashed(int signal) {
   constexpr std::string_view kWords =
-      "cradle: crashed, perhaps for lack of memory; make the scene or the picture smaller. If that does not help, this is "
+      "cradle: crashed, perhaps for lack of memory; make the scene or the picture smaller. If that does not help, this "
+      "is "
       "a bug in cradle.\n";
   removeRemains();
   [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, kWords.data(), kWords.size());

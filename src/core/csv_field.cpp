@@ -9,18 +9,20 @@ namespace {
 
 constexpr std::string_view kFormulaStarts = "=+-@\t\r";  // of spreadsheets
 
-bool looksLikeFormula(std::string_view text) {
-  return !text.empty() && kFormulaStarts.find(text[0]) != std::string_view::npos;
+/// A formula, or what csvField() has made of one: so that it can be taken back.
+bool needsApostrophe(std::string_view text) {
+  const std::size_t start = text.find_first_not_of('\'');
+  return start != text.npos && kFormulaStarts.find(text[start]) != kFormulaStarts.npos;
 }
 
 std::string withoutApostrophe(const std::string& field) {
-  return field.starts_with('\'') && looksLikeFormula(field.substr(1)) ? field.substr(1) : field;
+  return field.starts_with('\'') && needsApostrophe(field) ? field.substr(1) : field;
 }
 
 }  // namespace
 
 std::string csvField(const std::string& text) {
-  const std::string plain = looksLikeFormula(text) ? "'" + text : text;
+  const std::string plain = needsApostrophe(text) ? "'" + text : text;
   if (plain.find_first_of(",\"\r\n") == std::string::npos) return plain;
   std::string field = "\"";
   for (const char c : plain) field += c == '"' ? std::string("\"\"") : std::string(1, c);

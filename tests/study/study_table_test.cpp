@@ -92,6 +92,35 @@ TEST(GrowingTable, LinesAreInThePartAtOnceAndInTheFileInTheEnd) {
   EXPECT_FALSE(std::filesystem::exists(part));
 }
 
+TEST(GrowingTableDeathTest, IsWrittenByOneAtATime) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "growing.csv";
+  GrowingTable table(path, "x,y\n");
+  EXPECT_EXIT(
+      {
+        try {
+          GrowingTable second(path, "x,y\n");
+        } catch (const Error& error) {
+          std::fputs(error.what(), stderr);
+          std::_Exit(static_cast<int>(error.kind()));
+        }
+        std::_Exit(0);
+      },
+      testing::ExitedWithCode(static_cast<int>(ErrorKind::output)),
+      "is being written by process " + std::to_string(getpid()));
+  table.append("1,2\n");
+  table.complete();
+  EXPECT_EQ(content(path), "x,y\n1,2\n");
+}
+
+TEST(GrowingTable, FollowsNoLink) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "thesis.txt") << "chapter one";
+  std::filesystem::create_symlink(folder / "thesis.txt", folder / "growing.csv.part");
+  EXPECT_THROW(GrowingTable(folder / "growing.csv", "x,y\n"), Error);
+  EXPECT_EQ(content(folder / "thesis.txt"), "chapter one");
+}
+
 /// What a study of the scenes `begun` leaves when it is stopped in the middle of a line.
 void leaveInterruptedStudy(const TemporaryFolder& folder, const std::vector<StudyOrigin>& begun) {
   GrowingTable rows(folder / "unfinished.csv", kStudyColumns);

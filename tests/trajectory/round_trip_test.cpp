@@ -53,6 +53,24 @@ TEST(TrajectoryFile, KeepsMeshesAndWeldsTheSolidAgain) {
   EXPECT_EQ(model.solid.triangles, expected.solid.triangles);
 }
 
+TEST(TrajectoryFile, NeedsNoName) {
+  const TemporaryFolder folder;
+  writeSample(folder.file("named.sqlite"), 30);
+  const TrajectoryReader named(folder.file("named.sqlite"));
+  const auto before = folder.count();
+  const std::string elsewhere = std::getenv("TMPDIR") == nullptr ? "/tmp" : std::getenv("TMPDIR");
+  setenv("TMPDIR", folder.path().c_str(), 1);
+  TrajectoryWriter writer(named.header());
+  for (long number = 0; number < named.frameCount(); ++number) writer.append(named.readFrame(number));
+  EXPECT_EQ(folder.count(), before);
+  writer.finish({});
+  const TrajectoryReader reader(writer);
+  EXPECT_EQ(reader.frameCount(), 30);
+  EXPECT_EQ(reader.hashOfFrames(), named.hashOfFrames());
+  EXPECT_EQ(folder.count(), before);
+  setenv("TMPDIR", elsewhere.c_str(), 1);
+}
+
 TEST(TrajectoryFile, GivesFramesBackBitByBitInAnyOrder) {
   const TemporaryFolder folder;
   const long count = 40;
