@@ -8,6 +8,7 @@
 #include "commands/glb_file.h"
 #include "commands/glb_meshes.h"
 #include "commands/trajectory_source.h"
+#include "core/crash.h"
 #include "core/error.h"
 #include "core/interruption.h"
 #include "core/progress.h"
@@ -221,6 +222,7 @@ void GlbExport::build(bool quiet) {
 
 void exportGlb(const TrajectoryReader& reader, const std::string& path, bool quiet) {
   PartFile file(path);
+  const EndWithoutMemory end;  // nlohmann's documents ask for memory when they go
   GlbExport glb(reader, path);
   glb.build(quiet);
   glb.write(file);

@@ -4,14 +4,27 @@
 
 #include "commands/export_glb.h"
 #include "core/error.h"
+#include "core/interruption.h"
+#include "core/progress.h"
 #include "trajectory/export.h"
 
 namespace cradle {
+namespace {
+
+void exportTable(const TrajectoryReader& reader, const std::string& path, bool quiet) {
+  Progress progress("Exporting", "frames", reader.frameCount(), quiet);
+  exportCsv(reader, path, [&](long done) {
+    throwIfInterrupted();
+    progress.update(done);
+  });
+}
+
+}  // namespace
 
 void exportTrajectory(const std::string& trajectory, const std::string& output, bool quiet) {
   const std::filesystem::path ending = std::filesystem::path(output).extension();
   if (ending == ".csv")
-    exportCsv(TrajectoryReader(trajectory), output);
+    exportTable(TrajectoryReader(trajectory), output, quiet);
   else if (ending == ".glb")
     exportGlb(TrajectoryReader(trajectory), output, quiet);
   else

@@ -167,12 +167,16 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
   TrajectoryWriter writer(output, headerOf(scene, run.plan()));
   std::optional<StrictWatch> watch;
   if (options.isStrict) watch.emplace(scene, run.plan());
+  const auto tellWhatIsKept = [&writer](ErrorKind kind, const std::string& what) {
+    const std::string kept = writer.keptPath();
+    throw Error(kind, "", kept.empty() ? what : fmt::format("{}; the frames up to then are in {}", what, kept));
+  };
   try {
     simulateInto(writer, scene, run, watch ? &*watch : nullptr, quiet);
   } catch (const Error& error) {
-    const std::string kept = writer.keptPath();
-    if (kept.empty()) throw;
-    throw Error(error.kind(), "", fmt::format("{}; the frames up to then are in {}", error.what(), kept));
+    tellWhatIsKept(error.kind(), error.what());
+  } catch (const std::bad_alloc&) {
+    tellWhatIsKept(ErrorKind::limit, "out of memory");
   }
   if (options.checksAccuracy) printAchievedAccuracy(scene, output, quiet);
 }

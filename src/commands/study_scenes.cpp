@@ -204,6 +204,7 @@ class Study {
     try {
       drawChart(chart, (fs::path(folder_) / (kChartPrefix + name)).string());
     } catch (const Error& error) {
+      if (error.kind() == ErrorKind::interrupted) throw;
       note(error);
     }
   }

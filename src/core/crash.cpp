@@ -5,7 +5,10 @@
 #include <array>
 #include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <string_view>
+
+#include "core/error.h"
 
 namespace cradle {
 namespace {
@@ -26,13 +29,23 @@ int takePlace() {
   return -1;
 }
 
+void tell(std::string_view words) {
+  [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, words.data(), words.size());
+}
+
+void endWithoutMemory() {
+  removeRemains();
+  tell("out of memory; make the scene or the picture smaller\n");
+  std::_Exit(static_cast<int>(ErrorKind::limit));
+}
+
 void endCrashed(int signal) {
   constexpr std::string_view kWords =
       "cradle: crashed, perhaps for lack of memory; make the scene or the picture smaller. If that does not help, this "
       "is "
       "a bug in cradle.\n";
   removeRemains();
-  [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, kWords.data(), kWords.size());
+  tell(kWords);
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
@@ -53,6 +66,12 @@ Remains::~Remains() {
   place.path = nullptr;
   place.group = 0;
   place.isTaken = false;
+}
+
+EndWithoutMemory::EndWithoutMemory() : before_(std::set_new_handler(endWithoutMemory)) {}
+
+EndWithoutMemory::~EndWithoutMemory() {
+  std::set_new_handler(before_);
 }
 
 void removeRemains() noexcept {

@@ -2,6 +2,8 @@
 
 #include <sys/types.h>
 
+#include <new>
+
 namespace cradle {
 
 /// What a crash would leave behind, while the object lives: a file, or a group of processes. The first eight of a
@@ -24,6 +26,19 @@ void removeRemains() noexcept;
 
 /// From now on a crash (of Mesa without memory, say) does that too, and says so, before it ends the program.
 void noteCrashes();
+
+/// While it lives, memory that runs out ends the program at once, with the exit code of ErrorKind::limit and nothing
+/// left behind: for code that cannot be unwound without memory.
+class EndWithoutMemory {
+ public:
+  EndWithoutMemory();
+  ~EndWithoutMemory();
+  EndWithoutMemory(const EndWithoutMemory&) = delete;
+  EndWithoutMemory& operator=(const EndWithoutMemory&) = delete;
+
+ private:
+  std::new_handler before_;
+};
 
 /// In a child process: what remains of the other is not its own, and a crash is the other's to tell.
 void ignoreCrashes();

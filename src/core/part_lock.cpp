@@ -36,14 +36,20 @@ bool isTheOneAt(const std::string& path, const struct stat& file) {
   return lstat(path.c_str(), &there) == 0 && there.st_dev == file.st_dev && there.st_ino == file.st_ino;
 }
 
-}  // namespace
-
-int openLockedPart(const std::string& path) {
+/// Of a part that nobody else writes: as it is, or, if not `isKept`, a new file. (A program that a killed run has
+/// started may still write into the old one.)
+int openPart(const std::string& path, bool isKept) {
   const std::string part = partPath(path);
   requireWritableFile(path);
   requireWritableFile(part);
   for (;;) {
-    const int file = open(part.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+    bool isNew = true;
+    int file = open(part.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0 && errno == EEXIST) {
+      isNew = false;
+      file = open(part.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
+      if (file < 0 && errno == ENOENT) continue;  // its writer has just given it its name, or removed it
+    }
     const auto fail = [&](const std::string& what) {
       if (file >= 0) close(file);
       throw Error(ErrorKind::output, part, what);
@@ -56,9 +62,17 @@ int openLockedPart(const std::string& path) {
     struct flock lock = writeLock();
     const bool isTaken = fcntl(file, F_SETLK, &lock) != 0 && (errno == EACCES || errno == EAGAIN);
     if (isTaken) fail(fmt::format("is being written by {}; wait for its end or choose another name", holderOf(file)));
-    if (isTheOneAt(part, status)) return file;
-    close(file);  // its writer has just given it its name, or removed it: another is to be made
+    const bool isThere = isTheOneAt(part, status);
+    if (isThere && (isNew || isKept)) return file;
+    if (isThere && unlink(part.c_str()) != 0) fail(fmt::format("cannot be removed: {}", std::strerror(errno)));
+    close(file);
   }
+}
+
+}  // namespace
+
+int openLockedPart(const std::string& path) {
+  return openPart(path, true);
 }
 
 void flushToDisk(int file, const std::string& path) {
@@ -67,15 +81,8 @@ void flushToDisk(int file, const std::string& path) {
   throw Error(ErrorKind::output, path, fmt::format("cannot be written: {}", std::strerror(errno)));
 }
 
-PartLock::PartLock(const std::string& path) : path_(path), part_(partPath(path)), file_(openLockedPart(path)) {
-  if (ftruncate(file_, 0) == 0) {
-    remains_.emplace(part_.c_str());
-    return;
-  }
-  const int cause = errno;
-  close(file_);
-  throw Error(ErrorKind::output, part_, fmt::format("cannot be written: {}", std::strerror(cause)));
-}
+PartLock::PartLock(const std::string& path)
+    : path_(path), part_(partPath(path)), file_(openPart(path, false)), remains_(std::in_place, part_.c_str()) {}
 
 PartLock::~PartLock() {
   if (!isFinished_) unlink(part_.c_str());  // while it is locked: later it may be another run's

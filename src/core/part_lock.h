@@ -13,7 +13,7 @@ class PartLock {
  public:
   /// Throws Error(output) if `path` or its part is anything but a regular file of one name (what a link leads to is not
   /// overwritten), cannot be written, or is being written by another process, which is named. An earlier part is
-  /// emptied.
+  /// removed.
   explicit PartLock(const std::string& path);
   ~PartLock();
   PartLock(const PartLock&) = delete;

@@ -153,7 +153,8 @@ bool ChildProcess::write(const void* bytes, std::size_t count) {
       continue;
     }
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
+    if (written < 0 && errno == EPIPE) return false;
+    if (written < 0) throw Error(failureKind_, program_, fmt::format("cannot be written to: {}", std::strerror(errno)));
     idle_ = {};
     next += written;
     count -= static_cast<std::size_t>(written);

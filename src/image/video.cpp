@@ -11,7 +11,6 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
-#include <sstream>
 
 #include "core/error.h"
 #include "core/output_path.h"
@@ -74,9 +73,10 @@ long countFrames(const std::string& path) {
   ChildProcess reader(
       {"ffmpeg", "-v", "error", "-i", "file:" + path, "-map", "0:v:0", "-c", "copy", "-f", "framecrc", "-"});
   if (reader.finish() != 0) return -1;
-  std::istringstream lines(reader.standardOutput());
+  const std::string lines = reader.standardOutput();
   long count = 0;
-  for (std::string line; std::getline(lines, line);) count += !line.starts_with('#');
+  for (std::size_t start = 0; start < lines.size(); start = std::min(lines.find('\n', start), lines.size()) + 1)
+    count += lines[start] != '#';
   return count;
 }
 

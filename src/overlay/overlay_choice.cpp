@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -63,8 +62,11 @@ std::string allowedBodies(const OverlayChoice& choice, const Scene& scene) {
 
 OverlayChoice parseOverlays(const std::string& text) {
   OverlayChoice choice;
-  std::istringstream words(text + ",");  // the comma lets an empty last word be seen
-  for (std::string word; std::getline(words, word, ',');) read(word, choice);
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(',', start), text.size());
+    read(text.substr(start, end - start), choice);
+    start = end + 1;
+  }
   return choice;
 }
 

@@ -54,6 +54,7 @@ unsigned int compile(const ShaderSource& source, const std::string& name, GLenum
 
 std::string ShaderSource::text(const std::string& name) const {
   std::istringstream lines(readShader(folder, name));
+  lines.exceptions(std::ios::badbit);  // a lack of memory would otherwise be the end of the text
   std::string whole, line;
   const std::string include = kInclude;
   for (int number = 1; std::getline(lines, line); ++number) {

@@ -34,7 +34,8 @@ bool endsWith(const std::string& path, const std::string& end) {
 bool canDrawCharts() {
   try {
     return ChildProcess({"gnuplot", "--version"}, kNoGnuplot).finish() == 0;
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
     return false;
   }
 }

@@ -42,8 +42,15 @@ void readReferences(const std::string& path, UnfinishedStudy& study) {
   study.referenceBytes = table.bytes;
 }
 
-void readRows(const std::string& path, UnfinishedStudy& study) {
-  const CsvLines table = linesOf(path);
+/// A study that was stopped between its last two renames goes on as if before them.
+void takeBackReferences(const std::string& path) {
+  if (std::filesystem::exists(partPath(path)) || !std::filesystem::exists(path)) return;
+  std::error_code failed;
+  std::filesystem::rename(path, partPath(path), failed);
+  if (failed) throw Error(ErrorKind::output, path, "cannot be renamed: " + failed.message());
+}
+
+void readRows(const std::string& path, const CsvLines& table, UnfinishedStudy& study) {
   for (std::size_t i = 1; i < table.lines.size(); ++i) {
     std::optional<StudyRow> row = rowOf(table.lines[i]);
     if (!row || study.referenceOf(row->scene) == nullptr) refuse(path);
@@ -85,8 +92,10 @@ UnfinishedStudy readUnfinishedStudy(const std::string& studyPath, const std::str
   UnfinishedStudy study;
   const std::string rows = partPath(studyPath);
   if (!std::filesystem::exists(rows)) return study;
+  const CsvLines table = linesOf(rows);
+  if (table.lines.size() > 1) takeBackReferences(referencesPath);
   readReferences(partPath(referencesPath), study);
-  readRows(rows, study);
+  readRows(rows, table, study);
   auto next = origins.begin();
   for (const ReferenceLine& line : study.references) {
     next = std::find_if(next, origins.end(), [&](const StudyOrigin& origin) {

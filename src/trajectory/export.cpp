@@ -16,7 +16,8 @@ constexpr const char* kColumns =
 
 }  // namespace
 
-void exportCsv(const TrajectoryReader& reader, const std::string& path) {
+void exportCsv(const TrajectoryReader& reader, const std::string& path,
+               const std::function<void(long done)>& progress) {
   std::vector<std::string> names;
   for (const BodyRecord& body : reader.header().bodies)
     if (body.isDynamic) names.push_back(csvField(body.name));
@@ -33,6 +34,7 @@ void exportCsv(const TrajectoryReader& reader, const std::string& path) {
       lines.push_back('\n');
     }
     file.write({lines.data(), lines.size()});
+    progress(number + 1);
   }
   file.complete();
 }

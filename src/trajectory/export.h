@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "trajectory/trajectory_file.h"
@@ -8,7 +9,8 @@ namespace cradle {
 
 /// Writes the states as comma-separated values: a header line with units, then one line for each frame and dynamic
 /// body. Numbers have as many digits as give the same bits when read back; names are quoted as RFC 4180 says where they
-/// need it. FILE is replaced when all is written. Throws Error(output), and what reading throws.
-void exportCsv(const TrajectoryReader& reader, const std::string& path);
+/// need it. `progress` is told after each frame how many are done, and may throw. FILE is replaced when all is written.
+/// Throws Error(output), and what reading throws.
+void exportCsv(const TrajectoryReader& reader, const std::string& path, const std::function<void(long done)>& progress);
 
 }  // namespace cradle

@@ -32,7 +32,9 @@ void removeOldPart(const std::string& part) {
     throw Error(ErrorKind::output, part,
                 fmt::format("is being written by another run ({}); wait for its end or choose another name",
                             lockHolderOf(part)));
-  fs::remove(part);
+  std::error_code failed;
+  fs::remove(part, failed);
+  if (failed) throw Error(ErrorKind::output, part, "is in the way and cannot be removed: " + failed.message());
 }
 
 std::string hexColor(const Vec3f& color) {
@@ -296,14 +298,16 @@ void TrajectoryWriter::endUnfinished() noexcept {
     try {
       if (transactionWhole_) session_->database->commit();
       framesCommitted_ = transactionWhole_ ? framesAppended_ : framesCommitted_;
-    } catch (const Error&) {
+    } catch (const std::exception&) {
       // The run is over already for another reason, which is the one to tell; the frames since the last commit go.
     }
     session_->database->rollback();
   }
   session_.reset();
   std::error_code ignored;
-  if (framesCommitted_ == 0) fs::remove(part_, ignored);
+  if (framesCommitted_ > 0 || part_.empty()) return;
+  fs::remove(part_, ignored);
+  fs::remove(part_ + "-journal", ignored);  // where the disk was too full to take back what was half-written
 }
 
 }  // namespace cradle

@@ -26,7 +26,7 @@ TEST(ExportCsv, WritesOneLineForEachFrameAndDynamicBody) {
   writer.append(Frame{0, 0, {still, moving}, {}});
   writer.append(Frame{1, 0.1, {moving, still}, {}});
   writer.finish({});
-  exportCsv(TrajectoryReader(folder.file("a.sqlite")), folder.file("a.csv"));
+  exportCsv(TrajectoryReader(folder.file("a.sqlite")), folder.file("a.csv"), [](long) {});
   EXPECT_EQ(contentOf(folder.file("a.csv")),
             std::string(kHeaderLine) +
                 "0,0,ball,0,0,0,1,0,0,0,0,0,0,0,0,0\n"
@@ -40,7 +40,7 @@ TEST(ExportCsv, WritesOneLineForEachFrameAndDynamicBody) {
 TEST(ExportCsv, WritesNumbersThatReadBackBitByBit) {
   const TemporaryFolder folder;
   writeSample(folder.file("a.sqlite"), 20);
-  exportCsv(TrajectoryReader(folder.file("a.sqlite")), folder.file("a.csv"));
+  exportCsv(TrajectoryReader(folder.file("a.sqlite")), folder.file("a.csv"), [](long) {});
   std::ifstream file(folder.file("a.csv"));
   std::string line;
   std::getline(file, line);
@@ -62,8 +62,8 @@ TEST(ExportCsv, LeavesNothingBehindWhenItCannotBeWritten) {
   const TemporaryFolder folder;
   writeSample(folder.file("a.sqlite"), 100);
   const TrajectoryReader reader(folder.file("a.sqlite"));
-  expectError(ErrorKind::output, "/dev/full", [&] { exportCsv(reader, "/dev/full"); });
-  expectError(ErrorKind::output, "missing", [&] { exportCsv(reader, folder.file("missing/a.csv")); });
+  expectError(ErrorKind::output, "/dev/full", [&] { exportCsv(reader, "/dev/full", [](long) {}); });
+  expectError(ErrorKind::output, "missing", [&] { exportCsv(reader, folder.file("missing/a.csv"), [](long) {}); });
   writeContent(folder.file("a.csv"), "precious");
   const pid_t process = fork();
   if (process == 0) {
@@ -71,7 +71,7 @@ TEST(ExportCsv, LeavesNothingBehindWhenItCannotBeWritten) {
     const rlimit limit{10000, 10000};
     setrlimit(RLIMIT_FSIZE, &limit);
     try {
-      exportCsv(reader, folder.file("a.csv"));
+      exportCsv(reader, folder.file("a.csv"), [](long) {});
     } catch (const Error& error) {
       _exit(error.kind() == ErrorKind::output ? 0 : 1);
     }

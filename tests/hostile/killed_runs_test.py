@@ -1,0 +1,267 @@
+#!/usr/bin/env python3
+"""Runs that are killed or told to end at any moment: results are whole or not there, and the next run is as if alone.
+
+    killed_runs_test.py PROGRAM SOURCE_FOLDER [SEED]
+
+Each command runs unharmed first, which gives its result and how long it takes; then four times with SIGKILL, and twice each
+with SIGTERM and SIGINT, at a random moment of each quarter of that time (the same with each SEED), with and without an earlier
+result. After a kill, and where something is kept for the next run, the same command runs once more, at once. A run that ends
+before its signal takes effect is unharmed; at most half of the runs are.
+
+After a kill there may be files named .part, and journals beside them; after a signal only those that the message names. A
+signal ends a run with 130 or 143 within MOST_SECONDS, and nothing of it is left: no temporary file, no process.
+"""
+import csv, json, os, random, shutil, signal, sqlite3, subprocess, sys, tempfile, time, unittest
+
+from running import PATIENCE, everything, read, write
+
+PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 1
+MOMENTS = 4         # a signal
+MOST_SECONDS = 5    # s from a signal to the end of the run
+MOST_FAULTS = 12    # that a test shows
+COST = "cpu_seconds_per_simulated_second"
+
+COMMANDS = {"simulate": ["simulate", "in/long.json", "-o", "out/a.sqlite"],
+            "render": ["render", "in/film.json", "-o", "out", "--overwrite"],
+            "video": ["video", "in/film.json", "-o", "out/a.mp4"],
+            "export": ["export", "in/crowd.sqlite", "-o", "out/a.csv"],
+            "study": ["study", "in/short.json", "-o", "out", "--methods", "rk4"]}
+# Begins at once, and ends when a file is there, or after some 20 s.
+SLOW_ENCODER = """#!/bin/sh
+(cat; for k in $(seq 400); do [ -e '%s' ] && break; sleep 0.05; done) | %s "$@"
+"""
+EARLIER = {"render": "frame_000001.png", "video": "a.mp4", "export": "a.csv", "study": "study.csv"}
+
+
+def scene(duration, **changes):
+    spring = {"bodyA": "ball", "anchorA": [0, 0.1, 0], "anchorB": [0, 1, 0], "stiffness": 200, "restLength": 0.5}
+    mesh = {"mesh": os.path.join(SOURCE, "assets", "ball.3ds"), "scale": 0.1}
+    document = {"schema": "cradle-scene/1", "name": "test", "duration": duration, "springs": [spring],
+                "output": {"framesPerSecond": 60, "width": 64, "height": 36}, "bodies": [{"name": "ball", "shape": mesh}]}
+    return json.dumps({**document, **changes})
+
+
+def processes_with(text):
+    """Processes whose environment has it."""
+    found = []
+    for number in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            if text.encode() in read("/proc/%s/environ" % number):
+                found.append(int(number))
+        except OSError:  # it has ended, or is another user's
+            pass
+    return found
+
+
+def trajectory_rows(path):
+    """Those of all frames, and none if it is damaged."""
+    database = sqlite3.connect(path)
+    try:
+        if database.execute("pragma integrity_check").fetchone() != ("ok",):
+            return []
+        return [database.execute("select * from %s order by 1, 2" % table).fetchall() for table in ("frame", "state", "energy")]
+    except sqlite3.DatabaseError:
+        return []
+    finally:
+        database.close()
+
+
+def result(path):
+    """What a file says, without what depends on the machine."""
+    name = os.path.basename(path)
+    if name.endswith(".sqlite"):
+        return trajectory_rows(path)
+    if name == "study.csv":
+        with open(path, newline="") as file:
+            return [{**row, COST: None} for row in csv.DictReader(file)]
+    return None if name.startswith("work_precision_") else read(path)
+
+
+class Run:
+    """A run that gets a signal after `moment` seconds, if any, and has ended."""
+    def __init__(self, command, folder, number=None, moment=0):
+        self.folder, self.number = folder, number
+        with tempfile.TemporaryDirectory() as temporary, tempfile.TemporaryFile("w+", errors="replace") as error:
+            begin = time.monotonic()
+            process = subprocess.Popen([PROGRAM, "-q", *COMMANDS[command]], cwd=folder, stdin=subprocess.DEVNULL,
+                                       stdout=subprocess.DEVNULL, stderr=error, env={**os.environ, "TMPDIR": temporary})
+            try:
+                if number is not None:
+                    self.wait(process, moment)
+                    sent = time.monotonic()
+                    process.send_signal(number)  # none is sent to a process that has ended
+                self.code = process.wait(PATIENCE)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                self.code = process.wait()
+            self.seconds = time.monotonic() - (begin if number is None else sent)
+            self.processes, self.temporary_files = processes_with(temporary), os.listdir(temporary)
+            error.seek(0)
+            self.error = error.read()
+        self.names = set(os.listdir(os.path.join(folder, "out")))
+
+    @staticmethod
+    def wait(process, seconds):
+        try:
+            process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            pass
+
+
+class KilledRuns(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.given = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, cls.given)
+        path = lambda name: os.path.join(cls.given, name)
+        write(path("long.json"), scene(8, method={"name": "rk4", "timeStep": 1e-5}))
+        write(path("film.json"), scene(0.5, method={"name": "rk4", "timeStep": 1e-5}))
+        sphere = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1}
+        write(path("short.json"), scene(0.5, bodies=[sphere]))
+        crowd = {**sphere, "copies": {"count": [10, 10, 5], "spacing": [1, 1, 1]}}
+        for name, document in (("crowd", scene(2, bodies=[crowd], springs=[], output={"framesPerSecond": 120})),
+                               ("earlier", scene(0.1))):
+            write(path(name + ".json"), document)
+            subprocess.run([PROGRAM, "-q", "simulate", path(name + ".json"), "-o", path(name + ".sqlite")], check=True)
+
+    def setUp(self):
+        self.faults = []
+
+    def folder(self, command, has_earlier=False):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        os.symlink(self.given, os.path.join(folder, "in"))
+        os.mkdir(os.path.join(folder, "out"))
+        if has_earlier and command == "simulate":
+            shutil.copy(os.path.join(folder, "in", "earlier.sqlite"), os.path.join(folder, "out", "a.sqlite"))
+        elif has_earlier:
+            write(os.path.join(folder, "out", EARLIER[command]), b"earlier")
+        self.earlier = everything(os.path.join(folder, "out"))
+        return folder
+
+    def unharmed(self, command):
+        run = Run(command, self.folder(command))
+        self.assertEqual((run.code, run.error), (0, ""))
+        self.whole = {name: result(os.path.join(run.folder, "out", name)) for name in run.names}
+        return run
+
+    def require_no_faults(self):
+        shown = "\n  ".join(self.faults[:MOST_FAULTS])
+        self.assertEqual(len(self.faults), 0, "%d faults (seed %d):\n  %s" % (len(self.faults), SEED, shown))
+
+    def check(self, command):
+        seconds = min(self.unharmed(command).seconds for _ in range(2))  # files that the first read are in memory
+        chance = random.Random("%d %s" % (SEED, command))
+        for numbers in ([signal.SIGKILL], [signal.SIGTERM, signal.SIGINT]):
+            harmed = 0
+            for k in range(MOMENTS):
+                number, moment = numbers[k % len(numbers)], seconds * (k + chance.random()) / MOMENTS
+                self.told = "%s after %.3f of %.3f s" % (number.name, moment, seconds)
+                folder = self.folder(command, has_earlier=chance.random() < 0.5)
+                harmed += self.harm(folder, number, Run(command, folder, number, moment))
+                if number == signal.SIGKILL or (command in ("simulate", "study") and k == MOMENTS - 1):
+                    self.require_same_next_time(command, folder)
+            self.told = " and ".join(number.name for number in numbers)
+            self.require(harmed >= MOMENTS // 2, "%d of %d runs took no notice" % (MOMENTS - harmed, MOMENTS))
+        self.require_no_faults()
+
+    def harm(self, folder, number, run):
+        """Looks at what a signal did. Whether it came before the end."""
+        self.told += ", which ended with %d" % run.code
+        if number != signal.SIGKILL:
+            self.require_good_end(run)
+        self.require(self.earlier.keys() <= run.names, "an earlier result is lost")
+        for name in run.names:
+            if name in self.earlier or name in self.whole:
+                self.require_whole(run, name)
+            elif number == signal.SIGKILL:
+                self.require(name.endswith((".part", ".part-journal")), "left " + name)
+            else:
+                named = "study.csv.part" if name == "references.csv.part" else name  # which goes with it
+                is_said = name.endswith(".part") and "are in out/" + named in run.error
+                self.require(is_said, "left " + name + " without saying so")
+        return run.code != 0
+
+    def require(self, condition, otherwise):
+        if not condition:
+            self.faults.append("%s: %s" % (self.told, otherwise))
+
+    def require_good_end(self, run):
+        """As the README says. Before main, signals do what they do to any program."""
+        self.require(run.code in (0, 128 + run.number) or (run.code == -run.number and not run.error), run.error)
+        lines = [word for word in ("interrupted", "terminated") if word in run.error]
+        self.require(len(lines) == (run.code > 0) and run.error.count("\n") == (run.code > 0), "it says %r" % run.error)
+        self.require(run.code != 0 or run.names == self.whole.keys(), "exit code 0 with %s" % sorted(run.names))
+        self.require(run.seconds < MOST_SECONDS, "it took %.1f s" % run.seconds)
+        self.require(not run.temporary_files, "temporary files %s" % run.temporary_files)
+        self.require(not run.processes, "processes %s" % run.processes)
+
+    def require_whole(self, run, name):
+        path = os.path.join(run.folder, "out", name)
+        is_earlier = name in self.earlier and read(path) == self.earlier[name]
+        self.require(is_earlier or (name in self.whole and result(path) == self.whole[name]), name + " is not whole")
+
+    def require_same_next_time(self, command, folder):
+        self.earlier = {}
+        run = Run(command, folder)
+        self.told += "; then again"
+        warnings = [line for line in run.error.splitlines() if not line.startswith("note: going on after")]
+        self.require(run.code == 0 and not warnings, "it ended with %d: %s" % (run.code, run.error))
+        self.require(run.names == self.whole.keys(), "there is %s" % sorted(run.names))
+        for name in run.names & self.whole.keys():
+            self.require_whole(run, name)
+
+    def test_simulate(self):
+        self.check("simulate")
+
+    def test_render(self):
+        self.check("render")
+
+    def test_video(self):
+        self.check("video")
+
+    def test_export(self):
+        self.check("export")
+
+    def test_study(self):
+        self.check("study")
+
+    def test_a_study_between_its_last_two_renames(self):
+        run = self.unharmed("study")
+        self.told = "study.csv is still study.csv.part, references.csv is whole"
+        table = os.path.join(run.folder, "out", "study.csv")
+        os.rename(table, table + ".part")
+        self.require_same_next_time("study", run.folder)
+        self.require_no_faults()
+
+    def test_an_encoder_that_outlives_a_killed_film_does_not_write_into_the_next(self):
+        self.unharmed("video")
+        folder = self.folder("video")
+        part, end = os.path.join(folder, "out", "a.mp4.part"), os.path.join(folder, "end")
+        slow = write(os.path.join(folder, "slow", "ffmpeg"), SLOW_ENCODER % (end, shutil.which("ffmpeg")))
+        os.chmod(slow, 0o755)
+        path = os.path.dirname(slow) + ":" + os.environ["PATH"]
+        process = subprocess.Popen([PROGRAM, "-q", *COMMANDS["video"]], cwd=folder, env={**os.environ, "PATH": path})
+        self.wait_until(lambda: os.path.exists(part) and os.path.getsize(part) > 0)  # the encoder has begun
+        process.kill()
+        process.wait()
+        self.told = "the encoder of a killed film lives"
+        self.require_same_next_time("video", folder)
+        write(end, b"")
+        self.wait_until(lambda: not processes_with(path))
+        self.told = "it has ended"
+        self.require(result(part[:-len(".part")]) == self.whole["a.mp4"], "the next film is not whole any more")
+        self.require(os.listdir(os.path.dirname(part)) == ["a.mp4"], "it left something behind")
+        self.require_no_faults()
+
+    def wait_until(self, condition):
+        for _ in range(PATIENCE * 50):
+            if condition():
+                return
+            time.sleep(0.02)
+        self.fail("waited in vain")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[4:], verbosity=1)
