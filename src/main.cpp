@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
 #include <csignal>
 #include <functional>
 #include <new>
@@ -190,16 +192,58 @@ void addQuestions(CLI::App& app, CommandLine& line) {
       "without joints, pushes, camera and lights");
 }
 
-/// Says so if what was taken for a command is none; CLI11 would only ask for one.
-void refuseUnknownCommand(const CLI::App& app) {
-  if (!app.get_subcommands().empty()) return;
+/// Says what was found where CLI11 would say only that it could not be converted, or take it for a value that is not
+/// there.
+void checkValues(CLI::App& app) {
+  const CLI::Validator isNumber(
+      [](const std::string& text) {
+        double number = 0;
+        const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
+        const bool isWhole = end == text.data() + text.size() && fault != std::errc::invalid_argument;
+        return isWhole ? "" : fmt::format("found \"{}\"; allowed are numbers, as 0.5 or 1e-3", text);
+      },
+      "");
+  const CLI::Validator isSomething(
+      [](const std::string& text) { return text.empty() ? "is empty; give a value, or leave the option out" : ""; },
+      "");
+  for (CLI::App* command : app.get_subcommands({}))
+    for (CLI::Option* option : command->get_options()) {
+      const bool saysSoItself = option->get_positional() || option->check_lname("output");  // in its own words
+      if (option->get_type_name() == "FLOAT") option->check(isNumber);
+      if (option->get_type_name() == "TEXT" && !saysSoItself) option->check(isSomething);
+    }
+}
+
+[[noreturn]] void refuseOption(const std::string& word, const CLI::App& app, const CLI::App& command) {
+  const std::string name = word.substr(0, word.find('='));
+  std::vector<std::string> names;
+  for (const CLI::App* of : {&command, &app})
+    for (const CLI::Option* option : of->get_options())
+      for (const std::string& known : option->get_lnames()) names.push_back("--" + known);
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  throw Error(ErrorKind::usage, name,
+              fmt::format("unknown option; allowed are {}{}", fmt::join(names, ", "), didYouMean(name, names)));
+}
+
+/// Names the first word that nothing was known to do with.
+void refuseUnknownWord(const CLI::App& app) {
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  std::vector<std::string> words = app.remaining(true);
+  const auto option = std::find_if(words.begin(), words.end(), [](const auto& word) { return word.starts_with("-"); });
+  if (!parsed.empty() && option != words.end()) refuseOption(*option, app, *parsed[0]);
+  if (words.empty()) return;
+  if (!parsed.empty())
+    throw Error(ErrorKind::usage, words.back(), fmt::format("is one name too many for {}", parsed[0]->get_name()));
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
-  for (const std::string& word : app.remaining()) {
-    if (word.starts_with('-')) continue;
-    throw Error(ErrorKind::usage, word,
-                fmt::format("is no command; allowed are {}{}", fmt::join(commands, ", "), didYouMean(word, commands)));
-  }
+  if (words[0].starts_with('-'))
+    throw Error(
+        ErrorKind::usage, words[0],
+        fmt::format("is no option of the program itself; a command comes first: {}", fmt::join(commands, ", ")));
+  throw Error(
+      ErrorKind::usage, words[0].empty() ? "\"\"" : words[0],
+      fmt::format("is no command; allowed are {}{}", fmt::join(commands, ", "), didYouMean(words[0], commands)));
 }
 
 int run(int argc, char** argv) {
@@ -214,10 +258,14 @@ int run(int argc, char** argv) {
   addPictures(app, line);
   addStudy(app, line);
   addQuestions(app, line);
+  checkValues(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {
-    refuseUnknownCommand(app);
+    if (app.get_subcommands().empty()) refuseUnknownWord(app);
+    return app.exit(error), static_cast<int>(ErrorKind::usage);
+  } catch (const CLI::ExtrasError& error) {
+    refuseUnknownWord(app);
     return app.exit(error), static_cast<int>(ErrorKind::usage);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorKind::usage);

@@ -11,6 +11,7 @@
 #include "core/console.h"
 #include "core/error.h"
 #include "core/output_path.h"
+#include "core/read_file.h"
 #include "image/comparison_report.h"
 #include "image/png.h"
 #include "trajectory/compare_trajectories.h"
@@ -140,12 +141,11 @@ bool compareTrajectoryFiles(const std::string& expected, const std::string& actu
 }
 
 bool compareAny(const std::string& expected, const std::string& actual, const CompareOptions& options) {
-  for (const std::string& path : {expected, actual})
-    if (!fs::exists(path)) throw Error(ErrorKind::usage, path, "does not exist");
+  for (const std::string& path : {expected, actual}) requireFileOrFolder(path, ErrorKind::usage);
   if (fs::is_directory(expected) != fs::is_directory(actual))
     throw Error(ErrorKind::usage, actual, "a folder can only be compared with a folder");
   if (fs::is_directory(expected)) return comparePictures(pairPictures(expected, actual), expected, options);
-  if (isDatabaseFile(expected) && isDatabaseFile(actual)) {
+  if (isDatabaseFile(expected) || isDatabaseFile(actual)) {
     if (options.report) throw Error(ErrorKind::usage, "--report", "shows pictures; these are trajectories");
     return compareTrajectoryFiles(expected, actual, options.tolerance);
   }

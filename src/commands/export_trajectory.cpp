@@ -5,6 +5,7 @@
 #include "commands/export_glb.h"
 #include "core/error.h"
 #include "core/interruption.h"
+#include "core/output_path.h"
 #include "core/progress.h"
 #include "trajectory/export.h"
 
@@ -22,6 +23,7 @@ void exportTable(const TrajectoryReader& reader, const std::string& path, bool q
 }  // namespace
 
 void exportTrajectory(const std::string& trajectory, const std::string& output, bool quiet) {
+  requireOtherFile(output, trajectory);
   const std::filesystem::path ending = std::filesystem::path(output).extension();
   if (ending == ".csv")
     exportTable(TrajectoryReader(trajectory), output, quiet);

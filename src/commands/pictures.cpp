@@ -217,6 +217,7 @@ void encodeFrames(const std::string& folder, const std::string& film, double fra
 
 void makeFilm(const std::string& input, const std::string& film, const PictureOptions& options, bool quiet) {
   requireWritableFile(film);
+  requireOtherFile(film, input);
   if (options.overlay) parseOverlays(*options.overlay);
   TrajectorySource source(input, quiet, options.assetRoot);
   const PictureOrder order(options, source.scene());

@@ -9,10 +9,6 @@
 
 namespace cradle {
 
-/// `text` with nothing that a terminal obeys: control characters (save line feeds), and bytes that are no UTF-8, as
-/// \x1b. Names in strangers' files may hold such.
-std::string printable(std::string_view text);
-
 /// Writes to standard output or standard error what printable() gives of it; nothing more once nobody reads there.
 /// Throws Error(output) if standard output cannot be written.
 void showText(std::FILE* file, std::string_view text);

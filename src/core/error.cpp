@@ -4,11 +4,12 @@
 #include <cstdlib>
 
 #include "core/crash.h"
+#include "core/printable.h"
 
 namespace cradle {
 
 Error::Error(ErrorKind kind, const std::string& where, const std::string& what)
-    : kind_(kind), message_(where.empty() ? what : where + ": " + what) {}
+    : kind_(kind), message_(where.empty() ? printable(what) : printableLine(where) + ": " + printable(what)) {}
 
 void failCheck(const char* condition, const char* file, int line) {
   std::fprintf(stderr, "cradle: internal check failed: %s (%s:%d). This is a bug in cradle, not in your scene.\n",

@@ -49,10 +49,18 @@ void requireWritableFile(const std::string& path) {
 
   const fs::path parent = fs::path(path).parent_path();
   const std::string folder = parent.empty() ? "." : parent.string();
+  if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
+    throw Error(ErrorKind::output, path, folder + " is no folder; name one");
   if (!fs::is_directory(folder, failed))
     throw Error(ErrorKind::output, path, "the folder " + folder + " does not exist; make it first");
   if (!mayBeWrittenTo(folder))
     throw Error(ErrorKind::output, path, "the folder " + folder + " may not be written to; choose another");
+}
+
+void requireOtherFile(const std::string& output, const std::string& input) {
+  std::error_code failed;
+  if (fs::equivalent(output, input, failed))
+    throw Error(ErrorKind::output, output, "is the input, which is not replaced; give another name");
 }
 
 void requireOwnFolder(const std::string& folder, const std::string& kind,

@@ -9,6 +9,9 @@ namespace cradle {
 /// and may be written to. Devices are refused, so that they are never replaced. Writes nothing.
 void requireWritableFile(const std::string& path);
 
+/// Throws Error(output) if both are one file.
+void requireOtherFile(const std::string& output, const std::string& input);
+
 /// Throws Error(output) unless `folder` is there or can be made, may be written to, and holds nothing but files whose
 /// names are ours; `kind` says in a word what those are ("frame"). Writes nothing.
 void requireOwnFolder(const std::string& folder, const std::string& kind,

@@ -10,14 +10,20 @@
 
 namespace cradle {
 
-void requireRegularFile(const std::string& path, ErrorKind kind) {
-  const auto fail = [&](const std::string& what) { throw Error(kind, path, what); };
+void requireFileOrFolder(const std::string& path, ErrorKind kind) {
+  const auto fail = [&](const std::string& what) { throw Error(kind, path.empty() ? "\"\"" : path, what); };
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) fail("no such file; check the path");
   if (error) fail("cannot be read: " + error.message());
-  if (std::filesystem::is_directory(status)) fail("is a directory; name a file in it");
-  if (!std::filesystem::is_regular_file(status)) fail("is not a regular file; write its content into one");
+  if (!std::filesystem::is_directory(status) && !std::filesystem::is_regular_file(status))
+    fail("is not a regular file; write its content into one");
+}
+
+void requireRegularFile(const std::string& path, ErrorKind kind) {
+  requireFileOrFolder(path, kind);
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw Error(kind, path, "is a directory; name a file in it");
 }
 
 std::string readFile(const std::string& path, std::uint64_t limit, ErrorKind kind) {

@@ -12,6 +12,9 @@ namespace cradle {
 /// never end).
 void requireRegularFile(const std::string& path, ErrorKind kind);
 
+/// The same where a folder will do, too.
+void requireFileOrFolder(const std::string& path, ErrorKind kind);
+
 /// All bytes of a regular file. Throws as requireRegularFile does, and if it is unreadable, empty, or larger than
 /// `limit` bytes; then nothing of it is read.
 std::string readFile(const std::string& path, std::uint64_t limit, ErrorKind kind);

@@ -122,11 +122,13 @@ void importFile(const std::string& path, ImportedFile& file) {
     throw Error(ErrorKind::mesh, path,
                 fmt::format("names the file \"{}\", which is not below its folder; a mesh may not reach outside of it",
                             files->outside()));
+  const std::string words = file.importer.GetErrorString();
+  if (words.find("bad_alloc") != words.npos) throw std::bad_alloc();
   if (file.scene == nullptr || file.scene->mRootNode == nullptr)
     throw Error(ErrorKind::mesh, path,
                 fmt::format("cannot be read as a mesh: {} (no mesh found); check the file, or export it again as 3ds "
                             "or obj",
-                            reasonOf(file.importer.GetErrorString())));
+                            reasonOf(words)));
 }
 
 Affine toAffine(const aiMatrix4x4& m) {
@@ -300,6 +302,7 @@ std::vector<ImportedObject> objectsOf(const std::string& path, double scale) {
 
 std::vector<ImportedObject> importObjects(const std::string& path, double scale) {
   CRADLE_CHECK(scale > 0);
+  requireRegularFile(path, ErrorKind::mesh);
   std::error_code failed;
   const std::uint64_t size = fs::file_size(path, failed);
   const ChildLimits limits{kMemoryForAnyFile, kMostMemory,

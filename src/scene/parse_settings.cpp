@@ -81,6 +81,8 @@ void parseLights(ObjectReader& root, Scene& scene) {
   if (const auto* array = std::get_if<JsonValue::Array>(&field->value->content); array != nullptr && array->empty()) {
     addFault(root.faults(), *field, "lights is empty; at least one is needed; leave the key out for the usual one");
   }
+  if (scene.lights.size() > kMostLights)
+    addFault(root.faults(), *field, fmt::format("{} lights; at most {} are allowed", scene.lights.size(), kMostLights));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include "core/printable.h"
 #include "scene/fault_list.h"
 
 namespace cradle {
@@ -27,6 +28,8 @@ std::string shortened(const std::string& reason) {
 
 std::string explainSyntaxFault(const std::string& rest, bool followsComma, const std::string& reason) {
   const std::string word = inQuotes(firstWord(rest));
+  if (!startsAsUtf8(rest) && reason.find("UTF-8") == reason.npos)
+    return word + " is no JSON, which is UTF-8; save the text as that";
   if (reason.find("invalid comment") != reason.npos) return "a comment has no end; /* needs a */";
   if (rest.empty()) return "the text ends too early; a scene is one JSON object, { ... }";
   for (const std::string_view name : kNotFinite) {

@@ -51,6 +51,7 @@ TextPlace TokenCursor::findToken() {
   followsComma_ = false;
   while (offset_ < text_.size()) {
     const char byte = text_[offset_];
+    if (rest().starts_with("/*") && rest().find("*/", 2) == text_.npos) break;  // a fault, at its start
     if (rest().starts_with("//") || rest().starts_with("/*")) {
       passComment();
     } else if (byte == ',' || byte == ':') {

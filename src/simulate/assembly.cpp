@@ -207,9 +207,8 @@ std::pair<int, int> bodiesOf(const Assembly& assembly, const ColliderPair& pair)
 }
 
 void refuse(const std::vector<std::string>& faults) {
-  constexpr std::size_t kMost = 50;
   if (faults.empty()) return;
-  const std::size_t told = std::min(faults.size(), kMost);
+  const std::size_t told = std::min(faults.size(), kMostFaultsTold);
   std::string text = fmt::format("{}", fmt::join(faults.begin(), faults.begin() + static_cast<long>(told), "\n"));
   if (faults.size() > told) text += fmt::format("\nand {} more", faults.size() - told);
   throw Error(ErrorKind::scene, "", text);

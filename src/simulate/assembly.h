@@ -42,7 +42,10 @@ Assembly assemble(const Scene& scene, const IslandPlan& island);
 /// Throws Error(scene) that names everything in the scene that no method simulates yet, one a line.
 void refuseUnsupported(const Scene& scene);
 
-/// Throws Error(scene) that tells of the first 50 faults, if there are any.
+constexpr std::size_t kMostFaultsTold = 50;
+
+/// Throws Error(scene) that tells of the first kMostFaultsTold faults, if there are any; of further ones their number
+/// counts.
 void refuse(const std::vector<std::string>& faults);
 
 }  // namespace cradle

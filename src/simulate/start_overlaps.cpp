@@ -134,7 +134,7 @@ void settle(const Scene& scene, Assembly& assembly, std::vector<std::string>& fa
   const std::vector<Overlap> overlaps = overlapsOf(scene, assembly);
   const std::size_t before = faults.size();
   for (const Overlap& overlap : overlaps)
-    if (overlap.depth > overlap.mendable) faults.push_back(faultOf(overlap));
+    if (overlap.depth > overlap.mendable) faults.push_back(faults.size() < kMostFaultsTold ? faultOf(overlap) : "");
   if (overlaps.empty() || faults.size() > before) return;
   std::vector<Overlap> left = overlaps;
   for (int round = 0; round < kMostPushRounds && !left.empty(); ++round) {

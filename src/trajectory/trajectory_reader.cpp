@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/read_file.h"
 #include "trajectory/database.h"
 #include "trajectory/trajectory_file.h"
 #include "trajectory/trajectory_schema.h"
@@ -22,16 +23,18 @@ namespace {
 // The header of a SQLite file. ("Database File Format" on sqlite.org, section 1.3)
 constexpr std::string_view kMagic("SQLite format 3\0", 16);
 constexpr std::size_t kHeaderSize = 100, kApplicationIdAt = 68;  // bytes; the id is big-endian
-constexpr std::size_t kVersionsAt = 18;                          // of writing and reading: 1, or 2 with a log beside
+constexpr std::size_t kVersionsAt = 18;                          // of writing and reading: 1, or kWithLog
+constexpr char kWithLog = 2;
 constexpr const char* kTableNames = "('meta', 'mesh', 'body', 'frame', 'state', 'event', 'energy')";
 
-/// The first bytes of a file; empty if it has not so many, or cannot be read.
+/// The first bytes of a file, or all; empty if it cannot be read.
 std::string fileHeaderOf(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return "";
   std::string header(kHeaderSize, '\0');
   std::ifstream file(path, std::ios::binary);
-  return file.read(header.data(), kHeaderSize) ? header : "";
+  file.read(header.data(), kHeaderSize);
+  return header.substr(0, static_cast<std::size_t>(file.gcount()));
 }
 
 std::int64_t oneInteger(Database& database, const std::string& sql) {
@@ -156,10 +159,12 @@ struct TrajectoryReader::Session {
 };
 
 TrajectoryReader::TrajectoryReader(const std::string& path) : path_(path) {
+  requireRegularFile(path, ErrorKind::usage);
   // Asked first because SQLite takes an empty file for a database.
   if (!isDatabaseFile(path)) throw Error(ErrorKind::usage, path, "is not a trajectory (or cannot be read)");
   const std::string header = fileHeaderOf(path);
-  if (header[kVersionsAt] != 1 || header[kVersionsAt + 1] != 1)
+  if (header.size() < kHeaderSize) throw Error(ErrorKind::usage, path, "is not a trajectory: it is cut off");
+  if (header[kVersionsAt] == kWithLog || header[kVersionsAt + 1] == kWithLog)
     throw Error(
         ErrorKind::usage, path,
         "keeps its changes in a log beside it, which cradle never does and does not read; `sqlite3 FILE 'PRAGMA "
@@ -337,7 +342,7 @@ bool isDatabaseFile(const std::string& path) {
 
 bool isTrajectoryFile(const std::string& path) {
   const std::string header = fileHeaderOf(path);
-  if (!header.starts_with(kMagic)) return false;
+  if (!header.starts_with(kMagic) || header.size() < kHeaderSize) return false;
   std::uint32_t id = 0;
   for (std::size_t i = 0; i < 4; ++i) id = id << 8 | static_cast<unsigned char>(header[kApplicationIdAt + i]);
   return id == kApplicationId;

@@ -12,27 +12,6 @@
 namespace cradle {
 namespace {
 
-TEST(Console, ShowsTextAsItIs) {
-  const std::string text = "m/s², 3 × \"a\"\n\u65e5\U0001F600~";
-  EXPECT_EQ(printable(text), text);
-}
-
-TEST(Console, ShowsWhatATerminalWouldObeyAsNumbers) {
-  EXPECT_EQ(printable("a\x1b[2Jb"), "a\\x1b[2Jb");
-  EXPECT_EQ(printable("a\rb\tc\x7f\b"), "a\\x0db\\x09c\\x7f\\x08");
-  EXPECT_EQ(printable("\u009b31m"), "\\xc2\\x9b31m");  // control sequence introducer, one character of Latin-1
-  EXPECT_EQ(printable(std::string_view("\0", 1)), "\\x00");
-}
-
-TEST(Console, ShowsWhatIsNoUtf8AsNumbers) {
-  EXPECT_EQ(printable("caf\xe9 x"), "caf\\xe9 x");             // Latin-1
-  EXPECT_EQ(printable("\xc3"), "\\xc3");                       // cut off
-  EXPECT_EQ(printable("\xc0\x9b"), "\\xc0\\x9b");              // 0x1b, written longer than it is
-  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");     // half of a surrogate pair
-  EXPECT_EQ(printable("\xf4\x90\x80\x80").substr(0, 4), "\\xf4");  // beyond the last character
-  EXPECT_EQ(printable("\x80\xff"), "\\x80\\xff");
-}
-
 /// Its standard output is `file`, and what is shown there is all written. Exits with the kind of the error.
 [[noreturn]] void showOn(int file) {
   noteInterruptions();

@@ -45,7 +45,7 @@ const std::vector<SyntaxFault> kSyntaxFaults{
     {"{\"a\": @\"line\nbreak\"}", "/a", "control character"},
     {"{\"a\": @\"\\q\"}", "/a", "invalid string"},
     {"{} @/ 1", "", "comment"},
-    {"{\"a\": 1 /* no end @", "/a", "a comment has no end"},
+    {"{\"a\": 1 @/* no end ", "/a", "a comment has no end"},
     {"{\"\xC3\xA4\": \"\xE2\x82\xAC@\xFF\"}", "/\xC3\xA4", "UTF-8"},
     {"{\"a\": \"\xC3@\"}", "/a", "UTF-8"},
     {"@\xFF\xFE{", "", "no JSON"},

@@ -1,5 +1,6 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
+#include <map>
 
 #include <random>
 
@@ -32,9 +33,14 @@ TEST_F(DamagedTrajectory, OtherFilesAreNone) {
   writeContent(folder_.file("scene.json"), "{\"schema\": \"cradle-scene/1\"}");
   writeContent(folder_.file("empty"), "");
   ASSERT_EQ(mkfifo(folder_.file("pipe").c_str(), 0600), 0);
-  for (const std::string name : {"scene.json", "empty", "missing", "pipe", "."}) {
+  const std::map<std::string, std::string> refusals = {{"scene.json", "is not a trajectory"},
+                                                       {"empty", "is not a trajectory"},
+                                                       {"missing", "no such file"},
+                                                       {"pipe", "is not a regular file"},
+                                                       {".", "is a directory"}};
+  for (const auto& [name, refusal] : refusals) {
     EXPECT_FALSE(isDatabaseFile(folder_.file(name))) << name;
-    expectError(ErrorKind::usage, folder_.file(name) + ": is not a trajectory", [&] { readAll(folder_.file(name)); });
+    expectError(ErrorKind::usage, folder_.file(name) + ": " + refusal, [&] { readAll(folder_.file(name)); });
   }
 }
 
