@@ -6,6 +6,7 @@ namespace cradle {
 namespace {
 
 constexpr double kMostVertices = 2147483647;  // vertex indices are int
+constexpr int kMostDirections = 1000;         // of a body: so many take 1 s and 150 MB at the start of a run
 
 bool isFixed(int body, const Scene& scene) {
   return body == kWorld || scene.bodies[static_cast<std::size_t>(body)].motion == Motion::fixed;
@@ -152,6 +153,36 @@ void parseKind(ObjectReader& root, const LinkKind<Link>& kind, NamePlaces& names
   }
 }
 
+/// Directions in which a link can hold its ends: rows of the matrix that is solved.
+int directionsOf(const LinkDraft& link) {
+  struct {
+    int operator()(const Spring&) const { return 0; }
+    int operator()(const Rod&) const { return 1; }
+    int operator()(const Rope&) const { return 1; }
+    int operator()(const BallJoint&) const { return 3; }
+    int operator()(const Hinge&) const { return 5; }
+  } directions;
+  return std::visit(directions, link.link);
+}
+
+/// All rows of a body depend on each other: their matrix is full.
+void checkDirections(const SceneDraft& draft, FaultList& faults) {
+  std::vector<int> directions(draft.scene.bodies.size(), 0);
+  for (const LinkDraft& link : draft.links)
+    for (const int body : {link.anchorA.anchor.body, link.anchorB.anchor.body}) {
+      if (isFixed(body, draft.scene)) continue;
+      int& sum = directions[static_cast<std::size_t>(body)];
+      const bool wasFew = sum <= kMostDirections;
+      sum += directionsOf(link);
+      if (wasFew && sum > kMostDirections)
+        addFault(faults, link.field,
+                 fmt::format("from here on, {} is held in more than {} directions; at most {} are allowed, where a rod "
+                             "or a rope counts 1, a ball joint 3 and a hinge 5; leave out what holds it twice",
+                             inQuotes(draft.scene.bodies[static_cast<std::size_t>(body)].name), kMostDirections,
+                             kMostDirections));
+    }
+}
+
 }  // namespace
 
 void parseLinks(ObjectReader& root, SceneDraft& draft) {
@@ -162,6 +193,7 @@ void parseLinks(ObjectReader& root, SceneDraft& draft) {
   parseKind<Rope>(root, {"ropes", "rope", above, parseRope}, names, draft);
   parseKind<BallJoint>(root, {"ballJoints", "ballJoint", above, parseBallJoint}, names, draft);
   parseKind<Hinge>(root, {"hinges", "hinge", above, parseHinge}, names, draft);
+  checkDirections(draft, root.faults());
 }
 
 }  // namespace cradle

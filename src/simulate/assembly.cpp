@@ -15,20 +15,12 @@ namespace {
 
 constexpr double kVelocityRounding = 1e-12;  // m/s a m of rod: less is no violation, only decimal digits
 
-/// Index of each scene body among those of an island, or kFixed.
-std::vector<int> movingIndices(const Scene& scene, const IslandPlan& island) {
-  std::vector<int> indices(scene.bodies.size(), kFixed);
-  for (std::size_t i = 0; i < island.bodies.size(); ++i)
-    indices[static_cast<std::size_t>(island.bodies[i])] = static_cast<int>(i);
-  return indices;
-}
-
-Attachment attach(const Anchor& anchor, const Scene& scene, const std::vector<int>& moving) {
+Attachment attach(const Anchor& anchor, const Scene& scene, const std::vector<int>& sceneBodies) {
   if (anchor.body == kWorld) return {kFixed, anchor.point};
-  const std::size_t index = static_cast<std::size_t>(anchor.body);
-  const Body& body = scene.bodies[index];
-  if (moving[index] == kFixed) return {kFixed, body.worldFromBody * anchor.point};
-  return {moving[index], anchor.point - body.massProperties.centerOfMass};
+  const Body& body = scene.bodies[static_cast<std::size_t>(anchor.body)];
+  const int moving = indexAmong(sceneBodies, anchor.body);
+  if (moving == kFixed) return {kFixed, body.worldFromBody * anchor.point};
+  return {moving, anchor.point - body.massProperties.centerOfMass};
 }
 
 void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
@@ -55,9 +47,9 @@ void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly)
 
 /// Calls add(link, anchorA, anchorB) for the links that hold a body of the island.
 template <class Links, class Add>
-void forEachLink(const Links& links, const Scene& scene, const std::vector<int>& moving, const Add& add) {
+void forEachLink(const Links& links, const Scene& scene, const std::vector<int>& sceneBodies, const Add& add) {
   for (const auto& link : links) {
-    const Attachment a = attach(link.anchorA, scene, moving), b = attach(link.anchorB, scene, moving);
+    const Attachment a = attach(link.anchorA, scene, sceneBodies), b = attach(link.anchorB, scene, sceneBodies);
     if (a.body != kFixed || b.body != kFixed) add(link, a, b);
   }
 }
@@ -75,26 +67,28 @@ HingeConstraint makeHinge(const Hinge& hinge, const Attachment& a, const Attachm
   return {a, b, bodyFromWorldA * axis, {bodyFromWorldB * across, bodyFromWorldB * axis.cross(across)}};
 }
 
-void addLinks(const Scene& scene, const std::vector<int>& moving, Assembly& assembly) {
+void addLinks(const Scene& scene, Assembly& assembly) {
   Mechanism& mechanism = assembly.mechanism;
-  forEachLink(scene.springs, scene, moving, [&](const Spring& spring, const Attachment& a, const Attachment& b) {
+  const std::vector<int>& sceneBodies = assembly.sceneBodies;
+  forEachLink(scene.springs, scene, sceneBodies, [&](const Spring& spring, const Attachment& a, const Attachment& b) {
     mechanism.springs.push_back({a, b, spring.stiffness, spring.damping, spring.restLength});
     assembly.names.springs.push_back(spring.name);
   });
   Constraints& constraints = mechanism.constraints;
-  forEachLink(scene.rods, scene, moving, [&](const Rod& rod, const Attachment& a, const Attachment& b) {
+  forEachLink(scene.rods, scene, sceneBodies, [&](const Rod& rod, const Attachment& a, const Attachment& b) {
     constraints.rods.push_back({a, b, rod.length});
     assembly.names.rods.push_back(rod.name);
   });
-  forEachLink(scene.ballJoints, scene, moving, [&](const BallJoint& joint, const Attachment& a, const Attachment& b) {
-    constraints.ballJoints.push_back({a, b});
-    assembly.names.ballJoints.push_back(joint.name);
-  });
-  forEachLink(scene.hinges, scene, moving, [&](const Hinge& hinge, const Attachment& a, const Attachment& b) {
+  forEachLink(scene.ballJoints, scene, sceneBodies,
+              [&](const BallJoint& joint, const Attachment& a, const Attachment& b) {
+                constraints.ballJoints.push_back({a, b});
+                assembly.names.ballJoints.push_back(joint.name);
+              });
+  forEachLink(scene.hinges, scene, sceneBodies, [&](const Hinge& hinge, const Attachment& a, const Attachment& b) {
     constraints.hinges.push_back(makeHinge(hinge, a, b, scene));
     assembly.names.hinges.push_back(hinge.name);
   });
-  forEachLink(scene.ropes, scene, moving, [&](const Rope& rope, const Attachment& a, const Attachment& b) {
+  forEachLink(scene.ropes, scene, sceneBodies, [&](const Rope& rope, const Attachment& a, const Attachment& b) {
     assembly.ropes.push_back({a, b, rope.maxLength, rope.restitution});
     assembly.ropeBodies.emplace_back(rope.anchorA.body, rope.anchorB.body);
   });
@@ -132,7 +126,7 @@ void addColliders(const Scene& scene, const IslandPlan& island, Assembly& assemb
           {body.worldFromBody.translation, body.worldFromBody.rotation * plane->normal, body.material});
       assembly.planeBodies.push_back(index);
     } else {
-      geometry.colliders.push_back(*colliderOf(body, scene, assembly.movingBodies[static_cast<std::size_t>(index)]));
+      geometry.colliders.push_back(*colliderOf(body, scene, indexAmong(assembly.sceneBodies, index)));
       assembly.colliderBodies.push_back(index);
       const Collider& collider = geometry.colliders.back();
       if (collider.body != kFixed) assembly.radii[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
@@ -145,22 +139,17 @@ void addColliders(const Scene& scene, const IslandPlan& island, Assembly& assemb
   }
 }
 
-/// The collider of a scene body, or -1.
-int colliderIndex(const Assembly& assembly, int body) {
-  const auto& bodies = assembly.colliderBodies;
-  const auto found = std::lower_bound(bodies.begin(), bodies.end(), body);
-  return found != bodies.end() && *found == body ? static_cast<int>(found - bodies.begin()) : -1;
-}
-
 void excludeJoined(const Scene& scene, Assembly& assembly) {
   for (const auto& [bodyA, bodyB] : pairsKeptFromTouching(scene)) {
-    const int a = colliderIndex(assembly, bodyA), b = colliderIndex(assembly, bodyB);
+    const int a = indexAmong(assembly.colliderBodies, bodyA), b = indexAmong(assembly.colliderBodies, bodyB);
     if (a >= 0 && b >= 0) assembly.geometry.excluded.emplace_back(std::min(a, b), std::max(a, b));
   }
 }
 
 /// Contact that cannot be computed is not looked for, but must not come about.
 void excludeUnsolved(ContactGeometry& geometry) {
+  const auto isSolved = [](const Collider& collider) { return canSolveContact(collider, &collider); };
+  if (std::all_of(geometry.colliders.begin(), geometry.colliders.end(), isSolved)) return;
   const std::vector<std::pair<std::size_t, std::size_t>> joined = geometry.excluded;
   for (std::size_t a = 0; a < geometry.colliders.size(); ++a)
     for (std::size_t b = a + 1; b < geometry.colliders.size(); ++b) {
@@ -185,11 +174,9 @@ void warnOfSteps(const Scene& scene, const ChosenMethod& method, Assembly& assem
 
 Assembly assemble(const Scene& scene, const IslandPlan& island) {
   Assembly assembly;
-  const std::vector<int> moving = movingIndices(scene, island);
-  assembly.movingBodies = moving;
   assembly.mechanism.gravity = scene.gravity;
   addBodies(scene, island, assembly);
-  addLinks(scene, moving, assembly);
+  addLinks(scene, assembly);
   addColliders(scene, island, assembly);
   excludeJoined(scene, assembly);
   excludeUnsolved(assembly.geometry);
@@ -199,6 +186,11 @@ Assembly assemble(const Scene& scene, const IslandPlan& island) {
   satisfyConstraints(scene, assembly);
   warnOfSteps(scene, island.method, assembly);
   return assembly;
+}
+
+int indexAmong(const std::vector<int>& bodies, int body) {
+  const auto found = std::lower_bound(bodies.begin(), bodies.end(), body);
+  return found != bodies.end() && *found == body ? static_cast<int>(found - bodies.begin()) : kFixed;
 }
 
 std::pair<int, int> bodiesOf(const Assembly& assembly, const ColliderPair& pair) {

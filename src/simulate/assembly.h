@@ -22,15 +22,17 @@ struct Assembly {
   Mechanism mechanism;
   ContactGeometry geometry;
   std::vector<RopeLimit> ropes;
-  VectorX state;                  // at time 0
-  std::vector<int> sceneBodies;   // scene body of each moving body
-  std::vector<int> movingBodies;  // moving body of each scene body, or kFixed: not in this island
-  PartNames names;                // taut ropes stand behind the rods named here
-  std::vector<double> radii;      // m: of each moving body's collider about its centre of mass; 0 without one
+  VectorX state;                 // at time 0
+  std::vector<int> sceneBodies;  // scene body of each moving body, ascending
+  PartNames names;               // taut ropes stand behind the rods named here
+  std::vector<double> radii;     // m: of each moving body's collider about its centre of mass; 0 without one
   std::vector<int> colliderBodies, planeBodies;  // scene body of each collider and plane of the geometry
   std::vector<std::pair<int, int>> ropeBodies;   // scene bodies A, B of each rope; kWorld
   std::vector<std::string> warnings;
 };
+
+/// Index of a scene body among ascending ones, or -1 (kFixed) if it is not there. O(log n).
+int indexAmong(const std::vector<int>& bodies, int body);
 
 /// Scene bodies A, B of a pair of colliders.
 std::pair<int, int> bodiesOf(const Assembly& assembly, const ColliderPair& pair);

@@ -139,6 +139,8 @@ std::vector<std::string> unsupportedContacts(const Scene& scene) {
   std::vector<std::optional<Collider>> colliders;
   for (const Body& body : scene.bodies) colliders.push_back(colliderOf(body, scene, kFixed));
   addSurfacesToFixed(scene, colliders);
+  const auto isSolved = [](const auto& collider) { return !collider || canSolveContact(*collider, &*collider); };
+  if (std::all_of(colliders.begin(), colliders.end(), isSolved)) return faults;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     for (std::size_t j = i + 1; j < scene.bodies.size(); ++j) {
       const Body &a = scene.bodies[i], &b = scene.bodies[j];

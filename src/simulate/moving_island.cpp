@@ -16,7 +16,7 @@ MovingIsland::MovingIsland(const Scene& source, Assembly parts)
       rightHandSide(equations.rightHandSide()),
       log(assembly),
       resting(assembly.mechanism, assembly.geometry, equations),
-      pushes(scene, assembly.movingBodies, log),
+      pushes(scene, assembly.sceneBodies, log),
       search(assembly.geometry),
       state(assembly.state),
       motions_(assembly.mechanism.bodies.size()) {}

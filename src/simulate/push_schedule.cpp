@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "mesh/ray_cast.h"
+#include "simulate/assembly.h"
 
 namespace cradle {
 namespace {
@@ -33,10 +34,10 @@ std::string missText(const Push& push, const Body& body, double time, const Vec3
 
 }  // namespace
 
-PushSchedule::PushSchedule(const Scene& scene, const std::vector<int>& movingBodies, EventLog& log)
+PushSchedule::PushSchedule(const Scene& scene, const std::vector<int>& sceneBodies, EventLog& log)
     : scene_(scene), log_(log) {
   for (const Push& push : scene.pushes) {
-    const int body = movingBodies[static_cast<std::size_t>(push.body)];
+    const int body = indexAmong(sceneBodies, push.body);
     if (body != kFixed) planned_.push_back({&push, body, false, false, {}});
   }
 }

@@ -10,8 +10,8 @@ namespace cradle {
 /// When the pushes of a scene begin and end, and where their rays hit.
 class PushSchedule {
  public:
-  /// Keeps references to all three. `movingBodies`: the moving body of each scene body, or kFixed.
-  PushSchedule(const Scene& scene, const std::vector<int>& movingBodies, EventLog& log);
+  /// Keeps references to all three. `sceneBodies`: scene body of each moving body, ascending.
+  PushSchedule(const Scene& scene, const std::vector<int>& sceneBodies, EventLog& log);
 
   /// The next time (s) at which a push begins or ends, later than the last call of apply; infinite if none. No step may
   /// go beyond it.

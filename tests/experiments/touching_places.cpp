@@ -24,7 +24,7 @@ class LastBody {
   explicit LastBody(const SceneSketch& sketch)
       : scene_(sceneOfBodies(sketch)), assembly_(assemble(scene_, touchingScene(scene_))) {
     const int last = static_cast<int>(sketch.bodies.size()) - 1;
-    index_ = static_cast<Eigen::Index>(assembly_.movingBodies[static_cast<std::size_t>(last)]);
+    index_ = static_cast<Eigen::Index>(indexAmong(assembly_.sceneBodies, last));
     ContactGeometry& geometry = assembly_.geometry;
     geometry.pairs.clear();
     const std::size_t collider = geometry.colliders.size() - 1;

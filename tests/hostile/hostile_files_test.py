@@ -6,18 +6,13 @@
 Each file is made here, in code. A refusal has an exit code, a message of one line that names the file, little memory and
 little time; and every file that was there before is as it was.
 """
-import json, os, shutil, sqlite3, struct, subprocess, sys, tempfile, threading, time, unittest
+import json, os, shutil, sqlite3, struct, subprocess, sys, tempfile, time, unittest, zlib
+
+import running
+from running import MOST_MEMORY, MOST_SECONDS, PATIENCE, read
 
 PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 BALL = os.path.join(SOURCE, "assets", "ball.3ds")
-MOST_MEMORY = 1 << 30  # bytes
-MOST_SECONDS = 2.0     # of CPU time, before a file is refused
-PATIENCE = 60          # s, for machines that do other things
-
-
-def read(path):
-    with open(path, "rb") as file:
-        return file.read()
 
 
 def scene(*bodies, **changes):
@@ -52,22 +47,6 @@ def journal_naming(victim, pages):
     return header.ljust(512, b"\0") + tail
 
 
-class Ended:
-    """A run that has ended: exit code (minus the signal that killed it), texts, CPU time (s) and memory (bytes)."""
-    def __init__(self, arguments, folder):
-        with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as error:
-            process = subprocess.Popen([PROGRAM, *arguments], stdin=subprocess.DEVNULL, stdout=out, stderr=error, cwd=folder)
-            timer = threading.Timer(PATIENCE, process.kill)
-            timer.start()
-            _, status, usage = os.wait4(process.pid, 0)
-            timer.cancel()
-            process.returncode = self.code = os.waitstatus_to_exitcode(status)
-            self.seconds, self.memory = usage.ru_utime + usage.ru_stime, 1024 * usage.ru_maxrss
-            for file in (out, error):
-                file.seek(0)
-            self.out, self.error = out.read().decode(errors="replace"), error.read().decode(errors="replace")
-
-
 class HostileTest(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.mkdtemp()
@@ -78,28 +57,13 @@ class HostileTest(unittest.TestCase):
         return os.path.join(self.folder, name)
 
     def write(self, name, content):
-        os.makedirs(os.path.dirname(self.path(name)), exist_ok=True)
-        data = json.dumps(content) if isinstance(content, dict) else content
-        with open(self.path(name), "wb") as file:
-            file.write(data.encode() if isinstance(data, str) else data)
-        return self.path(name)
+        return running.write(self.path(name), json.dumps(content) if isinstance(content, dict) else content)
 
     def everything(self):
-        """Name and content of all that is in the folder."""
-        found = {}
-        for folder, _, names in os.walk(self.folder):
-            for name in names:
-                path = os.path.join(folder, name)
-                if os.path.islink(path):
-                    found[path] = os.readlink(path)
-                elif os.path.isfile(path):
-                    found[path] = read(path) if os.path.getsize(path) < 1 << 26 else os.path.getsize(path)
-                else:
-                    found[path] = None
-        return found
+        return running.everything(self.folder)
 
     def run_cradle(self, *arguments):
-        return Ended(arguments, self.folder)
+        return running.Ended(PROGRAM, arguments, self.folder)
 
     def refuses(self, code, words, *arguments):
         before = self.everything()
@@ -312,6 +276,25 @@ class Places(HostileTest):
             path = self.write(name, "")
             os.truncate(path, size)
             self.refuses(code, [path, "%d.0 MB" % (size // 1_000_000)], "check" if code == 3 else "inspect", path)
+
+    def test_holes_of_files_take_little_memory(self):
+        path = self.write("m.stl", bytes(80) + struct.pack("<I", 4_000_000))
+        os.truncate(path, 84 + 4_000_000 * 50)
+        self.assertLess(self.run_cradle("inspect", path).memory, MOST_MEMORY)
+
+    def test_a_picture_larger_than_the_others_is_refused_by_its_header(self):
+        path = self.trajectory()
+        self.assertEqual(self.run_cradle("render", path, "-q", "--size", "32x32", "-o", self.path("p")).code, 0)
+        part = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        header = struct.pack(">2I5B", 16384, 16384, 8, 6, 0, 0, 0)
+        packer = zlib.compressobj()
+        rows = b"".join(packer.compress(bytes(1 + 4 * 16384)) for _ in range(16384)) + packer.flush()
+        self.write("p/frame_000001.png", b"\x89PNG\r\n\x1a\n" + part(b"IHDR", header) + part(b"IDAT", rows) + part(b"IEND", b""))
+        self.refuses(2, ["frame_000001.png", "16384x16384", "32x32"], "encode", self.path("p"), "-o", self.path("x.mp4"))
+        shutil.copytree(self.path("p"), self.path("q"))
+        os.remove(self.path("q/frame_000001.png"))
+        shutil.copy(self.path("q/frame_000000.png"), self.path("q/frame_000001.png"))
+        self.assertLess(self.run_cradle("compare", self.path("p"), self.path("q")).memory, MOST_MEMORY)
 
     def test_many_values_take_little_memory(self):
         path = self.write("a.json", "[" + 31_000_000 * "0," + "0]")

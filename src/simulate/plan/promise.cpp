@@ -68,27 +68,35 @@ int contactsOf(const Surface& a, const Surface& b) {
 class ContactSurvey {
  public:
   ContactSurvey(const Scene& scene, const IslandPlan& island, const Meetings& meetings)
-      : scene_(scene), loops_(scene.bodies.size() + 1), surfaces_(scene.bodies.size()) {
+      : scene_(scene), loops_(scene.bodies.size() + 1), surfaces_(scene.bodies.size()), parts_(scene.bodies.size()) {
     for (const int body : island.touching) surfaces_[static_cast<std::size_t>(body)] = surfaceOf(bodyOf(body), scene);
     for (std::size_t i = 0; i < island.touching.size(); ++i)
       for (std::size_t j = i + 1; j < island.touching.size(); ++j)
         if (meetings.mayMeet(island.touching[i], island.touching[j])) add(island.touching[i], island.touching[j]);
-    for (std::vector<int>* bodies : {&found_.edgeOwners, &found_.tippers, &found_.movers}) {
-      std::sort(bodies->begin(), bodies->end());
-      bodies->erase(std::unique(bodies->begin(), bodies->end()), bodies->end());
+    for (int body = 0; body < std::ssize(parts_); ++body) {
+      const Part& part = partOf(body);
+      if (part.ownsEdge) found_.edgeOwners.push_back(body);
+      if (part.mayTip) found_.tippers.push_back(body);
+      if (part.moves) found_.movers.push_back(body);
     }
   }
 
   const PossibleContacts& found() const { return found_; }
 
  private:
+  /// What a body is in the contacts that it may have.
+  struct Part {
+    bool ownsEdge = false, mayTip = false, moves = false;
+  };
+
   const Body& bodyOf(int body) const { return scene_.bodies[static_cast<std::size_t>(body)]; }
+  Part& partOf(int body) { return parts_[static_cast<std::size_t>(body)]; }
 
   void add(int a, int b) {
     const Surface &surfaceA = surfaces_[static_cast<std::size_t>(a)],
                   &surfaceB = surfaces_[static_cast<std::size_t>(b)];
     for (const int body : {a, b})
-      if (bodyOf(body).motion == Motion::dynamic) found_.movers.push_back(body);
+      if (bodyOf(body).motion == Motion::dynamic) partOf(body).moves = true;
     addEdges(a, surfaceA, surfaceB);
     addEdges(b, surfaceB, surfaceA);
     const SurfacePair& law =
@@ -115,8 +123,8 @@ class ContactSurvey {
   void addEdges(int body, const Surface& own, const Surface& other) {
     if (own.isRound()) return;
     found_.areRound = false;
-    if (!other.isPlane()) found_.edgeOwners.push_back(body);
-    if (own.kind == ColliderKind::cylinder) found_.tippers.push_back(body);
+    if (!other.isPlane()) partOf(body).ownsEdge = true;
+    if (own.kind == ColliderKind::cylinder) partOf(body).mayTip = true;
   }
 
   /// All that is fixed is one.
@@ -128,6 +136,7 @@ class ContactSurvey {
   const Scene& scene_;
   Islands loops_;
   std::vector<Surface> surfaces_;  // by scene body
+  std::vector<Part> parts_;        // by scene body
   PossibleContacts found_;
 };
 

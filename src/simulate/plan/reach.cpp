@@ -86,6 +86,7 @@ bool isPushed(int body, const Scene& scene) {
 
 /// Bodies on springs that all end at fixed points, and that nothing else moves.
 void narrowBySprings(const Scene& scene, const std::vector<char>& touches, std::vector<Reach>& reaches) {
+  const std::vector<Tie> ties = tiesOf(scene);
   for (std::size_t index = 0; index < scene.bodies.size(); ++index) {
     if (touches[index]) continue;
     const int body = static_cast<int>(index);
@@ -98,7 +99,7 @@ void narrowBySprings(const Scene& scene, const std::vector<char>& touches, std::
       energy += 0.5 * spring.stiffness * extension * extension;
       isAlone = isAlone && (isFixed(spring.anchorA, scene) || isFixed(spring.anchorB, scene));
     }
-    for (const Tie& tie : tiesOf(scene))
+    for (const Tie& tie : ties)
       for (const auto& [end, other] : {std::pair(tie.a, tie.b), std::pair(tie.b, tie.a)})
         isAlone = isAlone && (end.body != body || isFixed(other, scene));
     if (!isAlone) continue;

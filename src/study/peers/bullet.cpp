@@ -112,7 +112,8 @@ BulletWorld::BulletWorld(const Scene& scene, const Assembly& parts, const Bullet
     info.m_restitutionVelocityThreshold = kBounceFrom;
     processingThreshold_ = 0;
   }
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) addBody(scene.bodies[i], scene, assembly_.movingBodies[i]);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    addBody(scene.bodies[i], scene, indexAmong(assembly_.sceneBodies, static_cast<int>(i)));
   addJoints();
   letJoinedOverlap(scene);
 }

@@ -92,7 +92,7 @@ class ModelText {
 
   void addFixedGeoms() {
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
-      if (assembly_.movingBodies[i] == kFixed) addGeom(i, scene_.bodies[i].worldFromBody);
+      if (scene_.bodies[i].motion == Motion::fixed) addGeom(i, scene_.bodies[i].worldFromBody);
   }
 
   void addGeom(std::size_t sceneBody, const RigidTransform& frameFromBody) {
@@ -190,7 +190,7 @@ class ModelText {
     std::sort(touching_.begin(), touching_.end());
     for (const std::size_t a : touching_)
       for (const std::size_t b : touching_) {
-        if (a >= b || (assembly_.movingBodies[a] == kFixed && assembly_.movingBodies[b] == kFixed)) continue;
+        if (a >= b || (scene_.bodies[a].motion == Motion::fixed && scene_.bodies[b].motion == Motion::fixed)) continue;
         if (joined.count({static_cast<int>(a), static_cast<int>(b)}) > 0) continue;
         addPair(a, b);
       }

@@ -131,7 +131,7 @@ void OdeWorld::addGeom(int sceneBody) {
   const Body& body = scene_.bodies[static_cast<std::size_t>(sceneBody)];
   const auto shape = peerShapeOf(body, scene_);
   if (!shape) return;
-  const int moving = assembly_.movingBodies[static_cast<std::size_t>(sceneBody)];
+  const int moving = indexAmong(assembly_.sceneBodies, sceneBody);
   const RigidTransform bodyFromFrame{Quat::Identity(), body.massProperties.centerOfMass};
   const RigidTransform place =
       moving == kFixed ? body.worldFromBody * shape->bodyFromShape : bodyFromFrame.inverse() * shape->bodyFromShape;
