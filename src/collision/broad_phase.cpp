@@ -1,10 +1,13 @@
 #include "collision/broad_phase.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
 #include "collision/separation.h"
+#include "core/error.h"
 
 namespace cradle {
 namespace {
@@ -195,7 +198,7 @@ void BroadPhase::compareIntervals(const ContactGeometry& geometry, std::size_t f
                                [&](const Interval& interval) { return interval.cell < cell; }) -
           intervals_.begin());
     }
-  for (std::size_t i = first; i < last; ++i) {
+  for (std::size_t i = first; i < last && found.size() <= kMaxPairs; ++i) {
     const Interval& here = intervals_[i];
     const auto compareFrom = [&](std::size_t from, std::int64_t cell) {
       for (std::size_t j = from; j < count && intervals_[j].cell == cell && intervals_[j].from <= here.to; ++j)
@@ -214,7 +217,7 @@ void BroadPhase::compareIntervals(const ContactGeometry& geometry, std::size_t f
 }
 
 void BroadPhase::compareWide(const ContactGeometry& geometry) {
-  for (std::size_t i = 0; i < wide_.size(); ++i) {
+  for (std::size_t i = 0; i < wide_.size() && found_[0].size() <= kMaxPairs; ++i) {
     for (const Interval& interval : intervals_) compare(geometry, wide_[i], interval.collider, found_[0]);
     for (std::size_t j = i + 1; j < wide_.size(); ++j) compare(geometry, wide_[i], wide_[j], found_[0]);
   }
@@ -226,6 +229,12 @@ void BroadPhase::sortFound() {
   for (const Found& found : found_)
     for (const auto& [a, b] : found) ++next_[a + 1];
   for (std::size_t i = 1; i < next_.size(); ++i) next_[i] += next_[i - 1];
+  if (next_.back() > kMaxPairs)
+    throw Error(
+        ErrorKind::limit, "",
+        fmt::format("more than {} pairs of bodies are so near to each other that they may touch; at most {} are "
+                    "simulated: take fewer bodies, or move those apart that are in one another",
+                    kMaxPairs, kMaxPairs));
   sorted_.resize(next_.back());
   for (const Found& found : found_)
     for (const auto& pair : found) sorted_[next_[pair.first]++] = pair;

@@ -13,14 +13,19 @@ namespace cradle {
 /// box.
 class BroadPhase {
  public:
+  /// Some 200 MB; a heap of a hundred thousand bodies has half as many. Bodies that are all in one another have n^2
+  /// / 2.
+  static constexpr std::size_t kMaxPairs = 2'000'000;
+
   BroadPhase() = default;
   /// Shares the work among `threads`, to which it keeps a reference; the list is the same for any number.
   explicit BroadPhase(WorkerThreads& threads) : threads_(&threads) {}
 
   /// Sets geometry.pairs to all pairs that may come nearer than `margin` (m) to each other while no point of moving
   /// body i moves by more than `motions[i]` (m) from where it is in `state`; and some others. Against planes first,
-  /// then by colliders a < b; pairs of fixed bodies and excluded ones are left out. True if the list is a new one. O(n
-  /// log n) for the usual scene, as long as all that is near on one axis is not far on the others.
+  /// then by colliders a < b; pairs of fixed bodies and excluded ones are left out. True if the list is a new one.
+  /// Throws Error(limit) if there are more than kMaxPairs. O(n log n) for the usual scene, as long as all that is near
+  /// on one axis is not far on the others.
   bool update(const VectorX& state, const std::vector<double>& motions, double margin, ContactGeometry& geometry);
 
   /// Where bodies are, and where they go until the next update.

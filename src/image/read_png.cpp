@@ -8,6 +8,7 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 
 #include "core/error.h"
@@ -19,6 +20,8 @@ namespace {
 
 constexpr int kMostPixels = 16384;  // a side
 constexpr png_uint_32 kAnySize = PNG_UINT_31_MAX;
+// Bytes that one byte of a file becomes at most: a match of 258 bytes takes two bits or more (RFC 1951, 3.2.5).
+constexpr std::uint64_t kMostDeflation = 1032;
 
 /// A file that is being read. libpng tells of a fault by a jump: no function between that and its target has an object
 /// with a destructor.
@@ -55,6 +58,17 @@ class PngReading {
       throw Error(ErrorKind::usage, path_,
                   fmt::format("is {}x{} pixels; allowed are 1..{} a side", width, height, kMostPixels));
     return {static_cast<int>(width), static_cast<int>(height)};
+  }
+
+  /// Throws if the file is too short for the rows that its header names, before there is memory for them.
+  void requireRows() const {
+    const std::uint64_t rowBytes = png_get_rowbytes(png_, info_), height = png_get_image_height(png_, info_);
+    std::error_code failed;
+    const std::uint64_t size = std::filesystem::file_size(path_, failed);
+    if (!failed && size * kMostDeflation < rowBytes * height)
+      throw Error(ErrorKind::usage, path_,
+                  fmt::format("is not a picture that can be read: it has {} bytes, too few for {} rows of {}", size,
+                              height, rowBytes));
   }
 
   void readRows(Image& image) {
@@ -109,6 +123,7 @@ PictureSize readPngSize(const std::string& path) {
 Image readPng(const std::string& path) {
   PngReading reading(path);
   const PictureSize size = reading.readHeader();
+  reading.requireRows();
   Image image(size.width, size.height);
   reading.readRows(image);
   return image;

@@ -25,7 +25,7 @@ constexpr rlim_t kMostFiles = 64;  // open at once
 // The first byte of what the child sends: the answer, an Error (its kind follows), or why there is none.
 constexpr char kAnswer = 'A', kError = 'E', kFailure = 'F';
 
-std::uint64_t startMemory = 0;  // bytes, of the child
+std::uint64_t startMemory = 0;  // bytes, of the child; 0: this process is none
 
 void limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
   const rlimit limits{soft, hard};
@@ -145,6 +145,7 @@ ChildAnswer answerOfChild(const std::function<std::string()>& work, const ChildL
 }
 
 void limitMemory(std::uint64_t bytes) {
+  if (startMemory == 0) return;
   rlimit limits{};
   getrlimit(RLIMIT_AS, &limits);
   limits.rlim_cur = std::min<rlim_t>(startMemory + bytes, limits.rlim_max);

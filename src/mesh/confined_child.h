@@ -23,7 +23,7 @@ struct ChildAnswer {
 /// Error of the work is thrown here. Throws Error(limit) if no process can be started.
 ChildAnswer answerOfChild(const std::function<std::string()>& work, const ChildLimits& limits);
 
-/// In the child: from here on it may have so many bytes.
+/// In the child: from here on it may have so many bytes. Elsewhere nothing.
 void limitMemory(std::uint64_t bytes);
 
 }  // namespace cradle

@@ -281,7 +281,9 @@ MeshPiece readPiece(const ImportedFile& file, const Placement& placement, double
   return piece;
 }
 
-std::vector<ImportedObject> objectsOf(const std::string& path, double scale) {
+}  // namespace
+
+std::vector<ImportedObject> parseObjects(const std::string& path, double scale) {
   ImportedFile file;
   importFile(path, file);
   std::vector<Placement> placements;
@@ -298,8 +300,6 @@ std::vector<ImportedObject> objectsOf(const std::string& path, double scale) {
   return objects;
 }
 
-}  // namespace
-
 std::vector<ImportedObject> importObjects(const std::string& path, double scale) {
   CRADLE_CHECK(scale > 0);
   requireRegularFile(path, ErrorKind::mesh);
@@ -307,7 +307,7 @@ std::vector<ImportedObject> importObjects(const std::string& path, double scale)
   const std::uint64_t size = fs::file_size(path, failed);
   const ChildLimits limits{kMemoryForAnyFile, kMostMemory,
                            kSecondsForAnyFile + (failed ? 0 : std::min(size, kLargestFiles) / kBytesPerSecond)};
-  const auto answer = answerOfChild([&] { return bytesOf(objectsOf(path, scale)); }, limits);
+  const auto answer = answerOfChild([&] { return bytesOf(parseObjects(path, scale)); }, limits);
   if (!answer.failure.empty())
     throw Error(
         ErrorKind::mesh, path,

@@ -18,4 +18,7 @@ struct ImportedObject {
 /// its folder. Throws Error(mesh).
 std::vector<ImportedObject> importObjects(const std::string& path, double scale);
 
+/// What the child does, in the process that calls: a damaged file may crash it, or fill its memory. Throws Error(mesh).
+std::vector<ImportedObject> parseObjects(const std::string& path, double scale);
+
 }  // namespace cradle

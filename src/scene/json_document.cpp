@@ -18,7 +18,7 @@ namespace cradle {
 namespace {
 
 constexpr std::size_t kMostLevels = 64;
-constexpr std::size_t kMostValues = 8'000'000;  // some 600 MB; a hundred thousand bodies have fewer
+constexpr std::size_t kMostValues = 4'000'000;  // some 300 MB; a hundred thousand bodies have fewer
 
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:

@@ -254,7 +254,8 @@ void TrajectoryReader::readFrameTimes() {
   while (query.step()) {
     if (query.integer(0) != frameCount()) database.failDamaged(fmt::format("frame {} is missing", frameCount()));
     const double time = query.real(1);
-    if (!frameTimes_.empty() && time <= frameTimes_.back()) database.failDamaged("its frames are not in order of time");
+    if (frameTimes_.empty() ? time < 0 : time <= frameTimes_.back())
+      database.failDamaged("its frames are not in order of time, from 0 on");
     frameTimes_.push_back(time);
   }
   if (isFinished() && frameTimes_.empty()) database.failDamaged("its frames are missing");

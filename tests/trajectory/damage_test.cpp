@@ -98,6 +98,7 @@ TEST_F(DamagedTrajectory, WithWrongValuesIsRefused) {
   expectRefused("UPDATE body SET iyy = 0.0 WHERE id = 2", "wedge");
   expectRefused("UPDATE frame SET time = 'noon' WHERE id = 1", "time");
   expectRefused("UPDATE frame SET time = 0.0 WHERE id = 1", "order");
+  expectRefused("UPDATE frame SET time = -1.0 WHERE id = 0", "order");
   expectRefused("UPDATE event SET kind = 'crash'", "crash");
   expectRefused("UPDATE event SET a = 3", "event");
   expectRefused("UPDATE event SET b = -1", "event");
