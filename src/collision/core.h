@@ -29,7 +29,6 @@ class Core {
   // Of a cylinder and a segment:
   const Vec3& axis() const { return axis_; }                // unit
   const Vec3& center() const { return center_; }            // m
-  double halfLength() const { return halfLength_; }         // m
   double rimRadius() const { return collider_.rimRadius; }  // m
   bool isRound() const { return rimRadius() > 0; }
   Vec3 end(double side) const { return center_ + side * halfLength_ * axis_; }  // m; side 1 or -1

@@ -179,6 +179,13 @@ Vec3 relativeVelocity(const Contact& contact, const VectorX& places, const Vecto
          pointVelocity(contact, contact.bodyA, places, velocities);
 }
 
+double smallestSize(const Contact& contact, const std::vector<double>& sizes) {
+  double size = INFINITY;
+  for (const int body : {contact.bodyA, contact.bodyB})
+    if (body != kFixed) size = std::min(size, sizes[static_cast<std::size_t>(body)]);
+  return size;
+}
+
 double openingSpeed(const Contact& contact, const VectorX& state) {
   return contact.normal.dot(relativeVelocity(contact, state));
 }

@@ -45,6 +45,9 @@ Vec3 relativeVelocity(const Contact& contact, const VectorX& places, const Vecto
 /// Speed (m/s) with which the surfaces leave each other at a contact; < 0 is closing.
 double openingSpeed(const Contact& contact, const VectorX& state);
 
+/// Size (m) of the smaller of the moving bodies at a contact; `sizes` are those of all moving bodies.
+double smallestSize(const Contact& contact, const std::vector<double>& sizes);
+
 /// Acceleration (m/s^2) with which the two material points of a contact leave each other along its normal, for the
 /// rates of all velocities in `rate`.
 double openingAcceleration(const Contact& contact, const VectorX& state, const VectorX& rate);

@@ -21,10 +21,4 @@ double lengtheningAcceleration(const RopeLimit& rope, const VectorX& state, cons
   return motion.direction.dot(acceleration) + across / (rope.maxLength - motion.slackLength);
 }
 
-double inverseMassAlong(const RopeLimit& rope, const std::vector<RigidBody>& bodies, const VectorX& state) {
-  const RopeMotion motion = motionOf(rope, state);
-  return inverseMassAlong(motion.direction, rope.anchorA, bodies, state) +
-         inverseMassAlong(motion.direction, rope.anchorB, bodies, state);
-}
-
 }  // namespace cradle

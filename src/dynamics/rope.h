@@ -23,7 +23,4 @@ RopeMotion motionOf(const RopeLimit& rope, const VectorX& state);
 /// d^2/dt^2 of the distance of a rope's ends (m/s^2), for the rates of all velocities in `rate`.
 double lengtheningAcceleration(const RopeLimit& rope, const VectorX& state, const VectorX& rate);
 
-/// Inverse mass (1/kg) that both ends together show along the rope.
-double inverseMassAlong(const RopeLimit& rope, const std::vector<RigidBody>& bodies, const VectorX& state);
-
 }  // namespace cradle

@@ -26,17 +26,17 @@ constexpr double kConvergedPart = 1e-12;                                   // of
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // of the sums in G z
 constexpr double kMaxRoundingRatio =
     1e-6;  // of the largest velocity: more is no rounding, but impulses that grow without bound
-constexpr double kProximalPart = 1e-7;  // of the largest inverse mass: makes singular problems regular
-constexpr double kFirstPenaltyParts[] = {1e-5, 1e-3,
-                                         0.1};  // of the same; heavy on light wants it small, many contacts large
-constexpr int kFirstRound = 10;                 // iterations before Newton's method is tried
-constexpr double kRoundGrowth = 1.2;            // and before each further trial: far from the end, trials are waste
-constexpr Index kFewContacts = 12;              // more are often redundant
-constexpr double kGoodPart = 1e-9;              // of the largest velocity: good enough where rounding is far off
-constexpr int kMostIterations = 500;            // from each of them
-constexpr double kInteriorPart = 1e-9;          // of the largest velocity: where the interior point method ends
-constexpr double kRegularPart = 1e-9;           // of the largest inverse mass: what makes Newton's matrix regular
-constexpr int kProximalSteps = 3;               // each leaves a billionth of the error, or of one in a stiff direction
+constexpr double kProximalPart = 1e-7;      // of the largest inverse mass: makes singular problems regular
+constexpr double kFirstPenaltyPart = 1e-5;  // of the same; heavy on light wants it small, many contacts large
+constexpr double kFurtherPenaltyParts[] = {1e-3, 0.1};
+constexpr int kFirstRound = 10;         // iterations before Newton's method is tried
+constexpr double kRoundGrowth = 1.2;    // and before each further trial: far from the end, trials are waste
+constexpr Index kFewContacts = 12;      // more are often redundant
+constexpr double kGoodPart = 1e-9;      // of the largest velocity: good enough where rounding is far off
+constexpr int kMostIterations = 500;    // from each of them
+constexpr double kInteriorPart = 1e-9;  // of the largest velocity: where the interior point method ends
+constexpr double kRegularPart = 1e-9;   // of the largest inverse mass: what makes Newton's matrix regular
+constexpr int kProximalSteps = 3;       // each leaves a billionth of the error, or of one in a stiff direction
 constexpr int kMostNewtonSteps = 20, kFewNewtonSteps = 6;  // with few contacts, and with more
 
 /// Impulses and velocities multiplied contact by contact so that each has inverse mass 1 and the largest free velocity
@@ -171,9 +171,9 @@ VectorX ScaledProblem::solve(const VectorX& near) {
     VectorX z = scaled(near);
     if (take(z)) return unscaled(best_);
   }
-  if (solveFrom(kFirstPenaltyParts[0] * largest_) || solveFromInside()) return unscaled(best_);
+  if (solveFrom(kFirstPenaltyPart * largest_) || solveFromInside()) return unscaled(best_);
   if (leastResidual_ <= kGoodPart) return unscaled(best_);
-  for (const double part : kFirstPenaltyParts)
+  for (const double part : kFurtherPenaltyParts)
     if (solveFrom(part * largest_)) break;
   return unscaled(best_);
 }

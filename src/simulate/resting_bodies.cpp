@@ -76,7 +76,7 @@ bool RestingBodies::canBeHeld(const std::vector<int>& islands, int island, const
     frictions.push_back(geometry_.pairs[contact.pair].law.staticFriction);
     const Vec3 velocity = relativeVelocity(contact, state),
                slip = velocity - contact.normal.dot(velocity) * contact.normal;
-    const double size = sizes_[static_cast<std::size_t>(contact.movingBody())];
+    const double size = smallestSize(contact, sizes_);
     if (frictions.back() == 0 && slip.norm() > kSmoothSlip * std::sqrt(mechanism_.gravity.norm() * size)) return false;
   }
   hold(supports, frictions, state, accelerations);

@@ -20,7 +20,6 @@ struct BallWorld {
 
   int ballCount() const { return static_cast<int>(radii.size()); }
   int planeCount() const { return static_cast<int>(planes.size()); }
-  int obstacleCount() const { return static_cast<int>(obstacleBodies.size()); }
 };
 
 /// The balls of an island that nothing but gravity acts upon, if they are no more than that: all that moves in it is a

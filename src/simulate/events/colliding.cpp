@@ -5,7 +5,6 @@
 
 #include "dynamics/invariants.h"
 #include "simulate/events/event_contacts.h"
-#include "simulate/steps/contact_energy.h"
 
 namespace cradle {
 namespace {

@@ -11,11 +11,6 @@
 #include "simulate/thresholds.h"
 
 namespace cradle {
-namespace {
-
-constexpr double kMostResidual = 1e-6;  // of gravity: what forces may leave of bodies at rest
-
-}  // namespace
 
 bool EventContacts::isAnySlow() const {
   for (std::size_t body = 0; body < island_.assembly.mechanism.bodies.size(); ++body)
@@ -36,7 +31,7 @@ Islands EventContacts::findRestGroups() const {
   const Mechanism& mechanism = island_.assembly.mechanism;
   Islands groups(mechanism.bodies.size());
   for (const Contact& contact : touching_) {
-    const double size = island_.assembly.radii[static_cast<std::size_t>(contact.movingBody())];
+    const double size = smallestSize(contact, island_.assembly.radii);
     const double still = kRestSpeedFloor + stillPart_ * std::sqrt(mechanism.gravity.norm() * size);
     if (openingSpeed(contact, island_.state) <= still) groups.join(contact.bodyA, contact.bodyB);
   }
@@ -101,7 +96,7 @@ bool EventContacts::isHeld(const Islands& groups, int group) {
 /// Whether the accelerations in rate_ leave the bodies of a group where they are.
 bool EventContacts::isBalanced(const Islands& groups, int group) const {
   const Mechanism& mechanism = island_.assembly.mechanism;
-  const double most = std::min(kMostResidual, stillPart_) * mechanism.gravity.norm();
+  const double most = stillPart_ * mechanism.gravity.norm();
   for (std::size_t body = 0; body < mechanism.bodies.size(); ++body) {
     if (groups.islandOf(static_cast<int>(body)) != group) continue;
     const Eigen::Index index = static_cast<Eigen::Index>(body);

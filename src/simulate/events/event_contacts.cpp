@@ -5,7 +5,6 @@
 
 #include "collision/core.h"
 #include "dynamics/invariants.h"
-#include "impact/cone_problem.h"
 #include "impact/contact_impulse.h"
 #include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
@@ -207,7 +206,7 @@ bool EventContacts::endBounces(const VectorX& approach, std::vector<ImpactContac
     if (!isEvaluated) island_.equations.evaluate(state, rate_);
     isEvaluated = true;
     const double closing = -openingAcceleration(impact.contact, state, rate_);
-    const double size = island_.assembly.radii[static_cast<std::size_t>(impact.contact.movingBody())];
+    const double size = smallestSize(impact.contact, island_.assembly.radii);
     if (!(closing > 0) || speed > lastBounce * std::sqrt(closing * size)) continue;
     impact.restSpeed = INFINITY;
     restDelay_ = std::max(restDelay_, 2 * speed / (closing * (1 - restitution)));

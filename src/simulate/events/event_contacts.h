@@ -81,7 +81,8 @@ class EventContacts {
   double reach_;                      // m: of the contacts that may take part in a sequence of impacts
   LastingContacts lasting_;
   ConstraintSolver solver_;
-  double stillPart_;      // of the speed that a body gains when it falls by its size: slower is still
+  double stillPart_;      // of the speed that a body gains when it falls by its size: slower is still; and of gravity:
+                          // what forces may leave of bodies at rest
   double shortLever_;     // sizes of a body: contacts do not serve that a joint leaves less
   double restDelay_ = 0;  // s: how long the bounces that are left out would take
   std::vector<Contact> touching_;

@@ -37,7 +37,7 @@ const LastingContacts::Former* LastingContacts::formerOf(const Entry& entry) con
     const ColliderPair &a = former.entry.pair, &b = entry.pair;
     if (a.a != b.a || a.b != b.b || a.againstPlane != b.againstPlane) continue;
     const ContactPlace place = placeOf(former.constraint, island_.state, frames_);
-    const double size = island_.assembly.geometry.colliders[a.a].boundingRadius;
+    const double size = smallestSize(entry.contact, island_.assembly.radii);
     if (std::abs(place.normal.dot(entry.contact.normal)) > kSameDirection &&
         (place.point - entry.contact.point).norm() < kSamePoint * size)
       return &former;
@@ -75,7 +75,7 @@ void LastingContacts::recordChanges() {
       Vec3 spin = Vec3::Zero();
       if (contact.bodyA != kFixed) spin -= angularVelocity(island_.state, contact.bodyA);
       if (contact.bodyB != kFixed) spin += angularVelocity(island_.state, contact.bodyB);
-      const double size = island_.assembly.geometry.colliders[former.entry.pair.a].boundingRadius;
+      const double size = smallestSize(contact, island_.assembly.radii);
       record(spin.norm() * size > kSlowestSliding ? EventKind::roll : EventKind::stick);
     } else if (now->slides && (stuck || (slid && turnsBack(former, *now)))) {
       record(EventKind::slip);

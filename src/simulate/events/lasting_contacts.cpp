@@ -151,7 +151,8 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
 bool LastingContacts::slidesTooSlowly(const Entry& entry, double acceleration, double gravity) const {
   const double friction = entry.pair.law.dynamicFriction * gravity;  // m/s^2
   const double time = island_.scene.duration, accuracy = island_.scene.accuracy;
-  const bool rolls = island_.assembly.geometry.colliders[entry.pair.a].isBall();
+  const std::vector<Collider>& colliders = island_.assembly.geometry.colliders;
+  const bool rolls = colliders[entry.pair.a].isBall() || (!entry.pair.againstPlane && colliders[entry.pair.b].isBall());
   const double slowest = std::max(rolls ? 0 : time * std::sqrt(friction * accuracy) / 20, kTurningTime * friction);
   return slidingSpeed(entry.contact, island_.state) + acceleration * time < slowest;
 }
@@ -165,7 +166,7 @@ void LastingContacts::noteUnsolved(const std::vector<const Entry*>& entries, dou
 
 /// m/s: what leaves more slowly does not leave.
 double LastingContacts::stillSpeed(const Contact& contact) const {
-  const double size = island_.assembly.radii[static_cast<std::size_t>(contact.movingBody())];
+  const double size = smallestSize(contact, island_.assembly.radii);
   return kLastBouncePart * std::sqrt(mechanism().gravity.norm() * size) + kRestSpeedFloor;
 }
 

@@ -118,7 +118,7 @@ bool hasSheet(const Scene& scene, const IslandPlan& island) {
     const auto collider = colliderOf(body, scene, kFixed);
     if (!collider || collider->kind() != ColliderKind::mesh) return false;
     const auto model = static_cast<std::size_t>(std::get<ModelShape>(body.shape).model);
-    return !checkSolid(scene.models[model].solid).isSolid;
+    return !checkSolid(scene.models[model].solid).isClosed;
   });
 }
 

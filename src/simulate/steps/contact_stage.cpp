@@ -123,7 +123,8 @@ void ContactStage::loosenShortLevers(const VectorX& state, std::vector<Contact>&
   if (contacts.empty() || !solver_.hasConstraints()) return;
   const ImpulseResponse response(assembly_.mechanism.bodies, solver_);
   for (Contact& contact : contacts)
-    if (hasShortLever(contact, response, state, kShortLever)) contact.separation += kLoosened * sizeAt(contact);
+    if (hasShortLever(contact, response, state, kShortLever))
+      contact.separation += kLoosened * smallestSize(contact, assembly_.radii);
 }
 
 void ContactStage::begin(double time, const VectorX& before, const VectorX& state, double length) {
@@ -198,14 +199,6 @@ void ContactStage::takeOutOverlaps(const RopeStage& ropes, VectorX& state) {
 bool ContactStage::hasImpact() const {
   const auto isImpact = [](const SteppedContact& stepped) { return stepped.isImpact; };
   return std::any_of(stepping_.contacts().begin(), stepping_.contacts().end(), isImpact);
-}
-
-/// Size (m) of the smaller of the bodies at a contact.
-double ContactStage::sizeAt(const Contact& contact) const {
-  double size = INFINITY;
-  for (const int body : {contact.bodyA, contact.bodyB})
-    if (body != kFixed) size = std::min(size, assembly_.radii[static_cast<std::size_t>(body)]);
-  return size;
 }
 
 /// Mass (kg) of the lighter of the bodies at a contact.

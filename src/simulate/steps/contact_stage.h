@@ -68,7 +68,6 @@ class ContactStage {
   void findWithinReach(const VectorX& before, const VectorX& state, double length);
   void findHeld(const VectorX& before, const VectorX& state, double length);
   void findMeeting(const VectorX& state);
-  double sizeAt(const Contact& contact) const;
   double lightest(const Contact& contact) const;
   void settle(double time, const std::vector<Contact>& contacts, VectorX& state);
   void recordFaults(double time);

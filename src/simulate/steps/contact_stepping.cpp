@@ -271,24 +271,20 @@ VectorX ContactStepping::solve(const Group& group, const Problem& problem) {
       faults_.push_back({CorrectionKind::omittedContacts, group.moved.bodies, solution.residual});
       solution.impulses.setZero();
     }
-    count(group, solution, most);
+    noteUnsolved(group, solution, kSolvedPart * most);
     return solution.impulses;
   }
   const double fastest = problem.free.cwiseAbs().maxCoeff(), tolerance = kSolvedPart * fastest;
   ConeStart start = startOf(group);
-  const ConeSolution solution = cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations);
+  const ConeSolution solution = cones_.solve(problem.free, problem.frictions, tolerance, start, iterations_);
   penalties_[group.firstBody] = start.penalty;
-  count(group, solution, fastest);
+  noteUnsolved(group, solution, tolerance);
   return solution.impulses;
 }
 
-void ContactStepping::count(const Group& group, const ConeSolution& solution, double fastest) {
-  ++count_.problems;
-  if (solution.converged) return;
-  ++count_.unsolved;
-  if (!(solution.residual <= kSolvedPart * fastest))
+void ContactStepping::noteUnsolved(const Group& group, const ConeSolution& solution, double tolerance) {
+  if (!solution.converged && !(solution.residual <= tolerance))
     faults_.push_back({CorrectionKind::unsolvedContacts, group.moved.bodies, solution.residual});
-  count_.worstResidual = std::max(count_.worstResidual, solution.residual);
 }
 
 void ContactStepping::limit(const Group& group, double most, VectorX& state) {

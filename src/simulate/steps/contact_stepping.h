@@ -25,12 +25,6 @@ struct SteppedContact {
   bool isImpact = false;        // it closed faster than what accelerations explain
 };
 
-/// How well the cone problems of the steps so far were solved.
-struct SteppingCount {
-  long problems = 0, unsolved = 0, iterations = 0;
-  double worstResidual = 0;  // m/s, of those that were not solved
-};
-
 /// What had to be done to a step beside the laws of contact.
 struct SteppingFault {
   CorrectionKind kind;
@@ -76,7 +70,8 @@ class ContactStepping {
 
   /// Those of the last step.
   const std::vector<SteppedContact>& contacts() const { return contacts_; }
-  const SteppingCount& count() const { return count_; }
+  /// Iterations that its cone problems took so far.
+  long iterations() const { return iterations_; }
 
   /// Faults since the last step began, or the last call.
   std::vector<SteppingFault> takeFaults() { return std::exchange(faults_, {}); }
@@ -131,11 +126,11 @@ class ContactStepping {
   static double partThatGainsNothing(const LossWith& lossWith, double lossOfAll);
   VectorX solve(const Group& group, const Problem& problem);
   MatrixX inverseMass() const { return tied_ ? tied_->inverseMass() : cones_.inverseMass(); }
-  void count(const Group& group, const ConeSolution& solution, double fastest);
   void limit(const Group& group, double most, VectorX& state);
   void forgetFaults(std::size_t kept) {
     faults_.erase(faults_.begin() + static_cast<std::ptrdiff_t>(kept), faults_.end());
   }
+  void noteUnsolved(const Group& group, const ConeSolution& solution, double tolerance);
   ConeStart startOf(const Group& group) const;
   VectorX move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state);
   static VectorX gapsAfter(const Group& group, double timeStep, const VectorX& velocities);
@@ -161,7 +156,7 @@ class ContactStepping {
   std::vector<Vec3> slips_, previousSlips_;  // m/s, world: velocities of the contacts with De Saxce's correction
   double previousStep_ = 0, startPart_ = 1;  // s; ratio of impulses now to those of the step before, if forces last
   std::map<int, double> penalties_;          // of each group's first body
-  SteppingCount count_;
+  long iterations_ = 0;
   std::vector<SteppingFault> faults_;
   HeldFriction friction_;
   VectorX free_;                   // where free motion led

@@ -55,8 +55,7 @@ void ContactStepping::separate(const Group& group, const VectorX& gaps, VectorX&
   } else {
     ConeStart start{VectorX::Zero(3 * gaps.size()), VectorX::Zero(3 * gaps.size()), 0};
     const double tolerance = std::max(kSeparatedPart * overlapTolerance_, kSeparatedError * deepest);
-    cones_.apply(cones_.solve(problem.free, problem.frictions, tolerance, start, count_.iterations).impulses,
-                 displacement);
+    cones_.apply(cones_.solve(problem.free, problem.frictions, tolerance, start, iterations_).impulses, displacement);
   }
   double farthest = 0;  // in sizes, or rad: what leads far along straight lines leads astray
   for (const int body : group.moved.bodies) {

@@ -55,7 +55,7 @@ DirectSolution solveContacts(StopProblem problem) {
   ContactStepping stepping(problem.assembly);
   VectorX state = problem.state;
   stepping.resolve(contacts, {}, problem.assembly.state, kFallTime, state);
-  return {static_cast<double>(std::max(1L, stepping.count().iterations)), largestSpeed(state)};
+  return {static_cast<double>(std::max(1L, stepping.iterations())), largestSpeed(state)};
 }
 
 }  // namespace
