@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <csignal>
+#include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <new>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -246,6 +249,16 @@ void refuseUnknownWord(const CLI::App& app) {
       fmt::format("is no command; allowed are {}{}", fmt::join(commands, ", "), didYouMean(words[0], commands)));
 }
 
+/// Help, the version, or what is wrong with the command line.
+int answer(const CLI::App& app, const CLI::ParseError& error) {
+  std::ostringstream output, faults;
+  const int code = app.exit(error, output, faults);
+  showText(stderr, faults.str());
+  showText(stdout, output.str());
+  flushOutput();
+  return code == 0 ? 0 : static_cast<int>(ErrorKind::usage);
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Cradle: rigid-body physics from a scene file, and pictures of it.", "cradle");
   CommandLine line;
@@ -263,12 +276,12 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {
     if (app.get_subcommands().empty()) refuseUnknownWord(app);
-    return app.exit(error), static_cast<int>(ErrorKind::usage);
+    return answer(app, error);
   } catch (const CLI::ExtrasError& error) {
     refuseUnknownWord(app);
-    return app.exit(error), static_cast<int>(ErrorKind::usage);
+    return answer(app, error);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
+    return answer(app, error);
   }
   line.command();
   flushOutput();
@@ -279,6 +292,22 @@ int report(const Error& error) {
   show(stderr, "{}\n", error.what());
   if (error.kind() == ErrorKind::interrupted && interruptingSignal() == SIGTERM) return kTerminatedExit;
   return static_cast<int>(error.kind());
+}
+
+/// Of a folder that is gone while the program runs in it, say.
+int reportFile(const std::filesystem::filesystem_error& error) {
+  const std::string path = error.path1().string();
+  return report(
+      {ErrorKind::output, path.empty() ? "a path" : path,
+       fmt::format(
+           "cannot be reached: {}; its folder, and the one that the program runs in, have to be there and readable",
+           error.code().message())});
+}
+
+/// To the system, an empty TMPDIR names a folder; to people it is none.
+void forgetEmptyTemporaryFolder() {
+  const char* folder = std::getenv("TMPDIR");
+  if (folder != nullptr && *folder == '\0') unsetenv("TMPDIR");
 }
 
 /// A thread that cannot be started for lack of memory, or a bug.
@@ -294,6 +323,8 @@ int reportUnforeseen(const std::exception& error) {
 }  // namespace cradle
 
 int main(int argc, char** argv) {
+  cradle::fillStandardFiles();
+  cradle::forgetEmptyTemporaryFolder();
   cradle::noteInterruptions();
   cradle::noteCrashes();
   try {
@@ -302,6 +333,8 @@ int main(int argc, char** argv) {
     return cradle::report(error);
   } catch (const std::bad_alloc&) {
     return cradle::report({cradle::ErrorKind::limit, "", "out of memory; make the scene or the picture smaller"});
+  } catch (const std::filesystem::filesystem_error& error) {
+    return cradle::reportFile(error);
   } catch (const std::exception& error) {
     return cradle::reportUnforeseen(error);
   }

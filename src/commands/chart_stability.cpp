@@ -8,9 +8,11 @@
 
 #include "core/console.h"
 #include "core/error.h"
+#include "core/folder_lock.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
 #include "core/part_file.h"
+#include "core/part_lock.h"
 #include "core/progress.h"
 #include "study/stability/stability_chart.h"
 
@@ -30,6 +32,12 @@ void writeTable(const StabilityMap& map, const std::string& path) {
   PartFile file(path);
   file.write(tableOf(map));
   file.complete();
+}
+
+/// Told before the work rather than after it.
+void requireWritableMap(const std::string& stem, bool drawsCharts) {
+  const PartLock table(stem + ".csv");
+  if (drawsCharts) requireWritableChart(stem);
 }
 
 /// The time that all maps take, in percent of which progress is told.
@@ -63,8 +71,10 @@ void chartStability(const std::string& folder, const std::vector<std::string>& n
   const std::vector<MapEntry> maps = stabilityMapsNamed(names);
   requireOwnFolder(folder, "stability map", isMapResultName);
   makeFolder(folder);
+  const FolderLock lock(folder, FolderUse::alone);
   const bool drawsCharts = canDrawCharts();
   if (!drawsCharts) show(stderr, "warning: gnuplot is missing: there will be tables, but no charts\n");
+  for (const MapEntry& entry : maps) requireWritableMap((fs::path(folder) / entry.name).string(), drawsCharts);
   MapClock clock(maps, quiet);
   for (const MapEntry& entry : maps) {
     const StabilityMap map = entry.make(clock.of(entry));

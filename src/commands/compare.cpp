@@ -25,8 +25,11 @@ namespace fs = std::filesystem;
 /// Names of the PNG files of a folder, sorted.
 std::vector<std::string> pictureNames(const std::string& folder) {
   std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".png") names.push_back(entry.path().filename().string());
+  std::error_code failed;
+  for (fs::directory_iterator entry(folder, failed); !failed && entry != fs::directory_iterator();
+       entry.increment(failed))
+    if (entry->path().extension() == ".png") names.push_back(entry->path().filename().string());
+  if (failed) throw Error(ErrorKind::usage, folder, "cannot be read: " + failed.message());
   std::sort(names.begin(), names.end());
   return names;
 }

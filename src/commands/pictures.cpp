@@ -10,6 +10,7 @@
 #include "commands/film_view.h"
 #include "commands/simulate_scene.h"
 #include "core/error.h"
+#include "core/folder_lock.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
 #include "core/progress.h"
@@ -111,6 +112,16 @@ void requireRoom(const std::string& folder, const std::optional<FrameRange>& ran
                   there.size(), frameName(there.front()), frameName(there.back())));
 }
 
+/// Holds the folder, once it is there, and refuses it as requireRoom does: what another run has put there before that
+/// is seen. Runs that draw parts of a film share it.
+void takeFolder(const std::string& folder, const std::optional<FrameRange>& range, const PictureOptions& options,
+                std::optional<FolderLock>& lock) {
+  std::error_code missing;
+  if (lock) return;
+  if (fs::is_directory(folder, missing)) lock.emplace(folder, options.frames ? FolderUse::shared : FolderUse::alone);
+  requireRoom(folder, range, options);
+}
+
 /// Frames that the film has not would get between its own when it is encoded.
 void requireNoOthers(const std::string& folder, long frameCount) {
   const std::vector<long> others = framesIn(folder, {frameCount, kMostFrames});
@@ -187,7 +198,8 @@ void drawFrames(FilmDrawer& drawer, const FrameRange& range, Progress& progress,
 }  // namespace
 
 void renderFrames(const std::string& input, const std::string& folder, const PictureOptions& options, bool quiet) {
-  requireRoom(folder, parseRange(options.frames), options);
+  std::optional<FolderLock> lock;
+  takeFolder(folder, parseRange(options.frames), options, lock);
   if (options.overlay) parseOverlays(*options.overlay);
   TrajectorySource source(input, quiet, options.assetRoot);
   const PictureOrder order(options, source.scene());
@@ -196,6 +208,7 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
   source.simulate();
   FilmDrawer drawer(source, order);
   makeFolder(folder);
+  takeFolder(folder, range, options, lock);
   Progress progress("Drawing", "pictures", range.end - range.first, quiet);
   drawFrames(drawer, range, progress, [&](long frame, const Image& picture) {
     writePng(picture, (fs::path(folder) / frameName(frame)).string());

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/console.h"
+#include "core/printable.h"
 #include "simulate/assembly.h"
 #include "simulate/plan/plan_text.h"
 #include "simulate/run.h"
@@ -59,7 +60,8 @@ void printPlan(const std::string& scenePath, const SceneOptions& options, bool a
   if (asJson)
     show("{}\n", jsonOf(plan, scene, scenePath).dump(2, ' ', true, nlohmann::json::error_handler_t::replace));
   else
-    show("{}: accuracy {:.3g} asked, {}\n{}\n", scenePath, plan.accuracy, promiseOfAll(plan), describe(plan, scene));
+    show("{}: accuracy {:.3g} asked, {}\n{}\n", printableLine(scenePath), plan.accuracy, promiseOfAll(plan),
+         describe(plan, scene));
 }
 
 }  // namespace cradle

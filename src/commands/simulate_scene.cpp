@@ -12,6 +12,8 @@
 #include "core/error.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
+#include "core/part_lock.h"
+#include "core/printable.h"
 #include "core/progress.h"
 #include "render/camera_path.h"
 #include "scene/load_scene.h"
@@ -124,7 +126,7 @@ void printAchievedAccuracy(const Scene& scene, const std::string& output, bool q
 }  // namespace
 
 void warn(const std::string& warning) {
-  show(stderr, "warning: {}\n", warning);
+  show(stderr, "warning: {}\n", printableLine(warning));
 }
 
 Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
@@ -161,9 +163,11 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
                    bool quiet) {
   requireWritableFile(output);
   requireNoOtherFile(output);
+  requireNoWriter(partPath(output));
   const Scene scene = loadSceneAndWarn(scenePath, options.scene);
   refuseUnsupported(scene);
   Run run(scene);
+  requireNoWriter(partPath(output));  // planning may have taken long
   TrajectoryWriter writer(output, headerOf(scene, run.plan()));
   std::optional<StrictWatch> watch;
   if (options.isStrict) watch.emplace(scene, run.plan());
@@ -191,8 +195,9 @@ void checkScene(const std::string& scenePath, const SceneOptions& options) {
     for (const std::string& warning : assembly.warnings) warn(warning);
   const auto dynamic = std::count_if(scene.bodies.begin(), scene.bodies.end(),
                                      [](const Body& body) { return body.motion == Motion::dynamic; });
-  show("{}: \"{}\" is in order: {} ({} dynamic){}; {} s, {} frames\n", scenePath, scene.name,
-       counted(scene.bodies.size(), "body", "bodies"), dynamic, linksOf(scene), scene.duration, lastFrame(scene) + 1);
+  show("{}: \"{}\" is in order: {} ({} dynamic){}; {} s, {} frames\n", printableLine(scenePath),
+       printableLine(scene.name), counted(scene.bodies.size(), "body", "bodies"), dynamic, linksOf(scene),
+       scene.duration, lastFrame(scene) + 1);
 }
 
 }  // namespace cradle

@@ -19,6 +19,7 @@
 #include "core/error.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
+#include "core/part_lock.h"
 #include "core/progress.h"
 #include "study/gnuplot.h"
 #include "study/growing_table.h"
@@ -48,6 +49,20 @@ bool isResultName(const std::string& name) {
   for (const char* table : {kTableName, kReferencesName})
     if (name == table || name == partPath(table)) return true;
   return name.starts_with(kChartPrefix);
+}
+
+std::string chartStem(const std::string& folder, const std::string& scene) {
+  return (fs::path(folder) / (kChartPrefix + scene)).string();
+}
+
+/// Told before the work rather than after it.
+void requireWritableResults(const std::string& folder, const std::deque<NamedScene>& scenes) {
+  for (const char* name : {kTableName, kReferencesName}) {
+    const std::string table = (fs::path(folder) / name).string();
+    requireWritableFile(table);
+    requireNoWriter(partPath(table));
+  }
+  for (const NamedScene& named : scenes) requireWritableChart(chartStem(folder, named.origin.scene));
 }
 
 /// Of the running program's file and the methods: what rows follow from beside their scene.
@@ -147,11 +162,11 @@ class Study {
     draw(chart, name);
   }
 
-  /// Throws the first fault.
+  /// Throws an error of the first fault's kind, if there was one.
   void finish() {
     references_.complete();
     table_.complete();
-    if (fault_) throw Error(*fault_);
+    if (fault_) throw Error(*fault_, folder_, "has all of the study but what is told above");
     if (!drawsCharts_)
       throw Error(ErrorKind::output, folder_,
                   "has study.csv, but no charts: gnuplot cannot be started; install the package gnuplot-nox");
@@ -202,7 +217,7 @@ class Study {
   void draw(const WorkPrecisionChart& chart, const std::string& name) {
     if (!drawsCharts_) return;
     try {
-      drawChart(chart, (fs::path(folder_) / (kChartPrefix + name)).string());
+      drawChart(chart, chartStem(folder_, name));
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::interrupted) throw;
       note(error);
@@ -212,7 +227,7 @@ class Study {
   void note(const Error& error) {
     progress_.endLine();
     show(stderr, "{}\n", error.what());
-    if (!fault_) fault_ = error;
+    if (!fault_) fault_ = error.kind();
   }
 
   std::string folder_;
@@ -222,7 +237,7 @@ class Study {
   GrowingTable table_, references_;
   Progress progress_;
   long turns_ = 0;  // methods and references that are done
-  std::optional<Error> fault_;
+  std::optional<ErrorKind> fault_;
 };
 
 }  // namespace
@@ -234,6 +249,7 @@ void studyScenes(const std::vector<std::string>& paths, const std::string& asset
   std::deque<NamedScene> scenes;
   loadScenes(paths, assetRoot, hashOfProgram(methods), scenes);
   makeFolder(folder);
+  requireWritableResults(folder, scenes);
   Study study(folder, methods, scenes, quiet);
   printPeers(methods);
   try {

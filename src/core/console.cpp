@@ -1,5 +1,8 @@
 #include "core/console.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 
@@ -16,6 +19,13 @@ void requireOutput(bool isWritten) {
 }
 
 }  // namespace
+
+void fillStandardFiles() {
+  for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(file, F_GETFD) >= 0) continue;
+    if (open("/dev/null", O_RDONLY) < 0) return;  // else it gets the least number that is free: this one
+  }
+}
 
 void showText(std::FILE* file, std::string_view text) {
   const std::string shown = printable(text);

@@ -9,6 +9,10 @@
 
 namespace cradle {
 
+/// Puts /dev/null, open for reading, in place of each standard file that is closed: what the program opens later does
+/// not get its number, and standard output still cannot be written.
+void fillStandardFiles();
+
 /// Writes to standard output or standard error what printable() gives of it; nothing more once nobody reads there.
 /// Throws Error(output) if standard output cannot be written.
 void showText(std::FILE* file, std::string_view text);

@@ -1,5 +1,6 @@
 #include "core/crash.h"
 
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <array>
@@ -87,6 +88,12 @@ void noteCrashes() {
 
 void ignoreCrashes() {
   for (const int signal : kCrashes) std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_IGN);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  for (Place& place : places) {
+    place.path = nullptr;
+    place.group = 0;
+  }
 }
 
 }  // namespace cradle

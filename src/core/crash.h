@@ -40,7 +40,8 @@ class EndWithoutMemory {
   std::new_handler before_;
 };
 
-/// In a child process: what remains of the other is not its own, and a crash is the other's to tell.
+/// In a child process: what remains of the other is not its own and is forgotten, and a crash is the other's to tell.
+/// Signals that end programs are the other's to note, too: the child ends with it.
 void ignoreCrashes();
 
 }  // namespace cradle

@@ -1,18 +1,35 @@
 #include "core/interruption.h"
 
-#include <csignal>
+#include <unistd.h>
 
+#include <csignal>
+#include <string_view>
+
+#include "core/crash.h"
 #include "core/error.h"
 
 namespace cradle {
 namespace {
 
+constexpr unsigned kPatience = 3;   // s from a signal to the next look at it: most looks are far less apart
+constexpr int kExitOfSignal = 128;  // and its number, as shells have it
+
 // The only global: a signal handler has no other place to write to.
 volatile std::sig_atomic_t notedSignal = 0;
 
+/// For work that does not look whether a signal was noted.
+void endUnnoticed(int /*signal*/) {
+  removeRemains();
+  const std::string_view words = notedSignal == SIGINT ? "interrupted\n" : "terminated\n";
+  [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, words.data(), words.size());
+  _exit(kExitOfSignal + notedSignal);
+}
+
 void note(int signal) {
-  notedSignal = signal;
   std::signal(signal, SIG_DFL);
+  std::signal(SIGALRM, endUnnoticed);
+  alarm(kPatience);
+  notedSignal = signal;  // last: another thread may notice it at once, and ends the alarm
 }
 
 }  // namespace
@@ -29,7 +46,9 @@ int interruptingSignal() {
 }
 
 void throwIfInterrupted() {
-  if (notedSignal != 0) throw Error(ErrorKind::interrupted, "", notedSignal == SIGINT ? "interrupted" : "terminated");
+  if (notedSignal == 0) return;
+  alarm(0);  // noticed: to put files in order may take its time
+  throw Error(ErrorKind::interrupted, "", notedSignal == SIGINT ? "interrupted" : "terminated");
 }
 
 }  // namespace cradle

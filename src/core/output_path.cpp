@@ -22,6 +22,8 @@ constexpr std::size_t kLongestPath = PATH_MAX - 64;                             
 
 void requireUsableName(const std::string& path) {
   if (path.empty()) throw Error(ErrorKind::output, "the output", "has an empty name; give one");
+  if (isPartPath(path))
+    throw Error(ErrorKind::output, path, "ends in .part, as names of unfinished outputs do; give another name");
   const std::size_t length = fs::path(path).filename().string().size();
   if (length > kLongestName)
     throw Error(ErrorKind::output, path,
@@ -39,7 +41,11 @@ bool mayBeWrittenTo(const fs::path& folder) {
 }  // namespace
 
 void requireWritableFile(const std::string& path) {
-  requireUsableName(path.ends_with(kPart) ? path.substr(0, path.size() - kPart.size()) : path);
+  requireUsableName(path);
+  requireWritablePlace(path);
+}
+
+void requireWritablePlace(const std::string& path) {
   std::error_code failed;
   const fs::file_status there = fs::status(path, failed);
   if (fs::path(path).filename().empty() || fs::is_directory(there))
@@ -47,8 +53,7 @@ void requireWritableFile(const std::string& path) {
   if (fs::exists(there) && !fs::is_regular_file(there))
     throw Error(ErrorKind::output, path, "is not a regular file and is not replaced; give another name");
 
-  const fs::path parent = fs::path(path).parent_path();
-  const std::string folder = parent.empty() ? "." : parent.string();
+  const std::string folder = parentOf(path);
   if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
     throw Error(ErrorKind::output, path, folder + " is no folder; name one");
   if (!fs::is_directory(folder, failed))
@@ -70,7 +75,7 @@ void requireOwnFolder(const std::string& folder, const std::string& kind,
   if (fs::exists(folder, error) && !fs::is_directory(folder, error))
     throw Error(ErrorKind::output, folder, "is no folder; name a new or empty one");
   if (!fs::exists(folder, error)) {
-    const fs::path parent = fs::absolute(folder).parent_path();
+    const fs::path parent = parentOf(folder);
     if (!fs::is_directory(parent, error))
       throw Error(ErrorKind::output, folder, "its parent folder does not exist; make it first");
     if (!mayBeWrittenTo(parent))
@@ -90,6 +95,12 @@ void makeFolder(const std::string& folder) {
   std::error_code error;
   fs::create_directory(folder, error);
   if (error) throw Error(ErrorKind::output, folder, "cannot be made: " + error.message());
+}
+
+std::string parentOf(const std::string& path) {
+  const fs::path whole(path);
+  const fs::path named = whole.has_filename() ? whole : whole.parent_path();  // without a slash at its end
+  return named.has_parent_path() ? named.parent_path().string() : ".";
 }
 
 std::string partPath(const std::string& path) {

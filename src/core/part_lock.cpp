@@ -17,6 +17,8 @@
 namespace cradle {
 namespace {
 
+constexpr const char* kAnother = "another process";
+
 /// Of the whole file.
 struct flock writeLock() {
   struct flock lock {};
@@ -25,10 +27,14 @@ struct flock writeLock() {
   return lock;
 }
 
+/// Who is in the way of `lock`; nothing if nobody is.
+std::optional<std::string> holderOf(int file, struct flock lock) {
+  if (fcntl(file, F_GETLK, &lock) != 0 || lock.l_type == F_UNLCK) return std::nullopt;
+  return lock.l_pid > 0 ? fmt::format("process {}", lock.l_pid) : kAnother;
+}
+
 std::string holderOf(int file) {
-  struct flock lock = writeLock();
-  const bool isHeld = fcntl(file, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK && lock.l_pid > 0;
-  return isHeld ? fmt::format("process {}", lock.l_pid) : "another process";
+  return holderOf(file, writeLock()).value_or(kAnother);
 }
 
 bool isTheOneAt(const std::string& path, const struct stat& file) {
@@ -41,7 +47,7 @@ bool isTheOneAt(const std::string& path, const struct stat& file) {
 int openPart(const std::string& path, bool isKept) {
   const std::string part = partPath(path);
   requireWritableFile(path);
-  requireWritableFile(part);
+  requireWritablePlace(part);
   for (;;) {
     bool isNew = true;
     int file = open(part.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -81,6 +87,30 @@ void flushToDisk(int file, const std::string& path) {
   throw Error(ErrorKind::output, path, fmt::format("cannot be written: {}", std::strerror(errno)));
 }
 
+void flushFolderOf(const std::string& path) {
+  const std::string folder = parentOf(path);
+  if (access(folder.c_str(), R_OK) != 0) return;  // files can be made in it, but it cannot be opened
+  const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool isFlushed = file >= 0 && (fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP);
+  const int error = errno;
+  if (file >= 0) close(file);
+  if (isFlushed) return;
+  throw Error(ErrorKind::output, path,
+              fmt::format("is complete, but its folder cannot be written to the disk: {}", std::strerror(error)));
+}
+
+void requireNoWriter(const std::string& part) {
+  const int file = open(part.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return;
+  struct flock lock = writeLock();
+  lock.l_type = F_RDLCK;  // other readers are not in its way
+  const std::optional<std::string> writer = holderOf(file, lock);
+  close(file);
+  if (writer)
+    throw Error(ErrorKind::output, part,
+                fmt::format("is being written by {}; wait for its end or choose another name", *writer));
+}
+
 PartLock::PartLock(const std::string& path)
     : path_(path), part_(partPath(path)), file_(openPart(path, false)), remains_(std::in_place, part_.c_str()) {}
 
@@ -96,6 +126,7 @@ void PartLock::finish() {
     throw Error(ErrorKind::output, path_, fmt::format("cannot be put in place: {}", std::strerror(errno)));
   isFinished_ = true;
   remains_.reset();
+  flushFolderOf(path_);
 }
 
 std::string lockHolderOf(const std::string& path) {

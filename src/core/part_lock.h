@@ -38,6 +38,13 @@ int openLockedPart(const std::string& path);
 /// What is on the disk outlives a loss of power. Throws Error(output), naming `path`.
 void flushToDisk(int file, const std::string& path);
 
+/// The name of `path`, new or changed, outlives it, too, where folders can be flushed. Throws Error(output).
+void flushFolderOf(const std::string& path);
+
+/// Throws Error(output), naming the process, if another one writes the file `part`, by a lock of a PartLock or of
+/// SQLite. This process has none on it, or loses it.
+void requireNoWriter(const std::string& part);
+
 /// "process 4711", that holds a lock on the file at `path`, or "another process".
 std::string lockHolderOf(const std::string& path);
 

@@ -33,7 +33,7 @@ Progress::~Progress() {
 
 void Progress::endLine() {
   if (!drawn_ || !animated_) return;
-  std::fputc('\n', stderr);
+  std::fputc('\n', stderr);  // what cannot be told is lost
   drawn_ = false;
 }
 
@@ -56,10 +56,8 @@ void Progress::update(long done) {
   if (quiet_ || (!due && !(done >= total_ && (animated_ || drawn_)))) return;
   lastDrawn_ = now;
   drawn_ = true;
-  if (animated_)
-    fmt::print(stderr, "\r\x1b[K{}", line(done));
-  else
-    fmt::print(stderr, "{}\n", line(done));
+  const std::string text = animated_ ? "\r\x1b[K" + line(done) : line(done) + "\n";
+  std::fputs(text.c_str(), stderr);  // what cannot be told is lost
   std::fflush(stderr);
 }
 

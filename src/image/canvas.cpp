@@ -56,12 +56,14 @@ double side(const PicturePoint& a, const PicturePoint& b, const PicturePoint& po
   return ((b.x - a.x) * (point.y - a.y) - (b.y - a.y) * (point.x - a.x)) / std::max(distanceTo(a, b), 1e-9);
 }
 
+/// The first pixel for a place that is no number.
 int pixelBelow(double place, int size) {
-  return static_cast<int>(std::floor(std::clamp(place, 0.0, static_cast<double>(size))));
+  return place > 0 ? static_cast<int>(std::floor(std::min(place, static_cast<double>(size)))) : 0;
 }
 
+/// 0 for a distance that is no number.
 double coverageAt(double distance) {
-  return std::clamp(0.5 - distance, 0.0, 1.0);
+  return distance < 0.5 ? std::min(0.5 - distance, 1.0) : 0;
 }
 
 }  // namespace
@@ -71,7 +73,7 @@ Canvas::Canvas(Image& image) : image_(image) {}
 void Canvas::blend(int x, int y, double coverage, const Ink& ink) {
   if (x < 0 || y < 0 || x >= image_.width || y >= image_.height) return;
   const auto share = static_cast<float>(coverage * ink.opacity);
-  if (share <= 0) return;
+  if (!(share > 0)) return;
   std::uint8_t* pixel = image_.at(x, y);
   for (std::size_t i = 0; i < 3; ++i) {
     pixel[i] = kLevels.nearest((1 - share) * kLevels.linear(pixel[i]) + share * kLevels.linear(ink.color[i]));
@@ -132,7 +134,7 @@ void Canvas::coverSegment(const LinePoint& a, const LinePoint& b) {
       const auto share01 = static_cast<float>(coverage * (a.opacity + share * (b.opacity - a.opacity)));
       float& covered =
           covered_[static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x)];
-      if (share01 <= covered) continue;
+      if (!(share01 > covered)) continue;
       if (covered == 0) touched_.emplace_back(x, y);
       covered = share01;
     }

@@ -34,6 +34,7 @@ enum ChunkId : std::uint16_t {
   kLastTrackNode = 0xB007,
   kPositionTrack = 0xB020,
   kRotationTrack = 0xB021,
+  kScaleTrack = 0xB022,
   kRollTrack = 0xB024
 };
 
@@ -183,7 +184,9 @@ class Reader {
       std::size_t names = 0;
       forEachChild(node.begin, node.end, [&](const Chunk& track) {
         if (track.id == kNodeName && ++names > 1) fail(track.begin, "an animated node has two names");
-        if (track.id != kPositionTrack && track.id != kRotationTrack && track.id != kRollTrack) return;
+        const bool isRead = track.id == kPositionTrack || track.id == kRotationTrack || track.id == kScaleTrack ||
+                            track.id == kRollTrack;  // by the importer; others have keys too
+        if (!isRead) return;
         const std::size_t keys = get<std::uint32_t>(track.begin + kTrackHeaderSize - 4, track.end);
         if (keys > (track.end - track.begin - kTrackHeaderSize) / kSmallestKey)
           fail(track.begin,

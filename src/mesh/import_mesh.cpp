@@ -116,7 +116,8 @@ void importFile(const std::string& path, ImportedFile& file) {
   file.importer.SetIOHandler(files);
   const std::string& bytes = files->read(path);
   const bool looksLike3ds = bytes.starts_with("MM") && !file.importer.IsExtensionSupported(lowerExtension(path));
-  if (lowerExtension(path) == ".3ds" || looksLike3ds) file.summary = check3ds(bytes, path);
+  const bool isNamed3ds = lowerExtension(path) == ".3ds" || lowerExtension(path) == ".prj";
+  if (isNamed3ds || looksLike3ds) file.summary = check3ds(bytes, path);
   file.scene = file.importer.ReadFile(path, aiProcess_Triangulate);
   if (!files->outside().empty())
     throw Error(ErrorKind::mesh, path,

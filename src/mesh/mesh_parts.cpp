@@ -15,6 +15,8 @@ namespace {
 
 // Volume over surface times size: below this a part is a sheet, and its volume is rounding.
 constexpr double kSheetVolume = 1e-12;
+// Triangles that are looked at to find how parts lie to each other: some seconds.
+constexpr std::size_t kMaxWork = 10'000'000;
 
 /// Sets that are joined in pairs (R. E. Tarjan, "Efficiency of a good but not linear set union algorithm", J. ACM
 /// 22(2), 1975, with path halving).
@@ -80,25 +82,31 @@ void measure(const TriangleMesh& mesh, MeshPart& part) {
 using Containers = std::vector<std::vector<std::size_t>>;
 
 /// Calls meet(a, b) for pairs of parts that are not flat and whose bounds overlap; a < b. Bounds are swept along x.
+/// False if that was given up: a file of thousands of parts around each other would take hours.
 template <class Meet>
-void forEachNearPair(const std::vector<MeshPart>& parts, const Meet& meet) {
+bool forEachNearPair(const std::vector<MeshPart>& parts, const Meet& meet) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (parts[i].volume != 0) order.push_back(i);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return std::pair(parts[a].bounds.min().x(), a) < std::pair(parts[b].bounds.min().x(), b);
   });
+  std::size_t work = 0;
   for (std::size_t i = 0; i < order.size(); ++i)
     for (std::size_t j = i + 1; j < order.size(); ++j) {
       const MeshPart &one = parts[order[i]], &other = parts[order[j]];
       if (other.bounds.min().x() > one.bounds.max().x()) break;
-      if (one.bounds.intersects(other.bounds)) meet(std::min(order[i], order[j]), std::max(order[i], order[j]));
+      const bool isNear = one.bounds.intersects(other.bounds);
+      work += 1 + (isNear ? one.triangles.size() + other.triangles.size() : 0);
+      if (work > kMaxWork) return false;
+      if (isNear) meet(std::min(order[i], order[j]), std::max(order[i], order[j]));
     }
+  return true;
 }
 
 Containers findContainers(const TriangleMesh& mesh, PartReport& report) {
   Containers containers(report.parts.size());
-  forEachNearPair(report.parts, [&](std::size_t a, std::size_t b) {
+  const bool isWhole = forEachNearPair(report.parts, [&](std::size_t a, std::size_t b) {
     const PartEncounter encounter = relate(mesh, report.parts[a], report.parts[b]);
     if (encounter.relation == PartRelation::firstInside) containers[a].push_back(b);
     if (encounter.relation == PartRelation::secondInside) containers[b].push_back(a);
@@ -107,6 +115,9 @@ Containers findContainers(const TriangleMesh& mesh, PartReport& report) {
                                             describePart(report, b), encounter.place.x(), encounter.place.y(),
                                             encounter.place.z()));
   });
+  if (!isWhole)
+    report.overlaps.push_back(
+        fmt::format("its {} parts lie around each other, too many to see which overlap", report.parts.size()));
   return containers;
 }
 

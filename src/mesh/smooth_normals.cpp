@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <span>
 
 #include "core/error.h"
 
@@ -14,6 +16,9 @@ namespace cradle {
 namespace {
 
 constexpr double kCosineOfCrease = 0.766;  // 40 degrees: between a 10-sided prism (36) and an octagonal one (45)
+constexpr std::size_t kLargeFan = 256;     // corners at a position: of more, those that look alike count as one
+constexpr double kFanCell = 1.0 / 32;      // of normals that look alike: 2 degrees
+constexpr std::uint32_t kSeveral = 0xFFFFFFFF;
 
 // Corners at each position: those of position p are list[start[p]] .. list[start[p + 1] - 1].
 struct Fans {
@@ -77,9 +82,40 @@ std::vector<Share> shares(const DrawnMesh& mesh) {
   return result;
 }
 
-bool areSmooth(Smoothing a, Smoothing b, const Share& ofA, const Share& ofB) {
+bool areSmooth(Smoothing a, Smoothing b, const Vec3& normalA, const Vec3& normalB) {
   if (a != kSmoothingUnknown && b != kSmoothingUnknown) return (a & b) != 0;
-  return ofA.normal.dot(ofB.normal) > kCosineOfCrease;
+  return normalA.dot(normalB) > kCosineOfCrease;
+}
+
+// Corners at one position whose triangles are smooth with the same others.
+struct FanPart {
+  std::uint32_t only;   // the triangle, if it is one; else kSeveral
+  Smoothing smoothing;  // theirs
+  Vec3 normal;          // unit, or zero: theirs, or about
+  Vec3 sum;             // of their normals, weighted by angle
+};
+
+// Each corner is a part of its own. Of a large fan, as at the tip of a cone with thousands of sides, a part is all
+// corners with the same smoothing groups and about the same normal: comparing all with all would take minutes.
+std::vector<FanPart> partsOfFan(std::span<const std::uint32_t> corners, const std::vector<Smoothing>& smoothing,
+                                const std::vector<Share>& of) {
+  std::vector<FanPart> parts;
+  std::map<std::array<Smoothing, 4>, std::size_t> partAt;
+  for (const std::uint32_t corner : corners) {
+    const std::uint32_t own = corner / 3;
+    const Vec3 &normal = of[own].normal, share = double{of[own].angles[corner % 3]} * normal;
+    std::size_t part = parts.size();
+    if (corners.size() > kLargeFan) {
+      const auto cell = [&](int axis) { return static_cast<Smoothing>(std::lround(normal[axis] / kFanCell)); };
+      part = partAt.try_emplace({smoothing[own], cell(0), cell(1), cell(2)}, part).first->second;
+    }
+    if (part == parts.size()) {
+      parts.push_back({corners.size() > kLargeFan ? kSeveral : own, smoothing[own], normal, share});
+      continue;
+    }
+    parts[part].sum += share;
+  }
+  return parts;
 }
 
 }  // namespace
@@ -94,18 +130,20 @@ void fillMissingNormals(const std::vector<Smoothing>& smoothing, const Numbering
   if (std::none_of(mesh.normals.begin(), mesh.normals.end(), isMissing)) return;
   const Fans fans = cornersAtPositions(positions);
   const std::vector<Share> of = shares(mesh);
-  for (std::uint32_t corner = 0; corner < mesh.normals.size(); ++corner) {
-    if (!isMissing(mesh.normals[corner])) continue;
-    const std::uint32_t position = positions.numberOf[corner], own = corner / 3;
-    Vec3 sum = Vec3::Zero();  // in double: the corners of a flat face get the same float, whatever their angles
-    for (std::uint32_t i = fans.start[position]; i < fans.start[position + 1]; ++i) {
-      const std::uint32_t other = fans.list[i] / 3;
-      if (other == own || areSmooth(smoothing[own], smoothing[other], of[own], of[other]))
-        sum += double{of[other].angles[fans.list[i] % 3]} * of[other].normal;
+  for (std::size_t position = 0; position + 1 < fans.start.size(); ++position) {
+    const std::span<const std::uint32_t> corners(fans.list.begin() + fans.start[position],
+                                                 fans.list.begin() + fans.start[position + 1]);
+    const std::vector<FanPart> parts = partsOfFan(corners, smoothing, of);
+    for (const std::uint32_t corner : corners) {
+      if (!isMissing(mesh.normals[corner])) continue;
+      const std::uint32_t own = corner / 3;
+      Vec3 sum = Vec3::Zero();  // in double: the corners of a flat face get the same float, whatever their angles
+      for (const FanPart& part : parts)
+        if (part.only == own || areSmooth(smoothing[own], part.smoothing, of[own].normal, part.normal)) sum += part.sum;
+      if (sum.isZero(0)) sum = of[own].normal;  // opposite faces cancel
+      if (sum.isZero(0)) sum = Vec3::UnitY();   // corners in line: nothing is seen of it
+      mesh.normals[corner] = sum.normalized().cast<float>();
     }
-    if (sum.isZero(0)) sum = of[own].normal;  // opposite faces cancel
-    if (sum.isZero(0)) sum = Vec3::UnitY();   // corners in line: nothing is seen of it
-    mesh.normals[corner] = sum.normalized().cast<float>();
   }
 }
 

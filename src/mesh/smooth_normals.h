@@ -19,7 +19,7 @@ Vec3 triangleNormal(const DrawnMesh& mesh, const Triangle& triangle);
 /// own is smooth with: they share a smoothing group; where unknown, they are less than 40 degrees apart, so that round
 /// things look smooth and edges stay sharp. Vertices 3 t, 3 t + 1 and 3 t + 2 must be the corners of triangle t;
 /// `smoothing` has an entry for each triangle, `positions` numbers the vertices' positions. O(n) times the triangles at
-/// a position.
+/// a position, 256 at most: of more, normals that differ by less than 2 degrees count as one.
 void fillMissingNormals(const std::vector<Smoothing>& smoothing, const Numbering& positions, DrawnMesh& mesh);
 
 }  // namespace cradle

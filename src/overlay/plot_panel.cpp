@@ -17,7 +17,8 @@ constexpr double kValueColumn = 0.105;  // of the numbers beside the curves
 constexpr double kLineHeight = 1.45;    // in em
 constexpr double kHeadroom = 0.06;      // of the range of values, above and below
 constexpr int kTimeNumbers = 5, kValueNumbers = 4;
-constexpr double kPointsPerPixel = 2;  // of a curve
+constexpr double kTickRounding = 1e-9;  // of a step: an end that is a round number but for rounding has its rule
+constexpr double kPointsPerPixel = 2;   // of a curve
 const Ink kPanel{{18, 22, 30}, 0.88}, kWords{{235, 238, 242}, 1}, kRules{{235, 238, 242}, 0.28};
 
 struct Layout {
@@ -53,7 +54,7 @@ Layout layOut(const PlotContent& content, int width, int height) {
   area.top = std::round(layout.panelTopLeft.y + padding + line);
   area.bottom = std::round(layout.panelBottomRight.y - padding / 2 - line);
   area.firstTime = content.times.front();
-  area.lastTime = std::max(content.times.back(), area.firstTime + 1e-12);
+  area.lastTime = std::max(content.times.back(), area.firstTime + 1e-12 * std::max(1.0, area.firstTime));
   std::tie(area.lowestValue, area.highestValue) = rangeOf(content);
   return layout;
 }
@@ -124,9 +125,13 @@ PlotArea plotAreaOf(const PlotContent& content, int width, int height) {
 std::vector<double> roundNumbers(double low, double high, int wanted) {
   const double raw = (high - low) / wanted, power = std::pow(10.0, std::floor(std::log10(raw)));
   const double step = power * (raw / power > 7 ? 10 : raw / power > 3 ? 5 : raw / power > 1.5 ? 2 : 1);
+  const double first = std::ceil(low / step), room = (high - first * step) / step + kTickRounding;
   std::vector<double> numbers;
-  for (double count = std::ceil(low / step); count * step <= high * (1 + 1e-12); ++count)
-    numbers.push_back(count * step);
+  if (!(room >= 0 && room <= 2 * wanted)) return numbers;  // none, or the range is lost beside the numbers' rounding
+  for (int i = 0; i <= static_cast<int>(room); ++i) {
+    const double number = (first + i) * step;
+    if (numbers.empty() || number > numbers.back()) numbers.push_back(number);
+  }
   return numbers;
 }
 

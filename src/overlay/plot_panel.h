@@ -42,7 +42,8 @@ PlotArea plotAreaOf(const PlotContent& content, int width, int height);
 /// Draws the plot with its curves up to the time with index `now`, and a dot on each there.
 void drawPlot(Canvas& canvas, const PlotContent& content, std::size_t now);
 
-/// About `wanted` round numbers (1, 2 or 5 times a power of ten apart) from `low` to `high`.
+/// About `wanted` round numbers (1, 2 or 5 times a power of ten apart), ascending, from `low` to `high`; at most
+/// twice as many and one, and none where the range is not above the rounding of its ends.
 std::vector<double> roundNumbers(double low, double high, int wanted);
 
 }  // namespace cradle

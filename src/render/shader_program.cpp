@@ -2,30 +2,58 @@
 
 #include <GL/glew.h>
 
-#include <fstream>
+#include <algorithm>
+#include <cstdint>
 #include <sstream>
 
 #include "core/error.h"
+#include "core/read_file.h"
 #include "render/embedded_shaders.h"
 
 namespace cradle {
 namespace {
 
 constexpr const char* kInclude = "#include \"";
+constexpr std::uint64_t kLongestText = 1'000'000;  // bytes, with all that is included: ours have less than 1e5
+constexpr int kDeepest = 8;                        // files that include each other: ours, 3
 
-std::string readShader(const std::string& folder, const std::string& name) {
+std::string readShader(const std::string& folder, const std::string& name, std::uint64_t longest) {
   if (folder.empty()) {
     const auto found = embeddedShaders().find(name);
     CRADLE_CHECK(found != embeddedShaders().end());
     return found->second;
   }
-  const std::string path = folder + "/" + name;
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file || text.str().empty())
-    throw Error(ErrorKind::usage, path, "cannot be read; --shaders needs a folder with all of Cradle's shaders");
-  return text.str();
+  try {
+    return readFile(folder + "/" + name, longest, ErrorKind::usage);
+  } catch (const Error& error) {
+    throw Error(
+        ErrorKind::usage, "",
+        std::string(error.what()) + "; it cannot be read, and --shaders needs a folder with all of Cradle's shaders");
+  }
+}
+
+/// The text of a shader file, read line by line, with those that it includes. `left`: bytes that may still be read.
+std::string wholeText(const ShaderSource& source, const std::string& name, int depth, std::uint64_t& left) {
+  if (depth > kDeepest)
+    throw Error(ErrorKind::usage, source.folder + "/" + name, "is included by too many files, perhaps by itself");
+  const std::string text = readShader(source.folder, name, left);
+  left -= std::min<std::uint64_t>(left, text.size());
+  std::istringstream lines(text);
+  lines.exceptions(std::ios::badbit);  // a lack of memory would otherwise be the end of the text
+  std::string whole, line;
+  const std::string include = kInclude;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (line.starts_with("#version")) {
+      whole += line + "\n" + source.definitions + "#line " + std::to_string(number + 1) + "\n";
+    } else if (line.starts_with(include)) {
+      const std::string other = line.substr(include.size(), line.find('"', include.size()) - include.size());
+      whole += "#line 1\n" + wholeText(source, other, depth + 1, left);
+      whole += "#line " + std::to_string(number + 1) + "\n";
+    } else {
+      whole += line + "\n";
+    }
+  }
+  return whole;
 }
 
 std::string logOf(unsigned int object, decltype(glGetShaderiv) get, decltype(glGetShaderInfoLog) read) {
@@ -53,21 +81,8 @@ unsigned int compile(const ShaderSource& source, const std::string& name, GLenum
 }  // namespace
 
 std::string ShaderSource::text(const std::string& name) const {
-  std::istringstream lines(readShader(folder, name));
-  lines.exceptions(std::ios::badbit);  // a lack of memory would otherwise be the end of the text
-  std::string whole, line;
-  const std::string include = kInclude;
-  for (int number = 1; std::getline(lines, line); ++number) {
-    if (line.starts_with("#version")) {
-      whole += line + "\n" + definitions + "#line " + std::to_string(number + 1) + "\n";
-    } else if (line.starts_with(include)) {
-      const std::string other = line.substr(include.size(), line.find('"', include.size()) - include.size());
-      whole += "#line 1\n" + text(other) + "#line " + std::to_string(number + 1) + "\n";
-    } else {
-      whole += line + "\n";
-    }
-  }
-  return whole;
+  std::uint64_t left = kLongestText;
+  return wholeText(*this, name, 1, left);
 }
 
 ShaderProgram::ShaderProgram(const ShaderSource& source, const std::string& vertexFile, const std::string& fragmentFile)

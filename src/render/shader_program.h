@@ -12,7 +12,7 @@ struct ShaderSource {
   std::string definitions = {};  // lines "#define NAME VALUE\n": what a scene does not have, its shaders do not compute
 
   /// Text of a shader file, the definitions after its line `#version`, with every line `#include "NAME"` replaced by
-  /// that file. Throws Error(usage) if one is missing.
+  /// that file. Throws Error(usage) if one is missing or no regular file, or if all of them have more than 1 MB.
   std::string text(const std::string& name) const;
 };
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 
 #include "scene/syntax_fault.h"
@@ -18,6 +19,7 @@ namespace cradle {
 namespace {
 
 constexpr std::size_t kMostLevels = 64;
+constexpr std::size_t kMostBlanks = 100'000;    // in a row: more are no layout
 constexpr std::size_t kMostValues = 4'000'000;  // some 300 MB; a hundred thousand bodies have fewer
 
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
@@ -136,6 +138,17 @@ std::string TreeBuilder::pointer() const {
   return result;
 }
 
+/// Where a row of more blanks than are allowed ends. The parser copies all blanks before a token that it does not know
+/// into its message, a line feed as eight characters.
+std::optional<std::size_t> endOfLongBlank(const std::string& text) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    count = text[i] == ' ' || text[i] == '\n' || text[i] == '\t' || text[i] == '\r' ? count + 1 : 0;
+    if (count > kMostBlanks) return i;
+  }
+  return {};
+}
+
 }  // namespace
 
 JsonValue readJson(const std::string& text, FaultList& faults) {
@@ -146,6 +159,11 @@ JsonValue readJson(const std::string& text, FaultList& faults) {
   // The parser would take a NUL for the end of the text and pass over what follows.
   if (const auto nul = text.find('\0'); nul != text.npos) {
     faults.add(TokenCursor(text).advanceTo(nul), "", "a NUL byte; a scene file is UTF-8 text");
+    faults.throwIfAny(ErrorKind::scene);
+  }
+  if (const auto end = endOfLongBlank(text)) {
+    faults.add(TokenCursor(text).advanceTo(*end), "",
+               fmt::format("more than {} blank characters in a row", kMostBlanks));
     faults.throwIfAny(ErrorKind::scene);
   }
   TreeBuilder builder(text, faults);

@@ -3,16 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <utility>
 
 #include "core/error.h"
-#include "core/output_path.h"
+#include "core/part_file.h"
 #include "core/part_lock.h"
 #include "image/child_process.h"
 
@@ -20,13 +13,19 @@ namespace cradle {
 namespace {
 
 constexpr StartFailure kNoGnuplot{ErrorKind::output, "gnuplot-nox"};
-constexpr std::size_t kLastBytes = 16;  // of a file: its end is among them
+constexpr std::size_t kLastBytes = 16;  // of a picture: its end is among them
 
-/// Whether a file has its last bytes: gnuplot says nothing of a full disk.
-bool endsWith(const std::string& path, const std::string& end) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  return text.find(end, text.size() - std::min(text.size(), kLastBytes)) != std::string::npos;
+/// What gnuplot makes of `commands`, which has `end` among its last bytes: gnuplot says nothing of a full disk. `path`
+/// is for messages alone: gnuplot prints the picture, and knows no file that it could overwrite.
+std::string drawn(const std::string& commands, const std::string& end, const std::string& path) {
+  ChildProcess gnuplot({"gnuplot"}, kNoGnuplot);
+  const bool taken = gnuplot.write(commands.data(), commands.size());
+  if (gnuplot.finish() != 0 || !taken)
+    throw Error(ErrorKind::output, path, "gnuplot failed: " + gnuplot.standardError());
+  const std::string picture = gnuplot.standardOutput();
+  if (picture.find(end, picture.size() - std::min(picture.size(), kLastBytes)) == std::string::npos)
+    throw Error(ErrorKind::output, path, "could not be written to its end; is the disk full?");
+  return picture;
 }
 
 }  // namespace
@@ -46,30 +45,24 @@ std::string quotedForGnuplot(const std::string& text) {
   return result + "'";
 }
 
-std::string drawingCommands(const std::string& drawing, const ChartFiles& files, int height) {
-  const std::string size = fmt::format("size 1600,{} font 'DejaVu Sans,15'", height);
-  return fmt::format("set terminal svg {} fontscale 1.3 background 'white'\nmarkerScale = 0.7\nset output {}\n", size,
-                     quotedForGnuplot(files.svg)) +
-         drawing + "reset\n" +
-         fmt::format("set terminal pngcairo {}\nmarkerScale = 1\nset output {}\n", size, quotedForGnuplot(files.png)) +
-         drawing;
+std::string drawingCommands(const std::string& drawing, ChartFormat format, int height) {
+  const bool isSvg = format == ChartFormat::svg;
+  return fmt::format("set terminal {} size 1600,{} font 'DejaVu Sans,15'{}\nmarkerScale = {}\n",
+                     isSvg ? "svg" : "pngcairo", height, isSvg ? " fontscale 1.3 background 'white'" : "",
+                     isSvg ? 0.7 : 1) +
+         drawing + "unset output\n";
 }
 
-void drawWithGnuplot(const std::string& stem, const std::function<std::string(const ChartFiles&)>& commands) {
-  // Whole paths: gnuplot runs what stands behind a | in front.
-  const std::string whole = std::filesystem::absolute(stem).string();
-  const ChartFiles files{whole + ".svg", whole + ".png"};
-  PartLock svg(files.svg), png(files.png);
-  const std::string text = commands({partPath(files.svg), partPath(files.png)});
-  ChildProcess gnuplot({"gnuplot"}, kNoGnuplot);
-  const bool taken = gnuplot.write(text.data(), text.size());
-  if (gnuplot.finish() != 0 || !taken)
-    throw Error(ErrorKind::output, files.png, "gnuplot failed: " + gnuplot.standardError());
-  for (const auto& [path, end] : {std::pair(files.svg, "</svg>"), std::pair(files.png, "IEND")})
-    if (!endsWith(partPath(path), end))
-      throw Error(ErrorKind::output, path, "could not be written to its end; is the disk full?");
-  svg.finish();
-  png.finish();
+void drawWithGnuplot(const std::string& stem, const std::function<std::string(ChartFormat)>& commands) {
+  PartFile svg(stem + ".svg"), png(stem + ".png");
+  svg.write(drawn(commands(ChartFormat::svg), "</svg>", stem + ".svg"));
+  png.write(drawn(commands(ChartFormat::png), "IEND", stem + ".png"));
+  svg.complete();
+  png.complete();
+}
+
+void requireWritableChart(const std::string& stem) {
+  const PartLock svg(stem + ".svg"), png(stem + ".png");
 }
 
 }  // namespace cradle

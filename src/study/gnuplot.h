@@ -17,17 +17,17 @@ bool canDrawCharts();
 /// A text for gnuplot, in quotes and without commands.
 std::string quotedForGnuplot(const std::string& text);
 
-/// The files of a chart.
-struct ChartFiles {
-  std::string svg, png;
-};
+enum class ChartFormat { svg, png };
 
-/// Commands for gnuplot that make the same `drawing` into both files, 1600 pixels wide; it may use markerScale, by
-/// which the sizes of markers look the same in both.
-std::string drawingCommands(const std::string& drawing, const ChartFiles& files, int height = 900);
+/// Commands that make gnuplot print a `drawing` as a picture of that format, 1600 pixels wide; it may use markerScale,
+/// by which the sizes of markers look the same in both formats.
+std::string drawingCommands(const std::string& drawing, ChartFormat format, int height = 900);
 
-/// Draws stem.svg and stem.png by the commands that it is given for such files. Throws Error(output) if gnuplot is
-/// missing or fails, or the files are not whole.
-void drawWithGnuplot(const std::string& stem, const std::function<std::string(const ChartFiles&)>& commands);
+/// Writes stem.svg and stem.png, whole or not at all, with what gnuplot prints by the commands for each. Throws
+/// Error(output) if gnuplot is missing or fails, or a picture is not whole.
+void drawWithGnuplot(const std::string& stem, const std::function<std::string(ChartFormat)>& commands);
+
+/// Throws Error(output) unless these files could be written now. An earlier part of theirs goes.
+void requireWritableChart(const std::string& stem);
 
 }  // namespace cradle

@@ -49,6 +49,7 @@ void GrowingTable::complete() {
   flushToDisk(file_, path_);
   if (std::rename(partPath(path_).c_str(), path_.c_str()) != 0) fail();
   close(std::exchange(file_, -1));
+  flushFolderOf(path_);
 }
 
 std::string GrowingTable::wholeText() const {

@@ -8,21 +8,35 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 
 #include "core/csv_field.h"
 #include "core/error.h"
 #include "core/output_path.h"
+#include "core/read_file.h"
 
 namespace cradle {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::size_t kReferenceFields = 5;
+constexpr std::uint64_t kLongestTable = 64'000'000;  // bytes: 400,000 runs, more than all methods have on 1000 scenes
+
+/// Whether a file is there. Anything else at that place is refused: a study does not leave such.
+bool isThere(const std::string& path) {
+  std::error_code failed;
+  const fs::file_status status = fs::symlink_status(path, failed);
+  if (fs::is_symlink(status))
+    throw Error(ErrorKind::output, path, "is a link; it is not followed: remove it, or choose another folder");
+  if (fs::exists(status)) requireRegularFile(path, ErrorKind::output);
+  return fs::exists(status);
+}
 
 CsvLines linesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return csvLines({std::istreambuf_iterator<char>(file), {}});
+  std::error_code failed;
+  if (!isThere(path) || fs::file_size(path, failed) == 0) return csvLines("");
+  return csvLines(readFile(path, kLongestTable, ErrorKind::output));
 }
 
 [[noreturn]] void refuse(const std::string& path) {
@@ -44,9 +58,9 @@ void readReferences(const std::string& path, UnfinishedStudy& study) {
 
 /// A study that was stopped between its last two renames goes on as if before them.
 void takeBackReferences(const std::string& path) {
-  if (std::filesystem::exists(partPath(path)) || !std::filesystem::exists(path)) return;
+  if (!isThere(path)) return;
   std::error_code failed;
-  std::filesystem::rename(path, partPath(path), failed);
+  fs::rename(path, partPath(path), failed);
   if (failed) throw Error(ErrorKind::output, path, "cannot be renamed: " + failed.message());
 }
 
@@ -91,9 +105,10 @@ UnfinishedStudy readUnfinishedStudy(const std::string& studyPath, const std::str
                                     const std::vector<StudyOrigin>& origins) {
   UnfinishedStudy study;
   const std::string rows = partPath(studyPath);
-  if (!std::filesystem::exists(rows)) return study;
+  const bool hasRows = isThere(rows), hasReferences = isThere(partPath(referencesPath));
+  if (!hasRows) return study;
   const CsvLines table = linesOf(rows);
-  if (table.lines.size() > 1) takeBackReferences(referencesPath);
+  if (table.lines.size() > 1 && !hasReferences) takeBackReferences(referencesPath);
   readReferences(partPath(referencesPath), study);
   readRows(rows, table, study);
   auto next = origins.begin();

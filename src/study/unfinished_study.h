@@ -39,7 +39,8 @@ struct UnfinishedStudy {
 
 /// Reads those files of a folder; empty if there are none, or no scene was begun. A references.csv that was renamed
 /// before study.csv was gets back its name of an unfinished one. Throws Error(output) if they are not of a study of
-/// `origins`: other scenes, in another order, of another content, by other methods or another program.
+/// `origins` (other scenes, in another order, of another content, by other methods or another program), links, larger
+/// than 64 MB, or no files at all, of which nothing is read.
 UnfinishedStudy readUnfinishedStudy(const std::string& studyPath, const std::string& referencesPath,
                                     const std::vector<StudyOrigin>& origins);
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "study/chart_panels.h"
-#include "study/gnuplot.h"
 
 namespace cradle {
 namespace {
@@ -27,21 +26,21 @@ std::string drawing(const WorkPrecisionChart& chart, const std::vector<Curve>& c
          "set grid xtics ytics linecolor rgb '#c8c8c8' linewidth 1 dashtype 1\nset tics nomirror\nset mxtics 10\n"
          "unset key\n" +
          headings(chart, layout) + errorPanels(curves, chart.reference.uncertainty, layout) +
-         sidePanels(curves, layout) + legend(curves, layout) + "unset multiplot\nunset output\n";
+         sidePanels(curves, layout) + legend(curves, layout) + "unset multiplot\n";
 }
 
 }  // namespace
 
-std::string chartCommands(const WorkPrecisionChart& chart, const std::string& svgPath, const std::string& pngPath) {
+std::string chartCommands(const WorkPrecisionChart& chart, ChartFormat format) {
   const std::vector<Curve> curves = curvesOf(chart.rows);
   const ChartLayout layout = layoutOf(curves);
   return dataBlocks(curves, chart.reference.uncertainty) +
-         drawingCommands(drawing(chart, curves, layout), {svgPath, pngPath}, layout.height);
+         drawingCommands(drawing(chart, curves, layout), format, layout.height);
 }
 
 void drawChart(const WorkPrecisionChart& chart, const std::string& stem) {
   if (curvesOf(chart.rows).empty()) return;
-  drawWithGnuplot(stem, [&](const ChartFiles& files) { return chartCommands(chart, files.svg, files.png); });
+  drawWithGnuplot(stem, [&](ChartFormat format) { return chartCommands(chart, format); });
 }
 
 }  // namespace cradle

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "study/gnuplot.h"
 #include "study/work_precision.h"
 
 namespace cradle {
@@ -15,9 +16,9 @@ struct WorkPrecisionChart {
   double duration = 0;  // s
 };
 
-/// The commands that make gnuplot draw the chart into an SVG and a PNG file. Blow-ups have no cost of their own: they
+/// The commands that make gnuplot print the chart in a format. Blow-ups have no cost of their own: they
 /// stand where a run of that step would, from the cost of the coarsest run that went well.
-std::string chartCommands(const WorkPrecisionChart& chart, const std::string& svgPath, const std::string& pngPath);
+std::string chartCommands(const WorkPrecisionChart& chart, ChartFormat format);
 
 /// Draws stem.svg and stem.png. Throws Error(output) if gnuplot is missing or fails.
 void drawChart(const WorkPrecisionChart& chart, const std::string& stem);

@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <array>
+#include <climits>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -17,13 +19,16 @@
 
 #include "core/error.h"
 #include "core/output_path.h"
+#include "trajectory/trajectory.h"
 
 namespace cradle {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPatience = 30000;  // ms to wait for another program; queries of others seldom take longer
+constexpr int kLeastLength = 1'000'000;  // bytes that a text may have in any file: a .part grows while it is read
+constexpr int kLongTurn = 100'000;       // instructions of SQLite; a row of a trajectory takes less than a hundred
+constexpr int kPatience = 30000;         // ms to wait for another program; queries of others seldom take longer
 
 std::string_view bytesOrEmpty(std::span<const std::byte> bytes) {
   // SQLite takes a null pointer for null, not for zero bytes.
@@ -66,6 +71,16 @@ void requireOwnJournal(const fs::path& database, ErrorKind kind) {
       "is none of cradle's: it names another file, which would be deleted; remove it, or choose another folder");
 }
 
+/// Of its texts and blobs, and one for itself.
+std::int64_t bytesOfRow(sqlite3_stmt* statement) {
+  std::int64_t bytes = 1;
+  for (int column = 0; column < sqlite3_column_count(statement); ++column) {
+    const int type = sqlite3_column_type(statement, column);
+    if (type == SQLITE_TEXT || type == SQLITE_BLOB) bytes += sqlite3_column_bytes(statement, column);
+  }
+  return bytes;
+}
+
 }  // namespace
 
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const {
@@ -99,8 +114,10 @@ void Statement::bindNull(int parameter) {
 }
 
 bool Statement::step() {
+  database_->beginWork();
   const int code = sqlite3_step(statement_.get());
   if (code != SQLITE_ROW && code != SQLITE_DONE) database_->fail(code);
+  if (code == SQLITE_ROW) database_->requireHeld(bytesGiven_ += bytesOfRow(statement_.get()));
   return code == SQLITE_ROW;
 }
 
@@ -110,6 +127,7 @@ void Statement::run() {
 }
 
 void Statement::reset() {
+  bytesGiven_ = 0;
   sqlite3_reset(statement_.get());  // its result repeats the last step's, which has been reported
 }
 
@@ -131,9 +149,9 @@ std::int64_t Statement::integer(int column) const {
 double Statement::real(int column) const {
   requireType(column, SQLITE_FLOAT, "a number");
   const double value = sqlite3_column_double(statement_.get(), column);
-  if (!std::isfinite(value))
-    database_->failDamaged(
-        fmt::format("its column {} holds a number that is not finite", sqlite3_column_name(statement_.get(), column)));
+  if (!(std::abs(value) < kLargestNumber))
+    database_->failDamaged(fmt::format("its column {} holds a number that is not finite and below {:.0e}",
+                                       sqlite3_column_name(statement_.get(), column), kLargestNumber));
   return value;
 }
 
@@ -186,7 +204,17 @@ Database::Database(const std::string& path, DatabaseAccess access) : path_(path)
   } else {
     open(file.string(), SQLITE_OPEN_READONLY);
   }
-  // The file may come from anywhere: what it holds is data, never something to be run.
+  restrictReading();
+}
+
+/// The file may come from anywhere: what it holds is data, never something to be run; a text or a blob is not longer
+/// than the file; and a row is found by its key or next to the last one, in little work.
+void Database::restrictReading() {
+  std::error_code failed;
+  bytesHeld_ = static_cast<std::int64_t>(std::min(fs::file_size(path_, failed), std::uintmax_t{INT_MAX}));
+  sqlite3_limit(handle_.get(), SQLITE_LIMIT_LENGTH, std::max(static_cast<int>(bytesHeld_), kLeastLength));
+  const auto isTooMuch = [](void* turns) { return ++*static_cast<int*>(turns) > 1 ? 1 : 0; };
+  sqlite3_progress_handler(handle_.get(), kLongTurn, isTooMuch, &longTurns_);
   sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   execute("PRAGMA query_only = ON; PRAGMA cell_size_check = ON");
@@ -202,11 +230,13 @@ void Database::open(const std::string& name, int flags) {
 }
 
 void Database::execute(const std::string& sql) {
+  beginWork();
   const int code = sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) fail(code);
 }
 
 Statement Database::prepare(const std::string& sql) {
+  beginWork();
   sqlite3_stmt* statement = nullptr;
   const int code = sqlite3_prepare_v2(handle_.get(), sql.c_str(), -1, &statement, nullptr);
   if (code != SQLITE_OK) fail(code);
@@ -249,6 +279,7 @@ void Database::failReading(int code) const {
     throw Error(ErrorKind::usage, path_, "was being written when that program ended; try again");
   if (code == SQLITE_CANTOPEN)
     throw Error(ErrorKind::usage, path_, "cannot be opened; it must be an existing file that may be read");
+  if (code == SQLITE_INTERRUPT) failDamaged("its rows have no end or no order");
   throw Error(ErrorKind::usage, path_,
               fmt::format("is not a trajectory, or is damaged ({})", sqlite3_errmsg(handle_.get())));
 }
@@ -256,6 +287,13 @@ void Database::failReading(int code) const {
 void Database::failDamaged(const std::string& what) const {
   CRADLE_CHECK(access_ == DatabaseAccess::read);
   throw Error(ErrorKind::usage, path_, "is damaged: " + what + "; make it again with `cradle simulate`");
+}
+
+void Database::requireHeld(std::int64_t bytes) const {
+  if (access_ != DatabaseAccess::read || bytes <= bytesHeld_) return;
+  std::error_code failed;
+  bytesHeld_ = static_cast<std::int64_t>(fs::file_size(path_, failed));  // it may have grown: a .part is being written
+  if (failed || bytes > bytesHeld_) failDamaged("a query gives more than the file holds");
 }
 
 bool isBeingWritten(const std::string& path) {

@@ -23,7 +23,8 @@ class Statement {
   void bind(int parameter, std::span<const std::byte> value);  // not copied: must live until the statement has run
   void bindNull(int parameter);
 
-  /// True if there is a row to read.
+  /// True if there is a row to read. A file that is read is damaged if a query gives more than the file holds, or needs
+  /// much work for a row: pages that lead back to themselves have rows without end.
   bool step();
   /// Runs a statement that gives no rows, and makes it ready for the next values.
   void run();
@@ -33,7 +34,7 @@ class Statement {
   bool isNull(int column) const;
   /// Each throws the database's error if the column holds another type. Views end with the next step or reset.
   std::int64_t integer(int column) const;
-  double real(int column) const;  // finite
+  double real(int column) const;  // below kLargestNumber
   std::string text(int column) const;
   std::string anyAsText(int column) const;  // numbers too
   std::span<const std::byte> blob(int column) const;
@@ -50,6 +51,7 @@ class Statement {
 
   const Database* database_;
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  std::int64_t bytesGiven_ = 0;  // since the reset, of the rows' texts and blobs, and one for each row
 };
 
 /// What a file is opened for. What fails while writing throws Error(output), what fails while reading Error(usage): it
@@ -81,16 +83,23 @@ class Database {
   [[noreturn]] void fail(int code) const;
   /// Throws the error of a file that holds what cannot be.
   [[noreturn]] void failDamaged(const std::string& what) const;
+  /// Throws that of a file that is read and holds fewer bytes than a query has given.
+  void requireHeld(std::int64_t bytes) const;
+  /// To be called before a call of SQLite: the work of each is limited.
+  void beginWork() const { longTurns_ = 0; }
 
  private:
   struct Close {
     void operator()(sqlite3* handle) const;
   };
   void open(const std::string& name, int flags);
+  void restrictReading();
   [[noreturn]] void failReading(int code) const;
 
   std::string path_;
   DatabaseAccess access_;
+  mutable int longTurns_ = 0;           // that the call of SQLite has taken so far
+  mutable std::int64_t bytesHeld_ = 0;  // at least, by a file that is read
   std::unique_ptr<sqlite3, Close> handle_;
 };
 

@@ -17,10 +17,13 @@ constexpr double kUnitError = 1e-3;
 
 }  // namespace
 
+bool isPossiblePlace(const Vec3& place) {
+  return place.allFinite() && place.cwiseAbs().maxCoeff() < kLargest;
+}
+
 bool isPossible(const BodyState& state) {
-  const auto isBelow = [](const Vec3& vector) { return vector.cwiseAbs().maxCoeff() < kLargest; };
-  return state.position.allFinite() && isBelow(state.position) && state.linearVelocity.allFinite() &&
-         isBelow(state.linearVelocity) && state.angularVelocity.allFinite() && isBelow(state.angularVelocity) &&
+  return isPossiblePlace(state.position) && isPossiblePlace(state.linearVelocity) &&
+         isPossiblePlace(state.angularVelocity) &&
          std::abs(state.orientation.norm() - 1) < kUnitError;  // false where it is not finite
 }
 

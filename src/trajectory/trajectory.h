@@ -21,8 +21,16 @@ struct BodyState {
   Vec3 angularVelocity = Vec3::Zero();  // rad/s, world
 };
 
-/// Whether a body can have that state: its numbers are finite and below 1e30, which no motion within the ranges of
-/// scene files reaches, and its orientation is a rotation to 1e-3.
+/// No number of a trajectory is as large (SI units): masses are at most 1e36 kg and velocities below 1e30 m/s, and an
+/// energy is a product of one mass and two velocities.
+constexpr double kLargestNumber = 1e100;
+
+/// Whether something can be at that place (m): its numbers are finite and below 1e30, which no motion within the ranges
+/// of scene files reaches.
+bool isPossiblePlace(const Vec3& place);
+
+/// Whether a body can have that state: its numbers are as those of possible places, and its orientation is a rotation
+/// to 1e-3.
 bool isPossible(const BodyState& state);
 
 /// kinetic + potential + dissipated - work + numerical is constant.

@@ -25,6 +25,8 @@ constexpr std::string_view kMagic("SQLite format 3\0", 16);
 constexpr std::size_t kHeaderSize = 100, kApplicationIdAt = 68;  // bytes; the id is big-endian
 constexpr std::size_t kVersionsAt = 18;                          // of writing and reading: 1, or kWithLog
 constexpr char kWithLog = 2;
+constexpr double kLatestTime = 1e10;       // s: scenes last 1e9 s at most
+constexpr int kLongestValue = 64'000'000;  // bytes of a value of the table meta: the longest scene that is read
 constexpr const char* kTableNames = "('meta', 'mesh', 'body', 'frame', 'state', 'event', 'energy')";
 
 /// The first bytes of a file, or all; empty if it cannot be read.
@@ -79,7 +81,8 @@ Vec3f colorFromHex(const std::string& text, const Database& database) {
   return Vec3f(static_cast<float>(red), static_cast<float>(green), static_cast<float>(blue)) / 255.0f;
 }
 
-std::vector<ModelMaterial> readMaterials(Database& database, std::int64_t mesh) {
+/// The ranges of a mesh of so many triangles, at most one for each.
+std::vector<ModelMaterial> readMaterials(Database& database, std::int64_t mesh, std::size_t triangles) {
   Statement query = database.prepare(
       "SELECT value ->> 'name', value ->> 'baseColor', value ->> 'firstTriangle', value ->> 'triangleCount' "
       "FROM mesh, json_each(mesh.material) WHERE mesh.id = ?");
@@ -88,6 +91,7 @@ std::vector<ModelMaterial> readMaterials(Database& database, std::int64_t mesh) 
   std::int64_t next = 0;
   while (query.step()) {
     const std::int64_t first = query.integer(2), count = query.integer(3);
+    if (materials.size() == triangles) database.failDamaged("a mesh has more materials than triangles");
     if (first != next || count < 0 || count > UINT32_MAX - first)
       database.failDamaged("the materials of a mesh do not follow one another");
     next = first + count;
@@ -98,14 +102,15 @@ std::vector<ModelMaterial> readMaterials(Database& database, std::int64_t mesh) 
 }
 
 void requireConsistent(const DrawnMesh& drawn, const Database& database) {
-  const auto finite = [](const auto& vector) { return vector.allFinite(); };
+  const auto finite = [](const Vec3f& normal) { return normal.allFinite(); };
   const auto inRange = [&](const Triangle& triangle) {
     return std::all_of(triangle.begin(), triangle.end(), [&](auto vertex) { return vertex < drawn.vertices.size(); });
   };
   if (drawn.normals.size() != drawn.vertices.size()) database.failDamaged("a mesh has not one normal a vertex");
-  if (!std::all_of(drawn.vertices.begin(), drawn.vertices.end(), finite) ||
-      !std::all_of(drawn.normals.begin(), drawn.normals.end(), finite))
-    database.failDamaged("a mesh has numbers that are not finite");
+  if (!std::all_of(drawn.normals.begin(), drawn.normals.end(), finite))
+    database.failDamaged("a mesh has normals that are not finite");
+  if (!std::all_of(drawn.vertices.begin(), drawn.vertices.end(), isPossiblePlace))
+    database.failDamaged("a mesh has vertices whose coordinates are not finite and below 1e30 m");
   if (!std::all_of(drawn.triangles.begin(), drawn.triangles.end(), inRange))
     database.failDamaged("a mesh has triangles between vertices that it does not have");
   if (drawn.materials.empty()) return;
@@ -190,8 +195,14 @@ TrajectoryReader::TrajectoryReader(TrajectoryReader&&) noexcept = default;
 TrajectoryReader::~TrajectoryReader() = default;
 
 void TrajectoryReader::readMeta() {
-  Statement query = session_->database->prepare("SELECT key, value FROM meta");
-  while (query.step()) meta_[query.text(0)] = query.anyAsText(1);
+  Statement query = session_->database->prepare(
+      fmt::format("SELECT key, CASE WHEN length(CAST(value AS BLOB)) <= {} THEN value END FROM meta", kLongestValue));
+  while (query.step()) {
+    if (query.isNull(1))
+      session_->database->failDamaged(
+          fmt::format("its table meta has a value that is missing or longer than {} bytes", kLongestValue));
+    meta_[query.text(0)] = query.anyAsText(1);
+  }
   const auto value = [&](const char* key) {
     const auto found = meta_.find(key);
     if (found == meta_.end()) session_->database->failDamaged(fmt::format("its table meta has no {}", key));
@@ -217,7 +228,7 @@ void TrajectoryReader::readMeshes() {
     model.drawn.vertices = arrayOf<Vec3>(query, 2, database);
     model.drawn.normals = arrayOf<Vec3f>(query, 3, database);
     model.drawn.triangles = arrayOf<Triangle>(query, 4, database);
-    model.drawn.materials = readMaterials(database, query.integer(0));
+    model.drawn.materials = readMaterials(database, query.integer(0), model.drawn.triangles.size());
     requireConsistent(model.drawn, database);
     model.solid = weld(model.drawn.vertices, model.drawn.triangles);
     header_.meshes.push_back(std::move(model));
@@ -242,6 +253,8 @@ void TrajectoryReader::readBodies() {
     if (motion == "dynamic" && !(properties.mass > 0 && properties.inertiaTensor.diagonal().minCoeff() > 0))
       database.failDamaged(
           fmt::format("body \"{}\" has a mass or a moment of inertia that is not above 0", query.text(1)));
+    if (!isPossiblePlace(properties.centerOfMass))
+      database.failDamaged(fmt::format("body \"{}\" has its centre of mass 1e30 m away or more", query.text(1)));
     if (motion == "dynamic") dynamicBodies_.push_back(static_cast<int>(id));
     header_.bodies.push_back(
         {query.text(1), motion == "dynamic", static_cast<int>(mesh), hasMesh ? "" : query.text(4), properties});
@@ -256,6 +269,8 @@ void TrajectoryReader::readFrameTimes() {
     const double time = query.real(1);
     if (frameTimes_.empty() ? time < 0 : time <= frameTimes_.back())
       database.failDamaged("its frames are not in order of time, from 0 on");
+    if (time > kLatestTime)
+      database.failDamaged(fmt::format("frame {} is at {} s, later than any simulation ends", frameCount(), time));
     frameTimes_.push_back(time);
   }
   if (isFinished() && frameTimes_.empty()) database.failDamaged("its frames are missing");
@@ -311,9 +326,13 @@ std::vector<Event> TrajectoryReader::events() const {
     }
   };
   std::vector<Event> events;
-  while (query.step())
+  while (query.step()) {
     events.push_back({query.real(0), kind(query.text(1)), body(2), query.isNull(3) ? -1 : body(3), vectorAt(query, 4),
                       vectorAt(query, 7), query.real(10)});
+    const Event& event = events.back();
+    if (!isPossiblePlace(event.point) || !isPossiblePlace(event.normal) || std::abs(event.time) > kLatestTime)
+      database.failDamaged(fmt::format("an event \"{}\" is where or when none can be", eventKindName(event.kind)));
+  }
   return events;
 }
 

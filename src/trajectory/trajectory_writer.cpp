@@ -32,6 +32,7 @@ void removeOldPart(const std::string& part) {
     throw Error(ErrorKind::output, part,
                 fmt::format("is being written by another run ({}); wait for its end or choose another name",
                             lockHolderOf(part)));
+  requireNoWriter(part);
   std::error_code failed;
   fs::remove(part, failed);
   if (failed) throw Error(ErrorKind::output, part, "is in the way and cannot be removed: " + failed.message());
@@ -133,8 +134,8 @@ std::array<double, 14> energyNumbers(const EnergyBalance& energy) {
 }
 
 template <std::size_t N>
-bool allFinite(const std::array<double, N>& numbers) {
-  return std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
+bool allPossible(const std::array<double, N>& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::abs(number) < kLargestNumber; });
 }
 
 [[noreturn]] void failNotFinite(double time, const std::string& whose) {
@@ -214,7 +215,7 @@ void TrajectoryWriter::requireFinite(const Frame& frame) const {
   for (std::size_t i = 0; i < frame.states.size(); ++i)
     if (!isPossible(frame.states[i]))
       failNotFinite(frame.time, "state of body " + bodyNames_[static_cast<std::size_t>(dynamicBodies_[i])]);
-  if (!allFinite(energyNumbers(frame.energy))) failNotFinite(frame.time, "energy or momentum of the scene");
+  if (!allPossible(energyNumbers(frame.energy))) failNotFinite(frame.time, "energy or momentum of the scene");
 }
 
 void TrajectoryWriter::writeFrame(const Frame& frame) {
@@ -239,7 +240,7 @@ void TrajectoryWriter::append(const Event& event) {
   CRADLE_CHECK(isBody(event.bodyA) && (event.bodyB < 0 || isBody(event.bodyB)));
   const Vec3 &point = event.point, &normal = event.normal;
   const std::array numbers{point.x(), point.y(), point.z(), normal.x(), normal.y(), normal.z(), event.impulse};
-  if (!std::isfinite(event.time) || !allFinite(numbers))
+  if (!std::isfinite(event.time) || !allPossible(numbers))
     failNotFinite(event.time, fmt::format("event \"{}\" of body {}", eventKindName(event.kind),
                                           bodyNames_[static_cast<std::size_t>(event.bodyA)]));
   Statement& insert = session_->event;
@@ -278,6 +279,7 @@ void TrajectoryWriter::finish(const RunCost& cost) {
     throw Error(ErrorKind::output, path_,
                 fmt::format("cannot be put in place ({}); the result is in {}", failed.message(), part_));
   isFinished_ = true;
+  flushFolderOf(path_);
 }
 
 /// The database of a file without a name.

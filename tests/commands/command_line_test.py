@@ -391,10 +391,10 @@ class Stability(InTemporaryFolder):
         self.assertEqual(os.listdir(self.path("m")), ["logistic.csv"])
 
     def test_charts_that_were_cut_off_are_told(self):
-        # As on a full disk, of which gnuplot says nothing: files without an end.
+        # A gnuplot that is cut off: a picture without an end.
         os.mkdir(self.path("bin"))
         with open(self.path("bin/gnuplot"), "w") as file:
-            file.write("#!/bin/sh\nsed -n \"s/^set output '\\(.*\\)'$/\\1/p\" | while read -r name; do echo '<svg>' > \"$name\"; done\n")
+            file.write("#!/bin/sh\ncat >/dev/null; echo '<svg>'\n")
         os.chmod(self.path("bin/gnuplot"), 0o755)
         path = self.path("bin") + os.pathsep + os.environ["PATH"]
         result = cradle("stability", "-o", self.path("m"), "--maps", "logistic", env={**os.environ, "PATH": path})

@@ -39,5 +39,18 @@ TEST(ConsoleDeathTest, FullDiskIsOne) {
   std::fclose(full);
 }
 
+/// Its standard files are closed when it begins.
+[[noreturn]] void showWithoutFiles() {
+  for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) close(file);
+  fillStandardFiles();
+  const int next = dup(STDIN_FILENO);
+  if (next <= STDERR_FILENO) std::_Exit(1);
+  showOn(STDOUT_FILENO);
+}
+
+TEST(ConsoleDeathTest, ClosedFilesGiveTheirNumbersToNoOther) {
+  EXPECT_EXIT(showWithoutFiles(), testing::ExitedWithCode(static_cast<int>(ErrorKind::output)), "");
+}
+
 }  // namespace
 }  // namespace cradle

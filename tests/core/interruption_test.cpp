@@ -1,8 +1,10 @@
 #include "core/interruption.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 
 #include "core/error.h"
 
@@ -36,6 +38,32 @@ TEST(InterruptionDeathTest, SecondSignalEndsAtOnce) {
         std::raise(SIGINT);
       },
       testing::KilledBySignal(SIGINT), "");
+}
+
+TEST(InterruptionDeathTest, WorkThatDoesNotLookIsEnded) {
+  for (const int signal : {SIGINT, SIGTERM})
+    EXPECT_EXIT(
+        {
+          noteInterruptions();
+          std::raise(signal);
+          sleep(60);
+          std::_Exit(2);
+        },
+        testing::ExitedWithCode(128 + signal), "interrupted|terminated");
+}
+
+TEST(InterruptionDeathTest, NoticedSignalLeavesTimeToTidyUp) {
+  EXPECT_EXIT(
+      {
+        noteInterruptions();
+        std::raise(SIGTERM);
+        try {
+          throwIfInterrupted();
+        } catch (const Error&) {
+          std::_Exit(alarm(0) == 0 ? 0 : 2);  // none was set
+        }
+      },
+      testing::ExitedWithCode(0), "");
 }
 
 TEST(InterruptionDeathTest, BrokenPipeDoesNotEndTheProgram) {

@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -63,6 +65,27 @@ TEST_F(PartLockDeathTest, CrashLeavesFinishedFilesAndThoseOfOthers) {
       testing::KilledBySignal(SIGSEGV), "");
   EXPECT_TRUE(fs::remove(path_ + "_done"));
   EXPECT_TRUE(fs::remove(path_ + "_done.part"));
+}
+
+TEST(PartLock, NamesOfPartsAreNoOutputs) {
+  EXPECT_THROW(PartLock(testing::TempDir() + "a.sqlite.part"), Error);
+}
+
+TEST(PartLock, WriterIsNamed) {
+  const std::string path = testing::TempDir() + "part_lock_held_" + std::to_string(getpid());
+  const PartLock lock(path);
+  EXPECT_NO_THROW(requireNoWriter(path + ".none"));
+  EXPECT_EXIT(
+      {
+        try {
+          requireNoWriter(path + ".part");
+        } catch (const Error& error) {
+          std::fputs(error.what(), stderr);
+          std::_Exit(static_cast<int>(error.kind()));
+        }
+        std::_Exit(0);
+      },
+      testing::ExitedWithCode(static_cast<int>(ErrorKind::output)), "process " + std::to_string(getpid()));
 }
 
 }  // namespace

@@ -47,5 +47,21 @@ TEST(Progress, ShortWorkLeavesLogsAlone) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
+/// On a terminal that is closed before the first line.
+[[noreturn]] void countWithoutReader() {
+  const int master = posix_openpt(O_RDWR | O_NOCTTY);
+  if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0) std::_Exit(1);
+  dup2(open(ptsname(master), O_RDWR | O_NOCTTY), STDERR_FILENO);
+  Progress progress("simulating", "frames", 3, false);
+  close(master);
+  progress.update(3);
+  progress.endLine();
+  std::_Exit(0);
+}
+
+TEST(ProgressDeathTest, WhatCannotBeToldIsLost) {
+  EXPECT_EXIT(countWithoutReader(), testing::ExitedWithCode(0), "");
+}
+
 }  // namespace
 }  // namespace cradle

@@ -3,10 +3,10 @@
 
     fuzz.py PROGRAMS SOURCE_FOLDER OUT_FOLDER [SECONDS] [--keep]
 
-Each program PROGRAMS/fuzz_NAME runs for its share of SECONDS (600), as many at once as there are cores. It begins with
-tests/fuzz/corpora/NAME, with what former runs left in OUT_FOLDER/NAME, and with files of the field: scenes, 3ds and other
-models, PNG files of every kind. An input that shows a fault stays in OUT_FOLDER/faults, and the run ends with 1. --keep
-writes tests/fuzz/corpora anew: a small set of inputs that reaches all that was reached.
+Each program PROGRAMS/fuzz_NAME runs for its share of SECONDS (600), as many at once as there are cores: half of it with short
+inputs that begin with nothing, half with tests/fuzz/corpora/NAME, with what former runs left in OUT_FOLDER/NAME, and with files
+of the field: scenes, 3ds and other models, PNG files of every kind. An input that shows a fault stays in OUT_FOLDER/faults, and the run ends with 1. --keep
+writes tests/fuzz/corpora anew: a small set of inputs that reaches all that was reached, and those that are named in words.
 """
 import argparse, glob, hashlib, os, re, shutil, struct, subprocess, sys, tempfile, time, zlib
 
@@ -14,10 +14,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 MODELS = "/usr/share/assimp/models"
 FORMATS = ["obj", "ply", "stl", "gltf", "glb", "off", "dae", "3ds", "x", "ac", "lwo", "raw"]  # of fuzz_import_formats.cpp
-LARGEST_SEED = 16384  # bytes: larger inputs take the time of many
-LARGEST_KEPT = 4096   # bytes of an input of the corpora
+LARGEST = 4096  # bytes of an input: larger ones take the time of many, and show hardly more
+SHORT = 256     # bytes: of these a second tries ten times as many
 # A fault is an input that takes longer (s), or more memory (MB), than what a reader may take before it refuses.
 LIMITS = ["-timeout=20", "-malloc_limit_mb=1024", "-rss_limit_mb=2048"]
+HASH = re.compile("[0-9a-f]{40}")  # names that libFuzzer gives; inputs that once showed a fault are named in words
 REPORT = 10           # s between two lines of progress
 
 
@@ -26,7 +27,7 @@ def content(path):
         return file.read()
 
 
-def files_of(folder, endings, largest=LARGEST_SEED):
+def files_of(folder, endings, largest=LARGEST):
     for place, _, names in sorted(os.walk(folder)):
         for name in sorted(names):
             path = os.path.join(place, name)
@@ -68,13 +69,12 @@ def closed_surfaces():
 def seeds(name, source):
     """Inputs of the field, for a program without a corpus."""
     if name in ("json", "scene"):
-        paths = [*files_of(os.path.join(source, "scenes"), [".json"]), os.path.join(source, "tests/scene/every_key.json")]
-        return [content(path) for path in paths]
+        return [content(path) for folder in ("scenes", "tests/scene") for path in files_of(os.path.join(source, folder), [".json"])]
     if name in ("check_3ds", "import_3ds"):
         return [content(path) for folder in (os.path.join(source, "assets"), MODELS) for path in files_of(folder, [".3ds"])]
     if name == "import_formats":
         return [bytes([number]) + content(path) for number, ending in enumerate(FORMATS)
-                for path in files_of(MODELS, ["." + ending], LARGEST_KEPT)]
+                for path in files_of(MODELS, ["." + ending])]
     if name == "png":
         return [png(kind, depth, interlaced) for kind, depths in ((0, (1, 2, 4, 8, 16)), (2, (8, 16)), (3, (1, 2, 4, 8)),
                                                                   (4, (8, 16)), (6, (8, 16)))
@@ -110,20 +110,27 @@ class Target:
     def look(self, seconds):
         """Executions, and whether a fault was found."""
         put(seeds(self.name, self.source), self.grown)
-        options = ["-max_total_time=%d" % seconds, "-print_final_stats=1", "-artifact_prefix=" + self.faults,
-                   "-use_value_profile=1", "-reload=0", "-max_len=%d" % LARGEST_SEED]
-        code = self.run(options, [self.grown, self.kept], self.log)
-        count = re.search(rb"number_of_executed_units: (\d+)", content(self.log))
-        return (int(count[1]) if count else 0), code != 0
+        short = put([], self.grown + "-short")
+        total = 0
+        for length, folders in ((SHORT, [short]), (LARGEST, [self.grown, short, self.kept])):
+            options = ["-max_total_time=%d" % max(1, seconds // 2), "-print_final_stats=1", "-artifact_prefix=" + self.faults,
+                       "-reload=0", "-max_len=%d" % length]
+            code = self.run(options, folders, self.log)
+            count = re.search(rb"number_of_executed_units: (\d+)", content(self.log))
+            total += int(count[1]) if count else 0
+            if code != 0:
+                return total, True
+        return total, False
 
     def keep(self):
         with tempfile.TemporaryDirectory() as folder:
-            small = put((content(path) for path in files_of(self.grown, [""], LARGEST_KEPT)), os.path.join(folder, "small"))
+            small = put((content(path) for path in files_of(self.grown, [""])), os.path.join(folder, "small"))
             cover = put([], os.path.join(folder, "cover"))
-            self.run(["-set_cover_merge=1"], [cover, small, self.kept], os.path.join(folder, "log"))
+            self.run(["-set_cover_merge=1"], [cover, small, self.grown + "-short", self.kept], os.path.join(folder, "log"))
             if os.listdir(cover):
-                shutil.rmtree(self.kept)
-                shutil.copytree(cover, self.kept)
+                for name in filter(HASH.fullmatch, os.listdir(self.kept)):
+                    os.remove(os.path.join(self.kept, name))
+                shutil.copytree(cover, self.kept, dirs_exist_ok=True)
         return len(os.listdir(self.kept))
 
 

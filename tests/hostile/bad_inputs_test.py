@@ -269,6 +269,13 @@ def link(target):
     return make
 
 
+def below(make):
+    def make_with_folder(path):
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        make(path)
+    return make_with_folder
+
+
 def sparse(size):
     def make(path):
         write(path, "")
@@ -617,6 +624,8 @@ for row in (
     ("body of no mass", trajectory("UPDATE body SET mass = 0.0 WHERE id = 0"), "damaged", '"ball"', "not above 0"),
     ("body of negative inertia", trajectory("UPDATE body SET iyy = -1.0 WHERE id = 1"), "damaged", '"box"', "not above 0"),
     ("body of infinite mass", trajectory("UPDATE body SET mass = 9e999 WHERE id = 0"), "damaged", "mass", "not finite"),
+    ("body of the mass of many universes", trajectory("UPDATE body SET mass = 1e308 WHERE id = 0"), "damaged", "mass", "below 1e+100"),
+    ("frame after all time", trajectory("UPDATE frame SET time = 2e10 WHERE id = 6"), "damaged", "frame 6", "later"),
     ("body of a mesh that is not there", trajectory("UPDATE body SET mesh = 7 WHERE id = 1"), "damaged", "mesh that is not there"),
     # Meshes
     ("triangle of vertices that are not there", trajectory("UPDATE mesh SET triangles = x'000000000100000063000000'"), "damaged", "vertices that it does not have"),
@@ -659,6 +668,7 @@ for row in (
 
 for row in (
     ("energy that is missing", "export t.sqlite -o old.csv", trajectory("DELETE FROM energy WHERE frame = 3"), "damaged", "energies of frame 3"),
+    ("energy beyond all", "export t.sqlite -o old.csv", trajectory("UPDATE energy SET kinetic = 1e307 WHERE frame = 3"), "damaged", "kinetic", "below 1e+100"),
     ("event of unknown kind", "render t.sqlite -o new --overlay contacts", trajectory("INSERT INTO event SELECT 0.0, 'kiss', 0, 1, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0"), "damaged", '"kiss"'),
     ("states that are not those of the hash", "compare good.sqlite t.sqlite", state("px = px + 1.0"), "stateHash"),
     ("hash that is not that of the states", "compare t.sqlite good.sqlite", trajectory("UPDATE meta SET value = '0' WHERE key = 'stateHash'"), "stateHash"),
@@ -842,6 +852,15 @@ for row in (
     ("frames among other things", {}, "render good.sqlite -o others", "others: ", "holds thesis.txt", "no frame", "new or empty folder"),
     ("frames among scenes", {}, "render good.sqlite -o .", r"\.: ", "no frame", "new or empty folder"),
     ("study among frames", {}, "study good.json -o frames --methods rk4", "frames: ", "no result of a study", "new or empty folder"),
+    *(("study with %s, %s" % (name, what), {"s/" + name: make}, "study good.json -o s --methods rk4", "s/" + re.escape(name) + ": ", word)
+      for name in ("study.csv.part", "references.csv.part", "work_precision_good.svg.part")
+      for what, make, word in (("a pipe", below(os.mkfifo), "not a regular file"), ("a link", link("/dev/zero"), ""),
+                               ("a folder", below(os.mkdir), ""))),
+    ("study with a large table", {"s/study.csv.part": sparse(3_000_000_000)},
+     "study good.json -o s --methods rk4", r"s/study\.csv\.part: ", "3000.0 MB", "64 MB"),
+    ("study with a folder for a chart", {"s/work_precision_good.png/x": ""}, "study good.json -o s --methods rk4",
+     r"s/work_precision_good\.png: ", "is a folder"),
+    ("map with a folder for a chart", {"s/logistic.png/x": ""}, "stability -o s --maps logistic", r"s/logistic\.png: ", "is a folder"),
     ("maps among other things", {}, "stability -o others --maps logistic", "others: ", "holds thesis.txt", "new or empty folder"),
     ("frames that are there", {}, "render good.sqlite -o frames", "frames: ", "holds 3 of the frames", "--overwrite"),
     ("frames of a longer film", {"f/frame_000099.png": ""}, "render good.sqlite -o f --overwrite", "f: ", "frame_000099.png", "another film", "7 frames"),

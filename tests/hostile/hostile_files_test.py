@@ -227,6 +227,99 @@ class Places(HostileTest):
                 first.terminate()
                 first.wait()
 
+    def test_a_second_run_into_the_same_folder_says_who_holds_it(self):
+        path = self.write("long.json", scene(duration=60, output={"framesPerSecond": 240, "width": 320, "height": 240}))
+        arguments = ("render", path, "-q", "--overwrite", "-o", self.path("frames"))
+        first = subprocess.Popen([PROGRAM, *arguments], stderr=subprocess.DEVNULL)
+        try:
+            self.wait_for(first, lambda: os.path.isdir(self.path("frames")) and os.listdir(self.path("frames")))
+            ended = self.run_cradle(*arguments)
+            self.assertEqual(ended.code, 5, ended.error)
+            self.assertIn("process %d" % first.pid, ended.error)
+        finally:
+            first.kill()
+            first.wait()
+        ended = self.run_cradle(*arguments, "--frames", "0:1")
+        self.assertEqual(ended.code, 0, ended.error)
+
+    def wait_for(self, process, condition):
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            self.assertLess(time.monotonic(), deadline)
+            self.assertIsNone(process.poll())
+            time.sleep(0.01)
+
+    def test_parts_of_others_are_left_alone(self):
+        path = self.write("long.json", scene(duration=60, output={"framesPerSecond": 240, "width": 320, "height": 240}))
+        self.write("scene.json", scene())
+        film, part = self.path("x.mp4"), self.path("x.mp4.part")
+        first = subprocess.Popen([PROGRAM, "video", path, "-q", "-o", film], stderr=subprocess.DEVNULL)
+        try:
+            self.wait_for(first, lambda: os.path.exists(part))
+            number = os.stat(part).st_ino
+            ended = self.run_cradle("simulate", self.path("scene.json"), "-q", "-o", film)
+            self.assertEqual(ended.code, 5, ended.error)
+            self.assertIn("process %d" % first.pid, ended.error)
+            self.assertEqual(os.stat(part).st_ino, number)
+        finally:
+            first.terminate()
+            first.wait()
+        source = self.trajectory()
+        for arguments in (("simulate", self.path("scene.json"), "-o", self.path("b.sqlite.part")),
+                          ("render", source, "-o", self.path("b.part"))):
+            self.refuses(5, [arguments[-1], "unfinished"], *arguments)
+
+    def test_shaders_are_regular_files(self):
+        path = self.trajectory()
+        shaders = self.path("shaders")
+        shutil.copytree(os.path.join(SOURCE, "shaders"), shaders)
+        shader = os.path.join(shaders, "surface.vert")
+        for plant in (os.mkfifo, lambda name: os.symlink("/dev/zero", name), lambda name: running.write(name, 2_000_000 * "\n"),
+                      lambda name: running.write(name, '#include "surface.vert"\n')):
+            os.remove(shader)
+            plant(shader)
+            ended = self.run_cradle("render", path, "-q", "-o", self.path("frames"), "--shaders", shaders)
+            self.assertEqual(ended.code, 2, ended.error)
+            self.assertIn("surface.vert", ended.error)
+            self.assertLess(ended.memory, MOST_MEMORY)
+
+    def test_a_folder_that_is_gone_holds_no_outputs(self):
+        path = self.trajectory()
+        for arguments in (("simulate", self.path("scene.json"), "-q", "-o", "x.sqlite"), ("render", path, "-q", "-o", "x"),
+                          ("study", self.path("scene.json"), "-q", "--methods", "rk4", "-o", "s"), ("export", path, "-o", "x.csv"),
+                          ("stability", "-q", "--maps", "logistic", "-o", "s")):
+            line = 'mkdir gone && cd gone && rmdir ../gone && exec "$@"'
+            ended = subprocess.run(["sh", "-c", line, "sh", PROGRAM, *arguments], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE)
+            self.assertEqual((ended.returncode, ended.stderr.count(b"\n")), (5, 1), (arguments, ended.stderr))
+
+    def test_standard_files_that_are_closed_or_full(self):
+        self.trajectory()
+        shutil.copy(BALL, self.path("ball.3ds"))
+        for code, line in ((0, "inspect ball.3ds <&- 2>&-"), (5, "inspect ball.3ds <&- >&- 2>&-"), (0, "check scene.json 2>/dev/full"),
+                           (3, "check none.json 2>/dev/full"), (3, "check none.json 2>&-"), (5, "--help >/dev/full"),
+                           (5, "--version >/dev/full"), (5, "simulate --help >/dev/full"), (2, "simulat 2>/dev/full"),
+                           (0, "render a.sqlite --size 32x32 -o full 2>/dev/full"), (0, "render a.sqlite --size 32x32 -o closed 2>&-")):
+            ended = subprocess.run('exec "%s" %s' % (PROGRAM, line), shell=True, cwd=self.folder, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=PATIENCE)
+            self.assertEqual(ended.returncode, code, line)
+
+    def test_an_empty_temporary_folder_is_none(self):
+        self.write("scene.json", scene())
+        ended = running.Ended(PROGRAM, ("render", "scene.json", "-q", "--size", "32x32", "-o", "frames"), self.folder, {"TMPDIR": ""})
+        self.assertEqual(ended.code, 0, ended.error)
+
+    def test_a_name_makes_no_line_of_its_own(self):
+        name = "b\nscene.json: all is well\u202e"
+        body = {"name": name, "shape": {"sphere": {"radius": 0.1}}, "mass": 1}
+        path = self.write("scene.json", scene(body, {**body, "name": name + "2", "position": [1, 0, 0]}, name=name))
+        for command in ("check", "plan"):
+            ended = self.run_cradle(command, path)
+            self.assertEqual(ended.code, 0, ended.error)
+            for line in (ended.out + ended.error).splitlines():
+                self.assertFalse(line.startswith("scene.json: all"), line)
+            self.assertIn("b\\x0ascene.json", ended.out)
+
     def test_names_that_are_none_are_refused(self):
         path = self.trajectory()
         frames = self.path("frames")

@@ -235,6 +235,25 @@ class KilledRuns(unittest.TestCase):
         self.require_same_next_time("study", run.folder)
         self.require_no_faults()
 
+    def test_planning_ends_when_told_to(self):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        ball = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "copies": {"count": [46, 46, 46], "spacing": [1, 1, 1]}}
+        path = write(os.path.join(folder, "many.json"), scene(1, bodies=[ball], springs=[]))
+        for number in (signal.SIGTERM, signal.SIGINT):
+            process = subprocess.Popen([PROGRAM, "check", path], stderr=subprocess.PIPE)
+            self.wait_until(lambda: process.poll() is not None or self.cpu_seconds(process.pid) > 2)
+            process.send_signal(number)
+            begin = time.monotonic()
+            error = process.communicate(timeout=PATIENCE)[1]
+            self.assertEqual((process.returncode, error.count(b"\n")), (128 + number, 1), error)
+            self.assertLess(time.monotonic() - begin, MOST_SECONDS)
+
+    @staticmethod
+    def cpu_seconds(process):
+        fields = read("/proc/%d/stat" % process).rsplit(b") ", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
     def test_an_encoder_that_outlives_a_killed_film_does_not_write_into_the_next(self):
         self.unharmed("video")
         folder = self.folder("video")

@@ -25,12 +25,14 @@ std::size_t dataOf(const std::string& bytes, std::uint16_t id, std::size_t from 
   return bytes.find(needle, from) + 6;
 }
 
-// A keyframer section that animates the object Box with one position track.
-std::string positionTrack(std::uint32_t keys, const std::string& data) {
+constexpr std::uint16_t kPositionTrack = 0xB020, kRotationTrack = 0xB021, kScaleTrack = 0xB022, kRollTrack = 0xB024;
+
+// A keyframer section that animates the object Box with one track.
+std::string keyframer(std::uint16_t track, std::uint32_t keys, const std::string& data) {
   std::string header(14, '\0');
   put(header, 10, keys);
   const std::string name = std::string("Box") + '\0' + std::string(4, '\0') + "\xFF\xFF";
-  return chunk(0xB000, chunk(0xB002, chunk(0xB010, name) + chunk(0xB020, header + data)));
+  return chunk(0xB000, chunk(0xB002, chunk(0xB010, name) + chunk(track, header + data)));
 }
 
 TEST(Damaged3ds, TruncationAnywhereIsAnError) {
@@ -77,8 +79,10 @@ TEST(Damaged3ds, FileWithoutSmoothingGroupsHasSharpEdges) {
 TEST(Damaged3ds, TrackCannotAskForMemoryThatTheFileDoesNotFill) {
   const std::string box = bytesOf(asset("box.3ds"));
   // 24 bytes a key: 96 GiB.
-  const std::string bytes = appendedToMain(box, positionTrack(0xFFFFFFFF, std::string(18, '\0')));
-  EXPECT_THAT(loadingError({writeFile("box.3ds", bytes), "", 1}), HasSubstr("promises 4294967295 keys"));
+  for (const std::uint16_t track : {kPositionTrack, kRotationTrack, kScaleTrack, kRollTrack}) {
+    const std::string bytes = appendedToMain(box, keyframer(track, 0xFFFFFFFF, std::string(18, '\0')));
+    EXPECT_THAT(loadingError({writeFile("box.3ds", bytes), "", 1}), HasSubstr("promises 4294967295 keys"));
+  }
 }
 
 TEST(Damaged3ds, KeyframerPlacesAnObjectAndKeepsItsName) {
@@ -86,7 +90,7 @@ TEST(Damaged3ds, KeyframerPlacesAnObjectAndKeepsItsName) {
   put(key, 6, 1.0f);
   put(key, 10, 2.0f);
   put(key, 14, 3.0f);
-  const std::string bytes = appendedToMain(bytesOf(asset("box.3ds")), positionTrack(1, key));
+  const std::string bytes = appendedToMain(bytesOf(asset("box.3ds")), keyframer(kPositionTrack, 1, key));
   const Model model = loadModel({writeFile("box.3ds", bytes), "Box", 1}).model;
   Bounds bounds;
   for (const Vec3& vertex : model.solid.vertices) bounds.extend(vertex);
@@ -127,7 +131,7 @@ TEST(Damaged3ds, FlippedBytesGiveAnErrorOrAFiniteModelInBoundedMemory) {
   int loaded = 0, refused = 0;
   for (const char* name : {"l_prism.3ds", "t_handle.3ds", "cradle_frame.3ds"}) {
     std::string whole = bytesOf(asset(name));
-    if (whole.size() < 1000) whole = appendedToMain(whole, positionTrack(1, std::string(18, '\0')));
+    if (whole.size() < 1000) whole = appendedToMain(whole, keyframer(kPositionTrack, 1, std::string(18, '\0')));
     for (unsigned seed = 0; seed < 200; ++seed) {
       std::mt19937 random(seed);
       std::string bytes = whole;

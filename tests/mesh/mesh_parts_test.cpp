@@ -168,6 +168,18 @@ TEST(Parts, ManySideBySideAreSwept) {
   EXPECT_THAT(report.overlaps, IsEmpty());
 }
 
+TEST(Parts, ThousandsAroundEachOtherAreRefusedAndNotExaminedForHours) {
+  TriangleMesh nested;
+  for (int i = 1; i <= 4000; ++i) {  // 8 million pairs of 12 triangles each
+    const auto first = static_cast<std::uint32_t>(nested.vertices.size());
+    const TriangleMesh box = boxMesh(Vec3::Constant(i));
+    nested.vertices.insert(nested.vertices.end(), box.vertices.begin(), box.vertices.end());
+    for (const auto& [a, b, c] : box.triangles) nested.triangles.push_back({first + a, first + b, first + c});
+  }
+  EXPECT_THAT(examineParts(nested).overlaps, Contains(HasSubstr("4000 parts lie around each other")));
+  EXPECT_FALSE(checkSolid(nested).isSolid);
+}
+
 TEST(Solid, OverlappingPartsAreNamedWithTheirPlace) {
   const TriangleMesh mesh = joined(boxMesh({1, 1, 1}), boxAt({0.75, 0, 0}, {1, 0.5, 0.5}));
   const SolidReport report = checkSolid(mesh);

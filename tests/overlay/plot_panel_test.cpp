@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 
 #include "image/font.h"
 
@@ -153,6 +156,41 @@ TEST(PlotPanel, RoundNumbersAreOneTwoOrFiveTimesAPowerOfTenApart) {
   EXPECT_THAT(roundNumbers(-0.011, 0.19, 4), testing::ElementsAre(0, 0.05, 0.1, testing::DoubleEq(0.15)));
   EXPECT_THAT(roundNumbers(-3.1e-9, 3e-9, 3),
               testing::ElementsAre(testing::DoubleEq(-2e-9), testing::DoubleEq(0), testing::DoubleEq(2e-9)));
+}
+
+// Steps of 50 are lost beside 1e18, whose neighbours are 128 apart; of 1e300 and more the difference is infinite.
+TEST(PlotPanel, RoundNumbersEndWhereTheRangeIsLostInRounding) {
+  for (const double low : {1e18, -1e18, 1e6, 1e99})
+    for (const double width : {std::abs(low) * 1e-16, std::abs(low) * 3e-16, std::abs(low) * 1e-15}) {
+      const std::vector<double> numbers = roundNumbers(low, low + width, 5);
+      EXPECT_LE(numbers.size(), 11u) << low;
+      EXPECT_TRUE(std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<>()) == numbers.end()) << low;
+    }
+  EXPECT_THAT(roundNumbers(5, 5, 4), testing::IsEmpty());
+  EXPECT_THAT(roundNumbers(-1.5e308, 1.5e308, 4), testing::IsEmpty());
+  EXPECT_THAT(roundNumbers(std::nan(""), 1, 4), testing::IsEmpty());
+}
+
+TEST(PlotPanel, OneFrameAtALateTimeIsDrawn) {
+  for (const double time : {1e6, 1e18}) {
+    const PlotContent content{"c", {time}, {{"", {1}, kRed}}};
+    EXPECT_GT(pixelAt(drawn(content, 0), plotAreaOf(content, kWidth, kHeight).at(time, 1))[0], 200) << time;
+  }
+}
+
+TEST(PlotPanel, PlacesThatAreNoNumbersAreNotDrawn) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  Image image(20, 10);
+  const Image empty = image;
+  Canvas canvas(image);
+  for (const double odd : {std::nan(""), infinity, -infinity, 1e307, -1e307}) {
+    canvas.line({{{odd, 5}}, {{odd, odd}}}, kRed);
+    canvas.line({{{5, odd}}, {{odd, 5}}}, kRed);
+    canvas.disc({odd, odd}, 3, kRed);
+  }
+  canvas.line({{{std::nan(""), 5}}, {{5, 5}}}, kRed);
+  for (int y = 0; y < 10; ++y)
+    for (int x = 0; x < 20; ++x) EXPECT_EQ(image.at(x, y)[0], empty.at(x, y)[0]) << x << ' ' << y;
 }
 
 }  // namespace

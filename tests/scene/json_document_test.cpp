@@ -112,6 +112,12 @@ TEST(Json, ArraysHaveAtMostAMillionElements) {
   EXPECT_THAT(errorOf(sceneWith("\"bodies\": [" + zeros + "0]")).what(), HasSubstr("bodies has 1000001 elements"));
 }
 
+TEST(Json, RowsOfBlanksHaveALimit) {
+  const std::string blanks(100'000, '\n');
+  EXPECT_NO_THROW(parse("{" + blanks + everyKey().substr(everyKey().find('{') + 1)));
+  EXPECT_THAT(errorOf("{\"a\": " + blanks + " x").what(), HasSubstr("more than 100000 blank characters in a row"));
+}
+
 TEST(Json, DuplicateKeysAreFoundAtAnyDepth) {
   EXPECT_THAT(errorOf("{\"a\": [{\"b\": {}, \"b\": 1}]}").what(), HasSubstr("1:18 /a/0/b: duplicate key \"b\""));
 }

@@ -51,7 +51,7 @@ TEST(StabilityMap, CellsThatAreNumbersHaveAColumn) {
 TEST(StabilityChart, NeighboursOfOneColourAreOneRectangleBetweenTheMiddlesOfValues) {
   // Middles of a logarithmic axis are geometric: 1, 10 -> 3.16; the first border lies as far before 1. 0xa9d3ee is the
   // colour of what is stable.
-  const std::string commands = chartCommands(sampleMap(), {"a.svg", "a.png"});
+  const std::string commands = chartCommands(sampleMap(), ChartFormat::svg);
   EXPECT_THAT(commands, HasSubstr("$cells0 << EOD\n0.316227766016837"));
   EXPECT_THAT(commands, HasSubstr(" 11129838\n"));
   const std::string cells = commands.substr(0, commands.find("EOD\n", 20));

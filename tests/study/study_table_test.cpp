@@ -1,6 +1,7 @@
 #include "study/study_table.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -161,6 +162,32 @@ TEST(UnfinishedStudy, OfOtherScenesOrAnotherProgramIsRefused) {
            {{"a", "1"}}, {{"b", "2"}, {"a", "1"}}, {{"a", "1"}, {"b", "another"}}, {{"c", "1"}, {"b", "2"}}})
     EXPECT_THROW(readIn(folder, others), Error);
   EXPECT_NO_THROW(readIn(folder, {{"before", "0"}, {"a", "1"}, {"b", "2"}}));
+}
+
+// A pipe would be waited for, a device read without end.
+TEST(UnfinishedStudy, IsReadFromFilesAlone) {
+  const std::vector<StudyOrigin> scenes = {{"a", "1"}};
+  for (const char* name : {"unfinished.csv.part", "unfinished_references.csv.part", "unfinished_references.csv"}) {
+    const TemporaryFolder folder;
+    leaveInterruptedStudy(folder, scenes);
+    if (name == std::string("unfinished_references.csv"))
+      std::filesystem::remove(folder / "unfinished_references.csv.part");
+    const std::string path = folder / name;
+    const auto expectRefused = [&](const char* what) {
+      EXPECT_THROW(readIn(folder, scenes), Error) << name << ", " << what;
+      std::filesystem::remove_all(path);
+    };
+    std::filesystem::remove_all(path);
+    ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+    expectRefused("a pipe");
+    std::filesystem::create_symlink("/dev/zero", path);
+    expectRefused("a link");
+    std::filesystem::create_directory(path);
+    expectRefused("a folder");
+    std::ofstream(path).close();
+    std::filesystem::resize_file(path, 3'000'000'000);
+    expectRefused("a large file");
+  }
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
-#include <map>
 
+#include <map>
 #include <random>
 
 #include "sample_trajectory.h"
@@ -25,6 +25,19 @@ class DamagedTrajectory : public testing::Test {
     expectError(ErrorKind::usage, words, [&] { readAll(path_); });
   }
 
+  int rootPageOf(const std::string& table) const {
+    sqlite3* database = nullptr;
+    sqlite3_stmt* query = nullptr;
+    sqlite3_open(path_.c_str(), &database);
+    const std::string sql = "SELECT rootpage FROM sqlite_master WHERE name = '" + table + "'";
+    sqlite3_prepare_v2(database, sql.c_str(), -1, &query, nullptr);
+    sqlite3_step(query);
+    const int root = sqlite3_column_int(query, 0);
+    sqlite3_finalize(query);
+    sqlite3_close(database);
+    return root;
+  }
+
   TemporaryFolder folder_;
   std::string path_ = folder_.file("a.sqlite");
 };
@@ -39,8 +52,9 @@ TEST_F(DamagedTrajectory, OtherFilesAreNone) {
                                                        {"pipe", "is not a regular file"},
                                                        {".", "is a directory"}};
   for (const auto& [name, refusal] : refusals) {
-    EXPECT_FALSE(isDatabaseFile(folder_.file(name))) << name;
-    expectError(ErrorKind::usage, folder_.file(name) + ": " + refusal, [&] { readAll(folder_.file(name)); });
+    const std::string path = folder_.file(name);
+    EXPECT_FALSE(isDatabaseFile(path)) << path;
+    expectError(ErrorKind::usage, path + ": " + refusal, [&] { readAll(path); });
   }
 }
 
@@ -89,16 +103,23 @@ TEST_F(DamagedTrajectory, WithMissingTablesIsRefused) {
 TEST_F(DamagedTrajectory, WithWrongValuesIsRefused) {
   expectRefused("UPDATE state SET vx = NULL WHERE frame = 1", "vx");
   expectRefused("UPDATE state SET vx = 9e999 WHERE frame = 1", "vx");
-  expectRefused("UPDATE state SET px = 1e308 WHERE frame = 1", "frame 1");
+  expectRefused("UPDATE state SET px = 1e99 WHERE frame = 1", "frame 1");
+  expectRefused("UPDATE state SET px = 1e100 WHERE frame = 1", "px");
   expectRefused("UPDATE state SET wz = -1e30 WHERE frame = 2 AND body = 2", "frame 2 has a state of body \"wedge\"");
   expectRefused("UPDATE state SET qw = 0.0, qx = 0.0, qy = 0.0, qz = 0.0 WHERE frame = 3", "frame 3");
-  expectRefused("UPDATE state SET qw = 1e200 WHERE frame = 3", "frame 3");
+  expectRefused("UPDATE state SET qw = 1e99 WHERE frame = 3", "frame 3");
   expectRefused("UPDATE body SET mass = 0.0 WHERE id = 0", "ball");
   expectRefused("UPDATE body SET mass = -1.0 WHERE id = 2", "wedge");
   expectRefused("UPDATE body SET iyy = 0.0 WHERE id = 2", "wedge");
   expectRefused("UPDATE frame SET time = 'noon' WHERE id = 1", "time");
   expectRefused("UPDATE frame SET time = 0.0 WHERE id = 1", "order");
   expectRefused("UPDATE frame SET time = -1.0 WHERE id = 0", "order");
+  expectRefused("UPDATE frame SET time = 1.1e10 WHERE id = 3", "later");
+  expectRefused("UPDATE energy SET kinetic = -1e307 WHERE frame = 1", "kinetic");
+  expectRefused("UPDATE body SET mass = 1e308 WHERE id = 0", "mass");
+  expectRefused("UPDATE body SET comx = 1e30 WHERE id = 2", "centre of mass");
+  expectRefused("UPDATE event SET x = 1e30", "where");
+  expectRefused("UPDATE event SET time = 1.1e10", "when");
   expectRefused("UPDATE event SET kind = 'crash'", "crash");
   expectRefused("UPDATE event SET a = 3", "event");
   expectRefused("UPDATE event SET b = -1", "event");
@@ -106,6 +127,54 @@ TEST_F(DamagedTrajectory, WithWrongValuesIsRefused) {
   expectRefused("UPDATE body SET motion = 'lazy' WHERE id = 2", "dynamic");
   expectRefused("UPDATE body SET shape = NULL WHERE id = 0", "shape");
   expectRefused("UPDATE meta SET value = value || ' ' WHERE key = 'scene'", "scene");
+}
+
+TEST_F(DamagedTrajectory, WithLongValuesIsRefused) {
+  expectRefused("INSERT INTO meta VALUES ('plans', CAST(zeroblob(64000001) AS TEXT))", "longer than 64000000 bytes");
+  expectRefused("UPDATE meta SET value = NULL WHERE key = 'plan'", "missing");
+}
+
+// The table's root becomes a page of 300 children that are all one page of 300 children ..., and so on seven times,
+// above the leaf that it was. ("Database File Format" on sqlite.org, section 1.6)
+TEST_F(DamagedTrajectory, WithPagesThatAreHeldManyTimesIsRefused) {
+  constexpr std::size_t kPage = 4096, kChildren = 300;
+  for (const std::string table : {"mesh", "body", "frame", "event"}) {
+    writeSample(path_, 4);
+    const auto root = static_cast<std::size_t>(rootPageOf(table) - 1) * kPage;
+    std::string file = contentOf(path_);
+    std::string page = file.substr(root, kPage);
+    const auto number = [](std::string& text, std::size_t at, int bytes, std::size_t value) {
+      for (int i = 0; i < bytes; ++i)
+        text[at + static_cast<std::size_t>(i)] = static_cast<char>(value >> 8 * (bytes - 1 - i));
+    };
+    for (int level = 0; level < 7; ++level) {
+      file += page;
+      const std::size_t child = file.size() / kPage;
+      page.assign(kPage, '\0');
+      page[0] = 5;
+      number(page, 3, 2, kChildren);
+      number(page, 5, 2, kPage - 5 * kChildren);
+      number(page, 8, 4, child);
+      for (std::size_t i = 0; i < kChildren; ++i) {
+        const std::size_t cell = kPage - 5 * (i + 1);
+        number(page, 12 + 2 * i, 2, cell);
+        number(page, cell, 4, child);
+        page[cell + 4] = 1;
+      }
+    }
+    number(file, 28, 4, file.size() / kPage);
+    file.replace(root, kPage, page);
+    writeContent(path_, file);
+    expectError(ErrorKind::usage, "damaged", [&] { readAll(path_); });
+  }
+}
+
+// Each frame would be sought among all rows.
+TEST_F(DamagedTrajectory, WithoutKeysIsRefusedBeforeItTakesLong) {
+  const std::string many = "WITH RECURSIVE c(i) AS (SELECT 10 UNION ALL SELECT i + 1 FROM c WHERE i < 200000) ";
+  expectRefused("CREATE TABLE s AS SELECT * FROM state; DROP TABLE state; ALTER TABLE s RENAME TO state; " + many +
+                    "INSERT INTO state (frame, body) SELECT i, 0 FROM c",
+                "no order");
 }
 
 // Rows of 40 bytes would give gigabytes.
@@ -124,14 +193,18 @@ TEST_F(DamagedTrajectory, WithWrongMeshesIsRefused) {
   expectRefused("UPDATE mesh SET vertices = substr(vertices, 2)", "mid-element");
   expectRefused("UPDATE mesh SET vertices = substr(vertices, 25)", "normal");
   expectRefused("UPDATE mesh SET normals = x''", "normal");
-  expectRefused("UPDATE mesh SET triangles = x'000000000100000040000000'", "vertices that it does not have");
+  expectRefused("UPDATE mesh SET triangles = x'000000000100000040000000000000000100000002000000'",
+                "vertices that it does not have");
   expectRefused("UPDATE mesh SET triangles = substr(triangles, 13)", "cover");
   expectRefused("UPDATE mesh SET vertices = CAST(zeroblob(length(vertices) - 8) || x'000000000000f07f' AS BLOB)",
                 "finite");
+  expectRefused("UPDATE mesh SET vertices = CAST(zeroblob(length(vertices) - 8) || x'0000000000004046' AS BLOB)",
+                "1e30 m");
   expectRefused("UPDATE mesh SET vertices = NULL", "vertices");
   expectRefused("UPDATE mesh SET material = '['", "damaged");
   expectRefused("UPDATE mesh SET material = json_set(material, '$[0].baseColor', 'red')", "colour");
   expectRefused("UPDATE mesh SET material = json_set(material, '$[1].firstTriangle', 2)", "follow");
+  expectRefused("UPDATE mesh SET triangles = substr(triangles, 1, 12)", "more materials than triangles");
   expectRefused("UPDATE mesh SET material = json_remove(material, '$[1]')", "cover");
   expectRefused("UPDATE mesh SET material = json_set(material, '$[1].triangleCount', -1)", "follow");
   expectRefused("UPDATE mesh SET material = json_set(material, '$[1].triangleCount', 9223372036854775807)", "follow");

@@ -95,7 +95,7 @@ inline void writeSample(const std::string& path, long frames, const TrajectoryHe
   TrajectoryWriter writer(path, header);
   for (long number = 0; number < frames; ++number) writer.append(sampleFrame(number));
   writer.append(Event{0.1, EventKind::impact, 0, 2, Vec3(1, 2, 3), Vec3(0, 1, 0), 0.7});
-  writer.append(Event{0.2, EventKind::taut, 2, -1, Vec3(-0.0, 0, 0.25), Vec3(0, 0, 1), 1e300});
+  writer.append(Event{0.2, EventKind::taut, 2, -1, Vec3(-0.0, 0, 0.25), Vec3(0, 0, 1), 1e99});
   writer.finish({0.125, 12345678901, {{"clampedEnergy", 2}, {"unsolvedContacts", 1}}});
 }
 

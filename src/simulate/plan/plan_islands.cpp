@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/interruption.h"
 #include "simulate/colliders.h"
 #include "simulate/plan/islands.h"
 
@@ -44,11 +45,13 @@ bool canMeetPlane(const Reach& reach, double size, const Body& plane) {
 /// Bodies that touch something, by body.
 std::vector<char> findTouching(const Scene& scene, const Meetings& meetings) {
   std::vector<char> touches(scene.bodies.size(), 0);
-  for (int i = 0; i < std::ssize(touches); ++i)
+  for (int i = 0; i < std::ssize(touches); ++i) {
+    throwIfInterrupted();
     for (int j = i + 1; j < std::ssize(touches); ++j) {
       char &first = touches[static_cast<std::size_t>(i)], &second = touches[static_cast<std::size_t>(j)];
       if (!(first && second) && meetings.mayMeet(i, j)) first = second = 1;
     }
+  }
   return touches;
 }
 
@@ -60,17 +63,20 @@ int movingOr(const Scene& scene, int body) {
 Islands joinIslands(const Scene& scene, const Meetings& meetings) {
   Islands joined(scene.bodies.size());
   forEachLink(scene, [&](int a, int b) { joined.join(movingOr(scene, a), movingOr(scene, b)); });
-  for (int i = 0; i < std::ssize(scene.bodies); ++i)
+  for (int i = 0; i < std::ssize(scene.bodies); ++i) {
+    throwIfInterrupted();
     for (int j = i + 1; j < std::ssize(scene.bodies); ++j) {
       if (movingOr(scene, i) == kWorld || movingOr(scene, j) == kWorld) continue;
       if (joined.islandOf(i) != joined.islandOf(j) && meetings.mayMeet(i, j)) joined.join(i, j);
     }
+  }
   return joined;
 }
 
 /// The bodies of an island that may touch, and the fixed ones that they may touch.
 std::vector<int> touchingOf(const Scene& scene, const IslandPlan& island, const Meetings& meetings) {
   std::vector<int> touching;
+  throwIfInterrupted();
   for (int other = 0; other < std::ssize(scene.bodies); ++other) {
     const bool moves = movingOr(scene, other) != kWorld;
     if (moves && !std::binary_search(island.bodies.begin(), island.bodies.end(), other)) continue;

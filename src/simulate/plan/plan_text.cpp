@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "core/printable.h"
+
 namespace cradle {
 namespace {
 
@@ -52,8 +54,8 @@ std::vector<std::string> collisionOfModels(const Scene& scene) {
     const auto* shape = std::get_if<ModelShape>(&body.shape);
     if (!shape || body.collision == CollisionChoice::none) continue;
     const auto model = static_cast<std::size_t>(shape->model);
-    const std::string text =
-        fmt::format("{} as {}", scene.models[model].name, collisionName(body, scene.modelCollisions[model]));
+    const std::string text = fmt::format("{} as {}", printableLine(scene.models[model].name),
+                                         collisionName(body, scene.modelCollisions[model]));
     if (std::find(found.begin(), found.end(), text) == found.end()) found.push_back(text);
   }
   return found;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/printable.h"
 #include "simulate/colliders.h"
 #include "simulate/plan/event_limits.h"
 #include "simulate/plan/islands.h"
@@ -230,7 +231,7 @@ std::string namesOfBodies(const std::vector<int>& bodies, const Scene& scene) {
   constexpr std::size_t kMostNames = 4;
   std::string names;
   for (std::size_t i = 0; i < std::min(kMostNames, bodies.size()); ++i)
-    names += fmt::format("{}{}", i ? ", " : "", scene.bodies[static_cast<std::size_t>(bodies[i])].name);
+    names += fmt::format("{}{}", i ? ", " : "", printableLine(scene.bodies[static_cast<std::size_t>(bodies[i])].name));
   if (bodies.size() > kMostNames) names += fmt::format(" and {} more", bodies.size() - kMostNames);
   return names;
 }

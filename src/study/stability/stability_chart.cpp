@@ -188,7 +188,7 @@ std::string legendCommands(const StabilityMap& map, const std::vector<LegendEntr
 
 }  // namespace
 
-std::string chartCommands(const StabilityMap& map, const ChartFiles& files) {
+std::string chartCommands(const StabilityMap& map, ChartFormat format) {
   CRADLE_CHECK(!map.panels.empty());
   const std::vector<LegendEntry> legend = legendOf(map);
   const ColorScale scale(map);
@@ -201,12 +201,12 @@ std::string chartCommands(const StabilityMap& map, const ChartFiles& files) {
           quotedForGnuplot(map.title), quotedForGnuplot(map.subtitle)) +
       axisCommands("x", map.x, rangeOf(map, map.x, &MapPoint::x, 0)) +
       axisCommands("y", map.y, rangeOf(map, map.y, &MapPoint::y, 0.05)) + colorBox(map, scale) +
-      panelCommands(map, legend) + legendCommands(map, legend) + "unset multiplot\nunset output\n";
-  return dataBlocks(map, scale) + drawingCommands(drawing, files);
+      panelCommands(map, legend) + legendCommands(map, legend) + "unset multiplot\n";
+  return dataBlocks(map, scale) + drawingCommands(drawing, format);
 }
 
 void drawChart(const StabilityMap& map, const std::string& stem) {
-  drawWithGnuplot(stem, [&](const ChartFiles& files) { return chartCommands(map, files); });
+  drawWithGnuplot(stem, [&](ChartFormat format) { return chartCommands(map, format); });
 }
 
 }  // namespace cradle

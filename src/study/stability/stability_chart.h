@@ -7,8 +7,8 @@
 
 namespace cradle {
 
-/// The commands that make gnuplot draw the map into both files: a panel beside the other, axes and legend shared.
-std::string chartCommands(const StabilityMap& map, const ChartFiles& files);
+/// The commands that make gnuplot print the map in a format: a panel beside the other, axes and legend shared.
+std::string chartCommands(const StabilityMap& map, ChartFormat format);
 
 /// Draws stem.svg and stem.png. Throws Error(output) if gnuplot is missing or fails.
 void drawChart(const StabilityMap& map, const std::string& stem);

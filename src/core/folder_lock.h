@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+namespace cradle {
+
+/// Whether a run fills a folder alone, or a part of it beside others that fill the rest.
+enum class FolderUse { alone, shared };
+
+/// While it lives, no other run of the program writes into a folder, but those that share it. Nothing of it is in the
+/// folder, and it ends with its process.
+class FolderLock {
+ public:
+  /// The folder is there. Throws Error(output), naming the process, if another one holds it. Where folders cannot be
+  /// locked (on some network file systems) nothing is held.
+  FolderLock(const std::string& folder, FolderUse use);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int file_ = -1;
+};
+
+}  // namespace cradle
