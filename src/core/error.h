@@ -23,8 +23,7 @@ enum class ErrorKind {
 class Error : public std::exception {
  public:
   /// `where` is a place the user can go to ("scenes/pendulum.json:12:7 /bodies/0/mass", a file, an option);
-  /// `what` says what was found, what is allowed and what to do. Both are shown as printable() has it, lines after the
-  /// first set in.
+  /// `what` says what was found, what is allowed and what to do. Both are shown as printable() has it.
   Error(ErrorKind kind, const std::string& where, const std::string& what);
   const char* what() const noexcept override { return message_.c_str(); }
   ErrorKind kind() const { return kind_; }

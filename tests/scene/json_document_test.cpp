@@ -113,9 +113,10 @@ TEST(Json, ArraysHaveAtMostAMillionElements) {
 }
 
 TEST(Json, RowsOfBlanksHaveALimit) {
-  const std::string blanks(100'000, '\n');
+  const std::string blanks(99'990, '\n');  // with those of the scene beside them, at most the limit
   EXPECT_NO_THROW(parse("{" + blanks + everyKey().substr(everyKey().find('{') + 1)));
-  EXPECT_THAT(errorOf("{\"a\": " + blanks + " x").what(), HasSubstr("more than 100000 blank characters in a row"));
+  EXPECT_THAT(errorOf("{\"a\": " + blanks + blanks + " x").what(),
+              HasSubstr("more than 100000 blank characters in a row"));
 }
 
 TEST(Json, DuplicateKeysAreFoundAtAnyDepth) {

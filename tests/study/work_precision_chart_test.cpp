@@ -76,7 +76,7 @@ TEST(WorkPrecisionChart, NamesOfFilesAreNoneOfGnuplots) {
     EXPECT_GT(std::filesystem::file_size(stem + ending), 10000U);
     std::filesystem::remove(stem + ending);
   }
-  EXPECT_THAT(chartCommands(sampleChart(), ChartFormat::png), Not(HasSubstr("set output")));
+  EXPECT_THAT(chartCommands(sampleChart(), ChartFormat::png), Not(HasSubstr("\nset output")));
 }
 
 TEST(WorkPrecisionChart, ASceneThatNothingReachesTheEndOfHasNone) {
