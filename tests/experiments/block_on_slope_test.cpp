@@ -144,26 +144,27 @@ TEST(BlockThrownUpASlope, StopsAndSticks) {
 }
 
 // Friction a part p below the limit: the block slides with p g sin. Friction turns its sliding at the rate mu g cos /
-// v, which steps of about six times its inverse follow: at p = 1e-6 some 1e6 of them in a second. Then the accuracy is
-// not promised, and the block is where it started, at most.
+// v, which steps of about six times its inverse follow: at p = 1e-6 some 1e6 of them in a second. And errors of steps
+// turn friction aside: what accelerates slowly may not get through the speeds at which that outweighs its acceleration.
+// Then the accuracy is not promised, and the block is where it started, at least.
 TEST(BlockOnSlope, SlidesAccuratelyOrSaysThatItIsTooSlow) {
   for (const char* surface : kSurfaces)
-    for (const double part : {1e-2, 1e-5, 1e-6})
-      for (const double accuracy : {1e-6, 1e-9}) {
+    for (const double part : {0.1, 1e-2, 5e-3, 1e-3, 1e-5, 1e-6, 1e-7, 1e-9})
+      for (const double accuracy : {1e-3, 1e-4, 1e-6, 1e-9}) {
         std::vector<std::string> warnings;
         Trajectory run;
         simulate(slopeScene(surface, std::tan(kSlope) * (1 - part), 0, 1, fmt::format(R"("accuracy": {})", accuracy)),
                  {[&](const Frame& frame) { run.frames.push_back(frame); }, [](const Event&) {},
                   [&](const std::string& text) { warnings.push_back(text); }});
+        SCOPED_TRACE(fmt::format("part {} accuracy {} on a {}", part, accuracy, surface));
         const double way = -part * kGravity * std::sin(kSlope) / 2;
-        if (part > 1e-4) {
-          EXPECT_TRUE(warnings.empty()) << part << " " << accuracy << " " << surface;
-          EXPECT_NEAR(wayUp(run, 50), way, accuracy) << part << " " << surface;
-        } else {
-          ASSERT_EQ(warnings.size(), 1u) << part << " " << accuracy << " " << surface;
+        const bool isSaid = !warnings.empty();
+        if (isSaid) {
           EXPECT_NE(warnings[0].find("contacts slide so slowly"), std::string::npos) << warnings[0];
-          EXPECT_NEAR(wayUp(run, 50), way / 2, std::abs(way)) << part << " " << surface;
         }
+        EXPECT_NEAR(wayUp(run, 50), isSaid ? way / 2 : way, isSaid ? std::abs(way) : accuracy);
+        const bool isPlain = part == 0.1 || (part == 1e-2 && accuracy < 1e-5);
+        EXPECT_FALSE(isPlain && isSaid);
       }
 }
 

@@ -12,7 +12,8 @@ namespace {
 constexpr double kStandstillPart = 1e-12;    // of the fastest speed at an impact: what is left is rounding
 constexpr double kSequencePart = 1e-9;       // of the time of a fall by the smallest size: as long it may take always
 constexpr double kGapRoundingPart = 4e-12;   // of the smallest size: beyond the dead band, a gap is one ...
-constexpr double kGapPlaceRounding = 1e-15;  // ... unless the places around it are rounded that coarsely
+constexpr double kBallGapPart = 2e-13;       // the same, of balls: differences of two lengths
+constexpr double kGapPlaceRounding = 4e-15;  // ... unless the places around it are rounded that coarsely
 
 /// m/s: of the faster of the two bodies' centres.
 double contactSpeed(const Contact& contact, const VectorX& state) {
@@ -43,9 +44,8 @@ void EventContacts::collide(const std::optional<std::size_t>& meeting) {
   const auto closes = [&](const Contact& contact) { return openingSpeed(contact, island_.state) < -still; };
   if (std::none_of(touching_.begin(), touching_.end(), closes)) return;
   const std::vector<Contact> near = contactsInReach();
-  const Islands groups = connect(near);
   const SequenceLimits limits = limitsOf(near, still);
-  ImpactSequence sequence(near, meeting, groups, island_.assembly.radii, limits, island_.state);
+  ImpactSequence sequence(near, meeting, island_.assembly.radii, limits, island_.state);
   std::vector<ContactImpulse> impulses;
   if (!sequence.beginsNow() && ropes_.pullStretched(island_.time, island_.state) && solver_.hasConstraints())
     solver_.factorize(island_.state);
@@ -78,10 +78,19 @@ std::vector<Contact> EventContacts::contactsInReach() {
   return near;
 }
 
+bool EventContacts::isOfBall(const Contact& contact) const {
+  const ContactGeometry& geometry = island_.assembly.geometry;
+  const ColliderPair& pair = geometry.pairs[contact.pair];
+  return geometry.colliders[pair.a].isBall() || (!pair.againstPlane && geometry.colliders[pair.b].isBall());
+}
+
 SequenceLimits EventContacts::limitsOf(const std::vector<Contact>& near, double stillSpeed) {
-  SequenceLimits limits{touchTolerance_, kGapRoundingPart * size_, reach_, INFINITY, stillSpeed};
+  double places = 0;  // m
   for (const Contact& contact : near)
-    limits.gapRounding = std::max(limits.gapRounding, kGapPlaceRounding * contact.point.cwiseAbs().maxCoeff());
+    places = std::max(places, kGapPlaceRounding * contact.point.cwiseAbs().maxCoeff());
+  SequenceLimits limits{{}, std::max(kGapRoundingPart * size_, places), touchTolerance_, reach_, INFINITY, stillSpeed};
+  for (const Contact& contact : near)
+    limits.gapErrors.push_back(isOfBall(contact) ? std::max(kBallGapPart * size_, places) : limits.gapRounding);
   const auto isClosed = [&](const Contact& contact) { return contact.separation <= limits.gapRounding; };
   if (std::all_of(near.begin(), near.end(), isClosed)) return limits;
   island_.equations.evaluate(island_.state, rate_);

@@ -77,7 +77,11 @@ bool EventContacts::isHeld(const Islands& groups, int group) {
   std::swap(lasting, island_.assembly.mechanism.contacts);
   island_.equations.evaluate(island_.state, rate_);
   std::swap(lasting, island_.assembly.mechanism.contacts);
-  if (isBalanced(groups, group)) return true;
+  const double gravity = mechanism.gravity.norm(), most = stillPart_ * gravity;
+  const auto still = [&](double residual) {
+    return std::min(most, stillAcceleration(island_.scene.accuracy, island_.scene.duration, gravity, residual));
+  };
+  if (isBalanced(groups, group, still(0))) return true;
   placeBodies(mechanism.bodies, island_.state, frames_);
   std::vector<ContactRows> contacts;
   std::vector<double> frictions;
@@ -90,13 +94,12 @@ bool EventContacts::isHeld(const Islands& groups, int group) {
   const ContactResponse response(contacts, mechanism.bodies, frames_, solver_);
   const ConeSolution solution = solveConeProblem(response.inverseMass(), response.accelerations(rate_), frictions);
   response.apply(solution.impulses, rate_);
-  return isBalanced(groups, group);
+  return isBalanced(groups, group, still(solution.residual));
 }
 
-/// Whether the accelerations in rate_ leave the bodies of a group where they are.
-bool EventContacts::isBalanced(const Islands& groups, int group) const {
+/// Whether the accelerations in rate_ leave the bodies of a group where they are, but for `most` (m/s^2).
+bool EventContacts::isBalanced(const Islands& groups, int group, double most) const {
   const Mechanism& mechanism = island_.assembly.mechanism;
-  const double most = stillPart_ * mechanism.gravity.norm();
   for (std::size_t body = 0; body < mechanism.bodies.size(); ++body) {
     if (groups.islandOf(static_cast<int>(body)) != group) continue;
     const Eigen::Index index = static_cast<Eigen::Index>(body);

@@ -57,6 +57,7 @@ class EventContacts {
   void findNear(const std::optional<std::size_t>& meeting);
   void collide(const std::optional<std::size_t>& meeting);
   std::vector<Contact> contactsInReach();
+  bool isOfBall(const Contact& contact) const;
   SequenceLimits limitsOf(const std::vector<Contact>& near, double stillSpeed);
   Islands connect(const std::vector<Contact>& contacts) const;
   void strike(const ImpactSequence& sequence, double still, std::vector<ContactImpulse>& impulses);
@@ -70,7 +71,7 @@ class EventContacts {
   bool isAnySlow() const;
   bool isSlow(std::size_t body) const;
   bool isHeld(const Islands& groups, int group);
-  bool isBalanced(const Islands& groups, int group) const;
+  bool isBalanced(const Islands& groups, int group, double most) const;
   void keepTogether();
   void recordRests(const std::vector<char>& restedBefore);
 
@@ -82,7 +83,7 @@ class EventContacts {
   LastingContacts lasting_;
   ConstraintSolver solver_;
   double stillPart_;      // of the speed that a body gains when it falls by its size: slower is still; and of gravity:
-                          // what forces may leave of bodies at rest
+                          // what forces may leave of bodies at rest at the most
   double shortLever_;     // sizes of a body: contacts do not serve that a joint leaves less
   double restDelay_ = 0;  // s: how long the bounces that are left out would take
   std::vector<Contact> touching_;

@@ -26,18 +26,15 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 }  // namespace
 
 ImpactSequence::ImpactSequence(std::vector<Contact> contacts, const std::optional<std::size_t>& meeting,
-                               const Islands& groups, const std::vector<double>& radii, const SequenceLimits& limits,
-                               const VectorX& state)
+                               const std::vector<double>& radii, const SequenceLimits& limits, const VectorX& state)
     : contacts_(std::move(contacts)),
-      groups_(groups),
       radii_(radii),
       limits_(limits),
-      gapErrors_(contacts_.size(), limits.gapRounding),
+      gapErrors_(limits.gapErrors),
       speeds_(contacts_.size()),
       leftSpeeds_(contacts_.size(), 0.0),
       lastImpacts_(contacts_.size(), 0),
-      displacements_(VectorX::Zero(bodyCount(state) * kVelocitySize)),
-      isStruck_(radii.size(), 0) {
+      displacements_(VectorX::Zero(bodyCount(state) * kVelocitySize)) {
   for (const Contact& contact : contacts_) gaps_.push_back(contact.separation);
   findSpeeds(state);
   if (meeting) takeMeetingAsClosed(*meeting);
@@ -124,15 +121,12 @@ double ImpactSequence::timeToNextImpact() const {
 bool ImpactSequence::mayAdvance(const VectorX& state, double time) const {
   if (!(elapsed_ + time <= limits_.duration)) return false;
   const Eigen::Index velocities = poseComponents(state);
-  for (const Contact& contact : contacts_)
-    for (const int body : {contact.bodyA, contact.bodyB}) {
-      if (body == kFixed) continue;
-      const Eigen::Index at = body * kVelocitySize;
-      const Eigen::Vector<double, kVelocitySize> way =
-          displacements_.segment<kVelocitySize>(at) + time * state.segment<kVelocitySize>(velocities + at);
-      const double turn = radii_[static_cast<std::size_t>(body)] * way.tail<3>().norm();
-      if (way.head<3>().norm() + turn > limits_.reach / 2) return false;
-    }
+  for (std::size_t body = 0; body < radii_.size(); ++body) {
+    const Eigen::Index at = static_cast<Eigen::Index>(body) * kVelocitySize;
+    const Eigen::Vector<double, kVelocitySize> way =
+        displacements_.segment<kVelocitySize>(at) + time * state.segment<kVelocitySize>(velocities + at);
+    if (way.head<3>().norm() + radii_[body] * way.tail<3>().norm() > limits_.reach / 2) return false;
+  }
   return true;
 }
 
@@ -168,7 +162,6 @@ void ImpactSequence::finishImpact(const VectorX& state) {
     gaps_[i] = gapErrors_[i] = 0;
     leftSpeeds_[i] = std::min(0.0, openingSpeed(contacts_[i], state));
     lastImpacts_[i] = times_.size();
-    isStruck_[static_cast<std::size_t>(groups_.islandOf(contacts_[i].movingBody()))] = 1;
   }
 }
 
@@ -176,7 +169,6 @@ bool ImpactSequence::moveBodies(VectorX& state) const {
   if (elapsed_ == 0) return false;
   for (std::size_t body = 0; body < radii_.size(); ++body) {
     const auto index = static_cast<Eigen::Index>(body);
-    if (!isStruck_[static_cast<std::size_t>(groups_.islandOf(static_cast<int>(body)))]) continue;
     centerOfMass(state, index) += displacements_.segment<3>(index * kVelocitySize);
     turnBody(state, index, displacements_.segment<3>(index * kVelocitySize + 3));
   }

@@ -4,17 +4,17 @@
 #include <vector>
 
 #include "collision/separation.h"
-#include "simulate/plan/islands.h"
 
 namespace cradle {
 
 /// What bounds a sequence of impacts at frozen places.
 struct SequenceLimits {
-  double touchTolerance = 0;  // m: so far apart, what an event has brought together may seem to be
-  double gapRounding = 0;     // m: gaps below it are zero
-  double reach = 0;           // m: contacts farther apart are not known, so bodies move by half of it at most
-  double duration = 0;        // s: in a longer time forces would count
-  double stillSpeed = 0;      // m/s: closing more slowly is rounding
+  std::vector<double> gapErrors;  // m, of each contact: a gap below it is none
+  double gapRounding = 0;         // m: gaps about as small may be hidden from the events that follow
+  double touchTolerance = 0;      // m: so far apart, what an event has brought together may seem to be
+  double reach = 0;               // m: contacts farther apart are not known, so bodies move by half of it at most
+  double duration = 0;            // s: in a longer time forces would count
+  double stillSpeed = 0;          // m/s: closing more slowly is rounding
 };
 
 /// Impacts that follow each other faster than bodies move: contacts close in the order in which their gaps say, while
@@ -27,9 +27,9 @@ struct SequenceLimits {
 /// geometrically. What is left then is one impact without rebound.
 class ImpactSequence {
  public:
-  /// `meeting`: the pair that an event has brought together, whose nearest contact has no gap. `groups`: bodies that
-  /// contacts and joints connect; `radii` (m): of all moving bodies.
-  ImpactSequence(std::vector<Contact> contacts, const std::optional<std::size_t>& meeting, const Islands& groups,
+  /// `meeting`: the pair that an event has brought together, whose nearest contact has no gap. `radii` (m): of all
+  /// moving bodies.
+  ImpactSequence(std::vector<Contact> contacts, const std::optional<std::size_t>& meeting,
                  const std::vector<double>& radii, const SequenceLimits& limits, const VectorX& state);
 
   const std::vector<Contact>& contacts() const { return contacts_; }
@@ -49,7 +49,8 @@ class ImpactSequence {
   /// Takes the velocities after that impact.
   void finishImpact(const VectorX& state);
 
-  /// Moves the bodies that were struck to where the sequence has brought them. False if it took no time.
+  /// Moves all bodies to where they are when the sequence ends: those that it has not struck may be the next to meet
+  /// one of it, and what comes first is a matter of gaps as small. False if it took no time.
   bool moveBodies(VectorX& state) const;
 
  private:
@@ -65,7 +66,6 @@ class ImpactSequence {
   void findMembers();
 
   std::vector<Contact> contacts_;
-  const Islands& groups_;
   const std::vector<double>& radii_;
   SequenceLimits limits_;
   std::vector<double> gaps_, gapErrors_;     // m
@@ -77,8 +77,7 @@ class ImpactSequence {
   double elapsed_ = 0, fastestClosing_ = 0;  // s, m/s
   std::vector<std::size_t> members_;
   bool isCollapse_ = false;
-  VectorX displacements_;       // m and rad: six of each body
-  std::vector<char> isStruck_;  // groups
+  VectorX displacements_;  // m and rad: six of each body
 };
 
 }  // namespace cradle

@@ -38,6 +38,8 @@ constexpr double kSameSide = 0.99;               // cosine between normals: a me
 constexpr double kRankPart = 1e-9;               // of the largest pivot: less is none
 constexpr double kTurningTime = 2e-5;            // s: friction that turns sliding as fast costs 4 s of CPU a second
 constexpr int kMaxTurningSteps = 1000;           // in a row: sliding that ends does so in some hundred
+constexpr double kCreepPart = 0.02;              // of mu g: see slidesTooSlowly
+constexpr double kCreepOfAccuracy = 50;          // 1/(m s^2), of mu g T^2 A
 constexpr const char* kTips = "a cylinder tips over its rim";
 constexpr const char* kSlidesTooSlowly = "contacts slide so slowly that their friction has no sure direction";
 
@@ -116,6 +118,7 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
   const ConeSolution solution = solve(members, rows, response);
   const double most = std::max(free.cwiseAbs().maxCoeff(), mechanism().gravity.norm());
   if (!(solution.residual <= kStillPart * most)) noteUnsolved(members, solution.residual);
+  const double still = stillAcceleration(island_.scene.accuracy, island_.scene.duration, most, solution.residual);
   const double unloaded = (isReleasing_ ? kReleasedPart : kUnloadedPart) * most;
   const MatrixX& inverseMass = response.inverseMass();
   std::vector<Index> heldRows;
@@ -130,7 +133,7 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
     if (!canLast(entry.contact))  // on planes only rims are neither corners nor round
       noteFault(entry.pair.againstPlane ? kTips : "edges touch and press", {&entry.contact});
     const bool hasFriction = entry.pair.law.staticFriction > 0;
-    entry.sticks = hasFriction && !entry.slides && motion.head<2>().norm() <= kStillPart * most;
+    entry.sticks = hasFriction && !entry.slides && motion.head<2>().norm() <= still;
     if (hasFriction && !entry.slides && !entry.sticks) {
       entry.slides = true;
       entry.direction = (motion.x() * rows[k].rows[0].linearA + motion.y() * rows[k].rows[1].linearA).normalized();
@@ -148,13 +151,19 @@ void LastingContacts::decide(const Together& group, std::vector<Entry>& entries,
 /// its deceleration, and half of that times T^2 of the way in a time T: more than the accuracy A below v = T sqrt(mu g
 /// A) / 20; not of a ball, which soon rolls. And friction turns the sliding at a rate of mu g / v, which steps of some
 /// 6 v / (mu g) follow at the most. Speeds that are reached in time count.
+/// What starts from rest with an acceleration a passes through v = e sqrt(mu g / (2 a)), where these errors outweigh a.
+/// That takes v / a of its time, T / 30 sqrt(mu g / (2 a)) of the accuracy at 1e-4 (measured: a block on a slope), and
+/// less at finer ones; below a = mu g / 50 it may get no farther, as there is time for errors to grow to e.
 bool LastingContacts::slidesTooSlowly(const Entry& entry, double acceleration, double gravity) const {
   const double friction = entry.pair.law.dynamicFriction * gravity;  // m/s^2
   const double time = island_.scene.duration, accuracy = island_.scene.accuracy;
   const std::vector<Collider>& colliders = island_.assembly.geometry.colliders;
   const bool rolls = colliders[entry.pair.a].isBall() || (!entry.pair.againstPlane && colliders[entry.pair.b].isBall());
   const double slowest = std::max(rolls ? 0 : time * std::sqrt(friction * accuracy) / 20, kTurningTime * friction);
-  return slidingSpeed(entry.contact, island_.state) + acceleration * time < slowest;
+  const double speed = slidingSpeed(entry.contact, island_.state);
+  const double creeping = friction * std::min(kCreepPart, kCreepOfAccuracy * time * time * accuracy);  // m/s^2
+  const double passed = accuracy * std::sqrt(friction / (2 * std::max(acceleration, creeping)));  // m/s: ten times v
+  return speed + acceleration * time < slowest || (!rolls && speed < passed && acceleration < creeping);
 }
 
 /// Forces that were not found decide all the same what lasts, and how.
