@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kNoDirection = 1e-9;                    // of the size: nearer points do not tell the normal well
 constexpr double kFirstReach = 1e-4, kLongerReach = 16;  // of the size; then how much longer each time
+constexpr double kHardlyPart = 0.01;                     // of another way out: what is so little was hardly passed
 constexpr double kTouchingGap = 1e-10;                   // of the size: gaps as small as that are always looked for
 
 using Feature = MeshPoint::Feature;
@@ -80,7 +81,7 @@ struct GapVisit {
   }
 };
 
-/// The deepest edge inside the other solid.
+/// The deepest edge inside the other solid, or past a sheet.
 struct OverlapVisit {
   const MeshPair& pair;
   double rounding2;  // m^2
@@ -95,48 +96,42 @@ struct OverlapVisit {
     const FlatTriangle a = triangleOf(pair.a, indexA), b = pair.triangleOfB(indexB);
     const CornerHeights ofA = heightsOver(b, a), ofB = heightsOver(a, b);
     forEachPiercing(faceA, a, ofA, b, [&](std::size_t i, double) {
-      if (pair.b.isSheet) {
-        const std::optional<Vec3> inner = pair.a.inner;
-        return tryLeaving(a, i, ofA, b.normal, inner ? std::optional(b.heightOf(*inner)) : std::nullopt, -1);
-      }
       const Segment edge = segmentOf(pair.a, faceA.edges[i]);
       const Segment seen{pair.placedBack(edge.from), pair.turnedBack(edge.along)};
-      const EdgeDepth found = depthOfEdge(pair.b, seen, partAt(seen, indexB, pair.b), indexB);
+      const Vec3 inner = pair.a.inner ? pair.placedBack(*pair.a.inner) : seen.at(0.5);
+      const EdgeDepth found = depthOf(seen, inner, pair.b, indexB);
       const Vec3 normal = pair.turned(found.normal), point = pair.placed(found.deepest);
-      keep({-found.depth, point, point + found.depth * normal, -normal}, pair.a.edges[faceA.edges[i]]);
+      keep({-found.depth, point, point + found.depth * normal, -normal}, pair.a.edges[faceA.edges[i]], pair.b.isSheet);
     });
     forEachPiercing(faceB, b, ofB, a, [&](std::size_t i, double) {
-      if (pair.a.isSheet) {
-        const std::optional<Vec3> inner = pair.b.inner;
-        return tryLeaving(b, i, ofB, a.normal, inner ? std::optional(a.heightOf(pair.placed(*inner))) : std::nullopt,
-                          1);
-      }
       const Segment edge = pair.segmentOfB(faceB.edges[i]);
-      const EdgeDepth found = depthOfEdge(pair.a, edge, partAt(edge, indexA, pair.a), indexA);
+      const Vec3 inner = pair.b.inner ? pair.placed(*pair.b.inner) : edge.at(0.5);
+      const EdgeDepth found = depthOf(edge, inner, pair.a, indexA);
       keep({-found.depth, found.deepest + found.depth * found.normal, found.deepest, found.normal},
-           pair.b.edges[faceB.edges[i]]);
+           pair.b.edges[faceB.edges[i]], pair.a.isSheet);
     });
   }
 
-  /// A side of a solid's triangle that goes through a sheet, whose normal is given: it may leave towards the side on
-  /// which the solid's inner point is, or where that is not known, most of the edge. `sign`: 1 if A is the sheet.
-  void tryLeaving(const FlatTriangle& triangle, std::size_t side, const CornerHeights& heights, const Vec3& normal,
-                  const std::optional<double>& innerHeight, double sign) {
-    const std::size_t next = (side + 1) % 3;
-    const double middle = innerHeight ? *innerHeight : heights[side] + heights[next];
-    const double towards = middle < 0 ? -1 : 1;
-    const std::size_t beyond = towards * heights[side] < towards * heights[next] ? side : next;
-    const double separation = std::min(0.0, towards * heights[beyond]);
-    if (leaving.normal != Vec3::Zero() && separation >= leaving.separation) return;
-    const Vec3 outward = towards * normal, &point = cornerOf(triangle, beyond), onSheet = point - separation * outward;
-    const bool isOfA = sign > 0;
-    leaving = {separation, isOfA ? onSheet : point, isOfA ? point : onSheet, sign * outward};
+  /// Of an edge that goes through a face. It may leave a sheet towards the side on which a solid's inner point is, or
+  /// where that is not known, most of the edge; or towards the other side, if it has hardly left that: over a steep
+  /// crease, much of a solid is behind the planes of faces that it barely touches.
+  static EdgeDepth depthOf(const Segment& edge, const Vec3& inner, const MeshSurface& other, std::uint32_t face) {
+    const double part = partAt(edge, face, other);
+    if (!other.isSheet) return depthOfEdge(other, edge, part, face);
+    const auto triangles = static_cast<std::uint32_t>(other.faces.size() / 2);
+    const std::uint32_t back = face < triangles ? face + triangles : face - triangles;
+    const bool isInFront = triangleOf(other, face).heightOf(inner) >= 0;
+    const EdgeDepth towards = depthOfEdge(other, edge, part, isInFront ? face : back);
+    const EdgeDepth away = depthOfEdge(other, edge, part, isInFront ? back : face);
+    return away.depth < kHardlyPart * towards.depth ? away : towards;
   }
 
-  /// The shorter of the ways out, straight from a sheet and past its border.
-  MeshGap shortest() const {
+  /// The deepest of all; but past a sheet's border, if that is hardly inside.
+  MeshGap wayOut() const {
     if (leaving.normal == Vec3::Zero()) return deepest;
-    return pastBorder.normal != Vec3::Zero() && pastBorder.separation > leaving.separation ? pastBorder : leaving;
+    if (pastBorder.normal != Vec3::Zero() && pastBorder.separation > kHardlyPart * leaving.separation)
+      return pastBorder;
+    return deepest.separation < leaving.separation ? deepest : leaving;
   }
 
   /// Where an edge goes through a face, in the direction of the edge.
@@ -146,10 +141,13 @@ struct OverlapVisit {
     return slope != 0 ? std::clamp(-triangle.heightOf(edge.from) / slope, 0.0, 1.0) : 0;
   }
 
-  void keep(const MeshGap& found, const MeshSurface::Edge& edge) {
-    if (found.separation < deepest.separation || deepest.normal == Vec3::Zero()) deepest = found;
-    if (!edge.isBorder) return;
-    if (found.separation < pastBorder.separation || pastBorder.normal == Vec3::Zero()) pastBorder = found;
+  static void keepDeeper(const MeshGap& found, MeshGap& kept) {
+    if (found.separation < kept.separation || kept.normal == Vec3::Zero()) kept = found;
+  }
+
+  void keep(const MeshGap& found, const MeshSurface::Edge& edge, bool isPastSheet) {
+    keepDeeper(found, isPastSheet ? leaving : deepest);
+    if (edge.isBorder) keepDeeper(found, pastBorder);
   }
 };
 
@@ -220,7 +218,7 @@ MeshGap gapBetween(const MeshPair& pair, double enough) {
     OverlapVisit overlap{pair, kTouchingGap * size * kTouchingGap * size, {}};
     overlap.deepest.separation = 0;
     trees.visitNear(overlap);
-    return overlap.shortest();
+    return overlap.wayOut();
   }
   MeshGap gap;
   const bool isNear = nearest.onA.feature != Feature::none;

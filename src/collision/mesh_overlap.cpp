@@ -11,16 +11,20 @@
 namespace cradle {
 namespace {
 
-constexpr double kSkippedPart = 1e-12;  // of the piece: the entry is no exit
-constexpr double kExactPart = 1e-9;     // of the depth
-constexpr double kLeastMean = 1e-3;     // of unit normals: faces back to back leave no way between them
+constexpr double kSkippedPart = 1e-12;   // of the piece: the entry is no exit ...
+constexpr double kOnPlane = 1e-14;       // of a sheet's size: ... nor are backs of triangles that it begins on
+constexpr double kSameLinePart = 1e-11;  // of an edge: so near to it a line goes through it
+constexpr int kMostFacesAround = 16;     // a vertex
+constexpr double kExactPart = 1e-9;      // of the depth
+constexpr double kLeastMean = 1e-3;      // of unit normals: faces back to back leave no way between them
 constexpr std::size_t kMostPlanes = 12;
 
 /// Where a segment first leaves the solid.
 struct ExitVisit {
   const MeshSurface& surface;
   const Segment& segment;
-  double part = 2;  // 0..1; 2: nowhere
+  Vec3 entry = Vec3::Zero();  // unit, of a sheet: outwards where the segment goes in
+  double part = 2;            // 0..1; 2: nowhere
   Vec3 normal = Vec3::Zero();
 
   void visit(std::uint32_t at) {
@@ -47,8 +51,9 @@ struct ExitVisit {
     const FlatTriangle triangle = triangleOf(surface, face);
     const double slope = triangle.normal.dot(segment.along);
     if (!(slope > 0)) return;
-    const double found = -triangle.heightOf(segment.from) / slope;
+    const double height = triangle.heightOf(segment.from), found = -height / slope;
     if (found <= kSkippedPart || found > 1 || found >= part || !triangle.isAbove(segment.at(found))) return;
+    if (triangle.normal.dot(entry) < 0 && std::abs(height) <= kOnPlane * surface.size) return;
     part = found, normal = triangle.normal;
   }
 };
@@ -103,7 +108,8 @@ class DepthBound {
 
 DepthPlane planeAt(const MeshSurface& solid, const Segment& piece, double part) {
   const SignedHeight found = heightOver(solid, piece.at(part));
-  return {part, -found.height, -found.normal.dot(piece.along), found.normal};
+  const double sign = solid.isSheet ? -1 : 1;  // heights over a sheet are those over either side
+  return {part, -sign * found.height, -sign * found.normal.dot(piece.along), sign * found.normal};
 }
 
 EdgeDepth depthBetween(const DepthBound& top, const Segment& piece, const Vec3& fallback) {
@@ -119,13 +125,34 @@ EdgeDepth depthBetween(const DepthBound& top, const Segment& piece, const Vec3& 
   return result;
 }
 
+/// Whether a line that goes through a face of a sheet comes back over an edge of it at once, but for rounding: over a
+/// crease that it touches.
+bool goesBackAtOnce(const MeshSurface& sheet, const Segment& line, std::uint32_t face) {
+  for (int walked = 0; walked < kMostFacesAround; ++walked) {
+    const MeshSurface::Face& here = sheet.faces[face];
+    const MeshSurface::Edge* crossed = nullptr;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3& from = sheet.vertices[here.vertices[i]];
+      const Vec3 along = sheet.vertices[here.vertices[(i + 1) % 3]] - from, outwards = along.cross(here.normal);
+      const double near = kSameLinePart * along.squaredNorm();  // both sides times the edge's length
+      if (std::abs(outwards.dot(line.from - from)) <= near && outwards.dot(line.along) > 0)
+        crossed = &sheet.edges[here.edges[i]];
+    }
+    if (!crossed || crossed->isBorder) return false;
+    face = crossed->faces[crossed->faces[0] == face ? 1 : 0];
+    if (sheet.faces[face].normal.dot(line.along) >= 0) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 EdgeDepth depthOfEdge(const MeshSurface& solid, const Segment& edge, double part, std::uint32_t face) {
   const Vec3& entry = solid.faces[face].normal;
   const bool goesOn = entry.dot(edge.along) < 0;
   const Segment piece{edge.at(part), (goesOn ? 1 - part : -part) * edge.along};
-  ExitVisit exit{solid, piece};
+  if (solid.isSheet && goesBackAtOnce(solid, piece, face)) return {0, entry, piece.from, false};
+  ExitVisit exit{solid, piece, solid.isSheet ? entry : Vec3(Vec3::Zero())};
   exit.visit(0);
   const bool leaves = exit.part <= 1;
   const double end = leaves ? exit.part : 1;

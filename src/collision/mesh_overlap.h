@@ -14,7 +14,8 @@ struct EdgeDepth {
 
 /// Of the piece of `edge` that begins where it goes through a face, at `part` (0..1) of its length, and lies inside:
 /// at its end, or where the edge passes beneath another edge, by the distance of the two lines. Exact while the piece
-/// meets no more than the faces at one edge or vertex; deeper inside, some way out. O(log triangles).
+/// meets no more than the faces at one edge or vertex; deeper inside, some way out. Of a sheet, what is behind it, seen
+/// from the side of the face, counts as inside. O(log triangles).
 EdgeDepth depthOfEdge(const MeshSurface& solid, const Segment& edge, double part, std::uint32_t face);
 
 }  // namespace cradle

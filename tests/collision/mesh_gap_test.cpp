@@ -238,6 +238,58 @@ TEST(MeshGap, ChangesByTheNormalTimesTheMotionAndPassesThroughZero) {
   }
 }
 
+/// Hills of 16 x 16 squares of 0.25 m, each of two triangles; closed, a solid down to y = -2.
+TriangleMesh hillsMesh(bool isClosed) {
+  constexpr std::uint32_t kSquares = 16;
+  TriangleMesh mesh;
+  for (const bool isBottom : {false, true})
+    for (std::uint32_t i = 0; i <= kSquares && (isClosed || !isBottom); ++i)
+      for (std::uint32_t k = 0; k <= kSquares; ++k) {
+        const double x = 0.25 * i - 2, z = 0.25 * k - 2;
+        mesh.vertices.emplace_back(x, isBottom ? -2 : 0.4 * std::sin(3 * x + 0.3) * std::cos(2.6 * z), z);
+      }
+  const std::uint32_t below = (kSquares + 1) * (kSquares + 1);
+  const auto at = [](std::uint32_t i, std::uint32_t k) { return i * (kSquares + 1) + k; };
+  const auto addQuad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
+  };
+  for (std::uint32_t i = 0; i < kSquares; ++i)
+    for (std::uint32_t k = 0; k < kSquares; ++k) {
+      addQuad(at(i, k), at(i, k + 1), at(i + 1, k + 1), at(i + 1, k));
+      if (isClosed) addQuad(below + at(i, k), below + at(i + 1, k), below + at(i + 1, k + 1), below + at(i, k + 1));
+    }
+  const auto addSide = [&](std::uint32_t from, std::uint32_t to) { addQuad(from, to, below + to, below + from); };
+  for (std::uint32_t i = 0; i < kSquares && isClosed; ++i) {
+    addSide(at(i, 0), at(i + 1, 0)), addSide(at(i + 1, kSquares), at(i, kSquares));
+    addSide(at(0, i + 1), at(0, i)), addSide(at(kSquares, i), at(kSquares, i + 1));
+  }
+  return mesh;
+}
+
+// What is under a sheet does not matter to what has hardly touched it from above, at faces, creases and corners. (How
+// deep a box is in the solid is exact to 1e-3 of the depth: see the test above.)
+TEST(MeshGap, OverASheetIsThatOverASolidWithTheSameTop) {
+  RandomPoses random(6);
+  const MeshSolid box(boxMesh(Vec3(0.3, 0.2, 0.25))), solid(hillsMesh(true));
+  const MeshSurface sheet = sheetOf(hillsMesh(false));
+  for (int i = 0; i < 300; ++i) {
+    const RigidTransform start{random.turn(), {random.number(-1.2, 1.2), 1.5, random.number(-1.2, 1.2)}};
+    const Vec3 way = Vec3(random.number(-0.3, 0.3), -1, random.number(-0.3, 0.3)).normalized();
+    const double touch = touchingAt(solid, box, start, way);
+    ASSERT_LT(touch, 3) << i;
+    for (const double beyond : {-1e-6, 1e-11, 1e-9, 1e-7, 1e-5}) {
+      const RigidTransform pose{start.rotation, start.translation + (touch + beyond) * way};
+      const MeshGap expected = gapOf(solid, box, pose), gap = gapBetween(MeshPair(sheet, box.surface, pose), INFINITY),
+                    turned = gapBetween(MeshPair(box.surface, sheet, pose.inverse()), INFINITY);
+      const double tolerance = 1e-2 * std::abs(beyond) + kGapRounding;
+      EXPECT_NEAR(gap.separation, expected.separation, tolerance) << i << " " << beyond;
+      EXPECT_NEAR(turned.separation, expected.separation, tolerance) << i << " " << beyond;
+      EXPECT_GT(gap.normal.dot(expected.normal), 0.99) << i << " " << beyond;
+      EXPECT_GT(-(pose.rotation * turned.normal).dot(expected.normal), 0.99) << i << " " << beyond;
+    }
+  }
+}
+
 // Edges at tiny angles: their distance must not suffer.
 TEST(MeshGap, NearlyParallelEdgesKeepTheExactDistance) {
   RandomPoses random(4);
