@@ -166,6 +166,7 @@ void warnOfSteps(const Scene& scene, const ChosenMethod& method, Assembly& assem
   auto fault = stepFault(assembly.mechanism, assembly.state, method, scene.duration);
   if (!fault) fault = energyChangeByStep(assembly.mechanism, assembly.state, method, scene.duration);
   if (!fault) return;
+  assembly.hasLongSteps = true;
   assembly.warnings.push_back(
       fmt::format("{}: spring \"{}\" {}", scene.path, assembly.names.springs[fault->spring], fault->text));
 }

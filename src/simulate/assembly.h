@@ -29,6 +29,7 @@ struct Assembly {
   std::vector<int> colliderBodies, planeBodies;  // scene body of each collider and plane of the geometry
   std::vector<std::pair<int, int>> ropeBodies;   // scene bodies A, B of each rope; kWorld
   std::vector<std::string> warnings;
+  bool hasLongSteps = false;  // a warning tells that the method's steps are too long for a spring
 };
 
 /// Index of a scene body among ascending ones, or -1 (kFixed) if it is not there. O(log n).

@@ -36,6 +36,7 @@ Run::Run(const Scene& scene) : plan_(planOf(scene)) {
   settleStartOverlaps(scene, assemblies);
   for (std::size_t i = 0; i < assemblies.size(); ++i) {
     startWarnings_.insert(startWarnings_.end(), assemblies[i].warnings.begin(), assemblies[i].warnings.end());
+    hasLongSteps_ = hasLongSteps_ || assemblies[i].hasLongSteps;
     move(scene, i, std::move(assemblies[i]));
   }
   decideStartPromises(scene);

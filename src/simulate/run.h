@@ -32,6 +32,9 @@ class Run {
   /// Warnings about the start.
   const std::vector<std::string>& startWarnings() const { return startWarnings_; }
 
+  /// Whether these tell that the scene's steps are too long for a spring.
+  bool hasLongSteps() const { return hasLongSteps_; }
+
   /// The frame at a time (s) not earlier than in the call before. Throws what Simulation::stateAt throws.
   Frame frameAt(long number, double time);
 
@@ -65,6 +68,7 @@ class Run {
 
   Plan plan_;
   std::vector<std::string> startWarnings_;
+  bool hasLongSteps_ = false;
   std::vector<std::unique_ptr<Simulation>> simulations_;
   std::vector<std::size_t> islandOfSimulation_;         // of the plan
   std::vector<std::optional<PromiseEnd>> promiseEnds_;  // by island

@@ -70,7 +70,7 @@ RunCost simulate(const Scene& scene, Run& run, const SimulationSink& sink) {
     loss.add(frame);
     sink.frame(frame);
   }
-  if (const auto warning = loss.warning()) sink.warning(*warning);
+  if (const auto warning = loss.warning(); warning && !run.hasLongSteps()) sink.warning(*warning);
   return {integration.seconds(), run.evaluations(), run.correctionCounts(),
           describeOutcome(run.plan(), run.promiseEnds(), scene)};
 }

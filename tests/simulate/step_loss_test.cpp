@@ -51,6 +51,13 @@ TEST(StepLoss, OfPendulumsIsToldWithAStepThatIsHarmless) {
     }
 }
 
+// A spring elsewhere, whose swing the steps keep, does not hide it.
+TEST(StepLoss, OfAPendulumBesideASpringIsTold) {
+  const std::string spring = R"("springs": [{"bodyA": "b", "anchorA": [0, 0, 0], "anchorB": [0, -20, 0],
+                                             "stiffness": 1e-3, "restLength": 20}])";
+  EXPECT_NE(swing(kHinge + ", " + spring, "rk4", 0.3).warning.find("alone take"), std::string::npos);
+}
+
 // A symplectic step's energy swings about what it was: z / 2 of it, and nothing is lost.
 TEST(StepLoss, IsNotToldOfEnergyThatComesBack) {
   EXPECT_EQ(swing(kRod, "rk4", 0.02).warning, "");
