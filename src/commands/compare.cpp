@@ -11,6 +11,7 @@
 #include "core/console.h"
 #include "core/error.h"
 #include "core/output_path.h"
+#include "core/printable.h"
 #include "core/read_file.h"
 #include "image/comparison_report.h"
 #include "image/png.h"
@@ -122,13 +123,14 @@ bool comparePictures(std::vector<ComparedPicture> pictures, const std::string& e
   for (ComparedPicture& picture : pictures) {
     comparePair(picture, limits);
     if (!picture.comparison.isSame)
-      show("{}: {}\n", picture.actualPath.empty() ? picture.name : picture.actualPath, picture.comparison.sentence);
+      show("{}: {}\n", printableLine(picture.actualPath.empty() ? picture.name : picture.actualPath),
+           picture.comparison.sentence);
     different += !picture.comparison.passes;
   }
   show("{} of {} pictures differ\n", different, pictures.size());
   if (options.report) {
     writeComparisonReport(pictures, limits, *options.report);
-    show("{}\n", *options.report);
+    show("{}\n", printableLine(*options.report));
   }
   if (different > 0) printAcceptance(pictures, expected);
   return different == 0;

@@ -6,6 +6,7 @@
 
 #include "core/console.h"
 #include "core/error.h"
+#include "core/printable.h"
 #include "mesh/load_mesh.h"
 #include "mesh/mass_properties.h"
 #include "mesh/recognise_shape.h"
@@ -61,8 +62,8 @@ nlohmann::ordered_json jsonOf(const Inspection& inspection) {
 void printText(const Inspection& inspection) {
   const Model& model = inspection.loaded.model;
   const auto triple = [](const Vec3& v) { return fmt::format("{:.9g} {:.9g} {:.9g}", v.x(), v.y(), v.z()); };
-  show("{}: {} vertices, {} triangles, {}, {}\n", model.name, model.solid.vertices.size(), model.solid.triangles.size(),
-       inspection.report.isSolid ? "solid" : "not a solid", inspection.shape);
+  show("{}: {} vertices, {} triangles, {}, {}\n", printableLine(model.name), model.solid.vertices.size(),
+       model.solid.triangles.size(), inspection.report.isSolid ? "solid" : "not a solid", inspection.shape);
   show("  size            {}\n", triple(inspection.size));
   if (inspection.report.isSolid) {
     show("  volume          {:.9g}\n", inspection.properties.mass);
@@ -71,8 +72,8 @@ void printText(const Inspection& inspection) {
       show("  {}  {}\n", row == 0 ? "inertia tensor" : "              ",
            triple(inspection.properties.inertiaTensor.row(row)));
   }
-  for (const std::string& problem : inspection.report.problems) show("  problem: {}\n", problem);
-  for (const std::string& note : inspection.loaded.notes) show("  note: {}\n", note);
+  for (const std::string& problem : inspection.report.problems) show("  problem: {}\n", printableLine(problem));
+  for (const std::string& note : inspection.loaded.notes) show("  note: {}\n", printableLine(note));
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "core/interruption.h"
 #include "core/output_path.h"
 #include "core/part_lock.h"
+#include "core/printable.h"
 #include "core/progress.h"
 #include "study/gnuplot.h"
 #include "study/growing_table.h"
@@ -37,7 +38,7 @@ constexpr const char* kReferencesName = "references.csv";
 constexpr const char* kChartPrefix = "work_precision_";
 constexpr std::array<double, 3> kWantedErrors = {1e-3, 1e-6, 1e-9};  // whose cost is printed
 
-/// A scene to study, named in the table as its file is.
+/// A scene to study, named in the table as its file is, but for what a terminal obeys.
 struct NamedScene {
   NamedScene(StudyOrigin of, Scene loaded) : origin(std::move(of)), scene(std::move(loaded)) {}
 
@@ -82,7 +83,7 @@ void loadScenes(const std::vector<std::string>& paths, const std::string& assetR
       throw Error(ErrorKind::usage, path, fmt::format("a second scene file named \"{}\"; rename one", name));
     Scene scene = loadSceneAndWarn(path, {.assetRoot = assetRoot});
     const std::string hash = textHash(programHash + scene.text);
-    scenes.emplace_back(StudyOrigin{name, hash}, std::move(scene));
+    scenes.emplace_back(StudyOrigin{printableLine(name), hash}, std::move(scene));
   }
 }
 
@@ -116,7 +117,7 @@ void printFindings(const NamedScene& named, const Reference& reference, const st
     if (const std::string what = named.scene.missingIn(method); !what.empty()) missing[method.engine()] = what;
   for (const auto& [engine, what] : missing) show("  {} is left out: it does not have {}\n", engine, what);
   for (const StudyRow& row : rows)
-    if (row.status == RunStatus::failed) show("  {} at {}: {}\n", row.method, row.setting, row.message);
+    if (row.status == RunStatus::failed) show("  {} at {}: {}\n", row.method, row.setting, printableLine(row.message));
 }
 
 /// How each of the other engines' methods is set up.
