@@ -19,8 +19,8 @@ class StepLoss {
 
   void add(const Frame& frame);
 
-  /// To be told at the end, if the steps have lost or gained a tenth of the largest kinetic energy by then, or a fifth of
-  /// it with springs: how much, and a step with which it is about 1 %.
+  /// To be told at the end, if the steps have lost or gained a tenth of the largest kinetic energy by then, or a fifth
+  /// of it with springs: how much, and a step with which it is about 1 %.
   std::optional<std::string> warning() const;
 
  private:
