@@ -126,7 +126,8 @@ class Target:
         with tempfile.TemporaryDirectory() as folder:
             small = put((content(path) for path in files_of(self.grown, [""])), os.path.join(folder, "small"))
             cover = put([], os.path.join(folder, "cover"))
-            self.run(["-set_cover_merge=1"], [cover, small, self.grown + "-short", self.kept], os.path.join(folder, "log"))
+            self.run(["-set_cover_merge=1", "-use_counters=0"], [cover, small, self.grown + "-short", self.kept],
+                     os.path.join(folder, "log"))
             if os.listdir(cover):
                 for name in filter(HASH.fullmatch, os.listdir(self.kept)):
                     os.remove(os.path.join(self.kept, name))
