@@ -77,13 +77,19 @@ std::vector<ComparedPicture> pairPictures(const std::string& expected, const std
   return pairs;
 }
 
+/// Pictures of two sizes are told apart by their headers.
+ImageComparison compareFiles(const std::string& expected, const std::string& actual, const ImageLimits& limits) {
+  const auto different = compareSizes(readPngSize(expected), readPngSize(actual));
+  return different ? *different : compareImages(readPng(expected), readPng(actual), limits);
+}
+
 void comparePair(ComparedPicture& pair, const ImageLimits& limits) {
   if (pair.actualPath.empty())
     pair.comparison.sentence = "missing";
   else if (pair.expectedPath.empty())
     pair.comparison.sentence = "not expected";
   else
-    pair.comparison = compareImages(readPng(pair.expectedPath), readPng(pair.actualPath), limits);
+    pair.comparison = compareFiles(pair.expectedPath, pair.actualPath, limits);
 }
 
 /// As one word for a shell, whatever is in it.

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <filesystem>
 #include <future>
+#include <limits>
 
 #include "commands/film_view.h"
 #include "commands/simulate_scene.h"
@@ -35,14 +36,14 @@ struct FrameRange {
   long first, end;  // half-open
 };
 
-/// Two whole numbers around a separator; nothing else.
+/// Two whole numbers around a separator; nothing else. One too large for its type is the largest that is not.
 std::optional<std::pair<long, long>> parsePair(const std::string& text, char separator) {
-  std::pair<long, long> pair;
+  std::pair<long, long> pair{std::numeric_limits<long>::max(), std::numeric_limits<long>::max()};
   const char *begin = text.data(), *end = begin + text.size();
   const auto first = std::from_chars(begin, end, pair.first);
-  if (first.ec != std::errc() || first.ptr == end || *first.ptr != separator) return std::nullopt;
+  if (first.ec == std::errc::invalid_argument || first.ptr == end || *first.ptr != separator) return std::nullopt;
   const auto second = std::from_chars(first.ptr + 1, end, pair.second);
-  if (second.ec != std::errc() || second.ptr != end) return std::nullopt;
+  if (second.ec == std::errc::invalid_argument || second.ptr != end) return std::nullopt;
   return pair;
 }
 

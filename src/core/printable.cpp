@@ -1,4 +1,5 @@
-// RFC 3629 (UTF-8); Unicode Standard Annex 9, section 2 (marks of direction).
+// RFC 3629 (UTF-8); Unicode Standard Annex 9, section 2 (marks of direction); Unicode Standard, section 23.2 and table
+// 23-3 (format characters).
 
 #include "core/printable.h"
 
@@ -41,10 +42,19 @@ bool isControl(char32_t number) {
   return number < 0x20 || (number >= 0x7f && number < 0xa0) || number == 0x2028 || number == 0x2029;
 }
 
-/// Marks of direction, and the byte order mark.
+/// Marks of direction, the byte order mark, and characters without width that join no letters.
 bool isHidden(char32_t number) {
-  return number == 0x61c || number == 0x200e || number == 0x200f || (number >= 0x202a && number <= 0x202e) ||
-         (number >= 0x2066 && number <= 0x2069) || number == 0xfeff;
+  constexpr std::array<std::array<char32_t, 2>, 8> kHidden{{{0xad, 0xad},
+                                                            {0x61c, 0x61c},
+                                                            {0x180e, 0x180e},
+                                                            {0x200b, 0x200b},
+                                                            {0x200e, 0x200f},
+                                                            {0x202a, 0x202e},
+                                                            {0x2060, 0x206f},
+                                                            {0xfeff, 0xfeff}}};
+  const bool isTag = number >= 0xe0000 && number < 0xe0080;
+  return isTag || std::any_of(kHidden.begin(), kHidden.end(),
+                              [&](const auto& range) { return number >= range[0] && number <= range[1]; });
 }
 
 std::string shownText(std::string_view text, std::size_t longest, bool keepsLines) {

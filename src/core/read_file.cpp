@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -36,7 +37,8 @@ std::string readFile(const std::string& path, std::uint64_t limit, ErrorKind kin
   if (error) fail("cannot be read: " + error.message());
   if (size == 0) fail("is empty");
   if (size > limit)
-    fail(fmt::format("has {:.1f} MB, more than the {:.4g} MB allowed", static_cast<double>(size) / kMegabyte,
+    fail(fmt::format("has {:.1f} MB, more than the {:.4g} MB allowed",
+                     std::ceil(10 * static_cast<double>(size) / kMegabyte) / 10,
                      static_cast<double>(limit) / kMegabyte));
 
   std::ifstream stream(path, std::ios::binary);

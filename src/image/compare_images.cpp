@@ -43,13 +43,18 @@ long mostPixels(const DifferenceLimit& limit, long total) {
 
 }  // namespace
 
-ImageComparison compareImages(const Image& expected, const Image& actual, const ImageLimits& limits) {
+std::optional<ImageComparison> compareSizes(PictureSize expected, PictureSize actual) {
+  if (expected == actual) return std::nullopt;
   ImageComparison result;
-  if (expected.width != actual.width || expected.height != actual.height) {
-    result.sentence = fmt::format("sizes differ: {}x{} expected, {}x{} found", expected.width, expected.height,
-                                  actual.width, actual.height);
-    return result;
-  }
+  result.sentence = fmt::format("sizes differ: {}x{} expected, {}x{} found", expected.width, expected.height,
+                                actual.width, actual.height);
+  return result;
+}
+
+ImageComparison compareImages(const Image& expected, const Image& actual, const ImageLimits& limits) {
+  if (const auto different = compareSizes({expected.width, expected.height}, {actual.width, actual.height}))
+    return *different;
+  ImageComparison result;
   countDifferences(expected, actual, limits, result);
   const long total = static_cast<long>(expected.width) * expected.height;
   const long mostVisible = mostPixels(limits.visible, total), mostStriking = mostPixels(limits.striking, total);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "image/image.h"
@@ -36,6 +37,9 @@ struct ImageComparison {
   PixelBox where;             // of all pixels that differ
   std::string sentence;       // for the user
 };
+
+/// That of two pictures whose sizes differ; nothing if they do not.
+std::optional<ImageComparison> compareSizes(PictureSize expected, PictureSize actual);
 
 ImageComparison compareImages(const Image& expected, const Image& actual, const ImageLimits& limits = {});
 

@@ -6,6 +6,11 @@
 
 namespace cradle {
 
+struct PictureSize {
+  int width = 0, height = 0;  // pixels
+  bool operator==(const PictureSize&) const = default;
+};
+
 /// A picture: sRGB, 8 bits a channel, rows from the top, no padding.
 struct Image {
   int width = 0, height = 0;         // pixels

@@ -19,11 +19,6 @@ void writePng(const Image& image, const std::string& path);
 /// is missing, no PNG, damaged (all checksums are held against it), or larger than 16384 pixels a side.
 Image readPng(const std::string& path);
 
-struct PictureSize {
-  int width = 0, height = 0;  // pixels
-  bool operator==(const PictureSize&) const = default;
-};
-
 /// Of the picture that readPng would read; its rows are not looked at. Throws as readPng does.
 PictureSize readPngSize(const std::string& path);
 

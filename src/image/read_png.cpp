@@ -117,7 +117,10 @@ class PngReading {
 }  // namespace
 
 PictureSize readPngSize(const std::string& path) {
-  return PngReading(path).readHeader();
+  PngReading reading(path);
+  const PictureSize size = reading.readHeader();
+  reading.requireRows();
+  return size;
 }
 
 Image readPng(const std::string& path) {

@@ -21,6 +21,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/output_path.h"
 #include "core/read_file.h"
 #include "math/elementary.h"
 #include "mesh/check_3ds.h"
@@ -58,11 +59,11 @@ class MeshFiles : public Assimp::IOSystem {
     return bytesOf_[path] = std::move(bytes);
   }
 
-  bool Exists(const char* path) const override { return fs::is_regular_file(path) && isAllowed(path); }
+  bool Exists(const char* path) const override { return isFile(path) && isAllowed(path); }
   char getOsSeparator() const override { return '/'; }
   void Close(Assimp::IOStream* stream) override { delete stream; }
   Assimp::IOStream* Open(const char* path, const char*) override {
-    if (!fs::is_regular_file(path)) return nullptr;  // a missing .mtl is no error: the importer goes on without
+    if (!isFile(path)) return nullptr;  // a missing .mtl is no error: the importer goes on without
     if (!isAllowed(path)) {
       outside_ = path;
       return nullptr;
@@ -77,7 +78,11 @@ class MeshFiles : public Assimp::IOSystem {
  private:
   static fs::path folderOf(const std::string& path) {
     std::error_code ignored;  // what is not there is told when it is read
-    return fs::canonical(fs::absolute(path).parent_path(), ignored);
+    return fs::canonical(parentOf(path), ignored);
+  }
+  static bool isFile(const char* path) {
+    std::error_code failed;  // a name may be too long
+    return fs::is_regular_file(path, failed);
   }
   bool isAllowed(const std::string& path) const { return path == path_ || isBelow(path, folder_); }
 

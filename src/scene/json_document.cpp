@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string_view>
 
 #include "scene/syntax_fault.h"
@@ -19,7 +18,6 @@ namespace cradle {
 namespace {
 
 constexpr std::size_t kMostLevels = 64;
-constexpr std::size_t kMostBlanks = 100'000;    // in a row: more are no layout
 constexpr std::size_t kMostValues = 4'000'000;  // some 300 MB; a hundred thousand bodies have fewer
 
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
@@ -138,15 +136,36 @@ std::string TreeBuilder::pointer() const {
   return result;
 }
 
-/// Where a row of more blanks than are allowed ends. The parser copies all blanks before a token that it does not know
-/// into its message, a line feed as eight characters.
-std::optional<std::size_t> endOfLongBlank(const std::string& text) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    count = text[i] == ' ' || text[i] == '\n' || text[i] == '\t' || text[i] == '\r' ? count + 1 : 0;
-    if (count > kMostBlanks) return i;
+/// Where what begins at `start` outside of strings ends: a comment, a string, or one byte.
+std::size_t endOfPiece(const std::string& text, std::size_t start) {
+  const std::string_view rest = std::string_view(text).substr(start);
+  const auto after = [&](std::string_view mark, std::size_t size) {
+    const auto found = rest.find(mark, 2);
+    return found == rest.npos ? text.size() : start + found + size;
+  };
+  if (rest.starts_with("//")) return after("\n", 0);
+  if (rest.starts_with("/*")) return after("*/", 2);
+  if (rest[0] != '"') return start + 1;
+  std::size_t end = start + 1;
+  while (end < text.size() && text[end] != '"' && text[end] != '\n') end += text[end] == '\\' ? 2 : 1;
+  return std::min(end + 1, text.size());
+}
+
+/// `text` with spaces in place of its comments and of other blanks between tokens; all else keeps its place. The parser
+/// copies what is before a token that it does not know into its message, a line feed as eight characters: of 60 MB of
+/// them for a minute. A comment without an end is cut after its beginning.
+std::string withPlainBlanks(const std::string& text) {
+  std::string plain = text;
+  for (std::size_t start = 0, end = 0; start < text.size(); start = end) {
+    end = endOfPiece(text, start);
+    const bool isComment = text[start] == '/' && end > start + 1;
+    const bool isOpen = isComment && text[start + 1] == '*' && (end < start + 4 || text.compare(end - 2, 2, "*/") != 0);
+    if (isOpen) return plain.substr(0, start + 2);
+    if (isComment || text[start] == '\n' || text[start] == '\r' || text[start] == '\t')
+      std::fill(plain.begin() + static_cast<std::ptrdiff_t>(start), plain.begin() + static_cast<std::ptrdiff_t>(end),
+                ' ');
   }
-  return {};
+  return plain;
 }
 
 }  // namespace
@@ -161,13 +180,9 @@ JsonValue readJson(const std::string& text, FaultList& faults) {
     faults.add(TokenCursor(text).advanceTo(nul), "", "a NUL byte; a scene file is UTF-8 text");
     faults.throwIfAny(ErrorKind::scene);
   }
-  if (const auto end = endOfLongBlank(text)) {
-    faults.add(TokenCursor(text).advanceTo(*end), "",
-               fmt::format("more than {} blank characters in a row", kMostBlanks));
-    faults.throwIfAny(ErrorKind::scene);
-  }
   TreeBuilder builder(text, faults);
-  const bool isRead = nlohmann::json::sax_parse(text, &builder, nlohmann::json::input_format_t::json, true, true);
+  const bool isRead =
+      nlohmann::json::sax_parse(withPlainBlanks(text), &builder, nlohmann::json::input_format_t::json, true, true);
   if (!isRead) faults.throwIfAny(ErrorKind::scene);
   return builder.takeRoot();
 }

@@ -45,30 +45,85 @@ std::string immutableUri(const fs::path& path) {
   return uri + "?immutable=1";
 }
 
+/// The name of a file as SQLite takes it for nothing else, neither a URI nor a database in memory.
+std::string plainName(const std::string& path) {
+  return (fs::path(".") / path).string();
+}
+
 fs::path journalOf(const fs::path& database) {
   return database.string() + "-journal";
 }
 
-/// Whether a rollback journal names a super-journal, which SQLite deletes when it has taken back what the journal
-/// holds: it ends with eight bytes then. (sqlite.org, "Atomic Commit In SQLite", section 5; the bytes are those of the
-/// "Database File Format", section 3)
-bool namesSuperJournal(const fs::path& journal) {
-  constexpr std::array<unsigned char, 8> kMark{0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
-  std::ifstream file(journal, std::ios::binary);
-  std::array<unsigned char, 8> end{};
-  file.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
-  file.read(reinterpret_cast<char*>(end.data()), end.size());
-  return file && end == kMark;
+// sqlite.org, "Database File Format", section 3: the first bytes of a rollback journal, and the last of one that names
+// a super-journal.
+constexpr std::array<unsigned char, 8> kJournalMark{0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
+constexpr std::size_t kJournalHeader = 28;  // bytes
+
+std::uint64_t bigEndianAt(std::span<const unsigned char> bytes, std::size_t place) {
+  std::uint64_t number = 0;
+  for (std::size_t i = 0; i < 4; ++i) number = number << 8 | bytes[place + i];
+  return number;
 }
 
-/// Ours never do: a writer has one file open.
+/// Whether a rollback journal names a super-journal, which SQLite deletes when it has taken back what the journal
+/// holds. (sqlite.org, "Atomic Commit In SQLite", section 5)
+bool namesSuperJournal(std::ifstream& journal) {
+  std::array<unsigned char, kJournalMark.size()> end{};
+  journal.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
+  journal.read(reinterpret_cast<char*>(end.data()), end.size());
+  return journal && end == kJournalMark;
+}
+
+/// Whether SQLite would make the database of `size` bytes longer, to what a rollback journal says that it had. (section
+/// 3 as above: number of pages and bytes of each, 16 and 24 bytes from the beginning)
+bool growsDatabase(std::ifstream& journal, std::uint64_t size) {
+  std::array<unsigned char, kJournalHeader> header{};
+  journal.clear();
+  journal.seekg(0);
+  journal.read(reinterpret_cast<char*>(header.data()), header.size());
+  return journal && std::equal(kJournalMark.begin(), kJournalMark.end(), header.begin()) &&
+         bigEndianAt(header, 16) * bigEndianAt(header, 24) > size;
+}
+
+/// Ours neither name a file, as a writer has one open, nor make one longer, as it only adds.
 void requireOwnJournal(const fs::path& database, ErrorKind kind) {
   const fs::path journal = journalOf(database);
   const fs::file_status status = fs::symlink_status(journal);
-  if (!fs::exists(status) || (fs::is_regular_file(status) && !namesSuperJournal(journal))) return;
-  throw Error(
-      kind, journal.string(),
-      "is none of cradle's: it names another file, which would be deleted; remove it, or choose another folder");
+  if (!fs::exists(status)) return;
+  std::ifstream file(journal, std::ios::binary);
+  std::error_code failed;
+  if (!fs::is_regular_file(status) || namesSuperJournal(file))
+    throw Error(
+        kind, journal.string(),
+        "is none of cradle's: it names another file, which would be deleted; remove it, or choose another folder");
+  if (growsDatabase(file, fs::file_size(database, failed)))
+    throw Error(kind, journal.string(),
+                "is none of cradle's: it belongs to a longer file; remove it, or choose another folder");
+}
+
+/// The name of a file system for SQLite that is the system's own, but opens a database, its rollback journal and
+/// nothing else, and deletes nothing else: neither a log nor a super-journal, whatever the bytes of the file and of a
+/// journal ask for. (sqlite.org, "OS Interface or VFS")
+const char* ownFilesOnly() {
+  static sqlite3_vfs vfs = [] {
+    sqlite3_vfs own = *sqlite3_vfs_find(nullptr);
+    own.zName = "cradle-own-files-only";
+    own.xOpen = [](sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, int* outFlags) {
+      sqlite3_vfs* system = sqlite3_vfs_find(nullptr);
+      file->pMethods = nullptr;  // there is nothing to close
+      if ((flags & (SQLITE_OPEN_WAL | SQLITE_OPEN_SUPER_JOURNAL)) != 0) return SQLITE_CANTOPEN;
+      return system->xOpen(system, name, file, flags, outFlags);
+    };
+    own.xDelete = [](sqlite3_vfs*, const char* name, int syncsFolder) {
+      sqlite3_vfs* system = sqlite3_vfs_find(nullptr);
+      if (!std::string_view(name).ends_with("-journal")) return SQLITE_IOERR_DELETE;
+      return system->xDelete(system, name, syncsFolder);
+    };
+    return own;
+  }();
+  static const int registered = sqlite3_vfs_register(&vfs, 0);
+  CRADLE_CHECK(registered == SQLITE_OK);
+  return vfs.zName;
 }
 
 /// Of its texts and blobs, and one for itself.
@@ -179,7 +234,7 @@ void Database::Close::operator()(sqlite3* handle) const {
 
 Database::Database(const std::string& path, DatabaseAccess access) : path_(path), access_(access) {
   if (access == DatabaseAccess::create) {
-    open(fs::absolute(path).string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    open(plainName(path), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     execute("PRAGMA journal_mode = DELETE; PRAGMA cache_spill = OFF; PRAGMA synchronous = NORMAL");
     return;
   }
@@ -220,10 +275,10 @@ void Database::restrictReading() {
   execute("PRAGMA query_only = ON; PRAGMA cell_size_check = ON");
 }
 
-/// `name`: a whole path, which no name of a file can make a URI, or a URI.
+/// `name`: a plain one, or a URI.
 void Database::open(const std::string& name, int flags) {
   sqlite3* handle = nullptr;
-  const int code = sqlite3_open_v2(name.c_str(), &handle, flags, nullptr);
+  const int code = sqlite3_open_v2(name.c_str(), &handle, flags, ownFilesOnly());
   handle_.reset(handle);
   if (code != SQLITE_OK) fail(code);
   sqlite3_busy_timeout(handle, kPatience);
@@ -267,7 +322,10 @@ void Database::fail(int code) const {
   if (code == SQLITE_BUSY)
     throw Error(ErrorKind::output, path_, "another program that reads it keeps it locked; close that program");
   const int cause = sqlite3_system_errno(handle_.get());
-  const std::string because = cause == 0 ? "" : fmt::format(": {}", std::strerror(cause));
+  const bool isOfWriting = cause == 0 && sqlite3_extended_errcode(handle_.get()) == SQLITE_IOERR_WRITE;
+  const std::string because = isOfWriting  ? ": the file may not grow further (ulimit -f), or the disk fails"
+                              : cause == 0 ? ""
+                                           : fmt::format(": {}", std::strerror(cause));
   throw Error(ErrorKind::output, path_,
               fmt::format("cannot be written ({}{})", sqlite3_errmsg(handle_.get()), because));
 }
@@ -297,11 +355,10 @@ void Database::requireHeld(std::int64_t bytes) const {
 }
 
 bool isBeingWritten(const std::string& path) {
-  const fs::path file = fs::absolute(path);
-  requireOwnJournal(file, ErrorKind::output);
+  requireOwnJournal(path, ErrorKind::output);
   sqlite3* handle = nullptr;
   bool busy = false;
-  if (sqlite3_open_v2(file.c_str(), &handle, SQLITE_OPEN_READWRITE, nullptr) == SQLITE_OK)
+  if (sqlite3_open_v2(plainName(path).c_str(), &handle, SQLITE_OPEN_READWRITE, ownFilesOnly()) == SQLITE_OK)
     busy = sqlite3_exec(handle, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr) == SQLITE_BUSY;
   sqlite3_close(handle);
   return busy;

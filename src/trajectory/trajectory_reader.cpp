@@ -102,13 +102,13 @@ std::vector<ModelMaterial> readMaterials(Database& database, std::int64_t mesh, 
 }
 
 void requireConsistent(const DrawnMesh& drawn, const Database& database) {
-  const auto finite = [](const Vec3f& normal) { return normal.allFinite(); };
+  const auto hasLength = [](const Vec3f& normal) { return std::isfinite(normal.squaredNorm()); };
   const auto inRange = [&](const Triangle& triangle) {
     return std::all_of(triangle.begin(), triangle.end(), [&](auto vertex) { return vertex < drawn.vertices.size(); });
   };
   if (drawn.normals.size() != drawn.vertices.size()) database.failDamaged("a mesh has not one normal a vertex");
-  if (!std::all_of(drawn.normals.begin(), drawn.normals.end(), finite))
-    database.failDamaged("a mesh has normals that are not finite");
+  if (!std::all_of(drawn.normals.begin(), drawn.normals.end(), hasLength))
+    database.failDamaged("a mesh has normals of no finite length");
   if (!std::all_of(drawn.vertices.begin(), drawn.vertices.end(), isPossiblePlace))
     database.failDamaged("a mesh has vertices whose coordinates are not finite and below 1e30 m");
   if (!std::all_of(drawn.triangles.begin(), drawn.triangles.end(), inRange))

@@ -30,6 +30,10 @@ TEST(Printable, ShowsWhatTurnsOrHidesTextAsNumbers) {
   EXPECT_EQ(printable("a\u202eb"), "a\\xe2\\x80\\xaeb");
   EXPECT_EQ(printable("\ufeffx"), "\\xef\\xbb\\xbfx");
   EXPECT_EQ(printable("\u2028"), "\\xe2\\x80\\xa8");
+  EXPECT_EQ(printable("a\u200bb"), "a\\xe2\\x80\\x8bb");             // no width
+  EXPECT_EQ(printable("a\u00adb"), "a\\xc2\\xadb");                  // a hyphen that shows at the end of a line alone
+  EXPECT_EQ(printable("\U000e0041"), "\\xf3\\xa0\\x81\\x81");        // tag
+  EXPECT_EQ(printable("\u0646\u200c\u0647"), "\u0646\u200c\u0647");  // between letters that would join
 }
 
 TEST(Printable, LinesAreOneAndEnd) {

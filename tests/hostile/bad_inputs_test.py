@@ -140,6 +140,9 @@ for row in (
     # Not JSON at all
     ("empty file", "", "", "empty"),
     ("blank file", " \n\t\n @", "", "ends too early"),
+    ("line feeds before a fault", b"{" + b"\n" * 60_000_000 + b"@x", "", "no JSON"),
+    ("comment of line feeds before a fault", b"/*" + b"\n" * 60_000_000 + b"*/ @x", "", "no JSON"),
+    ("comment of line feeds without an end", b"{@/*" + b"\n" * 60_000_000, "", "comment has no end"),
     ("every byte", b"@" + bytes(range(256)) * 9, "", "NUL byte", "UTF-8"),
     ("random bytes without NUL", b"\x9f\xe8\x12\xff" * 99, "", "UTF-8"),
     ("UTF-16", '\ufeff{"schema": "cradle-scene/1"}'.encode("utf-16-le"), "", "UTF-8"),
@@ -631,6 +634,7 @@ for row in (
     ("triangle of vertices that are not there", trajectory("UPDATE mesh SET triangles = x'000000000100000063000000'"), "damaged", "vertices that it does not have"),
     ("vertices that end in mid-number", trajectory("UPDATE mesh SET vertices = x'0000'"), "damaged", "mid-element"),
     ("fewer normals than vertices", trajectory("UPDATE mesh SET normals = x'000000000000000000000000'"), "damaged", "one normal a vertex"),
+    ("normal as long as floats go", trajectory("UPDATE mesh SET normals = CAST(x'0000967e' || substr(normals, 5) AS BLOB)"), "damaged", "normals of no finite length"),
     ("vertices in words", trajectory("UPDATE mesh SET vertices = 'one two three'"), "damaged", "vertices", "a blob"),
     ("vertex at infinity", trajectory("UPDATE mesh SET vertices = x'000000000000f07f' || substr(vertices, 9)", "UPDATE mesh SET vertices = CAST(vertices AS BLOB)"),
      "damaged", "not finite"),

@@ -112,11 +112,15 @@ TEST(Json, ArraysHaveAtMostAMillionElements) {
   EXPECT_THAT(errorOf(sceneWith("\"bodies\": [" + zeros + "0]")).what(), HasSubstr("bodies has 1000001 elements"));
 }
 
-TEST(Json, RowsOfBlanksHaveALimit) {
-  const std::string blanks(99'990, '\n');  // with those of the scene beside them, at most the limit
-  EXPECT_NO_THROW(parse("{" + blanks + everyKey().substr(everyKey().find('{') + 1)));
-  EXPECT_THAT(errorOf("{\"a\": " + blanks + blanks + " x").what(),
-              HasSubstr("more than 100000 blank characters in a row"));
+TEST(Json, CommentsAndBlanksArePassedOver) {
+  const std::string blanks(200'000, '\n'), comment = "/* \" [ \xff" + blanks + "*/ // \"{\n";
+  EXPECT_NO_THROW(parse("{" + blanks + comment + everyKey().substr(everyKey().find('{') + 1) + comment));
+  EXPECT_THAT(errorOf("{\"a\": " + comment + " x").what(), HasSubstr("200002:2 /a: this is no JSON"));
+  EXPECT_THAT(errorOf("{\"a\": " + blanks + " x").what(), HasSubstr("200001:2 /a: this is no JSON"));
+  EXPECT_THAT(errorOf("{\"a\": /*/" + blanks).what(), HasSubstr("1:7 /a: a comment has no end"));
+  FaultList faults("f");
+  const JsonValue text = readJson("[\"/* // \\\" \\t/*\"]", faults);
+  EXPECT_EQ(std::get<std::string>(std::get<JsonValue::Array>(text.content)[0].content), "/* // \" \t/*");
 }
 
 TEST(Json, DuplicateKeysAreFoundAtAnyDepth) {

@@ -33,6 +33,21 @@ std::string journalNaming(const std::string& superJournal, std::uint32_t pages) 
   return journal + magic;
 }
 
+/// A rollback journal that says that a database of `pages` pages began with the page `first`. A record's checksum is
+/// the header's number, here 0, and every 200th byte from the end of the page.
+std::string journalRestoring(const std::string& first, std::uint32_t pages) {
+  std::string journal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
+  for (const std::uint32_t number : {1u, 0u, pages, 512u, 4096u}) appendBigEndian(number, journal);
+  journal.resize(512);
+  appendBigEndian(1, journal);
+  journal += first;
+  std::uint32_t sum = 0;
+  for (std::size_t i = first.size() - 200; i > 0 && i < first.size(); i -= 200)
+    sum += static_cast<unsigned char>(first[i]);
+  appendBigEndian(sum, journal);
+  return journal;
+}
+
 class PlantedJournal : public testing::Test {
  protected:
   /// Puts a file of the user's, and a journal that names it beside the database at `path`.
@@ -78,6 +93,40 @@ TEST_F(PlantedJournal, OfAPartIsRefusedByReadersAndWriters) {
   fs::create_symlink(path_ + ".part", folder_.file("link.sqlite"));
   expectError(ErrorKind::usage, ".part-journal: is none of cradle's", [&] { readAll(folder_.file("link.sqlite")); });
   EXPECT_EQ(contentOf(victim_), "dear diary");
+}
+
+// What it takes back may say that the file keeps a log beside it, which SQLite deletes when it has been taken in.
+TEST_F(PlantedJournal, OfAPartBringsNoLogToLife) {
+  for (const bool isOurs : {false, true}) {
+    const std::string path = folder_.file(isOurs ? "ours.sqlite" : "sqlites.sqlite");
+    writeSample(path, 3);
+    const std::string part = isOurs ? path + ".part" : path, whole = contentOf(path);
+    std::string first = whole.substr(0, 4096);
+    first[18] = first[19] = 2;  // kept with a log
+    fs::rename(path, part);
+    writeContent(part + "-journal", journalRestoring(first, static_cast<std::uint32_t>(whole.size() / 4096)));
+    writeContent(part + "-wal", "dear diary");
+    if (isOurs) {
+      expectError(ErrorKind::usage, ".sqlite.part: ", [&] { readAll(part); });
+    } else {
+      sqlite3* database = nullptr;
+      ASSERT_EQ(sqlite3_open(part.c_str(), &database), SQLITE_OK);
+      EXPECT_EQ(sqlite3_exec(database, "SELECT count(*) FROM frame", nullptr, nullptr, nullptr), SQLITE_OK);
+      sqlite3_close(database);
+    }
+    EXPECT_EQ(fs::exists(part + "-wal"), isOurs);
+    EXPECT_FALSE(fs::exists(part + "-shm"));
+  }
+}
+
+TEST_F(PlantedJournal, OfAPartThatMakesItLongerIsRefused) {
+  writeSample(path_, 3);
+  const std::string whole = contentOf(path_);
+  fs::rename(path_, path_ + ".part");
+  writeContent(path_ + ".part-journal", journalRestoring(whole.substr(0, 4096), 1u << 30));
+  expectError(ErrorKind::usage, "belongs to a longer file", [&] { readAll(path_ + ".part"); });
+  expectError(ErrorKind::output, "belongs to a longer file", [&] { TrajectoryWriter(path_, sampleHeader()); });
+  EXPECT_EQ(contentOf(path_ + ".part"), whole);
 }
 
 // Names that SQLite takes for addresses, or would if they were not written out.
