@@ -18,10 +18,10 @@ RightHandSide almostNothing() {
 Step stepOf(Integrator integrate, Eigen::Index size) {
   Step step;
   integrate(almostNothing(), VectorX::Constant(size, 1), 0, 0.1, step);
-  for (VectorX& rate : step.stageRates) rate.setConstant(size, 0.1);
+  for (VectorX& rate : step.stageDerivatives) rate.setConstant(size, 0.1);
   step.work.setConstant(0.1);
-  step.startRate.setConstant(0.1);
-  step.endRate.setConstant(size, 0.1);
+  step.startDerivative.setConstant(0.1);
+  step.endDerivative.setConstant(size, 0.1);
   return step;
 }
 
@@ -42,7 +42,7 @@ void prepare(benchmark::State& run) {
   const RightHandSide rightHandSide = almostNothing();
   Step step = stepOf(dop853, run.range(0));
   for (auto _ : run) {
-    step.hasEndRate = false;
+    step.hasEndDerivative = false;
     prepareInterpolant(rightHandSide, step);
   }
 }
@@ -52,7 +52,7 @@ void evaluate(benchmark::State& run) {
   const VectorX state = VectorX::Constant(15, 1);
   VectorX rate = state;
   for (auto _ : run) {
-    rightHandSide.rate(0, state, rate);
+    rightHandSide.derivative(0, state, rate);
     benchmark::ClobberMemory();
   }
 }

@@ -8,7 +8,7 @@
 namespace cradle {
 namespace {
 
-constexpr int kMostContacts = 8;  // of a pair: those of a face on a face
+constexpr int kMaxContacts = 8;  // of a pair: those of a face on a face
 constexpr double kFromYToZ[4] = {0.70710678118654752, -0.70710678118654752, 0, 0};  // capsules: along y, ours
 
 dGeomID geomOf(const PileItem& item) {
@@ -74,8 +74,8 @@ void OdePile::addContacts(dGeomID a, dGeomID b) {
   const dBodyID bodyA = dGeomGetBody(a), bodyB = dGeomGetBody(b);
   const auto isAwake = [](dBodyID body) { return body != nullptr && dBodyIsEnabled(body) != 0; };
   if (!isAwake(bodyA) && !isAwake(bodyB)) return;
-  std::array<dContactGeom, kMostContacts> found;
-  const int count = dCollide(a, b, kMostContacts, found.data(), sizeof(dContactGeom));
+  std::array<dContactGeom, kMaxContacts> found;
+  const int count = dCollide(a, b, kMaxContacts, found.data(), sizeof(dContactGeom));
   for (int i = 0; i < count; ++i) {
     dContact contact{};
     contact.surface.mode = dContactApprox1;
@@ -87,7 +87,7 @@ void OdePile::addContacts(dGeomID a, dGeomID b) {
 
 void OdePile::advance() {
   dSpaceCollide(space_, this, [](void* self, dGeomID a, dGeomID b) { static_cast<OdePile*>(self)->addContacts(a, b); });
-  dWorldQuickStep(world_, kPileTimeStep);
+  dWorldQuickStep(world_, kSoftTimeStep);
   dJointGroupEmpty(contacts_);
 }
 

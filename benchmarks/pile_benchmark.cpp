@@ -45,7 +45,7 @@ Figures measure(const PileScene& scene, World& world, int steps) {
       figures.falling += cost / kFallingSteps;
     else if (figures.restTime < 0)
       figures.settling += cost, ++settlingSteps;
-    if (figures.restTime < 0 && world.isAtRest()) figures.restTime = (step + 1) * kPileTimeStep;
+    if (figures.restTime < 0 && world.isAtRest()) figures.restTime = (step + 1) * kSoftTimeStep;
     figures.deepestAtEnd = 1e3 * deepestOverlap(scene, world.poses());
     double& deepest = step < kFallingSteps ? figures.deepestFalling : figures.deepest;
     deepest = std::max(deepest, figures.deepestAtEnd);

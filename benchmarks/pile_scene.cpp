@@ -12,8 +12,8 @@ namespace {
 constexpr double kHalf = 0.1;      // m: radius of the spheres, half the side of the cubes
 constexpr double kDensity = 1000;  // kg/m^3, where bodies differ
 constexpr double kPi = 3.14159265358979324;
-constexpr double kLeastAxis = 1e-6;  // of a unit: edges that are parallel have no axis of their own
-constexpr int kSearchSteps = 60;     // of a golden section: 0.618^60 = 3e-13
+constexpr double kMinAxis = 1e-6;  // of a unit: edges that are parallel have no axis of their own
+constexpr int kSearchSteps = 60;   // of a golden section: 0.618^60 = 3e-13
 
 PileItem itemOf(const std::string& kind, std::mt19937& random) {
   const auto between = [&](double least, double most) {
@@ -25,9 +25,9 @@ PileItem itemOf(const std::string& kind, std::mt19937& random) {
   if (kind == "bars") item.halfSize = Vec3(0.04, 0.3, 0.05);
   if (kind == "capsules") item.radius = 0.06, item.halfSize = Vec3(0, between(0.05, 0.2), 0);
   if (kind == "mixed") {
-    const bool isBall = random() % 2 == 0;
+    const bool isSphere = random() % 2 == 0;
     const double x = between(0.04, 0.15), y = between(0.04, 0.15), z = between(0.04, 0.15);
-    if (isBall)
+    if (isSphere)
       item.radius = x;
     else
       item.halfSize = Vec3(x, y, z);
@@ -44,7 +44,7 @@ double depthOfBoxes(const PileItem& first, const PileItem& second, const Vec3& o
   double least = 1e9;
   const auto consider = [&](const Vec3& axis) {
     const double length = axis.norm();
-    if (length < kLeastAxis) return;
+    if (length < kMinAxis) return;
     const double reach =
         (a.transpose() * axis).cwiseAbs().dot(first.halfSize) + (b.transpose() * axis).cwiseAbs().dot(second.halfSize);
     least = std::min(least, (reach - std::abs(offset.dot(axis))) / length);

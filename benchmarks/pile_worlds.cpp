@@ -39,13 +39,13 @@ OurPile::OurPile(const PileScene& scene, int threads) {
     geometry_.colliders.push_back(collider);
   }
   geometry_.planes = scene.planes;
-  geometry_.laws = {{{0, kPileFriction, kPileFriction}}};
+  geometry_.materials = {{{0, kPileFriction, kPileFriction}}};
   state_.setZero(stateSize(std::ssize(bodies_)));
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     centerOfMass(state_, static_cast<Eigen::Index>(i)) = scene.items[i].position;
     setOrientation(state_, static_cast<Eigen::Index>(i), scene.items[i].turn);
   }
-  step_ = std::make_unique<PileStep>(bodies_, geometry_, Vec3(0, -9.81, 0), threads);
+  step_ = std::make_unique<SoftStep>(bodies_, geometry_, Vec3(0, -9.81, 0), threads);
 }
 
 PilePoses OurPile::poses() const {

@@ -4,12 +4,12 @@
 
 #include <memory>
 
-#include "impact/pile_step.h"
+#include "impact/soft_step.h"
 #include "pile_scene.h"
 
 namespace cradle {
 
-constexpr double kPileTimeStep = 1.0 / 60;  // s
+constexpr double kSoftTimeStep = 1.0 / 60;  // s
 constexpr double kPileFriction = 0.5;
 
 /// A heap by the fast contact step.
@@ -17,7 +17,7 @@ class OurPile {
  public:
   OurPile(const PileScene& scene, int threads);
 
-  void advance() { step_->advance(kPileTimeStep, state_); }
+  void advance() { step_->advance(kSoftTimeStep, state_); }
   bool isAtRest() const { return step_->allAsleep(); }
   PilePoses poses() const;
 
@@ -25,7 +25,7 @@ class OurPile {
   std::vector<RigidBody> bodies_;
   ContactGeometry geometry_;
   VectorX state_;
-  std::unique_ptr<PileStep> step_;
+  std::unique_ptr<SoftStep> step_;
 };
 
 /// The same with Bullet's defaults; friction of a pair is the product there.
@@ -36,7 +36,7 @@ class BulletPile {
   BulletPile(const BulletPile&) = delete;
   BulletPile& operator=(const BulletPile&) = delete;
 
-  void advance() { world_.stepSimulation(kPileTimeStep, 0); }
+  void advance() { world_.stepSimulation(kSoftTimeStep, 0); }
   bool isAtRest() const;
   PilePoses poses() const;
 

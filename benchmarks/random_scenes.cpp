@@ -26,9 +26,9 @@
 namespace cradle {
 namespace {
 
-constexpr rlim_t kMostThrownSeconds = 20;     // CPU time of a scene
-constexpr rlim_t kMostSketchSeconds = 60;     // with all its runs, up to some thirty
-constexpr std::size_t kMostCharacters = 600;  // of a message: a pipe holds them all
+constexpr rlim_t kMaxThrownSeconds = 20;     // CPU time of a scene
+constexpr rlim_t kMaxSketchSeconds = 60;     // with all its runs, up to some thirty
+constexpr std::size_t kMaxCharacters = 600;  // of a message: a pipe holds them all
 constexpr unsigned kFamilies = kSketchFamilyNames.size();
 
 /// What to run, and where to leave it.
@@ -47,7 +47,7 @@ struct Task {
   std::string name() const {
     return fmt::format("{} {}", family ? kSketchFamilyNames[static_cast<std::size_t>(*family)] : "thrown", number);
   }
-  rlim_t mostSeconds() const { return family ? kMostSketchSeconds : kMostThrownSeconds; }
+  rlim_t mostSeconds() const { return family ? kMaxSketchSeconds : kMaxThrownSeconds; }
   std::string text() const { return family ? textOf(randomSketch(*family, number)) : randomSceneText(number); }
 };
 
@@ -70,7 +70,7 @@ std::string lineOf(const Scene& scene) {
       "{}|{} bodies, accuracy {:g}{}: energy {:+.1e}, balance {:.1e}, penetration {:.1e} m, ties {:.1e}, {:.2f} s",
       fmt::join(faults, "; "), scene.bodies.size(), scene.accuracy, figures.keepsAccuracy ? "" : " not kept",
       figures.energyGain / figures.energyScale, figures.energyError / figures.energyScale, figures.penetration,
-      figures.tieError, figures.cpuSeconds);
+      figures.constraintError, figures.cpuSeconds);
 }
 
 template <class MakeScene>
@@ -96,7 +96,7 @@ std::string checkLine(const Order& order, const Task& task, const std::function<
   std::string line;
   for (const SketchFault& fault : faults) {
     save(order, task, fault.oracle, textOf(sketch));
-    line += fmt::format("{}{}: {}", line.empty() ? "" : "; ", fault.oracle, fault.text.substr(0, kMostCharacters));
+    line += fmt::format("{}{}: {}", line.empty() ? "" : "; ", fault.oracle, fault.text.substr(0, kMaxCharacters));
   }
   if (order.folder.empty() || faults.empty()) return line + "|";
   begin(line + "|not reduced");
@@ -112,7 +112,7 @@ void runTask(const Order& order, const Task& task, int pipeEnd) {
     const auto scene = [&] {
       return parseScene(randomSceneText(task.number), "random.json", modelFilesBeside("random.json")).scene;
     };
-    say(lineOrError(scene).substr(0, 4 * kMostCharacters));
+    say(lineOrError(scene).substr(0, 4 * kMaxCharacters));
     return;
   }
   say(checkLine(order, task, [&](const std::string& what) { say(what + "\n"); }));

@@ -13,11 +13,11 @@ namespace cradle {
 namespace {
 
 constexpr double kSlackMotions = 4;     // steps like the one to come that a list should last
-constexpr double kLeastSlack = 0.05;    // of a body's size: what lies nearly still is not sorted again at each step
-constexpr double kMostSlack = 0.25;     // of the size: beyond, lists of pairs that are not near cost more than new ones
+constexpr double kMinSlack = 0.05;      // of a body's size: what lies nearly still is not sorted again at each step
+constexpr double kMaxSlack = 0.25;      // of the size: beyond, lists of pairs that are not near cost more than new ones
 constexpr double kDeflection = 0.25;    // of its way: as much a body may be turned aside without a new list
 constexpr double kCellWidth = 1.5;      // of the mean size of the moving bodies' boxes
-constexpr double kMostCells = 1e9;      // from the middle: what lies farther away shares the outermost cells
+constexpr double kMaxCells = 1e9;       // from the middle: what lies farther away shares the outermost cells
 constexpr std::size_t kGrain = 256;     // boxes that a thread compares at once
 constexpr double kBoxRounding = 1e-12;  // of the coordinates
 constexpr double kFarthest = 1e100;     // m: a step that has blown up is judged elsewhere
@@ -42,8 +42,8 @@ Bounds wayBounds(const Vec3& from, const Vec3& drift, double around) {
   return {Vec3(from.cwiseMin(to) - grown), Vec3(from.cwiseMax(to) + grown)};
 }
 
-bool isCenteredBall(const Collider& collider) {
-  return collider.isBall() && collider.points[0].isZero();
+bool isCenteredSphere(const Collider& collider) {
+  return collider.isSphere() && collider.points[0].isZero();
 }
 
 bool isExcluded(const ContactGeometry& geometry, std::size_t a, std::size_t b) {
@@ -55,7 +55,7 @@ constexpr std::int64_t kRow = std::int64_t{1} << 31;
 
 std::int64_t cellOf(double across, double third) {
   const auto whole = [](double cells) {
-    return static_cast<std::int64_t>(std::floor(std::clamp(cells, -kMostCells, kMostCells)));
+    return static_cast<std::int64_t>(std::floor(std::clamp(cells, -kMaxCells, kMaxCells)));
   };
   return whole(across) * kRow + whole(third);
 }
@@ -72,7 +72,7 @@ bool BroadPhase::update(const VectorX& state, const std::vector<double>& motions
   return update({state, motions, {}}, margin, geometry);
 }
 
-bool BroadPhase::update(const Ways& ways, double margin, ContactGeometry& geometry) {
+bool BroadPhase::update(const PredictedMotion& ways, double margin, ContactGeometry& geometry) {
   if (geometry.colliders.empty() || covers(ways, margin)) return false;
   enclose(ways, margin, geometry);
   sort(geometry);
@@ -80,11 +80,11 @@ bool BroadPhase::update(const Ways& ways, double margin, ContactGeometry& geomet
   return true;
 }
 
-Vec3 BroadPhase::driftOf(const Ways& ways, std::size_t body) {
-  return ways.drifts.empty() ? Vec3(Vec3::Zero()) : ways.drifts[body];
+Vec3 BroadPhase::displacementOf(const PredictedMotion& ways, std::size_t body) {
+  return ways.displacements.empty() ? Vec3(Vec3::Zero()) : ways.displacements[body];
 }
 
-bool BroadPhase::covers(const Ways& ways, double margin) const {
+bool BroadPhase::covers(const PredictedMotion& ways, double margin) const {
   if (poses_.empty()) return false;
   for (std::size_t body = 0; body < ways.motions.size(); ++body) {
     const RigidTransform now = poseOf(ways.state, static_cast<int>(body));
@@ -92,45 +92,45 @@ bool BroadPhase::covers(const Ways& ways, double margin) const {
         spinRadii_[body] > 0 ? wayOfTurning(poses_[body].rotation, now.rotation, spinRadii_[body]) : 0;
     const double around = turning + ways.motions[body] + margin;
     // Not a number is not covered.
-    if (!(around <= slacks_[body])) return false;
-    if (!centers_[body].contains(wayBounds(now.translation, driftOf(ways, body), around))) return false;
+    if (!(around <= margins_[body])) return false;
+    if (!centers_[body].contains(wayBounds(now.translation, displacementOf(ways, body), around))) return false;
   }
   return true;
 }
 
-void BroadPhase::enclose(const Ways& ways, double margin, const ContactGeometry& geometry) {
+void BroadPhase::enclose(const PredictedMotion& ways, double margin, const ContactGeometry& geometry) {
   const std::size_t count = ways.motions.size();
   radii_.assign(count, 0.0), spinRadii_.assign(count, 0.0);
   for (const Collider& collider : geometry.colliders)
     if (collider.body != kFixed) {
       const auto body = static_cast<std::size_t>(collider.body);
       radii_[body] = collider.boundingRadius;
-      spinRadii_[body] = isCenteredBall(collider) ? 0 : collider.boundingRadius;
+      spinRadii_[body] = isCenteredSphere(collider) ? 0 : collider.boundingRadius;
     }
-  poses_.clear(), slacks_.clear(), centers_.clear();
+  poses_.clear(), margins_.clear(), centers_.clear();
   for (std::size_t body = 0; body < count; ++body) {
-    const Vec3 drift = ways.ahead * driftOf(ways, body);
+    const Vec3 drift = ways.ahead * displacementOf(ways, body);
     const double aside = ways.ahead * ways.motions[body];
     const double motion = aside < kFarthest ? aside : kFarthest, way = drift.norm();
-    const double ahead = std::min(kSlackMotions * (motion + way), kMostSlack * radii_[body]);
+    const double ahead = std::min(kSlackMotions * (motion + way), kMaxSlack * radii_[body]);
     poses_.push_back(poseOf(ways.state, static_cast<int>(body)));
-    slacks_.push_back(margin + std::max({motion + kDeflection * way, ahead, kLeastSlack * radii_[body]}));
-    centers_.push_back(wayBounds(poses_.back().translation, drift, slacks_.back()));
+    margins_.push_back(margin + std::max({motion + kDeflection * way, ahead, kMinSlack * radii_[body]}));
+    centers_.push_back(wayBounds(poses_.back().translation, drift, margins_.back()));
   }
   encloseColliders(geometry, ways);
 }
 
-void BroadPhase::encloseColliders(const ContactGeometry& geometry, const Ways& ways) {
+void BroadPhase::encloseColliders(const ContactGeometry& geometry, const PredictedMotion& ways) {
   boxes_.clear(), roundings_.clear();
   for (const Collider& collider : geometry.colliders) {
     const auto body = static_cast<std::size_t>(collider.body);
     Bounds box = collider.body == kFixed ? collider.bounds : turnedBounds(collider.bounds, poses_[body]);
     double grown = kBoxRounding * (box.min().cwiseAbs() + box.max().cwiseAbs()).maxCoeff();
     Vec3 drift = Vec3::Zero();
-    if (collider.body != kFixed) grown += slacks_[body], drift = ways.ahead * driftOf(ways, body);
+    if (collider.body != kFixed) grown += margins_[body], drift = ways.ahead * displacementOf(ways, body);
     boxes_.emplace_back(Vec3(box.min() + drift.cwiseMin(0) - Vec3::Constant(grown)),
                         Vec3(box.max() + drift.cwiseMax(0) + Vec3::Constant(grown)));
-    roundings_.push_back(collider.isBall() ? collider.radius + grown : 0);
+    roundings_.push_back(collider.isSphere() ? collider.radius + grown : 0);
   }
 }
 
@@ -170,7 +170,7 @@ void BroadPhase::compare(const ContactGeometry& geometry, std::size_t first, std
   const std::size_t a = std::min(first, second), b = std::max(first, second);
   const Collider &colliderA = geometry.colliders[a], &colliderB = geometry.colliders[b];
   if (colliderA.body == kFixed && colliderB.body == kFixed) return;
-  if (colliderA.isBall() && colliderB.isBall()) {
+  if (colliderA.isSphere() && colliderB.isSphere()) {
     // The boxes of their centres, and the ways between these.
     const double reach = roundings_[a] + roundings_[b];
     const Vec3 beside = (boxes_[b].center() - boxes_[a].center()).cwiseAbs() -
@@ -248,13 +248,13 @@ void BroadPhase::sortFound() {
 
 void BroadPhase::sweep(ContactGeometry& geometry) {
   geometry.pairs.clear();
-  const auto law = [&](int surfaceA, int surfaceB) {
-    return geometry.laws[static_cast<std::size_t>(surfaceA)][static_cast<std::size_t>(surfaceB)];
+  const auto material = [&](int surfaceA, int surfaceB) {
+    return geometry.materials[static_cast<std::size_t>(surfaceA)][static_cast<std::size_t>(surfaceB)];
   };
   for (std::size_t p = 0; p < geometry.planes.size(); ++p)
     for (std::size_t i = 0; i < geometry.colliders.size(); ++i)
       if (geometry.colliders[i].body != kFixed && lowest(boxes_[i], geometry.planes[p]) <= 0)
-        geometry.pairs.push_back({i, p, true, law(geometry.colliders[i].surface, geometry.planes[p].surface)});
+        geometry.pairs.push_back({i, p, true, material(geometry.colliders[i].surface, geometry.planes[p].surface)});
   found_.resize(threads_ ? static_cast<std::size_t>(threads_->count()) : 1);
   for (Found& found : found_) found.clear();
   if (threads_)
@@ -266,7 +266,7 @@ void BroadPhase::sweep(ContactGeometry& geometry) {
   compareWide(geometry);
   sortFound();
   for (const auto& [a, b] : sorted_)
-    geometry.pairs.push_back({a, b, false, law(geometry.colliders[a].surface, geometry.colliders[b].surface)});
+    geometry.pairs.push_back({a, b, false, material(geometry.colliders[a].surface, geometry.colliders[b].surface)});
 }
 
 }  // namespace cradle

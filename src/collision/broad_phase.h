@@ -8,9 +8,8 @@
 
 namespace cradle {
 
-/// Keeps the list of collider pairs that are near each other, by boxes along the world's axes around them (sweep and
-/// prune: D. Baraff, 1992). Boxes are taken larger than the bodies, and the list stays as it is until one leaves its
-/// box.
+/// Keeps the list of collider pairs that are near each other, by axis-aligned boxes around them (sweep and prune: D.
+/// Baraff, 1992). The boxes have a margin (fat AABBs), and the list stays as it is until a body leaves its box.
 class BroadPhase {
  public:
   /// Some 200 MB; a heap of a hundred thousand bodies has half as many. Bodies that are all in one another have n^2
@@ -28,16 +27,16 @@ class BroadPhase {
   /// on one axis is not far on the others.
   bool update(const VectorX& state, const std::vector<double>& motions, double margin, ContactGeometry& geometry);
 
-  /// Where bodies are, and where they go until the next update.
-  struct Ways {
+  /// Where bodies are, and what is predicted of their motion until the next update.
+  struct PredictedMotion {
     const VectorX& state;
-    const std::vector<double>& motions;  // m
-    const std::vector<Vec3>& drifts;     // m; empty: none
-    double ahead = 1;                    // a new list is made for so many times these ways, one after the other
+    const std::vector<double>& motions;      // m
+    const std::vector<Vec3>& displacements;  // m; empty: none
+    double ahead = 1;                        // a new list is made for so many times this motion
   };
-  /// The same, where motions[i] is how far points of body i move at most beside the way drifts[i] (m) that all of them
-  /// go together.
-  bool update(const Ways& ways, double margin, ContactGeometry& geometry);
+  /// Pairs whose swept boxes overlap: the points of body i move by the common displacement displacements[i] (m) and at
+  /// most motions[i] (m) beside it.
+  bool update(const PredictedMotion& ways, double margin, ContactGeometry& geometry);
 
  private:
   struct Interval {
@@ -49,10 +48,10 @@ class BroadPhase {
 
   using Found = std::vector<std::pair<std::size_t, std::size_t>>;
 
-  static Vec3 driftOf(const Ways& ways, std::size_t body);
-  bool covers(const Ways& ways, double margin) const;
-  void enclose(const Ways& ways, double margin, const ContactGeometry& geometry);
-  void encloseColliders(const ContactGeometry& geometry, const Ways& ways);
+  static Vec3 displacementOf(const PredictedMotion& ways, std::size_t body);
+  bool covers(const PredictedMotion& ways, double margin) const;
+  void enclose(const PredictedMotion& ways, double margin, const ContactGeometry& geometry);
+  void encloseColliders(const ContactGeometry& geometry, const PredictedMotion& ways);
   void sort(const ContactGeometry& geometry);
   void sweep(ContactGeometry& geometry);
   void compareIntervals(const ContactGeometry& geometry, std::size_t first, std::size_t last, Found& found) const;
@@ -62,11 +61,11 @@ class BroadPhase {
 
   std::vector<RigidTransform> poses_;  // of the moving bodies when they were enclosed
   std::vector<double> radii_;          // m, of the moving bodies about their centres of mass
-  std::vector<double> spinRadii_;      // m: how far from there turning moves their surface; 0 for a ball
-  std::vector<double> slacks_;         // m: how far any point of a moving body may go beside its way
+  std::vector<double> spinRadii_;      // m: how far from there turning moves their surface; 0 for a sphere
+  std::vector<double> margins_;        // m: how far any point of a moving body may go beside its way
   std::vector<Bounds> centers_;        // m: of the ways of the moving bodies' centres of mass, and the slack
   std::vector<Bounds> boxes_;
-  std::vector<double> roundings_;  // m: of the corners of boxes around balls; 0 for others
+  std::vector<double> roundings_;  // m: of the corners of boxes around spheres; 0 for others
   std::vector<Interval> intervals_;
   double longest_ = 0;             // m, of the intervals
   std::vector<std::size_t> wide_;  // colliders that no cell is wide enough for

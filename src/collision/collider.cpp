@@ -78,7 +78,7 @@ SurfacePoint nearestOnCylinder(const Collider& cylinder, const Vec3& point) {
 
 SurfacePoint nearestSurfacePoint(const Collider& collider, const Vec3& point) {
   switch (collider.kind()) {
-    case ColliderKind::ball: {
+    case ColliderKind::sphere: {
       const Vec3 away = point - collider.points[0];
       const double distance = away.norm();
       const Vec3 normal = distance > 0 ? Vec3(away / distance) : Vec3(Vec3::UnitY());

@@ -20,11 +20,11 @@ struct PinnedPlace {
   Vec3 axis = Vec3::Zero();   // unit, body's frame: of a hinge; zero: a ball joint
 };
 
-enum class ColliderKind { ball, capsule, cylinder, polytope, mesh };
+enum class ColliderKind { sphere, capsule, cylinder, polytope, mesh };
 
-/// The shape of a body for contact: a core, and a ball of `radius` around each of its points. The core of a ball is a
-/// point, that of a capsule a segment; boxes and hulls are polytopes, cylinders are all between two discs, and these
-/// and meshes have no balls around them.
+/// The shape of a body for contact: a core, and a sphere of `radius` around each of its points. The core of a sphere is
+/// a point, that of a capsule a segment; boxes and hulls are polytopes, cylinders are all between two discs, and these
+/// and meshes have no spheres around them.
 struct Collider {
   int body = kFixed;                 // moving body, or kFixed: then all is in the world
   std::vector<Vec3> points;          // m, from the centre of mass in the body's frame: centre, ends, or vertices
@@ -39,11 +39,11 @@ struct Collider {
   RigidTransform bodyFromMesh = {};
   std::vector<PinnedPlace> pins = {};
 
-  bool isBall() const { return points.size() == 1; }
+  bool isSphere() const { return points.size() == 1; }
   ColliderKind kind() const {
     if (rimRadius > 0) return ColliderKind::cylinder;
     if (points.size() > 2) return polytope ? ColliderKind::polytope : ColliderKind::mesh;
-    return isBall() ? ColliderKind::ball : ColliderKind::capsule;
+    return isSphere() ? ColliderKind::sphere : ColliderKind::capsule;
   }
 };
 
@@ -69,7 +69,7 @@ struct PlaneCollider {
 };
 
 /// How two touching surfaces treat each other.
-struct SurfaceLaw {
+struct ContactMaterial {
   double restitution = 0, staticFriction = 0, dynamicFriction = 0;
 };
 
@@ -77,20 +77,20 @@ struct SurfaceLaw {
 struct ColliderPair {
   std::size_t a = 0, b = 0;  // indices into ContactGeometry: colliders; colliders or planes
   bool againstPlane = false;
-  SurfaceLaw law;
+  ContactMaterial material;
 };
 
 /// Everything that may touch. Which of it is near changes as bodies move: see broad_phase.h.
 struct ContactGeometry {
   std::vector<Collider> colliders;
   std::vector<PlaneCollider> planes;
-  std::vector<std::vector<SurfaceLaw>> laws;                  // [surface][surface], symmetric
+  std::vector<std::vector<ContactMaterial>> materials;        // [surface][surface], symmetric
   std::vector<std::pair<std::size_t, std::size_t>> excluded;  // colliders a < b that do not touch each other; ascending
   std::vector<ColliderPair> pairs;                            // near each other now, in the order of BroadPhase
   std::vector<ColliderPair> unsolvedPairs;  // contact that cannot be computed: must stay out of each other's reach
 };
 
-/// Radius (m) of a ball inside a collider: around its middle, of a mesh at least its volume by its surface's area;
+/// Radius (m) of a sphere inside a collider: around its middle, of a mesh at least its volume by its surface's area;
 /// infinite of a sheet, which nothing is inside of.
 double innerRadius(const Collider& collider);
 

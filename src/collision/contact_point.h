@@ -15,9 +15,9 @@ struct ContactPoint {
   Vec3 point = Vec3::Zero();   // m: middle between the two surfaces
   Vec3 normal = Vec3::Zero();  // unit, from A to B
   double separation = 0;       // m, < 0: overlap
-  // m: radius of the ball that each surface is there: 0 a corner, kFlat, or kNotRound.
+  // m: radius of the sphere that each surface is there: 0 a corner, kFlat, or kNotRound.
   double radiusA = kNotRound, radiusB = kNotRound;
-  // Where a ball touches a mesh: the unit direction of the edge, else zero; and the number of the edge, of the vertex
+  // Where a sphere touches a mesh: the unit direction of the edge, else zero; and the number of the edge, of the vertex
   // (whose radius is 0) or of a face (whose radius is kFlat).
   Vec3 edge = Vec3::Zero();
   std::uint32_t feature = 0;

@@ -7,7 +7,7 @@ namespace cradle {
 namespace {
 
 constexpr double kSameFaceNormal = 1 - 1e-4;  // cosine: within 0.8 degrees
-constexpr double kSamePart = 1e-9;            // of the size: points as near are one, and heights as near are level
+constexpr double kSameRatio = 1e-9;           // of the size: points as near are one, and heights as near are level
 constexpr double kRounding = 1e-14;           // of unit normals
 
 constexpr double kHalf = 0.5, kRoot = std::numbers::sqrt3 / 2;
@@ -21,7 +21,7 @@ struct Cluster {
   double same;  // m
 
   /// The farthest along a direction; among equals the farthest along the other one, then the first.
-  std::size_t farthest(const Vec3& direction, const Vec3& other) const {
+  std::size_t supportPoint(const Vec3& direction, const Vec3& other) const {
     std::size_t best = members[0];
     for (const std::size_t member : members) {
       const Vec3 ahead = contacts[member].point - contacts[best].point;
@@ -34,7 +34,7 @@ struct Cluster {
   void markKept(std::vector<char>& isKept) const {
     const Vec3& normal = contacts[members[0]].normal;
     const Vec3 across = normal.unitOrthogonal(), other = normal.cross(across);
-    for (const auto& [x, y] : kDirections) isKept[farthest(x * across + y * other, x * other - y * across)] = 1;
+    for (const auto& [x, y] : kDirections) isKept[supportPoint(x * across + y * other, x * other - y * across)] = 1;
     std::size_t deepest = members[0];
     double least = std::numeric_limits<double>::infinity(), leastKept = least;
     for (const std::size_t member : members) {
@@ -67,7 +67,7 @@ void reduceContacts(std::size_t first, double size, std::vector<ContactPoint>& c
     std::size_t at = 0;
     while (at < clusters.size() && contacts[clusters[at].members[0]].normal.dot(contacts[i].normal) < kSameFaceNormal)
       ++at;
-    if (at == clusters.size()) clusters.push_back({contacts, {}, kSamePart * size});
+    if (at == clusters.size()) clusters.push_back({contacts, {}, kSameRatio * size});
     clusters[at].members.push_back(i);
   }
   std::vector<char> isKept(contacts.size(), 0);

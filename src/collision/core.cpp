@@ -18,9 +18,9 @@ Core::Core(const Collider& collider, const RigidTransform& frameFromCollider)
   if (halfLength_ > 0) axis_ = (to - from) / (2 * halfLength_);
 }
 
-Vec3 Core::farthest(const Vec3& direction) const {
+Vec3 Core::supportPoint(const Vec3& direction) const {
   switch (collider_.kind()) {
-    case ColliderKind::ball:
+    case ColliderKind::sphere:
       return placed(collider_.points[0]);
     case ColliderKind::capsule:
       return end(axis_.dot(direction) < 0 ? -1 : 1);
@@ -31,7 +31,7 @@ Vec3 Core::farthest(const Vec3& direction) const {
       break;
   }
   const Polytope& polytope = *collider_.polytope;
-  lastVertex_ = farthestVertex(polytope, turnedBack(direction), lastVertex_);
+  lastVertex_ = supportVertex(polytope, turnedBack(direction), lastVertex_);
   return placed(polytope.vertices[lastVertex_]);
 }
 

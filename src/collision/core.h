@@ -4,15 +4,15 @@
 
 namespace cradle {
 
-/// The core of a collider, what is left of it without the ball around each of its points, in a pose.
+/// The core of a collider, what is left of it without the sphere around each of its points, in a pose.
 class Core {
  public:
   /// Keeps a reference. The collider must be convex.
   Core(const Collider& collider, const RigidTransform& frameFromCollider);
 
-  /// The point (m) farthest along `direction`, which need not be a unit vector.
-  Vec3 farthest(const Vec3& direction) const;
-  double reach(const Vec3& direction) const { return direction.dot(farthest(direction)); }
+  /// The support point (m): the one farthest along `direction`, which need not be a unit vector.
+  Vec3 supportPoint(const Vec3& direction) const;
+  double supportValue(const Vec3& direction) const { return direction.dot(supportPoint(direction)); }
 
   /// The same core a way (m) from here.
   Core moved(const Vec3& way) const {

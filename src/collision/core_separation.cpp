@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "collision/axis_ascent.h"
-#include "collision/core_depth.h"
-#include "collision/core_distance.h"
+#include "collision/epa.h"
+#include "collision/gjk.h"
+#include "collision/hill_climbing.h"
 
 namespace cradle {
 namespace {
@@ -17,7 +17,7 @@ constexpr double kDistanceRounding = 1e-8;  // of a distance: what it is uncerta
 constexpr double kNear = 0.01;            // of the size: nearer, the normals of features are better than that direction
 constexpr double kFacePreference = 1e-7;  // of the size
 constexpr double kFlatError = 1e-13;      // of the size: a face that misses no more of the distance is the nearest
-constexpr double kLeastCosine = 0.5;      // between a face's normal and one that sees as much
+constexpr double kMinCosine = 0.5;        // between a face's normal and one that sees as much
 constexpr double kSameCosine = 0.999;     // where that is known: the direction to nearest points is uncertain by less
 constexpr double kMeeting = 1e-9;         // of the size: corners as near meet,
 constexpr double kMet = 1e-13;            // and normals that see gaps as equal are alike,
@@ -56,15 +56,15 @@ SeparatingAxis ofCrossingSegments(const Core& a, const Core& b) {
 
 /// Of cores without rims that are apart. Where faces are nearly parallel the distance of their simplices stands still
 /// before its direction is right, but that direction leads to the right one.
-SeparatingAxis ofNearest(const CoreDistance& apart, const Core& a, const Core& b) {
-  if (apart.distance - apart.seen <= kSeen * sizeOf(a, b)) return {apart.distance, apart.normal};
+SeparatingAxis ofNearest(const GjkResult& apart, const Core& a, const Core& b) {
+  if (apart.distance - apart.lowerBound <= kSeen * sizeOf(a, b)) return {apart.distance, apart.normal};
   if (apart.distance < kNear * sizeOf(a, b) && !(isSegment(a) && isSegment(b))) {
     const SeparatingAxes axes = separatingAxes(a, b);
     const SeparatingAxis feature = better(better(axes.faceOfA, axes.faceOfB), axes.edges);
     if (feature.separation >= apart.distance - kSeen * sizeOf(a, b)) return feature;
-    return better(feature, improved({0, apart.normal}, a, b));
+    return better(feature, climbedSupportGap({0, apart.normal}, a, b));
   }
-  return improved({0, apart.normal}, a, b);
+  return climbedSupportGap({0, apart.normal}, a, b);
 }
 
 /// Of the normals of faces within an angle of `near`.
@@ -86,13 +86,13 @@ SeparatingAxis bestFlat(const Core& a, const Core& b, const Vec3& near, double l
 }
 
 /// Apart the one maximum is near the direction to the nearest point; else there may be several.
-SeparatingAxis ofRoundCores(const CoreDistance& apart, const Core& a, const Core& b) {
+SeparatingAxis ofRoundCores(const GjkResult& apart, const Core& a, const Core& b) {
   SeparatingAxis best;
   if (apart.distance > 0) {
     const double enough = (1 - kDistanceRounding) * apart.distance;
     best = bestFlat(a, b, apart.normal, kSameCosine);
     if (best.separation >= apart.distance - kFlatError * sizeOf(a, b)) return best;
-    best = better(best, improved({0, apart.normal}, a, b, enough));
+    best = better(best, climbedSupportGap({0, apart.normal}, a, b, enough));
   }
   if (apart.distance > kTouching * sizeOf(a, b) && best.separation >= (1 - kDistanceError) * apart.distance)
     return best;
@@ -100,10 +100,10 @@ SeparatingAxis ofRoundCores(const CoreDistance& apart, const Core& a, const Core
 }
 
 SeparatingAxis axisOfFeatures(const Core& a, const Core& b) {
-  const CoreDistance apart = distanceOf(a, b);
+  const GjkResult apart = distanceOf(a, b);
   const double preference = kFacePreference * sizeOf(a, b);
   if (a.isRound() || b.isRound()) {
-    const SeparatingAxis best = ofRoundCores(apart, a, b), flat = bestFlat(a, b, best.normal, kLeastCosine);
+    const SeparatingAxis best = ofRoundCores(apart, a, b), flat = bestFlat(a, b, best.normal, kMinCosine);
     return flat.separation >= best.separation - preference ? flat : best;
   }
   const bool isApart = apart.distance > kTouching * sizeOf(a, b);
@@ -136,7 +136,7 @@ SeparatingAxis amongEqual(const SeparatingAxis& axis, const Core& a, const Core&
 }  // namespace
 
 SeparatingAxis separationOf(const Core& a, const Core& b) {
-  const CoreDistance apart = distanceOf(a, b);
+  const GjkResult apart = distanceOf(a, b);
   if (a.isRound() || b.isRound()) return ofRoundCores(apart, a, b);
   if (apart.distance > kTouching * sizeOf(a, b)) return ofNearest(apart, a, b);
   if (isSegment(a) && isSegment(b)) return ofCrossingSegments(a, b);

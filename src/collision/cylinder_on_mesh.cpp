@@ -8,20 +8,20 @@
 #include <cmath>
 
 #include "collision/contact_reduction.h"
-#include "collision/core_distance.h"
 #include "collision/core_separation.h"
+#include "collision/gjk.h"
 #include "collision/manifold.h"
-#include "collision/tangent_plane.h"
+#include "collision/normal_cone.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kRoundingPart = 1e-12;  // of the size
-constexpr double kFacePart = 2e-7;       // of the size: what a contact may give away for the normal of a face
-constexpr double kLevelPart = 1e-15;     // of the size: points as near in height are level
-constexpr double kFarPart = 10;          // of the depth: no way out over a side as far is shorter than that straight up
-constexpr double kFaceCosine = 1e-12;    // below 1 by less: the normal is a face's
-constexpr double kOnEdge = 1e-9;         // of a side: points as near to an edge are on it
+constexpr double kRoundingRatio = 1e-12;  // of the size
+constexpr double kFaceRatio = 2e-7;       // of the size: what a contact may give away for the normal of a face
+constexpr double kLevelRatio = 1e-15;     // of the size: points as near in height are level
+constexpr double kFarRatio = 10;       // of the depth: no way out over a side as far is shorter than that straight up
+constexpr double kFaceCosine = 1e-12;  // below 1 by less: the normal is a face's
+constexpr double kOnEdge = 1e-9;       // of a side: points as near to an edge are on it
 
 /// The triangles of a mesh, one at a time, as a collider without volume.
 class TriangleSolid {
@@ -66,7 +66,7 @@ Bounds boundsOf(const Core& cylinder) {
 
 /// Whether all of a cylinder is farther than `distance` (m) behind a triangle's plane.
 bool isUnder(const FlatTriangle& triangle, const Core& cylinder, double distance) {
-  return triangle.normal.dot(triangle.a) - cylinder.reach(triangle.normal) > distance;
+  return triangle.normal.dot(triangle.a) - cylinder.supportValue(triangle.normal) > distance;
 }
 
 /// Whether the foot of a point is inside a triangle, `distance` (m) or more from its sides.
@@ -85,13 +85,13 @@ bool isTurnedAway(const MeshSurface& mesh, const FlatTriangle& triangle, const C
 
 /// Height (m) of a cylinder's lowest points over a triangle's plane.
 double heightOver(const FlatTriangle& triangle, const Core& cylinder) {
-  return -cylinder.reach(-triangle.normal) - triangle.normal.dot(triangle.a);
+  return -cylinder.supportValue(-triangle.normal) - triangle.normal.dot(triangle.a);
 }
 
 /// Gap (m) that a unit normal sees from a triangle to a cylinder.
 double gapAlong(const FlatTriangle& triangle, const Core& cylinder, const Vec3& normal) {
   const double top = std::max({normal.dot(triangle.a), normal.dot(triangle.b), normal.dot(triangle.c)});
-  return -cylinder.reach(-normal) - top;
+  return -cylinder.supportValue(-normal) - top;
 }
 
 /// Unit vector from a triangle's middle to the nearest point of a cylinder's axis; zero if that is the middle.
@@ -106,9 +106,9 @@ Vec3 towardsAxis(const FlatTriangle& triangle, const Core& cylinder) {
 bool isLowestAbove(const FlatTriangle& triangle, const Core& cylinder, double height) {
   const Vec3 one = cylinder.rimPoint(1, -triangle.normal), other = cylinder.rimPoint(-1, -triangle.normal);
   const double side = cylinder.axis().dot(triangle.normal) > 0 ? -1 : 1;
-  const double same = height + kLevelPart * cylinder.collider().boundingRadius, deep = std::max(-height, 0.0);
+  const double same = height + kLevelRatio * cylinder.collider().boundingRadius, deep = std::max(-height, 0.0);
   for (const Vec3& point : {one, other, Vec3((one + other) / 2), cylinder.end(side)})
-    if (triangle.heightOf(point) <= same && isFarInside(triangle, point, kFarPart * deep)) return true;
+    if (triangle.heightOf(point) <= same && isFarInside(triangle, point, kFarRatio * deep)) return true;
   return false;
 }
 
@@ -130,7 +130,7 @@ struct CylinderVisit {
     if (isTurnedAway(mesh, triangle, cylinder)) return;
     const double height = heightOver(triangle, cylinder), size = cylinder.collider().boundingRadius;
     // The height bounds the distance from below, and the way out along the normal is one.
-    if (triangle.normal == Vec3::Zero() || height >= least.separation - kLevelPart * size) return;
+    if (triangle.normal == Vec3::Zero() || height >= least.separation - kLevelRatio * size) return;
     if (isUnder(triangle, cylinder, std::max(least.separation, 0.0))) return;
     if (isLowestAbove(triangle, cylinder, height)) {
       least = {height, triangle.normal}, isFound = true;
@@ -138,16 +138,16 @@ struct CylinderVisit {
     }
     // A gap along any unit vector bounds the distance too: along the nearest triangle's normal so far, towards the
     // axis, between nearest points.
-    const auto isFarther = [&](double gap) { return gap >= least.separation - kLevelPart * size; };
+    const auto isFarther = [&](double gap) { return gap >= least.separation - kLevelRatio * size; };
     if (isFound && isFarther(gapAlong(triangle, cylinder, least.normal))) return;
     const Vec3 outward = towardsAxis(triangle, cylinder);
     if (outward != Vec3::Zero() && isFarther(gapAlong(triangle, cylinder, outward))) return;
     const Core core = solid.coreOf(triangle);
-    const CoreDistance apart = distanceOf(core, cylinder);
-    if (apart.distance > 0 && isFarther(apart.seen)) return;
+    const GjkResult apart = distanceOf(core, cylinder);
+    if (apart.distance > 0 && isFarther(apart.lowerBound)) return;
     const SeparatingAxis axis = separationOf(core, cylinder);
     if (axis.separation <= 0 && axis.normal.dot(triangle.normal) < 0) {
-      if (axis.separation > -kRoundingPart * size) return;  // beside its edge
+      if (axis.separation > -kRoundingRatio * size) return;  // beside its edge
       if (height > straightOut.separation) straightOut = {height, triangle.normal};
       return;
     }
@@ -178,8 +178,8 @@ bool isOnSurface(const MeshSurface& mesh, std::uint32_t index, const ContactPoin
     const double length = edge.along.norm(), part = edge.nearestPart(onMesh);
     if ((onMesh - edge.at(part)).norm() > kOnEdge * length) continue;
     if (part > kOnEdge && part < 1 - kOnEdge)
-      return isForemost(mesh, mesh.edges[face.edges[i]], contact.normal, margin);
-    return isForemost(mesh, face.vertices[part > 0.5 ? (i + 1) % 3 : i], contact.normal, margin);
+      return isInNormalCone(mesh, mesh.edges[face.edges[i]], contact.normal, margin);
+    return isInNormalCone(mesh, face.vertices[part > 0.5 ? (i + 1) % 3 : i], contact.normal, margin);
   }
   return false;
 }
@@ -210,7 +210,7 @@ void appendCylinderContacts(const Core& cylinder, const MeshSurface& mesh, doubl
                             std::vector<ContactPoint>& contacts) {
   TriangleSolid solid;
   const double reach = std::max(margin, 0.0), size = std::min(mesh.size, 2 * cylinder.collider().boundingRadius);
-  const CylinderVisit visit = gapOf(cylinder, mesh, solid, reach + kRoundingPart * size);
+  const CylinderVisit visit = gapOf(cylinder, mesh, solid, reach + kRoundingRatio * size);
   const bool inside = !visit.intersects() && isInside(cylinder, mesh);
   if (!inside && (!visit.isFound || visit.least.separation > margin)) return;
   const std::size_t first = contacts.size();
@@ -240,8 +240,8 @@ void appendCylinderContacts(const Core& cylinder, const MeshSurface& mesh, doubl
   const SignedHeight center = inside ? heightOver(mesh, cylinder.center()) : SignedHeight{};
   const SeparatingAxis gap =
       inside ? SeparatingAxis{cylinderSeparation(cylinder, mesh, 0), center.normal} : visit.least;
-  if (!(least <= gap.separation + kFacePart * size)) {
-    const Vec3 onCylinder = cylinder.farthest(-gap.normal);
+  if (!(least <= gap.separation + kFaceRatio * size)) {
+    const Vec3 onCylinder = cylinder.supportPoint(-gap.normal);
     contacts.push_back(
         {onCylinder - gap.separation / 2 * gap.normal, gap.normal, gap.separation, kNotRound, kNotRound});
   }

@@ -18,7 +18,7 @@ double insideOutline(const Polytope& polytope, const Polytope::Face& face, const
 std::optional<FaceBelow> faceBelow(const Collider& upper, const RigidTransform& worldFromUpper, const Collider& lower,
                                    const RigidTransform& worldFromLower,
                                    const std::function<double(const Vec3& normal)>& motionAlong) {
-  const bool hasPoints = upper.kind() == ColliderKind::ball || upper.kind() == ColliderKind::capsule ||
+  const bool hasPoints = upper.kind() == ColliderKind::sphere || upper.kind() == ColliderKind::capsule ||
                          upper.kind() == ColliderKind::polytope;
   if (upper.body == kFixed || !hasPoints || lower.kind() != ColliderKind::polytope) return std::nullopt;
   const Vec3 center = worldFromLower.inverse() * worldFromUpper.translation;

@@ -8,7 +8,7 @@
 namespace cradle {
 
 /// A face of a polytope above which another body stays, with all of its points inside the face's outline: what touches
-/// are then its corners, or the balls around its points, on the face as on a plane.
+/// are then its corners, or the spheres around its points, on the face as on a plane.
 struct FaceBelow {
   bool isOfA = false;                                // of a pair: else B's
   Vec3 normal = Vec3::Zero(), point = Vec3::Zero();  // unit, m; in its body's frame

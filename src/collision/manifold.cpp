@@ -1,7 +1,7 @@
 // The incident feature clipped against the side planes of the reference face (D. Gregorius, "Robust Contact Creation
-// for Physics Simulations", GDC 2015). Points of the incident feature count as its corners, or as points of its balls,
-// also where it was clipped: they lie on it. Discs are clipped as polygons of 16 sides: those of the prism inside the
-// cylinder, a little larger where they are the reference so that what stands on the rim is not lost.
+// for Physics Simulations", GDC 2015). Points of the incident feature count as its corners, or as points of its
+// spheres, also where it was clipped: they lie on it. Discs are clipped as polygons of 16 sides: those of the prism
+// inside the cylinder, a little larger where they are the reference so that what stands on the rim is not lost.
 
 #include "collision/manifold.h"
 
@@ -10,7 +10,7 @@
 #include <cmath>
 #include <memory_resource>
 
-#include "collision/core_distance.h"
+#include "collision/gjk.h"
 #include "collision/polygon_clip.h"
 
 namespace cradle {
@@ -19,18 +19,18 @@ namespace {
 constexpr double kAlong = 1e-7;          // rad: a face or line so near to the contact's plane lies in it
 constexpr double kTiltedCosine = 0.5;    // between a face's normal and the contact's: more tilted, it does not carry
 constexpr double kStandingCosine = 0.7;  // between a cylinder's axis and the contact's normal: its end carries
-constexpr double kOuterPart = 1.0195911582083184;  // 1 / cos(pi / 16): polygon around a disc to the one in it
-constexpr double kDeeperPart = 1e-9;               // of the size: a manifold must hold a point so near to the deepest
-constexpr double kPlacePulledPart = 0.01;          // of the size: far enough to tell places of nearest points
-constexpr std::size_t kMostPatchPoints = 8;
+constexpr double kOuterRatio = 1.0195911582083184;  // 1 / cos(pi / 16): polygon around a disc to the one in it
+constexpr double kDeeperRatio = 1e-9;               // of the size: a manifold must hold a point so near to the deepest
+constexpr double kPlacePulledRatio = 0.01;          // of the size: far enough to tell places of nearest points
+constexpr std::size_t kMaxPatchPoints = 8;
 constexpr double kLying =
-    1e-5;  // rad: a cylinder so little tilted is a ball of its radius at both rims, to 1e-10 of it
+    1e-5;  // rad: a cylinder so little tilted is a sphere of its radius at both rims, to 1e-10 of it
 
 using Memory = std::pmr::monotonic_buffer_resource;
 
 /// What of a collider's surface may carry contact.
-struct Patch {
-  explicit Patch(Memory* memory) : points(memory) {}
+struct FeatureManifold {
+  explicit FeatureManifold(Memory* memory) : points(memory) {}
   Points points;              // m: one, the ends of a line, or a polygon, counter-clockwise seen from outside
   double radius = kNotRound;  // m, at those points as in ContactPoint
   bool isFlat = false;        // a face whose normal is the direction asked for
@@ -44,7 +44,7 @@ double sizeOf(const Core& core) {
   return core.collider().boundingRadius;
 }
 
-void addLoop(const Core& core, const Polytope::Face& face, Patch& patch) {
+void addLoop(const Core& core, const Polytope::Face& face, FeatureManifold& patch) {
   for (const std::size_t vertex : face.loop)
     patch.points.push_back(core.placed(core.collider().polytope->vertices[vertex]));
 }
@@ -53,7 +53,7 @@ bool isAlong(const Vec3& normal, const Vec3& outward) {
   return (normal - outward).squaredNorm() < kAlong * kAlong;
 }
 
-void addEndOfCylinder(const Core& core, const Vec3& outward, Patch& patch) {
+void addEndOfCylinder(const Core& core, const Vec3& outward, FeatureManifold& patch) {
   const Polytope& prism = *core.collider().polytope;
   const double cosine = core.axis().dot(outward);
   addLoop(core, prism.faces[prism.faces.size() - (cosine > 0 ? 2 : 1)], patch);  // as inscribedPrism has them
@@ -61,10 +61,10 @@ void addEndOfCylinder(const Core& core, const Vec3& outward, Patch& patch) {
   if (patch.isFlat) patch.radius = 0;  // else a rim, which rolls
 }
 
-void addFaceOrCorner(const Core& core, const Vec3& outward, Patch& patch) {
+void addFaceOrCorner(const Core& core, const Vec3& outward, FeatureManifold& patch) {
   const Polytope& polytope = *core.collider().polytope;
   const Vec3 direction = core.turnedBack(outward);
-  const std::size_t vertex = farthestVertex(polytope, direction);
+  const std::size_t vertex = supportVertex(polytope, direction);
   const Polytope::Face* best = nullptr;
   double largest = kTiltedCosine;
   for (std::size_t i = polytope.firstNeighbor[vertex]; i < polytope.firstNeighbor[vertex + 1]; ++i) {
@@ -79,8 +79,8 @@ void addFaceOrCorner(const Core& core, const Vec3& outward, Patch& patch) {
 }
 
 /// What faces `outward`, tilted as it may be.
-Patch patchOf(const Core& core, const Vec3& outward, Memory* memory) {
-  Patch patch(memory);
+FeatureManifold manifoldOf(const Core& core, const Vec3& outward, Memory* memory) {
+  FeatureManifold patch(memory);
   const double cosine = core.axis().dot(outward);
   const Vec3 margin = marginOf(core) * outward;
   if (core.collider().kind() == ColliderKind::polytope) {
@@ -97,7 +97,7 @@ Patch patchOf(const Core& core, const Vec3& outward, Memory* memory) {
     if (std::abs(cosine) < kStandingCosine)
       patch.points = {core.end(1) + margin, core.end(-1) + margin};
     else
-      patch.points = {core.farthest(outward) + margin};
+      patch.points = {core.supportPoint(outward) + margin};
   }
   return patch;
 }
@@ -108,10 +108,10 @@ struct Reference {
   double offset;
 };
 
-/// Contacts of what is left of an incident patch on a face of A.
-void appendOnFace(const Reference& face, Patch& incident, double margin, std::vector<ContactPoint>& points) {
+/// Contacts of what is left of an incident manifold on a face of A.
+void appendOnFace(const Reference& face, FeatureManifold& incident, double margin, std::vector<ContactPoint>& points) {
   std::erase_if(incident.points, [&](const Vec3& point) { return face.normal.dot(point) - face.offset > margin; });
-  thinOut(kMostPatchPoints, incident.points);
+  thinOut(kMaxPatchPoints, incident.points);
   for (const Vec3& point : incident.points) {
     const double separation = face.normal.dot(point) - face.offset;
     points.push_back({point - separation / 2 * face.normal, face.normal, separation, kFlat, incident.radius});
@@ -119,14 +119,14 @@ void appendOnFace(const Reference& face, Patch& incident, double margin, std::ve
 }
 
 /// Grows the polygon in a disc to one around it.
-void growDisc(const Core& core, Patch& patch) {
+void growDisc(const Core& core, FeatureManifold& patch) {
   const Vec3 center = core.end(core.axis().dot(patch.points[0] - core.center()) < 0 ? -1 : 1);
-  for (Vec3& point : patch.points) point = center + kOuterPart * (point - center);
+  for (Vec3& point : patch.points) point = center + kOuterRatio * (point - center);
 }
 
-/// Contacts of an incident patch on a flat one of A, with that normal out of it. Changes both.
-void clipOnFace(const Core& core, const Vec3& normal, Patch& reference, Patch& incident, double margin,
-                std::vector<ContactPoint>& points) {
+/// Contacts of an incident manifold on a flat one of A, with that normal out of it. Changes both.
+void clipOnFace(const Core& core, const Vec3& normal, FeatureManifold& reference, FeatureManifold& incident,
+                double margin, std::vector<ContactPoint>& points) {
   if (core.rimRadius() > 0) growDisc(core, reference);
   Points scratch(reference.points.get_allocator());
   const Points& corners = reference.points;
@@ -134,7 +134,7 @@ void clipOnFace(const Core& core, const Vec3& normal, Patch& reference, Patch& i
     const Vec3 outward = (corners[(i + 1) % corners.size()] - corners[i]).cross(normal).normalized();
     clip(incident.points, scratch, outward, outward.dot(corners[i]));
   }
-  appendOnFace({normal, core.reach(normal)}, incident, margin, points);
+  appendOnFace({normal, core.supportValue(normal)}, incident, margin, points);
 }
 
 /// A straight part of a surface across `outward`.
@@ -147,7 +147,7 @@ Ridge ridgeOf(const Core& core, const Vec3& outward) {
   const Vec3 margin = marginOf(core) * outward;
   if (core.collider().kind() == ColliderKind::polytope) {
     const Polytope& polytope = *core.collider().polytope;
-    const std::size_t vertex = farthestVertex(polytope, core.turnedBack(outward));
+    const std::size_t vertex = supportVertex(polytope, core.turnedBack(outward));
     const Vec3 from = core.placed(polytope.vertices[vertex]);
     Ridge best;
     double least = kAlong;
@@ -205,19 +205,19 @@ double radiusOfCorner(const Core& core) {
 
 /// Where the cores are nearest when they are moved apart along the axis; as seen before that.
 Vec3 middlePulledApart(const Core& a, const Core& b, const SeparatingAxis& axis) {
-  const double way = kPlacePulledPart * std::min(sizeOf(a), sizeOf(b)) - axis.separation;
-  const CoreDistance apart = distanceOf(a, b.moved(way * axis.normal));
+  const double way = kPlacePulledRatio * std::min(sizeOf(a), sizeOf(b)) - axis.separation;
+  const GjkResult apart = distanceOf(a, b.moved(way * axis.normal));
   return (apart.onA + apart.onB - way * axis.normal) / 2;
 }
 
-/// The one point of two patches that share no more.
-ContactPoint singlePoint(const Core& a, const Core& b, const SeparatingAxis& axis, const Patch& patchA,
-                         const Patch& patchB) {
+/// The one point of two manifolds that share no more.
+ContactPoint singlePoint(const Core& a, const Core& b, const SeparatingAxis& axis, const FeatureManifold& patchA,
+                         const FeatureManifold& patchB) {
   const Vec3& normal = axis.normal;
   const double separation = axis.separation - marginOf(a) - marginOf(b);
   const Ridge ridgeA = ridgeOf(a, normal), ridgeB = ridgeOf(b, -normal);
   const bool isWideA = patchA.isFlat || ridgeA.isThere, isWideB = patchB.isFlat || ridgeB.isThere;
-  const Vec3 onA = a.farthest(normal) + marginOf(a) * normal, onB = b.farthest(-normal) - marginOf(b) * normal;
+  const Vec3 onA = a.supportPoint(normal) + marginOf(a) * normal, onB = b.supportPoint(-normal) - marginOf(b) * normal;
   ContactPoint contact{(onA + onB) / 2, normal, separation, kNotRound, kNotRound};
   if (isWideA && isWideB && !patchA.isFlat && !patchB.isFlat)
     contact.point = ridgeA.from + partNearest(ridgeA, ridgeB) * (ridgeA.to - ridgeA.from) + separation / 2 * normal;
@@ -225,7 +225,7 @@ ContactPoint singlePoint(const Core& a, const Core& b, const SeparatingAxis& axi
     contact.point = onB - separation / 2 * normal;
   else if (isWideB && !isWideA)
     contact.point = onA + separation / 2 * normal;
-  else if (isWideA || (onB - onA - separation * normal).norm() > kDeeperPart * std::min(sizeOf(a), sizeOf(b)))
+  else if (isWideA || (onB - onA - separation * normal).norm() > kDeeperRatio * std::min(sizeOf(a), sizeOf(b)))
     contact.point = middlePulledApart(a, b, axis) + (marginOf(a) - marginOf(b)) / 2 * normal;
   if (patchA.isFlat) contact.radiusA = kFlat;
   if (patchB.isFlat) contact.radiusB = kFlat;
@@ -248,7 +248,7 @@ void appendManifold(const Core& a, const Core& b, const SeparatingAxis& axis, do
   const double separation = axis.separation - marginOf(a) - marginOf(b);
   if (separation > margin) return;
   const std::size_t first = points.size();
-  Patch patchA = patchOf(a, axis.normal, &pool), patchB = patchOf(b, -axis.normal, &pool);
+  FeatureManifold patchA = manifoldOf(a, axis.normal, &pool), patchB = manifoldOf(b, -axis.normal, &pool);
   if (patchA.isFlat) {
     clipOnFace(a, axis.normal, patchA, patchB, margin, points);
   } else if (patchB.isFlat) {
@@ -258,7 +258,7 @@ void appendManifold(const Core& a, const Core& b, const SeparatingAxis& axis, do
     const Ridge ridgeA = ridgeOf(a, axis.normal), ridgeB = ridgeOf(b, -axis.normal);
     if (ridgeA.isThere && ridgeB.isThere) appendOnRidges(ridgeA, ridgeB, axis.normal, margin, points);
   }
-  const double near = separation + kDeeperPart * std::min(sizeOf(a), sizeOf(b));
+  const double near = separation + kDeeperRatio * std::min(sizeOf(a), sizeOf(b));
   if (std::none_of(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
                    [near](const ContactPoint& point) { return point.separation <= near; }))
     points.push_back(singlePoint(a, b, axis, patchA, patchB));
@@ -268,13 +268,13 @@ void appendManifold(const Core& core, const Vec3& planePoint, const Vec3& planeN
                     std::vector<ContactPoint>& points) {
   std::array<std::byte, 8192> memory;
   Memory pool(memory.data(), memory.size());
-  const Vec3 lowest = core.farthest(-planeNormal) - marginOf(core) * planeNormal;
+  const Vec3 lowest = core.supportPoint(-planeNormal) - marginOf(core) * planeNormal;
   const double height = planeNormal.dot(lowest - planePoint);
   if (height > margin) return;
   const std::size_t first = points.size();
-  Patch patch = patchOf(core, -planeNormal, &pool);
+  FeatureManifold patch = manifoldOf(core, -planeNormal, &pool);
   appendOnFace({planeNormal, planeNormal.dot(planePoint)}, patch, margin, points);
-  const double near = height + kDeeperPart * sizeOf(core);
+  const double near = height + kDeeperRatio * sizeOf(core);
   if (std::none_of(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
                    [near](const ContactPoint& point) { return point.separation <= near; }))
     points.push_back({lowest - height / 2 * planeNormal, planeNormal, height, kFlat, radiusOfCorner(core)});

@@ -9,7 +9,7 @@ namespace cradle {
 namespace {
 
 bool isRound(const Collider& collider) {
-  return collider.kind() == ColliderKind::ball || collider.kind() == ColliderKind::capsule;
+  return collider.kind() == ColliderKind::sphere || collider.kind() == ColliderKind::capsule;
 }
 
 bool isCylinder(const Collider& collider) {
@@ -21,7 +21,7 @@ MeshPair pairOf(const Collider& a, const Collider& b, const RigidTransform& aFro
   return {*a.mesh, *b.mesh, a.bodyFromMesh.inverse() * aFromB * b.bodyFromMesh};
 }
 
-/// A ball or capsule in the frame of a mesh.
+/// A sphere or capsule in the frame of a mesh.
 RoundSolid roundOf(const Collider& round, const RigidTransform& meshFromRound) {
   const Vec3 from = meshFromRound * round.points.front(), to = meshFromRound * round.points.back();
   return {{from, to - from}, round.radius};

@@ -10,7 +10,7 @@ namespace cradle {
 /// Whether a pair is one of those below: a mesh takes part, and the other is a mesh too or what a mesh can touch.
 bool hasMesh(const Collider& a, const Collider& b);
 
-/// Signed separation (m) of a mesh and a mesh, polytope, ball, capsule or cylinder, whichever is A; see
+/// Signed separation (m) of a mesh and a mesh, polytope, sphere, capsule or cylinder, whichever is A; see
 /// mesh_gap.h, round_on_mesh.h and cylinder_on_mesh.h. `enough` (m): what is farther apart need not be known, and may
 /// be infinite.
 double meshSeparation(const Collider& a, const Collider& b, const RigidTransform& aFromB, double enough);

@@ -2,14 +2,14 @@
 
 #include "collision/contact_reduction.h"
 #include "collision/mesh_gap.h"
-#include "collision/tangent_plane.h"
+#include "collision/normal_cone.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kDeepPart = 0.01;           // of the size: deeper, features do not tell where to
-constexpr double kPairRoundingPart = 1e-12;  // of the size
-constexpr double kParallelEdgeSine = 1e-6;   // edges at a smaller angle have no crossing: their ends touch instead
+constexpr double kDeepRatio = 0.01;           // of the size: deeper, features do not tell where to
+constexpr double kPairRoundingRatio = 1e-12;  // of the size
+constexpr double kParallelEdgeSine = 1e-6;    // edges at a smaller angle have no crossing: their ends touch instead
 
 /// A contact with its features, by which contacts are ordered whatever the way they were found.
 struct Candidate {
@@ -33,10 +33,10 @@ struct ContactVisit {
     if (least * least > reach()) return;
     for (std::size_t i = 0; i < 3; ++i) {
       if (faceA.ownsVertex[i] && counts(ofA[i]) && b.isAbove(cornerOf(a, i), kBeyondEnd) &&
-          isForemost(pair.a, faceA.vertices[i], -b.normal, margin))
+          isInNormalCone(pair.a, faceA.vertices[i], -b.normal, margin))
         add({0, faceA.vertices[i], indexB}, {cornerOf(a, i) - ofA[i] / 2 * b.normal, -b.normal, ofA[i], 0, kFlat});
       if (faceB.ownsVertex[i] && counts(ofB[i]) && a.isAbove(cornerOf(b, i), kBeyondEnd) &&
-          isForemost(pair.b, faceB.vertices[i], -pair.turnedBack(a.normal), margin))
+          isInNormalCone(pair.b, faceB.vertices[i], -pair.turnedBack(a.normal), margin))
         add({1, indexA, faceB.vertices[i]}, {cornerOf(b, i) - ofB[i] / 2 * a.normal, a.normal, ofB[i], kFlat, 0});
     }
     for (std::size_t i = 0; i < 3; ++i)
@@ -57,8 +57,8 @@ struct ContactVisit {
     const Vec3 outOfA = pair.a.isSheet ? Vec3(-pair.turned(edgeB.normal)) : edgeA.normal;
     normal /= outOfA.dot(normal) < 0 ? -std::sqrt(sine2) : std::sqrt(sine2);
     const double separation = between.dot(normal);
-    if (!counts(separation) || !isForemost(pair.a, edgeA, normal, margin) ||
-        !isForemost(pair.b, edgeB, -pair.turnedBack(normal), margin))
+    if (!counts(separation) || !isInNormalCone(pair.a, edgeA, normal, margin) ||
+        !isInNormalCone(pair.b, edgeB, -pair.turnedBack(normal), margin))
       return;
     add({2, indexA, indexB}, {a.at(partA) + separation / 2 * normal, normal, separation, kNotRound, kNotRound});
   }
@@ -72,11 +72,11 @@ void appendContacts(const MeshPair& pair, double margin, std::vector<ContactPoin
   const MeshGap gap = gapBetween(pair, margin);
   if (!(gap.separation <= margin)) return;
   const std::size_t first = contacts.size();
-  const double size = std::min(pair.a.size, pair.b.size), rounding = kPairRoundingPart * size;
+  const double size = std::min(pair.a.size, pair.b.size), rounding = kPairRoundingRatio * size;
   double least = std::numeric_limits<double>::infinity();
-  if (gap.separation > -kDeepPart * size) {
+  if (gap.separation > -kDeepRatio * size) {
     ContactVisit visit{pair, margin, std::max(0.0, -gap.separation) + rounding};
-    TreePair(pair.a.tree, pair.b.tree, pair.aFromB).visitNear(visit);
+    BvhPair(pair.a.tree, pair.b.tree, pair.aFromB).visitNear(visit);
     std::sort(visit.found.begin(), visit.found.end(),
               [](const Candidate& left, const Candidate& right) { return left.key < right.key; });
     for (const Candidate& candidate : visit.found) {

@@ -10,8 +10,8 @@ namespace {
 
 using Feature = MeshPoint::Feature;
 
-constexpr double kBehindPart = 1e-9;  // of the mesh's size: triangles as little ahead of a plane are in it
-constexpr double kBorderPart = 4;     // of the width in which contacts may be found beyond a region's border
+constexpr double kBehindRatio = 1e-9;  // of the mesh's size: triangles as little ahead of a plane are in it
+constexpr double kBorderRatio = 4;     // of the width in which contacts may be found beyond a region's border
 
 struct FootVisit {
   const MeshSurface& surface;
@@ -36,7 +36,7 @@ double insideOutline(const MeshSurface& surface, std::uint32_t face, const Vec3&
     distance2 = std::min(distance2, (foot - edge.at(edge.nearestPart(foot))).squaredNorm());
   }
   if (plane.isAbove(foot)) return std::sqrt(distance2);
-  const double slack = kBehindPart * surface.size;
+  const double slack = kBehindRatio * surface.size;
   FootVisit visit{surface, region, foot};
   visitNear(surface.tree, Bounds(Vec3(foot.array() - slack), Vec3(foot.array() + slack)), visit);
   return visit.isFound ? std::sqrt(distance2) : -std::sqrt(distance2);
@@ -110,7 +110,7 @@ double insideRegion(const MeshSurface& surface, const TouchedFeature& touched, c
 }
 
 double borderWidth(const MeshSurface& surface) {
-  return kBorderPart * kBeyondEnd * surface.size;
+  return kBorderRatio * kBeyondEnd * surface.size;
 }
 
 std::vector<HalfSpace> spaceBehind(const MeshSurface& surface, const TouchedFeature& touched) {
@@ -137,7 +137,7 @@ std::vector<HalfSpace> spaceBehind(const MeshSurface& surface, const TouchedFeat
 
 double distanceBeside(const MeshSurface& surface, const std::vector<std::vector<HalfSpace>>& touched, const Vec3& point,
                       double reach) {
-  BesideVisit visit{surface, touched, point, kBehindPart * surface.size, reach * reach};
+  BesideVisit visit{surface, touched, point, kBehindRatio * surface.size, reach * reach};
   visitNear(surface.tree, point, visit);
   return visit.distance2 < reach * reach ? std::sqrt(visit.distance2) : std::numeric_limits<double>::infinity();
 }

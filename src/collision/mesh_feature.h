@@ -6,7 +6,7 @@
 
 namespace cradle {
 
-// Where a ball touches a mesh: on a flat region of its surface (index: one of its faces), an edge or a vertex. All
+// Where a sphere touches a mesh: on a flat region of its surface (index: one of its faces), an edge or a vertex. All
 // points and distances are in the mesh's frame (m).
 
 /// A feature, and which way it looks: what touches it is ahead.
@@ -22,8 +22,8 @@ double insideRegion(const MeshSurface& surface, const TouchedFeature& touched, c
 /// Nearer (m) to the border of a region than this, a contact may be found on either side.
 double borderWidth(const MeshSurface& surface);
 
-/// The half-spaces behind a feature: normal . x <= offset holds for all that a ball, which stays on the feature, cannot
-/// come nearer to than to the feature itself.
+/// The half-spaces behind a feature: normal . x <= offset holds for all that a sphere, which stays on the feature,
+/// cannot come nearer to than to the feature itself.
 struct HalfSpace {
   Vec3 normal = Vec3::Zero();  // unit
   double offset = 0;           // m

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kNoDirection = 1e-9;                    // of the size: nearer points do not tell the normal well
 constexpr double kFirstReach = 1e-4, kLongerReach = 16;  // of the size; then how much longer each time
-constexpr double kHardlyPart = 0.01;                     // of another way out: what is so little was hardly passed
+constexpr double kHardlyRatio = 0.01;                    // of another way out: what is so little was hardly passed
 constexpr double kTouchingGap = 1e-10;                   // of the size: gaps as small as that are always looked for
 
 using Feature = MeshPoint::Feature;
@@ -123,13 +123,13 @@ struct OverlapVisit {
     const bool isInFront = triangleOf(other, face).heightOf(inner) >= 0;
     const EdgeDepth towards = depthOfEdge(other, edge, part, isInFront ? face : back);
     const EdgeDepth away = depthOfEdge(other, edge, part, isInFront ? back : face);
-    return away.depth < kHardlyPart * towards.depth ? away : towards;
+    return away.depth < kHardlyRatio * towards.depth ? away : towards;
   }
 
   /// The deepest of all; but past a sheet's border, if that is hardly inside.
   MeshGap wayOut() const {
     if (leaving.normal == Vec3::Zero()) return deepest;
-    if (pastBorder.normal != Vec3::Zero() && pastBorder.separation > kHardlyPart * leaving.separation)
+    if (pastBorder.normal != Vec3::Zero() && pastBorder.separation > kHardlyRatio * leaving.separation)
       return pastBorder;
     return deepest.separation < leaving.separation ? deepest : leaving;
   }
@@ -197,7 +197,7 @@ void keepPartsInside(const MeshPair& pair, MeshGap& gap) {
 }
 
 /// Most solids that are asked for are near: short distances first, since a search costs as its bound.
-GapVisit searchNearest(const MeshPair& pair, const TreePair& trees, double enough) {
+GapVisit searchNearest(const MeshPair& pair, const BvhPair& trees, double enough) {
   double reach = kFirstReach * std::min(pair.a.size, pair.b.size);
   while (true) {
     const double bound = std::min(reach, enough);
@@ -211,7 +211,7 @@ GapVisit searchNearest(const MeshPair& pair, const TreePair& trees, double enoug
 }  // namespace
 
 MeshGap gapBetween(const MeshPair& pair, double enough) {
-  const TreePair trees(pair.a.tree, pair.b.tree, pair.aFromB);
+  const BvhPair trees(pair.a.tree, pair.b.tree, pair.aFromB);
   const double size = std::min(pair.a.size, pair.b.size);
   const GapVisit nearest = searchNearest(pair, trees, std::max(enough, kTouchingGap * size));
   if (nearest.intersect) {

@@ -11,13 +11,13 @@
 namespace cradle {
 namespace {
 
-constexpr double kSkippedPart = 1e-12;   // of the piece: the entry is no exit ...
-constexpr double kOnPlane = 1e-14;       // of a sheet's size: ... nor are backs of triangles that it begins on
-constexpr double kSameLinePart = 1e-11;  // of an edge: so near to it a line goes through it
-constexpr int kMostFacesAround = 16;     // a vertex
-constexpr double kExactPart = 1e-9;      // of the depth
-constexpr double kLeastMean = 1e-3;      // of unit normals: faces back to back leave no way between them
-constexpr std::size_t kMostPlanes = 12;
+constexpr double kSkippedRatio = 1e-12;   // of the piece: the entry is no exit ...
+constexpr double kOnPlane = 1e-14;        // of a sheet's size: ... nor are backs of triangles that it begins on
+constexpr double kSameLineRatio = 1e-11;  // of an edge: so near to it a line goes through it
+constexpr int kMaxFacesAround = 16;       // a vertex
+constexpr double kExactRatio = 1e-9;      // of the depth
+constexpr double kMinMean = 1e-3;         // of unit normals: faces back to back leave no way between them
+constexpr std::size_t kMaxPlanes = 12;
 
 /// Where a segment first leaves the solid.
 struct ExitVisit {
@@ -28,14 +28,14 @@ struct ExitVisit {
   Vec3 normal = Vec3::Zero();
 
   void visit(std::uint32_t at) {
-    const TriangleTree::Node& node = surface.tree.nodes[at];
+    const Bvh::Node& node = surface.tree.nodes[at];
     if (!meets(node)) return;
     if (node.isLeaf()) return tryFace(node.triangle);
     visit(at + 1);
     visit(node.second);
   }
 
-  bool meets(const TriangleTree::Node& node) const {
+  bool meets(const Bvh::Node& node) const {
     double enter = 0, leave = std::min(part, 1.0);
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const double from = segment.from[axis] - node.center[axis], along = segment.along[axis];
@@ -44,7 +44,7 @@ struct ExitVisit {
       enter = std::max(enter, (-std::copysign(node.halfSize[axis], along) - from) / along);
       leave = std::min(leave, (std::copysign(node.halfSize[axis], along) - from) / along);
     }
-    return enter <= leave + kSkippedPart;
+    return enter <= leave + kSkippedRatio;
   }
 
   void tryFace(std::uint32_t face) {
@@ -52,7 +52,7 @@ struct ExitVisit {
     const double slope = triangle.normal.dot(segment.along);
     if (!(slope > 0)) return;
     const double height = triangle.heightOf(segment.from), found = -height / slope;
-    if (found <= kSkippedPart || found > 1 || found >= part || !triangle.isAbove(segment.at(found))) return;
+    if (found <= kSkippedRatio || found > 1 || found >= part || !triangle.isAbove(segment.at(found))) return;
     if (triangle.normal.dot(entry) < 0 && std::abs(height) <= kOnPlane * surface.size) return;
     part = found, normal = triangle.normal;
   }
@@ -70,7 +70,7 @@ struct DepthPlane {
 class DepthBound {
  public:
   void add(const DepthPlane& plane) { planes_[count_++] = plane; }
-  bool isFull() const { return count_ == kMostPlanes; }
+  bool isFull() const { return count_ == kMaxPlanes; }
 
   double depthAt(double part) const {
     double least = std::numeric_limits<double>::infinity();
@@ -88,7 +88,7 @@ class DepthBound {
         if (!(up.slope >= 0 && down.slope <= 0 && up.slope > down.slope)) continue;
         const double meet = (down.depthAt(0) - up.depthAt(0)) / (up.slope - down.slope);
         // Where a third plane is lower, it is not these two that bound the depth.
-        const bool areLowest = depthAt(meet) >= up.depthAt(meet) * (1 - kExactPart);
+        const bool areLowest = depthAt(meet) >= up.depthAt(meet) * (1 - kExactRatio);
         if (meet > 0 && meet < end && areLowest) keepIfHigher(meet, &up, &down);
       }
   }
@@ -102,7 +102,7 @@ class DepthBound {
     if (found > depth) part = at, depth = found, rising = up, falling = down;
   }
 
-  std::array<DepthPlane, kMostPlanes> planes_;
+  std::array<DepthPlane, kMaxPlanes> planes_;
   std::size_t count_ = 0;
 };
 
@@ -116,7 +116,7 @@ EdgeDepth depthBetween(const DepthBound& top, const Segment& piece, const Vec3& 
   const double rise = top.rising->slope, fall = -top.falling->slope;
   const Vec3 mean = (fall * top.rising->normal + rise * top.falling->normal) / (rise + fall);
   const double length = mean.norm();
-  if (length < kLeastMean) return {top.depth, fallback, piece.at(top.part), false};
+  if (length < kMinMean) return {top.depth, fallback, piece.at(top.part), false};
   EdgeDepth result{top.depth / length, mean / length, piece.at(top.part), false};
   // From there along the edge to the point that is straight below the other edge.
   const DepthPlane& steeper = rise > fall ? *top.rising : *top.falling;
@@ -128,13 +128,13 @@ EdgeDepth depthBetween(const DepthBound& top, const Segment& piece, const Vec3& 
 /// Whether a line that goes through a face of a sheet comes back over an edge of it at once, but for rounding: over a
 /// crease that it touches.
 bool goesBackAtOnce(const MeshSurface& sheet, const Segment& line, std::uint32_t face) {
-  for (int walked = 0; walked < kMostFacesAround; ++walked) {
+  for (int walked = 0; walked < kMaxFacesAround; ++walked) {
     const MeshSurface::Face& here = sheet.faces[face];
     const MeshSurface::Edge* crossed = nullptr;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3& from = sheet.vertices[here.vertices[i]];
       const Vec3 along = sheet.vertices[here.vertices[(i + 1) % 3]] - from, outwards = along.cross(here.normal);
-      const double near = kSameLinePart * along.squaredNorm();  // both sides times the edge's length
+      const double near = kSameLineRatio * along.squaredNorm();  // both sides times the edge's length
       if (std::abs(outwards.dot(line.from - from)) <= near && outwards.dot(line.along) > 0)
         crossed = &sheet.edges[here.edges[i]];
     }
@@ -164,7 +164,7 @@ EdgeDepth depthOfEdge(const MeshSurface& solid, const Segment& edge, double part
   bound.add(last);
   for (bound.findTop(end); !bound.isFull(); bound.findTop(end)) {
     const DepthPlane tangent = planeAt(solid, piece, bound.part);
-    if (tangent.depth >= bound.depth * (1 - kExactPart)) break;
+    if (tangent.depth >= bound.depth * (1 - kExactRatio)) break;
     bound.add(tangent);
   }
   if (bound.depth <= 0) return {0, entry, piece.from, false};

@@ -16,8 +16,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kFlatPart = 1e-9;    // of the length: a bend by less is rounding of the vertices
-constexpr double kNoMeanPart = 1e-6;  // of the normals of a vertex: a shorter mean is that of two sides of a sheet
+constexpr double kFlatRatio = 1e-9;    // of the length: a bend by less is rounding of the vertices
+constexpr double kNoMeanRatio = 1e-6;  // of the normals of a vertex: a shorter mean is that of two sides of a sheet
 
 /// Angle (rad) between two unit vectors, good to 1e-7: halved four times it is below pi / 16, where the series of the
 /// arc sine suffices.
@@ -93,8 +93,8 @@ MeshSurface::Edge edgeOf(const Seam& seam, const MeshSurface& surface) {
     return edge;
   }
   edge.normal = (face.normal + next.normal).normalized();
-  edge.isConvex = face.normal.dot(acrossNext) < -kFlatPart * acrossNext.norm() ||
-                  next.normal.dot(across) < -kFlatPart * across.norm();
+  edge.isConvex = face.normal.dot(acrossNext) < -kFlatRatio * acrossNext.norm() ||
+                  next.normal.dot(across) < -kFlatRatio * across.norm();
   return edge;
 }
 
@@ -113,7 +113,7 @@ bool isFlat(const MeshSurface& surface, const MeshSurface::Edge& edge) {
   const Vec3 &normal = surface.faces[edge.faces[0]].normal, &next = surface.faces[edge.faces[1]].normal;
   if (edge.isConvex || normal.dot(next) <= 0) return false;
   const Vec3 side = surface.vertices[edge.across[1]] - surface.vertices[edge.vertices[0]];
-  return std::abs(normal.dot(side)) <= kFlatPart * side.norm();
+  return std::abs(normal.dot(side)) <= kFlatRatio * side.norm();
 }
 
 void addRegions(MeshSurface& surface) {
@@ -152,7 +152,7 @@ void addVertexNormals(MeshSurface& surface) {
       surface.vertexNormals[face.vertices[i]] += angleBetween(next, last) * face.normal;
     }
   for (Vec3& normal : surface.vertexNormals)
-    normal = normal.norm() > (surface.isSheet ? kNoMeanPart : 0) ? Vec3(normal.normalized()) : Vec3(Vec3::Zero());
+    normal = normal.norm() > (surface.isSheet ? kNoMeanRatio : 0) ? Vec3(normal.normalized()) : Vec3(Vec3::Zero());
 }
 
 void addNeighbours(MeshSurface& surface) {
@@ -200,7 +200,7 @@ void complete(const TriangleMesh& mesh, const std::vector<Seam>& seams, MeshSurf
   addVertexNormals(surface);
   addNeighbours(surface);
   addParts(surface);
-  surface.tree = buildTree(mesh);
+  surface.tree = buildBvh(mesh);
   surface.size = 2 * surface.tree.nodes[0].halfSize.norm();
   addInnerPoint(surface);
 }

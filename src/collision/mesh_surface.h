@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "collision/triangle_tree.h"
+#include "collision/bvh.h"
 #include "mesh/triangle_mesh.h"
 
 namespace cradle {
@@ -44,7 +44,7 @@ struct MeshSurface {
   std::optional<Vec3> inner = {};  // m: a point inside, of a convex solid
   bool isSheet = false;            // nothing is inside
   double size = 0;                 // m: diagonal of the box around all
-  TriangleTree tree;
+  Bvh tree;
 };
 
 /// The mesh must be closed, two triangles at each edge in opposite directions, wound counter-clockwise seen from

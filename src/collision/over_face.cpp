@@ -12,7 +12,7 @@ namespace {
 
 using Feature = MeshPoint::Feature;
 
-constexpr double kSameFacePart = 1e-6;  // of a unit normal: so well a contact's normal and a face's agree
+constexpr double kSameFaceRatio = 1e-6;  // of a unit normal: so well a contact's normal and a face's agree
 
 /// The flat face of a surface at a point of it, or none.
 TouchedFeature faceAt(const MeshSurface& surface, const Vec3& point, const Vec3& normal) {
@@ -25,7 +25,7 @@ TouchedFeature faceAt(const MeshSurface& surface, const Vec3& point, const Vec3&
     const std::uint32_t back = face + static_cast<std::uint32_t>(surface.faces.size() / 2);
     const std::uint32_t other = surface.isSheet ? back % static_cast<std::uint32_t>(surface.faces.size()) : face;
     for (const std::uint32_t side : {face, other})
-      if ((surface.faces[side].normal - normal).norm() < kSameFacePart) return {Feature::face, side};
+      if ((surface.faces[side].normal - normal).norm() < kSameFaceRatio) return {Feature::face, side};
   }
   return {};
 }
@@ -37,7 +37,7 @@ OverFace overFace(const ContactGeometry& geometry, const ColliderPair& pair, con
   const bool isFaceOfA = geometry.colliders[pair.a].body == contact.surfaceB.body;
   const Collider &solid = geometry.colliders[isFaceOfA ? pair.b : pair.a],
                  &lower = geometry.colliders[isFaceOfA ? pair.a : pair.b];
-  if (!std::isinf(contact.radiusB) || solid.kind() == ColliderKind::cylinder || solid.isBall() || !lower.mesh)
+  if (!std::isinf(contact.radiusB) || solid.kind() == ColliderKind::cylinder || solid.isSphere() || !lower.mesh)
     return {};
   const RigidTransform surfaceFromBody = lower.bodyFromMesh.inverse(), worldFromLower = poseOf(state, lower.body);
   const RigidTransform surfaceFromSolid = surfaceFromBody * worldFromLower.inverse() * poseOf(state, solid.body);

@@ -13,7 +13,7 @@ namespace {
 
 // Of the smaller radius: edges of meshes may graze each other so deep unseen. What does is apart at two looks, and at
 // the rates of a body in free motion by far less.
-constexpr double kGrazePart = 1e-4;
+constexpr double kGrazeRatio = 1e-4;
 constexpr int kMaxLooks = 128;  // for directions, at a pair whose edges stay within a hair of each other
 // Of a size: how far round surfaces sink in where a joint holds them before they press. From there the arm to the joint
 // is long enough for an impulse to turn the body: 3e-5 of the size.
@@ -27,7 +27,7 @@ Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
   return linearVelocity(state, body) + angularVelocity(state, body).cross(point - centerOfMass(state, body));
 }
 
-/// How far (m) from the centre of mass the points of a collider are, without the balls around them.
+/// How far (m) from the centre of mass the points of a collider are, without the spheres around them.
 double pointReach(const Collider& collider) {
   return collider.boundingRadius - collider.radius;
 }
@@ -68,13 +68,13 @@ void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTi
   for (const std::size_t feature : scratch_.features_) {
     feature_ = feature;
     if (isPinned && !isHeld(touching)) searchTurningAboutPin(touching, best);
-    held_ = isPinned || isHeld(touching) ? &touching.heldFeatures() : nullptr;
+    held_ = isPinned || isHeld(touching) ? &touching.activeFeatures() : nullptr;
     if (held_ && pair_.againstPlane && a_.kind() == ColliderKind::cylinder) {
       searchHeldRim(touching, best);
       continue;
     }
     if (isHeld(touching) && hasOneContact()) continue;
-    if (held_ && (apart_ || (hasMesh(a_, geometry_.colliders[pair_.b]) && !(hasBall() && isHeld(touching)))))
+    if (held_ && (apart_ || (hasMesh(a_, geometry_.colliders[pair_.b]) && !(hasSphere() && isHeld(touching)))))
       lookBlindly();
     const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_, reach);
     searchFeature(start, touching, best);
@@ -84,7 +84,7 @@ void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTi
 /// A rim over a plane: points of it are held, and the lowest may become another, unless that itself is held.
 void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   held_ = nullptr;
-  if (std::any_of(touching.held->begin(), touching.held->end(), [this](const HeldFeature& held) {
+  if (std::any_of(touching.held->begin(), touching.held->end(), [this](const ActiveFeature& held) {
         return held.pair == pairIndex_ && held.feature == feature_ && !held.contact.rimAxisA.isZero(0);
       }))
     return;
@@ -122,7 +122,7 @@ void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::op
   bounds.acceleration = GapBounds().acceleration;
   bounds.finest = kFinestTurn;
   const auto above = [&](double fraction) { return separationAt(fraction) - threshold; };
-  if (const auto fraction = firstCrossing(above, bounds, {0, above(0), end, above(end)}))
+  if (const auto fraction = firstRoot(above, bounds, {0, above(0), end, above(end)}))
     best = ImpactTime{*fraction, pairIndex_, feature_, threshold, true, {}};
 }
 
@@ -135,10 +135,10 @@ void PairSearch::searchFeature(double start, const TouchingFeatures& touching, s
     searchTouching(start, touching, best);
 }
 
-/// A gap is the least of those between all points of the two cores, less the balls' radii. Of two points at distance
+/// A gap is the least of those between all points of the two cores, less the spheres' radii. Of two points at distance
 /// d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's sum before they touch; and the
-/// least of many bends upwards no more than they do. Without balls nothing bounds it where d goes to zero: then
-/// directions tell whether convex bodies stay apart.
+/// least of many accelerations upwards no more than they do. Without spheres nothing bounds it where d goes to zero:
+/// then directions tell whether convex bodies stay apart.
 void PairSearch::findBounds() {
   const MotionBounds shift = relativeMotionBounds(step_, a_.body, bodyB_);
   const MotionBounds& turnA = scratch_.turnOf(step_, a_.body);
@@ -158,20 +158,21 @@ void PairSearch::findBounds() {
   if (hasMesh(a_, b))
     lookBlindly();
   else
-    apart_.emplace(step_, a_, b,
-                   DirectionBends{turnA.acceleration * pointReach(a_) + turnB.acceleration * pointReach(b),
-                                  pull_ + bendInFrame(turnA, b), pull_ + bendInFrame(turnB, a_)});
+    apart_.emplace(
+        step_, a_, b,
+        DirectionAccelerations{turnA.acceleration * pointReach(a_) + turnB.acceleration * pointReach(b),
+                               pull_ + accelerationInFrame(turnA, b), pull_ + accelerationInFrame(turnB, a_)});
 }
 
 /// What the turning of a frame adds to the bend of the other body's points along a direction in it.
-double PairSearch::bendInFrame(const MotionBounds& turn, const Collider& other) const {
+double PairSearch::accelerationInFrame(const MotionBounds& turn, const Collider& other) const {
   const double distance = (startA_.translation - startB_.translation).norm() + other.boundingRadius + bounds_.speed;
   return 2 * turn.speed * bounds_.speed + turn.acceleration * distance;
 }
 
 /// With a bound on the gap's speed alone.
 void PairSearch::lookBlindly() {
-  bounds_.graze = kGrazePart * std::min(a_.boundingRadius, geometry_.colliders[pair_.b].boundingRadius);
+  bounds_.graze = kGrazeRatio * std::min(a_.boundingRadius, geometry_.colliders[pair_.b].boundingRadius);
   const auto isSheet = [](const Collider& collider) {
     return collider.kind() == ColliderKind::mesh && collider.mesh->isSheet;
   };
@@ -203,7 +204,7 @@ void PairSearch::findFace() {
 void PairSearch::searchCorners(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   const Collider& upper = face_->isOfA ? geometry_.colliders[pair_.b] : a_;
   if (isFlush(touching, upper)) return;
-  pull_ += bendInFrame(scratch_.turnOf(step_, face_->isOfA ? a_.body : bodyB_), upper);
+  pull_ += accelerationInFrame(scratch_.turnOf(step_, face_->isOfA ? a_.body : bodyB_), upper);
   bounds_.acceleration = pull_;
   apart_.reset();
   for (std::size_t corner = 0; corner < upper.points.size(); ++corner) {
@@ -218,7 +219,7 @@ bool PairSearch::isCornerHeld(const TouchingFeatures& touching, const Collider& 
   const double near = kHeldPlace * upper.boundingRadius;
   const int lower = face_->isOfA ? a_.body : bodyB_;
   if (isPinned(upper, lower, upper.points[feature_], kPinnedRatio * upper.boundingRadius)) return true;
-  return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const HeldFeature& held) {
+  return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const ActiveFeature& held) {
            const Attachment& corner = held.contact.centerA;
            return held.pair == pairIndex_ && corner.body == upper.body &&
                   (corner.point - upper.points[feature_]).squaredNorm() < near * near;
@@ -230,7 +231,7 @@ bool PairSearch::isFlush(const TouchingFeatures& touching, const Collider& upper
   if (!touching.held || upper.radius > 0 || upper.rimRadius > 0) return false;
   std::vector<Vec3> arms;  // m, from the first of them
   const Vec3* first = nullptr;
-  for (const HeldFeature& held : *touching.held) {
+  for (const ActiveFeature& held : *touching.held) {
     const Attachment& corner = held.contact.centerA;
     if (held.pair != pairIndex_ || corner.body != upper.body || !std::isinf(held.contact.radiusB)) continue;
     if (first) arms.push_back(corner.point - *first);
@@ -241,23 +242,23 @@ bool PairSearch::isFlush(const TouchingFeatures& touching, const Collider& upper
 }
 
 bool PairSearch::isHeld(const TouchingFeatures& touching) const {
-  return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [this](const HeldFeature& held) {
+  return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [this](const ActiveFeature& held) {
            return held.pair == pairIndex_ && held.feature == feature_;
          });
 }
 
-/// A ball may touch a mesh at two places, as in a groove.
+/// A sphere may touch a mesh at two places, as in a groove.
 bool PairSearch::hasOneContact() const {
   if (pair_.againstPlane) return true;
-  return hasBall() && !hasMesh(a_, geometry_.colliders[pair_.b]);
+  return hasSphere() && !hasMesh(a_, geometry_.colliders[pair_.b]);
 }
 
-bool PairSearch::hasBall() const {
-  return a_.isBall() || geometry_.colliders[pair_.b].isBall();
+bool PairSearch::hasSphere() const {
+  return a_.isSphere() || geometry_.colliders[pair_.b].isSphere();
 }
 
-/// Whether the gap is that of one point, or bends downwards no more than one: of a ball and what is convex, of a
-/// corner over a plane. While one point of a rim leaves, another may come down.
+/// Whether the gap is that of one point, or accelerations downwards no more than one: of a sphere and what is convex,
+/// of a corner over a plane. While one point of a rim leaves, another may come down.
 bool PairSearch::staysOnePoint() const {
   if (pair_.againstPlane) return a_.kind() != ColliderKind::cylinder;
   return hasOneContact();
@@ -294,10 +295,10 @@ void PairSearch::searchFrom(double from, double gapFrom, double threshold, std::
   if (from >= end) return;
   const auto above = [&](double fraction) { return gap(fraction) - threshold; };
   const auto areApart = [&](const Bracket& ends) {
-    if (apart_ && apart_->looks() > kMaxLooks) lookBlindly();
+    if (apart_ && apart_->queries() > kMaxLooks) lookBlindly();
     return apart_ && apart_->during(ends, threshold, bounds_);
   };
-  if (const auto fraction = firstCrossing(above, bounds_, areApart, {from, gapFrom - threshold, end, above(end)}))
+  if (const auto fraction = firstRoot(above, bounds_, areApart, {from, gapFrom - threshold, end, above(end)}))
     best = ImpactTime{*fraction, pairIndex_, feature_, threshold, held_ != nullptr, face_};
 }
 

@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "collision/face_below.h"
-#include "collision/first_crossing.h"
-#include "collision/staying_apart.h"
+#include "collision/root_bracketing.h"
+#include "collision/separating_axis_cache.h"
 #include "collision/time_of_impact.h"
 
 namespace cradle {
 
-/// Height (m) of a corner of one collider, with the ball around it, over a face of the other.
+/// Height (m) of a corner of one collider, with the sphere around it, over a face of the other.
 double heightOfCorner(const FaceBelow& face, std::size_t corner, const std::pair<const Collider&, RigidTransform>& a,
                       const std::pair<const Collider&, RigidTransform>& b);
 
@@ -26,7 +26,7 @@ class PairSearch {
 
  private:
   void findBounds();
-  double bendInFrame(const MotionBounds& turn, const Collider& other) const;
+  double accelerationInFrame(const MotionBounds& turn, const Collider& other) const;
   void lookBlindly();
   void findFace();
   void searchCorners(const TouchingFeatures& touching, std::optional<ImpactTime>& best);
@@ -39,7 +39,7 @@ class PairSearch {
   bool isFlush(const TouchingFeatures& touching, const Collider& upper) const;
   bool isHeld(const TouchingFeatures& touching) const;
   bool hasOneContact() const;
-  bool hasBall() const;
+  bool hasSphere() const;
   bool staysOnePoint() const;
   double deadBand(const TouchingFeatures& touching) const;
   double leavingSpeed(double tolerance);
@@ -55,10 +55,10 @@ class PairSearch {
   int bodyB_;
   RigidTransform startA_, startB_;
   GapBounds bounds_;
-  std::optional<StayingApart> apart_;               // where the bend of the gap has no bound
-  std::optional<FaceBelow> face_;                   // below all of the other body
-  const std::vector<HeldFeature>* held_ = nullptr;  // something holds points of this feature
-  double reach_ = 0;                                // m: farther apart nothing is looked at
+  std::optional<SeparatingAxisCache> apart_;          // where the second derivative of the gap has no bound
+  std::optional<FaceBelow> face_;                     // below all of the other body
+  const std::vector<ActiveFeature>* held_ = nullptr;  // something holds points of this feature
+  double reach_ = 0;                                  // m: farther apart nothing is looked at
   double pull_ = 0;  // m: bound on the relative acceleration, with the step as the unit of time
 };
 

@@ -138,7 +138,7 @@ Polytope segmentBetween(const Vec3& from, const Vec3& to) {
   return segment;
 }
 
-std::size_t farthestVertex(const Polytope& polytope, const Vec3& direction, std::size_t start) {
+std::size_t supportVertex(const Polytope& polytope, const Vec3& direction, std::size_t start) {
   const std::size_t count = polytope.vertices.size();
   std::size_t best = count <= kFewVertices ? 0 : start;
   double farthest = direction.dot(polytope.vertices[best]);

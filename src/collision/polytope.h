@@ -41,7 +41,7 @@ Polytope inscribedPrism(const Cylinder& cylinder, const RigidTransform& frameFro
 Polytope segmentBetween(const Vec3& from, const Vec3& to);
 
 /// Index of the vertex farthest along `direction`; the search starts at vertex `start`.
-std::size_t farthestVertex(const Polytope& polytope, const Vec3& direction, std::size_t start = 0);
+std::size_t supportVertex(const Polytope& polytope, const Vec3& direction, std::size_t start = 0);
 
 /// Nearest point of a solid's surface.
 struct SurfacePoint {

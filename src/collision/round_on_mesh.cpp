@@ -6,14 +6,14 @@
 #include "collision/contact_reduction.h"
 #include "collision/mesh_feature.h"
 #include "collision/mesh_overlap.h"
-#include "collision/tangent_plane.h"
+#include "collision/normal_cone.h"
 
 namespace cradle {
 namespace {
 
 using Feature = MeshPoint::Feature;
 
-constexpr double kMeshRoundingPart = 1e-12;  // of the size
+constexpr double kMeshRoundingRatio = 1e-12;  // of the size
 
 /// Where a core is nearest to a mesh that it does not go through.
 struct CoreGap {
@@ -106,10 +106,10 @@ struct RoundVisit {
     const MeshSurface::Face& face = mesh.faces[index];
     const FlatTriangle triangle = triangleOf(mesh, index);
     for (const double part : {0.0, 1.0}) {
-      if (part > 0 && round.isBall()) break;
+      if (part > 0 && round.isSphere()) break;
       tryEnd(part, index, triangle);
     }
-    if (round.isBall()) return;
+    if (round.isSphere()) return;
     for (std::size_t i = 0; i < 3; ++i) {
       if (face.ownsEdge[i]) tryAcross(face.edges[i]);
       if (face.ownsVertex[i]) tryVertex(round.core.nearestPart(cornerOf(triangle, i)), face.vertices[i]);
@@ -134,7 +134,7 @@ struct RoundVisit {
     const Vec3 point = round.core.at(part), nearest = edge.at(edge.nearestPart(point)), away = point - nearest;
     const double distance = away.norm();
     const bool isWithin = std::abs(away.dot(edge.along)) <= kBeyondEnd * distance * edge.along.norm();
-    if (distance > 0 && isWithin && isForemost(mesh, mesh.edges[index], away / distance, 0))
+    if (distance > 0 && isWithin && isInNormalCone(mesh, mesh.edges[index], away / distance, 0))
       add(part, nearest, {Feature::edge, index});
   }
 
@@ -142,7 +142,7 @@ struct RoundVisit {
     const Vec3& vertex = mesh.vertices[index];
     const Vec3 away = round.core.at(part) - vertex;
     const double distance = away.norm();
-    if (distance > 0 && isForemost(mesh, index, away / distance, 0)) add(part, vertex, {Feature::vertex, index});
+    if (distance > 0 && isInNormalCone(mesh, index, away / distance, 0)) add(part, vertex, {Feature::vertex, index});
   }
 
   /// The core across an edge.
@@ -152,12 +152,12 @@ struct RoundVisit {
     const Vec3 away = round.core.at(parts.a) - edge.at(parts.b);
     const double distance = away.norm();
     const bool isInner = parts.a > 0 && parts.a < 1 && parts.b > 0 && parts.b < 1;
-    if (isInner && distance > 0 && isForemost(mesh, mesh.edges[index], away / distance, margin))
+    if (isInner && distance > 0 && isInNormalCone(mesh, mesh.edges[index], away / distance, margin))
       add(parts.a, edge.at(parts.b), {});
   }
 
-  /// A contact at a point of the mesh, if that is where the core is nearest to it. A ball touches a feature only where
-  /// that is nearer than those that meet at it: on the way from one to the next, it touches one of them.
+  /// A contact at a point of the mesh, if that is where the core is nearest to it. A sphere touches a feature only
+  /// where that is nearer than those that meet at it: on the way from one to the next, it touches one of them.
   void add(double part, const Vec3& onMesh, const TouchedFeature& touched) {
     const Vec3 away = round.core.at(part) - onMesh;
     const double distance = away.norm(), separation = distance - round.radius;
@@ -166,11 +166,11 @@ struct RoundVisit {
     const double length = round.core.along.norm(), rise = (part > 0 ? -1 : 1) * outward.dot(round.core.along);
     const bool isAtEnd = part <= 0 || part >= 1;
     if (isAtEnd && rise < -allowedAhead(margin, length)) return;
-    if (round.isBall() && isBeyond(touched)) return;
+    if (round.isSphere() && isBeyond(touched)) return;
     const double radius = touched.feature == Feature::face ? kFlat : touched.feature == Feature::vertex ? 0 : kNotRound;
     ContactPoint contact{onMesh + separation / 2 * outward, -outward, separation, isAtEnd ? round.radius : kNotRound,
                          radius};
-    if (round.isBall()) {
+    if (round.isSphere()) {
       contact.feature = touched.index;
       if (touched.feature == Feature::edge) contact.edge = segmentOf(mesh, touched.index).along.normalized();
     }
@@ -178,14 +178,14 @@ struct RoundVisit {
     least = std::min(least, separation);
   }
 
-  /// Whether a ball's centre is nearer to a neighbour of an edge or vertex.
+  /// Whether a sphere's centre is nearer to a neighbour of an edge or vertex.
   bool isBeyond(const TouchedFeature& touched) const {
     if (touched.feature == Feature::face) return false;
     return insideRegion(mesh, touched, round.core.from) < -kBeyondEnd * mesh.size;
   }
 };
 
-/// Of what a ball touches at one place, beside the border between a face, an edge and a vertex, the first of them.
+/// Of what a sphere touches at one place, beside the border between a face, an edge and a vertex, the first of them.
 void keepOneOfPlace(std::size_t first, double near, std::vector<ContactPoint>& contacts) {
   const auto rank = [](const ContactPoint& contact) {
     return contact.radiusB > 0 ? 0 : contact.edge != Vec3::Zero() ? 1 : 2;
@@ -216,7 +216,7 @@ double separationOf(const RoundSolid& round, const MeshSurface& mesh, double eno
   constexpr double kFar = std::numeric_limits<double>::infinity();
   const double reach = std::max(enough, 0.0) + round.radius;
   if (squaredDistance(mesh.tree.nodes[0], boundsOf(round.core)) > reach * reach) return kFar;
-  if (round.isBall()) return heightOver(mesh, round.core.from).height - round.radius;
+  if (round.isSphere()) return heightOver(mesh, round.core.from).height - round.radius;
   const CoreGap gap = gapOf(round.core, mesh, reach);
   if (gap.intersects || isInside(round.core, mesh))
     return std::min(0.0, deepestPlace(round.core, mesh, gap).height) - round.radius;
@@ -231,11 +231,11 @@ void appendContacts(const RoundSolid& round, const MeshSurface& mesh, double mar
   const CoreGap gap = gapOf(round.core, mesh, reach);
   if (gap.intersects || isInside(round.core, mesh))
     return contacts.push_back(deepestContact(round, deepestPlace(round.core, mesh, gap)));
-  const double distance = std::sqrt(gap.distance2), rounding = kMeshRoundingPart * mesh.size;
+  const double distance = std::sqrt(gap.distance2), rounding = kMeshRoundingRatio * mesh.size;
   if (!gap.isFound || distance - round.radius > margin) return;
   RoundVisit visit{round, mesh, margin, contacts};
   visitNear(mesh.tree, boundsOf(round.core), visit);
-  if (round.isBall()) keepOneOfPlace(first, borderWidth(mesh), contacts);
+  if (round.isSphere()) keepOneOfPlace(first, borderWidth(mesh), contacts);
   if (visit.least > distance - round.radius + rounding) {
     const Vec3 outward =
         distance > 0 ? Vec3((gap.onCore - gap.onMesh) / distance) : deepestPlace(round.core, mesh, gap).normal;

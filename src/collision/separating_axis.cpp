@@ -26,8 +26,8 @@ class AxisSearch {
 
   SeparatingAxes find() {
     const Vec3 towards = coreB_.placed(b_.vertices[0]) - coreA_.placed(a_.vertices[0]);
-    lookAtFacesOfA(coreB_.farthest(-towards));
-    lookAtFacesOfB(coreA_.farthest(towards));
+    lookAtFacesOfA(coreB_.supportPoint(-towards));
+    lookAtFacesOfB(coreA_.supportPoint(towards));
     for (const Polytope::Edge& edge : a_.edges) {
       // The normals between two that see a point of B below the edge see it no higher.
       const double seen = std::max(heights_[edge.left], heights_[edge.right]);
@@ -45,7 +45,7 @@ class AxisSearch {
       const Vec3 normal = coreA_.turned(face.normal), onFace = coreA_.placed(face.offset * face.normal);
       heights_.push_back(normal.dot(onB - onFace));
       if (heights_.back() <= best_) continue;
-      vertex = farthestVertex(b_, coreB_.turnedBack(-normal), vertex);
+      vertex = supportVertex(b_, coreB_.turnedBack(-normal), vertex);
       keep(axes_.faceOfA, normal.dot(coreB_.placed(b_.vertices[vertex]) - onFace), normal);
     }
   }
@@ -55,7 +55,7 @@ class AxisSearch {
     for (const Polytope::Face& face : b_.faces) {
       const Vec3 normal = coreB_.turned(face.normal), onFace = coreB_.placed(face.offset * face.normal);
       if (normal.dot(onA - onFace) < best_ - rounding_) continue;  // one that sees as much is told too
-      vertex = farthestVertex(a_, coreA_.turnedBack(-normal), vertex);
+      vertex = supportVertex(a_, coreA_.turnedBack(-normal), vertex);
       keep(axes_.faceOfB, normal.dot(coreA_.placed(a_.vertices[vertex]) - onFace), -normal);
     }
   }
@@ -70,7 +70,7 @@ class AxisSearch {
   void followArc(const Polytope::Edge& edge) {
     const Vec3 left = coreA_.turned(a_.faces[edge.left].normal), right = coreA_.turned(a_.faces[edge.right].normal);
     const Vec3 from = coreB_.turnedBack(left), along = coreB_.turnedBack(right - left);
-    std::size_t vertex = lastStart_ = farthestVertex(b_, -from, lastStart_);
+    std::size_t vertex = lastStart_ = supportVertex(b_, -from, lastStart_);
     for (double t = 0; t < 1;) {
       double crossing = 1;
       std::size_t next = vertex;

@@ -13,8 +13,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kTurnRounding = 1e-14;     // of the distances that enter: a height taken in another frame is as good
-constexpr std::size_t kMostFacePoints = 8;  // of a polytope on a plane: the rest of a larger face does not support it
+constexpr double kTurnRounding = 1e-14;    // of the distances that enter: a height taken in another frame is as good
+constexpr std::size_t kMaxFacePoints = 8;  // of a polytope on a plane: the rest of a larger face does not support it
 
 /// The two colliders of a pair that is not against a plane, in their poses.
 struct PosedPair {
@@ -26,13 +26,13 @@ ContactPoint mirrored(const ContactPoint& contact) {
   return {contact.point, -contact.normal, contact.separation, contact.radiusB, contact.radiusA};
 }
 
-ContactPoint ballOnPlane(const Vec3& center, double radius, const PlaneCollider& plane) {
+ContactPoint sphereOnPlane(const Vec3& center, double radius, const PlaneCollider& plane) {
   const double separation = plane.normal.dot(center - plane.point) - radius;
   return {center - (radius + separation / 2) * plane.normal, -plane.normal, separation, radius, kFlat};
 }
 
-/// A is the ball.
-ContactPoint ballOnOther(const PosedPair& pair) {
+/// A is the sphere.
+ContactPoint sphereOnOther(const PosedPair& pair) {
   const Vec3 center = pair.worldFromA * pair.a.points[0];
   const SurfacePoint surface = nearestSurfacePoint(pair.b, pair.worldFromB.inverse() * center);
   const double separation = surface.distance - pair.a.radius;
@@ -41,7 +41,7 @@ ContactPoint ballOnOther(const PosedPair& pair) {
 }
 
 /// Without a turn: exact where turns would round.
-ContactPoint ballOnBall(const PosedPair& pair) {
+ContactPoint sphereOnSphere(const PosedPair& pair) {
   const Vec3 centerA = pair.worldFromA * pair.a.points[0];
   const Vec3 towardsB = pair.worldFromB * pair.b.points[0] - centerA;
   const double distance = towardsB.norm(), separation = distance - pair.a.radius - pair.b.radius;
@@ -49,18 +49,18 @@ ContactPoint ballOnBall(const PosedPair& pair) {
   return {centerA + (pair.a.radius + separation / 2) * normal, normal, separation, pair.a.radius, pair.b.radius};
 }
 
-/// The one contact of a pair in which a ball takes part.
-ContactPoint ballContact(const PosedPair& pair) {
-  if (pair.a.isBall() && pair.b.isBall()) return ballOnBall(pair);
-  if (pair.a.isBall()) return ballOnOther(pair);
-  return mirrored(ballOnOther({pair.b, pair.a, pair.worldFromB, pair.worldFromA}));
+/// The one contact of a pair in which a sphere takes part.
+ContactPoint sphereContact(const PosedPair& pair) {
+  if (pair.a.isSphere() && pair.b.isSphere()) return sphereOnSphere(pair);
+  if (pair.a.isSphere()) return sphereOnOther(pair);
+  return mirrored(sphereOnOther({pair.b, pair.a, pair.worldFromB, pair.worldFromA}));
 }
 
-bool hasBall(const PosedPair& pair) {
-  return pair.a.isBall() || pair.b.isBall();
+bool hasSphere(const PosedPair& pair) {
+  return pair.a.isSphere() || pair.b.isSphere();
 }
 
-/// The cores of a pair without a ball, in the frame of A.
+/// The cores of a pair without a sphere, in the frame of A.
 struct PosedCores {
   Core a, b;
   explicit PosedCores(const PosedPair& pair) : a(pair.a, {}), b(pair.b, pair.worldFromA.inverse() * pair.worldFromB) {}
@@ -99,11 +99,11 @@ double rimSeparation(const Collider& cylinder, std::size_t rim, const RigidTrans
 
 void appendOnPlane(const Collider& a, const RigidTransform& worldFromA, const PlaneCollider& plane,
                    const std::vector<std::size_t>& near, double margin, std::vector<ContactPoint>& points) {
-  const bool hasManyCorners = a.polytope && near.size() > kMostFacePoints;
+  const bool hasManyCorners = a.polytope && near.size() > kMaxFacePoints;
   if (a.kind() == ColliderKind::cylinder || hasManyCorners)
     return appendManifold(Core(a, worldFromA), plane.point, plane.normal, margin, points);
-  for (const std::size_t point : near) points.push_back(ballOnPlane(worldFromA * a.points[point], a.radius, plane));
-  if (near.size() > kMostFacePoints) reduceContacts(0, a.boundingRadius, points);
+  for (const std::size_t point : near) points.push_back(sphereOnPlane(worldFromA * a.points[point], a.radius, plane));
+  if (near.size() > kMaxFacePoints) reduceContacts(0, a.boundingRadius, points);
 }
 
 std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const ColliderPair& pair,
@@ -120,8 +120,8 @@ std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const C
   const PosedPair both{a, geometry.colliders[pair.b], worldFromA, worldFromB};
   if (hasMesh(both.a, both.b))
     appendOfMeshes(both, margin, points);
-  else if (hasBall(both))
-    points.push_back(ballContact(both));
+  else if (hasSphere(both))
+    points.push_back(sphereContact(both));
   else
     appendOfCores(both, margin, points);
   return points;
@@ -138,8 +138,8 @@ bool isPinnedTo(const Collider& collider, int other) {
                      [&](const PinnedPlace& pin) { return pin.other == other; });
 }
 
-/// Whether the surface of a collider turns about a joint where it is at a contact: about a ball's centre, or about the
-/// point itself. `inwards` (unit) points into the collider.
+/// Whether the surface of a collider turns about a joint where it is at a contact: about a sphere's centre, or about
+/// the point itself. `inwards` (unit) points into the collider.
 bool isPinnedAt(const Collider& collider, int other, const ContactPoint& contact, double radius,
                 const RigidTransform& frame, const Vec3& inwards) {
   if (!isPinnedTo(collider, other)) return false;
@@ -229,11 +229,11 @@ double separation(const ContactGeometry& geometry, const ColliderPair& pair, std
   if (pair.againstPlane) {
     const PlaneCollider& plane = geometry.planes[pair.b];
     if (a.kind() == ColliderKind::cylinder) return rimSeparation(a, feature, worldFromA, plane);
-    return ballOnPlane(worldFromA * a.points[feature], a.radius, plane).separation;
+    return sphereOnPlane(worldFromA * a.points[feature], a.radius, plane).separation;
   }
   const PosedPair both{a, geometry.colliders[pair.b], worldFromA, worldFromB};
   if (hasMesh(both.a, both.b)) return meshSeparation(both.a, both.b, worldFromA.inverse() * worldFromB, enough);
-  return hasBall(both) ? ballContact(both).separation : coreSeparation(both);
+  return hasSphere(both) ? sphereContact(both).separation : coreSeparation(both);
 }
 
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature,
@@ -249,21 +249,21 @@ TouchedFeature touchedFeature(const Contact& contact) {
   return {contact.radiusA == 0 || contact.radiusB == 0 ? Feature::vertex : Feature::none, contact.feature};
 }
 
-BallOverMesh ballOverMesh(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
-                          const RigidTransform& worldFromB) {
+SphereOverMesh sphereOverMesh(const ContactGeometry& geometry, const ColliderPair& pair,
+                              const RigidTransform& worldFromA, const RigidTransform& worldFromB) {
   if (pair.againstPlane) return {};
   const Collider &a = geometry.colliders[pair.a], &b = geometry.colliders[pair.b];
-  const Collider &ball = a.isBall() ? a : b, &mesh = a.isBall() ? b : a;
-  if (!ball.isBall() || mesh.kind() != ColliderKind::mesh) return {};
-  const RigidTransform &worldFromBall = a.isBall() ? worldFromA : worldFromB,
-                       &worldFromMesh = a.isBall() ? worldFromB : worldFromA;
-  return {mesh.mesh.get(), (worldFromMesh * mesh.bodyFromMesh).inverse() * (worldFromBall * ball.points[0]),
-          ball.radius};
+  const Collider &sphere = a.isSphere() ? a : b, &mesh = a.isSphere() ? b : a;
+  if (!sphere.isSphere() || mesh.kind() != ColliderKind::mesh) return {};
+  const RigidTransform &worldFromSphere = a.isSphere() ? worldFromA : worldFromB,
+                       &worldFromMesh = a.isSphere() ? worldFromB : worldFromA;
+  return {mesh.mesh.get(), (worldFromMesh * mesh.bodyFromMesh).inverse() * (worldFromSphere * sphere.points[0]),
+          sphere.radius};
 }
 
-BallOverMesh ballOverMesh(const ContactGeometry& geometry, const ColliderPair& pair, const VectorX& state) {
-  return ballOverMesh(geometry, pair, poseOf(state, geometry.colliders[pair.a].body),
-                      poseOf(state, bodyBOf(geometry, pair)));
+SphereOverMesh sphereOverMesh(const ContactGeometry& geometry, const ColliderPair& pair, const VectorX& state) {
+  return sphereOverMesh(geometry, pair, poseOf(state, geometry.colliders[pair.a].body),
+                        poseOf(state, bodyBOf(geometry, pair)));
 }
 
 Vec3 nearestOnSurface(const Collider& collider, const Vec3& point) {

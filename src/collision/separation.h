@@ -16,10 +16,11 @@ struct Contact {
   Vec3 point = Vec3::Zero();   // m, world: middle between the two surfaces
   Vec3 normal = Vec3::Zero();  // unit, world, from A to B
   double separation = 0;       // m, < 0: overlap
-  // m: radius of the ball that each surface is there: 0 a corner, infinite a flat face; NaN: neither (edge, side, rim).
+  // m: radius of the sphere that each surface is there: 0 a corner, infinite a flat face; NaN: neither (edge, side,
+  // rim).
   double radiusA = kNotRound, radiusB = kNotRound;
-  Vec3 edge = Vec3::Zero();      // unit, world: of the edge of a mesh that a ball touches; else zero
-  std::uint32_t feature = 0;     // of the mesh that a ball touches, as in ContactPoint
+  Vec3 edge = Vec3::Zero();      // unit, world: of the edge of a mesh that a sphere touches; else zero
+  std::uint32_t feature = 0;     // of the mesh that a sphere touches, as in ContactPoint
   Vec3 rimAxisA = Vec3::Zero();  // unit, world: A is a tilted disc of that radius there, across this; zero: it is not
 
   /// A if it moves, else B.
@@ -28,7 +29,7 @@ struct Contact {
 
 constexpr double kPinnedRatio = 1e-8;  // of a size: what turns about a joint so near to it stays where it is
 
-/// Whether a joint holds feature number `feature` of a pair (a corner, or the ball around an end, over a plane), so
+/// Whether a joint holds feature number `feature` of a pair (a corner, or the sphere around an end, over a plane), so
 /// that its gap stays as it is.
 bool isPinnedFeature(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature);
 
@@ -70,18 +71,18 @@ double separation(const ContactGeometry& geometry, const ColliderPair& pair, std
                   double enough = std::numeric_limits<double>::infinity());
 double separation(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature, const VectorX& state);
 
-/// The feature of a mesh that a ball touches.
+/// The feature of a mesh that a sphere touches.
 TouchedFeature touchedFeature(const Contact& contact);
 
-/// The centre of a ball and the surface of a mesh that it may touch, as the mesh's frame sees them.
-struct BallOverMesh {
+/// The centre of a sphere and the surface of a mesh that it may touch, as the mesh's frame sees them.
+struct SphereOverMesh {
   const MeshSurface* mesh = nullptr;  // null: a pair of other colliders
   Vec3 center = Vec3::Zero();         // m
   double radius = 0;                  // m
 };
-BallOverMesh ballOverMesh(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
-                          const RigidTransform& worldFromB);
-BallOverMesh ballOverMesh(const ContactGeometry& geometry, const ColliderPair& pair, const VectorX& state);
+SphereOverMesh sphereOverMesh(const ContactGeometry& geometry, const ColliderPair& pair,
+                              const RigidTransform& worldFromA, const RigidTransform& worldFromB);
+SphereOverMesh sphereOverMesh(const ContactGeometry& geometry, const ColliderPair& pair, const VectorX& state);
 
 /// The point of a collider's surface that is nearest to a point, both in its frame (m).
 Vec3 nearestOnSurface(const Collider& collider, const Vec3& point);
@@ -90,8 +91,8 @@ Vec3 nearestOnSurface(const Collider& collider, const Vec3& point);
 double separationBound(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
                        const RigidTransform& worldFromB);
 
-/// Appends the contacts of one pair with separation <= margin (m), but those that a joint holds as they are. Two balls
-/// with one centre get the normal +y.
+/// Appends the contacts of one pair with separation <= margin (m), but those that a joint holds as they are. Two
+/// spheres with one centre get the normal +y.
 void appendContacts(const ContactGeometry& geometry, std::size_t pair, const VectorX& state, double margin,
                     std::vector<Contact>& contacts);
 

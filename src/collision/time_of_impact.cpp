@@ -29,7 +29,7 @@ double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& to
   // What is near an impact is close: all that is within a size may be thousands of triangles.
   double gap = 0;
   for (double reach = kFirstReach * a.boundingRadius;; reach *= kReachGrowth) {
-    gap = gapOfOthers(impact.pair, touching.heldFeatures(), state, reach);
+    gap = gapOfOthers(impact.pair, touching.activeFeatures(), state, reach);
     if (gap < reach || reach >= a.boundingRadius) break;
   }
   return gap - impact.threshold;

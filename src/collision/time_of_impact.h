@@ -24,10 +24,10 @@ struct ImpactTime {
 constexpr double kHeldPlace = 1e-3;  // of a size: so near to a point that is held, it is that point
 
 /// A feature of a pair, as separation.h numbers them, that something keeps together.
-struct HeldFeature {
+struct ActiveFeature {
   std::size_t pair = 0, feature = 0;
   ContactConstraint contact;   // what does
-  TouchedFeature onMesh = {};  // where a ball is held on a mesh
+  TouchedFeature onMesh = {};  // where a sphere is held on a mesh
 };
 
 /// What touches when a step begins.
@@ -35,11 +35,11 @@ struct TouchingFeatures {
   double tolerance = 0;  // m: what is nearer touches
   // m: what touches comes together anew when it has closed by more than this; infinite: it is passed over
   double deadBand = std::numeric_limits<double>::infinity();
-  const std::vector<HeldFeature>* held =
+  const std::vector<ActiveFeature>* held =
       nullptr;  // passed over; other points of the same pair are not: something keeps them together
 
-  const std::vector<HeldFeature>& heldFeatures() const {
-    static const std::vector<HeldFeature> none;
+  const std::vector<ActiveFeature>& activeFeatures() const {
+    static const std::vector<ActiveFeature> none;
     return held ? *held : none;
   }
 };
@@ -52,7 +52,7 @@ class ImpactSearch {
   /// Keeps a reference to `geometry`.
   explicit ImpactSearch(const ContactGeometry& geometry) : geometry_(geometry) {}
 
-  /// The step's end rate must be there (prepareInterpolant).
+  /// The step's end derivative must be there (prepareInterpolant).
   std::optional<ImpactTime> first(const Step& step, const TouchingFeatures& touching);
 
   /// How far (m) an impact, found with the same touching features, is from happening in a state.
@@ -65,12 +65,12 @@ class ImpactSearch {
   };
   friend class PairSearch;
   const MotionBounds& turnOf(const Step& step, int body);
-  void findOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state, double margin);
-  double gapOfOthers(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state, double margin);
-  std::optional<double> gapBesideFace(std::size_t pair, const std::vector<HeldFeature>& held, const VectorX& state,
+  void findOthers(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state, double margin);
+  double gapOfOthers(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state, double margin);
+  std::optional<double> gapBesideFace(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state,
                                       double margin) const;
-  static double gapBesideFeatures(std::size_t pair, const std::vector<HeldFeature>& held, const BallOverMesh& ball,
-                                  double margin);
+  static double gapBesideFeatures(std::size_t pair, const std::vector<ActiveFeature>& held,
+                                  const SphereOverMesh& sphere, double margin);
 
   const ContactGeometry& geometry_;
   std::vector<Turn> turns_;     // of the moving bodies, in the step that is searched

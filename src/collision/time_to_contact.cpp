@@ -13,7 +13,7 @@
 namespace cradle {
 namespace {
 
-constexpr int kMostRefinements = 200;  // bisection alone needs 60 and the bits of the exponent
+constexpr int kMaxRefinements = 200;  // bisection alone needs 60 and the bits of the exponent
 constexpr double kFinest = 4 * std::numeric_limits<double>::epsilon();  // of a time
 
 /// Ascending times in an interval; both ends are among them.
@@ -48,12 +48,12 @@ class Cuts {
   std::size_t count_ = 2;
 };
 
-/// The gap of a ball from what is nearest, as long as that is the same face, edge or corner.
+/// The gap of a sphere from what is nearest, as long as that is the same face, edge or corner.
 class Approach {
  public:
   explicit Approach(double radius) : radius_(radius) {}
 
-  /// One more axis along which the ball's centre is outside.
+  /// One more axis along which the sphere's centre is outside.
   void add(double excess, double rate, double acceleration) { axes_[count_++] = {excess, rate, acceleration}; }
 
   std::size_t axes() const { return count_; }
@@ -146,7 +146,7 @@ double Approach::turningIn(double from, double to) const {
   const bool rises = slope(to) > 0;
   if ((slope(from) > 0) == rises) return from;
   double time = from + (to - from) / 2;
-  for (int i = 0; i < kMostRefinements; ++i) {
+  for (int i = 0; i < kMaxRefinements; ++i) {
     const double found = slope(time);
     ((found > 0) == rises ? to : from) = time;
     double next = time - found / bend(time);
@@ -161,7 +161,7 @@ double Approach::turningIn(double from, double to) const {
 /// between bounds.
 double Approach::crossingIn(double from, double to) const {
   double time = from + (to - from) / 2;
-  for (int i = 0; i < kMostRefinements; ++i) {
+  for (int i = 0; i < kMaxRefinements; ++i) {
     const double found = gap(time);
     (found > 0 ? from : to) = time;
     double next = time - found * (found + radius_) / slope(time);
@@ -172,7 +172,7 @@ double Approach::crossingIn(double from, double to) const {
   return time;
 }
 
-/// Whether a gap cannot close in time however the ball's centre turns.
+/// Whether a gap cannot close in time however the sphere's centre turns.
 bool isOutOfReach(double gap, const UniformMotion& motion, double until) {
   return gap > until * (motion.velocity.lpNorm<1>() + until / 2 * motion.acceleration.lpNorm<1>());
 }

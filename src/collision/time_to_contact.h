@@ -9,7 +9,7 @@ namespace cradle {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();  // s
 
-/// A fixed box with a ball of `radius` around each of its points: a box, or with sizes of zero a capsule or a sphere.
+/// A fixed box with a sphere of `radius` around each of its points: a box, or with sizes of zero a capsule or a sphere.
 struct RoundedBox {
   RigidTransform boxFromWorld;
   Vec3 halfSize = Vec3::Zero();  // m
@@ -38,7 +38,7 @@ struct ContactSearch {
 /// form without acceleration, else a root of degree 4, isolated and refined to rounding.
 double timeToDistance(const UniformMotion& motion, double distance, const ContactSearch& search);
 
-/// The same for the centre of a ball and what does not move.
+/// The same for the centre of a sphere and what does not move.
 double timeToContact(const UniformMotion& center, double radius, const PlaneCollider& plane,
                      const ContactSearch& search);
 double timeToContact(const UniformMotion& center, double radius, const RoundedBox& box, const ContactSearch& search);

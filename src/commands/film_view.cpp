@@ -5,7 +5,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kMostWaiting = 1e6;  // states of bodies, 0.1 GB: of the frames until the last push
+constexpr double kMaxWaiting = 1e6;  // states of bodies, 0.1 GB: of the frames until the last push
 
 }  // namespace
 
@@ -23,7 +23,7 @@ bool isSeenFromTheStart(const Scene& scene) {
   double lastStart = 0;  // s
   for (const Push& push : scene.pushes) lastStart = std::max(lastStart, push.start);
   const double frames = lastStart / frameInterval(scene);
-  return scene.camera && frames * static_cast<double>(scene.bodies.size()) <= kMostWaiting;
+  return scene.camera && frames * static_cast<double>(scene.bodies.size()) <= kMaxWaiting;
 }
 
 FilmCamera cameraOf(TrajectorySource& source, const View& view) {

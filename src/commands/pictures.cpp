@@ -74,7 +74,7 @@ FrameRange parseFrames(const std::optional<std::string>& text, const TrajectoryS
   return *range;
 }
 
-constexpr long kMostFrames = 1'000'000;  // that file names have digits for
+constexpr long kMaxFrames = 1'000'000;  // that file names have digits for
 
 /// The number of a frame's file, or of one that is being written; nothing for other names.
 std::optional<long> frameNumber(const std::string& name) {
@@ -104,7 +104,7 @@ std::vector<long> framesIn(const std::string& folder, const FrameRange& range) {
 /// own.
 void requireRoom(const std::string& folder, const std::optional<FrameRange>& range, const PictureOptions& options) {
   requireOwnFolder(folder, "frame", [](const std::string& name) { return frameNumber(name).has_value(); });
-  const std::vector<long> there = framesIn(folder, range.value_or(FrameRange{0, kMostFrames}));
+  const std::vector<long> there = framesIn(folder, range.value_or(FrameRange{0, kMaxFrames}));
   if (there.empty() || options.overwrite) return;
   throw Error(
       ErrorKind::output, folder,
@@ -125,7 +125,7 @@ void takeFolder(const std::string& folder, const std::optional<FrameRange>& rang
 
 /// Frames that the film has not would get between its own when it is encoded.
 void requireNoOthers(const std::string& folder, long frameCount) {
-  const std::vector<long> others = framesIn(folder, {frameCount, kMostFrames});
+  const std::vector<long> others = framesIn(folder, {frameCount, kMaxFrames});
   if (others.empty()) return;
   throw Error(
       ErrorKind::output, folder,

@@ -9,7 +9,7 @@
 #include "core/printable.h"
 #include "simulate/assembly.h"
 #include "simulate/plan/plan_text.h"
-#include "simulate/run.h"
+#include "simulate/world.h"
 
 namespace cradle {
 namespace {
@@ -32,7 +32,7 @@ Json jsonOf(const IslandPlan& island, const Scene& scene) {
           {"reason", island.reason},
           {"promise", describe(island.promise)},
           {"conditions", conditions},
-          {"leftOut", island.leftOut}};
+          {"leftOut", island.notNeeded}};
 }
 
 Json jsonOf(const Plan& plan, const Scene& scene, const std::string& scenePath) {
@@ -54,9 +54,9 @@ Json jsonOf(const Plan& plan, const Scene& scene, const std::string& scenePath) 
 void printPlan(const std::string& scenePath, const SceneOptions& options, bool asJson) {
   const Scene scene = loadSceneAndWarn(scenePath, options);
   refuseUnsupported(scene);
-  const Run run(scene);
-  for (const std::string& warning : run.startWarnings()) warn(warning);
-  const Plan& plan = run.plan();
+  const World world(scene);
+  for (const std::string& warning : world.startWarnings()) warn(warning);
+  const Plan& plan = world.plan();
   if (asJson)
     show("{}\n", jsonOf(plan, scene, scenePath).dump(2, ' ', true, nlohmann::json::error_handler_t::replace));
   else

@@ -21,10 +21,10 @@
 #include "scene/parse_settings.h"
 #include "scene/ranges.h"
 #include "simulate/assembly.h"
-#include "simulate/run.h"
 #include "simulate/simulate.h"
 #include "simulate/start_overlaps.h"
 #include "simulate/strict_watch.h"
+#include "simulate/world.h"
 #include "study/achieved_accuracy.h"
 #include "trajectory/trajectory_file.h"
 
@@ -137,7 +137,7 @@ Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
   return std::move(loaded.scene);
 }
 
-void simulateInto(TrajectoryWriter& writer, const Scene& scene, Run& run, StrictWatch* watch, bool quiet) {
+void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, StrictWatch* watch, bool quiet) {
   Progress progress("Simulating", "frames", lastFrame(scene) + 1, quiet);
   const SimulationSink sink{[&](const Frame& frame) {
                               writer.append(frame);
@@ -155,7 +155,7 @@ void simulateInto(TrajectoryWriter& writer, const Scene& scene, Run& run, Strict
                             [&](const PromiseEnd& end) {
                               if (watch) watch->note(end);
                             }};
-  const RunCost cost = simulate(scene, run, sink);
+  const RunCost cost = simulate(scene, world, sink);
   writer.finish(cost);
 }
 
@@ -166,17 +166,17 @@ void simulateScene(const std::string& scenePath, const std::string& output, cons
   requireNoWriter(partPath(output));
   const Scene scene = loadSceneAndWarn(scenePath, options.scene);
   refuseUnsupported(scene);
-  Run run(scene);
+  World world(scene);
   requireNoWriter(partPath(output));  // planning may have taken long
-  TrajectoryWriter writer(output, headerOf(scene, run.plan()));
+  TrajectoryWriter writer(output, headerOf(scene, world.plan()));
   std::optional<StrictWatch> watch;
-  if (options.isStrict) watch.emplace(scene, run.plan());
+  if (options.isStrict) watch.emplace(scene, world.plan());
   const auto tellWhatIsKept = [&writer](ErrorKind kind, const std::string& what) {
     const std::string kept = writer.keptPath();
     throw Error(kind, "", kept.empty() ? what : fmt::format("{}; the frames up to then are in {}", what, kept));
   };
   try {
-    simulateInto(writer, scene, run, watch ? &*watch : nullptr, quiet);
+    simulateInto(writer, scene, world, watch ? &*watch : nullptr, quiet);
   } catch (const Error& error) {
     tellWhatIsKept(error.kind(), error.what());
   } catch (const std::bad_alloc&) {
@@ -190,7 +190,7 @@ void checkScene(const std::string& scenePath, const SceneOptions& options) {
   refuseUnsupported(scene);
   std::vector<Assembly> islands;
   for (const IslandPlan& island : planOf(scene).islands) islands.push_back(assemble(scene, island));
-  settleStartOverlaps(scene, islands);
+  correctStartPenetrations(scene, islands);
   for (const Assembly& assembly : islands)
     for (const std::string& warning : assembly.warnings) warn(warning);
   const auto dynamic = std::count_if(scene.bodies.begin(), scene.bodies.end(),

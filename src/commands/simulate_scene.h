@@ -8,7 +8,7 @@
 
 namespace cradle {
 
-class Run;
+class World;
 class StrictWatch;
 
 /// How a scene is read: what the command line puts in place of what it says, and where its meshes may be.
@@ -39,8 +39,8 @@ Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options);
 /// Tells a warning on stderr.
 void warn(const std::string& warning);
 
-/// Simulates a scene into a trajectory file and finishes it, with progress and warnings on stderr. `run` is at its
+/// Simulates a scene into a trajectory file and finishes it, with progress and warnings on stderr. `world` is at its
 /// start; `watch` may be null.
-void simulateInto(TrajectoryWriter& writer, const Scene& scene, Run& run, StrictWatch* watch, bool quiet);
+void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, StrictWatch* watch, bool quiet);
 
 }  // namespace cradle

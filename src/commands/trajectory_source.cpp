@@ -6,8 +6,8 @@
 #include "core/error.h"
 #include "scene/load_scene.h"
 #include "simulate/assembly.h"
-#include "simulate/run.h"
 #include "simulate/simulate.h"
+#include "simulate/world.h"
 
 namespace cradle {
 namespace {
@@ -83,9 +83,9 @@ void TrajectorySource::open(TrajectoryReader trajectory) {
 
 void TrajectorySource::simulate() {
   if (reader_) return;
-  Run run(scene_);
-  TrajectoryWriter writer(headerOf(scene_, run.plan()));
-  simulateInto(writer, scene_, run, nullptr, quiet_);
+  World world(scene_);
+  TrajectoryWriter writer(headerOf(scene_, world.plan()));
+  simulateInto(writer, scene_, world, nullptr, quiet_);
   open(TrajectoryReader(writer));
 }
 

@@ -11,13 +11,13 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kMostWaiting = 1 << 16;  // bytes
+constexpr std::size_t kMaxWaiting = 1 << 16;  // bytes
 
 }  // namespace
 
 void PartFile::write(std::string_view bytes) {
   waiting_ += bytes;
-  if (waiting_.size() > kMostWaiting) flush();
+  if (waiting_.size() > kMaxWaiting) flush();
 }
 
 void PartFile::complete() {

@@ -12,7 +12,7 @@ namespace cradle {
 namespace {
 
 /// The least character of each length: shorter ones written longer are not allowed.
-constexpr std::array<char32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
+constexpr std::array<char32_t, 5> kMin{0, 0, 0x80, 0x800, 0x10000};
 
 struct Character {
   std::size_t length = 0;  // bytes; 0: there is none
@@ -35,7 +35,7 @@ Character characterAt(std::string_view text) {
     number = number << 6 | static_cast<char32_t>(text[i] & 0x3f);
   }
   const bool isSurrogate = number >= 0xd800 && number < 0xe000;
-  return number < kLeast[length] || number > 0x10ffff || isSurrogate ? Character{} : Character{length, number};
+  return number < kMin[length] || number > 0x10ffff || isSurrogate ? Character{} : Character{length, number};
 }
 
 bool isControl(char32_t number) {

@@ -19,15 +19,15 @@ namespace {
 constexpr double kRegularPivot = 1e-6;  // of its diagonal entry: above, rows are independent
 constexpr double kRegularisation = 1e-8;
 constexpr double kRefined = 1e-15;  // residual that is left, as a part of the right-hand side
-constexpr int kMostRefinements = 3;
+constexpr int kMaxRefinements = 3;
 
-constexpr int kMaxProjectionSteps = 20;       // quadratic convergence needs 1 or 2 from a step's error
-constexpr double kStalled = 0.5;              // an iteration that leaves more of an error has failed
-constexpr double kFar = 1000;                 // times the error: few sound mechanisms move farther to mend it
-constexpr double kConverged = 0.2;            // an iteration that leaves less of an error (0.25 at a jam) was sound,
-constexpr double kFarthest = 1e-3;            // if it moved nothing farther than this (m or rad)
-constexpr double kMoreRegular = 1000;         // factor on the regularisation after a failure
-constexpr double kMostRegularisation = 1e-1;  // with it, every direction that is left is a singular one
+constexpr int kMaxProjectionSteps = 20;      // quadratic convergence needs 1 or 2 from a step's error
+constexpr double kStalled = 0.5;             // an iteration that leaves more of an error has failed
+constexpr double kFar = 1000;                // times the error: few sound mechanisms move farther to mend it
+constexpr double kConverged = 0.2;           // an iteration that leaves less of an error (0.25 at a jam) was sound,
+constexpr double kFarthest = 1e-3;           // if it moved nothing farther than this (m or rad)
+constexpr double kMoreRegular = 1000;        // factor on the regularisation after a failure
+constexpr double kMaxRegularisation = 1e-1;  // with it, every direction that is left is a singular one
 
 constexpr double kLeftRoundings = 1e4;          // of constraints after projection, which leaves a few
 constexpr double kJammedRegularisation = 1e-7;  // of the diagonal: 3e-4 of a size from where no motion is left
@@ -46,7 +46,7 @@ double largestOf(const Vec3& vector) {
 }  // namespace
 
 void ConstraintSolver::factorize(const VectorX& state) {
-  placeBodies(bodies_, state, frames_);
+  findBodyFrames(bodies_, state, frames_);
   factorize(state, frames_);
 }
 
@@ -58,15 +58,15 @@ void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFra
   if (areJointsDependent_) factorizeRows(state, frames);
 }
 
-/// Ball joints that do not depend on each other are all that ties bodies.
+/// Ball joints that do not depend on each other are all constraints of the bodies.
 bool ConstraintSolver::hasJointsAlone() const {
-  return constraints_.rods.empty() && constraints_.hinges.empty() && !constraints_.ballJoints.empty() && !leavesOut_ &&
+  return constraints_.rods.empty() && constraints_.hinges.empty() && !constraints_.ballJoints.empty() && !excludes_ &&
          !areJointsDependent_;
 }
 
 void ConstraintSolver::factorizeRows(const VectorX& state, const std::vector<BodyFrame>& frames) {
   isInBlocks_ = false;
-  findRows(constraints_, state, frames, rows_, leftOut_);
+  findRows(constraints_, state, frames, rows_, excluded_);
   if (!hasKnownStructure()) analyze();
   multipliers_.resize(static_cast<Eigen::Index>(rows_.size()));  // blocks may have had others since
   respond(frames);
@@ -82,14 +82,14 @@ void ConstraintSolver::regularize(double regularisation) {
   factor_.factorize(regularDiagonal_, entries_);
 }
 
-void ConstraintSolver::leaveOut(const std::vector<char>& bodies) {
-  leftOut_ = bodies;
-  leavesOut_ = std::any_of(bodies.begin(), bodies.end(), [](char isOut) { return isOut; });
+void ConstraintSolver::exclude(const std::vector<char>& bodies) {
+  excluded_ = bodies;
+  excludes_ = std::any_of(bodies.begin(), bodies.end(), [](char isOut) { return isOut; });
 }
 
-bool ConstraintSolver::isLeftOut(const ConstraintRow& row) const {
-  const auto isOut = [this](int body) { return body != kFixed && leftOut_[static_cast<std::size_t>(body)]; };
-  return !leftOut_.empty() && (isOut(row.bodyA) || isOut(row.bodyB));
+bool ConstraintSolver::isExcluded(const ConstraintRow& row) const {
+  const auto isOut = [this](int body) { return body != kFixed && excluded_[static_cast<std::size_t>(body)]; };
+  return !excluded_.empty() && (isOut(row.bodyA) || isOut(row.bodyB));
 }
 
 bool ConstraintSolver::hasKnownStructure() const {
@@ -165,7 +165,7 @@ void ConstraintSolver::solve() {
   factor_.solve(multipliers_);
   const double wanted = rightHandSide_.lpNorm<Eigen::Infinity>();
   double last = wanted;
-  for (int i = 0; i < kMostRefinements; ++i) {
+  for (int i = 0; i < kMaxRefinements; ++i) {
     findResidual();
     const double residual = correction_.lpNorm<Eigen::Infinity>();
     if (!(residual > kRefined * wanted) || residual > kStalled * last) return;
@@ -207,16 +207,17 @@ void ConstraintSolver::opposeRates(const VectorX& state) {
       multipliers_[static_cast<Eigen::Index>(i)] = -rateOf(rows_[i], state);
 }
 
-const VectorX& ConstraintSolver::constrainAccelerations(VectorX& rate) {
-  opposeRates(rate);
+const VectorX& ConstraintSolver::constrainAccelerations(VectorX& derivative) {
+  opposeRates(derivative);
   if (isInBlocks_)
-    for (std::size_t i = 0; i < joints_.size(); ++i) partOf(multipliers_, i) -= joints_.curvature(i);
+    for (std::size_t i = 0; i < joints_.size(); ++i) partOf(multipliers_, i) -= joints_.velocityProduct(i);
   else
-    for (std::size_t i = 0; i < rows_.size(); ++i) multipliers_[static_cast<Eigen::Index>(i)] -= rows_[i].curvature;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      multipliers_[static_cast<Eigen::Index>(i)] -= rows_[i].velocityProduct;
   solve();
-  addResponse([&rate](int body, const Vec3& linear, const Vec3& angular) {
-    linearVelocity(rate, body) += linear;
-    angularVelocity(rate, body) += angular;
+  addResponse([&derivative](int body, const Vec3& linear, const Vec3& angular) {
+    linearVelocity(derivative, body) += linear;
+    angularVelocity(derivative, body) += angular;
   });
   return multipliers_;
 }
@@ -250,9 +251,9 @@ double ConstraintSolver::project(VectorX& state) {
     if (isSound && left < error) break;  // at the limit of rounding
     state = undisplaced_;
     regularisation *= kMoreRegular;
-    placeBodies(bodies_, state, frames_);
+    findBodyFrames(bodies_, state, frames_);
     factorizeRows(state, frames_);
-    if (regularisation > kMostRegularisation) break;
+    if (regularisation > kMaxRegularisation) break;
     regularize(regularisation);
   }
   constrainVelocities(state);
@@ -300,11 +301,11 @@ bool ConstraintSolver::leaveNoMotion(const VectorX& state, double error) {
 /// no motion, about 0 where it can go on. A direction that is constrained by less than the square root of the
 /// regularisation counts as not constrained: what is asked along it is left.
 double ConstraintSolver::contradiction(const VectorX& state) {
-  placeBodies(bodies_, state, frames_);
+  findBodyFrames(bodies_, state, frames_);
   factorizeRows(state, frames_);
   if (isRegular_) return 0;
   regularize(kJammedRegularisation);
-  for (std::size_t i = 0; i < rows_.size(); ++i) multipliers_[static_cast<Eigen::Index>(i)] = -rows_[i].curvature;
+  for (std::size_t i = 0; i < rows_.size(); ++i) multipliers_[static_cast<Eigen::Index>(i)] = -rows_[i].velocityProduct;
   rightHandSide_ = multipliers_;
   factor_.solve(multipliers_);
   findResidual();
@@ -314,7 +315,7 @@ double ConstraintSolver::contradiction(const VectorX& state) {
     const double residual = std::abs(correction_[static_cast<Eigen::Index>(i)]) / rows_[i].scale;
     if (!(residual * rows_[i].scale > least)) continue;
     left += residual;
-    asked += std::abs(rows_[i].curvature) / rows_[i].scale;
+    asked += std::abs(rows_[i].velocityProduct) / rows_[i].scale;
   }
   return asked > 0 ? left / asked : 0;
 }

@@ -8,10 +8,11 @@
 
 namespace cradle {
 
-/// Solves J M^-1 J^T lambda = b for the rows of a set of constraints and applies M^-1 J^T lambda, by a direct
-/// factorisation: exact at any mass ratio, linear in the length of a chain. Redundant rows are allowed; where they
-/// contradict each other, the contradiction stays as it is. Allocates only when bodies are tied together in another way
-/// than in the call before.
+/// Solves W lambda = b, with the Delassus operator W = J M^-1 J^T of the rows of a set of bilateral constraints, and
+/// applies the impulse response M^-1 J^T lambda, by a direct factorisation (D. Baraff, "Linear-time dynamics using
+/// Lagrange multipliers", SIGGRAPH 1996): exact at any mass ratio, linear in the length of a chain. Redundant rows are
+/// allowed; where they contradict each other, the contradiction stays as it is. Allocates only when bodies are joined
+/// in another way than in the call before.
 class ConstraintSolver {
  public:
   /// Keeps a reference to both; constraints may be added and taken away later.
@@ -21,16 +22,16 @@ class ConstraintSolver {
   bool hasConstraints() const { return !constraints_.empty(); }
 
   /// Leaves out the rows of some bodies from the next factorize or project on.
-  void leaveOut(const std::vector<char>& bodies);
-  bool isLeftOut(const ConstraintRow& row) const;
+  void exclude(const std::vector<char>& bodies);
+  bool isExcluded(const ConstraintRow& row) const;
 
   /// Takes the rows in `state`, in which the bodies have `frames`, and factorises.
   void factorize(const VectorX& state, const std::vector<BodyFrame>& frames);
   void factorize(const VectorX& state);
 
-  /// Adds to the accelerations in `rate` what keeps d^2C/dt^2 = 0. Returns the multipliers: a rod pushes its ends apart
-  /// with the force (N) multiplier x length.
-  const VectorX& constrainAccelerations(VectorX& rate);
+  /// Adds to the accelerations in `derivative` what keeps d^2C/dt^2 = 0. Returns the multipliers: a rod pushes its ends
+  /// apart with the force (N) multiplier x length.
+  const VectorX& constrainAccelerations(VectorX& derivative);
 
   /// Takes out of the velocities what would change C, by the least change of kinetic energy.
   void constrainVelocities(VectorX& state);
@@ -76,8 +77,8 @@ class ConstraintSolver {
 
   const Constraints& constraints_;
   const std::vector<RigidBody>& bodies_;
-  std::vector<char> leftOut_;  // by body, or none
-  bool leavesOut_ = false;     // any of them
+  std::vector<char> excluded_;  // by body, or none
+  bool excludes_ = false;       // any of them
   JointBlocks joints_;
   bool isInBlocks_ = false;          // the last factorisation is that of joints_, not of the rows
   bool areJointsDependent_ = false;  // one of them was singular

@@ -36,7 +36,7 @@ bool isAtCenter(const Attachment& anchor) {
   return anchor.body == kFixed || anchor.point == Vec3::Zero();
 }
 
-/// Filled in where it stands: rods are most of what ties the bodies of many scenes.
+/// Filled in where it stands: rods are most of the bodies' constraints of many scenes.
 void addRow(const RodConstraint& rod, const VectorX& state, const std::vector<BodyFrame>& frames,
             std::vector<ConstraintRow>& rows) {
   const AttachmentMotion a = motionOf(rod.anchorA, state, frames), b = motionOf(rod.anchorB, state, frames);
@@ -45,7 +45,7 @@ void addRow(const RodConstraint& rod, const VectorX& state, const std::vector<Bo
   row.bodyA = rod.anchorA.body, row.bodyB = rod.anchorB.body;
   row.linearA = d, row.linearB = -d;
   row.value = 0.5 * (d.squaredNorm() - rod.length * rod.length);
-  row.curvature = (a.velocity - b.velocity).squaredNorm();
+  row.velocityProduct = (a.velocity - b.velocity).squaredNorm();
   row.scale = rod.length;
   row.rounding = kRounding * rod.length;
   if (isAtCenter(rod.anchorA) && isAtCenter(rod.anchorB)) {
@@ -53,17 +53,17 @@ void addRow(const RodConstraint& rod, const VectorX& state, const std::vector<Bo
     return;
   }
   row.angularA = a.arm.cross(d), row.angularB = -b.arm.cross(d);
-  row.curvature += d.dot(centripetalAcceleration({a, b, spinOf(row.bodyA, state), spinOf(row.bodyB, state)}));
+  row.velocityProduct += d.dot(centripetalAcceleration({a, b, spinOf(row.bodyA, state), spinOf(row.bodyB, state)}));
 }
 
 void addPointRows(const Attachment& anchorA, const Attachment& anchorB, const Ends& ends,
                   std::vector<ConstraintRow>& rows) {
-  const Vec3 error = ends.a.position - ends.b.position, curvature = centripetalAcceleration(ends);
+  const Vec3 error = ends.a.position - ends.b.position, velocityProduct = centripetalAcceleration(ends);
   const double size = ends.a.position.norm() + ends.a.arm.norm() + ends.b.arm.norm();
   for (int i = 0; i < 3; ++i) {
     const Vec3 direction = Vec3::Unit(i);
     rows.push_back({anchorA.body, anchorB.body, direction, ends.a.arm.cross(direction), -direction,
-                    -ends.b.arm.cross(direction), error[i], curvature[i], 1, kRounding * size});
+                    -ends.b.arm.cross(direction), error[i], velocityProduct[i], 1, kRounding * size});
   }
 }
 
@@ -85,11 +85,11 @@ void addAxisRows(const HingeConstraint& hinge, const Ends& ends, const std::vect
 }  // namespace
 
 void findRows(const Constraints& constraints, const VectorX& state, const std::vector<BodyFrame>& frames,
-              std::vector<ConstraintRow>& rows, const std::vector<char>& leftOut) {
-  const auto isOut = [&](const auto& tie) {
-    const int a = tie.anchorA.body, b = tie.anchorB.body;
-    return !leftOut.empty() && ((a != kFixed && leftOut[static_cast<std::size_t>(a)]) ||
-                                (b != kFixed && leftOut[static_cast<std::size_t>(b)]));
+              std::vector<ConstraintRow>& rows, const std::vector<char>& excluded) {
+  const auto isOut = [&](const auto& constraint) {
+    const int a = constraint.anchorA.body, b = constraint.anchorB.body;
+    return !excluded.empty() && ((a != kFixed && excluded[static_cast<std::size_t>(a)]) ||
+                                 (b != kFixed && excluded[static_cast<std::size_t>(b)]));
   };
   rows.clear();
   for (const RodConstraint& rod : constraints.rods)

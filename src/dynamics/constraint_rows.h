@@ -26,7 +26,7 @@ struct HingeConstraint {
   std::array<Vec3, 2> acrossB{};  // unit, orthogonal to the axis and to each other; in body B's frame, or the world
 };
 
-/// Everything that ties bodies together without giving way.
+/// The bilateral constraints of bodies: rods and joints.
 struct Constraints {
   std::vector<RodConstraint> rods;
   std::vector<BallJointConstraint> ballJoints;
@@ -35,31 +35,33 @@ struct Constraints {
   bool empty() const { return rods.empty() && ballJoints.empty() && hinges.empty(); }
 };
 
-/// One scalar constraint C(positions) = 0 at one instant: J v = dC/dt, and J a = -curvature keeps d^2C/dt^2 = 0.
+/// One row of a bilateral constraint C(positions) = 0 at one instant, with the Jacobian J: dC/dt = J v, and
+/// d^2C/dt^2 = J a + (dJ/dt) v, which is 0 for J a = -velocityProduct. (R. Featherstone, "Rigid Body Dynamics
+/// Algorithms", 2008, 3.4)
 struct ConstraintRow {
   int bodyA = kFixed, bodyB = kFixed;
-  Vec3 linearA, angularA, linearB, angularB;  // J, in parts; world frame
-  double value = 0;                           // C
-  double curvature = 0;                       // (dJ/dt) v
+  Vec3 linearA, angularA, linearB, angularB;  // the Jacobian J, in parts; world frame
+  double value = 0;                           // C, the constraint error
+  double velocityProduct = 0;                 // (dJ/dt) v
   double scale = 1;                           // C / scale is the error in m, or rad
   double rounding = 0;                        // m, or rad: an error that arithmetic alone explains
 };
 
 /// The rows of all constraints in `state`, in the order rods, ball joints, hinges. `frames` are the bodies' at that
 /// state. Units: rods C in m^2 and J in m, joints C in m and J without unit, axes of hinges C without unit. Constraints
-/// of bodies marked in `leftOut` have none; it may be empty: none is marked.
+/// of bodies marked in `excluded` have none; it may be empty: none is marked.
 void findRows(const Constraints& constraints, const VectorX& state, const std::vector<BodyFrame>& frames,
-              std::vector<ConstraintRow>& rows, const std::vector<char>& leftOut = {});
+              std::vector<ConstraintRow>& rows, const std::vector<char>& excluded = {});
 
 /// J v of a row for the velocities, or accelerations, in `state`.
 double rateOf(const ConstraintRow& row, const VectorX& state);
 
-/// Calls tie(bodyA, bodyB) for each constraint; either may be kFixed.
-template <class Tie>
-void forEachTie(const Constraints& constraints, const Tie& tie) {
-  for (const RodConstraint& rod : constraints.rods) tie(rod.anchorA.body, rod.anchorB.body);
-  for (const BallJointConstraint& joint : constraints.ballJoints) tie(joint.anchorA.body, joint.anchorB.body);
-  for (const HingeConstraint& hinge : constraints.hinges) tie(hinge.anchorA.body, hinge.anchorB.body);
+/// Calls visit(bodyA, bodyB) for each constraint; either may be kFixed.
+template <class Visit>
+void forEachConstraint(const Constraints& constraints, const Visit& visit) {
+  for (const RodConstraint& rod : constraints.rods) visit(rod.anchorA.body, rod.anchorB.body);
+  for (const BallJointConstraint& joint : constraints.ballJoints) visit(joint.anchorA.body, joint.anchorB.body);
+  for (const HingeConstraint& hinge : constraints.hinges) visit(hinge.anchorA.body, hinge.anchorB.body);
 }
 
 }  // namespace cradle

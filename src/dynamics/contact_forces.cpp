@@ -1,6 +1,6 @@
-// Rows of contacts and ties solved together. Friction of sliding is a part of its normal force, so the response to a
-// multiplier is not the transpose of its row: J M^-1 (J^T + F) lambda = b, F the friction that goes with each normal
-// force (D. Baraff, "Coping with friction for non-penetrating rigid body simulation", SIGGRAPH 1991).
+// Rows of contacts and constraints solved together. Friction of sliding is a part of its normal force, so the response
+// to a multiplier is not the transpose of its row: J M^-1 (J^T + F) lambda = b, F the friction that goes with each
+// normal force (D. Baraff, "Coping with friction for non-penetrating rigid body simulation", SIGGRAPH 1991).
 
 #include "dynamics/contact_forces.h"
 
@@ -15,33 +15,33 @@ std::size_t index(int i) {
 
 ContactSolver::ContactSolver(const std::vector<ContactConstraint>& contacts, const Constraints& constraints,
                              const std::vector<RigidBody>& bodies)
-    : contacts_(contacts), constraints_(constraints), bodies_(bodies), ties_(constraints, bodies) {}
+    : contacts_(contacts), constraints_(constraints), bodies_(bodies), constraintSolver_(constraints, bodies) {}
 
 void ContactSolver::factorize(const VectorX& state, const std::vector<BodyFrame>& frames,
                               const std::vector<char>& resting) {
-  findTieRows(state, frames);
+  findBilateralRows(state, frames);
   if (!hasKnownStructure(resting)) analyze(resting);
   fillRows(state, frames);
   for (Group& group : groups_) {
     couple(group);
     group.solver.factorize(group.rows, group.slides);
   }
-  if (hasFreeTies_) ties_.factorize(state, frames);
+  if (hasFreeConstraints_) constraintSolver_.factorize(state, frames);
 }
 
-void ContactSolver::findTieRows(const VectorX& state, const std::vector<BodyFrame>& frames) {
+void ContactSolver::findBilateralRows(const VectorX& state, const std::vector<BodyFrame>& frames) {
   if (constraints_.empty())
-    tieRows_.clear();
+    bilateralRows_.clear();
   else
-    findRows(constraints_, state, frames, tieRows_);
+    findRows(constraints_, state, frames, bilateralRows_);
 }
 
 void ContactSolver::fillRows(const VectorX& state, const std::vector<BodyFrame>& frames) {
   for (const Group& group : groups_) {
     int row = group.firstRow, tangentRow = group.firstRow + group.positionRows;
     for (const int contact : group.contacts) fillContact(index(contact), row++, tangentRow, state, frames);
-    for (const int tie : group.ties) {
-      putRow(row, tieRows_[index(tie)], frames);
+    for (const int bilateral : group.bilateral) {
+      putRow(row, bilateralRows_[index(bilateral)], frames);
       coupled_[index(row)] = responses_[index(row)];
       ++row;
     }
@@ -51,7 +51,7 @@ void ContactSolver::fillRows(const VectorX& state, const std::vector<BodyFrame>&
 void ContactSolver::fillContact(std::size_t contact, int row, int& tangentRow, const VectorX& state,
                                 const std::vector<BodyFrame>& frames) {
   const ContactConstraint& constraint = contacts_[contact];
-  const ContactPlace& place = places_[contact] = placeOf(constraint, state, frames);
+  const ContactKinematics& place = kinematics_[contact] = kinematicsOf(constraint, state, frames);
   forces_[contact] = {0, Vec3::Zero(), place.normal, place.point, tangentialVelocity(place), Vec3::Zero()};
   putRow(row, normalRow(constraint, place), frames);
   coupled_[index(row)] = responses_[index(row)];
@@ -76,7 +76,7 @@ void ContactSolver::putRow(int row, const ConstraintRow& from, const std::vector
     const double factor = 1 / from.scale;
     for (Vec3* part : {&to.linearA, &to.angularA, &to.linearB, &to.angularB}) *part *= factor;
     to.value *= factor;
-    to.curvature *= factor;
+    to.velocityProduct *= factor;
     to.scale = 1;
   }
   responses_[index(row)] = responseTo(rows_[index(row)], frames);
@@ -84,7 +84,7 @@ void ContactSolver::putRow(int row, const ConstraintRow& from, const std::vector
 
 /// Adds to the response to a normal force that to the friction that goes with it.
 void ContactSolver::addFriction(std::size_t contact, int row, const std::vector<BodyFrame>& frames) {
-  const ContactPlace& place = places_[contact];
+  const ContactKinematics& place = kinematics_[contact];
   const Vec3 force = -contacts_[contact].friction * forces_[contact].slidingDirection;
   ConstraintRow friction;
   friction.bodyA = rows_[index(row)].bodyA;
@@ -152,39 +152,40 @@ double ContactSolver::couple(const ConstraintRow& row, int column, const Respons
 
 /// Adds to velocities, or their rates, what the multipliers of a group's leading rows do.
 void ContactSolver::addResponse(const Group& group, int rows, const std::vector<Response>& responses,
-                                VectorX& rate) const {
+                                VectorX& derivative) const {
   for (int i = group.firstRow; i < group.firstRow + rows; ++i) {
     const double multiplier = multipliers_[index(i)];
     const Response& response = responses[index(i)];
     const ConstraintRow& row = rows_[index(i)];
     if (row.bodyA != kFixed) {
-      linearVelocity(rate, row.bodyA) += multiplier * response.linearA;
-      angularVelocity(rate, row.bodyA) += multiplier * response.angularA;
+      linearVelocity(derivative, row.bodyA) += multiplier * response.linearA;
+      angularVelocity(derivative, row.bodyA) += multiplier * response.angularA;
     }
     if (row.bodyB != kFixed) {
-      linearVelocity(rate, row.bodyB) += multiplier * response.linearB;
-      angularVelocity(rate, row.bodyB) += multiplier * response.angularB;
+      linearVelocity(derivative, row.bodyB) += multiplier * response.linearB;
+      angularVelocity(derivative, row.bodyB) += multiplier * response.angularB;
     }
   }
 }
 
-void ContactSolver::constrainAccelerations(VectorX& rate) {
+void ContactSolver::constrainAccelerations(VectorX& derivative) {
   for (Group& group : groups_) {
     for (int row = group.firstRow; row < group.firstRow + group.rows; ++row)
-      multipliers_[index(row)] = -(rows_[index(row)].curvature + rateOf(rows_[index(row)], rate));
+      multipliers_[index(row)] = -(rows_[index(row)].velocityProduct + rateOf(rows_[index(row)], derivative));
     group.solver.solve(&multipliers_[index(group.firstRow)]);
-    addResponse(group, group.rows, coupled_, rate);
-    takeForces(group, rate);
+    addResponse(group, group.rows, coupled_, derivative);
+    takeForces(group, derivative);
   }
-  if (!hasFreeTies_) return;
-  const VectorX& multipliers = ties_.constrainAccelerations(rate);
+  if (!hasFreeConstraints_) return;
+  const VectorX& multipliers = constraintSolver_.constrainAccelerations(derivative);
   Eigen::Index next = 0;
-  for (std::size_t tie = 0; tie < tieRows_.size(); ++tie)
-    if (!ties_.isLeftOut(tieRows_[tie])) tieMultipliers_[static_cast<Eigen::Index>(tie)] = multipliers[next++];
+  for (std::size_t row = 0; row < bilateralRows_.size(); ++row)
+    if (!constraintSolver_.isExcluded(bilateralRows_[row]))
+      bilateralMultipliers_[static_cast<Eigen::Index>(row)] = multipliers[next++];
 }
 
 /// Notes the forces that go with a group's multipliers, and what friction takes.
-void ContactSolver::takeForces(const Group& group, VectorX& rate) {
+void ContactSolver::takeForces(const Group& group, VectorX& derivative) {
   int row = group.firstRow, tangentRow = group.firstRow + group.positionRows;
   for (const int i : group.contacts) {
     const ContactConstraint& contact = contacts_[index(i)];
@@ -192,20 +193,21 @@ void ContactSolver::takeForces(const Group& group, VectorX& rate) {
     force.normal = multipliers_[index(row++)];
     if (contact.motion == ContactMotion::sliding) {
       force.tangential = -contact.friction * force.normal * force.slidingDirection;
-      frictionEnergy(rate) -= force.tangential.dot(force.tangentialVelocity);
+      frictionEnergy(derivative) -= force.tangential.dot(force.tangentialVelocity);
     }
     if (contact.motion != ContactMotion::sticking) continue;
     for (int k = 0; k < 2; ++k, ++tangentRow)
       force.tangential += multipliers_[index(tangentRow)] * rows_[index(tangentRow)].linearA;
   }
-  for (const int tie : group.ties) tieMultipliers_[tie] = multipliers_[index(row++)] / tieRows_[index(tie)].scale;
+  for (const int bilateral : group.bilateral)
+    bilateralMultipliers_[bilateral] = multipliers_[index(row++)] / bilateralRows_[index(bilateral)].scale;
 }
 
 void ContactSolver::constrainVelocities(VectorX& state) {
   for (Group& group : groups_)
     if (group.slides) group.solver.factorize(group.rows, false);
   constrainGroupVelocities(state);
-  if (hasFreeTies_) ties_.constrainVelocities(state);
+  if (hasFreeConstraints_) constraintSolver_.constrainVelocities(state);
 }
 
 /// Needs the matrices factorised without friction.

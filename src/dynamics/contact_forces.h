@@ -21,9 +21,9 @@ struct ContactForce {
   Vec3 slidingDirection = Vec3::Zero();    // unit, world; zero unless sliding: friction on A is against it
 };
 
-/// Forces of lasting contacts and, with them, of the rods and joints of the same bodies. Bodies joined by contacts and
-/// ties are solved as one dense system, other bodies not at all or by ConstraintSolver: the cost is cubic in the rows
-/// of each group that has a contact, linear in the groups. Redundant rows are allowed; where they contradict each
+/// Forces of active contacts and, with them, of the rods and joints of the same bodies. Bodies joined by contacts and
+/// constraints are solved as one dense system, other bodies not at all or by ConstraintSolver: the cost is cubic in the
+/// rows of each group that has a contact, linear in the groups. Redundant rows are allowed; where they contradict each
 /// other, the contradiction is left as small as it can be. Allocates only when bodies are joined in another way than in
 /// the call before.
 class ContactSolver {
@@ -35,29 +35,30 @@ class ContactSolver {
   /// Takes the rows in `state`, in which the bodies have `frames`, and factorises. `resting` bodies act as fixed.
   void factorize(const VectorX& state, const std::vector<BodyFrame>& frames, const std::vector<char>& resting);
 
-  /// Adds to the accelerations in `rate` what contacts and ties give, and to the energy of friction what sliding takes.
-  /// The accelerations of resting bodies must be zero; they stay so.
-  void constrainAccelerations(VectorX& rate);
+  /// Adds to the accelerations in `derivative` what contacts and constraints give, and to the energy of friction what
+  /// sliding takes. The accelerations of resting bodies must be zero; they stay so.
+  void constrainAccelerations(VectorX& derivative);
 
   /// Of each contact, after constrainAccelerations.
   const std::vector<ContactForce>& forces() const { return forces_; }
 
   /// Of the rows of rods and joints, after constrainAccelerations, as ConstraintSolver gives them.
-  const VectorX& tieMultipliers() const { return tieMultipliers_; }
+  const VectorX& bilateralMultipliers() const { return bilateralMultipliers_; }
 
-  /// Takes out of the velocities what would change gaps and ties, and what makes sticking contacts slide, by the least
-  /// change of kinetic energy.
+  /// Takes out of the velocities what would change gaps and constraints, and what makes sticking contacts slide, by the
+  /// least change of kinetic energy.
   void constrainVelocities(VectorX& state);
 
-  /// Moves the bodies by the least (mass-weighted) motion until no contact has a gap and all ties hold, to rounding;
-  /// then constrains the velocities. Returns the largest error that was found, in m or rad. `resting` bodies stay.
+  /// Moves the bodies by the least (mass-weighted) motion until no contact has a gap and all constraints hold, to
+  /// rounding; then constrains the velocities. Returns the largest error that was found, in m or rad. `resting` bodies
+  /// stay.
   double project(VectorX& state, const std::vector<char>& resting);
 
  private:
-  /// Bodies joined by contacts and ties, at least one of them a contact. Its rows stand one after another: the gaps of
-  /// its contacts, its ties, then two for each contact that sticks.
+  /// Bodies joined by contacts and constraints, at least one of them a contact. Its rows stand one after another: the
+  /// gaps of its contacts, its constraints, then two for each contact that sticks.
   struct Group {
-    std::vector<int> bodies, contacts, ties;  // ties: indices into tieRows_
+    std::vector<int> bodies, contacts, bilateral;  // constraints: indices into bilateralRows_
     int firstRow = 0, positionRows = 0, rows = 0;
     bool slides = false;
     bool isPlaced = false;  // by project, as well as it can be
@@ -76,7 +77,7 @@ class ContactSolver {
     }
   };
 
-  void findTieRows(const VectorX& state, const std::vector<BodyFrame>& frames);
+  void findBilateralRows(const VectorX& state, const std::vector<BodyFrame>& frames);
   bool hasKnownStructure(const std::vector<char>& resting) const;
   void analyze(const std::vector<char>& resting);
   void numberGroups();
@@ -92,8 +93,8 @@ class ContactSolver {
   void couple(Group& group);
   double couple(const ConstraintRow& row, int column, const Response& response) const;
 
-  void addResponse(const Group& group, int rows, const std::vector<Response>& responses, VectorX& rate) const;
-  void takeForces(const Group& group, VectorX& rate);
+  void addResponse(const Group& group, int rows, const std::vector<Response>& responses, VectorX& derivative) const;
+  void takeForces(const Group& group, VectorX& derivative);
 
   void constrainGroupVelocities(VectorX& state);
   void placeRows(const VectorX& state, const std::vector<char>& resting);
@@ -105,22 +106,22 @@ class ContactSolver {
   const std::vector<ContactConstraint>& contacts_;
   const Constraints& constraints_;
   const std::vector<RigidBody>& bodies_;
-  ConstraintSolver ties_;  // of bodies without a contact
-  bool hasFreeTies_ = false;
+  ConstraintSolver constraintSolver_;  // of bodies without a contact
+  bool hasFreeConstraints_ = false;
 
-  std::vector<Joint> joints_;  // of contacts, then of rows of ties
+  std::vector<Joint> joints_;  // of contacts, then of rows of constraints
   std::vector<char> resting_;
   std::vector<int> groupOfBody_;  // -1: no contact
   std::vector<Group> groups_;
 
-  std::vector<ContactPlace> places_;
+  std::vector<ContactKinematics> kinematics_;
   std::vector<ContactForce> forces_;
-  std::vector<ConstraintRow> tieRows_;
+  std::vector<ConstraintRow> bilateralRows_;
   std::vector<ConstraintRow> rows_;
   std::vector<Response> responses_;  // M^-1 J^T
   std::vector<Response> coupled_;    // the same with friction
   std::vector<double> multipliers_;
-  VectorX tieMultipliers_, undisplaced_, displacement_;
+  VectorX bilateralMultipliers_, undisplaced_, displacement_;
   std::vector<BodyFrame> frames_;
 };
 

@@ -1,4 +1,5 @@
-// Which rows ContactSolver solves together: bodies joined by contacts and ties, found anew when the joining changes.
+// Which rows ContactSolver solves together: bodies joined by contacts and constraints, found anew when the joining
+// changes.
 
 #include <algorithm>
 #include <numeric>
@@ -20,17 +21,18 @@ int rootOf(std::vector<int>& parents, int body) {
 }  // namespace
 
 bool ContactSolver::hasKnownStructure(const std::vector<char>& resting) const {
-  // One contact less and one tie more may join the same bodies.
-  if (forces_.size() != contacts_.size() || static_cast<std::size_t>(tieMultipliers_.size()) != tieRows_.size())
+  // One contact less and one constraint more may join the same bodies.
+  if (forces_.size() != contacts_.size() ||
+      static_cast<std::size_t>(bilateralMultipliers_.size()) != bilateralRows_.size())
     return false;
   if (resting != resting_) return false;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const ContactConstraint& contact = contacts_[i];
     if (!(joints_[i] == Joint{contact.centerA.body, contact.surfaceB.body, contact.motion})) return false;
   }
-  for (std::size_t i = 0; i < tieRows_.size(); ++i) {
+  for (std::size_t i = 0; i < bilateralRows_.size(); ++i) {
     const Joint& joint = joints_[contacts_.size() + i];
-    if (joint.bodyA != tieRows_[i].bodyA || joint.bodyB != tieRows_[i].bodyB) return false;
+    if (joint.bodyA != bilateralRows_[i].bodyA || joint.bodyB != bilateralRows_[i].bodyB) return false;
   }
   return true;
 }
@@ -45,7 +47,8 @@ void ContactSolver::analyze(const std::vector<char>& resting) {
   joints_.clear();
   for (const ContactConstraint& contact : contacts_)
     joints_.push_back({contact.centerA.body, contact.surfaceB.body, contact.motion});
-  for (const ConstraintRow& row : tieRows_) joints_.push_back({row.bodyA, row.bodyB, ContactMotion::frictionless});
+  for (const ConstraintRow& row : bilateralRows_)
+    joints_.push_back({row.bodyA, row.bodyB, ContactMotion::frictionless});
   numberGroups();
   sizeRows();
 }
@@ -75,7 +78,8 @@ void ContactSolver::numberGroups() {
       groups_.emplace_back();
     }
     Group& members = groups_[static_cast<std::size_t>(group)];
-    (isContact ? members.contacts : members.ties).push_back(static_cast<int>(isContact ? i : i - contacts_.size()));
+    (isContact ? members.contacts : members.bilateral)
+        .push_back(static_cast<int>(isContact ? i : i - contacts_.size()));
   }
   groupOfBody_.assign(bodies_.size(), -1);
   for (std::size_t body = 0; body < bodies_.size(); ++body) {
@@ -89,7 +93,7 @@ void ContactSolver::sizeRows() {
   int rows = 0;
   for (Group& group : groups_) {
     group.firstRow = rows;
-    group.positionRows = static_cast<int>(group.contacts.size() + group.ties.size());
+    group.positionRows = static_cast<int>(group.contacts.size() + group.bilateral.size());
     group.rows = group.positionRows;
     for (const int contact : group.contacts) {
       const ContactMotion motion = contacts_[static_cast<std::size_t>(contact)].motion;
@@ -104,14 +108,14 @@ void ContactSolver::sizeRows() {
   responses_.resize(size);
   coupled_.resize(size);
   multipliers_.resize(size);
-  places_.resize(contacts_.size());
+  kinematics_.resize(contacts_.size());
   forces_.assign(contacts_.size(), {});
-  tieMultipliers_.setZero(static_cast<Eigen::Index>(tieRows_.size()));
+  bilateralMultipliers_.setZero(static_cast<Eigen::Index>(bilateralRows_.size()));
   std::vector<char> isGrouped(bodies_.size());
   for (std::size_t body = 0; body < bodies_.size(); ++body) isGrouped[body] = groupOfBody_[body] >= 0;
-  ties_.leaveOut(isGrouped);
-  hasFreeTies_ =
-      std::any_of(tieRows_.begin(), tieRows_.end(), [this](const ConstraintRow& row) { return !ties_.isLeftOut(row); });
+  constraintSolver_.exclude(isGrouped);
+  hasFreeConstraints_ = std::any_of(bilateralRows_.begin(), bilateralRows_.end(),
+                                    [this](const ConstraintRow& row) { return !constraintSolver_.isExcluded(row); });
 }
 
 }  // namespace cradle

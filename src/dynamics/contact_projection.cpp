@@ -1,4 +1,5 @@
-// Newton's method on gaps and ties, group by group. Directions in which rows depend on each other are left alone.
+// Newton's method on gaps and constraints, group by group. Directions in which rows depend on each other are left
+// alone.
 
 #include <algorithm>
 #include <cmath>
@@ -36,14 +37,14 @@ double ContactSolver::project(VectorX& state, const std::vector<char>& resting) 
     couple(group);
     group.solver.factorize(group.rows, false);
   }
-  if (hasFreeTies_) found = std::max(found, ties_.project(state));
+  if (hasFreeConstraints_) found = std::max(found, constraintSolver_.project(state));
   constrainGroupVelocities(state);
   return found;
 }
 
 void ContactSolver::placeRows(const VectorX& state, const std::vector<char>& resting) {
-  placeBodies(bodies_, state, frames_);
-  findTieRows(state, frames_);
+  findBodyFrames(bodies_, state, frames_);
+  findBilateralRows(state, frames_);
   if (!hasKnownStructure(resting)) analyze(resting);
   fillRows(state, frames_);
 }

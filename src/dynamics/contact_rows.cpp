@@ -1,16 +1,15 @@
-// Kinematics of a ball on a face, a ball or an edge, and of a disc's rim on a face. The rows are those of the relative
-// velocity of the bodies' material at the point of contact; their curvature terms let that point move over both
-// surfaces (rolling), and the normal turn.
+// Kinematics of a sphere on a face, a sphere or an edge, and of a disc's rim on a face. The rows are those of the
+// relative velocity of the bodies' material at the point of contact; their velocityProduct terms let that point move
+// over both surfaces (rolling), and the normal turn.
 //
-// With n out of B, c the centre of A's ball, a = c - r_A n - x_A and b = c - r_A n - x_B the arms, u the velocity:
+// With n out of B, c the centre of A's sphere, a = c - r_A n - x_A and b = c - r_A n - x_B the arms, u the velocity:
 //   u = v_A + w_A x a - v_B - w_B x b,   gap' = n.u,   gap'' = n'.u + n.u',
 //   u' = J (accelerations) + w_A x a' - w_B x b',   a' = w_A x (c - x_A) - r_A n',   b' = a' + v_A - v_B,
-// n' = w_B x n on a face, and the part of the centres' relative velocity across n over their distance on a ball. On an
-// edge along e, s = c - b less its part along e takes the place of the centres' difference: s' = w - w_e with
-// w_e = e (e.w) + e' (e.(c - b)) + e (e'.(c - b)), w = (c - b)'.
-// A disc across the unit vector d touches a face by c - r_A m, m = (n - (n.d) d) / |n - (n.d) d|: m and m' stand for n
-// and n' in the arms then.
-// Tangential: the rate of u - n (n.u) has the part u' - n' (n.u) along the surfaces, whatever spans them.
+// n' = w_B x n on a face, and the part of the centres' relative velocity across n over their distance on a sphere. On
+// an edge along e, s = c - b less its part along e takes the place of the centres' difference: s' = w - w_e with w_e =
+// e (e.w) + e' (e.(c - b)) + e (e'.(c - b)), w = (c - b)'. A disc across the unit vector d touches a face by c - r_A m,
+// m = (n - (n.d) d) / |n - (n.d) d|: m and m' stand for n and n' in the arms then. Tangential: the rate of u - n (n.u)
+// has the part u' - n' (n.u) along the surfaces, whatever spans them.
 
 #include "dynamics/contact_rows.h"
 
@@ -50,7 +49,7 @@ Attachment attachmentAt(int body, const Vec3& point, const VectorX& state) {
 
 /// Normal, its rate, the gap and B's lever: what depends on the kind of B's surface.
 void placeNormal(const ContactConstraint& contact, const AttachmentMotion& a, const AttachmentMotion& b,
-                 const Vec3& spinB, const std::vector<BodyFrame>& frames, ContactPlace& place) {
+                 const Vec3& spinB, const std::vector<BodyFrame>& frames, ContactKinematics& place) {
   const Vec3 apart = a.position - b.position;
   if (isFace(contact.radiusB)) {
     place.normal = turned(contact.surfaceB.body, contact.normalB, frames);
@@ -76,12 +75,12 @@ bool isRim(const ContactConstraint& contact) {
   return !contact.rimAxisA.isZero(0);
 }
 
-/// From the place where A touches to the centre of its ball or disc (m), and the rate of that (m/s).
+/// From the place where A touches to the centre of its sphere or disc (m), and the rate of that (m/s).
 struct Ascent {
   Vec3 way, rate;
 };
 
-Ascent ascentOf(const ContactConstraint& contact, const ContactPlace& place, const Vec3& spinA,
+Ascent ascentOf(const ContactConstraint& contact, const ContactKinematics& place, const Vec3& spinA,
                 const std::vector<BodyFrame>& frames) {
   const double radius = contact.radiusA;
   if (!isRim(contact)) return {radius * place.normal, radius * place.normalRate};
@@ -102,10 +101,10 @@ Vec3 across(const Vec3& n) {
   return {1 + sign * n.x() * part, sign * n.y() * part, -sign * n.x()};
 }
 
-ConstraintRow tangentRow(const ContactConstraint& contact, const ContactPlace& place, const Vec3& direction) {
+ConstraintRow tangentRow(const ContactConstraint& contact, const ContactKinematics& place, const Vec3& direction) {
   ConstraintRow row{contact.centerA.body, contact.surfaceB.body,       direction, place.armA.cross(direction),
                     -direction,           -place.armB.cross(direction)};
-  row.curvature = direction.dot(place.drift) - direction.dot(place.normalRate) * place.normal.dot(place.velocity);
+  row.velocityProduct = direction.dot(place.drift) - direction.dot(place.normalRate) * place.normal.dot(place.velocity);
   return row;
 }
 
@@ -140,12 +139,13 @@ void setSlidingDirection(ContactConstraint& contact, const Vec3& direction, cons
   contact.slidingDirection = inFrameOf(contact.surfaceB.body, direction, state);
 }
 
-ContactPlace placeOf(const ContactConstraint& contact, const VectorX& state, const std::vector<BodyFrame>& frames) {
+ContactKinematics kinematicsOf(const ContactConstraint& contact, const VectorX& state,
+                               const std::vector<BodyFrame>& frames) {
   const int bodyA = contact.centerA.body, bodyB = contact.surfaceB.body;
   const AttachmentMotion a = motionOf(contact.centerA, state, frames), b = motionOf(contact.surfaceB, state, frames);
   const Vec3 spinA = spinOf(bodyA, state), spinB = spinOf(bodyB, state);
   const Vec3 velocity = velocityOf(bodyA, state) - velocityOf(bodyB, state);
-  ContactPlace place;
+  ContactKinematics place;
   placeNormal(contact, a, b, spinB, frames, place);
   const Ascent ascent = ascentOf(contact, place, spinA, frames);
   place.leverA = a.arm.cross(place.normal);
@@ -163,13 +163,13 @@ ContactPlace placeOf(const ContactConstraint& contact, const VectorX& state, con
   return place;
 }
 
-Vec3 tangentialVelocity(const ContactPlace& place) {
+Vec3 tangentialVelocity(const ContactKinematics& place) {
   return place.velocity - place.velocity.dot(place.normal) * place.normal;
 }
 
 // Mirrored rather than reversed: a velocity that turns to the other side with a part across lets the direction follow
 // without a jump.
-Vec3 slidingDirection(const ContactConstraint& contact, const ContactPlace& place,
+Vec3 slidingDirection(const ContactConstraint& contact, const ContactKinematics& place,
                       const std::vector<BodyFrame>& frames) {
   const Vec3 given = turned(contact.surfaceB.body, contact.slidingDirection, frames);
   const Vec3 velocity = tangentialVelocity(place);
@@ -181,16 +181,16 @@ Vec3 slidingDirection(const ContactConstraint& contact, const ContactPlace& plac
   return (velocity + (std::abs(along) - along + weight) * side).normalized();
 }
 
-ConstraintRow normalRow(const ContactConstraint& contact, const ContactPlace& place) {
+ConstraintRow normalRow(const ContactConstraint& contact, const ContactKinematics& place) {
   ConstraintRow row{contact.centerA.body, contact.surfaceB.body, place.normal,
                     place.leverA,         -place.normal,         -place.leverB};
   row.value = place.gap;
-  row.curvature = place.normalRate.dot(place.velocity) + place.normal.dot(place.drift);
+  row.velocityProduct = place.normalRate.dot(place.velocity) + place.normal.dot(place.drift);
   row.rounding = place.rounding;
   return row;
 }
 
-std::array<ConstraintRow, 2> tangentRows(const ContactConstraint& contact, const ContactPlace& place) {
+std::array<ConstraintRow, 2> tangentRows(const ContactConstraint& contact, const ContactKinematics& place) {
   const Vec3 first = across(place.normal);
   return {tangentRow(contact, place, first), tangentRow(contact, place, place.normal.cross(first))};
 }

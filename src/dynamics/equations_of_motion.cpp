@@ -5,8 +5,8 @@
 namespace cradle {
 namespace {
 
-/// World rate of the angular velocity of a body without torque: body frame I w' = -w x I w. The rate of w is the same
-/// vector in both frames, since w x w = 0.
+/// World derivative of the angular velocity of a body without torque: body frame I w' = -w x I w. The derivative of w
+/// is the same vector in both frames, since w x w = 0.
 Vec3 gyroscopicAcceleration(const RigidBody& body, const Mat3& worldFromBody, const Vec3& angularVelocity) {
   const Vec3 spin = worldFromBody.transpose() * angularVelocity;
   return worldFromBody * (body.inverseInertia * -spin.cross(body.inertiaTensor * spin));
@@ -21,32 +21,33 @@ EquationsOfMotion::EquationsOfMotion(const Mechanism& mechanism)
       contactSolver_(mechanism.contacts, mechanism.constraints, mechanism.bodies) {}
 
 RightHandSide EquationsOfMotion::rightHandSide() {
-  return {[this](double, const VectorX& state, VectorX& rate) { evaluate(state, rate); },
-          [this](const VectorX& state, VectorX& rate) { evaluatePoseRates(mechanism_.bodies, state, rate); },
-          static_cast<Eigen::Index>(mechanism_.bodies.size()) * kPoseSize};
+  return {
+      [this](double, const VectorX& state, VectorX& derivative) { evaluate(state, derivative); },
+      [this](const VectorX& state, VectorX& derivative) { evaluatePoseRates(mechanism_.bodies, state, derivative); },
+      static_cast<Eigen::Index>(mechanism_.bodies.size()) * kPoseSize};
 }
 
-void EquationsOfMotion::evaluate(const VectorX& state, VectorX& rate) {
+void EquationsOfMotion::evaluate(const VectorX& state, VectorX& derivative) {
   ++evaluations_;
-  rate.setZero(state.size());
-  placeBodies(mechanism_.bodies, state, frames_);
-  evaluatePoseRates(mechanism_.bodies, state, rate);
-  applyGravityAndGyroscopicTerms(state, rate);
-  if (!mechanism_.springs.empty()) applySprings(state, rate);
-  if (!mechanism_.pushes.empty()) applyPushes(state, rate);
-  applyConstraints(state, rate);
-  holdResting(state, rate);
+  derivative.setZero(state.size());
+  findBodyFrames(mechanism_.bodies, state, frames_);
+  evaluatePoseRates(mechanism_.bodies, state, derivative);
+  applyGravityAndGyroscopicTerms(state, derivative);
+  if (!mechanism_.springs.empty()) applySprings(state, derivative);
+  if (!mechanism_.pushes.empty()) applyPushes(state, derivative);
+  applyConstraints(state, derivative);
+  holdResting(state, derivative);
 }
 
-void EquationsOfMotion::applyConstraints(const VectorX& state, VectorX& rate) {
+void EquationsOfMotion::applyConstraints(const VectorX& state, VectorX& derivative) {
   if (!mechanism_.contacts.empty()) {
-    holdResting(state, rate);
+    holdResting(state, derivative);
     contactSolver_.factorize(state, frames_, resting_);
-    contactSolver_.constrainAccelerations(rate);
-    multipliers_ = contactSolver_.tieMultipliers();
+    contactSolver_.constrainAccelerations(derivative);
+    multipliers_ = contactSolver_.bilateralMultipliers();
   } else if (solver_.hasConstraints()) {
     solver_.factorize(state, frames_);
-    placeMultipliers(solver_.constrainAccelerations(rate));
+    placeMultipliers(solver_.constrainAccelerations(derivative));
   }
 }
 
@@ -57,9 +58,9 @@ void EquationsOfMotion::placeMultipliers(const VectorX& multipliers) {
                                                  5 * constraints.hinges.size()));
   const auto rests = [this](int body) { return body != kFixed && resting_[static_cast<std::size_t>(body)]; };
   Eigen::Index next = 0, row = 0;
-  const auto place = [&](const auto& ties, Eigen::Index rows) {
-    for (const auto& tie : ties) {
-      if (!rests(tie.anchorA.body) && !rests(tie.anchorB.body)) {
+  const auto place = [&](const auto& joints, Eigen::Index rows) {
+    for (const auto& joint : joints) {
+      if (!rests(joint.anchorA.body) && !rests(joint.anchorB.body)) {
         multipliers_.segment(row, rows) = multipliers.segment(next, rows);
         next += rows;
       }
@@ -71,12 +72,13 @@ void EquationsOfMotion::placeMultipliers(const VectorX& multipliers) {
 
 void EquationsOfMotion::setResting(std::size_t body, bool resting) {
   resting_[body] = resting;
-  solver_.leaveOut(resting_);
+  solver_.exclude(resting_);
 }
 
-void EquationsOfMotion::holdResting(const VectorX& state, VectorX& rate) const {
+void EquationsOfMotion::holdResting(const VectorX& state, VectorX& derivative) const {
   for (std::size_t body = 0; body < resting_.size(); ++body)
-    if (resting_[body]) rate.segment<kVelocitySize>(velocityOffset(state, static_cast<Eigen::Index>(body))).setZero();
+    if (resting_[body])
+      derivative.segment<kVelocitySize>(velocityOffset(state, static_cast<Eigen::Index>(body))).setZero();
 }
 
 double EquationsOfMotion::project(VectorX& state) {
@@ -84,50 +86,51 @@ double EquationsOfMotion::project(VectorX& state) {
   return solver_.hasConstraints() ? solver_.project(state) : 0;
 }
 
-void EquationsOfMotion::applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& rate) const {
+void EquationsOfMotion::applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& derivative) const {
   for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
-    linearVelocity(rate, body) = mechanism_.gravity;
+    linearVelocity(derivative, body) = mechanism_.gravity;
     if (mechanism_.bodies[i].isSpherical) continue;
     const Vec3 spin = angularVelocity(state, body);
     if (spin != Vec3::Zero())
-      angularVelocity(rate, body) = gyroscopicAcceleration(mechanism_.bodies[i], frames_[i].rotation, spin);
+      angularVelocity(derivative, body) = gyroscopicAcceleration(mechanism_.bodies[i], frames_[i].rotation, spin);
   }
 }
 
-void EquationsOfMotion::applySprings(const VectorX& state, VectorX& rate) const {
+void EquationsOfMotion::applySprings(const VectorX& state, VectorX& derivative) const {
   for (const SpringForce& spring : mechanism_.springs) {
     const AttachmentMotion a = motionOf(spring.anchorA, state, frames_), b = motionOf(spring.anchorB, state, frames_);
     const SpringPull pull = pullOf(spring, a, b);
-    addForce(spring.anchorA.body, a.arm, pull.forceOnA, rate);
-    addForce(spring.anchorB.body, b.arm, -pull.forceOnA, rate);
-    dampingEnergy(rate) += pull.dissipation;
+    addForce(spring.anchorA.body, a.arm, pull.forceOnA, derivative);
+    addForce(spring.anchorB.body, b.arm, -pull.forceOnA, derivative);
+    dampingEnergy(derivative) += pull.dissipation;
   }
 }
 
-void EquationsOfMotion::applyPushes(const VectorX& state, VectorX& rate) const {
+void EquationsOfMotion::applyPushes(const VectorX& state, VectorX& derivative) const {
   for (const PushForce& push : mechanism_.pushes) {
-    addForce(push.point.body, motionOf(push.point, state, frames_).arm, push.force, rate);
-    pushWork(rate) += powerOf(push, state);
+    addForce(push.point.body, motionOf(push.point, state, frames_).arm, push.force, derivative);
+    pushWork(derivative) += powerOf(push, state);
   }
 }
 
 /// Adds the accelerations that a force (N, world) at `arm` (m, world) gives a body to its velocity rates.
-void EquationsOfMotion::addForce(int body, const Vec3& arm, const Vec3& force, VectorX& rate) const {
+void EquationsOfMotion::addForce(int body, const Vec3& arm, const Vec3& force, VectorX& derivative) const {
   if (body == kFixed) return;
   const std::size_t index = static_cast<std::size_t>(body);
-  linearVelocity(rate, body) += mechanism_.bodies[index].inverseMass * force;
-  if (mechanism_.bodies[index].turns) angularVelocity(rate, body) += frames_[index].inverseInertia * arm.cross(force);
+  linearVelocity(derivative, body) += mechanism_.bodies[index].inverseMass * force;
+  if (mechanism_.bodies[index].turns)
+    angularVelocity(derivative, body) += frames_[index].inverseInertia * arm.cross(force);
 }
 
-void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& state, VectorX& rate) {
+void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& state, VectorX& derivative) {
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
-    centerOfMass(rate, body) = linearVelocity(state, body);
+    centerOfMass(derivative, body) = linearVelocity(state, body);
     const Vec3 spin = angularVelocity(state, body);
     if (!bodies[static_cast<std::size_t>(body)].turns || spin == Vec3::Zero())
-      rate.segment<4>(body * kPoseSize + 3).setZero();
+      derivative.segment<4>(body * kPoseSize + 3).setZero();
     else
-      setOrientation(rate, body, orientationRate(orientation(state, body), spin));
+      setOrientation(derivative, body, orientationRate(orientation(state, body), spin));
   }
 }
 

@@ -27,8 +27,8 @@ class EquationsOfMotion {
   /// Keeps a reference to `mechanism`.
   explicit EquationsOfMotion(const Mechanism& mechanism);
 
-  /// State rate. Allocates only in its first call.
-  void evaluate(const VectorX& state, VectorX& rate);
+  /// State derivative. Allocates only in its first call.
+  void evaluate(const VectorX& state, VectorX& derivative);
 
   void setResting(std::size_t body, bool resting);
   bool isResting(std::size_t body) const { return resting_[body] != 0; }
@@ -53,13 +53,13 @@ class EquationsOfMotion {
   RightHandSide rightHandSide();
 
  private:
-  void applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& rate) const;
-  void applySprings(const VectorX& state, VectorX& rate) const;
-  void applyPushes(const VectorX& state, VectorX& rate) const;
-  void applyConstraints(const VectorX& state, VectorX& rate);
+  void applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& derivative) const;
+  void applySprings(const VectorX& state, VectorX& derivative) const;
+  void applyPushes(const VectorX& state, VectorX& derivative) const;
+  void applyConstraints(const VectorX& state, VectorX& derivative);
   void placeMultipliers(const VectorX& multipliers);
-  void holdResting(const VectorX& state, VectorX& rate) const;
-  void addForce(int body, const Vec3& arm, const Vec3& force, VectorX& rate) const;
+  void holdResting(const VectorX& state, VectorX& derivative) const;
+  void addForce(int body, const Vec3& arm, const Vec3& force, VectorX& derivative) const;
 
   const Mechanism& mechanism_;
   std::vector<char> resting_;
@@ -70,7 +70,8 @@ class EquationsOfMotion {
   long evaluations_ = 0;
 };
 
-/// Rates of positions and orientations alone, from the velocities in `state`: writes the leading entries of `rate`.
-void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& state, VectorX& rate);
+/// Rates of positions and orientations alone, from the velocities in `state`: writes the leading entries of
+/// `derivative`.
+void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& state, VectorX& derivative);
 
 }  // namespace cradle

@@ -22,8 +22,8 @@ namespace {
 using std::numbers::pi;
 
 QuarterPeriods quarterPeriods(const Polhode& polhode, const JacobiElliptic& elliptic) {
-  constexpr double kLeastModulus = 1e-145;  // with less, every term that has K' in it vanishes
-  if (polhode.modulus < kLeastModulus) return {elliptic.quarterPeriod(), std::numeric_limits<double>::infinity()};
+  constexpr double kMinModulus = 1e-145;  // with less, every term that has K' in it vanishes
+  if (polhode.modulus < kMinModulus) return {elliptic.quarterPeriod(), std::numeric_limits<double>::infinity()};
   return {elliptic.quarterPeriod(), JacobiElliptic(polhode.modulus).quarterPeriod()};
 }
 
@@ -37,8 +37,8 @@ ThetaPhase thetaOf(const Polhode& polhode, const QuarterPeriods& periods) {
 
 /// An angle that stays finite however long one waits.
 double angleAfter(double time, double rate) {
-  constexpr double kMost = 1e300;
-  return std::clamp(rate * time, -kMost, kMost);
+  constexpr double kMax = 1e300;
+  return std::clamp(rate * time, -kMax, kMax);
 }
 
 }  // namespace

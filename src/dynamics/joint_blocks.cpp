@@ -31,8 +31,8 @@ double JointBlocks::factorize(const std::vector<BallJointConstraint>& joints, co
                               const VectorX& state, const std::vector<BodyFrame>& frames) {
   if (!hasKnownStructure(joints)) analyze(joints);
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    place(joints[i].anchorA, bodies, state, frames, ties_[i].a);
-    place(joints[i].anchorB, bodies, state, frames, ties_[i].b);
+    place(joints[i].anchorA, bodies, state, frames, joints_[i].a);
+    place(joints[i].anchorB, bodies, state, frames, joints_[i].b);
   }
   fill();
   return eliminate();
@@ -48,7 +48,7 @@ bool JointBlocks::hasKnownStructure(const std::vector<BallJointConstraint>& join
 void JointBlocks::analyze(const std::vector<BallJointConstraint>& joints) {
   structure_.clear();
   for (const BallJointConstraint& joint : joints) structure_.emplace_back(joint.anchorA.body, joint.anchorB.body);
-  ties_.assign(joints.size(), {});
+  joints_.assign(joints.size(), {});
   pivots_.assign(joints.size(), {});
   findCouplings();
   findFill();
@@ -143,20 +143,20 @@ void JointBlocks::fill() {
     if (row.turns && column.turns) block -= sign * crossed(row.arm, column.turn);
   };
   std::fill(blocks_.begin(), blocks_.end(), Mat3::Zero());
-  for (std::size_t i = 0; i < ties_.size(); ++i) {
-    const Tie& tie = ties_[i];
-    if (tie.a.body != kFixed) couple(tie.a, tie.a, 1, blocks_[i]);
-    if (tie.b.body != kFixed) couple(tie.b, tie.b, 1, blocks_[i]);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const JointSides& joint = joints_[i];
+    if (joint.a.body != kFixed) couple(joint.a, joint.a, 1, blocks_[i]);
+    if (joint.b.body != kFixed) couple(joint.b, joint.b, 1, blocks_[i]);
   }
   for (const Coupling& coupling : couplings_) {
-    const Tie &row = ties_[coupling.row], &column = ties_[coupling.column];
+    const JointSides &row = joints_[coupling.row], &column = joints_[coupling.column];
     couple(coupling.rowIsA ? row.a : row.b, coupling.columnIsA ? column.a : column.b,
            coupling.rowIsA == coupling.columnIsA ? 1 : -1, blocks_[coupling.block]);
   }
 }
 
 double JointBlocks::eliminate() {
-  for (std::size_t i = 0; i < ties_.size(); ++i) pivots_[i].before = blocks_[i].diagonal();
+  for (std::size_t i = 0; i < joints_.size(); ++i) pivots_[i].before = blocks_[i].diagonal();
   double least = 1;
   for (const Column& column : columns_) {
     least = std::min(least, findPivot(column.joint));
@@ -212,7 +212,7 @@ void JointBlocks::solve(VectorX& x) const {
 }
 
 double JointBlocks::rounding(std::size_t joint) const {
-  const auto& [a, b] = ties_[joint];
+  const auto& [a, b] = joints_[joint];
   return kRounding * (a.position.norm() + a.arm.norm() + b.arm.norm());
 }
 
@@ -223,7 +223,7 @@ Vec3 JointBlocks::rateOf(std::size_t joint, const VectorX& state) const {
     if (side.turns) velocity += Vec3(angularVelocity(state, side.body)).cross(side.arm);
     return velocity;
   };
-  return velocityOf(ties_[joint].a) - velocityOf(ties_[joint].b);
+  return velocityOf(joints_[joint].a) - velocityOf(joints_[joint].b);
 }
 
 }  // namespace cradle

@@ -8,7 +8,7 @@
 namespace cradle {
 
 /// J M^-1 J^T of ball joints alone, by blocks of 3 x 3: one for each joint, and one for each two that share a body.
-/// Three to four times as cheap as the same rows one by one. Allocates only when bodies are tied together in another
+/// Three to four times as cheap as the same rows one by one. Allocates only when bodies are joined in another
 /// way than in the call before.
 class JointBlocks {
  public:
@@ -20,11 +20,11 @@ class JointBlocks {
   /// Overwrites a right-hand side, three entries a joint, with the solution.
   void solve(VectorX& x) const;
 
-  std::size_t size() const { return ties_.size(); }
-  Vec3 value(std::size_t joint) const { return ties_[joint].a.position - ties_[joint].b.position; }  // C, m
+  std::size_t size() const { return joints_.size(); }
+  Vec3 value(std::size_t joint) const { return joints_[joint].a.position - joints_[joint].b.position; }  // C, m
 
   /// (dJ/dt) v, m/s^2
-  Vec3 curvature(std::size_t joint) const { return ties_[joint].a.centripetal - ties_[joint].b.centripetal; }
+  Vec3 velocityProduct(std::size_t joint) const { return joints_[joint].a.centripetal - joints_[joint].b.centripetal; }
 
   /// m: an error of a joint that arithmetic alone explains.
   double rounding(std::size_t joint) const;
@@ -35,11 +35,11 @@ class JointBlocks {
   /// Calls add(body, linear, angular) with the parts of M^-1 J^T multipliers, joint by joint.
   template <class Add>
   void addResponse(const VectorX& multipliers, const Add& add) const {
-    for (std::size_t i = 0; i < ties_.size(); ++i) {
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
       const Vec3 force = multipliers.segment<3>(static_cast<Eigen::Index>(3 * i));
-      const Tie& tie = ties_[i];
-      if (tie.a.body != kFixed) add(tie.a.body, tie.a.inverseMass * force, tie.a.turned(force));
-      if (tie.b.body != kFixed) add(tie.b.body, -tie.b.inverseMass * force, Vec3(-tie.b.turned(force)));
+      const JointSides& joint = joints_[i];
+      if (joint.a.body != kFixed) add(joint.a.body, joint.a.inverseMass * force, joint.a.turned(force));
+      if (joint.b.body != kFixed) add(joint.b.body, -joint.b.inverseMass * force, Vec3(-joint.b.turned(force)));
     }
   }
 
@@ -55,7 +55,7 @@ class JointBlocks {
     Mat3 turn = Mat3::Zero();         // angular acceleration of a force: I^-1 [arm x]
     Vec3 turned(const Vec3& force) const { return turns ? Vec3(turn * force) : Vec3::Zero(); }
   };
-  struct Tie {
+  struct JointSides {
     Side a, b;
   };
   /// Two joints of a body: what they have in common there goes to a block below the diagonal.
@@ -92,7 +92,7 @@ class JointBlocks {
   double eliminate();
   double findPivot(std::size_t joint);
 
-  std::vector<Tie> ties_;
+  std::vector<JointSides> joints_;
   std::vector<std::pair<int, int>> structure_;  // bodies of each joint, when the couplings were found
   std::vector<Coupling> couplings_;
   std::vector<Column> columns_;

@@ -76,9 +76,9 @@ void computeMotion(const Differences& h, double largestMoment, Polhode& polhode)
   const double a = std::sqrt(square[2] + h.p / both * square[1]);
   const double b1 = std::sqrt(square[0] + h.r / both * square[1]);
   const double b2 = polhode.sense * std::sqrt(square[1] + both / h.r * square[0]);
-  constexpr double kLeastComplement = 1e-145;  // as good as 0, the separatrix, until u = K = 335
+  constexpr double kMinComplement = 1e-145;  // as good as 0, the separatrix, until u = K = 335
   polhode.amplitude = {b1, b2, a};
-  polhode.complement = std::fmin(1, std::fmax(kLeastComplement, std::sqrt(e / ep) * std::sqrt(both / h.r)));
+  polhode.complement = std::fmin(1, std::fmax(kMinComplement, std::sqrt(e / ep) * std::sqrt(both / h.r)));
   polhode.modulus = std::fmin(1, std::sqrt(h.p / ep) * std::sqrt(square[1] + both / h.r * square[0]));
   polhode.rate = polhode.momentum / largestMoment * std::sqrt(h.r) * std::sqrt(ep);
   polhode.argument = ellipticArgument({polhode.start[1] / b2, polhode.start[0] / b1, polhode.start[2] / a});

@@ -21,7 +21,7 @@ AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state) {
           linearVelocity(state, attachment.body) + angularVelocity(state, attachment.body).cross(arm)};
 }
 
-void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std::vector<BodyFrame>& frames) {
+void findBodyFrames(const std::vector<RigidBody>& bodies, const VectorX& state, std::vector<BodyFrame>& frames) {
   frames.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     BodyFrame& frame = frames[i];
@@ -39,10 +39,10 @@ void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std
   }
 }
 
-Vec3 pointAcceleration(int body, const Vec3& point, const VectorX& state, const VectorX& rate) {
+Vec3 pointAcceleration(int body, const Vec3& point, const VectorX& state, const VectorX& derivative) {
   if (body == kFixed) return Vec3::Zero();
   const Vec3 arm = point - centerOfMass(state, body), spin = angularVelocity(state, body);
-  return linearVelocity(rate, body) + angularVelocity(rate, body).cross(arm) + spin.cross(spin.cross(arm));
+  return linearVelocity(derivative, body) + angularVelocity(derivative, body).cross(arm) + spin.cross(spin.cross(arm));
 }
 
 Mat3 worldInverseInertia(const RigidBody& body, const Quat& worldFromBody) {

@@ -45,7 +45,7 @@ struct BodyFrame {
 };
 
 /// Those of all bodies. `frames` are none, or those of the same bodies in another state: what has not turned is kept.
-void placeBodies(const std::vector<RigidBody>& bodies, const VectorX& state, std::vector<BodyFrame>& frames);
+void findBodyFrames(const std::vector<RigidBody>& bodies, const VectorX& state, std::vector<BodyFrame>& frames);
 
 /// The same motion from bodies that were placed for `state`.
 inline AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state,
@@ -59,8 +59,8 @@ inline AttachmentMotion motionOf(const Attachment& attachment, const VectorX& st
 }
 
 /// Acceleration (m/s^2, world) of a body's material point that is at `point` (m, world), for the rates of all
-/// velocities in `rate`; zero if fixed.
-Vec3 pointAcceleration(int body, const Vec3& point, const VectorX& state, const VectorX& rate);
+/// velocities in `derivative`; zero if fixed.
+Vec3 pointAcceleration(int body, const Vec3& point, const VectorX& state, const VectorX& derivative);
 
 /// The inverse inertia tensor of a body in the world's frame.
 Mat3 worldInverseInertia(const RigidBody& body, const Quat& worldFromBody);

@@ -11,12 +11,12 @@ RopeMotion motionOf(const RopeLimit& rope, const VectorX& state) {
   return motion;
 }
 
-double lengtheningAcceleration(const RopeLimit& rope, const VectorX& state, const VectorX& rate) {
+double lengtheningAcceleration(const RopeLimit& rope, const VectorX& state, const VectorX& derivative) {
   // L'' = u.(a_A - a_B) + (|v|^2 - (u.v)^2) / L for the relative velocity v.
   const RopeMotion motion = motionOf(rope, state);
   const Vec3 velocity = motion.a.velocity - motion.b.velocity;
-  const Vec3 acceleration = pointAcceleration(rope.anchorA.body, motion.a.position, state, rate) -
-                            pointAcceleration(rope.anchorB.body, motion.b.position, state, rate);
+  const Vec3 acceleration = pointAcceleration(rope.anchorA.body, motion.a.position, state, derivative) -
+                            pointAcceleration(rope.anchorB.body, motion.b.position, state, derivative);
   const double across = velocity.squaredNorm() - motion.lengthening * motion.lengthening;
   return motion.direction.dot(acceleration) + across / (rope.maxLength - motion.slackLength);
 }

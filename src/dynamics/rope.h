@@ -20,7 +20,7 @@ struct RopeMotion {
 };
 RopeMotion motionOf(const RopeLimit& rope, const VectorX& state);
 
-/// d^2/dt^2 of the distance of a rope's ends (m/s^2), for the rates of all velocities in `rate`.
-double lengtheningAcceleration(const RopeLimit& rope, const VectorX& state, const VectorX& rate);
+/// d^2/dt^2 of the distance of a rope's ends (m/s^2), for the rates of all velocities in `derivative`.
+double lengtheningAcceleration(const RopeLimit& rope, const VectorX& state, const VectorX& derivative);
 
 }  // namespace cradle

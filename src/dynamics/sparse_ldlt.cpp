@@ -14,8 +14,8 @@ namespace cradle {
 namespace {
 
 // Where most of L is filled, the places of its entries cost more than those that are not.
-constexpr std::size_t kMostDense = 16;  // rows
-constexpr double kDensePart = 0.5;      // of the entries below the diagonal
+constexpr std::size_t kMaxDense = 16;  // rows
+constexpr double kDenseRatio = 0.5;    // of the entries below the diagonal
 
 }  // namespace
 
@@ -85,7 +85,7 @@ void SparseLdlt::findFill() {
   for (std::size_t i = 0; i < size; ++i) columnStart_[i + 1] = columnStart_[i] + columnCount_[i];
   lowerRows_.assign(static_cast<std::size_t>(columnStart_[size]), 0);
   lower_.assign(lowerRows_.size(), 0);
-  isDense_ = size <= kMostDense && columnStart_[size] >= kDensePart * (size_ * (size_ - 1) / 2);
+  isDense_ = size <= kMaxDense && columnStart_[size] >= kDenseRatio * (size_ * (size_ - 1) / 2);
   if (isDense_) dense_.assign(size * size, 0);
 }
 
@@ -115,7 +115,7 @@ void SparseLdlt::factorizeDense(const std::vector<double>& diagonal, const std::
       dense_[static_cast<std::size_t>(entry.column) * size + row] += entries[static_cast<std::size_t>(entry.source)];
     }
   }
-  std::array<double, kMostDense> factors;
+  std::array<double, kMaxDense> factors;
   for (std::size_t k = 0; k < size; ++k) {
     double* const column = &dense_[k * size];
     const double pivot = column[k], before = diagonal[static_cast<std::size_t>(rowAt_[k])];

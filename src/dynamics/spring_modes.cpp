@@ -11,7 +11,7 @@
 namespace cradle {
 namespace {
 
-constexpr int kMostIterations = 200;
+constexpr int kMaxIterations = 200;
 constexpr double kConverged = 1e-6;  // relative growth: the limits that follow are wanted to 1 %
 
 using Coefficient = double SpringForce::*;
@@ -33,8 +33,8 @@ class SpringResponse {
   }
 
   double part(const SpringForce& spring, const VectorX& motion, Coefficient coefficient) const {
-    const double rate = lengthening(spring, motion);
-    return spring.*coefficient * rate * rate;
+    const double derivative = lengthening(spring, motion);
+    return spring.*coefficient * derivative * derivative;
   }
 
   /// What bodies make of the forces of all springs in a motion.
@@ -96,7 +96,7 @@ SpringMode largestMode(const Mechanism& mechanism, const VectorX& state, Coeffic
   VectorX motion = springs.pulledBy(strongest(springs, mechanism, coefficient));
   if (springs.isAtRest(motion)) return {};
   double value = springs.quotient(motion, coefficient);
-  for (int i = 0; i < kMostIterations && value > 0; ++i) {
+  for (int i = 0; i < kMaxIterations && value > 0; ++i) {
     motion = springs.applied(motion, coefficient);
     motion.tail(motion.size() - poseComponents(motion)) /= std::sqrt(2 * kineticEnergy(mechanism.bodies, motion));
     const double before = value;

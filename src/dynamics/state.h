@@ -61,7 +61,7 @@ inline double& impactEnergy(VectorX& state) {
 inline double impactEnergy(const VectorX& state) {
   return state[state.size() - 5];
 }
-/// By lasting contacts.
+/// By active contacts.
 inline double& frictionEnergy(VectorX& state) {
   return state[state.size() - 4];
 }

@@ -118,7 +118,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, const StartF
                            std::chrono::milliseconds patience)
     : program_(command.at(0)),
       failureKind_(failure.kind),
-      patience_(patience),
+      eventRateLimit_(patience),
       output_(openTemporary(command.at(0), failure), std::fclose),
       error_(openTemporary(command.at(0), failure), std::fclose) {
   std::array<int, 2> ends;
@@ -204,7 +204,7 @@ void ChildProcess::noteWait(std::chrono::milliseconds time) {
   throwIfInterrupted();
   if (idle_.count() == 0) ticksBefore_ = ticksOfGroup(process_);
   idle_ += time;
-  if (idle_ < patience_) return;
+  if (idle_ < eventRateLimit_) return;
   if (isIdle(ticksOfGroup(process_) - ticksBefore_, idle_))
     throw Error(failureKind_, program_,
                 fmt::format("hangs: it has done nothing for {} s, and was ended; run it by itself to see why",

@@ -56,7 +56,7 @@ class ChildProcess {
 
   std::string program_;
   ErrorKind failureKind_;
-  std::chrono::milliseconds patience_, idle_{0};
+  std::chrono::milliseconds eventRateLimit_, idle_{0};
   long ticksBefore_ = 0;  // of its processor time, when idle_ began
   File output_, error_;   // files rather than pipes: a program that prints much is never blocked
   int input_ = -1;

@@ -13,7 +13,7 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kMostShown =
+constexpr std::size_t kMaxShown =
     40;  // pictures, some 100 to 500 kB each at 1280x720: a browser opens the page at once
 
 constexpr std::string_view kHead = R"(<!doctype html>
@@ -92,7 +92,7 @@ std::vector<const ComparedPicture*> chooseShown(const std::vector<ComparedPictur
     return a->comparison.visiblePixels > b->comparison.visiblePixels;
   };
   std::stable_sort(shown.begin(), shown.end(), differsMore);
-  shown.resize(std::min(shown.size(), kMostShown));
+  shown.resize(std::min(shown.size(), kMaxShown));
   std::sort(shown.begin(), shown.end());
   return shown;
 }

@@ -18,10 +18,10 @@
 namespace cradle {
 namespace {
 
-constexpr int kMostPixels = 16384;  // a side
+constexpr int kMaxPixels = 16384;  // a side
 constexpr png_uint_32 kAnySize = PNG_UINT_31_MAX;
 // Bytes that one byte of a file becomes at most: a match of 258 bytes takes two bits or more (RFC 1951, 3.2.5).
-constexpr std::uint64_t kMostDeflation = 1032;
+constexpr std::uint64_t kMaxDeflation = 1032;
 
 /// A file that is being read. libpng tells of a fault by a jump: no function between that and its target has an object
 /// with a destructor.
@@ -54,9 +54,9 @@ class PngReading {
       png_read_info(png_, info_);
     });
     const png_uint_32 width = png_get_image_width(png_, info_), height = png_get_image_height(png_, info_);
-    if (width > kMostPixels || height > kMostPixels)
+    if (width > kMaxPixels || height > kMaxPixels)
       throw Error(ErrorKind::usage, path_,
-                  fmt::format("is {}x{} pixels; allowed are 1..{} a side", width, height, kMostPixels));
+                  fmt::format("is {}x{} pixels; allowed are 1..{} a side", width, height, kMaxPixels));
     return {static_cast<int>(width), static_cast<int>(height)};
   }
 
@@ -65,7 +65,7 @@ class PngReading {
     const std::uint64_t rowBytes = png_get_rowbytes(png_, info_), height = png_get_image_height(png_, info_);
     std::error_code failed;
     const std::uint64_t size = std::filesystem::file_size(path_, failed);
-    if (!failed && size * kMostDeflation < rowBytes * height)
+    if (!failed && size * kMaxDeflation < rowBytes * height)
       throw Error(ErrorKind::usage, path_,
                   fmt::format("is not a picture that can be read: it has {} bytes, too few for {} rows of {}", size,
                               height, rowBytes));

@@ -37,7 +37,7 @@ struct ArmsOf {
   Vec3 points[Block::kPoints][Block::kMovers];
   Vec3 middle[Block::kMovers];
 
-  ArmsOf(const ContactManifold& manifold, const SolverBody* const (&bodies)[Block::kMovers]) {
+  ArmsOf(const PersistentManifold& manifold, const SolverBody* const (&bodies)[Block::kMovers]) {
     for (int k = 0; k < Block::kMovers; ++k) {
       const auto& anchors = k == 0 ? manifold.onA : manifold.onB;
       Vec3 sum = Vec3::Zero();
@@ -57,7 +57,7 @@ struct ArmsOf {
 
 /// The rows of the contact plane: a point at (u, v) turns the bodies by turns + u slopeTurns[0] + v slopeTurns[1].
 template <class Block>
-void fillPlane(const ContactManifold& manifold, const ArmsOf<Block>& arms,
+void fillPlane(const PersistentManifold& manifold, const ArmsOf<Block>& arms,
                const SolverBody* const (&bodies)[Block::kMovers], const Vec3 (&tangents)[2], int lane, Block& block) {
   auto& plane = block.plane;
   const double inverseMass = fillTurns<Block>(plane.turns, manifold.normal, arms.middle, bodies, lane);
@@ -88,7 +88,7 @@ void fillPlane(const ContactManifold& manifold, const ArmsOf<Block>& arms,
 }
 
 template <class Block>
-void fillFriction(const ContactManifold& manifold, const ArmsOf<Block>& arms,
+void fillFriction(const PersistentManifold& manifold, const ArmsOf<Block>& arms,
                   const SolverBody* const (&bodies)[Block::kMovers], const Vec3 (&tangents)[2], double subStep,
                   int lane, Block& block) {
   auto& friction = block.friction;
@@ -122,7 +122,7 @@ void fillFriction(const ContactManifold& manifold, const ArmsOf<Block>& arms,
 
 /// Puts a manifold of the block's kind into one lane, with the impulses of its last forces in `subStep` (s).
 template <class Block>
-void fillLane(const ContactManifold& manifold, std::int32_t index, const std::vector<SolverBody>& bodies,
+void fillLane(const PersistentManifold& manifold, std::int32_t index, const std::vector<SolverBody>& bodies,
               double subStep, int lane, Block& block) {
   const int indices[2] = {manifold.bodyA, manifold.bodyB};
   const SolverBody* movers[Block::kMovers];
@@ -133,7 +133,7 @@ void fillLane(const ContactManifold& manifold, std::int32_t index, const std::ve
   }
   block.manifolds[lane] = index;
   setLane(block.normal, lane, manifold.normal);
-  block.restitution[lane] = manifold.law->restitution;
+  block.restitution[lane] = manifold.material->restitution;
   for (int i = 0; i < Block::kPoints; ++i) {
     const std::size_t at = static_cast<std::size_t>(i);
     block.points[i].separation[lane] = manifold.separations[at];
@@ -157,11 +157,11 @@ void emptyLane(std::int32_t stillBody, int lane, Block& block) {
 
 /// Puts a block's impulses into its manifolds, as forces.
 template <class Block>
-void storeForces(const Block& block, double subStep, std::vector<ContactManifold>& manifolds) {
+void storeForces(const Block& block, double subStep, std::vector<PersistentManifold>& manifolds) {
   const double rate = 1 / subStep;
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.manifolds[lane] < 0) continue;
-    ContactManifold& manifold = manifolds[static_cast<std::size_t>(block.manifolds[lane])];
+    PersistentManifold& manifold = manifolds[static_cast<std::size_t>(block.manifolds[lane])];
     for (int i = 0; i < Block::kPoints; ++i)
       manifold.forces[static_cast<std::size_t>(i)] = rate * block.points[i].impulse[lane];
     const auto& friction = block.friction;

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "collision/contact_manifold.h"
+#include "collision/persistent_manifold.h"
 #include "impact/lanes.h"
 
 // Contacts as the soft contact solver works on them: two at a time, one a lane, everything it needs side by side.

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "collision/contact_manifold.h"
+#include "collision/persistent_manifold.h"
 
 namespace cradle {
 

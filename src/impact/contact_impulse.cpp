@@ -5,7 +5,7 @@
 namespace cradle {
 namespace {
 
-// Of the inverse mass without ties, which take part to 1e-16: the square of a lever, in sizes of a body.
+// Of the inverse mass without constraints, which take part to 1e-16: the square of a lever, in sizes of a body.
 constexpr double kImmobileRatio = 1e-12;
 
 Vec3 armOf(const Contact& contact, int body, const VectorX& state) {
@@ -22,52 +22,53 @@ Mat3 inverseMassOf(const Contact& contact, int body, const std::vector<RigidBody
 
 /// 1/kg.
 double inverseMassAlongNormal(const Contact& contact, const ImpulseResponse& response, const VectorX& state) {
-  const VectorX answer = response.answerTo(contact, contact.normal, state);
+  const VectorX answer = response.responseTo(contact, contact.normal, state);
   return contact.normal.dot(relativeVelocity(contact, state, answer));
 }
 
-double untiedInverseMassAlongNormal(const Contact& contact, const ImpulseResponse& response, const VectorX& state) {
-  return contact.normal.dot(response.untiedInverseMassAt(contact, state) * contact.normal);
+double unconstrainedDelassusAlongNormal(const Contact& contact, const ImpulseResponse& response, const VectorX& state) {
+  return contact.normal.dot(response.unconstrainedDelassusAt(contact, state) * contact.normal);
 }
 
 }  // namespace
 
-Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state) {
+Mat3 delassusAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state) {
   return inverseMassOf(contact, contact.bodyA, bodies, state) + inverseMassOf(contact, contact.bodyB, bodies, state);
 }
 
 bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass) {
-  return response.areTied() && inverseMass <= kImmobileRatio * untiedInverseMassAlongNormal(contact, response, state);
+  return response.areConstrained() &&
+         inverseMass <= kImmobileRatio * unconstrainedDelassusAlongNormal(contact, response, state);
 }
 
 bool hasShortLever(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double lever) {
-  return response.areTied() && inverseMassAlongNormal(contact, response, state) <=
-                                   lever * lever * untiedInverseMassAlongNormal(contact, response, state);
+  return response.areConstrained() && inverseMassAlongNormal(contact, response, state) <=
+                                          lever * lever * unconstrainedDelassusAlongNormal(contact, response, state);
 }
 
 void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts) {
-  if (!response.areTied()) return;
+  if (!response.areConstrained()) return;
   std::erase_if(contacts, [&](const Contact& contact) {
     return isImmobile(contact, response, state, inverseMassAlongNormal(contact, response, state));
   });
 }
 
-Mat3 ImpulseResponse::inverseMassAt(const Contact& contact, const VectorX& state) const {
-  if (!constraints_) return untiedInverseMassAt(contact, state);
+Mat3 ImpulseResponse::delassusAt(const Contact& contact, const VectorX& state) const {
+  if (!constraints_) return unconstrainedDelassusAt(contact, state);
   Mat3 inverseMass;
-  for (int i = 0; i < 3; ++i) inverseMass.col(i) = relativeVelocity(contact, answerTo(contact, Vec3::Unit(i), state));
+  for (int i = 0; i < 3; ++i) inverseMass.col(i) = relativeVelocity(contact, responseTo(contact, Vec3::Unit(i), state));
   return inverseMass;
 }
 
-VectorX ImpulseResponse::answerTo(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const {
+VectorX ImpulseResponse::responseTo(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const {
   VectorX answer = state;
   answer.tail(state.size() - poseComponents(state)).setZero();
   apply(contact, impulseOnB, answer);
   return answer;
 }
 
-Mat3 ImpulseResponse::untiedInverseMassAt(const Contact& contact, const VectorX& state) const {
-  return cradle::inverseMassAt(contact, bodies_, state);
+Mat3 ImpulseResponse::unconstrainedDelassusAt(const Contact& contact, const VectorX& state) const {
+  return cradle::delassusAt(contact, bodies_, state);
 }
 
 void ImpulseResponse::apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const {

@@ -7,13 +7,13 @@
 
 namespace cradle {
 
-/// The 3x3 matrix that maps an impulse on B (and its opposite on A) at the contact to the change of B's velocity
-/// relative to A there, in 1/kg, for bodies that nothing ties.
-Mat3 inverseMassAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state);
+/// The diagonal block of the Delassus operator of a contact, in 1/kg, for bodies without constraints: it maps an
+/// impulse on B (and its opposite on A) to the change of B's velocity relative to A there.
+Mat3 delassusAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state);
 
 class ImpulseResponse;
 
-/// Whether what ties the bodies holds a contact whose inverse mass along its normal is `inverseMass` (1/kg): it can
+/// Whether the bodies' constraints hold a contact whose inverse mass along its normal is `inverseMass` (1/kg): it can
 /// neither open nor close.
 bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass);
 
@@ -24,30 +24,30 @@ bool hasShortLever(const Contact& contact, const ImpulseResponse& response, cons
 /// Erases those that are immobile.
 void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts);
 
-/// How bodies answer to impulses at contacts. What ties them answers within the same impulse: W = M^-1 - M^-1 B^T
+/// How bodies answer to impulses at contacts. Their constraints answer within the same impulse: W = M^-1 - M^-1 B^T
 /// (B M^-1 B^T)^-1 B M^-1 stands in place of M^-1, B the rows of their constraints.
 class ImpulseResponse {
  public:
-  /// Keeps a reference to `bodies`, which nothing ties.
+  /// Keeps a reference to `bodies`, which have no constraints.
   ImpulseResponse(const std::vector<RigidBody>& bodies) : bodies_(bodies) {}
 
   /// Keeps references to both. The solver must be factorised for the positions at which impulses are applied.
   ImpulseResponse(const std::vector<RigidBody>& bodies, ConstraintSolver& constraints)
       : bodies_(bodies), constraints_(constraints.hasConstraints() ? &constraints : nullptr) {}
 
-  bool areTied() const { return constraints_ != nullptr; }
+  bool areConstrained() const { return constraints_ != nullptr; }
 
-  /// As above, with what ties the bodies.
-  Mat3 inverseMassAt(const Contact& contact, const VectorX& state) const;
+  /// As above, with the bodies' constraints.
+  Mat3 delassusAt(const Contact& contact, const VectorX& state) const;
 
-  /// As above, as if nothing tied the bodies.
-  Mat3 untiedInverseMassAt(const Contact& contact, const VectorX& state) const;
+  /// As above, as if the bodies had no constraints.
+  Mat3 unconstrainedDelassusAt(const Contact& contact, const VectorX& state) const;
 
   /// Applies an impulse (N s, world) to B and its opposite to A at the contact.
   void apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const;
 
   /// `state` with the velocities that such an impulse gives to bodies at rest.
-  VectorX answerTo(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const;
+  VectorX responseTo(const Contact& contact, const Vec3& impulseOnB, const VectorX& state) const;
 
  private:
   const std::vector<RigidBody>& bodies_;

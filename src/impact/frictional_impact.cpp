@@ -1,7 +1,7 @@
-// Newton's restitution with Coulomb's friction, all contacts at once, as a cone problem (J. J. Moreau, "Unilateral
-// contact and dry friction in finite freedom dynamics", 1988): u = G z + v - (0, 0, w), w the speed with which a
-// contact is to open. For one contact w = - e v_n. For more, contact by contact that would be what throws back the
-// first ball of a row; the speeds with which contacts open after the impact without friction
+// Newton's restitution with Coulomb's friction, all contacts at once, as a frictional contact problem (J. J. Moreau,
+// "Unilateral contact and dry friction in finite freedom dynamics", 1988): u = G z + v - (0, 0, w), w the speed with
+// which a contact is to open. For one contact w = - e v_n. For more, contact by contact that would be what throws back
+// the first sphere of a row; the speeds with which contacts open after the impact without friction
 // (generalized_reflections.h), as far as that rebounds, stand in its place, and for the rest those after the impact
 // with friction and without rebound:
 //   w = sum over the parts s of the rebound of s w_s, plus (1 - sum of s) w_0.
@@ -10,10 +10,10 @@
 // Restitution with friction can add energy; without it the change z (u + v) / 2 = z_t u_t / 2 - z G z / 2 is <= 0. Then
 // all restitutions are scaled by one factor, with which the impact gains nothing: a root, so that what is kept of the
 // energy is continuous too. It may jump where static and dynamic friction differ and a contact begins to slide, and
-// where the cone problem has more than one solution.
-// It has none where friction wedges what is to rebound: of a ball in a right-angled corner, from a coefficient of 1 on,
-// each contact's friction holds back all that the other pushes. Impulses grow without bound as friction comes near to
-// that, and velocities have a limit: all frictions are cut by one factor, with which impulses are still bounded.
+// where the frictional contact problem has more than one solution.
+// It has none where friction wedges what is to rebound: of a sphere in a right-angled corner, from a coefficient of 1
+// on, each contact's friction holds back all that the other pushes. Impulses grow without bound as friction comes near
+// to that, and velocities have a limit: all frictions are cut by one factor, with which impulses are still bounded.
 
 #include "impact/frictional_impact.h"
 
@@ -21,9 +21,9 @@
 #include <limits>
 #include <numeric>
 
-#include "collision/first_crossing.h"
-#include "impact/cone_problem.h"
-#include "impact/contact_cones.h"
+#include "collision/root_bracketing.h"
+#include "impact/dense_contact_problem.h"
+#include "impact/frictional_contact.h"
 #include "impact/generalized_reflections.h"
 
 namespace cradle {
@@ -31,10 +31,10 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kClosedPart = 1e-11;      // of the fastest speed: what is left is rounding
-constexpr double kSlidingPart = 1e-9;      // of the same: slower sticks
-constexpr double kSolvedPart = 1e-7;       // of the same: an error of Coulomb's law that nobody sees
-constexpr int kMostRounds = 10;            // of what was not solved: each leaves less
+constexpr double kClosedRatio = 1e-11;     // of the fastest speed: what is left is rounding
+constexpr double kSlidingRatio = 1e-9;     // of the same: slower sticks
+constexpr double kSolvedRatio = 1e-7;      // of the same: an error of Coulomb's law that nobody sees
+constexpr int kMaxRounds = 10;             // of what was not solved: each leaves less
 constexpr double kFrictionError = 1e-6;    // of friction that wedges: so near to the most that does not
 constexpr double kWedgedEnergies = 1e8;    // energies of each impulse by itself, in those of all: more wedge
 constexpr double kEnergyRounding = 1e-13;  // of the energy that moves
@@ -62,29 +62,29 @@ struct Strike {
 /// Contacts with their velocities before an impact.
 class FrictionalImpact {
  public:
-  FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactCones& cones, VectorX velocities);
+  FrictionalImpact(const std::vector<ImpactContact>& impacts, const DenseContactProblem& cones, VectorX velocities);
 
   /// Impulses (N s) after which nothing closes; notes what had to be done to find them.
   VectorX resolve(ImpactFaults& faults) const;
 
  private:
   bool closes(const VectorX& velocities) const;
-  bool isSolved(const ConeSolution& solution) const { return solution.residual <= kSolvedPart * fastest_; }
-  ConeSolution solve(const MatrixX& matrix, const VectorX& free, const std::vector<double>& frictions,
-                     double& factor) const;
+  bool isSolved(const ContactSolution& solution) const { return solution.residual <= kSolvedRatio * fastest_; }
+  ContactSolution solve(const MatrixX& matrix, const VectorX& free, const std::vector<double>& frictions,
+                        double& factor) const;
   Strike strike(const VectorX& velocities, const VectorX& opening, double frictionFactor = 1) const;
   Strike strikeWithoutRebound(const VectorX& velocities) const;
   Strike rebound(const Strike& plastic) const;
 
   const std::vector<ImpactContact>& impacts_;
-  const ContactCones& cones_;
+  const DenseContactProblem& cones_;
   VectorX start_;                      // m/s
   double fastest_ = 0;                 // m/s
   std::vector<Index> members_;         // contacts that can move
   std::vector<Index> rows_, normals_;  // theirs
 };
 
-FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactCones& cones,
+FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, const DenseContactProblem& cones,
                                    VectorX velocities)
     : impacts_(impacts), cones_(cones), start_(std::move(velocities)), fastest_(start_.cwiseAbs().maxCoeff()) {
   for (std::size_t i = 0; i < impacts.size(); ++i) {
@@ -98,17 +98,17 @@ FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, co
 
 bool FrictionalImpact::closes(const VectorX& velocities) const {
   return std::any_of(members_.begin(), members_.end(),
-                     [&](Index i) { return velocities[3 * i + 2] < -kClosedPart * fastest_; });
+                     [&](Index i) { return velocities[3 * i + 2] < -kClosedRatio * fastest_; });
 }
 
 /// With these frictions times `factor`, or where that wedges, with the largest factor that does not.
-ConeSolution FrictionalImpact::solve(const MatrixX& matrix, const VectorX& free, const std::vector<double>& frictions,
-                                     double& factor) const {
-  ConeSolution solution;
+ContactSolution FrictionalImpact::solve(const MatrixX& matrix, const VectorX& free,
+                                        const std::vector<double>& frictions, double& factor) const {
+  ContactSolution solution;
   const auto isUnwedgedWith = [&](double tried) {
     std::vector<double> cut = frictions;
     for (double& friction : cut) friction *= tried;
-    ConeSolution found = solveConeProblem(matrix, free, cut);
+    ContactSolution found = solveFrictionalContact(matrix, free, cut);
     const VectorX sizes = found.impulses.cwiseAbs();
     const double all = found.impulses.dot(matrix * found.impulses), each = sizes.dot(matrix.cwiseAbs() * sizes);
     const bool isUnwedged = isSolved(found) && each <= kWedgedEnergies * all;
@@ -131,19 +131,19 @@ Strike FrictionalImpact::strike(const VectorX& velocities, const VectorX& openin
   std::vector<double> frictions;
   bool haveTwoFrictions = false;
   for (const Index i : members_) {
-    const SurfaceLaw& law = impacts_[static_cast<std::size_t>(i)].law;
-    frictions.push_back(law.staticFriction);
-    haveTwoFrictions = haveTwoFrictions || law.staticFriction != law.dynamicFriction;
+    const ContactMaterial& material = impacts_[static_cast<std::size_t>(i)].material;
+    frictions.push_back(material.staticFriction);
+    haveTwoFrictions = haveTwoFrictions || material.staticFriction != material.dynamicFriction;
   }
-  const MatrixX matrix = cones_.inverseMass()(rows_, rows_);
+  const MatrixX matrix = cones_.delassus()(rows_, rows_);
   const VectorX before = velocities(rows_);
   VectorX free = before;
   free(Eigen::seq(2, Eigen::last, 3)) -= opening;
-  ConeSolution solution = solve(matrix, free, frictions, frictionFactor);
+  ContactSolution solution = solve(matrix, free, frictions, frictionFactor);
   if (haveTwoFrictions) {
     for (std::size_t k = 0; k < members_.size(); ++k)
-      if (solution.velocities.segment<2>(3 * static_cast<Index>(k)).norm() > kSlidingPart * fastest_)
-        frictions[k] = impacts_[static_cast<std::size_t>(members_[k])].law.dynamicFriction;
+      if (solution.velocities.segment<2>(3 * static_cast<Index>(k)).norm() > kSlidingRatio * fastest_)
+        frictions[k] = impacts_[static_cast<std::size_t>(members_[k])].material.dynamicFriction;
     solution = solve(matrix, free, frictions, frictionFactor);
   }
   Strike strike;
@@ -175,13 +175,13 @@ Strike FrictionalImpact::strikeWithoutRebound(const VectorX& velocities) const {
 Strike FrictionalImpact::rebound(const Strike& plastic) const {
   const VectorX speeds = start_(normals_);
   const VectorX slowest = plastic.velocities(Eigen::seq(2, Eigen::last, 3)).cwiseMax(0);
-  const MatrixX inverseMass = cones_.inverseMass()(normals_, normals_);
+  const MatrixX delassus = cones_.delassus()(normals_, normals_);
   std::vector<ImpactContact> members;
   for (const Index i : members_) members.push_back(impacts_[static_cast<std::size_t>(i)]);
   VectorX opening = VectorX::Zero(speeds.size());
   double part = 0;
-  for (const Rebound& rebound : reboundsOf(inverseMass, speeds, members)) {
-    opening += rebound.part * (speeds + inverseMass * rebound.impulses).cwiseMax(0);
+  for (const Rebound& rebound : reboundsOf(delassus, speeds, members)) {
+    opening += rebound.part * (speeds + delassus * rebound.impulses).cwiseMax(0);
     part += rebound.part;
   }
   if (part == 0) return plastic;
@@ -205,15 +205,15 @@ Strike FrictionalImpact::rebound(const Strike& plastic) const {
 
 VectorX FrictionalImpact::resolve(ImpactFaults& faults) const {
   VectorX impulses = VectorX::Zero(start_.size()), velocities = start_;
-  for (int round = 0; round < kMostRounds && closes(velocities); ++round) {
+  for (int round = 0; round < kMaxRounds && closes(velocities); ++round) {
     Strike found = strikeWithoutRebound(velocities);
     if (round == 0) found = rebound(found);
     faults.residual = std::max(faults.residual, found.residual);
     faults.scaledEnergy = std::max(faults.scaledEnergy, found.scaledEnergy);
     for (std::size_t k = 0; k < rows_.size(); ++k) impulses[rows_[k]] += found.impulses[static_cast<Index>(k)];
-    velocities = start_ + cones_.inverseMass() * impulses;
+    velocities = start_ + cones_.delassus() * impulses;
   }
-  if (closes(velocities)) faults.rounds = kMostRounds;
+  if (closes(velocities)) faults.rounds = kMaxRounds;
   return impulses;
 }
 
@@ -223,7 +223,7 @@ ImpactFaults resolveFrictionalImpact(std::vector<ImpactContact>& impacts, const 
                                      VectorX& state) {
   if (impacts.empty()) return {};
   const std::vector<Contact> contacts = contactsOf(impacts);
-  const ContactCones cones(contacts, response, state);
+  const DenseContactProblem cones(contacts, response, state);
   ImpactFaults faults;
   const VectorX impulses = FrictionalImpact(impacts, cones, cones.velocitiesIn(state)).resolve(faults);
   cones.apply(impulses, state);

@@ -19,23 +19,23 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kReflectionClosedPart = 1e-12;  // of the fastest speed: what is left is rounding
+constexpr double kReflectionClosedRatio = 1e-12;  // of the fastest speed: what is left is rounding
 constexpr double kSpeedRounding = 16 * std::numeric_limits<double>::epsilon();  // of the terms of a speed
-constexpr long kMostReflections = 10000;     // for each contact; a row of n balls needs n, then one impact without
-                                             // rebound ends it
-constexpr long kMostMixedReflections = 100;  // where some contacts are plastic: more would but slow down what is left
+constexpr long kMaxReflections = 10000;     // for each contact; a row of n spheres needs n, then one impact without
+                                            // rebound ends it
+constexpr long kMaxMixedReflections = 100;  // where some contacts are plastic: more would but slow down what is left
 
 /// An impact by the normals of its contacts alone: speeds J v and inverse masses J W J^T.
 class NormalImpact {
  public:
-  NormalImpact(const MatrixX& inverseMass, const VectorX& speeds, const std::vector<ImpactContact>& impacts)
-      : inverseMass_(inverseMass), speeds_(speeds), restSpeeds_(speeds.size()) {
+  NormalImpact(const MatrixX& delassus, const VectorX& speeds, const std::vector<ImpactContact>& impacts)
+      : delassus_(delassus), speeds_(speeds), restSpeeds_(speeds.size()) {
     for (Index i = 0; i < speeds.size(); ++i) restSpeeds_[i] = impacts[static_cast<std::size_t>(i)].restSpeed;
   }
 
   /// Impulses (N s) that end all closing without rebound, after `impulses`.
   VectorX stop(const VectorX& impulses) const {
-    return impulses + solveLinearComplementarity(inverseMass_, speeds_ + inverseMass_ * impulses);
+    return impulses + solveLinearComplementarity(delassus_, speeds_ + delassus_ * impulses);
   }
 
   /// Impulses (N s) of reflections until nothing closes, with restitutions 1 or 0.
@@ -45,14 +45,14 @@ class NormalImpact {
   std::vector<Index> closingAfter(const VectorX& impulses) const;
   VectorX reflectOnce(std::vector<Index> closing, const VectorX& speeds, const VectorX& restitutions) const;
 
-  const MatrixX& inverseMass_;  // 1/kg
-  const VectorX& speeds_;       // m/s: < 0 closing
-  VectorX restSpeeds_;          // m/s
+  const MatrixX& delassus_;  // 1/kg
+  const VectorX& speeds_;    // m/s: < 0 closing
+  VectorX restSpeeds_;       // m/s
 };
 
 std::vector<Index> NormalImpact::closingAfter(const VectorX& impulses) const {
-  const double closed = kReflectionClosedPart * speeds_.cwiseAbs().maxCoeff();
-  const VectorX speeds = speeds_ + inverseMass_ * impulses, terms = inverseMass_.cwiseAbs() * impulses;
+  const double closed = kReflectionClosedRatio * speeds_.cwiseAbs().maxCoeff();
+  const VectorX speeds = speeds_ + delassus_ * impulses, terms = delassus_.cwiseAbs() * impulses;
   std::vector<Index> closing;
   for (Index i = 0; i < speeds.size(); ++i)
     if (speeds[i] < -std::max(closed, kSpeedRounding * terms[i])) closing.push_back(i);
@@ -61,12 +61,12 @@ std::vector<Index> NormalImpact::closingAfter(const VectorX& impulses) const {
 
 VectorX NormalImpact::reflect(const VectorX& restitutions) const {
   const bool isElastic = restitutions.minCoeff() == 1;
-  const long most = isElastic ? kMostReflections * static_cast<long>(speeds_.size()) : kMostMixedReflections;
+  const long most = isElastic ? kMaxReflections * static_cast<long>(speeds_.size()) : kMaxMixedReflections;
   VectorX impulses = VectorX::Zero(speeds_.size());
   for (long count = 0; count <= most; ++count) {
     const std::vector<Index> closing = closingAfter(impulses);
     if (closing.empty()) return impulses;
-    impulses += reflectOnce(closing, speeds_ + inverseMass_ * impulses, restitutions);
+    impulses += reflectOnce(closing, speeds_ + delassus_ * impulses, restitutions);
   }
   return stop(impulses);
 }
@@ -84,9 +84,9 @@ VectorX NormalImpact::reflectOnce(std::vector<Index> closing, const VectorX& spe
     isPlastic = false;
   }
   while (true) {
-    impulses(closing) = solveLinearComplementarity(inverseMass_(closing, closing), VectorX(offset(closing)));
+    impulses(closing) = solveLinearComplementarity(delassus_(closing, closing), VectorX(offset(closing)));
     if (!isPlastic) return impulses;
-    const VectorX after = speeds + inverseMass_ * impulses, terms = inverseMass_.cwiseAbs() * impulses;
+    const VectorX after = speeds + delassus_ * impulses, terms = delassus_.cwiseAbs() * impulses;
     const std::size_t before = closing.size();
     for (Index i = 0; i < after.size(); ++i) {
       if (std::find(closing.begin(), closing.end(), i) != closing.end()) continue;
@@ -103,11 +103,11 @@ void reflectAlone(ImpactContact& impact, const ImpulseResponse& response, Vector
   const Contact& contact = impact.contact;
   const double speed = contact.normal.dot(relativeVelocity(contact, state));
   if (!(speed < 0)) return;
-  const VectorX answer = response.answerTo(contact, contact.normal, state);
-  const double inverseMass = contact.normal.dot(relativeVelocity(contact, state, answer));
-  if (isImmobile(contact, response, state, inverseMass)) return;
-  const double restitution = -speed > impact.restSpeed ? impact.law.restitution : 0;
-  const double impulse = -(1 + restitution) * speed / inverseMass;
+  const VectorX answer = response.responseTo(contact, contact.normal, state);
+  const double delassus = contact.normal.dot(relativeVelocity(contact, state, answer));
+  if (isImmobile(contact, response, state, delassus)) return;
+  const double restitution = -speed > impact.restSpeed ? impact.material.restitution : 0;
+  const double impulse = -(1 + restitution) * speed / delassus;
   const Index velocities = state.size() - poseComponents(state);
   state.tail(velocities) += impulse * answer.tail(velocities);
   impact.impulse += impulse * contact.normal;
@@ -115,33 +115,32 @@ void reflectAlone(ImpactContact& impact, const ImpulseResponse& response, Vector
 
 }  // namespace
 
-std::vector<Rebound> reboundsOf(const MatrixX& inverseMass, const VectorX& speeds,
+std::vector<Rebound> reboundsOf(const MatrixX& delassus, const VectorX& speeds,
                                 const std::vector<ImpactContact>& impacts) {
   std::vector<double> levels{0};
-  for (const ImpactContact& impact : impacts) levels.push_back(impact.law.restitution);
+  for (const ImpactContact& impact : impacts) levels.push_back(impact.material.restitution);
   std::sort(levels.begin(), levels.end());
   levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
-  const NormalImpact impact(inverseMass, speeds, impacts);
+  const NormalImpact impact(delassus, speeds, impacts);
   std::vector<Rebound> rebounds;
   for (std::size_t level = 1; level < levels.size(); ++level) {
     VectorX elastic(speeds.size());
     for (Index i = 0; i < elastic.size(); ++i)
-      elastic[i] = impacts[static_cast<std::size_t>(i)].law.restitution >= levels[level] ? 1 : 0;
+      elastic[i] = impacts[static_cast<std::size_t>(i)].material.restitution >= levels[level] ? 1 : 0;
     rebounds.push_back({levels[level] - levels[level - 1], impact.reflect(elastic)});
   }
   return rebounds;
 }
 
-VectorX reflectionImpulses(const MatrixX& inverseMass, const VectorX& speeds,
-                           const std::vector<ImpactContact>& impacts) {
+VectorX reflectionImpulses(const MatrixX& delassus, const VectorX& speeds, const std::vector<ImpactContact>& impacts) {
   const VectorX none = VectorX::Zero(speeds.size());
   VectorX impulses = none;
   double plastic = 1;
-  for (const Rebound& rebound : reboundsOf(inverseMass, speeds, impacts)) {
+  for (const Rebound& rebound : reboundsOf(delassus, speeds, impacts)) {
     impulses += rebound.part * rebound.impulses;
     plastic -= rebound.part;
   }
-  if (plastic > 0) impulses += plastic * NormalImpact(inverseMass, speeds, impacts).stop(none);
+  if (plastic > 0) impulses += plastic * NormalImpact(delassus, speeds, impacts).stop(none);
   return impulses;
 }
 
@@ -151,19 +150,19 @@ void resolveReflections(std::vector<ImpactContact>& impacts, const ImpulseRespon
   const Index size = std::ssize(impacts), velocities = state.size() - poseComponents(state);
   std::vector<VectorX> answers;  // states: velocities from a unit impulse at each contact
   for (const ImpactContact& impact : impacts)
-    answers.push_back(response.answerTo(impact.contact, impact.contact.normal, state));
-  MatrixX inverseMass(size, size);
+    answers.push_back(response.responseTo(impact.contact, impact.contact.normal, state));
+  MatrixX delassus(size, size);
   VectorX speeds(size);
   for (Index i = 0; i < size; ++i) {
     const Contact& contact = impacts[static_cast<std::size_t>(i)].contact;
     speeds[i] = contact.normal.dot(relativeVelocity(contact, state));
     for (Index j = 0; j < size; ++j)
-      inverseMass(i, j) = contact.normal.dot(relativeVelocity(contact, state, answers[static_cast<std::size_t>(j)]));
+      delassus(i, j) = contact.normal.dot(relativeVelocity(contact, state, answers[static_cast<std::size_t>(j)]));
   }
-  inverseMass = (0.5 * (inverseMass + inverseMass.transpose())).eval();
+  delassus = (0.5 * (delassus + delassus.transpose())).eval();
   for (Index i = 0; i < size; ++i)
-    if (isImmobile(impacts[static_cast<std::size_t>(i)].contact, response, state, inverseMass(i, i))) speeds[i] = 0;
-  const VectorX impulses = reflectionImpulses(inverseMass, speeds, impacts);
+    if (isImmobile(impacts[static_cast<std::size_t>(i)].contact, response, state, delassus(i, i))) speeds[i] = 0;
+  const VectorX impulses = reflectionImpulses(delassus, speeds, impacts);
   for (std::size_t i = 0; i < impacts.size(); ++i) {
     const double impulse = impulses[static_cast<Index>(i)];
     state.tail(velocities) += impulse * answers[i].tail(velocities);

@@ -7,9 +7,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kImpulseRounding = 1e-14;  // relative: of the velocity that an impulse gives to bodies without ties
+constexpr double kImpulseRounding =
+    1e-14;  // relative: of the velocity that an impulse gives to bodies without constraints
 
-/// J: so well the work of an impulse is known. Where ties take nearly all of it, that is much beside what is left.
+/// J: so well the work of an impulse is known. Where constraints take nearly all of it, that is much beside what is
+/// left.
 double roundingOf(const ImpactContact& impact, const std::vector<RigidBody>& bodies) {
   double inverseMass = 0;  // 1/kg
   for (const int body : {impact.contact.bodyA, impact.contact.bodyB})

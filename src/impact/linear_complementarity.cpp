@@ -22,9 +22,9 @@ namespace {
 using Index = Eigen::Index;
 
 constexpr double kRowRounding = 64 * std::numeric_limits<double>::epsilon();  // of the terms of a row, for each of them
-constexpr double kSingularPart = 1e-12;  // of a diagonal element: less left after elimination is rounding
-constexpr int kFewRows = 8;              // are solved without a search, if all push
-constexpr long kMostPivotsPerRow = 100;  // 1 or 2 are usual
+constexpr double kSingularRatio = 1e-12;  // of a diagonal element: less left after elimination is rounding
+constexpr int kFewRows = 8;               // are solved without a search, if all push
+constexpr long kMaxPivotsPerRow = 100;    // 1 or 2 are usual
 // Of the diagonal, which is made larger by as much: where rounding decides about rows that hold each other, in turn.
 constexpr double kRegularRatios[] = {1e-11, 1e-9, 1e-7};
 
@@ -98,7 +98,7 @@ void Pivoting::drive(Index row) {
   while (true) {
     const VectorX along = direction(row);
     const double curvature = a_.row(row).dot(along);
-    const bool isSingular = curvature <= kSingularPart * a_(row, row);
+    const bool isSingular = curvature <= kSingularRatio * a_(row, row);
     const Index first = firstToStop(along);
     const double furthest = first < 0 ? INFINITY : -lambda_[first] / along[first];
     const double wanted = isSingular ? INFINITY : std::max(0.0, -residual(row) / curvature);
@@ -151,7 +151,7 @@ std::optional<VectorX> solveForAll(const MatrixX& a, const VectorX& b) {
   const Eigen::LLT<Few> factor{Few(a)};
   if (factor.info() != Eigen::Success) return std::nullopt;
   for (Index row = 0; row < b.size(); ++row)
-    if (!(factor.matrixLLT()(row, row) * factor.matrixLLT()(row, row) > kSingularPart * a(row, row)))
+    if (!(factor.matrixLLT()(row, row) * factor.matrixLLT()(row, row) > kSingularRatio * a(row, row)))
       return std::nullopt;
   VectorX lambda = factor.solve(-b);
   if (!(lambda.minCoeff() > 0)) return std::nullopt;
@@ -161,7 +161,7 @@ std::optional<VectorX> solveForAll(const MatrixX& a, const VectorX& b) {
 /// None if rounding lets pivots come back.
 std::optional<VectorX> solveByPivots(const MatrixX& a, const VectorX& b) {
   Pivoting pivoting(a, b);
-  const long most = kMostPivotsPerRow * static_cast<long>(b.size());
+  const long most = kMaxPivotsPerRow * static_cast<long>(b.size());
   for (long pivots = 0; pivots <= most; ++pivots) {
     const Index row = pivoting.mostViolated();
     if (row < 0) return pivoting.lambda();

@@ -5,9 +5,10 @@
 namespace cradle {
 namespace {
 
-constexpr int kMostOverlapSweeps = 20;
+constexpr int kMaxOverlapSweeps = 20;
 constexpr double kOverlapLeft = 1e-15;  // m
-constexpr double kLeastWay = 1e-9;  // of the inverse mass without ties: less is rounding, and the ties hold the pair
+constexpr double kMinWay =
+    1e-9;  // of the inverse mass without constraints: less is rounding, and the constraints hold the pair
 
 /// The displacement, in place of velocities, that takes the overlaps of one pair out. Many with one normal are one:
 /// what the deepest needs is enough for all.
@@ -17,9 +18,9 @@ VectorX displacementOf(const std::vector<Contact>& overlaps, const ImpulseRespon
   for (const Contact& overlap : overlaps) {
     const double left = -overlap.separation - openingSpeed(overlap, displacement);
     if (left <= 0) continue;
-    const double inverseMass = overlap.normal.dot(response.inverseMassAt(overlap, state) * overlap.normal);
-    const double untied = overlap.normal.dot(response.untiedInverseMassAt(overlap, state) * overlap.normal);
-    if (!(inverseMass > kLeastWay * untied)) continue;
+    const double inverseMass = overlap.normal.dot(response.delassusAt(overlap, state) * overlap.normal);
+    const double untied = overlap.normal.dot(response.unconstrainedDelassusAt(overlap, state) * overlap.normal);
+    if (!(inverseMass > kMinWay * untied)) continue;
     response.apply(overlap, left / inverseMass * overlap.normal, displacement);
   }
   return displacement;
@@ -33,7 +34,7 @@ void resolveOverlaps(const ContactGeometry& geometry, const std::vector<Contact>
   for (const Contact& contact : contacts)
     if (pairs.empty() || pairs.back() != contact.pair) pairs.push_back(contact.pair);
   std::vector<Contact> overlaps;
-  for (int sweep = 0; sweep < kMostOverlapSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kMaxOverlapSweeps; ++sweep) {
     double deepest = 0;
     for (const std::size_t pair : pairs) {
       overlaps.clear();

@@ -9,8 +9,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kPairClosedPart = 1e-12;      // of the fastest closing speed: what is left is rounding
-constexpr long kMostImpulsesPerPair = 10000;   // a row of n balls needs n, a box on its corners tens
+constexpr double kPairClosedRatio = 1e-12;     // of the fastest closing speed: what is left is rounding
+constexpr long kMaxImpulsesPerPair = 10000;    // a row of n spheres needs n, a box on its corners tens
 constexpr double kPairEnergyRounding = 1e-12;  // of the energy that the impulse moves
 
 double closingSpeed(const Contact& contact, const VectorX& state) {
@@ -34,22 +34,22 @@ Vec3 slidingImpulse(const Contact& contact, const Mat3& inverseMass, const Vec3&
 
 Vec3 pairImpulse(const ImpactContact& impact, const ImpulseResponse& response, const VectorX& state) {
   const Contact& contact = impact.contact;
-  const SurfaceLaw& law = impact.law;
+  const ContactMaterial& material = impact.material;
   const Vec3 velocity = relativeVelocity(contact, state);
   const double closing = -contact.normal.dot(velocity);
   if (closing <= 0) return Vec3::Zero();
-  const Mat3 inverseMass = response.inverseMassAt(contact, state);
-  const double restitution = closing > impact.restSpeed ? law.restitution : 0;
+  const Mat3 inverseMass = response.delassusAt(contact, state);
+  const double restitution = closing > impact.restSpeed ? material.restitution : 0;
   const Vec3 frictionless = slidingImpulse(contact, inverseMass, velocity, 0, restitution);
-  if (law.staticFriction == 0) return frictionless;
+  if (material.staticFriction == 0) return frictionless;
 
   // Does friction hold the point still?
   const Vec3 wanted = restitution * closing * contact.normal - velocity;
   Vec3 impulse = inverseMass.lu().solve(wanted);
   const double normal = contact.normal.dot(impulse);
   const double tangential = (impulse - normal * contact.normal).norm();
-  if (!(normal > 0 && tangential <= law.staticFriction * normal))
-    impulse = slidingImpulse(contact, inverseMass, velocity, law.dynamicFriction, restitution);
+  if (!(normal > 0 && tangential <= material.staticFriction * normal))
+    impulse = slidingImpulse(contact, inverseMass, velocity, material.dynamicFriction, restitution);
 
   const double gained = impulse.dot(velocity + 0.5 * (inverseMass * impulse));
   const bool addsEnergy = gained > kPairEnergyRounding * std::abs(impulse.dot(velocity));
@@ -58,7 +58,7 @@ Vec3 pairImpulse(const ImpactContact& impact, const ImpulseResponse& response, c
 
 void resolvePairwise(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
   double fastest = 0;
-  const long most = kMostImpulsesPerPair * static_cast<long>(impacts.size());
+  const long most = kMaxImpulsesPerPair * static_cast<long>(impacts.size());
   for (long count = 0; count < most; ++count) {
     const auto next = std::max_element(impacts.begin(), impacts.end(), [&](const auto& left, const auto& right) {
       return closingSpeed(left.contact, state) < closingSpeed(right.contact, state);
@@ -66,7 +66,7 @@ void resolvePairwise(std::vector<ImpactContact>& impacts, const ImpulseResponse&
     if (next == impacts.end()) return;
     const double closing = closingSpeed(next->contact, state);
     fastest = std::max(fastest, closing);
-    if (closing <= kPairClosedPart * fastest) return;
+    if (closing <= kPairClosedRatio * fastest) return;
     const Vec3 impulse = pairImpulse(*next, response, state);
     response.apply(next->contact, impulse, state);
     next->impulse += impulse;

@@ -9,14 +9,14 @@ namespace cradle {
 /// A contact that takes part in an impact.
 struct ImpactContact {
   Contact contact;
-  SurfaceLaw law;
+  ContactMaterial material;
   double restSpeed = 0;         // m/s: slower closing does not rebound
   Vec3 impulse = Vec3::Zero();  // N s, world, on B: what was applied in all
 };
 
 /// What had to be done to an impact beside its law.
 struct ImpactFaults {
-  double residual = 0;      // m/s: of the worst cone problem that was not solved
+  double residual = 0;      // m/s: of the worst frictional contact problem that was not solved
   double scaledEnergy = 0;  // J: that the impulses found would have given
   int rounds = 0;           // that did not end the impact: contacts still close
 };

@@ -15,7 +15,7 @@ struct RopePull {
 };
 
 /// Finds and applies the impulses of all pulls at once, so that their order does not matter: none pushes, each rope
-/// shortens with its rebound speed or faster, and those that shorten faster do not pull. What ties the bodies answers
+/// shortens with its rebound speed or faster, and those that shorten faster do not pull. The bodies' constraints answer
 /// within the same impulses. The solver must be factorised for `state`. O(pulls^3) at most for each pull that is not
 /// needed.
 void applyPulls(std::vector<RopePull>& pulls, const std::vector<RigidBody>& bodies, ConstraintSolver& constraints,

@@ -10,10 +10,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kSingularTraceRatio = 1e-9;  // of the trace: less is rounding, which ties leave of far larger parts
-constexpr double kRootRatio = 4e-16;          // of alpha
-constexpr double kOnCone = 1e-12;             // of its width: an impulse on its side is in it
-constexpr int kMaxRootSteps = 200;            // 5 are usual; bisection alone ends after about 100
+constexpr double kSingularTraceRatio =
+    1e-9;                             // of the trace: less is rounding, which constraints leave of far larger parts
+constexpr double kRootRatio = 4e-16;  // of alpha
+constexpr double kOnCone = 1e-12;     // of its width: an impulse on its side is in it
+constexpr int kMaxRootSteps = 200;    // 5 are usual; bisection alone ends after about 100
 
 /// The tangential problem after elimination of the normal part, in its principal axes.
 class Sliding {
@@ -40,8 +41,8 @@ class Sliding {
     }
   }
 
-  /// Impulses that stop all motion, if there are any in the cone. Where ties leave a direction no motion, its part of
-  /// them is free: the least that makes the others fit.
+  /// Impulses that stop all motion, if there are any in the cone. Where constraints leave a direction no motion, its
+  /// part of them is free: the least that makes the others fit.
   std::optional<Vec3> sticking() const {
     Vec2 along(part(0, 0), part(1, 0));
     if (moments_[1] == 0 && offset_[1] == 0) along[1] = leastWedging(along[0]);

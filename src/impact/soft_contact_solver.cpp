@@ -1,8 +1,8 @@
 // E. Catto, "Solver2D" (box2d.org, 2024): of the solvers compared there, sub-steps with soft contacts that are relaxed
-// afterwards ("soft step") hold piles best for their cost. Different here: contacts stiffen with their overlap, and
+// afterwards ("soft step") hold heaps best for their cost. Different here: contacts stiffen with their overlap, and
 // those with few points are stiffer from the start. What a contact sinks in by is the load over its stiffness, which
 // sub-steps limit: twice as stiff as these, for sub-steps of 1/480 s, makes stacks of boxes tremble; half as stiff,
-// four sub-steps are enough, and a pile of turned boxes ends 5 mm deep. The frequency does not follow the length of the
+// four sub-steps are enough, and a heap of turned boxes ends 5 mm deep. The frequency does not follow the length of the
 // sub-steps, which changes from step to step: overlap would be let go as speed each time.
 // A sub-step begins with the impulses of the one before. All of them together are what that one changed a body's
 // velocity by, gravity apart, for rows stay as they are: bodies are given that again, and contacts need not be visited.
@@ -17,15 +17,15 @@ namespace {
 
 constexpr double kFrequencies[] = {240, 170, 100, 100};  // Hz: of contacts as springs, by their number of points
 constexpr double kDampingRatio = 2;
-constexpr double kHardening = 300;        // 1/m: four times the frequency at 3.3 mm of overlap, and more below
-constexpr double kMostPush = 4;           // m/s
-constexpr std::size_t kLeastShared = 16;  // blocks: a microsecond of work
-constexpr std::size_t kAhead = 2;         // blocks: the motions that they need are asked for in time
+constexpr double kHardening = 300;      // 1/m: four times the frequency at 3.3 mm of overlap, and more below
+constexpr double kMaxPush = 4;          // m/s
+constexpr std::size_t kMinShared = 16;  // blocks: a microsecond of work
+constexpr std::size_t kAhead = 2;       // blocks: the motions that they need are asked for in time
 constexpr double kPi = 3.14159265358979324;
 
 /// A damped spring, implicit in the sub-step (E. Catto, "Soft Constraints", GDC 2011).
 Softness softnessOf(int points, double subStep) {
-  return {2 * kPi * kFrequencies[points - 1] * subStep, 2 * kDampingRatio, kHardening, kMostPush};
+  return {2 * kPi * kFrequencies[points - 1] * subStep, 2 * kDampingRatio, kHardening, kMaxPush};
 }
 
 template <class Block>
@@ -71,7 +71,7 @@ void SoftContactSolver::arrange(const ContactColors& colors, std::int32_t stillB
   forEachList(lists_, [](auto& list) { list.starts.push_back(list.size); });
 }
 
-void SoftContactSolver::prepare(const ContactColors& colors, const std::vector<ContactManifold>& manifolds,
+void SoftContactSolver::prepare(const ContactColors& colors, const std::vector<PersistentManifold>& manifolds,
                                 const std::vector<SolverBody>& bodies, double subStep, WorkerThreads& threads) {
   subStep_ = subStep;
   colors_ = colors.starts.size() - 1;
@@ -89,7 +89,7 @@ void SoftContactSolver::prepare(const ContactColors& colors, const std::vector<C
         for (int lane = 0; lane < kLanes; ++lane) {
           const std::int32_t index = list.blocks[i].manifolds[lane];
           if (index < 0) continue;
-          const ContactManifold& manifold = manifolds[static_cast<std::size_t>(index)];
+          const PersistentManifold& manifold = manifolds[static_cast<std::size_t>(index)];
           fillLane(manifold, index, bodies, subStep, lane, list.blocks[i]);
         }
       }
@@ -103,7 +103,7 @@ void SoftContactSolver::arrangeTasks() {
   for (std::size_t color = 0; color < colors_; ++color) {
     std::size_t blocks = 0;
     forEachList(lists_, [&](auto& list) { blocks += list.starts[color + 1] - list.starts[color]; });
-    const bool isShared = blocks >= kLeastShared;
+    const bool isShared = blocks >= kMinShared;
     if (isShared || tasks_.empty() || tasks_.back().isShared) tasks_.push_back({color, color, isShared});
     ++tasks_.back().lastColor;
   }
@@ -181,7 +181,7 @@ SoftContactSolver::Taken SoftContactSolver::taken() const {
   return sum;
 }
 
-void SoftContactSolver::store(std::vector<ContactManifold>& manifolds, WorkerThreads& threads) const {
+void SoftContactSolver::store(std::vector<PersistentManifold>& manifolds, WorkerThreads& threads) const {
   threads.run([&](int thread) {
     forEachList(lists_, [&](const auto& list) {
       const auto [first, last] = threads.partOf(list.size, thread);

@@ -14,7 +14,7 @@ namespace cradle {
 class SoftContactSolver {
  public:
   /// Arranges the manifolds for sub-steps of that length (s).
-  void prepare(const ContactColors& colors, const std::vector<ContactManifold>& manifolds,
+  void prepare(const ContactColors& colors, const std::vector<PersistentManifold>& manifolds,
                const std::vector<SolverBody>& bodies, double subStep, WorkerThreads& threads);
 
   struct Steps {
@@ -33,7 +33,7 @@ class SoftContactSolver {
   Taken taken() const;
 
   /// Forces of the last sub-step, for the next step.
-  void store(std::vector<ContactManifold>& manifolds, WorkerThreads& threads) const;
+  void store(std::vector<PersistentManifold>& manifolds, WorkerThreads& threads) const;
 
  private:
   template <class Block>

@@ -41,8 +41,8 @@ enum ChunkId : std::uint16_t {
 constexpr std::size_t kHeaderSize = 6;
 constexpr std::size_t kTrackHeaderSize = 14;  // flags, unused, number of keys
 constexpr std::size_t kSmallestKey = 6;       // frame number and flags
-constexpr std::size_t kMostNodes = 4096;      // the importer walks the tree recursively
-constexpr std::size_t kMostMaterials = 4096;  // it takes 1400 bytes for 7 of one, and compares all with all
+constexpr std::size_t kMaxNodes = 4096;       // the importer walks the tree recursively
+constexpr std::size_t kMaxMaterials = 4096;   // it takes 1400 bytes for 7 of one, and compares all with all
 
 struct Chunk {
   std::uint16_t id;
@@ -106,8 +106,8 @@ class Reader {
 
   void readEditor(const Chunk& editor) {
     forEachChild(editor.begin, editor.end, [&](const Chunk& object) {
-      if (object.id == kMaterial && ++materials_ > kMostMaterials)
-        fail(object.begin, fmt::format("has more than {} materials", kMostMaterials));
+      if (object.id == kMaterial && ++materials_ > kMaxMaterials)
+        fail(object.begin, fmt::format("has more than {} materials", kMaxMaterials));
       if (object.id != kObject) return;
       const std::string name = getText(object.begin, object.end);
       forEachChild(object.begin + name.size() + 1, object.end, [&](const Chunk& chunk) {
@@ -118,7 +118,7 @@ class Reader {
 
   void readMesh(const Chunk& mesh, const std::string& name) {
     summary_.meshes.push_back({name, {}, {}, {}});
-    if (summary_.meshes.size() > kMostNodes) fail(mesh.begin, fmt::format("has more than {} objects", kMostNodes));
+    if (summary_.meshes.size() > kMaxNodes) fail(mesh.begin, fmt::format("has more than {} objects", kMaxNodes));
     std::size_t vertexLists = 0, faceLists = 0, vertices = 0;
     forEachChild(mesh.begin, mesh.end, [&](const Chunk& chunk) {
       if (chunk.id == kVertices) {
@@ -180,7 +180,7 @@ class Reader {
     std::size_t nodes = 0;
     forEachChild(keyframer.begin, keyframer.end, [&](const Chunk& node) {
       if (node.id < kFirstTrackNode || node.id > kLastTrackNode) return;
-      if (++nodes > kMostNodes) fail(node.begin, fmt::format("has more than {} animated nodes", kMostNodes));
+      if (++nodes > kMaxNodes) fail(node.begin, fmt::format("has more than {} animated nodes", kMaxNodes));
       std::size_t names = 0;
       forEachChild(node.begin, node.end, [&](const Chunk& track) {
         if (track.id == kNodeName && ++names > 1) fail(track.begin, "an animated node has two names");

@@ -20,8 +20,8 @@
 namespace cradle {
 namespace {
 
-constexpr int kAnswerFile = 3;     // of the child: the first after the three that all have
-constexpr rlim_t kMostFiles = 64;  // open at once
+constexpr int kAnswerFile = 3;    // of the child: the first after the three that all have
+constexpr rlim_t kMaxFiles = 64;  // open at once
 // The first byte of what the child sends: the answer, an Error (its kind follows), or why there is none.
 constexpr char kAnswer = 'A', kError = 'E', kFailure = 'F';
 
@@ -77,7 +77,7 @@ void confine(const ChildLimits& limits, int answer) {
   limit(RLIMIT_CORE, 0, 0);
   limit(RLIMIT_FSIZE, 0, 0);
   limit(RLIMIT_NPROC, 0, 0);
-  limit(RLIMIT_NOFILE, kMostFiles, kMostFiles);
+  limit(RLIMIT_NOFILE, kMaxFiles, kMaxFiles);
   limit(RLIMIT_CPU, limits.cpuSeconds, limits.cpuSeconds);
   limit(RLIMIT_AS, startMemory + limits.memory, startMemory + limits.mostMemory);
   filterSystemCalls();

@@ -16,7 +16,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kFlatPart = 1e-6;  // of the size: to this a file's single precision keeps four corners in a plane
+constexpr double kFlatRatio = 1e-6;  // of the size: to this a file's single precision keeps four corners in a plane
 
 using Corners = std::array<std::size_t, 3>;
 
@@ -176,7 +176,7 @@ ConvexHull withoutStraightCorners(const std::vector<Vec3>& points, std::vector<s
 }  // namespace
 
 ConvexHull convexHullOf(const std::vector<Vec3>& points) {
-  const double limit = kFlatPart * sizeOf(points);
+  const double limit = kFlatRatio * sizeOf(points);
   const auto fail = [] {
     throw Error(ErrorKind::mesh, "", "its points lie in a plane: they have no convex hull with a volume");
   };

@@ -38,7 +38,7 @@ using Affine = Eigen::Affine3d;
 // s a MB.
 constexpr std::uint64_t kMemoryPerByte = 100;
 constexpr std::uint64_t kMemoryForAnyFile = 256 << 20;  // bytes
-constexpr std::uint64_t kMostMemory = 8ULL << 30;       // bytes
+constexpr std::uint64_t kMaxMemory = 8ULL << 30;        // bytes
 constexpr std::uint64_t kBytesPerSecond = 1 << 20;
 constexpr std::uint64_t kSecondsForAnyFile = 3;       // s, of computing
 constexpr std::uint64_t kLargestFiles = 256'000'000;  // bytes, a mesh file and those it names together
@@ -55,7 +55,7 @@ class MeshFiles : public Assimp::IOSystem {
     if (known != bytesOf_.end()) return known->second;
     std::string bytes = readFile(path, kLargestFiles - total_, ErrorKind::mesh);
     total_ += bytes.size();
-    limitMemory(std::min(kMostMemory, kMemoryForAnyFile + kMemoryPerByte * total_));
+    limitMemory(std::min(kMaxMemory, kMemoryForAnyFile + kMemoryPerByte * total_));
     return bytesOf_[path] = std::move(bytes);
   }
 
@@ -311,7 +311,7 @@ std::vector<ImportedObject> importObjects(const std::string& path, double scale)
   requireRegularFile(path, ErrorKind::mesh);
   std::error_code failed;
   const std::uint64_t size = fs::file_size(path, failed);
-  const ChildLimits limits{kMemoryForAnyFile, kMostMemory,
+  const ChildLimits limits{kMemoryForAnyFile, kMaxMemory,
                            kSecondsForAnyFile + (failed ? 0 : std::min(size, kLargestFiles) / kBytesPerSecond)};
   const auto answer = answerOfChild([&] { return bytesOf(parseObjects(path, scale)); }, limits);
   if (!answer.failure.empty())

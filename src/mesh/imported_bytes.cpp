@@ -123,12 +123,12 @@ std::string bytesOf(const std::vector<ImportedObject>& objects) {
 }
 
 std::vector<ImportedObject> objectsFromBytes(const std::string& bytes, const std::string& path) {
-  constexpr std::size_t kLeastSize = sizeof(std::uint64_t);  // bytes, of an object or a piece
+  constexpr std::size_t kMinSize = sizeof(std::uint64_t);  // bytes, of an object or a piece
   Source source(bytes, path);
   std::vector<ImportedObject> objects;
-  for (std::uint64_t left = source.count(kLeastSize); left > 0; --left) {
+  for (std::uint64_t left = source.count(kMinSize); left > 0; --left) {
     ImportedObject object{source.all<std::string>(), {}};
-    for (std::uint64_t pieces = source.count(kLeastSize); pieces > 0; --pieces)
+    for (std::uint64_t pieces = source.count(kMinSize); pieces > 0; --pieces)
       object.pieces.push_back(readPiece(source));
     objects.push_back(std::move(object));
   }

@@ -17,9 +17,9 @@ namespace {
 
 constexpr double kTouching = 1e-6;  // of the smaller part's diagonal: as near, surfaces touch
 constexpr double kSinglePrecision =
-    1.2e-7;                               // of coordinates: two roundings of single precision, in which files hold them
-constexpr double kOnBorder = 1e-9;        // of a triangle or an edge: a crossing as near to its border is on it
-constexpr std::size_t kMostSamples = 64;  // points of a part: if none is clear of the other, the surfaces coincide
+    1.2e-7;                              // of coordinates: two roundings of single precision, in which files hold them
+constexpr double kOnBorder = 1e-9;       // of a triangle or an edge: a crossing as near to its border is on it
+constexpr std::size_t kMaxSamples = 64;  // points of a part: if none is clear of the other, the surfaces coincide
 
 struct TriangleCorners {
   Vec3 a, b, c;
@@ -198,7 +198,7 @@ class Encounter {
 
   /// TriangleCorners and middles of triangles, until one is clear of the other part.
   void sample(const MeshPart& part, const MeshPart& other, Sides& sides) const {
-    const std::size_t stride = std::max<std::size_t>(1, part.triangles.size() / (kMostSamples / 2));
+    const std::size_t stride = std::max<std::size_t>(1, part.triangles.size() / (kMaxSamples / 2));
     for (std::size_t i = 0; i < part.triangles.size(); i += stride) {
       const TriangleCorners corners = cornersOf(mesh_, part.triangles[i]);
       for (const Vec3& point : {corners.a, corners.middle()}) {

@@ -18,7 +18,7 @@ namespace {
 // Volume over surface times size: below this a mesh is a sheet, and its volume is rounding.
 constexpr double kFlat = 1e-12;
 
-constexpr std::size_t kMostTold = 10;  // pairs of parts that overlap
+constexpr std::size_t kMaxTold = 10;  // pairs of parts that overlap
 
 struct Edge {
   std::uint32_t low, high;  // vertices, low < high
@@ -129,7 +129,7 @@ void tellInsideOut(const PartReport& parts, std::vector<std::string>& problems) 
 
 void tellOverlaps(const PartReport& parts, std::vector<std::string>& problems) {
   if (parts.overlaps.empty()) return;
-  const std::size_t told = std::min(parts.overlaps.size(), kMostTold);
+  const std::size_t told = std::min(parts.overlaps.size(), kMaxTold);
   problems.insert(problems.end(), parts.overlaps.begin(), parts.overlaps.begin() + static_cast<std::ptrdiff_t>(told));
   if (told < parts.overlaps.size())
     problems.push_back(fmt::format("and {} more pairs of parts overlap", parts.overlaps.size() - told));

@@ -17,7 +17,7 @@ namespace {
 
 // Of the film, as its viewer sees it.
 constexpr double kTrailSeconds = 1.2, kContactSeconds = 0.25;
-constexpr long kMostTrailPoints = 120;
+constexpr long kMaxTrailPoints = 120;
 constexpr double kSmoothTurn = 0.7;  // change of velocity between frames, of the velocity: below, no impact
 // Of arrowUnit().
 constexpr double kLongestVelocity = 0.22, kLongestImpulse = 0.14;
@@ -25,10 +25,10 @@ constexpr double kLongestVelocity = 0.22, kLongestImpulse = 0.14;
 constexpr double kTrailWidth = 0.008, kArrowWidth = 0.0075, kDotRadius = 0.006, kLabelFromEdge = 0.03,
                  kLabelPadding = 0.014;
 constexpr double kNameText = 0.036, kTimeText = 0.033, kImpulseText = 0.028;
-constexpr double kWidestName = 0.45;          // of the picture's width, so that a plot fits beside it
-constexpr double kLeastMark = 0.35;           // of an impact, in terms of that of the film's greatest
-constexpr std::size_t kMostImpulseTexts = 4;  // the greatest ones of a picture: more would hide each other
-constexpr double kShortestText = 0.05;        // of the film's greatest impulse: below, a number says nothing
+constexpr double kWidestName = 0.45;         // of the picture's width, so that a plot fits beside it
+constexpr double kMinMark = 0.35;            // of an impact, in terms of that of the film's greatest
+constexpr std::size_t kMaxImpulseTexts = 4;  // the greatest ones of a picture: more would hide each other
+constexpr double kShortestText = 0.05;       // of the film's greatest impulse: below, a number says nothing
 const Ink kVelocity{{0, 128, 96}, 1}, kImpulse{{200, 16, 46}, 1};
 const Ink kLabelPanel{{18, 22, 30}, 0.88}, kLabelWords{{255, 255, 255}, 1}, kHalo{{255, 255, 255}, 0.7};
 // Colours that people with any colour vision tell apart (M. Okabe, K. Ito, "Color Universal Design", 2008).
@@ -88,7 +88,7 @@ FilmOverlay::FilmOverlay(const FilmRecord& film, const OverlayChoice& choice)
   for (const Event& event : impacts_) greatestImpulse_ = std::max(greatestImpulse_, event.impulse);
   arrowUnit_ = arrowUnit(view_);
   const double perSecond = scene_.output.framesPerSecond;
-  trailStride_ = std::max(1L, static_cast<long>(std::ceil(kTrailSeconds * perSecond / kMostTrailPoints)));
+  trailStride_ = std::max(1L, static_cast<long>(std::ceil(kTrailSeconds * perSecond / kMaxTrailPoints)));
   if (choice_.velocities || choice_.plot) readFilm(film);
 }
 
@@ -217,7 +217,7 @@ void FilmOverlay::drawContacts(const Frame& frame, const Lens& lens, Canvas& can
     if (!point) continue;
     const double opacity = 1 - (frame.time - event.time) / shown;
     const double size = std::sqrt(event.impulse / greatestImpulse_), length = kLongestImpulse * arrowUnit_ * size;
-    const double scale = kLeastMark + (1 - kLeastMark) * size;  // of lines and dots
+    const double scale = kMinMark + (1 - kMinMark) * size;  // of lines and dots
     for (const double way : {-1.0, 1.0})
       if (const auto tip = lens.see(event.point + way * length * event.normal))
         drawArrow(canvas, *point, *tip, scale * kArrowWidth * lens.height, {kImpulse.color, opacity});
@@ -237,7 +237,7 @@ void FilmOverlay::drawImpulseTexts(std::vector<ImpulseText> texts, Canvas& canva
   const double padding = 0.35 * size.em, lineHeight = size.ascent + 2 * padding;
   std::vector<PicturePoint> starts;
   for (const ImpulseText& label : texts) {
-    if (starts.size() == kMostImpulseTexts) break;
+    if (starts.size() == kMaxImpulseTexts) break;
     const std::string text = fmt::format("{:.3g} N s", label.impulse);
     const double width = textWidth(text, size);
     const PicturePoint start{label.point.x - width / 2, label.point.y - 1.6 * size.em};

@@ -8,7 +8,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kLeastDepth = 0.02;  // of the camera's distance to its target: nearer points may be anywhere
+constexpr double kMinDepth = 0.02;  // of the camera's distance to its target: nearer points may be anywhere
 constexpr double kHeadLength = 4.2, kHeadWidth = 3.6;  // of an arrow, in thicknesses of its shaft
 constexpr double kShortest = 2;                        // the same: below, an arrow does not tell its direction
 constexpr double kEdge = 0.45;                         // the same, of the light edge
@@ -18,7 +18,7 @@ constexpr double kEdgeOpacity = 0.75;                  // of the ink's
 
 std::optional<PicturePoint> Lens::see(const Vec3& point) const {
   const double depth = -cameraAxes(camera).col(2).dot(point - camera.position);
-  if (depth < kLeastDepth * (camera.target - camera.position).norm()) return std::nullopt;
+  if (depth < kMinDepth * (camera.target - camera.position).norm()) return std::nullopt;
   const Eigen::Vector2d pixel = projectToPixel(camera, point, width, height);
   return PicturePoint{pixel.x(), pixel.y()};
 }

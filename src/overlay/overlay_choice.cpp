@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kHeightPlot = "plot=height:";
 
-constexpr std::size_t kMostNames = 12;  // that a message lists
+constexpr std::size_t kMaxNames = 12;  // that a message lists
 
 [[noreturn]] void refuse(const std::string& word, const std::string& why) {
   throw Error(ErrorKind::usage, "--overlay", fmt::format("found \"{}\"; {}", word, why));
@@ -52,9 +52,9 @@ std::string allowedBodies(const OverlayChoice& choice, const Scene& scene) {
   for (const Body& body : scene.bodies)
     if (body.motion == Motion::dynamic) names.push_back(body.name);
   for (const std::string& name : names)
-    if (quoted.size() < kMostNames) quoted.push_back(inQuotes(name));
+    if (quoted.size() < kMaxNames) quoted.push_back(inQuotes(name));
   if (quoted.empty()) return "; the scene has none that moves";
-  const std::string others = names.size() > kMostNames ? fmt::format(" and {} more", names.size() - kMostNames) : "";
+  const std::string others = names.size() > kMaxNames ? fmt::format(" and {} more", names.size() - kMaxNames) : "";
   return fmt::format("; allowed are {}{}{}", fmt::join(quoted, ", "), others, didYouMean(choice.plottedBody, names));
 }
 

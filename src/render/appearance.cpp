@@ -22,7 +22,7 @@ constexpr float kLightSquare = 0.76f;  // of the colour that the scene names: a 
 constexpr float kDarkSquare = 0.92f;   // of the light one
 const Vec3f kLinesOnStone(0.80f, 0.64f, 0.42f), kLinesOnSlate(1.25f, 1.75f, 3.0f);
 constexpr double kFullBox = 0.8;         // of a bounding box: from there on, it is darkened by as a box
-constexpr double kLeastFull = 0.05;      // below, what is in it darkens nothing
+constexpr double kMinFull = 0.05;        // below, what is in it darkens nothing
 constexpr double kWallThickness = 0.01;  // of its width
 constexpr double kFewestSquares = 2.5;   // across the scene
 
@@ -127,7 +127,7 @@ std::vector<BodySolid> Catalogue::solidsOf(const Body& body, const BodySolid& wh
   for (const BodyPart& part : parts) {
     const DrawnMesh& mesh = meshes_[static_cast<std::size_t>(part.mesh)];
     const BodySolid solid = solidOf(mesh, part);
-    if (fullness(mesh, part, solid.box) > kLeastFull) solids.push_back(solid);
+    if (fullness(mesh, part, solid.box) > kMinFull) solids.push_back(solid);
   }
   return solids;
 }

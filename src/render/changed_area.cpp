@@ -140,7 +140,7 @@ void ChangeFinder::compareNearBalls(const Item& before, const Item& now, std::si
 /// What of the receivers from `first` on a neighbour reaches.
 void ChangeFinder::addAround(const NeighbourItem& item, std::size_t first) {
   DrawnHull around = hullOf(Bounds(-item.half, item.half), {item.rotation, item.center});
-  around.radius = item.isBall() ? kBallReach * item.radius : item.radius;
+  around.radius = item.isSphere() ? kBallReach * item.radius : item.radius;
   const Bounds reach = item.reach();
   auto outline = outlineOf(around, stage_);
   std::optional<TileSpans> tiles;
@@ -148,7 +148,7 @@ void ChangeFinder::addAround(const NeighbourItem& item, std::size_t first) {
   for (std::size_t i = first; i < receivers_.size(); ++i) {
     const Bounds box = receivers_[i].hull.bounds();
     const double apart =
-        item.isBall() ? box.exteriorDistance(item.center) - around.radius : box.exteriorDistance(reach);
+        item.isSphere() ? box.exteriorDistance(item.center) - around.radius : box.exteriorDistance(reach);
     if (apart > receivers_[i].wider) continue;
     area_.picture.add(tiles ? commonTiles(spansOf(receivers_[i]), *tiles) : spansOf(receivers_[i]));
   }

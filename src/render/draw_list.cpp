@@ -10,14 +10,14 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kMostNearBalls = 6;  // of one item: as many as touch a ball in a dense layer
-constexpr double kLarge = 4;               // times the typical neighbour: compared with everything
+constexpr std::size_t kMaxNearBalls = 6;  // of one item: as many as touch a ball in a dense layer
+constexpr double kLarge = 4;              // times the typical neighbour: compared with everything
 
 void appendBody(const BodyAppearance& look, const RigidTransform& worldFromBody, DrawList& list) {
   for (const BodyPart& part : look.parts) {
     MeshItem item{part.mesh, part.firstTriangle, part.triangleCount, worldFromBody};
     item.surface = part.surface;
-    item.isBall = look.ball.has_value();
+    item.isSphere = look.ball.has_value();
     item.bounds = transformed(look.local, worldFromBody);
     list.meshes.push_back(item);
   }
@@ -119,7 +119,7 @@ void NeighbourSearch::forNear(const Bounds& bounds, const Visit& visit) const {
 
 /// Distance of a neighbour from a box in space, in terms of how far it reaches: below 1, it counts.
 double relativeDistance(const NeighbourItem& item, const Bounds& bounds) {
-  if (item.isBall()) return bounds.exteriorDistance(item.center) / (kBallReach * item.radius);
+  if (item.isSphere()) return bounds.exteriorDistance(item.center) / (kBallReach * item.radius);
   const Vec3 extent = item.rotation.toRotationMatrix().cwiseAbs() * item.half;
   return bounds.exteriorDistance(Bounds(item.center - extent, item.center + extent)) / item.radius;
 }
@@ -138,7 +138,7 @@ void findNearBalls(const std::vector<int>& bodyOfItem, const NeighbourSearch& se
       const double distance = relativeDistance(item, bounds);
       if (distance < 1) found.emplace_back(distance, index);
     });
-    const std::size_t count = std::min(found.size(), kMostNearBalls);
+    const std::size_t count = std::min(found.size(), kMaxNearBalls);
     std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end());
     items[i].firstNearBall = static_cast<int>(list.nearBalls.size());
     items[i].nearBalls = static_cast<int>(count);
@@ -156,8 +156,8 @@ Bounds CylinderItem::bounds() const {
 }
 
 Bounds NeighbourItem::reach() const {
-  const Vec3 extent = isBall() ? Vec3::Constant(kBallReach * radius)
-                               : Vec3(rotation.toRotationMatrix().cwiseAbs() * half + Vec3::Constant(radius));
+  const Vec3 extent = isSphere() ? Vec3::Constant(kBallReach * radius)
+                                 : Vec3(rotation.toRotationMatrix().cwiseAbs() * half + Vec3::Constant(radius));
   return {center - extent, center + extent};
 }
 

@@ -14,7 +14,7 @@ struct MeshItem {
   std::uint32_t firstTriangle = 0, triangleCount = 0;
   RigidTransform worldFromMesh = {};
   Surface surface = {};
-  bool isBall = false;
+  bool isSphere = false;
   Bounds bounds = {};                    // m, world
   int firstNearBall = 0, nearBalls = 0;  // range of DrawList::nearBalls
 };
@@ -38,7 +38,7 @@ struct CylinderItem {
   Bounds bounds() const;
 };
 
-constexpr int kMostCoilTurns = 40;
+constexpr int kMaxCoilTurns = 40;
 
 /// A round tube along a curve: a spring's coil, or a rope that sags.
 struct TubeItem {
@@ -66,7 +66,7 @@ struct NeighbourItem {
   int body = 0;
   Vec3 half = Vec3::Zero();          // half edges of a box, m; zero for a ball
   Quat rotation = Quat::Identity();  // worldFromBox
-  bool isBall() const { return half.isZero(0); }
+  bool isSphere() const { return half.isZero(0); }
   /// Of all that it influences; m, world.
   Bounds reach() const;
 };

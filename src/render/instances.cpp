@@ -31,12 +31,12 @@ void putTransform(Instance& instance, const Mat3& matrix, const Vec3& translatio
 
 /// Attributes 3..5 of an item with a surface and balls near it; the first numbers of 3 are left alone.
 template <typename Item>
-void putLook(const Item& item, bool isBall, Instance& instance) {
+void putLook(const Item& item, bool isSphere, Instance& instance) {
   instance[15] = item.surface.roughness;
   put(instance, 4, item.surface.color, item.surface.metallic);
   put(instance, 5,
       Vec3f(static_cast<float>(item.firstNearBall), static_cast<float>(item.nearBalls),
-            isBall && mirrorsShadows(item.surface)),
+            isSphere && mirrorsShadows(item.surface)),
       0);
 }
 
@@ -108,7 +108,7 @@ bool mirrorsShadows(const Surface& surface) {
 Instance instanceOf(const MeshItem& item, const Stage& stage) {
   Instance instance{};
   putTransform(instance, item.worldFromMesh.rotation.toRotationMatrix(), item.worldFromMesh.translation - stage.origin);
-  putLook(item, item.isBall, instance);
+  putLook(item, item.isSphere, instance);
   return instance;
 }
 
@@ -176,7 +176,7 @@ std::array<float, 16> numbersOf(const NeighbourItem& item, const Stage& stage) {
           half.x(),
           half.y(),
           half.z(),
-          item.isBall() ? 0.0f : 1.0f,
+          item.isSphere() ? 0.0f : 1.0f,
           settled(turn.x()),
           settled(turn.y()),
           settled(turn.z()),

@@ -76,7 +76,7 @@ void forSeen(const std::vector<PixelRectangle>& seen, std::size_t first, std::si
 ItemDrawer::ItemDrawer(const Appearance& appearance, const Stage& stage)
     : appearance_(appearance),
       stage_(stage),
-      coilMesh_(makeTube(kMostCoilTurns * kSegmentsPerTurn, kSegmentsAround)),
+      coilMesh_(makeTube(kMaxCoilTurns * kSegmentsPerTurn, kSegmentsAround)),
       ropeMesh_(makeTube(kRopeSegments, kSegmentsAround)),
       square_({-1, -1, 1, -1, 1, 1, -1, 1}, 2, {0, 1, 2, 0, 2, 3}) {
   for (std::size_t i = 0; i < appearance.meshes.size(); ++i) {

@@ -177,7 +177,7 @@ void LinkBuilder::add(const Spring& spring) {
   const Vec3 aStart = atStart(spring.anchorA), bStart = atStart(spring.anchorB);
   const double natural = std::max({spring.restLength, 0.5 * (bStart - aStart).norm(), 1e-3 * size_});
   const double widest = std::min(coil_, kCoilOfLength * natural);
-  const int turns = std::clamp(static_cast<int>(natural / (kPitchOfCoil * widest)), kFewestTurns, kMostCoilTurns);
+  const int turns = std::clamp(static_cast<int>(natural / (kPitchOfCoil * widest)), kFewestTurns, kMaxCoilTurns);
 
   // The wire keeps its length and its volume: a coil narrows as it is drawn out, and at last its wire does.
   const double wire = std::hypot(2 * std::numbers::pi * turns * widest, natural);

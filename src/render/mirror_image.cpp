@@ -17,7 +17,7 @@ constexpr double kGrazing = 0.01;   // length by which the directions' sum is un
 
 // Rays that hardly fall towards the ground or rise from it are given this slope (environment.glsl): from next to the
 // ground they end near by.
-constexpr double kLeastApproach = 1e-3;
+constexpr double kMinApproach = 1e-3;
 
 /// Unit direction from somewhere in `from` to somewhere in `to`, and how far from it in length the true one may be.
 struct Direction {
@@ -45,7 +45,7 @@ std::optional<BoundingBall> behindSide(const NeighbourItem& box, int axis, doubl
 /// The lowest part of a ball, where it nearly touches the ground; of no size if it does not.
 BoundingBall bottomOf(const SphereItem& ball, const Stage& stage) {
   const Ground& ground = *stage.ground;
-  const double highest = 2 * kLeastApproach * stage.size;
+  const double highest = 2 * kMinApproach * stage.size;
   const double height = highest - (ground.normal.dot(ball.center - ground.point) - ball.radius);
   return {ball.center - ball.radius * ground.normal, std::sqrt(2 * ball.radius * std::max(height, 0.0))};
 }
@@ -75,7 +75,7 @@ std::vector<BoundingBall> imagesOnBall(const SphereItem& ball, const BoundingBal
   for (int i = 0; i < ball.nearBalls; ++i) {
     const int index = list.nearBalls[static_cast<std::size_t>(ball.firstNearBall + i)];
     const NeighbourItem& neighbour = list.neighbours[static_cast<std::size_t>(index)];
-    if (neighbour.isBall()) {
+    if (neighbour.isSphere()) {
       images.push_back(imageIn(mirror, eye, imageIn({neighbour.center, neighbour.radius}, mirror, onGround)));
       continue;
     }

@@ -62,7 +62,7 @@ std::vector<DrawnHull> MirroredShadows::imagesOn(const SphereItem& ball, const D
 }
 
 bool MirroredShadows::areSeenOn(const MeshItem& item, const MeshBounds& bounds) const {
-  if (!item.isBall || !mirrorsShadows(item.surface)) return false;
+  if (!item.isSphere || !mirrorsShadows(item.surface)) return false;
   const SphereItem ball{item.worldFromMesh * Vec3(bounds.whole.center()), bounds.whole.sizes().maxCoeff() / 2,
                         item.surface};
   const double widening = bounds.normalError < kSmooth ? kWideningOfSmoothMesh : kWideningOfFacets;

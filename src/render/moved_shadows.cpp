@@ -19,7 +19,7 @@ constexpr double kAside = 2;         // surfaces stand off from their depths by 
 constexpr double kBehind = 2;        // what lies so far in front of a caster is surely not in its shadow
 constexpr double kSteepest = 50;     // slope in the light's frame: beyond, a surface is bounded by a box
 
-constexpr double kMostReach = kWidestRadius + kHalfBlock + kAside;
+constexpr double kMaxReach = kWidestRadius + kHalfBlock + kAside;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr int kBlocks = kShadowMapSize / kShadowBlock;
@@ -68,7 +68,7 @@ std::vector<Eigen::Vector2d> cut(std::vector<Eigen::Vector2d> polygon, const Bou
 }
 
 /// Whether what moved in `texels` is near enough to change light within `bounds`.
-bool mayReach(const Eigen::AlignedBox2d& texels, const Bounds& bounds, double around = kMostReach) {
+bool mayReach(const Eigen::AlignedBox2d& texels, const Bounds& bounds, double around = kMaxReach) {
   const auto overlaps = [&](int axis) {
     return texels.min()[axis] - around <= bounds.max()[axis] && texels.max()[axis] + around >= bounds.min()[axis];
   };
@@ -163,7 +163,7 @@ double MovedShadows::reachOf(const Run& run, const LitSurface& surface) const {
     for (const double x : {run.texels.min().x(), run.texels.max().x()})
       for (const double y : {run.texels.min().y(), run.texels.max().y()})
         atCorners = std::max(atCorners, depthAt({x, y}, *surface.plane));
-    farthest = std::min(farthest, atCorners + kMostReach * surface.plane->head<2>().cwiseAbs().sum());
+    farthest = std::min(farthest, atCorners + kMaxReach * surface.plane->head<2>().cwiseAbs().sum());
     if (farthest + kBehind < run.nearest) return -1;
   }
   return std::max(coneAt(farthest - run.nearest) + kHalfBlock, coneAt(farthest) + kAroundDisc) + kAside;

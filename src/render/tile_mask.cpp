@@ -7,10 +7,10 @@
 namespace cradle {
 namespace {
 
-constexpr int kTile = 8;              // pixels
-constexpr double kMargin = 2;         // pixels: samples lie beside the centres, and rounding
-constexpr long kRectangleCost = 10;   // tiles: what drawing one more rectangle costs
-constexpr int kMostRectangles = 256;  // before they are merged: the merging is quadratic
+constexpr int kTile = 8;             // pixels
+constexpr double kMargin = 2;        // pixels: samples lie beside the centres, and rounding
+constexpr long kRectangleCost = 10;  // tiles: what drawing one more rectangle costs
+constexpr int kMaxRectangles = 256;  // before they are merged: the merging is quadratic
 
 using Point = Eigen::Vector2d;
 
@@ -174,7 +174,7 @@ std::vector<PixelRectangle> TileMask::rectangles() const {
       while (column + 1 < columns_ && tiles[column + 1]) ++column;
       appendRun({first, row, column, row}, found);
     }
-  if (found.size() > kMostRectangles) found = {{0, 0, columns_ - 1, rows_ - 1}};
+  if (found.size() > kMaxRectangles) found = {{0, 0, columns_ - 1, rows_ - 1}};
   merge(found);
   std::vector<PixelRectangle> rectangles;
   for (const TileRectangle& tiles : found)

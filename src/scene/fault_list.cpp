@@ -10,7 +10,7 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kMostFaults = 50;        // more than anyone reads at once
+constexpr std::size_t kMaxFaults = 50;         // more than anyone reads at once
 constexpr std::size_t kLongestQuotation = 60;  // bytes of the user's text in a message
 constexpr std::size_t kLongestPointer = 200;   // bytes
 
@@ -22,7 +22,7 @@ void FaultList::add(const TextPlace& place, const std::string& pointer, const st
 }
 
 bool FaultList::isFull() const {
-  return faults_.size() == kMostFaults;
+  return faults_.size() == kMaxFaults;
 }
 
 std::string FaultList::where(const TextPlace& place, const std::string& pointer) const {

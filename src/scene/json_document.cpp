@@ -17,8 +17,8 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kMostLevels = 64;
-constexpr std::size_t kMostValues = 4'000'000;  // some 300 MB; a hundred thousand bodies have fewer
+constexpr std::size_t kMaxLevels = 64;
+constexpr std::size_t kMaxValues = 4'000'000;  // some 300 MB; a hundred thousand bodies have fewer
 
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
@@ -61,8 +61,8 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
 
 // Null if there are too many.
 JsonValue* TreeBuilder::add(JsonValue value) {
-  if (++count_ > kMostValues) {
-    faults_.add(value.place, "", fmt::format("the text has more than {} values", kMostValues));
+  if (++count_ > kMaxValues) {
+    faults_.add(value.place, "", fmt::format("the text has more than {} values", kMaxValues));
     return nullptr;
   }
   if (levels_.empty()) return &(root_ = std::move(value));
@@ -80,8 +80,8 @@ bool TreeBuilder::open(decltype(JsonValue::content) content) {
   const TextPlace place = cursor_.takeToken();
   JsonValue* value = add({place, std::move(content)});
   if (value == nullptr) return false;
-  if (levels_.size() == kMostLevels) {
-    faults_.add(place, "", fmt::format("brackets nest deeper than {0} levels; at most {0} are allowed", kMostLevels));
+  if (levels_.size() == kMaxLevels) {
+    faults_.add(place, "", fmt::format("brackets nest deeper than {0} levels; at most {0} are allowed", kMaxLevels));
     return false;
   }
   levels_.push_back({value, {}});

@@ -11,7 +11,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kMostBodies = 1e6;
+constexpr double kMaxBodies = 1e6;
 
 struct Copies {
   std::array<int, 3> count{1, 1, 1};
@@ -24,7 +24,7 @@ Copies parseCopies(const Field& field, FaultList& faults) {
   if (const auto count = reader.find("count")) {
     const std::vector<Field> items = readItems(*count, 3, faults);
     for (std::size_t i = 0; i < items.size(); ++i) {
-      const Range counts{1, kMostBodies, false, true};
+      const Range counts{1, kMaxBodies, false, true};
       copies.count[i] = static_cast<int>(readNumber(items[i], counts, "", faults).value_or(1));
     }
   }
@@ -128,9 +128,9 @@ void writeOutBodies(ObjectReader& reader, BodyDraft& draft, SceneDraft& scene) {
   draft.firstBody = static_cast<int>(scene.scene.bodies.size());
   const auto name = reader.find("name");
   if (!name || draft.body.name.empty()) return;
-  if (total > kMostBodies) {
+  if (total > kMaxBodies) {
     addFault(faults, copiesField.value_or(draft.field),
-             fmt::format("the scene would have {} bodies; at most {} are allowed", total, kMostBodies));
+             fmt::format("the scene would have {} bodies; at most {} are allowed", total, kMaxBodies));
   } else if (copiesField) {
     checkPlaces(copies, draft, *copiesField, faults);
     addCopies(copies, draft, scene, *name, faults);

@@ -5,8 +5,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kMostVertices = 2147483647;  // vertex indices are int
-constexpr int kMostDirections = 1000;         // of a body: so many take 1 s and 150 MB at the start of a run
+constexpr double kMaxVertices = 2147483647;  // vertex indices are int
+constexpr int kMaxDirections = 1000;         // of a body: so many take 1 s and 150 MB at the start of a run
 
 bool isFixed(int body, const Scene& scene) {
   return body == kWorld || scene.bodies[static_cast<std::size_t>(body)].motion == Motion::fixed;
@@ -16,7 +16,7 @@ std::optional<int> readVertex(const Field& field, int body, const SceneDraft& sc
   const std::size_t faultsBefore = faults.count();
   ObjectReader reader(field, faults);
   const auto vertex = reader.require("vertex");
-  const double index = reader.number("vertex", {0, kMostVertices, false, true}, "", 0);
+  const double index = reader.number("vertex", {0, kMaxVertices, false, true}, "", 0);
   reader.rejectUnknownKeys();
   if (faults.count() != faultsBefore) return std::nullopt;
   const bool hasVertices =
@@ -172,14 +172,14 @@ void checkDirections(const SceneDraft& draft, FaultList& faults) {
     for (const int body : {link.anchorA.anchor.body, link.anchorB.anchor.body}) {
       if (isFixed(body, draft.scene)) continue;
       int& sum = directions[static_cast<std::size_t>(body)];
-      const bool wasFew = sum <= kMostDirections;
+      const bool wasFew = sum <= kMaxDirections;
       sum += directionsOf(link);
-      if (wasFew && sum > kMostDirections)
+      if (wasFew && sum > kMaxDirections)
         addFault(faults, link.field,
                  fmt::format("from here on, {} is held in more than {} directions; at most {} are allowed, where a rod "
                              "or a rope counts 1, a ball joint 3 and a hinge 5; leave out what holds it twice",
-                             inQuotes(draft.scene.bodies[static_cast<std::size_t>(body)].name), kMostDirections,
-                             kMostDirections));
+                             inQuotes(draft.scene.bodies[static_cast<std::size_t>(body)].name), kMaxDirections,
+                             kMaxDirections));
     }
 }
 

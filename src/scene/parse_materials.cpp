@@ -9,7 +9,7 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kMostMaterials = 4000;  // their pairs are a table: 4000 take 400 MB
+constexpr std::size_t kMaxMaterials = 4000;  // their pairs are a table: 4000 take 400 MB
 
 // A body that slides would be held back more than one that rests.
 void checkFrictions(double staticFriction, double dynamicFriction, const Field& field, FaultList& faults) {
@@ -93,8 +93,8 @@ void parseNamedMaterials(const Field& field, SceneDraft& draft, FaultList& fault
   ObjectReader(field, faults);  // reports anything but an object
   const auto* members = std::get_if<JsonValue::Object>(&field.value->content);
   if (members == nullptr) return;
-  if (members->size() > kMostMaterials) {
-    addFault(faults, field, fmt::format("{} materials; at most {} are allowed", members->size(), kMostMaterials));
+  if (members->size() > kMaxMaterials) {
+    addFault(faults, field, fmt::format("{} materials; at most {} are allowed", members->size(), kMaxMaterials));
     return;
   }
   for (const JsonMember& member : *members) {

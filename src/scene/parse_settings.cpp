@@ -10,8 +10,8 @@ namespace {
 constexpr const char* kSchema = "cradle-scene/1";
 constexpr Range kAccuracies{kFinestAccuracy, kCoarsestAccuracy};
 constexpr int kLargestPicture = 16384;  // pixels; Mesa's limit
-constexpr double kMostSteps = 1e10;     // a day of computing for one body; times still differ from step to step
-constexpr double kMostFrames = 1e9;     // a year at 30 a second; keeps frame numbers far from overflow
+constexpr double kMaxSteps = 1e10;      // a day of computing for one body; times still differ from step to step
+constexpr double kMaxFrames = 1e9;      // a year at 30 a second; keeps frame numbers far from overflow
 
 void parseSchema(ObjectReader& root) {
   const auto field = root.require("schema");
@@ -81,8 +81,8 @@ void parseLights(ObjectReader& root, Scene& scene) {
   if (const auto* array = std::get_if<JsonValue::Array>(&field->value->content); array != nullptr && array->empty()) {
     addFault(root.faults(), *field, "lights is empty; at least one is needed; leave the key out for the usual one");
   }
-  if (scene.lights.size() > kMostLights)
-    addFault(root.faults(), *field, fmt::format("{} lights; at most {} are allowed", scene.lights.size(), kMostLights));
+  if (scene.lights.size() > kMaxLights)
+    addFault(root.faults(), *field, fmt::format("{} lights; at most {} are allowed", scene.lights.size(), kMaxLights));
 }
 
 }  // namespace
@@ -114,16 +114,16 @@ void parseSettings(ObjectReader& root, Scene& scene) {
 
 std::optional<std::string> frameCountFault(const Scene& scene) {
   const double count = scene.duration * scene.output.framesPerSecond / scene.output.playbackSpeed;
-  if (count <= kMostFrames) return {};
+  if (count <= kMaxFrames) return {};
   return fmt::format("duration x framesPerSecond / playbackSpeed gives {} frames; at most {} are allowed", count,
-                     kMostFrames);
+                     kMaxFrames);
 }
 
 std::optional<std::string> stepCountFault(const Scene& scene) {
   if (!scene.method || !scene.method->timeStep) return {};
   const double count = scene.duration / *scene.method->timeStep;
-  if (count <= kMostSteps) return {};
-  return fmt::format("duration / timeStep gives {:.3g} steps; at most {:g} are allowed", count, kMostSteps);
+  if (count <= kMaxSteps) return {};
+  return fmt::format("duration / timeStep gives {:.3g} steps; at most {:g} are allowed", count, kMaxSteps);
 }
 
 }  // namespace cradle

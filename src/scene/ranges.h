@@ -22,8 +22,7 @@ struct Range {
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr Range kAnyNumber{};
 constexpr Range kFraction{0, 1};
-constexpr std::size_t kMostLights =
-    100;  // every OpenGL 3.3 has room for them: 1024 numbers in all (specification, 6.2)
+constexpr std::size_t kMaxLights = 100;  // every OpenGL 3.3 has room for them: 1024 numbers in all (specification, 6.2)
 
 // Ranges of a scene's quantities. Formulas multiply up to four masses or principal moments, or two moments and the
 // squares of two velocities: with these, no product of theirs leaves the range of doubles, 1e-308 to 1e308. Where

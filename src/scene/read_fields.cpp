@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kFarEnd = 1e6;  // of a range: who has got a sign wrong need not know of it
 
-constexpr std::size_t kMostItems = 1'000'000;  // of an array; as many bodies as a scene may have
+constexpr std::size_t kMaxItems = 1'000'000;  // of an array; as many bodies as a scene may have
 
 // "1e9" for 1000000000, "16384" for 16384.
 std::string describedBound(double bound) {
@@ -154,9 +154,9 @@ std::vector<Field> readItems(const Field& field, FaultList& faults) {
     addFault(faults, field, fmt::format("{} is {}; allowed is an array", keyOf(field), described(*field.value)));
     return {};
   }
-  if (array->size() > kMostItems) {
+  if (array->size() > kMaxItems) {
     addFault(faults, field,
-             fmt::format("{} has {} elements; at most {} are allowed", keyOf(field), array->size(), kMostItems));
+             fmt::format("{} has {} elements; at most {} are allowed", keyOf(field), array->size(), kMaxItems));
     return {};
   }
   std::vector<Field> items;

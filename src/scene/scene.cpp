@@ -7,9 +7,9 @@ namespace cradle {
 
 bool looksAlongUp(const Camera& camera) {
   // Sine of the angle between them. Closer, the picture turns by degrees with the last digits of a position of 1e3 m.
-  constexpr double kLeastAngle = 1e-6;
+  constexpr double kMinAngle = 1e-6;
   const Vec3 towards = camera.target - camera.position;
-  return towards.cross(camera.up).norm() <= kLeastAngle * towards.norm();
+  return towards.cross(camera.up).norm() <= kMinAngle * towards.norm();
 }
 
 long lastFrame(const Scene& scene) {

@@ -32,7 +32,7 @@ void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly)
   }
   for (std::size_t i = 0; i < island.bodies.size(); ++i)
     assembly.mechanism.bodies[i].turns =
-        !std::binary_search(island.unturned.begin(), island.unturned.end(), island.bodies[i]);
+        !std::binary_search(island.nonRotating.begin(), island.nonRotating.end(), island.bodies[i]);
   VectorX& state = assembly.state;
   state.setZero(stateSize(static_cast<Eigen::Index>(assembly.sceneBodies.size())));
   for (std::size_t i = 0; i < assembly.sceneBodies.size(); ++i) {
@@ -102,9 +102,9 @@ void satisfyConstraints(const Scene& scene, Assembly& assembly) {
   solver.factorize(before);
   const double violation = solver.largestRate(before);
   // Spins that a scene gives are kept where velocities of the centres of mass can follow them.
-  std::vector<RigidBody> unturned = mechanism.bodies;
-  for (RigidBody& body : unturned) body.inverseInertia.setZero();
-  ConstraintSolver linear(mechanism.constraints, unturned);
+  std::vector<RigidBody> nonRotating = mechanism.bodies;
+  for (RigidBody& body : nonRotating) body.inverseInertia.setZero();
+  ConstraintSolver linear(mechanism.constraints, nonRotating);
   linear.factorize(before);
   linear.constrainVelocities(assembly.state);
   solver.constrainVelocities(assembly.state);
@@ -134,8 +134,9 @@ void addColliders(const Scene& scene, const IslandPlan& island, Assembly& assemb
   }
   addSurfaces(scene, assembly.colliderBodies, geometry.colliders);
   for (const std::vector<SurfacePair>& row : scene.surfacePairs) {
-    std::vector<SurfaceLaw>& laws = geometry.laws.emplace_back();
-    for (const SurfacePair& pair : row) laws.push_back({pair.restitution, pair.staticFriction, pair.dynamicFriction});
+    std::vector<ContactMaterial>& materials = geometry.materials.emplace_back();
+    for (const SurfacePair& pair : row)
+      materials.push_back({pair.restitution, pair.staticFriction, pair.dynamicFriction});
   }
 }
 
@@ -201,7 +202,7 @@ std::pair<int, int> bodiesOf(const Assembly& assembly, const ColliderPair& pair)
 
 void refuse(const std::vector<std::string>& faults) {
   if (faults.empty()) return;
-  const std::size_t told = std::min(faults.size(), kMostFaultsTold);
+  const std::size_t told = std::min(faults.size(), kMaxFaultsTold);
   std::string text = fmt::format("{}", fmt::join(faults.begin(), faults.begin() + static_cast<long>(told), "\n"));
   if (faults.size() > told) text += fmt::format("\nand {} more", faults.size() - told);
   throw Error(ErrorKind::scene, "", text);

@@ -12,7 +12,7 @@
 
 namespace cradle {
 
-/// Names of what moves and of what ties it, in the order of the mechanism.
+/// Names of what moves and of its constraints, in the order of the mechanism.
 struct PartNames {
   std::vector<std::string> bodies, springs, rods, ballJoints, hinges;
 };
@@ -45,9 +45,9 @@ Assembly assemble(const Scene& scene, const IslandPlan& island);
 /// Throws Error(scene) that names everything in the scene that no method simulates yet, one a line.
 void refuseUnsupported(const Scene& scene);
 
-constexpr std::size_t kMostFaultsTold = 50;
+constexpr std::size_t kMaxFaultsTold = 50;
 
-/// Throws Error(scene) that tells of the first kMostFaultsTold faults, if there are any; of further ones their number
+/// Throws Error(scene) that tells of the first kMaxFaultsTold faults, if there are any; of further ones their number
 /// counts.
 void refuse(const std::vector<std::string>& faults);
 

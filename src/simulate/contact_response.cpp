@@ -23,7 +23,7 @@ SurfaceContact surfacesOf(const Contact& contact) {
 }
 
 ContactRows rowsOf(const ContactConstraint& constraint, const VectorX& state, const std::vector<BodyFrame>& frames) {
-  const ContactPlace place = placeOf(constraint, state, frames);
+  const ContactKinematics place = kinematicsOf(constraint, state, frames);
   const auto tangents = tangentRows(constraint, place);
   return {constraint, place, {tangents[0], tangents[1], normalRow(constraint, place)}};
 }
@@ -57,13 +57,13 @@ bool canLast(const Contact& contact) {
 ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames) {
   SurfaceContact surfaces = surfacesOf(contact);
   if (!canLast(contact)) {
-    // A ball turns around an edge that it comes to as around a corner; what is not round is as good as a corner of one
-    // body on a face of the other.
-    const bool isBallA = contact.radiusA > 0 && std::isfinite(contact.radiusA);
-    const bool isBallB = contact.radiusB > 0 && std::isfinite(contact.radiusB);
-    const bool isFaceOfA = !isBallA && !isBallB && isSteadier(contact.bodyA, contact.bodyB, state, frames);
-    surfaces.radiusA = isBallA ? contact.radiusA : isFaceOfA ? INFINITY : 0;
-    surfaces.radiusB = isBallB ? contact.radiusB : isBallA || isFaceOfA ? 0 : INFINITY;
+    // A sphere turns around an edge that it comes to as around a corner; what is not round is as good as a corner of
+    // one body on a face of the other.
+    const bool isSphereA = contact.radiusA > 0 && std::isfinite(contact.radiusA);
+    const bool isSphereB = contact.radiusB > 0 && std::isfinite(contact.radiusB);
+    const bool isFaceOfA = !isSphereA && !isSphereB && isSteadier(contact.bodyA, contact.bodyB, state, frames);
+    surfaces.radiusA = isSphereA ? contact.radiusA : isFaceOfA ? INFINITY : 0;
+    surfaces.radiusB = isSphereB ? contact.radiusB : isSphereA || isFaceOfA ? 0 : INFINITY;
   }
   return rowsOf(constraintOf(surfaces, state), state, frames);
 }
@@ -80,23 +80,23 @@ Vec3 followContact(const VectorX& before, const VectorX& state, const std::vecto
   contact.point = rows.place.point - 0.5 * rows.place.gap * rows.place.normal;
   contact.normal = sense * rows.place.normal;
   Vec3 drift = Vec3::Zero();
-  for (const ConstraintRow& row : rows.rows) drift += sense * row.curvature * row.linearA;
+  for (const ConstraintRow& row : rows.rows) drift += sense * row.velocityProduct * row.linearA;
   return drift;
 }
 
 ContactResponse::ContactResponse(const std::vector<ContactRows>& contacts, const std::vector<RigidBody>& bodies,
-                                 const std::vector<BodyFrame>& frames, ConstraintSolver& ties)
-    : contacts_(contacts), inverseMass_(3 * contacts.size(), 3 * contacts.size()) {
+                                 const std::vector<BodyFrame>& frames, ConstraintSolver& constraints)
+    : contacts_(contacts), delassus_(3 * contacts.size(), 3 * contacts.size()) {
   for (const ContactRows& contact : contacts)
     for (const ConstraintRow& row : contact.rows) {
       VectorX answer = VectorX::Zero(stateSize(std::ssize(bodies)));
       applyTo(row.bodyA, row.linearA, row.angularA, bodies, frames, answer);
       applyTo(row.bodyB, row.linearB, row.angularB, bodies, frames, answer);
-      if (ties.hasConstraints()) ties.constrainVelocities(answer);
-      inverseMass_.col(std::ssize(answers_)) = velocities(answer);
-      answers_.push_back(std::move(answer));
+      if (constraints.hasConstraints()) constraints.constrainVelocities(answer);
+      delassus_.col(std::ssize(impulseResponses_)) = velocities(answer);
+      impulseResponses_.push_back(std::move(answer));
     }
-  inverseMass_ = (0.5 * (inverseMass_ + inverseMass_.transpose())).eval();
+  delassus_ = (0.5 * (delassus_ + delassus_.transpose())).eval();
 }
 
 VectorX ContactResponse::velocities(const VectorX& state) const {
@@ -107,16 +107,17 @@ VectorX ContactResponse::velocities(const VectorX& state) const {
   return result;
 }
 
-VectorX ContactResponse::accelerations(const VectorX& rate) const {
+VectorX ContactResponse::accelerations(const VectorX& derivative) const {
   VectorX result(3 * contacts_.size());
   Index next = 0;
   for (const ContactRows& contact : contacts_)
-    for (const ConstraintRow& row : contact.rows) result[next++] = rateOf(row, rate) + row.curvature;
+    for (const ConstraintRow& row : contact.rows) result[next++] = rateOf(row, derivative) + row.velocityProduct;
   return result;
 }
 
 void ContactResponse::apply(const VectorX& impulses, VectorX& velocities) const {
-  for (std::size_t i = 0; i < answers_.size(); ++i) velocities += impulses[static_cast<Index>(i)] * answers_[i];
+  for (std::size_t i = 0; i < impulseResponses_.size(); ++i)
+    velocities += impulses[static_cast<Index>(i)] * impulseResponses_[i];
 }
 
 }  // namespace cradle

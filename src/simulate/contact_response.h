@@ -11,45 +11,46 @@ namespace cradle {
 /// A contact as rows: where its surfaces are, and how they move relative to each other.
 struct ContactRows {
   ContactConstraint constraint;
-  ContactPlace place;
+  ContactKinematics place;
   std::array<ConstraintRow, 3> rows;  // two along the surfaces, then the gap's
 };
 
-/// Surfaces that are neither ball, corner nor face, nor an edge under a ball, are taken as a corner on a face: good for
-/// one instant.
+/// Surfaces that are neither sphere, corner nor face, nor an edge under a sphere, are taken as a corner on a face: good
+/// for one instant.
 ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames);
 
-/// Whether a contact can last: its kinematics are those of a ball or corner on a face, a corner or a ball, of a ball on
-/// a straight edge, or of a disc's rim on a face.
+/// Whether a contact can last: its kinematics are those of a sphere or corner on a face, a corner or a sphere, of a
+/// sphere on a straight edge, or of a disc's rim on a face.
 bool canLast(const Contact& contact);
 
 /// Moves a contact of `before` with its bodies, which are at `state` now, where `frames` are theirs; its separation
-/// stays. Returns the rate (m/s^2, world) of B's velocity relative to A's there if the bodies kept theirs; zero if the
-/// contact cannot last, and goes along with the mean of its bodies.
+/// stays. Returns the derivative (m/s^2, world) of B's velocity relative to A's there if the bodies kept theirs; zero
+/// if the contact cannot last, and goes along with the mean of its bodies.
 Vec3 followContact(const VectorX& before, const VectorX& state, const std::vector<BodyFrame>& frames, Contact& contact);
 
-/// How contacts answer to each other's impulses, with what ties the bodies: three rows of each in turn.
+/// The Delassus operator of contacts: how they answer to each other's impulses, with the bodies' constraints: three
+/// rows of each in turn.
 class ContactResponse {
  public:
-  /// Keeps a reference to `contacts`. `ties` must be factorised for the bodies' places.
+  /// Keeps a reference to `contacts`. `constraints` must be factorised for the bodies' places.
   ContactResponse(const std::vector<ContactRows>& contacts, const std::vector<RigidBody>& bodies,
-                  const std::vector<BodyFrame>& frames, ConstraintSolver& ties);
+                  const std::vector<BodyFrame>& frames, ConstraintSolver& constraints);
 
   /// Relative velocities, of A to B, for velocities of the bodies.
   VectorX velocities(const VectorX& state) const;
 
   /// Relative accelerations for accelerations of the bodies.
-  VectorX accelerations(const VectorX& rate) const;
+  VectorX accelerations(const VectorX& derivative) const;
 
   /// Adds to velocities what impulses (N s, on A) give, or to accelerations what forces (N) do.
   void apply(const VectorX& impulses, VectorX& velocities) const;
 
-  const MatrixX& inverseMass() const { return inverseMass_; }  // 1/kg: impulses to relative velocities
+  const MatrixX& delassus() const { return delassus_; }  // 1/kg: impulses to relative velocities
 
  private:
   const std::vector<ContactRows>& contacts_;
-  std::vector<VectorX> answers_;
-  MatrixX inverseMass_;
+  std::vector<VectorX> impulseResponses_;
+  MatrixX delassus_;
 };
 
 }  // namespace cradle

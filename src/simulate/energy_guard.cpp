@@ -12,12 +12,12 @@
 namespace cradle {
 namespace {
 
-constexpr double kUnexplained = 2;        // times the energy that can be explained: nothing is left of the motion
-constexpr double kMostLocalErrors = 100;  // times their sum: they are estimates; 0.1 of it has been seen
+constexpr double kUnexplained = 2;       // times the energy that can be explained: nothing is left of the motion
+constexpr double kMaxLocalErrors = 100;  // times their sum: they are estimates; 0.1 of it has been seen
 constexpr double kPlaceRounding = 64 * std::numeric_limits<double>::epsilon();  // of a place, over a run's steps
 constexpr double kTouchingGap = 1e-8;       // of a size: gaps are closed that are no wider
 constexpr double kFinestTolerance = 1e-13;  // of a component in a step: finer tolerances are not kept
-constexpr double kCalmPart = 0.1;           // of what stops a run: before, the motion is still the scene's own
+constexpr double kCalmRatio = 0.1;          // of what stops a run: before, the motion is still the scene's own
 constexpr double kSafeTurn = 0.1;           // rad a step: RK4 is then right to 1e-7 a step; slower turns are no cause
 constexpr double kOverwhelming = 1e6;       // times all weights and springs: nothing else moves its body
 constexpr double kUnseenFall = 0.01;        // of a body's size: bodies that rattle at rest may have as much of energy
@@ -104,14 +104,14 @@ void EnergyGuard::check(const VectorX& state, double time, double timeStep) {
   double most = mostError_ * explainedEnergy(state, timeStep);
   if (method_.isAdaptive()) {
     errorSum_ += std::max(method_.tolerance, kFinestTolerance) * energySensitivity(mechanism_, state);
-    most = std::min(most, kMostLocalErrors * errorSum_);
+    most = std::min(most, kMaxLocalErrors * errorSum_);
   }
   most += energyOfPlaceErrors(mechanism_, radii_, state, method_.isAdaptive() ? method_.tolerance : 0);
   const double change = std::abs(explainedConstant(mechanism_, state) - startConstant_);
   if (!(change <= most))
     fail(state, time, fmt::format("has energy from nowhere ({:.3g} J; {:.3g} J can be explained)", change, most),
          cause(state));
-  if (change <= kCalmPart * most) calm_ = state;
+  if (change <= kCalmRatio * most) calm_ = state;
 }
 
 /// All energy (J) that there can be, and that errors are measured by.

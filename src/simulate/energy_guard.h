@@ -27,7 +27,8 @@ class EnergyGuard {
   /// Throws Error(unstable): steps have stayed so short that the run would not end in any useful time.
   [[noreturn]] void failAtShortSteps(const VectorX& state, double time, double timeStep) const;
 
-  /// Throws Error(unstable): what ties the bodies cannot all be kept at `time`, the worst is off by `error` (m or rad).
+  /// Throws Error(unstable): the bodies' constraints cannot all be kept at `time`, the worst is off by `error` (m or
+  /// rad).
   [[noreturn]] void failAtTies(const VectorX& state, double time, double error) const;
 
  private:

@@ -85,7 +85,7 @@ LocalSurface surfaceAt(const Collider& collider, const Vec3& point, const Vec3& 
   if (kind == ColliderKind::polytope || kind == ColliderKind::mesh)
     return betweenFaces(faceNormalsAt(collider, point, near), normal);
   const Mat3 across = Mat3::Identity() - squareOf(normal);
-  if (collider.isBall()) return {across, Mat3::Zero()};
+  if (collider.isSphere()) return {across, Mat3::Zero()};
   const Vec3 along = collider.points[1] - collider.points[0];
   const double part = (point - collider.points[0]).dot(along) / along.squaredNorm(), rest = near / along.norm();
   const bool isSide = part > rest && part < 1 - rest;

@@ -4,18 +4,18 @@
 #include <cmath>
 
 #include "dynamics/invariants.h"
-#include "impact/cone_problem.h"
-#include "impact/contact_cones.h"
-#include "impact/sparse_cones.h"
-#include "simulate/plan/islands.h"
+#include "impact/dense_contact_problem.h"
+#include "impact/frictional_contact.h"
+#include "impact/sparse_contact_problem.h"
+#include "simulate/plan/disjoint_sets.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kLiftablePart = 1e-7;      // of its size: the height that a slow body's kinetic energy could lift it
-constexpr double kSupportPart = 1e-6;       // of its size: how far a point may hover and still carry
-constexpr std::size_t kFewSupports = 12;    // whose forces are found densely
-constexpr double kForcesSolvedPart = 1e-2;  // of the residual: how well forces of many are found
+constexpr double kLiftableRatio = 1e-7;      // of its size: the height that a slow body's kinetic energy could lift it
+constexpr double kSupportRatio = 1e-6;       // of its size: how far a point may hover and still carry
+constexpr std::size_t kFewSupports = 12;     // whose forces are found densely
+constexpr double kForcesSolvedRatio = 1e-2;  // of the residual: how well forces of many are found
 constexpr double kResidualAcceleration = 1e-6;  // of gravity: what supporting forces may leave
 constexpr double kSmoothSlip = 1e-7;            // of sqrt(g x size): sliding without friction, which nothing stops
 
@@ -35,37 +35,37 @@ RestingBodies::RestingBodies(const Mechanism& mechanism, const ContactGeometry& 
     sizes_[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
     smallest = std::min(smallest, collider.boundingRadius);
   }
-  supportMargin_ = kSupportPart * smallest;
+  supportMargin_ = kSupportRatio * smallest;
 }
 
 std::vector<int> RestingBodies::islandsOf(const std::vector<Contact>& contacts) const {
-  Islands joined(mechanism_.bodies.size());
+  DisjointSets joined(mechanism_.bodies.size());
   for (const Contact& contact : contacts) joined.join(contact.bodyA, contact.bodyB);
   for (const SpringForce& spring : mechanism_.springs) joined.join(spring.anchorA.body, spring.anchorB.body);
-  forEachTie(mechanism_.constraints, [&](int bodyA, int bodyB) { joined.join(bodyA, bodyB); });
+  forEachConstraint(mechanism_.constraints, [&](int bodyA, int bodyB) { joined.join(bodyA, bodyB); });
   std::vector<int> islands;
   for (std::size_t body = 0; body < sizes_.size(); ++body) islands.push_back(joined.islandOf(static_cast<int>(body)));
   return islands;
 }
 
 /// What is shaken again and again does not rest in between.
-bool RestingBodies::isCalm(double time, std::size_t body, const VectorX& state) const {
-  return time - wakeTimes_[body] >= calmTime_ && isSlow(body, state);
+bool RestingBodies::isStill(double time, std::size_t body, const VectorX& state) const {
+  return time - wakeTimes_[body] >= stillTime_ && isSlow(body, state);
 }
 
 bool RestingBodies::isSlow(std::size_t index, const VectorX& state) const {
   const Eigen::Index body = static_cast<Eigen::Index>(index);
   const double speed2 = linearVelocity(state, body).squaredNorm() +
                         sizes_[index] * sizes_[index] * angularVelocity(state, body).squaredNorm();
-  return speed2 < 2 * mechanism_.gravity.norm() * kLiftablePart * sizes_[index];
+  return speed2 < 2 * mechanism_.gravity.norm() * kLiftableRatio * sizes_[index];
 }
 
-bool RestingBodies::canBeHeld(const std::vector<int>& islands, int island, const VectorX& state) {
+bool RestingBodies::canBeInEquilibrium(const std::vector<int>& islands, int island, const VectorX& state) {
   // Accelerations stand in for velocities: the impulses that stop them are then the forces that hold the bodies.
-  VectorX rate, accelerations = state;
-  equations_.evaluate(state, rate);
+  VectorX derivative, accelerations = state;
+  equations_.evaluate(state, derivative);
   const Eigen::Index velocities = static_cast<Eigen::Index>(islands.size()) * kVelocitySize;
-  accelerations.segment(poseComponents(state), velocities) = rate.segment(poseComponents(state), velocities);
+  accelerations.segment(poseComponents(state), velocities) = derivative.segment(poseComponents(state), velocities);
 
   std::vector<Contact> near, supports;
   std::vector<double> frictions;
@@ -73,7 +73,7 @@ bool RestingBodies::canBeHeld(const std::vector<int>& islands, int island, const
   for (const Contact& contact : near) {
     if (islands[static_cast<std::size_t>(contact.movingBody())] != island) continue;
     supports.push_back(contact);
-    frictions.push_back(geometry_.pairs[contact.pair].law.staticFriction);
+    frictions.push_back(geometry_.pairs[contact.pair].material.staticFriction);
     const Vec3 velocity = relativeVelocity(contact, state),
                slip = velocity - contact.normal.dot(velocity) * contact.normal;
     const double size = smallestSize(contact, sizes_);
@@ -95,22 +95,22 @@ void RestingBodies::hold(const std::vector<Contact>& supports, const std::vector
                          const VectorX& state, VectorX& accelerations) {
   if (supports.size() <= kFewSupports || solver_.hasConstraints()) {
     if (solver_.hasConstraints()) solver_.factorize(state);
-    const ContactCones cones(supports, ImpulseResponse(mechanism_.bodies, solver_), state);
+    const DenseContactProblem cones(supports, ImpulseResponse(mechanism_.bodies, solver_), state);
     const VectorX free = cones.velocitiesIn(accelerations);
-    cones.apply(solveConeProblem(cones.inverseMass(), free, frictions).impulses, accelerations);
+    cones.apply(solveFrictionalContact(cones.delassus(), free, frictions).impulses, accelerations);
     return;
   }
-  SparseCones cones;
+  SparseContactProblem cones;
   cones.set(supports, mechanism_.bodies, state);
   const Eigen::Index size = 3 * static_cast<Eigen::Index>(supports.size());
-  ConeStart start{VectorX::Zero(size), VectorX::Zero(size), 0};
+  WarmStart start{VectorX::Zero(size), VectorX::Zero(size), 0};
   long iterations = 0;
-  const double tolerance = kForcesSolvedPart * kResidualAcceleration * mechanism_.gravity.norm();
+  const double tolerance = kForcesSolvedRatio * kResidualAcceleration * mechanism_.gravity.norm();
   cones.apply(cones.solve(cones.velocitiesIn(accelerations), frictions, tolerance, start, iterations).impulses,
               accelerations);
 }
 
-std::vector<int> RestingBodies::settle(double time, const std::vector<Contact>& contacts, VectorX& state) {
+std::vector<int> RestingBodies::letSleep(double time, const std::vector<Contact>& contacts, VectorX& state) {
   std::vector<int> settled;
   if (contacts.empty()) return settled;
   const std::vector<int> islands = islandsOf(contacts);
@@ -120,10 +120,10 @@ std::vector<int> RestingBodies::settle(double time, const std::vector<Contact>& 
       if (body != kFixed && !isResting(body))
         candidate[static_cast<std::size_t>(islands[static_cast<std::size_t>(body)])] = 1;
   for (std::size_t body = 0; body < islands.size(); ++body)
-    if (!isCalm(time, body, state)) candidate[static_cast<std::size_t>(islands[body])] = 0;
+    if (!isStill(time, body, state)) candidate[static_cast<std::size_t>(islands[body])] = 0;
 
   for (std::size_t island = 0; island < islands.size(); ++island) {
-    if (!candidate[island] || !canBeHeld(islands, static_cast<int>(island), state)) continue;
+    if (!candidate[island] || !canBeInEquilibrium(islands, static_cast<int>(island), state)) continue;
     std::vector<int> members;
     for (std::size_t body = 0; body < islands.size(); ++body) {
       if (islands[body] != static_cast<int>(island)) continue;

@@ -8,18 +8,18 @@
 namespace cradle {
 
 /// Bodies that lie still: nothing is computed for them until something touches them. Bodies come to rest together with
-/// all that they touch or are tied to (their island), and wake together.
+/// all that they touch or are joined to (their island), and wake together.
 class RestingBodies {
  public:
   /// Keeps references to all three.
   RestingBodies(const Mechanism& mechanism, const ContactGeometry& geometry, EquationsOfMotion& equations);
 
   /// A body that was woken is not settled again for so long (s).
-  void setCalmTime(double calmTime) { calmTime_ = calmTime; }
+  void setStillTime(double stillTime) { stillTime_ = stillTime; }
 
   /// Brings islands to rest that are slow and that contact forces within the friction cones can hold, given the
   /// contacts of this instant. Returns the bodies that came to rest.
-  std::vector<int> settle(double time, const std::vector<Contact>& contacts, VectorX& state);
+  std::vector<int> letSleep(double time, const std::vector<Contact>& contacts, VectorX& state);
 
   /// Stops bodies that rest together from now on; what they still had of kinetic energy is numerical.
   void bringToRest(const std::vector<int>& bodies, VectorX& state);
@@ -36,11 +36,11 @@ class RestingBodies {
 
  private:
   std::vector<int> islandsOf(const std::vector<Contact>& contacts) const;
-  bool isCalm(double time, std::size_t body, const VectorX& state) const;
+  bool isStill(double time, std::size_t body, const VectorX& state) const;
   bool isSlow(std::size_t body, const VectorX& state) const;
   void hold(const std::vector<Contact>& supports, const std::vector<double>& frictions, const VectorX& state,
             VectorX& accelerations);
-  bool canBeHeld(const std::vector<int>& islands, int island, const VectorX& state);
+  bool canBeInEquilibrium(const std::vector<int>& islands, int island, const VectorX& state);
 
   const Mechanism& mechanism_;
   const ContactGeometry& geometry_;
@@ -48,7 +48,7 @@ class RestingBodies {
   ConstraintSolver solver_;
   std::vector<double> sizes_;      // m: bounding radius of each moving body, 0 if it does not collide
   double supportMargin_ = 0;       // m
-  double calmTime_ = 0;            // s
+  double stillTime_ = 0;           // s
   std::vector<double> wakeTimes_;  // s, of each body's last waking
   std::vector<int> restingIsland_;
 };

@@ -4,8 +4,8 @@
 
 #include "core/cpu_stopwatch.h"
 #include "simulate/plan/plan_text.h"
-#include "simulate/run.h"
 #include "simulate/step_loss.h"
+#include "simulate/world.h"
 
 namespace cradle {
 namespace {
@@ -46,11 +46,11 @@ TrajectoryHeader headerOf(const Scene& scene, const Plan& plan) {
 
 RunCost simulate(const Scene& scene, const SimulationSink& sink) {
   refuseUnsupported(scene);
-  Run run(scene);
+  World run(scene);
   return simulate(scene, run, sink);
 }
 
-RunCost simulate(const Scene& scene, Run& run, const SimulationSink& sink) {
+RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink) {
   CpuStopwatch integration;
   StepLoss loss(scene);
   for (const std::string& warning : run.startWarnings()) sink.warning(warning);
@@ -77,7 +77,7 @@ RunCost simulate(const Scene& scene, Run& run, const SimulationSink& sink) {
 
 Trajectory simulate(const Scene& scene) {
   refuseUnsupported(scene);
-  Run run(scene);
+  World run(scene);
   Trajectory trajectory;
   trajectory.header = headerOf(scene, run.plan());
   const SimulationSink sink{[&](const Frame& frame) { trajectory.frames.push_back(frame); },

@@ -10,7 +10,7 @@
 
 namespace cradle {
 
-class Run;
+class World;
 
 /// Where the results of a run go, in the order of time: events of an instant before the frame of that instant.
 struct SimulationSink {
@@ -30,7 +30,7 @@ TrajectoryHeader headerOf(const Scene& scene, const Plan& plan);
 RunCost simulate(const Scene& scene, const SimulationSink& sink);
 
 /// The same for a run that has been begun, and is at its start. `scene` has passed refuseUnsupported.
-RunCost simulate(const Scene& scene, Run& run, const SimulationSink& sink);
+RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink);
 
 /// The whole run in memory.
 Trajectory simulate(const Scene& scene);

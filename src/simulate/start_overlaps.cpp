@@ -17,10 +17,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kTouchingPart = 1e-9;                                // of the smaller body's size
-constexpr double kModelPart = std::numeric_limits<float>::epsilon();  // of a model's: its vertices are that exact
-constexpr double kMostPart = 0.5;                                     // of the smaller body's inner radius
-constexpr int kMostPushRounds = 20;                                   // of moving apart: each may bring others together
+constexpr double kTouchingRatio = 1e-9;                                // of the smaller body's size
+constexpr double kModelRatio = std::numeric_limits<float>::epsilon();  // of a model's: its vertices are that exact
+constexpr double kMaxOverlapRatio = 0.5;                               // of the smaller body's inner radius
+constexpr int kMaxPushRounds = 20;  // of moving apart: each may bring others together
 
 /// The deepest overlap (m) of a pair; < 0 or -infinity if it has none.
 double depthOf(const ContactGeometry& geometry, const ColliderPair& pair, const VectorX& state) {
@@ -39,7 +39,7 @@ bool isModel(const Body& body) {
 double touchingDepth(const ContactGeometry& geometry, const ColliderPair& pair, const Body& a, const Body& b) {
   const double sizeA = geometry.colliders[pair.a].boundingRadius;
   const double sizeB = pair.againstPlane ? sizeA : geometry.colliders[pair.b].boundingRadius;
-  return (isModel(a) || isModel(b) ? kModelPart : kTouchingPart) * std::min(sizeA, sizeB);
+  return (isModel(a) || isModel(b) ? kModelRatio : kTouchingRatio) * std::min(sizeA, sizeB);
 }
 
 std::string lengthText(double meters) {
@@ -47,9 +47,9 @@ std::string lengthText(double meters) {
 }
 
 /// How deep (m) a pair may overlap to be moved apart.
-double mendableDepth(const ContactGeometry& geometry, const ColliderPair& pair) {
+double correctableDepth(const ContactGeometry& geometry, const ColliderPair& pair) {
   const double radiusA = innerRadius(geometry.colliders[pair.a]);
-  return kMostPart * (pair.againstPlane ? radiusA : std::min(radiusA, innerRadius(geometry.colliders[pair.b])));
+  return kMaxOverlapRatio * (pair.againstPlane ? radiusA : std::min(radiusA, innerRadius(geometry.colliders[pair.b])));
 }
 
 /// Two bodies of an island that overlap.
@@ -99,13 +99,14 @@ std::vector<Overlap> overlapsOf(const Scene& scene, const Assembly& assembly) {
     if (depth > touchingDepth(geometry, pair, a, b))
       overlaps.push_back({a, b, pair.againstPlane,
                           !pair.againstPlane && (isSheet(geometry, pair.a) || isSheet(geometry, pair.b)), depth,
-                          mendableDepth(geometry, pair)});
+                          correctableDepth(geometry, pair)});
   }
   return overlaps;
 }
 
-/// The bodies with an infinite inertia where nothing ties them: an overlap says how far bodies are to be moved, but not
-/// how they are to be turned, and what was put straight is to stay straight. Ties leave some bodies no other way.
+/// The bodies with an infinite inertia where they have no constraints: an overlap says how far bodies are to be moved,
+/// but not how they are to be turned, and what was put straight is to stay straight. Ties leave some bodies no other
+/// way.
 std::vector<RigidBody> bodiesThatKeepUpright(const Mechanism& mechanism) {
   std::vector<RigidBody> bodies = mechanism.bodies;
   for (RigidBody& body : bodies) body.inverseInertia.setZero();
@@ -113,7 +114,7 @@ std::vector<RigidBody> bodiesThatKeepUpright(const Mechanism& mechanism) {
     const std::size_t index = static_cast<std::size_t>(body);
     if (body != kFixed) bodies[index].inverseInertia = mechanism.bodies[index].inverseInertia;
   };
-  forEachTie(mechanism.constraints, [&](int a, int b) { free(a), free(b); });
+  forEachConstraint(mechanism.constraints, [&](int a, int b) { free(a), free(b); });
   return bodies;
 }
 
@@ -134,10 +135,10 @@ void settle(const Scene& scene, Assembly& assembly, std::vector<std::string>& fa
   const std::vector<Overlap> overlaps = overlapsOf(scene, assembly);
   const std::size_t before = faults.size();
   for (const Overlap& overlap : overlaps)
-    if (overlap.depth > overlap.mendable) faults.push_back(faults.size() < kMostFaultsTold ? faultOf(overlap) : "");
+    if (overlap.depth > overlap.mendable) faults.push_back(faults.size() < kMaxFaultsTold ? faultOf(overlap) : "");
   if (overlaps.empty() || faults.size() > before) return;
   std::vector<Overlap> left = overlaps;
-  for (int round = 0; round < kMostPushRounds && !left.empty(); ++round) {
+  for (int round = 0; round < kMaxPushRounds && !left.empty(); ++round) {
     moveApart(assembly);
     left = overlapsOf(scene, assembly);
   }
@@ -148,7 +149,7 @@ void settle(const Scene& scene, Assembly& assembly, std::vector<std::string>& fa
 
 }  // namespace
 
-void settleStartOverlaps(const Scene& scene, std::vector<Assembly>& islands) {
+void correctStartPenetrations(const Scene& scene, std::vector<Assembly>& islands) {
   std::vector<std::string> faults;
   for (Assembly& assembly : islands) settle(scene, assembly, faults);
   refuse(faults);

@@ -7,7 +7,7 @@ namespace cradle {
 /// Moves apart what overlaps at the start, with a warning that says how deep, before anything is counted as energy.
 /// Touching is fine: up to 1e-9 of the smaller body's size, and up to the rounding of single precision for models,
 /// whose files hold no more digits. Throws Error(scene) that names all pairs which overlap by more than half of the
-/// radius of a ball inside the smaller body, or which cannot be moved apart, one a line (at most 50). O(pairs).
-void settleStartOverlaps(const Scene& scene, std::vector<Assembly>& islands);
+/// radius of a sphere inside the smaller body, or which cannot be moved apart, one a line (at most 50). O(pairs).
+void correctStartPenetrations(const Scene& scene, std::vector<Assembly>& islands);
 
 }  // namespace cradle

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "scene/named_accuracy.h"
-#include "simulate/run.h"
 #include "simulate/simulate.h"
+#include "simulate/world.h"
 #include "study/motion_error.h"
 #include "study/run_evidence.h"
 #include "study/stepped_runs.h"
@@ -173,7 +173,7 @@ class Comparison {
   AchievedAccuracy& result_;
   ReadRun run_;
   Scene finerScene_, disturbedScene_;
-  std::optional<Run> finer_, disturbed_;
+  std::optional<World> finer_, disturbed_;
   std::optional<SteppedRuns> stepped_;
   RunEvidence runEvidence_, finerEvidence_;
   GrowthMeter growth_;

@@ -12,8 +12,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kLeast = 1e-17, kMost = 1e4;  // of axes: what is less or more stands on their edge
-constexpr int kSideLabels = 5;                 // of an axis, at the most
+constexpr double kMin = 1e-17, kMax = 1e4;  // of axes: what is less or more stands on their edge
+constexpr int kSideLabels = 5;              // of an axis, at the most
 
 double decadeBelow(double value) {
   return std::pow(10, std::floor(std::log10(value)));
@@ -24,8 +24,8 @@ struct Decades {
   double bottom = std::numeric_limits<double>::infinity(), top = 0;
 
   void include(double value) {
-    const double shown = std::clamp(value, kLeast, kMost);
-    bottom = std::max(kLeast, std::min(bottom, decadeBelow(shown / 3)));
+    const double shown = std::clamp(value, kMin, kMax);
+    bottom = std::max(kMin, std::min(bottom, decadeBelow(shown / 3)));
     top = std::max(top, 10 * decadeBelow(shown));
   }
 
@@ -156,7 +156,7 @@ ChartLayout layoutOf(const std::vector<Curve>& curves) {
 
 std::string dataBlocks(const std::vector<Curve>& curves, double uncertainty) {
   const ErrorAxis axis = errorAxisOf(curves, uncertainty);
-  const auto shown = [](double value) { return std::clamp(value, kLeast, kMost); };  // NaN stays
+  const auto shown = [](double value) { return std::clamp(value, kMin, kMax); };  // NaN stays
   std::string text;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     text += fmt::format("$curve{} << EOD\n", i);
@@ -175,11 +175,11 @@ std::string dataBlocks(const std::vector<Curve>& curves, double uncertainty) {
 }
 
 std::string errorPanels(const std::vector<Curve>& curves, double uncertainty, const ChartLayout& layout) {
-  constexpr int kMostLabels = 8;
+  constexpr int kMaxLabels = 8;
   const ErrorAxis axis = errorAxisOf(curves, uncertainty);
   return fmt::format("set yrange [{}:{}]\nset bmargin at screen {}\nset tmargin at screen {}\n", axis.decades.bottom,
                      axis.end, layout.errorsBottom, layout.errorsTop) +
-         axis.decades.tics(kMostLabels) + uncertaintyBand(axis, uncertainty) + blowUpStrip(axis) +
+         axis.decades.tics(kMaxLabels) + uncertaintyBand(axis, uncertainty) + blowUpStrip(axis) +
          "set lmargin at screen 0.075\nset rmargin at screen 0.495\n"
          "set ylabel 'error at the end:  max |x - x_{ref}| / (1 + |x_{ref}|)'\n"
          "set xlabel 'CPU time per simulated second (s)'\n" +

@@ -18,7 +18,7 @@ void DriftMeter::add(const Frame& frame) {
   const VectorX state = stateOf(assembly_, frame);
   std::vector<BodyFrame> bodies;
   std::vector<ConstraintRow> rows;
-  placeBodies(assembly_.mechanism.bodies, state, bodies);
+  findBodyFrames(assembly_.mechanism.bodies, state, bodies);
   findRows(assembly_.mechanism.constraints, state, bodies, rows);
   for (const ConstraintRow& row : rows) constraintDrift_ = std::max(constraintDrift_, std::abs(row.value / row.scale));
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kLimitOfUnstable = 2;            // step x omega to start from if a method has no limit of its own
 constexpr double kStepWithoutSprings = 1.0 / 30;  // s
-constexpr long kMostSteps = 3000000;
+constexpr long kMaxSteps = 3000000;
 constexpr int kFinestTenths = 12;
 constexpr double kResolved = 1e-3;  // an error at which a method follows the motion
 constexpr int kRungsWithoutGain = 3;
@@ -17,7 +17,7 @@ long firstStepCount(const StudyMethod& method, const StudyScene& scene) {
   const double frequency = scene.fastestFrequency();
   const double limit = method.stabilityLimit > 0 ? method.stabilityLimit : kLimitOfUnstable;
   const double step = frequency > 0 ? limit / frequency : kStepWithoutSprings;
-  return std::clamp(static_cast<long>(scene.duration() / step), 1L, kMostSteps);
+  return std::clamp(static_cast<long>(scene.duration() / step), 1L, kMaxSteps);
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ bool Ladder::descend(double cpuSeconds, double cpuLimit) {
   if (2 * cpuSeconds > cpuLimit) return false;
   steps_ *= 2;
   ++tenths_;
-  return kind_ == SettingKind::timeStep ? steps_ <= kMostSteps : tenths_ <= kFinestTenths;
+  return kind_ == SettingKind::timeStep ? steps_ <= kMaxSteps : tenths_ <= kFinestTenths;
 }
 
 bool GainWatch::goesOn(double error, double floor) {

@@ -6,7 +6,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kLeastImpulse = 1e-6;  // of the hardest: what barely touches may do so in one run alone
+constexpr double kMinImpulse = 1e-6;  // of the hardest: what barely touches may do so in one run alone
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void RunEvidence::add(const Frame& frame) {
 
 std::optional<TouchDifference> RunEvidence::difference(const RunEvidence& first, const RunEvidence& second,
                                                        double time) {
-  const double least = kLeastImpulse * std::max(first.hardest_, second.hardest_);
+  const double least = kMinImpulse * std::max(first.hardest_, second.hardest_);
   std::optional<TouchDifference> found;
   const auto consider = [&](const RunEvidence& one, const RunEvidence& other, bool isInFirst) {
     for (const auto& [pair, touch] : one.touches_)

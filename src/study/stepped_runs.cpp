@@ -19,7 +19,7 @@ Scene withSteps(Scene scene, double timeStep) {
   return scene;
 }
 
-Frame frameOf(Run& run, const Frame& other) {
+Frame frameOf(World& run, const Frame& other) {
   Frame frame = run.frameAt(other.number, other.time);
   run.takeEvents(other.time);
   return frame;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "scene/scene.h"
-#include "simulate/run.h"
+#include "simulate/world.h"
 #include "trajectory/trajectory.h"
 
 namespace cradle {
@@ -38,7 +38,7 @@ class SteppedRuns {
   void attempt(const Action& action);
 
   Scene fineScene_, coarseScene_;
-  std::optional<Run> fine_, coarse_;
+  std::optional<World> fine_, coarse_;
   OtherMethod result_;
 };
 

@@ -22,7 +22,7 @@ namespace {
 constexpr long kDriftFrames = 16;    // a power of two: halved steps end on them
 constexpr double kShortRun = 0.2;    // s of CPU time: beyond, one run is exact to some per cent
 constexpr double kRepeatFor = 0.05;  // s of CPU time in all
-constexpr int kLeastRepeats = 3, kMostRepeats = 50;
+constexpr int kMinRepeats = 3, kMaxRepeats = 50;
 
 double cpuSeconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
@@ -78,8 +78,8 @@ std::optional<double> StudyScene::costInAnotherTurn(const StudyMethod& method, d
 std::optional<RunCost> StudyScene::leastCost(const StudyMethod& method, double setting, double cpuLimit) {
   std::optional<RunCost> least;
   double sum = 0;
-  for (int i = 0; i < kMostRepeats; ++i) {
-    if (i >= kLeastRepeats && sum > kRepeatFor) break;
+  for (int i = 0; i < kMaxRepeats; ++i) {
+    if (i >= kMinRepeats && sum > kRepeatFor) break;
     const StudyRun again = runOnce(method, setting, 1, cpuLimit);
     if (again.status != RunStatus::ok) break;  // two frames show less kinetic energy, by which what appears is measured
     sum += again.cost.cpuSeconds;

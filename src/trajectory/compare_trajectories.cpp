@@ -13,7 +13,7 @@ namespace {
 
 // Two frames are of the same instant up to this, relative: rounding of k * playbackSpeed / framesPerSecond.
 constexpr double kSameTime = 1e-12;
-constexpr std::size_t kMostListed = 10;  // bodies named in a description
+constexpr std::size_t kMaxListed = 10;  // bodies named in a description
 
 /// The indices, among the dynamic bodies of two trajectories, of one body.
 struct BodyPair {
@@ -89,8 +89,8 @@ void compareFrames(const TrajectoryReader& expected, const TrajectoryReader& act
 }
 
 std::string listed(const std::vector<std::string>& names) {
-  const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMostListed));
-  const std::string more = names.size() > kMostListed ? fmt::format(" and {} more", names.size() - kMostListed) : "";
+  const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMaxListed));
+  const std::string more = names.size() > kMaxListed ? fmt::format(" and {} more", names.size() - kMaxListed) : "";
   return fmt::format("{}{}", fmt::join(names.begin(), end, ", "), more);
 }
 

@@ -26,9 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLeastLength = 1'000'000;  // bytes that a text may have in any file: a .part grows while it is read
-constexpr int kLongTurn = 100'000;       // instructions of SQLite; a row of a trajectory takes less than a hundred
-constexpr int kPatience = 30000;         // ms to wait for another program; queries of others seldom take longer
+constexpr int kMinLength = 1'000'000;  // bytes that a text may have in any file: a .part grows while it is read
+constexpr int kLongTurn = 100'000;     // instructions of SQLite; a row of a trajectory takes less than a hundred
+constexpr int kPatience = 30000;       // ms to wait for another program; queries of others seldom take longer
 
 std::string_view bytesOrEmpty(std::span<const std::byte> bytes) {
   // SQLite takes a null pointer for null, not for zero bytes.
@@ -267,7 +267,7 @@ Database::Database(const std::string& path, DatabaseAccess access) : path_(path)
 void Database::restrictReading() {
   std::error_code failed;
   bytesHeld_ = static_cast<std::int64_t>(std::min(fs::file_size(path_, failed), std::uintmax_t{INT_MAX}));
-  sqlite3_limit(handle_.get(), SQLITE_LIMIT_LENGTH, std::max(static_cast<int>(bytesHeld_), kLeastLength));
+  sqlite3_limit(handle_.get(), SQLITE_LIMIT_LENGTH, std::max(static_cast<int>(bytesHeld_), kMinLength));
   const auto isTooMuch = [](void* turns) { return ++*static_cast<int*>(turns) > 1 ? 1 : 0; };
   sqlite3_progress_handler(handle_.get(), kLongTurn, isTooMuch, &longTurns_);
   sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);

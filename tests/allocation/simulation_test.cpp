@@ -2,7 +2,7 @@
 
 #include "allocation/allocations.h"
 #include "experiments/experiment.h"
-#include "simulate/simulation.h"
+#include "simulate/island_solver.h"
 
 namespace cradle {
 namespace {
@@ -20,12 +20,12 @@ Scene tiedBodies(const std::string& method) {
     "hinges": [{"bodyA": "c", "anchorA": [0.15, 0, 0], "bodyB": "d", "anchorB": [-0.15, 0, 0], "axis": [0, 0, 1]}]})");
 }
 
-TEST(Simulation, AllocatesNothingInASmoothStep) {
+TEST(IslandSolver, AllocatesNothingInASmoothStep) {
   for (const char* method : {"", R"("method": {"name": "rk4", "timeStep": 0.001},)"}) {
     const Scene scene = tiedBodies(method);
     const Plan plan = planOf(scene);
     ASSERT_EQ(plan.islands.size(), 1u);
-    Simulation simulation(scene, assemble(scene, plan.islands[0]), plan.islands[0].method);
+    IslandSolver simulation(scene, assemble(scene, plan.islands[0]), plan.islands[0].method);
     simulation.stateAt(0.1);  // the first steps make the memory that is used ever after
     const long before = allocations(), evaluations = simulation.evaluations();
     simulation.stateAt(1);

@@ -28,7 +28,7 @@ TEST(Step, AllocatesNothingAfterTheFirst) {
       prepareInterpolant(rightHandSide, step);
       interpolate(step, 0.4, interpolated);
       if (integrate == dormandPrince5) cutStep(0.5, step);
-      carryEndRate(step);
+      carryEndDerivative(step);
       return allocations() - before;
     };
     EXPECT_GT(once(), 0);  // proof that counting works

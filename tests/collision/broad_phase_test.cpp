@@ -39,7 +39,7 @@ Crowd crowdOf(int bodies, double space, std::mt19937& random) {
   fixed.bounds = {Vec3::Constant(-0.3), Vec3::Constant(0.3)};
   crowd.geometry.colliders.push_back(fixed);
   crowd.geometry.planes = {{Vec3::Zero(), Vec3(0.6, 0.8, 0)}};
-  crowd.geometry.laws = {{SurfaceLaw{}}};
+  crowd.geometry.materials = {{ContactMaterial{}}};
   return crowd;
 }
 
@@ -190,7 +190,7 @@ TEST(BroadPhase, ListsAFewPairsABody) {
     centerOfMass(crowd.state, body) = Vec3(0.2 * (body % side), 0, 0.2 * (body / side));
     setOrientation(crowd.state, body, Quat::Identity());
   }
-  crowd.geometry.laws = {{SurfaceLaw{}}};
+  crowd.geometry.materials = {{ContactMaterial{}}};
   BroadPhase().update(crowd.state, std::vector<double>(side * side, 0.0), 1e-3, crowd.geometry);
   EXPECT_GE(crowd.geometry.pairs.size(), 2u * side * (side - 1));
   EXPECT_LE(crowd.geometry.pairs.size(), 4u * side * side);

@@ -95,7 +95,7 @@ double gapAlong(const SolidPair& pair, const Vec3& direction) {
   return -pair.a.reach(direction) - pair.b.reach(-direction);
 }
 
-/// Of 2000 directions, 3 degrees apart, the 12 best improved.
+/// Of 2000 directions, 3 degrees apart, the 12 best climbedSupportGap.
 Vec3 directionOfWidestGap(const SolidPair& pair) {
   return widestGap([&](const Vec3& direction) { return gapAlong(pair, direction); }, {2000, 12, 1e-5});
 }

@@ -106,8 +106,8 @@ TEST(TimeOfImpact, CountsTheWayBetweenSlowEnds) {
   step.timeStep = 1;
   step.startState = stateOf({{Vec3::Zero(), Vec3::Zero()}, {Vec3(0.5, 0, 0), Vec3::Zero()}});
   step.state = stateOf({{Vec3(1, 0, 0), Vec3::Zero()}, {Vec3(0.5, 0, 0), Vec3::Zero()}});
-  step.startRate = step.endRate = VectorX::Zero(step.state.size());
-  step.hasEndRate = true;
+  step.startDerivative = step.endDerivative = VectorX::Zero(step.state.size());
+  step.hasEndDerivative = true;
   const auto impact = ImpactSearch(twoBalls(0.05)).first(step, {kTouchTolerance});
   ASSERT_TRUE(impact);
   const double s = impact->fraction;

@@ -227,7 +227,7 @@ TEST(ContactProjection, ClosesGapsAndTiesAtOnceToRounding) {
   EquationsOfMotion equations(row.mechanism);
   EXPECT_GT(equations.project(row.state), 2e-4);
   std::vector<BodyFrame> frames;
-  placeBodies(row.mechanism.bodies, row.state, frames);
+  findBodyFrames(row.mechanism.bodies, row.state, frames);
   std::vector<ConstraintRow> rows;
   findRows(row.mechanism.constraints, row.state, frames, rows);
   for (const ConstraintRow& tie : rows) {
@@ -235,7 +235,7 @@ TEST(ContactProjection, ClosesGapsAndTiesAtOnceToRounding) {
     EXPECT_NEAR(rateOf(tie, row.state), 0, 1e-14);
   }
   for (std::size_t i = 0; i < row.mechanism.contacts.size(); ++i) {
-    const ContactPlace place = placeIn(row.mechanism, i, row.state);
+    const ContactKinematics place = placeIn(row.mechanism, i, row.state);
     EXPECT_NEAR(place.gap, 0, 2e-15) << i;
     EXPECT_NEAR(place.velocity.dot(place.normal), 0, 1e-14) << i;
     EXPECT_TRUE(i > 0 || place.velocity.norm() < 1e-14);  // the first one sticks
@@ -247,7 +247,7 @@ TEST(ContactProjection, ClosesGapsAndTiesAtOnceToRounding) {
 TEST(ContactProjection, MovesBodiesByTheInverseOfTheirMasses) {
   Mechanism mechanism;
   mechanism.bodies = {solidSphere(1, 0.2), solidSphere(2, 0.3)};
-  mechanism.contacts = {ballOnBall({0, Vec3::Zero()}, 0.2, {1, Vec3::Zero()}, 0.3, kFrictionless)};
+  mechanism.contacts = {sphereOnSphere({0, Vec3::Zero()}, 0.2, {1, Vec3::Zero()}, 0.3, kFrictionless)};
   VectorX state = restingState(2);
   centerOfMass(state, 0).x() = 0.499;
   linearVelocity(state, 0) = Vec3(-3, 1, 0);

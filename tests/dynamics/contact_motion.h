@@ -69,8 +69,8 @@ inline ContactConstraint ballOnFace(const Attachment& center, double radius, con
   contact.slidingDirection = sliding;
   return contact;
 }
-inline ContactConstraint ballOnBall(const Attachment& a, double radiusA, const Attachment& b, double radiusB,
-                                    ContactMotion motion) {
+inline ContactConstraint sphereOnSphere(const Attachment& a, double radiusA, const Attachment& b, double radiusB,
+                                        ContactMotion motion) {
   ContactConstraint contact = ballOnFace(a, radiusA, b, Vec3::UnitY(), motion);
   contact.radiusB = radiusB;
   return contact;
@@ -96,7 +96,7 @@ inline VectorX integrated(const Mechanism& mechanism, VectorX state, double dura
     const double taken = std::min(size.timeStep, duration - time);
     dop853(rightHandSide, state, time, taken, step);
     if (!acceptStep(dop853Error(step, tolerances), taken, size)) {
-      keepStartRate(step);
+      keepStartDerivative(step);
       continue;
     }
     time = taken < duration - time ? time + taken : duration;
@@ -106,10 +106,10 @@ inline VectorX integrated(const Mechanism& mechanism, VectorX state, double dura
   return state;
 }
 
-inline ContactPlace placeIn(const Mechanism& mechanism, std::size_t contact, const VectorX& state) {
+inline ContactKinematics placeIn(const Mechanism& mechanism, std::size_t contact, const VectorX& state) {
   std::vector<BodyFrame> frames;
-  placeBodies(mechanism.bodies, state, frames);
-  return placeOf(mechanism.contacts[contact], state, frames);
+  findBodyFrames(mechanism.bodies, state, frames);
+  return kinematicsOf(mechanism.contacts[contact], state, frames);
 }
 
 }  // namespace cradle

@@ -93,7 +93,7 @@ TEST(ContactRows, GapAndItsTwoDerivativesAgreeForAllKindsOfSurfaces) {
       const auto gap = [&](const VectorX& state) { return rowIn(state).value; };
       EXPECT_NEAR(rateOf(row, pair.state), fourthOrderDerivative(pair.state, pair.rate, gap), kDifference) << kind.name;
       const auto gapRate = [&](const VectorX& state) { return rateOf(rowIn(state), state); };
-      EXPECT_NEAR(rateOf(row, pair.rate) + row.curvature, fourthOrderDerivative(pair.state, pair.rate, gapRate),
+      EXPECT_NEAR(rateOf(row, pair.rate) + row.velocityProduct, fourthOrderDerivative(pair.state, pair.rate, gapRate),
                   kDifference)
           << kind.name;
     }
@@ -103,7 +103,7 @@ TEST(ContactRows, TangentialVelocityIsThatOfTheMaterialWhereTheSurfacesTouch) {
   Random random;
   for (const Kind& kind : kKinds) {
     const Touching pair(kind, random);
-    const ContactPlace place = placeIn(pair.mechanism, 0, pair.state);
+    const ContactKinematics place = placeIn(pair.mechanism, 0, pair.state);
     // Points marked on both bodies at the place of contact.
     Vec3 velocity = Vec3::Zero();
     for (const auto& [body, sign] : {std::pair(kind.bodyA, 1.0), std::pair(kind.bodyB, -1.0)}) {
@@ -132,17 +132,17 @@ TEST(ContactRows, RateOfTheTangentialVelocityAgreesForAllKindsOfSurfaces) {
         return Vec3(tangentialVelocity(placeIn(pair.mechanism, 0, state)));
       });
       for (const ConstraintRow& row : tangentRows(pair.mechanism.contacts[0], placeIn(pair.mechanism, 0, pair.state)))
-        EXPECT_NEAR(rateOf(row, pair.rate) + row.curvature, row.linearA.dot(expected), kDifference) << kind.name;
+        EXPECT_NEAR(rateOf(row, pair.rate) + row.velocityProduct, row.linearA.dot(expected), kDifference) << kind.name;
     }
 }
 
 TEST(ContactRows, AFaceOfAIsAFaceOfBWithTheBodiesExchanged) {
   Random random;
   const Touching pair(kKinds[3], random);
-  const ContactPlace place = placeIn(pair.mechanism, 0, pair.state);
+  const ContactKinematics place = placeIn(pair.mechanism, 0, pair.state);
   Mechanism exchanged = pair.mechanism;
   exchanged.contacts = {constraintOf({1, 0, place.point, place.normal, 0, kFace, 0.3}, pair.state)};
-  const ContactPlace other = placeIn(exchanged, 0, pair.state);
+  const ContactKinematics other = placeIn(exchanged, 0, pair.state);
   EXPECT_EQ(exchanged.contacts[0].centerA.body, 0);
   EXPECT_LT((other.normal - place.normal).norm(), 1e-15);
   EXPECT_LT((other.velocity - place.velocity).norm(), 1e-14);
@@ -168,12 +168,12 @@ TEST(ContactForces, KeepGapAndMomentaForAllKindsOfSurfaces) {
     for (const ContactMotion motion : {ContactMotion::frictionless, ContactMotion::sliding, ContactMotion::sticking}) {
       const Touching pair(kind, random, motion);
       const VectorX rate = rateOf(pair.mechanism, pair.state);
-      const ContactPlace place = placeIn(pair.mechanism, 0, pair.state);
+      const ContactKinematics place = placeIn(pair.mechanism, 0, pair.state);
       const ConstraintRow row = normalRow(pair.mechanism.contacts[0], place);
-      EXPECT_NEAR(rateOf(row, rate) + row.curvature, 0, 1e-12) << kind.name;
+      EXPECT_NEAR(rateOf(row, rate) + row.velocityProduct, 0, 1e-12) << kind.name;
       for (const ConstraintRow& tangent : tangentRows(pair.mechanism.contacts[0], place)) {
         if (motion != ContactMotion::sticking) break;
-        EXPECT_NEAR(rateOf(tangent, rate) + tangent.curvature, 0, 1e-12) << kind.name;
+        EXPECT_NEAR(rateOf(tangent, rate) + tangent.velocityProduct, 0, 1e-12) << kind.name;
       }
       if (kind.bodyA == kFixed || kind.bodyB == kFixed) continue;
       const auto sum = [&](auto member) {
@@ -217,10 +217,10 @@ TEST(SlidingDirection, IsThatOfTheVelocityAboveAHundredMicrometresASecond) {
   mechanism.contacts = {ballOnFace({0, Vec3(0.1, -0.5, 0.2)}, 0, {}, Vec3::UnitY(), ContactMotion::sliding, 0.3)};
   VectorX state = restingState(1);
   std::vector<BodyFrame> frames;
-  placeBodies(mechanism.bodies, state, frames);
+  findBodyFrames(mechanism.bodies, state, frames);
   const auto direction = [&](const Vec3& velocity) {
     linearVelocity(state, 0) = velocity;
-    return slidingDirection(mechanism.contacts[0], placeOf(mechanism.contacts[0], state, frames), frames);
+    return slidingDirection(mechanism.contacts[0], kinematicsOf(mechanism.contacts[0], state, frames), frames);
   };
   EXPECT_LT((direction(Vec3(6e-5, 0, 8e-5)) - Vec3(0.6, 0, 0.8)).norm(), 1e-15);
   EXPECT_LT((direction(Vec3(3, 0, 4)) - Vec3(0.6, 0, 0.8)).norm(), 1e-15);

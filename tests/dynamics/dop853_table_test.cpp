@@ -12,7 +12,7 @@ constexpr double kRounding = 1e-14;
 
 double sumOf(const Weights& weights, int power) {
   double sum = 0;
-  for (std::size_t i = 0; i < kRates; ++i) sum += weights[i] * std::pow(kNodes[i], power);
+  for (std::size_t i = 0; i < kDerivatives; ++i) sum += weights[i] * std::pow(kNodes[i], power);
   return sum;
 }
 
@@ -25,41 +25,41 @@ double largest(const Weights& weights) {
 /// The weights of nodes that a sum over two stages gives: sum_i weights_i a_ij.
 Weights throughStages(const Weights& weights) {
   Weights through{};
-  for (std::size_t i = 0; i < kEndRate; ++i)
+  for (std::size_t i = 0; i < kEndDerivative; ++i)
     for (std::size_t j = 0; j < i; ++j) through[j] += weights[i] * kStages[i][j];
   return through;
 }
 
 TEST(Dop853Table, EveryStageUsesOnlyRatesBeforeIt) {
-  for (std::size_t i = 0; i < kRates; ++i)
-    for (std::size_t j = i; j < kRates; ++j) EXPECT_EQ(kStages[i][j], 0) << i << " " << j;
+  for (std::size_t i = 0; i < kDerivatives; ++i)
+    for (std::size_t j = i; j < kDerivatives; ++j) EXPECT_EQ(kStages[i][j], 0) << i << " " << j;
 }
 
 TEST(Dop853Table, WeightsOfAStageAddUpToItsNode) {
-  for (std::size_t i = 0; i < kRates; ++i)
+  for (std::size_t i = 0; i < kDerivatives; ++i)
     EXPECT_NEAR(sumOf(kStages[i], 0), kNodes[i], kRounding * largest(kStages[i])) << i;
 }
 
 // The simplifying assumptions of the construction, II.5 (5.20): stages of order 2 from the third, 3 from the fifth.
 TEST(Dop853Table, StagesIntegratePolynomials) {
-  for (std::size_t i = 2; i < kRates; ++i)
+  for (std::size_t i = 2; i < kDerivatives; ++i)
     EXPECT_NEAR(sumOf(kStages[i], 1), std::pow(kNodes[i], 2) / 2, kRounding * largest(kStages[i])) << i;
-  for (std::size_t i = 3; i < kRates; ++i)
+  for (std::size_t i = 3; i < kDerivatives; ++i)
     EXPECT_NEAR(sumOf(kStages[i], 2), std::pow(kNodes[i], 3) / 3, kRounding * largest(kStages[i])) << i;
 }
 
 // Order conditions of the bushy trees: y' = t^k is exact for k < 8, and not for k = 8.
 TEST(Dop853Table, ResultIntegratesPolynomialsOfDegreeSeven) {
-  for (int k = 0; k < 8; ++k) EXPECT_NEAR(sumOf(kStages[kEndRate], k), 1.0 / (k + 1), kRounding * 6) << k;
-  EXPECT_GT(std::abs(sumOf(kStages[kEndRate], 8) - 1.0 / 9), 1e-8);
+  for (int k = 0; k < 8; ++k) EXPECT_NEAR(sumOf(kStages[kEndDerivative], k), 1.0 / (k + 1), kRounding * 6) << k;
+  EXPECT_GT(std::abs(sumOf(kStages[kEndDerivative], 8) - 1.0 / 9), 1e-8);
 }
 
 // Trees with a branch, sum_ij b_i c_i^m a_ij c_j^k = 1 / ((k + 1) (k + m + 2)) up to order k + m + 2 = 8; a third level
 // in the same way.
 TEST(Dop853Table, ResultFulfilsTheOrderConditionsOfBranchedTrees) {
   for (int m = 0; m <= 6; ++m) {
-    Weights weights = kStages[kEndRate];
-    for (std::size_t i = 0; i < kRates; ++i) weights[i] *= std::pow(kNodes[i], m);
+    Weights weights = kStages[kEndDerivative];
+    for (std::size_t i = 0; i < kDerivatives; ++i) weights[i] *= std::pow(kNodes[i], m);
     const Weights second = throughStages(weights), third = throughStages(second);
     for (int k = 0; k + m + 2 <= 8; ++k)
       EXPECT_NEAR(sumOf(second, k), 1.0 / ((k + 1) * (k + m + 2)), 20 * kRounding) << m << " " << k;

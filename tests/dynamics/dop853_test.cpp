@@ -50,11 +50,11 @@ TEST(Dop853, InterpolantIsExactAtBothEndsWithItsSlope) {
   EXPECT_EQ(state, step.startState);
   interpolate(step, 1, state);
   EXPECT_EQ(state, step.state);
-  const double delta = 1e-6;  // of the step: one-sided slope good to delta x curvature, some 1e-6
+  const double delta = 1e-6;  // of the step: one-sided slope good to delta x velocityProduct, some 1e-6
   interpolate(step, delta, near);
-  EXPECT_LT(((near - step.startState) / (delta * step.timeStep) - step.startRate).norm(), 1e-5);
+  EXPECT_LT(((near - step.startState) / (delta * step.timeStep) - step.startDerivative).norm(), 1e-5);
   interpolate(step, 1 - delta, near);
-  EXPECT_LT(((step.state - near) / (delta * step.timeStep) - step.endRate).norm(), 1e-5);
+  EXPECT_LT(((step.state - near) / (delta * step.timeStep) - step.endDerivative).norm(), 1e-5);
 }
 
 // The error estimate falls with the eighth power of the step, the error itself with the ninth: the estimate is the
@@ -82,7 +82,7 @@ TEST(Dop853, ErrorNormCombinesBothEstimatesAsPublished) {
   dop853(power, VectorX::Zero(1), 0, timeStep, step);
   const auto estimate = [&](std::size_t row) {
     double sum = 0;
-    for (std::size_t i = 0; i < dop853_table::kRates; ++i)
+    for (std::size_t i = 0; i < dop853_table::kDerivatives; ++i)
       sum += dop853_table::kErrors[row][i] * 6 * std::pow(dop853_table::kNodes[i], 5);
     return sum * end / (tolerance * (1 + end));
   };
@@ -97,7 +97,7 @@ TEST(Dop853, ErrorNormDoesNotAverageAStiffComponentAway) {
   const RightHandSide one = oscillator(3);
   const RightHandSide among{[=](double time, const VectorX& state, VectorX& rate) {
                               rate.setZero();
-                              one.rate(time, state, rate);
+                              one.derivative(time, state, rate);
                             },
                             nullptr, 1};
   Step alone, crowd;
@@ -117,7 +117,7 @@ TEST(Dop853, CarriesTheEndRateToTheNextStep) {
   int evaluations = 0;
   const RightHandSide counted{[&](double time, const VectorX& state, VectorX& rate) {
                                 ++evaluations;
-                                kepler().rate(time, state, rate);
+                                kepler().derivative(time, state, rate);
                               },
                               nullptr, 2};
   Step first, second;
@@ -130,12 +130,12 @@ TEST(Dop853, CarriesTheEndRateToTheNextStep) {
   dop853(counted, keplerAt(0), 0, 0.5, step);
   prepareInterpolant(counted, step);
   EXPECT_EQ(evaluations, 16);
-  carryEndRate(step);
+  carryEndDerivative(step);
   dop853(counted, first.state, 0.5, 0.5, step);
   EXPECT_EQ(evaluations, 27);
   EXPECT_EQ(step.state, second.state);
 
-  keepStartRate(step);
+  keepStartDerivative(step);
   dop853(counted, first.state, 0.5, 0.5, step);
   EXPECT_EQ(evaluations, 38);
   EXPECT_EQ(step.state, second.state);

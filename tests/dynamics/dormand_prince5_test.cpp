@@ -17,22 +17,22 @@ constexpr double kRounding = 1e-14;  // sums of 7 products of numbers up to 12, 
 
 double sumOf(const Weights& weights, int power) {
   double sum = 0;
-  for (std::size_t i = 0; i < kRates; ++i) sum += weights[i] * std::pow(kNodes[i], power);
+  for (std::size_t i = 0; i < kDerivatives; ++i) sum += weights[i] * std::pow(kNodes[i], power);
   return sum;
 }
 
 TEST(DormandPrince5Table, EveryStageUsesOnlyRatesBeforeItAndItsWeightsAddUpToItsNode) {
-  for (std::size_t i = 0; i < kRates; ++i) {
-    for (std::size_t j = i; j < kRates; ++j) EXPECT_EQ(kStages[i][j], 0) << i << " " << j;
+  for (std::size_t i = 0; i < kDerivatives; ++i) {
+    for (std::size_t j = i; j < kDerivatives; ++j) EXPECT_EQ(kStages[i][j], 0) << i << " " << j;
     EXPECT_NEAR(sumOf(kStages[i], 0), kNodes[i], kRounding) << i;
   }
 }
 
 // y' = t^k is exact for k < 5 with the result, and for k < 4 with the embedded formula; not beyond.
 TEST(DormandPrince5Table, ResultIsOfOrderFiveAndItsErrorEstimateOfOrderFour) {
-  for (int k = 0; k < 5; ++k) EXPECT_NEAR(sumOf(kStages[kEndRate], k), 1.0 / (k + 1), kRounding) << k;
+  for (int k = 0; k < 5; ++k) EXPECT_NEAR(sumOf(kStages[kEndDerivative], k), 1.0 / (k + 1), kRounding) << k;
   for (int k = 0; k < 4; ++k) EXPECT_NEAR(sumOf(kErrors[0], k), 0, kRounding) << k;
-  EXPECT_GT(std::abs(sumOf(kStages[kEndRate], 5) - 1.0 / 6), 1e-4);
+  EXPECT_GT(std::abs(sumOf(kStages[kEndDerivative], 5) - 1.0 / 6), 1e-4);
   EXPECT_GT(std::abs(sumOf(kErrors[0], 4)), 1e-4);
 }
 
@@ -82,7 +82,7 @@ TEST(DormandPrince5, TakesSixEvaluations) {
   int evaluations = 0;
   const RightHandSide counted{[&](double time, const VectorX& state, VectorX& rate) {
                                 ++evaluations;
-                                kepler().rate(time, state, rate);
+                                kepler().derivative(time, state, rate);
                               },
                               nullptr, 0};
   Step step;
@@ -90,7 +90,7 @@ TEST(DormandPrince5, TakesSixEvaluations) {
   prepareInterpolant(counted, step);
   EXPECT_EQ(evaluations, 7);
   const VectorX end = step.state;
-  carryEndRate(step);
+  carryEndDerivative(step);
   dormandPrince5(counted, end, 0.1, 0.1, step);
   EXPECT_EQ(evaluations, 13);
 }
@@ -112,7 +112,7 @@ TEST(DormandPrince5, WhatIsCutOffAStepLeavesTheRestOfItsCurve) {
   VectorX before, after;
   interpolate(whole, cut - delta, before);
   interpolate(whole, cut + delta, after);
-  EXPECT_LT(((after - before) / (2 * delta * timeStep) - part.endRate).norm(), 1e-9);
+  EXPECT_LT(((after - before) / (2 * delta * timeStep) - part.endDerivative).norm(), 1e-9);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ struct JointedBodies {
       linearVelocity(state, i) = Vec3(0.4, -1.1 + i, 0.2 * i);
       angularVelocity(state, i) = Vec3(1.3 - i, -0.6, 2.2);
     }
-    placeBodies(bodies, state, frames);
+    findBodyFrames(bodies, state, frames);
   }
 
   void tie(int bodyA, int bodyB) {
@@ -76,7 +76,7 @@ void expectAsRows(const JointedBodies& jointed) {
     for (std::size_t j = 0; j < rows.size(); ++j) matrix(static_cast<Eigen::Index>(j), at) = rateOf(rows[j], answer);
     response += x[at] * answer;
     EXPECT_NEAR(blocks.value(i / 3)[at % 3], rows[i].value, 1e-14);
-    EXPECT_NEAR(blocks.curvature(i / 3)[at % 3], rows[i].curvature, 1e-13);
+    EXPECT_NEAR(blocks.velocityProduct(i / 3)[at % 3], rows[i].velocityProduct, 1e-13);
     EXPECT_NEAR(blocks.rateOf(i / 3, jointed.state)[at % 3], rateOf(rows[i], jointed.state), 1e-14);
     EXPECT_DOUBLE_EQ(blocks.rounding(i / 3), rows[i].rounding);
   }

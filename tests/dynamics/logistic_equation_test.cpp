@@ -79,7 +79,8 @@ TEST(LogisticEquation, Rk4SettlesAtAValueThatIsNoSolution) {
 }
 
 // From slightly beside the equilibrium both leave it, by the factors 1 + z = -2 and R(z) = 1.375 of z = -3 a step. The
-// curvature of y' adds 1e-6 x 0.007 h / 2, relative; rounding of 857, 1.1e-13, a few times, is 5e-7 of the offset.
+// velocityProduct of y' adds 1e-6 x 0.007 h / 2, relative; rounding of 857, 1.1e-13, a few times, is 5e-7 of the
+// offset.
 TEST(LogisticEquation, BothMethodsLeaveTheEquilibriumAtThisStep) {
   const double offset = 1e-6;
   EXPECT_NEAR((stepsOf(explicitEuler, kEquilibrium + offset, 1)[1] - kEquilibrium) / offset, -2, 1e-6);

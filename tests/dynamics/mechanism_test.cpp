@@ -150,7 +150,7 @@ Mechanism hingedBodies(const VectorX& state) {
 
 std::vector<ConstraintRow> rowsIn(const Mechanism& mechanism, const VectorX& state) {
   std::vector<BodyFrame> frames;
-  placeBodies(mechanism.bodies, state, frames);
+  findBodyFrames(mechanism.bodies, state, frames);
   std::vector<ConstraintRow> rows;
   findRows(mechanism.constraints, state, frames, rows);
   return rows;
@@ -166,10 +166,10 @@ TEST(ConstraintRows, RateAndCurvatureAreTheTimeDerivativesOfTheirValues) {
       const double first =
           secondOrderDerivative(state, rate, [&](const VectorX& s) { return rowsIn(mechanism, s)[i].value; });
       EXPECT_NEAR(rateOf(rows[i], state), first, 1e-8) << i;
-      // With constant velocities d^2C/dt^2 is the curvature alone: rates of positions move, velocities stay.
+      // With constant velocities d^2C/dt^2 is the velocityProduct alone: rates of positions move, velocities stay.
       const double second =
           secondOrderDerivative(state, rate, [&](const VectorX& s) { return rateOf(rowsIn(mechanism, s)[i], s); });
-      EXPECT_NEAR(rows[i].curvature, second, 1e-8) << i;
+      EXPECT_NEAR(rows[i].velocityProduct, second, 1e-8) << i;
     }
   }
 }

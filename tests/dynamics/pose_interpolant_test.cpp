@@ -117,8 +117,8 @@ Step bentStep(std::size_t correction, Eigen::Index component, double size) {
   step.startState = VectorX::Zero(stateSize(1));
   setOrientation(step.startState, 0, Quat::Identity());
   step.state = step.startState;
-  step.startRate = step.endRate = VectorX::Zero(stateSize(1));
-  step.hasEndRate = true;
+  step.startDerivative = step.endDerivative = VectorX::Zero(stateSize(1));
+  step.hasEndDerivative = true;
   step.interpolant = InterpolantKind::degreeSeven;
   step.corrections.fill(VectorX::Zero(stateSize(1)));
   step.corrections[correction][component] = size;

@@ -97,11 +97,11 @@ TEST(Sphere, RollsDownASphere) {
   const double mass = 0.6, radius = 0.1, ground = 0.5, reach = radius + ground, start = 0.3;
   Mechanism mechanism = onEarth({solidSphere(mass, radius)});
   const Vec3 bottom(0.2, -0.4, 0.1);
-  mechanism.contacts = {ballOnBall({0, Vec3::Zero()}, radius, {kFixed, bottom}, ground, kSticking)};
+  mechanism.contacts = {sphereOnSphere({0, Vec3::Zero()}, radius, {kFixed, bottom}, ground, kSticking)};
   VectorX state = restingState(1);
   centerOfMass(state, 0) = bottom + reach * Vec3(std::sin(start), std::cos(start), 0);
-  const VectorX startRate = rateOf(mechanism, state);
-  EXPECT_NEAR(linearVelocity(startRate, 0).norm(), 5.0 / 7 * kGravity * std::sin(start), kMotionRounding);
+  const VectorX startDerivative = rateOf(mechanism, state);
+  EXPECT_NEAR(linearVelocity(startDerivative, 0).norm(), 5.0 / 7 * kGravity * std::sin(start), kMotionRounding);
   const VectorX end = integrated(mechanism, state, 0.6, 1e-10);
   const Vec3 place = centerOfMass(end, 0) - bottom;
   const double square = linearVelocity(end, 0).squaredNorm(), cosine = place.y() / reach;
@@ -121,7 +121,7 @@ TEST(Sphere, RollingOnAFreeBallKeepsMomentaAndEnergy) {
   Mechanism mechanism;
   mechanism.bodies = {lopsided(0.8), lopsided(1.7, rotationAbout(Vec3(3, -1, 0.4), 1.1))};
   const Vec3 a(0.05, -0.02, 0.04), b(-0.03, 0.06, 0.01);  // balls off the centres of mass
-  mechanism.contacts = {ballOnBall({0, a}, 0.2, {1, b}, 0.3, kSticking)};
+  mechanism.contacts = {sphereOnSphere({0, a}, 0.2, {1, b}, 0.3, kSticking)};
   VectorX state = restingState(2);
   centerOfMass(state, 0) = b - a + 0.5 * Vec3(2, -1, 2) / 3;
   linearVelocity(state, 0) = Vec3(0.3, 0.5, -0.2);
@@ -134,7 +134,7 @@ TEST(Sphere, RollingOnAFreeBallKeepsMomentaAndEnergy) {
   EXPECT_LT((after.momentum - before.momentum).norm(), 1e-12);
   EXPECT_LT((after.angularMomentum - before.angularMomentum).norm(), 1e-9);
   EXPECT_NEAR(after.kinetic, before.kinetic, 1e-9);
-  const ContactPlace place = placeIn(mechanism, 0, end);
+  const ContactKinematics place = placeIn(mechanism, 0, end);
   EXPECT_NEAR(place.gap, 0, 1e-9);
   EXPECT_LT(place.velocity.norm(), 1e-9);
   EXPECT_GT((placeIn(mechanism, 0, state).point - place.point).norm(), 0.1);

@@ -21,7 +21,7 @@ Outcome runControlled(const RightHandSide& problem, const VectorX& start, double
   Outcome run;
   const RightHandSide counted{[&](double time, const VectorX& state, VectorX& rate) {
                                 ++run.evaluations;
-                                problem.rate(time, state, rate);
+                                problem.derivative(time, state, rate);
                               },
                               nullptr, 0};
   const VectorX tolerances = VectorX::Constant(start.size(), tolerance);
@@ -35,7 +35,7 @@ Outcome runControlled(const RightHandSide& problem, const VectorX& start, double
     dop853(counted, run.end, time, taken, step);
     if (!acceptStep(dop853Error(step, tolerances), taken, size)) {
       ++run.rejections;
-      keepStartRate(step);
+      keepStartDerivative(step);
       continue;
     }
     ++run.steps;

@@ -16,8 +16,8 @@ struct Case {
 
 /// A ball of 50 mm off the middle of a cylinder that lies, turning slowly. Densities from 8000 kg/m^3.
 Scene ballOnCylinder(const Case& given) {
-  const std::string law = fmt::format(R"("restitution": {}, "staticFriction": {}, "dynamicFriction": {})",
-                                      given.restitution, given.friction, given.friction);
+  const std::string material = fmt::format(R"("restitution": {}, "staticFriction": {}, "dynamicFriction": {})",
+                                           given.restitution, given.friction, given.friction);
   return sceneWith(fmt::format(R"("duration": 0.02, "materials": {{"light": {{"density": 8000, {0}}},
     "heavy": {{"density": {1}, {0}}}}}, "bodies": [
     {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "light"}},
@@ -25,7 +25,7 @@ Scene ballOnCylinder(const Case& given) {
       "position": [0, 0.033600000004, 0], "orientation": {{"axis": [0, 0, 1], "angleDegrees": 90}}}},
     {{"name": "ball", "shape": {{"sphere": {{"radius": 0.05}}}}, "material": "heavy",
       "position": [-0.0125, 0.117200000006, 0], "angularVelocity": [0.0069, 0.00007, -0.0036]}}])",
-                               law, 8000 * given.ratio));
+                               material, 8000 * given.ratio));
 }
 
 TEST(DenseBallOnALyingCylinder, ComesToTheEndOfItsImpactsAndGainsNoEnergy) {

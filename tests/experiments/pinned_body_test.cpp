@@ -395,7 +395,7 @@ TEST(BoxPinnedByItsEdge, MeetsTheBlockWithAllThatComesDown) {
         const RandomSceneFigures figures = runRandomScene(boxOnTiltedBlock(accuracy, velocity, gap));
         SCOPED_TRACE(::testing::Message() << accuracy << ", velocity " << velocity.transpose() << ", gap " << gap);
         EXPECT_LT(figures.penetration, 1e-9 + 0.01 * accuracy);
-        EXPECT_LT(figures.tieError, 1e-9);
+        EXPECT_LT(figures.constraintError, 1e-9);
       }
 }
 

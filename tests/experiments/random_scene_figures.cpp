@@ -13,7 +13,7 @@ namespace {
 
 // Times the accuracy. A step's error is a tenth of it: a hundred of them a run, of random signs, make up one of speeds,
 // and energy has their square. Frames between steps, which end where ties and contacts hold, have less than one.
-constexpr double kMostEnergyErrors = 2, kMostPlaceErrors = 1;
+constexpr double kMaxEnergyErrors = 2, kMaxPlaceErrors = 1;
 // Steps of one length promise no accuracy, but that pictures are right. What they gain is RK4's with springs and ropes;
 // what errors lose is of order 1 in steps in which something strikes: g times the change of speed times a step; ropes
 // are drawn too long by what contact does to speeds of 20 m/s within a step of 1/960 s; penetration is as in piles.
@@ -65,7 +65,8 @@ RandomSceneFigures runRandomScene(const Scene& scene) {
     figures.energyGain = std::max(figures.energyGain, energy - least);
     figures.energyError =
         std::max(figures.energyError, std::abs(energyConstantOf(frame) - energyConstantOf(frames[0])));
-    figures.tieError = std::max({figures.tieError, tieError(frame, scene), ropeExcess(frame, scene)});
+    figures.constraintError =
+        std::max({figures.constraintError, constraintError(frame, scene), ropeExcess(frame, scene)});
     least = std::min(least, energy);
     meter.add(frame);
   }
@@ -75,7 +76,7 @@ RandomSceneFigures runRandomScene(const Scene& scene) {
 
 std::vector<std::string> faultsOf(const RandomSceneFigures& figures, double accuracy) {
   const bool keeps = figures.keepsAccuracy;
-  const double mostEnergy = kMostEnergyErrors * accuracy, mostPlace = kMostPlaceErrors * accuracy;
+  const double mostEnergy = kMaxEnergyErrors * accuracy, mostPlace = kMaxPlaceErrors * accuracy;
   const double gain = figures.energyGain / figures.energyScale, error = figures.energyError / figures.energyScale;
   std::vector<std::string> faults;
   const auto require = [&](bool holds, const std::string& what) {
@@ -86,8 +87,8 @@ std::vector<std::string> faultsOf(const RandomSceneFigures& figures, double accu
   require(error <= (keeps ? mostEnergy : kSteppedError), fmt::format("balance of energy off by {:.2g} of it", error));
   require(figures.penetration <= (keeps ? mostPlace : kSteppedPenetration),
           fmt::format("penetration {:.2g} m", figures.penetration));
-  require(figures.tieError <= (keeps ? mostPlace : kSteppedTieError),
-          fmt::format("ties off by {:.2g} m or rad", figures.tieError));
+  require(figures.constraintError <= (keeps ? mostPlace : kSteppedTieError),
+          fmt::format("ties off by {:.2g} m or rad", figures.constraintError));
   return faults;
 }
 

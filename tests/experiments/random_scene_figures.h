@@ -10,14 +10,14 @@ namespace cradle {
 
 /// What a run of a scene did that it should not.
 struct RandomSceneFigures {
-  double energyScale = 0;     // J: kinetic energy and work of forces that there were at most
-  double energyGain = 0;      // J: how far the mechanical energy rose above its least value so far
-  double energyError = 0;     // J: largest change of mechanical energy + dissipated
-  double penetration = 0;     // m
-  double tieError = 0;        // m or rad: of rods, joints, and ropes beyond their length
-  double cpuSeconds = 0;      // of the integration
-  bool isFinite = true;       // every number of every frame
-  bool keepsAccuracy = true;  // as of SceneRun
+  double energyScale = 0;      // J: kinetic energy and work of forces that there were at most
+  double energyGain = 0;       // J: how far the mechanical energy rose above its least value so far
+  double energyError = 0;      // J: largest change of mechanical energy + dissipated
+  double penetration = 0;      // m
+  double constraintError = 0;  // m or rad: of rods, joints, and ropes beyond their length
+  double cpuSeconds = 0;       // of the integration
+  bool isFinite = true;        // every number of every frame
+  bool keepsAccuracy = true;   // as of SceneRun
 };
 
 /// What a run of a scene left, and what it said of itself.

@@ -55,7 +55,7 @@ TEST(RandomScene, ShowsWhatGoesWrong) {
   EXPECT_TRUE(faultsOf(figures, 1e-3).empty());
   figures.keepsAccuracy = false;
   EXPECT_TRUE(faultsOf(figures, 1e-5).empty());
-  figures.isFinite = false, figures.tieError = 0.1;
+  figures.isFinite = false, figures.constraintError = 0.1;
   EXPECT_EQ(faultsOf(figures, 1e-5).size(), 2u);
 }
 

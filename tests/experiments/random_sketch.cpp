@@ -14,7 +14,7 @@ namespace cradle {
 namespace {
 
 const Vec3 kDownwards(0, -1, 0);
-constexpr int kMostTrials = 50;  // places tried for a body that misses the others
+constexpr int kMaxTrials = 50;  // places tried for a body that misses the others
 
 SceneSketch emptySketch(SketchFamily family, unsigned number, SketchDraws& draws) {
   constexpr std::array kAccuracies{1e-3, 1e-4, 1e-6, 1e-8};
@@ -50,7 +50,7 @@ void addGround(SceneSketch& sketch, SketchDraws& draws) {
 /// Adds a body in touch with what is there; against a wall too, if there is one.
 bool addTouching(SceneSketch& sketch, SketchDraws& draws, double scale, bool isCentered) {
   const bool hasWall = sketch.bodies.size() > 1 && sketch.bodies[1].shape == SketchShape::plane;
-  for (int trial = 0; trial < kMostTrials; ++trial) {
+  for (int trial = 0; trial < kMaxTrials; ++trial) {
     SketchBody body = draws.body(scale);
     const Vec3 below = sketch.bodies.back().worldFromBody.translation;
     const double offset = isCentered ? 0 : draws.one({0.0, 0.3, 0.8}) * scale;
@@ -261,7 +261,7 @@ SceneSketch drawSymmetric(unsigned number, SketchDraws& draws) {
   if (draws.chance(0.3)) addMiddle(sketch, draws, scale);
   const int pairs = 1 + draws.upTo(2);
   for (int i = 0; i < pairs; ++i)
-    for (int trial = 0; trial < kMostTrials; ++trial)
+    for (int trial = 0; trial < kMaxTrials; ++trial)
       if (addPair(sketch, draws, scale)) break;
   if (draws.chance(0.8)) addMiddle(sketch, draws, scale * draws.number(0.7, 2));
   return sketch;

@@ -7,7 +7,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kMostDrift = 1e-6;  // m, and rad times the size of about 1 m
+constexpr double kMaxDrift = 1e-6;  // m, and rad times the size of about 1 m
 
 /// An L of 3 x 2 squares without its upper right 2 x 1, one deep, scaled; a corner is the origin.
 LoadedModel lPrism(const MeshReference& reference) {
@@ -48,9 +48,9 @@ void expectStill(const Trajectory& run, std::size_t from, const std::string& wha
   for (std::size_t i = from; i < run.frames.size(); ++i)
     for (std::size_t body = 0; body < first.states.size(); ++body) {
       const BodyState &state = run.frames[i].states[body], &start = first.states[body];
-      ASSERT_LT((state.position - start.position).norm(), kMostDrift) << what << " at " << run.frames[i].time;
-      ASSERT_LT(orientationError(state.orientation, start.orientation), kMostDrift) << what;
-      ASSERT_LT(state.linearVelocity.norm() + state.angularVelocity.norm(), kMostDrift) << what;
+      ASSERT_LT((state.position - start.position).norm(), kMaxDrift) << what << " at " << run.frames[i].time;
+      ASSERT_LT(orientationError(state.orientation, start.orientation), kMaxDrift) << what;
+      ASSERT_LT(state.linearVelocity.norm() + state.angularVelocity.norm(), kMaxDrift) << what;
     }
 }
 

@@ -18,10 +18,10 @@ namespace cradle {
 namespace {
 
 // Times the accuracy, where it is promised: errors of some tens of steps, each a tenth of it.
-constexpr double kMostErrors = 10;
+constexpr double kMaxErrors = 10;
 // Runs that differ in rounding alone differ by as little; two runs of one accuracy by both their errors, with some
 // growth; beyond that, sensitivity is measured.
-constexpr double kMostTwinErrors = 10, kMostGrowth = 10;
+constexpr double kMaxTwinErrors = 10, kMaxGrowth = 10;
 // Where steps of one length promise nothing, but that pictures are right: parts of the energy, the size.
 constexpr double kStepsGain = 1e-3, kStepsBalance = 5e-3, kStepsPlace = 0.02, kStepsMomentum = 1e-6;
 constexpr double kStepsSpeed = 1e-3;  // m/s: a tenth of what gravity does in a step of 1/960 s, their error at impacts
@@ -76,7 +76,7 @@ double asymmetryOf(const SceneSketch& sketch, const SceneRun& run) {
 /// m: so far it may be; a mirror image stays one.
 double mostAsymmetryOf(const SceneSketch& sketch, const SceneRun& run) {
   const double size = smallestSizeOf(sketch);
-  const double errors = run.keepsAccuracy ? kMostErrors * sketch.accuracy * extentOf(run) : 0.1 * kStepsPlace * size;
+  const double errors = run.keepsAccuracy ? kMaxErrors * sketch.accuracy * extentOf(run) : 0.1 * kStepsPlace * size;
   return std::max(1e-9 * size, errors);
 }
 
@@ -109,7 +109,7 @@ class RunOracles {
       faults_.push_back(
           {oracle, fmt::format("{}, accuracy {:g}{}", text, sketch_.accuracy, run_.keepsAccuracy ? "" : " not kept")});
   }
-  double bound(double stepped) const { return run_.keepsAccuracy ? kMostErrors * sketch_.accuracy : stepped; }
+  double bound(double stepped) const { return run_.keepsAccuracy ? kMaxErrors * sketch_.accuracy : stepped; }
 
   bool checkFinite() {
     const bool holds = std::all_of(run_.frames.begin(), run_.frames.end(), [](const Frame& f) { return isFinite(f); });
@@ -170,7 +170,7 @@ class RunOracles {
     double ties = 0;
     for (const Frame& frame : run_.frames) {
       meter.add(frame);
-      ties = std::max({ties, tieError(frame, run_.scene), ropeExcess(frame, run_.scene)});
+      ties = std::max({ties, constraintError(frame, run_.scene), ropeExcess(frame, run_.scene)});
     }
     // Models touch as exactly as their files are: single precision.
     const bool hasModels = std::any_of(sketch_.bodies.begin(), sketch_.bodies.end(), isModel);
@@ -297,7 +297,7 @@ class SketchCheck {
     begin_("the scene, disturbed");
     try {
       const double spread = spreadOf(sketch, run, disturbance);
-      return spread <= kChaos * smallestSizeOf(sketch) && difference > most + kMostGrowth * spread;
+      return spread <= kChaos * smallestSizeOf(sketch) && difference > most + kMaxGrowth * spread;
     } catch (const Error& error) {
       add({{fmt::format("exit {}", static_cast<int>(error.kind())), fmt::format("disturbed: {}", error.what())}});
       return false;
@@ -309,7 +309,7 @@ class SketchCheck {
     if (!other) return;
     const double difference = distanceOf(sketch_, run, twin, *other), size = smallestSizeOf(sketch_);
     const bool isKept = run.keepsAccuracy && other->keepsAccuracy;
-    const double most = isKept ? kMostTwinErrors * sketch_.accuracy * extentOf(run) : kStepsPlace * size;
+    const double most = isKept ? kMaxTwinErrors * sketch_.accuracy * extentOf(run) : kStepsPlace * size;
     if (isBeyondSensitivity(sketch_, run, difference, most, isKept ? sketch_.accuracy : kStepsSpeed))
       add({{twin.name, fmt::format("{:.2g} m, {:.2g} of the size, from the twin's; accuracy {:g}{}", difference,
                                    difference / size, sketch_.accuracy, isKept ? "" : " not kept")}});
@@ -329,7 +329,7 @@ class SketchCheck {
       addFaultsOf(coarse, *run);
       if (!run->keepsAccuracy || !reference->keepsAccuracy) continue;
       const double difference = distanceOf(sketch_, *run, sameScene(sketch_), *reference);
-      const double most = kMostTwinErrors * accuracy * extentOf(*run);
+      const double most = kMaxTwinErrors * accuracy * extentOf(*run);
       if (isBeyondSensitivity(fine, *reference, difference, most, accuracy))
         add({{"convergence", fmt::format("{:.2g} m between accuracies {:g} and 1e-9", difference, accuracy)}});
     }

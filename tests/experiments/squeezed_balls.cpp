@@ -10,7 +10,7 @@ using Real = long double;
 
 constexpr Real kAtOnce = 1e-200L;  // s: of impacts that come as fast
 constexpr Real kSlow = 1e-9L;      // m/s: a rebound that may die away by itself
-constexpr int kMostImpacts = 1000000;
+constexpr int kMaxImpacts = 1000000;
 
 /// Time until a gap that changes at `rate` and shrinks by `gravity` t^2 / 2 closes; infinite if it never does.
 Real closingTime(Real gap, Real rate, Real gravity) {
@@ -24,7 +24,7 @@ Real closingTime(Real gap, Real rate, Real gravity) {
 std::optional<std::array<double, 2>> waysOf(SqueezedBalls balls, double time) {
   const Real e = balls.restitution, gravity = balls.gravity, lower = balls.masses[0], upper = balls.masses[1];
   Real below = balls.gaps[0], between = balls.gaps[1], v = balls.velocities[0], w = balls.velocities[1], left = time;
-  for (int impact = 0; impact < kMostImpacts; ++impact) {
+  for (int impact = 0; impact < kMaxImpacts; ++impact) {
     const Real onFloor = closingTime(below, v, gravity), onBall = closingTime(between, w - v, 0);
     const Real next = std::min(onFloor, onBall);
     const bool isOnFloor = onFloor <= onBall, isLast = next >= left;
@@ -44,7 +44,7 @@ std::optional<std::array<double, 2>> waysOf(SqueezedBalls balls, double time) {
       const Real change = (1 + e) * (v - w) / (1 / lower + 1 / upper);
       between = 0, v -= change / lower, w += change / upper;
     }
-    if (impact == kMostImpacts - 1) return {};
+    if (impact == kMaxImpacts - 1) return {};
   }
   const Real way = below - balls.gaps[0];
   return std::array<double, 2>{static_cast<double>(way), static_cast<double>(way + between - balls.gaps[1])};

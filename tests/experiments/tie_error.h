@@ -45,7 +45,7 @@ inline double axisError(const Hinge& hinge, const Scene& scene, const std::vecto
 }
 
 /// How far a frame is from what rods, ball joints and hinges demand: in m, or rad.
-inline double tieError(const Frame& frame, const Scene& scene) {
+inline double constraintError(const Frame& frame, const Scene& scene) {
   const std::vector<RigidTransform> places = placesIn(frame, scene);
   double error = 0;
   for (const Rod& rod : scene.rods)
@@ -59,7 +59,7 @@ inline double tieError(const Frame& frame, const Scene& scene) {
 
 inline double largestTieError(const Trajectory& run, const Scene& scene) {
   double error = 0;
-  for (const Frame& frame : run.frames) error = std::max(error, tieError(frame, scene));
+  for (const Frame& frame : run.frames) error = std::max(error, constraintError(frame, scene));
   return error;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFar = 4;              // m: from where a body comes, and beyond which it has missed
 constexpr double kGapRounding = 4e-16;  // m
-constexpr int kMostMoves = 40;          // each leaves less than half, where surfaces meet steeper than 60 degrees
+constexpr int kMaxMoves = 40;           // each leaves less than half, where surfaces meet steeper than 60 degrees
 
 Scene sceneOfBodies(SceneSketch sketch) {
   sketch.links.clear();
@@ -98,7 +98,7 @@ bool moveToTouch(SceneSketch& sketch, const Vec3& direction, double gap) {
   place -= kFar * direction;
   LastBody body(sketch);
   double way = 0, left = kFar;
-  for (int i = 0; i < kMostMoves && way < 2 * kFar; ++i) {
+  for (int i = 0; i < kMaxMoves && way < 2 * kFar; ++i) {
     body.moveTo(way * direction);
     left = body.separation().first - gap;
     if (std::abs(left) <= kGapRounding) break;

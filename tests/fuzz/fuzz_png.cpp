@@ -33,8 +33,8 @@ void read(const ScratchFile& file, const std::string& bytes) {
   acceptOrRefuse([&] {
     const PictureSize size = readPngSize(file.path());
     HOLDS(size.width >= 1 && size.width <= 16384 && size.height >= 1 && size.height <= 16384);
-    constexpr int kMostPixels = 1 << 16;  // larger ones take the time of many
-    if (size.width > kMostPixels / size.height) return;
+    constexpr int kMaxPixels = 1 << 16;  // larger ones take the time of many
+    if (size.width > kMaxPixels / size.height) return;
     const Image image = readPng(file.path());
     HOLDS(image.width == size.width && image.height == size.height);
     HOLDS(image.pixels.size() == std::size_t{3} * static_cast<std::size_t>(image.width * image.height));

@@ -12,13 +12,13 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kMostTriangles = 128;
+constexpr std::size_t kMaxTriangles = 128;
 constexpr std::size_t kTriangleBytes = 9;
 
 TriangleMesh meshOf(const std::uint8_t* data, std::size_t size) {
   std::vector<Vec3> corners;
   std::vector<Triangle> triangles;
-  for (std::size_t at = 0; at + kTriangleBytes <= size && triangles.size() < kMostTriangles; at += kTriangleBytes) {
+  for (std::size_t at = 0; at + kTriangleBytes <= size && triangles.size() < kMaxTriangles; at += kTriangleBytes) {
     const auto first = static_cast<std::uint32_t>(corners.size());
     triangles.push_back({first, first + 1, first + 2});
     for (std::size_t corner = 0; corner < kTriangleBytes; corner += 3) {

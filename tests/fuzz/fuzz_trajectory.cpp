@@ -19,8 +19,8 @@ namespace {
 using Connection = std::unique_ptr<sqlite3, decltype(&sqlite3_close)>;
 using Query = std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)>;
 
-constexpr std::size_t kMostChanges = 8, kMostBytes = 16, kLongestValue = 64;
-constexpr int kMostRows = 16;
+constexpr std::size_t kMaxChanges = 8, kMaxBytes = 16, kLongestValue = 64;
+constexpr int kMaxRows = 16;
 
 struct Table {
   const char *name, *key;
@@ -65,7 +65,7 @@ void change(sqlite3* database, FuzzedDataProvider& bytes) {
   const std::vector<std::string> columns = columnsOf(database, table);
   const std::string& column = columns[bytes.ConsumeIntegralInRange<std::size_t>(0, columns.size() - 1)];
   const Change kind = bytes.ConsumeEnum<Change>();
-  const int row = bytes.ConsumeIntegralInRange(0, kMostRows);
+  const int row = bytes.ConsumeIntegralInRange(0, kMaxRows);
   const std::string where = fmt::format("WHERE {0} = (SELECT {1} FROM {2} LIMIT 1 OFFSET {3})", table.key,
                                         table.key[0] == '(' ? "frame, body" : table.key, table.name, row);
   const std::string patched = fmt::format("CAST(substr({0}, 1, ?2) || ?1 || substr({0}, ?2 + 1 + length(?1)) AS {1})",
@@ -92,13 +92,13 @@ std::string changedSample(FuzzedDataProvider bytes) {
   std::copy(sample.begin(), sample.end(), copy);
   HOLDS(sqlite3_deserialize(handle, "main", copy, size, size,
                             SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_RESIZEABLE) == SQLITE_OK);
-  for (std::size_t i = 0; i < kMostChanges && bytes.remaining_bytes() > 0; ++i) change(handle, bytes);
+  for (std::size_t i = 0; i < kMaxChanges && bytes.remaining_bytes() > 0; ++i) change(handle, bytes);
   sqlite3_int64 changedSize = 0;
   unsigned char* changed = sqlite3_serialize(handle, "main", &changedSize, 0);
   HOLDS(changed != nullptr);
   std::string file(reinterpret_cast<const char*>(changed), static_cast<std::size_t>(changedSize));
   sqlite3_free(changed);
-  for (std::size_t i = 0; i < kMostBytes && bytes.remaining_bytes() > 0; ++i)
+  for (std::size_t i = 0; i < kMaxBytes && bytes.remaining_bytes() > 0; ++i)
     file[bytes.ConsumeIntegralInRange<std::size_t>(0, file.size() - 1)] = bytes.ConsumeIntegral<char>();
   return file;
 }

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "impact/pile_step.h"
+#include "impact/soft_step.h"
 #include "mesh/primitives.h"
 
 namespace cradle {
@@ -23,7 +23,7 @@ class DroppedBodies {
     for (const Vec3& normal : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)})
       addPlane(-width / 2 * normal, normal);
   }
-  void addBall(const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+  void addSphere(const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
     add(colliderOf(Sphere{kHalf}, {}), 0.4 * kHalf * kHalf * Mat3::Identity(), position, Quat::Identity(), velocity);
   }
   void addCube(const Vec3& position, const Quat& turn = Quat::Identity()) {
@@ -43,8 +43,8 @@ class DroppedBodies {
   }
 
   /// To be called when all have been added.
-  void begin(const SurfaceLaw& law, const Vec3& gravity = Vec3(0, -9.81, 0), int threads = 1) {
-    geometry_.laws = {{law}};
+  void begin(const ContactMaterial& material, const Vec3& gravity = Vec3(0, -9.81, 0), int threads = 1) {
+    geometry_.materials = {{material}};
     gravity_ = gravity;
     state_.setZero(stateSize(std::ssize(bodies_)));
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -53,14 +53,14 @@ class DroppedBodies {
       setOrientation(state_, body, turns_[i]);
       linearVelocity(state_, body) = velocities_[i];
     }
-    step_ = std::make_unique<PileStep>(bodies_, geometry_, gravity, threads);
+    step_ = std::make_unique<SoftStep>(bodies_, geometry_, gravity, threads);
   }
   void advance(int steps = 1) {
     for (int i = 0; i < steps; ++i) step_->advance(kTimeStep, state_);
   }
 
   VectorX& state() { return state_; }
-  PileStep& step() { return *step_; }
+  SoftStep& step() { return *step_; }
   int count() const { return static_cast<int>(bodies_.size()); }
   Vec3 position(int body) { return centerOfMass(state_, body); }
 
@@ -89,7 +89,7 @@ class DroppedBodies {
   }
 
  private:
-  bool isBall(int body) const { return geometry_.colliders[static_cast<std::size_t>(body)].isBall(); }
+  bool isSphere(int body) const { return geometry_.colliders[static_cast<std::size_t>(body)].isSphere(); }
   bool isCapsule(int body) const {
     return geometry_.colliders[static_cast<std::size_t>(body)].kind() == ColliderKind::capsule;
   }
@@ -97,7 +97,7 @@ class DroppedBodies {
   double reachAlong(int body, const Vec3& direction) {
     if (isCapsule(body))
       return kCapsuleRadius * direction.norm() + kHalf * std::abs(turnOf(body).col(1).dot(direction));
-    return kHalf * (isBall(body) ? direction.norm() : (turnOf(body).transpose() * direction).cwiseAbs().sum());
+    return kHalf * (isSphere(body) ? direction.norm() : (turnOf(body).transpose() * direction).cwiseAbs().sum());
   }
   double overlapOfCapsules(const Vec3& offset, const Vec3& axisA, const Vec3& axisB) const {
     double least = offset.norm();
@@ -113,9 +113,9 @@ class DroppedBodies {
     std::vector<Vec3> axes{offset};
     const Mat3 a = turnOf(i), b = turnOf(j);
     for (int k = 0; k < 3; ++k) {
-      if (!isBall(i)) axes.push_back(a.col(k));
-      if (!isBall(j)) axes.push_back(b.col(k));
-      for (int l = 0; l < 3 && !isBall(i) && !isBall(j); ++l) axes.push_back(a.col(k).cross(b.col(l)));
+      if (!isSphere(i)) axes.push_back(a.col(k));
+      if (!isSphere(j)) axes.push_back(b.col(k));
+      for (int l = 0; l < 3 && !isSphere(i) && !isSphere(j); ++l) axes.push_back(a.col(k).cross(b.col(l)));
     }
     double least = 1;
     for (const Vec3& axis : axes)
@@ -130,7 +130,7 @@ class DroppedBodies {
   ContactGeometry geometry_;
   Vec3 gravity_ = Vec3::Zero();
   VectorX state_;
-  std::unique_ptr<PileStep> step_;
+  std::unique_ptr<SoftStep> step_;
 };
 
 }  // namespace cradle

@@ -34,7 +34,7 @@ TEST(FrictionalImpact, OfABallWithAFloorMatchesTheClosedForm) {
 
 TEST(FrictionalImpact, LeavesARowOfBallsAtItsOtherEnd) {
   RowOfBalls row({1, 1, 1, 1, 1}, 1);
-  for (ImpactContact& impact : row.impacts) impact.law = {1, 0.3, 0.3};
+  for (ImpactContact& impact : row.impacts) impact.material = {1, 0.3, 0.3};
   row.setSpeeds({1, 0, 0, 0, 0});
   resolveFrictionalImpact(row.impacts, row.bodies, row.state);
   const auto zero = DoubleNear(0, 1e-12);  // ten times what a round leaves of closing speeds
@@ -45,7 +45,7 @@ TEST(FrictionalImpact, LeavesARowOfBallsAtItsOtherEnd) {
 TEST(FrictionalImpact, OfARowOfBallsIsThatWithoutFriction) {
   for (const double restitution : {0.0, 0.3, 0.5, 0.9, 1.0}) {
     RowOfBalls rough({1, 2, 1, 1, 3}, restitution), smooth({1, 2, 1, 1, 3}, restitution);
-    for (ImpactContact& impact : rough.impacts) impact.law.staticFriction = impact.law.dynamicFriction = 0.3;
+    for (ImpactContact& impact : rough.impacts) impact.material.staticFriction = impact.material.dynamicFriction = 0.3;
     for (RowOfBalls* row : {&rough, &smooth}) row->setSpeeds({1, 0.5, 0, 0, 0});
     resolveFrictionalImpact(rough.impacts, rough.bodies, rough.state);
     resolveReflections(smooth.impacts, smooth.bodies, smooth.state);
@@ -65,7 +65,7 @@ TEST(FrictionalImpact, SlidesWithDynamicFriction) {
 
 TEST(FrictionalImpact, SlowerThanTheRestSpeedDoesNotRebound) {
   RowOfBalls row({1, 1}, 1);
-  row.impacts[0].law = {1, 0.5, 0.5};
+  row.impacts[0].material = {1, 0.5, 0.5};
   row.impacts[0].restSpeed = 0.01;
   linearVelocity(row.state, 0).x() = 0.009;
   resolveFrictionalImpact(row.impacts, row.bodies, row.state);
@@ -95,9 +95,9 @@ class Scatter {
     }
     for (int i = 0; i < contacts; ++i) {
       const int a = i % bodies, b = bodies == 1 ? kFixed : (a + 1) % bodies;
-      const SurfaceLaw law{number(0, 1), number(0, 1), 0};
-      impacts.push_back({{0, a, b, vector(), vector().normalized(), 0}, law, 0, Vec3::Zero()});
-      impacts.back().law.dynamicFriction = law.staticFriction * (i % 3 == 0 ? 0.7 : 1);
+      const ContactMaterial material{number(0, 1), number(0, 1), 0};
+      impacts.push_back({{0, a, b, vector(), vector().normalized(), 0}, material, 0, Vec3::Zero()});
+      impacts.back().material.dynamicFriction = material.staticFriction * (i % 3 == 0 ? 0.7 : 1);
     }
   }
   double number(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
@@ -124,7 +124,8 @@ TEST(FrictionalImpact, NeverGainsEnergyAndKeepsMomenta) {
     const int bodies = 2 + trial % 3;
     scatter.shuffle(bodies, 1 + trial % 5);
     if (trial % 4 == 0)  // one restitution at all contacts has a law of its own
-      for (ImpactContact& impact : scatter.impacts) impact.law.restitution = scatter.impacts[0].law.restitution;
+      for (ImpactContact& impact : scatter.impacts)
+        impact.material.restitution = scatter.impacts[0].material.restitution;
     const Invariants before = invariantsOf(scatter.mechanism, scatter.state);
     resolveFrictionalImpact(scatter.impacts, scatter.mechanism.bodies, scatter.state);
     const Invariants after = invariantsOf(scatter.mechanism, scatter.state);
@@ -263,9 +264,10 @@ TEST(FrictionalImpact, HardlyDependsOnARestitutionThatHardlyDiffers) {
   for (const double friction : {0.0, 0.3})
     for (const double e : {0.0, 0.3, 0.5, 1 - 1e-12}) {
       RowOfBalls one({1, 2, 1, 1, 3}, e), other({1, 2, 1, 1, 3}, e);
-      other.impacts[1].law.restitution = e + 1e-12;
+      other.impacts[1].material.restitution = e + 1e-12;
       for (RowOfBalls* row : {&one, &other}) {
-        for (ImpactContact& impact : row->impacts) impact.law.staticFriction = impact.law.dynamicFriction = friction;
+        for (ImpactContact& impact : row->impacts)
+          impact.material.staticFriction = impact.material.dynamicFriction = friction;
         row->setSpeeds({1, 0.5, 0, 0, 0});
         for (Eigen::Index ball = 0; ball < 5; ++ball) linearVelocity(row->state, ball).z() = 0.3 * std::pow(-1, ball);
         resolveFrictionalImpact(row->impacts, row->bodies, row->state);

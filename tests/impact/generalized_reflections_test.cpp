@@ -132,7 +132,7 @@ TEST(Reflections, ReboundWhereALastingContactIsStruck) {
 TEST(Reflections, HardlyDependOnARestitutionThatHardlyDiffers) {
   for (const double e : {0.0, 0.5, 1 - 1e-12}) {
     RowOfBalls one({1, 2, 1, 3}, e), other({1, 2, 1, 3}, e);
-    other.impacts[1].law.restitution = e + 1e-12;
+    other.impacts[1].material.restitution = e + 1e-12;
     for (RowOfBalls* row : {&one, &other}) {
       row->setSpeeds({1, 0.5, 0, 0});
       resolveReflections(row->impacts, row->bodies, row->state);
@@ -146,7 +146,7 @@ TEST(Reflections, HardlyDependOnARestitutionThatHardlyDiffers) {
 // (1/2, 0, 1/2); then 1 closes with 2: (1/4, 1/4, 1/2). Above: (1/3, 1/3, 1/3).
 TEST(Reflections, WithDifferentRestitutionsAreTheMeanOverLevels) {
   RowOfBalls row({1, 1, 1}, 0);
-  row.impacts[0].law.restitution = 0.25, row.impacts[1].law.restitution = 0.75;
+  row.impacts[0].material.restitution = 0.25, row.impacts[1].material.restitution = 0.75;
   row.setSpeeds({1, 0, 0});
   resolveReflections(row.impacts, row.bodies, row.state);
   const double slow = 0.5 * 0.25 + 0.25 / 3;
@@ -302,10 +302,10 @@ class Heap {
   }
   /// All contacts with one restitution, or each with one of its own between 0 and 1.
   void setRestitution(double restitution) {
-    for (ImpactContact& impact : impacts) impact.law.restitution = restitution;
+    for (ImpactContact& impact : impacts) impact.material.restitution = restitution;
   }
   void mixRestitutions() {
-    for (ImpactContact& impact : impacts) impact.law.restitution = std::abs(number());
+    for (ImpactContact& impact : impacts) impact.material.restitution = std::abs(number());
   }
   Invariants invariants() const { return invariantsOf(mechanism, state); }
   void resolve() {

@@ -20,14 +20,14 @@ static_assert(std::numeric_limits<long double>::digits == 64);
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLeast = std::numeric_limits<double>::denorm_min(), kMost = std::numeric_limits<double>::max();
-constexpr double kLeastNormal = std::numeric_limits<double>::min();
+constexpr double kMin = std::numeric_limits<double>::denorm_min(), kMax = std::numeric_limits<double>::max();
+constexpr double kMinNormal = std::numeric_limits<double>::min();
 
 /// Distance of two numbers in units of the last place of `exact`, rounded to double.
 double ulps(double value, long double exact) {
   if (value == static_cast<double>(exact)) return 0;
-  const double size = std::max(std::fabs(static_cast<double>(exact)), kLeastNormal);
-  const int exponent = std::ilogb(std::min(size, kMost));
+  const double size = std::max(std::fabs(static_cast<double>(exact)), kMinNormal);
+  const int exponent = std::ilogb(std::min(size, kMax));
   return static_cast<double>(std::fabs(value - exact) / std::ldexp(1.0L, exponent - 52));
 }
 
@@ -54,7 +54,7 @@ std::vector<double> uniform(double low, double high, int count) {
 /// Of all sizes from the least subnormal to the greatest double.
 std::vector<double> ofAllSizes(int count) {
   std::mt19937_64 random(2);
-  std::vector<double> values{kLeast, 3 * kLeast, kLeastNormal, std::nextafter(kLeastNormal, 0), kMost};
+  std::vector<double> values{kMin, 3 * kMin, kMinNormal, std::nextafter(kMinNormal, 0), kMax};
   while (static_cast<int>(values.size()) < count) {
     const double x = std::bit_cast<double>(static_cast<std::uint64_t>(random()) >> 1);
     if (std::isfinite(x)) values.push_back(x);
@@ -113,7 +113,7 @@ TEST(Elementary, SineAndCosineTogetherHaveTheSameBits) {
 TEST(Elementary, ExponentialErrsBelowOneUlp) {
   expectBelowOneUlp(exp, std::exp, uniform(-1, 1, 200000));
   expectBelowOneUlp(exp, std::exp, uniform(-708, 709.7, 200000));
-  expectBelowOneUlp(exp, std::exp, {1e-300, -1e-300, kLeast, 709.782712893384, 1e-17, -1e-17});
+  expectBelowOneUlp(exp, std::exp, {1e-300, -1e-300, kMin, 709.782712893384, 1e-17, -1e-17});
 }
 
 TEST(Elementary, SubnormalExponentialErrsBelowOneUlp) {
@@ -139,7 +139,7 @@ TEST(Elementary, SpecialValuesAreThoseOfIeee754) {
   EXPECT_EQ(exp(kInfinity), kInfinity);
   EXPECT_EQ(exp(-kInfinity), 0);
   EXPECT_EQ(exp(709.79), kInfinity);
-  EXPECT_EQ(exp(kMost), kInfinity);
+  EXPECT_EQ(exp(kMax), kInfinity);
   EXPECT_EQ(exp(-745.14), 0);
   EXPECT_TRUE(std::isnan(exp(kNaN)));
   EXPECT_EQ(log(1), 0);

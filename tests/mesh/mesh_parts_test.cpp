@@ -22,7 +22,7 @@ TriangleMesh boxAt(const Vec3& center, const Vec3& size) {
   return moved(boxMesh(size), [&](const Vec3& v) { return Vec3(v + center); });
 }
 
-TriangleMesh ballAt(const Vec3& center, double radius) {
+TriangleMesh sphereAt(const Vec3& center, double radius) {
   return moved(solidOf(tessellate(Sphere{radius})), [&](const Vec3& v) { return Vec3(v + center); });
 }
 
@@ -60,7 +60,7 @@ TEST(PartRelation, OverlapIsFoundHoweverTheSurfacesMeet) {
   expectRelation(boxMesh({4, 1, 1}), boxMesh({1, 4, 1}), PartRelation::crossing);    // the same, two sides flush
   expectRelation(unit, boxAt({0, 0.5, 0}, {0.5, 1, 0.5}), PartRelation::crossing);   // a peg in a side
   expectRelation(unit, boxAt({0, 0.25, 0}, {0.5, 1, 1}), PartRelation::crossing);    // the same, two sides flush
-  expectRelation(ballAt({0, 0, 0}, 1), ballAt({1.9, 0.1, 0.2}, 1), PartRelation::crossing);
+  expectRelation(sphereAt({0, 0, 0}, 1), sphereAt({1.9, 0.1, 0.2}, 1), PartRelation::crossing);
   expectRelation(lPrismMesh(), boxAt({0.5, 1.5, 0.5}, {0.4, 2, 0.4}), PartRelation::crossing);
 }
 
@@ -74,7 +74,7 @@ TEST(PartRelation, TouchingIsNoOverlap) {
     expectRelation(lPrismMesh(), boxAt({1 + offset, 2 - (1 - offset), 0.5}, {2, 2, 1}),
                    PartRelation::apart);  // in its bend
   }
-  expectRelation(unit, ballAt({1, 0, 0}, 0.5), PartRelation::apart);
+  expectRelation(unit, sphereAt({1, 0, 0}, 0.5), PartRelation::apart);
 }
 
 TEST(PartRelation, LinksOfAChainAndContentsOfABendAreApart) {
@@ -91,7 +91,7 @@ TEST(PartRelation, InsideIsFoundThoughSidesTouch) {
   expectRelation(boxAt({0.5, 0, 0}, {1, 1, 1}), outer, PartRelation::firstInside);      // a side flush
   expectRelation(boxAt({0.5, 0.5, 0.5}, {1, 1, 1}), outer, PartRelation::firstInside);  // three
   expectRelation(boxMesh({1, 1, 2}), outer, PartRelation::firstInside);                 // a tunnel's ends
-  expectRelation(ballAt({0.1, 0.2, 0.3}, 0.4), outer, PartRelation::firstInside);
+  expectRelation(sphereAt({0.1, 0.2, 0.3}, 0.4), outer, PartRelation::firstInside);
   // A tetrahedron on the diagonals of the sides: each of its edges lies on the box.
   const TriangleMesh tetrahedron{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
                                  {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};

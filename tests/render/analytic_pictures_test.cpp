@@ -32,7 +32,7 @@ struct Patch {
   Eigen::Vector2d center = {0, 0};
 };
 
-Patch patchOf(const Image& dark, const Image& bright, double darkest, double (*light)(const Image&, int, int)) {
+Patch manifoldOf(const Image& dark, const Image& bright, double darkest, double (*light)(const Image&, int, int)) {
   Patch patch;
   for (int y = 0; y < bright.height; ++y) {
     for (int x = 0; x < bright.width; ++x) {
@@ -88,7 +88,7 @@ TEST(AnalyticPicture, OutlineOfABallIsTheEllipseOfItsCone) {
     const double beside = std::hypot(towards.x(), towards.y());
     const Vec3 aside = beside > 0 ? Vec3(towards.x() / beside, towards.y() / beside, 0) : Vec3(Vec3::Zero());
 
-    const Patch patch = patchOf(drawWith(blackBallScene(center, radius), camera), background, 0, byteAt);
+    const Patch patch = manifoldOf(drawWith(blackBallScene(center, radius), camera), background, 0, byteAt);
     // Each of about 450 pixels on the outline counts its 4 samples: an error of up to 1/8, 1.5 pixels together; four
     // times that, and the outline's polygon, which is as large as the ellipse to 1e-4.
     EXPECT_NEAR(patch.area, area, 6 + 1e-4 * area);
@@ -107,7 +107,7 @@ TEST(AnalyticPicture, CylinderAndBoxHaveTheAreaOfTheirOutline) {
     Scene scene = blackBallScene({0, 0, 0}, 1);
     scene.bodies[0].shape = shape;
     scene.bodies[0].worldFromBody.rotation = turn;
-    return patchOf(drawWith(scene, camera), background, 0, byteAt).area / (pixelsPerMetre * pixelsPerMetre);
+    return manifoldOf(drawWith(scene, camera), background, 0, byteAt).area / (pixelsPerMetre * pixelsPerMetre);
   };
   const Quat upright = Quat::Identity(), towardsEye = rotationAbout(Vec3::UnitX(), M_PI / 2);
   const double nearer = std::pow(60 / 59.6, 2);
@@ -124,7 +124,7 @@ TEST(AnalyticPicture, NearCylinderIsAsWideAsItsTangents) {
   const Image background = drawWith(scene, camera);
   scene.bodies[0].shape = Cylinder{0.5, 20};
   scene.bodies[0].worldFromBody.translation = Vec3::Zero();
-  const Patch patch = patchOf(drawWith(scene, camera), background, 0, byteAt);
+  const Patch patch = manifoldOf(drawWith(scene, camera), background, 0, byteAt);
   // Edges are upright: the 4 samples of a pixel lie in 4 columns, an error of up to 1/8 pixel on either side.
   EXPECT_NEAR(patch.area / kHeight, 2 * f * std::tan(std::asin(0.5)), 0.25);
 }
@@ -210,7 +210,7 @@ TEST(AnalyticPicture, ShadowOfABallFallsWhereTheLightTakesIt) {
   const int x = static_cast<int>(expected.x()), y = static_cast<int>(expected.y());
   const double darkest = lightAt(dark, x, y) / lightAt(bright, x, y);
   EXPECT_LT(darkest, 0.45);
-  const Patch patch = patchOf(dark, bright, darkest, lightAt);
+  const Patch patch = manifoldOf(dark, bright, darkest, lightAt);
   // A texel of the map is 1/800 of the picture's height: soft edges leave a fraction of it.
   EXPECT_NEAR(patch.center.x(), expected.x(), 0.3);
   EXPECT_NEAR(patch.center.y(), expected.y(), 0.3);

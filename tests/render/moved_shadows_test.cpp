@@ -169,7 +169,7 @@ class MovedShadowsTest : public ::testing::Test {
     const double x = number(-half, half), y = number(-half, half);
     return {x, y, number(-half, half)};
   }
-  Ball ballAt(const Vec3& place, double texels) const {
+  Ball sphereAt(const Vec3& place, double texels) const {
     return {light_.turn.inverse() * (place - light_.shift), texels * light_.texel};
   }
 
@@ -185,11 +185,11 @@ class MovedShadowsTest : public ::testing::Test {
                  depth = number(0, 1) < 0.5 ? number(3, 60) : number(300, 650);
     all.place = {x, y, depth};
     all.radius = std::exp(number(std::log(1.5), std::log(30)));
-    all.moved = {ballAt(all.place, all.radius), ballAt(all.place + within(10), all.radius)};
+    all.moved = {sphereAt(all.place, all.radius), sphereAt(all.place + within(10), all.radius)};
     for (int i = 0; i < 2; ++i) {
       const Vec3 aside = within(all.radius + 15);
       const Ball still =
-          ballAt({x + aside.x(), y + aside.y(), number(0, i == 0 ? 0.3 * depth : depth + 150)}, number(2, 15));
+          sphereAt({x + aside.x(), y + aside.y(), number(0, i == 0 ? 0.3 * depth : depth + 150)}, number(2, 15));
       all.before.push_back(still), all.now.push_back(still);
     }
     all.before.push_back(all.moved[0]), all.now.push_back(all.moved[1]);
@@ -229,12 +229,12 @@ TEST_F(MovedShadowsTest, PartsOfAPlaneHoldAllPointsWhoseLightChanges) {
     const Balls all = balls();
     // Through the ball, or behind it.
     const double depth = all.place.z() + (trial % 2 == 0 ? number(-0.95, 1) * all.radius : number(0, 300));
-    const Vec3 foot = ballAt({all.place.x(), all.place.y(), depth}, 0).center;
+    const Vec3 foot = sphereAt({all.place.x(), all.place.y(), depth}, 0).center;
     const Vec3 normal = (towards() + within(1.2)).normalized();
     if (normal.dot(towards()) < 0.1) continue;
     changed += countChanged(all, MovedShadows({}, stage_).surfaceOf(normal, foot), [&] {
       const double around = all.radius + 35;
-      const Vec3 start = ballAt(all.place + within(around), 0).center;
+      const Vec3 start = sphereAt(all.place + within(around), 0).center;
       return litPoint(start - normal.dot(start - foot) / normal.dot(towards()) * towards(), normal, 0, light_);
     });
   }
@@ -249,7 +249,7 @@ TEST_F(MovedShadowsTest, PartsOfABallHoldAllPointsWhoseLightChanges) {
     const double radius = number(3, 40);
     Vec3 place = all.place + within(radius + all.radius + 10);
     place.z() = all.place.z() + radius + number(0, 100);
-    const Ball receiver = ballAt(place, radius);
+    const Ball receiver = sphereAt(place, radius);
     all.before.push_back(receiver), all.now.push_back(receiver);
     changed += countChanged(all, MovedShadows({}, stage_).surfaceOf(hullOf(receiver), 0), [&] {
       Vec3 normal = within(1).normalized();

@@ -92,8 +92,8 @@ TEST(Assembly, TakesPairSurfacesAndPutsPlanesSecond) {
     "pairs": [{"materials": ["steel", "ice"], "restitution": 0.7, "staticFriction": 0.2, "dynamicFriction": 0.1}])"));
   ASSERT_EQ(assembly.geometry.pairs.size(), 1u);
   EXPECT_TRUE(assembly.geometry.pairs[0].againstPlane);
-  EXPECT_EQ(assembly.geometry.pairs[0].law.restitution, 0.7);
-  EXPECT_EQ(assembly.geometry.pairs[0].law.dynamicFriction, 0.1);
+  EXPECT_EQ(assembly.geometry.pairs[0].material.restitution, 0.7);
+  EXPECT_EQ(assembly.geometry.pairs[0].material.dynamicFriction, 0.1);
   EXPECT_EQ(assembly.geometry.planes[0].normal, Vec3::UnitZ());
   EXPECT_EQ(bodiesOf(assembly, assembly.geometry.pairs[0]), std::make_pair(1, 0));
 }

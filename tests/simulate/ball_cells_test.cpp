@@ -1,4 +1,4 @@
-#include "simulate/balls/ball_cells.h"
+#include "simulate/spheres/sphere_cells.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,15 +23,15 @@ std::vector<Vec3> randomCenters(int count, double extent) {
   return centers;
 }
 
-std::vector<int> near(const BallCells& cells, int ball) {
+std::vector<int> near(const SphereCells& cells, int ball) {
   std::vector<int> found;
   cells.visitNear(ball, [&](int other) { found.push_back(other); });
   return found;
 }
 
-TEST(BallCells, FindEachBallThatMayBeTouchedOnce) {
+TEST(SphereCells, FindEachBallThatMayBeTouchedOnce) {
   const std::vector<Vec3> centers = randomCenters(300, 1.5);
-  const BallCells cells(centers, kRadius, 0);
+  const SphereCells cells(centers, kRadius, 0);
   ASSERT_TRUE(cells.isBounded());
   for (int ball = 0; ball < 300; ++ball) {
     std::vector<int> found = near(cells, ball);
@@ -44,9 +44,9 @@ TEST(BallCells, FindEachBallThatMayBeTouchedOnce) {
   }
 }
 
-TEST(BallCells, KeepBallsThatLieInTheirCell) {
+TEST(SphereCells, KeepBallsThatLieInTheirCell) {
   const std::vector<Vec3> centers = randomCenters(50, 3);
-  const BallCells cells(centers, kRadius, 0);
+  const SphereCells cells(centers, kRadius, 0);
   for (int ball = 0; ball < 50; ++ball)
     for (int axis = 0; axis < 3; ++axis) {
       const long cell = cells.cellOf(ball)[static_cast<std::size_t>(axis)];
@@ -56,8 +56,8 @@ TEST(BallCells, KeepBallsThatLieInTheirCell) {
 }
 
 // Far out and back: lists that repeat in space are the same after as many steps.
-TEST(BallCells, FindWhatIsAheadOfABallThatMoves) {
-  BallCells cells(randomCenters(50, 3), kRadius, 0);
+TEST(SphereCells, FindWhatIsAheadOfABallThatMoves) {
+  SphereCells cells(randomCenters(50, 3), kRadius, 0);
   for (const int axis : {0, 1, 2}) {
     for (int i = 0; i < 100; ++i) cells.move(7, axis, 1);
     EXPECT_THAT(near(cells, 7), Contains(7));
@@ -71,9 +71,9 @@ TEST(BallCells, FindWhatIsAheadOfABallThatMoves) {
   }
 }
 
-TEST(BallCells, KnowWhatFixedThingsABallMayTouch) {
+TEST(SphereCells, KnowWhatFixedThingsABallMayTouch) {
   const std::vector<Vec3> centers = randomCenters(50, 3);
-  BallCells cells(centers, kRadius, 0);
+  SphereCells cells(centers, kRadius, 0);
   cells.addFixed(0, Bounds(Vec3(1, 1, 1), Vec3(1.5, 1.5, 1.5)));
   cells.addFixed(1, Bounds(Vec3::Constant(-1e9), Vec3::Constant(1e9)));
   for (int ball = 0; ball < 50; ++ball) {
@@ -84,8 +84,8 @@ TEST(BallCells, KnowWhatFixedThingsABallMayTouch) {
   }
 }
 
-TEST(BallCells, AreOneForAFewBalls) {
-  const BallCells cells({Vec3::Zero(), Vec3(1e6, 0, 0)}, kRadius, 0);
+TEST(SphereCells, AreOneForAFewBalls) {
+  const SphereCells cells({Vec3::Zero(), Vec3(1e6, 0, 0)}, kRadius, 0);
   EXPECT_FALSE(cells.isBounded());
   EXPECT_THAT(near(cells, 0), testing::UnorderedElementsAre(0, 1));
   EXPECT_THAT(cells.fixedNear(0), IsEmpty());

@@ -24,7 +24,7 @@ struct Touching {
     linearVelocity(state, 0) = Vec3(0.3, -0.1, 0.2), angularVelocity(state, 1) = Vec3(1, 2, -1);
     contact.bodyA = 0, contact.bodyB = 1;
     contact.point = Vec3(0.02, 0.5, 0.1), contact.normal = -Vec3::UnitY();
-    placeBodies(bodies, state, frames);
+    findBodyFrames(bodies, state, frames);
   }
 };
 
@@ -59,7 +59,7 @@ TEST(RowsOfContacts, AreFiniteWhateverTouches) {
         SCOPED_TRACE(::testing::Message() << radiusA << " " << radiusB << " " << isEdge);
         EXPECT_TRUE(rows.place.normal.allFinite());
         EXPECT_NEAR(std::abs(rows.place.normal.y()), 1, 1e-12);
-        for (const ConstraintRow& row : rows.rows) EXPECT_TRUE(std::isfinite(row.curvature));
+        for (const ConstraintRow& row : rows.rows) EXPECT_TRUE(std::isfinite(row.velocityProduct));
       }
 }
 
@@ -72,7 +72,7 @@ TEST(RowsOfContacts, DoNotDependOnTheOrderOfTheBodies) {
       Touching touching;
       touching.bodies[1].inverseInertia *= ease;
       touching.frames.clear();
-      placeBodies(touching.bodies, touching.state, touching.frames);
+      findBodyFrames(touching.bodies, touching.state, touching.frames);
       angularVelocity(touching.state, 0) = Vec3(-0.5, 0.2, 0.7);
       touching.contact.radiusA = radiusA, touching.contact.radiusB = radiusB;
       Contact swapped = touching.contact;
@@ -81,7 +81,7 @@ TEST(RowsOfContacts, DoNotDependOnTheOrderOfTheBodies) {
       const ContactRows rows = rowsOf(touching.contact, touching.state, touching.frames),
                         other = rowsOf(swapped, touching.state, touching.frames);
       SCOPED_TRACE(::testing::Message() << radiusA << " " << radiusB << " " << ease);
-      EXPECT_NEAR(rows.rows[2].curvature, other.rows[2].curvature, 1e-12);
+      EXPECT_NEAR(rows.rows[2].velocityProduct, other.rows[2].velocityProduct, 1e-12);
     }
 }
 

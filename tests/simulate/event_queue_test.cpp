@@ -1,4 +1,4 @@
-#include "simulate/balls/event_queue.h"
+#include "simulate/spheres/event_queue.h"
 
 #include <gtest/gtest.h>
 

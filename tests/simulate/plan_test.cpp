@@ -30,7 +30,7 @@ std::vector<std::vector<int>> islandsOf(const Plan& plan) {
   return islands;
 }
 
-TEST(Islands, AreBodiesThatSpringsRodsRopesAndJointsTie) {
+TEST(DisjointSets, AreBodiesThatSpringsRodsRopesAndJointsTie) {
   std::string bodies;
   for (int i = 0; i < 7; ++i) bodies += ball(fmt::format("b{}", i), Vec3(100 * i, 0, 0), kTouchesNothing) + ", ";
   const auto ends = [](int a, int b) {
@@ -48,14 +48,14 @@ TEST(Islands, AreBodiesThatSpringsRodsRopesAndJointsTie) {
 }
 
 // All are tied to the world, and the floor lies under them: neither joins them.
-TEST(Islands, AreNotJoinedByTheWorldOrByFixedBodies) {
+TEST(DisjointSets, AreNotJoinedByTheWorldOrByFixedBodies) {
   const Plan plan = planWith(ball("a", Vec3(0, 5, 0)) + ", " + ball("b", Vec3(3, 5, 0)) + ", " + kFloor,
                              R"(, "rods": [{"bodyA": "a", "anchorA": [0, 0, 0], "anchorB": [0, 6, 0]},
         {"bodyA": "b", "anchorA": [0, 0, 0], "bodyB": "floor", "anchorB": [3, 6, 0]}])");
   EXPECT_THAT(islandsOf(plan), ElementsAre(ElementsAre(0), ElementsAre(1)));
 }
 
-TEST(Islands, AreAHundredForAHundredSuspendedModels) {
+TEST(DisjointSets, AreAHundredForAHundredSuspendedModels) {
   std::string bodies, springs;
   for (int i = 0; i < 100; ++i) {
     bodies += (i ? ", " : "") + ball(fmt::format("b{}", i), Vec3(10 * (i % 10), 10 * (i / 10), 0));
@@ -148,7 +148,7 @@ TEST(Plan, TakesNoSoftContactsWithAMeshThatIsNotClosed) {
     const Plan plan = planOf(parseScene(text, "ground.json", [&](const MeshReference&) { return ground; }).scene);
     ASSERT_EQ(plan.islands.size(), 1u);
     EXPECT_EQ(plan.islands[0].method.kind, isSheet ? MotionKind::fixedSteps : MotionKind::pile);
-    EXPECT_EQ(std::any_of(plan.islands[0].leftOut.begin(), plan.islands[0].leftOut.end(),
+    EXPECT_EQ(std::any_of(plan.islands[0].notNeeded.begin(), plan.islands[0].notNeeded.end(),
                           [](std::string_view line) { return line.find("not closed") != std::string_view::npos; }),
               isSheet);
   }

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/experiment.h"
-#include "simulate/run.h"
+#include "simulate/world.h"
 
 namespace cradle {
 namespace {
@@ -39,7 +39,7 @@ Scene sceneOfBodies(const std::string& bodies, const std::string& more = "") {
 /// Of the only group.
 Promise promiseOfOnly(const std::string& bodies, const std::string& more = "") {
   const Scene scene = sceneOfBodies(bodies, more);
-  const cradle::Run run(scene);
+  const cradle::World run(scene);
   EXPECT_EQ(run.plan().islands.size(), 1u);
   return run.plan().islands.at(0).promise;
 }
@@ -155,7 +155,7 @@ TEST(Promise, IsDecidedAtTheFirstInstantWhereMoreTouchThanEventsServe) {
 // The stack falls by 5 mm before it slides; only the run can tell.
 TEST(Promise, IsGivenUpInTheRunWithTimeReasonAndBodies) {
   const Scene scene = sceneOfBodies(slidingStack(4, 0.105));
-  cradle::Run run(scene);
+  cradle::World run(scene);
   ASSERT_EQ(run.plan().islands.at(0).promise.kind, Promise::Kind::conditional);
   run.frameAt(0, 0);
   EXPECT_THAT(run.takePromiseEnds(), IsEmpty());

@@ -37,7 +37,7 @@ Start startOf(const std::string& bodies) {
       sceneOf(fmt::format(R"({{"schema": "cradle-scene/1", "name": "t", "duration": 0.01, "bodies": [{}]}})", bodies));
   std::vector<Assembly> islands;
   for (const IslandPlan& island : planOf(scene).islands) islands.push_back(assemble(scene, island));
-  settleStartOverlaps(scene, islands);
+  correctStartPenetrations(scene, islands);
   Start start{islands.at(0).state, islands[0].warnings, {}};
   findContacts(islands[0].geometry, start.state, 0.01, start.contacts);
   return start;
@@ -180,7 +180,7 @@ TEST(StartOverlaps, OfBodiesOnRodsAndJointsKeepTheirTies) {
                                             box("wall", -0.26, R"(, "motion": "static")"), ball("a", 0.3), tie));
     std::vector<Assembly> islands;
     for (const IslandPlan& island : planOf(scene).islands) islands.push_back(assemble(scene, island));
-    settleStartOverlaps(scene, islands);
+    correctStartPenetrations(scene, islands);
     Assembly& island = islands.at(0);
     EXPECT_THAT(island.warnings, ElementsAre(HasSubstr("overlap by 40 mm")));
     const Vec3 center = centerOfMass(island.state, 0);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/experiment.h"
-#include "simulate/run.h"
+#include "simulate/world.h"
 
 namespace cradle {
 namespace {

@@ -91,11 +91,11 @@ TEST(MeasuredLimit, OfAStiffSpringOnTheCornerOfABoxIsThatOfTheMassThatItMoves) {
 /// Kutta's method with its last stage at the middle of the step: R(z) = 1 + z + 5/12 z^2 + z^3 / 8 + z^4 / 48.
 void brokenRk4(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep, Step& step) {
   beginStep(rightHandSide, state, time, timeStep, step);
-  VectorX k = step.startRate;
+  VectorX k = step.startDerivative;
   step.state = state + (timeStep / 6) * k;
   for (const double weight : {1.0 / 3, 1.0 / 3, 1.0 / 6}) {
     step.stage = state + (timeStep / 2) * k;
-    rightHandSide.rate(time + timeStep / 2, step.stage, k);
+    rightHandSide.derivative(time + timeStep / 2, step.stage, k);
     step.state += weight * timeStep * k;
   }
 }

@@ -71,7 +71,7 @@ TEST(Tumbling, GoesWrongBeforeEnergyShowsIt) {
 struct Drift {
   double angle, shape;
 };
-Drift driftOf(RotationStorage storage, const Vec3& rotation, bool isExact) {
+Drift displacementOf(RotationStorage storage, const Vec3& rotation, bool isExact) {
   TurnedOrientation orientation(storage, rotation, isExact);
   for (int i = 0; i < 1000; ++i) orientation.turn();
   return {orientation.angleError(), orientation.shapeError()};
@@ -80,11 +80,11 @@ Drift driftOf(RotationStorage storage, const Vec3& rotation, bool isExact) {
 TEST(RotationDrift, OfTheFirstOrderIsThatOfTheory) {
   const double a = 0.01;
   const Vec3 rotation = a * Vec3(2, -1, 2) / 3;
-  const Drift matrix = driftOf(RotationStorage::matrix, rotation, false);
+  const Drift matrix = displacementOf(RotationStorage::matrix, rotation, false);
   EXPECT_NEAR(matrix.angle, 1000 * (a - std::atan(a)), 1e-11);
   // R^T R grows by 1 + a^2 a turn across the axis n: its largest entry on the diagonal is where n is least, 1 - 1/9.
   EXPECT_NEAR(matrix.shape, 8.0 / 9 * (std::pow(1 + a * a, 1000) - 1), 1e-11);
-  const Drift quaternion = driftOf(RotationStorage::quaternion, rotation, false);
+  const Drift quaternion = displacementOf(RotationStorage::quaternion, rotation, false);
   EXPECT_NEAR(quaternion.angle, 1000 * (a - 2 * std::atan(a / 2)), 1e-11);
   EXPECT_NEAR(quaternion.shape, std::pow(1 + a * a / 4, 1000) - 1, 1e-11);
 }
@@ -93,22 +93,22 @@ TEST(RotationDrift, GramSchmidtKeepsTheShapeAndSpoilsTheAngle) {
   // The favoured column c goes from its circle about n towards the plane across it: by a^2 / 2 sin cos a turn, of the
   // angle between c and n. With the first axis of the body at (2/3, ...) from n that is 0.000025 at first.
   const Vec3 rotation = 0.01 * Vec3(2, -1, 2) / 3;
-  const Drift drift = driftOf(RotationStorage::orthogonalisedMatrix, rotation, false);
+  const Drift drift = displacementOf(RotationStorage::orthogonalisedMatrix, rotation, false);
   EXPECT_LT(drift.shape, 1e-15);
   EXPECT_NEAR(drift.angle, 1000 * 0.5e-4 * (2.0 / 3) * std::sqrt(5.0) / 3, 0.1 * drift.angle);
-  EXPECT_LT(driftOf(RotationStorage::normalizedQuaternion, rotation, false).shape, 1e-15);
+  EXPECT_LT(displacementOf(RotationStorage::normalizedQuaternion, rotation, false).shape, 1e-15);
 }
 
 TEST(RotationDrift, OfExactProductsIsRounding) {
   for (const auto storage : {RotationStorage::matrix, RotationStorage::orthogonalisedMatrix,
                              RotationStorage::quaternion, RotationStorage::normalizedQuaternion})
-    EXPECT_LT(driftOf(storage, Vec3(0.003, 0.007, -0.002), true).angle, 1000 * 1e-15);
+    EXPECT_LT(displacementOf(storage, Vec3(0.003, 0.007, -0.002), true).angle, 1000 * 1e-15);
 }
 
 TEST(RotationDrift, EulerAnglesLoseTheirWayPastGimbalLock) {
-  EXPECT_LT(driftOf(RotationStorage::eulerAngles, Vec3(0, 0, 0.003), false).angle, 1e-12);  // yaw alone is exact
-  const double near = driftOf(RotationStorage::eulerAngles, Vec3(6e-6, 0.003, 0), false).angle;
-  const double far = driftOf(RotationStorage::eulerAngles, Vec3(6e-4, 0.003, 0), false).angle;
+  EXPECT_LT(displacementOf(RotationStorage::eulerAngles, Vec3(0, 0, 0.003), false).angle, 1e-12);  // yaw alone is exact
+  const double near = displacementOf(RotationStorage::eulerAngles, Vec3(6e-6, 0.003, 0), false).angle;
+  const double far = displacementOf(RotationStorage::eulerAngles, Vec3(6e-4, 0.003, 0), false).angle;
   EXPECT_GT(near, 0.002);
   EXPECT_LT(far, 0.5 * near);
 }

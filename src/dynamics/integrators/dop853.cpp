@@ -15,7 +15,7 @@ namespace {
 
 using namespace dop853_table;
 
-using Method = RungeKutta<kStages, kNodes, kEndRate>;
+using Method = RungeKutta<kStages, kNodes, kEndDerivative>;
 
 }  // namespace
 
@@ -27,13 +27,13 @@ void dop853(const RightHandSide& rightHandSide, const VectorX& state, double tim
 double dop853Error(const Step& step, const VectorX& tolerance) {
   CRADLE_CHECK(step.interpolant == InterpolantKind::degreeSeven);
   CRADLE_CHECK(tolerance.size() == step.state.size());
-  const auto rate = Method::rates(step);
+  const auto derivative = Method::derivatives(step);
   double fifth = 0, third = 0, finite = 0;
   for (Eigen::Index i = 0; i < step.state.size(); ++i) {
     const double size = std::max(std::abs(step.startState[i]), std::abs(step.state[i]));
     const double scale = 1 / (tolerance[i] * (1 + size));
-    fifth = std::max(fifth, std::abs(weightedSum<kErrors, 0>(rate, i)) * scale);
-    third = std::max(third, std::abs(weightedSum<kErrors, 1>(rate, i)) * scale);
+    fifth = std::max(fifth, std::abs(weightedSum<kErrors, 0>(derivative, i)) * scale);
+    third = std::max(third, std::abs(weightedSum<kErrors, 1>(derivative, i)) * scale);
     finite += 0 * step.state[i];  // NaN as soon as a component is not finite; std::max would pass over it
   }
   if (finite != 0) return std::numeric_limits<double>::quiet_NaN();
@@ -42,12 +42,13 @@ double dop853Error(const Step& step, const VectorX& tolerance) {
 }
 
 void dop853Corrections(const RightHandSide& rightHandSide, Step& step) {
-  Method::evaluateStage<kEndRate + 1>(rightHandSide, step);
-  Method::evaluateStage<kEndRate + 2>(rightHandSide, step);
-  Method::evaluateStage<kEndRate + 3>(rightHandSide, step);
+  Method::evaluateStage<kEndDerivative + 1>(rightHandSide, step);
+  Method::evaluateStage<kEndDerivative + 2>(rightHandSide, step);
+  Method::evaluateStage<kEndDerivative + 3>(rightHandSide, step);
   step.work.setZero(step.startState.size());
   [&]<std::size_t... kRow>(std::index_sequence<kRow...>) {
-    (addRates<kCorrections, kRow>(Method::rates(step), step.timeStep, step.work, step.corrections[kRow]), ...);
+    (addDerivatives<kCorrections, kRow>(Method::derivatives(step), step.timeStep, step.work, step.corrections[kRow]),
+     ...);
   }
   (std::make_index_sequence<kCorrections.size()>());
 }

@@ -13,8 +13,8 @@ void dop853(const RightHandSide& rightHandSide, const VectorX& state, double tim
 /// left the finite numbers.
 double dop853Error(const Step& step, const VectorX& tolerance);
 
-/// Evaluates the three further rates of the interpolant and from them Step::corrections. Needs the end rate; part of
-/// prepareInterpolant.
+/// Evaluates the three further derivatives of the interpolant and from them Step::corrections. Needs the end
+/// derivative; part of prepareInterpolant.
 void dop853Corrections(const RightHandSide& rightHandSide, Step& step);
 
 }  // namespace cradle

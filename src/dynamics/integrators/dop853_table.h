@@ -7,12 +7,12 @@
 
 namespace cradle::dop853_table {
 
-constexpr std::size_t kRates = 16;  // f at 12 stages, at the end of the step, and at 3 stages of the interpolant
-constexpr std::size_t kEndRate = 12;
+constexpr std::size_t kDerivatives = 16;  // f at 12 stages, at the end of the step, and at 3 stages of the interpolant
+constexpr std::size_t kEndDerivative = 12;
 
-using Weights = RateWeights<kRates>;
+using Weights = DerivativeWeights<kDerivatives>;
 
-/// Instant of each rate, as a fraction of the step.
+/// Instant of each derivative, as a fraction of the step.
 inline constexpr Weights kNodes = {0.0,
                                    0.0526001519587677318785587544488,
                                    0.0789002279381515978178381316732,
@@ -30,9 +30,9 @@ inline constexpr Weights kNodes = {0.0,
                                    0.2,
                                    0.777777777777777777777777777778};
 
-/// Row i: the state at which rate i is evaluated is the start state + h x the weighted sum of the rates before it. Row
-/// kEndRate is the result of the step.
-inline constexpr std::array<Weights, kRates> kStages = {
+/// Row i: the state at which derivative i is evaluated is the start state + h x the weighted sum of the derivatives
+/// before it. Row kEndDerivative is the result of the step.
+inline constexpr std::array<Weights, kDerivatives> kStages = {
     Weights{},
     Weights{0.0526001519587677318785587544488},
     Weights{0.0197250569845378994544595329183, 0.0591751709536136983633785987549},
@@ -102,8 +102,8 @@ constexpr std::array<Weights, 2> errorWeights() {
       Weights{0.01312004499419488073250102996, 0, 0, 0, 0, -1.225156446376204440720569753,
               -0.4957589496572501915214079952, 1.664377182454986536961530415, -0.3503288487499736816886487290,
               0.3341791187130174790297318841, 0.08192320648511571246570742613, -0.02235530786388629525884427845},
-      kStages[kEndRate]};
-  for (std::size_t i = 0; i < kRates; ++i) weights[1][i] -= kThirdOrder[i];
+      kStages[kEndDerivative]};
+  for (std::size_t i = 0; i < kDerivatives; ++i) weights[1][i] -= kThirdOrder[i];
   return weights;
 }
 inline constexpr std::array<Weights, 2> kErrors = errorWeights();

@@ -15,7 +15,7 @@ namespace {
 
 using namespace dormand_prince5_table;
 
-using Method = RungeKutta<kStages, kNodes, kEndRate>;
+using Method = RungeKutta<kStages, kNodes, kEndDerivative>;
 
 }  // namespace
 
@@ -23,17 +23,17 @@ void dormandPrince5(const RightHandSide& rightHandSide, const VectorX& state, do
                     Step& step) {
   Method::advance(rightHandSide, state, time, timeStep, step);
   step.interpolant = InterpolantKind::degreeFour;
-  evaluateEndRate(rightHandSide, step);
+  evaluateEndDerivative(rightHandSide, step);
 }
 
 double dormandPrince5Error(const Step& step, const VectorX& tolerance) {
-  CRADLE_CHECK(step.interpolant == InterpolantKind::degreeFour && step.hasEndRate);
+  CRADLE_CHECK(step.interpolant == InterpolantKind::degreeFour && step.hasEndDerivative);
   CRADLE_CHECK(tolerance.size() == step.state.size());
-  const auto rate = Method::rates(step);
+  const auto derivative = Method::derivatives(step);
   double largest = 0, finite = 0;
   for (Eigen::Index i = 0; i < step.state.size(); ++i) {
     const double size = std::max(std::abs(step.startState[i]), std::abs(step.state[i]));
-    largest = std::max(largest, std::abs(weightedSum<kErrors, 0>(rate, i)) / (tolerance[i] * (1 + size)));
+    largest = std::max(largest, std::abs(weightedSum<kErrors, 0>(derivative, i)) / (tolerance[i] * (1 + size)));
     finite += 0 * step.state[i];  // NaN as soon as a component is not finite; std::max would pass over it
   }
   if (finite != 0) return std::numeric_limits<double>::quiet_NaN();
@@ -42,7 +42,7 @@ double dormandPrince5Error(const Step& step, const VectorX& tolerance) {
 
 void computeDormandPrince5Correction(Step& step) {
   step.work.setZero(step.startState.size());
-  addRates<kCorrections, 0>(Method::rates(step), step.timeStep, step.work, step.corrections[0]);
+  addDerivatives<kCorrections, 0>(Method::derivatives(step), step.timeStep, step.work, step.corrections[0]);
 }
 
 }  // namespace cradle

@@ -12,7 +12,7 @@ void dormandPrince5(const RightHandSide& rightHandSide, const VectorX& state, do
 /// Local error of such a step in units of the tolerance, as dop853Error has it for DOP853. Proportional to timeStep^5.
 double dormandPrince5Error(const Step& step, const VectorX& tolerance);
 
-/// The correction of the interpolant, from the rates of the step; part of prepareInterpolant.
+/// The correction of the interpolant, from the derivatives of the step; part of prepareInterpolant.
 void computeDormandPrince5Correction(Step& step);
 
 }  // namespace cradle

@@ -8,17 +8,17 @@
 
 namespace cradle::dormand_prince5_table {
 
-constexpr std::size_t kRates = 7;  // f at 6 stages, and at the end of the step
-constexpr std::size_t kEndRate = 6;
+constexpr std::size_t kDerivatives = 7;  // f at 6 stages, and at the end of the step
+constexpr std::size_t kEndDerivative = 6;
 
-using Weights = RateWeights<kRates>;
+using Weights = DerivativeWeights<kDerivatives>;
 
-/// Instant of each rate, as a fraction of the step.
+/// Instant of each derivative, as a fraction of the step.
 inline constexpr Weights kNodes = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
 
-/// Row i: the state at which rate i is evaluated is the start state + h x the weighted sum of the rates before it. Row
-/// kEndRate is the result of the step.
-inline constexpr std::array<Weights, kRates> kStages = {
+/// Row i: the state at which derivative i is evaluated is the start state + h x the weighted sum of the derivatives
+/// before it. Row kEndDerivative is the result of the step.
+inline constexpr std::array<Weights, kDerivatives> kStages = {
     Weights{},
     Weights{1.0 / 5},
     Weights{3.0 / 40, 9.0 / 40},

@@ -4,7 +4,7 @@ namespace cradle {
 
 void explicitEuler(const RightHandSide& rightHandSide, const VectorX& state, double time, double timeStep, Step& step) {
   beginStep(rightHandSide, state, time, timeStep, step);
-  step.state = state + timeStep * step.startRate;
+  step.state = state + timeStep * step.startDerivative;
 }
 
 }  // namespace cradle

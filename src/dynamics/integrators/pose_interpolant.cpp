@@ -28,10 +28,10 @@ std::size_t correctionsOf(const Step& step) {
 template <int kSize>
 Eigen::Matrix<double, kSize, 1> componentsAt(const Step& step, Eigen::Index at, double fraction) {
   const double s = fraction, r = 1 - fraction;
-  Eigen::Matrix<double, kSize, 1> part =
-      (r * r * (1 + 2 * s)) * step.startState.segment<kSize>(at) +
-      (s * s * (1 + 2 * r)) * step.state.segment<kSize>(at) +
-      (step.timeStep * s * r) * (r * step.startRate.segment<kSize>(at) - s * step.endRate.segment<kSize>(at));
+  Eigen::Matrix<double, kSize, 1> part = (r * r * (1 + 2 * s)) * step.startState.segment<kSize>(at) +
+                                         (s * s * (1 + 2 * r)) * step.state.segment<kSize>(at) +
+                                         (step.timeStep * s * r) * (r * step.startDerivative.segment<kSize>(at) -
+                                                                    s * step.endDerivative.segment<kSize>(at));
   const auto c = [&](std::size_t i) { return step.corrections[i].segment<kSize>(at); };
   if (step.interpolant == InterpolantKind::degreeFour) part += (s * s * r * r) * c(0);
   if (step.interpolant == InterpolantKind::degreeSeven)
@@ -45,7 +45,7 @@ bool isConstant(const Step& step, Eigen::Index at) {
   const auto isZero = [at](const VectorX& vector) {
     return vector.segment<kSize>(at) == Eigen::Matrix<double, kSize, 1>::Zero();
   };
-  return isZero(step.startRate) && isZero(step.endRate) &&
+  return isZero(step.startDerivative) && isZero(step.endDerivative) &&
          step.startState.segment<kSize>(at) == step.state.segment<kSize>(at) &&
          std::all_of(step.corrections.begin(), step.corrections.begin() + static_cast<int>(correctionsOf(step)),
                      isZero);
@@ -71,7 +71,8 @@ auto difference(int bodyA, int bodyB) {
 /// s f1) + 6 s r (y1 - y0 - h (f0 + f1) / 2), with 6 s r <= 3/2; curves of degree 4 and 7 add their corrections.
 template <class Part>
 double slopeBound(const Step& step, const Part& part) {
-  const auto start = (step.timeStep * part(step.startRate)).eval(), end = (step.timeStep * part(step.endRate)).eval();
+  const auto start = (step.timeStep * part(step.startDerivative)).eval(),
+             end = (step.timeStep * part(step.endDerivative)).eval();
   const auto bend = (part(step.state) - part(step.startState) - 0.5 * (start + end)).eval();
   double bound = std::max(start.norm(), end.norm()) + 1.5 * bend.norm();
   for (std::size_t i = 0; i < correctionsOf(step); ++i)
@@ -82,7 +83,8 @@ double slopeBound(const Step& step, const Part& part) {
 /// Bound on the second derivative of the same. That of the cubic is linear in s.
 template <class Part>
 double bendBound(const Step& step, const Part& part) {
-  const auto start = (step.timeStep * part(step.startRate)).eval(), end = (step.timeStep * part(step.endRate)).eval();
+  const auto start = (step.timeStep * part(step.startDerivative)).eval(),
+             end = (step.timeStep * part(step.endDerivative)).eval();
   const auto way = (part(step.state) - part(step.startState)).eval();
   double bound = std::max((6 * way - 4 * start - 2 * end).norm(), (6 * way - 2 * start - 4 * end).norm());
   for (std::size_t i = 0; i < correctionsOf(step); ++i) bound += kCorrectionBends[i] * part(step.corrections[i]).norm();
@@ -92,8 +94,8 @@ double bendBound(const Step& step, const Part& part) {
 /// Lower bound on the length of an interpolated quaternion: from the nearest of so many samples it falls by at most
 /// 1/8.
 double leastLength(const Step& step, Eigen::Index at, double slope) {
-  constexpr double kMostSamples = 32;
-  const double samples = 1 + std::floor(std::min(kMostSamples, 4 * slope));
+  constexpr double kMaxSamples = 32;
+  const double samples = 1 + std::floor(std::min(kMaxSamples, 4 * slope));
   double least = step.startState.segment<4>(at).norm();
   for (double i = 1; i <= samples; ++i) least = std::min(least, componentsAt<4>(step, at, i / samples).norm());
   return std::max(kShortestQuaternion, least - slope / (2 * samples));
@@ -119,8 +121,8 @@ double motionBound(const Step& step, int body, double reach) {
   return isStill(step, body) ? 0 : motionBounds(step, body, reach).speed;
 }
 
-// With p = q' / q and its rate q'' / q - p^2, a body turns at w = 2 Im p: |w| <= 2 |q'| / |q|, and |w'| <= 2 (|q''| /
-// |q|
+// With p = q' / q and its derivative q'' / q - p^2, a body turns at w = 2 Im p: |w| <= 2 |q'| / |q|, and |w'| <= 2
+// (|q''| / |q|
 // + |q'|^2 / |q|^2). A point at r moves at w x r and accelerates by w' x r + w x (w x r).
 MotionBounds turnBounds(const Step& step, int body) {
   if (body == kFixed) return {};

@@ -8,7 +8,7 @@ void semiImplicitEuler(const RightHandSide& rightHandSide, const VectorX& state,
 
   const Eigen::Index positions = rightHandSide.positions, others = state.size() - positions;
   step.state = state;
-  step.state.tail(others) += timeStep * step.startRate.tail(others);
+  step.state.tail(others) += timeStep * step.startDerivative.tail(others);
   rightHandSide.positionRate(step.state, step.work);
   step.state.head(positions) += timeStep * step.work.head(positions);
 }

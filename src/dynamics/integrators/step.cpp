@@ -13,38 +13,38 @@ void beginStep(const RightHandSide& rightHandSide, const VectorX& state, double 
   step.timeStep = timeStep;
   step.startState = state;
   step.work.resize(state.size());
-  step.hasEndRate = false;
+  step.hasEndDerivative = false;
   step.interpolant = InterpolantKind::cubicHermite;
-  if (step.startRateIsKnown) {
-    CRADLE_CHECK(step.startRate.size() == state.size());
+  if (step.startDerivativeIsKnown) {
+    CRADLE_CHECK(step.startDerivative.size() == state.size());
   } else {
-    step.startRate.resize(state.size());
-    rightHandSide.rate(time, state, step.startRate);
+    step.startDerivative.resize(state.size());
+    rightHandSide.derivative(time, state, step.startDerivative);
   }
-  step.startRateIsKnown = false;
+  step.startDerivativeIsKnown = false;
 }
 
-void keepStartRate(Step& step) {
-  step.startRateIsKnown = true;
+void keepStartDerivative(Step& step) {
+  step.startDerivativeIsKnown = true;
 }
 
-void carryEndRate(Step& step) {
-  if (!step.hasEndRate) return;
-  std::swap(step.startRate, step.endRate);
-  step.startRateIsKnown = true;
-  step.hasEndRate = false;
+void carryEndDerivative(Step& step) {
+  if (!step.hasEndDerivative) return;
+  std::swap(step.startDerivative, step.endDerivative);
+  step.startDerivativeIsKnown = true;
+  step.hasEndDerivative = false;
 }
 
-void evaluateEndRate(const RightHandSide& rightHandSide, Step& step) {
-  if (step.hasEndRate) return;
-  step.hasEndRate = true;
+void evaluateEndDerivative(const RightHandSide& rightHandSide, Step& step) {
+  if (step.hasEndDerivative) return;
+  step.hasEndDerivative = true;
   step.hasCorrections = false;
-  step.endRate.resize(step.state.size());
-  rightHandSide.rate(step.time + step.timeStep, step.state, step.endRate);
+  step.endDerivative.resize(step.state.size());
+  rightHandSide.derivative(step.time + step.timeStep, step.state, step.endDerivative);
 }
 
 void prepareInterpolant(const RightHandSide& rightHandSide, Step& step) {
-  evaluateEndRate(rightHandSide, step);
+  evaluateEndDerivative(rightHandSide, step);
   if (step.interpolant == InterpolantKind::cubicHermite || step.hasCorrections) return;
   step.hasCorrections = true;
   if (step.interpolant == InterpolantKind::degreeFour)
@@ -54,10 +54,10 @@ void prepareInterpolant(const RightHandSide& rightHandSide, Step& step) {
 }
 
 void interpolate(const Step& step, double fraction, VectorX& state) {
-  CRADLE_CHECK(step.hasEndRate);
+  CRADLE_CHECK(step.hasEndDerivative);
   const double s = fraction, r = 1 - fraction;
   state = (r * r * (1 + 2 * s)) * step.startState + (s * s * (1 + 2 * r)) * step.state +
-          (step.timeStep * s * r) * (r * step.startRate - s * step.endRate);
+          (step.timeStep * s * r) * (r * step.startDerivative - s * step.endDerivative);
   const auto& c = step.corrections;
   if (step.interpolant == InterpolantKind::degreeFour) state += (s * s * r * r) * c[0];
   if (step.interpolant == InterpolantKind::degreeSeven)
@@ -69,10 +69,10 @@ void cutStep(double fraction, Step& step) {
   CRADLE_CHECK(step.interpolant == InterpolantKind::degreeFour && step.hasCorrections);
   const double s = fraction, r = 1 - fraction;
   interpolate(step, fraction, step.stage);
-  step.work = (6 * s * r / step.timeStep) * (step.state - step.startState) + (r * (r - 2 * s)) * step.startRate +
-              (s * (s - 2 * r)) * step.endRate + (2 * s * r * (r - s) / step.timeStep) * step.corrections[0];
+  step.work = (6 * s * r / step.timeStep) * (step.state - step.startState) + (r * (r - 2 * s)) * step.startDerivative +
+              (s * (s - 2 * r)) * step.endDerivative + (2 * s * r * (r - s) / step.timeStep) * step.corrections[0];
   std::swap(step.state, step.stage);
-  std::swap(step.endRate, step.work);
+  std::swap(step.endDerivative, step.work);
   step.corrections[0] *= s * s * s * s;
   step.timeStep *= fraction;
 }

@@ -13,11 +13,11 @@ namespace cradle {
 namespace {
 
 constexpr double kSafety = 0.9;
-constexpr double kMostGrowth = 6;
-constexpr double kMostShrinking = 1.0 / 3;
+constexpr double kMaxGrowth = 6;
+constexpr double kMaxShrinking = 1.0 / 3;
 
-constexpr double kFirstPart = 0.01;      // of the state's size: change of the state in the first guess
-constexpr double kSmallestSize = 1e-10;  // of the state or its rate, in tolerances: below, they say nothing
+constexpr double kFirstRatio = 0.01;     // of the state's size: change of the state in the first guess
+constexpr double kSmallestSize = 1e-10;  // of the state or its derivative, in tolerances: below, they say nothing
 constexpr double kBlindTimeStep = 1e-6;  // s: taken when they say nothing
 constexpr double kStraightRate = 1e-15;  // in tolerances: a motion without curvature
 
@@ -41,13 +41,13 @@ double sizeOf(const Vector& vector, const VectorX& state, const VectorX& toleran
 bool acceptStep(double errorNorm, double taken, StepSize& size) {
   const bool accepted = errorNorm <= 1;
   const double growth = std::isfinite(errorNorm)
-                            ? std::clamp(kSafety / rootOf(errorNorm, size.order), kMostShrinking, kMostGrowth)
-                            : kMostShrinking;
+                            ? std::clamp(kSafety / rootOf(errorNorm, size.order), kMaxShrinking, kMaxGrowth)
+                            : kMaxShrinking;
   const double planned = size.timeStep;
   size.timeStep = taken * growth;
   if (accepted) {
     if (size.afterRejection) size.timeStep = std::min(size.timeStep, taken);
-    if (growth == kMostGrowth) size.timeStep = std::max(size.timeStep, planned);
+    if (growth == kMaxGrowth) size.timeStep = std::max(size.timeStep, planned);
   }
   size.afterRejection = !accepted;
   return accepted;
@@ -56,18 +56,19 @@ bool acceptStep(double errorNorm, double taken, StepSize& size) {
 double firstTimeStep(const RightHandSide& rightHandSide, const VectorX& tolerance, Step& step, int order) {
   CRADLE_CHECK(tolerance.size() == step.startState.size());
   const VectorX& start = step.startState;
-  const double size = sizeOf(start, start, tolerance), rate = sizeOf(step.startRate, start, tolerance);
-  const double guess = size < kSmallestSize || rate < kSmallestSize ? kBlindTimeStep : kFirstPart * size / rate;
+  const double size = sizeOf(start, start, tolerance), derivative = sizeOf(step.startDerivative, start, tolerance);
+  const double guess =
+      size < kSmallestSize || derivative < kSmallestSize ? kBlindTimeStep : kFirstRatio * size / derivative;
 
-  step.stage = start + guess * step.startRate;
+  step.stage = start + guess * step.startDerivative;
   step.work.resize(start.size());
-  rightHandSide.rate(step.time + guess, step.stage, step.work);
-  const double curvature = sizeOf(step.work - step.startRate, start, tolerance) / guess;
+  rightHandSide.derivative(step.time + guess, step.stage, step.work);
+  const double curvature = sizeOf(step.work - step.startDerivative, start, tolerance) / guess;
 
-  keepStartRate(step);
-  const double fastest = std::max(rate, curvature);
+  keepStartDerivative(step);
+  const double fastest = std::max(derivative, curvature);
   if (fastest <= kStraightRate) return std::max(kBlindTimeStep, guess * 1e-3);
-  return std::min(100 * guess, rootOf(kFirstPart / fastest, order));
+  return std::min(100 * guess, rootOf(kFirstRatio / fastest, order));
 }
 
 }  // namespace cradle

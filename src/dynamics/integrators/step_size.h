@@ -19,8 +19,8 @@ struct StepSize {
 bool acceptStep(double errorNorm, double taken, StepSize& size);
 
 /// A first step (s) for which the error norm of a method, DOP853 or one of another `order`, is about 1 or less, with
-/// one more evaluation. Needs a `step` begun with beginStep at the start, whatever its length; it keeps its start rate
-/// for the first step itself.
+/// one more evaluation. Needs a `step` begun with beginStep at the start, whatever its length; it keeps its start
+/// derivative for the first step itself.
 double firstTimeStep(const RightHandSide& rightHandSide, const VectorX& tolerance, Step& step, int order);
 
 }  // namespace cradle

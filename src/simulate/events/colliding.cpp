@@ -9,10 +9,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kStandstillPart = 1e-12;    // of the fastest speed at an impact: what is left is rounding
-constexpr double kSequencePart = 1e-9;       // of the time of a fall by the smallest size: as long it may take always
-constexpr double kGapRoundingPart = 4e-12;   // of the smallest size: beyond the dead band, a gap is one ...
-constexpr double kBallGapPart = 2e-13;       // the same, of balls: differences of two lengths
+constexpr double kStandstillRatio = 1e-12;   // of the fastest speed at an impact: what is left is rounding
+constexpr double kSequenceRatio = 1e-9;      // of the time of a fall by the smallest size: as long it may take always
+constexpr double kGapRoundingRatio = 4e-12;  // of the smallest size: beyond the dead band, a gap is one ...
+constexpr double kBallGapRatio = 2e-13;      // the same, of spheres: differences of two lengths
 constexpr double kGapPlaceRounding = 4e-15;  // ... unless the places around it are rounded that coarsely
 
 /// m/s: of the faster of the two bodies' centres.
@@ -40,7 +40,7 @@ void addImpulse(std::size_t contact, double impulse, std::vector<ContactImpulse>
 void EventContacts::collide(const std::optional<std::size_t>& meeting) {
   double fastest = 0;
   for (const Contact& contact : touching_) fastest = std::max(fastest, contactSpeed(contact, island_.state));
-  const double still = kStandstillPart * fastest;
+  const double still = kStandstillRatio * fastest;
   const auto closes = [&](const Contact& contact) { return openingSpeed(contact, island_.state) < -still; };
   if (std::none_of(touching_.begin(), touching_.end(), closes)) return;
   const std::vector<Contact> near = contactsInReach();
@@ -78,34 +78,34 @@ std::vector<Contact> EventContacts::contactsInReach() {
   return near;
 }
 
-bool EventContacts::isOfBall(const Contact& contact) const {
+bool EventContacts::isOfSphere(const Contact& contact) const {
   const ContactGeometry& geometry = island_.assembly.geometry;
   const ColliderPair& pair = geometry.pairs[contact.pair];
-  return geometry.colliders[pair.a].isBall() || (!pair.againstPlane && geometry.colliders[pair.b].isBall());
+  return geometry.colliders[pair.a].isSphere() || (!pair.againstPlane && geometry.colliders[pair.b].isSphere());
 }
 
 SequenceLimits EventContacts::limitsOf(const std::vector<Contact>& near, double stillSpeed) {
   double places = 0;  // m
   for (const Contact& contact : near)
     places = std::max(places, kGapPlaceRounding * contact.point.cwiseAbs().maxCoeff());
-  SequenceLimits limits{{}, std::max(kGapRoundingPart * size_, places), touchTolerance_, reach_, INFINITY, stillSpeed};
+  SequenceLimits limits{{}, std::max(kGapRoundingRatio * size_, places), touchTolerance_, reach_, INFINITY, stillSpeed};
   for (const Contact& contact : near)
-    limits.gapErrors.push_back(isOfBall(contact) ? std::max(kBallGapPart * size_, places) : limits.gapRounding);
+    limits.gapErrors.push_back(isOfSphere(contact) ? std::max(kBallGapRatio * size_, places) : limits.gapRounding);
   const auto isClosed = [&](const Contact& contact) { return contact.separation <= limits.gapRounding; };
   if (std::all_of(near.begin(), near.end(), isClosed)) return limits;
-  island_.equations.evaluate(island_.state, rate_);
+  island_.equations.evaluate(island_.state, derivative_);
   double strongest = 0;  // m/s^2
   for (const Contact& contact : near)
-    strongest = std::max(strongest, std::abs(openingAcceleration(contact, island_.state, rate_)));
-  limits.duration = std::max(kSequencePart, reach_ / size_) * std::sqrt(size_ / strongest);
+    strongest = std::max(strongest, std::abs(openingAcceleration(contact, island_.state, derivative_)));
+  limits.duration = std::max(kSequenceRatio, reach_ / size_) * std::sqrt(size_ / strongest);
   return limits;
 }
 
 /// Bodies that an impact at one of them may move.
-Islands EventContacts::connect(const std::vector<Contact>& contacts) const {
-  Islands islands(island_.assembly.mechanism.bodies.size());
+DisjointSets EventContacts::connect(const std::vector<Contact>& contacts) const {
+  DisjointSets islands(island_.assembly.mechanism.bodies.size());
   for (const Contact& contact : contacts) islands.join(contact.bodyA, contact.bodyB);
-  forEachTie(island_.assembly.mechanism.constraints, [&](int bodyA, int bodyB) { islands.join(bodyA, bodyB); });
+  forEachConstraint(island_.assembly.mechanism.constraints, [&](int bodyA, int bodyB) { islands.join(bodyA, bodyB); });
   return islands;
 }
 
@@ -115,7 +115,7 @@ void EventContacts::strike(const ImpactSequence& sequence, double still, std::ve
   for (const std::size_t i : sequence.members()) members.push_back(sequence.contacts()[i]);
   std::vector<ImpactContact> ropes = ropes_.beginImpact(island_.state);
   if (!ropes.empty() && solver_.hasConstraints()) solver_.factorize(island_.state);
-  Islands together = connect(members);
+  DisjointSets together = connect(members);
   for (const ImpactContact& rope : ropes) together.join(rope.contact.bodyA, rope.contact.bodyB);
   std::vector<char> isStruck(island_.assembly.mechanism.bodies.size(), 0);
   for (const Contact& contact : members)
@@ -128,7 +128,7 @@ void EventContacts::strike(const ImpactSequence& sequence, double still, std::ve
   for (const ImpactContact& rope : ropes) wakeStruck(rope.contact);
 }
 
-void EventContacts::strike(const Islands& together, int group, const ImpactSequence& sequence,
+void EventContacts::strike(const DisjointSets& together, int group, const ImpactSequence& sequence,
                            std::vector<ImpactContact>& ropes, std::vector<ContactImpulse>& impulses) {
   const auto isIn = [&](const Contact& contact) { return together.islandOf(contact.movingBody()) == group; };
   std::vector<ImpactContact> impacts;
@@ -136,9 +136,9 @@ void EventContacts::strike(const Islands& together, int group, const ImpactSeque
   for (const std::size_t i : sequence.members()) {
     const Contact& contact = sequence.contacts()[i];
     if (!isIn(contact)) continue;
-    SurfaceLaw law = island_.assembly.geometry.pairs[contact.pair].law;
-    if (sequence.isCollapse()) law.restitution = 0;
-    impacts.push_back({contact, law, 0, Vec3::Zero()});
+    ContactMaterial material = island_.assembly.geometry.pairs[contact.pair].material;
+    if (sequence.isCollapse()) material.restitution = 0;
+    impacts.push_back({contact, material, 0, Vec3::Zero()});
     contacts.push_back(i);
   }
   for (const ImpactContact& rope : ropes)

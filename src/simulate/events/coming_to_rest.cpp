@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "impact/cone_problem.h"
 #include "impact/contact_impulse.h"
+#include "impact/frictional_contact.h"
 #include "simulate/contact_response.h"
 #include "simulate/events/event_contacts.h"
 #include "simulate/thresholds.h"
@@ -26,25 +26,25 @@ bool EventContacts::isSlow(std::size_t body) const {
          most;
 }
 
-/// Bodies that come to rest only together: tied, on a spring, or touching without leaving each other.
-Islands EventContacts::findRestGroups() const {
+/// Bodies that come to rest only together: joined, on a spring, or touching without leaving each other.
+DisjointSets EventContacts::findRestGroups() const {
   const Mechanism& mechanism = island_.assembly.mechanism;
-  Islands groups(mechanism.bodies.size());
+  DisjointSets groups(mechanism.bodies.size());
   for (const Contact& contact : touching_) {
     const double size = smallestSize(contact, island_.assembly.radii);
     const double still = kRestSpeedFloor + stillPart_ * std::sqrt(mechanism.gravity.norm() * size);
     if (openingSpeed(contact, island_.state) <= still) groups.join(contact.bodyA, contact.bodyB);
   }
   for (const SpringForce& spring : mechanism.springs) groups.join(spring.anchorA.body, spring.anchorB.body);
-  forEachTie(mechanism.constraints, [&](int bodyA, int bodyB) { groups.join(bodyA, bodyB); });
+  forEachConstraint(mechanism.constraints, [&](int bodyA, int bodyB) { groups.join(bodyA, bodyB); });
   return groups;
 }
 
 /// Puts groups to rest that are still and that forces within the friction cones can hold; wakes those that are not.
-void EventContacts::settle() {
+void EventContacts::letSleep() {
   if (!island_.resting.anyRests() && !isAnySlow()) return;
   const std::size_t bodies = island_.assembly.mechanism.bodies.size();
-  const Islands groups = findRestGroups();
+  const DisjointSets groups = findRestGroups();
   const auto groupOf = [&](std::size_t body) {
     return static_cast<std::size_t>(groups.islandOf(static_cast<int>(body)));
   };
@@ -70,41 +70,42 @@ void EventContacts::settle() {
   }
 }
 
-/// Whether forces at the contacts of a group can balance all that acts on it, if ties alone do not.
-bool EventContacts::isHeld(const Islands& groups, int group) {
+/// Whether forces at the contacts of a group can balance all that acts on it, if constraints alone do not.
+bool EventContacts::isHeld(const DisjointSets& groups, int group) {
   const Mechanism& mechanism = island_.assembly.mechanism;
-  std::vector<ContactConstraint> lasting;
-  std::swap(lasting, island_.assembly.mechanism.contacts);
-  island_.equations.evaluate(island_.state, rate_);
-  std::swap(lasting, island_.assembly.mechanism.contacts);
+  std::vector<ContactConstraint> active;
+  std::swap(active, island_.assembly.mechanism.contacts);
+  island_.equations.evaluate(island_.state, derivative_);
+  std::swap(active, island_.assembly.mechanism.contacts);
   const double gravity = mechanism.gravity.norm(), most = stillPart_ * gravity;
   const auto still = [&](double residual) {
     return std::min(most, stillAcceleration(island_.scene.accuracy, island_.scene.duration, gravity, residual));
   };
-  if (isBalanced(groups, group, still(0))) return true;
-  placeBodies(mechanism.bodies, island_.state, frames_);
+  if (isInEquilibrium(groups, group, still(0))) return true;
+  findBodyFrames(mechanism.bodies, island_.state, frames_);
   std::vector<ContactRows> contacts;
   std::vector<double> frictions;
   for (const Contact& contact : touching_) {
     if (groups.islandOf(contact.movingBody()) != group) continue;
     contacts.push_back(rowsOf(contact, island_.state, frames_));
-    frictions.push_back(island_.assembly.geometry.pairs[contact.pair].law.staticFriction);
+    frictions.push_back(island_.assembly.geometry.pairs[contact.pair].material.staticFriction);
   }
   if (contacts.empty()) return false;
   const ContactResponse response(contacts, mechanism.bodies, frames_, solver_);
-  const ConeSolution solution = solveConeProblem(response.inverseMass(), response.accelerations(rate_), frictions);
-  response.apply(solution.impulses, rate_);
-  return isBalanced(groups, group, still(solution.residual));
+  const ContactSolution solution =
+      solveFrictionalContact(response.delassus(), response.accelerations(derivative_), frictions);
+  response.apply(solution.impulses, derivative_);
+  return isInEquilibrium(groups, group, still(solution.residual));
 }
 
-/// Whether the accelerations in rate_ leave the bodies of a group where they are, but for `most` (m/s^2).
-bool EventContacts::isBalanced(const Islands& groups, int group, double most) const {
+/// Whether the accelerations in derivative_ leave the bodies of a group where they are, but for `most` (m/s^2).
+bool EventContacts::isInEquilibrium(const DisjointSets& groups, int group, double most) const {
   const Mechanism& mechanism = island_.assembly.mechanism;
   for (std::size_t body = 0; body < mechanism.bodies.size(); ++body) {
     if (groups.islandOf(static_cast<int>(body)) != group) continue;
     const Eigen::Index index = static_cast<Eigen::Index>(body);
-    const double left = std::max(linearVelocity(rate_, index).norm(),
-                                 island_.assembly.radii[body] * angularVelocity(rate_, index).norm());
+    const double left = std::max(linearVelocity(derivative_, index).norm(),
+                                 island_.assembly.radii[body] * angularVelocity(derivative_, index).norm());
     if (left > most) return false;
   }
   return true;

@@ -1,11 +1,11 @@
-// Changes of lasting contacts within a step, looked for at a few points of its interpolant. Where forces are not
+// Changes of active contacts within a step, looked for at a few points of its interpolant. Where forces are not
 // unique, those of the rows (the shortest) tell only that contacts hold if they lie in the friction cones; whether any
 // others do is Coulomb's problem.
 
 #include <algorithm>
 #include <cmath>
 
-#include "simulate/events/lasting_contacts.h"
+#include "simulate/events/active_contacts.h"
 
 namespace cradle {
 namespace {
@@ -15,12 +15,12 @@ using Kind = ContactChange::Kind;
 constexpr int kSamples = 4;                // of a step of order 8
 constexpr int kFewSamples = 2;             // of one of order 5, which is half as long
 constexpr double kMarginRounding = 1e-12;  // of the force, or m/s
-constexpr double kFailedPart =
+constexpr double kFailedRatio =
     1e-6;  // of the accelerations: less that forces leave is held; more than when it was decided
 constexpr double kLocated = 1e-11;  // of a step, on the interpolant
-constexpr int kMostBorderCuts = 60;
+constexpr int kMaxBorderCuts = 60;
 
-constexpr double kLeavingPart = 0.5;  // of what touches yet: so far beyond a face a contact has left it
+constexpr double kLeavingRatio = 0.5;  // of what touches yet: so far beyond a face a contact has left it
 // Of a margin: half of what touches yet is found to a thousandth. Bounded on both sides, it is halved rather than
 // followed down beyond the border, where it is steeper by orders.
 constexpr double kLeavingUnit = 1e-9;
@@ -32,7 +32,7 @@ constexpr std::array<Kind, 4> kKinds = {Kind::release, Kind::slip, Kind::stick, 
 }  // namespace
 
 /// In the world, of A's sliding.
-Vec3 LastingContacts::givenDirection(std::size_t contact, const VectorX& state) const {
+Vec3 ActiveContacts::givenDirection(std::size_t contact, const VectorX& state) const {
   const ContactConstraint& constraint = mechanism().contacts[contact];
   const int body = constraint.surfaceB.body;
   if (body == kFixed) return constraint.slidingDirection;
@@ -40,19 +40,19 @@ Vec3 LastingContacts::givenDirection(std::size_t contact, const VectorX& state) 
 }
 
 /// 0 for a steep disc on its rim, 1 where it is as flat as a row may follow. Needs frames_.
-double LastingContacts::flatnessOf(const ContactConstraint& rim, const VectorX& state) const {
-  const ContactPlace place = placeOf(rim, state, frames_);
+double ActiveContacts::flatnessOf(const ContactConstraint& rim, const VectorX& state) const {
+  const ContactKinematics place = kinematicsOf(rim, state, frames_);
   const Mat3& worldFromBody = frames_[static_cast<std::size_t>(rim.centerA.body)].rotation;
   const double sine = place.normal.cross(worldFromBody * rim.rimAxisA).norm();
-  return kLeavingPart * kJustFlat * kFlatRim / sine;
+  return kLeavingRatio * kJustFlat * kFlatRim / sine;
 }
 
 /// How far (m) the place where a contact's row keeps it is from where the surfaces are nearest: beyond the border of a
 /// face, or when a corner becomes an edge, that stays behind; in a hollow another part of a surface comes nearer. Needs
 /// frames_.
-double LastingContacts::distanceFromNearest(std::size_t contact, const VectorX& state) const {
+double ActiveContacts::distanceFromNearest(std::size_t contact, const VectorX& state) const {
   const ContactConstraint& held = mechanism().contacts[contact];
-  const ColliderPair& pair = entries_[contact].pair;
+  const ColliderPair& pair = records_[contact].pair;
   if (pair.againstPlane) return held.rimAxisA.isZero(0) ? 0 : reach_ * flatnessOf(held, state);
   const ContactGeometry& geometry = island_.assembly.geometry;
   const bool isOfB = geometry.colliders[pair.a].body == held.centerA.body;
@@ -64,51 +64,54 @@ double LastingContacts::distanceFromNearest(std::size_t contact, const VectorX& 
     const Vec3 origin = centerOfMass(state, collider.body);
     return Vec3(origin + worldFromBody * nearestOnSurface(collider, worldFromBody.transpose() * (center - origin)));
   };
-  const ContactPlace place = placeOf(held, state, frames_);
+  const ContactKinematics place = kinematicsOf(held, state, frames_);
   const double onB = (place.point - place.gap * place.normal - nearestOn(b, held.centerA)).norm();
   if (std::isinf(held.radiusB)) return onB;
   return std::max(onB, (place.point - nearestOn(a, held.surfaceB)).norm());
 }
 
-void LastingContacts::findMargins(const VectorX& state, std::vector<Margins>& margins) {
-  island_.equations.evaluate(state, rate_);
-  takeMargins(state, margins);
+void ActiveContacts::findEventFunctions(const VectorX& state, std::vector<EventFunctions>& eventFunctions) {
+  island_.equations.evaluate(state, derivative_);
+  takeEventFunctions(state, eventFunctions);
 }
 
 /// Of each contact, in the order of kKinds; infinite where there is nothing to change. `state` is the one that was
 /// evaluated last.
-void LastingContacts::takeMargins(const VectorX& state, std::vector<Margins>& margins) {
-  placeBodies(mechanism().bodies, state, frames_);
+void ActiveContacts::takeEventFunctions(const VectorX& state, std::vector<EventFunctions>& eventFunctions) {
+  findBodyFrames(mechanism().bodies, state, frames_);
   const std::vector<ContactForce>& forces = island_.equations.contactForces();
-  margins.resize(entries_.size());
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
+  eventFunctions.resize(records_.size());
+  for (std::size_t i = 0; i < records_.size(); ++i) {
     const ContactMotion motion = mechanism().contacts[i].motion;
-    const double limit = entries_[i].pair.law.staticFriction * forces[i].normal;
-    margins[i] = {forces[i].normal / entries_[i].force, INFINITY, INFINITY, INFINITY};
-    if (!ballOverMesh(island_.assembly.geometry, entries_[i].pair, state).mesh)
-      margins[i][3] = kLeavingUnit * std::max(-1.0, 1 - distanceFromNearest(i, state) / (kLeavingPart * reach_));
-    if (motion == ContactMotion::sticking) margins[i][1] = (limit - forces[i].tangential.norm()) / entries_[i].force;
-    if (motion == ContactMotion::sliding) margins[i][2] = forces[i].tangentialVelocity.dot(givenDirection(i, state));
+    const double limit = records_[i].pair.material.staticFriction * forces[i].normal;
+    eventFunctions[i] = {forces[i].normal / records_[i].force, INFINITY, INFINITY, INFINITY};
+    if (!sphereOverMesh(island_.assembly.geometry, records_[i].pair, state).mesh)
+      eventFunctions[i][3] =
+          kLeavingUnit * std::max(-1.0, 1 - distanceFromNearest(i, state) / (kLeavingRatio * reach_));
+    if (motion == ContactMotion::sticking)
+      eventFunctions[i][1] = (limit - forces[i].tangential.norm()) / records_[i].force;
+    if (motion == ContactMotion::sliding)
+      eventFunctions[i][2] = forces[i].tangentialVelocity.dot(givenDirection(i, state));
   }
 }
 
-double LastingContacts::margin(const ContactChange& change, const VectorX& state) {
-  const Entry& entry = entries_[change.contact];
+double ActiveContacts::margin(const ContactChange& change, const VectorX& state) {
+  const ContactRecord& record = records_[change.contact];
   if (change.kind == Kind::leave)
-    if (const BallOverMesh ball = ballOverMesh(island_.assembly.geometry, entry.pair, state); ball.mesh)
-      return insideBorder(entry.contact, ball);
-  findMargins(state, after_);
+    if (const SphereOverMesh sphere = sphereOverMesh(island_.assembly.geometry, record.pair, state); sphere.mesh)
+      return insideBorder(record.contact, sphere);
+  findEventFunctions(state, after_);
   return after_[change.contact][static_cast<std::size_t>(change.kind)];
 }
 
-void LastingContacts::noteEnd() {
-  if (!empty()) takeMargins(island_.step.state, atEnd_);
+void ActiveContacts::noteEnd() {
+  if (!empty()) takeEventFunctions(island_.step.state, atEnd_);
 }
 
-std::optional<ContactChange> LastingContacts::firstChange() {
+std::optional<ContactChange> ActiveContacts::firstChange() {
   if (empty()) return std::nullopt;
   const Step& step = island_.step;
-  if (knownTime_ != step.time) findMargins(step.startState, before_);
+  if (knownTime_ != step.time) findEventFunctions(step.startState, before_);
   knownTime_ = NAN;
   const std::optional<ContactChange> leaving = firstLeaving();
   const bool isEndKnown = step.interpolant == InterpolantKind::degreeFour;
@@ -119,16 +122,16 @@ std::optional<ContactChange> LastingContacts::firstChange() {
       std::swap(ahead_, atEnd_);
     } else {
       interpolate(step, to, sample_);
-      findMargins(sample_, ahead_);
+      findEventFunctions(sample_, ahead_);
     }
     std::optional<ContactChange> first;
     bool isDoubtful = false;
-    for (std::size_t i = 0; i < entries_.size(); ++i)
+    for (std::size_t i = 0; i < records_.size(); ++i)
       for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
         if (!(ahead_[i][kind] < -kMarginRounding)) continue;
         if (kKinds[kind] == Kind::leave && !(before_[i][kind] > 0)) continue;
         const bool isOfForces = kKinds[kind] == Kind::release || kKinds[kind] == Kind::slip;
-        if (entries_[i].isRedundant && isOfForces) {
+        if (records_[i].isRedundant && isOfForces) {
           isDoubtful = true;
           continue;
         }
@@ -149,10 +152,9 @@ std::optional<ContactChange> LastingContacts::firstChange() {
 }
 
 /// Where between two points of the step a margin falls to zero, on the interpolant (Illinois).
-double LastingContacts::locate(const ContactChange& change, double from, double marginFrom, double to,
-                               double marginTo) {
+double ActiveContacts::locate(const ContactChange& change, double from, double marginFrom, double to, double marginTo) {
   double weightFrom = std::max(marginFrom, kMarginRounding), weightTo = marginTo;
-  for (int i = 0; i < kMostBorderCuts && to - from > kLocated; ++i) {
+  for (int i = 0; i < kMaxBorderCuts && to - from > kLocated; ++i) {
     const double cut = to - (to - from) * weightTo / (weightTo - weightFrom);
     interpolate(island_.step, cut, sample_);
     const double found = margin(change, sample_);
@@ -166,40 +168,40 @@ double LastingContacts::locate(const ContactChange& change, double from, double 
 }
 
 /// Whether some forces within the friction cones keep all contacts as they are.
-bool LastingContacts::isHeldTogether(const VectorX& state) {
-  placeBodies(mechanism().bodies, state, frames_);
+bool ActiveContacts::isHeldTogether(const VectorX& state) {
+  findBodyFrames(mechanism().bodies, state, frames_);
   std::vector<ContactRows> rows;
-  std::vector<const Entry*> members;
-  std::vector<Entry> entries = entries_;
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    ContactRows contact{mechanism().contacts[i], placeOf(mechanism().contacts[i], state, frames_), {}};
+  std::vector<const ContactRecord*> members;
+  std::vector<ContactRecord> records = records_;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    ContactRows contact{mechanism().contacts[i], kinematicsOf(mechanism().contacts[i], state, frames_), {}};
     const auto tangents = tangentRows(contact.constraint, contact.place);
     contact.rows = {tangents[0], tangents[1], normalRow(contact.constraint, contact.place)};
     if (contact.constraint.motion == ContactMotion::sliding)
-      entries[i].direction = slidingDirection(contact.constraint, contact.place, frames_);
+      records[i].direction = slidingDirection(contact.constraint, contact.place, frames_);
     rows.push_back(contact);
-    members.push_back(&entries[i]);
+    members.push_back(&records[i]);
   }
-  ConstraintSolver ties(mechanism().constraints, mechanism().bodies);
-  if (ties.hasConstraints()) ties.factorize(state, frames_);
+  ConstraintSolver constraints(mechanism().constraints, mechanism().bodies);
+  if (constraints.hasConstraints()) constraints.factorize(state, frames_);
   std::vector<ContactConstraint> held;
   std::swap(held, mechanism().contacts);
-  island_.equations.evaluate(state, rate_);
+  island_.equations.evaluate(state, derivative_);
   std::swap(held, mechanism().contacts);
-  const ContactResponse response(rows, mechanism().bodies, frames_, ties);
-  const ConeSolution solution = solve(members, rows, response);
+  const ContactResponse response(rows, mechanism().bodies, frames_, constraints);
+  const ContactSolution solution = solve(members, rows, response);
   const double most =
-      kFailedPart * std::max(response.accelerations(rate_).cwiseAbs().maxCoeff(), mechanism().gravity.norm());
-  for (std::size_t i = 0; i < entries.size(); ++i) {
+      kFailedRatio * std::max(response.accelerations(derivative_).cwiseAbs().maxCoeff(), mechanism().gravity.norm());
+  for (std::size_t i = 0; i < records.size(); ++i) {
     const Vec3 motion = solution.velocities.segment<3>(3 * static_cast<Eigen::Index>(i));
     if (std::abs(motion.z()) > most) return false;
-    if (entries[i].sticks && motion.head<2>().norm() > most) return false;
+    if (records[i].sticks && motion.head<2>().norm() > most) return false;
   }
   return true;
 }
 
 /// Where between two points of the step no forces hold the contacts any more.
-std::optional<double> LastingContacts::firstFailure(double from, double to) {
+std::optional<double> ActiveContacts::firstFailure(double from, double to) {
   interpolate(island_.step, to, sample_);
   if (isHeldTogether(sample_)) return std::nullopt;
   while (to - from > kLocated) {

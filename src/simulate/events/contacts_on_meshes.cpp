@@ -1,13 +1,13 @@
-// Lasting contacts with meshes. A ball passes from one flat face, edge or corner to the next where its centre leaves
+// Active contacts with meshes. A sphere passes from one flat face, edge or corner to the next where its centre leaves
 // the space that is nearer to the one than to the other (its Voronoi region): that border is searched for without gaps,
 // so that what is narrow does not lie between two looks. Bodies of other shapes touch the edges of meshes with their
 // own edges, which rows do not keep: they stay on rows as long as all of them is over one flat face.
 
-#include "collision/first_crossing.h"
 #include "collision/mesh_collider.h"
 #include "collision/over_face.h"
+#include "collision/root_bracketing.h"
 #include "dynamics/integrators/pose_interpolant.h"
-#include "simulate/events/lasting_contacts.h"
+#include "simulate/events/active_contacts.h"
 
 namespace cradle {
 namespace {
@@ -22,47 +22,47 @@ double motionAt(const Step& step, const Collider& a, const Collider& b) {
 
 }  // namespace
 
-double LastingContacts::insideBorder(const Contact& contact, const BallOverMesh& ball) {
-  return insideRegion(*ball.mesh, touchedFeature(contact), ball.center) + borderWidth(*ball.mesh);
+double ActiveContacts::insideBorder(const Contact& contact, const SphereOverMesh& sphere) {
+  return insideRegion(*sphere.mesh, touchedFeature(contact), sphere.center) + borderWidth(*sphere.mesh);
 }
 
-std::optional<ContactChange> LastingContacts::firstLeaving() const {
+std::optional<ContactChange> ActiveContacts::firstLeaving() const {
   const ContactGeometry& geometry = island_.assembly.geometry;
   const Step& step = island_.step;
   std::optional<ContactChange> first;
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    const ColliderPair& pair = entries_[i].pair;
-    if (!ballOverMesh(geometry, pair, step.startState).mesh) continue;
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const ColliderPair& pair = records_[i].pair;
+    if (!sphereOverMesh(geometry, pair, step.startState).mesh) continue;
     const Collider &a = geometry.colliders[pair.a], &b = geometry.colliders[pair.b];
     const auto inside = [&](double fraction) {
-      return insideBorder(entries_[i].contact,
-                          ballOverMesh(geometry, pair, poseAt(step, a.body, fraction), poseAt(step, b.body, fraction)));
+      return insideBorder(records_[i].contact, sphereOverMesh(geometry, pair, poseAt(step, a.body, fraction),
+                                                              poseAt(step, b.body, fraction)));
     };
     GapBounds bounds;
     bounds.speed = motionAt(step, a, b);
     bounds.finest = kFinestBlindApproach;
     const double start = inside(0), until = first ? first->fraction : 1;
     if (start > bounds.speed) continue;
-    const auto found = start > 0 ? firstCrossing(inside, bounds, {0, start, until, inside(until)})
-                                 : std::optional<double>(kFinestCrossing);
+    const auto found =
+        start > 0 ? firstRoot(inside, bounds, {0, start, until, inside(until)}) : std::optional<double>(kRootTolerance);
     if (found) first = ContactChange{ContactChange::Kind::leave, *found, i};
   }
   return first;
 }
 
-void LastingContacts::noteMeshes(const std::vector<Entry>& entries) {
+void ActiveContacts::noteMeshes(const std::vector<ContactRecord>& records) {
   const ContactGeometry& geometry = island_.assembly.geometry;
-  for (const Entry& entry : entries) {
-    const ColliderPair& pair = entry.pair;
-    if (!entry.isLoaded || pair.againstPlane || !canLast(entry.contact)) continue;
+  for (const ContactRecord& record : records) {
+    const ColliderPair& pair = record.pair;
+    if (!record.isLoaded || pair.againstPlane || !canLast(record.contact)) continue;
     const Collider &a = geometry.colliders[pair.a], &b = geometry.colliders[pair.b];
-    if (!hasMesh(a, b) || a.isBall() || b.isBall()) continue;
+    if (!hasMesh(a, b) || a.isSphere() || b.isSphere()) continue;
     // A cylinder that turns faults already (noteTipping); what it slides into is looked for beside what is held.
     if (a.kind() == ColliderKind::cylinder || b.kind() == ColliderKind::cylinder) continue;
     const OverFace over =
-        overFace(geometry, pair, rowsOf(entry.contact, island_.state, frames_).constraint, island_.state);
+        overFace(geometry, pair, rowsOf(record.contact, island_.state, frames_).constraint, island_.state);
     if (!over.solid || roomBeside(over, 2 * reach_) <= reach_)
-      noteFault("a body moves over the edges of a mesh", {&entry.contact});
+      noteFallback("a body moves over the edges of a mesh", {&record.contact});
   }
 }
 

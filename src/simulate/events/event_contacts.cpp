@@ -17,18 +17,18 @@ namespace {
 
 // Nearer (in sizes of a body) is touching: hardly more than rounding, whatever the accuracy, as what comes of a gap and
 // of none may differ by everything. A look takes more together.
-constexpr double kTouchPart = 1e-11;
-constexpr double kLookTouchPart = 1e-8;
+constexpr double kTouchRatio = 1e-11;
+constexpr double kVisualTouchRatio = 1e-8;
 // In a sequence of impacts bodies move so far at most while normals stay as they are; farther where a look is enough,
 // as events are counted there.
 constexpr double kReachRatio = 0.1;  // of the accuracy
-constexpr double kMaxReachPart = 1e-8;
-constexpr double kMaxLookReachPart = 1e-5;
-constexpr double kMostTouchError = 1e-6;    // of a size: so well two ways to find a gap agree
-constexpr double kDeadBandPart = 1e-12;     // of the smallest size
+constexpr double kMaxReachRatio = 1e-8;
+constexpr double kMaxVisualReachRatio = 1e-5;
+constexpr double kMaxTouchError = 1e-6;     // of a size: so well two ways to find a gap agree
+constexpr double kDeadBandRatio = 1e-12;    // of the smallest size
 constexpr double kBounceOfAccuracy = 1e-2;  // the same, of the accuracy ...
 constexpr double kBounceOfSquare = 100;     // ... or of its square, if that is more: 5e-5 of the size at the coarsest
-constexpr double kMostStillPart = 1e-7;     // of sqrt(g x size)
+constexpr double kMaxStillRatio = 1e-7;     // of sqrt(g x size)
 constexpr double kSameCorner = 1e-6;        // of a size
 constexpr double kShortLever = 3e-4;        // sizes of a body: hinges of flaps are a thousandth inside their edges ...
 constexpr double kUnboundedLever = 3e-3;    // ... and where forces grow without bound, such levers are why
@@ -80,21 +80,21 @@ bool isSameRim(const Contact& one, const Contact& other) {
 
 }  // namespace
 
-EventContacts::EventContacts(MovingIsland& island, RopeStage& ropes, double accuracy, bool isTrial)
+EventContacts::EventContacts(IslandState& island, RopeEvents& ropes, double accuracy, bool isTrial)
     : island_(island),
       ropes_(ropes),
       size_(smallestSize(island.assembly.geometry)),
-      touchTolerance_(size_ * (accuracy > kLookAccuracy ? kLookTouchPart : kTouchPart)),
-      deadBand_(kDeadBandPart * size_),
-      reach_(size_ * std::clamp(kReachRatio * accuracy, kTouchPart,
-                                accuracy > kLookAccuracy ? kMaxLookReachPart : kMaxReachPart)),
-      lasting_(island, touchTolerance_),
+      touchTolerance_(size_ * (accuracy > kVisualAccuracy ? kVisualTouchRatio : kTouchRatio)),
+      deadBand_(kDeadBandRatio * size_),
+      reach_(size_ * std::clamp(kReachRatio * accuracy, kTouchRatio,
+                                accuracy > kVisualAccuracy ? kMaxVisualReachRatio : kMaxReachRatio)),
+      active_(island, touchTolerance_),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
-      stillPart_(std::min(kMostStillPart, accuracy)),
+      stillPart_(std::min(kMaxStillRatio, accuracy)),
       shortLever_(isTrial ? kUnboundedLever : kShortLever) {}
 
 TouchingFeatures EventContacts::touching() {
-  return {touchTolerance_, deadBand_, &lasting_.held()};
+  return {touchTolerance_, deadBand_, &active_.held()};
 }
 
 void EventContacts::resolve(const std::optional<ContactChange>& change, const std::optional<std::size_t>& meeting) {
@@ -102,18 +102,18 @@ void EventContacts::resolve(const std::optional<ContactChange>& change, const st
   std::vector<char> rested;
   for (std::size_t body = 0; body < island_.assembly.mechanism.bodies.size(); ++body)
     rested.push_back(island_.equations.isResting(body));
-  restDelay_ = 0;
+  zenoTime_ = 0;
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
   findTouching(meeting);
   collide(meeting);
-  lasting_.letGo(change);
-  settle();
-  lasting_.decide(touching_, solver_);
-  lasting_.noteShortLevers(touching_, solver_, shortLever_);
-  keepTogether();
-  if (!lasting_.empty() && isAnySlow()) {  // what sticks is still now
-    settle();
-    lasting_.letGoResting();
+  active_.release(change);
+  letSleep();
+  active_.classify(touching_, solver_);
+  active_.noteShortLevers(touching_, solver_, shortLever_);
+  project();
+  if (!active_.empty() && isAnySlow()) {  // what sticks is still now
+    letSleep();
+    active_.releaseResting();
   }
   recordRests(rested);
 }
@@ -123,27 +123,27 @@ void EventContacts::noteShortLevers() {
 }
 
 bool EventContacts::noteUnboundedForces() {
-  if (!lasting_.noteJam()) noteShortLevers(kUnboundedLever);
-  return !lasting_.fault().empty();
+  if (!active_.noteJam()) noteShortLevers(kUnboundedLever);
+  return !active_.fallbackReason().empty();
 }
 
 void EventContacts::noteShortLevers(double lever) {
-  if (lasting_.empty() || !solver_.hasConstraints()) return;
+  if (active_.empty() || !solver_.hasConstraints()) return;
   solver_.factorize(island_.state);
   findTouching({});
-  lasting_.noteShortLevers(touching_, solver_, lever);
+  active_.noteShortLevers(touching_, solver_, lever);
 }
 
-/// Lasting contacts have no gap and do not leave each other, to rounding; those that stick do not slide. What cannot
+/// Active contacts have no gap and do not leave each other, to rounding; those that stick do not slide. What cannot
 /// last, as two corners that meet, has no rows for that.
-void EventContacts::keepTogether() {
-  if (lasting_.empty() || !lasting_.fault().empty()) return;
+void EventContacts::project() {
+  if (active_.empty() || !active_.fallbackReason().empty()) return;
   const double constant = energyConstant(island_.assembly.mechanism, island_.state);
   island_.equations.project(island_.state);
   bookNumerical(constant, island_.assembly.mechanism, island_.state);
 }
 
-/// What touches and can part or close: a place that ties hold where it is does neither, whatever acts.
+/// What touches and can part or close: a place that constraints hold where it is does neither, whatever acts.
 void EventContacts::findTouching(const std::optional<std::size_t>& meeting) {
   findNear(meeting);
   eraseImmobile(ImpulseResponse(island_.assembly.mechanism.bodies, solver_), island_.state, touching_);
@@ -159,7 +159,7 @@ void EventContacts::findNear(const std::optional<std::size_t>& meeting) {
   const auto isOfMeeting = [&](const Contact& contact) { return contact.pair == *meeting; };
   if (!meeting || std::any_of(touching_.begin(), touching_.end(), isOfMeeting)) return;
   std::vector<Contact> near;
-  appendContacts(geometry, *meeting, island_.state, kMostTouchError * size_, near);
+  appendContacts(geometry, *meeting, island_.state, kMaxTouchError * size_, near);
   const auto nearest = std::min_element(near.begin(), near.end(), [](const Contact& left, const Contact& right) {
     return left.separation < right.separation;
   });
@@ -171,7 +171,7 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
   const VectorX approach = state;
   const ImpulseResponse response(island_.assembly.mechanism.bodies, solver_);
   const bool hasFriction = std::any_of(impacts.begin(), impacts.end(), [](const ImpactContact& impact) {
-    return impact.law.staticFriction > 0 || impact.law.dynamicFriction > 0;
+    return impact.material.staticFriction > 0 || impact.material.dynamicFriction > 0;
   });
   ImpactFaults faults;
   const auto solve = [&] {
@@ -181,7 +181,7 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
       resolveReflections(impacts, response, state);
   };
   solve();
-  if (endBounces(approach, impacts)) {
+  if (endZenoSequence(approach, impacts)) {
     state = approach;
     for (ImpactContact& impact : impacts) impact.impulse.setZero();
     solve();
@@ -193,23 +193,23 @@ void EventContacts::resolveImpact(std::vector<ImpactContact>& impacts) {
 
 /// Rebounds that are over before they are seen are left out: an accumulation of bounces ends here, as long before its
 /// time as all of them would take. True if there are any.
-bool EventContacts::endBounces(const VectorX& approach, std::vector<ImpactContact>& impacts) {
+bool EventContacts::endZenoSequence(const VectorX& approach, std::vector<ImpactContact>& impacts) {
   const VectorX& state = island_.state;
   const double accuracy = island_.scene.accuracy;
   const double lastBounce =
-      std::max({kLastBouncePart, kBounceOfAccuracy * accuracy, kBounceOfSquare * accuracy * accuracy});
+      std::max({kLastBounceRatio, kBounceOfAccuracy * accuracy, kBounceOfSquare * accuracy * accuracy});
   bool isEvaluated = false, found = false;
   for (ImpactContact& impact : impacts) {
-    const double speed = openingSpeed(impact.contact, state), restitution = impact.law.restitution;
+    const double speed = openingSpeed(impact.contact, state), restitution = impact.material.restitution;
     const bool rebounds = openingSpeed(impact.contact, approach) < 0 && speed > 0 && restitution < 1;
     if (!rebounds || restitution == 0) continue;
-    if (!isEvaluated) island_.equations.evaluate(state, rate_);
+    if (!isEvaluated) island_.equations.evaluate(state, derivative_);
     isEvaluated = true;
-    const double closing = -openingAcceleration(impact.contact, state, rate_);
+    const double closing = -openingAcceleration(impact.contact, state, derivative_);
     const double size = smallestSize(impact.contact, island_.assembly.radii);
     if (!(closing > 0) || speed > lastBounce * std::sqrt(closing * size)) continue;
     impact.restSpeed = INFINITY;
-    restDelay_ = std::max(restDelay_, 2 * speed / (closing * (1 - restitution)));
+    zenoTime_ = std::max(zenoTime_, 2 * speed / (closing * (1 - restitution)));
     found = true;
   }
   return found;
@@ -226,7 +226,7 @@ void EventContacts::recordRests(const std::vector<char>& restedBefore) {
   for (std::size_t body = 0; body < restedBefore.size(); ++body) {
     const bool rests = island_.equations.isResting(body);
     if (rests == static_cast<bool>(restedBefore[body])) continue;
-    const double time = island_.time + (rests ? restDelay_ : 0);
+    const double time = island_.time + (rests ? zenoTime_ : 0);
     island_.log.recordBody(time, rests ? EventKind::rest : EventKind::wake, static_cast<int>(body),
                            centerOfMass(island_.state, static_cast<Eigen::Index>(body)));
   }

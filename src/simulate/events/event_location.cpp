@@ -6,7 +6,7 @@
 namespace cradle {
 namespace {
 
-constexpr int kMostCorrections = 60;  // steps tried to find an event; 3 are usual
+constexpr int kMaxCorrections = 60;  // steps tried to find an event; 3 are usual
 
 constexpr double kStepRounding = 1e-14;  // of the step: nearer, the margin is as good as it gets
 constexpr double kFirstReach = 1e-6;     // of the step: so far around the guess an event is looked for at first
@@ -15,12 +15,12 @@ constexpr double kGrowingReach = 16;
 }  // namespace
 
 // The Illinois variant of regula falsi (M. Dowell, P. Jarratt, 1971).
-double endStepAtEvent(MovingIsland& island, Integrator integrate, const EventWindow& window,
-                      const EventMargin& margin) {
+double endStepAtEvent(IslandState& island, Integrator integrate, const EventWindow& window,
+                      const EventFunction& margin) {
   Step& step = island.step;
   const double whole = step.timeStep, tolerance = window.tolerance;
   const auto marginAfter = [&](double part) {
-    keepStartRate(step);
+    keepStartDerivative(step);
     integrate(island.rightHandSide, island.state, island.time, part, step);
     return margin(step.state);
   };
@@ -40,7 +40,7 @@ double endStepAtEvent(MovingIsland& island, Integrator integrate, const EventWin
       late = part, lateMargin = found;
   }
   double earlyWeight = earlyMargin, lateWeight = lateMargin;
-  for (int i = 0; i < kMostCorrections && lateMargin < -tolerance && late - early > kStepRounding * whole; ++i) {
+  for (int i = 0; i < kMaxCorrections && lateMargin < -tolerance && late - early > kStepRounding * whole; ++i) {
     const double part = late + (early - late) * lateWeight / (lateWeight - earlyWeight);
     const double found = marginAfter(part);
     if (std::abs(found) <= tolerance) return found;

@@ -2,12 +2,12 @@
 
 #include <functional>
 
-#include "simulate/moving_island.h"
+#include "simulate/island_state.h"
 
 namespace cradle {
 
 /// Zero at an event, positive before it.
-using EventMargin = std::function<double(const VectorX& state)>;
+using EventFunction = std::function<double(const VectorX& state)>;
 
 /// Where an event is looked for (s, from the step's start), and how well (in units of its margin).
 struct EventWindow {
@@ -19,6 +19,7 @@ struct EventWindow {
 /// Takes the island's step again with a length at whose end `margin` is 0 to the tolerance, or the longest one, and
 /// returns the margin there: beyond the tolerance the event has not come yet. The state of an event is that of a step,
 /// never the interpolant's.
-double endStepAtEvent(MovingIsland& island, Integrator integrate, const EventWindow& window, const EventMargin& margin);
+double endStepAtEvent(IslandState& island, Integrator integrate, const EventWindow& window,
+                      const EventFunction& margin);
 
 }  // namespace cradle

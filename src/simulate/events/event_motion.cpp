@@ -15,29 +15,30 @@ namespace cradle {
 namespace {
 
 constexpr double kContactTolerance = 1e-12;  // of the force, or m/s
-constexpr double kImpactPart = 1e-3;  // of the margin of contacts: a gap left that the step has to be taken anew for
-constexpr double kShortCorrection = 1e-3;  // of the step: so far the state at an impact is corrected along its rate
-constexpr double kSlopePart = 1e-6;        // of the step, to find the slope of a gap
-constexpr double kMostGrowth = 2;  // of the longest of the last steps: farther ahead no contact is looked for in vain
+constexpr double kImpactRatio = 1e-3;  // of the margin of contacts: a gap left that the step has to be taken anew for
+constexpr double kShortCorrection =
+    1e-3;                             // of the step: so far the state at an impact is corrected along its derivative
+constexpr double kSlopeRatio = 1e-6;  // of the step, to find the slope of a gap
+constexpr double kMaxGrowth = 2;  // of the longest of the last steps: farther ahead no contact is looked for in vain
 
-constexpr double kLeastLookahead = 1.0 / 64;  // of the step that the accuracy allows
+constexpr double kMinLookahead = 1.0 / 64;  // of the step that the accuracy allows
 
 constexpr double kManyTurns = 100;        // rad: beyond, orientations need a tighter tolerance
-constexpr double kTurningPart = 0.1;      // of the tolerance, for these
+constexpr double kTurningRatio = 0.1;     // of the tolerance, for these
 constexpr double kShortTimeStep = 1e-9;   // of the run's duration: nobody waits for so many steps
 constexpr double kLongRun = 1000;         // s: in longer ones, steps are short that would be in this one
 constexpr int kMaxShortSteps = 1000;      // in a row; after an event some are short
-constexpr double kMostTieError = 1e-9;    // m (a m of coordinates) or rad: projection leaves 1e-15
+constexpr double kMaxTieError = 1e-9;     // m (a m of coordinates) or rad: projection leaves 1e-15
 constexpr double kTieErrorRatio = 0.1;    // of the accuracy: left for a few steps where motion could take two ways
-constexpr double kStateRounding = 1e-14;  // of a state: projection that moves it less leaves the rate as it was
+constexpr double kStateRounding = 1e-14;  // of a state: projection that moves it less leaves the derivative as it was
 constexpr double kUnitLength = 1e-9;      // how far |q|^2 may be from 1 before it is made 1
 
-constexpr int kMostRounds = 100;  // of ropes and contacts at one instant; what is left comes after the next step
+constexpr int kMaxRounds = 100;  // of ropes and contacts at one instant; what is left comes after the next step
 
-const EventPatience& patienceOf(const ChosenMethod& method, double accuracy, bool isTrial) {
-  if (method.keepsPromise) return kLongPatience;
-  if (isTrial) return kTrialPatience;
-  return accuracy > kLookAccuracy ? kLookPatience : kPatience;
+const EventRateLimit& patienceOf(const ChosenMethod& method, double accuracy, bool isTrial) {
+  if (method.keepsPromise) return kLongEventRateLimit;
+  if (isTrial) return kTrialEventRateLimit;
+  return accuracy > kVisualAccuracy ? kVisualEventRateLimit : kEventRateLimit;
 }
 
 /// Whether two states differ by rounding alone.
@@ -50,32 +51,32 @@ VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double dur
   VectorX tolerance = stateTolerance(bodyCount(state), method.tolerance, method.tolerance);
   for (Eigen::Index body = 0; body < bodyCount(state); ++body)
     if (angularVelocity(state, body).norm() * duration > kManyTurns)
-      tolerance.segment<4>(body * kPoseSize + 3) *= kTurningPart;
+      tolerance.segment<4>(body * kPoseSize + 3) *= kTurningRatio;
   return tolerance;
 }
 
 }  // namespace
 
-EventMotion::EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method, bool isTrial)
+EventMotion::EventMotion(IslandState& island, RopeEvents& ropes, const ChosenMethod& method, bool isTrial)
     : island_(island),
       ropes_(ropes),
       method_(method),
       contacts_(island, ropes, island.scene.accuracy, isTrial),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
-      patience_(patienceOf(method, island.scene.accuracy, isTrial)),
+      eventRateLimit_(patienceOf(method, island.scene.accuracy, isTrial)),
       tolerance_(toleranceOf(method, island.state, island.scene.duration)),
       windowStart_(island.time) {
   lengths_.fill(island_.scene.duration);
   stepSize_.order = method_.order;
-  island_.step.startRateIsKnown = false;
+  island_.step.startDerivativeIsKnown = false;
   island_.findNearPairsNow(contacts_.margin());
   ropes_.setTimeStep(0);
   contacts_.resolve();
-  settleRopes();
+  applyRopeEvents();
   if (island_.beginAndEndPushes()) contacts_.resolve();
   island_.requireUnsolvedPairsApart();
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
-  startTieError_ = solver_.largestError();
+  startConstraintError_ = solver_.largestError();
   // From here on: what steps of one length left of overlaps is taken out by now, and the energy of that with it.
   guard_.emplace(island_.assembly, island_.state, method_, island_.scene.duration);
 }
@@ -103,7 +104,7 @@ void EventMotion::advance(double frame) {
 
   // Take out what the step left wrong. Then what changes here?
   island_.state = step.state;
-  tidyState();
+  projectState();
   changeForces(event);
   guard_->check(island_.state, time, step.timeStep);
   island_.requireUnsolvedPairsApart();
@@ -113,7 +114,7 @@ void EventMotion::advance(double frame) {
 /// Steps until one is as accurate as asked. False if friction jams: then none is, and the state stays as it is.
 bool EventMotion::takeStep(double stepEnd) {
   Step& step = island_.step;
-  if (std::exchange(isContinuous_, false)) carryEndRate(step);
+  if (std::exchange(isContinuous_, false)) carryEndDerivative(step);
   if (stepSize_.timeStep == 0) {
     beginStep(island_.rightHandSide, island_.state, island_.time, stepEnd - island_.time, step);
     stepSize_.timeStep = firstTimeStep(island_.rightHandSide, tolerance_, step, method_.order);
@@ -123,7 +124,7 @@ bool EventMotion::takeStep(double stepEnd) {
     const double length = planned >= left * (1 - kTimeRounding) ? left : planned;
     method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
     if (acceptStep(method_.errorNorm(step, tolerance_), step.timeStep, stepSize_)) break;
-    keepStartRate(step);
+    keepStartDerivative(step);
   }
   if (areForcesUnbounded_) return false;
   shortSteps_ = stepSize_.timeStep < kShortTimeStep * std::min(island_.scene.duration, kLongRun) ? shortSteps_ + 1 : 0;
@@ -156,14 +157,13 @@ bool EventMotion::isStillAccurate() {
   const double error = method_.errorNorm(step, tolerance_);
   if (error <= 1) return true;
   acceptStep(error, step.timeStep, stepSize_);
-  keepStartRate(step);
+  keepStartDerivative(step);
   return false;
 }
 
 /// Where bodies meet often, no step goes far beyond the next meeting.
 double EventMotion::longestStep() const {
-  return std::max(kMostGrowth * *std::max_element(lengths_.begin(), lengths_.end()),
-                  kLeastLookahead * stepSize_.timeStep);
+  return std::max(kMaxGrowth * *std::max_element(lengths_.begin(), lengths_.end()), kMinLookahead * stepSize_.timeStep);
 }
 
 /// Whether the step may end where its interpolant is: that is as good as the error estimate.
@@ -173,7 +173,7 @@ bool EventMotion::mayEndAnywhere() const {
 
 EventMotion::Event EventMotion::findFirstEvent() {
   Step& step = island_.step;
-  if (mayEndAnywhere()) contacts_.lasting().noteEnd();
+  if (mayEndAnywhere()) contacts_.active().noteEnd();
   prepareInterpolant(island_.rightHandSide, step);
   Event event;
   if (island_.mayTouch()) {
@@ -181,7 +181,7 @@ EventMotion::Event EventMotion::findFirstEvent() {
     event.impact = island_.search.first(step, contacts_.touching());
   }
   event.rope = ropes_.firstChange(step);
-  event.contact = contacts_.lasting().firstChange();
+  event.contact = contacts_.active().firstChange();
   const double impact = event.impact ? event.impact->fraction : 2, rope = event.rope ? event.rope->fraction : 2,
                contact = event.contact ? event.contact->fraction : 2, first = std::min({impact, rope, contact});
   if (rope > first) event.rope.reset();
@@ -207,33 +207,33 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
     endStepAtEvent(island_, method_.integrate, {event.rope->fraction * whole, latest, kRopeTolerance},
                    [&](const VectorX& state) { return ropes_.margin(*event.rope, state); });
   } else if (event.contact && event.contact->kind == ContactChange::Kind::redundant) {
-    keepStartRate(step);
+    keepStartDerivative(step);
     method_.integrate(island_.rightHandSide, island_.state, island_.time, event.contact->fraction * whole, step);
   } else if (event.contact) {
     endStepAtEvent(island_, method_.integrate, {event.contact->fraction * whole, latest, kContactTolerance},
-                   [&](const VectorX& state) { return contacts_.lasting().margin(*event.contact, state); });
+                   [&](const VectorX& state) { return contacts_.active().margin(*event.contact, state); });
   }
   if (island_.mayTouch()) lengths_[lengthIndex_++ % lengths_.size()] = step.timeStep;
   return event;
 }
 
-/// Ends the step where a gap is closed. What the interpolant's error leaves of it is taken out along the rate there.
-/// False if it is not closed yet where the interpolant says so: beyond that nobody has looked for what else meets, so
-/// the step ends there without an event.
+/// Ends the step where a gap is closed. What the interpolant's error leaves of it is taken out along the derivative
+/// there. False if it is not closed yet where the interpolant says so: beyond that nobody has looked for what else
+/// meets, so the step ends there without an event.
 bool EventMotion::stopAtImpact(const ImpactTime& impact) {
   const TouchingFeatures touching = contacts_.touching();
   const auto gap = [&](const VectorX& state) { return island_.search.margin(impact, touching, state); };
   Step& step = island_.step;
   const double length = impact.fraction * step.timeStep;
-  keepStartRate(step);
+  keepStartDerivative(step);
   method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
-  evaluateEndRate(island_.rightHandSide, step);
-  const double left = gap(step.state), before = kSlopePart * length;
-  step.work = step.state - before * step.endRate;
+  evaluateEndDerivative(island_.rightHandSide, step);
+  const double left = gap(step.state), before = kSlopeRatio * length;
+  step.work = step.state - before * step.endDerivative;
   const double closed = gap(step.work) - left;
   const double correction = closed > 0 ? left * before / closed : 0;  // not above 0: all of it is rounding
-  step.work = step.state + correction * step.endRate;
-  const double tolerance = kImpactPart * contacts_.touchTolerance();
+  step.work = step.state + correction * step.endDerivative;
+  const double tolerance = kImpactRatio * contacts_.touchTolerance();
   if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))
     return endStepAtEvent(island_, method_.integrate, {length, length, tolerance}, gap) <= tolerance;
   std::swap(step.state, step.work);
@@ -242,19 +242,19 @@ bool EventMotion::stopAtImpact(const ImpactTime& impact) {
 }
 
 /// Constraints hold to rounding after each step. Orientations are of unit length nearly enough for the equations, which
-/// take their direction; a state that nothing touches lets the next step begin with this one's last rate. (Ropes may
-/// pull at it yet.)
-void EventMotion::tidyState() {
+/// take their direction; a state that nothing touches lets the next step begin with this one's last derivative. (Ropes
+/// may pull at it yet.)
+void EventMotion::projectState() {
   VectorX& state = island_.state;
   bool isTouched = false;
-  if (!contacts_.lasting().empty()) island_.equations.project(state);
+  if (!contacts_.active().empty()) island_.equations.project(state);
   if (solver_.hasConstraints()) {
-    solver_.leaveOut(island_.equations.resting());
+    solver_.exclude(island_.equations.resting());
     solver_.project(state);
-    requireTiesKept();
+    requireConstraintsKept();
   }
-  if (!contacts_.lasting().empty() || solver_.hasConstraints()) isTouched = !isSame(state, island_.step.state);
-  if (!contacts_.lasting().empty() || solver_.hasConstraints())
+  if (!contacts_.active().empty() || solver_.hasConstraints()) isTouched = !isSame(state, island_.step.state);
+  if (!contacts_.active().empty() || solver_.hasConstraints())
     bookNumerical(energyConstant(island_.assembly.mechanism, island_.step.state), island_.assembly.mechanism, state);
   for (Eigen::Index body = 0; body < bodyCount(state); ++body)
     isTouched = isTouched || std::abs(orientation(state, body).squaredNorm() - 1) > kUnitLength;
@@ -262,27 +262,27 @@ void EventMotion::tidyState() {
   isContinuous_ = !isTouched && !ropes_.hasRopes();
 }
 
-/// Where ties leave no motion, forces without bound stop the bodies: what would follow is no motion of theirs. Anchors
-/// that did not quite meet at the start never will.
-void EventMotion::requireTiesKept() {
+/// Where constraints leave no motion, forces without bound stop the bodies: what would follow is no motion of theirs.
+/// Anchors that did not quite meet at the start never will.
+void EventMotion::requireConstraintsKept() {
   const VectorX& state = island_.state;
   const double error = solver_.largestError(), size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
-  const double most = std::max(kMostTieError, kTieErrorRatio * island_.scene.accuracy);
-  if (error > startTieError_ + most * (1 + size) || solver_.leaveNoMotion(state, startTieError_))
+  const double most = std::max(kMaxTieError, kTieErrorRatio * island_.scene.accuracy);
+  if (error > startConstraintError_ + most * (1 + size) || solver_.leaveNoMotion(state, startConstraintError_))
     guard_->failAtTies(state, island_.time, error);
 }
 
 /// What acts from now on.
 void EventMotion::changeForces(const Event& event) {
   rodsBefore_ = ropes_.rods();
-  const bool lasted = !contacts_.lasting().empty();
+  const bool lasted = !contacts_.active().empty();
   if (event.impact || event.contact || event.rope)  // a rope may go taut as bodies meet
     contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
   else
     followLasting();
-  if (!lasted && !contacts_.lasting().empty()) lengths_.fill(island_.scene.duration);  // bounces are over
-  settleRopes();
-  keepsTies_ = ropes_.rods() == rodsBefore_;
+  if (!lasted && !contacts_.active().empty()) lengths_.fill(island_.scene.duration);  // bounces are over
+  applyRopeEvents();
+  keepsConstraints_ = ropes_.rods() == rodsBefore_;
   const bool isPushed = island_.beginAndEndPushes();
   if (isPushed) contacts_.resolve();
   if (event.any() || isPushed) isContinuous_ = false;
@@ -290,13 +290,13 @@ void EventMotion::changeForces(const Event& event) {
 
 /// Nothing changes for contacts that last, but where they are.
 void EventMotion::followLasting() {
-  contacts_.lasting().followSliding();
+  contacts_.active().followSliding();
   if (!method_.keepsPromise) contacts_.noteShortLevers();
 }
 
 /// What ropes do to contacts may load or release ropes, and the other way round.
-void EventMotion::settleRopes() {
-  for (int round = 0; round < kMostRounds && ropes_.resolve(island_.time, island_.state); ++round) contacts_.resolve();
+void EventMotion::applyRopeEvents() {
+  for (int round = 0; round < kMaxRounds && ropes_.resolve(island_.time, island_.state); ++round) contacts_.resolve();
 }
 
 bool EventMotion::isAtRest() const {
@@ -310,10 +310,10 @@ void EventMotion::restUntil(double time) {
 }
 
 void EventMotion::countEvent(const Event& event) {
-  if (island_.time > windowStart_ + patience_.window) windowStart_ = island_.time, eventsInWindow_ = 0;
+  if (island_.time > windowStart_ + eventRateLimit_.window) windowStart_ = island_.time, eventsInWindow_ = 0;
   const bool isFailure = event.contact && event.contact->kind == ContactChange::Kind::redundant;
-  eventsInWindow_ += isFailure ? patience_.ofAFailure : 1;
-  if (method_.keepsPromise && eventsInWindow_ > patience_.most) failAtManyEvents();
+  eventsInWindow_ += isFailure ? eventRateLimit_.ofAFailure : 1;
+  if (method_.keepsPromise && eventsInWindow_ > eventRateLimit_.most) failAtManyEvents();
 }
 
 /// What is promised whatever comes is not given up: the run ends instead.
@@ -321,17 +321,18 @@ void EventMotion::failAtManyEvents() const {
   throw Error(ErrorKind::limit, "",
               fmt::format("more than {} impacts, pulls of ropes and changes of contacts in {:.3g} s at {:.6g} s, at "
                           "last of {}; lower a restitution near 1, or damp what jerks at ropes",
-                          patience_.most, patience_.window, island_.time, namesOfBodies(faultBodies(), island_.scene)));
+                          eventRateLimit_.most, eventRateLimit_.window, island_.time,
+                          namesOfBodies(fallbackBodies(), island_.scene)));
 }
 
-std::string_view EventMotion::fault() const {
+std::string_view EventMotion::fallbackReason() const {
   if (method_.keepsPromise) return {};
-  if (eventsInWindow_ > patience_.most) return patience_.fault;
-  return contacts_.fault();
+  if (eventsInWindow_ > eventRateLimit_.most) return eventRateLimit_.reason;
+  return contacts_.fallbackReason();
 }
 
-std::vector<int> EventMotion::faultBodies() const {
-  if (!contacts_.fault().empty()) return contacts_.faultBodies();
+std::vector<int> EventMotion::fallbackBodies() const {
+  if (!contacts_.fallbackReason().empty()) return contacts_.fallbackBodies();
   // Changes of redundant contacts name none: there may have been no others.
   return island_.log.latestBodies().empty() ? contacts_.sceneBodies() : island_.log.latestBodies();
 }

@@ -7,9 +7,9 @@
 #include "dynamics/integrators/step_size.h"
 #include "simulate/energy_guard.h"
 #include "simulate/events/event_contacts.h"
-#include "simulate/moving_island.h"
-#include "simulate/plan/event_limits.h"
-#include "simulate/rope_stage.h"
+#include "simulate/island_state.h"
+#include "simulate/plan/event_rate_limit.h"
+#include "simulate/rope_events.h"
 
 namespace cradle {
 
@@ -18,20 +18,20 @@ namespace cradle {
 class EventMotion {
  public:
   /// Keeps references to the island, which it moves, and its ropes. A trial: whether the promise is given up.
-  EventMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method, bool isTrial);
+  EventMotion(IslandState& island, RopeEvents& ropes, const ChosenMethod& method, bool isTrial);
 
   /// Takes a step. `frame` (s) is the next time whose state is asked for. Throws Error(unstable) if the state blows up.
   void advance(double frame);
 
-  /// Why events serve the island no more, if they don't: what lasts are not contacts of balls, corners and faces, they
-  /// are too many, or events follow each other too fast. Empty if they do.
-  std::string_view fault() const;
+  /// Why events serve the island no more, if they don't: what lasts are not contacts of spheres, corners and faces,
+  /// they are too many, or events follow each other too fast. Empty if they do.
+  std::string_view fallbackReason() const;
 
   /// The bodies of the scene that this is about.
-  std::vector<int> faultBodies() const;
+  std::vector<int> fallbackBodies() const;
 
-  /// Whether the last step kept what ties the bodies: its interpolant may be projected.
-  bool keepsTies() const { return keepsTies_; }
+  /// Whether the last step kept the bodies' constraints: its interpolant may be projected.
+  bool keepsConstraints() const { return keepsConstraints_; }
 
   /// Contacts that lasted over the last step.
   const std::vector<ContactConstraint>& contactsOfStep() const { return contactsOfStep_; }
@@ -57,27 +57,27 @@ class EventMotion {
   Event findFirstEvent();
   Event stopAtFirstEvent();
   bool stopAtImpact(const ImpactTime& impact);
-  void tidyState();
-  void requireTiesKept();
+  void projectState();
+  void requireConstraintsKept();
   void changeForces(const Event& event);
   void followLasting();
-  void settleRopes();
+  void applyRopeEvents();
   bool mayEndAnywhere() const;
   bool isStillAccurate();
   double longestStep() const;
   void countEvent(const Event& event);
   [[noreturn]] void failAtManyEvents() const;
 
-  MovingIsland& island_;
-  RopeStage& ropes_;
+  IslandState& island_;
+  RopeEvents& ropes_;
   ChosenMethod method_;
   EventContacts contacts_;
   std::optional<EnergyGuard> guard_;  // always there once begun
   ConstraintSolver solver_;
-  EventPatience patience_;
+  EventRateLimit eventRateLimit_;
   VectorX tolerance_;
-  double startTieError_ = 0;     // m or rad
-  std::vector<int> rodsBefore_;  // of ropes, before an event
+  double startConstraintError_ = 0;  // m or rad
+  std::vector<int> rodsBefore_;      // of ropes, before an event
   std::vector<ContactConstraint> contactsOfStep_;
   StepSize stepSize_;
   std::array<double, 8> lengths_;  // s: of the last steps, if bodies may touch
@@ -85,7 +85,7 @@ class EventMotion {
   int shortSteps_ = 0;               // in a row
   bool areForcesUnbounded_ = false;  // friction is: no step is accurate
   bool isContinuous_ = false;        // nothing has changed the state since the last step's end
-  bool keepsTies_ = true;            // no rope went taut or slack at the last step's end
+  bool keepsConstraints_ = true;     // no rope went taut or slack at the last step's end
   int eventsInWindow_ = 0;
   double windowStart_ = 0;  // s
 };

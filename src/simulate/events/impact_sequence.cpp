@@ -1,6 +1,6 @@
 // Inelastic collapse: S. McNamara, W. R. Young, "Inelastic collapse and clumping in a one-dimensional granular medium",
 // Physics of Fluids A 4(3), 1992. In a round of impacts the speeds of the contacts change by a fixed matrix; where its
-// eigenvalues are real, the round repeats for ever. For a ball of mass m between a fixed floor and a mass M these are
+// eigenvalues are real, the round repeats for ever. For a sphere of mass m between a fixed floor and a mass M these are
 // the roots of x^2 - ((1 + e)^2 M / (m + M) - 2 e) x + e^2: real if (1 + e)^2 M / (m + M) >= 4 e. Speeds shrink by the
 // larger root a round, gaps about as fast as by the smaller one. All impulses together end all closing: without
 // friction they are those of one impact without rebound, whenever in the sequence that comes.
@@ -14,12 +14,12 @@ namespace cradle {
 namespace {
 
 constexpr double kGapGrowthError = 1e-9;        // of the way that the fastest contact closes by meanwhile
-constexpr double kOpeningPart = 1e-6;           // of the fastest closing: a contact that opens faster has let go
+constexpr double kOpeningRatio = 1e-6;          // of the fastest closing: a contact that opens faster has let go
 constexpr std::size_t kCollapseImpacts = 200;   // enough to tell intervals that shrink for ever from a few short ones
 constexpr std::size_t kImpactsOfAContact = 20;  // the same, for each contact
-constexpr double kCollapsePart = 1e-12;         // of the time elapsed: so little so many impacts take
+constexpr double kCollapseRatio = 1e-12;        // of the time elapsed: so little so many impacts take
 constexpr double kHiddenGap = 2;                // times a gap's rounding: measured, it may be none
-constexpr std::size_t kMaxSequenceImpacts = 100000;  // a row of 40 balls takes a thousand
+constexpr std::size_t kMaxSequenceImpacts = 100000;  // a row of 40 spheres takes a thousand
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -107,7 +107,7 @@ bool ImpactSequence::closeWithinRounding() {
 
 bool ImpactSequence::hasCollapsed() const {
   const std::size_t count = std::max(kCollapseImpacts, kImpactsOfAContact * contacts_.size());
-  return times_.size() >= collapses_ + count && elapsed_ - times_[times_.size() - count] <= kCollapsePart * elapsed_;
+  return times_.size() >= collapses_ + count && elapsed_ - times_[times_.size() - count] <= kCollapseRatio * elapsed_;
 }
 
 /// s; infinite if nothing closes.
@@ -151,7 +151,7 @@ void ImpactSequence::findMembers() {
     return false;
   };
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (speeds_[i] > kOpeningPart * fastestClosing_) continue;
+    if (speeds_[i] > kOpeningRatio * fastestClosing_) continue;
     if (isClosed(i) || (isWithinRounding(i) && isOfClosingPair(i))) members_.push_back(i);
   }
 }

@@ -22,8 +22,8 @@ struct SequenceLimits {
 /// impact has closed is zero, and grows from there by speed x time, exact to a relative rounding however small it is.
 /// Contacts whose gaps close at one instant, and those without a gap that do not open, are one impact.
 ///
-/// Impacts may be infinitely many in a finite time (inelastic collapse: a light ball between the floor and a heavy one,
-/// with a small restitution). Neither gaps nor speeds tell that, but the history does: the intervals shrink
+/// Impacts may be infinitely many in a finite time (inelastic collapse: a light sphere between the floor and a heavy
+/// one, with a small restitution). Neither gaps nor speeds tell that, but the history does: the intervals shrink
 /// geometrically. What is left then is one impact without rebound.
 class ImpactSequence {
  public:

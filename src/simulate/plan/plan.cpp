@@ -1,9 +1,9 @@
 // Rules of the plan. The first that applies to an island is taken:
 //   1. the scene names a method: that one, for studies
-//   2. balls bounce without loss, and nothing acts but uniform gravity: closed form between collisions
+//   2. spheres bounce without loss, and nothing acts but uniform gravity: closed form between collisions
 //   3. many bodies of like density may touch, only gravity acts, no mesh that is not closed is among them, and the
-//   accuracy asked is coarse: the fast contact step, whose overlaps would not tell the sides of a sheet apart
-//   4. models with hollows may touch, and the accuracy asked is coarse: RK4 with a fixed step, lasting contact resolved
+//   accuracy asked is coarse: soft sub-stepping, whose overlaps would not tell the sides of a sheet apart
+//   4. models with hollows may touch, and the accuracy asked is coarse: RK4 with a fixed step, active contact resolved
 //   once a step, for their edges meet too often
 //   5. nothing acts but uniform gravity: closed form
 //   6. else DOP853 with steps as long as the accuracy allows; contact changes at events, and where something may touch
@@ -23,25 +23,25 @@
 #include "dynamics/rigid_body.h"
 #include "mesh/solid.h"
 #include "scene/named_accuracy.h"
-#include "simulate/balls/flying_balls.h"
 #include "simulate/colliders.h"
 #include "simulate/plan/plan_islands.h"
+#include "simulate/spheres/hard_spheres.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kPileTimeStep = 1.0 / 60;  // s, at most
-constexpr std::size_t kPileBodies = 50;     // with fewer, RK4 costs less than the pictures of its frames
-constexpr double kMostRatio = 10;           // of masses and of densities in a pile
+constexpr double kSoftTimeStep = 1.0 / 60;  // s, at most
+constexpr std::size_t kMinSoftBodies = 50;  // with fewer, RK4 costs less than the pictures of its frames
+constexpr double kMaxRatio = 10;            // of masses and of densities in a heap
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSteppedTolerance = 1e-5;    // of the local error of RK4, at most: contact decides how good a step is
-constexpr double kTolerancePart = 0.02;       // of the accuracy: local errors of tens of steps add up, and take energy
-constexpr double kCoarseTolerancePart = 0.2;  // of the coarsest accuracy
+constexpr double kSteppedTolerance = 1e-5;     // of the local error of RK4, at most: contact decides how good a step is
+constexpr double kToleranceRatio = 0.02;       // of the accuracy: local errors of tens of steps add up, and take energy
+constexpr double kCoarseToleranceRatio = 0.2;  // of the coarsest accuracy
 
 /// Of the local error. The coarser the accuracy, the longer the steps, and of long ones DOP853's estimate is too high
 /// (map of accuracies).
 double smoothTolerance(double accuracy) {
-  return accuracy * std::max(kTolerancePart, kCoarseTolerancePart * accuracy / kCoarsestAccuracy);
+  return accuracy * std::max(kToleranceRatio, kCoarseToleranceRatio * accuracy / kCoarsestAccuracy);
 }
 
 ChosenMethod errorSteps(const Scene& scene) {
@@ -51,8 +51,8 @@ ChosenMethod errorSteps(const Scene& scene) {
 /// Where contact ends steps before their time, those of order 5 cost half: they can end anywhere on their interpolant.
 /// Only at coarse accuracies are they long enough.
 ChosenMethod stepsToEvents(const Scene& scene) {
-  if (scene.accuracy <= kLookAccuracy) return errorSteps(scene);
-  const double tolerance = kTolerancePart * scene.accuracy;
+  if (scene.accuracy <= kVisualAccuracy) return errorSteps(scene);
+  const double tolerance = kToleranceRatio * scene.accuracy;
   return {MotionKind::errorSteps, "DOPRI5", 0, dormandPrince5, tolerance, dormandPrince5Error, 5};
 }
 
@@ -79,8 +79,8 @@ bool isActedUpon(const Scene& scene, const IslandPlan& island) {
   return found;
 }
 
-/// Balls on which no torque can act: their spin is constant, whatever moves their centres.
-void findUnturned(const Scene& scene, IslandPlan& island) {
+/// Spheres on which no torque can act: their spin is constant, whatever moves their centres.
+void findNonRotating(const Scene& scene, IslandPlan& island) {
   std::vector<char> isTurned(scene.bodies.size(), 0);
   const auto turn = [&](int body) {
     if (body != kWorld) isTurned[static_cast<std::size_t>(body)] = 1;
@@ -100,7 +100,7 @@ void findUnturned(const Scene& scene, IslandPlan& island) {
   for (const int body : island.bodies)
     if (!isTurned[static_cast<std::size_t>(body)] &&
         makeRigidBody(scene.bodies[static_cast<std::size_t>(body)].massProperties).isSpherical)
-      island.unturned.push_back(body);
+      island.nonRotating.push_back(body);
 }
 
 /// Whether something that may touch is a mesh for contact, not a shape with a name or a hull.
@@ -136,30 +136,31 @@ bool hasDenseOnes(const Scene& scene, const IslandPlan& island) {
   for (const int body : island.bodies)
     lightest = std::min(lightest, massOf(body).mass), thinnest = std::min(thinnest, densityOf(body));
   return std::any_of(island.bodies.begin(), island.bodies.end(), [&](int body) {
-    return massOf(body).mass > kMostRatio * lightest && densityOf(body) > kMostRatio * thinnest;
+    return massOf(body).mass > kMaxRatio * lightest && densityOf(body) > kMaxRatio * thinnest;
   });
 }
 
 void choose(const Scene& scene, IslandPlan& island) {
-  findUnturned(scene, island);
-  if (!island.unturned.empty()) island.leftOut.push_back("no rotation of balls held at their centres: no torque");
+  findNonRotating(scene, island);
+  if (!island.nonRotating.empty()) island.notNeeded.push_back("no rotation of balls held at their centres: no torque");
   const bool mayTouchSomething = !island.touching.empty();
-  if (!mayTouchSomething) island.leftOut.push_back("no search for contact: nothing can touch");
+  if (!mayTouchSomething) island.notNeeded.push_back("no search for contact: nothing can touch");
   if (scene.method) {
     island.method = namedMethod(scene);
     island.reason = "the scene names the method";
-  } else if (mayTouchSomething && !isActedUpon(scene, island) && flyingBallsOf(scene, island)) {
+  } else if (mayTouchSomething && !isActedUpon(scene, island) && hardSpheresOf(scene, island)) {
     island.method = {MotionKind::elasticFlight, "closed form between collisions"};
     island.reason = "elastic balls in flight: parabolas, and collisions in the order of time";
-    island.leftOut.push_back("no steps, no rotation: nothing turns balls that touch without friction");
-  } else if (mayTouchSomething && scene.accuracy > kLookAccuracy && island.bodies.size() >= kPileBodies &&
+    island.notNeeded.push_back("no steps, no rotation: nothing turns balls that touch without friction");
+  } else if (mayTouchSomething && scene.accuracy > kVisualAccuracy && island.bodies.size() >= kMinSoftBodies &&
              !isActedUpon(scene, island) && !hasDenseOnes(scene, island) && !hasSheet(scene, island)) {
-    island.method = {MotionKind::pile, "fast contact step", kPileTimeStep};
+    island.method = {MotionKind::pile, "fast contact step", kSoftTimeStep};
     island.reason = "many bodies may touch: soft contacts, sub-stepped";
-    island.leftOut.push_back("no motion of bodies that lie still");
-  } else if (mayTouchSomething && scene.accuracy > kLookAccuracy && hasMesh(scene, island)) {
+    island.notNeeded.push_back("no motion of bodies that lie still");
+  } else if (mayTouchSomething && scene.accuracy > kVisualAccuracy && hasMesh(scene, island)) {
     island.method = contactSteps();
-    if (hasSheet(scene, island)) island.leftOut.push_back("no soft contacts: a mesh that is not closed has two sides");
+    if (hasSheet(scene, island))
+      island.notNeeded.push_back("no soft contacts: a mesh that is not closed has two sides");
     island.reason = "models with hollows may touch: contact is resolved once a step";
   } else if (mayTouchSomething) {
     island.method = stepsToEvents(scene);
@@ -167,7 +168,7 @@ void choose(const Scene& scene, IslandPlan& island) {
   } else if (!isActedUpon(scene, island)) {
     island.method = {MotionKind::freeFlight, "closed form"};
     island.reason = "nothing acts but uniform gravity: parabola and exact free rotation";
-    island.leftOut.push_back("no steps: one evaluation a frame");
+    island.notNeeded.push_back("no steps: one evaluation a frame");
   } else {
     island.method = errorSteps(scene);
     island.reason = "smooth forces: steps as long as the accuracy allows";
@@ -181,11 +182,11 @@ ChosenMethod contactSteps(double timeStep) {
 }
 
 Plan planOf(const Scene& scene) {
-  const Meetings meetings(scene);
-  Plan plan{findIslands(scene, meetings), scene.accuracy};
+  const ReachablePairs reachable(scene);
+  Plan plan{findIslands(scene, reachable), scene.accuracy};
   for (IslandPlan& island : plan.islands) {
     choose(scene, island);
-    island.promise = promiseOf(scene, island, meetings);
+    island.promise = promiseOf(scene, island, reachable);
     island.method.keepsPromise = island.promise.kind == Promise::Kind::kept;
   }
   return plan;

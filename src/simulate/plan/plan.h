@@ -13,13 +13,13 @@ namespace cradle {
 constexpr double kContactTimeStep = 1.0 / 960;  // s, of contact that events do not serve: 16 steps a frame at 60/s
 
 /// Accuracies coarser than this ask for no more than a look: events make way for contact steps where these cost less.
-constexpr double kLookAccuracy = 1e-4;
+constexpr double kVisualAccuracy = 1e-4;
 
 /// How bodies are moved, from the least work to the most.
 enum class MotionKind {
   freeFlight,     // closed form
-  elasticFlight,  // closed form between collisions without loss, as in simulate/balls/flying_balls.h
-  pile,           // many bodies in contact: the fast contact step, as in impact/pile_step.h
+  elasticFlight,  // closed form between collisions without loss, as in simulate/spheres/hard_spheres.h
+  pile,           // many bodies in contact: soft sub-stepping, as in impact/soft_step.h
   fixedSteps,     // an integrator with steps of one length
   errorSteps,     // an integrator with steps as long as the error allows; contact changes at events
 };
@@ -28,7 +28,7 @@ enum class MotionKind {
 struct ChosenMethod {
   MotionKind kind = MotionKind::freeFlight;
   std::string_view name;
-  double timeStep = 0;             // s, of piles and fixed steps
+  double timeStep = 0;             // s, of heaps and fixed steps
   Integrator integrate = nullptr;  // of fixed steps and error steps
   double tolerance = 0;            // of the local error, scaled 1 + |x|; 0: fixed steps are never cut for it
   ErrorNorm errorNorm = nullptr;   // of error steps
@@ -42,15 +42,15 @@ struct ChosenMethod {
 /// What moves bodies whose contact is resolved once a step: RK4, with shorter steps only where its error asks for them.
 ChosenMethod contactSteps(double timeStep = kContactTimeStep);
 
-/// Bodies that depend on each other, by ties, springs or contact that may come about, and how they are moved.
+/// Bodies that depend on each other, by constraints, springs or contact that may come about, and how they are moved.
 struct IslandPlan {
-  std::vector<int> bodies;    // scene bodies that move, ascending
-  std::vector<int> touching;  // scene bodies, fixed ones too, that may touch something during the run, ascending
-  std::vector<int> unturned;  // of the bodies, those on which no torque ever acts: balls held at their centres
+  std::vector<int> bodies;       // scene bodies that move, ascending
+  std::vector<int> touching;     // scene bodies, fixed ones too, that may touch something during the run, ascending
+  std::vector<int> nonRotating;  // of the bodies, those on which no torque ever acts: spheres held at their centres
   ChosenMethod method;
   std::string_view reason;
-  std::vector<std::string_view> leftOut;  // what these bodies do not need
-  Promise promise;                        // of the accuracy
+  std::vector<std::string_view> notNeeded;  // what these bodies do not need
+  Promise promise;                          // of the accuracy
 };
 
 /// What a scene needs, and no more.

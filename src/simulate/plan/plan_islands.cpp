@@ -5,7 +5,7 @@
 
 #include "core/interruption.h"
 #include "simulate/colliders.h"
-#include "simulate/plan/islands.h"
+#include "simulate/plan/disjoint_sets.h"
 
 namespace cradle {
 namespace {
@@ -43,13 +43,13 @@ bool canMeetPlane(const Reach& reach, double size, const Body& plane) {
 }
 
 /// Bodies that touch something, by body.
-std::vector<char> findTouching(const Scene& scene, const Meetings& meetings) {
+std::vector<char> findTouching(const Scene& scene, const ReachablePairs& reachable) {
   std::vector<char> touches(scene.bodies.size(), 0);
   for (int i = 0; i < std::ssize(touches); ++i) {
     throwIfInterrupted();
     for (int j = i + 1; j < std::ssize(touches); ++j) {
       char &first = touches[static_cast<std::size_t>(i)], &second = touches[static_cast<std::size_t>(j)];
-      if (!(first && second) && meetings.mayMeet(i, j)) first = second = 1;
+      if (!(first && second) && reachable.mayMeet(i, j)) first = second = 1;
     }
   }
   return touches;
@@ -60,27 +60,27 @@ int movingOr(const Scene& scene, int body) {
 }
 
 /// Moving bodies that depend on each other.
-Islands joinIslands(const Scene& scene, const Meetings& meetings) {
-  Islands joined(scene.bodies.size());
+DisjointSets joinIslands(const Scene& scene, const ReachablePairs& reachable) {
+  DisjointSets joined(scene.bodies.size());
   forEachLink(scene, [&](int a, int b) { joined.join(movingOr(scene, a), movingOr(scene, b)); });
   for (int i = 0; i < std::ssize(scene.bodies); ++i) {
     throwIfInterrupted();
     for (int j = i + 1; j < std::ssize(scene.bodies); ++j) {
       if (movingOr(scene, i) == kWorld || movingOr(scene, j) == kWorld) continue;
-      if (joined.islandOf(i) != joined.islandOf(j) && meetings.mayMeet(i, j)) joined.join(i, j);
+      if (joined.islandOf(i) != joined.islandOf(j) && reachable.mayMeet(i, j)) joined.join(i, j);
     }
   }
   return joined;
 }
 
 /// The bodies of an island that may touch, and the fixed ones that they may touch.
-std::vector<int> touchingOf(const Scene& scene, const IslandPlan& island, const Meetings& meetings) {
+std::vector<int> touchingOf(const Scene& scene, const IslandPlan& island, const ReachablePairs& reachable) {
   std::vector<int> touching;
   throwIfInterrupted();
   for (int other = 0; other < std::ssize(scene.bodies); ++other) {
     const bool moves = movingOr(scene, other) != kWorld;
     if (moves && !std::binary_search(island.bodies.begin(), island.bodies.end(), other)) continue;
-    const auto meetsOther = [&](int body) { return body != other && meetings.mayMeet(body, other); };
+    const auto meetsOther = [&](int body) { return body != other && reachable.mayMeet(body, other); };
     bool meets = std::any_of(island.bodies.begin(), island.bodies.end(), meetsOther);
     for (int body = 0; moves && !meets && body < std::ssize(scene.bodies); ++body)
       meets = movingOr(scene, body) == kWorld && meetsOther(body);
@@ -91,7 +91,8 @@ std::vector<int> touchingOf(const Scene& scene, const IslandPlan& island, const 
 
 }  // namespace
 
-Meetings::Meetings(const Scene& scene) : scene_(scene), sizes_(sizesOf(scene)), joined_(pairsKeptFromTouching(scene)) {
+ReachablePairs::ReachablePairs(const Scene& scene)
+    : scene_(scene), sizes_(sizesOf(scene)), joined_(pairsKeptFromTouching(scene)) {
   std::vector<char> touches(scene.bodies.size(), 0);
   reaches_ = reachOf(scene, touches);
   while (true) {
@@ -102,7 +103,7 @@ Meetings::Meetings(const Scene& scene) : scene_(scene), sizes_(sizesOf(scene)), 
   }
 }
 
-bool Meetings::mayMeet(int first, int second) const {
+bool ReachablePairs::mayMeet(int first, int second) const {
   const auto i = static_cast<std::size_t>(first), j = static_cast<std::size_t>(second);
   const Body &a = scene_.bodies[i], &b = scene_.bodies[j];
   if (!mayTouch(a, b)) return false;
@@ -112,14 +113,14 @@ bool Meetings::mayMeet(int first, int second) const {
   return meet && (joined_.empty() || !joined_.contains(std::minmax(first, second)));
 }
 
-std::vector<IslandPlan> findIslands(const Scene& scene, const Meetings& meetings) {
-  const Islands joined = joinIslands(scene, meetings);
+std::vector<IslandPlan> findIslands(const Scene& scene, const ReachablePairs& reachable) {
+  const DisjointSets joined = joinIslands(scene, reachable);
   std::map<int, IslandPlan> islands;
   for (int body = 0; body < std::ssize(scene.bodies); ++body)
     if (movingOr(scene, body) != kWorld) islands[joined.islandOf(body)].bodies.push_back(body);
   std::vector<IslandPlan> ordered;
   for (auto& [first, island] : islands) {
-    island.touching = touchingOf(scene, island, meetings);
+    island.touching = touchingOf(scene, island, reachable);
     ordered.push_back(std::move(island));
   }
   return ordered;

@@ -17,7 +17,7 @@ std::string collisionName(const Body& body, const ModelCollision& model) {
   return asPrimitive ? shapeName(model.recognised) : "convex";
 }
 
-/// Islands of which the same is said are told together, in the order of the first of each.
+/// DisjointSets of which the same is said are told together, in the order of the first of each.
 class AlikeIslands {
  public:
   void add(const IslandPlan& island, const std::string& said) {
@@ -99,7 +99,7 @@ std::string describe(const Plan& plan, const Scene& scene) {
   for (const IslandPlan& island : plan.islands) {
     std::string how = fmt::format("\n  method    {}\n  why       {}\n  accuracy  {}", describe(island.method),
                                   island.reason, describe(island.promise));
-    for (const std::string_view leftOut : island.leftOut) how += fmt::format("\n  left out  {}", leftOut);
+    for (const std::string_view notNeeded : island.notNeeded) how += fmt::format("\n  left out  {}", notNeeded);
     alike.add(island, how);
   }
   alike.forEach(scene, [&](const std::string& names, const std::string& how) { text += "\n" + names + how; });

@@ -1,6 +1,6 @@
-// Events serve contacts of balls, corners and faces (simulate/contact_response.h, canLast) while their rows are few and
-// do not change too fast (simulate/plan/event_limits.h). Bounds here are on the safe side: a promise without conditions
-// is one that the run never gives up.
+// Events serve contacts of spheres, corners and faces (simulate/contact_response.h, canLast) while their rows are few
+// and do not change too fast (simulate/plan/event_rate_limit.h). Bounds here are on the safe side: a promise without
+// conditions is one that the run never gives up.
 
 #include "simulate/plan/promise.h"
 
@@ -11,17 +11,17 @@
 
 #include "core/printable.h"
 #include "simulate/colliders.h"
-#include "simulate/plan/event_limits.h"
-#include "simulate/plan/islands.h"
+#include "simulate/plan/disjoint_sets.h"
+#include "simulate/plan/event_rate_limit.h"
 #include "simulate/plan/plan.h"
 #include "simulate/plan/plan_islands.h"
 
 namespace cradle {
 namespace {
 
-constexpr int kFewRows = 60;          // of balls that touch: the most that can be independent, solved in 1 ms
-constexpr double kBounces = 16;       // times 1 / (1 - e): bounces of a ball from 1/60 s before its rest, e near 1
-constexpr double kFewBounces = 5e3;   // a quarter of those that kLongPatience has
+constexpr int kFewRows = 60;          // of spheres that touch: the most that can be independent, solved in 1 ms
+constexpr double kBounces = 16;       // times 1 / (1 - e): bounces of a sphere from 1/60 s before its rest, e near 1
+constexpr double kFewBounces = 5e3;   // a quarter of those that kLongEventRateLimit has
 constexpr double kLevelSlope = 1e-9;  // sine: flatter is level
 constexpr int kFaceContacts = 8;      // of two faces, or of a face and a plane: patches have no more points
 constexpr int kManyContacts = 64;     // of a mesh
@@ -29,7 +29,7 @@ constexpr int kManyContacts = 64;     // of a mesh
 /// What may touch, and how: bounds over all that may come about.
 struct PossibleContacts {
   std::vector<int> edgeOwners, tippers, movers;  // scene bodies; cylinders that may tip; what moves and may touch
-  bool hasFriction = false, areRound = true;     // round: of balls with each other and with planes alone
+  bool hasFriction = false, areRound = true;     // round: of spheres with each other and with planes alone
   bool hasSlopes = false;                        // planes with friction that are not level
   double restitution = 0;                        // largest below 1
   int rows = 0, treeRows = 0;  // of all contacts; of one contact of each pair, as long as pairs close no loop
@@ -41,7 +41,7 @@ struct Surface {
   int faceCorners = kFaceContacts;   // of the largest face
 
   bool isPlane() const { return !kind; }
-  bool isRound() const { return !kind || kind == ColliderKind::ball; }
+  bool isRound() const { return !kind || kind == ColliderKind::sphere; }
 };
 
 Surface surfaceOf(const Body& body, const Scene& scene) {
@@ -60,7 +60,7 @@ int contactsOf(const Surface& a, const Surface& b) {
   const auto is = [&](ColliderKind kind) { return a.kind == kind || b.kind == kind; };
   const bool isOnPlane = a.isPlane() || b.isPlane();
   if (is(ColliderKind::mesh) && !isOnPlane) return kManyContacts;
-  if (is(ColliderKind::ball)) return 1;
+  if (is(ColliderKind::sphere)) return 1;
   if (is(ColliderKind::capsule)) return 2;
   return isOnPlane ? std::min(a.faceCorners, b.faceCorners) : kFaceContacts;
 }
@@ -68,12 +68,12 @@ int contactsOf(const Surface& a, const Surface& b) {
 /// Looks at all pairs of an island that may meet.
 class ContactSurvey {
  public:
-  ContactSurvey(const Scene& scene, const IslandPlan& island, const Meetings& meetings)
+  ContactSurvey(const Scene& scene, const IslandPlan& island, const ReachablePairs& reachable)
       : scene_(scene), loops_(scene.bodies.size() + 1), surfaces_(scene.bodies.size()), parts_(scene.bodies.size()) {
     for (const int body : island.touching) surfaces_[static_cast<std::size_t>(body)] = surfaceOf(bodyOf(body), scene);
     for (std::size_t i = 0; i < island.touching.size(); ++i)
       for (std::size_t j = i + 1; j < island.touching.size(); ++j)
-        if (meetings.mayMeet(island.touching[i], island.touching[j])) add(island.touching[i], island.touching[j]);
+        if (reachable.mayMeet(island.touching[i], island.touching[j])) add(island.touching[i], island.touching[j]);
     for (int body = 0; body < std::ssize(parts_); ++body) {
       const Part& part = partOf(body);
       if (part.ownsEdge) found_.edgeOwners.push_back(body);
@@ -113,7 +113,7 @@ class ContactSurvey {
     found_.treeRows += rowsOfOne;
   }
 
-  /// On a slope a ball may slide slowly for long.
+  /// On a slope a sphere may slide slowly for long.
   bool isSlope(int body) const {
     const auto* plane = std::get_if<Plane>(&bodyOf(body).shape);
     return plane && (bodyOf(body).worldFromBody.rotation * plane->normal).cross(scene_.gravity).norm() >
@@ -135,45 +135,46 @@ class ContactSurvey {
 
   static constexpr int kManyRows = 1000000;  // far beyond what is few
   const Scene& scene_;
-  Islands loops_;
+  DisjointSets loops_;
   std::vector<Surface> surfaces_;  // by scene body
   std::vector<Part> parts_;        // by scene body
   PossibleContacts found_;
 };
 
-/// Whether any of some ties holds a body of the island.
-template <class Tie>
-bool areHeldBy(const std::vector<Tie>& ties, const IslandPlan& island) {
+/// Whether any of some links holds a body of the island.
+template <class Link>
+bool areHeldBy(const std::vector<Link>& links, const IslandPlan& island) {
   const auto isIn = [&](const Anchor& anchor) {
     return std::binary_search(island.bodies.begin(), island.bodies.end(), anchor.body);
   };
-  return std::any_of(ties.begin(), ties.end(), [&](const Tie& tie) { return isIn(tie.anchorA) || isIn(tie.anchorB); });
+  return std::any_of(links.begin(), links.end(),
+                     [&](const Link& link) { return isIn(link.anchorA) || isIn(link.anchorB); });
 }
 
 bool hasJoints(const Scene& scene, const IslandPlan& island) {
   return areHeldBy(scene.ballJoints, island) || areHeldBy(scene.hinges, island);
 }
 
-/// Whether ties hold a body of the island: rows of contacts may depend on each other through them.
+/// Whether constraints hold a body of the island: rows of contacts may depend on each other through them.
 bool hasTies(const Scene& scene, const IslandPlan& island) {
   return hasJoints(scene, island) || areHeldBy(scene.rods, island) || areHeldBy(scene.ropes, island);
 }
 
 int independentRows(const PossibleContacts& contacts) {
-  const int ofABody = contacts.areRound && !contacts.hasFriction ? 3 : 6;  // balls without friction do not turn
+  const int ofABody = contacts.areRound && !contacts.hasFriction ? 3 : 6;  // spheres without friction do not turn
   return std::min(contacts.rows, ofABody * static_cast<int>(contacts.movers.size()));
 }
 
-/// Few balls, whose contacts are served whatever comes, at a cost that is worth it.
-bool areFewBalls(const PossibleContacts& contacts) {
+/// Few spheres, whose contacts are served whatever comes, at a cost that is worth it.
+bool areFewSpheres(const PossibleContacts& contacts) {
   const double bounces = kBounces * static_cast<double>(contacts.movers.size()) / (1 - contacts.restitution);
   return contacts.areRound && !contacts.hasSlopes && independentRows(contacts) <= kFewRows && bounces <= kFewBounces;
 }
 
-/// Leaf by leaf, the contacts of a tree of bodies are independent of each other, unless ties hold these.
-bool mayHaveManyRows(const PossibleContacts& contacts, bool isTied) {
-  const int redundant = contacts.rows - (isTied ? 0 : contacts.treeRows);
-  return redundant > kMostRedundant || independentRows(contacts) > kMostIndependent;
+/// Leaf by leaf, the contacts of a tree of bodies are independent of each other, unless constraints hold these.
+bool mayHaveManyRows(const PossibleContacts& contacts, bool isConstrained) {
+  const int redundant = contacts.rows - (isConstrained ? 0 : contacts.treeRows);
+  return redundant > kMaxRedundant || independentRows(contacts) > kMaxIndependent;
 }
 
 std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan& island,
@@ -188,7 +189,7 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
         {fmt::format("no cylinder of {} tips over its rim", namesOfBodies(contacts.tippers, scene)), contacts.tippers});
   if (mayHaveManyRows(contacts, hasTies(scene, island)))
     conditions.push_back({fmt::format("no more than {} redundant or {} independent forces press {} at once",
-                                      kMostRedundant, kMostIndependent, namesOfBodies(contacts.movers, scene)),
+                                      kMaxRedundant, kMaxIndependent, namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
   if (contacts.hasFriction && (!contacts.areRound || contacts.hasSlopes))
     conditions.push_back(
@@ -199,7 +200,7 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
     conditions.push_back({fmt::format("nothing touches {} within a thousandth of its size of a joint",
                                       namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
-  const EventPatience& patience = scene.accuracy > kLookAccuracy ? kLookPatience : kPatience;
+  const EventRateLimit& patience = scene.accuracy > kVisualAccuracy ? kVisualEventRateLimit : kEventRateLimit;
   conditions.push_back(
       {fmt::format("{} among {}", patience.limit, namesOfBodies(contacts.movers, scene)), contacts.movers});
   return conditions;
@@ -211,7 +212,7 @@ Promise notPromised(std::string reason) {
 
 }  // namespace
 
-Promise promiseOf(const Scene& scene, const IslandPlan& island, const Meetings& meetings) {
+Promise promiseOf(const Scene& scene, const IslandPlan& island, const ReachablePairs& reachable) {
   const ChosenMethod& method = island.method;
   if (method.kind == MotionKind::pile)
     return notPromised(
@@ -222,17 +223,17 @@ Promise promiseOf(const Scene& scene, const IslandPlan& island, const Meetings& 
     return notPromised(
         fmt::format("models with hollows may touch: their contact is resolved every {:.3g} s", method.timeStep));
   if (method.isClosedForm() || island.touching.empty()) return {};
-  const ContactSurvey survey(scene, island, meetings);
-  if (areFewBalls(survey.found()) && !hasJoints(scene, island)) return {};
+  const ContactSurvey survey(scene, island, reachable);
+  if (areFewSpheres(survey.found()) && !hasJoints(scene, island)) return {};
   return {Promise::Kind::conditional, conditionsOf(scene, island, survey.found()), {}};
 }
 
 std::string namesOfBodies(const std::vector<int>& bodies, const Scene& scene) {
-  constexpr std::size_t kMostNames = 4;
+  constexpr std::size_t kMaxNames = 4;
   std::string names;
-  for (std::size_t i = 0; i < std::min(kMostNames, bodies.size()); ++i)
+  for (std::size_t i = 0; i < std::min(kMaxNames, bodies.size()); ++i)
     names += fmt::format("{}{}", i ? ", " : "", printableLine(scene.bodies[static_cast<std::size_t>(bodies[i])].name));
-  if (bodies.size() > kMostNames) names += fmt::format(" and {} more", bodies.size() - kMostNames);
+  if (bodies.size() > kMaxNames) names += fmt::format(" and {} more", bodies.size() - kMaxNames);
   return names;
 }
 

@@ -9,7 +9,7 @@
 namespace cradle {
 
 struct IslandPlan;
-class Meetings;
+class ReachablePairs;
 
 /// A condition of a promise, and the bodies that it is about.
 struct PromiseCondition {
@@ -33,8 +33,8 @@ struct PromiseEnd {
 };
 
 /// What can be promised of an island whose method is chosen, as far as its bodies' shapes and reaches tell: events have
-/// an answer to balls, corners and faces, as long as there are few of them.
-Promise promiseOf(const Scene& scene, const IslandPlan& island, const Meetings& meetings);
+/// an answer to spheres, corners and faces, as long as there are few of them.
+Promise promiseOf(const Scene& scene, const IslandPlan& island, const ReachablePairs& reachable);
 
 /// "promised", "promised while ...", "not promised, because ...".
 std::string describe(const Promise& promise);

@@ -9,18 +9,18 @@ namespace {
 constexpr double kReachRounding = 1e-6;  // of the radius: bounds are met by motions that stretch them fully
 
 /// Two anchors that stay within `length` (m) of each other.
-struct Tie {
+struct Limit {
   Anchor a, b;
   double length;
 };
 
-std::vector<Tie> tiesOf(const Scene& scene) {
-  std::vector<Tie> ties;
-  for (const Rod& rod : scene.rods) ties.push_back({rod.anchorA, rod.anchorB, rod.length});
-  for (const Rope& rope : scene.ropes) ties.push_back({rope.anchorA, rope.anchorB, rope.maxLength});
-  for (const BallJoint& joint : scene.ballJoints) ties.push_back({joint.anchorA, joint.anchorB, 0});
-  for (const Hinge& hinge : scene.hinges) ties.push_back({hinge.anchorA, hinge.anchorB, 0});
-  return ties;
+std::vector<Limit> limitsOf(const Scene& scene) {
+  std::vector<Limit> limits;
+  for (const Rod& rod : scene.rods) limits.push_back({rod.anchorA, rod.anchorB, rod.length});
+  for (const Rope& rope : scene.ropes) limits.push_back({rope.anchorA, rope.anchorB, rope.maxLength});
+  for (const BallJoint& joint : scene.ballJoints) limits.push_back({joint.anchorA, joint.anchorB, 0});
+  for (const Hinge& hinge : scene.hinges) limits.push_back({hinge.anchorA, hinge.anchorB, 0});
+  return limits;
 }
 
 bool isFixed(const Anchor& anchor, const Scene& scene) {
@@ -47,7 +47,7 @@ Reach reachOfAnchor(const Anchor& anchor, const Scene& scene, const std::vector<
   return {body.center, body.radius + armOf(anchor, scene)};
 }
 
-/// Narrows the reach of the body at `end` by a tie to `other`. True if that helped.
+/// Narrows the reach of the body at `end` by a link to `other`. True if that helped.
 bool narrow(const Anchor& end, const Anchor& other, double length, const Scene& scene, std::vector<Reach>& reaches) {
   if (isFixed(end, scene)) return false;
   const Reach from = reachOfAnchor(other, scene, reaches);
@@ -86,7 +86,7 @@ bool isPushed(int body, const Scene& scene) {
 
 /// Bodies on springs that all end at fixed points, and that nothing else moves.
 void narrowBySprings(const Scene& scene, const std::vector<char>& touches, std::vector<Reach>& reaches) {
-  const std::vector<Tie> ties = tiesOf(scene);
+  const std::vector<Limit> limits = limitsOf(scene);
   for (std::size_t index = 0; index < scene.bodies.size(); ++index) {
     if (touches[index]) continue;
     const int body = static_cast<int>(index);
@@ -99,8 +99,8 @@ void narrowBySprings(const Scene& scene, const std::vector<char>& touches, std::
       energy += 0.5 * spring.stiffness * extension * extension;
       isAlone = isAlone && (isFixed(spring.anchorA, scene) || isFixed(spring.anchorB, scene));
     }
-    for (const Tie& tie : ties)
-      for (const auto& [end, other] : {std::pair(tie.a, tie.b), std::pair(tie.b, tie.a)})
+    for (const Limit& limit : limits)
+      for (const auto& [end, other] : {std::pair(limit.a, limit.b), std::pair(limit.b, limit.a)})
         isAlone = isAlone && (end.body != body || isFixed(other, scene));
     if (!isAlone) continue;
     for (const Spring& spring : scene.springs)
@@ -132,8 +132,8 @@ std::vector<Reach> reachOf(const Scene& scene, const std::vector<char>& touches)
   const auto hold = [&](const Anchor& anchor) {
     if (anchor.body != kWorld) isHeld[static_cast<std::size_t>(anchor.body)] = 1;
   };
-  const std::vector<Tie> ties = tiesOf(scene);
-  for (const Tie& tie : ties) hold(tie.a), hold(tie.b);
+  const std::vector<Limit> limits = limitsOf(scene);
+  for (const Limit& limit : limits) hold(limit.a), hold(limit.b);
   for (const Spring& spring : scene.springs) hold(spring.anchorA), hold(spring.anchorB);
   for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
     if (scene.bodies[body].motion == Motion::dynamic) continue;
@@ -144,9 +144,9 @@ std::vector<Reach> reachOf(const Scene& scene, const std::vector<char>& touches)
   narrowBySprings(scene, touches, reaches);
   for (bool helped = true; helped;) {
     helped = false;
-    for (const Tie& tie : ties) {
-      helped = narrow(tie.a, tie.b, tie.length, scene, reaches) || helped;
-      helped = narrow(tie.b, tie.a, tie.length, scene, reaches) || helped;
+    for (const Limit& limit : limits) {
+      helped = narrow(limit.a, limit.b, limit.length, scene, reaches) || helped;
+      helped = narrow(limit.b, limit.a, limit.length, scene, reaches) || helped;
     }
   }
   narrowByFlight(scene, isHeld, reaches);

@@ -93,7 +93,7 @@ void hinderByPlane(const Vec3& normal, RigidMotions& kept) {
   kept.col(2).tail<3>() = normal;
 }
 
-double limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state) {
+double clampEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state) {
   const double energy = energyOf(moved.bodies, mechanism, state);
   if (!isGain(energy, most)) return 0;
   const WholeOfBodies whole = wholeOf(moved.bodies, mechanism, state);

@@ -15,7 +15,7 @@ double energyOf(const std::vector<int>& bodies, const Mechanism& mechanism, cons
 using RigidMotions = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 
 /// Bodies that contact moves together, and the motions of them as one that fixed things do not hinder: impulses leave
-/// the momenta of these as they are. All, where nothing fixed touches or ties them.
+/// the momenta of these as they are. All, where nothing fixed touches them or is joined to them.
 struct MovedBodies {
   std::vector<int> bodies;
   RigidMotions kept = RigidMotions::Identity(6, 6);
@@ -33,7 +33,7 @@ void keepMomenta(const MovedBodies& moved, const VectorX& free, const Mechanism&
 /// Contact gives no energy: what bodies have more than `most` (J), by rounding, by the order of a method or by impulses
 /// that were not found, is taken from their velocities relative to the kept motion that has their momenta. All become
 /// smaller by the same part, so that what touches opens and slides as before. Returns how much energy (J) that took.
-double limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state);
+double clampEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state);
 
 /// Whether energies (J) differ by more than rounding.
 bool isGain(double energy, double most);

@@ -23,8 +23,8 @@ double energyTakenBy(const VectorX& impulses, const VectorX& before, const Vecto
 
 }  // namespace
 
-double ContactStepping::firstLanding(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
-                                     const VectorX& state, double landingSpeed) {
+double ContactStepping::nextImpact(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
+                                   const VectorX& state, double landingSpeed) {
   lands_.assign(contacts.size(), 0);
   double first = INFINITY;
   if (contacts.empty()) return first;
@@ -38,8 +38,8 @@ double ContactStepping::firstLanding(const std::vector<Contact>& contacts, const
     if (!findLanding(group, motion, landingSpeed)) continue;
     VectorX path = state;
     const VectorX impulses = solve(group, posed(group, motion, 1));
-    tied_ ? tied_->apply(impulses, path) : cones_.apply(impulses, path);
-    first = std::min(first, landingPart(group, motion, cones_.velocitiesIn(path) + motion.turning));
+    dense_ ? dense_->apply(impulses, path) : sparse_.apply(impulses, path);
+    first = std::min(first, landingPart(group, motion, sparse_.velocitiesIn(path) + motion.turning));
   }
   contacts_ = last;
   faults_.clear();  // of a trial
@@ -82,10 +82,10 @@ std::vector<Vec3> ContactStepping::strike(const std::vector<Contact>& contacts, 
   begin(contacts, {}, state, 0, state);
   const double constant = energyConstant(assembly_.mechanism, state);
   for (const Group& group : findGroups()) {
-    setCones(group, state);
+    setContactProblem(group, state);
     const VectorX found = strike(group, timeStep, state);
     for (std::size_t i = 0; i < group.members.size(); ++i)
-      impulses[group.members[i]] = cones_.axes(i) * found.segment<3>(3 * static_cast<Index>(i));
+      impulses[group.members[i]] = sparse_.axes(i) * found.segment<3>(3 * static_cast<Index>(i));
   }
   contacts_ = last;
   bookNumerical(constant, assembly_.mechanism, state);
@@ -97,10 +97,10 @@ ContactStepping::Problem ContactStepping::posedImpact(const Group& group, const 
                                                       double part) const {
   Problem problem{start, {}};
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
-    const SurfaceLaw& law = lawOf(group.members[i]);
-    problem.frictions.push_back(law.staticFriction);
+    const ContactMaterial& material = materialOf(group.members[i]);
+    problem.frictions.push_back(material.staticFriction);
     const Index normal = 3 * static_cast<Index>(i) + 2;
-    const double rebound = -part * law.restitution * start[normal];
+    const double rebound = -part * material.restitution * start[normal];
     if (rebound <= restSpeed(0, timeStep)) continue;
     problem.free[normal] -= rebound;
     problem.hasRebounds = true;
@@ -112,10 +112,10 @@ ContactStepping::Problem ContactStepping::posedImpact(const Group& group, const 
 bool ContactStepping::slide(const Group& group, const VectorX& end, Problem& problem) const {
   bool isOther = false;
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
-    const SurfaceLaw& law = lawOf(group.members[i]);
-    if (law.dynamicFriction == law.staticFriction) continue;
+    const ContactMaterial& material = materialOf(group.members[i]);
+    if (material.dynamicFriction == material.staticFriction) continue;
     if (end.segment<2>(3 * static_cast<Index>(i)).norm() <= kSlowestSliding) continue;
-    problem.frictions[i] = law.dynamicFriction;
+    problem.frictions[i] = material.dynamicFriction;
     isOther = true;
   }
   return isOther;
@@ -123,26 +123,26 @@ bool ContactStepping::slide(const Group& group, const VectorX& end, Problem& pro
 
 /// With all friction static, then with dynamic friction where that slides.
 VectorX ContactStepping::strike(const Group& group, double timeStep, VectorX& state) {
-  const VectorX start = cones_.velocitiesIn(state);
+  const VectorX start = sparse_.velocitiesIn(state);
   const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
   Problem problem;
   VectorX impulses;
   const auto solveAndApply = [&] {
     restore(group.moved.bodies, state);
     impulses = solve(group, problem);
-    tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
+    dense_ ? dense_->apply(impulses, state) : sparse_.apply(impulses, state);
   };
   const std::size_t faults = faults_.size();
   const auto lossWith = [&](double part) {
     forgetFaults(faults);
     problem = posedImpact(group, start, timeStep, part);
     solveAndApply();
-    if (slide(group, cones_.velocitiesIn(state), problem)) solveAndApply();
+    if (slide(group, sparse_.velocitiesIn(state), problem)) solveAndApply();
     return most - energyOf(group.moved.bodies, assembly_.mechanism, state);
   };
   const double loss = lossWith(1);
   if (problem.hasRebounds && isGain(most - loss, most)) lossWith(partThatGainsNothing(lossWith, loss));
-  impactEnergy(state) += std::max(0.0, energyTakenBy(impulses, start, cones_.velocitiesIn(state)));
+  impactEnergy(state) += std::max(0.0, energyTakenBy(impulses, start, sparse_.velocitiesIn(state)));
   limit(group, most, state);
   return impulses;
 }

@@ -13,7 +13,7 @@
 
 #include "impact/impact_energy.h"
 #include "simulate/contact_response.h"
-#include "simulate/plan/islands.h"
+#include "simulate/plan/disjoint_sets.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -21,19 +21,19 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kRestSpeedPart = 0.01;  // of the speed that gravity gives in a step: slower is no impact
-constexpr double kOverlapPart = 1e-9;    // of the smallest body's size: deeper overlaps are taken out
-constexpr double kSolvedPart = 1e-7;     // of the fastest velocity
-constexpr double kSameSide = 0.99;       // cosine: normals that turn farther in half a step are another contact's
-constexpr double kSeenWay = 1e5;         // overlap tolerances: over a shorter way, errors of gaps hide how it turns
-constexpr double kFreeClosing = 2;       // of the speed with which a contact lands: nothing makes it so fast
+constexpr double kRestSpeedRatio = 0.01;  // of the speed that gravity gives in a step: slower is no impact
+constexpr double kOverlapRatio = 1e-9;    // of the smallest body's size: deeper overlaps are taken out
+constexpr double kSolvedRatio = 1e-7;     // of the fastest velocity
+constexpr double kSameSide = 0.99;        // cosine: normals that turn farther in half a step are another contact's
+constexpr double kSeenWay = 1e5;          // overlap tolerances: over a shorter way, errors of gaps hide how it turns
+constexpr double kFreeClosing = 2;        // of the speed with which a contact lands: nothing makes it so fast
 
 }  // namespace
 
 ContactStepping::ContactStepping(const Assembly& assembly)
     : assembly_(assembly),
       solver_(assembly.mechanism.constraints, assembly.mechanism.bodies),
-      overlapTolerance_(kOverlapPart * smallestSize(assembly.geometry)) {}
+      overlapTolerance_(kOverlapRatio * smallestSize(assembly.geometry)) {}
 
 void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes,
                               const VectorX& before, double timeStep, VectorX& state) {
@@ -71,31 +71,32 @@ void ContactStepping::begin(const std::vector<Contact>& contacts, const std::vec
                             const VectorX& before, double timeStep, const VectorX& state) {
   setMiddle(before, timeStep);
   contacts_.clear();
-  ropes_.clear(), ropeLaws_.clear();
+  ropes_.clear(), ropeMaterials_.clear();
   for (const Contact& contact : contacts) contacts_.push_back({contact, Vec3::Zero(), false});
   if (!contacts.empty())
     for (const RopeLimit* rope : ropes) {
-      const ImpactContact contact = RopeStage::contactOf(*rope, before);
+      const ImpactContact contact = RopeEvents::contactOf(*rope, before);
       contacts_.push_back({contact.contact, Vec3::Zero(), false});
-      ropes_.push_back(rope), ropeLaws_.push_back(contact.law);
+      ropes_.push_back(rope), ropeMaterials_.push_back(contact.material);
     }
   free_ = state;
   if (solver_.hasConstraints() && !contacts.empty()) solver_.factorize(middle_);
 }
 
-const SurfaceLaw& ContactStepping::lawOf(std::size_t member) const {
-  if (isRope(member)) return ropeLaws_[member - firstRope()];
-  return assembly_.geometry.pairs[contacts_[member].contact.pair].law;
+const ContactMaterial& ContactStepping::materialOf(std::size_t member) const {
+  if (isRope(member)) return ropeMaterials_[member - firstRope()];
+  return assembly_.geometry.pairs[contacts_[member].contact.pair].material;
 }
 
-void ContactStepping::setCones(const Group& group, const VectorX& state) {
-  setCones(group, group.contacts, state);
+void ContactStepping::setContactProblem(const Group& group, const VectorX& state) {
+  setContactProblem(group, group.contacts, state);
 }
 
-void ContactStepping::setCones(const Group& group, const std::vector<Contact>& contacts, const VectorX& state) {
-  cones_.set(contacts, assembly_.mechanism.bodies, state);
-  tied_.reset();
-  if (group.isTied) tied_.emplace(contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
+void ContactStepping::setContactProblem(const Group& group, const std::vector<Contact>& contacts,
+                                        const VectorX& state) {
+  sparse_.set(contacts, assembly_.mechanism.bodies, state);
+  dense_.reset();
+  if (group.isConstrained) dense_.emplace(contacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state);
 }
 
 /// Where bodies are in the middle of a step if nothing acts on them.
@@ -105,23 +106,24 @@ void ContactStepping::setMiddle(const VectorX& before, double timeStep) {
     centerOfMass(middle_, body) += 0.5 * timeStep * linearVelocity(before, body);
     turnBody(middle_, body, 0.5 * timeStep * angularVelocity(before, body));
   }
-  placeBodies(assembly_.mechanism.bodies, middle_, frames_);
+  findBodyFrames(assembly_.mechanism.bodies, middle_, frames_);
 }
 
-/// Moves a contact of the step's start to its middle. Returns the rate (m/s^2, world) of its velocity there if its
-/// bodies keep theirs.
+/// Moves a contact of the step's start to its middle. Returns the derivative (m/s^2, world) of its velocity there if
+/// its bodies keep theirs.
 Vec3 ContactStepping::follow(std::size_t member, const VectorX& before, double timeStep, Contact& contact) const {
   if (!isRope(member)) {
     const Vec3 drift = followContact(before, middle_, frames_, contact);
     return canLast(contact) ? drift : followSides(timeStep, contact);
   }
   const RopeLimit& rope = *ropes_[member - firstRope()];
-  contact = RopeStage::contactOf(rope, middle_).contact;
+  contact = RopeEvents::contactOf(rope, middle_).contact;
   return -lengtheningAcceleration(rope, middle_, VectorX::Zero(middle_.size())) * contact.normal;
 }
 
 /// The same for the sides of two capsules, whose gap is smooth, by where they are found in the middle. With gaps s
-/// there and s0 at the start, and the rate s' in the middle: s - s0 = s' h/2 - s'' h^2/8. Zero for edges of others.
+/// there and s0 at the start, and the derivative s' in the middle: s - s0 = s' h/2 - s'' h^2/8. Zero for edges of
+/// others.
 Vec3 ContactStepping::followSides(double timeStep, Contact& contact) const {
   const ContactGeometry& geometry = assembly_.geometry;
   const ColliderPair& pair = geometry.pairs[contact.pair];
@@ -136,8 +138,8 @@ Vec3 ContactStepping::followSides(double timeStep, Contact& contact) const {
     if (!nearest || (other.point - contact.point).squaredNorm() < (nearest->point - contact.point).squaredNorm())
       nearest = &other;
   if (!nearest || nearest->normal.dot(contact.normal) < kSameSide) return Vec3::Zero();
-  const double rate = openingSpeed(*nearest, middle_), gap = contact.separation;
-  const double turning = 2 * (rate - (nearest->separation - gap) / half);  // m/s: s'' h/2
+  const double derivative = openingSpeed(*nearest, middle_), gap = contact.separation;
+  const double turning = 2 * (derivative - (nearest->separation - gap) / half);  // m/s: s'' h/2
   if (std::abs(turning) > speed) return Vec3::Zero();
   contact = *nearest;
   contact.separation = gap;
@@ -148,31 +150,33 @@ Vec3 ContactStepping::followSides(double timeStep, Contact& contact) const {
 ContactStepping::Motion ContactStepping::motionOf(const Group& group, const VectorX& before, double timeStep,
                                                   const VectorX& state) {
   std::vector<Contact> contacts = group.contacts;
-  std::vector<Vec3> drifts;  // m/s^2, world
+  std::vector<Vec3> displacements;  // m/s^2, world
   for (std::size_t i = 0; i < contacts.size(); ++i)
-    drifts.push_back(follow(group.members[i], before, timeStep, contacts[i]));
-  setCones(group, contacts, middle_);
-  Motion motion{before, cones_.velocitiesIn(before), cones_.velocitiesIn(state), VectorX(3 * drifts.size()), timeStep};
-  for (std::size_t i = 0; i < drifts.size(); ++i)
-    motion.turning.segment<3>(3 * static_cast<Index>(i)) = 0.5 * timeStep * (cones_.axes(i).transpose() * drifts[i]);
+    displacements.push_back(follow(group.members[i], before, timeStep, contacts[i]));
+  setContactProblem(group, contacts, middle_);
+  Motion motion{before, sparse_.velocitiesIn(before), sparse_.velocitiesIn(state), VectorX(3 * displacements.size()),
+                timeStep};
+  for (std::size_t i = 0; i < displacements.size(); ++i)
+    motion.turning.segment<3>(3 * static_cast<Index>(i)) =
+        0.5 * timeStep * (sparse_.axes(i).transpose() * displacements[i]);
   return motion;
 }
 
 /// Whether the member is a contact with a fixed plane without friction.
 bool ContactStepping::isOnSmoothPlane(std::size_t member) const {
-  if (isRope(member) || lawOf(member).staticFriction > 0 || lawOf(member).dynamicFriction > 0) return false;
+  if (isRope(member) || materialOf(member).staticFriction > 0 || materialOf(member).dynamicFriction > 0) return false;
   return assembly_.geometry.pairs[contacts_[member].contact.pair].againstPlane;
 }
 
-/// Contacts whose bodies touch or are tied to each other.
+/// Contacts whose bodies touch or are joined.
 std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
-  Islands islands(assembly_.mechanism.bodies.size());
-  std::vector<char> isTied(assembly_.mechanism.bodies.size(), 0), isTiedToFixed = isTied;
-  forEachTie(assembly_.mechanism.constraints, [&](int bodyA, int bodyB) {
+  DisjointSets islands(assembly_.mechanism.bodies.size());
+  std::vector<char> isConstrained(assembly_.mechanism.bodies.size(), 0), isTiedToFixed = isConstrained;
+  forEachConstraint(assembly_.mechanism.constraints, [&](int bodyA, int bodyB) {
     islands.join(bodyA, bodyB);
     for (const auto& [body, other] : {std::pair(bodyA, bodyB), {bodyB, bodyA}}) {
       if (body == kFixed) continue;
-      isTied[static_cast<std::size_t>(body)] = 1;
+      isConstrained[static_cast<std::size_t>(body)] = 1;
       if (other == kFixed) isTiedToFixed[static_cast<std::size_t>(body)] = 1;
     }
   });
@@ -189,11 +193,11 @@ std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
     else
       group.moved.kept.resize(6, 0);
   }
-  for (std::size_t body = 0; body < isTied.size(); ++body)
+  for (std::size_t body = 0; body < isConstrained.size(); ++body)
     if (const auto group = groups.find(islands.islandOf(static_cast<int>(body))); group != groups.end()) {
       group->second.moved.bodies.push_back(static_cast<int>(body));
       if (isTiedToFixed[body]) group->second.moved.kept.resize(6, 0);
-      group->second.isTied = group->second.isTied || isTied[body];
+      group->second.isConstrained = group->second.isConstrained || isConstrained[body];
     }
   std::vector<Group> ordered;
   for (auto& [firstBody, group] : groups) {
@@ -205,21 +209,21 @@ std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
 
 /// Speed (m/s) of closing that does not rebound; `pressing` is what a step adds to it.
 double ContactStepping::restSpeed(double pressing, double timeStep) const {
-  return kRestSteps * pressing + kRestSpeedPart * assembly_.mechanism.gravity.norm() * timeStep + kRestSpeedFloor;
+  return kRestSteps * pressing + kRestSpeedRatio * assembly_.mechanism.gravity.norm() * timeStep + kRestSpeedFloor;
 }
 
-/// The cone problem for velocities at the step's end: what is left of the gap, or the rebound, is taken from the normal
-/// ones. A contact that opens when the step begins may come back as fast, so that the mean leaves its gap as it was. Of
-/// the restitution only a part counts.
+/// The frictional contact problem for velocities at the step's end: what is left of the gap, or the rebound, is taken
+/// from the normal ones. A contact that opens when the step begins may come back as fast, so that the mean leaves its
+/// gap as it was. Of the restitution only a part counts.
 ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion& motion, double part) const {
   Problem problem{motion.free + motion.turning, {}};
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
-    const SurfaceLaw& law = lawOf(group.members[i]);
+    const ContactMaterial& material = materialOf(group.members[i]);
     const bool slides = (motion.start - motion.turning).segment<2>(at).norm() > kSlowestSliding;
-    problem.frictions.push_back(slides ? law.dynamicFriction : law.staticFriction);
+    problem.frictions.push_back(slides ? material.dynamicFriction : material.staticFriction);
     const double closing = motion.closing(at + 2), pressing = motion.pressing(at + 2);
-    const double gap = std::max(0.0, group.contacts[i].separation), restitution = part * law.restitution;
+    const double gap = std::max(0.0, group.contacts[i].separation), restitution = part * material.restitution;
     const bool touches = gap + motion.timeStep * problem.free[at + 2] < 0;
     const bool rebounds = touches && restitution * closing > restSpeed(pressing, motion.timeStep);
     if (lands_[group.members[i]]) {
@@ -258,44 +262,44 @@ void ContactStepping::resolve(const Group& group, const VectorX& before, double 
 }
 
 VectorX ContactStepping::solve(const Group& group, const Problem& problem) {
-  if (tied_ || group.contacts.size() <= kFewContacts) {
-    const MatrixX inverseMass = this->inverseMass();
+  if (dense_ || group.contacts.size() <= kFewContacts) {
+    const MatrixX delassus = this->delassus();
     const double most = problem.free.cwiseAbs().maxCoeff();
-    ConeSolution solution = solveConeProblem(inverseMass, problem.free, problem.frictions);
+    ContactSolution solution = solveFrictionalContact(delassus, problem.free, problem.frictions);
     // What is wedged may have no solution, and the search for one may lead beyond all bounds.
     if (!(solution.residual <= most)) {
       faults_.push_back({CorrectionKind::omittedFriction, group.moved.bodies, solution.residual});
-      solution = solveConeProblem(inverseMass, problem.free, std::vector<double>(problem.frictions.size(), 0));
+      solution = solveFrictionalContact(delassus, problem.free, std::vector<double>(problem.frictions.size(), 0));
     }
     if (!(solution.residual <= most)) {
       faults_.push_back({CorrectionKind::omittedContacts, group.moved.bodies, solution.residual});
       solution.impulses.setZero();
     }
-    noteUnsolved(group, solution, kSolvedPart * most);
+    noteUnsolved(group, solution, kSolvedRatio * most);
     return solution.impulses;
   }
-  const double fastest = problem.free.cwiseAbs().maxCoeff(), tolerance = kSolvedPart * fastest;
-  ConeStart start = startOf(group);
-  const ConeSolution solution = cones_.solve(problem.free, problem.frictions, tolerance, start, iterations_);
+  const double fastest = problem.free.cwiseAbs().maxCoeff(), tolerance = kSolvedRatio * fastest;
+  WarmStart start = startOf(group);
+  const ContactSolution solution = sparse_.solve(problem.free, problem.frictions, tolerance, start, iterations_);
   penalties_[group.firstBody] = start.penalty;
   noteUnsolved(group, solution, tolerance);
   return solution.impulses;
 }
 
-void ContactStepping::noteUnsolved(const Group& group, const ConeSolution& solution, double tolerance) {
+void ContactStepping::noteUnsolved(const Group& group, const ContactSolution& solution, double tolerance) {
   if (!solution.converged && !(solution.residual <= tolerance))
     faults_.push_back({CorrectionKind::unsolvedContacts, group.moved.bodies, solution.residual});
 }
 
 void ContactStepping::limit(const Group& group, double most, VectorX& state) {
-  const double taken = limitEnergy(group.moved, most, assembly_.mechanism, state);
+  const double taken = clampEnergy(group.moved, most, assembly_.mechanism, state);
   if (taken > 0) faults_.push_back({CorrectionKind::clampedEnergy, group.moved.bodies, taken});
 }
 
 /// Impulses and velocities of the step before, by the nearest contact of the same bodies.
-ConeStart ContactStepping::startOf(const Group& group) const {
+WarmStart ContactStepping::startOf(const Group& group) const {
   const Index size = 3 * static_cast<Index>(group.members.size());
-  ConeStart start{VectorX::Zero(size), VectorX::Zero(size), 0};
+  WarmStart start{VectorX::Zero(size), VectorX::Zero(size), 0};
   const auto penalty = penalties_.find(group.firstBody);
   if (penalty != penalties_.end()) start.penalty = penalty->second;
   for (std::size_t i = 0; i < group.members.size(); ++i) {
@@ -308,8 +312,8 @@ ConeStart ContactStepping::startOf(const Group& group) const {
       if (distance >= nearest) continue;
       nearest = distance;
       start.impulses.segment<3>(3 * static_cast<Index>(i)) =
-          startPart_ * (cones_.axes(i).transpose() * previous_[k].impulse);
-      start.velocities.segment<3>(3 * static_cast<Index>(i)) = cones_.axes(i).transpose() * previousSlips_[k];
+          startPart_ * (sparse_.axes(i).transpose() * previous_[k].impulse);
+      start.velocities.segment<3>(3 * static_cast<Index>(i)) = sparse_.axes(i).transpose() * previousSlips_[k];
     }
   }
   return start;
@@ -319,8 +323,8 @@ ConeStart ContactStepping::startOf(const Group& group) const {
 /// its energy. Overlaps to which that leads where something strikes are taken out, and what lifts from the velocities.
 /// Returns the contacts' velocities at the end.
 VectorX ContactStepping::move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state) {
-  tied_ ? tied_->apply(impulses, state) : cones_.apply(impulses, state);
-  const VectorX end = cones_.velocitiesIn(state);
+  dense_ ? dense_->apply(impulses, state) : sparse_.apply(impulses, state);
+  const VectorX end = sparse_.velocitiesIn(state);
   moveByMean(group, motion, state);
   const VectorX gaps = gapsAfter(group, motion.timeStep, 0.5 * (motion.start + end));
   if (gaps.minCoeff() >= -overlapTolerance_) return end;
@@ -359,7 +363,7 @@ void ContactStepping::restore(const std::vector<int>& bodies, VectorX& state) co
 
 /// What struck is an impact, with its friction, and so is the closing that others still had; the rest of their work is
 /// friction. What contacts would give of energy, in all, is an error and none of theirs; nor do they take more than
-/// what ties, whose impulses are as large where contacts have short levers about a joint, leave of `loss` (J).
+/// constraints, whose impulses are as large where contacts have short levers about a joint, leave of `loss` (J).
 void ContactStepping::book(const Group& group, const Motion& motion, const VectorX& impulses, const VectorX& end,
                            double loss, VectorX& state) {
   double struck = 0, rubbed = 0, rubbedAtStart = 0;
@@ -374,7 +378,7 @@ void ContactStepping::book(const Group& group, const Motion& motion, const Vecto
   }
   struck = std::max(0.0, struck), rubbed = std::max(0.0, rubbed);
   const double taken = struck + rubbed, left = std::max(0.0, loss);
-  const double part = group.isTied && taken > left ? left / taken : 1;
+  const double part = group.isConstrained && taken > left ? left / taken : 1;
   impactEnergy(state) += part * struck;
   if (rubbed == 0) return;
   frictionEnergy(state) += part * rubbed;
@@ -394,15 +398,15 @@ void ContactStepping::bookForces(double timeStep, VectorX& state) const {
 /// What the next step begins with, and who is told.
 void ContactStepping::keep(const Group& group, const Motion& motion, const Problem& problem, const VectorX& impulses,
                            const VectorX& state) {
-  const VectorX end = cones_.velocitiesIn(state);
+  const VectorX end = sparse_.velocitiesIn(state);
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
     SteppedContact& stepped = contacts_[group.members[i]];
-    stepped.impulse = cones_.axes(i) * impulses.segment<3>(at);
+    stepped.impulse = sparse_.axes(i) * impulses.segment<3>(at);
     const double closing = motion.closing(at + 2), pressing = motion.pressing(at + 2);
     stepped.isImpact = impulses[at + 2] > 0 && closing > restSpeed(pressing, motion.timeStep);
     const Vec3 slip = end.segment<3>(at) + problem.free.segment<3>(at) - motion.free.segment<3>(at);
-    slips_[group.members[i]] = cones_.axes(i) * correctedVelocity(slip, problem.frictions[i]);
+    slips_[group.members[i]] = sparse_.axes(i) * correctedVelocity(slip, problem.frictions[i]);
   }
 }
 

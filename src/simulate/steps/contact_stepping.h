@@ -6,14 +6,14 @@
 #include <utility>
 #include <vector>
 
-#include "collision/first_crossing.h"
+#include "collision/root_bracketing.h"
 #include "dynamics/rigid_body.h"
-#include "impact/contact_cones.h"
+#include "impact/dense_contact_problem.h"
 #include "impact/pairwise.h"
-#include "impact/sparse_cones.h"
+#include "impact/sparse_contact_problem.h"
 #include "simulate/assembly.h"
 #include "simulate/corrections.h"
-#include "simulate/rope_stage.h"
+#include "simulate/rope_events.h"
 #include "simulate/steps/contact_energy.h"
 
 namespace cradle {
@@ -32,9 +32,10 @@ struct SteppingFault {
   double amount;            // in the unit of its kind
 };
 
-/// The contact step for many contacts that last or chatter: all contacts within reach of the step are one cone problem
-/// for the velocities at its end. Nothing passes through anything (what is apart may close by its gap and no more),
-/// restitution and friction included, and energy does not grow. Order 1 where something strikes, 2 where contacts last.
+/// The contact step for many contacts that last or chatter: all contacts within reach of the step are one frictional
+/// contact problem for the velocities at its end. Nothing passes through anything (what is apart may close by its gap
+/// and no more), restitution and friction included, and energy does not grow. Order 1 where something strikes, 2 where
+/// contacts last.
 class ContactStepping {
  public:
   /// Keeps a reference to `assembly`.
@@ -42,27 +43,28 @@ class ContactStepping {
 
   /// `contacts` are those of the step's start, with gaps that may close within it; `before` the state there; `state`
   /// where free motion led after `timeStep` (s), and after the call where contact did. Energy that went is booked.
-  /// What firstLanding found to land is not held before the step's end. `ropes` that are no rods take part: they may be
+  /// What nextImpact found to land is not held before the step's end. `ropes` that are no rods take part: they may be
   /// as long as they are, as contacts may close.
   void resolve(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes, const VectorX& before,
                double timeStep, VectorX& state);
 
-  /// How far (m or rad) the last call left ties from where they should be.
-  double tieError() const { return solver_.hasConstraints() ? solver_.largestError() : 0; }
+  /// How far (m or rad) the last call left constraints from where they should be.
+  double constraintError() const { return solver_.hasConstraints() ? solver_.largestError() : 0; }
 
   /// The part of a step, with the same arguments, after which something lands first: what is apart meets, faster than
   /// at `landingSpeed` (m/s), while what touches is held. Infinite if nothing does.
-  double firstLanding(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
-                      const VectorX& state, double landingSpeed);
+  double nextImpact(const std::vector<Contact>& contacts, const VectorX& before, double timeStep, const VectorX& state,
+                    double landingSpeed);
 
   /// Moves bodies apart that overlap in `state`; what lifts them is taken from their velocities.
-  void takeOut(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes, VectorX& state);
+  void correctPenetration(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes,
+                          VectorX& state);
 
   /// The impact of contacts that touch in `state`, all at once. Their impulses (N s, world, on B). Energy that went is
   /// booked.
   std::vector<Vec3> strike(const std::vector<Contact>& contacts, double timeStep, VectorX& state);
 
-  /// J: what the friction of lasting contacts took in the last step, and would have at the velocities of its start.
+  /// J: what the friction of active contacts took in the last step, and would have at the velocities of its start.
   struct HeldFriction {
     double atStart = 0, taken = 0;
   };
@@ -70,7 +72,7 @@ class ContactStepping {
 
   /// Those of the last step.
   const std::vector<SteppedContact>& contacts() const { return contacts_; }
-  /// Iterations that its cone problems took so far.
+  /// Iterations that its frictional contact problems took so far.
   long iterations() const { return iterations_; }
 
   /// Faults since the last step began, or the last call.
@@ -84,7 +86,7 @@ class ContactStepping {
     std::vector<Contact> contacts;     // the same
     MovedBodies moved;
     int firstBody = 0;
-    bool isTied = false;
+    bool isConstrained = false;
   };
   struct Motion {
     const VectorX& before;  // the state at the step's start
@@ -108,9 +110,9 @@ class ContactStepping {
   bool isRope(std::size_t member) const { return member >= firstRope(); }
   Vec3 follow(std::size_t member, const VectorX& before, double timeStep, Contact& contact) const;
   Vec3 followSides(double timeStep, Contact& contact) const;
-  const SurfaceLaw& lawOf(std::size_t member) const;
-  void setCones(const Group& group, const VectorX& state);
-  void setCones(const Group& group, const std::vector<Contact>& contacts, const VectorX& state);
+  const ContactMaterial& materialOf(std::size_t member) const;
+  void setContactProblem(const Group& group, const VectorX& state);
+  void setContactProblem(const Group& group, const std::vector<Contact>& contacts, const VectorX& state);
   Motion motionOf(const Group& group, const VectorX& before, double timeStep, const VectorX& state);
   bool isOnSmoothPlane(std::size_t member) const;
   std::vector<Group> findGroups() const;
@@ -125,13 +127,13 @@ class ContactStepping {
   template <class LossWith>
   static double partThatGainsNothing(const LossWith& lossWith, double lossOfAll);
   VectorX solve(const Group& group, const Problem& problem);
-  MatrixX inverseMass() const { return tied_ ? tied_->inverseMass() : cones_.inverseMass(); }
+  MatrixX delassus() const { return dense_ ? dense_->delassus() : sparse_.delassus(); }
   void limit(const Group& group, double most, VectorX& state);
   void forgetFaults(std::size_t kept) {
     faults_.erase(faults_.begin() + static_cast<std::ptrdiff_t>(kept), faults_.end());
   }
-  void noteUnsolved(const Group& group, const ConeSolution& solution, double tolerance);
-  ConeStart startOf(const Group& group) const;
+  void noteUnsolved(const Group& group, const ContactSolution& solution, double tolerance);
+  WarmStart startOf(const Group& group) const;
   VectorX move(const Group& group, const Motion& motion, const VectorX& impulses, VectorX& state);
   static VectorX gapsAfter(const Group& group, double timeStep, const VectorX& velocities);
   void moveByMean(const Group& group, const Motion& motion, VectorX& state) const;
@@ -147,15 +149,15 @@ class ContactStepping {
   const Assembly& assembly_;
   ConstraintSolver solver_;      // of the step's middle
   double overlapTolerance_ = 0;  // m
-  SparseCones cones_;
-  std::optional<ContactCones> tied_;  // of a group that something ties
+  SparseContactProblem sparse_;
+  std::optional<DenseContactProblem> dense_;  // of a group with constraints
   std::vector<SteppedContact> contacts_, previous_;
-  std::vector<const RopeLimit*> ropes_;      // the last of contacts_ within a step
-  std::vector<SurfaceLaw> ropeLaws_;         // theirs
-  std::vector<char> lands_;                  // contacts that are not held before the step's end
-  std::vector<Vec3> slips_, previousSlips_;  // m/s, world: velocities of the contacts with De Saxce's correction
-  double previousStep_ = 0, startPart_ = 1;  // s; ratio of impulses now to those of the step before, if forces last
-  std::map<int, double> penalties_;          // of each group's first body
+  std::vector<const RopeLimit*> ropes_;         // the last of contacts_ within a step
+  std::vector<ContactMaterial> ropeMaterials_;  // theirs
+  std::vector<char> lands_;                     // contacts that are not held before the step's end
+  std::vector<Vec3> slips_, previousSlips_;     // m/s, world: velocities of the contacts with De Saxce's correction
+  double previousStep_ = 0, startPart_ = 1;     // s; ratio of impulses now to those of the step before, if forces last
+  std::map<int, double> penalties_;             // of each group's first body
   long iterations_ = 0;
   std::vector<SteppingFault> faults_;
   HeldFriction friction_;

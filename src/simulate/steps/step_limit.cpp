@@ -15,15 +15,15 @@
 namespace cradle {
 namespace {
 
-constexpr double kGrowthRounding = 1e-7;   // of growth: roots of a double eigenvalue are that exact
-constexpr double kVisibleGain = 0.1;       // of the energy, during a run
-constexpr double kSafePart = 0.5;          // of the limit: stable, and a few per cent accurate in frequency
-constexpr double kShortestStep = 1e-3;     // of the mode's time: what is unstable there has no limit
-constexpr double kLimitTolerance = 1e-4;   // relative
-constexpr double kMostTrialSteps = 10000;  // by then a stable motion has shown its largest error
-constexpr double kVisibleChange = 0.01;    // of the energy, in a period of a stable mode: 5 % of the swing in ten
-constexpr double kLeastStepOmega = 1e-4;   // explicit Euler gains 1 % in a period from 1.6e-3 on, others need less care
-constexpr double kToldPart = 0.9;          // of a step, of which two digits are told: they may be 5 % too long
+constexpr double kGrowthRounding = 1e-7;  // of growth: roots of a double eigenvalue are that exact
+constexpr double kVisibleGain = 0.1;      // of the energy, during a run
+constexpr double kSafeRatio = 0.5;        // of the limit: stable, and a few per cent accurate in frequency
+constexpr double kShortestStep = 1e-3;    // of the mode's time: what is unstable there has no limit
+constexpr double kLimitTolerance = 1e-4;  // relative
+constexpr double kMaxTrialSteps = 10000;  // by then a stable motion has shown its largest error
+constexpr double kVisibleChange = 0.01;   // of the energy, in a period of a stable mode: 5 % of the swing in ten
+constexpr double kMinStepOmega = 1e-4;    // explicit Euler gains 1 % in a period from 1.6e-3 on, others need less care
+constexpr double kToldFraction = 0.9;     // of a step, of which two digits are told: they may be 5 % too long
 
 /// What a step does to (x, x'), and what it dissipates: y^T dissipation y.
 struct StepMap {
@@ -31,12 +31,12 @@ struct StepMap {
 };
 
 StepMap stepMapOf(const SpringMode& mode, Integrator integrate, double timeStep) {
-  const RightHandSide oscillator{[&mode](double, const VectorX& state, VectorX& rate) {
-                                   rate.resize(3);
-                                   rate << state[1], -mode.stiffness * state[0] - mode.damping * state[1],
+  const RightHandSide oscillator{[&mode](double, const VectorX& state, VectorX& derivative) {
+                                   derivative.resize(3);
+                                   derivative << state[1], -mode.stiffness * state[0] - mode.damping * state[1],
                                        mode.damping * state[1] * state[1];
                                  },
-                                 [](const VectorX& state, VectorX& rate) { rate[0] = state[1]; }, 1};
+                                 [](const VectorX& state, VectorX& derivative) { derivative[0] = state[1]; }, 1};
   const auto stepped = [&](double x, double v) {
     Step step;
     integrate(oscillator, Vec3(x, v, 0), 0, timeStep, step);
@@ -80,7 +80,7 @@ bool isStable(const SpringMode& mode, Integrator integrate, double timeStep) {
 }
 
 std::string safeStepText(double limit) {
-  return fmt::format("a timeStep of {:.2g} s is safe", kSafePart * limit);
+  return fmt::format("a timeStep of {:.2g} s is safe", kSafeRatio * limit);
 }
 
 std::string faultText(const SpringMode& mode, const ChosenMethod& method, double energyGain) {
@@ -116,7 +116,7 @@ double longestHarmlessStep(const SpringMode& mode, Integrator integrate, double 
   };
   double harmless = timeStep;
   while (!isHarmless(harmless))
-    if ((harmless /= 2) * std::sqrt(mode.stiffness) < kLeastStepOmega) return 0;
+    if ((harmless /= 2) * std::sqrt(mode.stiffness) < kMinStepOmega) return 0;
   double harmful = 2 * harmless;
   while (harmful - harmless > kLimitTolerance * harmless) {
     const double middle = (harmless + harmful) / 2;
@@ -129,7 +129,7 @@ std::string changeText(const SpringMode& mode, const ChosenMethod& method, doubl
   const double frequency = std::sqrt(mode.stiffness), percent = 100 * std::abs(change);
   const double harmless = longestHarmlessStep(mode, method.integrate, method.timeStep);
   const std::string remedy =
-      harmless > 0 ? fmt::format("with a timeStep of {:.2g} s it is below 1 %", kToldPart * harmless) : "use rk4";
+      harmless > 0 ? fmt::format("with a timeStep of {:.2g} s it is below 1 %", kToldFraction * harmless) : "use rk4";
   return fmt::format(
       "{} {} % of its energy in a period by the steps of {} alone: step x omega = {:.3g} s x {:.4g} rad/s = {:.4g}; "
       "{}",
@@ -155,7 +155,7 @@ ModeTrial tryMode(const SpringMode& mode, const ChosenMethod& method, double dur
   const StepMap map = stepMapOf(mode, method.integrate, method.timeStep);
   ModeTrial trial{spectralRadius(map.motion), 0};
   if (!(trial.growth <= 1 + kGrowthRounding)) return trial;
-  const double steps = std::min(std::ceil(duration / method.timeStep), kMostTrialSteps);
+  const double steps = std::min(std::ceil(duration / method.timeStep), kMaxTrialSteps);
   const double speed = std::max(std::sqrt(mode.stiffness), 1e-3 * mode.damping);  // of the unit of x
   for (const Eigen::Vector2d& start :
        {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, speed), Eigen::Vector2d(1, speed), Eigen::Vector2d(1, -speed)})

@@ -15,21 +15,21 @@
 namespace cradle {
 namespace {
 
-constexpr double kClosedGapPart = 1e-3;        // of the touching tolerance: how well an impact's gap is closed
-constexpr double kShortestPart = 1.0 / 1024;   // of a step: shorter ones are not cut for their error
-constexpr double kMostPartGrowth = 4;          // of a part of a step to the next
-constexpr double kMostSteppedTieError = 1e-7;  // m (a m of coordinates) or rad: a thousandth of what is seen
-constexpr double kMostTieGrowth = 2;           // times what free motion leaves of ties that contradict each other
-constexpr double kShortestHeld = 1.0 / 32;     // of a step: shorter ones are not cut for the sake of ties
-constexpr int kMostServed = 12;                // contacts
-constexpr double kSheetPart = 0.5;             // of the radius inside a body: so far it may go in a step beside a sheet
-constexpr int kManyLandings = 2;               // events in a step: beyond, it is not cut where something lands
-constexpr int kManyEvents = 16;                // in a step: beyond, it is not cut any more
-constexpr int kMostEvents = 10000;             // within a step
+constexpr double kClosedGapRatio = 1e-3;       // of the touching tolerance: how well an impact's gap is closed
+constexpr double kShortestRatio = 1.0 / 1024;  // of a step: shorter ones are not cut for their error
+constexpr double kMaxPartGrowth = 4;           // of a part of a step to the next
+constexpr double kMaxSteppedTieError = 1e-7;   // m (a m of coordinates) or rad: a thousandth of what is seen
+constexpr double kMaxTieGrowth = 2;         // times what free motion leaves of constraints that contradict each other
+constexpr double kShortestHeld = 1.0 / 32;  // of a step: shorter ones are not cut for the sake of constraints
+constexpr int kMaxServed = 12;              // contacts
+constexpr double kSheetRatio = 0.5;         // of the radius inside a body: so far it may go in a step beside a sheet
+constexpr int kManyLandings = 2;            // events in a step: beyond, it is not cut where something lands
+constexpr int kManyEvents = 16;             // in a step: beyond, it is not cut any more
+constexpr int kMaxEvents = 10000;           // within a step
 
 }  // namespace
 
-SteppedMotion::SteppedMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method)
+SteppedMotion::SteppedMotion(IslandState& island, RopeEvents& ropes, const ChosenMethod& method)
     : island_(island),
       ropes_(ropes),
       method_(method),
@@ -40,13 +40,13 @@ SteppedMotion::SteppedMotion(MovingIsland& island, RopeStage& ropes, const Chose
   for (const Collider& collider : island.assembly.geometry.colliders) innerRadii_.push_back(innerRadius(collider));
   countSteps();
   ropes_.setTimeStep(method.timeStep);
-  island_.step.startRateIsKnown = false;
+  island_.step.startDerivativeIsKnown = false;
   contacts_.strike(island_.time, island_.state, island_.state);
   ropes_.resolve(island_.time, island_.state);
   island_.beginAndEndPushes();
   island_.requireUnsolvedPairsApart();
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
-  startTieError_ = solver_.largestError();
+  startConstraintError_ = solver_.largestError();
 }
 
 void SteppedMotion::advance(double frame) {
@@ -71,12 +71,12 @@ void SteppedMotion::advance(double frame) {
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
 
   // What changes here?
-  if (isHeld_) contacts_.settleHeld(time, island_.state);
+  if (isHeld_) contacts_.recordAndLetSleep(time, island_.state);
   if (isHeld_) held_ = island_.state;
   if (atEvent || !contacts_.isCrowded()) contacts_.strike(time, before_, island_.state);
   rodsBefore_ = ropes_.rods();
   ropes_.resolve(time, island_.state);
-  keepsTies_ = ropes_.rods() == rodsBefore_;
+  keepsConstraints_ = ropes_.rods() == rodsBefore_;
   island_.beginAndEndPushes();
   guard_.check(island_.state, time, step.timeStep);
   island_.requireUnsolvedPairsApart();
@@ -121,8 +121,8 @@ double SteppedMotion::nextStepEnd() const {
 }
 
 /// Takes out what the step left wrong: lengths of rods, closing and overlapping contacts. False if a shorter step would
-/// keep ties that this one does not: what contact makes of free motion does not follow the arcs of light bodies on long
-/// arms far.
+/// keep constraints that this one does not: what contact makes of free motion does not follow the arcs of light bodies
+/// on long arms far.
 bool SteppedMotion::holdContacts() {
   const double length = island_.step.timeStep;
   VectorX& state = island_.state;
@@ -132,7 +132,7 @@ bool SteppedMotion::holdContacts() {
   if (solver_.hasConstraints()) {
     solver_.project(state);
     bookNumerical(energyConstant(mechanism, island_.step.state), mechanism, state);
-    if (solver_.leaveNoMotion(state, startTieError_))
+    if (solver_.leaveNoMotion(state, startConstraintError_))
       guard_.failAtTies(state, island_.step.time, solver_.largestError());
   }
   normalizeOrientations(state);
@@ -141,14 +141,14 @@ bool SteppedMotion::holdContacts() {
   const double free = solver_.hasConstraints() ? solver_.largestError() : 0;
   const double size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
   contacts_.hold(before_, length, ropes_, state);
-  return contacts_.tieError() <= std::max(kMostSteppedTieError * (1 + size), kMostTieGrowth * free) ||
+  return contacts_.constraintError() <= std::max(kMaxSteppedTieError * (1 + size), kMaxTieGrowth * free) ||
          length < kShortestHeld * method_.timeStep;
 }
 
 void SteppedMotion::shorten() {
   Step& step = island_.step;
   const double half = step.timeStep / 2;
-  keepStartRate(step);
+  keepStartDerivative(step);
   method_.integrate(island_.rightHandSide, before_, island_.time, half, step);
 }
 
@@ -164,7 +164,7 @@ double SteppedMotion::longestBesideSheets() const {
     const Collider& solid = isOnB ? a : b;
     const double speed = linearVelocity(island_.state, solid.body).norm() +
                          solid.boundingRadius * angularVelocity(island_.state, solid.body).norm();
-    longest = std::min(longest, kSheetPart * innerRadii_[isOnB ? pair.a : pair.b] / speed);
+    longest = std::min(longest, kSheetRatio * innerRadii_[isOnB ? pair.a : pair.b] / speed);
   }
   return longest;
 }
@@ -177,13 +177,13 @@ void SteppedMotion::moveFreely(double stepEnd) {
   if (method_.tolerance == 0) return;
   prepareInterpolant(island_.rightHandSide, step);
   while (!(rk4Error(step, motionComponents(step.state)) <= method_.tolerance) &&
-         length > kShortestPart * method_.timeStep) {
+         length > kShortestRatio * method_.timeStep) {
     length /= 2;
-    keepStartRate(step);
+    keepStartDerivative(step);
     method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
     prepareInterpolant(island_.rightHandSide, step);
   }
-  longest_ = kMostPartGrowth * length;
+  longest_ = kMaxPartGrowth * length;
 }
 
 /// Cuts the step at the first event in it. Free motion does not say when bodies meet that touch already: landings do.
@@ -201,7 +201,7 @@ bool SteppedMotion::stopAtFirstEvent() {
   const double whole = step.timeStep;
   if (impact && !(change && change->fraction < impact->fraction)) {
     endStepAtEvent(island_, method_.integrate,
-                   {impact->fraction * whole, whole, kClosedGapPart * contacts_.touchTolerance()},
+                   {impact->fraction * whole, whole, kClosedGapRatio * contacts_.touchTolerance()},
                    [&](const VectorX& state) { return island_.search.margin(*impact, {}, state); });
   } else if (change) {
     endStepAtEvent(island_, method_.integrate, {change->fraction * whole, whole, kRopeTolerance},
@@ -215,10 +215,10 @@ bool SteppedMotion::stopAtFirstEvent() {
 bool SteppedMotion::stopAtFirstLanding() {
   Step& step = island_.step;
   if (eventsInWindow_ >= kManyLandings) return false;
-  const double part = contacts_.firstLanding(before_, step.state, step.timeStep);
+  const double part = contacts_.nextImpact(before_, step.state, step.timeStep);
   if (part > 1) return false;
   const double length = part * step.timeStep;
-  keepStartRate(step);
+  keepStartDerivative(step);
   method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
   return true;
 }
@@ -229,7 +229,7 @@ bool SteppedMotion::isAtRest() const {
 
 bool SteppedMotion::mayServeEvents() const {
   const std::vector<Contact>& touching = contacts_.touching();
-  return std::ssize(touching) <= kMostServed && std::all_of(touching.begin(), touching.end(), canLast);
+  return std::ssize(touching) <= kMaxServed && std::all_of(touching.begin(), touching.end(), canLast);
 }
 
 void SteppedMotion::restUntil(double time) {
@@ -239,11 +239,11 @@ void SteppedMotion::restUntil(double time) {
 }
 
 void SteppedMotion::countEvent() {
-  if (++eventsInWindow_ <= kMostEvents) return;
+  if (++eventsInWindow_ <= kMaxEvents) return;
   throw Error(ErrorKind::limit, "",
               fmt::format("more than {} impacts and pulls of ropes within {:.3g} s at {:.6g} s; lower a restitution of "
                           "1 between bodies that cannot separate, or take a smaller \"timeStep\"",
-                          kMostEvents, method_.timeStep, island_.time));
+                          kMaxEvents, method_.timeStep, island_.time));
 }
 
 }  // namespace cradle

@@ -3,26 +3,26 @@
 #include <cmath>
 
 #include "simulate/energy_guard.h"
-#include "simulate/moving_island.h"
-#include "simulate/rope_stage.h"
-#include "simulate/steps/contact_stage.h"
+#include "simulate/island_state.h"
+#include "simulate/rope_events.h"
+#include "simulate/steps/step_contacts.h"
 
 namespace cradle {
 
 /// Moves an island in steps of one length, for methods that a scene names and for contact that is too much for events.
-/// A step is cut where bodies meet or land, ropes go taut or slack, and pushes begin or end; lasting contact is held
+/// A step is cut where bodies meet or land, ropes go taut or slack, and pushes begin or end; active contact is held
 /// over it.
 class SteppedMotion {
  public:
   /// Keeps references to the island, which it moves, and its ropes. The method has a fixed step; the first begins now.
-  SteppedMotion(MovingIsland& island, RopeStage& ropes, const ChosenMethod& method);
+  SteppedMotion(IslandState& island, RopeEvents& ropes, const ChosenMethod& method);
 
   /// Takes a step, or goes to an event inside it. `frame` (s) is the next time whose state is asked for. Throws
   /// Error(unstable) if the state blows up, Error(limit) if a step has too many impacts.
   void advance(double frame);
 
-  /// Whether the last step kept what ties the bodies: its interpolant may be projected.
-  bool keepsTies() const { return keepsTies_; }
+  /// Whether the last step kept the bodies' constraints: its interpolant may be projected.
+  bool keepsConstraints() const { return keepsConstraints_; }
 
   /// Adds to a state of the last step's free motion, at a fraction of it, what contacts did that acted over all of it.
   void hold(double fraction, VectorX& state) const;
@@ -50,18 +50,18 @@ class SteppedMotion {
   void shorten();
   void countEvent();
 
-  MovingIsland& island_;
-  RopeStage& ropes_;
+  IslandState& island_;
+  RopeEvents& ropes_;
   ChosenMethod method_;
-  ContactStage contacts_;
+  StepContacts contacts_;
   EnergyGuard guard_;
   ConstraintSolver solver_;
-  long stepNumber_ = 0;        // the step under way covers [stepNumber_, stepNumber_ + 1] x timeStep
-  double longest_ = INFINITY;  // s: what the error allowed last, and more
-  bool keepsTies_ = true;      // no rope went taut or slack at the last step's end
+  long stepNumber_ = 0;           // the step under way covers [stepNumber_, stepNumber_ + 1] x timeStep
+  double longest_ = INFINITY;     // s: what the error allowed last, and more
+  bool keepsConstraints_ = true;  // no rope went taut or slack at the last step's end
   int eventsInWindow_ = 0;
-  double windowStart_ = 0;    // s
-  double startTieError_ = 0;  // m or rad
+  double windowStart_ = 0;           // s
+  double startConstraintError_ = 0;  // m or rad
   VectorX before_;
   std::vector<int> rodsBefore_;     // of ropes, before the changes of a step
   bool isHeld_ = false;             // contacts acted over all of the last step ...

@@ -16,9 +16,9 @@ namespace cradle {
 namespace {
 
 constexpr const char* kDefaultGiving = R"(solref="0.02 1")";
-constexpr double kTunedTime = 2;         // steps: the shortest time constant that the manual advises
-constexpr double kBouncePhase = 0.2;     // rad a step of a contact that bounces: 16 steps a contact
-constexpr double kMostFrequency = 2000;  // rad/s of a contact that bounces
+constexpr double kTunedTime = 2;        // steps: the shortest time constant that the manual advises
+constexpr double kBouncePhase = 0.2;    // rad a step of a contact that bounces: 16 steps a contact
+constexpr double kMaxFrequency = 2000;  // rad/s of a contact that bounces
 constexpr double kSpinFriction = 0.005, kRollFriction = 0.0001;         // m: not used by contacts of three dimensions
 const Quat kLongAxis(0.70710678118654752, -0.70710678118654752, 0, 0);  // from z, MuJoCo's, to y, ours
 
@@ -209,7 +209,7 @@ class ModelText {
   /// for a damping ratio z, half a turn after contact.
   std::string bouncing(double restitution) const {
     constexpr double kPi = 3.14159265358979324;
-    const double frequency = std::min(kBouncePhase / timeStep_, kMostFrequency);
+    const double frequency = std::min(kBouncePhase / timeStep_, kMaxFrequency);
     const double decay = -std::log(restitution) / kPi;
     const double ratio = decay / std::sqrt(1 + decay * decay);
     return fmt::format(R"(solref="{} {}")", -frequency * frequency, -2 * ratio * frequency);

@@ -15,7 +15,7 @@ namespace cradle {
 namespace {
 
 constexpr double kOdeBounceFrom = 0.01;       // m/s; ODE has no default
-constexpr int kMostContacts = 8;              // of a pair: those of a face on a face
+constexpr int kMaxContacts = 8;               // of a pair: those of a face on a face
 constexpr double kTunedErrorReduction = 0.8;  // the largest that the guide advises
 constexpr unsigned long kSeed = 0;            // of the order in which iterations go through rows
 constexpr dReal kLongAxis[4] = {0.70710678118654752, -0.70710678118654752, 0, 0};  // from z, ODE's, to y, ours
@@ -212,8 +212,8 @@ void OdeWorld::addContacts(dGeomID a, dGeomID b) {
     return static_cast<std::size_t>(scene_.bodies[static_cast<std::size_t>(body)].material);
   };
   const SurfacePair& law = scene_.surfacePairs[materialOf(bodyA)][materialOf(bodyB)];
-  std::array<dContactGeom, kMostContacts> found;
-  const int count = dCollide(a, b, kMostContacts, found.data(), sizeof(dContactGeom));
+  std::array<dContactGeom, kMaxContacts> found;
+  const int count = dCollide(a, b, kMaxContacts, found.data(), sizeof(dContactGeom));
   for (int i = 0; i < count; ++i) {
     dContact contact{};
     contact.surface.mode = dContactApprox1;

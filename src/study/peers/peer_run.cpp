@@ -67,8 +67,8 @@ bool mayDissipate(const Assembly& assembly) {
   for (const PlaneCollider& plane : assembly.geometry.planes) surfaces.insert(static_cast<std::size_t>(plane.surface));
   for (const std::size_t a : surfaces)
     for (const std::size_t b : surfaces) {
-      const SurfaceLaw& law = assembly.geometry.laws[a][b];
-      if (law.restitution < 1 || law.dynamicFriction > 0) return true;
+      const ContactMaterial& material = assembly.geometry.materials[a][b];
+      if (material.restitution < 1 || material.dynamicFriction > 0) return true;
     }
   return false;
 }

@@ -18,7 +18,7 @@ namespace cradle {
 namespace {
 
 constexpr int kFirstTenths = 2, kLastTenths = 12;  // accuracies 10^-2 ... 10^-12
-constexpr double kLeastError = 1e-15;              // shown
+constexpr double kMinError = 1e-15;                // shown
 
 /// A scene of which the end is known.
 struct KnownScene {
@@ -101,14 +101,14 @@ StabilityMap accuracyMap(const MapProgress& progress) {
       "the time of each turn over is a large one in where the body points. `cradle simulate --check-accuracy` finds "
       "that factor for any scene.";
   map.x = logarithmicAxis("accuracy asked", "", {std::pow(10, -kLastTenths - 0.3), std::pow(10, -kFirstTenths + 0.3)});
-  map.y = logarithmicAxis("error at the end", "", {kLeastError, 1});
+  map.y = logarithmicAxis("error at the end", "", {kMinError, 1});
   MapPanel panel{"", {}, {{"error = accuracy", CurveKind::theory, {{1e-13, 1e-13}, {1, 1}}}}};
   const std::vector<KnownScene> scenes = knownScenes();
   for (const KnownScene& known : scenes) {
     MapCurve curve{known.name, CurveKind::series, {}};
     for (int tenths = kFirstTenths; tenths <= kLastTenths; ++tenths) {
       const double accuracy = std::pow(10, -tenths), error = motionError(endOf(known.scene, accuracy), known.end);
-      if (error > 0) curve.points.push_back({accuracy, std::max(error, kLeastError)});
+      if (error > 0) curve.points.push_back({accuracy, std::max(error, kMinError)});
     }
     panel.curves.push_back(curve);
     progress(static_cast<double>(panel.curves.size() - 1) / static_cast<double>(scenes.size()));

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "impact/contact_cones.h"
+#include "impact/dense_contact_problem.h"
 #include "impact/generalized_reflections.h"
 #include "impact/linear_complementarity.h"
 #include "simulate/simulate.h"
@@ -26,7 +26,7 @@ std::vector<double> speedsIn(const VectorX& state) {
 std::vector<ImpactContact> impactsOf(Assembly& assembly) {
   std::vector<ImpactContact> impacts;
   for (const Contact& contact : contactsAtStart(assembly))
-    impacts.push_back({contact, assembly.geometry.pairs[contact.pair].law, 0, Vec3::Zero()});
+    impacts.push_back({contact, assembly.geometry.pairs[contact.pair].material, 0, Vec3::Zero()});
   return impacts;
 }
 
@@ -35,12 +35,12 @@ void resolveAllAtOnce(const std::vector<ImpactContact>& impacts, const ImpulseRe
   const Eigen::Index size = std::ssize(impacts);
   std::vector<Contact> contacts;
   for (const ImpactContact& impact : impacts) contacts.push_back(impact.contact);
-  const ContactCones cones(contacts, response, state);
+  const DenseContactProblem cones(contacts, response, state);
   const Eigen::VectorXi normals = Eigen::VectorXi::LinSpaced(size, 2, static_cast<int>(3 * size - 1));
   VectorX speeds = cones.velocitiesIn(state)(normals);
-  for (Eigen::Index i = 0; i < size; ++i) speeds[i] *= 1 + impacts[static_cast<std::size_t>(i)].law.restitution;
+  for (Eigen::Index i = 0; i < size; ++i) speeds[i] *= 1 + impacts[static_cast<std::size_t>(i)].material.restitution;
   VectorX impulses = VectorX::Zero(3 * size);
-  impulses(normals) = solveLinearComplementarity(cones.inverseMass()(normals, normals), speeds);
+  impulses(normals) = solveLinearComplementarity(cones.delassus()(normals, normals), speeds);
   cones.apply(impulses, state);
 }
 

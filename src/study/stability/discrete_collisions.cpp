@@ -28,7 +28,7 @@ void DiscreteCollisions::rebound() {
   if (contacts_.empty()) return;
   impacts_.clear();
   for (const Contact& contact : contacts_) {
-    impacts_.push_back({contact, assembly_.geometry.pairs[contact.pair].law, 0, Vec3::Zero()});
+    impacts_.push_back({contact, assembly_.geometry.pairs[contact.pair].material, 0, Vec3::Zero()});
     for (const int body : {contact.bodyA, contact.bodyB})
       if (body != kFixed) hasTouched_[static_cast<std::size_t>(body)] = 1;
   }

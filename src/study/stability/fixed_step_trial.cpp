@@ -9,7 +9,7 @@ namespace cradle {
 namespace {
 
 constexpr double kLimitTolerance = 1e-3;  // relative
-constexpr int kMostDoublings = 60;        // a method without a limit is our mistake
+constexpr int kMaxDoublings = 60;         // a method without a limit is our mistake
 
 }  // namespace
 
@@ -37,7 +37,7 @@ double measuredLimit(const std::function<bool(double)>& isStable, double first) 
   if (!isStable(first)) return 0;
   double stable = first, unstable = 2 * first;
   for (int i = 0; isStable(unstable); ++i) {
-    CRADLE_CHECK(i < kMostDoublings);
+    CRADLE_CHECK(i < kMaxDoublings);
     stable = unstable, unstable *= 2;
   }
   while (unstable - stable > kLimitTolerance * stable) {

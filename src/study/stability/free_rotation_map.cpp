@@ -4,7 +4,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kLeastSpeed = 1, kMostSpeed = 100;                       // rad/s
+constexpr double kMinSpeed = 1, kMaxSpeed = 100;                          // rad/s
 constexpr double kShortestTumblingStep = 3e-3, kLongestTumblingStep = 1;  // s
 constexpr int kSpeedColumns = 31, kStepRows = 41;
 
@@ -37,7 +37,7 @@ StabilityMap freeRotationMap(const MapProgress& progress) {
       "is right only below 0.03 rad in a step. RK4 is right up to 0.2 rad, DOP853 up to 1 rad. Between there and the "
       "steps at which energy shows that something is wrong, both turn the body over at the wrong time, or not at all: "
       "that energy is kept does not mean that a motion is right.";
-  map.x = logarithmicAxis("angular speed", "rad/s", logarithmicallySpaced(kLeastSpeed, kMostSpeed, kSpeedColumns));
+  map.x = logarithmicAxis("angular speed", "rad/s", logarithmicallySpaced(kMinSpeed, kMaxSpeed, kSpeedColumns));
   map.y =
       logarithmicAxis("time step", "s", logarithmicallySpaced(kShortestTumblingStep, kLongestTumblingStep, kStepRows));
   map.outcomes = {{"right", "#a9d3ee"},

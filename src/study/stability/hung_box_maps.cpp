@@ -13,7 +13,7 @@ constexpr double kReferenceAccuracy = 1e-10;
 constexpr double kSoftestSpring = 1e3, kStiffestSpring = 1e9;     // N/m
 constexpr double kShortestBoxStep = 5e-5, kLongestBoxStep = 0.5;  // s
 constexpr double kDampedStiffness = 1e6;                          // N/m
-constexpr double kLeastBoxStepOmega = 0.2;
+constexpr double kMinBoxStepOmega = 0.2;
 constexpr int kBoxColumns = 26, kBoxRows = 41, kBoxTheoryPoints = 65;
 constexpr const char* kTheoryAtStart = "limit by theory, at the start";
 
@@ -128,8 +128,8 @@ StabilityMap hungBoxDampingMap(const MapProgress& progress) {
       "oscillator, for the mass that the spring moves at the start: explicit Euler needs the damper to be stable at "
       "all, and every method pays for strong damping with shorter steps. Semi-implicit Euler takes the damper's force "
       "from the start of the step, as explicit Euler does.";
-  map.x = linearAxis("damping ratio zeta (1: critical)", "", evenlySpaced(0, kMostDamping, kBoxColumns));
-  map.y = logarithmicAxis("step x omega", "rad", logarithmicallySpaced(kLeastBoxStepOmega, kMostStepOmega, kBoxRows));
+  map.x = linearAxis("damping ratio zeta (1: critical)", "", evenlySpaced(0, kMaxDamping, kBoxColumns));
+  map.y = logarithmicAxis("step x omega", "rad", logarithmicallySpaced(kMinBoxStepOmega, kMaxStepOmega, kBoxRows));
   addBoxPanels(map,
                {[](double ratio) { return hungBox(kDampedStiffness, ratio); },
                 [](const Scene& scene) { return 1 / boxOmega(scene); }, [](double ratio) { return ratio; }},

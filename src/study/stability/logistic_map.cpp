@@ -15,7 +15,7 @@ namespace cradle {
 namespace {
 
 constexpr double kGrowthTime = 8;  // s: all that settles has
-constexpr double kLeastValue = -50, kMostValue = 1250;
+constexpr double kMinValue = -50, kMaxValue = 1250;
 constexpr int kTransient = 400, kShown = 32;                             // steps
 constexpr double kShortestGrowthStep = 0.025, kLongestGrowthStep = 1.1;  // s
 constexpr int kStepCount = 216;
@@ -44,7 +44,7 @@ MapPanel panelOf(const FixedStepMethod& method) {
   const double limit = decayLimit(method) / kLogisticGrowth;
   panel.curves.push_back({"longest step that settles at the equilibrium, by theory",
                           CurveKind::theory,
-                          {{limit, kLeastValue}, {limit, kMostValue}}});
+                          {{limit, kMinValue}, {limit, kMaxValue}}});
   panel.curves.push_back(
       {"equilibrium: 857.14", CurveKind::theory, {{0, kLogisticEnd}, {kLongestGrowthStep, kLogisticEnd}}});
   MapCurve dots{fmt::format("values of steps {} to {}", kTransient + 1, kTransient + kShown), CurveKind::dots, {}};
@@ -77,7 +77,7 @@ StabilityMap logisticMap(const MapProgress& progress) {
       "step x rate = 3 is beyond its limit of 2; it is beyond the 2.79 of RK4 too, which is why the true equilibrium "
       "throws RK4 off. DOP853 has room to 6.4 and finds the equilibrium.";
   map.x = linearAxis("time", "s", {0, kGrowthTime});
-  map.y = linearAxis("y", "", {kLeastValue, kMostValue});
+  map.y = linearAxis("y", "", {kMinValue, kMaxValue});
   map.panels = {panelOf(0.5), panelOf(0.25)};
   progress(1);
   return map;
@@ -98,7 +98,7 @@ StabilityMap logisticStepMap(const MapProgress& progress) {
       "nothing but the step. RK4 leaves the equilibrium for another value that moves with the step: 652.13 at 0.5 s. "
       "The limits are where the stability polynomial R(-6 h) reaches 1 in size: step x rate = 2, 2.785 and 6.4.";
   map.x = linearAxis("time step", "s", {0, kLongestGrowthStep});
-  map.y = linearAxis("y", "", {kLeastValue, kMostValue});
+  map.y = linearAxis("y", "", {kMinValue, kMaxValue});
   for (std::size_t i = 0; i < kMethods.size(); ++i) {
     map.panels.push_back(panelOf(fixedStepMethod(kMethods[i])));
     progress(static_cast<double>(i + 1) / static_cast<double>(kMethods.size()));

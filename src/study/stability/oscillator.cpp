@@ -9,7 +9,7 @@ namespace cradle {
 namespace {
 
 constexpr double kPeriods = 10;
-constexpr long kMostFrames = 200;    // within ten periods
+constexpr long kMaxFrames = 200;     // within ten periods
 constexpr double kInaccurate = 0.1;  // of the amplitude
 constexpr long kLimitSteps = 1000;   // a growth of 0.1 % a step is then one of 2.7
 
@@ -38,7 +38,7 @@ double oscillatorStretch(const Oscillator& oscillator, double time) {
 Stability oscillatorStability(const Oscillator& oscillator, const FixedStepMethod& method, double timeStep) {
   const double asked = kPeriods * 2 * std::numbers::pi / oscillator.omega;
   const long steps = static_cast<long>(std::ceil(asked / timeStep));
-  const long stepsAFrame = std::max(1L, steps / kMostFrames);
+  const long stepsAFrame = std::max(1L, steps / kMaxFrames);
   const long frames = std::max(steps, kTrialSteps) / stepsAFrame;
   Scene scene = oscillatorScene(oscillator);
   const FixedStepTrial trial = tryFixedSteps(scene, method, {timeStep, stepsAFrame, frames});

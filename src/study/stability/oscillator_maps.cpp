@@ -8,9 +8,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kLeastStiffness = 10, kMostStiffness = 1e5;  // N/m, of 1 kg
-constexpr double kShortestStep = 1e-3, kLongestStep = 1;      // s
-constexpr double kLeastStepOmega = 0.03;
+constexpr double kMinStiffness = 10, kMaxStiffness = 1e5;  // N/m, of 1 kg
+constexpr double kShortestStep = 1e-3, kLongestStep = 1;   // s
+constexpr double kMinStepOmega = 0.03;
 constexpr int kColumns = 33, kRows = 49, kTheoryPoints = 129;
 constexpr const char* kTheory = "limit by theory";
 
@@ -66,7 +66,7 @@ StabilityMap stiffnessMap(const MapProgress& progress) {
       "step. A spring a hundred times as stiff needs steps a tenth as long, hence lines of slope -1/2. Explicit Euler "
       "has no limit at all: it gains energy at any step, and short steps only make it take longer. Between stable and "
       "right lies a wide band: semi-implicit Euler is stable, but its answer is good only below step x omega = 0.1.";
-  map.x = logarithmicAxis("stiffness", "N/m", logarithmicallySpaced(kLeastStiffness, kMostStiffness, kColumns));
+  map.x = logarithmicAxis("stiffness", "N/m", logarithmicallySpaced(kMinStiffness, kMaxStiffness, kColumns));
   map.y = logarithmicAxis("time step", "s", logarithmicallySpaced(kShortestStep, kLongestStep, kRows));
   map.outcomes = stabilityOutcomes();
   addPanels(
@@ -89,8 +89,8 @@ StabilityMap dampingMap(const MapProgress& progress) {
       "of the step, and its limit falls from 2 at once: 2 (sqrt(1 + zeta^2) - zeta). RK4 and DOP853 follow the borders "
       "of their stability regions along the roots of the damped oscillator. Beyond critical damping (zeta = 1) one "
       "root is fast and does nothing but limit the step.";
-  map.x = linearAxis("damping ratio zeta (1: critical)", "", evenlySpaced(0, kMostDamping, kColumns));
-  map.y = logarithmicAxis("step x omega", "rad", logarithmicallySpaced(kLeastStepOmega, kMostStepOmega, kRows));
+  map.x = linearAxis("damping ratio zeta (1: critical)", "", evenlySpaced(0, kMaxDamping, kColumns));
+  map.y = logarithmicAxis("step x omega", "rad", logarithmicallySpaced(kMinStepOmega, kMaxStepOmega, kRows));
   map.outcomes = stabilityOutcomes();
   addPanels(
       map, [&](const FixedStepMethod& method, const MapProgress& part) { return dampingPanel(map, method, part); },

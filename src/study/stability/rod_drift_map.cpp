@@ -17,8 +17,8 @@ namespace {
 constexpr double kDriftTime = 100;  // s
 constexpr double kFirst = 0.1;      // s
 constexpr int kTimesADecade = 8;
-constexpr double kLeastDrift = 1e-17, kMostDrift = 1e2;  // m, shown
-constexpr double kLostLength = 10;                       // m: the rod of 1 m has come apart
+constexpr double kMinDrift = 1e-17, kMaxDrift = 1e2;  // m, shown
+constexpr double kLostLength = 10;                    // m: the rod of 1 m has come apart
 
 Scene rodPendulum() {
   return sceneOfText(
@@ -43,7 +43,7 @@ std::vector<MapPoint> driftOf(const FixedStepMethod& method, double timeStep, bo
     largest = std::max(largest, std::abs(length - 1));
     if (steps.time() < next && steps.time() < kDriftTime) continue;
     while (next <= steps.time()) next *= std::pow(10, 1.0 / kTimesADecade);
-    points.push_back({steps.time(), std::max(largest, kLeastDrift)});
+    points.push_back({steps.time(), std::max(largest, kMinDrift)});
   }
   return points;
 }
@@ -67,7 +67,7 @@ StabilityMap rodDriftMap(const MapProgress& progress) {
       "and velocities after each step, which is what Cradle does, leaves rounding, by any method and at any step, as "
       "long as the method is stable: explicit Euler, which gains energy, tears the rod apart in the end.";
   map.x = logarithmicAxis("time", "s", {});
-  map.y = logarithmicAxis("largest error of the length", "m", {kLeastDrift, kMostDrift});
+  map.y = logarithmicAxis("largest error of the length", "m", {kMinDrift, kMaxDrift});
   addPanels(
       map,
       [](const FixedStepMethod& method, const MapProgress& part) {

@@ -10,8 +10,8 @@ namespace cradle {
 namespace {
 
 constexpr double kAngle = 1e-3;  // rad, of one turn
-constexpr int kMostTurns = 1000000, kPointsADecade = 5;
-constexpr double kLeastTurnError = 1e-17, kMostTurnError = 10;  // shown
+constexpr int kMaxTurns = 1000000, kPointsADecade = 5;
+constexpr double kMinTurnError = 1e-17, kMaxTurnError = 10;  // shown
 
 struct Kept {
   const char* name;
@@ -38,14 +38,14 @@ Drift driftOf(const Kept& kept, bool isExact) {
   Drift drift{{kept.name, CurveKind::series, {}}, {kept.name, CurveKind::series, {}}};
   TurnedOrientation orientation(kept.storage, kAngle * kept.axis, isExact);
   double next = 1;
-  for (int turns = 1; turns <= kMostTurns; ++turns) {
+  for (int turns = 1; turns <= kMaxTurns; ++turns) {
     orientation.turn();
-    if (turns < next && turns < kMostTurns) continue;
+    if (turns < next && turns < kMaxTurns) continue;
     while (next <= turns) next *= std::pow(10, 1.0 / kPointsADecade);
     const double angle = orientation.angleError(), shape = orientation.shapeError();
-    drift.angle.points.push_back({static_cast<double>(turns), std::max(angle, kLeastTurnError)});
+    drift.angle.points.push_back({static_cast<double>(turns), std::max(angle, kMinTurnError)});
     if (kept.storage != RotationStorage::eulerAngles)
-      drift.shape.points.push_back({static_cast<double>(turns), std::max(shape, kLeastTurnError)});
+      drift.shape.points.push_back({static_cast<double>(turns), std::max(shape, kMinTurnError)});
   }
   return drift;
 }
@@ -70,7 +70,7 @@ StabilityMap rotationDriftMap(const MapProgress& progress) {
       "products with exact rotations nothing is left but rounding. Cradle keeps normalised quaternions, and integrates "
       "them at the order of its method.";
   map.x = logarithmicAxis("rotations", "", {});
-  map.y = logarithmicAxis("error", "rad, or no unit", {kLeastTurnError, kMostTurnError});
+  map.y = logarithmicAxis("error", "rad, or no unit", {kMinTurnError, kMaxTurnError});
   map.panels = {{"orientation (rad), first order", {}, {}},
                 {"orientation (rad), exact products", {}, {}},
                 {"how far from a rotation, first order", {}, {}},

@@ -7,9 +7,9 @@
 namespace cradle {
 
 // Of maps of springs:
-constexpr double kMostDamping = 2;     // times critical
-constexpr double kMostStepOmega = 10;  // step x omega
-constexpr int kMeasured = 9;           // limits by bisection
+constexpr double kMaxDamping = 2;     // times critical
+constexpr double kMaxStepOmega = 10;  // step x omega
+constexpr int kMeasured = 9;          // limits by bisection
 constexpr const char* kMeasuredName = "limit as measured by bisection";
 
 /// A mass on a spring: step x stiffness, and step x damping.

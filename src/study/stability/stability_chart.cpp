@@ -12,9 +12,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kWideSpan = 300;          // last to first value of a logarithmic axis: beyond, tics are powers of ten
-constexpr double kVeryWideSpan = 1e8;      // not every power has a tic, and none has smaller ones
-constexpr std::size_t kMostLetters = 120;  // of the legend in a line
+constexpr double kWideSpan = 300;         // last to first value of a logarithmic axis: beyond, tics are powers of ten
+constexpr double kVeryWideSpan = 1e8;     // not every power has a tic, and none has smaller ones
+constexpr std::size_t kMaxLetters = 120;  // of the legend in a line
 
 /// Around all curves, with room at both ends.
 Range rangeOfCurves(const StabilityMap& map, const Axis& axis, double MapPoint::*coordinate, double room) {
@@ -183,7 +183,7 @@ std::string legendCommands(const StabilityMap& map, const std::vector<LegendEntr
       "set key center center horizontal Left reverse maxrows {} samplen 2.5 width 1 noenhanced font ',14'\n"
       "set lmargin at screen 0.03\nset rmargin at screen 0.97\nset bmargin at screen 0.01\nset tmargin at screen 0.09\n"
       "plot [0:1][0:1] {}NaN notitle\n",
-      letters / kMostLetters + 1, entries);
+      letters / kMaxLetters + 1, entries);
 }
 
 }  // namespace

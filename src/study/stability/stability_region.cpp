@@ -24,13 +24,13 @@ constexpr double kGrowthRounding = 1e-12;  // of growth
 
 /// R of DOP853 from its tableau: the stages of y' = lambda y are polynomials in z, Y_i = 1 + z sum_j a_ij Y_j.
 std::vector<double> dop853Polynomial() {
-  using dop853_table::kEndRate;
+  using dop853_table::kEndDerivative;
   std::vector<std::vector<double>> stages;
-  for (std::size_t i = 0; i <= kEndRate; ++i) {
-    std::vector<double> stage(kEndRate + 1, 0.0);
+  for (std::size_t i = 0; i <= kEndDerivative; ++i) {
+    std::vector<double> stage(kEndDerivative + 1, 0.0);
     stage[0] = 1;
     for (std::size_t j = 0; j < i; ++j)
-      for (std::size_t power = 1; power <= kEndRate; ++power)
+      for (std::size_t power = 1; power <= kEndDerivative; ++power)
         stage[power] += dop853_table::kStages[i][j] * stages[j][power - 1];
     stages.push_back(stage);
   }

@@ -9,8 +9,8 @@
 #include <functional>
 
 #include "core/error.h"
-#include "simulate/pile.h"
 #include "simulate/simulate.h"
+#include "simulate/soft_substeps.h"
 #include "study/peers/peer.h"
 #include "study/stability/contact_scenes.h"
 
@@ -93,7 +93,7 @@ double farthestByContactStep(int boxes, double topMass) {
 
 double farthestByPile(int boxes, double topMass) {
   const Scene scene = droppedStack(boxes, topMass);
-  Pile pile(assemble(scene, wholeScene(scene)), kUsualStep, 1);
+  SoftSubsteps pile(assemble(scene, wholeScene(scene)), kUsualStep, 1);
   const VectorX& state = pile.stateAt(scene.duration);
   return farthestOf(boxes, [&](int box) { return Vec3(centerOfMass(state, box)); });
 }

@@ -18,8 +18,8 @@ namespace cradle {
 namespace {
 
 constexpr double kFallTime = 1.0 / 60;                   // s, before all is to stop: a step at 60/s
-constexpr double kStoppedPart = 1e-3;                    // of the speed of the fall
-constexpr long kMostSweeps = 3000000;                    // beyond: no program waits so long
+constexpr double kStoppedRatio = 1e-3;                   // of the speed of the fall
+constexpr long kMaxSweeps = 3000000;                     // beyond: no program waits so long
 constexpr std::array<int, 4> kLengths = {2, 5, 10, 20};  // balls
 
 double largestSpeed(const VectorX& state) {
@@ -63,7 +63,7 @@ DirectSolution solveContacts(StopProblem problem) {
 StopProblem stackToStop(int balls, double topMass) {
   StopProblem problem = fallen(stackOfBalls(balls, topMass), RowKind::pushes);
   std::vector<BodyFrame> frames;
-  placeBodies(problem.assembly.mechanism.bodies, problem.assembly.state, frames);
+  findBodyFrames(problem.assembly.mechanism.bodies, problem.assembly.state, frames);
   for (const Contact& contact : contactsAtStart(problem.assembly))
     problem.rows.push_back(rowsOf(contact, problem.assembly.state, frames).rows[2]);
   return problem;
@@ -73,7 +73,7 @@ StopProblem chainToStop(int balls, double bobMass) {
   StopProblem problem = fallen(hangingChain(balls, bobMass), RowKind::holds);
   std::vector<BodyFrame> frames;
   const Mechanism& mechanism = problem.assembly.mechanism;
-  placeBodies(mechanism.bodies, problem.assembly.state, frames);
+  findBodyFrames(mechanism.bodies, problem.assembly.state, frames);
   findRows(mechanism.constraints, problem.assembly.state, frames, problem.rows);
   return problem;
 }
@@ -81,13 +81,13 @@ StopProblem chainToStop(int balls, double bobMass) {
 SweepCount countSweeps(const StopProblem& problem) {
   GaussSeidel solver(problem.rows, problem.kind, problem.assembly.mechanism.bodies, problem.state);
   const double start = largestSpeed(problem.state);
-  const double halfWay = std::sqrt(kStoppedPart) * start;
+  const double halfWay = std::sqrt(kStoppedRatio) * start;
   long halfSweeps = 0;
   double halfSpeed = start;
-  for (long sweeps = 1; sweeps <= kMostSweeps; ++sweeps) {
+  for (long sweeps = 1; sweeps <= kMaxSweeps; ++sweeps) {
     solver.sweep();
     const double speed = largestSpeed(solver.state());
-    if (speed <= kStoppedPart * start)
+    if (speed <= kStoppedRatio * start)
       return {static_cast<double>(sweeps), std::pow(speed / halfSpeed, 1 / static_cast<double>(sweeps - halfSweeps))};
     if (speed > halfWay) halfSpeed = speed, halfSweeps = sweeps;
   }
@@ -113,7 +113,7 @@ MapPanel panelOf(const std::string& title, StopProblem (*problemOf)(int balls, d
     for (std::size_t i = 0; i < ratios.size(); ++i) {
       const StopProblem problem = problemOf(length, ratios[i]);
       const GaussSeidel solver(problem.rows, problem.kind, problem.assembly.mechanism.bodies, problem.state);
-      theory.points.push_back({ratios[i], std::log(kStoppedPart) / std::log(convergenceFactor(solver.matrix()))});
+      theory.points.push_back({ratios[i], std::log(kStoppedRatio) / std::log(convergenceFactor(solver.matrix()))});
       swept.points.push_back({ratios[i], countSweeps(problem).sweeps});
       direct.points[i].y = std::max(direct.points[i].y, solveDirectly(problem).solves);
     }

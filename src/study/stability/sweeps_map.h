@@ -24,7 +24,7 @@ struct SweepCount {
 };
 SweepCount countSweeps(const StopProblem& problem);
 
-/// What our own solver did: one factorisation of all rods, or the cone problem of all contacts.
+/// What our own solver did: one factorisation of all rods, or the frictional contact problem of all contacts.
 struct DirectSolution {
   double solves = 0;     // factorisations, or iterations of the cone solver: at least 1
   double speedLeft = 0;  // m/s

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kTilt = 0.01;  // of the spin, about the other axes at the start
 constexpr double kTurned = 60;  // rad: with that tilt, the body turns over three times
-constexpr long kLeastTumblingSteps = 30;
-constexpr long kMostTumblingFrames = 200;  // looked at
-constexpr double kClear = 0.5;             // of the spin: about the middle axis, between two turns over
+constexpr long kMinTumblingSteps = 30;
+constexpr long kMaxTumblingFrames = 200;  // looked at
+constexpr double kClear = 0.5;            // of the spin: about the middle axis, between two turns over
 constexpr double kEnergyError = 0.1;
 
 /// Parts of the spin about the body's axes.
@@ -36,8 +36,8 @@ Scene tumblingScene(double speed) {
 }
 
 Tumbling tumblingOf(double speed, const FixedStepMethod& method, double timeStep) {
-  const long steps = std::max(kLeastTumblingSteps, static_cast<long>(std::ceil(kTurned / (speed * timeStep))));
-  const long stepsAFrame = std::max(1L, steps / kMostTumblingFrames);
+  const long steps = std::max(kMinTumblingSteps, static_cast<long>(std::ceil(kTurned / (speed * timeStep))));
+  const long stepsAFrame = std::max(1L, steps / kMaxTumblingFrames);
   Scene scene = tumblingScene(speed);
   const Mat3& inertiaTensor = scene.bodies[0].massProperties.inertiaTensor;
   const FreeRotation truth(inertiaTensor, {Quat::Identity(), scene.bodies[0].angularVelocity});

@@ -20,9 +20,9 @@ namespace {
 
 constexpr double kNoGap = 1e-9;                                  // m
 constexpr std::array<double, 4> kPhases = {0, 0.25, 0.5, 0.75};  // of a step's way: gaps that throws begin with
-constexpr std::size_t kSpeedsTogether = 16;  // in a scene: enough marbles for the fast contact step, few for MuJoCo
+constexpr std::size_t kSpeedsTogether = 16;  // in a scene: enough marbles for soft sub-stepping, few for MuJoCo
 constexpr int kSpeedBisections = 40;
-constexpr double kVisualAccuracy = 1e-3;  // for which the plan takes the fast contact step
+constexpr double kFastStepAccuracy = 1e-3;  // for which the plan takes soft sub-stepping
 
 /// What becomes of each marble of a scene.
 using Thrower = std::function<std::vector<Passage>(Scene)>;
@@ -56,7 +56,7 @@ std::vector<Passage> throwByPlan(Scene scene) {
 }
 
 std::vector<Passage> throwVisually(Scene scene) {
-  scene.accuracy = kVisualAccuracy;
+  scene.accuracy = kFastStepAccuracy;
   return throwByPlan(std::move(scene));
 }
 

@@ -1,0 +1,159 @@
+#include "simulate/island_solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "core/interruption.h"
+#include "dynamics/invariants.h"
+#include "simulate/thresholds.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kFallRatio = 1.0 / 300;  // of sqrt(size / g), in which a body falls by half its size
+constexpr std::size_t kFewBodies = 4;     // that move: many cost more than such steps are worth
+
+/// s: of contact that events do not serve. A few bodies move as fast as gravity moves them through their own size: the
+/// same ones, smaller, take the same steps in less time.
+double contactTimeStep(const Assembly& assembly) {
+  const double gravity = assembly.mechanism.gravity.norm();
+  if (gravity == 0 || assembly.mechanism.bodies.size() > kFewBodies) return kContactTimeStep;
+  return std::min(kContactTimeStep, kFallRatio * std::sqrt(smallestSize(assembly.geometry) / gravity));
+}
+
+}  // namespace
+
+IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method)
+    : island_(scene, std::move(assembly)),
+      ropes_(island_),
+      solver_(island_.assembly.mechanism.constraints, island_.assembly.mechanism.bodies),
+      method_(method) {
+  if (method.isAdaptive())
+    motion_.emplace<EventMotion>(island_, ropes_, method, false);
+  else
+    motion_.emplace<SteppedMotion>(island_, ropes_, method);
+  changeMotion();
+}
+
+const VectorX& IslandSolver::stateAt(double time) {
+  const double same = sameTime(time);
+  CRADLE_CHECK(time <= island_.scene.duration + same);  // no step goes beyond the end: that would take for ever
+  while (island_.time < time - same) {
+    throwIfInterrupted();
+    advance(time);
+  }
+  if (island_.time <= time + same)
+    reported_ = island_.state;
+  else
+    interpolateAt(time, keepsConstraints());
+  normalizeOrientations(reported_);
+  const std::vector<RigidBody>& bodies = island_.assembly.mechanism.bodies;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (!bodies[i].turns) spin(static_cast<Eigen::Index>(i), time, reported_);
+  return reported_;
+}
+
+template <class Motion>
+void IslandSolver::advance(double time, Motion& motion) {
+  if (motion.isAtRest())
+    motion.restUntil(time);
+  else
+    motion.advance(time);
+}
+
+void IslandSolver::advance(double time) {
+  if (mayNotGoOn()) changeMotion();
+  if (auto* events = std::get_if<EventMotion>(&motion_))
+    advance(time, *events);
+  else
+    advance(time, std::get<SteppedMotion>(motion_));
+  // The step under way ends later than `time`: its interpolant is needed as it is.
+  if (method_.isAdaptive()) changeMotion();
+}
+
+/// Whether a trial of events showed at its start that they do not serve.
+bool IslandSolver::mayNotGoOn() const {
+  const auto* events = std::get_if<EventMotion>(&motion_);
+  return promiseEnd_ && events && !events->fallbackReason().empty();
+}
+
+bool IslandSolver::keepsConstraints() const {
+  if (const auto* events = std::get_if<EventMotion>(&motion_)) return events->keepsConstraints();
+  return std::get<SteppedMotion>(motion_).keepsConstraints();
+}
+
+/// Steps of one length take over where events do not serve, and give back where nothing touches, or after a while; not
+/// where a look is enough: trials cost more than they may save.
+void IslandSolver::changeMotion() {
+  if (const auto* events = std::get_if<EventMotion>(&motion_)) {
+    const std::string_view reason = events->fallbackReason();
+    if (reason.empty()) return;
+    const ChosenMethod steps = contactSteps(isVisual() ? kContactTimeStep : contactTimeStep(island_.assembly));
+    if (!promiseEnd_) endPromise(*events, steps.timeStep);
+    island_.assembly.mechanism.contacts.clear();
+    nextTrial_ = island_.time + trialTime_;
+    trialTime_ *= 2;
+    if (isVisual()) method_ = steps;
+    motion_.emplace<SteppedMotion>(island_, ropes_, steps);
+    return;
+  }
+  const auto& steps = std::get<SteppedMotion>(motion_);
+  if (!method_.isAdaptive() || steps.isAtRest()) return;
+  if (!steps.isFree() && island_.time < nextTrial_) return;
+  nextTrial_ = island_.time + trialTime_;
+  if (steps.isFree()) trialTime_ = kTrialTime;
+  if (steps.isFree() || steps.mayServeEvents()) motion_.emplace<EventMotion>(island_, ropes_, method_, true);
+}
+
+void IslandSolver::endPromise(const EventMotion& events, double timeStep) {
+  promiseEnd_ = {island_.time, std::string(events.fallbackReason()), events.fallbackBodies()};
+  island_.log.warn(fmt::format(
+      "{}: the accuracy asked is not promised from {:.6g} s on: {} ({}); contact is resolved every {:.3g} s {}",
+      island_.scene.path, island_.time, promiseEnd_->reason, namesOfBodies(promiseEnd_->bodies, island_.scene),
+      timeStep, isVisual() ? "to the end" : "as long as that lasts"));
+}
+
+void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
+  const double fraction = (time - island_.step.time) / island_.step.timeStep;
+  interpolate(island_.step, fraction, reported_);
+  if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->hold(fraction, reported_);
+  const Mechanism& mechanism = island_.assembly.mechanism;
+  const auto* events = std::get_if<EventMotion>(&motion_);
+  if (events && keepsConstraints && !events->contactsOfStep().empty()) {
+    project(events->contactsOfStep());
+  } else if (keepsConstraints && solver_.hasConstraints()) {
+    findStill();
+    solver_.exclude(still_);
+    solver_.project(reported_);
+  }
+  numericalEnergy(reported_) = numericalEnergy(island_.step.startState);
+  bookNumerical(energyConstant(mechanism, island_.step.startState), mechanism, reported_);
+}
+
+/// Takes out of the interpolated state what it leaves of gaps of contacts that last, and of constraints.
+void IslandSolver::project(const std::vector<ContactConstraint>& contacts) {
+  const Mechanism& mechanism = island_.assembly.mechanism;
+  findStill();
+  ContactSolver(contacts, mechanism.constraints, mechanism.bodies).project(reported_, still_);
+}
+
+/// What has not moved within the step is where its constraints hold it.
+void IslandSolver::findStill() {
+  const Step& step = island_.step;
+  still_.resize(island_.assembly.mechanism.bodies.size());
+  for (std::size_t i = 0; i < still_.size(); ++i) {
+    const Eigen::Index at = static_cast<Eigen::Index>(i) * kPoseSize;
+    still_[i] = step.startState.segment<kPoseSize>(at) == step.state.segment<kPoseSize>(at);
+  }
+}
+
+/// Sets the orientation of a body whose spin is constant: the state keeps that of the start.
+void IslandSolver::spin(Eigen::Index body, double time, VectorX& state) const {
+  turnBody(state, body, time * Vec3(angularVelocity(state, body)));
+}
+
+}  // namespace cradle

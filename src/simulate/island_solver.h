@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "simulate/events/event_motion.h"
+#include "simulate/steps/stepped_motion.h"
+#include "trajectory/trajectory.h"
+
+namespace cradle {
+
+constexpr double kTrialTime = 0.05;  // s: after that, contacts that were too much for events are tried again
+
+/// An island in motion, with a clock of its own. Time goes on in steps of the method.
+class IslandSolver {
+ public:
+  /// Keeps a reference to `scene`. The method is one that takes steps.
+  IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method);
+  IslandSolver(const IslandSolver&) = delete;
+  IslandSolver& operator=(const IslandSolver&) = delete;
+
+  /// The state at `time` (s), not earlier than in the call before, and not after the end of the scene; orientations of
+  /// unit length. At an instant of events the state after them. Throws Error(unstable) if the state blows up,
+  /// Error(limit) if a step has too many impacts, Error(interrupted).
+  const VectorX& stateAt(double time);
+
+  const Assembly& assembly() const { return island_.assembly; }
+  long evaluations() const { return island_.equations.evaluations(); }
+
+  /// Events since the last call: up to the end of the step under way.
+  std::vector<Event> takeEvents() { return island_.log.take(); }
+  std::vector<std::string> takeWarnings() { return island_.log.takeWarnings(); }
+  Corrections& corrections() { return island_.log.corrections(); }
+
+  /// Set from when on the accuracy asked is not promised any more.
+  const std::optional<PromiseEnd>& promiseEnd() const { return promiseEnd_; }
+
+ private:
+  void advance(double time);
+  void changeMotion();
+  void endPromise(const EventMotion& events, double timeStep);
+  template <class Motion>
+  static void advance(double time, Motion& motion);
+  bool mayNotGoOn() const;
+  bool keepsConstraints() const;
+  bool isVisual() const { return island_.scene.accuracy > kVisualAccuracy; }
+  /// A frame inside a step: what its state is off the energy of the step's start is an error of that frame alone.
+  void interpolateAt(double time, bool keepsConstraints);
+  void project(const std::vector<ContactConstraint>& contacts);
+  void findStill();
+  void spin(Eigen::Index body, double time, VectorX& state) const;
+
+  IslandState island_;
+  RopeEvents ropes_;
+  ConstraintSolver solver_;
+  std::variant<std::monostate, EventMotion, SteppedMotion> motion_;
+  ChosenMethod method_;
+  std::optional<PromiseEnd> promiseEnd_;
+  double nextTrial_ = 0;           // s: when events may serve again
+  double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not
+  std::vector<char> still_;        // bodies that the step has not moved
+  VectorX reported_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,62 @@
+#include "simulate/island_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/error.h"
+
+namespace cradle {
+
+IslandState::IslandState(const Scene& source, Assembly parts)
+    : scene(source),
+      assembly(std::move(parts)),
+      equations(assembly.mechanism),
+      rightHandSide(equations.rightHandSide()),
+      log(assembly),
+      resting(assembly.mechanism, assembly.geometry, equations),
+      pushes(scene, assembly.sceneBodies, log),
+      search(assembly.geometry),
+      state(assembly.state),
+      motions_(assembly.mechanism.bodies.size()) {}
+
+void IslandState::findNearPairs(double margin) {
+  const ContactGeometry& geometry = assembly.geometry;
+  if (geometry.colliders.size() + geometry.planes.size() == 2 && geometry.pairs.size() == 1) return;  // all there is
+  for (std::size_t body = 0; body < motions_.size(); ++body)
+    motions_[body] = motionBound(step, static_cast<int>(body), assembly.radii[body]);
+  broadPhase_.update(step.startState, motions_, margin, assembly.geometry);
+}
+
+void IslandState::findNearPairsNow(double margin) {
+  std::fill(motions_.begin(), motions_.end(), 0.0);
+  broadPhase_.update(state, motions_, margin, assembly.geometry);
+}
+
+bool IslandState::beginAndEndPushes() {
+  if (time < pushes.nextChange()) return false;
+  for (const int body : pushes.apply(time, state, assembly.mechanism.pushes)) wake(body);
+  return true;
+}
+
+void IslandState::wake(int body) {
+  for (const int other : resting.wake(time, body))
+    log.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
+}
+
+void IslandState::requireUnsolvedPairsApart() const {
+  for (const ColliderPair& pair : assembly.geometry.unsolvedPairs) {
+    const int a = assembly.geometry.colliders[pair.a].body, b = bodyBOf(assembly.geometry, pair);
+    if (separationBound(assembly.geometry, pair, poseOf(state, a), poseOf(state, b)) > 0) continue;
+    const auto nameOf = [this](int body) {
+      return scene.bodies[static_cast<std::size_t>(assembly.sceneBodies[static_cast<std::size_t>(body)])].name;
+    };
+    throw Error(ErrorKind::scene, scene.path,
+                fmt::format("\"{}\" and \"{}\" come within reach of each other at {:.6g} s; their contact cannot be "
+                            "simulated yet: keep them apart, or give one of them \"collision\": \"none\"",
+                            nameOf(a), nameOf(b), time));
+  }
+}
+
+}  // namespace cradle

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "collision/broad_phase.h"
+#include "collision/time_of_impact.h"
+#include "dynamics/integrators/step.h"
+#include "simulate/assembly.h"
+#include "simulate/events/event_log.h"
+#include "simulate/push_schedule.h"
+#include "simulate/resting_bodies.h"
+
+namespace cradle {
+
+/// An island as all ways of moving it see it: what it is made of, where it is now, and the step that led here.
+struct IslandState {
+  /// Keeps a reference to `scene`.
+  IslandState(const Scene& scene, Assembly assembly);
+  IslandState(const IslandState&) = delete;
+  IslandState& operator=(const IslandState&) = delete;
+
+  bool mayTouch() const { return !assembly.geometry.colliders.empty(); }
+
+  /// Sets the pairs that may come nearer than `margin` (m) to each other within the step. Its end derivative must be
+  /// there.
+  void findNearPairs(double margin);
+
+  /// Sets the pairs that are nearer than that now.
+  void findNearPairsNow(double margin);
+
+  /// Lets pushes begin and end that do so now, and wakes what they act upon. True if there were any.
+  bool beginAndEndPushes();
+
+  /// Wakes a body with all that rests with it, with events.
+  void wake(int body);
+
+  /// Contact that cannot be computed must not come about: passing through each other silently would be a lie. Throws
+  /// Error(scene).
+  void requireUnsolvedPairsApart() const;
+
+  const Scene& scene;
+  Assembly assembly;
+  EquationsOfMotion equations;
+  RightHandSide rightHandSide;
+  EventLog log;
+  RestingBodies resting;
+  PushSchedule pushes;
+  ImpactSearch search;
+  double time = 0;  // s
+  VectorX state;    // after all events of now
+  Step step;        // that ended now
+
+ private:
+  BroadPhase broadPhase_;
+  std::vector<double> motions_;  // m: how far the points of each body may go within the step
+};
+
+}  // namespace cradle

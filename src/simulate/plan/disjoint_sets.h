@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+namespace cradle {
+
+/// Disjoint sets of bodies (union-find: R. E. Tarjan, 1975), joined two by two. Fixed bodies join nothing.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t bodies);
+
+  /// Either may be kFixed.
+  void join(int bodyA, int bodyB);
+
+  /// The first body of a body's set: the same for all that are joined.
+  int islandOf(int body) const;
+
+ private:
+  std::vector<int> parents_;  // each at most its own index
+};
+
+}  // namespace cradle

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "impact/pairwise.h"
+#include "simulate/island_state.h"
+
+namespace cradle {
+
+/// A rope that goes taut, or slack, inside a step.
+struct RopeChange {
+  double fraction = 0;  // of the step, 0..1
+  std::size_t rope = 0;
+  double threshold = 0;  // m: slack length that is reached; < 0: of a rope at its length that nothing pulled at
+};
+
+/// Ropes over time: nothing while slack; an impulse when the length is reached; then a rod, until that would push.
+/// The rods of taut ropes stand behind the scene's own in Constraints::rods.
+class RopeEvents {
+ public:
+  /// Keeps a reference to `island`.
+  explicit RopeEvents(IslandState& island);
+
+  /// The method's if that is fixed (s), else 0: rebounds that end within about two steps are not resolved.
+  void setTimeStep(double timeStep) { timeStep_ = timeStep; }
+
+  /// The first slack rope of a step that reaches its length, or taut one whose tension ends. The step's end derivative
+  /// must be there (prepareInterpolant).
+  std::optional<RopeChange> firstChange(const Step& step);
+
+  /// Zero where the change happens, positive before: slack as a part of the length, or tension as a part of the
+  /// greater of those at both ends of the step.
+  double margin(const RopeChange& change, const VectorX& state);
+
+  /// What happens at the end of a step: impulses in ropes that are at their length, new rods, released ropes. True if
+  /// anything does.
+  bool resolve(double time, VectorX& state);
+
+  /// Impulses and new rods alone, of ropes at their length that lengthen. True if there are any.
+  bool pullStretched(double time, VectorX& state);
+
+  /// Ropes at their length as members of an impact: they lengthen as contacts close, along the line of their ends.
+  /// Those that are taut are no rods until endImpact.
+  std::vector<ImpactContact> beginImpact(const VectorX& state);
+
+  /// Ropes that are no rods and may come to their length within a step of `length` (s) whose free motion led from
+  /// `before` to `state`.
+  std::vector<const RopeLimit*> withinReach(const VectorX& before, const VectorX& state, double length) const;
+
+  /// A rope as a contact of the bodies at its ends that may close by what is slack.
+  static ImpactContact contactOf(const RopeLimit& rope, const VectorX& state);
+
+  /// Takes the impulses that the same members got. What lengthens no more and shortens is slack now.
+  void endImpact(double time, const std::vector<ImpactContact>& members, const VectorX& state);
+
+  bool hasRopes() const { return !assembly_.ropes.empty(); }
+
+  /// Which ropes are rods now: to be asked later whether they are the same ones.
+  const std::vector<int>& rods() const { return tautRod_; }
+
+ private:
+  bool isTaut(std::size_t rope) const { return tautRod_[rope] >= 0; }
+  bool rests(std::size_t rope) const;
+  double tension(std::size_t rope, const VectorX& state);
+  std::optional<double> firstPush(const Step& step, std::size_t rope);
+  std::optional<RopeChange> firstReach(const Step& step, std::size_t rope, double end) const;
+  /// A rope at its length that lengthens.
+  struct Stretch {
+    std::size_t rope;
+    double speed;         // m/s, of lengthening
+    double reboundSpeed;  // m/s, 0: does not rebound
+    bool isLoaded;        // forces would lengthen it further
+  };
+  std::vector<Stretch> findStretches(const VectorX& state);
+  void pull(double time, const std::vector<Stretch>& stretches, VectorX& state);
+  void release(double time, std::size_t rope, const VectorX& state);
+  void loosen(double time, std::size_t rope, const VectorX& state);
+  void rebuildRods();
+  void record(double time, EventKind kind, std::size_t rope, double impulse, const VectorX& state);
+
+  IslandState& island_;
+  Assembly& assembly_;
+  EquationsOfMotion& equations_;
+  ConstraintSolver solver_;
+  double timeStep_ = 0;
+  std::size_t sceneRods_;     // rods that are no ropes
+  std::vector<int> tautRod_;  // index into Constraints::rods of each rope, or -1: no smooth force pulls at it
+  struct Member {
+    std::size_t rope;
+    bool wasTaut;
+  };
+  std::vector<Member> members_;    // of the impact under way
+  std::vector<char> isStretched_;  // has reached its length and not been slack since
+  // N, of the change under way, the greater of both ends of its step: one that contacts keep just above zero is small
+  // at the start, and no measure of itself.
+  double tensionScale_ = 1;
+  VectorX derivative_, sample_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,293 @@
+#include "simulate/steps/step_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "impact/contact_impulse.h"
+#include "impact/frictional_impact.h"
+#include "impact/generalized_reflections.h"
+#include "impact/impact_energy.h"
+#include "simulate/thresholds.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kStepTouchRatio = 1e-9;     // of the smallest body's size: nearer counts as touching
+constexpr std::size_t kFewLoaded = 8;        // contacts that last: more are resolved step by step
+constexpr double kTogetherRatio = 1e-3;      // of a step: what touches within it touches together
+constexpr double kShortLever = 3e-3;         // sizes of a body: shorter levers about a joint leave hardly any turning,
+constexpr double kLoosened = 1e-6;           // and contacts there may overlap by so many
+constexpr double kReach = 2;                 // of the way that a body goes freely: what others may make of it
+constexpr double kRestingReachRatio = 1e-3;  // of its size: the same, for bodies at rest
+constexpr double kStillSteps = 20;           // awake at least so long: a rattle is no row of rests
+constexpr double kLetBe = 0.1;               // of what carries at rest: overlaps that the next step may take out
+constexpr double kNearOverlap = 10;          // of the deepest overlap: so near others may be pushed into
+constexpr int kMaxRemovals = 4;           // of overlaps in a step: each leaves the square of a part of what was there
+constexpr double kClosedRatio = 1e-6;     // of the speed that gravity gives in a step: slower does not close
+constexpr double kMinImpactRatio = 0.01;  // of the speed that gravity gives in a step: slower is no impact
+constexpr double kLandingRatio = 0.1;     // of the same: slower landings are not worth ending a step for
+
+double closingSpeed(const Contact& contact, const VectorX& state) {
+  return -openingSpeed(contact, state);
+}
+
+/// Without friction by reflections; with it by the same on Coulomb's cones.
+ImpactFaults resolveImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
+  const bool hasFriction = std::any_of(impacts.begin(), impacts.end(), [](const ImpactContact& impact) {
+    return impact.material.staticFriction > 0 || impact.material.dynamicFriction > 0;
+  });
+  if (hasFriction) return resolveFrictionalImpact(impacts, response, state);
+  resolveReflections(impacts, response, state);
+  return {};
+}
+
+}  // namespace
+
+StepContacts::StepContacts(IslandState& island, double timeStep)
+    : assembly_(island.assembly),
+      log_(island.log),
+      resting_(island.resting),
+      solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
+      timeStep_(timeStep),
+      touchTolerance_(kStepTouchRatio * smallestSize(assembly_.geometry)),
+      leastClosingSpeed_(kRestSpeedFloor + kClosedRatio * assembly_.mechanism.gravity.norm() * timeStep),
+      leastImpactSpeed_(kRestSpeedFloor + kMinImpactRatio * assembly_.mechanism.gravity.norm() * timeStep),
+      stepping_(assembly_) {
+  resting_.setStillTime(kStillSteps * timeStep);
+}
+
+void StepContacts::strike(double time, const VectorX& before, VectorX& state) {
+  if (assembly_.geometry.colliders.empty()) return;
+  findMeeting(state);
+  if (touching_.empty()) return;
+  wakeTouched(time, state);
+  if (solver_.hasConstraints()) solver_.factorize(state);
+  if (!isCrowded_) {
+    resolveImpacts(time, before, state);
+    return letSleep(time, touching_, state);
+  }
+  const std::vector<Vec3> impulses = stepping_.strike(touching_, timeStep_, state);
+  recordFaults(time);
+  for (std::size_t i = 0; i < impulses.size(); ++i) {
+    const double impulse = touching_[i].normal.dot(impulses[i]);
+    if (impulse > 0) log_.recordContact(time, EventKind::impact, touching_[i], impulse);
+  }
+}
+
+/// Contacts of this instant, and those that are so near to it that they take part in its impact.
+void StepContacts::findMeeting(const VectorX& state) {
+  findTouching(state, margin());
+  double fastest = 0;
+  for (const Contact& contact : touching_) fastest = std::max(fastest, closingSpeed(contact, state));
+  const double near = std::max(touchTolerance_, kTogetherRatio * fastest * timeStep_);
+  std::erase_if(touching_, [&](const Contact& contact) { return contact.separation > near; });
+}
+
+/// Contacts that may close within a step, also if others make the bodies faster.
+void StepContacts::findWithinReach(const VectorX& before, const VectorX& state, double length) {
+  std::vector<double> ways;  // m, of each body within the step
+  double farthest = 0;
+  for (std::size_t i = 0; i < assembly_.radii.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    double speed = 0;
+    for (const VectorX* moment : {&before, &state})
+      speed = std::max(
+          speed, linearVelocity(*moment, body).norm() + assembly_.radii[i] * angularVelocity(*moment, body).norm());
+    ways.push_back(kReach * speed * length + kRestingReachRatio * assembly_.radii[i]);
+    farthest = std::max(farthest, ways.back());
+  }
+  findTouching(before, 2 * farthest);
+  std::erase_if(touching_, [&](const Contact& contact) {
+    double way = 0;
+    for (const int body : {contact.bodyA, contact.bodyB})
+      if (body != kFixed) way += ways[static_cast<std::size_t>(body)];
+    return contact.separation > way;
+  });
+}
+
+/// Of pairs that are apart when the step begins nothing is known but by the search for impacts, as long as there is
+/// one.
+void StepContacts::findHeld(const VectorX& before, const VectorX& state, double length) {
+  findWithinReach(before, state, length);
+  if (isCrowded_) return loosenShortLevers(before, touching_);
+  std::vector<char> touches(assembly_.geometry.pairs.size(), 0);
+  for (const Contact& contact : touching_)
+    if (contact.separation <= touchTolerance_) touches[contact.pair] = 1;
+  std::erase_if(touching_, [&](const Contact& contact) { return !touches[contact.pair]; });
+  loosenShortLevers(before, touching_);
+}
+
+/// Where a joint leaves a contact hardly any lever, impulses turn bodies farther than steps can follow. Such contacts
+/// may overlap a little: bodies that do turn give them a lever.
+void StepContacts::loosenShortLevers(const VectorX& state, std::vector<Contact>& contacts) {
+  if (contacts.empty() || !solver_.hasConstraints()) return;
+  const ImpulseResponse response(assembly_.mechanism.bodies, solver_);
+  for (Contact& contact : contacts)
+    if (hasShortLever(contact, response, state, kShortLever))
+      contact.separation += kLoosened * smallestSize(contact, assembly_.radii);
+}
+
+void StepContacts::begin(double time, const VectorX& before, const VectorX& state, double length) {
+  isCrowded_ = becomesCrowded_;
+  stepPart_ = length / timeStep_;
+  touching_.clear();
+  if (assembly_.geometry.colliders.empty()) return;
+  findHeld(before, state, length);
+  // What rests is woken by what closes within the step, with all that it rests on.
+  bool woken = false;
+  for (const Contact& contact : touching_) {
+    const double closing = -contact.normal.dot(relativeVelocity(contact, before, state));
+    if (contact.separation - length * std::max(0.0, closing) > touchTolerance_) continue;
+    for (const int body : {contact.bodyA, contact.bodyB})
+      for (const int other : resting_.wake(time, body)) {
+        log_.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
+        woken = true;
+      }
+  }
+  if (woken) findHeld(before, state, length);
+}
+
+std::vector<ColliderPair> StepContacts::pairsNotHeld() const {
+  const std::vector<ColliderPair>& pairs = assembly_.geometry.pairs;
+  std::vector<char> isHeld(pairs.size(), 0);
+  for (const Contact& contact : touching_) isHeld[contact.pair] = 1;
+  std::vector<ColliderPair> others;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (!isHeld[i]) others.push_back(pairs[i]);
+  return others;
+}
+
+double StepContacts::nextImpact(const VectorX& before, const VectorX& state, double length) {
+  const double landingSpeed = kRestSpeedFloor + kLandingRatio * assembly_.mechanism.gravity.norm() * timeStep_;
+  return stepping_.nextImpact(touching_, before, length, state, landingSpeed);
+}
+
+void StepContacts::hold(const VectorX& before, double length, const RopeEvents& ropes, VectorX& state) {
+  stepPart_ = length / timeStep_;
+  stepping_.resolve(touching_, ropes.withinReach(before, state, length), before, length, state);
+  correctPenetrations(ropes, state);
+}
+
+void StepContacts::recordAndLetSleep(double time, VectorX& state) {
+  recordFaults(time);
+  std::vector<Contact> acting;
+  for (const SteppedContact& stepped : stepping_.contacts()) {
+    const double impulse = stepped.contact.normal.dot(stepped.impulse);
+    if (impulse <= kRestSpeedFloor * lightest(stepped.contact)) continue;
+    acting.push_back(stepped.contact);
+    if (stepped.isImpact) log_.recordContact(time, EventKind::impact, stepped.contact, impulse);
+  }
+  if (isCrowded_) letSleep(time, acting, state);
+  becomesCrowded_ = isCrowded_ ? !acting.empty() : acting.size() > kFewLoaded;
+}
+
+/// Points that were not yet nearest when the step began, on rims and edges that turn, may have come too near at its
+/// end.
+void StepContacts::correctPenetrations(const RopeEvents& ropes, VectorX& state) {
+  for (int round = 0; round < kMaxRemovals; ++round) {
+    findTouching(state, 0, overlapping_);
+    loosenShortLevers(state, overlapping_);
+    double deepest = 0;
+    for (const Contact& contact : overlapping_) deepest = std::max(deepest, -contact.separation);
+    if (deepest <= kLetBe * margin()) return;
+    findTouching(state, kNearOverlap * deepest, overlapping_);
+    loosenShortLevers(state, overlapping_);
+    stepping_.correctPenetration(overlapping_, ropes.withinReach(state, state, 0), state);
+  }
+}
+
+bool StepContacts::hasImpact() const {
+  const auto isImpact = [](const SteppedContact& stepped) { return stepped.isImpact; };
+  return std::any_of(stepping_.contacts().begin(), stepping_.contacts().end(), isImpact);
+}
+
+/// Mass (kg) of the lighter of the bodies at a contact.
+double StepContacts::lightest(const Contact& contact) const {
+  double mass = INFINITY;
+  for (const int body : {contact.bodyA, contact.bodyB})
+    if (body != kFixed) mass = std::min(mass, assembly_.mechanism.bodies[static_cast<std::size_t>(body)].mass);
+  return mass;
+}
+
+void StepContacts::recordFaults(double time) {
+  for (const SteppingFault& fault : stepping_.takeFaults())
+    log_.recordCorrection(time, fault.kind, fault.bodies, fault.amount);
+}
+
+void StepContacts::letSleep(double time, const std::vector<Contact>& contacts, VectorX& state) {
+  for (const int body : resting_.letSleep(time, contacts, state))
+    log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
+}
+
+/// Contacts of this instant in which something moves, and that constraints do not hold as they are.
+void StepContacts::findTouching(const VectorX& state, double margin, std::vector<Contact>& touching) {
+  findContacts(assembly_.geometry, state, margin, touching);
+  std::erase_if(touching, [this](const Contact& contact) {
+    const bool aLies = contact.bodyA == kFixed || resting_.isResting(contact.bodyA);
+    const bool bLies = contact.bodyB == kFixed || resting_.isResting(contact.bodyB);
+    return aLies && bLies;
+  });
+  if (touching.empty() || !solver_.hasConstraints()) return;
+  solver_.factorize(state);
+  eraseImmobile(ImpulseResponse(assembly_.mechanism.bodies, solver_), state, touching);
+}
+
+void StepContacts::wakeTouched(double time, const VectorX& state) {
+  bool woken = false;
+  for (const Contact& contact : touching_)
+    for (const int body : {contact.bodyA, contact.bodyB})
+      for (const int other : resting_.wake(time, body)) {
+        log_.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
+        woken = true;
+      }
+  if (woken) findMeeting(state);
+}
+
+/// All that touch each other where one closes take part. A contact that closes faster than acceleration explains
+/// rebounds. What explains: the speed that it gained since the last step, part of a step as that may have been, would
+/// have in `kRestSteps` whole ones.
+void StepContacts::resolveImpacts(double time, const VectorX& before, VectorX& state) {
+  for (std::vector<ImpactContact>& impacts : findImpacts(before, state)) {
+    if (impacts.empty()) continue;
+    const VectorX approach = state;
+    log_.recordFaults(time, impacts,
+                      resolveImpact(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state));
+    const bool isHard = std::any_of(impacts.begin(), impacts.end(), [&](const ImpactContact& impact) {
+      return closingSpeed(impact.contact, approach) > leastImpactSpeed_;
+    });
+    bookImpact(impacts, assembly_.mechanism.bodies, approach, state);
+    bookNumerical(energyConstant(assembly_.mechanism, approach), assembly_.mechanism, state);
+    for (const ImpactContact& impact : impacts) {
+      const double impulse = impact.contact.normal.dot(impact.impulse);
+      if (isHard && impulse > 0) log_.recordContact(time, EventKind::impact, impact.contact, impulse);
+    }
+  }
+}
+
+/// What an impact at a contact moves with others: bodies that touch each other or are joined.
+DisjointSets StepContacts::findImpactIslands() const {
+  DisjointSets islands(assembly_.mechanism.bodies.size());
+  for (const Contact& contact : touching_) islands.join(contact.bodyA, contact.bodyB);
+  forEachConstraint(assembly_.mechanism.constraints, [&](int bodyA, int bodyB) { islands.join(bodyA, bodyB); });
+  return islands;
+}
+
+/// The impacts of this instant by island; most are empty.
+std::vector<std::vector<ImpactContact>> StepContacts::findImpacts(const VectorX& before, const VectorX& state) const {
+  const DisjointSets islands = findImpactIslands();
+  std::vector<std::vector<ImpactContact>> impacts(assembly_.mechanism.bodies.size());
+  std::vector<char> isStruck(impacts.size(), 0);
+  for (const Contact& contact : touching_) {
+    const double closing = closingSpeed(contact, state);
+    const double gained = closing + contact.normal.dot(relativeVelocity(contact, state, before));
+    const double restSpeed = std::max(kRestSteps * std::max(0.0, gained / stepPart_), leastImpactSpeed_);
+    const auto island = static_cast<std::size_t>(islands.islandOf(contact.movingBody()));
+    impacts[island].push_back({contact, assembly_.geometry.pairs[contact.pair].material, restSpeed, Vec3::Zero()});
+    if (closing > leastClosingSpeed_) isStruck[island] = 1;
+  }
+  for (std::size_t island = 0; island < impacts.size(); ++island)
+    if (!isStruck[island]) impacts[island].clear();
+  return impacts;
+}
+
+}  // namespace cradle

@@ -1,0 +1,170 @@
+#include "simulate/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/interruption.h"
+#include "dynamics/invariants.h"
+#include "simulate/start_overlaps.h"
+#include "simulate/thresholds.h"
+
+namespace cradle {
+namespace {
+
+void add(const Invariants& sums, const VectorX& state, EnergyBalance& balance) {
+  balance.kinetic += sums.kinetic;
+  balance.potential += sums.potential;
+  balance.dissipated += dissipatedEnergy(state);
+  balance.impact += impactEnergy(state);
+  balance.friction += frictionEnergy(state);
+  balance.damping += dampingEnergy(state);
+  balance.numerical += numericalEnergy(state);
+  balance.work += pushWork(state);
+  balance.momentum += sums.momentum;
+  balance.angularMomentum += sums.angularMomentum;
+}
+
+}  // namespace
+
+World::World(const Scene& scene) : plan_(planOf(scene)) {
+  for (const Body& body : scene.bodies)
+    stateOfBody_.push_back(body.motion == Motion::dynamic ? static_cast<int>(moving_++) : -1);
+  std::vector<Assembly> assemblies;
+  for (const IslandPlan& island : plan_.islands) assemblies.push_back(assemble(scene, island));
+  correctStartPenetrations(scene, assemblies);
+  for (std::size_t i = 0; i < assemblies.size(); ++i) {
+    startWarnings_.insert(startWarnings_.end(), assemblies[i].warnings.begin(), assemblies[i].warnings.end());
+    hasLongSteps_ = hasLongSteps_ || assemblies[i].hasLongSteps;
+    move(scene, i, std::move(assemblies[i]));
+  }
+  decideStartPromises(scene);
+}
+
+void World::decideStartPromises(const Scene& scene) {
+  promiseEnds_.resize(plan_.islands.size());
+  notePromiseEnds();
+  for (std::size_t i = 0; i < promiseEnds_.size(); ++i) {
+    if (!promiseEnds_[i]) continue;
+    const std::string names = namesOfBodies(promiseEnds_[i]->bodies, scene);
+    plan_.islands[i].promise = {
+        Promise::Kind::none, {}, fmt::format("{} ({}) at the start", promiseEnds_[i]->reason, names)};
+  }
+}
+
+void World::notePromiseEnds() {
+  for (std::size_t i = 0; i < solvers_.size(); ++i) {
+    std::optional<PromiseEnd>& known = promiseEnds_[islandOfSolver_[i]];
+    if (known || !solvers_[i]->promiseEnd()) continue;
+    known = solvers_[i]->promiseEnd();
+    newEnds_.push_back(*known);
+  }
+}
+
+std::vector<PromiseEnd> World::takePromiseEnds() {
+  std::vector<PromiseEnd> ends = std::exchange(newEnds_, {});
+  std::stable_sort(ends.begin(), ends.end(), [](const PromiseEnd& a, const PromiseEnd& b) { return a.time < b.time; });
+  return ends;
+}
+
+void World::move(const Scene& scene, std::size_t index, Assembly assembly) {
+  const IslandPlan& island = plan_.islands[index];
+  switch (island.method.kind) {
+    case MotionKind::freeFlight:
+      return addFlight(std::move(assembly));
+    case MotionKind::elasticFlight:
+      spheres_.push_back(std::make_unique<HardSpheres>(scene, std::move(assembly), *hardSpheresOf(scene, island)));
+      return;
+    case MotionKind::pile:
+      softIslands_.push_back(std::make_unique<SoftSubsteps>(std::move(assembly), island.method.timeStep));
+      return;
+    case MotionKind::fixedSteps:
+    case MotionKind::errorSteps:
+      solvers_.push_back(std::make_unique<IslandSolver>(scene, std::move(assembly), island.method));
+      islandOfSolver_.push_back(index);
+  }
+}
+
+void World::addFlight(Assembly assembly) {
+  FlyingIsland island{std::move(assembly), {}};
+  const Mechanism& mechanism = island.assembly.mechanism;
+  for (std::size_t body = 0; body < mechanism.bodies.size(); ++body)
+    island.flights.emplace_back(mechanism.bodies[body], island.assembly.state, static_cast<Eigen::Index>(body),
+                                mechanism.gravity);
+  flying_.push_back(std::move(island));
+}
+
+Frame World::frameAt(long number, double time) {
+  throwIfInterrupted();
+  Frame frame{number, time, std::vector<BodyState>(moving_), {}};
+  const auto add = [&](const auto& simulation) {
+    addTo(frame, simulation->assembly(), simulation->stateAt(time));
+    const std::vector<Event> events = simulation->takeEvents();
+    events_.insert(events_.end(), events.begin(), events.end());
+  };
+  for (const auto& simulation : solvers_) add(simulation);
+  notePromiseEnds();
+  for (const auto& spheres : spheres_) add(spheres);
+  for (const auto& pile : softIslands_) add(pile);
+  for (FlyingIsland& island : flying_) {
+    for (const FreeFlight& flight : island.flights) flight.moveTo(time, island.assembly.state);
+    island.evaluations += std::ssize(island.flights);
+    addTo(frame, island.assembly, island.assembly.state);
+  }
+  return frame;
+}
+
+void World::addTo(Frame& frame, const Assembly& assembly, const VectorX& state) const {
+  for (std::size_t i = 0; i < assembly.sceneBodies.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    const int at = stateOfBody_[static_cast<std::size_t>(assembly.sceneBodies[i])];
+    frame.states[static_cast<std::size_t>(at)] = {centerOfMass(state, body), orientation(state, body),
+                                                  linearVelocity(state, body), angularVelocity(state, body)};
+  }
+  add(invariantsOf(assembly.mechanism, state), state, frame.energy);
+}
+
+std::vector<Event> World::takeEvents(double time) {
+  const double until = time + sameTime(time);
+  std::stable_sort(events_.begin(), events_.end(), [](const Event& a, const Event& b) { return a.time < b.time; });
+  const auto later =
+      std::find_if(events_.begin(), events_.end(), [&](const Event& event) { return event.time > until; });
+  const std::vector<Event> taken(events_.begin(), later);
+  events_.erase(events_.begin(), later);
+  return taken;
+}
+
+std::vector<std::string> World::takeWarnings() {
+  std::vector<std::string> warnings;
+  for (const auto& simulation : solvers_)
+    for (std::string& warning : simulation->takeWarnings()) warnings.push_back(std::move(warning));
+  return warnings;
+}
+
+std::vector<Correction> World::takeCorrections() {
+  std::vector<Correction> all, first;
+  for (const auto& simulation : solvers_)
+    for (Correction& correction : simulation->corrections().takeFirst()) all.push_back(std::move(correction));
+  std::stable_sort(all.begin(), all.end(), [](const Correction& a, const Correction& b) { return a.time < b.time; });
+  for (Correction& correction : all)
+    if (!std::exchange(isToldOf_[static_cast<std::size_t>(correction.kind)], 1)) first.push_back(std::move(correction));
+  return first;
+}
+
+std::map<std::string, long> World::correctionCounts() const {
+  std::map<std::string, long> counts;
+  for (const auto& simulation : solvers_) simulation->corrections().addCounts(counts);
+  return counts;
+}
+
+long World::evaluations() const {
+  long sum = 0;
+  for (const auto& simulation : solvers_) sum += simulation->evaluations();
+  for (const auto& spheres : spheres_) sum += spheres->evaluations();
+  for (const auto& pile : softIslands_) sum += pile->evaluations();
+  for (const FlyingIsland& island : flying_) sum += island.evaluations;
+  return sum;
+}
+
+}  // namespace cradle

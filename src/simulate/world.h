@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamics/free_flight.h"
+#include "simulate/island_solver.h"
+#include "simulate/soft_substeps.h"
+#include "simulate/spheres/hard_spheres.h"
+
+namespace cradle {
+
+/// The world: all islands of a scene in motion, each with a solver and a clock of its own.
+class World {
+ public:
+  /// Keeps a reference to `scene`. Throws Error(scene) for bodies that overlap.
+  explicit World(const Scene& scene);
+
+  /// How the scene is simulated; what the first instant decides of its promises is in it.
+  const Plan& plan() const { return plan_; }
+
+  /// Of each island of the plan, when events gave it up; none while they serve, or if they never were to.
+  const std::vector<std::optional<PromiseEnd>>& promiseEnds() const { return promiseEnds_; }
+
+  /// Those since the last call, in the order of time.
+  std::vector<PromiseEnd> takePromiseEnds();
+
+  /// Warnings about the start.
+  const std::vector<std::string>& startWarnings() const { return startWarnings_; }
+
+  /// Whether these tell that the scene's steps are too long for a spring.
+  bool hasLongSteps() const { return hasLongSteps_; }
+
+  /// The frame at a time (s) not earlier than in the call before. Throws what IslandSolver::stateAt throws.
+  Frame frameAt(long number, double time);
+
+  /// Events up to `time` that were not taken before, in the order of time.
+  std::vector<Event> takeEvents(double time);
+
+  /// Warnings since the last call.
+  std::vector<std::string> takeWarnings();
+
+  /// Corrections since the last call that were the first of their kind in the run, in the order of time.
+  std::vector<Correction> takeCorrections();
+
+  /// How often each kind of correction has happened so far.
+  std::map<std::string, long> correctionCounts() const;
+
+  /// Evaluations of equations of motion, and of closed forms, so far.
+  long evaluations() const;
+
+ private:
+  /// Bodies that nothing but gravity acts upon.
+  struct FlyingIsland {
+    Assembly assembly;
+    std::vector<FreeFlight> flights;
+    long evaluations = 0;
+  };
+  void move(const Scene& scene, std::size_t island, Assembly assembly);
+  void decideStartPromises(const Scene& scene);
+  void notePromiseEnds();
+  void addFlight(Assembly assembly);
+  void addTo(Frame& frame, const Assembly& assembly, const VectorX& state) const;
+
+  Plan plan_;
+  std::vector<std::string> startWarnings_;
+  bool hasLongSteps_ = false;
+  std::vector<std::unique_ptr<IslandSolver>> solvers_;
+  std::vector<std::size_t> islandOfSolver_;             // of the plan
+  std::vector<std::optional<PromiseEnd>> promiseEnds_;  // by island
+  std::vector<PromiseEnd> newEnds_;                     // not yet taken
+  std::vector<FlyingIsland> flying_;
+  std::vector<std::unique_ptr<HardSpheres>> spheres_;
+  std::vector<std::unique_ptr<SoftSubsteps>> softIslands_;
+  std::vector<int> stateOfBody_;  // of each scene body in a frame's states, or -1
+  std::size_t moving_ = 0;
+  std::array<char, kCorrectionKinds> isToldOf_ = {};  // kinds of corrections
+  std::vector<Event> events_;                         // known, but not yet taken
+};
+
+}  // namespace cradle

@@ -1,0 +1,66 @@
+#include "impact/contact_interior_point.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <random>
+
+#include "impact/lorentz_cone.h"
+
+namespace cradle {
+namespace {
+
+TEST(LorentzCone, ScalingMapsBothPointsToOne) {
+  const Vec3 x(0.3, -0.4, 0.9), y(-2, 1, 2.5);
+  const ConeScaling scaling = coneScaling(x, y);
+  EXPECT_LT((scaling.scale * y - scaling.inverse * x).norm(), 1e-14);
+  EXPECT_LT((scaling.scale * scaling.inverse - Mat3::Identity()).norm(), 1e-14);
+}
+
+TEST(LorentzCone, QuotientUndoesTheProduct) {
+  const Vec3 a(0.3, -0.4, 0.9), b(1, 2, -3);
+  EXPECT_LT((coneQuotient(coneProduct(a, b), a) - b).norm(), 1e-14);
+}
+
+TEST(LorentzCone, StepEndsOnTheBoundary) {
+  const Vec3 x(0.3, -0.4, 0.9);
+  for (const Vec3& d : {Vec3(1, 2, -3), Vec3(4, 0, 1), Vec3(0, 0, -1)}) {
+    const Vec3 end = x + stepToBoundary(x, d) * d;
+    EXPECT_NEAR(coneDeterminant(end), 0, 1e-14);
+    EXPECT_GE(end.z(), -1e-15);
+  }
+  EXPECT_EQ(stepToBoundary(x, Vec3(0.1, 0.1, 1)), INFINITY);
+}
+
+// Contacts on bodies with 12 freedoms, so that 8 of 24 rows are redundant; one in four without friction. Coulomb's law
+// holds to what interior points reach before rounding rules.
+TEST(ConeInterior, ComesNearASolutionOfRedundantContacts) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int trial = 0; trial < 20; ++trial) {
+    MatrixX rows(24, 16);
+    VectorX velocities(16);
+    for (double& entry : rows.reshaped()) entry = 0.3 * uniform(random);
+    for (double& entry : velocities) entry = uniform(random);
+    const MatrixX g = rows * rows.transpose();
+    const ScaledContacts cones{rows * velocities, {0, 0.3, 0.5, 0.7, 0, 0.3, 0.5, 0.7}};
+    ContactOperator op;
+    op.multiply = [&](const VectorX& z, VectorX& u) { u = g * z + cones.free; };
+    op.respond = [&](const std::vector<Mat3>& stiffnesses, bool, const VectorX& c, VectorX& du) {
+      MatrixX matrix = MatrixX::Identity(24, 24);
+      for (Eigen::Index i = 0; i < 8; ++i)
+        matrix.middleCols<3>(3 * i) += g.middleCols<3>(3 * i) * stiffnesses[static_cast<std::size_t>(i)];
+      du = matrix.partialPivLu().solve(g * c);
+    };
+    VectorX z = VectorX::Zero(24);
+    solveByInteriorPoint(cones, op, 1e-7, z);
+    const VectorX u = g * z + cones.free;
+    for (Eigen::Index i = 0; i < 8; ++i) {
+      const double friction = cones.frictions[static_cast<std::size_t>(i)];
+      EXPECT_LT(coulombResidual(z.segment<3>(3 * i), u.segment<3>(3 * i), friction).norm(), 1e-5) << trial;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cradle
