@@ -14,7 +14,6 @@ namespace {
 // Of spreadsheets; those that have a wide form, too.
 constexpr std::string_view kFormulaStarts = "=+-@\t\r\n";
 constexpr std::array<std::string_view, 4> kWideStarts = {"\uff1d", "\uff0b", "\uff0d", "\uff20"};
-constexpr std::string_view kKept = "\t\r";  // of control characters: in quotes they do no harm
 
 /// A formula, or what csvField() has made of one: so that it can be taken back.
 bool needsApostrophe(std::string_view text) {
@@ -24,18 +23,6 @@ bool needsApostrophe(std::string_view text) {
   return kFormulaStarts.find(text[start]) != kFormulaStarts.npos || std::ranges::any_of(kWideStarts, isStart);
 }
 
-/// What printable() gives of it, with tabs and carriage returns as they are.
-std::string withoutControls(std::string_view text) {
-  std::string safe;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find_first_of(kKept, begin), text.size());
-    safe += printable(text.substr(begin, end - begin));
-    if (end < text.size()) safe += text[end];
-    begin = end + 1;
-  }
-  return safe;
-}
-
 std::string withoutApostrophe(const std::string& field) {
   return field.starts_with('\'') && needsApostrophe(field) ? field.substr(1) : field;
 }
@@ -43,8 +30,8 @@ std::string withoutApostrophe(const std::string& field) {
 }  // namespace
 
 std::string csvField(const std::string& text) {
-  const std::string plain = (needsApostrophe(text) ? "'" : "") + withoutControls(text);
-  if (plain.find_first_of(",\"\t\r\n") == std::string::npos) return plain;
+  const std::string plain = (needsApostrophe(text) ? "'" : "") + printableLine(text);
+  if (plain.find_first_of(",\"") == std::string::npos) return plain;
   std::string field = "\"";
   for (const char c : plain) field += c == '"' ? std::string("\"\"") : std::string(1, c);
   return field + "\"";

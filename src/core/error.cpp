@@ -9,7 +9,11 @@
 namespace cradle {
 
 Error::Error(ErrorKind kind, const std::string& where, const std::string& what)
-    : kind_(kind), message_(where.empty() ? printable(what) : printableLine(where) + ": " + printable(what)) {}
+    : Error(kind, (where.empty() ? "" : printableLine(where) + ": ") + printableLine(what)) {}
+
+Error Error::ofLines(ErrorKind kind, const std::string& lines) {
+  return {kind, printable(lines)};
+}
 
 void failCheck(const char* condition, const char* file, int line) {
   std::fprintf(stderr, "cradle: internal check failed: %s (%s:%d). This is a bug in cradle, not in your scene.\n",

@@ -23,12 +23,16 @@ enum class ErrorKind {
 class Error : public std::exception {
  public:
   /// `where` is a place the user can go to ("scenes/pendulum.json:12:7 /bodies/0/mass", a file, an option);
-  /// `what` says what was found, what is allowed and what to do. Both are shown as printable() has it.
+  /// `what` says what was found, what is allowed and what to do. Both are shown as printableLine() has it.
   Error(ErrorKind kind, const std::string& where, const std::string& what);
+  /// Of several lines, shown as printable() has it: names in them are printable already.
+  static Error ofLines(ErrorKind kind, const std::string& lines);
   const char* what() const noexcept override { return message_.c_str(); }
   ErrorKind kind() const { return kind_; }
 
  private:
+  Error(ErrorKind kind, std::string message) : kind_(kind), message_(std::move(message)) {}
+
   ErrorKind kind_;
   std::string message_;  // "where: what"
 };

@@ -48,6 +48,10 @@ void requireWritableFile(const std::string& path) {
 void requireWritablePlace(const std::string& path) {
   std::error_code failed;
   const fs::file_status there = fs::status(path, failed);
+  if (fs::is_symlink(fs::symlink_status(path, failed)) && fs::is_regular_file(there))
+    throw Error(
+        ErrorKind::output, path,
+        "is a link to " + fs::read_symlink(path, failed).string() + ", which is not replaced; name the file itself");
   if (fs::path(path).filename().empty() || fs::is_directory(there))
     throw Error(ErrorKind::output, path, "is a folder; give the name of a file");
   if (fs::exists(there) && !fs::is_regular_file(there))

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -24,6 +25,7 @@ namespace cradle {
 namespace {
 
 constexpr std::chrono::milliseconds kTurn{100};  // of waiting, until signals are looked at
+constexpr off_t kLastWords = 1 << 16;            // bytes of messages that are kept
 constexpr int kPipeBytes = 1 << 20;  // the most that Linux gives everyone: fewer turns between the two programs
 
 [[noreturn]] void failStart(const std::string& program, const StartFailure& failure, int error) {
@@ -39,10 +41,10 @@ std::FILE* openTemporary(const std::string& program, const StartFailure& failure
   return file;
 }
 
-std::string readWhole(std::FILE* file) {
+/// From `offset` (bytes) on.
+std::string readFrom(std::FILE* file, off_t offset) {
   std::string text;
   std::array<char, 4096> part;
-  off_t offset = 0;
   while (true) {
     const ssize_t count = pread(fileno(file), part.data(), part.size(), offset);
     if (count <= 0) return text;
@@ -118,7 +120,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, const StartF
                            std::chrono::milliseconds patience)
     : program_(command.at(0)),
       failureKind_(failure.kind),
-      eventRateLimit_(patience),
+      patience_(patience),
       output_(openTemporary(command.at(0), failure), std::fclose),
       error_(openTemporary(command.at(0), failure), std::fclose) {
   std::array<int, 2> ends;
@@ -168,11 +170,12 @@ int ChildProcess::finish() {
 }
 
 std::string ChildProcess::standardOutput() const {
-  return readWhole(output_.get());
+  return readFrom(output_.get(), 0);
 }
 
 std::string ChildProcess::standardError() const {
-  return readWhole(error_.get());
+  const off_t size = lseek(fileno(error_.get()), 0, SEEK_END);
+  return readFrom(error_.get(), std::max<off_t>(0, size - kLastWords));
 }
 
 void ChildProcess::closeInput() {
@@ -204,7 +207,7 @@ void ChildProcess::noteWait(std::chrono::milliseconds time) {
   throwIfInterrupted();
   if (idle_.count() == 0) ticksBefore_ = ticksOfGroup(process_);
   idle_ += time;
-  if (idle_ < eventRateLimit_) return;
+  if (idle_ < patience_) return;
   if (isIdle(ticksOfGroup(process_) - ticksBefore_, idle_))
     throw Error(failureKind_, program_,
                 fmt::format("hangs: it has done nothing for {} s, and was ended; run it by itself to see why",

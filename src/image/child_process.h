@@ -44,7 +44,7 @@ class ChildProcess {
   /// write() does.
   int finish();
 
-  /// What it has printed so far.
+  /// What it has printed so far; of its messages the last 64 kB.
   std::string standardOutput() const;
   std::string standardError() const;
 
@@ -56,7 +56,7 @@ class ChildProcess {
 
   std::string program_;
   ErrorKind failureKind_;
-  std::chrono::milliseconds eventRateLimit_, idle_{0};
+  std::chrono::milliseconds patience_, idle_{0};
   long ticksBefore_ = 0;  // of its processor time, when idle_ began
   File output_, error_;   // files rather than pipes: a program that prints much is never blocked
   int input_ = -1;

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/part_file.h"
+#include "core/printable.h"
 #include "image/png.h"
 
 namespace cradle {
@@ -45,7 +46,7 @@ for (const section of document.querySelectorAll("section")) {
 
 std::string escaped(std::string_view text) {
   std::string result;
-  for (const char c : text) switch (c) {
+  for (const char c : printableLine(text)) switch (c) {
       case '&':
         result += "&amp;";
         break;

@@ -4,8 +4,10 @@
 #include "image/video.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <cstring>
@@ -57,9 +59,20 @@ std::vector<std::string> ffmpegCommand(const std::string& part, const std::strin
 std::string lastWords(std::string text) {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
   if (text.empty()) return "it said nothing";
-  if (text.size() <= kLastWords) return text;
-  const std::size_t line = text.find('\n', text.size() - kLastWords);
-  return "... " + text.substr(line == std::string::npos ? text.size() - kLastWords : line + 1);
+  if (text.size() > kLastWords) {
+    const std::size_t line = text.find('\n', text.size() - kLastWords);
+    text = "... " + text.substr(line == std::string::npos ? text.size() - kLastWords : line + 1);
+  }
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+/// Whether the file may not grow beyond what it has. A program that a limit stops says nothing of it.
+bool isAtLimit(const std::string& path) {
+  rlimit limit{};
+  std::error_code failed;
+  const std::uintmax_t size = std::filesystem::file_size(path, failed);
+  return getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && !failed && size >= limit.rlim_cur;
 }
 
 bool speaksOfFullDisk(const std::string& text) {
@@ -130,6 +143,9 @@ void VideoEncoder::finish() {
 void VideoEncoder::fail(int exitCode) const {
   const std::string words = ffmpeg_->standardError();
   if (speaksOfFullDisk(words)) throw Error(ErrorKind::output, path_, "cannot be written: " + lastWords(words));
+  if (isAtLimit(partPath(path_)))
+    throw Error(ErrorKind::output, path_,
+                "cannot be written: a limit of the shell (ulimit -f) lets no file grow so far");
   throw Error(ErrorKind::encoder, path_,
               fmt::format("ffmpeg ended with code {} after {} pictures: {}", exitCode, frames_, lastWords(words)));
 }

@@ -72,6 +72,9 @@ class MeshFiles : public Assimp::IOSystem {
     return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   }
 
+  /// Whether a path leads to what is below the folder: words about other files are not to be told.
+  bool isInFolder(const std::string& path) const { return isBelow(path, folder_); }
+
   /// A file that was asked for, but is not below the folder; empty if none was.
   const std::string& outside() const { return outside_; }
 
@@ -84,7 +87,7 @@ class MeshFiles : public Assimp::IOSystem {
     std::error_code failed;  // a name may be too long
     return fs::is_regular_file(path, failed);
   }
-  bool isAllowed(const std::string& path) const { return path == path_ || isBelow(path, folder_); }
+  bool isAllowed(const std::string& path) const { return path == path_ || isInFolder(path); }
 
   std::string path_, outside_;
   fs::path folder_;
@@ -134,7 +137,7 @@ void importFile(const std::string& path, ImportedFile& file) {
     throw Error(ErrorKind::mesh, path,
                 fmt::format("cannot be read as a mesh: {} (no mesh found); check the file, or export it again as 3ds "
                             "or obj",
-                            reasonOf(words)));
+                            files->isInFolder(path) ? reasonOf(words) : "it is a link to something else"));
 }
 
 Affine toAffine(const aiMatrix4x4& m) {

@@ -75,7 +75,8 @@ unsigned int compile(const ShaderSource& source, const std::string& name, GLenum
   if (isCompiled != 0) return shader;
   const std::string log = logOf(shader, glGetShaderiv, glGetShaderInfoLog);
   glDeleteShader(shader);
-  throw Error(ErrorKind::usage, source.folder.empty() ? name : source.folder + "/" + name, "does not compile:\n" + log);
+  throw Error::ofLines(ErrorKind::usage,
+                       (source.folder.empty() ? name : source.folder + "/" + name) + ": does not compile:\n" + log);
 }
 
 }  // namespace
@@ -97,8 +98,8 @@ ShaderProgram::ShaderProgram(const ShaderSource& source, const std::string& vert
   int isLinked = 0;
   glGetProgramiv(program_, GL_LINK_STATUS, &isLinked);
   if (isLinked == 0)
-    throw Error(ErrorKind::usage, vertexFile + " with " + fragmentFile,
-                "does not link:\n" + logOf(program_, glGetProgramiv, glGetProgramInfoLog));
+    throw Error::ofLines(ErrorKind::usage, vertexFile + " with " + fragmentFile + ": does not link:\n" +
+                                               logOf(program_, glGetProgramiv, glGetProgramInfoLog));
 }
 
 ShaderProgram::~ShaderProgram() {

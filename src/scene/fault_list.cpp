@@ -26,7 +26,7 @@ bool FaultList::isFull() const {
 }
 
 std::string FaultList::where(const TextPlace& place, const std::string& pointer) const {
-  const std::string position = fmt::format("{}:{}:{}", file_, place.line, place.column);
+  const std::string position = fmt::format("{}:{}:{}", printableLine(file_), place.line, place.column);
   return pointer.empty() ? position : position + " " + printableLine(pointer, kLongestPointer);
 }
 
@@ -39,7 +39,7 @@ void FaultList::throwIfAny(ErrorKind kind) const {
   std::string text;
   for (const Fault& fault : sorted) text += (text.empty() ? "" : "\n") + fault.line;
   if (count_ > sorted.size()) text += fmt::format("\nand {} more", count_ - sorted.size());
-  throw Error(kind, "", text);
+  throw Error::ofLines(kind, text);
 }
 
 std::string inQuotes(const std::string& text) {

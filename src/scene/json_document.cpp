@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 
 #include "scene/syntax_fault.h"
@@ -18,6 +20,8 @@ namespace cradle {
 namespace {
 
 constexpr std::size_t kMaxLevels = 64;
+constexpr std::size_t kMaxKeys = 1'000'000;    // of an object; a scene has objects with 40
+constexpr std::size_t kMaxToken = 1'000'000;   // characters of a number; 800 say all that a double holds
 constexpr std::size_t kMaxValues = 4'000'000;  // some 300 MB; a hundred thousand bodies have fewer
 
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
@@ -99,6 +103,10 @@ bool TreeBuilder::key(string_t& key) {
   auto& object = std::get<JsonValue::Object>(levels_.back().value->content);
   object.push_back({key, place, {}});
   const auto [first, isNew] = levels_.back().keys.emplace(key, place);
+  if (object.size() > kMaxKeys) {
+    faults_.add(place, pointer(), fmt::format("an object has more than {} keys", kMaxKeys));
+    return false;
+  }
   if (!isNew) {
     faults_.add(place, pointer(),
                 fmt::format("duplicate key {}; each key may stand once in an object; the first is at {}:{}",
@@ -151,6 +159,18 @@ std::size_t endOfPiece(const std::string& text, std::size_t start) {
   return std::min(end + 1, text.size());
 }
 
+/// Where a number, or what stands in its place, goes on for more characters than are allowed. The parser reads numbers
+/// with all their digits.
+std::optional<std::size_t> endOfLongToken(const std::string& text) {
+  std::size_t count = 0;
+  for (std::size_t start = 0, end = 0; start < text.size(); start = end) {
+    end = endOfPiece(text, start);
+    count = end == start + 1 && std::isalnum(static_cast<unsigned char>(text[start])) != 0 ? count + 1 : 0;
+    if (count > kMaxToken) return start;
+  }
+  return {};
+}
+
 /// `text` with spaces in place of its comments and of other blanks between tokens; all else keeps its place. The parser
 /// copies what is before a token that it does not know into its message, a line feed as eight characters: of 60 MB of
 /// them for a minute. A comment without an end is cut after its beginning.
@@ -178,6 +198,10 @@ JsonValue readJson(const std::string& text, FaultList& faults) {
   // The parser would take a NUL for the end of the text and pass over what follows.
   if (const auto nul = text.find('\0'); nul != text.npos) {
     faults.add(TokenCursor(text).advanceTo(nul), "", "a NUL byte; a scene file is UTF-8 text");
+    faults.throwIfAny(ErrorKind::scene);
+  }
+  if (const auto end = endOfLongToken(text)) {
+    faults.add(TokenCursor(text).advanceTo(*end), "", fmt::format("a word of more than {} characters", kMaxToken));
     faults.throwIfAny(ErrorKind::scene);
   }
   TreeBuilder builder(text, faults);

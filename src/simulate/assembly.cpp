@@ -6,6 +6,7 @@
 
 #include "collision/broad_phase.h"
 #include "core/error.h"
+#include "core/printable.h"
 #include "simulate/colliders.h"
 #include "simulate/pinned_contacts.h"
 #include "simulate/steps/step_limit.h"
@@ -203,9 +204,10 @@ std::pair<int, int> bodiesOf(const Assembly& assembly, const ColliderPair& pair)
 void refuse(const std::vector<std::string>& faults) {
   if (faults.empty()) return;
   const std::size_t told = std::min(faults.size(), kMaxFaultsTold);
-  std::string text = fmt::format("{}", fmt::join(faults.begin(), faults.begin() + static_cast<long>(told), "\n"));
+  std::string text = printableLine(faults.front());
+  for (std::size_t i = 1; i < told; ++i) text.append("\n").append(printableLine(faults[i]));
   if (faults.size() > told) text += fmt::format("\nand {} more", faults.size() - told);
-  throw Error(ErrorKind::scene, "", text);
+  throw Error::ofLines(ErrorKind::scene, text);
 }
 
 void refuseUnsupported(const Scene& scene) {

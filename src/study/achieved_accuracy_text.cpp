@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/printable.h"
 #include "study/achieved_accuracy.h"
 
 namespace cradle {
@@ -48,13 +49,13 @@ std::string sensitivityText(const AchievedAccuracy& accuracy) {
 
 std::string describe(const AchievedAccuracy& accuracy) {
   std::size_t width = 4;
-  for (const BodyError& body : accuracy.bodies) width = std::max(width, body.body.size());
+  for (const BodyError& body : accuracy.bodies) width = std::max(width, printableLine(body.body).size());
   const std::string by = accuracy.isHeap ? "one that starts a little faster, for a heap has no finer run"
                                          : "a run at " + accuracy.finerRun;
   std::string text =
       fmt::format("Checked by {}: largest |x - x_ref| / (1 + |x_ref|) of positions (m) and orientations\n", by);
   for (const BodyError& body : accuracy.bodies)
-    text += fmt::format("  {:<{}}  {:8.1e}  at {:.6g} s\n", body.body, width, body.error, body.time);
+    text += fmt::format("  {:<{}}  {:8.1e}  at {:.6g} s\n", printableLine(body.body), width, body.error, body.time);
   text += evidenceText(accuracy);
   if (accuracy.fault.empty()) return text + sensitivityText(accuracy);
   return text + fmt::format("A fault, not chaos: {}. No accuracy is known from there on.", accuracy.fault);

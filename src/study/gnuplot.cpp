@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/part_file.h"
 #include "core/part_lock.h"
+#include "core/printable.h"
 #include "image/child_process.h"
 
 namespace cradle {
@@ -41,7 +42,7 @@ bool canDrawCharts() {
 
 std::string quotedForGnuplot(const std::string& text) {
   std::string result = "'";
-  for (const char c : text) result += c == '\'' ? "''" : c == '\n' ? " " : std::string(1, c);
+  for (const char c : printableLine(text)) result += c == '\'' ? "''" : std::string(1, c);
   return result + "'";
 }
 

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "core/error.h"
+#include "core/printable.h"
 
 namespace cradle {
 namespace {
@@ -89,9 +90,10 @@ void compareFrames(const TrajectoryReader& expected, const TrajectoryReader& act
 }
 
 std::string listed(const std::vector<std::string>& names) {
-  const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMaxListed));
+  std::vector<std::string> shown;
+  for (std::size_t i = 0; i < std::min(names.size(), kMaxListed); ++i) shown.push_back(printableLine(names[i]));
   const std::string more = names.size() > kMaxListed ? fmt::format(" and {} more", names.size() - kMaxListed) : "";
-  return fmt::format("{}{}", fmt::join(names.begin(), end, ", "), more);
+  return fmt::format("{}{}", fmt::join(shown, ", "), more);
 }
 
 }  // namespace
@@ -130,7 +132,7 @@ std::string TrajectoryComparison::describe() const {
                                  equal ? "equal" : "different", commonFrames, expectedFrames, actualFrames, tolerance);
   if (worst.difference > 0)
     text += fmt::format("\nlargest difference {:.3g}: {} of {} in frame {} ({} s)", worst.difference, worst.quantity,
-                        worst.body, worst.frame, worst.time);
+                        printableLine(worst.body), worst.frame, worst.time);
   std::vector<std::string> above;
   for (const BodyDifference& body : bodies)
     if (body.largest() > tolerance) above.push_back(fmt::format("{} ({:.3g})", body.body, body.largest()));

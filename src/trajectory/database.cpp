@@ -75,14 +75,16 @@ bool namesSuperJournal(std::ifstream& journal) {
 }
 
 /// Whether SQLite would make the database of `size` bytes longer, to what a rollback journal says that it had. (section
-/// 3 as above: number of pages and bytes of each, 16 and 24 bytes from the beginning)
+/// 3 as above: number of pages and bytes of each, 16 and 24 bytes from the beginning; 0 bytes stand for what the
+/// database has, and are never written)
 bool growsDatabase(std::ifstream& journal, std::uint64_t size) {
   std::array<unsigned char, kJournalHeader> header{};
   journal.clear();
   journal.seekg(0);
   journal.read(reinterpret_cast<char*>(header.data()), header.size());
+  const std::uint64_t pages = bigEndianAt(header, 16), bytes = bigEndianAt(header, 24);
   return journal && std::equal(kJournalMark.begin(), kJournalMark.end(), header.begin()) &&
-         bigEndianAt(header, 16) * bigEndianAt(header, 24) > size;
+         (bytes == 0 || pages * bytes > size);
 }
 
 /// Ours neither name a file, as a writer has one open, nor make one longer, as it only adds.
@@ -90,9 +92,12 @@ void requireOwnJournal(const fs::path& database, ErrorKind kind) {
   const fs::path journal = journalOf(database);
   const fs::file_status status = fs::symlink_status(journal);
   if (!fs::exists(status)) return;
+  if (!fs::is_regular_file(status))
+    throw Error(kind, journal.string(),
+                "is none of cradle's: it is no regular file; remove it, or choose another folder");
   std::ifstream file(journal, std::ios::binary);
   std::error_code failed;
-  if (!fs::is_regular_file(status) || namesSuperJournal(file))
+  if (namesSuperJournal(file))
     throw Error(
         kind, journal.string(),
         "is none of cradle's: it names another file, which would be deleted; remove it, or choose another folder");

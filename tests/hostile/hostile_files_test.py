@@ -6,7 +6,7 @@
 Each file is made here, in code. A refusal has an exit code, a message of one line that names the file, little memory and
 little time; and every file that was there before is as it was.
 """
-import json, os, shutil, sqlite3, struct, subprocess, sys, tempfile, time, unittest, zlib
+import glob, json, os, shutil, sqlite3, struct, subprocess, sys, tempfile, time, unittest, zlib
 
 import running
 from running import MOST_MEMORY, MOST_SECONDS, PATIENCE, read
@@ -185,6 +185,55 @@ class Places(HostileTest):
                 ended = self.refuses(3, [self.path(name), words], command, self.path(name))
             texts.add(ended.error.replace(self.path(name), ""))
         self.assertEqual(len(texts), 4)
+
+    def test_names_stay_on_their_line_and_turn_nothing(self):
+        names = {"n\nINJECTED": 2, "\x1b[2J\u202ename": 1}
+        for name in names:
+            both = scene(*({"name": name + end, "shape": {"sphere": {"radius": 0.1}}, "mass": 1} for end in "ab"))
+            ended = self.refuses(3, ["overlap"], "check", self.write("both.json", both))
+            self.assertEqual(len(ended.error.splitlines()), 1, ended.error)
+            one = self.write("one.json", scene({"name": name, "shape": {"sphere": {"radius": 0.1}}, "mass": 1}, name=name))
+            trajectory = self.path("one.sqlite")
+            for arguments in (("simulate", one, "-q", "--check-accuracy", "-o", trajectory), ("plan", one),
+                              ("export", trajectory, "-o", self.path("one.csv")),
+                              ("study", one, "--methods", "rk4", "-o", self.path("study"))):
+                ended = self.run_cradle(*arguments)
+                self.assertEqual(ended.code, 0, ended.error)
+                for text in (ended.out, ended.error):
+                    self.assertTrue(all(c == "\n" or c.isprintable() for c in text), text)
+                    self.assertFalse(any(line.startswith("INJECTED") for line in text.splitlines()), text)
+            rows = read(self.path("one.csv")).decode().splitlines()
+            self.assertEqual({row.count(",") for row in rows}, {rows[0].count(",")})
+            for ending in ("csv", "svg"):
+                for file in glob.glob(self.path("study/*." + ending)):
+                    text = read(file).decode()
+                    self.assertFalse("\x1b" in text or "\u202e" in text, file)
+            shutil.rmtree(self.path("study"))
+
+    def test_a_report_has_no_raw_names(self):
+        trajectory = self.trajectory()
+        for folder, size in (("a", "32x32"), ("b", "16x16")):
+            self.assertEqual(self.run_cradle("render", trajectory, "-q", "--frames", "0:1", "--size", size, "-o", self.path(folder)).code, 0)
+            os.rename(self.path(folder + "/frame_000000.png"), self.path(folder + "/\x1b[2J\u202e<b>.png"))
+        self.assertEqual(self.run_cradle("compare", self.path("a"), self.path("b"), "--report", self.path("r.html")).code, 9)
+        report = read(self.path("r.html")).decode()
+        self.assertFalse("\x1b" in report or "\u202e" in report or "<b>" in report)
+
+    def test_a_mesh_that_links_elsewhere_tells_nothing_of_it(self):
+        for ending in ("q3o", "obj", "ply", "x", "nff", "ac", "bvh"):
+            os.makedirs(self.path("strangers"), exist_ok=True)
+            mesh = self.path("strangers/m." + ending)
+            os.symlink(self.secret, mesh)
+            ended = self.refuses(4, [], "inspect", mesh)
+            self.assertNotIn("dear", ended.error)
+
+    def test_a_limit_on_files_stops_a_film_with_its_own_code(self):
+        trajectory = self.trajectory()
+        for blocks in (0, 1):
+            ended = running.Ended("/bin/sh", ("-c", 'ulimit -f %d; exec "$0" "$@"' % blocks, PROGRAM, "video", trajectory, "-q", "--size",
+                                              "64x64", "-o", self.path("x.mp4")), self.folder)
+            self.assertEqual(ended.code, 5, ended.error)
+            self.assertFalse(os.path.exists(self.path("x.mp4")))
 
     def test_links_in_the_way_are_not_followed(self):
         path = self.trajectory()

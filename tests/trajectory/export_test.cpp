@@ -30,10 +30,10 @@ TEST(ExportCsv, WritesOneLineForEachFrameAndDynamicBody) {
   EXPECT_EQ(contentOf(folder.file("a.csv")),
             std::string(kHeaderLine) +
                 "0,0,ball,0,0,0,1,0,0,0,0,0,0,0,0,0\n"
-                "0,0,\"a \"\"big\"\", bad\nname\",0.1,-0,1e-07,0.5,-0.5,0.5,-0.5,1e+22,2,5e-324,"
+                "0,0,\"a \"\"big\"\", bad\\x0aname\",0.1,-0,1e-07,0.5,-0.5,0.5,-0.5,1e+22,2,5e-324,"
                 "0.3333333333333333,0,-3\n"
                 "0.1,1,ball,0.1,-0,1e-07,0.5,-0.5,0.5,-0.5,1e+22,2,5e-324,0.3333333333333333,0,-3\n"
-                "0.1,1,\"a \"\"big\"\", bad\nname\",0,0,0,1,0,0,0,0,0,0,0,0,0\n");
+                "0.1,1,\"a \"\"big\"\", bad\\x0aname\",0,0,0,1,0,0,0,0,0,0,0,0,0\n");
   EXPECT_EQ(folder.count(), 2);
 }
 

@@ -1,4 +1,5 @@
 #include <sqlite3.h>
+#include <sys/stat.h>
 
 #include <cstdint>
 
@@ -127,6 +128,19 @@ TEST_F(PlantedJournal, OfAPartThatMakesItLongerIsRefused) {
   expectError(ErrorKind::usage, "belongs to a longer file", [&] { readAll(path_ + ".part"); });
   expectError(ErrorKind::output, "belongs to a longer file", [&] { TrajectoryWriter(path_, sampleHeader()); });
   EXPECT_EQ(contentOf(path_ + ".part"), whole);
+  std::string journal = journalRestoring(whole.substr(0, 4096), 1u << 30);
+  journal.replace(24, 4, std::string(4, '\0'));  // bytes of a page: as many as the database has
+  writeContent(path_ + ".part-journal", journal);
+  expectError(ErrorKind::usage, "belongs to a longer file", [&] { readAll(path_ + ".part"); });
+  EXPECT_EQ(contentOf(path_ + ".part"), whole);
+}
+
+TEST_F(PlantedJournal, ThatIsNoRegularFileIsRefused) {
+  writeSample(path_, 3);
+  fs::rename(path_, path_ + ".part");
+  ASSERT_EQ(mkfifo((path_ + ".part-journal").c_str(), 0600), 0);  // would be waited for without end
+  expectError(ErrorKind::usage, "no regular file", [&] { readAll(path_ + ".part"); });
+  expectError(ErrorKind::output, "no regular file", [&] { TrajectoryWriter(path_, sampleHeader()); });
 }
 
 // Names that SQLite takes for addresses, or would if they were not written out.
