@@ -19,7 +19,8 @@ void writePng(const Image& image, const std::string& path);
 /// is missing, no PNG, damaged (all checksums are held against it), or larger than 16384 pixels a side.
 Image readPng(const std::string& path);
 
-/// Of the picture that readPng would read; its rows are not looked at. Throws as readPng does.
+/// Of the picture that readPng would read; its rows are not unpacked. Throws as readPng does, but for what is wrong in
+/// them.
 PictureSize readPngSize(const std::string& path);
 
 }  // namespace cradle

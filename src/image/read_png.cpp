@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <array>
 #include <cerrno>
 #include <csetjmp>
 #include <cstdio>
@@ -60,8 +61,10 @@ class PngReading {
     return {static_cast<int>(width), static_cast<int>(height)};
   }
 
-  /// Throws if the file is too short for the rows that its header names, before there is memory for them.
-  void requireRows() const {
+  /// Throws if the file is too short for the rows that its header names, before there is memory for them, or is cut
+  /// off.
+  void requireRows() {
+    requireEnd();
     const std::uint64_t rowBytes = png_get_rowbytes(png_, info_), height = png_get_image_height(png_, info_);
     std::error_code failed;
     const std::uint64_t size = std::filesystem::file_size(path_, failed);
@@ -88,6 +91,26 @@ class PngReading {
   }
 
  private:
+  /// Throws if chunks go beyond the end of the file: else the rows before would be unpacked first. (Portable Network
+  /// Graphics, third edition, section 5: signature of 8 bytes, then chunks of length, type, data and checksum)
+  void requireEnd() {
+    const long place = std::ftell(file_.get());
+    std::array<unsigned char, 8> head{};
+    std::error_code failed;
+    const std::uint64_t size = std::filesystem::file_size(path_, failed);
+    for (std::uint64_t at = 8; !failed;) {
+      if (at + 12 > size) throw Error(ErrorKind::usage, path_, "is not a picture that can be read: it ends too early");
+      std::fseek(file_.get(), static_cast<long>(at), SEEK_SET);
+      if (std::fread(head.data(), 1, head.size(), file_.get()) != head.size()) break;
+      const std::uint64_t length =
+          std::uint64_t{head[0]} << 24 | std::uint64_t{head[1]} << 16 | std::uint64_t{head[2]} << 8 | head[3];
+      at += 12 + length;
+      if (at > size) throw Error(ErrorKind::usage, path_, "is not a picture that can be read: it ends too early");
+      if (std::memcmp(head.data() + 4, "IEND", 4) == 0) break;
+    }
+    std::fseek(file_.get(), place, SEEK_SET);
+  }
+
   template <class Step>
   void step(Step calls) {
     if (setjmp(png_jmpbuf(png_)) == 0)

@@ -144,6 +144,7 @@ for row in (
     ("comment of line feeds before a fault", b"/*" + b"\n" * 60_000_000 + b"*/ @x", "", "no JSON"),
     ("comment of line feeds without an end", b"{@/*" + b"\n" * 60_000_000, "", "comment has no end"),
     ("number of 60 MB", b'{"duration": ' + b"1" * 1_000_000 + b"@" + b"1" * 60_000_000, "", "a word of more than 1000000 characters"),
+    ("a million keys of one name", b'{"k": 0' + b', "k": 0' * 1_000_000 + b"}", "", "duplicate key", 50),
     ("every byte", b"@" + bytes(range(256)) * 9, "", "NUL byte", "UTF-8"),
     ("random bytes without NUL", b"\x9f\xe8\x12\xff" * 99, "", "UTF-8"),
     ("UTF-16", '\ufeff{"schema": "cradle-scene/1"}'.encode("utf-16-le"), "", "UTF-8"),
@@ -812,6 +813,9 @@ for size in ("0x0", "99999x1", "32x-1"):
 for command in ("plan s.json", "simulate s.json -o old.sqlite"):
     add("limit", "thousands of bodies in one another, " + command,
         {"s.json": body('"copies": {"count": [15, 15, 15], "spacing": [0.1, 0.1, 0.1]}')}, command, 8, "", "2000000 pairs", "in one another")
+    add("limit", "60 000 bodies at one place, " + command.split()[0],
+        {"s.json": scene('"bodies": [%s]' % ", ".join('{"name": "s%d", "shape": {"sphere": {}}}' % i for i in range(60_000)))}, command, 8, "",
+        "2000000 pairs", "in one another")
 
 
 # Outputs

@@ -131,8 +131,13 @@ TEST_F(ReadPng, PipeIsRefusedAtOnce) {
 }
 
 TEST_F(ReadPng, SizeNeedsNoRows) {
-  std::ofstream(folder_ / "a.png", std::ios::binary) << kSignature + header(7, 3, 8, kRgb) + bigEndian(1000) + "IDAT";
+  const std::string begin = kSignature + header(7, 3, 8, kRgb) + bigEndian(1000) + "IDAT";
+  std::ofstream(folder_ / "a.png", std::ios::binary)
+      << begin + std::string(1000 + 4, 'x') + bigEndian(0) + "IEND" + bigEndian(0);
   EXPECT_EQ(readPngSize(folder_ / "a.png"), (PictureSize{7, 3}));
+  EXPECT_THROW(readPng(folder_ / "a.png"), Error);
+  std::ofstream(folder_ / "a.png", std::ios::binary) << begin + std::string(900, 'x');  // cut off
+  EXPECT_THROW(readPngSize(folder_ / "a.png"), Error);
 }
 
 }  // namespace

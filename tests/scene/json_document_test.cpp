@@ -113,13 +113,10 @@ TEST(Json, ArraysHaveAtMostAMillionElements) {
   EXPECT_THAT(errorOf(sceneWith("\"bodies\": [" + zeros + "0]")).what(), HasSubstr("bodies has 1000001 elements"));
 }
 
-TEST(Json, NumbersAndObjectsHaveEnds) {
+TEST(Json, NumbersHaveAnEnd) {
   const std::string digits(1'000'000, '1');
   EXPECT_THAT(errorOf("{\"a\": 0." + digits + "1}").what(), HasSubstr("a word of more than 1000000 characters"));
   EXPECT_THAT(errorOf("{\"a\": 0." + digits + "}").what(), Not(HasSubstr("a word of more")));
-  std::string keys;
-  for (int i = 0; i <= 1'000'000; ++i) keys += "\"k" + std::to_string(i) + "\": 0, ";
-  EXPECT_THAT(errorOf("{" + keys + "\"k\": 0}").what(), HasSubstr("more than 1000000 keys"));
 }
 
 TEST(Json, CommentsAndBlanksArePassedOver) {

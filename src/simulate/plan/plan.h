@@ -59,7 +59,7 @@ struct Plan {
   double accuracy = 0;              // asked
 };
 
-/// O(pairs of bodies), some 1e-8 s for each.
+/// Where something moves without bounds O(bodies), else O(pairs of bodies whose reaches overlap).
 Plan planOf(const Scene& scene);
 
 /// All that moves as one island without a method, for what looks at a scene as a whole.

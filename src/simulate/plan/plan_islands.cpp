@@ -1,7 +1,9 @@
 #include "simulate/plan/plan_islands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <utility>
 
 #include "core/interruption.h"
 #include "simulate/colliders.h"
@@ -9,6 +11,8 @@
 
 namespace cradle {
 namespace {
+
+constexpr double kIntervalRounding = 1e-14;  // relative, of sums of three numbers
 
 /// What reaches of bodies are compared with: their size around the centre of mass.
 double sizeOf(const Body& body, const Scene& scene) {
@@ -45,13 +49,11 @@ bool canMeetPlane(const Reach& reach, double size, const Body& plane) {
 /// Bodies that touch something, by body.
 std::vector<char> findTouching(const Scene& scene, const ReachablePairs& reachable) {
   std::vector<char> touches(scene.bodies.size(), 0);
-  for (int i = 0; i < std::ssize(touches); ++i) {
-    throwIfInterrupted();
-    for (int j = i + 1; j < std::ssize(touches); ++j) {
-      char &first = touches[static_cast<std::size_t>(i)], &second = touches[static_cast<std::size_t>(j)];
-      if (!(first && second) && reachable.mayMeet(i, j)) first = second = 1;
-    }
-  }
+  std::ptrdiff_t left = std::ssize(touches);
+  reachable.forEachMeeting([&](int i, int j) {
+    for (const int body : {i, j}) left -= std::exchange(touches[static_cast<std::size_t>(body)], char{1}) == 0;
+    return left > 0;
+  });
   return touches;
 }
 
@@ -63,28 +65,26 @@ int movingOr(const Scene& scene, int body) {
 DisjointSets joinIslands(const Scene& scene, const ReachablePairs& reachable) {
   DisjointSets joined(scene.bodies.size());
   forEachLink(scene, [&](int a, int b) { joined.join(movingOr(scene, a), movingOr(scene, b)); });
-  for (int i = 0; i < std::ssize(scene.bodies); ++i) {
-    throwIfInterrupted();
-    for (int j = i + 1; j < std::ssize(scene.bodies); ++j) {
-      if (movingOr(scene, i) == kWorld || movingOr(scene, j) == kWorld) continue;
-      if (joined.islandOf(i) != joined.islandOf(j) && reachable.mayMeet(i, j)) joined.join(i, j);
-    }
-  }
+  reachable.forEachMeeting([&](int i, int j) {
+    joined.join(movingOr(scene, i), movingOr(scene, j));
+    return true;
+  });
   return joined;
 }
 
-/// The bodies of an island that may touch, and the fixed ones that they may touch.
-std::vector<int> touchingOf(const Scene& scene, const IslandPlan& island, const ReachablePairs& reachable) {
-  std::vector<int> touching;
-  throwIfInterrupted();
-  for (int other = 0; other < std::ssize(scene.bodies); ++other) {
-    const bool moves = movingOr(scene, other) != kWorld;
-    if (moves && !std::binary_search(island.bodies.begin(), island.bodies.end(), other)) continue;
-    const auto meetsOther = [&](int body) { return body != other && reachable.mayMeet(body, other); };
-    bool meets = std::any_of(island.bodies.begin(), island.bodies.end(), meetsOther);
-    for (int body = 0; moves && !meets && body < std::ssize(scene.bodies); ++body)
-      meets = movingOr(scene, body) == kWorld && meetsOther(body);
-    if (meets) touching.push_back(other);
+/// By first bodies of islands: the bodies of each that may touch, and the fixed ones that they may touch; ascending.
+std::vector<std::vector<int>> findTouchingByIsland(const Scene& scene, const DisjointSets& joined,
+                                                   const ReachablePairs& reachable) {
+  std::vector<std::vector<int>> touching(scene.bodies.size());
+  reachable.forEachMeeting([&](int i, int j) {
+    const int moving = movingOr(scene, i) != kWorld ? i : j;
+    std::vector<int>& ofIsland = touching[static_cast<std::size_t>(joined.islandOf(moving))];
+    ofIsland.push_back(i), ofIsland.push_back(j);
+    return true;
+  });
+  for (std::vector<int>& bodies : touching) {
+    std::sort(bodies.begin(), bodies.end());
+    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
   }
   return touching;
 }
@@ -93,6 +93,9 @@ std::vector<int> touchingOf(const Scene& scene, const IslandPlan& island, const 
 
 ReachablePairs::ReachablePairs(const Scene& scene)
     : scene_(scene), sizes_(sizesOf(scene)), joined_(pairsKeptFromTouching(scene)) {
+  for (int body = 0; body < std::ssize(scene.bodies); ++body)
+    if (bodyAt(body).collision != CollisionChoice::none)
+      (std::holds_alternative<Plane>(bodyAt(body).shape) ? planes_ : colliding_).push_back(body);
   std::vector<char> touches(scene.bodies.size(), 0);
   reaches_ = reachOf(scene, touches);
   while (true) {
@@ -113,14 +116,72 @@ bool ReachablePairs::mayMeet(int first, int second) const {
   return meet && (joined_.empty() || !joined_.contains(std::minmax(first, second)));
 }
 
+/// A moving body that meets all that collide, but the bodies that joints keep from it: of such the one with the fewest.
+std::optional<int> ReachablePairs::boundless() const {
+  std::map<int, int> kept;
+  for (const auto& [a, b] : joined_) ++kept[a], ++kept[b];
+  const auto keptFrom = [&](int body) { return kept.contains(body) ? kept.at(body) : 0; };
+  std::optional<int> best;
+  for (const int body : colliding_)
+    if (bodyAt(body).motion == Motion::dynamic && std::isinf(reaches_[static_cast<std::size_t>(body)].radius) &&
+        (!best || keptFrom(body) < keptFrom(*best)))
+      best = body;
+  return best;
+}
+
+/// False when it was told to stop.
+bool ReachablePairs::visitAll(int body, const Visit& visit) const {
+  throwIfInterrupted();
+  for (const std::vector<int>* bodies : {&colliding_, &planes_})
+    for (const int other : *bodies)
+      if (other != body && mayMeet(body, other) && !visit(std::min(body, other), std::max(body, other))) return false;
+  return true;
+}
+
+void ReachablePairs::forEachMeeting(const Visit& visit) const {
+  const std::optional<int> hub = boundless();
+  if (!hub) return visitBounded(visit);
+  if (!visitAll(*hub, visit)) return;
+  for (const auto& [a, b] : joined_)
+    for (const int kept : {a, b})
+      if (kept != kWorld && kept != *hub && (a == *hub || b == *hub) &&
+          bodyAt(kept).collision != CollisionChoice::none && !visitAll(kept, visit))
+        return;
+}
+
+/// Sweep and prune along x of the balls in which bodies stay.
+void ReachablePairs::visitBounded(const Visit& visit) const {
+  for (const int plane : planes_)
+    if (!visitAll(plane, visit)) return;
+  struct Interval {
+    double from, to;  // m
+    int body;
+  };
+  std::vector<Interval> intervals;
+  for (const int body : colliding_) {
+    const auto i = static_cast<std::size_t>(body);
+    const double x = reaches_[i].center.x(), half = (reaches_[i].radius + sizes_[i]) * (1 + kIntervalRounding);
+    intervals.push_back({x - half - kIntervalRounding * std::abs(x), x + half + kIntervalRounding * std::abs(x), body});
+  }
+  std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) { return a.from < b.from; });
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    throwIfInterrupted();
+    for (std::size_t j = i + 1; j < intervals.size() && intervals[j].from <= intervals[i].to; ++j) {
+      const auto [first, second] = std::minmax(intervals[i].body, intervals[j].body);
+      if (mayMeet(first, second) && !visit(first, second)) return;
+    }
+  }
+}
+
 std::vector<IslandPlan> findIslands(const Scene& scene, const ReachablePairs& reachable) {
   const DisjointSets joined = joinIslands(scene, reachable);
+  std::vector<std::vector<int>> touching = findTouchingByIsland(scene, joined, reachable);
   std::map<int, IslandPlan> islands;
   for (int body = 0; body < std::ssize(scene.bodies); ++body)
     if (movingOr(scene, body) != kWorld) islands[joined.islandOf(body)].bodies.push_back(body);
   std::vector<IslandPlan> ordered;
   for (auto& [first, island] : islands) {
-    island.touching = touchingOf(scene, island, reachable);
+    island.touching = std::move(touching[static_cast<std::size_t>(first)]);
     ordered.push_back(std::move(island));
   }
   return ordered;

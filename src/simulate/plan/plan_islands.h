@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -14,20 +16,34 @@ namespace cradle {
 /// its constraints allow.
 class ReachablePairs {
  public:
-  /// Keeps a reference to `scene`. O(pairs of bodies), some 1e-8 s for each.
+  /// Keeps a reference to `scene`. Costs as forEachMeeting does, a few times.
   explicit ReachablePairs(const Scene& scene);
 
   bool mayMeet(int first, int second) const;
 
+  using Visit = std::function<bool(int first, int second)>;
+  /// Calls visit for pairs (first < second) that may meet, until it returns false: all, or where something moves
+  /// without bounds, enough of them to tell who touches something and what islands follow: who meets that is joined
+  /// with it. O(bodies) then, else as sweep and prune.
+  void forEachMeeting(const Visit& visit) const;
+
+  /// Whether something moves without bounds, and so meets all that collide, but what joints keep from it.
+  std::optional<int> boundless() const;
+
  private:
+  const Body& bodyAt(int body) const { return scene_.bodies[static_cast<std::size_t>(body)]; }
+  bool visitAll(int body, const Visit& visit) const;
+  void visitBounded(const Visit& visit) const;
+
   const Scene& scene_;
   std::vector<Reach> reaches_;  // by body
   std::vector<double> sizes_;   // m, by body
   std::set<std::pair<int, int>> joined_;
+  std::vector<int> colliding_, planes_;  // bodies that may touch something, ascending
 };
 
 /// Moving bodies that depend on each other, by constraints or springs or by contact that their reaches allow, each
-/// island with what it may touch; methods are not chosen. O(pairs of bodies), some 1e-8 s for each.
+/// island with what it may touch; methods are not chosen.
 std::vector<IslandPlan> findIslands(const Scene& scene, const ReachablePairs& reachable);
 
 /// Calls visit(bodyA, bodyB) for every spring, rod, rope, ball joint and hinge; kWorld stands for the world.

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "core/printable.h"
 #include "simulate/colliders.h"
@@ -71,9 +73,10 @@ class ContactSurvey {
   ContactSurvey(const Scene& scene, const IslandPlan& island, const ReachablePairs& reachable)
       : scene_(scene), loops_(scene.bodies.size() + 1), surfaces_(scene.bodies.size()), parts_(scene.bodies.size()) {
     for (const int body : island.touching) surfaces_[static_cast<std::size_t>(body)] = surfaceOf(bodyOf(body), scene);
-    for (std::size_t i = 0; i < island.touching.size(); ++i)
-      for (std::size_t j = i + 1; j < island.touching.size(); ++j)
-        if (reachable.mayMeet(island.touching[i], island.touching[j])) add(island.touching[i], island.touching[j]);
+    if (island.touching.size() > kManyBodies && reachable.boundless())
+      surveyKinds(island, reachable);
+    else
+      surveyPairs(island, reachable);
     for (int body = 0; body < std::ssize(parts_); ++body) {
       const Part& part = partOf(body);
       if (part.ownsEdge) found_.edgeOwners.push_back(body);
@@ -90,23 +93,58 @@ class ContactSurvey {
     bool ownsEdge = false, mayTip = false, moves = false;
   };
 
+  void surveyPairs(const IslandPlan& island, const ReachablePairs& reachable) {
+    for (std::size_t i = 0; i < island.touching.size(); ++i)
+      for (std::size_t j = i + 1; j < island.touching.size(); ++j)
+        if (reachable.mayMeet(island.touching[i], island.touching[j])) add(island.touching[i], island.touching[j]);
+  }
+
+  /// Each body with some of each kind that it may meet: what is alike is so in its contacts. There are many rows.
+  void surveyKinds(const IslandPlan& island, const ReachablePairs& reachable) {
+    constexpr std::size_t kTried = 4;  // of a kind: joints seldom keep more from one body
+    std::map<std::tuple<int, int, int, bool, bool>, std::vector<int>> kinds;
+    for (const int body : island.touching) {
+      const Surface& surface = surfaces_[static_cast<std::size_t>(body)];
+      std::vector<int>& alike = kinds[{surface.kind ? static_cast<int>(*surface.kind) : -1, surface.faceCorners,
+                                       bodyOf(body).material, bodyOf(body).motion == Motion::dynamic, isSlope(body)}];
+      if (alike.size() < kTried) alike.push_back(body);
+    }
+    for (const int body : island.touching)
+      for (const auto& [kind, alike] : kinds)
+        for (const int other : alike)
+          if (other != body && reachable.mayMeet(body, other)) addKinds(body, other);
+    found_.rows = kManyRows;
+  }
+
   const Body& bodyOf(int body) const { return scene_.bodies[static_cast<std::size_t>(body)]; }
   Part& partOf(int body) { return parts_[static_cast<std::size_t>(body)]; }
 
-  void add(int a, int b) {
+  const SurfacePair& materialOf(int a, int b) const {
+    return scene_
+        .surfacePairs[static_cast<std::size_t>(bodyOf(a).material)][static_cast<std::size_t>(bodyOf(b).material)];
+  }
+
+  /// What a contact of two bodies is.
+  void addKinds(int a, int b) {
     const Surface &surfaceA = surfaces_[static_cast<std::size_t>(a)],
                   &surfaceB = surfaces_[static_cast<std::size_t>(b)];
     for (const int body : {a, b})
       if (bodyOf(body).motion == Motion::dynamic) partOf(body).moves = true;
     addEdges(a, surfaceA, surfaceB);
     addEdges(b, surfaceB, surfaceA);
-    const SurfacePair& law =
-        scene_.surfacePairs[static_cast<std::size_t>(bodyOf(a).material)][static_cast<std::size_t>(bodyOf(b).material)];
-    found_.hasFriction = found_.hasFriction || law.staticFriction > 0;
-    found_.hasSlopes = found_.hasSlopes || (law.staticFriction > 0 && (isSlope(a) || isSlope(b)));
-    if (law.restitution < 1) found_.restitution = std::max(found_.restitution, law.restitution);
-    const int rowsOfOne = law.staticFriction > 0 ? 3 : 1;
-    found_.rows = std::min(found_.rows + rowsOfOne * contactsOf(surfaceA, surfaceB), kManyRows);
+    const SurfacePair& material = materialOf(a, b);
+    found_.hasFriction = found_.hasFriction || material.staticFriction > 0;
+    found_.hasSlopes = found_.hasSlopes || (material.staticFriction > 0 && (isSlope(a) || isSlope(b)));
+    if (material.restitution < 1) found_.restitution = std::max(found_.restitution, material.restitution);
+  }
+
+  /// The same, and how many rows it may have.
+  void add(int a, int b) {
+    addKinds(a, b);
+    const int rowsOfOne = materialOf(a, b).staticFriction > 0 ? 3 : 1;
+    found_.rows = std::min(found_.rows + rowsOfOne * contactsOf(surfaces_[static_cast<std::size_t>(a)],
+                                                                surfaces_[static_cast<std::size_t>(b)]),
+                           kManyRows);
     const int placeA = placeOf(a), placeB = placeOf(b);
     if (loops_.islandOf(placeA) == loops_.islandOf(placeB)) return;
     loops_.join(placeA, placeB);
@@ -133,7 +171,8 @@ class ContactSurvey {
     return bodyOf(body).motion == Motion::dynamic ? body : static_cast<int>(scene_.bodies.size());
   }
 
-  static constexpr int kManyRows = 1000000;  // far beyond what is few
+  static constexpr int kManyRows = 1000000;         // far beyond what is few
+  static constexpr std::size_t kManyBodies = 2000;  // that touch: more pairs than are looked at one by one
   const Scene& scene_;
   DisjointSets loops_;
   std::vector<Surface> surfaces_;  // by scene body
