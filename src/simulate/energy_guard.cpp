@@ -136,7 +136,7 @@ void EnergyGuard::failAtShortSteps(const VectorX& state, double time, double tim
        stiffCause(state));
 }
 
-void EnergyGuard::failAtTies(const VectorX& state, double time, double error) const {
+void EnergyGuard::failAtConstraints(const VectorX& state, double time, double error) const {
   fail(state, time, fmt::format("is tied by what cannot all be kept (off by {:.3g} m or rad)", error), kTiesCause);
 }
 

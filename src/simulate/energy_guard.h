@@ -29,7 +29,7 @@ class EnergyGuard {
 
   /// Throws Error(unstable): the bodies' constraints cannot all be kept at `time`, the worst is off by `error` (m or
   /// rad).
-  [[noreturn]] void failAtTies(const VectorX& state, double time, double error) const;
+  [[noreturn]] void failAtConstraints(const VectorX& state, double time, double error) const;
 
  private:
   double explainedEnergy(const VectorX& state, double timeStep);

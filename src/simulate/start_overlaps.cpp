@@ -105,8 +105,8 @@ std::vector<Overlap> overlapsOf(const Scene& scene, const Assembly& assembly) {
 }
 
 /// The bodies with an infinite inertia where they have no constraints: an overlap says how far bodies are to be moved,
-/// but not how they are to be turned, and what was put straight is to stay straight. Ties leave some bodies no other
-/// way.
+/// but not how they are to be turned, and what was put straight is to stay straight. Constraints leave some bodies no
+/// other way.
 std::vector<RigidBody> bodiesThatKeepUpright(const Mechanism& mechanism) {
   std::vector<RigidBody> bodies = mechanism.bodies;
   for (RigidBody& body : bodies) body.inverseInertia.setZero();

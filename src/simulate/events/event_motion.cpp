@@ -23,13 +23,13 @@ constexpr double kMaxGrowth = 2;  // of the longest of the last steps: farther a
 
 constexpr double kMinLookahead = 1.0 / 64;  // of the step that the accuracy allows
 
-constexpr double kManyTurns = 100;        // rad: beyond, orientations need a tighter tolerance
-constexpr double kTurningRatio = 0.1;     // of the tolerance, for these
-constexpr double kShortTimeStep = 1e-9;   // of the run's duration: nobody waits for so many steps
-constexpr double kLongRun = 1000;         // s: in longer ones, steps are short that would be in this one
-constexpr int kMaxShortSteps = 1000;      // in a row; after an event some are short
-constexpr double kMaxTieError = 1e-9;     // m (a m of coordinates) or rad: projection leaves 1e-15
-constexpr double kTieErrorRatio = 0.1;    // of the accuracy: left for a few steps where motion could take two ways
+constexpr double kManyTurns = 100;             // rad: beyond, orientations need a tighter tolerance
+constexpr double kTurningRatio = 0.1;          // of the tolerance, for these
+constexpr double kShortTimeStep = 1e-9;        // of the run's duration: nobody waits for so many steps
+constexpr double kLongRun = 1000;              // s: in longer ones, steps are short that would be in this one
+constexpr int kMaxShortSteps = 1000;           // in a row; after an event some are short
+constexpr double kMaxConstraintError = 1e-9;   // m (a m of coordinates) or rad: projection leaves 1e-15
+constexpr double kConstraintErrorRatio = 0.1;  // of the accuracy: left for a few steps where motion could take two ways
 constexpr double kStateRounding = 1e-14;  // of a state: projection that moves it less leaves the derivative as it was
 constexpr double kUnitLength = 1e-9;      // how far |q|^2 may be from 1 before it is made 1
 
@@ -267,9 +267,9 @@ void EventMotion::projectState() {
 void EventMotion::requireConstraintsKept() {
   const VectorX& state = island_.state;
   const double error = solver_.largestError(), size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
-  const double most = std::max(kMaxTieError, kTieErrorRatio * island_.scene.accuracy);
+  const double most = std::max(kMaxConstraintError, kConstraintErrorRatio * island_.scene.accuracy);
   if (error > startConstraintError_ + most * (1 + size) || solver_.leaveNoMotion(state, startConstraintError_))
-    guard_->failAtTies(state, island_.time, error);
+    guard_->failAtConstraints(state, island_.time, error);
 }
 
 /// What acts from now on.

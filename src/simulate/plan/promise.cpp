@@ -195,7 +195,7 @@ bool hasJoints(const Scene& scene, const IslandPlan& island) {
 }
 
 /// Whether constraints hold a body of the island: rows of contacts may depend on each other through them.
-bool hasTies(const Scene& scene, const IslandPlan& island) {
+bool hasBilateral(const Scene& scene, const IslandPlan& island) {
   return hasJoints(scene, island) || areHeldBy(scene.rods, island) || areHeldBy(scene.ropes, island);
 }
 
@@ -226,7 +226,7 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
   if (!contacts.tippers.empty())
     conditions.push_back(
         {fmt::format("no cylinder of {} tips over its rim", namesOfBodies(contacts.tippers, scene)), contacts.tippers});
-  if (mayHaveManyRows(contacts, hasTies(scene, island)))
+  if (mayHaveManyRows(contacts, hasBilateral(scene, island)))
     conditions.push_back({fmt::format("no more than {} redundant or {} independent forces press {} at once",
                                       kMaxRedundant, kMaxIndependent, namesOfBodies(contacts.movers, scene)),
                           contacts.movers});

@@ -15,11 +15,12 @@
 namespace cradle {
 namespace {
 
-constexpr double kClosedGapRatio = 1e-3;       // of the touching tolerance: how well an impact's gap is closed
-constexpr double kShortestRatio = 1.0 / 1024;  // of a step: shorter ones are not cut for their error
-constexpr double kMaxPartGrowth = 4;           // of a part of a step to the next
-constexpr double kMaxSteppedTieError = 1e-7;   // m (a m of coordinates) or rad: a thousandth of what is seen
-constexpr double kMaxTieGrowth = 2;         // times what free motion leaves of constraints that contradict each other
+constexpr double kClosedGapRatio = 1e-3;             // of the touching tolerance: how well an impact's gap is closed
+constexpr double kShortestRatio = 1.0 / 1024;        // of a step: shorter ones are not cut for their error
+constexpr double kMaxPartGrowth = 4;                 // of a part of a step to the next
+constexpr double kMaxSteppedConstraintError = 1e-7;  // m (a m of coordinates) or rad: a thousandth of what is seen
+constexpr double kMaxConstraintErrorGrowth =
+    2;                                      // times what free motion leaves of constraints that contradict each other
 constexpr double kShortestHeld = 1.0 / 32;  // of a step: shorter ones are not cut for the sake of constraints
 constexpr int kMaxServed = 12;              // contacts
 constexpr double kSheetRatio = 0.5;         // of the radius inside a body: so far it may go in a step beside a sheet
@@ -133,7 +134,7 @@ bool SteppedMotion::holdContacts() {
     solver_.project(state);
     bookNumerical(energyConstant(mechanism, island_.step.state), mechanism, state);
     if (solver_.leaveNoMotion(state, startConstraintError_))
-      guard_.failAtTies(state, island_.step.time, solver_.largestError());
+      guard_.failAtConstraints(state, island_.step.time, solver_.largestError());
   }
   normalizeOrientations(state);
   isHeld_ = !contacts_.touching().empty() && length > kTimeRounding * method_.timeStep;  // no gap closes in no time
@@ -141,7 +142,8 @@ bool SteppedMotion::holdContacts() {
   const double free = solver_.hasConstraints() ? solver_.largestError() : 0;
   const double size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
   contacts_.hold(before_, length, ropes_, state);
-  return contacts_.constraintError() <= std::max(kMaxSteppedTieError * (1 + size), kMaxTieGrowth * free) ||
+  return contacts_.constraintError() <=
+             std::max(kMaxSteppedConstraintError * (1 + size), kMaxConstraintErrorGrowth * free) ||
          length < kShortestHeld * method_.timeStep;
 }
 

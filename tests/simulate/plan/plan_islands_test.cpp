@@ -27,7 +27,8 @@ class Draw {
 };
 
 /// Spheres at rest without gravity, some fixed, some that touch nothing; pendulums on rods, whose reach ends; joints
-/// between bodies, of which some let these touch. `isThrown`: some are on no rod, and have no bounds once they may touch.
+/// between bodies, of which some let these touch. `isThrown`: some are on no rod, and have no bounds once they may
+/// touch.
 std::string randomScene(unsigned seed, bool isThrown) {
   constexpr int kBodies = 25;
   Draw draw(seed);
@@ -39,11 +40,12 @@ std::string randomScene(unsigned seed, bool isThrown) {
     bodies += fmt::format(R"({}{{"name": "b{}", "shape": {{"sphere": {{"radius": {:.3f}}}}}, "position": {}, {}{}}})",
                           i > 0 ? ", " : "", i, draw.number(0.05, 0.4), vectorText(places.back()),
                           isFixed ? R"("motion": "static")" : R"("mass": 1)",
-                          draw.isTrue(0.1)              ? R"(, "collision": "none")"
+                          draw.isTrue(0.1)                           ? R"(, "collision": "none")"
                           : isThrown && !isFixed && draw.isTrue(0.2) ? R"(, "linearVelocity": [1, 2, 3])"
-                                                        : "");
+                                                                     : "");
     if (!isFixed && (draw.isTrue(0.5) || !isThrown))
-      rods += fmt::format(R"({}{{"bodyA": "b{}", "anchorB": {}}})", rods.empty() ? "" : ", ", i, vectorText(draw.place()));
+      rods +=
+          fmt::format(R"({}{{"bodyA": "b{}", "anchorB": {}}})", rods.empty() ? "" : ", ", i, vectorText(draw.place()));
     if (isFixed || i == 0 || !draw.isTrue(0.2)) continue;
     const int other = draw.index(i);
     joints += fmt::format(R"({}{{"bodyA": "b{}", "bodyB": "b{}", "anchorA": [0, 0, 0], "anchorB": {}, "collide": {}}})",
@@ -51,8 +53,9 @@ std::string randomScene(unsigned seed, bool isThrown) {
                           vectorText(places.back() - places[static_cast<std::size_t>(other)]), draw.isTrue(0.3));
   }
   if (draw.isTrue(0.5))
-    bodies += fmt::format(R"(, {{"name": "p", "shape": {{"plane": {{}}}}, "motion": "static", "position": [0, {:.2f}, 0]}})",
-                          draw.number(-12, -8));
+    bodies +=
+        fmt::format(R"(, {{"name": "p", "shape": {{"plane": {{}}}}, "motion": "static", "position": [0, {:.2f}, 0]}})",
+                    draw.number(-12, -8));
   return fmt::format(R"({{"schema": "cradle-scene/1", "name": "random", "duration": 1, "gravity": [0, 0, 0],
     "bodies": [{}], "rods": [{}], "ballJoints": [{}]}})",
                      bodies, rods, joints);
