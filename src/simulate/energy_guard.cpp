@@ -18,7 +18,7 @@ constexpr double kPlaceRounding = 64 * std::numeric_limits<double>::epsilon();  
 constexpr double kTouchingGap = 1e-8;       // of a size: gaps are closed that are no wider
 constexpr double kFinestTolerance = 1e-13;  // of a component in a step: finer tolerances are not kept
 constexpr double kCalmRatio = 0.1;          // of what stops a run: before, the motion is still the scene's own
-constexpr double kSafeTurn = 0.1;           // rad a step: RK4 is then right to 1e-7 a step; slower turns are no cause
+constexpr double kSafeRotation = 0.1;       // rad a step: RK4 is then right to 1e-7 a step; slower turns are no cause
 constexpr double kOverwhelming = 1e6;       // times all weights and springs: nothing else moves its body
 constexpr double kUnseenFall = 0.01;        // of a body's size: bodies that rattle at rest may have as much of energy
 constexpr double kPlainAcceleration = 1;    // m/s^2: of weights where there is no gravity
@@ -30,14 +30,14 @@ double energySensitivity(const Mechanism& mechanism, const VectorX& state) {
   for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
     const RigidBody& body = mechanism.bodies[i];
     const Eigen::Index index = static_cast<Eigen::Index>(i);
-    const double speed = linearVelocity(state, index).norm(), spin = angularVelocity(state, index).norm();
+    const double speed = linearVelocity(state, index).norm(), angularSpeed = angularVelocity(state, index).norm();
     sum += body.mass * mechanism.gravity.norm() * (1 + centerOfMass(state, index).norm());
-    sum += body.mass * speed * (1 + speed) + body.inertiaTensor.norm() * spin * (1 + 2 * spin);
+    sum += body.mass * speed * (1 + speed) + body.inertiaTensor.norm() * angularSpeed * (1 + 2 * angularSpeed);
   }
   for (const SpringForce& spring : mechanism.springs) {
     const SpringAction action = actionOf(spring, state);
-    const double arms = action.a.arm.norm() + action.b.arm.norm();
-    sum += action.forceOnA.norm() * (2 + action.a.position.norm() + action.b.position.norm() + 2 * arms);
+    const double momentArms = action.a.arm.norm() + action.b.arm.norm();
+    sum += action.forceOnA.norm() * (2 + action.a.position.norm() + action.b.position.norm() + 2 * momentArms);
   }
   return sum;
 }
@@ -69,17 +69,17 @@ double explainedConstant(const Mechanism& mechanism, const VectorX& state) {
 }
 
 /// Angle (rad) by which the line between two attachments turns in a time.
-double turnOf(const Attachment& anchorA, const Attachment& anchorB, const VectorX& state, double time) {
+double rotationOf(const Attachment& anchorA, const Attachment& anchorB, const VectorX& state, double time) {
   const AttachmentMotion a = motionOf(anchorA, state), b = motionOf(anchorB, state);
   const Vec3 line = a.position - b.position;
   return line.cross(a.velocity - b.velocity).norm() / line.squaredNorm() * time;
 }
 
-double spinOf(int body, const VectorX& state) {
+double angularSpeedOf(int body, const VectorX& state) {
   return body == kFixed ? 0 : angularVelocity(state, body).norm();
 }
 
-const char* const kTiesCause =
+const char* const kConstraintsCause =
     "what ties it leaves no motion, or forces grow without bound: look at its rods, ropes, joints and springs there";
 
 }  // namespace
@@ -137,7 +137,8 @@ void EnergyGuard::failAtShortSteps(const VectorX& state, double time, double tim
 }
 
 void EnergyGuard::failAtConstraints(const VectorX& state, double time, double error) const {
-  fail(state, time, fmt::format("is tied by what cannot all be kept (off by {:.3g} m or rad)", error), kTiesCause);
+  fail(state, time, fmt::format("is tied by what cannot all be kept (off by {:.3g} m or rad)", error),
+       kConstraintsCause);
 }
 
 /// What one step can give to bodies at rest by forces that do not depend on where they are: (F h)^2 / m. Methods of
@@ -214,44 +215,45 @@ std::string EnergyGuard::cause(const VectorX& state) const {
       return fmt::format("spring \"{}\" is {:.2g} m long, and has no direction at length 0: keep its ends apart",
                          names_.springs[i], length);
   }
-  if (method_.isAdaptive()) return kTiesCause;
+  if (method_.isAdaptive()) return kConstraintsCause;
   for (const VectorX* moment : {&calm_, &state}) {  // a start at rest shows nothing yet
-    const std::string turn = fastestTurn(*moment);
-    if (!turn.empty()) return turn;
+    const std::string fastest = fastestRotation(*moment);
+    if (!fastest.empty()) return fastest;
   }
   return fmt::format("{} at a time step of {:.3g} s cannot follow it; give \"method\" a smaller \"timeStep\"",
                      method_.name, method_.timeStep);
 }
 
 /// The rod, joint or body that turns farthest in a step, if that is too far.
-std::string EnergyGuard::fastestTurn(const VectorX& state) const {
+std::string EnergyGuard::fastestRotation(const VectorX& state) const {
   const double step = method_.timeStep;
-  double most = kSafeTurn;
+  double most = kSafeRotation;
   std::string what;
-  const auto consider = [&](double turn, const std::string& name) {
-    if (turn > most) most = turn, what = name;
+  const auto consider = [&](double angle, const std::string& name) {
+    if (angle > most) most = angle, what = name;
   };
   const Constraints& constraints = mechanism_.constraints;
   for (std::size_t i = 0; i < constraints.rods.size(); ++i) {
     const RodConstraint& rod = constraints.rods[i];
     const bool isRope = i >= names_.rods.size();
-    consider(turnOf(rod.anchorA, rod.anchorB, state, step),
+    consider(rotationOf(rod.anchorA, rod.anchorB, state, step),
              isRope ? "a taut rope" : fmt::format("rod \"{}\"", names_.rods[i]));
   }
   const auto considerJoint = [&](const auto& joint, const char* kind, const std::string& name) {
-    const double spin = std::max(spinOf(joint.anchorA.body, state), spinOf(joint.anchorB.body, state));
-    consider(spin * step, fmt::format("{} \"{}\"", kind, name));
+    const double angularSpeed =
+        std::max(angularSpeedOf(joint.anchorA.body, state), angularSpeedOf(joint.anchorB.body, state));
+    consider(angularSpeed * step, fmt::format("{} \"{}\"", kind, name));
   };
   for (std::size_t i = 0; i < constraints.ballJoints.size(); ++i)
     considerJoint(constraints.ballJoints[i], "ball joint", names_.ballJoints[i]);
   for (std::size_t i = 0; i < constraints.hinges.size(); ++i)
     considerJoint(constraints.hinges[i], "hinge", names_.hinges[i]);
   for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i)
-    consider(spinOf(static_cast<int>(i), state) * step, fmt::format("body \"{}\"", names_.bodies[i]));
+    consider(angularSpeedOf(static_cast<int>(i), state) * step, fmt::format("body \"{}\"", names_.bodies[i]));
   if (what.empty()) return what;
   return fmt::format(
       "{} turns by {:.3g} rad in a step of {:.3g} s, too far for {}; rk4 with a timeStep of {:.2g} s can follow", what,
-      most, step, method_.name, kSafeTurn / most * step);
+      most, step, method_.name, kSafeRotation / most * step);
 }
 
 }  // namespace cradle

@@ -38,7 +38,7 @@ class EnergyGuard {
   const PushForce* overwhelmingPush() const;
   std::string cause(const VectorX& state) const;
   std::string stiffCause(const VectorX& state) const;
-  std::string fastestTurn(const VectorX& state) const;
+  std::string fastestRotation(const VectorX& state) const;
 
   const Mechanism& mechanism_;
   const PartNames& names_;

@@ -53,7 +53,7 @@ const VectorX& IslandSolver::stateAt(double time) {
   normalizeOrientations(reported_);
   const std::vector<RigidBody>& bodies = island_.assembly.mechanism.bodies;
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (!bodies[i].turns) spin(static_cast<Eigen::Index>(i), time, reported_);
+    if (!bodies[i].turns) rotate(static_cast<Eigen::Index>(i), time, reported_);
   return reported_;
 }
 
@@ -86,8 +86,8 @@ bool IslandSolver::keepsConstraints() const {
   return std::get<SteppedMotion>(motion_).keepsConstraints();
 }
 
-/// Steps of one length take over where events do not serve, and give back where nothing touches, or after a while; not
-/// where a look is enough: trials cost more than they may save.
+/// Steps of one length take over where events do not serve, and give back where nothing touches, or after a while. At
+/// visual accuracies they go on to the end: trials cost more than they may save.
 void IslandSolver::changeMotion() {
   if (const auto* events = std::get_if<EventMotion>(&motion_)) {
     const std::string_view reason = events->fallbackReason();
@@ -120,7 +120,7 @@ void IslandSolver::endPromise(const EventMotion& events, double timeStep) {
 void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
   const double fraction = (time - island_.step.time) / island_.step.timeStep;
   interpolate(island_.step, fraction, reported_);
-  if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->hold(fraction, reported_);
+  if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->addContactMotion(fraction, reported_);
   const Mechanism& mechanism = island_.assembly.mechanism;
   const auto* events = std::get_if<EventMotion>(&motion_);
   if (events && keepsConstraints && !events->contactsOfStep().empty()) {
@@ -134,14 +134,14 @@ void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
   bookNumerical(energyConstant(mechanism, island_.step.startState), mechanism, reported_);
 }
 
-/// Takes out of the interpolated state what it leaves of gaps of contacts that last, and of constraints.
+/// Projects the interpolated state onto the constraint manifold: no gaps at active contacts, no constraint errors.
 void IslandSolver::project(const std::vector<ContactConstraint>& contacts) {
   const Mechanism& mechanism = island_.assembly.mechanism;
   findStill();
   ContactSolver(contacts, mechanism.constraints, mechanism.bodies).project(reported_, still_);
 }
 
-/// What has not moved within the step is where its constraints hold it.
+/// A body that has not moved within the step is where its constraints keep it.
 void IslandSolver::findStill() {
   const Step& step = island_.step;
   still_.resize(island_.assembly.mechanism.bodies.size());
@@ -151,8 +151,8 @@ void IslandSolver::findStill() {
   }
 }
 
-/// Sets the orientation of a body whose spin is constant: the state keeps that of the start.
-void IslandSolver::spin(Eigen::Index body, double time, VectorX& state) const {
+/// Sets the orientation of a body whose angular velocity is constant: the state keeps the orientation of the start.
+void IslandSolver::rotate(Eigen::Index body, double time, VectorX& state) const {
   turnBody(state, body, time * Vec3(angularVelocity(state, body)));
 }
 

@@ -45,11 +45,12 @@ class IslandSolver {
   bool mayNotGoOn() const;
   bool keepsConstraints() const;
   bool isVisual() const { return island_.scene.accuracy > kVisualAccuracy; }
-  /// A frame inside a step: what its state is off the energy of the step's start is an error of that frame alone.
+  /// The state of a frame inside a step. Its difference from the energy of the step's start is an error of that frame
+  /// alone.
   void interpolateAt(double time, bool keepsConstraints);
   void project(const std::vector<ContactConstraint>& contacts);
   void findStill();
-  void spin(Eigen::Index body, double time, VectorX& state) const;
+  void rotate(Eigen::Index body, double time, VectorX& state) const;
 
   IslandState island_;
   RopeEvents ropes_;

@@ -89,10 +89,10 @@ LocalSurface surfaceAt(const Collider& collider, const Vec3& point, const Vec3& 
   const Vec3 along = collider.points[1] - collider.points[0];
   const double part = (point - collider.points[0]).dot(along) / along.squaredNorm(), rest = near / along.norm();
   const bool isSide = part > rest && part < 1 - rest;
-  const Vec3 arm = point - (collider.points[0] + std::clamp(part, 0.0, 1.0) * along);
-  const Vec3 tangent = along.cross(arm).normalized();
+  const Vec3 radial = point - (collider.points[0] + std::clamp(part, 0.0, 1.0) * along);
+  const Vec3 tangent = along.cross(radial).normalized();
   if (kind == ColliderKind::capsule) return {isSide ? squareOf(tangent) : across, Mat3::Zero()};
-  if (arm.norm() < collider.rimRadius - near) return {};  // in an end
+  if (radial.norm() < collider.rimRadius - near) return {};  // in an end
   return {squareOf(tangent), isSide ? Mat3(Mat3::Zero()) : squareOf(tangent.cross(normal))};
 }
 

@@ -79,7 +79,7 @@ bool RestingBodies::canBeInEquilibrium(const std::vector<int>& islands, int isla
     const double size = smallestSize(contact, sizes_);
     if (frictions.back() == 0 && slip.norm() > kSmoothSlip * std::sqrt(mechanism_.gravity.norm() * size)) return false;
   }
-  hold(supports, frictions, state, accelerations);
+  applySupportForces(supports, frictions, state, accelerations);
 
   for (std::size_t i = 0; i < islands.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
@@ -91,8 +91,8 @@ bool RestingBodies::canBeInEquilibrium(const std::vector<int>& islands, int isla
 }
 
 /// Adds to the accelerations what forces at the supports give that leave as little closing and sliding as can be.
-void RestingBodies::hold(const std::vector<Contact>& supports, const std::vector<double>& frictions,
-                         const VectorX& state, VectorX& accelerations) {
+void RestingBodies::applySupportForces(const std::vector<Contact>& supports, const std::vector<double>& frictions,
+                                       const VectorX& state, VectorX& accelerations) {
   if (supports.size() <= kFewSupports || solver_.hasConstraints()) {
     if (solver_.hasConstraints()) solver_.factorize(state);
     const DenseContactProblem cones(supports, ImpulseResponse(mechanism_.bodies, solver_), state);
@@ -111,8 +111,8 @@ void RestingBodies::hold(const std::vector<Contact>& supports, const std::vector
 }
 
 std::vector<int> RestingBodies::letSleep(double time, const std::vector<Contact>& contacts, VectorX& state) {
-  std::vector<int> settled;
-  if (contacts.empty()) return settled;
+  std::vector<int> asleep;
+  if (contacts.empty()) return asleep;
   const std::vector<int> islands = islandsOf(contacts);
   std::vector<char> candidate(islands.size(), 0);
   for (const Contact& contact : contacts)
@@ -127,12 +127,12 @@ std::vector<int> RestingBodies::letSleep(double time, const std::vector<Contact>
     std::vector<int> members;
     for (std::size_t body = 0; body < islands.size(); ++body) {
       if (islands[body] != static_cast<int>(island)) continue;
-      if (!equations_.isResting(body)) settled.push_back(static_cast<int>(body));
+      if (!equations_.isResting(body)) asleep.push_back(static_cast<int>(body));
       members.push_back(static_cast<int>(body));
     }
     bringToRest(members, state);
   }
-  return settled;
+  return asleep;
 }
 
 void RestingBodies::bringToRest(const std::vector<int>& bodies, VectorX& state) {

@@ -14,7 +14,7 @@ class RestingBodies {
   /// Keeps references to all three.
   RestingBodies(const Mechanism& mechanism, const ContactGeometry& geometry, EquationsOfMotion& equations);
 
-  /// A body that was woken is not settled again for so long (s).
+  /// A body that was woken is not put to rest again for so long (s).
   void setStillTime(double stillTime) { stillTime_ = stillTime; }
 
   /// Brings islands to rest that are slow and that contact forces within the friction cones can hold, given the
@@ -38,8 +38,8 @@ class RestingBodies {
   std::vector<int> islandsOf(const std::vector<Contact>& contacts) const;
   bool isStill(double time, std::size_t body, const VectorX& state) const;
   bool isSlow(std::size_t body, const VectorX& state) const;
-  void hold(const std::vector<Contact>& supports, const std::vector<double>& frictions, const VectorX& state,
-            VectorX& accelerations);
+  void applySupportForces(const std::vector<Contact>& supports, const std::vector<double>& frictions,
+                          const VectorX& state, VectorX& accelerations);
   bool canBeInEquilibrium(const std::vector<int>& islands, int island, const VectorX& state);
 
   const Mechanism& mechanism_;

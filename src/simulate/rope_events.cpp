@@ -14,18 +14,18 @@
 namespace cradle {
 namespace {
 
-constexpr double kTautRatio = 1e-9;      // of its length: a rope this near to it is at its length
-constexpr double kSlackRatio = 1e-6;     // of its length: a rope this much shorter is slack again
-constexpr double kLowestRebound = 1e-6;  // of sqrt(acceleration x length): a rebound that rises by 5e-13 of the length
-constexpr double kMinPull = 1e-6;        // of gravity: a pull that is no rounding
-constexpr int kTensionSamples = 4;       // a step: it is at most a small part of a swing
-constexpr double kShortestLook = 1e-9;   // of a step: a rebound that is over sooner is none
-constexpr double kFirstLook = 1.0 / 1024;  // of a step
-constexpr double kLongestLook = 1.0 / 8;   // of a step, at a rope that nothing pulls at: what would is smooth
-constexpr double kReach = 2;               // of the way that ends go freely in a step: what contacts may make of it
-constexpr double kNearRatio = 1e-3;        // of its length: ropes so near to it take part in a step's contacts
-constexpr double kPullRounding = 1e-12;    // of the speed before a pull
-constexpr int kMaxPullRounds = 100;        // of pulls at one instant; those left over pull after the next step
+constexpr double kTautRatio = 1e-9;       // of its length: a rope this near to it is at its length
+constexpr double kSlackRatio = 1e-6;      // of its length: a rope this much shorter is slack again
+constexpr double kLowestRebound = 1e-6;   // of sqrt(acceleration x length): a rebound that rises by 5e-13 of the length
+constexpr double kMinPull = 1e-6;         // of gravity: a pull that is no rounding
+constexpr int kTensionSamples = 4;        // a step: it is at most a small part of a swing
+constexpr double kMinFirstSample = 1e-9;  // of a step: a rebound that is over sooner is none
+constexpr double kMaxFirstSample = 1.0 / 1024;  // of a step
+constexpr double kCoarsestInterval = 1.0 / 8;   // of a step, of a rope without tension: its length is smooth
+constexpr double kReach = 2;             // of the way that ends go freely in a step: what contacts may make of it
+constexpr double kNearRatio = 1e-3;      // of its length: ropes so near to it take part in a step's contacts
+constexpr double kPullRounding = 1e-12;  // of the speed before a pull
+constexpr int kMaxPullRounds = 100;      // of pulls at one instant; those left over pull after the next step
 
 Vec3 positionAt(const Step& step, const Attachment& attachment, double fraction) {
   return poseAt(step, attachment.body, fraction) * attachment.point;
@@ -35,26 +35,27 @@ MotionBounds motionBounds(const Step& step, const Attachment& attachment) {
   return cradle::motionBounds(step, attachment.body, attachment.point.norm());
 }
 
-/// Where in the step a rope is slack by more than `least` (m): at its start, or, for one that has just been let go, as
-/// soon as can be, looked for from `begin` on; 1 if nowhere.
+/// First fraction of the step at which a rope is slack by more than `least` (m): 0, or, for a rope that has just been
+/// released, the first of begin, 2 begin, 4 begin, ... where it is; 1 if none.
 template <class Slack>
 double firstSlack(const Slack& slack, double least, double begin) {
   if (slack(0) > least) return 0;
   double fraction = begin;
-  while (fraction < 1 && slack(fraction) <= (fraction < kFirstLook ? 0 : least)) fraction *= 2;
+  while (fraction < 1 && slack(fraction) <= (fraction < kMaxFirstSample ? 0 : least)) fraction *= 2;
   return std::min(fraction, 1.0);
 }
 
-/// Part of the step after which a rope that shortens with `speed` (m a step) at its start shortens still, however it is
-/// pulled: a rebound, even one far shorter than the step, is not over by then.
-double firstLook(const RopeLimit& rope, const Step& step) {
+/// Fraction of the step until which a rope that shortens at its start shortens still, whatever accelerates its ends:
+/// even a rebound far shorter than the step is not over by then. It is v / (v' bound), v the speed of shortening (m a
+/// step).
+double firstSample(const RopeLimit& rope, const Step& step) {
   const double speed = -motionOf(rope, step.startState).lengthening * step.timeStep;
-  if (!(speed > 0)) return kFirstLook;
+  if (!(speed > 0)) return kMaxFirstSample;
   const MotionBounds a = motionBounds(step, rope.anchorA), b = motionBounds(step, rope.anchorB);
   // The distance d of two points: d'' <= relative acceleration + (speed across)^2 / d.
   const double across = a.speed + b.speed;
   const double part = speed / (a.acceleration + b.acceleration + across * across / rope.maxLength);
-  return std::clamp(part, kShortestLook, kFirstLook / 2);
+  return std::clamp(part, kMinFirstSample, kMaxFirstSample / 2);
 }
 
 /// J: of ropes' impulses.
@@ -85,7 +86,7 @@ std::optional<RopeChange> RopeEvents::firstChange(const Step& step) {
     const double end = first ? first->fraction : 1;
     if (!isTaut(i)) {
       if (const auto reached = firstReach(step, i, end)) first = reached;
-    } else if (const auto fraction = firstPush(step, i); fraction && *fraction < end) {
+    } else if (const auto fraction = firstTensionLoss(step, i); fraction && *fraction < end) {
       first = RopeChange{*fraction, i};
     }
   }
@@ -94,7 +95,8 @@ std::optional<RopeChange> RopeEvents::firstChange(const Step& step) {
   return first;
 }
 
-/// Where a slack rope comes to its length, or one at its length that nothing pulled at goes beyond it.
+/// First root in (0, `end`] of the event function maxLength - L(theta) along the step's interpolant: the rope becomes
+/// taut there. A rope that starts at its full length without tension has the threshold -kTautRatio maxLength instead.
 std::optional<RopeChange> RopeEvents::firstReach(const Step& step, std::size_t index, double end) const {
   const RopeLimit& rope = assembly_.ropes[index];
   const auto slack = [&](double fraction) {
@@ -106,7 +108,7 @@ std::optional<RopeChange> RopeEvents::firstReach(const Step& step, std::size_t i
   GapBounds bounds{a.speed + b.speed, a.acceleration + b.acceleration};
   const double least = kTautRatio * rope.maxLength, start = slack(0);
   if (start > bounds.speed) return std::nullopt;
-  const double begin = std::min(end, firstSlack(slack, least, firstLook(rope, step)));
+  const double begin = std::min(end, firstSlack(slack, least, firstSample(rope, step)));
   if (begin < end) {
     const auto fraction = firstRoot(slack, bounds, {begin, slack(begin), end, slack(end)});
     if (fraction) return RopeChange{*fraction, index};
@@ -114,13 +116,13 @@ std::optional<RopeChange> RopeEvents::firstReach(const Step& step, std::size_t i
   if (start > least) return std::nullopt;
   const double threshold = std::min(0.0, start) - least;
   const auto above = [&](double fraction) { return slack(fraction) - threshold; };
-  bounds.finest = kLongestLook;
+  bounds.finest = kCoarsestInterval;
   const auto fraction = firstRoot(above, bounds, {0, above(0), begin, above(begin)});
   return fraction ? std::optional(RopeChange{*fraction, index, threshold}) : std::nullopt;
 }
 
-/// Where the tension of a taut rope first falls below zero, looked for at a few points of the step.
-std::optional<double> RopeEvents::firstPush(const Step& step, std::size_t rope) {
+/// First fraction of the step at which the tension of a taut rope falls below zero, between a few samples of it.
+std::optional<double> RopeEvents::firstTensionLoss(const Step& step, std::size_t rope) {
   double before = tension(rope, step.startState);
   for (int i = 1; i <= kTensionSamples; ++i) {
     const double fraction = static_cast<double>(i) / kTensionSamples;
@@ -144,14 +146,14 @@ double RopeEvents::tension(std::size_t rope, const VectorX& state) {
   return -equations_.multipliers()[tautRod_[rope]] * assembly_.ropes[rope].maxLength;
 }
 
-/// Whether it holds what lies still: nothing is computed for that.
+/// Whether a body at its ends is at rest: nothing is computed for such a rope.
 bool RopeEvents::rests(std::size_t rope) const {
   const RopeLimit& limit = assembly_.ropes[rope];
   return island_.resting.isResting(limit.anchorA.body) || island_.resting.isResting(limit.anchorB.body);
 }
 
 bool RopeEvents::resolve(double time, VectorX& state) {
-  // Ropes that would have to push let go, even where others go taut; impacts may have shortened some.
+  // Ropes that would have to push are released, even where others go taut; impacts may have shortened some.
   bool released = false;
   for (std::size_t i = 0; i < tautRod_.size(); ++i) {
     if (!isTaut(i) || rests(i) || tension(i, state) > kTautRatio * tensionScale_) continue;

@@ -12,7 +12,7 @@ namespace cradle {
 struct RopeChange {
   double fraction = 0;  // of the step, 0..1
   std::size_t rope = 0;
-  double threshold = 0;  // m: slack length that is reached; < 0: of a rope at its length that nothing pulled at
+  double threshold = 0;  // m: slack length that is reached; < 0: of a rope at its length without tension
 };
 
 /// Ropes over time: nothing while slack; an impulse when the length is reached; then a rod, until that would push.
@@ -63,7 +63,7 @@ class RopeEvents {
   bool isTaut(std::size_t rope) const { return tautRod_[rope] >= 0; }
   bool rests(std::size_t rope) const;
   double tension(std::size_t rope, const VectorX& state);
-  std::optional<double> firstPush(const Step& step, std::size_t rope);
+  std::optional<double> firstTensionLoss(const Step& step, std::size_t rope);
   std::optional<RopeChange> firstReach(const Step& step, std::size_t rope, double end) const;
   /// A rope at its length that lengthens.
   struct Stretch {

@@ -24,7 +24,7 @@ class SoftSubsteps {
 
   const Assembly& assembly() const { return assembly_; }
 
-  /// Looks for contacts.
+  /// Detection passes: calls of collision detection.
   long evaluations() const { return step_.looks(); }
 
   /// Events since the last call: impacts, rest and waking, at the ends of steps.

@@ -1,5 +1,5 @@
-// A body that starts inside another would be thrown out of it: the energy for that comes from nowhere. What overlaps
-// little is moved apart before the run begins; what overlaps much is a mistake in the scene.
+// A body that starts inside another would be thrown out of it: the energy for that comes from nowhere. Bodies that
+// overlap little are moved apart before the run begins; a deep overlap is a mistake in the scene.
 
 #include "simulate/start_overlaps.h"
 
@@ -56,11 +56,11 @@ double correctableDepth(const ContactGeometry& geometry, const ColliderPair& pai
 struct Overlap {
   const Body &a, &b;
   bool againstPlane, isThroughSheet;
-  double depth, mendable;  // m
+  double depth, correctable;  // m
 };
 
 std::string textOf(const Overlap& overlap) {
-  const auto& [a, b, againstPlane, isThroughSheet, depth, mendable] = overlap;
+  const auto& [a, b, againstPlane, isThroughSheet, depth, correctable] = overlap;
   if (againstPlane)
     return fmt::format("{}: \"{}\" is {} deep in the plane \"{}\" at the start", a.where, a.name, lengthText(depth),
                        b.name);
@@ -79,11 +79,11 @@ std::string faultOf(const Overlap& overlap) {
         "at most {}, half of the radius inside it, is mended; move it by {} to the side of its middle, or give one of "
         "them "
         "\"collision\": \"none\"",
-        textOf(overlap), lengthText(overlap.mendable), lengthText(overlap.depth));
+        textOf(overlap), lengthText(overlap.correctable), lengthText(overlap.depth));
   return fmt::format(
       "{}; at most {}, half of the radius inside the smaller one, is mended; move {} by {}, or give one "
       "of them \"collision\": \"none\"",
-      textOf(overlap), lengthText(overlap.mendable),
+      textOf(overlap), lengthText(overlap.correctable),
       overlap.againstPlane ? "it out along the plane's normal" : "them apart", lengthText(overlap.depth));
 }
 
@@ -130,12 +130,12 @@ void moveApart(Assembly& assembly) {
   BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0, assembly.geometry);
 }
 
-/// Mends what can be; the rest are faults.
-void settle(const Scene& scene, Assembly& assembly, std::vector<std::string>& faults) {
+/// Moves bodies apart whose overlaps are correctable; the others are faults.
+void correctPenetrations(const Scene& scene, Assembly& assembly, std::vector<std::string>& faults) {
   const std::vector<Overlap> overlaps = overlapsOf(scene, assembly);
   const std::size_t before = faults.size();
   for (const Overlap& overlap : overlaps)
-    if (overlap.depth > overlap.mendable) faults.push_back(faults.size() < kMaxFaultsTold ? faultOf(overlap) : "");
+    if (overlap.depth > overlap.correctable) faults.push_back(faults.size() < kMaxFaultsTold ? faultOf(overlap) : "");
   if (overlaps.empty() || faults.size() > before) return;
   std::vector<Overlap> left = overlaps;
   for (int round = 0; round < kMaxPushRounds && !left.empty(); ++round) {
@@ -151,7 +151,7 @@ void settle(const Scene& scene, Assembly& assembly, std::vector<std::string>& fa
 
 void correctStartPenetrations(const Scene& scene, std::vector<Assembly>& islands) {
   std::vector<std::string> faults;
-  for (Assembly& assembly : islands) settle(scene, assembly, faults);
+  for (Assembly& assembly : islands) correctPenetrations(scene, assembly, faults);
   refuse(faults);
 }
 

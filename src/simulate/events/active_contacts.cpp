@@ -122,7 +122,7 @@ void ActiveContacts::classify(const ContactGroup& group, std::vector<ContactReco
   const double still = stillAcceleration(island_.scene.accuracy, island_.scene.duration, most, solution.residual);
   const double unloaded = (isReleasing_ ? kReleasedRatio : kUnloadedRatio) * most;
   const MatrixX& delassus = response.delassus();
-  std::vector<Index> heldRows;
+  std::vector<Index> activeRows;
   for (std::size_t k = 0; k < group.size(); ++k) {
     ContactRecord& record = records[group[k]];
     const Index at = 3 * static_cast<Index>(k);
@@ -141,10 +141,10 @@ void ActiveContacts::classify(const ContactGroup& group, std::vector<ContactReco
     }
     if (record.slides && slidesTooSlowly(record, motion.head<2>().norm(), most))
       noteFallback(kSlidesTooSlowly, {&record.contact});
-    heldRows.push_back(at + 2);
-    if (record.sticks) heldRows.push_back(at), heldRows.push_back(at + 1);
+    activeRows.push_back(at + 2);
+    if (record.sticks) activeRows.push_back(at), activeRows.push_back(at + 1);
   }
-  if (!heldRows.empty()) countRows(group, delassus(heldRows, heldRows), records);
+  if (!activeRows.empty()) countRows(group, delassus(activeRows, activeRows), records);
 }
 
 /// Whether sliding stays so slow that the direction of its friction is not known, or costs too much to follow. Errors
@@ -199,13 +199,13 @@ double ActiveContacts::tippingSpeed(const Contact& contact) const {
   const ColliderPair& pair = geometry.pairs[contact.pair];
   const bool isA = geometry.colliders[pair.a].kind() == ColliderKind::cylinder && std::isfinite(contact.radiusA);
   const Collider& cylinder = geometry.colliders[isA ? pair.a : pair.b];
-  const auto spinOf = [&](int body) -> Vec3 {
+  const auto angularVelocityOf = [&](int body) -> Vec3 {
     return body == kFixed ? Vec3(Vec3::Zero()) : Vec3(angularVelocity(island_.state, body));
   };
   const Vec3 axis = Core(cylinder, poseOf(island_.state, cylinder.body)).axis();
-  const Vec3 turning = (spinOf(contact.bodyA) - spinOf(contact.bodyB)).cross(axis);
+  const Vec3 axisVelocity = (angularVelocityOf(contact.bodyA) - angularVelocityOf(contact.bodyB)).cross(axis);
   const bool isLying = std::abs(axis.dot(contact.normal)) < 0.5;
-  return cylinder.boundingRadius * (isLying ? std::abs(turning.dot(contact.normal)) : turning.norm());
+  return cylinder.boundingRadius * (isLying ? std::abs(axisVelocity.dot(contact.normal)) : axisVelocity.norm());
 }
 
 /// A corner stays one when the face beside it tips, but a cylinder rolls on over its rim: rows hold points of it only
@@ -217,29 +217,30 @@ void ActiveContacts::noteTipping(const std::vector<ContactRecord>& records) {
       return other.contact.pair == record.contact.pair && isOfRim(other.contact) &&
              other.contact.normal.dot(record.contact.normal) > kSameSide;
     };
-    const auto isHeld = [&](const ContactRecord& other) { return isBeside(other) && other.isLoaded; };
+    const auto isLoaded = [&](const ContactRecord& other) { return isBeside(other) && other.isLoaded; };
     const auto opens = [&](const ContactRecord& other) { return isBeside(other) && other.opens; };
-    if (std::count_if(records.begin(), records.end(), isHeld) < 2 ||
+    if (std::count_if(records.begin(), records.end(), isLoaded) < 2 ||
         std::any_of(records.begin(), records.end(), opens) || tippingSpeed(record.contact) > stillSpeed(record.contact))
       noteFallback(kTips, {&record.contact});
   }
 }
 
-/// Notes whose forces are not unique, and whether rows are too many. `held`: J M^-1 J^T of the rows that hold.
-void ActiveContacts::countRows(const ContactGroup& group, const MatrixX& held, std::vector<ContactRecord>& records) {
-  Eigen::ColPivHouseholderQR<MatrixX> factor(held);
+/// Notes whose forces are not unique, and whether rows are too many. `delassus`: J M^-1 J^T of the rows that hold.
+void ActiveContacts::countRows(const ContactGroup& group, const MatrixX& delassus,
+                               std::vector<ContactRecord>& records) {
+  Eigen::ColPivHouseholderQR<MatrixX> factor(delassus);
   factor.setThreshold(kRankRatio);
   const Index rank = factor.rank();
-  for (const std::size_t i : group) records[i].isRedundant = rank < held.rows();
-  if (held.rows() - rank <= kMaxRedundant && rank <= kMaxIndependent) return;
+  for (const std::size_t i : group) records[i].isRedundant = rank < delassus.rows();
+  if (delassus.rows() - rank <= kMaxRedundant && rank <= kMaxIndependent) return;
   std::vector<const Contact*> contacts;
   for (const std::size_t i : group) contacts.push_back(&records[i].contact);
   noteFallback("too many contacts press at once", contacts);
 }
 
 /// What forces with hardly any lever do is not known to the accuracy.
-void ActiveContacts::noteShortLevers(const std::vector<Contact>& touching, ConstraintSolver& constraints,
-                                     double lever) {
+void ActiveContacts::noteShortMomentArms(const std::vector<Contact>& touching, ConstraintSolver& constraints,
+                                         double lever) {
   const ImpulseResponse response(mechanism().bodies, constraints);
   for (const Contact& contact : touching)
     if (hasShortLever(contact, response, island_.state, lever))
@@ -357,20 +358,20 @@ void ActiveContacts::add(const ContactRecord& record) {
   records_.push_back(record);
 }
 
-const std::vector<ActiveFeature>& ActiveContacts::held() {
-  held_.clear();
+const std::vector<ActiveFeature>& ActiveContacts::features() {
+  features_.clear();
   const ContactGeometry& geometry = island_.assembly.geometry;
   for (std::size_t i = 0; i < records_.size(); ++i) {
-    const ColliderPair& held = records_[i].pair;
+    const ColliderPair& own = records_[i].pair;
     const auto isSame = [&](const ColliderPair& pair) {
-      return pair.a == held.a && pair.b == held.b && pair.againstPlane == held.againstPlane;
+      return pair.a == own.a && pair.b == own.b && pair.againstPlane == own.againstPlane;
     };
     const auto pair = std::find_if(geometry.pairs.begin(), geometry.pairs.end(), isSame);
     if (pair == geometry.pairs.end()) continue;
     ActiveFeature feature{static_cast<std::size_t>(pair - geometry.pairs.begin()), 0, mechanism().contacts[i],
                           touchedFeature(records_[i].contact)};
-    const Collider& a = geometry.colliders[held.a];
-    if (held.againstPlane) {
+    const Collider& a = geometry.colliders[own.a];
+    if (own.againstPlane) {
       const auto nearer = [&](const Vec3& left, const Vec3& right) {
         return (left - feature.contact.centerA.point).squaredNorm() <
                (right - feature.contact.centerA.point).squaredNorm();
@@ -378,9 +379,9 @@ const std::vector<ActiveFeature>& ActiveContacts::held() {
       feature.feature =
           static_cast<std::size_t>(std::min_element(a.points.begin(), a.points.end(), nearer) - a.points.begin());
     }
-    held_.push_back(feature);
+    features_.push_back(feature);
   }
-  return held_;
+  return features_;
 }
 
 void ActiveContacts::followSliding() {

@@ -51,7 +51,7 @@ class ActiveContacts {
   bool empty() const { return mechanism().contacts.empty(); }
 
   /// Features that active contacts hold together, for the pairs of now.
-  const std::vector<ActiveFeature>& held();
+  const std::vector<ActiveFeature>& features();
 
   /// Takes the forces that were found last for those at the end of the island's step. To be called after steps of order
   /// 5, which end with them, before firstChange.
@@ -76,7 +76,7 @@ class ActiveContacts {
 
   /// Notes as a reason to fall back to time stepping that joints leave one of these contacts a lever of less than
   /// `lever`, in sizes of its bodies. `constraints` are factorised for the state.
-  void noteShortLevers(const std::vector<Contact>& touching, ConstraintSolver& constraints, double lever);
+  void noteShortMomentArms(const std::vector<Contact>& touching, ConstraintSolver& constraints, double lever);
 
   /// The bodies of the scene whose contacts the fault is about, and those of all that last.
   const std::vector<int>& fallbackBodies() const { return fallbackBodies_; }
@@ -114,7 +114,7 @@ class ActiveContacts {
   double tippingSpeed(const Contact& contact) const;
   double stillSpeed(const Contact& contact) const;
   bool slidesTooSlowly(const ContactRecord& record, double acceleration, double gravity) const;
-  void countRows(const ContactGroup& group, const MatrixX& held, std::vector<ContactRecord>& records);
+  void countRows(const ContactGroup& group, const MatrixX& delassus, std::vector<ContactRecord>& records);
   void noteFallback(std::string_view reason, const std::vector<const Contact*>& contacts);
   std::vector<int> sceneBodiesOf(const std::vector<const Contact*>& contacts) const;
   static VectorX pressingOf(const std::vector<const ContactRecord*>& records, const VectorX& impulses);
@@ -126,7 +126,7 @@ class ActiveContacts {
   void add(const ContactRecord& record);
   void recordChanges();
   const PreviousContact* previousOf(const ContactRecord& record) const;
-  bool turnsBack(const PreviousContact& previous, const ContactRecord& now) const;
+  bool reverses(const PreviousContact& previous, const ContactRecord& now) const;
   bool isAwake(const Contact& contact) const;
 
   /// Of a contact's changes, in the order of their kinds.
@@ -140,15 +140,15 @@ class ActiveContacts {
   double flatnessOf(const ContactConstraint& rim, const VectorX& state) const;
   void findEventFunctions(const VectorX& state, std::vector<EventFunctions>& eventFunctions);
   void takeEventFunctions(const VectorX& state, std::vector<EventFunctions>& eventFunctions);
-  bool isHeldTogether(const VectorX& state);
-  std::optional<double> firstFailure(double from, double to);
+  bool areForcesFeasible(const VectorX& state);
+  std::optional<double> firstInfeasible(double from, double to);
   double locate(const ContactChange& change, double from, double marginFrom, double to, double marginTo);
 
   IslandState& island_;
   double reach_;                        // m
   std::vector<ContactRecord> records_;  // of Mechanism::contacts
   std::vector<PreviousContact> previous_;
-  std::vector<ActiveFeature> held_;
+  std::vector<ActiveFeature> features_;
   std::vector<BodyFrame> frames_;
   std::string_view fallbackReason_;
   std::vector<int> fallbackBodies_;

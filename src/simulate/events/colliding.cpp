@@ -12,7 +12,7 @@ namespace {
 constexpr double kStandstillRatio = 1e-12;   // of the fastest speed at an impact: what is left is rounding
 constexpr double kSequenceRatio = 1e-9;      // of the time of a fall by the smallest size: as long it may take always
 constexpr double kGapRoundingRatio = 4e-12;  // of the smallest size: beyond the dead band, a gap is one ...
-constexpr double kBallGapRatio = 2e-13;      // the same, of spheres: differences of two lengths
+constexpr double kSphereGapRatio = 2e-13;    // the same, of spheres: differences of two lengths
 constexpr double kGapPlaceRounding = 4e-15;  // ... unless the places around it are rounded that coarsely
 
 /// m/s: of the faster of the two bodies' centres.
@@ -37,7 +37,7 @@ void addImpulse(std::size_t contact, double impulse, std::vector<ContactImpulse>
 }  // namespace
 
 /// Contacts that close are impacts, one after the other as their gaps say.
-void EventContacts::collide(const std::optional<std::size_t>& meeting) {
+void EventContacts::collide(const std::optional<std::size_t>& closingPair) {
   double fastest = 0;
   for (const Contact& contact : touching_) fastest = std::max(fastest, contactSpeed(contact, island_.state));
   const double still = kStandstillRatio * fastest;
@@ -45,7 +45,7 @@ void EventContacts::collide(const std::optional<std::size_t>& meeting) {
   if (std::none_of(touching_.begin(), touching_.end(), closes)) return;
   const std::vector<Contact> near = contactsInReach();
   const SequenceLimits limits = limitsOf(near, still);
-  ImpactSequence sequence(near, meeting, island_.assembly.radii, limits, island_.state);
+  ImpactSequence sequence(near, closingPair, island_.assembly.radii, limits, island_.state);
   std::vector<ContactImpulse> impulses;
   if (!sequence.beginsNow() && ropes_.pullStretched(island_.time, island_.state) && solver_.hasConstraints())
     solver_.factorize(island_.state);
@@ -90,7 +90,7 @@ SequenceLimits EventContacts::limitsOf(const std::vector<Contact>& near, double 
     places = std::max(places, kGapPlaceRounding * contact.point.cwiseAbs().maxCoeff());
   SequenceLimits limits{{}, std::max(kGapRoundingRatio * size_, places), touchTolerance_, reach_, INFINITY, stillSpeed};
   for (const Contact& contact : near)
-    limits.gapErrors.push_back(isOfSphere(contact) ? std::max(kBallGapRatio * size_, places) : limits.gapRounding);
+    limits.gapErrors.push_back(isOfSphere(contact) ? std::max(kSphereGapRatio * size_, places) : limits.gapRounding);
   const auto isClosed = [&](const Contact& contact) { return contact.separation <= limits.gapRounding; };
   if (std::all_of(near.begin(), near.end(), isClosed)) return limits;
   island_.equations.evaluate(island_.state, derivative_);

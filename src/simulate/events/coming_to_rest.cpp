@@ -62,7 +62,7 @@ void EventContacts::letSleep() {
           isAwake[groupOf(static_cast<std::size_t>(other))] = 1, woken = true;
   }
   for (std::size_t group = 0; group < bodies; ++group) {
-    if (!isAwake[group] || !isStill[group] || !isHeld(groups, static_cast<int>(group))) continue;
+    if (!isAwake[group] || !isStill[group] || !canBeInEquilibrium(groups, static_cast<int>(group))) continue;
     std::vector<int> members;
     for (std::size_t body = 0; body < bodies; ++body)
       if (groupOf(body) == group) members.push_back(static_cast<int>(body));
@@ -71,7 +71,7 @@ void EventContacts::letSleep() {
 }
 
 /// Whether forces at the contacts of a group can balance all that acts on it, if constraints alone do not.
-bool EventContacts::isHeld(const DisjointSets& groups, int group) {
+bool EventContacts::canBeInEquilibrium(const DisjointSets& groups, int group) {
   const Mechanism& mechanism = island_.assembly.mechanism;
   std::vector<ContactConstraint> active;
   std::swap(active, island_.assembly.mechanism.contacts);

@@ -51,11 +51,11 @@ double ActiveContacts::flatnessOf(const ContactConstraint& rim, const VectorX& s
 /// face, or when a corner becomes an edge, that stays behind; in a hollow another part of a surface comes nearer. Needs
 /// frames_.
 double ActiveContacts::distanceFromNearest(std::size_t contact, const VectorX& state) const {
-  const ContactConstraint& held = mechanism().contacts[contact];
+  const ContactConstraint& row = mechanism().contacts[contact];
   const ColliderPair& pair = records_[contact].pair;
-  if (pair.againstPlane) return held.rimAxisA.isZero(0) ? 0 : reach_ * flatnessOf(held, state);
+  if (pair.againstPlane) return row.rimAxisA.isZero(0) ? 0 : reach_ * flatnessOf(row, state);
   const ContactGeometry& geometry = island_.assembly.geometry;
-  const bool isOfB = geometry.colliders[pair.a].body == held.centerA.body;
+  const bool isOfB = geometry.colliders[pair.a].body == row.centerA.body;
   const Collider &a = geometry.colliders[isOfB ? pair.a : pair.b], &b = geometry.colliders[isOfB ? pair.b : pair.a];
   const auto nearestOn = [&](const Collider& collider, const Attachment& anchor) {
     const Vec3 center = motionOf(anchor, state, frames_).position;
@@ -64,10 +64,10 @@ double ActiveContacts::distanceFromNearest(std::size_t contact, const VectorX& s
     const Vec3 origin = centerOfMass(state, collider.body);
     return Vec3(origin + worldFromBody * nearestOnSurface(collider, worldFromBody.transpose() * (center - origin)));
   };
-  const ContactKinematics place = kinematicsOf(held, state, frames_);
-  const double onB = (place.point - place.gap * place.normal - nearestOn(b, held.centerA)).norm();
-  if (std::isinf(held.radiusB)) return onB;
-  return std::max(onB, (place.point - nearestOn(a, held.surfaceB)).norm());
+  const ContactKinematics place = kinematicsOf(row, state, frames_);
+  const double onB = (place.point - place.gap * place.normal - nearestOn(b, row.centerA)).norm();
+  if (std::isinf(row.radiusB)) return onB;
+  return std::max(onB, (place.point - nearestOn(a, row.surfaceB)).norm());
 }
 
 void ActiveContacts::findEventFunctions(const VectorX& state, std::vector<EventFunctions>& eventFunctions) {
@@ -141,7 +141,7 @@ std::optional<ContactChange> ActiveContacts::firstChange() {
       }
     if (isDoubtful) {
       const double end = first ? first->fraction : to;
-      if (const auto failure = firstFailure(from, end)) first = ContactChange{Kind::redundant, *failure, 0};
+      if (const auto failure = firstInfeasible(from, end)) first = ContactChange{Kind::redundant, *failure, 0};
     }
     if (leaving && leaving->fraction <= (first ? first->fraction : to)) return leaving;
     if (first) return first;
@@ -168,7 +168,7 @@ double ActiveContacts::locate(const ContactChange& change, double from, double m
 }
 
 /// Whether some forces within the friction cones keep all contacts as they are.
-bool ActiveContacts::isHeldTogether(const VectorX& state) {
+bool ActiveContacts::areForcesFeasible(const VectorX& state) {
   findBodyFrames(mechanism().bodies, state, frames_);
   std::vector<ContactRows> rows;
   std::vector<const ContactRecord*> members;
@@ -184,10 +184,10 @@ bool ActiveContacts::isHeldTogether(const VectorX& state) {
   }
   ConstraintSolver constraints(mechanism().constraints, mechanism().bodies);
   if (constraints.hasConstraints()) constraints.factorize(state, frames_);
-  std::vector<ContactConstraint> held;
-  std::swap(held, mechanism().contacts);
+  std::vector<ContactConstraint> active;
+  std::swap(active, mechanism().contacts);
   island_.equations.evaluate(state, derivative_);
-  std::swap(held, mechanism().contacts);
+  std::swap(active, mechanism().contacts);
   const ContactResponse response(rows, mechanism().bodies, frames_, constraints);
   const ContactSolution solution = solve(members, rows, response);
   const double most =
@@ -201,13 +201,13 @@ bool ActiveContacts::isHeldTogether(const VectorX& state) {
 }
 
 /// Where between two points of the step no forces hold the contacts any more.
-std::optional<double> ActiveContacts::firstFailure(double from, double to) {
+std::optional<double> ActiveContacts::firstInfeasible(double from, double to) {
   interpolate(island_.step, to, sample_);
-  if (isHeldTogether(sample_)) return std::nullopt;
+  if (areForcesFeasible(sample_)) return std::nullopt;
   while (to - from > kLocated) {
     const double middle = from + (to - from) / 2;
     interpolate(island_.step, middle, sample_);
-    (isHeldTogether(sample_) ? from : to) = middle;
+    (areForcesFeasible(sample_) ? from : to) = middle;
   }
   return to;
 }

@@ -14,10 +14,10 @@ namespace {
 
 /// Bound (m) on how far two bodies' points move relative to each other within a step, at a contact of theirs.
 double motionAt(const Step& step, const Collider& a, const Collider& b) {
-  const auto turnOf = [&](const Collider& collider) {
+  const auto rotationOf = [&](const Collider& collider) {
     return collider.body == kFixed ? 0 : turnBounds(step, collider.body).speed * collider.boundingRadius;
   };
-  return relativeMotionBounds(step, a.body, b.body).speed + turnOf(a) + turnOf(b);
+  return relativeMotionBounds(step, a.body, b.body).speed + rotationOf(a) + rotationOf(b);
 }
 
 }  // namespace

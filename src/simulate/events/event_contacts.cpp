@@ -30,8 +30,8 @@ constexpr double kBounceOfAccuracy = 1e-2;  // the same, of the accuracy ...
 constexpr double kBounceOfSquare = 100;     // ... or of its square, if that is more: 5e-5 of the size at the coarsest
 constexpr double kMaxStillRatio = 1e-7;     // of sqrt(g x size)
 constexpr double kSameCorner = 1e-6;        // of a size
-constexpr double kShortLever = 3e-4;        // sizes of a body: hinges of flaps are a thousandth inside their edges ...
-constexpr double kUnboundedLever = 3e-3;    // ... and where forces grow without bound, such levers are why
+constexpr double kShortMomentArm = 3e-4;    // sizes of a body: hinges of flaps are a thousandth inside their edges ...
+constexpr double kUnboundedMomentArm = 3e-3;  // ... and where forces grow without bound, such levers are why
 
 /// Whether a collider with corners has one at `point` (m, world).
 bool hasCornerAt(const Collider& collider, const Vec3& point, const VectorX& state) {
@@ -91,25 +91,25 @@ EventContacts::EventContacts(IslandState& island, RopeEvents& ropes, double accu
       active_(island, touchTolerance_),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       stillPart_(std::min(kMaxStillRatio, accuracy)),
-      shortLever_(isTrial ? kUnboundedLever : kShortLever) {}
+      shortMomentArm_(isTrial ? kUnboundedMomentArm : kShortMomentArm) {}
 
 TouchingFeatures EventContacts::touching() {
-  return {touchTolerance_, deadBand_, &active_.held()};
+  return {touchTolerance_, deadBand_, &active_.features()};
 }
 
-void EventContacts::resolve(const std::optional<ContactChange>& change, const std::optional<std::size_t>& meeting) {
+void EventContacts::resolve(const std::optional<ContactChange>& change, const std::optional<std::size_t>& closingPair) {
   if (!island_.mayTouch()) return;
   std::vector<char> rested;
   for (std::size_t body = 0; body < island_.assembly.mechanism.bodies.size(); ++body)
     rested.push_back(island_.equations.isResting(body));
   zenoTime_ = 0;
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
-  findTouching(meeting);
-  collide(meeting);
+  findTouching(closingPair);
+  collide(closingPair);
   active_.release(change);
   letSleep();
   active_.classify(touching_, solver_);
-  active_.noteShortLevers(touching_, solver_, shortLever_);
+  active_.noteShortMomentArms(touching_, solver_, shortMomentArm_);
   project();
   if (!active_.empty() && isAnySlow()) {  // what sticks is still now
     letSleep();
@@ -118,20 +118,20 @@ void EventContacts::resolve(const std::optional<ContactChange>& change, const st
   recordRests(rested);
 }
 
-void EventContacts::noteShortLevers() {
-  noteShortLevers(shortLever_);
+void EventContacts::noteShortMomentArms() {
+  noteShortMomentArms(shortMomentArm_);
 }
 
 bool EventContacts::noteUnboundedForces() {
-  if (!active_.noteJam()) noteShortLevers(kUnboundedLever);
+  if (!active_.noteJam()) noteShortMomentArms(kUnboundedMomentArm);
   return !active_.fallbackReason().empty();
 }
 
-void EventContacts::noteShortLevers(double lever) {
+void EventContacts::noteShortMomentArms(double lever) {
   if (active_.empty() || !solver_.hasConstraints()) return;
   solver_.factorize(island_.state);
   findTouching({});
-  active_.noteShortLevers(touching_, solver_, lever);
+  active_.noteShortMomentArms(touching_, solver_, lever);
 }
 
 /// Active contacts have no gap and do not leave each other, to rounding; those that stick do not slide. What cannot
@@ -144,8 +144,8 @@ void EventContacts::project() {
 }
 
 /// What touches and can part or close: a place that constraints hold where it is does neither, whatever acts.
-void EventContacts::findTouching(const std::optional<std::size_t>& meeting) {
-  findNear(meeting);
+void EventContacts::findTouching(const std::optional<std::size_t>& closingPair) {
+  findNear(closingPair);
   eraseImmobile(ImpulseResponse(island_.assembly.mechanism.bodies, solver_), island_.state, touching_);
   for (Contact& contact : touching_) findCorner(island_.assembly.geometry, island_.state, contact);
   for (Contact& contact : touching_) findRim(island_.assembly.geometry, island_.state, contact);
@@ -153,13 +153,13 @@ void EventContacts::findTouching(const std::optional<std::size_t>& meeting) {
 }
 
 /// What meets now touches, if its gap is known to that or not.
-void EventContacts::findNear(const std::optional<std::size_t>& meeting) {
+void EventContacts::findNear(const std::optional<std::size_t>& closingPair) {
   const ContactGeometry& geometry = island_.assembly.geometry;
   findContacts(geometry, island_.state, touchTolerance_, touching_);
-  const auto isOfMeeting = [&](const Contact& contact) { return contact.pair == *meeting; };
-  if (!meeting || std::any_of(touching_.begin(), touching_.end(), isOfMeeting)) return;
+  const auto isOfClosingPair = [&](const Contact& contact) { return contact.pair == *closingPair; };
+  if (!closingPair || std::any_of(touching_.begin(), touching_.end(), isOfClosingPair)) return;
   std::vector<Contact> near;
-  appendContacts(geometry, *meeting, island_.state, kMaxTouchError * size_, near);
+  appendContacts(geometry, *closingPair, island_.state, kMaxTouchError * size_, near);
   const auto nearest = std::min_element(near.begin(), near.end(), [](const Contact& left, const Contact& right) {
     return left.separation < right.separation;
   });

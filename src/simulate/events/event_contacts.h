@@ -41,23 +41,23 @@ class EventContacts {
   double touchTolerance() const { return touchTolerance_; }
 
   /// Contacts in the island's state now: changes its velocities. `change` is what happens to an active one, if
-  /// anything does; `meeting` the pair that comes together.
+  /// anything does; `closingPair` the pair that comes together.
   void resolve(const std::optional<ContactChange>& change = std::nullopt,
-               const std::optional<std::size_t>& meeting = std::nullopt);
+               const std::optional<std::size_t>& closingPair = std::nullopt);
 
   /// Notes as a reason to fall back to time stepping that a joint leaves what touches now hardly any lever, if one
   /// does.
-  void noteShortLevers();
+  void noteShortMomentArms();
 
   /// Notes as a reason to fall back to time stepping why forces of active contacts grow without bound. False if there
   /// is no reason.
   bool noteUnboundedForces();
 
  private:
-  void noteShortLevers(double lever);
-  void findTouching(const std::optional<std::size_t>& meeting);
-  void findNear(const std::optional<std::size_t>& meeting);
-  void collide(const std::optional<std::size_t>& meeting);
+  void noteShortMomentArms(double lever);
+  void findTouching(const std::optional<std::size_t>& closingPair);
+  void findNear(const std::optional<std::size_t>& closingPair);
+  void collide(const std::optional<std::size_t>& closingPair);
   std::vector<Contact> contactsInReach();
   bool isOfSphere(const Contact& contact) const;
   SequenceLimits limitsOf(const std::vector<Contact>& near, double stillSpeed);
@@ -72,7 +72,7 @@ class EventContacts {
   DisjointSets findRestGroups() const;
   bool isAnySlow() const;
   bool isSlow(std::size_t body) const;
-  bool isHeld(const DisjointSets& groups, int group);
+  bool canBeInEquilibrium(const DisjointSets& groups, int group);
   bool isInEquilibrium(const DisjointSets& groups, int group, double most) const;
   void project();
   void recordRests(const std::vector<char>& restedBefore);
@@ -84,10 +84,10 @@ class EventContacts {
   double reach_;                      // m: of the contacts that may take part in a sequence of impacts
   ActiveContacts active_;
   ConstraintSolver solver_;
-  double stillPart_;     // of the speed that a body gains when it falls by its size: slower is still; and of gravity:
-                         // what forces may leave of bodies at rest at the most
-  double shortLever_;    // sizes of a body: contacts do not serve that a joint leaves less
-  double zenoTime_ = 0;  // s: how long the bounces that are left out would take
+  double stillPart_;       // of the speed that a body gains when it falls by its size: slower is still; and of gravity:
+                           // what forces may leave of bodies at rest at the most
+  double shortMomentArm_;  // sizes of a body: contacts do not serve that a joint leaves less
+  double zenoTime_ = 0;    // s: how long the bounces that are left out would take
   std::vector<Contact> touching_;
   std::vector<BodyFrame> frames_;
   VectorX derivative_;

@@ -23,7 +23,7 @@ constexpr double kMaxGrowth = 2;  // of the longest of the last steps: farther a
 
 constexpr double kMinLookahead = 1.0 / 64;  // of the step that the accuracy allows
 
-constexpr double kManyTurns = 100;             // rad: beyond, orientations need a tighter tolerance
+constexpr double kLargeRotation = 100;         // rad: beyond, orientations need a tighter tolerance
 constexpr double kTurningRatio = 0.1;          // of the tolerance, for these
 constexpr double kShortTimeStep = 1e-9;        // of the run's duration: nobody waits for so many steps
 constexpr double kLongRun = 1000;              // s: in longer ones, steps are short that would be in this one
@@ -35,7 +35,7 @@ constexpr double kUnitLength = 1e-9;      // how far |q|^2 may be from 1 before 
 
 constexpr int kMaxRounds = 100;  // of ropes and contacts at one instant; what is left comes after the next step
 
-const EventRateLimit& patienceOf(const ChosenMethod& method, double accuracy, bool isTrial) {
+const EventRateLimit& eventRateLimitOf(const ChosenMethod& method, double accuracy, bool isTrial) {
   if (method.keepsPromise) return kLongEventRateLimit;
   if (isTrial) return kTrialEventRateLimit;
   return accuracy > kVisualAccuracy ? kVisualEventRateLimit : kEventRateLimit;
@@ -50,7 +50,7 @@ bool isSame(const VectorX& a, const VectorX& b) {
 VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double duration) {
   VectorX tolerance = stateTolerance(bodyCount(state), method.tolerance, method.tolerance);
   for (Eigen::Index body = 0; body < bodyCount(state); ++body)
-    if (angularVelocity(state, body).norm() * duration > kManyTurns)
+    if (angularVelocity(state, body).norm() * duration > kLargeRotation)
       tolerance.segment<4>(body * kPoseSize + 3) *= kTurningRatio;
   return tolerance;
 }
@@ -63,7 +63,7 @@ EventMotion::EventMotion(IslandState& island, RopeEvents& ropes, const ChosenMet
       method_(method),
       contacts_(island, ropes, island.scene.accuracy, isTrial),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
-      eventRateLimit_(patienceOf(method, island.scene.accuracy, isTrial)),
+      eventRateLimit_(eventRateLimitOf(method, island.scene.accuracy, isTrial)),
       tolerance_(toleranceOf(method, island.state, island.scene.duration)),
       windowStart_(island.time) {
   lengths_.fill(island_.scene.duration);
@@ -291,7 +291,7 @@ void EventMotion::changeForces(const Event& event) {
 /// Nothing changes for contacts that last, but where they are.
 void EventMotion::followLasting() {
   contacts_.active().followSliding();
-  if (!method_.keepsPromise) contacts_.noteShortLevers();
+  if (!method_.keepsPromise) contacts_.noteShortMomentArms();
 }
 
 /// What ropes do to contacts may load or release ropes, and the other way round.

@@ -25,7 +25,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-ImpactSequence::ImpactSequence(std::vector<Contact> contacts, const std::optional<std::size_t>& meeting,
+ImpactSequence::ImpactSequence(std::vector<Contact> contacts, const std::optional<std::size_t>& closingPair,
                                const std::vector<double>& radii, const SequenceLimits& limits, const VectorX& state)
     : contacts_(std::move(contacts)),
       radii_(radii),
@@ -37,11 +37,12 @@ ImpactSequence::ImpactSequence(std::vector<Contact> contacts, const std::optiona
       displacements_(VectorX::Zero(bodyCount(state) * kVelocitySize)) {
   for (const Contact& contact : contacts_) gaps_.push_back(contact.separation);
   findSpeeds(state);
-  if (meeting) takeMeetingAsClosed(*meeting);
+  if (closingPair) closeGapOf(*closingPair);
 }
 
-/// The event's time is rounded: all gaps are taken as they are when the meeting's nearest contact has none.
-void ImpactSequence::takeMeetingAsClosed(std::size_t pair) {
+/// The event's time is rounded. All gaps are advanced to the instant at which the nearest closing contact of the pair
+/// has none.
+void ImpactSequence::closeGapOf(std::size_t pair) {
   std::size_t nearest = contacts_.size();
   for (std::size_t i = 0; i < contacts_.size(); ++i)
     if (contacts_[i].pair == pair && closes(i) && (nearest == contacts_.size() || gaps_[i] < gaps_[nearest]))

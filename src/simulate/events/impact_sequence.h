@@ -27,9 +27,9 @@ struct SequenceLimits {
 /// geometrically. What is left then is one impact without rebound.
 class ImpactSequence {
  public:
-  /// `meeting`: the pair that an event has brought together, whose nearest contact has no gap. `radii` (m): of all
+  /// `closingPair`: the pair that an event has brought together, whose nearest contact has no gap. `radii` (m): of all
   /// moving bodies.
-  ImpactSequence(std::vector<Contact> contacts, const std::optional<std::size_t>& meeting,
+  ImpactSequence(std::vector<Contact> contacts, const std::optional<std::size_t>& closingPair,
                  const std::vector<double>& radii, const SequenceLimits& limits, const VectorX& state);
 
   const std::vector<Contact>& contacts() const { return contacts_; }
@@ -54,7 +54,7 @@ class ImpactSequence {
   bool moveBodies(VectorX& state) const;
 
  private:
-  void takeMeetingAsClosed(std::size_t pair);
+  void closeGapOf(std::size_t pair);
   void findSpeeds(const VectorX& state);
   bool closes(std::size_t contact) const;
   bool isWithinRounding(std::size_t contact) const;

@@ -46,7 +46,7 @@ const ActiveContacts::PreviousContact* ActiveContacts::previousOf(const ContactR
 }
 
 /// Whether what slid slides the other way now.
-bool ActiveContacts::turnsBack(const PreviousContact& previous, const ContactRecord& now) const {
+bool ActiveContacts::reverses(const PreviousContact& previous, const ContactRecord& now) const {
   const int body = previous.constraint.surfaceB.body;
   const Vec3& given = previous.constraint.slidingDirection;
   const Vec3 before = body == kFixed ? given : Vec3(orientation(island_.state, body).normalized() * given);
@@ -72,12 +72,12 @@ void ActiveContacts::recordChanges() {
     } else if (!now) {
       record(EventKind::release);
     } else if (slid && now->sticks) {
-      Vec3 spin = Vec3::Zero();
-      if (contact.bodyA != kFixed) spin -= angularVelocity(island_.state, contact.bodyA);
-      if (contact.bodyB != kFixed) spin += angularVelocity(island_.state, contact.bodyB);
+      Vec3 relative = Vec3::Zero();
+      if (contact.bodyA != kFixed) relative -= angularVelocity(island_.state, contact.bodyA);
+      if (contact.bodyB != kFixed) relative += angularVelocity(island_.state, contact.bodyB);
       const double size = smallestSize(contact, island_.assembly.radii);
-      record(spin.norm() * size > kSlowestSliding ? EventKind::roll : EventKind::stick);
-    } else if (now->slides && (stuck || (slid && turnsBack(previous, *now)))) {
+      record(relative.norm() * size > kSlowestSliding ? EventKind::roll : EventKind::stick);
+    } else if (now->slides && (stuck || (slid && reverses(previous, *now)))) {
       record(EventKind::slip);
     }
   }

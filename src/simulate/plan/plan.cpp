@@ -81,24 +81,24 @@ bool isActedUpon(const Scene& scene, const IslandPlan& island) {
 
 /// Spheres on which no torque can act: their spin is constant, whatever moves their centres.
 void findNonRotating(const Scene& scene, IslandPlan& island) {
-  std::vector<char> isTurned(scene.bodies.size(), 0);
-  const auto turn = [&](int body) {
-    if (body != kWorld) isTurned[static_cast<std::size_t>(body)] = 1;
+  std::vector<char> hasTorque(scene.bodies.size(), 0);
+  const auto addTorque = [&](int body) {
+    if (body != kWorld) hasTorque[static_cast<std::size_t>(body)] = 1;
   };
-  const auto turnIfOffCenter = [&](const Anchor& anchor) {
+  const auto addTorqueIfOffCenter = [&](const Anchor& anchor) {
     if (anchor.body == kWorld) return;
     const Body& body = scene.bodies[static_cast<std::size_t>(anchor.body)];
-    if (anchor.point != body.massProperties.centerOfMass) turn(anchor.body);
+    if (anchor.point != body.massProperties.centerOfMass) addTorque(anchor.body);
   };
-  const auto look = [&](const auto& links) {
-    for (const auto& link : links) turnIfOffCenter(link.anchorA), turnIfOffCenter(link.anchorB);
+  const auto addTorquesOf = [&](const auto& links) {
+    for (const auto& link : links) addTorqueIfOffCenter(link.anchorA), addTorqueIfOffCenter(link.anchorB);
   };
-  look(scene.springs), look(scene.rods), look(scene.ropes), look(scene.ballJoints);
-  for (const Hinge& hinge : scene.hinges) turn(hinge.anchorA.body), turn(hinge.anchorB.body);
-  for (const Push& push : scene.pushes) turn(push.body);
-  for (const int body : island.touching) turn(body);
+  addTorquesOf(scene.springs), addTorquesOf(scene.rods), addTorquesOf(scene.ropes), addTorquesOf(scene.ballJoints);
+  for (const Hinge& hinge : scene.hinges) addTorque(hinge.anchorA.body), addTorque(hinge.anchorB.body);
+  for (const Push& push : scene.pushes) addTorque(push.body);
+  for (const int body : island.touching) addTorque(body);
   for (const int body : island.bodies)
-    if (!isTurned[static_cast<std::size_t>(body)] &&
+    if (!hasTorque[static_cast<std::size_t>(body)] &&
         makeRigidBody(scene.bodies[static_cast<std::size_t>(body)].massProperties).isSpherical)
       island.nonRotating.push_back(body);
 }

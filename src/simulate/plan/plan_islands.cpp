@@ -37,11 +37,11 @@ std::vector<double> sizesOf(const Scene& scene) {
   return sizes;
 }
 
-bool canMeet(const Reach& a, double sizeA, const Reach& b, double sizeB) {
+bool canReach(const Reach& a, double sizeA, const Reach& b, double sizeB) {
   return (a.center - b.center).norm() <= a.radius + b.radius + sizeA + sizeB;
 }
 
-bool canMeetPlane(const Reach& reach, double size, const Body& plane) {
+bool canReachPlane(const Reach& reach, double size, const Body& plane) {
   const Vec3 normal = plane.worldFromBody.rotation * std::get<Plane>(plane.shape).normal;
   return normal.dot(reach.center - plane.worldFromBody.translation) <= reach.radius + size;
 }
@@ -50,7 +50,7 @@ bool canMeetPlane(const Reach& reach, double size, const Body& plane) {
 std::vector<char> findTouching(const Scene& scene, const ReachablePairs& reachable) {
   std::vector<char> touches(scene.bodies.size(), 0);
   std::ptrdiff_t left = std::ssize(touches);
-  reachable.forEachMeeting([&](int i, int j) {
+  reachable.forEachReachablePair([&](int i, int j) {
     for (const int body : {i, j}) left -= std::exchange(touches[static_cast<std::size_t>(body)], char{1}) == 0;
     return left > 0;
   });
@@ -65,7 +65,7 @@ int movingOr(const Scene& scene, int body) {
 DisjointSets joinIslands(const Scene& scene, const ReachablePairs& reachable) {
   DisjointSets joined(scene.bodies.size());
   forEachLink(scene, [&](int a, int b) { joined.join(movingOr(scene, a), movingOr(scene, b)); });
-  reachable.forEachMeeting([&](int i, int j) {
+  reachable.forEachReachablePair([&](int i, int j) {
     joined.join(movingOr(scene, i), movingOr(scene, j));
     return true;
   });
@@ -76,7 +76,7 @@ DisjointSets joinIslands(const Scene& scene, const ReachablePairs& reachable) {
 std::vector<std::vector<int>> findTouchingByIsland(const Scene& scene, const DisjointSets& joined,
                                                    const ReachablePairs& reachable) {
   std::vector<std::vector<int>> touching(scene.bodies.size());
-  reachable.forEachMeeting([&](int i, int j) {
+  reachable.forEachReachablePair([&](int i, int j) {
     const int moving = movingOr(scene, i) != kWorld ? i : j;
     std::vector<int>& ofIsland = touching[static_cast<std::size_t>(joined.islandOf(moving))];
     ofIsland.push_back(i), ofIsland.push_back(j);
@@ -106,13 +106,13 @@ ReachablePairs::ReachablePairs(const Scene& scene)
   }
 }
 
-bool ReachablePairs::mayMeet(int first, int second) const {
+bool ReachablePairs::mayCollide(int first, int second) const {
   const auto i = static_cast<std::size_t>(first), j = static_cast<std::size_t>(second);
   const Body &a = scene_.bodies[i], &b = scene_.bodies[j];
   if (!mayTouch(a, b)) return false;
-  const bool meet = std::holds_alternative<Plane>(a.shape)   ? canMeetPlane(reaches_[j], sizes_[j], a)
-                    : std::holds_alternative<Plane>(b.shape) ? canMeetPlane(reaches_[i], sizes_[i], b)
-                                                             : canMeet(reaches_[i], sizes_[i], reaches_[j], sizes_[j]);
+  const bool meet = std::holds_alternative<Plane>(a.shape)   ? canReachPlane(reaches_[j], sizes_[j], a)
+                    : std::holds_alternative<Plane>(b.shape) ? canReachPlane(reaches_[i], sizes_[i], b)
+                                                             : canReach(reaches_[i], sizes_[i], reaches_[j], sizes_[j]);
   return meet && (joined_.empty() || !joined_.contains(std::minmax(first, second)));
 }
 
@@ -134,11 +134,12 @@ bool ReachablePairs::visitAll(int body, const Visit& visit) const {
   throwIfInterrupted();
   for (const std::vector<int>* bodies : {&colliding_, &planes_})
     for (const int other : *bodies)
-      if (other != body && mayMeet(body, other) && !visit(std::min(body, other), std::max(body, other))) return false;
+      if (other != body && mayCollide(body, other) && !visit(std::min(body, other), std::max(body, other)))
+        return false;
   return true;
 }
 
-void ReachablePairs::forEachMeeting(const Visit& visit) const {
+void ReachablePairs::forEachReachablePair(const Visit& visit) const {
   const std::optional<int> hub = boundless();
   if (!hub) return visitBounded(visit);
   if (!visitAll(*hub, visit)) return;
@@ -168,7 +169,7 @@ void ReachablePairs::visitBounded(const Visit& visit) const {
     throwIfInterrupted();
     for (std::size_t j = i + 1; j < intervals.size() && intervals[j].from <= intervals[i].to; ++j) {
       const auto [first, second] = std::minmax(intervals[i].body, intervals[j].body);
-      if (mayMeet(first, second) && !visit(first, second)) return;
+      if (mayCollide(first, second) && !visit(first, second)) return;
     }
   }
 }

@@ -16,16 +16,16 @@ namespace cradle {
 /// its constraints allow.
 class ReachablePairs {
  public:
-  /// Keeps a reference to `scene`. Costs as forEachMeeting does, a few times.
+  /// Keeps a reference to `scene`. Costs as forEachReachablePair does, a few times.
   explicit ReachablePairs(const Scene& scene);
 
-  bool mayMeet(int first, int second) const;
+  bool mayCollide(int first, int second) const;
 
   using Visit = std::function<bool(int first, int second)>;
   /// Calls visit for pairs (first < second) that may meet, until it returns false: all, or where something moves
   /// without bounds, enough of them to tell who touches something and what islands follow: who meets that is joined
   /// with it. O(bodies) then, else as sweep and prune.
-  void forEachMeeting(const Visit& visit) const;
+  void forEachReachablePair(const Visit& visit) const;
 
   /// Whether something moves without bounds, and so meets all that collide, but what joints keep from it.
   std::optional<int> boundless() const;

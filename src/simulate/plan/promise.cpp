@@ -96,7 +96,7 @@ class ContactSurvey {
   void surveyPairs(const IslandPlan& island, const ReachablePairs& reachable) {
     for (std::size_t i = 0; i < island.touching.size(); ++i)
       for (std::size_t j = i + 1; j < island.touching.size(); ++j)
-        if (reachable.mayMeet(island.touching[i], island.touching[j])) add(island.touching[i], island.touching[j]);
+        if (reachable.mayCollide(island.touching[i], island.touching[j])) add(island.touching[i], island.touching[j]);
   }
 
   /// Each body with some of each kind that it may meet: what is alike is so in its contacts. There are many rows.
@@ -112,7 +112,7 @@ class ContactSurvey {
     for (const int body : island.touching)
       for (const auto& [kind, alike] : kinds)
         for (const int other : alike)
-          if (other != body && reachable.mayMeet(body, other)) addKinds(body, other);
+          if (other != body && reachable.mayCollide(body, other)) addKinds(body, other);
     found_.rows = kManyRows;
   }
 
@@ -182,7 +182,7 @@ class ContactSurvey {
 
 /// Whether any of some links holds a body of the island.
 template <class Link>
-bool areHeldBy(const std::vector<Link>& links, const IslandPlan& island) {
+bool attachTo(const std::vector<Link>& links, const IslandPlan& island) {
   const auto isIn = [&](const Anchor& anchor) {
     return std::binary_search(island.bodies.begin(), island.bodies.end(), anchor.body);
   };
@@ -191,12 +191,12 @@ bool areHeldBy(const std::vector<Link>& links, const IslandPlan& island) {
 }
 
 bool hasJoints(const Scene& scene, const IslandPlan& island) {
-  return areHeldBy(scene.ballJoints, island) || areHeldBy(scene.hinges, island);
+  return attachTo(scene.ballJoints, island) || attachTo(scene.hinges, island);
 }
 
 /// Whether constraints hold a body of the island: rows of contacts may depend on each other through them.
 bool hasBilateral(const Scene& scene, const IslandPlan& island) {
-  return hasJoints(scene, island) || areHeldBy(scene.rods, island) || areHeldBy(scene.ropes, island);
+  return hasJoints(scene, island) || attachTo(scene.rods, island) || attachTo(scene.ropes, island);
 }
 
 int independentRows(const PossibleContacts& contacts) {

@@ -32,7 +32,7 @@ const Body& bodyOf(const Anchor& anchor, const Scene& scene) {
 }
 
 /// Distance of an anchor from its body's centre of mass.
-double armOf(const Anchor& anchor, const Scene& scene) {
+double momentArmOf(const Anchor& anchor, const Scene& scene) {
   return (anchor.point - bodyOf(anchor, scene).massProperties.centerOfMass).norm();
 }
 
@@ -44,14 +44,14 @@ Vec3 worldPoint(const Anchor& anchor, const Scene& scene) {
 Reach reachOfAnchor(const Anchor& anchor, const Scene& scene, const std::vector<Reach>& reaches) {
   if (isFixed(anchor, scene)) return {worldPoint(anchor, scene), 0};
   const Reach& body = reaches[static_cast<std::size_t>(anchor.body)];
-  return {body.center, body.radius + armOf(anchor, scene)};
+  return {body.center, body.radius + momentArmOf(anchor, scene)};
 }
 
 /// Narrows the reach of the body at `end` by a link to `other`. True if that helped.
 bool narrow(const Anchor& end, const Anchor& other, double length, const Scene& scene, std::vector<Reach>& reaches) {
   if (isFixed(end, scene)) return false;
   const Reach from = reachOfAnchor(other, scene, reaches);
-  const double radius = (from.radius + length + armOf(end, scene)) * (1 + kReachRounding);
+  const double radius = (from.radius + length + momentArmOf(end, scene)) * (1 + kReachRounding);
   Reach& reach = reaches[static_cast<std::size_t>(end.body)];
   if (!(radius < reach.radius)) return false;
   reach = {from.center, radius};
@@ -59,7 +59,7 @@ bool narrow(const Anchor& end, const Anchor& other, double length, const Scene& 
 }
 
 /// The farthest that a spring's end can be from its fixed anchor while energy suffices: k (d - L0)^2 / 2 <= E + m g
-/// fall. The body's centre, `arm` away from the spring's end, falls at most to d + arm below the anchor.
+/// fall. The body's centre, `momentArmOf(end)` away from the spring's end, falls at most to d + r below the anchor.
 double farthestOnSpring(const Spring& spring, const Anchor& end, const Anchor& fixed, double energy,
                         const Scene& scene) {
   if (spring.stiffness == 0) return std::numeric_limits<double>::infinity();
@@ -68,16 +68,16 @@ double farthestOnSpring(const Spring& spring, const Anchor& end, const Anchor& f
   const Vec3 down = gravity > 0 ? Vec3(scene.gravity / gravity) : Vec3(Vec3::Zero());
   const Vec3 start = body.worldFromBody * body.massProperties.centerOfMass - worldPoint(fixed, scene);
   const double weight = body.massProperties.mass * gravity / spring.stiffness;  // m: what it stretches the spring by
-  const double half = spring.restLength + weight;  // d^2 - 2 half d + L0^2 - 2 (E / k + weight (arm - start)) <= 0
+  const double half = spring.restLength + weight;  // d^2 - 2 half d + L0^2 - 2 (E / k + weight (r - start)) <= 0
   const double rest = spring.restLength * spring.restLength -
-                      2 * (energy / spring.stiffness + weight * (armOf(end, scene) - down.dot(start)));
+                      2 * (energy / spring.stiffness + weight * (momentArmOf(end, scene) - down.dot(start)));
   return half + std::sqrt(std::max(0.0, half * half - rest));
 }
 
 double kineticEnergyOf(const Body& body) {
-  const Vec3 spin = body.worldFromBody.rotation.conjugate() * body.angularVelocity;
+  const Vec3 angularVelocity = body.worldFromBody.rotation.conjugate() * body.angularVelocity;
   return 0.5 * body.massProperties.mass * body.linearVelocity.squaredNorm() +
-         0.5 * spin.dot(body.massProperties.inertiaTensor * spin);
+         0.5 * angularVelocity.dot(body.massProperties.inertiaTensor * angularVelocity);
 }
 
 bool isPushed(int body, const Scene& scene) {
@@ -112,9 +112,9 @@ void narrowBySprings(const Scene& scene, const std::vector<char>& touches, std::
 }
 
 /// A parabola stays within its chord and its sag of the way's middle.
-void narrowByFlight(const Scene& scene, const std::vector<char>& isHeld, std::vector<Reach>& reaches) {
+void narrowByFlight(const Scene& scene, const std::vector<char>& isAttached, std::vector<Reach>& reaches) {
   for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
-    if (isHeld[body] || isPushed(static_cast<int>(body), scene)) continue;
+    if (isAttached[body] || isPushed(static_cast<int>(body), scene)) continue;
     const Body& flying = scene.bodies[body];
     const Vec3 way = flying.linearVelocity * scene.duration + 0.5 * scene.duration * scene.duration * scene.gravity;
     const double sag = scene.gravity.norm() * scene.duration * scene.duration / 8;
@@ -128,17 +128,17 @@ void narrowByFlight(const Scene& scene, const std::vector<char>& isHeld, std::ve
 
 std::vector<Reach> reachOf(const Scene& scene, const std::vector<char>& touches) {
   std::vector<Reach> reaches(scene.bodies.size());
-  std::vector<char> isHeld = touches;
-  const auto hold = [&](const Anchor& anchor) {
-    if (anchor.body != kWorld) isHeld[static_cast<std::size_t>(anchor.body)] = 1;
+  std::vector<char> isAttached = touches;
+  const auto attach = [&](const Anchor& anchor) {
+    if (anchor.body != kWorld) isAttached[static_cast<std::size_t>(anchor.body)] = 1;
   };
   const std::vector<Limit> limits = limitsOf(scene);
-  for (const Limit& limit : limits) hold(limit.a), hold(limit.b);
-  for (const Spring& spring : scene.springs) hold(spring.anchorA), hold(spring.anchorB);
+  for (const Limit& limit : limits) attach(limit.a), attach(limit.b);
+  for (const Spring& spring : scene.springs) attach(spring.anchorA), attach(spring.anchorB);
   for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
     if (scene.bodies[body].motion == Motion::dynamic) continue;
     reaches[body] = {scene.bodies[body].worldFromBody.translation, 0};
-    isHeld[body] = 1;
+    isAttached[body] = 1;
   }
 
   narrowBySprings(scene, touches, reaches);
@@ -149,7 +149,7 @@ std::vector<Reach> reachOf(const Scene& scene, const std::vector<char>& touches)
       helped = narrow(limit.b, limit.a, limit.length, scene, reaches) || helped;
     }
   }
-  narrowByFlight(scene, isHeld, reaches);
+  narrowByFlight(scene, isAttached, reaches);
   return reaches;
 }
 

@@ -1,8 +1,8 @@
 // B. J. Alder, T. E. Wainwright, "Studies in Molecular Dynamics I. General Method", J. Chem. Phys. 31, 1959; one event
-// a sphere, looked into again when its partner was struck meanwhile: B. D. Lubachevsky, "How to simulate billiards and
+// a sphere, predicted anew when its partner was struck meanwhile: B. D. Lubachevsky, "How to simulate billiards and
 // similar systems", J. Comput. Phys. 94, 1991. Of each pair the sphere that was predicted last knows both motions; it
-// keeps the earliest of its own meetings only. A meeting whose partner has been struck since is no event but the time
-// to look again: what comes before it would have been predicted by that partner.
+// keeps the earliest of its own collisions only. A collision whose partner has been struck since is no event but the
+// time of a new prediction: an earlier one would have been found by that partner.
 
 #include "simulate/spheres/hard_spheres.h"
 
@@ -66,7 +66,7 @@ const VectorX& HardSpheres::stateAt(double time) {
   return state_;
 }
 
-/// The next event: a way out of a cell, a meeting to look into again, or a collision.
+/// The next event: a cell crossing, a collision that is to be predicted anew, or one that holds.
 void HardSpheres::advance() {
   if (++evaluations_ % kEventsBetweenChecks == 0) throwIfInterrupted();
   if (++eventsSinceOrigin_ > kEventsAnOrigin * world_.sphereCount()) moveOrigin();
@@ -89,7 +89,7 @@ void HardSpheres::moveOrigin() {
   origin_ = sum;
   flights_.shiftTime(time_);
   for (Window& window : windows_) window.start -= time_;
-  for (PredictedCollision& meeting : collisions_) meeting.time -= time_;
+  for (PredictedCollision& collision : collisions_) collision.time -= time_;
   for (CellCrossing& crossing : crossings_) crossing.time -= time_;
   time_ = 0;
   const bool isVoid = flights_.renewCells(0);

@@ -63,7 +63,7 @@ class HardSpheres {
   std::vector<Window> windows_;  // by sphere
   std::vector<Event> events_;
   VectorX state_;
-  double origin_ = 0, originRest_ = 0;  // s: their sum is the time 0 of all that follows, and of flights and meetings
+  double origin_ = 0, originRest_ = 0;  // s: their sum is the time 0 of all times below, and of flights and collisions
   double time_ = 0;                     // s, of the last event
   long eventsSinceOrigin_ = 0;
   long evaluations_ = 0;

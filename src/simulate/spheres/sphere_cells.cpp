@@ -12,7 +12,7 @@ namespace cradle {
 namespace {
 
 constexpr int kNone = -1;
-constexpr std::size_t kFew = 16;  // things are looked at faster than 27 cells
+constexpr std::size_t kFew = 16;  // so few things are tested faster than 27 cells are visited
 constexpr double kMargin = 1e-6;  // of a cell: what touches within rounding is near
 constexpr long kMinCount = 4;     // along an axis, so that a cell and its two neighbours are three lists
 constexpr long kMaxLists = 8;     // a sphere

@@ -9,7 +9,7 @@ constexpr double kSlowRatio = 1e-14;  // of the speeds: what touches and closes 
 
 // Of the smaller radius: nearer is touching. Places are known to rounding at any accuracy, and of spheres of different
 // masses the order of collisions counts.
-constexpr double kBallTouchRatio = 1e-11;
+constexpr double kSphereTouchRatio = 1e-11;
 
 constexpr double kMaxChange = 1.5;  // of the cells' size: then they are made anew
 
@@ -81,23 +81,23 @@ void SphereFlights::strike(int sphere, double time, const UniformMotion& motion,
 PredictedCollision SphereFlights::nextCollision(int sphere, double now, double crossing) const {
   PredictedCollision best;
   const UniformMotion motion = motionAt(sphere, now);
-  meetPlanes(motion, sphere, now, best);
-  meetBoxes(motion, sphere, now, crossing, best);
-  cells_.visitNear(sphere, [&](int other) { meetSphere(motion, sphere, other, now, best); });
+  predictAgainstPlanes(motion, sphere, now, best);
+  predictAgainstBoxes(motion, sphere, now, crossing, best);
+  cells_.visitNear(sphere, [&](int other) { predictAgainstSphere(motion, sphere, other, now, best); });
   return best;
 }
 
 PredictedCollision SphereFlights::nextCollisionAhead(int sphere, const CellCrossing& crossing, double next) const {
   PredictedCollision best;
   const UniformMotion motion = motionAt(sphere, crossing.time);
-  meetBoxes(motion, sphere, crossing.time, next, best);
+  predictAgainstBoxes(motion, sphere, crossing.time, next, best);
   cells_.visitAhead(sphere, crossing.axis, crossing.step,
-                    [&](int other) { meetSphere(motion, sphere, other, crossing.time, best); });
+                    [&](int other) { predictAgainstSphere(motion, sphere, other, crossing.time, best); });
   return best;
 }
 
-void SphereFlights::meetSphere(const UniformMotion& motion, int sphere, int other, double now,
-                               PredictedCollision& best) const {
+void SphereFlights::predictAgainstSphere(const UniformMotion& motion, int sphere, int other, double now,
+                                         PredictedCollision& best) const {
   if (other == sphere) return;
   const Flight& flight = flights_[static_cast<std::size_t>(other)];
   const UniformMotion theirs = flight.motion.after(now - flight.since);
@@ -108,7 +108,8 @@ void SphereFlights::meetSphere(const UniformMotion& motion, int sphere, int othe
   keepEarlier(now + time, other, flight.hits, best);
 }
 
-void SphereFlights::meetPlanes(const UniformMotion& motion, int sphere, double now, PredictedCollision& best) const {
+void SphereFlights::predictAgainstPlanes(const UniformMotion& motion, int sphere, double now,
+                                         PredictedCollision& best) const {
   const auto& supports = flights_[static_cast<std::size_t>(sphere)].supports;
   const ContactSearch search{kSlowRatio * speedBound(motion), timeLeft(duration_, now)};
   for (int plane = 0; plane < world_.planeCount(); ++plane) {
@@ -118,8 +119,8 @@ void SphereFlights::meetPlanes(const UniformMotion& motion, int sphere, double n
   }
 }
 
-void SphereFlights::meetBoxes(const UniformMotion& motion, int sphere, double now, double until,
-                              PredictedCollision& best) const {
+void SphereFlights::predictAgainstBoxes(const UniformMotion& motion, int sphere, double now, double until,
+                                        PredictedCollision& best) const {
   const ContactSearch search{kSlowRatio * speedBound(motion), timeLeft(std::min(until, duration_), now)};
   for (const int box : cells_.fixedNear(sphere)) {
     const double time = timeToContact(motion, radiusOf(sphere), world_.boxes[static_cast<std::size_t>(box)], search);
@@ -143,12 +144,12 @@ CellCrossing SphereFlights::nextCrossing(int sphere, double now) const {
   return first;
 }
 
-bool SphereFlights::holds(const PredictedCollision& meeting) const {
-  return meeting.other < 0 || meeting.othersHits == hits(meeting.other);
+bool SphereFlights::holds(const PredictedCollision& collision) const {
+  return collision.other < 0 || collision.othersHits == hits(collision.other);
 }
 
 double SphereFlights::touchingGap(int sphere, int other) const {
-  return kBallTouchRatio * (other < 0 ? radiusOf(sphere) : std::min(radiusOf(sphere), radiusOf(other)));
+  return kSphereTouchRatio * (other < 0 ? radiusOf(sphere) : std::min(radiusOf(sphere), radiusOf(other)));
 }
 
 SphereContact SphereFlights::contactOf(int sphere, int other, double now) const {

@@ -8,7 +8,7 @@
 
 namespace cradle {
 
-/// What a sphere meets: another sphere by its index >= 0, or an obstacle k as ~k.
+/// What a sphere collides with: another sphere by its index >= 0, or an obstacle k as ~k.
 constexpr int kNothing = std::numeric_limits<int>::min();
 
 /// A contact of a sphere with another sphere or an obstacle.
@@ -67,8 +67,8 @@ class SphereFlights {
   /// Makes `origin` (s) the new time 0.
   void shiftTime(double origin);
 
-  /// Whether a meeting still comes about as predicted.
-  bool holds(const PredictedCollision& meeting) const;
+  /// Whether a collision still comes about as predicted: its partner has not been struck since.
+  bool holds(const PredictedCollision& collision) const;
 
   /// Appends all contacts of a sphere at `now`.
   void appendTouching(int sphere, double now, std::vector<SphereContact>& contacts) const;
@@ -81,10 +81,12 @@ class SphereFlights {
     long hits = 0;
     std::array<int, 3> supports = {-1, -1, -1};
   };
-  void meetSphere(const UniformMotion& motion, int sphere, int other, double now, PredictedCollision& best) const;
-  void meetBoxes(const UniformMotion& motion, int sphere, double now, double until, PredictedCollision& best) const;
+  void predictAgainstSphere(const UniformMotion& motion, int sphere, int other, double now,
+                            PredictedCollision& best) const;
+  void predictAgainstBoxes(const UniformMotion& motion, int sphere, double now, double until,
+                           PredictedCollision& best) const;
   SphereCells cellsAt(double now) const;
-  void meetPlanes(const UniformMotion& motion, int sphere, double now, PredictedCollision& best) const;
+  void predictAgainstPlanes(const UniformMotion& motion, int sphere, double now, PredictedCollision& best) const;
   double radiusOf(int sphere) const { return world_.radii[static_cast<std::size_t>(sphere)]; }
   Vec3 positionAt(int sphere, double time) const {
     const Flight& flight = flights_[static_cast<std::size_t>(sphere)];

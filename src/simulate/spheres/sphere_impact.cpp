@@ -139,7 +139,7 @@ bool SphereImpact::reflectAll() {
     const auto body = static_cast<Eigen::Index>(i);
     bodies[i].inverseMass = inverseMassOf(spheres_[i]);
     bodies[i].mass = 1 / bodies[i].inverseMass;
-    bodies[i].inverseInertia.setZero();  // no impulse has a lever
+    bodies[i].inverseInertia.setZero();  // no impulse has a moment arm
     centerOfMass(state, body) = motions_[i].position;
     linearVelocity(state, body) = motions_[i].velocity;
     setOrientation(state, body, Quat::Identity());

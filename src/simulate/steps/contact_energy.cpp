@@ -48,12 +48,13 @@ WholeOfBodies wholeOf(const std::vector<int>& bodies, const Mechanism& mechanism
   whole.center /= whole.mass;
   for (const int body : bodies) {
     const RigidBody& inertia = mechanism.bodies[static_cast<std::size_t>(body)];
-    const Vec3 arm = centerOfMass(state, body) - whole.center;
+    const Vec3 momentArm = centerOfMass(state, body) - whole.center;
     const Mat3 rotation = orientation(state, body).normalized().toRotationMatrix();
     const Mat3 own = rotation * inertia.inertiaTensor * rotation.transpose();
-    whole.inertiaTensor += own + inertia.mass * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+    whole.inertiaTensor +=
+        own + inertia.mass * (momentArm.squaredNorm() * Mat3::Identity() - momentArm * momentArm.transpose());
     angularMomentum += own * Vec3(angularVelocity(state, body)) +
-                       inertia.mass * arm.cross(linearVelocity(state, body) - momentum / whole.mass);
+                       inertia.mass * momentArm.cross(linearVelocity(state, body) - momentum / whole.mass);
   }
   whole.momenta << momentum, angularMomentum;
   return whole;
@@ -61,10 +62,10 @@ WholeOfBodies wholeOf(const std::vector<int>& bodies, const Mechanism& mechanism
 
 /// Adds velocities of bodies that move as one.
 void addMotion(const std::vector<int>& bodies, const Vec3& center, const Vec6& motion, VectorX& state) {
-  const Vec3 spin = motion.tail<3>();
+  const Vec3 commonRotation = motion.tail<3>();
   for (const int body : bodies) {
-    linearVelocity(state, body) += motion.head<3>() + spin.cross(centerOfMass(state, body) - center);
-    angularVelocity(state, body) += spin;
+    linearVelocity(state, body) += motion.head<3>() + commonRotation.cross(centerOfMass(state, body) - center);
+    angularVelocity(state, body) += commonRotation;
   }
 }
 

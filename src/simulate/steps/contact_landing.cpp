@@ -24,8 +24,8 @@ double energyTakenBy(const VectorX& impulses, const VectorX& before, const Vecto
 }  // namespace
 
 double ContactStepping::nextImpact(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
-                                   const VectorX& state, double landingSpeed) {
-  lands_.assign(contacts.size(), 0);
+                                   const VectorX& state, double minImpactSpeed) {
+  strikesInside_.assign(contacts.size(), 0);
   double first = INFINITY;
   if (contacts.empty()) return first;
   // The impulses of the step before are where that to come begins.
@@ -35,11 +35,11 @@ double ContactStepping::nextImpact(const std::vector<Contact>& contacts, const V
   startPart_ = previousStep_ > 0 ? timeStep / previousStep_ : 1;
   for (const Group& group : findGroups()) {
     const Motion motion = motionOf(group, before, timeStep, state);
-    if (!findLanding(group, motion, landingSpeed)) continue;
+    if (!markImpactsInside(group, motion, minImpactSpeed)) continue;
     VectorX path = state;
     const VectorX impulses = solve(group, posed(group, motion, 1));
     dense_ ? dense_->apply(impulses, path) : sparse_.apply(impulses, path);
-    first = std::min(first, landingPart(group, motion, sparse_.velocitiesIn(path) + motion.turning));
+    first = std::min(first, fractionOfImpact(group, motion, sparse_.velocitiesIn(path) + motion.velocityProduct));
   }
   contacts_ = last;
   faults_.clear();  // of a trial
@@ -47,24 +47,24 @@ double ContactStepping::nextImpact(const std::vector<Contact>& contacts, const V
 }
 
 /// What may land: apart, and closed at the step's end by free motion.
-bool ContactStepping::findLanding(const Group& group, const Motion& motion, double landingSpeed) {
+bool ContactStepping::markImpactsInside(const Group& group, const Motion& motion, double minImpactSpeed) {
   bool isFound = false;
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const Index normal = 3 * static_cast<Index>(i) + 2;
     const double gap = group.contacts[i].separation;
     const double closing = motion.closing(normal), fastest = closing + motion.pressing(normal);
-    const bool lands = gap > overlapTolerance_ && closing > landingSpeed && gap < motion.timeStep * fastest;
-    lands_[group.members[i]] = lands ? 1 : 0;
+    const bool lands = gap > overlapTolerance_ && closing > minImpactSpeed && gap < motion.timeStep * fastest;
+    strikesInside_[group.members[i]] = lands ? 1 : 0;
     isFound = isFound || lands;
   }
   return isFound;
 }
 
 /// The first root of gap + v t + a t^2 / 2, in steps; what has none within the step does not land.
-double ContactStepping::landingPart(const Group& group, const Motion& motion, const VectorX& end) {
+double ContactStepping::fractionOfImpact(const Group& group, const Motion& motion, const VectorX& end) {
   double first = INFINITY;
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
-    char& lands = lands_[group.members[i]];
+    char& lands = strikesInside_[group.members[i]];
     if (!lands) continue;
     const Index normal = 3 * static_cast<Index>(i) + 2;
     const double gap = group.contacts[i].separation / motion.timeStep, closing = motion.closing(normal);
@@ -141,7 +141,7 @@ VectorX ContactStepping::strike(const Group& group, double timeStep, VectorX& st
     return most - energyOf(group.moved.bodies, assembly_.mechanism, state);
   };
   const double loss = lossWith(1);
-  if (problem.hasRebounds && isGain(most - loss, most)) lossWith(partThatGainsNothing(lossWith, loss));
+  if (problem.hasRebounds && isGain(most - loss, most)) lossWith(fractionWithoutGain(lossWith, loss));
   impactEnergy(state) += std::max(0.0, energyTakenBy(impulses, start, sparse_.velocitiesIn(state)));
   limit(group, most, state);
   return impulses;

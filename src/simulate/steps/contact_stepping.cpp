@@ -40,11 +40,11 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::v
   previous_.swap(contacts_), previousSlips_.swap(slips_);
   startPart_ = previousStep_ > 0 ? timeStep / previousStep_ : 1;
   previousStep_ = timeStep;
-  friction_ = {};
+  frictionWork_ = {};
   faults_.clear();
   begin(contacts, ropes, before, timeStep, state);
   slips_.assign(contacts_.size(), Vec3::Zero());
-  lands_.resize(contacts_.size(), 0);
+  strikesInside_.resize(contacts_.size(), 0);
   if (contacts.empty()) return;
   const double constant = energyConstant(assembly_.mechanism, state);
   const std::vector<Group> groups = findGroups();
@@ -61,7 +61,7 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::v
       limit(groups[i], most[i], state);
     }
   }
-  lands_.clear();
+  strikesInside_.clear();
   contacts_.resize(contacts.size());
   bookForces(timeStep, state);
   bookNumerical(constant, assembly_.mechanism, state);
@@ -139,26 +139,26 @@ Vec3 ContactStepping::followSides(double timeStep, Contact& contact) const {
       nearest = &other;
   if (!nearest || nearest->normal.dot(contact.normal) < kSameSide) return Vec3::Zero();
   const double derivative = openingSpeed(*nearest, middle_), gap = contact.separation;
-  const double turning = 2 * (derivative - (nearest->separation - gap) / half);  // m/s: s'' h/2
-  if (std::abs(turning) > speed) return Vec3::Zero();
+  const double velocityProduct = 2 * (derivative - (nearest->separation - gap) / half);  // m/s: s'' h/2
+  if (std::abs(velocityProduct) > speed) return Vec3::Zero();
   contact = *nearest;
   contact.separation = gap;
-  return turning / half * contact.normal;
+  return velocityProduct / half * contact.normal;
 }
 
 /// What contacts see of a step, with the cones set to where they are in its middle.
 ContactStepping::Motion ContactStepping::motionOf(const Group& group, const VectorX& before, double timeStep,
                                                   const VectorX& state) {
   std::vector<Contact> contacts = group.contacts;
-  std::vector<Vec3> displacements;  // m/s^2, world
+  std::vector<Vec3> velocityProducts;  // m/s^2, world
   for (std::size_t i = 0; i < contacts.size(); ++i)
-    displacements.push_back(follow(group.members[i], before, timeStep, contacts[i]));
+    velocityProducts.push_back(follow(group.members[i], before, timeStep, contacts[i]));
   setContactProblem(group, contacts, middle_);
-  Motion motion{before, sparse_.velocitiesIn(before), sparse_.velocitiesIn(state), VectorX(3 * displacements.size()),
+  Motion motion{before, sparse_.velocitiesIn(before), sparse_.velocitiesIn(state), VectorX(3 * velocityProducts.size()),
                 timeStep};
-  for (std::size_t i = 0; i < displacements.size(); ++i)
-    motion.turning.segment<3>(3 * static_cast<Index>(i)) =
-        0.5 * timeStep * (sparse_.axes(i).transpose() * displacements[i]);
+  for (std::size_t i = 0; i < velocityProducts.size(); ++i)
+    motion.velocityProduct.segment<3>(3 * static_cast<Index>(i)) =
+        0.5 * timeStep * (sparse_.axes(i).transpose() * velocityProducts[i]);
   return motion;
 }
 
@@ -171,13 +171,13 @@ bool ContactStepping::isOnSmoothPlane(std::size_t member) const {
 /// Contacts whose bodies touch or are joined.
 std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
   DisjointSets islands(assembly_.mechanism.bodies.size());
-  std::vector<char> isConstrained(assembly_.mechanism.bodies.size(), 0), isTiedToFixed = isConstrained;
+  std::vector<char> isConstrained(assembly_.mechanism.bodies.size(), 0), isConstrainedToFixed = isConstrained;
   forEachConstraint(assembly_.mechanism.constraints, [&](int bodyA, int bodyB) {
     islands.join(bodyA, bodyB);
     for (const auto& [body, other] : {std::pair(bodyA, bodyB), {bodyB, bodyA}}) {
       if (body == kFixed) continue;
       isConstrained[static_cast<std::size_t>(body)] = 1;
-      if (other == kFixed) isTiedToFixed[static_cast<std::size_t>(body)] = 1;
+      if (other == kFixed) isConstrainedToFixed[static_cast<std::size_t>(body)] = 1;
     }
   });
   for (const SteppedContact& stepped : contacts_) islands.join(stepped.contact.bodyA, stepped.contact.bodyB);
@@ -196,7 +196,7 @@ std::vector<ContactStepping::Group> ContactStepping::findGroups() const {
   for (std::size_t body = 0; body < isConstrained.size(); ++body)
     if (const auto group = groups.find(islands.islandOf(static_cast<int>(body))); group != groups.end()) {
       group->second.moved.bodies.push_back(static_cast<int>(body));
-      if (isTiedToFixed[body]) group->second.moved.kept.resize(6, 0);
+      if (isConstrainedToFixed[body]) group->second.moved.kept.resize(6, 0);
       group->second.isConstrained = group->second.isConstrained || isConstrained[body];
     }
   std::vector<Group> ordered;
@@ -216,17 +216,17 @@ double ContactStepping::restSpeed(double pressing, double timeStep) const {
 /// from the normal ones. A contact that opens when the step begins may come back as fast, so that the mean leaves its
 /// gap as it was. Of the restitution only a part counts.
 ContactStepping::Problem ContactStepping::posed(const Group& group, const Motion& motion, double part) const {
-  Problem problem{motion.free + motion.turning, {}};
+  Problem problem{motion.free + motion.velocityProduct, {}};
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
     const ContactMaterial& material = materialOf(group.members[i]);
-    const bool slides = (motion.start - motion.turning).segment<2>(at).norm() > kSlowestSliding;
+    const bool slides = (motion.start - motion.velocityProduct).segment<2>(at).norm() > kSlowestSliding;
     problem.frictions.push_back(slides ? material.dynamicFriction : material.staticFriction);
     const double closing = motion.closing(at + 2), pressing = motion.pressing(at + 2);
     const double gap = std::max(0.0, group.contacts[i].separation), restitution = part * material.restitution;
     const bool touches = gap + motion.timeStep * problem.free[at + 2] < 0;
     const bool rebounds = touches && restitution * closing > restSpeed(pressing, motion.timeStep);
-    if (lands_[group.members[i]]) {
+    if (strikesInside_[group.members[i]]) {
       problem.free[at + 2] += kFreeClosing * (closing + pressing);
       continue;
     }
@@ -254,7 +254,7 @@ void ContactStepping::resolve(const Group& group, const VectorX& before, double 
     return most - energyOf(group.moved.bodies, assembly_.mechanism, state);
   };
   const double loss = lossWith(1);
-  if (problem.hasRebounds && isGain(most - loss, most)) lossWith(partThatGainsNothing(lossWith, loss));
+  if (problem.hasRebounds && isGain(most - loss, most)) lossWith(fractionWithoutGain(lossWith, loss));
   keepMomenta(group.moved, free_, assembly_.mechanism, state);
   limit(group, most, state);
   keep(group, motion, problem, impulses, state);
@@ -382,7 +382,7 @@ void ContactStepping::book(const Group& group, const Motion& motion, const Vecto
   impactEnergy(state) += part * struck;
   if (rubbed == 0) return;
   frictionEnergy(state) += part * rubbed;
-  friction_.taken += part * rubbed, friction_.atStart += part * rubbedAtStart;
+  frictionWork_.taken += part * rubbed, frictionWork_.atStart += part * rubbedAtStart;
 }
 
 /// Dampers and pushes worked along free motion; contact changed velocities little by little.

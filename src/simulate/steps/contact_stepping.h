@@ -52,9 +52,9 @@ class ContactStepping {
   double constraintError() const { return solver_.hasConstraints() ? solver_.largestError() : 0; }
 
   /// The part of a step, with the same arguments, after which something lands first: what is apart meets, faster than
-  /// at `landingSpeed` (m/s), while what touches is held. Infinite if nothing does.
+  /// at `minImpactSpeed` (m/s), while what touches is held. Infinite if nothing does.
   double nextImpact(const std::vector<Contact>& contacts, const VectorX& before, double timeStep, const VectorX& state,
-                    double landingSpeed);
+                    double minImpactSpeed);
 
   /// Moves bodies apart that overlap in `state`; what lifts them is taken from their velocities.
   void correctPenetration(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes,
@@ -65,10 +65,10 @@ class ContactStepping {
   std::vector<Vec3> strike(const std::vector<Contact>& contacts, double timeStep, VectorX& state);
 
   /// J: what the friction of active contacts took in the last step, and would have at the velocities of its start.
-  struct HeldFriction {
+  struct FrictionWork {
     double atStart = 0, taken = 0;
   };
-  HeldFriction friction() const { return friction_; }
+  FrictionWork frictionWork() const { return frictionWork_; }
 
   /// Those of the last step.
   const std::vector<SteppedContact>& contacts() const { return contacts_; }
@@ -80,7 +80,7 @@ class ContactStepping {
 
  private:
   static constexpr std::size_t kFewContacts = 6;  // solved densely, to rounding
-  static constexpr double kPartError = 1e-6;      // of restitutions that are scaled: impulses are found no better
+  static constexpr double kFractionError = 1e-6;  // of restitutions that are scaled: impulses are found no better
   struct Group {
     std::vector<std::size_t> members;  // of contacts_
     std::vector<Contact> contacts;     // the same
@@ -91,11 +91,13 @@ class ContactStepping {
   struct Motion {
     const VectorX& before;  // the state at the step's start
     VectorX start, free;  // m/s: of the contacts where they are in its middle, for velocities there and of free motion
-    VectorX turning;      // m/s: what bodies that keep their velocities add to that in half the step
-    double timeStep;      // s
-    double closing(Eigen::Index normal) const { return turning[normal] - start[normal]; }  // m/s, at the step's start
+    VectorX velocityProduct;  // m/s: what bodies that keep their velocities add to that in half the step
+    double timeStep;          // s
+    double closing(Eigen::Index normal) const {
+      return velocityProduct[normal] - start[normal];
+    }                                             // m/s, at the step's start
     double pressing(Eigen::Index normal) const {  // m/s: what the step adds to that
-      return std::max(0.0, -closing(normal) - free[normal] - turning[normal]);
+      return std::max(0.0, -closing(normal) - free[normal] - velocityProduct[normal]);
     }
   };
   struct Problem {
@@ -119,13 +121,13 @@ class ContactStepping {
   double restSpeed(double pressing, double timeStep) const;
   void resolve(const Group& group, const VectorX& before, double timeStep, VectorX& state);
   Problem posed(const Group& group, const Motion& motion, double part) const;
-  bool findLanding(const Group& group, const Motion& motion, double landingSpeed);
-  double landingPart(const Group& group, const Motion& motion, const VectorX& end);
+  bool markImpactsInside(const Group& group, const Motion& motion, double minImpactSpeed);
+  double fractionOfImpact(const Group& group, const Motion& motion, const VectorX& end);
   Problem posedImpact(const Group& group, const VectorX& start, double timeStep, double part) const;
   bool slide(const Group& group, const VectorX& end, Problem& problem) const;
   VectorX strike(const Group& group, double timeStep, VectorX& state);
   template <class LossWith>
-  static double partThatGainsNothing(const LossWith& lossWith, double lossOfAll);
+  static double fractionWithoutGain(const LossWith& lossWith, double lossOfAll);
   VectorX solve(const Group& group, const Problem& problem);
   MatrixX delassus() const { return dense_ ? dense_->delassus() : sparse_.delassus(); }
   void limit(const Group& group, double most, VectorX& state);
@@ -154,13 +156,13 @@ class ContactStepping {
   std::vector<SteppedContact> contacts_, previous_;
   std::vector<const RopeLimit*> ropes_;         // the last of contacts_ within a step
   std::vector<ContactMaterial> ropeMaterials_;  // theirs
-  std::vector<char> lands_;                     // contacts that are not held before the step's end
+  std::vector<char> strikesInside_;             // contacts that are not held before the step's end
   std::vector<Vec3> slips_, previousSlips_;     // m/s, world: velocities of the contacts with De Saxce's correction
   double previousStep_ = 0, startPart_ = 1;     // s; ratio of impulses now to those of the step before, if forces last
   std::map<int, double> penalties_;             // of each group's first body
   long iterations_ = 0;
   std::vector<SteppingFault> faults_;
-  HeldFriction friction_;
+  FrictionWork frictionWork_;
   VectorX free_;                   // where free motion led
   VectorX middle_;                 // where bodies are in the middle of the step, with the velocities of its start
   std::vector<BodyFrame> frames_;  // there
@@ -169,9 +171,9 @@ class ContactStepping {
 /// The largest part of the restitutions with which no energy is gained. `lossWith(part)` is what an impact then takes
 /// (J), < 0 with all of them.
 template <class LossWith>
-double ContactStepping::partThatGainsNothing(const LossWith& lossWith, double lossOfAll) {
+double ContactStepping::fractionWithoutGain(const LossWith& lossWith, double lossOfAll) {
   Bracket parts{0, lossWith(0), 1, lossOfAll};
-  if (parts.gapBefore > 0) closeBracket(lossWith, parts, kPartError);
+  if (parts.gapBefore > 0) closeBracket(lossWith, parts, kFractionError);
   return parts.before;
 }
 

@@ -14,7 +14,7 @@ constexpr double kSeparatedRatio = 0.1;   // of the overlaps that are let be: ho
 constexpr double kSeparatedError = 1e-3;  // ... or of the deepest
 // Of the inverse mass without constraints: where a joint is nearer to a contact than 1e-3 of the size, an overlap is
 // let be. Taking it out would lift the body by more than a thousand times as much, against all forces.
-constexpr double kMinLeverage = 1e-6;
+constexpr double kMinMobility = 1e-6;
 constexpr double kFarthestSeparation = 0.05;  // sizes, or rad: the rest is left to the steps to come
 constexpr double kFarOverlaps = 10;           // of the deepest overlap: gaps that are as good as any wider ones
 
@@ -45,8 +45,8 @@ void ContactStepping::separate(const Group& group, const VectorX& gaps, VectorX&
   const double deepest = -gaps.minCoeff();
   Problem problem{VectorX::Zero(3 * gaps.size()), std::vector<double>(group.contacts.size(), 0)};
   for (Index i = 0; i < gaps.size(); ++i) {
-    const bool hasLeverage = !dense_ || dense_->leverage(static_cast<std::size_t>(i)) > kMinLeverage;
-    problem.free[3 * i + 2] = hasLeverage ? std::min(gaps[i], kFarOverlaps * deepest) : kFarOverlaps * deepest;
+    const bool isMobile = !dense_ || dense_->leverage(static_cast<std::size_t>(i)) > kMinMobility;
+    problem.free[3 * i + 2] = isMobile ? std::min(gaps[i], kFarOverlaps * deepest) : kFarOverlaps * deepest;
   }
   VectorX displacement = state;
   displacement.tail(state.size() - poseComponents(state)).setZero();

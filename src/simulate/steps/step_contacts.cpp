@@ -15,7 +15,7 @@ namespace {
 constexpr double kStepTouchRatio = 1e-9;     // of the smallest body's size: nearer counts as touching
 constexpr std::size_t kFewLoaded = 8;        // contacts that last: more are resolved step by step
 constexpr double kTogetherRatio = 1e-3;      // of a step: what touches within it touches together
-constexpr double kShortLever = 3e-3;         // sizes of a body: shorter levers about a joint leave hardly any turning,
+constexpr double kShortMomentArm = 3e-3;     // sizes of a body: shorter levers about a joint leave hardly any turning,
 constexpr double kLoosened = 1e-6;           // and contacts there may overlap by so many
 constexpr double kReach = 2;                 // of the way that a body goes freely: what others may make of it
 constexpr double kRestingReachRatio = 1e-3;  // of its size: the same, for bodies at rest
@@ -25,7 +25,7 @@ constexpr double kNearOverlap = 10;          // of the deepest overlap: so near 
 constexpr int kMaxRemovals = 4;           // of overlaps in a step: each leaves the square of a part of what was there
 constexpr double kClosedRatio = 1e-6;     // of the speed that gravity gives in a step: slower does not close
 constexpr double kMinImpactRatio = 0.01;  // of the speed that gravity gives in a step: slower is no impact
-constexpr double kLandingRatio = 0.1;     // of the same: slower landings are not worth ending a step for
+constexpr double kNextImpactRatio = 0.1;  // of the same: slower landings are not worth ending a step for
 
 double closingSpeed(const Contact& contact, const VectorX& state) {
   return -openingSpeed(contact, state);
@@ -58,11 +58,11 @@ StepContacts::StepContacts(IslandState& island, double timeStep)
 
 void StepContacts::strike(double time, const VectorX& before, VectorX& state) {
   if (assembly_.geometry.colliders.empty()) return;
-  findMeeting(state);
+  findSimultaneous(state);
   if (touching_.empty()) return;
   wakeTouched(time, state);
   if (solver_.hasConstraints()) solver_.factorize(state);
-  if (!isCrowded_) {
+  if (!stepsOnly_) {
     resolveImpacts(time, before, state);
     return letSleep(time, touching_, state);
   }
@@ -75,7 +75,7 @@ void StepContacts::strike(double time, const VectorX& before, VectorX& state) {
 }
 
 /// Contacts of this instant, and those that are so near to it that they take part in its impact.
-void StepContacts::findMeeting(const VectorX& state) {
+void StepContacts::findSimultaneous(const VectorX& state) {
   findTouching(state, margin());
   double fastest = 0;
   for (const Contact& contact : touching_) fastest = std::max(fastest, closingSpeed(contact, state));
@@ -107,32 +107,32 @@ void StepContacts::findWithinReach(const VectorX& before, const VectorX& state, 
 
 /// Of pairs that are apart when the step begins nothing is known but by the search for impacts, as long as there is
 /// one.
-void StepContacts::findHeld(const VectorX& before, const VectorX& state, double length) {
+void StepContacts::findStepContacts(const VectorX& before, const VectorX& state, double length) {
   findWithinReach(before, state, length);
-  if (isCrowded_) return loosenShortLevers(before, touching_);
+  if (stepsOnly_) return loosenShortMomentArms(before, touching_);
   std::vector<char> touches(assembly_.geometry.pairs.size(), 0);
   for (const Contact& contact : touching_)
     if (contact.separation <= touchTolerance_) touches[contact.pair] = 1;
   std::erase_if(touching_, [&](const Contact& contact) { return !touches[contact.pair]; });
-  loosenShortLevers(before, touching_);
+  loosenShortMomentArms(before, touching_);
 }
 
 /// Where a joint leaves a contact hardly any lever, impulses turn bodies farther than steps can follow. Such contacts
 /// may overlap a little: bodies that do turn give them a lever.
-void StepContacts::loosenShortLevers(const VectorX& state, std::vector<Contact>& contacts) {
+void StepContacts::loosenShortMomentArms(const VectorX& state, std::vector<Contact>& contacts) {
   if (contacts.empty() || !solver_.hasConstraints()) return;
   const ImpulseResponse response(assembly_.mechanism.bodies, solver_);
   for (Contact& contact : contacts)
-    if (hasShortLever(contact, response, state, kShortLever))
+    if (hasShortLever(contact, response, state, kShortMomentArm))
       contact.separation += kLoosened * smallestSize(contact, assembly_.radii);
 }
 
 void StepContacts::begin(double time, const VectorX& before, const VectorX& state, double length) {
-  isCrowded_ = becomesCrowded_;
+  stepsOnly_ = willStepOnly_;
   stepPart_ = length / timeStep_;
   touching_.clear();
   if (assembly_.geometry.colliders.empty()) return;
-  findHeld(before, state, length);
+  findStepContacts(before, state, length);
   // What rests is woken by what closes within the step, with all that it rests on.
   bool woken = false;
   for (const Contact& contact : touching_) {
@@ -144,25 +144,25 @@ void StepContacts::begin(double time, const VectorX& before, const VectorX& stat
         woken = true;
       }
   }
-  if (woken) findHeld(before, state, length);
+  if (woken) findStepContacts(before, state, length);
 }
 
-std::vector<ColliderPair> StepContacts::pairsNotHeld() const {
+std::vector<ColliderPair> StepContacts::pairsWithoutContact() const {
   const std::vector<ColliderPair>& pairs = assembly_.geometry.pairs;
-  std::vector<char> isHeld(pairs.size(), 0);
-  for (const Contact& contact : touching_) isHeld[contact.pair] = 1;
+  std::vector<char> hasContact(pairs.size(), 0);
+  for (const Contact& contact : touching_) hasContact[contact.pair] = 1;
   std::vector<ColliderPair> others;
   for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (!isHeld[i]) others.push_back(pairs[i]);
+    if (!hasContact[i]) others.push_back(pairs[i]);
   return others;
 }
 
 double StepContacts::nextImpact(const VectorX& before, const VectorX& state, double length) {
-  const double landingSpeed = kRestSpeedFloor + kLandingRatio * assembly_.mechanism.gravity.norm() * timeStep_;
-  return stepping_.nextImpact(touching_, before, length, state, landingSpeed);
+  const double minImpactSpeed = kRestSpeedFloor + kNextImpactRatio * assembly_.mechanism.gravity.norm() * timeStep_;
+  return stepping_.nextImpact(touching_, before, length, state, minImpactSpeed);
 }
 
-void StepContacts::hold(const VectorX& before, double length, const RopeEvents& ropes, VectorX& state) {
+void StepContacts::solveContacts(const VectorX& before, double length, const RopeEvents& ropes, VectorX& state) {
   stepPart_ = length / timeStep_;
   stepping_.resolve(touching_, ropes.withinReach(before, state, length), before, length, state);
   correctPenetrations(ropes, state);
@@ -177,8 +177,8 @@ void StepContacts::recordAndLetSleep(double time, VectorX& state) {
     acting.push_back(stepped.contact);
     if (stepped.isImpact) log_.recordContact(time, EventKind::impact, stepped.contact, impulse);
   }
-  if (isCrowded_) letSleep(time, acting, state);
-  becomesCrowded_ = isCrowded_ ? !acting.empty() : acting.size() > kFewLoaded;
+  if (stepsOnly_) letSleep(time, acting, state);
+  willStepOnly_ = stepsOnly_ ? !acting.empty() : acting.size() > kFewLoaded;
 }
 
 /// Points that were not yet nearest when the step began, on rims and edges that turn, may have come too near at its
@@ -186,12 +186,12 @@ void StepContacts::recordAndLetSleep(double time, VectorX& state) {
 void StepContacts::correctPenetrations(const RopeEvents& ropes, VectorX& state) {
   for (int round = 0; round < kMaxRemovals; ++round) {
     findTouching(state, 0, overlapping_);
-    loosenShortLevers(state, overlapping_);
+    loosenShortMomentArms(state, overlapping_);
     double deepest = 0;
     for (const Contact& contact : overlapping_) deepest = std::max(deepest, -contact.separation);
     if (deepest <= kLetBe * margin()) return;
     findTouching(state, kNearOverlap * deepest, overlapping_);
-    loosenShortLevers(state, overlapping_);
+    loosenShortMomentArms(state, overlapping_);
     stepping_.correctPenetration(overlapping_, ropes.withinReach(state, state, 0), state);
   }
 }
@@ -240,7 +240,7 @@ void StepContacts::wakeTouched(double time, const VectorX& state) {
         log_.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
         woken = true;
       }
-  if (woken) findMeeting(state);
+  if (woken) findSimultaneous(state);
 }
 
 /// All that touch each other where one closes take part. A contact that closes faster than acceleration explains

@@ -23,17 +23,17 @@ class StepContacts {
   void begin(double time, const VectorX& before, const VectorX& state, double length);
 
   /// Near pairs but those that are held over the step.
-  std::vector<ColliderPair> pairsNotHeld() const;
+  std::vector<ColliderPair> pairsWithoutContact() const;
 
   /// The part of that step after which something lands that is then to strike; infinite if nothing does.
   double nextImpact(const VectorX& before, const VectorX& state, double length);
 
   /// What contact makes of a step that has begun, now of this `length`: one frictional contact problem, with `ropes`
   /// that may be stretched in it.
-  void hold(const VectorX& before, double length, const RopeEvents& ropes, VectorX& state);
+  void solveContacts(const VectorX& before, double length, const RopeEvents& ropes, VectorX& state);
 
   /// What friction took (J) in the step that was held last, and would have at the velocities of its start.
-  ContactStepping::HeldFriction frictionOfHeld() const { return stepping_.friction(); }
+  ContactStepping::FrictionWork frictionWork() const { return stepping_.frictionWork(); }
 
   /// How far (m or rad) that left constraints from where they should be.
   double constraintError() const { return stepping_.constraintError(); }
@@ -51,8 +51,8 @@ class StepContacts {
   bool hasImpact() const;
 
   /// Many contacts last or chatter: impacts are no longer searched for.
-  bool isCrowded() const { return isCrowded_; }
-  void setCrowded() { becomesCrowded_ = true; }
+  bool usesTimeSteppingOnly() const { return stepsOnly_; }
+  void useTimeSteppingOnly() { willStepOnly_ = true; }
 
   /// Nearer than this (m) is touching.
   double touchTolerance() const { return touchTolerance_; }
@@ -63,11 +63,11 @@ class StepContacts {
  private:
   void findTouching(const VectorX& state, double margin) { findTouching(state, margin, touching_); }
   void findTouching(const VectorX& state, double margin, std::vector<Contact>& touching);
-  void loosenShortLevers(const VectorX& state, std::vector<Contact>& contacts);
+  void loosenShortMomentArms(const VectorX& state, std::vector<Contact>& contacts);
   void correctPenetrations(const RopeEvents& ropes, VectorX& state);
   void findWithinReach(const VectorX& before, const VectorX& state, double length);
-  void findHeld(const VectorX& before, const VectorX& state, double length);
-  void findMeeting(const VectorX& state);
+  void findStepContacts(const VectorX& before, const VectorX& state, double length);
+  void findSimultaneous(const VectorX& state);
   double lightest(const Contact& contact) const;
   void letSleep(double time, const std::vector<Contact>& contacts, VectorX& state);
   void recordFaults(double time);
@@ -85,7 +85,7 @@ class StepContacts {
   double stepPart_ = INFINITY;                   // of a step, that the last one took
   std::vector<Contact> touching_, overlapping_;
   ContactStepping stepping_;
-  bool isCrowded_ = false, becomesCrowded_ = false;
+  bool stepsOnly_ = false, willStepOnly_ = false;
 };
 
 }  // namespace cradle

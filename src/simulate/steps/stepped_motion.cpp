@@ -20,13 +20,13 @@ constexpr double kShortestRatio = 1.0 / 1024;        // of a step: shorter ones 
 constexpr double kMaxPartGrowth = 4;                 // of a part of a step to the next
 constexpr double kMaxSteppedConstraintError = 1e-7;  // m (a m of coordinates) or rad: a thousandth of what is seen
 constexpr double kMaxConstraintErrorGrowth =
-    2;                                      // times what free motion leaves of constraints that contradict each other
-constexpr double kShortestHeld = 1.0 / 32;  // of a step: shorter ones are not cut for the sake of constraints
-constexpr int kMaxServed = 12;              // contacts
-constexpr double kSheetRatio = 0.5;         // of the radius inside a body: so far it may go in a step beside a sheet
-constexpr int kManyLandings = 2;            // events in a step: beyond, it is not cut where something lands
-constexpr int kManyEvents = 16;             // in a step: beyond, it is not cut any more
-constexpr int kMaxEvents = 10000;           // within a step
+    2;  // times what free motion leaves of constraints that contradict each other
+constexpr double kMinConstraintStep = 1.0 / 32;  // of a step: shorter ones are not cut for the sake of constraints
+constexpr int kMaxServed = 12;                   // contacts
+constexpr double kSheetRatio = 0.5;  // of the radius inside a body: so far it may go in a step beside a sheet
+constexpr int kMaxImpactCuts = 2;    // events in a step: beyond, it is not cut where something lands
+constexpr int kManyEvents = 16;      // in a step: beyond, it is not cut any more
+constexpr int kMaxEvents = 10000;    // within a step
 
 }  // namespace
 
@@ -60,8 +60,8 @@ void SteppedMotion::advance(double frame) {
   moveFreely(stepEnd);
   before_ = island_.state;
   bool atEvent = stopAtFirstEvent();
-  atEvent = stopAtFirstLanding() || atEvent;
-  while (!holdContacts()) {
+  atEvent = stopAtNextImpact() || atEvent;
+  while (!solveContacts()) {
     shorten();
     atEvent = false;
   }
@@ -72,9 +72,9 @@ void SteppedMotion::advance(double frame) {
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
 
   // What changes here?
-  if (isHeld_) contacts_.recordAndLetSleep(time, island_.state);
-  if (isHeld_) held_ = island_.state;
-  if (atEvent || !contacts_.isCrowded()) contacts_.strike(time, before_, island_.state);
+  if (hasContacts_) contacts_.recordAndLetSleep(time, island_.state);
+  if (hasContacts_) contactEnd_ = island_.state;
+  if (atEvent || !contacts_.usesTimeSteppingOnly()) contacts_.strike(time, before_, island_.state);
   rodsBefore_ = ropes_.rods();
   ropes_.resolve(time, island_.state);
   keepsConstraints_ = ropes_.rods() == rodsBefore_;
@@ -83,29 +83,29 @@ void SteppedMotion::advance(double frame) {
   island_.requireUnsolvedPairsApart();
 
   if (atEvent) countEvent();
-  if (eventsInWindow_ > kManyEvents) contacts_.setCrowded();
+  if (eventsInWindow_ > kManyEvents) contacts_.useTimeSteppingOnly();
   if (time >= static_cast<double>(stepNumber_ + 1) * method_.timeStep) ++stepNumber_;
 }
 
-void SteppedMotion::hold(double fraction, VectorX& state) const {
-  if (!isHeld_) return;
-  const VectorX& led = island_.step.state;
+void SteppedMotion::addContactMotion(double fraction, VectorX& state) const {
+  if (!hasContacts_) return;
+  const VectorX& freeEnd = island_.step.state;
   const double square = fraction * fraction;
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
-    centerOfMass(state, body) += square * (centerOfMass(held_, body) - centerOfMass(led, body));
-    const Quat turn = (orientation(held_, body) * orientation(led, body).conjugate()).normalized();
+    centerOfMass(state, body) += square * (centerOfMass(contactEnd_, body) - centerOfMass(freeEnd, body));
+    const Quat turn = (orientation(contactEnd_, body) * orientation(freeEnd, body).conjugate()).normalized();
     turnBody(state, body, square * 2 * turn.vec());
     // Between the velocities before and after an impact there are none.
     if (contacts_.hasImpact()) continue;
     const Eigen::Index velocity = velocityOffset(state, body);
     state.segment<kVelocitySize>(velocity) +=
-        fraction * (held_.segment<kVelocitySize>(velocity) - led.segment<kVelocitySize>(velocity));
+        fraction * (contactEnd_.segment<kVelocitySize>(velocity) - freeEnd.segment<kVelocitySize>(velocity));
   }
   // Forces of contacts are constant within the step; they change velocities in proportion to its fraction.
-  const auto [atStart, atEnd] = contacts_.frictionOfHeld();
+  const auto [atStart, atEnd] = contacts_.frictionWork();
   frictionEnergy(state) += fraction * atStart + square * (atEnd - atStart);
-  dampingEnergy(state) += square * (dampingEnergy(held_) - dampingEnergy(led));
-  pushWork(state) += square * (pushWork(held_) - pushWork(led));
+  dampingEnergy(state) += square * (dampingEnergy(contactEnd_) - dampingEnergy(freeEnd));
+  pushWork(state) += square * (pushWork(contactEnd_) - pushWork(freeEnd));
 }
 
 /// Steps are counted from the run's start, so that frames whose times are theirs lie at their ends.
@@ -124,7 +124,7 @@ double SteppedMotion::nextStepEnd() const {
 /// Takes out what the step left wrong: lengths of rods, closing and overlapping contacts. False if a shorter step would
 /// keep constraints that this one does not: what contact makes of free motion does not follow the arcs of light bodies
 /// on long arms far.
-bool SteppedMotion::holdContacts() {
+bool SteppedMotion::solveContacts() {
   const double length = island_.step.timeStep;
   VectorX& state = island_.state;
   const Mechanism& mechanism = island_.assembly.mechanism;
@@ -137,14 +137,15 @@ bool SteppedMotion::holdContacts() {
       guard_.failAtConstraints(state, island_.step.time, solver_.largestError());
   }
   normalizeOrientations(state);
-  isHeld_ = !contacts_.touching().empty() && length > kTimeRounding * method_.timeStep;  // no gap closes in no time
-  if (!isHeld_) return true;
+  hasContacts_ =
+      !contacts_.touching().empty() && length > kTimeRounding * method_.timeStep;  // no gap closes in no time
+  if (!hasContacts_) return true;
   const double free = solver_.hasConstraints() ? solver_.largestError() : 0;
   const double size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
-  contacts_.hold(before_, length, ropes_, state);
+  contacts_.solveContacts(before_, length, ropes_, state);
   return contacts_.constraintError() <=
              std::max(kMaxSteppedConstraintError * (1 + size), kMaxConstraintErrorGrowth * free) ||
-         length < kShortestHeld * method_.timeStep;
+         length < kMinConstraintStep * method_.timeStep;
 }
 
 void SteppedMotion::shorten() {
@@ -197,8 +198,9 @@ bool SteppedMotion::stopAtFirstEvent() {
   contacts_.begin(island_.time, before_, step.state, step.timeStep);
   std::vector<ColliderPair>& pairs = island_.assembly.geometry.pairs;
   const std::vector<ColliderPair> all = pairs;
-  pairs = contacts_.pairsNotHeld();
-  const auto impact = contacts_.isCrowded() ? std::nullopt : island_.search.first(step, {contacts_.touchTolerance()});
+  pairs = contacts_.pairsWithoutContact();
+  const auto impact =
+      contacts_.usesTimeSteppingOnly() ? std::nullopt : island_.search.first(step, {contacts_.touchTolerance()});
   const auto change = ropes_.firstChange(step);
   const double whole = step.timeStep;
   if (impact && !(change && change->fraction < impact->fraction)) {
@@ -214,9 +216,9 @@ bool SteppedMotion::stopAtFirstEvent() {
 }
 
 /// Cuts the step where something lands while other contacts last.
-bool SteppedMotion::stopAtFirstLanding() {
+bool SteppedMotion::stopAtNextImpact() {
   Step& step = island_.step;
-  if (eventsInWindow_ >= kManyLandings) return false;
+  if (eventsInWindow_ >= kMaxImpactCuts) return false;
   const double part = contacts_.nextImpact(before_, step.state, step.timeStep);
   if (part > 1) return false;
   const double length = part * step.timeStep;

@@ -25,7 +25,7 @@ class SteppedMotion {
   bool keepsConstraints() const { return keepsConstraints_; }
 
   /// Adds to a state of the last step's free motion, at a fraction of it, what contacts did that acted over all of it.
-  void hold(double fraction, VectorX& state) const;
+  void addContactMotion(double fraction, VectorX& state) const;
 
   /// Whether all bodies of the island lie still.
   bool isAtRest() const;
@@ -45,8 +45,8 @@ class SteppedMotion {
   void moveFreely(double stepEnd);
   double longestBesideSheets() const;
   bool stopAtFirstEvent();
-  bool stopAtFirstLanding();
-  bool holdContacts();
+  bool stopAtNextImpact();
+  bool solveContacts();
   void shorten();
   void countEvent();
 
@@ -64,8 +64,8 @@ class SteppedMotion {
   double startConstraintError_ = 0;  // m or rad
   VectorX before_;
   std::vector<int> rodsBefore_;     // of ropes, before the changes of a step
-  bool isHeld_ = false;             // contacts acted over all of the last step ...
-  VectorX held_;                    // ... and led here
+  bool hasContacts_ = false;        // contacts acted over all of the last step ...
+  VectorX contactEnd_;              // ... and freeEnd here
   std::vector<double> innerRadii_;  // m, of the colliders
 };
 

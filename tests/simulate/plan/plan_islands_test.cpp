@@ -79,7 +79,7 @@ Islands islandsOfAllPairs(const Scene& scene, const ReachablePairs& reachable) {
   forEachLink(scene, join);
   for (int i = 0; i < count; ++i)
     for (int j = i + 1; j < count; ++j)
-      if (reachable.mayMeet(i, j)) join(i, j);
+      if (reachable.mayCollide(i, j)) join(i, j);
   Islands islands;
   for (int first = 0; first < count; ++first) {
     if (!isMoving(scene, first) || joined.islandOf(first) != first) continue;
@@ -89,7 +89,7 @@ Islands islandsOfAllPairs(const Scene& scene, const ReachablePairs& reachable) {
       if (isMember(i)) bodies.push_back(i);
       bool touches = false;
       for (int j = 0; j < count; ++j)
-        touches = touches || (i != j && (isMember(i) || isMember(j)) && reachable.mayMeet(i, j));
+        touches = touches || (i != j && (isMember(i) || isMember(j)) && reachable.mayCollide(i, j));
       if (touches) touching.push_back(i);
     }
     islands.bodies.push_back(bodies), islands.touching.push_back(touching);
