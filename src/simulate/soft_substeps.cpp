@@ -14,7 +14,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kEnergyRounding = 1e-9;      // of the energy that there is
+constexpr double kGainRounding = 1e-9;      // of the energy that there is
 constexpr std::size_t kBodiesAThread = 2000;  // with fewer, threads wait for each other longer than they work
 
 int threadsFor(std::size_t bodies) {
@@ -67,7 +67,7 @@ void SoftSubsteps::book(double constant) {
 void SoftSubsteps::requireNoGain() const {
   const Invariants now = invariantsOf(assembly_.mechanism, state_);
   const double lost = startEnergy_ - (now.kinetic + now.potential);
-  const double rounding = kEnergyRounding * (std::abs(startEnergy_) + std::abs(now.potential) + now.kinetic);
+  const double rounding = kGainRounding * (std::abs(startEnergy_) + std::abs(now.potential) + now.kinetic);
   if (!state_.allFinite() || !(lost >= -rounding))
     throw Error(ErrorKind::unstable, "",
                 fmt::format("unstable at {:.6g} s: a pile of {} bodies from \"{}\" on has {:.3g} J more energy than at "

@@ -1,11 +1,16 @@
-// Changes of active contacts within a step, looked for at a few points of its interpolant. Where forces are not
-// unique, those of the rows (the shortest) tell only that contacts hold if they lie in the friction cones; whether any
-// others do is Coulomb's problem.
+// Signs of the event functions are compared between a few points of the step, and a change of sign is located by the
+// Illinois method (M. Dowell, P. Jarratt, 1971). Where forces are not unique, those of the rows (of minimum norm) prove
+// that contacts hold if they lie in the friction cones; whether any others do is Coulomb's problem.
+
+#include "simulate/events/contact_changes.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "simulate/events/active_contacts.h"
+#include "collision/mesh_surface.h"
+#include "simulate/events/contacts_on_meshes.h"
+#include "simulate/events/cylinder_rims.h"
+#include "simulate/events/sliding_friction.h"
 
 namespace cradle {
 namespace {
@@ -15,45 +20,48 @@ using Kind = ContactChange::Kind;
 constexpr int kSamples = 4;                // of a step of order 8
 constexpr int kFewSamples = 2;             // of one of order 5, which is half as long
 constexpr double kMarginRounding = 1e-12;  // of the force, or m/s
-constexpr double kFailedRatio =
-    1e-6;  // of the accelerations: less that forces leave is held; more than when it was decided
+// Of the accelerations: forces that leave less are feasible. More than at the classification, or a contact would fail
+// at once.
+constexpr double kInfeasibleRatio = 1e-6;
 constexpr double kLocated = 1e-11;  // of a step, on the interpolant
 constexpr int kMaxBorderCuts = 60;
 
-constexpr double kLeavingRatio = 0.5;  // of what touches yet: so far beyond a face a contact has left it
-// Of a margin: half of what touches yet is found to a thousandth. Bounded on both sides, it is halved rather than
-// followed down beyond the border, where it is steeper by orders.
+constexpr double kLeavingRatio = 0.5;  // of the touch tolerance: a contact so far beyond its face has left it
+// The event function of leaving is 1e-9 (1 - d / (tolerance / 2)), d the distance from the nearest point, and not below
+// -1e-9: with the tolerance 1e-12 of locate, d is found to a thousandth of the tolerance. The bound keeps the Illinois
+// method in its bracket, as d grows faster by orders of magnitude beyond the border.
 constexpr double kLeavingUnit = 1e-9;
 
-constexpr double kJustFlat = 1 - 1e-6;  // a disc that lies down is seen to: it ends a little flatter than it may be
+constexpr double kJustFlat = 1 - 1e-6;  // a disc that lies down ends a little flatter than a row may follow
 
 constexpr std::array<Kind, 4> kKinds = {Kind::release, Kind::slip, Kind::stick, Kind::leave};
 
 }  // namespace
 
-/// In the world, of A's sliding.
-Vec3 ActiveContacts::givenDirection(std::size_t contact, const VectorX& state) const {
+/// The direction of A's sliding that its row has; unit, world.
+Vec3 ContactChanges::slidingDirectionAt(std::size_t contact, const VectorX& state) const {
   const ContactConstraint& constraint = mechanism().contacts[contact];
   const int body = constraint.surfaceB.body;
   if (body == kFixed) return constraint.slidingDirection;
   return orientation(state, body).normalized() * constraint.slidingDirection;
 }
 
-/// 0 for a steep disc on its rim, 1 where it is as flat as a row may follow. Needs frames_.
-double ActiveContacts::flatnessOf(const ContactConstraint& rim, const VectorX& state) const {
+/// 0 for a steep disc on its rim, 1 where it is as flat as a row may follow. Needs frames_ of the state.
+double ContactChanges::flatnessOf(const ContactConstraint& rim, const VectorX& state) const {
   const ContactKinematics place = kinematicsOf(rim, state, frames_);
   const Mat3& worldFromBody = frames_[static_cast<std::size_t>(rim.centerA.body)].rotation;
   const double sine = place.normal.cross(worldFromBody * rim.rimAxisA).norm();
   return kLeavingRatio * kJustFlat * kFlatRim / sine;
 }
 
-/// How far (m) the place where a contact's row keeps it is from where the surfaces are nearest: beyond the border of a
-/// face, or when a corner becomes an edge, that stays behind; in a hollow another part of a surface comes nearer. Needs
-/// frames_.
-double ActiveContacts::distanceFromNearest(std::size_t contact, const VectorX& state) const {
+/// Distance (m) of the point where a contact's row keeps it from the point where the surfaces are nearest. It grows
+/// beyond the border of a face, at a corner that becomes an edge, and in a hollow where another part of a surface comes
+/// nearer. Needs frames_ of the state.
+double ContactChanges::distanceFromNearest(std::size_t contact, const ContactRecord& record,
+                                           const VectorX& state) const {
   const ContactConstraint& row = mechanism().contacts[contact];
-  const ColliderPair& pair = records_[contact].pair;
-  if (pair.againstPlane) return row.rimAxisA.isZero(0) ? 0 : reach_ * flatnessOf(row, state);
+  const ColliderPair& pair = record.pair;
+  if (pair.againstPlane) return row.rimAxisA.isZero(0) ? 0 : touchTolerance_ * flatnessOf(row, state);
   const ContactGeometry& geometry = island_.assembly.geometry;
   const bool isOfB = geometry.colliders[pair.a].body == row.centerA.body;
   const Collider &a = geometry.colliders[isOfB ? pair.a : pair.b], &b = geometry.colliders[isOfB ? pair.b : pair.a];
@@ -70,50 +78,51 @@ double ActiveContacts::distanceFromNearest(std::size_t contact, const VectorX& s
   return std::max(onB, (place.point - nearestOn(a, row.surfaceB)).norm());
 }
 
-void ActiveContacts::findEventFunctions(const VectorX& state, std::vector<EventFunctions>& eventFunctions) {
+void ContactChanges::evaluate(const std::vector<ContactRecord>& records, const VectorX& state,
+                              std::vector<EventFunctions>& values) {
   island_.equations.evaluate(state, derivative_);
-  takeEventFunctions(state, eventFunctions);
+  takeEvaluated(records, state, values);
 }
 
-/// Of each contact, in the order of kKinds; infinite where there is nothing to change. `state` is the one that was
-/// evaluated last.
-void ActiveContacts::takeEventFunctions(const VectorX& state, std::vector<EventFunctions>& eventFunctions) {
+/// Event functions of each contact at `state`, for which the equations were evaluated last; infinite where there is
+/// nothing to change.
+void ContactChanges::takeEvaluated(const std::vector<ContactRecord>& records, const VectorX& state,
+                                   std::vector<EventFunctions>& values) {
   findBodyFrames(mechanism().bodies, state, frames_);
   const std::vector<ContactForce>& forces = island_.equations.contactForces();
-  eventFunctions.resize(records_.size());
-  for (std::size_t i = 0; i < records_.size(); ++i) {
+  values.resize(records.size());
+  for (std::size_t i = 0; i < records.size(); ++i) {
     const ContactMotion motion = mechanism().contacts[i].motion;
-    const double limit = records_[i].pair.material.staticFriction * forces[i].normal;
-    eventFunctions[i] = {forces[i].normal / records_[i].force, INFINITY, INFINITY, INFINITY};
-    if (!sphereOverMesh(island_.assembly.geometry, records_[i].pair, state).mesh)
-      eventFunctions[i][3] =
-          kLeavingUnit * std::max(-1.0, 1 - distanceFromNearest(i, state) / (kLeavingRatio * reach_));
-    if (motion == ContactMotion::sticking)
-      eventFunctions[i][1] = (limit - forces[i].tangential.norm()) / records_[i].force;
-    if (motion == ContactMotion::sliding)
-      eventFunctions[i][2] = forces[i].tangentialVelocity.dot(givenDirection(i, state));
+    const double limit = records[i].pair.material.staticFriction * forces[i].normal;
+    values[i] = {forces[i].normal / records[i].force, INFINITY, INFINITY, INFINITY};
+    if (!sphereOverMesh(island_.assembly.geometry, records[i].pair, state).mesh)
+      values[i][3] = kLeavingUnit *
+                     std::max(-1.0, 1 - distanceFromNearest(i, records[i], state) / (kLeavingRatio * touchTolerance_));
+    if (motion == ContactMotion::sticking) values[i][1] = (limit - forces[i].tangential.norm()) / records[i].force;
+    if (motion == ContactMotion::sliding) values[i][2] = forces[i].tangentialVelocity.dot(slidingDirectionAt(i, state));
   }
 }
 
-double ActiveContacts::margin(const ContactChange& change, const VectorX& state) {
-  const ContactRecord& record = records_[change.contact];
+double ContactChanges::margin(const ContactChange& change, const std::vector<ContactRecord>& records,
+                              const VectorX& state) {
+  const ContactRecord& record = records[change.contact];
   if (change.kind == Kind::leave)
     if (const SphereOverMesh sphere = sphereOverMesh(island_.assembly.geometry, record.pair, state); sphere.mesh)
-      return insideBorder(record.contact, sphere);
-  findEventFunctions(state, after_);
+      return insideVoronoiRegion(record.contact, sphere);
+  evaluate(records, state, after_);
   return after_[change.contact][static_cast<std::size_t>(change.kind)];
 }
 
-void ActiveContacts::noteEnd() {
-  if (!empty()) takeEventFunctions(island_.step.state, atEnd_);
+void ContactChanges::noteEnd(const std::vector<ContactRecord>& records) {
+  if (!records.empty()) takeEvaluated(records, island_.step.state, atEnd_);
 }
 
-std::optional<ContactChange> ActiveContacts::firstChange() {
-  if (empty()) return std::nullopt;
+std::optional<ContactChange> ContactChanges::first(const std::vector<ContactRecord>& records) {
+  if (records.empty()) return std::nullopt;
   const Step& step = island_.step;
-  if (knownTime_ != step.time) findEventFunctions(step.startState, before_);
+  if (knownTime_ != step.time) evaluate(records, step.startState, before_);
   knownTime_ = NAN;
-  const std::optional<ContactChange> leaving = firstLeaving();
+  const std::optional<FeatureChange> leaving = firstFeatureChange(records, island_);
   const bool isEndKnown = step.interpolant == InterpolantKind::degreeFour;
   const int samples = isEndKnown ? kFewSamples : kSamples;
   for (int k = 1; k <= samples; ++k) {
@@ -122,42 +131,51 @@ std::optional<ContactChange> ActiveContacts::firstChange() {
       std::swap(ahead_, atEnd_);
     } else {
       interpolate(step, to, sample_);
-      findEventFunctions(sample_, ahead_);
+      evaluate(records, sample_, ahead_);
     }
-    std::optional<ContactChange> first;
-    bool isDoubtful = false;
-    for (std::size_t i = 0; i < records_.size(); ++i)
-      for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
-        if (!(ahead_[i][kind] < -kMarginRounding)) continue;
-        if (kKinds[kind] == Kind::leave && !(before_[i][kind] > 0)) continue;
-        const bool isOfForces = kKinds[kind] == Kind::release || kKinds[kind] == Kind::slip;
-        if (records_[i].isRedundant && isOfForces) {
-          isDoubtful = true;
-          continue;
-        }
-        ContactChange change{kKinds[kind], 0, i};
-        change.fraction = locate(change, from, before_[i][kind], to, ahead_[i][kind]);
-        if (!first || change.fraction < first->fraction) first = change;
-      }
-    if (isDoubtful) {
-      const double end = first ? first->fraction : to;
-      if (const auto failure = firstInfeasible(from, end)) first = ContactChange{Kind::redundant, *failure, 0};
-    }
-    if (leaving && leaving->fraction <= (first ? first->fraction : to)) return leaving;
-    if (first) return first;
+    const std::optional<ContactChange> found = firstBetween(records, from, to);
+    if (leaving && leaving->fraction <= (found ? found->fraction : to))
+      return ContactChange{Kind::leave, leaving->fraction, leaving->record};
+    if (found) return found;
     std::swap(before_, ahead_);
   }
   knownTime_ = step.time + step.timeStep;
   return std::nullopt;
 }
 
-/// Where between two points of the step a margin falls to zero, on the interpolant (Illinois).
-double ActiveContacts::locate(const ContactChange& change, double from, double marginFrom, double to, double marginTo) {
+/// The first change between two points of the step, whose event functions are before_ and ahead_.
+std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<ContactRecord>& records, double from,
+                                                          double to) {
+  std::optional<ContactChange> first;
+  bool isDoubtful = false;
+  for (std::size_t i = 0; i < records.size(); ++i)
+    for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
+      if (!(ahead_[i][kind] < -kMarginRounding)) continue;
+      if (kKinds[kind] == Kind::leave && !(before_[i][kind] > 0)) continue;
+      const bool isOfForces = kKinds[kind] == Kind::release || kKinds[kind] == Kind::slip;
+      if (records[i].isRedundant && isOfForces) {
+        isDoubtful = true;
+        continue;
+      }
+      ContactChange change{kKinds[kind], 0, i};
+      change.fraction = locate(change, records, from, before_[i][kind], to, ahead_[i][kind]);
+      if (!first || change.fraction < first->fraction) first = change;
+    }
+  if (isDoubtful) {
+    const double end = first ? first->fraction : to;
+    if (const auto failure = firstInfeasible(records, from, end)) first = ContactChange{Kind::redundant, *failure, 0};
+  }
+  return first;
+}
+
+/// The fraction of the step between two points at which an event function falls to zero, on the interpolant (Illinois).
+double ContactChanges::locate(const ContactChange& change, const std::vector<ContactRecord>& records, double from,
+                              double marginFrom, double to, double marginTo) {
   double weightFrom = std::max(marginFrom, kMarginRounding), weightTo = marginTo;
   for (int i = 0; i < kMaxBorderCuts && to - from > kLocated; ++i) {
     const double cut = to - (to - from) * weightTo / (weightTo - weightFrom);
     interpolate(island_.step, cut, sample_);
-    const double found = margin(change, sample_);
+    const double found = margin(change, records, sample_);
     if (std::abs(found) <= kMarginRounding) return cut;
     if (found > 0)
       from = cut, weightFrom = found, weightTo /= 2;
@@ -167,47 +185,49 @@ double ActiveContacts::locate(const ContactChange& change, double from, double m
   return to;
 }
 
-/// Whether some forces within the friction cones keep all contacts as they are.
-bool ActiveContacts::areForcesFeasible(const VectorX& state) {
+/// Whether some forces within the friction cones keep all contacts as they are: none opens or closes, none that sticks
+/// slides.
+bool ContactChanges::areForcesFeasible(const std::vector<ContactRecord>& records, const VectorX& state) {
   findBodyFrames(mechanism().bodies, state, frames_);
   std::vector<ContactRows> rows;
   std::vector<const ContactRecord*> members;
-  std::vector<ContactRecord> records = records_;
-  for (std::size_t i = 0; i < records.size(); ++i) {
+  std::vector<ContactRecord> sliding = records;  // with the directions of sliding at `state`
+  for (std::size_t i = 0; i < sliding.size(); ++i) {
     ContactRows contact{mechanism().contacts[i], kinematicsOf(mechanism().contacts[i], state, frames_), {}};
     const auto tangents = tangentRows(contact.constraint, contact.place);
     contact.rows = {tangents[0], tangents[1], normalRow(contact.constraint, contact.place)};
     if (contact.constraint.motion == ContactMotion::sliding)
-      records[i].direction = slidingDirection(contact.constraint, contact.place, frames_);
+      sliding[i].direction = slidingDirection(contact.constraint, contact.place, frames_);
     rows.push_back(contact);
-    members.push_back(&records[i]);
+    members.push_back(&sliding[i]);
   }
   ConstraintSolver constraints(mechanism().constraints, mechanism().bodies);
   if (constraints.hasConstraints()) constraints.factorize(state, frames_);
-  std::vector<ContactConstraint> active;
+  std::vector<ContactConstraint> active;  // the accelerations are those without contact
   std::swap(active, mechanism().contacts);
   island_.equations.evaluate(state, derivative_);
   std::swap(active, mechanism().contacts);
   const ContactResponse response(rows, mechanism().bodies, frames_, constraints);
-  const ContactSolution solution = solve(members, rows, response);
-  const double most =
-      kFailedRatio * std::max(response.accelerations(derivative_).cwiseAbs().maxCoeff(), mechanism().gravity.norm());
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const Vec3 motion = solution.velocities.segment<3>(3 * static_cast<Eigen::Index>(i));
-    if (std::abs(motion.z()) > most) return false;
-    if (records[i].sticks && motion.head<2>().norm() > most) return false;
+  const ContactSolution solution = solveContactForces(members, rows, response, derivative_);
+  const double most = kInfeasibleRatio *
+                      std::max(response.accelerations(derivative_).cwiseAbs().maxCoeff(), mechanism().gravity.norm());
+  for (std::size_t i = 0; i < sliding.size(); ++i) {
+    const Vec3 acceleration = solution.velocities.segment<3>(3 * static_cast<Eigen::Index>(i));
+    if (std::abs(acceleration.z()) > most) return false;
+    if (sliding[i].sticks && acceleration.head<2>().norm() > most) return false;
   }
   return true;
 }
 
-/// Where between two points of the step no forces hold the contacts any more.
-std::optional<double> ActiveContacts::firstInfeasible(double from, double to) {
+/// The fraction of the step between two points from which no forces keep the contacts any more, by bisection.
+std::optional<double> ContactChanges::firstInfeasible(const std::vector<ContactRecord>& records, double from,
+                                                      double to) {
   interpolate(island_.step, to, sample_);
-  if (areForcesFeasible(sample_)) return std::nullopt;
+  if (areForcesFeasible(records, sample_)) return std::nullopt;
   while (to - from > kLocated) {
     const double middle = from + (to - from) / 2;
     interpolate(island_.step, middle, sample_);
-    (areForcesFeasible(sample_) ? from : to) = middle;
+    (areForcesFeasible(records, sample_) ? from : to) = middle;
   }
   return to;
 }

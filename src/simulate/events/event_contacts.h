@@ -1,28 +1,27 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "impact/pairwise.h"
+#include "collision/time_of_impact.h"
 #include "simulate/events/active_contacts.h"
-#include "simulate/events/impact_sequence.h"
+#include "simulate/events/coming_to_rest.h"
+#include "simulate/events/event_impacts.h"
+#include "simulate/events/touching_contacts.h"
 #include "simulate/island_state.h"
-#include "simulate/plan/disjoint_sets.h"
 #include "simulate/rope_events.h"
 
 namespace cradle {
 
-/// What a contact of a sequence of impacts got in all.
-struct ContactImpulse {
-  std::size_t contact = 0;  // of ImpactSequence::contacts()
-  double impulse = 0;       // N s, along the normal
-};
-
-/// What happens where bodies touch at an event: impacts rebound, what forces hold comes to rest, and what they press
-/// together lasts.
+/// Contacts at an event: contacts that close rebound, bodies in equilibrium come to rest, and contacts that forces
+/// press together become active.
 class EventContacts {
  public:
-  /// Keeps references to both. `accuracy` is the scene's. A trial is made where contacts had to be resolved otherwise.
+  /// Keeps references to both. `accuracy` is the scene's. A trial is made where contacts had to be resolved by time
+  /// stepping before.
   EventContacts(IslandState& island, RopeEvents& ropes, double accuracy, bool isTrial);
+  EventContacts(const EventContacts&) = delete;
+  EventContacts& operator=(const EventContacts&) = delete;
 
   /// What touches as the island's step begins.
   TouchingFeatures touching();
@@ -34,19 +33,19 @@ class EventContacts {
   const std::vector<int>& fallbackBodies() const { return active_.fallbackBodies(); }
   std::vector<int> sceneBodies() const { return active_.sceneBodies(); }
 
-  /// Farther apart (m) nothing is looked at.
-  double margin() const { return reach_; }
+  /// m: pairs that are farther apart take no part in an event.
+  double margin() const { return tolerances_.reach; }
 
   /// Nearer (m) is touching.
-  double touchTolerance() const { return touchTolerance_; }
+  double touchTolerance() const { return tolerances_.touch; }
 
-  /// Contacts in the island's state now: changes its velocities. `change` is what happens to an active one, if
-  /// anything does; `closingPair` the pair that comes together.
+  /// Resolves the contacts of the island's state: impacts, then rest, then active contacts. Changes its velocities.
+  /// `change` is what happens to an active contact, if anything does; `closingPair` the pair whose gap has closed.
   void resolve(const std::optional<ContactChange>& change = std::nullopt,
                const std::optional<std::size_t>& closingPair = std::nullopt);
 
-  /// Notes as a reason to fall back to time stepping that a joint leaves what touches now hardly any lever, if one
-  /// does.
+  /// Notes as a reason to fall back to time stepping that a joint leaves a touching contact hardly any moment arm, if
+  /// one does.
   void noteShortMomentArms();
 
   /// Notes as a reason to fall back to time stepping why forces of active contacts grow without bound. False if there
@@ -54,43 +53,17 @@ class EventContacts {
   bool noteUnboundedForces();
 
  private:
-  void noteShortMomentArms(double lever);
-  void findTouching(const std::optional<std::size_t>& closingPair);
-  void findNear(const std::optional<std::size_t>& closingPair);
-  void collide(const std::optional<std::size_t>& closingPair);
-  std::vector<Contact> contactsInReach();
-  bool isOfSphere(const Contact& contact) const;
-  SequenceLimits limitsOf(const std::vector<Contact>& near, double stillSpeed);
-  DisjointSets connect(const std::vector<Contact>& contacts) const;
-  void strike(const ImpactSequence& sequence, double still, std::vector<ContactImpulse>& impulses);
-  void strike(const DisjointSets& together, int group, const ImpactSequence& sequence,
-              std::vector<ImpactContact>& ropes, std::vector<ContactImpulse>& impulses);
-  void resolveImpact(std::vector<ImpactContact>& impacts);
-  bool endZenoSequence(const VectorX& approach, std::vector<ImpactContact>& impacts);
-  void wakeStruck(const Contact& contact);
-  void letSleep();
-  DisjointSets findRestGroups() const;
-  bool isAnySlow() const;
-  bool isSlow(std::size_t body) const;
-  bool canBeInEquilibrium(const DisjointSets& groups, int group);
-  bool isInEquilibrium(const DisjointSets& groups, int group, double most) const;
+  void noteShortMomentArms(double momentArm);
   void project();
-  void recordRests(const std::vector<char>& restedBefore);
+  void recordRests(const std::vector<char>& restedBefore, double zenoTime);
 
   IslandState& island_;
-  RopeEvents& ropes_;
-  double size_;                       // m: of the smallest body
-  double touchTolerance_, deadBand_;  // m
-  double reach_;                      // m: of the contacts that may take part in a sequence of impacts
-  ActiveContacts active_;
+  TouchTolerances tolerances_;
   ConstraintSolver solver_;
-  double stillPart_;       // of the speed that a body gains when it falls by its size: slower is still; and of gravity:
-                           // what forces may leave of bodies at rest at the most
-  double shortMomentArm_;  // sizes of a body: contacts do not serve that a joint leaves less
-  double zenoTime_ = 0;    // s: how long the bounces that are left out would take
-  std::vector<Contact> touching_;
-  std::vector<BodyFrame> frames_;
-  VectorX derivative_;
+  ActiveContacts active_;
+  ComingToRest rest_;
+  EventImpacts impacts_;
+  double shortMomentArm_;  // sizes of a body: rows do not serve contacts that a joint leaves less
 };
 
 }  // namespace cradle

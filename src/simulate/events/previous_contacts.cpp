@@ -1,9 +1,9 @@
-// What lasted before an event and what lasts after it: contacts are let go of and decided anew, found again by their
-// places, and what has become of them is recorded.
+// Active contacts are released at an event and classified anew. A contact after the event is that of before if it is at
+// the same place: contacts have no identity of their own.
+
+#include "simulate/events/previous_contacts.h"
 
 #include <cmath>
-
-#include "simulate/events/active_contacts.h"
 
 namespace cradle {
 namespace {
@@ -11,77 +11,62 @@ namespace {
 constexpr double kSamePoint = 1e-4;       // of a size
 constexpr double kSameDirection = 0.999;  // cosine
 
-}  // namespace
-
-void ActiveContacts::release(const std::optional<ContactChange>& change) {
-  previous_.clear();
-  knownTime_ = NAN;
-  if (change && change->kind == ContactChange::Kind::slip) island_.equations.evaluate(island_.state, derivative_);
-  for (std::size_t i = 0; i < records_.size(); ++i) {
-    PreviousContact previous{records_[i], mechanism().contacts[i]};
-    if (change && change->kind == ContactChange::Kind::slip && change->contact == i) {
-      previous.isSlipping = true;
-      previous.slipping = -island_.equations.contactForces()[i].tangential.normalized();
-    }
-    previous_.push_back(previous);
-  }
-  isReleasing_ = change && change->kind == ContactChange::Kind::release;
-  mechanism().contacts.clear();
-  records_.clear();
-  fallbackReason_ = {};
+/// Whether a contact that slid slides the other way now.
+bool isReversed(const PreviousContact& previous, const ContactRecord& now, const VectorX& state) {
+  const int body = previous.constraint.surfaceB.body;
+  const Vec3& given = previous.constraint.slidingDirection;
+  const Vec3 before = body == kFixed ? given : Vec3(orientation(state, body).normalized() * given);
+  return before.dot(now.direction) < 0;
 }
 
-/// The contact that lasted until now at the same place, or null.
-const ActiveContacts::PreviousContact* ActiveContacts::previousOf(const ContactRecord& record) const {
-  for (const PreviousContact& previous : previous_) {
-    const ColliderPair &a = previous.record.pair, &b = record.pair;
+/// Whether bodies rotate relative to each other at a contact that does not slide.
+bool isRolling(const Contact& contact, const IslandState& island) {
+  Vec3 relative = Vec3::Zero();  // rad/s
+  if (contact.bodyA != kFixed) relative -= angularVelocity(island.state, contact.bodyA);
+  if (contact.bodyB != kFixed) relative += angularVelocity(island.state, contact.bodyB);
+  return relative.norm() * smallestSize(contact, island.assembly.radii) > kSlowestSliding;
+}
+
+}  // namespace
+
+const PreviousContact* previousAt(const ContactRecord& record, const std::vector<PreviousContact>& previous,
+                                  const std::vector<BodyFrame>& frames, const IslandState& island) {
+  for (const PreviousContact& one : previous) {
+    const ColliderPair &a = one.record.pair, &b = record.pair;
     if (a.a != b.a || a.b != b.b || a.againstPlane != b.againstPlane) continue;
-    const ContactKinematics place = kinematicsOf(previous.constraint, island_.state, frames_);
-    const double size = smallestSize(record.contact, island_.assembly.radii);
+    const ContactKinematics place = kinematicsOf(one.constraint, island.state, frames);
+    const double size = smallestSize(record.contact, island.assembly.radii);
     if (std::abs(place.normal.dot(record.contact.normal)) > kSameDirection &&
         (place.point - record.contact.point).norm() < kSamePoint * size)
-      return &previous;
+      return &one;
   }
   return nullptr;
 }
 
-/// Whether what slid slides the other way now.
-bool ActiveContacts::reverses(const PreviousContact& previous, const ContactRecord& now) const {
-  const int body = previous.constraint.surfaceB.body;
-  const Vec3& given = previous.constraint.slidingDirection;
-  const Vec3 before = body == kFixed ? given : Vec3(orientation(island_.state, body).normalized() * given);
-  return before.dot(now.direction) < 0;
-}
-
-/// What is new of the contacts that lasted before.
-void ActiveContacts::recordChanges() {
-  for (const PreviousContact& previous : previous_) {
+void recordContactEvents(const std::vector<PreviousContact>& previous, const std::vector<ContactRecord>& active,
+                         const std::vector<BodyFrame>& frames, const IslandState& island, EventLog& log) {
+  for (const PreviousContact& one : previous) {
     const ContactRecord* now = nullptr;
-    for (const ContactRecord& record : records_)
-      if (previousOf(record) == &previous) now = &record;
-    const Contact& contact = previous.record.contact;
+    for (const ContactRecord& record : active)
+      if (previousAt(record, previous, frames, island) == &one) now = &record;
+    const Contact& contact = one.record.contact;
     const auto record = [&](EventKind kind) {
-      const auto [a, b] = bodiesOf(island_.assembly, previous.record.pair);
-      const ContactKinematics place = kinematicsOf(previous.constraint, island_.state, frames_);
-      island_.log.record({island_.time, kind, a, b, place.point, contact.normal, 0});
+      const auto [a, b] = bodiesOf(island.assembly, one.record.pair);
+      const ContactKinematics place = kinematicsOf(one.constraint, island.state, frames);
+      log.record({island.time, kind, a, b, place.point, contact.normal, 0});
     };
-    const bool slid = previous.constraint.motion == ContactMotion::sliding;
-    const bool stuck = previous.constraint.motion == ContactMotion::sticking;
-    if (!isAwake(contact)) {
+    const bool slid = one.constraint.motion == ContactMotion::sliding;
+    const bool stuck = one.constraint.motion == ContactMotion::sticking;
+    if (!isAwake(contact, island.resting)) {
       if (slid) record(EventKind::stick);
     } else if (!now) {
       record(EventKind::release);
     } else if (slid && now->sticks) {
-      Vec3 relative = Vec3::Zero();
-      if (contact.bodyA != kFixed) relative -= angularVelocity(island_.state, contact.bodyA);
-      if (contact.bodyB != kFixed) relative += angularVelocity(island_.state, contact.bodyB);
-      const double size = smallestSize(contact, island_.assembly.radii);
-      record(relative.norm() * size > kSlowestSliding ? EventKind::roll : EventKind::stick);
-    } else if (now->slides && (stuck || (slid && reverses(previous, *now)))) {
+      record(isRolling(contact, island) ? EventKind::roll : EventKind::stick);
+    } else if (now->slides && (stuck || (slid && isReversed(one, *now, island.state)))) {
       record(EventKind::slip);
     }
   }
-  previous_.clear();
 }
 
 }  // namespace cradle

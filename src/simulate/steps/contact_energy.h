@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "collision/root_bracketing.h"
 #include "dynamics/equations_of_motion.h"
 #include "dynamics/invariants.h"
 
@@ -35,7 +36,18 @@ void keepMomenta(const MovedBodies& moved, const VectorX& free, const Mechanism&
 /// smaller by the same part, so that what touches opens and slides as before. Returns how much energy (J) that took.
 double clampEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state);
 
-/// Whether energies (J) differ by more than rounding.
+/// Whether `energy` exceeds `most` (J) by more than rounding.
 bool isGain(double energy, double most);
+
+/// The largest fraction of the restitutions with which no energy is gained: the root of lossWith(fraction), the energy
+/// (J) that an impact then takes. `lossOfAll` < 0 is that of the fraction 1. Newton's restitution with friction may
+/// gain energy.
+template <class LossWith>
+double fractionWithoutGain(const LossWith& lossWith, double lossOfAll) {
+  constexpr double kFractionError = 1e-6;  // impulses are found no better
+  Bracket fractions{0, lossWith(0), 1, lossOfAll};
+  if (fractions.gapBefore > 0) closeBracket(lossWith, fractions, kFractionError);
+  return fractions.before;
+}
 
 }  // namespace cradle

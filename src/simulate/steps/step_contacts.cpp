@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "impact/contact_impulse.h"
 #include "impact/frictional_impact.h"
@@ -15,7 +16,7 @@ namespace {
 constexpr double kStepTouchRatio = 1e-9;     // of the smallest body's size: nearer counts as touching
 constexpr std::size_t kFewLoaded = 8;        // contacts that last: more are resolved step by step
 constexpr double kTogetherRatio = 1e-3;      // of a step: what touches within it touches together
-constexpr double kShortMomentArm = 3e-3;     // sizes of a body: shorter levers about a joint leave hardly any turning,
+constexpr double kLooseMomentArm = 3e-3;     // sizes of a body: shorter levers about a joint leave hardly any turning,
 constexpr double kLoosened = 1e-6;           // and contacts there may overlap by so many
 constexpr double kReach = 2;                 // of the way that a body goes freely: what others may make of it
 constexpr double kRestingReachRatio = 1e-3;  // of its size: the same, for bodies at rest
@@ -66,7 +67,7 @@ void StepContacts::strike(double time, const VectorX& before, VectorX& state) {
     resolveImpacts(time, before, state);
     return letSleep(time, touching_, state);
   }
-  const std::vector<Vec3> impulses = stepping_.strike(touching_, timeStep_, state);
+  const std::vector<Vec3> impulses = stepping_.resolveImpact(touching_, timeStep_, state);
   recordFaults(time);
   for (std::size_t i = 0; i < impulses.size(); ++i) {
     const double impulse = touching_[i].normal.dot(impulses[i]);
@@ -123,14 +124,14 @@ void StepContacts::loosenShortMomentArms(const VectorX& state, std::vector<Conta
   if (contacts.empty() || !solver_.hasConstraints()) return;
   const ImpulseResponse response(assembly_.mechanism.bodies, solver_);
   for (Contact& contact : contacts)
-    if (hasShortLever(contact, response, state, kShortMomentArm))
+    if (hasShortLever(contact, response, state, kLooseMomentArm))
       contact.separation += kLoosened * smallestSize(contact, assembly_.radii);
 }
 
 void StepContacts::begin(double time, const VectorX& before, const VectorX& state, double length) {
   stepsOnly_ = willStepOnly_;
   stepPart_ = length / timeStep_;
-  touching_.clear();
+  touching_.clear(), strikesInside_.clear();
   if (assembly_.geometry.colliders.empty()) return;
   findStepContacts(before, state, length);
   // What rests is woken by what closes within the step, with all that it rests on.
@@ -159,12 +160,16 @@ std::vector<ColliderPair> StepContacts::pairsWithoutContact() const {
 
 double StepContacts::nextImpact(const VectorX& before, const VectorX& state, double length) {
   const double minImpactSpeed = kRestSpeedFloor + kNextImpactRatio * assembly_.mechanism.gravity.norm() * timeStep_;
-  return stepping_.nextImpact(touching_, before, length, state, minImpactSpeed);
+  NextImpact next = stepping_.nextImpact(touching_, before, length, state, minImpactSpeed);
+  strikesInside_ = std::move(next.strikesInside);
+  return next.fraction;
 }
 
 void StepContacts::solveContacts(const VectorX& before, double length, const RopeEvents& ropes, VectorX& state) {
   stepPart_ = length / timeStep_;
-  stepping_.resolve(touching_, ropes.withinReach(before, state, length), before, length, state);
+  // Of a step that is shortened after this, no impact inside is known.
+  stepping_.resolve(touching_, ropes.withinReach(before, state, length), before, length, state,
+                    std::exchange(strikesInside_, {}));
   correctPenetrations(ropes, state);
 }
 

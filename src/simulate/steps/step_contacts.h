@@ -25,7 +25,8 @@ class StepContacts {
   /// Near pairs but those that are held over the step.
   std::vector<ColliderPair> pairsWithoutContact() const;
 
-  /// The part of that step after which something lands that is then to strike; infinite if nothing does.
+  /// The fraction of that step at which the next impact inside it comes, whose contacts are then resolved after the
+  /// step; infinite if there is none.
   double nextImpact(const VectorX& before, const VectorX& state, double length);
 
   /// What contact makes of a step that has begun, now of this `length`: one frictional contact problem, with `ropes`
@@ -85,6 +86,7 @@ class StepContacts {
   double stepPart_ = INFINITY;                   // of a step, that the last one took
   std::vector<Contact> touching_, overlapping_;
   ContactStepping stepping_;
+  std::vector<char> strikesInside_;  // by contact, of the next impact; until contacts are solved
   bool stepsOnly_ = false, willStepOnly_ = false;
 };
 

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "dynamics/constraint_forces.h"
+#include "simulate/island_state.h"
+#include "simulate/plan/disjoint_sets.h"
+
+namespace cradle {
+
+/// Rest at events. Bodies that are still, and that forces within the friction cones keep so, are put to rest with all
+/// that they touch or are joined to; nothing is computed for them until an impact or a push wakes them.
+class ComingToRest {
+ public:
+  /// Keeps references to both; `constraints` must be factorised for the island's state at each call. `accuracy` is the
+  /// scene's.
+  ComingToRest(IslandState& island, ConstraintSolver& constraints, double accuracy);
+
+  /// Whether a body that does not rest is still.
+  bool isAnySlow() const;
+
+  /// Puts groups of bodies to rest that are still and in equilibrium; wakes the others.
+  void letSleep(const std::vector<Contact>& touching);
+
+  /// Wakes the bodies of a contact that an impact has set in motion, with all that rest with them.
+  void wakeStruck(const Contact& contact);
+
+ private:
+  bool isSlow(std::size_t body) const;
+  DisjointSets findRestGroups(const std::vector<Contact>& touching) const;
+  bool canBeInEquilibrium(const std::vector<Contact>& touching, const DisjointSets& groups, int group);
+  bool isInEquilibrium(const VectorX& derivative, const DisjointSets& groups, int group, double most) const;
+
+  IslandState& island_;
+  ConstraintSolver& constraints_;
+  double stillRatio_;  // of the speed that a body gains when it falls by its size: slower is still; and of gravity:
+                       // residual forces of bodies at rest are smaller
+};
+
+}  // namespace cradle

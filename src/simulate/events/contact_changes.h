@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "simulate/events/contact_record.h"
+#include "simulate/island_state.h"
+
+namespace cradle {
+
+/// What happens to an active contact inside a step.
+struct ContactChange {
+  enum class Kind {
+    release,  // its force would have to pull
+    slip,     // friction gives way
+    stick,    // sliding stops
+    leave,    // loss of contact: the contact comes to the border of its face or edge, or off its corner, or a disc lies
+              // down
+    redundant  // statically indeterminate with others: no forces within the friction cones keep them any more
+  };
+  Kind kind = Kind::release;
+  double fraction = 0;      // of the step, 0..1
+  std::size_t contact = 0;  // index into Mechanism::contacts
+};
+
+/// The search for changes of active contacts within steps. Each contact has an event function for each kind of change,
+/// positive before it and zero at it: its normal force, the friction that is left, the velocity along its direction of
+/// sliding, and the distance from the border of its feature (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
+/// Differential Equations I", II.6). `records` are always those of the island's Mechanism::contacts.
+class ContactChanges {
+ public:
+  /// Keeps a reference to `island`, of which it evaluates the equations. What comes within `touchTolerance` (m)
+  /// touches.
+  ContactChanges(IslandState& island, double touchTolerance) : island_(island), touchTolerance_(touchTolerance) {}
+
+  /// The contacts have changed: nothing is known of the next step's start.
+  void forget() { knownTime_ = NAN; }
+
+  /// Takes the forces that were evaluated last for those at the end of the island's step. To be called after steps of
+  /// order 5, which end with them, before `first`.
+  void noteEnd(const std::vector<ContactRecord>& records);
+
+  /// The first change within the island's step, whose end derivative must be there.
+  std::optional<ContactChange> first(const std::vector<ContactRecord>& records);
+
+  /// The event function of a change at a state of the step. Not for redundant contacts.
+  double margin(const ContactChange& change, const std::vector<ContactRecord>& records, const VectorX& state);
+
+  /// N: the normal force of a contact at the end of a step in which `first` found no change.
+  double normalForceAtEnd(std::size_t contact, const std::vector<ContactRecord>& records) const {
+    return before_[contact][0] * records[contact].force;
+  }
+
+ private:
+  /// Of a contact, in the order of the kinds.
+  using EventFunctions = std::array<double, 4>;
+
+  Mechanism& mechanism() const { return island_.assembly.mechanism; }
+  Vec3 slidingDirectionAt(std::size_t contact, const VectorX& state) const;
+  double distanceFromNearest(std::size_t contact, const ContactRecord& record, const VectorX& state) const;
+  double flatnessOf(const ContactConstraint& rim, const VectorX& state) const;
+  void evaluate(const std::vector<ContactRecord>& records, const VectorX& state, std::vector<EventFunctions>& values);
+  void takeEvaluated(const std::vector<ContactRecord>& records, const VectorX& state,
+                     std::vector<EventFunctions>& values);
+  std::optional<ContactChange> firstBetween(const std::vector<ContactRecord>& records, double from, double to);
+  bool areForcesFeasible(const std::vector<ContactRecord>& records, const VectorX& state);
+  std::optional<double> firstInfeasible(const std::vector<ContactRecord>& records, double from, double to);
+  double locate(const ContactChange& change, const std::vector<ContactRecord>& records, double from, double marginFrom,
+                double to, double marginTo);
+
+  IslandState& island_;
+  double touchTolerance_;  // m
+  std::vector<BodyFrame> frames_;
+  VectorX derivative_, sample_;
+  std::vector<EventFunctions> before_, ahead_, after_, atEnd_;
+  double knownTime_ = NAN;  // s: of the values in before_, if a step without changes has ended there
+};
+
+}  // namespace cradle

@@ -1,0 +1,177 @@
+#include "simulate/events/contact_classification.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "simulate/events/contacts_on_meshes.h"
+#include "simulate/events/cylinder_rims.h"
+#include "simulate/events/sliding_friction.h"
+#include "simulate/events/slow_sliding.h"
+#include "simulate/plan/disjoint_sets.h"
+#include "simulate/plan/event_rate_limit.h"
+#include "simulate/thresholds.h"
+
+namespace cradle {
+namespace {
+
+using Index = Eigen::Index;
+using RecordGroup = std::vector<std::size_t>;  // records whose forces depend on each other
+
+constexpr double kUnloadedRatio = 1e-9;  // of the accelerations: a contact that takes less carries nothing
+constexpr double kReleasedRatio = 1e-6;  // the same when another is released: symmetric contacts are released together
+constexpr double kAccelerationRounding = 1e-14;  // of gravity
+constexpr double kStillRatio = 1e-7;             // of the accelerations: less is none
+constexpr double kSameMeshSide = 0.99;           // cosine between normals: a mesh may be touched on several sides
+constexpr double kRankRatio = 1e-9;              // of the largest pivot: less is none
+constexpr const char* kTips = "a cylinder tips over its rim";
+
+/// m/s: a contact that opens more slowly does not open.
+double stillSpeed(const Contact& contact, const IslandState& island) {
+  const double size = smallestSize(contact, island.assembly.radii);
+  return kLastBounceRatio * std::sqrt(island.assembly.mechanism.gravity.norm() * size) + kRestSpeedFloor;
+}
+
+/// The contacts that may be active, with what their velocities say of them.
+std::vector<ContactRecord> recordsOf(const ClassificationInput& input, const IslandState& island) {
+  std::vector<ContactRecord> records;
+  for (const Contact& contact : input.touching) {
+    if (!isAwake(contact, island.resting)) continue;
+    if (openingSpeed(contact, island.state) > stillSpeed(contact, island)) continue;
+    ContactRecord record{contact, island.assembly.geometry.pairs[contact.pair]};
+    const ContactRows rows = rowsOf(contact, island.state, input.frames);
+    const Vec3 sliding = tangentialVelocity(rows.place);
+    record.slides = sliding.norm() > kSlowestSliding;
+    if (record.slides) record.direction = sliding.normalized();
+    const PreviousContact* previous = previousAt(record, input.previous, input.frames, island);
+    if (previous && previous->isSlipping && !record.slides) record.slides = true, record.direction = previous->slipping;
+    records.push_back(record);
+  }
+  return records;
+}
+
+std::vector<RecordGroup> groupsOf(const std::vector<ContactRecord>& records, const Mechanism& mechanism) {
+  DisjointSets sets(mechanism.bodies.size());
+  for (const ContactRecord& record : records) sets.join(record.contact.bodyA, record.contact.bodyB);
+  forEachConstraint(mechanism.constraints, [&](int bodyA, int bodyB) { sets.join(bodyA, bodyB); });
+  std::vector<RecordGroup> groups(mechanism.bodies.size());
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const int first = sets.islandOf(records[i].contact.movingBody());
+    groups[static_cast<std::size_t>(first)].push_back(i);
+  }
+  std::erase_if(groups, [](const RecordGroup& group) { return group.empty(); });
+  return groups;
+}
+
+/// Whether the accelerations of a state derivative press no contact together by more than rounding.
+bool nothingCloses(const std::vector<ContactRows>& rows, const VectorX& derivative, double gravity) {
+  return std::all_of(rows.begin(), rows.end(), [&](const ContactRows& contact) {
+    return rateOf(contact.rows[2], derivative) + contact.rows[2].velocityProduct >= -kAccelerationRounding * gravity;
+  });
+}
+
+/// Marks statically indeterminate contacts: those of a group whose active rows have less than full rank. `delassus` is
+/// J M^-1 J^T of these rows. A fallback if there are too many of them to be solved at each evaluation.
+void countRows(const RecordGroup& group, const MatrixX& delassus, const Assembly& assembly,
+               std::vector<ContactRecord>& records, ContactFallback& fallback) {
+  Eigen::ColPivHouseholderQR<MatrixX> factor(delassus);
+  factor.setThreshold(kRankRatio);
+  const Index rank = factor.rank();
+  for (const std::size_t i : group) records[i].isRedundant = rank < delassus.rows();
+  if (delassus.rows() - rank <= kMaxRedundant && rank <= kMaxIndependent) return;
+  std::vector<const Contact*> contacts;
+  for (const std::size_t i : group) contacts.push_back(&records[i].contact);
+  fallback = fallbackAt("too many contacts press at once", contacts, assembly);
+}
+
+/// Logs a solution that is none to the tolerance: its forces classify the contacts all the same.
+void logUnsolved(const std::vector<const ContactRecord*>& records, double residual, IslandState& island) {
+  std::vector<int> bodies;
+  for (const ContactRecord* record : records) bodies.push_back(record->contact.movingBody());
+  island.log.recordCorrection(island.time, CorrectionKind::unsolvedContacts, bodies, residual);
+}
+
+/// What the forces and accelerations of a group make of its contacts.
+void classifyGroup(const RecordGroup& group, const ClassificationInput& input, ConstraintSolver& constraints,
+                   IslandState& island, std::vector<ContactRecord>& records, ContactFallback& fallback) {
+  const Mechanism& mechanism = island.assembly.mechanism;
+  std::vector<ContactRows> rows;
+  std::vector<const ContactRecord*> members;
+  for (const std::size_t i : group) {
+    rows.push_back(rowsOf(records[i].contact, island.state, input.frames));
+    members.push_back(&records[i]);
+  }
+  VectorX derivative;
+  island.equations.evaluate(island.state, derivative);
+  if (nothingCloses(rows, derivative, mechanism.gravity.norm())) return;
+  const ContactResponse response(rows, mechanism.bodies, input.frames, constraints);
+  const ContactSolution solution = solveContactForces(members, rows, response, derivative);
+  const double most =
+      std::max(response.accelerations(derivative).cwiseAbs().maxCoeff(), mechanism.gravity.norm());  // m/s^2
+  if (!(solution.residual <= kStillRatio * most)) logUnsolved(members, solution.residual, island);
+  const double still = stillAcceleration(island.scene.accuracy, island.scene.duration, most, solution.residual);
+  const double unloaded = (input.isReleasing ? kReleasedRatio : kUnloadedRatio) * most;
+  const MatrixX& delassus = response.delassus();
+  std::vector<Index> activeRows;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    ContactRecord& record = records[group[k]];
+    const Index at = 3 * static_cast<Index>(k);
+    const Vec3 acceleration = solution.velocities.segment<3>(at);
+    record.mass = 1 / delassus(at + 2, at + 2), record.force = most * record.mass;
+    record.isLoaded = solution.impulses[at + 2] > unloaded / delassus(at + 2, at + 2);
+    record.opens = !record.isLoaded && acceleration.z() > kStillRatio * most;
+    if (!record.isLoaded) continue;
+    if (!canLast(record.contact))  // with planes only rims are neither corners nor round
+      fallback =
+          fallbackAt(record.pair.againstPlane ? kTips : "edges touch and press", {&record.contact}, island.assembly);
+    const bool hasFriction = record.pair.material.staticFriction > 0;
+    record.sticks = hasFriction && !record.slides && acceleration.head<2>().norm() <= still;
+    if (hasFriction && !record.slides && !record.sticks) {
+      record.slides = true;
+      record.direction =
+          (acceleration.x() * rows[k].rows[0].linearA + acceleration.y() * rows[k].rows[1].linearA).normalized();
+    }
+    if (record.slides && slidesTooSlowly(record, acceleration.head<2>().norm(), most, island))
+      fallback = fallbackAt(kSlidesTooSlowly, {&record.contact}, island.assembly);
+    activeRows.push_back(at + 2);
+    if (record.sticks) activeRows.push_back(at), activeRows.push_back(at + 1);
+  }
+  if (!activeRows.empty()) countRows(group, delassus(activeRows, activeRows), island.assembly, records, fallback);
+}
+
+/// A corner stays a corner when the face beside it tips, but a cylinder rolls on over its rim. Rows keep points of a
+/// rim only as long as the cylinder stands or lies still, on two of them at least.
+bool tips(const ContactRecord& record, const std::vector<ContactRecord>& records, const IslandState& island) {
+  const ContactGeometry& geometry = island.assembly.geometry;
+  if (!record.isLoaded || !standsOnRim(geometry, record.contact)) return false;
+  const auto isBeside = [&](const ContactRecord& other) {
+    return other.contact.pair == record.contact.pair && standsOnRim(geometry, other.contact) &&
+           other.contact.normal.dot(record.contact.normal) > kSameMeshSide;
+  };
+  const auto carries = [&](const ContactRecord& other) { return isBeside(other) && other.isLoaded; };
+  const auto opens = [&](const ContactRecord& other) { return isBeside(other) && other.opens; };
+  return std::count_if(records.begin(), records.end(), carries) < 2 ||
+         std::any_of(records.begin(), records.end(), opens) ||
+         tippingSpeed(geometry, island.state, record.contact) > stillSpeed(record.contact, island);
+}
+
+}  // namespace
+
+ClassifiedContacts classifyContacts(const ClassificationInput& input, ConstraintSolver& constraints,
+                                    IslandState& island) {
+  ClassifiedContacts found;
+  std::vector<ContactRecord> records = recordsOf(input, island);
+  for (const RecordGroup& group : groupsOf(records, island.assembly.mechanism))
+    classifyGroup(group, input, constraints, island, records, found.fallback);
+  for (const ContactRecord& record : records)
+    if (tips(record, records, island)) found.fallback = fallbackAt(kTips, {&record.contact}, island.assembly);
+  for (const ContactRecord& record : records)
+    if (record.isLoaded && canLast(record.contact) &&
+        !isServedOnMesh(record, input.touchTolerance, input.frames, island))
+      found.fallback = fallbackAt("a body moves over the edges of a mesh", {&record.contact}, island.assembly);
+  for (const ContactRecord& record : records)
+    if (record.isLoaded) found.active.push_back(record);
+  return found;
+}
+
+}  // namespace cradle

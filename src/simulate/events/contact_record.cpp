@@ -1,0 +1,28 @@
+#include "simulate/events/contact_record.h"
+
+#include <algorithm>
+
+namespace cradle {
+
+ContactFallback fallbackAt(std::string_view reason, const std::vector<const Contact*>& contacts,
+                           const Assembly& assembly) {
+  return {reason, sceneBodiesOf(contacts, assembly)};
+}
+
+std::vector<int> sceneBodiesOf(const std::vector<const Contact*>& contacts, const Assembly& assembly) {
+  std::vector<int> bodies;
+  for (const Contact* contact : contacts) {
+    const auto [a, b] = bodiesOf(assembly, assembly.geometry.pairs[contact->pair]);
+    bodies.push_back(a), bodies.push_back(b);
+  }
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  return bodies;
+}
+
+bool isAwake(const Contact& contact, const RestingBodies& resting) {
+  const auto isUp = [&](int body) { return body != kFixed && !resting.isResting(body); };
+  return isUp(contact.bodyA) || isUp(contact.bodyB);
+}
+
+}  // namespace cradle

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "collision/separation.h"
+#include "simulate/assembly.h"
+#include "simulate/resting_bodies.h"
+
+namespace cradle {
+
+/// A contact whose bodies touch: how it moves and what it carries, as Coulomb's law on accelerations decides.
+struct ContactRecord {
+  Contact contact;  // at the instant of classification
+  ColliderPair pair;
+  bool slides = false;
+  Vec3 direction = Vec3::Zero();  // unit, world, of A's sliding relative to B; zero unless it slides
+  bool isLoaded = false;          // its normal force is above rounding: it is active
+  bool sticks = false;
+  bool opens = false;        // it carries nothing, and the accelerations open it
+  bool isRedundant = false;  // statically indeterminate: its forces are not unique
+  double mass = 1;           // kg, effective mass along the normal: 1 / W_nn
+  double force = 1;          // N, the unit of its event functions
+};
+
+/// Why contacts cannot be rows of the equations of motion, so that time stepping has to take over.
+struct ContactFallback {
+  std::string_view reason;  // empty: there is none
+  std::vector<int> bodies;  // of the scene, ascending
+};
+
+/// The reason with the scene bodies of these contacts. Bodies are named at once: a pair may be gone when it is told.
+ContactFallback fallbackAt(std::string_view reason, const std::vector<const Contact*>& contacts,
+                           const Assembly& assembly);
+
+/// Scene bodies of some contacts, ascending, each once.
+std::vector<int> sceneBodiesOf(const std::vector<const Contact*>& contacts, const Assembly& assembly);
+
+/// Whether a body at the contact moves and does not rest.
+bool isAwake(const Contact& contact, const RestingBodies& resting);
+
+}  // namespace cradle

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "collision/separation.h"
+
+namespace cradle {
+
+constexpr double kFlatRim = 1e-3;  // sine of a disc's tilt: flatter, its lowest point runs too fast around its rim
+
+/// A tilted cylinder on a plane touches by the lowest point of a disc, which rolls along its rim: moves the contact
+/// there. Other contacts stay as they are.
+void moveToRim(const ContactGeometry& geometry, const VectorX& state, Contact& contact);
+
+/// Whether both contacts are the lowest point of one rim.
+bool isSameRim(const Contact& one, const Contact& other);
+
+/// Whether a cylinder touches by points of its rims or its side that stay the same as long as it stands or lies.
+bool standsOnRim(const ContactGeometry& geometry, const Contact& contact);
+
+/// m/s, at its rim: how fast the cylinder of a contact rotates out of the position in which it stands or lies.
+double tippingSpeed(const ContactGeometry& geometry, const VectorX& state, const Contact& contact);
+
+}  // namespace cradle

@@ -1,0 +1,222 @@
+#include "simulate/events/event_impacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/invariants.h"
+#include "impact/contact_impulse.h"
+#include "impact/frictional_impact.h"
+#include "impact/generalized_reflections.h"
+#include "impact/impact_energy.h"
+#include "simulate/thresholds.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kStandstillRatio = 1e-12;   // of the fastest speed at an impact: what is left is rounding
+constexpr double kSequenceRatio = 1e-9;      // of the time of a fall by the smallest size: as long it may take always
+constexpr double kGapRoundingRatio = 4e-12;  // of the smallest size: beyond the dead band, a gap is one ...
+constexpr double kSphereGapRatio = 2e-13;    // the same, of spheres: differences of two lengths
+constexpr double kGapPlaceRounding = 4e-15;  // ... unless the places around it are rounded that coarsely
+constexpr double kBounceOfAccuracy = 1e-2;   // lowest rebound, of sqrt(a size): of the accuracy ...
+constexpr double kBounceOfSquare = 100;      // ... or of its square, if that is more: 5e-5 of the size at the coarsest
+
+/// m/s: of the faster of the two bodies' centres.
+double contactSpeed(const Contact& contact, const VectorX& state) {
+  double speed = 0;
+  for (const int body : {contact.bodyA, contact.bodyB})
+    if (body != kFixed) speed = std::max(speed, linearVelocity(state, body).norm());
+  return speed;
+}
+
+}  // namespace
+
+/// Impacts of one contact in a sequence are one event.
+void EventImpacts::addImpulse(std::size_t contact, double impulse, std::vector<ContactImpulse>& impulses) {
+  if (!(impulse > 0)) return;
+  const auto known = std::find_if(impulses.begin(), impulses.end(),
+                                  [contact](const ContactImpulse& other) { return other.contact == contact; });
+  if (known == impulses.end())
+    impulses.push_back({contact, impulse});
+  else
+    known->impulse += impulse;
+}
+
+double EventImpacts::resolve(const std::optional<std::size_t>& closingPair, std::vector<Contact>& touching) {
+  double fastest = 0, zenoTime = 0;
+  for (const Contact& contact : touching) fastest = std::max(fastest, contactSpeed(contact, island_.state));
+  const double still = kStandstillRatio * fastest;
+  const auto closes = [&](const Contact& contact) { return openingSpeed(contact, island_.state) < -still; };
+  if (std::none_of(touching.begin(), touching.end(), closes)) return zenoTime;
+  const std::vector<Contact> near = contactsInReach(touching);
+  const SequenceLimits limits = limitsOf(near, still);
+  ImpactSequence sequence(near, closingPair, island_.assembly.radii, limits, island_.state);
+  std::vector<ContactImpulse> impulses;
+  if (!sequence.beginsNow() && ropes_.pullStretched(island_.time, island_.state) && constraints_.hasConstraints())
+    constraints_.factorize(island_.state);
+  while (sequence.next(island_.state)) {
+    zenoTime = std::max(zenoTime, resolveNext(sequence, still, impulses));
+    sequence.finishImpact(island_.state);
+  }
+  for (const ContactImpulse& struck : impulses)
+    island_.log.recordContact(island_.time, EventKind::impact, near[struck.contact], struck.impulse);
+  for (const Contact& contact : near) rest_.wakeStruck(contact);
+  const double constant = energyConstant(island_.assembly.mechanism, island_.state);
+  if (sequence.moveBodies(island_.state)) {
+    bookNumerical(constant, island_.assembly.mechanism, island_.state);
+    if (constraints_.hasConstraints()) constraints_.factorize(island_.state);
+    touching = findTouching(island_, constraints_, tolerances_, std::nullopt);
+  }
+  // A gap that closes later is an event of its own.
+  std::erase_if(touching,
+                [&](const Contact& contact) { return contact.separation > limits.gapRounding && closes(contact); });
+  return zenoTime;
+}
+
+/// The touching contacts, and those that may come to touch while a sequence of impacts lasts.
+std::vector<Contact> EventImpacts::contactsInReach(const std::vector<Contact>& touching) {
+  std::vector<Contact> near = touching, farther;
+  if (!(tolerances_.reach > tolerances_.touch)) return near;
+  findContacts(island_.assembly.geometry, island_.state, tolerances_.reach, farther);
+  eraseImmobile(ImpulseResponse(island_.assembly.mechanism.bodies, constraints_), island_.state, farther);
+  for (const Contact& contact : farther)
+    if (contact.separation > tolerances_.touch) near.push_back(contact);
+  return near;
+}
+
+bool EventImpacts::isOfSphere(const Contact& contact) const {
+  const ContactGeometry& geometry = island_.assembly.geometry;
+  const ColliderPair& pair = geometry.pairs[contact.pair];
+  return geometry.colliders[pair.a].isSphere() || (!pair.againstPlane && geometry.colliders[pair.b].isSphere());
+}
+
+/// A sequence lasts as long as forces do not count: max(1e-9, reach / size) sqrt(size / a), a the largest acceleration
+/// at its contacts.
+SequenceLimits EventImpacts::limitsOf(const std::vector<Contact>& near, double stillSpeed) {
+  double places = 0;  // m
+  for (const Contact& contact : near)
+    places = std::max(places, kGapPlaceRounding * contact.point.cwiseAbs().maxCoeff());
+  const double size = tolerances_.size;
+  SequenceLimits limits{
+      {}, std::max(kGapRoundingRatio * size, places), tolerances_.touch, tolerances_.reach, INFINITY, stillSpeed};
+  for (const Contact& contact : near)
+    limits.gapErrors.push_back(isOfSphere(contact) ? std::max(kSphereGapRatio * size, places) : limits.gapRounding);
+  const auto isClosed = [&](const Contact& contact) { return contact.separation <= limits.gapRounding; };
+  if (std::all_of(near.begin(), near.end(), isClosed)) return limits;
+  VectorX derivative;
+  island_.equations.evaluate(island_.state, derivative);
+  double strongest = 0;  // m/s^2
+  for (const Contact& contact : near)
+    strongest = std::max(strongest, std::abs(openingAcceleration(contact, island_.state, derivative)));
+  limits.duration = std::max(kSequenceRatio, tolerances_.reach / size) * std::sqrt(size / strongest);
+  return limits;
+}
+
+/// Impact islands: bodies that an impact at one of them may move.
+DisjointSets EventImpacts::findImpactIslands(const std::vector<Contact>& contacts) const {
+  DisjointSets islands(island_.assembly.mechanism.bodies.size());
+  for (const Contact& contact : contacts) islands.join(contact.bodyA, contact.bodyB);
+  forEachConstraint(island_.assembly.mechanism.constraints, [&](int bodyA, int bodyB) { islands.join(bodyA, bodyB); });
+  return islands;
+}
+
+/// One impact of a sequence: all its members, and all ropes that cannot lengthen, take part. Returns the Zeno time (s).
+double EventImpacts::resolveNext(const ImpactSequence& sequence, double still, std::vector<ContactImpulse>& impulses) {
+  std::vector<Contact> members;
+  for (const std::size_t i : sequence.members()) members.push_back(sequence.contacts()[i]);
+  std::vector<ImpactContact> ropes = ropes_.beginImpact(island_.state);
+  if (!ropes.empty() && constraints_.hasConstraints()) constraints_.factorize(island_.state);
+  DisjointSets islands = findImpactIslands(members);
+  for (const ImpactContact& rope : ropes) islands.join(rope.contact.bodyA, rope.contact.bodyB);
+  std::vector<char> isStruck(island_.assembly.mechanism.bodies.size(), 0);
+  for (const Contact& contact : members)
+    if (openingSpeed(contact, island_.state) < -still)
+      isStruck[static_cast<std::size_t>(islands.islandOf(contact.movingBody()))] = 1;
+  double zenoTime = 0;
+  for (std::size_t island = 0; island < isStruck.size(); ++island)
+    if (isStruck[island])
+      zenoTime = std::max(zenoTime, resolveIsland(islands, static_cast<int>(island), sequence, ropes, impulses));
+  ropes_.endImpact(island_.time, ropes, island_.state);
+  if (!ropes.empty() && constraints_.hasConstraints()) constraints_.factorize(island_.state);
+  for (const ImpactContact& rope : ropes) rest_.wakeStruck(rope.contact);
+  return zenoTime;
+}
+
+/// The impact of one impact island. Sets the impulses of its ropes. Returns the Zeno time (s).
+double EventImpacts::resolveIsland(const DisjointSets& islands, int island, const ImpactSequence& sequence,
+                                   std::vector<ImpactContact>& ropes, std::vector<ContactImpulse>& impulses) {
+  const auto isIn = [&](const Contact& contact) { return islands.islandOf(contact.movingBody()) == island; };
+  std::vector<ImpactContact> impacts;
+  std::vector<std::size_t> contacts;
+  for (const std::size_t i : sequence.members()) {
+    const Contact& contact = sequence.contacts()[i];
+    if (!isIn(contact)) continue;
+    ContactMaterial material = island_.assembly.geometry.pairs[contact.pair].material;
+    if (sequence.isCollapse()) material.restitution = 0;
+    impacts.push_back({contact, material, 0, Vec3::Zero()});
+    contacts.push_back(i);
+  }
+  for (const ImpactContact& rope : ropes)
+    if (isIn(rope.contact)) impacts.push_back(rope);
+  const double zenoTime = resolveImpact(impacts);
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    addImpulse(contacts[i], impacts[i].contact.normal.dot(impacts[i].impulse), impulses);
+  std::size_t next = contacts.size();
+  for (ImpactContact& rope : ropes)
+    if (isIn(rope.contact)) rope.impulse = impacts[next++].impulse;
+  return zenoTime;
+}
+
+/// One impact, without the rebounds that end a Zeno sequence. Returns the Zeno time (s).
+double EventImpacts::resolveImpact(std::vector<ImpactContact>& impacts) {
+  VectorX& state = island_.state;
+  const VectorX approach = state;
+  const ImpulseResponse response(island_.assembly.mechanism.bodies, constraints_);
+  const bool hasFriction = std::any_of(impacts.begin(), impacts.end(), [](const ImpactContact& impact) {
+    return impact.material.staticFriction > 0 || impact.material.dynamicFriction > 0;
+  });
+  ImpactFaults faults;
+  const auto solve = [&] {
+    if (hasFriction)
+      faults = resolveFrictionalImpact(impacts, response, state);
+    else
+      resolveReflections(impacts, response, state);
+  };
+  solve();
+  const double zenoTime = endZenoSequence(approach, impacts);
+  if (zenoTime > 0) {
+    state = approach;
+    for (ImpactContact& impact : impacts) impact.impulse.setZero();
+    solve();
+  }
+  island_.log.recordFaults(island_.time, impacts, faults);
+  bookImpact(impacts, island_.assembly.mechanism.bodies, approach, state);
+  bookNumerical(energyConstant(island_.assembly.mechanism, approach), island_.assembly.mechanism, state);
+  return zenoTime;
+}
+
+/// Gives contacts whose rebound is too low to be seen no rebound: their bounces accumulate at the Zeno time 2 v / (a (1
+/// - e)) (s) from now, v the speed of the rebound, a the acceleration of closing, e the restitution. Returns the latest
+/// of these times, 0 if there is no such contact. `approach` is the state before the impact.
+double EventImpacts::endZenoSequence(const VectorX& approach, std::vector<ImpactContact>& impacts) {
+  const VectorX& state = island_.state;
+  const double accuracy = island_.scene.accuracy;
+  const double lastBounce =
+      std::max({kLastBounceRatio, kBounceOfAccuracy * accuracy, kBounceOfSquare * accuracy * accuracy});
+  VectorX derivative;
+  double zenoTime = 0;
+  for (ImpactContact& impact : impacts) {
+    const double speed = openingSpeed(impact.contact, state), restitution = impact.material.restitution;
+    const bool rebounds = openingSpeed(impact.contact, approach) < 0 && speed > 0 && restitution < 1;
+    if (!rebounds || restitution == 0) continue;
+    if (derivative.size() == 0) island_.equations.evaluate(state, derivative);
+    const double closing = -openingAcceleration(impact.contact, state, derivative);
+    const double size = smallestSize(impact.contact, island_.assembly.radii);
+    if (!(closing > 0) || speed > lastBounce * std::sqrt(closing * size)) continue;
+    impact.restSpeed = INFINITY;
+    zenoTime = std::max(zenoTime, 2 * speed / (closing * (1 - restitution)));
+  }
+  return zenoTime;
+}
+
+}  // namespace cradle

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "impact/pairwise.h"
+#include "simulate/events/coming_to_rest.h"
+#include "simulate/events/impact_sequence.h"
+#include "simulate/events/touching_contacts.h"
+#include "simulate/island_state.h"
+#include "simulate/plan/disjoint_sets.h"
+#include "simulate/rope_events.h"
+
+namespace cradle {
+
+/// Impacts at an event: contacts that close rebound, and so do contacts that these make close, in the order of their
+/// gaps. Ropes at their length take part.
+class EventImpacts {
+ public:
+  /// Keeps references to all four. `constraints` must be factorised for the island's state at each call, and is so
+  /// after it.
+  EventImpacts(IslandState& island, RopeEvents& ropes, ConstraintSolver& constraints, ComingToRest& rest,
+               const TouchTolerances& tolerances)
+      : island_(island), ropes_(ropes), constraints_(constraints), rest_(rest), tolerances_(tolerances) {}
+
+  /// Resolves the impacts of the contacts in `touching`; `closingPair` is the pair whose gap an event has closed.
+  /// Changes velocities of the island's state, and by rounding positions; wakes struck bodies, records impacts and
+  /// books their energy. Leaves in `touching` the contacts that touch after that and do not close. Returns the Zeno
+  /// time (s): how long the rebounds that were left out would take.
+  double resolve(const std::optional<std::size_t>& closingPair, std::vector<Contact>& touching);
+
+ private:
+  /// The impulse of a contact in all impacts of a sequence.
+  struct ContactImpulse {
+    std::size_t contact = 0;  // of ImpactSequence::contacts()
+    double impulse = 0;       // N s, along the normal
+  };
+  static void addImpulse(std::size_t contact, double impulse, std::vector<ContactImpulse>& impulses);
+  std::vector<Contact> contactsInReach(const std::vector<Contact>& touching);
+  bool isOfSphere(const Contact& contact) const;
+  SequenceLimits limitsOf(const std::vector<Contact>& near, double stillSpeed);
+  DisjointSets findImpactIslands(const std::vector<Contact>& contacts) const;
+  double resolveNext(const ImpactSequence& sequence, double still, std::vector<ContactImpulse>& impulses);
+  double resolveIsland(const DisjointSets& islands, int island, const ImpactSequence& sequence,
+                       std::vector<ImpactContact>& ropes, std::vector<ContactImpulse>& impulses);
+  double resolveImpact(std::vector<ImpactContact>& impacts);
+  double endZenoSequence(const VectorX& approach, std::vector<ImpactContact>& impacts);
+
+  IslandState& island_;
+  RopeEvents& ropes_;
+  ConstraintSolver& constraints_;
+  ComingToRest& rest_;
+  TouchTolerances tolerances_;
+};
+
+}  // namespace cradle

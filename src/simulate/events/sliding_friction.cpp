@@ -1,0 +1,79 @@
+// With W the Delassus operator, g the free accelerations and F(lambda_n) the friction of sliding contacts, each round
+// solves the frictional contact problem of W z + (g + W F) with F from the normal forces of the round before. Where
+// friction and normal forces drive each other these rounds converge slowly, or not at all, so that they are
+// accelerated by Anderson mixing (D. G. Anderson, 1965). Where friction jams (P. Painleve, 1895) there is no limit.
+
+#include "simulate/events/sliding_friction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/anderson_mixing.h"
+
+namespace cradle {
+namespace {
+
+constexpr int kMaxFrictionRounds = 200;       // of normal forces from friction, and friction from these
+constexpr int kPlainFrictionRounds = 10;      // before they are mixed: most end sooner
+constexpr int kMaxRoundsInVain = 10;          // without progress: in each of these ...
+constexpr double kProgress = 0.9;             // ... the change is no smaller a fraction of the smallest
+constexpr double kFrictionConverged = 1e-10;  // of the largest normal force
+
+/// N: the normal forces of those that slide, 0 for the others.
+VectorX slidingNormalForces(const std::vector<const ContactRecord*>& records, const VectorX& forces) {
+  VectorX normals = VectorX::Zero(std::ssize(records));
+  for (Eigen::Index k = 0; k < normals.size(); ++k)
+    if (records[static_cast<std::size_t>(k)]->slides) normals[k] = forces[3 * k + 2];
+  return normals;
+}
+
+/// N: friction of those that slide, in the rows of all, for these normal forces.
+VectorX slidingFriction(const std::vector<const ContactRecord*>& records, const std::vector<ContactRows>& rows,
+                        const VectorX& normals) {
+  VectorX friction = VectorX::Zero(3 * normals.size());
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    if (!records[k]->slides) continue;
+    const Eigen::Index contact = static_cast<Eigen::Index>(k);
+    const double size = records[k]->pair.material.dynamicFriction * normals[contact];
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
+      friction[3 * contact + static_cast<Eigen::Index>(i)] = -size * records[k]->direction.dot(rows[k].rows[i].linearA);
+  }
+  return friction;
+}
+
+}  // namespace
+
+ContactSolution solveContactForces(const std::vector<const ContactRecord*>& records,
+                                   const std::vector<ContactRows>& rows, const ContactResponse& response,
+                                   const VectorX& derivative) {
+  const VectorX free = response.accelerations(derivative);
+  std::vector<double> frictions;
+  bool slides = false;
+  for (const ContactRecord* record : records) {
+    frictions.push_back(record->slides ? 0 : record->pair.material.staticFriction);
+    slides = slides || (record->slides && record->pair.material.dynamicFriction > 0);
+  }
+  VectorX normals = VectorX::Zero(std::ssize(records)), friction = VectorX::Zero(free.size());
+  ContactSolution solution;
+  AndersonMixing mixing;
+  double least = INFINITY;
+  int roundsInVain = 0;
+  for (int round = 0; round < kMaxFrictionRounds; ++round) {
+    solution = solveFrictionalContact(response.delassus(), free + response.delassus() * friction, frictions,
+                                      solution.impulses);
+    if (!slides) break;
+    const VectorX found = slidingNormalForces(records, solution.impulses), next = slidingFriction(records, rows, found);
+    const double change = (next - friction).cwiseAbs().maxCoeff();
+    friction = next;
+    if (change <= kFrictionConverged * found.maxCoeff()) break;
+    roundsInVain = change < kProgress * least ? 0 : roundsInVain + 1;
+    least = std::min(least, change);
+    if (roundsInVain == kMaxRoundsInVain) break;
+    normals = round < kPlainFrictionRounds ? found : VectorX(mixing.next(normals, found).cwiseMax(0));
+    if (round >= kPlainFrictionRounds) friction = slidingFriction(records, rows, normals);
+  }
+  solution.impulses += friction;
+  return solution;
+}
+
+}  // namespace cradle

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "impact/frictional_contact.h"
+#include "simulate/contact_response.h"
+#include "simulate/events/contact_record.h"
+
+namespace cradle {
+
+/// Forces (N) and relative accelerations of contacts by Coulomb's law, components (t1, t2, n) each, for bodies that
+/// have the accelerations in `derivative` without them. A contact that slides has the friction -mu lambda_n d, d its
+/// direction of sliding; the others have static friction.
+ContactSolution solveContactForces(const std::vector<const ContactRecord*>& records,
+                                   const std::vector<ContactRows>& rows, const ContactResponse& response,
+                                   const VectorX& derivative);
+
+}  // namespace cradle

@@ -1,0 +1,55 @@
+// How slow sliding may become. Notation: v the speed of sliding, a its acceleration, mu the dynamic friction, g the
+// largest acceleration at contacts, A the accuracy asked, T the duration of the run, e = A / 10 the error of velocities
+// that steps allow.
+//
+// The error e turns the friction by the angle e / v, which takes mu g (e / v)^2 / 2 of the deceleration, and half of
+// that times T^2 of the way. That exceeds A below v = T sqrt(mu g A) / 20. A sphere is exempt, as it soon rolls.
+//
+// Friction turns the direction of sliding at a rate of mu g / v, which steps of some 6 v / (mu g) follow at the most:
+// sliding below kTurningTime mu g costs too much.
+//
+// A contact that starts from rest with the acceleration a passes through v = e sqrt(mu g / (2 a)), below which these
+// errors outweigh a. That takes the time v / a: of the accuracy it costs T / 30 sqrt(mu g / (2 a)) at A = 1e-4
+// (measured: a block on a slope), and less at finer accuracies. Below a = mu g / 50 the contact may never get through,
+// as errors have time to grow to e.
+
+#include "simulate/events/slow_sliding.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/contact_rows.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kTurningTime = 2e-5;    // s: friction that turns sliding as fast costs 4 s of CPU a second
+constexpr double kCreepRatio = 0.02;     // of mu g: slower acceleration from rest creeps
+constexpr double kCreepOfAccuracy = 50;  // 1/(m s^2), of mu g T^2 A: the same at fine accuracies
+
+/// m/s: of the surfaces along each other.
+double slidingSpeed(const Contact& contact, const VectorX& state) {
+  const Vec3 velocity = relativeVelocity(contact, state);
+  return (velocity - contact.normal.dot(velocity) * contact.normal).norm();
+}
+
+}  // namespace
+
+bool slidesTooSlowly(const ContactRecord& record, double acceleration, double largest, const IslandState& island) {
+  const double friction = record.pair.material.dynamicFriction * largest;  // m/s^2: mu g
+  const double time = island.scene.duration, accuracy = island.scene.accuracy;
+  const std::vector<Collider>& colliders = island.assembly.geometry.colliders;
+  const bool rolls =
+      colliders[record.pair.a].isSphere() || (!record.pair.againstPlane && colliders[record.pair.b].isSphere());
+  const double slowest = std::max(rolls ? 0 : time * std::sqrt(friction * accuracy) / 20, kTurningTime * friction);
+  const double speed = slidingSpeed(record.contact, island.state);
+  const double creeping = friction * std::min(kCreepRatio, kCreepOfAccuracy * time * time * accuracy);  // m/s^2
+  const double passed = accuracy * std::sqrt(friction / (2 * std::max(acceleration, creeping)));  // m/s: ten times v
+  return speed + acceleration * time < slowest || (!rolls && speed < passed && acceleration < creeping);
+}
+
+bool isDirectionTurnedFast(const ContactRecord& record, double speed, double normal) {
+  return speed < kTurningTime * record.pair.material.dynamicFriction * normal / record.mass;
+}
+
+}  // namespace cradle

@@ -1,0 +1,76 @@
+#include "simulate/steps/contact_set.h"
+
+#include <map>
+#include <utility>
+
+#include "simulate/plan/disjoint_sets.h"
+#include "simulate/rope_events.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kOverlapRatio = 1e-9;  // of the smallest body's size: deeper overlaps are taken out
+
+}  // namespace
+
+ContactSet::ContactSet(const Assembly& assembly, const std::vector<Contact>& contacts,
+                       const std::vector<const RopeLimit*>& ropes, const VectorX& before)
+    : assembly_(assembly), overlapTolerance_(kOverlapRatio * smallestSize(assembly.geometry)), contacts_(contacts) {
+  if (contacts.empty()) return;
+  for (const RopeLimit* rope : ropes) {
+    const ImpactContact contact = RopeEvents::contactOf(*rope, before);
+    contacts_.push_back(contact.contact);
+    ropes_.push_back(rope), ropeMaterials_.push_back(contact.material);
+  }
+}
+
+const ContactMaterial& ContactSet::materialOf(std::size_t member) const {
+  if (member >= firstRope()) return ropeMaterials_[member - firstRope()];
+  return assembly_.geometry.pairs[contacts_[member].pair].material;
+}
+
+/// Whether the member is a contact with a fixed plane without friction.
+bool ContactSet::isOnSmoothPlane(std::size_t member) const {
+  if (ropeOf(member) || materialOf(member).staticFriction > 0 || materialOf(member).dynamicFriction > 0) return false;
+  return assembly_.geometry.pairs[contacts_[member].pair].againstPlane;
+}
+
+std::vector<StepGroup> ContactSet::findGroups() const {
+  DisjointSets sets(assembly_.mechanism.bodies.size());
+  std::vector<char> isConstrained(assembly_.mechanism.bodies.size(), 0), isConstrainedToFixed = isConstrained;
+  forEachConstraint(assembly_.mechanism.constraints, [&](int bodyA, int bodyB) {
+    sets.join(bodyA, bodyB);
+    for (const auto& [body, other] : {std::pair(bodyA, bodyB), {bodyB, bodyA}}) {
+      if (body == kFixed) continue;
+      isConstrained[static_cast<std::size_t>(body)] = 1;
+      if (other == kFixed) isConstrainedToFixed[static_cast<std::size_t>(body)] = 1;
+    }
+  });
+  for (const Contact& contact : contacts_) sets.join(contact.bodyA, contact.bodyB);
+  std::map<int, StepGroup> groups;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const Contact& contact = contacts_[i];
+    StepGroup& group = groups[sets.islandOf(contact.movingBody())];
+    group.members.push_back(i);
+    group.contacts.push_back(contact);
+    if (contact.bodyA != kFixed && contact.bodyB != kFixed) continue;
+    if (isOnSmoothPlane(i))
+      hinderByPlane(contact.normal, group.moved.kept);
+    else
+      group.moved.kept.resize(6, 0);
+  }
+  for (std::size_t body = 0; body < isConstrained.size(); ++body)
+    if (const auto group = groups.find(sets.islandOf(static_cast<int>(body))); group != groups.end()) {
+      group->second.moved.bodies.push_back(static_cast<int>(body));
+      if (isConstrainedToFixed[body]) group->second.moved.kept.resize(6, 0);
+      group->second.isConstrained = group->second.isConstrained || isConstrained[body];
+    }
+  std::vector<StepGroup> ordered;
+  for (auto& [firstBody, group] : groups) {
+    group.firstBody = firstBody;
+    ordered.push_back(std::move(group));
+  }
+  return ordered;
+}
+
+}  // namespace cradle

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "impact/dense_contact_problem.h"
+#include "impact/sparse_contact_problem.h"
+#include "simulate/corrections.h"
+#include "simulate/steps/contact_set.h"
+
+namespace cradle {
+
+/// What had to be done to a step beside the laws of contact.
+struct SteppingFault {
+  CorrectionKind kind;
+  std::vector<int> bodies;  // moving
+  double amount;            // in the unit of its kind
+};
+
+/// clampEnergy, with a fault if that took energy.
+void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state,
+                 std::vector<SteppingFault>& faults);
+
+/// A contact that took part in a step.
+struct SteppedContact {
+  Contact contact;              // at the step's start
+  Vec3 impulse = Vec3::Zero();  // N s, world, on B
+  bool isImpact = false;        // it closed faster than accelerations explain
+};
+
+/// The contacts of a step before, with which iterations begin.
+struct StepMemory {
+  std::vector<SteppedContact> contacts;
+  std::vector<Vec3> slips;  // m/s, world: velocities of the contacts with De Saxce's correction
+  double ratio = 1;         // of impulses now to those of that step, if forces last
+};
+
+/// Numbers of a frictional contact problem (frictional_contact.h): free velocities less the speeds that must remain,
+/// and a friction for each contact.
+struct ContactProblem {
+  VectorX free;  // m/s, components (t1, t2, n) of each contact
+  std::vector<double> frictions;
+  bool hasRebounds = false;
+};
+
+/// The frictional contact problem of one group after the other: dense where constraints act on the group or contacts
+/// are few, else block-sparse. It remembers the step before for warm starts.
+class GroupProblem {
+ public:
+  /// Keeps a reference to `assembly`.
+  explicit GroupProblem(const Assembly& assembly)
+      : assembly_(assembly), constraints_(assembly.mechanism.constraints, assembly.mechanism.bodies) {}
+
+  /// The constraints of the bodies, factorised for the state of the last `factorize`.
+  ConstraintSolver& constraints() { return constraints_; }
+  const ConstraintSolver& constraints() const { return constraints_; }
+  void factorize(const VectorX& state) {
+    if (constraints_.hasConstraints()) constraints_.factorize(state);
+  }
+
+  void warmStartFrom(StepMemory memory) { memory_ = std::move(memory); }
+
+  /// Takes a group whose contacts are where `contacts` are now, and bodies where they are in `state`, for which
+  /// constraints must be factorised.
+  void set(const StepGroup& group, const std::vector<Contact>& contacts, const VectorX& state);
+  void set(const StepGroup& group, const VectorX& state) { set(group, group.contacts, state); }
+
+  /// World from the axes (t1, t2, n) of a contact of the group.
+  const Mat3& axes(std::size_t contact) const { return sparse_.axes(contact); }
+
+  /// m/s: of the contacts, for the bodies' velocities in `state`.
+  VectorX velocitiesIn(const VectorX& state) const { return sparse_.velocitiesIn(state); }
+
+  /// Adds to the bodies' velocities in `state` what impulses (N s) give.
+  void apply(const VectorX& impulses, VectorX& state) const {
+    dense_ ? dense_->apply(impulses, state) : sparse_.apply(impulses, state);
+  }
+
+  /// The inverse mass along a contact's normal, as a fraction of its value without constraints.
+  double mobility(std::size_t contact) const { return dense_ ? dense_->leverage(contact) : 1; }
+
+  /// Impulses (N s) that solve the problem for the group that was set; the best that were found, with a fault, if none
+  /// do.
+  VectorX solve(const StepGroup& group, const ContactProblem& problem, std::vector<SteppingFault>& faults);
+
+  /// The same without friction, memory and faults: of few contacts to rounding, of many to `tolerance` (m/s).
+  VectorX solveFrictionless(const VectorX& free, double tolerance);
+
+  /// Iterations of ADMM and interior points so far.
+  long iterations() const { return iterations_; }
+
+ private:
+  bool isSolvedDensely() const;
+  MatrixX delassus() const { return dense_ ? dense_->delassus() : sparse_.delassus(); }
+  VectorX solveDensely(const StepGroup& group, const ContactProblem& problem, std::vector<SteppingFault>& faults) const;
+  WarmStart warmStartOf(const StepGroup& group) const;
+
+  const Assembly& assembly_;
+  ConstraintSolver constraints_;
+  std::vector<Contact> contacts_;  // of the group
+  SparseContactProblem sparse_;
+  std::optional<DenseContactProblem> dense_;  // of a group with constraints
+  StepMemory memory_;
+  std::map<int, double> penalties_;  // of ADMM, of each group's first body
+  long iterations_ = 0;
+};
+
+}  // namespace cradle
