@@ -46,7 +46,7 @@ void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly)
   }
 }
 
-/// Calls add(link, anchorA, anchorB) for the links that hold a body of the island.
+/// Calls add(link, anchorA, anchorB) for the links that are attached to a body of the island.
 template <class Links, class Add>
 void forEachLink(const Links& links, const Scene& scene, const std::vector<int>& sceneBodies, const Add& add) {
   for (const auto& link : links) {
@@ -148,7 +148,7 @@ void excludeJoined(const Scene& scene, Assembly& assembly) {
   }
 }
 
-/// Contact that cannot be computed is not looked for, but must not come about.
+/// Contact that cannot be computed is not searched for, but must not come about.
 void excludeUnsolved(ContactGeometry& geometry) {
   const auto isSolved = [](const Collider& collider) { return canSolveContact(collider, &collider); };
   if (std::all_of(geometry.colliders.begin(), geometry.colliders.end(), isSolved)) return;

@@ -18,11 +18,11 @@ constexpr double kPlaceRounding = 64 * std::numeric_limits<double>::epsilon();  
 constexpr double kTouchingGap = 1e-8;       // of a size: gaps are closed that are no wider
 constexpr double kFinestTolerance = 1e-13;  // of a component in a step: finer tolerances are not kept
 constexpr double kCalmRatio = 0.1;          // of what stops a run: before, the motion is still the scene's own
-constexpr double kSafeRotation = 0.1;       // rad a step: RK4 is then right to 1e-7 a step; slower turns are no cause
-constexpr double kOverwhelming = 1e6;       // times all weights and springs: nothing else moves its body
-constexpr double kUnseenFall = 0.01;        // of a body's size: bodies that rattle at rest may have as much of energy
-constexpr double kPlainAcceleration = 1;    // m/s^2: of weights where there is no gravity
-constexpr double kCollapsed = 1e-3;         // of its rest length: a spring without direction
+constexpr double kSafeRotation = 0.1;     // rad a step: RK4 is then right to 1e-7 a step; slower rotations are no cause
+constexpr double kOverwhelming = 1e6;     // times all weights and springs: nothing else moves its body
+constexpr double kUnseenFall = 0.01;      // of a body's size: bodies that rattle at rest may have as much of energy
+constexpr double kPlainAcceleration = 1;  // m/s^2: of weights where there is no gravity
+constexpr double kCollapsed = 1e-3;       // of its rest length: a spring without direction
 
 /// What an error of 1 + |y| in each component y of a state can change of its energy (J).
 double energySensitivity(const Mechanism& mechanism, const VectorX& state) {
@@ -68,7 +68,7 @@ double explainedConstant(const Mechanism& mechanism, const VectorX& state) {
   return energyConstant(mechanism, state) - numericalEnergy(state);
 }
 
-/// Angle (rad) by which the line between two attachments turns in a time.
+/// Angle (rad) by which the line between two attachments rotates in a time.
 double rotationOf(const Attachment& anchorA, const Attachment& anchorB, const VectorX& state, double time) {
   const AttachmentMotion a = motionOf(anchorA, state), b = motionOf(anchorB, state);
   const Vec3 line = a.position - b.position;
@@ -224,7 +224,7 @@ std::string EnergyGuard::cause(const VectorX& state) const {
                      method_.name, method_.timeStep);
 }
 
-/// The rod, joint or body that turns farthest in a step, if that is too far.
+/// The rod, joint or body that rotates farthest in a step, if that is too far.
 std::string EnergyGuard::fastestRotation(const VectorX& state) const {
   const double step = method_.timeStep;
   double most = kSafeRotation;

@@ -96,7 +96,7 @@ LocalSurface surfaceAt(const Collider& collider, const Vec3& point, const Vec3& 
   return {squareOf(tangent), isSide ? Mat3(Mat3::Zero()) : squareOf(tangent.cross(normal))};
 }
 
-/// A fixed surface that a body touches where a joint holds it.
+/// A fixed surface that a body touches at the anchor of a joint.
 struct TouchedSurface {
   Vec3 normal;               // unit, world, towards the body
   LocalSurface shape;        // world
@@ -135,13 +135,13 @@ std::vector<TouchedSurface> surfacesTouchedAt(const Assembly& assembly, std::siz
   return surfaces;
 }
 
-/// Turns that two surfaces forbid which touch where a joint holds them. One that tilts the normal n by a small t across
-/// it (t = turn x n) makes them overlap by t (K_a + K_b)^-1 t / 2, K their curvatures: nothing where one of them is
-/// sharp in the direction of t. Where both are flat along a line, its ends overlap at once.
+/// Rotations that two surfaces forbid which touch at the anchor of a joint. One that tilts the normal n by a small t
+/// across it (t = turn x n) makes them overlap by t (K_a + K_b)^-1 t / 2, K their curvatures: nothing where one of them
+/// is sharp in the direction of t. Where both are flat along a line, its ends overlap at once.
 struct ForbiddenTilts {
   bool all = false;               // the body keeps the normal
   Vec3 direction = Vec3::Zero();  // unit, world: tilts along it; zero: none
-  bool isOfBody = false;          // the direction turns with the body
+  bool isOfBody = false;          // the direction rotates with the body
   bool any() const { return all || !direction.isZero(); }
 };
 
@@ -174,7 +174,7 @@ void keepAcross(const Attachment& anchor, const Vec3& place, const Vec3& axis, c
   assembly.names.hinges.push_back(name);
 }
 
-/// Forbids a body to roll where an anchor holds it. True if the anchor's point needs no other constraint then.
+/// Forbids a body to roll about an anchor. True if the anchor's point needs no other constraint then.
 bool forbidRolling(std::size_t index, const PinnedPlace& pin, const std::string& name, Assembly& assembly) {
   const Collider collider = assembly.geometry.colliders[index];
   const RigidTransform worldFromBody = poseOf(assembly.state, collider.body);
@@ -212,7 +212,7 @@ bool forbidRolling(std::size_t index, const PinnedPlace& pin, const std::string&
   return isForbidden;
 }
 
-/// Tells the colliders of a joint's body of its anchor, which `other` (a moving body, or kFixed) holds. True if rolling
+/// Tells the colliders of a joint's body of its anchor on `other` (a moving body, or kFixed). True if rolling
 /// about it is forbidden from now on.
 bool pin(const Attachment& anchor, int other, const Vec3& axis, const std::string& name, Assembly& assembly) {
   if (anchor.body == kFixed) return false;

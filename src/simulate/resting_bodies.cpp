@@ -61,7 +61,7 @@ bool RestingBodies::isSlow(std::size_t index, const VectorX& state) const {
 }
 
 bool RestingBodies::canBeInEquilibrium(const std::vector<int>& islands, int island, const VectorX& state) {
-  // Accelerations stand in for velocities: the impulses that stop them are then the forces that hold the bodies.
+  // Accelerations stand in for velocities: the impulses that stop them are then the forces of the equilibrium.
   VectorX derivative, accelerations = state;
   equations_.evaluate(state, derivative);
   const Eigen::Index velocities = static_cast<Eigen::Index>(islands.size()) * kVelocitySize;

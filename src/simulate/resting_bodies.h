@@ -17,8 +17,8 @@ class RestingBodies {
   /// A body that was woken is not put to rest again for so long (s).
   void setStillTime(double stillTime) { stillTime_ = stillTime; }
 
-  /// Brings islands to rest that are slow and that contact forces within the friction cones can hold, given the
-  /// contacts of this instant. Returns the bodies that came to rest.
+  /// Brings islands to rest that are slow and that contact forces within the friction cones keep in equilibrium, given
+  /// the contacts of this instant. Returns the bodies that came to rest.
   std::vector<int> letSleep(double time, const std::vector<Contact>& contacts, VectorX& state);
 
   /// Stops bodies that rest together from now on; what they still had of kinetic energy is numerical.

@@ -22,7 +22,7 @@ constexpr int kTensionSamples = 4;        // a step: it is at most a small part 
 constexpr double kMinFirstSample = 1e-9;  // of a step: a rebound that is over sooner is none
 constexpr double kMaxFirstSample = 1.0 / 1024;  // of a step
 constexpr double kCoarsestInterval = 1.0 / 8;   // of a step, of a rope without tension: its length is smooth
-constexpr double kRopeReach = 2;             // of the way that ends go freely in a step: what contacts may make of it
+constexpr double kRopeReach = 2;         // of the way that ends go freely in a step: what contacts may make of it
 constexpr double kNearRatio = 1e-3;      // of its length: ropes so near to it take part in a step's contacts
 constexpr double kPullRounding = 1e-12;  // of the speed before a pull
 constexpr int kMaxPullRounds = 100;      // of pulls at one instant; those left over pull after the next step
@@ -201,7 +201,7 @@ std::vector<RopeEvents::Stretch> RopeEvents::findStretches(const VectorX& state)
 }
 
 /// All ropes that are stretched at this instant pull at once. One that does not rebound becomes a rod if smooth forces
-/// pull at it; else what drags at it (friction) is met step by step.
+/// pull at it; else what drags at it (friction) is resolved step by step.
 void RopeEvents::pull(double time, const std::vector<Stretch>& stretches, VectorX& state) {
   std::vector<RopePull> pulls;
   for (const Stretch& stretch : stretches) {
@@ -249,7 +249,8 @@ std::vector<const RopeLimit*> RopeEvents::withinReach(const VectorX& before, con
     if (isTaut(i) || rests(i)) continue;
     const RopeMotion from = motionOf(rope, before), to = motionOf(rope, state);
     const auto speed = [](const RopeMotion& motion) { return motion.a.velocity.norm() + motion.b.velocity.norm(); };
-    if (from.slackLength > kRopeReach * length * std::max(speed(from), speed(to)) + kNearRatio * rope.maxLength) continue;
+    if (from.slackLength > kRopeReach * length * std::max(speed(from), speed(to)) + kNearRatio * rope.maxLength)
+      continue;
     ropes.push_back(&rope);
   }
   return ropes;

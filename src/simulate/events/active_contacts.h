@@ -16,11 +16,11 @@ namespace cradle {
 /// (contact_changes.h).
 class ActiveContacts {
  public:
-  /// Keeps a reference to `island`. What comes within `touchTolerance` (m) touches.
+  /// Keeps a reference to `island`. Bodies within `touchTolerance` (m) of each other touch.
   ActiveContacts(IslandState& island, double touchTolerance)
       : island_(island), touchTolerance_(touchTolerance), changes_(island, touchTolerance) {}
 
-  /// Releases all contacts, until `classify`. `change` is what happens to one of the contacts now, if anything does.
+  /// Releases all contacts, until `classify`. `change` is the event of one of the contacts, if it is one of theirs.
   void release(const std::optional<ContactChange>& change);
 
   /// Makes those of the touching contacts active that carry load; those of bodies that all rest are left out.

@@ -10,7 +10,7 @@
 
 namespace cradle {
 
-/// What happens to an active contact inside a step.
+/// An event of an active contact inside a step.
 struct ContactChange {
   enum class Kind {
     release,  // its force would have to pull

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "simulate/events/contacts_on_meshes.h"
 #include "simulate/events/cylinder_rims.h"
@@ -32,7 +33,7 @@ double stillSpeed(const Contact& contact, const IslandState& island) {
   return kLastBounceRatio * std::sqrt(island.assembly.mechanism.gravity.norm() * size) + kRestSpeedFloor;
 }
 
-/// The contacts that may be active, with what their velocities say of them.
+/// The contacts that may be active, with their directions of sliding.
 std::vector<ContactRecord> recordsOf(const ClassificationInput& input, const IslandState& island) {
   std::vector<ContactRecord> records;
   for (const Contact& contact : input.touching) {
@@ -70,73 +71,102 @@ bool nothingCloses(const std::vector<ContactRows>& rows, const VectorX& derivati
   });
 }
 
+/// The contacts on their way to a classification.
+struct Candidates {
+  std::vector<ContactRecord> records;
+  ContactFallback fallback;
+};
+
 /// Marks statically indeterminate contacts: those of a group whose active rows have less than full rank. `delassus` is
 /// J M^-1 J^T of these rows. A fallback if there are too many of them to be solved at each evaluation.
-void countRows(const RecordGroup& group, const MatrixX& delassus, const Assembly& assembly,
-               std::vector<ContactRecord>& records, ContactFallback& fallback) {
+void countRows(const RecordGroup& group, const MatrixX& delassus, const Assembly& assembly, Candidates& found) {
   Eigen::ColPivHouseholderQR<MatrixX> factor(delassus);
   factor.setThreshold(kRankRatio);
   const Index rank = factor.rank();
-  for (const std::size_t i : group) records[i].isRedundant = rank < delassus.rows();
+  for (const std::size_t i : group) found.records[i].isRedundant = rank < delassus.rows();
   if (delassus.rows() - rank <= kMaxRedundant && rank <= kMaxIndependent) return;
   std::vector<const Contact*> contacts;
-  for (const std::size_t i : group) contacts.push_back(&records[i].contact);
-  fallback = fallbackAt("too many contacts press at once", contacts, assembly);
+  for (const std::size_t i : group) contacts.push_back(&found.records[i].contact);
+  found.fallback = fallbackAt("too many contacts press at once", contacts, assembly);
 }
 
-/// Logs a solution that is none to the tolerance: its forces classify the contacts all the same.
+/// Logs that forces were not found to the tolerance. They classify the contacts all the same.
 void logUnsolved(const std::vector<const ContactRecord*>& records, double residual, IslandState& island) {
   std::vector<int> bodies;
   for (const ContactRecord* record : records) bodies.push_back(record->contact.movingBody());
   island.log.recordCorrection(island.time, CorrectionKind::unsolvedContacts, bodies, residual);
 }
 
-/// What the forces and accelerations of a group make of its contacts.
+/// Limits of accelerations in a group; m/s^2.
+struct AccelerationLimits {
+  double largest;   // of all free accelerations, and gravity
+  double still;     // slower sliding sticks
+  double unloaded;  // a normal force that gives no more carries nothing
+};
+
+/// Force and acceleration of a contact, of A relative to B.
+struct ContactState {
+  double force, inverseMass;  // N, 1/kg: along the normal
+  Vec3 acceleration;          // m/s^2, (t1, t2, n)
+};
+
+/// Sets whether a contact is loaded, opens, sticks or slides.
+void classifyOne(const ContactRows& rows, const ContactState& state, const AccelerationLimits& limits,
+                 ContactRecord& record) {
+  record.mass = 1 / state.inverseMass, record.force = limits.largest * record.mass;
+  record.isLoaded = state.force > limits.unloaded / state.inverseMass;
+  record.opens = !record.isLoaded && state.acceleration.z() > kStillRatio * limits.largest;
+  if (!record.isLoaded || !(record.pair.material.staticFriction > 0) || record.slides) return;
+  record.sticks = state.acceleration.head<2>().norm() <= limits.still;
+  if (record.sticks) return;
+  record.slides = true;
+  record.direction =
+      (state.acceleration.x() * rows.rows[0].linearA + state.acceleration.y() * rows.rows[1].linearA).normalized();
+}
+
+/// Why a loaded contact cannot be a row.
+void findFallback(const ContactRecord& record, double slidingAcceleration, double largest, const IslandState& island,
+                  ContactFallback& fallback) {
+  if (!canLast(record.contact))  // with planes only rims are neither corners nor round
+    fallback =
+        fallbackAt(record.pair.againstPlane ? kTips : "edges touch and press", {&record.contact}, island.assembly);
+  if (record.slides && slidesTooSlowly(record, slidingAcceleration, largest, island))
+    fallback = fallbackAt(kSlidesTooSlowly, {&record.contact}, island.assembly);
+}
+
+/// Classifies the contacts of one group by their forces and accelerations.
 void classifyGroup(const RecordGroup& group, const ClassificationInput& input, ConstraintSolver& constraints,
-                   IslandState& island, std::vector<ContactRecord>& records, ContactFallback& fallback) {
+                   IslandState& island, Candidates& found) {
   const Mechanism& mechanism = island.assembly.mechanism;
   std::vector<ContactRows> rows;
   std::vector<const ContactRecord*> members;
   for (const std::size_t i : group) {
-    rows.push_back(rowsOf(records[i].contact, island.state, input.frames));
-    members.push_back(&records[i]);
+    rows.push_back(rowsOf(found.records[i].contact, island.state, input.frames));
+    members.push_back(&found.records[i]);
   }
   VectorX derivative;
   island.equations.evaluate(island.state, derivative);
   if (nothingCloses(rows, derivative, mechanism.gravity.norm())) return;
   const ContactResponse response(rows, mechanism.bodies, input.frames, constraints);
   const ContactSolution solution = solveContactForces(members, rows, response, derivative);
-  const double most =
-      std::max(response.accelerations(derivative).cwiseAbs().maxCoeff(), mechanism.gravity.norm());  // m/s^2
-  if (!(solution.residual <= kStillRatio * most)) logUnsolved(members, solution.residual, island);
-  const double still = stillAcceleration(island.scene.accuracy, island.scene.duration, most, solution.residual);
-  const double unloaded = (input.isReleasing ? kReleasedRatio : kUnloadedRatio) * most;
+  const double largest = std::max(response.accelerations(derivative).cwiseAbs().maxCoeff(), mechanism.gravity.norm());
+  if (!(solution.residual <= kStillRatio * largest)) logUnsolved(members, solution.residual, island);
+  const AccelerationLimits limits{
+      largest, stillAcceleration(island.scene.accuracy, island.scene.duration, largest, solution.residual),
+      (input.isReleasing ? kReleasedRatio : kUnloadedRatio) * largest};
   const MatrixX& delassus = response.delassus();
   std::vector<Index> activeRows;
   for (std::size_t k = 0; k < group.size(); ++k) {
-    ContactRecord& record = records[group[k]];
+    ContactRecord& record = found.records[group[k]];
     const Index at = 3 * static_cast<Index>(k);
     const Vec3 acceleration = solution.velocities.segment<3>(at);
-    record.mass = 1 / delassus(at + 2, at + 2), record.force = most * record.mass;
-    record.isLoaded = solution.impulses[at + 2] > unloaded / delassus(at + 2, at + 2);
-    record.opens = !record.isLoaded && acceleration.z() > kStillRatio * most;
+    classifyOne(rows[k], {solution.impulses[at + 2], delassus(at + 2, at + 2), acceleration}, limits, record);
     if (!record.isLoaded) continue;
-    if (!canLast(record.contact))  // with planes only rims are neither corners nor round
-      fallback =
-          fallbackAt(record.pair.againstPlane ? kTips : "edges touch and press", {&record.contact}, island.assembly);
-    const bool hasFriction = record.pair.material.staticFriction > 0;
-    record.sticks = hasFriction && !record.slides && acceleration.head<2>().norm() <= still;
-    if (hasFriction && !record.slides && !record.sticks) {
-      record.slides = true;
-      record.direction =
-          (acceleration.x() * rows[k].rows[0].linearA + acceleration.y() * rows[k].rows[1].linearA).normalized();
-    }
-    if (record.slides && slidesTooSlowly(record, acceleration.head<2>().norm(), most, island))
-      fallback = fallbackAt(kSlidesTooSlowly, {&record.contact}, island.assembly);
+    findFallback(record, acceleration.head<2>().norm(), largest, island, found.fallback);
     activeRows.push_back(at + 2);
     if (record.sticks) activeRows.push_back(at), activeRows.push_back(at + 1);
   }
-  if (!activeRows.empty()) countRows(group, delassus(activeRows, activeRows), island.assembly, records, fallback);
+  if (!activeRows.empty()) countRows(group, delassus(activeRows, activeRows), island.assembly, found);
 }
 
 /// A corner stays a corner when the face beside it tips, but a cylinder rolls on over its rim. Rows keep points of a
@@ -159,19 +189,20 @@ bool tips(const ContactRecord& record, const std::vector<ContactRecord>& records
 
 ClassifiedContacts classifyContacts(const ClassificationInput& input, ConstraintSolver& constraints,
                                     IslandState& island) {
-  ClassifiedContacts found;
-  std::vector<ContactRecord> records = recordsOf(input, island);
+  Candidates found{recordsOf(input, island), {}};
+  const std::vector<ContactRecord>& records = found.records;
   for (const RecordGroup& group : groupsOf(records, island.assembly.mechanism))
-    classifyGroup(group, input, constraints, island, records, found.fallback);
+    classifyGroup(group, input, constraints, island, found);
   for (const ContactRecord& record : records)
     if (tips(record, records, island)) found.fallback = fallbackAt(kTips, {&record.contact}, island.assembly);
   for (const ContactRecord& record : records)
     if (record.isLoaded && canLast(record.contact) &&
         !isServedOnMesh(record, input.touchTolerance, input.frames, island))
       found.fallback = fallbackAt("a body moves over the edges of a mesh", {&record.contact}, island.assembly);
+  ClassifiedContacts result{{}, std::move(found.fallback)};
   for (const ContactRecord& record : records)
-    if (record.isLoaded) found.active.push_back(record);
-  return found;
+    if (record.isLoaded) result.active.push_back(record);
+  return result;
 }
 
 }  // namespace cradle

@@ -9,7 +9,7 @@
 
 namespace cradle {
 
-/// What a classification starts from.
+/// The input of a classification.
 struct ClassificationInput {
   const std::vector<Contact>& touching;          // at the island's state
   const std::vector<PreviousContact>& previous;  // active until now
@@ -18,7 +18,7 @@ struct ClassificationInput {
   double touchTolerance = 0;  // m
 };
 
-/// What it finds.
+/// Its result.
 struct ClassifiedContacts {
   std::vector<ContactRecord> active;  // those that carry load, in the order of `touching`
   ContactFallback fallback;           // why rows do not serve, if they don't

@@ -59,7 +59,7 @@ bool isServedOnMesh(const ContactRecord& record, double touchTolerance, const st
   if (pair.againstPlane) return true;
   const Collider &a = geometry.colliders[pair.a], &b = geometry.colliders[pair.b];
   if (!hasMesh(a, b) || a.isSphere() || b.isSphere()) return true;
-  // A cylinder that rotates out of its position is told elsewhere (tippingSpeed). What it slides against is found by
+  // A cylinder that rotates out of its position is told by tippingSpeed. A wall that it slides against is found by
   // the search for impacts of the points beside its active ones.
   if (a.kind() == ColliderKind::cylinder || b.kind() == ColliderKind::cylinder) return true;
   const OverFace over = overFace(geometry, pair, rowsOf(record.contact, island.state, frames).constraint, island.state);

@@ -23,7 +23,7 @@ class EventContacts {
   EventContacts(const EventContacts&) = delete;
   EventContacts& operator=(const EventContacts&) = delete;
 
-  /// What touches as the island's step begins.
+  /// The active features and tolerances for the search for impacts in the island's step.
   TouchingFeatures touching();
 
   ActiveContacts& active() { return active_; }

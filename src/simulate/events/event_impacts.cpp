@@ -13,7 +13,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kStandstillRatio = 1e-12;   // of the fastest speed at an impact: what is left is rounding
+constexpr double kStandstillRatio = 1e-12;   // of the fastest speed at an impact: slower closing is rounding
 constexpr double kSequenceRatio = 1e-9;      // of the time of a fall by the smallest size: as long it may take always
 constexpr double kGapRoundingRatio = 4e-12;  // of the smallest size: beyond the dead band, a gap is one ...
 constexpr double kSphereGapRatio = 2e-13;    // the same, of spheres: differences of two lengths

@@ -8,13 +8,14 @@ namespace {
 
 constexpr int kMaxCorrections = 60;  // steps tried to find an event; 3 are usual
 
-constexpr double kStepRounding = 1e-14;  // of the step: nearer, the margin is as good as it gets
-constexpr double kFirstReach = 1e-6;     // of the step: so far around the guess an event is looked for at first
-constexpr double kGrowingReach = 16;
+constexpr double kStepRounding = 1e-14;  // of the step: a narrower bracket is rounding
+constexpr double kFirstReach = 1e-6;     // of the step: half of the first bracket around the guess
+constexpr double kGrowingReach = 16;     // from one bracket to the next
 
 }  // namespace
 
-// The Illinois variant of regula falsi (M. Dowell, P. Jarratt, 1971).
+// The Illinois variant of regula falsi (M. Dowell, P. Jarratt, 1971), each value of the event function from a step of
+// its own.
 double endStepAtEvent(IslandState& island, Integrator integrate, const EventWindow& window,
                       const EventFunction& margin) {
   Step& step = island.step;
@@ -27,11 +28,11 @@ double endStepAtEvent(IslandState& island, Integrator integrate, const EventWind
   double late = window.guess, lateMargin = marginAfter(late);
   if (std::abs(lateMargin) <= tolerance || (lateMargin > 0 && late >= window.latest)) return lateMargin;
   double early = 0, earlyMargin = tolerance, reach = kFirstReach * whole;
-  while (lateMargin > 0 && late < window.latest) {  // the method is later than its interpolant
+  while (lateMargin > 0 && late < window.latest) {  // the event of the method is later than that of its interpolant
     early = late, earlyMargin = lateMargin;
     late = std::min(window.latest, late + reach), lateMargin = marginAfter(late), reach *= kGrowingReach;
   }
-  // Near the guess: a contact, or a rope, that has just rebounded has no margin at the start either.
+  // Backwards from the guess: a contact, or a rope, that has just rebounded has a root at the start of the step too.
   for (double part = window.guess - reach; early == 0 && part > 0; part -= reach, reach *= kGrowingReach) {
     const double found = marginAfter(part);
     if (found > 0)

@@ -24,9 +24,9 @@ class EventLog {
   void record(const Event& event);
   void warn(const std::string& warning) { warnings_.push_back(warning); }
 
-  /// What was done to moving bodies of the island beside the laws of mechanics.
+  /// A correction of the motion of moving bodies beside the laws of mechanics.
   void recordCorrection(double time, CorrectionKind kind, const std::vector<int>& movingBodies, double amount);
-  /// The same for a simultaneous impact.
+  /// The corrections of a simultaneous impact.
   void recordFaults(double time, const std::vector<ImpactContact>& impacts, const ImpactFaults& faults);
   Corrections& corrections() { return corrections_; }
 

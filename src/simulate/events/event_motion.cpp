@@ -15,11 +15,10 @@ namespace cradle {
 namespace {
 
 constexpr double kContactTolerance = 1e-12;  // of the force, or m/s
-constexpr double kImpactRatio = 1e-3;  // of the margin of contacts: a gap left that the step has to be taken anew for
-constexpr double kShortCorrection =
-    1e-3;                             // of the step: so far the state at an impact is corrected along its derivative
-constexpr double kSlopeRatio = 1e-6;  // of the step, to find the slope of a gap
-constexpr double kMaxGrowth = 2;  // of the longest of the last steps: farther ahead no contact is looked for in vain
+constexpr double kImpactRatio = 1e-3;      // of the touch tolerance: a larger gap is left for a step that is taken anew
+constexpr double kShortCorrection = 1e-3;  // of the step: longest Newton step to the instant of an impact
+constexpr double kSlopeRatio = 1e-6;       // of the step, to find the slope of a gap
+constexpr double kMaxGrowth = 2;  // of the longest of the last steps: beyond, the search for impacts is mostly in vain
 
 constexpr double kMinLookahead = 1.0 / 64;  // of the step that the accuracy allows
 
@@ -33,7 +32,7 @@ constexpr double kConstraintErrorRatio = 0.1;  // of the accuracy: left for a fe
 constexpr double kStateRounding = 1e-14;  // of a state: projection that moves it less leaves the derivative as it was
 constexpr double kUnitLength = 1e-9;      // how far |q|^2 may be from 1 before it is made 1
 
-constexpr int kMaxRounds = 100;  // of ropes and contacts at one instant; what is left comes after the next step
+constexpr int kMaxRounds = 100;  // of ropes and contacts at one instant; the others come after the next step
 
 const EventRateLimit& eventRateLimitOf(const ChosenMethod& method, double accuracy, bool isTrial) {
   if (method.keepsPromise) return kLongEventRateLimit;
@@ -46,7 +45,8 @@ bool isSame(const VectorX& a, const VectorX& b) {
   return ((a - b).array().abs() <= kStateRounding * (1 + b.array().abs())).all();
 }
 
-/// Errors of orientations add up over the turns: those of bodies that turn by more than 100 rad are kept smaller.
+/// Errors of orientations add up over rotations: a body that rotates by more than 100 rad in the run has a tenth of the
+/// tolerance.
 VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double duration) {
   VectorX tolerance = stateTolerance(bodyCount(state), method.tolerance, method.tolerance);
   for (Eigen::Index body = 0; body < bodyCount(state); ++body)
@@ -77,7 +77,7 @@ EventMotion::EventMotion(IslandState& island, RopeEvents& ropes, const ChosenMet
   island_.requireUnsolvedPairsApart();
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
   startConstraintError_ = solver_.largestError();
-  // From here on: what steps of one length left of overlaps is taken out by now, and the energy of that with it.
+  // The guard starts here: overlaps that time stepping left are taken out by now, and their energy with them.
   guard_.emplace(island_.assembly, island_.state, method_, island_.scene.duration);
 }
 
@@ -86,7 +86,7 @@ void EventMotion::advance(double frame) {
   Step& step = island_.step;
   const double stepEnd = std::min(island_.scene.duration, island_.pushes.nextChange());
 
-  // How far do bodies move freely?
+  // How far do bodies move until the first event?
   if (!takeStep(stepEnd)) return;
   Event event = stopAtFirstEvent();
   while (event.any() && !isStillAccurate()) {
@@ -96,13 +96,13 @@ void EventMotion::advance(double frame) {
   time = step.time + step.timeStep;
   if (!event.any() && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
 
-  // What the step's interpolant needs belongs to the forces of now.
+  // The interpolant is that of the forces that act until the event.
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
   contactsOfStep_ = island_.assembly.mechanism.contacts;
 
   bookStep(island_.assembly.mechanism, step);
 
-  // Take out what the step left wrong. Then what changes here?
+  // Remove the drift that velocities cannot see. Then what changes at the event?
   island_.state = step.state;
   projectState();
   changeForces(event);
@@ -111,7 +111,7 @@ void EventMotion::advance(double frame) {
   if (event.any()) countEvent(event);
 }
 
-/// Steps until one is as accurate as asked. False if friction jams: then none is, and the state stays as it is.
+/// Takes steps from the same state until one is as accurate as asked. False if friction jams: then none is.
 bool EventMotion::takeStep(double stepEnd) {
   Step& step = island_.step;
   if (std::exchange(isContinuous_, false)) carryEndDerivative(step);
@@ -141,16 +141,16 @@ bool EventMotion::isTooShort() {
   return true;
 }
 
-/// Where friction at a sliding contact presses it together, its forces may grow without bound, or be none that finite
-/// forces are (P. Painleve, 1895): velocities jump there without an impact. So they grow where the lever about a joint
-/// goes to nothing. Contact steps, whose unknowns are impulses, find what follows.
+/// Forces of a sliding contact may grow without bound, or have no finite solution, where its friction presses it
+/// together (P. Painleve, 1895): velocities jump there without an impact. Forces also grow without bound where the
+/// moment arm about a joint goes to zero. Time stepping, whose unknowns are impulses, goes on.
 bool EventMotion::noteUnboundedForces() {
   areForcesUnbounded_ = !method_.keepsPromise && contacts_.noteUnboundedForces();
   return areForcesUnbounded_;
 }
 
-/// Whether a step that was cut short is accurate too: where forces turn quickly, the long one may have been by luck. If
-/// not, shorter ones are tried.
+/// Whether a step that was taken again with a shorter length is accurate too: where forces change direction quickly,
+/// the error estimate of the long one may be small by chance. If not, the next trial is shorter.
 bool EventMotion::isStillAccurate() {
   Step& step = island_.step;
   if (mayEndAnywhere()) return true;
@@ -161,12 +161,12 @@ bool EventMotion::isStillAccurate() {
   return false;
 }
 
-/// Where bodies meet often, no step goes far beyond the next meeting.
+/// s. Where impacts are frequent, steps are not planned far beyond the next one.
 double EventMotion::longestStep() const {
   return std::max(kMaxGrowth * *std::max_element(lengths_.begin(), lengths_.end()), kMinLookahead * stepSize_.timeStep);
 }
 
-/// Whether the step may end where its interpolant is: that is as good as the error estimate.
+/// Whether the step may end on its interpolant, which is as accurate as the step: that of DOPRI5.
 bool EventMotion::mayEndAnywhere() const {
   return island_.step.interpolant == InterpolantKind::degreeFour;
 }
@@ -192,8 +192,8 @@ EventMotion::Event EventMotion::findFirstEvent() {
   return event;
 }
 
-/// Cuts the step at the first event in it. The state there is a step of its own, not the interpolant's, whose error
-/// would let bodies overlap; unless the step is known no better than its interpolant.
+/// Cuts the step at the first event in it. The state there is that of a step of its own, as the error of the
+/// interpolant would let bodies overlap; with DOPRI5 it is the interpolant's, which is as good as the step.
 EventMotion::Event EventMotion::stopAtFirstEvent() {
   if (!island_.mayTouch() && !ropes_.hasRopes()) return {};
   Step& step = island_.step;
@@ -217,9 +217,9 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   return event;
 }
 
-/// Ends the step where a gap is closed. What the interpolant's error leaves of it is taken out along the derivative
-/// there. False if it is not closed yet where the interpolant says so: beyond that nobody has looked for what else
-/// meets, so the step ends there without an event.
+/// Ends the step where a gap closes. The gap s that the interpolant's error leaves is taken out by one Newton step
+/// along the end derivative: theta = -s / s'. False if the gap is still open at the instant of the interpolant: no
+/// later impact has been searched for, so the step ends there without an event.
 bool EventMotion::stopAtImpact(const ImpactTime& impact) {
   const TouchingFeatures touching = contacts_.touching();
   const auto gap = [&](const VectorX& state) { return island_.search.margin(impact, touching, state); };
@@ -231,7 +231,7 @@ bool EventMotion::stopAtImpact(const ImpactTime& impact) {
   const double left = gap(step.state), before = kSlopeRatio * length;
   step.work = step.state - before * step.endDerivative;
   const double closed = gap(step.work) - left;
-  const double correction = closed > 0 ? left * before / closed : 0;  // not above 0: all of it is rounding
+  const double correction = closed > 0 ? left * before / closed : 0;  // else the gap is rounding
   step.work = step.state + correction * step.endDerivative;
   const double tolerance = kImpactRatio * contacts_.touchTolerance();
   if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))
@@ -241,9 +241,9 @@ bool EventMotion::stopAtImpact(const ImpactTime& impact) {
   return true;
 }
 
-/// Constraints hold to rounding after each step. Orientations are of unit length nearly enough for the equations, which
-/// take their direction; a state that nothing touches lets the next step begin with this one's last derivative. (Ropes
-/// may pull at it yet.)
+/// Projects the state onto the constraint manifold. A state that this leaves as it was, to rounding, lets the next step
+/// begin with the end derivative of this one, unless ropes may still act on it. Orientations are normalised only then:
+/// the equations take their direction alone.
 void EventMotion::projectState() {
   VectorX& state = island_.state;
   bool isTouched = false;
@@ -262,8 +262,8 @@ void EventMotion::projectState() {
   isContinuous_ = !isTouched && !ropes_.hasRopes();
 }
 
-/// Where constraints leave no motion, forces without bound stop the bodies: what would follow is no motion of theirs.
-/// Anchors that did not quite meet at the start never will.
+/// Ends the run where constraints cannot be kept, or leave no motion: their forces are without bound, and the bodies
+/// stop. The error that anchors had at the start stays.
 void EventMotion::requireConstraintsKept() {
   const VectorX& state = island_.state;
   const double error = solver_.largestError(), size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
@@ -272,15 +272,15 @@ void EventMotion::requireConstraintsKept() {
     guard_->failAtConstraints(state, island_.time, error);
 }
 
-/// What acts from now on.
+/// Makes the changes of an event: impacts, active contacts, ropes, pushes.
 void EventMotion::changeForces(const Event& event) {
   rodsBefore_ = ropes_.rods();
   const bool lasted = !contacts_.active().empty();
   if (event.impact || event.contact || event.rope)  // a rope may go taut as bodies meet
     contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
   else
-    followLasting();
-  if (!lasted && !contacts_.active().empty()) lengths_.fill(island_.scene.duration);  // bounces are over
+    followActive();
+  if (!lasted && !contacts_.active().empty()) lengths_.fill(island_.scene.duration);  // no more bounces
   applyRopeEvents();
   keepsConstraints_ = ropes_.rods() == rodsBefore_;
   const bool isPushed = island_.beginAndEndPushes();
@@ -288,13 +288,13 @@ void EventMotion::changeForces(const Event& event) {
   if (event.any() || isPushed) isContinuous_ = false;
 }
 
-/// Nothing changes for contacts that last, but where they are.
-void EventMotion::followLasting() {
+/// Follows active contacts along a step without an event.
+void EventMotion::followActive() {
   contacts_.active().followSliding();
   if (!method_.keepsPromise) contacts_.noteShortMomentArms();
 }
 
-/// What ropes do to contacts may load or release ropes, and the other way round.
+/// Ropes and contacts in turn: either may load or release the other.
 void EventMotion::applyRopeEvents() {
   for (int round = 0; round < kMaxRounds && ropes_.resolve(island_.time, island_.state); ++round) contacts_.resolve();
 }
@@ -316,7 +316,7 @@ void EventMotion::countEvent(const Event& event) {
   if (method_.keepsPromise && eventsInWindow_ > eventRateLimit_.most) failAtManyEvents();
 }
 
-/// What is promised whatever comes is not given up: the run ends instead.
+/// A promise without conditions is not given up: the run ends instead.
 void EventMotion::failAtManyEvents() const {
   throw Error(ErrorKind::limit, "",
               fmt::format("more than {} impacts, pulls of ropes and changes of contacts in {:.3g} s at {:.6g} s, at "

@@ -13,8 +13,9 @@
 
 namespace cradle {
 
-/// Moves an island in steps as long as the accuracy allows. Each step ends at the first event in it: bodies meet, ropes
-/// go taut or slack, pushes begin or end. Between events the motion is of order 8, or 5 where the plan says so.
+/// Moves an island in steps as long as the accuracy allows. Each step ends at the first event in it: a gap closes, an
+/// active contact changes, a rope goes taut or slack, a push begins or ends. Between events the motion is of order 8,
+/// or 5 where the plan says so.
 class EventMotion {
  public:
   /// Keeps references to the island, which it moves, and its ropes. A trial: whether the promise is given up.
@@ -23,8 +24,8 @@ class EventMotion {
   /// Takes a step. `frame` (s) is the next time whose state is asked for. Throws Error(unstable) if the state blows up.
   void advance(double frame);
 
-  /// Why events serve the island no more, if they don't: what lasts are not contacts of spheres, corners and faces,
-  /// they are too many, or events follow each other too fast. Empty if they do.
+  /// Why events serve the island no more, if they don't: active contacts are not those of spheres, corners and faces,
+  /// are too many, or events follow each other too fast. Empty if they do.
   std::string_view fallbackReason() const;
 
   /// The bodies of the scene that this is about.
@@ -33,7 +34,7 @@ class EventMotion {
   /// Whether the last step kept the bodies' constraints: its interpolant may be projected.
   bool keepsConstraints() const { return keepsConstraints_; }
 
-  /// Contacts that lasted over the last step.
+  /// Contacts that were active over the last step.
   const std::vector<ContactConstraint>& contactsOfStep() const { return contactsOfStep_; }
 
   /// Whether all bodies of the island lie still.
@@ -46,12 +47,12 @@ class EventMotion {
   bool takeStep(double stepEnd);
   bool isTooShort();
   bool noteUnboundedForces();
-  /// What ends a step: at most one of them.
+  /// The event that ends a step: at most one of these.
   struct Event {
     std::optional<ImpactTime> impact;
     std::optional<RopeChange> rope;
     std::optional<ContactChange> contact;
-    double latest = 1;  // of the step: where the next one comes
+    double latest = 1;  // of the step: fraction of the event after it
     bool any() const { return impact || rope || contact; }
   };
   Event findFirstEvent();
@@ -60,7 +61,7 @@ class EventMotion {
   void projectState();
   void requireConstraintsKept();
   void changeForces(const Event& event);
-  void followLasting();
+  void followActive();
   void applyRopeEvents();
   bool mayEndAnywhere() const;
   bool isStillAccurate();

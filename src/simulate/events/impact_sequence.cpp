@@ -13,8 +13,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kGapGrowthError = 1e-9;        // of the way that the fastest contact closes by meanwhile
-constexpr double kOpeningRatio = 1e-6;          // of the fastest closing: a contact that opens faster has let go
+constexpr double kGapGrowthError = 1e-9;        // of the distance by which the fastest contact closes meanwhile
+constexpr double kOpeningRatio = 1e-6;          // of the fastest closing: a contact that opens faster takes no part
 constexpr std::size_t kCollapseImpacts = 200;   // enough to tell intervals that shrink for ever from a few short ones
 constexpr std::size_t kImpactsOfAContact = 20;  // the same, for each contact
 constexpr double kCollapseRatio = 1e-12;        // of the time elapsed: so little so many impacts take
@@ -94,8 +94,8 @@ bool ImpactSequence::next(const VectorX& state) {
   return true;
 }
 
-/// Where the limits end a sequence, a gap that rounding would hide from the event that is to come closes now: true if
-/// there is one.
+/// At the end of a sequence, closes gaps that rounding would hide from the search for the next event. True if there is
+/// one.
 bool ImpactSequence::closeWithinRounding() {
   bool isAnyClosed = false;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -141,8 +141,8 @@ void ImpactSequence::advance(const VectorX& state, double time) {
   }
 }
 
-/// What has just let go is not touched: its gap is smaller than can be measured, but it grows. Corners of a face that
-/// lands flat meet at once, as nearly as rounding tells; in other ways each has its own instant, at every accuracy.
+/// The members of the next impact. A contact that opens is none, however small its gap. Corners of a face that lands
+/// flat touch at one instant, to rounding; all others have an instant each, at every accuracy.
 void ImpactSequence::findMembers() {
   members_.clear();
   const auto isClosed = [this](std::size_t i) { return gaps_[i] <= gapErrors_[i]; };

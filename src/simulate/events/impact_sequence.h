@@ -7,24 +7,24 @@
 
 namespace cradle {
 
-/// What bounds a sequence of impacts at frozen places.
+/// Limits of a sequence of impacts at frozen places.
 struct SequenceLimits {
   std::vector<double> gapErrors;  // m, of each contact: a gap below it is none
-  double gapRounding = 0;         // m: gaps about as small may be hidden from the events that follow
-  double touchTolerance = 0;      // m: so far apart, what an event has brought together may seem to be
+  double gapRounding = 0;         // m: rounding may hide gaps about as small from the events that follow
+  double touchTolerance = 0;      // m: bound on the gap that the pair of an event seems to have
   double reach = 0;               // m: contacts farther apart are not known, so bodies move by half of it at most
-  double duration = 0;            // s: in a longer time forces would count
+  double duration = 0;            // s: in a longer time forces count
   double stillSpeed = 0;          // m/s: closing more slowly is rounding
 };
 
-/// Impacts that follow each other faster than bodies move: contacts close in the order in which their gaps say, while
-/// places, and with them normals and inverse masses, stay as they are. Gaps are variables of their own: a gap that an
-/// impact has closed is zero, and grows from there by speed x time, exact to a relative rounding however small it is.
-/// Contacts whose gaps close at one instant, and those without a gap that do not open, are one impact.
+/// Impacts that follow each other faster than bodies move: contacts close in the order of s / -s', s their gaps, while
+/// positions, and with them normals and the Delassus operator, stay as they are. Gaps are variables of their own: a gap
+/// that an impact has closed is zero, and grows from there by speed x time, with a relative error of rounding however
+/// small it is. Contacts whose gaps close at one instant, and those without a gap that do not open, are one impact.
 ///
 /// Impacts may be infinitely many in a finite time (inelastic collapse: a light sphere between the floor and a heavy
 /// one, with a small restitution). Neither gaps nor speeds tell that, but the history does: the intervals shrink
-/// geometrically. What is left then is one impact without rebound.
+/// geometrically. Then one impact without rebound ends the sequence.
 class ImpactSequence {
  public:
   /// `closingPair`: the pair that an event has brought together, whose nearest contact has no gap. `radii` (m): of all
@@ -34,7 +34,7 @@ class ImpactSequence {
 
   const std::vector<Contact>& contacts() const { return contacts_; }
 
-  /// Whether its first impact takes place at once: else ropes at their length pull before it.
+  /// Whether its first impact takes no time: else ropes at their length pull before it.
   bool beginsNow() const { return timeToNextImpact() == 0; }
 
   /// Goes on to the next impact; false if there is none within the limits. `state` has the velocities of now.
@@ -49,8 +49,8 @@ class ImpactSequence {
   /// Takes the velocities after that impact.
   void finishImpact(const VectorX& state);
 
-  /// Moves all bodies to where they are when the sequence ends: those that it has not struck may be the next to meet
-  /// one of it, and what comes first is a matter of gaps as small. False if it took no time.
+  /// Moves all bodies to where they are when the sequence ends, those that it has not struck too: their next impact may
+  /// be as close in time. False if the sequence took no time.
   bool moveBodies(VectorX& state) const;
 
  private:

@@ -21,7 +21,7 @@ struct PreviousContact {
 const PreviousContact* previousAt(const ContactRecord& record, const std::vector<PreviousContact>& previous,
                                   const std::vector<BodyFrame>& frames, const IslandState& island);
 
-/// Records what became of previous contacts among the active ones of now: release, stick, roll or slip.
+/// Records the changes of contacts from before an event to after it: release, stick, roll or slip.
 void recordContactEvents(const std::vector<PreviousContact>& previous, const std::vector<ContactRecord>& active,
                          const std::vector<BodyFrame>& frames, const IslandState& island, EventLog& log);
 

@@ -6,8 +6,8 @@
 //   4. models with hollows may touch, and the accuracy asked is coarse: RK4 with a fixed step, active contact resolved
 //   once a step, for their edges meet too often
 //   5. nothing acts but uniform gravity: closed form
-//   6. else DOP853 with steps as long as the accuracy allows; contact changes at events, and where something may touch
-//   and the accuracy asked is coarse, the method of order 5 of the same authors takes its place
+//   6. else DOP853 with steps as long as the accuracy allows; contact changes at events, and where bodies may touch and
+//   the accuracy asked is coarse, DOPRI5 takes its place
 
 #include "simulate/plan/plan.h"
 
@@ -38,8 +38,8 @@ constexpr double kSteppedTolerance = 1e-5;     // of the local error of RK4, at 
 constexpr double kToleranceRatio = 0.02;       // of the accuracy: local errors of tens of steps add up, and take energy
 constexpr double kCoarseToleranceRatio = 0.2;  // of the coarsest accuracy
 
-/// Of the local error. The coarser the accuracy, the longer the steps, and of long ones DOP853's estimate is too high
-/// (map of accuracies).
+/// Tolerance of the local error. The coarser the accuracy, the longer the steps, and DOP853's error estimate is too
+/// high for long steps (docs/stability.md, accuracy).
 double smoothTolerance(double accuracy) {
   return accuracy * std::max(kToleranceRatio, kCoarseToleranceRatio * accuracy / kCoarsestAccuracy);
 }
@@ -48,8 +48,8 @@ ChosenMethod errorSteps(const Scene& scene) {
   return {MotionKind::errorSteps, "DOP853", 0, dop853, smoothTolerance(scene.accuracy), dop853Error, 8};
 }
 
-/// Where contact ends steps before their time, those of order 5 cost half: they can end anywhere on their interpolant.
-/// Only at coarse accuracies are they long enough.
+/// Where contact ends steps early, those of order 5 cost half, as they may end anywhere on their interpolant. Only at
+/// coarse accuracies are they long enough.
 ChosenMethod stepsToEvents(const Scene& scene) {
   if (scene.accuracy <= kVisualAccuracy) return errorSteps(scene);
   const double tolerance = kToleranceRatio * scene.accuracy;
@@ -79,7 +79,7 @@ bool isActedUpon(const Scene& scene, const IslandPlan& island) {
   return found;
 }
 
-/// Spheres on which no torque can act: their spin is constant, whatever moves their centres.
+/// Finds spheres without torque: their angular velocity is constant, whatever moves their centres.
 void findNonRotating(const Scene& scene, IslandPlan& island) {
   std::vector<char> hasTorque(scene.bodies.size(), 0);
   const auto addTorque = [&](int body) {
@@ -103,7 +103,7 @@ void findNonRotating(const Scene& scene, IslandPlan& island) {
       island.nonRotating.push_back(body);
 }
 
-/// Whether something that may touch is a mesh for contact, not a shape with a name or a hull.
+/// Whether a body that may touch has a mesh as its collider, neither a primitive nor a hull.
 bool hasMesh(const Scene& scene, const IslandPlan& island) {
   return std::any_of(island.touching.begin(), island.touching.end(), [&](int body) {
     const auto collider = colliderOf(scene.bodies[static_cast<std::size_t>(body)], scene, kFixed);
@@ -122,8 +122,8 @@ bool hasSheet(const Scene& scene, const IslandPlan& island) {
   });
 }
 
-/// Whether a body is much heavier and much denser than others: of a dense body on a light one sweeps carry too little,
-/// large bodies among small ones of the same stuff come out well. (docs/stability.md, stacks)
+/// Whether a body is much heavier and much denser than others: sweeps of soft sub-stepping do not carry a dense body on
+/// a light one, but do carry large bodies among small ones of the same density (docs/stability.md, stacks).
 bool hasDenseOnes(const Scene& scene, const IslandPlan& island) {
   const auto massOf = [&](int body) -> const MassProperties& {
     return scene.bodies[static_cast<std::size_t>(body)].massProperties;

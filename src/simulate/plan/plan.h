@@ -12,7 +12,8 @@ namespace cradle {
 
 constexpr double kContactTimeStep = 1.0 / 960;  // s, of contact that events do not serve: 16 steps a frame at 60/s
 
-/// Accuracies coarser than this ask for no more than a look: events make way for contact steps where these cost less.
+/// Visual accuracies are coarser than this: their pictures are looked at and no more, so that time stepping takes the
+/// place of events where it costs less.
 constexpr double kVisualAccuracy = 1e-4;
 
 /// How bodies are moved, from the least work to the most.
@@ -39,21 +40,22 @@ struct ChosenMethod {
   bool isAdaptive() const { return kind == MotionKind::errorSteps; }
 };
 
-/// What moves bodies whose contact is resolved once a step: RK4, with shorter steps only where its error asks for them.
+/// The method of bodies whose contact is resolved once a step: RK4, with shorter steps only where its error asks for
+/// them.
 ChosenMethod contactSteps(double timeStep = kContactTimeStep);
 
 /// Bodies that depend on each other, by constraints, springs or contact that may come about, and how they are moved.
 struct IslandPlan {
   std::vector<int> bodies;       // scene bodies that move, ascending
   std::vector<int> touching;     // scene bodies, fixed ones too, that may touch something during the run, ascending
-  std::vector<int> nonRotating;  // of the bodies, those on which no torque ever acts: spheres held at their centres
+  std::vector<int> nonRotating;  // of the bodies, those without torque at all times: spheres attached at their centres
   ChosenMethod method;
   std::string_view reason;
-  std::vector<std::string_view> notNeeded;  // what these bodies do not need
+  std::vector<std::string_view> notNeeded;  // parts of a simulation that these bodies do not need
   Promise promise;                          // of the accuracy
 };
 
-/// What a scene needs, and no more.
+/// The least work that a scene needs: its islands, each with its method.
 struct Plan {
   std::vector<IslandPlan> islands;  // in the order of their first bodies
   double accuracy = 0;              // asked
@@ -62,7 +64,7 @@ struct Plan {
 /// Where something moves without bounds O(bodies), else O(pairs of bodies whose reaches overlap).
 Plan planOf(const Scene& scene);
 
-/// All that moves as one island without a method, for what looks at a scene as a whole.
+/// All moving bodies as one island without a method, for measurements of a scene as a whole.
 IslandPlan wholeScene(const Scene& scene);
 
 }  // namespace cradle

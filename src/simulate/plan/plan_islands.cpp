@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kIntervalRounding = 1e-14;  // relative, of sums of three numbers
 
-/// What reaches of bodies are compared with: their size around the centre of mass.
+/// m: radius of a body's bounding sphere about its centre of mass, by which its reach is widened.
 double sizeOf(const Body& body, const Scene& scene) {
   const auto collider = colliderOf(body, scene, 0);
   return collider ? collider->boundingRadius : 0;
 }
 
-/// A fixed body's collider stands in the world: its size around the place of its frame.
+/// m: radius of a fixed body's bounding sphere about the origin of its frame, where its reach has its centre.
 double fixedSizeOf(const Body& body, const Scene& scene) {
   const auto collider = colliderOf(body, scene, -1);
   double size = 0;
@@ -46,7 +46,7 @@ bool canReachPlane(const Reach& reach, double size, const Body& plane) {
   return normal.dot(reach.center - plane.worldFromBody.translation) <= reach.radius + size;
 }
 
-/// Bodies that touch something, by body.
+/// Whether a body may touch another, by body.
 std::vector<char> findTouching(const Scene& scene, const ReachablePairs& reachable) {
   std::vector<char> touches(scene.bodies.size(), 0);
   std::ptrdiff_t left = std::ssize(touches);
@@ -61,7 +61,7 @@ int movingOr(const Scene& scene, int body) {
   return body != kWorld && scene.bodies[static_cast<std::size_t>(body)].motion == Motion::dynamic ? body : kWorld;
 }
 
-/// Moving bodies that depend on each other.
+/// Sets of moving bodies that depend on each other.
 DisjointSets joinIslands(const Scene& scene, const ReachablePairs& reachable) {
   DisjointSets joined(scene.bodies.size());
   forEachLink(scene, [&](int a, int b) { joined.join(movingOr(scene, a), movingOr(scene, b)); });
@@ -72,7 +72,8 @@ DisjointSets joinIslands(const Scene& scene, const ReachablePairs& reachable) {
   return joined;
 }
 
-/// By first bodies of islands: the bodies of each that may touch, and the fixed ones that they may touch; ascending.
+/// For the first body of each island: the island's bodies that may touch, and the fixed ones that they may touch;
+/// ascending.
 std::vector<std::vector<int>> findTouchingByIsland(const Scene& scene, const DisjointSets& joined,
                                                    const ReachablePairs& reachable) {
   std::vector<std::vector<int>> touching(scene.bodies.size());
@@ -116,7 +117,7 @@ bool ReachablePairs::mayCollide(int first, int second) const {
   return meet && (joined_.empty() || !joined_.contains(std::minmax(first, second)));
 }
 
-/// A moving body that meets all that collide, but the bodies that joints keep from it: of such the one with the fewest.
+/// Of moving bodies with an infinite reach the one from which joints keep the fewest others.
 std::optional<int> ReachablePairs::boundless() const {
   std::map<int, int> kept;
   for (const auto& [a, b] : joined_) ++kept[a], ++kept[b];
@@ -129,7 +130,7 @@ std::optional<int> ReachablePairs::boundless() const {
   return best;
 }
 
-/// False when it was told to stop.
+/// Visits the pairs of one body with all others. False if a visit returned false.
 bool ReachablePairs::visitAll(int body, const Visit& visit) const {
   throwIfInterrupted();
   for (const std::vector<int>* bodies : {&colliding_, &planes_})
@@ -150,7 +151,7 @@ void ReachablePairs::forEachReachablePair(const Visit& visit) const {
         return;
 }
 
-/// Sweep and prune along x of the balls in which bodies stay.
+/// Sweep and prune along x of the spheres that bodies cannot leave.
 void ReachablePairs::visitBounded(const Visit& visit) const {
   for (const int plane : planes_)
     if (!visitAll(plane, visit)) return;

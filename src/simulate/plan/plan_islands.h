@@ -12,8 +12,8 @@
 
 namespace cradle {
 
-/// Which bodies may touch each other, as far as their reaches tell. What touches something may be thrown anywhere that
-/// its constraints allow.
+/// Pairs of bodies that may touch each other: their reaches overlap. A body that touches another may be thrown anywhere
+/// that its constraints allow, so that its reach is that of constraints alone.
 class ReachablePairs {
  public:
   /// Keeps a reference to `scene`. Costs as forEachReachablePair does, a few times.
@@ -22,12 +22,12 @@ class ReachablePairs {
   bool mayCollide(int first, int second) const;
 
   using Visit = std::function<bool(int first, int second)>;
-  /// Calls visit for pairs (first < second) that may meet, until it returns false: all, or where something moves
-  /// without bounds, enough of them to tell who touches something and what islands follow: who meets that is joined
-  /// with it. O(bodies) then, else as sweep and prune.
+  /// Calls visit for pairs (first < second) that may collide, until it returns false: all of them, or, where a body
+  /// moves without bounds, enough to tell which bodies touch another and what islands follow, as all that collide with
+  /// it are one island. O(bodies) then, else as sweep and prune.
   void forEachReachablePair(const Visit& visit) const;
 
-  /// Whether something moves without bounds, and so meets all that collide, but what joints keep from it.
+  /// A moving body whose reach is infinite, so that it may collide with all others, but those that joints keep from it.
   std::optional<int> boundless() const;
 
  private:
@@ -42,8 +42,8 @@ class ReachablePairs {
   std::vector<int> colliding_, planes_;  // bodies that may touch something, ascending
 };
 
-/// Moving bodies that depend on each other, by constraints or springs or by contact that their reaches allow, each
-/// island with what it may touch; methods are not chosen.
+/// Islands: moving bodies that depend on each other by constraints, springs or contact that their reaches allow, each
+/// island with the bodies that may touch. Their methods are not chosen yet.
 std::vector<IslandPlan> findIslands(const Scene& scene, const ReachablePairs& reachable);
 
 /// Calls visit(bodyA, bodyB) for every spring, rod, rope, ball joint and hinge; kWorld stands for the world.

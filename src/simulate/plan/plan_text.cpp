@@ -10,14 +10,14 @@
 namespace cradle {
 namespace {
 
-/// What a model's body is for contact.
+/// The collider of a model's body, in words.
 std::string collisionName(const Body& body, const ModelCollision& model) {
   if (body.collision == CollisionChoice::hull) return "its hull";
   const bool asPrimitive = body.collision != CollisionChoice::mesh || !model.recognised.primitive;
   return asPrimitive ? shapeName(model.recognised) : "convex";
 }
 
-/// DisjointSets of which the same is said are told together, in the order of the first of each.
+/// Islands with the same text are told together, in the order of the first of each.
 class AlikeIslands {
  public:
   void add(const IslandPlan& island, const std::string& said) {

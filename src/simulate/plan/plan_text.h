@@ -18,14 +18,14 @@ std::vector<std::string> collisionOfModels(const Scene& scene);
 std::string methodNames(const Plan& plan);
 std::string accuracyPromised(const Plan& plan);
 
-/// What all groups of bodies together are promised: what the least of them is.
+/// The promise of all islands together: the weakest of them.
 std::string promiseOfAll(const Plan& plan);
 
 /// The plan in words, a few lines for each kind of island.
 std::string describe(const Plan& plan, const Scene& scene);
 
-/// What each island was promised and what came of it, a line for each kind of island: "a, b: promised; kept". `ends`:
-/// by island.
+/// The promise of each island and its outcome, a line for each kind of island: "a, b: promised; kept". `ends`: by
+/// island.
 std::string describeOutcome(const Plan& plan, const std::vector<std::optional<PromiseEnd>>& ends, const Scene& scene);
 
 }  // namespace cradle

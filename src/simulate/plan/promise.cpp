@@ -28,16 +28,16 @@ constexpr double kLevelSlope = 1e-9;  // sine: flatter is level
 constexpr int kFaceContacts = 8;      // of two faces, or of a face and a plane: patches have no more points
 constexpr int kManyContacts = 64;     // of a mesh
 
-/// What may touch, and how: bounds over all that may come about.
+/// Bounds over all contacts that may come about in an island.
 struct PossibleContacts {
-  std::vector<int> edgeOwners, tippers, movers;  // scene bodies; cylinders that may tip; what moves and may touch
+  std::vector<int> edgeOwners, tippers, movers;  // scene bodies; cylinders that may tip; moving bodies that may touch
   bool hasFriction = false, areRound = true;     // round: of spheres with each other and with planes alone
   bool hasSlopes = false;                        // planes with friction that are not level
   double restitution = 0;                        // largest below 1
   int rows = 0, treeRows = 0;  // of all contacts; of one contact of each pair, as long as pairs close no loop
 };
 
-/// What counts of a body's shape.
+/// The surface of a body, as far as contacts depend on it.
 struct Surface {
   std::optional<ColliderKind> kind;  // none: a plane
   int faceCorners = kFaceContacts;   // of the largest face
@@ -67,7 +67,7 @@ int contactsOf(const Surface& a, const Surface& b) {
   return isOnPlane ? std::min(a.faceCorners, b.faceCorners) : kFaceContacts;
 }
 
-/// Looks at all pairs of an island that may meet.
+/// The contacts of all pairs of an island that may collide.
 class ContactSurvey {
  public:
   ContactSurvey(const Scene& scene, const IslandPlan& island, const ReachablePairs& reachable)
@@ -88,7 +88,7 @@ class ContactSurvey {
   const PossibleContacts& found() const { return found_; }
 
  private:
-  /// What a body is in the contacts that it may have.
+  /// The part of a body in the contacts that it may have.
   struct Part {
     bool ownsEdge = false, mayTip = false, moves = false;
   };
@@ -99,7 +99,8 @@ class ContactSurvey {
         if (reachable.mayCollide(island.touching[i], island.touching[j])) add(island.touching[i], island.touching[j]);
   }
 
-  /// Each body with some of each kind that it may meet: what is alike is so in its contacts. There are many rows.
+  /// Each body with some of each kind of body that it may collide with: bodies of one kind have the same contacts. Rows
+  /// are many in any case.
   void surveyKinds(const IslandPlan& island, const ReachablePairs& reachable) {
     constexpr std::size_t kTried = 4;  // of a kind: joints seldom keep more from one body
     std::map<std::tuple<int, int, int, bool, bool>, std::vector<int>> kinds;
@@ -124,7 +125,7 @@ class ContactSurvey {
         .surfacePairs[static_cast<std::size_t>(bodyOf(a).material)][static_cast<std::size_t>(bodyOf(b).material)];
   }
 
-  /// What a contact of two bodies is.
+  /// Adds edges, friction and restitution of the contact of two bodies.
   void addKinds(int a, int b) {
     const Surface &surfaceA = surfaces_[static_cast<std::size_t>(a)],
                   &surfaceB = surfaces_[static_cast<std::size_t>(b)];
@@ -138,7 +139,7 @@ class ContactSurvey {
     if (material.restitution < 1) found_.restitution = std::max(found_.restitution, material.restitution);
   }
 
-  /// The same, and how many rows it may have.
+  /// Adds that, and how many rows the contact may have.
   void add(int a, int b) {
     addKinds(a, b);
     const int rowsOfOne = materialOf(a, b).staticFriction > 0 ? 3 : 1;
@@ -158,7 +159,7 @@ class ContactSurvey {
                         kLevelSlope * scene_.gravity.norm();
   }
 
-  /// What of a body's surface rows cannot hold against the other.
+  /// Adds the edges of a body that have no row against the other body.
   void addEdges(int body, const Surface& own, const Surface& other) {
     if (own.isRound()) return;
     found_.areRound = false;
@@ -166,13 +167,13 @@ class ContactSurvey {
     if (own.kind == ColliderKind::cylinder) partOf(body).mayTip = true;
   }
 
-  /// All that is fixed is one.
+  /// The element of a body in the disjoint sets: all fixed bodies are one.
   int placeOf(int body) const {
     return bodyOf(body).motion == Motion::dynamic ? body : static_cast<int>(scene_.bodies.size());
   }
 
-  static constexpr int kManyRows = 1000000;         // far beyond what is few
-  static constexpr std::size_t kManyBodies = 2000;  // that touch: more pairs than are looked at one by one
+  static constexpr int kManyRows = 1000000;         // far more than the limits
+  static constexpr std::size_t kManyBodies = 2000;  // that touch: their pairs are too many to be visited one by one
   const Scene& scene_;
   DisjointSets loops_;
   std::vector<Surface> surfaces_;  // by scene body
@@ -180,7 +181,7 @@ class ContactSurvey {
   PossibleContacts found_;
 };
 
-/// Whether any of some links holds a body of the island.
+/// Whether any of the links is attached to a body of the island.
 template <class Link>
 bool attachTo(const std::vector<Link>& links, const IslandPlan& island) {
   const auto isIn = [&](const Anchor& anchor) {
@@ -194,23 +195,24 @@ bool hasJoints(const Scene& scene, const IslandPlan& island) {
   return attachTo(scene.ballJoints, island) || attachTo(scene.hinges, island);
 }
 
-/// Whether constraints hold a body of the island: rows of contacts may depend on each other through them.
+/// Whether bilateral constraints act on the island: rows of contacts may depend on each other through them.
 bool hasBilateral(const Scene& scene, const IslandPlan& island) {
   return hasJoints(scene, island) || attachTo(scene.rods, island) || attachTo(scene.ropes, island);
 }
 
 int independentRows(const PossibleContacts& contacts) {
-  const int ofABody = contacts.areRound && !contacts.hasFriction ? 3 : 6;  // spheres without friction do not turn
+  const int ofABody = contacts.areRound && !contacts.hasFriction ? 3 : 6;  // spheres without friction do not rotate
   return std::min(contacts.rows, ofABody * static_cast<int>(contacts.movers.size()));
 }
 
-/// Few spheres, whose contacts are served whatever comes, at a cost that is worth it.
+/// Whether the contacts are those of few spheres: events serve them in any case, at a bearable cost.
 bool areFewSpheres(const PossibleContacts& contacts) {
   const double bounces = kBounces * static_cast<double>(contacts.movers.size()) / (1 - contacts.restitution);
   return contacts.areRound && !contacts.hasSlopes && independentRows(contacts) <= kFewRows && bounces <= kFewBounces;
 }
 
-/// Leaf by leaf, the contacts of a tree of bodies are independent of each other, unless constraints hold these.
+/// Whether contacts may have too many rows. Contacts that join bodies to a tree are independent of each other, unless
+/// constraints act on the bodies.
 bool mayHaveManyRows(const PossibleContacts& contacts, bool isConstrained) {
   const int redundant = contacts.rows - (isConstrained ? 0 : contacts.treeRows);
   return redundant > kMaxRedundant || independentRows(contacts) > kMaxIndependent;

@@ -17,7 +17,7 @@ struct PromiseCondition {
   std::vector<int> bodies;  // of the scene, ascending
 };
 
-/// Whether a group of bodies keeps the accuracy asked: always, as long as conditions hold, or from the start not.
+/// Whether an island keeps the accuracy asked: always, as long as conditions hold, or not at all.
 struct Promise {
   enum class Kind { kept, conditional, none };
   Kind kind = Kind::kept;
@@ -25,21 +25,21 @@ struct Promise {
   std::string reason;                        // why there is none
 };
 
-/// When and why a run gave up the accuracy asked, and what bodies were in the way.
+/// When and why a run gave up the accuracy asked, and the bodies that were the reason.
 struct PromiseEnd {
   double time = 0;  // s
   std::string reason;
   std::vector<int> bodies;  // of the scene
 };
 
-/// What can be promised of an island whose method is chosen, as far as its bodies' shapes and reaches tell: events have
-/// an answer to spheres, corners and faces, as long as there are few of them.
+/// The promise of an island whose method is chosen, by the shapes and reaches of its bodies: events serve contacts of
+/// spheres, corners and faces, as long as there are few of them.
 Promise promiseOf(const Scene& scene, const IslandPlan& island, const ReachablePairs& reachable);
 
 /// "promised", "promised while ...", "not promised, because ...".
 std::string describe(const Promise& promise);
 
-/// What a promise came to: "kept", "given up at 0.2 s, because ..."; empty if there was none.
+/// The outcome of a promise: "kept", "given up at 0.2 s, because ..."; empty if there was none.
 std::string outcomeOf(const Promise& promise, const std::optional<PromiseEnd>& end, const Scene& scene);
 
 /// `a, b, c, d and 3 more`.

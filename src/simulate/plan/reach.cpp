@@ -6,7 +6,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kReachRounding = 1e-6;  // of the radius: bounds are met by motions that stretch them fully
+constexpr double kReachRounding = 1e-6;  // of the radius: a motion may go exactly to its bound
 
 /// Two anchors that stay within `length` (m) of each other.
 struct Limit {
@@ -31,7 +31,7 @@ const Body& bodyOf(const Anchor& anchor, const Scene& scene) {
   return scene.bodies[static_cast<std::size_t>(anchor.body)];
 }
 
-/// Distance of an anchor from its body's centre of mass.
+/// m: length of the moment arm r of an anchor, from its body's centre of mass.
 double momentArmOf(const Anchor& anchor, const Scene& scene) {
   return (anchor.point - bodyOf(anchor, scene).massProperties.centerOfMass).norm();
 }
@@ -40,7 +40,7 @@ Vec3 worldPoint(const Anchor& anchor, const Scene& scene) {
   return anchor.body == kWorld ? anchor.point : bodyOf(anchor, scene).worldFromBody * anchor.point;
 }
 
-/// Where an anchor can get to.
+/// The reach of an anchor.
 Reach reachOfAnchor(const Anchor& anchor, const Scene& scene, const std::vector<Reach>& reaches) {
   if (isFixed(anchor, scene)) return {worldPoint(anchor, scene), 0};
   const Reach& body = reaches[static_cast<std::size_t>(anchor.body)];
@@ -58,8 +58,9 @@ bool narrow(const Anchor& end, const Anchor& other, double length, const Scene& 
   return true;
 }
 
-/// The farthest that a spring's end can be from its fixed anchor while energy suffices: k (d - L0)^2 / 2 <= E + m g
-/// fall. The body's centre, `momentArmOf(end)` away from the spring's end, falls at most to d + r below the anchor.
+/// m: the largest distance d of a spring's end from its fixed anchor. With the energy E at the start, the stiffness k,
+/// the rest length L0, and the moment arm r of the end, the spring's energy is at most E + m g x fall: k (d - L0)^2 / 2
+/// <= E + m g (d + r - start), as the body's centre of mass is at most d + r below the anchor.
 double farthestOnSpring(const Spring& spring, const Anchor& end, const Anchor& fixed, double energy,
                         const Scene& scene) {
   if (spring.stiffness == 0) return std::numeric_limits<double>::infinity();
@@ -67,7 +68,8 @@ double farthestOnSpring(const Spring& spring, const Anchor& end, const Anchor& f
   const double gravity = scene.gravity.norm();
   const Vec3 down = gravity > 0 ? Vec3(scene.gravity / gravity) : Vec3(Vec3::Zero());
   const Vec3 start = body.worldFromBody * body.massProperties.centerOfMass - worldPoint(fixed, scene);
-  const double weight = body.massProperties.mass * gravity / spring.stiffness;  // m: what it stretches the spring by
+  const double weight =
+      body.massProperties.mass * gravity / spring.stiffness;  // m: by which its weight stretches the spring
   const double half = spring.restLength + weight;  // d^2 - 2 half d + L0^2 - 2 (E / k + weight (r - start)) <= 0
   const double rest = spring.restLength * spring.restLength -
                       2 * (energy / spring.stiffness + weight * (momentArmOf(end, scene) - down.dot(start)));
@@ -84,7 +86,7 @@ bool isPushed(int body, const Scene& scene) {
   return std::any_of(scene.pushes.begin(), scene.pushes.end(), [body](const Push& push) { return push.body == body; });
 }
 
-/// Bodies on springs that all end at fixed points, and that nothing else moves.
+/// Narrows the reaches of bodies on springs that all end at fixed points, and that nothing else moves.
 void narrowBySprings(const Scene& scene, const std::vector<char>& touches, std::vector<Reach>& reaches) {
   const std::vector<Limit> limits = limitsOf(scene);
   for (std::size_t index = 0; index < scene.bodies.size(); ++index) {
@@ -111,7 +113,8 @@ void narrowBySprings(const Scene& scene, const std::vector<char>& touches, std::
   }
 }
 
-/// A parabola stays within its chord and its sag of the way's middle.
+/// Narrows the reaches of free bodies: a parabola stays within half its chord plus g T^2 / 8 of the middle of its
+/// chord.
 void narrowByFlight(const Scene& scene, const std::vector<char>& isAttached, std::vector<Reach>& reaches) {
   for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
     if (isAttached[body] || isPushed(static_cast<int>(body), scene)) continue;

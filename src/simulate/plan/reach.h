@@ -13,10 +13,9 @@ struct Reach {
   double radius = std::numeric_limits<double>::infinity();
 };
 
-/// Where each body can get to during the run, as far as that follows from its constraints to fixed points (lengths of
-/// rods, ropes and joints), and, for bodies that touch nothing, from the energy that a body on springs has, or from the
-/// parabola of a body that nothing holds. Infinite where nothing is known. `touches`: by body. O(bodies x links) at
-/// worst.
+/// The reach of each body during the run. It follows from lengths of rods, ropes and joints that lead to fixed points,
+/// and for bodies that touch nothing from the energy of a body on springs, or from the parabola of a free body.
+/// Infinite where nothing is known. `touches`: whether a body may touch another, by body. O(bodies x links) at worst.
 std::vector<Reach> reachOf(const Scene& scene, const std::vector<char>& touches);
 
 }  // namespace cradle

@@ -18,8 +18,8 @@ double kineticEnergyOf(const std::vector<int>& bodies, const Mechanism& mechanis
 
 using Vec6 = Eigen::Vector<double, 6>;
 
-/// Bodies as if they were one rigid body: what their motion as one has of kinetic energy, relative motions add to
-/// (J. Koenig's theorem, for the angular momentum too).
+/// Bodies as one rigid body. Kinetic energy and angular momentum are those of the common motion plus those of the
+/// motion relative to it (J. Koenig).
 struct WholeOfBodies {
   double mass = 0;                    // kg
   Vec3 center = Vec3::Zero();         // m
@@ -60,7 +60,7 @@ WholeOfBodies wholeOf(const std::vector<int>& bodies, const Mechanism& mechanism
   return whole;
 }
 
-/// Adds velocities of bodies that move as one.
+/// Adds a common rigid motion about `center` to the velocities of bodies.
 void addMotion(const std::vector<int>& bodies, const Vec3& center, const Vec6& motion, VectorX& state) {
   const Vec3 commonRotation = motion.tail<3>();
   for (const int body : bodies) {

@@ -15,25 +15,25 @@ double energyOf(const std::vector<int>& bodies, const Mechanism& mechanism, cons
 /// angular velocity (rad/s), world.
 using RigidMotions = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 
-/// Bodies that contact moves together, and the motions of them as one that fixed things do not hinder: impulses leave
-/// the momenta of these as they are. All, where nothing fixed touches them or is joined to them.
+/// Bodies that contact moves together, and their common rigid motions that nothing fixed hinders: impulses between them
+/// leave the momenta of these motions as they are. All six, where nothing fixed touches them or is joined to them.
 struct MovedBodies {
   std::vector<int> bodies;
   RigidMotions kept = RigidMotions::Identity(6, 6);
 };
 
-/// Leaves of `kept` the motions along a plane without friction: shifts along it and turns about its normal. None if
-/// another plane has done so before.
+/// Restricts `kept` to the motions along a plane without friction: translations along it and the rotation about its
+/// normal. None are left if another plane has done so before.
 void hinderByPlane(const Vec3& normal, RigidMotions& kept);
 
-/// Bodies keep momenta that they have in `free`, where motion without contact led: a step's impulses act where contacts
-/// were at its start, not where the bodies are at its end. A motion of all of them as one rigid body makes up for that,
-/// which no contact feels.
+/// Restores the momenta of the kept motions to those of `free`, the end of motion without contact: a step's impulses
+/// act where contacts were at its start, not where the bodies are at its end. The bodies are moved as one rigid body
+/// for that, so that no contact changes.
 void keepMomenta(const MovedBodies& moved, const VectorX& free, const Mechanism& mechanism, VectorX& state);
 
-/// Contact gives no energy: what bodies have more than `most` (J), by rounding, by the order of a method or by impulses
-/// that were not found, is taken from their velocities relative to the kept motion that has their momenta. All become
-/// smaller by the same part, so that what touches opens and slides as before. Returns how much energy (J) that took.
+/// Contact gives no energy: energy above `most` (J), which comes of rounding, of the order of a method or of impulses
+/// that were not found, is taken from the velocities relative to the kept motion that has the bodies' momenta. All are
+/// scaled by one factor, so that contacts open and slide as before. Returns the energy (J) that this took.
 double clampEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state);
 
 /// Whether `energy` exceeds `most` (J) by more than rounding.

@@ -12,7 +12,7 @@
 
 namespace cradle {
 
-/// What had to be done to a step beside the laws of contact.
+/// A correction of a step beside the laws of contact.
 struct SteppingFault {
   CorrectionKind kind;
   std::vector<int> bodies;  // moving
@@ -85,7 +85,7 @@ class GroupProblem {
   /// do.
   VectorX solve(const StepGroup& group, const ContactProblem& problem, std::vector<SteppingFault>& faults);
 
-  /// The same without friction, memory and faults: of few contacts to rounding, of many to `tolerance` (m/s).
+  /// Impulses without friction, warm start and faults: of few contacts to rounding, of many to `tolerance` (m/s).
   VectorX solveFrictionless(const VectorX& free, double tolerance);
 
   /// Iterations of ADMM and interior points so far.

@@ -14,25 +14,25 @@ namespace cradle {
 namespace {
 
 constexpr double kStepTouchRatio = 1e-9;     // of the smallest body's size: nearer counts as touching
-constexpr std::size_t kFewLoaded = 8;        // contacts that last: more are resolved step by step
-constexpr double kTogetherRatio = 1e-3;      // of a step: what touches within it touches together
+constexpr std::size_t kFewLoaded = 8;        // contacts that last: with more, time stepping alone is in use
+constexpr double kTogetherRatio = 1e-3;      // of a step: contacts that touch within it touch at one instant
 constexpr double kLooseMomentArm = 3e-3;     // sizes of a body: shorter levers about a joint leave hardly any turning,
 constexpr double kLoosened = 1e-6;           // and contacts there may overlap by so many
-constexpr double kReach = 2;                 // of the way that a body goes freely: what others may make of it
+constexpr double kReach = 2;                 // of the displacement of free motion: what others may make of it
 constexpr double kRestingReachRatio = 1e-3;  // of its size: the same, for bodies at rest
-constexpr double kStillSteps = 20;           // awake at least so long: a rattle is no row of rests
-constexpr double kLetBe = 0.1;               // of what carries at rest: overlaps that the next step may take out
-constexpr double kNearOverlap = 10;          // of the deepest overlap: so near others may be pushed into
-constexpr int kMaxRemovals = 4;           // of overlaps in a step: each leaves the square of a part of what was there
-constexpr double kClosedRatio = 1e-6;     // of the speed that gravity gives in a step: slower does not close
+constexpr double kStillSteps = 20;     // awake at least so long: a rattling body is not put to rest again and again
+constexpr double kLetBe = 0.1;         // of the support margin: shallower overlaps are left to the next step
+constexpr double kNearOverlap = 10;    // of the deepest overlap: contacts so near may come to overlap by the correction
+constexpr int kMaxRemovals = 4;        // of overlaps in a step: each leaves about the square of the relative overlap
+constexpr double kClosedRatio = 1e-6;  // of the speed that gravity gives in a step: slower does not close
 constexpr double kMinImpactRatio = 0.01;  // of the speed that gravity gives in a step: slower is no impact
-constexpr double kNextImpactRatio = 0.1;  // of the same: slower landings are not worth ending a step for
+constexpr double kNextImpactRatio = 0.1;  // of the same: a step does not end at a slower next impact
 
 double closingSpeed(const Contact& contact, const VectorX& state) {
   return -openingSpeed(contact, state);
 }
 
-/// Without friction by reflections; with it by the same on Coulomb's cones.
+/// Resolves an impact: without friction by generalized reflections, with friction by frictional contact problems.
 ImpactFaults resolveImpact(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
   const bool hasFriction = std::any_of(impacts.begin(), impacts.end(), [](const ImpactContact& impact) {
     return impact.material.staticFriction > 0 || impact.material.dynamicFriction > 0;
@@ -57,14 +57,14 @@ StepContacts::StepContacts(IslandState& island, double timeStep)
   resting_.setStillTime(kStillSteps * timeStep);
 }
 
-void StepContacts::strike(double time, const VectorX& before, VectorX& state) {
+void StepContacts::resolveImpacts(double time, const VectorX& before, VectorX& state) {
   if (assembly_.geometry.colliders.empty()) return;
   findSimultaneous(state);
   if (touching_.empty()) return;
   wakeTouched(time, state);
   if (solver_.hasConstraints()) solver_.factorize(state);
   if (!stepsOnly_) {
-    resolveImpacts(time, before, state);
+    resolveImpactIslands(time, before, state);
     return letSleep(time, touching_, state);
   }
   const std::vector<Vec3> impulses = stepping_.resolveImpact(touching_, timeStep_, state);
@@ -75,7 +75,7 @@ void StepContacts::strike(double time, const VectorX& before, VectorX& state) {
   }
 }
 
-/// Contacts of this instant, and those that are so near to it that they take part in its impact.
+/// Contacts of this instant, and those that close so soon after it that they take part in its impact.
 void StepContacts::findSimultaneous(const VectorX& state) {
   findTouching(state, margin());
   double fastest = 0;
@@ -84,9 +84,10 @@ void StepContacts::findSimultaneous(const VectorX& state) {
   std::erase_if(touching_, [&](const Contact& contact) { return contact.separation > near; });
 }
 
-/// Contacts that may close within a step, also if others make the bodies faster.
+/// Contacts whose gap is at most twice the displacements of their bodies in free motion: they may close within the
+/// step, also where other contacts make the bodies faster.
 void StepContacts::findWithinReach(const VectorX& before, const VectorX& state, double length) {
-  std::vector<double> ways;  // m, of each body within the step
+  std::vector<double> displacements;  // m, of each body within the step
   double farthest = 0;
   for (std::size_t i = 0; i < assembly_.radii.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
@@ -94,20 +95,20 @@ void StepContacts::findWithinReach(const VectorX& before, const VectorX& state, 
     for (const VectorX* moment : {&before, &state})
       speed = std::max(
           speed, linearVelocity(*moment, body).norm() + assembly_.radii[i] * angularVelocity(*moment, body).norm());
-    ways.push_back(kReach * speed * length + kRestingReachRatio * assembly_.radii[i]);
-    farthest = std::max(farthest, ways.back());
+    displacements.push_back(kReach * speed * length + kRestingReachRatio * assembly_.radii[i]);
+    farthest = std::max(farthest, displacements.back());
   }
   findTouching(before, 2 * farthest);
   std::erase_if(touching_, [&](const Contact& contact) {
-    double way = 0;
+    double displacement = 0;
     for (const int body : {contact.bodyA, contact.bodyB})
-      if (body != kFixed) way += ways[static_cast<std::size_t>(body)];
-    return contact.separation > way;
+      if (body != kFixed) displacement += displacements[static_cast<std::size_t>(body)];
+    return contact.separation > displacement;
   });
 }
 
-/// Of pairs that are apart when the step begins nothing is known but by the search for impacts, as long as there is
-/// one.
+/// The contacts of a step: of pairs that touch when it begins. Pairs that are apart are left to the search for impacts,
+/// unless time stepping alone is in use.
 void StepContacts::findStepContacts(const VectorX& before, const VectorX& state, double length) {
   findWithinReach(before, state, length);
   if (stepsOnly_) return loosenShortMomentArms(before, touching_);
@@ -118,8 +119,8 @@ void StepContacts::findStepContacts(const VectorX& before, const VectorX& state,
   loosenShortMomentArms(before, touching_);
 }
 
-/// Where a joint leaves a contact hardly any lever, impulses turn bodies farther than steps can follow. Such contacts
-/// may overlap a little: bodies that do turn give them a lever.
+/// Widens the gaps of contacts with a short moment arm about a joint, so that they may overlap a little: their impulses
+/// rotate bodies farther than steps can follow, and bodies that do rotate give them a longer moment arm.
 void StepContacts::loosenShortMomentArms(const VectorX& state, std::vector<Contact>& contacts) {
   if (contacts.empty() || !solver_.hasConstraints()) return;
   const ImpulseResponse response(assembly_.mechanism.bodies, solver_);
@@ -134,7 +135,7 @@ void StepContacts::begin(double time, const VectorX& before, const VectorX& stat
   touching_.clear(), strikesInside_.clear();
   if (assembly_.geometry.colliders.empty()) return;
   findStepContacts(before, state, length);
-  // What rests is woken by what closes within the step, with all that it rests on.
+  // A contact that closes within the step wakes its bodies, with all that rest with them.
   bool woken = false;
   for (const Contact& contact : touching_) {
     const double closing = -contact.normal.dot(relativeVelocity(contact, before, state));
@@ -186,8 +187,8 @@ void StepContacts::recordAndLetSleep(double time, VectorX& state) {
   willStepOnly_ = stepsOnly_ ? !acting.empty() : acting.size() > kFewLoaded;
 }
 
-/// Points that were not yet nearest when the step began, on rims and edges that turn, may have come too near at its
-/// end.
+/// Takes out overlaps at the end of a step: points on rims and edges that rotate may overlap there without having been
+/// contacts at its start.
 void StepContacts::correctPenetrations(const RopeEvents& ropes, VectorX& state) {
   for (int round = 0; round < kMaxRemovals; ++round) {
     findTouching(state, 0, overlapping_);
@@ -224,7 +225,7 @@ void StepContacts::letSleep(double time, const std::vector<Contact>& contacts, V
     log_.recordBody(time, EventKind::rest, body, centerOfMass(state, body));
 }
 
-/// Contacts of this instant in which something moves, and that constraints do not hold as they are.
+/// Contacts of this instant between bodies of which one moves, which can open or close as far as constraints let them.
 void StepContacts::findTouching(const VectorX& state, double margin, std::vector<Contact>& touching) {
   findContacts(assembly_.geometry, state, margin, touching);
   std::erase_if(touching, [this](const Contact& contact) {
@@ -248,10 +249,10 @@ void StepContacts::wakeTouched(double time, const VectorX& state) {
   if (woken) findSimultaneous(state);
 }
 
-/// All that touch each other where one closes take part. A contact that closes faster than acceleration explains
-/// rebounds. What explains: the speed that it gained since the last step, part of a step as that may have been, would
-/// have in `kRestSteps` whole ones.
-void StepContacts::resolveImpacts(double time, const VectorX& before, VectorX& state) {
+/// Resolves the impacts of all islands in which a contact closes, each with all its contacts. A contact rebounds if it
+/// closes faster than accelerations explain: than by the speed that it gained in the last step, scaled to `kRestSteps`
+/// whole steps.
+void StepContacts::resolveImpactIslands(double time, const VectorX& before, VectorX& state) {
   for (std::vector<ImpactContact>& impacts : findImpacts(before, state)) {
     if (impacts.empty()) continue;
     const VectorX approach = state;
@@ -269,7 +270,7 @@ void StepContacts::resolveImpacts(double time, const VectorX& before, VectorX& s
   }
 }
 
-/// What an impact at a contact moves with others: bodies that touch each other or are joined.
+/// Impact islands: bodies that touch each other or are joined.
 DisjointSets StepContacts::findImpactIslands() const {
   DisjointSets islands(assembly_.mechanism.bodies.size());
   for (const Contact& contact : touching_) islands.join(contact.bodyA, contact.bodyB);
@@ -277,7 +278,7 @@ DisjointSets StepContacts::findImpactIslands() const {
   return islands;
 }
 
-/// The impacts of this instant by island; most are empty.
+/// The impacts of this instant by impact island; most are empty.
 std::vector<std::vector<ImpactContact>> StepContacts::findImpacts(const VectorX& before, const VectorX& state) const {
   const DisjointSets islands = findImpactIslands();
   std::vector<std::vector<ImpactContact>> impacts(assembly_.mechanism.bodies.size());

@@ -12,53 +12,54 @@
 
 namespace cradle {
 
-/// What happens where bodies touch: active contacts hold over steps, impacts rebound at their ends, and what lies
-/// still is put to rest.
+/// Contacts of an island under time stepping: contacts that last are solved over a step, impacts are resolved at its
+/// end, and bodies in equilibrium are put to rest.
 class StepContacts {
  public:
   /// Keeps a reference to `island`. `timeStep` (s) is the method's.
   StepContacts(IslandState& island, double timeStep);
 
-  /// Finds what may touch within a step of free motion of `length` (s) from `before` to `state`.
+  /// Finds the contacts that may close within a step of free motion of `length` (s) from `before` to `state`, and wakes
+  /// the bodies of those that do.
   void begin(double time, const VectorX& before, const VectorX& state, double length);
 
-  /// Near pairs but those that are held over the step.
+  /// Near pairs without a contact of the step: impacts of these are searched for.
   std::vector<ColliderPair> pairsWithoutContact() const;
 
   /// The fraction of that step at which the next impact inside it comes, whose contacts are then resolved after the
   /// step; infinite if there is none.
   double nextImpact(const VectorX& before, const VectorX& state, double length);
 
-  /// What contact makes of a step that has begun, now of this `length`: one frictional contact problem, with `ropes`
-  /// that may be stretched in it.
+  /// Solves the contacts of a step that has begun, now of this `length` (s), as one frictional contact problem, with
+  /// `ropes` that may be stretched in it. `state` is the end of free motion, and after the call that of the step.
   void solveContacts(const VectorX& before, double length, const RopeEvents& ropes, VectorX& state);
 
-  /// What friction took (J) in the step that was held last, and would have at the velocities of its start.
+  /// J: what friction took in the step that was solved last, and would have at the velocities of its start.
   ContactStepping::FrictionWork frictionWork() const { return stepping_.frictionWork(); }
 
   /// How far (m or rad) that left constraints from where they should be.
   double constraintError() const { return stepping_.constraintError(); }
 
-  /// Records what hit within the step that was held last, if one was, and puts to rest what lies still at its end.
+  /// Records the impacts within the step that was solved last, and puts to rest bodies that are still at its end.
   void recordAndLetSleep(double time, VectorX& state);
 
   /// The impacts of this instant. `before` is the state at the step's start.
-  void strike(double time, const VectorX& before, VectorX& state);
+  void resolveImpacts(double time, const VectorX& before, VectorX& state);
 
-  /// What may have touched in the last step, or touched at its end, if something of it moved.
+  /// The contacts of the last step, or those at its end, between bodies of which one moved.
   const std::vector<Contact>& touching() const { return touching_; }
 
-  /// Whether something struck within the last step, and not at its end.
+  /// Whether a contact struck within the last step, and not at its end.
   bool hasImpact() const;
 
-  /// Many contacts last or chatter: impacts are no longer searched for.
+  /// Whether time stepping alone resolves impacts, as many contacts last or chatter: they are not searched for then.
   bool usesTimeSteppingOnly() const { return stepsOnly_; }
   void useTimeSteppingOnly() { willStepOnly_ = true; }
 
   /// Nearer than this (m) is touching.
   double touchTolerance() const { return touchTolerance_; }
 
-  /// Farther apart (m) nothing is looked at.
+  /// m: contacts that are farther apart take no part in an impact or rest.
   double margin() const { return std::max(touchTolerance_, resting_.supportMargin()); }
 
  private:
@@ -73,7 +74,7 @@ class StepContacts {
   void letSleep(double time, const std::vector<Contact>& contacts, VectorX& state);
   void recordFaults(double time);
   void wakeTouched(double time, const VectorX& state);
-  void resolveImpacts(double time, const VectorX& before, VectorX& state);
+  void resolveImpactIslands(double time, const VectorX& before, VectorX& state);
   DisjointSets findImpactIslands() const;
   std::vector<std::vector<ImpactContact>> findImpacts(const VectorX& before, const VectorX& state) const;
 
@@ -83,7 +84,7 @@ class StepContacts {
   ConstraintSolver solver_;
   double timeStep_, touchTolerance_;             // s, m
   double leastClosingSpeed_, leastImpactSpeed_;  // m/s
-  double stepPart_ = INFINITY;                   // of a step, that the last one took
+  double stepPart_ = INFINITY;                   // length of the last step over the method's
   std::vector<Contact> touching_, overlapping_;
   ContactStepping stepping_;
   std::vector<char> strikesInside_;  // by contact, of the next impact; until contacts are solved

@@ -47,26 +47,33 @@ bool setDynamicFriction(const StepGroup& group, const ContactSet& contacts, cons
   return isOther;
 }
 
-/// The impact of one group. `approach` is the state before all impacts.
-VectorX resolveGroupImpact(const StepGroup& group, const ContactSet& contacts, double timeStep, const VectorX& approach,
-                           GroupProblem& problem, VectorX& state, std::vector<SteppingFault>& faults) {
+/// The impacts to be resolved: contacts, the state before them, and the length (s) of the steps.
+struct ImpactInput {
+  const ContactSet& contacts;
+  const VectorX& approach;
+  double timeStep;
+};
+
+/// The impact of one group.
+VectorX resolveGroupImpact(const StepGroup& group, const ImpactInput& input, GroupProblem& problem, VectorX& state,
+                           std::vector<SteppingFault>& faults) {
   problem.set(group, state);
-  const Mechanism& mechanism = contacts.assembly().mechanism;
+  const Mechanism& mechanism = input.contacts.assembly().mechanism;
   const VectorX start = problem.velocitiesIn(state);
   const double most = energyOf(group.moved.bodies, mechanism, state);
   ContactProblem posed;
   VectorX impulses;
   const auto solveAndApply = [&] {
-    copyBodies(group.moved.bodies, approach, state);
+    copyBodies(group.moved.bodies, input.approach, state);
     impulses = problem.solve(group, posed, faults);
     problem.apply(impulses, state);
   };
   const std::size_t kept = faults.size();
   const auto lossWith = [&](double fraction) {
     faults.erase(faults.begin() + static_cast<std::ptrdiff_t>(kept), faults.end());
-    posed = posedImpact(group, contacts, start, timeStep, fraction);
+    posed = posedImpact(group, input.contacts, start, input.timeStep, fraction);
     solveAndApply();
-    if (setDynamicFriction(group, contacts, problem.velocitiesIn(state), posed)) solveAndApply();
+    if (setDynamicFriction(group, input.contacts, problem.velocitiesIn(state), posed)) solveAndApply();
     return most - energyOf(group.moved.bodies, mechanism, state);
   };
   const double loss = lossWith(1);
@@ -84,7 +91,7 @@ std::vector<Vec3> resolveStepImpact(const ContactSet& contacts, double timeStep,
   const VectorX approach = state;
   const double constant = energyConstant(contacts.assembly().mechanism, state);
   for (const StepGroup& group : contacts.findGroups()) {
-    const VectorX found = resolveGroupImpact(group, contacts, timeStep, approach, problem, state, faults);
+    const VectorX found = resolveGroupImpact(group, {contacts, approach, timeStep}, problem, state, faults);
     for (std::size_t i = 0; i < group.members.size(); ++i)
       impulses[group.members[i]] = problem.axes(i) * found.segment<3>(3 * static_cast<Eigen::Index>(i));
   }

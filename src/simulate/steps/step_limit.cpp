@@ -1,6 +1,7 @@
-// A linear oscillator y = (x, x') goes through a step of any of the methods as y -> M y. Two trial steps give M, three
-// give the quadratic form of the energy that is dissipated on the way; the rest is algebra. No table of limits is
-// needed, and damping, which has limits of its own, is just another number.
+// A step of any of the methods maps a linear oscillator x'' = -k x - c x' by y -> M y, y = (x, x'). Two trial steps
+// give M, a third the quadratic form of the energy that is dissipated on the way. A step is stable if the spectral
+// radius of M is at most 1. So no table of limits is needed, and the damping c, which has limits of its own, is just a
+// number.
 
 #include "simulate/steps/step_limit.h"
 
@@ -18,14 +19,14 @@ namespace {
 constexpr double kGrowthRounding = 1e-7;  // of growth: roots of a double eigenvalue are that exact
 constexpr double kVisibleGain = 0.1;      // of the energy, during a run
 constexpr double kSafeRatio = 0.5;        // of the limit: stable, and a few per cent accurate in frequency
-constexpr double kShortestStep = 1e-3;    // of the mode's time: what is unstable there has no limit
+constexpr double kShortestStep = 1e-3;    // of the mode's time: a method that is unstable there has no stable step
 constexpr double kLimitTolerance = 1e-4;  // relative
 constexpr double kMaxTrialSteps = 10000;  // by then a stable motion has shown its largest error
 constexpr double kVisibleChange = 0.01;   // of the energy, in a period of a stable mode: 5 % of the swing in ten
 constexpr double kMinStepOmega = 1e-4;    // explicit Euler gains 1 % in a period from 1.6e-3 on, others need less care
 constexpr double kToldFraction = 0.9;     // of a step, of which two digits are told: they may be 5 % too long
 
-/// What a step does to (x, x'), and what it dissipates: y^T dissipation y.
+/// The map of a step, y -> motion y, and the energy that it dissipates: y^T dissipation y.
 struct StepMap {
   Eigen::Matrix2d motion, dissipation;
 };
@@ -58,7 +59,7 @@ double spectralRadius(const Eigen::Matrix2d& matrix) {
   return discriminant < 0 ? std::sqrt(determinant) : std::abs(halfTrace) + std::sqrt(discriminant);
 }
 
-/// Largest change of energy + dissipated, in parts of the energy at the start.
+/// Largest change of energy + dissipated, as a fraction of the energy at the start.
 double largestEnergyError(const StepMap& map, const SpringMode& mode, const Eigen::Vector2d& start, double steps) {
   const auto energyOf = [&](const Eigen::Vector2d& y) { return (mode.stiffness * y[0] * y[0] + y[1] * y[1]) / 2; };
   Eigen::Vector2d y = start;
@@ -99,8 +100,8 @@ std::string faultText(const SpringMode& mode, const ChosenMethod& method, double
                      safeStepText(limit));
 }
 
-/// What steps alone change of a mode's energy in a period, in parts of it: what they leave, less the exp(-damping
-/// period) that its damper leaves. < 0 is a loss. 0 of a mode that does not swing.
+/// The relative change of a mode's energy in a period P that comes of the steps alone: |M|^(2 P / h) - exp(-c P), |M|
+/// the spectral radius. < 0 is a loss. 0 for an overdamped mode, which does not swing.
 double changeInAPeriod(const SpringMode& mode, Integrator integrate, double timeStep) {
   const double frequency = std::sqrt(mode.stiffness);
   if (mode.damping >= 2 * frequency) return 0;
@@ -109,7 +110,7 @@ double changeInAPeriod(const SpringMode& mode, Integrator integrate, double time
   return cradle::exp(2 * period / timeStep * cradle::log(growth)) - cradle::exp(-mode.damping * period);
 }
 
-/// The longest step (s) from `timeStep` down with which that is hardly seen, to 1e-4; 0 if there is none.
+/// The longest step (s) up to `timeStep` with which that change is hardly seen, to 1e-4; 0 if there is none.
 double longestHarmlessStep(const SpringMode& mode, Integrator integrate, double timeStep) {
   const auto isHarmless = [&](double step) {
     return std::abs(changeInAPeriod(mode, integrate, step)) < kVisibleChange;

@@ -15,17 +15,17 @@
 namespace cradle {
 namespace {
 
-constexpr double kClosedGapRatio = 1e-3;             // of the touching tolerance: how well an impact's gap is closed
+constexpr double kClosedGapRatio = 1e-3;             // of the touch tolerance: how well the gap of an impact is closed
 constexpr double kShortestRatio = 1.0 / 1024;        // of a step: shorter ones are not cut for their error
 constexpr double kMaxPartGrowth = 4;                 // of a part of a step to the next
 constexpr double kMaxSteppedConstraintError = 1e-7;  // m (a m of coordinates) or rad: a thousandth of what is seen
 constexpr double kMaxConstraintErrorGrowth =
-    2;  // times what free motion leaves of constraints that contradict each other
-constexpr double kMinConstraintStep = 1.0 / 32;  // of a step: shorter ones are not cut for the sake of constraints
+    2;  // times the error of free motion, of constraints that contradict each other
+constexpr double kMinConstraintStep = 1.0 / 32;  // of a step: shorter ones are not cut for constraint errors
 constexpr int kMaxServed = 12;                   // contacts
-constexpr double kSheetRatio = 0.5;  // of the radius inside a body: so far it may go in a step beside a sheet
-constexpr int kMaxImpactCuts = 2;    // events in a step: beyond, it is not cut where something lands
-constexpr int kManyEvents = 16;      // in a step: beyond, it is not cut any more
+constexpr double kSheetRatio = 0.5;  // of a body's inner radius: its largest displacement in a step beside a sheet
+constexpr int kMaxImpactCuts = 2;    // events in a step: with as many, it is not cut at the next impact inside it
+constexpr int kManyEvents = 16;      // in a step: beyond, time stepping alone is in use
 constexpr int kMaxEvents = 10000;    // within a step
 
 }  // namespace
@@ -42,7 +42,7 @@ SteppedMotion::SteppedMotion(IslandState& island, RopeEvents& ropes, const Chose
   countSteps();
   ropes_.setTimeStep(method.timeStep);
   island_.step.startDerivativeIsKnown = false;
-  contacts_.strike(island_.time, island_.state, island_.state);
+  contacts_.resolveImpacts(island_.time, island_.state, island_.state);
   ropes_.resolve(island_.time, island_.state);
   island_.beginAndEndPushes();
   island_.requireUnsolvedPairsApart();
@@ -56,7 +56,7 @@ void SteppedMotion::advance(double frame) {
   const double stepEnd = nextStepEnd();
   if (time > windowStart_ + method_.timeStep) windowStart_ = time, eventsInWindow_ = 0;
 
-  // How far do bodies move freely, and until what meets?
+  // How far do bodies move freely, until which event?
   moveFreely(stepEnd);
   before_ = island_.state;
   bool atEvent = stopAtFirstEvent();
@@ -68,13 +68,13 @@ void SteppedMotion::advance(double frame) {
   time = step.time + step.timeStep;
   if (!atEvent && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
 
-  // What the step's interpolant needs belongs to the forces of now.
+  // The interpolant is that of the forces that act until the event.
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
 
-  // What changes here?
+  // What changes at the end of the step?
   if (hasContacts_) contacts_.recordAndLetSleep(time, island_.state);
   if (hasContacts_) contactEnd_ = island_.state;
-  if (atEvent || !contacts_.usesTimeSteppingOnly()) contacts_.strike(time, before_, island_.state);
+  if (atEvent || !contacts_.usesTimeSteppingOnly()) contacts_.resolveImpacts(time, before_, island_.state);
   rodsBefore_ = ropes_.rods();
   ropes_.resolve(time, island_.state);
   keepsConstraints_ = ropes_.rods() == rodsBefore_;
@@ -121,9 +121,9 @@ double SteppedMotion::nextStepEnd() const {
   return std::min(end, island_.pushes.nextChange());
 }
 
-/// Takes out what the step left wrong: lengths of rods, closing and overlapping contacts. False if a shorter step would
-/// keep constraints that this one does not: what contact makes of free motion does not follow the arcs of light bodies
-/// on long arms far.
+/// Projects the end of free motion onto the constraints and solves the contacts of the step. False if a shorter step is
+/// to be taken, as contacts left too large a constraint error: they move bodies along straight lines, where light
+/// bodies on long moment arms go along arcs.
 bool SteppedMotion::solveContacts() {
   const double length = island_.step.timeStep;
   VectorX& state = island_.state;
@@ -155,7 +155,7 @@ void SteppedMotion::shorten() {
   method_.integrate(island_.rightHandSide, before_, island_.time, half, step);
 }
 
-/// s: so that nothing that is near a sheet, and may touch it already, comes to its other side within a step.
+/// s: the longest step in which no body near a sheet, which it may touch already, comes to its other side.
 double SteppedMotion::longestBesideSheets() const {
   const ContactGeometry& geometry = island_.assembly.geometry;
   double longest = INFINITY;
@@ -172,7 +172,8 @@ double SteppedMotion::longestBesideSheets() const {
   return longest;
 }
 
-/// Takes a step to `stepEnd`, or a part of it where springs, ropes or spins are too fast for the whole.
+/// Takes a step of free motion to `stepEnd`, or a fraction of it where springs, ropes or rotations are too fast for the
+/// whole.
 void SteppedMotion::moveFreely(double stepEnd) {
   Step& step = island_.step;
   double length = std::min({stepEnd - island_.time, longest_, longestBesideSheets()});
@@ -189,7 +190,8 @@ void SteppedMotion::moveFreely(double stepEnd) {
   longest_ = kMaxPartGrowth * length;
 }
 
-/// Cuts the step at the first event in it. Free motion does not say when bodies meet that touch already: landings do.
+/// Cuts the step at the first event in it. Impacts of pairs that touch already are found with their contacts
+/// (stopAtNextImpact): free motion does not tell them.
 bool SteppedMotion::stopAtFirstEvent() {
   if (!island_.mayTouch() && !ropes_.hasRopes()) return false;
   Step& step = island_.step;
@@ -215,7 +217,7 @@ bool SteppedMotion::stopAtFirstEvent() {
   return impact || change;
 }
 
-/// Cuts the step where something lands while other contacts last.
+/// Cuts the step at the next impact inside it of bodies whose other contacts last.
 bool SteppedMotion::stopAtNextImpact() {
   Step& step = island_.step;
   if (eventsInWindow_ >= kMaxImpactCuts) return false;

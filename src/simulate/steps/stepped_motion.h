@@ -10,7 +10,7 @@
 namespace cradle {
 
 /// Moves an island in steps of one length, for methods that a scene names and for contact that is too much for events.
-/// A step is cut where bodies meet or land, ropes go taut or slack, and pushes begin or end; active contact is held
+/// A step is cut at impacts, where ropes go taut or slack, and where pushes begin or end; contacts that last are solved
 /// over it.
 class SteppedMotion {
  public:
@@ -24,7 +24,8 @@ class SteppedMotion {
   /// Whether the last step kept the bodies' constraints: its interpolant may be projected.
   bool keepsConstraints() const { return keepsConstraints_; }
 
-  /// Adds to a state of the last step's free motion, at a fraction of it, what contacts did that acted over all of it.
+  /// Adds to a state inside the last step's free motion, at a fraction of it, what contacts changed: velocities in
+  /// proportion to the fraction, positions to its square.
   void addContactMotion(double fraction, VectorX& state) const;
 
   /// Whether all bodies of the island lie still.
@@ -33,7 +34,7 @@ class SteppedMotion {
   /// Whether nothing touches any more.
   bool isFree() const { return contacts_.touching().empty(); }
 
-  /// Whether all that touches may be served by events.
+  /// Whether events could serve the contacts of the last step.
   bool mayServeEvents() const;
 
   /// Lets time pass in which nothing moves.
@@ -57,15 +58,15 @@ class SteppedMotion {
   EnergyGuard guard_;
   ConstraintSolver solver_;
   long stepNumber_ = 0;           // the step under way covers [stepNumber_, stepNumber_ + 1] x timeStep
-  double longest_ = INFINITY;     // s: what the error allowed last, and more
+  double longest_ = INFINITY;     // s: four times the length that the error allowed last
   bool keepsConstraints_ = true;  // no rope went taut or slack at the last step's end
   int eventsInWindow_ = 0;
   double windowStart_ = 0;           // s
   double startConstraintError_ = 0;  // m or rad
   VectorX before_;
   std::vector<int> rodsBefore_;     // of ropes, before the changes of a step
-  bool hasContacts_ = false;        // contacts acted over all of the last step ...
-  VectorX contactEnd_;              // ... and freeEnd here
+  bool hasContacts_ = false;        // contacts were solved over the last step ...
+  VectorX contactEnd_;              // ... and led to this state
   std::vector<double> innerRadii_;  // m, of the colliders
 };
 
