@@ -1,4 +1,4 @@
-// Milliseconds a picture takes, by stage: the median of several, of a swinging cradle at 1280x720 (or as told:
+// Milliseconds a picture takes, by pass: the median of several, of a swinging cradle at 1280x720 (or as told:
 // benchmark_frame WIDTH HEIGHT). Writes the last picture to the file named by a third argument.
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ void run(int width, int height, const char* path) {
   Framing framing(scene, width, height);
   framing.add(frame);
   Renderer renderer(scene, framing.view(), width, height);
-  renderer.measureStages(true);
+  renderer.measurePasses(true);
   std::vector<RenderTimes> times;
   Image image = renderer.render(frame);  // compiles shaders
   const double start = static_cast<double>(std::clock());
@@ -41,10 +41,10 @@ void run(int width, int height, const char* path) {
   const double cpu = (static_cast<double>(std::clock()) - start) / CLOCKS_PER_SEC / kPictures;
 
   double total = 0;
-  const auto print = [&](const char* stage, double RenderTimes::*member) {
+  const auto print = [&](const char* pass, double RenderTimes::*member) {
     std::vector<double> values;
     for (const RenderTimes& one : times) values.push_back(1e3 * (one.*member));
-    fmt::print("{:<10} {:7.2f} ms\n", stage, median(values));
+    fmt::print("{:<10} {:7.2f} ms\n", pass, median(values));
     total += median(values);
   };
   fmt::print("{}x{}, {} pictures, medians\n", width, height, kPictures);

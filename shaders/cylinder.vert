@@ -11,7 +11,7 @@ layout(location = 2) in vec4 centerAndRadius;    // m
 layout(location = 3) in vec4 axisAndLength;      // unit; m
 layout(location = 5) in vec4 instanceRoughness;  // w
 layout(location = 6) in vec4 instanceColor;      // linear; w is metallic
-layout(location = 7) in vec4 instanceBalls;      // first and number of the balls near
+layout(location = 7) in vec4 instanceOccluders;  // first and number of the occluders near
 
 flat out vec4 base;  // centre, radius
 flat out vec4 axis;  // unit; 0 on the side, +-1 on an end
@@ -20,7 +20,7 @@ out float drawnRadius;
 out float coverage;
 flat out vec4 surfaceColor;
 flat out float roughness;
-flat out vec2 nearBalls;
+flat out vec2 nearOccluders;
 
 const float kRightAngle = 1.57079633;
 const float kThinnest = 0.55;  // pixels: radius of the thinnest line that is drawn; thinner ones fade
@@ -53,6 +53,6 @@ void main() {
   axis = vec4(along, isEnd ? end : 0.0);
   surfaceColor = instanceColor;
   roughness = instanceRoughness.w;
-  nearBalls = instanceBalls.xy;
+  nearOccluders = instanceOccluders.xy;
   gl_Position = clipFromWorld * vec4(position, 1.0);
 }

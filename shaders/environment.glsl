@@ -7,8 +7,8 @@ uniform vec3 bounceIrradiance;  // what the ground or the floor sends back up
 #if HAS_GROUND
 #include "grid.glsl"
 #include "irradiance.glsl"
-#ifdef MIRRORS_SHADOWS  // only shining balls do: all others may stay as they are when a shadow moves
-#include "contact.glsl"
+#ifdef MIRRORS_SHADOWS  // only shining spheres do: all others may stay as they are when a shadow moves
+#include "contact_shadow.glsl"
 flat in float mirrorsShadows;
 #endif
 
@@ -29,7 +29,7 @@ vec3 groundLight(vec3 from, vec3 direction, float spread, float bounced) {
     float texels = max(footprint.x, footprint.y) / (squaresPerMetre * shadowTexel);
     float blur = max(smoothstep(2.0, kBlurredTexels, texels), bounced);
     lit = mix(quickShadow(position), kUsuallyLit, blur);
-    open = mix(contactShade(position), 1.0, blur);
+    open = mix(contactShadow(position), 1.0, blur);
   }
 #endif
   vec3 light = albedo * groundIrradiance(lit, open);
@@ -38,7 +38,7 @@ vec3 groundLight(vec3 from, vec3 direction, float spread, float bounced) {
 
 #endif
 
-// `spread` is how far the ray fans out per metre; `bounced` 1 if it comes by way of a ball: it shows no shadows then.
+// `spread` is how far the ray fans out per metre; `bounced` 1 if it comes by way of a sphere: it shows no shadows then.
 vec3 environment(vec3 from, vec3 direction, float spread, float bounced) {
   vec3 sky = skyLight(direction) + skyGlow(direction);
 #if HAS_GROUND

@@ -2,7 +2,7 @@
 #extension GL_ARB_texture_gather : require
 #include "ground.glsl"
 #include "shadow.glsl"
-#include "contact.glsl"
+#include "contact_shadow.glsl"
 
 // The ground near the scene, where shadows fall.
 
@@ -11,5 +11,5 @@ out vec4 color;
 void main() {
   GroundPoint point = meetGround();
   vec3 position = groundPosition(point);
-  color = groundColor(point, softShadow(position, groundPlane.xyz), contactShade(position));
+  color = groundColor(point, softShadow(position, groundPlane.xyz), contactShadow(position));
 }

@@ -11,7 +11,7 @@ uniform float shadowSize;        // texels a side
 uniform float shadowDeep;        // depth of the map in texels
 uniform float shadowTexel;       // m, world size of a texel
 
-const float kBlock = 8.0;          // as in stage.h
+const float kBlock = 8.0;          // as in render_setup.h
 const float kLightRadius = 0.03;   // tangent of half the angle in which the light is seen; as in changed_area.cpp
 const float kWidestRadius = 16.0;  // of the disc
 const float kNarrowestRadius = 1.3;

@@ -8,7 +8,7 @@ uniform float shadowSize;  // texels a side
 
 out float least;
 
-const int kBlock = 8;  // as in stage.h
+const int kBlock = 8;  // as in render_setup.h
 
 void main() {
   vec2 corner = floor(gl_FragCoord.xy) * float(kBlock);

@@ -4,7 +4,7 @@
 #include "sky.glsl"
 #include "shadow.glsl"
 #include "environment.glsl"
-#include "neighbours.glsl"
+#include "occluders.glsl"
 
 uniform vec3 eye;
 #if FILL_LIGHTS > 0  // lights after the first throw no shadow
@@ -14,12 +14,12 @@ uniform vec3 fillRadiance[FILL_LIGHTS];
 
 flat in vec4 surfaceColor;  // linear; w is metallic
 flat in float roughness;
-flat in vec2 nearBalls;
+flat in vec2 nearOccluders;
 
 const float kDielectric = 0.04;   // reflected straight on by plastic, wood, stone
 const float kSheen = 0.08;         // the same of what is seen in a mirror, at the usual slant
 const float kLightWidth = 0.035;  // the lights are no points: the narrowest highlight
-const float kFromNeighbours = 0.2;  // what hides the surroundings sends out light too: of theirs
+const float kFromOccluders = 0.2;  // occluders send out light too: a fraction of that of the surroundings
 const float kTexelsAside = 1.5;   // so far a surface stands off from its own depths, which are those of flat triangles
 
 // Microfacets of Walter, Marschner, Li, Torrance 2007 (GGX); visibility term of Heitz 2014 in Hammon's approximation,
@@ -64,11 +64,11 @@ vec3 shade(vec3 position, vec3 n) {
   vec3 straightOn = mix(vec3(kDielectric), surfaceColor.rgb, metallic);
   float turn = length(fwidth(n));  // thin things turn within a pixel
   float alpha = min(roughness * roughness + kLightWidth + 0.3 * turn, 1.0 + kLightWidth);
-  int first = int(nearBalls.x), count = int(nearBalls.y);
+  int first = int(nearOccluders.x), count = int(nearOccluders.y);
 
   float spread = roughness * roughness + 2.0 * turn;
   Mirrored ray = Mirrored(position, reflect(-v, n), vec3(0.0), vec4(1.0), 0.0);
-  float open = mix(kFromNeighbours, 1.0, lookAtNeighbours(first, count, position, n, spread, ray));
+  float open = mix(kFromOccluders, 1.0, gatherOccluders(first, count, position, n, spread, ray));
 
   vec3 key = lightRadiance * keyShadow(position, n);
   vec3 light = key * (matt * max(dot(n, lightDirection), 0.0) + highlight(n, v, lightDirection, straightOn, alpha));
@@ -79,9 +79,9 @@ vec3 shade(vec3 position, vec3 n) {
 #endif
 
   vec3 mirrored = environment(ray.from, ray.direction, spread, ray.coverage) * mix(vec3(1.0), ray.look.rgb, ray.coverage);
-  vec3 mattBall = ray.look.rgb * (ambientLight(ray.normal) + lightRadiance * max(dot(ray.normal, lightDirection), 0.0));
-  mattBall += kSheen * skyLight(ray.direction);
-  mirrored = mix(mirrored, mattBall, ray.coverage * (1.0 - ray.look.w));
+  vec3 mattSphere = ray.look.rgb * (ambientLight(ray.normal) + lightRadiance * max(dot(ray.normal, lightDirection), 0.0));
+  mattSphere += kSheen * skyLight(ray.direction);
+  mirrored = mix(mirrored, mattSphere, ray.coverage * (1.0 - ray.look.w));
   light += open * matt * ambientLight(n) + mirroredShare(straightOn, roughness, abs(dot(n, v))) * mirrored *
            mix(1.0, open, roughness);
   return light;

@@ -11,13 +11,13 @@ layout(location = 3) in vec4 worldFromMeshY;
 layout(location = 4) in vec4 worldFromMeshZ;
 layout(location = 5) in vec4 instanceRoughness;  // w
 layout(location = 6) in vec4 instanceColor;      // linear; w is metallic
-layout(location = 7) in vec4 instanceBalls;      // first and number of the balls near; 1 if it mirrors shadows
+layout(location = 7) in vec4 instanceOccluders;  // first and number of the occluders near; 1 if it mirrors shadows
 
 out vec3 position;
 out vec3 normal;
 flat out vec4 surfaceColor;
 flat out float roughness;
-flat out vec2 nearBalls;
+flat out vec2 nearOccluders;
 flat out float mirrorsShadows;
 out float coverage;
 
@@ -28,8 +28,8 @@ void main() {
                 dot(worldFromMeshZ.xyz, meshNormal));
   surfaceColor = instanceColor;
   roughness = instanceRoughness.w;
-  nearBalls = instanceBalls.xy;
-  mirrorsShadows = instanceBalls.z;
+  nearOccluders = instanceOccluders.xy;
+  mirrorsShadows = instanceOccluders.z;
   coverage = 1.0;
   gl_Position = clipFromWorld * vec4(position, 1.0);
 }

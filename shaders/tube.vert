@@ -10,7 +10,7 @@ layout(location = 3) in vec4 endAndCoil;    // m; w is the radius of the coil
 layout(location = 4) in vec4 sideAndTurns;  // unit, across the line; w is the number of turns
 layout(location = 5) in vec4 sagAndRoughness;
 layout(location = 6) in vec4 instanceColor;
-layout(location = 7) in vec4 instanceBalls;  // z: share of a coil that is straight at each end, or a rope's slack; w: its lean
+layout(location = 7) in vec4 instanceOccluders;  // z: share of a coil that is straight at each end, or a rope's slack; w: its lean
 
 uniform float pixelSize;  // m, of a pixel at a depth of 1 m; 0 for the shadow map
 
@@ -18,7 +18,7 @@ out vec3 position;
 out vec3 normal;
 flat out vec4 surfaceColor;
 flat out float roughness;
-flat out vec2 nearBalls;
+flat out vec2 nearOccluders;
 flat out float mirrorsShadows;
 out float coverage;
 
@@ -26,7 +26,7 @@ const float kTurn = 6.28318531;
 const float kThinnest = 0.55;  // pixels: radius of the thinnest line that is drawn; thinner ones fade
 
 float turned(float s) {
-  float straight = instanceBalls.z;
+  float straight = instanceOccluders.z;
   return clamp((s - straight) / (1.0 - 2.0 * straight), 0.0, 1.0);
 }
 
@@ -54,13 +54,13 @@ float alongChord(float s, float slack, float lean) {
 // The coil grows out of the straight ends and shrinks back within as much of the length again.
 vec3 curve(float s, vec3 line, vec3 side, vec3 across) {
   if (sideAndTurns.w == 0.0) {
-    float slack = instanceBalls.z, lean = instanceBalls.w;
+    float slack = instanceOccluders.z, lean = instanceOccluders.w;
     if (slack == 0.0) return startAndWire.xyz + s * line;
     float along = alongChord(clamp(s, 0.0, 1.0), slack, lean);
     return startAndWire.xyz + along * line + hanging(along, slack, lean) * sagAndRoughness.xyz;
   }
   float inside = turned(s);
-  float open = smoothstep(0.0, 1.0, min(inside, 1.0 - inside) / max(instanceBalls.z, 1e-3));
+  float open = smoothstep(0.0, 1.0, min(inside, 1.0 - inside) / max(instanceOccluders.z, 1e-3));
   return startAndWire.xyz + s * line + endAndCoil.w * open * outwards(s, side, across);
 }
 
@@ -82,7 +82,7 @@ void main() {
   position = centre + radius * normal;
   surfaceColor = instanceColor;
   roughness = sagAndRoughness.w;
-  nearBalls = instanceBalls.xy;
+  nearOccluders = instanceOccluders.xy;
   mirrorsShadows = 0.0;
   gl_Position = clipFromWorld * vec4(position, 1.0);
 }

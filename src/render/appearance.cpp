@@ -54,7 +54,7 @@ BodySolid solidOf(const DrawnMesh& mesh, const BodyPart& part) {
   solid.surface = part.surface;
   for (std::uint32_t i = part.firstTriangle; i < part.firstTriangle + part.triangleCount; ++i)
     for (const std::uint32_t vertex : mesh.triangles[i]) solid.box.extend(mesh.vertices[vertex]);
-  if (fullness(mesh, part, solid.box) > kFullBox) solid.kind = ContactKind::box;
+  if (fullness(mesh, part, solid.box) > kFullBox) solid.kind = ContactShadowShape::box;
   return solid;
 }
 
@@ -152,36 +152,36 @@ std::vector<BodyPart> Catalogue::partsOfModel(const ModelShape& shape, const Mat
 }
 
 /// The sphere that each model is, if it is one.
-std::vector<std::optional<BodyBall>> findBalls(const std::vector<Model>& models) {
-  std::vector<std::optional<BodyBall>> balls;
+std::vector<std::optional<BodySphere>> findSpheres(const std::vector<Model>& models) {
+  std::vector<std::optional<BodySphere>> spheres;
   for (const Model& model : models) {
-    balls.emplace_back();
+    spheres.emplace_back();
     if (!checkSolid(model.solid).isClosed) continue;
     const auto primitive = recogniseShape(model.solid).primitive;
     const Sphere* sphere = primitive ? std::get_if<Sphere>(&primitive->shape) : nullptr;
-    if (sphere != nullptr) balls.back() = BodyBall{primitive->bodyFromShape.translation, sphere->radius};
+    if (sphere != nullptr) spheres.back() = BodySphere{primitive->bodyFromShape.translation, sphere->radius};
   }
-  return balls;
+  return spheres;
 }
 
-BodyAppearance lookOf(const Scene& scene, const Body& body, const std::vector<std::optional<BodyBall>>& ballOfModel,
+BodyAppearance lookOf(const Scene& scene, const Body& body, const std::vector<std::optional<BodySphere>>& sphereOfModel,
                       Catalogue& catalogue) {
   BodyAppearance look;
   look.local = localBounds(scene, body);
   look.parts = catalogue.partsOf(body);
   look.surface = surfaceOf(scene.materials.at(static_cast<std::size_t>(body.material)), {});
   if (const auto* sphere = std::get_if<Sphere>(&body.shape)) {
-    look.ball = BodyBall{Vec3::Zero(), sphere->radius};
-    look.isDrawnAsBall = true;
+    look.sphere = BodySphere{Vec3::Zero(), sphere->radius};
+    look.isDrawnAsSphere = true;
   }
   if (const auto* cylinder = std::get_if<Cylinder>(&body.shape)) look.cylinder = *cylinder;
   if (const auto* model = std::get_if<ModelShape>(&body.shape)) {
-    look.ball = ballOfModel.at(static_cast<std::size_t>(model->model));
+    look.sphere = sphereOfModel.at(static_cast<std::size_t>(model->model));
     look.surface = look.parts.at(0).surface;
   }
-  const ContactKind kind = look.cylinder                             ? ContactKind::cylinder
-                           : std::holds_alternative<Box>(body.shape) ? ContactKind::box
-                                                                     : ContactKind::ellipsoid;
+  const ContactShadowShape kind = look.cylinder                             ? ContactShadowShape::cylinder
+                                  : std::holds_alternative<Box>(body.shape) ? ContactShadowShape::box
+                                                                            : ContactShadowShape::ellipsoid;
   if (!look.local.isEmpty()) look.solids = catalogue.solidsOf(body, {look.local, kind, look.surface}, look.parts);
   return look;
 }
@@ -235,8 +235,8 @@ Vec3f linearFromSrgb(const Vec3f& color) {
 Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPerMetre) {
   Appearance appearance;
   Catalogue catalogue(scene, pixelsPerMetre);
-  const auto ballOfModel = findBalls(scene.models);
-  for (const Body& body : scene.bodies) appearance.bodies.push_back(lookOf(scene, body, ballOfModel, catalogue));
+  const auto sphereOfModel = findSpheres(scene.models);
+  for (const Body& body : scene.bodies) appearance.bodies.push_back(lookOf(scene, body, sphereOfModel, catalogue));
   const double size = view.size();
   appearance.ground = findGround(scene, size);
   catalogue.moveTo(appearance);

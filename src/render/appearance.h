@@ -23,30 +23,31 @@ struct BodyPart {
   Surface surface = {};
 };
 
-/// A ball that a body is, or that recognition found it to be.
-struct BodyBall {
+/// A sphere that a body is, or that recognition found it to be.
+struct BodySphere {
   Vec3 center;  // m, body's frame
   double radius;
 };
 
-/// What a body is like for the ground that it darkens (as contact.frag counts).
-enum class ContactKind { box = 0, ellipsoid = 1, cylinder = 2 };
+/// The shape of a contact shadow, numbered as in contact_shadow.frag.
+enum class ContactShadowShape { box = 0, ellipsoid = 1, cylinder = 2 };
 
 /// What stands for a body, or a part of it, where it darkens what is near it.
 struct BodySolid {
   Bounds box;  // body's frame
-  ContactKind kind = ContactKind::ellipsoid;
+  ContactShadowShape kind = ContactShadowShape::ellipsoid;
   Surface surface = {};
 };
 
 struct BodyAppearance {
-  std::vector<BodyPart> parts;  // none for planes, balls and cylinders
+  std::vector<BodyPart> parts;  // none for planes, spheres and cylinders
   Bounds local;                 // body's frame; empty for planes
-  std::optional<BodyBall> ball;
+  std::optional<BodySphere> sphere;
   std::optional<Cylinder> cylinder;
-  Surface surface = {};  // of ball or cylinder
+  Surface surface = {};  // of sphere or cylinder
   std::vector<BodySolid> solids;
-  bool isDrawnAsBall = false;  // exactly round; else the ball only stands for a mesh in mirrors and contacts
+  bool isDrawnAsSphere =
+      false;  // exactly round; else the sphere stands for a mesh in mirrors and contact shadows alone
 };
 
 /// An endless plane, drawn as ground.

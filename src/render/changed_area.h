@@ -9,16 +9,16 @@ namespace cradle {
 struct ChangedArea {
   TileMask picture;
   std::optional<PixelRectangle> shadows;  // texels of the shadow map; none if nothing that throws a shadow moved
-  bool contactsChanged = false;           // something that darkens the ground did
+  bool contactShadowsChanged = false;     // something that darkens the ground did
 };
 
 /// `meshBounds` are those of Appearance::meshes. Contains all that differs in looks, and what
 /// its shadows, its mirror images and its darkening of what is near may touch, before and now. O(changed items x
 /// items).
-ChangedArea changedArea(const DrawList& before, const DrawList& now, const Stage& stage,
+ChangedArea changedArea(const DrawList& before, const DrawList& now, const RenderSetup& setup,
                         const std::vector<MeshBounds>& meshBounds);
 
 /// All of a picture, and its maps.
-ChangedArea wholePicture(const Stage& stage);
+ChangedArea wholePicture(const RenderSetup& setup);
 
 }  // namespace cradle

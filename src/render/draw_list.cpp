@@ -10,14 +10,14 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kMaxNearBalls = 6;  // of one item: as many as touch a ball in a dense layer
-constexpr double kLarge = 4;              // times the typical neighbour: compared with everything
+constexpr std::size_t kMaxNearOccluders = 6;  // of one item: as many as touch a sphere in a dense layer
+constexpr double kLarge = 4;                  // times the typical occluder: compared with everything
 
 void appendBody(const BodyAppearance& look, const RigidTransform& worldFromBody, DrawList& list) {
   for (const BodyPart& part : look.parts) {
     MeshItem item{part.mesh, part.firstTriangle, part.triangleCount, worldFromBody};
     item.surface = part.surface;
-    item.isSphere = look.ball.has_value();
+    item.isSphere = look.sphere.has_value();
     item.bounds = transformed(look.local, worldFromBody);
     list.meshes.push_back(item);
   }
@@ -27,20 +27,20 @@ void appendRound(const BodyAppearance& look, const RigidTransform& worldFromBody
   if (look.cylinder)
     list.cylinders.push_back({worldFromBody.translation, worldFromBody.rotation * Vec3::UnitY(), look.cylinder->radius,
                               look.cylinder->length, look.surface});
-  if (!look.ball) return;
-  const Vec3 center = worldFromBody * look.ball->center;
-  list.neighbours.push_back({center, look.ball->radius, look.surface, body});
-  if (look.isDrawnAsBall) list.spheres.push_back({center, look.ball->radius, look.surface});
+  if (!look.sphere) return;
+  const Vec3 center = worldFromBody * look.sphere->center;
+  list.occluders.push_back({center, look.sphere->radius, look.surface, body});
+  if (look.isDrawnAsSphere) list.spheres.push_back({center, look.sphere->radius, look.surface});
 }
 
 void appendSolids(const BodyAppearance& look, const RigidTransform& worldFromBody, int body, DrawList& list) {
   for (const BodySolid& solid : look.solids) {
     const RigidTransform place{worldFromBody.rotation, worldFromBody * Vec3(solid.box.center())};
     const Vec3 half = solid.box.sizes() / 2;
-    list.contacts.push_back({place, half, solid.kind});
-    if (look.ball || solid.kind == ContactKind::ellipsoid) continue;
+    list.contactShadows.push_back({place, half, solid.kind});
+    if (look.sphere || solid.kind == ContactShadowShape::ellipsoid) continue;
     const double middle = std::max(std::min(half.x(), half.y()), std::min(std::max(half.x(), half.y()), half.z()));
-    list.neighbours.push_back({place.translation, kBoxReach * middle, solid.surface, body, half, place.rotation});
+    list.occluders.push_back({place.translation, kBoxReach * middle, solid.surface, body, half, place.rotation});
   }
 }
 
@@ -71,10 +71,10 @@ Bounds boundsOf(const RoundItem& item) {
   return item.bounds();
 }
 
-/// Finds the neighbours of a box in space: their reaches sorted along x, large ones apart.
-class NeighbourSearch {
+/// Finds the occluders of a box in space: their reaches sorted along x, large ones apart.
+class OccluderSearch {
  public:
-  explicit NeighbourSearch(const std::vector<NeighbourItem>& neighbours);
+  explicit OccluderSearch(const std::vector<OccluderItem>& occluders);
 
   /// Calls visit(index) for all whose reach meets `bounds`, and perhaps others. O(log n + those beside in x).
   template <typename Visit>
@@ -90,9 +90,9 @@ class NeighbourSearch {
   double widest_ = 0;  // m, of those sorted
 };
 
-NeighbourSearch::NeighbourSearch(const std::vector<NeighbourItem>& neighbours) {
+OccluderSearch::OccluderSearch(const std::vector<OccluderItem>& occluders) {
   std::vector<double> widths;
-  for (const NeighbourItem& item : neighbours) widths.push_back(item.reach().sizes().x());
+  for (const OccluderItem& item : occluders) widths.push_back(item.reach().sizes().x());
   std::vector<double> ordered = widths;
   if (ordered.empty()) return;
   std::nth_element(ordered.begin(), ordered.begin() + std::ssize(ordered) / 2, ordered.end());
@@ -103,46 +103,46 @@ NeighbourSearch::NeighbourSearch(const std::vector<NeighbourItem>& neighbours) {
       large_.push_back(index);
       continue;
     }
-    sorted_.push_back({neighbours[i].reach().min().x(), index});
+    sorted_.push_back({occluders[i].reach().min().x(), index});
     widest_ = std::max(widest_, widths[i]);
   }
   std::stable_sort(sorted_.begin(), sorted_.end(), [](const Entry& a, const Entry& b) { return a.least < b.least; });
 }
 
 template <typename Visit>
-void NeighbourSearch::forNear(const Bounds& bounds, const Visit& visit) const {
+void OccluderSearch::forNear(const Bounds& bounds, const Visit& visit) const {
   for (const int index : large_) visit(index);
   const auto first = std::lower_bound(sorted_.begin(), sorted_.end(), bounds.min().x() - widest_,
                                       [](const Entry& entry, double place) { return entry.least < place; });
   for (auto entry = first; entry != sorted_.end() && entry->least <= bounds.max().x(); ++entry) visit(entry->index);
 }
 
-/// Distance of a neighbour from a box in space, in terms of how far it reaches: below 1, it counts.
-double relativeDistance(const NeighbourItem& item, const Bounds& bounds) {
-  if (item.isSphere()) return bounds.exteriorDistance(item.center) / (kBallReach * item.radius);
+/// Distance of an occluder from a box in space, in terms of how far it reaches: below 1, it counts.
+double relativeDistance(const OccluderItem& item, const Bounds& bounds) {
+  if (item.isSphere()) return bounds.exteriorDistance(item.center) / (kSphereReach * item.radius);
   const Vec3 extent = item.rotation.toRotationMatrix().cwiseAbs() * item.half;
   return bounds.exteriorDistance(Bounds(item.center - extent, item.center + extent)) / item.radius;
 }
 
-/// The neighbours of each item's bounds, the closest first; not its own.
+/// The occluders of each item's bounds, the closest first; not its own.
 template <typename Item>
-void findNearBalls(const std::vector<int>& bodyOfItem, const NeighbourSearch& search, std::vector<Item>& items,
-                   DrawList& list) {
+void findNearOccluders(const std::vector<int>& bodyOfItem, const OccluderSearch& search, std::vector<Item>& items,
+                       DrawList& list) {
   std::vector<std::pair<double, int>> found;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const Bounds bounds = boundsOf(items[i]);
     found.clear();
     search.forNear(bounds, [&](int index) {
-      const NeighbourItem& item = list.neighbours[static_cast<std::size_t>(index)];
+      const OccluderItem& item = list.occluders[static_cast<std::size_t>(index)];
       if (item.body == bodyOfItem[i]) return;
       const double distance = relativeDistance(item, bounds);
       if (distance < 1) found.emplace_back(distance, index);
     });
-    const std::size_t count = std::min(found.size(), kMaxNearBalls);
+    const std::size_t count = std::min(found.size(), kMaxNearOccluders);
     std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end());
-    items[i].firstNearBall = static_cast<int>(list.nearBalls.size());
-    items[i].nearBalls = static_cast<int>(count);
-    for (std::size_t f = 0; f < count; ++f) list.nearBalls.push_back(found[f].second);
+    items[i].firstNearOccluder = static_cast<int>(list.nearOccluders.size());
+    items[i].nearOccluders = static_cast<int>(count);
+    for (std::size_t f = 0; f < count; ++f) list.nearOccluders.push_back(found[f].second);
   }
 }
 
@@ -155,8 +155,8 @@ Bounds CylinderItem::bounds() const {
   return {center - half, center + half};
 }
 
-Bounds NeighbourItem::reach() const {
-  const Vec3 extent = isSphere() ? Vec3::Constant(kBallReach * radius)
+Bounds OccluderItem::reach() const {
+  const Vec3 extent = isSphere() ? Vec3::Constant(kSphereReach * radius)
                                  : Vec3(rotation.toRotationMatrix().cwiseAbs() * half + Vec3::Constant(radius));
   return {center - extent, center + extent};
 }
@@ -175,10 +175,10 @@ DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const Vi
     bodyOfSphere.resize(list.spheres.size(), body);
     bodyOfCylinder.resize(list.cylinders.size(), body);
   }
-  const NeighbourSearch search(list.neighbours);
-  findNearBalls(bodyOfMesh, search, list.meshes, list);
-  findNearBalls(bodyOfSphere, search, list.spheres, list);
-  findNearBalls(bodyOfCylinder, search, list.cylinders, list);
+  const OccluderSearch search(list.occluders);
+  findNearOccluders(bodyOfMesh, search, list.meshes, list);
+  findNearOccluders(bodyOfSphere, search, list.spheres, list);
+  findNearOccluders(bodyOfCylinder, search, list.cylinders, list);
   appendLinks(scene, appearance, view, places, list);
   appendPushArrows(appearance, view, seen.frame, places, list);
   std::stable_sort(list.meshes.begin(), list.meshes.end(), [](const MeshItem& a, const MeshItem& b) {

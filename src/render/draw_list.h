@@ -15,16 +15,16 @@ struct MeshItem {
   RigidTransform worldFromMesh = {};
   Surface surface = {};
   bool isSphere = false;
-  Bounds bounds = {};                    // m, world
-  int firstNearBall = 0, nearBalls = 0;  // range of DrawList::nearBalls
+  Bounds bounds = {};                            // m, world
+  int firstNearOccluder = 0, nearOccluders = 0;  // range of DrawList::nearOccluders
 };
 
-/// A ball that is drawn exactly round.
+/// A sphere that is drawn exactly round.
 struct SphereItem {
   Vec3 center;  // m, world
   double radius = 0;
   Surface surface = {};
-  int firstNearBall = 0, nearBalls = 0;  // range of DrawList::nearBalls
+  int firstNearOccluder = 0, nearOccluders = 0;  // range of DrawList::nearOccluders
   Bounds bounds() const { return {center - Vec3::Constant(radius), center + Vec3::Constant(radius)}; }
 };
 
@@ -34,7 +34,7 @@ struct CylinderItem {
   Vec3 axis;    // unit
   double radius = 0, length = 0;
   Surface surface = {};
-  int firstNearBall = 0, nearBalls = 0;  // range of DrawList::nearBalls
+  int firstNearOccluder = 0, nearOccluders = 0;  // range of DrawList::nearOccluders
   Bounds bounds() const;
 };
 
@@ -55,27 +55,29 @@ struct TubeItem {
   Bounds bounds = {};  // m, world
 };
 
-constexpr double kBallReach = 3;   // radii from a ball's centre: beyond, it is not mirrored and shades nothing
-constexpr double kBoxReach = 1.6;  // middle half edges from a box's surface
+constexpr double kSphereReach = 3;  // radii from a sphere's centre: beyond, it is not mirrored and shades nothing
+constexpr double kBoxReach = 1.6;   // middle half edges from a box's surface
 
-/// A ball or box that is mirrored in what is near and keeps the sky's light from it.
-struct NeighbourItem {
+/// A sphere or box that surfaces near it mirror (local reflections), and that keeps the sky's light from them (ambient
+/// occlusion).
+struct OccluderItem {
   Vec3 center;        // m, world
-  double radius = 0;  // of a ball, m; of a box, how far it reaches beyond its surface
+  double radius = 0;  // of a sphere, m; of a box, how far it reaches beyond its surface
   Surface surface = {};
   int body = 0;
-  Vec3 half = Vec3::Zero();          // half edges of a box, m; zero for a ball
+  Vec3 half = Vec3::Zero();          // half edges of a box, m; zero for a sphere
   Quat rotation = Quat::Identity();  // worldFromBox
   bool isSphere() const { return half.isZero(0); }
   /// Of all that it influences; m, world.
   Bounds reach() const;
 };
 
-/// What darkens the ground beneath it.
-struct ContactItem {
+/// A body, or a part of it, whose contact shadow darkens the ground: the ambient occlusion of a box, or of an ellipsoid
+/// or cylinder in it.
+struct ContactShadowItem {
   RigidTransform worldFromBox;
   Vec3 half;  // m, half edges of the box around it
-  ContactKind kind = ContactKind::box;
+  ContactShadowShape kind = ContactShadowShape::box;
 };
 
 /// A picture as plain data, in a fixed order: OpenGL comes after.
@@ -85,9 +87,9 @@ struct DrawList {
   std::vector<SphereItem> spheres;
   std::vector<CylinderItem> cylinders;
   std::vector<TubeItem> tubes;  // springs before ropes
-  std::vector<NeighbourItem> neighbours;
-  std::vector<int> nearBalls;  // indices into neighbours
-  std::vector<ContactItem> contacts;
+  std::vector<OccluderItem> occluders;
+  std::vector<int> nearOccluders;  // indices into occluders
+  std::vector<ContactShadowItem> contactShadows;
 };
 
 /// A frame, and from where it is seen (m, world).
@@ -96,7 +98,7 @@ struct SeenFrame {
   Vec3 viewpoint;
 };
 
-/// What is to be drawn. Items stand in the order of the scene. O(bodies x balls).
+/// What is to be drawn. Items stand in the order of the scene. O(bodies x spheres).
 DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const View& view, const SeenFrame& seen);
 
 }  // namespace cradle

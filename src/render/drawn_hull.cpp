@@ -10,7 +10,7 @@ namespace cradle {
 namespace {
 
 constexpr double kNearest =
-    1e-3;  // of the distance to a ball's centre: what is nearer to the camera's plane is not bounded
+    1e-3;  // of the distance to a sphere's centre: what is nearer to the camera's plane is not bounded
 
 constexpr double kLong = 0.12;  // of the mesh's size: groups of triangles are as large as that
 
@@ -151,14 +151,14 @@ DrawnHull swept(const DrawnHull& hull, const Vec3& first, const Vec3& last) {
   return both;
 }
 
-std::optional<std::vector<Eigen::Vector2d>> outlineOf(const DrawnHull& hull, const Stage& stage) {
-  const Mat3 axes = cameraAxes(stage.camera);
-  const double pixelsPerSlope = stage.height / (2 * std::tan(stage.camera.verticalFieldOfView / 2));
-  const auto column = [&](double slope) { return stage.width / 2.0 + pixelsPerSlope * slope; };
-  const auto row = [&](double slope) { return stage.height / 2.0 + pixelsPerSlope * slope; };
+std::optional<std::vector<Eigen::Vector2d>> outlineOf(const DrawnHull& hull, const RenderSetup& setup) {
+  const Mat3 axes = cameraAxes(setup.camera);
+  const double pixelsPerSlope = setup.height / (2 * std::tan(setup.camera.verticalFieldOfView / 2));
+  const auto column = [&](double slope) { return setup.width / 2.0 + pixelsPerSlope * slope; };
+  const auto row = [&](double slope) { return setup.height / 2.0 + pixelsPerSlope * slope; };
   std::vector<Eigen::Vector2d> outline;
   for (std::size_t i = 0; i < hull.count; ++i) {
-    const Vec3 seen = axes.transpose() * (hull.centers[i] - stage.camera.position);
+    const Vec3 seen = axes.transpose() * (hull.centers[i] - setup.camera.position);
     const auto across = tangentSlopes(seen.x(), -seen.z(), hull.radius);
     const auto up = tangentSlopes(seen.y(), -seen.z(), hull.radius);
     if (!across || !up) return std::nullopt;
@@ -168,16 +168,16 @@ std::optional<std::vector<Eigen::Vector2d>> outlineOf(const DrawnHull& hull, con
   return outline;
 }
 
-std::optional<std::vector<Eigen::Vector2d>> outlineOf(const std::vector<Vec3>& polygon, const Stage& stage) {
-  const Mat3 axes = cameraAxes(stage.camera);
-  const double pixelsPerSlope = stage.height / (2 * std::tan(stage.camera.verticalFieldOfView / 2));
-  const double nearest = kNearest * (stage.origin - stage.camera.position).norm();
+std::optional<std::vector<Eigen::Vector2d>> outlineOf(const std::vector<Vec3>& polygon, const RenderSetup& setup) {
+  const Mat3 axes = cameraAxes(setup.camera);
+  const double pixelsPerSlope = setup.height / (2 * std::tan(setup.camera.verticalFieldOfView / 2));
+  const double nearest = kNearest * (setup.origin - setup.camera.position).norm();
   std::vector<Eigen::Vector2d> outline;
   for (const Vec3& corner : polygon) {
-    const Vec3 seen = axes.transpose() * (corner - stage.camera.position);
+    const Vec3 seen = axes.transpose() * (corner - setup.camera.position);
     if (-seen.z() <= nearest) return std::nullopt;
-    outline.emplace_back(stage.width / 2.0 + pixelsPerSlope * seen.x() / -seen.z(),
-                         stage.height / 2.0 + pixelsPerSlope * seen.y() / -seen.z());
+    outline.emplace_back(setup.width / 2.0 + pixelsPerSlope * seen.x() / -seen.z(),
+                         setup.height / 2.0 + pixelsPerSlope * seen.y() / -seen.z());
   }
   return outline;
 }

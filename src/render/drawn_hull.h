@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "render/draw_list.h"
-#include "render/stage.h"
+#include "render/render_setup.h"
 
 namespace cradle {
 
-/// The convex hull of balls of one radius, around what is drawn of an item.
+/// The convex hull of spheres of one radius, around what is drawn of an item.
 struct DrawnHull {
   std::array<Vec3, 16> centers = {};  // m, world
   std::size_t count = 0;
@@ -18,7 +18,7 @@ struct DrawnHull {
   void add(const Vec3& center) { centers[count++] = center; }
   Vec3 middle() const;
   Bounds bounds() const;  // m, world
-  /// Of a ball around the middle that contains all.
+  /// Of a sphere around the middle that contains all.
   double reach() const;
 };
 
@@ -58,9 +58,9 @@ DrawnHull swept(const DrawnHull& hull, const Vec3& first, const Vec3& last);
 
 /// Points in the picture (pixels from the lower left corner) whose convex hull contains what is seen of a hull; none if
 /// part of it is not in front of the camera.
-std::optional<std::vector<Eigen::Vector2d>> outlineOf(const DrawnHull& hull, const Stage& stage);
+std::optional<std::vector<Eigen::Vector2d>> outlineOf(const DrawnHull& hull, const RenderSetup& setup);
 
 /// The same of a polygon (m, world).
-std::optional<std::vector<Eigen::Vector2d>> outlineOf(const std::vector<Vec3>& polygon, const Stage& stage);
+std::optional<std::vector<Eigen::Vector2d>> outlineOf(const std::vector<Vec3>& polygon, const RenderSetup& setup);
 
 }  // namespace cradle

@@ -21,9 +21,9 @@ constexpr double kPenumbra = 24;                   // texels beside a shadow tha
 using Side = Vec3;
 
 /// The sides of what a camera sees, and all that is before it.
-std::array<Side, 5> sidesOfView(const Camera& camera, const Stage& stage) {
+std::array<Side, 5> sidesOfView(const Camera& camera, const RenderSetup& setup) {
   const Mat3 axes = cameraAxes(camera);
-  const double y = std::tan(camera.verticalFieldOfView / 2), x = y * stage.width / stage.height;
+  const double y = std::tan(camera.verticalFieldOfView / 2), x = y * setup.width / setup.height;
   const Vec3 right = axes.col(0), up = axes.col(1), ahead = -axes.col(2);
   return {(x * ahead - right).normalized(), (x * ahead + right).normalized(), (y * ahead - up).normalized(),
           (y * ahead + up).normalized(), ahead};
@@ -32,12 +32,12 @@ std::array<Side, 5> sidesOfView(const Camera& camera, const Stage& stage) {
 /// Collects what counts.
 class LayoutFinder {
  public:
-  LayoutFinder(const Camera& camera, const Stage& stage)
-      : stage_(stage), eye_(camera.position), towards_(stage.shadow.axes.col(2)), sides_(sidesOfView(camera, stage)) {}
+  LayoutFinder(const Camera& camera, const RenderSetup& setup)
+      : setup_(setup), eye_(camera.position), towards_(setup.shadow.axes.col(2)), sides_(sidesOfView(camera, setup)) {}
 
   /// What is `distance` (m) from the camera, or farther.
   void add(const DrawnHull& hull, double distance);
-  void add(const ContactItem& item);
+  void add(const ContactShadowItem& item);
   FrameLayout layout() const;
 
  private:
@@ -48,12 +48,12 @@ class LayoutFinder {
   void extend(Box2& box, const Vec3& point, const Eigen::Vector2d& around) const;
   Box2 groundAround(const MapPlace& shadowMap) const;
 
-  const Stage& stage_;
+  const RenderSetup& setup_;
   const Vec3 eye_, towards_;
   const std::array<Side, 5> sides_;
   double nearest_ = std::numeric_limits<double>::infinity();  // m
-  Bounds casters_;                                            // m, along the shadow map's axes from the stage's origin
-  Box2 shadows_, contacts_;                                   // m, as ShadedRegion::home
+  Bounds casters_;                                            // m, along the shadow map's axes from the setup's origin
+  Box2 shadows_, contactShadows_;                             // m, as ShadedRegion::home
 };
 
 bool LayoutFinder::isBeyond(const Side& side, const DrawnHull& hull) const {
@@ -74,18 +74,18 @@ bool LayoutFinder::mayThrowShadowIntoView(const DrawnHull& hull) const {
 
 void LayoutFinder::add(const DrawnHull& hull, double distance) {
   if (isSeen(hull)) nearest_ = std::min(nearest_, distance);
-  if (2 * hull.reach() > kLargestCaster * stage_.shadow.home.sizes().x() || !mayThrowShadowIntoView(hull)) return;
+  if (2 * hull.reach() > kLargestCaster * setup_.shadow.home.sizes().x() || !mayThrowShadowIntoView(hull)) return;
   const double around = cornerOfEqualArea(kOutlines.front()) * hull.radius;
   for (std::size_t i = 0; i < hull.count; ++i) {
-    const Vec3 place = stage_.shadow.axes.transpose() * (hull.centers[i] - stage_.origin);
+    const Vec3 place = setup_.shadow.axes.transpose() * (hull.centers[i] - setup_.origin);
     casters_.extend(Vec3(place.array() - around)), casters_.extend(Vec3(place.array() + around));
   }
-  if (stage_.ground) addToGround(hull);
+  if (setup_.ground) addToGround(hull);
 }
 
 /// Its shadow on the ground.
 void LayoutFinder::addToGround(const DrawnHull& hull) {
-  const Ground& ground = *stage_.ground;
+  const Ground& ground = *setup_.ground;
   const double steepness = ground.normal.dot(towards_);
   const auto heightOf = [&](const Vec3& point) { return ground.normal.dot(point - ground.point); };
   if (steepness <= kLowestLight || heightOf(hull.middle()) + hull.reach() < 0) return;
@@ -96,20 +96,20 @@ void LayoutFinder::addToGround(const DrawnHull& hull) {
 
 /// By a rectangle on the ground around a point.
 void LayoutFinder::extend(Box2& box, const Vec3& point, const Eigen::Vector2d& around) const {
-  const Vec3 from = point - stage_.origin;
-  const Eigen::Vector2d place(stage_.shaded.axisU.dot(from), stage_.shaded.axisV.dot(from));
+  const Vec3 from = point - setup_.origin;
+  const Eigen::Vector2d place(setup_.shaded.axisU.dot(from), setup_.shaded.axisV.dot(from));
   box.extend(place - around), box.extend(place + around);
 }
 
 /// The ground that it darkens.
-void LayoutFinder::add(const ContactItem& item) {
-  const auto square = darkenedSquare(item, stage_);
+void LayoutFinder::add(const ContactShadowItem& item) {
+  const auto square = darkenedSquare(item, setup_);
   const Vec3& middle = item.worldFromBox.translation;
-  if (!square || 2 * item.half.norm() > kLargestCaster * stage_.shadow.home.sizes().x()) return;
+  if (!square || 2 * item.half.norm() > kLargestCaster * setup_.shadow.home.sizes().x()) return;
   DrawnHull darkened;
   darkened.add(middle);
   darkened.radius = std::hypot(square->halfU, square->halfV) + item.half.norm();
-  if (isSeen(darkened)) extend(contacts_, middle, {square->halfU, square->halfV});
+  if (isSeen(darkened)) extend(contactShadows_, middle, {square->halfU, square->halfV});
 }
 
 /// Quarters of `size` from home, the fewest, so that a map there holds first..last (from the middle of home) and has
@@ -126,22 +126,22 @@ FrameLayout LayoutFinder::layout() const {
   FrameLayout layout;
   // In powers of two, as all that must not change often.
   const double nearest = std::isfinite(nearest_) && nearest_ > 0 ? std::exp2(std::floor(std::log2(nearest_))) : 0;
-  layout.nearPlane = nearPlaneFor(nearest, stage_);
+  layout.nearPlane = nearPlaneFor(nearest, setup_);
   if (!casters_.isEmpty()) {
-    layout.shadows = placeAround({casters_.min().head<2>(), casters_.max().head<2>()}, stage_.shadow.home, kBorder);
-    const double deep = depthOfMap(stage_.shadow, layout.shadows);
+    layout.shadows = placeAround({casters_.min().head<2>(), casters_.max().head<2>()}, setup_.shadow.home, kBorder);
+    const double deep = depthOfMap(setup_.shadow, layout.shadows);
     layout.depth = quartersFor(casters_.min().z(), casters_.max().z(), deep, kBorder * deep).value_or(0);
   }
-  if (stage_.ground) layout.ground = placeAround(groundAround(layout.shadows), stage_.shaded.home, 0);
+  if (setup_.ground) layout.ground = placeAround(groundAround(layout.shadows), setup_.shaded.home, 0);
   return layout;
 }
 
-/// What shadows and contacts darken.
+/// The part of the ground that shadows and contact shadows darken.
 Box2 LayoutFinder::groundAround(const MapPlace& shadowMap) const {
-  Box2 ground = contacts_;
+  Box2 ground = contactShadows_;
   if (shadows_.isEmpty()) return ground;
-  const double texel = std::ldexp(stage_.shadow.home.sizes().x(), shadowMap.level) / kShadowMapSize;
-  const double halfLit = kPenumbra * texel / stage_.ground->normal.dot(towards_);
+  const double texel = std::ldexp(setup_.shadow.home.sizes().x(), shadowMap.level) / kShadowMapSize;
+  const double halfLit = kPenumbra * texel / setup_.ground->normal.dot(towards_);
   const Eigen::Vector2d around(halfLit, halfLit);
   ground.extend(Box2(shadows_.min() - around, shadows_.max() + around));
   return ground;
@@ -162,8 +162,8 @@ MapPlace placeAround(const Box2& needed, const Box2& home, double border) {
 }
 
 FrameLayout layoutOf(const DrawList& list, const std::vector<MeshBounds>& meshBounds, const Camera& camera,
-                     const Stage& stage) {
-  LayoutFinder finder(camera, stage);
+                     const RenderSetup& setup) {
+  LayoutFinder finder(camera, setup);
   for (const MeshItem& item : list.meshes) {
     const Bounds& whole = meshBounds[static_cast<std::size_t>(item.mesh)].whole;
     finder.add(hullOf(whole, item.worldFromMesh),
@@ -173,8 +173,8 @@ FrameLayout layoutOf(const DrawList& list, const std::vector<MeshBounds>& meshBo
   for (const SphereItem& item : list.spheres) add(hullOf(item));
   for (const CylinderItem& item : list.cylinders) add(hullOf(item));
   for (const TubeItem& item : list.tubes) add(hullOf(item));
-  if (stage.ground)
-    for (const ContactItem& item : list.contacts) finder.add(item);
+  if (setup.ground)
+    for (const ContactShadowItem& item : list.contactShadows) finder.add(item);
   return finder.layout();
 }
 

@@ -4,7 +4,7 @@
 
 #include "render/draw_list.h"
 #include "render/drawn_hull.h"
-#include "render/stage.h"
+#include "render/render_setup.h"
 
 namespace cradle {
 
@@ -12,7 +12,7 @@ namespace cradle {
 /// whose shadows may be, count, but for those that are larger than the shadow map, which throw their shadows where it
 /// is. Places are coarse, so that few frames change them. `meshBounds` as in changedArea. O(items).
 FrameLayout layoutOf(const DrawList& list, const std::vector<MeshBounds>& meshBounds, const Camera& camera,
-                     const Stage& stage);
+                     const RenderSetup& setup);
 
 /// The place nearest to home where a map holds `needed` and has `border` (of its size) beside it, as large as it has to
 /// be, up to a limit; beyond that, at home.

@@ -18,7 +18,7 @@ namespace cradle {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kFieldOfView = 32 * kDegree;  // long enough that balls at the border stay round
+constexpr double kFieldOfView = 32 * kDegree;  // long enough that spheres at the border stay round
 constexpr double kElevation = 10 * kDegree;    // from above, with the horizon still in the picture
 // Turned so far aside from the axes of the world; against the default light first, so that shadows fall aside, too.
 constexpr double kAsideAngle = 24 * kDegree;

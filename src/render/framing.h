@@ -54,7 +54,7 @@ class Framing {
   /// A convex thing in the world, for which farthest points are known.
   struct Solid {
     Bounds local;
-    double radius = 0;  // > 0: a ball around the local origin
+    double radius = 0;  // > 0: a sphere around the local origin
     RigidTransform worldFromLocal;
     double support(const Vec3& direction) const;
   };

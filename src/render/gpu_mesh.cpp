@@ -11,7 +11,7 @@ namespace {
 
 constexpr unsigned int kFirstInstanceAttribute = 2;
 constexpr unsigned int kInstanceAttributes = 6;
-constexpr int kInnermostRing = 8;  // corners of a half ball's ring next to its middle
+constexpr int kInnermostRing = 8;  // corners of a half sphere's ring next to its middle
 
 const void* byteOffset(std::size_t bytes) {
   return reinterpret_cast<const void*>(bytes);
@@ -112,7 +112,7 @@ void GpuMesh::draw() const {
   glDrawElements(GL_TRIANGLES, static_cast<int>(3 * triangleCount_), GL_UNSIGNED_INT, nullptr);
 }
 
-GpuMesh makeHalfBall(int outline) {
+GpuMesh makeHalfSphere(int outline) {
   int rings = 1;
   while (kInnermostRing << (rings - 1) < outline) ++rings;
   const double outwards = cornerOfEqualArea(outline);

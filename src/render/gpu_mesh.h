@@ -56,9 +56,9 @@ class GpuMesh {
 /// How far the corners of a polygon are from its middle that has the area of a circle of radius 1.
 double cornerOfEqualArea(int corners);
 
-/// Half a ball with 8 * 2^n vertices around its outline (ball.vert); attribute 0: angle from the middle, 1 at the
+/// Half a sphere with 8 * 2^n vertices around its outline (sphere.vert); attribute 0: angle from the middle, 1 at the
 /// outline; cosine and sine of the direction around it.
-GpuMesh makeHalfBall(int outline);
+GpuMesh makeHalfSphere(int outline);
 
 /// Half a cylinder's side, and an end with `outline` corners (cylinder.vert says what attribute 0 is).
 GpuMesh makeHalfCylinder(int outline);

@@ -10,7 +10,8 @@ namespace {
 constexpr float kTrembling = 1e-12f;     // m, or of a direction
 constexpr double kVisibleCorner = 0.25;  // pixels
 constexpr float kMirrorMetallic = 0.5f, kMirrorRoughness = 0.35f;
-constexpr double kContactReach = 2.5;  // times the height of what touches the ground; beyond, 7 % of the sky are hidden
+constexpr double kContactShadowReach =
+    2.5;  // times the height of what touches the ground; beyond, 7 % of the sky are hidden
 
 /// What trembles in its last digits beside zero is at rest.
 float settled(float number) {
@@ -29,21 +30,21 @@ void putTransform(Instance& instance, const Mat3& matrix, const Vec3& translatio
     put(instance, static_cast<std::size_t>(row), matrix.row(row).transpose().cast<float>(), translation[row]);
 }
 
-/// Attributes 3..5 of an item with a surface and balls near it; the first numbers of 3 are left alone.
+/// Attributes 3..5 of an item with a surface and occluders near it; the first numbers of 3 are left alone.
 template <typename Item>
 void putLook(const Item& item, bool isSphere, Instance& instance) {
   instance[15] = item.surface.roughness;
   put(instance, 4, item.surface.color, item.surface.metallic);
   put(instance, 5,
-      Vec3f(static_cast<float>(item.firstNearBall), static_cast<float>(item.nearBalls),
+      Vec3f(static_cast<float>(item.firstNearOccluder), static_cast<float>(item.nearOccluders),
             isSphere && mirrorsShadows(item.surface)),
       0);
 }
 
 /// How fine an outline has to be: a polygon of n corners, as large as the circle, misses it by r (pi / n)^2 / 3.
-std::size_t outlineFor(const Bounds& bounds, double radius, const Stage& stage) {
-  const double distance = std::max(bounds.exteriorDistance(stage.camera.position), 1e-9);
-  const double pixels = radius / distance * stage.height / (2 * std::tan(stage.camera.verticalFieldOfView / 2));
+std::size_t outlineFor(const Bounds& bounds, double radius, const RenderSetup& setup) {
+  const double distance = std::max(bounds.exteriorDistance(setup.camera.position), 1e-9);
+  const double pixels = radius / distance * setup.height / (2 * std::tan(setup.camera.verticalFieldOfView / 2));
   for (std::size_t i = 0; i + 1 < kOutlines.size(); ++i)
     if (pixels * std::pow(std::numbers::pi / kOutlines[i], 2) / 3 < kVisibleCorner) return i;
   return kOutlines.size() - 1;
@@ -57,15 +58,15 @@ struct PackedRounds {
 };
 
 template <typename Item>
-void packRounds(const std::vector<Item>& items, const Stage& stage, const PackedRounds& packed) {
+void packRounds(const std::vector<Item>& items, const RenderSetup& setup, const PackedRounds& packed) {
   auto& [instances, batches, order] = packed;
   std::vector<std::size_t> levels;
-  for (const Item& item : items) levels.push_back(outlineLevel(item, stage));
+  for (const Item& item : items) levels.push_back(outlineLevel(item, setup));
   for (std::size_t level = 0; level < kOutlines.size(); ++level) {
     Batch batch{static_cast<int>(level), 0, 0, instances.size(), 0};
     for (std::size_t i = 0; i < items.size(); ++i) {
       if (levels[i] != level) continue;
-      instances.push_back(instanceOf(items[i], stage));
+      instances.push_back(instanceOf(items[i], setup));
       order.push_back(i);
     }
     batch.instanceCount = instances.size() - batch.firstInstance;
@@ -73,9 +74,9 @@ void packRounds(const std::vector<Item>& items, const Stage& stage, const Packed
   }
 }
 
-double extentAlong(const Vec3& axis, const ContactItem& item) {
+double extentAlong(const Vec3& axis, const ContactShadowItem& item) {
   const Vec3 inBox = (item.worldFromBox.rotation.conjugate() * axis).cwiseProduct(item.half);
-  return item.kind == ContactKind::ellipsoid ? inBox.norm() : inBox.cwiseAbs().sum();
+  return item.kind == ContactShadowShape::ellipsoid ? inBox.norm() : inBox.cwiseAbs().sum();
 }
 
 void packBatches(const DrawList& list, PackedDrawList& packed) {
@@ -89,12 +90,19 @@ void packBatches(const DrawList& list, PackedDrawList& packed) {
   }
 }
 
+template <typename Item>
+bool haveSameNumbers(const Item& a, const Item& b, const RenderSetup& setup) {
+  Instance first = instanceOf(a, setup), second = instanceOf(b, setup);
+  for (const std::size_t number : kNearOccluderNumbers) first[number] = second[number] = 0;
+  return first == second;
+}
+
 }  // namespace
 
-std::optional<DarkenedSquare> darkenedSquare(const ContactItem& item, const Stage& stage) {
-  const Ground& ground = *stage.ground;
-  const ShadedRegion& region = stage.shaded;
-  const double reach = std::min(kContactReach * 2 * item.half.minCoeff(), region.margin);
+std::optional<DarkenedSquare> darkenedSquare(const ContactShadowItem& item, const RenderSetup& setup) {
+  const Ground& ground = *setup.ground;
+  const ShadedRegion& region = setup.shaded;
+  const double reach = std::min(kContactShadowReach * 2 * item.half.minCoeff(), region.margin);
   const double height = extentAlong(ground.normal, item);
   const double gap = ground.normal.dot(item.worldFromBox.translation - ground.point) - height;
   if (gap > reach || gap < -2 * height) return std::nullopt;
@@ -105,32 +113,32 @@ bool mirrorsShadows(const Surface& surface) {
   return surface.metallic > kMirrorMetallic && surface.roughness < kMirrorRoughness;
 }
 
-Instance instanceOf(const MeshItem& item, const Stage& stage) {
+Instance instanceOf(const MeshItem& item, const RenderSetup& setup) {
   Instance instance{};
-  putTransform(instance, item.worldFromMesh.rotation.toRotationMatrix(), item.worldFromMesh.translation - stage.origin);
+  putTransform(instance, item.worldFromMesh.rotation.toRotationMatrix(), item.worldFromMesh.translation - setup.origin);
   putLook(item, item.isSphere, instance);
   return instance;
 }
 
-Instance instanceOf(const SphereItem& item, const Stage& stage) {
+Instance instanceOf(const SphereItem& item, const RenderSetup& setup) {
   Instance instance{};
-  put(instance, 0, stage.relative(item.center), item.radius);
+  put(instance, 0, setup.relative(item.center), item.radius);
   putLook(item, true, instance);
   return instance;
 }
 
-Instance instanceOf(const CylinderItem& item, const Stage& stage) {
+Instance instanceOf(const CylinderItem& item, const RenderSetup& setup) {
   Instance instance{};
-  put(instance, 0, stage.relative(item.center), item.radius);
+  put(instance, 0, setup.relative(item.center), item.radius);
   put(instance, 1, item.axis.cast<float>(), item.length);
   putLook(item, false, instance);
   return instance;
 }
 
-Instance instanceOf(const TubeItem& item, const Stage& stage) {
+Instance instanceOf(const TubeItem& item, const RenderSetup& setup) {
   Instance instance{};
-  put(instance, 0, stage.relative(item.start), item.wireRadius);
-  put(instance, 1, stage.relative(item.end), item.coilRadius);
+  put(instance, 0, setup.relative(item.start), item.wireRadius);
+  put(instance, 1, setup.relative(item.end), item.coilRadius);
   put(instance, 2, item.side.cast<float>(), item.turns);
   put(instance, 3, item.sag.cast<float>(), item.surface.roughness);
   put(instance, 4, item.surface.color, item.surface.metallic);
@@ -139,11 +147,11 @@ Instance instanceOf(const TubeItem& item, const Stage& stage) {
   return instance;
 }
 
-Instance instanceOf(const ContactItem& item, const DarkenedSquare& square, const Stage& stage) {
+Instance instanceOf(const ContactShadowItem& item, const DarkenedSquare& square, const RenderSetup& setup) {
   Instance instance{};
-  const ShadedRegion& region = stage.shaded;
+  const ShadedRegion& region = setup.shaded;
   const Mat3 turn = item.worldFromBox.rotation.toRotationMatrix();
-  const Vec3 relative = item.worldFromBox.translation - stage.origin;
+  const Vec3 relative = item.worldFromBox.translation - setup.origin;
   putTransform(instance, turn.transpose(), -(turn.transpose() * relative));
   put(instance, 3, item.half.cast<float>(), square.reach);
   const double u = 2 * (region.axisU.dot(relative) - region.firstU) / region.sizeU - 1;
@@ -153,16 +161,16 @@ Instance instanceOf(const ContactItem& item, const DarkenedSquare& square, const
   return instance;
 }
 
-std::size_t outlineLevel(const SphereItem& item, const Stage& stage) {
-  return outlineFor(item.bounds(), item.radius, stage);
+std::size_t outlineLevel(const SphereItem& item, const RenderSetup& setup) {
+  return outlineFor(item.bounds(), item.radius, setup);
 }
 
-std::size_t outlineLevel(const CylinderItem& item, const Stage& stage) {
-  return outlineFor(item.bounds(), item.radius, stage);
+std::size_t outlineLevel(const CylinderItem& item, const RenderSetup& setup) {
+  return outlineFor(item.bounds(), item.radius, setup);
 }
 
-std::array<float, 16> numbersOf(const NeighbourItem& item, const Stage& stage) {
-  const Vec3f center = stage.relative(item.center), half = item.half.cast<float>();
+std::array<float, 16> numbersOf(const OccluderItem& item, const RenderSetup& setup) {
+  const Vec3f center = setup.relative(item.center), half = item.half.cast<float>();
   const Vec3f& color = item.surface.color;
   const Eigen::Vector4f turn = item.rotation.coeffs().cast<float>();
   return {settled(center.x()),
@@ -183,23 +191,50 @@ std::array<float, 16> numbersOf(const NeighbourItem& item, const Stage& stage) {
           settled(turn.w())};
 }
 
-PackedDrawList pack(const DrawList& list, const Stage& stage) {
+bool isSame(const MeshItem& a, const MeshItem& b, const RenderSetup& setup) {
+  return a.mesh == b.mesh && a.firstTriangle == b.firstTriangle && a.triangleCount == b.triangleCount &&
+         haveSameNumbers(a, b, setup);
+}
+
+bool isSame(const SphereItem& a, const SphereItem& b, const RenderSetup& setup) {
+  return outlineLevel(a, setup) == outlineLevel(b, setup) && haveSameNumbers(a, b, setup);
+}
+
+bool isSame(const CylinderItem& a, const CylinderItem& b, const RenderSetup& setup) {
+  return outlineLevel(a, setup) == outlineLevel(b, setup) && haveSameNumbers(a, b, setup);
+}
+
+bool isSame(const TubeItem& a, const TubeItem& b, const RenderSetup& setup) {
+  return haveSameNumbers(a, b, setup);
+}
+
+bool isSame(const OccluderItem& a, const OccluderItem& b, const RenderSetup& setup) {
+  return numbersOf(a, setup) == numbersOf(b, setup);
+}
+
+bool isSame(const ContactShadowItem& a, const ContactShadowItem& b, const RenderSetup& setup) {
+  const auto first = darkenedSquare(a, setup), second = darkenedSquare(b, setup);
+  if (!first || !second) return !first && !second;
+  return instanceOf(a, *first, setup) == instanceOf(b, *second, setup);
+}
+
+PackedDrawList pack(const DrawList& list, const RenderSetup& setup) {
   PackedDrawList packed;
-  for (const MeshItem& item : list.meshes) packed.meshInstances.push_back(instanceOf(item, stage));
-  for (const TubeItem& item : list.tubes) packed.tubeInstances.push_back(instanceOf(item, stage));
-  for (const MeshItem& item : list.walls) packed.wallInstances.push_back(instanceOf(item, stage));
+  for (const MeshItem& item : list.meshes) packed.meshInstances.push_back(instanceOf(item, setup));
+  for (const TubeItem& item : list.tubes) packed.tubeInstances.push_back(instanceOf(item, setup));
+  for (const MeshItem& item : list.walls) packed.wallInstances.push_back(instanceOf(item, setup));
   packBatches(list, packed);
-  packRounds(list.spheres, stage, {packed.sphereInstances, packed.sphereBatches, packed.sphereItems});
-  packRounds(list.cylinders, stage, {packed.cylinderInstances, packed.cylinderBatches, packed.cylinderItems});
-  for (const NeighbourItem& item : list.neighbours) {
-    const auto numbers = numbersOf(item, stage);
-    packed.neighbours.insert(packed.neighbours.end(), numbers.begin(), numbers.end());
+  packRounds(list.spheres, setup, {packed.sphereInstances, packed.sphereBatches, packed.sphereItems});
+  packRounds(list.cylinders, setup, {packed.cylinderInstances, packed.cylinderBatches, packed.cylinderItems});
+  for (const OccluderItem& item : list.occluders) {
+    const auto numbers = numbersOf(item, setup);
+    packed.occluders.insert(packed.occluders.end(), numbers.begin(), numbers.end());
   }
-  for (const int index : list.nearBalls) packed.nearBalls.push_back(static_cast<float>(index));
-  if (stage.ground)
-    for (const ContactItem& item : list.contacts)
-      if (const auto square = darkenedSquare(item, stage))
-        packed.contactInstances.push_back(instanceOf(item, *square, stage));
+  for (const int index : list.nearOccluders) packed.nearOccluders.push_back(static_cast<float>(index));
+  if (setup.ground)
+    for (const ContactShadowItem& item : list.contactShadows)
+      if (const auto square = darkenedSquare(item, setup))
+        packed.contactShadowInstances.push_back(instanceOf(item, *square, setup));
   return packed;
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/occlusion.h"
+#include "render/occlusion_culling.h"
 #include "render/shadow_casters.h"
 
 namespace cradle {
@@ -18,16 +18,16 @@ constexpr int kSegmentsAround = 10;  // of a wire
 constexpr double kBoxMargin = 2;     // pixels: samples lie beside centres, and rounding
 
 /// The pixels in which a hull may be seen: all, if it is not wholly in front of the camera.
-PixelRectangle seenIn(const DrawnHull& hull, const Stage& stage) {
-  const auto outline = outlineOf(hull, stage);
-  if (!outline) return {0, 0, stage.width, stage.height};
+PixelRectangle seenIn(const DrawnHull& hull, const RenderSetup& setup) {
+  const auto outline = outlineOf(hull, setup);
+  if (!outline) return {0, 0, setup.width, setup.height};
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& point : *outline) box.extend(point);
   const auto pixel = [](double place, int size) {
     return static_cast<int>(std::floor(std::clamp(place, -kBoxMargin, size + kBoxMargin)));
   };
-  return {pixel(box.min().x() - kBoxMargin, stage.width), pixel(box.min().y() - kBoxMargin, stage.height),
-          pixel(box.max().x() + kBoxMargin, stage.width) + 1, pixel(box.max().y() + kBoxMargin, stage.height) + 1};
+  return {pixel(box.min().x() - kBoxMargin, setup.width), pixel(box.min().y() - kBoxMargin, setup.height),
+          pixel(box.max().x() + kBoxMargin, setup.width) + 1, pixel(box.max().y() + kBoxMargin, setup.height) + 1};
 }
 
 bool isSeenIn(const PixelRectangle& seen, const PixelRectangle& area) {
@@ -38,7 +38,7 @@ bool isInside(const PixelRectangle& seen, const PixelRectangle& area) {
   return seen.left >= area.left && seen.right <= area.right && seen.bottom >= area.bottom && seen.top <= area.top;
 }
 
-/// Of the ball around the middle of its bounds that fits into a closed mesh, if it fills them as a box does: else 0.
+/// Of the sphere around the middle of its bounds that fits into a closed mesh, if it fills them as a box does: else 0.
 double radiusInside(const DrawnMesh& mesh) {
   constexpr double kFull = 1 - 1e-9;
   const Bounds bounds = boundsOf(mesh, true).whole;
@@ -50,7 +50,7 @@ double radiusInside(const DrawnMesh& mesh) {
   return volume >= kFull * bounds.volume() ? bounds.sizes().minCoeff() / 2 : 0;
 }
 
-double nearestDepth(const DrawnHull& hull, const Occlusion& occlusion) {
+double nearestDepth(const DrawnHull& hull, const OcclusionCulling& occlusion) {
   constexpr double kOutermost = 1.06;  // of a radius: corners of polygons that stand for circles
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < hull.count; ++i) nearest = std::min(nearest, occlusion.depthOf(hull.centers[i]));
@@ -73,9 +73,9 @@ void forSeen(const std::vector<PixelRectangle>& seen, std::size_t first, std::si
 
 }  // namespace
 
-ItemDrawer::ItemDrawer(const Appearance& appearance, const Stage& stage)
+ItemDrawer::ItemDrawer(const Appearance& appearance, const RenderSetup& setup)
     : appearance_(appearance),
-      stage_(stage),
+      setup_(setup),
       coilMesh_(makeTube(kMaxCoilTurns * kSegmentsPerTurn, kSegmentsAround)),
       ropeMesh_(makeTube(kRopeSegments, kSegmentsAround)),
       square_({-1, -1, 1, -1, 1, 1, -1, 1}, 2, {0, 1, 2, 0, 2, 3}) {
@@ -84,25 +84,25 @@ ItemDrawer::ItemDrawer(const Appearance& appearance, const Stage& stage)
     radiusInside_.push_back(appearance.meshIsClosed[i] ? radiusInside(appearance.meshes[i]) : 0);
   }
   for (const int outline : kOutlines) {
-    halfBalls_.push_back(makeHalfBall(outline));
+    halfSpheres_.push_back(makeHalfSphere(outline));
     halfCylinders_.push_back(makeHalfCylinder(outline));
   }
 }
 
 void ItemDrawer::take(const DrawList& list, const std::vector<MeshBounds>& meshBounds) {
-  packed_ = pack(list, stage_);
+  packed_ = pack(list, setup_);
   meshInstances_.upload(packed_.meshInstances);
   wallInstances_.upload(packed_.wallInstances);
   sphereInstances_.upload(packed_.sphereInstances);
   cylinderInstances_.upload(packed_.cylinderInstances);
   tubeInstances_.upload(packed_.tubeInstances);
-  contactInstances_.upload(packed_.contactInstances);
+  contactShadowInstances_.upload(packed_.contactShadowInstances);
   findSeen(
-      list, meshBounds, [&](const DrawnHull& hull) { return seenIn(hull, stage_); }, inPicture_);
+      list, meshBounds, [&](const DrawnHull& hull) { return seenIn(hull, setup_); }, inPicture_);
   leaveOutHidden(list, meshBounds);
   const auto inLight = [&](DrawnHull hull) {
     hull.radius *= cornerOfEqualArea(kOutlines.front());  // rounds are drawn as polygons
-    return shadowTexels(hull, stage_);
+    return shadowTexels(hull, setup_);
   };
   findSeen(list, meshBounds, inLight, inShadowMap_);
 }
@@ -126,9 +126,9 @@ void ItemDrawer::findSeen(const DrawList& list, const std::vector<MeshBounds>& m
   for (const TubeItem& item : list.tubes) seen.tubes.push_back(place(hullOf(item)));
 }
 
-/// Meshes and balls that balls stand before are seen nowhere in the picture.
+/// Meshes and spheres that spheres stand before are seen nowhere in the picture.
 void ItemDrawer::leaveOutHidden(const DrawList& list, const std::vector<MeshBounds>& meshBounds) {
-  Occlusion occlusion(stage_);
+  OcclusionCulling occlusion(setup_);
   for (const SphereItem& item : list.spheres) occlusion.add(item.center, item.radius);
   for (const MeshItem& item : list.meshes)
     if (const double radius = radiusInside_[static_cast<std::size_t>(item.mesh)]; radius > 0)
@@ -182,7 +182,7 @@ void ItemDrawer::drawWalls() const {
 
 void ItemDrawer::drawSpheres(const SeenItems& seen, const PixelRectangle& area) const {
   for (const Batch& batch : packed_.sphereBatches) {
-    const GpuMesh& mesh = halfBalls_[static_cast<std::size_t>(batch.mesh)];
+    const GpuMesh& mesh = halfSpheres_[static_cast<std::size_t>(batch.mesh)];
     forSeen(seen.spheres, batch.firstInstance, batch.instanceCount, area, [&](std::size_t first, std::size_t count) {
       mesh.draw(0, mesh.triangleCount(), sphereInstances_, first, count);
     });
@@ -211,9 +211,9 @@ void ItemDrawer::drawTubes(const SeenItems& seen, const PixelRectangle& area) co
   draw(ropeMesh_, coils, packed_.tubeInstances.size() - coils);
 }
 
-void ItemDrawer::drawContacts() const {
-  const std::size_t contacts = packed_.contactInstances.size();
-  if (contacts > 0) square_.draw(0, 2, contactInstances_, 0, contacts);
+void ItemDrawer::drawContactShadows() const {
+  const std::size_t count = packed_.contactShadowInstances.size();
+  if (count > 0) square_.draw(0, 2, contactShadowInstances_, 0, count);
 }
 
 }  // namespace cradle

@@ -18,8 +18,8 @@ struct SeenItems {
 /// The items of one draw list on the side of OpenGL: their triangles, and where each is seen. Needs a current context.
 class ItemDrawer {
  public:
-  /// `appearance` and `stage` must outlive this object.
-  ItemDrawer(const Appearance& appearance, const Stage& stage);
+  /// `appearance` and `setup` must outlive this object.
+  ItemDrawer(const Appearance& appearance, const RenderSetup& setup);
 
   /// Takes a picture's items; `meshBounds` as in changedArea.
   void take(const DrawList& list, const std::vector<MeshBounds>& meshBounds);
@@ -34,8 +34,8 @@ class ItemDrawer {
   void drawCylinders(const SeenItems& seen, const PixelRectangle& area) const;
   void drawTubes(const SeenItems& seen, const PixelRectangle& area) const;
 
-  /// Squares of the contact map.
-  void drawContacts() const;
+  /// Squares of the map of contact shadows.
+  void drawContactShadows() const;
 
   const PackedDrawList& packed() const { return packed_; }
 
@@ -47,14 +47,14 @@ class ItemDrawer {
   void leaveOutHidden(const DrawList& list, const std::vector<MeshBounds>& meshBounds);
 
   const Appearance& appearance_;
-  const Stage& stage_;
+  const RenderSetup& setup_;
   InstanceBuffer meshInstances_, wallInstances_, sphereInstances_, cylinderInstances_, tubeInstances_,
-      contactInstances_;
-  std::vector<GpuMesh> meshes_, halfBalls_, halfCylinders_;
+      contactShadowInstances_;
+  std::vector<GpuMesh> meshes_, halfSpheres_, halfCylinders_;
   GpuMesh coilMesh_, ropeMesh_, square_;
   PackedDrawList packed_;
   SeenItems inPicture_, inShadowMap_;
-  std::vector<double> radiusInside_;  // m, by mesh: of a ball around the middle of its bounds that it contains, or 0
+  std::vector<double> radiusInside_;  // m, by mesh: of a sphere around the middle of its bounds that it contains, or 0
 };
 
 }  // namespace cradle

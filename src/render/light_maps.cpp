@@ -17,31 +17,31 @@ PixelRectangle aroundAll(const SeenItems& seen) {
 
 }  // namespace
 
-LightMaps::LightMaps(const ShaderSource& source, const Stage& stage)
+LightMaps::LightMaps(const ShaderSource& source, const RenderSetup& setup)
     : surfaceDepth_(source, "surface.vert", "depth.frag"),
-      ballDepth_(source, "ball.vert", "depth.frag"),
+      sphereDepth_(source, "sphere.vert", "depth.frag"),
       cylinderDepth_(source, "cylinder.vert", "depth.frag"),
       tubeDepth_(source, "tube.vert", "depth.frag"),
       leastDepth_(source, "sky.vert", "shadow_blocks.frag"),
-      contact_(source, "contact.vert", "contact.frag"),
+      contactShadow_(source, "contact_shadow.vert", "contact_shadow.frag"),
       shadowMap_(MapTarget::Kind::depth, kShadowMapSize),
       blocks_(MapTarget::Kind::leastDepth, kShadowMapSize / kShadowBlock),
-      contactMap_(MapTarget::Kind::share, kContactMapSize),
+      contactShadowMap_(MapTarget::Kind::share, kContactShadowMapSize),
       triangle_({0, 0, 0}, 1, {0, 1, 2}) {
-  for (const ShaderProgram* program : {&leastDepth_, &contact_}) setStage(stage, *program);
-  for (const ShaderProgram* program : {&surfaceDepth_, &ballDepth_, &cylinderDepth_, &tubeDepth_}) {
+  for (const ShaderProgram* program : {&leastDepth_, &contactShadow_}) setUniforms(setup, *program);
+  for (const ShaderProgram* program : {&surfaceDepth_, &sphereDepth_, &cylinderDepth_, &tubeDepth_}) {
     program->use();
-    program->set("viewer", stage.shadow.viewer);
+    program->set("viewer", setup.shadow.viewer);
     program->set("pixelSize", 0.0f);
   }
-  move(stage);
+  move(setup);
 }
 
-void LightMaps::move(const Stage& stage) const {
-  setMaps(stage, contact_);
-  for (const ShaderProgram* program : {&surfaceDepth_, &ballDepth_, &cylinderDepth_, &tubeDepth_}) {
+void LightMaps::move(const RenderSetup& setup) const {
+  setMaps(setup, contactShadow_);
+  for (const ShaderProgram* program : {&surfaceDepth_, &sphereDepth_, &cylinderDepth_, &tubeDepth_}) {
     program->use();
-    program->set("clipFromWorld", stage.shadow.clipFromWorld);
+    program->set("clipFromWorld", setup.shadow.clipFromWorld);
   }
 }
 
@@ -59,7 +59,7 @@ void LightMaps::drawShadows(const ItemDrawer& items, const PixelRectangle& chang
   surfaceDepth_.use();
   const SeenItems& seen = items.inShadowMap();
   items.drawMeshes(seen, shadows);
-  ballDepth_.use();
+  sphereDepth_.use();
   items.drawSpheres(seen, shadows);
   cylinderDepth_.use();
   items.drawCylinders(seen, shadows);
@@ -80,21 +80,21 @@ void LightMaps::drawBlocks(const PixelRectangle& shadows) const {
   blocks_.end();
 }
 
-void LightMaps::drawContacts(const ItemDrawer& items) const {
-  contactMap_.begin(contactMap_.inside());
+void LightMaps::drawContactShadows(const ItemDrawer& items) const {
+  contactShadowMap_.begin(contactShadowMap_.inside());
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE_MINUS_DST_COLOR, GL_ONE);  // what two things leave open is the product of what each does
-  contact_.use();
-  items.drawContacts();
+  contactShadow_.use();
+  items.drawContactShadows();
   glDisable(GL_BLEND);
-  contactMap_.end();
+  contactShadowMap_.end();
 }
 
 void LightMaps::bindTextures() const {
   shadowMap_.bindTexture(kShadowUnit);
   blocks_.bindTexture(kBlockUnit);
-  contactMap_.bindTexture(kContactUnit);
+  contactShadowMap_.bindTexture(kContactShadowUnit);
 }
 
 }  // namespace cradle

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "render/item_drawer.h"
+#include "render/render_setup.h"
 #include "render/render_targets.h"
 #include "render/shader_program.h"
-#include "render/stage.h"
 
 namespace cradle {
 
@@ -11,16 +11,16 @@ namespace cradle {
 /// bodies hide from the ground. Needs a current context.
 class LightMaps {
  public:
-  LightMaps(const ShaderSource& source, const Stage& stage);
+  LightMaps(const ShaderSource& source, const RenderSetup& setup);
 
   /// For maps that have moved.
-  void move(const Stage& stage) const;
+  void move(const RenderSetup& setup) const;
 
   /// Draws the part `shadows` (texels) of the shadow map anew, as far as anything stands or stood there.
   void drawShadows(const ItemDrawer& items, const PixelRectangle& shadows);
 
-  /// Draws the map of contacts anew.
-  void drawContacts(const ItemDrawer& items) const;
+  /// Draws the map of contact shadows anew.
+  void drawContactShadows(const ItemDrawer& items) const;
 
   /// Lets the shaders of a picture look them up.
   void bindTextures() const;
@@ -28,9 +28,9 @@ class LightMaps {
  private:
   void drawBlocks(const PixelRectangle& shadows) const;
 
-  ShaderProgram surfaceDepth_, ballDepth_, cylinderDepth_, tubeDepth_;
-  ShaderProgram leastDepth_, contact_;
-  MapTarget shadowMap_, blocks_, contactMap_;
+  ShaderProgram surfaceDepth_, sphereDepth_, cylinderDepth_, tubeDepth_;
+  ShaderProgram leastDepth_, contactShadow_;
+  MapTarget shadowMap_, blocks_, contactShadowMap_;
   GpuMesh triangle_;
   PixelRectangle occupied_;  // texels of the shadow map: beyond, it is clear
 };

@@ -18,10 +18,10 @@ struct LightReceiver {
 };
 
 /// Append what of an item may be seen.
-void appendReceivers(const MeshItem& item, const MeshBounds& bounds, const Stage& stage,
+void appendReceivers(const MeshItem& item, const MeshBounds& bounds, const RenderSetup& setup,
                      std::vector<LightReceiver>& receivers);
-void appendReceivers(const SphereItem& item, const Stage& stage, std::vector<LightReceiver>& receivers);
-void appendReceivers(const CylinderItem& item, const Stage& stage, std::vector<LightReceiver>& receivers);
-void appendReceivers(const TubeItem& item, const Stage& stage, std::vector<LightReceiver>& receivers);
+void appendReceivers(const SphereItem& item, const RenderSetup& setup, std::vector<LightReceiver>& receivers);
+void appendReceivers(const CylinderItem& item, const RenderSetup& setup, std::vector<LightReceiver>& receivers);
+void appendReceivers(const TubeItem& item, const RenderSetup& setup, std::vector<LightReceiver>& receivers);
 
 }  // namespace cradle

@@ -21,8 +21,8 @@ constexpr double kPitchOfCoil = 0.85;  // distance of turns at rest
 constexpr int kFewestTurns = 6;
 constexpr double kStraightEnd = 0.07;                    // of a spring's length
 constexpr double kSlenderest = 0.3;                      // a coil that is drawn out narrows so far and no farther
-constexpr double kKnobOfRod = 1.8;                       // radius of the ball at the end of a rod
-constexpr double kBallOfRod = 4;                         // radius of a ball joint
+constexpr double kKnobOfRod = 1.8;                       // radius of the sphere at the end of a rod
+constexpr double kBallJointOfRod = 4;                    // radius of a ball joint
 constexpr double kPinOfRod = 2.5, kPinLengthOfRod = 12;  // radius, of an axle too; length of a hinge's pin
 constexpr double kPlateOfKnob = 3.2, kPlateThickness = 0.9;
 constexpr int kGroundHalvings = 40, kThirds = 50;  // to find where a rope lies on the ground
@@ -227,7 +227,7 @@ void LinkBuilder::add(const Rope& rope) {
 }
 
 void LinkBuilder::add(const BallJoint& joint) {
-  list_.spheres.push_back({now(joint.anchorA), kBallOfRod * rod_, kDarkSteel});
+  list_.spheres.push_back({now(joint.anchorA), kBallJointOfRod * rod_, kDarkSteel});
   addArm(joint.anchorA, kPinOfRod * rod_);
   addArm(joint.anchorB, kPinOfRod * rod_);
 }

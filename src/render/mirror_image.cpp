@@ -1,5 +1,5 @@
 // The normal of a mirror halves the angle between the directions to the eye and to what is seen. Where these are known
-// to within angles, so is the normal; and where the normal is known, so is the place on the ball from which both
+// to within angles, so is the normal; and where the normal is known, so is the place on the sphere from which both
 // directions are counted: a few rounds of this close in on the image.
 
 #include "render/mirror_image.h"
@@ -25,35 +25,35 @@ struct Direction {
   double error;
 };
 
-std::optional<Direction> directionBetween(const BoundingBall& from, const BoundingBall& to) {
+std::optional<Direction> directionBetween(const BoundingSphere& from, const BoundingSphere& to) {
   const Vec3 between = to.center - from.center;
   const double distance = between.norm(), sine = (from.radius + to.radius) / distance;
   if (!(sine < 1)) return std::nullopt;
   return Direction{between / distance, 2 * std::sin(std::asin(sine) / 2)};
 }
 
-/// What a flat side of a box shows of a ball, as another ball behind it; none if it cannot be shown to `mirror`.
-std::optional<BoundingBall> behindSide(const NeighbourItem& box, int axis, double side, const BoundingBall& seen,
-                                       const BoundingBall& mirror) {
+/// What a flat side of a box shows of a sphere, as another sphere behind it; none if it cannot be shown to `mirror`.
+std::optional<BoundingSphere> behindSide(const OccluderItem& box, int axis, double side, const BoundingSphere& seen,
+                                         const BoundingSphere& mirror) {
   const Vec3 normal = side * box.rotation.toRotationMatrix().col(axis);
   const Vec3 point = box.center + box.half[axis] * normal;
   const double height = normal.dot(seen.center - point);
   if (height + seen.radius < 0 || normal.dot(mirror.center - point) + mirror.radius < 0) return std::nullopt;
-  return BoundingBall{seen.center - 2 * height * normal, seen.radius};
+  return BoundingSphere{seen.center - 2 * height * normal, seen.radius};
 }
 
-/// The lowest part of a ball, where it nearly touches the ground; of no size if it does not.
-BoundingBall bottomOf(const SphereItem& ball, const Stage& stage) {
-  const Ground& ground = *stage.ground;
-  const double highest = 2 * kMinApproach * stage.size;
-  const double height = highest - (ground.normal.dot(ball.center - ground.point) - ball.radius);
-  return {ball.center - ball.radius * ground.normal, std::sqrt(2 * ball.radius * std::max(height, 0.0))};
+/// The lowest part of a sphere, where it nearly touches the ground; of no size if it does not.
+BoundingSphere bottomOf(const SphereItem& sphere, const RenderSetup& setup) {
+  const Ground& ground = *setup.ground;
+  const double highest = 2 * kMinApproach * setup.size;
+  const double height = highest - (ground.normal.dot(sphere.center - ground.point) - sphere.radius);
+  return {sphere.center - sphere.radius * ground.normal, std::sqrt(2 * sphere.radius * std::max(height, 0.0))};
 }
 
 }  // namespace
 
-BoundingBall imageIn(const BoundingBall& mirror, const BoundingBall& eye, const BoundingBall& seen) {
-  BoundingBall place = mirror;
+BoundingSphere imageIn(const BoundingSphere& mirror, const BoundingSphere& eye, const BoundingSphere& seen) {
+  BoundingSphere place = mirror;
   for (int round = 0; round < kRounds; ++round) {
     const auto toEye = directionBetween(place, eye), toSeen = directionBetween(place, seen);
     if (!toEye || !toSeen) break;
@@ -67,21 +67,21 @@ BoundingBall imageIn(const BoundingBall& mirror, const BoundingBall& eye, const 
   return place;
 }
 
-std::vector<BoundingBall> imagesOnBall(const SphereItem& ball, const BoundingBall& onGround, const DrawList& list,
-                                       const Stage& stage) {
-  const BoundingBall mirror{ball.center, ball.radius}, eye{stage.camera.position, 0};
-  std::vector<BoundingBall> images = {imageIn(mirror, eye, onGround)};
-  if (const BoundingBall bottom = bottomOf(ball, stage); bottom.radius > 0) images.push_back(bottom);
-  for (int i = 0; i < ball.nearBalls; ++i) {
-    const int index = list.nearBalls[static_cast<std::size_t>(ball.firstNearBall + i)];
-    const NeighbourItem& neighbour = list.neighbours[static_cast<std::size_t>(index)];
-    if (neighbour.isSphere()) {
-      images.push_back(imageIn(mirror, eye, imageIn({neighbour.center, neighbour.radius}, mirror, onGround)));
+std::vector<BoundingSphere> imagesOnSphere(const SphereItem& sphere, const BoundingSphere& onGround,
+                                           const DrawList& list, const RenderSetup& setup) {
+  const BoundingSphere mirror{sphere.center, sphere.radius}, eye{setup.camera.position, 0};
+  std::vector<BoundingSphere> images = {imageIn(mirror, eye, onGround)};
+  if (const BoundingSphere bottom = bottomOf(sphere, setup); bottom.radius > 0) images.push_back(bottom);
+  for (int i = 0; i < sphere.nearOccluders; ++i) {
+    const int index = list.nearOccluders[static_cast<std::size_t>(sphere.firstNearOccluder + i)];
+    const OccluderItem& occluder = list.occluders[static_cast<std::size_t>(index)];
+    if (occluder.isSphere()) {
+      images.push_back(imageIn(mirror, eye, imageIn({occluder.center, occluder.radius}, mirror, onGround)));
       continue;
     }
     for (int axis = 0; axis < 3; ++axis)
       for (const double side : {-1, 1})
-        if (const auto behind = behindSide(neighbour, axis, side, onGround, mirror))
+        if (const auto behind = behindSide(occluder, axis, side, onGround, mirror))
           images.push_back(imageIn(mirror, eye, *behind));
   }
   return images;

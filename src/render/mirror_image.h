@@ -3,22 +3,23 @@
 #include <vector>
 
 #include "render/draw_list.h"
-#include "render/stage.h"
+#include "render/render_setup.h"
 
 namespace cradle {
 
-/// A ball in space: bounds of something.
-struct BoundingBall {
+/// A sphere in space: bounds of something.
+struct BoundingSphere {
   Vec3 center;        // m, world
   double radius = 0;  // m
 };
 
-/// Where on `mirror`, a ball's surface, an eye somewhere in `eye` may see something that lies in `seen`, by one
+/// Where on `mirror`, a sphere's surface, an eye somewhere in `eye` may see something that lies in `seen`, by one
 /// reflection; the whole mirror where nothing better is known.
-BoundingBall imageIn(const BoundingBall& mirror, const BoundingBall& eye, const BoundingBall& seen);
+BoundingSphere imageIn(const BoundingSphere& mirror, const BoundingSphere& eye, const BoundingSphere& seen);
 
-/// Where a ball may show something on the ground: straight, or by way of one of the neighbours near it. Needs a ground.
-std::vector<BoundingBall> imagesOnBall(const SphereItem& ball, const BoundingBall& onGround, const DrawList& list,
-                                       const Stage& stage);
+/// Where a sphere may show something on the ground: straight, or by way of one of the occluders near it. Needs a
+/// ground.
+std::vector<BoundingSphere> imagesOnSphere(const SphereItem& sphere, const BoundingSphere& onGround,
+                                           const DrawList& list, const RenderSetup& setup);
 
 }  // namespace cradle

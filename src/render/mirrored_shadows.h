@@ -7,25 +7,25 @@
 
 namespace cradle {
 
-/// Changed shadows on the ground, as balls mirror them. Needs a ground.
+/// Changed shadows on the ground, as spheres mirror them. Needs a ground.
 class MirroredShadows {
  public:
-  explicit MirroredShadows(const Stage& stage) : stage_(stage) {}
+  explicit MirroredShadows(const RenderSetup& setup) : setup_(setup) {}
 
   void addCaster(const DrawnHull& caster);
   void addDarkened(const DrawnHull& onGround);
 
-  /// Where on a ball they may be seen; `list` has its neighbours.
-  std::vector<DrawnHull> imagesOn(const SphereItem& ball, const DrawList& list) const;
+  /// Where on a sphere they may be seen; `list` has its occluders.
+  std::vector<DrawnHull> imagesOn(const SphereItem& sphere, const DrawList& list) const;
 
-  /// Whether they may be seen on a mesh that stands for a ball.
+  /// Whether they may be seen on a mesh that stands for a sphere.
   bool areSeenOn(const MeshItem& item, const MeshBounds& bounds) const;
 
  private:
-  double reachOf(const SphereItem& ball, double widening) const;
+  double reachOf(const SphereItem& sphere, double widening) const;
 
-  const Stage& stage_;
-  std::vector<BoundingBall> patches_;
+  const RenderSetup& setup_;
+  std::vector<BoundingSphere> patches_;
 };
 
 }  // namespace cradle

@@ -81,16 +81,16 @@ double depthAt(const Eigen::Vector2d& place, const Vec3& plane) {
 
 }  // namespace
 
-MovedShadows::MovedShadows(const std::vector<DrawnHull>& casters, const Stage& stage) {
-  const Eigen::Matrix4d texture = stage.shadow.textureFromWorld.cast<double>();
-  const Vec3 scale(kShadowMapSize, kShadowMapSize, stage.shadow.deep / stage.shadow.texel);
+MovedShadows::MovedShadows(const std::vector<DrawnHull>& casters, const RenderSetup& setup) {
+  const Eigen::Matrix4d texture = setup.shadow.textureFromWorld.cast<double>();
+  const Vec3 scale(kShadowMapSize, kShadowMapSize, setup.shadow.deep / setup.shadow.texel);
   lightFromWorld_ = scale.asDiagonal() * texture.topLeftCorner<3, 3>();
   worldFromLight_ = lightFromWorld_.inverse();
-  lightOrigin_ = scale.cwiseProduct(texture.topRightCorner<3, 1>()) - lightFromWorld_ * stage.origin;
+  lightOrigin_ = scale.cwiseProduct(texture.topRightCorner<3, 1>()) - lightFromWorld_ * setup.origin;
 
   std::vector<double> nearest(kBlocks * kBlocks, kNone);
   const TileMask blocks(kShadowMapSize, kShadowMapSize);
-  for (const DrawnHull& caster : casters) putBlocks(caster, stage.shadow.texel, blocks, nearest);
+  for (const DrawnHull& caster : casters) putBlocks(caster, setup.shadow.texel, blocks, nearest);
   for (int row = 0; row < kBlocks; ++row) appendRuns(row, &nearest[static_cast<std::size_t>(row) * kBlocks]);
 }
 

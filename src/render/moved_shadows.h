@@ -18,7 +18,7 @@ struct LitSurface {
 /// Where shadows change: of casters that moved, at their old and new places, on whatever they fall on.
 class MovedShadows {
  public:
-  MovedShadows(const std::vector<DrawnHull>& casters, const Stage& stage);
+  MovedShadows(const std::vector<DrawnHull>& casters, const RenderSetup& setup);
 
   /// Of a box, and of a triangle, in world coordinates (m); `wider` (m) is added to the bounds.
   LitSurface surfaceOf(const DrawnHull& box, double wider) const;

@@ -33,7 +33,7 @@ class PictureTarget {
   unsigned int color_ = 0, depth_ = 0, resolvedColor_ = 0;  // renderbuffers
 };
 
-/// A texture that can be drawn into: the shadow map, its blocks, or the map of contacts with the ground.
+/// A texture that can be drawn into: the shadow map, its blocks, or the map of contact shadows.
 class MapTarget {
  public:
   enum class Kind { depth, leastDepth, share };  // share: one channel, 0..1, blended

@@ -13,9 +13,9 @@
 #include "render/item_drawer.h"
 #include "render/light_maps.h"
 #include "render/offscreen_context.h"
+#include "render/render_setup.h"
 #include "render/render_targets.h"
 #include "render/shader_program.h"
-#include "render/stage.h"
 
 namespace cradle {
 namespace {
@@ -40,24 +40,24 @@ void appendCorner(const Vec3& corner, float w, std::vector<float>& vertices) {
   vertices.push_back(w);
 }
 
-/// Corners of the part of the ground with shadows, counter-clockwise from above, relative to the stage's origin.
-std::array<Vec3, 4> shadedCorners(const Stage& stage) {
-  const ShadedRegion& region = stage.shaded;
-  const Vec3 foot = stage.ground->normal * stage.ground->normal.dot(stage.ground->point - stage.origin);
+/// Corners of the part of the ground with shadows, counter-clockwise from above, relative to the setup's origin.
+std::array<Vec3, 4> shadedCorners(const RenderSetup& setup) {
+  const ShadedRegion& region = setup.shaded;
+  const Vec3 foot = setup.ground->normal * setup.ground->normal.dot(setup.ground->point - setup.origin);
   const Vec3 corner = foot + region.firstU * region.axisU + region.firstV * region.axisV;
   const Vec3 u = region.sizeU * region.axisU, v = region.sizeV * region.axisV;
   return {corner, corner + u, corner + u + v, corner + v};
 }
 
-GpuMesh makeNearGround(const Stage& stage) {
+GpuMesh makeNearGround(const RenderSetup& setup) {
   std::vector<float> vertices;
-  for (const Vec3& corner : shadedCorners(stage)) appendCorner(corner, 1, vertices);
+  for (const Vec3& corner : shadedCorners(setup)) appendCorner(corner, 1, vertices);
   return {vertices, 4, {0, 1, 2, 0, 2, 3}};
 }
 
 /// What lies around the near ground: from each of its edges to corners infinitely far.
-GpuMesh makeFarGround(const Stage& stage) {
-  const auto corners = shadedCorners(stage);
+GpuMesh makeFarGround(const RenderSetup& setup) {
+  const auto corners = shadedCorners(setup);
   const Vec3 middle = (corners[0] + corners[2]) / 2;
   std::vector<float> vertices;
   for (const Vec3& corner : corners) appendCorner(corner, 1, vertices);
@@ -81,22 +81,22 @@ std::vector<MeshBounds> boundsOfMeshes(const Appearance& appearance) {
 
 /// The shaders of what the camera sees.
 struct Renderer::Programs {
-  Programs(const ShaderSource& source, const Stage& stage)
+  Programs(const ShaderSource& source, const RenderSetup& setup)
       : surface(source, "surface.vert", "surface.frag"),
-        ball(source, "ball.vert", "ball.frag"),
+        sphere(source, "sphere.vert", "sphere.frag"),
         cylinder(source, "cylinder.vert", "cylinder.frag"),
         tube(source, "tube.vert", "surface.frag"),
         ground(source, "ground.vert", "ground.frag"),
         groundFar(source, "ground.vert", "ground_far.frag"),
         sky(source, "sky.vert", "sky.frag") {
-    for (const ShaderProgram* program : all()) setStage(stage, *program);
+    for (const ShaderProgram* program : all()) setUniforms(setup, *program);
   }
 
   std::array<const ShaderProgram*, 7> all() const {
-    return {&surface, &ball, &cylinder, &tube, &ground, &groundFar, &sky};
+    return {&surface, &sphere, &cylinder, &tube, &ground, &groundFar, &sky};
   }
 
-  ShaderProgram surface, ball, cylinder, tube, ground, groundFar, sky;
+  ShaderProgram surface, sphere, cylinder, tube, ground, groundFar, sky;
 };
 
 /// All that lives on the side of OpenGL, and the picture drawn last; the context goes last.
@@ -110,17 +110,17 @@ struct Renderer::Resources {
   } sizeCheck;  // before any memory is asked for
   Appearance appearance;
   std::vector<MeshBounds> meshBounds;
-  Stage stage;
+  RenderSetup setup;
   Programs programs;
   LightMaps maps;
   PictureTarget picture;
-  NumberTexture balls, nearBalls;
+  NumberTexture occluders, nearOccluders;
   ItemDrawer items;
   GpuMesh triangle;
   std::optional<GpuMesh> nearGround, farGround;
   std::optional<DrawList> drawn;  // what picture, maps and image show
   Image image;
-  Clock::time_point stageStart;
+  Clock::time_point passStart;
 };
 
 Renderer::Resources::Resources(const Scene& scene, const View& view, int width, int height,
@@ -128,22 +128,22 @@ Renderer::Resources::Resources(const Scene& scene, const View& view, int width, 
     : sizeCheck(width, height),
       appearance(makeAppearance(scene, view, pixelsPerMetre(view, height))),
       meshBounds(boundsOfMeshes(appearance)),
-      stage(makeStage(scene, view, appearance.ground, width, height)),
-      programs({shaderFolder, shaderDefinitions(stage)}, stage),
-      maps({shaderFolder, shaderDefinitions(stage)}, stage),
+      setup(makeRenderSetup(scene, view, appearance.ground, width, height)),
+      programs({shaderFolder, shaderDefinitions(setup)}, setup),
+      maps({shaderFolder, shaderDefinitions(setup)}, setup),
       picture(width, height),
-      balls(4),
-      nearBalls(1),
-      items(appearance, stage),
+      occluders(4),
+      nearOccluders(1),
+      items(appearance, setup),
       triangle({0, 0, 0}, 1, {0, 1, 2}),
       image(width, height) {
   layGround();
 }
 
 void Renderer::Resources::layGround() {
-  if (!stage.ground) return;
-  nearGround.emplace(makeNearGround(stage));
-  farGround.emplace(makeFarGround(stage));
+  if (!setup.ground) return;
+  nearGround.emplace(makeNearGround(setup));
+  farGround.emplace(makeFarGround(setup));
 }
 
 Renderer::Renderer(const Scene& scene, const View& view, int width, int height, const std::string& shaderFolder)
@@ -161,15 +161,15 @@ Image Renderer::render(const Frame& frame, const Camera& camera) {
   Resources& r = *resources_;
   r.context.makeCurrent();
   times_ = {};
-  r.stageStart = Clock::now();
+  r.passStart = Clock::now();
   DrawList list = makeDrawList(scene_, r.appearance, view_, {frame, camera.position});
   aim(camera, list);
-  const ChangedArea changed = r.drawn ? changedArea(*r.drawn, list, r.stage, r.meshBounds) : wholePicture(r.stage);
+  const ChangedArea changed = r.drawn ? changedArea(*r.drawn, list, r.setup, r.meshBounds) : wholePicture(r.setup);
   r.drawn.reset();  // until the picture is complete
-  finishStage(times_.drawList);
+  finishPass(times_.drawList);
   drawnShare_ = 0;
   // Maps too if nothing of them is seen yet: later pictures look things up there.
-  if (!changed.picture.isEmpty() || changed.shadows || changed.contactsChanged) draw(list, changed);
+  if (!changed.picture.isEmpty() || changed.shadows || changed.contactShadowsChanged) draw(list, changed);
   r.drawn = std::move(list);
   return r.image;
 }
@@ -177,65 +177,65 @@ Image Renderer::render(const Frame& frame, const Camera& camera) {
 /// From another place, or in other maps, everything is drawn anew.
 void Renderer::aim(const Camera& camera, const DrawList& list) {
   Resources& r = *resources_;
-  const FrameLayout layout = layoutOf(list, r.meshBounds, camera, r.stage);
-  if (camera == r.stage.camera && layout == r.stage.layout) return;
-  const FrameLayout& before = r.stage.layout;
+  const FrameLayout layout = layoutOf(list, r.meshBounds, camera, r.setup);
+  if (camera == r.setup.camera && layout == r.setup.layout) return;
+  const FrameLayout& before = r.setup.layout;
   const bool movesMaps =
       layout.shadows != before.shadows || layout.ground != before.ground || layout.depth != before.depth;
-  layOut(camera, layout, r.stage);
-  for (const ShaderProgram* program : r.programs.all()) setCamera(r.stage, *program);
+  layOut(camera, layout, r.setup);
+  for (const ShaderProgram* program : r.programs.all()) setCamera(r.setup, *program);
   if (movesMaps) moveMaps();
   r.drawn.reset();
 }
 
 void Renderer::moveMaps() {
   Resources& r = *resources_;
-  for (const ShaderProgram* program : r.programs.all()) setMaps(r.stage, *program);
-  r.maps.move(r.stage);
+  for (const ShaderProgram* program : r.programs.all()) setMaps(r.setup, *program);
+  r.maps.move(r.setup);
   r.layGround();
 }
 
 void Renderer::draw(const DrawList& list, const ChangedArea& changed) {
   Resources& r = *resources_;
   r.items.take(list, r.meshBounds);
-  r.balls.upload(r.items.packed().neighbours);
-  r.nearBalls.upload(r.items.packed().nearBalls);
+  r.occluders.upload(r.items.packed().occluders);
+  r.nearOccluders.upload(r.items.packed().nearOccluders);
   if (changed.shadows) r.maps.drawShadows(r.items, *changed.shadows);
-  if (changed.contactsChanged) r.maps.drawContacts(r.items);
-  finishStage(times_.maps);
+  if (changed.contactShadowsChanged) r.maps.drawContactShadows(r.items);
+  finishPass(times_.maps);
   const std::vector<PixelRectangle> areas = changed.picture.rectangles();
   // Mesa's software renderer lets samples up to half a pixel beyond an area through, and what is drawn there once more
   // takes the place of what is as far away and was drawn later: of areas that touch, one is resolved before the other
   // is drawn.
   for (const std::vector<PixelRectangle>& apart : groupsApart(areas)) {
     for (const PixelRectangle& area : apart) drawPicture(area);
-    finishStage(times_.main);
+    finishPass(times_.main);
     for (const PixelRectangle& area : apart) r.picture.resolve(area);
-    finishStage(times_.resolve);
+    finishPass(times_.resolve);
   }
   for (const PixelRectangle& area : areas) r.picture.read(area, r.image);
-  finishStage(times_.readBack);
+  finishPass(times_.readBack);
   const double pixels = static_cast<double>(r.image.width) * r.image.height;
   for (const PixelRectangle& area : areas) drawnShare_ += static_cast<double>(area.width()) * area.height() / pixels;
 }
 
-void Renderer::finishStage(double& seconds) {
+void Renderer::finishPass(double& seconds) {
   if (measuring_) glFinish();
   const auto now = Clock::now();
-  seconds += std::chrono::duration<double>(now - resources_->stageStart).count();
-  resources_->stageStart = now;
+  seconds += std::chrono::duration<double>(now - resources_->passStart).count();
+  resources_->passStart = now;
 }
 
 void Renderer::drawPicture(const PixelRectangle& area) {
   const Resources& r = *resources_;
   const SeenItems& seen = r.items.inPicture();
   r.maps.bindTextures();
-  r.balls.bindTexture(kBallUnit);
-  r.nearBalls.bindTexture(kNearBallUnit);
+  r.occluders.bindTexture(kOccluderUnit);
+  r.nearOccluders.bindTexture(kNearOccluderUnit);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   r.picture.begin(area);
-  r.programs.ball.use();
+  r.programs.sphere.use();
   r.items.drawSpheres(seen, area);
   r.programs.surface.use();
   r.items.drawMeshes(seen, area);

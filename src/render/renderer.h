@@ -10,10 +10,10 @@
 
 namespace cradle {
 
-/// Seconds that the stages of a picture took.
+/// Seconds that the passes of a picture took.
 struct RenderTimes {
   double drawList = 0;
-  double maps = 0;  // shadows, and contacts with the ground
+  double maps = 0;  // shadows and contact shadows
   double main = 0;
   double resolve = 0;
   double readBack = 0;
@@ -41,9 +41,9 @@ class Renderer {
   /// Share of the latest picture that was drawn rather than copied, 0..1.
   double drawnShare() const { return drawnShare_; }
 
-  /// Of the latest picture. Each stage waits for OpenGL to finish only if `measuring` was set.
+  /// Of the latest picture. Each pass waits for OpenGL to finish only if `measuring` was set.
   const RenderTimes& times() const { return times_; }
-  void measureStages(bool measuring) { measuring_ = measuring; }
+  void measurePasses(bool measuring) { measuring_ = measuring; }
 
  private:
   struct Programs;
@@ -52,7 +52,7 @@ class Renderer {
   void moveMaps();
   void draw(const DrawList& list, const ChangedArea& changed);
   void drawPicture(const PixelRectangle& area);
-  void finishStage(double& seconds);
+  void finishPass(double& seconds);
 
   const Scene& scene_;
   const View view_;

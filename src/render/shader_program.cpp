@@ -64,10 +64,10 @@ std::string logOf(unsigned int object, decltype(glGetShaderiv) get, decltype(glG
   return log.c_str();
 }
 
-unsigned int compile(const ShaderSource& source, const std::string& name, GLenum stage) {
+unsigned int compile(const ShaderSource& source, const std::string& name, GLenum setup) {
   const std::string text = source.text(name);
   const char* start = text.c_str();
-  const unsigned int shader = glCreateShader(stage);
+  const unsigned int shader = glCreateShader(setup);
   glShaderSource(shader, 1, &start, nullptr);
   glCompileShader(shader);
   int isCompiled = 0;
@@ -88,9 +88,9 @@ std::string ShaderSource::text(const std::string& name) const {
 
 ShaderProgram::ShaderProgram(const ShaderSource& source, const std::string& vertexFile, const std::string& fragmentFile)
     : program_(glCreateProgram()) {
-  for (const auto& [file, stage] :
+  for (const auto& [file, setup] :
        {std::pair(vertexFile, GL_VERTEX_SHADER), std::pair(fragmentFile, GL_FRAGMENT_SHADER)}) {
-    const unsigned int shader = compile(source, file, static_cast<GLenum>(stage));
+    const unsigned int shader = compile(source, file, static_cast<GLenum>(setup));
     glAttachShader(program_, shader);
     glDeleteShader(shader);
   }

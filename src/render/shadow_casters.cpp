@@ -31,22 +31,22 @@ void appendCaster(const DrawnHull& hull, std::vector<DrawnHull>& casters) {
   appendPieces(drawn, casters);
 }
 
-PixelRectangle shadowTexels(const DrawnHull& hull, const Stage& stage) {
+PixelRectangle shadowTexels(const DrawnHull& hull, const RenderSetup& setup) {
   Eigen::AlignedBox2d texels;
-  const double around = hull.radius / stage.shadow.texel + kMapMargin;
+  const double around = hull.radius / setup.shadow.texel + kMapMargin;
   for (std::size_t i = 0; i < hull.count; ++i) {
-    const Eigen::Vector4d place = (hull.centers[i] - stage.origin).homogeneous();
-    const Eigen::Vector2d texel = kShadowMapSize * (stage.shadow.textureFromWorld.cast<double>() * place).head<2>();
+    const Eigen::Vector4d place = (hull.centers[i] - setup.origin).homogeneous();
+    const Eigen::Vector2d texel = kShadowMapSize * (setup.shadow.textureFromWorld.cast<double>() * place).head<2>();
     texels.extend(Eigen::Vector2d(texel.array() - around)), texels.extend(Eigen::Vector2d(texel.array() + around));
   }
   const auto whole = [](double place) { return static_cast<int>(std::clamp(place, 0.0, double{kShadowMapSize})); };
   return {whole(texels.min().x()), whole(texels.min().y()), whole(texels.max().x() + 1), whole(texels.max().y() + 1)};
 }
 
-std::optional<PixelRectangle> shadowTexels(const std::vector<DrawnHull>& casters, const Stage& stage) {
+std::optional<PixelRectangle> shadowTexels(const std::vector<DrawnHull>& casters, const RenderSetup& setup) {
   std::optional<PixelRectangle> all;
   for (const DrawnHull& hull : casters) {
-    const PixelRectangle one = shadowTexels(hull, stage);
+    const PixelRectangle one = shadowTexels(hull, setup);
     all = all ? PixelRectangle{std::min(all->left, one.left), std::min(all->bottom, one.bottom),
                                std::max(all->right, one.right), std::max(all->top, one.top)}
               : one;

@@ -111,9 +111,9 @@ TEST(MirrorImage, BoundsWhereAPointIsSeenInABall) {
   };
   int small = 0;
   for (int trial = 0; trial < 40; ++trial) {
-    const BoundingBall mirror{vector(), 0.2}, eye{mirror.center + 4 * vector().normalized(), 0};
-    const BoundingBall seen{mirror.center + (0.5 + std::abs(number(random))) * vector().normalized(), 0.05};
-    const BoundingBall image = imageIn(mirror, eye, seen);
+    const BoundingSphere mirror{vector(), 0.2}, eye{mirror.center + 4 * vector().normalized(), 0};
+    const BoundingSphere seen{mirror.center + (0.5 + std::abs(number(random))) * vector().normalized(), 0.05};
+    const BoundingSphere image = imageIn(mirror, eye, seen);
     small += image.radius < 0.5 * mirror.radius;
     for (int i = 0; i < 8000; ++i) {
       const Vec3 normal = vector().normalized(), place = mirror.center + mirror.radius * normal;
@@ -133,9 +133,9 @@ TEST(DrawnHull, OutlineOfABallIsItsSilhouette) {
   const Scene scene = makeSpringScene();
   View view = viewOfStart(scene, 200, 100);
   view.camera = cameraAt(Vec3(0, 0, 5), Vec3::Zero(), 1);
-  const Stage stage = makeStage(scene, view, std::nullopt, 200, 100);
+  const RenderSetup setup = makeRenderSetup(scene, view, std::nullopt, 200, 100);
   SphereItem ball{Vec3(1, 0, 0), 0.5};
-  const auto outline = outlineOf(hullOf(ball), stage);
+  const auto outline = outlineOf(hullOf(ball), setup);
   ASSERT_TRUE(outline);
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& point : *outline) box.extend(point);
@@ -144,7 +144,7 @@ TEST(DrawnHull, OutlineOfABallIsItsSilhouette) {
   EXPECT_NEAR(box.max().x(), 100 + pixels * std::tan(angle + half), 1e-9);
   EXPECT_NEAR(box.max().y(), 50 + pixels * std::tan(std::asin(0.5 / 5)), 1e-9);
   ball.center = Vec3(0, 0, 4.6);
-  EXPECT_FALSE(outlineOf(hullOf(ball), stage));  // around the camera
+  EXPECT_FALSE(outlineOf(hullOf(ball), setup));  // around the camera
 }
 
 TEST(ChangedArea, NothingMovedIsACopy) {

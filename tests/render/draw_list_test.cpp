@@ -260,8 +260,8 @@ TEST(DrawList, BallsNearABallAreTheClosestOthers) {
   for (int i = 0; i < 9; ++i) addBody(scene, Sphere{0.5}, {Quat::Identity(), {0.9 * i, 0, 0}});
   const DrawList list = listOf(scene, startFrame(scene));
   const SphereItem& middle = list.spheres.at(4);
-  std::vector<int> near(list.nearBalls.begin() + middle.firstNearBall,
-                        list.nearBalls.begin() + middle.firstNearBall + middle.nearBalls);
+  std::vector<int> near(list.nearOccluders.begin() + middle.firstNearOccluder,
+                        list.nearOccluders.begin() + middle.firstNearOccluder + middle.nearOccluders);
   EXPECT_EQ(near, (std::vector<int>{3, 5, 2, 6}));
 }
 
@@ -271,7 +271,7 @@ TEST(DrawList, BoxBesideABallIsItsNeighbourToItsReach) {
     Scene scene = emptyScene();
     addBody(scene, Box{{0.2, 0.6, 1}}, {});
     addBody(scene, Sphere{0.05}, {Quat::Identity(), {0.1 + gap + 0.05, 0, 0}});
-    EXPECT_EQ(listOf(scene, startFrame(scene)).spheres.at(0).nearBalls, count) << gap;
+    EXPECT_EQ(listOf(scene, startFrame(scene)).spheres.at(0).nearOccluders, count) << gap;
   }
 }
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <random>
 
+#include "render/render_setup.h"
 #include "render/scene_builder.h"
-#include "render/stage.h"
 
 namespace cradle {
 namespace {
@@ -23,11 +23,11 @@ using Ball = SphereItem;
 
 /// The light's frame: texels across, and as many in depth.
 struct LightFrame {
-  explicit LightFrame(const Stage& stage) : texel(stage.shadow.texel), deep(stage.shadow.deep / texel) {
-    const Eigen::Matrix4d texture = stage.shadow.textureFromWorld.cast<double>();
+  explicit LightFrame(const RenderSetup& setup) : texel(setup.shadow.texel), deep(setup.shadow.deep / texel) {
+    const Eigen::Matrix4d texture = setup.shadow.textureFromWorld.cast<double>();
     const Vec3 scale(kSize, kSize, deep);
     turn = scale.asDiagonal() * texture.topLeftCorner<3, 3>();
-    shift = scale.cwiseProduct(texture.topRightCorner<3, 1>()) - turn * stage.origin;
+    shift = scale.cwiseProduct(texture.topRightCorner<3, 1>()) - turn * setup.origin;
   }
   Vec3 placeOf(const Vec3& point) const { return turn * point + shift; }
 
@@ -154,13 +154,13 @@ std::vector<std::vector<Eigen::Vector2d>> marked(const MovedShadows& shadows, co
 /// Balls are placed in the light's frame: what is behind what, and how near the edges of blocks, is random.
 class MovedShadowsTest : public ::testing::Test {
  protected:
-  MovedShadowsTest() : stage_(makeTestStage()), light_(stage_) {}
+  MovedShadowsTest() : setup_(makeTestSetup()), light_(setup_) {}
 
-  static Stage makeTestStage() {
+  static RenderSetup makeTestSetup() {
     Scene scene = emptyScene();
     scene.lights[0].direction = Vec3(-0.35, -1, 0.2).normalized();
     const View view{cameraAt({0, 2, 6}, {0, 0.5, 0}, 0.6), Bounds(Vec3(-1, 0, -1), Vec3(1, 2, 1))};
-    return makeStage(scene, view, std::nullopt, 320, 180);
+    return makeRenderSetup(scene, view, std::nullopt, 320, 180);
   }
 
   double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
@@ -195,7 +195,7 @@ class MovedShadowsTest : public ::testing::Test {
     all.before.push_back(all.moved[0]), all.now.push_back(all.moved[1]);
     return all;
   }
-  MovedShadows shadowsOf(const Balls& all) const { return {{hullOf(all.moved[0]), hullOf(all.moved[1])}, stage_}; }
+  MovedShadows shadowsOf(const Balls& all) const { return {{hullOf(all.moved[0]), hullOf(all.moved[1])}, setup_}; }
 
   /// Expects points on a surface on which light changes to be marked; returns how many there are.
   template <typename PointAt>
@@ -216,10 +216,10 @@ class MovedShadowsTest : public ::testing::Test {
     return changed;
   }
 
-  const Vec3 towards() const { return stage_.lighting.lamps[0].towards; }
+  const Vec3 towards() const { return setup_.lighting.lamps[0].towards; }
 
   std::mt19937 random_{1};
-  const Stage stage_;
+  const RenderSetup setup_;
   const LightFrame light_;
 };
 
@@ -232,7 +232,7 @@ TEST_F(MovedShadowsTest, PartsOfAPlaneHoldAllPointsWhoseLightChanges) {
     const Vec3 foot = sphereAt({all.place.x(), all.place.y(), depth}, 0).center;
     const Vec3 normal = (towards() + within(1.2)).normalized();
     if (normal.dot(towards()) < 0.1) continue;
-    changed += countChanged(all, MovedShadows({}, stage_).surfaceOf(normal, foot), [&] {
+    changed += countChanged(all, MovedShadows({}, setup_).surfaceOf(normal, foot), [&] {
       const double around = all.radius + 35;
       const Vec3 start = sphereAt(all.place + within(around), 0).center;
       return litPoint(start - normal.dot(start - foot) / normal.dot(towards()) * towards(), normal, 0, light_);
@@ -251,7 +251,7 @@ TEST_F(MovedShadowsTest, PartsOfABallHoldAllPointsWhoseLightChanges) {
     place.z() = all.place.z() + radius + number(0, 100);
     const Ball receiver = sphereAt(place, radius);
     all.before.push_back(receiver), all.now.push_back(receiver);
-    changed += countChanged(all, MovedShadows({}, stage_).surfaceOf(hullOf(receiver), 0), [&] {
+    changed += countChanged(all, MovedShadows({}, setup_).surfaceOf(hullOf(receiver), 0), [&] {
       Vec3 normal = within(1).normalized();
       if (normal.dot(towards()) < 0) normal = -normal;
       const double facing = normal.dot(towards()), aside = kAside * light_.texel * std::sqrt(1 - facing * facing);
@@ -283,7 +283,7 @@ TEST_F(MovedShadowsTest, MarkLittleElse) {
 TEST_F(MovedShadowsTest, ReachNothingBeforeOrBesideThem) {
   const Vec3 aside = towards().cross(Vec3::UnitX()).normalized();
   const Ball moved{{0, 1, 0}, 0.1};
-  const MovedShadows shadows({hullOf(moved)}, stage_);
+  const MovedShadows shadows({hullOf(moved)}, setup_);
   const auto reached = [&](const Vec3& way) {
     return shadows.reach(shadows.surfaceOf(hullOf({moved.center + way, 0.1}), 0));
   };

@@ -1,12 +1,12 @@
-// Balls and boxes near a surface: they are mirrored in it, and keep the sky's light from it.
+// Spheres and boxes near a surface: they are mirrored in it, and keep the sky's light from it.
 
-uniform samplerBuffer ballTexels;      // four each: centre and radius; linear colour and metallic; half edges, 1 for a box; turn
-uniform samplerBuffer nearBallTexels;  // indices of those near each item, one after the other
+uniform samplerBuffer occluderTexels;      // four each: centre and radius; linear colour and metallic; half edges, 1 for a box; turn
+uniform samplerBuffer nearOccluderTexels;  // indices of those near each item, one after the other
 
-const float kBallReach = 3.0;  // radii: what is farther from a ball's centre does not show it, and changes with nothing there
+const float kSphereReach = 3.0;  // radii: what is farther from a sphere's centre does not show it, and changes with nothing there
 
-struct Neighbour {
-  vec4 place;  // centre; radius of a ball, reach of a box beyond its surface (m)
+struct Occluder {
+  vec4 place;  // centre; radius of a sphere, reach of a box beyond its surface (m)
   vec4 look;   // linear colour, metallic
   vec4 box;    // half edges, 1 for a box
   vec4 turn;   // quaternion, world from box
@@ -27,8 +27,8 @@ vec3 turnedBy(vec4 q, vec3 v) {
 
 const float kTouching = 0.03;  // half widths of a box: nearer, all of it counts as a wall, whatever rounding says of its side
 
-// Share of the hemisphere around `normal` that a ball leaves open (exact while it is wholly above the surface).
-float openBesideBall(vec3 to, float radius, vec3 normal) {
+// Share of the hemisphere around `normal` that a sphere leaves open (exact while it is wholly above the surface).
+float openBesideSphere(vec3 to, float radius, vec3 normal) {
   float squared = max(dot(to, to), radius * radius);
   return 1.0 - max(dot(to, normal) * inversesqrt(squared), 0.0) * radius * radius / squared;
 }
@@ -44,28 +44,28 @@ float openBesideBox(vec3 to, float height, float width, vec3 normal) {
   return 1.0 - rising * mix(wall, ceiling, clamp(above, 0.0, 1.0)) * smoothstep(-1.0, 0.0, above);
 }
 
-void meetBall(Neighbour ball, float along, vec3 aside, float beside, inout Mirrored ray) {
-  vec3 outwards = aside - sqrt(max(ball.place.w * ball.place.w - beside * beside, 0.0)) * ray.direction;
-  ray.normal = outwards / max(length(outwards), 1e-6 * ball.place.w);
-  ray.from = ball.place.xyz + outwards;
-  ray.look = ball.look;
+void meetSphere(Occluder sphere, float along, vec3 aside, float beside, inout Mirrored ray) {
+  vec3 outwards = aside - sqrt(max(sphere.place.w * sphere.place.w - beside * beside, 0.0)) * ray.direction;
+  ray.normal = outwards / max(length(outwards), 1e-6 * sphere.place.w);
+  ray.from = sphere.place.xyz + outwards;
+  ray.look = sphere.look;
 }
 
-// Looks at the neighbours of a surface once: for what a ray from it meets, and for the sky that they leave open
+// Visits the occluders of a surface once: for what a ray from it meets, and for the sky that they leave open
 // (returned). A ray that grazes one goes straight on, so that the surroundings have no seam at its edge.
-float lookAtNeighbours(int first, int count, vec3 position, vec3 normal, float spread, inout Mirrored ray) {
+float gatherOccluders(int first, int count, vec3 position, vec3 normal, float spread, inout Mirrored ray) {
   float open = 1.0;
   float nearest = 1e30;
   vec3 start = ray.from;
   for (int i = 0; i < count; ++i) {
-    int index = 4 * int(texelFetch(nearBallTexels, first + i).r);
-    Neighbour item = Neighbour(texelFetch(ballTexels, index), texelFetch(ballTexels, index + 1),
-                               texelFetch(ballTexels, index + 2), texelFetch(ballTexels, index + 3));
+    int index = 4 * int(texelFetch(nearOccluderTexels, first + i).r);
+    Occluder item = Occluder(texelFetch(occluderTexels, index), texelFetch(occluderTexels, index + 1),
+                               texelFetch(occluderTexels, index + 2), texelFetch(occluderTexels, index + 3));
     vec3 to = item.place.xyz - position;
     if (item.box.w == 0.0) {
-      if (dot(to, to) >= kBallReach * kBallReach * item.place.w * item.place.w) continue;
-      float near = 1.0 - smoothstep(kBallReach - 1.0, kBallReach, length(to) / item.place.w);
-      open *= mix(1.0, openBesideBall(to, item.place.w, normal), near);
+      if (dot(to, to) >= kSphereReach * kSphereReach * item.place.w * item.place.w) continue;
+      float near = 1.0 - smoothstep(kSphereReach - 1.0, kSphereReach, length(to) / item.place.w);
+      open *= mix(1.0, openBesideSphere(to, item.place.w, normal), near);
       float along = dot(to, ray.direction);
       vec3 aside = along * ray.direction - to;
       float beside = length(aside);
@@ -74,7 +74,7 @@ float lookAtNeighbours(int first, int count, vec3 position, vec3 normal, float s
       if (covered > 0.0 && along < nearest) {
         nearest = along;
         ray.coverage = covered;
-        meetBall(item, along, aside, beside, ray);
+        meetSphere(item, along, aside, beside, ray);
       }
       continue;
     }

@@ -1,9 +1,9 @@
 #version 330 core
 
-// A square of the contact map around each thing that may darken the ground.
+// A square of the map of contact shadows around each thing that may darken the ground.
 
 layout(location = 0) in vec2 corner;         // -1..1
-layout(location = 2) in vec4 boxFromWorldX;  // rows: from a point relative to the stage's origin into the box's frame
+layout(location = 2) in vec4 boxFromWorldX;  // rows: from a point relative to the setup's origin into the box's frame
 layout(location = 3) in vec4 boxFromWorldY;
 layout(location = 4) in vec4 boxFromWorldZ;
 layout(location = 5) in vec4 halfAndReach;   // m; half edges, and how far the darkening goes beyond

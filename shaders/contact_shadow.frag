@@ -13,8 +13,8 @@ in vec3 position;
 
 out vec4 share;
 
-// A ball above the ground hides (r/d)^2 cos of the angle to the vertical, exactly; an ellipsoid, in coordinates that
-// make it a ball, nearly so.
+// A sphere above the ground hides (r/d)^2 cos of the angle to the vertical, exactly; an ellipsoid, in coordinates that
+// make it a sphere, nearly so.
 float hiddenByEllipsoid(vec3 place, vec3 up, vec3 halfAxes) {
   vec3 to = -place / halfAxes;
   float squared = max(dot(to, to), 1.0);

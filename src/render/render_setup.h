@@ -42,25 +42,26 @@ struct FrameLayout {
 
 /// Where the shadow map looks: along the light, at what throws shadows into the picture.
 struct ShadowView {
-  Box2 home;  // m, along `axes` from the stage's origin
+  Box2 home;  // m, along `axes` from the setup's origin
   Mat3 axes;  // right, up, towards the light
   Eigen::Matrix4f clipFromWorld, textureFromWorld;
-  Eigen::Vector4f viewer;  // the light's direction, as ball.vert takes it
+  Eigen::Vector4f viewer;  // the light's direction, as sphere.vert takes it
   double texel = 0;        // m
   double deep = 0;         // m, from the least to the greatest depth
 };
 
-/// The part of the ground on which shadows fall and contacts are drawn.
+/// The part of the ground on which shadows and contact shadows fall.
 struct ShadedRegion {
   Box2 home;                                            // m, as below
   Vec3 axisU, axisV;                                    // unit, in the ground
-  double firstU = 0, firstV = 0, sizeU = 1, sizeV = 1;  // m, along the axes, from the stage's origin
+  double firstU = 0, firstV = 0, sizeU = 1, sizeV = 1;  // m, along the axes, from the setup's origin
   double margin = 0;                                    // m: farther from a thing, it darkens nothing
 };
 
-/// What a picture is drawn with, apart from its items. World coordinates for OpenGL are relative to `origin`. All but
-/// camera and layout, and what follows from them, stays the same from frame to frame.
-struct Stage {
+/// Camera, lights, maps and ground of a picture: all that it is drawn with, apart from its items. World coordinates for
+/// OpenGL are relative to `origin`. All but camera and layout, and what follows from them, stays the same from frame to
+/// frame.
+struct RenderSetup {
   int width = 0, height = 0;
   Camera camera;
   FrameLayout layout;
@@ -78,36 +79,37 @@ struct Stage {
 
 constexpr int kShadowMapSize = 2048;
 constexpr int kShadowBlock = 8;  // texels of the shadow map a side; the map of blocks has the least depth of each
-constexpr int kContactMapSize = 256;
+constexpr int kContactShadowMapSize = 256;
 constexpr double kLowestLight = 0.05;  // sine of the height below which the ground has no shadows
 
 /// Texture units that the shaders' samplers are bound to.
-enum TextureUnit { kShadowUnit = 0, kBlockUnit, kContactUnit, kBallUnit, kNearBallUnit };
+enum TextureUnit { kShadowUnit = 0, kBlockUnit, kContactShadowUnit, kOccluderUnit, kNearOccluderUnit };
 
-Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground>& ground, int width, int height);
+RenderSetup makeRenderSetup(const Scene& scene, const View& view, const std::optional<Ground>& ground, int width,
+                            int height);
 
 /// Size of a pixel at distance 1, in the middle of the picture.
-double pixelAngle(const Stage& stage);
+double pixelAngle(const RenderSetup& setup);
 
-/// Turns the stage to another camera, and its maps to other places.
-void layOut(const Camera& camera, const FrameLayout& layout, Stage& stage);
+/// Turns the setup to another camera, and its maps to other places.
+void layOut(const Camera& camera, const FrameLayout& layout, RenderSetup& setup);
 
 /// From the least to the greatest depth of the shadow map; m.
 double depthOfMap(const ShadowView& view, const MapPlace& place);
 
 /// Distance of the near plane from the camera where nothing is nearer than `nearest`; m.
-double nearPlaneFor(double nearest, const Stage& stage);
+double nearPlaneFor(double nearest, const RenderSetup& setup);
 
-/// What the shaders need to know of the stage before they are compiled.
-std::string shaderDefinitions(const Stage& stage);
+/// What the shaders need to know of the setup before they are compiled.
+std::string shaderDefinitions(const RenderSetup& setup);
 
-/// Gives a program all the uniforms of the stage.
-void setStage(const Stage& stage, const ShaderProgram& program);
+/// Gives a program all the uniforms of the setup.
+void setUniforms(const RenderSetup& setup, const ShaderProgram& program);
 
 /// Gives it those that change with the camera and the near plane.
-void setCamera(const Stage& stage, const ShaderProgram& program);
+void setCamera(const RenderSetup& setup, const ShaderProgram& program);
 
 /// Gives it those that change with the places of the maps.
-void setMaps(const Stage& stage, const ShaderProgram& program);
+void setMaps(const RenderSetup& setup, const ShaderProgram& program);
 
 }  // namespace cradle

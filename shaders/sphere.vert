@@ -1,6 +1,6 @@
 #version 330 core
 
-// The half of a ball that the viewer sees, as a few triangles with an exact outline.
+// The half of a sphere that the viewer sees, as a few triangles with an exact outline.
 
 uniform mat4 clipFromWorld;
 uniform vec4 viewer;  // m; w = 0: infinitely far in that direction
@@ -9,12 +9,12 @@ layout(location = 0) in vec3 place;           // angle from the axis to the view
 layout(location = 2) in vec4 centerAndRadius;    // m
 layout(location = 5) in vec4 instanceRoughness;  // w
 layout(location = 6) in vec4 instanceColor;      // linear; w is metallic
-layout(location = 7) in vec4 instanceBalls;      // first and number of the balls near; 1 if it mirrors shadows
+layout(location = 7) in vec4 instanceOccluders;  // first and number of the occluders near; 1 if it mirrors shadows
 
-flat out vec4 ball;
+flat out vec4 sphere;
 flat out vec4 surfaceColor;
 flat out float roughness;
-flat out vec2 nearBalls;
+flat out vec2 nearOccluders;
 flat out float mirrorsShadows;
 
 const float kRightAngle = 1.57079633;
@@ -30,10 +30,10 @@ void main() {
   float outline = viewer.w > 0.0 ? acos(min(radius / distance, 1.0)) : kRightAngle;
   float angle = place.x * outline;
   vec3 position = center + radius * (cos(angle) * axis + sin(angle) * (place.y * u + place.z * v));
-  ball = centerAndRadius;
+  sphere = centerAndRadius;
   surfaceColor = instanceColor;
   roughness = instanceRoughness.w;
-  nearBalls = instanceBalls.xy;
-  mirrorsShadows = instanceBalls.z;
+  nearOccluders = instanceOccluders.xy;
+  mirrorsShadows = instanceOccluders.z;
   gl_Position = clipFromWorld * vec4(position, 1.0);
 }

@@ -2,19 +2,19 @@
 
 #include <vector>
 
-#include "render/stage.h"
+#include "render/render_setup.h"
 #include "render/tile_mask.h"
 
 namespace cradle {
 
-/// What cannot be seen because balls stand before it: how far away the nearest ball is that fills a cell of 2 x 2
-/// pixels.
-class Occlusion {
+/// Occlusion culling by spheres: how far away the nearest sphere is that fills a cell of 2 x 2 pixels. Items behind it
+/// are not drawn.
+class OcclusionCulling {
  public:
-  /// Nothing hides anything yet. `stage` must outlive this object. O(pixels).
-  explicit Occlusion(const Stage& stage);
+  /// Nothing hides anything yet. `setup` must outlive this object. O(pixels).
+  explicit OcclusionCulling(const RenderSetup& setup);
 
-  /// A ball (m, world) that is drawn, or inside of something that is drawn. O(pixels of the ball).
+  /// A sphere (m, world) that is drawn, or inside of something that is drawn. O(pixels of the sphere).
   void add(const Vec3& center, double radius);
 
   /// Whether nothing is seen of what lies in those pixels, nowhere nearer than `nearest` (m, as depthOf() says). It may
@@ -25,7 +25,7 @@ class Occlusion {
   double depthOf(const Vec3& point) const;
 
  private:
-  const Stage& stage_;
+  const RenderSetup& setup_;
   const Mat3 axes_;     // of the camera: right, up, back
   const double focal_;  // pixels at a slope of 1
   const int columns_, rows_;

@@ -1,4 +1,4 @@
-#include "render/stage.h"
+#include "render/render_setup.h"
 
 #include <fmt/format.h>
 
@@ -40,15 +40,15 @@ const Palette kDarkStudio{{0.020f, 0.026f, 0.040f},
                           {0.120f, 0.135f, 0.165f},
                           {0.045f, 0.047f, 0.052f}};
 
-const Vec3f kKeyTint(1.10f, 1.02f, 0.91f);  // of a white lamp of the scene: warmer than the sky, as the sun is
-constexpr float kBounceFromGround = 0.42f;  // shadows and distance take the rest
-constexpr float kSkySlope = 0.30f;          // how much brighter it is towards the key light than on average
-constexpr double kNearShare = 0.02;         // of the distance of the nearest thing
-constexpr double kNearestShare = 0.02;      // of the scene's size: nearer things do not count
-constexpr double kFadeDistance = 9;         // in sizes of the scene
-constexpr double kContactMargin = 0.15;     // of the scene's size
-constexpr double kShadowTexel = 1.0 / 800;  // of the height of the picture where what is shown is
-constexpr double kShadowDepth = 16;         // of the shadow map's width: what stands high above still throws a shadow
+const Vec3f kKeyTint(1.10f, 1.02f, 0.91f);     // of a white lamp of the scene: warmer than the sky, as the sun is
+constexpr float kBounceFromGround = 0.42f;     // shadows and distance take the rest
+constexpr float kSkySlope = 0.30f;             // how much brighter it is towards the key light than on average
+constexpr double kNearShare = 0.02;            // of the distance of the nearest thing
+constexpr double kNearestShare = 0.02;         // of the scene's size: nearer things do not count
+constexpr double kFadeDistance = 9;            // in sizes of the scene
+constexpr double kContactShadowMargin = 0.15;  // of the scene's size
+constexpr double kShadowTexel = 1.0 / 800;     // of the height of the picture where what is shown is
+constexpr double kShadowDepth = 16;  // of the shadow map's width: what stands high above still throws a shadow
 
 Lighting makeLighting(const Scene& scene, const std::optional<Ground>& ground) {
   const bool isDark = scene.look == Look::dark;
@@ -80,7 +80,7 @@ Eigen::Vector4f joined(const Vec3& vector, double last) {
           static_cast<float>(last)};
 }
 
-/// Square, so that edges are equally soft both ways, around the stage's origin.
+/// Square, so that edges are equally soft both ways, around the setup's origin.
 ShadowView makeShadowView(const Vec3& towardsLight, double heightOfPicture) {
   ShadowView view;
   view.axes = cameraAxes(towardsLight, Vec3::Zero());
@@ -112,17 +112,18 @@ void placeShadows(const FrameLayout& layout, ShadowView& view) {
 }
 
 /// Around what is shown and its shadow, and the middle of the picture.
-ShadedRegion makeShadedRegion(const Ground& ground, const Stage& stage, const Bounds& bounds, double heightOfPicture) {
-  const Vec3& towardsLight = stage.lighting.lamps[0].towards;
+ShadedRegion makeShadedRegion(const Ground& ground, const RenderSetup& setup, const Bounds& bounds,
+                              double heightOfPicture) {
+  const Vec3& towardsLight = setup.lighting.lamps[0].towards;
   ShadedRegion region;
   const Vec3 along = std::abs(ground.normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitZ();
   region.axisU = (along - along.dot(ground.normal) * ground.normal).normalized();
   region.axisV = ground.normal.cross(region.axisU);
   Mat3 axes;
   axes << region.axisU, region.axisV, ground.normal;
-  const Bounds shown = inAxes(bounds, axes, stage.origin);
+  const Bounds shown = inAxes(bounds, axes, setup.origin);
   const Vec3 light = axes.transpose() * towardsLight;
-  const double height = ground.normal.dot(ground.point - stage.origin);
+  const double height = ground.normal.dot(ground.point - setup.origin);
   Bounds shaded = shown;
   for (int corner = 0; corner < 8 && light.z() > kLowestLight; ++corner) {
     const Vec3 point = shown.corner(static_cast<Bounds::CornerType>(corner));
@@ -130,7 +131,7 @@ ShadedRegion makeShadedRegion(const Ground& ground, const Stage& stage, const Bo
   }
   const Vec3 seen = Vec3::Constant(heightOfPicture / 2);
   shaded.extend(shown.center() - seen), shaded.extend(shown.center() + seen);
-  region.margin = kContactMargin * stage.size;
+  region.margin = kContactShadowMargin * setup.size;
   const Eigen::Vector2d around = Eigen::Vector2d::Constant(region.margin);
   region.home = Box2(shaded.min().head<2>() - around, shaded.max().head<2>() + around);
   return region;
@@ -144,17 +145,17 @@ void placeGround(const MapPlace& place, ShadedRegion& region) {
   region.sizeV = shaded.sizes().y();
 }
 
-/// Position of the stage's origin within the pattern of squares along `axis`: repeats after ten squares.
-float phaseAlong(const Vec3& axis, const Stage& stage) {
-  return static_cast<float>(std::fmod(axis.dot(stage.origin) / stage.ground->squareSize, 10));
+/// Position of the setup's origin within the pattern of squares along `axis`: repeats after ten squares.
+float phaseAlong(const Vec3& axis, const RenderSetup& setup) {
+  return static_cast<float>(std::fmod(axis.dot(setup.origin) / setup.ground->squareSize, 10));
 }
 
-void setRays(const Stage& stage, const ShaderProgram& program) {
-  const Mat3 axes = cameraAxes(stage.camera);
-  const double tangent = std::tan(stage.camera.verticalFieldOfView / 2);
-  const double pixel = 2 * tangent / stage.height;
+void setRays(const RenderSetup& setup, const ShaderProgram& program) {
+  const Mat3 axes = cameraAxes(setup.camera);
+  const double tangent = std::tan(setup.camera.verticalFieldOfView / 2);
+  const double pixel = 2 * tangent / setup.height;
   const Vec3 column = pixel * axes.col(0), row = pixel * axes.col(1);
-  const Vec3 corner = -axes.col(2) - stage.width / 2.0 * column - stage.height / 2.0 * row;
+  const Vec3 corner = -axes.col(2) - setup.width / 2.0 * column - setup.height / 2.0 * row;
   program.set("cornerRay", Vec3f(corner.cast<float>()));
   program.set("columnRay", Vec3f(column.cast<float>()));
   program.set("rowRay", Vec3f(row.cast<float>()));
@@ -177,29 +178,29 @@ void setLighting(const Lighting& lighting, const ShaderProgram& program) {
   }
 }
 
-void setGround(const Stage& stage, const ShaderProgram& program) {
-  if (!stage.ground) return;
-  const Ground& ground = *stage.ground;
-  const ShadedRegion& region = stage.shaded;
-  program.set("groundPlane", joined(ground.normal, ground.normal.dot(ground.point - stage.origin)));
+void setGround(const RenderSetup& setup, const ShaderProgram& program) {
+  if (!setup.ground) return;
+  const Ground& ground = *setup.ground;
+  const ShadedRegion& region = setup.shaded;
+  program.set("groundPlane", joined(ground.normal, ground.normal.dot(ground.point - setup.origin)));
   program.set("groundAxisU", Vec3f(region.axisU.cast<float>()));
   program.set("groundAxisV", Vec3f(region.axisV.cast<float>()));
-  program.set("gridPhaseU", phaseAlong(region.axisU, stage));
-  program.set("gridPhaseV", phaseAlong(region.axisV, stage));
+  program.set("gridPhaseU", phaseAlong(region.axisU, setup));
+  program.set("gridPhaseV", phaseAlong(region.axisV, setup));
   program.set("squaresPerMetre", static_cast<float>(1 / ground.squareSize));
   program.set("lightSquare", ground.lightColor);
   program.set("darkSquare", ground.darkColor);
   program.set("lineShade", ground.lineShade);
-  program.set("fadeDistance", static_cast<float>(stage.fadeDistance));
+  program.set("fadeDistance", static_cast<float>(setup.fadeDistance));
 }
 
-void setGroundMap(const Stage& stage, const ShaderProgram& program) {
-  if (!stage.ground) return;
-  const Ground& ground = *stage.ground;
-  const ShadedRegion& region = stage.shaded;
-  program.set("contactFromWorldU", joined(region.axisU / region.sizeU, -region.firstU / region.sizeU));
-  program.set("contactFromWorldV", joined(region.axisV / region.sizeV, -region.firstV / region.sizeV));
-  const Vec3 foot = ground.normal * ground.normal.dot(ground.point - stage.origin);
+void setGroundMap(const RenderSetup& setup, const ShaderProgram& program) {
+  if (!setup.ground) return;
+  const Ground& ground = *setup.ground;
+  const ShadedRegion& region = setup.shaded;
+  program.set("contactShadowFromWorldU", joined(region.axisU / region.sizeU, -region.firstU / region.sizeU));
+  program.set("contactShadowFromWorldV", joined(region.axisV / region.sizeV, -region.firstV / region.sizeV));
+  const Vec3 foot = ground.normal * ground.normal.dot(ground.point - setup.origin);
   const Vec3 corner = foot + region.firstU * region.axisU + region.firstV * region.axisV;
   program.set("mapOrigin", Vec3f(corner.cast<float>()));
   program.set("mapU", Vec3f((region.sizeU * region.axisU).cast<float>()));
@@ -225,75 +226,76 @@ double farthestTarget(const View& view) {
 
 }  // namespace
 
-double pixelAngle(const Stage& stage) {
-  return 2 * std::tan(stage.camera.verticalFieldOfView / 2) / stage.height;
+double pixelAngle(const RenderSetup& setup) {
+  return 2 * std::tan(setup.camera.verticalFieldOfView / 2) / setup.height;
 }
 
 double depthOfMap(const ShadowView& view, const MapPlace& place) {
   return kShadowDepth * std::ldexp(view.home.sizes().x(), place.level);
 }
 
-double nearPlaneFor(double nearest, const Stage& stage) {
-  return kNearShare * std::max(nearest, kNearestShare * stage.size);
+double nearPlaneFor(double nearest, const RenderSetup& setup) {
+  return kNearShare * std::max(nearest, kNearestShare * setup.size);
 }
 
-void layOut(const Camera& camera, const FrameLayout& layout, Stage& stage) {
-  stage.camera = camera;
-  stage.layout = layout;
-  stage.clipFromWorld = clipFromWorld(camera, stage.origin, stage.width, stage.height, layout.nearPlane);
-  placeShadows(layout, stage.shadow);
-  if (stage.ground) placeGround(layout.ground, stage.shaded);
+void layOut(const Camera& camera, const FrameLayout& layout, RenderSetup& setup) {
+  setup.camera = camera;
+  setup.layout = layout;
+  setup.clipFromWorld = clipFromWorld(camera, setup.origin, setup.width, setup.height, layout.nearPlane);
+  placeShadows(layout, setup.shadow);
+  if (setup.ground) placeGround(layout.ground, setup.shaded);
 }
 
-Stage makeStage(const Scene& scene, const View& view, const std::optional<Ground>& ground, int width, int height) {
+RenderSetup makeRenderSetup(const Scene& scene, const View& view, const std::optional<Ground>& ground, int width,
+                            int height) {
   const Bounds bounds = view.bounds.isEmpty() ? Bounds(-Vec3::Ones(), Vec3::Ones()) : view.bounds;
-  Stage stage;
-  stage.width = width;
-  stage.height = height;
-  stage.size = view.size();
-  stage.origin = bounds.center();
-  stage.lighting = makeLighting(scene, ground);
-  const double seen = heightOfPicture(view, stage.origin);
-  stage.shadow = makeShadowView(stage.lighting.lamps[0].towards, seen);
-  stage.ground = ground;
-  if (ground) stage.shaded = makeShadedRegion(*ground, stage, bounds, seen);
-  stage.fadeDistance = kFadeDistance * std::max(stage.size, farthestTarget(view) / 3);
-  layOut(view.camera, {nearPlaneFor(0, stage), {}, {}, 0}, stage);
-  return stage;
+  RenderSetup setup;
+  setup.width = width;
+  setup.height = height;
+  setup.size = view.size();
+  setup.origin = bounds.center();
+  setup.lighting = makeLighting(scene, ground);
+  const double seen = heightOfPicture(view, setup.origin);
+  setup.shadow = makeShadowView(setup.lighting.lamps[0].towards, seen);
+  setup.ground = ground;
+  if (ground) setup.shaded = makeShadedRegion(*ground, setup, bounds, seen);
+  setup.fadeDistance = kFadeDistance * std::max(setup.size, farthestTarget(view) / 3);
+  layOut(view.camera, {nearPlaneFor(0, setup), {}, {}, 0}, setup);
+  return setup;
 }
 
-std::string shaderDefinitions(const Stage& stage) {
-  return fmt::format("#define HAS_GROUND {}\n#define FILL_LIGHTS {}\n", stage.ground ? 1 : 0,
-                     stage.lighting.lamps.size() - 1);
+std::string shaderDefinitions(const RenderSetup& setup) {
+  return fmt::format("#define HAS_GROUND {}\n#define FILL_LIGHTS {}\n", setup.ground ? 1 : 0,
+                     setup.lighting.lamps.size() - 1);
 }
 
-void setCamera(const Stage& stage, const ShaderProgram& program) {
+void setCamera(const RenderSetup& setup, const ShaderProgram& program) {
   program.use();
-  program.set("clipFromWorld", stage.clipFromWorld);
-  program.set("eye", stage.relative(stage.camera.position));
-  program.set("viewer", joined(stage.camera.position - stage.origin, 1));
-  setRays(stage, program);
+  program.set("clipFromWorld", setup.clipFromWorld);
+  program.set("eye", setup.relative(setup.camera.position));
+  program.set("viewer", joined(setup.camera.position - setup.origin, 1));
+  setRays(setup, program);
 }
 
-void setMaps(const Stage& stage, const ShaderProgram& program) {
+void setMaps(const RenderSetup& setup, const ShaderProgram& program) {
   program.use();
-  setGroundMap(stage, program);
-  program.set("shadowFromWorld", stage.shadow.textureFromWorld);
-  program.set("shadowTexel", static_cast<float>(stage.shadow.texel));
+  setGroundMap(setup, program);
+  program.set("shadowFromWorld", setup.shadow.textureFromWorld);
+  program.set("shadowTexel", static_cast<float>(setup.shadow.texel));
 }
 
-void setStage(const Stage& stage, const ShaderProgram& program) {
-  setCamera(stage, program);
-  setLighting(stage.lighting, program);
-  setGround(stage, program);
-  setMaps(stage, program);
+void setUniforms(const RenderSetup& setup, const ShaderProgram& program) {
+  setCamera(setup, program);
+  setLighting(setup.lighting, program);
+  setGround(setup, program);
+  setMaps(setup, program);
   program.set("shadowSize", static_cast<float>(kShadowMapSize));
-  program.set("shadowDeep", static_cast<float>(stage.shadow.deep / stage.shadow.texel));
+  program.set("shadowDeep", static_cast<float>(setup.shadow.deep / setup.shadow.texel));
   program.set("shadowMap", static_cast<int>(kShadowUnit));
   program.set("shadowBlocks", static_cast<int>(kBlockUnit));
-  program.set("contactMap", static_cast<int>(kContactUnit));
-  program.set("ballTexels", static_cast<int>(kBallUnit));
-  program.set("nearBallTexels", static_cast<int>(kNearBallUnit));
+  program.set("contactShadowMap", static_cast<int>(kContactShadowUnit));
+  program.set("occluderTexels", static_cast<int>(kOccluderUnit));
+  program.set("nearOccluderTexels", static_cast<int>(kNearOccluderUnit));
 }
 
 }  // namespace cradle

@@ -1,4 +1,4 @@
-#include "render/occlusion.h"
+#include "render/occlusion_culling.h"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,12 @@ namespace {
 
 constexpr int kWidth = 97, kHeight = 61;  // odd: the last cells are cut
 
-Stage stageSeenFrom(const Vec3& position) {
-  Stage stage;
-  stage.width = kWidth;
-  stage.height = kHeight;
-  stage.camera = cameraAt(position, {0, 0, 0}, 0.7);
-  return stage;
+RenderSetup setupSeenFrom(const Vec3& position) {
+  RenderSetup setup;
+  setup.width = kWidth;
+  setup.height = kHeight;
+  setup.camera = cameraAt(position, {0, 0, 0}, 0.7);
+  return setup;
 }
 
 /// Numbers without a pattern, the same in every run: fractions of multiples of the golden section.
@@ -39,12 +39,12 @@ struct Ball {
 };
 
 /// Whether the ray from the eye through a pixel's place (from the lower left corner) meets a ball nearer than `depth`.
-bool isCovered(const Stage& stage, double x, double y, double depth, const std::vector<Ball>& balls) {
-  const Mat3 axes = cameraAxes(stage.camera);
-  const double focal = kHeight / (2 * std::tan(stage.camera.verticalFieldOfView / 2));
+bool isCovered(const RenderSetup& setup, double x, double y, double depth, const std::vector<Ball>& balls) {
+  const Mat3 axes = cameraAxes(setup.camera);
+  const double focal = kHeight / (2 * std::tan(setup.camera.verticalFieldOfView / 2));
   const Vec3 ray = axes * Vec3((x - kWidth / 2.0) / focal, (y - kHeight / 2.0) / focal, -1);  // depth 1
   for (const Ball& ball : balls) {
-    const Vec3 to = ball.center - stage.camera.position;
+    const Vec3 to = ball.center - setup.camera.position;
     const double along = to.dot(ray), square = ray.squaredNorm();
     const double root = along * along - square * (to.squaredNorm() - ball.radius * ball.radius);
     if (root >= 0 && (along - std::sqrt(root)) / square < depth) return true;
@@ -52,17 +52,17 @@ bool isCovered(const Stage& stage, double x, double y, double depth, const std::
   return false;
 }
 
-TEST(Occlusion, WhatIsHiddenHasABallBeforeEachOfItsPixels) {
+TEST(OcclusionCulling, WhatIsHiddenHasABallBeforeEachOfItsPixels) {
   Numbers numbers;
   long hidden = 0;
   for (int scene = 0; scene < 20; ++scene) {
-    const Stage stage = stageSeenFrom({numbers.between(-3, 3), numbers.between(1, 4), numbers.between(4, 8)});
+    const RenderSetup setup = setupSeenFrom({numbers.between(-3, 3), numbers.between(1, 4), numbers.between(4, 8)});
     std::vector<Ball> balls;
     for (int i = 0; i < 40; ++i) {
       const double x = numbers.between(-2, 2), y = numbers.between(-2, 2), z = numbers.between(-2, 3);
       balls.push_back({{x, y, z}, numbers.between(0.1, 0.8)});
     }
-    Occlusion occlusion(stage);
+    OcclusionCulling occlusion(setup);
     for (const Ball& ball : balls) occlusion.add(ball.center, ball.radius);
     for (int i = 0; i < 200; ++i) {
       const int left = static_cast<int>(numbers.between(-3, kWidth)),
@@ -74,15 +74,15 @@ TEST(Occlusion, WhatIsHiddenHasABallBeforeEachOfItsPixels) {
       ++hidden;
       for (int x = 4 * std::max(pixels.left, 0); x <= 4 * std::min(pixels.right, kWidth); ++x)
         for (int y = 4 * std::max(pixels.bottom, 0); y <= 4 * std::min(pixels.top, kHeight); ++y)
-          ASSERT_TRUE(isCovered(stage, x / 4.0, y / 4.0, nearest, balls));
+          ASSERT_TRUE(isCovered(setup, x / 4.0, y / 4.0, nearest, balls));
     }
   }
   EXPECT_GT(hidden, 100);  // of 4000
 }
 
-TEST(Occlusion, BallHidesWhatIsBehindItsMiddleAndNotWhatIsBeforeOrBesideIt) {
-  const Stage stage = stageSeenFrom({0, 0, 5});
-  Occlusion occlusion(stage);
+TEST(OcclusionCulling, BallHidesWhatIsBehindItsMiddleAndNotWhatIsBeforeOrBesideIt) {
+  const RenderSetup setup = setupSeenFrom({0, 0, 5});
+  OcclusionCulling occlusion(setup);
   const PixelRectangle middle{kWidth / 2 - 3, kHeight / 2 - 3, kWidth / 2 + 4, kHeight / 2 + 4};
   EXPECT_FALSE(occlusion.hides(middle, 100));
   occlusion.add({0, 0, 0}, 1);
@@ -94,7 +94,7 @@ TEST(Occlusion, BallHidesWhatIsBehindItsMiddleAndNotWhatIsBeforeOrBesideIt) {
   EXPECT_TRUE(occlusion.hides({kWidth / 2, row, kWidth / 2 + inside, row + 1}, 6));
   EXPECT_FALSE(occlusion.hides({kWidth / 2, row, kWidth / 2 + static_cast<int>(radius) + 2, row + 1}, 6));
   // The camera is inside, or the near plane may cut it: it hides nothing.
-  Occlusion near(stage);
+  OcclusionCulling near(setup);
   near.add({0, 0, 3.5}, 1);
   EXPECT_FALSE(near.hides(middle, 100));
 }

@@ -3,7 +3,7 @@
 // left out. The other way round from hierarchical depth buffers (N. Greene, M. Kass, G. Miller, "Hierarchical Z-buffer
 // visibility", SIGGRAPH 1993): not from what is drawn, but from discs that are surely inside of it.
 
-#include "render/occlusion.h"
+#include "render/occlusion_culling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,33 +15,33 @@ namespace cradle {
 namespace {
 
 constexpr int kCell = 2;  // pixels a side
-// Of a ball's radius: the outlines of polygons that are drawn for it come as near to the centre as 0.974.
+// Of a sphere's radius: the outlines of polygons that are drawn for it come as near to the centre as 0.974.
 constexpr double kSurelyFilled = 0.96;
 constexpr double kSurelyBehind = 1.002;  // ratio of depths that the depth buffer tells apart, wherever the scene is
 
 }  // namespace
 
-Occlusion::Occlusion(const Stage& stage)
-    : stage_(stage),
-      axes_(cameraAxes(stage.camera)),
-      focal_(stage.height / (2 * std::tan(stage.camera.verticalFieldOfView / 2))),
-      columns_((stage.width + kCell - 1) / kCell),
-      rows_((stage.height + kCell - 1) / kCell),
+OcclusionCulling::OcclusionCulling(const RenderSetup& setup)
+    : setup_(setup),
+      axes_(cameraAxes(setup.camera)),
+      focal_(setup.height / (2 * std::tan(setup.camera.verticalFieldOfView / 2))),
+      columns_((setup.width + kCell - 1) / kCell),
+      rows_((setup.height + kCell - 1) / kCell),
       filledAt_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_),
                 std::numeric_limits<float>::infinity()) {}
 
-double Occlusion::depthOf(const Vec3& point) const {
-  return -axes_.col(2).dot(point - stage_.camera.position);
+double OcclusionCulling::depthOf(const Vec3& point) const {
+  return -axes_.col(2).dot(point - setup_.camera.position);
 }
 
-/// The disc through the centre, parallel to the picture, is inside the ball and a circle in the picture; what is seen
-/// of the ball there is nearer than the disc.
-void Occlusion::add(const Vec3& center, double radius) {
-  const Vec3 seen = axes_.transpose() * (center - stage_.camera.position);
+/// The disc through the centre, parallel to the picture, is inside the sphere and a circle in the picture; what is seen
+/// of the sphere there is nearer than the disc.
+void OcclusionCulling::add(const Vec3& center, double radius) {
+  const Vec3 seen = axes_.transpose() * (center - setup_.camera.position);
   const double depth = -seen.z(), inside = kSurelyFilled * radius;
   if (depth <= 2 * radius) return;  // perhaps cut by the near plane
-  const double x = (stage_.width / 2.0 + focal_ * seen.x() / depth) / kCell;
-  const double y = (stage_.height / 2.0 + focal_ * seen.y() / depth) / kCell;
+  const double x = (setup_.width / 2.0 + focal_ * seen.x() / depth) / kCell;
+  const double y = (setup_.height / 2.0 + focal_ * seen.y() / depth) / kCell;
   const double reach = focal_ * inside / depth / kCell;  // cells
   const int firstRow = std::max(0, static_cast<int>(std::ceil(std::max(y - reach, -1.0))));
   const int endRow = static_cast<int>(std::floor(std::min<double>(y + reach, rows_)));
@@ -56,10 +56,10 @@ void Occlusion::add(const Vec3& center, double radius) {
   }
 }
 
-bool Occlusion::hides(const PixelRectangle& pixels, double nearest) const {
+bool OcclusionCulling::hides(const PixelRectangle& pixels, double nearest) const {
   const float behind = static_cast<float>(nearest / kSurelyBehind);
-  const int left = std::max(pixels.left, 0) / kCell, right = (std::min(pixels.right, stage_.width) - 1) / kCell;
-  const int bottom = std::max(pixels.bottom, 0) / kCell, top = (std::min(pixels.top, stage_.height) - 1) / kCell;
+  const int left = std::max(pixels.left, 0) / kCell, right = (std::min(pixels.right, setup_.width) - 1) / kCell;
+  const int bottom = std::max(pixels.bottom, 0) / kCell, top = (std::min(pixels.top, setup_.height) - 1) / kCell;
   for (int row = bottom; row <= top; ++row) {
     const float* cells = filledAt_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
     for (int column = left; column <= right; ++column)
