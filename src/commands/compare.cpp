@@ -77,10 +77,16 @@ std::vector<ComparedPicture> pairPictures(const std::string& expected, const std
   return pairs;
 }
 
-/// Pictures of two sizes are told apart by their headers.
+/// Pictures of two sizes are told apart by their headers; of others only a row is held at a time.
 ImageComparison compareFiles(const std::string& expected, const std::string& actual, const ImageLimits& limits) {
-  const auto different = compareSizes(readPngSize(expected), readPngSize(actual));
-  return different ? *different : compareImages(readPng(expected), readPng(actual), limits);
+  PngRows a(expected), b(actual);
+  if (const auto different = compareSizes(a.size(), b.size())) return *different;
+  RowComparison rows(a.size(), limits);
+  for (int y = 0; y < a.size().height; ++y) {
+    const std::uint8_t *rowOfA = a.next(), *rowOfB = b.next();
+    rows.add(rowOfA, rowOfB);
+  }
+  return rows.result();
 }
 
 void comparePair(ComparedPicture& pair, const ImageLimits& limits) {

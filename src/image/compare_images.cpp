@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
+
+#include "core/error.h"
 
 namespace cradle {
 namespace {
@@ -23,19 +26,6 @@ void take(PixelBox& box, int x, int y) {
   box.bottom = std::max(box.bottom, y + 1);
 }
 
-void countDifferences(const Image& expected, const Image& actual, const ImageLimits& limits, ImageComparison& result) {
-  for (int y = 0; y < expected.height; ++y)
-    for (int x = 0; x < expected.width; ++x) {
-      const int difference = pixelDifference(expected.at(x, y), actual.at(x, y));
-      if (difference == 0) continue;
-      ++result.differingPixels;
-      if (difference > limits.visible.level) ++result.visiblePixels;
-      if (difference > limits.striking.level) ++result.strikingPixels;
-      result.largestDifference = std::max(result.largestDifference, difference);
-      take(result.where, x, y);
-    }
-}
-
 long mostPixels(const DifferenceLimit& limit, long total) {
   const double share = limit.share * static_cast<double>(total) * (1 + kShareRounding);
   return std::max(limit.always, static_cast<long>(share));
@@ -51,13 +41,25 @@ std::optional<ImageComparison> compareSizes(PictureSize expected, PictureSize ac
   return result;
 }
 
-ImageComparison compareImages(const Image& expected, const Image& actual, const ImageLimits& limits) {
-  if (const auto different = compareSizes({expected.width, expected.height}, {actual.width, actual.height}))
-    return *different;
-  ImageComparison result;
-  countDifferences(expected, actual, limits, result);
-  const long total = static_cast<long>(expected.width) * expected.height;
-  const long mostVisible = mostPixels(limits.visible, total), mostStriking = mostPixels(limits.striking, total);
+void RowComparison::add(const std::uint8_t* expected, const std::uint8_t* actual) {
+  const int y = row_++;
+  if (std::memcmp(expected, actual, 3 * static_cast<std::size_t>(size_.width)) == 0) return;
+  for (int x = 0; x < size_.width; ++x, expected += 3, actual += 3) {
+    const int difference = pixelDifference(expected, actual);
+    if (difference == 0) continue;
+    ++counted_.differingPixels;
+    if (difference > limits_.visible.level) ++counted_.visiblePixels;
+    if (difference > limits_.striking.level) ++counted_.strikingPixels;
+    counted_.largestDifference = std::max(counted_.largestDifference, difference);
+    take(counted_.where, x, y);
+  }
+}
+
+ImageComparison RowComparison::result() const {
+  CRADLE_CHECK(row_ == size_.height);
+  ImageComparison result = counted_;
+  const long total = static_cast<long>(size_.width) * size_.height;
+  const long mostVisible = mostPixels(limits_.visible, total), mostStriking = mostPixels(limits_.striking, total);
   result.isSame = result.differingPixels == 0;
   result.passes = result.visiblePixels <= mostVisible && result.strikingPixels <= mostStriking;
   if (result.isSame)
@@ -65,9 +67,17 @@ ImageComparison compareImages(const Image& expected, const Image& actual, const 
   else
     result.sentence = fmt::format(
         "{} of {} pixels differ, by {} at most; {} by more than {} ({} allowed), {} by more than {} ({} allowed)",
-        result.differingPixels, total, result.largestDifference, result.visiblePixels, limits.visible.level,
-        mostVisible, result.strikingPixels, limits.striking.level, mostStriking);
+        result.differingPixels, total, result.largestDifference, result.visiblePixels, limits_.visible.level,
+        mostVisible, result.strikingPixels, limits_.striking.level, mostStriking);
   return result;
+}
+
+ImageComparison compareImages(const Image& expected, const Image& actual, const ImageLimits& limits) {
+  const PictureSize size{expected.width, expected.height};
+  if (const auto different = compareSizes(size, {actual.width, actual.height})) return *different;
+  RowComparison rows(size, limits);
+  for (int y = 0; y < size.height; ++y) rows.add(expected.at(0, y), actual.at(0, y));
+  return rows.result();
 }
 
 Image amplifiedDifference(const Image& expected, const Image& actual) {

@@ -41,6 +41,24 @@ struct ImageComparison {
 /// That of two pictures whose sizes differ; nothing if they do not.
 std::optional<ImageComparison> compareSizes(PictureSize expected, PictureSize actual);
 
+/// Compares two pictures of one size row by row.
+class RowComparison {
+ public:
+  /// `limits` must outlive it.
+  RowComparison(PictureSize size, const ImageLimits& limits) : size_(size), limits_(limits) {}
+
+  /// The next row of both, from the top: red, green, blue of each pixel.
+  void add(const std::uint8_t* expected, const std::uint8_t* actual);
+  /// Once all rows are added.
+  ImageComparison result() const;
+
+ private:
+  PictureSize size_;
+  const ImageLimits& limits_;
+  int row_ = 0;
+  ImageComparison counted_;
+};
+
 ImageComparison compareImages(const Image& expected, const Image& actual, const ImageLimits& limits = {});
 
 /// The difference of every channel, times the factor that makes the largest 255; black where both are equal. The

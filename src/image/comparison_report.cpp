@@ -17,6 +17,9 @@ namespace {
 constexpr std::size_t kMaxShown =
     40;  // pictures, some 100 to 500 kB each at 1280x720: a browser opens the page at once
 
+constexpr long kMaxShownPixels =
+    34'000'000;  // of a picture, 8K: three of them are in memory, and a browser has them all
+
 constexpr std::string_view kHead = R"(<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>Pictures compared</title>
 <style>
@@ -36,6 +39,7 @@ button { font: inherit; margin: 0 6px 6px 0; padding: 2px 12px; } button.on { ba
 constexpr std::string_view kTail = R"(<script>
 for (const section of document.querySelectorAll("section")) {
   const view = section.querySelector(".view"), buttons = [...section.querySelectorAll("button")];
+  if (!view) continue;
   const show = n => { view.dataset.shown = n; buttons.forEach((b, i) => b.classList.toggle("on", i === n)); };
   buttons.forEach((b, i) => b.onclick = () => show(i));
   view.onclick = () => show(view.dataset.shown === "0" ? 1 : 0);
@@ -135,6 +139,12 @@ std::string imageTag(const Image& image, const char* what) {
 
 /// Both pictures and their difference, one above the other; where they differ is framed.
 std::string sectionOf(const ComparedPicture& picture) {
+  const PictureSize size = readPngSize(picture.expectedPath);
+  if (long{size.width} * size.height > kMaxShownPixels)
+    return fmt::format(
+        "<section id=\"{0}\"><h2>{0}</h2><p>{1}</p><p>{2} x {3} pixels are too many to be shown here</p>"
+        "</section>\n",
+        escaped(picture.name), escaped(picture.comparison.sentence), size.width, size.height);
   const Image expected = readPng(picture.expectedPath), actual = readPng(picture.actualPath);
   const PixelBox& box = picture.comparison.where;
   const auto percent = [](int part, int whole) { return 100.0 * part / whole; };

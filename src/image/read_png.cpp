@@ -19,10 +19,13 @@
 namespace cradle {
 namespace {
 
-constexpr int kMaxPixels = 16384;  // a side
+constexpr int kMaxPixels = 16384;            // a side
+constexpr long kMaxInterlaced = 64'000'000;  // pixels, of a picture that is compared
 constexpr png_uint_32 kAnySize = PNG_UINT_31_MAX;
 // Bytes that one byte of a file becomes at most: a match of 258 bytes takes two bits or more (RFC 1951, 3.2.5).
 constexpr std::uint64_t kMaxDeflation = 1032;
+
+}  // namespace
 
 /// A file that is being read. libpng tells of a fault by a jump: no function between that and its target has an object
 /// with a destructor.
@@ -74,10 +77,11 @@ class PngReading {
                               height, rowBytes));
   }
 
-  void readRows(Image& image) {
-    std::vector<png_bytep> rows;
-    for (int y = 0; y < image.height; ++y) rows.push_back(image.at(0, y));
-    step([this, &rows] {
+  bool isInterlaced() const { return png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE; }
+
+  /// Rows are wanted from here on, as red, green and blue.
+  void beginRows() {
+    step([this] {
       png_set_strip_16(png_);
       png_set_expand_gray_1_2_4_to_8(png_);
       png_set_palette_to_rgb(png_);
@@ -85,9 +89,23 @@ class PngReading {
       png_set_strip_alpha(png_);
       png_set_interlace_handling(png_);
       png_read_update_info(png_, info_);
-      png_read_image(png_, rows.data());
-      png_read_end(png_, nullptr);
     });
+  }
+
+  /// The next row of a picture that is not interlaced.
+  void readRow(std::uint8_t* row) {
+    step([this, row] { png_read_row(png_, row, nullptr); });
+  }
+
+  void readRows(Image& image) {
+    std::vector<png_bytep> rows;
+    for (int y = 0; y < image.height; ++y) rows.push_back(image.at(0, y));
+    step([this, &rows] { png_read_image(png_, rows.data()); });
+  }
+
+  /// What is behind the rows.
+  void readEnd() {
+    step([this] { png_read_end(png_, nullptr); });
   }
 
  private:
@@ -137,8 +155,6 @@ class PngReading {
   char fault_[120] = "";
 };
 
-}  // namespace
-
 PictureSize readPngSize(const std::string& path) {
   PngReading reading(path);
   const PictureSize size = reading.readHeader();
@@ -150,9 +166,40 @@ Image readPng(const std::string& path) {
   PngReading reading(path);
   const PictureSize size = reading.readHeader();
   reading.requireRows();
+  reading.beginRows();
   Image image(size.width, size.height);
   reading.readRows(image);
+  reading.readEnd();
   return image;
+}
+
+PngRows::PngRows(const std::string& path) : reading_(std::make_unique<PngReading>(path)) {
+  size_ = reading_->readHeader();
+  reading_->requireRows();
+  if (!reading_->isInterlaced()) return;
+  if (const long pixels = long{size_.width} * size_.height; pixels > kMaxInterlaced)
+    throw Error(
+        ErrorKind::usage, path,
+        fmt::format("is interlaced, and has {} pixels; at most {} are allowed then; save it without interlacing",
+                    pixels, kMaxInterlaced));
+}
+
+PngRows::~PngRows() = default;
+
+const std::uint8_t* PngRows::next() {
+  CRADLE_CHECK(count_ < size_.height);
+  if (count_ == 0) {
+    reading_->beginRows();
+    row_.resize(3 * static_cast<std::size_t>(size_.width));
+    if (reading_->isInterlaced()) {
+      interlaced_ = Image(size_.width, size_.height);
+      reading_->readRows(interlaced_);
+    }
+  }
+  if (!reading_->isInterlaced()) reading_->readRow(row_.data());
+  const int y = count_++;
+  if (count_ == size_.height) reading_->readEnd();
+  return reading_->isInterlaced() ? interlaced_.at(0, y) : row_.data();
 }
 
 }  // namespace cradle

@@ -85,5 +85,17 @@ TEST(ComparisonReport, NothingIsLeftWhereAPictureCannotBeRead) {
   EXPECT_FALSE(std::filesystem::exists(folder / "r.html.part"));
 }
 
+TEST(ComparisonReport, PicturesOfMoreThan34MillionPixelsAreNotShown) {
+  const TemporaryFolder folder;
+  Image picture(16384, 2100);
+  writePng(picture, folder / "a.png");
+  picture.pixels[0] = 255;
+  writePng(picture, folder / "b.png");
+  ComparedPicture pair{"a.png", folder / "a.png", folder / "b.png", {}};
+  pair.comparison.differingPixels = pair.comparison.largestDifference = 1;
+  writeComparisonReport({pair}, {}, folder / "r.html");
+  EXPECT_THAT(textOf(folder / "r.html"), HasSubstr("16384 x 2100 pixels are too many to be shown here"));
+}
+
 }  // namespace
 }  // namespace cradle

@@ -38,8 +38,8 @@ std::string stored(const std::string& bytes) {
 
 const std::string kSignature = "\x89PNG\r\n\x1a\n";
 
-std::string header(std::uint32_t width, std::uint32_t height, char depth, char colourType) {
-  return chunk("IHDR" + bigEndian(width) + bigEndian(height) + std::string{depth, colourType, 0, 0, 0});
+std::string header(std::uint32_t width, std::uint32_t height, char depth, char colourType, char isInterlaced = 0) {
+  return chunk("IHDR" + bigEndian(width) + bigEndian(height) + std::string{depth, colourType, 0, 0, isInterlaced});
 }
 
 /// `rows` with the number of its filter before each.
@@ -138,6 +138,38 @@ TEST_F(ReadPng, SizeNeedsNoRows) {
   EXPECT_THROW(readPng(folder_ / "a.png"), Error);
   std::ofstream(folder_ / "a.png", std::ios::binary) << begin + std::string(900, 'x');  // cut off
   EXPECT_THROW(readPngSize(folder_ / "a.png"), Error);
+}
+
+TEST_F(ReadPng, RowsOneByOneAreThoseOfThePicture) {
+  const std::string none(1, '\0');
+  // Interlaced: the passes 1, 6 and 7 of 2 x 2 pixels.
+  for (const std::string& file : {pngFile(header(2, 2, 8, kRgb), none + "abcdef" + none + "ghijkl"),
+                                  pngFile(header(2, 2, 8, kRgb, 1), none + "abc" + none + "def" + none + "ghijkl"),
+                                  pngFile(header(2, 2, 1, kGrey), none + "\x40" + none + "\x80")}) {
+    const Image whole = read(file);
+    PngRows rows(folder_ / "a.png");
+    EXPECT_EQ(rows.size(), (PictureSize{2, 2}));
+    for (int y = 0; y < 2; ++y) {
+      const std::uint8_t* row = rows.next();
+      EXPECT_TRUE(std::equal(row, row + 6, whole.at(0, y)));
+    }
+  }
+}
+
+TEST_F(ReadPng, RowsOneByOneShowWhatIsDamagedBehindThem) {
+  std::string file = pngFile(header(1, 1, 8, kRgb), std::string("\0abc", 4));
+  file[file.size() - 1] ^= 1;  // the checksum of the end
+  std::ofstream(folder_ / "a.png", std::ios::binary) << file;
+  PngRows rows(folder_ / "a.png");
+  EXPECT_THROW(rows.next(), Error);
+}
+
+TEST_F(ReadPng, LargeInterlacedPicturesAreNotReadByRows) {
+  const std::string rows(100'000, 'x');  // a byte may become 1032 rows' bytes
+  std::ofstream(folder_ / "a.png", std::ios::binary)
+      << kSignature + header(16384, 4096, 8, kGrey, 1) + chunk("IDAT" + rows) + chunk("IEND");
+  EXPECT_EQ(readPngSize(folder_ / "a.png"), (PictureSize{16384, 4096}));
+  EXPECT_THROW(PngRows(folder_ / "a.png"), Error);
 }
 
 }  // namespace
