@@ -15,8 +15,9 @@ namespace {
 
 // Volume over surface times size: below this a part is a sheet, and its volume is rounding.
 constexpr double kSheetVolume = 1e-12;
-// Triangles that are looked at to find how parts lie to each other: some seconds.
-constexpr std::size_t kMaxWork = 10'000'000;
+// Triangles that are looked at to find which parts are near each other, and tests of one against another that tell how
+// those lie to each other: a second or two.
+constexpr std::size_t kMaxWork = 10'000'000, kMaxTests = 100'000'000;
 
 /// Sets that are joined in pairs (R. E. Tarjan, "Efficiency of a good but not linear set union algorithm", J. ACM
 /// 22(2), 1975, with path halving).
@@ -81,8 +82,8 @@ void measure(const TriangleMesh& mesh, MeshPart& part) {
 /// Parts inside which each part lies.
 using Containers = std::vector<std::vector<std::size_t>>;
 
-/// Calls meet(a, b) for pairs of parts that are not flat and whose bounds overlap; a < b. Bounds are swept along x.
-/// False if that was given up: a file of thousands of parts around each other would take hours.
+/// Calls meet(a, b) for pairs of parts that are not flat and whose bounds overlap, until it is false; a < b. Bounds are
+/// swept along x. False if that was given up: a file of thousands of parts around each other would take hours.
 template <class Meet>
 bool forEachNearPair(const std::vector<MeshPart>& parts, const Meet& meet) {
   std::vector<std::size_t> order;
@@ -99,25 +100,28 @@ bool forEachNearPair(const std::vector<MeshPart>& parts, const Meet& meet) {
       const bool isNear = one.bounds.intersects(other.bounds);
       work += 1 + (isNear ? one.triangles.size() + other.triangles.size() : 0);
       if (work > kMaxWork) return false;
-      if (isNear) meet(std::min(order[i], order[j]), std::max(order[i], order[j]));
+      if (isNear && !meet(std::min(order[i], order[j]), std::max(order[i], order[j]))) return false;
     }
   return true;
 }
 
 Containers findContainers(const TriangleMesh& mesh, PartReport& report) {
   Containers containers(report.parts.size());
+  std::size_t testsLeft = kMaxTests;
   const bool isWhole = forEachNearPair(report.parts, [&](std::size_t a, std::size_t b) {
-    const PartEncounter encounter = relate(mesh, report.parts[a], report.parts[b]);
+    const PartEncounter encounter = relate(mesh, report.parts[a], report.parts[b], testsLeft);
     if (encounter.relation == PartRelation::firstInside) containers[a].push_back(b);
     if (encounter.relation == PartRelation::secondInside) containers[b].push_back(a);
     if (encounter.relation == PartRelation::crossing)
       report.overlaps.push_back(fmt::format("{} and {} overlap at ({:.6g}, {:.6g}, {:.6g})", describePart(report, a),
                                             describePart(report, b), encounter.place.x(), encounter.place.y(),
                                             encounter.place.z()));
+    return encounter.relation != PartRelation::unknown;
   });
   if (!isWhole)
     report.overlaps.push_back(
-        fmt::format("its {} parts lie around each other, too many to see which overlap", report.parts.size()));
+        fmt::format("its {} parts lie around each other, too many or of too many triangles to see which overlap",
+                    report.parts.size()));
   return containers;
 }
 

@@ -17,9 +17,10 @@ namespace {
 
 constexpr double kTouching = 1e-6;  // of the smaller part's diagonal: as near, surfaces touch
 constexpr double kSinglePrecision =
-    1.2e-7;                              // of coordinates: two roundings of single precision, in which files hold them
-constexpr double kOnBorder = 1e-9;       // of a triangle or an edge: a crossing as near to its border is on it
-constexpr std::size_t kMaxSamples = 64;  // points of a part: if none is clear of the other, the surfaces coincide
+    1.2e-7;                               // of coordinates: two roundings of single precision, in which files hold them
+constexpr double kOnBorder = 1e-9;        // of a triangle or an edge: a crossing as near to its border is on it
+constexpr std::size_t kTestsPerCut = 50;  // a cut that is kept takes the memory, and later the time, of that many tests
+constexpr std::size_t kMaxSamples = 64;   // points of a part: if none is clear of the other, the surfaces coincide
 
 struct TriangleCorners {
   Vec3 a, b, c;
@@ -102,8 +103,8 @@ using EdgeCuts = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<d
 
 class Encounter {
  public:
-  Encounter(const TriangleMesh& mesh, const MeshPart& first, const MeshPart& second)
-      : mesh_(mesh), first_(first), second_(second) {
+  Encounter(const TriangleMesh& mesh, const MeshPart& first, const MeshPart& second, std::size_t& testsLeft)
+      : mesh_(mesh), first_(first), second_(second), testsLeft_(testsLeft) {
     double largest = 0;
     for (const MeshPart* part : {&first, &second})
       largest = std::max({largest, part->bounds.min().cwiseAbs().maxCoeff(), part->bounds.max().cwiseAbs().maxCoeff()});
@@ -118,6 +119,7 @@ class Encounter {
     judgeCuts(secondCuts_, first_, secondSides_);
     sample(first_, second_, firstSides_);
     sample(second_, first_, secondSides_);
+    if (testsLeft_ == 0) return {PartRelation::unknown};
     const std::optional<Vec3> place = firstSides_.inside    ? firstSides_.inside
                                       : secondSides_.inside ? secondSides_.inside
                                                             : flush_;
@@ -147,6 +149,12 @@ class Encounter {
     return found;
   }
 
+  /// False where no tests are left.
+  bool spend(std::size_t tests) const {
+    testsLeft_ -= std::min(tests, testsLeft_);
+    return testsLeft_ > 0;
+  }
+
   /// Finds where edges of either pierce triangles of the other, and sides that are flush.
   void cutEdges() {
     const std::vector<Reaching> firsts = reaching(first_, second_), seconds = reaching(second_, first_);
@@ -156,7 +164,7 @@ class Encounter {
       const double from = first.bounds.min().x() - longest - tolerance_, to = first.bounds.max().x() + tolerance_;
       auto second = std::lower_bound(seconds.begin(), seconds.end(), from,
                                      [](const Reaching& item, double x) { return item.bounds.min().x() < x; });
-      for (; second != seconds.end() && second->bounds.min().x() <= to; ++second)
+      for (; second != seconds.end() && second->bounds.min().x() <= to && spend(1); ++second)
         if (first.bounds.squaredExteriorDistance(second->bounds) <= tolerance_ * tolerance_) meet(first, *second);
     }
   }
@@ -178,7 +186,7 @@ class Encounter {
       if (from > to) continue;  // its other triangle has it the other way round
       const Vec3 along = mesh_.vertices[to] - mesh_.vertices[from];
       const auto crossing = crossingOf(mesh_.vertices[from], along, triangle);
-      if (crossing && crossing->t >= -kOnBorder && crossing->t <= 1 + kOnBorder)
+      if (crossing && crossing->t >= -kOnBorder && crossing->t <= 1 + kOnBorder && spend(kTestsPerCut))
         cuts[{from, to}].push_back(std::clamp(crossing->t, 0.0, 1.0));
     }
   }
@@ -213,6 +221,7 @@ class Encounter {
       sides.outside = point;
       return;
     }
+    if (!spend(other.triangles.size())) return;
     for (const std::uint32_t triangle : other.triangles) {
       const TriangleCorners corners = cornersOf(mesh_, triangle);
       if (boundsOf(corners).squaredExteriorDistance(point) <= tolerance_ * tolerance_ &&
@@ -243,6 +252,7 @@ class Encounter {
 
   const TriangleMesh& mesh_;
   const MeshPart &first_, &second_;
+  std::size_t& testsLeft_;
   double tolerance_ = 0;  // m
   EdgeCuts firstCuts_, secondCuts_;
   Sides firstSides_, secondSides_;
@@ -251,8 +261,8 @@ class Encounter {
 
 }  // namespace
 
-PartEncounter relate(const TriangleMesh& mesh, const MeshPart& first, const MeshPart& second) {
-  return Encounter(mesh, first, second).relation();
+PartEncounter relate(const TriangleMesh& mesh, const MeshPart& first, const MeshPart& second, std::size_t& testsLeft) {
+  return Encounter(mesh, first, second, testsLeft).relation();
 }
 
 }  // namespace cradle

@@ -34,7 +34,8 @@ PartRelation relationOf(const TriangleMesh& a, const TriangleMesh& b) {
   const TriangleMesh both = joined(a, b);
   const std::vector<MeshPart> parts = partsOf(both);
   EXPECT_THAT(parts, SizeIs(2));
-  return relate(both, parts[0], parts[1]).relation;
+  std::size_t testsLeft = 1'000'000;
+  return relate(both, parts[0], parts[1], testsLeft).relation;
 }
 
 /// The same of two parts in any place, and either way round.
@@ -195,6 +196,15 @@ TEST(Solid, PartsThatCancelEachOtherAreNotCalledFlat) {
   EXPECT_FALSE(report.isClosed);
   EXPECT_THAT(report.problems, Contains(HasSubstr("part 2 of 2 (12 triangles around (3, 0, 0)) is inside-out")));
   EXPECT_THAT(report.problems, testing::Not(Contains(HasSubstr("flat"))));
+}
+
+TEST(PartRelation, IsUnknownWhereItWouldTakeTooLong) {
+  const TriangleMesh both = joined(boxMesh({4, 1, 1}), boxMesh({1, 4, 0.5}));
+  const std::vector<MeshPart> parts = partsOf(both);
+  for (std::size_t tests : {std::size_t{1}, std::size_t{100}}) {
+    EXPECT_EQ(relate(both, parts[0], parts[1], tests).relation, PartRelation::unknown);
+    EXPECT_EQ(tests, 0U);
+  }
 }
 
 }  // namespace
