@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <vector>
 
 #include "core/error.h"
 #include "core/output_path.h"
@@ -26,9 +27,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMinLength = 1'000'000;  // bytes that a text may have in any file: a .part grows while it is read
-constexpr int kLongTurn = 100'000;     // instructions of SQLite; a row of a trajectory takes less than a hundred
-constexpr int kPatience = 30000;       // ms to wait for another program; queries of others seldom take longer
+constexpr int kMinLength = 1'000'000;    // bytes that a text may have in any file: a .part grows while it is read
+constexpr int kMaxDefinition = 100'000;  // bytes of SQL; all of ours have 2000
+constexpr int kMaxSchema = 200;          // tables, indices and views of a file; ours has eight
+constexpr int kLongTurn = 100'000;       // instructions of SQLite; a row of a trajectory takes less than a hundred
+constexpr int kPatience = 30000;         // ms to wait for another program; queries of others seldom take longer
 
 std::string_view bytesOrEmpty(std::span<const std::byte> bytes) {
   // SQLite takes a null pointer for null, not for zero bytes.
@@ -131,6 +134,35 @@ const char* ownFilesOnly() {
   return vfs.zName;
 }
 
+/// How many tables, indices and views a file defines, counted up to one more than kMaxSchema: SQLite would parse all of
+/// them before its first query. (sqlite.org, "Database File Format", section 1.6: the tree of the schema begins on page
+/// 1, behind the header of the file; a page of type 13 has rows, one of type 5 has pages below it)
+int schemaRows(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<unsigned char, 2> sizeOfPage{};
+  file.seekg(16).read(reinterpret_cast<char*>(sizeOfPage.data()), sizeOfPage.size());
+  const std::size_t given = std::size_t{sizeOfPage[0]} << 8 | sizeOfPage[1];
+  std::vector<unsigned char> page(given == 1 ? 65536 : std::max<std::size_t>(given, 512));
+  std::vector<std::uint64_t> left{1};
+  int rows = 0;
+  for (int seen = 0; !left.empty() && rows <= kMaxSchema; ++seen) {
+    if (seen > kMaxSchema) return kMaxSchema + 1;
+    const std::uint64_t number = left.back();
+    left.pop_back();
+    file.seekg(static_cast<std::streamoff>((number - 1) * page.size()));
+    if (number == 0 || !file.read(reinterpret_cast<char*>(page.data()), std::ssize(page))) break;  // SQLite tells it
+    const std::size_t start = number == 1 ? 100 : 0, cells = std::size_t{page[start + 3]} << 8 | page[start + 4];
+    if (page[start] == 13) rows += static_cast<int>(std::min<std::size_t>(cells, kMaxSchema + 1));
+    if (page[start] != 5) continue;
+    left.push_back(bigEndianAt(page, start + 8));
+    for (std::size_t at = start + 12; at < std::min(start + 12 + 2 * cells, page.size() - 1); at += 2) {
+      const std::size_t cell = std::size_t{page[at]} << 8 | page[at + 1];
+      if (cell + 4 <= page.size()) left.push_back(bigEndianAt(page, cell));
+    }
+  }
+  return std::min(rows, kMaxSchema + 1);
+}
+
 /// Of its texts and blobs, and one for itself.
 std::int64_t bytesOfRow(sqlite3_stmt* statement) {
   std::int64_t bytes = 1;
@@ -207,7 +239,8 @@ std::int64_t Statement::integer(int column) const {
 }
 
 double Statement::real(int column) const {
-  requireType(column, SQLITE_FLOAT, "a number");
+  // Who writes 0 for 0.0 by hand has an integer there: columns of numbers have no type that would turn it.
+  if (sqlite3_column_type(statement_.get(), column) != SQLITE_INTEGER) requireType(column, SQLITE_FLOAT, "a number");
   const double value = sqlite3_column_double(statement_.get(), column);
   if (!(std::abs(value) < kLargestNumber))
     database_->failDamaged(fmt::format("its column {} holds a number that is not finite and below {:.0e}",
@@ -267,8 +300,9 @@ Database::Database(const std::string& path, DatabaseAccess access) : path_(path)
   restrictReading();
 }
 
-/// The file may come from anywhere: what it holds is data, never something to be run; a text or a blob is not longer
-/// than the file; and a row is found by its key or next to the last one, in little work.
+/// The file may come from anywhere: what it holds is data, never something to be run, neither views nor tables that are
+/// modules of SQLite; a text or a blob is not longer than the file; and a row is found by its key or next to the last
+/// one, in little work.
 void Database::restrictReading() {
   std::error_code failed;
   bytesHeld_ = static_cast<std::int64_t>(std::min(fs::file_size(path_, failed), std::uintmax_t{INT_MAX}));
@@ -277,7 +311,15 @@ void Database::restrictReading() {
   sqlite3_progress_handler(handle_.get(), kLongTurn, isTooMuch, &longTurns_);
   sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-  execute("PRAGMA query_only = ON; PRAGMA cell_size_check = ON");
+  sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+  sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+  std::array<const char*, 2> ownModules{"json_each", nullptr};
+  sqlite3_drop_modules(handle_.get(), ownModules.data());
+  sqlite3_limit(handle_.get(), SQLITE_LIMIT_SQL_LENGTH, kMaxDefinition);
+  execute("PRAGMA query_only = ON; PRAGMA cell_size_check = ON; PRAGMA application_id");  // takes a journal back
+  if (schemaRows(path_) > kMaxSchema)
+    throw Error(ErrorKind::usage, path_,
+                fmt::format("is not a trajectory: it defines more than {} tables, indices and views", kMaxSchema));
 }
 
 /// `name`: a plain one, or a URI.

@@ -25,8 +25,12 @@ constexpr std::string_view kMagic("SQLite format 3\0", 16);
 constexpr std::size_t kHeaderSize = 100, kApplicationIdAt = 68;  // bytes; the id is big-endian
 constexpr std::size_t kVersionsAt = 18;                          // of writing and reading: 1, or kWithLog
 constexpr char kWithLog = 2;
-constexpr double kLatestTime = 1e10;       // s: scenes last 1e9 s at most
-constexpr int kLongestValue = 64'000'000;  // bytes of a value of the table meta: the longest scene that is read
+constexpr double kLatestTime = 1e10;        // s: scenes last 1e9 s at most
+constexpr int kLongestValue = 64'000'000;   // bytes of a value of the table meta: the longest scene that is read
+constexpr std::size_t kLongestName = 1100;  // bytes of a body's: 250 characters and the number of a copy
+constexpr const char* kMaterialsOfMesh =
+    "SELECT value ->> 'name', value ->> 'baseColor', value ->> 'firstTriangle', value ->> 'triangleCount' "
+    "FROM mesh, json_each(mesh.material) WHERE mesh.id = ?";
 constexpr const char* kTableNames = "('meta', 'mesh', 'body', 'frame', 'state', 'event', 'energy')";
 
 /// The first bytes of a file, or all; empty if it cannot be read.
@@ -52,10 +56,12 @@ void requireTrajectory(Database& database, const std::string& path) {
                                                        kTableNames)) == 7;
   if (!isOurs) throw Error(ErrorKind::usage, path, "is a SQLite database, but not a trajectory of cradle");
   // Tables that compute what they give could give without end.
-  const bool isStored = oneInteger(database, fmt::format("SELECT count(*) FROM sqlite_master AS t, "
-                                                         "pragma_table_xinfo(t.name) AS c WHERE t.type = 'table' AND "
-                                                         "t.name IN {} AND (c.hidden <> 0 OR t.rootpage = 0)",
-                                                         kTableNames)) == 0;
+  const bool isStored =
+      oneInteger(database, fmt::format("SELECT count(*) FROM sqlite_master WHERE rootpage = 0 AND name IN {}",
+                                       kTableNames)) == 0 &&
+      oneInteger(database, fmt::format("SELECT count(*) FROM sqlite_master AS t, pragma_table_xinfo(t.name) AS c WHERE "
+                                       "t.type = 'table' AND t.name IN {} AND c.hidden <> 0",
+                                       kTableNames)) == 0;
   if (!isStored) database.failDamaged("a table computes its columns instead of holding them");
   const std::int64_t version = oneInteger(database, "PRAGMA user_version");
   if (version != kSchemaVersion)
@@ -81,11 +87,10 @@ Vec3f colorFromHex(const std::string& text, const Database& database) {
   return Vec3f(static_cast<float>(red), static_cast<float>(green), static_cast<float>(blue)) / 255.0f;
 }
 
-/// The ranges of a mesh of so many triangles, at most one for each.
-std::vector<ModelMaterial> readMaterials(Database& database, std::int64_t mesh, std::size_t triangles) {
-  Statement query = database.prepare(
-      "SELECT value ->> 'name', value ->> 'baseColor', value ->> 'firstTriangle', value ->> 'triangleCount' "
-      "FROM mesh, json_each(mesh.material) WHERE mesh.id = ?");
+/// The ranges of a mesh of so many triangles, at most one for each; `query` is kMaterialsOfMesh.
+std::vector<ModelMaterial> readMaterials(Statement& query, const Database& database, std::int64_t mesh,
+                                         std::size_t triangles) {
+  query.reset();
   query.bind(1, mesh);
   std::vector<ModelMaterial> materials;
   std::int64_t next = 0;
@@ -221,6 +226,7 @@ void TrajectoryReader::readMeta() {
 void TrajectoryReader::readMeshes() {
   Database& database = *session_->database;
   Statement query = database.prepare("SELECT id, name, vertices, normals, triangles FROM mesh ORDER BY id");
+  Statement materials = database.prepare(kMaterialsOfMesh);
   while (query.step()) {
     if (query.integer(0) != static_cast<std::int64_t>(header_.meshes.size())) database.failDamaged("a mesh is missing");
     Model model;
@@ -228,7 +234,7 @@ void TrajectoryReader::readMeshes() {
     model.drawn.vertices = arrayOf<Vec3>(query, 2, database);
     model.drawn.normals = arrayOf<Vec3f>(query, 3, database);
     model.drawn.triangles = arrayOf<Triangle>(query, 4, database);
-    model.drawn.materials = readMaterials(database, query.integer(0), model.drawn.triangles.size());
+    model.drawn.materials = readMaterials(materials, database, query.integer(0), model.drawn.triangles.size());
     requireConsistent(model.drawn, database);
     model.solid = weld(model.drawn.vertices, model.drawn.triangles);
     header_.meshes.push_back(std::move(model));
@@ -242,7 +248,10 @@ void TrajectoryReader::readBodies() {
       "id");
   while (query.step()) {
     const auto id = static_cast<std::int64_t>(header_.bodies.size());
-    const std::string motion = query.text(2);
+    const std::string name = query.text(1), motion = query.text(2);
+    if (name.size() > kLongestName)
+      database.failDamaged(
+          fmt::format("body {} has a name of {} bytes; scenes have at most {}", id, name.size(), kLongestName));
     const bool hasMesh = !query.isNull(3);
     const std::int64_t mesh = hasMesh ? query.integer(3) : -1;
     if (query.integer(0) != id) database.failDamaged("a body is missing");
@@ -251,13 +260,12 @@ void TrajectoryReader::readBodies() {
       database.failDamaged("a body has a mesh that is not there");
     const MassProperties properties = massPropertiesAt(query, 5);
     if (motion == "dynamic" && !(properties.mass > 0 && properties.inertiaTensor.diagonal().minCoeff() > 0))
-      database.failDamaged(
-          fmt::format("body \"{}\" has a mass or a moment of inertia that is not above 0", query.text(1)));
+      database.failDamaged(fmt::format("body \"{}\" has a mass or a moment of inertia that is not above 0", name));
     if (!isPossiblePlace(properties.centerOfMass))
-      database.failDamaged(fmt::format("body \"{}\" has its centre of mass 1e30 m away or more", query.text(1)));
+      database.failDamaged(fmt::format("body \"{}\" has its centre of mass 1e30 m away or more", name));
     if (motion == "dynamic") dynamicBodies_.push_back(static_cast<int>(id));
     header_.bodies.push_back(
-        {query.text(1), motion == "dynamic", static_cast<int>(mesh), hasMesh ? "" : query.text(4), properties});
+        {name, motion == "dynamic", static_cast<int>(mesh), hasMesh ? "" : query.text(4), properties});
   }
 }
 

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sqlite3.h>
 #include <sys/stat.h>
 
@@ -183,6 +184,46 @@ TEST_F(DamagedTrajectory, WithComputedColumnsIsRefused) {
   expectRefused("ALTER TABLE event ADD COLUMN more AS (zeroblob(1000000000))", "computes");
   expectRefused("DROP TABLE event; CREATE TABLE event (time AS (1.0) STORED, " + rest + ")", "computes");
   expectRefused("DROP TABLE event; CREATE VIRTUAL TABLE event USING fts5(time)", "computes");
+}
+
+/// The definition of a table, in a file whose schema says that the table is stored.
+std::string asStored(const std::string& table, const std::string& sql) {
+  return "PRAGMA writable_schema = ON; UPDATE sqlite_master SET rootpage = 3, sql = '" + sql + "' WHERE name = '" +
+         table + "'";
+}
+
+TEST_F(DamagedTrajectory, WithATableThatIsAModuleOrAViewIsRefused) {
+  expectRefused(asStored("event", "CREATE VIRTUAL TABLE event USING rtree(id, a, b)"), "no such module: rtree");
+  expectRefused(asStored("event", "CREATE VIRTUAL TABLE event USING json_each"), "computes");
+  expectRefused(asStored("event", "CREATE VIEW event AS SELECT * FROM frame"), "prohibited");
+}
+
+// A view of two views of two views ...: 2^40 of them would be put together before the first row.
+TEST_F(DamagedTrajectory, WithViewsOfViewsIsRefusedBeforeItTakesLong) {
+  std::string sql = "CREATE VIEW v0 AS SELECT 1 AS time; ";
+  for (int i = 1; i < 40; ++i)
+    sql += fmt::format("CREATE VIEW v{0} AS SELECT a.time FROM v{1} AS a, v{1} AS b; ", i, i - 1);
+  expectRefused(sql + asStored("event", "CREATE VIEW event AS SELECT * FROM v39"), "prohibited");
+}
+
+// SQLite would parse all of them before its first query.
+TEST_F(DamagedTrajectory, WithManyDefinitionsIsRefused) {
+  std::string sql = "BEGIN; ";
+  for (int i = 0; i < 5000; ++i) sql += fmt::format("CREATE VIEW more{0} AS SELECT {0} AS {1:a>40}; ", i, "");
+  expectRefused(sql + "COMMIT", "defines more than 200 tables");
+}
+
+TEST_F(DamagedTrajectory, WithAViewOfItsOwnAndIntegersForNumbersIsRead) {
+  writeSample(path_, 4);
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path_.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database,
+                         "CREATE VIEW heights AS SELECT py FROM state; UPDATE frame SET time = 0 WHERE id = 0; UPDATE "
+                         "energy SET work = CAST(work AS INTEGER) WHERE work = CAST(work AS INTEGER)",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(database);
+  EXPECT_NO_THROW(readAll(path_));
 }
 
 TEST_F(DamagedTrajectory, WithALogBesideItIsRefused) {
