@@ -70,7 +70,7 @@ void chartStability(const std::string& folder, const std::vector<std::string>& n
   namespace fs = std::filesystem;
   const std::vector<MapEntry> maps = stabilityMapsNamed(names);
   requireOwnFolder(folder, "stability map", isMapResultName);
-  makeFolder(folder);
+  const ResultFolder made(folder);
   const FolderLock lock(folder, FolderUse::alone);
   const bool drawsCharts = canDrawCharts();
   if (!drawsCharts) show(stderr, "warning: gnuplot is missing: there will be tables, but no charts\n");

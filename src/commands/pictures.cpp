@@ -8,6 +8,7 @@
 #include <future>
 #include <limits>
 
+#include "commands/drawing_memory.h"
 #include "commands/film_view.h"
 #include "commands/simulate_scene.h"
 #include "core/error.h"
@@ -138,6 +139,7 @@ void requireNoOthers(const std::string& folder, long frameCount) {
 struct PictureOrder {
   PictureOrder(const PictureOptions& options, const Scene& scene)
       : size(parseSize(options.size, scene)), shaders(options.shaders.value_or("")) {
+    requireDrawingMemory(size.width, size.height);
     if (options.overlay) overlays = parseOverlays(*options.overlay);
     if (overlays && overlays->plot == PlotKind::height) plottedBody(*overlays, scene);
   }
@@ -199,6 +201,7 @@ void drawFrames(FilmDrawer& drawer, const FrameRange& range, Progress& progress,
 }  // namespace
 
 void renderFrames(const std::string& input, const std::string& folder, const PictureOptions& options, bool quiet) {
+  std::optional<ResultFolder> made;  // outlives the lock
   std::optional<FolderLock> lock;
   takeFolder(folder, parseRange(options.frames), options, lock);
   if (options.overlay) parseOverlays(*options.overlay);
@@ -207,8 +210,9 @@ void renderFrames(const std::string& input, const std::string& folder, const Pic
   const FrameRange range = parseFrames(options.frames, source);
   requireNoOthers(folder, source.frameCount());
   source.simulate();
+  requireDrawingMemory(order.size.width, order.size.height);  // of what is left
   FilmDrawer drawer(source, order);
-  makeFolder(folder);
+  made.emplace(folder);
   takeFolder(folder, range, options, lock);
   Progress progress("Drawing", "pictures", range.end - range.first, quiet);
   drawFrames(drawer, range, progress, [&](long frame, const Image& picture) {
@@ -244,6 +248,7 @@ void makeFilm(const std::string& input, const std::string& film, const PictureOp
       progress.endLine();
       warn(warning);
     });
+  requireDrawingMemory(order.size.width, order.size.height);  // of what is left
   FilmDrawer drawer(source, order);
   drawFrames(drawer, {0, source.pictureCount()}, progress, [&](long, const Image& picture) { encoder.add(picture); });
   source.finish();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <vector>
 
 #include "core/console.h"
 #include "core/error.h"
@@ -123,6 +124,13 @@ void printAchievedAccuracy(const Scene& scene, const std::string& output, bool q
   }
 }
 
+/// The first of them, and how many more there are: a file may give rise to a million.
+void warnOfAll(const std::vector<std::string>& warnings) {
+  constexpr std::size_t kMaxTold = 50;  // as of faults
+  for (std::size_t i = 0; i < std::min(warnings.size(), kMaxTold); ++i) warn(warnings[i]);
+  if (warnings.size() > kMaxTold) warn(fmt::format("and {} more warnings", warnings.size() - kMaxTold));
+}
+
 }  // namespace
 
 void warn(const std::string& warning) {
@@ -131,7 +139,7 @@ void warn(const std::string& warning) {
 
 Scene loadSceneAndWarn(const std::string& path, const SceneOptions& options) {
   LoadedScene loaded = loadScene(path, options.assetRoot);
-  for (const std::string& warning : loaded.warnings) warn(warning);
+  warnOfAll(loaded.warnings);
   apply(options, loaded.scene);
   requireUsableCamera(loaded.scene);
   return std::move(loaded.scene);
@@ -191,8 +199,10 @@ void checkScene(const std::string& scenePath, const SceneOptions& options) {
   std::vector<Assembly> islands;
   for (const IslandPlan& island : planOf(scene).islands) islands.push_back(assemble(scene, island));
   correctStartPenetrations(scene, islands);
+  std::vector<std::string> warnings;
   for (const Assembly& assembly : islands)
-    for (const std::string& warning : assembly.warnings) warn(warning);
+    warnings.insert(warnings.end(), assembly.warnings.begin(), assembly.warnings.end());
+  warnOfAll(warnings);
   const auto dynamic = std::count_if(scene.bodies.begin(), scene.bodies.end(),
                                      [](const Body& body) { return body.motion == Motion::dynamic; });
   show("{}: \"{}\" is in order: {} ({} dynamic){}; {} s, {} frames\n", printableLine(scenePath),

@@ -17,6 +17,7 @@
 #include "commands/simulate_scene.h"
 #include "core/console.h"
 #include "core/error.h"
+#include "core/folder_lock.h"
 #include "core/interruption.h"
 #include "core/output_path.h"
 #include "core/part_lock.h"
@@ -249,7 +250,7 @@ void studyScenes(const std::vector<std::string>& paths, const std::string& asset
   requireOwnFolder(folder, "result of a study", isResultName);
   std::deque<NamedScene> scenes;
   loadScenes(paths, assetRoot, hashOfProgram(methods), scenes);
-  makeFolder(folder);
+  const ResultFolder made(folder);
   requireWritableResults(folder, scenes);
   Study study(folder, methods, scenes, quiet);
   printPeers(methods);

@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/output_path.h"
 
 namespace cradle {
 namespace {
@@ -48,6 +49,20 @@ FolderLock::FolderLock(const std::string& folder, FolderUse use)
 
 FolderLock::~FolderLock() {
   close(file_);
+}
+
+ResultFolder::ResultFolder(const std::string& folder) : folder_(folder) {
+  struct stat ignored {};
+  isNew_ = stat(folder.c_str(), &ignored) != 0;
+  makeFolder(folder);
+}
+
+ResultFolder::~ResultFolder() {
+  if (!isNew_) return;
+  const int file = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return;
+  if (flock(file, LOCK_EX | LOCK_NB) == 0) rmdir(folder_.c_str());  // fails if something is in it
+  close(file);
 }
 
 }  // namespace cradle

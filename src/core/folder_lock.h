@@ -22,4 +22,19 @@ class FolderLock {
   int file_ = -1;
 };
 
+/// A folder for results, made if it is not there. One that was made for a run which put nothing into it is gone with
+/// the object, unless another run holds it by then.
+class ResultFolder {
+ public:
+  /// Throws Error(output).
+  explicit ResultFolder(const std::string& folder);
+  ~ResultFolder();
+  ResultFolder(const ResultFolder&) = delete;
+  ResultFolder& operator=(const ResultFolder&) = delete;
+
+ private:
+  std::string folder_;
+  bool isNew_ = false;
+};
+
 }  // namespace cradle

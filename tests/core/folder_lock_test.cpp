@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
@@ -51,6 +52,24 @@ TEST_F(FolderLockTest, LeavesNothingAndEndsWithItsProcess) {
       testing::ExitedWithCode(0), "");
   EXPECT_TRUE(fs::is_empty(folder_));
   for (int i = 0; i < 2; ++i) EXPECT_NO_THROW(FolderLock(folder_, FolderUse::alone));
+}
+
+TEST_F(FolderLockTest, FolderOfARunWithoutResultsIsGone) {
+  const std::string made = folder_ + "/new", held = folder_ + "/held", filled = folder_ + "/filled";
+  { const ResultFolder results(made), there(folder_); }
+  EXPECT_FALSE(fs::exists(made));
+  EXPECT_TRUE(fs::exists(folder_));
+  {
+    const ResultFolder results(filled);
+    fs::create_directory(filled + "/result");
+  }
+  EXPECT_TRUE(fs::exists(filled));
+  std::optional<FolderLock> lock;
+  {
+    const ResultFolder results(held);
+    lock.emplace(held, FolderUse::shared);
+  }
+  EXPECT_TRUE(fs::exists(held));
 }
 
 TEST_F(FolderLockTest, NeedsAFolder) {
