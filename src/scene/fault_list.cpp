@@ -11,14 +11,16 @@ namespace cradle {
 namespace {
 
 constexpr std::size_t kMaxFaults = 50;         // more than anyone reads at once
+constexpr std::size_t kMaxCounted = 1000;      // a file with as many is not read to its end
 constexpr std::size_t kLongestQuotation = 60;  // bytes of the user's text in a message
+constexpr std::size_t kLongestWhat = 10'000;   // bytes
 constexpr std::size_t kLongestPointer = 200;   // bytes
 
 }  // namespace
 
 void FaultList::add(const TextPlace& place, const std::string& pointer, const std::string& what) {
-  if (!isFull()) faults_.push_back({place, where(place, pointer) + ": " + printableLine(what)});
-  ++count_;
+  if (!isFull()) faults_.push_back({place, where(place, pointer) + ": " + printableLine(what, kLongestWhat)});
+  if (++count_ == kMaxCounted) throwIfAny();
 }
 
 bool FaultList::isFull() const {
@@ -30,7 +32,7 @@ std::string FaultList::where(const TextPlace& place, const std::string& pointer)
   return pointer.empty() ? position : position + " " + printableLine(pointer, kLongestPointer);
 }
 
-void FaultList::throwIfAny(ErrorKind kind) const {
+void FaultList::throwIfAny() const {
   if (count_ == 0) return;
   std::vector<Fault> sorted = faults_;
   std::stable_sort(sorted.begin(), sorted.end(), [](const Fault& a, const Fault& b) {
@@ -38,8 +40,9 @@ void FaultList::throwIfAny(ErrorKind kind) const {
   });
   std::string text;
   for (const Fault& fault : sorted) text += (text.empty() ? "" : "\n") + fault.line;
-  if (count_ > sorted.size()) text += fmt::format("\nand {} more", count_ - sorted.size());
-  throw Error::ofLines(kind, text);
+  if (count_ > sorted.size())
+    text += fmt::format("\nand {}{} more", count_ == kMaxCounted ? "at least " : "", count_ - sorted.size());
+  throw Error::ofLines(kind_, text);
 }
 
 std::string inQuotes(const std::string& text) {

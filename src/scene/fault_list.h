@@ -9,12 +9,15 @@
 
 namespace cradle {
 
-/// Everything that is wrong with a scene file, so that its writer hears of it in one go.
+/// What is wrong with a scene file, so that its writer hears of it in one go; of a file of millions of faults the first
+/// thousand.
 class FaultList {
  public:
-  explicit FaultList(std::string file) : file_(std::move(file)) {}
+  /// `kind` is that of the Error.
+  FaultList(std::string file, ErrorKind kind) : file_(std::move(file)), kind_(kind) {}
 
   /// `what` reads "what was found; what is allowed; hint"; `pointer` is a JSON pointer, empty for the whole text.
+  /// Throws, as throwIfAny does, if there are more than anyone counts.
   void add(const TextPlace& place, const std::string& pointer, const std::string& what);
 
   /// All faults, those that are counted but no longer kept included.
@@ -26,7 +29,7 @@ class FaultList {
   std::string where(const TextPlace& place, const std::string& pointer) const;
 
   /// Throws one Error with a line for each fault in the order of the file, and how many more there were.
-  void throwIfAny(ErrorKind kind) const;
+  void throwIfAny() const;
 
  private:
   struct Fault {
@@ -34,6 +37,7 @@ class FaultList {
     std::string line;
   };
   std::string file_;
+  ErrorKind kind_;
   std::vector<Fault> faults_;
   std::size_t count_ = 0;
 };

@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::size_t kMaxLevels = 64;
 constexpr std::size_t kMaxToken = 1'000'000;   // characters of a number; 800 say all that a double holds
+constexpr std::size_t kMaxKeys = 10'000;       // of an object; that of materials has most, and 4000 at most
 constexpr std::size_t kMaxValues = 4'000'000;  // some 300 MB; a hundred thousand bodies have fewer
 
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
@@ -59,15 +60,9 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   FaultList& faults_;
   JsonValue root_;
   std::vector<Level> levels_;
-  std::size_t count_ = 0;  // of values
 };
 
-// Null if there are too many.
 JsonValue* TreeBuilder::add(JsonValue value) {
-  if (++count_ > kMaxValues) {
-    faults_.add(value.place, "", fmt::format("the text has more than {} values", kMaxValues));
-    return nullptr;
-  }
   if (levels_.empty()) return &(root_ = std::move(value));
   auto& parent = levels_.back().value->content;
   if (auto* array = std::get_if<JsonValue::Array>(&parent)) return &array->emplace_back(std::move(value));
@@ -76,13 +71,13 @@ JsonValue* TreeBuilder::add(JsonValue value) {
 
 bool TreeBuilder::addLeaf(decltype(JsonValue::content) content) {
   const TextPlace place = cursor_.takeToken();
-  return add({place, std::move(content)}) != nullptr;
+  add({place, std::move(content)});
+  return true;
 }
 
 bool TreeBuilder::open(decltype(JsonValue::content) content) {
   const TextPlace place = cursor_.takeToken();
   JsonValue* value = add({place, std::move(content)});
-  if (value == nullptr) return false;
   if (levels_.size() == kMaxLevels) {
     faults_.add(place, "", fmt::format("brackets nest deeper than {0} levels; at most {0} are allowed", kMaxLevels));
     return false;
@@ -100,6 +95,10 @@ bool TreeBuilder::close() {
 bool TreeBuilder::key(string_t& key) {
   const TextPlace place = cursor_.takeToken();
   auto& object = std::get<JsonValue::Object>(levels_.back().value->content);
+  if (object.size() == kMaxKeys) {
+    faults_.add(place, "", fmt::format("an object of more than {} keys", kMaxKeys));
+    return false;
+  }
   object.push_back({key, place, {}});
   const auto [first, isNew] = levels_.back().keys.emplace(key, place);
   if (!isNew && faults_.isFull()) return false;  // a text of millions
@@ -155,33 +154,85 @@ std::size_t endOfPiece(const std::string& text, std::size_t start) {
   return std::min(end + 1, text.size());
 }
 
-/// Where a number, or what stands in its place, goes on for more characters than are allowed. The parser reads numbers
-/// with all their digits.
-std::optional<std::size_t> endOfLongToken(const std::string& text) {
-  std::size_t count = 0;
-  for (std::size_t start = 0, end = 0; start < text.size(); start = end) {
-    end = endOfPiece(text, start);
-    count = end == start + 1 && std::isalnum(static_cast<unsigned char>(text[start])) != 0 ? count + 1 : 0;
-    if (count > kMaxToken) return start;
-  }
-  return {};
+/// Whether the comment from `start` to `end` has its own end, not that of the text.
+bool isClosedComment(const std::string& text, std::size_t start, std::size_t end) {
+  return text[start + 1] != '*' || (end >= start + 4 && text.compare(end - 2, 2, "*/") == 0);
 }
 
-/// `text` with spaces in place of its comments and of other blanks between tokens; all else keeps its place. The parser
+/// What can be told of a text in one pass, before the parser makes a tree of it: what is too much for that, and the
+/// text with spaces in place of its comments and of other blanks between tokens; all else keeps its place. The parser
 /// copies what is before a token that it does not know into its message, a line feed as eight characters: of 60 MB of
 /// them for a minute. A comment without an end is cut after its beginning.
-std::string withPlainBlanks(const std::string& text) {
-  std::string plain = text;
-  for (std::size_t start = 0, end = 0; start < text.size(); start = end) {
-    end = endOfPiece(text, start);
-    const bool isComment = text[start] == '/' && end > start + 1;
-    const bool isOpen = isComment && text[start + 1] == '*' && (end < start + 4 || text.compare(end - 2, 2, "*/") != 0);
-    if (isOpen) return plain.substr(0, start + 2);
-    if (isComment || text[start] == '\n' || text[start] == '\r' || text[start] == '\t')
-      std::fill(plain.begin() + static_cast<std::ptrdiff_t>(start), plain.begin() + static_cast<std::ptrdiff_t>(end),
-                ' ');
+class TextSurvey {
+ public:
+  explicit TextSurvey(const std::string& text) : plain(text), text_(text) {
+    for (std::size_t start = 0; start < text.size() && !excess;) start = pass(start);
   }
-  return plain;
+
+  std::string plain;
+  struct Excess {
+    std::size_t offset;
+    std::string what;
+  };
+  std::optional<Excess> excess;
+
+ private:
+  std::size_t pass(std::size_t start);
+  void count(std::size_t start, std::size_t end);
+
+  const std::string& text_;
+  std::size_t values_ = 0, word_ = 0;  // word_: characters of the one that goes on
+  char first_ = 0;                     // of all tokens: a text that does not begin with a bracket is no tree
+};
+
+/// Passes what begins at `start`; returns where it ends.
+std::size_t TextSurvey::pass(std::size_t start) {
+  const char byte = text_[start];
+  if (byte == ' ' || byte == '\n' || byte == '\r' || byte == '\t') {
+    word_ = 0;
+    plain[start] = ' ';
+    return start + 1;
+  }
+  const std::size_t end = byte == '"' || byte == '/' ? endOfPiece(text_, start) : start + 1;
+  if (byte != '/' || end == start + 1) {
+    count(start, end);
+    return end;
+  }
+  word_ = 0;
+  if (!isClosedComment(text_, start, end)) {
+    plain.resize(start + 2);
+    return text_.size();
+  }
+  std::fill(plain.begin() + std::ptrdiff_t(start), plain.begin() + std::ptrdiff_t(end), ' ');
+  return end;
+}
+
+/// Values are brackets that open, strings but for keys, and words.
+void TextSurvey::count(std::size_t start, std::size_t end) {
+  const char byte = text_[start];
+  if (first_ == 0) first_ = byte;
+  switch (byte) {
+    case ':':
+      values_ -= values_ > 0;
+      [[fallthrough]];
+    case ',':
+    case ']':
+    case '}':
+      word_ = 0;
+      return;
+    case '"':
+    case '[':
+    case '{':
+      word_ = 0;
+      ++values_;
+      break;
+    default:
+      values_ += word_ == 0;
+      word_ += end - start;
+  }
+  if (word_ > kMaxToken) excess = {start, fmt::format("a word of more than {} characters", kMaxToken)};
+  if (values_ > kMaxValues && (first_ == '{' || first_ == '['))
+    excess = {start, fmt::format("the text has more than {} values", kMaxValues)};
 }
 
 }  // namespace
@@ -189,21 +240,22 @@ std::string withPlainBlanks(const std::string& text) {
 JsonValue readJson(const std::string& text, FaultList& faults) {
   if (text.size() > kLongestText) {
     faults.add({}, "", fmt::format("the text has {} bytes; at most 64 MB are allowed", text.size()));
-    faults.throwIfAny(ErrorKind::scene);
+    faults.throwIfAny();
   }
   // The parser would take a NUL for the end of the text and pass over what follows.
   if (const auto nul = text.find('\0'); nul != text.npos) {
     faults.add(TokenCursor(text).advanceTo(nul), "", "a NUL byte; a scene file is UTF-8 text");
-    faults.throwIfAny(ErrorKind::scene);
+    faults.throwIfAny();
   }
-  if (const auto end = endOfLongToken(text)) {
-    faults.add(TokenCursor(text).advanceTo(*end), "", fmt::format("a word of more than {} characters", kMaxToken));
-    faults.throwIfAny(ErrorKind::scene);
+  const TextSurvey survey(text);
+  if (survey.excess) {
+    faults.add(TokenCursor(text).advanceTo(survey.excess->offset), "", survey.excess->what);
+    faults.throwIfAny();
   }
   TreeBuilder builder(text, faults);
   const bool isRead =
-      nlohmann::json::sax_parse(withPlainBlanks(text), &builder, nlohmann::json::input_format_t::json, true, true);
-  if (!isRead) faults.throwIfAny(ErrorKind::scene);
+      nlohmann::json::sax_parse(survey.plain, &builder, nlohmann::json::input_format_t::json, true, true);
+  if (!isRead) faults.throwIfAny();
   return builder.takeRoot();
 }
 

@@ -64,15 +64,15 @@ ModelSource modelFilesBeside(const std::string& scenePath, const std::string& as
 }
 
 LoadedScene parseScene(const std::string& text, const std::string& path, const ModelSource& models) {
-  FaultList textFaults(path), meshFaults(path);
+  FaultList textFaults(path, ErrorKind::scene), meshFaults(path, ErrorKind::mesh);
   const JsonValue document = readJson(text, textFaults);
   SceneDraft draft = parseText(document, textFaults);
-  textFaults.throwIfAny(ErrorKind::scene);
+  textFaults.throwIfAny();
 
   attachModels(draft, models, textFaults, meshFaults);
   settleLinks(draft, textFaults);
-  textFaults.throwIfAny(ErrorKind::scene);
-  meshFaults.throwIfAny(ErrorKind::mesh);
+  textFaults.throwIfAny();
+  meshFaults.throwIfAny();
 
   collectLinks(draft);
   draft.scene.path = path;

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "scene/given_mass.h"
 #include "scene/parse_pose.h"
@@ -12,6 +14,8 @@ namespace cradle {
 namespace {
 
 constexpr double kMaxBodies = 1e6;
+// Of bodies that are near enough to touch, as plans have them (BroadPhase); and as many as links could take out.
+constexpr double kMaxPairs = 2e6, kMaxLinks = 1e6;
 
 struct Copies {
   std::array<int, 3> count{1, 1, 1};
@@ -42,7 +46,7 @@ void parseMaterialName(ObjectReader& reader, const SceneDraft& scene, BodyDraft&
 
 void parseName(ObjectReader& reader, BodyDraft& draft) {
   const auto field = reader.require("name");
-  const auto name = field ? readText(*field, reader.faults()) : std::nullopt;
+  const auto name = field ? readName(*field, reader.faults()) : std::nullopt;
   if (name && name->empty()) addFault(reader.faults(), *field, "the name is empty; a body needs one");
   draft.body.name = name.value_or("");
 }
@@ -119,6 +123,44 @@ void checkPlaces(const Copies& copies, const BodyDraft& draft, const Field& fiel
   }
 }
 
+/// Of a sphere inside the shape, which is convex; 0 where that is not known yet.
+double innerRadiusOf(const Shape& shape) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return sphere->radius;
+  if (const auto* box = std::get_if<Box>(&shape)) return box->size.minCoeff() / 2;
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return std::min(cylinder->radius, cylinder->length / 2);
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;
+  return 0;
+}
+
+/// How many pairs of copies are nearer to each other than `distance`, counted up to `most` and a row more.
+double pairsNearer(double distance, const Copies& copies, double most) {
+  const auto reach = [&](int axis) {
+    const double steps = copies.spacing[axis] == 0 ? copies.count[axis] : distance / std::abs(copies.spacing[axis]);
+    return static_cast<int>(std::min(steps, copies.count[axis] - 1.0));
+  };
+  const std::array<int, 3> reaches = {reach(0), reach(1), reach(2)};
+  double pairs = 0;  // each twice
+  for (int x = -reaches[0]; x <= reaches[0] && pairs <= 2 * most; ++x)
+    for (int y = -reaches[1]; y <= reaches[1] && pairs <= 2 * most; ++y)
+      for (int z = -reaches[2]; z <= reaches[2]; ++z) {
+        if ((x == 0 && y == 0 && z == 0) || copies.spacing.cwiseProduct(Vec3(x, y, z)).norm() >= distance) continue;
+        pairs += double(copies.count[0] - std::abs(x)) * double(copies.count[1] - std::abs(y)) *
+                 double(copies.count[2] - std::abs(z));
+      }
+  return pairs / 2;
+}
+
+/// What a plan would refuse after it has made all bodies: a line of a scene can ask for a million at one place.
+void requireApart(const Copies& copies, const BodyDraft& draft, const Field& field, const FaultList& faults) {
+  if (draft.body.motion == Motion::fixed || draft.body.collision == CollisionChoice::none) return;
+  if (pairsNearer(2 * innerRadiusOf(draft.body.shape), copies, kMaxPairs + kMaxLinks) <= kMaxPairs + kMaxLinks) return;
+  throw Error(
+      ErrorKind::limit, faults.where(field.place(), field.pointer),
+      fmt::format("more than {} pairs of the copies are in one another; allowed are {} pairs of bodies that are "
+                  "near enough to touch: take fewer copies, or move them apart",
+                  kMaxPairs, kMaxPairs));
+}
+
 void writeOutBodies(ObjectReader& reader, BodyDraft& draft, SceneDraft& scene) {
   FaultList& faults = reader.faults();
   const auto copiesField = reader.find("copies");
@@ -133,6 +175,7 @@ void writeOutBodies(ObjectReader& reader, BodyDraft& draft, SceneDraft& scene) {
              fmt::format("the scene would have {} bodies; at most {} are allowed", total, kMaxBodies));
   } else if (copiesField) {
     checkPlaces(copies, draft, *copiesField, faults);
+    requireApart(copies, draft, *copiesField, faults);
     addCopies(copies, draft, scene, *name, faults);
   } else {
     addBody(draft.body, scene, *name, faults);

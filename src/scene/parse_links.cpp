@@ -115,7 +115,7 @@ LinkDraft parseLink(const Field& field, const LinkKind<Link>& kind, std::size_t 
   LinkDraft draft;
   draft.field = field;
   ObjectReader reader(field, faults);
-  const std::string name = reader.text("name", fmt::format("{}{}", kind.noun, number));
+  const std::string name = reader.name("name", fmt::format("{}{}", kind.noun, number));
   parseEnds(reader, kind.usualAnchorB, scene, draft);
   Link link = kind.parse(reader, draft);
   reader.rejectUnknownKeys();

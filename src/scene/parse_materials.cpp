@@ -100,6 +100,7 @@ void parseNamedMaterials(const Field& field, SceneDraft& draft, FaultList& fault
   for (const JsonMember& member : *members) {
     const Field item{&member.value, pointerTo(field.pointer, member.key)};
     if (member.key.empty()) addFault(faults, item, "the name of the material is empty; it needs one");
+    checkName(item, member.key, faults);
     draft.materialIndex.emplace(member.key, static_cast<int>(draft.scene.materials.size()));
     draft.scene.materials.push_back(parseMaterial(item, member.key, faults));
   }

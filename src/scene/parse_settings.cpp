@@ -93,7 +93,7 @@ void parseSettings(ObjectReader& root, Scene& scene) {
   scene.accuracyWhere = scene.output.where = faults.where(root.field().place(), "");
   parseSchema(root);
   root.require("name");
-  scene.name = root.text("name", "");
+  scene.name = root.name("name", "");
   scene.description = root.text("description", "");
   root.require("duration");
   scene.duration = root.number("duration", kDurations, "s", 1);

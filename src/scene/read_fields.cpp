@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kFarEnd = 1e6;  // of a range: who has got a sign wrong need not know of it
 
+constexpr std::ptrdiff_t kMaxName = 250;  // characters; a million copies have it a million times
+
 constexpr std::size_t kMaxItems = 1'000'000;  // of an array; as many bodies as a scene may have
 
 // "1e9" for 1000000000, "16384" for 16384.
@@ -102,6 +104,21 @@ std::optional<std::string> readText(const Field& field, FaultList& faults) {
   if (const auto* text = std::get_if<std::string>(&field.value->content)) return *text;
   addFault(faults, field, fmt::format("{} is {}; allowed is a string", keyOf(field), described(*field.value)));
   return std::nullopt;
+}
+
+std::optional<std::string> readName(const Field& field, FaultList& faults) {
+  auto name = readText(field, faults);
+  return name && checkName(field, *name, faults) ? name : std::nullopt;
+}
+
+bool checkName(const Field& field, const std::string& name, FaultList& faults) {
+  const auto characters = std::count_if(name.begin(), name.end(), [](char byte) {
+    return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;  // 10xxxxxx continues one
+  });
+  if (characters <= kMaxName) return true;
+  addFault(faults, field,
+           fmt::format("the name {} has {} characters; at most {} are allowed", inQuotes(name), characters, kMaxName));
+  return false;
 }
 
 std::optional<bool> readBoolean(const Field& field, FaultList& faults) {
@@ -217,6 +234,11 @@ std::string ObjectReader::text(const char* key, const std::string& fallback) {
   return found ? readText(*found, faults_).value_or(fallback) : fallback;
 }
 
+std::string ObjectReader::name(const char* key, const std::string& fallback) {
+  const auto found = find(key);
+  return found ? readName(*found, faults_).value_or(fallback) : fallback;
+}
+
 Vec3 ObjectReader::vector(const char* key, const Range& range, const char* unit, const Vec3& fallback) {
   const auto found = find(key);
   return found ? readVector(*found, range, unit, faults_).value_or(fallback) : fallback;
@@ -252,9 +274,12 @@ void ObjectReader::rejectUnknownKeys() {
   if (object_ == nullptr) return;
   for (const JsonMember& member : *object_) {
     if (std::find(known_.begin(), known_.end(), member.key) != known_.end()) continue;
-    const std::string hint = faults_.isFull() ? "" : didYouMean(member.key, known_);
-    faults_.add(member.place, pointerTo(field_.pointer, member.key),
-                fmt::format("unknown key {}; allowed are {}{}", inQuotes(member.key), fmt::join(known_, ", "), hint));
+    if (faults_.isFull())
+      faults_.add({}, "", "");
+    else
+      faults_.add(member.place, pointerTo(field_.pointer, member.key),
+                  fmt::format("unknown key {}; allowed are {}{}", inQuotes(member.key), fmt::join(known_, ", "),
+                              didYouMean(member.key, known_)));
   }
 }
 

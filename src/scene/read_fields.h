@@ -33,6 +33,10 @@ std::string described(const JsonValue& value);
 std::optional<double> readNumber(const Field& field, const Range& range, const char* unit, FaultList& faults);
 std::optional<bool> readBoolean(const Field& field, FaultList& faults);
 std::optional<std::string> readText(const Field& field, FaultList& faults);
+/// A text that is shown wherever its owner is: of at most 250 characters.
+std::optional<std::string> readName(const Field& field, FaultList& faults);
+/// False, and a fault, if a name that stands as a key, at `field`, is longer.
+bool checkName(const Field& field, const std::string& name, FaultList& faults);
 /// Three numbers, each in `range`.
 std::optional<Vec3> readVector(const Field& field, const Range& range, const char* unit, FaultList& faults);
 /// Three numbers, not all zero, scaled to length 1.
@@ -59,6 +63,7 @@ class ObjectReader {
   int integer(const char* key, int least, int most, int fallback);
   bool boolean(const char* key, bool fallback);
   std::string text(const char* key, const std::string& fallback);
+  std::string name(const char* key, const std::string& fallback);
   Vec3 vector(const char* key, const Range& range, const char* unit, const Vec3& fallback);
   Vec3 direction(const char* key, const Vec3& fallback);
   std::optional<Vec3f> color(const char* key);

@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace cradle;
   acceptOrRefuse([&] {
     const std::string text = textOf(data, size);
-    FaultList faults("text.json");
+    FaultList faults("text.json", ErrorKind::scene);
     const JsonValue document = readJson(text, faults);
     std::uint32_t lines = 1;
     for (const char byte : text) lines += byte == '\n' || byte == '\r';

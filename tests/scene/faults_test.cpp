@@ -17,6 +17,7 @@ void PrintTo(const SceneCase& sceneCase, std::ostream* out) {
 
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
 
 std::vector<SceneCase> casesThatAre(bool valid) {
@@ -81,6 +82,12 @@ TEST(Faults, QuotationsAreCutAndHarmless) {
   EXPECT_EQ(message.find('\x1b'), std::string::npos);
   EXPECT_EQ(message.find('\n'), std::string::npos);
   EXPECT_LT(message.size(), 1000U);
+}
+
+TEST(Faults, EndTheReadingAtAThousand) {
+  std::string zeros = "0";
+  for (int i = 1; i < 2000; ++i) zeros += ",0";
+  EXPECT_THAT(errorOf(sceneWith("\"bodies\": [" + zeros + "]")).what(), EndsWith("and at least 950 more"));
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(Json, EveryBeginningOfASceneIsAnError) {
 }
 
 TEST(Json, ValuesKnowTheirPlaces) {
-  FaultList faults("f");
+  FaultList faults("f", ErrorKind::scene);
   const JsonValue root = readJson(
       "\xEF\xBB\xBF{\"\xC3\xA4\\\"\": /* , */ [1,// :\n \"\xE2\x82\xAC\", true,null,-2e3,{}]\r\n, \"b\": {}}", faults);
   EXPECT_EQ(faults.count(), 0U);
@@ -93,7 +93,7 @@ TEST(Json, ValuesKnowTheirPlaces) {
 
 TEST(Json, NestsAtMost64Levels) {
   const auto nested = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
-  FaultList faults("f");
+  FaultList faults("f", ErrorKind::scene);
   EXPECT_NO_THROW(readJson(nested(64), faults));
   EXPECT_THROW(readJson(nested(65), faults), Error);
   EXPECT_THAT(errorOf(std::string(100000, '[')).what(),
@@ -114,7 +114,7 @@ TEST(Json, ArraysHaveAtMostAMillionElements) {
 }
 
 TEST(Json, NumbersHaveAnEnd) {
-  const std::string digits(1'000'000, '1');
+  const std::string digits(999'998, '1');
   EXPECT_THAT(errorOf("{\"a\": 0." + digits + "1}").what(), HasSubstr("a word of more than 1000000 characters"));
   EXPECT_THAT(errorOf("{\"a\": 0." + digits + "}").what(), Not(HasSubstr("a word of more")));
 }
@@ -125,13 +125,32 @@ TEST(Json, CommentsAndBlanksArePassedOver) {
   EXPECT_THAT(errorOf("{\"a\": " + comment + " x").what(), HasSubstr("200002:2 /a: this is no JSON"));
   EXPECT_THAT(errorOf("{\"a\": " + blanks + " x").what(), HasSubstr("200001:2 /a: this is no JSON"));
   EXPECT_THAT(errorOf("{\"a\": /*/" + blanks).what(), HasSubstr("1:7 /a: a comment has no end"));
-  FaultList faults("f");
+  FaultList faults("f", ErrorKind::scene);
   const JsonValue text = readJson("[\"/* // \\\" \\t/*\"]", faults);
   EXPECT_EQ(std::get<std::string>(std::get<JsonValue::Array>(text.content)[0].content), "/* // \" \t/*");
 }
 
 TEST(Json, DuplicateKeysAreFoundAtAnyDepth) {
   EXPECT_THAT(errorOf("{\"a\": [{\"b\": {}, \"b\": 1}]}").what(), HasSubstr("1:18 /a/0/b: duplicate key \"b\""));
+}
+
+TEST(Json, ObjectsHaveAtMostTenThousandKeys) {
+  std::string keys;
+  for (int i = 0; i < 10'001; ++i) keys += (i == 0 ? "\"k" : ", \"k") + std::to_string(i) + "\": 0";
+  EXPECT_THAT(errorOf("{" + keys + "}").what(), HasSubstr("an object of more than 10000 keys"));
+}
+
+TEST(Json, HasAtMostFourMillionValues) {
+  const auto repeated = [](const std::string& text, int count) {
+    std::string all;
+    for (int i = 0; i < count; ++i) all += text;
+    return all;
+  };
+  const std::string most = "[" + repeated("0,", 3'999'997) + "{\"key\": ";  // the last value is yet to come
+  EXPECT_THAT(errorOf(most + "}]").what(), Not(HasSubstr("values")));
+  EXPECT_THAT(errorOf(most + "0, \"k\": \"v\"}]").what(), HasSubstr("more than 4000000 values"));
+  EXPECT_THAT(errorOf("[" + repeated("[],", 4'000'000) + "[]]").what(), HasSubstr("1:11999999: the text has more"));
+  EXPECT_THAT(errorOf("a," + repeated("0,", 4'000'000)).what(), HasSubstr("no JSON"));
 }
 
 }  // namespace
