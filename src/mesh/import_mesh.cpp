@@ -19,6 +19,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <string_view>
 
 #include "core/error.h"
 #include "core/output_path.h"
@@ -36,12 +37,13 @@ using Affine = Eigen::Affine3d;
 
 // What importers need, with room to spare: larger files among assimp's test models take up to 31 bytes a byte and 0.07
 // s a MB.
-constexpr std::uint64_t kMemoryPerByte = 100;
+constexpr std::uint64_t kMemoryPerByte = 48;
 constexpr std::uint64_t kMemoryForAnyFile = 256 << 20;  // bytes
 constexpr std::uint64_t kMaxMemory = 8ULL << 30;        // bytes
 constexpr std::uint64_t kBytesPerSecond = 1 << 20;
 constexpr std::uint64_t kSecondsForAnyFile = 3;       // s, of computing
 constexpr std::uint64_t kLargestFiles = 256'000'000;  // bytes, a mesh file and those it names together
+constexpr std::size_t kMaxParts = 100'000;            // of an obj file
 constexpr std::size_t kLongestReason = 300;           // bytes of an importer's words
 
 /// The file itself, and those below its folder.
@@ -118,6 +120,21 @@ std::string reasonOf(std::string words) {
   return words;
 }
 
+/// The importer takes some 2 kB for each part of an obj file, which takes four bytes there.
+void requireFewParts(const std::string& bytes, const std::string& path) {
+  std::size_t parts = 0;
+  for (std::size_t line = 0; line != bytes.npos && line < bytes.size();) {
+    const std::string_view rest = std::string_view(bytes).substr(line);
+    parts += rest.starts_with("g ") || rest.starts_with("o ") || rest.starts_with("usemtl ");
+    line = bytes.find('\n', line);
+    if (line != bytes.npos) ++line;
+  }
+  if (parts > kMaxParts)
+    throw Error(ErrorKind::mesh, path,
+                fmt::format("has {} objects, groups and changes of material; at most {} are allowed; join them", parts,
+                            kMaxParts));
+}
+
 void importFile(const std::string& path, ImportedFile& file) {
   file.path = path;
   auto* files = new MeshFiles(path);  // the importer deletes it
@@ -126,6 +143,7 @@ void importFile(const std::string& path, ImportedFile& file) {
   const bool looksLike3ds = bytes.starts_with("MM") && !file.importer.IsExtensionSupported(lowerExtension(path));
   const bool isNamed3ds = lowerExtension(path) == ".3ds" || lowerExtension(path) == ".prj";
   if (isNamed3ds || looksLike3ds) file.summary = check3ds(bytes, path);
+  if (lowerExtension(path) == ".obj") requireFewParts(bytes, path);
   file.scene = file.importer.ReadFile(path, aiProcess_Triangulate);
   if (!files->outside().empty())
     throw Error(ErrorKind::mesh, path,
@@ -256,7 +274,7 @@ std::array<unsigned, 3> cornersOf(const ImportedFile& file, const Placement& pla
   return {indices[0], indices[1], indices[2]};
 }
 
-MeshPiece readPiece(const ImportedFile& file, const Placement& placement, double scale) {
+MeshPiece readPiece(const ImportedFile& file, const Placement& placement) {
   const aiMesh& mesh = *placement.mesh;
   const Mat3 turnNormal = normalTransform(placement.fileFromMesh.linear());
   MeshPiece piece;
@@ -271,7 +289,7 @@ MeshPiece readPiece(const ImportedFile& file, const Placement& placement, double
     const std::array<unsigned, 3> vertices = cornersOf(file, placement, face);
     std::array<Vec3, 3> corners;
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      corners[corner] = scale * (placement.fileFromMesh * toVec3(mesh.mVertices[vertices[corner]]));
+      corners[corner] = placement.fileFromMesh * toVec3(mesh.mVertices[vertices[corner]]);
       if (!corners[corner].allFinite())
         throw Error(
             ErrorKind::mesh, file.path,
@@ -292,7 +310,7 @@ MeshPiece readPiece(const ImportedFile& file, const Placement& placement, double
 
 }  // namespace
 
-std::vector<ImportedObject> parseObjects(const std::string& path, double scale) {
+std::vector<ImportedObject> parseObjects(const std::string& path) {
   ImportedFile file;
   importFile(path, file);
   std::vector<Placement> placements;
@@ -300,23 +318,22 @@ std::vector<ImportedObject> parseObjects(const std::string& path, double scale) 
   placeForgottenMeshes(file, placements);
 
   std::vector<ImportedObject> objects;  // pieces of one name are one
+  std::map<std::string, std::size_t> numberOf;
   for (const Placement& placement : placements) {
-    const auto isNamed = [&](const ImportedObject& object) { return object.name == placement.object; };
-    auto object = std::find_if(objects.begin(), objects.end(), isNamed);
-    if (object == objects.end()) object = objects.insert(objects.end(), {placement.object, {}});
-    object->pieces.push_back(readPiece(file, placement, scale));
+    const auto [named, isNew] = numberOf.emplace(placement.object, objects.size());
+    if (isNew) objects.push_back({placement.object, {}});
+    objects[named->second].pieces.push_back(readPiece(file, placement));
   }
   return objects;
 }
 
-std::vector<ImportedObject> importObjects(const std::string& path, double scale) {
-  CRADLE_CHECK(scale > 0);
+std::vector<ImportedObject> importObjects(const std::string& path) {
   requireRegularFile(path, ErrorKind::mesh);
   std::error_code failed;
   const std::uint64_t size = fs::file_size(path, failed);
   const ChildLimits limits{kMemoryForAnyFile, kMaxMemory,
                            kSecondsForAnyFile + (failed ? 0 : std::min(size, kLargestFiles) / kBytesPerSecond)};
-  const auto answer = answerOfChild([&] { return bytesOf(parseObjects(path, scale)); }, limits);
+  const auto answer = answerOfChild([&] { return bytesOf(parseObjects(path)); }, limits);
   if (!answer.failure.empty())
     throw Error(
         ErrorKind::mesh, path,

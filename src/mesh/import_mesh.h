@@ -13,12 +13,12 @@ struct ImportedObject {
   std::vector<MeshPiece> pieces;
 };
 
-/// The objects of a mesh file, in the order in which they first appear; see loadObjects. A child process parses the
-/// file, with limits of memory and time: what comes back are triangles. Files that it names in turn are read only below
-/// its folder. Throws Error(mesh).
-std::vector<ImportedObject> importObjects(const std::string& path, double scale);
+/// The objects of a mesh file in its own units, in the order in which they first appear; see loadObjects. A child
+/// process parses the file, with limits of memory and time: what comes back are triangles. Files that it names in turn
+/// are read only below its folder. Throws Error(mesh).
+std::vector<ImportedObject> importObjects(const std::string& path);
 
 /// What the child does, in the process that calls: a damaged file may crash it, or fill its memory. Throws Error(mesh).
-std::vector<ImportedObject> parseObjects(const std::string& path, double scale);
+std::vector<ImportedObject> parseObjects(const std::string& path);
 
 }  // namespace cradle

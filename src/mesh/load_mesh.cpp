@@ -2,17 +2,28 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/resource.h>
 
 #include <filesystem>
+#include <optional>
 
 #include "core/error.h"
+#include "core/output_path.h"
 #include "mesh/assemble_model.h"
 #include "mesh/import_mesh.h"
+#include "mesh/mesh_library.h"
 #include "mesh/solid.h"
 #include "mesh/turn_parts.h"
 
 namespace cradle {
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostKept = 256 << 20;  // bytes, of triangles: those of more files are parsed for each model
+constexpr double kSecondsForAnyFiles = 10;    // s: three files that take as long as they may
+constexpr double kSecondsForFile = 0.3;       // s, of one of many: to begin a child process takes a tenth of that
+constexpr double kSecondsPerByte = 1.0 / (1 << 20);  // s, as for each file
 
 std::vector<std::string> namesOf(const std::vector<LoadedModel>& objects) {
   std::vector<std::string> names;
@@ -20,11 +31,26 @@ std::vector<std::string> namesOf(const std::vector<LoadedModel>& objects) {
   return names;
 }
 
+/// In metres. Finite numbers of the file may be too large for that.
+void scaleBy(double scale, const std::string& path, std::vector<ImportedObject>& objects) {
+  CRADLE_CHECK(scale > 0);
+  for (ImportedObject& object : objects)
+    for (MeshPiece& piece : object.pieces)
+      for (Vec3& corner : piece.corners) {
+        corner *= scale;
+        if (!corner.allFinite())
+          throw Error(ErrorKind::mesh, path,
+                      fmt::format("a vertex of \"{}\" is not finite at scale {}", object.name, scale));
+      }
+}
+
 /// The objects of a file as they are wound there.
-std::vector<LoadedModel> readObjects(const std::string& path, double scale, ModelParts parts) {
+std::vector<LoadedModel> assembleObjects(const std::string& path, std::vector<ImportedObject> imported, double scale,
+                                         ModelParts parts) {
+  scaleBy(scale, path, imported);
   std::vector<LoadedModel> objects;
-  for (ImportedObject& imported : importObjects(path, scale)) {
-    LoadedModel loaded = assembleModel(imported.name, std::move(imported.pieces), parts);
+  for (ImportedObject& object : imported) {
+    LoadedModel loaded = assembleModel(object.name, std::move(object.pieces), parts);
     if (!loaded.model.solid.triangles.empty()) objects.push_back(std::move(loaded));
   }
   if (objects.empty())
@@ -44,18 +70,12 @@ LoadedModel joinOutwards(const std::string& name, std::vector<LoadedModel> objec
   return joinModels(name, objects);
 }
 
-}  // namespace
-
-std::vector<LoadedModel> loadObjects(const std::string& path, double scale, ModelParts parts) {
-  std::vector<LoadedModel> objects = readObjects(path, scale, parts);
-  for (LoadedModel& object : objects) turnPartsOutwards(object);
-  return objects;
-}
-
-LoadedModel loadModel(const MeshReference& reference) {
-  std::vector<LoadedModel> objects = readObjects(reference.path, reference.scale, ModelParts::solidAndDrawn);
+/// The object that `reference` names, or all as one.
+LoadedModel chosenModel(const MeshReference& reference, std::vector<ImportedObject> imported) {
+  std::vector<LoadedModel> objects =
+      assembleObjects(reference.path, std::move(imported), reference.scale, ModelParts::solidAndDrawn);
   if (reference.object.empty() && objects.size() > 1)
-    return joinOutwards(std::filesystem::path(reference.path).stem().string(), std::move(objects));
+    return joinOutwards(fs::path(reference.path).stem().string(), std::move(objects));
   if (reference.object.empty()) {
     turnPartsOutwards(objects.front());
     return std::move(objects.front());
@@ -67,6 +87,91 @@ LoadedModel loadModel(const MeshReference& reference) {
     }
   throw Error(ErrorKind::mesh, reference.path,
               fmt::format("has no object \"{}\"; it has {}", reference.object, fmt::join(namesOf(objects), ", ")));
+}
+
+std::size_t sizeOf(const std::vector<ImportedObject>& objects) {
+  std::size_t bytes = 0;
+  for (const ImportedObject& object : objects)
+    for (const MeshPiece& piece : object.pieces)
+      bytes += piece.corners.size() * sizeof(Vec3) + piece.normals.size() * sizeof(Vec3f) + sizeof(MeshPiece);
+  return bytes;
+}
+
+/// Of computing, by child processes that have ended.
+double secondsOfChildren() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// One for all ways to write a path; the name stays, because objects without one have it.
+std::string keyOf(const std::string& path) {
+  std::error_code ignored;  // of a folder that is not there
+  return (fs::weakly_canonical(parentOf(path), ignored) / fs::path(path).filename()).string();
+}
+
+}  // namespace
+
+std::vector<LoadedModel> loadObjects(const std::string& path, double scale, ModelParts parts) {
+  std::vector<LoadedModel> objects = assembleObjects(path, importObjects(path), scale, parts);
+  for (LoadedModel& object : objects) turnPartsOutwards(object);
+  return objects;
+}
+
+LoadedModel loadModel(const MeshReference& reference) {
+  return chosenModel(reference, importObjects(reference.path));
+}
+
+struct MeshLibrary::File {
+  std::vector<ImportedObject> objects;  // empty if they are not kept
+  std::optional<Error> fault;
+};
+
+MeshLibrary::MeshLibrary() : secondsAllowed_(kSecondsForAnyFiles) {}
+MeshLibrary::~MeshLibrary() = default;
+
+LoadedModel MeshLibrary::load(const MeshReference& reference) {
+  std::unique_ptr<File>& file = files_[keyOf(reference.path)];
+  if (file && file->fault) throw *file->fault;
+  if (file && !file->objects.empty()) return chosenModel(reference, file->objects);
+  if (!file) {
+    file = std::make_unique<File>();
+    std::error_code failed;
+    const std::uint64_t size = fs::file_size(reference.path, failed);
+    secondsAllowed_ += kSecondsForFile + (failed ? 0 : kSecondsPerByte * static_cast<double>(size));
+  }
+  try {
+    std::vector<ImportedObject> objects = parse(reference.path);
+    const std::size_t size = sizeOf(objects);
+    if (kept_ + size > kMostKept) return chosenModel(reference, std::move(objects));
+    kept_ += size;
+    file->objects = std::move(objects);
+  } catch (const Error& error) {
+    file->fault = error;
+    throw;
+  }
+  return chosenModel(reference, file->objects);
+}
+
+std::vector<ImportedObject> MeshLibrary::parse(const std::string& path) {
+  if (secondsUsed_ > secondsAllowed_)
+    throw Error(ErrorKind::mesh, path,
+                fmt::format("is not read: the mesh files before it took {:.0f} s, and {:.0f} s are allowed for all of "
+                            "them; simplify them",
+                            secondsUsed_, secondsAllowed_));
+  const double before = secondsOfChildren();
+  const auto note = [&] { secondsUsed_ += secondsOfChildren() - before; };
+  try {
+    std::vector<ImportedObject> objects = importObjects(path);
+    note();
+    return objects;
+  } catch (...) {
+    note();
+    throw;
+  }
 }
 
 }  // namespace cradle

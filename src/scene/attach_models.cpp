@@ -22,6 +22,7 @@ struct ModelFacts {
   std::string problems;                   // why not
   std::optional<MassProperties> uniform;  // at density 1, if it is a solid
   bool isRecognised = false;              // its shape, once somebody asked
+  std::string hullFault;                  // why it has no hull, once somebody asked
   double size = 0;                        // m, radius of a sphere around it
 };
 
@@ -91,15 +92,17 @@ bool canMove(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults)
 }
 
 /// The hull of a mesh that has one.
-void findHull(const BodyDraft& draft, const TriangleMesh& solid, ModelCollision& collision, FaultList& faults) {
-  if (collision.hull) return;
+void findHull(const BodyDraft& draft, const TriangleMesh& solid, ModelFacts& facts, ModelCollision& collision,
+              FaultList& faults) {
   try {
-    collision.hull = convexHullOf(solid.vertices);
+    if (!collision.hull && facts.hullFault.empty()) collision.hull = convexHullOf(solid.vertices);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::mesh) throw;
-    addFault(faults, draft.collision ? *draft.collision : *draft.meshField,
-             fmt::format("{}; give the body \"collision\": \"none\", or a mesh that is not flat", error.what()));
+    facts.hullFault = error.what();
   }
+  if (!facts.hullFault.empty())
+    addFault(faults, draft.collision ? *draft.collision : *draft.meshField,
+             fmt::format("{}; give the body \"collision\": \"none\", or a mesh that is not flat", facts.hullFault));
 }
 
 // sphere and box are promises about the mesh that it must keep.
@@ -118,13 +121,13 @@ void settleCollision(const BodyDraft& draft, ModelFacts& facts, Scene& scene, Fa
   if (choice == CollisionChoice::none) return;
   const TriangleMesh& solid = scene.models[static_cast<std::size_t>(facts.index)].solid;
   ModelCollision& collision = scene.modelCollisions[static_cast<std::size_t>(facts.index)];
-  if (choice == CollisionChoice::hull) return findHull(draft, solid, collision, faults);
+  if (choice == CollisionChoice::hull) return findHull(draft, solid, facts, collision, faults);
   if (facts.isSolid && !facts.isRecognised) collision.recognised = recogniseShape(solid);
   facts.isRecognised = true;
   if (choice == CollisionChoice::sphere || choice == CollisionChoice::box)
     checkPromise(draft, facts.isClosed, collision.recognised, faults);
   const bool takesPrimitive = collision.recognised.primitive && choice != CollisionChoice::mesh;
-  if (collision.recognised.isConvex && !takesPrimitive) findHull(draft, solid, collision, faults);
+  if (collision.recognised.isConvex && !takesPrimitive) findHull(draft, solid, facts, collision, faults);
 }
 
 MassProperties massOf(const BodyDraft& draft, const ModelFacts& facts, SceneDraft& scene, FaultList& faults) {

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <memory>
 
 #include "core/read_file.h"
+#include "mesh/mesh_library.h"
 #include "scene/attach_models.h"
 #include "scene/json_document.h"
 #include "scene/parse_bodies.h"
@@ -54,12 +56,12 @@ ModelSource modelFilesBeside(const std::string& scenePath, const std::string& as
   const fs::path root = assetRoot.empty() ? fs::path() : fs::canonical(assetRoot, failed);
   if (!assetRoot.empty() && !fs::is_directory(root, failed))
     throw Error(ErrorKind::usage, assetRoot, "is no folder; name one that the meshes are in");
-  return [folder, root](const MeshReference& reference) {
+  return [folder, root, library = std::make_shared<MeshLibrary>()](const MeshReference& reference) {
     const std::string path = (folder / reference.path).string();
     if (!root.empty() && !isBelow(path, root))
       throw Error(ErrorKind::mesh, path,
                   fmt::format("is not below {}, and no other meshes are allowed here", root.string()));
-    return loadModel({path, reference.object, reference.scale});
+    return library->load({path, reference.object, reference.scale});
   };
 }
 

@@ -30,6 +30,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace cradle;
   static const ScratchFile file("mesh.3ds");
   file.write(textOf(data, size));
-  acceptOrRefuse([] { check(parseObjects(file.path(), 1)); });
+  acceptOrRefuse([] { check(parseObjects(file.path())); });
   return 0;
 }

@@ -20,6 +20,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }();
   const ScratchFile& file = *files[data[0] % kFormats.size()];
   file.write(textOf(data + 1, size - 1));
-  acceptOrRefuse([&] { checkObjects(importObjects(file.path(), 1)); });
+  acceptOrRefuse([&] { checkObjects(importObjects(file.path())); });
   return 0;
 }

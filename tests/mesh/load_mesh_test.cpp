@@ -1,5 +1,6 @@
 #include "mesh/load_mesh.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
@@ -7,6 +8,7 @@
 #include <filesystem>
 
 #include "mesh/mass_properties.h"
+#include "mesh/mesh_library.h"
 #include "mesh/solid.h"
 #include "sample_meshes.h"
 #include "test_files.h"
@@ -323,6 +325,33 @@ TEST(LoadMesh, CountsThatTheFileCannotHoldDoNotTakeTheMachinesMemory) {
   rusage usage{};
   getrusage(RUSAGE_CHILDREN, &usage);
   EXPECT_LT(usage.ru_maxrss, 5L << 18) << "KiB at most in use";  // the limit is a GiB
+}
+
+TEST(MeshLibrary, ParsesAFileOnceForAllScalesAndObjects) {
+  const std::string path = writeFile("l.obj", objText(lPrismMesh(), "l"));
+  MeshLibrary library;
+  const Model once = library.load({path, "", 1}).model;
+  std::filesystem::remove(path);  // what is read again is missed
+  const std::string detour = std::filesystem::path(path).parent_path() / "." / std::filesystem::path(path).filename();
+  const Model twice = library.load({detour, "l", 0.1}).model;
+  ASSERT_EQ(twice.solid.vertices.size(), once.solid.vertices.size());
+  for (std::size_t i = 0; i < once.solid.vertices.size(); ++i)
+    EXPECT_EQ(twice.solid.vertices[i], 0.1 * once.solid.vertices[i]);
+}
+
+TEST(MeshLibrary, DoesNotTryAgainWhatCannotBeRead) {
+  const std::string path = writeFile("l.obj", "nothing");
+  MeshLibrary library;
+  EXPECT_THROW(library.load({path, "", 1}), Error);
+  writeFile("l.obj", objText(lPrismMesh(), "l"));
+  EXPECT_THROW(library.load({path, "", 2}), Error);
+}
+
+TEST(LoadMesh, ObjFilesOfTooManyPartsAreRefusedBeforeTheyTakeMemory) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i <= 100'000; ++i) text += fmt::format("{} {}\n", i % 2 == 0 ? "g" : "usemtl", i);
+  EXPECT_THAT(loadingError({writeFile("parts.obj", text + "f 1 2 3\n"), "", 1}),
+              HasSubstr("100001 objects, groups and changes of material; at most 100000"));
 }
 
 }  // namespace
