@@ -180,7 +180,7 @@ for row in (
     ("NaN", header('"gravity": [0, @NaN, 0]'), "/gravity/0", '"NaN"', "finite"),
     ("-Infinity", header('"gravity": [0, @-Infinity, 0]'), "/gravity/0", '"-Infinity"', "finite"),
     ("1e999", header('"gravity": [0, @1e999, 0]'), "/gravity/0", '"1e999"', "1.8e308"),
-    ("million digits", header('"gravity": [0, @-%s, 0]' % ("9" * 1_000_000)), "/gravity/0", '"-999', "1.8e308"),
+    ("million digits", header('"gravity": [0, @-%s, 0]' % ("9" * 999_999)), "/gravity/0", '"-999', "1.8e308"),
     ("hexadecimal number", header('"gravity": [0, @0x10, 0]'), "/gravity/1", "no JSON", '"0x10"'),
     ("octal number", header('"gravity": [0, @01, 0]'), "/gravity/1", "no JSON", '"01"'),
     ("number that starts with a point", header('"gravity": [0, @.5, 0]'), "/gravity/0", "no JSON", ".5"),
@@ -191,9 +191,16 @@ for row in (
     ("a hundred thousand brackets", "[" * 64 + "@" + "[" * 100_000, "", "deeper than 64 levels"),
     ("a million objects in one another", '{"a":' * 64 + "@" + '{"a":' * 1_000_000, "", "deeper than 64 levels"),
     ("key of a megabyte", header('@"%s": 1' % ("k" * 1_000_000)), "/%s..." % ("k" * 199), "unknown key", "allowed are schema"),
-    ("a million keys that are none", header(", ".join('"k%d": 1' % i for i in range(1_000_000))), "", "unknown key", "and 999950 more", 51),
+    ("a million keys of one object", header(", ".join('"k%d": 1' % i for i in range(1_000_000))), "", "an object of more than 10000 keys"),
     ("two million values for three", header('"gravity": @[%s0]' % ("0," * 1_999_999)), "/gravity", "2000000 elements", "3 elements"),
     ("more bodies than a million", body('"copies": @{"count": [1000, 1000, 2]}'), "/bodies/0/copies", "2000000", "1000000"),
+    ("nine thousand keys that are none", header(", ".join('"k%d": 1' % i for i in range(9_000))), "", "unknown key", "and at least 950 more", 51),
+    ("a million bodies that are none", scene('"bodies": [%s0]' % ("0," * 999_999)), "", "bodies[0] is the number 0", "and at least 950 more", 51),
+    ("twenty million arrays", b"[" + b"[]," * 20_000_000 + b"[]]", "", "more than 4000000 values"),
+    ("four million keys in many objects", b'{"bodies": [' + b",".join([b"{%s}" % b",".join(b'"%x":0' % i for i in range(9_000))] * 440) + b"]}", "", "unknown key", "and at least 950 more", 51),
+    ("bodies with names of a megabyte", scene('"bodies": [%s]' % ", ".join('{"name": "%s%d", "shape": {"sphere": {}}}' % ("n" * 1_000_000, i) for i in range(20))), "", "at most 250 are allowed", 20),
+    ("a million copies with a long name", scene('"bodies": [{"name": @"%s", "shape": {"sphere": {}}, "copies": {"count": [100, 100, 100]}}]' % ("n" * 10_000)), "/bodies/0/name", "10000 characters", "at most 250"),
+    ("material with a long name", header('"materials": {"%s": @{}}' % ("m" * 300)), "/materials/%s..." % ("m" * 189), "300 characters", "at most 250"),
     ("faults by the hundred", body(", ".join('"k%d": 1' % i for i in range(100))), "", "and 50 more", 51),
     # Keys and references
     ("unknown key", header('@"gravty": [0, 0, 0]'), "/gravty", 'unknown key "gravty"', "allowed are", 'did you mean "gravity"?'),
@@ -810,6 +817,8 @@ for size in ("0x0", "99999x1", "32x-1"):
 
 # What is too much
 
+add("limit", "a million copies at one place", {"s.json": body('"copies": {"count": [1000, 1000, 1], "spacing": [0, 0, 0]}')}, "check s.json", 8,
+    r"s\.json:1:\d+ /bodies/0/copies: ", "2000000 pairs", "in one another", "move them apart")
 for command in ("plan s.json", "simulate s.json -o old.sqlite"):
     add("limit", "thousands of bodies in one another, " + command,
         {"s.json": body('"copies": {"count": [15, 15, 15], "spacing": [0.1, 0.1, 0.1]}')}, command, 8, "", "2000000 pairs", "in one another")
@@ -873,6 +882,8 @@ for row in (
     ("study with a folder for a chart", {"s/work_precision_good.png/x": ""}, "study good.json -o s --methods rk4",
      r"s/work_precision_good\.png: ", "is a folder"),
     ("map with a folder for a chart", {"s/logistic.png/x": ""}, "stability -o s --maps logistic", r"s/logistic\.png: ", "is a folder"),
+    ("study with a chart of too long a name", {LONG[:235] + ".json": json.dumps(good_scene())}, "study %s.json -o new --methods rk4" % LONG[:235],
+     "new/work_precision_a+", "at most 242"),
     ("maps among other things", {}, "stability -o others --maps logistic", "others: ", "holds thesis.txt", "new or empty folder"),
     ("frames that are there", {}, "render good.sqlite -o frames", "frames: ", "holds 3 of the frames", "--overwrite"),
     ("frames of a longer film", {"f/frame_000099.png": ""}, "render good.sqlite -o f --overwrite", "f: ", "frame_000099.png", "another film", "7 frames"),

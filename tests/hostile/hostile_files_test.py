@@ -450,5 +450,39 @@ class Places(HostileTest):
             self.assertEqual(self.run_cradle("compare", name, name).code, 0, name)
 
 
+    def test_large_pictures_are_compared_in_little_memory(self):
+        part = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        header, rows = struct.pack(">2I5B", 16384, 16384, 1, 0, 0, 0, 0), bytes(2049 * 16384)  # black and white
+        for name, last in (("a", b""), ("b", b"\x01")):
+            pixels = zlib.compress(rows[:len(rows) - len(last)] + last, 1)
+            self.write("%s/0.png" % name, b"\x89PNG\r\n\x1a\n" + part(b"IHDR", header) + part(b"IDAT", pixels) + part(b"IEND", b""))
+        for names, code, words in ((("a/0.png", "a/0.png"), 0, "the same"), (("a", "b"), 0, "1 of 268435456 pixels differ, by 255 at most")):
+            ended = self.run_cradle("compare", *map(self.path, names))
+            self.assertEqual(ended.code, code, ended.error)
+            self.assertIn(words, ended.out)
+            self.assertLess(ended.memory, 1 << 28)
+
+    def test_a_limit_on_address_space_is_told_before_mesa_crashes(self):
+        path = self.trajectory()
+        for megabytes in (400, 500, 600):
+            for output in ("frames", "x.mp4"):
+                ended = running.Ended("/bin/sh", ("-c", 'ulimit -v %d; exec "$0" "$@"' % (1024 * megabytes), PROGRAM, "render" if output == "frames" else
+                                                  "video", path, "-q", "-o", self.path(output)), self.folder)
+                self.assertEqual(ended.code, 8, ended.error)
+                self.assertIn("ulimit -v", ended.error)
+                self.assertFalse(os.path.exists(self.path(output)) or os.path.exists(self.path(output + ".part")))
+
+    def test_what_goes_wrong_is_told_in_a_message_that_can_be_read(self):
+        path = self.write("a.json", with_mesh("m" * 1_000_000))
+        self.assertLess(len(self.refuses(4, ["mmm"], "check", path).error), 20_000)
+
+    def test_warnings_are_told_up_to_fifty(self):
+        bodies = [{"name": "b%d" % i, "shape": {"sphere": {}}, "motion": "static", "mass": 1} for i in range(1000)]
+        ended = self.run_cradle("check", self.write("a.json", scene(*bodies)))
+        self.assertEqual(ended.code, 0, ended.error)
+        self.assertEqual(len(ended.error.splitlines()), 51)
+        self.assertIn("and 950 more warnings", ended.error)
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1], verbosity=1)
