@@ -154,6 +154,7 @@ double pairsNearer(double distance, const Copies& copies, double most) {
 void requireApart(const Copies& copies, const BodyDraft& draft, const Field& field, const FaultList& faults) {
   if (draft.body.motion == Motion::fixed || draft.body.collision == CollisionChoice::none) return;
   if (pairsNearer(2 * innerRadiusOf(draft.body.shape), copies, kMaxPairs + kMaxLinks) <= kMaxPairs + kMaxLinks) return;
+  faults.throwIfAny();
   throw Error(
       ErrorKind::limit, faults.where(field.place(), field.pointer),
       fmt::format("more than {} pairs of the copies are in one another; allowed are {} pairs of bodies that are "

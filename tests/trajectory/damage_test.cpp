@@ -192,18 +192,9 @@ std::string asStored(const std::string& table, const std::string& sql) {
          table + "'";
 }
 
-TEST_F(DamagedTrajectory, WithATableThatIsAModuleOrAViewIsRefused) {
+TEST_F(DamagedTrajectory, WithATableThatIsAModuleIsRefused) {
   expectRefused(asStored("event", "CREATE VIRTUAL TABLE event USING rtree(id, a, b)"), "no such module: rtree");
   expectRefused(asStored("event", "CREATE VIRTUAL TABLE event USING json_each"), "computes");
-  expectRefused(asStored("event", "CREATE VIEW event AS SELECT * FROM frame"), "prohibited");
-}
-
-// A view of two views of two views ...: 2^40 of them would be put together before the first row.
-TEST_F(DamagedTrajectory, WithViewsOfViewsIsRefusedBeforeItTakesLong) {
-  std::string sql = "CREATE VIEW v0 AS SELECT 1 AS time; ";
-  for (int i = 1; i < 40; ++i)
-    sql += fmt::format("CREATE VIEW v{0} AS SELECT a.time FROM v{1} AS a, v{1} AS b; ", i, i - 1);
-  expectRefused(sql + asStored("event", "CREATE VIEW event AS SELECT * FROM v39"), "prohibited");
 }
 
 // SQLite would parse all of them before its first query.
