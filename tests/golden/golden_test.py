@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 """Pictures and states of the scenes, compared with those that were looked at and accepted.
 
-    golden_test.py PROGRAM REDRAW_CHECK SOURCE_FOLDER [--accept]
+    golden_test.py PROGRAM REDRAW_CHECK SOURCE_FOLDER RUNS [--accept]
 
-What changes from a frame to the next is drawn with the same bytes as all of it. Pictures pass by the rule of `cradle compare`; states to 1e-9, of 1 + their size. When a change means to change them:
+RUNS: folder of runs of all scenes, made before by scene_runs.py. What changes from a frame to the next is drawn with the
+same bytes as all of it, and `cradle render` draws the same bytes. Pictures pass by the rule of `cradle compare`; states to
+1e-9, of 1 + their size. When a change means to change them:
 draw the old and the new picture (`cradle render SCENE -o FOLDER --frames N:M --size 320x180`), look at both at full size,
 and only then run with --accept, which writes tests/golden/SCENE/ anew; commit it with the reason.
 """
 import csv, os, shutil, subprocess, sys, tempfile, unittest
 
-PROGRAM, REDRAW_CHECK, SOURCE = [os.path.abspath(path) for path in sys.argv[1:4]]
+PROGRAM, REDRAW_CHECK, SOURCE, RUNS = [os.path.abspath(path) for path in sys.argv[1:5]]
 ACCEPT = "--accept" in sys.argv
 GOLDEN = os.path.join(SOURCE, "tests", "golden")
 FRAMES = {  # scene: frames that are drawn; states are kept for these too
@@ -63,8 +65,7 @@ def cradle(*arguments):
 
 def make(scene, folder):
     """Pictures and states.csv of a scene's golden frames."""
-    trajectory, table = os.path.join(folder, "run.sqlite"), os.path.join(folder, "run.csv")
-    cradle("simulate", os.path.join(SOURCE, "scenes", scene + ".json"), "-o", trajectory)
+    trajectory, table = os.path.join(RUNS, scene + ".sqlite"), os.path.join(folder, "run.csv")
     cradle("export", trajectory, "-o", table)
     with open(table) as source, open(os.path.join(folder, "states.csv"), "w", newline="") as target:
         rows = csv.DictReader(source)
@@ -72,24 +73,37 @@ def make(scene, folder):
         writer.writeheader()
         writer.writerows(row for row in rows if int(row["frame"]) in FRAMES[scene])
     os.remove(table)
-    for frame in FRAMES[scene]:
-        cradle("render", trajectory, "-o", os.path.join(folder, "pictures"), "--frames", f"{frame}:{frame + 1}", "--size", "320x180")
-    redraw = subprocess.run([REDRAW_CHECK, trajectory, *map(str, FRAMES[scene])], capture_output=True, text=True)
+    pictures = os.path.join(folder, "pictures")
+    os.mkdir(pictures)
+    redraw = subprocess.run([REDRAW_CHECK, trajectory, pictures, *map(str, FRAMES[scene])], capture_output=True, text=True)
     if redraw.returncode:
         raise AssertionError(f"{scene}: {redraw.stdout}{redraw.stderr}")
-    os.remove(trajectory)
+
+
+def content(path):
+    with open(path, "rb") as file:
+        return file.read()
 
 
 class Golden(unittest.TestCase):
     def check(self, scene):
         with tempfile.TemporaryDirectory() as folder:
             make(scene, folder)
+            self.require_same_by_command(scene, folder)
             expected = os.path.join(GOLDEN, scene)
             if ACCEPT:
                 shutil.rmtree(expected, ignore_errors=True)
                 shutil.copytree(folder, expected)
             self.compare_states(os.path.join(expected, "states.csv"), os.path.join(folder, "states.csv"))
             cradle("compare", os.path.join(expected, "pictures"), os.path.join(folder, "pictures"))
+
+    def require_same_by_command(self, scene, folder):
+        frame = FRAMES[scene][-1]
+        with tempfile.TemporaryDirectory() as again:
+            cradle("render", os.path.join(RUNS, scene + ".sqlite"), "-o", again, "--frames", f"{frame}:{frame + 1}", "--size", "320x180")
+            self.assertEqual(os.listdir(again), [f"frame_{frame:06}.png"])
+            for name in os.listdir(again):
+                self.assertEqual(content(os.path.join(again, name)), content(os.path.join(folder, "pictures", name)), name)
 
     def compare_states(self, expected, actual):
         with open(expected) as a, open(actual) as b:

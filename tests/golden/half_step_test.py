@@ -2,16 +2,17 @@
 """Every scene must look the same at half its time step, or at a hundredth of its accuracy where the program chooses the
 steps: what a film shows is the motion, not the step.
 
-    half_step_test.py PROGRAM SOURCE_FOLDER
+    half_step_test.py PROGRAM SOURCE_FOLDER RUNS
 
-A body may be displaced by 2 % of the extent over which the scene's bodies move, and turned by 0.15 rad: less than the eye
-sees when one picture follows the other. Scenes are made so that errors stay unseen while
-they last: those that are chaotic ask for more accuracy. Heaps ask for no more than a look (accuracy 1e-3): no motion is
-promised there, and none is compared.
+RUNS: folder of runs of all scenes, made before by scene_runs.py. A body may be displaced by 2 % of the extent over which
+the scene's bodies move, and turned by 0.15 rad: less than the eye sees when one picture follows the other. Scenes are made
+so that errors stay unseen while they last: those that are chaotic ask for more accuracy. Heaps ask for no more than a look
+(accuracy 1e-3): no motion is promised there, and none is compared.
 """
 import json, os, re, sqlite3, subprocess, sys, tempfile, unittest
 
-PROGRAM, SCENES = os.path.abspath(sys.argv[1]), os.path.join(os.path.abspath(sys.argv[2]), "scenes")
+PROGRAM, SOURCE, RUNS = [os.path.abspath(path) for path in sys.argv[1:4]]
+SCENES = os.path.join(SOURCE, "scenes")
 DISPLACED, TURNED = 0.02, 0.15  # of the extent; rad
 DEFAULT_ACCURACY = 1e-6
 VISUAL = ("visual", 1e-3)
@@ -21,15 +22,19 @@ def without_comments(text):
     return re.sub(r"^\s*//.*$", "", text, flags=re.M)
 
 
-def states(scene, *overrides):
+def states_in(trajectory):
     """Frames of a run: {(frame, body): (px, py, pz, qw, qx, qy, qz)}."""
+    rows = sqlite3.connect(trajectory).execute("select frame, body, px, py, pz, qw, qx, qy, qz from state")
+    return {row[:2]: row[2:] for row in rows}
+
+
+def states_of(scene, *overrides):
     with tempfile.TemporaryDirectory() as folder:
         trajectory = os.path.join(folder, "run.sqlite")
         run = subprocess.run([PROGRAM, "simulate", scene, "-o", trajectory, "--quiet", *overrides], capture_output=True, text=True)
         if run.returncode:
             raise AssertionError(f"{scene} {overrides}: exit {run.returncode}\n{run.stderr}")
-        rows = sqlite3.connect(trajectory).execute("select frame, body, px, py, pz, qw, qx, qy, qz from state")
-        return {row[:2]: row[2:] for row in rows}
+        return states_in(trajectory)
 
 
 def finer(scene):
@@ -47,8 +52,8 @@ class HalfStep(unittest.TestCase):
     def check(self, scene):
         with open(scene) as file:
             arguments = finer(json.loads(without_comments(file.read())))
-        whole = states(scene)
-        half = states(scene, *arguments)
+        whole = states_in(os.path.join(RUNS, os.path.basename(scene)[:-len(".json")] + ".sqlite"))
+        half = states_of(scene, *arguments)
         self.assertEqual(whole.keys(), half.keys())
         size = max(extent(whole), 0.1)  # m: a body that turns on the spot is about so large
         for key, pose in whole.items():

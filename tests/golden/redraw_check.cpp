@@ -1,12 +1,16 @@
-// redraw_check TRAJECTORY FRAME...: draws four frames from each FRAME on, once as changes of the picture before, once
-// whole. Exit 1, and a line for each, if a picture's bytes differ; else one line with the share that was drawn.
+// redraw_check TRAJECTORY FOLDER FRAME...: draws four frames from each FRAME on, once as changes of the picture before,
+// once whole. Exit 1, and a line for each, if a picture's bytes differ; else one line with the share that was drawn.
+// The whole picture of each FRAME is written to FOLDER/frame_000000.png, ..., as `cradle render` names them: one
+// process draws all of a scene's pictures in a third of the time of a process for each.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 
 #include "commands/film_view.h"
+#include "image/png.h"
 #include "render/renderer.h"
 
 namespace cradle {
@@ -21,7 +25,7 @@ long differingPixels(const Image& a, const Image& b) {
   return count;
 }
 
-bool check(const std::string& trajectory, const std::vector<long>& frames) {
+bool check(const std::string& trajectory, const std::filesystem::path& folder, const std::vector<long>& frames) {
   TrajectorySource source(trajectory, true);
   const TrajectoryReader& reader = source.reader();
   const View view = viewOf(source, kWidth, kHeight);
@@ -35,7 +39,9 @@ bool check(const std::string& trajectory, const std::vector<long>& frames) {
       const Frame frame = reader.readFrame(number);
       const Image changed = changing.render(frame, camera.at(frame));
       whole.forgetPicture();
-      const long different = differingPixels(changed, whole.render(frame, camera.at(frame)));
+      const Image picture = whole.render(frame, camera.at(frame));
+      if (number == first) writePng(picture, (folder / fmt::format("frame_{:06}.png", number)).string());
+      const long different = differingPixels(changed, picture);
       if (different > 0) fmt::print("{}, frame {}: {} pixels differ\n", trajectory, number, different);
       same = same && different == 0;
       if (number > first) share += changing.drawnShare(), ++pictures;
@@ -49,6 +55,6 @@ bool check(const std::string& trajectory, const std::vector<long>& frames) {
 
 int main(int count, char** arguments) {
   std::vector<long> frames;
-  for (int i = 2; i < count; ++i) frames.push_back(std::atol(arguments[i]));
-  return cradle::check(arguments[1], frames) ? 0 : 1;
+  for (int i = 3; i < count; ++i) frames.push_back(std::atol(arguments[i]));
+  return cradle::check(arguments[1], arguments[2], frames) ? 0 : 1;
 }
