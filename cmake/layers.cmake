@@ -1,14 +1,17 @@
-# cradle_layer(NAME [UNITY CONDITION] [LAYERS ...] [LIBRARIES ...]): the folder src/NAME as a static library. LAYERS are
-# the folders that it may include (tests/layering_test holds the same table against the includes themselves).
+# cradle_layer(NAME [UNITY CONDITION] [APART ...] [LAYERS ...] [LIBRARIES ...]): the folder src/NAME as a static library.
+# LAYERS are the folders that it may include (tests/layering_test holds the same table against the includes themselves).
 # UNITY, if true: eight files are compiled as one, in half to two thirds of the time, since code from headers is made
-# once: names in the folder's files differ.
+# once: names in the folder's files differ. APART: files that are compiled alone, since others use their names.
 function(cradle_layer NAME)
-  cmake_parse_arguments(ARG "" "UNITY" "LAYERS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "UNITY" "APART;LAYERS;LIBRARIES" ${ARGN})
   file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${NAME}/*.cpp)
   list(FILTER SOURCES EXCLUDE REGEX "/contexts/")  # of these a program has one: cmake/contexts.cmake
   list(TRANSFORM ARG_LAYERS PREPEND cradle_)
   add_library(cradle_${NAME} STATIC ${SOURCES})
   set_target_properties(cradle_${NAME} PROPERTIES UNITY_BUILD "${ARG_UNITY}")
+  foreach(SOURCE ${ARG_APART})
+    set_source_files_properties(${PROJECT_SOURCE_DIR}/src/${NAME}/${SOURCE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endforeach()
   if(NOT NAME STREQUAL core AND NOT NAME STREQUAL image)  # those do not use Eigen
     target_link_libraries(cradle_${NAME} PUBLIC cradle_headers)
     target_precompile_headers(cradle_${NAME} REUSE_FROM cradle_headers)
