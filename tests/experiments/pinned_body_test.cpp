@@ -29,7 +29,7 @@ std::string orientationText(const Quat& q) {
   return fmt::format(R"({{"w": {}, "x": {}, "y": {}, "z": {}}})", q.w(), q.x(), q.y(), q.z());
 }
 
-std::string materialText(double restitution, double friction) {
+std::string materialsText(double restitution, double friction) {
   return fmt::format(R"("materials": {{"m": {{"restitution": {0}, "staticFriction": {1}, "dynamicFriction": {1}}}}})",
                      restitution, friction);
 }
@@ -52,7 +52,7 @@ struct Flap {
         R"("duration": 2, "accuracy": {}, "output": {{"framesPerSecond": 100}}, {}, "bodies": [{}, {{"name": "flap",
         "shape": {{"box": {{"size": [1, {}, 0.5]}}}}, "material": "m", "position": {}, "orientation": {}}}],
         "hinges": [{{"bodyA": "flap", "anchorA": {}, "anchorB": [0, {}, 0]}}])",
-        accuracy, materialText(0, friction), ground, kThickness, vectorText(Vec3(0, gap, 0) - open * edge()),
+        accuracy, materialsText(0, friction), ground, kThickness, vectorText(Vec3(0, gap, 0) - open * edge()),
         orientationText(open), vectorText(edge()), gap)));
   }
 };
@@ -120,7 +120,7 @@ TEST(PinnedBody, PendulumAtAWallBouncesWithItsRestitution) {
           {{"name": "p", "shape": {{"capsule": {{"radius": 0.05, "length": 1}}}}, "mass": 2, "centerOfMass": [0, 0, 0],
           "inertiaTensor": [[{}, 0, 0], [0, 0.02, 0], [0, 0, {}]], "position": {}, "orientation": {},
           "material": "m"}}], "hinges": [{{"bodyA": "p", "anchorA": [0, 0.5, 0], "anchorB": [0, 0, 0]}}])",
-          accuracy, materialText(kRestitution, 0), -0.05 - gap, kMass / 12, kMass / 12,
+          accuracy, materialsText(kRestitution, 0), -0.05 - gap, kMass / 12, kMass / 12,
           vectorText(open * Vec3(0, -0.5, 0)), orientationText(open))));
       const std::vector<Event> impacts = eventsOf(run, EventKind::impact);
       ASSERT_EQ(impacts.size(), 4u) << gap << " " << accuracy;
@@ -153,7 +153,7 @@ Trajectory pinnedOnSlope(const std::string& slope, const std::string& shape, con
       {}, "orientation": {}, "motion": "static", "material": "m"}}, {{"name": "b", "shape": {},
       "material": "m", "position": {}, "orientation": {}}}],
       "ballJoints": [{{"bodyA": "b", "anchorA": {}, "anchorB": [0, 0, 0]}}])",
-      accuracy, materialText(restitution, 0.5), slope, orientationText(kTilt), shape,
+      accuracy, materialsText(restitution, 0.5), slope, orientationText(kTilt), shape,
       vectorText(-(orientation * touching)), orientationText(orientation), vectorText(touching))));
 }
 
@@ -233,7 +233,7 @@ TEST(PinnedBody, FlapHingedALittleInsideItsEdgeIsPromised) {
       simulate(sceneWith(fmt::format(R"("duration": {}, "accuracy": {}, {}, "bodies": [{}, {{"name": "flap", "shape":
                {{"box": {{"size": {}}}}}, "material": "m", "position": {}, "orientation": {}}}], "hinges": [{{"bodyA":
                "flap", "anchorA": {}, "anchorB": [0, {}, 0]}}])",
-                                     3 * std::sqrt(size), accuracy, materialText(0, 0.5), kPlane, vectorText(2 * half),
+                                     3 * std::sqrt(size), accuracy, materialsText(0, 0.5), kPlane, vectorText(2 * half),
                                      vectorText(Vec3(0, height, 0) - open * hinge), orientationText(open),
                                      vectorText(hinge), height)),
                {[&](const Frame& frame) { frames.push_back(frame); }, [](const Event&) {},
@@ -259,7 +259,7 @@ TEST(PinnedBody, BallPinnedAHairOffThePlaneIsNotPromised) {
       simulate(sceneWith(fmt::format(R"("duration": 0.1, "accuracy": {}, {}, "bodies": [{}, {{"name": "b", "mass": {},
                "shape": {{"sphere": {{"radius": {}}}}}, "material": "m", "position": [0, {}, 0], "orientation": {},
                "angularVelocity": [1, 0, 0.5]}}], "ballJoints": [{{"bodyA": "b", "anchorA": {}, "anchorB": [0, {}, 0]}}])",
-                                     accuracy, materialText(0.8, 0), kPlane, kMass, kRadius, kRadius + gap * kRadius,
+                                     accuracy, materialsText(0.8, 0), kPlane, kMass, kRadius, kRadius + gap * kRadius,
                                      orientationText(turn), vectorText(turn.conjugate() * Vec3(0, -kRadius, 0)),
                                      gap * kRadius)),
                {[&](const Frame& frame) { frames.push_back(frame); }, [](const Event&) {},
@@ -313,7 +313,7 @@ TEST(PinnedBody, RollsNeitherAlongAnEdgeNorOnWhatIsRound) {
             R"("duration": 0.2, "accuracy": {}, {}, "bodies": [{{"name": "ground", {}, "motion": "static",
             "material": "m"}}, {{"name": "b", "shape": {}, "material": "m", "position": {}, "orientation": {}}}],
             "ballJoints": [{{"bodyA": "b", "anchorA": {}, "anchorB": [0, 0, 0]}}])",
-            accuracy, materialText(0.5, 0.3), ground, body.shape, vectorText(-(body.orientation * body.touching)),
+            accuracy, materialsText(0.5, 0.3), ground, body.shape, vectorText(-(body.orientation * body.touching)),
             orientationText(body.orientation), vectorText(body.touching)));
         const Trajectory run = simulate(scene);
         const Assembly assembly = assemble(scene, touchingScene(scene));
@@ -336,7 +336,7 @@ TEST(PinnedBody, LidLandsOnTheBoxThatItIsHingedTo) {
         "shape": {{"box": {{"size": [0.5, 0.3, 0.4]}}}}, "material": "m", "position": [0.25, 0.15, 0]}}, {{"name": "lid",
         "shape": {{"box": {{"size": [0.5, 0.02, 0.4]}}}}, "material": "m", "position": {}, "orientation": {}}}],
         "hinges": [{{"bodyA": "lid", "anchorA": {}, "bodyB": "box", "anchorB": [-0.25, 0.15, 0], "collide": true}}])",
-        accuracy, materialText(0, 0.5), kPlane, vectorText(Vec3(0, 0.3, 0) - open * edge), orientationText(open),
+        accuracy, materialsText(0, 0.5), kPlane, vectorText(Vec3(0, 0.3, 0) - open * edge), orientationText(open),
         vectorText(edge))));
     const BodyState box = run.frames.back().states[0], lid = run.frames.back().states[1];
     const Vec3 onBox = box.orientation.conjugate() * (lid.position - box.position);
@@ -355,7 +355,7 @@ TEST(SlidingLadder, TouchesWallAndFloorInEveryFrame) {
         R"("duration": 0.3, "accuracy": {}, "output": {{"framesPerSecond": 480}}, {}, "bodies": [{}, {{"name": "wall",
         "shape": {{"plane": {{"normal": [1, 0, 0]}}}}, "motion": "static", "material": "m"}}, {{"name": "ladder",
         "shape": {{"capsule": {{"radius": 0.02, "length": 1}}}}, "material": "m", "position": {}, "orientation": {}}}])",
-        accuracy, materialText(0, 0), kPlane,
+        accuracy, materialsText(0, 0), kPlane,
         vectorText(Vec3(0.02 + 0.5 * std::sin(0.4), 0.02 + 0.5 * std::cos(0.4), 0)), orientationText(lean))));
     ASSERT_TRUE(eventsOf(run, EventKind::release).empty());
     for (const Frame& frame : run.frames) {
@@ -382,7 +382,7 @@ Scene boxOnTiltedBlock(double accuracy, const Vec3& velocity, double gap) {
       "orientation": {{"w": 0.9492816770537533, "x": 0, "y": 0.31442693524889626, "z": 0}}}}],
     "ballJoints": [{{"bodyA": "box", "anchorA": [-0.040070499377514474, -0.09866659500272192, -0.02335698858364489],
                     "anchorB": {}}}])",
-                               accuracy, materialText(1, 0.5), orientationText(block),
+                               accuracy, materialsText(1, 0.5), orientationText(block),
                                vectorText(up + Vec3(-0.017658609625094454, 0.16498944544293126, -0.09919352045416473)),
                                vectorText(velocity),
                                vectorText(up + Vec3(-0.06374920066848871, 0.06632285044020934, -0.09401170095417342))));
