@@ -1,0 +1,38 @@
+#include "simulate/plan/disjoint_sets.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "dynamics/rigid_body.h"
+
+namespace cradle {
+namespace {
+
+TEST(DisjointSets, AreNamedByTheFirstBodyThatIsReachedOverJoins) {
+  constexpr std::size_t kBodies = 40;
+  std::mt19937 random(2);
+  for (int trial = 0; trial < 20; ++trial) {
+    DisjointSets sets(kBodies);
+    // The oracle has the label of each body, and gives all of one set the smaller of two labels.
+    std::vector<int> labels;
+    for (std::size_t body = 0; body < kBodies; ++body) labels.push_back(static_cast<int>(body));
+    for (int i = 0; i < 45; ++i) {
+      const std::size_t a = random() % kBodies, b = random() % kBodies;
+      sets.join(static_cast<int>(a), static_cast<int>(b));
+      const int least = std::min(labels[a], labels[b]), most = std::max(labels[a], labels[b]);
+      std::replace(labels.begin(), labels.end(), most, least);
+      for (std::size_t body = 0; body < kBodies; ++body)
+        ASSERT_EQ(sets.islandOf(static_cast<int>(body)), labels[body]) << trial << " " << i;
+    }
+  }
+}
+
+TEST(DisjointSets, AreNotJoinedByWhatIsFixed) {
+  DisjointSets sets(3);
+  for (const int body : {2, 0, 1}) sets.join(body, kFixed), sets.join(kFixed, body);
+  for (const int body : {0, 1, 2}) EXPECT_EQ(sets.islandOf(body), body);
+}
+
+}  // namespace
+}  // namespace cradle
