@@ -249,6 +249,23 @@ TEST(ImpactSequence, CollapsesWhereARoundOfImpactsHasRealEigenvalues) {
   }
 }
 
+// A ball of 1 kg between a wall and one of 100^n kg without loss: as many impacts as the first digits of pi (G.
+// Galperin, "Playing pool with pi", 2003). They crowd, and have an end all the same.
+TEST(ImpactSequence, HasAsManyImpactsAsPiAndDoesNotTakeThemForACollapse) {
+  for (const auto& [mass, digits] : {std::pair(1e4, 314), std::pair(1e6, 3141)}) {
+    Row row({kInfinite, 1, mass}, {0, 0, -1}, {1e-5, 1e-5});
+    ImpactSequence sequence = row.sequence();
+    int impacts = 0;
+    while (impacts < 4000 && sequence.next(row.state())) {
+      ++impacts;
+      ASSERT_FALSE(sequence.isCollapse()) << impacts;
+      for (const std::size_t contact : sequence.members()) row.strike(contact, 1);
+      sequence.finishImpact(row.state());
+    }
+    EXPECT_EQ(impacts, digits);
+  }
+}
+
 TEST(ImpactSequence, MovesTurningBodiesByTheTimeElapsed) {
   Row row({1, 1}, {2, 1}, {1e-3});
   row.limits().reach = 1;
