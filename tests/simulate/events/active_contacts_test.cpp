@@ -95,6 +95,19 @@ TEST(ActiveContacts, SlideDownwardsAboveTheAngleOfFriction) {
   EXPECT_LT((at.acceleration(0) - expected).norm(), 1e-12);
 }
 
+// A block of 0.4 m that slides forward tips over its front edge if its friction has the longer arm: mu' 0.2 m, against
+// half of its length. The rear corners carry nothing then.
+TEST(ActiveContacts, OfASlidingBlockAreThoseThatItsFrictionLeaves) {
+  for (const double half : {0.0595, 0.0605}) {
+    OnPlane at(fmt::format(R"({{"name": "block", "shape": {{"box": {{"size": [{}, 0.4, 0.6]}}}}, "mass": 3,
+      "position": [0, 0.2, 0], "linearVelocity": [1, 0, 0], "material": "rough"}})",
+                           2 * half));
+    at.classify();
+    EXPECT_THAT(at.contacts(), SizeIs(half < 0.06 ? 2 : 4)) << half;
+    EXPECT_THAT(at.contacts(), Each(isOf(ContactMotion::sliding)));
+  }
+}
+
 // What slides across the slope keeps its direction, whatever pulls it downwards.
 TEST(ActiveContacts, SlideAlongTheirVelocity) {
   OnPlane at(std::string(kBox) + R"(, "linearVelocity": [-0.6, 0, 0.8]})", slopeOf(0.2));
