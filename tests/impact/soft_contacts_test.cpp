@@ -141,9 +141,9 @@ TEST(SoftContacts, MissNoPairThatMayTouch) {
   Touched bodies;
   std::vector<Vec3> centers;
   for (std::size_t i = 0; i < 60; ++i) {
-    centers.push_back(Vec3(place(random), place(random), place(random)));
+    centers.push_back(Vec3{place(random), place(random), place(random)});
     bodies.add(colliderOf(Sphere{0.08}, {}), centers.back(), Quat::Identity(),
-               Vec3(speed(random), speed(random), speed(random)));
+               Vec3{speed(random), speed(random), speed(random)});
     for (std::size_t k = 0; k < i; ++k) bodies.geometry.pairs.push_back({k, i, false, {}});
   }
   std::sort(bodies.geometry.pairs.begin(), bodies.geometry.pairs.end(),

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <random>
 
 #include "dynamics/invariants.h"
 #include "experiments/experiment.h"
@@ -164,6 +165,40 @@ TEST(HardSpheres, MoveAsAllPairsInLongDoubleDo) {
   const double energy = energyConstant(mechanism, start);
   EXPECT_NEAR(energyConstant(mechanism, state), energy, 1e-14 * energy);
   EXPECT_NEAR(mechanicalEnergy(mechanism, state), energy, 1e-14 * energy);  // and it loses none
+}
+
+// A thin gas of 100 spheres, which are in cells: each meets what comes into the cells around it.
+TEST(HardSpheres, OfAGasMeetAllThatTheyFlyTo) {
+  constexpr double kDuration = 1;  // s
+  Billiard gas;
+  gas.gravity.setZero();
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> speed(-3, 3);
+  std::string bodies;
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 position(0.3 * (i % 5), 0.3 * (i / 5 % 5) + 0.03 * (i % 3), 0.3 * (i / 25) + 0.02 * (i % 7));
+    const Vec3 velocity{speed(random), speed(random), speed(random)};
+    const double radius = 0.05 + 0.01 * (i % 4), mass = 1 + 0.5 * (i % 3);
+    bodies += (i > 0 ? ", " : "") + hardBall(fmt::format("b{}", i), radius, mass, position, velocity);
+    gas.balls.push_back({position.cast<Wide>(), velocity.cast<Wide>(), radius, mass});
+  }
+  Flying flying(bodies, 2, R"(, "gravity": [0, 0, 0])");
+  Billiard other = gas;
+  for (std::size_t i = 0; i < 100; ++i) other.balls[i].position[static_cast<Eigen::Index>(i % 3)] += 1e-9;
+  gas.run(kDuration), other.run(kDuration);
+  ASSERT_GT(gas.collisions.size(), 20u);
+  double growth = 1;
+  for (std::size_t i = 0; i < 100; ++i)
+    growth = std::max(growth, static_cast<double>((other.balls[i].position - gas.balls[i].position).norm()) / 1e-9);
+  ASSERT_LT(growth, 1e6);
+  const VectorX state = flying.spheres.stateAt(kDuration);
+  EXPECT_THAT(flying.spheres.takeEvents(), SizeIs(gas.collisions.size()));
+  // Each collision adds a rounding of a place below 8 m, which grows.
+  const double tolerance = 1e-15 * static_cast<double>(gas.collisions.size()) * growth;
+  for (Eigen::Index i = 0; i < 100; ++i)
+    EXPECT_LT((centerOfMass(state, i) - gas.balls[static_cast<std::size_t>(i)].position.cast<double>()).norm(),
+              tolerance)
+        << i;
 }
 
 // 1000 bounces of a fall from 1 m: the period is 2 sqrt(2 h / g). Each bounce rounds the place (1e-16 m at 4.4 m/s) and

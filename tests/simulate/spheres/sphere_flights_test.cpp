@@ -31,8 +31,8 @@ SphereWorld crowd() {
   std::uniform_real_distribution<double> place(0, 1.7), speed(-3, 3);
   std::vector<UniformMotion> starts;
   while (starts.size() < 200) {
-    const Vec3 position(place(random), place(random), place(random)),
-        velocity(speed(random), speed(random), speed(random));
+    const Vec3 position{place(random), place(random), place(random)},
+        velocity{speed(random), speed(random), speed(random)};
     bool isFree = true;
     for (const UniformMotion& other : starts) isFree = isFree && (other.position - position).norm() > 0.13;
     if (isFree) starts.push_back({position, velocity, kPull});
