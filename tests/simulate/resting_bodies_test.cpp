@@ -26,7 +26,7 @@ std::string floorAnd(const std::string& bodies, double friction = 0.5, const std
 }
 
 /// A box of 0.4 x 0.2 x 0.6 m with its bottom at height y.
-std::string box(const std::string& name, double x, double y, const std::string& more = "") {
+std::string brick(const std::string& name, double x, double y, const std::string& more = "") {
   return fmt::format(R"({{"name": "{}", "shape": {{"box": {{"size": [0.4, 0.2, 0.6]}}}}, "material": "rough",
     "position": [{}, {}, 0]{}}})",
                      name, x, y + 0.1, more);
@@ -42,7 +42,7 @@ TEST(RestingBodies, StayOnSlopesThatFrictionHolds) {
   for (const double part : {0.99, 1.01})
     for (const int boxes : {1, 4}) {
       std::string bodies;
-      for (int i = 0; i < boxes; ++i) bodies += (i > 0 ? ", " : "") + box(fmt::format("b{}", i), 0, 0.2 * i);
+      for (int i = 0; i < boxes; ++i) bodies += (i > 0 ? ", " : "") + brick(fmt::format("b{}", i), 0, 0.2 * i);
       // A friction of 0.2: the line of gravity through the centre of the stack, 0.4 m high, leaves by 0.08 m of 0.2 m.
       OneIsland at(floorAnd(bodies, 0.2, tilted(std::atan(part * 0.2))));
       EXPECT_EQ(letSleep(at).size(), part < 1 ? static_cast<std::size_t>(boxes) : 0) << part << " " << boxes;
@@ -53,7 +53,7 @@ TEST(RestingBodies, StayOnSlopesThatFrictionHolds) {
 TEST(RestingBodies, StayOnSlopesThatDoNotTipThemOver) {
   for (const double part : {0.99, 1.01}) {
     std::string bodies;
-    for (int i = 0; i < 4; ++i) bodies += (i > 0 ? ", " : "") + box(fmt::format("b{}", i), 0, 0.2 * i);
+    for (int i = 0; i < 4; ++i) bodies += (i > 0 ? ", " : "") + brick(fmt::format("b{}", i), 0, 0.2 * i);
     OneIsland at(floorAnd(bodies, 0.9, tilted(std::atan(part * 0.5))));
     EXPECT_EQ(letSleep(at).size(), part < 1 ? 4u : 0u) << part;
   }
@@ -65,7 +65,7 @@ TEST(RestingBodies, StayWhereTheCentreOfMassIsSupported) {
   for (const double beyond : {-1e-3, 1e-3}) {
     OneIsland at(floorAnd(R"({"name": "table", "shape": {"box": {"size": [2, 1, 2]}}, "motion": "static",
         "material": "rough", "position": [-1, 0.5, 0]}, )" +
-                          box("box", -0.07 + beyond, 1, R"(, "mass": 3, "centerOfMass": [0.07, 0.01, 0.02])")));
+                          brick("box", -0.07 + beyond, 1, R"(, "mass": 3, "centerOfMass": [0.07, 0.01, 0.02])")));
     EXPECT_EQ(letSleep(at).size(), beyond < 0 ? 1u : 0u) << beyond;
   }
 }
@@ -74,7 +74,7 @@ TEST(RestingBodies, StayWhereTheCentreOfMassIsSupported) {
 // size: v^2 + (size w)^2 < 2 g 1e-7 size. It is put to rest without a trace but for the ledger.
 TEST(RestingBodies, AreThoseThatCouldNotLiftThemselves) {
   for (const double part : {0.99, 1.01}) {
-    OneIsland at(floorAnd(box("box", 0, 0, R"(, "mass": 3, "centerOfMass": [0.07, 0.01, 0.02])")));
+    OneIsland at(floorAnd(brick("box", 0, 0, R"(, "mass": 3, "centerOfMass": [0.07, 0.01, 0.02])")));
     const double size = at.island.assembly.radii[0];
     EXPECT_NEAR(size, Vec3(0.27, 0.11, 0.32).norm(), 1e-15);
     const double speed = part * std::sqrt(2 * kGravity * 1e-7 * size);
@@ -99,14 +99,14 @@ TEST(RestingBodies, AreThoseThatCouldNotLiftThemselves) {
 // none.
 TEST(RestingBodies, DoNotSlideWithoutFriction) {
   for (const double part : {0.99, 1.01}) {
-    OneIsland at(floorAnd(box("box", 0, 0), 0));
+    OneIsland at(floorAnd(brick("box", 0, 0), 0));
     linearVelocity(at.state(), 0).x() = part * 1e-7 * std::sqrt(kGravity * at.island.assembly.radii[0]);
     EXPECT_EQ(letSleep(at).size(), part < 1 ? 1u : 0u);
   }
 }
 
 TEST(RestingBodies, ComeToRestWithAllThatTheyTouchOrNotAtAll) {
-  const std::string two = box("lower", 0, 0) + ", " + box("upper", 0.1, 0.2) + ", " + box("other", 2, 0);
+  const std::string two = brick("lower", 0, 0) + ", " + brick("upper", 0.1, 0.2) + ", " + brick("other", 2, 0);
   OneIsland at(floorAnd(two));
   linearVelocity(at.state(), 1) = Vec3(0, 0, 1);
   EXPECT_THAT(letSleep(at), ElementsAre(2));
@@ -121,7 +121,7 @@ TEST(RestingBodies, ComeToRestWithAllThatTheyTouchOrNotAtAll) {
 TEST(RestingBodies, ComeToRestWithAllThatTheyAreTiedTo) {
   for (const char* tie :
        {R"("rods": [{"bodyA": "one", "bodyB": "two"}])", R"("springs": [{"bodyA": "one", "bodyB": "two"}])"}) {
-    OneIsland at(floorAnd(box("one", 0, 0) + ", " + box("two", 1, 0), 0.5, std::string(", ") + tie));
+    OneIsland at(floorAnd(brick("one", 0, 0) + ", " + brick("two", 1, 0), 0.5, std::string(", ") + tie));
     linearVelocity(at.state(), 1) = Vec3(0, 0, 1);
     EXPECT_THAT(letSleep(at), IsEmpty());
     linearVelocity(at.state(), 1).setZero();
@@ -130,7 +130,7 @@ TEST(RestingBodies, ComeToRestWithAllThatTheyAreTiedTo) {
 }
 
 TEST(RestingBodies, WakeWithThoseThatTheyCameToRestWith) {
-  OneIsland at(floorAnd(box("lower", 0, 0) + ", " + box("other", 2, 0) + ", " + box("upper", 0.1, 0.2)));
+  OneIsland at(floorAnd(brick("lower", 0, 0) + ", " + brick("other", 2, 0) + ", " + brick("upper", 0.1, 0.2)));
   RestingBodies& resting = at.island.resting;
   EXPECT_THAT(letSleep(at), ElementsAre(0, 2, 1));
   EXPECT_THAT(resting.wake(3, kFixed), IsEmpty());
@@ -141,7 +141,7 @@ TEST(RestingBodies, WakeWithThoseThatTheyCameToRestWith) {
 }
 
 TEST(RestingBodies, StayAwakeForAWhileOnceTheyWereWoken) {
-  OneIsland at(floorAnd(box("box", 0, 0)));
+  OneIsland at(floorAnd(brick("box", 0, 0)));
   at.island.resting.setStillTime(0.25);
   EXPECT_THAT(letSleep(at, 1), ElementsAre(0));  // never woken: at once
   at.island.resting.wake(2, 0);
@@ -152,7 +152,7 @@ TEST(RestingBodies, StayAwakeForAWhileOnceTheyWereWoken) {
 // Points that hover by less than 1e-6 of the size of the smallest body carry.
 TEST(RestingBodies, AreCarriedByWhatHoversHardly) {
   for (const double part : {0.99, 1.01}) {
-    OneIsland at(floorAnd(box("box", 0, 0) + R"(, {"name": "ball", "shape": {"sphere": {"radius": 0.05}},
+    OneIsland at(floorAnd(brick("box", 0, 0) + R"(, {"name": "ball", "shape": {"sphere": {"radius": 0.05}},
       "position": [3, 3, 3]})"));
     EXPECT_NEAR(at.island.resting.supportMargin(), 5e-8, 1e-20);
     const std::vector<Contact> contacts = at.contactsWithin(kNear);

@@ -27,7 +27,7 @@ std::string ropeOf(const std::string& body, const Vec3& anchorB, double length, 
 
 std::string ballOn(const Vec3& position, const Vec3& velocity, const std::string& rope, double gravity = kGravity) {
   return fmt::format(R"("duration": 9, "gravity": [0, {}, 0], "bodies": [{}], {})", -gravity,
-                     ball("ball", position, velocity), rope);
+                     cradle::ball("ball", position, velocity), rope);
 }
 
 void takeStepOf(IslandState& island, Integrator integrate, double length) {
@@ -75,8 +75,9 @@ TEST(RopeEvents, FindFlightsThatReachTheLengthForAnInstant) {
 
 // Of two ropes the one that becomes taut first.
 TEST(RopeEvents, AreInTheOrderOfTime) {
-  OneIsland at(R"("duration": 9, "gravity": [0, 0, 0], "bodies": [)" + ball("one", Vec3::Zero(), Vec3(1, 0, 0)) + ", " +
-               ball("two", Vec3(0, 5, 0), Vec3(0, 0, 2)) + R"(], "ropes": [
+  OneIsland at(R"("duration": 9, "gravity": [0, 0, 0], "bodies": [)" +
+               cradle::ball("one", Vec3::Zero(), Vec3(1, 0, 0)) + ", " +
+               cradle::ball("two", Vec3(0, 5, 0), Vec3(0, 0, 2)) + R"(], "ropes": [
     {"bodyA": "one", "anchorB": [0, 0, 0], "maxLength": 0.4}, {"bodyA": "two", "anchorB": [0, 5, 0], "maxLength": 0.6}])");
   RopeEvents ropes(at.island);
   takeStepOf(at.island, rk4, 1);

@@ -14,7 +14,7 @@ constexpr double kTolerance = 1e-13;  // of the margins below
 
 /// A ball in free flight, for which RK4 is exact.
 OneIsland flight(const Vec3& position, const Vec3& velocity) {
-  return OneIsland(fmt::format(R"("duration": 9, "bodies": [{})", ball("ball", position, velocity)) + "]");
+  return OneIsland(fmt::format(R"("duration": 9, "bodies": [{})", cradle::ball("ball", position, velocity)) + "]");
 }
 
 double heightOf(const VectorX& state) {
@@ -82,7 +82,7 @@ TEST(EventLocation, IsNotTheStartOfWhatHasJustRebounded) {
 // On a spring RK4 has an error, and its interpolant another one. The event's state is that of a step as long as the
 // event is late, to the bit.
 TEST(EventLocation, HasTheStateOfAStepAndNotOfAnInterpolant) {
-  OneIsland at(R"("duration": 9, "gravity": [0, 0, 0], "bodies": [)" + ball("ball", Vec3(1, 0.2, 0)) +
+  OneIsland at(R"("duration": 9, "gravity": [0, 0, 0], "bodies": [)" + cradle::ball("ball", Vec3(1, 0.2, 0)) +
                R"(], "springs": [{"bodyA": "ball", "anchorB": [0, 0, 0], "stiffness": 40, "restLength": 0}])");
   takeStep(at.island, 0.4);
   const auto margin = [](const VectorX& state) { return state[0]; };

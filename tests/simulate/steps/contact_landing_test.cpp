@@ -14,7 +14,7 @@ namespace {
 
 using testing::SizeIs;
 
-constexpr double kStep = 0.01;  // s
+constexpr double kLandingStep = 0.01;  // s
 
 std::string landing(double restitution, double friction, const std::string& bodies) {
   return fmt::format(R"("duration": 1, "materials": {{"stuff": {{"restitution": {}, "staticFriction": {},
@@ -34,12 +34,12 @@ double landingPart(OneIsland& at, double landingSpeed) {
   VectorX state = at.state();
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
     const Vec3 velocity = linearVelocity(state, body);
-    linearVelocity(state, body) += kStep * at.mechanism().gravity;
-    centerOfMass(state, body) += kStep * (velocity + kStep / 2 * at.mechanism().gravity);
-    turnBody(state, body, kStep * angularVelocity(state, body));
+    linearVelocity(state, body) += kLandingStep * at.mechanism().gravity;
+    centerOfMass(state, body) += kLandingStep * (velocity + kLandingStep / 2 * at.mechanism().gravity);
+    turnBody(state, body, kLandingStep * angularVelocity(state, body));
   }
   ContactStepping stepping(at.island.assembly);
-  return stepping.nextImpact(at.contactsWithin(0.1), at.state(), kStep, state, landingSpeed);
+  return stepping.nextImpact(at.contactsWithin(0.1), at.state(), kLandingStep, state, landingSpeed);
 }
 
 // s = v t + g t^2 / 2
@@ -47,10 +47,10 @@ TEST(ContactLanding, IsWhereAFallComesToTheFloor) {
   for (const double gap : {1e-4, 3e-3, 0.0103, 0.0107}) {
     OneIsland at(landing(0, 0, ballOver("ball", 2, 0.1 + gap, Vec3(0, -1, 0))));
     const double time = (-1 + std::sqrt(1 + 2 * kGravity * gap)) / kGravity;
-    if (gap > 0.01 + kGravity * kStep * kStep / 2)
+    if (gap > 0.01 + kGravity * kLandingStep * kLandingStep / 2)
       EXPECT_EQ(landingPart(at, 0.1), INFINITY);
     else
-      EXPECT_NEAR(landingPart(at, 0.1), time / kStep, 1e-13) << gap;  // gaps are rounded to 1e-16 m
+      EXPECT_NEAR(landingPart(at, 0.1), time / kLandingStep, 1e-13) << gap;  // gaps are rounded to 1e-16 m
   }
 }
 
@@ -79,8 +79,8 @@ TEST(ContactLanding, IsOfTheFarEdgeWhileTheNearOneIsHeld) {
   linearVelocity(at.state(), 0) = Vec3(0, 0, -spin).cross(arm);
   const double inertia = 3 / 12.0 * (0.16 + 0.04) + 3 * 0.05, pull = 3 * kGravity * arm.x() / inertia;
   const double time = (-spin + std::sqrt(spin * spin + 2 * pull * turn)) / pull;
-  ASSERT_LT(time, kStep);
-  EXPECT_NEAR(landingPart(at, 0.01), time / kStep, spin * kStep * time / kStep);
+  ASSERT_LT(time, kLandingStep);
+  EXPECT_NEAR(landingPart(at, 0.01), time / kLandingStep, spin * kLandingStep * time / kLandingStep);
 }
 
 // Newton's restitution at the floor: p = m (1 + e) v. What that took is booked.
@@ -89,7 +89,7 @@ TEST(ContactLanding, StrikesWithNewtonsRestitution) {
     OneIsland at(landing(restitution, 0, ballOver("ball", 2, 0.1, Vec3(0.5, -3, 0))));
     const std::vector<Contact> contacts = at.contactsWithin(1e-6);
     ContactStepping stepping(at.island.assembly);
-    const std::vector<Vec3> impulses = stepping.strike(contacts, kStep, at.state());
+    const std::vector<Vec3> impulses = stepping.strike(contacts, kLandingStep, at.state());
     ASSERT_THAT(impulses, SizeIs(1));
     EXPECT_NEAR(impulses[0].y(), -2 * (1 + restitution) * 3, 1e-13);  // on the floor
     EXPECT_LT((linearVelocity(at.state(), 0) - Vec3(0.5, restitution * 3, 0)).norm(), 1e-14);
@@ -104,7 +104,7 @@ TEST(ContactLanding, StrikesWithCoulombsFriction) {
     OneIsland at(landing(0, friction, ballOver("ball", 2, 0.1, Vec3(0.5, -3, 0))));
     const std::vector<Contact> contacts = at.contactsWithin(1e-6);
     ContactStepping stepping(at.island.assembly);
-    stepping.strike(contacts, kStep, at.state());
+    stepping.strike(contacts, kLandingStep, at.state());
     const double expected = friction > 0.0476 ? 5 / 7.0 * 0.5 : 0.5 - friction / 2 * 3;  // dynamic friction is half
     EXPECT_NEAR(linearVelocity(at.state(), 0).x(), expected, 1e-12);
     EXPECT_NEAR(angularVelocity(at.state(), 0).z(), -(0.5 - expected) / (0.4 * 0.1), 1e-11);
@@ -114,11 +114,11 @@ TEST(ContactLanding, StrikesWithCoulombsFriction) {
 // Closing slower than what accelerations explain does not rebound: e v < 0.01 g h for what touches.
 TEST(ContactLanding, DoesNotReboundFromWhatGravityGivesInAStep) {
   for (const double part : {0.99, 1.01}) {
-    const double speed = part * 0.01 * kGravity * kStep / 0.5;
+    const double speed = part * 0.01 * kGravity * kLandingStep / 0.5;
     OneIsland at(landing(0.5, 0, ballOver("ball", 2, 0.1, Vec3(0, -speed, 0))));
     const std::vector<Contact> contacts = at.contactsWithin(1e-6);
     ContactStepping stepping(at.island.assembly);
-    stepping.strike(contacts, kStep, at.state());
+    stepping.strike(contacts, kLandingStep, at.state());
     EXPECT_NEAR(linearVelocity(at.state(), 0).y(), part < 1 ? 0 : speed / 2, 1e-16);
   }
 }
@@ -130,7 +130,7 @@ TEST(ContactLanding, StrikesAllContactsAtOnce) {
   const std::vector<Contact> contacts = at.contactsWithin(1e-6);
   ASSERT_THAT(contacts, SizeIs(2));
   ContactStepping stepping(at.island.assembly);
-  const std::vector<Vec3> impulses = stepping.strike(contacts, kStep, at.state());
+  const std::vector<Vec3> impulses = stepping.strike(contacts, kLandingStep, at.state());
   EXPECT_NEAR(linearVelocity(at.state(), 0).y(), 0, 1e-14);
   EXPECT_NEAR(linearVelocity(at.state(), 1).y(), 2, 1e-14);
   for (const Vec3& impulse : impulses) EXPECT_NEAR(std::abs(impulse.y()), 6, 1e-13);
