@@ -129,7 +129,7 @@ void meet(std::size_t points, Contacting& pair) {
 TEST(SoftContactSolver, KeepsMomentaAndCountsTheEnergy) {
   for (const double friction : {0.0, 0.5})
     for (const double restitution : {0.0, 0.8})
-      for (const std::size_t points : {1, 3}) {
+      for (const std::size_t points : {1u, 3u}) {
         Contacting pair;
         pair.material = {restitution, friction, friction};
         meet(points, pair);
@@ -218,7 +218,7 @@ TEST(SoftContactSolver, HoldsWhatFrictionCan) {
 TEST(SoftContactSolver, PushesOverlapsApartAsADampedSpring) {
   const double mass = 2, inertia = 0.08, depth = 1e-3;
   const std::vector<Vec3> corners = {{0.1, 0, 0.2}, {-0.1, 0, -0.2}, {-0.1, 0, 0.2}, {0.1, 0, -0.2}};
-  for (const std::size_t points : {1, 2, 4}) {
+  for (const std::size_t points : {1u, 2u, 4u}) {
     Contacting body;
     body.add(mass, inertia * Mat3::Identity(), Vec3(0, 0.1, 0), Vec3::Zero(), Vec3::Zero());
     body.touch(0, kFixed, -Vec3::UnitY(),
