@@ -234,6 +234,26 @@ TEST(RopeEvents, FindWhereInAStepTheTensionEnds) {
   EXPECT_NEAR(ropes.margin(*change, state), 1, 1e-13);
 }
 
+// Two balls rise on ropes: with v0^2 = 2.6 g L the tension ends at the cosine 0.2, earlier than with 3.2 g L.
+TEST(RopeEvents, FindTheFirstOfTensionsThatEnd) {
+  const double length = 0.7;
+  OneIsland at(fmt::format(R"("duration": 9, "bodies": [{}, {}], "ropes": [
+      {{"bodyA": "slow", "anchorB": [0, 0, 0], "maxLength": {}}}, {{"bodyA": "fast", "anchorB": [5, 0, 0],
+       "maxLength": {}}}])",
+                           cradle::ball("slow", Vec3(0, -length, 0), Vec3(1, 0, 0)),
+                           cradle::ball("fast", Vec3(5, -length, 0), Vec3(1, 0, 0)), length, length));
+  RopeEvents ropes(at.island);
+  ASSERT_TRUE(ropes.resolve(0, at.state()));
+  for (const Eigen::Index body : {0, 1}) {
+    centerOfMass(at.state(), body) = Vec3(5.0 * static_cast<double>(body) + length, 0, 0);
+    linearVelocity(at.state(), body) = Vec3(0, std::sqrt((body == 0 ? 0.6 : 1.2) * kGravity * length), 0);
+  }
+  takeStepOf(at.island, dop853, 0.2);
+  const auto change = ropes.firstChange(at.island.step);
+  ASSERT_TRUE(change);
+  EXPECT_EQ(change->rope, 0u);
+}
+
 // Without gravity nothing pulls at a rope that has stopped a ball: it holds by impulses alone, and is no rod.
 TEST(RopeEvents, BecomeRodsOnlyIfSmoothForcesPull) {
   for (const double gravity : kGravities) {

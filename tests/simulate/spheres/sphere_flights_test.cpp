@@ -148,6 +148,16 @@ TEST(SphereFlights, MeetEdgesOfBoxes) {
   EXPECT_NEAR(meeting.time, std::sqrt(2 * (1 - 0.12) / 9.81), 1e-14);
 }
 
+// Spheres that touch and pass each other with 2 m/s: what they close by beside that is rounding below 1e-14 of it.
+TEST(SphereFlights, DoNotMeetWhatTheyTouchByRounding) {
+  for (const double part : {0.9, 1.1}) {
+    const SphereWorld world = spheresAt(
+        {{Vec3::Zero(), Vec3(part * 2e-14, 2, 0), Vec3::Zero()}, {Vec3(0.2, 0, 0), Vec3::Zero(), Vec3::Zero()}});
+    const PredictedCollision meeting = SphereFlights(world, 10).nextCollision(0, 0, kNever);
+    EXPECT_EQ(meeting.other, part < 1 ? kNothing : 1);
+  }
+}
+
 TEST(SphereFlights, TouchWithinAPartOfTheSmallerRadius) {
   for (const double part : {0.9, 1.1}) {
     const double gap = part * 1e-11 * 0.05;
