@@ -322,7 +322,7 @@ TEST(ActiveContacts, HoldTheFeaturesThatTouch) {
   OnPlane at(std::string(kBox) + "}");
   at.classify();
   std::set<std::size_t> features;
-  for (const ActiveFeature& held : at.active.held()) {
+  for (const ActiveFeature& held : at.active.features()) {
     EXPECT_EQ(held.pair, 0u);
     features.insert(held.feature);
     EXPECT_NEAR(at.island.assembly.geometry.colliders[0].points[held.feature].y(), -0.1, 1e-15);

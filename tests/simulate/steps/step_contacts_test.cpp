@@ -36,7 +36,7 @@ struct Stepped : OneIsland {
       linearVelocity(after, body) += kStep * mechanism().gravity;
     }
     contacts.begin(time, before, after, kStep);
-    contacts.hold(before, kStep, ropes, after);
+    contacts.solveContacts(before, kStep, ropes, after);
     state() = after;
     contacts.recordAndLetSleep(time + kStep, state());
   }
@@ -94,8 +94,8 @@ TEST(StepContacts, LetABoxSlideDownASlope) {
   EXPECT_NEAR(centerOfMass(at.state(), 0).y(), 0.1, 1e-10);
   const double taken = 3 * 0.18 * kGravity * kCosine * way;
   EXPECT_NEAR(frictionEnergy(at.state()), taken, 1e-6 * taken);
-  EXPECT_NEAR(at.contacts.frictionOfHeld().taken, taken, 1e-6 * taken);
-  EXPECT_NEAR(at.contacts.frictionOfHeld().atStart, taken * 0.1 * kStep / way, 1e-6 * taken);
+  EXPECT_NEAR(at.contacts.frictionWork().taken, taken, 1e-6 * taken);
+  EXPECT_NEAR(at.contacts.frictionWork().atStart, taken * 0.1 * kStep / way, 1e-6 * taken);
 }
 
 // Of pairs that are apart nothing is held as long as impacts are searched for.
@@ -104,7 +104,7 @@ TEST(StepContacts, HoldThePairsThatTouch) {
   EXPECT_THAT(at.island.assembly.geometry.pairs, SizeIs(2));
   at.step();
   ASSERT_THAT(at.contacts.touching(), SizeIs(4));
-  const std::vector<ColliderPair> apart = at.contacts.pairsNotHeld();
+  const std::vector<ColliderPair> apart = at.contacts.pairsWithoutContact();
   ASSERT_THAT(apart, SizeIs(1));
   EXPECT_FALSE(apart[0].againstPlane);
 }
@@ -120,7 +120,7 @@ TEST(StepContacts, ReboundFromMoreThanTwoStepsExplain) {
     at.contacts.begin(0, before, at.state(), kStep);
     linearVelocity(at.state(), 0).y() = -speed;
     const double constant = energyConstant(at.mechanism(), at.state());
-    at.contacts.strike(kStep, before, at.state());
+    at.contacts.resolveImpacts(kStep, before, at.state());
     EXPECT_NEAR(linearVelocity(at.state(), 0).y(), part < 1 ? 0 : speed / 2, 1e-15);
     EXPECT_NEAR(impactEnergy(at.state()), speed * speed * (part < 1 ? 1 : 0.75), 1e-15);
     EXPECT_NEAR(energyConstant(at.mechanism(), at.state()), constant, 1e-14);
@@ -138,7 +138,7 @@ TEST(StepContacts, CountWhatAPartOfAStepGainedForTheWhole) {
     centerOfMass(before, 0).y() += 1e-3;
     at.contacts.begin(0, before, at.state(), kStep / 2);
     linearVelocity(at.state(), 0).y() = -speed;
-    at.contacts.strike(kStep / 2, before, at.state());
+    at.contacts.resolveImpacts(kStep / 2, before, at.state());
     EXPECT_NEAR(linearVelocity(at.state(), 0).y(), part < 1 ? 0 : speed / 2, 1e-15);
   }
 }
@@ -150,7 +150,7 @@ TEST(StepContacts, StrikeTogetherWhatIsNearlyThere) {
     centerOfMass(at.state(), 1).x() += part * 5e-5 * kStep;
     linearVelocity(at.state(), 0) = Vec3(0.02, -0.05, 0);
     at.contacts.begin(0, at.state(), at.state(), kStep);
-    at.contacts.strike(kStep, at.state(), at.state());
+    at.contacts.resolveImpacts(kStep, at.state(), at.state());
     EXPECT_NEAR(linearVelocity(at.state(), 0).y(), 0, 1e-14);
     EXPECT_NEAR(linearVelocity(at.state(), 1).x(), part < 1 ? 0.01 : 0, 1e-14);
   }
@@ -163,9 +163,9 @@ TEST(StepContacts, AreCrowdedByMoreThanEight) {
     for (int i = 0; i < boxes; ++i) bodies += (i > 0 ? ", " : "") + boxOver(fmt::format("b{}", i), i, 0);
     Stepped at(0, 0.5, bodies);
     at.step();
-    EXPECT_FALSE(at.contacts.isCrowded());
+    EXPECT_FALSE(at.contacts.usesTimeSteppingOnly());
     at.step();
-    EXPECT_EQ(at.contacts.isCrowded(), boxes > 2);
+    EXPECT_EQ(at.contacts.usesTimeSteppingOnly(), boxes > 2);
   }
 }
 
@@ -176,7 +176,7 @@ TEST(StepContacts, WakeWhatIsReachedWithinTheStep) {
     Stepped at(0, 0.5, boxOver("box", 0, 0) + ", " + smallBall("ball", Vec3(0.301, 0.1, 0)), "[0, -1e-9, 0]");
     at.island.resting.bringToRest({0}, at.state());
     linearVelocity(at.state(), 1).x() = -speed;
-    at.contacts.setCrowded();
+    at.contacts.useTimeSteppingOnly();
     at.step();
     EXPECT_EQ(at.island.resting.isResting(0), speed < 0.96);
   }

@@ -39,11 +39,11 @@ double landingPart(OneIsland& at, double landingSpeed) {
     turnBody(state, body, kLandingStep * angularVelocity(state, body));
   }
   ContactStepping stepping(at.island.assembly);
-  return stepping.nextImpact(at.contactsWithin(0.1), at.state(), kLandingStep, state, landingSpeed);
+  return stepping.nextImpact(at.contactsWithin(0.1), at.state(), kLandingStep, state, landingSpeed).fraction;
 }
 
 // s = v t + g t^2 / 2
-TEST(ContactLanding, IsWhereAFallComesToTheFloor) {
+TEST(NextImpact, IsWhereAFallComesToTheFloor) {
   for (const double gap : {1e-4, 3e-3, 0.0103, 0.0107}) {
     OneIsland at(landing(0, 0, ballOver("ball", 2, 0.1 + gap, Vec3(0, -1, 0))));
     const double time = (-1 + std::sqrt(1 + 2 * kGravity * gap)) / kGravity;
@@ -55,7 +55,7 @@ TEST(ContactLanding, IsWhereAFallComesToTheFloor) {
 }
 
 // What is slower when the step begins is not worth ending it for; nor is what touches already.
-TEST(ContactLanding, IsOfWhatIsFastAndApart) {
+TEST(NextImpact, IsOfWhatIsFastAndApart) {
   for (const double landingSpeed : {0.99, 1.01}) {
     OneIsland at(landing(0, 0, ballOver("ball", 2, 0.101, Vec3(0, -1, 0))));
     EXPECT_EQ(std::isfinite(landingPart(at, landingSpeed)), landingSpeed < 1);
@@ -67,7 +67,7 @@ TEST(ContactLanding, IsOfWhatIsFastAndApart) {
 // A box turns about the edge that it stands on, at w and with the angular acceleration of a pendulum: m g x / (I +
 // m r^2), x the horizontal arm of its centre. The far edge comes down by its arm, 0.4 m, times the turn. The held edge
 // is frozen over the step, so that the result is right to the turn, w h = 0.005, of the step's part.
-TEST(ContactLanding, IsOfTheFarEdgeWhileTheNearOneIsHeld) {
+TEST(NextImpact, IsOfTheFarEdgeWhileTheNearOneIsHeld) {
   const double turn = 0.004, spin = 0.5;
   OneIsland at(landing(0, 0.9, R"({"name": "box", "mass": 3, "shape": {"box": {"size": [0.4, 0.2, 0.6]}},
     "material": "stuff"})"));
@@ -84,12 +84,12 @@ TEST(ContactLanding, IsOfTheFarEdgeWhileTheNearOneIsHeld) {
 }
 
 // Newton's restitution at the floor: p = m (1 + e) v. What that took is booked.
-TEST(ContactLanding, StrikesWithNewtonsRestitution) {
+TEST(StepImpact, StrikesWithNewtonsRestitution) {
   for (const double restitution : {0.0, 0.6}) {
     OneIsland at(landing(restitution, 0, ballOver("ball", 2, 0.1, Vec3(0.5, -3, 0))));
     const std::vector<Contact> contacts = at.contactsWithin(1e-6);
     ContactStepping stepping(at.island.assembly);
-    const std::vector<Vec3> impulses = stepping.strike(contacts, kLandingStep, at.state());
+    const std::vector<Vec3> impulses = stepping.resolveImpact(contacts, kLandingStep, at.state());
     ASSERT_THAT(impulses, SizeIs(1));
     EXPECT_NEAR(impulses[0].y(), -2 * (1 + restitution) * 3, 1e-13);  // on the floor
     EXPECT_LT((linearVelocity(at.state(), 0) - Vec3(0.5, restitution * 3, 0)).norm(), 1e-14);
@@ -99,12 +99,12 @@ TEST(ContactLanding, StrikesWithNewtonsRestitution) {
 
 // Friction of an impact is static while that stops the surfaces, and dynamic where they slide: a ball of 2/5 m r^2
 // needs 2/7 of its speed along the floor to roll, a friction of 2/7 x 0.5 / 3 = 0.0476 of the normal impulse.
-TEST(ContactLanding, StrikesWithCoulombsFriction) {
+TEST(StepImpact, StrikesWithCoulombsFriction) {
   for (const double friction : {0.047, 0.048}) {
     OneIsland at(landing(0, friction, ballOver("ball", 2, 0.1, Vec3(0.5, -3, 0))));
     const std::vector<Contact> contacts = at.contactsWithin(1e-6);
     ContactStepping stepping(at.island.assembly);
-    stepping.strike(contacts, kLandingStep, at.state());
+    stepping.resolveImpact(contacts, kLandingStep, at.state());
     const double expected = friction > 0.0476 ? 5 / 7.0 * 0.5 : 0.5 - friction / 2 * 3;  // dynamic friction is half
     EXPECT_NEAR(linearVelocity(at.state(), 0).x(), expected, 1e-12);
     EXPECT_NEAR(angularVelocity(at.state(), 0).z(), -(0.5 - expected) / (0.4 * 0.1), 1e-11);
@@ -112,25 +112,25 @@ TEST(ContactLanding, StrikesWithCoulombsFriction) {
 }
 
 // Closing slower than what accelerations explain does not rebound: e v < 0.01 g h for what touches.
-TEST(ContactLanding, DoesNotReboundFromWhatGravityGivesInAStep) {
+TEST(StepImpact, DoesNotReboundFromWhatGravityGivesInAStep) {
   for (const double part : {0.99, 1.01}) {
     const double speed = part * 0.01 * kGravity * kLandingStep / 0.5;
     OneIsland at(landing(0.5, 0, ballOver("ball", 2, 0.1, Vec3(0, -speed, 0))));
     const std::vector<Contact> contacts = at.contactsWithin(1e-6);
     ContactStepping stepping(at.island.assembly);
-    stepping.strike(contacts, kLandingStep, at.state());
+    stepping.resolveImpact(contacts, kLandingStep, at.state());
     EXPECT_NEAR(linearVelocity(at.state(), 0).y(), part < 1 ? 0 : speed / 2, 1e-16);
   }
 }
 
 // A ball on another that lies on the floor: what strikes from above is passed on to the floor, and rebounds.
-TEST(ContactLanding, StrikesAllContactsAtOnce) {
+TEST(StepImpact, StrikesAllContactsAtOnce) {
   OneIsland at(
       landing(0.5, 0, ballOver("lower", 2, 0.1, Vec3::Zero()) + ", " + ballOver("upper", 1, 0.3, Vec3(0, -4, 0))));
   const std::vector<Contact> contacts = at.contactsWithin(1e-6);
   ASSERT_THAT(contacts, SizeIs(2));
   ContactStepping stepping(at.island.assembly);
-  const std::vector<Vec3> impulses = stepping.strike(contacts, kLandingStep, at.state());
+  const std::vector<Vec3> impulses = stepping.resolveImpact(contacts, kLandingStep, at.state());
   EXPECT_NEAR(linearVelocity(at.state(), 0).y(), 0, 1e-14);
   EXPECT_NEAR(linearVelocity(at.state(), 1).y(), 2, 1e-14);
   for (const Vec3& impulse : impulses) EXPECT_NEAR(std::abs(impulse.y()), 6, 1e-13);
