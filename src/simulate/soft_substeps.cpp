@@ -14,7 +14,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kGainRounding = 1e-9;      // of the energy that there is
+constexpr double kGainRounding = 1e-9;        // of the energy that there is
 constexpr std::size_t kBodiesAThread = 2000;  // with fewer, threads wait for each other longer than they work
 
 int threadsFor(std::size_t bodies) {
