@@ -1,0 +1,95 @@
+#include "impact/delassus_operator.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace cradle {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kLeastShiftRatio = 1e-8;  // of the largest eigenvalue: the factors then have errors of 1e-8
+
+/// What the operator of a matrix holds: the scaled matrix, and the factors of the last equations.
+struct DenseFactors {
+  MatrixX matrix, system;
+  std::vector<Index> rows;  // of contacts that are not open, where any is
+  Eigen::PartialPivLU<MatrixX> factor;
+  Eigen::LLT<MatrixX> shiftedFactor;
+  bool isShifted = false;
+
+  void factorizeShifted(double shift) {
+    isShifted = true;
+    system = matrix;
+    system.diagonal().array() += shift;
+    shiftedFactor.compute(system);
+  }
+
+  void factorize(const std::vector<ContactEquation>& equations) {
+    isShifted = false;
+    rows.clear();
+    const bool isAnyOpen = std::any_of(equations.begin(), equations.end(), [](const auto& one) { return one.isOpen; });
+    if (!isAnyOpen) {
+      system = matrix;
+    } else {
+      for (std::size_t i = 0; i < equations.size(); ++i)
+        for (Index axis = 0; axis < 3 && !equations[i].isOpen; ++axis) rows.push_back(3 * static_cast<Index>(i) + axis);
+      system = matrix(rows, rows);
+    }
+    Index at = 0;
+    for (const ContactEquation& equation : equations) {
+      if (equation.isOpen) continue;
+      system.middleRows<3>(at) = (equation.ofVelocity * system.middleRows<3>(at)).eval();
+      system.block<3, 3>(at, at) += equation.ofImpulse;
+      at += 3;
+    }
+    if (at > 0) factor.compute(system);
+  }
+
+  VectorX solve(const VectorX& sides) const {
+    if (isShifted) return shiftedFactor.solve(sides);
+    if (system.rows() == sides.size()) return factor.solve(sides);
+    VectorX change = VectorX::Zero(sides.size());
+    if (!rows.empty()) change(rows) = VectorX(factor.solve(sides(rows)));
+    return change;
+  }
+};
+
+}  // namespace
+
+VectorX scalesOf(const MatrixX& delassus) {
+  VectorX scales(delassus.rows() / 3);
+  for (Index i = 0; i < scales.size(); ++i) {
+    const double inverseMass = delassus.diagonal().segment<3>(3 * i).sum() / 3;
+    scales[i] = inverseMass > 0 ? 1 / std::sqrt(inverseMass) : 1;
+  }
+  return scales;
+}
+
+DelassusOperator operatorOf(const MatrixX& delassus) {
+  DelassusOperator op;
+  op.scales = scalesOf(delassus);
+  const auto factors = std::make_shared<DenseFactors>();
+  MatrixX& matrix = factors->matrix;
+  matrix.resize(delassus.rows(), delassus.cols());
+  for (Index j = 0; j < op.scales.size(); ++j)
+    for (Index i = 0; i < op.scales.size(); ++i)
+      matrix.block<3, 3>(3 * i, 3 * j) = op.scales[i] * op.scales[j] * delassus.block<3, 3>(3 * i, 3 * j);
+  op.largest = matrix.cwiseAbs().colwise().sum().maxCoeff();
+  op.leastShift = kLeastShiftRatio * op.largest;
+  op.multiply = [factors](const VectorX& z) { return VectorX(factors->matrix * z); };
+  op.magnitude = [factors](const VectorX& z) { return (factors->matrix.cwiseAbs() * z.cwiseAbs()).maxCoeff(); };
+  op.factorize = [factors](const std::vector<ContactEquation>& equations) { factors->factorize(equations); };
+  op.factorizeShifted = [factors](double shift) { factors->factorizeShifted(shift); };
+  op.solve = [factors](const VectorX& sides, VectorX* velocities) {
+    VectorX change = factors->solve(sides);
+    if (velocities) *velocities = factors->matrix * change;
+    return change;
+  };
+  return op;
+}
+
+}  // namespace cradle
