@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "dynamics/row_response.h"
+#include "dynamics/constraint_rows.h"
 
 namespace cradle {
 
@@ -30,9 +30,14 @@ class GaussSeidel {
   MatrixX matrix() const;
 
  private:
+  struct Response {
+    Vec3 linearA, angularA, linearB, angularB;  // M^-1 J^T
+    double inverseMass = 0;                     // J M^-1 J^T of the row with itself
+    double multiplier = 0;
+  };
+
   std::vector<ConstraintRow> rows_;
-  std::vector<RowResponse> responses_;
-  std::vector<double> inverseMasses_, multipliers_;  // the diagonal of J M^-1 J^T; what the sweeps have added up
+  std::vector<Response> responses_;
   RowKind kind_;
   VectorX state_;
 };
