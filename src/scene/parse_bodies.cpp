@@ -135,8 +135,9 @@ double innerRadiusOf(const Shape& shape) {
 /// How many pairs of copies are nearer to each other than `distance`, counted up to `most` and a row more.
 double pairsNearer(double distance, const Copies& copies, double most) {
   const auto reach = [&](int axis) {
-    const double steps = copies.spacing[axis] == 0 ? copies.count[axis] : distance / std::abs(copies.spacing[axis]);
-    return static_cast<int>(std::min(steps, copies.count[axis] - 1.0));
+    const int count = copies.count[static_cast<std::size_t>(axis)];
+    const double steps = copies.spacing[axis] == 0 ? count : distance / std::abs(copies.spacing[axis]);
+    return static_cast<int>(std::min(steps, count - 1.0));
   };
   const std::array<int, 3> reaches = {reach(0), reach(1), reach(2)};
   double pairs = 0;  // each twice

@@ -112,7 +112,7 @@ TEST(Damaged3ds, MeshThatTheKeyframerForgetsIsStillThere) {
 // child that they end is a file refused; and no process need be forked, which takes longer than to load.
 std::vector<LoadedModel> loadObjectsHere(const std::string& path) {
   std::vector<LoadedModel> objects;
-  for (ImportedObject& imported : parseObjects(path, 1)) {
+  for (ImportedObject& imported : parseObjects(path)) {
     LoadedModel object = assembleModel(imported.name, std::move(imported.pieces), ModelParts::solidAndDrawn);
     if (object.model.solid.triangles.empty()) continue;
     turnPartsOutwards(object);
