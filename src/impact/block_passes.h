@@ -246,7 +246,8 @@ void relaxBlock(Block& block, SolverMotions& motions) {
   if constexpr (Block::kPoints > 1) block.twist.total += block.twist.impulse;
 }
 
-/// Rebounds contacts that closed faster than `slowest` (m/s) and were pressed in this step.
+/// Rebounds contacts that closed faster than `slowest` (m/s) and were pressed in this step, in its last sub-step or in
+/// one before.
 template <class Block>
 void reboundBlock(Block& block, double slowest, SolverMotions& motions) {
   if (block.restitution[0] == 0 && block.restitution[1] == 0) return;
@@ -257,7 +258,7 @@ void reboundBlock(Block& block, double slowest, SolverMotions& motions) {
   for (int i = 0; i < Block::kPoints; ++i) {
     const auto& point = block.points[i];
     const Lanes before = starts.at(point.u, point.v);
-    const auto rebounds = (before < same(-slowest)) & (point.impulse > same(0));
+    const auto rebounds = (before < same(-slowest)) & (point.total + point.impulse > same(0));
     if constexpr (Block::kPoints == 1) {
       const Lanes free = point.impulse - point.mass * (speeds.middle + block.restitution * before);
       pressSingle(block, rebounds ? free : point.impulse, velocities);
