@@ -162,7 +162,9 @@ Results loadAll(const std::vector<std::string>& files) {
   Results results;
   for (std::size_t i = 0; i < files.size(); ++i) {
     const bool isLoaded = loadsFinite(writeFile("flipped.3ds", files[i]), loadObjectsHere);
-    if (i % kChildEvery == 0) EXPECT_EQ(inChild[i / kChildEvery], isLoaded) << i;
+    if (i % kChildEvery == 0) {
+      EXPECT_EQ(inChild[i / kChildEvery], isLoaded) << i;
+    }
     ++(isLoaded ? results.loaded : results.refused);
   }
   return results;
