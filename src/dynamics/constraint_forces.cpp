@@ -69,9 +69,9 @@ void ConstraintSolver::factorizeRows(const VectorX& state, const std::vector<Bod
   findRows(constraints_, state, frames, rows_, excluded_);
   if (!hasKnownStructure()) analyze();
   multipliers_.resize(static_cast<Eigen::Index>(rows_.size()));  // blocks may have had others since
-  respond(frames);
-  for (std::size_t i = 0; i < rows_.size(); ++i) diagonal_[i] = couple(static_cast<int>(i), static_cast<int>(i));
-  for (std::size_t i = 0; i < couplings_.size(); ++i) entries_[i] = couple(couplings_[i].row, couplings_[i].column);
+  for (std::size_t i = 0; i < rows_.size(); ++i) responses_[i] = responseTo(rows_[i], bodies_, frames);
+  for (std::size_t i = 0; i < rows_.size(); ++i) diagonal_[i] = entry(static_cast<int>(i), static_cast<int>(i));
+  for (std::size_t i = 0; i < couplings_.size(); ++i) entries_[i] = entry(couplings_[i].row, couplings_[i].column);
   factor_.factorize(diagonal_, entries_);
   isRegular_ = factor_.leastPivot() > kRegularPivot;
   if (!isRegular_) regularize(kRegularisation);
@@ -128,33 +128,10 @@ void ConstraintSolver::analyze() {
   correction_.resize(rightHandSide_.size());
 }
 
-void ConstraintSolver::respond(const std::vector<BodyFrame>& frames) {
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const ConstraintRow& row = rows_[i];
-    RowResponse& response = responses_[i];
-    if (row.bodyA != kFixed) {
-      response.linearA = bodies_[static_cast<std::size_t>(row.bodyA)].inverseMass * row.linearA;
-      response.angularA = frames[static_cast<std::size_t>(row.bodyA)].inverseInertia * row.angularA;
-    }
-    if (row.bodyB != kFixed) {
-      response.linearB = bodies_[static_cast<std::size_t>(row.bodyB)].inverseMass * row.linearB;
-      response.angularB = frames[static_cast<std::size_t>(row.bodyB)].inverseInertia * row.angularB;
-    }
-  }
-}
-
-double ConstraintSolver::couple(int row, int column) const {
-  const ConstraintRow &from = rows_[static_cast<std::size_t>(row)], &to = rows_[static_cast<std::size_t>(column)];
-  const RowResponse& response = responses_[static_cast<std::size_t>(row)];
-  double sum = 0;
-  const auto add = [&](int body, const Vec3& linear, const Vec3& angular) {
-    if (body == kFixed) return;
-    if (body == to.bodyA) sum += linear.dot(to.linearA) + angular.dot(to.angularA);
-    if (body == to.bodyB) sum += linear.dot(to.linearB) + angular.dot(to.angularB);
-  };
-  add(from.bodyA, response.linearA, response.angularA);
-  add(from.bodyB, response.linearB, response.angularB);
-  return sum;
+/// Of the Delassus operator.
+double ConstraintSolver::entry(int row, int column) const {
+  const std::size_t from = static_cast<std::size_t>(row), to = static_cast<std::size_t>(column);
+  return delassusEntry(rows_[to], rows_[from], responses_[from]);
 }
 
 /// Overwrites the right-hand side in multipliers_ by the solution, refined iteratively if it has to be.
@@ -190,12 +167,8 @@ void ConstraintSolver::findResidual() {
 template <class Add>
 void ConstraintSolver::addResponse(const Add& add) const {
   if (isInBlocks_) return joints_.addResponse(multipliers_, add);
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const double multiplier = multipliers_[static_cast<Eigen::Index>(i)];
-    const RowResponse& response = responses_[i];
-    if (rows_[i].bodyA != kFixed) add(rows_[i].bodyA, multiplier * response.linearA, multiplier * response.angularA);
-    if (rows_[i].bodyB != kFixed) add(rows_[i].bodyB, multiplier * response.linearB, multiplier * response.angularB);
-  }
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    cradle::addResponse(rows_[i], responses_[i], multipliers_[static_cast<Eigen::Index>(i)], add);
 }
 
 /// Sets multipliers_ to -J v for the velocities, or accelerations, in `state`.

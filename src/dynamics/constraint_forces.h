@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dynamics/joint_blocks.h"
+#include "dynamics/row_response.h"
 #include "dynamics/sparse_ldlt.h"
 
 namespace cradle {
@@ -52,9 +53,6 @@ class ConstraintSolver {
   double largestRate(const VectorX& state) const;
 
  private:
-  struct RowResponse {
-    Vec3 linearA, angularA, linearB, angularB;  // M^-1 J^T of one row
-  };
   /// An entry of the matrix below its diagonal: two rows that act on the same body.
   struct Coupling {
     int row, column;
@@ -63,8 +61,7 @@ class ConstraintSolver {
   void factorizeRows(const VectorX& state, const std::vector<BodyFrame>& frames);
   bool hasKnownStructure() const;
   void analyze();
-  void respond(const std::vector<BodyFrame>& frames);
-  double couple(int row, int column) const;
+  double entry(int row, int column) const;
   template <class Add>
   void addResponse(const Add& add) const;
   void regularize(double regularisation);

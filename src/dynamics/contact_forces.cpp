@@ -79,7 +79,7 @@ void ContactSolver::putRow(int row, const ConstraintRow& from, const std::vector
     to.velocityProduct *= factor;
     to.scale = 1;
   }
-  responses_[index(row)] = responseTo(rows_[index(row)], frames);
+  responses_[index(row)] = responseTo(rows_[index(row)], bodies_, frames);
 }
 
 /// Adds to the response to a normal force that to the friction that goes with it.
@@ -93,79 +93,42 @@ void ContactSolver::addFriction(std::size_t contact, int row, const std::vector<
   friction.angularA = place.armA.cross(force);
   friction.linearB = -force;
   friction.angularB = -place.armB.cross(force);
-  const Response response = responseTo(friction, frames);
-  Response& sum = coupled_[index(row)];
+  const RowResponse response = responseTo(friction, bodies_, frames);
+  RowResponse& sum = coupled_[index(row)];
   sum.linearA += response.linearA;
   sum.angularA += response.angularA;
   sum.linearB += response.linearB;
   sum.angularB += response.angularB;
 }
 
-ContactSolver::Response ContactSolver::responseTo(const ConstraintRow& row,
-                                                  const std::vector<BodyFrame>& frames) const {
-  Response response{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-  if (row.bodyA != kFixed) {
-    response.linearA = bodies_[index(row.bodyA)].inverseMass * row.linearA;
-    if (bodies_[index(row.bodyA)].turns) response.angularA = frames[index(row.bodyA)].inverseInertia * row.angularA;
-  }
-  if (row.bodyB != kFixed) {
-    response.linearB = bodies_[index(row.bodyB)].inverseMass * row.linearB;
-    if (bodies_[index(row.bodyB)].turns) response.angularB = frames[index(row.bodyB)].inverseInertia * row.angularB;
-  }
-  return response;
-}
-
 /// The matrices of a group. Columns differ with friction alone.
 void ContactSolver::couple(Group& group) {
   const int first = group.firstRow;
   for (int column = 0; column < group.rows; ++column) {
-    const Response& response = responses_[index(first + column)];
+    const std::size_t from = index(first + column);
     for (int row = column; row < group.rows; ++row) {
-      const double entry = couple(rows_[index(first + row)], first + column, response);
+      const double entry = delassusEntry(rows_[index(first + row)], rows_[from], responses_[from]);
       group.solver.symmetric(row, column) = entry;
       group.solver.symmetric(column, row) = entry;
     }
   }
   if (!group.slides) return;
   for (int column = 0; column < group.rows; ++column) {
+    const std::size_t from = index(first + column);
     const bool isSliding = column < static_cast<int>(group.contacts.size()) &&
                            contacts_[index(group.contacts[index(column)])].motion == ContactMotion::sliding;
     for (int row = 0; row < group.rows; ++row)
-      group.solver.coupled(row, column) =
-          isSliding ? couple(rows_[index(first + row)], first + column, coupled_[index(first + column)])
-                    : group.solver.symmetric(row, column);
+      group.solver.coupled(row, column) = isSliding
+                                              ? delassusEntry(rows_[index(first + row)], rows_[from], coupled_[from])
+                                              : group.solver.symmetric(row, column);
   }
-}
-
-double ContactSolver::couple(const ConstraintRow& row, int column, const Response& response) const {
-  const int bodyA = rows_[index(column)].bodyA, bodyB = rows_[index(column)].bodyB;
-  double sum = 0;
-  const auto add = [&](int body, const Vec3& linear, const Vec3& angular) {
-    if (body == kFixed) return;
-    if (body == row.bodyA) sum += linear.dot(row.linearA) + angular.dot(row.angularA);
-    if (body == row.bodyB) sum += linear.dot(row.linearB) + angular.dot(row.angularB);
-  };
-  add(bodyA, response.linearA, response.angularA);
-  add(bodyB, response.linearB, response.angularB);
-  return sum;
 }
 
 /// Adds to velocities, or their rates, what the multipliers of a group's leading rows do.
-void ContactSolver::addResponse(const Group& group, int rows, const std::vector<Response>& responses,
+void ContactSolver::addResponse(const Group& group, int rows, const std::vector<RowResponse>& responses,
                                 VectorX& derivative) const {
-  for (int i = group.firstRow; i < group.firstRow + rows; ++i) {
-    const double multiplier = multipliers_[index(i)];
-    const Response& response = responses[index(i)];
-    const ConstraintRow& row = rows_[index(i)];
-    if (row.bodyA != kFixed) {
-      linearVelocity(derivative, row.bodyA) += multiplier * response.linearA;
-      angularVelocity(derivative, row.bodyA) += multiplier * response.angularA;
-    }
-    if (row.bodyB != kFixed) {
-      linearVelocity(derivative, row.bodyB) += multiplier * response.linearB;
-      angularVelocity(derivative, row.bodyB) += multiplier * response.angularB;
-    }
-  }
+  for (int i = group.firstRow; i < group.firstRow + rows; ++i)
+    cradle::addResponse(rows_[index(i)], responses[index(i)], multipliers_[index(i)], derivative);
 }
 
 void ContactSolver::constrainAccelerations(VectorX& derivative) {

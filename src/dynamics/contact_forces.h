@@ -65,9 +65,6 @@ class ContactSolver {
     double error = 0;       // m or rad, that project found last
     MinimumNormSolver solver;
   };
-  struct Response {
-    Vec3 linearA, angularA, linearB, angularB;  // M^-1 times the forces that go with one multiplier
-  };
   /// How the bodies of a row were joined when groups were found.
   struct Joint {
     int bodyA, bodyB;
@@ -89,11 +86,9 @@ class ContactSolver {
                    const std::vector<BodyFrame>& frames);
   void putRow(int row, const ConstraintRow& from, const std::vector<BodyFrame>& frames);
   void addFriction(std::size_t contact, int row, const std::vector<BodyFrame>& frames);
-  Response responseTo(const ConstraintRow& row, const std::vector<BodyFrame>& frames) const;
   void couple(Group& group);
-  double couple(const ConstraintRow& row, int column, const Response& response) const;
 
-  void addResponse(const Group& group, int rows, const std::vector<Response>& responses, VectorX& derivative) const;
+  void addResponse(const Group& group, int rows, const std::vector<RowResponse>& responses, VectorX& derivative) const;
   void takeForces(const Group& group, VectorX& derivative);
 
   void constrainGroupVelocities(VectorX& state);
@@ -118,8 +113,8 @@ class ContactSolver {
   std::vector<ContactForce> forces_;
   std::vector<ConstraintRow> bilateralRows_;
   std::vector<ConstraintRow> rows_;
-  std::vector<Response> responses_;  // M^-1 J^T
-  std::vector<Response> coupled_;    // the same with friction
+  std::vector<RowResponse> responses_;  // M^-1 J^T
+  std::vector<RowResponse> coupled_;    // the same with friction
   std::vector<double> multipliers_;
   VectorX bilateralMultipliers_, undisplaced_, displacement_;
   std::vector<BodyFrame> frames_;

@@ -11,6 +11,11 @@ RopeMotion motionOf(const RopeLimit& rope, const VectorX& state) {
   return motion;
 }
 
+ConstraintRow lengtheningRow(const RopeLimit& rope, const RopeMotion& motion) {
+  const Vec3& u = motion.direction;
+  return {rope.anchorA.body, rope.anchorB.body, u, motion.a.arm.cross(u), -u, -motion.b.arm.cross(u)};
+}
+
 double lengtheningAcceleration(const RopeLimit& rope, const VectorX& state, const VectorX& derivative) {
   // L'' = u.(a_A - a_B) + (|v|^2 - (u.v)^2) / L for the relative velocity v.
   const RopeMotion motion = motionOf(rope, state);

@@ -20,6 +20,9 @@ struct RopeMotion {
 };
 RopeMotion motionOf(const RopeLimit& rope, const VectorX& state);
 
+/// The row of the lengthening; its multiplier pushes the ends apart.
+ConstraintRow lengtheningRow(const RopeLimit& rope, const RopeMotion& motion);
+
 /// d^2/dt^2 of the distance of a rope's ends (m/s^2), for the rates of all velocities in `derivative`.
 double lengtheningAcceleration(const RopeLimit& rope, const VectorX& state, const VectorX& derivative);
 

@@ -53,12 +53,11 @@ void iterateAdmm(const ScaledContacts& cones, double proximal, const SolveShifte
   }
 }
 
-/// A penalty with which both residuals fall together; inverse masses are at most `largest`.
-inline double balancedPenalty(const AdmmIterate& at, double largest) {
+/// A penalty with which both residuals fall together, from `least` to `largest`.
+inline double balancedPenalty(const AdmmIterate& at, double least, double largest) {
   constexpr double kUnbalanced = 10, kChange = 4;  // ratio of residuals that is let be; change of the penalty
-  constexpr double kMinRatio = 1e-8;               // of the largest inverse mass: below, rounding shows
   if (at.primalResidual > kUnbalanced * at.dualResidual) return std::min(kChange * at.penalty, largest);
-  if (at.dualResidual > kUnbalanced * at.primalResidual) return std::max(at.penalty / kChange, kMinRatio * largest);
+  if (at.dualResidual > kUnbalanced * at.primalResidual) return std::max(at.penalty / kChange, least);
   return at.penalty;
 }
 

@@ -1,12 +1,11 @@
 #include "impact/contact_impulse.h"
 
+#include <utility>
+
 #include "math/rotation.h"
 
 namespace cradle {
 namespace {
-
-// Of the inverse mass without constraints, which take part to 1e-16: the square of a lever, in sizes of a body.
-constexpr double kImmobileRatio = 1e-12;
 
 Vec3 armOf(const Contact& contact, int body, const VectorX& state) {
   return body == kFixed ? Vec3::Zero() : Vec3(contact.point - centerOfMass(state, body));
@@ -36,9 +35,9 @@ Mat3 delassusAt(const Contact& contact, const std::vector<RigidBody>& bodies, co
   return inverseMassOf(contact, contact.bodyA, bodies, state) + inverseMassOf(contact, contact.bodyB, bodies, state);
 }
 
-bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass) {
-  return response.areConstrained() &&
-         inverseMass <= kImmobileRatio * unconstrainedDelassusAlongNormal(contact, response, state);
+ConstraintRow rowAlong(const Vec3& direction, const Contact& contact, const VectorX& state) {
+  const Vec3 armA = armOf(contact, contact.bodyA, state), armB = armOf(contact, contact.bodyB, state);
+  return {contact.bodyA, contact.bodyB, -direction, -armA.cross(direction), direction, armB.cross(direction)};
 }
 
 bool hasShortLever(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double lever) {
@@ -49,7 +48,8 @@ bool hasShortLever(const Contact& contact, const ImpulseResponse& response, cons
 void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts) {
   if (!response.areConstrained()) return;
   std::erase_if(contacts, [&](const Contact& contact) {
-    return isImmobile(contact, response, state, inverseMassAlongNormal(contact, response, state));
+    return isImmobile(inverseMassAlongNormal(contact, response, state),
+                      unconstrainedDelassusAlongNormal(contact, response, state));
   });
 }
 
@@ -69,6 +69,12 @@ VectorX ImpulseResponse::responseTo(const Contact& contact, const Vec3& impulseO
 
 Mat3 ImpulseResponse::unconstrainedDelassusAt(const Contact& contact, const VectorX& state) const {
   return cradle::delassusAt(contact, bodies_, state);
+}
+
+DenseDelassus ImpulseResponse::delassusOf(std::vector<ConstraintRow> rows, const VectorX& state) const {
+  std::vector<BodyFrame> frames;
+  findBodyFrames(bodies_, state, frames);
+  return {std::move(rows), bodies_, frames, constraints_};
 }
 
 void ImpulseResponse::apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const {

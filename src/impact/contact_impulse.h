@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "collision/separation.h"
-#include "dynamics/constraint_forces.h"
+#include "dynamics/dense_delassus.h"
 
 namespace cradle {
 
@@ -11,11 +11,11 @@ namespace cradle {
 /// impulse on B (and its opposite on A) to the change of B's velocity relative to A there.
 Mat3 delassusAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state);
 
-class ImpulseResponse;
+/// The row of B's velocity relative to A's along a unit direction (world) at a contact: its multiplier is the impulse
+/// on B.
+ConstraintRow rowAlong(const Vec3& direction, const Contact& contact, const VectorX& state);
 
-/// Whether the bodies' constraints hold a contact whose inverse mass along its normal is `inverseMass` (1/kg): it can
-/// neither open nor close.
-bool isImmobile(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double inverseMass);
+class ImpulseResponse;
 
 /// Whether joints leave a contact a lever of hardly more than `lever`, in sizes of its bodies: its normal goes by an
 /// anchor so near that impulses there are 1 / lever times as large as those that the motion asks for.
@@ -42,6 +42,9 @@ class ImpulseResponse {
 
   /// As above, as if the bodies had no constraints.
   Mat3 unconstrainedDelassusAt(const Contact& contact, const VectorX& state) const;
+
+  /// The Delassus operator of rows of bodies at their places in `state`.
+  DenseDelassus delassusOf(std::vector<ConstraintRow> rows, const VectorX& state) const;
 
   /// Applies an impulse (N s, world) to B and its opposite to A at the contact.
   void apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const;

@@ -68,7 +68,7 @@ struct Pair {
 
 class InteriorPoint {
  public:
-  InteriorPoint(const ScaledContacts& cones, const ContactOperator& op, const VectorX& impulses);
+  InteriorPoint(const ScaledContacts& cones, const DelassusOperator& op, const VectorX& impulses);
   int run(double tolerance, VectorX& impulses);
 
  private:
@@ -79,17 +79,19 @@ class InteriorPoint {
     return std::sqrt(slip.squaredNorm() + smoothing_ * smoothing_) - smoothing_;
   }
   Mat3 correction(std::size_t pair) const;
-  double step(double target, bool correct, const std::vector<Mat3>& scalingBlocks);
+  double step(double target, bool correct);
 
-  const ContactOperator& op_;
+  const VectorX& free_;
+  const DelassusOperator& op_;
   std::vector<Pair> pairs_;
-  VectorX z_, velocities_, residual_, side_, change_;
+  std::vector<ContactEquation> equations_;
+  VectorX z_, velocities_, residual_, side_;
   double unit_ = 1;       // velocities
   double smoothing_ = 0;  // of the same: rounds off the corner of |u_t| at 0
 };
 
-InteriorPoint::InteriorPoint(const ScaledContacts& cones, const ContactOperator& op, const VectorX& impulses)
-    : op_(op), z_(impulses.size()), side_(impulses.size()) {
+InteriorPoint::InteriorPoint(const ScaledContacts& cones, const DelassusOperator& op, const VectorX& impulses)
+    : free_(cones.free), op_(op), equations_(cones.frictions.size()), z_(impulses.size()), side_(impulses.size()) {
   unit_ = std::max(cones.free.cwiseAbs().maxCoeff(), 1e-300);
   pairs_.resize(cones.frictions.size());
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -107,7 +109,7 @@ double InteriorPoint::gap() const {
 /// G z + free + s - w, with De Saxce's s of the present w.
 void InteriorPoint::findResidual() {
   for (std::size_t i = 0; i < pairs_.size(); ++i) z_.segment<3>(3 * static_cast<Index>(i)) = pairs_[i].impulse();
-  op_.multiply(z_, velocities_);
+  velocities_ = op_.multiply(z_) + free_;
   residual_ = velocities_;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
@@ -143,26 +145,25 @@ Mat3 InteriorPoint::correction(std::size_t i) const {
 }
 
 /// Finds dx and dy. Returns the longest step along them.
-double InteriorPoint::step(double target, bool correct, const std::vector<Mat3>& scalingBlocks) {
+double InteriorPoint::step(double target, bool correct) {
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
     side_.segment<3>(at) = pairs_[i].aim(target, correct) - pairs_[i].stiffness() * residual_.segment<3>(at);
   }
-  op_.respond(scalingBlocks, !correct, side_, change_);
+  VectorX du;
+  const VectorX dz = op_.solve(side_, &du);
   double longest = 1;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
     Pair& pair = pairs_[i];
-    const Vec3 du = change_.segment<3>(at);
-    pair.dx = pair.toX(side_.segment<3>(at) - scalingBlocks[i] * du);
-    pair.dy = pair.toY(correction(i) * du + residual_.segment<3>(at));
+    pair.dx = pair.toX(dz.segment<3>(at));
+    pair.dy = pair.toY(correction(i) * du.segment<3>(at) + residual_.segment<3>(at));
     longest = std::min(longest, pair.longestStep());
   }
   return longest;
 }
 
 int InteriorPoint::run(double tolerance, VectorX& impulses) {
-  std::vector<Mat3> scalingBlocks(pairs_.size());
   int iteration = 0;
   double least = INFINITY;
   for (; iteration < kMaxInteriorIterations; ++iteration) {
@@ -174,15 +175,16 @@ int InteriorPoint::run(double tolerance, VectorX& impulses) {
     if (!(off < INFINITY) || off <= tolerance || complementarity <= kMinGap * unit_ * unit_) break;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       pairs_[i].scale();
-      scalingBlocks[i] = pairs_[i].stiffness() * correction(i);
+      equations_[i].ofVelocity = pairs_[i].stiffness() * correction(i);
     }
-    const double affine = step(0, false, scalingBlocks);
+    op_.factorize(equations_);
+    const double affine = step(0, false);
     for (Pair& pair : pairs_) pair.affineX = pair.dx, pair.affineY = pair.dy;
     const double left = 1 - affine, centering = left * left * left;
-    double length = kStay * step(centering * complementarity, true, scalingBlocks);
+    double length = kStay * step(centering * complementarity, true);
     if (length < kShort) {  // back to the middle
       for (Pair& pair : pairs_) pair.affineX.setZero(), pair.affineY.setZero();
-      length = kStay * step(complementarity, true, scalingBlocks);
+      length = kStay * step(complementarity, true);
     }
     if (!(length > kShortest)) break;
     for (Pair& pair : pairs_) pair.x += length * pair.dx, pair.y += length * pair.dy;
@@ -192,7 +194,7 @@ int InteriorPoint::run(double tolerance, VectorX& impulses) {
 
 }  // namespace
 
-int solveByInteriorPoint(const ScaledContacts& cones, const ContactOperator& op, double tolerance, VectorX& impulses) {
+int solveByInteriorPoint(const ScaledContacts& cones, const DelassusOperator& op, double tolerance, VectorX& impulses) {
   return InteriorPoint(cones, op, impulses).run(tolerance, impulses);
 }
 

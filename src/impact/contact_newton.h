@@ -3,7 +3,7 @@
 // Newton's method on the equations of P. Alart and A. Curnier, "A mixed formulation for frictional contact problems
 // prone to Newton like solution methods", 1991, for impulses and velocities scaled to inverse mass 1.
 
-#include "math/types.h"
+#include "impact/delassus_operator.h"
 
 namespace cradle {
 
@@ -12,9 +12,10 @@ inline bool pushes(const Vec3& z, const Vec3& u) {
   return z.z() > u.z();
 }
 
-/// The linearised equations of a contact that pushes: ofImpulse dz + ofVelocity du = -value.
+/// The function whose root is sought, F(z, u), of a contact that pushes, and its derivatives dF/dz, dF/du: the equation
+/// of a step has the side -F.
 struct NewtonRow {
-  Mat3 ofImpulse, ofVelocity;
+  ContactEquation equation;
   Vec3 value;
 };
 
@@ -22,8 +23,8 @@ struct NewtonRow {
 inline NewtonRow newtonRow(const Vec3& z, const Vec3& u, double friction, double regular) {
   NewtonRow row;
   const double pressing = z.z() - u.z();
-  row.ofImpulse = regular * Mat3::Identity();
-  row.ofVelocity.setIdentity();
+  auto& [ofImpulse, ofVelocity, isOpen] = row.equation;
+  ofImpulse = regular * Mat3::Identity();
   row.value = u;  // sticks
   const Eigen::Vector2d pull = z.head<2>() - u.head<2>();
   const double size = pull.norm();
@@ -34,10 +35,10 @@ inline NewtonRow newtonRow(const Vec3& z, const Vec3& u, double friction, double
   const Eigen::Vector2d e = size > 0 ? Eigen::Vector2d(pull / size) : Eigen::Vector2d::Zero();
   const Mat2 turning =
       size > 0 ? Mat2(friction * pressing / size * (Mat2::Identity() - e * e.transpose())) : Mat2::Zero();
-  row.ofImpulse.topLeftCorner<2, 2>() = Mat2::Identity() - (1 - kSticky) * turning;
-  row.ofImpulse.topRightCorner<2, 1>() = -friction * e;
-  row.ofVelocity.topLeftCorner<2, 2>() = turning;
-  row.ofVelocity.topRightCorner<2, 1>() = friction * e;
+  ofImpulse.topLeftCorner<2, 2>() = Mat2::Identity() - (1 - kSticky) * turning;
+  ofImpulse.topRightCorner<2, 1>() = -friction * e;
+  ofVelocity.topLeftCorner<2, 2>() = turning;
+  ofVelocity.topRightCorner<2, 1>() = friction * e;
   row.value.head<2>() = z.head<2>() - friction * pressing * e;
   return row;
 }

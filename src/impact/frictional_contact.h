@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "math/types.h"
+#include "impact/delassus_operator.h"
 
 namespace cradle {
 
@@ -11,7 +11,15 @@ struct ContactSolution {
   VectorX impulses;
   VectorX velocities;     // of the contacts: G impulses + g
   double residual = 0;    // in units of the velocities: the most that any contact is off Coulomb's law
-  bool converged = true;  // the residual is rounding, or 1e-12 of the largest velocity
+  bool converged = true;  // the residual is what was asked for
+  long iterations = 0;    // of ADMM and of the interior point method
+};
+
+/// A warm start: where an iteration begins, and where it ended: impulses (N s) and velocities (m/s) of the contacts by
+/// components (t1, t2, n), De Saxce's correction included, and the penalty (in scaled units; 0: none known).
+struct WarmStart {
+  VectorX impulses, velocities;
+  double penalty = 0;
 };
 
 /// The frictional contact problem (V. Acary, B. Brogliato, "Numerical Methods for Nonsmooth Dynamical Systems", 2008):
@@ -20,10 +28,16 @@ struct ContactSolution {
 /// positive semi-definite, and often singular: contacts may be redundant, z is
 /// then one of many. Impulses and velocities, or forces and accelerations: only their ratio G counts. The result does
 /// not depend on the units, and on the order of contacts only by rounding. Not every problem has a solution (what is
-/// wedged and cannot move), and none is always found: see `converged`. One contact takes a microsecond, a box on its
-/// four corners about 20, n contacts O(n^3). A warm start: `near` may hold the impulses of a problem much like this
-/// one, from which a few steps of Newton's method are tried first.
+/// wedged and cannot move), and none is always found: see `converged`, which asks for a residual of rounding, or 1e-12
+/// of the largest velocity. One contact takes a microsecond, a box on its four corners about 20, n contacts O(n^3).
+/// `near` may hold the impulses of a problem much like this one, from which a few steps of Newton's method are tried
+/// first.
 ContactSolution solveFrictionalContact(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
                                        const VectorX& near = {});
+
+/// The same problem of any form of G, to a residual of `tolerance` (m/s), or of ten times that where the first methods
+/// fail; if nothing leads there, the best that was found. Leaves in `start` where it ended.
+ContactSolution solveFrictionalContact(const DelassusOperator& G, const VectorX& g,
+                                       const std::vector<double>& frictions, double tolerance, WarmStart& start);
 
 }  // namespace cradle

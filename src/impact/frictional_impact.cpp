@@ -22,7 +22,7 @@
 #include <numeric>
 
 #include "collision/root_bracketing.h"
-#include "impact/dense_contact_problem.h"
+#include "impact/contact_delassus.h"
 #include "impact/frictional_contact.h"
 #include "impact/generalized_reflections.h"
 
@@ -34,6 +34,7 @@ using Index = Eigen::Index;
 constexpr double kClosedRatio = 1e-11;     // of the fastest speed: what is left is rounding
 constexpr double kSlidingRatio = 1e-9;     // of the same: slower sticks
 constexpr double kSolvedRatio = 1e-7;      // of the same: an error of Coulomb's law that nobody sees
+constexpr double kWedgedRatio = 1e-4;      // of the same: more is left where no impulses solve the problem
 constexpr int kMaxRounds = 10;             // of what was not solved: each leaves less
 constexpr double kFrictionError = 1e-6;    // of friction that wedges: so near to the most that does not
 constexpr double kWedgedEnergies = 1e8;    // energies of each impulse by itself, in those of all: more wedge
@@ -62,7 +63,7 @@ struct Strike {
 /// Contacts with their velocities before an impact.
 class FrictionalImpact {
  public:
-  FrictionalImpact(const std::vector<ImpactContact>& impacts, const DenseContactProblem& cones, VectorX velocities);
+  FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactDelassus& cones, VectorX velocities);
 
   /// Impulses (N s) after which nothing closes; notes what had to be done to find them.
   VectorX resolve(ImpactFaults& faults) const;
@@ -77,14 +78,14 @@ class FrictionalImpact {
   Strike rebound(const Strike& plastic) const;
 
   const std::vector<ImpactContact>& impacts_;
-  const DenseContactProblem& cones_;
+  const ContactDelassus& cones_;
   VectorX start_;                      // m/s
   double fastest_ = 0;                 // m/s
   std::vector<Index> members_;         // contacts that can move
   std::vector<Index> rows_, normals_;  // theirs
 };
 
-FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, const DenseContactProblem& cones,
+FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactDelassus& cones,
                                    VectorX velocities)
     : impacts_(impacts), cones_(cones), start_(std::move(velocities)), fastest_(start_.cwiseAbs().maxCoeff()) {
   for (std::size_t i = 0; i < impacts.size(); ++i) {
@@ -111,7 +112,7 @@ ContactSolution FrictionalImpact::solve(const MatrixX& matrix, const VectorX& fr
     ContactSolution found = solveFrictionalContact(matrix, free, cut);
     const VectorX sizes = found.impulses.cwiseAbs();
     const double all = found.impulses.dot(matrix * found.impulses), each = sizes.dot(matrix.cwiseAbs() * sizes);
-    const bool isUnwedged = isSolved(found) && each <= kWedgedEnergies * all;
+    const bool isUnwedged = found.residual <= kWedgedRatio * fastest_ && each <= kWedgedEnergies * all;
     if (isUnwedged || solution.impulses.size() == 0) solution = std::move(found);
     return isUnwedged;
   };
@@ -135,7 +136,7 @@ Strike FrictionalImpact::strike(const VectorX& velocities, const VectorX& openin
     frictions.push_back(material.staticFriction);
     haveTwoFrictions = haveTwoFrictions || material.staticFriction != material.dynamicFriction;
   }
-  const MatrixX matrix = cones_.delassus()(rows_, rows_);
+  const MatrixX matrix = cones_.matrix()(rows_, rows_);
   const VectorX before = velocities(rows_);
   VectorX free = before;
   free(Eigen::seq(2, Eigen::last, 3)) -= opening;
@@ -175,7 +176,7 @@ Strike FrictionalImpact::strikeWithoutRebound(const VectorX& velocities) const {
 Strike FrictionalImpact::rebound(const Strike& plastic) const {
   const VectorX speeds = start_(normals_);
   const VectorX slowest = plastic.velocities(Eigen::seq(2, Eigen::last, 3)).cwiseMax(0);
-  const MatrixX delassus = cones_.delassus()(normals_, normals_);
+  const MatrixX delassus = cones_.matrix()(normals_, normals_);
   std::vector<ImpactContact> members;
   for (const Index i : members_) members.push_back(impacts_[static_cast<std::size_t>(i)]);
   VectorX opening = VectorX::Zero(speeds.size());
@@ -211,7 +212,7 @@ VectorX FrictionalImpact::resolve(ImpactFaults& faults) const {
     faults.residual = std::max(faults.residual, found.residual);
     faults.scaledEnergy = std::max(faults.scaledEnergy, found.scaledEnergy);
     for (std::size_t k = 0; k < rows_.size(); ++k) impulses[rows_[k]] += found.impulses[static_cast<Index>(k)];
-    velocities = start_ + cones_.delassus() * impulses;
+    velocities = start_ + cones_.matrix() * impulses;
   }
   if (closes(velocities)) faults.rounds = kMaxRounds;
   return impulses;
@@ -223,7 +224,7 @@ ImpactFaults resolveFrictionalImpact(std::vector<ImpactContact>& impacts, const 
                                      VectorX& state) {
   if (impacts.empty()) return {};
   const std::vector<Contact> contacts = contactsOf(impacts);
-  const DenseContactProblem cones(contacts, response, state);
+  const ContactDelassus cones(contacts, response, state);
   ImpactFaults faults;
   const VectorX impulses = FrictionalImpact(impacts, cones, cones.velocitiesIn(state)).resolve(faults);
   cones.apply(impulses, state);

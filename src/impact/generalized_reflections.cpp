@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "impact/linear_complementarity.h"
 
@@ -105,7 +106,9 @@ void reflectAlone(ImpactContact& impact, const ImpulseResponse& response, Vector
   if (!(speed < 0)) return;
   const VectorX answer = response.responseTo(contact, contact.normal, state);
   const double delassus = contact.normal.dot(relativeVelocity(contact, state, answer));
-  if (isImmobile(contact, response, state, delassus)) return;
+  if (response.areConstrained() &&
+      isImmobile(delassus, contact.normal.dot(response.unconstrainedDelassusAt(contact, state) * contact.normal)))
+    return;
   const double restitution = -speed > impact.restSpeed ? impact.material.restitution : 0;
   const double impulse = -(1 + restitution) * speed / delassus;
   const Index velocities = state.size() - poseComponents(state);
@@ -147,27 +150,16 @@ VectorX reflectionImpulses(const MatrixX& delassus, const VectorX& speeds, const
 void resolveReflections(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
   if (impacts.empty()) return;
   if (impacts.size() == 1) return reflectAlone(impacts[0], response, state);
-  const Index size = std::ssize(impacts), velocities = state.size() - poseComponents(state);
-  std::vector<VectorX> answers;  // states: velocities from a unit impulse at each contact
-  for (const ImpactContact& impact : impacts)
-    answers.push_back(response.responseTo(impact.contact, impact.contact.normal, state));
-  MatrixX delassus(size, size);
-  VectorX speeds(size);
-  for (Index i = 0; i < size; ++i) {
-    const Contact& contact = impacts[static_cast<std::size_t>(i)].contact;
-    speeds[i] = contact.normal.dot(relativeVelocity(contact, state));
-    for (Index j = 0; j < size; ++j)
-      delassus(i, j) = contact.normal.dot(relativeVelocity(contact, state, answers[static_cast<std::size_t>(j)]));
-  }
-  delassus = (0.5 * (delassus + delassus.transpose())).eval();
-  for (Index i = 0; i < size; ++i)
-    if (isImmobile(impacts[static_cast<std::size_t>(i)].contact, response, state, delassus(i, i))) speeds[i] = 0;
-  const VectorX impulses = reflectionImpulses(delassus, speeds, impacts);
-  for (std::size_t i = 0; i < impacts.size(); ++i) {
-    const double impulse = impulses[static_cast<Index>(i)];
-    state.tail(velocities) += impulse * answers[i].tail(velocities);
-    impacts[i].impulse += impulse * impacts[i].contact.normal;
-  }
+  std::vector<ConstraintRow> normals;
+  for (const ImpactContact& impact : impacts) normals.push_back(rowAlong(impact.contact.normal, impact.contact, state));
+  const DenseDelassus delassus = response.delassusOf(std::move(normals), state);
+  VectorX speeds = delassus.velocities(state);
+  for (Index i = 0; i < speeds.size(); ++i)
+    if (delassus.isImmobile(i)) speeds[i] = 0;
+  const VectorX impulses = reflectionImpulses(delassus.matrix(), speeds, impacts);
+  delassus.apply(impulses, state);
+  for (std::size_t i = 0; i < impacts.size(); ++i)
+    impacts[i].impulse += impulses[static_cast<Index>(i)] * impacts[i].contact.normal;
 }
 
 }  // namespace cradle

@@ -3,21 +3,12 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <numeric>
+#include <utility>
+
+#include "dynamics/dense_delassus.h"
 
 namespace cradle {
 namespace {
-
-/// The state with the velocities alone that one N s in a rope gives.
-VectorX answerOf(const RopeLimit& rope, const std::vector<RigidBody>& bodies, ConstraintSolver& constraints,
-                 const VectorX& state) {
-  VectorX answer = state;
-  answer.segment(poseComponents(state), bodyCount(state) * kVelocitySize).setZero();
-  const RopeMotion motion = motionOf(rope, state);
-  applyImpulse(bodies, rope.anchorA.body, motion.a.arm, -motion.direction, answer);
-  applyImpulse(bodies, rope.anchorB.body, motion.b.arm, motion.direction, answer);
-  if (constraints.hasConstraints()) constraints.constrainVelocities(answer);
-  return answer;
-}
 
 /// 0 <= impulses, complementary to shortening * impulses - wanted >= 0: the ropes that would have to push are left out
 /// one by one.
@@ -42,23 +33,19 @@ VectorX solvePulls(const MatrixX& shortening, const VectorX& wanted) {
 
 void applyPulls(std::vector<RopePull>& pulls, const std::vector<RigidBody>& bodies, ConstraintSolver& constraints,
                 VectorX& state) {
-  const Eigen::Index size = std::ssize(pulls);
-  std::vector<VectorX> answers;
-  for (const RopePull& pull : pulls) answers.push_back(answerOf(*pull.rope, bodies, constraints, state));
-  MatrixX shortening(size, size);
-  VectorX wanted(size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const RopePull& pull = pulls[static_cast<std::size_t>(i)];
-    wanted[i] = motionOf(*pull.rope, state).lengthening + pull.reboundSpeed;
-    for (Eigen::Index j = 0; j < size; ++j)
-      shortening(i, j) = -motionOf(*pull.rope, answers[static_cast<std::size_t>(j)]).lengthening;
+  std::vector<ConstraintRow> rows;
+  VectorX wanted(std::ssize(pulls));
+  for (const RopePull& pull : pulls) {
+    const RopeMotion motion = motionOf(*pull.rope, state);
+    wanted[std::ssize(rows)] = motion.lengthening + pull.reboundSpeed;
+    rows.push_back(lengtheningRow(*pull.rope, motion));
   }
-  const VectorX impulses = solvePulls(shortening, wanted);
-  const Eigen::Index from = poseComponents(state), velocities = bodyCount(state) * kVelocitySize;
-  for (Eigen::Index i = 0; i < size; ++i) {
-    pulls[static_cast<std::size_t>(i)].impulse = impulses[i];
-    state.segment(from, velocities) += impulses[i] * answers[static_cast<std::size_t>(i)].segment(from, velocities);
-  }
+  std::vector<BodyFrame> frames;
+  findBodyFrames(bodies, state, frames);
+  const DenseDelassus delassus(std::move(rows), bodies, frames, &constraints);
+  const VectorX impulses = solvePulls(delassus.matrix(), wanted);
+  delassus.apply(-impulses, state);
+  for (std::size_t i = 0; i < pulls.size(); ++i) pulls[i].impulse = impulses[static_cast<Eigen::Index>(i)];
 }
 
 }  // namespace cradle

@@ -5,17 +5,7 @@
 namespace cradle {
 namespace {
 
-using Index = Eigen::Index;
-
 constexpr double kSameInertia = 1e-9;  // relative: what bodies that are meant to be equal differ by, and more
-
-void applyTo(int body, const Vec3& impulse, const Vec3& angularImpulse, const std::vector<RigidBody>& bodies,
-             const std::vector<BodyFrame>& frames, VectorX& velocities) {
-  if (body == kFixed) return;
-  const std::size_t index = static_cast<std::size_t>(body);
-  linearVelocity(velocities, body) += bodies[index].inverseMass * impulse;
-  angularVelocity(velocities, body) += frames[index].inverseInertia * angularImpulse;
-}
 
 SurfaceContact surfacesOf(const Contact& contact) {
   return {contact.bodyA,   contact.bodyB,   contact.point, contact.normal,  contact.separation,
@@ -84,40 +74,10 @@ Vec3 followContact(const VectorX& before, const VectorX& state, const std::vecto
   return drift;
 }
 
-ContactResponse::ContactResponse(const std::vector<ContactRows>& contacts, const std::vector<RigidBody>& bodies,
-                                 const std::vector<BodyFrame>& frames, ConstraintSolver& constraints)
-    : contacts_(contacts), delassus_(3 * contacts.size(), 3 * contacts.size()) {
-  for (const ContactRows& contact : contacts)
-    for (const ConstraintRow& row : contact.rows) {
-      VectorX answer = VectorX::Zero(stateSize(std::ssize(bodies)));
-      applyTo(row.bodyA, row.linearA, row.angularA, bodies, frames, answer);
-      applyTo(row.bodyB, row.linearB, row.angularB, bodies, frames, answer);
-      if (constraints.hasConstraints()) constraints.constrainVelocities(answer);
-      delassus_.col(std::ssize(impulseResponses_)) = velocities(answer);
-      impulseResponses_.push_back(std::move(answer));
-    }
-  delassus_ = (0.5 * (delassus_ + delassus_.transpose())).eval();
-}
-
-VectorX ContactResponse::velocities(const VectorX& state) const {
-  VectorX result(3 * contacts_.size());
-  Index next = 0;
-  for (const ContactRows& contact : contacts_)
-    for (const ConstraintRow& row : contact.rows) result[next++] = rateOf(row, state);
-  return result;
-}
-
-VectorX ContactResponse::accelerations(const VectorX& derivative) const {
-  VectorX result(3 * contacts_.size());
-  Index next = 0;
-  for (const ContactRows& contact : contacts_)
-    for (const ConstraintRow& row : contact.rows) result[next++] = rateOf(row, derivative) + row.velocityProduct;
-  return result;
-}
-
-void ContactResponse::apply(const VectorX& impulses, VectorX& velocities) const {
-  for (std::size_t i = 0; i < impulseResponses_.size(); ++i)
-    velocities += impulses[static_cast<Index>(i)] * impulseResponses_[i];
+std::vector<ConstraintRow> allRowsOf(const std::vector<ContactRows>& contacts) {
+  std::vector<ConstraintRow> rows;
+  for (const ContactRows& contact : contacts) rows.insert(rows.end(), contact.rows.begin(), contact.rows.end());
+  return rows;
 }
 
 }  // namespace cradle

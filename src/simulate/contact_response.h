@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "collision/separation.h"
-#include "dynamics/constraint_forces.h"
 #include "dynamics/contact_rows.h"
 
 namespace cradle {
@@ -28,29 +27,7 @@ bool canLast(const Contact& contact);
 /// if the contact cannot last, and goes along with the mean of its bodies.
 Vec3 followContact(const VectorX& before, const VectorX& state, const std::vector<BodyFrame>& frames, Contact& contact);
 
-/// The Delassus operator of contacts: how they answer to each other's impulses, with the bodies' constraints: three
-/// rows of each in turn.
-class ContactResponse {
- public:
-  /// Keeps a reference to `contacts`. `constraints` must be factorised for the bodies' places.
-  ContactResponse(const std::vector<ContactRows>& contacts, const std::vector<RigidBody>& bodies,
-                  const std::vector<BodyFrame>& frames, ConstraintSolver& constraints);
-
-  /// Relative velocities, of A to B, for velocities of the bodies.
-  VectorX velocities(const VectorX& state) const;
-
-  /// Relative accelerations for accelerations of the bodies.
-  VectorX accelerations(const VectorX& derivative) const;
-
-  /// Adds to velocities what impulses (N s, on A) give, or to accelerations what forces (N) do.
-  void apply(const VectorX& impulses, VectorX& velocities) const;
-
-  const MatrixX& delassus() const { return delassus_; }  // 1/kg: impulses to relative velocities
-
- private:
-  const std::vector<ContactRows>& contacts_;
-  std::vector<VectorX> impulseResponses_;
-  MatrixX delassus_;
-};
+/// The rows of all, in turn.
+std::vector<ConstraintRow> allRowsOf(const std::vector<ContactRows>& contacts);
 
 }  // namespace cradle

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "dynamics/invariants.h"
-#include "impact/dense_contact_problem.h"
+#include "impact/contact_delassus.h"
 #include "impact/frictional_contact.h"
-#include "impact/sparse_contact_problem.h"
+#include "impact/sparse_delassus.h"
 #include "simulate/plan/disjoint_sets.h"
 
 namespace cradle {
@@ -95,18 +95,18 @@ void RestingBodies::applySupportForces(const std::vector<Contact>& supports, con
                                        const VectorX& state, VectorX& accelerations) {
   if (supports.size() <= kFewSupports || solver_.hasConstraints()) {
     if (solver_.hasConstraints()) solver_.factorize(state);
-    const DenseContactProblem cones(supports, ImpulseResponse(mechanism_.bodies, solver_), state);
+    const ContactDelassus cones(supports, ImpulseResponse(mechanism_.bodies, solver_), state);
     const VectorX free = cones.velocitiesIn(accelerations);
-    cones.apply(solveFrictionalContact(cones.delassus(), free, frictions).impulses, accelerations);
+    cones.apply(solveFrictionalContact(cones.matrix(), free, frictions).impulses, accelerations);
     return;
   }
-  SparseContactProblem cones;
+  SparseDelassus cones;
   cones.set(supports, mechanism_.bodies, state);
   const Eigen::Index size = 3 * static_cast<Eigen::Index>(supports.size());
   WarmStart start{VectorX::Zero(size), VectorX::Zero(size), 0};
-  long iterations = 0;
   const double tolerance = kForcesSolvedRatio * kResidualAcceleration * mechanism_.gravity.norm();
-  cones.apply(cones.solve(cones.velocitiesIn(accelerations), frictions, tolerance, start, iterations).impulses,
+  const VectorX free = cones.velocitiesIn(accelerations);
+  cones.apply(solveFrictionalContact(cones.scaledOperator(), free, frictions, tolerance, start).impulses,
               accelerations);
 }
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <random>
 
 #include "impact/lorentz_cone.h"
@@ -43,18 +42,12 @@ TEST(ConeInterior, ComesNearASolutionOfRedundantContacts) {
     for (double& entry : rows.reshaped()) entry = 0.3 * uniform(random);
     for (double& entry : velocities) entry = uniform(random);
     const MatrixX g = rows * rows.transpose();
-    const ScaledContacts cones{rows * velocities, {0, 0.3, 0.5, 0.7, 0, 0.3, 0.5, 0.7}};
-    ContactOperator op;
-    op.multiply = [&](const VectorX& z, VectorX& u) { u = g * z + cones.free; };
-    op.respond = [&](const std::vector<Mat3>& stiffnesses, bool, const VectorX& c, VectorX& du) {
-      MatrixX matrix = MatrixX::Identity(24, 24);
-      for (Eigen::Index i = 0; i < 8; ++i)
-        matrix.middleCols<3>(3 * i) += g.middleCols<3>(3 * i) * stiffnesses[static_cast<std::size_t>(i)];
-      du = matrix.partialPivLu().solve(g * c);
-    };
+    const DelassusOperator op = operatorOf(g);
+    ScaledContacts cones{rows * velocities, {0, 0.3, 0.5, 0.7, 0, 0.3, 0.5, 0.7}};
+    for (Eigen::Index i = 0; i < 8; ++i) cones.free.segment<3>(3 * i) *= op.scales[i];
     VectorX z = VectorX::Zero(24);
     solveByInteriorPoint(cones, op, 1e-7, z);
-    const VectorX u = g * z + cones.free;
+    const VectorX u = op.multiply(z) + cones.free;
     for (Eigen::Index i = 0; i < 8; ++i) {
       const double friction = cones.frictions[static_cast<std::size_t>(i)];
       EXPECT_LT(coulombResidual(z.segment<3>(3 * i), u.segment<3>(3 * i), friction).norm(), 1e-5) << trial;

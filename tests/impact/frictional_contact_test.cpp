@@ -4,7 +4,10 @@
 
 #include <Eigen/QR>
 #include <cmath>
+#include <fstream>
+#include <limits>
 #include <random>
+#include <string>
 
 #include "impact/friction_cone.h"
 
@@ -178,6 +181,53 @@ TEST(ConeProblem, WhatIsMirrorSymmetricStaysSo) {
   for (const int corner : {0, 1}) {
     const Vec3 image = solution.impulses.segment<3>(3 * (corner + 2)).cwiseProduct(Vec3(1, -1, 1));
     EXPECT_LT((solution.impulses.segment<3>(3 * corner) - image).norm(), 1e-7);
+  }
+}
+
+/// A problem as contact_problems.txt has it.
+struct PosedProblem {
+  std::string name;
+  MatrixX g;
+  VectorX free;
+  std::vector<double> frictions;
+};
+
+std::vector<PosedProblem> posedProblems() {
+  std::ifstream file(CRADLE_SOURCE_DIR "/tests/impact/contact_problems.txt");
+  while (file.peek() == '#') file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  std::vector<PosedProblem> problems;
+  PosedProblem problem;
+  for (Eigen::Index contacts = 0; file >> problem.name >> contacts;) {
+    problem.frictions.resize(static_cast<std::size_t>(contacts));
+    problem.free.resize(3 * contacts), problem.g.resize(3 * contacts, 3 * contacts);
+    for (double& friction : problem.frictions) file >> friction;
+    for (double& velocity : problem.free) file >> velocity;
+    for (Eigen::Index row = 0; row < 3 * contacts; ++row)
+      for (Eigen::Index column = 0; column <= row; ++column) {
+        file >> problem.g(row, column);
+        problem.g(column, row) = problem.g(row, column);
+      }
+    problems.push_back(problem);
+  }
+  return problems;
+}
+
+// 1e-9 of the largest velocity is good enough for the solver where 1e-12 is far off. Its impulses are put into the
+// cones at the end, which changes velocities by at most |G| times the residual of the impulses: a factor of 6 rows'
+// width.
+TEST(ConeProblem, TheHardestOnesThatScenesPoseAreSolved) {
+  const std::vector<PosedProblem> problems = posedProblems();
+  ASSERT_EQ(problems.size(), 32U);
+  for (const PosedProblem& problem : problems) {
+    const ContactSolution solution = solveFrictionalContact(problem.g, problem.free, problem.frictions);
+    const VectorX velocities = problem.g * solution.impulses + problem.free;
+    const double fastest = problem.free.cwiseAbs().maxCoeff();
+    for (Eigen::Index i = 0; i < std::ssize(problem.frictions); ++i) {
+      const double unit = std::sqrt(3 / problem.g.diagonal().segment<3>(3 * i).sum());
+      const Vec3 z = solution.impulses.segment<3>(3 * i) / unit, u = unit * velocities.segment<3>(3 * i);
+      const Vec3 off = coulombResidual(z, u, problem.frictions[static_cast<std::size_t>(i)]) / unit;
+      EXPECT_LT(off.cwiseAbs().maxCoeff(), 6e-9 * fastest) << problem.name << " contact " << i;
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/dense_delassus.h"
 #include "impact/frictional_contact.h"
 #include "simulate/contact_response.h"
 #include "simulate/thresholds.h"
@@ -98,10 +99,10 @@ bool ComingToRest::canBeInEquilibrium(const std::vector<Contact>& touching, cons
     frictions.push_back(island_.assembly.geometry.pairs[contact.pair].material.staticFriction);
   }
   if (contacts.empty()) return false;
-  const ContactResponse response(contacts, mechanism.bodies, frames, constraints_);
+  const DenseDelassus delassus(allRowsOf(contacts), mechanism.bodies, frames, &constraints_);
   const ContactSolution solution =
-      solveFrictionalContact(response.delassus(), response.accelerations(derivative), frictions);
-  response.apply(solution.impulses, derivative);
+      solveFrictionalContact(delassus.matrix(), delassus.accelerations(derivative), frictions);
+  delassus.apply(solution.impulses, derivative);
   return isInEquilibrium(derivative, groups, group, still(solution.residual));
 }
 

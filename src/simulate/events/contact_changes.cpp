@@ -207,10 +207,10 @@ bool ContactChanges::areForcesFeasible(const std::vector<ContactRecord>& records
   std::swap(active, mechanism().contacts);
   island_.equations.evaluate(state, derivative_);
   std::swap(active, mechanism().contacts);
-  const ContactResponse response(rows, mechanism().bodies, frames_, constraints);
-  const ContactSolution solution = solveContactForces(members, rows, response, derivative_);
+  const DenseDelassus delassus(allRowsOf(rows), mechanism().bodies, frames_, &constraints);
+  const ContactSolution solution = solveContactForces(members, rows, delassus, derivative_);
   const double most = kInfeasibleRatio *
-                      std::max(response.accelerations(derivative_).cwiseAbs().maxCoeff(), mechanism().gravity.norm());
+                      std::max(delassus.accelerations(derivative_).cwiseAbs().maxCoeff(), mechanism().gravity.norm());
   for (std::size_t i = 0; i < sliding.size(); ++i) {
     const Vec3 acceleration = solution.velocities.segment<3>(3 * static_cast<Eigen::Index>(i));
     if (std::abs(acceleration.z()) > most) return false;

@@ -147,26 +147,26 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
   VectorX derivative;
   island.equations.evaluate(island.state, derivative);
   if (nothingCloses(rows, derivative, mechanism.gravity.norm())) return;
-  const ContactResponse response(rows, mechanism.bodies, input.frames, constraints);
-  const ContactSolution solution = solveContactForces(members, rows, response, derivative);
-  const double largest = std::max(response.accelerations(derivative).cwiseAbs().maxCoeff(), mechanism.gravity.norm());
+  const DenseDelassus delassus(allRowsOf(rows), mechanism.bodies, input.frames, &constraints);
+  const ContactSolution solution = solveContactForces(members, rows, delassus, derivative);
+  const double largest = std::max(delassus.accelerations(derivative).cwiseAbs().maxCoeff(), mechanism.gravity.norm());
   if (!(solution.residual <= kStillRatio * largest)) logUnsolved(members, solution.residual, island);
   const AccelerationLimits limits{
       largest, stillAcceleration(island.scene.accuracy, island.scene.duration, largest, solution.residual),
       (input.isReleasing ? kReleasedRatio : kUnloadedRatio) * largest};
-  const MatrixX& delassus = response.delassus();
+  const MatrixX& matrix = delassus.matrix();
   std::vector<Index> activeRows;
   for (std::size_t k = 0; k < group.size(); ++k) {
     ContactRecord& record = found.records[group[k]];
     const Index at = 3 * static_cast<Index>(k);
     const Vec3 acceleration = solution.velocities.segment<3>(at);
-    classifyOne(rows[k], {solution.impulses[at + 2], delassus(at + 2, at + 2), acceleration}, limits, record);
+    classifyOne(rows[k], {solution.impulses[at + 2], matrix(at + 2, at + 2), acceleration}, limits, record);
     if (!record.isLoaded) continue;
     findFallback(record, acceleration.head<2>().norm(), largest, island, found.fallback);
     activeRows.push_back(at + 2);
     if (record.sticks) activeRows.push_back(at), activeRows.push_back(at + 1);
   }
-  if (!activeRows.empty()) countRows(group, delassus(activeRows, activeRows), island.assembly, found);
+  if (!activeRows.empty()) countRows(group, matrix(activeRows, activeRows), island.assembly, found);
 }
 
 /// A corner stays a corner when the face beside it tips, but a cylinder rolls on over its rim. Rows keep points of a

@@ -44,9 +44,9 @@ VectorX slidingFriction(const std::vector<const ContactRecord*>& records, const 
 }  // namespace
 
 ContactSolution solveContactForces(const std::vector<const ContactRecord*>& records,
-                                   const std::vector<ContactRows>& rows, const ContactResponse& response,
+                                   const std::vector<ContactRows>& rows, const DenseDelassus& delassus,
                                    const VectorX& derivative) {
-  const VectorX free = response.accelerations(derivative);
+  const VectorX free = delassus.accelerations(derivative);
   std::vector<double> frictions;
   bool slides = false;
   for (const ContactRecord* record : records) {
@@ -59,8 +59,8 @@ ContactSolution solveContactForces(const std::vector<const ContactRecord*>& reco
   double least = INFINITY;
   int roundsInVain = 0;
   for (int round = 0; round < kMaxFrictionRounds; ++round) {
-    solution = solveFrictionalContact(response.delassus(), free + response.delassus() * friction, frictions,
-                                      solution.impulses);
+    solution =
+        solveFrictionalContact(delassus.matrix(), free + delassus.matrix() * friction, frictions, solution.impulses);
     if (!slides) break;
     const VectorX found = slidingNormalForces(records, solution.impulses), next = slidingFriction(records, rows, found);
     const double change = (next - friction).cwiseAbs().maxCoeff();

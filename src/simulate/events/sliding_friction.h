@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "dynamics/dense_delassus.h"
 #include "impact/frictional_contact.h"
 #include "simulate/contact_response.h"
 #include "simulate/events/contact_record.h"
@@ -12,7 +13,7 @@ namespace cradle {
 /// have the accelerations in `derivative` without them. A contact that slides has the friction -mu lambda_n d, d its
 /// direction of sliding; the others have static friction.
 ContactSolution solveContactForces(const std::vector<const ContactRecord*>& records,
-                                   const std::vector<ContactRows>& rows, const ContactResponse& response,
+                                   const std::vector<ContactRows>& rows, const DenseDelassus& delassus,
                                    const VectorX& derivative);
 
 }  // namespace cradle

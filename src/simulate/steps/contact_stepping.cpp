@@ -10,6 +10,7 @@
 
 #include <algorithm>
 
+#include "impact/friction_cone.h"
 #include "impact/impact_energy.h"
 #include "simulate/steps/penetration_correction.h"
 #include "simulate/steps/step_impact.h"

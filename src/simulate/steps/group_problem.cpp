@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "impact/frictional_contact.h"
-
 namespace cradle {
 namespace {
 
@@ -39,10 +37,17 @@ VectorX GroupProblem::solve(const StepGroup& group, const ContactProblem& proble
   if (isSolvedDensely()) return solveDensely(group, problem, faults);
   const double tolerance = kSolvedRatio * problem.free.cwiseAbs().maxCoeff();
   WarmStart start = warmStartOf(group);
-  const ContactSolution solution = sparse_.solve(problem.free, problem.frictions, tolerance, start, iterations_);
+  const ContactSolution solution = solveSparsely(problem.free, problem.frictions, tolerance, start);
   penalties_[group.firstBody] = start.penalty;
   noteUnsolved(group, solution, tolerance, faults);
   return solution.impulses;
+}
+
+ContactSolution GroupProblem::solveSparsely(const VectorX& free, const std::vector<double>& frictions, double tolerance,
+                                            WarmStart& start) {
+  const ContactSolution solution = solveFrictionalContact(sparse_.scaledOperator(), free, frictions, tolerance, start);
+  iterations_ += solution.iterations;
+  return solution;
 }
 
 /// A wedged body may have no solution, and the search for one may lead beyond all bounds: friction, then all impulses,
@@ -68,7 +73,7 @@ VectorX GroupProblem::solveFrictionless(const VectorX& free, double tolerance) {
   const std::vector<double> frictions(contacts_.size(), 0);
   if (isSolvedDensely()) return solveFrictionalContact(delassus(), free, frictions).impulses;
   WarmStart start{VectorX::Zero(free.size()), VectorX::Zero(free.size()), 0};
-  return sparse_.solve(free, frictions, tolerance, start, iterations_).impulses;
+  return solveSparsely(free, frictions, tolerance, start).impulses;
 }
 
 /// Impulses and velocities of the step before, by the nearest contact of the same bodies.

@@ -5,8 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "impact/dense_contact_problem.h"
-#include "impact/sparse_contact_problem.h"
+#include "impact/contact_delassus.h"
+#include "impact/frictional_contact.h"
+#include "impact/sparse_delassus.h"
 #include "simulate/corrections.h"
 #include "simulate/steps/contact_set.h"
 
@@ -93,15 +94,17 @@ class GroupProblem {
 
  private:
   bool isSolvedDensely() const;
-  MatrixX delassus() const { return dense_ ? dense_->delassus() : sparse_.delassus(); }
+  MatrixX delassus() const { return dense_ ? dense_->matrix() : sparse_.matrix(); }
+  ContactSolution solveSparsely(const VectorX& free, const std::vector<double>& frictions, double tolerance,
+                                WarmStart& start);
   VectorX solveDensely(const StepGroup& group, const ContactProblem& problem, std::vector<SteppingFault>& faults) const;
   WarmStart warmStartOf(const StepGroup& group) const;
 
   const Assembly& assembly_;
   ConstraintSolver constraints_;
   std::vector<Contact> contacts_;  // of the group
-  SparseContactProblem sparse_;
-  std::optional<DenseContactProblem> dense_;  // of a group with constraints
+  SparseDelassus sparse_;
+  std::optional<ContactDelassus> dense_;  // of a group with constraints
   StepMemory memory_;
   std::map<int, double> penalties_;  // of ADMM, of each group's first body
   long iterations_ = 0;

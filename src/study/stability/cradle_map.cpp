@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "impact/dense_contact_problem.h"
+#include "impact/contact_delassus.h"
 #include "impact/generalized_reflections.h"
 #include "impact/linear_complementarity.h"
 #include "simulate/simulate.h"
@@ -35,12 +35,12 @@ void resolveAllAtOnce(const std::vector<ImpactContact>& impacts, const ImpulseRe
   const Eigen::Index size = std::ssize(impacts);
   std::vector<Contact> contacts;
   for (const ImpactContact& impact : impacts) contacts.push_back(impact.contact);
-  const DenseContactProblem cones(contacts, response, state);
+  const ContactDelassus cones(contacts, response, state);
   const Eigen::VectorXi normals = Eigen::VectorXi::LinSpaced(size, 2, static_cast<int>(3 * size - 1));
   VectorX speeds = cones.velocitiesIn(state)(normals);
   for (Eigen::Index i = 0; i < size; ++i) speeds[i] *= 1 + impacts[static_cast<std::size_t>(i)].material.restitution;
   VectorX impulses = VectorX::Zero(3 * size);
-  impulses(normals) = solveLinearComplementarity(cones.delassus()(normals, normals), speeds);
+  impulses(normals) = solveLinearComplementarity(cones.matrix()(normals, normals), speeds);
   cones.apply(impulses, state);
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "dynamics/constraint_rows.h"
+#include "dynamics/row_response.h"
 
 namespace cradle {
 
@@ -30,14 +30,9 @@ class GaussSeidel {
   MatrixX matrix() const;
 
  private:
-  struct Response {
-    Vec3 linearA, angularA, linearB, angularB;  // M^-1 J^T
-    double inverseMass = 0;                     // J M^-1 J^T of the row with itself
-    double multiplier = 0;
-  };
-
   std::vector<ConstraintRow> rows_;
-  std::vector<Response> responses_;
+  std::vector<RowResponse> responses_;
+  std::vector<double> inverseMasses_, multipliers_;  // the diagonal of J M^-1 J^T; what the sweeps have added up
   RowKind kind_;
   VectorX state_;
 };

@@ -1,0 +1,121 @@
+#include "impact/delassus_operator.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace cradle {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kSingularRatio =
+    1e-7;  // of the largest pivot: a smaller one is rounding, or what solvers add to be regular
+constexpr double kLeastShiftRatio = 1e-8;  // of the largest eigenvalue: the factors then have errors of 1e-8
+
+/// What the operator of a matrix holds: the scaled matrix, and the factors of the last equations.
+struct DenseFactors {
+  MatrixX matrix, system;
+  std::vector<Index> rows;  // of contacts that are not open, where any is
+  Eigen::PartialPivLU<MatrixX> factor;
+  Eigen::CompleteOrthogonalDecomposition<MatrixX> leastFactor;
+  Eigen::LLT<MatrixX> shiftedFactor;
+  enum class Solved { plain, least, shifted } kind = Solved::plain;
+
+  void factorizeShifted(double shift) {
+    kind = Solved::shifted;
+    system = matrix;
+    system.diagonal().array() += shift;
+    shiftedFactor.compute(system);
+  }
+
+  void assemble(const std::vector<ContactEquation>& equations) {
+    rows.clear();
+    const bool isAnyOpen = std::any_of(equations.begin(), equations.end(), [](const auto& one) { return one.isOpen; });
+    if (!isAnyOpen) {
+      system = matrix;
+    } else {
+      for (std::size_t i = 0; i < equations.size(); ++i)
+        for (Index axis = 0; axis < 3 && !equations[i].isOpen; ++axis) rows.push_back(3 * static_cast<Index>(i) + axis);
+      system = matrix(rows, rows);
+    }
+    Index at = 0;
+    for (const ContactEquation& equation : equations) {
+      if (equation.isOpen) continue;
+      system.middleRows<3>(at) = (equation.ofVelocity * system.middleRows<3>(at)).eval();
+      system.block<3, 3>(at, at) += equation.ofImpulse;
+      at += 3;
+    }
+  }
+
+  bool factorize(const std::vector<ContactEquation>& equations) {
+    kind = Solved::plain;
+    assemble(equations);
+    if (system.size() == 0) return true;
+    factor.compute(system);
+    const auto pivots = factor.matrixLU().diagonal().cwiseAbs();
+    return pivots.minCoeff() > kSingularRatio * pivots.maxCoeff();
+  }
+
+  void factorizeForLeast(const std::vector<ContactEquation>& equations) {
+    kind = Solved::least;
+    assemble(equations);
+    if (system.size() == 0) return;
+    leastFactor.setThreshold(kSingularRatio);
+    leastFactor.compute(system);
+  }
+
+  VectorX solveRows(const VectorX& sides) const {
+    return kind == Solved::least ? VectorX(leastFactor.solve(sides)) : VectorX(factor.solve(sides));
+  }
+
+  VectorX solve(const VectorX& sides) const {
+    if (kind == Solved::shifted) return shiftedFactor.solve(sides);
+    if (system.rows() == sides.size()) return solveRows(sides);
+    VectorX change = VectorX::Zero(sides.size());
+    if (!rows.empty()) change(rows) = solveRows(sides(rows));
+    return change;
+  }
+};
+
+}  // namespace
+
+VectorX scalesOf(const MatrixX& delassus) {
+  VectorX scales(delassus.rows() / 3);
+  for (Index i = 0; i < scales.size(); ++i) {
+    const double inverseMass = delassus.diagonal().segment<3>(3 * i).sum() / 3;
+    scales[i] = inverseMass > 0 ? 1 / std::sqrt(inverseMass) : 1;
+  }
+  return scales;
+}
+
+DelassusOperator operatorOf(const MatrixX& delassus) {
+  DelassusOperator op;
+  op.scales = scalesOf(delassus);
+  const auto factors = std::make_shared<DenseFactors>();
+  MatrixX& matrix = factors->matrix;
+  matrix.resize(delassus.rows(), delassus.cols());
+  for (Index j = 0; j < op.scales.size(); ++j)
+    for (Index i = 0; i < op.scales.size(); ++i)
+      matrix.block<3, 3>(3 * i, 3 * j) = op.scales[i] * op.scales[j] * delassus.block<3, 3>(3 * i, 3 * j);
+  op.largest = matrix.cwiseAbs().colwise().sum().maxCoeff();
+  op.leastShift = kLeastShiftRatio * op.largest;
+  op.multiply = [factors](const VectorX& z) { return VectorX(factors->matrix * z); };
+  op.magnitude = [factors](const VectorX& z) { return (factors->matrix.cwiseAbs() * z.cwiseAbs()).maxCoeff(); };
+  op.factorize = [factors](const std::vector<ContactEquation>& equations) { return factors->factorize(equations); };
+  op.factorizeForLeast = [factors](const std::vector<ContactEquation>& equations) {
+    factors->factorizeForLeast(equations);
+  };
+  op.factorizeShifted = [factors](double shift) { factors->factorizeShifted(shift); };
+  op.solve = [factors](const VectorX& sides, VectorX* velocities) {
+    VectorX change = factors->solve(sides);
+    if (velocities) *velocities = factors->matrix * change;
+    return change;
+  };
+  return op;
+}
+
+}  // namespace cradle

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "impact/block_lu.h"
+#include "impact/contact_impulse.h"
+#include "impact/delassus_operator.h"
+
+namespace cradle {
+
+/// The Delassus operator W = J M^-1 J^T of contacts of bodies without constraints by its factors: it is never formed.
+/// Linear in the number of contacts for stacks and chains.
+class SparseDelassus {
+ public:
+  /// Contacts, and bodies at their places in `state`, as they are now. Keeps what `analyze` found for the calls after,
+  /// as long as the same bodies touch.
+  void set(const std::vector<Contact>& contacts, const std::vector<RigidBody>& bodies, const VectorX& state);
+
+  /// World from the axes of a contact.
+  const Mat3& axes(std::size_t contact) const { return contacts_[contact].axes; }
+
+  /// Velocities (m/s) of all contacts for the velocities in a state.
+  VectorX velocitiesIn(const VectorX& velocities) const;
+
+  /// Adds to the velocities in `state` what the impulses give.
+  void apply(const VectorX& impulses, VectorX& state) const;
+
+  /// In 1/kg, dense.
+  MatrixX matrix() const;
+
+  /// For solvers; valid as long as this stays where it is, until the next `set`.
+  DelassusOperator scaledOperator();
+
+ private:
+  using Mat36 = Eigen::Matrix<double, 3, 6>;
+  struct Row {
+    Mat3 axes;                // world from (t1, t2, n)
+    std::array<int, 2> body;  // of A and B among bodies_, or -1
+    std::array<Mat36, 2> j;   // of A and B: velocity of the contact from velocities times root of mass
+    double scale = 1;         // of its impulses: inverse mass 1
+  };
+  struct BodyRoot {
+    Eigen::Index index;   // in the state
+    double inverseMass;   // 1/kg, square root of
+    Mat3 inverseInertia;  // world, lower root of
+  };
+  void factorize(const std::vector<ContactEquation>& equations);
+  VectorX solve(const VectorX& sides, VectorX* velocities);
+  VectorX multiply(const VectorX& z);
+  double magnitude(const VectorX& z);
+  Row rowOf(const Contact& contact, const std::array<int, 2>& bodies, const VectorX& state) const;
+  void gather(const VectorX& impulses);
+  Vec3 velocityOfBodies(std::size_t contact) const;
+
+  std::vector<Row> contacts_;
+  std::vector<BodyRoot> bodies_;
+  std::vector<std::pair<int, int>> pairs_;  // of bodies that touch
+  std::vector<std::size_t> pairOf_;         // of each contact
+  BlockLu factor_;
+  std::vector<std::pair<int, int>> analyzed_;
+  std::size_t analyzedBodies_ = 0;
+  std::vector<Mat3> inverses_, stiffnesses_;  // A^-1 and A^-1 B of the equations A dz + B du = side
+  VectorX bodyWork_;
+};
+
+}  // namespace cradle
