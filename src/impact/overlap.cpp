@@ -1,6 +1,7 @@
 #include "impact/overlap.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace cradle {
 namespace {
@@ -10,11 +11,10 @@ constexpr double kOverlapLeft = 1e-15;  // m
 constexpr double kMinWay =
     1e-9;  // of the inverse mass without constraints: less is rounding, and the constraints hold the pair
 
-/// The displacement, in place of velocities, that takes the overlaps of one pair out. Many with one normal are one:
-/// what the deepest needs is enough for all.
-VectorX displacementOf(const std::vector<Contact>& overlaps, const ImpulseResponse& response, const VectorX& state) {
-  VectorX displacement = state;
-  displacement.tail(state.size() - poseComponents(state)).setZero();
+/// Adds the displacement, in place of velocities, that takes the overlaps of one pair out. Many with one normal are
+/// one: what the deepest needs is enough for all.
+void addDisplacement(const std::vector<Contact>& overlaps, const ImpulseResponse& response, const VectorX& state,
+                     VectorX& displacement) {
   for (const Contact& overlap : overlaps) {
     const double left = -overlap.separation - openingSpeed(overlap, displacement);
     if (left <= 0) continue;
@@ -23,7 +23,19 @@ VectorX displacementOf(const std::vector<Contact>& overlaps, const ImpulseRespon
     if (!(inverseMass > kMinWay * untied)) continue;
     response.apply(overlap, left / inverseMass * overlap.normal, displacement);
   }
-  return displacement;
+}
+
+/// Moves bodies by their displacements, in place of velocities, which begin anew for the next pair.
+void displace(const std::vector<int>& bodies, VectorX& displacement, VectorX& state) {
+  for (const int body : bodies) {
+    if (body == kFixed) continue;
+    centerOfMass(state, body) += linearVelocity(displacement, body);
+    turnBody(state, body, angularVelocity(displacement, body));
+    centerOfMass(displacement, body) = centerOfMass(state, body);
+    setOrientation(displacement, body, orientation(state, body));
+    linearVelocity(displacement, body).setZero();
+    angularVelocity(displacement, body).setZero();
+  }
 }
 
 }  // namespace
@@ -34,6 +46,11 @@ void resolveOverlaps(const ContactGeometry& geometry, const std::vector<Contact>
   for (const Contact& contact : contacts)
     if (pairs.empty() || pairs.back() != contact.pair) pairs.push_back(contact.pair);
   std::vector<Contact> overlaps;
+  VectorX displacement = state;
+  displacement.tail(state.size() - poseComponents(state)).setZero();
+  // A pair without constraints moves its own bodies alone.
+  std::vector<int> moved(static_cast<std::size_t>(bodyCount(state)));
+  std::iota(moved.begin(), moved.end(), 0);
   for (int sweep = 0; sweep < kMaxOverlapSweeps; ++sweep) {
     double deepest = 0;
     for (const std::size_t pair : pairs) {
@@ -43,11 +60,9 @@ void resolveOverlaps(const ContactGeometry& geometry, const std::vector<Contact>
       std::stable_sort(overlaps.begin(), overlaps.end(),
                        [](const Contact& a, const Contact& b) { return a.separation < b.separation; });
       deepest = std::max(deepest, -overlaps[0].separation);
-      const VectorX displacement = displacementOf(overlaps, response, state);
-      for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
-        centerOfMass(state, body) += linearVelocity(displacement, body);
-        turnBody(state, body, angularVelocity(displacement, body));
-      }
+      addDisplacement(overlaps, response, state, displacement);
+      if (!response.areConstrained()) moved = {overlaps[0].bodyA, overlaps[0].bodyB};
+      displace(moved, displacement, state);
     }
     if (deepest <= kOverlapLeft) return;
   }

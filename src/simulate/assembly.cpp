@@ -206,7 +206,8 @@ void refuse(const std::vector<std::string>& faults) {
   const std::size_t told = std::min(faults.size(), kMaxFaultsTold);
   std::string text = printableLine(faults.front());
   for (std::size_t i = 1; i < told; ++i) text.append("\n").append(printableLine(faults[i]));
-  if (faults.size() > told) text += fmt::format("\nand {} more", faults.size() - told);
+  const char* atLeast = faults.size() < kMaxFaultsCounted ? "" : "at least ";
+  if (faults.size() > told) text += fmt::format("\nand {}{} more", atLeast, faults.size() - told);
   throw Error::ofLines(ErrorKind::scene, text);
 }
 

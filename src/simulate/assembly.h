@@ -8,6 +8,7 @@
 #include "dynamics/equations_of_motion.h"
 #include "dynamics/rope.h"
 #include "scene/scene.h"
+#include "simulate/colliders.h"
 #include "simulate/plan/plan.h"
 
 namespace cradle {
@@ -47,8 +48,8 @@ void refuseUnsupported(const Scene& scene);
 
 constexpr std::size_t kMaxFaultsTold = 50;
 
-/// Throws Error(scene) that tells of the first kMaxFaultsTold faults, if there are any; of further ones their number
-/// counts.
+/// Throws Error(scene) that tells of the first kMaxFaultsTold faults, if there are any, and how many more there are; of
+/// kMaxFaultsCounted, that there are at least as many.
 void refuse(const std::vector<std::string>& faults);
 
 }  // namespace cradle

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "collision/mesh_collider.h"
 #include "collision/mesh_surface.h"
@@ -61,6 +62,13 @@ Collider shapedLike(const Body& body, const Scene& scene, const RigidTransform& 
 /// That of a mesh that is no solid and moves is not known.
 bool hasSurface(const Collider& collider) {
   return collider.kind() != ColliderKind::mesh || collider.mesh;
+}
+
+/// Whether a body that moves has an open mesh as its collider: which side of it is inside is not known.
+bool isMovingSheet(const Body& body, const Scene& scene) {
+  const auto collider = colliderOf(body, scene, kFixed);
+  if (!collider || collider->kind() != ColliderKind::mesh) return false;
+  return !checkSolid(scene.models[static_cast<std::size_t>(std::get<ModelShape>(body.shape).model)].solid).isClosed;
 }
 
 bool isFixedObstacle(const Body& body) {
@@ -122,36 +130,28 @@ bool canSolveContact(const Collider& a, const Collider* b) {
   return !b->points.empty() && hasSurface(a) && hasSurface(*b);
 }
 
-/// Where something fixed may be touched, for canSolveContact.
-static void addSurfacesToFixed(const Scene& scene, std::vector<std::optional<Collider>>& colliders) {
-  if (std::none_of(scene.bodies.begin(), scene.bodies.end(), isFixedObstacle)) return;
-  std::vector<int> bodies;
-  std::vector<Collider> present;
-  for (std::size_t i = 0; i < colliders.size(); ++i)
-    if (colliders[i]) bodies.push_back(static_cast<int>(i)), present.push_back(*colliders[i]);
-  addSurfaces(scene, bodies, present);
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    colliders[static_cast<std::size_t>(bodies[i])] = std::move(present[i]);
-}
-
 std::vector<std::string> unsupportedContacts(const Scene& scene) {
   std::vector<std::string> faults;
-  std::vector<std::optional<Collider>> colliders;
-  for (const Body& body : scene.bodies) colliders.push_back(colliderOf(body, scene, kFixed));
-  addSurfacesToFixed(scene, colliders);
-  const auto isSolved = [](const auto& collider) { return !collider || canSolveContact(*collider, &*collider); };
-  if (std::all_of(colliders.begin(), colliders.end(), isSolved)) return faults;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    for (std::size_t j = i + 1; j < scene.bodies.size(); ++j) {
-      const Body &a = scene.bodies[i], &b = scene.bodies[j];
-      const bool bothMove = a.motion == Motion::dynamic && b.motion == Motion::dynamic;
-      if (bothMove || !mayTouch(a, b)) continue;
-      const auto &first = isPlane(a) ? colliders[j] : colliders[i], &second = isPlane(a) ? colliders[i] : colliders[j];
-      if (!canSolveContact(*first, second ? &*second : nullptr))
-        faults.push_back(
-            fmt::format("{}: contact between \"{}\" and \"{}\" cannot be simulated: a mesh that moves and is no solid "
-                        "can touch nothing but planes; give one of them \"collision\": \"none\"",
-                        b.where, a.name, b.name));
+  std::vector<std::size_t> obstacles, lacking;
+  std::map<std::pair<int, CollisionChoice>, bool> isKnown;  // one answer for all copies
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (isFixedObstacle(body)) obstacles.push_back(i);
+    const auto* shape = std::get_if<ModelShape>(&body.shape);
+    if (!shape || body.motion == Motion::fixed) continue;
+    const auto [known, isNew] = isKnown.emplace(std::pair(shape->model, body.collision), false);
+    if (isNew) known->second = isMovingSheet(body, scene);
+    if (known->second) lacking.push_back(i);
+  }
+  for (const std::size_t moving : lacking)
+    for (const std::size_t obstacle : obstacles) {
+      if (faults.size() == kMaxFaultsCounted) return faults;
+      const auto [first, second] = std::minmax({moving, obstacle});
+      const Body &a = scene.bodies[first], &b = scene.bodies[second];
+      faults.push_back(
+          fmt::format("{}: contact between \"{}\" and \"{}\" cannot be simulated: a mesh that moves and is no solid "
+                      "can touch nothing but planes; give one of them \"collision\": \"none\"",
+                      b.where, a.name, b.name));
     }
   return faults;
 }

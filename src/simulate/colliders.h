@@ -22,7 +22,10 @@ void addSurfaces(const Scene& scene, const std::vector<int>& bodies, std::vector
 /// Whether contact of two colliders can be computed; `b` is null for a plane.
 bool canSolveContact(const Collider& a, const Collider* b);
 
-/// Faults of pairs whose contact cannot be simulated yet. Two moving bodies are no fault: they may stay apart.
+constexpr std::size_t kMaxFaultsCounted = 1000;  // a scene with as many is not searched to its end
+
+/// Faults of pairs whose contact cannot be simulated yet, kMaxFaultsCounted at most. Two moving bodies are no fault:
+/// they may stay apart.
 std::vector<std::string> unsupportedContacts(const Scene& scene);
 
 /// Pairs of scene bodies that joints join and none of these joints lets touch each other: the smaller index first.

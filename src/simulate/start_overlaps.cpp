@@ -21,6 +21,9 @@ constexpr double kTouchingRatio = 1e-9;                                // of the
 constexpr double kModelRatio = std::numeric_limits<float>::epsilon();  // of a model's: its vertices are that exact
 constexpr double kMaxOverlapRatio = 0.5;                               // of the smaller body's inner radius
 constexpr int kMaxPushRounds = 20;  // of moving apart: each may bring others together
+// Pairs that are moved apart, each counted in each round: some seconds, and for a few thousand pairs all rounds.
+constexpr double kMaxPushes = 50'000;
+constexpr double kBodiesOfAPush = 10;  // whose constraints take as long as a pair without any
 
 /// The deepest overlap (m) of a pair; < 0 or -infinity if it has none.
 double depthOf(const ContactGeometry& geometry, const ColliderPair& pair, const VectorX& state) {
@@ -87,19 +90,25 @@ std::string faultOf(const Overlap& overlap) {
       overlap.againstPlane ? "it out along the plane's normal" : "them apart", lengthText(overlap.depth));
 }
 
-std::vector<Overlap> overlapsOf(const Scene& scene, const Assembly& assembly) {
+bool isCorrectable(const Overlap& overlap) {
+  return overlap.depth <= overlap.correctable;
+}
+
+/// All overlaps of an island, or those found up to the first `maxFaults` that are not correctable.
+std::vector<Overlap> overlapsOf(const Scene& scene, const Assembly& assembly, std::size_t maxFaults) {
   const ContactGeometry& geometry = assembly.geometry;
   std::vector<Overlap> overlaps;
+  std::size_t faults = 0;
   for (const ColliderPair& pair : geometry.pairs) {
     const auto [first, second] = bodiesOf(assembly, pair);
     const Body &a = scene.bodies[static_cast<std::size_t>(first)], &b = scene.bodies[static_cast<std::size_t>(second)];
     const RigidTransform worldFromA = poseOf(assembly.state, geometry.colliders[pair.a].body);
     if (separationBound(geometry, pair, worldFromA, poseOf(assembly.state, bodyBOf(geometry, pair))) > 0) continue;
     const double depth = depthOf(geometry, pair, assembly.state);
-    if (depth > touchingDepth(geometry, pair, a, b))
-      overlaps.push_back({a, b, pair.againstPlane,
-                          !pair.againstPlane && (isSheet(geometry, pair.a) || isSheet(geometry, pair.b)), depth,
-                          correctableDepth(geometry, pair)});
+    if (depth <= touchingDepth(geometry, pair, a, b)) continue;
+    const bool isThroughSheet = !pair.againstPlane && (isSheet(geometry, pair.a) || isSheet(geometry, pair.b));
+    overlaps.push_back({a, b, pair.againstPlane, isThroughSheet, depth, correctableDepth(geometry, pair)});
+    if (!isCorrectable(overlaps.back()) && ++faults == maxFaults) break;
   }
   return overlaps;
 }
@@ -130,28 +139,55 @@ void moveApart(Assembly& assembly) {
   BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0, assembly.geometry);
 }
 
-/// Moves bodies apart whose overlaps are correctable; the others are faults.
-void correctPenetrations(const Scene& scene, Assembly& assembly, std::vector<std::string>& faults) {
-  const std::vector<Overlap> overlaps = overlapsOf(scene, assembly);
-  const std::size_t before = faults.size();
-  for (const Overlap& overlap : overlaps)
-    if (overlap.depth > overlap.correctable) faults.push_back(faults.size() < kMaxFaultsTold ? faultOf(overlap) : "");
-  if (overlaps.empty() || faults.size() > before) return;
-  std::vector<Overlap> left = overlaps;
-  for (int round = 0; round < kMaxPushRounds && !left.empty(); ++round) {
-    moveApart(assembly);
-    left = overlapsOf(scene, assembly);
+/// The work of a round of moving apart, in pairs without constraints.
+double pushesOfARound(const Assembly& assembly, std::size_t overlaps) {
+  const Constraints& constraints = assembly.mechanism.constraints;
+  bool hasConstraints = false;
+  forEachConstraint(constraints, [&](int, int) { hasConstraints = true; });
+  const double bodies = hasConstraints ? static_cast<double>(assembly.mechanism.bodies.size()) : 0;
+  return static_cast<double>(overlaps) * (1 + bodies / kBodiesOfAPush);
+}
+
+/// Adds a fault for each overlap, up to kMaxFaultsCounted in all.
+void addFaults(const std::vector<Overlap>& overlaps, const char* why, std::vector<std::string>& faults) {
+  for (const Overlap& overlap : overlaps) {
+    if (faults.size() == kMaxFaultsCounted) return;
+    faults.push_back(faults.size() < kMaxFaultsTold ? textOf(overlap) + why : "");
   }
+}
+
+/// Moves bodies apart until none overlaps, each round of as many pairs as `overlaps`; what is left is a fault.
+void moveAllApart(const Scene& scene, const std::vector<Overlap>& overlaps, Assembly& assembly,
+                  std::vector<std::string>& faults) {
+  const double pushes = pushesOfARound(assembly, overlaps.size());
+  if (pushes > kMaxPushes)
+    return addFaults(overlaps, "; more pairs overlap than are moved apart: mend their places in the scene", faults);
+  const double rounds = std::min<double>(kMaxPushRounds, kMaxPushes / pushes);
+  std::vector<Overlap> left = overlaps;
+  for (int round = 0; round < rounds && !left.empty(); ++round) {
+    moveApart(assembly);
+    left = overlapsOf(scene, assembly, kMaxFaultsCounted);
+  }
+  addFaults(left, ", and what is around holds them together", faults);
   for (const Overlap& overlap : overlaps)
     assembly.warnings.push_back(textOf(overlap) + "; they were moved apart before the run");
-  for (const Overlap& overlap : left) faults.push_back(textOf(overlap) + ", and what is around holds them together");
+}
+
+/// Moves bodies apart whose overlaps are correctable; the others are faults.
+void correctPenetrations(const Scene& scene, Assembly& assembly, std::vector<std::string>& faults) {
+  const std::vector<Overlap> overlaps = overlapsOf(scene, assembly, kMaxFaultsCounted - faults.size());
+  const std::size_t before = faults.size();
+  for (const Overlap& overlap : overlaps)
+    if (!isCorrectable(overlap)) faults.push_back(faults.size() < kMaxFaultsTold ? faultOf(overlap) : "");
+  if (!overlaps.empty() && faults.size() == before) moveAllApart(scene, overlaps, assembly, faults);
 }
 
 }  // namespace
 
 void correctStartPenetrations(const Scene& scene, std::vector<Assembly>& islands) {
   std::vector<std::string> faults;
-  for (Assembly& assembly : islands) correctPenetrations(scene, assembly, faults);
+  for (Assembly& assembly : islands)
+    if (faults.size() < kMaxFaultsCounted) correctPenetrations(scene, assembly, faults);
   refuse(faults);
 }
 

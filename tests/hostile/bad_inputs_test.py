@@ -255,6 +255,10 @@ for row in (
     ("ball without a radius", shape('{"sphere": {"radius": @0}}'), "/bodies/0/shape/sphere/radius", "0", "> 0 (m)"),
     ("plane that falls", scene('"bodies": [@{"name": "a", "shape": {"plane": {}}}]'), "/bodies/0", "plane", "static"),
     ("hull of a ball", body('"collision": @"hull"'), "/bodies/0/collision", '"auto"', '"none"'),
+    ("two thousand cylinders in one another", scene('"bodies": [{"name": "a", "shape": {"cylinder": {"radius": 1, "length": 2}}, '
+     '"copies": {"count": [2000, 1, 1], "spacing": [1e-4, 0, 0]}}]'), "", '"a_0" and "a_1" overlap', "at least 950 more", 51),
+    ("three hundred thousand joints of two bodies", links('"ballJoints": [%s]' % ", ".join(
+     300_000 * ['{"bodyA": "a", "bodyB": "b", "anchorA": [3, 4, 0], "anchorB": [0, 0, 0]}'])), "", '"a" is held in more than 1000', "at most 1000", 2),
     ("bodies in one another", spheres((0, 0, 0), (0.5, 0, 0)), "/bodies/1", '"s0" and "s1" overlap by 1.5 m'),
     ("a thousand bodies in one another", body('"copies": {"count": [10, 10, 10], "spacing": [0.1, 0.1, 0.1]}').replace('[{"name"', '[@{"name"'), "/bodies/0",
      '"a_0" and "a_1" overlap', "more", 51),

@@ -84,6 +84,16 @@ TEST(StartOverlaps, AreToldAllAtOnceButNoMoreThanFifty) {
   EXPECT_THAT(many, HasSubstr("\nand 16 more"));
 }
 
+// 50 balls in one place are 1225 pairs, 18000 in a block that are 1 mm deep in each other some 53000.
+TEST(StartOverlaps, AreCountedUpToAThousandAndMendedUpToFiftyThousand) {
+  EXPECT_THAT(refusalOf(ball("a", 0, R"(, "copies": {"count": [50, 1, 1], "spacing": [0, 0, 0]})")),
+              HasSubstr("\nand at least 950 more"));
+  const std::string block =
+      refusalOf(ball("a", 0, R"(, "copies": {"count": [30, 30, 20], "spacing": [0.199, 0.199, 0.199]})"));
+  EXPECT_THAT(block, HasSubstr("overlap by 1 mm at the start; more pairs overlap than are moved apart"));
+  EXPECT_THAT(block, HasSubstr("\nand at least 950 more"));
+}
+
 // 1e-9 of the smaller body's radius, 0.1 m, is touching.
 TEST(StartOverlaps, UpToABillionthOfTheSmallerBodyAreTouching) {
   EXPECT_EQ(refusalOf(all({ball("a", 0), ball("b", 0.2 - 0.9e-10)})), "");
