@@ -98,6 +98,10 @@ void addBody(const Body& body, SceneDraft& scene, const Field& name, FaultList& 
 void addCopies(const Copies& copies, const BodyDraft& draft, SceneDraft& scene, const Field& name, FaultList& faults) {
   Body body = draft.body;
   int number = 0;
+  std::vector<Body>& bodies = scene.scene.bodies;
+  const std::size_t count =
+      bodies.size() + std::size_t(copies.count[0]) * std::size_t(copies.count[1]) * std::size_t(copies.count[2]);
+  if (count > 2 * bodies.capacity()) bodies.reserve(count);
   for (int ix = 0; ix < copies.count[0]; ++ix) {
     for (int iy = 0; iy < copies.count[1]; ++iy) {
       for (int iz = 0; iz < copies.count[2]; ++iz) {

@@ -133,26 +133,6 @@ bool isSound(const LinkDraft& link, const SceneDraft& scene) {
   return true;
 }
 
-template <typename Link>
-void parseKind(ObjectReader& root, const LinkKind<Link>& kind, NamePlaces& names, SceneDraft& scene) {
-  FaultList& faults = root.faults();
-  std::size_t number = 0;
-  for (const Field& item : root.items(kind.key)) {
-    const std::size_t faultsBefore = faults.count();
-    LinkDraft draft = parseLink(item, kind, number++, scene, faults);
-    draft.isSound = faults.count() == faultsBefore && isSound(draft, scene);
-    const Link& link = std::get<Link>(draft.link);
-    const auto [first, isNew] = names.emplace(link.name, link.where);
-    if (!isNew) {
-      const auto name = ObjectReader(item, faults).find("name");
-      addFault(faults, name.value_or(item),
-               fmt::format("duplicate name {}; names of springs, rods, ropes and joints must differ; the first is {}",
-                           inQuotes(link.name), first->second));
-    }
-    scene.links.push_back(std::move(draft));
-  }
-}
-
 /// Directions in which a link can hold its ends: rows of the matrix that is solved.
 int directionsOf(const LinkDraft& link) {
   struct {
@@ -165,35 +145,68 @@ int directionsOf(const LinkDraft& link) {
   return std::visit(directions, link.link);
 }
 
-/// All rows of a body depend on each other: their matrix is full.
-void checkDirections(const SceneDraft& draft, FaultList& faults) {
-  std::vector<int> directions(draft.scene.bodies.size(), 0);
-  for (const LinkDraft& link : draft.links)
+/// Directions in which links hold each body. All rows of a body depend on each other: their matrix is full.
+class HeldDirections {
+ public:
+  explicit HeldDirections(const SceneDraft& draft) : directions_(draft.scene.bodies.size(), 0) {}
+
+  /// Once a body is held in too many, further links need not be read: they may be hundreds of thousands.
+  bool isAnyTooMany() const { return isAnyTooMany_; }
+
+  void add(const LinkDraft& link, const SceneDraft& draft, FaultList& faults) {
     for (const int body : {link.anchorA.anchor.body, link.anchorB.anchor.body}) {
       if (isFixed(body, draft.scene)) continue;
-      int& sum = directions[static_cast<std::size_t>(body)];
-      const bool wasFew = sum <= kMaxDirections;
+      int& sum = directions_[static_cast<std::size_t>(body)];
       sum += directionsOf(link);
-      if (wasFew && sum > kMaxDirections)
-        addFault(faults, link.field,
-                 fmt::format("from here on, {} is held in more than {} directions; at most {} are allowed, where a rod "
-                             "or a rope counts 1, a ball joint 3 and a hinge 5; leave out what holds it twice",
-                             inQuotes(draft.scene.bodies[static_cast<std::size_t>(body)].name), kMaxDirections,
-                             kMaxDirections));
+      if (sum <= kMaxDirections) continue;
+      isAnyTooMany_ = true;
+      addFault(faults, link.field,
+               fmt::format("from here on, {} is held in more than {} directions; at most {} are allowed, where a rod "
+                           "or a rope counts 1, a ball joint 3 and a hinge 5; leave out what holds it twice",
+                           inQuotes(draft.scene.bodies[static_cast<std::size_t>(body)].name), kMaxDirections,
+                           kMaxDirections));
     }
+  }
+
+ private:
+  std::vector<int> directions_;  // by body
+  bool isAnyTooMany_ = false;
+};
+
+template <typename Link>
+void parseKind(ObjectReader& root, const LinkKind<Link>& kind, NamePlaces& names, HeldDirections& held,
+               SceneDraft& scene) {
+  FaultList& faults = root.faults();
+  std::size_t number = 0;
+  for (const Field& item : root.items(kind.key)) {
+    if (held.isAnyTooMany()) return;
+    const std::size_t faultsBefore = faults.count();
+    LinkDraft draft = parseLink(item, kind, number++, scene, faults);
+    draft.isSound = faults.count() == faultsBefore && isSound(draft, scene);
+    const Link& link = std::get<Link>(draft.link);
+    const auto [first, isNew] = names.emplace(link.name, link.where);
+    if (!isNew) {
+      const auto name = ObjectReader(item, faults).find("name");
+      addFault(faults, name.value_or(item),
+               fmt::format("duplicate name {}; names of springs, rods, ropes and joints must differ; the first is {}",
+                           inQuotes(link.name), first->second));
+    }
+    held.add(draft, scene, faults);
+    scene.links.push_back(std::move(draft));
+  }
 }
 
 }  // namespace
 
 void parseLinks(ObjectReader& root, SceneDraft& draft) {
   NamePlaces names;
+  HeldDirections held(draft);
   const Vec3 above = Vec3::UnitY();
-  parseKind<Spring>(root, {"springs", "spring", Vec3::Zero(), parseSpring}, names, draft);
-  parseKind<Rod>(root, {"rods", "rod", above, parseRod}, names, draft);
-  parseKind<Rope>(root, {"ropes", "rope", above, parseRope}, names, draft);
-  parseKind<BallJoint>(root, {"ballJoints", "ballJoint", above, parseBallJoint}, names, draft);
-  parseKind<Hinge>(root, {"hinges", "hinge", above, parseHinge}, names, draft);
-  checkDirections(draft, root.faults());
+  parseKind<Spring>(root, {"springs", "spring", Vec3::Zero(), parseSpring}, names, held, draft);
+  parseKind<Rod>(root, {"rods", "rod", above, parseRod}, names, held, draft);
+  parseKind<Rope>(root, {"ropes", "rope", above, parseRope}, names, held, draft);
+  parseKind<BallJoint>(root, {"ballJoints", "ballJoint", above, parseBallJoint}, names, held, draft);
+  parseKind<Hinge>(root, {"hinges", "hinge", above, parseHinge}, names, held, draft);
 }
 
 }  // namespace cradle
