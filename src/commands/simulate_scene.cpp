@@ -197,7 +197,9 @@ void checkScene(const std::string& scenePath, const SceneOptions& options) {
   const Scene scene = loadSceneAndWarn(scenePath, options);
   refuseUnsupported(scene);
   std::vector<Assembly> islands;
-  for (const IslandPlan& island : planOf(scene).islands) islands.push_back(assemble(scene, island));
+  // Bodies alone have nothing to be checked, and may be a million.
+  for (const IslandPlan& island : planOf(scene).islands)
+    if (!island.touching.empty() || !island.links.empty()) islands.push_back(assemble(scene, island));
   correctStartPenetrations(scene, islands);
   std::vector<std::string> warnings;
   for (const Assembly& assembly : islands)

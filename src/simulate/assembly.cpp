@@ -7,7 +7,6 @@
 #include "collision/broad_phase.h"
 #include "core/error.h"
 #include "core/printable.h"
-#include "simulate/colliders.h"
 #include "simulate/pinned_contacts.h"
 #include "simulate/steps/step_limit.h"
 
@@ -46,11 +45,13 @@ void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly)
   }
 }
 
-/// Calls add(link, anchorA, anchorB) for the links that are attached to a body of the island.
+/// Calls add(link, anchorA, anchorB) for the links of one kind that are attached to a body of the island.
 template <class Links, class Add>
-void forEachLink(const Links& links, const Scene& scene, const std::vector<int>& sceneBodies, const Add& add) {
-  for (const auto& link : links) {
-    const Attachment a = attach(link.anchorA, scene, sceneBodies), b = attach(link.anchorB, scene, sceneBodies);
+void forEachLink(LinkKind kind, const Links& links, const Scene& scene, const IslandPlan& island, const Add& add) {
+  for (const LinkIndex& place : island.links) {
+    if (place.kind != kind) continue;
+    const auto& link = links[place.index];
+    const Attachment a = attach(link.anchorA, scene, island.bodies), b = attach(link.anchorB, scene, island.bodies);
     if (a.body != kFixed || b.body != kFixed) add(link, a, b);
   }
 }
@@ -68,31 +69,33 @@ HingeConstraint makeHinge(const Hinge& hinge, const Attachment& a, const Attachm
   return {a, b, bodyFromWorldA * axis, {bodyFromWorldB * across, bodyFromWorldB * axis.cross(across)}};
 }
 
-void addLinks(const Scene& scene, Assembly& assembly) {
+void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
   Mechanism& mechanism = assembly.mechanism;
-  const std::vector<int>& sceneBodies = assembly.sceneBodies;
-  forEachLink(scene.springs, scene, sceneBodies, [&](const Spring& spring, const Attachment& a, const Attachment& b) {
-    mechanism.springs.push_back({a, b, spring.stiffness, spring.damping, spring.restLength});
-    assembly.names.springs.push_back(spring.name);
-  });
+  forEachLink(LinkKind::spring, scene.springs, scene, island,
+              [&](const Spring& spring, const Attachment& a, const Attachment& b) {
+                mechanism.springs.push_back({a, b, spring.stiffness, spring.damping, spring.restLength});
+                assembly.names.springs.push_back(spring.name);
+              });
   Constraints& constraints = mechanism.constraints;
-  forEachLink(scene.rods, scene, sceneBodies, [&](const Rod& rod, const Attachment& a, const Attachment& b) {
+  forEachLink(LinkKind::rod, scene.rods, scene, island, [&](const Rod& rod, const Attachment& a, const Attachment& b) {
     constraints.rods.push_back({a, b, rod.length});
     assembly.names.rods.push_back(rod.name);
   });
-  forEachLink(scene.ballJoints, scene, sceneBodies,
+  forEachLink(LinkKind::ballJoint, scene.ballJoints, scene, island,
               [&](const BallJoint& joint, const Attachment& a, const Attachment& b) {
                 constraints.ballJoints.push_back({a, b});
                 assembly.names.ballJoints.push_back(joint.name);
               });
-  forEachLink(scene.hinges, scene, sceneBodies, [&](const Hinge& hinge, const Attachment& a, const Attachment& b) {
-    constraints.hinges.push_back(makeHinge(hinge, a, b, scene));
-    assembly.names.hinges.push_back(hinge.name);
-  });
-  forEachLink(scene.ropes, scene, sceneBodies, [&](const Rope& rope, const Attachment& a, const Attachment& b) {
-    assembly.ropes.push_back({a, b, rope.maxLength, rope.restitution});
-    assembly.ropeBodies.emplace_back(rope.anchorA.body, rope.anchorB.body);
-  });
+  forEachLink(LinkKind::hinge, scene.hinges, scene, island,
+              [&](const Hinge& hinge, const Attachment& a, const Attachment& b) {
+                constraints.hinges.push_back(makeHinge(hinge, a, b, scene));
+                assembly.names.hinges.push_back(hinge.name);
+              });
+  forEachLink(LinkKind::rope, scene.ropes, scene, island,
+              [&](const Rope& rope, const Attachment& a, const Attachment& b) {
+                assembly.ropes.push_back({a, b, rope.maxLength, rope.restitution});
+                assembly.ropeBodies.emplace_back(rope.anchorA.body, rope.anchorB.body);
+              });
 }
 
 void satisfyConstraints(const Scene& scene, Assembly& assembly) {
@@ -179,7 +182,7 @@ Assembly assemble(const Scene& scene, const IslandPlan& island) {
   Assembly assembly;
   assembly.mechanism.gravity = scene.gravity;
   addBodies(scene, island, assembly);
-  addLinks(scene, assembly);
+  addLinks(scene, island, assembly);
   addColliders(scene, island, assembly);
   excludeJoined(scene, assembly);
   excludeUnsolved(assembly.geometry);

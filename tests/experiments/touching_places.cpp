@@ -5,6 +5,7 @@
 #include "collision/separation.h"
 #include "experiments/experiment.h"
 #include "simulate/assembly.h"
+#include "simulate/plan/plan_islands.h"
 
 namespace cradle {
 namespace {
@@ -84,6 +85,7 @@ IslandPlan touchingScene(const Scene& scene) {
     all.touching.push_back(body);
     if (scene.bodies[static_cast<std::size_t>(body)].motion == Motion::dynamic) all.bodies.push_back(body);
   }
+  forEachLink(scene, [&](const LinkIndex& link, const Anchor&, const Anchor&) { all.links.push_back(link); });
   return all;
 }
 

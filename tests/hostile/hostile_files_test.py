@@ -442,6 +442,23 @@ class Places(HostileTest):
         path = self.write("a.json", "[" + 31_000_000 * "0," + "0]")
         self.refuses(3, [path, "values"], "check", path)
 
+    def test_many_bodies_are_planned_in_little_time(self):
+        """One by one: in a block, each on a spring, rod or joint of its own, and in a chain that ends at the world."""
+        count = 30_000
+        bodies = [{"name": "b%d" % i, "shape": {"sphere": {"radius": 0.1}}, "position": [0, i, 0]} for i in range(count)]
+        springs = [{"bodyA": "b%d" % i, "anchorB": [0, i + 0.3, 0], "stiffness": 1e4} for i in range(count)]
+        rods = [{"bodyA": "b%d" % i, "anchorB": [0, i + 0.3, 0]} for i in range(count)]
+        chain = [{"bodyA": "b%d" % i, "bodyB": "b%d" % (i + 1), "anchorB": [0, 0, 0]} for i in reversed(range(count - 1))]
+        alone = [dict(body, collision="none") for body in bodies]
+        block = {"name": "b", "shape": {"sphere": {"radius": 0.1}}, "copies": {"count": [50, 50, 50], "spacing": [1, 1, 1]}}
+        for name, content in (("block", scene(block)), ("springs", scene(*bodies, springs=springs)),
+                              ("rods", scene(*bodies, rods=rods)),
+                              ("chain", scene(*alone, rods=[*chain, {"bodyA": "b0", "anchorB": [0, -1, 0]}]))):
+            ended = self.run_cradle("check", self.write(name + ".json", content))
+            self.assertEqual(ended.code, 0, ended.error)
+            self.assertLess(ended.seconds, MOST_SECONDS, name)
+            self.assertLess(ended.memory, MOST_MEMORY, name)
+
     def test_names_are_no_addresses(self):
         path = self.write("scene.json", scene())
         for name in ("file:x.sqlite", ":memory:", "a?mode=memory.sqlite"):

@@ -13,9 +13,23 @@ DisjointSets::DisjointSets(std::size_t bodies) : parents_(bodies) {
 
 void DisjointSets::join(int bodyA, int bodyB) {
   if (bodyA == kFixed || bodyB == kFixed) return;
-  const int islandA = islandOf(bodyA), islandB = islandOf(bodyB);
-  const int first = std::min(islandA, islandB);
-  for (const int last : {islandA, islandB, bodyA, bodyB}) parents_[static_cast<std::size_t>(last)] = first;
+  const auto [first, last] = std::minmax({halvePath(bodyA), halvePath(bodyB)});
+  parents_[static_cast<std::size_t>(last)] = first;
+}
+
+/// islandOf, with half of the way for the next time (R. E. Tarjan, J. van Leeuwen, 1984).
+int DisjointSets::halvePath(int body) {
+  while (parents_[static_cast<std::size_t>(body)] != body) {
+    int& parent = parents_[static_cast<std::size_t>(body)];
+    parent = parents_[static_cast<std::size_t>(parent)];
+    body = parent;
+  }
+  return body;
+}
+
+// Parents come before their children.
+void DisjointSets::flatten() {
+  for (int& parent : parents_) parent = parents_[static_cast<std::size_t>(parent)];
 }
 
 int DisjointSets::islandOf(int body) const {

@@ -72,35 +72,32 @@ ChosenMethod namedMethod(const Scene& scene) {
   return errorSteps(scene);
 }
 
-bool isActedUpon(const Scene& scene, const IslandPlan& island) {
-  const auto isIn = [&](int body) { return std::binary_search(island.bodies.begin(), island.bodies.end(), body); };
-  bool found = std::any_of(scene.pushes.begin(), scene.pushes.end(), [&](const Push& push) { return isIn(push.body); });
-  forEachLink(scene, [&](int a, int b) { found = found || isIn(a) || isIn(b); });
-  return found;
+bool isActedUpon(const IslandPlan& island) {
+  return !island.links.empty() || !island.pushes.empty();
 }
 
 /// Finds spheres without torque: their angular velocity is constant, whatever moves their centres.
 void findNonRotating(const Scene& scene, IslandPlan& island) {
-  std::vector<char> hasTorque(scene.bodies.size(), 0);
+  std::vector<char> hasTorque(island.bodies.size(), 0);
   const auto addTorque = [&](int body) {
-    if (body != kWorld) hasTorque[static_cast<std::size_t>(body)] = 1;
+    const auto found = std::lower_bound(island.bodies.begin(), island.bodies.end(), body);
+    if (found != island.bodies.end() && *found == body)
+      hasTorque[static_cast<std::size_t>(found - island.bodies.begin())] = 1;
   };
-  const auto addTorqueIfOffCenter = [&](const Anchor& anchor) {
-    if (anchor.body == kWorld) return;
-    const Body& body = scene.bodies[static_cast<std::size_t>(anchor.body)];
-    if (anchor.point != body.massProperties.centerOfMass) addTorque(anchor.body);
-  };
-  const auto addTorquesOf = [&](const auto& links) {
-    for (const auto& link : links) addTorqueIfOffCenter(link.anchorA), addTorqueIfOffCenter(link.anchorB);
-  };
-  addTorquesOf(scene.springs), addTorquesOf(scene.rods), addTorquesOf(scene.ropes), addTorquesOf(scene.ballJoints);
-  for (const Hinge& hinge : scene.hinges) addTorque(hinge.anchorA.body), addTorque(hinge.anchorB.body);
-  for (const Push& push : scene.pushes) addTorque(push.body);
+  for (const LinkIndex& link : island.links) {
+    const auto [a, b] = anchorsOf(link, scene);
+    for (const Anchor& anchor : {a, b}) {
+      if (anchor.body == kWorld) continue;
+      const Body& body = scene.bodies[static_cast<std::size_t>(anchor.body)];
+      if (link.kind == LinkKind::hinge || anchor.point != body.massProperties.centerOfMass) addTorque(anchor.body);
+    }
+  }
+  for (const std::size_t push : island.pushes) addTorque(scene.pushes[push].body);
   for (const int body : island.touching) addTorque(body);
-  for (const int body : island.bodies)
-    if (!hasTorque[static_cast<std::size_t>(body)] &&
-        makeRigidBody(scene.bodies[static_cast<std::size_t>(body)].massProperties).isSpherical)
-      island.nonRotating.push_back(body);
+  for (std::size_t i = 0; i < island.bodies.size(); ++i)
+    if (!hasTorque[i] &&
+        makeRigidBody(scene.bodies[static_cast<std::size_t>(island.bodies[i])].massProperties).isSpherical)
+      island.nonRotating.push_back(island.bodies[i]);
 }
 
 /// Whether a body that may touch has a mesh as its collider, neither a primitive nor a hull.
@@ -148,12 +145,12 @@ void choose(const Scene& scene, IslandPlan& island) {
   if (scene.method) {
     island.method = namedMethod(scene);
     island.reason = "the scene names the method";
-  } else if (mayTouchSomething && !isActedUpon(scene, island) && hardSpheresOf(scene, island)) {
+  } else if (mayTouchSomething && !isActedUpon(island) && hardSpheresOf(scene, island)) {
     island.method = {MotionKind::elasticFlight, "closed form between collisions"};
     island.reason = "elastic balls in flight: parabolas, and collisions in the order of time";
     island.notNeeded.push_back("no steps, no rotation: nothing turns balls that touch without friction");
   } else if (mayTouchSomething && scene.accuracy > kVisualAccuracy && island.bodies.size() >= kMinSoftBodies &&
-             !isActedUpon(scene, island) && !hasDenseOnes(scene, island) && !hasSheet(scene, island)) {
+             !isActedUpon(island) && !hasDenseOnes(scene, island) && !hasSheet(scene, island)) {
     island.method = {MotionKind::pile, "fast contact step", kSoftTimeStep};
     island.reason = "many bodies may touch: soft contacts, sub-stepped";
     island.notNeeded.push_back("no motion of bodies that lie still");
@@ -165,7 +162,7 @@ void choose(const Scene& scene, IslandPlan& island) {
   } else if (mayTouchSomething) {
     island.method = stepsToEvents(scene);
     island.reason = "something may touch: contact changes at events, with steps as long as the accuracy allows between";
-  } else if (!isActedUpon(scene, island)) {
+  } else if (!isActedUpon(island)) {
     island.method = {MotionKind::freeFlight, "closed form"};
     island.reason = "nothing acts but uniform gravity: parabola and exact free rotation";
     island.notNeeded.push_back("no steps: one evaluation a frame");
@@ -198,6 +195,8 @@ IslandPlan wholeScene(const Scene& scene) {
     whole.bodies.insert(whole.bodies.end(), island.bodies.begin(), island.bodies.end());
     whole.touching.insert(whole.touching.end(), island.touching.begin(), island.touching.end());
   }
+  forEachLink(scene, [&](const LinkIndex& link, const Anchor&, const Anchor&) { whole.links.push_back(link); });
+  for (std::size_t i = 0; i < scene.pushes.size(); ++i) whole.pushes.push_back(i);
   for (std::vector<int>* bodies : {&whole.bodies, &whole.touching}) {
     std::sort(bodies->begin(), bodies->end());
     bodies->erase(std::unique(bodies->begin(), bodies->end()), bodies->end());

@@ -44,11 +44,21 @@ struct ChosenMethod {
 /// them.
 ChosenMethod contactSteps(double timeStep = kContactTimeStep);
 
+enum class LinkKind { spring, rod, rope, ballJoint, hinge };
+
+/// A link of the scene.
+struct LinkIndex {
+  LinkKind kind = LinkKind::spring;
+  std::size_t index = 0;  // among those of its kind
+};
+
 /// Bodies that depend on each other, by constraints, springs or contact that may come about, and how they are moved.
 struct IslandPlan {
   std::vector<int> bodies;       // scene bodies that move, ascending
   std::vector<int> touching;     // scene bodies, fixed ones too, that may touch something during the run, ascending
   std::vector<int> nonRotating;  // of the bodies, those without torque at all times: spheres attached at their centres
+  std::vector<LinkIndex> links;  // attached to the bodies, in the order of the kinds, then of the scene
+  std::vector<std::size_t> pushes;  // of the bodies, indices into the scene's
   ChosenMethod method;
   std::string_view reason;
   std::vector<std::string_view> notNeeded;  // parts of a simulation that these bodies do not need

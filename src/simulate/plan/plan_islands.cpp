@@ -8,11 +8,10 @@
 #include "core/interruption.h"
 #include "simulate/colliders.h"
 #include "simulate/plan/disjoint_sets.h"
+#include "simulate/plan/near_spheres.h"
 
 namespace cradle {
 namespace {
-
-constexpr double kIntervalRounding = 1e-14;  // relative, of sums of three numbers
 
 /// m: radius of a body's bounding sphere about its centre of mass, by which its reach is widened.
 double sizeOf(const Body& body, const Scene& scene) {
@@ -64,11 +63,14 @@ int movingOr(const Scene& scene, int body) {
 /// Sets of moving bodies that depend on each other.
 DisjointSets joinIslands(const Scene& scene, const ReachablePairs& reachable) {
   DisjointSets joined(scene.bodies.size());
-  forEachLink(scene, [&](int a, int b) { joined.join(movingOr(scene, a), movingOr(scene, b)); });
+  forEachLink(scene, [&](const LinkIndex&, const Anchor& a, const Anchor& b) {
+    joined.join(movingOr(scene, a.body), movingOr(scene, b.body));
+  });
   reachable.forEachReachablePair([&](int i, int j) {
     joined.join(movingOr(scene, i), movingOr(scene, j));
     return true;
   });
+  joined.flatten();
   return joined;
 }
 
@@ -151,28 +153,36 @@ void ReachablePairs::forEachReachablePair(const Visit& visit) const {
         return;
 }
 
-/// Sweep and prune along x of the spheres that bodies cannot leave.
+/// Sweep and prune along x, in cells across it.
 void ReachablePairs::visitBounded(const Visit& visit) const {
   for (const int plane : planes_)
     if (!visitAll(plane, visit)) return;
-  struct Interval {
-    double from, to;  // m
-    int body;
-  };
-  std::vector<Interval> intervals;
+  std::vector<Reach> spheres;
   for (const int body : colliding_) {
     const auto i = static_cast<std::size_t>(body);
-    const double x = reaches_[i].center.x(), half = (reaches_[i].radius + sizes_[i]) * (1 + kIntervalRounding);
-    intervals.push_back({x - half - kIntervalRounding * std::abs(x), x + half + kIntervalRounding * std::abs(x), body});
+    spheres.push_back({reaches_[i].center, reaches_[i].radius + sizes_[i]});
   }
-  std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) { return a.from < b.from; });
-  for (std::size_t i = 0; i < intervals.size(); ++i) {
-    throwIfInterrupted();
-    for (std::size_t j = i + 1; j < intervals.size() && intervals[j].from <= intervals[i].to; ++j) {
-      const auto [first, second] = std::minmax(intervals[i].body, intervals[j].body);
-      if (mayCollide(first, second) && !visit(first, second)) return;
-    }
+  forEachNearPair(spheres, [&](std::size_t i, std::size_t j) {
+    const auto [first, second] = std::minmax({colliding_[i], colliding_[j]});
+    return !mayCollide(first, second) || visit(first, second);
+  });
+}
+
+std::pair<Anchor, Anchor> anchorsOf(const LinkIndex& link, const Scene& scene) {
+  const auto of = [&](const auto& links) { return std::pair(links[link.index].anchorA, links[link.index].anchorB); };
+  switch (link.kind) {
+    case LinkKind::spring:
+      return of(scene.springs);
+    case LinkKind::rod:
+      return of(scene.rods);
+    case LinkKind::rope:
+      return of(scene.ropes);
+    case LinkKind::ballJoint:
+      return of(scene.ballJoints);
+    case LinkKind::hinge:
+      break;
   }
+  return of(scene.hinges);
 }
 
 std::vector<IslandPlan> findIslands(const Scene& scene, const ReachablePairs& reachable) {
@@ -181,6 +191,13 @@ std::vector<IslandPlan> findIslands(const Scene& scene, const ReachablePairs& re
   std::map<int, IslandPlan> islands;
   for (int body = 0; body < std::ssize(scene.bodies); ++body)
     if (movingOr(scene, body) != kWorld) islands[joined.islandOf(body)].bodies.push_back(body);
+  forEachLink(scene, [&](const LinkIndex& link, const Anchor& a, const Anchor& b) {
+    const int moving = movingOr(scene, a.body) != kWorld ? a.body : movingOr(scene, b.body);
+    if (moving != kWorld) islands.at(joined.islandOf(moving)).links.push_back(link);
+  });
+  for (std::size_t i = 0; i < scene.pushes.size(); ++i)
+    if (const int body = movingOr(scene, scene.pushes[i].body); body != kWorld)
+      islands.at(joined.islandOf(body)).pushes.push_back(i);
   std::vector<IslandPlan> ordered;
   for (auto& [first, island] : islands) {
     island.touching = std::move(touching[static_cast<std::size_t>(first)]);

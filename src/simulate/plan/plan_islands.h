@@ -46,13 +46,17 @@ class ReachablePairs {
 /// island with the bodies that may touch. Their methods are not chosen yet.
 std::vector<IslandPlan> findIslands(const Scene& scene, const ReachablePairs& reachable);
 
-/// Calls visit(bodyA, bodyB) for every spring, rod, rope, ball joint and hinge; kWorld stands for the world.
+/// Calls visit(link, anchorA, anchorB) for every spring, rod, rope, ball joint and hinge; `link` is its LinkIndex.
 template <class Visit>
 void forEachLink(const Scene& scene, const Visit& visit) {
-  const auto all = [&](const auto& links) {
-    for (const auto& link : links) visit(link.anchorA.body, link.anchorB.body);
+  const auto all = [&](const auto& links, LinkKind kind) {
+    for (std::size_t i = 0; i < links.size(); ++i) visit(LinkIndex{kind, i}, links[i].anchorA, links[i].anchorB);
   };
-  all(scene.springs), all(scene.rods), all(scene.ropes), all(scene.ballJoints), all(scene.hinges);
+  all(scene.springs, LinkKind::spring), all(scene.rods, LinkKind::rod), all(scene.ropes, LinkKind::rope);
+  all(scene.ballJoints, LinkKind::ballJoint), all(scene.hinges, LinkKind::hinge);
 }
+
+/// Both anchors of a link.
+std::pair<Anchor, Anchor> anchorsOf(const LinkIndex& link, const Scene& scene);
 
 }  // namespace cradle

@@ -71,17 +71,16 @@ int contactsOf(const Surface& a, const Surface& b) {
 class ContactSurvey {
  public:
   ContactSurvey(const Scene& scene, const IslandPlan& island, const ReachablePairs& reachable)
-      : scene_(scene), loops_(scene.bodies.size() + 1), surfaces_(scene.bodies.size()), parts_(scene.bodies.size()) {
-    for (const int body : island.touching) surfaces_[static_cast<std::size_t>(body)] = surfaceOf(bodyOf(body), scene);
+      : scene_(scene), touching_(island.touching), loops_(touching_.size() + 1), parts_(touching_.size()) {
+    for (std::size_t i = 0; i < touching_.size(); ++i) surfaces_.push_back(surfaceOf(bodyOf(i), scene));
     if (island.touching.size() > kManyBodies && reachable.boundless())
-      surveyKinds(island, reachable);
+      surveyKinds(reachable);
     else
-      surveyPairs(island, reachable);
-    for (int body = 0; body < std::ssize(parts_); ++body) {
-      const Part& part = partOf(body);
-      if (part.ownsEdge) found_.edgeOwners.push_back(body);
-      if (part.mayTip) found_.tippers.push_back(body);
-      if (part.moves) found_.movers.push_back(body);
+      surveyPairs(reachable);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (parts_[i].ownsEdge) found_.edgeOwners.push_back(touching_[i]);
+      if (parts_[i].mayTip) found_.tippers.push_back(touching_[i]);
+      if (parts_[i].moves) found_.movers.push_back(touching_[i]);
     }
   }
 
@@ -93,44 +92,45 @@ class ContactSurvey {
     bool ownsEdge = false, mayTip = false, moves = false;
   };
 
-  void surveyPairs(const IslandPlan& island, const ReachablePairs& reachable) {
-    for (std::size_t i = 0; i < island.touching.size(); ++i)
-      for (std::size_t j = i + 1; j < island.touching.size(); ++j)
-        if (reachable.mayCollide(island.touching[i], island.touching[j])) add(island.touching[i], island.touching[j]);
+  // Bodies are named by their places in touching_ from here on.
+
+  void surveyPairs(const ReachablePairs& reachable) {
+    for (std::size_t i = 0; i < touching_.size(); ++i)
+      for (std::size_t j = i + 1; j < touching_.size(); ++j)
+        if (reachable.mayCollide(touching_[i], touching_[j])) add(i, j);
   }
 
   /// Each body with some of each kind of body that it may collide with: bodies of one kind have the same contacts. Rows
   /// are many in any case.
-  void surveyKinds(const IslandPlan& island, const ReachablePairs& reachable) {
+  void surveyKinds(const ReachablePairs& reachable) {
     constexpr std::size_t kTried = 4;  // of a kind: joints seldom keep more from one body
-    std::map<std::tuple<int, int, int, bool, bool>, std::vector<int>> kinds;
-    for (const int body : island.touching) {
-      const Surface& surface = surfaces_[static_cast<std::size_t>(body)];
-      std::vector<int>& alike = kinds[{surface.kind ? static_cast<int>(*surface.kind) : -1, surface.faceCorners,
-                                       bodyOf(body).material, bodyOf(body).motion == Motion::dynamic, isSlope(body)}];
+    std::map<std::tuple<int, int, int, bool, bool>, std::vector<std::size_t>> kinds;
+    for (std::size_t body = 0; body < touching_.size(); ++body) {
+      const Surface& surface = surfaces_[body];
+      std::vector<std::size_t>& alike =
+          kinds[{surface.kind ? static_cast<int>(*surface.kind) : -1, surface.faceCorners, bodyOf(body).material,
+                 bodyOf(body).motion == Motion::dynamic, isSlope(body)}];
       if (alike.size() < kTried) alike.push_back(body);
     }
-    for (const int body : island.touching)
+    for (std::size_t body = 0; body < touching_.size(); ++body)
       for (const auto& [kind, alike] : kinds)
-        for (const int other : alike)
-          if (other != body && reachable.mayCollide(body, other)) addKinds(body, other);
+        for (const std::size_t other : alike)
+          if (other != body && reachable.mayCollide(touching_[body], touching_[other])) addKinds(body, other);
     found_.rows = kManyRows;
   }
 
-  const Body& bodyOf(int body) const { return scene_.bodies[static_cast<std::size_t>(body)]; }
-  Part& partOf(int body) { return parts_[static_cast<std::size_t>(body)]; }
+  const Body& bodyOf(std::size_t body) const { return scene_.bodies[static_cast<std::size_t>(touching_[body])]; }
 
-  const SurfacePair& materialOf(int a, int b) const {
+  const SurfacePair& materialOf(std::size_t a, std::size_t b) const {
     return scene_
         .surfacePairs[static_cast<std::size_t>(bodyOf(a).material)][static_cast<std::size_t>(bodyOf(b).material)];
   }
 
   /// Adds edges, friction and restitution of the contact of two bodies.
-  void addKinds(int a, int b) {
-    const Surface &surfaceA = surfaces_[static_cast<std::size_t>(a)],
-                  &surfaceB = surfaces_[static_cast<std::size_t>(b)];
-    for (const int body : {a, b})
-      if (bodyOf(body).motion == Motion::dynamic) partOf(body).moves = true;
+  void addKinds(std::size_t a, std::size_t b) {
+    const Surface &surfaceA = surfaces_[a], &surfaceB = surfaces_[b];
+    for (const std::size_t body : {a, b})
+      if (bodyOf(body).motion == Motion::dynamic) parts_[body].moves = true;
     addEdges(a, surfaceA, surfaceB);
     addEdges(b, surfaceB, surfaceA);
     const SurfacePair& material = materialOf(a, b);
@@ -140,12 +140,10 @@ class ContactSurvey {
   }
 
   /// Adds that, and how many rows the contact may have.
-  void add(int a, int b) {
+  void add(std::size_t a, std::size_t b) {
     addKinds(a, b);
     const int rowsOfOne = materialOf(a, b).staticFriction > 0 ? 3 : 1;
-    found_.rows = std::min(found_.rows + rowsOfOne * contactsOf(surfaces_[static_cast<std::size_t>(a)],
-                                                                surfaces_[static_cast<std::size_t>(b)]),
-                           kManyRows);
+    found_.rows = std::min(found_.rows + rowsOfOne * contactsOf(surfaces_[a], surfaces_[b]), kManyRows);
     const int placeA = placeOf(a), placeB = placeOf(b);
     if (loops_.islandOf(placeA) == loops_.islandOf(placeB)) return;
     loops_.join(placeA, placeB);
@@ -153,51 +151,45 @@ class ContactSurvey {
   }
 
   /// On a slope a sphere may slide slowly for long.
-  bool isSlope(int body) const {
+  bool isSlope(std::size_t body) const {
     const auto* plane = std::get_if<Plane>(&bodyOf(body).shape);
     return plane && (bodyOf(body).worldFromBody.rotation * plane->normal).cross(scene_.gravity).norm() >
                         kLevelSlope * scene_.gravity.norm();
   }
 
   /// Adds the edges of a body that have no row against the other body.
-  void addEdges(int body, const Surface& own, const Surface& other) {
+  void addEdges(std::size_t body, const Surface& own, const Surface& other) {
     if (own.isRound()) return;
     found_.areRound = false;
-    if (!other.isPlane()) partOf(body).ownsEdge = true;
-    if (own.kind == ColliderKind::cylinder) partOf(body).mayTip = true;
+    if (!other.isPlane()) parts_[body].ownsEdge = true;
+    if (own.kind == ColliderKind::cylinder) parts_[body].mayTip = true;
   }
 
   /// The element of a body in the disjoint sets: all fixed bodies are one.
-  int placeOf(int body) const {
-    return bodyOf(body).motion == Motion::dynamic ? body : static_cast<int>(scene_.bodies.size());
+  int placeOf(std::size_t body) const {
+    return static_cast<int>(bodyOf(body).motion == Motion::dynamic ? body : touching_.size());
   }
 
   static constexpr int kManyRows = 1000000;         // far more than the limits
   static constexpr std::size_t kManyBodies = 2000;  // that touch: their pairs are too many to be visited one by one
   const Scene& scene_;
+  const std::vector<int>& touching_;  // scene bodies, ascending
   DisjointSets loops_;
-  std::vector<Surface> surfaces_;  // by scene body
-  std::vector<Part> parts_;        // by scene body
+  std::vector<Surface> surfaces_;
+  std::vector<Part> parts_;
   PossibleContacts found_;
 };
 
-/// Whether any of the links is attached to a body of the island.
-template <class Link>
-bool attachTo(const std::vector<Link>& links, const IslandPlan& island) {
-  const auto isIn = [&](const Anchor& anchor) {
-    return std::binary_search(island.bodies.begin(), island.bodies.end(), anchor.body);
-  };
-  return std::any_of(links.begin(), links.end(),
-                     [&](const Link& link) { return isIn(link.anchorA) || isIn(link.anchorB); });
-}
-
-bool hasJoints(const Scene& scene, const IslandPlan& island) {
-  return attachTo(scene.ballJoints, island) || attachTo(scene.hinges, island);
+bool hasJoints(const IslandPlan& island) {
+  return std::any_of(island.links.begin(), island.links.end(), [](const LinkIndex& link) {
+    return link.kind == LinkKind::ballJoint || link.kind == LinkKind::hinge;
+  });
 }
 
 /// Whether bilateral constraints act on the island: rows of contacts may depend on each other through them.
-bool hasBilateral(const Scene& scene, const IslandPlan& island) {
-  return hasJoints(scene, island) || attachTo(scene.rods, island) || attachTo(scene.ropes, island);
+bool hasBilateral(const IslandPlan& island) {
+  return std::any_of(island.links.begin(), island.links.end(),
+                     [](const LinkIndex& link) { return link.kind != LinkKind::spring; });
 }
 
 int independentRows(const PossibleContacts& contacts) {
@@ -228,7 +220,7 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
   if (!contacts.tippers.empty())
     conditions.push_back(
         {fmt::format("no cylinder of {} tips over its rim", namesOfBodies(contacts.tippers, scene)), contacts.tippers});
-  if (mayHaveManyRows(contacts, hasBilateral(scene, island)))
+  if (mayHaveManyRows(contacts, hasBilateral(island)))
     conditions.push_back({fmt::format("no more than {} redundant or {} independent forces press {} at once",
                                       kMaxRedundant, kMaxIndependent, namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
@@ -237,7 +229,7 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
         {fmt::format("no contact of {} jams, or slides so slowly that its friction has no sure direction",
                      namesOfBodies(contacts.movers, scene)),
          contacts.movers});
-  if (hasJoints(scene, island))
+  if (hasJoints(island))
     conditions.push_back({fmt::format("nothing touches {} within a thousandth of its size of a joint",
                                       namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
@@ -265,7 +257,7 @@ Promise promiseOf(const Scene& scene, const IslandPlan& island, const ReachableP
         fmt::format("models with hollows may touch: their contact is resolved every {:.3g} s", method.timeStep));
   if (method.isClosedForm() || island.touching.empty()) return {};
   const ContactSurvey survey(scene, island, reachable);
-  if (areFewSpheres(survey.found()) && !hasJoints(scene, island)) return {};
+  if (areFewSpheres(survey.found()) && !hasJoints(island)) return {};
   return {Promise::Kind::conditional, conditionsOf(scene, island, survey.found()), {}};
 }
 

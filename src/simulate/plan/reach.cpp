@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
+#include <utility>
 
 namespace cradle {
 namespace {
@@ -82,42 +85,89 @@ double kineticEnergyOf(const Body& body) {
          0.5 * angularVelocity.dot(body.massProperties.inertiaTensor * angularVelocity);
 }
 
-bool isPushed(int body, const Scene& scene) {
-  return std::any_of(scene.pushes.begin(), scene.pushes.end(), [body](const Push& push) { return push.body == body; });
+/// Whether something pushes a body, by body.
+std::vector<char> pushedOf(const Scene& scene) {
+  std::vector<char> isPushed(scene.bodies.size(), 0);
+  for (const Push& push : scene.pushes) isPushed[static_cast<std::size_t>(push.body)] = 1;
+  return isPushed;
+}
+
+/// A body on springs, as long as it is not known to be moved by anything else.
+struct SpringBody {
+  bool isAlone = true;
+  double energy = 0;  // J, at the start
+};
+
+double energyOf(const Spring& spring, const Scene& scene) {
+  const double extension =
+      (worldPoint(spring.anchorA, scene) - worldPoint(spring.anchorB, scene)).norm() - spring.restLength;
+  return 0.5 * spring.stiffness * extension * extension;
+}
+
+/// Calls visit(end, other) for both ends of a link.
+template <class Visit>
+void forBothEnds(const Anchor& a, const Anchor& b, const Visit& visit) {
+  visit(a, b), visit(b, a);
 }
 
 /// Narrows the reaches of bodies on springs that all end at fixed points, and that nothing else moves.
-void narrowBySprings(const Scene& scene, const std::vector<char>& touches, std::vector<Reach>& reaches) {
-  const std::vector<Limit> limits = limitsOf(scene);
-  for (std::size_t index = 0; index < scene.bodies.size(); ++index) {
-    if (touches[index]) continue;
-    const int body = static_cast<int>(index);
-    double energy = kineticEnergyOf(scene.bodies[index]);
-    bool isAlone = !isPushed(body, scene);
-    for (const Spring& spring : scene.springs) {
-      if (spring.anchorA.body != body && spring.anchorB.body != body) continue;
-      const double extension =
-          (worldPoint(spring.anchorA, scene) - worldPoint(spring.anchorB, scene)).norm() - spring.restLength;
-      energy += 0.5 * spring.stiffness * extension * extension;
-      isAlone = isAlone && (isFixed(spring.anchorA, scene) || isFixed(spring.anchorB, scene));
-    }
-    for (const Limit& limit : limits)
-      for (const auto& [end, other] : {std::pair(limit.a, limit.b), std::pair(limit.b, limit.a)})
-        isAlone = isAlone && (end.body != body || isFixed(other, scene));
-    if (!isAlone) continue;
-    for (const Spring& spring : scene.springs)
-      for (const auto& [end, other] :
-           {std::pair(spring.anchorA, spring.anchorB), std::pair(spring.anchorB, spring.anchorA)})
-        if (end.body == body && isFixed(other, scene))
-          narrow(end, other, farthestOnSpring(spring, end, other, energy, scene), scene, reaches);
+void narrowBySprings(const Scene& scene, const std::vector<char>& touches, const std::vector<Limit>& limits,
+                     std::vector<Reach>& reaches) {
+  std::vector<SpringBody> bodies(scene.bodies.size());
+  const std::vector<char> isPushed = pushedOf(scene);
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    bodies[i] = {!touches[i] && !isPushed[i], kineticEnergyOf(scene.bodies[i])};
+  const auto bodyAt = [&](const Anchor& end) -> SpringBody& { return bodies[static_cast<std::size_t>(end.body)]; };
+  const auto requireFixed = [&](const Anchor& end, const Anchor& other) {
+    if (end.body != kWorld && !isFixed(other, scene)) bodyAt(end).isAlone = false;
+  };
+  for (const Limit& limit : limits) forBothEnds(limit.a, limit.b, requireFixed);
+  for (const Spring& spring : scene.springs) {
+    forBothEnds(spring.anchorA, spring.anchorB, requireFixed);
+    const auto addEnergy = [&](const Anchor& end, const Anchor& other) {
+      if (end.body != kWorld && isFixed(other, scene)) bodyAt(end).energy += energyOf(spring, scene);
+    };
+    forBothEnds(spring.anchorA, spring.anchorB, addEnergy);
+  }
+  for (const Spring& spring : scene.springs)
+    forBothEnds(spring.anchorA, spring.anchorB, [&](const Anchor& end, const Anchor& other) {
+      if (isFixed(end, scene) || !isFixed(other, scene) || !bodyAt(end).isAlone) return;
+      narrow(end, other, farthestOnSpring(spring, end, other, bodyAt(end).energy, scene), scene, reaches);
+    });
+}
+
+/// Narrows the reaches of bodies along chains of limits, which are lengths of ways: each from the nearest fixed point
+/// (E. W. Dijkstra, 1959).
+void narrowByLimits(const Scene& scene, const std::vector<Limit>& limits, std::vector<Reach>& reaches) {
+  std::vector<std::vector<Limit>> limitsFrom(scene.bodies.size());  // by the body of their anchor b
+  using Way = std::pair<double, int>;                               // m; body
+  std::priority_queue<Way, std::vector<Way>, std::greater<>> next;
+  const auto narrowEnd = [&](const Anchor& end, const Anchor& other, double length) {
+    if (narrow(end, other, length, scene, reaches))
+      next.emplace(reaches[static_cast<std::size_t>(end.body)].radius, end.body);
+  };
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (scene.bodies[i].motion == Motion::dynamic && std::isfinite(reaches[i].radius))
+      next.emplace(reaches[i].radius, static_cast<int>(i));
+  for (const Limit& limit : limits)
+    forBothEnds(limit.a, limit.b, [&](const Anchor& end, const Anchor& other) {
+      if (isFixed(other, scene)) return narrowEnd(end, other, limit.length);
+      limitsFrom[static_cast<std::size_t>(other.body)].push_back({end, other, limit.length});
+    });
+  while (!next.empty()) {
+    const auto [radius, body] = next.top();
+    next.pop();
+    if (radius > reaches[static_cast<std::size_t>(body)].radius) continue;
+    for (const Limit& limit : limitsFrom[static_cast<std::size_t>(body)]) narrowEnd(limit.a, limit.b, limit.length);
   }
 }
 
 /// Narrows the reaches of free bodies: a parabola stays within half its chord plus g T^2 / 8 of the middle of its
 /// chord.
 void narrowByFlight(const Scene& scene, const std::vector<char>& isAttached, std::vector<Reach>& reaches) {
+  const std::vector<char> isPushed = pushedOf(scene);
   for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
-    if (isAttached[body] || isPushed(static_cast<int>(body), scene)) continue;
+    if (isAttached[body] || isPushed[body]) continue;
     const Body& flying = scene.bodies[body];
     const Vec3 way = flying.linearVelocity * scene.duration + 0.5 * scene.duration * scene.duration * scene.gravity;
     const double sag = scene.gravity.norm() * scene.duration * scene.duration / 8;
@@ -144,14 +194,8 @@ std::vector<Reach> reachOf(const Scene& scene, const std::vector<char>& touches)
     isAttached[body] = 1;
   }
 
-  narrowBySprings(scene, touches, reaches);
-  for (bool helped = true; helped;) {
-    helped = false;
-    for (const Limit& limit : limits) {
-      helped = narrow(limit.a, limit.b, limit.length, scene, reaches) || helped;
-      helped = narrow(limit.b, limit.a, limit.length, scene, reaches) || helped;
-    }
-  }
+  narrowBySprings(scene, touches, limits, reaches);
+  narrowByLimits(scene, limits, reaches);
   narrowByFlight(scene, isAttached, reaches);
   return reaches;
 }

@@ -28,6 +28,18 @@ TEST(DisjointSets, AreNamedByTheFirstBodyThatIsReachedOverJoins) {
   }
 }
 
+// Bodies joined from the last to the first hang on each other in a chain.
+TEST(DisjointSets, KeepTheirNamesWhenFlattened) {
+  DisjointSets sets(9);
+  for (int body = 7; body > 1; --body) sets.join(body - 1, body);
+  sets.flatten();
+  for (int body = 1; body < 8; ++body) EXPECT_EQ(sets.islandOf(body), 1);
+  EXPECT_EQ(sets.islandOf(8), 8);
+  sets.join(0, 8), sets.join(7, 8);
+  sets.flatten();
+  for (int body = 0; body < 9; ++body) EXPECT_EQ(sets.islandOf(body), 0);
+}
+
 TEST(DisjointSets, AreNotJoinedByWhatIsFixed) {
   DisjointSets sets(3);
   for (const int body : {2, 0, 1}) sets.join(body, kFixed), sets.join(kFixed, body);

@@ -76,7 +76,7 @@ Islands islandsOfAllPairs(const Scene& scene, const ReachablePairs& reachable) {
   const auto join = [&](int a, int b) {
     if (isMoving(scene, a) && isMoving(scene, b)) joined.join(a, b);
   };
-  forEachLink(scene, join);
+  forEachLink(scene, [&](const LinkIndex&, const Anchor& a, const Anchor& b) { join(a.body, b.body); });
   for (int i = 0; i < count; ++i)
     for (int j = i + 1; j < count; ++j)
       if (reachable.mayCollide(i, j)) join(i, j);
