@@ -25,6 +25,7 @@ RigidTransform colliderFromShape(const Body& body, int movingBody) {
 
 Collider wholeMesh(const TriangleMesh& mesh, const RigidTransform& frame) {
   Collider collider;
+  collider.points.reserve(mesh.vertices.size());
   for (const Vec3& vertex : mesh.vertices) {
     collider.points.push_back(frame * vertex);
     collider.boundingRadius = std::max(collider.boundingRadius, collider.points.back().norm());

@@ -459,6 +459,14 @@ class Places(HostileTest):
             self.assertLess(ended.seconds, MOST_SECONDS, name)
             self.assertLess(ended.memory, MOST_MEMORY, name)
 
+    def test_copies_of_a_mesh_that_touch_do_not_fill_the_memory(self):
+        knot = os.path.join(SOURCE, "assets", "torus_knot.3ds")
+        copies = {"name": "b", "shape": {"mesh": knot}, "mass": 1, "copies": {"count": [20, 100, 10], "spacing": [9, 9, 9]}}
+        self.assertLess(self.run_cradle("check", self.write("apart.json", scene(copies))).memory, MOST_MEMORY)
+        swinging = {"name": "s", "shape": {"sphere": {}}, "position": [-90, 0, 0]}  # on a spring it may reach all others
+        path = self.write("a.json", scene(copies, swinging, springs=[{"bodyA": "s", "anchorB": [-90, 3, 0]}]))
+        self.refuses(8, [path, "/bodies/0", "30000000 points"], "check", path)
+
     def test_names_are_no_addresses(self):
         path = self.write("scene.json", scene())
         for name in ("file:x.sqlite", ":memory:", "a?mode=memory.sqlite"):

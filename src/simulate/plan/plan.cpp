@@ -11,10 +11,14 @@
 
 #include "simulate/plan/plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "core/error.h"
 #include "dynamics/integrators/dop853.h"
 #include "dynamics/integrators/dormand_prince5.h"
 #include "dynamics/integrators/explicit_euler.h"
@@ -30,9 +34,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kSoftTimeStep = 1.0 / 60;  // s, at most
-constexpr std::size_t kMinSoftBodies = 50;  // with fewer, RK4 costs less than the pictures of its frames
-constexpr double kMaxRatio = 10;            // of masses and of densities in a heap
+constexpr double kSoftTimeStep = 1.0 / 60;      // s, at most
+constexpr std::size_t kMinSoftBodies = 50;      // with fewer, RK4 costs less than the pictures of its frames
+constexpr double kMaxRatio = 10;                // of masses and of densities in a heap
+constexpr std::size_t kMaxPoints = 30'000'000;  // some 700 MB
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSteppedTolerance = 1e-5;     // of the local error of RK4, at most: contact decides how good a step is
 constexpr double kToleranceRatio = 0.02;       // of the accuracy: local errors of tens of steps add up, and take energy
@@ -172,6 +177,27 @@ void choose(const Scene& scene, IslandPlan& island) {
   }
 }
 
+/// Throws Error(limit) if bodies of models that may touch have more points than fit into memory: each has its own.
+void requireFewPoints(const Scene& scene, const std::vector<IslandPlan>& islands) {
+  std::map<std::pair<int, CollisionChoice>, std::size_t> pointsOf;  // of a model's collider
+  std::size_t points = 0;
+  for (const IslandPlan& island : islands)
+    for (const int index : island.touching) {
+      const Body& body = scene.bodies[static_cast<std::size_t>(index)];
+      const auto* shape = std::get_if<ModelShape>(&body.shape);
+      if (!shape) continue;
+      const auto [known, isNew] = pointsOf.emplace(std::pair(shape->model, body.collision), 0);
+      const auto collider = isNew ? colliderOf(body, scene, kFixed) : std::nullopt;
+      if (collider) known->second = collider->points.size();
+      points += known->second;
+      if (points > kMaxPoints)
+        throw Error(ErrorKind::limit, body.where,
+                    fmt::format("from here on, models of bodies that may touch have more than {} points in all; give "
+                                "some \"collision\": \"hull\" or \"none\", or take simpler meshes or fewer bodies",
+                                kMaxPoints));
+    }
+}
+
 }  // namespace
 
 ChosenMethod contactSteps(double timeStep) {
@@ -181,6 +207,7 @@ ChosenMethod contactSteps(double timeStep) {
 Plan planOf(const Scene& scene) {
   const ReachablePairs reachable(scene);
   Plan plan{findIslands(scene, reachable), scene.accuracy};
+  requireFewPoints(scene, plan.islands);
   for (IslandPlan& island : plan.islands) {
     choose(scene, island);
     island.promise = promiseOf(scene, island, reachable);
