@@ -11,10 +11,8 @@ function(cradle_link_context TARGET)
   target_sources(${TARGET} PRIVATE ${CONTEXT})
   set_source_files_properties(${CONTEXT} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # another program may leave it out
   if(KIND STREQUAL egl)
-    set(LIBRARIES ${EGL} ${OPENGL})
+    target_link_libraries(${TARGET} PRIVATE ${EGL})
   else()
-    set(LIBRARIES ${OSMESA})
+    target_link_libraries(${TARGET} PRIVATE ${CMAKE_DL_LIBS})  # it opens OSMesa itself
   endif()
-  # They stand before the layers that use them: the linker must keep them until then.
-  target_link_libraries(${TARGET} PRIVATE -Wl,--push-state,--no-as-needed ${LIBRARIES} -Wl,--pop-state)
 endfunction()

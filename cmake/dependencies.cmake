@@ -9,11 +9,10 @@ find_package(Threads REQUIRED)
 find_package(PNG 1.6 REQUIRED)
 find_library(LIBDEFLATE deflate REQUIRED)
 if(CRADLE_TESTS OR NOT CRADLE_EGL)  # the tests hold one context against the other
-  find_library(OSMESA OSMesa REQUIRED)
+  find_path(OSMESA_INCLUDE GL/osmesa.h REQUIRED)
 endif()
 if(CRADLE_TESTS OR CRADLE_EGL)
   find_library(EGL EGL REQUIRED)
-  find_library(OPENGL OpenGL REQUIRED)  # the functions alone, without GLX
 endif()
 find_library(GLEW NAMES libGLEW.a REQUIRED)
 find_path(STB_INCLUDE stb/stb_image_write.h REQUIRED)

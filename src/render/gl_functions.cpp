@@ -41,7 +41,7 @@ int glXQueryVersion(void* /*display*/, int* major, int* minor) {
 namespace cradle {
 namespace {
 
-/// Linked in the wrong order, OpenGL loads and draws nothing, silently.
+/// With functions of another library than the context's, OpenGL loads and draws nothing, silently.
 void requireDrawing() {
   GLuint target = 0, framebuffer = 0;
   glGenRenderbuffers(1, &target);

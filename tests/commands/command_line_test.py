@@ -659,6 +659,15 @@ class Pictures(InTemporaryFolder):
         self.assertEqual(cradle("encode", self.path("frames"), "-o", self.path("f.mp4")).returncode, 0)
         self.assertEqual(film_frames(self.path("f.mp4")), "64,36,6")
 
+    def test_opengl_is_needed_by_pictures_alone(self):
+        self.write("libOSMesa.so.8", b"no library")
+        environment = {**os.environ, "LD_LIBRARY_PATH": self.folder}
+        self.assertEqual(cradle("simulate", self.scene, "-o", self.path("a.sqlite"), env=environment).returncode, 0)
+        result = cradle("render", self.scene, "-o", self.path("frames"), env=environment)
+        self.assertEqual((result.returncode, result.stderr.count("\n")), (8, 1), result.stderr)
+        self.assertRegex(result.stderr, "OpenGL: .*libOSMesa.so.8.*install libosmesa6")
+        self.assertEqual(self.listing(), ["a.sqlite", "libOSMesa.so.8", "s.json"])
+
     def test_a_missing_or_dying_encoder_ends_with_6_and_leaves_nothing(self):
         os.mkdir(self.path("bin"))
         environment = {**os.environ, "PATH": self.path("bin")}
