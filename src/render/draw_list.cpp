@@ -1,6 +1,7 @@
 #include "render/draw_list.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "math/rotation.h"
 #include "render/body_place.h"
@@ -11,7 +12,9 @@ namespace cradle {
 namespace {
 
 constexpr std::size_t kMaxNearOccluders = 6;  // of one item: as many as touch a sphere in a dense layer
-constexpr double kLarge = 4;                  // times the typical occluder: compared with everything
+constexpr double kDistanceSteps =
+    64;                       // of a reach: of those nearer to each other, rounding would choose anew in each frame
+constexpr double kLarge = 4;  // times the typical occluder: compared with everything
 
 void appendBody(const BodyAppearance& look, const RigidTransform& worldFromBody, DrawList& list) {
   for (const BodyPart& part : look.parts) {
@@ -124,7 +127,7 @@ double relativeDistance(const OccluderItem& item, const Bounds& bounds) {
   return bounds.exteriorDistance(Bounds(item.center - extent, item.center + extent)) / item.radius;
 }
 
-/// The occluders of each item's bounds, the closest first; not its own.
+/// The occluders of each item's bounds, the closest first, to kDistanceSteps; not its own.
 template <typename Item>
 void findNearOccluders(const std::vector<int>& bodyOfItem, const OccluderSearch& search, std::vector<Item>& items,
                        DrawList& list) {
@@ -136,7 +139,7 @@ void findNearOccluders(const std::vector<int>& bodyOfItem, const OccluderSearch&
       const OccluderItem& item = list.occluders[static_cast<std::size_t>(index)];
       if (item.body == bodyOfItem[i]) return;
       const double distance = relativeDistance(item, bounds);
-      if (distance < 1) found.emplace_back(distance, index);
+      if (distance < 1) found.emplace_back(std::floor(kDistanceSteps * distance), index);
     });
     const std::size_t count = std::min(found.size(), kMaxNearOccluders);
     std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end());

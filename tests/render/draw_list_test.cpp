@@ -265,6 +265,20 @@ TEST(DrawList, BallsNearABallAreTheClosestOthers) {
   EXPECT_EQ(near, (std::vector<int>{3, 5, 2, 6}));
 }
 
+// Balls that lie on a board touch it but for rounding, which differs from frame to frame.
+TEST(DrawList, RoundingDoesNotChooseWhichBallsABoardMirrors) {
+  Scene scene = emptyScene();
+  addBody(scene, Box{{20, 0.2, 20}}, {});
+  for (int i = 0; i < 9; ++i)
+    addBody(scene, Sphere{0.5}, {Quat::Identity(), {2.0 * i - 8, 0.6 + 1e-12 * (i * 5 % 9), 0}});
+  const DrawList list = listOf(scene, startFrame(scene));
+  EXPECT_EQ(list.nearOccluders.at(static_cast<std::size_t>(list.meshes.at(0).firstNearOccluder)), 1);
+  for (int i = 0; i < 6; ++i) {
+    const auto place = static_cast<std::size_t>(list.meshes.at(0).firstNearOccluder + i);
+    EXPECT_EQ(list.nearOccluders.at(place), 1 + i);
+  }
+}
+
 TEST(DrawList, BoxBesideABallIsItsNeighbourToItsReach) {
   // Half edges 0.1, 0.3, 0.5: the box counts 1.6 times the middle one beyond its faces.
   for (const auto& [gap, count] : {std::pair(0.47, 1), std::pair(0.49, 0)}) {
