@@ -37,7 +37,9 @@ TEST(NearSpheres, AllThatOverlapAreVisitedOnce) {
         const double distance = (spheres[i].center - spheres[j].center).norm();
         const std::size_t times = visited.count({i, j});
         EXPECT_LE(times, 1u) << i << " " << j;
-        if (distance <= spheres[i].radius + spheres[j].radius) EXPECT_EQ(times, 1u) << i << " " << j;
+        if (distance <= spheres[i].radius + spheres[j].radius) {
+          EXPECT_EQ(times, 1u) << i << " " << j;
+        }
       }
   }
 }
