@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kSphereRounding = 1e-14;  // relative, of sums of three numbers
 constexpr double kFarthestCell = 1e9;      // from the middle: spheres farther away share the outermost cells
-constexpr int kWidestExponent = 1000;      // of a cell's width, 2^1000 m: what is wider is everywhere
+constexpr int kWidestExponent = 1000;      // of a radius, 2^1000 m: what is larger is everywhere, in one cell
 
 /// A sphere in a grid: its cell across, and what it takes of x.
 struct CellEntry {
@@ -59,7 +59,7 @@ std::vector<SizeGrid> gridsOf(const std::vector<Reach>& spheres) {
     if (const double radius = roundedRadius(spheres[i]); radius < std::ldexp(1.0, kWidestExponent))
       std::frexp(radius, &exponent);
     SizeGrid& grid = bySize[exponent];
-    grid.width = std::ldexp(2.0, exponent);
+    grid.width = exponent == kWidestExponent ? INFINITY : std::ldexp(2.0, exponent);
     grid.entries.push_back(entryOf(spheres, i, grid.width));
   }
   std::vector<SizeGrid> grids;
