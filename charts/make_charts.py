@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs all studies and writes the page that shows them: charts.html, and its picture charts.png; and what the README shows of it.
+"""Runs all studies and writes the page that shows them: charts.html, and its picture charts.png; and what docs/engines.md shows of it.
 
     make_charts.py BUILD_FOLDER SOURCE_FOLDER OUTPUT_FOLDER [--scenes NAME,...] [--methods NAME,...]
 
@@ -8,12 +8,12 @@ program and its scenes is not measured again. With --scenes or --methods, only a
 """
 import argparse, os, shutil, subprocess, sys, time
 
-import browser, machine, maps, piles, readme
+import browser, engine_table, machine, maps, piles
 from page import page
 from scenes import SCENES
 from study_file import read_references, read_rows
 
-SHOWN = ("cradle_on_joints", "chain_on_joints")  # by the README: docs/charts/NAME.png
+SHOWN = ("cradle_on_joints", "chain_on_joints")  # by docs/engines.md: docs/charts/NAME.png
 
 
 def arguments():
@@ -89,7 +89,7 @@ def main():
     browser.take_picture(html, browser.check(html), html[:-5] + ".png")
     if options.scenes == ",".join(SCENES) and not options.methods:
         show_in_docs(folder, os.path.join(options.source, "docs", "charts"))
-        readme.update(os.path.join(options.source, "README.md"), studies, references)
+        engine_table.update(os.path.join(options.source, "docs", "engines.md"), studies, references)
     print(f"{html}\n{html[:-5]}.png")
 
 
@@ -102,5 +102,5 @@ if __name__ == "__main__":
     except subprocess.CalledProcessError as error:
         print(f"charts: {os.path.basename(error.cmd[0])} ended with {error.returncode}", file=sys.stderr)
         sys.exit(error.returncode)
-    except (browser.PageError, readme.MarkError) as error:
+    except (browser.PageError, engine_table.MarkError) as error:
         sys.exit(f"charts: {error}")

@@ -5,7 +5,7 @@
 
 WORDS: only cases whose name contains them. Each table below is a kind of input, a row a case: its name, what makes the
 input, where the message says that the fault is, and fragments of what it says: what was found, what is allowed, what to do.
-Exit codes are those of the README: 2 command line, trajectories and pictures, 3 scene text, 4 meshes, 5 outputs.
+Exit codes are those of docs/commands.md: 2 command line, trajectories and pictures, 3 scene text, 4 meshes, 5 outputs.
 
 A case runs in a folder of its own with good files beside the bad one (`good_files`), among them outputs of earlier runs.
 """

@@ -10,7 +10,7 @@ thousands, 20 fail: half of them at numbers that grow by a factor (the start is 
 spread. The same for 12 where calls are many and fail in a second way, or by close: FAILURES.
 
 After each run the output is that of the unharmed one, or absent, or the earlier one. Nothing else is there, save FILE.part
-of a `simulate` that names it, with the frames so far. The exit code is 0 only if the output is whole; else the README's for
+of a `simulate` that names it, with the frames so far. The exit code is 0 only if the output is whole; else docs/commands.md's for
 what failed: 2, 3 and 4 where an input cannot be read (2 trajectory, 3 scene, 4 mesh), 5 for outputs, 6 for ffmpeg, 8 for
 memory, and standard error has one line that says so.
 """

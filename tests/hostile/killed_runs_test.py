@@ -188,7 +188,7 @@ class KilledRuns(unittest.TestCase):
             self.faults.append("%s: %s" % (self.told, otherwise))
 
     def require_good_end(self, run):
-        """As the README says. Before main, signals do what they do to any program."""
+        """As docs/commands.md says. Before main, signals do what they do to any program."""
         self.require(run.code in (0, 128 + run.number) or (run.code == -run.number and not run.error), run.error)
         lines = [word for word in ("interrupted", "terminated") if word in run.error]
         self.require(len(lines) == (run.code > 0) and run.error.count("\n") == (run.code > 0), "it says %r" % run.error)

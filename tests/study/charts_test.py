@@ -9,7 +9,7 @@ import json, math, os, re, sys, tempfile, unittest
 SOURCE = os.path.abspath(sys.argv[1])
 sys.path.insert(0, os.path.join(SOURCE, "charts"))
 
-import maps, piles, readme
+import engine_table, maps, piles
 from frontier import cost_at, cost_factors, error_at, error_factors, frontier, lost_levels
 from page import page
 from study_file import Reference, floor_of, order_of, points_of, read_rows
@@ -150,23 +150,23 @@ class Readme(unittest.TestCase):
     def test_has_factors_and_least_errors_beside_what_cradle_chooses(self):
         # OURS has accuracies 1e-2 ... 1e-5; with one run more, at 1e-6: order 4, so a sixteenth of the error for twice the cost.
         ours = [*OURS, (1.6e-3, OURS[-1][1] / 16)]
-        text = readme.table({"oscillator": rows_of(table(ours, THEIRS))}, self.REFERENCES)
+        text = engine_table.table({"oscillator": rows_of(table(ours, THEIRS))}, self.REFERENCES)
         self.assertIn("| Ball on a stiff spring | 1.5e-8; 1.6 | - | 1 to 570; 9.8e-5 | - | - |", text)
         self.assertIn("In none of these scenes", text)
 
     def test_marks_and_tells_what_is_lost(self):
-        text = readme.table({"oscillator": rows_of(table([(c, 1e4 * e) for c, e in OURS], THEIRS))}, self.REFERENCES)
+        text = engine_table.table({"oscillator": rows_of(table([(c, 1e4 * e) for c, e in OURS], THEIRS))}, self.REFERENCES)
         self.assertRegex(text, r"\| fails \| - \| \*\*0\.\d+ to [^|]*\*\*; 9.8e-5 \|")
         self.assertIn("- Ball on a stiff spring: ODE is cheaper than Cradle", text)
 
     def test_is_changed_only_where_its_table_is(self):
-        text = f"before\n{readme.BEGIN}old\n{readme.END}after\n"
-        self.assertEqual(readme.with_table(text, "new\n"), f"before\n{readme.BEGIN}new\n{readme.END}after\n")
-        self.assertRaises(readme.MarkError, readme.with_table, "before\nafter\n", "new\n")
+        text = f"before\n{engine_table.BEGIN}old\n{engine_table.END}after\n"
+        self.assertEqual(engine_table.with_table(text, "new\n"), f"before\n{engine_table.BEGIN}new\n{engine_table.END}after\n")
+        self.assertRaises(engine_table.MarkError, engine_table.with_table, "before\nafter\n", "new\n")
 
     def test_of_this_project_has_a_place_for_its_table(self):
-        with open(os.path.join(SOURCE, "README.md")) as file:
-            readme.with_table(file.read(), "new\n")
+        with open(os.path.join(SOURCE, "docs", "engines.md")) as file:
+            engine_table.with_table(file.read(), "new\n")
 
 
 class Page(unittest.TestCase):

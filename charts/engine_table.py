@@ -1,4 +1,4 @@
-"""The README's table of engines: what the same error costs, scene by scene, and where Cradle loses."""
+"""The table of engines in docs/engines.md: what the same error costs, scene by scene, and where Cradle loses."""
 import os
 
 from frontier import WORST_ERROR
@@ -7,11 +7,11 @@ from study_file import floor_of, points_of
 from verdict import ENGINES, OURS, number, rivals_of, span, verdict
 
 ACCURACY = 1e-6  # asked; the default of scenes
-BEGIN, END = "<!-- engines, by ./run charts -->\n", "<!-- /engines -->\n"  # around the table in the README
+BEGIN, END = "<!-- engines, by ./run charts -->\n", "<!-- /engines -->\n"  # around the table in the page
 
 
 class MarkError(Exception):
-    """The README does not say where its table is."""
+    """The page does not say where its table is."""
 
 
 def our_cell(rows, floor):
@@ -49,12 +49,12 @@ def table(studies, references):
     return text + "\n" + ("Where Cradle loses:\n\n" + "".join(losses) if losses else nowhere)
 
 
-def with_table(readme, text):
-    """The README with this table in place of its own. Throws MarkError."""
-    before, begin, rest = readme.partition(BEGIN)
+def with_table(page, text):
+    """The page with this table in place of its own. Throws MarkError."""
+    before, begin, rest = page.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not begin or not end:
-        raise MarkError(f"README.md has no lines {BEGIN.strip()} and {END.strip()}")
+        raise MarkError(f"docs/engines.md has no lines {BEGIN.strip()} and {END.strip()}")
     return before + BEGIN + text + END + after
 
 
