@@ -135,6 +135,9 @@ std::vector<Rebound> reboundsOf(const MatrixX& delassus, const VectorX& speeds,
   return rebounds;
 }
 
+namespace {
+
+/// The impulses (N s) along the normals by the law of reboundsOf, of all parts together.
 VectorX reflectionImpulses(const MatrixX& delassus, const VectorX& speeds, const std::vector<ImpactContact>& impacts) {
   const VectorX none = VectorX::Zero(speeds.size());
   VectorX impulses = none;
@@ -146,6 +149,8 @@ VectorX reflectionImpulses(const MatrixX& delassus, const VectorX& speeds, const
   if (plastic > 0) impulses += plastic * NormalImpact(delassus, speeds, impacts).stop(none);
   return impulses;
 }
+
+}  // namespace
 
 void resolveReflections(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
   if (impacts.empty()) return;

@@ -25,7 +25,4 @@ struct Rebound {
 std::vector<Rebound> reboundsOf(const MatrixX& delassus, const VectorX& speeds,
                                 const std::vector<ImpactContact>& impacts);
 
-/// The impulses (N s) along the normals by the same law, of all parts together.
-VectorX reflectionImpulses(const MatrixX& delassus, const VectorX& speeds, const std::vector<ImpactContact>& impacts);
-
 }  // namespace cradle

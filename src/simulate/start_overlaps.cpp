@@ -56,13 +56,13 @@ double correctableDepth(const ContactGeometry& geometry, const ColliderPair& pai
 }
 
 /// Two bodies of an island that overlap.
-struct Overlap {
+struct StartOverlap {
   const Body &a, &b;
   bool againstPlane, isThroughSheet;
   double depth, correctable;  // m
 };
 
-std::string textOf(const Overlap& overlap) {
+std::string textOf(const StartOverlap& overlap) {
   const auto& [a, b, againstPlane, isThroughSheet, depth, correctable] = overlap;
   if (againstPlane)
     return fmt::format("{}: \"{}\" is {} deep in the plane \"{}\" at the start", a.where, a.name, lengthText(depth),
@@ -75,7 +75,7 @@ bool isSheet(const ContactGeometry& geometry, std::size_t collider) {
   return mesh.kind() == ColliderKind::mesh && mesh.mesh && mesh.mesh->isSheet;
 }
 
-std::string faultOf(const Overlap& overlap) {
+std::string faultOf(const StartOverlap& overlap) {
   if (overlap.isThroughSheet)
     return fmt::format(
         "{}; one of them is a mesh that is not closed, a sheet with two sides, and the other has to be on one of them; "
@@ -90,14 +90,14 @@ std::string faultOf(const Overlap& overlap) {
       overlap.againstPlane ? "it out along the plane's normal" : "them apart", lengthText(overlap.depth));
 }
 
-bool isCorrectable(const Overlap& overlap) {
+bool isCorrectable(const StartOverlap& overlap) {
   return overlap.depth <= overlap.correctable;
 }
 
 /// All overlaps of an island, or those found up to the first `maxFaults` that are not correctable.
-std::vector<Overlap> overlapsOf(const Scene& scene, const Assembly& assembly, std::size_t maxFaults) {
+std::vector<StartOverlap> overlapsOf(const Scene& scene, const Assembly& assembly, std::size_t maxFaults) {
   const ContactGeometry& geometry = assembly.geometry;
-  std::vector<Overlap> overlaps;
+  std::vector<StartOverlap> overlaps;
   std::size_t faults = 0;
   for (const ColliderPair& pair : geometry.pairs) {
     const auto [first, second] = bodiesOf(assembly, pair);
@@ -149,35 +149,35 @@ double pushesOfARound(const Assembly& assembly, std::size_t overlaps) {
 }
 
 /// Adds a fault for each overlap, up to kMaxFaultsCounted in all.
-void addFaults(const std::vector<Overlap>& overlaps, const char* why, std::vector<std::string>& faults) {
-  for (const Overlap& overlap : overlaps) {
+void addFaults(const std::vector<StartOverlap>& overlaps, const char* why, std::vector<std::string>& faults) {
+  for (const StartOverlap& overlap : overlaps) {
     if (faults.size() == kMaxFaultsCounted) return;
     faults.push_back(faults.size() < kMaxFaultsTold ? textOf(overlap) + why : "");
   }
 }
 
 /// Moves bodies apart until none overlaps, each round of as many pairs as `overlaps`; what is left is a fault.
-void moveAllApart(const Scene& scene, const std::vector<Overlap>& overlaps, Assembly& assembly,
+void moveAllApart(const Scene& scene, const std::vector<StartOverlap>& overlaps, Assembly& assembly,
                   std::vector<std::string>& faults) {
   const double pushes = pushesOfARound(assembly, overlaps.size());
   if (pushes > kMaxPushes)
     return addFaults(overlaps, "; more pairs overlap than are moved apart: mend their places in the scene", faults);
   const double rounds = std::min<double>(kMaxPushRounds, kMaxPushes / pushes);
-  std::vector<Overlap> left = overlaps;
+  std::vector<StartOverlap> left = overlaps;
   for (int round = 0; round < rounds && !left.empty(); ++round) {
     moveApart(assembly);
     left = overlapsOf(scene, assembly, kMaxFaultsCounted);
   }
   addFaults(left, ", and what is around holds them together", faults);
-  for (const Overlap& overlap : overlaps)
+  for (const StartOverlap& overlap : overlaps)
     assembly.warnings.push_back(textOf(overlap) + "; they were moved apart before the run");
 }
 
 /// Moves bodies apart whose overlaps are correctable; the others are faults.
 void correctPenetrations(const Scene& scene, Assembly& assembly, std::vector<std::string>& faults) {
-  const std::vector<Overlap> overlaps = overlapsOf(scene, assembly, kMaxFaultsCounted - faults.size());
+  const std::vector<StartOverlap> overlaps = overlapsOf(scene, assembly, kMaxFaultsCounted - faults.size());
   const std::size_t before = faults.size();
-  for (const Overlap& overlap : overlaps)
+  for (const StartOverlap& overlap : overlaps)
     if (!isCorrectable(overlap)) faults.push_back(faults.size() < kMaxFaultsTold ? faultOf(overlap) : "");
   if (!overlaps.empty() && faults.size() == before) moveAllApart(scene, overlaps, assembly, faults);
 }
