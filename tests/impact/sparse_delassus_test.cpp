@@ -5,6 +5,7 @@
 #include <random>
 
 #include "impact/contact_delassus.h"
+#include "impact/frictional_contact.h"
 #include "impact/row_of_balls.h"
 #include "math/rotation.h"
 
