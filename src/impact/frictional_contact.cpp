@@ -261,7 +261,8 @@ ContactSolution Search::run(WarmStart& start) {
   iterate_.impulses = impulses_;
   correctVelocities(velocities_);
   start = {impulses_, iterate_.velocities, iterate_.penalty};
-  for (Index i = 0; i < op_.scales.size(); ++i)  // in the cones exactly
+  // In the cones exactly; where a tolerance is left, velocities would suffer by it.
+  for (Index i = 0; i < op_.scales.size() && tolerances_.isRounding; ++i)
     impulses_.segment<3>(3 * i) = projectOnCone(impulses_.segment<3>(3 * i), friction(i));
   solution.impulses = impulses_, solution.velocities = velocitiesOf(impulses_);
   for (Index i = 0; i < op_.scales.size(); ++i) {
