@@ -181,6 +181,7 @@ void warnOfSteps(const Scene& scene, const ChosenMethod& method, Assembly& assem
 Assembly assemble(const Scene& scene, const IslandPlan& island) {
   Assembly assembly;
   assembly.mechanism.gravity = scene.gravity;
+  assembly.pushes = island.pushes;
   addBodies(scene, island, assembly);
   addLinks(scene, island, assembly);
   addColliders(scene, island, assembly);

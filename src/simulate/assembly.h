@@ -23,10 +23,11 @@ struct Assembly {
   Mechanism mechanism;
   ContactGeometry geometry;
   std::vector<RopeLimit> ropes;
-  VectorX state;                 // at time 0
-  std::vector<int> sceneBodies;  // scene body of each moving body, ascending
-  PartNames names;               // taut ropes stand behind the rods named here
-  std::vector<double> radii;     // m: of each moving body's collider about its centre of mass; 0 without one
+  VectorX state;                    // at time 0
+  std::vector<int> sceneBodies;     // scene body of each moving body, ascending
+  std::vector<std::size_t> pushes;  // of the island, indices into the scene's
+  PartNames names;                  // taut ropes stand behind the rods named here
+  std::vector<double> radii;        // m: of each moving body's collider about its centre of mass; 0 without one
   std::vector<int> colliderBodies, planeBodies;  // scene body of each collider and plane of the geometry
   std::vector<std::pair<int, int>> ropeBodies;   // scene bodies A, B of each rope; kWorld
   std::vector<std::string> warnings;

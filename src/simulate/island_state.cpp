@@ -16,7 +16,7 @@ IslandState::IslandState(const Scene& source, Assembly parts)
       rightHandSide(equations.rightHandSide()),
       log(assembly),
       resting(assembly.mechanism, assembly.geometry, equations),
-      pushes(scene, assembly.sceneBodies, log),
+      pushes(scene, assembly, log),
       search(assembly.geometry),
       state(assembly.state),
       motions_(assembly.mechanism.bodies.size()) {}

@@ -212,18 +212,17 @@ bool forbidRolling(std::size_t index, const PinnedPlace& pin, const std::string&
   return isForbidden;
 }
 
-/// Tells the colliders of a joint's body of its anchor on `other` (a moving body, or kFixed). True if rolling
-/// about it is forbidden from now on.
+/// Tells the collider of a joint's body, if it has one, of its anchor on `other` (a moving body, or kFixed). True if
+/// rolling about it is forbidden from now on.
 bool pin(const Attachment& anchor, int other, const Vec3& axis, const std::string& name, Assembly& assembly) {
   if (anchor.body == kFixed) return false;
-  bool isForbidden = false;
-  for (std::size_t i = 0; i < assembly.geometry.colliders.size(); ++i) {
-    Collider& collider = assembly.geometry.colliders[i];
-    if (collider.body != anchor.body) continue;
-    // The contact at the anchor is not found any more once the collider knows of it.
-    if (other == kFixed) isForbidden = forbidRolling(i, {other, anchor.point, axis}, name, assembly);
-    collider.pins.push_back({other, anchor.point, axis});
-  }
+  const int sceneBody = assembly.sceneBodies[static_cast<std::size_t>(anchor.body)];
+  const int collider = indexAmong(assembly.colliderBodies, sceneBody);
+  if (collider < 0) return false;
+  const auto index = static_cast<std::size_t>(collider);
+  // The contact at the anchor is not found any more once the collider knows of it.
+  const bool isForbidden = other == kFixed && forbidRolling(index, {other, anchor.point, axis}, name, assembly);
+  assembly.geometry.colliders[index].pins.push_back({other, anchor.point, axis});
   return isForbidden;
 }
 

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "mesh/ray_cast.h"
-#include "simulate/assembly.h"
 
 namespace cradle {
 namespace {
@@ -34,19 +33,20 @@ std::string missText(const Push& push, const Body& body, double time, const Vec3
 
 }  // namespace
 
-PushSchedule::PushSchedule(const Scene& scene, const std::vector<int>& sceneBodies, EventLog& log)
-    : scene_(scene), log_(log) {
-  for (const Push& push : scene.pushes) {
-    const int body = indexAmong(sceneBodies, push.body);
+PushSchedule::PushSchedule(const Scene& scene, const Assembly& assembly, EventLog& log) : scene_(scene), log_(log) {
+  for (const std::size_t index : assembly.pushes) {
+    const Push& push = scene.pushes[index];
+    const int body = indexAmong(assembly.sceneBodies, push.body);
     if (body != kFixed) planned_.push_back({&push, body, false, false, {}});
   }
+  findNextChange();
 }
 
-double PushSchedule::nextChange() const {
-  double next = std::numeric_limits<double>::infinity();
+void PushSchedule::findNextChange() {
+  nextChange_ = std::numeric_limits<double>::infinity();
   for (const Planned& planned : planned_)
-    if (!planned.isOver) next = std::min(next, planned.push->start + (planned.isActing ? planned.push->duration : 0));
-  return next;
+    if (!planned.isOver)
+      nextChange_ = std::min(nextChange_, planned.push->start + (planned.isActing ? planned.push->duration : 0));
 }
 
 std::vector<int> PushSchedule::apply(double time, const VectorX& state, std::vector<PushForce>& acting) {
@@ -66,6 +66,7 @@ std::vector<int> PushSchedule::apply(double time, const VectorX& state, std::vec
   acting.clear();
   for (const Planned& planned : planned_)
     if (planned.isActing) acting.push_back(planned.force);
+  findNextChange();
   return changed;
 }
 

@@ -3,19 +3,20 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "simulate/assembly.h"
 #include "simulate/events/event_log.h"
 
 namespace cradle {
 
-/// When the pushes of a scene begin and end, and where their rays hit.
+/// When the pushes of an island begin and end, and where their rays hit.
 class PushSchedule {
  public:
-  /// Keeps references to all three. `sceneBodies`: scene body of each moving body, ascending.
-  PushSchedule(const Scene& scene, const std::vector<int>& sceneBodies, EventLog& log);
+  /// Keeps references to `scene` and `log`. O(pushes of the island).
+  PushSchedule(const Scene& scene, const Assembly& assembly, EventLog& log);
 
   /// The next time (s) at which a push begins or ends, later than the last call of apply; infinite if none. No step may
-  /// go beyond it.
-  double nextChange() const;
+  /// go beyond it. O(1): every step asks.
+  double nextChange() const { return nextChange_; }
 
   /// Puts the pushes that act from `time` on into `acting`. Returns the moving bodies on which one begins or ends.
   std::vector<int> apply(double time, const VectorX& state, std::vector<PushForce>& acting);
@@ -28,10 +29,12 @@ class PushSchedule {
     PushForce force;
   };
   bool begin(Planned& planned, double time, const VectorX& state);
+  void findNextChange();
 
   const Scene& scene_;
   EventLog& log_;
   std::vector<Planned> planned_;
+  double nextChange_ = 0;  // s
 };
 
 }  // namespace cradle

@@ -438,6 +438,15 @@ class Places(HostileTest):
         shutil.copy(self.path("q/frame_000000.png"), self.path("q/frame_000001.png"))
         self.assertLess(self.run_cradle("compare", self.path("p"), self.path("q")).memory, MOST_MEMORY)
 
+    def test_a_picture_of_a_million_parts_is_read_soon(self):
+        part = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        header, rows = struct.pack(">2I5B", 32, 32, 8, 2, 0, 0, 0), zlib.compress(bytes(97 * 32))
+        self.write("p/frame_000000.png", b"\x89PNG\r\n\x1a\n" + part(b"IHDR", header) + 1_000_000 * part(b"teXt", b"k\0v") +
+                   part(b"IDAT", rows) + part(b"IEND", b""))
+        ended = self.run_cradle("encode", self.path("p"), "-q", "-o", self.path("x.mp4"))
+        self.assertEqual(ended.code, 0, ended.error)
+        self.assertLess(ended.seconds, MOST_SECONDS)
+
     def test_many_values_take_little_memory(self):
         path = self.write("a.json", "[" + 31_000_000 * "0," + "0]")
         self.refuses(3, [path, "values"], "check", path)
@@ -458,6 +467,14 @@ class Places(HostileTest):
             self.assertEqual(ended.code, 0, ended.error)
             self.assertLess(ended.seconds, MOST_SECONDS, name)
             self.assertLess(ended.memory, MOST_MEMORY, name)
+
+    def test_many_pushes_are_planned_in_little_time(self):
+        count = 60_000
+        bodies = [{"name": "b%d" % i, "shape": {"sphere": {"radius": 0.1}}, "position": [0, i, 0], "collision": "none"} for i in range(count)]
+        pushes = [{"body": "b%d" % i, "point": [0, 0, 0], "start": 0.01} for i in range(count)]
+        ended = self.run_cradle("plan", self.write("a.json", scene(*bodies, pushes=pushes)))
+        self.assertEqual(ended.code, 0, ended.error)
+        self.assertLess(ended.seconds, MOST_SECONDS)
 
     def test_copies_of_a_mesh_that_touch_do_not_fill_the_memory(self):
         knot = os.path.join(SOURCE, "assets", "torus_knot.3ds")
