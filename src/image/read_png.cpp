@@ -114,17 +114,23 @@ class PngReading {
   void requireEnd() {
     const long place = std::ftell(file_.get());
     std::array<unsigned char, 8> head{};
+    std::array<unsigned char, 4096> skipped{};  // short chunks are read on: each fseek is a call of the system
     std::error_code failed;
     const std::uint64_t size = std::filesystem::file_size(path_, failed);
+    std::fseek(file_.get(), 8, SEEK_SET);
     for (std::uint64_t at = 8; !failed;) {
       if (at + 12 > size) throw Error(ErrorKind::usage, path_, "is not a picture that can be read: it ends too early");
-      std::fseek(file_.get(), static_cast<long>(at), SEEK_SET);
       if (std::fread(head.data(), 1, head.size(), file_.get()) != head.size()) break;
       const std::uint64_t length =
           std::uint64_t{head[0]} << 24 | std::uint64_t{head[1]} << 16 | std::uint64_t{head[2]} << 8 | head[3];
       at += 12 + length;
       if (at > size) throw Error(ErrorKind::usage, path_, "is not a picture that can be read: it ends too early");
       if (std::memcmp(head.data() + 4, "IEND", 4) == 0) break;
+      const std::uint64_t rest = length + 4;
+      if (rest > skipped.size())
+        std::fseek(file_.get(), static_cast<long>(at), SEEK_SET);
+      else if (std::fread(skipped.data(), 1, rest, file_.get()) != rest)
+        break;
     }
     std::fseek(file_.get(), place, SEEK_SET);
   }
