@@ -48,7 +48,8 @@ void requireWritableFile(const std::string& path) {
 void requireWritablePlace(const std::string& path) {
   std::error_code failed;
   const fs::file_status there = fs::status(path, failed);
-  if (fs::is_symlink(fs::symlink_status(path, failed)) && fs::is_regular_file(there))
+  const bool isLink = fs::is_symlink(fs::symlink_status(path, failed));
+  if (isLink && (fs::is_regular_file(there) || !fs::exists(there)))
     throw Error(
         ErrorKind::output, path,
         "is a link to " + fs::read_symlink(path, failed).string() + ", which is not replaced; name the file itself");

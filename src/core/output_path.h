@@ -6,8 +6,8 @@
 namespace cradle {
 
 /// Throws Error(output) unless a file can be put at `path`: nothing or a regular file is there, in a folder that exists
-/// and may be written to, and the name is none of an unfinished output. Devices are refused, so that they are never
-/// replaced. Writes nothing.
+/// and may be written to, and the name is none of an unfinished output. Devices and links are refused, so that they are
+/// never replaced. Writes nothing.
 void requireWritableFile(const std::string& path);
 
 /// The same whatever the name.

@@ -858,6 +858,9 @@ for row in (
     ("pipe", {"p.csv": os.mkfifo}, "export good.sqlite -o p.csv", r"p\.csv: ", "not a regular file", "another name"),
     ("link to a device", {"p.glb": link("/dev/null")}, "export good.sqlite -o p.glb", r"p\.glb: ", "not a regular file", "another name"),
     ("link to a file", {"p.csv": link("old.csv")}, "export good.sqlite -o p.csv", r"p\.csv: ", "is a link to old.csv", "name the file itself"),
+    *(("link to nothing, " + command.split()[0], {command.split()[-1]: link("none")}, command, re.escape(command.split()[-1]) + ": ",
+       "is a link to none", "name the file itself")
+      for command in ("export good.sqlite -o p.csv", "simulate good.json -o p.sqlite", "encode frames -o p.mp4", COMPARE + "--report p.html")),
     ("link to a trajectory", {"p.sqlite": link("old.sqlite")}, "simulate good.json -o p.sqlite", r"p\.sqlite: ", "is a link to old.sqlite"),
     ("link to a film", {"p.mp4": link("old.mp4")}, "video good.sqlite -o p.mp4", r"p\.mp4: ", "is a link to old.mp4"),
     ("link to a folder", {"p.csv": link("empty")}, "export good.sqlite -o p.csv", r"p\.csv: ", "is a folder"),
