@@ -32,7 +32,7 @@
 namespace cradle {
 namespace {
 
-constexpr int kTerminatedExit = 143;
+constexpr int kExitOfSignal = 128;  // and its number, as shells have it
 
 /// Everything that the command line can say, and the command that it asks for.
 struct CommandLine {
@@ -290,7 +290,7 @@ int run(int argc, char** argv) {
 
 int report(const Error& error) {
   show(stderr, "{}\n", error.what());
-  if (error.kind() == ErrorKind::interrupted && interruptingSignal() == SIGTERM) return kTerminatedExit;
+  if (error.kind() == ErrorKind::interrupted) return kExitOfSignal + interruptingSignal();
   return static_cast<int>(error.kind());
 }
 

@@ -88,7 +88,7 @@ void noteCrashes() {
 
 void ignoreCrashes() {
   for (const int signal : kCrashes) std::signal(signal, SIG_DFL);
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_IGN);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (Place& place : places) {
     place.path = nullptr;

@@ -17,16 +17,21 @@ constexpr int kExitOfSignal = 128;  // and its number, as shells have it
 // The only global: a signal handler has no other place to write to.
 volatile std::sig_atomic_t notedSignal = 0;
 
+const char* wordOfNotedSignal() {
+  if (notedSignal == SIGHUP) return "hung up";
+  return notedSignal == SIGINT ? "interrupted" : "terminated";
+}
+
 /// For work that does not look whether a signal was noted.
 void endUnnoticed(int /*signal*/) {
   removeRemains();
-  const std::string_view words = notedSignal == SIGINT ? "interrupted\n" : "terminated\n";
-  [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, words.data(), words.size());
+  for (const std::string_view text : {std::string_view(wordOfNotedSignal()), std::string_view("\n")})
+    [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, text.data(), text.size());
   _exit(kExitOfSignal + notedSignal);
 }
 
 void note(int signal) {
-  std::signal(signal, SIG_DFL);
+  std::signal(signal, signal == SIGHUP ? SIG_IGN : SIG_DFL);  // a terminal's end is told by the kernel and by the shell
   std::signal(SIGALRM, endUnnoticed);
   alarm(kPatience);
   notedSignal = signal;  // last: another thread may notice it at once, and ends the alarm
@@ -37,6 +42,7 @@ void note(int signal) {
 void noteInterruptions() {
   std::signal(SIGINT, note);
   std::signal(SIGTERM, note);
+  if (std::signal(SIGHUP, note) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // as under nohup
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }
@@ -48,7 +54,7 @@ int interruptingSignal() {
 void throwIfInterrupted() {
   if (notedSignal == 0) return;
   alarm(0);  // noticed: to put files in order may take its time
-  throw Error(ErrorKind::interrupted, "", notedSignal == SIGINT ? "interrupted" : "terminated");
+  throw Error(ErrorKind::interrupted, "", wordOfNotedSignal());
 }
 
 }  // namespace cradle

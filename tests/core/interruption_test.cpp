@@ -41,7 +41,7 @@ TEST(InterruptionDeathTest, SecondSignalEndsAtOnce) {
 }
 
 TEST(InterruptionDeathTest, WorkThatDoesNotLookIsEnded) {
-  for (const int signal : {SIGINT, SIGTERM})
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     EXPECT_EXIT(
         {
           noteInterruptions();
@@ -49,7 +49,7 @@ TEST(InterruptionDeathTest, WorkThatDoesNotLookIsEnded) {
           sleep(60);
           std::_Exit(2);
         },
-        testing::ExitedWithCode(128 + signal), "interrupted|terminated");
+        testing::ExitedWithCode(128 + signal), "interrupted|terminated|hung up");
 }
 
 TEST(InterruptionDeathTest, NoticedSignalLeavesTimeToTidyUp) {
@@ -62,6 +62,17 @@ TEST(InterruptionDeathTest, NoticedSignalLeavesTimeToTidyUp) {
         } catch (const Error&) {
           std::_Exit(alarm(0) == 0 ? 0 : 2);  // none was set
         }
+      },
+      testing::ExitedWithCode(0), "");
+}
+
+TEST(InterruptionDeathTest, HangUpIsIgnoredUnderNohup) {
+  EXPECT_EXIT(
+      {
+        std::signal(SIGHUP, SIG_IGN);
+        noteInterruptions();
+        std::raise(SIGHUP);
+        std::_Exit(interruptingSignal());
       },
       testing::ExitedWithCode(0), "");
 }

@@ -3,13 +3,13 @@
 
     killed_runs_test.py PROGRAM SOURCE_FOLDER [SEED]
 
-Each command runs unharmed first, which gives its result and how long it takes; then four times with SIGKILL, and twice each
-with SIGTERM and SIGINT, at a random moment of each quarter of that time (the same with each SEED), with and without an earlier
-result. After a kill, and where something is kept for the next run, the same command runs once more, at once. A run that ends
-before its signal takes effect is unharmed; at most half of the runs are.
+Each command runs unharmed first, which gives its result and how long it takes; then four times with SIGKILL, and four times with
+SIGTERM, SIGINT and SIGHUP in turn, at a random moment of each quarter of that time (the same with each SEED), with and
+without an earlier result. After a kill, and where something is kept for the next run, the same command runs once more, at
+once. A run that ends before its signal takes effect is unharmed; at most half of the runs are.
 
 After a kill there may be files named .part, and journals beside them; after a signal only those that the message names. A
-signal ends a run with 130 or 143 within MOST_SECONDS, and nothing of it is left: no temporary file, no process.
+signal ends a run with 130, 143 or 129 within MOST_SECONDS, and nothing of it is left: no temporary file, no process.
 """
 import csv, json, os, random, shutil, signal, sqlite3, subprocess, sys, tempfile, time, unittest
 
@@ -153,7 +153,7 @@ class KilledRuns(unittest.TestCase):
     def check(self, command):
         seconds = min(self.unharmed(command).seconds for _ in range(2))  # files that the first read are in memory
         chance = random.Random("%d %s" % (SEED, command))
-        for numbers in ([signal.SIGKILL], [signal.SIGTERM, signal.SIGINT]):
+        for numbers in ([signal.SIGKILL], [signal.SIGTERM, signal.SIGINT, signal.SIGHUP]):
             harmed = 0
             for k in range(MOMENTS):
                 number, moment = numbers[k % len(numbers)], seconds * (k + chance.random()) / MOMENTS
@@ -190,7 +190,7 @@ class KilledRuns(unittest.TestCase):
     def require_good_end(self, run):
         """As docs/commands.md says. Before main, signals do what they do to any program."""
         self.require(run.code in (0, 128 + run.number) or (run.code == -run.number and not run.error), run.error)
-        lines = [word for word in ("interrupted", "terminated") if word in run.error]
+        lines = [word for word in ("interrupted", "terminated", "hung up") if word in run.error]
         self.require(len(lines) == (run.code > 0) and run.error.count("\n") == (run.code > 0), "it says %r" % run.error)
         self.require(run.code != 0 or run.names == self.whole.keys(), "exit code 0 with %s" % sorted(run.names))
         self.require(run.seconds < MOST_SECONDS, "it took %.1f s" % run.seconds)
@@ -240,7 +240,7 @@ class KilledRuns(unittest.TestCase):
         self.addCleanup(shutil.rmtree, folder)
         ball = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "copies": {"count": [46, 46, 46], "spacing": [1, 1, 1]}}
         path = write(os.path.join(folder, "many.json"), scene(1, bodies=[ball], springs=[]))
-        for number in (signal.SIGTERM, signal.SIGINT):
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
             process = subprocess.Popen([PROGRAM, "check", path], stderr=subprocess.PIPE)
             self.wait_until(lambda: process.poll() is not None or self.cpu_seconds(process.pid) > 2)
             process.send_signal(number)
