@@ -1,17 +1,30 @@
-# cradle_link_peers(TARGET): takes the units of the engines that studies compare with out of a target, or, without
-# CRADLE_PEERS, what stands in for them.
+# The engines that studies compare with, and what stands in for them: of these a program that has cradle_study has one.
+# Their libraries take longer to load than all else that the program begins with.
+set(FOLDER ${PROJECT_SOURCE_DIR}/src/study/peers)
+add_library(cradle_no_peers OBJECT ${FOLDER}/no_peers.cpp)
+target_link_libraries(cradle_no_peers PUBLIC cradle_study)
+target_precompile_headers(cradle_no_peers REUSE_FROM cradle_headers)
+if(CRADLE_PEERS)
+  foreach(NAME bullet mujoco ode simbody)
+    list(APPEND ENGINES ${FOLDER}/${NAME}.cpp)
+  endforeach()
+  foreach(NAME bullet_shapes joint_tree mujoco_model peer_shapes peers)
+    list(APPEND SHARED_BY_ENGINES ${FOLDER}/${NAME}.cpp)
+  endforeach()
+  add_library(cradle_peers OBJECT ${ENGINES} ${SHARED_BY_ENGINES})
+  set_target_properties(cradle_peers PROPERTIES UNITY_BUILD ON)
+  set_source_files_properties(${ENGINES} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # no engine's headers meet another's
+  target_compile_definitions(cradle_peers PRIVATE BT_USE_DOUBLE_PRECISION dIDEDOUBLE)  # as Debian builds them
+  target_include_directories(cradle_peers SYSTEM PRIVATE ${PEER_INCLUDES})
+  target_link_libraries(cradle_peers PUBLIC cradle_study ${PEER_LIBRARIES})
+  target_precompile_headers(cradle_peers REUSE_FROM cradle_headers)
+endif()
+
+# cradle_link_peers(TARGET): gives a program the engines, if there are any.
 function(cradle_link_peers TARGET)
-  get_target_property(SOURCES ${TARGET} SOURCES)
   if(CRADLE_PEERS)
-    list(FILTER SOURCES EXCLUDE REGEX "/peers/no_peers.cpp$")
-    set(ENGINES ${SOURCES})
-    list(FILTER ENGINES INCLUDE REGEX "/peers/(bullet|mujoco|ode|simbody).cpp$")
-    set_source_files_properties(${ENGINES} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # no engine's headers meet another's
-    target_compile_definitions(${TARGET} PRIVATE BT_USE_DOUBLE_PRECISION dIDEDOUBLE)  # as Debian builds them
-    target_include_directories(${TARGET} SYSTEM PRIVATE ${PEER_INCLUDES})
-    target_link_libraries(${TARGET} PRIVATE ${PEER_LIBRARIES})
+    target_link_libraries(${TARGET} PRIVATE cradle_peers)
   else()
-    list(FILTER SOURCES EXCLUDE REGEX "/peers/(bullet|joint_tree|mujoco|ode|peer_shapes|peers|simbody)")
+    target_link_libraries(${TARGET} PRIVATE cradle_no_peers)
   endif()
-  set_target_properties(${TARGET} PROPERTIES SOURCES "${SOURCES}")
 endfunction()
