@@ -164,6 +164,7 @@ void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, St
                               if (watch) watch->note(end);
                             }};
   const RunCost cost = simulate(scene, world, sink);
+  if (watch) watch->finish();
   writer.finish(cost);
 }
 

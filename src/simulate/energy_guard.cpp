@@ -42,27 +42,6 @@ double energySensitivity(const Mechanism& mechanism, const VectorX& state) {
   return sum;
 }
 
-/// What errors of `tolerance` (of 1 m and more), rounding of places, or gaps that count as touching make of the energy
-/// (J) that is summed from them: all that bodies of these radii (m) have which do not move, and more than nothing where
-/// a spring is stiff.
-double energyOfPlaceErrors(const Mechanism& mechanism, const std::vector<double>& radii, const VectorX& state,
-                           double tolerance) {
-  double sum = 0;
-  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
-    const Eigen::Index body = static_cast<Eigen::Index>(i);
-    const double error = kPlaceRounding * centerOfMass(state, body).norm() + kTouchingGap * radii[i];
-    sum += mechanism.bodies[i].mass * mechanism.gravity.norm() * error;
-  }
-  for (const SpringForce& spring : mechanism.springs) {
-    const SpringAction action = actionOf(spring, state);
-    const double size = action.a.position.norm() + action.b.position.norm() + action.a.arm.norm() +
-                        action.b.arm.norm() + spring.restLength;
-    const double rounding = kPlaceRounding * size, error = std::max(rounding, tolerance * (1 + size));
-    sum += action.forceOnA.norm() * rounding + spring.stiffness * error * error;
-  }
-  return sum;
-}
-
 /// Kinetic + potential + dissipated - work (J).
 double explainedConstant(const Mechanism& mechanism, const VectorX& state) {
   return energyConstant(mechanism, state) - numericalEnergy(state);
@@ -83,6 +62,24 @@ const char* const kConstraintsCause =
     "what ties it leaves no motion, or forces grow without bound: look at its rods, ropes, joints and springs there";
 
 }  // namespace
+
+double energyOfPlaceErrors(const Mechanism& mechanism, const std::vector<double>& radii, const VectorX& state,
+                           double tolerance) {
+  double sum = 0;
+  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    const double error = kPlaceRounding * centerOfMass(state, body).norm() + kTouchingGap * radii[i];
+    sum += mechanism.bodies[i].mass * mechanism.gravity.norm() * error;
+  }
+  for (const SpringForce& spring : mechanism.springs) {
+    const SpringAction action = actionOf(spring, state);
+    const double size = action.a.position.norm() + action.b.position.norm() + action.a.arm.norm() +
+                        action.b.arm.norm() + spring.restLength;
+    const double rounding = kPlaceRounding * size, error = std::max(rounding, tolerance * (1 + size));
+    sum += action.forceOnA.norm() * rounding + spring.stiffness * error * error;
+  }
+  return sum;
+}
 
 EnergyGuard::EnergyGuard(const Assembly& assembly, const VectorX& start, const ChosenMethod& method, double duration)
     : mechanism_(assembly.mechanism),

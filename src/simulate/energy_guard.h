@@ -52,4 +52,10 @@ class EnergyGuard {
   std::vector<double> excursions_;      // m: farthest that each body has been from its start
 };
 
+/// What errors of `tolerance` (of 1 m and more), rounding of places, or gaps that count as touching make of the energy
+/// (J) that is summed from them: all that bodies of these radii (m) have which do not move, and more than nothing where
+/// a spring is stiff.
+double energyOfPlaceErrors(const Mechanism& mechanism, const std::vector<double>& radii, const VectorX& state,
+                           double tolerance);
+
 }  // namespace cradle

@@ -31,7 +31,8 @@ IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMe
     : island_(scene, std::move(assembly)),
       ropes_(island_),
       solver_(island_.assembly.mechanism.constraints, island_.assembly.mechanism.bodies),
-      method_(method) {
+      method_(method),
+      energies_(island_.assembly, scene.accuracy) {
   if (method.isAdaptive())
     motion_.emplace<EventMotion>(island_, ropes_, method, false);
   else
@@ -54,7 +55,18 @@ const VectorX& IslandSolver::stateAt(double time) {
   const std::vector<RigidBody>& bodies = island_.assembly.mechanism.bodies;
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (!bodies[i].turns) rotate(static_cast<Eigen::Index>(i), time, reported_);
+  energies_.add(time, reported_);
   return reported_;
+}
+
+void IslandSolver::finish() {
+  if (promiseEnd_ || !method_.isAdaptive()) return;
+  const std::optional<double> time = energies_.firstBeyond(kMaxNumericalRatio * island_.scene.accuracy);
+  if (!time) return;
+  promiseEnd_ = {*time, fmt::format("numerical energy is beyond {:g} times the accuracy", kMaxNumericalRatio),
+                 island_.assembly.sceneBodies};
+  island_.log.warn(fmt::format("{}: the accuracy asked was not kept from {:.6g} s on: {} ({})", island_.scene.path,
+                               *time, promiseEnd_->reason, namesOfBodies(promiseEnd_->bodies, island_.scene)));
 }
 
 template <class Motion>

@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "simulate/energy_record.h"
 #include "simulate/events/event_motion.h"
 #include "simulate/steps/stepped_motion.h"
 #include "trajectory/trajectory.h"
@@ -24,6 +25,10 @@ class IslandSolver {
   /// unit length. At an instant of events the state after them. Throws Error(unstable) if the state blows up,
   /// Error(limit) if a step has too many impacts, Error(interrupted).
   const VectorX& stateAt(double time);
+
+  /// To be called after the last frame: the accuracy asked was not kept if the numerical energy of the frames is beyond
+  /// kMaxNumericalRatio times the accuracy.
+  void finish();
 
   const Assembly& assembly() const { return island_.assembly; }
   long evaluations() const { return island_.equations.evaluations(); }
@@ -57,6 +62,7 @@ class IslandSolver {
   ConstraintSolver solver_;
   std::variant<std::monostate, EventMotion, SteppedMotion> motion_;
   ChosenMethod method_;
+  EnergyRecord energies_;
   std::optional<PromiseEnd> promiseEnd_;
   double nextTrial_ = 0;           // s: when events may serve again
   double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not

@@ -25,6 +25,12 @@ std::string shapeText(const Shape& shape) {
   return "";
 }
 
+void tellOfPromises(World& run, const SimulationSink& sink) {
+  for (const PromiseEnd& end : run.takePromiseEnds())
+    if (sink.promiseEnd) sink.promiseEnd(end);
+  for (const std::string& warning : run.takeWarnings()) sink.warning(warning);
+}
+
 }  // namespace
 
 TrajectoryHeader headerOf(const Scene& scene, const Plan& plan) {
@@ -60,9 +66,7 @@ RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink) {
     const Frame frame = run.frameAt(number, frameTime(scene, number));
     integration.stop();
     for (const Event& event : run.takeEvents(frame.time)) sink.event(event);
-    for (const PromiseEnd& end : run.takePromiseEnds())
-      if (sink.promiseEnd) sink.promiseEnd(end);
-    for (const std::string& warning : run.takeWarnings()) sink.warning(warning);
+    tellOfPromises(run, sink);
     for (const Correction& correction : run.takeCorrections()) {
       if (sink.correction) sink.correction(correction);
       sink.warning(describe(correction, scene));
@@ -70,6 +74,8 @@ RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink) {
     loss.add(frame);
     sink.frame(frame);
   }
+  run.finish();
+  tellOfPromises(run, sink);
   if (const auto warning = loss.warning(); warning && !run.hasLongSteps()) sink.warning(*warning);
   return {integration.seconds(), run.evaluations(), run.correctionCounts(),
           describeOutcome(run.plan(), run.promiseEnds(), scene)};

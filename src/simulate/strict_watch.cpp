@@ -22,11 +22,13 @@ void StrictWatch::note(const Correction& correction) {
 void StrictWatch::check(const Frame& frame) {
   const std::optional<Overlap> worst = overlaps_.worstOf(frame);
   if (worst && worst->depth > worst->allowed) faults_.push_back({frame.time, describe(*worst, scene_)});
+  tellOfFirst(frame.time);  // steps go beyond the frame: what comes later is told with the frame that shows it
+}
+
+void StrictWatch::tellOfFirst(double until) const {
   const auto first =
       std::min_element(faults_.begin(), faults_.end(), [](const Fault& a, const Fault& b) { return a.time < b.time; });
-  // Steps go beyond the frame: what comes later is told with the frame that shows it.
-  if (first != faults_.end() && first->time <= frame.time)
-    throw Error(ErrorKind::unstable, "", "strict: " + first->text);
+  if (first != faults_.end() && first->time <= until) throw Error(ErrorKind::unstable, "", "strict: " + first->text);
 }
 
 }  // namespace cradle

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,12 @@ class StrictWatch {
   /// fault, with time and bodies.
   void check(const Frame& frame);
 
+  /// The same after the last frame, of what was noted since.
+  void finish() const { tellOfFirst(std::numeric_limits<double>::infinity()); }
+
  private:
+  void tellOfFirst(double until) const;
+
   struct Fault {
     double time;  // s
     std::string text;

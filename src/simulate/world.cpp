@@ -115,6 +115,11 @@ Frame World::frameAt(long number, double time) {
   return frame;
 }
 
+void World::finish() {
+  for (const auto& solver : solvers_) solver->finish();
+  notePromiseEnds();
+}
+
 void World::addTo(Frame& frame, const Assembly& assembly, const VectorX& state) const {
   for (std::size_t i = 0; i < assembly.sceneBodies.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);

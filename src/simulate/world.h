@@ -38,6 +38,9 @@ class World {
   /// The frame at a time (s) not earlier than in the call before. Throws what IslandSolver::stateAt throws.
   Frame frameAt(long number, double time);
 
+  /// To be called after the last frame: ends promises that the frames as a whole did not keep.
+  void finish();
+
   /// Events up to `time` that were not taken before, in the order of time.
   std::vector<Event> takeEvents(double time);
 

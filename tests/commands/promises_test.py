@@ -140,6 +140,29 @@ class Promises(unittest.TestCase):
             hashes.add(self.meta("stateHash"))
         self.assertEqual(len(hashes), 1)
 
+    def test_energy_that_comes_from_errors_ends_a_promise(self):
+        """700 periods of two springs at the coarsest accuracy: what the steps' errors add up to, half of all energy."""
+        bodies = [{"name": name, "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "position": place}
+                  for name, place in (("a", [1.5, 0, 0]), ("b", [0, 1.5, 0]))]
+        springs = [{"bodyA": name, "anchorA": [0, 0, 0], "anchorB": [0, 0, 0], "stiffness": 20, "restLength": 1} for name in "ab"]
+        scene = self.write({"schema": "cradle-scene/1", "name": "t", "duration": 1500, "accuracy": 1e-2, "gravity": [0, 0, 0],
+                            "output": {"framesPerSecond": 1}, "bodies": bodies, "springs": springs})
+        run = cradle("simulate", scene, "-o", self.output, "--quiet")
+        self.assertEqual(run.returncode, 0)
+        told = re.findall(r"the accuracy asked was not kept from (\S+) s on: (.*) \(a, b\)", run.stderr)
+        self.assertEqual(len(told), 1, run.stderr)
+        (time, reason), = told
+        self.assertIn(f"given up at {time} s, because {reason} (a, b)", self.meta("promise"))
+        database = sqlite3.connect(self.output)
+        (largest,) = database.execute("select max(max(kinetic), max(abs(potential - start))) from energy, "
+                                      "(select potential start from energy where frame = 0)").fetchone()
+        (first,) = database.execute("select min(time) from energy join frame on id = frame where abs(numerical) > ?",
+                                    (10 * 1e-2 * largest,)).fetchone()
+        self.assertEqual(float(time), first)
+        strict = cradle("simulate", scene, "-o", os.path.join(self.folder.name, "u.sqlite"), "--quiet", "--strict")
+        self.assertEqual(strict.returncode, 7)
+        self.assertIn(f"strict: at {time} s the accuracy asked was given up: {reason} (a, b)", strict.stderr)
+
     def test_where_no_promise_was_made_none_is_broken(self):
         ball = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0.2, 0]}
         scene = self.write(scene_with([ball], method={"name": "rk4", "timeStep": 0.001}))

@@ -65,5 +65,13 @@ TEST(StrictWatch, TellsTheFirstFaultInTheOrderOfTimeOnceAFrameShowsIt) {
               HasSubstr("strict: at 0.4 s the accuracy asked was given up: edges touch and press (ground, sphere)"));
 }
 
+TEST(StrictWatch, TellsInTheEndWhatOnlyTheEndShows) {
+  const Scene scene = sphereOnGround();
+  StrictWatch watch(scene, planOf(scene));
+  EXPECT_NO_THROW(watch.finish());
+  watch.note(PromiseEnd{0.4, "numerical energy is beyond 10 times the accuracy", {1}});
+  EXPECT_THROW(watch.finish(), Error);
+}
+
 }  // namespace
 }  // namespace cradle

@@ -11,6 +11,10 @@ namespace cradle {
 struct IslandPlan;
 class ReachablePairs;
 
+/// Times the accuracy, of the largest energy: beyond it, numerical energy shows that the accuracy was not kept.
+/// Accepted steps have errors of the accuracy, and some tens of them, each a tenth of it, add up.
+constexpr double kMaxNumericalRatio = 10;
+
 /// A condition of a promise, and the bodies that it is about.
 struct PromiseCondition {
   std::string what;         // behind "while", with names of at most a few bodies
