@@ -516,8 +516,8 @@ class Pictures(InTemporaryFolder):
         pushes = [{"body": "ball", "ray": {"origin": [0, 5, 0], "direction": [0, 1, 0]}, "force": [0, 9, 0], "start": 0.1, "duration": 0.1},
                   {"body": "ball", "point": [0, 0, 0.1], "force": [2, 0, -3], "start": 0.2, "duration": 0.05},
                   {"body": "ball", "ray": {"origin": [0, 0.1, 0], "direction": [1, 0, 0]}, "force": [-5, 0, 0], "start": 0.3, "duration": 0.1}]
-        for kind, pushed in (({}, []), ({"orbit": {"period": 2}}, []), ({"keyFrames": keys}, []), ({"follow": {"body": "ball"}}, pushes),
-                             ({"target": "ball"}, []), ({}, pushes)):
+        for kind, pushed in (({"orbit": {"period": 2}}, []), ({"keyFrames": keys}, []), ({"follow": {"body": "ball"}}, pushes), ({"target": "ball"}, []),
+                             ({}, pushes)):
             path = self.write("s.json", scene(duration=0.5, output={"width": 128, "height": 72}, bodies=bodies, pushes=pushed,
                                               camera={"position": [0, 1, 3], "target": [0, 0.3, 0], **kind}))
             overlay = ["--overlay", "time,trails"]
