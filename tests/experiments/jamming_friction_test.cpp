@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "experiments/experiment.h"
 
 namespace cradle {
@@ -40,6 +43,45 @@ TEST(JammingFriction, IsSaidAndLeftToContactSteps) {
   }
   // Steps of 0.34 ms, and of 1 ms at the coarsest, lead on for 3 ms at less than 1 m/s: 3e-4 m between orders of them.
   for (const BodyState& end : ends) EXPECT_LT((end.position - ends.back().position).norm(), 3e-4);
+}
+
+/// A box of 50 g that stands on an edge, its upper face tilted by `degrees`, and on that a ball `ratio` times as heavy:
+/// the ball wedges the box away until friction jams. The two corners on the floor stick, and are indeterminate.
+Scene ballOnTiltedBox(double degrees, double ratio, double friction, double accuracy) {
+  const double angle = degrees * std::atan(1.0) / 45, width = 0.03, radius = 0.04;
+  const double height = width / 2 * (std::cos(angle) + std::sin(angle));
+  const Vec3 up(0, std::cos(angle), std::sin(angle)), along(0, -std::sin(angle), std::cos(angle));
+  const Vec3 ball = Vec3(0, height, 0) + (width / 2 + radius) * up - width / 4 * along;
+  return sceneWith(fmt::format(R"("duration": 0.15, "accuracy": {}, "output": {{"framesPerSecond": 240}},
+    "materials": {{"rough": {{"restitution": 0, "staticFriction": {}, "dynamicFriction": {}}}}}, "bodies": [
+    {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "rough"}},
+    {{"name": "box", "material": "rough", "mass": 0.05, "shape": {{"box": {{"size": [0.08, {}, {}]}}}},
+      "position": [0, {}, 0], "orientation": {{"w": {}, "x": {}, "y": 0, "z": 0}}}},
+    {{"name": "ball", "material": "rough", "mass": {}, "shape": {{"sphere": {{"radius": {}}}}}, "position": {}}}])",
+                               accuracy, friction, friction, width, width, height, std::cos(angle / 2),
+                               std::sin(angle / 2), 0.05 * ratio, radius, vectorText(ball)));
+}
+
+// With indeterminate contacts beside it, the normal force of the ball grew without bound, and went on from minus
+// infinity: it pulled, and friction drove the box to 1e5 m/s. Nothing here may gain energy. Contact steps may lose
+// 5e-3.
+TEST(JammingFriction, BesideIndeterminateContactsGainsNoEnergy) {
+  struct Jam {
+    double degrees, ratio, friction;
+  };
+  for (const Jam& jam : {Jam{35, 300, 0.3}, Jam{25, 100, 0.5}, Jam{30, 100, 0.4}})
+    for (const double accuracy : {1e-3, 1e-5, 1e-7}) {
+      const Trajectory run = simulate(ballOnTiltedBox(jam.degrees, jam.ratio, jam.friction, accuracy));
+      double largest = 0, numerical = 0, fall = 0, most = 0;
+      for (const Frame& frame : run.frames) {
+        largest = std::max(largest, frame.energy.kinetic);
+        numerical = std::max(numerical, std::abs(frame.energy.numerical));
+        most = std::max(most, frame.energy.dissipated);
+        fall = std::max(fall, most - frame.energy.dissipated);
+      }
+      EXPECT_LT(numerical, 5e-3 * largest) << jam.degrees << " " << accuracy;
+      EXPECT_LT(fall, 1e-3 * largest) << jam.degrees << " " << accuracy;
+    }
 }
 
 }  // namespace

@@ -79,13 +79,13 @@ void ActiveContacts::noteShortMomentArms(const std::vector<Contact>& touching, C
 }
 
 bool ActiveContacts::noteJam() {
-  std::vector<const Contact*> sliding;
+  std::vector<const ContactRecord*> loaded;
   for (const ContactRecord& record : records_)
-    if (record.isLoaded && record.slides && record.pair.material.dynamicFriction > 0)
-      sliding.push_back(&record.contact);
-  if (sliding.empty()) return false;
-  fallback_ = fallbackAt("friction jams where contacts slide", sliding, island_.assembly);
-  return true;
+    if (record.isLoaded) loaded.push_back(&record);
+  ContactFallback jam = jamAt(loaded, island_.assembly);
+  const bool isFound = !jam.reason.empty();
+  if (isFound) fallback_ = std::move(jam);
+  return isFound;
 }
 
 std::vector<int> ActiveContacts::sceneBodies() const {

@@ -208,7 +208,7 @@ bool ContactChanges::areForcesFeasible(const std::vector<ContactRecord>& records
   island_.equations.evaluate(state, derivative_);
   std::swap(active, mechanism().contacts);
   const DenseDelassus delassus(allRowsOf(rows), mechanism().bodies, frames_, &constraints);
-  const ContactSolution solution = solveContactForces(members, rows, delassus, derivative_);
+  const SlidingSolution solution = solveContactForces(members, rows, delassus, derivative_);
   const double most = kInfeasibleRatio *
                       std::max(delassus.accelerations(derivative_).cwiseAbs().maxCoeff(), mechanism().gravity.norm());
   for (std::size_t i = 0; i < sliding.size(); ++i) {

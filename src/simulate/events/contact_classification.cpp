@@ -148,9 +148,10 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
   island.equations.evaluate(island.state, derivative);
   if (nothingCloses(rows, derivative, mechanism.gravity.norm())) return;
   const DenseDelassus delassus(allRowsOf(rows), mechanism.bodies, input.frames, &constraints);
-  const ContactSolution solution = solveContactForces(members, rows, delassus, derivative);
+  const SlidingSolution solution = solveContactForces(members, rows, delassus, derivative);
   const double largest = std::max(delassus.accelerations(derivative).cwiseAbs().maxCoeff(), mechanism.gravity.norm());
   if (!(solution.residual <= kStillRatio * largest)) logUnsolved(members, solution.residual, island);
+  if (!(solution.frictionError <= kStillRatio * largest)) found.fallback = jamAt(members, island.assembly);
   const AccelerationLimits limits{
       largest, stillAcceleration(island.scene.accuracy, island.scene.duration, largest, solution.residual),
       (input.isReleasing ? kReleasedRatio : kUnloadedRatio) * largest};

@@ -9,6 +9,13 @@ ContactFallback fallbackAt(std::string_view reason, const std::vector<const Cont
   return {reason, sceneBodiesOf(contacts, assembly)};
 }
 
+ContactFallback jamAt(const std::vector<const ContactRecord*>& records, const Assembly& assembly) {
+  std::vector<const Contact*> sliding;
+  for (const ContactRecord* record : records)
+    if (record->slides && record->pair.material.dynamicFriction > 0) sliding.push_back(&record->contact);
+  return sliding.empty() ? ContactFallback{} : fallbackAt("friction jams where contacts slide", sliding, assembly);
+}
+
 std::vector<int> sceneBodiesOf(const std::vector<const Contact*>& contacts, const Assembly& assembly) {
   std::vector<int> bodies;
   for (const Contact* contact : contacts) {

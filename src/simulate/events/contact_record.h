@@ -33,6 +33,10 @@ struct ContactFallback {
 ContactFallback fallbackAt(std::string_view reason, const std::vector<const Contact*>& contacts,
                            const Assembly& assembly);
 
+/// The reason that friction jams (P. Painleve, 1895) at those of the contacts that slide with friction; none without
+/// one.
+ContactFallback jamAt(const std::vector<const ContactRecord*>& records, const Assembly& assembly);
+
 /// Scene bodies of some contacts, ascending, each once.
 std::vector<int> sceneBodiesOf(const std::vector<const Contact*>& contacts, const Assembly& assembly);
 

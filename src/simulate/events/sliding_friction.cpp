@@ -1,7 +1,8 @@
 // With W the Delassus operator, g the free accelerations and F(lambda_n) the friction of sliding contacts, each round
 // solves the frictional contact problem of W z + (g + W F) with F from the normal forces of the round before. Where
 // friction and normal forces drive each other these rounds converge slowly, or not at all, so that they are
-// accelerated by Anderson mixing (D. G. Anderson, 1965). Where friction jams (P. Painleve, 1895) there is no limit.
+// accelerated by Anderson mixing (D. G. Anderson, 1965). Where friction jams (P. Painleve, 1895) there is no limit: the
+// friction of the last round is not that of its normal forces.
 
 #include "simulate/events/sliding_friction.h"
 
@@ -43,7 +44,7 @@ VectorX slidingFriction(const std::vector<const ContactRecord*>& records, const 
 
 }  // namespace
 
-ContactSolution solveContactForces(const std::vector<const ContactRecord*>& records,
+SlidingSolution solveContactForces(const std::vector<const ContactRecord*>& records,
                                    const std::vector<ContactRows>& rows, const DenseDelassus& delassus,
                                    const VectorX& derivative) {
   const VectorX free = delassus.accelerations(derivative);
@@ -53,24 +54,34 @@ ContactSolution solveContactForces(const std::vector<const ContactRecord*>& reco
     frictions.push_back(record->slides ? 0 : record->pair.material.staticFriction);
     slides = slides || (record->slides && record->pair.material.dynamicFriction > 0);
   }
-  VectorX normals = VectorX::Zero(std::ssize(records)), friction = VectorX::Zero(free.size());
-  ContactSolution solution;
+  VectorX normals = VectorX::Zero(std::ssize(records)), friction = VectorX::Zero(free.size()), used;
+  SlidingSolution solution;
   AndersonMixing mixing;
   double least = INFINITY;
   int roundsInVain = 0;
+  bool isFound = false;
   for (int round = 0; round < kMaxFrictionRounds; ++round) {
-    solution =
-        solveFrictionalContact(delassus.matrix(), free + delassus.matrix() * friction, frictions, solution.impulses);
-    if (!slides) break;
+    used = friction;
+    static_cast<ContactSolution&>(solution) =
+        solveFrictionalContact(delassus.matrix(), free + delassus.matrix() * used, frictions, solution.impulses);
+    isFound = !slides;
+    if (isFound) break;
     const VectorX found = slidingNormalForces(records, solution.impulses), next = slidingFriction(records, rows, found);
     const double change = (next - friction).cwiseAbs().maxCoeff();
     friction = next;
-    if (change <= kFrictionConverged * found.maxCoeff()) break;
+    isFound = change <= kFrictionConverged * found.maxCoeff();
+    if (isFound) break;
     roundsInVain = change < kProgress * least ? 0 : roundsInVain + 1;
     least = std::min(least, change);
     if (roundsInVain == kMaxRoundsInVain) break;
     normals = round < kPlainFrictionRounds ? found : VectorX(mixing.next(normals, found).cwiseMax(0));
     if (round >= kPlainFrictionRounds) friction = slidingFriction(records, rows, normals);
+  }
+  if (!isFound) {
+    friction = slidingFriction(records, rows, slidingNormalForces(records, solution.impulses));
+    const VectorX error = delassus.matrix() * (friction - used);
+    solution.velocities += error;
+    solution.frictionError = error.cwiseAbs().maxCoeff();
   }
   solution.impulses += friction;
   return solution;

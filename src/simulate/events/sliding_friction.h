@@ -9,10 +9,15 @@
 
 namespace cradle {
 
+/// Forces and accelerations that keep Coulomb's law, but for an error of the friction of sliding contacts.
+struct SlidingSolution : ContactSolution {
+  double frictionError = 0;  // m/s^2: what friction lacks of that of the normal forces; large where friction jams
+};
+
 /// Forces (N) and relative accelerations of contacts by Coulomb's law, components (t1, t2, n) each, for bodies that
 /// have the accelerations in `derivative` without them. A contact that slides has the friction -mu lambda_n d, d its
 /// direction of sliding; the others have static friction.
-ContactSolution solveContactForces(const std::vector<const ContactRecord*>& records,
+SlidingSolution solveContactForces(const std::vector<const ContactRecord*>& records,
                                    const std::vector<ContactRows>& rows, const DenseDelassus& delassus,
                                    const VectorX& derivative);
 
