@@ -46,12 +46,35 @@ Vec3 ContactChanges::slidingDirectionAt(std::size_t contact, const VectorX& stat
   return orientation(state, body).normalized() * constraint.slidingDirection;
 }
 
-/// 0 for a steep disc on its rim, 1 where it is as flat as a row may follow. Needs frames_ of the state.
-double ContactChanges::flatnessOf(const ContactConstraint& rim, const VectorX& state) const {
+/// The axis about which a disc on its rim is tilted, as long as the sine of the angle. Needs frames_ of the state.
+Vec3 ContactChanges::tiltOf(const ContactConstraint& rim, const VectorX& state) const {
   const ContactKinematics place = kinematicsOf(rim, state, frames_);
   const Mat3& worldFromBody = frames_[static_cast<std::size_t>(rim.centerA.body)].rotation;
-  const double sine = place.normal.cross(worldFromBody * rim.rimAxisA).norm();
-  return kLeavingRatio * kJustFlat * kFlatRim / sine;
+  return place.normal.cross(worldFromBody * rim.rimAxisA);
+}
+
+/// 0 for a steep disc on its rim, 1 where it is as flat as a row may follow. Needs frames_ of the state.
+double ContactChanges::flatnessOf(const ContactConstraint& rim, const VectorX& state) const {
+  return kLeavingRatio * kJustFlat * kFlatRim / tiltOf(rim, state).norm();
+}
+
+/// The fraction of the step between two points behind which a disc on its rim is tilted the other way; none for other
+/// contacts. At both points it may be far from flat, and lie down between them.
+std::optional<double> ContactChanges::firstOverturning(std::size_t contact, double from, double to) {
+  const ContactConstraint& rim = mechanism().contacts[contact];
+  if (rim.rimAxisA.isZero(0)) return std::nullopt;
+  const auto tiltAt = [&](double fraction) {
+    interpolate(island_.step, fraction, sample_);
+    findBodyFrames(mechanism().bodies, sample_, frames_);
+    return tiltOf(rim, sample_);
+  };
+  const Vec3 tilt = tiltAt(from);
+  if (!(tilt.dot(tiltAt(to)) < 0)) return std::nullopt;
+  while (to - from > kLocated) {
+    const double middle = from + (to - from) / 2;
+    (tilt.dot(tiltAt(middle)) > 0 ? from : to) = middle;
+  }
+  return to;
 }
 
 /// Distance (m) of the point where a contact's row keeps it from the point where the surfaces are nearest. It grows
@@ -150,7 +173,13 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
   bool isDoubtful = false;
   for (std::size_t i = 0; i < records.size(); ++i)
     for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
-      if (!(ahead_[i][kind] < -kMarginRounding)) continue;
+      double end = to, marginEnd = ahead_[i][kind];
+      if (kKinds[kind] == Kind::leave && marginEnd >= -kMarginRounding)
+        if (const auto flat = firstOverturning(i, from, to)) {
+          interpolate(island_.step, *flat, sample_);
+          end = *flat, marginEnd = margin({Kind::leave, 0, i}, records, sample_);
+        }
+      if (!(marginEnd < -kMarginRounding)) continue;
       if (kKinds[kind] == Kind::leave && !(before_[i][kind] > 0)) continue;
       const bool isOfForces = kKinds[kind] == Kind::release || kKinds[kind] == Kind::slip;
       if (records[i].isRedundant && isOfForces) {
@@ -158,7 +187,7 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
         continue;
       }
       ContactChange change{kKinds[kind], 0, i};
-      change.fraction = locate(change, records, from, before_[i][kind], to, ahead_[i][kind]);
+      change.fraction = locate(change, records, from, before_[i][kind], end, marginEnd);
       if (!first || change.fraction < first->fraction) first = change;
     }
   if (isDoubtful) {

@@ -60,7 +60,9 @@ class ContactChanges {
   Mechanism& mechanism() const { return island_.assembly.mechanism; }
   Vec3 slidingDirectionAt(std::size_t contact, const VectorX& state) const;
   double distanceFromNearest(std::size_t contact, const ContactRecord& record, const VectorX& state) const;
+  Vec3 tiltOf(const ContactConstraint& rim, const VectorX& state) const;
   double flatnessOf(const ContactConstraint& rim, const VectorX& state) const;
+  std::optional<double> firstOverturning(std::size_t contact, double from, double to);
   void evaluate(const std::vector<ContactRecord>& records, const VectorX& state, std::vector<EventFunctions>& values);
   void takeEvaluated(const std::vector<ContactRecord>& records, const VectorX& state,
                      std::vector<EventFunctions>& values);
