@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "collision/separation.h"
 #include "experiments/experiment.h"
@@ -10,8 +11,8 @@ namespace cradle {
 
 /// A scene whose moving bodies are one island, for units that work on that.
 struct OneIsland {
-  explicit OneIsland(const std::string& members)
-      : scene(sceneWith(members)), island(scene, assemble(scene, wholeScene(scene))) {}
+  explicit OneIsland(const std::string& members) : OneIsland(sceneWith(members)) {}
+  explicit OneIsland(Scene source) : scene(std::move(source)), island(scene, assemble(scene, wholeScene(scene))) {}
 
   Mechanism& mechanism() { return island.assembly.mechanism; }
   VectorX& state() { return island.state; }

@@ -1,0 +1,204 @@
+#include "simulate/steps/stepped_motion.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "dynamics/invariants.h"
+#include "experiments/ridged_ground.h"
+#include "simulate/one_island.h"
+
+namespace cradle {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr double kTenth = 0.1;           // s: steps that are no binary fractions
+constexpr double kGridTime = 1.0 / 960;  // s
+
+/// An island that steps of one length move.
+struct BySteps : OneIsland {
+  template <class Source>
+  BySteps(const Source& source, double timeStep)
+      : OneIsland(source), ropes(island), motion(island, ropes, contactSteps(timeStep)) {}
+
+  std::vector<double> endsOfSteps(int count) {
+    std::vector<double> ends;
+    for (int i = 0; i < count; ++i) motion.advance(INFINITY), ends.push_back(island.time);
+    return ends;
+  }
+  /// The state at a fraction of the last step.
+  VectorX inside(double fraction) {
+    prepareInterpolant(island.rightHandSide, island.step);
+    VectorX found;
+    interpolate(island.step, fraction, found);
+    motion.addContactMotion(fraction, found);
+    return found;
+  }
+
+  RopeEvents ropes;
+  SteppedMotion motion;
+};
+
+std::string steppedScene(double duration, const std::string& bodies, const std::string& more = "") {
+  return fmt::format(R"("duration": {}, "materials": {{"stuff": {{"restitution": 0.5, "staticFriction": 0.3,
+    "dynamicFriction": 0.2}}}}, "bodies": [{{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static",
+    "material": "stuff"}}, {}]{})",
+                     duration, bodies, more);
+}
+std::string steppedBox(const std::string& name, const Vec3& position, const Vec3& velocity) {
+  return fmt::format(R"({{"name": "{}", "shape": {{"box": {{"size": [0.4, 0.2, 0.6]}}}}, "mass": 3, "material": "stuff",
+    "position": {}, "linearVelocity": {}}})",
+                     name, vectorText(position), vectorText(velocity));
+}
+std::string steppedBall(const Vec3& position, const Vec3& velocity) {
+  return fmt::format(R"({{"name": "ball", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 2, "material": "stuff",
+    "position": {}, "linearVelocity": {}}})",
+                     vectorText(position), vectorText(velocity));
+}
+
+// Ends are multiples of the step, to the bit: they are not summed. The last is the end of the run.
+TEST(SteppedMotion, EndsStepsAtMultiplesOfTheirLength) {
+  BySteps at(R"("duration": 0.45, "bodies": [)" + cradle::ball("ball", Vec3::Zero()) + "]", kTenth);
+  EXPECT_THAT(at.endsOfSteps(5), ElementsAre(kTenth, 2 * kTenth, 3 * kTenth, 4 * kTenth, 0.45));
+  EXPECT_NEAR(centerOfMass(at.state(), 0).y(), -kGravity * 0.45 * 0.45 / 2, 1e-15);  // RK4 is exact
+}
+
+// A push that begins between two ends cuts a step, and so does its end.
+TEST(SteppedMotion, CutsStepsWherePushesBeginAndEnd) {
+  BySteps at(R"("duration": 1, "gravity": [0, 0, 0], "bodies": [)" + cradle::ball("ball", Vec3::Zero()) +
+                 R"(], "pushes": [{"body": "ball", "point": [0, 0, 0], "force": [8, 0, 0], "start": 0.125,
+                 "duration": 0.125}])",
+             kTenth);
+  EXPECT_THAT(at.endsOfSteps(5), ElementsAre(kTenth, 0.125, 2 * kTenth, 0.25, 3 * kTenth));
+  EXPECT_NEAR(linearVelocity(at.state(), 0).x(), 1, 1e-15);
+}
+
+// The impact is at sqrt(2 h / g), with a gap of a thousandth of 1e-10 m at 1.4 m/s; the step after it ends where the
+// one that it cut would have ended.
+TEST(SteppedMotion, CutsStepsAtImpacts) {
+  BySteps at(steppedScene(1, steppedBall(Vec3(0, 0.2, 0), Vec3::Zero())), kTenth);
+  const double time = std::sqrt(2 * 0.1 / kGravity), speed = kGravity * time;
+  const std::vector<double> ends = at.endsOfSteps(2);
+  EXPECT_EQ(ends[0], kTenth);
+  EXPECT_NEAR(ends[1], time, 1e-12);
+  EXPECT_NEAR(linearVelocity(at.state(), 0).y(), speed / 2, 1e-11);
+  EXPECT_NEAR(impactEnergy(at.state()), 0.75 * speed * speed, 1e-10);
+  EXPECT_EQ(at.endsOfSteps(1)[0], 2 * kTenth);
+}
+
+// Contact holds a box against gravity: free motion falls by g s^2 h^2 / 2 within the step, contact gives that back. A
+// box that slides with a = -mu g goes v s h - mu g s^2 h^2 / 2, and friction has taken mu m g times that.
+TEST(SteppedMotion, AddsTheMotionOfContactsInsideAStep) {
+  for (const double speed : {0.0, 0.5}) {
+    BySteps at(steppedScene(1, steppedBox("box", Vec3(0, 0.1, 0), Vec3(speed, 0, 0))), kGridTime);
+    at.motion.advance(0);
+    ASSERT_EQ(at.island.time, kGridTime);
+    const double friction = speed > 0 ? 0.2 * kGravity : 0;
+    for (const double part : {0.25, 0.5, 1.0}) {
+      const VectorX inside = at.inside(part);
+      const double time = part * kGridTime, way = speed * time - friction * time * time / 2;
+      // Impulses are found to 1e-7 of g h.
+      EXPECT_NEAR(centerOfMass(inside, 0).x(), way, 1e-7 * kGravity * kGridTime * kGridTime) << part;
+      EXPECT_NEAR(centerOfMass(inside, 0).y(), 0.1, 1e-7 * kGravity * kGridTime * kGridTime) << part;
+      EXPECT_NEAR(linearVelocity(inside, 0).x(), speed - friction * time, 1e-7 * kGravity * kGridTime) << part;
+      EXPECT_NEAR(linearVelocity(inside, 0).y(), 0, 1e-7 * kGravity * kGridTime) << part;
+      EXPECT_NEAR(frictionEnergy(inside), 3 * friction * way, 1e-6 * 3 * friction * way) << part;
+    }
+  }
+}
+
+// A mass that its spring swings with omega h = 3 needs steps of a part of h: a half, a quarter, an eighth ... Each has
+// an error of at most 1e-5 m, and the next is four times as long at most.
+TEST(SteppedMotion, TakesPartsOfStepsWhereForcesChangeQuickly) {
+  BySteps at(R"("duration": 1, "gravity": [0, 0, 0], "bodies": [)" + cradle::ball("ball", Vec3(1.01, 0, 0)) +
+                 R"(], "springs": [{"bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0], "stiffness": 900,
+                 "restLength": 1}])",
+             kTenth);
+  int steps = 0;
+  double last = 0;
+  for (; at.island.time < 0.2; ++steps) {
+    at.motion.advance(INFINITY);
+    const double part = kTenth / at.island.step.timeStep;
+    if (steps == 0) {
+      EXPECT_EQ(std::exp2(std::round(std::log2(part))), part);
+      EXPECT_GE(part, 4);
+    } else {
+      EXPECT_LE(at.island.step.timeStep, 4 * last * (1 + 1e-12));
+    }
+    last = at.island.step.timeStep;
+  }
+  EXPECT_EQ(at.island.time, 2 * kTenth);
+  EXPECT_NEAR(centerOfMass(at.state(), 0).x(), 1 + 0.01 * std::cos(6), 1e-5 * steps);
+}
+
+// Half the radius of a ball in a step, from where a sheet is near, whose other side is an outside as well.
+TEST(SteppedMotion, GoesHalfARadiusAtMostBesideASheet) {
+  for (const bool isSheet : {true, false}) {
+    const LoadedModel ground = ridgedGround({{-2, 0}, {0, 0.1}, {2, 0}}, isSheet);
+    const Scene scene =
+        parseScene(R"({"schema": "cradle-scene/1", "name": "beside", "duration": 1, "accuracy": 1e-3, "bodies": [
+            {"name": "ground", "shape": {"mesh": "ground.obj"}, "collision": "mesh", "motion": "static"},
+            {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "position": [-1, 0.2, 0],
+             "linearVelocity": [0, 30, 40], "angularVelocity": [0, 0, 100]}]})",
+                   "beside.json", [&](const MeshReference&) { return ground; })
+            .scene;
+    BySteps at(scene, kGridTime);
+    at.island.findNearPairsNow(0.1);
+    // A point of the ball moves with at most 50 m/s + 100/s x 0.1 m.
+    EXPECT_NEAR(at.endsOfSteps(1)[0], isSheet ? 0.05 / 60 : kGridTime, 1e-15);
+  }
+}
+
+// Boxes that lie have four contacts each: events serve twelve.
+TEST(SteppedMotion, LeavesAFewContactsToEvents) {
+  for (const int boxes : {0, 3, 4}) {
+    std::string bodies = steppedBall(Vec3(0, 5, 0), Vec3::Zero());
+    for (int i = 0; i < boxes; ++i) bodies += ", " + steppedBox(fmt::format("b{}", i), Vec3(i, 0.1, 0), Vec3(0, 0, 1));
+    BySteps at(steppedScene(1, bodies), kGridTime);
+    at.motion.advance(INFINITY);
+    EXPECT_EQ(at.motion.isFree(), boxes == 0);
+    EXPECT_EQ(at.motion.mayServeEvents(), boxes < 4);
+  }
+}
+
+// Nothing moves until a push begins, and steps are counted from there as if they had been taken. In the step in which
+// the box begins to slide, the static friction acts, then the dynamic one.
+TEST(SteppedMotion, LetsTimePassAtRest) {
+  BySteps at(steppedScene(2, steppedBox("box", Vec3(0, 0.1, 0), Vec3::Zero()),
+                          R"(, "pushes": [{"body": "box", "point": [0, 0, 0], "force": [30, 0, 0], "start": 0.55,
+                          "duration": 1}])"),
+             kTenth);
+  const VectorX before = at.state();
+  for (int i = 0; i < 40 && !at.motion.isAtRest(); ++i) at.motion.advance(INFINITY);
+  if (!at.motion.isAtRest()) at.island.resting.bringToRest({0}, at.state());
+  EXPECT_TRUE(at.motion.isAtRest());
+  at.motion.restUntil(9);
+  EXPECT_EQ(at.island.time, 0.55);
+  EXPECT_FALSE(at.motion.isAtRest());
+  EXPECT_LT((centerOfMass(at.state(), 0) - centerOfMass(before, 0)).norm(), 1e-6);
+  EXPECT_EQ(at.endsOfSteps(1)[0], 6 * kTenth);
+  const double first = linearVelocity(at.state(), 0).x();
+  EXPECT_NEAR(first, (10 - 0.3 * kGravity) * (0.6 - 0.55), 1e-6);
+  EXPECT_EQ(at.endsOfSteps(1)[0], 7 * kTenth);
+  EXPECT_NEAR(linearVelocity(at.state(), 0).x() - first, (10 - 0.2 * kGravity) * kTenth, 1e-6);
+}
+
+// A step of free motion leaves a rod longer than it is; projected, it is right to rounding, and the energy of that is
+// booked.
+TEST(SteppedMotion, KeepsConstraintsToRoundingAtEnds) {
+  BySteps at(R"("duration": 1, "bodies": [)" + cradle::ball("ball", Vec3(0.6, -0.8, 0), Vec3(0, 0, 2)) +
+                 R"(], "rods": [{"bodyA": "ball", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0]}])",
+             0.02);
+  const double constant = energyConstant(at.mechanism(), at.state());
+  for (int i = 0; i < 5; ++i) {
+    at.motion.advance(INFINITY);
+    EXPECT_TRUE(at.motion.keepsConstraints());
+    EXPECT_NEAR(centerOfMass(at.state(), 0).norm(), 1, 1e-15);
+    EXPECT_NEAR(centerOfMass(at.state(), 0).dot(linearVelocity(at.state(), 0)), 0, 1e-14);
+    EXPECT_NEAR(energyConstant(at.mechanism(), at.state()), constant, 1e-13);
+  }
+}
+
+}  // namespace
+}  // namespace cradle
