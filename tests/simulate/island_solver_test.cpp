@@ -112,6 +112,21 @@ TEST(IslandSolver, ProjectsFramesInsideSteps) {
   }
 }
 
+// Steps of one length have the motion of contacts inside them as well: a box that slides with a = -mu g neither sinks
+// nor hovers there. Impulses are found to 1e-7 of g h.
+TEST(IslandSolver, ShowsContactInsideStepsOfOneLength) {
+  constexpr double kStep = 0.01;
+  Solved at(R"("duration": 1, "method": {"name": "rk4", "timeStep": 0.01}, )" + kSolvedFloor +
+            R"({"name": "box", "shape": {"box": {"size": [0.4, 0.2, 0.6]}}, "mass": 3, "material": "stuff",
+            "position": [0, 0.1, 0], "linearVelocity": [0.6, 0, 0]}])");
+  for (const double time : {0.003, 0.013, 0.017}) {
+    const VectorX& state = at.stateAt(time);
+    EXPECT_NEAR(centerOfMass(state, 0).y(), 0.1, 1e-7 * kGravity * kStep * kStep) << time;
+    EXPECT_NEAR(centerOfMass(state, 0).x(), 0.6 * time - 0.1 * kGravity * time * time, 1e-7 * kGravity * kStep * kStep);
+    EXPECT_NEAR(linearVelocity(state, 0).y(), 0, 1e-7 * kGravity * kStep) << time;
+  }
+}
+
 /// Balls, each of which flies to and fro between walls with 1e5 impacts a second, with a size of 0.1 m and gravity
 /// along the walls.
 std::string tooManyImpacts(double accuracy, int balls) {
