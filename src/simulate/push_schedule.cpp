@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "mesh/ray_cast.h"
 
@@ -37,35 +38,50 @@ PushSchedule::PushSchedule(const Scene& scene, const Assembly& assembly, EventLo
   for (const std::size_t index : assembly.pushes) {
     const Push& push = scene.pushes[index];
     const int body = indexAmong(assembly.sceneBodies, push.body);
-    if (body != kFixed) planned_.push_back({&push, body, false, false, {}});
+    if (body != kFixed) planned_.push_back({&push, body, {}});
   }
+  waiting_.resize(planned_.size());
+  std::iota(waiting_.rbegin(), waiting_.rend(), std::size_t{0});
+  std::stable_sort(waiting_.begin(), waiting_.end(),
+                   [this](std::size_t a, std::size_t b) { return planned_[a].push->start > planned_[b].push->start; });
   findNextChange();
 }
 
 void PushSchedule::findNextChange() {
   nextChange_ = std::numeric_limits<double>::infinity();
-  for (const Planned& planned : planned_)
-    if (!planned.isOver)
-      nextChange_ = std::min(nextChange_, planned.push->start + (planned.isActing ? planned.push->duration : 0));
+  if (!waiting_.empty()) nextChange_ = planned_[waiting_.back()].push->start;
+  for (const std::size_t index : acting_) nextChange_ = std::min(nextChange_, planned_[index].end());
+}
+
+/// Those that begin or end at `time`, in the order of the scene; they are no longer among the others.
+std::vector<std::size_t> PushSchedule::takeDue(double time) {
+  std::vector<std::size_t> due;
+  const auto goesOn = [&](std::size_t index) { return time < planned_[index].end(); };
+  const auto ended = std::stable_partition(acting_.begin(), acting_.end(), goesOn);
+  due.assign(ended, acting_.end());
+  acting_.erase(ended, acting_.end());
+  for (; !waiting_.empty() && time >= planned_[waiting_.back()].push->start; waiting_.pop_back())
+    due.push_back(waiting_.back());
+  std::sort(due.begin(), due.end());
+  return due;
 }
 
 std::vector<int> PushSchedule::apply(double time, const VectorX& state, std::vector<PushForce>& acting) {
   std::vector<int> changed;
-  for (Planned& planned : planned_) {
-    if (planned.isOver) continue;
-    if (planned.isActing && time >= planned.push->start + planned.push->duration) {
-      planned.isActing = false, planned.isOver = true;
+  for (const std::size_t index : takeDue(time)) {
+    Planned& planned = planned_[index];
+    if (planned.hasBegun) {
       log_.recordBody(time, EventKind::pushEnd, planned.body, motionOf(planned.force.point, state).position);
-      changed.push_back(planned.body);
-    } else if (!planned.isActing && time >= planned.push->start) {
-      planned.isActing = begin(planned, time, state);
-      planned.isOver = !planned.isActing;
-      if (planned.isActing) changed.push_back(planned.body);
+    } else if (begin(planned, time, state)) {
+      planned.hasBegun = true;
+      acting_.insert(std::upper_bound(acting_.begin(), acting_.end(), index), index);
+    } else {
+      continue;
     }
+    changed.push_back(planned.body);
   }
   acting.clear();
-  for (const Planned& planned : planned_)
-    if (planned.isActing) acting.push_back(planned.force);
+  for (const std::size_t index : acting_) acting.push_back(planned_[index].force);
   findNextChange();
   return changed;
 }

@@ -11,7 +11,7 @@ namespace cradle {
 /// When the pushes of an island begin and end, and where their rays hit.
 class PushSchedule {
  public:
-  /// Keeps references to `scene` and `log`. O(pushes of the island).
+  /// Keeps references to `scene` and `log`. O(n log n) of n pushes of the island.
   PushSchedule(const Scene& scene, const Assembly& assembly, EventLog& log);
 
   /// The next time (s) at which a push begins or ends, later than the last call of apply; infinite if none. No step may
@@ -19,22 +19,28 @@ class PushSchedule {
   double nextChange() const { return nextChange_; }
 
   /// Puts the pushes that act from `time` on into `acting`. Returns the moving bodies on which one begins or ends.
+  /// O(pushes that act).
   std::vector<int> apply(double time, const VectorX& state, std::vector<PushForce>& acting);
 
  private:
   struct Planned {
+    double end() const { return push->start + push->duration; }  // s
+
     const Push* push;
     int body;  // moving
-    bool isActing = false, isOver = false;
     PushForce force;
+    bool hasBegun = false;
   };
   bool begin(Planned& planned, double time, const VectorX& state);
+  std::vector<std::size_t> takeDue(double time);
   void findNextChange();
 
   const Scene& scene_;
   EventLog& log_;
-  std::vector<Planned> planned_;
-  double nextChange_ = 0;  // s
+  std::vector<Planned> planned_;      // in the order of the scene
+  std::vector<std::size_t> waiting_;  // of planned_, from the last to begin to the first
+  std::vector<std::size_t> acting_;   // of planned_, ascending
+  double nextChange_ = 0;             // s
 };
 
 }  // namespace cradle

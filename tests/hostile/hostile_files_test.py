@@ -476,6 +476,15 @@ class Places(HostileTest):
         self.assertEqual(ended.code, 0, ended.error)
         self.assertLess(ended.seconds, MOST_SECONDS)
 
+    def test_many_pushes_of_a_body_take_little_time(self):
+        count = 60_000
+        body = {"name": "b", "shape": {"sphere": {"radius": 0.1}}}
+        pushes = [{"body": "b", "point": [0, 0, 0], "force": [1, 0, 0], "start": 10 * i / count, "duration": 5 / count} for i in range(count)]
+        path = self.write("a.json", scene(body, pushes=pushes, duration=10))
+        ended = self.run_cradle("simulate", path, "-q", "-o", self.path("a.sqlite"))
+        self.assertEqual(ended.code, 0, ended.error)
+        self.assertLess(ended.seconds, MOST_SECONDS)
+
     def test_copies_of_a_mesh_that_touch_do_not_fill_the_memory(self):
         knot = os.path.join(SOURCE, "assets", "torus_knot.3ds")
         copies = {"name": "b", "shape": {"mesh": knot}, "mass": 1, "copies": {"count": [20, 100, 10], "spacing": [9, 9, 9]}}

@@ -60,6 +60,28 @@ TEST(PushSchedule, StopsStepsAtEachBeginAndEndOnce) {
   EXPECT_THAT(apply(5), IsEmpty());
 }
 
+// The later of two in the scene begins first; a third begins and ends before anybody asks.
+TEST(PushSchedule, KeepsTheOrderOfTheScene) {
+  OneIsland at(pushed(R"(
+    {"body": "ball", "point": [0, 0, 0], "force": [1, 0, 0], "start": 0.5, "duration": 1},
+    {"body": "box", "point": [0, 0, 0], "force": [0, 2, 0], "start": 0.25, "duration": 1.25},
+    {"body": "box", "point": [0, 0, 0], "force": [0, 0, 3], "start": 0.5, "duration": 0.125}
+  )"));
+  PushSchedule& pushes = at.island.pushes;
+  std::vector<PushForce> acting;
+  const auto apply = [&](double time) { return pushes.apply(time, at.state(), acting); };
+  EXPECT_EQ(pushes.nextChange(), 0.25);
+  EXPECT_THAT(apply(0.25), ElementsAre(0));
+  EXPECT_THAT(apply(0.75), ElementsAre(1, 0));
+  EXPECT_THAT(forcesOf(acting), ElementsAre(Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, 3)));
+  EXPECT_EQ(pushes.nextChange(), 0.625);
+  EXPECT_THAT(apply(0.75), ElementsAre(0));
+  EXPECT_THAT(forcesOf(acting), ElementsAre(Vec3(1, 0, 0), Vec3(0, 2, 0)));
+  EXPECT_EQ(pushes.nextChange(), 1.5);
+  EXPECT_THAT(apply(1.5), ElementsAre(1, 0));
+  EXPECT_THAT(acting, IsEmpty());
+}
+
 TEST(PushSchedule, ActsAtAPointThatIsCountedFromTheCentreOfMass) {
   OneIsland at(pushed(R"({"body": "box", "point": [0.2, 0.1, -0.3], "force": [4, -2, 5], "start": 0, "duration": 1})"));
   std::vector<PushForce> acting;
