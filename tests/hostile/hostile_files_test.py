@@ -513,14 +513,14 @@ class Places(HostileTest):
             self.assertIn(words, ended.out)
             self.assertLess(ended.memory, 1 << 28)
 
-    def test_a_limit_on_address_space_is_told_before_mesa_crashes(self):
+    def test_limits_on_memory_are_told_before_mesa_crashes(self):
         path = self.trajectory()
-        for megabytes in (400, 500, 600):
+        for option, megabytes in (("-v", 400), ("-v", 500), ("-v", 600), ("-d", 30), ("-d", 90), ("-d", 140)):
             for output in ("frames", "x.mp4"):
-                ended = running.Ended("/bin/sh", ("-c", 'ulimit -v %d; exec "$0" "$@"' % (1024 * megabytes), PROGRAM, "render" if output == "frames" else
-                                                  "video", path, "-q", "-o", self.path(output)), self.folder)
+                ended = running.Ended("/bin/sh", ("-c", 'ulimit %s %d; exec "$0" "$@"' % (option, 1024 * megabytes), PROGRAM,
+                                                  "render" if output == "frames" else "video", path, "-q", "-o", self.path(output)), self.folder)
                 self.assertEqual(ended.code, 8, ended.error)
-                self.assertIn("ulimit -v", ended.error)
+                self.assertIn("ulimit " + option, ended.error)
                 self.assertFalse(os.path.exists(self.path(output)) or os.path.exists(self.path(output + ".part")))
 
     def test_what_goes_wrong_is_told_in_a_message_that_can_be_read(self):
