@@ -164,6 +164,9 @@ class Study {
     draw(chart, name);
   }
 
+  /// Whether what is done so far serves the next run.
+  bool isKept() const { return isKept_; }
+
   /// Throws an error of the first fault's kind, if there was one.
   void finish() {
     references_.complete();
@@ -198,8 +201,11 @@ class Study {
     }
     progress_.update(++turns_);
     const std::string& name = named.origin.scene;
-    if (earlier_.referenceOf(name) == nullptr)
+    if (earlier_.referenceOf(name) == nullptr) {
       references_.append(tableLine(ReferenceLine{named.origin, chart.reference}));
+      table_.keep();
+      isKept_ = true;
+    }
     const RowStream rows{earlier_.rowsOf(name), [&](const StudyRow& row) {
                            if (!row.isEarlier) table_.append(tableLine(row));
                            chart.rows.push_back(row);
@@ -239,6 +245,7 @@ class Study {
   GrowingTable table_, references_;
   Progress progress_;
   long turns_ = 0;  // methods and references that are done
+  bool isKept_ = !earlier_.references.empty();
   std::optional<ErrorKind> fault_;
 };
 
@@ -257,6 +264,7 @@ void studyScenes(const std::vector<std::string>& paths, const std::string& asset
   try {
     for (NamedScene& named : scenes) study.add(named);
   } catch (const Error& error) {
+    if (!study.isKept()) throw;
     const std::string part = partPath((fs::path(folder) / kTableName).string());
     throw Error(
         error.kind(), "",

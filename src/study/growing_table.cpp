@@ -15,23 +15,33 @@
 namespace cradle {
 
 GrowingTable::GrowingTable(const std::string& path, const std::string& columns, std::size_t keptBytes)
-    : path_(path), file_(openLockedPart(path)) {
+    : path_(path), file_(openLockedPart(path)), isKept_(keptBytes > 0) {
   try {
     cutTo(keptBytes);
-    if (keptBytes == 0) append(columns);
+    if (keptBytes == 0) write(columns);
   } catch (...) {
-    close(file_);
+    end();
     throw;
   }
 }
 
 GrowingTable::~GrowingTable() {
-  if (file_ >= 0) close(file_);
+  if (file_ >= 0) end();
+}
+
+void GrowingTable::end() {
+  if (!isKept_) unlink(partPath(path_).c_str());  // while it is locked: later it may be another run's
+  close(file_);
 }
 
 void GrowingTable::append(const std::string& line) {
-  for (std::size_t written = 0; written < line.size();) {
-    const ssize_t length = write(file_, line.data() + written, line.size() - written);
+  write(line);
+  isKept_ = true;
+}
+
+void GrowingTable::write(const std::string& text) {
+  for (std::size_t written = 0; written < text.size();) {
+    const ssize_t length = ::write(file_, text.data() + written, text.size() - written);
     if (length < 0 && errno != EINTR) fail();
     if (length > 0) written += static_cast<std::size_t>(length);
   }

@@ -3,7 +3,7 @@
 
     command_line_test.py PROGRAM SOURCE_FOLDER
 """
-import base64, csv, json, os, re, shutil, signal, sqlite3, struct, subprocess, sys, tempfile, time, unittest
+import base64, csv, json, os, pty, re, resource, shutil, signal, sqlite3, struct, subprocess, sys, tempfile, time, unittest
 
 PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 BALL = os.path.join(SOURCE, "assets", "ball.3ds")
@@ -348,6 +348,21 @@ class Studies(InTemporaryFolder):
         self.refuses(2, ["hung.json", "second"], "study", path, path, "-o", self.path("s"))
         self.refuses(3, ["nowhere.json"], "study", path, self.path("nowhere.json"), "-o", self.path("s"))
         self.refuses(5, ["hung.json"], "study", path, "-o", self.folder)
+
+    def test_a_study_that_cannot_write_leaves_rows_or_nothing(self):
+        """Files of 0 bytes at most have no columns; those of 130 have these, but the reference is longer."""
+        path = self.spring_scene(duration=0.1)
+        for size in (0, 1, 130):
+            limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+            for is_there in (False, True):
+                if is_there:
+                    os.mkdir(self.path("s"))
+                result = cradle("study", path, "-o", self.path("s"), "--methods", "rk4", preexec_fn=limit)
+                self.assertEqual((result.returncode, result.stderr.count("File too large")), (5, 1), result.stderr)
+                self.assertNotIn("the rows up to then", result.stderr)
+                self.assertEqual(self.listing(), ["hung.json", "s"] if is_there else ["hung.json"])
+                if is_there:
+                    os.rmdir(self.path("s"))  # which is empty
 
     def test_interruption_keeps_the_rows_so_far(self):
         path = self.spring_scene(duration=2)
