@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <seccomp.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -16,12 +17,14 @@
 
 #include "core/crash.h"
 #include "core/error.h"
+#include "core/interruption.h"
 
 namespace cradle {
 namespace {
 
-constexpr int kAnswerFile = 3;    // of the child: the first after the three that all have
-constexpr rlim_t kMaxFiles = 64;  // open at once
+constexpr int kAnswerFile = 3;      // of the child: the first after the three that all have
+constexpr rlim_t kMaxFiles = 64;    // open at once
+constexpr int kLookInterval = 100;  // ms between two looks for a signal, of whoever waits for the answer
 // The first byte of what the child sends: the answer, an Error (its kind follows), or why there is none.
 constexpr char kAnswer = 'A', kError = 'E', kFailure = 'F';
 
@@ -109,10 +112,15 @@ bool send(const std::string& bytes) {
   _exit(isSent ? 0 : 1);
 }
 
+/// All that comes, or, once a signal is noted, what has come until then.
 std::string receive(int file) {
   std::string bytes;
   std::array<char, 1 << 16> buffer{};
   for (ssize_t length = 1; length != 0;) {
+    pollfd readable{file, POLLIN, 0};
+    const int found = poll(&readable, 1, kLookInterval);  // unlike read, it ends when a signal comes
+    if (interruptingSignal() != 0) break;
+    if (found <= 0) continue;
     length = read(file, buffer.data(), buffer.size());
     if (length > 0) bytes.append(buffer.data(), static_cast<std::size_t>(length));
     if (length < 0 && errno != EINTR) break;
@@ -132,9 +140,11 @@ ChildAnswer answerOfChild(const std::function<std::string()>& work, const ChildL
   close(pipe[1]);
   std::string sent = receive(pipe[0]);
   close(pipe[0]);
+  if (interruptingSignal() != 0) kill(child, SIGKILL);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
+  throwIfInterrupted();
   if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
     return {{}, fmt::format("takes longer than {} s", limits.cpuSeconds)};
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || sent.empty()) return {{}, "makes the importer crash"};

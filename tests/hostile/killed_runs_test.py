@@ -249,6 +249,23 @@ class KilledRuns(unittest.TestCase):
             self.assertEqual((process.returncode, error.count(b"\n")), (128 + number, 1), error)
             self.assertLess(time.monotonic() - begin, MOST_SECONDS)
 
+    def test_a_mesh_that_hangs_its_importer_ends_when_told_to(self):
+        """It would take 3 s of CPU time. Whoever waits for it looks sooner than work that looks at no signal is ended."""
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        endless = write(os.path.join(folder, "m.ply"), "ply\nformat ascii 1.0\nelement vertex 3\n")
+        path = write(os.path.join(folder, "s.json"), scene(1, bodies=[{"name": "b", "shape": {"mesh": "m.ply"}}], springs=[]))
+        for number, arguments in ((signal.SIGTERM, ["inspect", endless]), (signal.SIGINT, ["check", path]), (signal.SIGHUP, ["plan", path])):
+            process = subprocess.Popen([PROGRAM, *arguments], stderr=subprocess.PIPE, env={**os.environ, "HANGS": folder})
+            self.wait_until(lambda: len(processes_with("HANGS=" + folder)) == 2)
+            time.sleep(0.2)
+            process.send_signal(number)
+            begin = time.monotonic()
+            error = process.communicate(timeout=PATIENCE)[1]
+            self.assertEqual((process.returncode, error.count(b"\n")), (128 + number, 1), error)
+            self.assertLess(time.monotonic() - begin, 2)
+            self.assertEqual(processes_with("HANGS=" + folder), [])
+
     @staticmethod
     def cpu_seconds(process):
         fields = read("/proc/%d/stat" % process).rsplit(b") ", 1)[1].split()
