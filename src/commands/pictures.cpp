@@ -244,10 +244,12 @@ void makeFilm(const std::string& input, const std::string& film, const PictureOp
   if (!drawsBeside) source.simulate();
   Progress progress("Drawing", "pictures", source.pictureCount(), quiet);
   if (drawsBeside)
-    source.simulateBeside([&progress](const std::string& warning) {
-      progress.endLine();
-      warn(warning);
-    });
+    source.simulateBeside(
+        [&progress](const std::string& warning) {
+          progress.endLine();
+          warn(warning);
+        },
+        [&progress](double time) { progress.showTime(time); });
   requireDrawingMemory(order.size.width, order.size.height);  // of what is left
   FilmDrawer drawer(source, order);
   drawFrames(drawer, {0, source.pictureCount()}, progress, [&](long, const Image& picture) { encoder.add(picture); });

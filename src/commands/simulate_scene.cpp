@@ -162,7 +162,8 @@ void simulateInto(TrajectoryWriter& writer, const Scene& scene, World& world, St
                             },
                             [&](const PromiseEnd& end) {
                               if (watch) watch->note(end);
-                            }};
+                            },
+                            [&](double time) { progress.showTime(time); }};
   const RunCost cost = simulate(scene, world, sink);
   if (watch) watch->finish();
   writer.finish(cost);

@@ -89,15 +89,17 @@ void TrajectorySource::simulate() {
   open(TrajectoryReader(writer));
 }
 
-void TrajectorySource::simulateBeside(std::function<void(const std::string&)> warn) {
+void TrajectorySource::simulateBeside(std::function<void(const std::string&)> warn,
+                                      std::function<void(double time)> reached) {
   if (reader_) return;
   warn_ = std::move(warn);
+  reached_ = std::move(reached);
   stream_.emplace(scene_);
 }
 
 Frame TrajectorySource::frameAt(long number) {
   if (reader_) return reader_->readFrame(number);
-  while (waiting_.empty() || waiting_.back().number < number) waiting_.push_back(stream_->next(warn_));
+  while (waiting_.empty() || waiting_.back().number < number) waiting_.push_back(stream_->next(warn_, reached_));
   CRADLE_CHECK(number >= waiting_.front().number);
   return waiting_[static_cast<std::size_t>(number - waiting_.front().number)];
 }

@@ -36,8 +36,9 @@ class TrajectorySource {
   void simulate();
 
   /// The same, but the simulation goes on while its frames are asked for, until forgetBefore(): it is as far as the
-  /// latest of them. Warnings are told with the frame that they belong to.
-  void simulateBeside(std::function<void(const std::string&)> warn);
+  /// latest of them. Warnings are told with the frame that they belong to, and the simulated time (s) inside a frame
+  /// that takes long.
+  void simulateBeside(std::function<void(const std::string&)> warn, std::function<void(double time)> reached);
 
   /// Throws what reading throws, or simulating.
   Frame frameAt(long number);
@@ -66,6 +67,7 @@ class TrajectorySource {
   Scene scene_;
   long frameCount_ = 0;
   std::function<void(const std::string&)> warn_;
+  std::function<void(double time)> reached_;
   std::deque<Frame> waiting_;          // of the stream: those that may be asked for again, at least the latest
   std::optional<FrameStream> stream_;  // of scene_
 };

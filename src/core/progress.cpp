@@ -37,26 +37,37 @@ void Progress::endLine() {
   drawn_ = false;
 }
 
-std::string Progress::line(long done) const {
+std::string Progress::line(const std::string& within) const {
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-  if (done >= total_) return fmt::format("{}: {} {} in {}", task_, total_, unit_, minutesAndSeconds(elapsed));
-  const long own = done - skipped_;
-  const double left = own > 0 ? elapsed * static_cast<double>(total_ - done) / static_cast<double>(own) : 0;
-  return fmt::format("{}: {}/{} {}, {} left", task_, done, total_, unit_, own > 0 ? minutesAndSeconds(left) : "?");
+  if (done_ >= total_ && within.empty())
+    return fmt::format("{}: {} {} in {}", task_, total_, unit_, minutesAndSeconds(elapsed));
+  if (done_ >= total_) return fmt::format("{}: {}/{} {}{}", task_, done_, total_, unit_, within);
+  const long own = done_ - skipped_;
+  const double left = own > 0 ? elapsed * static_cast<double>(total_ - done_) / static_cast<double>(own) : 0;
+  return fmt::format("{}: {}/{} {}{}, {} left", task_, done_, total_, unit_, within,
+                     own > 0 ? minutesAndSeconds(left) : "?");
 }
 
 void Progress::skipTo(long done) {
-  skipped_ = done;
+  skipped_ = done_ = done;
   start_ = Clock::now();
 }
 
 void Progress::update(long done) {
+  done_ = done;
+  draw(done >= total_ && (animated_ || drawn_), "");
+}
+
+void Progress::showTime(double time) {
+  draw(false, fmt::format(", {:.6g} s simulated", time));
+}
+
+void Progress::draw(bool isDue, const std::string& within) {
   const auto now = Clock::now();
-  const bool due = now - lastDrawn_ >= (animated_ ? kTerminalInterval : kLogInterval);
-  if (quiet_ || (!due && !(done >= total_ && (animated_ || drawn_)))) return;
+  if (quiet_ || !(isDue || now - lastDrawn_ >= (animated_ ? kTerminalInterval : kLogInterval))) return;
   lastDrawn_ = now;
   drawn_ = true;
-  const std::string text = animated_ ? "\r\x1b[K" + line(done) : line(done) + "\n";
+  const std::string text = animated_ ? "\r\x1b[K" + line(within) : line(within) + "\n";
   std::fputs(text.c_str(), stderr);  // what cannot be told is lost
   std::fflush(stderr);
 }

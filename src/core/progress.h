@@ -18,6 +18,9 @@ class Progress {
   /// `done` of `total` are finished. Cheap enough to call for every frame.
   void update(long done);
 
+  /// The simulation of the next of them, or of what comes after the last, has come to a time (s).
+  void showTime(double time);
+
   /// `done` of `total` were finished already, by an earlier run: they say nothing about the time left.
   void skipTo(long done);
 
@@ -26,10 +29,11 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
-  std::string line(long done) const;
+  std::string line(const std::string& within) const;
+  void draw(bool isDue, const std::string& within);
 
   std::string task_, unit_;
-  long total_, skipped_ = 0;
+  long total_, skipped_ = 0, done_ = 0;
   bool quiet_, animated_, drawn_ = false;
   Clock::time_point start_, lastDrawn_;
 };

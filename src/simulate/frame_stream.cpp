@@ -20,8 +20,10 @@ void FrameStream::run(const Scene& scene) {
     const auto putPush = [this](const Event& event) {
       if (event.kind == EventKind::pushStart || event.kind == EventKind::pushMissed) put(event);
     };
-    simulate(scene, {[this](const Frame& frame) { put(frame); }, putPush,
-                     [this](const std::string& warning) { put(warning); }});
+    SimulationSink sink{[this](const Frame& frame) { put(frame); }, putPush,
+                        [this](const std::string& warning) { put(warning); }};
+    sink.reached = [this](double time) { put(time); };
+    simulate(scene, sink);
   } catch (const Closed&) {
   } catch (...) {
     const std::lock_guard lock(mutex_);
@@ -47,14 +49,17 @@ FrameStream::Item FrameStream::take() {
   return item;
 }
 
-Frame FrameStream::next(const std::function<void(const std::string&)>& warn) {
+Frame FrameStream::next(const std::function<void(const std::string&)>& warn,
+                        const std::function<void(double time)>& reached) {
   for (;;) {
     Item item = take();
     if (auto* frame = std::get_if<Frame>(&item)) return std::move(*frame);
     if (const auto* error = std::get_if<std::exception_ptr>(&item)) std::rethrow_exception(*error);
     if (const auto* push = std::get_if<Event>(&item))
       pushEvents_.push_back(*push);
-    else
+    else if (const auto* time = std::get_if<double>(&item)) {
+      if (reached) reached(*time);
+    } else
       warn(std::get<std::string>(item));
   }
 }

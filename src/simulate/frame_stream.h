@@ -28,15 +28,16 @@ class FrameStream {
   FrameStream(const FrameStream&) = delete;
   FrameStream& operator=(const FrameStream&) = delete;
 
-  /// Waits for the next frame; `warn` is told what the user should know of it. Throws what the simulation throws. Not
-  /// to be called again after the last frame, or after an error.
-  Frame next(const std::function<void(const std::string&)>& warn);
+  /// Waits for the next frame; `warn` is told what the user should know of it, and `reached`, which may be none, the
+  /// simulated time (s) inside a frame that takes long. Throws what the simulation throws. Not to be called again after
+  /// the last frame, or after an error.
+  Frame next(const std::function<void(const std::string&)>& warn, const std::function<void(double time)>& reached = {});
 
   /// Of pushes that began or missed their bodies, up to the latest frame.
   const std::vector<Event>& pushEvents() const { return pushEvents_; }
 
  private:
-  using Item = std::variant<Frame, Event, std::string, std::exception_ptr>;  // the last two: warning, end
+  using Item = std::variant<Frame, Event, double, std::string, std::exception_ptr>;  // the last three: s, warning, end
   struct Closed {};
   void run(const Scene& scene);
   void put(Item item);

@@ -40,12 +40,13 @@ IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMe
   changeMotion();
 }
 
-const VectorX& IslandSolver::stateAt(double time) {
+const VectorX& IslandSolver::stateAt(double time, const std::function<void(double time)>& reached) {
   const double same = sameTime(time);
   CRADLE_CHECK(time <= island_.scene.duration + same);  // no step goes beyond the end: that would take for ever
   while (island_.time < time - same) {
     throwIfInterrupted();
     advance(time);
+    if (reached) reached(island_.time);
   }
   if (island_.time <= time + same)
     reported_ = island_.state;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -23,8 +24,9 @@ class IslandSolver {
 
   /// The state at `time` (s), not earlier than in the call before, and not after the end of the scene; orientations of
   /// unit length. At an instant of events the state after them. Throws Error(unstable) if the state blows up,
-  /// Error(limit) if a step has too many impacts, Error(interrupted).
-  const VectorX& stateAt(double time);
+  /// Error(limit) if a step has too many impacts, Error(interrupted). `reached` is told the time (s) after each step;
+  /// it may be none.
+  const VectorX& stateAt(double time, const std::function<void(double time)>& reached = {});
 
   /// To be called after the last frame: the accuracy asked was not kept if the numerical energy of the frames is beyond
   /// kMaxNumericalRatio times the accuracy.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/cpu_stopwatch.h"
+#include "simulate/life_sign.h"
 #include "simulate/plan/plan_text.h"
 #include "simulate/step_loss.h"
 #include "simulate/world.h"
@@ -59,11 +60,15 @@ RunCost simulate(const Scene& scene, const SimulationSink& sink) {
 RunCost simulate(const Scene& scene, World& run, const SimulationSink& sink) {
   CpuStopwatch integration;
   StepLoss loss(scene);
+  LifeSign sign(sink.reached);
+  std::function<void(double)> note;
+  if (sink.reached) note = [&sign](double time) { sign.note(time); };
   for (const std::string& warning : run.startWarnings()) sink.warning(warning);
 
   for (long number = 0; number <= lastFrame(scene); ++number) {
+    sign.beginFrame();
     integration.start();
-    const Frame frame = run.frameAt(number, frameTime(scene, number));
+    const Frame frame = run.frameAt(number, frameTime(scene, number), note);
     integration.stop();
     for (const Event& event : run.takeEvents(frame.time)) sink.event(event);
     tellOfPromises(run, sink);

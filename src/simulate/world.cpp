@@ -95,15 +95,27 @@ void World::addFlight(Assembly assembly) {
   flying_.push_back(std::move(island));
 }
 
-Frame World::frameAt(long number, double time) {
+Frame World::frameAt(long number, double time, const std::function<void(double time)>& reached) {
   throwIfInterrupted();
   Frame frame{number, time, std::vector<BodyState>(moving_), {}};
-  const auto add = [&](const auto& simulation) {
-    addTo(frame, simulation->assembly(), simulation->stateAt(time));
+  const auto add = [&](const auto& simulation, const auto&... told) {
+    addTo(frame, simulation->assembly(), simulation->stateAt(time, told...));
     const std::vector<Event> events = simulation->takeEvents();
     events_.insert(events_.end(), events.begin(), events.end());
   };
-  for (const auto& simulation : solvers_) add(simulation);
+  const double island = 1.0 / static_cast<double>(std::max<std::size_t>(1, solvers_.size()));  // of all
+  std::size_t done = 0;
+  std::function<void(double)> tellMean;
+  if (reached)
+    tellMean = [&](double now) {
+      const double ofFrame = static_cast<double>(done) * (time - lastTime_);
+      reached(lastTime_ + island * (ofFrame + std::min(now, time) - lastTime_));
+    };
+  for (const auto& simulation : solvers_) {
+    add(simulation, tellMean);
+    ++done;
+  }
+  lastTime_ = time;
   notePromiseEnds();
   for (const auto& spheres : spheres_) add(spheres);
   for (const auto& pile : softIslands_) add(pile);

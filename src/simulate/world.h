@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -35,8 +36,9 @@ class World {
   /// Whether these tell that the scene's steps are too long for a spring.
   bool hasLongSteps() const { return hasLongSteps_; }
 
-  /// The frame at a time (s) not earlier than in the call before. Throws what IslandSolver::stateAt throws.
-  Frame frameAt(long number, double time);
+  /// The frame at a time (s) not earlier than in the call before. Throws what IslandSolver::stateAt throws. `reached`
+  /// is told the mean of the islands' clocks (s) after each of their steps; it may be none.
+  Frame frameAt(long number, double time, const std::function<void(double time)>& reached = {});
 
   /// To be called after the last frame: ends promises that the frames as a whole did not keep.
   void finish();
@@ -83,6 +85,7 @@ class World {
   std::size_t moving_ = 0;
   std::array<char, kCorrectionKinds> isToldOf_ = {};  // kinds of corrections
   std::vector<Event> events_;                         // known, but not yet taken
+  double lastTime_ = 0;                               // s, of the latest frame
 };
 
 }  // namespace cradle

@@ -292,6 +292,34 @@ class Trajectories(InTemporaryFolder):
             database.close()
 
 
+    def test_a_frame_that_takes_seconds_shows_the_time_that_it_has_come_to(self):
+        """On a terminal. The only frame after the start takes a minute; each run is ended at its second sign of life."""
+        seen = {"position": [0, 0, 5], "target": [0, 0, 0]}
+        for command, camera, task in (("simulate x.sqlite", None, "Simulating: 1/2 frames"), ("video x.mp4", None, "Simulating: 1/2 frames"),
+                                      ("render x", None, "Simulating: 1/2 frames"), ("video x.mp4", seen, "Drawing: 1/1 pictures")):
+            path = self.write("s.json", scene(duration=60, method={"name": "rk4", "timeStep": 1e-6}, camera=camera,
+                                              output={"framesPerSecond": 1 / 60, "width": 64, "height": 36}))
+            command, output = command.split()
+            ours, terminal = pty.openpty()
+            process = subprocess.Popen([PROGRAM, command, path, "-o", self.path(output)], stderr=terminal)
+            os.close(terminal)
+            begin, text = time.monotonic(), b""
+            try:
+                while text.count(b"s simulated") < 2 and time.monotonic() < begin + 30:
+                    text += os.read(ours, 4096)
+            finally:
+                process.send_signal(signal.SIGINT)
+                os.close(ours)  # what cannot be told any more is lost
+                process.wait(20)
+            lines = re.findall(r"\r\x1b\[K([^\r]*)", text.decode())
+            times = [float(found[1]) for found in (re.match(task + r", (\S+) s simulated(, \S+ left)?$", line) for line in lines) if found]
+            self.assertEqual(len(times), 2, (command, text))
+            self.assertTrue(0 < times[0] < times[1] < 60, times)
+            self.assertEqual(process.returncode, 130)
+            if os.path.exists(self.path("x.sqlite.part")):
+                os.remove(self.path("x.sqlite.part"))
+
+
 class Studies(InTemporaryFolder):
     COLUMNS = ["scene", "engine", "method", "setting", "error", "cpu_seconds_per_simulated_second", "evaluations",
                "energy_drift", "constraint_drift", "penetration", "status"]

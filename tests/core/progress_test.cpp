@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <functional>
+#include <thread>
 
 namespace cradle {
 namespace {
@@ -35,6 +37,17 @@ std::string onTerminal(const std::function<void()>& work) {
 
 TEST(Progress, EndsWithWhatWasDoneOnATerminal) {
   EXPECT_THAT(onTerminal([] { countToThree(false); }), HasSubstr("simulating: 3 frames in 0:00\r\n"));
+}
+
+TEST(Progress, ShowsHowFarTheNextOneHasCome) {
+  const std::string text = onTerminal([] {
+    Progress progress("simulating", "frames", 3, false);
+    progress.update(1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    progress.showTime(0.25);
+    progress.showTime(0.5);  // too soon
+  });
+  EXPECT_THAT(text, HasSubstr("simulating: 1/3 frames, 0.25 s simulated, 0:00 left\r\n"));
 }
 
 TEST(Progress, IsSilentWhenQuiet) {
