@@ -23,6 +23,7 @@ constexpr double kOverwhelming = 1e6;     // times all weights and springs: noth
 constexpr double kUnseenFall = 0.01;      // of a body's size: bodies that rattle at rest may have as much of energy
 constexpr double kPlainAcceleration = 1;  // m/s^2: of weights where there is no gravity
 constexpr double kCollapsed = 1e-3;       // of its rest length: a spring without direction
+constexpr double kMaxFollowedRate = 1e6;  // 1/s, rad/s: ten million steps of kSafeRotation a second
 
 /// What an error of 1 + |y| in each component y of a state can change of its energy (J).
 double energySensitivity(const Mechanism& mechanism, const VectorX& state) {
@@ -60,6 +61,9 @@ double angularSpeedOf(int body, const VectorX& state) {
 
 const char* const kConstraintsCause =
     "what ties it leaves no motion, or forces grow without bound: look at its rods, ropes, joints and springs there";
+const char* const kNoCause =
+    "no tie, spring, push or speed explains it: give the scene a coarser \"accuracy\", whose steps do not follow each "
+    "contact";
 
 }  // namespace
 
@@ -212,13 +216,43 @@ std::string EnergyGuard::cause(const VectorX& state) const {
       return fmt::format("spring \"{}\" is {:.2g} m long, and has no direction at length 0: keep its ends apart",
                          names_.springs[i], length);
   }
-  if (method_.isAdaptive()) return kConstraintsCause;
+  if (method_.isAdaptive()) return adaptiveCause(state);
   for (const VectorX* moment : {&calm_, &state}) {  // a start at rest shows nothing yet
     const std::string fastest = fastestRotation(*moment);
     if (!fastest.empty()) return fastest;
   }
   return fmt::format("{} at a time step of {:.3g} s cannot follow it; give \"method\" a smaller \"timeStep\"",
                      method_.name, method_.timeStep);
+}
+
+/// Why steps that are chosen by the error do not go on. Ties are not to blame where a body began faster than any steps
+/// can follow.
+std::string EnergyGuard::adaptiveCause(const VectorX& state) const {
+  const bool isTied = !mechanism_.constraints.empty();
+  std::string fast = fastestBody(start_);
+  if (fast.empty() && !isTied) fast = fastestBody(state.allFinite() ? state : calm_);
+  if (!fast.empty()) return fast;
+  return isTied || !mechanism_.springs.empty() ? kConstraintsCause : kNoCause;
+}
+
+/// The body that spins, or passes its own size, most often in a second, if that is too often.
+std::string EnergyGuard::fastestBody(const VectorX& state) const {
+  double most = kMaxFollowedRate;
+  std::string what;
+  for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i) {
+    const double spin = angularSpeedOf(static_cast<int>(i), state);
+    const double speed = linearVelocity(state, static_cast<Eigen::Index>(i)).norm();
+    const double passes = radii_[i] > 0 ? speed / radii_[i] : 0;
+    if (!(std::max(spin, passes) > most)) continue;
+    most = std::max(spin, passes);
+    what =
+        fmt::format("body \"{}\" {}", names_.bodies[i],
+                    spin >= passes ? fmt::format("spins at {:.3g} rad/s: give it less of a spin", spin)
+                                   : fmt::format("moves at {:.3g} m/s, {:.3g} times its size in a second: give it less "
+                                                 "speed, or what drives it less force",
+                                                 speed, passes));
+  }
+  return what;
 }
 
 /// The rod, joint or body that rotates farthest in a step, if that is too far.

@@ -38,6 +38,8 @@ class EnergyGuard {
   const PushForce* overwhelmingPush() const;
   std::string cause(const VectorX& state) const;
   std::string stiffCause(const VectorX& state) const;
+  std::string adaptiveCause(const VectorX& state) const;
+  std::string fastestBody(const VectorX& state) const;
   std::string fastestRotation(const VectorX& state) const;
 
   const Mechanism& mechanism_;

@@ -16,6 +16,7 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 struct Outcome {
   std::vector<std::string> warnings;
@@ -175,6 +176,25 @@ TEST(Guard, BlamesAPushOfWhatNothingElseCouldDo) {
                                            HasSubstr("a push of 1e+20 N"), HasSubstr("less force")))
             << pushed << direction << ties;
       }
+}
+
+// By itself, on a hinge, and beside bodies that are tied: no tie is to blame.
+TEST(Guard, BlamesASpinThatNoStepsCanFollow) {
+  const std::string top = R"("name": "top", "shape": {"box": {"size": [0.2, 0.3, 0.4]}}, "position": [0, 1, 0])";
+  const std::string spin = R"("angularVelocity": [1e8, 3e7, 1e9])";
+  const std::string floor = R"({"name": "floor", "shape": {"plane": {}}, "motion": "static"})";
+  const std::string hung = R"({"name": "hung", "shape": {"sphere": {"radius": 0.1}}, "position": [1, 1, 0]})";
+  for (const std::string& rest :
+       {fmt::format(R"("bodies": [{{{}, {}}}, {}])", top, spin, floor),
+        fmt::format(R"("bodies": [{{{}, "angularVelocity": [0, 0, 1e9]}}, {}],
+          "hinges": [{{"bodyA": "top", "anchorA": [0, 0, 0.1], "anchorB": [0, 1, 0.1], "axis": [0, 0, 1]}}])",
+                    top, floor),
+        fmt::format(R"("bodies": [{{{}, {}}}, {}, {}], "rods": [{{"bodyA": "hung", "anchorB": [1, 2, 0]}}])", top, spin,
+                    floor, hung)}) {
+    const Outcome outcome = outcomeOf(sceneMovedBy(R"("accuracy": 1e-9)", 1, rest));
+    EXPECT_THAT(outcome.failure, AllOf(HasSubstr("body \"top\" spins at 1"), HasSubstr("e+09 rad/s"),
+                                       Not(HasSubstr("ties")), Not(HasSubstr("rods"))));
+  }
 }
 
 TEST(Guard, NamesABodyThatSpinsTooFarInAStep) {
