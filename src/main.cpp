@@ -26,6 +26,7 @@
 #include "core/crash.h"
 #include "core/error.h"
 #include "core/interruption.h"
+#include "core/printable.h"
 #include "scene/suggestion.h"
 #include "study/study_method.h"
 
@@ -203,7 +204,7 @@ void checkValues(CLI::App& app) {
         double number = 0;
         const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
         const bool isWhole = end == text.data() + text.size() && fault != std::errc::invalid_argument;
-        return isWhole ? "" : fmt::format("found \"{}\"; allowed are numbers, as 0.5 or 1e-3", text);
+        return isWhole ? "" : fmt::format("found \"{}\"; allowed are numbers, as 0.5 or 1e-3", printableLine(text));
       },
       "");
   const CLI::Validator isSomething(

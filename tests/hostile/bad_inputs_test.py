@@ -773,6 +773,7 @@ for row in (
     ("output without a name", "render good.sqlite -o", "--output: "),
     ("two outputs", "export good.sqlite -o old.csv -o new.csv", "--output: "),
     ("duration in words", SIMULATE + "--duration x", "--duration: ", '"x"', "number"),
+    ("duration of two lines", SIMULATE + "--duration 'x\ny'", "--duration: ", 'x\\x0ay', "number"),
     ("duration with a unit", SIMULATE + "--duration 3s", "--duration: ", '"3s"', "number"),
     ("duration of nothing", SIMULATE + "--duration ''", "--duration: ", '""', "number"),
     ("duration nan", SIMULATE + "--duration nan", "--duration: ", "nan", SECONDS),

@@ -469,7 +469,7 @@ class Places(HostileTest):
             self.assertLess(ended.memory, MOST_MEMORY, name)
 
     def test_many_pushes_are_planned_in_little_time(self):
-        count = 60_000
+        count = 40_000
         bodies = [{"name": "b%d" % i, "shape": {"sphere": {"radius": 0.1}}, "position": [0, i, 0], "collision": "none"} for i in range(count)]
         pushes = [{"body": "b%d" % i, "point": [0, 0, 0], "start": 0.01} for i in range(count)]
         ended = self.run_cradle("plan", self.write("a.json", scene(*bodies, pushes=pushes)))
@@ -477,7 +477,7 @@ class Places(HostileTest):
         self.assertLess(ended.seconds, MOST_SECONDS)
 
     def test_many_pushes_of_a_body_take_little_time(self):
-        count = 60_000
+        count = 40_000
         body = {"name": "b", "shape": {"sphere": {"radius": 0.1}}}
         pushes = [{"body": "b", "point": [0, 0, 0], "force": [1, 0, 0], "start": 10 * i / count, "duration": 5 / count} for i in range(count)]
         path = self.write("a.json", scene(body, pushes=pushes, duration=10))
