@@ -18,15 +18,16 @@ class EnergyRecord {
   /// To be called with each frame's time (s) and state.
   void add(double time, const VectorX& state);
 
-  /// Time (s) of the first frame whose numerical energy is beyond `ratio` times the largest energy of all frames, and
-  /// what rounding of places makes of it.
-  std::optional<double> firstBeyond(double ratio) const;
+  /// Time (s) of the first frame whose numerical energy is beyond kMaxNumericalRatio times the accuracy of the largest
+  /// energy of all frames, and what rounding of places makes of it.
+  std::optional<double> firstBeyond() const;
 
  private:
   const Assembly& assembly_;
+  double ratio_;                           // of the largest energy
   double largestEnergy_, startPotential_;  // J
   std::vector<std::pair<double, double>>
-      numerical_;  // time (s) and size (J), each larger than those before, without rounding
+      numerical_;  // frames that were beyond so far: s, J; each more than those before
 };
 
 }  // namespace cradle

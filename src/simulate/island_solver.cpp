@@ -62,7 +62,7 @@ const VectorX& IslandSolver::stateAt(double time, const std::function<void(doubl
 
 void IslandSolver::finish() {
   if (promiseEnd_ || !method_.isAdaptive()) return;
-  const std::optional<double> time = energies_.firstBeyond(kMaxNumericalRatio * island_.scene.accuracy);
+  const std::optional<double> time = energies_.firstBeyond();
   if (!time) return;
   promiseEnd_ = {*time, fmt::format("numerical energy is beyond {:g} times the accuracy", kMaxNumericalRatio),
                  island_.assembly.sceneBodies};

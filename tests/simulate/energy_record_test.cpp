@@ -13,6 +13,8 @@ namespace {
 using std::nullopt;
 
 constexpr double kGravity = 9.81, kMass = 2, kRadius = 0.1, kAccuracy = 1e-3;
+constexpr double kMost = 10 * kAccuracy;  // of the largest energy
+constexpr double kBelow = 0.99 * kMost, kBeyond = 1.01 * kMost;
 
 /// Of one sphere that may fall.
 class EnergyRecordOfASphere : public testing::Test {
@@ -33,16 +35,18 @@ class EnergyRecordOfASphere : public testing::Test {
 
 TEST_F(EnergyRecordOfASphere, MeasuresByTheLargestKineticEnergyThatComesLaterToo) {
   const double largest = kMass * 5 * 5 / 2.0;
-  add(0.1, 0, 1, 0.011 * largest), add(0.2, 0, 5, 0.005 * largest);
-  EXPECT_EQ(record_.firstBeyond(0.0111), nullopt);
-  EXPECT_EQ(record_.firstBeyond(0.0109), 0.1);
+  add(0.1, 0, 1, kBelow * largest), add(0.2, 0, 5, 0);
+  EXPECT_EQ(record_.firstBeyond(), nullopt);
+  add(0.3, 0, 1, kBeyond * largest);
+  EXPECT_EQ(record_.firstBeyond(), 0.3);
 }
 
 TEST_F(EnergyRecordOfASphere, MeasuresByWhatGravityGave) {
   const double largest = kMass * kGravity * 3;
-  add(0.1, -3, 0, 0.01 * largest);
-  EXPECT_EQ(record_.firstBeyond(0.0101), nullopt);
-  EXPECT_EQ(record_.firstBeyond(0.0099), 0.1);
+  add(0.1, -3, 0, kBelow * largest);
+  EXPECT_EQ(record_.firstBeyond(), nullopt);
+  add(0.2, -3, 0, kBeyond * largest);
+  EXPECT_EQ(record_.firstBeyond(), 0.2);
 }
 
 // A body at rest has errors as well: of the accuracy in its velocity, of a part of its size in its place. The norm of a
@@ -50,34 +54,36 @@ TEST_F(EnergyRecordOfASphere, MeasuresByWhatGravityGave) {
 TEST_F(EnergyRecordOfASphere, MeasuresBodiesAtRestByAFallOfTheirSize) {
   const double gyration = kRadius * std::sqrt(0.4 * std::sqrt(3.0));
   const double largest = kMass * (kGravity * gyration + kAccuracy * kAccuracy);
-  add(0.1, 0, 0, 0.01 * largest);
-  EXPECT_EQ(record_.firstBeyond(0.0101), nullopt);
-  EXPECT_EQ(record_.firstBeyond(0.0099), 0.1);
+  add(0.1, 0, 0, kBelow * largest);
+  EXPECT_EQ(record_.firstBeyond(), nullopt);
+  add(0.2, 0, 0, kBeyond * largest);
+  EXPECT_EQ(record_.firstBeyond(), 0.2);
 }
 
-// At 1e9 m, places have steps of 1e-7 m: 64 of them are 1e-5 m, and m g times that.
+// At 1e12 m, places have steps of 1e-4 m: 64 of them are 0.01 m, and m g times that.
 TEST_F(EnergyRecordOfASphere, DoesNotCountRounding) {
-  centerOfMass(at_.state(), 0) = Vec3(0, 1e9, 0);
+  centerOfMass(at_.state(), 0) = Vec3(0, 1e12, 0);
+  at_.island.assembly.state = at_.state();
   EnergyRecord far(at_.island.assembly, kAccuracy);
-  const double unseen = kMass * kGravity * 64 * std::numeric_limits<double>::epsilon() * 1e9;
-  numericalEnergy(at_.state()) = 0.99 * unseen;
+  const double gyration = kRadius * std::sqrt(0.4 * std::sqrt(3.0));
+  const double largest = kMass * (kGravity * gyration + kAccuracy * kAccuracy);
+  const double unseen = kMass * kGravity * 64 * std::numeric_limits<double>::epsilon() * 1e12;
+  numericalEnergy(at_.state()) = unseen + kBelow * largest;
   far.add(0.1, at_.state());
-  EXPECT_EQ(far.firstBeyond(0), nullopt);
-  numericalEnergy(at_.state()) = 1.01 * unseen;
+  EXPECT_EQ(far.firstBeyond(), nullopt);
+  numericalEnergy(at_.state()) = unseen + kBeyond * largest;
   far.add(0.2, at_.state());
-  EXPECT_EQ(far.firstBeyond(0), 0.2);
+  EXPECT_EQ(far.firstBeyond(), 0.2);
 }
 
 TEST_F(EnergyRecordOfASphere, TellsTheFirstFrameBeyondWhetherLostOrGained) {
   const double largest = kMass * 5 * 5 / 2.0;
-  add(0, 0, 5, 0);
-  const double parts[] = {0.001, -0.003, 0.002, -0.004, 0.1, 0};
-  for (int i = 0; i < 6; ++i) add(i + 1, 0, 5, parts[i] * largest);
-  EXPECT_EQ(record_.firstBeyond(0.0009), 1);
-  EXPECT_EQ(record_.firstBeyond(0.0029), 2);
-  EXPECT_EQ(record_.firstBeyond(0.0031), 4);
-  EXPECT_EQ(record_.firstBeyond(0.0041), 5);
-  EXPECT_EQ(record_.firstBeyond(0.11), nullopt);
+  add(0, 0, 5, 0), add(1, 0, 5, kBelow * largest), add(2, 0, 5, -kBelow * largest);
+  EXPECT_EQ(record_.firstBeyond(), nullopt);
+  add(3, 0, 5, -kBeyond * largest), add(4, 0, 5, 0), add(5, 0, 5, 3 * kBeyond * largest);
+  EXPECT_EQ(record_.firstBeyond(), 3);
+  add(6, 0, 5 * std::sqrt(2.0), 0);  // of twice the energy, that was too little
+  EXPECT_EQ(record_.firstBeyond(), 5);
 }
 
 }  // namespace
