@@ -2,7 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "dynamics/equations_of_motion.h"
+#include "constraints/equations_of_motion.h"
 #include "math/rotation.h"
 
 namespace cradle {

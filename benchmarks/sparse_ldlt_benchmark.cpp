@@ -5,7 +5,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "dynamics/sparse_ldlt.h"
+#include "constraints/sparse_ldlt.h"
 
 namespace cradle {
 namespace {

@@ -12,15 +12,16 @@ MAY_INCLUDE = {
     "mesh": ["core", "math"],
     "scene": ["core", "math", "mesh"],
     "dynamics": ["core", "math", "mesh"],
-    "collision": ["core", "math", "mesh", "dynamics"],
-    "impact": ["core", "math", "mesh", "dynamics", "collision"],
+    "constraints": ["core", "math", "mesh", "dynamics"],
+    "collision": ["core", "math", "mesh", "dynamics", "constraints"],
+    "impact": ["core", "math", "mesh", "dynamics", "constraints", "collision"],
     "trajectory": ["core", "math", "mesh"],
-    "simulate": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory"],
+    "simulate": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory"],
     "image": ["core"],
     "render": ["core", "math", "mesh", "scene", "trajectory", "image"],
     "overlay": ["core", "math", "mesh", "scene", "trajectory", "image", "render"],
-    "study": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory", "simulate", "image"],
-    "commands": ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "trajectory", "simulate", "image", "render", "overlay", "study"],
+    "study": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory", "simulate", "image"],
+    "commands": ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "trajectory", "simulate", "image", "render", "overlay", "study"],
 }
 # The one place of each library (Eigen and fmt are everywhere).
 LIBRARY_UNITS = {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "collision/separation.h"
-#include "dynamics/contact_rows.h"
+#include "constraints/contact_rows.h"
 
 namespace cradle {
 

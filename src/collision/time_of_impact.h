@@ -7,7 +7,7 @@
 #include "collision/face_below.h"
 #include "collision/mesh_feature.h"
 #include "collision/separation.h"
-#include "dynamics/contact_rows.h"
+#include "constraints/contact_rows.h"
 #include "dynamics/integrators/pose_interpolant.h"
 
 namespace cradle {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "collision/separation.h"
-#include "dynamics/dense_delassus.h"
+#include "constraints/dense_delassus.h"
 
 namespace cradle {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "dynamics/invariants.h"
+#include "constraints/invariants.h"
 
 namespace cradle {
 namespace {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "dynamics/dense_delassus.h"
+#include "constraints/dense_delassus.h"
 
 namespace cradle {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "dynamics/constraint_forces.h"
-#include "dynamics/rope.h"
+#include "constraints/constraint_forces.h"
+#include "constraints/rope.h"
 
 namespace cradle {
 

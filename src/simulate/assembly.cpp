@@ -57,7 +57,7 @@ void forEachLink(LinkKind kind, const Links& links, const Scene& scene, const Is
 }
 
 /// The hinge's axis is given in body A's frame; B's directions across it follow from the bodies' places at the start.
-HingeConstraint makeHinge(const Hinge& hinge, const Attachment& a, const Attachment& b, const Scene& scene) {
+HingeConstraint hingeAt(const Hinge& hinge, const Attachment& a, const Attachment& b, const Scene& scene) {
   const auto worldFromBody = [&](const Anchor& anchor) -> Quat {
     if (anchor.body == kWorld) return Quat::Identity();
     return scene.bodies[static_cast<std::size_t>(anchor.body)].worldFromBody.rotation;
@@ -66,7 +66,7 @@ HingeConstraint makeHinge(const Hinge& hinge, const Attachment& a, const Attachm
   const Vec3 across = axis.unitOrthogonal();
   const Quat bodyFromWorldA = a.body == kFixed ? Quat::Identity() : worldFromBody(hinge.anchorA).conjugate();
   const Quat bodyFromWorldB = b.body == kFixed ? Quat::Identity() : worldFromBody(hinge.anchorB).conjugate();
-  return {a, b, bodyFromWorldA * axis, {bodyFromWorldB * across, bodyFromWorldB * axis.cross(across)}};
+  return {bodyFromWorldA * axis, {bodyFromWorldB * across, bodyFromWorldB * axis.cross(across)}};
 }
 
 void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
@@ -76,20 +76,20 @@ void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) 
                 mechanism.springs.push_back({a, b, spring.stiffness, spring.damping, spring.restLength});
                 assembly.names.springs.push_back(spring.name);
               });
-  Constraints& constraints = mechanism.constraints;
+  const auto addConstraint = [&](const char* kind, const std::string& name, const Constraint& constraint) {
+    mechanism.constraints.push_back(constraint);
+    assembly.names.constraints.push_back(fmt::format("{} \"{}\"", kind, name));
+  };
   forEachLink(LinkKind::rod, scene.rods, scene, island, [&](const Rod& rod, const Attachment& a, const Attachment& b) {
-    constraints.rods.push_back({a, b, rod.length});
-    assembly.names.rods.push_back(rod.name);
+    addConstraint("rod", rod.name, {a, b, RodConstraint{rod.length}});
   });
   forEachLink(LinkKind::ballJoint, scene.ballJoints, scene, island,
               [&](const BallJoint& joint, const Attachment& a, const Attachment& b) {
-                constraints.ballJoints.push_back({a, b});
-                assembly.names.ballJoints.push_back(joint.name);
+                addConstraint("ball joint", joint.name, {a, b, BallJointConstraint()});
               });
   forEachLink(LinkKind::hinge, scene.hinges, scene, island,
               [&](const Hinge& hinge, const Attachment& a, const Attachment& b) {
-                constraints.hinges.push_back(makeHinge(hinge, a, b, scene));
-                assembly.names.hinges.push_back(hinge.name);
+                addConstraint("hinge", hinge.name, {a, b, hingeAt(hinge, a, b, scene)});
               });
   forEachLink(LinkKind::rope, scene.ropes, scene, island,
               [&](const Rope& rope, const Attachment& a, const Attachment& b) {

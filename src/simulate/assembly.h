@@ -5,17 +5,17 @@
 #include <vector>
 
 #include "collision/collider.h"
-#include "dynamics/equations_of_motion.h"
-#include "dynamics/rope.h"
+#include "constraints/equations_of_motion.h"
+#include "constraints/rope.h"
 #include "scene/scene.h"
 #include "simulate/colliders.h"
 #include "simulate/plan/plan.h"
 
 namespace cradle {
 
-/// Names of what moves and of its constraints, in the order of the mechanism.
+/// Names of what moves, in the order of the mechanism; of constraints with their kind: `hinge "lid"`.
 struct PartNames {
-  std::vector<std::string> bodies, springs, rods, ballJoints, hinges;
+  std::vector<std::string> bodies, springs, constraints;
 };
 
 /// An island of a scene turned into what the methods work on.
@@ -26,7 +26,7 @@ struct Assembly {
   VectorX state;                    // at time 0
   std::vector<int> sceneBodies;     // scene body of each moving body, ascending
   std::vector<std::size_t> pushes;  // of the island, indices into the scene's
-  PartNames names;                  // taut ropes stand behind the rods named here
+  PartNames names;                  // taut ropes stand behind the constraints named here
   std::vector<double> radii;        // m: of each moving body's collider about its centre of mass; 0 without one
   std::vector<int> colliderBodies, planeBodies;  // scene body of each collider and plane of the geometry
   std::vector<std::pair<int, int>> ropeBodies;   // scene bodies A, B of each rope; kWorld

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "constraints/invariants.h"
 #include "core/error.h"
-#include "dynamics/invariants.h"
 #include "simulate/steps/step_limit.h"
 
 namespace cradle {
@@ -263,22 +263,14 @@ std::string EnergyGuard::fastestRotation(const VectorX& state) const {
   const auto consider = [&](double angle, const std::string& name) {
     if (angle > most) most = angle, what = name;
   };
-  const Constraints& constraints = mechanism_.constraints;
-  for (std::size_t i = 0; i < constraints.rods.size(); ++i) {
-    const RodConstraint& rod = constraints.rods[i];
-    const bool isRope = i >= names_.rods.size();
-    consider(rotationOf(rod.anchorA, rod.anchorB, state, step),
-             isRope ? "a taut rope" : fmt::format("rod \"{}\"", names_.rods[i]));
+  for (std::size_t i = 0; i < mechanism_.constraints.size(); ++i) {
+    const auto& [anchorA, anchorB, kind] = mechanism_.constraints[i];
+    const double angle =
+        std::holds_alternative<RodConstraint>(kind)
+            ? rotationOf(anchorA, anchorB, state, step)
+            : step * std::max(angularSpeedOf(anchorA.body, state), angularSpeedOf(anchorB.body, state));
+    consider(angle, i < names_.constraints.size() ? names_.constraints[i] : "a taut rope");
   }
-  const auto considerJoint = [&](const auto& joint, const char* kind, const std::string& name) {
-    const double angularSpeed =
-        std::max(angularSpeedOf(joint.anchorA.body, state), angularSpeedOf(joint.anchorB.body, state));
-    consider(angularSpeed * step, fmt::format("{} \"{}\"", kind, name));
-  };
-  for (std::size_t i = 0; i < constraints.ballJoints.size(); ++i)
-    considerJoint(constraints.ballJoints[i], "ball joint", names_.ballJoints[i]);
-  for (std::size_t i = 0; i < constraints.hinges.size(); ++i)
-    considerJoint(constraints.hinges[i], "hinge", names_.hinges[i]);
   for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i)
     consider(angularSpeedOf(static_cast<int>(i), state) * step, fmt::format("body \"{}\"", names_.bodies[i]));
   if (what.empty()) return what;

@@ -170,8 +170,8 @@ ForbiddenTilts forbiddenTilts(const LocalSurface& body, const LocalSurface& fixe
 /// Keeps an axis of a body across one or two directions of the world.
 void keepAcross(const Attachment& anchor, const Vec3& place, const Vec3& axis, const std::array<Vec3, 2>& across,
                 const std::string& name, Assembly& assembly) {
-  assembly.mechanism.constraints.hinges.push_back({anchor, {kFixed, place}, axis, across});
-  assembly.names.hinges.push_back(name);
+  assembly.mechanism.constraints.push_back({anchor, {kFixed, place}, HingeConstraint{axis, across}});
+  assembly.names.constraints.push_back(name);
 }
 
 /// Forbids a body to roll about an anchor. True if the anchor's point needs no other constraint then.
@@ -226,30 +226,35 @@ bool pin(const Attachment& anchor, int other, const Vec3& axis, const std::strin
   return isForbidden;
 }
 
+/// Tells the colliders of a joint's bodies of its anchors. True if constraints that forbid rolling hold the point of a
+/// ball joint as well. A rod pins nothing.
+bool isReplacedAtPin(const Constraint& constraint, const std::string& name, Assembly& assembly) {
+  const auto& [a, b, kind] = constraint;
+  if (const auto* hinge = std::get_if<HingeConstraint>(&kind)) {
+    pin(a, b.body, hinge->axisA, name, assembly);
+    pin(b, a.body, hinge->acrossB[0].cross(hinge->acrossB[1]), name, assembly);
+    return false;
+  }
+  if (!std::holds_alternative<BallJointConstraint>(kind)) return false;
+  const bool isReplacedA = pin(a, b.body, Vec3::Zero(), name, assembly);
+  const bool isReplacedB = pin(b, a.body, Vec3::Zero(), name, assembly);
+  return isReplacedA || isReplacedB;
+}
+
 }  // namespace
 
 void constrainPinnedContacts(Assembly& assembly) {
   Constraints& constraints = assembly.mechanism.constraints;
-  const std::vector<HingeConstraint> hinges = constraints.hinges;
-  const std::vector<std::string> hingeNames = assembly.names.hinges;
-  std::vector<BallJointConstraint> ballJoints;
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < constraints.ballJoints.size(); ++i) {
-    const BallJointConstraint& joint = constraints.ballJoints[i];
-    const std::string& name = assembly.names.ballJoints[i];
-    const bool isReplacedA = pin(joint.anchorA, joint.anchorB.body, Vec3::Zero(), name, assembly);
-    const bool isReplacedB = pin(joint.anchorB, joint.anchorA.body, Vec3::Zero(), name, assembly);
-    if (isReplacedA || isReplacedB) continue;
-    ballJoints.push_back(joint);
-    names.push_back(name);
+  std::vector<std::string>& names = assembly.names.constraints;
+  const std::size_t ofScene = constraints.size();  // those that forbid rolling come behind them
+  std::vector<std::ptrdiff_t> replaced;
+  for (std::size_t i = 0; i < ofScene; ++i) {
+    const Constraint constraint = constraints[i];
+    const std::string name = names[i];
+    if (isReplacedAtPin(constraint, name, assembly)) replaced.push_back(static_cast<std::ptrdiff_t>(i));
   }
-  constraints.ballJoints = std::move(ballJoints);
-  assembly.names.ballJoints = std::move(names);
-  for (std::size_t i = 0; i < hinges.size(); ++i) {
-    const HingeConstraint& hinge = hinges[i];
-    pin(hinge.anchorA, hinge.anchorB.body, hinge.axisA, hingeNames[i], assembly);
-    pin(hinge.anchorB, hinge.anchorA.body, hinge.acrossB[0].cross(hinge.acrossB[1]), hingeNames[i], assembly);
-  }
+  for (auto i = replaced.rbegin(); i != replaced.rend(); ++i)
+    constraints.erase(constraints.begin() + *i), names.erase(names.begin() + *i);
 }
 
 }  // namespace cradle

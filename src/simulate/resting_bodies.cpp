@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/invariants.h"
+#include "constraints/invariants.h"
 #include "impact/contact_delassus.h"
 #include "impact/frictional_contact.h"
 #include "impact/sparse_delassus.h"
@@ -42,7 +42,8 @@ std::vector<int> RestingBodies::islandsOf(const std::vector<Contact>& contacts) 
   DisjointSets joined(mechanism_.bodies.size());
   for (const Contact& contact : contacts) joined.join(contact.bodyA, contact.bodyB);
   for (const SpringForce& spring : mechanism_.springs) joined.join(spring.anchorA.body, spring.anchorB.body);
-  forEachConstraint(mechanism_.constraints, [&](int bodyA, int bodyB) { joined.join(bodyA, bodyB); });
+  for (const Constraint& constraint : mechanism_.constraints)
+    joined.join(constraint.anchorA.body, constraint.anchorB.body);
   std::vector<int> islands;
   for (std::size_t body = 0; body < sizes_.size(); ++body) islands.push_back(joined.islandOf(static_cast<int>(body)));
   return islands;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "collision/separation.h"
-#include "dynamics/equations_of_motion.h"
+#include "constraints/equations_of_motion.h"
 
 namespace cradle {
 

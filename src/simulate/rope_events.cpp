@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "collision/root_bracketing.h"
+#include "constraints/invariants.h"
 #include "dynamics/integrators/pose_interpolant.h"
-#include "dynamics/invariants.h"
 #include "impact/impact_energy.h"
 #include "impact/rope_impulse.h"
 #include "simulate/thresholds.h"
@@ -76,8 +76,8 @@ RopeEvents::RopeEvents(IslandState& island)
       assembly_(island.assembly),
       equations_(island.equations),
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
-      sceneRods_(assembly_.mechanism.constraints.rods.size()),
-      tautRod_(assembly_.ropes.size(), -1),
+      sceneConstraints_(assembly_.mechanism.constraints.size()),
+      tautRow_(assembly_.ropes.size(), -1),
       isStretched_(assembly_.ropes.size(), 0) {}
 
 std::optional<RopeChange> RopeEvents::firstChange(const Step& step) {
@@ -143,7 +143,7 @@ double RopeEvents::margin(const RopeChange& change, const VectorX& state) {
 /// Force (N) with which a taut rope pulls its ends together. Its row's multiplier pushes by multiplier x distance.
 double RopeEvents::tension(std::size_t rope, const VectorX& state) {
   equations_.evaluate(state, derivative_);
-  return -equations_.multipliers()[tautRod_[rope]] * assembly_.ropes[rope].maxLength;
+  return -equations_.multipliers()[tautRow_[rope]] * assembly_.ropes[rope].maxLength;
 }
 
 /// Whether a body at its ends is at rest: nothing is computed for such a rope.
@@ -155,13 +155,13 @@ bool RopeEvents::rests(std::size_t rope) const {
 bool RopeEvents::resolve(double time, VectorX& state) {
   // Ropes that would have to push are released, even where others go taut; impacts may have shortened some.
   bool released = false;
-  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
+  for (std::size_t i = 0; i < tautRow_.size(); ++i) {
     if (!isTaut(i) || rests(i) || tension(i, state) > kTautRatio * tensionScale_) continue;
     release(time, i, state);
     released = true;
   }
 
-  for (std::size_t i = 0; i < tautRod_.size(); ++i)
+  for (std::size_t i = 0; i < tautRow_.size(); ++i)
     if (!isTaut(i) && motionOf(assembly_.ropes[i], state).slackLength > kSlackRatio * assembly_.ropes[i].maxLength)
       loosen(time, i, state);
   return pullStretched(time, state) || released;
@@ -182,7 +182,7 @@ bool RopeEvents::pullStretched(double time, VectorX& state) {
 std::vector<RopeEvents::Stretch> RopeEvents::findStretches(const VectorX& state) {
   std::vector<Stretch> stretches;
   bool isEvaluated = false;
-  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
+  for (std::size_t i = 0; i < tautRow_.size(); ++i) {
     const RopeLimit& rope = assembly_.ropes[i];
     if (isTaut(i)) continue;
     const RopeMotion motion = motionOf(rope, state);
@@ -220,9 +220,9 @@ void RopeEvents::pull(double time, const std::vector<Stretch>& stretches, Vector
     if (lengthening < -(reboundSpeed + kRestSpeedFloor + kPullRounding * speed)) continue;  // others pulled it short
     if (!isStretched_[rope] || rebounds) record(time, EventKind::taut, rope, pulls[i].impulse, state);
     isStretched_[rope] = !rebounds;
-    if (!rebounds && isLoaded) tautRod_[rope] = 0;
+    if (!rebounds && isLoaded) tautRow_[rope] = 0;
   }
-  rebuildRods();
+  rebuildConstraints();
   if (solver_.hasConstraints()) {
     solver_.factorize(state);
     solver_.constrainVelocities(state);
@@ -244,7 +244,7 @@ ImpactContact RopeEvents::contactOf(const RopeLimit& rope, const VectorX& state)
 std::vector<const RopeLimit*> RopeEvents::withinReach(const VectorX& before, const VectorX& state,
                                                       double length) const {
   std::vector<const RopeLimit*> ropes;
-  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
+  for (std::size_t i = 0; i < tautRow_.size(); ++i) {
     const RopeLimit& rope = assembly_.ropes[i];
     if (isTaut(i) || rests(i)) continue;
     const RopeMotion from = motionOf(rope, before), to = motionOf(rope, state);
@@ -259,16 +259,16 @@ std::vector<const RopeLimit*> RopeEvents::withinReach(const VectorX& before, con
 std::vector<ImpactContact> RopeEvents::beginImpact(const VectorX& state) {
   std::vector<ImpactContact> impacts;
   members_.clear();
-  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
+  for (std::size_t i = 0; i < tautRow_.size(); ++i) {
     const RopeLimit& rope = assembly_.ropes[i];
     const RopeMotion motion = motionOf(rope, state);
     if (!isTaut(i) && motion.slackLength > kTautRatio * rope.maxLength) continue;
     members_.push_back({i, isTaut(i)});
-    tautRod_[i] = -1;
+    tautRow_[i] = -1;
     impacts.push_back(contactOf(rope, state));
     impacts.back().contact.separation = 0;
   }
-  rebuildRods();
+  rebuildConstraints();
   return impacts;
 }
 
@@ -280,17 +280,17 @@ void RopeEvents::endImpact(double time, const std::vector<ImpactContact>& impact
     const bool shortens = motion.lengthening < -(kRestSpeedFloor + kPullRounding * speed);
     const double impulse = impacts[k].impulse.norm();
     if (wasTaut && shortens) loosen(time, rope, state);
-    if (wasTaut && !shortens) tautRod_[rope] = 0;
+    if (wasTaut && !shortens) tautRow_[rope] = 0;
     if (wasTaut || impulse == 0) continue;
     record(time, EventKind::taut, rope, impulse, state);
     isStretched_[rope] = !shortens;
   }
-  rebuildRods();
+  rebuildConstraints();
 }
 
 void RopeEvents::release(double time, std::size_t rope, const VectorX& state) {
-  tautRod_[rope] = -1;
-  rebuildRods();
+  tautRow_[rope] = -1;
+  rebuildConstraints();
   loosen(time, rope, state);
 }
 
@@ -299,13 +299,14 @@ void RopeEvents::loosen(double time, std::size_t rope, const VectorX& state) {
   isStretched_[rope] = false;
 }
 
-void RopeEvents::rebuildRods() {
-  std::vector<RodConstraint>& rods = assembly_.mechanism.constraints.rods;
-  rods.resize(sceneRods_);
-  for (std::size_t i = 0; i < tautRod_.size(); ++i) {
+void RopeEvents::rebuildConstraints() {
+  Constraints& constraints = assembly_.mechanism.constraints;
+  constraints.resize(sceneConstraints_);
+  for (std::size_t i = 0; i < tautRow_.size(); ++i) {
     if (!isTaut(i)) continue;
-    tautRod_[i] = static_cast<int>(rods.size());
-    rods.push_back({assembly_.ropes[i].anchorA, assembly_.ropes[i].anchorB, assembly_.ropes[i].maxLength});
+    const RopeLimit& rope = assembly_.ropes[i];
+    tautRow_[i] = rowCount(constraints);
+    constraints.push_back({rope.anchorA, rope.anchorB, RodConstraint{rope.maxLength}});
   }
 }
 

@@ -56,11 +56,11 @@ class RopeEvents {
 
   bool hasRopes() const { return !assembly_.ropes.empty(); }
 
-  /// Which ropes are rods now: to be asked later whether they are the same ones.
-  const std::vector<int>& rods() const { return tautRod_; }
+  /// Which ropes are constraints now: to be asked later whether they are the same ones.
+  const std::vector<int>& tautRows() const { return tautRow_; }
 
  private:
-  bool isTaut(std::size_t rope) const { return tautRod_[rope] >= 0; }
+  bool isTaut(std::size_t rope) const { return tautRow_[rope] >= 0; }
   bool rests(std::size_t rope) const;
   double tension(std::size_t rope, const VectorX& state);
   std::optional<double> firstTensionLoss(const Step& step, std::size_t rope);
@@ -76,7 +76,7 @@ class RopeEvents {
   void pull(double time, const std::vector<Stretch>& stretches, VectorX& state);
   void release(double time, std::size_t rope, const VectorX& state);
   void loosen(double time, std::size_t rope, const VectorX& state);
-  void rebuildRods();
+  void rebuildConstraints();
   void record(double time, EventKind kind, std::size_t rope, double impulse, const VectorX& state);
 
   IslandState& island_;
@@ -84,8 +84,8 @@ class RopeEvents {
   EquationsOfMotion& equations_;
   ConstraintSolver solver_;
   double timeStep_ = 0;
-  std::size_t sceneRods_;     // rods that are no ropes
-  std::vector<int> tautRod_;  // index into Constraints::rods of each rope, or -1: no smooth force pulls at it
+  std::size_t sceneConstraints_;  // those that are no ropes
+  std::vector<int> tautRow_;      // of each rope, among the constraints' rows; or -1: no smooth force pulls at it
   struct Member {
     std::size_t rope;
     bool wasTaut;

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "constraints/invariants.h"
 #include "core/error.h"
 #include "core/interruption.h"
-#include "dynamics/invariants.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {

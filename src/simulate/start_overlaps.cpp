@@ -123,7 +123,8 @@ std::vector<RigidBody> bodiesThatKeepUpright(const Mechanism& mechanism) {
     const std::size_t index = static_cast<std::size_t>(body);
     if (body != kFixed) bodies[index].inverseInertia = mechanism.bodies[index].inverseInertia;
   };
-  forEachConstraint(mechanism.constraints, [&](int a, int b) { free(a), free(b); });
+  for (const Constraint& constraint : mechanism.constraints)
+    free(constraint.anchorA.body), free(constraint.anchorB.body);
   return bodies;
 }
 
@@ -141,10 +142,8 @@ void moveApart(Assembly& assembly) {
 
 /// The work of a round of moving apart, in pairs without constraints.
 double pushesOfARound(const Assembly& assembly, std::size_t overlaps) {
-  const Constraints& constraints = assembly.mechanism.constraints;
-  bool hasConstraints = false;
-  forEachConstraint(constraints, [&](int, int) { hasConstraints = true; });
-  const double bodies = hasConstraints ? static_cast<double>(assembly.mechanism.bodies.size()) : 0;
+  const Mechanism& mechanism = assembly.mechanism;
+  const double bodies = mechanism.constraints.empty() ? 0 : static_cast<double>(mechanism.bodies.size());
   return static_cast<double>(overlaps) * (1 + bodies / kBodiesOfAPush);
 }
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "constraints/invariants.h"
 #include "core/interruption.h"
-#include "dynamics/invariants.h"
 #include "simulate/start_overlaps.h"
 #include "simulate/thresholds.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/constraint_rows.h"
+#include "constraints/constraint.h"
 
 namespace cradle {
 

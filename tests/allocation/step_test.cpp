@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "allocation/allocations.h"
-#include "dynamics/contact_motion.h"
+#include "constraints/contact_motion.h"
 #include "dynamics/integrator_problems.h"
 #include "dynamics/integrators/dop853.h"
 #include "dynamics/integrators/dormand_prince5.h"
@@ -40,7 +40,7 @@ TEST(Step, AllocatesNothingAfterTheFirst) {
 TEST(ContactForces, AllocateNothingAfterTheFirstEvaluation) {
   Mechanism mechanism;
   mechanism.bodies = {lopsided(1), solidSphere(2, 0.1)};
-  mechanism.constraints.rods = {{{0, Vec3(0, 0.1, 0)}, {kFixed, Vec3(0, 1, 0.3)}, 1}};
+  mechanism.constraints = {{{0, Vec3(0, 0.1, 0)}, {kFixed, Vec3(0, 1, 0.3)}, RodConstraint{1}}};
   for (const double x : {-0.2, 0.2})
     for (const double z : {-0.3, 0.3})
       mechanism.contacts.push_back(ballOnFace({0, Vec3(x, 0, z)}, 0, {}, Vec3::UnitY(),

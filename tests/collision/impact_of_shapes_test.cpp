@@ -4,7 +4,7 @@
 #include <random>
 
 #include "collision/time_of_impact.h"
-#include "dynamics/equations_of_motion.h"
+#include "constraints/equations_of_motion.h"
 #include "dynamics/integrators/dop853.h"
 #include "dynamics/integrators/rk4.h"
 #include "math/rotation.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "collision/random_poses.h"
-#include "dynamics/equations_of_motion.h"
+#include "constraints/equations_of_motion.h"
 #include "dynamics/integrators/rk4.h"
 #include "mesh/primitives.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "collision/time_of_impact.h"
-#include "dynamics/equations_of_motion.h"
+#include "constraints/equations_of_motion.h"
 #include "dynamics/integrators/rk4.h"
 
 namespace cradle {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "dynamics/invariants.h"
+#include "constraints/invariants.h"
 #include "impact/generalized_reflections.h"
 #include "impact/row_of_balls.h"
 #include "math/rotation.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "dynamics/invariants.h"
+#include "constraints/invariants.h"
 #include "impact/linear_complementarity.h"
 #include "impact/row_of_balls.h"
 
@@ -229,8 +229,7 @@ void expectClosedForm(const Dumbbell& dumbbell) {
   const auto& [m1, m2, angle, e] = dumbbell;
   const double length = 0.7, fall = 2, mass = m1 + m2;
   const Vec3 along(std::cos(angle), std::sin(angle), 0), across(-along.y(), along.x(), 0);
-  Constraints constraints;
-  constraints.rods = {{{0, Vec3::Zero()}, {1, Vec3::Zero()}, length}};
+  const Constraints constraints = {{{0, Vec3::Zero()}, {1, Vec3::Zero()}, RodConstraint{length}}};
   const std::vector<RigidBody> bodies{ball(m1), ball(m2)};
   VectorX state = statesAtRest(2);
   centerOfMass(state, 1) = length * along;
@@ -256,8 +255,7 @@ TEST(DumbbellOnAPlane, MatchesTheClosedForm) {
 
 // A rod along the normal between a floor and the ball lets it move only across: nothing can happen at the contact.
 TEST(Reflections, LeaveAContactThatARodHolds) {
-  Constraints constraints;
-  constraints.rods = {{{0, Vec3::Zero()}, {kFixed, Vec3(0, -0.1, 0)}, 0.1}};
+  const Constraints constraints = {{{0, Vec3::Zero()}, {kFixed, Vec3(0, -0.1, 0)}, RodConstraint{0.1}}};
   const std::vector<RigidBody> bodies{ball(1)};
   VectorX state = statesAtRest(1);
   linearVelocity(state, 0) = Vec3(1, -1e-16, 0);
@@ -295,7 +293,7 @@ class Heap {
     state = VectorX::NullaryExpr(stateSize(4), [this] { return number(); });
     state.tail<kLedgerSize>().setZero();
     normalizeOrientations(state);
-    mechanism.constraints.rods = {{{0, Vec3(0.1, 0.2, 0)}, {1, Vec3(0, 0.1, 0.2)}, 1}};
+    mechanism.constraints = {{{0, Vec3(0.1, 0.2, 0)}, {1, Vec3(0, 0.1, 0.2)}, RodConstraint{1}}};
     solver.factorize(state);
     solver.project(state);
     for (const auto& [a, b] : {std::pair{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 2}, {1, 2}, {2, 3}}) addContact(a, b);

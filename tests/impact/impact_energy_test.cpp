@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamics/invariants.h"
+#include "constraints/invariants.h"
 
 namespace cradle {
 namespace {

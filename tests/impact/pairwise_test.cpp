@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "dynamics/invariants.h"
+#include "constraints/invariants.h"
 #include "impact/contact_impulse.h"
 #include "impact/pairwise.h"
 #include "impact/row_of_balls.h"

@@ -7,7 +7,7 @@ reads files with its own arithmetic; nothing of it runs after a mesh is loaded.)
 """
 import os, re, subprocess, sys
 
-LAYERS = ["core", "math", "mesh", "scene", "dynamics", "collision", "impact", "simulate", "trajectory"]
+LAYERS = ["core", "math", "mesh", "scene", "dynamics", "constraints", "collision", "impact", "simulate", "trajectory"]
 EXACT = {  # why its result has no choice: names
     "IEEE 754 rounds it exactly": ["sqrt"],
     "the result is a whole double or integer": ["floor", "ceil", "trunc", "round", "lround", "rint", "nearbyint"],

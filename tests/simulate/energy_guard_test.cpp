@@ -2,8 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "constraints/spring_modes.h"
 #include "core/error.h"
-#include "dynamics/spring_modes.h"
 #include "experiments/experiment.h"
 #include "simulate/steps/step_limit.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "dynamics/invariants.h"
+#include "constraints/invariants.h"
 #include "study/stability/hung_box.h"
 #include "study/stability/island_steps.h"
 #include "study/stability/oscillator.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/dense_delassus.h"
+#include "constraints/dense_delassus.h"
 #include "impact/frictional_contact.h"
 #include "simulate/contact_response.h"
 #include "simulate/thresholds.h"
@@ -42,7 +42,8 @@ DisjointSets ComingToRest::findRestGroups(const std::vector<Contact>& touching) 
     if (openingSpeed(contact, island_.state) <= still) groups.join(contact.bodyA, contact.bodyB);
   }
   for (const SpringForce& spring : mechanism.springs) groups.join(spring.anchorA.body, spring.anchorB.body);
-  forEachConstraint(mechanism.constraints, [&](int bodyA, int bodyB) { groups.join(bodyA, bodyB); });
+  for (const Constraint& constraint : mechanism.constraints)
+    groups.join(constraint.anchorA.body, constraint.anchorB.body);
   return groups;
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "dynamics/constraint_forces.h"
+#include "constraints/constraint_forces.h"
 #include "simulate/island_state.h"
 #include "simulate/plan/disjoint_sets.h"
 

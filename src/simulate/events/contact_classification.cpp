@@ -54,7 +54,8 @@ std::vector<ContactRecord> recordsOf(const ClassificationInput& input, const Isl
 std::vector<RecordGroup> groupsOf(const std::vector<ContactRecord>& records, const Mechanism& mechanism) {
   DisjointSets sets(mechanism.bodies.size());
   for (const ContactRecord& record : records) sets.join(record.contact.bodyA, record.contact.bodyB);
-  forEachConstraint(mechanism.constraints, [&](int bodyA, int bodyB) { sets.join(bodyA, bodyB); });
+  for (const Constraint& constraint : mechanism.constraints)
+    sets.join(constraint.anchorA.body, constraint.anchorB.body);
   std::vector<RecordGroup> groups(mechanism.bodies.size());
   for (std::size_t i = 0; i < records.size(); ++i) {
     const int first = sets.islandOf(records[i].contact.movingBody());

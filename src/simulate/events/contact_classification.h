@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "dynamics/constraint_forces.h"
+#include "constraints/constraint_forces.h"
 #include "simulate/events/contact_record.h"
 #include "simulate/events/previous_contacts.h"
 #include "simulate/island_state.h"

@@ -1,6 +1,6 @@
 #include "simulate/events/event_contacts.h"
 
-#include "dynamics/invariants.h"
+#include "constraints/invariants.h"
 
 namespace cradle {
 namespace {

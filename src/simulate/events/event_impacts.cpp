@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/invariants.h"
+#include "constraints/invariants.h"
 #include "impact/contact_impulse.h"
 #include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
@@ -116,7 +116,8 @@ SequenceLimits EventImpacts::limitsOf(const std::vector<Contact>& near, double s
 DisjointSets EventImpacts::findImpactIslands(const std::vector<Contact>& contacts) const {
   DisjointSets islands(island_.assembly.mechanism.bodies.size());
   for (const Contact& contact : contacts) islands.join(contact.bodyA, contact.bodyB);
-  forEachConstraint(island_.assembly.mechanism.constraints, [&](int bodyA, int bodyB) { islands.join(bodyA, bodyB); });
+  for (const Constraint& constraint : island_.assembly.mechanism.constraints)
+    islands.join(constraint.anchorA.body, constraint.anchorB.body);
   return islands;
 }
 

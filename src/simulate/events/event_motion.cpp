@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "constraints/invariants.h"
 #include "core/error.h"
-#include "dynamics/invariants.h"
 #include "simulate/events/event_location.h"
 #include "simulate/thresholds.h"
 
@@ -274,7 +274,7 @@ void EventMotion::requireConstraintsKept() {
 
 /// Makes the changes of an event: impacts, active contacts, ropes, pushes.
 void EventMotion::changeForces(const Event& event) {
-  rodsBefore_ = ropes_.rods();
+  tautRowsBefore_ = ropes_.tautRows();
   const bool lasted = !contacts_.active().empty();
   if (event.impact || event.contact || event.rope)  // a rope may go taut as bodies meet
     contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
@@ -282,7 +282,7 @@ void EventMotion::changeForces(const Event& event) {
     followActive();
   if (!lasted && !contacts_.active().empty()) lengths_.fill(island_.scene.duration);  // no more bounces
   applyRopeEvents();
-  keepsConstraints_ = ropes_.rods() == rodsBefore_;
+  keepsConstraints_ = ropes_.tautRows() == tautRowsBefore_;
   const bool isPushed = island_.beginAndEndPushes();
   if (isPushed) contacts_.resolve();
   if (event.any() || isPushed) isContinuous_ = false;

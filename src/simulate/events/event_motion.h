@@ -78,7 +78,7 @@ class EventMotion {
   EventRateLimit eventRateLimit_;
   VectorX tolerance_;
   double startConstraintError_ = 0;  // m or rad
-  std::vector<int> rodsBefore_;      // of ropes, before an event
+  std::vector<int> tautRowsBefore_;  // of ropes, before an event
   std::vector<ContactConstraint> contactsOfStep_;
   StepSize stepSize_;
   std::array<double, 8> lengths_;  // s: of the last steps, if bodies may touch

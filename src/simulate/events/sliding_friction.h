@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "dynamics/dense_delassus.h"
+#include "constraints/dense_delassus.h"
 #include "impact/frictional_contact.h"
 #include "simulate/contact_response.h"
 #include "simulate/events/contact_record.h"

@@ -18,7 +18,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/contact_rows.h"
+#include "constraints/contact_rows.h"
 
 namespace cradle {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "dynamics/constraint_forces.h"
+#include "constraints/constraint_forces.h"
 #include "simulate/island_state.h"
 
 namespace cradle {

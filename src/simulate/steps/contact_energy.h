@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "collision/root_bracketing.h"
-#include "dynamics/equations_of_motion.h"
-#include "dynamics/invariants.h"
+#include "constraints/equations_of_motion.h"
+#include "constraints/invariants.h"
 
 namespace cradle {
 

@@ -38,14 +38,15 @@ bool ContactSet::isOnSmoothPlane(std::size_t member) const {
 std::vector<StepGroup> ContactSet::findGroups() const {
   DisjointSets sets(assembly_.mechanism.bodies.size());
   std::vector<char> isConstrained(assembly_.mechanism.bodies.size(), 0), isConstrainedToFixed = isConstrained;
-  forEachConstraint(assembly_.mechanism.constraints, [&](int bodyA, int bodyB) {
+  for (const Constraint& constraint : assembly_.mechanism.constraints) {
+    const int bodyA = constraint.anchorA.body, bodyB = constraint.anchorB.body;
     sets.join(bodyA, bodyB);
     for (const auto& [body, other] : {std::pair(bodyA, bodyB), {bodyB, bodyA}}) {
       if (body == kFixed) continue;
       isConstrained[static_cast<std::size_t>(body)] = 1;
       if (other == kFixed) isConstrainedToFixed[static_cast<std::size_t>(body)] = 1;
     }
-  });
+  }
   for (const Contact& contact : contacts_) sets.join(contact.bodyA, contact.bodyB);
   std::map<int, StepGroup> groups;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {

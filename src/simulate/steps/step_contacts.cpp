@@ -274,7 +274,8 @@ void StepContacts::resolveImpactIslands(double time, const VectorX& before, Vect
 DisjointSets StepContacts::findImpactIslands() const {
   DisjointSets islands(assembly_.mechanism.bodies.size());
   for (const Contact& contact : touching_) islands.join(contact.bodyA, contact.bodyB);
-  forEachConstraint(assembly_.mechanism.constraints, [&](int bodyA, int bodyB) { islands.join(bodyA, bodyB); });
+  for (const Constraint& constraint : assembly_.mechanism.constraints)
+    islands.join(constraint.anchorA.body, constraint.anchorB.body);
   return islands;
 }
 

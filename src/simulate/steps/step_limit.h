@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/spring_modes.h"
+#include "constraints/spring_modes.h"
 #include "simulate/plan/plan.h"
 
 namespace cradle {

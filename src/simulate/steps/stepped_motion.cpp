@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/invariants.h"
 #include "core/error.h"
 #include "dynamics/integrators/rk4.h"
-#include "dynamics/invariants.h"
 #include "simulate/contact_response.h"
 #include "simulate/events/event_location.h"
 #include "simulate/thresholds.h"
@@ -75,9 +75,9 @@ void SteppedMotion::advance(double frame) {
   if (hasContacts_) contacts_.recordAndLetSleep(time, island_.state);
   if (hasContacts_) contactEnd_ = island_.state;
   if (atEvent || !contacts_.usesTimeSteppingOnly()) contacts_.resolveImpacts(time, before_, island_.state);
-  rodsBefore_ = ropes_.rods();
+  tautRowsBefore_ = ropes_.tautRows();
   ropes_.resolve(time, island_.state);
-  keepsConstraints_ = ropes_.rods() == rodsBefore_;
+  keepsConstraints_ = ropes_.tautRows() == tautRowsBefore_;
   island_.beginAndEndPushes();
   guard_.check(island_.state, time, step.timeStep);
   island_.requireUnsolvedPairsApart();

@@ -64,10 +64,10 @@ class SteppedMotion {
   double windowStart_ = 0;           // s
   double startConstraintError_ = 0;  // m or rad
   VectorX before_;
-  std::vector<int> rodsBefore_;     // of ropes, before the changes of a step
-  bool hasContacts_ = false;        // contacts were solved over the last step ...
-  VectorX contactEnd_;              // ... and led to this state
-  std::vector<double> innerRadii_;  // m, of the colliders
+  std::vector<int> tautRowsBefore_;  // of ropes, before the changes of a step
+  bool hasContacts_ = false;         // contacts were solved over the last step ...
+  VectorX contactEnd_;               // ... and led to this state
+  std::vector<double> innerRadii_;   // m, of the colliders
 };
 
 }  // namespace cradle

@@ -180,14 +180,17 @@ void BulletWorld::addJoints() {
   const auto turned = [&](const Attachment& at, const Vec3& direction) {
     return pointOf({at.body, direction});  // a direction turns as a point at the centre of mass does
   };
-  for (const RodConstraint& rod : assembly_.mechanism.constraints.rods)
-    add(std::make_unique<BulletRod>(bodyOf(rod.anchorA), bodyOf(rod.anchorB), pointOf(rod.anchorA),
-                                    pointOf(rod.anchorB), rod.length));
-  for (const auto& [a, b] : assembly_.mechanism.constraints.ballJoints)
+  const Constraints& constraints = assembly_.mechanism.constraints;
+  forEachOf<RodConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const RodConstraint& rod) {
+    add(std::make_unique<BulletRod>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b), rod.length));
+  });
+  forEachOf<BallJointConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const auto&) {
     add(std::make_unique<btPoint2PointConstraint>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b)));
-  for (const auto& [a, b, axisA, acrossB] : assembly_.mechanism.constraints.hinges)
-    add(std::make_unique<btHingeConstraint>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b), turned(a, axisA),
-                                            turned(b, acrossB[0].cross(acrossB[1]))));
+  });
+  forEachOf<HingeConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const HingeConstraint& hinge) {
+    add(std::make_unique<btHingeConstraint>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b), turned(a, hinge.axisA),
+                                            turned(b, hinge.acrossB[0].cross(hinge.acrossB[1]))));
+  });
 }
 
 /// Bodies of a joint do not touch each other, fixed ones neither: for Bullet those are not the joint's.

@@ -3,23 +3,21 @@
 namespace cradle {
 namespace {
 
-/// A joint of either kind.
+/// A ball joint or a hinge.
 struct Joint {
-  Attachment a, b;
+  const Constraint* constraint;
   TreeLink::Kind kind;
   Vec3 axisA;
-  std::size_t index;  // among those of its kind
   bool isUsed = false;
 };
 
 std::vector<Joint> jointsOf(const Constraints& constraints) {
   std::vector<Joint> joints;
-  for (std::size_t i = 0; i < constraints.ballJoints.size(); ++i)
-    joints.push_back(
-        {constraints.ballJoints[i].anchorA, constraints.ballJoints[i].anchorB, TreeLink::Kind::ball, Vec3::UnitZ(), i});
-  for (std::size_t i = 0; i < constraints.hinges.size(); ++i)
-    joints.push_back({constraints.hinges[i].anchorA, constraints.hinges[i].anchorB, TreeLink::Kind::hinge,
-                      constraints.hinges[i].axisA, i});
+  for (const Constraint& constraint : constraints)
+    if (const auto* hinge = std::get_if<HingeConstraint>(&constraint.kind))
+      joints.push_back({&constraint, TreeLink::Kind::hinge, hinge->axisA});
+    else if (std::holds_alternative<BallJointConstraint>(constraint.kind))
+      joints.push_back({&constraint, TreeLink::Kind::ball, Vec3::UnitZ()});
   return joints;
 }
 
@@ -32,8 +30,7 @@ class TreeGrowth {
  public:
   TreeGrowth(const Assembly& assembly, JointTree& tree)
       : state_(assembly.state),
-        constraints_(assembly.mechanism.constraints),
-        joints_(jointsOf(constraints_)),
+        joints_(jointsOf(assembly.mechanism.constraints)),
         isPlaced_(assembly.mechanism.bodies.size(), false),
         tree_(tree) {}
 
@@ -55,26 +52,26 @@ class TreeGrowth {
 
   void hangOn(int parent) {
     for (Joint& joint : joints_) {
-      const bool fromA = joint.a.body == parent;
-      if (joint.isUsed || (!fromA && joint.b.body != parent)) continue;
+      const auto& [a, b, kind] = *joint.constraint;
+      const bool fromA = a.body == parent;
+      if (joint.isUsed || (!fromA && b.body != parent)) continue;
       joint.isUsed = true;
-      hang(joint, fromA ? joint.b : joint.a, fromA ? joint.a : joint.b);
+      hang(joint, fromA ? b : a, fromA ? a : b);
     }
   }
 
   void hang(const Joint& joint, const Attachment& child, const Attachment& parent) {
     if (child.body == kFixed || isPlaced_[static_cast<std::size_t>(child.body)]) {
-      if (joint.kind == TreeLink::Kind::ball) tree_.loopBallJoints.push_back(constraints_.ballJoints[joint.index]);
-      if (joint.kind == TreeLink::Kind::hinge) tree_.loopHinges.push_back(constraints_.hinges[joint.index]);
+      tree_.loops.push_back(*joint.constraint);
       return;
     }
     isPlaced_[static_cast<std::size_t>(child.body)] = true;
-    const Vec3 axis = turnOf(child.body, state_).conjugate() * (turnOf(joint.a.body, state_) * joint.axisA);
+    const Vec3 axis =
+        turnOf(child.body, state_).conjugate() * (turnOf(joint.constraint->anchorA.body, state_) * joint.axisA);
     tree_.links.push_back({joint.kind, child.body, parent.body, child.point, parent.point, axis});
   }
 
   const VectorX& state_;
-  const Constraints& constraints_;
   std::vector<Joint> joints_;
   std::vector<bool> isPlaced_;
   JointTree& tree_;

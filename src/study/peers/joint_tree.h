@@ -18,9 +18,8 @@ struct TreeLink {
 /// The joints of a mechanism for engines in reduced coordinates. Bodies that no joint ties to the world or to a body
 /// before them are free.
 struct JointTree {
-  std::vector<TreeLink> links;                      // one a moving body, each after its parent
-  std::vector<BallJointConstraint> loopBallJoints;  // those that close a loop
-  std::vector<HingeConstraint> loopHinges;
+  std::vector<TreeLink> links;  // one a moving body, each after its parent
+  Constraints loops;            // ball joints and hinges that close a loop
 };
 JointTree jointTreeOf(const Assembly& assembly);
 

@@ -134,6 +134,15 @@ class ModelText {
     return place(orientation(assembly_.state, link.parent).conjugate() * away, turn);
   }
 
+  /// Those of the constraints that are rods.
+  std::vector<std::size_t> rods() const {
+    const Constraints& constraints = assembly_.mechanism.constraints;
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < constraints.size(); ++i)
+      if (std::holds_alternative<RodConstraint>(constraints[i].kind)) indices.push_back(i);
+    return indices;
+  }
+
   /// The ends of springs and rods that a body has.
   void addSites(int body) {
     const auto addSite = [&](const Attachment& attachment, const char* kind, std::size_t number, char end) {
@@ -144,9 +153,9 @@ class ModelText {
       addSite(mechanism.springs[i].anchorA, "spring", i, 'A');
       addSite(mechanism.springs[i].anchorB, "spring", i, 'B');
     }
-    for (std::size_t i = 0; i < mechanism.constraints.rods.size(); ++i) {
-      addSite(mechanism.constraints.rods[i].anchorA, "rod", i, 'A');
-      addSite(mechanism.constraints.rods[i].anchorB, "rod", i, 'B');
+    for (const std::size_t i : rods()) {
+      addSite(mechanism.constraints[i].anchorA, "rod", i, 'A');
+      addSite(mechanism.constraints[i].anchorB, "rod", i, 'B');
     }
   }
 
@@ -157,23 +166,22 @@ class ModelText {
       add(R"(<spatial springlength="{1}" stiffness="{2}" damping="{3}"><site site="spring{0}A"/><site site="spring{0}B"/></spatial>)",
           i, spring.restLength, spring.stiffness, spring.damping);
     }
-    for (std::size_t i = 0; i < mechanism.constraints.rods.size(); ++i)
+    for (const std::size_t i : rods())
       add(R"(<spatial name="rod{0}"><site site="rod{0}A"/><site site="rod{0}B"/></spatial>)", i);
   }
 
   /// A rod starts with its length, so that to keep it is to keep the tendon as it is. A hinge that closes a loop is two
   /// points on its axis.
   void addEqualities() {
-    for (std::size_t i = 0; i < assembly_.mechanism.constraints.rods.size(); ++i)
-      add(R"(<tendon tendon1="rod{}" {}/>)", i, giving_);
-    for (const BallJointConstraint& joint : tree_.loopBallJoints)
-      addConnection(joint.anchorA, joint.anchorB, Vec3::Zero());
-    for (const HingeConstraint& hinge : tree_.loopHinges) {
-      const bool isFixed = hinge.anchorA.body == kFixed;
-      const Vec3 axis = isFixed ? hinge.axisA : orientation(assembly_.state, hinge.anchorA.body) * hinge.axisA;
-      addConnection(hinge.anchorA, hinge.anchorB, axis / 2);
-      addConnection(hinge.anchorA, hinge.anchorB, -axis / 2);
-    }
+    for (const std::size_t i : rods()) add(R"(<tendon tendon1="rod{}" {}/>)", i, giving_);
+    forEachOf<BallJointConstraint>(
+        tree_.loops, [&](const Attachment& a, const Attachment& b, const auto&) { addConnection(a, b, Vec3::Zero()); });
+    forEachOf<HingeConstraint>(
+        tree_.loops, [&](const Attachment& a, const Attachment& b, const HingeConstraint& hinge) {
+          const Vec3 axis = a.body == kFixed ? hinge.axisA : orientation(assembly_.state, a.body) * hinge.axisA;
+          addConnection(a, b, axis / 2);
+          addConnection(a, b, -axis / 2);
+        });
   }
 
   void addConnection(const Attachment& a, const Attachment& b, const Vec3& aside) {

@@ -166,29 +166,28 @@ dBodyID OdeWorld::bodyOf(const Attachment& attachment) const {
 void OdeWorld::addJoints() {
   const Constraints& constraints = assembly_.mechanism.constraints;
   const auto placeOf = [&](const Attachment& attachment) { return motionOf(attachment, state_).position; };
-  for (const RodConstraint& rod : constraints.rods) {
+  forEachOf<RodConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const RodConstraint& rod) {
     const dJointID joint = dJointCreateDBall(world_, nullptr);
-    dJointAttach(joint, bodyOf(rod.anchorA), bodyOf(rod.anchorB));
-    const Vec3 a = placeOf(rod.anchorA), b = placeOf(rod.anchorB);
-    dJointSetDBallAnchor1(joint, a.x(), a.y(), a.z());
-    dJointSetDBallAnchor2(joint, b.x(), b.y(), b.z());
+    dJointAttach(joint, bodyOf(a), bodyOf(b));
+    const Vec3 atA = placeOf(a), atB = placeOf(b);
+    dJointSetDBallAnchor1(joint, atA.x(), atA.y(), atA.z());
+    dJointSetDBallAnchor2(joint, atB.x(), atB.y(), atB.z());
     dJointSetDBallDistance(joint, rod.length);
-  }
-  for (const BallJointConstraint& ball : constraints.ballJoints) {
+  });
+  forEachOf<BallJointConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const auto&) {
     const dJointID joint = dJointCreateBall(world_, nullptr);
-    dJointAttach(joint, bodyOf(ball.anchorA), bodyOf(ball.anchorB));
-    const Vec3 at = placeOf(ball.anchorA);
+    dJointAttach(joint, bodyOf(a), bodyOf(b));
+    const Vec3 at = placeOf(a);
     dJointSetBallAnchor(joint, at.x(), at.y(), at.z());
-  }
-  for (const HingeConstraint& hinge : constraints.hinges) {
+  });
+  forEachOf<HingeConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const HingeConstraint& hinge) {
     const dJointID joint = dJointCreateHinge(world_, nullptr);
-    dJointAttach(joint, bodyOf(hinge.anchorA), bodyOf(hinge.anchorB));
-    const Vec3 at = placeOf(hinge.anchorA);
-    const int body = hinge.anchorA.body;
-    const Vec3 axis = body == kFixed ? hinge.axisA : orientation(state_, body) * hinge.axisA;
+    dJointAttach(joint, bodyOf(a), bodyOf(b));
+    const Vec3 at = placeOf(a);
+    const Vec3 axis = a.body == kFixed ? hinge.axisA : orientation(state_, a.body) * hinge.axisA;
     dJointSetHingeAnchor(joint, at.x(), at.y(), at.z());
     dJointSetHingeAxis(joint, axis.x(), axis.y(), axis.z());
-  }
+  });
 }
 
 void OdeWorld::addForces() {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <set>
 
+#include "constraints/invariants.h"
 #include "core/cpu_stopwatch.h"
 #include "core/interruption.h"
 #include "dynamics/integrators/semi_implicit_euler.h"
-#include "dynamics/invariants.h"
 #include "simulate/energy_guard.h"
 
 namespace cradle {

@@ -118,15 +118,16 @@ void SimbodyWorld::addForces(const Assembly& assembly) {
 
 void SimbodyWorld::addConstraints(const Assembly& assembly, const JointTree& tree) {
   const auto pointOf = [](const Attachment& attachment) { return toSimbody(attachment.point); };
-  for (const RodConstraint& rod : assembly.mechanism.constraints.rods)
-    SimTK::Constraint::Rod(bodyOf(rod.anchorA.body), pointOf(rod.anchorA), bodyOf(rod.anchorB.body),
-                           pointOf(rod.anchorB), rod.length);
-  for (const auto& [a, b] : tree.loopBallJoints)
+  const Constraints& constraints = assembly.mechanism.constraints;
+  forEachOf<RodConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const RodConstraint& rod) {
+    SimTK::Constraint::Rod(bodyOf(a.body), pointOf(a), bodyOf(b.body), pointOf(b), rod.length);
+  });
+  for (const auto& [a, b, kind] : tree.loops) {
     SimTK::Constraint::Ball(bodyOf(a.body), pointOf(a), bodyOf(b.body), pointOf(b));
-  for (const auto& [a, b, axisA, acrossB] : tree.loopHinges) {
-    SimTK::Constraint::Ball(bodyOf(a.body), pointOf(a), bodyOf(b.body), pointOf(b));
-    for (const Vec3& across : acrossB)
-      SimTK::Constraint::ConstantAngle(bodyOf(a.body), SimTK::UnitVec3(toSimbody(axisA)), bodyOf(b.body),
+    const auto* hinge = std::get_if<HingeConstraint>(&kind);
+    if (!hinge) continue;
+    for (const Vec3& across : hinge->acrossB)
+      SimTK::Constraint::ConstantAngle(bodyOf(a.body), SimTK::UnitVec3(toSimbody(hinge->axisA)), bodyOf(b.body),
                                        SimTK::UnitVec3(toSimbody(across)));
   }
 }

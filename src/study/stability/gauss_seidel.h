@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "dynamics/row_response.h"
+#include "constraints/row_response.h"
 
 namespace cradle {
 

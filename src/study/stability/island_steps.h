@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics/equations_of_motion.h"
+#include "constraints/equations_of_motion.h"
 #include "dynamics/integrators/step.h"
 #include "simulate/assembly.h"
 

@@ -9,7 +9,7 @@
 #include <array>
 #include <cmath>
 
-#include "dynamics/constraint_forces.h"
+#include "constraints/constraint_forces.h"
 #include "simulate/contact_response.h"
 #include "simulate/steps/contact_stepping.h"
 #include "study/stability/contact_scenes.h"

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "dynamics/equations_of_motion.h"
+#include "constraints/equations_of_motion.h"
 #include "dynamics/integrators/dop853.h"
 #include "dynamics/integrators/dormand_prince5.h"
 #include "dynamics/integrators/rk4.h"

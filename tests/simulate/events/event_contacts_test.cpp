@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "dynamics/invariants.h"
+#include "constraints/invariants.h"
 #include "math/rotation.h"
 #include "simulate/one_island.h"
 

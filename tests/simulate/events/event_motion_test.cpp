@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "dynamics/invariants.h"
+#include "constraints/invariants.h"
 #include "simulate/one_island.h"
 
 namespace cradle {

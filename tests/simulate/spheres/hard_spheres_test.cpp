@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "dynamics/invariants.h"
+#include "constraints/invariants.h"
 #include "experiments/experiment.h"
 #include "math/rotation.h"
 

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "constraints/ball_joint.h"
+#include "constraints/hinge.h"
+#include "constraints/rod.h"
+
+namespace cradle {
+
+/// A bilateral constraint of two bodies, or of a body and the world, between a point of each. What it keeps, and in how
+/// many rows, is told by its kind alone.
+struct Constraint {
+  Attachment anchorA, anchorB;
+  std::variant<RodConstraint, BallJointConstraint, HingeConstraint> kind;
+};
+
+using Constraints = std::vector<Constraint>;
+
+/// Number of rows of a constraint, or of all.
+int rowCount(const Constraint& constraint);
+int rowCount(const Constraints& constraints);
+
+/// The rows of all constraints in `state`, in their order. `frames` are the bodies' at that state. Constraints of
+/// bodies marked in `excluded` have none; it may be empty: none is marked.
+void findRows(const Constraints& constraints, const VectorX& state, const std::vector<BodyFrame>& frames,
+              std::vector<ConstraintRow>& rows, const std::vector<char>& excluded = {});
+
+/// Calls visit(anchorA, anchorB, kind) for each constraint of one kind.
+template <class Kind, class Visit>
+void forEachOf(const Constraints& constraints, const Visit& visit) {
+  for (const Constraint& constraint : constraints)
+    if (const Kind* kind = std::get_if<Kind>(&constraint.kind)) visit(constraint.anchorA, constraint.anchorB, *kind);
+}
+
+}  // namespace cradle

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "constraints/constraint.h"
+#include "constraints/joint_blocks.h"
+#include "constraints/row_response.h"
+#include "constraints/sparse_ldlt.h"
+
+namespace cradle {
+
+/// Solves W lambda = b, with the Delassus operator W = J M^-1 J^T of the rows of a set of bilateral constraints, and
+/// applies the impulse response M^-1 J^T lambda, by a direct factorisation (D. Baraff, "Linear-time dynamics using
+/// Lagrange multipliers", SIGGRAPH 1996): exact at any mass ratio, linear in the length of a chain. Redundant rows are
+/// allowed; where they contradict each other, the contradiction stays as it is. Allocates only when bodies are joined
+/// in another way than in the call before.
+class ConstraintSolver {
+ public:
+  /// Keeps a reference to both; constraints may be added and taken away later.
+  ConstraintSolver(const Constraints& constraints, const std::vector<RigidBody>& bodies)
+      : constraints_(constraints), bodies_(bodies) {}
+
+  bool hasConstraints() const { return !constraints_.empty(); }
+
+  /// Leaves out the rows of some bodies from the next factorize or project on.
+  void exclude(const std::vector<char>& bodies);
+  bool isExcluded(const ConstraintRow& row) const;
+
+  /// Takes the rows in `state`, in which the bodies have `frames`, and factorises.
+  void factorize(const VectorX& state, const std::vector<BodyFrame>& frames);
+  void factorize(const VectorX& state);
+
+  /// Adds to the accelerations in `derivative` what keeps d^2C/dt^2 = 0. Returns the multipliers: a rod pushes its ends
+  /// apart with the force (N) multiplier x length.
+  const VectorX& constrainAccelerations(VectorX& derivative);
+
+  /// Takes out of the velocities what would change C, by the least change of kinetic energy.
+  void constrainVelocities(VectorX& state);
+
+  /// Moves the bodies by the least (mass-weighted) motion until all constraints hold to rounding, then constrains the
+  /// velocities. Returns the largest error that was found, in m or rad.
+  double project(VectorX& state);
+
+  /// The largest error, in m or rad, that factorize or project left.
+  double largestError() const;
+
+  /// Whether the constraints leave no motion where they are, in the state of the last project: it left one of them off
+  /// by more than `error` (m or rad) and rounding, and no force can give the accelerations that the velocities ask for.
+  /// Where motion only passes a place at which it could take another way, forces can.
+  bool leaveNoMotion(const VectorX& state, double error);
+
+  /// How far the velocities are from keeping the constraints: max |J v| / scale, in m/s or rad/s.
+  double largestRate(const VectorX& state) const;
+
+ private:
+  /// An entry of the matrix below its diagonal: two rows that act on the same body.
+  struct Coupling {
+    int row, column;
+  };
+  bool hasJointsAlone() const;
+  void factorizeRows(const VectorX& state, const std::vector<BodyFrame>& frames);
+  bool hasKnownStructure() const;
+  void analyze();
+  double entry(int row, int column) const;
+  template <class Add>
+  void addResponse(const Add& add) const;
+  void regularize(double regularisation);
+  void opposeRates(const VectorX& state);
+  void solve();
+  void findResidual();
+  double displace(VectorX& state);
+  bool holdWithin(double error, double roundings) const;
+  double contradiction(const VectorX& state);
+
+  const Constraints& constraints_;
+  const std::vector<RigidBody>& bodies_;
+  std::vector<char> excluded_;  // by body, or none
+  bool excludes_ = false;       // any of them
+  JointBlocks joints_;
+  bool isInBlocks_ = false;          // the last factorisation is that of joints_, not of the rows
+  bool areJointsDependent_ = false;  // one of them was singular
+  std::vector<BodyFrame> frames_;
+  std::vector<ConstraintRow> rows_;
+  std::vector<RowResponse> responses_;
+  std::vector<std::pair<int, int>> structure_;  // bodies of each row, when the couplings were found
+  std::vector<Coupling> couplings_;
+  std::vector<double> diagonal_, regularDiagonal_, entries_;
+  SparseLdlt factor_;
+  bool isRegular_ = true;
+  VectorX multipliers_, rightHandSide_, correction_, undisplaced_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "constraints/constraint_forces.h"
+#include "constraints/contact_rows.h"
+#include "constraints/minimum_norm.h"
+
+namespace cradle {
+
+/// What acts at a contact, and how it moves, at one instant. Where the rows of several contacts depend on each other (a
+/// box on its four corners) the motion is determined and the forces are not: these are the shortest of all multipliers
+/// that give the motion. They tell that friction holds, if they lie in the cones; not that it does not, if they don't.
+struct ContactForce {
+  double normal = 0;                       // N, of the multiplier: < 0 pulls
+  Vec3 tangential = Vec3::Zero();          // N, on A, world
+  Vec3 direction = Vec3::Zero();           // of the normal force on A, unit, world
+  Vec3 point = Vec3::Zero();               // m, world
+  Vec3 tangentialVelocity = Vec3::Zero();  // m/s, of A relative to B, world
+  Vec3 slidingDirection = Vec3::Zero();    // unit, world; zero unless sliding: friction on A is against it
+};
+
+/// Forces of active contacts and, with them, of the rods and joints of the same bodies. Bodies joined by contacts and
+/// constraints are solved as one dense system, other bodies not at all or by ConstraintSolver: the cost is cubic in the
+/// rows of each group that has a contact, linear in the groups. Redundant rows are allowed; where they contradict each
+/// other, the contradiction is left as small as it can be. Allocates only when bodies are joined in another way than in
+/// the call before.
+class ContactSolver {
+ public:
+  /// Keeps references to all.
+  ContactSolver(const std::vector<ContactConstraint>& contacts, const Constraints& constraints,
+                const std::vector<RigidBody>& bodies);
+
+  /// Takes the rows in `state`, in which the bodies have `frames`, and factorises. `resting` bodies act as fixed.
+  void factorize(const VectorX& state, const std::vector<BodyFrame>& frames, const std::vector<char>& resting);
+
+  /// Adds to the accelerations in `derivative` what contacts and constraints give, and to the energy of friction what
+  /// sliding takes. The accelerations of resting bodies must be zero; they stay so.
+  void constrainAccelerations(VectorX& derivative);
+
+  /// Of each contact, after constrainAccelerations.
+  const std::vector<ContactForce>& forces() const { return forces_; }
+
+  /// Of the rows of rods and joints, after constrainAccelerations, as ConstraintSolver gives them.
+  const VectorX& bilateralMultipliers() const { return bilateralMultipliers_; }
+
+  /// Takes out of the velocities what would change gaps and constraints, and what makes sticking contacts slide, by the
+  /// least change of kinetic energy.
+  void constrainVelocities(VectorX& state);
+
+  /// Moves the bodies by the least (mass-weighted) motion until no contact has a gap and all constraints hold, to
+  /// rounding; then constrains the velocities. Returns the largest error that was found, in m or rad. `resting` bodies
+  /// stay.
+  double project(VectorX& state, const std::vector<char>& resting);
+
+ private:
+  /// Bodies joined by contacts and constraints, at least one of them a contact. Its rows stand one after another: the
+  /// gaps of its contacts, its constraints, then two for each contact that sticks.
+  struct Group {
+    std::vector<int> bodies, contacts, bilateral;  // constraints: indices into bilateralRows_
+    int firstRow = 0, positionRows = 0, rows = 0;
+    bool slides = false;
+    bool isPlaced = false;  // by project, as well as it can be
+    double error = 0;       // m or rad, that project found last
+    MinimumNormSolver solver;
+  };
+  /// How the bodies of a row were joined when groups were found.
+  struct Joint {
+    int bodyA, bodyB;
+    ContactMotion motion;
+    bool operator==(const Joint& other) const {
+      return bodyA == other.bodyA && bodyB == other.bodyB && motion == other.motion;
+    }
+  };
+
+  void findBilateralRows(const VectorX& state, const std::vector<BodyFrame>& frames);
+  bool hasKnownStructure(const std::vector<char>& resting) const;
+  void analyze(const std::vector<char>& resting);
+  void numberGroups();
+  void sizeRows();
+  int movingBody(int body) const;
+
+  void fillRows(const VectorX& state, const std::vector<BodyFrame>& frames);
+  void fillContact(std::size_t contact, int row, int& tangentRow, const VectorX& state,
+                   const std::vector<BodyFrame>& frames);
+  void putRow(int row, const ConstraintRow& from, const std::vector<BodyFrame>& frames);
+  void addFriction(std::size_t contact, int row, const std::vector<BodyFrame>& frames);
+  void couple(Group& group);
+
+  void addResponse(const Group& group, int rows, const std::vector<RowResponse>& responses, VectorX& derivative) const;
+  void takeForces(const Group& group, VectorX& derivative);
+
+  void constrainGroupVelocities(VectorX& state);
+  void placeRows(const VectorX& state, const std::vector<char>& resting);
+  double errorOf(const Group& group) const;
+  bool isRounding(const Group& group) const;
+  void displace(Group& group, VectorX& state);
+  bool judge(Group& group, VectorX& state) const;
+
+  const std::vector<ContactConstraint>& contacts_;
+  const Constraints& constraints_;
+  const std::vector<RigidBody>& bodies_;
+  ConstraintSolver constraintSolver_;  // of bodies without a contact
+  bool hasFreeConstraints_ = false;
+
+  std::vector<Joint> joints_;  // of contacts, then of rows of constraints
+  std::vector<char> resting_;
+  std::vector<int> groupOfBody_;  // -1: no contact
+  std::vector<Group> groups_;
+
+  std::vector<ContactKinematics> kinematics_;
+  std::vector<ContactForce> forces_;
+  std::vector<ConstraintRow> bilateralRows_;
+  std::vector<ConstraintRow> rows_;
+  std::vector<RowResponse> responses_;  // M^-1 J^T
+  std::vector<RowResponse> coupled_;    // the same with friction
+  std::vector<double> multipliers_;
+  VectorX bilateralMultipliers_, undisplaced_, displacement_;
+  std::vector<BodyFrame> frames_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,198 @@
+// Kinematics of a sphere on a face, a sphere or an edge, and of a disc's rim on a face. The rows are those of the
+// relative velocity of the bodies' material at the point of contact; their velocityProduct terms let that point move
+// over both surfaces (rolling), and the normal turn.
+//
+// With n out of B, c the centre of A's sphere, a = c - r_A n - x_A and b = c - r_A n - x_B the arms, u the velocity:
+//   u = v_A + w_A x a - v_B - w_B x b,   gap' = n.u,   gap'' = n'.u + n.u',
+//   u' = J (accelerations) + w_A x a' - w_B x b',   a' = w_A x (c - x_A) - r_A n',   b' = a' + v_A - v_B,
+// n' = w_B x n on a face, and the part of the centres' relative velocity across n over their distance on a sphere. On
+// an edge along e, s = c - b less its part along e takes the place of the centres' difference: s' = w - w_e with w_e =
+// e (e.w) + e' (e.(c - b)) + e (e'.(c - b)), w = (c - b)'. A disc across the unit vector d touches a face by c - r_A m,
+// m = (n - (n.d) d) / |n - (n.d) d|: m and m' stand for n and n' in the arms then. Tangential: the rate of u - n (n.u)
+// has the part u' - n' (n.u) along the surfaces, whatever spans them.
+
+#include "constraints/contact_rows.h"
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace cradle {
+namespace {
+
+constexpr double kRounding = 1e-15;    // of the lengths that enter a gap: a few units in their last place
+constexpr double kFastSliding = 1e-4;  // m/s: above, the weight of the direction given is below rounding
+
+bool isFace(double radius) {
+  return std::isinf(radius);
+}
+
+Vec3 spinOf(int body, const VectorX& state) {
+  return body == kFixed ? Vec3::Zero() : Vec3(angularVelocity(state, body));
+}
+Vec3 centerOf(int body, const VectorX& state) {
+  return body == kFixed ? Vec3::Zero() : Vec3(centerOfMass(state, body));
+}
+Vec3 velocityOf(int body, const VectorX& state) {
+  return body == kFixed ? Vec3::Zero() : Vec3(linearVelocity(state, body));
+}
+Vec3 turned(int body, const Vec3& direction, const std::vector<BodyFrame>& frames) {
+  return body == kFixed ? direction : Vec3(frames[static_cast<std::size_t>(body)].rotation * direction);
+}
+
+Vec3 inFrameOf(int body, const Vec3& direction, const VectorX& state) {
+  return body == kFixed ? direction : Vec3(orientation(state, body).normalized().conjugate() * direction);
+}
+Attachment attachmentAt(int body, const Vec3& point, const VectorX& state) {
+  return {body, inFrameOf(body, point - centerOf(body, state), state)};
+}
+
+/// Normal, its rate, the gap and B's lever: what depends on the kind of B's surface.
+void placeNormal(const ContactConstraint& contact, const AttachmentMotion& a, const AttachmentMotion& b,
+                 const Vec3& spinB, const std::vector<BodyFrame>& frames, ContactKinematics& place) {
+  const Vec3 apart = a.position - b.position;
+  if (isFace(contact.radiusB)) {
+    place.normal = turned(contact.surfaceB.body, contact.normalB, frames);
+    place.normalRate = spinB.cross(place.normal);
+    place.gap = apart.dot(place.normal) - contact.radiusA;
+    place.leverB = (b.arm + apart).cross(place.normal);
+    return;
+  }
+  Vec3 across = apart, velocity = a.velocity - b.velocity;
+  if (contact.edgeB != Vec3::Zero()) {
+    const Vec3 along = turned(contact.surfaceB.body, contact.edgeB, frames), rate = spinB.cross(along);
+    across -= along.dot(apart) * along;
+    velocity -= (along.dot(velocity) + rate.dot(apart)) * along + along.dot(apart) * rate;
+  }
+  const double distance = across.norm();
+  place.normal = across / distance;
+  place.normalRate = (velocity - velocity.dot(place.normal) * place.normal) / distance;
+  place.gap = distance - (contact.radiusA + contact.radiusB);
+  place.leverB = (b.arm + (apart - across)).cross(place.normal);
+}
+
+bool isRim(const ContactConstraint& contact) {
+  return !contact.rimAxisA.isZero(0);
+}
+
+/// From the place where A touches to the centre of its sphere or disc (m), and the rate of that (m/s).
+struct Ascent {
+  Vec3 way, rate;
+};
+
+Ascent ascentOf(const ContactConstraint& contact, const ContactKinematics& place, const Vec3& spinA,
+                const std::vector<BodyFrame>& frames) {
+  const double radius = contact.radiusA;
+  if (!isRim(contact)) return {radius * place.normal, radius * place.normalRate};
+  const Vec3 axis = turned(contact.centerA.body, contact.rimAxisA, frames), axisRate = spinA.cross(axis);
+  const double cosine = place.normal.dot(axis);
+  const double cosineRate = place.normalRate.dot(axis) + place.normal.dot(axisRate);
+  const Vec3 across = place.normal - cosine * axis;
+  const Vec3 acrossRate = place.normalRate - cosineRate * axis - cosine * axisRate;
+  const double sine = across.norm();
+  const Vec3 up = across / sine;
+  return {radius * up, radius / sine * (acrossRate - up.dot(acrossRate) * up)};
+}
+
+/// A unit vector across another (T. Duff et al., "Building an Orthonormal Basis, Revisited", J. Computer Graphics
+/// Techniques 6(1), 2017).
+Vec3 across(const Vec3& n) {
+  const double sign = n.z() < 0 ? -1 : 1, part = -n.x() / (sign + n.z());
+  return {1 + sign * n.x() * part, sign * n.y() * part, -sign * n.x()};
+}
+
+ConstraintRow tangentRow(const ContactConstraint& contact, const ContactKinematics& place, const Vec3& direction) {
+  ConstraintRow row{contact.centerA.body, contact.surfaceB.body,       direction, place.armA.cross(direction),
+                    -direction,           -place.armB.cross(direction)};
+  row.velocityProduct = direction.dot(place.drift) - direction.dot(place.normalRate) * place.normal.dot(place.velocity);
+  return row;
+}
+
+}  // namespace
+
+ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& state) {
+  CRADLE_CHECK(std::isfinite(contact.radiusA) || std::isfinite(contact.radiusB));
+  if (isFace(contact.radiusA) || std::isnan(contact.radiusA))
+    return constraintOf({contact.bodyB, contact.bodyA, contact.point, -contact.normal, contact.separation,
+                         contact.radiusB, contact.radiusA, contact.edge},
+                        state);
+  const double half = 0.5 * contact.separation;
+  const double depthB = contact.radiusB > 0 && !isFace(contact.radiusB) ? contact.radiusB : 0;
+  ContactConstraint constraint;
+  constraint.centerA = attachmentAt(contact.bodyA, contact.point - (half + contact.radiusA) * contact.normal, state);
+  if (!contact.rimAxisA.isZero(0)) {
+    const Vec3& axis = contact.rimAxisA;
+    const Vec3 down = (contact.normal - contact.normal.dot(axis) * axis).normalized();
+    constraint.centerA =
+        attachmentAt(contact.bodyA, contact.point - half * contact.normal - contact.radiusA * down, state);
+    constraint.rimAxisA = inFrameOf(contact.bodyA, axis, state);
+  }
+  constraint.radiusA = contact.radiusA;
+  constraint.surfaceB = attachmentAt(contact.bodyB, contact.point + (half + depthB) * contact.normal, state);
+  constraint.radiusB = std::isnan(contact.radiusB) ? 0 : contact.radiusB;
+  constraint.edgeB = inFrameOf(contact.bodyB, contact.edge, state);
+  constraint.normalB = inFrameOf(contact.bodyB, -contact.normal, state);
+  return constraint;
+}
+
+void setSlidingDirection(ContactConstraint& contact, const Vec3& direction, const VectorX& state) {
+  contact.slidingDirection = inFrameOf(contact.surfaceB.body, direction, state);
+}
+
+ContactKinematics kinematicsOf(const ContactConstraint& contact, const VectorX& state,
+                               const std::vector<BodyFrame>& frames) {
+  const int bodyA = contact.centerA.body, bodyB = contact.surfaceB.body;
+  const AttachmentMotion a = motionOf(contact.centerA, state, frames), b = motionOf(contact.surfaceB, state, frames);
+  const Vec3 spinA = spinOf(bodyA, state), spinB = spinOf(bodyB, state);
+  const Vec3 velocity = velocityOf(bodyA, state) - velocityOf(bodyB, state);
+  ContactKinematics place;
+  placeNormal(contact, a, b, spinB, frames, place);
+  const Ascent ascent = ascentOf(contact, place, spinA, frames);
+  place.leverA = a.arm.cross(place.normal);
+  place.point = a.position - ascent.way;
+  place.armA = a.arm - ascent.way;
+  place.armB = place.point - centerOf(bodyB, state);
+  place.velocity = velocity + spinA.cross(place.armA) - spinB.cross(place.armB);
+  if (isRim(contact)) {
+    place.gap = (a.position - b.position).dot(place.normal) - ascent.way.dot(place.normal);
+    place.leverA = place.armA.cross(place.normal), place.leverB = place.armB.cross(place.normal);
+  }
+  const Vec3 armRateA = spinA.cross(a.arm) - ascent.rate;
+  place.drift = spinA.cross(armRateA) - spinB.cross(armRateA + velocity);
+  place.rounding = kRounding * (a.position.norm() + a.arm.norm() + b.arm.norm() + contact.radiusA);
+  return place;
+}
+
+Vec3 tangentialVelocity(const ContactKinematics& place) {
+  return place.velocity - place.velocity.dot(place.normal) * place.normal;
+}
+
+// Mirrored rather than reversed: a velocity that turns to the other side with a part across lets the direction follow
+// without a jump.
+Vec3 slidingDirection(const ContactConstraint& contact, const ContactKinematics& place,
+                      const std::vector<BodyFrame>& frames) {
+  const Vec3 given = turned(contact.surfaceB.body, contact.slidingDirection, frames);
+  const Vec3 velocity = tangentialVelocity(place);
+  if (velocity.dot(given) > 0 && velocity.squaredNorm() > kFastSliding * kFastSliding) return velocity.normalized();
+  const Vec3 side = (given - given.dot(place.normal) * place.normal).normalized();
+  const double along = velocity.dot(side);
+  const double speed = 1 + velocity.squaredNorm() / (kSlowestSliding * kSlowestSliding);
+  const double weight = kSlowestSliding / (speed * speed * speed * speed);
+  return (velocity + (std::abs(along) - along + weight) * side).normalized();
+}
+
+ConstraintRow normalRow(const ContactConstraint& contact, const ContactKinematics& place) {
+  ConstraintRow row{contact.centerA.body, contact.surfaceB.body, place.normal,
+                    place.leverA,         -place.normal,         -place.leverB};
+  row.value = place.gap;
+  row.velocityProduct = place.normalRate.dot(place.velocity) + place.normal.dot(place.drift);
+  row.rounding = place.rounding;
+  return row;
+}
+
+std::array<ConstraintRow, 2> tangentRows(const ContactConstraint& contact, const ContactKinematics& place) {
+  const Vec3 first = across(place.normal);
+  return {tangentRow(contact, place, first), tangentRow(contact, place, place.normal.cross(first))};
+}
+
+}  // namespace cradle

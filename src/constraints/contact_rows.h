@@ -1,0 +1,90 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "constraints/constraint_row.h"
+
+namespace cradle {
+
+constexpr double kSlowestSliding = 1e-6;  // m/s: slower has no direction that could be trusted
+
+/// How two bodies in active contact may move along each other.
+enum class ContactMotion {
+  frictionless,
+  sliding,  // friction = coefficient x normal force, against the sliding
+  sticking  // no tangential velocity where they touch: at rest on each other, or rolling
+};
+
+/// A sphere of body A that stays on a surface of body B: on a flat face, a sphere or a straight edge. A corner is a
+/// sphere of radius 0. On a face it may be the rim of a disc as well, by its lowest point. What touches may roll, slide
+/// or spin; it is released only by being taken away.
+struct ContactConstraint {
+  Attachment centerA;                                        // of A's sphere or disc
+  double radiusA = 0;                                        // m, >= 0
+  Vec3 rimAxisA = Vec3::Zero();                              // unit, across the disc, in A's frame; zero: a sphere
+  Attachment surfaceB;                                       // a point of B's face, or the centre of B's sphere
+  double radiusB = std::numeric_limits<double>::infinity();  // m, >= 0; infinite: a flat face
+  Vec3 normalB = Vec3::UnitY();                              // of a face, outward, unit; in B's frame, or the world
+  Vec3 edgeB = Vec3::Zero();  // of a straight edge through surfaceB, unit, same frame; radiusB is 0 then; else zero
+  ContactMotion motion = ContactMotion::frictionless;
+  double friction = 0;  // coefficient, >= 0; of sliding alone
+
+  // Of sliding: the way A slides along B, in B's frame, or the world; of any length but not along the normal. It is the
+  // direction itself as long as the sliding is too slow to have one (below 1e-6 m/s), and the side on which friction
+  // stays when a trial step goes past the instant where the sliding ends: the right-hand side is smooth there.
+  Vec3 slidingDirection = Vec3::Zero();
+};
+
+/// A contact as collision detection finds it, with the radii of the spheres that its surfaces are there: 0 a corner,
+/// infinite a flat face.
+struct SurfaceContact {
+  int bodyA = kFixed, bodyB = kFixed;
+  Vec3 point = Vec3::Zero();   // m, world: middle between the two surfaces
+  Vec3 normal = Vec3::Zero();  // unit, world, from A to B
+  double separation = 0;       // m
+  double radiusA = 0, radiusB = 0;
+  Vec3 edge = Vec3::Zero();      // unit, world: direction of a straight edge, whose radius is NaN; else zero
+  Vec3 rimAxisA = Vec3::Zero();  // unit, world: A touches a face by the rim of a disc across this; zero: it does not
+};
+
+/// The frictionless constraint that keeps a contact. If A's surface is a face or an edge, the bodies change places in
+/// it: its A is the contact's B. One of the radii must be finite.
+ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& state);
+
+/// Sets the way A slides from a direction in the world.
+void setSlidingDirection(ContactConstraint& contact, const Vec3& direction, const VectorX& state);
+
+/// How the surfaces of a contact are placed and move, in the world's frame. They touch at `point`, the place of A's
+/// sphere, or of its disc's rim, nearest to B.
+struct ContactKinematics {
+  Vec3 normal;          // unit, out of B: A is pushed along it
+  Vec3 normalRate;      // 1/s
+  Vec3 point;           // m
+  Vec3 armA, armB;      // m, from the centres of mass to `point`
+  Vec3 leverA, leverB;  // m, arms x normal
+  double gap;           // m, distance of the surfaces, < 0: overlap
+  Vec3 velocity;        // m/s, of A's material at `point` relative to B's: its normal part is the gap's rate
+  Vec3 drift;           // m/s^2, rate of `velocity` if the velocities of the bodies did not change
+  double rounding;      // m, of the gap
+};
+ContactKinematics kinematicsOf(const ContactConstraint& contact, const VectorX& state,
+                               const std::vector<BodyFrame>& frames);
+
+/// Part of a velocity along the surfaces (m/s, world).
+Vec3 tangentialVelocity(const ContactKinematics& place);
+
+/// Unit direction in which A slides: that of the tangential velocity v, mirrored to the side of the constraint's
+/// slidingDirection; below 1e-6 m/s it goes over into the latter. Friction on A is against it.
+Vec3 slidingDirection(const ContactConstraint& contact, const ContactKinematics& place,
+                      const std::vector<BodyFrame>& frames);
+
+/// The row of the gap: its multiplier is the normal force (N).
+ConstraintRow normalRow(const ContactConstraint& contact, const ContactKinematics& place);
+
+/// Two rows of the tangential velocity along orthogonal unit directions, which may be others in the next instant: with
+/// multipliers for all of both, motion and force do not depend on them. No value: they constrain velocities alone.
+std::array<ConstraintRow, 2> tangentRows(const ContactConstraint& contact, const ContactKinematics& place);
+
+}  // namespace cradle

@@ -1,0 +1,133 @@
+#include "constraints/equations_of_motion.h"
+
+#include "math/rotation.h"
+
+namespace cradle {
+namespace {
+
+/// World derivative of the angular velocity of a body without torque: body frame I w' = -w x I w. The derivative of w
+/// is the same vector in both frames, since w x w = 0.
+Vec3 gyroscopicAcceleration(const RigidBody& body, const Mat3& worldFromBody, const Vec3& angularVelocity) {
+  const Vec3 spin = worldFromBody.transpose() * angularVelocity;
+  return worldFromBody * (body.inverseInertia * -spin.cross(body.inertiaTensor * spin));
+}
+
+}  // namespace
+
+EquationsOfMotion::EquationsOfMotion(const Mechanism& mechanism)
+    : mechanism_(mechanism),
+      resting_(mechanism.bodies.size(), 0),
+      solver_(mechanism.constraints, mechanism.bodies),
+      contactSolver_(mechanism.contacts, mechanism.constraints, mechanism.bodies) {}
+
+RightHandSide EquationsOfMotion::rightHandSide() {
+  return {
+      [this](double, const VectorX& state, VectorX& derivative) { evaluate(state, derivative); },
+      [this](const VectorX& state, VectorX& derivative) { evaluatePoseRates(mechanism_.bodies, state, derivative); },
+      static_cast<Eigen::Index>(mechanism_.bodies.size()) * kPoseSize};
+}
+
+void EquationsOfMotion::evaluate(const VectorX& state, VectorX& derivative) {
+  ++evaluations_;
+  derivative.setZero(state.size());
+  findBodyFrames(mechanism_.bodies, state, frames_);
+  evaluatePoseRates(mechanism_.bodies, state, derivative);
+  applyGravityAndGyroscopicTerms(state, derivative);
+  if (!mechanism_.springs.empty()) applySprings(state, derivative);
+  if (!mechanism_.pushes.empty()) applyPushes(state, derivative);
+  applyConstraints(state, derivative);
+  holdResting(state, derivative);
+}
+
+void EquationsOfMotion::applyConstraints(const VectorX& state, VectorX& derivative) {
+  if (!mechanism_.contacts.empty()) {
+    holdResting(state, derivative);
+    contactSolver_.factorize(state, frames_, resting_);
+    contactSolver_.constrainAccelerations(derivative);
+    multipliers_ = contactSolver_.bilateralMultipliers();
+  } else if (solver_.hasConstraints()) {
+    solver_.factorize(state, frames_);
+    placeMultipliers(solver_.constrainAccelerations(derivative));
+  }
+}
+
+/// Rows of bodies at rest are left out of the solver and have no multiplier.
+void EquationsOfMotion::placeMultipliers(const VectorX& multipliers) {
+  multipliers_.setZero(rowCount(mechanism_.constraints));
+  const auto rests = [this](int body) { return body != kFixed && resting_[static_cast<std::size_t>(body)]; };
+  Eigen::Index next = 0, row = 0;
+  for (const Constraint& constraint : mechanism_.constraints) {
+    const Eigen::Index rows = rowCount(constraint);
+    if (!rests(constraint.anchorA.body) && !rests(constraint.anchorB.body)) {
+      multipliers_.segment(row, rows) = multipliers.segment(next, rows);
+      next += rows;
+    }
+    row += rows;
+  }
+}
+
+void EquationsOfMotion::setResting(std::size_t body, bool resting) {
+  resting_[body] = resting;
+  solver_.exclude(resting_);
+}
+
+void EquationsOfMotion::holdResting(const VectorX& state, VectorX& derivative) const {
+  for (std::size_t body = 0; body < resting_.size(); ++body)
+    if (resting_[body])
+      derivative.segment<kVelocitySize>(velocityOffset(state, static_cast<Eigen::Index>(body))).setZero();
+}
+
+double EquationsOfMotion::project(VectorX& state) {
+  if (!mechanism_.contacts.empty()) return contactSolver_.project(state, resting_);
+  return solver_.hasConstraints() ? solver_.project(state) : 0;
+}
+
+void EquationsOfMotion::applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& derivative) const {
+  for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i) {
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    linearVelocity(derivative, body) = mechanism_.gravity;
+    if (mechanism_.bodies[i].isSpherical) continue;
+    const Vec3 spin = angularVelocity(state, body);
+    if (spin != Vec3::Zero())
+      angularVelocity(derivative, body) = gyroscopicAcceleration(mechanism_.bodies[i], frames_[i].rotation, spin);
+  }
+}
+
+void EquationsOfMotion::applySprings(const VectorX& state, VectorX& derivative) const {
+  for (const SpringForce& spring : mechanism_.springs) {
+    const AttachmentMotion a = motionOf(spring.anchorA, state, frames_), b = motionOf(spring.anchorB, state, frames_);
+    const SpringPull pull = pullOf(spring, a, b);
+    addForce(spring.anchorA.body, a.arm, pull.forceOnA, derivative);
+    addForce(spring.anchorB.body, b.arm, -pull.forceOnA, derivative);
+    dampingEnergy(derivative) += pull.dissipation;
+  }
+}
+
+void EquationsOfMotion::applyPushes(const VectorX& state, VectorX& derivative) const {
+  for (const PushForce& push : mechanism_.pushes) {
+    addForce(push.point.body, motionOf(push.point, state, frames_).arm, push.force, derivative);
+    pushWork(derivative) += powerOf(push, state);
+  }
+}
+
+/// Adds the accelerations that a force (N, world) at `arm` (m, world) gives a body to its velocity rates.
+void EquationsOfMotion::addForce(int body, const Vec3& arm, const Vec3& force, VectorX& derivative) const {
+  if (body == kFixed) return;
+  const std::size_t index = static_cast<std::size_t>(body);
+  linearVelocity(derivative, body) += mechanism_.bodies[index].inverseMass * force;
+  if (mechanism_.bodies[index].turns)
+    angularVelocity(derivative, body) += frames_[index].inverseInertia * arm.cross(force);
+}
+
+void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& state, VectorX& derivative) {
+  for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
+    centerOfMass(derivative, body) = linearVelocity(state, body);
+    const Vec3 spin = angularVelocity(state, body);
+    if (!bodies[static_cast<std::size_t>(body)].turns || spin == Vec3::Zero())
+      derivative.segment<4>(body * kPoseSize + 3).setZero();
+    else
+      setOrientation(derivative, body, orientationRate(orientation(state, body), spin));
+  }
+}
+
+}  // namespace cradle

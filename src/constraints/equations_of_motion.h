@@ -1,0 +1,77 @@
+#pragma once
+
+#include <vector>
+
+#include "constraints/contact_forces.h"
+#include "dynamics/integrators/step.h"
+#include "dynamics/push.h"
+#include "dynamics/spring.h"
+
+namespace cradle {
+
+/// Moving bodies and everything smooth that acts on them.
+struct Mechanism {
+  Vec3 gravity = Vec3::Zero();  // m/s^2
+  std::vector<RigidBody> bodies;
+  std::vector<SpringForce> springs;
+  Constraints constraints;
+  std::vector<PushForce> pushes;                 // those that act now
+  std::vector<ContactConstraint> contacts = {};  // those that last and are loaded
+};
+
+/// The equations of motion of a mechanism in the layout of state.h:
+///   x' = v, q' = 1/2 (0, w) q, m v' = f, body frame: I w' = T - w x I w (Newton, Euler), constraints by their forces.
+/// Bodies marked as resting do not move, whatever acts on them.
+class EquationsOfMotion {
+ public:
+  /// Keeps a reference to `mechanism`.
+  explicit EquationsOfMotion(const Mechanism& mechanism);
+
+  /// State derivative. Allocates only in its first call.
+  void evaluate(const VectorX& state, VectorX& derivative);
+
+  void setResting(std::size_t body, bool resting);
+  bool isResting(std::size_t body) const { return resting_[body] != 0; }
+  const std::vector<char>& resting() const { return resting_; }
+
+  /// Multipliers of the constraints' rows at the last evaluation, in their order: a rod pushes its ends apart with the
+  /// force (N) multiplier x length.
+  const VectorX& multipliers() const { return multipliers_; }
+
+  /// What acts at each contact, at the last evaluation. Contacts between bodies at rest have no force here.
+  const std::vector<ContactForce>& contactForces() const { return contactSolver_.forces(); }
+
+  /// Moves the bodies by the least (mass-weighted) motion until constraints and contacts hold to rounding, and takes
+  /// out of the velocities what would change that or makes sticking contacts slide. Returns the largest error that was
+  /// found, in m or rad.
+  double project(VectorX& state);
+
+  /// How often evaluate was called.
+  long evaluations() const { return evaluations_; }
+
+  /// As integrators take it; refers to this object.
+  RightHandSide rightHandSide();
+
+ private:
+  void applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& derivative) const;
+  void applySprings(const VectorX& state, VectorX& derivative) const;
+  void applyPushes(const VectorX& state, VectorX& derivative) const;
+  void applyConstraints(const VectorX& state, VectorX& derivative);
+  void placeMultipliers(const VectorX& multipliers);
+  void holdResting(const VectorX& state, VectorX& derivative) const;
+  void addForce(int body, const Vec3& arm, const Vec3& force, VectorX& derivative) const;
+
+  const Mechanism& mechanism_;
+  std::vector<char> resting_;
+  std::vector<BodyFrame> frames_;
+  ConstraintSolver solver_;  // without contacts
+  ContactSolver contactSolver_;
+  VectorX multipliers_;
+  long evaluations_ = 0;
+};
+
+/// Rates of positions and orientations alone, from the velocities in `state`: writes the leading entries of
+/// `derivative`.
+void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& state, VectorX& derivative);
+
+}  // namespace cradle
