@@ -1,14 +1,19 @@
 #include "constraints/ball_joint.h"
 
+#include "math/rotation.h"
+
 namespace cradle {
 
-void appendRows(const BallJointConstraint&, const ConstraintEnds& ends, std::vector<ConstraintRow>& rows) {
-  const Vec3 error = ends.a.position - ends.b.position, velocityProduct = centripetalAcceleration(ends);
-  const double size = ends.a.position.norm() + ends.a.arm.norm() + ends.b.arm.norm();
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 direction = Vec3::Unit(i);
-    rows.push_back({ends.bodyA, ends.bodyB, direction, ends.a.arm.cross(direction), -direction,
-                    -ends.b.arm.cross(direction), error[i], velocityProduct[i], 1, kRowRounding * size});
+void putRows(const BallJointConstraint&, const ConstraintEnds& ends, ConstraintBlock& block) {
+  const Vec3 error = ends.a.position - ends.b.position, velocityProduct = ends.centripetalAcceleration();
+  const double size = (ends.a.position.cwiseAbs() + ends.a.arm.cwiseAbs() + ends.b.arm.cwiseAbs()).sum();
+  block.isPoint = true;
+  block.linear.leftCols<3>() = Mat3::Identity();
+  block.angularA.leftCols<3>() = skew(ends.a.arm), block.angularB.leftCols<3>() = skew(-ends.b.arm);
+  for (std::size_t i = 0; i < 3; ++i) {
+    block.value[i] = error[static_cast<Eigen::Index>(i)];
+    block.velocityProduct[i] = velocityProduct[static_cast<Eigen::Index>(i)];
+    block.rounding[i] = kRowRounding * size;
   }
 }
 

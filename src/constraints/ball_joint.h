@@ -1,6 +1,6 @@
 #pragma once
 
-#include "constraints/constraint_row.h"
+#include "constraints/constraint_block.h"
 
 namespace cradle {
 
@@ -10,6 +10,6 @@ struct BallJointConstraint {
   static constexpr int kRows = 3;
 };
 
-void appendRows(const BallJointConstraint& joint, const ConstraintEnds& ends, std::vector<ConstraintRow>& rows);
+void putRows(const BallJointConstraint& joint, const ConstraintEnds& ends, ConstraintBlock& block);
 
 }  // namespace cradle

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <type_traits>
 #include <variant>
 #include <vector>
 
 #include "constraints/ball_joint.h"
 #include "constraints/hinge.h"
 #include "constraints/rod.h"
+#include "core/error.h"
 
 namespace cradle {
 
@@ -22,10 +24,23 @@ using Constraints = std::vector<Constraint>;
 int rowCount(const Constraint& constraint);
 int rowCount(const Constraints& constraints);
 
-/// The rows of all constraints in `state`, in their order. `frames` are the bodies' at that state. Constraints of
-/// bodies marked in `excluded` have none; it may be empty: none is marked.
+/// Calls visit(std::integral_constant of `rows`): loops over the rows of a constraint have a length that the compiler
+/// knows.
+template <class Visit>
+void withRows(int rows, const Visit& visit) {
+  if (rows == 1) return visit(std::integral_constant<int, 1>());
+  if (rows == 3) return visit(std::integral_constant<int, 3>());
+  CRADLE_CHECK(rows == 5);
+  visit(std::integral_constant<int, 5>());
+}
+
+/// Fills in the rows of a constraint in `state`, in which the bodies have `frames`.
+void findRows(const Constraint& constraint, const VectorX& state, const std::vector<BodyFrame>& frames,
+              ConstraintBlock& block);
+
+/// The rows of all constraints, one by one, in their order.
 void findRows(const Constraints& constraints, const VectorX& state, const std::vector<BodyFrame>& frames,
-              std::vector<ConstraintRow>& rows, const std::vector<char>& excluded = {});
+              std::vector<ConstraintRow>& rows);
 
 /// Calls visit(anchorA, anchorB, kind) for each constraint of one kind.
 template <class Kind, class Visit>

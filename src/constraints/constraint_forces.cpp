@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/error.h"
 
@@ -34,13 +35,40 @@ constexpr double kJammedRegularisation = 1e-7;  // of the diagonal: 3e-4 of a si
 constexpr double kContradicted = 0.5;           // of what is asked: locked mechanisms leave 0.95, others up to 0.02
 constexpr double kContradictingRatio = 1e-3;    // of the largest residual: rows with less contradict nothing
 
-/// The three rows of a joint.
-auto partOf(VectorX& multipliers, std::size_t joint) {
-  return multipliers.segment<3>(static_cast<Eigen::Index>(3 * joint));
+using Columns = ConstraintBlock::Columns;
+
+/// Adds J M^-1 J^T of two constraints by a body that both have to a block of the matrix, column by column: what the
+/// body's mass does, and what its turning. `inverseMass` is negative where the body is A of one and B of the other.
+template <int rows, int columns>
+void addMass(const ConstraintBlock& row, const ConstraintBlock& column, double inverseMass, double* block) {
+  if (row.isPoint && column.isPoint)
+    for (int i = 0; i < 3; ++i) block[i * rows + i] += inverseMass;
+  else
+    for (int k = 0; k < columns; ++k)
+      for (int i = 0; i < rows; ++i) block[k * rows + i] += inverseMass * row.linear.col(i).dot(column.linear.col(k));
+}
+template <int rows, int columns>
+void addInertia(const Columns& angular, const Columns& turn, double* block) {
+  Eigen::Map<Eigen::Matrix<double, rows, columns, rows == 1 ? Eigen::RowMajor : Eigen::ColMajor>>(block) +=
+      angular.leftCols<rows>().transpose().lazyProduct(turn.leftCols<columns>());
 }
 
-double largestOf(const Vec3& vector) {
-  return vector.lpNorm<Eigen::Infinity>();
+/// J v of the rows of a constraint.
+template <int rows>
+[[gnu::always_inline]] inline void findRates(const ConstraintBlock& block, const VectorX& state, double* rates) {
+  Vec3 relative = Vec3::Zero();
+  if (block.bodyA != kFixed) relative += linearVelocity(state, block.bodyA);
+  if (block.bodyB != kFixed) relative -= linearVelocity(state, block.bodyB);
+  if (block.isPoint)
+    for (int i = 0; i < rows; ++i) rates[i] = i < 3 ? relative[i] : 0;
+  else
+    for (int i = 0; i < rows; ++i) rates[i] = block.linear.col(i).dot(relative);
+  const auto addSpin = [&](int body, const Columns& angular) {
+    const Vec3 spin = angularVelocity(state, body);
+    for (int i = 0; i < rows; ++i) rates[i] += angular.col(i).dot(spin);
+  };
+  if (block.turnsA) addSpin(block.bodyA, block.angularA);
+  if (block.turnsB) addSpin(block.bodyB, block.angularB);
 }
 
 }  // namespace
@@ -51,144 +79,200 @@ void ConstraintSolver::factorize(const VectorX& state) {
 }
 
 void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFrame>& frames) {
-  if (!hasJointsAlone()) return factorizeRows(state, frames);
-  isInBlocks_ = joints_.factorize(constraints_, bodies_, state, frames) > kRegularPivot;
-  multipliers_.resize(static_cast<Eigen::Index>(3 * joints_.size()));
-  areJointsDependent_ = !isInBlocks_;
-  if (areJointsDependent_) factorizeRows(state, frames);
-}
-
-/// Ball joints that do not depend on each other are all constraints of the bodies.
-bool ConstraintSolver::hasJointsAlone() const {
-  return !constraints_.empty() && !excludes_ && !areJointsDependent_ &&
-         std::all_of(constraints_.begin(), constraints_.end(), [](const Constraint& constraint) {
-           return std::holds_alternative<BallJointConstraint>(constraint.kind);
-         });
-}
-
-void ConstraintSolver::factorizeRows(const VectorX& state, const std::vector<BodyFrame>& frames) {
-  isInBlocks_ = false;
-  findRows(constraints_, state, frames, rows_, excluded_);
+  findMembers(state, frames);
   if (!hasKnownStructure()) analyze();
-  multipliers_.resize(static_cast<Eigen::Index>(rows_.size()));  // blocks may have had others since
-  for (std::size_t i = 0; i < rows_.size(); ++i) responses_[i] = responseTo(rows_[i], bodies_, frames);
-  for (std::size_t i = 0; i < rows_.size(); ++i) diagonal_[i] = entry(static_cast<int>(i), static_cast<int>(i));
-  for (std::size_t i = 0; i < couplings_.size(); ++i) entries_[i] = entry(couplings_[i].row, couplings_[i].column);
-  factor_.factorize(diagonal_, entries_);
+  assemble();
+  factor_.factorize();
   isRegular_ = factor_.leastPivot() > kRegularPivot;
-  if (!isRegular_) regularize(kRegularisation);
+  if (!isRegular_) factor_.factorize(kRegularisation);
 }
 
-void ConstraintSolver::regularize(double regularisation) {
-  for (std::size_t i = 0; i < rows_.size(); ++i) regularDiagonal_[i] = diagonal_[i] * (1 + regularisation);
-  factor_.factorize(regularDiagonal_, entries_);
+void ConstraintSolver::findMembers(const VectorX& state, const std::vector<BodyFrame>& frames) {
+  members_.resize(constraints_.size());
+  std::size_t members = 0;
+  for (const Constraint& constraint : constraints_) {
+    if (isExcluded(constraint.anchorA.body, constraint.anchorB.body)) continue;
+    Member& member = members_[members++];
+    findRows(constraint, state, frames, member);
+    respond(frames, member);
+  }
+  members_.resize(members);
+}
+
+void ConstraintSolver::respond(const std::vector<BodyFrame>& frames, Member& member) const {
+  const auto inverseMassOf = [this](int body) {
+    return body == kFixed ? 0 : bodies_[static_cast<std::size_t>(body)].inverseMass;
+  };
+  member.inverseMassA = inverseMassOf(member.bodyA), member.inverseMassB = inverseMassOf(member.bodyB);
+  const auto turn = [&](int body, const Columns& angular, bool turns, Columns& response) {
+    if (!turns) return;
+    const std::size_t index = static_cast<std::size_t>(body);
+    if (!bodies_[index].turns) return void(response.setZero());
+    const Mat3& inverseInertia = frames[index].inverseInertia;
+    withRows(member.rows, [&](auto rows) {
+      for (int i = 0; i < rows; ++i) response.col(i) = inverseInertia * angular.col(i);
+    });
+  };
+  turn(member.bodyA, member.angularA, member.turnsA, member.turnA);
+  turn(member.bodyB, member.angularB, member.turnsB, member.turnB);
 }
 
 void ConstraintSolver::exclude(const std::vector<char>& bodies) {
   excluded_ = bodies;
-  excludes_ = std::any_of(bodies.begin(), bodies.end(), [](char isOut) { return isOut; });
 }
 
-bool ConstraintSolver::isExcluded(const ConstraintRow& row) const {
+bool ConstraintSolver::isExcluded(int bodyA, int bodyB) const {
   const auto isOut = [this](int body) { return body != kFixed && excluded_[static_cast<std::size_t>(body)]; };
-  return !excluded_.empty() && (isOut(row.bodyA) || isOut(row.bodyB));
+  return !excluded_.empty() && (isOut(bodyA) || isOut(bodyB));
 }
 
 bool ConstraintSolver::hasKnownStructure() const {
-  return std::equal(rows_.begin(), rows_.end(), structure_.begin(), structure_.end(),
-                    [](const ConstraintRow& row, const auto& bodies) {
-                      return row.bodyA == bodies.first && row.bodyB == bodies.second;
+  return std::equal(members_.begin(), members_.end(), structure_.begin(), structure_.end(),
+                    [](const Member& member, const std::array<int, 3>& known) {
+                      return member.bodyA == known[0] && member.bodyB == known[1] && member.rows == known[2];
                     });
 }
 
+/// Which constraints share a body, and the rows of each.
 void ConstraintSolver::analyze() {
-  structure_.clear();
-  std::vector<std::vector<int>> rowsOfBody(bodies_.size());
+  structure_.clear(), couplings_.clear();
+  struct End {
+    std::size_t member;
+    bool isA;
+  };
+  std::vector<std::vector<End>> endsOf(bodies_.size());
+  std::map<std::pair<int, int>, std::size_t> placeOf;
   std::vector<std::pair<int, int>> places;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    structure_.emplace_back(rows_[i].bodyA, rows_[i].bodyB);
-    std::vector<int> neighbours;
-    for (const int body : {rows_[i].bodyA, rows_[i].bodyB}) {
+  std::vector<int> sizes;
+  Eigen::Index rows = 0;
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    const Member& member = members_[i];
+    structure_.push_back({member.bodyA, member.bodyB, member.rows});
+    sizes.push_back(member.rows);
+    rows += member.rows;
+    for (const bool isA : {true, false}) {
+      const int body = isA ? member.bodyA : member.bodyB;
       if (body == kFixed) continue;
-      std::vector<int>& rows = rowsOfBody[static_cast<std::size_t>(body)];
-      neighbours.insert(neighbours.end(), rows.begin(), rows.end());
-      rows.push_back(static_cast<int>(i));
+      std::vector<End>& ends = endsOf[static_cast<std::size_t>(body)];
+      for (const End& other : ends) {
+        const std::pair<int, int> place(static_cast<int>(i), static_cast<int>(other.member));
+        const auto [known, isNew] = placeOf.try_emplace(place, places.size());
+        if (isNew) places.push_back(place);
+        couplings_.push_back({i, other.member, isA, other.isA, isNew, known->second});
+      }
+      ends.push_back({i, isA});
     }
-    std::sort(neighbours.begin(), neighbours.end());
-    neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
-    for (const int neighbour : neighbours)
-      if (neighbour != static_cast<int>(i)) places.emplace_back(static_cast<int>(i), neighbour);
   }
-  couplings_.clear();
-  for (const auto& [row, column] : places) couplings_.push_back({row, column});
-  factor_.analyze(static_cast<int>(rows_.size()), places);
-  responses_.resize(rows_.size());
-  diagonal_.resize(rows_.size());
-  regularDiagonal_.resize(rows_.size());
-  entries_.resize(places.size());
-  rightHandSide_.resize(static_cast<Eigen::Index>(rows_.size()));
-  correction_.resize(rightHandSide_.size());
+  factor_.analyze(sizes, places);
+  for (Coupling& coupling : couplings_) {
+    if (places[coupling.place].first == static_cast<int>(coupling.row)) continue;
+    std::swap(coupling.row, coupling.column);
+    std::swap(coupling.rowIsA, coupling.columnIsA);
+  }
+  multipliers_.resize(rows), rightHandSide_.resize(rows), residual_.resize(rows);
 }
 
-/// Of the Delassus operator.
-double ConstraintSolver::entry(int row, int column) const {
-  const std::size_t from = static_cast<std::size_t>(row), to = static_cast<std::size_t>(column);
-  return delassusEntry(rows_[to], rows_[from], responses_[from]);
+/// The Delassus operator.
+void ConstraintSolver::assemble() {
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    const Member& member = members_[i];
+    withRows(member.rows, [&](auto rows) {
+      double* const block = factor_.diagonal(i);
+      std::fill_n(block, rows * rows, 0.0);
+      addMass<rows, rows>(member, member, member.inverseMassA + member.inverseMassB, block);
+      if (member.turnsA) addInertia<rows, rows>(member.angularA, member.turnA, block);
+      if (member.turnsB) addInertia<rows, rows>(member.angularB, member.turnB, block);
+    });
+  }
+  for (const Coupling& coupling : couplings_) {
+    const Member &row = members_[coupling.row], &column = members_[coupling.column];
+    const double inverseMass = coupling.columnIsA ? column.inverseMassA : column.inverseMassB;
+    const bool rowTurns = coupling.rowIsA ? row.turnsA : row.turnsB;
+    const bool columnTurns = coupling.columnIsA ? column.turnsA : column.turnsB;
+    const Columns& angular = coupling.rowIsA ? row.angularA : row.angularB;
+    const Columns& turn = coupling.columnIsA ? column.turnA : column.turnB;
+    double* const block = factor_.beside(coupling.place);
+    withRows(row.rows, [&](auto rows) {
+      withRows(column.rows, [&](auto columns) {
+        if (coupling.isFirst) std::fill_n(block, rows * columns, 0.0);
+        addMass<rows, columns>(row, column, coupling.rowIsA == coupling.columnIsA ? inverseMass : -inverseMass, block);
+        if (rowTurns && columnTurns) addInertia<rows, columns>(angular, turn, block);
+      });
+    });
+  }
 }
 
 /// Overwrites the right-hand side in multipliers_ by the solution, refined iteratively if it has to be.
 void ConstraintSolver::solve() {
-  if (isInBlocks_) return joints_.solve(multipliers_);
   if (isRegular_) return factor_.solve(multipliers_);
   rightHandSide_ = multipliers_;
   factor_.solve(multipliers_);
   const double wanted = rightHandSide_.lpNorm<Eigen::Infinity>();
   double last = wanted;
   for (int i = 0; i < kMaxRefinements; ++i) {
-    findResidual();
-    const double residual = correction_.lpNorm<Eigen::Infinity>();
-    if (!(residual > kRefined * wanted) || residual > kStalled * last) return;
-    last = residual;
-    factor_.solve(correction_);
-    multipliers_ += correction_;
+    residual_ = rightHandSide_;
+    factor_.subtractProduct(multipliers_, residual_);
+    const double left = residual_.lpNorm<Eigen::Infinity>();
+    if (!(left > kRefined * wanted) || left > kStalled * last) return;
+    last = left;
+    factor_.solve(residual_);
+    multipliers_ += residual_;
   }
 }
 
-/// Right-hand side - J M^-1 J^T multipliers.
-void ConstraintSolver::findResidual() {
-  for (Eigen::Index row = 0; row < multipliers_.size(); ++row)
-    correction_[row] = rightHandSide_[row] - diagonal_[static_cast<std::size_t>(row)] * multipliers_[row];
-  for (std::size_t i = 0; i < couplings_.size(); ++i) {
-    const auto [row, column] = couplings_[i];
-    correction_[row] -= entries_[i] * multipliers_[column];
-    correction_[column] -= entries_[i] * multipliers_[row];
-  }
-}
-
-/// Calls add(body, linear, angular) with the parts of M^-1 J^T multipliers, row by row.
+/// Calls add(body, linear, angular) with the parts of M^-1 J^T multipliers, constraint by constraint.
 template <class Add>
 void ConstraintSolver::addResponse(const Add& add) const {
-  if (isInBlocks_) return joints_.addResponse(multipliers_, add);
-  for (std::size_t i = 0; i < rows_.size(); ++i)
-    cradle::addResponse(rows_[i], responses_[i], multipliers_[static_cast<Eigen::Index>(i)], add);
+  const double* multipliers = multipliers_.data();
+  for (const Member& member : members_) {
+    Vec3 force = Vec3::Zero(), turnA = Vec3::Zero(), turnB = Vec3::Zero();
+    withRows(member.rows, [&](auto rows) {
+      const auto sum = [&](const Columns& columns, Vec3& total) {
+        for (int i = 0; i < rows; ++i) total += multipliers[i] * columns.col(i);
+      };
+      if (member.isPoint)
+        force = Vec3(multipliers[0], multipliers[1], multipliers[2]);
+      else
+        sum(member.linear, force);
+      if (member.turnsA) sum(member.turnA, turnA);
+      if (member.turnsB) sum(member.turnB, turnB);
+    });
+    if (member.bodyA != kFixed) add(member.bodyA, Vec3(member.inverseMassA * force), turnA);
+    if (member.bodyB != kFixed) add(member.bodyB, Vec3(-member.inverseMassB * force), turnB);
+    multipliers += member.rows;
+  }
 }
 
-/// Sets multipliers_ to -J v for the velocities, or accelerations, in `state`.
-void ConstraintSolver::opposeRates(const VectorX& state) {
-  if (isInBlocks_)
-    for (std::size_t i = 0; i < joints_.size(); ++i) partOf(multipliers_, i) = -joints_.rateOf(i, state);
-  else
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-      multipliers_[static_cast<Eigen::Index>(i)] = -rateOf(rows_[i], state);
+/// Calls visit(member, row, index) for each row; `index` is its place among all.
+template <class Visit>
+void ConstraintSolver::forEachRow(const Visit& visit) const {
+  Eigen::Index index = 0;
+  for (const Member& member : members_)
+    for (std::size_t row = 0; row < static_cast<std::size_t>(member.rows); ++row) visit(member, row, index++);
+}
+
+/// Sets multipliers_ to -J v for the velocities in `state`.
+void ConstraintSolver::opposeVelocities(const VectorX& state) {
+  double* next = multipliers_.data();
+  for (const Member& member : members_)
+    withRows(member.rows, [&](auto rows) {
+      findRates<rows>(member, state, next);
+      for (int i = 0; i < rows; ++i, ++next) *next = -*next;
+    });
+}
+
+/// Sets multipliers_ to -(J a + (dJ/dt) v) for the accelerations in `derivative`.
+void ConstraintSolver::opposeAccelerations(const VectorX& derivative) {
+  double* next = multipliers_.data();
+  for (const Member& member : members_)
+    withRows(member.rows, [&](auto rows) {
+      findRates<rows>(member, derivative, next);
+      for (std::size_t i = 0; i < rows; ++i, ++next) *next = -(*next + member.velocityProduct[i]);
+    });
 }
 
 const VectorX& ConstraintSolver::constrainAccelerations(VectorX& derivative) {
-  opposeRates(derivative);
-  if (isInBlocks_)
-    for (std::size_t i = 0; i < joints_.size(); ++i) partOf(multipliers_, i) -= joints_.velocityProduct(i);
-  else
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-      multipliers_[static_cast<Eigen::Index>(i)] -= rows_[i].velocityProduct;
+  opposeAccelerations(derivative);
   solve();
   addResponse([&derivative](int body, const Vec3& linear, const Vec3& angular) {
     linearVelocity(derivative, body) += linear;
@@ -198,7 +282,7 @@ const VectorX& ConstraintSolver::constrainAccelerations(VectorX& derivative) {
 }
 
 void ConstraintSolver::constrainVelocities(VectorX& state) {
-  opposeRates(state);
+  opposeVelocities(state);
   solve();
   addResponse([&state](int body, const Vec3& linear, const Vec3& angular) {
     linearVelocity(state, body) += linear;
@@ -226,10 +310,9 @@ double ConstraintSolver::project(VectorX& state) {
     if (isSound && left < error) break;  // at the limit of rounding
     state = undisplaced_;
     regularisation *= kMoreRegular;
-    findBodyFrames(bodies_, state, frames_);
-    factorizeRows(state, frames_);
+    factorize(state);
     if (regularisation > kMaxRegularisation) break;
-    regularize(regularisation);
+    factor_.factorize(regularisation);
   }
   constrainVelocities(state);
   return found;
@@ -237,11 +320,9 @@ double ConstraintSolver::project(VectorX& state) {
 
 /// One step of Newton's method. Returns how far the body that moved most was shifted (m) or turned (rad).
 double ConstraintSolver::displace(VectorX& state) {
-  if (isInBlocks_)
-    for (std::size_t i = 0; i < joints_.size(); ++i) partOf(multipliers_, i) = -joints_.value(i);
-  else
-    for (std::size_t i = 0; i < rows_.size(); ++i) multipliers_[static_cast<Eigen::Index>(i)] = -rows_[i].value;
-  isInBlocks_ ? joints_.solve(multipliers_) : factor_.solve(multipliers_);
+  forEachRow(
+      [this](const Member& member, std::size_t row, Eigen::Index index) { multipliers_[index] = -member.value[row]; });
+  factor_.solve(multipliers_);
   double farthest = 0;
   addResponse([&](int body, const Vec3& shift, const Vec3& turn) {
     centerOfMass(state, body) += shift;
@@ -253,19 +334,18 @@ double ConstraintSolver::displace(VectorX& state) {
 
 double ConstraintSolver::largestError() const {
   double error = 0;
-  if (isInBlocks_)
-    for (std::size_t i = 0; i < joints_.size(); ++i) error = std::max(error, largestOf(joints_.value(i)));
-  else
-    for (const ConstraintRow& row : rows_) error = std::max(error, std::abs(row.value) / row.scale);
+  forEachRow([&](const Member& member, std::size_t row, Eigen::Index) {
+    error = std::max(error, std::abs(member.value[row]) / member.scale);
+  });
   return error;
 }
 
 bool ConstraintSolver::holdWithin(double error, double roundings) const {
-  for (std::size_t i = 0; isInBlocks_ && i < joints_.size(); ++i)
-    if (!(largestOf(joints_.value(i)) <= error + roundings * joints_.rounding(i))) return false;
-  return isInBlocks_ || std::all_of(rows_.begin(), rows_.end(), [=](const ConstraintRow& row) {
-           return std::abs(row.value) <= (error + roundings * row.rounding) * row.scale;
-         });
+  bool holds = true;
+  forEachRow([&](const Member& member, std::size_t row, Eigen::Index) {
+    holds = holds && std::abs(member.value[row]) <= (error + roundings * member.rounding[row]) * member.scale;
+  });
+  return holds;
 }
 
 bool ConstraintSolver::leaveNoMotion(const VectorX& state, double error) {
@@ -276,31 +356,34 @@ bool ConstraintSolver::leaveNoMotion(const VectorX& state, double error) {
 /// no motion, about 0 where it can go on. A direction that is constrained by less than the square root of the
 /// regularisation counts as not constrained: what is asked along it is left.
 double ConstraintSolver::contradiction(const VectorX& state) {
-  findBodyFrames(bodies_, state, frames_);
-  factorizeRows(state, frames_);
+  factorize(state);
   if (isRegular_) return 0;
-  regularize(kJammedRegularisation);
-  for (std::size_t i = 0; i < rows_.size(); ++i) multipliers_[static_cast<Eigen::Index>(i)] = -rows_[i].velocityProduct;
-  rightHandSide_ = multipliers_;
+  factor_.factorize(kJammedRegularisation);
+  forEachRow([this](const Member& member, std::size_t row, Eigen::Index index) {
+    multipliers_[index] = -member.velocityProduct[row];
+  });
+  residual_ = multipliers_;
   factor_.solve(multipliers_);
-  findResidual();
-  const double least = kContradictingRatio * correction_.lpNorm<Eigen::Infinity>();
+  factor_.subtractProduct(multipliers_, residual_);
+  const double least = kContradictingRatio * residual_.lpNorm<Eigen::Infinity>();
   double left = 0, asked = 0;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const double residual = std::abs(correction_[static_cast<Eigen::Index>(i)]) / rows_[i].scale;
-    if (!(residual * rows_[i].scale > least)) continue;
-    left += residual;
-    asked += std::abs(rows_[i].velocityProduct) / rows_[i].scale;
-  }
+  forEachRow([&](const Member& member, std::size_t row, Eigen::Index index) {
+    const double residual = std::abs(residual_[index]);
+    if (!(residual > least)) return;
+    left += residual / member.scale;
+    asked += std::abs(member.velocityProduct[row]) / member.scale;
+  });
   return asked > 0 ? left / asked : 0;
 }
 
 double ConstraintSolver::largestRate(const VectorX& state) const {
   double largest = 0;
-  if (isInBlocks_)
-    for (std::size_t i = 0; i < joints_.size(); ++i) largest = std::max(largest, largestOf(joints_.rateOf(i, state)));
-  else
-    for (const ConstraintRow& row : rows_) largest = std::max(largest, std::abs(rateOf(row, state)) / row.scale);
+  for (const Member& member : members_)
+    withRows(member.rows, [&](auto rows) {
+      std::array<double, rows> rates;
+      findRates<rows>(member, state, rates.data());
+      for (const double rate : rates) largest = std::max(largest, std::abs(rate) / member.scale);
+    });
   return largest;
 }
 

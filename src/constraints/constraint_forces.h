@@ -3,10 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include "constraints/block_ldlt.h"
 #include "constraints/constraint.h"
-#include "constraints/joint_blocks.h"
-#include "constraints/row_response.h"
-#include "constraints/sparse_ldlt.h"
 
 namespace cradle {
 
@@ -25,7 +23,7 @@ class ConstraintSolver {
 
   /// Leaves out the rows of some bodies from the next factorize or project on.
   void exclude(const std::vector<char>& bodies);
-  bool isExcluded(const ConstraintRow& row) const;
+  bool isExcluded(int bodyA, int bodyB) const;
 
   /// Takes the rows in `state`, in which the bodies have `frames`, and factorises.
   void factorize(const VectorX& state, const std::vector<BodyFrame>& frames);
@@ -54,21 +52,30 @@ class ConstraintSolver {
   double largestRate(const VectorX& state) const;
 
  private:
-  /// An entry of the matrix below its diagonal: two rows that act on the same body.
-  struct Coupling {
-    int row, column;
+  /// The rows of a constraint, and M^-1 J^T.
+  struct Member : ConstraintBlock {
+    double inverseMassA = 0, inverseMassB = 0;  // 1/kg; 0 if fixed
+    Columns turnA, turnB;                       // I^-1 angularA, I^-1 angularB; not set where these are zero
   };
-  bool hasJointsAlone() const;
-  void factorizeRows(const VectorX& state, const std::vector<BodyFrame>& frames);
+  /// A body that two constraints have in common, which puts a block beside the diagonal of the matrix.
+  struct Coupling {
+    std::size_t row, column;  // constraints
+    bool rowIsA, columnIsA;   // which of the bodies of each
+    bool isFirst;             // of those of its block
+    std::size_t place;        // of the block
+  };
   bool hasKnownStructure() const;
   void analyze();
-  double entry(int row, int column) const;
+  void findMembers(const VectorX& state, const std::vector<BodyFrame>& frames);
+  void respond(const std::vector<BodyFrame>& frames, Member& member) const;
+  void assemble();
+  void opposeVelocities(const VectorX& state);
+  void opposeAccelerations(const VectorX& derivative);
+  void solve();
   template <class Add>
   void addResponse(const Add& add) const;
-  void regularize(double regularisation);
-  void opposeRates(const VectorX& state);
-  void solve();
-  void findResidual();
+  template <class Visit>
+  void forEachRow(const Visit& visit) const;
   double displace(VectorX& state);
   bool holdWithin(double error, double roundings) const;
   double contradiction(const VectorX& state);
@@ -76,19 +83,13 @@ class ConstraintSolver {
   const Constraints& constraints_;
   const std::vector<RigidBody>& bodies_;
   std::vector<char> excluded_;  // by body, or none
-  bool excludes_ = false;       // any of them
-  JointBlocks joints_;
-  bool isInBlocks_ = false;          // the last factorisation is that of joints_, not of the rows
-  bool areJointsDependent_ = false;  // one of them was singular
   std::vector<BodyFrame> frames_;
-  std::vector<ConstraintRow> rows_;
-  std::vector<RowResponse> responses_;
-  std::vector<std::pair<int, int>> structure_;  // bodies of each row, when the couplings were found
+  std::vector<Member> members_;
+  std::vector<std::array<int, 3>> structure_;  // bodies and rows of each, when the couplings were found
   std::vector<Coupling> couplings_;
-  std::vector<double> diagonal_, regularDiagonal_, entries_;
-  SparseLdlt factor_;
+  BlockLdlt factor_;
   bool isRegular_ = true;
-  VectorX multipliers_, rightHandSide_, correction_, undisplaced_;
+  VectorX multipliers_, rightHandSide_, residual_, undisplaced_;
 };
 
 }  // namespace cradle

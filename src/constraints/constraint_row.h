@@ -18,25 +18,7 @@ struct ConstraintRow {
   double rounding = 0;                        // m, or rad: an error that arithmetic alone explains
 };
 
-/// Of the lengths that enter a row: a few units in their last place.
-constexpr double kRowRounding = 1e-15;
-
 /// J v of a row for the velocities, or accelerations, in `state`.
 double rateOf(const ConstraintRow& row, const VectorX& state);
-
-/// The two bodies of a constraint at one instant, as its rows are made from them.
-struct ConstraintEnds {
-  int bodyA = kFixed, bodyB = kFixed;
-  AttachmentMotion a, b;
-  Vec3 angularVelocityA, angularVelocityB;  // rad/s, world; zero if fixed
-  const Mat3* rotationA = nullptr;          // worldFromBody; null if fixed
-  const Mat3* rotationB = nullptr;
-};
-
-ConstraintEnds endsOf(const Attachment& anchorA, const Attachment& anchorB, const VectorX& state,
-                      const std::vector<BodyFrame>& frames);
-
-/// Acceleration (m/s^2, world) of A's point relative to B's by the angular velocities alone: w x (w x r) of each.
-Vec3 centripetalAcceleration(const ConstraintEnds& ends);
 
 }  // namespace cradle

@@ -143,7 +143,7 @@ void ContactSolver::constrainAccelerations(VectorX& derivative) {
   const VectorX& multipliers = constraintSolver_.constrainAccelerations(derivative);
   Eigen::Index next = 0;
   for (std::size_t row = 0; row < bilateralRows_.size(); ++row)
-    if (!constraintSolver_.isExcluded(bilateralRows_[row]))
+    if (!constraintSolver_.isExcluded(bilateralRows_[row].bodyA, bilateralRows_[row].bodyB))
       bilateralMultipliers_[static_cast<Eigen::Index>(row)] = multipliers[next++];
 }
 

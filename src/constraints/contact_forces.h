@@ -6,6 +6,7 @@
 #include "constraints/constraint_forces.h"
 #include "constraints/contact_rows.h"
 #include "constraints/minimum_norm.h"
+#include "constraints/row_response.h"
 
 namespace cradle {
 

@@ -114,8 +114,9 @@ void ContactSolver::sizeRows() {
   std::vector<char> isGrouped(bodies_.size());
   for (std::size_t body = 0; body < bodies_.size(); ++body) isGrouped[body] = groupOfBody_[body] >= 0;
   constraintSolver_.exclude(isGrouped);
-  hasFreeConstraints_ = std::any_of(bilateralRows_.begin(), bilateralRows_.end(),
-                                    [this](const ConstraintRow& row) { return !constraintSolver_.isExcluded(row); });
+  hasFreeConstraints_ = std::any_of(bilateralRows_.begin(), bilateralRows_.end(), [this](const ConstraintRow& row) {
+    return !constraintSolver_.isExcluded(row.bodyA, row.bodyB);
+  });
 }
 
 }  // namespace cradle

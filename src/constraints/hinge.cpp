@@ -4,16 +4,22 @@
 
 namespace cradle {
 
-void appendRows(const HingeConstraint& hinge, const ConstraintEnds& ends, std::vector<ConstraintRow>& rows) {
-  appendRows(BallJointConstraint(), ends, rows);
-  const Vec3 axis = ends.rotationA ? Vec3(*ends.rotationA * hinge.axisA) : hinge.axisA;
-  const Vec3 &spinA = ends.angularVelocityA, &spinB = ends.angularVelocityB;
-  for (const Vec3& acrossB : hinge.acrossB) {
-    const Vec3 across = ends.rotationB ? Vec3(*ends.rotationB * acrossB) : acrossB;
+void putRows(const HingeConstraint& hinge, const ConstraintEnds& ends, ConstraintBlock& block) {
+  putRows(BallJointConstraint(), ends, block);
+  block.turnsA = ends.a.rotation, block.turnsB = ends.b.rotation;  // wherever the anchors are
+  const Vec3 axis = ends.a.turned(hinge.axisA);
+  const Vec3 &spinA = ends.a.angularVelocity, &spinB = ends.b.angularVelocity;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Vec3 across = ends.b.turned(hinge.acrossB[i]);
     const Vec3 lever = axis.cross(across);  // dC/dt = lever . (w_A - w_B)
     const Vec3 leverRate = spinA.cross(axis).cross(across) + axis.cross(spinB.cross(across));
-    rows.push_back({ends.bodyA, ends.bodyB, Vec3::Zero(), lever, Vec3::Zero(), -lever, axis.dot(across),
-                    leverRate.dot(spinA - spinB), 1, kRowRounding});
+    const std::size_t row = 3 + i;
+    const Eigen::Index column = static_cast<Eigen::Index>(row);
+    block.linear.col(column).setZero();
+    block.angularA.col(column) = lever, block.angularB.col(column) = -lever;
+    block.value[row] = axis.dot(across);
+    block.velocityProduct[row] = leverRate.dot(spinA - spinB);
+    block.rounding[row] = kRowRounding;
   }
 }
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "constraints/constraint_row.h"
+#include "constraints/constraint_block.h"
 
 namespace cradle {
 
@@ -14,6 +14,6 @@ struct HingeConstraint {
   std::array<Vec3, 2> acrossB{};  // unit, orthogonal to the axis and to each other; in body B's frame, or the world
 };
 
-void appendRows(const HingeConstraint& hinge, const ConstraintEnds& ends, std::vector<ConstraintRow>& rows);
+void putRows(const HingeConstraint& hinge, const ConstraintEnds& ends, ConstraintBlock& block);
 
 }  // namespace cradle

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "constraints/constraint_row.h"
+#include "constraints/constraint_block.h"
 
 namespace cradle {
 
@@ -11,6 +11,6 @@ struct RodConstraint {
   double length = 0;  // m, > 0
 };
 
-void appendRows(const RodConstraint& rod, const ConstraintEnds& ends, std::vector<ConstraintRow>& rows);
+void putRows(const RodConstraint& rod, const ConstraintEnds& ends, ConstraintBlock& block);
 
 }  // namespace cradle

@@ -48,10 +48,4 @@ Quat orientationRate(const Quat& worldFromBody, const Vec3& angularVelocity) {
   return Quat(0, half.x(), half.y(), half.z()) * worldFromBody;
 }
 
-Mat3 skew(const Vec3& a) {
-  Mat3 matrix;
-  matrix << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return matrix;
-}
-
 }  // namespace cradle

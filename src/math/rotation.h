@@ -23,6 +23,10 @@ Quat rotationFromEuler(const std::array<double, 3>& angles, const std::string& o
 Quat orientationRate(const Quat& worldFromBody, const Vec3& angularVelocity);
 
 /// The matrix of the cross product: skew(a) b = a x b.
-Mat3 skew(const Vec3& a);
+inline Mat3 skew(const Vec3& a) {
+  Mat3 matrix;
+  matrix << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return matrix;
+}
 
 }  // namespace cradle

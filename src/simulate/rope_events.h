@@ -16,7 +16,7 @@ struct RopeChange {
 };
 
 /// Ropes over time: nothing while slack; an impulse when the length is reached; then a rod, until that would push.
-/// The rods of taut ropes stand behind the scene's own in Constraints::rods.
+/// The constraints of taut ropes, rods, stand behind the scene's own.
 class RopeEvents {
  public:
   /// Keeps a reference to `island`.

@@ -19,12 +19,6 @@ Quat turnedBy(const Vec3& axis, double angle) {
   return Quat(half.cos, half.sin * axis.x(), half.sin * axis.y(), half.sin * axis.z());
 }
 
-Mat3 crossMatrix(const Vec3& v) {
-  Mat3 matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
-}
-
 /// Gram-Schmidt: the first column keeps its direction, the second its plane.
 void orthogonalise(Mat3& matrix) {
   matrix.col(0).normalize();
@@ -42,7 +36,7 @@ TurnedOrientation::TurnedOrientation(RotationStorage storage, const Vec3& rotati
   if (isExact_) {
     matrixStep_ = quaternionStep_.toRotationMatrix();
   } else {
-    matrixStep_ = Mat3::Identity() + crossMatrix(rotation);
+    matrixStep_ = Mat3::Identity() + skew(rotation);
     quaternionStep_ = Quat(1, rotation.x() / 2, rotation.y() / 2, rotation.z() / 2);
   }
 }

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "constraints/constraint_row.h"
+
+namespace cradle {
+
+/// The rows of one bilateral constraint C(positions) = 0 of two bodies at one instant, one to six. It depends on where
+/// A is relative to B, so that dC/dt = linear^T (v_A - v_B) + angularA^T w_A + angularB^T w_B: the columns are J^T in
+/// parts, in the world's frame. As for a ConstraintRow, d^2C/dt^2 = J a + (dJ/dt) v.
+struct ConstraintBlock {
+  static constexpr int kMaxRows = 6;
+  using Columns = Eigen::Matrix<double, 3, kMaxRows>;
+  using Values = std::array<double, kMaxRows>;
+
+  int bodyA = kFixed, bodyB = kFixed;
+  int rows = 0;
+  Columns linear, angularA, angularB;
+  bool isPoint = false;                 // `linear` is the identity, and zero from the fourth row on
+  bool turnsA = false, turnsB = false;  // else angularA, angularB are zero, and not set
+  Values value{};                       // C, the constraint error
+  Values velocityProduct{};             // (dJ/dt) v
+  Values rounding{};                    // m, or rad: an error that arithmetic alone explains
+  double scale = 1;                     // C / scale is the error in m, or rad
+};
+
+/// A body of a constraint at one instant, and the constraint's point on it; world frame.
+struct ConstraintEnd {
+  Vec3 position, arm;              // m: of the point, and from the centre of mass to it; zero if fixed
+  Vec3 velocity, angularVelocity;  // m/s, of the centre of mass; rad/s; zero if fixed
+  const Mat3* rotation = nullptr;  // worldFromBody; null if fixed
+
+  Vec3 pointVelocity() const { return velocity + angularVelocity.cross(arm); }
+  Vec3 centripetalAcceleration() const { return angularVelocity.cross(angularVelocity.cross(arm)); }  // m/s^2
+  Vec3 turned(const Vec3& direction) const { return rotation ? Vec3(*rotation * direction) : direction; }
+};
+
+struct ConstraintEnds {
+  ConstraintEnd a, b;
+  Vec3 centripetalAcceleration() const { return a.centripetalAcceleration() - b.centripetalAcceleration(); }
+};
+
+/// One of the rows.
+ConstraintRow rowOf(const ConstraintBlock& block, int row);
+
+/// Of the lengths that enter a row: a few units in their last place.
+constexpr double kRowRounding = 1e-15;
+
+}  // namespace cradle

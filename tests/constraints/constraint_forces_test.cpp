@@ -1,0 +1,178 @@
+#include "constraints/constraint_forces.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "math/rotation.h"
+
+namespace cradle {
+namespace {
+
+// Blocks are held against a dense matrix of the same rows one by one, each of which mechanism_test.cpp holds against
+// differences of constraint errors.
+
+/// Bodies without any symmetry, so that a wrong frame or sign shows; their states have nothing to do with each other.
+struct JointedBodies {
+  std::vector<RigidBody> bodies;
+  Constraints constraints;
+  VectorX state;
+  std::vector<BodyFrame> frames;
+
+  explicit JointedBodies(int count) : state(VectorX::Zero(stateSize(count))) {
+    for (int i = 0; i < count; ++i) {
+      const Mat3 turn = rotationAbout(Vec3(1, i, 2), 0.3 + i).toRotationMatrix();
+      bodies.push_back(makeRigidBody(
+          {1 + 0.3 * i, Vec3::Zero(), turn * Vec3(0.1 + 0.02 * i, 0.2, 0.25).asDiagonal() * turn.transpose()}));
+      centerOfMass(state, i) = Vec3(0.7 * i, 0.2 - i, 0.1 * i * i);
+      setOrientation(state, i, rotationAbout(Vec3(i, -1, 0.5), 0.8 - i));
+      linearVelocity(state, i) = Vec3(0.4, -1.1 + i, 0.2 * i);
+      angularVelocity(state, i) = Vec3(1.3 - i, -0.6, 2.2);
+    }
+    findBodyFrames(bodies, state, frames);
+  }
+
+  /// Kinds in turn: a ball joint, a hinge, a rod.
+  void tie(int bodyA, int bodyB) {
+    const std::size_t number = constraints.size();
+    if (number % 3 == 0) tie(bodyA, bodyB, BallJointConstraint());
+    if (number % 3 == 1) tie(bodyA, bodyB, HingeConstraint{Vec3(2, 1, 2) / 3, {Vec3::UnitX(), Vec3::UnitZ()}});
+    if (number % 3 == 2) tie(bodyA, bodyB, RodConstraint{0.8});
+  }
+  template <class Kind>
+  void tie(int bodyA, int bodyB, const Kind& kind) {
+    const double i = static_cast<double>(constraints.size());
+    constraints.push_back({{bodyA, Vec3(0.3, -0.2 * i, 0.4)}, {bodyB, Vec3(-0.5, 0.1, 0.2 + 0.1 * i)}, kind});
+  }
+};
+
+/// M^-1 J^T of a row, in the layout of the velocities.
+VectorX responseOf(const JointedBodies& jointed, const ConstraintRow& row) {
+  VectorX response = VectorX::Zero(jointed.state.size());
+  const auto add = [&](int body, const Vec3& linear, const Vec3& angular) {
+    if (body == kFixed) return;
+    const std::size_t at = static_cast<std::size_t>(body);
+    linearVelocity(response, body) += jointed.bodies[at].inverseMass * linear;
+    angularVelocity(response, body) += jointed.frames[at].inverseInertia * angular;
+  };
+  add(row.bodyA, row.linearA, row.angularA);
+  add(row.bodyB, row.linearB, row.angularB);
+  return response;
+}
+
+/// Holds accelerations, velocities and errors against the dense solution. Entries are of the size of 1 to 10, condition
+/// numbers below 1e4.
+void expectAsDense(const JointedBodies& jointed) {
+  std::vector<ConstraintRow> rows;
+  findRows(jointed.constraints, jointed.state, jointed.frames, rows);
+  const Eigen::Index size = std::ssize(rows);
+  ASSERT_EQ(size, rowCount(jointed.constraints));
+  MatrixX matrix(size, size), responses(jointed.state.size(), size);
+  VectorX rates(size), products(size), errors(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const ConstraintRow& row = rows[static_cast<std::size_t>(i)];
+    responses.col(i) = responseOf(jointed, row);
+    for (Eigen::Index j = 0; j < size; ++j) matrix(j, i) = rateOf(rows[static_cast<std::size_t>(j)], responses.col(i));
+    rates[i] = rateOf(row, jointed.state), products[i] = row.velocityProduct, errors[i] = row.value / row.scale;
+  }
+  ConstraintSolver solver(jointed.constraints, jointed.bodies);
+  solver.factorize(jointed.state);
+  EXPECT_NEAR(solver.largestError(), errors.cwiseAbs().maxCoeff(), 1e-13);
+
+  const auto dense = matrix.partialPivLu();
+  VectorX state = jointed.state;
+  solver.constrainVelocities(state);
+  EXPECT_LT((state - jointed.state + responses * dense.solve(rates)).cwiseAbs().maxCoeff(), 1e-11);
+  EXPECT_LT(solver.largestRate(state), 1e-11);
+
+  // Accelerations as if the velocities were those of all bodies at once.
+  VectorX derivative = jointed.state;
+  const VectorX forces = solver.constrainAccelerations(derivative);
+  const VectorX expected = dense.solve(-rates - products);
+  EXPECT_LT((forces - expected).cwiseAbs().maxCoeff(), 1e-11 * expected.cwiseAbs().maxCoeff());
+  EXPECT_LT((derivative - jointed.state - responses * expected).cwiseAbs().maxCoeff(),
+            1e-11 * expected.cwiseAbs().maxCoeff());
+}
+
+TEST(ConstraintForces, OfAChainAreThoseOfADenseMatrix) {
+  JointedBodies chain(5);
+  chain.tie(0, kFixed), chain.tie(1, 0), chain.tie(1, 2), chain.tie(3, 2), chain.tie(kFixed, 3), chain.tie(3, 4);
+  expectAsDense(chain);
+}
+
+TEST(ConstraintForces, OfATreeWithAnchorsAtCentersOfMassAreThoseOfADenseMatrix) {
+  JointedBodies tree(5);
+  tree.tie(0, kFixed), tree.tie(1, 0), tree.tie(2, 0), tree.tie(0, 3), tree.tie(4, 3);
+  for (Constraint& constraint : tree.constraints) constraint.anchorB.point.setZero();
+  tree.constraints[0].anchorA.point.setZero();
+  expectAsDense(tree);
+}
+
+/// Eliminating a constraint of a ring fills in what was empty.
+TEST(ConstraintForces, OfARingAreThoseOfADenseMatrix) {
+  JointedBodies ring(8);
+  for (int i = 0; i < 8; ++i) ring.tie(i, (i + 1) % 8);
+  ring.tie(2, kFixed);
+  expectAsDense(ring);
+}
+
+/// Two rods between the same bodies have both in common.
+TEST(ConstraintForces, OfTwoConstraintsBetweenTheSameBodiesAreThoseOfADenseMatrix) {
+  JointedBodies two(2);
+  for (int i = 0; i < 3; ++i) two.tie(i % 2, 1 - i % 2, RodConstraint{0.7});
+  expectAsDense(two);
+}
+
+TEST(ConstraintForces, FollowAChangeOfWhatIsTied) {
+  JointedBodies tied(3), fresh(3);
+  ConstraintSolver solver(tied.constraints, tied.bodies);
+  tied.tie(0, 1), tied.tie(1, 2);
+  solver.factorize(tied.state);
+  tied.constraints.clear();
+  for (JointedBodies* each : {&tied, &fresh}) each->tie(kFixed, 1), each->tie(1, 2), each->tie(0, 2);
+  ConstraintSolver another(fresh.constraints, fresh.bodies);
+  solver.factorize(tied.state), another.factorize(fresh.state);
+  solver.constrainVelocities(tied.state), another.constrainVelocities(fresh.state);
+  EXPECT_EQ(tied.state, fresh.state);
+}
+
+/// A joint that is there twice does what one does.
+TEST(ConstraintForces, TwoEqualJointsDoWhatOneDoes) {
+  JointedBodies one(2), two(2);
+  one.tie(0, 1);
+  two.constraints = {one.constraints[0], one.constraints[0]};
+  ConstraintSolver single(one.constraints, one.bodies), twin(two.constraints, two.bodies);
+  single.factorize(one.state), twin.factorize(two.state);
+  single.constrainVelocities(one.state), twin.constrainVelocities(two.state);
+  EXPECT_LT((one.state - two.state).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+/// A rope beside joints goes taut and slack again.
+TEST(ConstraintForces, HaveAMultiplierForEachRowWhateverWasTiedBefore) {
+  JointedBodies jointed(2);
+  jointed.tie(0, 1);
+  const Constraint rod{{0, Vec3(0.1, 0.2, 0.3)}, {kFixed, Vec3(1, 2, 3)}, RodConstraint{2}};
+  ConstraintSolver solver(jointed.constraints, jointed.bodies);
+  VectorX rate = VectorX::Zero(jointed.state.size());
+  for (const bool isTaut : {true, false, true}) {
+    jointed.constraints.resize(1);
+    if (isTaut) jointed.constraints.push_back(rod);
+    solver.factorize(jointed.state);
+    EXPECT_EQ(solver.constrainAccelerations(rate).size(), isTaut ? 4 : 3);
+  }
+}
+
+/// Bodies that are left out keep their velocities, and what ties them ties nobody.
+TEST(ConstraintForces, LeaveOutTheRowsOfExcludedBodies) {
+  JointedBodies jointed(3), alone(3);
+  jointed.tie(0, kFixed), jointed.tie(0, 1), jointed.tie(1, 2);
+  alone.tie(0, kFixed);
+  ConstraintSolver solver(jointed.constraints, jointed.bodies), single(alone.constraints, alone.bodies);
+  solver.exclude({0, 1, 0});
+  solver.factorize(jointed.state), single.factorize(alone.state);
+  solver.constrainVelocities(jointed.state), single.constrainVelocities(alone.state);
+  EXPECT_EQ(jointed.state, alone.state);
+}
+
+}  // namespace
+}  // namespace cradle
