@@ -6,19 +6,21 @@
 namespace cradle {
 namespace {
 
-constexpr double kSameFaceNormal = 1 - 1e-4;  // cosine: within 0.8 degrees
-constexpr double kSameRatio = 1e-9;           // of the size: points as near are one, and heights as near are level
-constexpr double kRounding = 1e-14;           // of unit normals
+// Cosine (0.8 degrees): contacts whose normals are as near are those of one face. 0.3 or 8 degrees change no test.
+constexpr double kClusterCosine = 1 - 1e-4;
+constexpr double kSamePlaceRatio = 1e-9;   // of the size: points as near are one, and heights as near are equal
+constexpr double kNormalRounding = 1e-14;  // 90 unit roundoffs: unit normals that differ by less are equal
 
-constexpr double kHalf = 0.5, kRoot = std::numbers::sqrt3 / 2;
-constexpr std::array<std::array<double, 2>, 6> kDirections = {
-    {{1, 0}, {kHalf, kRoot}, {-kHalf, kRoot}, {-1, 0}, {-kHalf, -kRoot}, {kHalf, -kRoot}}};
+// Six directions across the normal, 60 degrees apart: (cosine, sine).
+constexpr double kCosine60 = 0.5, kSine60 = std::numbers::sqrt3 / 2;
+constexpr std::array<std::array<double, 2>, 6> kHexagon = {
+    {{1, 0}, {kCosine60, kSine60}, {-kCosine60, kSine60}, {-1, 0}, {-kCosine60, -kSine60}, {kCosine60, -kSine60}}};
 
-/// The contacts of one normal, and which of them stay.
+/// The contacts of (nearly) one normal.
 struct Cluster {
   const std::vector<ContactPoint>& contacts;
   std::vector<std::size_t> members;
-  double same;  // m
+  double same;  // m: points and heights that differ by less are equal
 
   /// The farthest along a direction; among equals the farthest along the other one, then the first.
   std::size_t supportPoint(const Vec3& direction, const Vec3& other) const {
@@ -34,7 +36,7 @@ struct Cluster {
   void markKept(std::vector<char>& isKept) const {
     const Vec3& normal = contacts[members[0]].normal;
     const Vec3 across = normal.unitOrthogonal(), other = normal.cross(across);
-    for (const auto& [x, y] : kDirections) isKept[supportPoint(x * across + y * other, x * other - y * across)] = 1;
+    for (const auto& [x, y] : kHexagon) isKept[supportPoint(x * across + y * other, x * other - y * across)] = 1;
     std::size_t deepest = members[0];
     double least = std::numeric_limits<double>::infinity(), leastKept = least;
     for (const std::size_t member : members) {
@@ -45,7 +47,8 @@ struct Cluster {
     if (least < leastKept - same) isKept[deepest] = 1;
   }
 
-  /// The mean of the normals that were found at a place: of two mirrored edges that meet each finds its own face's.
+  /// The mean of the normals that were found at one place. Where two mirrored edges meet, each has found the normal of
+  /// its own face: their mean is mirrored, too.
   Vec3 normalAt(std::size_t place) const {
     const Vec3 &point = contacts[place].point, &first = contacts[place].normal;
     Vec3 sum = Vec3::Zero();
@@ -53,7 +56,7 @@ struct Cluster {
     for (const std::size_t member : members)
       if ((contacts[member].point - point).norm() <= same) {
         sum += contacts[member].normal;
-        doDiffer = doDiffer || (contacts[member].normal - first).norm() > kRounding;
+        doDiffer = doDiffer || (contacts[member].normal - first).norm() > kNormalRounding;
       }
     return doDiffer ? sum.normalized() : first;
   }
@@ -65,9 +68,9 @@ void reduceContacts(std::size_t first, double size, std::vector<ContactPoint>& c
   std::vector<Cluster> clusters;
   for (std::size_t i = first; i < contacts.size(); ++i) {
     std::size_t at = 0;
-    while (at < clusters.size() && contacts[clusters[at].members[0]].normal.dot(contacts[i].normal) < kSameFaceNormal)
+    while (at < clusters.size() && contacts[clusters[at].members[0]].normal.dot(contacts[i].normal) < kClusterCosine)
       ++at;
-    if (at == clusters.size()) clusters.push_back({contacts, {}, kSameRatio * size});
+    if (at == clusters.size()) clusters.push_back({contacts, {}, kSamePlaceRatio * size});
     clusters[at].members.push_back(i);
   }
   std::vector<char> isKept(contacts.size(), 0);

@@ -5,7 +5,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kAcross = 1e-15;  // cosine: rounding
+constexpr double kPerpendicularCosine = 1e-15;  // ten unit roundoffs: as near to perpendicular as rounding allows
 
 }  // namespace
 
@@ -40,13 +40,14 @@ Vec3 Core::rimPoint(double side, const Vec3& direction) const {
 }
 
 Vec3 unitAcross(const Vec3& axis, const Vec3& direction) {
-  // Twice: what is left of a direction along the axis is rounding, and that need not be across it.
+  // Gram-Schmidt twice: the part of a direction across an axis that it nearly follows is rounding, which may have any
+  // direction.
   Vec3 aside = direction - axis.dot(direction) * axis;
   const double length = aside.norm();
   if (!(length > 0)) return axis.unitOrthogonal();
   aside /= length;
   const double along = axis.dot(aside);
-  if (std::abs(along) < kAcross) return aside;
+  if (std::abs(along) < kPerpendicularCosine) return aside;
   if (std::abs(along) > 0.5) return axis.unitOrthogonal();
   return (aside - along * axis).normalized();
 }

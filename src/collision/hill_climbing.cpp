@@ -1,9 +1,9 @@
-// A gap seen by a normal n, -h_A(n) - h_B(-n) with the support functions h, is largest where n fits features of both
-// cores: a flat face has one normal; an edge, or a cylinder's side, needs n across it; a corner allows any; and a rim's
-// point moves with n. The features at a given n are few, so all their pairs are solved, and the best gap that the cores
-// really have along one of the results is the next n, until there is no gain. Pairs with a rim are found as nearest
-// points of a circle and a line or of two circles by Newton's method; their normal is across both tangents, which holds
-// where they touch and where they overlap.
+// The support gap g(n) = -h_A(n) - h_B(-n), with the support functions h, has its local maxima at normals n that fit
+// features of both cores: a face has one normal; an edge, or a cylinder's side, needs n across it; a corner allows any
+// n; and the point of a rim moves with n. Few features are near a given n. One round solves all pairs of them for their
+// normals, and goes on from the normal with the largest gap of the whole cores, until there is no gain. The nearest
+// points of a rim and a line, or of two rims, are found by Newton's method; their normal is across both tangents, where
+// they touch as well as where they overlap.
 
 #include "collision/hill_climbing.h"
 
@@ -11,20 +11,26 @@
 #include <cmath>
 #include <memory_resource>
 
+#include "collision/convex_tolerances.h"
 #include "collision/gjk.h"
 
 namespace cradle {
 namespace {
 
-constexpr int kMaxRounds = 12;
-constexpr int kMaxNewtonSteps = 20;
-constexpr double kLongestStep = 0.5;      // rad
-constexpr double kLastStep = 1e-15;       // rad
-constexpr double kParallelSine = 1e-14;   // between unit vectors: rounding
-constexpr double kAmbiguousCosine = 0.2;  // between normal and a cylinder's axis: either end may be the one
-constexpr double kGain = 1e-15;           // of the size
-constexpr double kPulledRatio = 0.01;     // of the size: far enough for a direction, near enough to come on
-constexpr double kSameDirection = 1e-5;   // rad: what the direction to nearest points of round cores is uncertain by
+constexpr int kMaxClimbRounds = 12;  // half or twice as many change no test
+constexpr int kMaxNewtonSteps = 20;  // each doubles the digits; half or twice as many change no test
+// rad: Newton's steps are cut to it, so that a rim's point stays on its side of the rim. A tenth or ten times as much
+// changes no test.
+constexpr double kLongestStep = 0.5;
+constexpr double kLastStep = 1e-15;  // rad: ten unit roundoffs of a unit vector
+// Sine: the cross product of unit vectors at a smaller angle, 90 unit roundoffs, has no digit that is not rounding.
+constexpr double kNoCrossProduct = 1e-14;
+// Cosine between the direction and a cylinder's axis: within it, 0.2 rad of the side, the rims of both ends are tried.
+constexpr double kAmbiguousCosine = 0.2;
+constexpr double kGainRatio = 1e-15;  // of the size: a gain by less is rounding, and ends the climb
+// rad: nearest points whose direction is as near to that of the climb lead nowhere else. A tenth or ten times as much
+// changes no test.
+constexpr double kSameDirection = 1e-5;
 
 struct Line {
   Vec3 point, direction;
@@ -37,7 +43,7 @@ struct Rim {
 
 using Memory = std::pmr::monotonic_buffer_resource;
 
-/// What a core has near the direction in which it is looked at from outside.
+/// The features of a core that are near its support point in a direction.
 struct Features {
   explicit Features(Memory* memory) : flats(memory), lines(memory), rims(memory), corners(memory) {}
   std::pmr::vector<Vec3> flats;  // outward normals
@@ -109,8 +115,9 @@ Vec3 pointOf(const Rim& rim) {
   return rim.center + rim.radius * rim.radial;
 }
 
-/// Turns a rim's point to where it is nearest to a line: F = d.t = 0, d from the rim's point across to the line, t the
-/// tangent; F' = -r (1 - (e.t)^2) - d.u.
+/// Turns a rim's point to where it is nearest to a line, by Newton's method on F = d . t = 0: d leads from the point
+/// straight to the line, t is the rim's tangent, e the line's direction, u the radial direction, r the radius, and
+/// dF/dangle = -r (1 - (e . t)^2) - d . u.
 void turnTowards(const Line& line, Rim& rim) {
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
     const Vec3 tangent = rim.axis.cross(rim.radial), between = without(line.direction, line.point - pointOf(rim));
@@ -123,108 +130,115 @@ void turnTowards(const Line& line, Rim& rim) {
   }
 }
 
-/// Turns both rims' points to where they are nearest to each other: Newton's method on |d|^2 / 2.
+/// Turns both rims' points to where they are nearest to each other: Newton's method on the minimum of |d|^2 / 2, where
+/// d leads from one to the other.
 void turnTowards(Rim& other, Rim& rim) {
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
     const Vec3 tangentA = rim.axis.cross(rim.radial), tangentB = other.axis.cross(other.radial);
     const Vec3 between = pointOf(other) - pointOf(rim);
-    const double slopeA = -between.dot(tangentA), slopeB = between.dot(tangentB);  // by length along each rim
-    const double bendA = 1 + between.dot(rim.radial) / rim.radius, mixed = -tangentA.dot(tangentB);
-    const double bendB = 1 - between.dot(other.radial) / other.radius;
-    const double determinant = bendA * bendB - mixed * mixed;
-    if (!(determinant > 0 && bendA > 0)) return;
-    const double stepA = (mixed * slopeB - bendB * slopeA) / determinant / rim.radius;
-    const double stepB = (mixed * slopeA - bendA * slopeB) / determinant / other.radius;
+    // First and second derivatives by the length along each rim.
+    const double slopeA = -between.dot(tangentA), slopeB = between.dot(tangentB);
+    const double secondA = 1 + between.dot(rim.radial) / rim.radius, mixed = -tangentA.dot(tangentB);
+    const double secondB = 1 - between.dot(other.radial) / other.radius;
+    const double determinant = secondA * secondB - mixed * mixed;
+    if (!(determinant > 0 && secondA > 0)) return;
+    const double stepA = (mixed * slopeB - secondB * slopeA) / determinant / rim.radius;
+    const double stepB = (mixed * slopeA - secondA * slopeB) / determinant / other.radius;
     turnBy(stepA, rim), turnBy(stepB, other);
     if (std::abs(stepA) + std::abs(stepB) < kLastStep) return;
   }
 }
 
-class Ascent {
+class HillClimb {
  public:
-  Ascent(const SeparatingAxis& start, const Core& a, const Core& b) : a_(a), b_(b), best_(start) {
+  HillClimb(const SeparatingAxis& start, const Core& a, const Core& b) : a_(a), b_(b), best_(start) {
     best_.separation = gapAlong(a, b, start.normal);
   }
 
   SeparatingAxis climb(double enough) {
-    const double size = std::min(a_.collider().boundingRadius, b_.collider().boundingRadius);
-    for (int round = 0; round < kMaxRounds; ++round) {
+    const ConvexTolerances tolerances(a_, b_);
+    const double gain = kGainRatio * tolerances.size;
+    for (int round = 0; round < kMaxClimbRounds; ++round) {
       const double before = best_.separation;
       near_ = best_.normal;
-      lookAround();
-      if (best_.separation > before + kGain * size) continue;
+      tryFeaturePairs();
+      if (best_.separation > before + gain) continue;
       if (best_.separation >= enough) break;
-      pullApart(size);
-      if (!(best_.separation > before + kGain * size)) break;
+      tryCoresApart(tolerances.pulledApart);
+      if (!(best_.separation > before + gain)) break;
     }
     return best_;
   }
 
  private:
-  /// Where no feature near the normal n leads on: of the cores moved apart along n by s, the nearest points' direction
-  /// m sees no less than n does, f(m) + s n.m >= f(n) + s, so that f(m) >= f(n) + s (1 - n.m).
-  void pullApart(double size) {
-    const Vec3 way = (kPulledRatio * size - best_.separation) * best_.normal;
+  /// Leads on where no feature near the normal n does. Moved apart along n by a length s, the cores have the support
+  /// gap g(m) + s n . m, whose largest value is their distance, at the direction m between their nearest points. So
+  /// g(m) + s n . m >= g(n) + s, and g(m) >= g(n) + s (1 - n . m): no less than before. `distance` (m) is that of the
+  /// cores along n after the move.
+  void tryCoresApart(double distance) {
+    const Vec3 way = (distance - best_.separation) * best_.normal;
     const GjkResult apart = distanceOf(a_, b_.moved(way));
     if ((apart.normal - best_.normal).squaredNorm() < kSameDirection * kSameDirection) return;
     near_ = apart.normal;
-    look(near_);
-    lookAround();
+    tryDirection(near_);
+    tryFeaturePairs();
   }
 
-  void lookAround() {
+  void tryFeaturePairs() {
     std::array<std::byte, 8192> memory;
     Memory pool(memory.data(), memory.size());
     const Features ofA = featuresOf(a_, near_, &pool), ofB = featuresOf(b_, -near_, &pool);
-    for (const Vec3& flat : ofA.flats) look(flat);
-    for (const Vec3& flat : ofB.flats) look(-flat);
+    for (const Vec3& flat : ofA.flats) tryDirection(flat);
+    for (const Vec3& flat : ofB.flats) tryDirection(-flat);
     for (const Line& lineA : ofA.lines)
       for (const Line& lineB : ofB.lines) {
-        lookBothWays(across(lineA.direction, lineB.direction));
+        tryBothSenses(across(lineA.direction, lineB.direction));
         if (ofA.corners.empty() && ofB.corners.empty())  // two cylinders that may be parallel
-          lookBothWays(unitAcross(lineA.direction, lineB.point - lineA.point));
+          tryBothSenses(unitAcross(lineA.direction, lineB.point - lineA.point));
       }
-    lookFromLinesToCorners(ofA, ofB, 1);
-    lookFromLinesToCorners(ofB, ofA, -1);
+    tryLinesWithCorners(ofA, ofB, 1);
+    tryLinesWithCorners(ofB, ofA, -1);
     for (const Vec3& cornerA : ofA.corners)
-      for (const Vec3& cornerB : ofB.corners) look(cornerB - cornerA);
-    lookFromRims(ofA, ofB, 1);
-    lookFromRims(ofB, ofA, -1);
+      for (const Vec3& cornerB : ofB.corners) tryDirection(cornerB - cornerA);
+    tryRims(ofA, ofB, 1);
+    tryRims(ofB, ofA, -1);
     for (const Rim& rimA : ofA.rims)
       for (const Rim& rimB : ofB.rims) {
         Rim a = rimA, b = rimB;
         turnTowards(b, a);
-        lookBothWays(across(a.axis.cross(a.radial), b.axis.cross(b.radial)));
-        lookBothWays(pointOf(b) - pointOf(a));
+        tryBothSenses(across(a.axis.cross(a.radial), b.axis.cross(b.radial)));
+        tryBothSenses(pointOf(b) - pointOf(a));
       }
   }
 
   /// `sign` is -1 if the lines are B's.
-  void lookFromLinesToCorners(const Features& lines, const Features& corners, double sign) {
+  void tryLinesWithCorners(const Features& lines, const Features& corners, double sign) {
     for (const Line& line : lines.lines)
-      for (const Vec3& corner : corners.corners) look(sign * unitAcross(line.direction, corner - line.point));
+      for (const Vec3& corner : corners.corners) tryDirection(sign * unitAcross(line.direction, corner - line.point));
   }
 
-  void lookFromRims(const Features& rims, const Features& others, double sign) {
+  /// Rims of one core with lines and corners of the other. `sign` is -1 if the rims are B's.
+  void tryRims(const Features& rims, const Features& others, double sign) {
     for (const Rim& start : rims.rims) {
       for (const Line& line : others.lines) {
         Rim rim = start;
         turnTowards(line, rim);
-        lookBothWays(across(rim.axis.cross(rim.radial), line.direction));
-        lookBothWays(unitAcross(line.direction, line.point - pointOf(rim)));
+        tryBothSenses(across(rim.axis.cross(rim.radial), line.direction));
+        tryBothSenses(unitAcross(line.direction, line.point - pointOf(rim)));
       }
       for (const Vec3& corner : others.corners) {
         Rim rim = start;
         rim.radial = unitAcross(rim.axis, corner - rim.center);
-        look(sign * (corner - pointOf(rim)));
+        tryDirection(sign * (corner - pointOf(rim)));
       }
     }
   }
 
-  /// Along a line of which the sense does not matter.
-  void lookBothWays(const Vec3& direction) { look(direction.dot(near_) < 0 ? Vec3(-direction) : direction); }
+  /// Tries a direction in the sense in which it is nearer to that of the round.
+  void tryBothSenses(const Vec3& direction) { tryDirection(direction.dot(near_) < 0 ? Vec3(-direction) : direction); }
 
-  void look(const Vec3& direction) {
+  /// Keeps a direction if it sees a larger gap than the best one.
+  void tryDirection(const Vec3& direction) {
     const double length = direction.norm();
     if (!(length > 0)) return;
     const Vec3 normal = direction / length;
@@ -234,7 +248,7 @@ class Ascent {
 
   const Core &a_, &b_;
   SeparatingAxis best_;
-  Vec3 near_;
+  Vec3 near_;  // unit: features near it are paired in this round
 };
 
 }  // namespace
@@ -242,12 +256,12 @@ class Ascent {
 Vec3 across(const Vec3& directionA, const Vec3& directionB) {
   const Vec3 aside = without(directionA, directionB);
   const double sine = aside.norm();
-  if (sine <= kParallelSine) return Vec3::Zero();
+  if (sine <= kNoCrossProduct) return Vec3::Zero();
   return directionA.cross(unitAcross(directionA, directionB));
 }
 
 SeparatingAxis climbedSupportGap(const SeparatingAxis& axis, const Core& a, const Core& b, double enough) {
-  return Ascent(axis, a, b).climb(enough);
+  return HillClimb(axis, a, b).climb(enough);
 }
 
 }  // namespace cradle

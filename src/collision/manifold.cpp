@@ -1,7 +1,7 @@
-// The incident feature clipped against the side planes of the reference face (D. Gregorius, "Robust Contact Creation
-// for Physics Simulations", GDC 2015). Points of the incident feature count as its corners, or as points of its
-// spheres, also where it was clipped: they lie on it. Discs are clipped as polygons of 16 sides: those of the prism
-// inside the cylinder, a little larger where they are the reference so that what stands on the rim is not lost.
+// The incident feature is clipped against the side planes of the reference face (D. Gregorius, "Robust Contact Creation
+// for Physics Simulations", GDC 2015). Its points count as corners, or as points of the spheres around them, also where
+// it was clipped, as they lie on it. Discs are polygons of 16 sides: those of the prism inside the cylinder. Where a
+// disc is the reference, the polygon is grown to one around it, so that a corner that stands on the rim is not lost.
 
 #include "collision/manifold.h"
 
@@ -10,38 +10,34 @@
 #include <cmath>
 #include <memory_resource>
 
+#include "collision/convex_tolerances.h"
 #include "collision/gjk.h"
 #include "collision/polygon_clip.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kAlong = 1e-7;          // rad: a face or line so near to the contact's plane lies in it
-constexpr double kTiltedCosine = 0.5;    // between a face's normal and the contact's: more tilted, it does not carry
-constexpr double kStandingCosine = 0.7;  // between a cylinder's axis and the contact's normal: its end carries
-constexpr double kOuterRatio = 1.0195911582083184;  // 1 / cos(pi / 16): polygon around a disc to the one in it
-constexpr double kDeeperRatio = 1e-9;               // of the size: a manifold must hold a point so near to the deepest
-constexpr double kPlacePulledRatio = 0.01;          // of the size: far enough to tell places of nearest points
-constexpr std::size_t kMaxPatchPoints = 8;
-constexpr double kLying =
-    1e-5;  // rad: a cylinder so little tilted is a sphere of its radius at both rims, to 1e-10 of it
+// Between a cylinder's axis and the contact's normal, 45 degrees: nearer, its end carries, else its side; of a capsule,
+// nearer, the sphere at its end carries alone.
+constexpr double kStandingCosine = 0.7;
+// 1 / cos(pi / 16): from a polygon of 16 sides to one around its disc
+constexpr double kOutscribedRatio = 1.0195911582083184;
+// rad: a cylinder so little tilted rolls at both rims like a sphere of its radius, to the square of this, 1e-10 of it.
+constexpr double kLyingCosine = 1e-5;
 
 using Memory = std::pmr::monotonic_buffer_resource;
 
-/// What of a collider's surface may carry contact.
+/// The part of a collider's surface that may carry contact: a face, a line, or a point.
 struct FeatureManifold {
   explicit FeatureManifold(Memory* memory) : points(memory) {}
   Points points;              // m: one, the ends of a line, or a polygon, counter-clockwise seen from outside
   double radius = kNotRound;  // m, at those points as in ContactPoint
-  bool isFlat = false;        // a face whose normal is the direction asked for
+  bool isFlat = false;        // a face across the contact's normal
 };
 
-double marginOf(const Core& core) {
+/// Radius (m) of the spheres around the points of a core.
+double radiusAround(const Core& core) {
   return core.collider().radius;
-}
-
-double sizeOf(const Core& core) {
-  return core.collider().boundingRadius;
 }
 
 void addLoop(const Core& core, const Polytope::Face& face, FeatureManifold& patch) {
@@ -49,16 +45,17 @@ void addLoop(const Core& core, const Polytope::Face& face, FeatureManifold& patc
     patch.points.push_back(core.placed(core.collider().polytope->vertices[vertex]));
 }
 
-bool isAlong(const Vec3& normal, const Vec3& outward) {
-  return (normal - outward).squaredNorm() < kAlong * kAlong;
+bool areParallel(const Vec3& normal, const Vec3& outward) {
+  constexpr double angle = ConvexTolerances::kParallelAngle;
+  return (normal - outward).squaredNorm() < angle * angle;
 }
 
 void addEndOfCylinder(const Core& core, const Vec3& outward, FeatureManifold& patch) {
   const Polytope& prism = *core.collider().polytope;
   const double cosine = core.axis().dot(outward);
   addLoop(core, prism.faces[prism.faces.size() - (cosine > 0 ? 2 : 1)], patch);  // as inscribedPrism has them
-  patch.isFlat = isAlong(cosine > 0 ? core.axis() : Vec3(-core.axis()), outward);
-  if (patch.isFlat) patch.radius = 0;  // else a rim, which rolls
+  patch.isFlat = areParallel(cosine > 0 ? core.axis() : Vec3(-core.axis()), outward);
+  if (patch.isFlat) patch.radius = 0;  // corners; of a tilted end a rim carries, which rolls
 }
 
 void addFaceOrCorner(const Core& core, const Vec3& outward, FeatureManifold& patch) {
@@ -66,7 +63,7 @@ void addFaceOrCorner(const Core& core, const Vec3& outward, FeatureManifold& pat
   const Vec3 direction = core.turnedBack(outward);
   const std::size_t vertex = supportVertex(polytope, direction);
   const Polytope::Face* best = nullptr;
-  double largest = kTiltedCosine;
+  double largest = ConvexTolerances::kMinCarryingCosine;
   for (std::size_t i = polytope.firstNeighbor[vertex]; i < polytope.firstNeighbor[vertex + 1]; ++i) {
     const Polytope::Edge& edge = polytope.edges[polytope.edgesAt[i]];
     const Polytope::Face& face = polytope.faces[edge.from == vertex ? edge.left : edge.right];
@@ -75,14 +72,14 @@ void addFaceOrCorner(const Core& core, const Vec3& outward, FeatureManifold& pat
   patch.radius = 0;
   if (!best) return patch.points.push_back(core.placed(polytope.vertices[vertex]));
   addLoop(core, *best, patch);
-  patch.isFlat = isAlong(best->normal, direction);
+  patch.isFlat = areParallel(best->normal, direction);
 }
 
-/// What faces `outward`, tilted as it may be.
+/// The feature that faces `outward`, the contact's normal out of the collider. It may be tilted.
 FeatureManifold manifoldOf(const Core& core, const Vec3& outward, Memory* memory) {
   FeatureManifold patch(memory);
   const double cosine = core.axis().dot(outward);
-  const Vec3 margin = marginOf(core) * outward;
+  const Vec3 around = radiusAround(core) * outward;
   if (core.collider().kind() == ColliderKind::polytope) {
     addFaceOrCorner(core, outward, patch);
   } else if (core.rimRadius() > 0) {
@@ -90,14 +87,14 @@ FeatureManifold manifoldOf(const Core& core, const Vec3& outward, Memory* memory
       addEndOfCylinder(core, outward, patch);
     } else {
       patch.points = {core.rimPoint(1, outward), core.rimPoint(-1, outward)};
-      if (std::abs(cosine) < kLying) patch.radius = core.rimRadius();
+      if (std::abs(cosine) < kLyingCosine) patch.radius = core.rimRadius();
     }
   } else {
-    patch.radius = marginOf(core);
+    patch.radius = radiusAround(core);
     if (std::abs(cosine) < kStandingCosine)
-      patch.points = {core.end(1) + margin, core.end(-1) + margin};
+      patch.points = {core.end(1) + around, core.end(-1) + around};
     else
-      patch.points = {core.supportPoint(outward) + margin};
+      patch.points = {core.supportPoint(outward) + around};
   }
   return patch;
 }
@@ -108,10 +105,10 @@ struct Reference {
   double offset;
 };
 
-/// Contacts of what is left of an incident manifold on a face of A.
+/// Contacts of an incident manifold, clipped already, on a face of A: a point each that is within `margin` (m).
 void appendOnFace(const Reference& face, FeatureManifold& incident, double margin, std::vector<ContactPoint>& points) {
   std::erase_if(incident.points, [&](const Vec3& point) { return face.normal.dot(point) - face.offset > margin; });
-  thinOut(kMaxPatchPoints, incident.points);
+  thinOut(kMaxManifoldPoints, incident.points);
   for (const Vec3& point : incident.points) {
     const double separation = face.normal.dot(point) - face.offset;
     points.push_back({point - separation / 2 * face.normal, face.normal, separation, kFlat, incident.radius});
@@ -121,10 +118,10 @@ void appendOnFace(const Reference& face, FeatureManifold& incident, double margi
 /// Grows the polygon in a disc to one around it.
 void growDisc(const Core& core, FeatureManifold& patch) {
   const Vec3 center = core.end(core.axis().dot(patch.points[0] - core.center()) < 0 ? -1 : 1);
-  for (Vec3& point : patch.points) point = center + kOuterRatio * (point - center);
+  for (Vec3& point : patch.points) point = center + kOutscribedRatio * (point - center);
 }
 
-/// Contacts of an incident manifold on a flat one of A, with that normal out of it. Changes both.
+/// Contacts of an incident manifold on a flat manifold of A, whose normal (out of A) is `normal`. Changes both.
 void clipOnFace(const Core& core, const Vec3& normal, FeatureManifold& reference, FeatureManifold& incident,
                 double margin, std::vector<ContactPoint>& points) {
   if (core.rimRadius() > 0) growDisc(core, reference);
@@ -137,20 +134,20 @@ void clipOnFace(const Core& core, const Vec3& normal, FeatureManifold& reference
   appendOnFace({normal, core.supportValue(normal)}, incident, margin, points);
 }
 
-/// A straight part of a surface across `outward`.
+/// A straight line of a surface across the contact's normal: an edge, or the side of a cylinder or capsule.
 struct Ridge {
   bool isThere = false;
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();  // m
 };
 
 Ridge ridgeOf(const Core& core, const Vec3& outward) {
-  const Vec3 margin = marginOf(core) * outward;
+  const Vec3 around = radiusAround(core) * outward;
   if (core.collider().kind() == ColliderKind::polytope) {
     const Polytope& polytope = *core.collider().polytope;
     const std::size_t vertex = supportVertex(polytope, core.turnedBack(outward));
     const Vec3 from = core.placed(polytope.vertices[vertex]);
     Ridge best;
-    double least = kAlong;
+    double least = ConvexTolerances::kParallelAngle;
     for (std::size_t i = polytope.firstNeighbor[vertex]; i < polytope.firstNeighbor[vertex + 1]; ++i) {
       const Vec3 to = core.placed(polytope.vertices[polytope.neighbors[i]]);
       const double slope = std::abs(outward.dot(to - from)) / (to - from).norm();
@@ -158,16 +155,16 @@ Ridge ridgeOf(const Core& core, const Vec3& outward) {
     }
     return best;
   }
-  if (std::abs(core.axis().dot(outward)) >= kAlong) return {};
+  if (std::abs(core.axis().dot(outward)) >= ConvexTolerances::kParallelAngle) return {};
   if (core.rimRadius() > 0) return {true, core.rimPoint(-1, outward), core.rimPoint(1, outward)};
-  return {true, core.end(-1) + margin, core.end(1) + margin};
+  return {true, core.end(-1) + around, core.end(1) + around};
 }
 
-/// Ends of what two parallel ridges share, if they do.
+/// Contacts at both ends of the line that two parallel ridges share; none if they are not parallel or share none.
 void appendOnRidges(const Ridge& a, const Ridge& b, const Vec3& normal, double margin,
                     std::vector<ContactPoint>& points) {
   const Vec3 along = (a.to - a.from).normalized();
-  if (along.cross((b.to - b.from).normalized()).norm() > kAlong) return;
+  if (along.cross((b.to - b.from).normalized()).norm() > ConvexTolerances::kParallelAngle) return;
   const double length = along.dot(a.to - a.from);
   double from = along.dot(b.from - a.from), to = along.dot(b.to - a.from);
   if (from > to) std::swap(from, to);
@@ -184,7 +181,7 @@ void appendOnRidges(const Ridge& a, const Ridge& b, const Vec3& normal, double m
   }
 }
 
-/// Where a ridge comes nearest to another, as a part of it.
+/// The part (0..1) of a ridge at which it is nearest to another one.
 double partNearest(const Ridge& ridge, const Ridge& other) {
   const Vec3 along = ridge.to - ridge.from, across = other.to - other.from, between = other.from - ridge.from;
   const double aa = along.squaredNorm(), bb = across.squaredNorm(), ab = along.dot(across);
@@ -197,27 +194,28 @@ bool isCorner(const Core& core) {
   return core.collider().kind() == ColliderKind::polytope;
 }
 
-/// m, as in ContactPoint, where one point of a collider is farthest.
+/// The radius (m, as in ContactPoint) of a collider at its support point, where no face or ridge carries.
 double radiusOfCorner(const Core& core) {
   if (isCorner(core)) return 0;
-  return core.rimRadius() > 0 ? kNotRound : marginOf(core);
+  return core.rimRadius() > 0 ? kNotRound : radiusAround(core);
 }
 
-/// Where the cores are nearest when they are moved apart along the axis; as seen before that.
-Vec3 middlePulledApart(const Core& a, const Core& b, const SeparatingAxis& axis) {
-  const double way = kPlacePulledRatio * std::min(sizeOf(a), sizeOf(b)) - axis.separation;
+/// The middle between the nearest points of the cores when they are moved apart along the axis, moved back.
+Vec3 middleOfCoresApart(const Core& a, const Core& b, const SeparatingAxis& axis) {
+  const double way = ConvexTolerances(a, b).pulledApart - axis.separation;
   const GjkResult apart = distanceOf(a, b.moved(way * axis.normal));
   return (apart.onA + apart.onB - way * axis.normal) / 2;
 }
 
-/// The one point of two manifolds that share no more.
+/// The one contact of two manifolds that share neither a face nor a line.
 ContactPoint singlePoint(const Core& a, const Core& b, const SeparatingAxis& axis, const FeatureManifold& patchA,
                          const FeatureManifold& patchB) {
   const Vec3& normal = axis.normal;
-  const double separation = axis.separation - marginOf(a) - marginOf(b);
+  const double separation = axis.separation - radiusAround(a) - radiusAround(b);
   const Ridge ridgeA = ridgeOf(a, normal), ridgeB = ridgeOf(b, -normal);
   const bool isWideA = patchA.isFlat || ridgeA.isThere, isWideB = patchB.isFlat || ridgeB.isThere;
-  const Vec3 onA = a.supportPoint(normal) + marginOf(a) * normal, onB = b.supportPoint(-normal) - marginOf(b) * normal;
+  const Vec3 onA = a.supportPoint(normal) + radiusAround(a) * normal;
+  const Vec3 onB = b.supportPoint(-normal) - radiusAround(b) * normal;
   ContactPoint contact{(onA + onB) / 2, normal, separation, kNotRound, kNotRound};
   if (isWideA && isWideB && !patchA.isFlat && !patchB.isFlat)
     contact.point = ridgeA.from + partNearest(ridgeA, ridgeB) * (ridgeA.to - ridgeA.from) + separation / 2 * normal;
@@ -225,8 +223,8 @@ ContactPoint singlePoint(const Core& a, const Core& b, const SeparatingAxis& axi
     contact.point = onB - separation / 2 * normal;
   else if (isWideB && !isWideA)
     contact.point = onA + separation / 2 * normal;
-  else if (isWideA || (onB - onA - separation * normal).norm() > kDeeperRatio * std::min(sizeOf(a), sizeOf(b)))
-    contact.point = middlePulledApart(a, b, axis) + (marginOf(a) - marginOf(b)) / 2 * normal;
+  else if (isWideA || (onB - onA - separation * normal).norm() > ConvexTolerances(a, b).meeting)
+    contact.point = middleOfCoresApart(a, b, axis) + (radiusAround(a) - radiusAround(b)) / 2 * normal;
   if (patchA.isFlat) contact.radiusA = kFlat;
   if (patchB.isFlat) contact.radiusB = kFlat;
   if (!isWideA) contact.radiusA = radiusOfCorner(a);
@@ -245,7 +243,7 @@ void appendManifold(const Core& a, const Core& b, const SeparatingAxis& axis, do
                     std::vector<ContactPoint>& points) {
   std::array<std::byte, 8192> memory;
   Memory pool(memory.data(), memory.size());
-  const double separation = axis.separation - marginOf(a) - marginOf(b);
+  const double separation = axis.separation - radiusAround(a) - radiusAround(b);
   if (separation > margin) return;
   const std::size_t first = points.size();
   FeatureManifold patchA = manifoldOf(a, axis.normal, &pool), patchB = manifoldOf(b, -axis.normal, &pool);
@@ -258,7 +256,8 @@ void appendManifold(const Core& a, const Core& b, const SeparatingAxis& axis, do
     const Ridge ridgeA = ridgeOf(a, axis.normal), ridgeB = ridgeOf(b, -axis.normal);
     if (ridgeA.isThere && ridgeB.isThere) appendOnRidges(ridgeA, ridgeB, axis.normal, margin, points);
   }
-  const double near = separation + kDeeperRatio * std::min(sizeOf(a), sizeOf(b));
+  // The deepest point must be among them: the axis tells its separation.
+  const double near = separation + ConvexTolerances(a, b).meeting;
   if (std::none_of(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
                    [near](const ContactPoint& point) { return point.separation <= near; }))
     points.push_back(singlePoint(a, b, axis, patchA, patchB));
@@ -268,13 +267,13 @@ void appendManifold(const Core& core, const Vec3& planePoint, const Vec3& planeN
                     std::vector<ContactPoint>& points) {
   std::array<std::byte, 8192> memory;
   Memory pool(memory.data(), memory.size());
-  const Vec3 lowest = core.supportPoint(-planeNormal) - marginOf(core) * planeNormal;
+  const Vec3 lowest = core.supportPoint(-planeNormal) - radiusAround(core) * planeNormal;
   const double height = planeNormal.dot(lowest - planePoint);
   if (height > margin) return;
   const std::size_t first = points.size();
   FeatureManifold patch = manifoldOf(core, -planeNormal, &pool);
   appendOnFace({planeNormal, planeNormal.dot(planePoint)}, patch, margin, points);
-  const double near = height + kDeeperRatio * sizeOf(core);
+  const double near = height + ConvexTolerances(core.collider().boundingRadius).meeting;
   if (std::none_of(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
                    [near](const ContactPoint& point) { return point.separation <= near; }))
     points.push_back({lowest - height / 2 * planeNormal, planeNormal, height, kFlat, radiusOfCorner(core)});

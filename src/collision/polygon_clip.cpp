@@ -7,7 +7,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kTie = 1e-9;  // of an area: corners of a regular polygon are alike
+// Of a squared area: corners whose triangles differ by less are equal, so that rounding does not choose among those of
+// a regular polygon, and every other one of these is left. A million times the rounding of an area.
+constexpr double kEqualAreas = 1e-9;
 
 }  // namespace
 
@@ -33,7 +35,7 @@ void thinOut(std::size_t most, Points& polygon) {
       const Vec3 &before = polygon[(i + polygon.size() - 1) % polygon.size()],
                  &after = polygon[(i + 1) % polygon.size()];
       const double area = (before - polygon[i]).cross(after - polygon[i]).squaredNorm();
-      if (area < leastArea * (1 - kTie)) leastArea = area, least = i;  // of a disc every other point is left
+      if (area < leastArea * (1 - kEqualAreas)) leastArea = area, least = i;
     }
     polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(least));
   }

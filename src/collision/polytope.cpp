@@ -12,7 +12,8 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kFewVertices = 20;  // up to which looking at all is faster than going from one to the next
+// Vertices of a polytope up to which a look at all of them is faster than a walk along edges, which jumps in memory.
+constexpr std::size_t kMaxScannedVertices = 20;
 
 struct FacePoint {
   Vec3 point;     // m
@@ -112,6 +113,7 @@ Polytope polytopeOf(const Box& box, const RigidTransform& frameFromBox) {
 }
 
 Polytope inscribedPrism(const Cylinder& cylinder, const RigidTransform& frameFromCylinder) {
+  // The prism's faces are within 2 % of the radius below the cylinder: 1 - cos(pi / 16).
   constexpr std::size_t kSides = 16;
   ConvexHull hull;
   std::vector<std::size_t> top, bottom;
@@ -140,17 +142,17 @@ Polytope segmentBetween(const Vec3& from, const Vec3& to) {
 
 std::size_t supportVertex(const Polytope& polytope, const Vec3& direction, std::size_t start) {
   const std::size_t count = polytope.vertices.size();
-  std::size_t best = count <= kFewVertices ? 0 : start;
+  std::size_t best = count <= kMaxScannedVertices ? 0 : start;
   double farthest = direction.dot(polytope.vertices[best]);
   const auto look = [&](std::size_t vertex) {
     const double reach = direction.dot(polytope.vertices[vertex]);
     if (reach > farthest) farthest = reach, best = vertex;
   };
-  if (count <= kFewVertices) {
+  if (count <= kMaxScannedVertices) {
     for (std::size_t vertex = 1; vertex < count; ++vertex) look(vertex);
     return best;
   }
-  for (std::size_t from = count; from != best;) {  // uphill along the edges; there is one hill
+  for (std::size_t from = count; from != best;) {  // uphill along the edges: a convex shape has one maximum
     from = best;
     for (std::size_t i = polytope.firstNeighbor[from]; i < polytope.firstNeighbor[from + 1]; ++i)
       look(polytope.neighbors[i]);

@@ -1,9 +1,10 @@
-// S. Gottschalk, M. C. Lin, D. Manocha, "OBBTree", 1996, for polytopes: normals of faces, and products of those edges
-// that form a face of the Minkowski difference. Each edge is an arc between two face normals on the Gauss map (D.
-// Gregorius, "The Separating Axis Test between Convex Polyhedra", GDC 2013); instead of testing all pairs of arcs, the
-// farthest vertex of B is followed along each arc of A: where it changes, the arc crosses one of B's. The crossings are
-// found each once, and their number is about that of the edges. Normals that see one of B's points deeper than the best
-// gap found so far are passed over.
+// The separating axes of two polytopes (S. Gottschalk, M. C. Lin, D. Manocha, "OBBTree", SIGGRAPH 1996) are the normals
+// of their faces, and the cross products of those pairs of edges that form a face of the Minkowski difference. On the
+// Gauss map an edge is the arc between the normals of its two faces, and a pair of edges forms a face where the arc of
+// one crosses that of the other (D. Gregorius, "The Separating Axis Test between Convex Polyhedra", GDC 2013). Not all
+// pairs of arcs are tested: along each arc of A the support vertex of B is followed, and where it changes, the arc
+// crosses one of B's. Each crossing is found once; there are about as many as edges. A normal for which one point of B
+// is deeper than the best gap found so far is passed over.
 
 #include "collision/separating_axis.h"
 
@@ -11,13 +12,12 @@
 #include <array>
 #include <memory_resource>
 
+#include "collision/convex_tolerances.h"
+
 namespace cradle {
 namespace {
 
-constexpr double kGapRounding = 1e-13;  // of the size
-constexpr double kNoAxisSine = 1e-7;    // edges at a smaller angle give no axis: faces and other edges cover them
-
-/// Seen from B's frame.
+/// The search for the best axes of each kind; directions are followed in B's frame.
 class AxisSearch {
  public:
   /// `a` has faces.
@@ -26,10 +26,10 @@ class AxisSearch {
 
   SeparatingAxes find() {
     const Vec3 towards = coreB_.placed(b_.vertices[0]) - coreA_.placed(a_.vertices[0]);
-    lookAtFacesOfA(coreB_.supportPoint(-towards));
-    lookAtFacesOfB(coreA_.supportPoint(towards));
+    tryFacesOfA(coreB_.supportPoint(-towards));
+    tryFacesOfB(coreA_.supportPoint(towards));
     for (const Polytope::Edge& edge : a_.edges) {
-      // The normals between two that see a point of B below the edge see it no higher.
+      // A point of B below both faces of the edge is at least as deep for all normals on the arc between them.
       const double seen = std::max(heights_[edge.left], heights_[edge.right]);
       if (seen >= 0 || seen > best_) followArc(edge);
     }
@@ -37,8 +37,9 @@ class AxisSearch {
   }
 
  private:
-  /// No normal sees a larger gap than to one of B's points: most faces need no more. `onB` (m) is one that is near.
-  void lookAtFacesOfA(const Vec3& onB) {
+  /// The gap that a face's normal sees is at most the height of any point of B over the face: most faces are excluded
+  /// by that of `onB` (m), a point of B near A.
+  void tryFacesOfA(const Vec3& onB) {
     heights_.reserve(a_.faces.size());
     std::size_t vertex = 0;
     for (const Polytope::Face& face : a_.faces) {
@@ -50,11 +51,11 @@ class AxisSearch {
     }
   }
 
-  void lookAtFacesOfB(const Vec3& onA) {
+  void tryFacesOfB(const Vec3& onA) {
     std::size_t vertex = 0;
     for (const Polytope::Face& face : b_.faces) {
       const Vec3 normal = coreB_.turned(face.normal), onFace = coreB_.placed(face.offset * face.normal);
-      if (normal.dot(onA - onFace) < best_ - rounding_) continue;  // one that sees as much is told too
+      if (normal.dot(onA - onFace) < best_ - equalGaps_) continue;  // faces that see as much as one of A are kept too
       vertex = supportVertex(a_, coreA_.turnedBack(-normal), vertex);
       keep(axes_.faceOfB, normal.dot(coreA_.placed(a_.vertices[vertex]) - onFace), -normal);
     }
@@ -65,8 +66,8 @@ class AxisSearch {
     best_ = std::max(best_, separation);
   }
 
-  /// The vertex of B that is farthest along -n, while n goes from the normal of the edge's left face to that of the
-  /// right one, n = from + t along.
+  /// Follows the support vertex of B along -n, while n goes from the normal of the edge's left face to that of the
+  /// right one: n = from + t along, t from 0 to 1.
   void followArc(const Polytope::Edge& edge) {
     const Vec3 left = coreA_.turned(a_.faces[edge.left].normal), right = coreA_.turned(a_.faces[edge.right].normal);
     const Vec3 from = coreB_.turnedBack(left), along = coreB_.turnedBack(right - left);
@@ -82,17 +83,18 @@ class AxisSearch {
         if (at < crossing) crossing = at, next = b_.neighbors[i];
       }
       if (next == vertex) return;
-      lookAtEdges(edge, vertex, next, left + crossing * (right - left));
+      tryEdges(edge, vertex, next, left + crossing * (right - left));
       vertex = next, t = crossing;
     }
   }
 
-  void lookAtEdges(const Polytope::Edge& edge, std::size_t fromB, std::size_t toB, const Vec3& near) {
+  /// Edges too nearly parallel for an axis are covered by the faces and the other edges at their ends.
+  void tryEdges(const Polytope::Edge& edge, std::size_t fromB, std::size_t toB, const Vec3& near) {
     const Vec3 alongA = coreA_.turned(a_.vertices[edge.to] - a_.vertices[edge.from]);
     const Vec3 alongB = coreB_.turned(b_.vertices[toB] - b_.vertices[fromB]);
     Vec3 normal = alongA.cross(alongB);
     const double length = normal.norm();
-    if (length <= kNoAxisSine * alongA.norm() * alongB.norm()) return;
+    if (length <= ConvexTolerances::kParallelAngle * alongA.norm() * alongB.norm()) return;
     normal /= normal.dot(near) < 0 ? -length : length;
     const Vec3 between = coreB_.placed(b_.vertices[fromB]) - coreA_.placed(a_.vertices[edge.from]);
     keep(axes_.edges, normal.dot(between), normal);
@@ -103,10 +105,10 @@ class AxisSearch {
   SeparatingAxes axes_;
   std::array<std::byte, 2048> memory_;  // enough for 256 faces: no allocation
   std::pmr::monotonic_buffer_resource pool_{memory_.data(), memory_.size()};
-  std::pmr::vector<double> heights_;                        // m: of a point of B over each face of A
-  double best_ = -std::numeric_limits<double>::infinity();  // m: largest gap found
-  double rounding_ = kGapRounding * std::min(coreA_.collider().boundingRadius, coreB_.collider().boundingRadius);  // m
-  std::size_t lastStart_ = 0;  // vertex of B where the last arc began
+  std::pmr::vector<double> heights_;                               // m: of a point of B over each face of A
+  double best_ = -std::numeric_limits<double>::infinity();         // m: largest gap found
+  double equalGaps_ = ConvexTolerances(coreA_, coreB_).equalGaps;  // m
+  std::size_t lastStart_ = 0;                                      // vertex of B where the last arc began
 };
 
 }  // namespace

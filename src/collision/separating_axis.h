@@ -10,14 +10,15 @@ struct SeparatingAxis {
   Vec3 normal = Vec3::UnitY();                                   // unit, from A to B
 };
 
-/// The best axes of each kind, as far as they are better than those before them here.
+/// The best axes of each kind. A kind is searched only for axes that see a larger gap than those of the kinds before it
+/// in this order (faces of B: or as large a one).
 struct SeparatingAxes {
   SeparatingAxis faceOfA, faceOfB, edges;
 };
 
-/// Of two polytopes, or one and a segment. The largest of the three separations is exact where they overlap, the least
-/// translation that separates them; apart it is at most the distance. O(faces + edges that face each other), each with
-/// a walk along edges.
+/// The separating axes of two polytopes, or of one and a segment. Where they overlap, the largest of the three
+/// separations is minus the least translation that separates them, exact to rounding; where they are apart, it is at
+/// most their distance. O(faces + edges that face each other), each with a walk along edges.
 SeparatingAxes separatingAxes(const Core& a, const Core& b);
 
 }  // namespace cradle
