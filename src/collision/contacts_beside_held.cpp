@@ -1,12 +1,15 @@
-// Where something holds points of a pair together, its other points may still come together: those that are not near a
-// held one. A sphere that is held on a mesh may touch all triangles but those behind the tangent planes there: the
-// distance from these has no jumps as the sphere goes from the space above one triangle to that above the next. Other
-// bodies are over one flat face, and meet it with their other points as a plane, until they come near to its border or
-// to what is in front.
+// Contacts beside held ones. An active contact or a joint may hold points of a pair together; other points of the pair,
+// those that are not near a held one, may still collide. There are three kinds of gaps for them.
+// A sphere that is held on a mesh: its distance from all triangles but those wholly behind the tangent planes of the
+// held features. This distance has no jumps where the sphere goes from the space above one triangle to that above the
+// next. A body that is held over one flat face: the height of its other points over the plane of the face, or the room
+// that it has to the face's border and to surfaces in front, whichever is less. Any other pair: the least separation of
+// its contacts that are not held.
 
 #include <algorithm>
 #include <cmath>
 
+#include "collision/impact_search_tolerances.h"
 #include "collision/mesh_collider.h"
 #include "collision/over_face.h"
 #include "collision/time_of_impact.h"
@@ -14,7 +17,7 @@
 namespace cradle {
 namespace {
 
-/// Where a contact is held together (m, world).
+/// The place (m, world) at which a contact is held together, on the surface of A.
 Vec3 heldPlace(const ContactConstraint& contact, const VectorX& state) {
   const RigidTransform worldFromB = poseOf(state, contact.surfaceB.body);
   const Vec3 center = poseOf(state, contact.centerA.body) * contact.centerA.point;
@@ -26,14 +29,15 @@ Vec3 heldPlace(const ContactConstraint& contact, const VectorX& state) {
 
 }  // namespace
 
-/// Contacts of a pair that are not held, to contacts_.
+/// Puts those contacts of a pair that are not held into contacts_.
 void ImpactSearch::findOthers(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state,
                               double margin) {
   contacts_.clear();
   appendContacts(geometry_, pair, state, margin, contacts_);
   const ColliderPair& colliders = geometry_.pairs[pair];
-  const double near = kHeldPlace * std::min(geometry_.colliders[colliders.a].boundingRadius,
-                                            geometry_.colliders[colliders.b].boundingRadius);
+  const double size =
+      std::min(geometry_.colliders[colliders.a].boundingRadius, geometry_.colliders[colliders.b].boundingRadius);
+  const double near = ImpactSearchTolerances(size).samePlace;
   std::erase_if(contacts_, [&](const Contact& contact) {
     return std::any_of(held.begin(), held.end(), [&](const ActiveFeature& feature) {
       if (feature.pair != pair) return false;
@@ -42,7 +46,7 @@ void ImpactSearch::findOthers(std::size_t pair, const std::vector<ActiveFeature>
   });
 }
 
-/// The least separation of points that are not held, at most `margin`.
+/// The least separation (m) of points that are not held; `margin` (m) if that is less.
 double ImpactSearch::gapOfOthers(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state,
                                  double margin) {
   const SphereOverMesh sphere = sphereOverMesh(geometry_, geometry_.pairs[pair], state);

@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/impact_search_tolerances.h"
 #include "collision/mesh_collider.h"
 #include "collision/mesh_surface.h"
-#include "collision/time_of_impact.h"
 
 namespace cradle {
 namespace {
 
 using Feature = MeshPoint::Feature;
 
-constexpr double kSameFaceRatio = 1e-6;  // of a unit normal: so well a contact's normal and a face's agree
+// Between unit normals: the normal of a contact is that of a face if it differs by less. Contacts on other features of
+// that place have normals that differ by more than the angle at which edges are parallel, 1e-6 (mesh_contact.cpp).
+constexpr double kFaceNormalError = 1e-6;
 
-/// The flat face of a surface at a point of it, or none.
+/// The face with the given normal at a point of a surface, or none.
 TouchedFeature faceAt(const MeshSurface& surface, const Vec3& point, const Vec3& normal) {
   const MeshPoint nearest = nearestPoint(surface, point);
   std::vector<std::uint32_t> faces;
@@ -25,7 +27,7 @@ TouchedFeature faceAt(const MeshSurface& surface, const Vec3& point, const Vec3&
     const std::uint32_t back = face + static_cast<std::uint32_t>(surface.faces.size() / 2);
     const std::uint32_t other = surface.isSheet ? back % static_cast<std::uint32_t>(surface.faces.size()) : face;
     for (const std::uint32_t side : {face, other})
-      if ((surface.faces[side].normal - normal).norm() < kSameFaceRatio) return {Feature::face, side};
+      if ((surface.faces[side].normal - normal).norm() < kFaceNormalError) return {Feature::face, side};
   }
   return {};
 }
@@ -59,7 +61,7 @@ double roomBeside(const OverFace& over, double reach) {
 
 double heightOfOthers(const OverFace& over, const std::vector<Vec3>& held) {
   const HalfSpace plane = spaceBehind(*over.surface, over.face)[0];
-  const double near = kHeldPlace * over.solid->boundingRadius;
+  const double near = ImpactSearchTolerances(over.solid->boundingRadius).samePlace;
   double least = std::numeric_limits<double>::infinity();
   for (const Vec3& point : over.solid->points) {
     if (std::any_of(held.begin(), held.end(), [&](const Vec3& other) { return (point - other).norm() < near; }))

@@ -5,29 +5,28 @@
 #include <functional>
 
 #include "collision/core.h"
+#include "collision/impact_search_tolerances.h"
 #include "collision/mesh_collider.h"
 #include "collision/mesh_surface.h"
 
 namespace cradle {
 namespace {
 
-// Of the smaller radius: edges of meshes may graze each other so deep unseen. What does is apart at two looks, and at
-// the rates of a body in free motion by far less.
-constexpr double kGrazeRatio = 1e-4;
-constexpr int kMaxLooks = 128;  // for directions, at a pair whose edges stay within a hair of each other
-// Of a size: how far round surfaces sink in where a joint holds them before they press. From there the arm to the joint
-// is long enough for an impulse to turn the body: 3e-5 of the size.
-constexpr double kPinnedBand = 5e-10;
-constexpr double kFlushArea = 1e-3;        // of a size, squared: corners that span more keep a body from tilting
-constexpr double kFinestTurn = 1.0 / 16;   // of a step: solids that turn about a joint are looked at so often
-constexpr double kFirstLook = 1.0 / 1024;  // of a step: a feature that leaves is looked at by then
+// Of a pair, whose edges may stay close all through a step: half or twice as many change no test.
+constexpr int kMaxAxisQueries = 128;
+// Of a step: solids that turn about a joint are searched no more finely, for each query is one of both whole solids. A
+// tenth or ten times as much changes no test of a search.
+constexpr double kFinestRotation = 1.0 / 16;
+// Of a step: a feature that leaves is searched from then on at the latest, for another of its points may come down. A
+// tenth or ten times as much changes no test of a search.
+constexpr double kFirstGap = 1.0 / 1024;
 
 Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
   if (body == kFixed) return Vec3::Zero();
   return linearVelocity(state, body) + angularVelocity(state, body).cross(point - centerOfMass(state, body));
 }
 
-/// How far (m) from the centre of mass the points of a collider are, without the spheres around them.
+/// Distance (m) from the centre of mass of a collider's farthest point, without the spheres around its points.
 double pointReach(const Collider& collider) {
   return collider.boundingRadius - collider.radius;
 }
@@ -75,13 +74,14 @@ void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTi
     }
     if (isHeld(touching) && hasOneContact()) continue;
     if (held_ && (apart_ || (hasMesh(a_, geometry_.colliders[pair_.b]) && !(hasSphere() && isHeld(touching)))))
-      lookBlindly();
+      useSpeedBoundAlone();
     const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_, reach);
     searchFeature(start, touching, best);
   }
 }
 
-/// A rim over a plane: points of it are held, and the lowest may become another, unless that itself is held.
+/// A rim over a plane of which points are held. Another of its points may become the lowest one and collide; not so
+/// where the contact holds the lowest point itself, whichever that is (rimAxisA).
 void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   held_ = nullptr;
   if (std::any_of(touching.held->begin(), touching.held->end(), [this](const ActiveFeature& held) {
@@ -92,10 +92,10 @@ void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<I
   if (std::isfinite(touching.deadBand)) searchFrom(0, start, std::min(0.0, start) - touching.tolerance, best);
 }
 
-/// Solids that touch where a joint holds them, or nearly so, stay on two sides of a plane there, as they cannot roll:
-/// as long as nothing else of them meets, their separation is that of the place held, and falls below it where anything
-/// does. (Contacts beside the place do not tell that: far corners are in none of them until the turning brings them
-/// near.)
+/// A pair of solids that touch, or nearly so, where a joint holds them. They cannot roll there, and stay on two sides
+/// of a plane: their separation is that of the held place as long as nothing else of them meets, and falls below it
+/// where anything does. (Contacts beside the held place do not tell that: far corners are in none of them before the
+/// rotation has brought them near.)
 void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   if (pair_.againstPlane || !std::isfinite(touching.deadBand)) return;
   const Collider& b = geometry_.colliders[pair_.b];
@@ -107,7 +107,7 @@ void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::op
       std::find_if(b.pins.begin(), b.pins.end(), [&](const PinnedPlace& place) { return place.other == a_.body; });
   const Vec3 place = pin != a_.pins.end() ? startA_ * pin->point : startB_ * pinB->point;  // m, world
   const Vec3 inA = startA_.inverse() * place, inB = startB_.inverse() * place;
-  // Between its ends the step keeps joints only as well as its interpolant: A is moved back to its anchor.
+  // Inside the step joints are kept only as well as the interpolant keeps them: A is moved back to its anchor.
   const auto separationAt = [&](double fraction) {
     RigidTransform poseA = poseAt(step_, a_.body, fraction);
     const RigidTransform poseB = poseAt(step_, bodyB_, fraction);
@@ -116,17 +116,17 @@ void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::op
   };
   const double start = separationAt(0);
   const double size = std::max(a_.boundingRadius, b.boundingRadius), end = best ? best->fraction : 1;
-  const bool touches = start <= std::max(touching.tolerance, kPinnedRatio * size);
+  const bool touches = start <= std::max(touching.tolerance, ImpactSearchTolerances(size).pinned);
   const double threshold = touches ? std::min(0.0, start) - deadBand(touching) : 0;
   GapBounds bounds = bounds_;
   bounds.acceleration = GapBounds().acceleration;
-  bounds.finest = kFinestTurn;
+  bounds.finest = kFinestRotation;
   const auto above = [&](double fraction) { return separationAt(fraction) - threshold; };
   if (const auto fraction = firstRoot(above, bounds, {0, above(0), end, above(end)}))
     best = ImpactTime{*fraction, pairIndex_, feature_, threshold, true, {}};
 }
 
-/// A feature whose gap is `start` (m) as the step begins.
+/// Searches for the impact of a feature whose gap is `start` (m) when the step begins.
 void PairSearch::searchFeature(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   if (start > bounds_.speed) return;
   if (start > touching.tolerance)
@@ -135,54 +135,57 @@ void PairSearch::searchFeature(double start, const TouchingFeatures& touching, s
     searchTouching(start, touching, best);
 }
 
-/// A gap is the least of those between all points of the two cores, less the spheres' radii. Of two points at distance
-/// d: d'' <= relative acceleration + (speed across)^2 / d, d at least the radii's sum before they touch; and the
-/// least of many accelerations upwards no more than they do. Without spheres nothing bounds it where d goes to zero:
-/// then directions tell whether convex bodies stay apart.
+/// Finds bounds on the gap. A gap is the least distance d between points of the two cores, less the radii r of the
+/// spheres around them. For each pair of points
+///   d'' <= |relative acceleration| + (relative speed)^2 / d,
+/// where d >= r until they touch, and the least of many functions curves upwards no more than each of them does.
+/// Without spheres (r = 0) nothing bounds d''; separating axes then tell whether convex bodies stay apart.
 void PairSearch::findBounds() {
   const MotionBounds shift = relativeMotionBounds(step_, a_.body, bodyB_);
   const MotionBounds& turnA = scratch_.turnOf(step_, a_.body);
   bounds_.speed = shift.speed + turnA.speed * pointReach(a_);
-  pull_ = shift.acceleration + turnA.acceleration * pointReach(a_);
+  maxAcceleration_ = shift.acceleration + turnA.acceleration * pointReach(a_);
   if (pair_.againstPlane) {
-    bounds_.acceleration = pull_;
+    bounds_.acceleration = maxAcceleration_;
     return;
   }
   const Collider& b = geometry_.colliders[pair_.b];
   const MotionBounds& turnB = scratch_.turnOf(step_, bodyB_);
   bounds_.speed += turnB.speed * pointReach(b);
-  pull_ += turnB.acceleration * pointReach(b);
+  maxAcceleration_ += turnB.acceleration * pointReach(b);
   const double radius = a_.radius + b.radius;
-  if (radius > 0) bounds_.acceleration = pull_ + bounds_.speed * bounds_.speed / radius;
+  if (radius > 0) bounds_.acceleration = maxAcceleration_ + bounds_.speed * bounds_.speed / radius;
   if (radius > 0) return;
   if (hasMesh(a_, b))
-    lookBlindly();
+    useSpeedBoundAlone();
   else
-    apart_.emplace(
-        step_, a_, b,
-        DirectionAccelerations{turnA.acceleration * pointReach(a_) + turnB.acceleration * pointReach(b),
-                               pull_ + accelerationInFrame(turnA, b), pull_ + accelerationInFrame(turnB, a_)});
+    apart_.emplace(step_, a_, b,
+                   DirectionAccelerations{turnA.acceleration * pointReach(a_) + turnB.acceleration * pointReach(b),
+                                          maxAcceleration_ + accelerationInFrame(turnA, b),
+                                          maxAcceleration_ + accelerationInFrame(turnB, a_)});
 }
 
-/// What the turning of a frame adds to the bend of the other body's points along a direction in it.
+/// The acceleration that the rotation of one body's frame adds to the other body's points as seen in that frame (m,
+/// with the step as the unit of time): 2 omega v + alpha r, the Coriolis and Euler terms.
 double PairSearch::accelerationInFrame(const MotionBounds& turn, const Collider& other) const {
   const double distance = (startA_.translation - startB_.translation).norm() + other.boundingRadius + bounds_.speed;
   return 2 * turn.speed * bounds_.speed + turn.acceleration * distance;
 }
 
-/// With a bound on the gap's speed alone.
-void PairSearch::lookBlindly() {
-  bounds_.graze = kGrazeRatio * std::min(a_.boundingRadius, geometry_.colliders[pair_.b].boundingRadius);
+/// Leaves the search with a bound on the gap's speed alone. Shallow touches may then be passed over.
+void PairSearch::useSpeedBoundAlone() {
+  bounds_.graze =
+      ImpactSearchTolerances(std::min(a_.boundingRadius, geometry_.colliders[pair_.b].boundingRadius)).graze;
   const auto isSheet = [](const Collider& collider) {
     return collider.kind() == ColliderKind::mesh && collider.mesh->isSheet;
   };
-  // What goes through a sheet is soon on its other side, and apart again.
+  // A body that goes through a sheet is soon on its other side, and apart again: sheets are searched finely.
   const bool isThin = isSheet(a_) || isSheet(geometry_.colliders[pair_.b]);
   if (!std::isfinite(bounds_.acceleration) && !isThin) bounds_.finest = kFinestBlindApproach;
   apart_.reset();
 }
 
-/// Whether one body is above a face of the other all the time.
+/// Finds a face of one body above which the other one stays during the whole step.
 void PairSearch::findFace() {
   if (pair_.againstPlane) return;
   const Collider& b = geometry_.colliders[pair_.b];
@@ -200,12 +203,12 @@ void PairSearch::findFace() {
   if (face_) face_->isOfA = true;
 }
 
-/// Corners over a face that may turn: h'' of their height h has parts from the normal's turning.
+/// Searches for impacts of corners over a face. The face may turn: that adds to the acceleration of their heights.
 void PairSearch::searchCorners(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   const Collider& upper = face_->isOfA ? geometry_.colliders[pair_.b] : a_;
   if (isFlush(touching, upper)) return;
-  pull_ += accelerationInFrame(scratch_.turnOf(step_, face_->isOfA ? a_.body : bodyB_), upper);
-  bounds_.acceleration = pull_;
+  maxAcceleration_ += accelerationInFrame(scratch_.turnOf(step_, face_->isOfA ? a_.body : bodyB_), upper);
+  bounds_.acceleration = maxAcceleration_;
   apart_.reset();
   for (std::size_t corner = 0; corner < upper.points.size(); ++corner) {
     feature_ = corner;
@@ -216,9 +219,10 @@ void PairSearch::searchCorners(const TouchingFeatures& touching, std::optional<I
 }
 
 bool PairSearch::isCornerHeld(const TouchingFeatures& touching, const Collider& upper) const {
-  const double near = kHeldPlace * upper.boundingRadius;
+  const ImpactSearchTolerances tolerances(upper.boundingRadius);
+  const double near = tolerances.samePlace;
   const int lower = face_->isOfA ? a_.body : bodyB_;
-  if (isPinned(upper, lower, upper.points[feature_], kPinnedRatio * upper.boundingRadius)) return true;
+  if (isPinned(upper, lower, upper.points[feature_], tolerances.pinned)) return true;
   return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const ActiveFeature& held) {
            const Attachment& corner = held.contact.centerA;
            return held.pair == pairIndex_ && corner.body == upper.body &&
@@ -226,7 +230,8 @@ bool PairSearch::isCornerHeld(const TouchingFeatures& touching, const Collider& 
          });
 }
 
-/// Whether corners of a body are held that span an area: then it does not tilt, and no other comes any nearer.
+/// Whether the corners of a body that are held span an area: the body then does not tilt, and no other corner of it
+/// comes any nearer.
 bool PairSearch::isFlush(const TouchingFeatures& touching, const Collider& upper) const {
   if (!touching.held || upper.radius > 0 || upper.rimRadius > 0) return false;
   std::vector<Vec3> arms;  // m, from the first of them
@@ -237,7 +242,7 @@ bool PairSearch::isFlush(const TouchingFeatures& touching, const Collider& upper
     if (first) arms.push_back(corner.point - *first);
     first = first ? first : &corner.point;
   }
-  const double area = kFlushArea * upper.boundingRadius * upper.boundingRadius;
+  const double area = ImpactSearchTolerances(upper.boundingRadius).flushArea;
   return std::any_of(arms.begin(), arms.end(), [&](const Vec3& arm) { return arm.cross(arms[0]).norm() > area; });
 }
 
@@ -247,7 +252,7 @@ bool PairSearch::isHeld(const TouchingFeatures& touching) const {
          });
 }
 
-/// A sphere may touch a mesh at two places, as in a groove.
+/// Whether the pair can have no more than one contact. (A sphere may touch a mesh at two places, as in a groove.)
 bool PairSearch::hasOneContact() const {
   if (pair_.againstPlane) return true;
   return hasSphere() && !hasMesh(a_, geometry_.colliders[pair_.b]);
@@ -257,52 +262,53 @@ bool PairSearch::hasSphere() const {
   return a_.isSphere() || geometry_.colliders[pair_.b].isSphere();
 }
 
-/// Whether the gap is that of one point, or accelerations downwards no more than one: of a sphere and what is convex,
-/// of a corner over a plane. While one point of a rim leaves, another may come down.
+/// Whether the gap, as it opens, comes back no sooner than that of one point: the gap of a sphere and a convex shape,
+/// or of a corner over a plane. (While one point of a rim leaves, another one may come down.)
 bool PairSearch::staysOnePoint() const {
   if (pair_.againstPlane) return a_.kind() != ColliderKind::cylinder;
   return hasOneContact();
 }
 
-/// A feature that leaves stays away at least until the strongest pull could bring it back; one that does not, or by
-/// no more than the dead band, has that.
+/// Searches for the impact of a feature that touches when the step begins. If it leaves with a speed v, the largest
+/// acceleration a cannot bring it back before the time 2 v / a; the search begins at v / a, where it is farthest. If it
+/// does not leave, or by no more than the dead band, it collides when it has closed by the dead band.
 void PairSearch::searchTouching(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   const double lowest = std::min(0.0, start), speed = leavingSpeed(touching.tolerance) * step_.timeStep;
   const double band = deadBand(touching);
-  bounds_.graze = std::max(bounds_.graze, touching.tolerance);  // what stays flush would be looked at for ever
+  bounds_.graze = std::max(bounds_.graze, touching.tolerance);  // faces that stay flush would be searched without end
   if (!(speed > band)) return searchFrom(0, start, lowest - band, best);
   const bool hasOnePoint = std::isfinite(bounds_.acceleration) && staysOnePoint();
-  if (hasOnePoint && speed >= 0.5 * pull_) return;
-  const double from = std::min(speed / pull_, hasOnePoint ? 1 : kFirstLook);
+  if (hasOnePoint && speed >= 0.5 * maxAcceleration_) return;  // 2 v / a is beyond the step
+  const double from = std::min(speed / maxAcceleration_, hasOnePoint ? 1 : kFirstGap);
   const double away = gap(from);
   if (away > lowest)
     searchFrom(from, away, lowest, best);
   else
-    searchFrom(0, start, lowest - band, best);  // a leap within rounding
+    searchFrom(0, start, lowest - band, best);  // the gap opens by no more than rounding
 }
 
-/// m: how far a feature that touches without a load may sink in.
+/// How far (m) a feature that touches without being held may sink in before that is an impact.
 double PairSearch::deadBand(const TouchingFeatures& touching) const {
   if (!hasPinnedPlaces(geometry_, pair_)) return touching.deadBand;
   double size = a_.boundingRadius;
   if (!pair_.againstPlane) size = std::min(size, geometry_.colliders[pair_.b].boundingRadius);
-  return std::max(touching.deadBand, kPinnedBand * size);
+  return std::max(touching.deadBand, ImpactSearchTolerances(size).pinnedBand);
 }
 
-/// Where the gap falls to `threshold` (m).
+/// Puts into `best` the instant after `from` at which the gap falls to `threshold` (m), if there is one before it.
 void PairSearch::searchFrom(double from, double gapFrom, double threshold, std::optional<ImpactTime>& best) {
   const double end = best ? best->fraction : 1;
   if (from >= end) return;
   const auto above = [&](double fraction) { return gap(fraction) - threshold; };
   const auto areApart = [&](const Bracket& ends) {
-    if (apart_ && apart_->queries() > kMaxLooks) lookBlindly();
+    if (apart_ && apart_->queries() > kMaxAxisQueries) useSpeedBoundAlone();
     return apart_ && apart_->during(ends, threshold, bounds_);
   };
   if (const auto fraction = firstRoot(above, bounds_, areApart, {from, gapFrom - threshold, end, above(end)}))
     best = ImpactTime{*fraction, pairIndex_, feature_, threshold, held_ != nullptr, face_};
 }
 
-/// m/s; of the point of the feature that leaves slowest.
+/// Speed (m/s) with which the feature leaves: that of its slowest point.
 double PairSearch::leavingSpeed(double tolerance) {
   if (pair_.againstPlane) {
     const Vec3& normal = geometry_.planes[pair_.b].normal;
@@ -331,7 +337,7 @@ double PairSearch::leavingSpeed(double tolerance) {
   return least;
 }
 
-/// m, world: of the feature, over a plane.
+/// The lowest point (m, world) of the feature over a plane.
 Vec3 PairSearch::lowestPoint(const Vec3& planeNormal) const {
   if (a_.kind() == ColliderKind::cylinder) return Core(a_, startA_).rimPoint(feature_ == 0 ? 1 : -1, -planeNormal);
   return startA_ * a_.points[feature_] - a_.radius * planeNormal;
@@ -346,7 +352,7 @@ double PairSearch::gap(double fraction) {
       if (body != kFixed) interpolatePose(step_, body, fraction, scratch_.sample_);
     return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, reach_);
   }
-  // A gap of twice the way that can be gone in the step stays open, however large it is.
+  // A gap of more than the motion possible in the step stays open; its value does not matter.
   const double enough = 2 * bounds_.speed;
   return std::min(2 * enough, separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction),
                                          poseAt(step_, bodyB_, fraction), enough));

@@ -15,19 +15,19 @@ namespace cradle {
 double heightOfCorner(const FaceBelow& face, std::size_t corner, const std::pair<const Collider&, RigidTransform>& a,
                       const std::pair<const Collider&, RigidTransform>& b);
 
-/// The search of one pair of a step, for ImpactSearch.
+/// The search for the first impact of one pair in a step, for ImpactSearch.
 class PairSearch {
  public:
   /// Keeps references to both; `pair` is an index into the geometry's.
   PairSearch(ImpactSearch& scratch, const Step& step, std::size_t pair);
 
-  /// Puts into `best` what happens in this pair, if that is earlier.
+  /// Puts the first impact of this pair into `best`, if it is earlier than that.
   void search(const TouchingFeatures& touching, std::optional<ImpactTime>& best);
 
  private:
   void findBounds();
   double accelerationInFrame(const MotionBounds& turn, const Collider& other) const;
-  void lookBlindly();
+  void useSpeedBoundAlone();
   void findFace();
   void searchCorners(const TouchingFeatures& touching, std::optional<ImpactTime>& best);
   void searchFeature(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best);
@@ -55,11 +55,11 @@ class PairSearch {
   int bodyB_;
   RigidTransform startA_, startB_;
   GapBounds bounds_;
-  std::optional<SeparatingAxisCache> apart_;          // where the second derivative of the gap has no bound
-  std::optional<FaceBelow> face_;                     // below all of the other body
-  const std::vector<ActiveFeature>* held_ = nullptr;  // something holds points of this feature
-  double reach_ = 0;                                  // m: farther apart nothing is looked at
-  double pull_ = 0;  // m: bound on the relative acceleration, with the step as the unit of time
+  std::optional<SeparatingAxisCache> apart_;          // for convex pairs whose gap has no bound on its acceleration
+  std::optional<FaceBelow> face_;                     // face of one body below all of the other one
+  const std::vector<ActiveFeature>* held_ = nullptr;  // if points of this feature are held: all that are
+  double reach_ = 0;                                  // m: gaps that are larger need not be known
+  double maxAcceleration_ = 0;  // m: bound on the relative acceleration, with the step as the unit of time
 };
 
 }  // namespace cradle

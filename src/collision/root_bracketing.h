@@ -7,22 +7,30 @@
 
 namespace cradle {
 
-constexpr double kRootTolerance = 1e-12;  // of a step: to this the instant of a root is found
+// Of a step: width to which a bracket is closed. Gaps that change by their size in a step are then known to 1e-12 of
+// the size, a tenth of the tolerance for touching at an event (kTouchRatio, 1e-11). Ten times as much misses instants
+// that tests know in closed form.
+constexpr double kRootTolerance = 1e-12;
 // Of a step: touches that come and go within less are passed over, with bounds on the gap's acceleration and without.
+// With bounds, the overlap inside such an interval is at most acceleration / 8 x 2^-40: of gaps that accelerate by
+// their size in a step, a hundredth of the tolerance for touching. Without them, all intervals of that length may have
+// to be searched, at the cost of a query each. A tenth or ten times as much changes no test of a search.
 constexpr double kFinestApproach = 1.0 / (1 << 20);
 constexpr double kFinestBlindApproach = 1.0 / (1 << 12);
-constexpr int kMaxCuts = 100;  // of a bracket; halving alone would need 40
+constexpr int kMaxBracketSteps = 100;  // half or twice as many change no test; halving alone would need 40
 
-/// What is known of a gap over a whole step: |gap'| <= speed, gap'' <= acceleration; the unit of time is the step.
+/// Bounds on a gap over a whole step: |gap'| <= speed, gap'' <= acceleration; the unit of time is the step.
 struct GapBounds {
   double speed = 0;
   double acceleration = std::numeric_limits<double>::infinity();
-  double graze = 0;                 // m: touches that come and go and cannot be deeper are passed over
-  double finest = kFinestApproach;  // of a step: intervals that are not looked into
+  double graze = 0;                 // m: overlaps inside an interval that cannot be deeper are passed over
+  double finest = kFinestApproach;  // of a step: shorter intervals are not searched
 };
 
-/// A gap with these values at the ends of an interval of that length cannot close inside it: the fastest approach does
-/// not suffice, or the parabola under its chord stays above 0.
+/// Whether a gap g with the values a and b at the ends of an interval of length T cannot close inside it. Either the
+/// fastest approach does not suffice, a + b > speed T; or the parabola through both ends with g'' = acceleration, which
+/// g is nowhere below, stays above 0. The parabola is below its chord by at most s = acceleration T^2 / 8, and its
+/// least value is (a + b) / 2 - s - (b - a)^2 / (16 s) if that is inside the interval, |b - a| < 4 s.
 inline bool staysOpen(const GapBounds& bounds, double gapFrom, double gapTo, double length) {
   const double from = gapFrom + bounds.graze, to = gapTo + bounds.graze;
   if (from + to > bounds.speed * length) return true;
@@ -31,27 +39,28 @@ inline bool staysOpen(const GapBounds& bounds, double gapFrom, double gapTo, dou
   return (from + to) / 2 - sag - slant * slant / (16 * sag) > 0;
 }
 
-/// Two fractions of a step, and the gaps there: gapBefore > 0. Around a root 0 >= gapAfter.
+/// Two fractions of a step, and the gaps there. gapBefore > 0; it brackets a root if gapAfter <= 0.
 struct Bracket {
   double before, gapBefore, after, gapAfter;
 };
 
-/// Where in a bracket the parabola through its ends and a third point crosses zero: it does so once.
+/// The root of the parabola through both ends of a bracket and a third point: there is one in the bracket.
 inline double rootOfParabola(const Bracket& bracket, double third, double gapThird) {
   const double width = bracket.after - bracket.before, chord = (bracket.gapAfter - bracket.gapBefore) / width;
   const double secondDifference =
       ((gapThird - bracket.gapBefore) / (third - bracket.before) - chord) / (third - bracket.after);
   const double slope = chord - secondDifference * width,
-               root = slope * slope - 4 * secondDifference * bracket.gapBefore;
-  return bracket.before + 2 * bracket.gapBefore / (std::sqrt(std::max(0.0, root)) - slope);
+               discriminant = slope * slope - 4 * secondDifference * bracket.gapBefore;
+  return bracket.before + 2 * bracket.gapBefore / (std::sqrt(std::max(0.0, discriminant)) - slope);
 }
 
-/// Closes a bracket around a root to `finest` by parabolas (D. E. Muller, 1956): a gap in free fall is one. Where
-/// they do not halve the bracket in three iterations, it is bisected.
+/// Closes a bracket around a root to a width of `finest` by parabolas (D. E. Muller, "A method for solving algebraic
+/// equations using an automatic computer", 1956): the gap of a body in free fall is one. Where three iterations have
+/// not halved the bracket, it is bisected.
 template <class Gap>
 void closeBracket(const Gap& gap, Bracket& bracket, double finest = kRootTolerance) {
   double third = 0, gapThird = 0, widthBefore = INFINITY;
-  for (int i = 0; i < kMaxCuts && bracket.after - bracket.before > finest; ++i) {
+  for (int i = 0; i < kMaxBracketSteps && bracket.after - bracket.before > finest; ++i) {
     const double width = bracket.after - bracket.before;
     double estimate = bracket.before + width * bracket.gapBefore / (bracket.gapBefore - bracket.gapAfter);
     if (i > 0) estimate = rootOfParabola(bracket, third, gapThird);
@@ -59,7 +68,7 @@ void closeBracket(const Gap& gap, Bracket& bracket, double finest = kRootToleran
       if (width > widthBefore / 2) estimate = bracket.before + width / 2;
       widthBefore = width;
     }
-    // Half the resolution to the inside, so that both ends come to the crossing.
+    // At least half of `finest` inside the bracket, so that both of its ends come to the root.
     if (!(estimate > bracket.before + 0.5 * finest)) estimate = bracket.before + 0.5 * finest;
     if (!(estimate < bracket.after - 0.5 * finest)) estimate = bracket.after - 0.5 * finest;
     const double found = gap(estimate);
@@ -70,10 +79,9 @@ void closeBracket(const Gap& gap, Bracket& bracket, double finest = kRootToleran
   }
 }
 
-/// First root of `gap(fraction)` between the ends, where gapBefore > 0. An interval in which the gap
-/// stays open, by its bounds or because `isOpen(ends)` knows, is passed over; else it is halved, the earlier half
-/// first. Where the ends differ in sign a root is found at once, and what comes before it is searched like the
-/// rest.
+/// First root of `gap(fraction)` between the ends, where gapBefore > 0. An interval in which the gap stays open, by its
+/// bounds or as `isOpen(ends)` tells, is passed over; any other is halved, and the earlier half is searched first.
+/// Where the ends differ in sign their root is found at once, and the interval before it is searched in the same way.
 template <class Gap, class IsOpen>
 std::optional<double> firstRoot(const Gap& gap, const GapBounds& bounds, const IsOpen& isOpen, Bracket ends) {
   if (ends.gapAfter <= 0) {
@@ -93,7 +101,7 @@ std::optional<double> firstRoot(const Gap& gap, const GapBounds& bounds, const I
   return firstRoot(gap, bounds, isOpen, {middle, gapMiddle, ends.after, ends.gapAfter});
 }
 
-/// The same where nothing but the bounds is known.
+/// The same with nothing known but the bounds.
 template <class Gap>
 std::optional<double> firstRoot(const Gap& gap, const GapBounds& bounds, const Bracket& ends) {
   return firstRoot(

@@ -6,6 +6,7 @@
 
 #include "collision/contact_reduction.h"
 #include "collision/core_separation.h"
+#include "collision/impact_search_tolerances.h"
 #include "collision/manifold.h"
 #include "collision/mesh_collider.h"
 #include "collision/mesh_nearest.h"
@@ -13,8 +14,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kTurnRounding = 1e-14;    // of the distances that enter: a height taken in another frame is as good
-constexpr std::size_t kMaxFacePoints = 8;  // of a polytope on a plane: the rest of a larger face does not support it
+// Of the lengths that enter: about 90 unit roundoffs, more than a height over a plane, a sum of some ten products,
+// differs between the body's frame and the world's.
+constexpr double kFrameRounding = 1e-14;
 
 /// The two colliders of a pair that is not against a plane, in their poses.
 struct PosedPair {
@@ -40,7 +42,7 @@ ContactPoint sphereOnOther(const PosedPair& pair) {
   return {center - (pair.a.radius + separation / 2) * outward, -outward, separation, pair.a.radius, surface.radius};
 }
 
-/// Without a turn: exact where turns would round.
+/// Two spheres, in world coordinates: exact, where a rotation into the frame of one would round.
 ContactPoint sphereOnSphere(const PosedPair& pair) {
   const Vec3 centerA = pair.worldFromA * pair.a.points[0];
   const Vec3 towardsB = pair.worldFromB * pair.b.points[0] - centerA;
@@ -99,11 +101,11 @@ double rimSeparation(const Collider& cylinder, std::size_t rim, const RigidTrans
 
 void appendOnPlane(const Collider& a, const RigidTransform& worldFromA, const PlaneCollider& plane,
                    const std::vector<std::size_t>& near, double margin, std::vector<ContactPoint>& points) {
-  const bool hasManyCorners = a.polytope && near.size() > kMaxFacePoints;
+  const bool hasManyCorners = a.polytope && near.size() > kMaxManifoldPoints;
   if (a.kind() == ColliderKind::cylinder || hasManyCorners)
     return appendManifold(Core(a, worldFromA), plane.point, plane.normal, margin, points);
   for (const std::size_t point : near) points.push_back(sphereOnPlane(worldFromA * a.points[point], a.radius, plane));
-  if (near.size() > kMaxFacePoints) reduceContacts(0, a.boundingRadius, points);
+  if (near.size() > kMaxManifoldPoints) reduceContacts(0, a.boundingRadius, points);
 }
 
 std::vector<ContactPoint> contactPoints(const ContactGeometry& geometry, const ColliderPair& pair,
@@ -138,14 +140,14 @@ bool isPinnedTo(const Collider& collider, int other) {
                      [&](const PinnedPlace& pin) { return pin.other == other; });
 }
 
-/// Whether the surface of a collider turns about a joint where it is at a contact: about a sphere's centre, or about
-/// the point itself. `inwards` (unit) points into the collider.
+/// Whether a joint keeps the surface of a collider where it is at a contact: the centre of its sphere there, or the
+/// point itself where the surface is no sphere. `inwards` (unit) points into the collider.
 bool isPinnedAt(const Collider& collider, int other, const ContactPoint& contact, double radius,
                 const RigidTransform& frame, const Vec3& inwards) {
   if (!isPinnedTo(collider, other)) return false;
   const double depth = std::isfinite(radius) ? radius : 0;
   const Vec3 center = contact.point + (depth + contact.separation / 2) * inwards;
-  return isPinned(collider, other, frame.inverse() * center, kPinnedRatio * collider.boundingRadius);
+  return isPinned(collider, other, frame.inverse() * center, ImpactSearchTolerances(collider.boundingRadius).pinned);
 }
 
 bool isPinnedContact(const ContactGeometry& geometry, const ColliderPair& pair, const ContactPoint& contact,
@@ -167,7 +169,7 @@ bool hasPinnedPlaces(const ContactGeometry& geometry, const ColliderPair& pair) 
 bool isPinnedFeature(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature) {
   const Collider& a = geometry.colliders[pair.a];
   return pair.againstPlane && !a.pins.empty() && a.kind() != ColliderKind::cylinder &&
-         isPinned(a, kFixed, a.points[feature], kPinnedRatio * a.boundingRadius);
+         isPinned(a, kFixed, a.points[feature], ImpactSearchTolerances(a.boundingRadius).pinned);
 }
 
 Vec3 relativeVelocity(const Contact& contact, const VectorX& state) {
@@ -207,7 +209,7 @@ int bodyBOf(const ContactGeometry& geometry, const ColliderPair& pair) {
 void appendFeaturesWithin(const ContactGeometry& geometry, const ColliderPair& pair, const RigidTransform& worldFromA,
                           double reach, std::vector<std::size_t>& features) {
   if (!pair.againstPlane) return features.push_back(0);
-  // Heights over the plane in the body's frame: one product a point instead of a turn.
+  // Heights over the plane are taken in the body's frame: one scalar product a point instead of a rotation.
   const Collider& a = geometry.colliders[pair.a];
   const PlaneCollider& plane = geometry.planes[pair.b];
   const Vec3 normal = worldFromA.rotation.conjugate() * plane.normal;
@@ -217,7 +219,7 @@ void appendFeaturesWithin(const ContactGeometry& geometry, const ColliderPair& p
     return;
   }
   const double distance = (worldFromA.translation - plane.point).norm();
-  const double rounding = kTurnRounding * (distance + a.boundingRadius);
+  const double rounding = kFrameRounding * (distance + a.boundingRadius);
   const double highest = reach + a.radius - plane.normal.dot(worldFromA.translation - plane.point) + rounding;
   for (std::size_t i = 0; i < a.points.size(); ++i)
     if (normal.dot(a.points[i]) <= highest && !isPinnedFeature(geometry, pair, i)) features.push_back(i);

@@ -27,8 +27,6 @@ struct Contact {
   int movingBody() const { return bodyA != kFixed ? bodyA : bodyB; }
 };
 
-constexpr double kPinnedRatio = 1e-8;  // of a size: what turns about a joint so near to it stays where it is
-
 /// Whether a joint holds feature number `feature` of a pair (a corner, or the sphere around an end, over a plane), so
 /// that its gap stays as it is.
 bool isPinnedFeature(const ContactGeometry& geometry, const ColliderPair& pair, std::size_t feature);

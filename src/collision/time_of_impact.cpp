@@ -5,7 +5,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kFirstReach = 1e-4, kReachGrowth = 10;  // of a size
+// Of the size: reach of the first search for a gap, and its growth while no gap is found. They decide the cost alone.
+constexpr double kFirstMarginReach = 1e-4, kMarginReachGrowth = 10;
 
 }  // namespace
 
@@ -26,9 +27,9 @@ double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& to
            impact.threshold;
   }
   if (!impact.isOfOthers) return separation(geometry_, pair, impact.feature, state) - impact.threshold;
-  // What is near an impact is close: all that is within a size may be thousands of triangles.
+  // Near an impact the gap is small: a search within a whole size could visit thousands of triangles.
   double gap = 0;
-  for (double reach = kFirstReach * a.boundingRadius;; reach *= kReachGrowth) {
+  for (double reach = kFirstMarginReach * a.boundingRadius;; reach *= kMarginReachGrowth) {
     gap = gapOfOthers(impact.pair, touching.activeFeatures(), state, reach);
     if (gap < reach || reach >= a.boundingRadius) break;
   }

@@ -12,31 +12,29 @@
 
 namespace cradle {
 
-/// A contact that comes about inside a step.
+/// An impact inside a step: the instant at which the gap of two features has fallen to a threshold.
 struct ImpactTime {
   double fraction = 0;  // of the step, 0..1
   std::size_t pair = 0, feature = 0;
-  double threshold = 0;           // m: the gap that is reached; < 0 if the features touched at the start
-  bool isOfOthers = false;        // the gap is that of the points of the pair that are not held
-  std::optional<FaceBelow> face;  // the gap is the height of corner number `feature` over it
+  double threshold = 0;           // m: the gap at that instant; < 0 if the features touched at the start
+  bool isOfOthers = false;        // the gap is that of those points of the pair that no active contact holds
+  std::optional<FaceBelow> face;  // if there is one, the gap is the height of corner number `feature` over it
 };
 
-constexpr double kHeldPlace = 1e-3;  // of a size: so near to a point that is held, it is that point
-
-/// A feature of a pair, as separation.h numbers them, that something keeps together.
+/// A feature of a pair, as separation.h numbers them, that an active contact or a joint holds together.
 struct ActiveFeature {
   std::size_t pair = 0, feature = 0;
-  ContactConstraint contact;   // what does
-  TouchedFeature onMesh = {};  // where a sphere is held on a mesh
+  ContactConstraint contact;   // the constraint that holds it
+  TouchedFeature onMesh = {};  // the feature of a mesh that a sphere is held on
 };
 
-/// What touches when a step begins.
+/// The features that touch when a step begins.
 struct TouchingFeatures {
-  double tolerance = 0;  // m: what is nearer touches
-  // m: what touches comes together anew when it has closed by more than this; infinite: it is passed over
+  double tolerance = 0;  // m: features nearer than this touch
+  // m: features that touch without being held collide when they have closed by more than this; infinite: never
   double deadBand = std::numeric_limits<double>::infinity();
-  const std::vector<ActiveFeature>* held =
-      nullptr;  // passed over; other points of the same pair are not: something keeps them together
+  // Features that are held: they have no impacts, other points of the same pairs have.
+  const std::vector<ActiveFeature>* held = nullptr;
 
   const std::vector<ActiveFeature>& activeFeatures() const {
     static const std::vector<ActiveFeature> none;

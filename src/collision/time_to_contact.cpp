@@ -1,7 +1,9 @@
-// The distance from a box is a sum over those axes along which the point is outside: with e_i = |x_i| - half size,
-// distance^2 = sum e_i^2. Along a parabola each e_i is a quadratic in time as long as the point stays on one side of
-// the box's planes, so that the path is cut where it crosses them. Between cuts distance^2 has degree 4 at most; its
-// roots are isolated by those of its derivatives (the second is a quadratic) and refined on the gap itself, not on
+// Time of impact of a sphere on a parabola with a fixed box. Let x be the centre in the box's frame, h the half size,
+// and e_i = |x_i| - h_i. The squared distance of the centre from the box is
+//   d^2 = sum of e_i^2 over the axes i along which the centre is outside, e_i > 0.   (1)
+// As long as the centre stays on the same sides of the box's planes, each e_i is a quadratic in time. The path is cut
+// where it crosses these planes; between cuts d^2 has degree 4 at most. Its minima and maxima are isolated by the roots
+// of its second derivative, a quadratic, and the root of d - radius between them is refined on (1) itself, not on
 // expanded coefficients, which would lose digits far from the box's centre.
 
 #include "collision/time_to_contact.h"
@@ -13,8 +15,10 @@
 namespace cradle {
 namespace {
 
-constexpr int kMaxRefinements = 200;  // bisection alone needs 60 and the bits of the exponent
-constexpr double kFinest = 4 * std::numeric_limits<double>::epsilon();  // of a time
+// Newton steps or bisections for a root. Five are usual; bisection alone ends after 53 for the digits of a time, and
+// some more where the time is small beside the interval.
+constexpr int kMaxRefinements = 200;
+constexpr double kTimeRounding = 4 * std::numeric_limits<double>::epsilon();  // of a time: steps below it are rounding
 
 /// Ascending times in an interval; both ends are among them.
 class Cuts {
@@ -44,11 +48,11 @@ class Cuts {
   double to(std::size_t piece) const { return times_[piece + 1]; }
 
  private:
-  std::array<double, 16> times_;  // the ends and at most 12 cuts: 2 planes along 3 axes, crossed twice each
+  std::array<double, 16> times_;  // both ends and at most 12 cuts: 6 planes, each crossed twice
   std::size_t count_ = 2;
 };
 
-/// The gap of a sphere from what is nearest, as long as that is the same face, edge or corner.
+/// The gap of a sphere from a face, edge or corner, as long as that is the nearest feature.
 class Approach {
  public:
   explicit Approach(double radius) : radius_(radius) {}
@@ -64,15 +68,15 @@ class Approach {
     return std::sqrt(square) - radius_;
   }
 
-  /// Half of the rate of distance^2.
+  /// Half of the first derivative of distance^2.
   double slope(double time) const {
     double sum = 0;
     for (std::size_t i = 0; i < count_; ++i) sum += axes_[i].at(time) * axes_[i].rateAt(time);
     return sum;
   }
 
-  /// Rate of the slope.
-  double bend(double time) const {
+  /// Derivative of the slope.
+  double slopeRate(double time) const {
     double sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       const double rate = axes_[i].rateAt(time);
@@ -122,7 +126,7 @@ double Approach::closingOnFace(double from, double to, double slowest) const {
   return time <= to ? time : kNever;
 }
 
-/// Where distance^2 turns: between two of these its slope keeps its sign.
+/// The times at which distance^2 has a minimum or maximum: between two of these its slope keeps its sign.
 Cuts Approach::turnings(double from, double to) const {
   double constant = 0, linear = 0, quadratic = 0;  // of the slope's derivative
   for (std::size_t i = 0; i < count_; ++i) {
@@ -141,7 +145,7 @@ Cuts Approach::turnings(double from, double to) const {
   return turnings;
 }
 
-/// The zero of a slope that is monotone in an interval; the interval's start if it has none.
+/// The root of a slope that is monotone in an interval; the start of the interval if there is none.
 double Approach::turningIn(double from, double to) const {
   const bool rises = slope(to) > 0;
   if ((slope(from) > 0) == rises) return from;
@@ -149,16 +153,16 @@ double Approach::turningIn(double from, double to) const {
   for (int i = 0; i < kMaxRefinements; ++i) {
     const double found = slope(time);
     ((found > 0) == rises ? to : from) = time;
-    double next = time - found / bend(time);
+    double next = time - found / slopeRate(time);
     if (!(next > from && next < to)) next = from + (to - from) / 2;
-    if (std::abs(next - time) <= kFinest * next || to - from <= kFinest * to) return next;
+    if (std::abs(next - time) <= kTimeRounding * next || to - from <= kTimeRounding * to) return next;
     time = next;
   }
   return time;
 }
 
-/// The zero of a gap that falls all through an interval, > 0 at its start and <= 0 at its end: Newton's method, kept
-/// between bounds.
+/// The root of a gap that falls all through an interval, > 0 at its start and <= 0 at its end: Newton's method, with
+/// bisection where that leaves the bracket.
 double Approach::crossingIn(double from, double to) const {
   double time = from + (to - from) / 2;
   for (int i = 0; i < kMaxRefinements; ++i) {
@@ -166,13 +170,13 @@ double Approach::crossingIn(double from, double to) const {
     (found > 0 ? from : to) = time;
     double next = time - found * (found + radius_) / slope(time);
     if (!(next > from && next < to)) next = from + (to - from) / 2;
-    if (std::abs(next - time) <= kFinest * next || to - from <= kFinest * to) return next;
+    if (std::abs(next - time) <= kTimeRounding * next || to - from <= kTimeRounding * to) return next;
     time = next;
   }
   return time;
 }
 
-/// Whether a gap cannot close in time however the sphere's centre turns.
+/// Whether a gap cannot close before `until` (s), whatever the directions of velocity and acceleration.
 bool isOutOfReach(double gap, const UniformMotion& motion, double until) {
   return gap > until * (motion.velocity.lpNorm<1>() + until / 2 * motion.acceleration.lpNorm<1>());
 }
