@@ -9,28 +9,30 @@
 
 namespace cradle {
 
-inline constexpr double kBeyondEnd = 1e-9;  // of a side: points as far outside a triangle or beyond an edge are on it
+// Of a side: a point as far outside a triangle or beyond an edge is on it. Contacts on the common side of two triangles
+// are then found by both, and none is lost between them; reduceContacts makes them one.
+inline constexpr double kBeyondEnd = 1e-9;
 
 /// A straight line's part from `from` to from + along.
 struct Segment {
   Vec3 from, along;  // m
 
   Vec3 at(double part) const { return from + part * along; }
-  /// Where (0..1) it is nearest to a point.
+  /// The part (0..1) of it that is nearest to a point.
   double nearestPart(const Vec3& point) const {
     const double length2 = along.squaredNorm();
     return length2 > 0 ? std::clamp((point - from).dot(along) / length2, 0.0, 1.0) : 0.0;
   }
 };
 
-/// Where (0..1) two segments are nearest to each other.
+/// The parts (0..1) of two segments that are nearest to each other.
 struct SegmentParts {
   double a = 0, b = 0;
 };
 
-/// The lines' nearest points by their common normal, whose error grows as their angle shrinks just as its effect on the
-/// distance shrinks (that of the usual determinant grows with the square). If one is beyond a segment's end, the
-/// nearest of the other to that end.
+/// The nearest points of two lines by their common normal. Its error grows as the angle of the lines shrinks, just as
+/// its effect on the distance shrinks (the error of the usual determinant grows with the square). If one of the points
+/// is beyond an end of its segment, the point of the other segment nearest to that end takes its place.
 inline SegmentParts nearestParts(const Segment& a, const Segment& b) {
   const Vec3 normal = a.along.cross(b.along), between = b.from - a.from;
   const double normal2 = normal.squaredNorm();

@@ -1,6 +1,7 @@
-// Each triangle is a flat polytope of its own, so that distances, ways out and manifolds are those of convex cores.
-// What is new is which of them belong to the surface: a way out of one triangle that leads into the solid, or sideways
-// over an edge at which the surface goes on, is none.
+// Each triangle is a flat convex polytope, so that distances, separating axes and manifolds are those of convex cores.
+// The rest of the work is to tell which of them belong to the surface: a way out of one triangle that leads into the
+// solid, or sideways over an edge at which the surface goes on, is no way out of the mesh; and a contact counts only if
+// its normal is in the normal cone of the feature that it touches.
 
 #include "collision/cylinder_on_mesh.h"
 
@@ -16,12 +17,15 @@
 namespace cradle {
 namespace {
 
-constexpr double kRoundingRatio = 1e-12;  // of the size
-constexpr double kFaceRatio = 2e-7;       // of the size: what a contact may give away for the normal of a face
-constexpr double kLevelRatio = 1e-15;     // of the size: points as near in height are level
-constexpr double kFarRatio = 10;       // of the depth: no way out over a side as far is shorter than that straight up
-constexpr double kFaceCosine = 1e-12;  // below 1 by less: the normal is a face's
-constexpr double kOnEdge = 1e-9;       // of a side: points as near to an edge are on it
+// Of the size: a contact on a face may see a gap larger than the least one by as much, twice the preference of convex
+// cores for faces (ConvexTolerances::facePreference): either of two triangles may have given it away.
+constexpr double kFaceGapRatio = 2e-7;
+constexpr double kLevelRatio = 1e-15;  // of the size: points at heights that differ by ten unit roundoffs are level
+// Of the depth: a way out sideways over a side of the triangle that is as far is longer than that along the normal, as
+// long as the next face bends away by more than 0.1 rad.
+constexpr double kSidewaysRatio = 10;
+// A cosine below 1 by less (1.4e-6 rad): the contact's normal is the face's.
+constexpr double kFaceCosineError = 1e-12;
 
 /// The triangles of a mesh, one at a time, as a collider without volume.
 class TriangleSolid {
@@ -101,24 +105,25 @@ Vec3 towardsAxis(const FlatTriangle& triangle, const Core& cylinder) {
   return (axis.at(axis.nearestPart(middle)) - middle).normalized();
 }
 
-/// Whether one of a cylinder's lowest points, at that height, is above a triangle, as far from its sides as no way out
-/// sideways is shorter.
+/// Whether one of a cylinder's lowest points, at that height, is above a triangle and so far from its sides that no way
+/// out sideways is shorter than that along the normal.
 bool isLowestAbove(const FlatTriangle& triangle, const Core& cylinder, double height) {
   const Vec3 one = cylinder.rimPoint(1, -triangle.normal), other = cylinder.rimPoint(-1, -triangle.normal);
   const double side = cylinder.axis().dot(triangle.normal) > 0 ? -1 : 1;
-  const double same = height + kLevelRatio * cylinder.collider().boundingRadius, deep = std::max(-height, 0.0);
+  const double level = height + kLevelRatio * cylinder.collider().boundingRadius, deep = std::max(-height, 0.0);
   for (const Vec3& point : {one, other, Vec3((one + other) / 2), cylinder.end(side)})
-    if (triangle.heightOf(point) <= same && isFarInside(triangle, point, kFarRatio * deep)) return true;
+    if (triangle.heightOf(point) <= level && isFarInside(triangle, point, kSidewaysRatio * deep)) return true;
   return false;
 }
 
-/// Where a cylinder is nearest to the surface, or deepest in it: normals point from the mesh to the cylinder.
+/// Visits triangles for the one that a cylinder is nearest to, or deepest in. Normals point from the mesh to the
+/// cylinder.
 struct CylinderVisit {
   const Core& cylinder;
   const MeshSurface& mesh;
   TriangleSolid& solid;
-  SeparatingAxis least;             // of triangles apart, and of those whose way out leads out of the mesh
-  SeparatingAxis straightOut = {};  // where all others lead into it
+  SeparatingAxis least;  // least separation of triangles that are apart, or from which a way leads out of the mesh
+  SeparatingAxis straightOut = {};  // along a face's normal, where all other ways lead into the mesh
   bool isFound = false;
 
   bool intersects() const { return least.separation <= 0 || std::isfinite(straightOut.separation); }
@@ -129,15 +134,15 @@ struct CylinderVisit {
     const FlatTriangle triangle = triangleOf(mesh, index);
     if (isTurnedAway(mesh, triangle, cylinder)) return;
     const double height = heightOver(triangle, cylinder), size = cylinder.collider().boundingRadius;
-    // The height bounds the distance from below, and the way out along the normal is one.
+    // The height is a lower bound on the distance; and the way out along the normal is no longer than -height.
     if (triangle.normal == Vec3::Zero() || height >= least.separation - kLevelRatio * size) return;
     if (isUnder(triangle, cylinder, std::max(least.separation, 0.0))) return;
     if (isLowestAbove(triangle, cylinder, height)) {
       least = {height, triangle.normal}, isFound = true;
       return;
     }
-    // A gap along any unit vector bounds the distance too: along the nearest triangle's normal so far, towards the
-    // axis, between nearest points.
+    // The gap along any unit vector is a lower bound on the distance, too. Three are tried: the axis of the nearest
+    // triangle so far, the direction towards the cylinder's axis, and that between the nearest points.
     const auto isFarther = [&](double gap) { return gap >= least.separation - kLevelRatio * size; };
     if (isFound && isFarther(gapAlong(triangle, cylinder, least.normal))) return;
     const Vec3 outward = towardsAxis(triangle, cylinder);
@@ -147,7 +152,7 @@ struct CylinderVisit {
     if (apart.distance > 0 && isFarther(apart.lowerBound)) return;
     const SeparatingAxis axis = separationOf(core, cylinder);
     if (axis.separation <= 0 && axis.normal.dot(triangle.normal) < 0) {
-      if (axis.separation > -kRoundingRatio * size) return;  // beside its edge
+      if (axis.separation > -MeshTolerances(size).rounding) return;  // the cylinder is beside an edge of the triangle
       if (height > straightOut.separation) straightOut = {height, triangle.normal};
       return;
     }
@@ -155,7 +160,7 @@ struct CylinderVisit {
   }
 };
 
-/// The gap, of which `separation` is `enough` (m) if it is larger.
+/// The least separation, within `enough` (m): if there is none, `separation` is that.
 CylinderVisit gapOf(const Core& cylinder, const MeshSurface& mesh, TriangleSolid& solid, double enough) {
   CylinderVisit visit{cylinder, mesh, solid, {enough, Vec3::UnitY()}};
   visitNear(mesh.tree, boundsOf(cylinder), visit);
@@ -170,21 +175,21 @@ bool isInside(const Core& cylinder, const MeshSurface& mesh) {
 /// Whether the mesh lies behind the tangent plane of a contact on a triangle.
 bool isOnSurface(const MeshSurface& mesh, std::uint32_t index, const ContactPoint& contact, double margin) {
   const MeshSurface::Face& face = mesh.faces[index];
-  if (face.normal.dot(contact.normal) > 1 - kFaceCosine) return true;
+  if (face.normal.dot(contact.normal) > 1 - kFaceCosineError) return true;
   const FlatTriangle triangle = triangleOf(mesh, index);
   const Vec3 onMesh = contact.point - contact.separation / 2 * contact.normal;
   for (std::size_t i = 0; i < 3; ++i) {
     const Segment edge{cornerOf(triangle, i), cornerOf(triangle, (i + 1) % 3) - cornerOf(triangle, i)};
     const double length = edge.along.norm(), part = edge.nearestPart(onMesh);
-    if ((onMesh - edge.at(part)).norm() > kOnEdge * length) continue;
-    if (part > kOnEdge && part < 1 - kOnEdge)
+    if ((onMesh - edge.at(part)).norm() > kBeyondEnd * length) continue;
+    if (part > kBeyondEnd && part < 1 - kBeyondEnd)
       return isInNormalCone(mesh, mesh.edges[face.edges[i]], contact.normal, margin);
     return isInNormalCone(mesh, face.vertices[part > 0.5 ? (i + 1) % 3 : i], contact.normal, margin);
   }
   return false;
 }
 
-/// The triangles whose boxes are within reach, in order of number.
+/// Visits the triangles whose boxes are within reach.
 struct NearTriangles {
   double reach2;  // m^2
   std::vector<std::uint32_t> found = {};
@@ -210,7 +215,7 @@ void appendCylinderContacts(const Core& cylinder, const MeshSurface& mesh, doubl
                             std::vector<ContactPoint>& contacts) {
   TriangleSolid solid;
   const double reach = std::max(margin, 0.0), size = std::min(mesh.size, 2 * cylinder.collider().boundingRadius);
-  const CylinderVisit visit = gapOf(cylinder, mesh, solid, reach + kRoundingRatio * size);
+  const CylinderVisit visit = gapOf(cylinder, mesh, solid, reach + MeshTolerances(size).rounding);
   const bool inside = !visit.intersects() && isInside(cylinder, mesh);
   if (!inside && (!visit.isFound || visit.least.separation > margin)) return;
   const std::size_t first = contacts.size();
@@ -240,7 +245,7 @@ void appendCylinderContacts(const Core& cylinder, const MeshSurface& mesh, doubl
   const SignedHeight center = inside ? heightOver(mesh, cylinder.center()) : SignedHeight{};
   const SeparatingAxis gap =
       inside ? SeparatingAxis{cylinderSeparation(cylinder, mesh, 0), center.normal} : visit.least;
-  if (!(least <= gap.separation + kFaceRatio * size)) {
+  if (!(least <= gap.separation + kFaceGapRatio * size)) {
     const Vec3 onCylinder = cylinder.supportPoint(-gap.normal);
     contacts.push_back(
         {onCylinder - gap.separation / 2 * gap.normal, gap.normal, gap.separation, kNotRound, kNotRound});

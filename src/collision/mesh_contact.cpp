@@ -7,11 +7,13 @@
 namespace cradle {
 namespace {
 
-constexpr double kDeepRatio = 0.01;           // of the size: deeper, features do not tell where to
-constexpr double kPairRoundingRatio = 1e-12;  // of the size
-constexpr double kParallelEdgeSine = 1e-6;    // edges at a smaller angle have no crossing: their ends touch instead
+// Of the size: of meshes in each other more deeply than that, features do not tell the way out, and the deepest place
+// alone is a contact.
+constexpr double kDeepRatio = 0.01;
+// Edges at a smaller angle have no sure crossing: their ends touch faces instead.
+constexpr double kParallelEdgeSine = 1e-6;
 
-/// A contact with its features, by which contacts are ordered whatever the way they were found.
+/// A contact with its features: contacts are sorted by these, so that their order does not depend on the search.
 struct Candidate {
   std::array<std::uint32_t, 3> key;  // kind; feature of A, of B
   ContactPoint contact;
@@ -19,7 +21,7 @@ struct Candidate {
 
 struct ContactVisit {
   const MeshPair& pair;
-  double margin, depth;  // m: separations from -depth to margin count
+  double margin, depth;  // m: contacts have separations from -depth to margin
   std::vector<Candidate> found = {};
 
   double reach() const { return std::max(margin, depth) * std::max(margin, depth); }
@@ -72,7 +74,7 @@ void appendContacts(const MeshPair& pair, double margin, std::vector<ContactPoin
   const MeshGap gap = gapBetween(pair, margin);
   if (!(gap.separation <= margin)) return;
   const std::size_t first = contacts.size();
-  const double size = std::min(pair.a.size, pair.b.size), rounding = kPairRoundingRatio * size;
+  const double size = std::min(pair.a.size, pair.b.size), rounding = MeshTolerances(size).rounding;
   double least = std::numeric_limits<double>::infinity();
   if (gap.separation > -kDeepRatio * size) {
     ContactVisit visit{pair, margin, std::max(0.0, -gap.separation) + rounding};

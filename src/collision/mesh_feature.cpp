@@ -1,5 +1,5 @@
-// The Voronoi regions of a surface's features (B. Mirtich, "V-Clip: fast and robust polyhedral collision detection",
-// ACM Trans. Graphics 17(3), 1998). Flat regions take the place of triangles, so that edges inside of them are none.
+// The Voronoi regions of a surface's features: B. Mirtich, "V-Clip: fast and robust polyhedral collision detection",
+// ACM Trans. Graphics 17(3), 1998. Flat regions take the place of triangles: an edge inside of one is no feature.
 
 #include "collision/mesh_feature.h"
 
@@ -10,8 +10,9 @@ namespace {
 
 using Feature = MeshPoint::Feature;
 
-constexpr double kBehindRatio = 1e-9;  // of the mesh's size: triangles as little ahead of a plane are in it
-constexpr double kBorderRatio = 4;     // of the width in which contacts may be found beyond a region's border
+// Of kBeyondEnd, by which contacts may be found beyond the border of a region: wide enough for both sides of the
+// border. A tenth or ten times as much changes no test.
+constexpr double kBorderRatio = 4;
 
 struct FootVisit {
   const MeshSurface& surface;
@@ -25,7 +26,7 @@ struct FootVisit {
   }
 };
 
-/// Along the plane, from the foot of the perpendicular to the region's outline.
+/// Distance (m) from the foot of the perpendicular on a flat region to the region's outline; < 0 outside of it.
 double insideOutline(const MeshSurface& surface, std::uint32_t face, const Vec3& point) {
   const FlatTriangle plane = triangleOf(surface, face);
   const std::uint32_t region = surface.regions[face];
@@ -36,7 +37,7 @@ double insideOutline(const MeshSurface& surface, std::uint32_t face, const Vec3&
     distance2 = std::min(distance2, (foot - edge.at(edge.nearestPart(foot))).squaredNorm());
   }
   if (plane.isAbove(foot)) return std::sqrt(distance2);
-  const double slack = kBehindRatio * surface.size;
+  const double slack = MeshTolerances(surface.size).inPlane;
   FootVisit visit{surface, region, foot};
   visitNear(surface.tree, Bounds(Vec3(foot.array() - slack), Vec3(foot.array() + slack)), visit);
   return visit.isFound ? std::sqrt(distance2) : -std::sqrt(distance2);
@@ -137,7 +138,7 @@ std::vector<HalfSpace> spaceBehind(const MeshSurface& surface, const TouchedFeat
 
 double distanceBeside(const MeshSurface& surface, const std::vector<std::vector<HalfSpace>>& touched, const Vec3& point,
                       double reach) {
-  BesideVisit visit{surface, touched, point, kBehindRatio * surface.size, reach * reach};
+  BesideVisit visit{surface, touched, point, MeshTolerances(surface.size).inPlane, reach * reach};
   visitNear(surface.tree, point, visit);
   return visit.distance2 < reach * reach ? std::sqrt(visit.distance2) : std::numeric_limits<double>::infinity();
 }

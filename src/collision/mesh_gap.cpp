@@ -7,10 +7,17 @@
 namespace cradle {
 namespace {
 
-constexpr double kNoDirection = 1e-9;                    // of the size: nearer points do not tell the normal well
-constexpr double kFirstReach = 1e-4, kLongerReach = 16;  // of the size; then how much longer each time
-constexpr double kHardlyRatio = 0.01;                    // of another way out: what is so little was hardly passed
-constexpr double kTouchingGap = 1e-10;                   // of the size: gaps as small as that are always looked for
+// Of the size: nearest points at a smaller distance tell their direction to no better than 1e-6 rad (rounding, 1e-15 of
+// the size, over the distance); the normals of the features take its place.
+constexpr double kDirectionRatio = 1e-9;
+// Of the size: reach of the first search for nearest features, and the growth for the next ones. They decide the cost
+// alone.
+constexpr double kFirstSearchReach = 1e-4;
+constexpr double kSearchReachGrowth = 16;
+// Of the length of another way out: a way that is as short has barely been passed, and is the right one.
+constexpr double kBarelyPassedRatio = 0.01;
+// Of the size: reach of a search at least, so that a gap of rounding is found where none at all is asked for.
+constexpr double kMinReachRatio = 1e-10;
 
 using Feature = MeshPoint::Feature;
 
@@ -28,10 +35,10 @@ const Vec3& normalAt(const MeshSurface& surface, const Witness& witness) {
   return surface.vertexNormals[witness.index];
 }
 
-/// The nearest features of two surfaces, until a triangle goes through another one.
+/// Visits pairs of triangles for the nearest features of two surfaces. It ends where an edge goes through a triangle.
 struct GapVisit {
   const MeshPair& pair;
-  double distance2;  // m^2: nothing farther matters
+  double distance2;  // m^2: of the nearest features so far, or the square of the reach
   Witness onA = {}, onB = {};
   bool intersect = false;
 
@@ -81,7 +88,7 @@ struct GapVisit {
   }
 };
 
-/// The deepest edge inside the other solid, or past a sheet.
+/// Visits pairs of triangles that intersect, for the edge that is deepest inside the other solid or beyond a sheet.
 struct OverlapVisit {
   const MeshPair& pair;
   double rounding2;  // m^2
@@ -112,9 +119,9 @@ struct OverlapVisit {
     });
   }
 
-  /// Of an edge that goes through a face. It may leave a sheet towards the side on which a solid's inner point is, or
-  /// where that is not known, most of the edge; or towards the other side, if it has hardly left that: over a steep
-  /// crease, much of a solid is behind the planes of faces that it barely touches.
+  /// The depth of an edge that goes through a face. Out of a sheet there are two ways: towards the side on which the
+  /// solid's inner point is (if none is known, most of the edge), or towards the other side. The latter is taken if it
+  /// is much shorter: over a steep crease, much of a solid is behind the planes of faces that it barely touches.
   static EdgeDepth depthOf(const Segment& edge, const Vec3& inner, const MeshSurface& other, std::uint32_t face) {
     const double part = partAt(edge, face, other);
     if (!other.isSheet) return depthOfEdge(other, edge, part, face);
@@ -123,18 +130,18 @@ struct OverlapVisit {
     const bool isInFront = triangleOf(other, face).heightOf(inner) >= 0;
     const EdgeDepth towards = depthOfEdge(other, edge, part, isInFront ? face : back);
     const EdgeDepth away = depthOfEdge(other, edge, part, isInFront ? back : face);
-    return away.depth < kHardlyRatio * towards.depth ? away : towards;
+    return away.depth < kBarelyPassedRatio * towards.depth ? away : towards;
   }
 
-  /// The deepest of all; but past a sheet's border, if that is hardly inside.
+  /// The deepest of all; of a sheet whose border is barely inside the solid, the way past that border.
   MeshGap wayOut() const {
     if (leaving.normal == Vec3::Zero()) return deepest;
-    if (pastBorder.normal != Vec3::Zero() && pastBorder.separation > kHardlyRatio * leaving.separation)
+    if (pastBorder.normal != Vec3::Zero() && pastBorder.separation > kBarelyPassedRatio * leaving.separation)
       return pastBorder;
     return deepest.separation < leaving.separation ? deepest : leaving;
   }
 
-  /// Where an edge goes through a face, in the direction of the edge.
+  /// The part (0..1) of an edge at which it goes through a face.
   static double partAt(const Segment& edge, std::uint32_t face, const MeshSurface& surface) {
     const FlatTriangle triangle = triangleOf(surface, face);
     const double slope = triangle.normal.dot(edge.along);
@@ -151,7 +158,7 @@ struct OverlapVisit {
   }
 };
 
-/// What two nearest points, of surfaces that do not intersect, say.
+/// The gap of two surfaces that do not intersect, from their nearest points.
 MeshGap gapOf(const MeshPair& pair, const GapVisit& nearest) {
   const Witness &onA = nearest.onA, &onB = nearest.onB;
   const Vec3 between = onB.point - onA.point;
@@ -170,7 +177,7 @@ MeshGap gapOf(const MeshPair& pair, const GapVisit& nearest) {
     gap.normal = outOfA;
   } else if (onB.feature == Feature::face) {
     gap.normal = -outOfB;
-  } else if (distance > kNoDirection * std::min(pair.a.size, pair.b.size)) {
+  } else if (distance > kDirectionRatio * std::min(pair.a.size, pair.b.size)) {
     gap.normal = sign / distance * between;
   } else if (onA.feature == Feature::edge && onB.feature == Feature::edge) {
     const Vec3 across = segmentOf(pair.a, onA.index).along.cross(pair.segmentOfB(onB.index).along).normalized();
@@ -179,7 +186,7 @@ MeshGap gapOf(const MeshPair& pair, const GapVisit& nearest) {
   return gap;
 }
 
-/// The gap of a part that is inside the other solid, far from its surface.
+/// Puts a connected part of one mesh that is wholly inside the other solid into `gap`, if it is deeper than that.
 void keepPartsInside(const MeshPair& pair, MeshGap& gap) {
   for (const std::uint32_t vertex : pair.a.parts) {
     const Vec3 &point = pair.a.vertices[vertex], seen = pair.placedBack(point);
@@ -196,15 +203,16 @@ void keepPartsInside(const MeshPair& pair, MeshGap& gap) {
   }
 }
 
-/// Most solids that are asked for are near: short distances first, since a search costs as its bound.
+/// The nearest features within `enough` (m). Short reaches come first: most solids of a query are near, and the cost of
+/// a search grows with its reach.
 GapVisit searchNearest(const MeshPair& pair, const BvhPair& trees, double enough) {
-  double reach = kFirstReach * std::min(pair.a.size, pair.b.size);
+  double reach = kFirstSearchReach * std::min(pair.a.size, pair.b.size);
   while (true) {
     const double bound = std::min(reach, enough);
     GapVisit visit{pair, bound * bound};
     trees.visitNear(visit);
     if (visit.intersect || visit.onA.feature != Feature::none || bound >= enough) return visit;
-    reach *= kLongerReach;
+    reach *= kSearchReachGrowth;
   }
 }
 
@@ -213,9 +221,9 @@ GapVisit searchNearest(const MeshPair& pair, const BvhPair& trees, double enough
 MeshGap gapBetween(const MeshPair& pair, double enough) {
   const BvhPair trees(pair.a.tree, pair.b.tree, pair.aFromB);
   const double size = std::min(pair.a.size, pair.b.size);
-  const GapVisit nearest = searchNearest(pair, trees, std::max(enough, kTouchingGap * size));
+  const GapVisit nearest = searchNearest(pair, trees, std::max(enough, kMinReachRatio * size));
   if (nearest.intersect) {
-    OverlapVisit overlap{pair, kTouchingGap * size * kTouchingGap * size, {}};
+    OverlapVisit overlap{pair, kMinReachRatio * size * kMinReachRatio * size, {}};
     overlap.deepest.separation = 0;
     trees.visitNear(overlap);
     return overlap.wayOut();

@@ -5,8 +5,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kFlatAngle = 1e-6;            // rad: the normal of an edge or vertex inside a flat face is exact
-constexpr double kDifferenceRounding = 1e-15;  // of the size, of a difference of points
+constexpr double kFeatureAngle = 1e-6;         // rad: a direction as near to the normal of its feature is that normal
+constexpr double kDifferenceRounding = 1e-15;  // of the size: ten unit roundoffs, for a difference of points
 
 struct NearestVisit {
   const MeshSurface& surface;
@@ -61,7 +61,7 @@ SignedHeight heightOver(const MeshSurface& surface, const Vec3& point) {
   const double distance = std::sqrt(nearest.distance2), side = isUnder && !surface.isSheet ? -1 : 1;
   const Vec3 normal = isUnder && surface.isSheet ? Vec3(-nearest.normal) : nearest.normal;
   const Vec3 outward = distance > 0 ? Vec3(side / distance * away) : normal;
-  const double noise = std::max(kFlatAngle, kDifferenceRounding * surface.size / distance);
+  const double noise = std::max(kFeatureAngle, kDifferenceRounding * surface.size / distance);
   const bool isFeatures = nearest.feature == MeshPoint::Feature::face || !((outward - normal).norm() > noise);
   return {side * distance, isFeatures ? normal : outward, nearest.point, nearest.feature};
 }

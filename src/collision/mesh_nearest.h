@@ -17,6 +17,14 @@ struct MeshPoint {
   double distance2 = std::numeric_limits<double>::infinity();  // m^2, of the squares
 };
 
+/// Lengths (m) below which places on a surface are the same, from the size of the surface (of the smaller of two).
+struct MeshTolerances {
+  explicit MeshTolerances(double size) : rounding(1e-12 * size), inPlane(1e-9 * size) {}
+
+  double rounding;  // 1e4 unit roundoffs: errors of nearest points on triangles with angles down to 1e-4 rad
+  double inPlane;   // points no farther ahead of a plane are in it, as in flat regions (kFlatRatio in mesh_surface.cpp)
+};
+
 /// Of all points nearer than `reach` (m). O(log triangles) for points near the surface.
 MeshPoint nearestPoint(const MeshSurface& surface, const Vec3& point,
                        double reach = std::numeric_limits<double>::infinity());

@@ -1,7 +1,8 @@
-// The depth under the surface along a straight line is concave while the solid is convex there: its greatest value is
-// found by tangent planes (J. E. Kelley, "The cutting-plane method for solving convex programs", 1960). Where two
-// planes with normals n1, n2 meet above the line, their mean m that is perpendicular to the line (and to the planes'
-// common edge) leads straight from one to the other: the lines' distance is the depth under the planes divided by |m|.
+// The depth of the points of a straight line under the surface is a concave function along the line as long as the
+// solid is convex there. Its greatest value is found by tangent planes (J. E. Kelley, "The cutting-plane method for
+// solving convex programs", 1960). It lies where two planes, with unit normals n1 and n2, meet in an edge above the
+// line. The mean m of n1 and n2 that is perpendicular to the line is perpendicular to the edge, too, and leads straight
+// from the line to the edge: their distance is the depth under the planes divided by |m|.
 
 #include "collision/mesh_overlap.h"
 
@@ -11,15 +12,17 @@
 namespace cradle {
 namespace {
 
-constexpr double kSkippedRatio = 1e-12;   // of the piece: the entry is no exit ...
-constexpr double kOnPlane = 1e-14;        // of a sheet's size: ... nor are backs of triangles that it begins on
-constexpr double kSameLineRatio = 1e-11;  // of an edge: so near to it a line goes through it
-constexpr int kMaxFacesAround = 16;       // a vertex
-constexpr double kExactRatio = 1e-9;      // of the depth
-constexpr double kMinMean = 1e-3;         // of unit normals: faces back to back leave no way between them
-constexpr std::size_t kMaxPlanes = 12;
+// A tenth or ten times as much of any of these ratios changes no test.
+constexpr double kEntryRatio = 1e-12;    // of the piece: an exit as near to its beginning is the entry itself
+constexpr double kOnSheetRatio = 1e-14;  // of a sheet's size, 90 unit roundoffs: the piece begins on a triangle's back
+constexpr double kThroughEdgeRatio = 1e-11;  // of an edge: a line as near to it goes through it
+constexpr double kDepthErrorRatio = 1e-9;    // of the depth: planes that bound it as closely give the depth itself
+constexpr int kMaxFacesAroundVertex = 16;    // that a line passes by; half or twice as many change no test
+// Length of the mean of two unit normals: faces back to back, within 0.002 rad, leave no way out between them.
+constexpr double kMinMeanLength = 1e-3;
+constexpr std::size_t kMaxTangentPlanes = 12;  // with more, the depth under the first of them is taken
 
-/// Where a segment first leaves the solid.
+/// Visits triangles for the place at which a segment first leaves the solid.
 struct ExitVisit {
   const MeshSurface& surface;
   const Segment& segment;
@@ -44,7 +47,7 @@ struct ExitVisit {
       enter = std::max(enter, (-std::copysign(node.halfSize[axis], along) - from) / along);
       leave = std::min(leave, (std::copysign(node.halfSize[axis], along) - from) / along);
     }
-    return enter <= leave + kSkippedRatio;
+    return enter <= leave + kEntryRatio;
   }
 
   void tryFace(std::uint32_t face) {
@@ -52,8 +55,8 @@ struct ExitVisit {
     const double slope = triangle.normal.dot(segment.along);
     if (!(slope > 0)) return;
     const double height = triangle.heightOf(segment.from), found = -height / slope;
-    if (found <= kSkippedRatio || found > 1 || found >= part || !triangle.isAbove(segment.at(found))) return;
-    if (triangle.normal.dot(entry) < 0 && std::abs(height) <= kOnPlane * surface.size) return;
+    if (found <= kEntryRatio || found > 1 || found >= part || !triangle.isAbove(segment.at(found))) return;
+    if (triangle.normal.dot(entry) < 0 && std::abs(height) <= kOnSheetRatio * surface.size) return;
     part = found, normal = triangle.normal;
   }
 };
@@ -66,11 +69,11 @@ struct DepthPlane {
   double depthAt(double part) const { return depth + slope * (part - at); }
 };
 
-/// The least depth under some planes, where it is greatest.
+/// The least depth under several planes, an upper bound on the depth under the surface, and its greatest value.
 class DepthBound {
  public:
   void add(const DepthPlane& plane) { planes_[count_++] = plane; }
-  bool isFull() const { return count_ == kMaxPlanes; }
+  bool isFull() const { return count_ == kMaxTangentPlanes; }
 
   double depthAt(double part) const {
     double least = std::numeric_limits<double>::infinity();
@@ -88,7 +91,7 @@ class DepthBound {
         if (!(up.slope >= 0 && down.slope <= 0 && up.slope > down.slope)) continue;
         const double meet = (down.depthAt(0) - up.depthAt(0)) / (up.slope - down.slope);
         // Where a third plane is lower, it is not these two that bound the depth.
-        const bool areLowest = depthAt(meet) >= up.depthAt(meet) * (1 - kExactRatio);
+        const bool areLowest = depthAt(meet) >= up.depthAt(meet) * (1 - kDepthErrorRatio);
         if (meet > 0 && meet < end && areLowest) keepIfHigher(meet, &up, &down);
       }
   }
@@ -102,7 +105,7 @@ class DepthBound {
     if (found > depth) part = at, depth = found, rising = up, falling = down;
   }
 
-  std::array<DepthPlane, kMaxPlanes> planes_;
+  std::array<DepthPlane, kMaxTangentPlanes> planes_;
   std::size_t count_ = 0;
 };
 
@@ -116,7 +119,7 @@ EdgeDepth depthBetween(const DepthBound& top, const Segment& piece, const Vec3& 
   const double rise = top.rising->slope, fall = -top.falling->slope;
   const Vec3 mean = (fall * top.rising->normal + rise * top.falling->normal) / (rise + fall);
   const double length = mean.norm();
-  if (length < kMinMean) return {top.depth, fallback, piece.at(top.part), false};
+  if (length < kMinMeanLength) return {top.depth, fallback, piece.at(top.part), false};
   EdgeDepth result{top.depth / length, mean / length, piece.at(top.part), false};
   // From there along the edge to the point that is straight below the other edge.
   const DepthPlane& steeper = rise > fall ? *top.rising : *top.falling;
@@ -125,16 +128,16 @@ EdgeDepth depthBetween(const DepthBound& top, const Segment& piece, const Vec3& 
   return result;
 }
 
-/// Whether a line that goes through a face of a sheet comes back over an edge of it at once, but for rounding: over a
-/// crease that it touches.
+/// Whether a line that goes through a face of a sheet, to rounding at an edge of it, comes back at once over that edge:
+/// it touches a crease there.
 bool goesBackAtOnce(const MeshSurface& sheet, const Segment& line, std::uint32_t face) {
-  for (int walked = 0; walked < kMaxFacesAround; ++walked) {
+  for (int walked = 0; walked < kMaxFacesAroundVertex; ++walked) {
     const MeshSurface::Face& here = sheet.faces[face];
     const MeshSurface::Edge* crossed = nullptr;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3& from = sheet.vertices[here.vertices[i]];
       const Vec3 along = sheet.vertices[here.vertices[(i + 1) % 3]] - from, outwards = along.cross(here.normal);
-      const double near = kSameLineRatio * along.squaredNorm();  // both sides times the edge's length
+      const double near = kThroughEdgeRatio * along.squaredNorm();  // both sides times the edge's length
       if (std::abs(outwards.dot(line.from - from)) <= near && outwards.dot(line.along) > 0)
         crossed = &sheet.edges[here.edges[i]];
     }
@@ -164,7 +167,7 @@ EdgeDepth depthOfEdge(const MeshSurface& solid, const Segment& edge, double part
   bound.add(last);
   for (bound.findTop(end); !bound.isFull(); bound.findTop(end)) {
     const DepthPlane tangent = planeAt(solid, piece, bound.part);
-    if (tangent.depth >= bound.depth * (1 - kExactRatio)) break;
+    if (tangent.depth >= bound.depth * (1 - kDepthErrorRatio)) break;
     bound.add(tangent);
   }
   if (bound.depth <= 0) return {0, entry, piece.from, false};

@@ -53,13 +53,15 @@ inline double leastDistance(const CornerHeights& heights) {
 template <class Pierces>
 void forEachPiercing(const MeshSurface::Face& face, const FlatTriangle& triangle, const CornerHeights& heights,
                      const FlatTriangle& through, const Pierces& pierces) {
-  constexpr double kNoGap = 1e-14;  // of a side: nothing slips through between two triangles
+  // Of a side: triangles reach beyond their sides by 90 unit roundoffs here, so that no edge slips through between two
+  // of them, whose sides are rounded each for itself.
+  constexpr double kSideOverlap = 1e-14;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t next = (i + 1) % 3;
     if (!face.ownsEdge[i] || !((heights[i] < 0) != (heights[next] < 0))) continue;
     const double part = heights[i] / (heights[i] - heights[next]);
     const Vec3 &from = cornerOf(triangle, i), &to = cornerOf(triangle, next);
-    if (through.isAbove(from + part * (to - from), kNoGap)) pierces(i, part);
+    if (through.isAbove(from + part * (to - from), kSideOverlap)) pierces(i, part);
   }
 }
 

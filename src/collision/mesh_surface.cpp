@@ -16,8 +16,12 @@
 namespace cradle {
 namespace {
 
-constexpr double kFlatRatio = 1e-9;    // of the length: a bend by less is rounding of the vertices
-constexpr double kNoMeanRatio = 1e-6;  // of the normals of a vertex: a shorter mean is that of two sides of a sheet
+// Of a triangle's length: two triangles that bend by less lie in one plane. The vertices of flat faces are rounded to a
+// unit roundoff of the mesh, whose triangles may be a millionth of it.
+constexpr double kFlatRatio = 1e-9;
+// Of the weighted mean of a vertex's normals (rad): both sides of a sheet cancel in a shorter one, which has no
+// direction.
+constexpr double kMinMeanNormal = 1e-6;
 
 /// Angle (rad) between two unit vectors, good to 1e-7: halved four times it is below pi / 16, where the series of the
 /// arc sine suffices.
@@ -58,10 +62,10 @@ void addFaces(const TriangleMesh& mesh, MeshSurface& surface) {
   }
 }
 
-/// Two triangles meet there.
+/// Two sides of triangles that meet at an edge.
 using Seam = std::pair<Side, Side>;
 
-/// Of a closed mesh: neighbours in order of vertices.
+/// The seams of a closed mesh: sides that are next to each other in order of their vertices.
 std::vector<Seam> seamsOf(const MeshSurface& surface) {
   const std::vector<Side> sides = sortedSides(surface);
   CRADLE_CHECK(sides.size() % 2 == 0);
@@ -73,7 +77,7 @@ std::vector<Seam> seamsOf(const MeshSurface& surface) {
   return seams;
 }
 
-/// The edge of two sides. Where a sheet's front goes over into its back, the way out is along the sheet.
+/// The edge of two sides. Where a sheet's front goes over into its back, the edge's normal is along the sheet.
 MeshSurface::Edge edgeOf(const Seam& seam, const MeshSurface& surface) {
   const auto& [one, other] = seam;
   const MeshSurface::Face &face = surface.faces[one.face], &next = surface.faces[other.face];
@@ -117,11 +121,11 @@ bool isFlat(const MeshSurface& surface, const MeshSurface::Edge& edge) {
 }
 
 void addRegions(MeshSurface& surface) {
-  constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  surface.regions.assign(surface.faces.size(), kNone);
+  constexpr std::uint32_t kNoRegion = ~std::uint32_t{0};
+  surface.regions.assign(surface.faces.size(), kNoRegion);
   std::uint32_t count = 0;
   for (std::uint32_t first = 0; first < surface.faces.size(); ++first) {
-    if (surface.regions[first] != kNone) continue;
+    if (surface.regions[first] != kNoRegion) continue;
     surface.firstBorder.push_back(static_cast<std::uint32_t>(surface.borders.size()));
     std::vector<std::uint32_t> open{first};
     surface.regions[first] = count;
@@ -133,7 +137,7 @@ void addRegions(MeshSurface& surface) {
         const std::uint32_t next = edge.faces[edge.faces[0] == at ? 1 : 0];
         if (!isFlat(surface, edge))
           surface.borders.push_back(index);
-        else if (surface.regions[next] == kNone)
+        else if (surface.regions[next] == kNoRegion)
           surface.regions[next] = count, open.push_back(next);
       }
     }
@@ -152,7 +156,7 @@ void addVertexNormals(MeshSurface& surface) {
       surface.vertexNormals[face.vertices[i]] += angleBetween(next, last) * face.normal;
     }
   for (Vec3& normal : surface.vertexNormals)
-    normal = normal.norm() > (surface.isSheet ? kNoMeanRatio : 0) ? Vec3(normal.normalized()) : Vec3(Vec3::Zero());
+    normal = normal.norm() > (surface.isSheet ? kMinMeanNormal : 0) ? Vec3(normal.normalized()) : Vec3(Vec3::Zero());
 }
 
 void addNeighbours(MeshSurface& surface) {
@@ -184,7 +188,7 @@ void addParts(MeshSurface& surface) {
   }
 }
 
-/// Of a solid without hollows.
+/// Adds the inner point of a convex solid: the mean of its vertices.
 void addInnerPoint(MeshSurface& surface) {
   const auto isHollow = [&](const MeshSurface::Edge& edge) { return !edge.isConvex && !isFlat(surface, edge); };
   if (surface.isSheet || surface.parts.size() != 1) return;

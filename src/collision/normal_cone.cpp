@@ -5,7 +5,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kMinTilt = 1e-5, kMaxTilt = 0.1;  // rad: less is always allowed, more never
+// rad: a solid may be ahead of the tangent plane by the margin, but by no less than the smaller angle, so that a face
+// touches with all of its outline, and by no more than the larger one, 6 degrees. A tenth or ten times as much of
+// either changes no test.
+constexpr double kMinTilt = 1e-5, kMaxTilt = 0.1;
 
 }  // namespace
 
@@ -23,7 +26,7 @@ bool isInNormalCone(const MeshSurface& surface, std::uint32_t vertex, const Vec3
 }
 
 bool isInNormalCone(const MeshSurface& surface, const MeshSurface::Edge& edge, const Vec3& ahead, double margin) {
-  // At a sheet's border what is straight over one of its sides is ahead too.
+  // At a sheet's border a direction straight over one of its sides is in the cone, too.
   if (!edge.isConvex || edge.normal.dot(ahead) <= (edge.isBorder ? -kMinTilt : 0)) return false;
   const Vec3& from = surface.vertices[edge.vertices[0]];
   const Vec3 along = (surface.vertices[edge.vertices[1]] - from).normalized();

@@ -1,3 +1,8 @@
+// Spheres and capsules are all points within a radius of a core, a point or a segment. Their contacts are the local
+// minima of the core's distance from the surface. For each triangle within reach the candidates are: an end of the core
+// over the face, over an edge or at a vertex, and the inside of the core across an edge or at a vertex. A candidate is
+// a minimum if the direction to it is in the normal cone of its feature.
+
 #include "collision/round_on_mesh.h"
 
 #include <algorithm>
@@ -13,15 +18,13 @@ namespace {
 
 using Feature = MeshPoint::Feature;
 
-constexpr double kMeshRoundingRatio = 1e-12;  // of the size
-
-/// Where a core is nearest to a mesh that it does not go through.
+/// The nearest points of a core and a mesh, or a face that the core goes through.
 struct CoreGap {
-  double distance2;  // m^2: nothing farther matters
-  Vec3 onCore = Vec3::Zero(), onMesh = Vec3::Zero();
+  double distance2;                                   // m^2; before anything is found, the square of the reach
+  Vec3 onCore = Vec3::Zero(), onMesh = Vec3::Zero();  // m, if isFound
   bool isFound = false, intersects = false;
-  double part = 0;         // where it goes through a face, if it does
-  std::uint32_t face = 0;  // that one
+  double part = 0;         // of the core, 0..1, at which it goes through a face, if it does
+  std::uint32_t face = 0;  // the face
 };
 
 struct CoreVisit {
@@ -69,7 +72,7 @@ CoreGap gapOf(const Segment& core, const MeshSurface& mesh, double reach) {
   return visit.gap;
 }
 
-/// Where a core that goes through a sheet is farthest on the side on which less of it is.
+/// The depth of a core that goes through a sheet: that of its end on the side on which less of the core is.
 SignedHeight farSide(const Segment& core, const MeshSurface& mesh, const CoreGap& gap) {
   const FlatTriangle triangle = triangleOf(mesh, gap.face);
   const Vec3 end = core.at(gap.part > 0.5 ? 1 : 0);
@@ -77,7 +80,7 @@ SignedHeight farSide(const Segment& core, const MeshSurface& mesh, const CoreGap
   return {-std::abs(height), side * triangle.normal, end - height * triangle.normal, MeshPoint::Feature::face};
 }
 
-/// Where a core that goes through the surface, or is inside, is deepest: at an end, or where it passes beneath an edge.
+/// The deepest place of a core that goes through the surface, or is inside: an end, or a place beneath an edge.
 SignedHeight deepestPlace(const Segment& core, const MeshSurface& mesh, const CoreGap& gap) {
   if (mesh.isSheet && gap.intersects) return farSide(core, mesh, gap);
   const SignedHeight start = heightOver(mesh, core.from), end = heightOver(mesh, core.at(1));
@@ -92,7 +95,7 @@ bool isInside(const Segment& core, const MeshSurface& mesh) {
   return squaredDistance(mesh.tree.nodes[0], core.from) <= 0 && heightOver(mesh, core.from).height < 0;
 }
 
-/// Gathers the places where a core is locally nearest.
+/// Gathers the local minima of a core's distance from the surface.
 struct RoundVisit {
   const RoundSolid& round;
   const MeshSurface& mesh;
@@ -116,7 +119,7 @@ struct RoundVisit {
     }
   }
 
-  /// The end of the core that is at `part`.
+  /// The candidates at one end of the core, `part` 0 or 1.
   void tryEnd(double part, std::uint32_t index, const FlatTriangle& triangle) {
     const MeshSurface::Face& face = mesh.faces[index];
     const Vec3 point = round.core.at(part);
@@ -145,7 +148,7 @@ struct RoundVisit {
     if (distance > 0 && isInNormalCone(mesh, index, away / distance, 0)) add(part, vertex, {Feature::vertex, index});
   }
 
-  /// The core across an edge.
+  /// The candidate inside the core and inside an edge.
   void tryAcross(std::uint32_t index) {
     const Segment edge = segmentOf(mesh, index);
     const SegmentParts parts = nearestParts(round.core, edge);
@@ -156,8 +159,8 @@ struct RoundVisit {
       add(parts.a, edge.at(parts.b), {});
   }
 
-  /// A contact at a point of the mesh, if that is where the core is nearest to it. A sphere touches a feature only
-  /// where that is nearer than those that meet at it: on the way from one to the next, it touches one of them.
+  /// Adds a contact at a point of the mesh if the core's distance from it is a local minimum along the core. A sphere
+  /// touches a feature only inside its Voronoi region, so that on the way from one feature to the next it touches one.
   void add(double part, const Vec3& onMesh, const TouchedFeature& touched) {
     const Vec3 away = round.core.at(part) - onMesh;
     const double distance = away.norm(), separation = distance - round.radius;
@@ -185,7 +188,8 @@ struct RoundVisit {
   }
 };
 
-/// Of what a sphere touches at one place, beside the border between a face, an edge and a vertex, the first of them.
+/// Leaves one contact at each place. Beside the borders between a face, an edge and a vertex a sphere may touch several
+/// of them: the face goes before the edge, and that before the vertex.
 void keepOneOfPlace(std::size_t first, double near, std::vector<ContactPoint>& contacts) {
   const auto rank = [](const ContactPoint& contact) {
     return contact.radiusB > 0 ? 0 : contact.edge != Vec3::Zero() ? 1 : 2;
@@ -213,14 +217,14 @@ ContactPoint deepestContact(const RoundSolid& round, const SignedHeight& place) 
 }  // namespace
 
 double separationOf(const RoundSolid& round, const MeshSurface& mesh, double enough) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();  // m: more than `enough`
   const double reach = std::max(enough, 0.0) + round.radius;
-  if (squaredDistance(mesh.tree.nodes[0], boundsOf(round.core)) > reach * reach) return kFar;
+  if (squaredDistance(mesh.tree.nodes[0], boundsOf(round.core)) > reach * reach) return kUnknown;
   if (round.isSphere()) return heightOver(mesh, round.core.from).height - round.radius;
   const CoreGap gap = gapOf(round.core, mesh, reach);
   if (gap.intersects || isInside(round.core, mesh))
     return std::min(0.0, deepestPlace(round.core, mesh, gap).height) - round.radius;
-  return gap.isFound ? std::sqrt(gap.distance2) - round.radius : kFar;
+  return gap.isFound ? std::sqrt(gap.distance2) - round.radius : kUnknown;
 }
 
 void appendContacts(const RoundSolid& round, const MeshSurface& mesh, double margin,
@@ -231,7 +235,7 @@ void appendContacts(const RoundSolid& round, const MeshSurface& mesh, double mar
   const CoreGap gap = gapOf(round.core, mesh, reach);
   if (gap.intersects || isInside(round.core, mesh))
     return contacts.push_back(deepestContact(round, deepestPlace(round.core, mesh, gap)));
-  const double distance = std::sqrt(gap.distance2), rounding = kMeshRoundingRatio * mesh.size;
+  const double distance = std::sqrt(gap.distance2), rounding = MeshTolerances(mesh.size).rounding;
   if (!gap.isFound || distance - round.radius > margin) return;
   RoundVisit visit{round, mesh, margin, contacts};
   visitNear(mesh.tree, boundsOf(round.core), visit);
