@@ -12,15 +12,18 @@
 namespace cradle {
 namespace {
 
-constexpr double kSlackMotions = 4;     // steps like the one to come that a list should last
-constexpr double kMinSlack = 0.05;      // of a body's size: what lies nearly still is not sorted again at each step
-constexpr double kMaxSlack = 0.25;      // of the size: beyond, lists of pairs that are not near cost more than new ones
-constexpr double kDeflection = 0.25;    // of its way: as much a body may be turned aside without a new list
-constexpr double kCellWidth = 1.5;      // of the mean size of the moving bodies' boxes
-constexpr double kMaxCells = 1e9;       // from the middle: what lies farther away shares the outermost cells
-constexpr std::size_t kGrain = 256;     // boxes that a thread compares at once
-constexpr double kBoxRounding = 1e-12;  // of the coordinates
-constexpr double kFarthest = 1e100;     // m: a step that has blown up is judged elsewhere
+constexpr double kSlackMotions = 4;  // steps like the one to come that a list should last
+constexpr double kMinSlack = 0.05;   // of a body's size: bodies that are nearly still are not sorted again at each step
+constexpr double kMaxSlack = 0.25;   // of the size: beyond, lists of pairs that are not near cost more than new ones
+constexpr double kDeflection = 0.25;  // of its displacement: a body may be turned aside by as much without a new list
+constexpr double kCellWidth = 1.5;    // of the mean size of the moving bodies' boxes
+// From the middle: boxes farther away share the outermost cells; a row is shorter than kRow.
+constexpr double kMaxCells = 1e9;
+// Boxes that a thread takes at once: few enough to balance threads, many enough that they seldom wait for each other.
+constexpr std::size_t kComparedBoxes = 256;
+// Of the coordinates: 1e4 unit roundoffs, far more than the few of a rotated box.
+constexpr double kBoxRounding = 1e-12;
+constexpr double kMaxMotion = 1e100;  // m: keeps sums finite; a step that has blown up is judged elsewhere
 
 /// The box around a body's box that is turned.
 Bounds turnedBounds(const Bounds& bounds, const RigidTransform& worldFromBody) {
@@ -111,7 +114,7 @@ void BroadPhase::enclose(const PredictedMotion& ways, double margin, const Conta
   for (std::size_t body = 0; body < count; ++body) {
     const Vec3 drift = ways.ahead * displacementOf(ways, body);
     const double aside = ways.ahead * ways.motions[body];
-    const double motion = aside < kFarthest ? aside : kFarthest, way = drift.norm();
+    const double motion = aside < kMaxMotion ? aside : kMaxMotion, way = drift.norm();
     const double ahead = std::min(kSlackMotions * (motion + way), kMaxSlack * radii_[body]);
     poses_.push_back(poseOf(ways.state, static_cast<int>(body)));
     margins_.push_back(margin + std::max({motion + kDeflection * way, ahead, kMinSlack * radii_[body]}));
@@ -258,7 +261,7 @@ void BroadPhase::sweep(ContactGeometry& geometry) {
   found_.resize(threads_ ? static_cast<std::size_t>(threads_->count()) : 1);
   for (Found& found : found_) found.clear();
   if (threads_)
-    threads_->share(intervals_.size(), kGrain, [&](int thread, std::size_t first, std::size_t last) {
+    threads_->share(intervals_.size(), kComparedBoxes, [&](int thread, std::size_t first, std::size_t last) {
       compareIntervals(geometry, first, last, found_[static_cast<std::size_t>(thread)]);
     });
   else

@@ -14,12 +14,16 @@
 namespace cradle {
 namespace {
 
-constexpr double kBent = 1e-4;        // m: two ends see all but that of an overlap between them
-constexpr double kOnePoint = 0.25;    // of the lesser radius: points as near as that are one
-constexpr double kSameNormal = 0.9;   // cosine, at least, for points to be one manifold
-constexpr int kMeetingSteps = 3;      // of Newton's method: the distance is convex in time, so that none goes too far
-constexpr double kMeeting = 1e-9;     // of both radii: axes nearer than that meet, and their offset is rounding
-constexpr double kFlatAngle2 = 1e-8;  // squared sine: crossing segments at a smaller angle have no normal of their own
+// m: where capsules overlap more deeply between their two ends by more, as bent lines do, the nearest point is held
+// too. A tenth of the motion with which soft contacts keep a manifold.
+constexpr double kBentOverlap = 1e-4;
+constexpr double kOnePointRatio = 0.25;  // of the smaller radius: points as near to each other are one
+// 26 degrees: points whose normals are farther from the manifold's are not of it
+constexpr double kOneManifoldCosine = 0.9;
+constexpr int kMaxMeetingSteps = 3;  // of Newton's method: the distance is convex in time, so that none goes too far
+// Of the sum of the radii: axes as near cross, and their offset has no direction.
+constexpr double kCrossingRatio = 1e-9;
+constexpr double kParallelAxesSine2 = 1e-8;  // squared sine: axes at a smaller angle have no sure common normal
 
 Segment segmentOf(const PosedCapsule& capsule) {
   return {capsule.center - capsule.half, 2 * capsule.half};
@@ -30,7 +34,7 @@ class CapsulePair {
  public:
   CapsulePair(const PosedCapsule& a, const PosedCapsule& b)
       : a_(segmentOf(a)), b_(segmentOf(b)), radiusA_(a.radius), reach_(a.radius + b.radius) {
-    onePoint_ = kOnePoint * std::min(a.radius, b.radius);
+    onePoint_ = kOnePointRatio * std::min(a.radius, b.radius);
     findNearest();
   }
 
@@ -53,14 +57,14 @@ class CapsulePair {
     for (const double part : sharedParts()) {
       const Near end = nearAt(part);
       if (count == 1 && std::abs(part - ends[0].part) * length < onePoint_) continue;
-      if (end.between.dot(normal_) >= kSameNormal * end.between.norm()) ends[count++] = end;
+      if (end.between.dot(normal_) >= kOneManifoldCosine * end.between.norm()) ends[count++] = end;
     }
     const bool isBent =
-        std::none_of(ends, ends + count, [&](const Near& end) { return end.separation < gap() + kBent; });
+        std::none_of(ends, ends + count, [&](const Near& end) { return end.separation < gap() + kBentOverlap; });
     if (isBent) add(nearest_, manifold);
     for (std::size_t k = 0; k < count; ++k) {
       if (isBent && std::abs(ends[k].part - nearest_.part) * length < onePoint_) continue;
-      if (ends[k].separation <= most || ends[k].separation < gap() + kBent) add(ends[k], manifold);
+      if (ends[k].separation <= most || ends[k].separation < gap() + kBentOverlap) add(ends[k], manifold);
     }
     return manifold;
   }
@@ -83,13 +87,13 @@ class CapsulePair {
     const Vec3 between = b_.at(parts.b) - a_.at(parts.a);
     const double distance = between.norm();
     nearest_ = {parts.a, between, distance - reach_};
-    normal_ = distance > kMeeting * reach_ ? Vec3(between / distance) : normalOfCrossing();
+    normal_ = distance > kCrossingRatio * reach_ ? Vec3(between / distance) : normalOfCrossing();
   }
 
   /// Of segments through each other: across both, towards B's middle.
   Vec3 normalOfCrossing() const {
     const Vec3 offset = b_.at(0.5) - a_.at(0.5), across = a_.along.cross(b_.along);
-    if (across.squaredNorm() > kFlatAngle2 * a_.along.squaredNorm() * b_.along.squaredNorm())
+    if (across.squaredNorm() > kParallelAxesSine2 * a_.along.squaredNorm() * b_.along.squaredNorm())
       return (across.dot(offset) < 0 ? -1 : 1) * across.normalized();
     const Vec3& along = a_.along.squaredNorm() > b_.along.squaredNorm() ? a_.along : b_.along;
     if (along.squaredNorm() > 0) return along.unitOrthogonal();
@@ -133,7 +137,7 @@ PredictedManifold contactOfCapsules(const PosedCapsule& a, const PosedCapsule& b
   CapsulePair pair(a, b);
   none.clearance = pair.gap();
   double part = 0;
-  for (int step = 0; step < kMeetingSteps && pair.gap() > margin; ++step) {
+  for (int step = 0; step < kMaxMeetingSteps && pair.gap() > margin; ++step) {
     const double closing = -pair.normal().dot(motion);
     if (pair.gap() - (1 - part) * closing > margin) return none;
     const double now = std::min(1 - part, pair.gap() / closing);

@@ -7,7 +7,9 @@
 namespace cradle {
 namespace {
 
-constexpr double kMayCarry = 5e-3;  // m farther apart than the deepest: such points carry when bodies tilt a little
+// m farther apart than the deepest point: such points carry when bodies tilt a little. The smallest margin with which
+// soft contacts are looked for (kContactMargin in soft_step.cpp): points beyond it are not known in any case.
+constexpr double kMayCarry = 5e-3;
 
 PredictedManifold single(const Vec3& normal, const Vec3& onA, const Vec3& onB) {
   PredictedManifold manifold;
