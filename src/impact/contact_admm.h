@@ -19,12 +19,12 @@ struct ScaledContacts {
   std::vector<double> frictions;  // by contact
 };
 
-/// Where the iteration stands. Started from another problem's end it goes on from there.
+/// The state of the iteration: also its warm start, with the end of a similar problem.
 struct AdmmIterate {
-  VectorX impulses;    // y: in the cones
-  VectorX velocities;  // z: in the duals of the cones, De Saxce's correction included
-  VectorX unbounded;   // x: impulses that give these velocities
-  double penalty = 0;  // rho, in units of inverse mass
+  VectorX impulses;    // y, in the cones
+  VectorX velocities;  // z, in the duals of the cones, De Saxce's correction included
+  VectorX unbounded;   // x, impulses outside the cones that give these velocities
+  double penalty = 0;  // rho, a scaled inverse mass
   double primalResidual = 0, dualResidual = 0;
 };
 
@@ -53,9 +53,11 @@ void iterateAdmm(const ScaledContacts& cones, double proximal, const SolveShifte
   }
 }
 
-/// A penalty with which both residuals fall together, from `least` to `largest`.
+/// The penalty with which both residuals fall together, from `least` to `largest` (S. Boyd et al., "Distributed
+/// optimization and statistical learning via the alternating direction method of multipliers", 2011, section 3.4.1).
 inline double balancedPenalty(const AdmmIterate& at, double least, double largest) {
-  constexpr double kUnbalanced = 10, kChange = 4;  // ratio of residuals that is let be; change of the penalty
+  constexpr double kUnbalanced = 10;  // ratio of the residuals that is let be: the mu of (3.13) there
+  constexpr double kChange = 4;       // of the penalty, the tau of (3.13), which has 2: a penalty may begin 1e4 off
   if (at.primalResidual > kUnbalanced * at.dualResidual) return std::min(kChange * at.penalty, largest);
   if (at.dualResidual > kUnbalanced * at.primalResidual) return std::max(at.penalty / kChange, least);
   return at.penalty;

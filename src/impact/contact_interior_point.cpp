@@ -1,8 +1,9 @@
-// A primal-dual interior point method with the scaling of Nesterov and Todd and Mehrotra's corrector on the
-// second-order frictional contact problem of V. Acary, P. Armand, H. M. Nguyen, M. Shpakovych ("Second-order cone
-// programming for frictional contact mechanics using interior point algorithm", Optim. Methods Softw. 2022): De Saxce's
-// correction is taken from the iterate before, as part of what the next step has to make up for. Its corner where a
-// contact begins to slide is rounded off while the end is far: steps would get stuck there.
+// A primal-dual interior point method with the scaling of Nesterov and Todd and Mehrotra's corrector, on the
+// second-order frictional contact problem of V. Acary, P. Armand, H. M. Nguyen, M. Shpakovych, "Second-order cone
+// programming for frictional contact mechanics using interior point algorithm", Optim. Methods Softw. 2022. De Saxce's
+// correction s = mu |u_t| is part of the residual G z + g + s - w of an iterate, and of the derivatives of the next
+// step. |u_t| has a corner where a contact begins to slide, at which steps would get stuck; it is rounded off to
+// sqrt(|u_t|^2 + r^2) - r, where the radius r falls with the complementarity.
 
 #include "impact/contact_interior_point.h"
 
@@ -16,12 +17,19 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr int kMaxInteriorIterations = 40;
-constexpr double kMinGap = 1e-22;   // of the squared velocities: complementarity where rounding rules
-constexpr double kStay = 0.99;      // of the way to the boundary
-constexpr double kSmoothing = 0.1;  // of the root of complementarity
-constexpr double kShort = 0.1;      // step that is too near the boundary
-constexpr double kShortest = 1e-8;  // step that leads nowhere
+constexpr int kMaxInteriorIterations = 40;  // about twenty are usual; half or twice as many change no test
+// Of the squared largest free velocity: complementarity of impulses and velocities that are 1e-11 of it, which is
+// rounding.
+constexpr double kMinComplementarity = 1e-22;
+// Of the way to the boundary of the cones that a step goes: the usual choice; 0.9 changes no test.
+constexpr double kBoundaryFraction = 0.99;
+// Of the root of complementarity: radius of the rounded corner of |u_t|. A tenth or ten times as much changes no test.
+constexpr double kSmoothingRatio = 0.1;
+// A shorter step (1: a full one) is taken again, towards the central path. If all are, redundant contacts are not
+// solved.
+constexpr double kCenteringLength = 0.1;
+constexpr double kMinLength = 1e-8;  // a shorter step leads nowhere: the search has failed
+constexpr double kNoDivisionByZero = 1e-300;
 
 /// One contact: impulses x and velocities y in the Lorentz cone; without friction only the normal parts.
 struct Pair {
@@ -86,13 +94,13 @@ class InteriorPoint {
   std::vector<Pair> pairs_;
   std::vector<ContactEquation> equations_;
   VectorX z_, velocities_, residual_, side_;
-  double unit_ = 1;       // velocities
-  double smoothing_ = 0;  // of the same: rounds off the corner of |u_t| at 0
+  double unit_ = 1;       // scaled velocity: the largest free one
+  double smoothing_ = 0;  // scaled velocity: radius that rounds off the corner of |u_t| at 0
 };
 
 InteriorPoint::InteriorPoint(const ScaledContacts& cones, const DelassusOperator& op, const VectorX& impulses)
     : free_(cones.free), op_(op), equations_(cones.frictions.size()), z_(impulses.size()), side_(impulses.size()) {
-  unit_ = std::max(cones.free.cwiseAbs().maxCoeff(), 1e-300);
+  unit_ = std::max(cones.free.cwiseAbs().maxCoeff(), kNoDivisionByZero);
   pairs_.resize(cones.frictions.size());
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     pairs_[i].x = pairs_[i].y = unit_ * Vec3::UnitZ();
@@ -106,7 +114,7 @@ double InteriorPoint::gap() const {
   return sum / static_cast<double>(pairs_.size());
 }
 
-/// G z + free + s - w, with De Saxce's s of the present w.
+/// Computes the residual G z + g + s - w, with De Saxce's correction s of the present velocities.
 void InteriorPoint::findResidual() {
   for (std::size_t i = 0; i < pairs_.size(); ++i) z_.segment<3>(3 * static_cast<Index>(i)) = pairs_[i].impulse();
   velocities_ = op_.multiply(z_) + free_;
@@ -123,7 +131,7 @@ void InteriorPoint::findResidual() {
   }
 }
 
-/// The worst of all contacts.
+/// The residual of the contact that is farthest from Coulomb's law.
 double InteriorPoint::offCoulomb() const {
   double worst = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -135,7 +143,7 @@ double InteriorPoint::offCoulomb() const {
   return worst;
 }
 
-/// The derivative of a velocity with De Saxce's correction by the velocity.
+/// The derivative of a contact's corrected velocity, u + (0, 0, s), by its velocity u.
 Mat3 InteriorPoint::correction(std::size_t i) const {
   Mat3 derivative = Mat3::Identity();
   const Eigen::Vector2d slip = velocities_.segment<2>(3 * static_cast<Index>(i));
@@ -144,7 +152,8 @@ Mat3 InteriorPoint::correction(std::size_t i) const {
   return derivative;
 }
 
-/// Finds dx and dy. Returns the longest step along them.
+/// Finds the directions dx and dy of a step towards complementarity `target`. Returns the longest step along them, at
+/// most 1, that stays in the cones.
 double InteriorPoint::step(double target, bool correct) {
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const Index at = 3 * static_cast<Index>(i);
@@ -168,11 +177,11 @@ int InteriorPoint::run(double tolerance, VectorX& impulses) {
   double least = INFINITY;
   for (; iteration < kMaxInteriorIterations; ++iteration) {
     const double complementarity = gap();
-    smoothing_ = kSmoothing * std::sqrt(complementarity);
+    smoothing_ = kSmoothingRatio * std::sqrt(complementarity);
     findResidual();
     const double off = offCoulomb();
     if (off < least) impulses = z_, least = off;
-    if (!(off < INFINITY) || off <= tolerance || complementarity <= kMinGap * unit_ * unit_) break;
+    if (!(off < INFINITY) || off <= tolerance || complementarity <= kMinComplementarity * unit_ * unit_) break;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       pairs_[i].scale();
       equations_[i].ofVelocity = pairs_[i].stiffness() * correction(i);
@@ -181,12 +190,12 @@ int InteriorPoint::run(double tolerance, VectorX& impulses) {
     const double affine = step(0, false);
     for (Pair& pair : pairs_) pair.affineX = pair.dx, pair.affineY = pair.dy;
     const double left = 1 - affine, centering = left * left * left;
-    double length = kStay * step(centering * complementarity, true);
-    if (length < kShort) {  // back to the middle
+    double length = kBoundaryFraction * step(centering * complementarity, true);
+    if (length < kCenteringLength) {  // too near the boundary: back to the central path
       for (Pair& pair : pairs_) pair.affineX.setZero(), pair.affineY.setZero();
-      length = kStay * step(complementarity, true);
+      length = kBoundaryFraction * step(complementarity, true);
     }
-    if (!(length > kShortest)) break;
+    if (!(length > kMinLength)) break;
     for (Pair& pair : pairs_) pair.x += length * pair.dx, pair.y += length * pair.dy;
   }
   return iteration;

@@ -12,14 +12,17 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kSingularRatio =
-    1e-7;  // of the largest pivot: a smaller one is rounding, or what solvers add to be regular
-constexpr double kLeastShiftRatio = 1e-8;  // of the largest eigenvalue: the factors then have errors of 1e-8
+// Of the largest pivot: equations with a smaller one are singular. The shift that Newton's method adds to the diagonal
+// (kNewtonShift, 1e-9) is smaller still, and so is rounding.
+constexpr double kSingularPivotRatio = 1e-7;
+// Of the largest eigenvalue: with a smaller shift the condition number of the shifted matrix is above 1e8, and half of
+// the digits of its factors are rounding.
+constexpr double kLeastShiftRatio = 1e-8;
 
-/// What the operator of a matrix holds: the scaled matrix, and the factors of the last equations.
+/// The state of the operator of a dense matrix: the scaled matrix, and the factors of the last equations.
 struct DenseFactors {
   MatrixX matrix, system;
-  std::vector<Index> rows;  // of contacts that are not open, where any is
+  std::vector<Index> rows;  // of the contacts that are not open; empty if none is open
   Eigen::PartialPivLU<MatrixX> factor;
   Eigen::CompleteOrthogonalDecomposition<MatrixX> leastFactor;
   Eigen::LLT<MatrixX> shiftedFactor;
@@ -57,14 +60,14 @@ struct DenseFactors {
     if (system.size() == 0) return true;
     factor.compute(system);
     const auto pivots = factor.matrixLU().diagonal().cwiseAbs();
-    return pivots.minCoeff() > kSingularRatio * pivots.maxCoeff();
+    return pivots.minCoeff() > kSingularPivotRatio * pivots.maxCoeff();
   }
 
   void factorizeForLeast(const std::vector<ContactEquation>& equations) {
     kind = Solved::least;
     assemble(equations);
     if (system.size() == 0) return;
-    leastFactor.setThreshold(kSingularRatio);
+    leastFactor.setThreshold(kSingularPivotRatio);
     leastFactor.compute(system);
   }
 

@@ -1,7 +1,8 @@
-// One method after the other: Newton's method from the warm start; ADMM (contact_admm.h) and an interior point method
-// (contact_interior_point.h), which find which contacts are open, stick and slide, and after each of them Newton's
-// method on the equations of P. Alart and A. Curnier ("A mixed formulation for frictional contact problems prone to
-// Newton like solution methods", 1991), which finishes from there: often it needs no more than a rough guess.
+// A sequence of methods. Newton's method from the warm start (contact_newton.h: equations of P. Alart and A. Curnier,
+// "A mixed formulation for frictional contact problems prone to Newton like solution methods", 1991) comes first. Then
+// come trials of ADMM (contact_admm.h) or of an interior point method (contact_interior_point.h), which find out which
+// contacts are open, stick or slide. Newton's method finishes from the end of each trial: it often needs no more than a
+// rough guess.
 
 #include "impact/frictional_contact.h"
 
@@ -13,6 +14,7 @@
 #include "impact/contact_admm.h"
 #include "impact/contact_interior_point.h"
 #include "impact/contact_newton.h"
+#include "impact/frictional_tolerances.h"
 #include "impact/linear_complementarity.h"
 #include "impact/single_contact.h"
 
@@ -21,45 +23,25 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kConvergedRatio = 1e-12;                                  // of the largest velocity
-constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();  // of the sums in G z
-// Scaled inverse masses, whose mean is 1:
-constexpr double kProximal = 1e-7;      // makes ADMM converge for singular problems
-constexpr double kRegular = 1e-9;       // makes Newton's matrix regular
-constexpr double kFirstPenalty = 1e-4;  // of ADMM: heavy on light wants it small, many contacts large
-constexpr double kRegularRatio = 1e-9;  // of the largest inverse mass: what makes singular matrices regular
-constexpr int kFirstRound = 10;         // iterations of ADMM before Newton's method is tried
-constexpr int kRoundGrowth = 2;         // and before each further trial: far from the end, trials are waste
-constexpr Index kFewContacts = 12;      // more are often redundant
-constexpr int kMaxNewtonSteps = 20, kFewNewtonSteps = 6;  // with few contacts, and with more
+constexpr double kProductRounding = 16 * std::numeric_limits<double>::epsilon();  // of the sums of terms in G z
+// Scaled inverse masses; the mean of a contact's is 1. A tenth or ten times as much of any of them changes no test.
+constexpr double kProximal = 1e-7;      // added to the diagonal: ADMM then converges for singular problems
+constexpr double kNewtonShift = 1e-9;   // added to the diagonal: redundant contacts then have regular Newton equations
+constexpr double kStartPenalty = 1e-4;  // of ADMM: heavy bodies on light ones want it small, many contacts large
+// Of a diagonal element, to which it is added: singular problems of the normals then are regular.
+constexpr double kNormalShiftRatio = 1e-9;
+// Iterations of ADMM before Newton's method is tried, and their growth for each further trial: far from a solution
+// trials of Newton's method are waste.
+constexpr int kFirstAdmmIterations = 10, kAdmmGrowth = 2;
+// More contacts than these are often redundant, and Newton's method then seldom converges: it has fewer steps.
+constexpr Index kMaxIndependentContacts = 12;
+constexpr int kNewtonSteps = 20, kNewtonStepsOfMany = 6;
 constexpr int kMaxTrials = 8;  // of ADMM and interior points; two more solve 1 of 14 that are left, and double the time
-constexpr int kProximalSteps = 3;  // each leaves a billionth of the error, or of one in a stiff direction
+// Of the proximal point method: each leaves a billionth of the error (kNormalShiftRatio), or of one in a stiff
+// direction.
+constexpr int kProximalSteps = 3;
 
-/// What a search takes for small, from the largest velocity of a problem (m/s) and the tolerance that was asked for
-/// (m/s; 0: rounding).
-struct SearchTolerances {
-  SearchTolerances(double fastest, double asked)
-      : isRounding(asked == 0),
-        interiorTrial(isRounding ? 4 : 1),
-        solved(isRounding ? kConvergedRatio * fastest : asked),
-        solvedHard(10 * solved),
-        good(isRounding ? 1e-9 * fastest : 0),
-        maxRounding(1e-6 * fastest),
-        interior(std::max(0.5 * solved, 1e-9 * fastest)) {}
-
-  bool isRounding;
-  // The trial that is one of interior points, the others are of ADMM. These share the loads of redundant contacts about
-  // evenly, interior points do not: where forces are asked for to rounding ADMM has four trials first.
-  int interiorTrial;
-  // m/s: residuals
-  double solved;       // enough
-  double solvedHard;   // enough where the interior point method was not
-  double good;         // where more trials only find rounding
-  double maxRounding;  // more is no rounding, but impulses that grow without bound
-  double interior;     // where the interior point method ends: it comes no nearer than to 1e-9
-};
-
-/// A search for a solution, in the operator's units.
+/// A search for a solution, in the operator's scaled units; residuals and tolerances are in m/s.
 class Search {
  public:
   Search(const DelassusOperator& op, const VectorX& free, const std::vector<double>& frictions, double tolerance);
@@ -71,15 +53,15 @@ class Search {
   double friction(Index contact) const { return contacts_.frictions[static_cast<std::size_t>(contact)]; }
   VectorX velocitiesOf(const VectorX& z) const { return op_.multiply(z) + contacts_.free; }
   double residual(const VectorX& z, const VectorX& u) const;
-  double rounding(const VectorX& z) const { return kRounding * op_.magnitude(z) / op_.scales.minCoeff(); }
+  double rounding(const VectorX& z) const { return kProductRounding * op_.magnitude(z) / op_.scales.minCoeff(); }
   bool isSolved(double residual, const VectorX& z) const;
   bool isOpen();
   void begin(const WarmStart& start);
   bool find();
-  void iterate(int iterations);
-  void goInside();
+  void runAdmm(int iterations);
+  void runInteriorPoint();
   bool accept(double tolerance);
-  enum class Step { any, least };  // of changes that a step may choose from
+  enum class Step { any, least };  // which of the solutions of singular Newton equations a step takes
   bool polish(double tolerance, VectorX& z, VectorX& u) const;
   bool converge(Step kind, double tolerance, VectorX& z, VectorX& u, bool& isUnique) const;
   bool stepByNewton(Step kind, VectorX& z, VectorX& u) const;
@@ -89,7 +71,7 @@ class Search {
   ScaledContacts contacts_;
   SearchTolerances tolerances_;
   AdmmIterate iterate_;
-  VectorX impulses_, velocities_;    // the best so far
+  VectorX impulses_, velocities_;    // of the smallest residual so far
   double leastResidual_ = INFINITY;  // m/s
   long iterations_ = 0;
 };
@@ -99,7 +81,7 @@ Search::Search(const DelassusOperator& op, const VectorX& free, const std::vecto
   for (Index i = 0; i < op.scales.size(); ++i) contacts_.free.segment<3>(3 * i) *= op.scales[i];
 }
 
-/// The largest of all contacts', in m/s.
+/// The residual (m/s) of the contact that is farthest from Coulomb's law.
 double Search::residual(const VectorX& z, const VectorX& u) const {
   double largest = 0;
   for (Index i = 0; i < op_.scales.size(); ++i) {
@@ -115,7 +97,7 @@ bool Search::isSolved(double residual, const VectorX& z) const {
   return residual <= tolerances_.maxRounding && residual <= rounding(z);
 }
 
-/// False if the step is one of many.
+/// One step of Newton's method. False if its equations are singular: many steps solve them.
 bool Search::stepByNewton(Step kind, VectorX& z, VectorX& u) const {
   std::vector<ContactEquation> equations(contacts_.frictions.size());
   VectorX sides = VectorX::Zero(z.size());
@@ -128,7 +110,7 @@ bool Search::stepByNewton(Step kind, VectorX& z, VectorX& u) const {
   for (Index i = 0; i < op_.scales.size(); ++i) {
     ContactEquation& equation = equations[static_cast<std::size_t>(i)];
     if (equation.isOpen) continue;
-    const NewtonRow row = newtonRow(z.segment<3>(3 * i), u.segment<3>(3 * i), friction(i), kRegular);
+    const NewtonRow row = newtonRow(z.segment<3>(3 * i), u.segment<3>(3 * i), friction(i), kNewtonShift);
     equation = row.equation;
     sides.segment<3>(3 * i) = -row.value;
   }
@@ -142,11 +124,11 @@ bool Search::stepByNewton(Step kind, VectorX& z, VectorX& u) const {
   return isUnique;
 }
 
-/// Newton's method with steps of one kind, to `tolerance` (m/s). Changes impulses and velocities only if it converges,
-/// and says then whether its steps were the only ones. `isUnique` must be true before.
+/// Newton's method with steps of one kind, to `tolerance` (m/s). Changes impulses and velocities only if it converges.
+/// `isUnique`, which must be true before, is false afterwards if the equations of any step were singular.
 bool Search::converge(Step kind, double tolerance, VectorX& impulses, VectorX& velocities, bool& isUnique) const {
   VectorX z = impulses, u = velocities;
-  const int most = op_.scales.size() > kFewContacts ? kFewNewtonSteps : kMaxNewtonSteps;
+  const int most = op_.scales.size() > kMaxIndependentContacts ? kNewtonStepsOfMany : kNewtonSteps;
   for (int step = 0; step < most; ++step) {
     isUnique = stepByNewton(kind, z, u) && isUnique;
     const double left = residual(z, u);
@@ -154,15 +136,16 @@ bool Search::converge(Step kind, double tolerance, VectorX& impulses, VectorX& v
     if (left > tolerance && !isSolved(left, z)) continue;
     impulses = z, velocities = u;
     if (!tolerances_.isRounding) return true;
-    isUnique = stepByNewton(kind, z, u) && isUnique;  // what is left is often rounding then
+    isUnique = stepByNewton(kind, z, u) && isUnique;  // quadratic convergence: one step more leaves rounding
     if (residual(z, u) < left) impulses = z, velocities = u;
     return true;
   }
   return false;
 }
 
-/// Newton's method, to `tolerance` (m/s); changes impulses and velocities only if it converges. Of many solutions it
-/// finds one that rounding chooses: the least steps find a symmetric one, which is taken if what it leaves is rounding.
+/// Newton's method, to `tolerance` (m/s); changes impulses and velocities only if it converges. Where there are many
+/// solutions, rounding chooses among them. Steps of least norm lead to a solution that is as symmetric as the problem;
+/// it is taken if its residual is rounding.
 bool Search::polish(double tolerance, VectorX& impulses, VectorX& velocities) const {
   const VectorX z = impulses, u = velocities;
   bool isUnique = true;
@@ -174,8 +157,8 @@ bool Search::polish(double tolerance, VectorX& impulses, VectorX& velocities) co
   return true;
 }
 
-/// Keeps the iterate's impulses if they are better than the best so far. True if they, or where Newton's method leads
-/// from them, are a solution to `tolerance` (m/s).
+/// Tries the iterate's impulses and, from them, Newton's method. Keeps the result if its residual is the smallest so
+/// far. True if it is a solution to `tolerance` (m/s).
 bool Search::accept(double tolerance) {
   VectorX z = iterate_.impulses, u = velocitiesOf(z);
   double left = residual(z, u);
@@ -185,29 +168,29 @@ bool Search::accept(double tolerance) {
   return isFound;
 }
 
-/// ADMM, with a penalty that is balanced again and again.
-void Search::iterate(int iterations) {
+/// ADMM; the penalty is balanced after each kFirstAdmmIterations iterations.
+void Search::runAdmm(int iterations) {
   const auto solveShifted = [this](VectorX& b) { b = op_.solve(b, nullptr); };
   double factorised = 0;
-  for (int done = 0; done < iterations; done += kFirstRound) {
+  for (int done = 0; done < iterations; done += kFirstAdmmIterations) {
     if (iterate_.penalty != factorised) {
       op_.factorizeShifted(iterate_.penalty + kProximal);
       factorised = iterate_.penalty;
     }
-    iterateAdmm(contacts_, kProximal, solveShifted, kFirstRound, iterate_);
+    iterateAdmm(contacts_, kProximal, solveShifted, kFirstAdmmIterations, iterate_);
     iterate_.penalty = balancedPenalty(iterate_, op_.leastShift, op_.largest);
   }
   iterations_ += iterations;
 }
 
-/// The interior point method, from nothing.
-void Search::goInside() {
+/// The interior point method. It begins without a warm start.
+void Search::runInteriorPoint() {
   const double tolerance = tolerances_.interior * op_.scales.minCoeff();
   iterations_ += solveByInteriorPoint(contacts_, op_, tolerance, iterate_.impulses);
   correctVelocities(velocitiesOf(iterate_.impulses));
 }
 
-/// The iterate's velocities from those that its impulses give.
+/// Sets the iterate's velocities to `u` with De Saxce's correction.
 void Search::correctVelocities(const VectorX& u) {
   iterate_.velocities.resize(u.size());
   for (Index i = 0; i < op_.scales.size(); ++i)
@@ -222,10 +205,10 @@ void Search::begin(const WarmStart& start) {
     iterate_.velocities.segment<3>(3 * i) *= op_.scales[i];
   }
   iterate_.unbounded = iterate_.impulses;
-  iterate_.penalty = start.penalty > 0 ? start.penalty : kFirstPenalty;
+  iterate_.penalty = start.penalty > 0 ? start.penalty : kStartPenalty;
 }
 
-/// Whether nothing closes: no impulses are the solution.
+/// Whether impulses of zero are the solution: no contact closes.
 bool Search::isOpen() {
   impulses_ = VectorX::Zero(contacts_.free.size()), velocities_ = contacts_.free;
   leastResidual_ = residual(impulses_, velocities_);
@@ -234,16 +217,16 @@ bool Search::isOpen() {
 
 bool Search::find() {
   if (isOpen()) return true;
-  // From nothing, Newton's method would share loads of redundant contacts in an arbitrary way.
+  // From impulses of zero, Newton's method would share the loads of redundant contacts in an arbitrary way.
   const bool isWarm = iterate_.impulses.cwiseAbs().maxCoeff() > 0;
   if ((isWarm || !tolerances_.isRounding) && accept(tolerances_.solved)) return true;
-  int round = kFirstRound;
+  int round = kFirstAdmmIterations;
   for (int trial = 0; trial < kMaxTrials; ++trial) {
     if (trial == tolerances_.interiorTrial) {
-      goInside();
+      runInteriorPoint();
     } else {
-      iterate(round);
-      round *= kRoundGrowth;
+      runAdmm(round);
+      round *= kAdmmGrowth;
     }
     const bool isHard = trial > tolerances_.interiorTrial;
     if (accept(isHard ? tolerances_.solvedHard : tolerances_.solved)) return true;
@@ -261,7 +244,7 @@ ContactSolution Search::run(WarmStart& start) {
   iterate_.impulses = impulses_;
   correctVelocities(velocities_);
   start = {impulses_, iterate_.velocities, iterate_.penalty};
-  // In the cones exactly; where a tolerance is left, velocities would suffer by it.
+  // Impulses end inside the cones exactly. With a tolerance asked for, the projection could cost velocities as much.
   for (Index i = 0; i < op_.scales.size() && tolerances_.isRounding; ++i)
     impulses_.segment<3>(3 * i) = projectOnCone(impulses_.segment<3>(3 * i), friction(i));
   solution.impulses = impulses_, solution.velocities = velocitiesOf(impulses_);
@@ -272,16 +255,17 @@ ContactSolution Search::run(WarmStart& start) {
   return solution;
 }
 
+/// Whether no pivot of the Cholesky factorisation, as a part of its diagonal element, is at most kNormalShiftRatio.
 bool isRegular(const MatrixX& matrix) {
   const Eigen::LLT<MatrixX> factor(matrix);
   if (factor.info() != Eigen::Success) return false;
   const auto left = factor.matrixLLT().diagonal().cwiseAbs2();
-  return (left.array() > kRegularRatio * matrix.diagonal().array()).all();
+  return (left.array() > kNormalShiftRatio * matrix.diagonal().array()).all();
 }
 
-/// Without friction: the normal parts alone, by pivoting. Where redundant contacts leave a choice, the load is shared
-/// as evenly as can be, by the proximal point method (R. T. Rockafellar, "Monotone operators and the proximal point
-/// algorithm", 1976), which where nothing solves the problem comes as near as can be.
+/// The problem without friction: the normal components alone, by pivoting. Loads of redundant contacts are shared as
+/// evenly as can be, by the proximal point method (R. T. Rockafellar, "Monotone operators and the proximal point
+/// algorithm", 1976); where the problem has no solution, the method comes as near to one as can be.
 VectorX solveNormals(const MatrixX& G, const VectorX& g) {
   const auto normals = Eigen::seq(2, Eigen::last, 3);
   MatrixX matrix = G(normals, normals);
@@ -290,7 +274,7 @@ VectorX solveNormals(const MatrixX& G, const VectorX& g) {
   if (isRegular(matrix)) {
     pushes = solveLinearComplementarity(matrix, free);
   } else {
-    const VectorX shift = kRegularRatio * matrix.diagonal();
+    const VectorX shift = kNormalShiftRatio * matrix.diagonal();
     matrix.diagonal() += shift;
     for (int i = 0; i < kProximalSteps; ++i)
       pushes = solveLinearComplementarity(matrix, VectorX(free - shift.cwiseProduct(pushes)));
@@ -300,8 +284,9 @@ VectorX solveNormals(const MatrixX& G, const VectorX& g) {
   return impulses;
 }
 
-/// How well impulses in the cones solve a problem.
-ContactSolution judged(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions, VectorX impulses) {
+/// Impulses in the cones as a solution, with their velocities and residual.
+ContactSolution withResidual(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
+                             VectorX impulses) {
   const VectorX scales = scalesOf(G);
   ContactSolution solution{std::move(impulses), {}, 0, false};
   solution.velocities = G * solution.impulses + g;
@@ -316,8 +301,8 @@ ContactSolution judged(const MatrixX& G, const VectorX& g, const std::vector<dou
       sums += scales[k] * G.block<3, 3>(3 * i, 3 * k).cwiseAbs().rowwise().sum();
     largest = std::max(largest, scales[i] * sums.maxCoeff());
   }
-  // The velocities that belong to impulses of such a residual are off by |G| times it.
-  solution.converged = solution.residual <= (1 + largest) * kConvergedRatio * g.cwiseAbs().maxCoeff();
+  // Impulses with a residual r have velocities with an error of |G| r.
+  solution.converged = solution.residual <= (1 + largest) * SearchTolerances::kConvergedRatio * g.cwiseAbs().maxCoeff();
   return solution;
 }
 
@@ -331,19 +316,20 @@ ContactSolution solveFrictionalContact(const DelassusOperator& G, const VectorX&
 ContactSolution solveFrictionalContact(const MatrixX& G, const VectorX& g, const std::vector<double>& frictions,
                                        const VectorX& near) {
   if (frictions.empty()) return {};
-  const auto smooth = [&] { return judged(G, g, frictions, solveNormals(G, g)); };
-  if (std::all_of(frictions.begin(), frictions.end(), [](double friction) { return friction == 0; })) return smooth();
+  const auto frictionless = [&] { return withResidual(G, g, frictions, solveNormals(G, g)); };
+  if (std::all_of(frictions.begin(), frictions.end(), [](double friction) { return friction == 0; }))
+    return frictionless();
   ContactSolution solution;
   if (frictions.size() == 1) {
-    solution = judged(G, g, frictions, solveSingleContact(G, g, frictions[0]));
+    solution = withResidual(G, g, frictions, solveSingleContact(G, g, frictions[0]));
   } else {
     WarmStart start{near.size() > 0 ? near : VectorX::Zero(g.size()), VectorX::Zero(g.size()), 0};
     solution = Search(operatorOf(G), g, frictions, 0).run(start);
   }
   if (solution.residual <= g.cwiseAbs().maxCoeff()) return solution;
-  // Impulses that wedge a body grow without bound, and say nothing.
-  const ContactSolution frictionless = smooth();
-  return frictionless.residual < solution.residual ? frictionless : solution;
+  // A residual above the free velocities is that of impulses that wedge a body: they grow without bound.
+  ContactSolution smooth = frictionless();
+  return smooth.residual < solution.residual ? smooth : solution;
 }
 
 }  // namespace cradle

@@ -1,19 +1,23 @@
-// Newton's restitution with Coulomb's friction, all contacts at once, as a frictional contact problem (J. J. Moreau,
-// "Unilateral contact and dry friction in finite freedom dynamics", 1988): u = G z + v - (0, 0, w), w the speed with
-// which a contact is to open. For one contact w = - e v_n. For more, contact by contact that would be what throws back
-// the first sphere of a row; the speeds with which contacts open after the impact without friction
-// (generalized_reflections.h), as far as that rebounds, stand in its place, and for the rest those after the impact
-// with friction and without rebound:
-//   w = sum over the parts s of the rebound of s w_s, plus (1 - sum of s) w_0.
-// So w and what follows from it is continuous in the restitutions, is the plastic impact without any, and the impact
-// without friction where nothing slides.
-// Restitution with friction can add energy; without it the change z (u + v) / 2 = z_t u_t / 2 - z G z / 2 is <= 0. Then
-// all restitutions are scaled by one factor, with which the impact gains nothing: a root, so that what is kept of the
-// energy is continuous too. It may jump where static and dynamic friction differ and a contact begins to slide, and
-// where the frictional contact problem has more than one solution.
-// It has none where friction wedges what is to rebound: of a sphere in a right-angled corner, from a coefficient of 1
-// on, each contact's friction holds back all that the other pushes. Impulses grow without bound as friction comes near
-// to that, and velocities have a limit: all frictions are cut by one factor, with which impulses are still bounded.
+// Newton's restitution with Coulomb's friction at all contacts at once, as a frictional contact problem (J. J. Moreau,
+// "Unilateral contact and dry friction in finite freedom dynamics", 1988): impulses z in Coulomb's cones that give
+//   u = G z + v - (0, 0, w),   (1)
+// where G is the Delassus operator, v are the contacts' velocities before the impact, and w_i is the speed with which
+// contact i is to open. For one contact w = -e v_n (Newton). For several contacts that rule would throw back the first
+// sphere of a row. Their w comes from two impacts that are solved before:
+//   w = sum_k p_k w_k + (1 - sum_k p_k) w_0,   (2)
+// where w_k are the opening speeds after part k, of weight p_k, of the impact without friction (Rebound in
+// generalized_reflections.h), and w_0 those after the impact with friction and without rebound. So w, and the result
+// with it, is continuous in the restitutions; it is the plastic impact if all of them are 0, and the impact without
+// friction where nothing slides.
+// Energy. The impact changes the kinetic energy by z . (G z + 2 v) / 2. Without rebound (w = 0) that is
+// z_t . u_t - z . G z / 2 <= 0, but a rebound with friction can add energy. All restitutions are then scaled by one
+// factor with which the impact gains nothing. The factor is a root of the energy lost, so that the energy is continuous
+// too. It may jump where static and dynamic friction differ and a contact begins to slide, and where the problem has
+// more than one solution.
+// Wedging. The problem has no solution where friction wedges a body that is to rebound. Example: a sphere in a
+// right-angled corner with a coefficient of 1 or more, where the friction of each contact holds back all that the other
+// one pushes. As the coefficient comes near to 1, impulses grow without bound while velocities have a limit. All
+// coefficients are then multiplied by one factor, nearly the largest with which impulses are bounded.
 
 #include "impact/frictional_impact.h"
 
@@ -24,6 +28,7 @@
 #include "collision/root_bracketing.h"
 #include "impact/contact_delassus.h"
 #include "impact/frictional_contact.h"
+#include "impact/frictional_tolerances.h"
 #include "impact/generalized_reflections.h"
 
 namespace cradle {
@@ -31,15 +36,14 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kClosedRatio = 1e-11;     // of the fastest speed: what is left is rounding
-constexpr double kSlidingRatio = 1e-9;     // of the same: slower sticks
-constexpr double kSolvedRatio = 1e-7;      // of the same: an error of Coulomb's law that nobody sees
-constexpr double kWedgedRatio = 1e-4;      // of the same: more is left where no impulses solve the problem
-constexpr int kMaxRounds = 10;             // of what was not solved: each leaves less
-constexpr double kFrictionError = 1e-6;    // of friction that wedges: so near to the most that does not
-constexpr double kWedgedEnergies = 1e8;    // energies of each impulse by itself, in those of all: more wedge
-constexpr double kEnergyRounding = 1e-13;  // of the energy that moves
-constexpr double kSumRounding = 4 * std::numeric_limits<double>::epsilon();  // of the terms of an energy
+constexpr int kMaxRounds = 10;           // each resolves what the residual of the one before still lets close
+constexpr double kFrictionError = 1e-6;  // of the factor on friction that wedges: twenty bisections
+// A problem is wedged if the sum of the magnitudes in z . G z is more times z . G z itself: then eight digits cancel,
+// and the energy is known to 1e-8. A tenth or ten times as much changes no test.
+constexpr double kMaxCancellation = 1e8;
+// Of the energy that the impulses move: 900 unit roundoffs, for sums over contacts.
+constexpr double kEnergyRounding = 1e-13;
+constexpr double kSumRounding = 4 * std::numeric_limits<double>::epsilon();  // of the sum of the magnitudes in z . G z
 
 std::vector<Contact> contactsOf(const std::vector<ImpactContact>& impacts) {
   std::vector<Contact> contacts;
@@ -47,14 +51,15 @@ std::vector<Contact> contactsOf(const std::vector<ImpactContact>& impacts) {
   return contacts;
 }
 
-/// What an impact comes to: impulses (N s), velocities (m/s) and the energy (J) that it adds, < 0 if it takes any.
-struct Strike {
-  VectorX impulses, velocities;
-  double gain = 0, moved = 0;  // moved: what the impulses would give to bodies at rest
-  double rounding = 0;         // J: of the gain
-  double residual = 0;         // m/s: of what was not solved
-  double scaledEnergy = 0;     // J: that all of the impulses found would have added
-  double frictionFactor = 1;   // below 1: more of the frictions would wedge
+/// The result of one impact.
+struct ImpactResult {
+  VectorX impulses, velocities;  // N s, m/s: of the contacts that can move, after the impact
+  double gain = 0;               // J: energy that the impact adds, < 0 if it takes any
+  double moved = 0;              // J: z . G z / 2, the energy that the impulses would give to bodies at rest
+  double rounding = 0;           // J: bound on the rounding of `gain`
+  double residual = 0;           // m/s: of a frictional contact problem that was not solved, else 0
+  double scaledEnergy = 0;       // J: energy that the impulses would have added before they were scaled down
+  double frictionFactor = 1;     // of all friction coefficients; below 1: more friction would wedge
 
   bool gains() const { return gain > kEnergyRounding * moved; }
   double certainLoss() const { return -gain - rounding; }
@@ -63,33 +68,33 @@ struct Strike {
 /// Contacts with their velocities before an impact.
 class FrictionalImpact {
  public:
-  FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactDelassus& cones, VectorX velocities);
+  FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactDelassus& delassus, VectorX velocities);
 
   /// Impulses (N s) after which nothing closes; notes what had to be done to find them.
   VectorX resolve(ImpactFaults& faults) const;
 
  private:
   bool closes(const VectorX& velocities) const;
-  bool isSolved(const ContactSolution& solution) const { return solution.residual <= kSolvedRatio * fastest_; }
+  bool isSolved(const ContactSolution& solution) const { return solution.residual <= tolerances_.solved; }
   ContactSolution solve(const MatrixX& matrix, const VectorX& free, const std::vector<double>& frictions,
                         double& factor) const;
-  Strike strike(const VectorX& velocities, const VectorX& opening, double frictionFactor = 1) const;
-  Strike strikeWithoutRebound(const VectorX& velocities) const;
-  Strike rebound(const Strike& plastic) const;
+  ImpactResult impactWith(const VectorX& velocities, const VectorX& opening, double frictionFactor = 1) const;
+  ImpactResult plasticImpact(const VectorX& velocities) const;
+  ImpactResult rebound(const ImpactResult& plastic) const;
 
   const std::vector<ImpactContact>& impacts_;
-  const ContactDelassus& cones_;
-  VectorX start_;                      // m/s
-  double fastest_ = 0;                 // m/s
+  const ContactDelassus& delassus_;
+  VectorX start_;  // m/s: velocities of all contacts before the impact
+  FrictionalImpactTolerances tolerances_;
   std::vector<Index> members_;         // contacts that can move
-  std::vector<Index> rows_, normals_;  // theirs
+  std::vector<Index> rows_, normals_;  // their rows in the Delassus operator: all three, and that of the normal
 };
 
-FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactDelassus& cones,
+FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, const ContactDelassus& delassus,
                                    VectorX velocities)
-    : impacts_(impacts), cones_(cones), start_(std::move(velocities)), fastest_(start_.cwiseAbs().maxCoeff()) {
+    : impacts_(impacts), delassus_(delassus), start_(std::move(velocities)), tolerances_(start_.cwiseAbs().maxCoeff()) {
   for (std::size_t i = 0; i < impacts.size(); ++i) {
-    if (cones.isImmobile(i)) continue;
+    if (delassus.isImmobile(i)) continue;
     const Index contact = static_cast<Index>(i);
     members_.push_back(contact);
     for (Index axis = 0; axis < 3; ++axis) rows_.push_back(3 * contact + axis);
@@ -99,10 +104,11 @@ FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, co
 
 bool FrictionalImpact::closes(const VectorX& velocities) const {
   return std::any_of(members_.begin(), members_.end(),
-                     [&](Index i) { return velocities[3 * i + 2] < -kClosedRatio * fastest_; });
+                     [&](Index i) { return velocities[3 * i + 2] < -tolerances_.closed; });
 }
 
-/// With these frictions times `factor`, or where that wedges, with the largest factor that does not.
+/// Solves the problem with the coefficients of friction times `factor`; where that wedges, with the largest factor that
+/// does not, to kFrictionError, which is put into `factor`.
 ContactSolution FrictionalImpact::solve(const MatrixX& matrix, const VectorX& free,
                                         const std::vector<double>& frictions, double& factor) const {
   ContactSolution solution;
@@ -112,23 +118,25 @@ ContactSolution FrictionalImpact::solve(const MatrixX& matrix, const VectorX& fr
     ContactSolution found = solveFrictionalContact(matrix, free, cut);
     const VectorX sizes = found.impulses.cwiseAbs();
     const double all = found.impulses.dot(matrix * found.impulses), each = sizes.dot(matrix.cwiseAbs() * sizes);
-    const bool isUnwedged = found.residual <= kWedgedRatio * fastest_ && each <= kWedgedEnergies * all;
+    const bool isUnwedged = found.residual <= tolerances_.wedged && each <= kMaxCancellation * all;
     if (isUnwedged || solution.impulses.size() == 0) solution = std::move(found);
     return isUnwedged;
   };
   if (isUnwedgedWith(factor)) return solution;
-  double least = 0;
-  for (double most = factor; most - least > kFrictionError;) {
-    const double tried = std::midpoint(least, most);
-    (isUnwedgedWith(tried) ? least : most) = tried;
+  double unwedged = 0;
+  for (double wedged = factor; wedged - unwedged > kFrictionError;) {
+    const double tried = std::midpoint(unwedged, wedged);
+    (isUnwedgedWith(tried) ? unwedged : wedged) = tried;
   }
-  if (least > 0) factor = least;  // else it is not friction that makes impulses large
+  if (unwedged > 0) factor = unwedged;  // 0: friction is not what makes impulses large
   return solution;
 }
 
-/// With all friction static, then with dynamic friction where that slides; times `frictionFactor` at most. Contacts
-/// open with `opening` (m/s) at least.
-Strike FrictionalImpact::strike(const VectorX& velocities, const VectorX& opening, double frictionFactor) const {
+/// The impact from contact velocities `velocities` after which contacts open with at least the speeds `opening` (m/s):
+/// first with static friction everywhere, then with dynamic friction where contacts slide. Coefficients are multiplied
+/// by `frictionFactor` or less.
+ImpactResult FrictionalImpact::impactWith(const VectorX& velocities, const VectorX& opening,
+                                          double frictionFactor) const {
   std::vector<double> frictions;
   bool haveTwoFrictions = false;
   for (const Index i : members_) {
@@ -136,67 +144,69 @@ Strike FrictionalImpact::strike(const VectorX& velocities, const VectorX& openin
     frictions.push_back(material.staticFriction);
     haveTwoFrictions = haveTwoFrictions || material.staticFriction != material.dynamicFriction;
   }
-  const MatrixX matrix = cones_.matrix()(rows_, rows_);
+  const MatrixX matrix = delassus_.matrix()(rows_, rows_);
   const VectorX before = velocities(rows_);
   VectorX free = before;
   free(Eigen::seq(2, Eigen::last, 3)) -= opening;
   ContactSolution solution = solve(matrix, free, frictions, frictionFactor);
   if (haveTwoFrictions) {
     for (std::size_t k = 0; k < members_.size(); ++k)
-      if (solution.velocities.segment<2>(3 * static_cast<Index>(k)).norm() > kSlidingRatio * fastest_)
+      if (solution.velocities.segment<2>(3 * static_cast<Index>(k)).norm() > tolerances_.sliding)
         frictions[k] = impacts_[static_cast<std::size_t>(members_[k])].material.dynamicFriction;
     solution = solve(matrix, free, frictions, frictionFactor);
   }
-  Strike strike;
-  strike.frictionFactor = frictionFactor;
-  strike.impulses = solution.impulses;
-  strike.velocities = before + matrix * solution.impulses;
-  strike.moved = 0.5 * solution.impulses.dot(matrix * solution.impulses);
-  strike.gain = solution.impulses.dot(before) + strike.moved;
+  ImpactResult result;
+  result.frictionFactor = frictionFactor;
+  result.impulses = solution.impulses;
+  result.velocities = before + matrix * solution.impulses;
+  result.moved = 0.5 * solution.impulses.dot(matrix * solution.impulses);
+  result.gain = solution.impulses.dot(before) + result.moved;
   const VectorX terms = solution.impulses.cwiseAbs();
-  strike.residual = isSolved(solution) ? 0 : solution.residual;
-  strike.rounding = kSumRounding * terms.dot(matrix.cwiseAbs() * terms);
-  return strike;
+  result.residual = isSolved(solution) ? 0 : solution.residual;
+  result.rounding = kSumRounding * terms.dot(matrix.cwiseAbs() * terms);
+  return result;
 }
 
-/// Only what was not solved gains: as much of it as takes the most energy.
-Strike FrictionalImpact::strikeWithoutRebound(const VectorX& velocities) const {
-  Strike found = strike(velocities, VectorX::Zero(std::ssize(members_)));
+/// The impact without rebound. It can gain energy only if its problem was not solved. Its impulses are then scaled by
+/// the factor s that takes the most energy: s (z . v) + s^2 (z . G z) / 2 is least at s = -(z . v) / (z . G z).
+ImpactResult FrictionalImpact::plasticImpact(const VectorX& velocities) const {
+  ImpactResult found = impactWith(velocities, VectorX::Zero(std::ssize(members_)));
   if (!found.gains()) return found;
   found.scaledEnergy = found.gain;
-  const double part = std::max(0.0, (found.moved - found.gain) / (2 * found.moved));
-  found.impulses *= part;
-  found.velocities = velocities(rows_) + part * (found.velocities - velocities(rows_));
-  found.gain = part * (found.gain - (1 - part) * found.moved);
-  found.moved *= part * part;
+  const double factor = std::max(0.0, (found.moved - found.gain) / (2 * found.moved));
+  found.impulses *= factor;
+  found.velocities = velocities(rows_) + factor * (found.velocities - velocities(rows_));
+  found.gain = factor * (found.gain - (1 - factor) * found.moved);
+  found.moved *= factor * factor;
   return found;
 }
 
-/// With as much of the restitutions as gains no energy.
-Strike FrictionalImpact::rebound(const Strike& plastic) const {
+/// The impact with rebound, equation (2); where that gains energy, with all restitutions times the factor at which the
+/// energy lost is 0.
+ImpactResult FrictionalImpact::rebound(const ImpactResult& plastic) const {
   const VectorX speeds = start_(normals_);
-  const VectorX slowest = plastic.velocities(Eigen::seq(2, Eigen::last, 3)).cwiseMax(0);
-  const MatrixX delassus = cones_.matrix()(normals_, normals_);
+  const VectorX plasticOpening = plastic.velocities(Eigen::seq(2, Eigen::last, 3)).cwiseMax(0);
+  const MatrixX delassus = delassus_.matrix()(normals_, normals_);
   std::vector<ImpactContact> members;
   for (const Index i : members_) members.push_back(impacts_[static_cast<std::size_t>(i)]);
   VectorX opening = VectorX::Zero(speeds.size());
-  double part = 0;
+  double weights = 0;  // sum of p_k
   for (const Rebound& rebound : reboundsOf(delassus, speeds, members)) {
     opening += rebound.part * (speeds + delassus * rebound.impulses).cwiseMax(0);
-    part += rebound.part;
+    weights += rebound.part;
   }
-  if (part == 0) return plastic;
-  const auto strikeWith = [&](double scale, double frictionFactor) {
-    return strike(start_, scale * opening + (1 - scale * part) * slowest, frictionFactor);
+  if (weights == 0) return plastic;
+  const auto reboundScaledBy = [&](double scale, double frictionFactor) {
+    return impactWith(start_, scale * opening + (1 - scale * weights) * plasticOpening, frictionFactor);
   };
-  Strike kept = strikeWith(1, 1);
+  ImpactResult kept = reboundScaledBy(1, 1);
   if (!kept.gains()) return kept;
   const double frictionFactor = kept.frictionFactor;
   Bracket scales{0, plastic.certainLoss(), 1, kept.certainLoss()};
   kept = plastic;
   if (!(scales.gapBefore > 0)) return kept;
   const auto lossWith = [&](double scale) {
-    const Strike tried = strikeWith(scale, frictionFactor);
+    const ImpactResult tried = reboundScaledBy(scale, frictionFactor);
     if (tried.certainLoss() > 0) kept = tried;
     return tried.certainLoss();
   };
@@ -207,12 +217,12 @@ Strike FrictionalImpact::rebound(const Strike& plastic) const {
 VectorX FrictionalImpact::resolve(ImpactFaults& faults) const {
   VectorX impulses = VectorX::Zero(start_.size()), velocities = start_;
   for (int round = 0; round < kMaxRounds && closes(velocities); ++round) {
-    Strike found = strikeWithoutRebound(velocities);
+    ImpactResult found = plasticImpact(velocities);
     if (round == 0) found = rebound(found);
     faults.residual = std::max(faults.residual, found.residual);
     faults.scaledEnergy = std::max(faults.scaledEnergy, found.scaledEnergy);
     for (std::size_t k = 0; k < rows_.size(); ++k) impulses[rows_[k]] += found.impulses[static_cast<Index>(k)];
-    velocities = start_ + cones_.matrix() * impulses;
+    velocities = start_ + delassus_.matrix() * impulses;
   }
   if (closes(velocities)) faults.rounds = kMaxRounds;
   return impulses;
@@ -224,11 +234,11 @@ ImpactFaults resolveFrictionalImpact(std::vector<ImpactContact>& impacts, const 
                                      VectorX& state) {
   if (impacts.empty()) return {};
   const std::vector<Contact> contacts = contactsOf(impacts);
-  const ContactDelassus cones(contacts, response, state);
+  const ContactDelassus delassus(contacts, response, state);
   ImpactFaults faults;
-  const VectorX impulses = FrictionalImpact(impacts, cones, cones.velocitiesIn(state)).resolve(faults);
-  cones.apply(impulses, state);
-  for (std::size_t i = 0; i < impacts.size(); ++i) impacts[i].impulse += cones.worldImpulse(i, impulses);
+  const VectorX impulses = FrictionalImpact(impacts, delassus, delassus.velocitiesIn(state)).resolve(faults);
+  delassus.apply(impulses, state);
+  for (std::size_t i = 0; i < impacts.size(); ++i) impacts[i].impulse += delassus.worldImpulse(i, impulses);
   return faults;
 }
 

@@ -1,6 +1,9 @@
-// Sliding: u_t = -alpha z_t with alpha > 0 makes (S + alpha) z_t = -b with the normal part eliminated from G and g, and
-// |z_t| = friction z_n leaves one equation for alpha (compare O. Bonnefon, G. Daviet, "Quartic formulation of Coulomb
-// 3D frictional contact", 2011). In the principal axes of S, z_t(alpha) is two quotients.
+// One contact of friction coefficient mu, with the normal component eliminated: z_n = p + c . z_t from u_n = 0, and
+// u_t = S z_t + b, where S is the Schur complement of G_nn in G, and b that of the free velocity. A sliding contact has
+// u_t = -alpha z_t with alpha > 0, so that
+//   (S + alpha) z_t = -b, |z_t| = mu z_n,   (1)
+// one equation for alpha (compare O. Bonnefon, G. Daviet, "Quartic formulation of Coulomb 3D frictional contact",
+// 2011). In the principal axes of S each component of z_t is a quotient, -b_i / (S_i + alpha).
 
 #include "impact/single_contact.h"
 
@@ -10,11 +13,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kSingularTraceRatio =
-    1e-9;                             // of the trace: less is rounding, which constraints leave of far larger parts
-constexpr double kRootRatio = 4e-16;  // of alpha
-constexpr double kOnCone = 1e-12;     // of its width: an impulse on its side is in it
-constexpr int kMaxRootSteps = 200;    // 5 are usual; bisection alone ends after about 100
+// Of the trace of G: a smaller principal value of S is rounding. Constraints leave differences of far larger parts.
+constexpr double kSingularTraceRatio = 1e-9;
+constexpr double kRootRounding = 4e-16;  // of alpha: 4 unit roundoffs
+constexpr double kConeRounding = 1e-12;  // of the cone's width: an impulse as near to its side is inside, and sticks
+constexpr int kMaxRootSteps = 200;       // 5 are usual; bisection alone ends after about 100
 
 /// The tangential problem after elimination of the normal part, in its principal axes.
 class Sliding {
@@ -41,14 +44,14 @@ class Sliding {
     }
   }
 
-  /// Impulses that stop all motion, if there are any in the cone. Where constraints leave a direction no motion, its
-  /// part of them is free: the least that makes the others fit.
+  /// The impulse that stops all motion, if that is in the cone. In a direction in which constraints leave no motion its
+  /// component is free: the least one that puts the impulse into the cone.
   std::optional<Vec3> sticking() const {
     Vec2 along(part(0, 0), part(1, 0));
     if (moments_[1] == 0 && offset_[1] == 0) along[1] = leastWedging(along[0]);
     const Vec3 z = from(along);
     const double size = std::sqrt(z.x() * z.x() + z.y() * z.y());
-    if (std::isfinite(size) && size <= friction_ * z.z() * (1 + kOnCone)) return z;
+    if (std::isfinite(size) && size <= friction_ * z.z() * (1 + kConeRounding)) return z;
     return {};
   }
 
@@ -73,8 +76,9 @@ class Sliding {
     return {tangential.x(), tangential.y(), pressing_ + coupling_.dot(tangential)};
   }
 
-  /// The smallest part s along the second axis that brings the impulse into the cone, from `first` along the first one:
-  /// first^2 + s^2 = (friction (n + c s))^2, n + c s >= 0. Zero if none is needed, or none does.
+  /// The least component s along the second axis that puts an impulse, of component `first` along the first one, into
+  /// the cone: first^2 + s^2 = (mu (n + c s))^2, n + c s >= 0. Zero if the impulse is in the cone without, or with no
+  /// s.
   double leastWedging(double first) const {
     const double perSecond = coupling_.dot(Vec2(-axis_.y(), axis_.x()));
     const double normal = pressing_ + coupling_.dot(axis_) * first, square = friction_ * friction_;
@@ -93,13 +97,13 @@ class Sliding {
     return offset_[i] == 0 ? 0 : -offset_[i] / divisor;  // infinite: a direction without inertia that does not stop
   }
 
-  double friction_, pressing_;  // pressing: normal part without friction
-  Vec2 coupling_;               // normal part per tangential part
-  double moments_[2];
-  Vec2 axis_, offset_;
+  double friction_, pressing_;  // mu; p, the normal impulse without friction
+  Vec2 coupling_;               // c
+  double moments_[2];           // principal values of S, the larger one first
+  Vec2 axis_, offset_;          // its principal axis; b in the principal axes
 };
 
-/// Newton's method between bounds that halve where it does not help.
+/// The root alpha of (1) by Newton's method, with bisection where that leaves the bracket.
 double findRoot(const Sliding& sliding) {
   double slope = 0, low = 0, high = sliding.start();
   for (int i = 0; i < kMaxRootSteps && sliding.excess(high, slope) > 0; ++i) low = high, high *= 2;
@@ -110,7 +114,7 @@ double findRoot(const Sliding& sliding) {
     (excess > 0 ? low : high) = alpha;
     double next = alpha - excess / slope;
     if (!(next > low && next < high)) next = low + 0.5 * (high - low);
-    if (std::abs(next - alpha) <= kRootRatio * alpha || next == low || next == high) return next;
+    if (std::abs(next - alpha) <= kRootRounding * alpha || next == low || next == high) return next;
     alpha = next;
   }
   return alpha;

@@ -1,6 +1,11 @@
-// The matrix by its factors. With J = D J' M^-1/2, D the scale of each contact, W = J J^T, and A dz + B W dz = side for
-// blocks A and B of the contacts becomes (1 + J^T A^-1 B J) v = J^T A^-1 side, dz = A^-1 (side - B J v): what is
-// factorised has six rows a body, whatever the number of its contacts, and couples only bodies that touch.
+// The Delassus operator by its factors. Let J0 be the Jacobian of the contacts, M the mass matrix, D the diagonal
+// matrix of the contacts' scales, and J = D J0 M^-1/2. The scaled operator is W = J J^T. Equations A dz + B du = side
+// with du = W dz, where A and B have a 3 x 3 block for each contact, are solved by way of v = J^T dz, the change of the
+// bodies' velocities times the square roots of their masses:
+//   (1 + J^T A^-1 B J) v = J^T A^-1 side   (1)
+//   dz = A^-1 (side - B J v)               (2)
+// The matrix of (1), which is factorised, has six rows for each body, however many contacts that has, and couples only
+// bodies that touch.
 
 #include "impact/sparse_delassus.h"
 
@@ -17,8 +22,11 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kLargest = 4;        // bound that a few contacts a body stay below, of scaled inverse masses
-constexpr double kLeastShift = 1e-6;  // scaled inverse mass: the difference side - B J v is divided by it
+// Scaled inverse mass: the eigenvalues of W are seldom larger where a body has a few contacts, since each of them has
+// scaled inverse mass 1. It bounds the penalty of ADMM alone.
+constexpr double kUsualEigenvalue = 4;
+// Scaled inverse mass: with a shift A, dz in (2) is a difference divided by A, which multiplies rounding by 1 / A.
+constexpr double kMinSparseShift = 1e-6;
 
 }  // namespace
 
@@ -118,7 +126,7 @@ MatrixX SparseDelassus::matrix() const {
   return g;
 }
 
-/// 1 + sum over contacts of J^T stiffness J.
+/// Assembles and factorises the matrix of (1): 1 + sum over the contacts of J^T (A^-1 B) J.
 void SparseDelassus::factorize(const std::vector<ContactEquation>& equations) {
   inverses_.assign(equations.size(), Mat3::Zero());
   stiffnesses_.assign(equations.size(), Mat3::Zero());
@@ -169,7 +177,7 @@ void SparseDelassus::gather(const VectorX& impulses) {
             contacts_[i].j[side].transpose() * impulses.segment<3>(3 * static_cast<Index>(i));
 }
 
-/// J times what is left of the bodies, at one contact.
+/// The rows of J of one contact times the bodies' part of the solution, v of (1).
 Vec3 SparseDelassus::velocityOfBodies(std::size_t contact) const {
   const Row& row = contacts_[contact];
   Vec3 velocity = Vec3::Zero();
@@ -185,7 +193,7 @@ VectorX SparseDelassus::multiply(const VectorX& z) {
   return u;
 }
 
-/// A bound on |W| |z| by |J| |J^T| |z|.
+/// An upper bound on the largest component of |W| |z|: that of |J| |J^T| |z|.
 double SparseDelassus::magnitude(const VectorX& z) {
   bodyWork_.setZero(6 * static_cast<Index>(bodies_.size()));
   double largest = 0;
@@ -204,8 +212,8 @@ DelassusOperator SparseDelassus::scaledOperator() {
   DelassusOperator op;
   op.scales.resize(std::ssize(contacts_));
   for (std::size_t i = 0; i < contacts_.size(); ++i) op.scales[static_cast<Index>(i)] = contacts_[i].scale;
-  op.largest = kLargest;
-  op.leastShift = kLeastShift;
+  op.largest = kUsualEigenvalue;
+  op.leastShift = kMinSparseShift;
   op.multiply = [this](const VectorX& z) { return multiply(z); };
   op.magnitude = [this](const VectorX& z) { return magnitude(z); };
   op.factorize = [this](const std::vector<ContactEquation>& equations) {

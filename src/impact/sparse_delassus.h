@@ -38,14 +38,14 @@ class SparseDelassus {
   using Mat36 = Eigen::Matrix<double, 3, 6>;
   struct Row {
     Mat3 axes;                // world from (t1, t2, n)
-    std::array<int, 2> body;  // of A and B among bodies_, or -1
-    std::array<Mat36, 2> j;   // of A and B: velocity of the contact from velocities times root of mass
-    double scale = 1;         // of its impulses: inverse mass 1
+    std::array<int, 2> body;  // index of A and of B in bodies_; -1: it does not move
+    std::array<Mat36, 2> j;   // rows of J = D J0 M^-1/2 (sparse_delassus.cpp) for A and for B
+    double scale = 1;         // sqrt(kg), the contact's entry of D: its scaled inverse mass is 1
   };
   struct BodyRoot {
     Eigen::Index index;   // in the state
-    double inverseMass;   // 1/kg, square root of
-    Mat3 inverseInertia;  // world, lower root of
+    double inverseMass;   // 1/sqrt(kg): square root of the inverse mass
+    Mat3 inverseInertia;  // Cholesky factor (lower) of the inverse inertia tensor, world axes
   };
   void factorize(const std::vector<ContactEquation>& equations);
   VectorX solve(const VectorX& sides, VectorX* velocities);
