@@ -24,8 +24,8 @@ class ContactDelassus {
     return delassus_.isImmobile(3 * static_cast<Eigen::Index>(contact) + 2);
   }
 
-  /// The inverse mass along a contact's normal in parts of what it were without constraints: about (arm / size)^2 where
-  /// a joint holds the body near the contact.
+  /// Ratio of the inverse mass along a contact's normal to that without constraints: about (arm / size)^2 where a joint
+  /// holds the body near the contact.
   double leverage(std::size_t contact) const;
 
   /// Velocities (m/s) of all contacts, of bodies at the places of the start that move as in `velocities`, a state.

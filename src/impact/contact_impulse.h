@@ -17,15 +17,15 @@ ConstraintRow rowAlong(const Vec3& direction, const Contact& contact, const Vect
 
 class ImpulseResponse;
 
-/// Whether joints leave a contact a lever of hardly more than `lever`, in sizes of its bodies: its normal goes by an
-/// anchor so near that impulses there are 1 / lever times as large as those that the motion asks for.
+/// Whether joints leave a contact a moment arm of no more than about `lever` sizes of its bodies: its normal passes an
+/// anchor so closely that impulses at the contact are 1 / lever times as large as those that the motion asks for.
 bool hasShortLever(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double lever);
 
-/// Erases those that are immobile.
+/// Erases the contacts that the bodies' constraints let neither open nor close.
 void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts);
 
-/// How bodies answer to impulses at contacts. Their constraints answer within the same impulse: W = M^-1 - M^-1 B^T
-/// (B M^-1 B^T)^-1 B M^-1 stands in place of M^-1, B the rows of their constraints.
+/// The response of bodies to impulses at contacts. Constraints, with the Jacobian B, respond within the same impulse:
+/// in place of the inverse mass matrix M^-1 stands W = M^-1 - M^-1 B^T (B M^-1 B^T)^-1 B M^-1.
 class ImpulseResponse {
  public:
   /// Keeps a reference to `bodies`, which have no constraints.

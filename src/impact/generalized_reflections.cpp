@@ -1,11 +1,16 @@
-// B. Smith, D. M. Kaufman, E. Vouga, R. Tamstorf, E. Grinspun, "Reflections on Simultaneous Impact", ACM Trans. Graph.
-// 31(4), 2012. With J the contacts' normals, v -> v+ = v + W J^T lambda. A reflection: 0 <= lambda perp J (v+ + v) >= 0
-// on the contacts that close. Restitution e: the blend (1 - e) v_LCP + e v_GR of the same paper, v_LCP with
-// 0 <= lambda perp J v+ >= 0 on all contacts. A blend contact by contact can gain energy. With different e the blend is
-// the mean, over levels s uniform in 0..1, of impacts in which contacts with e > s are elastic and the others plastic:
-// each of them gains none, nor does their mean, as kinetic energy is convex; equal e make it the blend above; and it is
-// linear in each e between the others. In these impacts a reflection takes 0 <= lambda perp J v+ + E J v >= 0, E = 0 or
-// 1: where lambda > 0, it does the work -(1 - E) |J v| lambda / 2 <= 0.
+// Generalized reflections (GR): B. Smith, D. M. Kaufman, E. Vouga, R. Tamstorf, E. Grinspun, "Reflections on
+// Simultaneous Impact", ACM Trans. Graph. 31(4), 2012. Let J be the Jacobian of the contact normals, W the response of
+// velocities to impulses, and v+ = v + W J^T lambda. One reflection solves, for the contacts that close (J v < 0),
+//   0 <= lambda perp J (v+ + v) >= 0.   (1)
+// Equal restitutions e: the paper's blend (1 - e) v_LCP + e v_GR, where v_GR is the result of reflections until nothing
+// closes, and v_LCP that of the plastic impact, 0 <= lambda perp J v+ >= 0 for all contacts.
+// Different restitutions: a blend contact by contact could gain energy. Instead, the result is the mean, over levels s
+// uniform in 0..1, of impacts in which contacts with e > s are elastic (E = 1) and the others plastic (E = 0). A
+// reflection of such an impact solves
+//   0 <= lambda perp J v+ + E J v >= 0,   (2)
+// which does the work -(1 - E) |J v| lambda / 2 <= 0 at each contact with lambda > 0. No impact gains energy, nor does
+// their mean, as kinetic energy is convex. The mean is the paper's blend where all e are equal, and linear in each e
+// between the other ones.
 
 #include "impact/generalized_reflections.h"
 
@@ -20,13 +25,17 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kReflectionClosedRatio = 1e-12;  // of the fastest speed: what is left is rounding
-constexpr double kSpeedRounding = 16 * std::numeric_limits<double>::epsilon();  // of the terms of a speed
-constexpr long kMaxReflections = 10000;     // for each contact; a row of n spheres needs n, then one impact without
-                                            // rebound ends it
-constexpr long kMaxMixedReflections = 100;  // where some contacts are plastic: more would but slow down what is left
+// Of the fastest speed: slower closing is rounding. 1e4 unit roundoffs, for sums over many reflections.
+constexpr double kReflectionClosedRatio = 1e-12;
+// Of the sum of the magnitudes in J W J^T z.
+constexpr double kSpeedRounding = 16 * std::numeric_limits<double>::epsilon();
+// Reflections for each contact. A row of n spheres needs n; an impact that needs more ends with a plastic impact.
+constexpr long kMaxReflections = 10000;
+// Reflections in all, where some contacts are plastic: each takes energy at these, so that more of them would only slow
+// down a motion that is nearly over.
+constexpr long kMaxMixedReflections = 100;
 
-/// An impact by the normals of its contacts alone: speeds J v and inverse masses J W J^T.
+/// An impact as its contact normals see it: speeds J v (m/s) and the Delassus operator J W J^T (1/kg).
 class NormalImpact {
  public:
   NormalImpact(const MatrixX& delassus, const VectorX& speeds, const std::vector<ImpactContact>& impacts)
@@ -72,8 +81,9 @@ VectorX NormalImpact::reflect(const VectorX& restitutions) const {
   return stop(impulses);
 }
 
-/// Where nothing rebounds, what that makes close and does not rebound either is stopped at once too: one after the
-/// other, a light body between heavy ones would need as many reflections as the masses differ.
+/// One reflection, equation (2), of the closing contacts. Contacts that a plastic reflection makes close, and that do
+/// not rebound either, join it at once: if they were stopped one after the other, a light body between heavy ones would
+/// need about as many reflections as the ratio of the masses.
 VectorX NormalImpact::reflectOnce(std::vector<Index> closing, const VectorX& speeds,
                                   const VectorX& restitutions) const {
   const auto rebounds = [&](Index i, double speed) { return restitutions[i] > 0 && -speed > restSpeeds_[i]; };
@@ -99,7 +109,7 @@ VectorX NormalImpact::reflectOnce(std::vector<Index> closing, const VectorX& spe
   }
 }
 
-/// What all of the above comes to for one contact.
+/// The same law for a single contact, in closed form: the impulse is -(1 + e) J v / (J W J^T).
 void reflectAlone(ImpactContact& impact, const ImpulseResponse& response, VectorX& state) {
   const Contact& contact = impact.contact;
   const double speed = contact.normal.dot(relativeVelocity(contact, state));
@@ -137,7 +147,7 @@ std::vector<Rebound> reboundsOf(const MatrixX& delassus, const VectorX& speeds,
 
 namespace {
 
-/// The impulses (N s) along the normals by the law of reboundsOf, of all parts together.
+/// The impulses (N s) along the normals: the mean of all parts of the impact (reboundsOf), the plastic one included.
 VectorX reflectionImpulses(const MatrixX& delassus, const VectorX& speeds, const std::vector<ImpactContact>& impacts) {
   const VectorX none = VectorX::Zero(speeds.size());
   VectorX impulses = none;

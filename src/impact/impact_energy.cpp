@@ -7,16 +7,17 @@
 namespace cradle {
 namespace {
 
-constexpr double kImpulseRounding =
-    1e-14;  // relative: of the velocity that an impulse gives to bodies without constraints
+// Of the velocity that an impulse gives to bodies without constraints: 90 unit roundoffs, for the sums of some tens of
+// products by which a response is found.
+constexpr double kResponseRounding = 1e-14;
 
-/// J: so well the work of an impulse is known. Where constraints take nearly all of it, that is much beside what is
-/// left.
+/// Bound (J) on the rounding of the work of an impulse. Where constraints take nearly all of the impulse, it is large
+/// beside the work that is left.
 double roundingOf(const ImpactContact& impact, const std::vector<RigidBody>& bodies) {
   double inverseMass = 0;  // 1/kg
   for (const int body : {impact.contact.bodyA, impact.contact.bodyB})
     if (body != kFixed) inverseMass += bodies[static_cast<std::size_t>(body)].inverseMass;
-  return kImpulseRounding * impact.impulse.squaredNorm() * inverseMass;
+  return kResponseRounding * impact.impulse.squaredNorm() * inverseMass;
 }
 
 }  // namespace

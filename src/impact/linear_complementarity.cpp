@@ -1,9 +1,12 @@
-// Principal pivoting (R. W. Cottle, J.-S. Pang, R. E. Stone, "The Linear Complementarity Problem", 1992, 4.2) without
-// guarding rows that are satisfied already, as C. L. Lawson and R. J. Hanson do ("Solving Least Squares Problems",
-// 1974, 23.3). lambda minimises lambda A lambda / 2 + b lambda over lambda >= 0; the minimum over the rows that push
-// falls with every row that is driven, so that no set of them comes back. A row is driven along the direction that
-// leaves the pushing rows satisfied. If A is singular along it, the step ends at a row that stops pushing: A of the
-// pushing rows is regular at all times.
+// Principal pivoting for the linear complementarity problem (R. W. Cottle, J.-S. Pang, R. E. Stone, "The Linear
+// Complementarity Problem", 1992, section 4.2). The solution lambda minimises
+//   f(lambda) = lambda^T A lambda / 2 + b^T lambda over lambda >= 0,   (1)
+// since A is symmetric. A row pushes if its lambda is > 0, and is satisfied if its residual (A lambda + b)_i is >= 0.
+// One pivot drives the most violated row: its lambda grows, and those of the pushing rows change with it so that their
+// residuals stay 0. Rows that were satisfied are not guarded meanwhile, as in C. L. Lawson, R. J. Hanson, "Solving
+// Least Squares Problems", 1974, section 23.3. The minimum of f over the pushing rows falls with every pivot, so that
+// no set of pushing rows comes back. Where A is singular along the direction of a pivot, the step ends at a row that
+// stops pushing: the submatrix of A of the pushing rows is regular at all times.
 
 #include "impact/linear_complementarity.h"
 
@@ -21,17 +24,20 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kRowRounding = 64 * std::numeric_limits<double>::epsilon();  // of the terms of a row, for each of them
-constexpr double kSingularRatio = 1e-12;  // of a diagonal element: less left after elimination is rounding
-constexpr int kFewRows = 8;               // are solved without a search, if all push
-constexpr long kMaxPivotsPerRow = 100;    // 1 or 2 are usual
-// Of the diagonal, which is made larger by as much: where rounding decides about rows that hold each other, in turn.
-constexpr double kRegularRatios[] = {1e-11, 1e-9, 1e-7};
+// Of the sum of the magnitudes in a row, for each of its terms: a violation by less is rounding.
+constexpr double kRowRounding = 64 * std::numeric_limits<double>::epsilon();
+// Of a diagonal element: elimination of other rows leaves rounding of up to 1e4 unit roundoffs of it.
+constexpr double kEliminatedRatio = 1e-12;
+constexpr int kMaxDirectRows = 8;       // of a problem that is first tried without pivots: its factors fit on the stack
+constexpr long kMaxPivotsPerRow = 100;  // 1 or 2 are usual
+// Of the diagonal elements, to which they are added, one after the other, where rounding lets sets of pushing rows come
+// back: from ten times what elimination takes for rounding, in steps of 100.
+constexpr double kDiagonalShifts[] = {1e-11, 1e-9, 1e-7};
 
 class Pivoting {
  public:
   Pivoting(const MatrixX& a, const VectorX& b)
-      : a_(a), b_(b), lambda_(VectorX::Zero(b.size())), isLeft_(static_cast<std::size_t>(b.size()), 0) {}
+      : a_(a), b_(b), lambda_(VectorX::Zero(b.size())), isInfeasible_(static_cast<std::size_t>(b.size()), 0) {}
 
   /// The row that is violated most, by more than rounding; -1: none.
   Index mostViolated() const;
@@ -50,15 +56,15 @@ class Pivoting {
   const MatrixX& a_;
   const VectorX& b_;
   VectorX lambda_;
-  std::vector<Index> pushing_;  // rows with A lambda + b = 0
-  std::vector<char> isLeft_;    // no lambda satisfies the row
+  std::vector<Index> pushing_;      // rows with lambda > 0, whose residual is 0
+  std::vector<char> isInfeasible_;  // by row: no lambda satisfies it
 };
 
 Index Pivoting::mostViolated() const {
   Index most = -1;
   double largest = 0;
   for (Index row = 0; row < b_.size(); ++row) {
-    if (lambda_[row] > 0 || isLeft_[static_cast<std::size_t>(row)]) continue;
+    if (lambda_[row] > 0 || isInfeasible_[static_cast<std::size_t>(row)]) continue;
     const double terms = std::abs(b_[row]) + a_.row(row).cwiseAbs().dot(lambda_);
     const double violation = -residual(row);
     if (violation <= std::max(largest, kRowRounding * static_cast<double>(b_.size()) * terms)) continue;
@@ -67,7 +73,7 @@ Index Pivoting::mostViolated() const {
   return most;
 }
 
-/// x with A x = rightHandSide in the pushing rows, 0 elsewhere.
+/// The vector x with A x = rightHandSide in the pushing rows, and x = 0 in all others.
 VectorX Pivoting::solveForPushing(const VectorX& rightHandSide) const {
   VectorX x = VectorX::Zero(b_.size());
   if (pushing_.empty()) return x;
@@ -77,14 +83,15 @@ VectorX Pivoting::solveForPushing(const VectorX& rightHandSide) const {
   return x;
 }
 
-/// Change of lambda, per unit of the row's own, that leaves the pushing rows satisfied.
+/// The direction of a pivot: the change of lambda for a unit change of the row's own that keeps the residuals of the
+/// pushing rows.
 VectorX Pivoting::direction(Index row) const {
   VectorX along = solveForPushing(-a_.col(row));
   along[row] = 1;
   return along;
 }
 
-/// Along a direction, the pushing row that reaches zero first; -1: none does.
+/// The pushing row whose lambda reaches zero first along a direction; -1: none does.
 Index Pivoting::firstToStop(const VectorX& along) const {
   Index first = -1;
   for (const Index row : pushing_)
@@ -98,13 +105,13 @@ void Pivoting::drive(Index row) {
   while (true) {
     const VectorX along = direction(row);
     const double curvature = a_.row(row).dot(along);
-    const bool isSingular = curvature <= kSingularRatio * a_(row, row);
+    const bool isSingular = curvature <= kEliminatedRatio * a_(row, row);
     const Index first = firstToStop(along);
     const double furthest = first < 0 ? INFINITY : -lambda_[first] / along[first];
     const double wanted = isSingular ? INFINITY : std::max(0.0, -residual(row) / curvature);
     if (wanted == INFINITY && furthest == INFINITY) {
       lambda_ = lambdaBefore, pushing_ = pushingBefore;
-      isLeft_[static_cast<std::size_t>(row)] = 1;
+      isInfeasible_[static_cast<std::size_t>(row)] = 1;
       return;
     }
     lambda_ += std::min(wanted, furthest) * along;
@@ -120,8 +127,8 @@ void Pivoting::stop(Index row) {
   std::erase(pushing_, row);
 }
 
-/// What pushes anew, from `b` alone: errors of steps do not add up. Rows that came to zero in the same step as the one
-/// that ended it stop.
+/// Computes lambda of the pushing rows from `b` alone, so that errors of the pivots' steps do not add up. Rows that
+/// reached zero in the same step as the one that ended it stop pushing.
 void Pivoting::satisfyPushing() {
   while (true) {
     lambda_ = solveForPushing(-b_);
@@ -144,21 +151,22 @@ VectorX solveUncoupled(const MatrixX& a, const VectorX& b) {
   return lambda;
 }
 
-/// What few rows need if all of them push, as they mostly do: no search. None if they do not, or hold each other.
+/// The solution for few rows if all of them push, as they mostly do: one factorisation, no pivots. None if a row does
+/// not push, or if A is singular.
 std::optional<VectorX> solveForAll(const MatrixX& a, const VectorX& b) {
-  if (b.size() > kFewRows) return std::nullopt;
-  using Few = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kFewRows, kFewRows>;
+  if (b.size() > kMaxDirectRows) return std::nullopt;
+  using Few = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxDirectRows, kMaxDirectRows>;
   const Eigen::LLT<Few> factor{Few(a)};
   if (factor.info() != Eigen::Success) return std::nullopt;
   for (Index row = 0; row < b.size(); ++row)
-    if (!(factor.matrixLLT()(row, row) * factor.matrixLLT()(row, row) > kSingularRatio * a(row, row)))
+    if (!(factor.matrixLLT()(row, row) * factor.matrixLLT()(row, row) > kEliminatedRatio * a(row, row)))
       return std::nullopt;
   VectorX lambda = factor.solve(-b);
   if (!(lambda.minCoeff() > 0)) return std::nullopt;
   return lambda;
 }
 
-/// None if rounding lets pivots come back.
+/// The solution by pivots. None if there are too many pivots: rounding then lets sets of pushing rows come back.
 std::optional<VectorX> solveByPivots(const MatrixX& a, const VectorX& b) {
   Pivoting pivoting(a, b);
   const long most = kMaxPivotsPerRow * static_cast<long>(b.size());
@@ -176,7 +184,7 @@ VectorX solveLinearComplementarity(const MatrixX& a, const VectorX& b) {
   if (areUncoupled(a)) return solveUncoupled(a, b);
   if (const auto lambda = solveForAll(a, b)) return *lambda;
   if (const auto lambda = solveByPivots(a, b)) return *lambda;
-  for (const double ratio : kRegularRatios) {
+  for (const double ratio : kDiagonalShifts) {
     MatrixX regular = a;
     regular.diagonal() *= 1 + ratio;
     if (const auto lambda = solveByPivots(regular, b)) return *lambda;

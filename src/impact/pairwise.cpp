@@ -9,9 +9,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kPairClosedRatio = 1e-12;     // of the fastest closing speed: what is left is rounding
+// Of the fastest closing speed: 1e4 unit roundoffs, for sums over many impulses.
+constexpr double kPairClosedRatio = 1e-12;
 constexpr long kMaxImpulsesPerPair = 10000;    // a row of n spheres needs n, a box on its corners tens
-constexpr double kPairEnergyRounding = 1e-12;  // of the energy that the impulse moves
+constexpr double kPairEnergyRounding = 1e-12;  // of the work of the impulse: 1e4 unit roundoffs
 
 double closingSpeed(const Contact& contact, const VectorX& state) {
   return -contact.normal.dot(relativeVelocity(contact, state));

@@ -5,12 +5,15 @@
 namespace cradle {
 namespace {
 
-constexpr double kAside = 0.05;      // of its size a body may be beside its swept bounds
-constexpr std::size_t kGrain = 512;  // bodies that a thread takes at once
+// Of its size: distance that a body may be beside its swept bounds. Less renews bounds more often, more keeps pairs
+// that never meet.
+constexpr double kAsideRatio = 0.05;
+// Bodies that a thread takes at once: few enough to balance threads, many enough that they seldom wait for each other.
+constexpr std::size_t kRenewedBodies = 512;
 
 }  // namespace
 
-/// Its box is within the one expected, and until the next look it goes as far as expected, but for what is allowed.
+/// Whether a body's box is where it was predicted, and will be until the next detection pass, but for `aside`.
 bool SweptBounds::isKept(const Course& course, const MovingPose& pose, const SoftStepStart& look) {
   const Vec3 beside = (pose.boxCenter - course.end + look.timeLeft * course.velocity).cwiseAbs();
   const double faster =
@@ -22,12 +25,13 @@ void SweptBounds::renew(const SoftStepStart& look, WorkerThreads& threads) {
   const bool areNew = courses_.empty();
   courses_.resize(look.poses.size());
   isRenewed_.assign(look.poses.size(), 0);
-  threads.share(courses_.size(), kGrain, [&](int, std::size_t first, std::size_t last) {
+  threads.share(courses_.size(), kRenewedBodies, [&](int, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const MovingPose& pose = look.poses[i];
       if (!areNew && isKept(courses_[i], pose, look)) continue;
       const Vec3 way = look.timeLeft * pose.linearVelocity;
-      courses_[i] = {pose.boxCenter + way, pose.boxHalf, pose.linearVelocity, pose.spinSpeed, kAside * pose.radius};
+      courses_[i] = {pose.boxCenter + way, pose.boxHalf, pose.linearVelocity, pose.spinSpeed,
+                     kAsideRatio * pose.radius};
       isRenewed_[i] = 1;
     }
   });
