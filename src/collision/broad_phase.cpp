@@ -35,12 +35,12 @@ Bounds turnedBounds(const Bounds& bounds, const RigidTransform& worldFromBody) {
 
 /// Bound on how far (m) turning from one orientation to another moves a point at `radius` (m): a chord c of the unit
 /// quaternions turns points by an angle a with c = 2 sin(a/4), and 2 r sin(a/2) <= 2 r c.
-double wayOfTurning(const Quat& from, const Quat& to, double radius) {
+double rotationDisplacement(const Quat& from, const Quat& to, double radius) {
   return 2 * radius * std::min((from.coeffs() - to.coeffs()).norm(), (from.coeffs() + to.coeffs()).norm());
 }
 
-/// Of a way along `drift` (m), and `around` (m) it.
-Bounds wayBounds(const Vec3& from, const Vec3& drift, double around) {
+/// The box that a point sweeps along the displacement `drift` (m), and `around` (m) it.
+Bounds sweptBounds(const Vec3& from, const Vec3& drift, double around) {
   const Vec3 to = from + drift, grown = Vec3::Constant(around);
   return {Vec3(from.cwiseMin(to) - grown), Vec3(from.cwiseMax(to) + grown)};
 }
@@ -75,34 +75,34 @@ bool BroadPhase::update(const VectorX& state, const std::vector<double>& motions
   return update({state, motions, {}}, margin, geometry);
 }
 
-bool BroadPhase::update(const PredictedMotion& ways, double margin, ContactGeometry& geometry) {
-  if (geometry.colliders.empty() || covers(ways, margin)) return false;
-  enclose(ways, margin, geometry);
+bool BroadPhase::update(const PredictedMotion& predicted, double margin, ContactGeometry& geometry) {
+  if (geometry.colliders.empty() || covers(predicted, margin)) return false;
+  enclose(predicted, margin, geometry);
   sort(geometry);
   sweep(geometry);
   return true;
 }
 
-Vec3 BroadPhase::displacementOf(const PredictedMotion& ways, std::size_t body) {
-  return ways.displacements.empty() ? Vec3(Vec3::Zero()) : ways.displacements[body];
+Vec3 BroadPhase::displacementOf(const PredictedMotion& predicted, std::size_t body) {
+  return predicted.displacements.empty() ? Vec3(Vec3::Zero()) : predicted.displacements[body];
 }
 
-bool BroadPhase::covers(const PredictedMotion& ways, double margin) const {
+bool BroadPhase::covers(const PredictedMotion& predicted, double margin) const {
   if (poses_.empty()) return false;
-  for (std::size_t body = 0; body < ways.motions.size(); ++body) {
-    const RigidTransform now = poseOf(ways.state, static_cast<int>(body));
+  for (std::size_t body = 0; body < predicted.motions.size(); ++body) {
+    const RigidTransform now = poseOf(predicted.state, static_cast<int>(body));
     const double turning =
-        spinRadii_[body] > 0 ? wayOfTurning(poses_[body].rotation, now.rotation, spinRadii_[body]) : 0;
-    const double around = turning + ways.motions[body] + margin;
+        spinRadii_[body] > 0 ? rotationDisplacement(poses_[body].rotation, now.rotation, spinRadii_[body]) : 0;
+    const double around = turning + predicted.motions[body] + margin;
     // Not a number is not covered.
     if (!(around <= margins_[body])) return false;
-    if (!centers_[body].contains(wayBounds(now.translation, displacementOf(ways, body), around))) return false;
+    if (!centers_[body].contains(sweptBounds(now.translation, displacementOf(predicted, body), around))) return false;
   }
   return true;
 }
 
-void BroadPhase::enclose(const PredictedMotion& ways, double margin, const ContactGeometry& geometry) {
-  const std::size_t count = ways.motions.size();
+void BroadPhase::enclose(const PredictedMotion& predicted, double margin, const ContactGeometry& geometry) {
+  const std::size_t count = predicted.motions.size();
   radii_.assign(count, 0.0), spinRadii_.assign(count, 0.0);
   for (const Collider& collider : geometry.colliders)
     if (collider.body != kFixed) {
@@ -112,25 +112,25 @@ void BroadPhase::enclose(const PredictedMotion& ways, double margin, const Conta
     }
   poses_.clear(), margins_.clear(), centers_.clear();
   for (std::size_t body = 0; body < count; ++body) {
-    const Vec3 drift = ways.ahead * displacementOf(ways, body);
-    const double aside = ways.ahead * ways.motions[body];
+    const Vec3 drift = predicted.ahead * displacementOf(predicted, body);
+    const double aside = predicted.ahead * predicted.motions[body];
     const double motion = aside < kMaxMotion ? aside : kMaxMotion, way = drift.norm();
     const double ahead = std::min(kSlackMotions * (motion + way), kMaxSlack * radii_[body]);
-    poses_.push_back(poseOf(ways.state, static_cast<int>(body)));
+    poses_.push_back(poseOf(predicted.state, static_cast<int>(body)));
     margins_.push_back(margin + std::max({motion + kDeflection * way, ahead, kMinSlack * radii_[body]}));
-    centers_.push_back(wayBounds(poses_.back().translation, drift, margins_.back()));
+    centers_.push_back(sweptBounds(poses_.back().translation, drift, margins_.back()));
   }
-  encloseColliders(geometry, ways);
+  encloseColliders(geometry, predicted);
 }
 
-void BroadPhase::encloseColliders(const ContactGeometry& geometry, const PredictedMotion& ways) {
+void BroadPhase::encloseColliders(const ContactGeometry& geometry, const PredictedMotion& predicted) {
   boxes_.clear(), roundings_.clear();
   for (const Collider& collider : geometry.colliders) {
     const auto body = static_cast<std::size_t>(collider.body);
     Bounds box = collider.body == kFixed ? collider.bounds : turnedBounds(collider.bounds, poses_[body]);
     double grown = kBoxRounding * (box.min().cwiseAbs() + box.max().cwiseAbs()).maxCoeff();
     Vec3 drift = Vec3::Zero();
-    if (collider.body != kFixed) grown += margins_[body], drift = ways.ahead * displacementOf(ways, body);
+    if (collider.body != kFixed) grown += margins_[body], drift = predicted.ahead * displacementOf(predicted, body);
     boxes_.emplace_back(Vec3(box.min() + drift.cwiseMin(0) - Vec3::Constant(grown)),
                         Vec3(box.max() + drift.cwiseMax(0) + Vec3::Constant(grown)));
     roundings_.push_back(collider.isSphere() ? collider.radius + grown : 0);
@@ -174,7 +174,7 @@ void BroadPhase::compare(const ContactGeometry& geometry, std::size_t first, std
   const Collider &colliderA = geometry.colliders[a], &colliderB = geometry.colliders[b];
   if (colliderA.body == kFixed && colliderB.body == kFixed) return;
   if (colliderA.isSphere() && colliderB.isSphere()) {
-    // The boxes of their centres, and the ways between these.
+    // The gap between the boxes that the spheres' centres sweep, against the sum of their radii and margins.
     const double reach = roundings_[a] + roundings_[b];
     const Vec3 beside = (boxes_[b].center() - boxes_[a].center()).cwiseAbs() -
                         (boxes_[a].sizes() + boxes_[b].sizes()) / 2 + Vec3::Constant(reach);

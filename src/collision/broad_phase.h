@@ -12,8 +12,8 @@ namespace cradle {
 /// Baraff, 1992). The boxes have a margin (fat AABBs), and the list stays as it is until a body leaves its box.
 class BroadPhase {
  public:
-  /// Some 200 MB; a heap of a hundred thousand bodies has half as many. Bodies that are all in one another have n^2
-  /// / 2.
+  /// Pairs take some 200 MB then. A heap of a hundred thousand bodies has half as many; n bodies that all overlap each
+  /// other have n^2 / 2.
   static constexpr std::size_t kMaxPairs = 2'000'000;
 
   BroadPhase() = default;
@@ -27,16 +27,16 @@ class BroadPhase {
   /// on one axis is not far on the others.
   bool update(const VectorX& state, const std::vector<double>& motions, double margin, ContactGeometry& geometry);
 
-  /// Where bodies are, and what is predicted of their motion until the next update.
+  /// Positions of the bodies, and bounds on their motion until the next update.
   struct PredictedMotion {
     const VectorX& state;
-    const std::vector<double>& motions;      // m
-    const std::vector<Vec3>& displacements;  // m; empty: none
+    const std::vector<double>& motions;      // m, by moving body: of its points, beside the displacement
+    const std::vector<Vec3>& displacements;  // m, by moving body; empty: none
     double ahead = 1;                        // a new list is made for so many times this motion
   };
   /// Pairs whose swept boxes overlap: the points of body i move by the common displacement displacements[i] (m) and at
   /// most motions[i] (m) beside it.
-  bool update(const PredictedMotion& ways, double margin, ContactGeometry& geometry);
+  bool update(const PredictedMotion& predicted, double margin, ContactGeometry& geometry);
 
  private:
   struct Interval {
@@ -48,10 +48,10 @@ class BroadPhase {
 
   using Found = std::vector<std::pair<std::size_t, std::size_t>>;
 
-  static Vec3 displacementOf(const PredictedMotion& ways, std::size_t body);
-  bool covers(const PredictedMotion& ways, double margin) const;
-  void enclose(const PredictedMotion& ways, double margin, const ContactGeometry& geometry);
-  void encloseColliders(const ContactGeometry& geometry, const PredictedMotion& ways);
+  static Vec3 displacementOf(const PredictedMotion& predicted, std::size_t body);
+  bool covers(const PredictedMotion& predicted, double margin) const;
+  void enclose(const PredictedMotion& predicted, double margin, const ContactGeometry& geometry);
+  void encloseColliders(const ContactGeometry& geometry, const PredictedMotion& predicted);
   void sort(const ContactGeometry& geometry);
   void sweep(ContactGeometry& geometry);
   void compareIntervals(const ContactGeometry& geometry, std::size_t first, std::size_t last, Found& found) const;
@@ -62,8 +62,8 @@ class BroadPhase {
   std::vector<RigidTransform> poses_;  // of the moving bodies when they were enclosed
   std::vector<double> radii_;          // m, of the moving bodies about their centres of mass
   std::vector<double> spinRadii_;      // m: how far from there turning moves their surface; 0 for a sphere
-  std::vector<double> margins_;        // m: how far any point of a moving body may go beside its way
-  std::vector<Bounds> centers_;        // m: of the ways of the moving bodies' centres of mass, and the slack
+  std::vector<double> margins_;        // m: how far any point of a moving body may go beside its displacement
+  std::vector<Bounds> centers_;        // m: swept by the moving bodies' centres of mass, with these margins
   std::vector<Bounds> boxes_;
   std::vector<double> roundings_;  // m: of the corners of boxes around spheres; 0 for others
   std::vector<Interval> intervals_;

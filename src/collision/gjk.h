@@ -4,9 +4,9 @@
 
 namespace cradle {
 
-/// What the algorithm of Gilbert, Johnson and Keerthi (GJK) finds for two cores.
+/// The result of the algorithm of Gilbert, Johnson and Keerthi (GJK) for two cores.
 struct GjkResult {
-  double distance = 0;         // m; 0: they overlap, or nearly
+  double distance = 0;         // m; 0: they overlap, or touch to rounding
   Vec3 normal = Vec3::Zero();  // unit, from A to B; zero if they overlap
   double lowerBound = 0;       // m: gap that `normal` sees, at most the distance. Less than it if a core is round, by
                                // about 1e-6 of it, and where faces are nearly parallel

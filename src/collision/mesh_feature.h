@@ -15,15 +15,16 @@ struct TouchedFeature {
   std::uint32_t index = 0;
 };
 
-/// How far (m) a point is inside of the places from which the feature is the nearest of those that meet at it (its
-/// Voronoi region); < 0 outside. Changes no faster than the point moves. O(borders of the flat region).
+/// Distance (m) of a point inside the Voronoi region of a feature, where that is the nearest of the features that meet
+/// at it, from the border of the region; < 0 outside. Changes no faster than the point moves. O(borders of the flat
+/// region).
 double insideRegion(const MeshSurface& surface, const TouchedFeature& touched, const Vec3& point);
 
-/// Nearer (m) to the border of a region than this, a contact may be found on either side.
+/// Width (m) of the strip along the border of a region in which a contact may be found on either side.
 double borderWidth(const MeshSurface& surface);
 
-/// The half-spaces behind a feature: normal . x <= offset holds for all that a sphere, which stays on the feature,
-/// cannot come nearer to than to the feature itself.
+/// A half-space behind a feature: normal . x <= offset. Points in all half-spaces of a feature are no nearer than the
+/// feature itself to a sphere that stays on it.
 struct HalfSpace {
   Vec3 normal = Vec3::Zero();  // unit
   double offset = 0;           // m

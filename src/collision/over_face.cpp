@@ -12,8 +12,8 @@ namespace {
 
 using Feature = MeshPoint::Feature;
 
-// Between unit normals: the normal of a contact is that of a face if it differs by less. Contacts on other features of
-// that place have normals that differ by more than the angle at which edges are parallel, 1e-6 (mesh_contact.cpp).
+// Between unit normals: a contact's normal is that of a face if it differs by less. A tenth or ten times as much
+// changes no test.
 constexpr double kFaceNormalError = 1e-6;
 
 /// The face with the given normal at a point of a surface, or none.

@@ -154,9 +154,9 @@ PredictedManifold exchanged(PredictedManifold manifold) {
   return manifold;
 }
 
-/// Patches are kept while bodies tilt a little. If points that are pressed then were left out for others that are
-/// farther away, bodies would fall on them, the next manifold would have them instead of others, and heaps would
-/// tremble.
+/// Manifolds are kept while bodies tilt a little. If points that are pressed after the tilt were left out for others
+/// that are farther away, bodies would fall on them, the next manifold would have them instead of others, and heaps
+/// would tremble.
 void appendSpanning(const PredictedManifold::Point* points, std::size_t count, PredictedManifold& manifold) {
   if (count <= PredictedManifold::kMaxPoints) {
     for (std::size_t k = 0; k < count; ++k) manifold.points[manifold.count++] = points[k];

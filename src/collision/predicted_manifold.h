@@ -5,7 +5,7 @@
 #include "collision/collider.h"
 
 // Contacts of two bodies as one manifold of up to four points, fast: for piles. Found for the coming step: B moves by
-// `motion` (m, world) in it as seen from A. Surfaces that stay apart by more than `margin` (m) give none.
+// `motion` (m, world) in it as seen from A. Surfaces that stay apart by more than `margin` (m) have no contact.
 
 namespace cradle {
 
@@ -52,9 +52,9 @@ PredictedManifold contactOfBoxAndPlane(const PosedBox& a, const PlaneCollider& b
 /// The same contact with A and B exchanged.
 PredictedManifold exchanged(PredictedManifold manifold);
 
-/// Adds the four of `count` points that hold a manifold best. Points that may carry come first: what is a little
-/// farther apart than the deepest. Of more than four of them the deepest, the farthest from it, and those that span the
-/// largest areas on either side. All of them if there are no more.
+/// Adds the four of `count` points that hold a manifold best; all of them if there are no more. Points that may carry,
+/// those that are hardly farther apart than the deepest, come first. Of more than four such points the deepest is
+/// taken, the farthest from it, and those that span the largest areas on either side of both.
 void appendSpanning(const PredictedManifold::Point* points, std::size_t count, PredictedManifold& manifold);
 
 }  // namespace cradle
