@@ -27,10 +27,11 @@ constexpr double kClimbedRatio = 1e-5;
 // Cosine (0.045 rad): faces of cores with rims that are tried before a climb. The direction of GJK is known to 1.4e-4
 // rad, sqrt(2 kRoundDistance). Without these faces, mirror images that meet lose their symmetry.
 constexpr double kSameFaceCosine = 0.999;
-// Of the way between the middles: cores moved apart by as much still have the same nearest features.
+// Of the way between the middles: cores moved apart by as much still have the same nearest features. A tenth or ten
+// times as much changes no test.
 constexpr double kMovedRatio = 0.01;
 // Between unit normals: a direction at which the distance stands still is known to the square root of a unit roundoff.
-constexpr double kSameAxis = 1e-8;
+constexpr double kEqualNormals = 1e-8;
 // Overlapping corners may see a gap so many times as deep along the normal between them as along that of a feature.
 // With a tenth, mirror images that meet have normals that are not mirrored; with ten times as much, normals of slight
 // overlaps do not lead out by the least way.
@@ -140,7 +141,7 @@ SeparatingAxis amongEqual(const SeparatingAxis& axis, const Core& a, const Core&
   const ConvexTolerances tolerances(a, b);
   if (std::abs(axis.separation) > tolerances.meeting) return axis;
   const Vec3 normal = separationOf(a, b.moved(kMovedRatio * (middleOf(b) - middleOf(a)))).normal;
-  if ((normal - axis.normal).squaredNorm() < kSameAxis * kSameAxis) return axis;
+  if ((normal - axis.normal).squaredNorm() < kEqualNormals * kEqualNormals) return axis;
   const SeparatingAxis between{gapAlong(a, b, normal), normal};
   const double less = axis.separation - between.separation;
   return less <= kFanRatio * std::abs(axis.separation) + tolerances.equalGaps ? between : axis;

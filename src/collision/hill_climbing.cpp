@@ -30,7 +30,7 @@ constexpr double kAmbiguousCosine = 0.2;
 constexpr double kGainRatio = 1e-15;  // of the size: a gain by less is rounding, and ends the climb
 // rad: nearest points whose direction is as near to that of the climb lead nowhere else. A tenth or ten times as much
 // changes no test.
-constexpr double kSameDirection = 1e-5;
+constexpr double kNoNewDirection = 1e-5;
 
 struct Line {
   Vec3 point, direction;
@@ -178,7 +178,7 @@ class HillClimb {
   void tryCoresApart(double distance) {
     const Vec3 way = (distance - best_.separation) * best_.normal;
     const GjkResult apart = distanceOf(a_, b_.moved(way));
-    if ((apart.normal - best_.normal).squaredNorm() < kSameDirection * kSameDirection) return;
+    if ((apart.normal - best_.normal).squaredNorm() < kNoNewDirection * kNoNewDirection) return;
     near_ = apart.normal;
     tryDirection(near_);
     tryFeaturePairs();

@@ -10,7 +10,8 @@ namespace {
 // Of the size: of meshes in each other more deeply than that, features do not tell the way out, and the deepest place
 // alone is a contact.
 constexpr double kDeepRatio = 0.01;
-// Edges at a smaller angle have no sure crossing: their ends touch faces instead.
+// Sine: edges at a smaller angle have no sure crossing, and their ends touch faces instead. A tenth or ten times as
+// much, also of the ratio above, changes no test.
 constexpr double kParallelEdgeSine = 1e-6;
 
 /// A contact with its features: contacts are sorted by these, so that their order does not depend on the search.

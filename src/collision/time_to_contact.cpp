@@ -17,8 +17,8 @@ namespace {
 
 // Newton steps or bisections for a root. Five are usual; bisection alone ends after 53 for the digits of a time, and
 // some more where the time is small beside the interval.
-constexpr int kMaxRefinements = 200;
-constexpr double kTimeRounding = 4 * std::numeric_limits<double>::epsilon();  // of a time: steps below it are rounding
+constexpr int kMaxClosingSteps = 200;
+constexpr double kRootRounding = 4 * std::numeric_limits<double>::epsilon();  // of a time: steps below it are rounding
 
 /// Ascending times in an interval; both ends are among them.
 class Cuts {
@@ -150,12 +150,12 @@ double Approach::turningIn(double from, double to) const {
   const bool rises = slope(to) > 0;
   if ((slope(from) > 0) == rises) return from;
   double time = from + (to - from) / 2;
-  for (int i = 0; i < kMaxRefinements; ++i) {
+  for (int i = 0; i < kMaxClosingSteps; ++i) {
     const double found = slope(time);
     ((found > 0) == rises ? to : from) = time;
     double next = time - found / slopeRate(time);
     if (!(next > from && next < to)) next = from + (to - from) / 2;
-    if (std::abs(next - time) <= kTimeRounding * next || to - from <= kTimeRounding * to) return next;
+    if (std::abs(next - time) <= kRootRounding * next || to - from <= kRootRounding * to) return next;
     time = next;
   }
   return time;
@@ -165,12 +165,12 @@ double Approach::turningIn(double from, double to) const {
 /// bisection where that leaves the bracket.
 double Approach::crossingIn(double from, double to) const {
   double time = from + (to - from) / 2;
-  for (int i = 0; i < kMaxRefinements; ++i) {
+  for (int i = 0; i < kMaxClosingSteps; ++i) {
     const double found = gap(time);
     (found > 0 ? from : to) = time;
     double next = time - found * (found + radius_) / slope(time);
     if (!(next > from && next < to)) next = from + (to - from) / 2;
-    if (std::abs(next - time) <= kTimeRounding * next || to - from <= kTimeRounding * to) return next;
+    if (std::abs(next - time) <= kRootRounding * next || to - from <= kRootRounding * to) return next;
     time = next;
   }
   return time;

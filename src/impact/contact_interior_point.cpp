@@ -28,7 +28,7 @@ constexpr double kSmoothingRatio = 0.1;
 // A shorter step (1: a full one) is taken again, towards the central path. If all are, redundant contacts are not
 // solved.
 constexpr double kCenteringLength = 0.1;
-constexpr double kMinLength = 1e-8;  // a shorter step leads nowhere: the search has failed
+constexpr double kMinStepLength = 1e-8;  // a shorter step leads nowhere: the search has failed
 constexpr double kNoDivisionByZero = 1e-300;
 
 /// One contact: impulses x and velocities y in the Lorentz cone; without friction only the normal parts.
@@ -195,7 +195,7 @@ int InteriorPoint::run(double tolerance, VectorX& impulses) {
       for (Pair& pair : pairs_) pair.affineX.setZero(), pair.affineY.setZero();
       length = kBoundaryFraction * step(complementarity, true);
     }
-    if (!(length > kMinLength)) break;
+    if (!(length > kMinStepLength)) break;
     for (Pair& pair : pairs_) pair.x += length * pair.dx, pair.y += length * pair.dy;
   }
   return iteration;

@@ -36,13 +36,15 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr int kMaxRounds = 10;           // each resolves what the residual of the one before still lets close
-constexpr double kFrictionError = 1e-6;  // of the factor on friction that wedges: twenty bisections
+// Each round resolves what the residual of the one before still lets close; half or twice as many change no test.
+constexpr int kMaxImpactRounds = 10;
+// Of the factor on friction that wedges: twenty bisections. A tenth or ten times as much changes no test.
+constexpr double kFrictionError = 1e-6;
 // A problem is wedged if the sum of the magnitudes in z . G z is more times z . G z itself: then eight digits cancel,
 // and the energy is known to 1e-8. A tenth or ten times as much changes no test.
 constexpr double kMaxCancellation = 1e8;
 // Of the energy that the impulses move: 900 unit roundoffs, for sums over contacts.
-constexpr double kEnergyRounding = 1e-13;
+constexpr double kGainRounding = 1e-13;
 constexpr double kSumRounding = 4 * std::numeric_limits<double>::epsilon();  // of the sum of the magnitudes in z . G z
 
 std::vector<Contact> contactsOf(const std::vector<ImpactContact>& impacts) {
@@ -61,7 +63,7 @@ struct ImpactResult {
   double scaledEnergy = 0;       // J: energy that the impulses would have added before they were scaled down
   double frictionFactor = 1;     // of all friction coefficients; below 1: more friction would wedge
 
-  bool gains() const { return gain > kEnergyRounding * moved; }
+  bool gains() const { return gain > kGainRounding * moved; }
   double certainLoss() const { return -gain - rounding; }
 };
 
@@ -216,7 +218,7 @@ ImpactResult FrictionalImpact::rebound(const ImpactResult& plastic) const {
 
 VectorX FrictionalImpact::resolve(ImpactFaults& faults) const {
   VectorX impulses = VectorX::Zero(start_.size()), velocities = start_;
-  for (int round = 0; round < kMaxRounds && closes(velocities); ++round) {
+  for (int round = 0; round < kMaxImpactRounds && closes(velocities); ++round) {
     ImpactResult found = plasticImpact(velocities);
     if (round == 0) found = rebound(found);
     faults.residual = std::max(faults.residual, found.residual);
@@ -224,7 +226,7 @@ VectorX FrictionalImpact::resolve(ImpactFaults& faults) const {
     for (std::size_t k = 0; k < rows_.size(); ++k) impulses[rows_[k]] += found.impulses[static_cast<Index>(k)];
     velocities = start_ + delassus_.matrix() * impulses;
   }
-  if (closes(velocities)) faults.rounds = kMaxRounds;
+  if (closes(velocities)) faults.rounds = kMaxImpactRounds;
   return impulses;
 }
 

@@ -15,9 +15,11 @@ namespace {
 
 // Of the trace of G: a smaller principal value of S is rounding. Constraints leave differences of far larger parts.
 constexpr double kSingularTraceRatio = 1e-9;
-constexpr double kRootRounding = 4e-16;  // of alpha: 4 unit roundoffs
-constexpr double kConeRounding = 1e-12;  // of the cone's width: an impulse as near to its side is inside, and sticks
-constexpr int kMaxRootSteps = 200;       // 5 are usual; bisection alone ends after about 100
+constexpr double kAlphaRounding = 4e-16;  // of alpha: 4 unit roundoffs
+// Of the cone's width: an impulse as near to its side is inside, and sticks. A tenth or ten times as much of this
+// ratio, or of that above, changes no test.
+constexpr double kConeRounding = 1e-12;
+constexpr int kMaxRootSteps = 200;  // 5 are usual; bisection alone ends after about 100
 
 /// The tangential problem after elimination of the normal part, in its principal axes.
 class Sliding {
@@ -114,7 +116,7 @@ double findRoot(const Sliding& sliding) {
     (excess > 0 ? low : high) = alpha;
     double next = alpha - excess / slope;
     if (!(next > low && next < high)) next = low + 0.5 * (high - low);
-    if (std::abs(next - alpha) <= kRootRounding * alpha || next == low || next == high) return next;
+    if (std::abs(next - alpha) <= kAlphaRounding * alpha || next == low || next == high) return next;
     alpha = next;
   }
   return alpha;
