@@ -38,7 +38,7 @@ void ActiveContacts::release(const std::optional<ContactChange>& change) {
 void ActiveContacts::classify(const std::vector<Contact>& touching, ConstraintSolver& constraints) {
   findBodyFrames(mechanism().bodies, island_.state, frames_);
   ClassifiedContacts found =
-      classifyContacts({touching, previous_, frames_, isReleasing_, touchTolerance_}, constraints, island_);
+      classifyContacts({touching, previous_, frames_, isReleasing_, tolerances_}, constraints, island_);
   if (!found.fallback.reason.empty()) fallback_ = std::move(found.fallback);
   for (const ContactRecord& record : found.active) add(record, frames_);
   recordContactEvents(previous_, records_, frames_, island_, island_.log);

@@ -6,6 +6,7 @@
 
 #include "simulate/events/contact_changes.h"
 #include "simulate/events/contact_record.h"
+#include "simulate/events/event_tolerances.h"
 #include "simulate/events/previous_contacts.h"
 #include "simulate/island_state.h"
 
@@ -16,9 +17,9 @@ namespace cradle {
 /// (contact_changes.h).
 class ActiveContacts {
  public:
-  /// Keeps a reference to `island`. Bodies within `touchTolerance` (m) of each other touch.
-  ActiveContacts(IslandState& island, double touchTolerance)
-      : island_(island), touchTolerance_(touchTolerance), changes_(island, touchTolerance) {}
+  /// Keeps references to both.
+  ActiveContacts(IslandState& island, const EventTolerances& tolerances)
+      : island_(island), tolerances_(tolerances), changes_(island, tolerances) {}
 
   /// Releases all contacts, until `classify`. `change` is the event of one of the contacts, if it is one of theirs.
   void release(const std::optional<ContactChange>& change);
@@ -69,7 +70,7 @@ class ActiveContacts {
   void add(const ContactRecord& record, const std::vector<BodyFrame>& frames);
 
   IslandState& island_;
-  double touchTolerance_;               // m
+  const EventTolerances& tolerances_;
   std::vector<ContactRecord> records_;  // of Mechanism::contacts
   std::vector<PreviousContact> previous_;
   ContactChanges changes_;

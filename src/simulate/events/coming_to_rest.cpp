@@ -1,22 +1,12 @@
 #include "simulate/events/coming_to_rest.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "constraints/dense_delassus.h"
 #include "impact/frictional_contact.h"
 #include "simulate/contact_response.h"
-#include "simulate/thresholds.h"
 
 namespace cradle {
-namespace {
-
-constexpr double kMaxStillRatio = 1e-7;  // of sqrt(g x size)
-
-}  // namespace
-
-ComingToRest::ComingToRest(IslandState& island, ConstraintSolver& constraints, double accuracy)
-    : island_(island), constraints_(constraints), stillRatio_(std::min(kMaxStillRatio, accuracy)) {}
 
 bool ComingToRest::isAnySlow() const {
   for (std::size_t body = 0; body < island_.assembly.mechanism.bodies.size(); ++body)
@@ -26,10 +16,9 @@ bool ComingToRest::isAnySlow() const {
 
 bool ComingToRest::isSlow(std::size_t body) const {
   const Eigen::Index index = static_cast<Eigen::Index>(body);
-  const double size = island_.assembly.radii[body], gravity = island_.assembly.mechanism.gravity.norm();
-  const double most = kRestSpeedFloor + stillRatio_ * std::sqrt(gravity * size);
+  const double size = island_.assembly.radii[body];
   return std::max(linearVelocity(island_.state, index).norm(), size * angularVelocity(island_.state, index).norm()) <=
-         most;
+         tolerances_.maxRestSpeed(size);
 }
 
 /// Bodies that come to rest only together: joined, at the ends of a spring, or in a contact that does not open.
@@ -37,8 +26,7 @@ DisjointSets ComingToRest::findRestGroups(const std::vector<Contact>& touching) 
   const Mechanism& mechanism = island_.assembly.mechanism;
   DisjointSets groups(mechanism.bodies.size());
   for (const Contact& contact : touching) {
-    const double size = smallestSize(contact, island_.assembly.radii);
-    const double still = kRestSpeedFloor + stillRatio_ * std::sqrt(mechanism.gravity.norm() * size);
+    const double still = tolerances_.maxRestSpeed(smallestSize(contact, island_.assembly.radii));
     if (openingSpeed(contact, island_.state) <= still) groups.join(contact.bodyA, contact.bodyB);
   }
   for (const SpringForce& spring : mechanism.springs) groups.join(spring.anchorA.body, spring.anchorB.body);
@@ -85,11 +73,7 @@ bool ComingToRest::canBeInEquilibrium(const std::vector<Contact>& touching, cons
   VectorX derivative;
   island_.equations.evaluate(island_.state, derivative);
   std::swap(active, island_.assembly.mechanism.contacts);
-  const double gravity = mechanism.gravity.norm(), most = stillRatio_ * gravity;
-  const auto still = [&](double residual) {
-    return std::min(most, stillAcceleration(island_.scene.accuracy, island_.scene.duration, gravity, residual));
-  };
-  if (isInEquilibrium(derivative, groups, group, still(0))) return true;
+  if (isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(0))) return true;
   std::vector<BodyFrame> frames;
   findBodyFrames(mechanism.bodies, island_.state, frames);
   std::vector<ContactRows> contacts;
@@ -104,7 +88,7 @@ bool ComingToRest::canBeInEquilibrium(const std::vector<Contact>& touching, cons
   const ContactSolution solution =
       solveFrictionalContact(delassus.matrix(), delassus.accelerations(derivative), frictions);
   delassus.apply(solution.impulses, derivative);
-  return isInEquilibrium(derivative, groups, group, still(solution.residual));
+  return isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(solution.residual));
 }
 
 /// Whether the accelerations of a state derivative are below `most` (m/s^2) for all bodies of a group.

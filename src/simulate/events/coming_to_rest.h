@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "constraints/constraint_forces.h"
+#include "simulate/events/event_tolerances.h"
 #include "simulate/island_state.h"
 #include "simulate/plan/disjoint_sets.h"
 
@@ -12,9 +13,9 @@ namespace cradle {
 /// that they touch or are joined to; nothing is computed for them until an impact or a push wakes them.
 class ComingToRest {
  public:
-  /// Keeps references to both; `constraints` must be factorised for the island's state at each call. `accuracy` is the
-  /// scene's.
-  ComingToRest(IslandState& island, ConstraintSolver& constraints, double accuracy);
+  /// Keeps references to all three; `constraints` must be factorised for the island's state at each call.
+  ComingToRest(IslandState& island, ConstraintSolver& constraints, const EventTolerances& tolerances)
+      : island_(island), constraints_(constraints), tolerances_(tolerances) {}
 
   /// Whether a body that does not rest is still.
   bool isAnySlow() const;
@@ -33,8 +34,7 @@ class ComingToRest {
 
   IslandState& island_;
   ConstraintSolver& constraints_;
-  double stillRatio_;  // of the speed that a body gains when it falls by its size: slower is still; and of gravity:
-                       // residual forces of bodies at rest are smaller
+  const EventTolerances& tolerances_;
 };
 
 }  // namespace cradle

@@ -17,20 +17,14 @@ namespace {
 
 using Kind = ContactChange::Kind;
 
-constexpr int kSamples = 4;                // of a step of order 8
-constexpr int kFewSamples = 2;             // of one of order 5, which is half as long
-constexpr double kMarginRounding = 1e-12;  // of the force, or m/s
-// Of the accelerations: forces that leave less are feasible. More than at the classification, or a contact would fail
-// at once.
-constexpr double kInfeasibleRatio = 1e-6;
-constexpr double kLocated = 1e-11;  // of a step, on the interpolant
+constexpr int kEventSamples = 4;     // of a step of order 8
+constexpr int kFewEventSamples = 2;  // of one of order 5, which is half as long
 constexpr int kMaxBorderCuts = 60;
 
-constexpr double kLeavingRatio = 0.5;  // of the touch tolerance: a contact so far beyond its face has left it
-// The event function of leaving is 1e-9 (1 - d / (tolerance / 2)), d the distance from the nearest point, and not below
-// -1e-9: with the tolerance 1e-12 of locate, d is found to a thousandth of the tolerance. The bound keeps the Illinois
-// method in its bracket, as d grows faster by orders of magnitude beyond the border.
-constexpr double kLeavingUnit = 1e-9;
+// The event function of leaving is kLeavingUnit (1 - d / leaving), d the distance from the nearest point, and not below
+// -kLeavingUnit: where it is zero to kEventFunction, d is found to a thousandth. The bound keeps the Illinois method in
+// its bracket, as d grows faster by orders of magnitude beyond the border.
+constexpr double kLeavingUnit = 1e3 * EventTolerances::kEventFunction;
 
 constexpr double kJustFlat = 1 - 1e-6;  // a disc that lies down ends a little flatter than a row may follow
 
@@ -55,7 +49,7 @@ Vec3 ContactChanges::tiltOf(const ContactConstraint& rim, const VectorX& state) 
 
 /// 0 for a steep disc on its rim, 1 where it is as flat as a row may follow. Needs frames_ of the state.
 double ContactChanges::flatnessOf(const ContactConstraint& rim, const VectorX& state) const {
-  return kLeavingRatio * kJustFlat * kFlatRim / tiltOf(rim, state).norm();
+  return kJustFlat * kFlatRim / tiltOf(rim, state).norm();
 }
 
 /// The fraction of the step between two points behind which a disc on its rim is tilted the other way; none for other
@@ -70,7 +64,7 @@ std::optional<double> ContactChanges::firstOverturning(std::size_t contact, doub
   };
   const Vec3 tilt = tiltAt(from);
   if (!(tilt.dot(tiltAt(to)) < 0)) return std::nullopt;
-  while (to - from > kLocated) {
+  while (to - from > EventTolerances::kChangeInstant) {
     const double middle = from + (to - from) / 2;
     (tilt.dot(tiltAt(middle)) > 0 ? from : to) = middle;
   }
@@ -84,7 +78,7 @@ double ContactChanges::distanceFromNearest(std::size_t contact, const ContactRec
                                            const VectorX& state) const {
   const ContactConstraint& row = mechanism().contacts[contact];
   const ColliderPair& pair = record.pair;
-  if (pair.againstPlane) return row.rimAxisA.isZero(0) ? 0 : touchTolerance_ * flatnessOf(row, state);
+  if (pair.againstPlane) return row.rimAxisA.isZero(0) ? 0 : tolerances_.leaving * flatnessOf(row, state);
   const ContactGeometry& geometry = island_.assembly.geometry;
   const bool isOfB = geometry.colliders[pair.a].body == row.centerA.body;
   const Collider &a = geometry.colliders[isOfB ? pair.a : pair.b], &b = geometry.colliders[isOfB ? pair.b : pair.a];
@@ -119,8 +113,7 @@ void ContactChanges::takeEvaluated(const std::vector<ContactRecord>& records, co
     const double limit = records[i].pair.material.staticFriction * forces[i].normal;
     values[i] = {forces[i].normal / records[i].force, INFINITY, INFINITY, INFINITY};
     if (!sphereOverMesh(island_.assembly.geometry, records[i].pair, state).mesh)
-      values[i][3] = kLeavingUnit *
-                     std::max(-1.0, 1 - distanceFromNearest(i, records[i], state) / (kLeavingRatio * touchTolerance_));
+      values[i][3] = kLeavingUnit * std::max(-1.0, 1 - distanceFromNearest(i, records[i], state) / tolerances_.leaving);
     if (motion == ContactMotion::sticking) values[i][1] = (limit - forces[i].tangential.norm()) / records[i].force;
     if (motion == ContactMotion::sliding) values[i][2] = forces[i].tangentialVelocity.dot(slidingDirectionAt(i, state));
   }
@@ -147,7 +140,7 @@ std::optional<ContactChange> ContactChanges::first(const std::vector<ContactReco
   knownTime_ = NAN;
   const std::optional<FeatureChange> leaving = firstFeatureChange(records, island_);
   const bool isEndKnown = step.interpolant == InterpolantKind::degreeFour;
-  const int samples = isEndKnown ? kFewSamples : kSamples;
+  const int samples = isEndKnown ? kFewEventSamples : kEventSamples;
   for (int k = 1; k <= samples; ++k) {
     const double from = static_cast<double>(k - 1) / samples, to = static_cast<double>(k) / samples;
     if (k == samples && isEndKnown) {
@@ -174,12 +167,12 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
   for (std::size_t i = 0; i < records.size(); ++i)
     for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
       double end = to, marginEnd = ahead_[i][kind];
-      if (kKinds[kind] == Kind::leave && marginEnd >= -kMarginRounding)
+      if (kKinds[kind] == Kind::leave && marginEnd >= -EventTolerances::kEventFunction)
         if (const auto flat = firstOverturning(i, from, to)) {
           interpolate(island_.step, *flat, sample_);
           end = *flat, marginEnd = margin({Kind::leave, 0, i}, records, sample_);
         }
-      if (!(marginEnd < -kMarginRounding)) continue;
+      if (!(marginEnd < -EventTolerances::kEventFunction)) continue;
       if (kKinds[kind] == Kind::leave && !(before_[i][kind] > 0)) continue;
       const bool isOfForces = kKinds[kind] == Kind::release || kKinds[kind] == Kind::slip;
       if (records[i].isRedundant && isOfForces) {
@@ -200,12 +193,12 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
 /// The fraction of the step between two points at which an event function falls to zero, on the interpolant (Illinois).
 double ContactChanges::locate(const ContactChange& change, const std::vector<ContactRecord>& records, double from,
                               double marginFrom, double to, double marginTo) {
-  double weightFrom = std::max(marginFrom, kMarginRounding), weightTo = marginTo;
-  for (int i = 0; i < kMaxBorderCuts && to - from > kLocated; ++i) {
+  double weightFrom = std::max(marginFrom, EventTolerances::kEventFunction), weightTo = marginTo;
+  for (int i = 0; i < kMaxBorderCuts && to - from > EventTolerances::kChangeInstant; ++i) {
     const double cut = to - (to - from) * weightTo / (weightTo - weightFrom);
     interpolate(island_.step, cut, sample_);
     const double found = margin(change, records, sample_);
-    if (std::abs(found) <= kMarginRounding) return cut;
+    if (std::abs(found) <= EventTolerances::kEventFunction) return cut;
     if (found > 0)
       from = cut, weightFrom = found, weightTo /= 2;
     else
@@ -238,7 +231,7 @@ bool ContactChanges::areForcesFeasible(const std::vector<ContactRecord>& records
   std::swap(active, mechanism().contacts);
   const DenseDelassus delassus(allRowsOf(rows), mechanism().bodies, frames_, &constraints);
   const SlidingSolution solution = solveContactForces(members, rows, delassus, derivative_);
-  const double most = kInfeasibleRatio *
+  const double most = EventTolerances::kInfeasibleRatio *
                       std::max(delassus.accelerations(derivative_).cwiseAbs().maxCoeff(), mechanism().gravity.norm());
   for (std::size_t i = 0; i < sliding.size(); ++i) {
     const Vec3 acceleration = solution.velocities.segment<3>(3 * static_cast<Eigen::Index>(i));
@@ -253,7 +246,7 @@ std::optional<double> ContactChanges::firstInfeasible(const std::vector<ContactR
                                                       double to) {
   interpolate(island_.step, to, sample_);
   if (areForcesFeasible(records, sample_)) return std::nullopt;
-  while (to - from > kLocated) {
+  while (to - from > EventTolerances::kChangeInstant) {
     const double middle = from + (to - from) / 2;
     interpolate(island_.step, middle, sample_);
     (areForcesFeasible(records, sample_) ? from : to) = middle;

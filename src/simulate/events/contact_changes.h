@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simulate/events/contact_record.h"
+#include "simulate/events/event_tolerances.h"
 #include "simulate/island_state.h"
 
 namespace cradle {
@@ -31,9 +32,8 @@ struct ContactChange {
 /// Differential Equations I", II.6). `records` are always those of the island's Mechanism::contacts.
 class ContactChanges {
  public:
-  /// Keeps a reference to `island`, of which it evaluates the equations. What comes within `touchTolerance` (m)
-  /// touches.
-  ContactChanges(IslandState& island, double touchTolerance) : island_(island), touchTolerance_(touchTolerance) {}
+  /// Keeps references to both. Of `island` it evaluates the equations.
+  ContactChanges(IslandState& island, const EventTolerances& tolerances) : island_(island), tolerances_(tolerances) {}
 
   /// The contacts have changed: nothing is known of the next step's start.
   void forget() { knownTime_ = NAN; }
@@ -73,7 +73,7 @@ class ContactChanges {
                 double to, double marginTo);
 
   IslandState& island_;
-  double touchTolerance_;  // m
+  const EventTolerances& tolerances_;
   std::vector<BodyFrame> frames_;
   VectorX derivative_, sample_;
   std::vector<EventFunctions> before_, ahead_, after_, atEnd_;

@@ -19,18 +19,12 @@ namespace {
 using Index = Eigen::Index;
 using RecordGroup = std::vector<std::size_t>;  // records whose forces depend on each other
 
-constexpr double kUnloadedRatio = 1e-9;  // of the accelerations: a contact that takes less carries nothing
-constexpr double kReleasedRatio = 1e-6;  // the same when another is released: symmetric contacts are released together
-constexpr double kAccelerationRounding = 1e-14;  // of gravity
-constexpr double kStillRatio = 1e-7;             // of the accelerations: less is none
-constexpr double kSameMeshSide = 0.99;           // cosine between normals: a mesh may be touched on several sides
-constexpr double kRankRatio = 1e-9;              // of the largest pivot: less is none
+constexpr double kSameMeshSide = 0.99;  // cosine between normals: a mesh may be touched on several sides
 constexpr const char* kTips = "a cylinder tips over its rim";
 
-/// m/s: a contact that opens more slowly does not open.
-double stillSpeed(const Contact& contact, const IslandState& island) {
-  const double size = smallestSize(contact, island.assembly.radii);
-  return kLastBounceRatio * std::sqrt(island.assembly.mechanism.gravity.norm() * size) + kRestSpeedFloor;
+/// Whether a contact of a body opens at that speed (m/s).
+bool opensAt(double speed, const Contact& contact, const ClassificationInput& input, const IslandState& island) {
+  return speed > input.tolerances.minOpeningSpeed(smallestSize(contact, island.assembly.radii));
 }
 
 /// The contacts that may be active, with their directions of sliding.
@@ -38,7 +32,7 @@ std::vector<ContactRecord> recordsOf(const ClassificationInput& input, const Isl
   std::vector<ContactRecord> records;
   for (const Contact& contact : input.touching) {
     if (!isAwake(contact, island.resting)) continue;
-    if (openingSpeed(contact, island.state) > stillSpeed(contact, island)) continue;
+    if (opensAt(openingSpeed(contact, island.state), contact, input, island)) continue;
     ContactRecord record{contact, island.assembly.geometry.pairs[contact.pair]};
     const ContactRows rows = rowsOf(contact, island.state, input.frames);
     const Vec3 sliding = tangentialVelocity(rows.place);
@@ -68,7 +62,8 @@ std::vector<RecordGroup> groupsOf(const std::vector<ContactRecord>& records, con
 /// Whether the accelerations of a state derivative press no contact together by more than rounding.
 bool nothingCloses(const std::vector<ContactRows>& rows, const VectorX& derivative, double gravity) {
   return std::all_of(rows.begin(), rows.end(), [&](const ContactRows& contact) {
-    return rateOf(contact.rows[2], derivative) + contact.rows[2].velocityProduct >= -kAccelerationRounding * gravity;
+    return rateOf(contact.rows[2], derivative) + contact.rows[2].velocityProduct >=
+           -EventTolerances::kClosingRounding * gravity;
   });
 }
 
@@ -82,7 +77,7 @@ struct Candidates {
 /// J M^-1 J^T of these rows. A fallback if there are too many of them to be solved at each evaluation.
 void countRows(const RecordGroup& group, const MatrixX& delassus, const Assembly& assembly, Candidates& found) {
   Eigen::ColPivHouseholderQR<MatrixX> factor(delassus);
-  factor.setThreshold(kRankRatio);
+  factor.setThreshold(EventTolerances::kRankRatio);
   const Index rank = factor.rank();
   for (const std::size_t i : group) found.records[i].isRedundant = rank < delassus.rows();
   if (delassus.rows() - rank <= kMaxRedundant && rank <= kMaxIndependent) return;
@@ -116,7 +111,7 @@ void classifyOne(const ContactRows& rows, const ContactState& state, const Accel
                  ContactRecord& record) {
   record.mass = 1 / state.inverseMass, record.force = limits.largest * record.mass;
   record.isLoaded = state.force > limits.unloaded / state.inverseMass;
-  record.opens = !record.isLoaded && state.acceleration.z() > kStillRatio * limits.largest;
+  record.opens = !record.isLoaded && state.acceleration.z() > EventTolerances::kStillRatio * limits.largest;
   if (!record.isLoaded || !(record.pair.material.staticFriction > 0) || record.slides) return;
   record.sticks = state.acceleration.head<2>().norm() <= limits.still;
   if (record.sticks) return;
@@ -126,12 +121,12 @@ void classifyOne(const ContactRows& rows, const ContactState& state, const Accel
 }
 
 /// Why a loaded contact cannot be a row.
-void findFallback(const ContactRecord& record, double slidingAcceleration, double largest, const IslandState& island,
-                  ContactFallback& fallback) {
+void findFallback(const ContactRecord& record, const SlidingAccelerations& accelerations,
+                  const EventTolerances& tolerances, const IslandState& island, ContactFallback& fallback) {
   if (!canLast(record.contact))  // with planes only rims are neither corners nor round
     fallback =
         fallbackAt(record.pair.againstPlane ? kTips : "edges touch and press", {&record.contact}, island.assembly);
-  if (record.slides && slidesTooSlowly(record, slidingAcceleration, largest, island))
+  if (record.slides && slidesTooSlowly(record, accelerations, tolerances, island))
     fallback = fallbackAt(kSlidesTooSlowly, {&record.contact}, island.assembly);
 }
 
@@ -151,11 +146,12 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
   const DenseDelassus delassus(allRowsOf(rows), mechanism.bodies, input.frames, &constraints);
   const SlidingSolution solution = solveContactForces(members, rows, delassus, derivative);
   const double largest = std::max(delassus.accelerations(derivative).cwiseAbs().maxCoeff(), mechanism.gravity.norm());
-  if (!(solution.residual <= kStillRatio * largest)) logUnsolved(members, solution.residual, island);
-  if (!(solution.frictionError <= kStillRatio * largest)) found.fallback = jamAt(members, island.assembly);
+  if (!(solution.residual <= EventTolerances::kStillRatio * largest)) logUnsolved(members, solution.residual, island);
+  if (!(solution.frictionError <= EventTolerances::kStillRatio * largest))
+    found.fallback = jamAt(members, island.assembly);
   const AccelerationLimits limits{
-      largest, stillAcceleration(island.scene.accuracy, island.scene.duration, largest, solution.residual),
-      (input.isReleasing ? kReleasedRatio : kUnloadedRatio) * largest};
+      largest, input.tolerances.stillAcceleration(largest, solution.residual),
+      (input.isReleasing ? EventTolerances::kReleasedRatio : EventTolerances::kUnloadedRatio) * largest};
   const MatrixX& matrix = delassus.matrix();
   std::vector<Index> activeRows;
   for (std::size_t k = 0; k < group.size(); ++k) {
@@ -164,7 +160,7 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
     const Vec3 acceleration = solution.velocities.segment<3>(at);
     classifyOne(rows[k], {solution.impulses[at + 2], matrix(at + 2, at + 2), acceleration}, limits, record);
     if (!record.isLoaded) continue;
-    findFallback(record, acceleration.head<2>().norm(), largest, island, found.fallback);
+    findFallback(record, {acceleration.head<2>().norm(), largest}, input.tolerances, island, found.fallback);
     activeRows.push_back(at + 2);
     if (record.sticks) activeRows.push_back(at), activeRows.push_back(at + 1);
   }
@@ -173,7 +169,8 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
 
 /// A corner stays a corner when the face beside it tips, but a cylinder rolls on over its rim. Rows keep points of a
 /// rim only as long as the cylinder stands or lies still, on two of them at least.
-bool tips(const ContactRecord& record, const std::vector<ContactRecord>& records, const IslandState& island) {
+bool tips(const ContactRecord& record, const std::vector<ContactRecord>& records, const ClassificationInput& input,
+          const IslandState& island) {
   const ContactGeometry& geometry = island.assembly.geometry;
   if (!record.isLoaded || !standsOnRim(geometry, record.contact)) return false;
   const auto isBeside = [&](const ContactRecord& other) {
@@ -184,7 +181,7 @@ bool tips(const ContactRecord& record, const std::vector<ContactRecord>& records
   const auto opens = [&](const ContactRecord& other) { return isBeside(other) && other.opens; };
   return std::count_if(records.begin(), records.end(), carries) < 2 ||
          std::any_of(records.begin(), records.end(), opens) ||
-         tippingSpeed(geometry, island.state, record.contact) > stillSpeed(record.contact, island);
+         opensAt(tippingSpeed(geometry, island.state, record.contact), record.contact, input, island);
 }
 
 }  // namespace
@@ -196,10 +193,10 @@ ClassifiedContacts classifyContacts(const ClassificationInput& input, Constraint
   for (const RecordGroup& group : groupsOf(records, island.assembly.mechanism))
     classifyGroup(group, input, constraints, island, found);
   for (const ContactRecord& record : records)
-    if (tips(record, records, island)) found.fallback = fallbackAt(kTips, {&record.contact}, island.assembly);
+    if (tips(record, records, input, island)) found.fallback = fallbackAt(kTips, {&record.contact}, island.assembly);
   for (const ContactRecord& record : records)
     if (record.isLoaded && canLast(record.contact) &&
-        !isServedOnMesh(record, input.touchTolerance, input.frames, island))
+        !isServedOnMesh(record, input.tolerances.touch, input.frames, island))
       found.fallback = fallbackAt("a body moves over the edges of a mesh", {&record.contact}, island.assembly);
   ClassifiedContacts result{{}, std::move(found.fallback)};
   for (const ContactRecord& record : records)

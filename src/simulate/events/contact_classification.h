@@ -4,6 +4,7 @@
 
 #include "constraints/constraint_forces.h"
 #include "simulate/events/contact_record.h"
+#include "simulate/events/event_tolerances.h"
 #include "simulate/events/previous_contacts.h"
 #include "simulate/island_state.h"
 
@@ -14,8 +15,8 @@ struct ClassificationInput {
   const std::vector<Contact>& touching;          // at the island's state
   const std::vector<PreviousContact>& previous;  // active until now
   const std::vector<BodyFrame>& frames;          // of the island's state
-  bool isReleasing = false;   // one of `previous` carries nothing any more, and symmetric ones with it
-  double touchTolerance = 0;  // m
+  bool isReleasing = false;  // one of `previous` carries nothing any more, and symmetric ones with it
+  const EventTolerances& tolerances;
 };
 
 /// Its result.

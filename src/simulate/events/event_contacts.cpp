@@ -3,21 +3,15 @@
 #include "constraints/invariants.h"
 
 namespace cradle {
-namespace {
 
-constexpr double kShortMomentArm = 3e-4;  // sizes of a body: hinges of flaps are a thousandth inside their edges ...
-constexpr double kUnboundedMomentArm = 3e-3;  // ... and where forces grow without bound, such moment arms are why
-
-}  // namespace
-
-EventContacts::EventContacts(IslandState& island, RopeEvents& ropes, double accuracy, bool isTrial)
+EventContacts::EventContacts(IslandState& island, RopeEvents& ropes, const EventTolerances& tolerances, bool isTrial)
     : island_(island),
-      tolerances_(touchTolerancesOf(island.assembly.geometry, accuracy)),
+      tolerances_(tolerances),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
-      active_(island, tolerances_.touch),
-      rest_(island, solver_, accuracy),
-      impacts_(island, ropes, solver_, rest_, tolerances_),
-      shortMomentArm_(isTrial ? kUnboundedMomentArm : kShortMomentArm) {}
+      active_(island, tolerances),
+      rest_(island, solver_, tolerances),
+      impacts_(island, ropes, solver_, rest_, tolerances),
+      shortMomentArm_(isTrial ? EventTolerances::kUnboundedMomentArm : EventTolerances::kShortMomentArm) {}
 
 TouchingFeatures EventContacts::touching() {
   return {tolerances_.touch, tolerances_.deadBand, &active_.features()};
@@ -48,7 +42,7 @@ void EventContacts::noteShortMomentArms() {
 }
 
 bool EventContacts::noteUnboundedForces() {
-  if (!active_.noteJam()) noteShortMomentArms(kUnboundedMomentArm);
+  if (!active_.noteJam()) noteShortMomentArms(EventTolerances::kUnboundedMomentArm);
   return !active_.fallbackReason().empty();
 }
 

@@ -7,6 +7,7 @@
 #include "simulate/events/active_contacts.h"
 #include "simulate/events/coming_to_rest.h"
 #include "simulate/events/event_impacts.h"
+#include "simulate/events/event_tolerances.h"
 #include "simulate/events/touching_contacts.h"
 #include "simulate/island_state.h"
 #include "simulate/rope_events.h"
@@ -17,9 +18,8 @@ namespace cradle {
 /// press together become active.
 class EventContacts {
  public:
-  /// Keeps references to both. `accuracy` is the scene's. A trial is made where contacts had to be resolved by time
-  /// stepping before.
-  EventContacts(IslandState& island, RopeEvents& ropes, double accuracy, bool isTrial);
+  /// Keeps references to all three. A trial is made where contacts had to be resolved by time stepping before.
+  EventContacts(IslandState& island, RopeEvents& ropes, const EventTolerances& tolerances, bool isTrial);
   EventContacts(const EventContacts&) = delete;
   EventContacts& operator=(const EventContacts&) = delete;
 
@@ -32,12 +32,6 @@ class EventContacts {
   std::string_view fallbackReason() const { return active_.fallbackReason(); }
   const std::vector<int>& fallbackBodies() const { return active_.fallbackBodies(); }
   std::vector<int> sceneBodies() const { return active_.sceneBodies(); }
-
-  /// m: pairs that are farther apart take no part in an event.
-  double margin() const { return tolerances_.reach; }
-
-  /// Nearer (m) is touching.
-  double touchTolerance() const { return tolerances_.touch; }
 
   /// Resolves the contacts of the island's state: impacts, then rest, then active contacts. Changes its velocities.
   /// `change` is what happens to an active contact, if anything does; `closingPair` the pair whose gap has closed.
@@ -58,7 +52,7 @@ class EventContacts {
   void recordRests(const std::vector<char>& restedBefore, double zenoTime);
 
   IslandState& island_;
-  TouchTolerances tolerances_;
+  const EventTolerances& tolerances_;
   ConstraintSolver solver_;
   ActiveContacts active_;
   ComingToRest rest_;

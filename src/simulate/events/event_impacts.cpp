@@ -8,18 +8,9 @@
 #include "impact/frictional_impact.h"
 #include "impact/generalized_reflections.h"
 #include "impact/impact_energy.h"
-#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
-
-constexpr double kStandstillRatio = 1e-12;   // of the fastest speed at an impact: slower closing is rounding
-constexpr double kSequenceRatio = 1e-9;      // of the time of a fall by the smallest size: as long it may take always
-constexpr double kGapRoundingRatio = 4e-12;  // of the smallest size: beyond the dead band, a gap is one ...
-constexpr double kSphereGapRatio = 2e-13;    // the same, of spheres: differences of two lengths
-constexpr double kGapPlaceRounding = 4e-15;  // ... unless the places around it are rounded that coarsely
-constexpr double kBounceOfAccuracy = 1e-2;   // lowest rebound, of sqrt(a size): of the accuracy ...
-constexpr double kBounceOfSquare = 100;      // ... or of its square, if that is more: 5e-5 of the size at the coarsest
 
 /// m/s: of the faster of the two bodies' centres.
 double contactSpeed(const Contact& contact, const VectorX& state) {
@@ -45,7 +36,7 @@ void EventImpacts::addImpulse(std::size_t contact, double impulse, std::vector<C
 double EventImpacts::resolve(const std::optional<std::size_t>& closingPair, std::vector<Contact>& touching) {
   double fastest = 0, zenoTime = 0;
   for (const Contact& contact : touching) fastest = std::max(fastest, contactSpeed(contact, island_.state));
-  const double still = kStandstillRatio * fastest;
+  const double still = EventTolerances::kStandstillRatio * fastest;
   const auto closes = [&](const Contact& contact) { return openingSpeed(contact, island_.state) < -still; };
   if (std::none_of(touching.begin(), touching.end(), closes)) return zenoTime;
   const std::vector<Contact> near = contactsInReach(touching);
@@ -90,17 +81,14 @@ bool EventImpacts::isOfSphere(const Contact& contact) const {
   return geometry.colliders[pair.a].isSphere() || (!pair.againstPlane && geometry.colliders[pair.b].isSphere());
 }
 
-/// A sequence lasts as long as forces do not count: max(1e-9, reach / size) sqrt(size / a), a the largest acceleration
-/// at its contacts.
 SequenceLimits EventImpacts::limitsOf(const std::vector<Contact>& near, double stillSpeed) {
-  double places = 0;  // m
+  double farthest = 0;  // m: largest coordinate of a contact
+  for (const Contact& contact : near) farthest = std::max(farthest, contact.point.cwiseAbs().maxCoeff());
+  SequenceLimits limits;
+  limits.gapRounding = tolerances_.gapRounding(farthest), limits.stillSpeed = stillSpeed;
+  limits.touchTolerance = tolerances_.touch, limits.reach = tolerances_.reach, limits.duration = INFINITY;
   for (const Contact& contact : near)
-    places = std::max(places, kGapPlaceRounding * contact.point.cwiseAbs().maxCoeff());
-  const double size = tolerances_.size;
-  SequenceLimits limits{
-      {}, std::max(kGapRoundingRatio * size, places), tolerances_.touch, tolerances_.reach, INFINITY, stillSpeed};
-  for (const Contact& contact : near)
-    limits.gapErrors.push_back(isOfSphere(contact) ? std::max(kSphereGapRatio * size, places) : limits.gapRounding);
+    limits.gapErrors.push_back(isOfSphere(contact) ? tolerances_.sphereGapRounding(farthest) : limits.gapRounding);
   const auto isClosed = [&](const Contact& contact) { return contact.separation <= limits.gapRounding; };
   if (std::all_of(near.begin(), near.end(), isClosed)) return limits;
   VectorX derivative;
@@ -108,7 +96,7 @@ SequenceLimits EventImpacts::limitsOf(const std::vector<Contact>& near, double s
   double strongest = 0;  // m/s^2
   for (const Contact& contact : near)
     strongest = std::max(strongest, std::abs(openingAcceleration(contact, island_.state, derivative)));
-  limits.duration = std::max(kSequenceRatio, tolerances_.reach / size) * std::sqrt(size / strongest);
+  limits.duration = tolerances_.maxSequenceTime(strongest);
   return limits;
 }
 
@@ -201,9 +189,6 @@ double EventImpacts::resolveImpact(std::vector<ImpactContact>& impacts) {
 /// of these times, 0 if there is no such contact. `approach` is the state before the impact.
 double EventImpacts::endZenoSequence(const VectorX& approach, std::vector<ImpactContact>& impacts) {
   const VectorX& state = island_.state;
-  const double accuracy = island_.scene.accuracy;
-  const double lastBounce =
-      std::max({kLastBounceRatio, kBounceOfAccuracy * accuracy, kBounceOfSquare * accuracy * accuracy});
   VectorX derivative;
   double zenoTime = 0;
   for (ImpactContact& impact : impacts) {
@@ -213,7 +198,7 @@ double EventImpacts::endZenoSequence(const VectorX& approach, std::vector<Impact
     if (derivative.size() == 0) island_.equations.evaluate(state, derivative);
     const double closing = -openingAcceleration(impact.contact, state, derivative);
     const double size = smallestSize(impact.contact, island_.assembly.radii);
-    if (!(closing > 0) || speed > lastBounce * std::sqrt(closing * size)) continue;
+    if (!(closing > 0) || speed > tolerances_.minReboundSpeed(closing, size)) continue;
     impact.restSpeed = INFINITY;
     zenoTime = std::max(zenoTime, 2 * speed / (closing * (1 - restitution)));
   }

@@ -5,6 +5,7 @@
 
 #include "impact/pairwise.h"
 #include "simulate/events/coming_to_rest.h"
+#include "simulate/events/event_tolerances.h"
 #include "simulate/events/impact_sequence.h"
 #include "simulate/events/touching_contacts.h"
 #include "simulate/island_state.h"
@@ -17,10 +18,10 @@ namespace cradle {
 /// gaps. Ropes at their length take part.
 class EventImpacts {
  public:
-  /// Keeps references to all four. `constraints` must be factorised for the island's state at each call, and is so
+  /// Keeps references to all five. `constraints` must be factorised for the island's state at each call, and is so
   /// after it.
   EventImpacts(IslandState& island, RopeEvents& ropes, ConstraintSolver& constraints, ComingToRest& rest,
-               const TouchTolerances& tolerances)
+               const EventTolerances& tolerances)
       : island_(island), ropes_(ropes), constraints_(constraints), rest_(rest), tolerances_(tolerances) {}
 
   /// Resolves the impacts of the contacts in `touching`; `closingPair` is the pair whose gap an event has closed.
@@ -50,7 +51,7 @@ class EventImpacts {
   RopeEvents& ropes_;
   ConstraintSolver& constraints_;
   ComingToRest& rest_;
-  TouchTolerances tolerances_;
+  const EventTolerances& tolerances_;
 };
 
 }  // namespace cradle

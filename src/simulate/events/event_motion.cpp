@@ -14,25 +14,12 @@
 namespace cradle {
 namespace {
 
-constexpr double kContactTolerance = 1e-12;  // of the force, or m/s
-constexpr double kImpactRatio = 1e-3;      // of the touch tolerance: a larger gap is left for a step that is taken anew
-constexpr double kShortCorrection = 1e-3;  // of the step: longest Newton step to the instant of an impact
-constexpr double kSlopeRatio = 1e-6;       // of the step, to find the slope of a gap
-constexpr double kMaxGrowth = 2;  // of the longest of the last steps: beyond, the search for impacts is mostly in vain
-
+constexpr double kShortCorrection = 1e-3;   // of the step: longest Newton step to the instant of an impact
+constexpr double kSlopeRatio = 1e-6;        // of the step, to find the slope of a gap
+constexpr double kMaxLengthGrowth = 2;      // of the longest of the last steps: searches far ahead are mostly in vain
 constexpr double kMinLookahead = 1.0 / 64;  // of the step that the accuracy allows
-
-constexpr double kLargeRotation = 100;         // rad: beyond, orientations need a tighter tolerance
-constexpr double kTurningRatio = 0.1;          // of the tolerance, for these
-constexpr double kShortTimeStep = 1e-9;        // of the run's duration: nobody waits for so many steps
-constexpr double kLongRun = 1000;              // s: in longer ones, steps are short that would be in this one
-constexpr int kMaxShortSteps = 1000;           // in a row; after an event some are short
-constexpr double kMaxConstraintError = 1e-9;   // m (a m of coordinates) or rad: projection leaves 1e-15
-constexpr double kConstraintErrorRatio = 0.1;  // of the accuracy: left for a few steps where motion could take two ways
-constexpr double kStateRounding = 1e-14;  // of a state: projection that moves it less leaves the derivative as it was
-constexpr double kUnitLength = 1e-9;      // how far |q|^2 may be from 1 before it is made 1
-
-constexpr int kMaxRounds = 100;  // of ropes and contacts at one instant; the others come after the next step
+constexpr int kMaxShortSteps = 1000;        // in a row; after an event some are short
+constexpr int kMaxRopeRounds = 100;         // of ropes and contacts at one instant; the others come after the next step
 
 const EventRateLimit& eventRateLimitOf(const ChosenMethod& method, double accuracy, bool isTrial) {
   if (method.keepsPromise) return kLongEventRateLimit;
@@ -42,7 +29,7 @@ const EventRateLimit& eventRateLimitOf(const ChosenMethod& method, double accura
 
 /// Whether two states differ by rounding alone.
 bool isSame(const VectorX& a, const VectorX& b) {
-  return ((a - b).array().abs() <= kStateRounding * (1 + b.array().abs())).all();
+  return ((a - b).array().abs() <= EventTolerances::kStateRounding * (1 + b.array().abs())).all();
 }
 
 /// Errors of orientations add up over rotations: a body that rotates by more than 100 rad in the run has a tenth of the
@@ -50,8 +37,8 @@ bool isSame(const VectorX& a, const VectorX& b) {
 VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double duration) {
   VectorX tolerance = stateTolerance(bodyCount(state), method.tolerance, method.tolerance);
   for (Eigen::Index body = 0; body < bodyCount(state); ++body)
-    if (angularVelocity(state, body).norm() * duration > kLargeRotation)
-      tolerance.segment<4>(body * kPoseSize + 3) *= kTurningRatio;
+    if (angularVelocity(state, body).norm() * duration > EventTolerances::kLargeRotation)
+      tolerance.segment<4>(body * kPoseSize + 3) *= EventTolerances::kTurningRatio;
   return tolerance;
 }
 
@@ -61,7 +48,8 @@ EventMotion::EventMotion(IslandState& island, RopeEvents& ropes, const ChosenMet
     : island_(island),
       ropes_(ropes),
       method_(method),
-      contacts_(island, ropes, island.scene.accuracy, isTrial),
+      tolerances_(eventTolerancesOf(eventScalesOf(island))),
+      contacts_(island, ropes, tolerances_, isTrial),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       eventRateLimit_(eventRateLimitOf(method, island.scene.accuracy, isTrial)),
       tolerance_(toleranceOf(method, island.state, island.scene.duration)),
@@ -69,7 +57,7 @@ EventMotion::EventMotion(IslandState& island, RopeEvents& ropes, const ChosenMet
   lengths_.fill(island_.scene.duration);
   stepSize_.order = method_.order;
   island_.step.startDerivativeIsKnown = false;
-  island_.findNearPairsNow(contacts_.margin());
+  island_.findNearPairsNow(tolerances_.reach);
   ropes_.setTimeStep(0);
   contacts_.resolve();
   applyRopeEvents();
@@ -127,7 +115,7 @@ bool EventMotion::takeStep(double stepEnd) {
     keepStartDerivative(step);
   }
   if (areForcesUnbounded_) return false;
-  shortSteps_ = stepSize_.timeStep < kShortTimeStep * std::min(island_.scene.duration, kLongRun) ? shortSteps_ + 1 : 0;
+  shortSteps_ = stepSize_.timeStep < tolerances_.shortTimeStep ? shortSteps_ + 1 : 0;
   if (shortSteps_ <= kMaxShortSteps) return true;
   if (!noteUnboundedForces()) guard_->failAtShortSteps(island_.state, island_.time, step.timeStep);
   return false;
@@ -135,8 +123,7 @@ bool EventMotion::takeStep(double stepEnd) {
 
 /// Whether steps have become too short to go on, as friction jams.
 bool EventMotion::isTooShort() {
-  const double shortest = kShortestTimeStep * std::min(island_.scene.duration, kLongRun);
-  if (!stepSize_.afterRejection || stepSize_.timeStep >= shortest) return false;
+  if (!stepSize_.afterRejection || stepSize_.timeStep >= tolerances_.shortestTimeStep) return false;
   if (!noteUnboundedForces()) guard_->failAtShortestStep(island_.state, island_.time);
   return true;
 }
@@ -163,7 +150,8 @@ bool EventMotion::isStillAccurate() {
 
 /// s. Where impacts are frequent, steps are not planned far beyond the next one.
 double EventMotion::longestStep() const {
-  return std::max(kMaxGrowth * *std::max_element(lengths_.begin(), lengths_.end()), kMinLookahead * stepSize_.timeStep);
+  return std::max(kMaxLengthGrowth * *std::max_element(lengths_.begin(), lengths_.end()),
+                  kMinLookahead * stepSize_.timeStep);
 }
 
 /// Whether the step may end on its interpolant, which is as accurate as the step: that of DOPRI5.
@@ -177,7 +165,7 @@ EventMotion::Event EventMotion::findFirstEvent() {
   prepareInterpolant(island_.rightHandSide, step);
   Event event;
   if (island_.mayTouch()) {
-    island_.findNearPairs(contacts_.margin());
+    island_.findNearPairs(tolerances_.reach);
     event.impact = island_.search.first(step, contacts_.touching());
   }
   event.rope = ropes_.firstChange(step);
@@ -210,7 +198,8 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
     keepStartDerivative(step);
     method_.integrate(island_.rightHandSide, island_.state, island_.time, event.contact->fraction * whole, step);
   } else if (event.contact) {
-    endStepAtEvent(island_, method_.integrate, {event.contact->fraction * whole, latest, kContactTolerance},
+    endStepAtEvent(island_, method_.integrate,
+                   {event.contact->fraction * whole, latest, EventTolerances::kEventFunction},
                    [&](const VectorX& state) { return contacts_.active().margin(*event.contact, state); });
   }
   if (island_.mayTouch()) lengths_[lengthIndex_++ % lengths_.size()] = step.timeStep;
@@ -233,7 +222,7 @@ bool EventMotion::stopAtImpact(const ImpactTime& impact) {
   const double closed = gap(step.work) - left;
   const double correction = closed > 0 ? left * before / closed : 0;  // else the gap is rounding
   step.work = step.state + correction * step.endDerivative;
-  const double tolerance = kImpactRatio * contacts_.touchTolerance();
+  const double tolerance = tolerances_.closedGap;
   if (!(std::abs(correction) <= kShortCorrection * length && std::abs(gap(step.work)) <= tolerance))
     return endStepAtEvent(island_, method_.integrate, {length, length, tolerance}, gap) <= tolerance;
   std::swap(step.state, step.work);
@@ -257,7 +246,7 @@ void EventMotion::projectState() {
   if (!contacts_.active().empty() || solver_.hasConstraints())
     bookNumerical(energyConstant(island_.assembly.mechanism, island_.step.state), island_.assembly.mechanism, state);
   for (Eigen::Index body = 0; body < bodyCount(state); ++body)
-    isTouched = isTouched || std::abs(orientation(state, body).squaredNorm() - 1) > kUnitLength;
+    isTouched = isTouched || std::abs(orientation(state, body).squaredNorm() - 1) > EventTolerances::kUnitLength;
   if (isTouched) normalizeOrientations(state);
   isContinuous_ = !isTouched && !ropes_.hasRopes();
 }
@@ -267,8 +256,8 @@ void EventMotion::projectState() {
 void EventMotion::requireConstraintsKept() {
   const VectorX& state = island_.state;
   const double error = solver_.largestError(), size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
-  const double most = std::max(kMaxConstraintError, kConstraintErrorRatio * island_.scene.accuracy);
-  if (error > startConstraintError_ + most * (1 + size) || solver_.leaveNoMotion(state, startConstraintError_))
+  if (error > startConstraintError_ + tolerances_.constraintError * (1 + size) ||
+      solver_.leaveNoMotion(state, startConstraintError_))
     guard_->failAtConstraints(state, island_.time, error);
 }
 
@@ -296,7 +285,8 @@ void EventMotion::followActive() {
 
 /// Ropes and contacts in turn: either may load or release the other.
 void EventMotion::applyRopeEvents() {
-  for (int round = 0; round < kMaxRounds && ropes_.resolve(island_.time, island_.state); ++round) contacts_.resolve();
+  for (int round = 0; round < kMaxRopeRounds && ropes_.resolve(island_.time, island_.state); ++round)
+    contacts_.resolve();
 }
 
 bool EventMotion::isAtRest() const {

@@ -7,6 +7,7 @@
 #include "dynamics/integrators/step_size.h"
 #include "simulate/energy_guard.h"
 #include "simulate/events/event_contacts.h"
+#include "simulate/events/event_tolerances.h"
 #include "simulate/island_state.h"
 #include "simulate/plan/event_rate_limit.h"
 #include "simulate/rope_events.h"
@@ -72,6 +73,7 @@ class EventMotion {
   IslandState& island_;
   RopeEvents& ropes_;
   ChosenMethod method_;
+  const EventTolerances tolerances_;
   EventContacts contacts_;
   std::optional<EnergyGuard> guard_;  // always there once begun
   ConstraintSolver solver_;

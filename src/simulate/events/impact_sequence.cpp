@@ -10,14 +10,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "simulate/events/event_tolerances.h"
+
 namespace cradle {
 namespace {
 
-constexpr double kGapGrowthError = 1e-9;        // of the distance by which the fastest contact closes meanwhile
-constexpr double kOpeningRatio = 1e-6;          // of the fastest closing: a contact that opens faster takes no part
 constexpr std::size_t kCollapseImpacts = 200;   // enough to tell intervals that shrink for ever from a few short ones
 constexpr std::size_t kImpactsOfAContact = 20;  // the same, for each contact
-constexpr double kCollapseRatio = 1e-12;        // of the time elapsed: so little so many impacts take
 constexpr double kHiddenGap = 2;                // times a gap's rounding: measured, it may be none
 constexpr std::size_t kMaxSequenceImpacts = 100000;  // a row of 40 spheres takes a thousand
 
@@ -108,7 +107,8 @@ bool ImpactSequence::closeWithinRounding() {
 
 bool ImpactSequence::hasCollapsed() const {
   const std::size_t count = std::max(kCollapseImpacts, kImpactsOfAContact * contacts_.size());
-  return times_.size() >= collapses_ + count && elapsed_ - times_[times_.size() - count] <= kCollapseRatio * elapsed_;
+  return times_.size() >= collapses_ + count &&
+         elapsed_ - times_[times_.size() - count] <= EventTolerances::kCollapseRatio * elapsed_;
 }
 
 /// s; infinite if nothing closes.
@@ -137,7 +137,7 @@ void ImpactSequence::advance(const VectorX& state, double time) {
   displacements_ += time * state.segment(poseComponents(state), displacements_.size());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     gaps_[i] += time * speeds_[i];
-    gapErrors_[i] += kGapGrowthError * fastestClosing_ * time;
+    gapErrors_[i] += EventTolerances::kGapGrowthError * fastestClosing_ * time;
   }
 }
 
@@ -152,7 +152,7 @@ void ImpactSequence::findMembers() {
     return false;
   };
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (speeds_[i] > kOpeningRatio * fastestClosing_) continue;
+    if (speeds_[i] > EventTolerances::kTakesNoPartRatio * fastestClosing_) continue;
     if (isClosed(i) || (isWithinRounding(i) && isOfClosingPair(i))) members_.push_back(i);
   }
 }

@@ -5,11 +5,10 @@
 
 #include <cmath>
 
+#include "simulate/events/event_tolerances.h"
+
 namespace cradle {
 namespace {
-
-constexpr double kSamePoint = 1e-4;       // of a size
-constexpr double kSameDirection = 0.999;  // cosine
 
 /// Whether a contact that slid slides the other way now.
 bool isReversed(const PreviousContact& previous, const ContactRecord& now, const VectorX& state) {
@@ -36,8 +35,8 @@ const PreviousContact* previousAt(const ContactRecord& record, const std::vector
     if (a.a != b.a || a.b != b.b || a.againstPlane != b.againstPlane) continue;
     const ContactKinematics place = kinematicsOf(one.constraint, island.state, frames);
     const double size = smallestSize(record.contact, island.assembly.radii);
-    if (std::abs(place.normal.dot(record.contact.normal)) > kSameDirection &&
-        (place.point - record.contact.point).norm() < kSamePoint * size)
+    if (std::abs(place.normal.dot(record.contact.normal)) > EventTolerances::kSameContactNormal &&
+        (place.point - record.contact.point).norm() < EventTolerances::kSameContactPoint * size)
       return &one;
   }
   return nullptr;

@@ -10,15 +10,15 @@
 #include <cmath>
 
 #include "math/anderson_mixing.h"
+#include "simulate/events/event_tolerances.h"
 
 namespace cradle {
 namespace {
 
-constexpr int kMaxFrictionRounds = 200;       // of normal forces from friction, and friction from these
-constexpr int kPlainFrictionRounds = 10;      // before they are mixed: most end sooner
-constexpr int kMaxRoundsInVain = 10;          // without progress: in each of these ...
-constexpr double kProgress = 0.9;             // ... the change is no smaller a fraction of the smallest
-constexpr double kFrictionConverged = 1e-10;  // of the largest normal force
+constexpr int kMaxFrictionRounds = 200;   // of normal forces from friction, and friction from these
+constexpr int kPlainFrictionRounds = 10;  // before they are mixed: most end sooner
+constexpr int kMaxRoundsInVain = 10;      // without progress: in each of these ...
+constexpr double kProgress = 0.9;         // ... the change is no smaller a fraction of the smallest
 
 /// N: the normal forces of those that slide, 0 for the others.
 VectorX slidingNormalForces(const std::vector<const ContactRecord*>& records, const VectorX& forces) {
@@ -69,7 +69,7 @@ SlidingSolution solveContactForces(const std::vector<const ContactRecord*>& reco
     const VectorX found = slidingNormalForces(records, solution.impulses), next = slidingFriction(records, rows, found);
     const double change = (next - friction).cwiseAbs().maxCoeff();
     friction = next;
-    isFound = change <= kFrictionConverged * found.maxCoeff();
+    isFound = change <= EventTolerances::kFrictionConverged * found.maxCoeff();
     if (isFound) break;
     roundsInVain = change < kProgress * least ? 0 : roundsInVain + 1;
     least = std::min(least, change);

@@ -23,9 +23,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kTurningTime = 2e-5;    // s: friction that turns sliding as fast costs 4 s of CPU a second
-constexpr double kCreepRatio = 0.02;     // of mu g: slower acceleration from rest creeps
-constexpr double kCreepOfAccuracy = 50;  // 1/(m s^2), of mu g T^2 A: the same at fine accuracies
+constexpr double kTurningTime = 2e-5;  // s: friction that turns sliding as fast costs 4 s of CPU a second
 
 /// m/s: of the surfaces along each other.
 double slidingSpeed(const Contact& contact, const VectorX& state) {
@@ -35,17 +33,19 @@ double slidingSpeed(const Contact& contact, const VectorX& state) {
 
 }  // namespace
 
-bool slidesTooSlowly(const ContactRecord& record, double acceleration, double largest, const IslandState& island) {
-  const double friction = record.pair.material.dynamicFriction * largest;  // m/s^2: mu g
-  const double time = island.scene.duration, accuracy = island.scene.accuracy;
+bool slidesTooSlowly(const ContactRecord& record, const SlidingAccelerations& accelerations,
+                     const EventTolerances& tolerances, const IslandState& island) {
+  const double friction = record.pair.material.dynamicFriction * accelerations.largest;  // m/s^2: mu g
+  const double acceleration = accelerations.sliding;
   const std::vector<Collider>& colliders = island.assembly.geometry.colliders;
   const bool rolls =
       colliders[record.pair.a].isSphere() || (!record.pair.againstPlane && colliders[record.pair.b].isSphere());
-  const double slowest = std::max(rolls ? 0 : time * std::sqrt(friction * accuracy) / 20, kTurningTime * friction);
+  const double slowest = std::max(rolls ? 0 : tolerances.minSlidingSpeed(friction), kTurningTime * friction);
   const double speed = slidingSpeed(record.contact, island.state);
-  const double creeping = friction * std::min(kCreepRatio, kCreepOfAccuracy * time * time * accuracy);  // m/s^2
+  const double creeping = tolerances.minSlidingAcceleration(friction);
+  const double accuracy = tolerances.scales.accuracy, duration = tolerances.scales.duration;
   const double passed = accuracy * std::sqrt(friction / (2 * std::max(acceleration, creeping)));  // m/s: ten times v
-  return speed + acceleration * time < slowest || (!rolls && speed < passed && acceleration < creeping);
+  return speed + acceleration * duration < slowest || (!rolls && speed < passed && acceleration < creeping);
 }
 
 bool isDirectionTurnedFast(const ContactRecord& record, double speed, double normal) {

@@ -20,7 +20,6 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StrEq;
 
-constexpr double kTouch = 1e-11;  // m
 constexpr double kStaticFriction = 0.5, kDynamicFriction = 0.3;
 using Change = ContactChange::Kind;
 
@@ -38,13 +37,14 @@ struct OnPlane : OneIsland {
           "smooth": {"restitution": 0, "staticFriction": 0, "dynamicFriction": 0}}, "bodies": [
           {"name": "floor", "shape": {"plane": {}}, "motion": "static", "material": "rough"}, )" +
                   bodies + "], " + more),
-        active(island, kTouch),
+        tolerances(eventTolerancesOf(eventScalesOf(island))),
+        active(island, tolerances),
         solver(mechanism().constraints, mechanism().bodies) {}
 
   void classify(const std::optional<ContactChange>& change = std::nullopt) {
     active.release(change);
     if (solver.hasConstraints()) solver.factorize(state());
-    active.classify(contactsWithin(kTouch), solver);
+    active.classify(contactsWithin(tolerances.touch), solver);
   }
   const std::vector<ContactConstraint>& contacts() { return mechanism().contacts; }
   /// N, m/s^2: what acts now.
@@ -58,6 +58,7 @@ struct OnPlane : OneIsland {
     return linearVelocity(derivative, body);
   }
 
+  EventTolerances tolerances;
   ActiveContacts active;
   ConstraintSolver solver;
   VectorX derivative;
@@ -351,9 +352,10 @@ TEST(ActiveContacts, DoNotServeACylinderThatTips) {
         {"name": "post", "shape": {"cylinder": {"radius": 0.1, "length": 0.4}}, "material": "rough",
          "position": [0, 0.2, 0]}], )" +
                  slopeOf(part * 0.5));
-    ActiveContacts active(at.island, kTouch);
+    const EventTolerances tolerances = eventTolerancesOf(eventScalesOf(at.island));
+    ActiveContacts active(at.island, tolerances);
     ConstraintSolver solver(at.mechanism().constraints, at.mechanism().bodies);
-    active.classify(at.contactsWithin(kTouch), solver);
+    active.classify(at.contactsWithin(tolerances.touch), solver);
     EXPECT_THAT(std::string(active.fallbackReason()), StrEq(part < 1 ? "" : "a cylinder tips over its rim"));
   }
 }
@@ -386,9 +388,10 @@ TEST(ActiveContacts, DoNotServeABoxThatSlidesSlowly) {
         {"name": "floor", "shape": {"plane": {}}, "motion": "static", "material": "rough"}, )" +
                  std::string(kBox) + "}], " + slopeOf(kDynamicFriction));
     linearVelocity(at.state(), 0).x() = part * slowest;
-    ActiveContacts active(at.island, kTouch);
+    const EventTolerances tolerances = eventTolerancesOf(eventScalesOf(at.island));
+    ActiveContacts active(at.island, tolerances);
     ConstraintSolver solver(at.mechanism().constraints, at.mechanism().bodies);
-    active.classify(at.contactsWithin(kTouch), solver);
+    active.classify(at.contactsWithin(tolerances.touch), solver);
     EXPECT_EQ(active.fallbackReason().empty(), part > 1) << active.fallbackReason();
   }
 }

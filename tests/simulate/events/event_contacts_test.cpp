@@ -25,7 +25,8 @@ struct Struck : OneIsland {
           {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "stuff"}}, {}], {})",
                               accuracy, material, bodies, more)),
         ropes(island),
-        contacts(island, ropes, accuracy, false) {
+        tolerances(eventTolerancesOf(eventScalesOf(island))),
+        contacts(island, ropes, tolerances, false) {
     island.findNearPairsNow(0.01);
   }
   std::vector<Event> eventsOf(EventKind kind) {
@@ -36,6 +37,7 @@ struct Struck : OneIsland {
   }
 
   RopeEvents ropes;
+  EventTolerances tolerances;
   EventContacts contacts;
 };
 
@@ -53,17 +55,6 @@ std::string boxAt(double x, double bottom, const std::string& more = "") {
   return fmt::format(R"({{"name": "box", "shape": {{"box": {{"size": [0.4, 0.2, 0.6]}}}}, "mass": 3,
     "material": "stuff", "position": [{}, {}, 0]{}}})",
                      x, bottom + 0.1, more);
-}
-
-TEST(EventContacts, TouchWithinAPartOfTheSmallestSizeThatAccuracyChooses) {
-  for (const double accuracy : {1e-8, 1e-3}) {
-    Struck at(material(0.5), ballAt("ball", Vec3(0, 3, 0), Vec3::Zero()) + ", " + boxAt(3, 3), accuracy);
-    const double ratio = accuracy > 1e-4 ? 1e-8 : 1e-11;
-    EXPECT_NEAR(at.contacts.touchTolerance(), 0.1 * ratio, 1e-25);
-    EXPECT_NEAR(at.contacts.touching().deadBand, 0.1 * 1e-12, 1e-25);
-    // A tenth of the accuracy, between the touch tolerance and 1e-8 (visual 1e-5) of the size.
-    EXPECT_NEAR(at.contacts.margin(), 0.1 * (accuracy > 1e-4 ? 1e-5 : 1e-9), 1e-20);
-  }
 }
 
 // p = (1 + e) v / (1/m + (r x n).I^-1 (r x n)) at the lowest corner of a turned box.
