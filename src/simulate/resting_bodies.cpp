@@ -12,12 +12,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kLiftableRatio = 1e-7;      // of its size: the height that a slow body's kinetic energy could lift it
-constexpr double kSupportRatio = 1e-6;       // of its size: how far a point may hover and still carry
-constexpr std::size_t kFewSupports = 12;     // whose forces are found densely
-constexpr double kForcesSolvedRatio = 1e-2;  // of the residual: how well forces of many are found
-constexpr double kResidualAcceleration = 1e-6;  // of gravity: what supporting forces may leave
-constexpr double kSmoothSlip = 1e-7;            // of sqrt(g x size): sliding without friction, which nothing stops
+constexpr std::size_t kFewSupports = 12;  // whose forces are found densely
 
 }  // namespace
 
@@ -25,17 +20,13 @@ RestingBodies::RestingBodies(const Mechanism& mechanism, const ContactGeometry& 
     : mechanism_(mechanism),
       geometry_(geometry),
       equations_(equations),
+      tolerances_(stepTolerancesOf({smallestSize(geometry), mechanism.gravity.norm()})),
       solver_(mechanism.constraints, mechanism.bodies),
       sizes_(mechanism.bodies.size(), 0.0),
       wakeTimes_(mechanism.bodies.size(), -INFINITY),
       restingIsland_(mechanism.bodies.size(), -1) {
-  double smallest = INFINITY;
-  for (const Collider& collider : geometry.colliders) {
-    if (collider.body == kFixed) continue;
-    sizes_[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
-    smallest = std::min(smallest, collider.boundingRadius);
-  }
-  supportMargin_ = kSupportRatio * smallest;
+  for (const Collider& collider : geometry.colliders)
+    if (collider.body != kFixed) sizes_[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
 }
 
 std::vector<int> RestingBodies::islandsOf(const std::vector<Contact>& contacts) const {
@@ -58,7 +49,7 @@ bool RestingBodies::isSlow(std::size_t index, const VectorX& state) const {
   const Eigen::Index body = static_cast<Eigen::Index>(index);
   const double speed2 = linearVelocity(state, body).squaredNorm() +
                         sizes_[index] * sizes_[index] * angularVelocity(state, body).squaredNorm();
-  return speed2 < 2 * mechanism_.gravity.norm() * kLiftableRatio * sizes_[index];
+  return speed2 < tolerances_.maxSlowSquare(sizes_[index]);
 }
 
 bool RestingBodies::canBeInEquilibrium(const std::vector<int>& islands, int island, const VectorX& state) {
@@ -70,15 +61,15 @@ bool RestingBodies::canBeInEquilibrium(const std::vector<int>& islands, int isla
 
   std::vector<Contact> near, supports;
   std::vector<double> frictions;
-  findContacts(geometry_, state, supportMargin_, near);
+  findContacts(geometry_, state, tolerances_.support, near);
   for (const Contact& contact : near) {
     if (islands[static_cast<std::size_t>(contact.movingBody())] != island) continue;
     supports.push_back(contact);
     frictions.push_back(geometry_.pairs[contact.pair].material.staticFriction);
     const Vec3 velocity = relativeVelocity(contact, state),
                slip = velocity - contact.normal.dot(velocity) * contact.normal;
-    const double size = smallestSize(contact, sizes_);
-    if (frictions.back() == 0 && slip.norm() > kSmoothSlip * std::sqrt(mechanism_.gravity.norm() * size)) return false;
+    const double most = tolerances_.maxSmoothSlip(smallestSize(contact, sizes_));
+    if (frictions.back() == 0 && slip.norm() > most) return false;
   }
   applySupportForces(supports, frictions, state, accelerations);
 
@@ -86,7 +77,7 @@ bool RestingBodies::canBeInEquilibrium(const std::vector<int>& islands, int isla
     const Eigen::Index body = static_cast<Eigen::Index>(i);
     const double left =
         std::max(linearVelocity(accelerations, body).norm(), sizes_[i] * angularVelocity(accelerations, body).norm());
-    if (islands[i] == island && left > kResidualAcceleration * mechanism_.gravity.norm()) return false;
+    if (islands[i] == island && left > tolerances_.residualAcceleration) return false;
   }
   return true;
 }
@@ -105,9 +96,8 @@ void RestingBodies::applySupportForces(const std::vector<Contact>& supports, con
   cones.set(supports, mechanism_.bodies, state);
   const Eigen::Index size = 3 * static_cast<Eigen::Index>(supports.size());
   WarmStart start{VectorX::Zero(size), VectorX::Zero(size), 0};
-  const double tolerance = kForcesSolvedRatio * kResidualAcceleration * mechanism_.gravity.norm();
   const VectorX free = cones.velocitiesIn(accelerations);
-  cones.apply(solveFrictionalContact(cones.scaledOperator(), free, frictions, tolerance, start).impulses,
+  cones.apply(solveFrictionalContact(cones.scaledOperator(), free, frictions, tolerances_.forceError, start).impulses,
               accelerations);
 }
 

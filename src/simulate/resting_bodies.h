@@ -4,6 +4,7 @@
 
 #include "collision/separation.h"
 #include "constraints/equations_of_motion.h"
+#include "simulate/steps/step_tolerances.h"
 
 namespace cradle {
 
@@ -31,9 +32,6 @@ class RestingBodies {
   bool anyRests() const;
   bool isResting(int body) const { return body != kFixed && equations_.isResting(static_cast<std::size_t>(body)); }
 
-  /// How far (m) a point may hover and still carry.
-  double supportMargin() const { return supportMargin_; }
-
  private:
   std::vector<int> islandsOf(const std::vector<Contact>& contacts) const;
   bool isStill(double time, std::size_t body, const VectorX& state) const;
@@ -45,9 +43,9 @@ class RestingBodies {
   const Mechanism& mechanism_;
   const ContactGeometry& geometry_;
   EquationsOfMotion& equations_;
+  StepTolerances tolerances_;
   ConstraintSolver solver_;
   std::vector<double> sizes_;      // m: bounding radius of each moving body, 0 if it does not collide
-  double supportMargin_ = 0;       // m
   double stillTime_ = 0;           // s
   std::vector<double> wakeTimes_;  // s, of each body's last waking
   std::vector<int> restingIsland_;

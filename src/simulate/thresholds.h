@@ -5,7 +5,6 @@
 namespace cradle {
 
 constexpr double kTimeRounding = 1e-9;     // of a step: remainders below it are rounding
-constexpr double kRestSteps = 2;           // a rebound that ends within as many steps is not resolved
 constexpr double kRestSpeedFloor = 1e-12;  // m/s: slower is rounding
 constexpr double kRopeTolerance = 1e-13;   // of the length, or of the tension that is left
 

@@ -154,7 +154,6 @@ TEST(RestingBodies, AreCarriedByWhatHoversHardly) {
   for (const double part : {0.99, 1.01}) {
     OneIsland at(floorAnd(brick("box", 0, 0) + R"(, {"name": "ball", "shape": {"sphere": {"radius": 0.05}},
       "position": [3, 3, 3]})"));
-    EXPECT_NEAR(at.island.resting.supportMargin(), 5e-8, 1e-20);
     const std::vector<Contact> contacts = at.contactsWithin(kNear);
     // A corner that is lifted: the box turns about the edge of the others, at z = 0.3.
     setOrientation(at.state(), 0, rotationAbout(Vec3::UnitX(), -part * 5e-8 / 0.6));

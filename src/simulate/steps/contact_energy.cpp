@@ -7,9 +7,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kEnergyRounding = 1e-13;  // of the energy
-constexpr double kSameNormal = 1e-12;      // sine of the angle between two
-
 double kineticEnergyOf(const std::vector<int>& bodies, const Mechanism& mechanism, const VectorX& state) {
   double energy = 0;
   for (const int body : bodies) energy += kineticEnergy(mechanism.bodies[static_cast<std::size_t>(body)], body, state);
@@ -80,11 +77,12 @@ double energyOf(const std::vector<int>& bodies, const Mechanism& mechanism, cons
 }
 
 bool isGain(double energy, double most) {
-  return energy > most + kEnergyRounding * std::abs(most);
+  return energy > most + StepTolerances::kEnergyRounding * std::abs(most);
 }
 
 void hinderByPlane(const Vec3& normal, RigidMotions& kept) {
-  const bool isHinderedSo = kept.cols() == 3 && kept.col(2).tail<3>().cross(normal).isZero(kSameNormal);
+  const bool isHinderedSo =
+      kept.cols() == 3 && kept.col(2).tail<3>().cross(normal).isZero(StepTolerances::kParallelNormals);
   if (isHinderedSo) return;
   const bool isFree = kept.cols() == 6;
   kept.setZero(6, isFree ? 3 : 0);

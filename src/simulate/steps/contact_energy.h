@@ -5,6 +5,7 @@
 #include "collision/root_bracketing.h"
 #include "constraints/equations_of_motion.h"
 #include "constraints/invariants.h"
+#include "simulate/steps/step_tolerances.h"
 
 namespace cradle {
 
@@ -44,9 +45,8 @@ bool isGain(double energy, double most);
 /// gain energy.
 template <class LossWith>
 double fractionWithoutGain(const LossWith& lossWith, double lossOfAll) {
-  constexpr double kFractionError = 1e-6;  // impulses are found no better
   Bracket fractions{0, lossWith(0), 1, lossOfAll};
-  if (fractions.gapBefore > 0) closeBracket(lossWith, fractions, kFractionError);
+  if (fractions.gapBefore > 0) closeBracket(lossWith, fractions, StepTolerances::kRestitutionError);
   return fractions.before;
 }
 

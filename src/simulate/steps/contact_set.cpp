@@ -7,15 +7,10 @@
 #include "simulate/rope_events.h"
 
 namespace cradle {
-namespace {
 
-constexpr double kOverlapRatio = 1e-9;  // of the smallest body's size: deeper overlaps are taken out
-
-}  // namespace
-
-ContactSet::ContactSet(const Assembly& assembly, const std::vector<Contact>& contacts,
+ContactSet::ContactSet(const Assembly& assembly, const StepTolerances& tolerances, const std::vector<Contact>& contacts,
                        const std::vector<const RopeLimit*>& ropes, const VectorX& before)
-    : assembly_(assembly), overlapTolerance_(kOverlapRatio * smallestSize(assembly.geometry)), contacts_(contacts) {
+    : assembly_(assembly), tolerances_(tolerances), contacts_(contacts) {
   if (contacts.empty()) return;
   for (const RopeLimit* rope : ropes) {
     const ImpactContact contact = RopeEvents::contactOf(*rope, before);

@@ -5,6 +5,7 @@
 #include "collision/separation.h"
 #include "simulate/assembly.h"
 #include "simulate/steps/contact_energy.h"
+#include "simulate/steps/step_tolerances.h"
 
 namespace cradle {
 
@@ -21,10 +22,10 @@ struct StepGroup {
 /// slack.
 class ContactSet {
  public:
-  /// Keeps a reference to `assembly`. `contacts` and `ropes` (none of them a rod) are those at the state `before`.
-  /// Without contacts, ropes are none of its members.
-  ContactSet(const Assembly& assembly, const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes,
-             const VectorX& before);
+  /// Keeps references to `assembly` and `tolerances`. `contacts` and `ropes` (none of them a rod) are those at the
+  /// state `before`. Without contacts, ropes are none of its members.
+  ContactSet(const Assembly& assembly, const StepTolerances& tolerances, const std::vector<Contact>& contacts,
+             const std::vector<const RopeLimit*>& ropes, const VectorX& before);
 
   std::size_t size() const { return contacts_.size(); }
   const Contact& operator[](std::size_t member) const { return contacts_[member]; }
@@ -36,8 +37,7 @@ class ContactSet {
   }
   const ContactMaterial& materialOf(std::size_t member) const;
 
-  /// m: shallower overlaps are rounding.
-  double overlapTolerance() const { return overlapTolerance_; }
+  const StepTolerances& tolerances() const { return tolerances_; }
 
   /// The groups of its members, in the order of their first bodies.
   std::vector<StepGroup> findGroups() const;
@@ -47,7 +47,7 @@ class ContactSet {
   bool isOnSmoothPlane(std::size_t member) const;
 
   const Assembly& assembly_;
-  double overlapTolerance_;
+  const StepTolerances& tolerances_;
   std::vector<Contact> contacts_;               // ropes are the last
   std::vector<const RopeLimit*> ropes_;         // of the last contacts
   std::vector<ContactMaterial> ropeMaterials_;  // theirs

@@ -60,7 +60,7 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::v
   faults_.clear();
   if (contacts.empty()) return;
   const Mechanism& mechanism = assembly_.mechanism;
-  const ContactSet set(assembly_, contacts, ropes, before);
+  const ContactSet set(assembly_, tolerances_, contacts, ropes, before);
   const FreeStep step(mechanism.bodies, before, timeStep, state);
   problem_.factorize(step.middle);
   for (std::size_t i = 0; i < set.size(); ++i) contacts_.push_back({set[i], Vec3::Zero(), false});
@@ -119,7 +119,7 @@ VectorX ContactStepping::move(const StepGroup& group, const StepInput& input, co
   const VectorX end = problem_.velocitiesIn(state);
   moveByMean(group.moved.bodies, input.step, state);
   const VectorX gaps = gapsAfter(group, motion.timeStep, 0.5 * (motion.start + end));
-  if (gaps.minCoeff() >= -input.contacts.overlapTolerance()) return end;
+  if (gaps.minCoeff() >= -tolerances_.overlap) return end;
   const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
   separateGroup(group, input.contacts, gaps, problem_, state);
   limitEnergy(group.moved, most, assembly_.mechanism, state, faults_);
@@ -129,14 +129,13 @@ VectorX ContactStepping::move(const StepGroup& group, const StepInput& input, co
 /// Keeps impulses and velocities of a group for the events of this step and the warm start of the next.
 void ContactStepping::keep(const StepGroup& group, const StepMotion& motion, const ContactProblem& posed,
                            const VectorX& impulses, const VectorX& state) {
-  const double gravity = assembly_.mechanism.gravity.norm();
   const VectorX end = problem_.velocitiesIn(state);
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const Eigen::Index at = 3 * static_cast<Eigen::Index>(i);
     SteppedContact& stepped = contacts_[group.members[i]];
     stepped.impulse = problem_.axes(i) * impulses.segment<3>(at);
     const double closing = motion.closing(at + 2), pressing = motion.pressing(at + 2);
-    stepped.isImpact = impulses[at + 2] > 0 && closing > restSpeed(pressing, motion.timeStep, gravity);
+    stepped.isImpact = impulses[at + 2] > 0 && closing > tolerances_.maxRestSpeed(pressing, motion.timeStep);
     const Vec3 slip = end.segment<3>(at) + posed.free.segment<3>(at) - motion.free.segment<3>(at);
     slips_[group.members[i]] = problem_.axes(i) * correctedVelocity(slip, posed.frictions[i]);
   }
@@ -174,19 +173,19 @@ NextImpact ContactStepping::nextImpact(const std::vector<Contact>& contacts, con
   const FreeStep step(assembly_.mechanism.bodies, before, timeStep, state);
   problem_.factorize(step.middle);
   faults_.clear();
-  return findNextImpact({assembly_, contacts, {}, before}, step, minImpactSpeed, problem_);
+  return findNextImpact({assembly_, tolerances_, contacts, {}, before}, step, minImpactSpeed, problem_);
 }
 
 void ContactStepping::correctPenetration(const std::vector<Contact>& contacts,
                                          const std::vector<const RopeLimit*>& ropes, VectorX& state) {
-  const ContactSet set(assembly_, contacts, ropes, state);
+  const ContactSet set(assembly_, tolerances_, contacts, ropes, state);
   if (!contacts.empty()) problem_.factorize(FreeStep(assembly_.mechanism.bodies, state, 0, state).middle);
   cradle::correctPenetration(set, problem_, state, faults_);
 }
 
 std::vector<Vec3> ContactStepping::resolveImpact(const std::vector<Contact>& contacts, double timeStep,
                                                  VectorX& state) {
-  const ContactSet set(assembly_, contacts, {}, state);
+  const ContactSet set(assembly_, tolerances_, contacts, {}, state);
   if (!contacts.empty()) problem_.factorize(FreeStep(assembly_.mechanism.bodies, state, 0, state).middle);
   return resolveStepImpact(set, timeStep, problem_, state, faults_);
 }

@@ -17,7 +17,10 @@ namespace cradle {
 class ContactStepping {
  public:
   /// Keeps a reference to `assembly`.
-  explicit ContactStepping(const Assembly& assembly) : assembly_(assembly), problem_(assembly) {}
+  explicit ContactStepping(const Assembly& assembly)
+      : assembly_(assembly), tolerances_(stepTolerancesOf(stepScalesOf(assembly))), problem_(assembly) {}
+
+  const StepTolerances& tolerances() const { return tolerances_; }
 
   /// `contacts` are those of the step's start, with gaps that may close within it; `before` is the state there; `state`
   /// is where free motion led after `timeStep` (s), and after the call where contact did, with the energy booked that
@@ -75,6 +78,7 @@ class ContactStepping {
             VectorX& state);
 
   const Assembly& assembly_;
+  StepTolerances tolerances_;
   GroupProblem problem_;
   std::vector<SteppedContact> contacts_;  // of the last step
   std::vector<Vec3> slips_;               // m/s, world: their velocities with De Saxce's correction

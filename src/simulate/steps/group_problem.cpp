@@ -5,8 +5,7 @@
 namespace cradle {
 namespace {
 
-constexpr std::size_t kFewContacts = 6;  // solved densely, to rounding
-constexpr double kSolvedRatio = 1e-7;    // of the fastest velocity
+constexpr std::size_t kFewDenseContacts = 6;  // solved densely, to rounding
 
 void noteUnsolved(const StepGroup& group, const ContactSolution& solution, double tolerance,
                   std::vector<SteppingFault>& faults) {
@@ -30,12 +29,12 @@ void GroupProblem::set(const StepGroup& group, const std::vector<Contact>& conta
 }
 
 bool GroupProblem::isSolvedDensely() const {
-  return dense_ || contacts_.size() <= kFewContacts;
+  return dense_ || contacts_.size() <= kFewDenseContacts;
 }
 
 VectorX GroupProblem::solve(const StepGroup& group, const ContactProblem& problem, std::vector<SteppingFault>& faults) {
   if (isSolvedDensely()) return solveDensely(group, problem, faults);
-  const double tolerance = kSolvedRatio * problem.free.cwiseAbs().maxCoeff();
+  const double tolerance = StepTolerances::kSolvedRatio * problem.free.cwiseAbs().maxCoeff();
   WarmStart start = warmStartOf(group);
   const ContactSolution solution = solveSparsely(problem.free, problem.frictions, tolerance, start);
   penalties_[group.firstBody] = start.penalty;
@@ -65,7 +64,7 @@ VectorX GroupProblem::solveDensely(const StepGroup& group, const ContactProblem&
     faults.push_back({CorrectionKind::omittedContacts, group.moved.bodies, solution.residual});
     solution.impulses.setZero();
   }
-  noteUnsolved(group, solution, kSolvedRatio * most, faults);
+  noteUnsolved(group, solution, StepTolerances::kSolvedRatio * most, faults);
   return solution.impulses;
 }
 

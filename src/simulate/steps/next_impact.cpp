@@ -17,7 +17,7 @@ bool markClosing(const StepGroup& group, const StepMotion& motion, const Contact
     const Eigen::Index normal = 3 * static_cast<Eigen::Index>(i) + 2;
     const double gap = group.contacts[i].separation;
     const double closing = motion.closing(normal), fastest = closing + motion.pressing(normal);
-    const bool strikes = gap > contacts.overlapTolerance() && closing > minSpeed && gap < motion.timeStep * fastest;
+    const bool strikes = gap > contacts.tolerances().overlap && closing > minSpeed && gap < motion.timeStep * fastest;
     strikesInside[group.members[i]] = strikes ? 1 : 0;
     isFound = isFound || strikes;
   }

@@ -9,11 +9,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kSeparatedRatio = 0.1;   // of the overlaps that are let be: how well others are taken out, ...
-constexpr double kSeparatedError = 1e-3;  // ... or of the deepest
-// Of the inverse mass without constraints: where a joint is nearer to a contact than 1e-3 of the size, an overlap is
-// let be. Taking it out would lift the body by more than a thousand times as much, against all forces.
-constexpr double kMinMobility = 1e-6;
 constexpr double kFarthestSeparation = 0.05;  // sizes, or rad: the rest is left to the steps to come
 constexpr double kFarOverlaps = 10;           // of the deepest overlap: gaps that are as good as any wider ones
 
@@ -37,10 +32,10 @@ void separateGroup(const StepGroup& group, const ContactSet& contacts, const Vec
   const double deepest = -gaps.minCoeff();
   VectorX free = VectorX::Zero(3 * gaps.size());
   for (Eigen::Index i = 0; i < gaps.size(); ++i) {
-    const bool isMobile = problem.mobility(static_cast<std::size_t>(i)) > kMinMobility;
+    const bool isMobile = problem.mobility(static_cast<std::size_t>(i)) > StepTolerances::kMinMobility;
     free[3 * i + 2] = isMobile ? std::min(gaps[i], kFarOverlaps * deepest) : kFarOverlaps * deepest;
   }
-  const double tolerance = std::max(kSeparatedRatio * contacts.overlapTolerance(), kSeparatedError * deepest);
+  const double tolerance = contacts.tolerances().separationError(deepest);
   VectorX displacement = state;  // in the place of velocities
   displacement.tail(state.size() - poseComponents(state)).setZero();
   problem.apply(problem.solveFrictionless(free, tolerance), displacement);
@@ -61,7 +56,7 @@ void correctPenetration(const ContactSet& contacts, GroupProblem& problem, Vecto
   for (const StepGroup& group : contacts.findGroups()) {
     VectorX gaps(group.contacts.size());
     for (Eigen::Index i = 0; i < gaps.size(); ++i) gaps[i] = group.contacts[static_cast<std::size_t>(i)].separation;
-    if (gaps.minCoeff() >= -contacts.overlapTolerance()) continue;
+    if (gaps.minCoeff() >= -contacts.tolerances().overlap) continue;
     problem.set(group, state);
     const double most = energyOf(group.moved.bodies, mechanism, state);
     separateGroup(group, contacts, gaps, problem, state);

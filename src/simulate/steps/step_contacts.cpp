@@ -13,20 +13,11 @@
 namespace cradle {
 namespace {
 
-constexpr double kStepTouchRatio = 1e-9;     // of the smallest body's size: nearer counts as touching
 constexpr std::size_t kFewLoaded = 8;        // contacts that last: with more, time stepping alone is in use
-constexpr double kTogetherRatio = 1e-3;      // of a step: contacts that touch within it touch at one instant
-constexpr double kLooseMomentArm = 3e-3;     // sizes of a body: shorter levers about a joint leave hardly any turning,
-constexpr double kLoosened = 1e-6;           // and contacts there may overlap by so many
 constexpr double kReach = 2;                 // of the displacement of free motion: what others may make of it
 constexpr double kRestingReachRatio = 1e-3;  // of its size: the same, for bodies at rest
-constexpr double kStillSteps = 20;     // awake at least so long: a rattling body is not put to rest again and again
-constexpr double kLetBe = 0.1;         // of the support margin: shallower overlaps are left to the next step
-constexpr double kNearOverlap = 10;    // of the deepest overlap: contacts so near may come to overlap by the correction
-constexpr int kMaxRemovals = 4;        // of overlaps in a step: each leaves about the square of the relative overlap
-constexpr double kClosedRatio = 1e-6;  // of the speed that gravity gives in a step: slower does not close
-constexpr double kMinImpactRatio = 0.01;  // of the speed that gravity gives in a step: slower is no impact
-constexpr double kNextImpactRatio = 0.1;  // of the same: a step does not end at a slower next impact
+constexpr double kNearOverlap = 10;  // of the deepest overlap: contacts so near may come to overlap by the correction
+constexpr int kMaxRemovals = 4;      // of overlaps in a step: each leaves about the square of the relative overlap
 
 double closingSpeed(const Contact& contact, const VectorX& state) {
   return -openingSpeed(contact, state);
@@ -50,11 +41,8 @@ StepContacts::StepContacts(IslandState& island, double timeStep)
       resting_(island.resting),
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       timeStep_(timeStep),
-      touchTolerance_(kStepTouchRatio * smallestSize(assembly_.geometry)),
-      leastClosingSpeed_(kRestSpeedFloor + kClosedRatio * assembly_.mechanism.gravity.norm() * timeStep),
-      leastImpactSpeed_(kRestSpeedFloor + kMinImpactRatio * assembly_.mechanism.gravity.norm() * timeStep),
       stepping_(assembly_) {
-  resting_.setStillTime(kStillSteps * timeStep);
+  resting_.setStillTime(tolerances().minAwakeTime(timeStep));
 }
 
 void StepContacts::resolveImpacts(double time, const VectorX& before, VectorX& state) {
@@ -77,10 +65,10 @@ void StepContacts::resolveImpacts(double time, const VectorX& before, VectorX& s
 
 /// Contacts of this instant, and those that close so soon after it that they take part in its impact.
 void StepContacts::findSimultaneous(const VectorX& state) {
-  findTouching(state, margin());
+  findTouching(state, tolerances().margin());
   double fastest = 0;
   for (const Contact& contact : touching_) fastest = std::max(fastest, closingSpeed(contact, state));
-  const double near = std::max(touchTolerance_, kTogetherRatio * fastest * timeStep_);
+  const double near = tolerances().simultaneousGap(fastest, timeStep_);
   std::erase_if(touching_, [&](const Contact& contact) { return contact.separation > near; });
 }
 
@@ -114,7 +102,7 @@ void StepContacts::findStepContacts(const VectorX& before, const VectorX& state,
   if (stepsOnly_) return loosenShortMomentArms(before, touching_);
   std::vector<char> touches(assembly_.geometry.pairs.size(), 0);
   for (const Contact& contact : touching_)
-    if (contact.separation <= touchTolerance_) touches[contact.pair] = 1;
+    if (contact.separation <= tolerances().touch) touches[contact.pair] = 1;
   std::erase_if(touching_, [&](const Contact& contact) { return !touches[contact.pair]; });
   loosenShortMomentArms(before, touching_);
 }
@@ -125,8 +113,8 @@ void StepContacts::loosenShortMomentArms(const VectorX& state, std::vector<Conta
   if (contacts.empty() || !solver_.hasConstraints()) return;
   const ImpulseResponse response(assembly_.mechanism.bodies, solver_);
   for (Contact& contact : contacts)
-    if (hasShortLever(contact, response, state, kLooseMomentArm))
-      contact.separation += kLoosened * smallestSize(contact, assembly_.radii);
+    if (hasShortLever(contact, response, state, StepTolerances::kLooseMomentArm))
+      contact.separation += StepTolerances::kLoosened * smallestSize(contact, assembly_.radii);
 }
 
 void StepContacts::begin(double time, const VectorX& before, const VectorX& state, double length) {
@@ -139,7 +127,7 @@ void StepContacts::begin(double time, const VectorX& before, const VectorX& stat
   bool woken = false;
   for (const Contact& contact : touching_) {
     const double closing = -contact.normal.dot(relativeVelocity(contact, before, state));
-    if (contact.separation - length * std::max(0.0, closing) > touchTolerance_) continue;
+    if (contact.separation - length * std::max(0.0, closing) > tolerances().touch) continue;
     for (const int body : {contact.bodyA, contact.bodyB})
       for (const int other : resting_.wake(time, body)) {
         log_.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
@@ -160,8 +148,7 @@ std::vector<ColliderPair> StepContacts::pairsWithoutContact() const {
 }
 
 double StepContacts::nextImpact(const VectorX& before, const VectorX& state, double length) {
-  const double minImpactSpeed = kRestSpeedFloor + kNextImpactRatio * assembly_.mechanism.gravity.norm() * timeStep_;
-  NextImpact next = stepping_.nextImpact(touching_, before, length, state, minImpactSpeed);
+  NextImpact next = stepping_.nextImpact(touching_, before, length, state, tolerances().minNextImpactSpeed(timeStep_));
   strikesInside_ = std::move(next.strikesInside);
   return next.fraction;
 }
@@ -195,7 +182,7 @@ void StepContacts::correctPenetrations(const RopeEvents& ropes, VectorX& state) 
     loosenShortMomentArms(state, overlapping_);
     double deepest = 0;
     for (const Contact& contact : overlapping_) deepest = std::max(deepest, -contact.separation);
-    if (deepest <= kLetBe * margin()) return;
+    if (deepest <= tolerances().letBe()) return;
     findTouching(state, kNearOverlap * deepest, overlapping_);
     loosenShortMomentArms(state, overlapping_);
     stepping_.correctPenetration(overlapping_, ropes.withinReach(state, state, 0), state);
@@ -250,7 +237,7 @@ void StepContacts::wakeTouched(double time, const VectorX& state) {
 }
 
 /// Resolves the impacts of all islands in which a contact closes, each with all its contacts. A contact rebounds if it
-/// closes faster than accelerations explain: than by the speed that it gained in the last step, scaled to `kRestSteps`
+/// closes faster than accelerations explain: than by the speed that it gained in the last step, scaled to kRestSteps
 /// whole steps.
 void StepContacts::resolveImpactIslands(double time, const VectorX& before, VectorX& state) {
   for (std::vector<ImpactContact>& impacts : findImpacts(before, state)) {
@@ -259,7 +246,7 @@ void StepContacts::resolveImpactIslands(double time, const VectorX& before, Vect
     log_.recordFaults(time, impacts,
                       resolveImpact(impacts, ImpulseResponse(assembly_.mechanism.bodies, solver_), state));
     const bool isHard = std::any_of(impacts.begin(), impacts.end(), [&](const ImpactContact& impact) {
-      return closingSpeed(impact.contact, approach) > leastImpactSpeed_;
+      return closingSpeed(impact.contact, approach) > tolerances().minImpactSpeed(timeStep_);
     });
     bookImpact(impacts, assembly_.mechanism.bodies, approach, state);
     bookNumerical(energyConstant(assembly_.mechanism, approach), assembly_.mechanism, state);
@@ -287,10 +274,11 @@ std::vector<std::vector<ImpactContact>> StepContacts::findImpacts(const VectorX&
   for (const Contact& contact : touching_) {
     const double closing = closingSpeed(contact, state);
     const double gained = closing + contact.normal.dot(relativeVelocity(contact, state, before));
-    const double restSpeed = std::max(kRestSteps * std::max(0.0, gained / stepPart_), leastImpactSpeed_);
+    const double restSpeed = std::max(StepTolerances::kRestSteps * std::max(0.0, gained / stepPart_),
+                                      tolerances().minImpactSpeed(timeStep_));
     const auto island = static_cast<std::size_t>(islands.islandOf(contact.movingBody()));
     impacts[island].push_back({contact, assembly_.geometry.pairs[contact.pair].material, restSpeed, Vec3::Zero()});
-    if (closing > leastClosingSpeed_) isStruck[island] = 1;
+    if (closing > tolerances().minClosingSpeed(timeStep_)) isStruck[island] = 1;
   }
   for (std::size_t island = 0; island < impacts.size(); ++island)
     if (!isStruck[island]) impacts[island].clear();

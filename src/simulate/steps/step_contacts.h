@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -56,11 +55,7 @@ class StepContacts {
   bool usesTimeSteppingOnly() const { return stepsOnly_; }
   void useTimeSteppingOnly() { willStepOnly_ = true; }
 
-  /// Nearer than this (m) is touching.
-  double touchTolerance() const { return touchTolerance_; }
-
-  /// m: contacts that are farther apart take no part in an impact or rest.
-  double margin() const { return std::max(touchTolerance_, resting_.supportMargin()); }
+  const StepTolerances& tolerances() const { return stepping_.tolerances(); }
 
  private:
   void findTouching(const VectorX& state, double margin) { findTouching(state, margin, touching_); }
@@ -82,9 +77,8 @@ class StepContacts {
   EventLog& log_;
   RestingBodies& resting_;
   ConstraintSolver solver_;
-  double timeStep_, touchTolerance_;             // s, m
-  double leastClosingSpeed_, leastImpactSpeed_;  // m/s
-  double stepPart_ = INFINITY;                   // length of the last step over the method's
+  double timeStep_;             // s
+  double stepPart_ = INFINITY;  // length of the last step over the method's
   std::vector<Contact> touching_, overlapping_;
   ContactStepping stepping_;
   std::vector<char> strikesInside_;  // by contact, of the next impact; until contacts are solved

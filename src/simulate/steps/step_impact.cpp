@@ -19,7 +19,7 @@ double energyTakenBy(const VectorX& impulses, const VectorX& before, const Vecto
 /// restitution; all friction is static. `start`: velocities of the contacts before the impact.
 ContactProblem posedImpact(const StepGroup& group, const ContactSet& contacts, const VectorX& start, double timeStep,
                            double restitutionFraction) {
-  const double slowest = restSpeed(0, timeStep, contacts.assembly().mechanism.gravity.norm());
+  const double slowest = contacts.tolerances().maxRestSpeed(0, timeStep);
   ContactProblem problem{start, {}};
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const ContactMaterial& material = contacts.materialOf(group.members[i]);

@@ -4,15 +4,11 @@
 
 #include "simulate/contact_response.h"
 #include "simulate/rope_events.h"
-#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kRestSpeedRatio = 0.01;  // of the speed that gravity gives in a step: slower is no impact
-constexpr double kSameFeature = 0.99;     // cosine: normals that rotate farther in half a step are another contact's
-constexpr double kSeenWay = 1e5;          // overlap tolerances: over a shorter way, errors of gaps hide accelerations
-constexpr double kFreeClosing = 2;        // of the speed with which a contact strikes: nothing makes it so fast
+constexpr double kFreeClosing = 2;  // of the speed with which a contact strikes: nothing makes it so fast
 
 /// Moves a contact between the sides of two capsules, whose gap is smooth, to where it is found in the step's middle.
 /// With the gaps s in the middle and s0 at the start, and the derivative s' in the middle, s - s0 = s' h/2 - s'' h^2/8.
@@ -23,14 +19,14 @@ Vec3 followSides(const ContactSet& contacts, const FreeStep& step, Contact& cont
   const auto isCapsule = [&](std::size_t i) { return geometry.colliders[i].kind() == ColliderKind::capsule; };
   const double half = 0.5 * step.timeStep, speed = relativeVelocity(contact, step.middle).norm();
   const bool areCapsules = !pair.againstPlane && isCapsule(pair.a) && isCapsule(pair.b);
-  if (!areCapsules || half * speed < kSeenWay * contacts.overlapTolerance()) return Vec3::Zero();
+  if (!areCapsules || half * speed < contacts.tolerances().minFollowedWay()) return Vec3::Zero();
   std::vector<Contact> found;
   appendContacts(geometry, contact.pair, step.middle, std::max(0.0, contact.separation) + half * speed, found);
   const Contact* nearest = nullptr;
   for (const Contact& other : found)
     if (!nearest || (other.point - contact.point).squaredNorm() < (nearest->point - contact.point).squaredNorm())
       nearest = &other;
-  if (!nearest || nearest->normal.dot(contact.normal) < kSameFeature) return Vec3::Zero();
+  if (!nearest || nearest->normal.dot(contact.normal) < StepTolerances::kSameFeature) return Vec3::Zero();
   const double derivative = openingSpeed(*nearest, step.middle), gap = contact.separation;
   const double product = 2 * (derivative - (nearest->separation - gap) / half);  // m/s: s'' h/2
   if (std::abs(product) > speed) return Vec3::Zero();
@@ -82,14 +78,9 @@ StepMotion stepMotionOf(const StepGroup& group, const ContactSet& contacts, cons
   return motion;
 }
 
-double restSpeed(double pressing, double timeStep, double gravity) {
-  return kRestSteps * pressing + kRestSpeedRatio * gravity * timeStep + kRestSpeedFloor;
-}
-
 /// A contact that opens when the step begins may come back as fast, so that the mean velocity leaves its gap as it was.
 ContactProblem posedStep(const StepGroup& group, const ContactSet& contacts, const StepMotion& motion,
                          const std::vector<char>& strikesInside, double restitutionFraction) {
-  const double gravity = contacts.assembly().mechanism.gravity.norm();
   ContactProblem problem{motion.free + motion.velocityProduct, {}};
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
     const std::size_t member = group.members[i];
@@ -101,7 +92,8 @@ ContactProblem posedStep(const StepGroup& group, const ContactSet& contacts, con
     const double gap = std::max(0.0, group.contacts[i].separation);
     const double restitution = restitutionFraction * material.restitution;
     const bool touches = gap + motion.timeStep * problem.free[at + 2] < 0;
-    const bool rebounds = touches && restitution * closing > restSpeed(pressing, motion.timeStep, gravity);
+    const bool rebounds =
+        touches && restitution * closing > contacts.tolerances().maxRestSpeed(pressing, motion.timeStep);
     if (member < strikesInside.size() && strikesInside[member]) {
       problem.free[at + 2] += kFreeClosing * (closing + pressing);
       continue;

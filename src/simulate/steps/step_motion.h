@@ -44,9 +44,6 @@ struct StepMotion {
 StepMotion stepMotionOf(const StepGroup& group, const ContactSet& contacts, const FreeStep& step,
                         GroupProblem& problem);
 
-/// m/s: a contact that closes more slowly does not rebound. `pressing` is what the step adds to its closing speed.
-double restSpeed(double pressing, double timeStep, double gravity);
-
 /// The frictional contact problem for velocities at the step's end: a contact that is apart by a gap s may close with
 /// s / h, and one that struck rebounds with the fraction `restitutionFraction` of its restitution. Members for which
 /// `strikesInside` (by member of `contacts`; empty: none) is set may close freely: they are resolved after the step.

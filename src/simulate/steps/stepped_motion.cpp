@@ -15,10 +15,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kClosedGapRatio = 1e-3;             // of the touch tolerance: how well the gap of an impact is closed
-constexpr double kShortestRatio = 1.0 / 1024;        // of a step: shorter ones are not cut for their error
-constexpr double kMaxPartGrowth = 4;                 // of a part of a step to the next
-constexpr double kMaxSteppedConstraintError = 1e-7;  // m (a m of coordinates) or rad: a thousandth of what is seen
+constexpr double kShortestRatio = 1.0 / 1024;  // of a step: shorter ones are not cut for their error
+constexpr double kMaxPartGrowth = 4;           // of a part of a step to the next
 constexpr double kMaxConstraintErrorGrowth =
     2;  // times the error of free motion, of constraints that contradict each other
 constexpr double kMinConstraintStep = 1.0 / 32;  // of a step: shorter ones are not cut for constraint errors
@@ -144,7 +142,7 @@ bool SteppedMotion::solveContacts() {
   const double size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
   contacts_.solveContacts(before_, length, ropes_, state);
   return contacts_.constraintError() <=
-             std::max(kMaxSteppedConstraintError * (1 + size), kMaxConstraintErrorGrowth * free) ||
+             std::max(contacts_.tolerances().constraintError(size), kMaxConstraintErrorGrowth * free) ||
          length < kMinConstraintStep * method_.timeStep;
 }
 
@@ -196,18 +194,17 @@ bool SteppedMotion::stopAtFirstEvent() {
   if (!island_.mayTouch() && !ropes_.hasRopes()) return false;
   Step& step = island_.step;
   prepareInterpolant(island_.rightHandSide, step);
-  island_.findNearPairs(contacts_.margin());
+  island_.findNearPairs(contacts_.tolerances().margin());
   contacts_.begin(island_.time, before_, step.state, step.timeStep);
   std::vector<ColliderPair>& pairs = island_.assembly.geometry.pairs;
   const std::vector<ColliderPair> all = pairs;
   pairs = contacts_.pairsWithoutContact();
   const auto impact =
-      contacts_.usesTimeSteppingOnly() ? std::nullopt : island_.search.first(step, {contacts_.touchTolerance()});
+      contacts_.usesTimeSteppingOnly() ? std::nullopt : island_.search.first(step, {contacts_.tolerances().touch});
   const auto change = ropes_.firstChange(step);
   const double whole = step.timeStep;
   if (impact && !(change && change->fraction < impact->fraction)) {
-    endStepAtEvent(island_, method_.integrate,
-                   {impact->fraction * whole, whole, kClosedGapRatio * contacts_.touchTolerance()},
+    endStepAtEvent(island_, method_.integrate, {impact->fraction * whole, whole, contacts_.tolerances().closedGap},
                    [&](const VectorX& state) { return island_.search.margin(*impact, {}, state); });
   } else if (change) {
     endStepAtEvent(island_, method_.integrate, {change->fraction * whole, whole, kRopeTolerance},

@@ -68,8 +68,8 @@ std::string slopeAlongX() {
 
 TEST(StepContacts, TouchWithinPartsOfTheSmallestSize) {
   const Stepped at(0, 0.5, boxOver("box", 0, 0) + ", " + smallBall("ball", Vec3(3, 3, 3)));
-  EXPECT_NEAR(at.contacts.touchTolerance(), 1e-10, 1e-24);
-  EXPECT_NEAR(at.contacts.margin(), 1e-7, 1e-20);
+  EXPECT_NEAR(at.contacts.tolerances().touch, 1e-10, 1e-24);
+  EXPECT_NEAR(at.contacts.tolerances().margin(), 1e-7, 1e-20);
 }
 
 // tan = 0.4 and a friction of 0.5: the box stays where it is, to the error of the problem, 1e-7 of g h.
