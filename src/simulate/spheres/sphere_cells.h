@@ -67,7 +67,7 @@ class SphereCells {
   Vec3 origin_ = Vec3::Zero();              // m
   Cell counts_ = {1, 1, 1};                 // powers of two
   std::vector<Cell> cells_;                 // by sphere
-  std::vector<int> first_, next_, before_;  // first sphere by list; its neighbours by sphere; or kNone
+  std::vector<int> first_, next_, before_;  // first sphere by list; its neighbours by sphere; or kNoSphere
   std::vector<std::vector<int>> fixed_;     // by list
 };
 

@@ -2,16 +2,12 @@
 
 #include <algorithm>
 
+#include "simulate/spheres/sphere_tolerances.h"
+
 namespace cradle {
 namespace {
 
-constexpr double kSlowRatio = 1e-14;  // of the speeds: what touches and closes more slowly does so by rounding
-
-// Of the smaller radius: nearer is touching. Places are known to rounding at any accuracy, and of spheres of different
-// masses the order of collisions counts.
-constexpr double kSphereTouchRatio = 1e-11;
-
-constexpr double kMaxChange = 1.5;  // of the cells' size: then they are made anew
+constexpr double kMaxCellChange = 1.5;  // of the cells' size: then they are made anew
 
 double timeLeft(double until, double now) {
   return std::max(0.0, until - now);
@@ -58,7 +54,7 @@ bool SphereFlights::renewCells(double now) {
   if (!cells_.isBounded()) return false;
   SphereCells cells = cellsAt(now);
   const double change = cells.size() / cells_.size();
-  if (change < kMaxChange && change > 1 / kMaxChange) return false;
+  if (change < kMaxCellChange && change > 1 / kMaxCellChange) return false;
   cells_ = std::move(cells);
   return true;
 }
@@ -103,7 +99,7 @@ void SphereFlights::predictAgainstSphere(const UniformMotion& motion, int sphere
   const UniformMotion theirs = flight.motion.after(now - flight.since);
   const UniformMotion relative = theirs.relativeTo(motion);
   if (relative.acceleration.isZero(0) && relative.position.dot(relative.velocity) >= 0) return;
-  const double slowest = kSlowRatio * (speedBound(motion) + speedBound(theirs));
+  const double slowest = SphereTolerances::minClosingSpeed(speedBound(motion) + speedBound(theirs));
   const double time = timeToDistance(relative, radiusOf(sphere) + radiusOf(other), {slowest, timeLeft(duration_, now)});
   keepEarlier(now + time, other, flight.hits, best);
 }
@@ -111,7 +107,7 @@ void SphereFlights::predictAgainstSphere(const UniformMotion& motion, int sphere
 void SphereFlights::predictAgainstPlanes(const UniformMotion& motion, int sphere, double now,
                                          PredictedCollision& best) const {
   const auto& supports = flights_[static_cast<std::size_t>(sphere)].supports;
-  const ContactSearch search{kSlowRatio * speedBound(motion), timeLeft(duration_, now)};
+  const ContactSearch search{SphereTolerances::minClosingSpeed(speedBound(motion)), timeLeft(duration_, now)};
   for (int plane = 0; plane < world_.planeCount(); ++plane) {
     if (std::find(supports.begin(), supports.end(), plane) != supports.end()) continue;
     const auto index = static_cast<std::size_t>(plane);
@@ -121,7 +117,8 @@ void SphereFlights::predictAgainstPlanes(const UniformMotion& motion, int sphere
 
 void SphereFlights::predictAgainstBoxes(const UniformMotion& motion, int sphere, double now, double until,
                                         PredictedCollision& best) const {
-  const ContactSearch search{kSlowRatio * speedBound(motion), timeLeft(std::min(until, duration_), now)};
+  const ContactSearch search{SphereTolerances::minClosingSpeed(speedBound(motion)),
+                             timeLeft(std::min(until, duration_), now)};
   for (const int box : cells_.fixedNear(sphere)) {
     const double time = timeToContact(motion, radiusOf(sphere), world_.boxes[static_cast<std::size_t>(box)], search);
     keepEarlier(now + time, ~(world_.planeCount() + box), 0, best);
@@ -149,7 +146,7 @@ bool SphereFlights::holds(const PredictedCollision& collision) const {
 }
 
 double SphereFlights::touchingGap(int sphere, int other) const {
-  return kSphereTouchRatio * (other < 0 ? radiusOf(sphere) : std::min(radiusOf(sphere), radiusOf(other)));
+  return SphereTolerances::touch(other < 0 ? radiusOf(sphere) : std::min(radiusOf(sphere), radiusOf(other)));
 }
 
 SphereContact SphereFlights::contactOf(int sphere, int other, double now) const {
@@ -180,7 +177,7 @@ void SphereFlights::appendTouching(int sphere, double now, std::vector<SphereCon
     if ((positionAt(other, now) - center).squaredNorm() <= reach * reach && other != sphere)
       contacts.push_back(contactOf(sphere, other, now));
   });
-  const double reach = radiusOf(sphere) + touchingGap(sphere, kNothing);
+  const double reach = radiusOf(sphere) + touchingGap(sphere, kNoPartner);
   for (int plane = 0; plane < world_.planeCount(); ++plane)
     if (nearnessOf(center, world_.planes[static_cast<std::size_t>(plane)]).distance <= reach)
       contacts.push_back(contactOf(sphere, ~plane, now));

@@ -9,11 +9,11 @@
 namespace cradle {
 
 /// What a sphere collides with: another sphere by its index >= 0, or an obstacle k as ~k.
-constexpr int kNothing = std::numeric_limits<int>::min();
+constexpr int kNoPartner = std::numeric_limits<int>::min();
 
 /// A contact of a sphere with another sphere or an obstacle.
 struct SphereContact {
-  int sphere = 0, other = kNothing;
+  int sphere = 0, other = kNoPartner;
   double gap = 0;              // m
   Vec3 normal = Vec3::Zero();  // unit, world, from the sphere to the other
   Vec3 point = Vec3::Zero();   // m, world: middle between the two surfaces
@@ -22,7 +22,7 @@ struct SphereContact {
 /// The next contact of a sphere, as long as neither it nor the other is struck before.
 struct PredictedCollision {
   double time = kNever;  // s
-  int other = kNothing;
+  int other = kNoPartner;
   long othersHits = 0;  // of the other, when this was predicted
 };
 

@@ -13,9 +13,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kRestRatio = 1e-7;      // of sqrt(g r): slower is no bounce but rounding
-constexpr double kRestRounding = 1e-13;  // of the sphere's speed, likewise
-constexpr double kLoadedRatio = 1e-9;    // of g: what presses less is rounding
 constexpr std::array<int, 3> kInFlight = {-1, -1, -1};
 
 }  // namespace
@@ -159,9 +156,8 @@ bool SphereImpact::reflectAll() {
 
 /// Nothing could be told from rest: the sphere neither bounces nor leaves, as far as this contact is concerned.
 bool SphereImpact::isSlow(const SphereContact& contact, double speed) const {
-  const double gravity = world_.gravity.norm(), radius = world_.radii[static_cast<std::size_t>(contact.sphere)];
-  const double rounding = kRestRounding * motions_[indexOf(contact.sphere)].velocity.norm();
-  return std::abs(speed) <= std::max(kRestRatio * std::sqrt(gravity * radius), rounding);
+  const double radius = world_.radii[static_cast<std::size_t>(contact.sphere)];
+  return std::abs(speed) <= tolerances().maxRestSpeed(radius, motions_[indexOf(contact.sphere)].velocity.norm());
 }
 
 /// Which planes carry the spheres from here on.
@@ -190,7 +186,7 @@ void SphereImpact::carry(std::size_t index, const std::vector<int>& planes) {
   const VectorX rates = normals * motion.acceleration;
   std::size_t count = 0;
   for (std::size_t i = 0; i < planes.size() && count < 3; ++i) {
-    if (std::abs(rates[static_cast<Eigen::Index>(i)]) > kLoadedRatio * world_.gravity.norm()) continue;
+    if (std::abs(rates[static_cast<Eigen::Index>(i)]) > tolerances().minLoadedAcceleration()) continue;
     supports_[index][count++] = planes[i];
     const Vec3& normal = world_.planes[static_cast<std::size_t>(planes[i])].normal;
     motion.velocity -= normal.dot(motion.velocity) * normal;
@@ -211,7 +207,7 @@ std::optional<SphereContact> SphereImpact::lastingContact() const {
       curving = (velocity - opening * contact.normal).squaredNorm() /
                 (world_.radii[static_cast<std::size_t>(contact.sphere)] +
                  world_.radii[static_cast<std::size_t>(contact.other)]);
-    if (contact.normal.dot(acceleration) + curving < -kLoadedRatio * world_.gravity.norm()) return contact;
+    if (contact.normal.dot(acceleration) + curving < -tolerances().minLoadedAcceleration()) return contact;
   }
   return std::nullopt;
 }

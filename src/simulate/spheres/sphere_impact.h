@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "simulate/spheres/sphere_flights.h"
+#include "simulate/spheres/sphere_tolerances.h"
 
 namespace cradle {
 
@@ -42,6 +43,7 @@ class SphereImpact {
   void findSupports();
   void carry(std::size_t index, const std::vector<int>& planes);
   bool isSlow(const SphereContact& contact, double speed) const;
+  SphereTolerances tolerances() const { return {world_.gravity.norm()}; }
   Vec3 relativeVelocity(const SphereContact& contact) const;
   std::size_t indexOf(int sphere) const;
   double inverseMassOf(int sphere) const {

@@ -61,7 +61,7 @@ TEST(SphereFlights, FindTheFirstOfAllMeetingsBeforeASphereLeavesItsCell) {
     const auto i = static_cast<std::size_t>(sphere);
     const double crossing = flights.nextCrossing(sphere, 0).time;
     const PredictedCollision found = flights.nextCollision(sphere, 0, crossing);
-    if (found.other != kNothing) {
+    if (found.other != kNoPartner) {
       EXPECT_NEAR(found.time, meetingOf(world, i, static_cast<std::size_t>(found.other)), 1e-12) << sphere;
     }
     for (int other = 0; other < 200; ++other) {
@@ -154,7 +154,7 @@ TEST(SphereFlights, DoNotMeetWhatTheyTouchByRounding) {
     const SphereWorld world = spheresAt(
         {{Vec3::Zero(), Vec3(part * 2e-14, 2, 0), Vec3::Zero()}, {Vec3(0.2, 0, 0), Vec3::Zero(), Vec3::Zero()}});
     const PredictedCollision meeting = SphereFlights(world, 10).nextCollision(0, 0, kNever);
-    EXPECT_EQ(meeting.other, part < 1 ? kNothing : 1);
+    EXPECT_EQ(meeting.other, part < 1 ? kNoPartner : 1);
   }
 }
 
