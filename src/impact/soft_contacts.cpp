@@ -10,8 +10,8 @@
 namespace cradle {
 namespace {
 
-constexpr double kSamePoint = 0.1;       // of the body's radius: points as near as that are one from step to step
-constexpr double kSameNormal = 0.9;      // cosine, at least, for forces to go on
+constexpr double kKeptPoint = 0.1;       // of the body's radius: points as near as that are one from step to step
+constexpr double kKeptNormal = 0.9;      // cosine, at least, for forces to go on
 constexpr double kSlowSliding = 0.1;     // m/s: slower, static friction holds; a step's gain by gravity is 0.16
 constexpr double kKeptMotion = 1e-3;     // m: what two bodies may move against each other with one manifold
 constexpr double kKeptTurn = 0.01;       // rad: both together
@@ -263,11 +263,11 @@ void SoftContacts::follow(const NearPair& pair, const MovingPose& poseA, const M
 /// Takes a new manifold; points that were there before keep their forces.
 void SoftContacts::renew(const PredictedManifold& found, const MovingPose& poseA, const MovingPose& poseB,
                          bool wasEmpty, PersistentManifold& manifold) {
-  const bool goesOn = !wasEmpty && manifold.normal.dot(found.normal) > kSameNormal;
+  const bool goesOn = !wasEmpty && manifold.normal.dot(found.normal) > kKeptNormal;
   const auto forces = manifold.forces;
   const auto onA = manifold.onA;
   const std::size_t count = static_cast<std::size_t>(manifold.count);
-  const float near2 = static_cast<float>(kSamePoint * kSamePoint * poseA.radius * poseA.radius);
+  const float near2 = static_cast<float>(kKeptPoint * kKeptPoint * poseA.radius * poseA.radius);
   const Vec3& from = manifold.bodyB == kFixed ? poseA.position : poseB.position;
   manifold.forces.fill(0);
   if (!goesOn) manifold.frictionForce.setZero(), manifold.twist = 0;

@@ -16,10 +16,10 @@ constexpr int kMaxSubstepGroups = 32;           // looks a step
 constexpr int kSubSteps = 8;  // a step, at least: with fewer, contacts must be so soft that heaps sink
 constexpr int kDisturbedSubSteps =
     16;  // with fewer, friction gives way little by little: turned boxes creep for seconds
-constexpr double kManySpheres = 0.25;  // of all bodies
-constexpr double kStillRatio = 0.25;  // of the speed that gravity gives a body in a step: contacts at rest have as much
-constexpr double kContactMargin = 5e-3;  // m: contacts are known before bodies touch
-constexpr std::size_t kBodyGrain = 256;  // bodies that a thread takes at once: tens of microseconds
+constexpr double kManySpheres = 0.25;     // of all bodies
+constexpr double kSoftStillRatio = 0.25;  // of the speed g h of a step: contacts at rest have as much
+constexpr double kContactMargin = 5e-3;   // m: contacts are known before bodies touch
+constexpr std::size_t kBodyGrain = 256;   // bodies that a thread takes at once: tens of microseconds
 
 std::vector<double> massesOf(const std::vector<RigidBody>& bodies) {
   std::vector<double> masses;
@@ -93,7 +93,7 @@ void SoftStep::advance(double timeStep, VectorX& state) {
   impacts_.clear(), fallenAsleep_.clear(), woken_.clear();
   taken_ = {};
   if (allAsleep()) return;
-  slowestRebound_ = timeStep * gravity_.norm(), slow_ = kStillRatio * slowestRebound_;
+  slowestRebound_ = timeStep * gravity_.norm(), slow_ = kSoftStillRatio * slowestRebound_;
 
   // How fast do bodies approach each other, and how often must they be looked at for that?
   placeBodies(timeStep, state);

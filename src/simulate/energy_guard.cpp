@@ -15,7 +15,7 @@ namespace {
 constexpr double kUnexplained = 2;       // times the energy that can be explained: nothing is left of the motion
 constexpr double kMaxLocalErrors = 100;  // times their sum: they are estimates; 0.1 of it has been seen
 constexpr double kPlaceRounding = 64 * std::numeric_limits<double>::epsilon();  // of a place, over a run's steps
-constexpr double kTouchingGap = 1e-8;       // of a size: gaps are closed that are no wider
+constexpr double kClosableGap = 1e-8;       // of a size: gaps are closed that are no wider
 constexpr double kFinestTolerance = 1e-13;  // of a component in a step: finer tolerances are not kept
 constexpr double kCalmRatio = 0.1;          // of what stops a run: before, the motion is still the scene's own
 constexpr double kSafeRotation = 0.1;     // rad a step: RK4 is then right to 1e-7 a step; slower rotations are no cause
@@ -72,7 +72,7 @@ double energyOfPlaceErrors(const Mechanism& mechanism, const std::vector<double>
   double sum = 0;
   for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
     const Eigen::Index body = static_cast<Eigen::Index>(i);
-    const double error = kPlaceRounding * centerOfMass(state, body).norm() + kTouchingGap * radii[i];
+    const double error = kPlaceRounding * centerOfMass(state, body).norm() + kClosableGap * radii[i];
     sum += mechanism.bodies[i].mass * mechanism.gravity.norm() * error;
   }
   for (const SpringForce& spring : mechanism.springs) {

@@ -15,7 +15,7 @@ namespace {
 constexpr double kTouchingAtPin = 1e-9;
 constexpr double kSamePlaceAtPin = 1e-6;  // ... and so far from the anchor a round surface has less of a turn still
 constexpr double kSameAxis = 1e-9;        // sine of an angle between axes
-constexpr double kLine = 1e-3;            // of a size: surfaces that share a longer line about it do so to either side
+constexpr double kSharedLine = 1e-3;      // of a size: surfaces that share a longer line about it do so to either side
 constexpr double kSameNormals = 1e-12;    // its square, between normals: less is none
 
 /// A surface around a point of it, in directions across its normal. (Flat where both are zero.)
@@ -187,7 +187,7 @@ bool forbidRolling(std::size_t index, const PinnedPlace& pin, const std::string&
     const Vec3 normalInBody = bodyFromWorld * normal;
     const LocalSurface own = turned(worldFromBody.rotation, surfaceAt(collider, pin.point, normalInBody));
     const auto isLine = [&](const Vec3& direction) {
-      const double length = kLine * collider.boundingRadius, near = kSamePlaceAtPin * collider.boundingRadius;
+      const double length = kSharedLine * collider.boundingRadius, near = kSamePlaceAtPin * collider.boundingRadius;
       const auto isOnBoth = [&](const Vec3& point) {
         return isOnSurface(collider, worldFromBody.inverse() * point, near) &&
                (!touched.collider || isOnSurface(*touched.collider, point, near));

@@ -9,8 +9,8 @@ namespace {
 constexpr int kMaxCorrections = 60;  // steps tried to find an event; 3 are usual
 
 constexpr double kStepRounding = 1e-14;  // of the step: a narrower bracket is rounding
-constexpr double kFirstReach = 1e-6;     // of the step: half of the first bracket around the guess
-constexpr double kGrowingReach = 16;     // from one bracket to the next
+constexpr double kFirstBracket = 1e-6;   // of the step: half of the first bracket around the guess
+constexpr double kBracketGrowth = 16;    // from one bracket to the next
 
 }  // namespace
 
@@ -27,13 +27,13 @@ double endStepAtEvent(IslandState& island, Integrator integrate, const EventWind
   };
   double late = window.guess, lateMargin = marginAfter(late);
   if (std::abs(lateMargin) <= tolerance || (lateMargin > 0 && late >= window.latest)) return lateMargin;
-  double early = 0, earlyMargin = tolerance, reach = kFirstReach * whole;
+  double early = 0, earlyMargin = tolerance, reach = kFirstBracket * whole;
   while (lateMargin > 0 && late < window.latest) {  // the event of the method is later than that of its interpolant
     early = late, earlyMargin = lateMargin;
-    late = std::min(window.latest, late + reach), lateMargin = marginAfter(late), reach *= kGrowingReach;
+    late = std::min(window.latest, late + reach), lateMargin = marginAfter(late), reach *= kBracketGrowth;
   }
   // Backwards from the guess: a contact, or a rope, that has just rebounded has a root at the start of the step too.
-  for (double part = window.guess - reach; early == 0 && part > 0; part -= reach, reach *= kGrowingReach) {
+  for (double part = window.guess - reach; early == 0 && part > 0; part -= reach, reach *= kBracketGrowth) {
     const double found = marginAfter(part);
     if (found > 0)
       early = part, earlyMargin = found;

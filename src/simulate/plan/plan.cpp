@@ -34,10 +34,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kSoftTimeStep = 1.0 / 60;      // s, at most
-constexpr std::size_t kMinSoftBodies = 50;      // with fewer, RK4 costs less than the pictures of its frames
-constexpr double kMaxRatio = 10;                // of masses and of densities in a heap
-constexpr std::size_t kMaxPoints = 30'000'000;  // some 700 MB
+constexpr double kSoftTimeStep = 1.0 / 60;           // s, at most
+constexpr std::size_t kMinSoftBodies = 50;           // with fewer, RK4 costs less than the pictures of its frames
+constexpr double kMaxHeapRatio = 10;                 // of masses and of densities in a heap
+constexpr std::size_t kMaxModelPoints = 30'000'000;  // some 700 MB
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSteppedTolerance = 1e-5;     // of the local error of RK4, at most: contact decides how good a step is
 constexpr double kToleranceRatio = 0.02;       // of the accuracy: local errors of tens of steps add up, and take energy
@@ -138,7 +138,7 @@ bool hasDenseOnes(const Scene& scene, const IslandPlan& island) {
   for (const int body : island.bodies)
     lightest = std::min(lightest, massOf(body).mass), thinnest = std::min(thinnest, densityOf(body));
   return std::any_of(island.bodies.begin(), island.bodies.end(), [&](int body) {
-    return massOf(body).mass > kMaxRatio * lightest && densityOf(body) > kMaxRatio * thinnest;
+    return massOf(body).mass > kMaxHeapRatio * lightest && densityOf(body) > kMaxHeapRatio * thinnest;
   });
 }
 
@@ -190,11 +190,11 @@ void requireFewPoints(const Scene& scene, const std::vector<IslandPlan>& islands
       const auto collider = isNew ? colliderOf(body, scene, kFixed) : std::nullopt;
       if (collider) known->second = collider->points.size();
       points += known->second;
-      if (points > kMaxPoints)
+      if (points > kMaxModelPoints)
         throw Error(ErrorKind::limit, body.where,
                     fmt::format("from here on, models of bodies that may touch have more than {} points in all; give "
                                 "some \"collision\": \"hull\" or \"none\", or take simpler meshes or fewer bodies",
-                                kMaxPoints));
+                                kMaxModelPoints));
     }
 }
 

@@ -21,7 +21,7 @@
 namespace cradle {
 namespace {
 
-constexpr int kFewRows = 60;          // of spheres that touch: the most that can be independent, solved in 1 ms
+constexpr int kFewSphereRows = 60;    // of spheres that touch: the most that can be independent, solved in 1 ms
 constexpr double kBounces = 16;       // times 1 / (1 - e): bounces of a sphere from 1/60 s before its rest, e near 1
 constexpr double kFewBounces = 5e3;   // a quarter of those that kLongEventRateLimit has
 constexpr double kLevelSlope = 1e-9;  // sine: flatter is level
@@ -200,7 +200,8 @@ int independentRows(const PossibleContacts& contacts) {
 /// Whether the contacts are those of few spheres: events serve them in any case, at a bearable cost.
 bool areFewSpheres(const PossibleContacts& contacts) {
   const double bounces = kBounces * static_cast<double>(contacts.movers.size()) / (1 - contacts.restitution);
-  return contacts.areRound && !contacts.hasSlopes && independentRows(contacts) <= kFewRows && bounces <= kFewBounces;
+  return contacts.areRound && !contacts.hasSlopes && independentRows(contacts) <= kFewSphereRows &&
+         bounces <= kFewBounces;
 }
 
 /// Whether contacts may have too many rows. Contacts that join bodies to a tree are independent of each other, unless
@@ -262,11 +263,11 @@ Promise promiseOf(const Scene& scene, const IslandPlan& island, const ReachableP
 }
 
 std::string namesOfBodies(const std::vector<int>& bodies, const Scene& scene) {
-  constexpr std::size_t kMaxNames = 4;
+  constexpr std::size_t kMaxNamedBodies = 4;
   std::string names;
-  for (std::size_t i = 0; i < std::min(kMaxNames, bodies.size()); ++i)
+  for (std::size_t i = 0; i < std::min(kMaxNamedBodies, bodies.size()); ++i)
     names += fmt::format("{}{}", i ? ", " : "", printableLine(scene.bodies[static_cast<std::size_t>(bodies[i])].name));
-  if (bodies.size() > kMaxNames) names += fmt::format(" and {} more", bodies.size() - kMaxNames);
+  if (bodies.size() > kMaxNamedBodies) names += fmt::format(" and {} more", bodies.size() - kMaxNamedBodies);
   return names;
 }
 
