@@ -11,7 +11,6 @@
 #include "simulate/events/slow_sliding.h"
 #include "simulate/plan/disjoint_sets.h"
 #include "simulate/plan/event_rate_limit.h"
-#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {

@@ -17,7 +17,7 @@ StepScales stepScalesOf(const Assembly& assembly);
 /// The tolerances of contact stepping, and of the rest of bodies under it. They do not depend on the accuracy, as steps
 /// promise none. Those that scales decide are members and functions, with their formulas; the constants are relative.
 /// h (s) is the length of a step, g h the speed that gravity gives in it; l (m) the size of the smaller body at a
-/// contact, or of a body.
+/// contact, or of a body. Windows [a, b] were measured as those of EventTolerances.
 struct StepTolerances {
   StepScales scales;
 
@@ -35,18 +35,19 @@ struct StepTolerances {
   // Contacts that are farther apart take no part in an impact or rest.
   double margin() const { return std::max(touch, support); }  // m
 
-  // Overlaps at the end of a step that are shallower are left to the next one.
+  // Overlaps at the end of a step that are shallower are left to the next one. [1e-3, 0.9]
   static constexpr double kLetBeRatio = 0.1;               // of the margin
   double letBe() const { return kLetBeRatio * margin(); }  // m
 
-  // So well overlaps are taken out, of which the deepest is this one.
+  // So well overlaps are taken out, of which the deepest is this one. [1e-3, 0.1]; a hundredth or a hundred times as
+  // much of the deepest change last bits of a stack, but no test.
   static constexpr double kSeparatedRatio = 0.1;   // of `overlap` ...
   static constexpr double kSeparatedError = 1e-3;  // ... or of the deepest
   double separationError(double deepest) const {   // m
     return std::max(kSeparatedRatio * overlap, kSeparatedError * deepest);
   }
 
-  // The gap that is left where a step ends at an impact.
+  // The gap that is left where a step ends at an impact. [1e-6, 1]
   static constexpr double kClosedGapRatio = 1e-3;  // of `touch`
   double closedGap = 0;                            // m
 
@@ -57,23 +58,28 @@ struct StepTolerances {
   }
 
   // A contact between the sides of two capsules is followed through a step in which they move farther along each other:
-  // over a shorter way, errors of gaps hide accelerations.
+  // over a shorter way, errors of gaps hide accelerations. [100, 1e7]
   static constexpr double kSeenWayRatio = 1e5;                       // of `overlap`
   double minFollowedWay() const { return kSeenWayRatio * overlap; }  // m
 
-  // Shorter moment arms about a joint leave hardly any rotation, and contacts there may overlap by so much.
+  // Shorter moment arms about a joint leave hardly any rotation, [3e-4, 0.03], and contacts there may overlap by so
+  // much, [1e-9, 1e-4].
   static constexpr double kLooseMomentArm = 3e-3, kLoosened = 1e-6;  // of l
 
   // Directions.
 
-  static constexpr double kSameFeature = 0.99;  // cosine: normals that rotate farther in h / 2 are another contact's
-  static constexpr double kParallelNormals = 1e-12;  // sine: of planes that hinder the same motions
+  // Normals that rotate farther in half a step are another contact's. [0.89, 0.99]
+  static constexpr double kSameFeature = 0.99;  // cosine
 
-  // Speeds (m/s).
+  // Planes whose normals are as near hinder the same motions. [1e-16, 1e-6]
+  static constexpr double kParallelNormals = 1e-12;  // sine
 
-  static constexpr double kMinClosingRatio = 1e-6;    // of g h: slower does not close
-  static constexpr double kMinImpactRatio = 0.01;     // of g h: slower is no impact
-  static constexpr double kMinNextImpactRatio = 0.1;  // of g h: a step does not end at a slower impact inside it
+  // Speeds (m/s). Slower does not close, [1e-9, 1e-6], with 1e-4 a stack has other bits; slower is no impact; a step
+  // does not end at a slower impact inside it: with 0.01 or 1, a stack has other bits, but no test fails.
+
+  static constexpr double kMinClosingRatio = 1e-6;    // of g h
+  static constexpr double kMinImpactRatio = 0.01;     // of g h
+  static constexpr double kMinNextImpactRatio = 0.1;  // of g h
   double minClosingSpeed(double h) const { return speedOf(kMinClosingRatio, h); }
   double minImpactSpeed(double h) const { return speedOf(kMinImpactRatio, h); }
   double minNextImpactSpeed(double h) const { return speedOf(kMinNextImpactRatio, h); }
@@ -98,19 +104,24 @@ struct StepTolerances {
   // Forces.
 
   // Forces at supports may leave bodies at rest such accelerations; forces of many supports are found to a part of it.
+  // [1e-9, 1e-3], [1e-5, 1]
   static constexpr double kRestResidualRatio = 1e-6;  // of g
   static constexpr double kForcesSolvedRatio = 1e-2;  // of that
   double residualAcceleration = 0, forceError = 0;    // m/s^2
 
-  static constexpr double kSolvedRatio = 1e-7;       // of the fastest velocity: so well contacts of a step are solved
-  static constexpr double kRestitutionError = 1e-6;  // of the part of restitutions that gains no energy
-  static constexpr double kEnergyRounding = 1e-13;   // of the energy: a gain is more
+  // So well contacts of a step are solved. 1e-10 and 1e-4 change last bits of a stack, but no test.
+  static constexpr double kSolvedRatio = 1e-7;  // of the fastest velocity
+
+  // So well that part of restitutions is found which gains no energy: impulses are found no better. [1e-9, 0.01]
+  static constexpr double kRestitutionError = 1e-6;
+
+  static constexpr double kEnergyRounding = 1e-13;  // of the energy: a gain is more
 
   // Of the inverse mass without constraints. Where a joint is nearer to a contact than 1e-3 of the size, an overlap is
-  // let be: taking it out would lift the body by more than a thousand times as much, against all forces.
+  // let be: taking it out would lift the body by more than a thousand times as much, against all forces. [1e-8, 1e-4]
   static constexpr double kMinMobility = 1e-6;
 
-  // Constraint errors that contacts may leave: a thousandth of what is seen, at coordinates x (m).
+  // Constraint errors that contacts may leave: a thousandth of what is seen, at coordinates x (m). [1e-9, 1e-5]
   static constexpr double kConstraintError = 1e-7;                               // m (a m of coordinates) or rad
   double constraintError(double x) const { return kConstraintError * (1 + x); }  // m or rad
 
