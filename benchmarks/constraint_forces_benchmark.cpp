@@ -47,7 +47,8 @@ void ofAChain(benchmark::State& loop, const Kind& kind) {
 
 void dense(benchmark::State& loop) {
   const Eigen::Index size = loop.range(0);
-  const MatrixX matrix = 2 * MatrixX::Identity(size, size) + MatrixX::Constant(size, size, 1.0 / static_cast<double>(size));
+  const MatrixX matrix =
+      2 * MatrixX::Identity(size, size) + MatrixX::Constant(size, size, 1.0 / static_cast<double>(size));
   Eigen::LDLT<MatrixX> factor(size);
   VectorX x(size), ones = VectorX::Ones(size);
   for (auto _ : loop) {

@@ -45,7 +45,4 @@ struct ConstraintEnds {
 /// One of the rows.
 ConstraintRow rowOf(const ConstraintBlock& block, int row);
 
-/// Of the lengths that enter a row: a few units in their last place.
-constexpr double kRowRounding = 1e-15;
-
 }  // namespace cradle

@@ -24,7 +24,7 @@ constexpr int kMaxRefinements = 3;
 
 constexpr int kMaxProjectionSteps = 20;      // quadratic convergence needs 1 or 2 from a step's error
 constexpr double kStalled = 0.5;             // an iteration that leaves more of an error has failed
-constexpr double kFar = 1000;                // times the error: few sound mechanisms move farther to mend it
+constexpr double kMaxShiftRatio = 1000;      // times the error: few sound mechanisms move farther to mend it
 constexpr double kConverged = 0.2;           // an iteration that leaves less of an error (0.25 at a jam) was sound,
 constexpr double kFarthest = 1e-3;           // if it moved nothing farther than this (m or rad)
 constexpr double kMoreRegular = 1000;        // factor on the regularisation after a failure
@@ -302,7 +302,7 @@ double ConstraintSolver::project(VectorX& state) {
     const double farthest = displace(state);
     factorize(state);
     const double left = largestError();
-    const bool isSound = farthest <= kFar * error || (left < kConverged * error && farthest <= kFarthest);
+    const bool isSound = farthest <= kMaxShiftRatio * error || (left < kConverged * error && farthest <= kFarthest);
     if (isSound && left < kStalled * error) {
       error = left;
       continue;

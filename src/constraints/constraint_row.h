@@ -18,6 +18,9 @@ struct ConstraintRow {
   double rounding = 0;                        // m, or rad: an error that arithmetic alone explains
 };
 
+/// Of the lengths that enter a row: a few units in their last place.
+constexpr double kRowRounding = 1e-15;
+
 /// J v of a row for the velocities, or accelerations, in `state`.
 double rateOf(const ConstraintRow& row, const VectorX& state);
 

@@ -20,7 +20,6 @@
 namespace cradle {
 namespace {
 
-constexpr double kRounding = 1e-15;    // of the lengths that enter a gap: a few units in their last place
 constexpr double kFastSliding = 1e-4;  // m/s: above, the weight of the direction given is below rounding
 
 bool isFace(double radius) {
@@ -159,7 +158,7 @@ ContactKinematics kinematicsOf(const ContactConstraint& contact, const VectorX& 
   }
   const Vec3 armRateA = spinA.cross(a.arm) - ascent.rate;
   place.drift = spinA.cross(armRateA) - spinB.cross(armRateA + velocity);
-  place.rounding = kRounding * (a.position.norm() + a.arm.norm() + b.arm.norm() + contact.radiusA);
+  place.rounding = kRowRounding * (a.position.norm() + a.arm.norm() + b.arm.norm() + contact.radiusA);
   return place;
 }
 
