@@ -154,23 +154,28 @@ bool RopeEvents::rests(std::size_t rope) const {
 
 bool RopeEvents::resolve(double time, VectorX& state) {
   // Ropes that would have to push are released, even where others go taut; impacts may have shortened some.
-  bool released = false;
+  std::vector<char> isReleased(tautRow_.size(), 0);
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
     if (!isTaut(i) || rests(i) || tension(i, state) > kTautRatio * tensionScale_) continue;
     release(time, i, state);
-    released = true;
+    isReleased[i] = 1;
   }
 
   for (std::size_t i = 0; i < tautRow_.size(); ++i)
     if (!isTaut(i) && motionOf(assembly_.ropes[i], state).slackLength > kSlackRatio * assembly_.ropes[i].maxLength)
       loosen(time, i, state);
-  return pullStretched(time, state) || released;
+  const bool released = std::find(isReleased.begin(), isReleased.end(), 1) != isReleased.end();
+  return pullStretched(time, isReleased, state) || released;
+}
+
+bool RopeEvents::pullStretched(double time, VectorX& state) {
+  return pullStretched(time, std::vector<char>(tautRow_.size(), 0), state);
 }
 
 /// A pull may stretch another rope that is at its length, or load it.
-bool RopeEvents::pullStretched(double time, VectorX& state) {
+bool RopeEvents::pullStretched(double time, const std::vector<char>& isReleased, VectorX& state) {
   for (int round = 0; round < kMaxPullRounds; ++round) {
-    const std::vector<Stretch> stretches = findStretches(state);
+    const std::vector<Stretch> stretches = findStretches(isReleased, state);
     if (stretches.empty()) return round > 0;
     pull(time, stretches, state);
   }
@@ -178,8 +183,9 @@ bool RopeEvents::pullStretched(double time, VectorX& state) {
 }
 
 /// Ropes at their length that still lengthen. A rebound that would end within about two steps is not resolved: the rope
-/// stays taut.
-std::vector<RopeEvents::Stretch> RopeEvents::findStretches(const VectorX& state) {
+/// stays taut. Smooth forces do not pull at a rope in the instant that it is released: its tension is zero to rounding,
+/// of either sign, and would have it released again before time moves on.
+std::vector<RopeEvents::Stretch> RopeEvents::findStretches(const std::vector<char>& isReleased, const VectorX& state) {
   std::vector<Stretch> stretches;
   bool isEvaluated = false;
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
@@ -190,7 +196,7 @@ std::vector<RopeEvents::Stretch> RopeEvents::findStretches(const VectorX& state)
     if (!std::exchange(isEvaluated, true)) equations_.evaluate(state, derivative_);
     const double acceleration = lengtheningAcceleration(rope, state, derivative_),
                  pulling = std::max(0.0, acceleration);
-    const bool isLoaded = acceleration > kMinPull * assembly_.mechanism.gravity.norm();
+    const bool isLoaded = !isReleased[i] && acceleration > kMinPull * assembly_.mechanism.gravity.norm();
     if (!isLoaded && motion.lengthening <= kRestSpeedFloor) continue;
     const double restSpeed =
         2 * pulling * timeStep_ + kLowestRebound * std::sqrt(pulling * rope.maxLength) + kRestSpeedFloor;

@@ -72,7 +72,8 @@ class RopeEvents {
     double reboundSpeed;  // m/s, 0: does not rebound
     bool isLoaded;        // forces would lengthen it further
   };
-  std::vector<Stretch> findStretches(const VectorX& state);
+  bool pullStretched(double time, const std::vector<char>& isReleased, VectorX& state);
+  std::vector<Stretch> findStretches(const std::vector<char>& isReleased, const VectorX& state);
   void pull(double time, const std::vector<Stretch>& stretches, VectorX& state);
   void release(double time, std::size_t rope, const VectorX& state);
   void loosen(double time, std::size_t rope, const VectorX& state);

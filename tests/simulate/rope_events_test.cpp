@@ -207,6 +207,21 @@ TEST(RopeEvents, LetGoWhereTheTensionEnds) {
   }
 }
 
+// Without gravity, m v^2 / L = 1e-15 N is no tension: the rope is released, and not pulled at again in that instant,
+// over and over. A tension that is one holds.
+TEST(RopeEvents, StayReleasedInTheInstantThatTheirTensionEnds) {
+  const double length = 0.7;
+  for (const double tension : {1e-15, 1e-3}) {
+    const double speed = std::sqrt(tension * length);  // of 1 kg
+    OneIsland at(ballOn(Vec3(0, -length, 0), Vec3(speed, 0, 0), ropeOf("ball", Vec3::Zero(), length), 0));
+    RopeEvents ropes(at.island);
+    ASSERT_TRUE(ropes.resolve(0, at.state()));
+    ASSERT_THAT(at.mechanism().constraints, SizeIs(1));
+    EXPECT_EQ(ropes.resolve(0, at.state()), tension < 1e-9);
+    EXPECT_THAT(at.mechanism().constraints, SizeIs(tension < 1e-9 ? 0 : 1));
+  }
+}
+
 // The ball rises on its rope, v^2 = v0^2 - 2 g L (cos(phi) + 1) from the bottom: its tension ends where v^2 / L =
 // g cos(phi), cos(phi) = (v0^2 / (g L) - 2) / 3. The margin is zero there, and in parts of the tension at the step's
 // start.
