@@ -8,16 +8,16 @@
 namespace cradle {
 
 /// The rows of one bilateral constraint C(positions) = 0 of two bodies at one instant, one to six. It depends on where
-/// A is relative to B, so that dC/dt = linear^T (v_A - v_B) + angularA^T w_A + angularB^T w_B: the columns are J^T in
-/// parts, in the world's frame. As for a ConstraintRow, d^2C/dt^2 = J a + (dJ/dt) v.
+/// A is relative to B, so that dC/dt = linear (v_A - v_B) + angularA w_A + angularB w_B: the Jacobian J in parts, in
+/// the world's frame. As for a ConstraintRow, d^2C/dt^2 = J a + (dJ/dt) v.
 struct ConstraintBlock {
   static constexpr int kMaxRows = 6;
-  using Columns = Eigen::Matrix<double, 3, kMaxRows>;
+  using Jacobian = Eigen::Matrix<double, kMaxRows, 3>;
   using Values = std::array<double, kMaxRows>;
 
   int bodyA = kFixed, bodyB = kFixed;
   int rows = 0;
-  Columns linear, angularA, angularB;
+  Jacobian linear, angularA, angularB;
   bool isPoint = false;                 // `linear` is the identity, and zero from the fourth row on
   bool turnsA = false, turnsB = false;  // else angularA, angularB are zero, and not set
   Values value{};                       // C, the constraint error

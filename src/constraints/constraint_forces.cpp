@@ -35,7 +35,13 @@ constexpr double kJammedRegularisation = 1e-7;  // of the diagonal: 3e-4 of a si
 constexpr double kContradicted = 0.5;           // of what is asked: locked mechanisms leave 0.95, others up to 0.02
 constexpr double kContradictingRatio = 1e-3;    // of the largest residual: rows with less contradict nothing
 
-using Columns = ConstraintBlock::Columns;
+using Jacobian = ConstraintBlock::Jacobian;
+
+/// A row times a vector. Loops over the rows become loops over neighbours in memory, two at a time.
+template <class Vector>
+[[gnu::always_inline]] inline double dotOf(const Jacobian& jacobian, int row, const Vector& vector) {
+  return jacobian(row, 0) * vector[0] + jacobian(row, 1) * vector[1] + jacobian(row, 2) * vector[2];
+}
 
 /// Adds J M^-1 J^T of two constraints by a body that both have to a block of the matrix, column by column: what the
 /// body's mass does, and what its turning. `inverseMass` is negative where the body is A of one and B of the other.
@@ -45,27 +51,28 @@ void addMass(const ConstraintBlock& row, const ConstraintBlock& column, double i
     for (int i = 0; i < 3; ++i) block[i * rows + i] += inverseMass;
   else
     for (int k = 0; k < columns; ++k)
-      for (int i = 0; i < rows; ++i) block[k * rows + i] += inverseMass * row.linear.col(i).dot(column.linear.col(k));
+      for (int i = 0; i < rows; ++i) block[k * rows + i] += inverseMass * dotOf(row.linear, i, column.linear.row(k));
 }
 template <int rows, int columns>
-void addInertia(const Columns& angular, const Columns& turn, double* block) {
-  Eigen::Map<Eigen::Matrix<double, rows, columns, rows == 1 ? Eigen::RowMajor : Eigen::ColMajor>>(block) +=
-      angular.leftCols<rows>().transpose().lazyProduct(turn.leftCols<columns>());
+void addInertia(const Jacobian& angular, const Jacobian& turn, double* __restrict__ block) {
+  for (int k = 0; k < columns; ++k)
+    for (int i = 0; i < rows; ++i) block[k * rows + i] += dotOf(angular, i, turn.row(k));
 }
 
 /// J v of the rows of a constraint.
 template <int rows>
-[[gnu::always_inline]] inline void findRates(const ConstraintBlock& block, const VectorX& state, double* rates) {
+[[gnu::always_inline]] inline void findRates(const ConstraintBlock& block, const VectorX& state,
+                                             double* __restrict__ rates) {
   Vec3 relative = Vec3::Zero();
   if (block.bodyA != kFixed) relative += linearVelocity(state, block.bodyA);
   if (block.bodyB != kFixed) relative -= linearVelocity(state, block.bodyB);
   if (block.isPoint)
     for (int i = 0; i < rows; ++i) rates[i] = i < 3 ? relative[i] : 0;
   else
-    for (int i = 0; i < rows; ++i) rates[i] = block.linear.col(i).dot(relative);
-  const auto addSpin = [&](int body, const Columns& angular) {
+    for (int i = 0; i < rows; ++i) rates[i] = dotOf(block.linear, i, relative);
+  const auto addSpin = [&](int body, const Jacobian& angular) {
     const Vec3 spin = angularVelocity(state, body);
-    for (int i = 0; i < rows; ++i) rates[i] += angular.col(i).dot(spin);
+    for (int i = 0; i < rows; ++i) rates[i] += dotOf(angular, i, spin);
   };
   if (block.turnsA) addSpin(block.bodyA, block.angularA);
   if (block.turnsB) addSpin(block.bodyB, block.angularB);
@@ -104,13 +111,13 @@ void ConstraintSolver::respond(const std::vector<BodyFrame>& frames, Member& mem
     return body == kFixed ? 0 : bodies_[static_cast<std::size_t>(body)].inverseMass;
   };
   member.inverseMassA = inverseMassOf(member.bodyA), member.inverseMassB = inverseMassOf(member.bodyB);
-  const auto turn = [&](int body, const Columns& angular, bool turns, Columns& response) {
+  const auto turn = [&](int body, const Jacobian& angular, bool turns, Jacobian& response) {
     if (!turns) return;
     const std::size_t index = static_cast<std::size_t>(body);
-    if (!bodies_[index].turns) return void(response.setZero());
-    const Mat3& inverseInertia = frames[index].inverseInertia;
+    const Mat3 inverseInertia = bodies_[index].turns ? frames[index].inverseInertia : Mat3::Zero();
     withRows(member.rows, [&](auto rows) {
-      for (int i = 0; i < rows; ++i) response.col(i) = inverseInertia * angular.col(i);
+      for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < rows; ++i) response(i, k) = dotOf(angular, i, inverseInertia.col(k));
     });
   };
   turn(member.bodyA, member.angularA, member.turnsA, member.turnA);
@@ -189,8 +196,8 @@ void ConstraintSolver::assemble() {
     const double inverseMass = coupling.columnIsA ? column.inverseMassA : column.inverseMassB;
     const bool rowTurns = coupling.rowIsA ? row.turnsA : row.turnsB;
     const bool columnTurns = coupling.columnIsA ? column.turnsA : column.turnsB;
-    const Columns& angular = coupling.rowIsA ? row.angularA : row.angularB;
-    const Columns& turn = coupling.columnIsA ? column.turnA : column.turnB;
+    const Jacobian& angular = coupling.rowIsA ? row.angularA : row.angularB;
+    const Jacobian& turn = coupling.columnIsA ? column.turnA : column.turnB;
     double* const block = factor_.beside(coupling.place);
     withRows(row.rows, [&](auto rows) {
       withRows(column.rows, [&](auto columns) {
@@ -227,8 +234,8 @@ void ConstraintSolver::addResponse(const Add& add) const {
   for (const Member& member : members_) {
     Vec3 force = Vec3::Zero(), turnA = Vec3::Zero(), turnB = Vec3::Zero();
     withRows(member.rows, [&](auto rows) {
-      const auto sum = [&](const Columns& columns, Vec3& total) {
-        for (int i = 0; i < rows; ++i) total += multipliers[i] * columns.col(i);
+      const auto sum = [&](const Jacobian& columns, Vec3& total) {
+        for (int i = 0; i < rows; ++i) total += multipliers[i] * columns.row(i).transpose();
       };
       if (member.isPoint)
         force = Vec3(multipliers[0], multipliers[1], multipliers[2]);

@@ -55,7 +55,7 @@ class ConstraintSolver {
   /// The rows of a constraint, and M^-1 J^T.
   struct Member : ConstraintBlock {
     double inverseMassA = 0, inverseMassB = 0;  // 1/kg; 0 if fixed
-    Columns turnA, turnB;                       // I^-1 angularA, I^-1 angularB; not set where these are zero
+    Jacobian turnA, turnB;                      // I^-1 angularA, I^-1 angularB; not set where these are zero
   };
   /// A body that two constraints have in common, which puts a block beside the diagonal of the matrix.
   struct Coupling {

@@ -15,8 +15,8 @@ void putRows(const HingeConstraint& hinge, const ConstraintEnds& ends, Constrain
     const Vec3 leverRate = spinA.cross(axis).cross(across) + axis.cross(spinB.cross(across));
     const std::size_t row = 3 + i;
     const Eigen::Index column = static_cast<Eigen::Index>(row);
-    block.linear.col(column).setZero();
-    block.angularA.col(column) = lever, block.angularB.col(column) = -lever;
+    block.linear.row(column).setZero();
+    block.angularA.row(column) = lever, block.angularB.row(column) = -lever;
     block.value[row] = axis.dot(across);
     block.velocityProduct[row] = leverRate.dot(spinA - spinB);
     block.rounding[row] = kRowRounding;
