@@ -86,7 +86,7 @@ void ConstraintSolver::factorize(const VectorX& state) {
 }
 
 void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFrame>& frames) {
-  findMembers(state, frames);
+  findBlocks(state, frames);
   if (!hasKnownStructure()) analyze();
   assemble();
   factor_.factorize();
@@ -94,34 +94,34 @@ void ConstraintSolver::factorize(const VectorX& state, const std::vector<BodyFra
   if (!isRegular_) factor_.factorize(kRegularisation);
 }
 
-void ConstraintSolver::findMembers(const VectorX& state, const std::vector<BodyFrame>& frames) {
-  members_.resize(constraints_.size());
-  std::size_t members = 0;
+void ConstraintSolver::findBlocks(const VectorX& state, const std::vector<BodyFrame>& frames) {
+  blocks_.resize(constraints_.size()), responses_.resize(constraints_.size());
+  std::size_t blocks = 0;
   for (const Constraint& constraint : constraints_) {
     if (isExcluded(constraint.anchorA.body, constraint.anchorB.body)) continue;
-    Member& member = members_[members++];
-    findRows(constraint, state, frames, member);
-    respond(frames, member);
+    findRows(constraint, state, frames, blocks_[blocks]);
+    findResponse(blocks_[blocks], frames, responses_[blocks]);
+    ++blocks;
   }
-  members_.resize(members);
+  blocks_.resize(blocks), responses_.resize(blocks);
 }
 
-void ConstraintSolver::respond(const std::vector<BodyFrame>& frames, Member& member) const {
+void ConstraintSolver::findResponse(const ConstraintBlock& block, const std::vector<BodyFrame>& frames,
+                                    Response& response) const {
   const auto inverseMassOf = [this](int body) {
     return body == kFixed ? 0 : bodies_[static_cast<std::size_t>(body)].inverseMass;
   };
-  member.inverseMassA = inverseMassOf(member.bodyA), member.inverseMassB = inverseMassOf(member.bodyB);
-  const auto turn = [&](int body, const Jacobian& angular, bool turns, Jacobian& response) {
-    if (!turns) return;
+  response.inverseMassA = inverseMassOf(block.bodyA), response.inverseMassB = inverseMassOf(block.bodyB);
+  const auto findTurn = [&](int body, const Jacobian& angular, Jacobian& turn) {
     const std::size_t index = static_cast<std::size_t>(body);
     const Mat3 inverseInertia = bodies_[index].turns ? frames[index].inverseInertia : Mat3::Zero();
-    withRows(member.rows, [&](auto rows) {
+    withRows(block.rows, [&](auto rows) {
       for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < rows; ++i) response(i, k) = dotOf(angular, i, inverseInertia.col(k));
+        for (int i = 0; i < rows; ++i) turn(i, k) = dotOf(angular, i, inverseInertia.col(k));
     });
   };
-  turn(member.bodyA, member.angularA, member.turnsA, member.turnA);
-  turn(member.bodyB, member.angularB, member.turnsB, member.turnB);
+  if (block.turnsA) findTurn(block.bodyA, block.angularA, response.turnA);
+  if (block.turnsB) findTurn(block.bodyB, block.angularB, response.turnB);
 }
 
 void ConstraintSolver::exclude(const std::vector<char>& bodies) {
@@ -134,9 +134,9 @@ bool ConstraintSolver::isExcluded(int bodyA, int bodyB) const {
 }
 
 bool ConstraintSolver::hasKnownStructure() const {
-  return std::equal(members_.begin(), members_.end(), structure_.begin(), structure_.end(),
-                    [](const Member& member, const std::array<int, 3>& known) {
-                      return member.bodyA == known[0] && member.bodyB == known[1] && member.rows == known[2];
+  return std::equal(blocks_.begin(), blocks_.end(), structure_.begin(), structure_.end(),
+                    [](const ConstraintBlock& block, const std::array<int, 3>& known) {
+                      return block.bodyA == known[0] && block.bodyB == known[1] && block.rows == known[2];
                     });
 }
 
@@ -144,7 +144,7 @@ bool ConstraintSolver::hasKnownStructure() const {
 void ConstraintSolver::analyze() {
   structure_.clear(), couplings_.clear();
   struct End {
-    std::size_t member;
+    std::size_t block;
     bool isA;
   };
   std::vector<std::vector<End>> endsOf(bodies_.size());
@@ -152,20 +152,20 @@ void ConstraintSolver::analyze() {
   std::vector<std::pair<int, int>> places;
   std::vector<int> sizes;
   Eigen::Index rows = 0;
-  for (std::size_t i = 0; i < members_.size(); ++i) {
-    const Member& member = members_[i];
-    structure_.push_back({member.bodyA, member.bodyB, member.rows});
-    sizes.push_back(member.rows);
-    rows += member.rows;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const ConstraintBlock& block = blocks_[i];
+    structure_.push_back({block.bodyA, block.bodyB, block.rows});
+    sizes.push_back(block.rows);
+    rows += block.rows;
     for (const bool isA : {true, false}) {
-      const int body = isA ? member.bodyA : member.bodyB;
+      const int body = isA ? block.bodyA : block.bodyB;
       if (body == kFixed) continue;
       std::vector<End>& ends = endsOf[static_cast<std::size_t>(body)];
       for (const End& other : ends) {
-        const std::pair<int, int> place(static_cast<int>(i), static_cast<int>(other.member));
+        const std::pair<int, int> place(static_cast<int>(i), static_cast<int>(other.block));
         const auto [known, isNew] = placeOf.try_emplace(place, places.size());
         if (isNew) places.push_back(place);
-        couplings_.push_back({i, other.member, isA, other.isA, isNew, known->second});
+        couplings_.push_back({i, other.block, isA, other.isA, isNew, known->second});
       }
       ends.push_back({i, isA});
     }
@@ -181,29 +181,32 @@ void ConstraintSolver::analyze() {
 
 /// The Delassus operator.
 void ConstraintSolver::assemble() {
-  for (std::size_t i = 0; i < members_.size(); ++i) {
-    const Member& member = members_[i];
-    withRows(member.rows, [&](auto rows) {
-      double* const block = factor_.diagonal(i);
-      std::fill_n(block, rows * rows, 0.0);
-      addMass<rows, rows>(member, member, member.inverseMassA + member.inverseMassB, block);
-      if (member.turnsA) addInertia<rows, rows>(member.angularA, member.turnA, block);
-      if (member.turnsB) addInertia<rows, rows>(member.angularB, member.turnB, block);
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const ConstraintBlock& block = blocks_[i];
+    const Response& response = responses_[i];
+    withRows(block.rows, [&](auto rows) {
+      double* const entries = factor_.diagonal(i);
+      std::fill_n(entries, rows * rows, 0.0);
+      addMass<rows, rows>(block, block, response.inverseMassA + response.inverseMassB, entries);
+      if (block.turnsA) addInertia<rows, rows>(block.angularA, response.turnA, entries);
+      if (block.turnsB) addInertia<rows, rows>(block.angularB, response.turnB, entries);
     });
   }
   for (const Coupling& coupling : couplings_) {
-    const Member &row = members_[coupling.row], &column = members_[coupling.column];
-    const double inverseMass = coupling.columnIsA ? column.inverseMassA : column.inverseMassB;
+    const ConstraintBlock &row = blocks_[coupling.row], &column = blocks_[coupling.column];
+    const Response& response = responses_[coupling.column];
+    const double inverseMass = coupling.columnIsA ? response.inverseMassA : response.inverseMassB;
     const bool rowTurns = coupling.rowIsA ? row.turnsA : row.turnsB;
     const bool columnTurns = coupling.columnIsA ? column.turnsA : column.turnsB;
     const Jacobian& angular = coupling.rowIsA ? row.angularA : row.angularB;
-    const Jacobian& turn = coupling.columnIsA ? column.turnA : column.turnB;
-    double* const block = factor_.beside(coupling.place);
+    const Jacobian& turn = coupling.columnIsA ? response.turnA : response.turnB;
+    double* const entries = factor_.beside(coupling.place);
     withRows(row.rows, [&](auto rows) {
       withRows(column.rows, [&](auto columns) {
-        if (coupling.isFirst) std::fill_n(block, rows * columns, 0.0);
-        addMass<rows, columns>(row, column, coupling.rowIsA == coupling.columnIsA ? inverseMass : -inverseMass, block);
-        if (rowTurns && columnTurns) addInertia<rows, columns>(angular, turn, block);
+        if (coupling.isFirst) std::fill_n(entries, rows * columns, 0.0);
+        addMass<rows, columns>(row, column, coupling.rowIsA == coupling.columnIsA ? inverseMass : -inverseMass,
+                               entries);
+        if (rowTurns && columnTurns) addInertia<rows, columns>(angular, turn, entries);
       });
     });
   }
@@ -231,39 +234,41 @@ void ConstraintSolver::solve() {
 template <class Add>
 void ConstraintSolver::addResponse(const Add& add) const {
   const double* multipliers = multipliers_.data();
-  for (const Member& member : members_) {
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const ConstraintBlock& block = blocks_[k];
+    const Response& response = responses_[k];
     Vec3 force = Vec3::Zero(), turnA = Vec3::Zero(), turnB = Vec3::Zero();
-    withRows(member.rows, [&](auto rows) {
-      const auto sum = [&](const Jacobian& columns, Vec3& total) {
-        for (int i = 0; i < rows; ++i) total += multipliers[i] * columns.row(i).transpose();
+    withRows(block.rows, [&](auto rows) {
+      const auto sum = [&](const Jacobian& jacobian, Vec3& total) {
+        for (int i = 0; i < rows; ++i) total += multipliers[i] * jacobian.row(i).transpose();
       };
-      if (member.isPoint)
+      if (block.isPoint)
         force = Vec3(multipliers[0], multipliers[1], multipliers[2]);
       else
-        sum(member.linear, force);
-      if (member.turnsA) sum(member.turnA, turnA);
-      if (member.turnsB) sum(member.turnB, turnB);
+        sum(block.linear, force);
+      if (block.turnsA) sum(response.turnA, turnA);
+      if (block.turnsB) sum(response.turnB, turnB);
     });
-    if (member.bodyA != kFixed) add(member.bodyA, Vec3(member.inverseMassA * force), turnA);
-    if (member.bodyB != kFixed) add(member.bodyB, Vec3(-member.inverseMassB * force), turnB);
-    multipliers += member.rows;
+    if (block.bodyA != kFixed) add(block.bodyA, Vec3(response.inverseMassA * force), turnA);
+    if (block.bodyB != kFixed) add(block.bodyB, Vec3(-response.inverseMassB * force), turnB);
+    multipliers += block.rows;
   }
 }
 
-/// Calls visit(member, row, index) for each row; `index` is its place among all.
+/// Calls visit(block, row, index) for each row; `index` is its place among all.
 template <class Visit>
 void ConstraintSolver::forEachRow(const Visit& visit) const {
   Eigen::Index index = 0;
-  for (const Member& member : members_)
-    for (std::size_t row = 0; row < static_cast<std::size_t>(member.rows); ++row) visit(member, row, index++);
+  for (const ConstraintBlock& block : blocks_)
+    for (std::size_t row = 0; row < static_cast<std::size_t>(block.rows); ++row) visit(block, row, index++);
 }
 
 /// Sets multipliers_ to -J v for the velocities in `state`.
 void ConstraintSolver::opposeVelocities(const VectorX& state) {
   double* next = multipliers_.data();
-  for (const Member& member : members_)
-    withRows(member.rows, [&](auto rows) {
-      findRates<rows>(member, state, next);
+  for (const ConstraintBlock& block : blocks_)
+    withRows(block.rows, [&](auto rows) {
+      findRates<rows>(block, state, next);
       for (int i = 0; i < rows; ++i, ++next) *next = -*next;
     });
 }
@@ -271,10 +276,10 @@ void ConstraintSolver::opposeVelocities(const VectorX& state) {
 /// Sets multipliers_ to -(J a + (dJ/dt) v) for the accelerations in `derivative`.
 void ConstraintSolver::opposeAccelerations(const VectorX& derivative) {
   double* next = multipliers_.data();
-  for (const Member& member : members_)
-    withRows(member.rows, [&](auto rows) {
-      findRates<rows>(member, derivative, next);
-      for (std::size_t i = 0; i < rows; ++i, ++next) *next = -(*next + member.velocityProduct[i]);
+  for (const ConstraintBlock& block : blocks_)
+    withRows(block.rows, [&](auto rows) {
+      findRates<rows>(block, derivative, next);
+      for (std::size_t i = 0; i < rows; ++i, ++next) *next = -(*next + block.velocityProduct[i]);
     });
 }
 
@@ -327,8 +332,9 @@ double ConstraintSolver::project(VectorX& state) {
 
 /// One step of Newton's method. Returns how far the body that moved most was shifted (m) or turned (rad).
 double ConstraintSolver::displace(VectorX& state) {
-  forEachRow(
-      [this](const Member& member, std::size_t row, Eigen::Index index) { multipliers_[index] = -member.value[row]; });
+  forEachRow([this](const ConstraintBlock& block, std::size_t row, Eigen::Index index) {
+    multipliers_[index] = -block.value[row];
+  });
   factor_.solve(multipliers_);
   double farthest = 0;
   addResponse([&](int body, const Vec3& shift, const Vec3& turn) {
@@ -341,16 +347,16 @@ double ConstraintSolver::displace(VectorX& state) {
 
 double ConstraintSolver::largestError() const {
   double error = 0;
-  forEachRow([&](const Member& member, std::size_t row, Eigen::Index) {
-    error = std::max(error, std::abs(member.value[row]) / member.scale);
+  forEachRow([&](const ConstraintBlock& block, std::size_t row, Eigen::Index) {
+    error = std::max(error, std::abs(block.value[row]) / block.scale);
   });
   return error;
 }
 
 bool ConstraintSolver::holdWithin(double error, double roundings) const {
   bool holds = true;
-  forEachRow([&](const Member& member, std::size_t row, Eigen::Index) {
-    holds = holds && std::abs(member.value[row]) <= (error + roundings * member.rounding[row]) * member.scale;
+  forEachRow([&](const ConstraintBlock& block, std::size_t row, Eigen::Index) {
+    holds = holds && std::abs(block.value[row]) <= (error + roundings * block.rounding[row]) * block.scale;
   });
   return holds;
 }
@@ -366,30 +372,30 @@ double ConstraintSolver::contradiction(const VectorX& state) {
   factorize(state);
   if (isRegular_) return 0;
   factor_.factorize(kJammedRegularisation);
-  forEachRow([this](const Member& member, std::size_t row, Eigen::Index index) {
-    multipliers_[index] = -member.velocityProduct[row];
+  forEachRow([this](const ConstraintBlock& block, std::size_t row, Eigen::Index index) {
+    multipliers_[index] = -block.velocityProduct[row];
   });
   residual_ = multipliers_;
   factor_.solve(multipliers_);
   factor_.subtractProduct(multipliers_, residual_);
   const double least = kContradictingRatio * residual_.lpNorm<Eigen::Infinity>();
   double left = 0, asked = 0;
-  forEachRow([&](const Member& member, std::size_t row, Eigen::Index index) {
+  forEachRow([&](const ConstraintBlock& block, std::size_t row, Eigen::Index index) {
     const double residual = std::abs(residual_[index]);
     if (!(residual > least)) return;
-    left += residual / member.scale;
-    asked += std::abs(member.velocityProduct[row]) / member.scale;
+    left += residual / block.scale;
+    asked += std::abs(block.velocityProduct[row]) / block.scale;
   });
   return asked > 0 ? left / asked : 0;
 }
 
 double ConstraintSolver::largestRate(const VectorX& state) const {
   double largest = 0;
-  for (const Member& member : members_)
-    withRows(member.rows, [&](auto rows) {
+  for (const ConstraintBlock& block : blocks_)
+    withRows(block.rows, [&](auto rows) {
       std::array<double, rows> rates;
-      findRates<rows>(member, state, rates.data());
-      for (const double rate : rates) largest = std::max(largest, std::abs(rate) / member.scale);
+      findRates<rows>(block, state, rates.data());
+      for (const double rate : rates) largest = std::max(largest, std::abs(rate) / block.scale);
     });
   return largest;
 }

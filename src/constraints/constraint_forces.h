@@ -52,22 +52,22 @@ class ConstraintSolver {
   double largestRate(const VectorX& state) const;
 
  private:
-  /// The rows of a constraint, and M^-1 J^T.
-  struct Member : ConstraintBlock {
+  /// M^-1 J^T of a block.
+  struct Response {
     double inverseMassA = 0, inverseMassB = 0;  // 1/kg; 0 if fixed
-    Jacobian turnA, turnB;                      // I^-1 angularA, I^-1 angularB; not set where these are zero
+    ConstraintBlock::Jacobian turnA, turnB;     // angularA I^-1, angularB I^-1; not set where these are zero
   };
   /// A body that two constraints have in common, which puts a block beside the diagonal of the matrix.
   struct Coupling {
-    std::size_t row, column;  // constraints
+    std::size_t row, column;  // blocks
     bool rowIsA, columnIsA;   // which of the bodies of each
     bool isFirst;             // of those of its block
     std::size_t place;        // of the block
   };
   bool hasKnownStructure() const;
   void analyze();
-  void findMembers(const VectorX& state, const std::vector<BodyFrame>& frames);
-  void respond(const std::vector<BodyFrame>& frames, Member& member) const;
+  void findBlocks(const VectorX& state, const std::vector<BodyFrame>& frames);
+  void findResponse(const ConstraintBlock& block, const std::vector<BodyFrame>& frames, Response& response) const;
   void assemble();
   void opposeVelocities(const VectorX& state);
   void opposeAccelerations(const VectorX& derivative);
@@ -84,7 +84,8 @@ class ConstraintSolver {
   const std::vector<RigidBody>& bodies_;
   std::vector<char> excluded_;  // by body, or none
   std::vector<BodyFrame> frames_;
-  std::vector<Member> members_;
+  std::vector<ConstraintBlock> blocks_;  // of the constraints that are not excluded
+  std::vector<Response> responses_;
   std::vector<std::array<int, 3>> structure_;  // bodies and rows of each, when the couplings were found
   std::vector<Coupling> couplings_;
   BlockLdlt factor_;
