@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "collision/root_bracketing.h"
 #include "impact/contact_delassus.h"
@@ -38,6 +39,8 @@ using Index = Eigen::Index;
 
 // Each round resolves what the residual of the one before still lets close; half or twice as many change no test.
 constexpr int kMaxImpactRounds = 10;
+// Of the closing speed: a round after which more is left has come to what no impulses can change.
+constexpr double kLeastProgress = 0.5;
 // Of the factor on friction that wedges: twenty bisections. A tenth or ten times as much changes no test.
 constexpr double kFrictionError = 1e-6;
 // A problem is wedged if the sum of the magnitudes in z . G z is more times z . G z itself: then eight digits cancel,
@@ -76,7 +79,7 @@ class FrictionalImpact {
   VectorX resolve(ImpactFaults& faults) const;
 
  private:
-  bool closes(const VectorX& velocities) const;
+  double closingSpeed(const VectorX& velocities) const;
   bool isSolved(const ContactSolution& solution) const { return solution.residual <= tolerances_.solved; }
   ContactSolution solve(const MatrixX& matrix, const VectorX& free, const std::vector<double>& frictions,
                         double& factor) const;
@@ -104,9 +107,11 @@ FrictionalImpact::FrictionalImpact(const std::vector<ImpactContact>& impacts, co
   }
 }
 
-bool FrictionalImpact::closes(const VectorX& velocities) const {
-  return std::any_of(members_.begin(), members_.end(),
-                     [&](Index i) { return velocities[3 * i + 2] < -tolerances_.closed; });
+/// m/s: the largest of any contact.
+double FrictionalImpact::closingSpeed(const VectorX& velocities) const {
+  double closing = 0;
+  for (const Index i : members_) closing = std::max(closing, -velocities[3 * i + 2]);
+  return closing;
 }
 
 /// Solves the problem with the coefficients of friction times `factor`; where that wedges, with the largest factor that
@@ -124,13 +129,14 @@ ContactSolution FrictionalImpact::solve(const MatrixX& matrix, const VectorX& fr
     if (isUnwedged || solution.impulses.size() == 0) solution = std::move(found);
     return isUnwedged;
   };
-  if (isUnwedgedWith(factor)) return solution;
+  // Without friction: if impulses are as large, friction is not what makes them so.
+  if (isUnwedgedWith(factor) || !isUnwedgedWith(0)) return solution;
   double unwedged = 0;
   for (double wedged = factor; wedged - unwedged > kFrictionError;) {
     const double tried = std::midpoint(unwedged, wedged);
     (isUnwedgedWith(tried) ? unwedged : wedged) = tried;
   }
-  if (unwedged > 0) factor = unwedged;  // 0: friction is not what makes impulses large
+  factor = unwedged;
   return solution;
 }
 
@@ -218,15 +224,19 @@ ImpactResult FrictionalImpact::rebound(const ImpactResult& plastic) const {
 
 VectorX FrictionalImpact::resolve(ImpactFaults& faults) const {
   VectorX impulses = VectorX::Zero(start_.size()), velocities = start_;
-  for (int round = 0; round < kMaxImpactRounds && closes(velocities); ++round) {
+  double closing = closingSpeed(start_);
+  int round = 0;
+  for (; round < kMaxImpactRounds && closing > tolerances_.closed; ++round) {
     ImpactResult found = plasticImpact(velocities);
     if (round == 0) found = rebound(found);
     faults.residual = std::max(faults.residual, found.residual);
     faults.scaledEnergy = std::max(faults.scaledEnergy, found.scaledEnergy);
     for (std::size_t k = 0; k < rows_.size(); ++k) impulses[rows_[k]] += found.impulses[static_cast<Index>(k)];
     velocities = start_ + delassus_.matrix() * impulses;
+    const double before = std::exchange(closing, closingSpeed(velocities));
+    if (round > 0 && closing > kLeastProgress * before) break;
   }
-  if (closes(velocities)) faults.rounds = kMaxImpactRounds;
+  if (closing > tolerances_.closed) faults.rounds = round;
   return impulses;
 }
 

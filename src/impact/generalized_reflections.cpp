@@ -34,6 +34,9 @@ constexpr long kMaxReflections = 10000;
 // Reflections in all, where some contacts are plastic: each takes energy at these, so that more of them would only slow
 // down a motion that is nearly over.
 constexpr long kMaxMixedReflections = 100;
+// Of the fastest closing speed: if more of it is left after as many plastic reflections in a row as there are contacts,
+// no impulse can end it, such as of a body that is stuck between two that joints hold.
+constexpr double kLeastPlasticProgress = 0.5;
 
 /// An impact as its contact normals see it: speeds J v (m/s) and the Delassus operator J W J^T (1/kg).
 class NormalImpact {
@@ -53,7 +56,8 @@ class NormalImpact {
 
  private:
   std::vector<Index> closingAfter(const VectorX& impulses) const;
-  VectorX reflectOnce(std::vector<Index> closing, const VectorX& speeds, const VectorX& restitutions) const;
+  VectorX reflectOnce(std::vector<Index> closing, const VectorX& speeds, const VectorX& restitutions,
+                      bool& isPlastic) const;
 
   const MatrixX& delassus_;  // 1/kg
   const VectorX& speeds_;    // m/s: < 0 closing
@@ -73,22 +77,31 @@ VectorX NormalImpact::reflect(const VectorX& restitutions) const {
   const bool isElastic = restitutions.minCoeff() == 1;
   const long most = isElastic ? kMaxReflections * static_cast<long>(speeds_.size()) : kMaxMixedReflections;
   VectorX impulses = VectorX::Zero(speeds_.size());
-  for (long count = 0; count <= most; ++count) {
+  Index inVain = 0;
+  double least = 0;  // m/s: fastest closing before the reflections in vain
+  for (long count = 0; count <= most && inVain <= speeds_.size(); ++count) {
     const std::vector<Index> closing = closingAfter(impulses);
     if (closing.empty()) return impulses;
-    impulses += reflectOnce(closing, speeds_ + delassus_ * impulses, restitutions);
+    const VectorX speeds = speeds_ + delassus_ * impulses;
+    const double fastest = -speeds.minCoeff();
+    bool isPlastic = false;
+    impulses += reflectOnce(closing, speeds, restitutions, isPlastic);
+    if (isPlastic && fastest > kLeastPlasticProgress * least && inVain > 0)
+      ++inVain;
+    else
+      inVain = isPlastic, least = fastest;
   }
   return stop(impulses);
 }
 
-/// One reflection, equation (2), of the closing contacts. Contacts that a plastic reflection makes close, and that do
-/// not rebound either, join it at once: if they were stopped one after the other, a light body between heavy ones would
-/// need about as many reflections as the ratio of the masses.
-VectorX NormalImpact::reflectOnce(std::vector<Index> closing, const VectorX& speeds,
-                                  const VectorX& restitutions) const {
+/// One reflection, equation (2), of the closing contacts; `isPlastic`: none of them rebounds. Contacts that a plastic
+/// reflection makes close, and that do not rebound either, join it at once: if they were stopped one after the other, a
+/// light body between heavy ones would need about as many reflections as the ratio of the masses.
+VectorX NormalImpact::reflectOnce(std::vector<Index> closing, const VectorX& speeds, const VectorX& restitutions,
+                                  bool& isPlastic) const {
   const auto rebounds = [&](Index i, double speed) { return restitutions[i] > 0 && -speed > restSpeeds_[i]; };
   VectorX offset = speeds, impulses = VectorX::Zero(speeds.size());
-  bool isPlastic = true;
+  isPlastic = true;
   for (const Index i : closing) {
     if (!rebounds(i, speeds[i])) continue;
     offset[i] *= 1 + restitutions[i];

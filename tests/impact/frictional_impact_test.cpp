@@ -54,6 +54,18 @@ TEST(FrictionalImpact, OfARowOfBallsIsThatWithoutFriction) {
   }
 }
 
+// A light ball between two that it cannot move (1 + 1e-20 is 1), which come together. A second round shows that the
+// first one left all of their closing; more rounds would show the same.
+TEST(FrictionalImpact, EndsWhereARoundLeavesAllClosing) {
+  RowOfBalls row({1e20, 1, 1e20}, 1);
+  for (ImpactContact& impact : row.impacts) impact.material = {1, 0.3, 0.3}, impact.restSpeed = 10;
+  row.setSpeeds({1, 0, 0});
+  const ImpactFaults faults = resolveFrictionalImpact(row.impacts, row.bodies, row.state);
+  EXPECT_GE(faults.rounds, 1);
+  EXPECT_LE(faults.rounds, 2);
+  EXPECT_LE(std::abs(row.speed(1)), 1);
+}
+
 // Kinematic friction below static: a ball that slides gets the smaller one.
 TEST(FrictionalImpact, SlidesWithDynamicFriction) {
   RowOfBalls row({2}, 0);

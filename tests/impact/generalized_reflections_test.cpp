@@ -177,6 +177,17 @@ TEST(Reflections, OfAHeavyBodyOnALightOneComeToAnEnd) {
       }
 }
 
+// A light ball between two that it cannot move (1 + 1e-20 is 1), which come together: no impulse ends that. Reflections
+// that do not end it are not repeated: 20000 of them would sum up to an impulse of 1e4 N s.
+TEST(Reflections, AreNotRepeatedWhereNoImpulseEndsTheClosing) {
+  RowOfBalls row({1e20, 1, 1e20}, 1);
+  for (ImpactContact& impact : row.impacts) impact.restSpeed = 10;
+  row.setSpeeds({1, 0, 0});
+  resolveReflections(row.impacts, row.bodies, row.state);
+  for (const ImpactContact& impact : row.impacts) EXPECT_LT(impact.impulse.norm(), 10);
+  EXPECT_LE(std::abs(row.speed(1)), 1);
+}
+
 /// A disc that moves along x hits two that touch each other, both at once.
 struct Break {
   std::vector<RigidBody> bodies{ball(1), ball(1), ball(1)};
