@@ -1,21 +1,17 @@
 #include "constraints/invariants.h"
 
 namespace cradle {
-namespace {
 
-/// Spin angular momentum about the centre of mass, world frame: R I R^T w.
-Vec3 spinMomentum(const RigidBody& body, const VectorX& state, Eigen::Index index) {
+Vec3 spinMomentum(const RigidBody& body, Eigen::Index index, const VectorX& state) {
   const Vec3 spin = angularVelocity(state, index);
   if (spin == Vec3::Zero()) return spin;
   const Quat worldFromBody = orientation(state, index).normalized();
   return worldFromBody * (body.inertiaTensor * (worldFromBody.conjugate() * spin));
 }
 
-}  // namespace
-
 double kineticEnergy(const RigidBody& body, Eigen::Index index, const VectorX& state) {
   return 0.5 * body.mass * linearVelocity(state, index).squaredNorm() +
-         0.5 * angularVelocity(state, index).dot(spinMomentum(body, state, index));
+         0.5 * angularVelocity(state, index).dot(spinMomentum(body, index, state));
 }
 
 double kineticEnergy(const std::vector<RigidBody>& bodies, const VectorX& state) {
@@ -34,7 +30,7 @@ Invariants invariantsOf(const Mechanism& mechanism, const VectorX& state) {
     const Vec3 momentum = mechanism.bodies[i].mass * linearVelocity(state, body);
     sums.potential -= mechanism.bodies[i].mass * mechanism.gravity.dot(position);
     sums.momentum += momentum;
-    sums.angularMomentum += position.cross(momentum) + spinMomentum(mechanism.bodies[i], state, body);
+    sums.angularMomentum += position.cross(momentum) + spinMomentum(mechanism.bodies[i], body, state);
   }
   for (const SpringForce& spring : mechanism.springs) sums.potential += actionOf(spring, state).potential;
   return sums;

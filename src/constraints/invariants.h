@@ -13,6 +13,9 @@ struct Invariants {
 };
 Invariants invariantsOf(const Mechanism& mechanism, const VectorX& state);
 
+/// Spin angular momentum (kg m^2/s, world) of a body about its centre of mass: R I R^T w.
+Vec3 spinMomentum(const RigidBody& body, Eigen::Index index, const VectorX& state);
+
 /// Kinetic energy in J, of one body or all.
 double kineticEnergy(const RigidBody& body, Eigen::Index index, const VectorX& state);
 double kineticEnergy(const std::vector<RigidBody>& bodies, const VectorX& state);

@@ -32,7 +32,7 @@ IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMe
       ropes_(island_),
       solver_(island_.assembly.mechanism.constraints, island_.assembly.mechanism.bodies),
       method_(method),
-      energies_(island_.assembly, scene.accuracy) {
+      record_(island_.assembly, scene.accuracy) {
   if (method.isAdaptive())
     motion_.emplace<EventMotion>(island_, ropes_, method, false);
   else
@@ -56,18 +56,18 @@ const VectorX& IslandSolver::stateAt(double time, const std::function<void(doubl
   const std::vector<RigidBody>& bodies = island_.assembly.mechanism.bodies;
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (!bodies[i].turns) rotate(static_cast<Eigen::Index>(i), time, reported_);
-  energies_.add(time, reported_);
+  record_.add(time, reported_);
   return reported_;
 }
 
 void IslandSolver::finish() {
   if (promiseEnd_ || !method_.isAdaptive()) return;
-  const std::optional<double> time = energies_.firstBeyond();
-  if (!time) return;
-  promiseEnd_ = {*time, fmt::format("numerical energy is beyond {:g} times the accuracy", kMaxNumericalRatio),
+  const std::optional<ConservationRecord::Loss> loss = record_.firstLoss();
+  if (!loss) return;
+  promiseEnd_ = {loss->time, fmt::format("{} is beyond {:g} times the accuracy", loss->sum, kMaxNumericalRatio),
                  island_.assembly.sceneBodies};
   island_.log.warn(fmt::format("{}: the accuracy asked was not kept from {:.6g} s on: {} ({})", island_.scene.path,
-                               *time, promiseEnd_->reason, namesOfBodies(promiseEnd_->bodies, island_.scene)));
+                               loss->time, promiseEnd_->reason, namesOfBodies(promiseEnd_->bodies, island_.scene)));
 }
 
 template <class Motion>

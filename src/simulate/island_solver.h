@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "simulate/energy_record.h"
+#include "simulate/conservation_record.h"
 #include "simulate/events/event_motion.h"
 #include "simulate/steps/stepped_motion.h"
 #include "trajectory/trajectory.h"
@@ -28,8 +28,8 @@ class IslandSolver {
   /// it may be none.
   const VectorX& stateAt(double time, const std::function<void(double time)>& reached = {});
 
-  /// To be called after the last frame: the accuracy asked was not kept if the numerical energy of the frames is beyond
-  /// kMaxNumericalRatio times the accuracy.
+  /// To be called after the last frame: the accuracy asked was not kept if energy or momenta of the frames changed by
+  /// more than kMaxNumericalRatio times the accuracy without a cause.
   void finish();
 
   const Assembly& assembly() const { return island_.assembly; }
@@ -64,7 +64,7 @@ class IslandSolver {
   ConstraintSolver solver_;
   std::variant<std::monostate, EventMotion, SteppedMotion> motion_;
   ChosenMethod method_;
-  EnergyRecord energies_;
+  ConservationRecord record_;
   std::optional<PromiseEnd> promiseEnd_;
   double nextTrial_ = 0;           // s: when events may serve again
   double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not

@@ -11,7 +11,8 @@ namespace cradle {
 struct IslandPlan;
 class ReachablePairs;
 
-/// Times the accuracy, of the largest energy: beyond it, numerical energy shows that the accuracy was not kept.
+/// Times the accuracy, of the largest energy or momentum: beyond it, what changes these without a cause shows that the
+/// accuracy was not kept.
 /// Accepted steps have errors of the accuracy, and some tens of them, each a tenth of it, add up.
 constexpr double kMaxNumericalRatio = 10;
 
