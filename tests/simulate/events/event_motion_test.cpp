@@ -98,6 +98,23 @@ TEST(EventMotion, EndsAStepWhereSlidingStops) {
   EXPECT_NEAR(frictionEnergy(at.state()), 1.5, 1e-9);
 }
 
+// A box that slides up a slope and across turns round and slides down: by more than 90 degrees, without an event, as
+// the direction of its friction follows the sliding from step to step.
+TEST(EventMotion, LetsDirectionsOfSlidingFollow) {
+  ByEvents at(R"("duration": 2, "gravity": [6, -7, 0], )" + kEventMaterial + R"("bodies": [)" + kEventFloor + ", " +
+              eventBox(Vec3(-1, 0, 1)) + "]");
+  at.motion.advance(kNever);
+  at.island.log.take();
+  while (linearVelocity(at.state(), 0).x() < 2) {
+    at.motion.advance(kNever);
+    const Vec3 direction = linearVelocity(at.state(), 0).normalized();
+    ASSERT_FALSE(at.mechanism().contacts.empty());
+    for (const ContactConstraint& contact : at.mechanism().contacts)
+      EXPECT_LT((contact.slidingDirection - direction).norm(), 1e-9) << at.island.time;
+  }
+  EXPECT_THAT(at.island.log.take(), IsEmpty());
+}
+
 // A rope that is slack by 0.8 m goes taut after sqrt(2 x 0.8 / g), and is a rod from then on: the step that ended there
 // did not keep it, the next one does. A pull without restitution takes all that it meets.
 TEST(EventMotion, EndsAStepWhereARopeGoesTaut) {
