@@ -12,7 +12,7 @@ namespace {
 
 using std::nullopt;
 
-constexpr double kGravity = 9.81, kMass = 2, kRadius = 0.1, kAccuracy = 1e-3;
+constexpr double kMass = 2, kBallRadius = 0.1, kAccuracy = 1e-3;
 constexpr double kMost = 10 * kAccuracy;  // of the largest energy
 constexpr double kBelow = 0.99 * kMost, kBeyond = 1.01 * kMost;
 
@@ -29,7 +29,7 @@ class EnergyRecordOfASphere : public testing::Test {
 
   OneIsland at_{fmt::format(R"("duration": 1, "gravity": [0, {}, 0], "bodies": [{{"name": "sphere", "mass": {},
     "shape": {{"sphere": {{"radius": {}}}}}}}])",
-                            -kGravity, kMass, kRadius)};
+                            -kGravity, kMass, kBallRadius)};
   EnergyRecord record_{at_.island.assembly, kAccuracy};
 };
 
@@ -52,7 +52,7 @@ TEST_F(EnergyRecordOfASphere, MeasuresByWhatGravityGave) {
 // A body at rest has errors as well: of the accuracy in its velocity, of a part of its size in its place. The norm of a
 // sphere's inertia tensor is sqrt(3) 2/5 m r^2.
 TEST_F(EnergyRecordOfASphere, MeasuresBodiesAtRestByAFallOfTheirSize) {
-  const double gyration = kRadius * std::sqrt(0.4 * std::sqrt(3.0));
+  const double gyration = kBallRadius * std::sqrt(0.4 * std::sqrt(3.0));
   const double largest = kMass * (kGravity * gyration + kAccuracy * kAccuracy);
   add(0.1, 0, 0, kBelow * largest);
   EXPECT_EQ(record_.firstBeyond(), nullopt);
@@ -65,7 +65,7 @@ TEST_F(EnergyRecordOfASphere, DoesNotCountRounding) {
   centerOfMass(at_.state(), 0) = Vec3(0, 1e12, 0);
   at_.island.assembly.state = at_.state();
   EnergyRecord far(at_.island.assembly, kAccuracy);
-  const double gyration = kRadius * std::sqrt(0.4 * std::sqrt(3.0));
+  const double gyration = kBallRadius * std::sqrt(0.4 * std::sqrt(3.0));
   const double largest = kMass * (kGravity * gyration + kAccuracy * kAccuracy);
   const double unseen = kMass * kGravity * 64 * std::numeric_limits<double>::epsilon() * 1e12;
   numericalEnergy(at_.state()) = unseen + kBelow * largest;

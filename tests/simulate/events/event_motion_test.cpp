@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
 
+#include "collision/time_to_contact.h"
 #include "constraints/invariants.h"
 #include "simulate/one_island.h"
 
@@ -16,7 +16,6 @@ using testing::IsEmpty;
 
 // s: gaps, ropes and accelerations close to 1e-12 m or less, at speeds above 0.5 m/s; times are below 2 s.
 constexpr double kInstantError = 1e-11;
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 ChosenMethod eventMethodOf(const Scene& scene) {
   ChosenMethod method = planOf(scene).islands.at(0).method;

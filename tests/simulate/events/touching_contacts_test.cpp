@@ -13,8 +13,8 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
-struct Touching : OnPlane {
-  explicit Touching(const std::string& bodies, const std::string& more = R"("gravity": [0, -9.81, 0])")
+struct TouchingOnPlane : OnPlane {
+  explicit TouchingOnPlane(const std::string& bodies, const std::string& more = R"("gravity": [0, -9.81, 0])")
       : OnPlane(bodies, more) {}
   std::vector<Contact> find(const std::optional<std::size_t>& closing = std::nullopt) {
     island.findNearPairsNow(0.1);
@@ -25,7 +25,7 @@ struct Touching : OnPlane {
 
 // Corners within the touch tolerance; of the pair whose gap an event has closed the nearest, a little farther.
 TEST(TouchingContacts, AreWithinTheToleranceOrOfTheClosingPair) {
-  Touching at(std::string(kBox) + "}");
+  TouchingOnPlane at(std::string(kBox) + "}");
   const auto lift = [&](double height) { centerOfMass(at.state(), 0).y() = 0.1 + height; };
   for (const double part : {0.9, 1.1}) {
     lift(part * at.tolerances.touch);
@@ -45,10 +45,11 @@ TEST(TouchingContacts, AreWithinTheToleranceOrOfTheClosingPair) {
 TEST(TouchingContacts, OfFlatFacesAreCornersOfEither) {
   for (const bool isUpperSmall : {true, false}) {
     const double lower = isUpperSmall ? 0.8 : 0.3, upper = isUpperSmall ? 0.3 : 0.8;
-    Touching at(fmt::format(R"({{"name": "lower", "shape": {{"box": {{"size": [{0}, 0.2, {0}]}}}}, "motion": "static",
+    TouchingOnPlane at(
+        fmt::format(R"({{"name": "lower", "shape": {{"box": {{"size": [{0}, 0.2, {0}]}}}}, "motion": "static",
         "position": [0, 0.5, 0]}}, {{"name": "upper", "shape": {{"box": {{"size": [{1}, 0.2, {1}]}}}}, "mass": 1,
         "position": [0, 0.7, 0]}})",
-                            lower, upper));
+                    lower, upper));
     setOrientation(at.state(), 0, rotationAbout(Vec3::UnitY(), 0.3));
     const std::vector<Contact> contacts = at.find();
     ASSERT_THAT(contacts, SizeIs(4));
@@ -60,7 +61,7 @@ TEST(TouchingContacts, OfFlatFacesAreCornersOfEither) {
       EXPECT_NEAR(std::hypot(contact.point.x(), contact.point.z()), 0.15 * std::sqrt(2), 1e-12);
     }
   }
-  Touching crossing(R"({"name": "lower", "shape": {"box": {"size": [1, 0.2, 0.2]}}, "motion": "static",
+  TouchingOnPlane crossing(R"({"name": "lower", "shape": {"box": {"size": [1, 0.2, 0.2]}}, "motion": "static",
       "position": [0, 0.5, 0]}, {"name": "upper", "shape": {"box": {"size": [0.2, 0.2, 1]}}, "mass": 1,
       "position": [0, 0.7, 0]})");
   const std::vector<Contact> contacts = crossing.find();
@@ -72,7 +73,7 @@ TEST(TouchingContacts, OfFlatFacesAreCornersOfEither) {
 TEST(TouchingContacts, LeaveOutWhatConstraintsHold) {
   const std::string ball = R"({"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "position": [0, 0.1, 0],
     "material": "rough"})";
-  Touching free(ball), held(ball, R"("gravity": [0, -9.81, 0], "rods": [{"bodyA": "ball", "anchorA": [0, 0, 0],
+  TouchingOnPlane free(ball), held(ball, R"("gravity": [0, -9.81, 0], "rods": [{"bodyA": "ball", "anchorA": [0, 0, 0],
       "anchorB": [0, 1.1, 0]}])");
   EXPECT_THAT(free.find(), SizeIs(1));
   EXPECT_THAT(held.find(), IsEmpty());
@@ -82,7 +83,7 @@ TEST(TouchingContacts, LeaveOutWhatConstraintsHold) {
 TEST(TouchingContacts, OfATiltedCylinderAreOnePointOfItsRim) {
   const double tilt = 0.3, pi = std::acos(-1);
   for (const double angle : {0.0, tilt, pi / 2}) {
-    Touching at(R"({"name": "can", "shape": {"cylinder": {"radius": 0.1, "length": 0.4}}, "mass": 1,
+    TouchingOnPlane at(R"({"name": "can", "shape": {"cylinder": {"radius": 0.1, "length": 0.4}}, "mass": 1,
       "material": "rough"})");
     setOrientation(at.state(), 0, rotationAbout(Vec3::UnitZ(), -angle));
     centerOfMass(at.state(), 0).y() = 0.1 * std::sin(angle) + 0.2 * std::cos(angle);
