@@ -4,32 +4,10 @@
 
 #include <random>
 
-#include "impact/lorentz_cone.h"
+#include "impact/friction_cone.h"
 
 namespace cradle {
 namespace {
-
-TEST(LorentzCone, ScalingMapsBothPointsToOne) {
-  const Vec3 x(0.3, -0.4, 0.9), y(-2, 1, 2.5);
-  const ConeScaling scaling = coneScaling(x, y);
-  EXPECT_LT((scaling.scale * y - scaling.inverse * x).norm(), 1e-14);
-  EXPECT_LT((scaling.scale * scaling.inverse - Mat3::Identity()).norm(), 1e-14);
-}
-
-TEST(LorentzCone, QuotientUndoesTheProduct) {
-  const Vec3 a(0.3, -0.4, 0.9), b(1, 2, -3);
-  EXPECT_LT((coneQuotient(coneProduct(a, b), a) - b).norm(), 1e-14);
-}
-
-TEST(LorentzCone, StepEndsOnTheBoundary) {
-  const Vec3 x(0.3, -0.4, 0.9);
-  for (const Vec3& d : {Vec3(1, 2, -3), Vec3(4, 0, 1), Vec3(0, 0, -1)}) {
-    const Vec3 end = x + stepToBoundary(x, d) * d;
-    EXPECT_NEAR(coneDeterminant(end), 0, 1e-14);
-    EXPECT_GE(end.z(), -1e-15);
-  }
-  EXPECT_EQ(stepToBoundary(x, Vec3(0.1, 0.1, 1)), INFINITY);
-}
 
 // Contacts on bodies with 12 freedoms, so that 8 of 24 rows are redundant; one in four without friction. Coulomb's law
 // holds to what interior points reach before rounding rules.

@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "math/rotation.h"
+#include "impact/solver_bodies.h"
 
 namespace cradle {
 namespace {
@@ -13,39 +12,26 @@ namespace {
 constexpr double kSub = 1.0 / 480;  // s
 constexpr double kPi = 3.14159265358979324;
 
-/// Bodies with their contacts, for the solver alone. Anchors are floats: their error is 6e-8 of a metre.
-class Contacting {
+/// Bodies with their contacts, for the solver alone.
+class Contacting : public SolverBodies {
  public:
   static constexpr double kAnchorError = 6e-8;  // m, of anchors up to 1 m long
 
   int add(double mass, const Mat3& inertiaTensor, const Vec3& position, const Vec3& velocity, const Vec3& spin) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> principal(inertiaTensor);
-    masses_.push_back(mass), inertias_.push_back(inertiaTensor), positions_.push_back(position);
-    scaledFromWorld_.push_back(principal.eigenvalues().cwiseSqrt().asDiagonal() * principal.eigenvectors().transpose());
-    const Mat3 impulses =
-        principal.eigenvalues().cwiseSqrt().cwiseInverse().asDiagonal() * principal.eigenvectors().transpose();
-    bodies.push_back({1 / mass, impulses, Mat3::Identity()});
     velocities_.push_back(velocity), spins_.push_back(spin);
-    return static_cast<int>(bodies.size()) - 1;
+    return SolverBodies::add(mass, inertiaTensor, position);
   }
   /// A contact of A with B, or with what is fixed, at points (m, world).
   PersistentManifold& touch(int a, int b, const Vec3& normal, const std::vector<Vec3>& points, double separation) {
-    manifolds.emplace_back();
-    PersistentManifold& manifold = manifolds.back();
-    manifold.bodyA = a, manifold.bodyB = b, manifold.count = static_cast<std::int32_t>(points.size());
-    manifold.normal = normal, manifold.material = &material, manifold.friction = material.dynamicFriction;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      manifold.onA[i] = (points[i] - positions_[static_cast<std::size_t>(a)]).cast<float>();
-      if (b != kFixed) manifold.onB[i] = (points[i] - positions_[static_cast<std::size_t>(b)]).cast<float>();
-      manifold.separations[i] = separation;
-    }
+    PersistentManifold& manifold = manifolds.emplace_back(manifoldOf(a, b, normal, points));
+    manifold.material = &material, manifold.friction = material.dynamicFriction;
+    for (std::size_t i = 0; i < points.size(); ++i) manifold.separations[i] = separation;
     return manifold;
   }
   void solve(int subSteps, const Vec3& gravity = Vec3::Zero(), double slowestRebound = 0.1) {
     motions.resize(bodies.size());
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      const Vec3 &v = velocities_[i], u = scaledFromWorld_[i] * spins_[i];
-      motions.velocities[i] = {Lanes{v.x(), v.y()}, Lanes{v.z(), u.x()}, Lanes{u.y(), u.z()}};
+      motions.velocities[i] = motionOf(i, velocities_[i], spins_[i]);
       motions.starts[i] = motions.velocities[i], motions.displacements[i] = {};
     }
     ContactColoring coloring;
@@ -58,12 +44,8 @@ class Contacting {
     for (std::size_t i = 0; i < bodies.size(); ++i) velocities_[i] = velocity(i), spins_[i] = spin(i);
   }
 
-  static Vec3 linearOf(const BodyMotion& motion) { return {motion.xy[0], motion.xy[1], motion.zu[0]}; }
   Vec3 velocity(std::size_t body) const { return linearOf(motions.velocities[body]); }
   Vec3 displacement(std::size_t body) const { return linearOf(motions.displacements[body]); }
-  Vec3 angularOf(const BodyMotion& motion, std::size_t body) const {
-    return scaledFromWorld_[body].inverse() * Vec3(motion.zu[1], motion.vw[0], motion.vw[1]);
-  }
   Vec3 spin(std::size_t body) const { return angularOf(motions.velocities[body], body); }
   /// Opens and closes the contacts with what is fixed by what their body has moved.
   void follow() {
@@ -75,7 +57,7 @@ class Contacting {
     }
   }
   Vec3 pointVelocity(std::size_t body, const Vec3& point) const {
-    return velocity(body) + spin(body).cross(point - positions_[body]);
+    return SolverBodies::pointVelocity(motions.velocities, static_cast<int>(body), point);
   }
   /// J, kg m/s, kg m^2/s about the origin, for velocities as they were given last or solved.
   double energy() const {
@@ -97,23 +79,14 @@ class Contacting {
   }
 
   ContactMaterial material{0, 0, 0};
-  std::vector<SolverBody> bodies;
   std::vector<PersistentManifold> manifolds;
   SolverMotions motions;
   SoftContactSolver solver;
 
  private:
   WorkerThreads threads_{1};
-  std::vector<double> masses_;
-  std::vector<Mat3> inertias_, scaledFromWorld_;
-  std::vector<Vec3> positions_, velocities_, spins_;
+  std::vector<Vec3> velocities_, spins_;
 };
-
-Mat3 lopsidedInertia() {
-  const Mat3 turn = rotationAbout(Vec3(1, 2, 3), 0.7).toRotationMatrix();
-  const Mat3 tensor = turn * Vec3(0.02, 0.05, 0.06).asDiagonal() * turn.transpose();
-  return (tensor + tensor.transpose()) / 2;
-}
 
 /// Two bodies without symmetry that meet at one point or at three, obliquely and spinning.
 void meet(std::size_t points, Contacting& pair) {

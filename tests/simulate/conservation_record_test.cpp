@@ -12,7 +12,7 @@ namespace {
 
 using std::nullopt;
 
-constexpr double kGravity = 9.81, kMass = 2, kRadius = 0.1, kAccuracy = 1e-3;
+constexpr double kMass = 2, kBallRadius = 0.1, kAccuracy = 1e-3;
 constexpr double kMost = 10 * kAccuracy;  // of the largest energy
 constexpr double kBelow = 0.99 * kMost, kBeyond = 1.01 * kMost;
 
@@ -35,7 +35,7 @@ class EnergyOfASphere : public testing::Test {
   OneIsland at_{fmt::format(R"("duration": 1, "gravity": [0, {}, 0], "bodies": [{{"name": "sphere", "mass": {},
     "shape": {{"sphere": {{"radius": {}}}}}}}],
     "ropes": [{{"bodyA": "sphere", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0], "maxLength": 1e9}}])",
-                            -kGravity, kMass, kRadius)};
+                            -kGravity, kMass, kBallRadius)};
   ConservationRecord record_{at_.island.assembly, kAccuracy};
 };
 
@@ -58,7 +58,7 @@ TEST_F(EnergyOfASphere, MeasuresByWhatGravityGave) {
 // A body at rest has errors as well: of the accuracy in its velocity, of a part of its size in its place. The norm of a
 // sphere's inertia tensor is sqrt(3) 2/5 m r^2.
 TEST_F(EnergyOfASphere, MeasuresBodiesAtRestByAFallOfTheirSize) {
-  const double gyration = kRadius * std::sqrt(0.4 * std::sqrt(3.0));
+  const double gyration = kBallRadius * std::sqrt(0.4 * std::sqrt(3.0));
   const double largest = kMass * (kGravity * gyration + kAccuracy * kAccuracy);
   add(0.1, 0, 0, kBelow * largest);
   EXPECT_EQ(timeOf(record_), nullopt);
@@ -71,7 +71,7 @@ TEST_F(EnergyOfASphere, DoesNotCountRounding) {
   centerOfMass(at_.state(), 0) = Vec3(0, 1e12, 0);
   at_.island.assembly.state = at_.state();
   ConservationRecord far(at_.island.assembly, kAccuracy);
-  const double gyration = kRadius * std::sqrt(0.4 * std::sqrt(3.0));
+  const double gyration = kBallRadius * std::sqrt(0.4 * std::sqrt(3.0));
   const double largest = kMass * (kGravity * gyration + kAccuracy * kAccuracy);
   const double unseen = kMass * kGravity * 64 * std::numeric_limits<double>::epsilon() * 1e12;
   numericalEnergy(at_.state()) = unseen + kBelow * largest;

@@ -71,7 +71,7 @@ SlidingSolution solveContactForces(const std::vector<const ContactRecord*>& reco
     friction = next;
     isFound = change <= EventTolerances::kFrictionConverged * found.maxCoeff();
     if (isFound) break;
-    roundsInVain = change < kProgress * least ? 0 : roundsInVain + 1;
+    if (round >= kPlainFrictionRounds) roundsInVain = change < kProgress * least ? 0 : roundsInVain + 1;
     least = std::min(least, change);
     if (roundsInVain == kMaxRoundsInVain) break;
     normals = round < kPlainFrictionRounds ? found : VectorX(mixing.next(normals, found).cwiseMax(0));

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
 
+#include "collision/time_to_contact.h"
 #include "constraints/invariants.h"
 #include "simulate/one_island.h"
 
@@ -16,7 +16,6 @@ using testing::IsEmpty;
 
 // s: gaps, ropes and accelerations close to 1e-12 m or less, at speeds above 0.5 m/s; times are below 2 s.
 constexpr double kInstantError = 1e-11;
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 ChosenMethod eventMethodOf(const Scene& scene) {
   ChosenMethod method = planOf(scene).islands.at(0).method;
@@ -96,6 +95,23 @@ TEST(EventMotion, EndsAStepWhereSlidingStops) {
   EXPECT_LT((Vec3(centerOfMass(at.state(), 0)) - Vec3(0.6 * way, 0.1, 0.8 * way)).norm(), 1e-9);
   EXPECT_EQ(Vec3(linearVelocity(at.state(), 0)), Vec3::Zero());
   EXPECT_NEAR(frictionEnergy(at.state()), 1.5, 1e-9);
+}
+
+// A box that slides up a slope and across turns round and slides down: by more than 90 degrees, without an event, as
+// the direction of its friction follows the sliding from step to step.
+TEST(EventMotion, LetsDirectionsOfSlidingFollow) {
+  ByEvents at(R"("duration": 2, "gravity": [6, -7, 0], )" + kEventMaterial + R"("bodies": [)" + kEventFloor + ", " +
+              eventBox(Vec3(-1, 0, 1)) + "]");
+  at.motion.advance(kNever);
+  at.island.log.take();
+  while (linearVelocity(at.state(), 0).x() < 2) {
+    at.motion.advance(kNever);
+    const Vec3 direction = linearVelocity(at.state(), 0).normalized();
+    ASSERT_FALSE(at.mechanism().contacts.empty());
+    for (const ContactConstraint& contact : at.mechanism().contacts)
+      EXPECT_LT((contact.slidingDirection - direction).norm(), 1e-9) << at.island.time;
+  }
+  EXPECT_THAT(at.island.log.take(), IsEmpty());
 }
 
 // A rope that is slack by 0.8 m goes taut after sqrt(2 x 0.8 / g), and is a rod from then on: the step that ended there

@@ -1,33 +1,15 @@
-// Landings: ContactStepping::nextImpact and ContactStepping::strike.
+#include "simulate/steps/next_impact.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "constraints/invariants.h"
 #include "math/rotation.h"
-#include "simulate/one_island.h"
 #include "simulate/steps/contact_stepping.h"
+#include "simulate/steps/landings.h"
 
 namespace cradle {
 namespace {
-
-using testing::SizeIs;
-
-constexpr double kLandingStep = 0.01;  // s
-
-std::string landing(double restitution, double friction, const std::string& bodies) {
-  return fmt::format(R"("duration": 1, "materials": {{"stuff": {{"restitution": {}, "staticFriction": {},
-      "dynamicFriction": {}}}}}, "bodies": [{{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static",
-      "material": "stuff"}}, {}])",
-                     restitution, friction, friction / 2, bodies);
-}
-
-std::string ballOver(const std::string& name, double mass, double height, const Vec3& velocity) {
-  return fmt::format(R"({{"name": "{}", "mass": {}, "shape": {{"sphere": {{"radius": 0.1}}}}, "material": "stuff",
-    "position": [0, {}, 0], "linearVelocity": {}}})",
-                     name, mass, height, vectorText(velocity));
-}
 
 /// The part of a step of free motion after which something lands.
 double landingPart(OneIsland& at, double landingSpeed) {
@@ -81,59 +63,6 @@ TEST(NextImpact, IsOfTheFarEdgeWhileTheNearOneIsHeld) {
   const double time = (-spin + std::sqrt(spin * spin + 2 * pull * turn)) / pull;
   ASSERT_LT(time, kLandingStep);
   EXPECT_NEAR(landingPart(at, 0.01), time / kLandingStep, spin * kLandingStep * time / kLandingStep);
-}
-
-// Newton's restitution at the floor: p = m (1 + e) v. What that took is booked.
-TEST(StepImpact, StrikesWithNewtonsRestitution) {
-  for (const double restitution : {0.0, 0.6}) {
-    OneIsland at(landing(restitution, 0, ballOver("ball", 2, 0.1, Vec3(0.5, -3, 0))));
-    const std::vector<Contact> contacts = at.contactsWithin(1e-6);
-    ContactStepping stepping(at.island.assembly);
-    const std::vector<Vec3> impulses = stepping.resolveImpact(contacts, kLandingStep, at.state());
-    ASSERT_THAT(impulses, SizeIs(1));
-    EXPECT_NEAR(impulses[0].y(), -2 * (1 + restitution) * 3, 1e-13);  // on the floor
-    EXPECT_LT((linearVelocity(at.state(), 0) - Vec3(0.5, restitution * 3, 0)).norm(), 1e-14);
-    EXPECT_NEAR(impactEnergy(at.state()), 9 * (1 - restitution * restitution), 1e-13);
-  }
-}
-
-// Friction of an impact is static while that stops the surfaces, and dynamic where they slide: a ball of 2/5 m r^2
-// needs 2/7 of its speed along the floor to roll, a friction of 2/7 x 0.5 / 3 = 0.0476 of the normal impulse.
-TEST(StepImpact, StrikesWithCoulombsFriction) {
-  for (const double friction : {0.047, 0.048}) {
-    OneIsland at(landing(0, friction, ballOver("ball", 2, 0.1, Vec3(0.5, -3, 0))));
-    const std::vector<Contact> contacts = at.contactsWithin(1e-6);
-    ContactStepping stepping(at.island.assembly);
-    stepping.resolveImpact(contacts, kLandingStep, at.state());
-    const double expected = friction > 0.0476 ? 5 / 7.0 * 0.5 : 0.5 - friction / 2 * 3;  // dynamic friction is half
-    EXPECT_NEAR(linearVelocity(at.state(), 0).x(), expected, 1e-12);
-    EXPECT_NEAR(angularVelocity(at.state(), 0).z(), -(0.5 - expected) / (0.4 * 0.1), 1e-11);
-  }
-}
-
-// Closing slower than what accelerations explain does not rebound: e v < 0.01 g h for what touches.
-TEST(StepImpact, DoesNotReboundFromWhatGravityGivesInAStep) {
-  for (const double part : {0.99, 1.01}) {
-    const double speed = part * 0.01 * kGravity * kLandingStep / 0.5;
-    OneIsland at(landing(0.5, 0, ballOver("ball", 2, 0.1, Vec3(0, -speed, 0))));
-    const std::vector<Contact> contacts = at.contactsWithin(1e-6);
-    ContactStepping stepping(at.island.assembly);
-    stepping.resolveImpact(contacts, kLandingStep, at.state());
-    EXPECT_NEAR(linearVelocity(at.state(), 0).y(), part < 1 ? 0 : speed / 2, 1e-16);
-  }
-}
-
-// A ball on another that lies on the floor: what strikes from above is passed on to the floor, and rebounds.
-TEST(StepImpact, StrikesAllContactsAtOnce) {
-  OneIsland at(
-      landing(0.5, 0, ballOver("lower", 2, 0.1, Vec3::Zero()) + ", " + ballOver("upper", 1, 0.3, Vec3(0, -4, 0))));
-  const std::vector<Contact> contacts = at.contactsWithin(1e-6);
-  ASSERT_THAT(contacts, SizeIs(2));
-  ContactStepping stepping(at.island.assembly);
-  const std::vector<Vec3> impulses = stepping.resolveImpact(contacts, kLandingStep, at.state());
-  EXPECT_NEAR(linearVelocity(at.state(), 0).y(), 0, 1e-14);
-  EXPECT_NEAR(linearVelocity(at.state(), 1).y(), 2, 1e-14);
-  for (const Vec3& impulse : impulses) EXPECT_NEAR(std::abs(impulse.y()), 6, 1e-13);
 }
 
 }  // namespace

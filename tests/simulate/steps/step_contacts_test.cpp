@@ -188,5 +188,17 @@ TEST(StepContacts, TakeOutWhatOverlapsAtTheEnd) {
   EXPECT_NEAR(centerOfMass(at.state(), 0).y(), 0.1, 1e-8);  // a tenth of the margin is let be
 }
 
+// What was no contact when the step began, as points that rotate into the floor are not, is taken out at its end as
+// well: each round leaves about the square of the relative overlap.
+TEST(StepContacts, TakeOutWhatCameToOverlapInTheStep) {
+  Stepped at(0, 0, smallBall("ball", Vec3(0, 0.2, 0)));
+  VectorX end = at.state();
+  at.contacts.begin(0, at.state(), end, kStep);
+  ASSERT_TRUE(at.contacts.touching().empty());
+  centerOfMass(end, 0).y() = 0.1 - 1e-4;
+  at.contacts.solveContacts(at.state(), kStep, at.ropes, end);
+  EXPECT_NEAR(centerOfMass(end, 0).y(), 0.1, 1e-8);
+}
+
 }  // namespace
 }  // namespace cradle

@@ -1,0 +1,137 @@
+#include "simulate/steps/group_problem.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "simulate/one_island.h"
+
+namespace cradle {
+namespace {
+
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr double kGroupFriction = 0.4;
+
+/// Boxes on each other on the floor, with the contacts of all of them as one group.
+struct BoxTower : OneIsland {
+  explicit BoxTower(int boxes, const std::string& more = "")
+      : OneIsland(R"("duration": 1, "materials": {"stuff": {"restitution": 0, "staticFriction": 0.4,
+          "dynamicFriction": 0.4}}, "bodies": [{"name": "floor", "shape": {"plane": {}}, "motion": "static",
+          "material": "stuff"})" +
+                  boxesOf(boxes) + "]" + more),
+        tolerances(stepTolerancesOf(stepScalesOf(island.assembly))),
+        group(ContactSet(island.assembly, tolerances, contactsWithin(1e-9), {}, state()).findGroups().at(0)),
+        problem(island.assembly) {
+    problem.factorize(state());
+    problem.set(group, state());
+  }
+  static std::string boxesOf(int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i)
+      text += fmt::format(R"(, {{"name": "b{}", "shape": {{"box": {{"size": [0.4, 0.2, 0.6]}}}}, "mass": {},
+        "material": "stuff", "position": [0, {}, 0]}})",
+                          i, 3 - i, 0.1 + 0.2 * i);
+    return text;
+  }
+  ContactProblem posed() const {
+    return {problem.velocitiesIn(island.state), std::vector<double>(group.contacts.size(), kGroupFriction)};
+  }
+  void setVelocities(const Vec3& velocity) {
+    for (int body = 0; body < std::ssize(mechanism().bodies); ++body) linearVelocity(state(), body) = velocity;
+  }
+
+  StepTolerances tolerances;
+  StepGroup group;
+  GroupProblem problem;
+  std::vector<SteppingFault> faults;
+};
+
+// All boxes move with v along the floor and u towards it: friction takes mu u of v, or all of it. Four contacts are
+// solved densely, to rounding; twelve by iterations, to 1e-7 of the velocities.
+TEST(GroupProblem, StopsWhatClosesWithCoulombsFriction) {
+  for (const int boxes : {1, 3})
+    for (const double along : {0.3, 0.003}) {
+      BoxTower at(boxes);
+      ASSERT_THAT(at.group.contacts, SizeIs(4 * boxes));
+      at.setVelocities(Vec3(along, -0.02, 0));
+      const VectorX impulses = at.problem.solve(at.group, at.posed(), at.faults);
+      at.problem.apply(impulses, at.state());
+      const double left = std::max(0.0, along - kGroupFriction * 0.02);
+      const double tolerance = (boxes == 1 ? 1e-12 : 1e-6) * along;
+      for (int body = 0; body < boxes; ++body)
+        EXPECT_LT((linearVelocity(at.state(), body) - Vec3(left, 0, 0)).norm(), tolerance) << boxes << ' ' << along;
+      EXPECT_THAT(at.faults, IsEmpty());
+    }
+}
+
+TEST(GroupProblem, SolvesWithoutFriction) {
+  for (const int boxes : {1, 3}) {
+    BoxTower at(boxes);
+    at.setVelocities(Vec3(0.3, -0.02, 0.1));
+    at.problem.apply(at.problem.solveFrictionless(at.problem.velocitiesIn(at.state()), 1e-10), at.state());
+    for (int body = 0; body < boxes; ++body)
+      EXPECT_LT((linearVelocity(at.state(), body) - Vec3(0.3, 0, 0.1)).norm(), 1e-9) << boxes;
+  }
+}
+
+// Loads of twelve contacts are not unique. Those of the step before are where the search begins, and where it ends, if
+// they solve the problem: here with more on two corners of the floor, and less on the others. Contacts are found by the
+// nearest of the same bodies, in whatever order they are; forces that have doubled are told.
+TEST(GroupProblem, BeginsWithTheStepBefore) {
+  BoxTower at(3);
+  at.setVelocities(Vec3(0, -0.02, 0));
+  VectorX impulses = at.problem.solve(at.group, at.posed(), at.faults);
+  const double more = 0.1 * impulses.maxCoeff();
+  for (std::size_t i = 0; i < at.group.contacts.size(); ++i) {
+    const Vec3& point = at.group.contacts[i].point;
+    if (point.y() < 0.1) impulses[3 * static_cast<Eigen::Index>(i) + 2] += point.x() * point.z() > 0 ? more : -more;
+  }
+  for (const double ratio : {1.0, 2.0}) {
+    StepMemory memory;
+    memory.ratio = ratio;
+    for (std::size_t i = at.group.contacts.size(); i-- > 0;) {
+      Contact near = at.group.contacts[i];
+      near.point += Vec3(0.01, 0, -0.02);
+      const Vec3 impulse = at.problem.axes(i) * impulses.segment<3>(3 * static_cast<Eigen::Index>(i));
+      memory.contacts.push_back({near, impulse / ratio, false});
+      memory.slips.emplace_back(Vec3::Zero());
+    }
+    at.problem.warmStartFrom(memory);
+    const VectorX again = at.problem.solve(at.group, at.posed(), at.faults);
+    EXPECT_LT((again - impulses).norm(), 1e-5 * impulses.norm()) << ratio;
+  }
+  EXPECT_EQ(at.problem.iterations(), 0);
+}
+
+// A joint beside a contact leaves it little inverse mass; bodies without constraints have all of theirs. Impulses are
+// answered by the joint: its anchor stays.
+TEST(GroupProblem, HasTheResponseOfConstraints) {
+  BoxTower at(1, R"(, "ballJoints": [{"bodyA": "b0", "anchorA": [0, 0, 0], "anchorB": [0, 0.1, 0]}])");
+  ASSERT_TRUE(at.group.isConstrained);
+  angularVelocity(at.state(), 0) = Vec3(0.1, 0.2, -0.3);
+  at.problem.apply(at.problem.solve(at.group, at.posed(), at.faults), at.state());
+  EXPECT_LT(linearVelocity(at.state(), 0).norm(), 1e-14);
+  for (const Contact& contact : at.group.contacts) EXPECT_GE(openingSpeed(contact, at.state()), -1e-13);
+  EXPECT_LT(at.problem.mobility(0), 0.9);
+  EXPECT_EQ(BoxTower(1).problem.mobility(0), 1);
+}
+
+// Energy above a limit is taken, and told as a fault with the bodies it was taken from; nothing below it.
+TEST(GroupProblem, TellsOfEnergyThatIsTaken) {
+  BoxTower at(2);
+  at.setVelocities(Vec3(1, 0, 0));
+  const double energy = energyOf(at.group.moved.bodies, at.mechanism(), at.state());
+  limitEnergy(at.group.moved, energy, at.mechanism(), at.state(), at.faults);
+  EXPECT_THAT(at.faults, IsEmpty());
+  limitEnergy(at.group.moved, energy - 0.5, at.mechanism(), at.state(), at.faults);
+  ASSERT_THAT(at.faults, SizeIs(1));
+  EXPECT_EQ(at.faults[0].kind, CorrectionKind::clampedEnergy);
+  EXPECT_EQ(at.faults[0].bodies, at.group.moved.bodies);
+  EXPECT_NEAR(at.faults[0].amount, 0.5, 1e-12);
+  EXPECT_NEAR(energyOf(at.group.moved.bodies, at.mechanism(), at.state()), energy - 0.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace cradle
