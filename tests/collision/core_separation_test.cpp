@@ -117,5 +117,17 @@ TEST(ContactAxis, OfCornersThatMeetIsAlongTheLineOfTheMiddles) {
     }
 }
 
+// Crossing edges that see a larger gap than any face are what touches, overlapping or apart.
+TEST(ContactAxis, OfCrossingEdgesIsAcrossBoth) {
+  const SampleCore bar = boxCore("bar", Vec3(1, 1, 6));
+  const Quat onEdge = rotationAbout(Vec3::UnitZ(), M_PI / 4), across = rotationAbout(Vec3::UnitY(), M_PI / 2) * onEdge;
+  for (const double shift : {-0.02, -1e-8, 1e-8, 0.02}) {
+    const CorePair pair{bar, bar, {onEdge, Vec3::Zero()}, {across, Vec3(0.1, std::sqrt(2) + shift, 0.2)}};
+    const SeparatingAxis found = contactAxis(pair.a, pair.b);
+    EXPECT_NEAR(found.separation, shift, 4 * kSeparationRounding);
+    EXPECT_LT((found.normal - Vec3::UnitY()).norm(), 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -144,6 +144,10 @@ TEST(SeparatingAxisCache, FollowsTheParabolaOfAShift) {
   EXPECT_TRUE(isApart(0.0499, 0));
   EXPECT_FALSE(isApart(0.0501, 0));
   EXPECT_TRUE(isApart(0.0501, 1e-3));
+  // In the world alone, what turning adds counts: the parabola sinks by an eighth of it.
+  SeparatingAxisCache world(pair.step, pair.a, pair.b, {0.1, INFINITY, INFINITY});
+  EXPECT_TRUE(world.during(pair.between(0, 1, 0.0374), 0.0374, kNoBounds));
+  EXPECT_FALSE(world.during(pair.between(0, 1, 0.0376), 0.0376, kNoBounds));
   EXPECT_FALSE(isApart(0.21, 1e-3));  // nearer than that at the ends
 }
 

@@ -104,5 +104,54 @@ TEST(ContactGroups, RestingBodiesActAsFixed) {
   EXPECT_GT(std::abs(equations.contactForces()[5].normal), 1e-3);
 }
 
+// As many contacts and rows as before, but of other bodies, with another motion, or with one more rod.
+TEST(ContactGroups, AreFoundAnewWhenAContactOrARodChanges) {
+  Row row(3);
+  EquationsOfMotion equations(row.mechanism);
+  VectorX rate;
+  const auto expectFresh = [&] {
+    equations.evaluate(row.state, rate);
+    EXPECT_EQ(rate, rateOf(row.mechanism, row.state));
+  };
+  expectFresh();
+  row.mechanism.contacts[0].motion = kSticking;
+  expectFresh();
+  row.mechanism.contacts[0] = corner(2, Vec3(0, -0.2, 0.3), kSticking);
+  expectFresh();
+  row.mechanism.constraints = {{{0, Vec3(0.1, 0.2, 0)}, {kFixed, Vec3(0, 1, -0.1)}, RodConstraint{0.7}}};
+  expectFresh();
+  row.mechanism.constraints[0].anchorB = {1, Vec3(0, 0.2, 0)};
+  expectFresh();
+}
+
+// A ball on a ball on the ground: the lower contact carries both weights. The ground may be the A of a contact as well,
+// as where a face lies on a fixed ball.
+TEST(ContactGroups, BodiesThatTouchAreSolvedTogether) {
+  Mechanism mechanism = onEarth({solidSphere(2, 0.1), solidSphere(3, 0.1), lopsided(4)});
+  mechanism.contacts = {ballOnFace({0, Vec3::Zero()}, 0.1, {}, Vec3::UnitY(), kSticking),
+                        sphereOnSphere({1, Vec3::Zero()}, 0.1, {0, Vec3::Zero()}, 0.1, kSticking),
+                        ballOnFace({kFixed, Vec3(5, 0.1, 0)}, 0.1, {2, Vec3::Zero()}, -Vec3::UnitY(), kFrictionless)};
+  VectorX state = restingState(3), rate;
+  centerOfMass(state, 0).y() = 0.1, centerOfMass(state, 1).y() = 0.3, centerOfMass(state, 2) = Vec3(5, 0.2, 0);
+  EquationsOfMotion equations(mechanism);
+  equations.evaluate(state, rate);
+  EXPECT_NEAR(equations.contactForces()[0].normal, 5 * kGravity, 1e-12);
+  EXPECT_NEAR(equations.contactForces()[1].normal, 3 * kGravity, 1e-12);
+  EXPECT_NEAR(equations.contactForces()[2].normal, 4 * kGravity, 1e-12);
+}
+
+// Friction makes a group's matrix one without symmetry: corners that slide keep their height all the same.
+TEST(ContactGroups, SlidingCornersKeepTheirHeight) {
+  Row row(1);
+  angularVelocity(row.state, 0).setZero();
+  row.mechanism.gravity = Vec3(0, -kGravity, 0);
+  const VectorX rate = rateOf(row.mechanism, row.state);
+  for (const ContactConstraint& contact : row.mechanism.contacts) {
+    const Vec3 point = Vec3(centerOfMass(row.state, 0)) + contact.centerA.point;
+    EXPECT_NEAR(pointAcceleration(0, point, row.state, rate).y(), 0, kMotionRounding);
+  }
+  EXPECT_NEAR(Vec3(linearVelocity(rate, 0)).norm(), 0.3 * kGravity, 1e-12);  // the coefficient of corner()
+}
+
 }  // namespace
 }  // namespace cradle

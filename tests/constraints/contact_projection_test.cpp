@@ -52,5 +52,41 @@ TEST(ContactProjection, MovesBodiesByTheInverseOfTheirMasses) {
   EXPECT_LT((Vec3(linearVelocity(state, 1)) - Vec3(-1, 0, 0)).norm(), 1e-14);
 }
 
+// Bodies without a contact are moved too, where their rods ask for it; the error is the largest of all.
+TEST(ContactProjection, RestoresRodsOfBodiesWithoutContacts) {
+  Mechanism mechanism = onEarth({solidSphere(1, 0.2), solidSphere(2, 0.3)});
+  mechanism.contacts = {ballOnFace({0, Vec3::Zero()}, 0.2, {}, Vec3::UnitY(), kFrictionless)};
+  mechanism.constraints = {{{1, Vec3::Zero()}, {kFixed, Vec3(5, 3, 0)}, RodConstraint{1}}};
+  VectorX state = restingState(2);
+  centerOfMass(state, 0).y() = 0.2 + 1e-4, centerOfMass(state, 1) = Vec3(5, 4.01, 0);
+  linearVelocity(state, 1) = Vec3(1, 2, 0);
+  EquationsOfMotion equations(mechanism);
+  EXPECT_NEAR(equations.project(state), 0.01 + 0.01 * 0.01 / 2, 1e-14);  // C / scale of the rod
+  EXPECT_NEAR(centerOfMass(state, 0).y(), 0.2, 1e-16);
+  EXPECT_NEAR(centerOfMass(state, 1).y(), 4, 1e-15);
+  EXPECT_LT((Vec3(linearVelocity(state, 1)) - Vec3(1, 0, 0)).norm(), 1e-15);
+}
+
+// Two rods of different lengths between the same points contradict each other: the body stays finite, and what a step
+// of Newton's made worse is undone, so that projecting again changes nothing.
+TEST(ContactProjection, LeavesContradictionsAsTheyAre) {
+  for (const double longer : {1e-6, 1e-2}) {
+    Mechanism mechanism = onEarth({lopsided(1)});
+    mechanism.contacts = {corner(0, Vec3(0.1, -0.2, 0.1), kFrictionless)};
+    for (const double length : {1.0, 1 + longer})
+      mechanism.constraints.push_back({{0, Vec3(0, 0.2, 0.1)}, {kFixed, Vec3(0.6, 0.9, 0.5)}, RodConstraint{length}});
+    VectorX state = restingState(1);
+    centerOfMass(state, 0) = Vec3(0, 0.21, 0.02);
+    EquationsOfMotion equations(mechanism);
+    const double found = equations.project(state);
+    ASSERT_TRUE(state.allFinite());
+    const VectorX once = state;
+    const double left = equations.project(state);
+    EXPECT_LE(left, found);
+    EXPECT_GT(left, longer / 4);
+    EXPECT_LT(largestDifference(state, once), 1e-2 * longer) << longer;
+  }
+}
+
 }  // namespace
 }  // namespace cradle
