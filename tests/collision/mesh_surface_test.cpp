@@ -71,6 +71,13 @@ TEST(SurfaceOf, WeighsTheNormalsOfAVertexByAngle) {
     const Vec3 expected = box.vertices[v].cwiseSign() / std::sqrt(3);
     EXPECT_LT((box.vertexNormals[v] - expected).norm(), 1e-7);  // angleBetween
   }
+  const MeshSurface prism = surfaceOf(lPrismMesh());
+  for (std::size_t v = 0; v < prism.vertices.size(); ++v) {
+    const Vec3& at = prism.vertices[v];
+    if (at.x() == 1 && at.y() == 1) continue;  // the inner corner
+    const Vec3 expected = Vec3(at.x() > 0 ? 1 : -1, at.y() > 0 ? 1 : -1, at.z() > 0 ? 1 : -1) / std::sqrt(3);
+    EXPECT_LT((prism.vertexNormals[v] - expected).norm(), 1e-7);
+  }
   ASSERT_TRUE(box.inner);
   EXPECT_LT(box.inner->norm(), 4 * kEpsilon);
   const MeshSurface two =
