@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "collision/core_separation.h"
-#include "collision/random_poses.h"
+#include "collision/triangle_soup.h"
 #include "mesh/load_mesh.h"
-#include "mesh/sample_meshes.h"
 
 // Separations of meshes against computations that know nothing of trees, features or pseudo-normals: distances by every
 // triangle with every other, inside and outside by the solid angle that a surface fills, and boxes by separating axes.
@@ -16,15 +15,6 @@ namespace cradle {
 namespace {
 
 constexpr double kGapRounding = 1e-14;  // m: some sums and products of lengths of about 1 m
-
-using Corners = std::array<Vec3, 3>;
-
-std::vector<Corners> cornersOf(const TriangleMesh& mesh, const RigidTransform& pose) {
-  std::vector<Corners> all;
-  for (const auto& [i, j, k] : mesh.triangles)
-    all.push_back({pose * mesh.vertices[i], pose * mesh.vertices[j], pose * mesh.vertices[k]});
-  return all;
-}
 
 double pointToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const double part = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
@@ -73,18 +63,6 @@ double soupDistance(const std::vector<Corners>& a, const std::vector<Corners>& b
   return least;
 }
 
-/// How often a closed surface winds around a point: 1 inside, 0 outside (A. Van Oosterom, J. Strackee, "The solid angle
-/// of a plane triangle", 1983).
-double windingAround(const Vec3& p, const std::vector<Corners>& surface) {
-  double angle = 0;
-  for (const Corners& t : surface) {
-    const Vec3 a = t[0] - p, b = t[1] - p, c = t[2] - p;
-    angle += 2 * std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
-                                                   b.dot(c) * a.norm() + c.dot(a) * b.norm());
-  }
-  return angle / (4 * M_PI);
-}
-
 bool goesThrough(const Vec3& from, const Vec3& to, const Corners& t) {
   const auto side = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return (b - a).cross(c - a).dot(d - a) > 0;
@@ -104,13 +82,6 @@ bool intersect(const std::vector<Corners>& a, const std::vector<Corners>& b) {
 
 bool overlap(const std::vector<Corners>& a, const std::vector<Corners>& b) {
   return intersect(a, b) || windingAround(a[0][0], b) > 0.5 || windingAround(b[0][0], a) > 0.5;
-}
-
-/// A ball whose vertices are pushed in and out: concave, without any symmetry.
-TriangleMesh lumpMesh(RandomPoses& random) {
-  TriangleMesh mesh = solidOf(tessellate(Sphere{0.6}, 8));
-  for (Vec3& vertex : mesh.vertices) vertex *= random.number(0.5, 1.3);
-  return mesh;
 }
 
 struct MeshSolid {

@@ -258,5 +258,39 @@ TEST(RatesOfPositions, AreAllWrittenEvenOfBodiesThatDoNotTurn) {
   EXPECT_EQ(rate.segment<4>(kPoseSize + 3).norm(), 0);
 }
 
+// A force at an arm gives a / m and I^-1 (r x f), and its power is booked as work.
+TEST(Push, AcceleratesAndTurnsAndDoesWork) {
+  const VectorX state = someState();
+  Mechanism mechanism = twoBodies();
+  const VectorX without = stateRate(mechanism, state);
+  const PushForce push{{1, Vec3(0.2, -0.1, 0.3)}, Vec3(2, -1, 4)};
+  mechanism.pushes = {push};
+  const VectorX rate = stateRate(mechanism, state), change = rate - without;
+  const AttachmentMotion at = motionOf(push.point, state);
+  EXPECT_LT((Vec3(linearVelocity(change, 1)) - push.force / 0.8).norm(), 1e-14);
+  const Mat3 inverse = worldInverseInertia(mechanism.bodies[1], orientation(state, 1));
+  EXPECT_LT((Vec3(angularVelocity(change, 1)) - inverse * at.arm.cross(push.force)).norm(), 1e-13);
+  EXPECT_EQ(Vec3(linearVelocity(change, 0)), Vec3::Zero());
+  EXPECT_NEAR(pushWork(rate), push.force.dot(at.velocity), 1e-14);
+}
+
+// Rows of a body at rest have no multiplier, and those after it keep their places.
+TEST(RestingBody, HasNoMultipliers) {
+  const VectorX state = someState();
+  Mechanism mechanism = hingedBodies(state);
+  mechanism.constraints.insert(mechanism.constraints.begin(),
+                               {{1, Vec3::Zero()}, {kFixed, Vec3(3, 0, 0)}, RodConstraint{2}});
+  EquationsOfMotion equations(mechanism);
+  VectorX rate;
+  equations.setResting(1, true);
+  equations.evaluate(state, rate);
+  const VectorX multipliers = equations.multipliers();
+  ASSERT_EQ(multipliers.size(), 1 + 3 + 5);
+  EXPECT_EQ(multipliers[0], 0);
+  EXPECT_GT(multipliers.segment(1, 3).norm(), 0.1);  // of the joint to the world
+  EXPECT_EQ(multipliers.tail(5).norm(), 0);
+  EXPECT_EQ(equations.evaluations(), 1);
+}
+
 }  // namespace
 }  // namespace cradle
