@@ -17,7 +17,8 @@ constexpr double kRootTolerance = 1e-12;
 // to be searched, at the cost of a query each. A tenth or ten times as much changes no test of a search.
 constexpr double kFinestApproach = 1.0 / (1 << 20);
 constexpr double kFinestBlindApproach = 1.0 / (1 << 12);
-constexpr int kMaxBracketSteps = 100;  // half or twice as many change no test; halving alone would need 40
+// Of three steps, but for the first ones, at least one halves a bracket: 40 halvings leave 1e-12 of it.
+constexpr int kMaxBracketSteps = 3 * (1 + 40);
 
 /// Bounds on a gap over a whole step: |gap'| <= speed, gap'' <= acceleration; the unit of time is the step.
 struct GapBounds {
@@ -65,8 +66,9 @@ void closeBracket(const Gap& gap, Bracket& bracket, double finest = kRootToleran
     double estimate = bracket.before + width * bracket.gapBefore / (bracket.gapBefore - bracket.gapAfter);
     if (i > 0) estimate = rootOfParabola(bracket, third, gapThird);
     if (i % 3 == 2) {
-      if (width > widthBefore / 2) estimate = bracket.before + width / 2;
-      widthBefore = width;
+      const bool isBisected = width > widthBefore / 2;
+      if (isBisected) estimate = bracket.before + width / 2;
+      widthBefore = isBisected ? width / 2 : width;
     }
     // At least half of `finest` inside the bracket, so that both of its ends come to the root.
     if (!(estimate > bracket.before + 0.5 * finest)) estimate = bracket.before + 0.5 * finest;
@@ -97,7 +99,6 @@ std::optional<double> firstRoot(const Gap& gap, const GapBounds& bounds, const I
   const double middle = ends.before + length / 2, gapMiddle = gap(middle);
   if (const auto crossing = firstRoot(gap, bounds, isOpen, {ends.before, ends.gapBefore, middle, gapMiddle}))
     return crossing;
-  if (gapMiddle <= 0) return middle;
   return firstRoot(gap, bounds, isOpen, {middle, gapMiddle, ends.after, ends.gapAfter});
 }
 
