@@ -84,7 +84,7 @@ void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTi
 /// where the contact holds the lowest point itself, whichever that is (rimAxisA).
 void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   held_ = nullptr;
-  if (std::any_of(touching.held->begin(), touching.held->end(), [this](const ActiveFeature& held) {
+  if (std::any_of(touching.active->begin(), touching.active->end(), [this](const ActiveFeature& held) {
         return held.pair == pairIndex_ && held.feature == feature_ && !held.contact.rimAxisA.isZero(0);
       }))
     return;
@@ -223,7 +223,8 @@ bool PairSearch::isCornerHeld(const TouchingFeatures& touching, const Collider& 
   const double near = tolerances.samePlace;
   const int lower = face_->isOfA ? a_.body : bodyB_;
   if (isPinned(upper, lower, upper.points[feature_], tolerances.pinned)) return true;
-  return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [&](const ActiveFeature& held) {
+  return touching.active &&
+         std::any_of(touching.active->begin(), touching.active->end(), [&](const ActiveFeature& held) {
            const Attachment& corner = held.contact.centerA;
            return held.pair == pairIndex_ && corner.body == upper.body &&
                   (corner.point - upper.points[feature_]).squaredNorm() < near * near;
@@ -233,10 +234,10 @@ bool PairSearch::isCornerHeld(const TouchingFeatures& touching, const Collider& 
 /// Whether the corners of a body that are held span an area: the body then does not tilt, and no other corner of it
 /// comes any nearer.
 bool PairSearch::isFlush(const TouchingFeatures& touching, const Collider& upper) const {
-  if (!touching.held || upper.radius > 0 || upper.rimRadius > 0) return false;
+  if (!touching.active || upper.radius > 0 || upper.rimRadius > 0) return false;
   std::vector<Vec3> arms;  // m, from the first of them
   const Vec3* first = nullptr;
-  for (const ActiveFeature& held : *touching.held) {
+  for (const ActiveFeature& held : *touching.active) {
     const Attachment& corner = held.contact.centerA;
     if (held.pair != pairIndex_ || corner.body != upper.body || !std::isinf(held.contact.radiusB)) continue;
     if (first) arms.push_back(corner.point - *first);
@@ -247,9 +248,9 @@ bool PairSearch::isFlush(const TouchingFeatures& touching, const Collider& upper
 }
 
 bool PairSearch::isHeld(const TouchingFeatures& touching) const {
-  return touching.held && std::any_of(touching.held->begin(), touching.held->end(), [this](const ActiveFeature& held) {
-           return held.pair == pairIndex_ && held.feature == feature_;
-         });
+  return touching.active &&
+         std::any_of(touching.active->begin(), touching.active->end(),
+                     [this](const ActiveFeature& held) { return held.pair == pairIndex_ && held.feature == feature_; });
 }
 
 /// Whether the pair can have no more than one contact. (A sphere may touch a mesh at two places, as in a groove.)

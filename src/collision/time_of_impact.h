@@ -31,14 +31,14 @@ struct ActiveFeature {
 /// The features that touch when a step begins.
 struct TouchingFeatures {
   double tolerance = 0;  // m: features nearer than this touch
-  // m: features that touch without being held collide when they have closed by more than this; infinite: never
+  // m: features that touch and are not active collide when they have closed by more than this; infinite: never
   double deadBand = std::numeric_limits<double>::infinity();
-  // Features that are held: they have no impacts, other points of the same pairs have.
-  const std::vector<ActiveFeature>* held = nullptr;
+  // Active contacts, and what joints hold: these features have no impacts, other points of the same pairs have.
+  const std::vector<ActiveFeature>* active = nullptr;
 
   const std::vector<ActiveFeature>& activeFeatures() const {
     static const std::vector<ActiveFeature> none;
-    return held ? *held : none;
+    return active ? *active : none;
   }
 };
 

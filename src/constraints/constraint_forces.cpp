@@ -114,7 +114,7 @@ void ConstraintSolver::findResponse(const ConstraintBlock& block, const std::vec
   response.inverseMassA = inverseMassOf(block.bodyA), response.inverseMassB = inverseMassOf(block.bodyB);
   const auto findTurn = [&](int body, const Jacobian& angular, Jacobian& turn) {
     const std::size_t index = static_cast<std::size_t>(body);
-    const Mat3 inverseInertia = bodies_[index].turns ? frames[index].inverseInertia : Mat3::Zero();
+    const Mat3 inverseInertia = bodies_[index].hasConstantSpin ? Mat3::Zero() : frames[index].inverseInertia;
     withRows(block.rows, [&](auto rows) {
       for (int k = 0; k < 3; ++k)
         for (int i = 0; i < rows; ++i) turn(i, k) = dotOf(angular, i, inverseInertia.col(k));

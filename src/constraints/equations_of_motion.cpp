@@ -115,7 +115,7 @@ void EquationsOfMotion::addForce(int body, const Vec3& arm, const Vec3& force, V
   if (body == kFixed) return;
   const std::size_t index = static_cast<std::size_t>(body);
   linearVelocity(derivative, body) += mechanism_.bodies[index].inverseMass * force;
-  if (mechanism_.bodies[index].turns)
+  if (!mechanism_.bodies[index].hasConstantSpin)
     angularVelocity(derivative, body) += frames_[index].inverseInertia * arm.cross(force);
 }
 
@@ -123,7 +123,7 @@ void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& stat
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
     centerOfMass(derivative, body) = linearVelocity(state, body);
     const Vec3 spin = angularVelocity(state, body);
-    if (!bodies[static_cast<std::size_t>(body)].turns || spin == Vec3::Zero())
+    if (bodies[static_cast<std::size_t>(body)].hasConstantSpin || spin == Vec3::Zero())
       derivative.segment<4>(body * kPoseSize + 3).setZero();
     else
       setOrientation(derivative, body, orientationRate(orientation(state, body), spin));

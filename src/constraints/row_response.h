@@ -18,7 +18,7 @@ inline RowResponse responseTo(const ConstraintRow& row, const std::vector<RigidB
     if (body == kFixed) return;
     const std::size_t index = static_cast<std::size_t>(body);
     linear = bodies[index].inverseMass * force;
-    if (bodies[index].turns) angular = frames[index].inverseInertia * torque;
+    if (!bodies[index].hasConstantSpin) angular = frames[index].inverseInertia * torque;
   };
   respond(row.bodyA, row.linearA, row.angularA, response.linearA, response.angularA);
   respond(row.bodyB, row.linearB, row.angularB, response.linearB, response.angularB);

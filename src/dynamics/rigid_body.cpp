@@ -11,7 +11,7 @@ RigidBody makeRigidBody(const MassProperties& properties) {
   const Mat3& tensor = properties.inertiaTensor;
   const bool isSpherical = tensor == tensor(0, 0) * Mat3::Identity();
   const Mat3 inverse = isSpherical ? Mat3(1 / tensor(0, 0) * Mat3::Identity()) : Mat3(tensor.inverse());
-  return {properties.mass, 1 / properties.mass, properties.centerOfMass, tensor, inverse, isSpherical, true};
+  return {properties.mass, 1 / properties.mass, properties.centerOfMass, tensor, inverse, isSpherical, false};
 }
 
 AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state) {
@@ -29,7 +29,7 @@ void findBodyFrames(const std::vector<RigidBody>& bodies, const VectorX& state, 
     if (std::equal(frame.orientation.begin(), frame.orientation.end(), stored)) continue;
     std::copy_n(stored, frame.orientation.size(), frame.orientation.begin());
     frame.inverseInertia = bodies[i].inverseInertia;
-    if (!bodies[i].turns) {
+    if (bodies[i].hasConstantSpin) {
       frame.rotation.setIdentity();  // nothing is attached off its centre
       continue;
     }

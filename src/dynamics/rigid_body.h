@@ -18,7 +18,7 @@ struct RigidBody {
   Mat3 inertiaTensor = Mat3::Identity();   // kg m^2
   Mat3 inverseInertia = Mat3::Identity();  // 1/(kg m^2)
   bool isSpherical = true;                 // the inertia tensor is a multiple of the identity
-  bool turns = true;  // false: no torque ever acts and the spin is constant; its orientation is not kept in the state
+  bool hasConstantSpin = false;            // no torque ever acts; the state keeps the orientation of the start
 };
 
 RigidBody makeRigidBody(const MassProperties& properties);

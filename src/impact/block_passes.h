@@ -78,10 +78,10 @@ struct MotionsOf {
 
 template <class Block>
 void rubBlock(Block& block, MotionsOf<Block>& velocities) {
-  Lanes pressing = same(0), leverage = same(0);
+  Lanes pressing = same(0), moment = same(0);
   for (int i = 0; i < Block::kPoints; ++i) {
     pressing += block.points[i].impulse;
-    if constexpr (Block::kPoints > 1) leverage += block.points[i].impulse * block.twist.levers[i];
+    if constexpr (Block::kPoints > 1) moment += block.points[i].impulse * block.twist.levers[i];
   }
   auto& friction = block.friction;
   const Lanes slip0 = velocities.along(friction.tangents[0], friction.turns[0]);
@@ -98,7 +98,7 @@ void rubBlock(Block& block, MotionsOf<Block>& velocities) {
 
   if constexpr (Block::kPoints > 1) {
     auto& twist = block.twist;
-    const Lanes limit = friction.coefficient * leverage;
+    const Lanes limit = friction.coefficient * moment;
     const Lanes free = twist.impulse - twist.mass * velocities.twist(twist.turns);
     const Lanes held = larger(-limit, smaller(limit, free));
     velocities.turn(held - twist.impulse, twist.turns);

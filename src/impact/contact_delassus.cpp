@@ -37,7 +37,7 @@ ContactDelassus::ContactDelassus(const std::vector<Contact>& contacts, const Imp
                                  const VectorX& state)
     : axes_(axesOf(contacts)), delassus_(response.delassusOf(rowsAlong(axes_, contacts, state), state)) {}
 
-double ContactDelassus::leverage(std::size_t contact) const {
+double ContactDelassus::mobility(std::size_t contact) const {
   const Eigen::Index normal = 3 * static_cast<Eigen::Index>(contact) + 2;
   return matrix()(normal, normal) / delassus_.unconstrainedDiagonal(normal);
 }

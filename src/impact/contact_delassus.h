@@ -26,7 +26,7 @@ class ContactDelassus {
 
   /// Ratio of the inverse mass along a contact's normal to that without constraints: about (arm / size)^2 where a joint
   /// holds the body near the contact.
-  double leverage(std::size_t contact) const;
+  double mobility(std::size_t contact) const;
 
   /// Velocities (m/s) of all contacts, of bodies at the places of the start that move as in `velocities`, a state.
   VectorX velocitiesIn(const VectorX& velocities) const { return delassus_.velocities(velocities); }

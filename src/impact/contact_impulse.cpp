@@ -40,9 +40,9 @@ ConstraintRow rowAlong(const Vec3& direction, const Contact& contact, const Vect
   return {contact.bodyA, contact.bodyB, -direction, -armA.cross(direction), direction, armB.cross(direction)};
 }
 
-bool hasShortLever(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double lever) {
+bool hasShortMomentArm(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double arm) {
   return response.areConstrained() && inverseMassAlongNormal(contact, response, state) <=
-                                          lever * lever * unconstrainedDelassusAlongNormal(contact, response, state);
+                                          arm * arm * unconstrainedDelassusAlongNormal(contact, response, state);
 }
 
 void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts) {

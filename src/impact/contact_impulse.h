@@ -17,9 +17,9 @@ ConstraintRow rowAlong(const Vec3& direction, const Contact& contact, const Vect
 
 class ImpulseResponse;
 
-/// Whether joints leave a contact a moment arm of no more than about `lever` sizes of its bodies: its normal passes an
-/// anchor so closely that impulses at the contact are 1 / lever times as large as those that the motion asks for.
-bool hasShortLever(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double lever);
+/// Whether joints leave a contact a moment arm of no more than about `arm` sizes of its bodies: its normal passes an
+/// anchor so closely that impulses at the contact are 1 / arm times as large as those that the motion asks for.
+bool hasShortMomentArm(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double arm);
 
 /// Erases the contacts that the bodies' constraints let neither open nor close.
 void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts);

@@ -122,7 +122,7 @@ void SoftStep::takeSubstepGroup(double timeStep, int subSteps, int substepGroups
   if (broadPhase_.update({state, reaches_, displacements_, ahead}, margin_, geometry_)) contacts_.takePairs();
   contacts_.update(look, threads_);
   wakeTouched(look);
-  ++looks_;
+  ++detections_;
   const ContactColors& colors = coloring_.color(contacts_.active(), bodies_.size());
   const double subStep = timeStep / subSteps;
   solver_.prepare(colors, contacts_.manifolds(), solverBodies_, subStep, threads_);

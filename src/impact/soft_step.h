@@ -24,10 +24,10 @@ class SoftStep {
 
   bool allAsleep() const { return sleep_.awake() == 0; }
   bool isAsleep(std::size_t body) const { return sleep_.isAsleep(body); }
-  /// The contacts of the last look.
+  /// The contacts of the last detection.
   const SoftContacts& contacts() const { return contacts_; }
-  /// Looks for contacts so far.
-  long looks() const { return looks_; }
+  /// How often contacts were detected so far.
+  long detections() const { return detections_; }
 
   /// What happened in the last step: bodies that met faster than gravity makes them in a step, and bodies that fell
   /// asleep or were woken.
@@ -78,7 +78,7 @@ class SoftStep {
   bool isDisturbed_ = false;  // at the end of the last step
   double margin_ = 0;         // m: nearer bodies are in contact
   double slow_ = 0;           // m/s: slower is as good as still
-  long looks_ = 0;
+  long detections_ = 0;
   std::vector<Impact> impacts_;
   std::vector<int> fallenAsleep_, woken_;
   SoftContactSolver::Taken taken_;

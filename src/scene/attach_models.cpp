@@ -116,7 +116,7 @@ void checkPromise(const BodyDraft& draft, bool isClosed, const RecognisedShape& 
                   wanted, "no " + wanted, shape));
 }
 
-void settleCollision(const BodyDraft& draft, ModelFacts& facts, Scene& scene, FaultList& faults) {
+void chooseCollision(const BodyDraft& draft, ModelFacts& facts, Scene& scene, FaultList& faults) {
   const CollisionChoice choice = draft.body.collision;
   if (choice == CollisionChoice::none) return;
   const TriangleMesh& solid = scene.models[static_cast<std::size_t>(facts.index)].solid;
@@ -152,7 +152,7 @@ bool hasUsableSize(const BodyDraft& draft, const ModelFacts& facts, FaultList& f
 void complete(BodyDraft& draft, ModelFacts& facts, SceneDraft& scene, Faults faults) {
   if (!hasUsableSize(draft, facts, faults.text)) return;
   if (draft.body.motion == Motion::dynamic && !canMove(draft, facts, faults.mesh)) return;
-  settleCollision(draft, facts, scene.scene, faults.text);
+  chooseCollision(draft, facts, scene.scene, faults.text);
   const MassProperties properties = massOf(draft, facts, scene, faults.text);
   for (int i = draft.firstBody; i < draft.firstBody + draft.bodyCount; ++i) {
     Body& body = scene.scene.bodies[static_cast<std::size_t>(i)];

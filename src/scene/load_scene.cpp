@@ -8,6 +8,7 @@
 #include "core/read_file.h"
 #include "mesh/mesh_library.h"
 #include "scene/attach_models.h"
+#include "scene/complete_links.h"
 #include "scene/json_document.h"
 #include "scene/parse_bodies.h"
 #include "scene/parse_camera.h"
@@ -15,7 +16,6 @@
 #include "scene/parse_materials.h"
 #include "scene/parse_pushes.h"
 #include "scene/parse_settings.h"
-#include "scene/settle_links.h"
 
 namespace cradle {
 namespace {
@@ -39,7 +39,7 @@ SceneDraft parseText(const JsonValue& document, FaultList& faults) {
   parsePushes(root, draft);
   parseCamera(root, draft);
   root.rejectUnknownKeys();
-  settleLinks(draft, faults);
+  completeLinks(draft, faults);
   return draft;
 }
 
@@ -72,7 +72,7 @@ LoadedScene parseScene(const std::string& text, const std::string& path, const M
   textFaults.throwIfAny();
 
   attachModels(draft, models, textFaults, meshFaults);
-  settleLinks(draft, textFaults);
+  completeLinks(draft, textFaults);
   textFaults.throwIfAny();
   meshFaults.throwIfAny();
 

@@ -6,7 +6,7 @@
 namespace cradle {
 
 /// `springs`, `rods`, `ropes`, `ballJoints` and `hinges`. Bodies must be there. Where the ends are, and with it the
-/// lengths, is settled later.
+/// lengths, is completed later.
 void parseLinks(ObjectReader& root, SceneDraft& draft);
 
 }  // namespace cradle

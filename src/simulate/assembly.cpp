@@ -31,8 +31,8 @@ void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly)
     assembly.names.bodies.push_back(body.name);
   }
   for (std::size_t i = 0; i < island.bodies.size(); ++i)
-    assembly.mechanism.bodies[i].turns =
-        !std::binary_search(island.nonRotating.begin(), island.nonRotating.end(), island.bodies[i]);
+    assembly.mechanism.bodies[i].hasConstantSpin =
+        std::binary_search(island.nonRotating.begin(), island.nonRotating.end(), island.bodies[i]);
   VectorX& state = assembly.state;
   state.setZero(stateSize(static_cast<Eigen::Index>(assembly.sceneBodies.size())));
   for (std::size_t i = 0; i < assembly.sceneBodies.size(); ++i) {

@@ -55,7 +55,7 @@ const VectorX& IslandSolver::stateAt(double time, const std::function<void(doubl
   normalizeOrientations(reported_);
   const std::vector<RigidBody>& bodies = island_.assembly.mechanism.bodies;
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (!bodies[i].turns) rotate(static_cast<Eigen::Index>(i), time, reported_);
+    if (bodies[i].hasConstantSpin) rotate(static_cast<Eigen::Index>(i), time, reported_);
   record_.add(time, reported_);
   return reported_;
 }

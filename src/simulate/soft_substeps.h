@@ -25,7 +25,7 @@ class SoftSubsteps {
   const Assembly& assembly() const { return assembly_; }
 
   /// Detection passes: calls of collision detection.
-  long evaluations() const { return step_.looks(); }
+  long evaluations() const { return step_.detections(); }
 
   /// Events since the last call: impacts, rest and waking, at the ends of steps.
   std::vector<Event> takeEvents();

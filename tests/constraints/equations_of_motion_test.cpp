@@ -248,7 +248,7 @@ TEST(RestingBody, DoesNotMoveWhateverActsOnIt) {
 // Methods that ask for the rates of positions alone step on with what is written there.
 TEST(RatesOfPositions, AreAllWrittenEvenOfBodiesThatDoNotTurn) {
   Mechanism mechanism = twoBodies();
-  mechanism.bodies[1].turns = false;
+  mechanism.bodies[1].hasConstantSpin = true;
   EquationsOfMotion equations(mechanism);
   const RightHandSide rightHandSide = equations.rightHandSide();
   const VectorX state = someState();

@@ -97,8 +97,8 @@ TEST(ContactDelassus, KnowsWhatJointsLeaveOfAContact) {
   solver.factorize(state);
   const ContactDelassus onJoint(contacts, ImpulseResponse(bodies, solver), state);
   const double turned = inertia + mass * d * d;
-  EXPECT_NEAR(onJoint.leverage(0), a * a / turned / (1 / mass + (d - a) * (d - a) / inertia), 1e-14);
-  EXPECT_NEAR(onJoint.leverage(1), (d - b) * (d - b) / turned / (1 / mass + b * b / inertia), 1e-14);
+  EXPECT_NEAR(onJoint.mobility(0), a * a / turned / (1 / mass + (d - a) * (d - a) / inertia), 1e-14);
+  EXPECT_NEAR(onJoint.mobility(1), (d - b) * (d - b) / turned / (1 / mass + b * b / inertia), 1e-14);
   EXPECT_FALSE(onJoint.isImmobile(0));
 
   const Constraints rod = {{{0, Vec3::Zero()}, {kFixed, Vec3(0, 1, 0)}, RodConstraint{1}}};
@@ -109,7 +109,7 @@ TEST(ContactDelassus, KnowsWhatJointsLeaveOfAContact) {
       ImpulseResponse(bodies, held), state);
   EXPECT_FALSE(onRod.isImmobile(0));
   EXPECT_TRUE(onRod.isImmobile(1));
-  EXPECT_NEAR(onRod.leverage(0), 1, 1e-15);
+  EXPECT_NEAR(onRod.mobility(0), 1, 1e-15);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ class PosedBodies {
     while (geometry.colliders[i].body != body) ++i;
     return geometry.colliders[i];
   }
-  SoftStepStart look() const { return {poses, state, kTimeStep, kMargin}; }
+  SoftStepStart stepStart() const { return {poses, state, kTimeStep, kMargin}; }
 
   ContactGeometry geometry = {{}, {}, {{ContactMaterial{0.25, 0.6, 0.4}}}, {}, {}, {}};
   std::vector<MovingPose> poses;

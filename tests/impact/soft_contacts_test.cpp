@@ -26,7 +26,7 @@ struct Touched : PosedBodies {
     contacts.emplace(geometry);
     contacts->takePairs();
   }
-  void update() { contacts->update(look(), threads); }
+  void update() { contacts->update(stepStart(), threads); }
   PersistentManifold& manifold(std::size_t active) {
     return contacts->manifolds()[static_cast<std::size_t>(contacts->active()[active].manifold)];
   }
@@ -224,7 +224,7 @@ TEST(SoftContacts, KnowTheFastestApproach) {
   spheres.add(colliderOf(Sphere{0.1}, {}), Vec3(0, -1, 0), Quat::Identity(), Vec3(0, 8, 0));
   spheres.geometry.pairs = {{0, 1, false, {}}, {0, 2, false, {}}};
   spheres.begin();
-  EXPECT_NEAR(spheres.contacts->fastestApproach(spheres.look(), spheres.threads),
+  EXPECT_NEAR(spheres.contacts->fastestApproach(spheres.stepStart(), spheres.threads),
               0.8 * 3 * 0.12 / std::hypot(0.12, 0.161), 1e-14);
   Touched box;
   box.geometry.planes = {{Vec3::Zero(), Vec3::UnitY(), 0}};
@@ -232,7 +232,7 @@ TEST(SoftContacts, KnowTheFastestApproach) {
           Vec3(0, 2, 0));
   box.geometry.pairs = {{0, 0, true, {}}};
   box.begin();
-  EXPECT_NEAR(box.contacts->fastestApproach(box.look(), box.threads),
+  EXPECT_NEAR(box.contacts->fastestApproach(box.stepStart(), box.threads),
               1.5 + 0.5 * 2 + 0.5 * 2 * Vec3(0.2, 0.1, 0.3).norm(), 1e-14);
 }
 

@@ -18,7 +18,7 @@ const Quat kTurn = rotationAbout(Vec3(1, -2, 0.5), 0.4);
 PredictedManifold manifoldOfPair(const PosedBodies& bodies) {
   const SoftManifolds manifolds(bodies.geometry);
   std::vector<Contact> scratch;
-  return manifolds.manifoldOf(manifolds.pairOf(0), bodies.look(), scratch);
+  return manifolds.manifoldOf(manifolds.pairOf(0), bodies.stepStart(), scratch);
 }
 
 double deepestOf(const PredictedManifold& manifold) {

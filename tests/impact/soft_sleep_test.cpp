@@ -28,7 +28,7 @@ struct SleepyRow : PosedBodies {
     place();
     contacts.emplace(geometry);
     contacts->takePairs();
-    contacts->update(look(), threads);
+    contacts->update(stepStart(), threads);
   }
   /// Steps at whose end the bodies have these speeds (m/s). Returns who has fallen asleep.
   std::vector<int> pass(int steps, const std::vector<double>& speeds) {
@@ -91,7 +91,7 @@ struct Struck {
     SoftContacts contacts(bodies.geometry);
     SoftSleep sleep(masses);
     contacts.takePairs();
-    contacts.update(bodies.look(), threads);
+    contacts.update(bodies.stepStart(), threads);
     std::vector<int> fallen;
     for (int i = 0; i < 40; ++i) sleep.letSleep(contacts, {0, 0, 0, 0, 0, kFast}, kSlow, kStep, fallen);
     EXPECT_THAT(fallen, ElementsAre(0, 1, 2, 3, 4));
@@ -99,7 +99,7 @@ struct Struck {
     bodies.poses[5].linearVelocity = Vec3(0, -momentum / 0.5, 0);
     bodies.move(5, Vec3(0, -2.8, 0));
     contacts.beginStep();
-    contacts.update(bodies.look(), threads);
+    contacts.update(bodies.stepStart(), threads);
     sleep.wakeTouched(contacts, bodies.poses, kSlow, woken);
     for (const int body : woken) EXPECT_FALSE(sleep.isAsleep(static_cast<std::size_t>(body)));
     EXPECT_EQ(sleep.awake(), 1 + woken.size());

@@ -181,9 +181,9 @@ TEST(PileAtRest, IsLookedAtNoMoreUntilSomethingHitsIt) {
   EXPECT_FALSE(bodies.step().isAsleep(3));
   bodies.advance(900);
   ASSERT_TRUE(bodies.step().allAsleep());
-  const long looks = bodies.step().looks();
+  const long detections = bodies.step().detections();
   bodies.advance(100);
-  EXPECT_EQ(bodies.step().looks(), looks);
+  EXPECT_EQ(bodies.step().detections(), detections);
 }
 
 // A ball rolls along a row of cubes: those that it does not touch sleep, and do not stop it. It lies 0.06 mm deep in

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "impact/contact_impulse.h"
-#include "simulate/contact_response.h"
 #include "simulate/events/contact_classification.h"
 #include "simulate/events/slow_sliding.h"
+#include "simulate/rows_of_contacts.h"
 
 namespace cradle {
 namespace {
@@ -73,7 +73,7 @@ void ActiveContacts::noteShortMomentArms(const std::vector<Contact>& touching, C
                                          double momentArm) {
   const ImpulseResponse response(mechanism().bodies, constraints);
   for (const Contact& contact : touching)
-    if (hasShortLever(contact, response, island_.state, momentArm))
+    if (hasShortMomentArm(contact, response, island_.state, momentArm))
       fallback_ =
           fallbackAt("something touches within a thousandth of its size of a joint", {&contact}, island_.assembly);
 }

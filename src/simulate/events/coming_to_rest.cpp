@@ -4,7 +4,7 @@
 
 #include "constraints/dense_delassus.h"
 #include "impact/frictional_contact.h"
-#include "simulate/contact_response.h"
+#include "simulate/rows_of_contacts.h"
 
 namespace cradle {
 

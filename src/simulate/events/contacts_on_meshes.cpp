@@ -9,7 +9,7 @@
 #include "collision/over_face.h"
 #include "collision/root_bracketing.h"
 #include "dynamics/integrators/pose_interpolant.h"
-#include "simulate/contact_response.h"
+#include "simulate/rows_of_contacts.h"
 
 namespace cradle {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "constraints/dense_delassus.h"
 #include "impact/frictional_contact.h"
-#include "simulate/contact_response.h"
 #include "simulate/events/contact_record.h"
+#include "simulate/rows_of_contacts.h"
 
 namespace cradle {
 

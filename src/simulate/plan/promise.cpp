@@ -1,4 +1,4 @@
-// Events serve contacts of spheres, corners and faces (simulate/contact_response.h, canLast) while their rows are few
+// Events serve contacts of spheres, corners and faces (simulate/rows_of_contacts.h, canLast) while their rows are few
 // and do not change too fast (simulate/plan/event_rate_limit.h). Bounds here are on the safe side: a promise without
 // conditions is one that the run never gives up.
 

@@ -80,7 +80,7 @@ class GroupProblem {
   }
 
   /// The inverse mass along a contact's normal, as a fraction of its value without constraints.
-  double mobility(std::size_t contact) const { return dense_ ? dense_->leverage(contact) : 1; }
+  double mobility(std::size_t contact) const { return dense_ ? dense_->mobility(contact) : 1; }
 
   /// Impulses (N s) that solve the problem for the group that was set; the best that were found, with a fault, if none
   /// do.

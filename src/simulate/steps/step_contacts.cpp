@@ -113,7 +113,7 @@ void StepContacts::loosenShortMomentArms(const VectorX& state, std::vector<Conta
   if (contacts.empty() || !solver_.hasConstraints()) return;
   const ImpulseResponse response(assembly_.mechanism.bodies, solver_);
   for (Contact& contact : contacts)
-    if (hasShortLever(contact, response, state, StepTolerances::kLooseMomentArm))
+    if (hasShortMomentArm(contact, response, state, StepTolerances::kLooseMomentArm))
       contact.separation += StepTolerances::kLoosened * smallestSize(contact, assembly_.radii);
 }
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "simulate/contact_response.h"
 #include "simulate/rope_events.h"
+#include "simulate/rows_of_contacts.h"
 
 namespace cradle {
 namespace {

@@ -8,8 +8,8 @@
 #include "constraints/invariants.h"
 #include "core/error.h"
 #include "dynamics/integrators/rk4.h"
-#include "simulate/contact_response.h"
 #include "simulate/events/event_location.h"
+#include "simulate/rows_of_contacts.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {

@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "constraints/constraint_forces.h"
-#include "simulate/contact_response.h"
+#include "simulate/rows_of_contacts.h"
 #include "simulate/steps/contact_stepping.h"
 #include "study/stability/contact_scenes.h"
 

@@ -6,8 +6,8 @@
 
 #include "dynamics/integrators/rk4.h"
 #include "experiments/ridged_ground.h"
-#include "simulate/contact_response.h"
 #include "simulate/one_island.h"
+#include "simulate/rows_of_contacts.h"
 
 namespace cradle {
 namespace {

@@ -7,9 +7,9 @@ namespace cradle {
 
 /// Where the ends of each link are at the start: fills lengths that were left out, and finds the faults in those that
 /// were given. Links of bodies whose shape is not there yet are left for the next call.
-void settleLinks(SceneDraft& draft, FaultList& faults);
+void completeLinks(SceneDraft& draft, FaultList& faults);
 
-/// Moves the links, all settled, to the scene.
+/// Moves the links, all complete, to the scene.
 void collectLinks(SceneDraft& draft);
 
 }  // namespace cradle

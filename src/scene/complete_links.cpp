@@ -1,4 +1,4 @@
-#include "scene/settle_links.h"
+#include "scene/complete_links.h"
 
 #include <fmt/format.h>
 
@@ -113,7 +113,7 @@ void Settlement::checkThatEndsMeet() const {
                        distance_, tolerance));
 }
 
-void settle(LinkDraft& link, SceneDraft& scene, FaultList& faults) {
+void complete(LinkDraft& link, SceneDraft& scene, FaultList& faults) {
   link.isSettled = true;
   const std::size_t faultsBefore = faults.count();
   resolveVertex(link.anchorA, scene, faults);
@@ -130,10 +130,10 @@ void settle(LinkDraft& link, SceneDraft& scene, FaultList& faults) {
 
 }  // namespace
 
-void settleLinks(SceneDraft& draft, FaultList& faults) {
+void completeLinks(SceneDraft& draft, FaultList& faults) {
   for (LinkDraft& link : draft.links) {
     if (link.isSettled || !link.isSound) continue;
-    if (isKnown(link.anchorA.anchor, draft) && isKnown(link.anchorB.anchor, draft)) settle(link, draft, faults);
+    if (isKnown(link.anchorA.anchor, draft) && isKnown(link.anchorB.anchor, draft)) complete(link, draft, faults);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "simulate/contact_response.h"
+#include "simulate/rows_of_contacts.h"
 
 #include <cmath>
 
