@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "math/elementary.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
@@ -28,6 +29,14 @@ int orderOf(MethodName method) {
   return 1;
 }
 
+/// J: of bodies that move no faster than rounding.
+double roundedKinetic(const Scene& scene) {
+  double mass = 0;
+  for (const Body& body : scene.bodies)
+    if (body.motion == Motion::dynamic) mass += body.massProperties.mass;
+  return 0.5 * mass * kRestSpeedFloor * kRestSpeedFloor;
+}
+
 }  // namespace
 
 void StepLoss::add(const Frame& frame) {
@@ -39,6 +48,7 @@ void StepLoss::add(const Frame& frame) {
 
 std::optional<std::string> StepLoss::warning() const {
   if (!scene_.method || !scene_.method->timeStep || first_.frames == 0 || second_.frames == 0) return std::nullopt;
+  if (!(largestKinetic_ > roundedKinetic(scene_))) return std::nullopt;
   const bool hasSprings = !scene_.springs.empty();
   const double lost = hasSprings ? second_.mean() - first_.mean() : second_.mean();
   const double ratio = std::abs(lost) / largestKinetic_;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/experiment.h"
@@ -49,6 +50,26 @@ TEST(StepLoss, OfPendulumsIsToldWithAStepThatIsHarmless) {
       EXPECT_EQ(right.warning, "") << tie;
       EXPECT_LT(std::abs(right.lost), 0.02 * right.largestKinetic) << tie;
     }
+}
+
+// A ball on the floor whose joint lets it neither roll nor slide: what its start velocity loses is no matter of steps,
+// and rounding of nothing is no loss. Without gravity, forces of rounding are not told of either.
+TEST(StepLoss, IsNotToldOfWhatDoesNotMove) {
+  for (const char* run :
+       {R"("method": {"name": "rk4", "timeStep": 0.001})", R"("gravity": [0, 0, 0], "accuracy": 1e-2)"}) {
+    std::vector<std::string> warnings;
+    simulate(sceneWith(fmt::format(R"("duration": 0.1, {}, "bodies": [
+               {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static"}},
+               {{"name": "b", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 1, "position": [0.3, 0.1, 0],
+                 "linearVelocity": [1.1, -0.3, 0], "angularVelocity": [0, 0, -1]}}],
+               "ballJoints": [{{"bodyA": "b", "anchorA": [-0.3, -1.1, 0], "anchorB": [0, -1, 0]}}])",
+                                   run)),
+             {[](const Frame&) {}, [](const Event&) {}, [&](const std::string& text) { warnings.push_back(text); }});
+    EXPECT_EQ(std::ssize(warnings),
+              std::count_if(warnings.begin(), warnings.end(),
+                            [](const std::string& text) { return text.find("start velocities") != std::string::npos; }))
+        << run << (warnings.empty() ? "" : warnings.back());
+  }
 }
 
 // A spring elsewhere, whose swing the steps keep, does not hide it.

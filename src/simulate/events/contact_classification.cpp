@@ -11,6 +11,7 @@
 #include "simulate/events/slow_sliding.h"
 #include "simulate/plan/disjoint_sets.h"
 #include "simulate/plan/event_rate_limit.h"
+#include "simulate/thresholds.h"
 
 namespace cradle {
 namespace {
@@ -145,9 +146,10 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
   const DenseDelassus delassus(allRowsOf(rows), mechanism.bodies, input.frames, &constraints);
   const SlidingSolution solution = solveContactForces(members, rows, delassus, derivative);
   const double largest = std::max(delassus.accelerations(derivative).cwiseAbs().maxCoeff(), mechanism.gravity.norm());
-  if (!(solution.residual <= EventTolerances::kStillRatio * largest)) logUnsolved(members, solution.residual, island);
-  if (!(solution.frictionError <= EventTolerances::kStillRatio * largest))
-    found.fallback = jamAt(members, island.assembly);
+  // Accelerations that give less than a speed of rounding over the whole run do not count.
+  const double most = std::max(EventTolerances::kStillRatio * largest, kRestSpeedFloor / island.scene.duration);
+  if (!(solution.residual <= most)) logUnsolved(members, solution.residual, island);
+  if (!(solution.frictionError <= most)) found.fallback = jamAt(members, island.assembly);
   const AccelerationLimits limits{
       largest, input.tolerances.stillAcceleration(largest, solution.residual),
       (input.isReleasing ? EventTolerances::kReleasedRatio : EventTolerances::kUnloadedRatio) * largest};

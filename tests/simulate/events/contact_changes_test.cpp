@@ -97,6 +97,23 @@ TEST(ContactChanges, FindTheEndOfSlidingInsideAStep) {
   EXPECT_NEAR(change->fraction * 0.15, 1 / (kDynamicFriction * kGravity * (1 + 1 / 0.3)), 1e-11);
 }
 
+// Of two balls the slower one sticks first, whichever is the first of the bodies.
+TEST(ContactChanges, AreTheFirstOfAll) {
+  for (const auto& [speed, other] : {std::pair{1.0, 0.8}, {0.8, 1.0}}) {
+    std::string second = kBall;
+    second.replace(second.find("ball"), 4, "other");
+    OnPlane at(kBall + fmt::format(R"(, "linearVelocity": [{}, 0, 0]}}, )", speed) + second +
+               fmt::format(R"(, "linearVelocity": [0, 0, {}]}})", other));
+    centerOfMass(at.state(), 1).z() = 3;
+    at.classify();
+    dop853(at.island.rightHandSide, at.state(), 0, 0.15, at.island.step);
+    prepareInterpolant(at.island.rightHandSide, at.island.step);
+    const auto change = at.active.firstChange();
+    ASSERT_TRUE(change);
+    EXPECT_EQ(at.contacts()[change->contact].centerA.body, speed < other ? 0 : 1);
+  }
+}
+
 /// A smooth box of 0.2 m that slides with 1 m/s over the edge of a smooth table, at x = 0.5 m. Its front corners are a
 /// way (m) before it.
 struct OverAnEdge : OnPlane {
