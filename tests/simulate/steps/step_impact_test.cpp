@@ -89,22 +89,26 @@ TEST(StepImpact, StrikesEachGroupAlone) {
   EXPECT_NEAR(impactEnergy(at.state()), 0.75 * (9 + 0.5), 1e-14);
 }
 
-// A rod that stands on end and falls flat, with friction: Newton's restitution of its end would gain energy at some
-// angles. The fraction of restitution that does not is taken, and what is lost is booked.
+// A tilted rod strikes with its lower end, which slides so slowly that the normal impulse alone would reverse its
+// sliding: friction then works with the sliding before (T. R. Kane, D. A. Levinson, "Dynamics: Theory and
+// Applications", 1985), and Newton's restitution would gain energy. The fraction of restitution that does not is taken,
+// and what is lost is booked.
 TEST(StepImpact, NeverGainsEnergy) {
-  for (const double angle : {0.2, 0.6, 1.0, 1.4}) {
+  for (const double angle : {0.3, 0.6, 1.0}) {
     OneIsland at(landing(1, 1, R"({"name": "rod", "mass": 1, "shape": {"box": {"size": [0.02, 1, 0.02]}},
       "material": "stuff"})"));
     setOrientation(at.state(), 0, rotationAbout(Vec3::UnitZ(), angle));
     const double height = 0.5 * std::cos(angle) + 0.01 * std::sin(angle);
     centerOfMass(at.state(), 0) = Vec3(0, height, 0);
-    linearVelocity(at.state(), 0) = Vec3(3, -1, 0), angularVelocity(at.state(), 0) = Vec3(0, 0, 6);
+    linearVelocity(at.state(), 0) = Vec3(-0.3, -3, 0);
     const double before = energyConstant(at.mechanism(), at.state());
     const double kinetic = kineticEnergy(at.mechanism().bodies[0], 0, at.state());
     const std::vector<Contact> contacts = at.contactsWithin(1e-6);
     ASSERT_THAT(contacts, SizeIs(2));
     strike(at, contacts);
-    EXPECT_LE(kineticEnergy(at.mechanism().bodies[0], 0, at.state()), kinetic * (1 + 1e-12)) << angle;
+    const double ratio = kineticEnergy(at.mechanism().bodies[0], 0, at.state()) / kinetic;
+    EXPECT_LE(ratio, 1 + 1e-12) << angle;
+    EXPECT_GE(ratio, 1 - 1e-5) << angle;  // the fraction is found to 1e-6
     EXPECT_NEAR(energyConstant(at.mechanism(), at.state()), before, 1e-12);
     for (const Contact& contact : contacts) EXPECT_GE(openingSpeed(contact, at.state()), -1e-12);
   }
