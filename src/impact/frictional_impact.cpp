@@ -39,8 +39,8 @@ using Index = Eigen::Index;
 
 // Each round resolves what the residual of the one before still lets close; half or twice as many change no test.
 constexpr int kMaxImpactRounds = 10;
-// Of the closing speed: a round after which more is left has come to what no impulses can change.
-constexpr double kLeastProgress = 0.5;
+// Of the closing speed: if more is left after a round, no impulses can change that.
+constexpr double kUnchangedRatio = 0.99;
 // Of the factor on friction that wedges: twenty bisections. A tenth or ten times as much changes no test.
 constexpr double kFrictionError = 1e-6;
 // A problem is wedged if the sum of the magnitudes in z . G z is more times z . G z itself: then eight digits cancel,
@@ -234,7 +234,7 @@ VectorX FrictionalImpact::resolve(ImpactFaults& faults) const {
     for (std::size_t k = 0; k < rows_.size(); ++k) impulses[rows_[k]] += found.impulses[static_cast<Index>(k)];
     velocities = start_ + delassus_.matrix() * impulses;
     const double before = std::exchange(closing, closingSpeed(velocities));
-    if (round > 0 && closing > kLeastProgress * before) break;
+    if (round > 0 && closing > kUnchangedRatio * before) break;
   }
   if (closing > tolerances_.closed) faults.rounds = round;
   return impulses;
