@@ -70,8 +70,14 @@ std::vector<Contact> EventImpacts::contactsInReach(const std::vector<Contact>& t
   if (!(tolerances_.reach > tolerances_.touch)) return near;
   findContacts(island_.assembly.geometry, island_.state, tolerances_.reach, farther);
   eraseImmobile(ImpulseResponse(island_.assembly.mechanism.bodies, constraints_), island_.state, farther);
-  for (const Contact& contact : farther)
-    if (contact.separation > tolerances_.touch) near.push_back(contact);
+  for (const Contact& contact : farther) {
+    // The pair of an event has one contact among the touching ones, however large its gap.
+    const auto isIt = [&](const Contact& other) {
+      return other.pair == contact.pair && (other.point - contact.point).norm() <= tolerances_.touch;
+    };
+    if (contact.separation > tolerances_.touch && std::none_of(touching.begin(), touching.end(), isIt))
+      near.push_back(contact);
+  }
   return near;
 }
 

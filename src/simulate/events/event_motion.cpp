@@ -207,11 +207,16 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
 }
 
 /// Ends the step where a gap closes. The gap s that the interpolant's error leaves is taken out by one Newton step
-/// along the end derivative: theta = -s / s'. False if the gap is still open at the instant of the interpolant: no
-/// later impact has been searched for, so the step ends there without an event.
+/// along the end derivative: theta = -s / s'. The gap is that of the projected state, as contacts that close at one
+/// instant are told apart by what projection would leave of it. False if the gap is still open at the instant of the
+/// interpolant: no later impact has been searched for, so the step ends there without an event.
 bool EventMotion::stopAtImpact(const ImpactTime& impact) {
   const TouchingFeatures touching = contacts_.touching();
-  const auto gap = [&](const VectorX& state) { return island_.search.margin(impact, touching, state); };
+  const auto gap = [&](const VectorX& state) {
+    projected_ = state;
+    project(projected_);
+    return island_.search.margin(impact, touching, projected_);
+  };
   Step& step = island_.step;
   const double length = impact.fraction * step.timeStep;
   keepStartDerivative(step);
@@ -230,21 +235,26 @@ bool EventMotion::stopAtImpact(const ImpactTime& impact) {
   return true;
 }
 
-/// Projects the state onto the constraint manifold. A state that this leaves as it was, to rounding, lets the next step
+/// Projects a state onto the manifold of active contacts and constraints.
+void EventMotion::project(VectorX& state) {
+  if (!contacts_.active().empty()) island_.equations.project(state);
+  if (!solver_.hasConstraints()) return;
+  solver_.exclude(island_.equations.resting());
+  solver_.project(state);
+}
+
+/// Projects the island's state. A state that this leaves as it was, to rounding, lets the next step
 /// begin with the end derivative of this one, unless ropes may still act on it. Orientations are normalised only then:
 /// the equations take their direction alone.
 void EventMotion::projectState() {
   VectorX& state = island_.state;
+  project(state);
   bool isTouched = false;
-  if (!contacts_.active().empty()) island_.equations.project(state);
-  if (solver_.hasConstraints()) {
-    solver_.exclude(island_.equations.resting());
-    solver_.project(state);
-    requireConstraintsKept();
-  }
-  if (!contacts_.active().empty() || solver_.hasConstraints()) isTouched = !isSame(state, island_.step.state);
-  if (!contacts_.active().empty() || solver_.hasConstraints())
+  if (!contacts_.active().empty() || solver_.hasConstraints()) {
+    isTouched = !isSame(state, island_.step.state);
     bookNumerical(energyConstant(island_.assembly.mechanism, island_.step.state), island_.assembly.mechanism, state);
+  }
+  if (solver_.hasConstraints()) requireConstraintsKept();
   for (Eigen::Index body = 0; body < bodyCount(state); ++body)
     isTouched = isTouched || std::abs(orientation(state, body).squaredNorm() - 1) > EventTolerances::kUnitLength;
   if (isTouched) normalizeOrientations(state);

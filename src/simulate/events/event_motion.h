@@ -59,6 +59,7 @@ class EventMotion {
   Event findFirstEvent();
   Event stopAtFirstEvent();
   bool stopAtImpact(const ImpactTime& impact);
+  void project(VectorX& state);
   void projectState();
   void requireConstraintsKept();
   void changeForces(const Event& event);
@@ -79,6 +80,7 @@ class EventMotion {
   ConstraintSolver solver_;
   EventRateLimit eventRateLimit_;
   VectorX tolerance_;
+  VectorX projected_;                // scratch
   double startConstraintError_ = 0;  // m or rad
   std::vector<int> tautRowsBefore_;  // of ropes, before an event
   std::vector<ContactConstraint> contactsOfStep_;

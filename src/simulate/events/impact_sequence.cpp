@@ -40,7 +40,7 @@ ImpactSequence::ImpactSequence(std::vector<Contact> contacts, const std::optiona
 }
 
 /// The event's time is rounded. All gaps are advanced to the instant at which the nearest closing contact of the pair
-/// has none.
+/// has none. None goes back, for a contact that touched before may be closed farther than rounding.
 void ImpactSequence::closeGapOf(std::size_t pair) {
   std::size_t nearest = contacts_.size();
   for (std::size_t i = 0; i < contacts_.size(); ++i)
@@ -48,7 +48,7 @@ void ImpactSequence::closeGapOf(std::size_t pair) {
       nearest = i;
   if (nearest == contacts_.size()) return;
   const double most = limits_.touchTolerance / fastestClosing_;
-  const double time = std::clamp(gaps_[nearest] / -speeds_[nearest], -most, most);
+  const double time = std::clamp(gaps_[nearest] / -speeds_[nearest], 0.0, most);
   for (std::size_t i = 0; i < contacts_.size(); ++i) gaps_[i] += time * speeds_[i];
   gaps_[nearest] = 0;
 }

@@ -171,6 +171,16 @@ TEST(ImpactSequence, TakesAllGapsAtTheInstantOfTheMeeting) {
   EXPECT_NEAR(row.position(3), 12e-12, 1e-26);
 }
 
+// What is closed by 1e-12 m at the instant of the event was so before: time does not go back to where it was not, 5e-11
+// s ago, when contact 2 had a gap of 1e-10 m.
+TEST(ImpactSequence, DoesNotGoBackToWhereAContactWasNotClosed) {
+  Row row({1, 1, 1, 1}, {0.02, 0, 2, 0}, {-1e-12, 1, 5e-15});
+  row.limits().duration = 0;
+  ImpactSequence sequence = row.sequence(0);
+  ASSERT_TRUE(sequence.next(row.state()));
+  EXPECT_THAT(sequence.members(), UnorderedElementsAre(0u, 2u));
+}
+
 // Without the event the same gap is one.
 TEST(ImpactSequence, MeasuresGapsWhereNothingMeets) {
   Row row({1, 1}, {2, 0}, {2e-12});
