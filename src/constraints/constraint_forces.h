@@ -21,6 +21,9 @@ class ConstraintSolver {
 
   bool hasConstraints() const { return !constraints_.empty(); }
 
+  /// The rows of the last factorize or project: of the constraints that are not excluded.
+  const std::vector<ConstraintBlock>& blocks() const { return blocks_; }
+
   /// Leaves out the rows of some bodies from the next factorize or project on.
   void exclude(const std::vector<char>& bodies);
   bool isExcluded(int bodyA, int bodyB) const;

@@ -49,20 +49,25 @@ void PivotBlock::solve(Vec6& x) const {
   }
 }
 
-/// Chooses the order. Returns the bodies that each body is coupled to when its turn comes.
-std::vector<std::vector<int>> BlockLu::eliminate(const std::vector<std::pair<int, int>>& pairs) {
-  const int bodies = static_cast<int>(positionOf_.size());
+/// Chooses the order. Returns the rows that each row is coupled to when its turn comes.
+std::vector<std::vector<int>> BlockLu::eliminate(int bodies, const std::vector<std::pair<int, int>>& pairs) {
+  const int rows = static_cast<int>(positionOf_.size());
   std::vector<std::vector<int>> neighbours(positionOf_.size());
+  std::vector<char> mayBeNext(positionOf_.size(), 0);
+  std::fill_n(mayBeNext.begin(), bodies, 1);
   for (const auto& [a, b] : pairs) insertOnce(neighbours[at(a)], b), insertOnce(neighbours[at(b)], a);
   std::vector<char> isDone(positionOf_.size(), 0);
-  for (int position = 0; position < bodies; ++position) {
+  for (int position = 0; position < rows; ++position) {
     int next = -1;
-    for (int body = 0; body < bodies; ++body)
-      if (!isDone[at(body)] && (next < 0 || neighbours[at(body)].size() < neighbours[at(next)].size())) next = body;
+    for (int row = 0; row < rows; ++row)
+      if (mayBeNext[at(row)] && !isDone[at(row)] &&
+          (next < 0 || neighbours[at(row)].size() < neighbours[at(next)].size()))
+        next = row;
     isDone[at(next)] = 1;
     bodyAt_[at(position)] = next, positionOf_[at(next)] = position;
     const std::vector<int>& coupled = neighbours[at(next)];
     for (const int one : coupled) {
+      mayBeNext[at(one)] = mayBeNext[at(one)] || next < bodies;
       std::erase(neighbours[at(one)], next);
       for (const int other : coupled)
         if (other != one) insertOnce(neighbours[at(one)], other);
@@ -71,25 +76,26 @@ std::vector<std::vector<int>> BlockLu::eliminate(const std::vector<std::pair<int
   return neighbours;
 }
 
-void BlockLu::analyze(int bodies, const std::vector<std::pair<int, int>>& pairs) {
-  bodyAt_.assign(at(bodies), 0), positionOf_.assign(at(bodies), 0);
-  const std::vector<std::vector<int>> coupled = eliminate(pairs);
-  later_.assign(at(bodies), {}), first_.assign(at(bodies), 0), updates_.assign(at(bodies), {});
+void BlockLu::analyze(int bodies, int multipliers, const std::vector<std::pair<int, int>>& pairs) {
+  const std::size_t rows = at(bodies + multipliers);
+  bodyAt_.assign(rows, 0), positionOf_.assign(rows, 0);
+  const std::vector<std::vector<int>> coupled = eliminate(bodies, pairs);
+  later_.assign(rows, {}), first_.assign(rows, 0), updates_.assign(rows, {});
   std::size_t couplings = 0;
-  for (std::size_t position = 0; position < at(bodies); ++position) {
+  for (std::size_t position = 0; position < rows; ++position) {
     for (const int body : coupled[at(bodyAt_[position])]) later_[position].push_back(positionOf_[at(body)]);
     std::sort(later_[position].begin(), later_[position].end());
     first_[position] = couplings;
     couplings += later_[position].size();
   }
-  diagonal_.resize(at(bodies));
+  diagonal_.resize(rows);
   blocks_.resize(2 * couplings);
   const auto couplingOf = [this](int early, int late) {
     const std::vector<int>& later = later_[at(early)];
     return first_[at(early)] +
            static_cast<std::size_t>(std::lower_bound(later.begin(), later.end(), late) - later.begin());
   };
-  for (std::size_t position = 0; position < at(bodies); ++position)
+  for (std::size_t position = 0; position < rows; ++position)
     for (std::size_t i = 0; i < later_[position].size(); ++i)
       for (std::size_t k = 0; k < later_[position].size(); ++k) {
         const int row = later_[position][i], column = later_[position][k];

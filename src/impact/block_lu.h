@@ -27,12 +27,14 @@ class PivotBlock {
 
 /// Factorisation of a sparse matrix of 6x6 blocks, one row of blocks for each body, with blocks where bodies touch: as
 /// often above the diagonal as below, but with any values. Pivots within diagonal blocks only, so that these must stay
-/// regular, as they do for matrices near symmetric positive definite ones. O(n) for stacks and chains. Allocates in
-/// `analyze` alone.
+/// regular, as they do for matrices near symmetric positive definite ones. Further rows of blocks may be those of
+/// multipliers, whose diagonal blocks are (almost) zero at first: each comes after a body that it is coupled to. O(n)
+/// for stacks and chains. Allocates in `analyze` alone.
 class BlockLu {
  public:
-  /// Takes the pairs of different bodies that have blocks, each once.
-  void analyze(int bodies, const std::vector<std::pair<int, int>>& pairs);
+  /// Takes the number of rows of blocks, those of multipliers last, and the pairs of different ones that have blocks,
+  /// each once.
+  void analyze(int bodies, int multipliers, const std::vector<std::pair<int, int>>& pairs);
 
   /// Sets all blocks to zero.
   void clear();
@@ -54,7 +56,7 @@ class BlockLu {
     std::size_t target, below, above;
     bool isDiagonal;
   };
-  std::vector<std::vector<int>> eliminate(const std::vector<std::pair<int, int>>& pairs);
+  std::vector<std::vector<int>> eliminate(int bodies, const std::vector<std::pair<int, int>>& pairs);
 
   std::vector<int> bodyAt_, positionOf_;           // the order of elimination, and back
   std::vector<std::vector<int>> later_;            // positions that each position is coupled to and that come after it

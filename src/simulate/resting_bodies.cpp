@@ -85,15 +85,15 @@ bool RestingBodies::canBeInEquilibrium(const std::vector<int>& islands, int isla
 /// Adds to the accelerations what forces at the supports give that leave as little closing and sliding as can be.
 void RestingBodies::applySupportForces(const std::vector<Contact>& supports, const std::vector<double>& frictions,
                                        const VectorX& state, VectorX& accelerations) {
-  if (supports.size() <= kFewSupports || solver_.hasConstraints()) {
-    if (solver_.hasConstraints()) solver_.factorize(state);
+  if (solver_.hasConstraints()) solver_.factorize(state);
+  if (supports.size() <= kFewSupports) {
     const ContactDelassus cones(supports, ImpulseResponse(mechanism_.bodies, solver_), state);
     const VectorX free = cones.velocitiesIn(accelerations);
     cones.apply(solveFrictionalContact(cones.matrix(), free, frictions).impulses, accelerations);
     return;
   }
   SparseDelassus cones;
-  cones.set(supports, mechanism_.bodies, state);
+  cones.set(supports, mechanism_.bodies, solver_, state);
   const Eigen::Index size = 3 * static_cast<Eigen::Index>(supports.size());
   WarmStart start{VectorX::Zero(size), VectorX::Zero(size), 0};
   const VectorX free = cones.velocitiesIn(accelerations);

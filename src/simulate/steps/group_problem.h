@@ -46,8 +46,8 @@ struct ContactProblem {
   bool hasRebounds = false;
 };
 
-/// The frictional contact problem of one group after the other: dense where constraints act on the group or contacts
-/// are few, else block-sparse. It remembers the step before for warm starts.
+/// The frictional contact problem of one group after the other: dense where contacts are few, else block-sparse. It
+/// remembers the step before for warm starts.
 class GroupProblem {
  public:
   /// Keeps a reference to `assembly`.
@@ -80,7 +80,7 @@ class GroupProblem {
   }
 
   /// The inverse mass along a contact's normal, as a fraction of its value without constraints.
-  double mobility(std::size_t contact) const { return dense_ ? dense_->mobility(contact) : 1; }
+  double mobility(std::size_t contact) const { return dense_ ? dense_->mobility(contact) : sparse_.mobility(contact); }
 
   /// Impulses (N s) that solve the problem for the group that was set; the best that were found, with a fault, if none
   /// do.
@@ -93,18 +93,17 @@ class GroupProblem {
   long iterations() const { return iterations_; }
 
  private:
-  bool isSolvedDensely() const;
   MatrixX delassus() const { return dense_ ? dense_->matrix() : sparse_.matrix(); }
-  ContactSolution solveSparsely(const VectorX& free, const std::vector<double>& frictions, double tolerance,
-                                WarmStart& start);
-  VectorX solveDensely(const StepGroup& group, const ContactProblem& problem, std::vector<SteppingFault>& faults) const;
+  ContactSolution solve(const VectorX& free, const std::vector<double>& frictions, double tolerance, WarmStart& start);
   WarmStart warmStartOf(const StepGroup& group) const;
+  WarmStart coldStart() const;
 
   const Assembly& assembly_;
   ConstraintSolver constraints_;
   std::vector<Contact> contacts_;  // of the group
   SparseDelassus sparse_;
-  std::optional<ContactDelassus> dense_;  // of a group with constraints
+  bool isSolvedDensely_ = false;          // contacts are few
+  std::optional<ContactDelassus> dense_;  // of few contacts of a group with constraints
   StepMemory memory_;
   std::map<int, double> penalties_;  // of ADMM, of each group's first body
   long iterations_ = 0;

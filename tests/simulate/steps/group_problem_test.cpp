@@ -32,7 +32,7 @@ struct BoxTower : OneIsland {
     for (int i = 0; i < count; ++i)
       text += fmt::format(R"(, {{"name": "b{}", "shape": {{"box": {{"size": [0.4, 0.2, 0.6]}}}}, "mass": {},
         "material": "stuff", "position": [0, {}, 0]}})",
-                          i, 3 - i, 0.1 + 0.2 * i);
+                          i, 3 - 0.5 * i, 0.1 + 0.2 * i);
     return text;
   }
   ContactProblem posed() const {
@@ -116,6 +116,21 @@ TEST(GroupProblem, HasTheResponseOfConstraints) {
   for (const Contact& contact : at.group.contacts) EXPECT_GE(openingSpeed(contact, at.state()), -1e-13);
   EXPECT_LT(at.problem.mobility(0), 0.9);
   EXPECT_EQ(BoxTower(1).problem.mobility(0), 1);
+}
+
+// The same of sixteen contacts, which are solved by iterations, to 1e-7 of the velocities.
+TEST(GroupProblem, HasTheResponseOfConstraintsWithManyContacts) {
+  BoxTower at(5, R"(, "ballJoints": [{"bodyA": "b0", "anchorA": [0, 0, 0], "anchorB": [0, 0.1, 0]},
+      {"bodyA": "b2", "bodyB": "b3", "anchorA": [0.1, 0.1, 0], "anchorB": [0.1, -0.1, 0]}])");
+  ASSERT_THAT(at.group.contacts, SizeIs(16));
+  for (int body = 1; body < 5; ++body) linearVelocity(at.state(), body) = Vec3(0.1, -0.02 * body, 0.01);
+  at.problem.constraints().constrainVelocities(at.state());
+  at.problem.apply(at.problem.solve(at.group, at.posed(), at.faults), at.state());
+  EXPECT_THAT(at.faults, IsEmpty());
+  EXPECT_LT(linearVelocity(at.state(), 0).norm(), 1e-14);
+  EXPECT_LT(at.problem.constraints().largestRate(at.state()), 1e-14);
+  for (const Contact& contact : at.group.contacts) EXPECT_GE(openingSpeed(contact, at.state()), -1e-8);
+  EXPECT_LT(at.problem.mobility(0), 0.9);
 }
 
 // Energy above a limit is taken, and told as a fault with the bodies it was taken from; nothing below it.
