@@ -98,8 +98,10 @@ void ConstraintSolver::findBlocks(const VectorX& state, const std::vector<BodyFr
   blocks_.resize(constraints_.size()), responses_.resize(constraints_.size());
   std::size_t blocks = 0;
   for (const Constraint& constraint : constraints_) {
-    if (isExcluded(constraint.anchorA.body, constraint.anchorB.body)) continue;
+    if (isExcluded(constraint)) continue;
     findRows(constraint, state, frames, blocks_[blocks]);
+    if (!moves(constraint.anchorA.body)) blocks_[blocks].bodyA = kFixed, blocks_[blocks].turnsA = false;
+    if (!moves(constraint.anchorB.body)) blocks_[blocks].bodyB = kFixed, blocks_[blocks].turnsB = false;
     findResponse(blocks_[blocks], frames, responses_[blocks]);
     ++blocks;
   }
@@ -124,13 +126,21 @@ void ConstraintSolver::findResponse(const ConstraintBlock& block, const std::vec
   if (block.turnsB) findTurn(block.bodyB, block.angularB, response.turnB);
 }
 
-void ConstraintSolver::exclude(const std::vector<char>& bodies) {
+void ConstraintSolver::exclude(const std::vector<char>& bodies, const std::vector<char>& fixed) {
   excluded_ = bodies;
+  fixed_ = fixed;
 }
 
-bool ConstraintSolver::isExcluded(int bodyA, int bodyB) const {
-  const auto isOut = [this](int body) { return body != kFixed && excluded_[static_cast<std::size_t>(body)]; };
-  return !excluded_.empty() && (isOut(bodyA) || isOut(bodyB));
+bool ConstraintSolver::moves(int body) const {
+  return body != kFixed && (fixed_.empty() || !fixed_[static_cast<std::size_t>(body)]);
+}
+
+bool ConstraintSolver::isExcluded(const Constraint& constraint) const {
+  const int bodyA = constraint.anchorA.body, bodyB = constraint.anchorB.body;
+  const auto isOut = [this](int body) {
+    return moves(body) && !excluded_.empty() && excluded_[static_cast<std::size_t>(body)];
+  };
+  return isOut(bodyA) || isOut(bodyB) || !(moves(bodyA) || moves(bodyB));
 }
 
 bool ConstraintSolver::hasKnownStructure() const {
@@ -283,23 +293,45 @@ void ConstraintSolver::opposeAccelerations(const VectorX& derivative) {
     });
 }
 
+void ConstraintSolver::addResponse(VectorX& velocities) const {
+  addResponse([&velocities](int body, const Vec3& linear, const Vec3& angular) {
+    linearVelocity(velocities, body) += linear;
+    angularVelocity(velocities, body) += angular;
+  });
+}
+
 const VectorX& ConstraintSolver::constrainAccelerations(VectorX& derivative) {
   opposeAccelerations(derivative);
   solve();
-  addResponse([&derivative](int body, const Vec3& linear, const Vec3& angular) {
-    linearVelocity(derivative, body) += linear;
-    angularVelocity(derivative, body) += angular;
-  });
+  addResponse(derivative);
   return multipliers_;
+}
+
+void ConstraintSolver::constrainDisplacements(VectorX& displacement) {
+  opposeVelocities(displacement);
+  forEachRow([this](const ConstraintBlock& block, std::size_t row, Eigen::Index index) {
+    multipliers_[index] -= block.value[row];
+  });
+  solve();
+  addResponse(displacement);
 }
 
 void ConstraintSolver::constrainVelocities(VectorX& state) {
   opposeVelocities(state);
   solve();
-  addResponse([&state](int body, const Vec3& linear, const Vec3& angular) {
-    linearVelocity(state, body) += linear;
-    angularVelocity(state, body) += angular;
-  });
+  addResponse(state);
+}
+
+void ConstraintSolver::putMultipliers(VectorX& all) const {
+  Eigen::Index next = 0, row = 0;
+  for (const Constraint& constraint : constraints_) {
+    const Eigen::Index rows = rowCount(constraint);
+    if (!isExcluded(constraint)) {
+      all.segment(row, rows) = multipliers_.segment(next, rows);
+      next += rows;
+    }
+    row += rows;
+  }
 }
 
 // Newton's method, damped as by Levenberg and Marquardt: a step that does not help, or that goes far for a slow gain,

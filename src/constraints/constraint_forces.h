@@ -24,9 +24,10 @@ class ConstraintSolver {
   /// The rows of the last factorize or project: of the constraints that are not excluded.
   const std::vector<ConstraintBlock>& blocks() const { return blocks_; }
 
-  /// Leaves out the rows of some bodies from the next factorize or project on.
-  void exclude(const std::vector<char>& bodies);
-  bool isExcluded(int bodyA, int bodyB) const;
+  /// From the next factorize or project on, leaves out the rows of some bodies, and those of bodies that act as `fixed`
+  /// (none if empty) alone; to others these do not move.
+  void exclude(const std::vector<char>& bodies, const std::vector<char>& fixed = {});
+  bool isExcluded(const Constraint& constraint) const;
 
   /// Takes the rows in `state`, in which the bodies have `frames`, and factorises.
   void factorize(const VectorX& state, const std::vector<BodyFrame>& frames);
@@ -35,6 +36,14 @@ class ConstraintSolver {
   /// Adds to the accelerations in `derivative` what keeps d^2C/dt^2 = 0. Returns the multipliers: a rod pushes its ends
   /// apart with the force (N) multiplier x length.
   const VectorX& constrainAccelerations(VectorX& derivative);
+
+  /// Puts the multipliers of the last constrainAccelerations where they belong among the rows of all constraints; those
+  /// of excluded ones stay as they are.
+  void putMultipliers(VectorX& all) const;
+
+  /// Adds to displacements, in the place of velocities in `displacement`, the least that takes out the errors: J d =
+  /// -C.
+  void constrainDisplacements(VectorX& displacement);
 
   /// Takes out of the velocities what would change C, by the least change of kinetic energy.
   void constrainVelocities(VectorX& state);
@@ -45,6 +54,9 @@ class ConstraintSolver {
 
   /// The largest error, in m or rad, that factorize or project left.
   double largestError() const;
+
+  /// Whether these errors are rounding.
+  bool holdToRounding() const { return holdWithin(0, 1); }
 
   /// Whether the constraints leave no motion where they are, in the state of the last project: it left one of them off
   /// by more than `error` (m or rad) and rounding, and no force can give the accelerations that the velocities ask for.
@@ -67,6 +79,7 @@ class ConstraintSolver {
     bool isFirst;             // of those of its block
     std::size_t place;        // of the block
   };
+  bool moves(int body) const;
   bool hasKnownStructure() const;
   void analyze();
   void findBlocks(const VectorX& state, const std::vector<BodyFrame>& frames);
@@ -75,6 +88,7 @@ class ConstraintSolver {
   void opposeVelocities(const VectorX& state);
   void opposeAccelerations(const VectorX& derivative);
   void solve();
+  void addResponse(VectorX& velocities) const;
   template <class Add>
   void addResponse(const Add& add) const;
   template <class Visit>
@@ -85,7 +99,7 @@ class ConstraintSolver {
 
   const Constraints& constraints_;
   const std::vector<RigidBody>& bodies_;
-  std::vector<char> excluded_;  // by body, or none
+  std::vector<char> excluded_, fixed_;  // by body, or none
   std::vector<BodyFrame> frames_;
   std::vector<ConstraintBlock> blocks_;  // of the constraints that are not excluded
   std::vector<Response> responses_;

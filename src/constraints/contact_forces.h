@@ -1,10 +1,10 @@
 #pragma once
 
-#include <utility>
+#include <optional>
 #include <vector>
 
 #include "constraints/constraint_forces.h"
-#include "constraints/contact_rows.h"
+#include "constraints/contact_groups.h"
 #include "constraints/minimum_norm.h"
 #include "constraints/row_response.h"
 
@@ -22,9 +22,10 @@ struct ContactForce {
   Vec3 slidingDirection = Vec3::Zero();    // unit, world; zero unless sliding: friction on A is against it
 };
 
-/// Forces of active contacts and, with them, of the rods and joints of the same bodies. Bodies joined by contacts and
-/// constraints are solved as one dense system, other bodies not at all or by ConstraintSolver: the cost is cubic in the
-/// rows of each group that has a contact, linear in the groups. Redundant rows are allowed; where they contradict each
+/// Forces of active contacts, of bodies whose constraints respond to them: the rows of a group of contacts have the
+/// Delassus operator W = J (M^-1 - M^-1 B^T (B M^-1 B^T)^-1 B M^-1) J^T, B the constraints' rows, which
+/// ConstraintSolver solves. The cost is cubic in the rows of the contacts of each group, linear in the groups and in
+/// the constraints of chains and trees (for each row once). Redundant rows are allowed; where they contradict each
 /// other, the contradiction is left as small as it can be. Allocates only when bodies are joined in another way than in
 /// the call before.
 class ContactSolver {
@@ -43,7 +44,7 @@ class ContactSolver {
   /// Of each contact, after constrainAccelerations.
   const std::vector<ContactForce>& forces() const { return forces_; }
 
-  /// Of the rows of rods and joints, after constrainAccelerations, as ConstraintSolver gives them.
+  /// Of the constraints' rows, after constrainAccelerations, as ConstraintSolver gives them.
   const VectorX& bilateralMultipliers() const { return bilateralMultipliers_; }
 
   /// Takes out of the velocities what would change gaps and constraints, and what makes sticking contacts slide, by the
@@ -56,40 +57,43 @@ class ContactSolver {
   double project(VectorX& state, const std::vector<char>& resting);
 
  private:
-  /// Bodies joined by contacts and constraints, at least one of them a contact. Its rows stand one after another: the
-  /// gaps of its contacts, its constraints, then two for each contact that sticks.
+  /// Its rows stand one after another: the gaps of its contacts, then two for each contact that sticks.
   struct Group {
-    std::vector<int> bodies, contacts, bilateral;  // constraints: indices into bilateralRows_
-    int firstRow = 0, positionRows = 0, rows = 0;
+    ContactGroup members;
+    std::optional<ConstraintSolver> constraints = {};  // if it has any
+    int firstRow = 0, rows = 0;
     bool slides = false;
     bool isPlaced = false;  // by project, as well as it can be
     double error = 0;       // m or rad, that project found last
-    MinimumNormSolver solver;
+    MinimumNormSolver solver = {};
+
+    int positionRows() const { return static_cast<int>(members.contacts.size()); }
   };
-  /// How the bodies of a row were joined when groups were found.
+  /// How two bodies were joined when groups were found.
   struct Joint {
-    int bodyA, bodyB;
-    ContactMotion motion;
-    bool operator==(const Joint& other) const {
-      return bodyA == other.bodyA && bodyB == other.bodyB && motion == other.motion;
-    }
+    int bodyA, bodyB, kind;
+    bool operator==(const Joint&) const = default;
   };
 
-  void findBilateralRows(const VectorX& state, const std::vector<BodyFrame>& frames);
-  bool hasKnownStructure(const std::vector<char>& resting) const;
+  void findJoints(std::vector<Joint>& joints) const;
   void analyze(const std::vector<char>& resting);
-  void numberGroups();
   void sizeRows();
   int movingBody(int body) const;
 
-  void fillRows(const VectorX& state, const std::vector<BodyFrame>& frames);
+  void fillRows(const VectorX& state, const std::vector<BodyFrame>& frames, const std::vector<char>& resting);
   void fillContact(std::size_t contact, int row, int& tangentRow, const VectorX& state,
                    const std::vector<BodyFrame>& frames);
   void putRow(int row, const ConstraintRow& from, const std::vector<BodyFrame>& frames);
   void addFriction(std::size_t contact, int row, const std::vector<BodyFrame>& frames);
+  bool isSliding(const Group& group, int row) const;
+  void constrainResponses(Group& group, Eigen::Index stateSize);
   void couple(Group& group);
+  double entryOf(const Group& group, int row, int column) const;
+  double coupledEntryOf(const Group& group, int row, int column) const;
 
-  void addResponse(const Group& group, int rows, const std::vector<RowResponse>& responses, VectorX& derivative) const;
+  template <class Constrain, class Residual>
+  void solve(Group& group, int rows, const std::vector<RowResponse>& responses, const Constrain& constrain,
+             const Residual& residual, VectorX& motion);
   void takeForces(const Group& group, VectorX& derivative);
 
   void constrainGroupVelocities(VectorX& state);
@@ -105,19 +109,19 @@ class ContactSolver {
   ConstraintSolver constraintSolver_;  // of bodies without a contact
   bool hasFreeConstraints_ = false;
 
-  std::vector<Joint> joints_;  // of contacts, then of rows of constraints
+  std::vector<Joint> joints_, joined_;  // of contacts, then of constraints: when groups were found, and now
   std::vector<char> resting_;
-  std::vector<int> groupOfBody_;  // -1: no contact
   std::vector<Group> groups_;
 
   std::vector<ContactKinematics> kinematics_;
   std::vector<ContactForce> forces_;
-  std::vector<ConstraintRow> bilateralRows_;
   std::vector<ConstraintRow> rows_;
   std::vector<RowResponse> responses_;  // M^-1 J^T
   std::vector<RowResponse> coupled_;    // the same with friction
+  // The same two of groups with constraints, whose bodies all respond: velocities in the layout of a state.
+  std::vector<VectorX> constrained_, constrainedCoupled_;
   std::vector<double> multipliers_;
-  VectorX bilateralMultipliers_, undisplaced_, displacement_;
+  VectorX bilateralMultipliers_, free_, undisplaced_, displacement_;
   std::vector<BodyFrame> frames_;
 };
 

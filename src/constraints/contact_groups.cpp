@@ -1,122 +1,40 @@
-// Which rows ContactSolver solves together: bodies joined by contacts and constraints, found anew when the joining
-// changes.
+#include "constraints/contact_groups.h"
 
-#include <algorithm>
-#include <numeric>
-
-#include "constraints/contact_forces.h"
+#include "constraints/disjoint_sets.h"
 
 namespace cradle {
-namespace {
 
-int rootOf(std::vector<int>& parents, int body) {
-  while (parents[static_cast<std::size_t>(body)] != body) {
-    int& parent = parents[static_cast<std::size_t>(body)];
-    parent = parents[static_cast<std::size_t>(parent)];
-    body = parent;
-  }
-  return body;
-}
+std::vector<ContactGroup> findContactGroups(const std::vector<ContactConstraint>& contacts,
+                                            const Constraints& constraints, const std::vector<char>& fixed) {
+  const auto moving = [&](int body) { return body == kFixed || fixed[static_cast<std::size_t>(body)] ? kFixed : body; };
+  DisjointSets sets(fixed.size());
+  for (const ContactConstraint& contact : contacts)
+    sets.join(moving(contact.centerA.body), moving(contact.surfaceB.body));
+  for (const Constraint& constraint : constraints)
+    sets.join(moving(constraint.anchorA.body), moving(constraint.anchorB.body));
 
-}  // namespace
-
-bool ContactSolver::hasKnownStructure(const std::vector<char>& resting) const {
-  // One contact less and one constraint more may join the same bodies.
-  if (forces_.size() != contacts_.size() ||
-      static_cast<std::size_t>(bilateralMultipliers_.size()) != bilateralRows_.size())
-    return false;
-  if (resting != resting_) return false;
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const ContactConstraint& contact = contacts_[i];
-    if (!(joints_[i] == Joint{contact.centerA.body, contact.surfaceB.body, contact.motion})) return false;
-  }
-  for (std::size_t i = 0; i < bilateralRows_.size(); ++i) {
-    const Joint& joint = joints_[contacts_.size() + i];
-    if (joint.bodyA != bilateralRows_[i].bodyA || joint.bodyB != bilateralRows_[i].bodyB) return false;
-  }
-  return true;
-}
-
-/// kFixed for bodies at rest.
-int ContactSolver::movingBody(int body) const {
-  return body == kFixed || resting_[static_cast<std::size_t>(body)] ? kFixed : body;
-}
-
-void ContactSolver::analyze(const std::vector<char>& resting) {
-  resting_ = resting;
-  joints_.clear();
-  for (const ContactConstraint& contact : contacts_)
-    joints_.push_back({contact.centerA.body, contact.surfaceB.body, contact.motion});
-  for (const ConstraintRow& row : bilateralRows_)
-    joints_.push_back({row.bodyA, row.bodyB, ContactMotion::frictionless});
-  numberGroups();
-  sizeRows();
-}
-
-/// Groups in the order of their first contacts.
-void ContactSolver::numberGroups() {
-  std::vector<int> parents(bodies_.size());
-  std::iota(parents.begin(), parents.end(), 0);
-  for (const Joint& joint : joints_) {
-    const int a = movingBody(joint.bodyA), b = movingBody(joint.bodyB);
-    if (a != kFixed && b != kFixed) parents[static_cast<std::size_t>(rootOf(parents, a))] = rootOf(parents, b);
-  }
-  groups_.clear();
-  std::vector<int> groupOfRoot(bodies_.size(), -1);
-  const auto rootOfJoint = [&](const Joint& joint) {
-    const int body = std::max(movingBody(joint.bodyA), movingBody(joint.bodyB));
-    return body == kFixed ? -1 : rootOf(parents, body);
+  std::vector<ContactGroup> groups;
+  std::vector<int> groupOfSet(fixed.size(), -1);
+  const auto groupOf = [&](int bodyA, int bodyB) -> int* {
+    const int body = std::max(moving(bodyA), moving(bodyB));
+    return body == kFixed ? nullptr : &groupOfSet[static_cast<std::size_t>(sets.islandOf(body))];
   };
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const int root = rootOfJoint(joints_[i]);
-    if (root < 0) continue;
-    const bool isContact = i < contacts_.size();
-    int& group = groupOfRoot[static_cast<std::size_t>(root)];
-    if (group < 0 && !isContact) continue;
-    if (group < 0) {
-      group = static_cast<int>(groups_.size());
-      groups_.emplace_back();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    int* const group = groupOf(contacts[i].centerA.body, contacts[i].surfaceB.body);
+    if (!group) continue;
+    if (*group < 0) {
+      *group = static_cast<int>(groups.size());
+      groups.emplace_back();
     }
-    Group& members = groups_[static_cast<std::size_t>(group)];
-    (isContact ? members.contacts : members.bilateral)
-        .push_back(static_cast<int>(isContact ? i : i - contacts_.size()));
+    groups[static_cast<std::size_t>(*group)].contacts.push_back(static_cast<int>(i));
   }
-  groupOfBody_.assign(bodies_.size(), -1);
-  for (std::size_t body = 0; body < bodies_.size(); ++body) {
-    const int group = groupOfRoot[static_cast<std::size_t>(rootOf(parents, static_cast<int>(body)))];
-    groupOfBody_[body] = group;
-    if (group >= 0) groups_[static_cast<std::size_t>(group)].bodies.push_back(static_cast<int>(body));
-  }
-}
-
-void ContactSolver::sizeRows() {
-  int rows = 0;
-  for (Group& group : groups_) {
-    group.firstRow = rows;
-    group.positionRows = static_cast<int>(group.contacts.size() + group.bilateral.size());
-    group.rows = group.positionRows;
-    for (const int contact : group.contacts) {
-      const ContactMotion motion = contacts_[static_cast<std::size_t>(contact)].motion;
-      if (motion == ContactMotion::sticking) group.rows += 2;
-      if (motion == ContactMotion::sliding) group.slides = true;
-    }
-    rows += group.rows;
-    group.solver.resize(group.rows);
-  }
-  const std::size_t size = static_cast<std::size_t>(rows);
-  rows_.resize(size);
-  responses_.resize(size);
-  coupled_.resize(size);
-  multipliers_.resize(size);
-  kinematics_.resize(contacts_.size());
-  forces_.assign(contacts_.size(), {});
-  bilateralMultipliers_.setZero(static_cast<Eigen::Index>(bilateralRows_.size()));
-  std::vector<char> isGrouped(bodies_.size());
-  for (std::size_t body = 0; body < bodies_.size(); ++body) isGrouped[body] = groupOfBody_[body] >= 0;
-  constraintSolver_.exclude(isGrouped);
-  hasFreeConstraints_ = std::any_of(bilateralRows_.begin(), bilateralRows_.end(), [this](const ConstraintRow& row) {
-    return !constraintSolver_.isExcluded(row.bodyA, row.bodyB);
-  });
+  for (const Constraint& constraint : constraints)
+    if (const int* const group = groupOf(constraint.anchorA.body, constraint.anchorB.body); group && *group >= 0)
+      groups[static_cast<std::size_t>(*group)].hasConstraints = true;
+  for (int body = 0; body < static_cast<int>(fixed.size()); ++body)
+    if (const int* const group = groupOf(body, kFixed); group && *group >= 0)
+      groups[static_cast<std::size_t>(*group)].bodies.push_back(body);
+  return groups;
 }
 
 }  // namespace cradle

@@ -47,22 +47,9 @@ void EquationsOfMotion::applyConstraints(const VectorX& state, VectorX& derivati
     multipliers_ = contactSolver_.bilateralMultipliers();
   } else if (solver_.hasConstraints()) {
     solver_.factorize(state, frames_);
-    placeMultipliers(solver_.constrainAccelerations(derivative));
-  }
-}
-
-/// Rows of bodies at rest are left out of the solver and have no multiplier.
-void EquationsOfMotion::placeMultipliers(const VectorX& multipliers) {
-  multipliers_.setZero(rowCount(mechanism_.constraints));
-  const auto rests = [this](int body) { return body != kFixed && resting_[static_cast<std::size_t>(body)]; };
-  Eigen::Index next = 0, row = 0;
-  for (const Constraint& constraint : mechanism_.constraints) {
-    const Eigen::Index rows = rowCount(constraint);
-    if (!rests(constraint.anchorA.body) && !rests(constraint.anchorB.body)) {
-      multipliers_.segment(row, rows) = multipliers.segment(next, rows);
-      next += rows;
-    }
-    row += rows;
+    solver_.constrainAccelerations(derivative);
+    multipliers_.setZero(rowCount(mechanism_.constraints));
+    solver_.putMultipliers(multipliers_);
   }
 }
 

@@ -57,7 +57,6 @@ class EquationsOfMotion {
   void applySprings(const VectorX& state, VectorX& derivative) const;
   void applyPushes(const VectorX& state, VectorX& derivative) const;
   void applyConstraints(const VectorX& state, VectorX& derivative);
-  void placeMultipliers(const VectorX& multipliers);
   void holdResting(const VectorX& state, VectorX& derivative) const;
   void addForce(int body, const Vec3& arm, const Vec3& force, VectorX& derivative) const;
 

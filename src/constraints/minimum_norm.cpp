@@ -12,10 +12,10 @@
 namespace cradle {
 namespace {
 
-// Of a row's diagonal entry: what is left of a row that depends on others, squared. Contacts less than a millionth of a
-// body's size apart are one, and rounding leaves 1e-16.
+// Of a row's diagonal entry without constraints: what is left of a row that depends on others, squared. Contacts less
+// than a millionth of a body's size apart are one, and rounding leaves 1e-16.
 constexpr double kDependent = 1e-12;
-constexpr double kGoodPivot = 0.1;         // of a row's diagonal entry: no need to look for a better one
+constexpr double kGoodPivot = 0.1;         // of the same: no need to look for a better one
 constexpr double kWellConditioned = 1e-3;  // a least pivot above leaves no error worth a refinement
 constexpr double kVanished = 1e-6;         // of a column: what rounding leaves of one that depends on others
 
@@ -42,7 +42,7 @@ void MinimumNormSolver::resize(int size) {
   for (std::vector<double>* matrix :
        {&symmetric_, &coupled_, &lower_, &upper_, &lowerFactor_.q, &lowerFactor_.r, &upperFactor_.q, &upperFactor_.r})
     matrix->assign(rows * rows, 0);
-  for (std::vector<double>* vector : {&remaining_, &inverseDiagonal_, &inverseBegin_, &reduced_, &residual_})
+  for (std::vector<double>* vector : {&whole_, &remaining_, &inverseWhole_, &inverseBegin_, &reduced_, &residual_})
     vector->assign(rows, 0);
   pivots_.assign(rows, 0);
 }
@@ -58,7 +58,7 @@ void MinimumNormSolver::factorize(int size, bool isCoupled) {
 }
 
 void MinimumNormSolver::findLower() {
-  if (size_ == 1 && symmetric_[0] > 0) {  // a contact by itself: all there is in many scenes
+  if (size_ == 1 && symmetric_[0] > kDependent * whole_[0]) {  // a contact by itself: all there is in many scenes
     const double scale = 1 / std::sqrt(symmetric_[0]);
     isWellConditioned_ = true;
     rank_ = 1;
@@ -68,16 +68,16 @@ void MinimumNormSolver::findLower() {
     return;
   }
   for (int row = 0; row < size_; ++row) {
-    const double diagonal = symmetric_[at(row, row)];
-    remaining_[static_cast<std::size_t>(row)] = diagonal;
-    inverseDiagonal_[static_cast<std::size_t>(row)] = diagonal > 0 ? 1 / diagonal : 0;
+    const double whole = whole_[static_cast<std::size_t>(row)];
+    remaining_[static_cast<std::size_t>(row)] = symmetric_[at(row, row)];
+    inverseWhole_[static_cast<std::size_t>(row)] = whole > 0 ? 1 / whole : 0;
   }
   isWellConditioned_ = true;
   for (rank_ = 0; rank_ < size_; ++rank_) {
     const int pivot = nextPivot();
     if (pivot < 0) return;
     const double left = remaining_[static_cast<std::size_t>(pivot)];
-    if (left < kWellConditioned * symmetric_[at(pivot, pivot)]) isWellConditioned_ = false;
+    if (left < kWellConditioned * whole_[static_cast<std::size_t>(pivot)]) isWellConditioned_ = false;
     pivots_[static_cast<std::size_t>(rank_)] = pivot;
     double* column = &lower_[at(0, rank_)];
     for (int row = 0; row < size_; ++row) column[row] = symmetric_[at(row, pivot)];
@@ -100,7 +100,7 @@ int MinimumNormSolver::nextPivot() const {
   int next = -1;
   double most = kDependent;
   for (int row = 0; row < size_; ++row) {
-    const double part = remaining_[static_cast<std::size_t>(row)] * inverseDiagonal_[static_cast<std::size_t>(row)];
+    const double part = remaining_[static_cast<std::size_t>(row)] * inverseWhole_[static_cast<std::size_t>(row)];
     if (part > kGoodPivot) return row;
     if (!(part > most)) continue;
     most = part;

@@ -7,14 +7,18 @@
 namespace cradle {
 
 /// Solves (S + C) x = b, S = J M^-1 J^T of rows that may depend on each other: of all x that leave the least of b, the
-/// shortest. C is another response of the same rows, J M^-1 F, and zero where nothing slides. O(size^2 rank) to
-/// factorise, O(size rank) to solve. Allocates in `resize` alone.
+/// shortest. C is another response of the same rows, J M^-1 F, and zero where nothing slides. Constraints may take
+/// their part of S; where they leave a row nothing, it depends on them. O(size^2 rank) to factorise, O(size rank) to
+/// solve. Allocates in `resize` alone.
 class MinimumNormSolver {
  public:
   void resize(int size);
 
   /// S, column by column; all of it is read.
   double& symmetric(int row, int column) { return symmetric_[at(row, column)]; }
+
+  /// The diagonal entry of S as it were without constraints: what a row has by itself.
+  double& whole(int row) { return whole_[static_cast<std::size_t>(row)]; }
 
   /// S + C; read if factorize is told so.
   double& coupled(int row, int column) { return coupled_[at(row, column)]; }
@@ -47,13 +51,13 @@ class MinimumNormSolver {
 
   int capacity_ = 0, size_ = 0, rank_ = 0;
   bool isCoupled_ = false, isWellConditioned_ = true;
-  std::vector<double> symmetric_, coupled_;
+  std::vector<double> symmetric_, coupled_, whole_;
   std::vector<double> lower_;         // L of S = L L^T, size x rank
   std::vector<double> upper_;         // K^T of S + C = L K
   std::vector<int> pivots_;           // the row that each column of L begins with
   std::vector<double> inverseBegin_;  // 1 / its entry there
   std::vector<double> remaining_;     // of the diagonal of S
-  std::vector<double> inverseDiagonal_;
+  std::vector<double> inverseWhole_;
   Orthogonal lowerFactor_, upperFactor_;
   std::vector<double> reduced_, residual_;
 };

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/disjoint_sets.h"
 #include "constraints/invariants.h"
 #include "impact/contact_delassus.h"
 #include "impact/frictional_contact.h"
 #include "impact/sparse_delassus.h"
-#include "simulate/plan/disjoint_sets.h"
 
 namespace cradle {
 namespace {

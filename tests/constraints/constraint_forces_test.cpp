@@ -92,6 +92,13 @@ void expectAsDense(const JointedBodies& jointed) {
   EXPECT_LT((forces - expected).cwiseAbs().maxCoeff(), 1e-11 * expected.cwiseAbs().maxCoeff());
   EXPECT_LT((derivative - jointed.state - responses * expected).cwiseAbs().maxCoeff(),
             1e-11 * expected.cwiseAbs().maxCoeff());
+
+  // Displacements that take out the errors, beside some that are there.
+  VectorX displacement = jointed.state;
+  solver.constrainDisplacements(displacement);
+  for (Eigen::Index i = 0; i < size; ++i) errors[i] = rows[static_cast<std::size_t>(i)].value;
+  const VectorX shortest = jointed.state - responses * dense.solve(rates + errors);
+  EXPECT_LT((displacement - shortest).cwiseAbs().maxCoeff(), 1e-11 * shortest.cwiseAbs().maxCoeff());
 }
 
 TEST(ConstraintForces, OfAChainAreThoseOfADenseMatrix) {
@@ -172,6 +179,51 @@ TEST(ConstraintForces, LeaveOutTheRowsOfExcludedBodies) {
   solver.factorize(jointed.state), single.factorize(alone.state);
   solver.constrainVelocities(jointed.state), single.constrainVelocities(alone.state);
   EXPECT_EQ(jointed.state, alone.state);
+}
+
+// A fixed body moves no more than the world: the same multipliers and velocities come out where its anchors are the
+// world's. Rows among fixed bodies are left out.
+TEST(ConstraintForces, HaveFixedBodiesActAsTheWorld) {
+  JointedBodies jointed(4);
+  jointed.tie(0, 1), jointed.tie(1, 2), jointed.tie(3, 0), jointed.tie(2, kFixed);
+  for (const int body : {2, 3})
+    linearVelocity(jointed.state, body).setZero(), angularVelocity(jointed.state, body).setZero();
+  JointedBodies world = jointed;
+  world.constraints.pop_back();
+  for (Constraint& constraint : world.constraints)
+    for (Attachment* const anchor : {&constraint.anchorA, &constraint.anchorB})
+      if (anchor->body >= 2) *anchor = {kFixed, motionOf(*anchor, jointed.state).position};
+  auto& hinge = std::get<HingeConstraint>(world.constraints[1].kind);
+  for (Vec3& across : hinge.acrossB) across = orientation(jointed.state, 2) * across;
+  ConstraintSolver solver(jointed.constraints, jointed.bodies), expected(world.constraints, world.bodies);
+  solver.exclude({}, {0, 0, 1, 1});
+  solver.factorize(jointed.state), expected.factorize(world.state);
+  VectorX derivative = jointed.state, expectedDerivative = derivative;
+  const VectorX forces = solver.constrainAccelerations(derivative);
+  const VectorX expectedForces = expected.constrainAccelerations(expectedDerivative);
+  ASSERT_EQ(forces.size(), expectedForces.size());
+  EXPECT_LT((forces - expectedForces).cwiseAbs().maxCoeff(), 1e-11 * forces.cwiseAbs().maxCoeff());
+  EXPECT_LT((derivative - expectedDerivative).cwiseAbs().maxCoeff(), 1e-11 * derivative.cwiseAbs().maxCoeff());
+  VectorX all = VectorX::Constant(rowCount(jointed.constraints), -7);
+  solver.putMultipliers(all);
+  EXPECT_EQ(all.head(forces.size()), forces);
+  EXPECT_EQ(all.tail(3), Eigen::Vector3d::Constant(-7));  // of the ball joint between a fixed body and the world
+}
+
+// Of a ball joint to the world, a hinge and a rod the first and the last belong to body 0 alone.
+TEST(ConstraintForces, PutMultipliersInThePlacesOfTheirRows) {
+  JointedBodies jointed(3);
+  jointed.tie(0, kFixed), jointed.tie(1, 2), jointed.tie(0, kFixed);
+  ConstraintSolver solver(jointed.constraints, jointed.bodies);
+  solver.exclude({0, 1, 0});
+  solver.factorize(jointed.state);
+  VectorX derivative = jointed.state, all = VectorX::Constant(9, -7);
+  const VectorX forces = solver.constrainAccelerations(derivative);
+  ASSERT_EQ(forces.size(), 4);
+  solver.putMultipliers(all);
+  EXPECT_EQ(all.head(3), forces.head(3));
+  EXPECT_EQ(all.segment(3, 5), VectorX::Constant(5, -7));
+  EXPECT_EQ(all[8], forces[3]);
 }
 
 }  // namespace

@@ -1,13 +1,42 @@
-#include <gtest/gtest.h>
+#include "constraints/contact_groups.h"
+
+#include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "constraints/bodies_on_ground.h"
 
-// Which rows ContactSolver solves together.
-
 namespace cradle {
 namespace {
+
+using testing::ElementsAre;
+
+// Bodies 0-1-2 and 4 touch the ground or each other, 2-3 are tied, 5-6 are tied without a contact. A fixed body joins
+// nothing, and a contact of two fixed bodies is in no group.
+TEST(ContactGroups, AreOfBodiesThatContactsAndConstraintsJoin) {
+  const auto touch = [](int a, int b) { return sphereOnSphere({a, {}}, 0.1, {b, {}}, 0.1, kFrictionless); };
+  const auto rod = [](int a, int b) { return Constraint{{a, Vec3::Zero()}, {b, Vec3::Zero()}, RodConstraint{1}}; };
+  const std::vector<ContactConstraint> contacts = {touch(4, kFixed), touch(1, 2), touch(0, 1)};
+  const Constraints constraints = {rod(5, 6), rod(3, 2)};
+  std::vector<char> fixed(7, 0);
+  std::vector<ContactGroup> groups = findContactGroups(contacts, constraints, fixed);
+  ASSERT_EQ(groups.size(), 2);
+  EXPECT_THAT(groups[0].bodies, ElementsAre(4));
+  EXPECT_THAT(groups[0].contacts, ElementsAre(0));
+  EXPECT_FALSE(groups[0].hasConstraints);
+  EXPECT_THAT(groups[1].bodies, ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(groups[1].contacts, ElementsAre(1, 2));
+  EXPECT_TRUE(groups[1].hasConstraints);
+
+  fixed[1] = fixed[4] = 1;
+  groups = findContactGroups(contacts, constraints, fixed);
+  ASSERT_EQ(groups.size(), 2);
+  EXPECT_THAT(groups[0].bodies, ElementsAre(2, 3));
+  EXPECT_THAT(groups[0].contacts, ElementsAre(1));
+  EXPECT_TRUE(groups[0].hasConstraints);
+  EXPECT_THAT(groups[1].bodies, ElementsAre(0));
+  EXPECT_FALSE(groups[1].hasConstraints);
+}
 
 TEST(ContactGroups, BodiesApartMoveAsIfAloneToTheBit) {
   const Row three(3), one(1);

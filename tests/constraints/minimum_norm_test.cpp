@@ -30,11 +30,13 @@ VectorX solved(const Problem& problem, bool isCoupled, const VectorX& rightHandS
   const int size = static_cast<int>(rightHandSide.size());
   MinimumNormSolver solver;
   solver.resize(size);
-  for (int column = 0; column < size; ++column)
+  for (int column = 0; column < size; ++column) {
+    solver.whole(column) = problem.symmetric(column, column);
     for (int row = 0; row < size; ++row) {
       solver.symmetric(row, column) = problem.symmetric(row, column);
       solver.coupled(row, column) = problem.coupled(row, column);
     }
+  }
   solver.factorize(size, isCoupled);
   VectorX x = rightHandSide;
   solver.solve(x.data());

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "constraints/constraint_forces.h"
+#include "constraints/disjoint_sets.h"
 #include "simulate/events/event_tolerances.h"
 #include "simulate/island_state.h"
-#include "simulate/plan/disjoint_sets.h"
 
 namespace cradle {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <utility>
 
+#include "constraints/disjoint_sets.h"
 #include "simulate/events/contacts_on_meshes.h"
 #include "simulate/events/cylinder_rims.h"
 #include "simulate/events/sliding_friction.h"
 #include "simulate/events/slow_sliding.h"
-#include "simulate/plan/disjoint_sets.h"
 #include "simulate/plan/event_rate_limit.h"
 #include "simulate/thresholds.h"
 

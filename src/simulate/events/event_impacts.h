@@ -3,13 +3,13 @@
 #include <optional>
 #include <vector>
 
+#include "constraints/disjoint_sets.h"
 #include "impact/pairwise.h"
 #include "simulate/events/coming_to_rest.h"
 #include "simulate/events/event_tolerances.h"
 #include "simulate/events/impact_sequence.h"
 #include "simulate/events/touching_contacts.h"
 #include "simulate/island_state.h"
-#include "simulate/plan/disjoint_sets.h"
 #include "simulate/rope_events.h"
 
 namespace cradle {

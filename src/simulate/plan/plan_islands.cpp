@@ -5,9 +5,9 @@
 #include <map>
 #include <utility>
 
+#include "constraints/disjoint_sets.h"
 #include "core/interruption.h"
 #include "simulate/colliders.h"
-#include "simulate/plan/disjoint_sets.h"
 #include "simulate/plan/near_spheres.h"
 
 namespace cradle {

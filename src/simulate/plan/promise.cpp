@@ -11,9 +11,9 @@
 #include <map>
 #include <tuple>
 
+#include "constraints/disjoint_sets.h"
 #include "core/printable.h"
 #include "simulate/colliders.h"
-#include "simulate/plan/disjoint_sets.h"
 #include "simulate/plan/event_rate_limit.h"
 #include "simulate/plan/plan.h"
 #include "simulate/plan/plan_islands.h"

@@ -3,7 +3,7 @@
 #include <map>
 #include <utility>
 
-#include "simulate/plan/disjoint_sets.h"
+#include "constraints/disjoint_sets.h"
 #include "simulate/rope_events.h"
 
 namespace cradle {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
+#include "constraints/disjoint_sets.h"
 #include "impact/pairwise.h"
 #include "simulate/island_state.h"
-#include "simulate/plan/disjoint_sets.h"
 #include "simulate/rope_events.h"
 #include "simulate/steps/contact_stepping.h"
 

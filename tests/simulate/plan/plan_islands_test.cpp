@@ -8,8 +8,8 @@
 
 #include <random>
 
+#include "constraints/disjoint_sets.h"
 #include "experiments/experiment.h"
-#include "simulate/plan/disjoint_sets.h"
 
 namespace cradle {
 namespace {

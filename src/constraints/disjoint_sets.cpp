@@ -1,4 +1,4 @@
-#include "simulate/plan/disjoint_sets.h"
+#include "constraints/disjoint_sets.h"
 
 #include <algorithm>
 #include <numeric>
