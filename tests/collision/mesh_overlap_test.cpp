@@ -99,6 +99,22 @@ TEST(DepthOfEdge, GoesToZeroWhereItGrazes) {
   }
 }
 
+// An edge that ends on a face, here at its rim, touches it and is no way in: along the normal of that face.
+TEST(DepthOfEdge, ThatEndsOnAFaceIsNone) {
+  const MeshSurface box = surfaceOf(boxMesh(Vec3(2, 2, 2)));
+  const Vec3 above(0.75, 1.5, 0.25);
+  for (const Vec3& end : {Vec3(0.5, 1, 0.25), Vec3(1, 1, 0.5), Vec3(1, 1, 1)})
+    for (std::uint32_t face = 0; face < box.faces.size(); ++face) {
+      const FlatTriangle triangle = triangleOf(box, face);
+      if (triangle.normal != Vec3::UnitY() || !triangle.isAbove(end)) continue;
+      const EdgeDepth found = depthOfEdge(box, {above, end - above}, 1, face);
+      EXPECT_EQ(found.depth, 0);
+      EXPECT_EQ(found.normal, Vec3::UnitY());
+      EXPECT_EQ(found.deepest, end);
+      EXPECT_FALSE(found.isVertex);
+    }
+}
+
 // Behind a sheet is inside, seen from the side of the face: the end of an edge that goes through it from above or from
 // below is as deep as it is beyond.
 TEST(DepthOfEdge, ThroughASheetIsWhatIsBehindIt) {

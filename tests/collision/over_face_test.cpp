@@ -67,6 +67,21 @@ TEST(OverFace, RoomEndsAtWhatIsInFrontOfTheFace) {
   EXPECT_NEAR(roomBeside(atRim.over(), 5), 0.1 - 0.3, 1e-14);
 }
 
+// A capsule of 0.2 m lies in a slot of 0.25 m: its contact is on the floor, though places on its upper side are nearer
+// to the ceiling.
+TEST(OverFace, UnderACeilingIsTheFloor) {
+  TriangleMesh slot = boxMesh(Vec3(4, 1, 4));
+  const TriangleMesh ceiling = moved(slot, [](const Vec3& v) { return Vec3(v.x(), v.y() + 1.25, v.z()); });
+  const auto first = static_cast<std::uint32_t>(slot.vertices.size());
+  slot.vertices.insert(slot.vertices.end(), ceiling.vertices.begin(), ceiling.vertices.end());
+  for (const auto& [i, j, k] : ceiling.triangles) slot.triangles.push_back({first + i, first + j, first + k});
+  LeaningCapsule capsule(surfaceOf(slot), {}, Vec3(0.2, 0.5, 0.4), Vec3::UnitY(), M_PI / 2);
+  const OverFace over = capsule.over();
+  ASSERT_NE(over.solid, nullptr);
+  EXPECT_EQ(over.surface->faces[over.face.index].normal, Vec3::UnitY());
+  EXPECT_NEAR(heightOfOthers(over, {Vec3(0, -0.2, 0)}), 0, 1e-14);
+}
+
 // Either side of a sheet, by the contact's normal.
 TEST(OverFace, OfASheetIsTheSideThatIsTouched) {
   const MeshSurface sheet = sheetOf({{{-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}}, {{0, 1, 2}, {0, 2, 3}}});
