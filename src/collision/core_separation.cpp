@@ -21,12 +21,9 @@ namespace {
 // between nearest points has an error of rounding over the distance. Farther apart that error is 1e-12 rad, and GJK is
 // cheaper.
 constexpr double kFeatureDistance = 0.01;
-// Of the distance that GJK has found: a climb that ends lower by more has missed the maximum, and EPA looks for it. A
-// tenth or ten times as much changes no test.
+// Of the distance that GJK has found: a climb that ends lower by more has missed the maximum, and EPA looks for it.
+// With 1e-4, drums with nearly parallel faces come out nearer than they are; a tenth or a hundredth changes no test.
 constexpr double kClimbedRatio = 1e-5;
-// Cosine (0.045 rad): faces of cores with rims that are tried before a climb. The direction of GJK is known to 1.4e-4
-// rad, sqrt(2 kRoundDistance). Without these faces, mirror images that meet lose their symmetry.
-constexpr double kSameFaceCosine = 0.999;
 // Of the way between the middles: cores moved apart by as much still have the same nearest features. A tenth or ten
 // times as much changes no test.
 constexpr double kMovedRatio = 0.01;
@@ -76,8 +73,9 @@ SeparatingAxis axisOfNearest(const GjkResult& apart, const Core& a, const Core& 
   return climbedSupportGap({0, apart.normal}, a, b);
 }
 
-/// The face normal that sees the largest gap, of those whose cosine with `near` is more than `minCosine`.
-SeparatingAxis bestFaceNormal(const Core& a, const Core& b, const Vec3& near, double minCosine) {
+/// The face normal that sees the largest gap, of faces that could carry a contact along `near`.
+SeparatingAxis bestFaceNormal(const Core& a, const Core& b, const Vec3& near) {
+  constexpr double minCosine = ConvexTolerances::kMinCarryingCosine;
   SeparatingAxis best;
   const auto tryFacesOf = [&](const Core& core, double sign) {
     if (core.isRound()) {
@@ -95,13 +93,14 @@ SeparatingAxis bestFaceNormal(const Core& a, const Core& b, const Vec3& near, do
 }
 
 /// The axis of cores of which one has a rim. Where they are apart g(n) of (1) has one maximum, near the direction
-/// between the nearest points; where they overlap there may be several, and EPA looks for the largest.
+/// between the nearest points; where they overlap there may be several, and EPA looks for the largest. Faces are tried
+/// before a climb: without, mirror images that meet lose their symmetry.
 SeparatingAxis axisOfRoundCores(const GjkResult& apart, const Core& a, const Core& b) {
   const ConvexTolerances tolerances(a, b);
   SeparatingAxis best;
   if (apart.distance > 0) {
     const double enough = (1 - ConvexTolerances::kRoundDistance) * apart.distance;
-    best = bestFaceNormal(a, b, apart.normal, kSameFaceCosine);
+    best = bestFaceNormal(a, b, apart.normal);
     if (best.separation >= apart.distance - tolerances.equalGaps) return best;
     best = better(best, climbedSupportGap({0, apart.normal}, a, b, enough));
   }
@@ -116,7 +115,7 @@ SeparatingAxis axisOfFeatures(const Core& a, const Core& b) {
   const double preference = tolerances.facePreference;
   if (a.isRound() || b.isRound()) {
     const SeparatingAxis best = axisOfRoundCores(apart, a, b);
-    const SeparatingAxis face = bestFaceNormal(a, b, best.normal, ConvexTolerances::kMinCarryingCosine);
+    const SeparatingAxis face = bestFaceNormal(a, b, best.normal);
     return face.separation >= best.separation - preference ? face : best;
   }
   const bool isApart = apart.distance > tolerances.touching;

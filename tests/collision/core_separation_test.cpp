@@ -60,6 +60,23 @@ TEST(CoreSeparation, PassesThroughTouchingByTheShift) {
   }
 }
 
+// The faces of two drums, tilted against each other about the line of their middles by a small t, face each other over
+// a lens. The gap c over it falls towards one of its corners, where the rims cross, h from that line: to c - t h, but
+// for t^2. No face sees it, GJK stalls between the faces, and a climb from there ends up to some t h lower.
+TEST(CoreSeparation, OfNearlyParallelFacesIsThatWhereTheirRimsCross) {
+  const SampleCore drum = cylinderCore("drum", 0.5, 0.8);
+  for (const double tilt : {1e-9, 1e-8, 1e-7, 1e-6})
+    for (const double parts : {3.0, 30.0, 300.0, 1000.0, 2000.0, 5000.0, 10000.0, 20000.0})
+      for (const double apart : {0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85})
+        for (const double side : {1.0, -1.0}) {
+          const double height = std::sqrt(0.25 - apart * apart / 4), gap = parts * tilt * height;
+          const Quat turn = rotationAbout(Vec3(0.6, 0, 0.8), side * tilt);
+          const CorePair pair{drum, drum, {}, {turn, Vec3(0.6 * apart, 0.8 + gap, 0.8 * apart)}};
+          const double known = kSeparationRounding + tilt * tilt + 1e-8 * gap;  // kRoundDistance
+          EXPECT_NEAR(separationOf(pair.a, pair.b).separation, gap - tilt * height, known) << tilt << ' ' << parts;
+        }
+}
+
 // Two segments have no depth: where they cross or lie in each other their gap is 0, across both.
 TEST(CoreSeparation, OfSegmentsThatMeetIsZeroAcrossBoth) {
   const SampleCore segment = segmentCore(2);
