@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "collision/core.h"
+#include "simulate/events/event_tolerances.h"
 
 namespace cradle {
 
@@ -20,7 +21,7 @@ void moveToRim(const ContactGeometry& geometry, const VectorX& state, Contact& c
 
 bool isSameRim(const Contact& one, const Contact& other) {
   return one.pair == other.pair && !one.rimAxisA.isZero(0) && one.rimAxisA == other.rimAxisA &&
-         one.point == other.point;
+         (one.point - other.point).norm() < EventTolerances::kSameCorner * one.radiusA;
 }
 
 bool standsOnRim(const ContactGeometry& geometry, const Contact& contact) {

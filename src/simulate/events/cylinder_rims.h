@@ -10,7 +10,7 @@ constexpr double kFlatRim = 1e-3;  // sine of a disc's tilt: flatter, its lowest
 /// there. Other contacts stay as they are.
 void moveToRim(const ContactGeometry& geometry, const VectorX& state, Contact& contact);
 
-/// Whether both contacts are the lowest point of one rim.
+/// Whether both contacts are the lowest point of one rim: as places, for the gaps that they were found with may differ.
 bool isSameRim(const Contact& one, const Contact& other);
 
 /// Whether a cylinder touches by points of its rims or its side that stay the same as long as it stands or lies.

@@ -48,7 +48,7 @@ TEST(CylinderRims, AreTouchedAtTheirLowestPoint) {
     EXPECT_FALSE(standsOnRim(at.island.assembly.geometry, contact));
     Contact same = contact, other = contact;
     EXPECT_TRUE(isSameRim(contact, same));
-    same.pair = 7, other.point.x() += 1e-9;
+    same.pair = 7, other.point.x() += 1e-6;
     EXPECT_FALSE(isSameRim(contact, same) || isSameRim(contact, other));
   }
 }

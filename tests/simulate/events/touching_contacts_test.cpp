@@ -93,5 +93,21 @@ TEST(TouchingContacts, OfATiltedCylinderAreOnePointOfItsRim) {
   }
 }
 
+// Of the polygon in its end, a corner may be as near to the plane as touches, beside the lowest point: at an angle a
+// around the rim it is r sin(tilt) a^2 / 2 higher. Both are the one point that rolls.
+TEST(TouchingContacts, OfARimAreOnePointWhereACornerOfItsPolygonTouchesToo) {
+  constexpr double kTilt = 0.3;
+  for (const double height : {5e-10, 1e-9, 2e-9}) {
+    TouchingOnPlane at(R"({"name": "can", "shape": {"cylinder": {"radius": 0.1, "length": 0.4}}, "mass": 1,
+      "material": "rough"})",
+                       R"("gravity": [0, -9.81, 0], "accuracy": 1e-3)");
+    const double angle = std::sqrt(2 * height / (0.1 * std::sin(kTilt)));
+    setOrientation(at.state(), 0, rotationAbout(Vec3::UnitZ(), -kTilt) * rotationAbout(Vec3::UnitY(), angle));
+    centerOfMass(at.state(), 0).y() = 0.1 * std::sin(kTilt) + 0.2 * std::cos(kTilt);
+    EXPECT_THAT(at.contactsWithin(at.tolerances.touch), SizeIs(2));
+    EXPECT_THAT(at.find(), SizeIs(1));
+  }
+}
+
 }  // namespace
 }  // namespace cradle
