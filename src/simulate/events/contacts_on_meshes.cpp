@@ -44,7 +44,6 @@ std::optional<FeatureChange> firstFeatureChange(const std::vector<ContactRecord>
     bounds.speed = motionAt(step, a, b);
     bounds.finest = kFinestBlindApproach;
     const double start = inside(0), until = first ? first->fraction : 1;
-    if (start > bounds.speed) continue;
     const auto found =
         start > 0 ? firstRoot(inside, bounds, {0, start, until, inside(until)}) : std::optional<double>(kRootTolerance);
     if (found) first = FeatureChange{*found, i};

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "collision/root_bracketing.h"
 #include "dynamics/integrators/rk4.h"
 #include "experiments/ridged_ground.h"
 #include "simulate/one_island.h"
@@ -114,6 +115,22 @@ TEST(FeatureChange, IsFoundInANarrowRegionOfALongStep) {
   const std::optional<FeatureChange> first = at.changeWithin(1);
   ASSERT_TRUE(first);
   EXPECT_NEAR(first->fraction, 0.025 + at.width() * std::sqrt(5) / 2, kBorderError);
+}
+
+// A sphere that turns back at the crease is beyond its border around a third of the step, by d - a (f - 1/3)^2 with
+// a = 1.25 m: as long as twice sqrt(d / a). What lasts less than the shortest interval that is searched is passed over:
+// a sphere that rolls along a border would be looked for at a million places of it.
+TEST(FeatureChange, IsPassedOverWhereTheRegionIsLeftForLessThanTheShortestInterval) {
+  for (const double half : {8 * kFinestBlindApproach, kFinestBlindApproach / 8}) {
+    OverCrease at(sphereOverCrease("s", Vec3(-1.25 / 9, 0.1, 0.5), Vec3(2.5 / 1.5, 0, 0)));
+    ASSERT_EQ(at.records.size(), 1u);
+    at.mechanism().gravity = Vec3(-10, 0, 0);
+    centerOfMass(at.state(), 0).x() += at.width() + 1.25 * half * half;
+    const std::optional<FeatureChange> first = at.changeWithin(0.5);
+    ASSERT_EQ(first.has_value(), half > kFinestBlindApproach);
+    if (!first) continue;
+    EXPECT_NEAR(first->fraction, 1.0 / 3 - half, 1e-9);  // the slope there is 2.5 m times half, lengths are rounded
+  }
 }
 
 // A sphere on another side of the border than its contact changes at once.
