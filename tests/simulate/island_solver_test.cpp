@@ -112,6 +112,16 @@ TEST(IslandSolver, ProjectsFramesInsideSteps) {
   }
 }
 
+// A ball that rolls down another one stays a sum of radii, 0.6 m, away from its centre: the interpolant leaves that by
+// the error of steps, 1e-6 m.
+TEST(IslandSolver, ProjectsFramesOntoContactsWithWhatIsRound) {
+  Solved at(R"("duration": 1, "accuracy": 1e-4, "materials": {"stuff": {"restitution": 0.5, "staticFriction": 0.3,
+      "dynamicFriction": 0.2}}, "bodies": [{"name": "lower", "shape": {"sphere": {"radius": 0.5}}, "motion": "static",
+      "material": "stuff"}, )" +
+            solvedBall("upper", 0.6 * Vec3(std::sin(0.3), std::cos(0.3), 0)) + "]");
+  for (int i = 1; i <= 30; ++i) EXPECT_NEAR(centerOfMass(at.stateAt(0.01 * i), 0).norm(), 0.6, 1e-14) << i;
+}
+
 // Steps of one length have the motion of contacts inside them as well: a box that slides with a = -mu g neither sinks
 // nor hovers there. Impulses are found to 1e-7 of g h.
 TEST(IslandSolver, ShowsContactInsideStepsOfOneLength) {

@@ -137,6 +137,20 @@ TEST(PinnedContacts, LeaveCornersAndFacesToTheirContacts) {
   }
 }
 
+// On a ball as well: whatever is round about the point, a corner bends away from it to all sides, and an edge to two.
+TEST(PinnedContacts, LeaveACornerOnABallAllItsTurns) {
+  const std::string ball = R"({"name": "ground", "shape": {"sphere": {"radius": 0.5}}, "motion": "static",
+      "position": [0, -0.5, 0]})";
+  const Quat tipped = Quat::FromTwoVectors(Vec3(0.2, 0.1, 0.3).normalized(), Vec3::UnitY());
+  const Assembly corner = PinnedAtOrigin{ball, kPinBox, Vec3(-0.2, -0.1, -0.3), tipped}.assembly();
+  EXPECT_THAT(hingesOf(corner), IsEmpty());
+  EXPECT_THAT(ballJointsOf(corner), SizeIs(1));
+  const Quat onEdge(Eigen::AngleAxisd(-0.7, Vec3::UnitX()));
+  const Assembly edge = PinnedAtOrigin{ball, kPinBox, Vec3(0.05, -0.1, -0.3), onEdge}.assembly();
+  EXPECT_TRUE(mayTurn(edge, Vec3::UnitX()));
+  EXPECT_FALSE(mayTurn(edge, Vec3::UnitZ()));
+}
+
 // On an edge along x a ball rolls about it, but not along it: the normal stays across x.
 TEST(PinnedContacts, KeepANormalAcrossAnEdge) {
   const Vec3 normal(0, std::cos(0.6), std::sin(0.6));

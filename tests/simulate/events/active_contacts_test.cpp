@@ -84,6 +84,22 @@ TEST(ActiveContacts, HoldTheFeaturesThatTouch) {
   EXPECT_THAT(features, SizeIs(4));
 }
 
+// What rests is held as before, and released by nothing: if it slid, that has ended.
+TEST(ActiveContacts, OfBodiesThatComeToRestRecordNoRelease) {
+  for (const bool slides : {false, true}) {
+    OnPlane at(std::string(kBall) + "}");
+    linearVelocity(at.state(), 0).x() = slides ? 0.5 : 0;
+    at.classify();
+    ASSERT_THAT(at.contacts(), SizeIs(1));
+    at.island.log.take();
+    at.island.resting.bringToRest({0}, at.state());
+    at.classify();
+    const std::vector<Event> events = at.island.log.take();
+    ASSERT_THAT(events, SizeIs(slides ? 1 : 0));
+    if (slides) EXPECT_EQ(events[0].kind, EventKind::stick);
+  }
+}
+
 TEST(ActiveContacts, OfBodiesThatHaveComeToRestAreReleased) {
   OnPlane at(std::string(kBall) +
              R"(}, {"name": "other", "shape": {"sphere": {"radius": 0.1}}, "position": [2, 0.1, 0]})");

@@ -102,6 +102,22 @@ TEST(ContactClassification, TakesWhatForcesPressTogether) {
   }
 }
 
+// What a contact carries is nothing if it gives less than 1e-9 of the largest acceleration, here that of gravity; where
+// another contact is released less than 1e-6, for what is symmetric is released at once.
+TEST(ContactClassification, LeavesOutMoreWhereAContactIsReleased) {
+  using Change = ContactChange::Kind;
+  for (const auto& [change, least] : {std::pair(Change::slip, 1e-9), {Change::release, 1e-6}})
+    for (const double part : {0.5, 2.0}) {
+      OnPlane at(std::string(kBall) + "}");
+      at.classify();
+      ASSERT_THAT(at.contacts(), SizeIs(1));
+      at.acceleration(0);  // which notes the force
+      at.mechanism().pushes = {{{0, Vec3::Zero()}, Vec3(0, (1 - part * least) * kGravity, 0)}};
+      at.classify(ContactChange{change, 0, 0});
+      EXPECT_EQ(at.active.empty(), part < 1) << least;
+    }
+}
+
 // Faster than the last bounce, 1e-7 sqrt(g size) = 1.4e-7 m/s here, is leaving.
 TEST(ContactClassification, LeavesOutWhatOpens) {
   const double still = 1e-7 * std::sqrt(kGravity * 0.2) + 1e-12;
