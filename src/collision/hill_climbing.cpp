@@ -26,6 +26,7 @@ constexpr double kLastStep = 1e-15;  // rad: ten unit roundoffs of a unit vector
 // Sine: the cross product of unit vectors at a smaller angle, 90 unit roundoffs, has no digit that is not rounding.
 constexpr double kNoCrossProduct = 1e-14;
 // Cosine between the direction and a cylinder's axis: within it, 0.2 rad of the side, the rims of both ends are tried.
+// With 0.002, or with both always, no gap of 117000 random pairs with cylinders changes by more than rounding.
 constexpr double kAmbiguousCosine = 0.2;
 constexpr double kGainRatio = 1e-15;  // of the size: a gain by less is rounding, and ends the climb
 // rad: nearest points whose direction is as near to that of the climb lead nowhere else. A tenth or ten times as much

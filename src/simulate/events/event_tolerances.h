@@ -48,7 +48,8 @@ struct EventTolerances {
   static constexpr double kClosingPairRatio = 1e-6;  // of L
   double closingPairGap = 0;                         // m
 
-  // A step that ends at an impact is taken anew with another length if it leaves a larger gap. [1e-3, 1]
+  // A step that ends at an impact is taken anew with another length if it leaves a larger gap. With 1, a fifth of
+  // `touch` may be left; less is rounding.
   static constexpr double kClosedGapRatio = 1e-3;  // of `touch`
   double closedGap = 0;                            // m
 
