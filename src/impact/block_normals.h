@@ -1,17 +1,13 @@
 #pragma once
 
 #include "impact/contact_blocks.h"
+#include "impact/soft_parameters.h"
 
 // The normal impulses of one manifold, all at once. One after the other (Gauss-Seidel), the first point would take most
 // of the load and tilt the bodies towards the last: straight towers lean. The impulses of this solution do not depend
 // on the order of points, so that mirror images stay mirror images.
 
 namespace cradle {
-
-/// Rigid contacts are taken as this much stiffer than the bodies are heavy, about the impulses so far (a proximal
-/// step): four points on two rigid bodies have more impulses than the bodies have ways to move.
-constexpr double kRigid = 10;
-constexpr int kNewtonSteps = 2;  // more find hardly other points: the next pass guesses again
 
 /// Impulse of each point as a function of its speed s (m/s, apart): max(0, offset - stiffness s).
 template <int points>
@@ -63,7 +59,7 @@ PlaneSpeeds solveNormals(const Block& block, const PlaneSpeeds& before, const No
   }
   if (!(touches[0] | touches[1])) return before;
   PlaneSpeeds change;
-  for (int step = 0; step < kNewtonSteps; ++step) {
+  for (int step = 0; step < SoftParameters::kNewtonSteps; ++step) {
     PlaneSystem system{block.plane.inertia};
     for (int i = 0; i < kPoints; ++i) {
       const auto& point = block.points[i];

@@ -200,7 +200,7 @@ void softenNormals(Block& block, const Softness& soft, Lanes rate, const PlaneSp
       const Lanes separation = point.separation + moved.at(point.u, point.v);
       const auto apart = separation > none;
       const Yielding yielding(soft, separation, rate);
-      laws.stiffness[i] = point.mass * (apart ? same(kRigid) : yielding.stiffness);
+      laws.stiffness[i] = point.mass * (apart ? same(SoftParameters::kRigid) : yielding.stiffness);
       laws.offset[i] =
           (apart ? point.impulse : none) - laws.stiffness[i] * (apart ? separation * rate : yielding.wanted);
       point.slack = separation * rate;
@@ -234,7 +234,7 @@ void relaxBlock(Block& block, SolverMotions& motions) {
     NormalLaws<Block::kPoints> laws;
     for (int i = 0; i < Block::kPoints; ++i) {
       const auto& point = block.points[i];
-      laws.stiffness[i] = same(kRigid) * point.mass;
+      laws.stiffness[i] = same(SoftParameters::kRigid) * point.mass;
       laws.offset[i] = point.impulse - laws.stiffness[i] * point.slack;
     }
     press(block, speeds, laws, velocities);
@@ -263,7 +263,7 @@ void reboundBlock(Block& block, double slowest, SolverMotions& motions) {
       const Lanes free = point.impulse - point.mass * (speeds.middle + block.restitution * before);
       pressSingle(block, rebounds ? free : point.impulse, velocities);
     } else {
-      laws.stiffness[i] = rebounds ? same(kRigid) * point.mass : same(0);
+      laws.stiffness[i] = rebounds ? same(SoftParameters::kRigid) * point.mass : same(0);
       laws.offset[i] = point.impulse - laws.stiffness[i] * block.restitution * before;
     }
   }

@@ -11,21 +11,19 @@
 
 #include "impact/block_filling.h"
 #include "impact/block_passes.h"
+#include "impact/soft_parameters.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kFrequencies[] = {240, 170, 100, 100};  // Hz: of contacts as springs, by their number of points
-constexpr double kDampingRatio = 2;
-constexpr double kHardening = 300;      // 1/m: four times the frequency at 3.3 mm of overlap, and more below
-constexpr double kMaxPush = 4;          // m/s
 constexpr std::size_t kMinShared = 16;  // blocks: a microsecond of work
 constexpr std::size_t kAhead = 2;       // blocks: the motions that they need are asked for in time
 constexpr double kPi = 3.14159265358979324;
 
 /// A damped spring, implicit in the sub-step (E. Catto, "Soft Constraints", GDC 2011).
 Softness softnessOf(int points, double subStep) {
-  return {2 * kPi * kFrequencies[points - 1] * subStep, 2 * kDampingRatio, kHardening, kMaxPush};
+  return {2 * kPi * SoftParameters::kFrequencies[points - 1] * subStep, 2 * SoftParameters::kDampingRatio,
+          SoftParameters::kHardening, SoftParameters::kMaxPush};
 }
 
 template <class Block>

@@ -6,19 +6,11 @@
 #include <tuple>
 
 #include "impact/lanes.h"
+#include "impact/soft_parameters.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kKeptPoint = 0.1;       // of the body's radius: points as near as that are one from step to step
-constexpr double kKeptNormal = 0.9;      // cosine, at least, for forces to go on
-constexpr double kSlowSliding = 0.1;     // m/s: slower, static friction holds; a step's gain by gravity is 0.16
-constexpr double kKeptMotion = 1e-3;     // m: what two bodies may move against each other with one manifold
-constexpr double kKeptTurn = 0.01;       // rad: both together
-constexpr double kBallRatio = 0.8;       // that counts of their approach: spheres have no edges that could be missed
-constexpr double kPressed = 1.5;         // m/s: others that approach more slowly may be pressed, and slip and tilt
-constexpr double kQuickRatio = 0.5;      // of what is faster: it meets where it was seen to, corners around that too
-constexpr double kSpinRatio = 0.5;       // of the speed of the farthest point: few touch with that one
 constexpr std::size_t kPairGrain = 512;  // pairs that a thread takes at once: tens of microseconds
 constexpr std::size_t kPairsAhead = 4;   // pairs: what they need is asked for in time, for it lies anywhere
 constexpr std::size_t kNearGrain = 64;   // those among them that are near take longer
@@ -113,11 +105,13 @@ bool SoftContacts::areFar(const NearPair& pair, const SoftStepStart& look) {
 double SoftContacts::approachOf(const NearPair& pair, const SoftStepStart& look) const {
   const MovingPose &a = look.poseOf(pair.bodyA), &b = look.poseOf(pair.bodyB);
   if (a.isAsleep && (pair.bodyB == kFixed || b.isAsleep)) return 0;
+  using Soft = SoftParameters;
   const bool areSpheres = a.spinRadius == 0 && (pair.againstPlane || b.spinRadius == 0);
   const auto counted = [&](double speed) {
-    return areSpheres ? kBallRatio * speed : std::min(speed, kPressed) + kQuickRatio * std::max(0.0, speed - kPressed);
+    return areSpheres ? Soft::kBallRatio * speed
+                      : std::min(speed, Soft::kPressed) + Soft::kQuickRatio * std::max(0.0, speed - Soft::kPressed);
   };
-  const double spin = kSpinRatio * (a.spinSpeed + b.spinSpeed);
+  const double spin = Soft::kSpinRatio * (a.spinSpeed + b.spinSpeed);
   const Vec3 velocity = b.linearVelocity - a.linearVelocity;
   if (areFar(pair, look) || !areNear(pair, look, reachOf(pair, look))) return 0;
   if (pair.againstPlane) return counted(std::max(0.0, geometry_.planes[pair.shapeB].normal.dot(velocity))) + spin;
@@ -224,8 +218,9 @@ void SoftContacts::updatePair(NearPair& pair, const SoftStepStart& look, std::ve
   PersistentManifold& manifold = manifolds_[static_cast<std::size_t>(pair.manifold)];
   const Vec3 offset = poseB.position - poseA.position;
   const double turned = poseA.turned + poseB.turned;
-  if (!pair.isEmpty && (offset - pair.offset).squaredNorm() <= kKeptMotion * kKeptMotion &&
-      turned - pair.turned <= kKeptTurn) {
+  constexpr double keptMotion = SoftParameters::kKeptMotion, slowSliding = SoftParameters::kSlowSliding;
+  if (!pair.isEmpty && (offset - pair.offset).squaredNorm() <= keptMotion * keptMotion &&
+      turned - pair.turned <= SoftParameters::kKeptTurn) {
     follow(pair, poseA, poseB, manifold);
   } else {
     const PredictedManifold found = generator_.manifoldOf(pair, look, scratch);
@@ -243,7 +238,7 @@ void SoftContacts::updatePair(NearPair& pair, const SoftStepStart& look, std::ve
   const bool isPressed = std::any_of(manifold.forces.begin(), manifold.forces.end(), [](double f) { return f != 0; });
   pair.approach = isPressed ? 0 : static_cast<float>(approach);
   manifold.friction =
-      across2 < kSlowSliding * kSlowSliding ? manifold.material->staticFriction : manifold.material->dynamicFriction;
+      across2 < slowSliding * slowSliding ? manifold.material->staticFriction : manifold.material->dynamicFriction;
 }
 
 /// How far a manifold's points are apart after a small motion. What is fixed keeps its normal.
@@ -263,11 +258,12 @@ void SoftContacts::follow(const NearPair& pair, const MovingPose& poseA, const M
 /// Takes a new manifold; points that were there before keep their forces.
 void SoftContacts::renew(const PredictedManifold& found, const MovingPose& poseA, const MovingPose& poseB,
                          bool wasEmpty, PersistentManifold& manifold) {
-  const bool goesOn = !wasEmpty && manifold.normal.dot(found.normal) > kKeptNormal;
+  const bool goesOn = !wasEmpty && manifold.normal.dot(found.normal) > SoftParameters::kKeptNormal;
   const auto forces = manifold.forces;
   const auto onA = manifold.onA;
   const std::size_t count = static_cast<std::size_t>(manifold.count);
-  const float near2 = static_cast<float>(kKeptPoint * kKeptPoint * poseA.radius * poseA.radius);
+  constexpr double keptPoint = SoftParameters::kKeptPoint;
+  const float near2 = static_cast<float>(keptPoint * keptPoint * poseA.radius * poseA.radius);
   const Vec3& from = manifold.bodyB == kFixed ? poseA.position : poseB.position;
   manifold.forces.fill(0);
   if (!goesOn) manifold.frictionForce.setZero(), manifold.twist = 0;

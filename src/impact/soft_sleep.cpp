@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "impact/soft_parameters.h"
+
 namespace cradle {
 namespace {
-
-constexpr double kStillTime = 0.5;  // s: slow for so long is at rest
 
 bool bothMove(const ManifoldLink& link) {
   return link.bodyB != kFixed;
@@ -49,7 +49,7 @@ void SoftSleep::wakeTouched(const SoftContacts& contacts, const std::vector<Movi
 void SoftSleep::wake(int body, std::vector<int>& woken) {
   const std::size_t index = static_cast<std::size_t>(body);
   isAsleep_[index] = 0;
-  stillTimes_[index] = kStillTime / 2;  // not restless before it has moved
+  stillTimes_[index] = SoftParameters::kStillTime / 2;  // not restless before it has moved
   ++awake_;
   woken.push_back(body);
 }
@@ -91,11 +91,13 @@ void SoftSleep::letSleep(const SoftContacts& contacts, const std::vector<double>
   for (std::size_t i = 0; i < masses_.size(); ++i) {
     if (isAsleep_[i]) continue;
     stillTimes_[i] = speeds[i] < slow ? stillTimes_[i] + timeStep : 0;
-    someAreStill = someAreStill || stillTimes_[i] >= kStillTime;
+    someAreStill = someAreStill || stillTimes_[i] >= SoftParameters::kStillTime;
   }
   if (!someAreStill) return;
   std::fill(hasMovingNeighbor_.begin(), hasMovingNeighbor_.end(), 0);
-  const auto isMovingFast = [&](std::size_t body) { return !isAsleep_[body] && stillTimes_[body] < kStillTime; };
+  const auto isMovingFast = [&](std::size_t body) {
+    return !isAsleep_[body] && stillTimes_[body] < SoftParameters::kStillTime;
+  };
   for (const ManifoldLink& link : contacts.active()) {
     if (!bothMove(link)) continue;
     const std::size_t a = static_cast<std::size_t>(link.bodyA), b = static_cast<std::size_t>(link.bodyB);

@@ -4,22 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "impact/soft_parameters.h"
 #include "math/principal_axes.h"
 
 namespace cradle {
 namespace {
 
-constexpr double kMaxApproach = 10e-3;  // m: bodies that come nearer to each other between looks get more of them
-constexpr double kMaxSubStepApproach = 3.4e-3;  // m: in a sub-step, as far as an impact goes on into the next bodies
-constexpr double kDeflected = 0.5;              // of the approach is added to the margin: an impact turns bodies aside
-constexpr int kMaxSubstepGroups = 32;           // looks a step
-constexpr int kSubSteps = 8;  // a step, at least: with fewer, contacts must be so soft that heaps sink
-constexpr int kDisturbedSubSteps =
-    16;  // with fewer, friction gives way little by little: turned boxes creep for seconds
-constexpr double kManySpheres = 0.25;     // of all bodies
-constexpr double kSoftStillRatio = 0.25;  // of the speed g h of a step: contacts at rest have as much
-constexpr double kContactMargin = 5e-3;   // m: contacts are known before bodies touch
-constexpr std::size_t kBodyGrain = 256;   // bodies that a thread takes at once: tens of microseconds
+constexpr std::size_t kBodyGrain = 256;  // bodies that a thread takes at once: tens of microseconds
 
 std::vector<double> massesOf(const std::vector<RigidBody>& bodies) {
   std::vector<double> masses;
@@ -78,7 +69,7 @@ SoftStep::SoftStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
       isSphere_[static_cast<std::size_t>(collider.body)] = collider.isSphere();
     }
   hasManySpheres_ = static_cast<double>(std::count(isSphere_.begin(), isSphere_.end(), 1)) >
-                    kManySpheres * static_cast<double>(count);
+                    SoftParameters::kManySpheres * static_cast<double>(count);
   for (const std::vector<ContactMaterial>& row : geometry.materials)
     for (const ContactMaterial& material : row) rebounds_ = rebounds_ || material.restitution > 0;
   worldFromPrincipal_.assign(count, Mat3::Identity());
@@ -90,22 +81,24 @@ SoftStep::SoftStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
 }
 
 void SoftStep::advance(double timeStep, VectorX& state) {
+  using Soft = SoftParameters;
   impacts_.clear(), fallenAsleep_.clear(), woken_.clear();
   taken_ = {};
   if (allAsleep()) return;
-  slowestRebound_ = timeStep * gravity_.norm(), slow_ = kSoftStillRatio * slowestRebound_;
+  slowestRebound_ = timeStep * gravity_.norm(), slow_ = Soft::kStillRatio * slowestRebound_;
 
   // How fast do bodies approach each other, and how often must they be looked at for that?
   placeBodies(timeStep, state);
-  const double mostMargin = kContactMargin + kDeflected * kMaxApproach;
+  const double mostMargin = Soft::kContactMargin + Soft::kDeflected * Soft::kMaxApproach;
   if (broadPhase_.update({state, reaches_, displacements_}, mostMargin, geometry_)) contacts_.takePairs();
   const double approach = timeStep * contacts_.fastestApproach({poses_, state, timeStep, mostMargin}, threads_);
-  const int substepGroups = std::clamp(static_cast<int>(std::ceil(approach / kMaxApproach)), 1, kMaxSubstepGroups);
+  const int substepGroups =
+      std::clamp(static_cast<int>(std::ceil(approach / Soft::kMaxApproach)), 1, Soft::kMaxSubstepGroups);
   const int fewest =
-      static_cast<int>(std::ceil(std::min(approach / substepGroups, kMaxApproach) / kMaxSubStepApproach));
-  const int subSteps =
-      std::max(((isDisturbed_ ? kDisturbedSubSteps : kSubSteps) + substepGroups - 1) / substepGroups, fewest);
-  margin_ = kContactMargin + kDeflected * std::min(approach / substepGroups, kMaxApproach);
+      static_cast<int>(std::ceil(std::min(approach / substepGroups, Soft::kMaxApproach) / Soft::kMaxSubStepApproach));
+  const int subSteps = std::max(
+      ((isDisturbed_ ? Soft::kDisturbedSubSteps : Soft::kSubSteps) + substepGroups - 1) / substepGroups, fewest);
+  margin_ = Soft::kContactMargin + Soft::kDeflected * std::min(approach / substepGroups, Soft::kMaxApproach);
 
   contacts_.beginStep();
   for (int substepGroup = 0; substepGroup < substepGroups; ++substepGroup) {
