@@ -198,9 +198,12 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
     keepStartDerivative(step);
     method_.integrate(island_.rightHandSide, island_.state, island_.time, event.contact->fraction * whole, step);
   } else if (event.contact) {
-    endStepAtEvent(island_, method_.integrate,
-                   {event.contact->fraction * whole, latest, EventTolerances::kEventFunction},
-                   [&](const VectorX& state) { return contacts_.active().margin(*event.contact, state); });
+    // Where forces change so fast that the interpolant does not tell them, the step itself may have no such change.
+    const double tolerance = EventTolerances::kEventFunction;
+    const double left =
+        endStepAtEvent(island_, method_.integrate, {event.contact->fraction * whole, latest, tolerance},
+                       [&](const VectorX& state) { return contacts_.active().margin(*event.contact, state); });
+    if (left > tolerance && latest == whole) event.contact.reset();
   }
   if (island_.mayTouch()) lengths_[lengthIndex_++ % lengths_.size()] = step.timeStep;
   return event;
