@@ -89,19 +89,21 @@ void SteppedMotion::addContactMotion(double fraction, VectorX& state) const {
   if (!hasContacts_) return;
   const VectorX& freeEnd = island_.step.state;
   const double square = fraction * fraction;
+  const bool hasImpact = contacts_.hasImpact();
   for (Eigen::Index body = 0; body < bodyCount(state); ++body) {
     centerOfMass(state, body) += square * (centerOfMass(contactEnd_, body) - centerOfMass(freeEnd, body));
     const Quat turn = (orientation(contactEnd_, body) * orientation(freeEnd, body).conjugate()).normalized();
     turnBody(state, body, square * 2 * turn.vec());
     // Between the velocities before and after an impact there are none.
-    if (contacts_.hasImpact()) continue;
+    if (hasImpact) continue;
     const Eigen::Index velocity = velocityOffset(state, body);
     state.segment<kVelocitySize>(velocity) +=
         fraction * (contactEnd_.segment<kVelocitySize>(velocity) - freeEnd.segment<kVelocitySize>(velocity));
   }
   // Forces of contacts are constant within the step; they change velocities in proportion to its fraction.
+  // So long as velocities are those of free motion, friction has taken nothing.
   const auto [atStart, atEnd] = contacts_.frictionWork();
-  frictionEnergy(state) += fraction * atStart + square * (atEnd - atStart);
+  if (!hasImpact) frictionEnergy(state) += fraction * atStart + square * (atEnd - atStart);
   dampingEnergy(state) += square * (dampingEnergy(contactEnd_) - dampingEnergy(freeEnd));
   pushWork(state) += square * (pushWork(contactEnd_) - pushWork(freeEnd));
 }

@@ -235,5 +235,38 @@ TEST(SteppedMotion, KeepsConstraintsToRoundingAtEnds) {
   }
 }
 
+// Balls that strike in the second step cut it three times, and the fourth strikes inside what is left of it. Up to its
+// end velocities are those of free motion, and friction has taken nothing of the boxes that slide: contact has lifted
+// bodies alone, against m g.
+TEST(SteppedMotion, LeavesFrictionToTheEndOfAStepWithAnImpact) {
+  std::string bodies = steppedBox("b", Vec3(0, 0.1, 0), Vec3(0, 0, 0.5));
+  for (int i = 1; i < 3; ++i) bodies += ", " + steppedBox(fmt::format("b{}", i), Vec3(i, 0.1, 0), Vec3(0, 0, 0.5));
+  for (int i = 3; i < 7; ++i)
+    bodies += fmt::format(R"(, {{"name": "ball{}", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 2,
+        "material": "stuff", "position": [{}, {}, 0], "linearVelocity": [0, -0.5, 0]}})",
+                          i, i, 0.1003 + i * 0.00011);
+  BySteps at(steppedScene(1, bodies), kGridTime);
+  at.endsOfSteps(4);
+  const double begin = at.island.time;
+  const VectorX start = at.state();
+  at.motion.advance(0);
+  ASSERT_EQ(at.island.time, 2 * kGridTime);
+  ASSERT_LT(linearVelocity(start, 6).y(), 0);
+  ASSERT_GT(linearVelocity(at.state(), 6).y(), 0);
+  ASSERT_GT(frictionEnergy(at.state()), frictionEnergy(start));
+  for (const double part : {0.25, 0.5, 0.75}) {
+    const VectorX inside = at.inside(part);
+    const double time = part * (2 * kGridTime - begin);
+    double lifted = 0;  // J
+    for (Eigen::Index body = 0; body < 7; ++body) {
+      const double fallen = linearVelocity(start, body).y() * time - kGravity * time * time / 2;
+      const double mass = at.mechanism().bodies[static_cast<std::size_t>(body)].mass;
+      lifted += mass * kGravity * (centerOfMass(inside, body).y() - centerOfMass(start, body).y() - fallen);
+    }
+    EXPECT_EQ(frictionEnergy(inside), frictionEnergy(start)) << part;
+    EXPECT_NEAR(energyConstant(at.mechanism(), inside), energyConstant(at.mechanism(), start) + lifted, 1e-12) << part;
+  }
+}
+
 }  // namespace
 }  // namespace cradle
