@@ -142,9 +142,10 @@ void ContactStepping::keep(const StepGroup& group, const StepMotion& motion, con
 }
 
 /// Books the work of contact impulses: that of contacts that struck, with their friction, and that of the closing which
-/// others still had is impact; the rest is friction. A negative sum is an error and no work of contacts. Nor do they
-/// take more than `loss` (J) where constraints take part: impulses of constraints are as large where contacts have
-/// short moment arms about a joint.
+/// others still had is impact; the rest is friction. Friction that drives a body which strikes something else gives
+/// what the impact takes besides; a negative sum of both is an error and no work of contacts. Nor do they take more
+/// than `loss` (J) where constraints take part: impulses of constraints are as large where contacts have short moment
+/// arms about a joint.
 void ContactStepping::book(const StepGroup& group, const StepMotion& motion, const VectorX& impulses,
                            const VectorX& end, double loss, VectorX& state) {
   double impact = 0, friction = 0, frictionAtStart = 0;
@@ -157,13 +158,13 @@ void ContactStepping::book(const StepGroup& group, const StepMotion& motion, con
     friction += energyTaken(rubbing, before, after);
     frictionAtStart += energyTaken(rubbing, before, before);
   }
-  impact = std::max(0.0, impact), friction = std::max(0.0, friction);
-  const double taken = impact + friction, left = std::max(0.0, loss);
+  const double taken = std::max(0.0, impact + friction), left = std::max(0.0, loss);
+  const double rubbed = std::clamp(friction, 0.0, taken);
   const double fraction = group.isConstrained && taken > left ? left / taken : 1;
-  impactEnergy(state) += fraction * impact;
-  if (friction == 0) return;
-  frictionEnergy(state) += fraction * friction;
-  frictionWork_.taken += fraction * friction, frictionWork_.atStart += fraction * frictionAtStart;
+  impactEnergy(state) += fraction * (taken - rubbed);
+  if (rubbed == 0) return;
+  frictionEnergy(state) += fraction * rubbed;
+  frictionWork_.taken += fraction * rubbed, frictionWork_.atStart += fraction * rubbed / friction * frictionAtStart;
 }
 
 NextImpact ContactStepping::nextImpact(const std::vector<Contact>& contacts, const VectorX& before, double timeStep,
