@@ -41,7 +41,8 @@ double ropeExcess(const Frame& frame, const Scene& scene) {
 SceneRun runOf(const Scene& scene) {
   SceneRun run{scene, {}};
   const auto listen = [&](const std::string& text) {
-    if (text.find("not promised") != std::string::npos) run.keepsAccuracy = false;
+    for (const char* end : {"not promised", "not kept"})
+      if (text.find(end) != std::string::npos) run.keepsAccuracy = false;
   };
   listen(accuracyPromised(planOf(scene)));
   const SimulationSink sink{[&](const Frame& frame) { run.frames.push_back(frame); }, [](const Event&) {}, listen};

@@ -24,7 +24,7 @@ struct RandomSceneFigures {
 struct SceneRun {
   Scene scene;
   std::vector<Frame> frames;
-  bool keepsAccuracy = true;  // neither the plan nor a warning said that it is not promised
+  bool keepsAccuracy = true;  // neither the plan nor a warning said that it is not promised or kept
   double cpuSeconds = 0;      // of the integration
 };
 
