@@ -5,12 +5,13 @@
 #include "simulate/steps/penetration_correction.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cradle {
 namespace {
 
 constexpr double kFarthestSeparation = 0.05;  // sizes, or rad: the rest is left to the steps to come
-constexpr double kFarOverlaps = 10;           // of the deepest overlap: gaps that are as good as any wider ones
+constexpr double kFarOverlaps = 10;  // of the farthest that a contact is moved: gaps that are as good as any wider ones
 
 /// The largest displacement of bodies with a collider: in sizes of the body, or rad.
 double largestDisplacement(const std::vector<int>& bodies, const std::vector<double>& radii,
@@ -25,15 +26,29 @@ double largestDisplacement(const std::vector<int>& bodies, const std::vector<dou
   return largest;
 }
 
+/// m: farther than any contact is moved by the correction of overlaps up to `deepest` (m). The push that takes an
+/// overlap s_j out moves contact i by s_j W_ij / W_jj, which is below s_j sqrt(W_ii / W_jj): much more than s_j where
+/// contact j has a short moment arm about a joint.
+double farGap(const VectorX& gaps, double deepest, const GroupProblem& problem) {
+  double most = 0, least = INFINITY;
+  for (Eigen::Index i = 0; i < gaps.size(); ++i) {
+    const double mobility = problem.mobility(static_cast<std::size_t>(i));
+    if (!(mobility > StepTolerances::kMinMobility)) continue;
+    most = std::max(most, mobility);
+    if (gaps[i] < 0) least = std::min(least, mobility);
+  }
+  return kFarOverlaps * deepest * std::sqrt(std::max(1.0, most / least));
+}
+
 }  // namespace
 
 void separateGroup(const StepGroup& group, const ContactSet& contacts, const VectorX& gaps, GroupProblem& problem,
                    VectorX& state) {
-  const double deepest = -gaps.minCoeff();
+  const double deepest = -gaps.minCoeff(), far = farGap(gaps, deepest, problem);
   VectorX free = VectorX::Zero(3 * gaps.size());
   for (Eigen::Index i = 0; i < gaps.size(); ++i) {
     const bool isMobile = problem.mobility(static_cast<std::size_t>(i)) > StepTolerances::kMinMobility;
-    free[3 * i + 2] = isMobile ? std::min(gaps[i], kFarOverlaps * deepest) : kFarOverlaps * deepest;
+    free[3 * i + 2] = isMobile ? std::min(gaps[i], far) : far;
   }
   const double tolerance = contacts.tolerances().separationError(deepest);
   VectorX displacement = state;  // in the place of velocities

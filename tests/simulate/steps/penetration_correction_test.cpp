@@ -114,5 +114,20 @@ TEST(PenetrationCorrection, LetsOverlapsOfRoundingBe) {
   }
 }
 
+// A ball on a hinge that is a = 0.3 mm beside its lowest point is turned by d / a, which moves its side by 333 d
+// towards a wall: that has 1000 d, and hinders nothing.
+TEST(PenetrationCorrection, KnowsWhatGapsAreFarFromAShortMomentArm) {
+  const double depth = 1e-9, arm = 3e-4;
+  OneIsland at(fmt::format(R"("duration": 1, "gravity": [0, 0, 0], "bodies": [
+    {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static"}},
+    {{"name": "wall", "shape": {{"plane": {{"normal": [1, 0, 0]}}}}, "position": [{}, 0, 0], "motion": "static"}}, {}],
+    "hinges": [{{"bodyA": "ball", "anchorA": [{}, {}, 0], "anchorB": [{}, 0, 0], "axis": [0, 0, 1]}}])",
+                           -0.1 - 1000 * depth, ballOf("ball", 2, 0.1, Vec3(0, 0.1 - depth, 0)), -arm, depth - 0.1,
+                           -arm));
+  correct(at, 1e-5);
+  EXPECT_NEAR(2 * orientation(at.state(), 0).z(), depth / arm, 1e-3 * depth / arm);
+  EXPECT_NEAR(centerOfMass(at.state(), 0).x(), -0.1 * depth / arm, 1e-3 * 0.1 * depth / arm);
+}
+
 }  // namespace
 }  // namespace cradle
