@@ -13,8 +13,10 @@
 namespace cradle {
 namespace {
 
-constexpr double kTurn = 37 * 3.14159265358979324 / 180;        // rad
-constexpr double kScale = 100, kTimes = 10, kMasses = 1e6;      // Froude: times as the root of lengths
+constexpr double kTurn = 37 * 3.14159265358979324 / 180;     // rad
+constexpr double kScaledTimes = 10, kShrunkTimes = 1.0 / 8;  // lengths are their squares (Froude)
+constexpr int kFewBodies = 4;  // that move, and no coarser accuracy than this: steps of contact are made for their size
+constexpr double kFewBodiesAccuracy = 1e-4;
 constexpr double kPrismMiddle = static_cast<double>(0.1f) / 2;  // m: the L prism stands on z = 0, 0.1 m high
 
 Vec3 flipped(Vec3 v, int axis) {
@@ -59,6 +61,26 @@ Vec3 axialImage(const Vec3& v, int axis) {
 
 Vec3 anchorImage(const SceneSketch& sketch, int body, const Vec3& point, int axis) {
   return body < 0 ? flipped(point, axis) : mirrorOf(sketch.bodies[static_cast<std::size_t>(body)], axis).image(point);
+}
+
+/// Times are `times` as long under the same gravity, and densities the same.
+SceneTwin scaledBy(double times, std::string name, const SceneSketch& sketch) {
+  const double lengths = times * times, masses = lengths * lengths * lengths;
+  SceneTwin twin = sameOrder(std::move(name), sketch);
+  twin.sketch.duration *= times, twin.sketch.framesPerSecond /= times;
+  for (SketchBody& body : twin.sketch.bodies) {
+    body.size *= lengths, body.worldFromBody.translation *= lengths, body.mass *= masses;
+    body.linearVelocity *= lengths / times, body.angularVelocity /= times;
+  }
+  for (SketchLink& link : twin.sketch.links) {
+    link.anchorA *= lengths, link.anchorB *= lengths, link.length *= lengths;
+    link.stiffness *= masses / (times * times), link.damping *= masses / times;
+  }
+  twin.back = [lengths](RigidTransform pose, std::size_t) {
+    pose.translation /= lengths;
+    return pose;
+  };
+  return twin;
 }
 
 }  // namespace
@@ -136,20 +158,17 @@ SceneTwin turnedTwin(const SceneSketch& sketch) {
 }
 
 SceneTwin scaledTwin(const SceneSketch& sketch) {
-  SceneTwin twin = sameOrder("scaled", sketch);
-  twin.sketch.duration *= kTimes, twin.sketch.framesPerSecond /= kTimes;
-  for (SketchBody& body : twin.sketch.bodies) {
-    body.size *= kScale, body.worldFromBody.translation *= kScale, body.mass *= kMasses;
-    body.linearVelocity *= kScale / kTimes, body.angularVelocity /= kTimes;
-  }
-  for (SketchLink& link : twin.sketch.links) {
-    link.anchorA *= kScale, link.anchorB *= kScale, link.length *= kScale;
-    link.stiffness *= kMasses / (kTimes * kTimes), link.damping *= kMasses / kTimes;
-  }
-  twin.back = [](RigidTransform pose, std::size_t) {
-    pose.translation /= kScale;
-    return pose;
-  };
+  SceneTwin twin = scaledBy(kScaledTimes, "scaled", sketch);
+  twin.hasOtherSteps = true;
+  return twin;
+}
+
+SceneTwin shrunkTwin(const SceneSketch& sketch) {
+  SceneTwin twin = scaledBy(kShrunkTimes, "shrunk", sketch);
+  twin.sketch.accuracy *= kShrunkTimes * kShrunkTimes;
+  const auto moving =
+      std::count_if(sketch.bodies.begin(), sketch.bodies.end(), [](const SketchBody& body) { return !body.isStatic; });
+  twin.hasOtherSteps = moving > kFewBodies || sketch.accuracy > kFewBodiesAccuracy;
   return twin;
 }
 

@@ -255,7 +255,7 @@ class SketchCheck {
     if (!run) return faults_;
     addFaultsOf(sketch_, *run);
     for (const SceneTwin& twin : {mirroredTwin(sketch_, 0), mirroredTwin(sketch_, 2), renumberedTwin(sketch_),
-                                  turnedTwin(sketch_), scaledTwin(sketch_)})
+                                  turnedTwin(sketch_), scaledTwin(sketch_), shrunkTwin(sketch_)})
       compareTwin(*run, twin);
     checkConvergence();
     return faults_;
@@ -314,6 +314,7 @@ class SketchCheck {
     if (!other) return;
     const double difference = distanceOf(sketch_, run, twin, *other), size = smallestSizeOf(sketch_);
     const bool isKept = run.keepsAccuracy && other->keepsAccuracy;
+    if (!isKept && twin.hasOtherSteps) return;
     const double most = isKept ? kMaxTwinErrors * sketch_.accuracy * extentOf(run) : kStepsPlace * size;
     if (isBeyondSensitivity(sketch_, run, difference, most, isKept ? sketch_.accuracy : kStepsSpeed))
       add({{twin.name, fmt::format("{:.2g} m, {:.2g} of the size, from the twin's; accuracy {:g}{}", difference,
