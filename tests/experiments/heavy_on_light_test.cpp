@@ -83,7 +83,8 @@ Scene boxUnderASlidingBall(double ratio, double friction, double accuracy) {
 
 // The floor's friction is that of the ball and the box's weight: under a ball of a hundred times its mass the box all
 // but slides. Its corners creep, and friction turns their sliding at mu N / (m v), up to 1e7 times in a second. Where
-// steps cannot follow that, the promise ends: some thousands of steps, not 1e5. No contact is named by nobody.
+// steps cannot follow that, the promise ends: after ten thousand steps at most, of twelve evaluations and more. No
+// contact is named by nobody.
 TEST(LightBoxUnderAHeavySlidingBall, EndsThePromiseWhereItsCornersCreep) {
   int crept = 0;
   for (const double ratio : {30.0, 105.0, 300.0})
@@ -94,7 +95,7 @@ TEST(LightBoxUnderAHeavySlidingBall, EndsThePromiseWhereItsCornersCreep) {
         const RunCost cost = simulate(
             boxUnderASlidingBall(ratio, friction, accuracy),
             {[](const Frame&) {}, [](const Event&) {}, [&](const std::string& text) { warnings.push_back(text); }});
-        EXPECT_LT(cost.evaluations, 100'000) << what;
+        EXPECT_LT(cost.evaluations, 200'000) << what;
         for (const std::string& warning : warnings) {
           EXPECT_EQ(warning.find("()"), std::string::npos) << what << warning;
           crept += warning.find("slide so slowly") != std::string::npos;
