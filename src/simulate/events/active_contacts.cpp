@@ -26,6 +26,10 @@ void ActiveContacts::release(const std::optional<ContactChange>& change) {
     if (slips && change->contact == i) {
       previous.isSlipping = true;
       previous.slipping = -island_.equations.contactForces()[i].tangential.normalized();
+    } else if (slips && mechanism().contacts[i].motion == ContactMotion::sliding) {
+      // Another contact that slips changes no velocity: one that has just begun to slide, as slowly, goes on.
+      previous.isSlipping = true;
+      previous.slipping = records_[i].direction;
     }
     previous_.push_back(previous);
   }

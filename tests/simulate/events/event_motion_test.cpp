@@ -288,5 +288,40 @@ TEST(EventMotion, LeavesChangesThatTheInterpolantAloneShows) {
     EXPECT_LT((centerOfMass(coarse.state(), body) - centerOfMass(fine.state(), body)).norm(), 1e-8) << body;
 }
 
+/// Two balls on the floor, thrown, with a light one on each: x = 0 is a mirror.
+std::string thrownPairs() {
+  const auto ball = [](const char* name, double radius, double mass, const Vec3& position, const Vec3& velocity) {
+    return fmt::format(R"(, {{"name": "{}", "shape": {{"sphere": {{"radius": {}}}}}, "mass": {}, "material": "stuff",
+        "position": {}, "linearVelocity": {}}})",
+                       name, radius, mass, vectorText(position), vectorText(velocity));
+  };
+  std::string bodies = kEventFloor;
+  for (const double side : {1.0, -1.0}) {
+    bodies += ball(side > 0 ? "right" : "left", 0.04154929646835, 3.84612856390322,
+                   Vec3(side * 0.0526768440766587, 0.0415492964683502, -0.0052746969424186),
+                   Vec3(side * 0.110656432016278, 0.137512052458464, -0.492312706136842));
+    bodies += ball(side > 0 ? "rightTop" : "leftTop", 0.0531054717070087, 0.262211226397767,
+                   Vec3(side * 0.0531054717070085, 0.136056063645236, 0), Vec3::Zero());
+  }
+  return R"("duration": 0.3, "accuracy": 1e-5, "materials": {"stuff": {"restitution": 0, "staticFriction": 3,
+      "dynamicFriction": 2.7}}, "bodies": [)" +
+         bodies + "]";
+}
+
+// Both tops begin to slip at one instant, which is two events. The first to slide has no speed yet at the second, and
+// does not stick again for that: each would let the other stick, for ever.
+TEST(EventMotion, LetsContactsSlipAtOneInstant) {
+  ByEvents at(thrownPairs());
+  int slips = 0;
+  for (int i = 0; i < 3000 && at.island.time < at.scene.duration && at.motion.fallbackReason().empty(); ++i) {
+    at.motion.advance(kNever);
+    for (const Event& event : at.island.log.take()) slips += event.kind == EventKind::slip;
+  }
+  EXPECT_THAT(at.motion.fallbackReason(), IsEmpty());
+  EXPECT_EQ(at.island.time, at.scene.duration);
+  EXPECT_EQ(slips % 2, 0);
+  EXPECT_GT(slips, 0);
+}
+
 }  // namespace
 }  // namespace cradle
