@@ -37,12 +37,20 @@ void ContactSolver::factorize(const VectorX& state, const std::vector<BodyFrame>
   if (hasFreeConstraints_) constraintSolver_.factorize(state, frames);
 }
 
-void ContactSolver::findJoints(std::vector<Joint>& joints) const {
-  joints.clear();
-  for (const ContactConstraint& contact : contacts_)
-    joints.push_back({contact.centerA.body, contact.surfaceB.body, static_cast<int>(contact.motion)});
-  for (const Constraint& constraint : constraints_)
-    joints.push_back({constraint.anchorA.body, constraint.anchorB.body, -rowCount(constraint)});
+ContactSolver::Joint ContactSolver::jointOf(const ContactConstraint& contact) {
+  return {contact.centerA.body, contact.surfaceB.body, static_cast<int>(contact.motion)};
+}
+
+ContactSolver::Joint ContactSolver::jointOf(const Constraint& constraint) {
+  return {constraint.anchorA.body, constraint.anchorB.body, rowCount(constraint)};
+}
+
+bool ContactSolver::hasKnownStructure(const std::vector<char>& resting) const {
+  const auto isKnown = [](const auto& joint, const Joint& known) { return jointOf(joint) == known; };
+  return resting == resting_ &&
+         std::equal(contacts_.begin(), contacts_.end(), contactJoints_.begin(), contactJoints_.end(), isKnown) &&
+         std::equal(constraints_.begin(), constraints_.end(), constraintJoints_.begin(), constraintJoints_.end(),
+                    isKnown);
 }
 
 /// kFixed for bodies at rest.
@@ -52,7 +60,9 @@ int ContactSolver::movingBody(int body) const {
 
 void ContactSolver::analyze(const std::vector<char>& resting) {
   resting_ = resting;
-  std::swap(joints_, joined_);
+  contactJoints_.clear(), constraintJoints_.clear();
+  for (const ContactConstraint& contact : contacts_) contactJoints_.push_back(jointOf(contact));
+  for (const Constraint& constraint : constraints_) constraintJoints_.push_back(jointOf(constraint));
   groups_.clear();
   std::vector<char> isGrouped(bodies_.size(), 0);
   for (ContactGroup& members : findContactGroups(contacts_, constraints_, resting)) {
@@ -93,8 +103,7 @@ void ContactSolver::sizeRows() {
 
 void ContactSolver::fillRows(const VectorX& state, const std::vector<BodyFrame>& frames,
                              const std::vector<char>& resting) {
-  findJoints(joined_);
-  if (joined_ != joints_ || resting != resting_) analyze(resting);
+  if (!hasKnownStructure(resting)) analyze(resting);
   for (Group& group : groups_) {
     int row = group.firstRow, tangentRow = group.firstRow + group.positionRows();
     for (const int contact : group.members.contacts) fillContact(index(contact), row++, tangentRow, state, frames);

@@ -69,13 +69,16 @@ class ContactSolver {
 
     int positionRows() const { return static_cast<int>(members.contacts.size()); }
   };
-  /// How two bodies were joined when groups were found.
+  /// How a contact or a constraint joined two bodies when groups were found: `kind` is the motion of a contact, or the
+  /// number of rows of a constraint.
   struct Joint {
     int bodyA, bodyB, kind;
     bool operator==(const Joint&) const = default;
   };
 
-  void findJoints(std::vector<Joint>& joints) const;
+  static Joint jointOf(const ContactConstraint& contact);
+  static Joint jointOf(const Constraint& constraint);
+  bool hasKnownStructure(const std::vector<char>& resting) const;
   void analyze(const std::vector<char>& resting);
   void sizeRows();
   int movingBody(int body) const;
@@ -109,7 +112,7 @@ class ContactSolver {
   ConstraintSolver constraintSolver_;  // of bodies without a contact
   bool hasFreeConstraints_ = false;
 
-  std::vector<Joint> joints_, joined_;  // of contacts, then of constraints: when groups were found, and now
+  std::vector<Joint> contactJoints_, constraintJoints_;
   std::vector<char> resting_;
   std::vector<Group> groups_;
 
