@@ -17,6 +17,9 @@ constexpr int kMaxAxisQueries = 128;
 // Of a step: solids that turn about a joint are searched no more finely, for each query is one of both whole solids. A
 // tenth or ten times as much changes no test of a search.
 constexpr double kFinestRotation = 1.0 / 16;
+// Of a step: what such solids have beside the joint may be a constant small gap from the other, and is searched no more
+// finely; what the search misses, the one of whole solids finds as an overlap.
+constexpr double kFinestBesidePin = 1.0 / 256;
 // Of a step: a feature that leaves is searched from then on at the latest, for another of its points may come down. A
 // tenth or ten times as much changes no test of a search.
 constexpr double kFirstGap = 1.0 / 1024;
@@ -75,6 +78,7 @@ void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTi
     if (isHeld(touching) && hasOneContact()) continue;
     if (held_ && (apart_ || (hasMesh(a_, geometry_.colliders[pair_.b]) && !(hasSphere() && isHeld(touching)))))
       useSpeedBoundAlone();
+    if (isPinned && !pair_.againstPlane) bounds_.finest = std::max(bounds_.finest, kFinestBesidePin);
     const double start = held_ ? gap(0) : separation(geometry_, pair_, feature_, startA_, startB_, reach);
     searchFeature(start, touching, best);
   }
@@ -300,7 +304,7 @@ double PairSearch::deadBand(const TouchingFeatures& touching) const {
 void PairSearch::searchFrom(double from, double gapFrom, double threshold, std::optional<ImpactTime>& best) {
   const double end = best ? best->fraction : 1;
   if (from >= end) return;
-  const auto above = [&](double fraction) { return gap(fraction) - threshold; };
+  const auto above = [&](double fraction, double enough = INFINITY) { return gap(fraction, enough) - threshold; };
   const auto areApart = [&](const Bracket& ends) {
     if (apart_ && apart_->queries() > kMaxAxisQueries) useSpeedBoundAlone();
     return apart_ && apart_->during(ends, threshold, bounds_);
@@ -344,19 +348,19 @@ Vec3 PairSearch::lowestPoint(const Vec3& planeNormal) const {
   return startA_ * a_.points[feature_] - a_.radius * planeNormal;
 }
 
-double PairSearch::gap(double fraction) {
+double PairSearch::gap(double fraction, double enough) {
   if (face_)
     return heightOfCorner(*face_, feature_, {a_, poseAt(step_, a_.body, fraction)},
                           {geometry_.colliders[pair_.b], poseAt(step_, bodyB_, fraction)});
   if (held_) {
     for (const int body : {a_.body, bodyB_})
       if (body != kFixed) interpolatePose(step_, body, fraction, scratch_.sample_);
-    return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, reach_);
+    return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, std::min(reach_, enough));
   }
   // A gap of more than the motion possible in the step stays open; its value does not matter.
-  const double enough = 2 * bounds_.speed;
-  return std::min(2 * enough, separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction),
-                                         poseAt(step_, bodyB_, fraction), enough));
+  const double reach = std::min(2 * bounds_.speed, enough);
+  return std::min(2 * reach, separation(geometry_, pair_, feature_, poseAt(step_, a_.body, fraction),
+                                        poseAt(step_, bodyB_, fraction), reach));
 }
 
 }  // namespace cradle

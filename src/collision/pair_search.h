@@ -44,7 +44,7 @@ class PairSearch {
   double deadBand(const TouchingFeatures& touching) const;
   double leavingSpeed(double tolerance);
   Vec3 lowestPoint(const Vec3& planeNormal) const;
-  double gap(double fraction);
+  double gap(double fraction, double enough = INFINITY);
 
   const ContactGeometry& geometry_;
   ImpactSearch& scratch_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <type_traits>
 
 namespace cradle {
 
@@ -81,9 +82,19 @@ void closeBracket(const Gap& gap, Bracket& bracket, double finest = kRootToleran
   }
 }
 
+/// A gap at a fraction of a step. A function of two arguments need not look for gaps beyond `enough`.
+template <class Gap>
+double gapWithin(const Gap& gap, double fraction, double enough) {
+  if constexpr (std::is_invocable_v<const Gap&, double, double>)
+    return gap(fraction, enough);
+  else
+    return gap(fraction);
+}
+
 /// First root of `gap(fraction)` between the ends, where gapBefore > 0. An interval in which the gap stays open, by its
 /// bounds or as `isOpen(ends)` tells, is passed over; any other is halved, and the earlier half is searched first.
 /// Where the ends differ in sign their root is found at once, and the interval before it is searched in the same way.
+/// In the middle of an interval that may not stay open, no gap exceeds the fastest approach in the whole of it.
 template <class Gap, class IsOpen>
 std::optional<double> firstRoot(const Gap& gap, const GapBounds& bounds, const IsOpen& isOpen, Bracket ends) {
   if (ends.gapAfter <= 0) {
@@ -96,7 +107,7 @@ std::optional<double> firstRoot(const Gap& gap, const GapBounds& bounds, const I
   const double length = ends.after - ends.before;
   if (length < bounds.finest || staysOpen(bounds, ends.gapBefore, ends.gapAfter, length)) return std::nullopt;
   if (isOpen(ends)) return std::nullopt;
-  const double middle = ends.before + length / 2, gapMiddle = gap(middle);
+  const double middle = ends.before + length / 2, gapMiddle = gapWithin(gap, middle, bounds.speed * length);
   if (const auto crossing = firstRoot(gap, bounds, isOpen, {ends.before, ends.gapBefore, middle, gapMiddle}))
     return crossing;
   return firstRoot(gap, bounds, isOpen, {middle, gapMiddle, ends.after, ends.gapAfter});

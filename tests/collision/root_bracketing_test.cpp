@@ -105,6 +105,21 @@ TEST(FirstRoot, IsTheFirstOfAllRoots) {
     }
 }
 
+// Inside an interval whose ends leave it unsure a gap cannot be larger than the search says is enough, and that shrinks
+// with the interval.
+TEST(FirstRoot, AsksForGapsAsFarAsTheyCanBe) {
+  double least = INFINITY;
+  const auto gap = [&](double t, double enough = INFINITY) {
+    const double found = std::abs(t - 0.7) - 1e-3 + 0.2 * std::sin(9 * t) * (0.7 - t);
+    EXPECT_LE(found, enough) << t;
+    least = std::min(least, enough);
+    return found;
+  };
+  const GapBounds bounds{2.5};  // |g'| <= 1 + 0.2 + 0.2 * 9 * 0.7 = 2.46
+  EXPECT_TRUE(firstRoot(gap, bounds, {0, gap(0), 1, gap(1)}));
+  EXPECT_LE(least, 2.5 / 64);
+}
+
 TEST(FirstRoot, LooksNowhereThatStaysOpen) {
   int calls = 0;
   const auto gap = [&](double t) { return ++calls, 1 - t * (1 - t) * 3.9; };  // least 0.025, gap'' = 7.8
