@@ -37,6 +37,10 @@ constexpr long kMaxMixedReflections = 100;
 // Of the fastest closing speed: if more of it is left after as many plastic reflections in a row as there are contacts,
 // no impulse can end it, such as of a body that is stuck between two that joints hold.
 constexpr double kLeastPlasticProgress = 0.5;
+// Of the fastest speed: speeds that come back to within it go round in a circle, such as those of a body that closes by
+// turns on two sides between which joints leave it no motion. Bodies of which one is 1e11 times as heavy as another may
+// look so. [1e-12, 1e-8]
+constexpr double kSameSpeedRatio = 1e-11;
 
 /// An impact as its contact normals see it: speeds J v (m/s) and the Delassus operator J W J^T (1/kg).
 class NormalImpact {
@@ -76,13 +80,17 @@ std::vector<Index> NormalImpact::closingAfter(const VectorX& impulses) const {
 VectorX NormalImpact::reflect(const VectorX& restitutions) const {
   const bool isElastic = restitutions.minCoeff() == 1;
   const long most = isElastic ? kMaxReflections * static_cast<long>(speeds_.size()) : kMaxMixedReflections;
-  VectorX impulses = VectorX::Zero(speeds_.size());
+  VectorX impulses = VectorX::Zero(speeds_.size()), known = speeds_;
   Index inVain = 0;
   double least = 0;  // m/s: fastest closing before the reflections in vain
   for (long count = 0; count <= most && inVain <= speeds_.size(); ++count) {
     const std::vector<Index> closing = closingAfter(impulses);
     if (closing.empty()) return impulses;
     const VectorX speeds = speeds_ + delassus_ * impulses;
+    // Circles are found as by R. P. Brent, "An improved Monte Carlo factorization algorithm", BIT 20, 1980.
+    const double same = kSameSpeedRatio * speeds.cwiseAbs().maxCoeff();
+    if (count > 0 && (speeds - known).cwiseAbs().maxCoeff() <= same) break;
+    if ((count & (count - 1)) == 0) known = speeds;
     const double fastest = -speeds.minCoeff();
     bool isPlastic = false;
     impulses += reflectOnce(closing, speeds, restitutions, isPlastic);
