@@ -399,5 +399,31 @@ TEST(BoxPinnedByItsEdge, MeetsTheBlockWithAllThatComesDown) {
       }
 }
 
+// A heavy capsule jams a light cylinder between the floor and its hinge, a thousandth of its size beside the contact:
+// forces of 1e6 N on 0.02 kg, whose rounding alone asks for steps of 3e-7 s. They are not taken for long: 7 million
+// evaluations would be.
+TEST(PinnedBody, JammedAtItsHingeIsNotFollowedInStepsOfRounding) {
+  const Trajectory run = simulate(sceneWith(R"("duration": 0.3, "accuracy": 1e-8, "output": {"framesPerSecond": 240},
+    "materials": {"m": {"restitution": 0.3, "staticFriction": 0, "dynamicFriction": 0}},
+    "bodies": [{"name": "ground", "shape": {"plane": {}}, "material": "m", "motion": "static"},
+    {"name": "light", "shape": {"cylinder": {"radius": 0.12360630772610004, "length": 0.08210194077402366}},
+      "material": "m", "mass": 0.017062650047452076,
+      "position": [-0.02653520506022044, 0.07732388540541946, -0.01223888603485607],
+      "orientation": {"w": -0.9669283160100205, "x": -0.14483693845859638, "y": -0.20112609633033454,
+        "z": -0.060167984268111464}},
+    {"name": "heavy", "shape": {"capsule": {"radius": 0.10853073012792024, "length": 0.08319266009686138}},
+      "material": "m", "mass": 17.495187760007507,
+      "position": [-0.02653520506022044, 0.24819374451523313, -0.01223888603485607],
+      "orientation": {"w": 0.07554205595974116, "x": 0.07554205595974114, "y": 0.7030600243090027,
+        "z": -0.7030600243090026}}],
+    "hinges": [{"bodyA": "light", "anchorA": [-0.06967175214045666, -0.04105103230564826, 0.10209981023847897],
+      "anchorB": [-0.04618982419897438, 6.512238765604694e-08, 0.09070981144967721],
+      "axis": [-0.10971078559270939, -0.2394778657090345, -0.9646833135076383]},
+    {"bodyA": "heavy", "anchorA": [0.0008548229938869119, 0.07520748101813518, 0.10319146859232259],
+      "anchorB": [-0.011393257839913665, 0.14500227592291057, -0.08591125098821893],
+      "axis": [0.9673834231147925, -0.2431128059920186, 0.07117215920143495]}])"));
+  EXPECT_LT(run.cost.evaluations, 500000);
+}
+
 }  // namespace
 }  // namespace cradle

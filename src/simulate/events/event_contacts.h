@@ -38,16 +38,16 @@ class EventContacts {
   void resolve(const std::optional<ContactChange>& change = std::nullopt,
                const std::optional<std::size_t>& closingPair = std::nullopt);
 
-  /// Notes as a reason to fall back to time stepping that a joint leaves a touching contact hardly any moment arm, if
-  /// one does.
+  /// Notes as a reason to fall back to time stepping that a joint leaves a touching contact hardly any moment arm, or
+  /// less than `momentArm` (sizes of a body), if one does.
   void noteShortMomentArms();
+  void noteShortMomentArms(double momentArm);
 
   /// Notes as a reason to fall back to time stepping why forces of active contacts grow without bound. False if there
   /// is no reason.
   bool noteUnboundedForces();
 
  private:
-  void noteShortMomentArms(double momentArm);
   void project();
   void recordRests(const std::vector<char>& restedBefore, double zenoTime);
 

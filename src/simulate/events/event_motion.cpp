@@ -114,7 +114,7 @@ bool EventMotion::takeStep(double stepEnd) {
     if (acceptStep(method_.errorNorm(step, tolerance_), step.timeStep, stepSize_)) break;
     keepStartDerivative(step);
   }
-  if (areForcesUnbounded_) return false;
+  if (areForcesUnbounded_ || isSlowAtJoint()) return false;
   shortSteps_ = stepSize_.timeStep < tolerances_.shortTimeStep ? shortSteps_ + 1 : 0;
   if (shortSteps_ <= kMaxShortSteps) return true;
   if (!noteUnboundedForces()) guard_->failAtShortSteps(island_.state, island_.time, step.timeStep);
@@ -126,6 +126,15 @@ bool EventMotion::isTooShort() {
   if (!stepSize_.afterRejection || stepSize_.timeStep >= tolerances_.shortestTimeStep) return false;
   if (!noteUnboundedForces()) guard_->failAtShortestStep(island_.state, island_.time);
   return true;
+}
+
+/// Whether rounding of the forces of a contact near a joint, and no motion, keeps steps short.
+bool EventMotion::isSlowAtJoint() {
+  slowSteps_ = stepSize_.timeStep < tolerances_.slowTimeStep ? slowSteps_ + 1 : 0;
+  if (method_.keepsPromise || slowSteps_ <= kMaxShortSteps) return false;
+  slowSteps_ = 0;
+  contacts_.noteShortMomentArms(EventTolerances::kUnboundedMomentArm);
+  return !contacts_.fallbackReason().empty();
 }
 
 /// Forces of a sliding contact may grow without bound, or have no finite solution, where its friction presses it

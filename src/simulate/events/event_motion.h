@@ -47,6 +47,7 @@ class EventMotion {
  private:
   bool takeStep(double stepEnd);
   bool isTooShort();
+  bool isSlowAtJoint();
   bool noteUnboundedForces();
   /// The event that ends a step: at most one of these.
   struct Event {
@@ -87,10 +88,10 @@ class EventMotion {
   StepSize stepSize_;
   std::array<double, 8> lengths_;  // s: of the last steps, if bodies may touch
   std::size_t lengthIndex_ = 0;
-  int shortSteps_ = 0;               // in a row
-  bool areForcesUnbounded_ = false;  // friction is: no step is accurate
-  bool isContinuous_ = false;        // nothing has changed the state since the last step's end
-  bool keepsConstraints_ = true;     // no rope went taut or slack at the last step's end
+  int shortSteps_ = 0, slowSteps_ = 0;  // in a row
+  bool areForcesUnbounded_ = false;     // friction is: no step is accurate
+  bool isContinuous_ = false;           // nothing has changed the state since the last step's end
+  bool keepsConstraints_ = true;        // no rope went taut or slack at the last step's end
   int eventsInWindow_ = 0;
   double windowStart_ = 0;  // s
 };

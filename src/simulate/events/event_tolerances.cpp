@@ -1,5 +1,7 @@
 #include "simulate/events/event_tolerances.h"
 
+#include <cmath>
+
 #include "dynamics/integrators/step_size.h"
 #include "simulate/plan/plan.h"
 #include "simulate/thresholds.h"
@@ -27,6 +29,7 @@ EventTolerances eventTolerancesOf(const EventScales& scales) {
   const double longest = std::min(scales.duration, Tolerances::kLongRun);
   made.shortTimeStep = Tolerances::kShortTimeStepRatio * longest;
   made.shortestTimeStep = kShortestTimeStep * longest;
+  made.slowTimeStep = Tolerances::kSlowTimeStepRatio * std::min(longest, std::sqrt(size / scales.gravity));
   made.reboundRatio = std::max({Tolerances::kOpeningRatio, Tolerances::kBounceOfAccuracy * accuracy,
                                 Tolerances::kBounceOfSquare * accuracy * accuracy});
   made.restRatio = std::min(Tolerances::kMaxRestRatio, accuracy);

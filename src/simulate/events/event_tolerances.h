@@ -110,6 +110,11 @@ struct EventTolerances {
   static constexpr double kLongRun = 1000;             // s
   double shortTimeStep = 0, shortestTimeStep = 0;      // s
 
+  // Where a joint leaves a contact a short moment arm, forces are large, and their rounding alone may ask for steps of
+  // this: of the time in which a size is fallen through, or of the run, if that is shorter. [1e-6, 1e-4]
+  static constexpr double kSlowTimeStepRatio = 1e-5;
+  double slowTimeStep = 0;  // s
+
   // Speeds.
 
   // Slower closing is rounding. [1e-14, 1e-9]; with 0 or 1e-4, rows of balls have other bits.
