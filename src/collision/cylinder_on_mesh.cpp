@@ -148,7 +148,7 @@ struct CylinderVisit {
     const Vec3 outward = towardsAxis(triangle, cylinder);
     if (outward != Vec3::Zero() && isFarther(gapAlong(triangle, cylinder, outward))) return;
     const Core core = solid.coreOf(triangle);
-    const GjkResult apart = distanceOf(core, cylinder);
+    const GjkResult apart = distanceOf(core, cylinder, std::max(least.separation, 0.0));
     if (apart.distance > 0 && isFarther(apart.lowerBound)) return;
     const SeparatingAxis axis = separationOf(core, cylinder);
     if (axis.separation <= 0 && axis.normal.dot(triangle.normal) < 0) {
@@ -231,8 +231,9 @@ void appendCylinderContacts(const Core& cylinder, const MeshSurface& mesh, doubl
     if (isTurnedAway(mesh, triangle, cylinder)) continue;
     if (visit.isFound && gapAlong(triangle, cylinder, visit.least.normal) > reach) continue;
     const Core core = solid.coreOf(triangle);
-    const SeparatingAxis axis = isLowestAbove(triangle, cylinder, height) ? SeparatingAxis{height, triangle.normal}
-                                                                          : contactAxis(core, cylinder);
+    const bool isLowest = isLowestAbove(triangle, cylinder, height);
+    if (!isLowest && distanceOf(core, cylinder, reach).lowerBound > reach) continue;
+    const SeparatingAxis axis = isLowest ? SeparatingAxis{height, triangle.normal} : contactAxis(core, cylinder);
     if (axis.separation > margin || axis.normal.dot(triangle.normal) <= 0) continue;
     ofTriangle.clear();
     appendManifold(core, cylinder, axis, margin, ofTriangle);

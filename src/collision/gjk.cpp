@@ -123,7 +123,7 @@ bool holds(const Simplex& simplex, const Difference& difference) {
 
 }  // namespace
 
-GjkResult distanceOf(const Core& a, const Core& b) {
+GjkResult distanceOf(const Core& a, const Core& b, double enough) {
   const auto supportPoint = [&](const Vec3& direction) {
     const Vec3 onA = a.supportPoint(direction), onB = b.supportPoint(-direction);
     return Difference{onA - onB, onA, onB};
@@ -146,6 +146,7 @@ GjkResult distanceOf(const Core& a, const Core& b) {
     best = {distance, -nearest / distance, 0, simplex.nearest(&Difference::onA), simplex.nearest(&Difference::onB)};
     const Difference next = supportPoint(-nearest);
     best.lowerBound = next.point.dot(nearest) / distance;
+    if (best.lowerBound > enough) break;
     if (distance - best.lowerBound <= kCoordinateRounding * size + tolerance * distance || holds(simplex, next)) break;
     simplex.corners[simplex.count++] = next;
   }

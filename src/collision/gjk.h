@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "collision/core.h"
 
 namespace cradle {
@@ -13,8 +15,9 @@ struct GjkResult {
   Vec3 onA = Vec3::Zero(), onB = Vec3::Zero();  // m: nearest points
 };
 
-/// Distance of two cores in a common frame, by GJK. 10 to 40 support points of each core are searched.
-GjkResult distanceOf(const Core& a, const Core& b);
+/// Distance of two cores in a common frame, by GJK. 10 to 40 support points of each core are searched; fewer where the
+/// lower bound exceeds `enough` (m), with which the search ends.
+GjkResult distanceOf(const Core& a, const Core& b, double enough = std::numeric_limits<double>::infinity());
 
 /// Gap (m) between two cores that a unit normal sees: at most their distance, at least minus their overlap.
 inline double gapAlong(const Core& a, const Core& b, const Vec3& normal) {
