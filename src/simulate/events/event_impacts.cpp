@@ -92,6 +92,7 @@ SequenceLimits EventImpacts::limitsOf(const std::vector<Contact>& near, double s
   for (const Contact& contact : near) farthest = std::max(farthest, contact.point.cwiseAbs().maxCoeff());
   SequenceLimits limits;
   limits.gapRounding = tolerances_.gapRounding(farthest), limits.stillSpeed = stillSpeed;
+  limits.openingSpeed = tolerances_.minOpeningSpeed(tolerances_.scales.size);
   limits.touchTolerance = tolerances_.touch, limits.reach = tolerances_.reach, limits.duration = INFINITY;
   for (const Contact& contact : near)
     limits.gapErrors.push_back(isOfSphere(contact) ? tolerances_.sphereGapRounding(farthest) : limits.gapRounding);

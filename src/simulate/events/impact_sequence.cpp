@@ -136,7 +136,8 @@ void ImpactSequence::advance(const VectorX& state, double time) {
   elapsed_ += time;
   displacements_ += time * state.segment(poseComponents(state), displacements_.size());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    gaps_[i] += time * speeds_[i];
+    const bool staysClosed = gaps_[i] <= gapErrors_[i] && speeds_[i] > 0 && speeds_[i] <= limits_.openingSpeed;
+    if (!staysClosed) gaps_[i] += time * speeds_[i];
     gapErrors_[i] += EventTolerances::kGapGrowthError * fastestClosing_ * time;
   }
 }

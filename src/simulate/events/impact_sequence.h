@@ -15,12 +15,14 @@ struct SequenceLimits {
   double reach = 0;               // m: contacts farther apart are not known, so bodies move by half of it at most
   double duration = 0;            // s: in a longer time forces count
   double stillSpeed = 0;          // m/s: closing more slowly is rounding
+  double openingSpeed = 0;        // m/s: a contact without a gap that opens more slowly stays without
 };
 
 /// Impacts that follow each other faster than bodies move: contacts close in the order of s / -s', s their gaps, while
 /// positions, and with them normals and the Delassus operator, stay as they are. Gaps are variables of their own: a gap
 /// that an impact has closed is zero, and grows from there by speed x time, with a relative error of rounding however
-/// small it is. Contacts whose gaps close at one instant, and those without a gap that do not open, are one impact.
+/// small it is, unless the contact opens so slowly that it counts as closed after the sequence too. Contacts whose gaps
+/// close at one instant, and those without a gap that do not open, are one impact.
 ///
 /// Impacts may be infinitely many in a finite time (inelastic collapse: a light sphere between the floor and a heavy
 /// one, with a small restitution). Neither gaps nor speeds tell that, but the history does: the intervals shrink

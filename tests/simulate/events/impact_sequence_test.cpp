@@ -196,6 +196,25 @@ TEST(ImpactSequence, HasContactsWithoutAGapThatDoNotOpenAsMembers) {
   EXPECT_THAT(sequence.members(), UnorderedElementsAre(0u, 1u));
 }
 
+// A contact that opens more slowly than one that counts as closed has no gap when another contact closes: a row would
+// hold it then. One that opens faster is apart, however near.
+TEST(ImpactSequence, KeepsContactsClosedThatHardlyOpen) {
+  for (const double openingSpeed : {1e-8, 1e-9}) {
+    Row row({1, 1, 1}, {1e-8, 0, -1}, {0, 5e-9});
+    row.limits().openingSpeed = openingSpeed;
+    ImpactSequence sequence = row.sequence();
+    ASSERT_TRUE(sequence.next(row.state()));
+    EXPECT_THAT(sequence.members(), ElementsAre(0));
+    row.strike(0, 0.5);  // it opens at 5e-9 m/s
+    sequence.finishImpact(row.state());
+    ASSERT_TRUE(sequence.next(row.state()));
+    if (openingSpeed > 5e-9)
+      EXPECT_THAT(sequence.members(), ElementsAre(0, 1));
+    else
+      EXPECT_THAT(sequence.members(), ElementsAre(1));
+  }
+}
+
 // Corners of one face land at once, to what rounding tells; those of another pair have instants of their own.
 TEST(ImpactSequence, TakesPointsOfOnePairTogether) {
   for (const bool isOnePair : {true, false}) {
