@@ -1,6 +1,7 @@
 // Signs of the event functions are compared between a few points of the step, and a change of sign is located by the
 // Illinois method (M. Dowell, P. Jarratt, 1971). Where forces are not unique, those of the rows (of minimum norm) prove
-// that contacts hold if they lie in the friction cones; whether any others do is Coulomb's problem.
+// that contacts hold if they lie in the friction cones; whether any others do is Coulomb's problem. But the motion has
+// the friction of those of the rows: where they pull, it would drive what slides, whatever other forces could be.
 
 #include "simulate/events/contact_changes.h"
 
@@ -28,7 +29,7 @@ constexpr double kLeavingUnit = 1e3 * EventTolerances::kEventFunction;
 
 constexpr double kJustFlat = 1 - 1e-6;  // a disc that lies down ends a little flatter than a row may follow
 
-constexpr std::array<Kind, 4> kKinds = {Kind::release, Kind::slip, Kind::stick, Kind::leave};
+constexpr std::array<Kind, 5> kKinds = {Kind::release, Kind::slip, Kind::stick, Kind::leave, Kind::redundant};
 
 }  // namespace
 
@@ -95,6 +96,17 @@ double ContactChanges::distanceFromNearest(std::size_t contact, const ContactRec
   return std::max(onB, (place.point - nearestOn(a, row.surfaceB)).norm());
 }
 
+/// N: the normal forces with which the pair of a contact slides, as evaluated last. Points of one face share them in
+/// many ways, and their sum tells.
+double ContactChanges::slidingNormalForce(std::size_t contact, const std::vector<ContactRecord>& records) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < records.size(); ++i)
+    if (records[i].contact.pair == records[contact].contact.pair &&
+        mechanism().contacts[i].motion == ContactMotion::sliding)
+      sum += island_.equations.contactForces()[i].normal;
+  return sum;
+}
+
 void ContactChanges::evaluate(const std::vector<ContactRecord>& records, const VectorX& state,
                               std::vector<EventFunctions>& values) {
   island_.equations.evaluate(state, derivative_);
@@ -111,11 +123,13 @@ void ContactChanges::takeEvaluated(const std::vector<ContactRecord>& records, co
   for (std::size_t i = 0; i < records.size(); ++i) {
     const ContactMotion motion = mechanism().contacts[i].motion;
     const double limit = records[i].pair.material.staticFriction * forces[i].normal;
-    values[i] = {forces[i].normal / records[i].force, INFINITY, INFINITY, INFINITY};
+    values[i] = {forces[i].normal / records[i].force, INFINITY, INFINITY, INFINITY, INFINITY};
     if (!sphereOverMesh(island_.assembly.geometry, records[i].pair, state).mesh)
       values[i][3] = kLeavingUnit * std::max(-1.0, 1 - distanceFromNearest(i, records[i], state) / tolerances_.leaving);
     if (motion == ContactMotion::sticking) values[i][1] = (limit - forces[i].tangential.norm()) / records[i].force;
     if (motion == ContactMotion::sliding) values[i][2] = forces[i].tangentialVelocity.dot(slidingDirectionAt(i, state));
+    if (motion == ContactMotion::sliding && records[i].isRedundant)
+      values[i][4] = slidingNormalForce(i, records) / records[i].force;
   }
 }
 

@@ -19,7 +19,8 @@ struct ContactChange {
     stick,    // sliding stops
     leave,    // loss of contact: the contact comes to the border of its face or edge, or off its corner, or a disc lies
               // down
-    redundant  // statically indeterminate with others: no forces within the friction cones keep them any more
+    redundant  // statically indeterminate with others: no forces within the friction cones keep them any more, or those
+               // that the rows have would pull where it slides, so that friction would drive it
   };
   Kind kind = Kind::release;
   double fraction = 0;      // of the step, 0..1
@@ -28,8 +29,9 @@ struct ContactChange {
 
 /// The search for changes of active contacts within steps. Each contact has an event function for each kind of change,
 /// positive before it and zero at it: its normal force, the friction that is left, the velocity along its direction of
-/// sliding, and the distance from the border of its feature (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
-/// Differential Equations I", II.6). `records` are always those of the island's Mechanism::contacts.
+/// sliding, the distance from the border of its feature, and what presses its pair where that slides (E. Hairer, S. P.
+/// Norsett, G. Wanner, "Solving Ordinary Differential Equations I", II.6). `records` are always those of the island's
+/// Mechanism::contacts.
 class ContactChanges {
  public:
   /// Keeps references to both. Of `island` it evaluates the equations.
@@ -45,7 +47,7 @@ class ContactChanges {
   /// The first change within the island's step, whose end derivative must be there.
   std::optional<ContactChange> first(const std::vector<ContactRecord>& records);
 
-  /// The event function of a change at a state of the step. Not for redundant contacts.
+  /// The event function of a change at a state of the step. Of redundant contacts that of their sliding alone tells.
   double margin(const ContactChange& change, const std::vector<ContactRecord>& records, const VectorX& state);
 
   /// N: the normal force of a contact at the end of a step in which `first` found no change.
@@ -55,13 +57,14 @@ class ContactChanges {
 
  private:
   /// Of a contact, in the order of the kinds.
-  using EventFunctions = std::array<double, 4>;
+  using EventFunctions = std::array<double, 5>;
 
   Mechanism& mechanism() const { return island_.assembly.mechanism; }
   Vec3 slidingDirectionAt(std::size_t contact, const VectorX& state) const;
   double distanceFromNearest(std::size_t contact, const ContactRecord& record, const VectorX& state) const;
   Vec3 tiltOf(const ContactConstraint& rim, const VectorX& state) const;
   double flatnessOf(const ContactConstraint& rim, const VectorX& state) const;
+  double slidingNormalForce(std::size_t contact, const std::vector<ContactRecord>& records) const;
   std::optional<double> firstOverturning(std::size_t contact, double from, double to);
   void evaluate(const std::vector<ContactRecord>& records, const VectorX& state, std::vector<EventFunctions>& values);
   void takeEvaluated(const std::vector<ContactRecord>& records, const VectorX& state,

@@ -205,5 +205,27 @@ TEST(ContactChanges, AreOfAllIndeterminateContactsWhereNoForcesKeepThem) {
   EXPECT_NEAR(change->fraction * 0.1, expected, 1.001e-6 * expected / kStaticFriction);
 }
 
+// A capsule along x rolls along z on the floor and slides along a wall, x = 0. Friction of the floor may hold it along
+// x as well as the wall: of gravity's push F along x the rows take a part by the wall, of the sign of F. Where F leads
+// away from the wall, that pulls, and its friction would drive the capsule.
+TEST(ContactChanges, AreOfIndeterminateContactsThatFrictionWouldDrive) {
+  for (const double push : {1.0, -1.0}) {
+    OnPlane at(R"({"name": "wall", "shape": {"plane": {}}, "motion": "static", "material": "rough",
+        "orientation": {"axis": [0, 0, 1], "angleDegrees": 90}},
+      {"name": "capsule", "shape": {"capsule": {"radius": 0.1, "length": 0.4}}, "mass": 2, "material": "rough",
+        "position": [-0.3, 0.1, 0], "orientation": {"axis": [0, 0, 1], "angleDegrees": 90},
+        "linearVelocity": [0, 0, 0.5], "angularVelocity": [5, 0, 0]})",
+               R"("gravity": [1, -9.81, 0])");
+    at.classify();
+    ASSERT_THAT(at.contacts(), SizeIs(3));
+    at.mechanism().gravity.x() = push;
+    dop853(at.island.rightHandSide, at.state(), 0, 0.01, at.island.step);
+    prepareInterpolant(at.island.rightHandSide, at.island.step);
+    const auto change = at.active.firstChange();
+    EXPECT_EQ(change.has_value(), push < 0);
+    EXPECT_TRUE(!change || change->kind == Change::redundant);
+  }
+}
+
 }  // namespace
 }  // namespace cradle
