@@ -5,6 +5,7 @@
 
 #include "impact/contact_impulse.h"
 #include "simulate/events/contact_classification.h"
+#include "simulate/events/cylinder_rims.h"
 #include "simulate/events/slow_sliding.h"
 #include "simulate/rows_of_contacts.h"
 
@@ -80,6 +81,10 @@ void ActiveContacts::noteShortMomentArms(const std::vector<Contact>& touching, C
     if (hasShortMomentArm(contact, response, island_.state, momentArm))
       fallback_ =
           fallbackAt("something touches within a thousandth of its size of a joint", {&contact}, island_.assembly);
+}
+
+void ActiveContacts::noteTipping(const Contact& contact) {
+  fallback_ = fallbackAt(kTips, {&contact}, island_.assembly);
 }
 
 bool ActiveContacts::noteJam() {

@@ -54,6 +54,9 @@ class ActiveContacts {
   /// faces.
   std::string_view fallbackReason() const { return fallback_.reason; }
 
+  /// Notes as a reason to fall back to time stepping that a cylinder tips over its rim at the contact.
+  void noteTipping(const Contact& contact);
+
   /// Notes as a reason to fall back to time stepping that friction jams where contacts slide now. False if none does.
   bool noteJam();
 

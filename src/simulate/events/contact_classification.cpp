@@ -20,7 +20,6 @@ using Index = Eigen::Index;
 using RecordGroup = std::vector<std::size_t>;  // records whose forces depend on each other
 
 constexpr double kSameMeshSide = 0.99;  // cosine between normals: a mesh may be touched on several sides
-constexpr const char* kTips = "a cylinder tips over its rim";
 
 /// Whether a contact of a body opens at that speed (m/s).
 bool opensAt(double speed, const Contact& contact, const ClassificationInput& input, const IslandState& island) {

@@ -1,5 +1,6 @@
 #include "simulate/events/cylinder_rims.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "collision/core.h"
@@ -32,6 +33,10 @@ bool standsOnRim(const ContactGeometry& geometry, const Contact& contact) {
   };
   return (isCylinder(pair.a) && std::isfinite(contact.radiusA)) ||
          (!pair.againstPlane && isCylinder(pair.b) && std::isfinite(contact.radiusB));
+}
+
+bool standsOnEnd(const ContactGeometry& geometry, const Contact& contact) {
+  return standsOnRim(geometry, contact) && std::min(contact.radiusA, contact.radiusB) == 0;
 }
 
 double tippingSpeed(const ContactGeometry& geometry, const VectorX& state, const Contact& contact) {

@@ -1,6 +1,9 @@
 #include "simulate/events/event_contacts.h"
 
+#include <algorithm>
+
 #include "constraints/invariants.h"
+#include "simulate/events/cylinder_rims.h"
 
 namespace cradle {
 
@@ -24,11 +27,14 @@ void EventContacts::resolve(const std::optional<ContactChange>& change, const st
     rested.push_back(island_.equations.isResting(body));
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
   std::vector<Contact> touching = findTouching(island_, solver_, tolerances_, closingPair);
+  const std::vector<Contact> met = touching;
+  const VectorX before = island_.state;
   const double zenoTime = impacts_.resolve(closingPair, touching);
   active_.release(change);
   rest_.letSleep(touching);
   active_.classify(touching, solver_);
   active_.noteShortMomentArms(touching, solver_, shortMomentArm_);
+  noteTippingImpacts(met, before);
   project();
   if (!active_.empty() && rest_.isAnySlow()) {  // contacts that stick are still after the projection
     rest_.letSleep(touching);
@@ -50,6 +56,18 @@ void EventContacts::noteShortMomentArms(double momentArm) {
   if (active_.empty() || !solver_.hasConstraints()) return;
   solver_.factorize(island_.state);
   active_.noteShortMomentArms(findTouching(island_, solver_, tolerances_, {}), solver_, momentArm);
+}
+
+/// An end of a cylinder that strikes flat while it tips, or tips by that, strikes by one point of its rim after
+/// another. Which ones they are depends on angles far smaller than rounding of gaps shows.
+void EventContacts::noteTippingImpacts(const std::vector<Contact>& met, const VectorX& before) {
+  const ContactGeometry& geometry = island_.assembly.geometry;
+  for (const Contact& contact : met) {
+    const double still = tolerances_.minOpeningSpeed(smallestSize(contact, island_.assembly.radii));
+    if (openingSpeed(contact, before) < -still && standsOnEnd(geometry, contact) &&
+        std::max(tippingSpeed(geometry, before, contact), tippingSpeed(geometry, island_.state, contact)) > still)
+      active_.noteTipping(contact);
+  }
 }
 
 /// Projects the state onto the active contacts: no gap and no opening speed, to rounding, and no sliding where they

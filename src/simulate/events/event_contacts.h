@@ -48,6 +48,7 @@ class EventContacts {
   bool noteUnboundedForces();
 
  private:
+  void noteTippingImpacts(const std::vector<Contact>& met, const VectorX& before);
   void project();
   void recordRests(const std::vector<char>& restedBefore, double zenoTime);
 

@@ -237,5 +237,20 @@ TEST(EventContacts, TakeTautRopesIntoTheImpact) {
   EXPECT_THAT(at.eventsOf(EventKind::taut), SizeIs(1));
 }
 
+// Flat, a cylinder rebounds as it came. One that tips strikes by one point of its rim, of which angles tell that are
+// smaller than rounding of gaps.
+TEST(EventContacts, DoNotServeImpactsOfCylindersThatTip) {
+  for (const double spin : {0.0, 1e-8, 0.1})
+    for (const double rise : {-1.0, 1.0}) {
+      Struck at(material(1, 0.1), fmt::format(R"({{"name": "can", "shape": {{"cylinder": {{"radius": 0.1,
+          "length": 0.2}}}}, "mass": 1, "material": "stuff", "position": [0, 0.1, 0], "linearVelocity": [0, {}, 0],
+          "angularVelocity": [{}, 3, 0]}})",
+                                              rise, spin));
+      at.contacts.resolve();
+      EXPECT_EQ(at.contacts.fallbackReason(), spin > 1e-6 && rise < 0 ? "a cylinder tips over its rim" : "");
+      EXPECT_NEAR(linearVelocity(at.state(), 0).y(), 1, spin == 0 ? kSpeedRounding : 1);
+    }
+}
+
 }  // namespace
 }  // namespace cradle
