@@ -24,7 +24,13 @@ VectorX AndersonMixing::next(const VectorX& x, const VectorX& image) {
   }
   Eigen::ColPivHouseholderQR<MatrixX> factor(stepChanges);
   factor.setThreshold(kRankRatio);
-  const VectorX weights = factor.solve(steps_.back());
+  // Its own solution has no threshold, and divides by zero where f(x) - x stays the same.
+  const Eigen::Index rank = factor.rank();
+  VectorX turned = steps_.back(), weights = VectorX::Zero(count);
+  turned.applyOnTheLeft(factor.householderQ().setLength(rank).adjoint());
+  VectorX known = turned.head(rank);
+  factor.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solveInPlace(known);
+  weights(factor.colsPermutation().indices().head(rank)) = known;
   return image - (pointChanges + stepChanges) * weights;
 }
 

@@ -44,5 +44,17 @@ TEST(AndersonMixing, FindsTheFixedPointOfAMapWithACorner) {
   EXPECT_LT(round, 20);
 }
 
+// A map that moves all by the same has no fixed point: nothing is known of one, and the next is the image.
+TEST(AndersonMixing, GoesOnWithTheImageWhereNothingChanges) {
+  AndersonMixing mixing;
+  VectorX x = Eigen::Vector2d(1, 2);
+  const VectorX step = Eigen::Vector2d(0.5, -0.25);
+  for (int round = 0; round < 12; ++round) {
+    const VectorX image = x + step;
+    EXPECT_EQ(mixing.next(x, image), image) << round;
+    if (round % 2 == 0) x = image;
+  }
+}
+
 }  // namespace
 }  // namespace cradle
