@@ -19,8 +19,8 @@ namespace {
 // scaled matrix) of it.
 constexpr double kRegularPivot = 1e-6;  // of its diagonal entry: above, rows are independent
 constexpr double kRegularisation = 1e-8;
-constexpr double kRefined = 1e-15;  // residual that is left, as a part of the right-hand side
-constexpr int kMaxRefinements = 3;
+constexpr double kRefined = 1e-15;   // residual that is left, as a part of the right-hand side
+constexpr int kMaxRefinements = 60;  // 3 are usual; the last ones leave 1e-15 if each leaves half
 
 constexpr int kMaxProjectionSteps = 20;      // quadratic convergence needs 1 or 2 from a step's error
 constexpr double kStalled = 0.5;             // an iteration that leaves more of an error has failed

@@ -155,6 +155,25 @@ TEST(ConstraintForces, TwoEqualJointsDoWhatOneDoes) {
 }
 
 /// A rope beside joints goes taut and slack again.
+// A light body between the world and a heavier one takes its part of the velocities exactly: all that rounding leaves
+// of what its joints close by is 1e-16 times the ratio of the masses.
+TEST(ConstraintForces, HoldLightBodiesBetweenHeavyOnes) {
+  for (const double lightness : {1e-3, 1e-5, 1e-6, 1e-7}) {
+    JointedBodies at(2);
+    at.bodies[0] =
+        makeRigidBody({lightness, Vec3::Zero(), lightness * Vec3(0.1, 0.2, 0.25).asDiagonal().toDenseMatrix()});
+    findBodyFrames(at.bodies, at.state, at.frames);
+    at.tie(0, kFixed, BallJointConstraint());
+    at.tie(1, 0, HingeConstraint{Vec3(2, 1, 2) / 3, {Vec3::UnitX(), Vec3::UnitZ()}});
+    ConstraintSolver solver(at.constraints, at.bodies);
+    solver.factorize(at.state);
+    const double before = solver.largestRate(at.state);
+    solver.constrainVelocities(at.state);
+    EXPECT_GT(before, 1);
+    EXPECT_LT(solver.largestRate(at.state), 1e-14 / lightness) << lightness;
+  }
+}
+
 TEST(ConstraintForces, HaveAMultiplierForEachRowWhateverWasTiedBefore) {
   JointedBodies jointed(2);
   jointed.tie(0, 1);
