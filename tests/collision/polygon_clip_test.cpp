@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "collision/random_poses.h"
+#include "math/rotation.h"
 #include "rounding.h"
 
 namespace cradle {
@@ -103,6 +104,27 @@ TEST(ThinOut, TakesTheCornerThatSpansLeast) {
     EXPECT_EQ(polygon.size(), 8u);
     EXPECT_NEAR(areaOf(polygon).norm(), best, 64 * kEpsilon);
   }
+}
+
+// Of the part of a regular polygon beside a line, corners lie in mirror images of each other about the middle of the
+// part; the image of the whole in another mirror starts with another corner and goes the other way round.
+TEST(ThinOut, LeavesTheMirrorImageOfWhatItLeavesOfAMirrorImage) {
+  const auto mirrored = [](Points polygon) {
+    for (Vec3& corner : polygon) corner.x() = -corner.x();
+    std::reverse(polygon.begin(), polygon.end());
+    return polygon;
+  };
+  const RigidTransform turned{rotationAbout(Vec3::UnitZ(), M_PI / 4), Vec3::Zero()};
+  for (const double border : {-0.3, 0.0, 0.15})
+    for (const RigidTransform& pose : {RigidTransform{}, turned})
+      for (const std::size_t most : {4U, 6U, 8U}) {
+        Points part = clipped(regularPolygon(16, pose), pose * Vec3::UnitY(), border), image = mirrored(part);
+        thinOut(most, part), thinOut(most, image);
+        EXPECT_LE(part.size(), most);
+        EXPECT_GE(part.size(), most - 1) << border;
+        for (const Vec3& corner : mirrored(image))
+          EXPECT_EQ(std::count(part.begin(), part.end(), corner), 1) << border << " " << most;
+      }
 }
 
 }  // namespace
