@@ -23,8 +23,8 @@ double easeOfTurning(int body, const std::vector<BodyFrame>& frames) {
   return body == kFixed ? 0 : frames[static_cast<std::size_t>(body)].inverseInertia.trace();
 }
 
-double turningRateOf(int body, const VectorX& state) {
-  return body == kFixed ? 0 : angularVelocity(state, body).norm();
+Vec3 spinOf(int body, const VectorX& state) {
+  return body == kFixed ? Vec3::Zero() : Vec3(angularVelocity(state, body));
 }
 
 /// Whether body `a` turns the normal of a contact less than `b`: not a matter of their order. Of two that differ by
@@ -32,8 +32,18 @@ double turningRateOf(int body, const VectorX& state) {
 bool isSteadier(int a, int b, const VectorX& state, const std::vector<BodyFrame>& frames) {
   const double easeA = easeOfTurning(a, frames), easeB = easeOfTurning(b, frames);
   if (std::abs(easeA - easeB) > kSameInertia * (easeA + easeB)) return easeA < easeB;
-  const double spinA = turningRateOf(a, state), spinB = turningRateOf(b, state);
+  const double spinA = spinOf(a, state).norm(), spinB = spinOf(b, state).norm();
   return spinA < spinB - kSameInertia * (spinA + spinB);
+}
+
+/// What the drift (m/s^2) of the material in the middle of the gap is beside that at A's surface, half of the gap from
+/// there: w x (-s n / 2)', w the relative angular velocity. It lies across the normal. The middle is the same place
+/// whichever body is A.
+Vec3 driftToMiddle(const ContactConstraint& constraint, const ContactKinematics& place, const VectorX& state) {
+  const Vec3 turning = spinOf(constraint.centerA.body, state) - spinOf(constraint.surfaceB.body, state);
+  const double rate = place.normal.dot(place.velocity);
+  const Vec3 drift = -0.5 * turning.cross(rate * place.normal + place.gap * place.normalRate);
+  return drift - drift.dot(place.normal) * place.normal;
 }
 
 }  // namespace
@@ -69,7 +79,7 @@ Vec3 followContact(const VectorX& before, const VectorX& state, const std::vecto
   const double sense = rows.constraint.centerA.body == contact.bodyA ? -1 : 1;
   contact.point = rows.place.point - 0.5 * rows.place.gap * rows.place.normal;
   contact.normal = sense * rows.place.normal;
-  Vec3 drift = Vec3::Zero();
+  Vec3 drift = sense * driftToMiddle(rows.constraint, rows.place, state);
   for (const ConstraintRow& row : rows.rows) drift += sense * row.velocityProduct * row.linearA;
   return drift;
 }

@@ -85,5 +85,42 @@ TEST(RowsOfContacts, DoNotDependOnTheOrderOfTheBodies) {
     }
 }
 
+// Nor does it say how a contact moves on, and how fast the material there is accelerated by rolling, while a gap
+// closes.
+TEST(RowsOfContacts, FollowAContactInEitherOrderOfTheBodies) {
+  for (const auto& [radiusA, radiusB] : std::vector<std::pair<double, double>>{{0.1, 0.2}, {0, kFlat}, {0.1, kFlat}}) {
+    Touching touching;
+    angularVelocity(touching.state, 0) = Vec3(-0.5, 0.2, 0.7);
+    Contact contact = touching.contact;
+    contact.radiusA = radiusA, contact.radiusB = radiusB, contact.separation = 0.01;
+    Contact swapped = contact;
+    std::swap(swapped.bodyA, swapped.bodyB), std::swap(swapped.radiusA, swapped.radiusB);
+    swapped.normal = -swapped.normal;
+    const Vec3 drift = followContact(touching.state, touching.state, touching.frames, contact),
+               other = followContact(touching.state, touching.state, touching.frames, swapped);
+    SCOPED_TRACE(::testing::Message() << radiusA << " " << radiusB);
+    EXPECT_LT((contact.point - swapped.point).norm(), 1e-15);
+    EXPECT_LT((drift + other).norm(), 1e-12);
+    EXPECT_GT(drift.norm(), 0.1);
+  }
+}
+
+// Two balls, mirror images of each other, that spin and meet: their common point does not slide, and that stays so.
+TEST(RowsOfContacts, OfMirrorImagesThatMeetDoNotSlide) {
+  Touching touching;
+  const Vec3 velocity(0.4, -0.3, 0.2), spin(2, 5, -3);
+  for (const Eigen::Index body : {0, 1}) {
+    const double side = body == 0 ? 1 : -1;  // of the mirror y = 0.5
+    centerOfMass(touching.state, body) = Vec3(0, 0.5 + side * 0.11, 0);
+    linearVelocity(touching.state, body) = Vec3(velocity.x(), side * velocity.y(), velocity.z());
+    angularVelocity(touching.state, body) = Vec3(side * spin.x(), spin.y(), side * spin.z());
+  }
+  touching.contact.point = Vec3(0, 0.5, 0), touching.contact.separation = 0.02;
+  touching.contact.radiusA = touching.contact.radiusB = 0.1;
+  const Vec3 drift = followContact(touching.state, touching.state, touching.frames, touching.contact);
+  EXPECT_LT(Vec3(drift.x(), 0, drift.z()).norm(), 1e-14);
+  EXPECT_LT((touching.contact.point - Vec3(0, 0.5, 0)).norm(), 1e-15);
+}
+
 }  // namespace
 }  // namespace cradle
