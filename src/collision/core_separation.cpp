@@ -33,6 +33,12 @@ constexpr double kEqualNormals = 1e-8;
 // With a tenth, mirror images that meet have normals that are not mirrored; with ten times as much, normals of slight
 // overlaps do not lead out by the least way.
 constexpr double kFanRatio = 4;
+// Of the size: overlaps that steps of contact take out are shallower. Deeper ones are left the shortest way.
+constexpr double kSlightOverlap = 1e-4;
+// Of an overlap: two faces that see overlaps that differ by less have a direction between theirs.
+constexpr double kEqualOverlaps = 0.1;
+// rad: two faces that are tilted by less are both flat, to kParallelAngle, for the normal between theirs.
+constexpr double kSameFaces = 2 * ConvexTolerances::kParallelAngle;
 
 bool isSegment(const Core& core) {
   return core.collider().kind() == ColliderKind::capsule;
@@ -46,7 +52,7 @@ SeparatingAxis better(const SeparatingAxis& first, const SeparatingAxis& second)
 /// the mean: it turns and mirrors with them.
 SeparatingAxis betterFace(const SeparatingAxis& first, const SeparatingAxis& second, const Core& a, const Core& b) {
   const bool isSame = std::abs(first.separation - second.separation) <= ConvexTolerances(a, b).equalGaps &&
-                      (first.normal - second.normal).norm() < ConvexTolerances::kParallelAngle;
+                      (first.normal - second.normal).norm() < kSameFaces;
   if (!isSame) return better(first, second);
   const Vec3 mean = (first.normal + second.normal).normalized();
   return {gapAlong(a, b, mean), mean};
@@ -73,23 +79,44 @@ SeparatingAxis axisOfNearest(const GjkResult& apart, const Core& a, const Core& 
   return climbedSupportGap({0, apart.normal}, a, b);
 }
 
-/// The face normal that sees the largest gap, of faces that could carry a contact along `near`.
-SeparatingAxis bestFaceNormal(const Core& a, const Core& b, const Vec3& near) {
+/// The normals of the faces of each that see the largest gap, of faces that could carry a contact along `near`.
+SeparatingAxes facesAlong(const Vec3& near, const Core& a, const Core& b) {
   constexpr double minCosine = ConvexTolerances::kMinCarryingCosine;
-  SeparatingAxis best;
-  const auto tryFacesOf = [&](const Core& core, double sign) {
+  const auto bestOf = [&](const Core& core, double sign) {
+    SeparatingAxis best;
     if (core.isRound()) {
       const Vec3 normal = (core.axis().dot(near) < 0 ? -1 : 1) * core.axis();
-      if (normal.dot(near) > minCosine) best = betterFace(best, {gapAlong(a, b, normal), normal}, a, b);
+      if (normal.dot(near) > minCosine) best = {gapAlong(a, b, normal), normal};
     } else if (core.collider().kind() == ColliderKind::polytope) {
       for (const Polytope::Face& face : core.collider().polytope->faces) {
         const Vec3 normal = sign * core.turned(face.normal);
-        if (normal.dot(near) > minCosine) best = betterFace(best, {gapAlong(a, b, normal), normal}, a, b);
+        if (normal.dot(near) > minCosine) best = better(best, {gapAlong(a, b, normal), normal});
       }
     }
+    return best;
   };
-  tryFacesOf(a, 1), tryFacesOf(b, -1);
-  return best;
+  return {bestOf(a, 1), bestOf(b, -1), {}};
+}
+
+/// Of a face of each that see nearly the same overlap, as those of mirror images do whose edges or corners are in each
+/// other, a direction between both takes the place of `face`. It turns and mirrors with the cores, and goes over to
+/// that of the face that sees less. The same two corners are farthest along all of these directions n, so that |n| g(n)
+/// of (1) is linear between the faces' normals.
+SeparatingAxis betweenFaces(const SeparatingAxis& face, const Core& a, const Core& b) {
+  const ConvexTolerances tolerances(a, b);
+  const bool isSlight = face.separation < -tolerances.meeting && face.separation > -kSlightOverlap * tolerances.size;
+  if (!isSlight) return face;
+  const SeparatingAxes faces = facesAlong(face.normal, a, b);
+  const SeparatingAxis &ofA = faces.faceOfA, &ofB = faces.faceOfB;
+  const double difference = ofA.separation - ofB.separation, most = kEqualOverlaps * std::abs(face.separation);
+  const double beyond = std::max(0.0, std::abs(difference) - tolerances.equalGaps);
+  if (!(beyond == 0 || beyond < most) || (ofA.normal - ofB.normal).norm() < kSameFaces) return face;
+  const double lean = beyond == 0 ? 0 : std::copysign(beyond / most, difference);  // 1: A's normal
+  const Vec3 sum = (1 + lean) * ofA.normal + (1 - lean) * ofB.normal;
+  const double length = sum.norm(), linear = (1 + lean) * ofA.separation + (1 - lean) * ofB.separation;
+  if (!(length > 2 * ConvexTolerances::kMinCarryingCosine)) return face;
+  const SeparatingAxis between{gapAlong(a, b, sum / length), sum / length};
+  return length * between.separation <= linear + tolerances.meeting ? between : face;
 }
 
 /// The axis of cores of which one has a rim. Where they are apart g(n) of (1) has one maximum, near the direction
@@ -100,7 +127,8 @@ SeparatingAxis axisOfRoundCores(const GjkResult& apart, const Core& a, const Cor
   SeparatingAxis best;
   if (apart.distance > 0) {
     const double enough = (1 - ConvexTolerances::kRoundDistance) * apart.distance;
-    best = bestFaceNormal(a, b, apart.normal);
+    const SeparatingAxes faces = facesAlong(apart.normal, a, b);
+    best = betterFace(faces.faceOfA, faces.faceOfB, a, b);
     if (best.separation >= apart.distance - tolerances.equalGaps) return best;
     best = better(best, climbedSupportGap({0, apart.normal}, a, b, enough));
   }
@@ -108,24 +136,38 @@ SeparatingAxis axisOfRoundCores(const GjkResult& apart, const Core& a, const Cor
   return better(best, deepestAxis(a, b));
 }
 
-/// The axis of (1), or the normal of a face that sees the same gap but for facePreference.
-SeparatingAxis axisOfFeatures(const Core& a, const Core& b) {
+/// Whether a feature carries along the direction between nearest points of cores that are `distance` (m) apart. That is
+/// known to rounding over the distance. Where corners or edges are next to each other, features of other directions see
+/// a gap that is hardly smaller, and carry nothing.
+bool carriesAlong(const Vec3& nearest, const SeparatingAxis& feature, double distance, const Core& a, const Core& b) {
+  const double angle = ConvexTolerances::kParallelAngle + ConvexTolerances(a, b).gapRounding / distance;
+  return (nearest - feature.normal).norm() < angle;
+}
+
+/// The same as axisOfFeatures, of cores of which one has a rim.
+SeparatingAxis axisOfRoundFeatures(const GjkResult& apart, const Core& a, const Core& b, double preference) {
+  const SeparatingAxis best = axisOfRoundCores(apart, a, b);
+  const SeparatingAxes faces = facesAlong(best.normal, a, b);
+  const SeparatingAxis face = betterFace(faces.faceOfA, faces.faceOfB, a, b);
+  if (face.separation < best.separation - preference) return best;
+  if (best.separation <= ConvexTolerances(a, b).touching) return betweenFaces(face, a, b);
+  return carriesAlong(best.normal, face, best.separation, a, b) ? face : best;
+}
+
+/// The axis of (1), or the normal of a face that sees the same gap but for `preference` (m).
+SeparatingAxis axisOfFeatures(const Core& a, const Core& b, double preference) {
   const GjkResult apart = distanceOf(a, b);
-  const ConvexTolerances tolerances(a, b);
-  const double preference = tolerances.facePreference;
-  if (a.isRound() || b.isRound()) {
-    const SeparatingAxis best = axisOfRoundCores(apart, a, b);
-    const SeparatingAxis face = bestFaceNormal(a, b, best.normal);
-    return face.separation >= best.separation - preference ? face : best;
-  }
-  const bool isApart = apart.distance > tolerances.touching;
+  if (a.isRound() || b.isRound()) return axisOfRoundFeatures(apart, a, b, preference);
+  const bool isApart = apart.distance > ConvexTolerances(a, b).touching;
   if (isSegment(a) && isSegment(b)) return isApart ? axisOfNearest(apart, a, b) : axisOfCrossingSegments(a, b);
   const SeparatingAxes axes = separatingAxes(a, b);
   const SeparatingAxis face = betterFace(axes.faceOfA, axes.faceOfB, a, b);
   const SeparatingAxis feature = axes.edges.separation > face.separation + preference ? axes.edges : face;
-  if (!isApart || feature.separation >= apart.distance - preference) return feature;
+  if (!isApart) return feature.separation > face.separation ? feature : betweenFaces(face, a, b);
+  const auto carries = [&](const Vec3& nearest) { return carriesAlong(nearest, feature, apart.distance, a, b); };
+  if (feature.separation >= apart.distance - preference && carries(apart.normal)) return feature;
   const SeparatingAxis nearest = axisOfNearest(apart, a, b);
-  return nearest.separation > feature.separation + preference ? nearest : feature;
+  return nearest.separation > feature.separation + preference || !carries(nearest.normal) ? nearest : feature;
 }
 
 Vec3 middleOf(const Core& core) {
@@ -158,7 +200,7 @@ SeparatingAxis separationOf(const Core& a, const Core& b) {
 }
 
 SeparatingAxis contactAxis(const Core& a, const Core& b) {
-  return amongEqual(axisOfFeatures(a, b), a, b);
+  return amongEqual(axisOfFeatures(a, b, ConvexTolerances(a, b).facePreference), a, b);
 }
 
 }  // namespace cradle

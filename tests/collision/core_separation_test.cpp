@@ -134,6 +134,28 @@ TEST(ContactAxis, OfCornersThatMeetIsAlongTheLineOfTheMiddles) {
     }
 }
 
+// Corners or rims of mirror images that are next to each other, apart or overlapping: faces see a gap that is hardly
+// smaller, two of them the same one, but nothing is over them. The normal is that across the mirror x = 0, and hardly
+// changes when one of them moves a little.
+TEST(ContactAxis, OfMirrorImagesNextToEachOtherIsAcrossTheMirror) {
+  const SampleCore box = boxCore("box", Vec3(1, 0.6, 1.4)), drum = cylinderCore("drum", 0.5, 0.8);
+  for (const SampleCore* sample : {&box, &drum})
+    for (const double tilt : {0.05, 0.3, 0.5})
+      for (const double gap : {1e-6, 1e-7, 3e-8, 3e-9, -3e-9, -1e-7, -1e-6, -3e-5}) {
+        const double upright = sample == &drum ? M_PI / 2 : 0;  // to its end
+        const Quat turn = rotationAbout(Vec3::UnitZ(), upright + tilt) * rotationAbout(Vec3::UnitX(), 0.1);
+        const Quat image(turn.w(), turn.x(), -turn.y(), -turn.z());
+        const Vec3 middle((sample->supportValue(turn.conjugate() * Vec3::UnitX()) + gap / 2), 0, 0);
+        const CorePair pair{*sample, *sample, {turn, -middle}, {image, middle}},
+            moved{*sample, *sample, {turn, -middle}, {image, middle + Vec3(0, 1e-6 * std::abs(gap), 0)}};
+        const SeparatingAxis found = contactAxis(pair.a, pair.b);
+        SCOPED_TRACE(::testing::Message() << sample->name << ' ' << tilt << ' ' << gap);
+        EXPECT_NEAR(found.separation, gap, 1e-14);
+        EXPECT_LT((found.normal - Vec3::UnitX()).norm(), 1e-6);
+        EXPECT_LT((contactAxis(moved.a, moved.b).normal - found.normal).norm(), 1e-4);
+      }
+}
+
 // Crossing edges that see a larger gap than any face are what touches, overlapping or apart.
 TEST(ContactAxis, OfCrossingEdgesIsAcrossBoth) {
   const SampleCore bar = boxCore("bar", Vec3(1, 1, 6));
