@@ -203,4 +203,8 @@ SeparatingAxis contactAxis(const Core& a, const Core& b) {
   return amongEqual(axisOfFeatures(a, b, ConvexTolerances(a, b).facePreference), a, b);
 }
 
+SeparatingAxis axisBesideFaces(const Core& a, const Core& b) {
+  return amongEqual(axisOfFeatures(a, b, 0), a, b);
+}
+
 }  // namespace cradle

@@ -15,4 +15,7 @@ SeparatingAxis separationOf(const Core& a, const Core& b);
 /// where corners meet, to 1e-9 of the size, a direction that turns and mirrors with the cores.
 SeparatingAxis contactAxis(const Core& a, const Core& b);
 
+/// The same where the face that contactAxis prefers has nothing over it: no face is preferred.
+SeparatingAxis axisBesideFaces(const Core& a, const Core& b);
+
 }  // namespace cradle

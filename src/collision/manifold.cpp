@@ -11,6 +11,7 @@
 #include <memory_resource>
 
 #include "collision/convex_tolerances.h"
+#include "collision/core_separation.h"
 #include "collision/gjk.h"
 #include "collision/polygon_clip.h"
 
@@ -121,17 +122,32 @@ void growDisc(const Core& core, FeatureManifold& patch) {
   for (Vec3& point : patch.points) point = center + kOutscribedRatio * (point - center);
 }
 
-/// Contacts of an incident manifold on a flat manifold of A, whose normal (out of A) is `normal`. Changes both.
-void clipOnFace(const Core& core, const Vec3& normal, FeatureManifold& reference, FeatureManifold& incident,
-                double margin, std::vector<ContactPoint>& points) {
+enum class OverFace { nothing, shallow, deepest };
+
+/// Contacts of an incident manifold on a flat manifold of A, whose normal (out of A) is `normal`. Changes both. Returns
+/// what of the incident manifold is over the face: its deepest point, or not that, as rims are polygons.
+OverFace clipOnFace(const Core& core, const Core& other, const Vec3& normal, FeatureManifold& reference,
+                    FeatureManifold& incident, double margin, std::vector<ContactPoint>& points) {
   if (core.rimRadius() > 0) growDisc(core, reference);
+  const ConvexTolerances tolerances(core, other);
+  const Reference face{normal, core.supportValue(normal)};
+  const Vec3 deepest = other.supportPoint(-normal) - radiusAround(other) * normal;
+  bool isBeside = false;  // the deepest point is not over the face
   Points scratch(reference.points.get_allocator());
   const Points& corners = reference.points;
   for (std::size_t i = 0; i < corners.size() && !incident.points.empty(); ++i) {
     const Vec3 outward = (corners[(i + 1) % corners.size()] - corners[i]).cross(normal).normalized();
-    clip(incident.points, scratch, outward, outward.dot(corners[i]));
+    const double border = outward.dot(corners[i]);
+    isBeside = isBeside || outward.dot(deepest) > border + tolerances.meeting;
+    clip(incident.points, scratch, outward, border);
   }
-  appendOnFace({normal, core.supportValue(normal)}, incident, margin, points);
+  // A face that misses the gap by facePreference is seen to be as much nearer by what lies beside it.
+  const double near = normal.dot(deepest) + (isBeside ? tolerances.facePreference : tolerances.meeting);
+  OverFace over = incident.points.empty() ? OverFace::nothing : OverFace::shallow;
+  for (const Vec3& point : incident.points)
+    if (normal.dot(point) <= near) over = OverFace::deepest;
+  appendOnFace(face, incident, margin, points);
+  return over;
 }
 
 /// A straight line of a surface across the contact's normal: an edge, or the side of a cylinder or capsule.
@@ -247,20 +263,25 @@ void appendManifold(const Core& a, const Core& b, const SeparatingAxis& axis, do
   if (separation > margin) return;
   const std::size_t first = points.size();
   FeatureManifold patchA = manifoldOf(a, axis.normal, &pool), patchB = manifoldOf(b, -axis.normal, &pool);
+  OverFace over = OverFace::shallow;
   if (patchA.isFlat) {
-    clipOnFace(a, axis.normal, patchA, patchB, margin, points);
+    over = clipOnFace(a, b, axis.normal, patchA, patchB, margin, points);
   } else if (patchB.isFlat) {
-    clipOnFace(b, -axis.normal, patchB, patchA, margin, points);
+    over = clipOnFace(b, a, -axis.normal, patchB, patchA, margin, points);
     std::for_each(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(), mirror);
   } else {
     const Ridge ridgeA = ridgeOf(a, axis.normal), ridgeB = ridgeOf(b, -axis.normal);
     if (ridgeA.isThere && ridgeB.isThere) appendOnRidges(ridgeA, ridgeB, axis.normal, margin, points);
+    const double near = separation + ConvexTolerances(a, b).meeting;
+    for (std::size_t i = first; i < points.size(); ++i)
+      if (points[i].separation <= near) over = OverFace::deepest;
+  }
+  if (over == OverFace::nothing) {
+    const SeparatingAxis beside = axisBesideFaces(a, b);
+    if (beside.separation > axis.separation) return appendManifold(a, b, beside, margin, points);
   }
   // The deepest point must be among them: the axis tells its separation.
-  const double near = separation + ConvexTolerances(a, b).meeting;
-  if (std::none_of(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
-                   [near](const ContactPoint& point) { return point.separation <= near; }))
-    points.push_back(singlePoint(a, b, axis, patchA, patchB));
+  if (over != OverFace::deepest) points.push_back(singlePoint(a, b, axis, patchA, patchB));
 }
 
 void appendManifold(const Core& core, const Vec3& planePoint, const Vec3& planeNormal, double margin,

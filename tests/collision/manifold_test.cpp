@@ -143,6 +143,39 @@ TEST(Manifold, OfCrossingSidesIsOnePoint) {
     }
 }
 
+// A cylinder that overhangs the edge of a box, at x = 2, and dips there by so little that the box's face carries it:
+// the edge is what it touches, and not the face beside that, where there is none.
+TEST(Manifold, OfACylinderOverAnEdgeIsWhereItCrossesTheEdge) {
+  const Collider log = colliderOf(Cylinder{0.5, 2}, {});
+  for (const double dip : {1e-9, 1e-8, 5e-8}) {
+    const Quat dipped = rotationAbout(Vec3::UnitZ(), -dip) * kAlongX;
+    const Placed overhanging{log, at(2 + 0.5 * std::sin(dip), 0.5 * std::cos(dip), 0, dipped)};
+    for (const double margin : {0.0, 1e-12}) {
+      const auto contacts = contactsOf(floorBox(), overhanging, margin + 1e-14);
+      ASSERT_EQ(contacts.size(), 1u) << dip;
+      EXPECT_NEAR(contacts[0].separation, 0, 1e-14) << dip;
+      EXPECT_LT((contacts[0].point - Vec3(2, 0, 0)).norm(), 1e-12) << dip;
+    }
+  }
+}
+
+// A cylinder beside the edge of a box, along it: nothing of it is over the face, though that sees hardly less of a gap.
+TEST(Manifold, OfACylinderBesideAnEdgeIsItsLineOnTheEdge) {
+  const Collider log = colliderOf(Cylinder{0.5, 2}, {});
+  for (const double angle : {1e-6, 1e-5, 1e-4}) {
+    const Vec3 outward(std::sin(angle), std::cos(angle), 0);
+    const Placed beside{log, at(2 + 0.5 * outward.x(), 0.5 * outward.y(), 0, kAlongZ)};
+    const auto contacts = contactsOf(floorBox(), beside);
+    ASSERT_EQ(contacts.size(), 2u) << angle;
+    for (const Contact& contact : contacts) {
+      EXPECT_NEAR(contact.separation, 0, 1e-14) << angle;
+      EXPECT_LT((contact.normal - outward).norm(), 1e-7) << angle;
+      EXPECT_LT((contact.point - Vec3(2, 0, contact.point.z())).norm(), 1e-12) << angle;
+    }
+    EXPECT_NEAR(extent(contacts, Vec3::UnitZ()), 2, 1e-12);
+  }
+}
+
 TEST(Manifold, OfStackedCylindersSpansTheSmallerEnd) {
   const Placed below{colliderOf(Cylinder{1, 2}, {}), at(0, -1, 0)};
   const auto contacts = contactsOf(below, {colliderOf(Cylinder{0.4, 2}, {}), at(0.2, 1, 0)});
