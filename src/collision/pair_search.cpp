@@ -56,6 +56,8 @@ PairSearch::PairSearch(ImpactSearch& scratch, const Step& step, std::size_t pair
 
 void PairSearch::search(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   feature_ = 0;
+  // A body that goes through a sheet is soon on its other side, and apart again: sheets are searched finely.
+  if (!hasSheet()) bounds_.finest = std::max(bounds_.finest, touching.finest);
   const bool isPinned = !pair_.againstPlane && hasPinnedPlaces(geometry_, pair_);
   if (isHeld(touching) && !pair_.againstPlane && hasOneContact()) return;  // there is no other
   findBounds();
@@ -102,9 +104,8 @@ void PairSearch::searchHeldRim(const TouchingFeatures& touching, std::optional<I
 /// rotation has brought them near.)
 void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
   if (pair_.againstPlane || !std::isfinite(touching.deadBand)) return;
+  if (hasSheet()) return;
   const Collider& b = geometry_.colliders[pair_.b];
-  const auto isSheet = [](const Collider& c) { return c.kind() == ColliderKind::mesh && c.mesh->isSheet; };
-  if (isSheet(a_) || isSheet(b)) return;
   const auto pin =
       std::find_if(a_.pins.begin(), a_.pins.end(), [&](const PinnedPlace& place) { return place.other == bodyB_; });
   const auto pinB =
@@ -180,12 +181,8 @@ double PairSearch::accelerationInFrame(const MotionBounds& turn, const Collider&
 void PairSearch::useSpeedBoundAlone() {
   bounds_.graze =
       ImpactSearchTolerances(std::min(a_.boundingRadius, geometry_.colliders[pair_.b].boundingRadius)).graze;
-  const auto isSheet = [](const Collider& collider) {
-    return collider.kind() == ColliderKind::mesh && collider.mesh->isSheet;
-  };
-  // A body that goes through a sheet is soon on its other side, and apart again: sheets are searched finely.
-  const bool isThin = isSheet(a_) || isSheet(geometry_.colliders[pair_.b]);
-  if (!std::isfinite(bounds_.acceleration) && !isThin) bounds_.finest = kFinestBlindApproach;
+  if (!std::isfinite(bounds_.acceleration) && !hasSheet())
+    bounds_.finest = std::max(bounds_.finest, kFinestBlindApproach);
   apart_.reset();
 }
 
@@ -261,6 +258,11 @@ bool PairSearch::isHeld(const TouchingFeatures& touching) const {
 bool PairSearch::hasOneContact() const {
   if (pair_.againstPlane) return true;
   return hasSphere() && !hasMesh(a_, geometry_.colliders[pair_.b]);
+}
+
+bool PairSearch::hasSheet() const {
+  const auto isSheet = [](const Collider& c) { return c.kind() == ColliderKind::mesh && c.mesh->isSheet; };
+  return isSheet(a_) || (!pair_.againstPlane && isSheet(geometry_.colliders[pair_.b]));
 }
 
 bool PairSearch::hasSphere() const {

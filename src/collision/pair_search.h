@@ -39,6 +39,7 @@ class PairSearch {
   bool isFlush(const TouchingFeatures& touching, const Collider& upper) const;
   bool isHeld(const TouchingFeatures& touching) const;
   bool hasOneContact() const;
+  bool hasSheet() const;
   bool hasSphere() const;
   bool staysOnePoint() const;
   double deadBand(const TouchingFeatures& touching) const;

@@ -6,6 +6,7 @@
 
 #include "collision/face_below.h"
 #include "collision/mesh_feature.h"
+#include "collision/root_bracketing.h"
 #include "collision/separation.h"
 #include "constraints/contact_rows.h"
 #include "dynamics/integrators/pose_interpolant.h"
@@ -35,6 +36,8 @@ struct TouchingFeatures {
   double deadBand = std::numeric_limits<double>::infinity();
   // Active contacts, and what joints hold: these features have no impacts, other points of the same pairs have.
   const std::vector<ActiveFeature>* active = nullptr;
+  // Of a step: touches that come and go within less may be passed over, but for those of sheets.
+  double finest = kFinestApproach;
 
   const std::vector<ActiveFeature>& activeFeatures() const {
     static const std::vector<ActiveFeature> none;

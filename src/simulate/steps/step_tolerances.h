@@ -51,6 +51,10 @@ struct StepTolerances {
   static constexpr double kClosedGapRatio = 1e-3;  // of `touch`
   double closedGap = 0;                            // m
 
+  // Of a step: touches that come and go within less are passed over. A search for shorter ones takes up to nine tenths
+  // of the time of rims that roll over edges, and finds none in 40 scenes of such.
+  static constexpr double kFinestTouch = 1.0 / 16;
+
   // Contacts that touch within this part of a step touch at one instant. `fastest`: of their closing speeds, m/s.
   static constexpr double kTogetherRatio = 1e-3;            // of h
   double simultaneousGap(double fastest, double h) const {  // m

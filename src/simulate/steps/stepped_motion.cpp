@@ -201,8 +201,9 @@ bool SteppedMotion::stopAtFirstEvent() {
   std::vector<ColliderPair>& pairs = island_.assembly.geometry.pairs;
   const std::vector<ColliderPair> all = pairs;
   pairs = contacts_.pairsWithoutContact();
-  const auto impact =
-      contacts_.usesTimeSteppingOnly() ? std::nullopt : island_.search.first(step, {contacts_.tolerances().touch});
+  TouchingFeatures touching{contacts_.tolerances().touch};
+  touching.finest = StepTolerances::kFinestTouch;
+  const auto impact = contacts_.usesTimeSteppingOnly() ? std::nullopt : island_.search.first(step, touching);
   const auto change = ropes_.firstChange(step);
   const double whole = step.timeStep;
   if (impact && !(change && change->fraction < impact->fraction)) {
