@@ -222,9 +222,18 @@ void ConstraintSolver::assemble() {
   }
 }
 
+/// Sets what is asked of rows that move nothing to zero: what they would leave says nothing of the others.
+void ConstraintSolver::ignoreEmptyRows() {
+  Eigen::Index index = 0;
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    for (int row = 0; row < blocks_[i].rows; ++row, ++index)
+      if (factor_.diagonal(i)[row * blocks_[i].rows + row] == 0) multipliers_[index] = 0;
+}
+
 /// Overwrites the right-hand side in multipliers_ by the solution, refined iteratively if it has to be.
 void ConstraintSolver::solve() {
   if (isRegular_) return factor_.solve(multipliers_);
+  ignoreEmptyRows();
   rightHandSide_ = multipliers_;
   factor_.solve(multipliers_);
   const double wanted = rightHandSide_.lpNorm<Eigen::Infinity>();

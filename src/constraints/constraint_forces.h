@@ -87,6 +87,7 @@ class ConstraintSolver {
   void assemble();
   void opposeVelocities(const VectorX& state);
   void opposeAccelerations(const VectorX& derivative);
+  void ignoreEmptyRows();
   void solve();
   void addResponse(VectorX& velocities) const;
   template <class Add>

@@ -174,6 +174,30 @@ TEST(ConstraintForces, HoldLightBodiesBetweenHeavyOnes) {
   }
 }
 
+// Bodies that nothing turns: of a hinge, the rows of rotations ask for what they do not get. The others are kept all
+// the same, whatever is asked of those, but for rounding times the ratio of the masses.
+TEST(ConstraintForces, KeepPointsOfBodiesThatNothingTurns) {
+  for (const double spin : {1.0, 1e3}) {
+    JointedBodies at(3);
+    for (RigidBody& body : at.bodies) body.inverseInertia.setZero();
+    at.bodies[0].inverseMass *= 3000;
+    findBodyFrames(at.bodies, at.state, at.frames);
+    angularVelocity(at.state, 1) *= spin;
+    at.tie(0, kFixed, BallJointConstraint());
+    at.tie(1, 0, HingeConstraint{Vec3(2, 1, 2) / 3, {Vec3::UnitX(), Vec3::UnitZ()}});
+    at.tie(2, 1, BallJointConstraint());
+    ConstraintSolver solver(at.constraints, at.bodies);
+    solver.factorize(at.state);
+    solver.constrainVelocities(at.state);
+    std::vector<ConstraintRow> rows;
+    findRows(at.constraints, at.state, at.frames, rows);
+    ASSERT_EQ(rows.size(), 11u);
+    for (const std::size_t row : {0u, 1u, 2u, 3u, 4u, 5u, 8u, 9u, 10u})
+      EXPECT_NEAR(rateOf(rows[row], at.state), 0, 1e-11 * spin) << row << " " << spin;
+    EXPECT_GT(std::abs(rateOf(rows[6], at.state)), 0.01);
+  }
+}
+
 TEST(ConstraintForces, HaveAMultiplierForEachRowWhateverWasTiedBefore) {
   JointedBodies jointed(2);
   jointed.tie(0, 1);
