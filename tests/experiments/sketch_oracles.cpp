@@ -237,9 +237,11 @@ double spreadOf(const SceneSketch& sketch, const SceneRun& run, double disturban
   for (SketchBody& body : twin.sketch.bodies) {
     const Vec3 velocity = random.vector(disturbance), spin = random.vector(disturbance / sizeOf(body));
     if (!body.isStatic) body.linearVelocity += velocity, body.angularVelocity += spin;
-    if (!body.isStatic && isModel(body))
-      body.worldFromBody.rotation =
-          rotationAbout(random.vector(1).normalized(), kFileRounding) * body.worldFromBody.rotation;
+    if (body.isStatic || !isModel(body)) continue;
+    // Where it stands upright, turning it leaves its gaps as they are.
+    body.worldFromBody.rotation =
+        rotationAbout(random.vector(1).normalized(), kFileRounding) * body.worldFromBody.rotation;
+    body.worldFromBody.translation += random.vector(kFileRounding * sizeOf(body));
   }
   return distanceOf(sketch, run, twin, runSketch(twin.sketch));
 }
