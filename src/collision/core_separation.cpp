@@ -35,8 +35,6 @@ constexpr double kEqualNormals = 1e-8;
 constexpr double kFanRatio = 4;
 // Of the size: overlaps that steps of contact take out are shallower. Deeper ones are left the shortest way.
 constexpr double kSlightOverlap = 1e-4;
-// Of an overlap: two faces that see overlaps that differ by less have a direction between theirs.
-constexpr double kEqualOverlaps = 0.1;
 // rad: two faces that are tilted by less are both flat, to kParallelAngle, for the normal between theirs.
 constexpr double kSameFaces = 2 * ConvexTolerances::kParallelAngle;
 
@@ -79,9 +77,8 @@ SeparatingAxis axisOfNearest(const GjkResult& apart, const Core& a, const Core& 
   return climbedSupportGap({0, apart.normal}, a, b);
 }
 
-/// The normals of the faces of each that see the largest gap, of faces that could carry a contact along `near`.
-SeparatingAxes facesAlong(const Vec3& near, const Core& a, const Core& b) {
-  constexpr double minCosine = ConvexTolerances::kMinCarryingCosine;
+/// The normals of the faces of each that see the largest gap, of those whose cosine to `near` is larger.
+SeparatingAxes facesAlong(const Vec3& near, double minCosine, const Core& a, const Core& b) {
   const auto bestOf = [&](const Core& core, double sign) {
     SeparatingAxis best;
     if (core.isRound()) {
@@ -98,17 +95,18 @@ SeparatingAxes facesAlong(const Vec3& near, const Core& a, const Core& b) {
   return {bestOf(a, 1), bestOf(b, -1), {}};
 }
 
-/// Of a face of each that see nearly the same overlap, as those of mirror images do whose edges or corners are in each
+/// Of a face of each that see about the same overlap, as those of mirror images do whose edges or corners are in each
 /// other, a direction between both takes the place of `face`. It turns and mirrors with the cores, and goes over to
-/// that of the face that sees less. The same two corners are farthest along all of these directions n, so that |n| g(n)
-/// of (1) is linear between the faces' normals.
+/// that of the face that sees less where the other sees twice as much: faster, it would let asymmetries grow. The same
+/// two corners are farthest along all of these directions n, so that |n| g(n) of (1) is linear between the faces'
+/// normals.
 SeparatingAxis betweenFaces(const SeparatingAxis& face, const Core& a, const Core& b) {
   const ConvexTolerances tolerances(a, b);
   const bool isSlight = face.separation < -tolerances.meeting && face.separation > -kSlightOverlap * tolerances.size;
   if (!isSlight) return face;
-  const SeparatingAxes faces = facesAlong(face.normal, a, b);
+  const SeparatingAxes faces = facesAlong(face.normal, -ConvexTolerances::kMinCarryingCosine, a, b);
   const SeparatingAxis &ofA = faces.faceOfA, &ofB = faces.faceOfB;
-  const double difference = ofA.separation - ofB.separation, most = kEqualOverlaps * std::abs(face.separation);
+  const double difference = ofA.separation - ofB.separation, most = -face.separation;
   const double beyond = std::max(0.0, std::abs(difference) - tolerances.equalGaps);
   if (!(beyond == 0 || beyond < most) || (ofA.normal - ofB.normal).norm() < kSameFaces) return face;
   const double lean = beyond == 0 ? 0 : std::copysign(beyond / most, difference);  // 1: A's normal
@@ -127,7 +125,7 @@ SeparatingAxis axisOfRoundCores(const GjkResult& apart, const Core& a, const Cor
   SeparatingAxis best;
   if (apart.distance > 0) {
     const double enough = (1 - ConvexTolerances::kRoundDistance) * apart.distance;
-    const SeparatingAxes faces = facesAlong(apart.normal, a, b);
+    const SeparatingAxes faces = facesAlong(apart.normal, ConvexTolerances::kMinCarryingCosine, a, b);
     best = betterFace(faces.faceOfA, faces.faceOfB, a, b);
     if (best.separation >= apart.distance - tolerances.equalGaps) return best;
     best = better(best, climbedSupportGap({0, apart.normal}, a, b, enough));
@@ -147,7 +145,7 @@ bool carriesAlong(const Vec3& nearest, const SeparatingAxis& feature, double dis
 /// The same as axisOfFeatures, of cores of which one has a rim.
 SeparatingAxis axisOfRoundFeatures(const GjkResult& apart, const Core& a, const Core& b, double preference) {
   const SeparatingAxis best = axisOfRoundCores(apart, a, b);
-  const SeparatingAxes faces = facesAlong(best.normal, a, b);
+  const SeparatingAxes faces = facesAlong(best.normal, ConvexTolerances::kMinCarryingCosine, a, b);
   const SeparatingAxis face = betterFace(faces.faceOfA, faces.faceOfB, a, b);
   if (face.separation < best.separation - preference) return best;
   if (best.separation <= ConvexTolerances(a, b).touching) return betweenFaces(face, a, b);

@@ -12,7 +12,7 @@ namespace cradle {
 SeparatingAxis separationOf(const Core& a, const Core& b);
 
 /// The same for contact. Where several directions see the same gap, to 1e-7 of the size, a face's normal is taken;
-/// where corners meet, to 1e-9 of the size, a direction that turns and mirrors with the cores.
+/// where corners meet, to 1e-9 of the size, or overlap, to 1e-4, a direction that turns and mirrors with the cores.
 SeparatingAxis contactAxis(const Core& a, const Core& b);
 
 /// The same where the face that contactAxis prefers has nothing over it: no face is preferred.
