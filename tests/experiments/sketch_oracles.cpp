@@ -238,10 +238,12 @@ double spreadOf(const SceneSketch& sketch, const SceneRun& run, double disturban
     const Vec3 velocity = random.vector(disturbance), spin = random.vector(disturbance / sizeOf(body));
     if (!body.isStatic) body.linearVelocity += velocity, body.angularVelocity += spin;
     if (body.isStatic || !isModel(body)) continue;
-    // Where it stands upright, turning it leaves its gaps as they are.
-    body.worldFromBody.rotation =
-        rotationAbout(random.vector(1).normalized(), kFileRounding) * body.worldFromBody.rotation;
-    body.worldFromBody.translation += random.vector(kFileRounding * sizeOf(body));
+    // Where it stands upright, turning it leaves its gaps as they are; both at once may let it overlap.
+    const Vec3 way = kFileRounding * random.vector(1).normalized();
+    if (seed % 2 == 0)
+      body.worldFromBody.translation += sizeOf(body) * way;
+    else
+      body.worldFromBody.rotation = rotationAbout(way.normalized(), kFileRounding) * body.worldFromBody.rotation;
   }
   return distanceOf(sketch, run, twin, runSketch(twin.sketch));
 }
