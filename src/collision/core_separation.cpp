@@ -147,7 +147,10 @@ SeparatingAxis axisOfRoundFeatures(const GjkResult& apart, const Core& a, const 
   const SeparatingAxis best = axisOfRoundCores(apart, a, b);
   const SeparatingAxes faces = facesAlong(best.normal, ConvexTolerances::kMinCarryingCosine, a, b);
   const SeparatingAxis face = betterFace(faces.faceOfA, faces.faceOfB, a, b);
-  if (face.separation < best.separation - preference) return best;
+  // A rim that is tilted crosses the border of a face where its polygon does not: there the normal of both is taken.
+  const bool isParallel = (face.normal - best.normal).norm() <= ConvexTolerances::kParallelAngle;
+  const double missed = isParallel ? preference : std::min(preference, ConvexTolerances(a, b).meeting);
+  if (face.separation < best.separation - missed) return best;
   if (best.separation <= ConvexTolerances(a, b).touching) return betweenFaces(face, a, b);
   return carriesAlong(best.normal, face, best.separation, a, b) ? face : best;
 }

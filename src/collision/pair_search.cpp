@@ -261,8 +261,9 @@ bool PairSearch::hasOneContact() const {
 }
 
 bool PairSearch::hasSheet() const {
+  if (pair_.againstPlane) return false;
   const auto isSheet = [](const Collider& c) { return c.kind() == ColliderKind::mesh && c.mesh->isSheet; };
-  return isSheet(a_) || (!pair_.againstPlane && isSheet(geometry_.colliders[pair_.b]));
+  return isSheet(a_) || isSheet(geometry_.colliders[pair_.b]);
 }
 
 bool PairSearch::hasSphere() const {

@@ -196,6 +196,23 @@ TEST(Manifold, OfABoxOnACylinderIsTheLineOrTheEnd) {
   expectTouching(onEnd, 4, Vec3::UnitY(), INFINITY, 0);
 }
 
+// A tilted cylinder whose lowest point is beyond the edge: its bottom touches the edge where the rim crosses that, at
+// z = sqrt(r^2 - d^2), d the distance of the axis from the edge. The plane of the floor sees an overlap beside it.
+TEST(Manifold, OfARimAtAnEdgeIsWhereTheyCross) {
+  const double radius = 0.5, half = 0.4, distance = 0.3;
+  const Vec3 axis = Vec3::UnitY().cross(Vec3(0.8, 0, 0.6));  // the bottom is lowest towards (0.8, 0, 0.6)
+  const Vec3 crossing(distance, -half, std::sqrt(radius * radius - distance * distance));
+  for (const double tilt : {4e-7, 1e-6, 1e-5}) {
+    const Quat turn = rotationAbout(axis, tilt);
+    const Vec3 lowest = turn * crossing;  // of what is over the floor
+    const Placed can{colliderOf(Cylinder{radius, 2 * half}, {}), {turn, Vec3(2 - lowest.x(), -lowest.y(), 0)}};
+    const std::vector<Contact> contacts = contactsOf(floorBox(), can, 1e-10);
+    ASSERT_EQ(contacts.size(), 1u) << tilt;
+    EXPECT_NEAR(contacts[0].separation, 0, 1e-13) << tilt;
+    EXPECT_LT((contacts[0].point - Vec3(2, 0, lowest.z())).norm(), 1e-6) << tilt;
+  }
+}
+
 TEST(Manifold, OfAHullOnItsFaceIsThatFace) {
   std::vector<Vec3> points;  // a tetrahedron on its base
   for (int i = 0; i < 3; ++i) points.emplace_back(std::cos(i * 2 * M_PI / 3), 0, std::sin(i * 2 * M_PI / 3));
