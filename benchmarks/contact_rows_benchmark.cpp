@@ -72,7 +72,7 @@ void evaluate(benchmark::State& loop, Mechanism mechanism, bool hasContacts) {
   }
   EquationsOfMotion equations(mechanism);
   for (auto _ : loop) {
-    equations.evaluate(state, rate);
+    equations.evaluate(0, state, rate);
     benchmark::DoNotOptimize(rate.data());
   }
 }

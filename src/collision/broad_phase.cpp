@@ -172,7 +172,7 @@ void BroadPhase::compare(const ContactGeometry& geometry, std::size_t first, std
   if (!boxes_[first].intersects(boxes_[second])) return;
   const std::size_t a = std::min(first, second), b = std::max(first, second);
   const Collider &colliderA = geometry.colliders[a], &colliderB = geometry.colliders[b];
-  if (colliderA.body == kFixed && colliderB.body == kFixed) return;
+  if (colliderA.isHeld() && colliderB.isHeld()) return;
   if (colliderA.isSphere() && colliderB.isSphere()) {
     // The gap between the boxes that the spheres' centres sweep, against the sum of their radii and margins.
     const double reach = roundings_[a] + roundings_[b];
@@ -256,7 +256,7 @@ void BroadPhase::sweep(ContactGeometry& geometry) {
   };
   for (std::size_t p = 0; p < geometry.planes.size(); ++p)
     for (std::size_t i = 0; i < geometry.colliders.size(); ++i)
-      if (geometry.colliders[i].body != kFixed && lowest(boxes_[i], geometry.planes[p]) <= 0)
+      if (!geometry.colliders[i].isHeld() && lowest(boxes_[i], geometry.planes[p]) <= 0)
         geometry.pairs.push_back({i, p, true, material(geometry.colliders[i].surface, geometry.planes[p].surface)});
   found_.resize(threads_ ? static_cast<std::size_t>(threads_->count()) : 1);
   for (Found& found : found_) found.clear();

@@ -38,7 +38,9 @@ struct Collider {
       {};  // of a mesh, shared by all bodies of a model; of a polytope that meets meshes
   RigidTransform bodyFromMesh = {};
   std::vector<PinnedPlace> pins = {};
+  bool isDriven = false;  // its body moves, but no force moves it
 
+  bool isHeld() const { return body == kFixed || isDriven; }  // no force moves it
   bool isSphere() const { return points.size() == 1; }
   ColliderKind kind() const {
     if (rimRadius > 0) return ColliderKind::cylinder;

@@ -24,11 +24,6 @@ constexpr double kFinestBesidePin = 1.0 / 256;
 // tenth or ten times as much changes no test of a search.
 constexpr double kFirstGap = 1.0 / 1024;
 
-Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
-  if (body == kFixed) return Vec3::Zero();
-  return linearVelocity(state, body) + angularVelocity(state, body).cross(point - centerOfMass(state, body));
-}
-
 /// Distance (m) from the centre of mass of a collider's farthest point, without the spheres around its points.
 double pointReach(const Collider& collider) {
   return collider.boundingRadius - collider.radius;

@@ -79,7 +79,7 @@ class GlbExport {
   GlbFile file_;
   GlbMeshes meshes_;
   int times_ = 0;
-  std::vector<Track> bodyTracks_;  // of dynamic bodies
+  std::vector<Track> bodyTracks_;  // of bodies that move
   std::vector<Link> links_;
   Bounds bounds_;  // m, world, of bodies at the start, and then of their places
   double linkRadius_ = 0;
@@ -87,7 +87,8 @@ class GlbExport {
 
 /// Before memory is taken. What else is in the file is little, and counted when it is written.
 void GlbExport::requireFits() const {
-  const auto bodies = static_cast<std::uint64_t>(std::ranges::count(scene_.bodies, Motion::dynamic, &Body::motion));
+  const auto bodies = scene_.bodies.size() -
+                      static_cast<std::uint64_t>(std::ranges::count(scene_.bodies, Motion::fixed, &Body::motion));
   const std::uint64_t links = scene_.springs.size() + scene_.rods.size() + scene_.ropes.size();
   GlbFile::requireFits(sizeof(float) * frameCount() * (1 + 7 * bodies + 10 * links), path_);
 }
@@ -121,10 +122,10 @@ void GlbExport::addBodies(const std::vector<RigidTransform>& places) {
     if (std::holds_alternative<Plane>(body.shape)) continue;
     const Bounds local = localBounds(scene_, body);
     bounds_.extend(transformed(local, places[i]));
-    const bool isDynamic = body.motion == Motion::dynamic;
-    const Vec3 center = isDynamic ? body.massProperties.centerOfMass : Vec3::Zero();
+    const bool moves = body.motion != Motion::fixed;
+    const Vec3 center = moves ? body.massProperties.centerOfMass : Vec3::Zero();
     int node = file_.addNode(body.name, {places[i].rotation, places[i] * center});
-    if (isDynamic) bodyTracks_.push_back(addTrack(node));
+    if (moves) bodyTracks_.push_back(addTrack(node));
     if (center.norm() > kRounding * local.diagonal().norm())
       node = file_.addNode(body.name + " shape", {Quat::Identity(), -center}, node);
     file_.setMesh(node, meshes_.ofBody(i));

@@ -49,7 +49,7 @@ void requireSameBodies(const Scene& scene, const TrajectoryReader& trajectory) {
   const TrajectoryHeader& header = trajectory.header();
   const auto fits = [&](const Body& body, const BodyRecord& record) {
     return body.name == record.name && (body.motion == Motion::dynamic) == record.isDynamic &&
-           modelOf(body, scene) == modelOf(record, header);
+           (body.motion == Motion::driven) == record.isDriven && modelOf(body, scene) == modelOf(record, header);
   };
   if (std::equal(scene.bodies.begin(), scene.bodies.end(), header.bodies.begin(), header.bodies.end(), fits)) return;
   throw Error(ErrorKind::usage, trajectory.path(),

@@ -22,21 +22,25 @@ EquationsOfMotion::EquationsOfMotion(const Mechanism& mechanism)
 
 RightHandSide EquationsOfMotion::rightHandSide() {
   return {
-      [this](double, const VectorX& state, VectorX& derivative) { evaluate(state, derivative); },
+      [this](double time, const VectorX& state, VectorX& derivative) { evaluate(time, state, derivative); },
       [this](const VectorX& state, VectorX& derivative) { evaluatePoseRates(mechanism_.bodies, state, derivative); },
       static_cast<Eigen::Index>(mechanism_.bodies.size()) * kPoseSize};
 }
 
-void EquationsOfMotion::evaluate(const VectorX& state, VectorX& derivative) {
+void EquationsOfMotion::evaluate(double time, const VectorX& state, VectorX& derivative) {
   ++evaluations_;
   derivative.setZero(state.size());
   findBodyFrames(mechanism_.bodies, state, frames_);
   evaluatePoseRates(mechanism_.bodies, state, derivative);
   applyGravityAndGyroscopicTerms(state, derivative);
+  accelerate(mechanism_.driven, time, derivative);
   if (!mechanism_.springs.empty()) applySprings(state, derivative);
   if (!mechanism_.pushes.empty()) applyPushes(state, derivative);
   applyConstraints(state, derivative);
   holdResting(state, derivative);
+  if (mechanism_.driven.empty()) return;
+  addPowerOfConstraints(state, derivative);
+  addPowerOfContacts(state, derivative);
 }
 
 void EquationsOfMotion::applyConstraints(const VectorX& state, VectorX& derivative) {
@@ -84,26 +88,64 @@ void EquationsOfMotion::applySprings(const VectorX& state, VectorX& derivative) 
   for (const SpringForce& spring : mechanism_.springs) {
     const AttachmentMotion a = motionOf(spring.anchorA, state, frames_), b = motionOf(spring.anchorB, state, frames_);
     const SpringPull pull = pullOf(spring, a, b);
-    addForce(spring.anchorA.body, a.arm, pull.forceOnA, derivative);
-    addForce(spring.anchorB.body, b.arm, -pull.forceOnA, derivative);
+    addForce(spring.anchorA.body, a.arm, pull.forceOnA, state, derivative);
+    addForce(spring.anchorB.body, b.arm, -pull.forceOnA, state, derivative);
     dampingEnergy(derivative) += pull.dissipation;
   }
 }
 
 void EquationsOfMotion::applyPushes(const VectorX& state, VectorX& derivative) const {
   for (const PushForce& push : mechanism_.pushes) {
-    addForce(push.point.body, motionOf(push.point, state, frames_).arm, push.force, derivative);
+    addForce(push.point.body, motionOf(push.point, state, frames_).arm, push.force, state, derivative);
     pushWork(derivative) += powerOf(push, state);
   }
 }
 
-/// Adds the accelerations that a force (N, world) at `arm` (m, world) gives a body to its velocity rates.
-void EquationsOfMotion::addForce(int body, const Vec3& arm, const Vec3& force, VectorX& derivative) const {
+/// Adds the accelerations that a force (N, world) at `arm` (m, world) gives a body to its velocity rates. A driven body
+/// is not accelerated: what drives it works against the force.
+void EquationsOfMotion::addForce(int body, const Vec3& arm, const Vec3& force, const VectorX& state,
+                                 VectorX& derivative) const {
   if (body == kFixed) return;
   const std::size_t index = static_cast<std::size_t>(body);
+  if (mechanism_.bodies[index].isDriven()) {
+    pushWork(derivative) -= force.dot(pointVelocity(body, centerOfMass(state, body) + arm, state));
+    return;
+  }
   linearVelocity(derivative, body) += mechanism_.bodies[index].inverseMass * force;
   if (!mechanism_.bodies[index].hasConstantSpin)
     angularVelocity(derivative, body) += frames_[index].inverseInertia * arm.cross(force);
+}
+
+/// What drives bodies works against the constraints: -lambda . J v, v the velocities of driven bodies alone.
+void EquationsOfMotion::addPowerOfConstraints(const VectorX& state, VectorX& derivative) const {
+  const auto isDriven = [this](int body) {
+    return body != kFixed && mechanism_.bodies[static_cast<std::size_t>(body)].isDriven();
+  };
+  ConstraintBlock block;
+  Eigen::Index first = 0;
+  for (const Constraint& constraint : mechanism_.constraints) {
+    const int rows = rowCount(constraint), a = constraint.anchorA.body, b = constraint.anchorB.body;
+    if (isDriven(a) || isDriven(b)) {
+      findRows(constraint, state, frames_, block);
+      for (int i = 0; i < rows; ++i) {
+        ConstraintRow row = rowOf(block, i);
+        if (!isDriven(a)) row.bodyA = kFixed;
+        if (!isDriven(b)) row.bodyB = kFixed;
+        pushWork(derivative) -= multipliers_[first + i] * rateOf(row, state);
+      }
+    }
+    first += rows;
+  }
+}
+
+void EquationsOfMotion::addPowerOfContacts(const VectorX& state, VectorX& derivative) const {
+  for (std::size_t i = 0; i < mechanism_.contacts.size(); ++i) {
+    const ContactForce& contact = contactSolver_.forces()[i];
+    const Vec3 onA = contact.normal * contact.direction + contact.tangential;
+    const int a = mechanism_.contacts[i].centerA.body, b = mechanism_.contacts[i].surfaceB.body;
+    pushWork(derivative) += powerOfDriven(mechanism_.bodies, a, contact.point, -onA, state) +
+                            powerOfDriven(mechanism_.bodies, b, contact.point, onA, state);
+  }
 }
 
 void evaluatePoseRates(const std::vector<RigidBody>& bodies, const VectorX& state, VectorX& derivative) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "constraints/contact_forces.h"
+#include "dynamics/driven_body.h"
 #include "dynamics/integrators/step.h"
 #include "dynamics/push.h"
 #include "dynamics/spring.h"
@@ -17,6 +18,7 @@ struct Mechanism {
   Constraints constraints;
   std::vector<PushForce> pushes;                 // those that act now
   std::vector<ContactConstraint> contacts = {};  // those that last and are loaded
+  std::vector<DrivenBody> driven = {};           // of the bodies
 };
 
 /// The equations of motion of a mechanism in the layout of state.h:
@@ -27,8 +29,8 @@ class EquationsOfMotion {
   /// Keeps a reference to `mechanism`.
   explicit EquationsOfMotion(const Mechanism& mechanism);
 
-  /// State derivative. Allocates only in its first call.
-  void evaluate(const VectorX& state, VectorX& derivative);
+  /// State derivative at `time` (s), at which driven bodies are where `state` says. Allocates only in its first call.
+  void evaluate(double time, const VectorX& state, VectorX& derivative);
 
   void setResting(std::size_t body, bool resting);
   bool isResting(std::size_t body) const { return resting_[body] != 0; }
@@ -58,7 +60,9 @@ class EquationsOfMotion {
   void applyPushes(const VectorX& state, VectorX& derivative) const;
   void applyConstraints(const VectorX& state, VectorX& derivative);
   void holdResting(const VectorX& state, VectorX& derivative) const;
-  void addForce(int body, const Vec3& arm, const Vec3& force, VectorX& derivative) const;
+  void addForce(int body, const Vec3& arm, const Vec3& force, const VectorX& state, VectorX& derivative) const;
+  void addPowerOfConstraints(const VectorX& state, VectorX& derivative) const;
+  void addPowerOfContacts(const VectorX& state, VectorX& derivative) const;
 
   const Mechanism& mechanism_;
   std::vector<char> resting_;

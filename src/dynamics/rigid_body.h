@@ -19,6 +19,8 @@ struct RigidBody {
   Mat3 inverseInertia = Mat3::Identity();  // 1/(kg m^2)
   bool isSpherical = true;                 // the inertia tensor is a multiple of the identity
   bool hasConstantSpin = false;            // no torque ever acts; the state keeps the orientation of the start
+
+  bool isDriven() const { return inverseMass == 0; }  // by no force: dynamics/driven_body.h
 };
 
 RigidBody makeRigidBody(const MassProperties& properties);
@@ -56,6 +58,12 @@ inline AttachmentMotion motionOf(const Attachment& attachment, const VectorX& st
   const Vec3 arm = frames[static_cast<std::size_t>(body)].rotation * attachment.point;
   return {arm, centerOfMass(state, body) + arm,
           linearVelocity(state, body) + Vec3(angularVelocity(state, body)).cross(arm)};
+}
+
+/// Velocity (m/s, world) of a body's material point that is at `point` (m, world); zero if fixed.
+inline Vec3 pointVelocity(int body, const Vec3& point, const VectorX& state) {
+  if (body == kFixed) return Vec3::Zero();
+  return linearVelocity(state, body) + angularVelocity(state, body).cross(point - centerOfMass(state, body));
 }
 
 /// Acceleration (m/s^2, world) of a body's material point that is at `point` (m, world), for the rates of all

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "constraints/invariants.h"
+#include "dynamics/driven_body.h"
 
 namespace cradle {
 namespace {
@@ -30,7 +31,12 @@ void bookImpact(const std::vector<ImpactContact>& impacts, const std::vector<Rig
         energyTaken(impact.impulse, relativeVelocity(impact.contact, before), relativeVelocity(impact.contact, state));
     rounding += roundingOf(impact, bodies);
   }
-  const double lost = kineticEnergy(bodies, before) - kineticEnergy(bodies, state);
+  double work = 0;
+  for (const auto& [contact, material, restSpeed, impulse] : impacts)
+    work += powerOfDriven(bodies, contact.bodyA, contact.point, impulse, state) +
+            powerOfDriven(bodies, contact.bodyB, contact.point, -impulse, state);
+  pushWork(state) += work;
+  const double lost = work + kineticEnergy(bodies, before) - kineticEnergy(bodies, state);
   impactEnergy(state) += std::abs(taken - lost) <= rounding ? lost : taken;
 }
 

@@ -14,7 +14,8 @@ inline double energyTaken(const Vec3& impulse, const Vec3& before, const Vec3& a
 }
 
 /// Books what one simultaneous impact took from bodies that had the velocities of `before` and have those of `state`
-/// now, at the same places: the work of its impulses, and what they lost where that is the same to rounding of these.
+/// now, at the same places: the work of its impulses, and what they lost where that is the same to rounding of these;
+/// and the work of what drives bodies against them.
 void bookImpact(const std::vector<ImpactContact>& impacts, const std::vector<RigidBody>& bodies, const VectorX& before,
                 VectorX& state);
 

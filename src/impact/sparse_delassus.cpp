@@ -36,6 +36,14 @@ constexpr double kTieCompliance = 1e-12;
 
 }  // namespace
 
+/// The contact's velocity (t1, t2, n), of one body's linear and angular velocities.
+SparseDelassus::Mat36 SparseDelassus::rowsAt(const Contact& contact, int body, const VectorX& state) {
+  const Mat3 axes = contactAxes(contact.normal).transpose();
+  Mat36 rows;
+  rows << axes, -axes * skew(contact.point - centerOfMass(state, body));
+  return rows;
+}
+
 SparseDelassus::Row SparseDelassus::rowOf(const Contact& contact, const std::array<int, 2>& bodies,
                                           const VectorX& state) const {
   Row row{contactAxes(contact.normal), bodies, {Mat36::Zero(), Mat36::Zero()}, 1};
@@ -69,9 +77,9 @@ void SparseDelassus::set(const std::vector<Contact>& contacts, const std::vector
   analyze();
 }
 
-/// Index in bodies_ of a body, which is put there if it is not; -1 if it does not move.
+/// Index in bodies_ of a body, which is put there if it is not; -1 if no force moves it.
 int SparseDelassus::localOf(int body, const std::vector<RigidBody>& bodies, const VectorX& state) {
-  if (body == kFixed) return -1;
+  if (body == kFixed || bodies[static_cast<std::size_t>(body)].isDriven()) return -1;
   const auto [place, isNew] = known_.try_emplace(body, static_cast<int>(bodies_.size()));
   if (isNew) {
     const RigidBody& inertia = bodies[static_cast<std::size_t>(body)];
@@ -84,10 +92,14 @@ int SparseDelassus::localOf(int body, const std::vector<RigidBody>& bodies, cons
 void SparseDelassus::setContacts(const std::vector<Contact>& contacts, const std::vector<RigidBody>& bodies,
                                  const VectorX& state) {
   contacts_.clear(), bodies_.clear(), known_.clear(), ties_.clear(), pairs_.clear(), pairOf_.clear();
+  drivenSides_.clear();
   std::map<std::pair<int, int>, std::size_t> pairs;
   for (const Contact& contact : contacts) {
     const int a = localOf(contact.bodyA, bodies, state), b = localOf(contact.bodyB, bodies, state);
     contacts_.push_back(rowOf(contact, {a, b}, state));
+    for (const auto& [body, sign] : {std::pair(contact.bodyA, -1.0), {contact.bodyB, 1.0}})
+      if (body != kFixed && bodies[static_cast<std::size_t>(body)].isDriven())
+        drivenSides_.push_back({contacts_.size() - 1, body, sign * rowsAt(contact, body, state)});
     std::size_t at = SIZE_MAX;
     if (const std::pair<int, int> pair(std::max(a, b), std::min(a, b)); pair.second >= 0) {
       const auto [place, isNew] = pairs.try_emplace(pair, pairs_.size());
@@ -158,6 +170,9 @@ VectorX SparseDelassus::velocitiesIn(const VectorX& velocities) const {
            row.j[side].rightCols<3>() * turn) /
           row.scale;
     }
+  for (const DrivenSide& side : drivenSides_)
+    all.segment<3>(3 * static_cast<Index>(side.contact)) +=
+        side.j * velocities.segment<kVelocitySize>(velocityOffset(velocities, side.body));
   return all;
 }
 

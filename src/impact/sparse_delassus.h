@@ -47,7 +47,7 @@ class SparseDelassus {
   using Mat36 = Eigen::Matrix<double, 3, 6>;
   struct Row {
     Mat3 axes;                // world from (t1, t2, n)
-    std::array<int, 2> body;  // index of A and of B in bodies_; -1: it does not move
+    std::array<int, 2> body;  // index of A and of B in bodies_; -1: no force moves it
     std::array<Mat36, 2> j;   // rows of J = D J0 M^-1/2 (sparse_delassus.cpp) for A and for B
     double scale = 1;         // sqrt(kg), the contact's entry of D: its scaled inverse mass is 1
   };
@@ -56,6 +56,12 @@ class SparseDelassus {
     std::array<int, 2> body;  // as of a Row
     std::array<Mat6, 2> b;
     int rows;
+  };
+  /// A driven body of a contact: it has a velocity, and no response.
+  struct DrivenSide {
+    std::size_t contact;
+    int body;
+    Mat36 j;  // rows of J0
   };
   struct BodyRoot {
     Eigen::Index index;   // in the state
@@ -74,6 +80,7 @@ class SparseDelassus {
   VectorX multiplyTied(const VectorX& z) const;
   double magnitude(const VectorX& z);
   Tie tieOf(const ConstraintBlock& block, const std::array<int, 2>& bodies) const;
+  static Mat36 rowsAt(const Contact& contact, int body, const VectorX& state);
   Row rowOf(const Contact& contact, const std::array<int, 2>& bodies, const VectorX& state) const;
   void removeCompliance();
   void gather(const VectorX& impulses);
@@ -82,6 +89,7 @@ class SparseDelassus {
   ConstraintSolver* constraints_ = nullptr;  // null: there are none
   std::vector<Row> contacts_;
   std::vector<BodyRoot> bodies_;
+  std::vector<DrivenSide> drivenSides_;
   std::vector<Tie> ties_;
   std::map<int, int> known_;                // index in bodies_ of each body
   std::vector<std::pair<int, int>> pairs_;  // of bodies that touch, then of ties and their bodies

@@ -82,7 +82,7 @@ FilmOverlay::FilmOverlay(const FilmRecord& film, const OverlayChoice& choice)
       frameAt_(film.frameAt),
       camera_(scene_, view_.camera, frameAt_) {
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
-    if (scene_.bodies[i].motion == Motion::dynamic) dynamicBodies_.push_back(static_cast<int>(i));
+    if (scene_.bodies[i].motion != Motion::fixed) movingBodies_.push_back(static_cast<int>(i));
   for (const Event& event : film.events)
     if (event.kind == EventKind::impact && event.impulse > 0) impacts_.push_back(event);
   for (const Event& event : impacts_) greatestImpulse_ = std::max(greatestImpulse_, event.impulse);
@@ -141,8 +141,8 @@ void FilmOverlay::addToPlot(const Frame& frame) {
     if (values.empty()) energyAtStart_ = sum;
     values.push_back(sum - energyAtStart_);
   } else {
-    const auto state = std::find(dynamicBodies_.begin(), dynamicBodies_.end(), plottedBody_);
-    const auto index = static_cast<std::size_t>(state - dynamicBodies_.begin());
+    const auto state = std::find(movingBodies_.begin(), movingBodies_.end(), plottedBody_);
+    const auto index = static_cast<std::size_t>(state - movingBodies_.begin());
     plot_.curves[0].values.push_back(frame.states.at(index).position.y());
   }
 }

@@ -56,7 +56,7 @@ class FilmOverlay {
   const FrameSource frameAt_;
   FilmCamera camera_;
   std::vector<Event> impacts_;  // with an impulse, in order of time
-  std::vector<int> dynamicBodies_;
+  std::vector<int> movingBodies_;
   double arrowUnit_ = 1;        // m
   double greatestImpulse_ = 0;  // N s
   double greatestSpeed_ = 0;    // m/s

@@ -50,7 +50,7 @@ void read(const std::string& word, OverlayChoice& choice) {
 std::string allowedBodies(const OverlayChoice& choice, const Scene& scene) {
   std::vector<std::string> names, quoted;
   for (const Body& body : scene.bodies)
-    if (body.motion == Motion::dynamic) names.push_back(body.name);
+    if (body.motion != Motion::fixed) names.push_back(body.name);
   for (const std::string& name : names)
     if (quoted.size() < kMaxNames) quoted.push_back(inQuotes(name));
   if (quoted.empty()) return "; the scene has none that moves";

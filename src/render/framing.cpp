@@ -105,10 +105,11 @@ Framing::Framing(const Scene& scene, int width, int height, std::vector<ShownPus
   addLinks(scene.hinges);
 }
 
-std::vector<Framing::Solid> Framing::solidsOf(const std::vector<RigidTransform>& places, Motion motion) const {
+std::vector<Framing::Solid> Framing::solidsOf(const std::vector<RigidTransform>& places, bool areMoving) const {
   std::vector<Solid> solids;
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-    if (scene_.bodies[i].motion != motion || localBounds_[i].isEmpty()) continue;
+    const bool moves = scene_.bodies[i].motion != Motion::fixed;
+    if (moves != areMoving || localBounds_[i].isEmpty()) continue;
     const Sphere* sphere = std::get_if<Sphere>(&scene_.bodies[i].shape);
     solids.push_back({localBounds_[i], sphere != nullptr ? sphere->radius : 0, places[i]});
   }
@@ -130,7 +131,7 @@ void Framing::add(const Frame& frame) {
   if (scene_.camera && !start_) start_ = CameraPath(scene_).next(frame.time, places);
   for (std::size_t i = 0; i < pushes_.size(); ++i)
     if (pushes_[i].isShownAt(frame.time)) arrowPlaces_.push_back({i, pushes_[i].pointAt(frame.time, places)});
-  for (const Solid& solid : solidsOf(places, Motion::dynamic)) {
+  for (const Solid& solid : solidsOf(places, true)) {
     includeMoving(solid);
     ++places_;
     placeSum_ += solid.worldFromLocal.translation;
@@ -216,7 +217,7 @@ View Framing::view() const {
   view.bounds = movingBounds_;
   view.pushes = pushes_;
   std::vector<Solid> shown;
-  for (const Solid& solid : solidsOf(placeBodiesAtStart(scene_), Motion::fixed)) {
+  for (const Solid& solid : solidsOf(placeBodiesAtStart(scene_), false)) {
     const Bounds bounds = transformed(solid.local, solid.worldFromLocal);
     const double limit = kLargestFixed * movingBounds_.diagonal().norm();
     if (!movingBounds_.isEmpty() && bounds.diagonal().norm() > limit) continue;

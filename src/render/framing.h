@@ -62,7 +62,7 @@ class Framing {
   static Reach emptyReach();
   static Reach reachOf(const Candidate& candidate, const Solid& solid);
   void includeMoving(const Solid& solid);
-  std::vector<Solid> solidsOf(const std::vector<RigidTransform>& places, Motion motion) const;
+  std::vector<Solid> solidsOf(const std::vector<RigidTransform>& places, bool areMoving) const;
   bool movesAlongZ() const;
   bool seesGround(const Candidate& candidate) const;
   const Candidate& bestCandidate() const;

@@ -74,20 +74,23 @@ std::optional<ModelFacts> load(const BodyDraft& draft, SceneDraft& scene, const 
   }
 }
 
-// A body that moves has a volume, or says itself how heavy it is.
+// A body that moves has a volume, or says itself how heavy it is, if forces move it.
 bool canMove(const BodyDraft& draft, const ModelFacts& facts, FaultList& faults) {
   if (facts.isSolid) return true;
-  const bool givesMass = draft.mass && draft.inertiaTensor;
+  const bool isDriven = draft.body.motion == Motion::driven;
+  const bool givesMass = isDriven || (draft.mass && draft.inertiaTensor);
   const CollisionChoice choice = draft.body.collision;
   if (givesMass && facts.isClosed) return true;
   if (givesMass && (choice == CollisionChoice::none || choice == CollisionChoice::hull)) return true;
   const char* lacks = givesMass    ? "its collision needs a closed surface"
                       : draft.mass ? "mass alone needs a volume for its inertia"
                                    : "a body that moves needs a volume for its mass";
-  addFault(faults, *draft.meshField,
-           fmt::format("{} is no solid ({}), and {}; mend the mesh, or give \"motion\": \"static\", or \"mass\" with "
-                       "\"inertiaTensor\" and \"collision\": \"hull\" or \"none\"",
-                       inQuotes(draft.mesh.path), facts.problems, lacks));
+  addFault(
+      faults, *draft.meshField,
+      fmt::format("{} is no solid ({}), and {}; mend the mesh, or give \"motion\": \"static\", or {}\"collision\": "
+                  "\"hull\" or \"none\"",
+                  inQuotes(draft.mesh.path), facts.problems, lacks,
+                  isDriven ? "" : "\"mass\" with \"inertiaTensor\" and "));
   return false;
 }
 
@@ -131,7 +134,7 @@ void chooseCollision(const BodyDraft& draft, ModelFacts& facts, Scene& scene, Fa
 }
 
 MassProperties massOf(const BodyDraft& draft, const ModelFacts& facts, SceneDraft& scene, FaultList& faults) {
-  if (draft.body.motion == Motion::fixed) return {};
+  if (draft.body.motion != Motion::dynamic) return {};
   if (!facts.isSolid && !draft.centerOfMass) {
     scene.warnings.push_back(faults.where(draft.field.place(), draft.field.pointer) +
                              ": the mesh is no solid and centerOfMass is not given; it is taken as [0, 0, 0]");
@@ -151,7 +154,7 @@ bool hasUsableSize(const BodyDraft& draft, const ModelFacts& facts, FaultList& f
 
 void complete(BodyDraft& draft, ModelFacts& facts, SceneDraft& scene, Faults faults) {
   if (!hasUsableSize(draft, facts, faults.text)) return;
-  if (draft.body.motion == Motion::dynamic && !canMove(draft, facts, faults.mesh)) return;
+  if (draft.body.motion != Motion::fixed && !canMove(draft, facts, faults.mesh)) return;
   chooseCollision(draft, facts, scene.scene, faults.text);
   const MassProperties properties = massOf(draft, facts, scene, faults.text);
   for (int i = draft.firstBody; i < draft.firstBody + draft.bodyCount; ++i) {

@@ -43,7 +43,7 @@ Vec3 worldPoint(const Anchor& anchor, const SceneDraft& scene) {
 double sizeOf(const LinkDraft& link, const SceneDraft& scene) {
   double size = 0;
   for (const int body : {link.anchorA.anchor.body, link.anchorB.anchor.body}) {
-    if (body == kWorld || draftOf(body, scene).body.motion == Motion::fixed) continue;
+    if (body == kWorld || draftOf(body, scene).body.motion != Motion::dynamic) continue;
     size = std::max(size, *draftOf(body, scene).size);
   }
   return size;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scene/given_mass.h"
+#include "scene/parse_driven.h"
 #include "scene/parse_pose.h"
 #include "scene/parse_shape.h"
 
@@ -51,14 +52,17 @@ void parseName(ObjectReader& reader, BodyDraft& draft) {
   draft.body.name = name.value_or("");
 }
 
-// What a body that never moves says about its motion goes unused; its writer should know.
+// What a body that no force moves says about its mass and velocities goes unused; its writer should know.
 void warnOfUnused(ObjectReader& reader, const BodyDraft& draft, std::vector<std::string>& warnings) {
-  if (draft.body.motion != Motion::fixed) return;
-  for (const char* key :
-       {"mass", "centerOfMass", "inertiaTensor", "linearVelocity", "angularVelocity", "angularVelocityBody"}) {
+  if (draft.body.motion == Motion::dynamic) return;
+  const bool isDriven = draft.body.motion == Motion::driven;
+  std::vector<const char*> keys = {"mass", "centerOfMass", "inertiaTensor"};
+  if (!isDriven) keys.insert(keys.end(), {"linearVelocity", "angularVelocity", "angularVelocityBody"});
+  for (const char* key : keys) {
     if (const auto field = reader.find(key)) {
-      warnings.push_back(fmt::format("{}: {} is not used, because the body is static",
-                                     reader.faults().where(field->place(), field->pointer), key));
+      warnings.push_back(fmt::format("{}: {} is not used, because the body is {}",
+                                     reader.faults().where(field->place(), field->pointer), key,
+                                     isDriven ? "driven" : "static"));
     }
   }
 }
@@ -77,6 +81,7 @@ void completePrimitive(BodyDraft& draft, const SceneDraft& scene, FaultList& fau
     addFault(faults, draft.field, "a plane is infinite and cannot move; give \"motion\": \"static\"");
     return;
   }
+  if (draft.body.motion == Motion::driven) return;
   const double density = scene.scene.materials[static_cast<std::size_t>(draft.body.material)].density;
   draft.body.massProperties = completeMass(draft, uniformMass(draft.body.shape), density, faults);
 }
@@ -108,6 +113,8 @@ void addCopies(const Copies& copies, const BodyDraft& draft, SceneDraft& scene, 
         body.name = fmt::format("{}_{}", draft.body.name, number++);
         body.worldFromBody.translation =
             draft.body.worldFromBody.translation + copies.spacing.cwiseProduct(Vec3(ix, iy, iz));
+        body.prescribed = draft.body.prescribed;
+        if (body.prescribed) shift(*body.prescribed, copies.spacing.cwiseProduct(Vec3(ix, iy, iz)));
         addBody(body, scene, name, faults);
       }
     }
@@ -157,7 +164,7 @@ double pairsNearer(double distance, const Copies& copies, double most) {
 
 /// What a plan would refuse after it has made all bodies: a line of a scene can ask for a million at one place.
 void requireApart(const Copies& copies, const BodyDraft& draft, const Field& field, const FaultList& faults) {
-  if (draft.body.motion == Motion::fixed || draft.body.collision == CollisionChoice::none) return;
+  if (draft.body.motion != Motion::dynamic || draft.body.collision == CollisionChoice::none) return;
   if (pairsNearer(2 * innerRadiusOf(draft.body.shape), copies, kMaxPairs + kMaxLinks) <= kMaxPairs + kMaxLinks) return;
   faults.throwIfAny();
   throw Error(
@@ -198,10 +205,11 @@ void parseBody(const Field& field, SceneDraft& scene, FaultList& faults) {
   parseName(reader, draft);
   parseMaterialName(reader, scene, draft);
   parseShape(reader, draft);
-  draft.body.motion =
-      reader.choice<Motion>("motion", {{"dynamic", Motion::dynamic}, {"static", Motion::fixed}}, Motion::dynamic);
+  draft.body.motion = reader.choice<Motion>(
+      "motion", {{"dynamic", Motion::dynamic}, {"static", Motion::fixed}, {"driven", Motion::driven}}, Motion::dynamic);
   parseGivenMass(reader, draft);
   parsePose(reader, draft);
+  parseDriven(reader, draft);
   if (faults.count() == faultsBefore && !draft.meshField) completePrimitive(draft, scene, faults);
   warnOfUnused(reader, draft, scene.warnings);
   writeOutBodies(reader, draft, scene);

@@ -8,8 +8,9 @@ namespace {
 constexpr double kMaxVertices = 2147483647;  // vertex indices are int
 constexpr int kMaxDirections = 1000;         // of a body: so many take 1 s and 150 MB at the start of a run
 
+/// Whether no force moves it.
 bool isFixed(int body, const Scene& scene) {
-  return body == kWorld || scene.bodies[static_cast<std::size_t>(body)].motion == Motion::fixed;
+  return body == kWorld || scene.bodies[static_cast<std::size_t>(body)].motion != Motion::dynamic;
 }
 
 std::optional<int> readVertex(const Field& field, int body, const SceneDraft& scene, FaultList& faults) {

@@ -94,12 +94,15 @@ Quat parseOrientation(const Field& field, FaultList& faults) {
 
 }  // namespace
 
+RigidTransform parsePlace(ObjectReader& reader, const RigidTransform& usual) {
+  RigidTransform place{usual.rotation, reader.vector("position", kCoordinates, "m", usual.translation)};
+  if (const auto field = reader.find("orientation")) place.rotation = parseOrientation(*field, reader.faults());
+  return place;
+}
+
 void parsePose(ObjectReader& reader, BodyDraft& draft) {
   Body& body = draft.body;
-  body.worldFromBody.translation = reader.vector("position", kCoordinates, "m", Vec3::Zero());
-  if (const auto field = reader.find("orientation")) {
-    body.worldFromBody.rotation = parseOrientation(*field, reader.faults());
-  }
+  body.worldFromBody = parsePlace(reader, {});
   body.linearVelocity = reader.vector("linearVelocity", kSpeeds, "m/s", Vec3::Zero());
   const auto inWorld = reader.find("angularVelocity"), inBody = reader.find("angularVelocityBody");
   if (inWorld && inBody) {

@@ -12,4 +12,7 @@ inline constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 /// `position`, `orientation` and the velocities of a body.
 void parsePose(ObjectReader& reader, BodyDraft& draft);
 
+/// `position` and `orientation` of an object, each `usual` where it is not given.
+RigidTransform parsePlace(ObjectReader& reader, const RigidTransform& usual);
+
 }  // namespace cradle

@@ -30,8 +30,8 @@ void parseTarget(ObjectReader& reader, Push& push) {
 void warnIfFixed(const Push& push, SceneDraft& scene) {
   const Body& body = scene.scene.bodies[static_cast<std::size_t>(push.body)];
   if (body.motion == Motion::dynamic) return;
-  scene.warnings.push_back(
-      fmt::format("{}: the push moves nothing, because body {} is static", push.where, inQuotes(body.name)));
+  scene.warnings.push_back(fmt::format("{}: the push moves nothing, because body {} is {}", push.where,
+                                       inQuotes(body.name), body.motion == Motion::driven ? "driven" : "static"));
 }
 
 Push parsePush(const Field& field, SceneDraft& scene, FaultList& faults) {

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "math/prescribed_motion.h"
 #include "math/types.h"
 #include "mesh/convex_hull.h"
 #include "mesh/load_mesh.h"
@@ -47,7 +48,8 @@ struct ModelCollision {
 using Shape = std::variant<Sphere, Box, Cylinder, Capsule, Plane, ModelShape>;
 
 enum class CollisionChoice { automatic, sphere, box, hull, mesh, none };
-enum class Motion { dynamic, fixed };
+/// What moves a body: forces, nothing, or what `prescribed` says, whatever acts on it.
+enum class Motion { dynamic, fixed, driven };
 
 struct Body {
   std::string name;
@@ -57,10 +59,11 @@ struct Body {
   Shape shape = Sphere{};
   CollisionChoice collision = CollisionChoice::automatic;
   Motion motion = Motion::dynamic;
-  MassProperties massProperties;        // body's frame; mass 0 if fixed
-  RigidTransform worldFromBody;         // start; of the body's frame, not of the centre of mass
-  Vec3 linearVelocity = Vec3::Zero();   // m/s, world, of the centre of mass
-  Vec3 angularVelocity = Vec3::Zero();  // rad/s, world
+  std::optional<PrescribedMotion> prescribed;  // of the body's frame; if driven
+  MassProperties massProperties;               // body's frame; mass 0 unless dynamic
+  RigidTransform worldFromBody;                // start; of the body's frame, not of the centre of mass
+  Vec3 linearVelocity = Vec3::Zero();          // m/s, world, of the centre of mass
+  Vec3 angularVelocity = Vec3::Zero();         // rad/s, world
 };
 
 /// A point of a body's frame, or of the world.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "collision/broad_phase.h"
 #include "core/error.h"
@@ -24,15 +25,17 @@ Attachment attach(const Anchor& anchor, const Scene& scene, const std::vector<in
 }
 
 void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
-  assembly.sceneBodies = island.bodies;
-  for (const int index : island.bodies) {
+  std::merge(island.bodies.begin(), island.bodies.end(), island.driven.begin(), island.driven.end(),
+             std::back_inserter(assembly.sceneBodies));
+  for (const int index : assembly.sceneBodies) {
     const Body& body = scene.bodies[static_cast<std::size_t>(index)];
-    assembly.mechanism.bodies.push_back(makeRigidBody(body.massProperties));
+    RigidBody inertia = body.prescribed ? drivenRigidBody() : makeRigidBody(body.massProperties);
+    inertia.hasConstantSpin = std::binary_search(island.nonRotating.begin(), island.nonRotating.end(), index);
+    if (body.prescribed)
+      add(static_cast<int>(assembly.mechanism.bodies.size()), *body.prescribed, assembly.mechanism.driven);
+    assembly.mechanism.bodies.push_back(inertia);
     assembly.names.bodies.push_back(body.name);
   }
-  for (std::size_t i = 0; i < island.bodies.size(); ++i)
-    assembly.mechanism.bodies[i].hasConstantSpin =
-        std::binary_search(island.nonRotating.begin(), island.nonRotating.end(), island.bodies[i]);
   VectorX& state = assembly.state;
   state.setZero(stateSize(static_cast<Eigen::Index>(assembly.sceneBodies.size())));
   for (std::size_t i = 0; i < assembly.sceneBodies.size(); ++i) {
@@ -47,11 +50,12 @@ void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly)
 
 /// Calls add(link, anchorA, anchorB) for the links of one kind that are attached to a body of the island.
 template <class Links, class Add>
-void forEachLink(LinkKind kind, const Links& links, const Scene& scene, const IslandPlan& island, const Add& add) {
+void forEachLink(LinkKind kind, const Links& links, const Scene& scene, const IslandPlan& island,
+                 const std::vector<int>& sceneBodies, const Add& add) {
   for (const LinkIndex& place : island.links) {
     if (place.kind != kind) continue;
     const auto& link = links[place.index];
-    const Attachment a = attach(link.anchorA, scene, island.bodies), b = attach(link.anchorB, scene, island.bodies);
+    const Attachment a = attach(link.anchorA, scene, sceneBodies), b = attach(link.anchorB, scene, sceneBodies);
     if (a.body != kFixed || b.body != kFixed) add(link, a, b);
   }
 }
@@ -71,7 +75,7 @@ HingeConstraint hingeAt(const Hinge& hinge, const Attachment& a, const Attachmen
 
 void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
   Mechanism& mechanism = assembly.mechanism;
-  forEachLink(LinkKind::spring, scene.springs, scene, island,
+  forEachLink(LinkKind::spring, scene.springs, scene, island, assembly.sceneBodies,
               [&](const Spring& spring, const Attachment& a, const Attachment& b) {
                 mechanism.springs.push_back({a, b, spring.stiffness, spring.damping, spring.restLength});
                 assembly.names.springs.push_back(spring.name);
@@ -80,18 +84,19 @@ void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) 
     mechanism.constraints.push_back(constraint);
     assembly.names.constraints.push_back(fmt::format("{} \"{}\"", kind, name));
   };
-  forEachLink(LinkKind::rod, scene.rods, scene, island, [&](const Rod& rod, const Attachment& a, const Attachment& b) {
-    addConstraint("rod", rod.name, {a, b, RodConstraint{rod.length}});
-  });
-  forEachLink(LinkKind::ballJoint, scene.ballJoints, scene, island,
+  forEachLink(LinkKind::rod, scene.rods, scene, island, assembly.sceneBodies,
+              [&](const Rod& rod, const Attachment& a, const Attachment& b) {
+                addConstraint("rod", rod.name, {a, b, RodConstraint{rod.length}});
+              });
+  forEachLink(LinkKind::ballJoint, scene.ballJoints, scene, island, assembly.sceneBodies,
               [&](const BallJoint& joint, const Attachment& a, const Attachment& b) {
                 addConstraint("ball joint", joint.name, {a, b, BallJointConstraint()});
               });
-  forEachLink(LinkKind::hinge, scene.hinges, scene, island,
+  forEachLink(LinkKind::hinge, scene.hinges, scene, island, assembly.sceneBodies,
               [&](const Hinge& hinge, const Attachment& a, const Attachment& b) {
                 addConstraint("hinge", hinge.name, {a, b, hingeAt(hinge, a, b, scene)});
               });
-  forEachLink(LinkKind::rope, scene.ropes, scene, island,
+  forEachLink(LinkKind::rope, scene.ropes, scene, island, assembly.sceneBodies,
               [&](const Rope& rope, const Attachment& a, const Attachment& b) {
                 assembly.ropes.push_back({a, b, rope.maxLength, rope.restitution});
                 assembly.ropeBodies.emplace_back(rope.anchorA.body, rope.anchorB.body);
@@ -131,6 +136,7 @@ void addColliders(const Scene& scene, const IslandPlan& island, Assembly& assemb
       assembly.planeBodies.push_back(index);
     } else {
       geometry.colliders.push_back(*colliderOf(body, scene, indexAmong(assembly.sceneBodies, index)));
+      geometry.colliders.back().isDriven = body.motion == Motion::driven;
       assembly.colliderBodies.push_back(index);
       const Collider& collider = geometry.colliders.back();
       if (collider.body != kFixed) assembly.radii[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
@@ -159,7 +165,7 @@ void excludeUnsolved(ContactGeometry& geometry) {
   for (std::size_t a = 0; a < geometry.colliders.size(); ++a)
     for (std::size_t b = a + 1; b < geometry.colliders.size(); ++b) {
       const Collider &first = geometry.colliders[a], &second = geometry.colliders[b];
-      if ((first.body == kFixed && second.body == kFixed) || canSolveContact(first, &second)) continue;
+      if ((first.isHeld() && second.isHeld()) || canSolveContact(first, &second)) continue;
       if (std::find(joined.begin(), joined.end(), std::pair(a, b)) != joined.end()) continue;
       geometry.unsolvedPairs.push_back({a, b, false, {}});
       geometry.excluded.emplace_back(a, b);

@@ -20,13 +20,13 @@ bool isIsolated(const Assembly& assembly) {
   const auto isTied = [](const auto& link) { return actsFromOutside(link.anchorA, link.anchorB); };
   const auto areFree = [&](const auto& links) { return std::none_of(links.begin(), links.end(), isTied); };
   const std::vector<Collider>& colliders = assembly.geometry.colliders;
-  return assembly.pushes.empty() && assembly.geometry.planes.empty() && areFree(assembly.mechanism.springs) &&
-         areFree(assembly.mechanism.constraints) && areFree(assembly.ropes) &&
+  return assembly.pushes.empty() && assembly.mechanism.driven.empty() && assembly.geometry.planes.empty() &&
+         areFree(assembly.mechanism.springs) && areFree(assembly.mechanism.constraints) && areFree(assembly.ropes) &&
          std::none_of(colliders.begin(), colliders.end(), [](const Collider& c) { return c.body == kFixed; });
 }
 
 double radiusOfGyration(const RigidBody& body) {
-  return std::sqrt(body.inertiaTensor.norm() / body.mass);
+  return body.isDriven() ? 0 : std::sqrt(body.inertiaTensor.norm() / body.mass);
 }
 
 /// Magnitudes of the bodies' momenta about the centre of mass of all, and what rounding may change of their sum.

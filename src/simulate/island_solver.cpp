@@ -133,9 +133,11 @@ void IslandSolver::endPromise(const EventMotion& events, double timeStep) {
 void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
   const double fraction = (time - island_.step.time) / island_.step.timeStep;
   interpolate(island_.step, fraction, reported_);
+  place(island_.assembly.mechanism.driven, time, reported_);
   if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->addContactMotion(fraction, reported_);
   const Mechanism& mechanism = island_.assembly.mechanism;
   const auto* events = std::get_if<EventMotion>(&motion_);
+  if (events && !mechanism.driven.empty()) integrateWork(*events, fraction);
   if (events && keepsConstraints && !events->contactsOfStep().empty()) {
     project(events->contactsOfStep());
   } else if (keepsConstraints && solver_.hasConstraints()) {
@@ -145,6 +147,35 @@ void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
   }
   numericalEnergy(reported_) = numericalEnergy(island_.step.startState);
   bookNumerical(energyConstant(mechanism, island_.step.startState), mechanism, reported_);
+}
+
+/// Sets the work since the step's start to the integral of the power along the interpolant, by Gauss and Legendre: of
+/// degree 2 k - 1, in steps that are as long as the motion allows, it is more exact than the interpolant of the work,
+/// whose degree is that of the motion's.
+void IslandSolver::integrateWork(const EventMotion& events, double fraction) {
+  constexpr double kNodes[] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521};  // of -1..1, both signs
+  constexpr double kWeights[] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
+  const Step& step = island_.step;
+  Mechanism& mechanism = island_.assembly.mechanism;
+  // As it was in the step: what has ended it may have changed contacts, and brought bodies to rest.
+  std::vector<ContactConstraint> contacts = events.contactsOfStep();
+  std::swap(contacts, mechanism.contacts);
+  const std::vector<char> resting = island_.equations.resting();
+  findStill();
+  for (std::size_t i = 0; i < resting.size(); ++i)
+    if (!still_[i]) island_.equations.setResting(i, false);
+  double power = 0;  // W, mean
+  for (std::size_t i = 0; i < std::size(kNodes); ++i)
+    for (const double node : {-kNodes[i], kNodes[i]}) {
+      const double part = fraction * (1 + node) / 2, time = step.time + part * step.timeStep;
+      interpolate(step, part, sample_);
+      place(mechanism.driven, time, sample_);
+      island_.equations.evaluate(time, sample_, derivative_);
+      power += kWeights[i] / 2 * pushWork(derivative_);
+    }
+  std::swap(contacts, mechanism.contacts);
+  for (std::size_t i = 0; i < resting.size(); ++i) island_.equations.setResting(i, resting[i]);
+  pushWork(reported_) = pushWork(step.startState) + fraction * step.timeStep * power;
 }
 
 /// Projects the interpolated state onto the constraint manifold: no gaps at active contacts, no constraint errors.

@@ -55,6 +55,7 @@ class IslandSolver {
   /// The state of a frame inside a step. Its difference from the energy of the step's start is an error of that frame
   /// alone.
   void interpolateAt(double time, bool keepsConstraints);
+  void integrateWork(const EventMotion& events, double fraction);
   void project(const std::vector<ContactConstraint>& contacts);
   void findStill();
   void rotate(Eigen::Index body, double time, VectorX& state) const;
@@ -69,7 +70,7 @@ class IslandSolver {
   double nextTrial_ = 0;           // s: when events may serve again
   double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not
   std::vector<char> still_;        // bodies that the step has not moved
-  VectorX reported_;
+  VectorX reported_, sample_, derivative_;
 };
 
 }  // namespace cradle

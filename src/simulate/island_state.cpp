@@ -19,7 +19,8 @@ IslandState::IslandState(const Scene& source, Assembly parts)
       pushes(scene, assembly, log),
       search(assembly.geometry),
       state(assembly.state),
-      motions_(assembly.mechanism.bodies.size()) {}
+      motions_(assembly.mechanism.bodies.size()),
+      nextJump_(nextJump(assembly.mechanism.driven, time)) {}
 
 void IslandState::findNearPairs(double margin) {
   const ContactGeometry& geometry = assembly.geometry;
@@ -34,10 +35,24 @@ void IslandState::findNearPairsNow(double margin) {
   broadPhase_.update(state, motions_, margin, assembly.geometry);
 }
 
-bool IslandState::beginAndEndPushes() {
-  if (time < pushes.nextChange()) return false;
-  for (const int body : pushes.apply(time, state, assembly.mechanism.pushes)) wake(body);
-  return true;
+void IslandState::integrate(Integrator method, const VectorX& from, double length) {
+  method(rightHandSide, from, time, length, step);
+  place(assembly.mechanism.driven, step.time + step.timeStep, step.state);
+}
+
+bool IslandState::makeChanges() {
+  if (time < nextChange()) return false;
+  bool isAny = time >= pushes.nextChange();
+  if (isAny)
+    for (const int body : pushes.apply(time, state, assembly.mechanism.pushes)) wake(body);
+  for (const DrivenBody& driven : assembly.mechanism.driven) {
+    const bool rests = resting.isResting(driven.body);
+    if (rests == isStill(driven.motion, time)) continue;
+    if (rests) wake(driven.body);
+    isAny = true;
+  }
+  nextJump_ = nextJump(assembly.mechanism.driven, time);
+  return isAny;
 }
 
 void IslandState::wake(int body) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,17 @@ struct IslandState {
   /// Sets the pairs that are nearer than that now.
   void findNearPairsNow(double margin);
 
-  /// Lets pushes begin and end that do so now, and wakes what they act upon. True if there were any.
-  bool beginAndEndPushes();
+  /// Sets `step` to one from `from`, the state of now, with that length (s), at whose end driven bodies are where they
+  /// are to be.
+  void integrate(Integrator method, const VectorX& from, double length);
+  void integrate(Integrator method, double length) { integrate(method, state, length); }
+
+  /// s: the next instant at which forces change or the motion of a driven body has a jump. No step may go beyond it.
+  double nextChange() const { return std::min(pushes.nextChange(), nextJump_); }
+
+  /// Lets pushes begin and end that do so now, and wakes what they act upon, and driven bodies that begin to move. True
+  /// if there were any, or driven bodies that have come to a stop.
+  bool makeChanges();
 
   /// Wakes a body with all that rests with it, with events.
   void wake(int body);
@@ -54,6 +64,7 @@ struct IslandState {
  private:
   BroadPhase broadPhase_;
   std::vector<double> motions_;  // m: how far the points of each body may go within the step
+  double nextJump_;              // s: of driven bodies
 };
 
 }  // namespace cradle

@@ -42,6 +42,7 @@ std::vector<int> RestingBodies::islandsOf(const std::vector<Contact>& contacts) 
 
 /// What is shaken again and again does not rest in between.
 bool RestingBodies::isStill(double time, std::size_t body, const VectorX& state) const {
+  if (mechanism_.bodies[body].isDriven()) return isDrivenStill(mechanism_.driven, static_cast<int>(body), time);
   return time - wakeTimes_[body] >= stillTime_ && isSlow(body, state);
 }
 
@@ -52,10 +53,10 @@ bool RestingBodies::isSlow(std::size_t index, const VectorX& state) const {
   return speed2 < tolerances_.maxSlowSquare(sizes_[index]);
 }
 
-bool RestingBodies::canBeInEquilibrium(const std::vector<int>& islands, int island, const VectorX& state) {
+bool RestingBodies::canBeInEquilibrium(double time, const std::vector<int>& islands, int island, const VectorX& state) {
   // Accelerations stand in for velocities: the impulses that stop them are then the forces of the equilibrium.
   VectorX derivative, accelerations = state;
-  equations_.evaluate(state, derivative);
+  equations_.evaluate(time, state, derivative);
   const Eigen::Index velocities = static_cast<Eigen::Index>(islands.size()) * kVelocitySize;
   accelerations.segment(poseComponents(state), velocities) = derivative.segment(poseComponents(state), velocities);
 
@@ -114,7 +115,7 @@ std::vector<int> RestingBodies::letSleep(double time, const std::vector<Contact>
     if (!isStill(time, body, state)) candidate[static_cast<std::size_t>(islands[body])] = 0;
 
   for (std::size_t island = 0; island < islands.size(); ++island) {
-    if (!candidate[island] || !canBeInEquilibrium(islands, static_cast<int>(island), state)) continue;
+    if (!candidate[island] || !canBeInEquilibrium(time, islands, static_cast<int>(island), state)) continue;
     std::vector<int> members;
     for (std::size_t body = 0; body < islands.size(); ++body) {
       if (islands[body] != static_cast<int>(island)) continue;

@@ -38,7 +38,7 @@ class RestingBodies {
   bool isSlow(std::size_t body, const VectorX& state) const;
   void applySupportForces(const std::vector<Contact>& supports, const std::vector<double>& frictions,
                           const VectorX& state, VectorX& accelerations);
-  bool canBeInEquilibrium(const std::vector<int>& islands, int island, const VectorX& state);
+  bool canBeInEquilibrium(double time, const std::vector<int>& islands, int island, const VectorX& state);
 
   const Mechanism& mechanism_;
   const ContactGeometry& geometry_;

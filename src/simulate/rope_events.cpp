@@ -91,7 +91,8 @@ std::optional<RopeChange> RopeEvents::firstChange(const Step& step) {
     }
   }
   if (first && isTaut(first->rope))
-    tensionScale_ = std::max(tension(first->rope, step.startState), std::abs(tension(first->rope, step.state)));
+    tensionScale_ = std::max(tension(first->rope, step.time, step.startState),
+                             std::abs(tension(first->rope, step.time + step.timeStep, step.state)));
   return first;
 }
 
@@ -123,11 +124,11 @@ std::optional<RopeChange> RopeEvents::firstReach(const Step& step, std::size_t i
 
 /// First fraction of the step at which the tension of a taut rope falls below zero, between a few samples of it.
 std::optional<double> RopeEvents::firstTensionLoss(const Step& step, std::size_t rope) {
-  double before = tension(rope, step.startState);
+  double before = tension(rope, step.time, step.startState);
   for (int i = 1; i <= kTensionSamples; ++i) {
     const double fraction = static_cast<double>(i) / kTensionSamples;
     interpolate(step, fraction, sample_);
-    const double after = tension(rope, sample_);
+    const double after = tension(rope, step.time + fraction * step.timeStep, sample_);
     if (before > 0 && after < 0) return fraction - after / (after - before) / kTensionSamples;
     before = after;
   }
@@ -135,14 +136,15 @@ std::optional<double> RopeEvents::firstTensionLoss(const Step& step, std::size_t
 }
 
 double RopeEvents::margin(const RopeChange& change, const VectorX& state) {
-  if (isTaut(change.rope)) return tension(change.rope, state) / tensionScale_;
+  if (isTaut(change.rope))
+    return tension(change.rope, island_.step.time + island_.step.timeStep, state) / tensionScale_;
   const RopeLimit& rope = assembly_.ropes[change.rope];
   return (motionOf(rope, state).slackLength - change.threshold) / rope.maxLength;
 }
 
 /// Force (N) with which a taut rope pulls its ends together. Its row's multiplier pushes by multiplier x distance.
-double RopeEvents::tension(std::size_t rope, const VectorX& state) {
-  equations_.evaluate(state, derivative_);
+double RopeEvents::tension(std::size_t rope, double time, const VectorX& state) {
+  equations_.evaluate(time, state, derivative_);
   return -equations_.multipliers()[tautRow_[rope]] * assembly_.ropes[rope].maxLength;
 }
 
@@ -156,7 +158,7 @@ bool RopeEvents::resolve(double time, VectorX& state) {
   // Ropes that would have to push are released, even where others go taut; impacts may have shortened some.
   std::vector<char> isReleased(tautRow_.size(), 0);
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
-    if (!isTaut(i) || rests(i) || tension(i, state) > kTautRatio * tensionScale_) continue;
+    if (!isTaut(i) || rests(i) || tension(i, time, state) > kTautRatio * tensionScale_) continue;
     release(time, i, state);
     isReleased[i] = 1;
   }
@@ -175,7 +177,7 @@ bool RopeEvents::pullStretched(double time, VectorX& state) {
 /// A pull may stretch another rope that is at its length, or load it.
 bool RopeEvents::pullStretched(double time, const std::vector<char>& isReleased, VectorX& state) {
   for (int round = 0; round < kMaxPullRounds; ++round) {
-    const std::vector<Stretch> stretches = findStretches(isReleased, state);
+    const std::vector<Stretch> stretches = findStretches(time, isReleased, state);
     if (stretches.empty()) return round > 0;
     pull(time, stretches, state);
   }
@@ -185,7 +187,8 @@ bool RopeEvents::pullStretched(double time, const std::vector<char>& isReleased,
 /// Ropes at their length that still lengthen. A rebound that would end within about two steps is not resolved: the rope
 /// stays taut. Smooth forces do not pull at a rope in the instant that it is released: its tension is zero to rounding,
 /// of either sign, and would have it released again before time moves on.
-std::vector<RopeEvents::Stretch> RopeEvents::findStretches(const std::vector<char>& isReleased, const VectorX& state) {
+std::vector<RopeEvents::Stretch> RopeEvents::findStretches(double time, const std::vector<char>& isReleased,
+                                                           const VectorX& state) {
   std::vector<Stretch> stretches;
   bool isEvaluated = false;
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
@@ -193,7 +196,7 @@ std::vector<RopeEvents::Stretch> RopeEvents::findStretches(const std::vector<cha
     if (isTaut(i)) continue;
     const RopeMotion motion = motionOf(rope, state);
     if (motion.slackLength > kTautRatio * rope.maxLength || motion.lengthening < -kRestSpeedFloor) continue;
-    if (!std::exchange(isEvaluated, true)) equations_.evaluate(state, derivative_);
+    if (!std::exchange(isEvaluated, true)) equations_.evaluate(time, state, derivative_);
     const double acceleration = lengtheningAcceleration(rope, state, derivative_),
                  pulling = std::max(0.0, acceleration);
     const bool isLoaded = !isReleased[i] && acceleration > kMinPull * assembly_.mechanism.gravity.norm();

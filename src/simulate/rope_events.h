@@ -30,7 +30,7 @@ class RopeEvents {
   std::optional<RopeChange> firstChange(const Step& step);
 
   /// Zero where the change happens, positive before: slack as a part of the length, or tension as a part of the
-  /// greater of those at both ends of the step.
+  /// greater of those at both ends of the step. `state` is that of the step's end.
   double margin(const RopeChange& change, const VectorX& state);
 
   /// What happens at the end of a step: impulses in ropes that are at their length, new rods, released ropes. True if
@@ -62,7 +62,7 @@ class RopeEvents {
  private:
   bool isTaut(std::size_t rope) const { return tautRow_[rope] >= 0; }
   bool rests(std::size_t rope) const;
-  double tension(std::size_t rope, const VectorX& state);
+  double tension(std::size_t rope, double time, const VectorX& state);
   std::optional<double> firstTensionLoss(const Step& step, std::size_t rope);
   std::optional<RopeChange> firstReach(const Step& step, std::size_t rope, double end) const;
   /// A rope at its length that lengthens.
@@ -73,7 +73,7 @@ class RopeEvents {
     bool isLoaded;        // forces would lengthen it further
   };
   bool pullStretched(double time, const std::vector<char>& isReleased, VectorX& state);
-  std::vector<Stretch> findStretches(const std::vector<char>& isReleased, const VectorX& state);
+  std::vector<Stretch> findStretches(double time, const std::vector<char>& isReleased, const VectorX& state);
   void pull(double time, const std::vector<Stretch>& stretches, VectorX& state);
   void release(double time, std::size_t rope, const VectorX& state);
   void loosen(double time, std::size_t rope, const VectorX& state);

@@ -45,8 +45,8 @@ TrajectoryHeader headerOf(const Scene& scene, const Plan& plan) {
   header.meshes = scene.models;
   for (const Body& body : scene.bodies) {
     const auto* model = std::get_if<ModelShape>(&body.shape);
-    header.bodies.push_back({body.name, body.motion == Motion::dynamic, model ? model->model : -1,
-                             shapeText(body.shape), body.massProperties});
+    header.bodies.push_back({body.name, body.motion == Motion::dynamic, body.motion == Motion::driven,
+                             model ? model->model : -1, shapeText(body.shape), body.massProperties});
   }
   return header;
 }

@@ -29,8 +29,10 @@ void add(const Invariants& sums, const VectorX& state, EnergyBalance& balance) {
 }  // namespace
 
 World::World(const Scene& scene) : plan_(planOf(scene)) {
-  for (const Body& body : scene.bodies)
-    stateOfBody_.push_back(body.motion == Motion::dynamic ? static_cast<int>(moving_++) : -1);
+  for (const Body& body : scene.bodies) {
+    if (body.prescribed) cradle::add(static_cast<int>(moving_), *body.prescribed, driven_);
+    stateOfBody_.push_back(body.motion == Motion::fixed ? -1 : static_cast<int>(moving_++));
+  }
   std::vector<Assembly> assemblies;
   for (const IslandPlan& island : plan_.islands) assemblies.push_back(assemble(scene, island));
   correctStartPenetrations(scene, assemblies);
@@ -123,6 +125,11 @@ Frame World::frameAt(long number, double time, const std::function<void(double t
     for (const FreeFlight& flight : island.flights) flight.moveTo(time, island.assembly.state);
     island.evaluations += std::ssize(island.flights);
     addTo(frame, island.assembly, island.assembly.state);
+  }
+  for (const DrivenBody& driven : driven_) {  // of islands or not
+    const PoseMotion now = motionAt(driven.motion, time);
+    frame.states[static_cast<std::size_t>(driven.body)] = {now.pose.translation, now.pose.rotation, now.velocity,
+                                                           now.angularVelocity};
   }
   return frame;
 }

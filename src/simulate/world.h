@@ -83,6 +83,7 @@ class World {
   std::vector<std::unique_ptr<SoftSubsteps>> softIslands_;
   std::vector<int> stateOfBody_;  // of each scene body in a frame's states, or -1
   std::size_t moving_ = 0;
+  std::vector<DrivenBody> driven_;                    // by their places in a frame's states
   std::array<char, kCorrectionKinds> isToldOf_ = {};  // kinds of corrections
   std::vector<Event> events_;                         // known, but not yet taken
   double lastTime_ = 0;                               // s, of the latest frame

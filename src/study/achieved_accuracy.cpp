@@ -56,7 +56,7 @@ void disturb(Scene& scene, double disturbance) {
 std::vector<BodyError> bodiesOf(const Scene& scene) {
   std::vector<BodyError> bodies;
   for (const Body& body : scene.bodies)
-    if (body.motion == Motion::dynamic) bodies.push_back({body.name, 0, 0});
+    if (body.motion != Motion::fixed) bodies.push_back({body.name, 0, 0});
   return bodies;
 }
 

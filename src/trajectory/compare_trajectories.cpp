@@ -16,21 +16,21 @@ namespace {
 constexpr double kSameTime = 1e-12;
 constexpr std::size_t kMaxListed = 10;  // bodies named in a description
 
-/// The indices, among the dynamic bodies of two trajectories, of one body.
+/// The indices, among the bodies that move of two trajectories, of one body.
 struct BodyPair {
   std::size_t expected, actual;
 };
 
-std::vector<std::string> dynamicBodyNames(const TrajectoryReader& reader) {
+std::vector<std::string> movingBodyNames(const TrajectoryReader& reader) {
   std::vector<std::string> names;
   for (const BodyRecord& body : reader.header().bodies)
-    if (body.isDynamic) names.push_back(body.name);
+    if (body.hasStates()) names.push_back(body.name);
   return names;
 }
 
 std::vector<BodyPair> pairBodies(const TrajectoryReader& expected, const TrajectoryReader& actual,
                                  TrajectoryComparison& result) {
-  const auto expectedNames = dynamicBodyNames(expected), actualNames = dynamicBodyNames(actual);
+  const auto expectedNames = movingBodyNames(expected), actualNames = movingBodyNames(actual);
   std::unordered_map<std::string, std::size_t> unpaired;
   for (std::size_t i = 0; i < actualNames.size(); ++i) unpaired[actualNames[i]] = i;
   std::vector<BodyPair> pairs;

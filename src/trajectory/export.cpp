@@ -20,7 +20,7 @@ void exportCsv(const TrajectoryReader& reader, const std::string& path,
                const std::function<void(long done)>& progress) {
   std::vector<std::string> names;
   for (const BodyRecord& body : reader.header().bodies)
-    if (body.isDynamic) names.push_back(csvField(body.name));
+    if (body.hasStates()) names.push_back(csvField(body.name));
 
   PartFile file(path);
   file.write(kColumns);

@@ -68,10 +68,13 @@ struct Event {
 /// A body as the trajectory describes it.
 struct BodyRecord {
   std::string name;
-  bool isDynamic = true;
+  bool isDynamic = true;          // moved by forces
+  bool isDriven = false;          // moves as is prescribed
   int mesh = -1;                  // index into TrajectoryHeader::meshes, or -1
   std::string shape;              // JSON of the primitive, as in the scene file; empty if it has a mesh
-  MassProperties massProperties;  // body's frame; mass 0 if static
+  MassProperties massProperties;  // body's frame; mass 0 unless dynamic
+
+  bool hasStates() const { return isDynamic || isDriven; }
 };
 
 /// All that is known before the first step.

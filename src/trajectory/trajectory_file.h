@@ -57,7 +57,7 @@ class TrajectoryWriter {
 
   std::string path_, part_;
   std::vector<std::string> bodyNames_;
-  std::vector<int> dynamicBodies_;  // ids
+  std::vector<int> movingBodies_;  // ids
   std::chrono::milliseconds commitInterval_;
   std::chrono::steady_clock::time_point lastCommit_;
   long framesAppended_ = 0, framesCommitted_ = 0;
@@ -107,7 +107,7 @@ class TrajectoryReader {
 
   std::string path_;
   TrajectoryHeader header_;
-  std::vector<int> dynamicBodies_;  // ids
+  std::vector<int> movingBodies_;  // ids
   std::vector<double> frameTimes_;
   std::map<std::string, std::string> meta_;
   std::unique_ptr<Session> session_;

@@ -255,7 +255,8 @@ void TrajectoryReader::readBodies() {
     const bool hasMesh = !query.isNull(3);
     const std::int64_t mesh = hasMesh ? query.integer(3) : -1;
     if (query.integer(0) != id) database.failDamaged("a body is missing");
-    if (motion != "dynamic" && motion != "static") database.failDamaged("a body is neither dynamic nor static");
+    if (motion != "dynamic" && motion != "static" && motion != "driven")
+      database.failDamaged("a body is neither dynamic nor static nor driven");
     if (hasMesh && (mesh < 0 || mesh >= static_cast<std::int64_t>(header_.meshes.size())))
       database.failDamaged("a body has a mesh that is not there");
     const MassProperties properties = massPropertiesAt(query, 5);
@@ -263,9 +264,9 @@ void TrajectoryReader::readBodies() {
       database.failDamaged(fmt::format("body \"{}\" has a mass or a moment of inertia that is not above 0", name));
     if (!isPossiblePlace(properties.centerOfMass))
       database.failDamaged(fmt::format("body \"{}\" has its centre of mass 1e30 m away or more", name));
-    if (motion == "dynamic") dynamicBodies_.push_back(static_cast<int>(id));
-    header_.bodies.push_back(
-        {name, motion == "dynamic", static_cast<int>(mesh), hasMesh ? "" : query.text(4), properties});
+    if (motion != "static") movingBodies_.push_back(static_cast<int>(id));
+    header_.bodies.push_back({name, motion == "dynamic", motion == "driven", static_cast<int>(mesh),
+                              hasMesh ? "" : query.text(4), properties});
   }
 }
 
@@ -296,7 +297,7 @@ Frame TrajectoryReader::readFrame(long number) const {
   Statement& state = *session_->state;
   state.reset();
   state.bind(1, number);
-  for (const int body : dynamicBodies_) {
+  for (const int body : movingBodies_) {
     if (!state.step() || state.integer(0) != body) fail("the states");
     frame.states.push_back(stateAt(state, 1));
     if (!isPossible(frame.states.back()))

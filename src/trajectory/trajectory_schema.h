@@ -17,10 +17,10 @@ CREATE TABLE mesh (id INTEGER PRIMARY KEY, name TEXT,
   triangles BLOB,  -- vertex numbers, counter-clockwise from outside; 3 uint32
   material TEXT);  -- JSON: name, baseColor, firstTriangle, triangleCount of each range of triangles
 CREATE TABLE body (id INTEGER PRIMARY KEY, name TEXT UNIQUE,
-  motion TEXT,              -- dynamic or static
+  motion TEXT,              -- dynamic, static or driven
   mesh INTEGER,             -- id, or null if it has a shape
   shape TEXT,               -- JSON of a primitive as in the scene file, or null
-  mass,                     -- kg; 0 if static
+  mass,                     -- kg; 0 unless dynamic
   comx, comy, comz,         -- m, centre of mass in the body's frame
   ixx, iyy, izz, ixy, ixz, iyz);  -- kg m^2, about the centre of mass, body's frame
 CREATE TABLE frame (id INTEGER PRIMARY KEY, time);  -- s

@@ -95,7 +95,7 @@ void insertBodies(Database& database, const TrajectoryHeader& header) {
     CRADLE_CHECK(hasMesh ? static_cast<std::size_t>(body.mesh) < header.meshes.size() : !body.shape.empty());
     insert.bind(1, id);
     insert.bind(2, body.name);
-    insert.bind(3, body.isDynamic ? "dynamic" : "static");
+    insert.bind(3, body.isDynamic ? "dynamic" : body.isDriven ? "driven" : "static");
     hasMesh ? insert.bind(4, body.mesh) : insert.bindNull(4);
     hasMesh ? insert.bindNull(5) : insert.bind(5, body.shape);
     const MassProperties& m = body.massProperties;
@@ -184,7 +184,7 @@ TrajectoryWriter::TrajectoryWriter(const TrajectoryHeader& header) : commitInter
 void TrajectoryWriter::begin(std::unique_ptr<Database> database, const TrajectoryHeader& header) {
   for (std::size_t id = 0; id < header.bodies.size(); ++id) {
     bodyNames_.push_back(header.bodies[id].name);
-    if (header.bodies[id].isDynamic) dynamicBodies_.push_back(static_cast<int>(id));
+    if (header.bodies[id].hasStates()) movingBodies_.push_back(static_cast<int>(id));
   }
   session_ = std::make_unique<Session>(std::move(database));
   insertHeader(*session_->database, header);
@@ -200,7 +200,7 @@ TrajectoryWriter::~TrajectoryWriter() {
 void TrajectoryWriter::append(const Frame& frame) {
   CRADLE_CHECK(session_ && transactionWhole_);
   CRADLE_CHECK(frame.number == framesAppended_ && (frame.number == 0 || frame.time > lastTime_));
-  CRADLE_CHECK(frame.states.size() == dynamicBodies_.size());
+  CRADLE_CHECK(frame.states.size() == movingBodies_.size());
   requireFinite(frame);
   transactionWhole_ = false;
   writeFrame(frame);
@@ -214,7 +214,7 @@ void TrajectoryWriter::append(const Frame& frame) {
 void TrajectoryWriter::requireFinite(const Frame& frame) const {
   for (std::size_t i = 0; i < frame.states.size(); ++i)
     if (!isPossible(frame.states[i]))
-      failNotFinite(frame.time, "state of body " + bodyNames_[static_cast<std::size_t>(dynamicBodies_[i])]);
+      failNotFinite(frame.time, "state of body " + bodyNames_[static_cast<std::size_t>(movingBodies_[i])]);
   if (!allPossible(energyNumbers(frame.energy))) failNotFinite(frame.time, "energy or momentum of the scene");
 }
 
@@ -225,7 +225,7 @@ void TrajectoryWriter::writeFrame(const Frame& frame) {
   session.frame.run();
   for (std::size_t i = 0; i < frame.states.size(); ++i) {
     session.state.bind(1, frame.number);
-    session.state.bind(2, dynamicBodies_[i]);
+    session.state.bind(2, movingBodies_[i]);
     bindNumbers(session.state, 3, stateNumbers(frame.states[i]));
     session.state.run();
   }

@@ -51,7 +51,7 @@ TEST(ContactForces, AllocateNothingAfterTheFirstEvaluation) {
   VectorX state = restingState(2), rate;
   const auto once = [&] {
     const long before = allocations();
-    equations.evaluate(state, rate);
+    equations.evaluate(0, state, rate);
     equations.project(state);
     return allocations() - before;
   };

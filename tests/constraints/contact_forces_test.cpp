@@ -22,11 +22,11 @@ TEST(RedundantContacts, DoWhatIndependentOnesDo) {
     linearVelocity(row.state, 0).setZero();  // so that all corners slide the same way: friction is determined then
     EquationsOfMotion equations(row.mechanism);
     VectorX expected, got;
-    equations.evaluate(row.state, expected);
+    equations.evaluate(0, row.state, expected);
     row.mechanism.contacts.push_back(row.mechanism.contacts[1]);
     row.mechanism.contacts.push_back(corner(0, Vec3(-0.1, -0.2, -0.3), motion));
     row.mechanism.constraints.push_back(rod);
-    equations.evaluate(row.state, got);
+    equations.evaluate(0, row.state, got);
     EXPECT_LT(largestDifference(got, expected), 1e-12 * (1 + expected.cwiseAbs().maxCoeff()));
     EXPECT_NEAR(equations.contactForces()[1].normal, equations.contactForces()[3].normal, 1e-11);
   }
@@ -41,7 +41,7 @@ TEST(RedundantContacts, ShareTheWeightEqually) {
   VectorX state = restingState(1), rate;
   centerOfMass(state, 0).y() = 0.2;
   EquationsOfMotion equations(mechanism);
-  equations.evaluate(state, rate);
+  equations.evaluate(0, state, rate);
   for (const ContactForce& force : equations.contactForces()) {
     EXPECT_NEAR(force.normal, 2 * kGravity / 4, 1e-13);
     EXPECT_LT(force.tangential.norm(), 1e-13);
@@ -63,7 +63,7 @@ TEST(RedundantContacts, CarryAHeavyBodyOnLightOnes) {
                                                 Vec3::UnitY(), kSticking));
   }
   EquationsOfMotion equations(mechanism);
-  equations.evaluate(state, rate);
+  equations.evaluate(0, state, rate);
   EXPECT_LT(rate.segment(poseComponents(state), 4 * kVelocitySize).cwiseAbs().maxCoeff(),
             1e-10);  // arms / inertia: up to 10/kg
   for (std::size_t body = 0; body < 4; ++body) {
@@ -178,7 +178,7 @@ TEST(ContactForces, AreNoneWhereConstraintsLeaveAContactNoMotion) {
       mechanism.contacts = {corner(0, point, motion)};
       EquationsOfMotion equations(mechanism);
       VectorX rate;
-      equations.evaluate(state, rate);
+      equations.evaluate(0, state, rate);
       EXPECT_LT(largestDifference(rate, expected), 1e-12) << angle;
       EXPECT_LT(std::abs(equations.contactForces()[0].normal), 1e-12) << angle;
     }

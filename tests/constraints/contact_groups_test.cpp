@@ -58,8 +58,8 @@ TEST(ContactGroups, TiesOfOtherBodiesAreSolvedAsWithoutContactsToTheBit) {
   without.constraints = {rod(1, 2, 1), rod(2, 3, 1.1)};
   EquationsOfMotion equations(row.mechanism), free(without);
   VectorX rate, freeRate;
-  equations.evaluate(row.state, rate);
-  free.evaluate(row.state, freeRate);
+  equations.evaluate(0, row.state, rate);
+  free.evaluate(0, row.state, freeRate);
   for (const Eigen::Index body : {1, 2, 3}) {
     EXPECT_EQ(Vec3(linearVelocity(rate, body)), Vec3(linearVelocity(freeRate, body)));
     EXPECT_EQ(Vec3(angularVelocity(rate, body)), Vec3(angularVelocity(freeRate, body)));
@@ -82,8 +82,8 @@ TEST(ContactGroups, RodsHaveTheMultipliersThatConstraintSolverGives) {
   rods.constraints.push_back({{1, Vec3(0.1, -0.2, 0.3)}, {kFixed, Vec3(1.1, -far, 0.3)}, RodConstraint{far}});
   EquationsOfMotion onGround(row.mechanism), onRod(rods);
   VectorX rate, expected;
-  onGround.evaluate(row.state, rate);
-  onRod.evaluate(row.state, expected);
+  onGround.evaluate(0, row.state, rate);
+  onRod.evaluate(0, row.state, expected);
   EXPECT_LT(largestDifference(rate, expected), 1e-6);  // 1e-7 of velocities' squares, and 1e-16 far^2 of rounding
   EXPECT_NEAR(onGround.multipliers()[0], onRod.multipliers()[0], 1e-6);
   EXPECT_NEAR(onGround.contactForces()[0].normal, onRod.multipliers()[1] * far, 1e-6);
@@ -94,10 +94,10 @@ TEST(ContactGroups, AreFoundAnewWhenATieTakesAContactsPlace) {
   Row row(1);
   EquationsOfMotion equations(row.mechanism);
   VectorX rate;
-  equations.evaluate(row.state, rate);
+  equations.evaluate(0, row.state, rate);
   row.mechanism.contacts.pop_back();
   row.mechanism.constraints = {{{0, Vec3(0.1, 0.2, 0)}, {kFixed, Vec3(0, 1, -0.1)}, RodConstraint{0.7}}};
-  equations.evaluate(row.state, rate);
+  equations.evaluate(0, row.state, rate);
   EXPECT_EQ(rate, rateOf(row.mechanism, row.state));
   ASSERT_EQ(equations.multipliers().size(), 1);
   EXPECT_NE(equations.multipliers()[0], 0);
@@ -118,8 +118,8 @@ TEST(ContactGroups, RestingBodiesActAsFixed) {
   linearVelocity(state, 0) = Vec3(0.4, 0, 0.7);
   EquationsOfMotion equations(stack), onFixed(onGround);
   for (EquationsOfMotion* each : {&equations, &onFixed}) each->setResting(1, true);
-  equations.evaluate(state, rate);
-  onFixed.evaluate(state, expected);
+  equations.evaluate(0, state, rate);
+  onFixed.evaluate(0, state, expected);
   EXPECT_EQ(rate, expected);
   EXPECT_EQ(rate.segment<kVelocitySize>(velocityOffset(state, 1)), VectorX::Zero(kVelocitySize));
   EXPECT_NE(equations.contactForces()[0].normal, 0);
@@ -129,7 +129,7 @@ TEST(ContactGroups, RestingBodiesActAsFixed) {
   EXPECT_NEAR(equations.project(state), 1e-3, 1e-5);
   EXPECT_EQ(state.segment<kPoseSize>(kPoseSize), before.segment<kPoseSize>(kPoseSize));
   equations.setResting(1, false);
-  equations.evaluate(state, rate);
+  equations.evaluate(0, state, rate);
   EXPECT_GT(std::abs(equations.contactForces()[5].normal), 1e-3);
 }
 
@@ -139,7 +139,7 @@ TEST(ContactGroups, AreFoundAnewWhenAContactOrARodChanges) {
   EquationsOfMotion equations(row.mechanism);
   VectorX rate;
   const auto expectFresh = [&] {
-    equations.evaluate(row.state, rate);
+    equations.evaluate(0, row.state, rate);
     EXPECT_EQ(rate, rateOf(row.mechanism, row.state));
   };
   expectFresh();
@@ -163,7 +163,7 @@ TEST(ContactGroups, BodiesThatTouchAreSolvedTogether) {
   VectorX state = restingState(3), rate;
   centerOfMass(state, 0).y() = 0.1, centerOfMass(state, 1).y() = 0.3, centerOfMass(state, 2) = Vec3(5, 0.2, 0);
   EquationsOfMotion equations(mechanism);
-  equations.evaluate(state, rate);
+  equations.evaluate(0, state, rate);
   EXPECT_NEAR(equations.contactForces()[0].normal, 5 * kGravity, 1e-12);
   EXPECT_NEAR(equations.contactForces()[1].normal, 3 * kGravity, 1e-12);
   EXPECT_NEAR(equations.contactForces()[2].normal, 4 * kGravity, 1e-12);

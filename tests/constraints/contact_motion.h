@@ -79,7 +79,7 @@ inline ContactConstraint sphereOnSphere(const Attachment& a, double radiusA, con
 inline VectorX rateOf(const Mechanism& mechanism, const VectorX& state) {
   EquationsOfMotion equations(mechanism);
   VectorX rate;
-  equations.evaluate(state, rate);
+  equations.evaluate(0, state, rate);
   return rate;
 }
 

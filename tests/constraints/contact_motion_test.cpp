@@ -31,7 +31,7 @@ TEST(Block, SlidesDownASlopeAtGravityTimesSineLessFrictionTimesCosine) {
   const double expected = kGravity * (std::sin(kSlope) - 0.2 * std::cos(kSlope));
   for (const double speed : {0.0, 1e-9, 1e-6, 0.3, 3.0}) {
     linearVelocity(state, 0).x() = speed;
-    equations.evaluate(state, rate);
+    equations.evaluate(0, state, rate);
     EXPECT_LT((linearVelocity(rate, 0) - Vec3(expected, 0, 0)).norm(), kMotionRounding) << speed;
     EXPECT_LT(angularVelocity(rate, 0).norm(), 10 * kMotionRounding) << speed;  // inverse inertias of up to 20
   }
@@ -75,7 +75,7 @@ TEST(Box, StandsOnAPlatformThatIsPushed) {
   mechanism.pushes[0].point.point.x() = -0.03 * 2 / 7;
   mechanism.pushes[0].point.point.z() = 0.05 * 2 / 7;
   EquationsOfMotion equations(mechanism);
-  equations.evaluate(state, rate);
+  equations.evaluate(0, state, rate);
   const Vec3 expected = Vec3(3, 0, -1.5) / 7;
   for (const Eigen::Index body : {0, 1}) {
     EXPECT_LT((linearVelocity(rate, body) - expected).norm(), kMotionRounding);
@@ -106,7 +106,7 @@ TEST(Ladder, SlidesDownASmoothWallAndLeavesItAtTwoThirdsOfItsHeight) {
   EquationsOfMotion equations(mechanism);
   for (const double duration : {0.0, 0.3, 0.7}) {
     const VectorX end = duration > 0 ? integrated(mechanism, state, duration, 1e-11) : state;
-    equations.evaluate(end, rate);
+    equations.evaluate(0, end, rate);
     const double cosine = 2 * centerOfMass(end, 0).y() / length, sine = 2 * centerOfMass(end, 0).x() / length;
     EXPECT_NEAR(cosine * cosine + sine * sine, 1, 1e-10);
     EXPECT_NEAR(std::pow(angularVelocity(end, 0).z(), 2), 3 * kGravity / length * (std::cos(start) - cosine), 1e-9);
@@ -240,13 +240,13 @@ TEST(Rod, PushedAlongOnItsTipJams) {
     linearVelocity(state, 0) = Vec3(-3, half * cosine * spin, 0);
     for (const double friction : {0.0, 0.5, 1.2, 1.7}) {
       mechanism.contacts[0].friction = friction;
-      equations.evaluate(state, rate);
+      equations.evaluate(0, state, rate);
       const double response = 1 + 3 * cosine * (cosine - friction * sine);
       EXPECT_NEAR(equations.contactForces()[0].normal * response, mass * (kGravity - half * spin * spin * sine), 1e-12)
           << angle << " " << friction;
     }
     mechanism.contacts[0].friction = (cosine + 1 / (3 * cosine)) / sine;  // no response left, or rounding
-    equations.evaluate(state, rate);
+    equations.evaluate(0, state, rate);
     EXPECT_TRUE(rate.allFinite());
   }
 }

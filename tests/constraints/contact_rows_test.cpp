@@ -197,7 +197,7 @@ TEST(ContactForces, TakeNoEnergyButBySliding) {
       const Vec3 velocity = placeIn(pair.mechanism, 0, pair.state).velocity;
       setSlidingDirection(pair.mechanism.contacts[0], velocity, pair.state);
       VectorX rate;
-      equations.evaluate(pair.state, rate);
+      equations.evaluate(0, pair.state, rate);
       const ContactForce& force = equations.contactForces()[0];
       const double power = fourthOrderDerivative(
           pair.state, rate, [&](const VectorX& state) { return energyConstant(pair.mechanism, state); });

@@ -38,7 +38,7 @@ VectorX someState() {
 VectorX stateRate(const Mechanism& mechanism, const VectorX& state) {
   EquationsOfMotion equations(mechanism);
   VectorX rate;
-  equations.evaluate(state, rate);
+  equations.evaluate(0, state, rate);
   return rate;
 }
 
@@ -240,7 +240,7 @@ TEST(RestingBody, DoesNotMoveWhateverActsOnIt) {
   EquationsOfMotion equations(mechanism);
   equations.setResting(1, true);
   VectorX rate;
-  equations.evaluate(someState(), rate);
+  equations.evaluate(0, someState(), rate);
   EXPECT_EQ(linearVelocity(rate, 1), Vec3::Zero());
   EXPECT_EQ(linearVelocity(rate, 0), mechanism.gravity);
 }
@@ -283,7 +283,7 @@ TEST(RestingBody, HasNoMultipliers) {
   EquationsOfMotion equations(mechanism);
   VectorX rate;
   equations.setResting(1, true);
-  equations.evaluate(state, rate);
+  equations.evaluate(0, state, rate);
   const VectorX multipliers = equations.multipliers();
   ASSERT_EQ(multipliers.size(), 1 + 3 + 5);
   EXPECT_EQ(multipliers[0], 0);

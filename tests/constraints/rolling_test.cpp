@@ -111,7 +111,7 @@ TEST(Sphere, RollsDownASphere) {
   EXPECT_NEAR(place.norm(), reach, 1e-10);
   EquationsOfMotion equations(mechanism);
   VectorX rate;
-  equations.evaluate(end, rate);
+  equations.evaluate(0, end, rate);
   EXPECT_NEAR(equations.contactForces()[0].normal, mass * (kGravity * cosine - square / reach), 1e-9);
   EXPECT_NEAR(equations.contactForces()[0].tangential.norm(),
               2.0 / 7 * mass * kGravity * std::sqrt(1 - cosine * cosine), 1e-9);

@@ -14,7 +14,7 @@ double energyOfStates(const Trajectory& run, const Frame& frame) {
   double energy = 0;
   std::size_t next = 0;
   for (const BodyRecord& body : run.header.bodies) {
-    if (!body.isDynamic) continue;
+    if (!body.hasStates()) continue;
     const BodyState& state = frame.states[next++];
     const Vec3 spin = state.orientation.conjugate() * state.angularVelocity;
     energy += body.massProperties.mass * (0.5 * state.linearVelocity.squaredNorm() + kGravity * state.position.y()) +

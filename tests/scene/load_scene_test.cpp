@@ -115,8 +115,20 @@ TEST_F(EveryKey, PrimitivesHaveTheirSizes) {
   EXPECT_EQ(scene_.bodies.at(8).massProperties.mass, 0);
 }
 
+TEST_F(EveryKey, DrivenBodiesStartWhereTheirMotionDoes) {
+  const Body &lift = scene_.bodies.at(9), &shaker = scene_.bodies.at(10);
+  EXPECT_EQ(lift.motion, Motion::driven);
+  EXPECT_EQ(lift.massProperties.mass, 0);
+  EXPECT_EQ(lift.worldFromBody.translation, Vec3(20, 0, 0));
+  const PoseMotion top = motionAt(*lift.prescribed, 3);  // it repeats
+  EXPECT_NEAR(top.pose.translation.y(), 1, kRoundingNearOne);
+  EXPECT_NEAR(top.pose.rotation.y(), std::sin(9 * std::numbers::pi / 360), kRoundingNearOne);
+  EXPECT_NEAR(shaker.worldFromBody.translation.x(), 25 + 0.1 * std::sin(0.5), 25 * kRoundingNearOne);
+  EXPECT_NEAR(shaker.linearVelocity.x(), 0.1 * 6 * std::numbers::pi * std::cos(0.5), 2 * kRoundingNearOne);
+}
+
 TEST_F(EveryKey, CopiesRunAlongZFirst) {
-  ASSERT_EQ(scene_.bodies.size(), 9U);
+  ASSERT_EQ(scene_.bodies.size(), 11U);
   const char* names[] = {"block_0", "block_1", "block_2", "block_3"};
   const Vec3 positions[] = {{10, 0, 0}, {10, 0, 5}, {14, 0, 0}, {14, 0, 5}};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -129,7 +141,7 @@ TEST_F(EveryKey, CopiesRunAlongZFirst) {
 TEST_F(EveryKey, LinksJoinWhatTheyName) {
   const Spring& spring = scene_.springs.at(0);
   EXPECT_EQ(spring.name, "coil");
-  EXPECT_EQ(spring.where, "scenes/test.json:31:15 /springs/0");
+  EXPECT_EQ(spring.where, "scenes/test.json:36:15 /springs/0");
   EXPECT_EQ(spring.anchorA.body, 0);
   EXPECT_EQ(spring.anchorA.point, Vec3(2, 0, 0));
   EXPECT_EQ(spring.anchorB.body, 1);

@@ -67,10 +67,10 @@ TEST(IslandState, WakesWhatAPushActsUpon) {
   IslandState& island = at.island;
   island.resting.bringToRest({0, 1}, at.state());
   island.resting.bringToRest({2}, at.state());
-  EXPECT_FALSE(island.beginAndEndPushes());
+  EXPECT_FALSE(island.makeChanges());
   EXPECT_THAT(at.mechanism().pushes, IsEmpty());
   island.time = 0.5;
-  EXPECT_TRUE(island.beginAndEndPushes());
+  EXPECT_TRUE(island.makeChanges());
   ASSERT_EQ(at.mechanism().pushes.size(), 1u);
   EXPECT_EQ(at.mechanism().pushes[0].force, Vec3(1, 0, 0));
   EXPECT_FALSE(island.resting.isResting(0));
@@ -84,9 +84,9 @@ TEST(IslandState, WakesWhatAPushActsUpon) {
     EXPECT_EQ(event.point, Vec3(event.bodyA == 1 ? 0 : 0.2, 0.1, 0));
   }
   EXPECT_THAT(woken, ElementsAre(1, 2));
-  EXPECT_FALSE(island.beginAndEndPushes());
+  EXPECT_FALSE(island.makeChanges());
   island.time = 0.75;
-  EXPECT_TRUE(island.beginAndEndPushes());
+  EXPECT_TRUE(island.makeChanges());
   EXPECT_THAT(at.mechanism().pushes, IsEmpty());
 }
 

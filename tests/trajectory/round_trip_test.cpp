@@ -22,6 +22,7 @@ TEST(TrajectoryFile, KeepsTheHeader) {
   for (std::size_t i = 0; i < expected.bodies.size(); ++i) {
     EXPECT_EQ(header.bodies[i].name, expected.bodies[i].name);
     EXPECT_EQ(header.bodies[i].isDynamic, expected.bodies[i].isDynamic);
+    EXPECT_EQ(header.bodies[i].isDriven, expected.bodies[i].isDriven);
     EXPECT_EQ(header.bodies[i].mesh, expected.bodies[i].mesh);
     EXPECT_EQ(header.bodies[i].shape, expected.bodies[i].shape);
     EXPECT_EQ(header.bodies[i].massProperties.mass, expected.bodies[i].massProperties.mass);

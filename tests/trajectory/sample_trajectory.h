@@ -65,9 +65,9 @@ inline TrajectoryHeader sampleHeader() {
   header.meshes = {sampleModel()};
   Mat3 inertia;
   inertia << 1.1, -0.1, 0.2, -0.1, 1.2, -0.3, 0.2, -0.3, 1.3;
-  header.bodies = {{"ball", true, -1, R"({"sphere": {"radius": 1}})", {2.5, Vec3(0.1, -0.2, 0.3), inertia}},
-                   {"ground", false, -1, R"({"plane": {"normal": [0, 1, 0]}})", {}},
-                   {"wedge", true, 0, "", {1.0 / 3, Vec3(-0.0, 1e-300, 7), 3 * inertia}}};
+  header.bodies = {{"ball", true, false, -1, R"({"sphere": {"radius": 1}})", {2.5, Vec3(0.1, -0.2, 0.3), inertia}},
+                   {"ground", false, false, -1, R"({"plane": {"normal": [0, 1, 0]}})", {}},
+                   {"wedge", true, false, 0, "", {1.0 / 3, Vec3(-0.0, 1e-300, 7), 3 * inertia}}};
   return header;
 }
 

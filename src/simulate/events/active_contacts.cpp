@@ -21,7 +21,7 @@ void ActiveContacts::release(const std::optional<ContactChange>& change) {
   changes_.forget();
   const bool slips = change && change->kind == ContactChange::Kind::slip;
   VectorX derivative;
-  if (slips) island_.equations.evaluate(island_.state, derivative);
+  if (slips) island_.equations.evaluate(island_.time, island_.state, derivative);
   for (std::size_t i = 0; i < records_.size(); ++i) {
     PreviousContact previous{records_[i], mechanism().contacts[i]};
     if (slips && change->contact == i) {

@@ -44,7 +44,9 @@ class ActiveContacts {
   std::optional<ContactChange> firstChange() { return changes_.first(records_); }
 
   /// Zero where the change happens, positive before. Not for redundant ones.
-  double margin(const ContactChange& change, const VectorX& state) { return changes_.margin(change, records_, state); }
+  double margin(const ContactChange& change, const VectorX& state) {
+    return changes_.margin(change, records_, 1, state);
+  }
 
   /// Directions of sliding follow the motion from step to step. Notes as a reason to fall back to time stepping that
   /// friction goes on turning them faster than steps follow at a bearable cost: a body that creeps under a load.

@@ -16,6 +16,8 @@ bool ComingToRest::isAnySlow() const {
 
 bool ComingToRest::isSlow(std::size_t body) const {
   const Eigen::Index index = static_cast<Eigen::Index>(body);
+  const Mechanism& mechanism = island_.assembly.mechanism;
+  if (mechanism.bodies[body].isDriven()) return isDrivenStill(mechanism.driven, static_cast<int>(body), island_.time);
   const double size = island_.assembly.radii[body];
   return std::max(linearVelocity(island_.state, index).norm(), size * angularVelocity(island_.state, index).norm()) <=
          tolerances_.maxRestSpeed(size);
@@ -71,7 +73,7 @@ bool ComingToRest::canBeInEquilibrium(const std::vector<Contact>& touching, cons
   std::vector<ContactConstraint> active;
   std::swap(active, island_.assembly.mechanism.contacts);
   VectorX derivative;
-  island_.equations.evaluate(island_.state, derivative);
+  island_.equations.evaluate(island_.time, island_.state, derivative);
   std::swap(active, island_.assembly.mechanism.contacts);
   if (isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(0))) return true;
   std::vector<BodyFrame> frames;

@@ -107,9 +107,9 @@ double ContactChanges::slidingNormalForce(std::size_t contact, const std::vector
   return sum;
 }
 
-void ContactChanges::evaluate(const std::vector<ContactRecord>& records, const VectorX& state,
+void ContactChanges::evaluate(const std::vector<ContactRecord>& records, double fraction, const VectorX& state,
                               std::vector<EventFunctions>& values) {
-  island_.equations.evaluate(state, derivative_);
+  island_.equations.evaluate(timeAt(fraction), state, derivative_);
   takeEvaluated(records, state, values);
 }
 
@@ -133,13 +133,13 @@ void ContactChanges::takeEvaluated(const std::vector<ContactRecord>& records, co
   }
 }
 
-double ContactChanges::margin(const ContactChange& change, const std::vector<ContactRecord>& records,
+double ContactChanges::margin(const ContactChange& change, const std::vector<ContactRecord>& records, double fraction,
                               const VectorX& state) {
   const ContactRecord& record = records[change.contact];
   if (change.kind == Kind::leave)
     if (const SphereOverMesh sphere = sphereOverMesh(island_.assembly.geometry, record.pair, state); sphere.mesh)
       return insideVoronoiRegion(record.contact, sphere);
-  evaluate(records, state, after_);
+  evaluate(records, fraction, state, after_);
   return after_[change.contact][static_cast<std::size_t>(change.kind)];
 }
 
@@ -150,7 +150,7 @@ void ContactChanges::noteEnd(const std::vector<ContactRecord>& records) {
 std::optional<ContactChange> ContactChanges::first(const std::vector<ContactRecord>& records) {
   if (records.empty()) return std::nullopt;
   const Step& step = island_.step;
-  if (knownTime_ != step.time) evaluate(records, step.startState, before_);
+  if (knownTime_ != step.time) evaluate(records, 0, step.startState, before_);
   knownTime_ = NAN;
   const std::optional<FeatureChange> leaving = firstFeatureChange(records, island_);
   const bool isEndKnown = step.interpolant == InterpolantKind::degreeFour;
@@ -161,7 +161,7 @@ std::optional<ContactChange> ContactChanges::first(const std::vector<ContactReco
       std::swap(ahead_, atEnd_);
     } else {
       interpolate(step, to, sample_);
-      evaluate(records, sample_, ahead_);
+      evaluate(records, to, sample_, ahead_);
     }
     const std::optional<ContactChange> found = firstBetween(records, from, to);
     if (leaving && leaving->fraction <= (found ? found->fraction : to))
@@ -184,7 +184,7 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
       if (kKinds[kind] == Kind::leave && marginEnd >= -EventTolerances::kEventFunction)
         if (const auto flat = firstOverturning(i, from, to)) {
           interpolate(island_.step, *flat, sample_);
-          end = *flat, marginEnd = margin({Kind::leave, 0, i}, records, sample_);
+          end = *flat, marginEnd = margin({Kind::leave, 0, i}, records, *flat, sample_);
         }
       if (!(marginEnd < -EventTolerances::kEventFunction)) continue;
       if (kKinds[kind] == Kind::leave && !(before_[i][kind] > 0)) continue;
@@ -211,7 +211,7 @@ double ContactChanges::locate(const ContactChange& change, const std::vector<Con
   for (int i = 0; i < kMaxBorderCuts && to - from > EventTolerances::kChangeInstant; ++i) {
     const double cut = to - (to - from) * weightTo / (weightTo - weightFrom);
     interpolate(island_.step, cut, sample_);
-    const double found = margin(change, records, sample_);
+    const double found = margin(change, records, cut, sample_);
     if (std::abs(found) <= EventTolerances::kEventFunction) return cut;
     if (found > 0)
       from = cut, weightFrom = found, weightTo /= 2;
@@ -221,9 +221,11 @@ double ContactChanges::locate(const ContactChange& change, const std::vector<Con
   return to;
 }
 
-/// Whether some forces within the friction cones keep all contacts as they are: none opens or closes, none that sticks
-/// slides.
-bool ContactChanges::areForcesFeasible(const std::vector<ContactRecord>& records, const VectorX& state) {
+/// Whether some forces within the friction cones keep all contacts as they are at a fraction of the step: none opens or
+/// closes, none that sticks slides.
+bool ContactChanges::areForcesFeasible(const std::vector<ContactRecord>& records, double fraction) {
+  interpolate(island_.step, fraction, sample_);
+  const VectorX& state = sample_;
   findBodyFrames(mechanism().bodies, state, frames_);
   std::vector<ContactRows> rows;
   std::vector<const ContactRecord*> members;
@@ -241,7 +243,7 @@ bool ContactChanges::areForcesFeasible(const std::vector<ContactRecord>& records
   if (constraints.hasConstraints()) constraints.factorize(state, frames_);
   std::vector<ContactConstraint> active;  // the accelerations are those without contact
   std::swap(active, mechanism().contacts);
-  island_.equations.evaluate(state, derivative_);
+  island_.equations.evaluate(timeAt(fraction), state, derivative_);
   std::swap(active, mechanism().contacts);
   const DenseDelassus delassus(allRowsOf(rows), mechanism().bodies, frames_, &constraints);
   const SlidingSolution solution = solveContactForces(members, rows, delassus, derivative_);
@@ -258,12 +260,10 @@ bool ContactChanges::areForcesFeasible(const std::vector<ContactRecord>& records
 /// The fraction of the step between two points from which no forces keep the contacts any more, by bisection.
 std::optional<double> ContactChanges::firstInfeasible(const std::vector<ContactRecord>& records, double from,
                                                       double to) {
-  interpolate(island_.step, to, sample_);
-  if (areForcesFeasible(records, sample_)) return std::nullopt;
+  if (areForcesFeasible(records, to)) return std::nullopt;
   while (to - from > EventTolerances::kChangeInstant) {
     const double middle = from + (to - from) / 2;
-    interpolate(island_.step, middle, sample_);
-    (areForcesFeasible(records, sample_) ? from : to) = middle;
+    (areForcesFeasible(records, middle) ? from : to) = middle;
   }
   return to;
 }

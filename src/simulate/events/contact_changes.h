@@ -47,8 +47,10 @@ class ContactChanges {
   /// The first change within the island's step, whose end derivative must be there.
   std::optional<ContactChange> first(const std::vector<ContactRecord>& records);
 
-  /// The event function of a change at a state of the step. Of redundant contacts that of their sliding alone tells.
-  double margin(const ContactChange& change, const std::vector<ContactRecord>& records, const VectorX& state);
+  /// The event function of a change at a fraction of the step, where it has come to `state`. Of redundant contacts that
+  /// of their sliding alone tells.
+  double margin(const ContactChange& change, const std::vector<ContactRecord>& records, double fraction,
+                const VectorX& state);
 
   /// N: the normal force of a contact at the end of a step in which `first` found no change.
   double normalForceAtEnd(std::size_t contact, const std::vector<ContactRecord>& records) const {
@@ -66,11 +68,13 @@ class ContactChanges {
   double flatnessOf(const ContactConstraint& rim, const VectorX& state) const;
   double slidingNormalForce(std::size_t contact, const std::vector<ContactRecord>& records) const;
   std::optional<double> firstOverturning(std::size_t contact, double from, double to);
-  void evaluate(const std::vector<ContactRecord>& records, const VectorX& state, std::vector<EventFunctions>& values);
+  double timeAt(double fraction) const { return island_.step.time + fraction * island_.step.timeStep; }
+  void evaluate(const std::vector<ContactRecord>& records, double fraction, const VectorX& state,
+                std::vector<EventFunctions>& values);
   void takeEvaluated(const std::vector<ContactRecord>& records, const VectorX& state,
                      std::vector<EventFunctions>& values);
   std::optional<ContactChange> firstBetween(const std::vector<ContactRecord>& records, double from, double to);
-  bool areForcesFeasible(const std::vector<ContactRecord>& records, const VectorX& state);
+  bool areForcesFeasible(const std::vector<ContactRecord>& records, double fraction);
   std::optional<double> firstInfeasible(const std::vector<ContactRecord>& records, double from, double to);
   double locate(const ContactChange& change, const std::vector<ContactRecord>& records, double from, double marginFrom,
                 double to, double marginTo);

@@ -119,6 +119,25 @@ void classifyOne(const ContactRows& rows, const ContactState& state, const Accel
       (state.acceleration.x() * rows.rows[0].linearA + state.acceleration.y() * rows.rows[1].linearA).normalized();
 }
 
+/// m/s^2, (t1, t2, n) of each contact: the accelerations of a solution with static friction once contacts slide that
+/// stuck before, against dynamic friction. `slid` tells which slid before.
+VectorX slidingAccelerations(const std::vector<const ContactRecord*>& records, const std::vector<ContactRows>& rows,
+                             const std::vector<char>& slid, const SlidingSolution& solution, const MatrixX& delassus) {
+  VectorX eased = VectorX::Zero(solution.impulses.size());
+  bool isAny = false;
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    const ContactRecord& record = *records[k];
+    const ContactMaterial& material = record.pair.material;
+    if (!record.slides || slid[k] || material.staticFriction == material.dynamicFriction) continue;
+    isAny = true;
+    const Index at = 3 * static_cast<Index>(k);
+    const double less = (material.staticFriction - material.dynamicFriction) * solution.impulses[at + 2];
+    for (Index i = 0; i < 2; ++i)
+      eased[at + i] = less * record.direction.dot(rows[k].rows[static_cast<std::size_t>(i)].linearA);
+  }
+  return isAny ? VectorX(solution.velocities + delassus * eased) : solution.velocities;
+}
+
 /// Why a loaded contact cannot be a row.
 void findFallback(const ContactRecord& record, const SlidingAccelerations& accelerations,
                   const EventTolerances& tolerances, const IslandState& island, ContactFallback& fallback) {
@@ -140,7 +159,7 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
     members.push_back(&found.records[i]);
   }
   VectorX derivative;
-  island.equations.evaluate(island.state, derivative);
+  island.equations.evaluate(island.time, island.state, derivative);
   if (nothingCloses(rows, derivative, mechanism.gravity.norm())) return;
   const DenseDelassus delassus(allRowsOf(rows), mechanism.bodies, input.frames, &constraints);
   const SlidingSolution solution = solveContactForces(members, rows, delassus, derivative);
@@ -153,14 +172,22 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
       largest, input.tolerances.stillAcceleration(largest, solution.residual),
       (input.isReleasing ? EventTolerances::kReleasedRatio : EventTolerances::kUnloadedRatio) * largest};
   const MatrixX& matrix = delassus.matrix();
+  std::vector<char> slid;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    ContactRecord& record = found.records[group[k]];
+    const Index at = 3 * static_cast<Index>(k);
+    slid.push_back(record.slides);
+    classifyOne(rows[k], {solution.impulses[at + 2], matrix(at + 2, at + 2), solution.velocities.segment<3>(at)},
+                limits, record);
+  }
+  const VectorX accelerations = slidingAccelerations(members, rows, slid, solution, matrix);
   std::vector<Index> activeRows;
   for (std::size_t k = 0; k < group.size(); ++k) {
     ContactRecord& record = found.records[group[k]];
     const Index at = 3 * static_cast<Index>(k);
-    const Vec3 acceleration = solution.velocities.segment<3>(at);
-    classifyOne(rows[k], {solution.impulses[at + 2], matrix(at + 2, at + 2), acceleration}, limits, record);
     if (!record.isLoaded) continue;
-    findFallback(record, {acceleration.head<2>().norm(), largest}, input.tolerances, island, found.fallback);
+    const double sliding = accelerations.segment<2>(at).norm();
+    findFallback(record, {sliding, largest}, input.tolerances, island, found.fallback);
     activeRows.push_back(at + 2);
     if (record.sticks) activeRows.push_back(at), activeRows.push_back(at + 1);
   }

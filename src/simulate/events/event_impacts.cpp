@@ -99,7 +99,7 @@ SequenceLimits EventImpacts::limitsOf(const std::vector<Contact>& near, double s
   const auto isClosed = [&](const Contact& contact) { return contact.separation <= limits.gapRounding; };
   if (std::all_of(near.begin(), near.end(), isClosed)) return limits;
   VectorX derivative;
-  island_.equations.evaluate(island_.state, derivative);
+  island_.equations.evaluate(island_.time, island_.state, derivative);
   double strongest = 0;  // m/s^2
   for (const Contact& contact : near)
     strongest = std::max(strongest, std::abs(openingAcceleration(contact, island_.state, derivative)));
@@ -202,7 +202,7 @@ double EventImpacts::endZenoSequence(const VectorX& approach, std::vector<Impact
     const double speed = openingSpeed(impact.contact, state), restitution = impact.material.restitution;
     const bool rebounds = openingSpeed(impact.contact, approach) < 0 && speed > 0 && restitution < 1;
     if (!rebounds || restitution == 0) continue;
-    if (derivative.size() == 0) island_.equations.evaluate(state, derivative);
+    if (derivative.size() == 0) island_.equations.evaluate(island_.time, state, derivative);
     const double closing = -openingAcceleration(impact.contact, state, derivative);
     const double size = smallestSize(impact.contact, island_.assembly.radii);
     if (!(closing > 0) || speed > tolerances_.minReboundSpeed(closing, size)) continue;

@@ -22,7 +22,7 @@ double endStepAtEvent(IslandState& island, Integrator integrate, const EventWind
   const double whole = step.timeStep, tolerance = window.tolerance;
   const auto marginAfter = [&](double part) {
     keepStartDerivative(step);
-    integrate(island.rightHandSide, island.state, island.time, part, step);
+    island.integrate(integrate, part);
     return margin(step.state);
   };
   double late = window.guess, lateMargin = marginAfter(late);

@@ -61,7 +61,7 @@ EventMotion::EventMotion(IslandState& island, RopeEvents& ropes, const ChosenMet
   ropes_.setTimeStep(0);
   contacts_.resolve();
   applyRopeEvents();
-  if (island_.beginAndEndPushes()) contacts_.resolve();
+  if (island_.makeChanges()) contacts_.resolve();
   island_.requireUnsolvedPairsApart();
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
   startConstraintError_ = solver_.largestError();
@@ -72,7 +72,7 @@ EventMotion::EventMotion(IslandState& island, RopeEvents& ropes, const ChosenMet
 void EventMotion::advance(double frame) {
   double& time = island_.time;
   Step& step = island_.step;
-  const double stepEnd = std::min(island_.scene.duration, island_.pushes.nextChange());
+  const double stepEnd = std::min(island_.scene.duration, island_.nextChange());
 
   // How far do bodies move until the first event?
   if (!takeStep(stepEnd)) return;
@@ -110,7 +110,7 @@ bool EventMotion::takeStep(double stepEnd) {
   while (!isTooShort()) {
     const double planned = std::min(stepSize_.timeStep, longestStep()), left = stepEnd - island_.time;
     const double length = planned >= left * (1 - kTimeRounding) ? left : planned;
-    method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
+    island_.integrate(method_.integrate, length);
     if (acceptStep(method_.errorNorm(step, tolerance_), step.timeStep, stepSize_)) break;
     keepStartDerivative(step);
   }
@@ -198,6 +198,7 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   const double whole = step.timeStep, latest = event.latest * whole;
   if (event.any() && mayEndAnywhere()) {
     cutStep(event.impact ? event.impact->fraction : event.rope ? event.rope->fraction : event.contact->fraction, step);
+    place(island_.assembly.mechanism.driven, step.time + step.timeStep, step.state);
   } else if (event.impact) {
     if (!stopAtImpact(*event.impact)) event.impact.reset();
   } else if (event.rope) {
@@ -205,7 +206,7 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
                    [&](const VectorX& state) { return ropes_.margin(*event.rope, state); });
   } else if (event.contact && event.contact->kind == ContactChange::Kind::redundant) {
     keepStartDerivative(step);
-    method_.integrate(island_.rightHandSide, island_.state, island_.time, event.contact->fraction * whole, step);
+    island_.integrate(method_.integrate, event.contact->fraction * whole);
   } else if (event.contact) {
     // Where forces change so fast that the interpolant does not tell them, the step itself may have no such change.
     const double tolerance = EventTolerances::kEventFunction;
@@ -232,7 +233,7 @@ bool EventMotion::stopAtImpact(const ImpactTime& impact) {
   Step& step = island_.step;
   const double length = impact.fraction * step.timeStep;
   keepStartDerivative(step);
-  method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
+  island_.integrate(method_.integrate, length);
   evaluateEndDerivative(island_.rightHandSide, step);
   const double left = gap(step.state), before = kSlopeRatio * length;
   step.work = step.state - before * step.endDerivative;
@@ -294,7 +295,7 @@ void EventMotion::changeForces(const Event& event) {
   if (!lasted && !contacts_.active().empty()) lengths_.fill(island_.scene.duration);  // no more bounces
   applyRopeEvents();
   keepsConstraints_ = ropes_.tautRows() == tautRowsBefore_;
-  const bool isPushed = island_.beginAndEndPushes();
+  const bool isPushed = island_.makeChanges();
   if (isPushed) contacts_.resolve();
   if (event.any() || isPushed) isContinuous_ = false;
 }
@@ -312,12 +313,12 @@ void EventMotion::applyRopeEvents() {
 }
 
 bool EventMotion::isAtRest() const {
-  return island_.mayTouch() && island_.resting.allRest() && island_.time < island_.pushes.nextChange();
+  return island_.mayTouch() && island_.resting.allRest() && island_.time < island_.nextChange();
 }
 
 void EventMotion::restUntil(double time) {
-  island_.time = std::min(time, island_.pushes.nextChange());
-  if (island_.beginAndEndPushes()) contacts_.resolve();
+  island_.time = std::min(time, island_.nextChange());
+  if (island_.makeChanges()) contacts_.resolve();
   isContinuous_ = false;
 }
 

@@ -78,7 +78,7 @@ ChosenMethod namedMethod(const Scene& scene) {
 }
 
 bool isActedUpon(const IslandPlan& island) {
-  return !island.links.empty() || !island.pushes.empty();
+  return !island.links.empty() || !island.pushes.empty() || !island.driven.empty();
 }
 
 /// Finds spheres without torque: their angular velocity is constant, whatever moves their centres.
@@ -224,6 +224,8 @@ IslandPlan wholeScene(const Scene& scene) {
   }
   forEachLink(scene, [&](const LinkIndex& link, const Anchor&, const Anchor&) { whole.links.push_back(link); });
   for (std::size_t i = 0; i < scene.pushes.size(); ++i) whole.pushes.push_back(i);
+  for (int body = 0; body < std::ssize(scene.bodies); ++body)
+    if (scene.bodies[static_cast<std::size_t>(body)].motion == Motion::driven) whole.driven.push_back(body);
   for (std::vector<int>* bodies : {&whole.bodies, &whole.touching}) {
     std::sort(bodies->begin(), bodies->end());
     bodies->erase(std::unique(bodies->begin(), bodies->end()), bodies->end());

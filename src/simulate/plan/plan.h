@@ -54,7 +54,8 @@ struct LinkIndex {
 
 /// Bodies that depend on each other, by constraints, springs or contact that may come about, and how they are moved.
 struct IslandPlan {
-  std::vector<int> bodies;       // scene bodies that move, ascending
+  std::vector<int> bodies;       // scene bodies that forces move, ascending
+  std::vector<int> driven;       // scene bodies that are driven, and tied to them or may touch them, ascending
   std::vector<int> touching;     // scene bodies, fixed ones too, that may touch something during the run, ascending
   std::vector<int> nonRotating;  // of the bodies, those without torque at all times: spheres attached at their centres
   std::vector<LinkIndex> links;  // attached to the bodies, in the order of the kinds, then of the scene
@@ -74,7 +75,7 @@ struct Plan {
 /// Where something moves without bounds O(bodies), else O(pairs of bodies whose reaches overlap).
 Plan planOf(const Scene& scene);
 
-/// All moving bodies as one island without a method, for measurements of a scene as a whole.
+/// All bodies that move as one island without a method, for measurements of a scene as a whole.
 IslandPlan wholeScene(const Scene& scene);
 
 }  // namespace cradle

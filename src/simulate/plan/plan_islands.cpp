@@ -32,7 +32,7 @@ double fixedSizeOf(const Body& body, const Scene& scene) {
 std::vector<double> sizesOf(const Scene& scene) {
   std::vector<double> sizes;
   for (const Body& body : scene.bodies)
-    sizes.push_back(body.motion == Motion::dynamic ? sizeOf(body, scene) : fixedSizeOf(body, scene));
+    sizes.push_back(body.motion == Motion::fixed ? fixedSizeOf(body, scene) : sizeOf(body, scene));
   return sizes;
 }
 
@@ -54,6 +54,16 @@ std::vector<char> findTouching(const Scene& scene, const ReachablePairs& reachab
     return left > 0;
   });
   return touches;
+}
+
+/// Each once, ascending.
+void sortOut(std::vector<int>& bodies) {
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+}
+
+bool isDriven(int body, const Scene& scene) {
+  return body != kWorld && scene.bodies[static_cast<std::size_t>(body)].motion == Motion::driven;
 }
 
 int movingOr(const Scene& scene, int body) {
@@ -85,10 +95,7 @@ std::vector<std::vector<int>> findTouchingByIsland(const Scene& scene, const Dis
     ofIsland.push_back(i), ofIsland.push_back(j);
     return true;
   });
-  for (std::vector<int>& bodies : touching) {
-    std::sort(bodies.begin(), bodies.end());
-    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-  }
+  for (std::vector<int>& bodies : touching) sortOut(bodies);
   return touching;
 }
 
@@ -193,7 +200,11 @@ std::vector<IslandPlan> findIslands(const Scene& scene, const ReachablePairs& re
     if (movingOr(scene, body) != kWorld) islands[joined.islandOf(body)].bodies.push_back(body);
   forEachLink(scene, [&](const LinkIndex& link, const Anchor& a, const Anchor& b) {
     const int moving = movingOr(scene, a.body) != kWorld ? a.body : movingOr(scene, b.body);
-    if (moving != kWorld) islands.at(joined.islandOf(moving)).links.push_back(link);
+    if (moving == kWorld) return;
+    IslandPlan& island = islands.at(joined.islandOf(moving));
+    island.links.push_back(link);
+    for (const int body : {a.body, b.body})
+      if (isDriven(body, scene)) island.driven.push_back(body);
   });
   for (std::size_t i = 0; i < scene.pushes.size(); ++i)
     if (const int body = movingOr(scene, scene.pushes[i].body); body != kWorld)
@@ -201,6 +212,9 @@ std::vector<IslandPlan> findIslands(const Scene& scene, const ReachablePairs& re
   std::vector<IslandPlan> ordered;
   for (auto& [first, island] : islands) {
     island.touching = std::move(touching[static_cast<std::size_t>(first)]);
+    for (const int body : island.touching)
+      if (isDriven(body, scene)) island.driven.push_back(body);
+    sortOut(island.driven);
     ordered.push_back(std::move(island));
   }
   return ordered;

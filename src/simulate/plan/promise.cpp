@@ -258,7 +258,7 @@ Promise promiseOf(const Scene& scene, const IslandPlan& island, const ReachableP
         fmt::format("models with hollows may touch: their contact is resolved every {:.3g} s", method.timeStep));
   if (method.isClosedForm() || island.touching.empty()) return {};
   const ContactSurvey survey(scene, island, reachable);
-  if (areFewSpheres(survey.found()) && !hasJoints(island)) return {};
+  if (areFewSpheres(survey.found()) && !hasJoints(island) && island.driven.empty()) return {};
   return {Promise::Kind::conditional, conditionsOf(scene, island, survey.found()), {}};
 }
 

@@ -30,6 +30,11 @@ bool isFixed(const Anchor& anchor, const Scene& scene) {
   return anchor.body == kWorld || scene.bodies[static_cast<std::size_t>(anchor.body)].motion == Motion::fixed;
 }
 
+/// Whether forces move it.
+bool isMoved(const Anchor& anchor, const Scene& scene) {
+  return anchor.body != kWorld && scene.bodies[static_cast<std::size_t>(anchor.body)].motion == Motion::dynamic;
+}
+
 const Body& bodyOf(const Anchor& anchor, const Scene& scene) {
   return scene.bodies[static_cast<std::size_t>(anchor.body)];
 }
@@ -52,7 +57,7 @@ Reach reachOfAnchor(const Anchor& anchor, const Scene& scene, const std::vector<
 
 /// Narrows the reach of the body at `end` by a link to `other`. True if that helped.
 bool narrow(const Anchor& end, const Anchor& other, double length, const Scene& scene, std::vector<Reach>& reaches) {
-  if (isFixed(end, scene)) return false;
+  if (!isMoved(end, scene)) return false;
   const Reach from = reachOfAnchor(other, scene, reaches);
   const double radius = (from.radius + length + momentArmOf(end, scene)) * (1 + kReachRounding);
   Reach& reach = reaches[static_cast<std::size_t>(end.body)];
@@ -131,7 +136,7 @@ void narrowBySprings(const Scene& scene, const std::vector<char>& touches, const
   }
   for (const Spring& spring : scene.springs)
     forBothEnds(spring.anchorA, spring.anchorB, [&](const Anchor& end, const Anchor& other) {
-      if (isFixed(end, scene) || !isFixed(other, scene) || !bodyAt(end).isAlone) return;
+      if (!isMoved(end, scene) || !isFixed(other, scene) || !bodyAt(end).isAlone) return;
       narrow(end, other, farthestOnSpring(spring, end, other, bodyAt(end).energy, scene), scene, reaches);
     });
 }
@@ -147,7 +152,7 @@ void narrowByLimits(const Scene& scene, const std::vector<Limit>& limits, std::v
       next.emplace(reaches[static_cast<std::size_t>(end.body)].radius, end.body);
   };
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    if (scene.bodies[i].motion == Motion::dynamic && std::isfinite(reaches[i].radius))
+    if (scene.bodies[i].motion != Motion::fixed && std::isfinite(reaches[i].radius))
       next.emplace(reaches[i].radius, static_cast<int>(i));
   for (const Limit& limit : limits)
     forBothEnds(limit.a, limit.b, [&](const Anchor& end, const Anchor& other) {
@@ -177,6 +182,13 @@ void narrowByFlight(const Scene& scene, const std::vector<char>& isAttached, std
   }
 }
 
+/// Where a body is that no force moves.
+Reach placesOf(const Body& body, double duration) {
+  if (!body.prescribed) return {body.worldFromBody.translation, 0};
+  const MotionBall ball = ballOf(*body.prescribed, duration);
+  return {ball.center, ball.radius * (1 + kReachRounding)};
+}
+
 }  // namespace
 
 std::vector<Reach> reachOf(const Scene& scene, const std::vector<char>& touches) {
@@ -190,7 +202,7 @@ std::vector<Reach> reachOf(const Scene& scene, const std::vector<char>& touches)
   for (const Spring& spring : scene.springs) attach(spring.anchorA), attach(spring.anchorB);
   for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
     if (scene.bodies[body].motion == Motion::dynamic) continue;
-    reaches[body] = {scene.bodies[body].worldFromBody.translation, 0};
+    reaches[body] = placesOf(scene.bodies[body], scene.duration);
     isAttached[body] = 1;
   }
 

@@ -31,6 +31,9 @@ bool ContactSet::isOnSmoothPlane(std::size_t member) const {
 }
 
 std::vector<StepGroup> ContactSet::findGroups() const {
+  const auto isHeld = [this](int body) {  // no force moves it
+    return body == kFixed || assembly_.mechanism.bodies[static_cast<std::size_t>(body)].isDriven();
+  };
   DisjointSets sets(assembly_.mechanism.bodies.size());
   std::vector<char> isConstrained(assembly_.mechanism.bodies.size(), 0), isConstrainedToFixed = isConstrained;
   for (const Constraint& constraint : assembly_.mechanism.constraints) {
@@ -39,7 +42,7 @@ std::vector<StepGroup> ContactSet::findGroups() const {
     for (const auto& [body, other] : {std::pair(bodyA, bodyB), {bodyB, bodyA}}) {
       if (body == kFixed) continue;
       isConstrained[static_cast<std::size_t>(body)] = 1;
-      if (other == kFixed) isConstrainedToFixed[static_cast<std::size_t>(body)] = 1;
+      if (isHeld(other)) isConstrainedToFixed[static_cast<std::size_t>(body)] = 1;
     }
   }
   for (const Contact& contact : contacts_) sets.join(contact.bodyA, contact.bodyB);
@@ -49,14 +52,15 @@ std::vector<StepGroup> ContactSet::findGroups() const {
     StepGroup& group = groups[sets.islandOf(contact.movingBody())];
     group.members.push_back(i);
     group.contacts.push_back(contact);
-    if (contact.bodyA != kFixed && contact.bodyB != kFixed) continue;
+    if (!isHeld(contact.bodyA) && !isHeld(contact.bodyB)) continue;
     if (isOnSmoothPlane(i))
       hinderByPlane(contact.normal, group.moved.kept);
     else
       group.moved.kept.resize(6, 0);
   }
   for (std::size_t body = 0; body < isConstrained.size(); ++body)
-    if (const auto group = groups.find(sets.islandOf(static_cast<int>(body))); group != groups.end()) {
+    if (const auto group = groups.find(sets.islandOf(static_cast<int>(body)));
+        group != groups.end() && !isHeld(static_cast<int>(body))) {
       group->second.moved.bodies.push_back(static_cast<int>(body));
       if (isConstrainedToFixed[body]) group->second.moved.kept.resize(6, 0);
       group->second.isConstrained = group->second.isConstrained || isConstrained[body];

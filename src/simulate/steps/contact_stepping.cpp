@@ -70,7 +70,7 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::v
   std::vector<double> most;  // J, of each group
   for (const StepGroup& group : groups) {
     most.push_back(energyOf(group.moved.bodies, mechanism, state));
-    resolveGroup(group, {set, step, strikesInside}, state);
+    most.back() += resolveGroup(group, {set, step, strikesInside}, state);
   }
   // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
   if (problem_.constraints().hasConstraints()) {
@@ -85,29 +85,50 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::v
   bookNumerical(constant, mechanism, state);
 }
 
-/// Energy does not grow: a restitution that would let it (with friction it can) is made smaller, and what is left by
-/// rounding, by the order of the method, or by impulses that were not found is taken from the velocities.
-void ContactStepping::resolveGroup(const StepGroup& group, const StepInput& input, VectorX& state) {
+/// Energy does not grow beyond the work of what drives bodies, which is returned (J): a restitution that would let it
+/// (with friction it can) is made smaller, and what is left by rounding, by the order of the method, or by impulses
+/// that were not found is taken from the velocities.
+double ContactStepping::resolveGroup(const StepGroup& group, const StepInput& input, VectorX& state) {
   const Mechanism& mechanism = assembly_.mechanism;
   const StepMotion motion = stepMotionOf(group, input.contacts, input.step, problem_);
   const double most = energyOf(group.moved.bodies, mechanism, state);
   ContactProblem posed;
   VectorX impulses, end;
+  double work = 0;
   const std::size_t kept = faults_.size();
   const auto lossWith = [&](double restitutionFraction) {
     faults_.erase(faults_.begin() + static_cast<std::ptrdiff_t>(kept), faults_.end());
     copyBodies(group.moved.bodies, input.step.end, state);
     posed = posedStep(group, input.contacts, motion, input.strikesInside, restitutionFraction);
     impulses = problem_.solve(group, posed, faults_);
+    work = workOfDriven(group, input.step, impulses, state);
     end = move(group, input, motion, impulses, state);
-    return most - energyOf(group.moved.bodies, mechanism, state);
+    return most + work - energyOf(group.moved.bodies, mechanism, state);
   };
   const double loss = lossWith(1);
-  if (posed.hasRebounds && isGain(most - loss, most)) lossWith(fractionWithoutGain(lossWith, loss));
+  if (posed.hasRebounds && isGain(most + work - loss, most + work)) lossWith(fractionWithoutGain(lossWith, loss));
   keepMomenta(group.moved, input.step.end, mechanism, state);
-  limitEnergy(group.moved, most, mechanism, state, faults_);
+  limitEnergy(group.moved, most + work, mechanism, state, faults_);
   keep(group, motion, posed, impulses, state);
-  book(group, motion, impulses, end, most - energyOf(group.moved.bodies, mechanism, state), state);
+  book(group, motion, impulses, end, most + work - energyOf(group.moved.bodies, mechanism, state), state);
+  pushWork(state) += work;
+  return work;
+}
+
+/// J: of what drives bodies, against a group's impulses, with the mean of their velocities at both ends of the step.
+double ContactStepping::workOfDriven(const StepGroup& group, const FreeStep& step, const VectorX& impulses,
+                                     const VectorX& state) const {
+  const Mechanism& mechanism = assembly_.mechanism;
+  if (mechanism.driven.empty()) return 0;
+  double work = 0;
+  for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+    const Contact& contact = group.contacts[i];
+    const Vec3 impulse = problem_.axes(i) * impulses.segment<3>(3 * static_cast<Eigen::Index>(i));
+    for (const VectorX* velocities : {&step.before, &state})
+      work += powerOfDriven(mechanism.bodies, contact.bodyA, contact.point, impulse / 2, *velocities) +
+              powerOfDriven(mechanism.bodies, contact.bodyB, contact.point, -impulse / 2, *velocities);
+  }
+  return work;
 }
 
 /// From free motion to where impulses lead, with the mean of the velocities at both ends: contacts that last keep order

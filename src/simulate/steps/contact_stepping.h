@@ -69,7 +69,9 @@ class ContactStepping {
     const std::vector<char>& strikesInside;
   };
   double impulseRatio(double timeStep) const { return previousStep_ > 0 ? timeStep / previousStep_ : 1; }
-  void resolveGroup(const StepGroup& group, const StepInput& input, VectorX& state);
+  double resolveGroup(const StepGroup& group, const StepInput& input, VectorX& state);
+  double workOfDriven(const StepGroup& group, const FreeStep& step, const VectorX& impulses,
+                      const VectorX& state) const;
   VectorX move(const StepGroup& group, const StepInput& input, const StepMotion& motion, const VectorX& impulses,
                VectorX& state);
   void keep(const StepGroup& group, const StepMotion& motion, const ContactProblem& posed, const VectorX& impulses,

@@ -198,7 +198,8 @@ bool StepContacts::hasImpact() const {
 double StepContacts::lightest(const Contact& contact) const {
   double mass = INFINITY;
   for (const int body : {contact.bodyA, contact.bodyB})
-    if (body != kFixed) mass = std::min(mass, assembly_.mechanism.bodies[static_cast<std::size_t>(body)].mass);
+    if (body != kFixed && !assembly_.mechanism.bodies[static_cast<std::size_t>(body)].isDriven())
+      mass = std::min(mass, assembly_.mechanism.bodies[static_cast<std::size_t>(body)].mass);
   return mass;
 }
 

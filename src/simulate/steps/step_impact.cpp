@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "dynamics/driven_body.h"
 #include "impact/impact_energy.h"
 
 namespace cradle {
@@ -63,10 +64,18 @@ VectorX resolveGroupImpact(const StepGroup& group, const ImpactInput& input, Gro
   const double most = energyOf(group.moved.bodies, mechanism, state);
   ContactProblem posed;
   VectorX impulses;
+  double work = 0;  // J, of what drives bodies
   const auto solveAndApply = [&] {
     copyBodies(group.moved.bodies, input.approach, state);
     impulses = problem.solve(group, posed, faults);
     problem.apply(impulses, state);
+    work = 0;
+    for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+      const Contact& contact = group.contacts[i];
+      const Vec3 impulse = problem.axes(i) * impulses.segment<3>(3 * static_cast<Eigen::Index>(i));
+      work += powerOfDriven(mechanism.bodies, contact.bodyA, contact.point, impulse, state) +
+              powerOfDriven(mechanism.bodies, contact.bodyB, contact.point, -impulse, state);
+    }
   };
   const std::size_t kept = faults.size();
   const auto lossWith = [&](double fraction) {
@@ -74,12 +83,13 @@ VectorX resolveGroupImpact(const StepGroup& group, const ImpactInput& input, Gro
     posed = posedImpact(group, input.contacts, start, input.timeStep, fraction);
     solveAndApply();
     if (setDynamicFriction(group, input.contacts, problem.velocitiesIn(state), posed)) solveAndApply();
-    return most - energyOf(group.moved.bodies, mechanism, state);
+    return most + work - energyOf(group.moved.bodies, mechanism, state);
   };
   const double loss = lossWith(1);
-  if (posed.hasRebounds && isGain(most - loss, most)) lossWith(fractionWithoutGain(lossWith, loss));
+  if (posed.hasRebounds && isGain(most + work - loss, most + work)) lossWith(fractionWithoutGain(lossWith, loss));
   impactEnergy(state) += std::max(0.0, energyTakenBy(impulses, start, problem.velocitiesIn(state)));
-  limitEnergy(group.moved, most, mechanism, state, faults);
+  limitEnergy(group.moved, most + work, mechanism, state, faults);
+  pushWork(state) += work;
   return impulses;
 }
 

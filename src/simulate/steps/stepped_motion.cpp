@@ -42,7 +42,7 @@ SteppedMotion::SteppedMotion(IslandState& island, RopeEvents& ropes, const Chose
   island_.step.startDerivativeIsKnown = false;
   contacts_.resolveImpacts(island_.time, island_.state, island_.state);
   ropes_.resolve(island_.time, island_.state);
-  island_.beginAndEndPushes();
+  island_.makeChanges();
   island_.requireUnsolvedPairsApart();
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
   startConstraintError_ = solver_.largestError();
@@ -76,7 +76,7 @@ void SteppedMotion::advance(double frame) {
   tautRowsBefore_ = ropes_.tautRows();
   ropes_.resolve(time, island_.state);
   keepsConstraints_ = ropes_.tautRows() == tautRowsBefore_;
-  island_.beginAndEndPushes();
+  island_.makeChanges();
   guard_.check(island_.state, time, step.timeStep);
   island_.requireUnsolvedPairsApart();
 
@@ -118,7 +118,7 @@ double SteppedMotion::nextStepEnd() const {
   double end = island_.scene.duration;
   const double gridEnd = static_cast<double>(stepNumber_ + 1) * method_.timeStep;
   if (gridEnd <= end - kTimeRounding * method_.timeStep) end = gridEnd;
-  return std::min(end, island_.pushes.nextChange());
+  return std::min(end, island_.nextChange());
 }
 
 /// Projects the end of free motion onto the constraints and solves the contacts of the step. False if a shorter step is
@@ -152,7 +152,7 @@ void SteppedMotion::shorten() {
   Step& step = island_.step;
   const double half = step.timeStep / 2;
   keepStartDerivative(step);
-  method_.integrate(island_.rightHandSide, before_, island_.time, half, step);
+  island_.integrate(method_.integrate, before_, half);
 }
 
 /// s: the longest step in which no body near a sheet, which it may touch already, comes to its other side.
@@ -177,14 +177,14 @@ double SteppedMotion::longestBesideSheets() const {
 void SteppedMotion::moveFreely(double stepEnd) {
   Step& step = island_.step;
   double length = std::min({stepEnd - island_.time, longest_, longestBesideSheets()});
-  method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
+  island_.integrate(method_.integrate, length);
   if (method_.tolerance == 0) return;
   prepareInterpolant(island_.rightHandSide, step);
   while (!(rk4Error(step, motionComponents(step.state)) <= method_.tolerance) &&
          length > kShortestRatio * method_.timeStep) {
     length /= 2;
     keepStartDerivative(step);
-    method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
+    island_.integrate(method_.integrate, length);
     prepareInterpolant(island_.rightHandSide, step);
   }
   longest_ = kMaxPartGrowth * length;
@@ -225,12 +225,12 @@ bool SteppedMotion::stopAtNextImpact() {
   if (part > 1) return false;
   const double length = part * step.timeStep;
   keepStartDerivative(step);
-  method_.integrate(island_.rightHandSide, island_.state, island_.time, length, step);
+  island_.integrate(method_.integrate, length);
   return true;
 }
 
 bool SteppedMotion::isAtRest() const {
-  return island_.resting.allRest() && island_.time < island_.pushes.nextChange();
+  return island_.resting.allRest() && island_.time < island_.nextChange();
 }
 
 bool SteppedMotion::mayServeEvents() const {
@@ -239,9 +239,9 @@ bool SteppedMotion::mayServeEvents() const {
 }
 
 void SteppedMotion::restUntil(double time) {
-  island_.time = std::min(time, island_.pushes.nextChange());
+  island_.time = std::min(time, island_.nextChange());
   countSteps();
-  island_.beginAndEndPushes();
+  island_.makeChanges();
 }
 
 void SteppedMotion::countEvent() {

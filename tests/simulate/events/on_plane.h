@@ -42,7 +42,7 @@ struct OnPlane : OneIsland {
     return sum;
   }
   Vec3 acceleration(int body) {
-    island.equations.evaluate(state(), derivative);
+    island.equations.evaluate(0, state(), derivative);
     return linearVelocity(derivative, body);
   }
 
