@@ -93,19 +93,21 @@ void requireNoOtherFile(const std::string& path) {
   throw Error(ErrorKind::output, path, "is there, and is no trajectory: it is not replaced; give another name");
 }
 
-std::string counted(std::size_t count, const char* one, const char* many) {
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
 /// ", 10 rods, 1 push": what there is of each kind.
 std::string linksOf(const Scene& scene) {
   std::string text;
-  const auto add = [&](std::size_t count, const char* one, const char* many) {
+  const auto add = [&](std::size_t count, const std::string& one, const std::string& many) {
     if (count > 0) text += ", " + counted(count, one, many);
   };
-  add(scene.springs.size(), "spring", "springs"), add(scene.rods.size(), "rod", "rods");
-  add(scene.ropes.size(), "rope", "ropes"), add(scene.ballJoints.size(), "ball joint", "ball joints");
-  add(scene.hinges.size(), "hinge", "hinges"), add(scene.pushes.size(), "push", "pushes");
+  forEachKindOfLink(scene, [&](const auto& links) {
+    const std::string noun = LinkOf<decltype(links)>::kNoun;
+    add(links.size(), noun, noun + "s");
+  });
+  add(scene.pushes.size(), "push", "pushes");
   return text;
 }
 

@@ -37,6 +37,7 @@ auto withSize(int size, const Visit& visit) {
   if (size == 1) return visit(std::integral_constant<int, 1>());
   if (size == 3) return visit(std::integral_constant<int, 3>());
   if (size == 5) return visit(std::integral_constant<int, 5>());
+  if (size == 6) return visit(std::integral_constant<int, 6>());
   return visit(size);
 }
 

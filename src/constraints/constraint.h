@@ -7,6 +7,8 @@
 #include "constraints/ball_joint.h"
 #include "constraints/hinge.h"
 #include "constraints/rod.h"
+#include "constraints/slider.h"
+#include "constraints/weld.h"
 #include "core/error.h"
 
 namespace cradle {
@@ -15,7 +17,7 @@ namespace cradle {
 /// many rows, is told by its kind alone.
 struct Constraint {
   Attachment anchorA, anchorB;
-  std::variant<RodConstraint, BallJointConstraint, HingeConstraint> kind;
+  std::variant<RodConstraint, BallJointConstraint, HingeConstraint, SliderConstraint, WeldConstraint> kind;
 };
 
 using Constraints = std::vector<Constraint>;
@@ -30,8 +32,9 @@ template <class Visit>
 void withRows(int rows, const Visit& visit) {
   if (rows == 1) return visit(std::integral_constant<int, 1>());
   if (rows == 3) return visit(std::integral_constant<int, 3>());
-  CRADLE_CHECK(rows == 5);
-  visit(std::integral_constant<int, 5>());
+  if (rows == 5) return visit(std::integral_constant<int, 5>());
+  CRADLE_CHECK(rows == 6);
+  visit(std::integral_constant<int, 6>());
 }
 
 /// Fills in the rows of a constraint in `state`, in which the bodies have `frames`.

@@ -95,14 +95,9 @@ Framing::Framing(const Scene& scene, int width, int height, std::vector<ShownPus
   const auto addAnchor = [&](const Anchor& anchor) {
     if (anchor.body == kWorld) includeMoving({Bounds(Vec3::Zero(), Vec3::Zero()), 0, {Quat::Identity(), anchor.point}});
   };
-  const auto addLinks = [&](const auto& links) {
+  forEachKindOfLink(scene, [&](const auto& links) {
     for (const auto& link : links) addAnchor(link.anchorA), addAnchor(link.anchorB);
-  };
-  addLinks(scene.springs);
-  addLinks(scene.rods);
-  addLinks(scene.ropes);
-  addLinks(scene.ballJoints);
-  addLinks(scene.hinges);
+  });
 }
 
 std::vector<Framing::Solid> Framing::solidsOf(const std::vector<RigidTransform>& places, bool areMoving) const {

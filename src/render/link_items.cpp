@@ -19,11 +19,14 @@ constexpr double kCoilOfBody = 0.45, kCoilOfView = 0.05, kCoilOfLength = 0.14;
 constexpr double kWireOfCoil = 0.16;
 constexpr double kPitchOfCoil = 0.85;  // distance of turns at rest
 constexpr int kFewestTurns = 6;
-constexpr double kStraightEnd = 0.07;                    // of a spring's length
-constexpr double kSlenderest = 0.3;                      // a coil that is drawn out narrows so far and no farther
-constexpr double kKnobOfRod = 1.8;                       // radius of the sphere at the end of a rod
-constexpr double kBallJointOfRod = 4;                    // radius of a ball joint
-constexpr double kPinOfRod = 2.5, kPinLengthOfRod = 12;  // radius, of an axle too; length of a hinge's pin
+constexpr double kStraightEnd = 0.07;                         // of a spring's length
+constexpr double kSlenderest = 0.3;                           // a coil that is drawn out narrows so far and no farther
+constexpr double kKnobOfRod = 1.8;                            // radius of the sphere at the end of a rod
+constexpr double kBallJointOfRod = 4;                         // radius of a ball joint
+constexpr double kPinOfRod = 2.5, kPinLengthOfRod = 12;       // radius, of an axle too; length of a hinge's pin
+constexpr double kSleeveOfRod = 2.5, kSleeveLengthOfRod = 9;  // radius and length of what is on a slider's rail
+constexpr double kRailLengthOfRod = 48;                       // longer if its sleeve is not on it
+constexpr double kBeadOfRod = 2.5;                            // radius of a weld
 constexpr double kPlateOfKnob = 3.2, kPlateThickness = 0.9;
 constexpr int kGroundHalvings = 40, kThirds = 50;  // to find where a rope lies on the ground
 
@@ -42,7 +45,7 @@ std::vector<char> findParts(const Scene& scene) {
       for (const int body : {link.anchorA.body, link.anchorB.body})
         if (body != kWorld) isPart[static_cast<std::size_t>(body)] = value;
   };
-  mark(scene.ballJoints, 1), mark(scene.hinges, 1);
+  forEachKindOfJoint(scene, [&](const auto& joints) { mark(joints, 1); });
   mark(scene.springs, 0), mark(scene.rods, 0), mark(scene.ropes, 0);
   return isPart;
 }
@@ -118,6 +121,8 @@ class LinkBuilder {
   void add(const Rope& rope);
   void add(const BallJoint& joint);
   void add(const Hinge& hinge);
+  void add(const Slider& slider);
+  void add(const Weld& weld);
 
  private:
   Vec3 now(const Anchor& anchor) const { return worldPoint(anchor, places_); }
@@ -240,16 +245,33 @@ void LinkBuilder::add(const Hinge& hinge) {
   addArm(hinge.anchorB, kPinOfRod * rod_);
 }
 
+/// A bar on B, and a sleeve of A around it.
+void LinkBuilder::add(const Slider& slider) {
+  const Vec3 axis = places_[static_cast<std::size_t>(slider.anchorA.body)].rotation * slider.axis;
+  const Vec3 sleeve = now(slider.anchorA), middle = now(slider.anchorB);
+  const double coordinate = axis.dot(sleeve - middle), halfSleeve = kSleeveLengthOfRod / 2 * rod_;
+  const double halfRail = kRailLengthOfRod / 2 * rod_;
+  addCylinder(middle + std::min(-halfRail, coordinate - halfSleeve) * axis,
+              middle + std::max(halfRail, coordinate + halfSleeve) * axis, rod_, kSteel);
+  addCylinder(sleeve - halfSleeve * axis, sleeve + halfSleeve * axis, kSleeveOfRod * rod_, kDarkSteel);
+  addArm(slider.anchorA, kSleeveOfRod * rod_);
+  addArm(slider.anchorB, rod_);
+}
+
+void LinkBuilder::add(const Weld& weld) {
+  list_.spheres.push_back({now(weld.anchorA), kBeadOfRod * rod_, kDarkSteel});
+  addArm(weld.anchorA, kBeadOfRod * rod_);
+  addArm(weld.anchorB, kBeadOfRod * rod_);
+}
+
 }  // namespace
 
 void appendLinks(const Scene& scene, const Appearance& appearance, const View& view,
                  const std::vector<RigidTransform>& worldFromBody, DrawList& list) {
   LinkBuilder builder(scene, appearance, view, worldFromBody, list);
-  for (const Spring& spring : scene.springs) builder.add(spring);
-  for (const Rod& rod : scene.rods) builder.add(rod);
-  for (const Rope& rope : scene.ropes) builder.add(rope);
-  for (const BallJoint& joint : scene.ballJoints) builder.add(joint);
-  for (const Hinge& hinge : scene.hinges) builder.add(hinge);
+  forEachKindOfLink(scene, [&builder](const auto& links) {
+    for (const auto& link : links) builder.add(link);
+  });
 }
 
 }  // namespace cradle

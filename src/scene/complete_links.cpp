@@ -60,8 +60,10 @@ class Settlement {
   }
   void operator()(Rod& rod) const;
   void operator()(Rope& rope) const;
-  void operator()(BallJoint&) const { checkThatEndsMeet(); }
-  void operator()(Hinge&) const { checkThatEndsMeet(); }
+  template <class Joint>
+  void operator()(Joint&) const {
+    checkThatEndsMeet();
+  }
 
  private:
   void checkThatEndsMeet() const;
@@ -139,23 +141,18 @@ void completeLinks(SceneDraft& draft, FaultList& faults) {
 
 void collectLinks(SceneDraft& draft) {
   Scene& scene = draft.scene;
-  struct {
-    Scene& scene;
-    void operator()(const Spring& spring) const { scene.springs.push_back(spring); }
-    void operator()(const Rod& rod) const { scene.rods.push_back(rod); }
-    void operator()(const Rope& rope) const { scene.ropes.push_back(rope); }
-    void operator()(const BallJoint& joint) const { scene.ballJoints.push_back(joint); }
-    void operator()(const Hinge& hinge) const { scene.hinges.push_back(hinge); }
-  } collect{scene};
   for (LinkDraft& draftLink : draft.links) {
     CRADLE_CHECK(draftLink.isSettled);
     std::visit(
-        [&draftLink](auto& link) {
+        [&](auto& link) {
           link.anchorA = draftLink.anchorA.anchor;
           link.anchorB = draftLink.anchorB.anchor;
+          forEachKindOfLink(scene, [&link](auto& links) {
+            if constexpr (std::is_same_v<decltype(links), std::vector<std::decay_t<decltype(link)>>&>)
+              links.push_back(link);
+          });
         },
         draftLink.link);
-    std::visit(collect, draftLink.link);
   }
 }
 

@@ -87,21 +87,17 @@ Rope parseRope(ObjectReader& reader, LinkDraft& draft) {
   return rope;
 }
 
-BallJoint parseBallJoint(ObjectReader& reader, LinkDraft&) {
-  BallJoint joint;
-  joint.collide = reader.boolean("collide", false);
+template <typename Joint>
+Joint parseJoint(ObjectReader& reader, LinkDraft&) {
+  Joint joint;
+  if constexpr (requires { joint.axis; }) joint.axis = reader.direction("axis", joint.axis);
+  const bool collide = reader.boolean("collide", false);
+  if constexpr (requires { joint.collide; }) joint.collide = collide;  // there is no contact inside one body of welds
   return joint;
 }
 
-Hinge parseHinge(ObjectReader& reader, LinkDraft&) {
-  Hinge hinge;
-  hinge.axis = reader.direction("axis", hinge.axis);
-  hinge.collide = reader.boolean("collide", false);
-  return hinge;
-}
-
 template <typename Link>
-struct LinkKind {
+struct LinkSyntax {
   const char* key;   // of the array in the scene file
   const char* noun;  // names are noun0, noun1, ... by default
   Vec3 usualAnchorB;
@@ -111,7 +107,7 @@ struct LinkKind {
 using NamePlaces = std::map<std::string, std::string>;  // name of a link -> where it is
 
 template <typename Link>
-LinkDraft parseLink(const Field& field, const LinkKind<Link>& kind, std::size_t number, const SceneDraft& scene,
+LinkDraft parseLink(const Field& field, const LinkSyntax<Link>& kind, std::size_t number, const SceneDraft& scene,
                     FaultList& faults) {
   LinkDraft draft;
   draft.field = field;
@@ -134,18 +130,6 @@ bool isSound(const LinkDraft& link, const SceneDraft& scene) {
   return true;
 }
 
-/// Directions in which a link can hold its ends: rows of the matrix that is solved.
-int directionsOf(const LinkDraft& link) {
-  struct {
-    int operator()(const Spring&) const { return 0; }
-    int operator()(const Rod&) const { return 1; }
-    int operator()(const Rope&) const { return 1; }
-    int operator()(const BallJoint&) const { return 3; }
-    int operator()(const Hinge&) const { return 5; }
-  } directions;
-  return std::visit(directions, link.link);
-}
-
 /// Directions in which links hold each body. All rows of a body depend on each other: their matrix is full.
 class HeldDirections {
  public:
@@ -158,12 +142,13 @@ class HeldDirections {
     for (const int body : {link.anchorA.anchor.body, link.anchorB.anchor.body}) {
       if (isFixed(body, draft.scene)) continue;
       int& sum = directions_[static_cast<std::size_t>(body)];
-      sum += directionsOf(link);
+      sum += std::visit([](const auto& kind) { return kind.kDirections; }, link.link);
       if (sum <= kMaxDirections) continue;
       isAnyTooMany_ = true;
       addFault(faults, link.field,
                fmt::format("from here on, {} is held in more than {} directions; at most {} are allowed, where a rod "
-                           "or a rope counts 1, a ball joint 3 and a hinge 5; leave out what holds it twice",
+                           "or a rope counts 1, a ball joint 3, a hinge 5, a slider 5 and a weld 6; leave out what "
+                           "holds it twice",
                            inQuotes(draft.scene.bodies[static_cast<std::size_t>(body)].name), kMaxDirections,
                            kMaxDirections));
     }
@@ -175,7 +160,7 @@ class HeldDirections {
 };
 
 template <typename Link>
-void parseKind(ObjectReader& root, const LinkKind<Link>& kind, NamePlaces& names, HeldDirections& held,
+void parseKind(ObjectReader& root, const LinkSyntax<Link>& kind, NamePlaces& names, HeldDirections& held,
                SceneDraft& scene) {
   FaultList& faults = root.faults();
   std::size_t number = 0;
@@ -206,8 +191,10 @@ void parseLinks(ObjectReader& root, SceneDraft& draft) {
   parseKind<Spring>(root, {"springs", "spring", Vec3::Zero(), parseSpring}, names, held, draft);
   parseKind<Rod>(root, {"rods", "rod", above, parseRod}, names, held, draft);
   parseKind<Rope>(root, {"ropes", "rope", above, parseRope}, names, held, draft);
-  parseKind<BallJoint>(root, {"ballJoints", "ballJoint", above, parseBallJoint}, names, held, draft);
-  parseKind<Hinge>(root, {"hinges", "hinge", above, parseHinge}, names, held, draft);
+  parseKind<BallJoint>(root, {"ballJoints", "ballJoint", above, parseJoint<BallJoint>}, names, held, draft);
+  parseKind<Hinge>(root, {"hinges", "hinge", above, parseJoint<Hinge>}, names, held, draft);
+  parseKind<Slider>(root, {"sliders", "slider", above, parseJoint<Slider>}, names, held, draft);
+  parseKind<Weld>(root, {"welds", "weld", above, parseJoint<Weld>}, names, held, draft);
 }
 
 }  // namespace cradle

@@ -5,8 +5,8 @@
 
 namespace cradle {
 
-/// `springs`, `rods`, `ropes`, `ballJoints` and `hinges`. Bodies must be there. Where the ends are, and with it the
-/// lengths, is completed later.
+/// `springs`, `rods`, `ropes`, `ballJoints`, `hinges`, `sliders` and `welds`. Bodies must be there. Where the ends are,
+/// and with it the lengths, is completed later.
 void parseLinks(ObjectReader& root, SceneDraft& draft);
 
 }  // namespace cradle

@@ -72,7 +72,15 @@ struct Anchor {
   Vec3 point = Vec3::Zero();  // m
 };
 
+enum class LinkKind { spring, rod, rope, ballJoint, hinge, slider, weld };  // joints last
+
+// Links: what ties a point of a body to a point of another, or of the world. Of each kind, kDirections tells in how
+// many directions it can hold its ends: rows of the matrix that is solved.
+
 struct Spring {
+  static constexpr LinkKind kKind = LinkKind::spring;
+  static constexpr const char* kNoun = "spring";
+  static constexpr int kDirections = 0;
   std::string name, where;
   Anchor anchorA, anchorB;
   double stiffness = 0;   // N/m, >= 0
@@ -81,12 +89,18 @@ struct Spring {
 };
 
 struct Rod {
+  static constexpr LinkKind kKind = LinkKind::rod;
+  static constexpr const char* kNoun = "rod";
+  static constexpr int kDirections = 1;
   std::string name, where;
   Anchor anchorA, anchorB;
   double length = 0;  // m, > 0
 };
 
 struct Rope {
+  static constexpr LinkKind kKind = LinkKind::rope;
+  static constexpr const char* kNoun = "rope";
+  static constexpr int kDirections = 1;
   std::string name, where;
   Anchor anchorA, anchorB;
   double maxLength = 0;    // m, > 0
@@ -94,16 +108,42 @@ struct Rope {
 };
 
 struct BallJoint {
+  static constexpr LinkKind kKind = LinkKind::ballJoint;
+  static constexpr const char* kNoun = "ball joint";
+  static constexpr int kDirections = 3;
   std::string name, where;
   Anchor anchorA, anchorB;
   bool collide = false;  // whether its bodies touch each other
 };
 
 struct Hinge {
+  static constexpr LinkKind kKind = LinkKind::hinge;
+  static constexpr const char* kNoun = "hinge";
+  static constexpr int kDirections = 5;
   std::string name, where;
   Anchor anchorA, anchorB;
   Vec3 axis = Vec3::UnitZ();  // unit, frame of body A
   bool collide = false;       // whether its bodies touch each other
+};
+
+/// Lets A move along an axis of B, and does not let it turn against B. (A prismatic joint.)
+struct Slider {
+  static constexpr LinkKind kKind = LinkKind::slider;
+  static constexpr const char* kNoun = "slider";
+  static constexpr int kDirections = 5;
+  std::string name, where;
+  Anchor anchorA, anchorB;
+  Vec3 axis = Vec3::UnitZ();  // unit, frame of body A
+  bool collide = false;       // whether its bodies touch each other
+};
+
+/// Keeps A where it is on B. Bodies that welds make one do not touch each other.
+struct Weld {
+  static constexpr LinkKind kKind = LinkKind::weld;
+  static constexpr const char* kNoun = "weld";
+  static constexpr int kDirections = 6;
+  std::string name, where;
+  Anchor anchorA, anchorB;
 };
 
 /// A force for a time at a point of a body, or at the first hit of a ray on its surface.
@@ -196,12 +236,31 @@ struct Scene {
   std::vector<Rope> ropes;
   std::vector<BallJoint> ballJoints;
   std::vector<Hinge> hinges;
+  std::vector<Slider> sliders;
+  std::vector<Weld> welds;
   std::vector<Push> pushes;
   std::optional<Camera> camera;  // at the start; unset: framed so that all that moves stays in view
   CameraMotion cameraMotion;
   std::vector<Light> lights;  // at least one
   Look look = Look::light;
 };
+
+/// Calls visit(links) with the joints of each kind of a scene: those that join two points.
+template <class AnyScene, class Visit>
+void forEachKindOfJoint(AnyScene& scene, const Visit& visit) {
+  visit(scene.ballJoints), visit(scene.hinges), visit(scene.sliders), visit(scene.welds);
+}
+
+/// Calls visit(links) with the links of each kind of a scene, joints last.
+template <class AnyScene, class Visit>
+void forEachKindOfLink(AnyScene& scene, const Visit& visit) {
+  visit(scene.springs), visit(scene.rods), visit(scene.ropes);
+  forEachKindOfJoint(scene, visit);
+}
+
+/// The kind of the links in one of a scene's vectors.
+template <class Links>
+using LinkOf = typename std::decay_t<Links>::value_type;
 
 /// Whether a camera looks along its own `up` (or its target is its position), so that no side of the picture is up.
 bool looksAlongUp(const Camera& camera);

@@ -41,7 +41,7 @@ struct AnchorDraft {
 /// A spring, rod, ... whose length may follow from where its ends are.
 struct LinkDraft {
   Field field;  // the entry
-  std::variant<Spring, Rod, Rope, BallJoint, Hinge> link;
+  std::variant<Spring, Rod, Rope, BallJoint, Hinge, Slider, Weld> link;
   AnchorDraft anchorA, anchorB;
   std::optional<Field> length;  // unset: the distance at the start
   bool isSound = true;          // nothing wrong with the entry or its bodies

@@ -10,10 +10,12 @@
 #include "core/printable.h"
 #include "simulate/pinned_contacts.h"
 #include "simulate/steps/step_limit.h"
+#include "simulate/welded_bodies.h"
 
 namespace cradle {
 namespace {
 
+constexpr double kNearWelded = 2;            // of the sum of two radii: far more than projection moves welded bodies
 constexpr double kVelocityRounding = 1e-12;  // m/s a m of rod: less is no violation, only decimal digits
 
 Attachment attach(const Anchor& anchor, const Scene& scene, const std::vector<int>& sceneBodies) {
@@ -50,53 +52,79 @@ void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly)
 
 /// Calls add(link, anchorA, anchorB) for the links of one kind that are attached to a body of the island.
 template <class Links, class Add>
-void forEachLink(LinkKind kind, const Links& links, const Scene& scene, const IslandPlan& island,
-                 const std::vector<int>& sceneBodies, const Add& add) {
+void forEachLink(const Links& links, const Scene& scene, const IslandPlan& island, const std::vector<int>& sceneBodies,
+                 const Add& add) {
   for (const LinkIndex& place : island.links) {
-    if (place.kind != kind) continue;
+    if (place.kind != LinkOf<Links>::kKind) continue;
     const auto& link = links[place.index];
     const Attachment a = attach(link.anchorA, scene, sceneBodies), b = attach(link.anchorB, scene, sceneBodies);
     if (a.body != kFixed || b.body != kFixed) add(link, a, b);
   }
 }
 
-/// The hinge's axis is given in body A's frame; B's directions across it follow from the bodies' places at the start.
-HingeConstraint hingeAt(const Hinge& hinge, const Attachment& a, const Attachment& b, const Scene& scene) {
+/// How the bodies of a joint are turned at the start: that of its anchor A in the scene, and both as the mechanism has
+/// them, where what is fixed has the world's frame.
+struct JointTurns {
+  Quat worldFromSceneA, aFromWorld, bFromWorld;
+};
+
+JointTurns turnsOf(const Anchor& anchorA, const Anchor& anchorB, const Attachment& a, const Attachment& b,
+                   const Scene& scene) {
   const auto worldFromBody = [&](const Anchor& anchor) -> Quat {
     if (anchor.body == kWorld) return Quat::Identity();
     return scene.bodies[static_cast<std::size_t>(anchor.body)].worldFromBody.rotation;
   };
-  const Vec3 axis = worldFromBody(hinge.anchorA) * hinge.axis;
+  const auto fromWorld = [&](const Attachment& at, const Anchor& anchor) -> Quat {
+    return at.body == kFixed ? Quat::Identity() : worldFromBody(anchor).conjugate();
+  };
+  return {worldFromBody(anchorA), fromWorld(a, anchorA), fromWorld(b, anchorB)};
+}
+
+RodConstraint constraintOf(const Rod& rod, const JointTurns&) {
+  return {rod.length};
+}
+
+BallJointConstraint constraintOf(const BallJoint&, const JointTurns&) {
+  return {};
+}
+
+/// Two directions across an axis (unit), and across each other, that turn with body B; all in the world's frame at the
+/// start.
+std::array<Vec3, 2> acrossInB(const Vec3& axis, const JointTurns& turns) {
   const Vec3 across = axis.unitOrthogonal();
-  const Quat bodyFromWorldA = a.body == kFixed ? Quat::Identity() : worldFromBody(hinge.anchorA).conjugate();
-  const Quat bodyFromWorldB = b.body == kFixed ? Quat::Identity() : worldFromBody(hinge.anchorB).conjugate();
-  return {bodyFromWorldA * axis, {bodyFromWorldB * across, bodyFromWorldB * axis.cross(across)}};
+  return {turns.bFromWorld * across, turns.bFromWorld * axis.cross(across)};
+}
+
+HingeConstraint constraintOf(const Hinge& hinge, const JointTurns& turns) {
+  const Vec3 axis = turns.worldFromSceneA * hinge.axis;
+  return {turns.aFromWorld * axis, acrossInB(axis, turns)};
+}
+
+WeldConstraint constraintOf(const Weld&, const JointTurns& turns) {
+  return {(turns.aFromWorld * turns.bFromWorld.conjugate()).toRotationMatrix()};
+}
+
+SliderConstraint constraintOf(const Slider& slider, const JointTurns& turns) {
+  return {acrossInB(turns.worldFromSceneA * slider.axis, turns), constraintOf(Weld(), turns).aFromB};
 }
 
 void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
   Mechanism& mechanism = assembly.mechanism;
-  forEachLink(LinkKind::spring, scene.springs, scene, island, assembly.sceneBodies,
+  forEachLink(scene.springs, scene, island, assembly.sceneBodies,
               [&](const Spring& spring, const Attachment& a, const Attachment& b) {
                 mechanism.springs.push_back({a, b, spring.stiffness, spring.damping, spring.restLength});
                 assembly.names.springs.push_back(spring.name);
               });
-  const auto addConstraint = [&](const char* kind, const std::string& name, const Constraint& constraint) {
-    mechanism.constraints.push_back(constraint);
-    assembly.names.constraints.push_back(fmt::format("{} \"{}\"", kind, name));
+  const auto addConstraints = [&](const auto& links) {
+    forEachLink(
+        links, scene, island, assembly.sceneBodies, [&](const auto& link, const Attachment& a, const Attachment& b) {
+          mechanism.constraints.push_back({a, b, constraintOf(link, turnsOf(link.anchorA, link.anchorB, a, b, scene))});
+          assembly.names.constraints.push_back(fmt::format("{} \"{}\"", link.kNoun, link.name));
+        });
   };
-  forEachLink(LinkKind::rod, scene.rods, scene, island, assembly.sceneBodies,
-              [&](const Rod& rod, const Attachment& a, const Attachment& b) {
-                addConstraint("rod", rod.name, {a, b, RodConstraint{rod.length}});
-              });
-  forEachLink(LinkKind::ballJoint, scene.ballJoints, scene, island, assembly.sceneBodies,
-              [&](const BallJoint& joint, const Attachment& a, const Attachment& b) {
-                addConstraint("ball joint", joint.name, {a, b, BallJointConstraint()});
-              });
-  forEachLink(LinkKind::hinge, scene.hinges, scene, island, assembly.sceneBodies,
-              [&](const Hinge& hinge, const Attachment& a, const Attachment& b) {
-                addConstraint("hinge", hinge.name, {a, b, hingeAt(hinge, a, b, scene)});
-              });
-  forEachLink(LinkKind::rope, scene.ropes, scene, island, assembly.sceneBodies,
+  addConstraints(scene.rods);
+  forEachKindOfJoint(scene, addConstraints);
+  forEachLink(scene.ropes, scene, island, assembly.sceneBodies,
               [&](const Rope& rope, const Attachment& a, const Attachment& b) {
                 assembly.ropes.push_back({a, b, rope.maxLength, rope.restitution});
                 assembly.ropeBodies.emplace_back(rope.anchorA.body, rope.anchorB.body);
@@ -150,6 +178,23 @@ void addColliders(const Scene& scene, const IslandPlan& island, Assembly& assemb
   }
 }
 
+/// Those whose bounding spheres are near at the start alone: others of one body stay apart.
+void excludeWelded(const Scene& scene, Assembly& assembly) {
+  if (scene.welds.empty()) return;
+  const WeldedBodies welded(scene);
+  const std::vector<int>& bodies = assembly.colliderBodies;
+  const std::vector<Collider>& colliders = assembly.geometry.colliders;
+  const auto centerOf = [&](std::size_t i) -> Vec3 {
+    return colliders[i].body == kFixed ? Vec3::Zero() : Vec3(centerOfMass(assembly.state, colliders[i].body));
+  };
+  for (std::size_t a = 0; a < bodies.size(); ++a)
+    for (std::size_t b = a + 1; b < bodies.size(); ++b) {
+      const double near = kNearWelded * (colliders[a].boundingRadius + colliders[b].boundingRadius);
+      if ((centerOf(a) - centerOf(b)).norm() <= near && welded.areOne(bodies[a], bodies[b]))
+        assembly.geometry.excluded.emplace_back(a, b);
+    }
+}
+
 void excludeJoined(const Scene& scene, Assembly& assembly) {
   for (const auto& [bodyA, bodyB] : pairsKeptFromTouching(scene)) {
     const int a = indexAmong(assembly.colliderBodies, bodyA), b = indexAmong(assembly.colliderBodies, bodyB);
@@ -192,6 +237,7 @@ Assembly assemble(const Scene& scene, const IslandPlan& island) {
   addLinks(scene, island, assembly);
   addColliders(scene, island, assembly);
   excludeJoined(scene, assembly);
+  excludeWelded(scene, assembly);
   excludeUnsolved(assembly.geometry);
   std::sort(assembly.geometry.excluded.begin(), assembly.geometry.excluded.end());
   BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0, assembly.geometry);

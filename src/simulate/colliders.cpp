@@ -115,7 +115,7 @@ std::set<std::pair<int, int>> pairsKeptFromTouching(const Scene& scene) {
     for (const auto& joint : joints)
       (joint.collide ? colliding : joined).insert(std::minmax(joint.anchorA.body, joint.anchorB.body));
   };
-  add(scene.ballJoints), add(scene.hinges);
+  add(scene.ballJoints), add(scene.hinges), add(scene.sliders);
   for (const auto& pair : colliding) joined.erase(pair);
   return joined;
 }

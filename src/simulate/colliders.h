@@ -29,6 +29,7 @@ constexpr std::size_t kMaxFaultsCounted = 1000;  // a scene with as many is not 
 std::vector<std::string> unsupportedContacts(const Scene& scene);
 
 /// Pairs of scene bodies that joints join and none of these joints lets touch each other: the smaller index first.
+/// Welds apart, which may keep any number of bodies from each other (WeldedBodies).
 std::set<std::pair<int, int>> pairsKeptFromTouching(const Scene& scene);
 
 /// Do two bodies have to be watched for contact? (One moves, both collide.)

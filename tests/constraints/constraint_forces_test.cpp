@@ -32,12 +32,20 @@ struct JointedBodies {
     findBodyFrames(bodies, state, frames);
   }
 
-  /// Kinds in turn: a ball joint, a hinge, a rod.
+  /// Kinds in turn: a ball joint, a hinge, a rod, a slider, a weld.
   void tie(int bodyA, int bodyB) {
     const std::size_t number = constraints.size();
-    if (number % 3 == 0) tie(bodyA, bodyB, BallJointConstraint());
-    if (number % 3 == 1) tie(bodyA, bodyB, HingeConstraint{Vec3(2, 1, 2) / 3, {Vec3::UnitX(), Vec3::UnitZ()}});
-    if (number % 3 == 2) tie(bodyA, bodyB, RodConstraint{0.8});
+    if (number % 5 == 0) tie(bodyA, bodyB, BallJointConstraint());
+    if (number % 5 == 1) tie(bodyA, bodyB, HingeConstraint{Vec3(2, 1, 2) / 3, {Vec3::UnitX(), Vec3::UnitZ()}});
+    if (number % 5 == 2) tie(bodyA, bodyB, RodConstraint{0.8});
+    if (number % 5 == 3) tie(bodyA, bodyB, SliderConstraint{{Vec3::UnitY(), Vec3::UnitZ()}, nearTurn(bodyA, bodyB)});
+    if (number % 5 == 4) tie(bodyA, bodyB, WeldConstraint{nearTurn(bodyA, bodyB)});
+  }
+  /// An orientation of B as A sees it, not far from the one it has.
+  Mat3 nearTurn(int bodyA, int bodyB) const {
+    const auto turnOf = [this](int body) { return body == kFixed ? Quat::Identity() : Quat(orientation(state, body)); };
+    const Quat turn = turnOf(bodyA).conjugate() * turnOf(bodyB) * rotationAbout(Vec3(2, -1, 1), 0.4);
+    return turn.toRotationMatrix();
   }
   template <class Kind>
   void tie(int bodyA, int bodyB, const Kind& kind) {
@@ -228,7 +236,8 @@ TEST(ConstraintForces, LeaveOutTheRowsOfExcludedBodies) {
 // world's. Rows among fixed bodies are left out.
 TEST(ConstraintForces, HaveFixedBodiesActAsTheWorld) {
   JointedBodies jointed(4);
-  jointed.tie(0, 1), jointed.tie(1, 2), jointed.tie(3, 0), jointed.tie(2, kFixed);
+  jointed.tie(0, 1), jointed.tie(1, 2), jointed.tie(3, 0);
+  jointed.tie(2, kFixed, BallJointConstraint());
   for (const int body : {2, 3})
     linearVelocity(jointed.state, body).setZero(), angularVelocity(jointed.state, body).setZero();
   JointedBodies world = jointed;

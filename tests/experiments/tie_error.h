@@ -30,21 +30,40 @@ inline double distanceOfEnds(const Anchor& a, const Anchor& b, const std::vector
   return (placeOf(a, places) - placeOf(b, places)).norm();
 }
 
-/// Angle (rad) between a hinge's axis as bodies A and B carry it, from the start of the run.
-inline double axisError(const Hinge& hinge, const Scene& scene, const std::vector<RigidTransform>& places) {
-  const auto turnOf = [&](int body) {  // since the start
-    if (body == kWorld) return Quat::Identity();
-    const auto index = static_cast<std::size_t>(body);
-    return Quat(places[index].rotation * scene.bodies[index].worldFromBody.rotation.conjugate());
-  };
-  const Quat start = hinge.anchorA.body == kWorld
-                         ? Quat::Identity()
-                         : scene.bodies[static_cast<std::size_t>(hinge.anchorA.body)].worldFromBody.rotation;
-  const Vec3 axis = start * hinge.axis;
-  return (turnOf(hinge.anchorA.body) * axis).cross(turnOf(hinge.anchorB.body) * axis).norm();
+/// How a body, or the world, has turned since the start of the run.
+inline Quat turnOf(int body, const Scene& scene, const std::vector<RigidTransform>& places) {
+  if (body == kWorld) return Quat::Identity();
+  const auto index = static_cast<std::size_t>(body);
+  return Quat(places[index].rotation * scene.bodies[index].worldFromBody.rotation.conjugate());
 }
 
-/// How far a frame is from what rods, ball joints and hinges demand: in m, or rad.
+/// The axis of a hinge or slider at the start of the run, in the world's frame.
+template <class Joint>
+Vec3 startAxisOf(const Joint& joint, const Scene& scene) {
+  if (joint.anchorA.body == kWorld) return joint.axis;
+  return scene.bodies[static_cast<std::size_t>(joint.anchorA.body)].worldFromBody.rotation * joint.axis;
+}
+
+/// Angle (rad) between a hinge's axis as bodies A and B carry it, from the start of the run.
+inline double axisError(const Hinge& hinge, const Scene& scene, const std::vector<RigidTransform>& places) {
+  const Vec3 axis = startAxisOf(hinge, scene);
+  const Quat a = turnOf(hinge.anchorA.body, scene, places), b = turnOf(hinge.anchorB.body, scene, places);
+  return (a * axis).cross(b * axis).norm();
+}
+
+/// Angle (rad, small) by which A has turned against B since the start of the run.
+inline double turnError(const Anchor& a, const Anchor& b, const Scene& scene,
+                        const std::vector<RigidTransform>& places) {
+  return 2 * (turnOf(a.body, scene, places).conjugate() * turnOf(b.body, scene, places)).vec().norm();
+}
+
+/// Distance (m) of a slider's anchor A from the axis through its anchor B that B carries.
+inline double railError(const Slider& slider, const Scene& scene, const std::vector<RigidTransform>& places) {
+  const Vec3 axis = turnOf(slider.anchorB.body, scene, places) * startAxisOf(slider, scene);
+  return axis.cross(placeOf(slider.anchorA, places) - placeOf(slider.anchorB, places)).norm();
+}
+
+/// How far a frame is from what rods and joints demand: in m, or rad.
 inline double constraintError(const Frame& frame, const Scene& scene) {
   const std::vector<RigidTransform> places = placesIn(frame, scene);
   double error = 0;
@@ -54,6 +73,12 @@ inline double constraintError(const Frame& frame, const Scene& scene) {
     error = std::max(error, distanceOfEnds(joint.anchorA, joint.anchorB, places));
   for (const Hinge& hinge : scene.hinges)
     error = std::max({error, distanceOfEnds(hinge.anchorA, hinge.anchorB, places), axisError(hinge, scene, places)});
+  for (const Slider& slider : scene.sliders)
+    error =
+        std::max({error, railError(slider, scene, places), turnError(slider.anchorA, slider.anchorB, scene, places)});
+  for (const Weld& weld : scene.welds)
+    error = std::max({error, distanceOfEnds(weld.anchorA, weld.anchorB, places),
+                      turnError(weld.anchorA, weld.anchorB, scene, places)});
   return error;
 }
 

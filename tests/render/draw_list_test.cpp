@@ -235,6 +235,39 @@ TEST(DrawList, PinOfAHingeLiesAlongItsAxisAndTurnsWithBodyA) {
   EXPECT_LT(pin.surface.color.maxCoeff(), 0.2f);
 }
 
+// A body that has moved by 0.02 along its axis, and one that has left its rail, which reaches to it then.
+TEST(DrawList, RailOfASliderStaysOnBAndCarriesTheSleeveOfA) {
+  Scene scene = emptyScene();
+  addBody(scene, Box{{0.4, 0.1, 0.4}}, {Quat::Identity(), {0, 1, 0}});
+  scene.sliders.push_back({"", "", {0, {0, 0.05, 0}}, {kWorld, {0, 1.05, 0}}, {0.6, 0, 0.8}});
+  for (const double way : {0.02, 9.0}) {
+    Frame frame = startFrame(scene);
+    frame.states[0].position += way * Vec3(0.6, 0, 0.8);
+    const DrawList list = listOf(scene, frame);
+    ASSERT_EQ(list.cylinders.size(), 2u);
+    const CylinderItem &rail = list.cylinders[0], &sleeve = list.cylinders[1];
+    EXPECT_NEAR((sleeve.center - Vec3(0.6 * way, 1.05, 0.8 * way)).norm(), 0, 1e-14);
+    for (const CylinderItem& item : list.cylinders) EXPECT_NEAR(item.axis.cross(Vec3(0.6, 0, 0.8)).norm(), 0, 1e-14);
+    EXPECT_GT(sleeve.radius, rail.radius);
+    EXPECT_GT(rail.length, 3 * sleeve.length);
+    const double end = (rail.center - Vec3(0, 1.05, 0)).dot(Vec3(0.6, 0, 0.8)) + rail.length / 2;
+    EXPECT_GE(end, way + sleeve.length / 2 - 1e-14);
+    if (way < 1) {
+      EXPECT_NEAR((rail.center - Vec3(0, 1.05, 0)).norm(), 0, 1e-14);
+    }
+  }
+}
+
+TEST(DrawList, WeldIsABead) {
+  Scene scene = emptyScene();
+  addBody(scene, Box{{0.4, 0.1, 0.4}}, {Quat::Identity(), {0, 1, 0}});
+  scene.welds.push_back({"", "", {0, {0.2, 0, 0}}, {kWorld, {0.2, 1, 0}}});
+  const DrawList list = listOf(scene, startFrame(scene));
+  ASSERT_EQ(list.spheres.size(), 1u);
+  EXPECT_TRUE(list.cylinders.empty());
+  EXPECT_NEAR((list.spheres[0].center - Vec3(0.2, 1, 0)).norm(), 0, 1e-14);
+}
+
 TEST(DrawList, WheelsDoNotDecideHowThickTheSpringsOfACartAre) {
   const auto coilRadius = [](double wheelThickness) {
     Scene scene = emptyScene();

@@ -158,6 +158,12 @@ TEST_F(EveryKey, LinksJoinWhatTheyName) {
   EXPECT_EQ(scene_.ballJoints.at(0).anchorB.body, 6);
   EXPECT_EQ(scene_.hinges.at(0).anchorA.body, 2);
   EXPECT_TRUE(scene_.hinges.at(0).axis.isApprox(Vec3(0, 0.6, 0.8), kRoundingNearOne));
+  EXPECT_EQ(scene_.sliders.at(0).name, "rail");
+  EXPECT_EQ(scene_.sliders.at(0).anchorA.body, 3);
+  EXPECT_TRUE(scene_.sliders.at(0).axis.isApprox(Vec3(0.6, 0.8, 0), kRoundingNearOne));
+  EXPECT_TRUE(scene_.sliders.at(0).collide);
+  EXPECT_EQ(scene_.welds.at(0).name, "seam");
+  EXPECT_EQ(scene_.welds.at(0).anchorA.body, 4);
 }
 
 TEST_F(EveryKey, PushesActWhereTheySay) {

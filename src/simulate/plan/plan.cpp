@@ -77,6 +77,11 @@ ChosenMethod namedMethod(const Scene& scene) {
   return errorSteps(scene);
 }
 
+/// Whether a link puts torques on its bodies wherever its anchors are.
+bool holdsOrientations(LinkKind kind) {
+  return kind == LinkKind::hinge || kind == LinkKind::slider || kind == LinkKind::weld;
+}
+
 bool isActedUpon(const IslandPlan& island) {
   return !island.links.empty() || !island.pushes.empty() || !island.driven.empty();
 }
@@ -94,7 +99,7 @@ void findNonRotating(const Scene& scene, IslandPlan& island) {
     for (const Anchor& anchor : {a, b}) {
       if (anchor.body == kWorld) continue;
       const Body& body = scene.bodies[static_cast<std::size_t>(anchor.body)];
-      if (link.kind == LinkKind::hinge || anchor.point != body.massProperties.centerOfMass) addTorque(anchor.body);
+      if (holdsOrientations(link.kind) || anchor.point != body.massProperties.centerOfMass) addTorque(anchor.body);
     }
   }
   for (const std::size_t push : island.pushes) addTorque(scene.pushes[push].body);

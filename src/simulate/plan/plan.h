@@ -44,8 +44,6 @@ struct ChosenMethod {
 /// them.
 ChosenMethod contactSteps(double timeStep = kContactTimeStep);
 
-enum class LinkKind { spring, rod, rope, ballJoint, hinge };
-
 /// A link of the scene.
 struct LinkIndex {
   LinkKind kind = LinkKind::spring;

@@ -102,7 +102,7 @@ std::vector<std::vector<int>> findTouchingByIsland(const Scene& scene, const Dis
 }  // namespace
 
 ReachablePairs::ReachablePairs(const Scene& scene)
-    : scene_(scene), sizes_(sizesOf(scene)), joined_(pairsKeptFromTouching(scene)) {
+    : scene_(scene), sizes_(sizesOf(scene)), joined_(pairsKeptFromTouching(scene)), welded_(scene) {
   for (int body = 0; body < std::ssize(scene.bodies); ++body)
     if (bodyAt(body).collision != CollisionChoice::none)
       (std::holds_alternative<Plane>(bodyAt(body).shape) ? planes_ : colliding_).push_back(body);
@@ -123,7 +123,11 @@ bool ReachablePairs::mayCollide(int first, int second) const {
   const bool meet = std::holds_alternative<Plane>(a.shape)   ? canReachPlane(reaches_[j], sizes_[j], a)
                     : std::holds_alternative<Plane>(b.shape) ? canReachPlane(reaches_[i], sizes_[i], b)
                                                              : canReach(reaches_[i], sizes_[i], reaches_[j], sizes_[j]);
-  return meet && (joined_.empty() || !joined_.contains(std::minmax(first, second)));
+  return meet && !isKeptFrom(first, second);
+}
+
+bool ReachablePairs::isKeptFrom(int first, int second) const {
+  return welded_.areOne(first, second) || (!joined_.empty() && joined_.contains(std::minmax(first, second)));
 }
 
 /// Of moving bodies with an infinite reach the one from which joints keep the fewest others.
@@ -153,11 +157,9 @@ void ReachablePairs::forEachReachablePair(const Visit& visit) const {
   const std::optional<int> hub = boundless();
   if (!hub) return visitBounded(visit);
   if (!visitAll(*hub, visit)) return;
-  for (const auto& [a, b] : joined_)
-    for (const int kept : {a, b})
-      if (kept != kWorld && kept != *hub && (a == *hub || b == *hub) &&
-          bodyAt(kept).collision != CollisionChoice::none && !visitAll(kept, visit))
-        return;
+  for (const std::vector<int>* bodies : {&colliding_, &planes_})
+    for (const int kept : *bodies)
+      if (kept != *hub && isKeptFrom(*hub, kept) && !visitAll(kept, visit)) return;
 }
 
 /// Sweep and prune along x, in cells across it.
@@ -176,20 +178,11 @@ void ReachablePairs::visitBounded(const Visit& visit) const {
 }
 
 std::pair<Anchor, Anchor> anchorsOf(const LinkIndex& link, const Scene& scene) {
-  const auto of = [&](const auto& links) { return std::pair(links[link.index].anchorA, links[link.index].anchorB); };
-  switch (link.kind) {
-    case LinkKind::spring:
-      return of(scene.springs);
-    case LinkKind::rod:
-      return of(scene.rods);
-    case LinkKind::rope:
-      return of(scene.ropes);
-    case LinkKind::ballJoint:
-      return of(scene.ballJoints);
-    case LinkKind::hinge:
-      break;
-  }
-  return of(scene.hinges);
+  std::pair<Anchor, Anchor> anchors;
+  forEachKindOfLink(scene, [&](const auto& links) {
+    if (LinkOf<decltype(links)>::kKind == link.kind) anchors = {links[link.index].anchorA, links[link.index].anchorB};
+  });
+  return anchors;
 }
 
 std::vector<IslandPlan> findIslands(const Scene& scene, const ReachablePairs& reachable) {

@@ -9,6 +9,7 @@
 #include "scene/scene.h"
 #include "simulate/plan/plan.h"
 #include "simulate/plan/reach.h"
+#include "simulate/welded_bodies.h"
 
 namespace cradle {
 
@@ -33,12 +34,14 @@ class ReachablePairs {
  private:
   const Body& bodyAt(int body) const { return scene_.bodies[static_cast<std::size_t>(body)]; }
   bool visitAll(int body, const Visit& visit) const;
+  bool isKeptFrom(int first, int second) const;
   void visitBounded(const Visit& visit) const;
 
   const Scene& scene_;
   std::vector<Reach> reaches_;  // by body
   std::vector<double> sizes_;   // m, by body
   std::set<std::pair<int, int>> joined_;
+  WeldedBodies welded_;
   std::vector<int> colliding_, planes_;  // bodies that may touch something, ascending
 };
 
@@ -46,14 +49,13 @@ class ReachablePairs {
 /// island with the bodies that may touch. Their methods are not chosen yet.
 std::vector<IslandPlan> findIslands(const Scene& scene, const ReachablePairs& reachable);
 
-/// Calls visit(link, anchorA, anchorB) for every spring, rod, rope, ball joint and hinge; `link` is its LinkIndex.
+/// Calls visit(link, anchorA, anchorB) for every link; `link` is its LinkIndex.
 template <class Visit>
 void forEachLink(const Scene& scene, const Visit& visit) {
-  const auto all = [&](const auto& links, LinkKind kind) {
+  forEachKindOfLink(scene, [&](const auto& links) {
+    constexpr LinkKind kind = LinkOf<decltype(links)>::kKind;
     for (std::size_t i = 0; i < links.size(); ++i) visit(LinkIndex{kind, i}, links[i].anchorA, links[i].anchorB);
-  };
-  all(scene.springs, LinkKind::spring), all(scene.rods, LinkKind::rod), all(scene.ropes, LinkKind::rope);
-  all(scene.ballJoints, LinkKind::ballJoint), all(scene.hinges, LinkKind::hinge);
+  });
 }
 
 /// Both anchors of a link.

@@ -181,9 +181,8 @@ class ContactSurvey {
 };
 
 bool hasJoints(const IslandPlan& island) {
-  return std::any_of(island.links.begin(), island.links.end(), [](const LinkIndex& link) {
-    return link.kind == LinkKind::ballJoint || link.kind == LinkKind::hinge;
-  });
+  return std::any_of(island.links.begin(), island.links.end(),
+                     [](const LinkIndex& link) { return link.kind >= LinkKind::ballJoint; });
 }
 
 /// Whether bilateral constraints act on the island: rows of contacts may depend on each other through them.

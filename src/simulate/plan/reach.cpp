@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kReachRounding = 1e-6;  // of the radius: a motion may go exactly to its bound
 
-/// Two anchors that stay within `length` (m) of each other.
+/// Two anchors that stay within `length` (m, or infinity) of each other.
 struct Limit {
   Anchor a, b;
   double length;
@@ -23,6 +23,9 @@ std::vector<Limit> limitsOf(const Scene& scene) {
   for (const Rope& rope : scene.ropes) limits.push_back({rope.anchorA, rope.anchorB, rope.maxLength});
   for (const BallJoint& joint : scene.ballJoints) limits.push_back({joint.anchorA, joint.anchorB, 0});
   for (const Hinge& hinge : scene.hinges) limits.push_back({hinge.anchorA, hinge.anchorB, 0});
+  for (const Slider& slider : scene.sliders)
+    limits.push_back({slider.anchorA, slider.anchorB, std::numeric_limits<double>::infinity()});
+  for (const Weld& weld : scene.welds) limits.push_back({weld.anchorA, weld.anchorB, 0});
   return limits;
 }
 

@@ -191,6 +191,20 @@ void BulletWorld::addJoints() {
     add(std::make_unique<btHingeConstraint>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b), turned(a, hinge.axisA),
                                             turned(b, hinge.acrossB[0].cross(hinge.acrossB[1]))));
   });
+  const auto frameOf = [&](const Attachment& at, const Mat3& axes) {
+    const btVector3 x = turned(at, axes.col(0)), y = turned(at, axes.col(1)), z = turned(at, axes.col(2));
+    return btTransform(btMatrix3x3(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z()), pointOf(at));
+  };
+  forEachOf<SliderConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const auto& slider) {
+    Mat3 axes;
+    axes << slider.axisB(), slider.acrossB[0], slider.acrossB[1];  // a slider goes along x
+    add(std::make_unique<btSliderConstraint>(bodyOf(a), bodyOf(b), frameOf(a, slider.aFromB * axes), frameOf(b, axes),
+                                             true));
+  });
+  forEachOf<WeldConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const auto& weld) {
+    add(std::make_unique<btFixedConstraint>(bodyOf(a), bodyOf(b), frameOf(a, weld.aFromB),
+                                            frameOf(b, Mat3::Identity())));
+  });
 }
 
 /// Bodies of a joint do not touch each other, fixed ones neither: for Bullet those are not the joint's.

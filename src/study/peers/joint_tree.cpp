@@ -3,7 +3,6 @@
 namespace cradle {
 namespace {
 
-/// A ball joint or a hinge.
 struct Joint {
   const Constraint* constraint;
   TreeLink::Kind kind;
@@ -16,6 +15,10 @@ std::vector<Joint> jointsOf(const Constraints& constraints) {
   for (const Constraint& constraint : constraints)
     if (const auto* hinge = std::get_if<HingeConstraint>(&constraint.kind))
       joints.push_back({&constraint, TreeLink::Kind::hinge, hinge->axisA});
+    else if (const auto* slider = std::get_if<SliderConstraint>(&constraint.kind))
+      joints.push_back({&constraint, TreeLink::Kind::slider, slider->aFromB * slider->axisB()});
+    else if (std::holds_alternative<WeldConstraint>(constraint.kind))
+      joints.push_back({&constraint, TreeLink::Kind::weld, Vec3::UnitZ()});
     else if (std::holds_alternative<BallJointConstraint>(constraint.kind))
       joints.push_back({&constraint, TreeLink::Kind::ball, Vec3::UnitZ()});
   return joints;
@@ -88,8 +91,15 @@ JointTree jointTreeOf(const Assembly& assembly) {
 LinkStart startOf(const TreeLink& link, const Assembly& assembly) {
   const Quat body = turnOf(link.body, assembly.state), parent = turnOf(link.parent, assembly.state);
   Vec3 spin = angularVelocity(assembly.state, link.body);
-  if (link.parent != kFixed) spin -= angularVelocity(assembly.state, link.parent);
-  return {parent.conjugate() * body, body.conjugate() * spin};
+  const AttachmentMotion at = motionOf(Attachment{link.body, link.anchor}, assembly.state);
+  Vec3 velocity = at.velocity;
+  if (link.parent != kFixed) {
+    const Vec3 spinOfParent = angularVelocity(assembly.state, link.parent);
+    spin -= spinOfParent;
+    velocity -= linearVelocity(assembly.state, link.parent) +
+                spinOfParent.cross(at.position - centerOfMass(assembly.state, link.parent));
+  }
+  return {parent.conjugate() * body, body.conjugate() * spin, body.conjugate() * velocity};
 }
 
 }  // namespace cradle

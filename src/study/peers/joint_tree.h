@@ -8,25 +8,26 @@ namespace cradle {
 
 /// How a moving body goes with the one before it in a tree of joints.
 struct TreeLink {
-  enum class Kind { free, ball, hinge };
+  enum class Kind { free, ball, hinge, slider, weld };
   Kind kind = Kind::free;
   int body = 0, parent = kFixed;                            // moving bodies, or the world
   Vec3 anchor = Vec3::Zero(), parentAnchor = Vec3::Zero();  // m, of the joint: as attachments have their points
-  Vec3 axis = Vec3::UnitZ();                                // of a hinge: unit, in the frame of `body`
+  Vec3 axis = Vec3::UnitZ();                                // of a hinge or slider: unit, in the frame of `body`
 };
 
 /// The joints of a mechanism for engines in reduced coordinates. Bodies that no joint ties to the world or to a body
 /// before them are free.
 struct JointTree {
   std::vector<TreeLink> links;  // one a moving body, each after its parent
-  Constraints loops;            // ball joints and hinges that close a loop
+  Constraints loops;            // joints that close a loop
 };
 JointTree jointTreeOf(const Assembly& assembly);
 
 /// What relates a link to its parent at the start.
 struct LinkStart {
   Quat parentFromBody;
-  Vec3 relativeSpin;  // rad/s, of the body against its parent, in the body's frame
+  Vec3 relativeSpin;      // rad/s, of the body against its parent, in the body's frame
+  Vec3 relativeVelocity;  // m/s, of the link's anchor against the parent there, in the body's frame
 };
 LinkStart startOf(const TreeLink& link, const Assembly& assembly);
 

@@ -70,18 +70,24 @@ MujocoWorld::MujocoWorld(const Scene& scene, const Assembly& assembly, const Muj
 }
 
 void MujocoWorld::setVelocity(const TreeLink& link, const Assembly& assembly) {
-  const Vec3 spin = startOf(link, assembly).relativeSpin;
-  mjtNum* velocity = data_->qvel + model_->body_dofadr[bodies_[static_cast<std::size_t>(link.body)]];
+  const LinkStart start = startOf(link, assembly);
+  const int first = model_->body_dofadr[bodies_[static_cast<std::size_t>(link.body)]];
+  mjtNum* velocity = link.kind == TreeLink::Kind::weld ? nullptr : data_->qvel + first;
   switch (link.kind) {
     case TreeLink::Kind::free:
       Vec3::Map(velocity) = linearVelocity(assembly.state, link.body);
-      Vec3::Map(velocity + 3) = spin;
+      Vec3::Map(velocity + 3) = start.relativeSpin;
       break;
     case TreeLink::Kind::ball:
-      Vec3::Map(velocity) = spin;
+      Vec3::Map(velocity) = start.relativeSpin;
       break;
     case TreeLink::Kind::hinge:
-      *velocity = spin.dot(link.axis);
+      *velocity = start.relativeSpin.dot(link.axis);
+      break;
+    case TreeLink::Kind::slider:
+      *velocity = start.relativeVelocity.dot(link.axis);
+      break;
+    case TreeLink::Kind::weld:
       break;
   }
 }
@@ -110,9 +116,11 @@ void MujocoWorld::read(VectorX& state) {
   }
 }
 
-std::string missingInMujoco(const Scene& scene, const Assembly&) {
+std::string missingInMujoco(const Scene& scene, const Assembly& assembly) {
   if (!scene.ropes.empty()) return "ropes that give back what they take";
   if (!scene.pushes.empty()) return "pushes";
+  for (const Constraint& loop : jointTreeOf(assembly).loops)
+    if (std::holds_alternative<SliderConstraint>(loop.kind)) return "sliders that close a loop";
   return meshThatTouches(scene);
 }
 

@@ -119,6 +119,7 @@ class ModelText {
     if (link.kind == TreeLink::Kind::ball) add(R"(<joint type="ball" pos="{}"/>)", text(link.anchor));
     if (link.kind == TreeLink::Kind::hinge)
       add(R"(<joint type="hinge" pos="{}" axis="{}"/>)", text(link.anchor), text(link.axis));
+    if (link.kind == TreeLink::Kind::slider) add(R"(<joint type="slide" axis="{}"/>)", text(link.axis));
     const std::size_t sceneBody = static_cast<std::size_t>(assembly_.sceneBodies[index]);
     addGeom(sceneBody, {Quat::Identity(), -scene_.bodies[sceneBody].massProperties.centerOfMass});
     addSites(link.body);
@@ -182,14 +183,23 @@ class ModelText {
           addConnection(a, b, axis / 2);
           addConnection(a, b, -axis / 2);
         });
+    forEachOf<WeldConstraint>(tree_.loops, [&](const Attachment& a, const Attachment& b, const auto&) {
+      const auto [body, other] = bodiesOf(a, b);
+      add(R"(<weld body1="body{}"{} {}/>)", body, nameOfSecond(other), giving_);
+    });
   }
 
+  /// The bodies of an equality, the one that moves first.
+  static std::pair<int, int> bodiesOf(const Attachment& a, const Attachment& b) {
+    return a.body != kFixed ? std::pair(a.body, b.body) : std::pair(b.body, a.body);
+  }
+
+  static std::string nameOfSecond(int body) { return body == kFixed ? "" : fmt::format(R"( body2="body{}")", body); }
+
   void addConnection(const Attachment& a, const Attachment& b, const Vec3& aside) {
-    const bool fromA = a.body != kFixed;
-    const int body = fromA ? a.body : b.body, other = fromA ? b.body : a.body;
+    const auto [body, other] = bodiesOf(a, b);
     const Vec3 point = motionOf(a, assembly_.state).position + aside - centerOfMass(assembly_.state, body);
-    add(R"(<connect body1="body{}"{} anchor="{}" {}/>)", body,
-        other == kFixed ? "" : fmt::format(R"( body2="body{}")", other),
+    add(R"(<connect body1="body{}"{} anchor="{}" {}/>)", body, nameOfSecond(other),
         text(Vec3(orientation(assembly_.state, body).conjugate() * point)), giving_);
   }
 

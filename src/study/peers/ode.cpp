@@ -188,6 +188,17 @@ void OdeWorld::addJoints() {
     dJointSetHingeAnchor(joint, at.x(), at.y(), at.z());
     dJointSetHingeAxis(joint, axis.x(), axis.y(), axis.z());
   });
+  forEachOf<SliderConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const auto& slider) {
+    const dJointID joint = dJointCreateSlider(world_, nullptr);
+    dJointAttach(joint, bodyOf(a), bodyOf(b));
+    const Vec3 axis = b.body == kFixed ? slider.axisB() : orientation(state_, b.body) * slider.axisB();
+    dJointSetSliderAxis(joint, axis.x(), axis.y(), axis.z());
+  });
+  forEachOf<WeldConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const auto&) {
+    const dJointID joint = dJointCreateFixed(world_, nullptr);
+    dJointAttach(joint, bodyOf(a), bodyOf(b));
+    dJointSetFixed(joint);
+  });
 }
 
 void OdeWorld::addForces() {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "simulate/welded_bodies.h"
+
 namespace cradle {
 
 RecognisedShape recogniseModel(const Body& body, const Scene& scene) {
@@ -37,9 +39,13 @@ std::string meshThatTouches(const Scene& scene) {
 
 std::set<std::pair<int, int>> joinedBodies(const Scene& scene) {
   std::set<std::pair<int, int>> joined;
-  const auto join = [&](const auto& joint) { joined.insert(std::minmax(joint.anchorA.body, joint.anchorB.body)); };
-  for (const BallJoint& joint : scene.ballJoints) join(joint);
-  for (const Hinge& hinge : scene.hinges) join(hinge);
+  forEachKindOfJoint(scene, [&](const auto& joints) {
+    for (const auto& joint : joints) joined.insert(std::minmax(joint.anchorA.body, joint.anchorB.body));
+  });
+  const WeldedBodies welded(scene);
+  for (int a = 0; a < std::ssize(scene.bodies); ++a)
+    for (int b = a + 1; b < std::ssize(scene.bodies); ++b)
+      if (welded.areOne(a, b)) joined.emplace(a, b);
   return joined;
 }
 

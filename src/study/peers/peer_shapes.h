@@ -22,7 +22,7 @@ std::optional<PeerShape> peerShapeOf(const Body& body, const Scene& scene);
 /// The first body that touches with a mesh that is no primitive, in words; empty if there is none.
 std::string meshThatTouches(const Scene& scene);
 
-/// Scene bodies A < B of joints: they do not touch each other.
+/// Scene bodies A < B of joints, or that welds make one: they do not touch each other.
 std::set<std::pair<int, int>> joinedBodies(const Scene& scene);
 
 /// What a body's model is, if it has one and does not ask to be a hull or a mesh.

@@ -37,9 +37,11 @@ Vec3 fromSimbody(const SimTK::Vec3& v) {
 /// Which of its integrators.
 enum class SimbodyIntegrator { merson, feldberg };
 
-/// A turn that takes z to a unit direction: Simbody's pins turn about z.
-Quat fromZ(const Vec3& direction) {
-  return rotationBetween(Vec3::UnitZ(), direction);
+/// The joint's frame in its body's: Simbody's pins turn about z, its sliders go along x.
+Quat bodyFromJointOf(const TreeLink& link) {
+  if (link.kind == TreeLink::Kind::hinge) return rotationBetween(Vec3::UnitZ(), link.axis);
+  if (link.kind == TreeLink::Kind::slider) return rotationBetween(Vec3::UnitX(), link.axis);
+  return Quat::Identity();
 }
 
 class SimbodyWorld : public PeerWorld {
@@ -88,7 +90,7 @@ void SimbodyWorld::addLink(const TreeLink& link, const Assembly& assembly) {
       body.mass, SimTK::Vec3(0),
       SimTK::Inertia(inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2))));
   const Quat parentFromBody = startOf(link, assembly).parentFromBody;
-  const Quat bodyFromJoint = link.kind == TreeLink::Kind::hinge ? fromZ(link.axis) : Quat::Identity();
+  const Quat bodyFromJoint = bodyFromJointOf(link);
   const SimTK::Transform inBody(toSimbody(bodyFromJoint), toSimbody(link.anchor));
   const SimTK::Transform inParent(toSimbody(parentFromBody * bodyFromJoint), toSimbody(link.parentAnchor));
   SimTK::MobilizedBody& parent = bodyOf(link.parent);
@@ -102,6 +104,12 @@ void SimbodyWorld::addLink(const TreeLink& link, const Assembly& assembly) {
       break;
     case TreeLink::Kind::hinge:
       added = SimTK::MobilizedBody::Pin(parent, inParent, rigid, inBody);
+      break;
+    case TreeLink::Kind::slider:
+      added = SimTK::MobilizedBody::Slider(parent, inParent, rigid, inBody);
+      break;
+    case TreeLink::Kind::weld:
+      added = SimTK::MobilizedBody::Weld(parent, inParent, rigid, inBody);
       break;
   }
 }
@@ -122,14 +130,28 @@ void SimbodyWorld::addConstraints(const Assembly& assembly, const JointTree& tre
   forEachOf<RodConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const RodConstraint& rod) {
     SimTK::Constraint::Rod(bodyOf(a.body), pointOf(a), bodyOf(b.body), pointOf(b), rod.length);
   });
-  for (const auto& [a, b, kind] : tree.loops) {
+  const auto addPoint = [&](const Attachment& a, const Attachment& b, const auto&) {
     SimTK::Constraint::Ball(bodyOf(a.body), pointOf(a), bodyOf(b.body), pointOf(b));
-    const auto* hinge = std::get_if<HingeConstraint>(&kind);
-    if (!hinge) continue;
-    for (const Vec3& across : hinge->acrossB)
-      SimTK::Constraint::ConstantAngle(bodyOf(a.body), SimTK::UnitVec3(toSimbody(hinge->axisA)), bodyOf(b.body),
+  };
+  const auto keepOrientation = [&](const Attachment& a, const Attachment& b, const Mat3& aFromB) {
+    SimTK::Constraint::ConstantOrientation(bodyOf(a.body), toSimbody(Quat(aFromB)), bodyOf(b.body), SimTK::Rotation());
+  };
+  forEachOf<BallJointConstraint>(tree.loops, addPoint);
+  forEachOf<HingeConstraint>(tree.loops, [&](const Attachment& a, const Attachment& b, const HingeConstraint& hinge) {
+    addPoint(a, b, hinge);
+    for (const Vec3& across : hinge.acrossB)
+      SimTK::Constraint::ConstantAngle(bodyOf(a.body), SimTK::UnitVec3(toSimbody(hinge.axisA)), bodyOf(b.body),
                                        SimTK::UnitVec3(toSimbody(across)));
-  }
+  });
+  forEachOf<SliderConstraint>(tree.loops, [&](const Attachment& a, const Attachment& b, const auto& slider) {
+    SimTK::Constraint::PointOnLine(bodyOf(b.body), SimTK::UnitVec3(toSimbody(slider.axisB())), pointOf(b),
+                                   bodyOf(a.body), pointOf(a));
+    keepOrientation(a, b, slider.aFromB);
+  });
+  forEachOf<WeldConstraint>(tree.loops, [&](const Attachment& a, const Attachment& b, const auto& weld) {
+    addPoint(a, b, weld);
+    keepOrientation(a, b, weld.aFromB);
+  });
 }
 
 /// A joint starts at no turn; a free body has its pose and velocity as coordinates.
@@ -143,8 +165,11 @@ void SimbodyWorld::setStart(const TreeLink& link, const Assembly& assembly, SimT
     body.setUToFitVelocity(state, SimTK::SpatialVec(toSimbody(turn * start.relativeSpin), toSimbody(velocity)));
     return;
   }
-  const Quat bodyFromJoint = link.kind == TreeLink::Kind::hinge ? fromZ(link.axis) : Quat::Identity();
-  body.setUToFitAngularVelocity(state, toSimbody(bodyFromJoint.conjugate() * start.relativeSpin));
+  const Quat jointFromBody = bodyFromJointOf(link).conjugate();
+  if (link.kind == TreeLink::Kind::slider)
+    body.setUToFitLinearVelocity(state, toSimbody(jointFromBody * start.relativeVelocity));
+  else
+    body.setUToFitAngularVelocity(state, toSimbody(jointFromBody * start.relativeSpin));
 }
 
 void SimbodyWorld::start(const Assembly& assembly, const JointTree& tree, double accuracy) {
