@@ -25,7 +25,7 @@ constexpr double kKnobOfRod = 1.8;                            // radius of the s
 constexpr double kBallJointOfRod = 4;                         // radius of a ball joint
 constexpr double kPinOfRod = 2.5, kPinLengthOfRod = 12;       // radius, of an axle too; length of a hinge's pin
 constexpr double kSleeveOfRod = 2.5, kSleeveLengthOfRod = 9;  // radius and length of what is on a slider's rail
-constexpr double kRailLengthOfRod = 48;                       // longer if its sleeve is not on it
+constexpr double kRailLengthOfRod = 120;                      // longer if its sleeve is not on it
 constexpr double kBeadOfRod = 2.5;                            // radius of a weld
 constexpr double kPlateOfKnob = 3.2, kPlateThickness = 0.9;
 constexpr int kGroundHalvings = 40, kThirds = 50;  // to find where a rope lies on the ground

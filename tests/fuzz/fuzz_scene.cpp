@@ -56,14 +56,11 @@ void check(const Scene& scene) {
     checkBody(body, scene);
     HOLDS(names.insert(body.name).second);
   }
-  for (const Spring& spring : scene.springs) {
-    checkAnchors(spring.anchorA, spring.anchorB, scene);
+  for (const Spring& spring : scene.springs)
     HOLDS(spring.stiffness >= 0 && spring.damping >= 0 && spring.restLength >= 0 && std::isfinite(spring.restLength));
-  }
-  const auto checkAll = [&](const auto& links) {
+  forEachKindOfLink(scene, [&](const auto& links) {
     for (const auto& link : links) checkAnchors(link.anchorA, link.anchorB, scene);
-  };
-  checkAll(scene.rods), checkAll(scene.ropes), checkAll(scene.ballJoints), checkAll(scene.hinges);
+  });
   for (const Rod& rod : scene.rods) HOLDS(rod.length > 0 && std::isfinite(rod.length));
   for (const Rope& rope : scene.ropes) HOLDS(rope.maxLength > 0 && std::isfinite(rope.maxLength));
   for (const Push& push : scene.pushes)

@@ -52,6 +52,7 @@ FRAMES = {  # scene: frames that are drawn; states are kept for these too
     "ball_tray": (0, 60, 290),
     "box_tray": (0, 60, 290),
     "arch": (0, 90, 200),
+    "piston": (0, 25, 300),
 }
 TOLERANCE = 1e-9
 

@@ -53,6 +53,52 @@ Scene tiedBodies(bool rod) {
            : "}"));
 }
 
+/// A body that turns about a hinge, another that a spring pulls along a slider on it, and a third welded to that; none
+/// at its centre of mass.
+Scene slidingBodies() {
+  return sceneOf(R"({"schema": "cradle-scene/1", "name": "sliding", "duration": 0.5,
+    "bodies": [{"name": "a", "shape": {"box": {"size": [1, 0.6, 0.2]}}, "collision": "none", "mass": 2,
+                "centerOfMass": [0.2, -0.1, 0.05], "inertiaTensor": [[0.4, 0.05, 0.02], [0.05, 0.5, -0.03], [0.02, -0.03, 0.6]]},
+               {"name": "b", "shape": {"box": {"size": [0.3, 0.5, 0.4]}}, "collision": "none", "mass": 1, "position": [0.3, 0.3, 0],
+                "linearVelocity": [0.4, 0.2, 0.4]},
+               {"name": "c", "shape": {"box": {"size": [0.3, 0.2, 0.4]}}, "collision": "none", "mass": 1.5, "position": [0.6, 0.5, 0],
+                "linearVelocity": [0.4, 0.2, 0.4]}],
+    "springs": [{"bodyA": "c", "anchorA": [0.1, 0, 0.1], "anchorB": [2, 1, 0.5], "stiffness": 40, "restLength": 1}],
+    "hinges": [{"bodyA": "a", "anchorA": [-0.5, 0, 0], "anchorB": [-0.5, 0, 0], "axis": [1, 2, 2]}],
+    "sliders": [{"bodyA": "b", "anchorA": [0, -0.2, 0.1], "bodyB": "a", "anchorB": [0.3, 0.1, 0.1], "axis": [2, 1, 2]}],
+    "welds": [{"bodyA": "c", "anchorA": [-0.1, 0.3, 0.2], "bodyB": "b", "anchorB": [0.2, 0.5, 0.2]}]})");
+}
+
+/// A crank on a hinge at the origin, with its pin at (0.3, 0, 0), and more of a mechanism.
+Scene crankWith(const std::string& bodies, const std::string& hinges, const std::string& others) {
+  return sceneOf(R"({"schema": "cradle-scene/1", "name": "crank", "duration": 0.5, "bodies": [{"name": "crank",
+      "shape": {"box": {"size": [0.7, 0.2, 0.1]}}, "collision": "none", "mass": 3}, )" +
+                 bodies + R"(], "hinges": [{"bodyA": "crank", "anchorA": [0, 0, 0], "anchorB": [0, 0, 0]}, )" + hinges +
+                 "], " + others + "}");
+}
+
+/// A block on the pin slides along an arm that swings about another hinge: the slider closes a loop.
+Scene quickReturn() {
+  return crankWith(
+      R"({"name": "block", "shape": {"box": {"size": [0.1, 0.2, 0.1]}}, "collision": "none", "mass": 1, "position": [0.3, 0, 0]},
+    {"name": "arm", "shape": {"box": {"size": [0.1, 1, 0.1]}}, "collision": "none", "mass": 2, "position": [0.15, -0.5, 0]})",
+      R"({"bodyA": "block", "anchorA": [0, 0, 0], "bodyB": "crank", "anchorB": [0.3, 0, 0]},
+    {"bodyA": "arm", "anchorA": [-0.15, -0.5, 0], "anchorB": [0, -1, 0]})",
+      R"("sliders": [{"bodyA": "block", "bodyB": "arm", "anchorA": [0, 0, 0], "anchorB": [0.15, 0.5, 0], "axis": [0.3, 1, 0]}])");
+}
+
+/// A rod from the pin to a piston of two parts: the weld between them closes a loop.
+Scene splitPiston() {
+  return crankWith(
+      R"({"name": "rod", "shape": {"box": {"size": [1, 0.1, 0.1]}}, "collision": "none", "mass": 1, "position": [0.8, 0, 0]},
+    {"name": "near", "shape": {"box": {"size": [0.2, 0.2, 0.2]}}, "collision": "none", "mass": 1, "position": [1.3, 0, 0]},
+    {"name": "far", "shape": {"box": {"size": [0.2, 0.2, 0.2]}}, "collision": "none", "mass": 1.5, "position": [1.5, 0, 0]})",
+      R"({"bodyA": "rod", "anchorA": [-0.5, 0, 0], "bodyB": "crank", "anchorB": [0.3, 0, 0]},
+    {"bodyA": "near", "anchorA": [0, 0, 0], "bodyB": "rod", "anchorB": [0.5, 0, 0]})",
+      R"("sliders": [{"bodyA": "far", "anchorA": [0, 0, 0], "anchorB": [1.5, 0, 0], "axis": [1, 0, 0]}],
+    "welds": [{"bodyA": "far", "anchorA": [-0.1, 0, 0], "bodyB": "near", "anchorB": [0.1, 0, 0]}])");
+}
+
 Scene planarChain() {
   return sceneOf(R"({"schema": "cradle-scene/1", "name": "chain", "duration": 0.5,
     "bodies": [{"name": "a", "shape": {"sphere": {"radius": 0.05}}, "collision": "none", "mass": 1, "position": [1, 0, 0]},
@@ -104,6 +150,7 @@ TEST(Peers, BodiesStartWhereTheSceneHasThem) {
     SCOPED_TRACE(peer.name);
     EXPECT_LT(startError(alone, peer), 1e-14);
     EXPECT_LT(startError(tiedBodies(true), peer), 1e-14);
+    EXPECT_LT(startError(slidingBodies(), peer), 1e-14);
   }
 }
 
@@ -111,6 +158,15 @@ TEST_P(Tied, BodiesThatAreNotSymmetricAreRightToFirstOrder) {
   // Rod, ball joint and hinge off the centres of mass, an inertia tensor off the axes, and gyroscopic torque: any of
   // them wrong leaves an error that does not go with the step.
   const Scene scene = tiedBodies(true);
+  const std::vector<BodyState> exact = exactEnd(scene);
+  const double coarse = errorAtEnd(scene, GetParam(), 1.0 / 512, exact);
+  const double fine = errorAtEnd(scene, GetParam(), 1.0 / 1024, exact);
+  EXPECT_LT(coarse, 0.02);
+  EXPECT_NEAR(coarse / fine, 2, 0.3);
+}
+
+TEST_P(Tied, SlidersAndWeldsAreRightToFirstOrder) {
+  const Scene scene = slidingBodies();
   const std::vector<BodyState> exact = exactEnd(scene);
   const double coarse = errorAtEnd(scene, GetParam(), 1.0 / 512, exact);
   const double fine = errorAtEnd(scene, GetParam(), 1.0 / 1024, exact);
@@ -166,11 +222,14 @@ TEST(Peers, JointsThatCloseALoopHoldInReducedCoordinates) {
   const std::vector<BodyState> exact = exactEnd(scene);
   EXPECT_LT(errorAtEnd(scene, "mujocoTuned", 1.0 / 2048, exact), 5e-3);
   EXPECT_LT(errorAtEnd(scene, "simbody", 1e-8, exact), 1e-6);
+  EXPECT_LT(errorAtEnd(quickReturn(), "simbody", 1e-8, exactEnd(quickReturn())), 1e-6);
+  EXPECT_LT(errorAtEnd(splitPiston(), "simbody", 1e-8, exactEnd(splitPiston())), 1e-6);
+  EXPECT_LT(errorAtEnd(splitPiston(), "mujocoTuned", 1.0 / 2048, exactEnd(splitPiston())), 5e-3);
 }
 
 TEST(Peers, SimbodyIsAsExactAsItIsAskedToBe) {
   // Accuracies are local: the error at the end may be some times as large, and goes with them.
-  for (const Scene& scene : {oscillator(20, 0.5), tiedBodies(true)}) {
+  for (const Scene& scene : {oscillator(20, 0.5), tiedBodies(true), slidingBodies()}) {
     SCOPED_TRACE(scene.name);
     const std::vector<BodyState> exact = exactEnd(scene);
     EXPECT_LT(errorAtEnd(scene, "simbody", 1e-6, exact), 1e-4);
@@ -188,6 +247,8 @@ TEST(Peers, WhatTheyDoNotHaveIsNamed) {
   for (const char* name : {"bullet", "ode", "mujoco"})
     EXPECT_EQ(missingIn(name, fileOf("scenes/newtons_cradle.json")), "");
   EXPECT_EQ(missingIn("simbody", fileOf("scenes/coupled_pendulums.json")), "");
+  EXPECT_EQ(missingIn("mujoco", quickReturn()), "sliders that close a loop");
+  EXPECT_EQ(missingIn("mujoco", splitPiston()), "");
 }
 
 TEST(Peers, RowsNameTheEngine) {

@@ -32,7 +32,7 @@ std::vector<std::vector<int>> islandsOf(const Plan& plan) {
 
 TEST(DisjointSets, AreBodiesThatSpringsRodsRopesAndJointsTie) {
   std::string bodies;
-  for (int i = 0; i < 7; ++i) bodies += ball(fmt::format("b{}", i), Vec3(100 * i, 0, 0), kTouchesNothing) + ", ";
+  for (int i = 0; i < 10; ++i) bodies += ball(fmt::format("b{}", i), Vec3(100 * i, 0, 0), kTouchesNothing) + ", ";
   const auto ends = [](int a, int b) {
     return fmt::format(R"("bodyA": "b{}", "anchorA": [0, 0, 0], "bodyB": "b{}", "anchorB": [{}, 0, 0])", a, b,
                        100 * (a - b));
@@ -40,11 +40,12 @@ TEST(DisjointSets, AreBodiesThatSpringsRodsRopesAndJointsTie) {
   const Plan plan =
       planWith(bodies + kFloor,
                fmt::format(R"(, "springs": [{{{}, "stiffness": 1}}], "rods": [{{{}}}],
-      "ropes": [{{{}}}], "ballJoints": [{{{}}}], "hinges": [{{{}}}])",
+      "ropes": [{{{}}}], "ballJoints": [{{{}}}], "hinges": [{{{}}}], "sliders": [{{{}}}], "welds": [{{{}}}])",
                            ends(0, 2), R"("bodyA": "b1", "anchorA": [0, 0, 0], "bodyB": "b3", "anchorB": [0, 1, 0])",
                            R"("bodyA": "b3", "anchorA": [0, 0, 0], "bodyB": "b4", "anchorB": [0, 1, 0])", ends(4, 5),
-                           ends(5, 1)));
-  EXPECT_THAT(islandsOf(plan), ElementsAre(ElementsAre(0, 2), ElementsAre(1, 3, 4, 5), ElementsAre(6)));
+                           ends(5, 1), ends(7, 8), ends(8, 9)));
+  EXPECT_THAT(islandsOf(plan),
+              ElementsAre(ElementsAre(0, 2), ElementsAre(1, 3, 4, 5), ElementsAre(6), ElementsAre(7, 8, 9)));
 }
 
 // All are tied to the world, and the floor lies under them: neither joins them.
@@ -111,13 +112,26 @@ TEST(Joints, ExcludeContactOfTheBodiesThatTheyJoin) {
   const std::string boxes = R"({"name": "a", "shape": {"box": {"size": [1, 1, 1]}}},
     {"name": "b", "shape": {"box": {"size": [1, 1, 1]}}, "position": [0.9, 0, 0]},
     {"name": "c", "shape": {"box": {"size": [1, 1, 1]}}, "position": [0, 2, 0]})";
-  for (const std::string kind : {"ballJoints", "hinges"}) {
+  for (const std::string kind : {"ballJoints", "hinges", "sliders", "welds"}) {
     const Plan plan =
         planWith(boxes, R"(, ")" + kind +
                             R"(": [{"bodyA": "b", "anchorA": [-0.4, 0, 0], "bodyB": "a", "anchorB": [0.5, 0, 0]}])");
     ASSERT_EQ(plan.islands.size(), 1u) << kind;
     EXPECT_THAT(plan.islands[0].touching, ElementsAre(0, 1, 2)) << kind;
   }
+}
+
+// A tray of three boxes, of which b is welded to both others: they are one, and nothing else is there to be touched.
+TEST(Welds, ExcludeContactWithinTheBodyThatTheyMake) {
+  const Plan plan =
+      planWith(R"({"name": "a", "shape": {"box": {"size": [1, 1, 1]}}},
+    {"name": "b", "shape": {"box": {"size": [1, 1, 1]}}, "position": [1, 0, 0]},
+    {"name": "c", "shape": {"box": {"size": [1, 1, 1]}}, "position": [0.5, 0.75, 0]})",
+               R"(, "welds": [{"bodyA": "b", "anchorA": [-0.5, 0, 0], "bodyB": "a", "anchorB": [0.5, 0, 0]},
+    {"bodyA": "b", "anchorA": [0, 0.5, 0], "bodyB": "c", "anchorB": [0.5, -0.25, 0]}])");
+  ASSERT_EQ(plan.islands.size(), 1u);
+  EXPECT_THAT(plan.islands[0].touching, IsEmpty());
+  EXPECT_EQ(plan.islands[0].promise.kind, Promise::Kind::kept);
 }
 
 /// A prism with a hollow, an L, over the floor.

@@ -65,6 +65,24 @@ TEST(Reach, OfBodiesOnSpringsToFixedPointsHolds) {
   EXPECT_GT(tightest, 0.5) << "far too careful";
 }
 
+// A weld keeps its body as near as a hinge would; a slider lets it go as far as its time allows, and a spring that ends
+// on what a slider moves tells nothing of energies.
+TEST(Reach, OfWeldedBodiesIsBoundedAndOfSlidingOnesIsNot) {
+  const std::string pair = body("a", Vec3(0, 0, 0), Vec3::Zero(), Vec3::Zero()) + ", " +
+                           body("b", Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3::Zero());
+  const std::string hinge = R"("hinges": [{"bodyA": "a", "anchorA": [0, 1, 0], "anchorB": [0, 1, 0]}], )";
+  const std::string joint = R"([{"bodyA": "b", "anchorA": [-0.5, 0, 0], "bodyB": "a", "anchorB": [0.5, 0, 0]}])";
+  const auto sceneOfPair = [&](const std::string& joints) {
+    return sceneWith(R"("duration": 2, "bodies": [)" + pair + "], " + joints);
+  };
+  const Scene welded = sceneOfPair(hinge + R"("welds": )" + joint);
+  EXPECT_LT(reachesOf(welded)[1].radius, 4);
+  EXPECT_LT(farthestPart(welded), 1);
+  EXPECT_TRUE(std::isinf(reachesOf(sceneOfPair(hinge + R"("sliders": )" + joint))[1].radius));
+  const std::string spring = R"("springs": [{"bodyA": "a", "anchorA": [0, 0, 0], "anchorB": [0, 1, 0]}], )";
+  EXPECT_TRUE(std::isinf(reachesOf(sceneOfPair(spring + R"("sliders": )" + joint))[0].radius));
+}
+
 TEST(Reach, OfBodiesInAChainOfTiesHolds) {
   Throws throws;
   for (int i = 0; i < 30; ++i) {
