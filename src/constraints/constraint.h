@@ -6,6 +6,7 @@
 
 #include "constraints/ball_joint.h"
 #include "constraints/hinge.h"
+#include "constraints/joint_coordinate.h"
 #include "constraints/rod.h"
 #include "constraints/slider.h"
 #include "constraints/weld.h"
@@ -17,7 +18,8 @@ namespace cradle {
 /// many rows, is told by its kind alone.
 struct Constraint {
   Attachment anchorA, anchorB;
-  std::variant<RodConstraint, BallJointConstraint, HingeConstraint, SliderConstraint, WeldConstraint> kind;
+  std::variant<RodConstraint, BallJointConstraint, HingeConstraint, SliderConstraint, WeldConstraint, JointCoordinate>
+      kind;
 };
 
 using Constraints = std::vector<Constraint>;

@@ -36,7 +36,7 @@ void applyPulls(std::vector<RopePull>& pulls, const std::vector<RigidBody>& bodi
   std::vector<ConstraintRow> rows;
   VectorX wanted(std::ssize(pulls));
   for (const RopePull& pull : pulls) {
-    const RopeMotion motion = motionOf(*pull.rope, state);
+    const LimitMotion motion = motionOf(*pull.rope, state);
     wanted[std::ssize(rows)] = motion.lengthening + pull.reboundSpeed;
     rows.push_back(lengtheningRow(*pull.rope, motion));
   }

@@ -3,13 +3,13 @@
 #include <vector>
 
 #include "constraints/constraint_forces.h"
-#include "constraints/rope.h"
+#include "constraints/limit.h"
 
 namespace cradle {
 
 /// A rope at its length that pulls.
 struct RopePull {
-  const RopeLimit* rope = nullptr;
+  const Limit* rope = nullptr;
   double reboundSpeed = 0;  // m/s: how fast it is to shorten afterwards, at least
   double impulse = 0;       // N s, found
 };

@@ -65,6 +65,20 @@ double cosNearZero(double x, double tail) {
   return leading + (((1 - leading) - half) + (square * square * polynomial(kSeries, square) - x * tail));
 }
 
+/// Of 0..1. Two halvings of the angle, atan x = pi/4 + atan((x - 1)/(x + 1)) and atan x = 2 atan(x/(1 + sqrt(1 +
+/// x^2))), lead to 0.2 at the most, where the series x - x^3/3 + x^5/5 - ... is summed up to x^25: the next term is
+/// below 2^-66.
+double arctangent(double x) {
+  constexpr double kQuarterPi = 0x1.921fb54442d18p-1, kTanEighthPi = 0.41421356237309503;
+  const bool isSteep = x > kTanEighthPi;
+  if (isSteep) x = (x - 1) / (x + 1);
+  const double u = x / (1 + std::sqrt(1 + x * x)), square = u * u;
+  double sum = 0;
+  for (int i = 12; i > 0; --i) sum = square * ((i % 2 == 0 ? 1.0 : -1.0) / (2 * i + 1) + sum);
+  const double angle = 2 * (u + u * sum);
+  return isSteep ? kQuarterPi + angle : angle;
+}
+
 double powerOfTwo(int exponent) {  // -1022 to 1023
   return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
 }
@@ -94,6 +108,15 @@ double sin(double angle) {
 
 double cos(double angle) {
   return sinCos(angle).cos;
+}
+
+double atan2(double sin, double cos) {
+  constexpr double kHalfPi = 0x1.921fb54442d18p0, kPi = 0x1.921fb54442d18p1;
+  const double y = std::fabs(sin), x = std::fabs(cos);
+  if (y == 0 && x == 0) return 0;
+  double angle = y > x ? kHalfPi - arctangent(x / y) : arctangent(y / x);
+  if (cos < 0) angle = kPi - angle;
+  return sin < 0 ? -angle : angle;
 }
 
 double exp(double x) {

@@ -15,6 +15,10 @@ struct SinCos {
 /// Both for little more than the price of one, with the same bits.
 SinCos sinCos(double angle);
 
+/// The angle (rad, -pi..pi) of a direction: sin and cos times a common positive number. Errors are below 4 units in the
+/// last place. 0 of two zeros.
+double atan2(double sin, double cos);
+
 double exp(double x);
 double log(double x);
 

@@ -87,10 +87,31 @@ Rope parseRope(ObjectReader& reader, LinkDraft& draft) {
   return rope;
 }
 
+/// `unit` is that of the bounds.
+JointRange parseRange(const Field& field, const char* unit, const Range& bounds, FaultList& faults) {
+  JointRange range;
+  ObjectReader reader(field, faults);
+  const auto lower = reader.find("lower"), upper = reader.find("upper");
+  range.lower = reader.number("lower", {bounds.least, 0}, unit, range.lower);
+  range.upper = reader.number("upper", {0, bounds.most}, unit, range.upper);
+  range.restitution = reader.number("restitution", kFraction, "", 0);
+  reader.rejectUnknownKeys();
+  if (!lower && !upper)
+    addFault(faults, field, "the limits have neither \"lower\" nor \"upper\"; give one or both, or leave limits out");
+  else if (range.lower == range.upper)
+    addFault(faults, field, "lower and upper are both 0, which leaves no motion; weld the bodies instead");
+  return range;
+}
+
 template <typename Joint>
 Joint parseJoint(ObjectReader& reader, LinkDraft&) {
   Joint joint;
   if constexpr (requires { joint.axis; }) joint.axis = reader.direction("axis", joint.axis);
+  if constexpr (requires { joint.limits; }) {
+    constexpr bool isHinge = std::is_same_v<Joint, Hinge>;
+    if (const auto field = reader.find("limits"))
+      joint.limits = parseRange(*field, isHinge ? "rad" : "m", isHinge ? kTurns : kCoordinates, reader.faults());
+  }
   const bool collide = reader.boolean("collide", false);
   if constexpr (requires { joint.collide; }) joint.collide = collide;  // there is no contact inside one body of welds
   return joint;

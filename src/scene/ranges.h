@@ -50,6 +50,7 @@ constexpr Range kPeriods{-1e9, 1e9};          // s, of an orbit
 constexpr Range kRates{1e-9, 1e9};            // 1/s of frames, and of film to simulated time
 constexpr Range kScales{1e-18, 1e18};         // of a mesh: the largest length from the smallest
 constexpr Range kAngles{-1e9, 1e9};           // degrees: a double holds 1e-7 of one there
+constexpr Range kTurns{-1e9, 1e9};            // rad, of a hinge
 constexpr Range kIntensities{0, 1e6};         // of light: pictures are white from 1e3 on
 
 }  // namespace cradle

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -116,6 +117,12 @@ struct BallJoint {
   bool collide = false;  // whether its bodies touch each other
 };
 
+/// How far A may move along the axis of a slider (m), or turn about that of a hinge (rad), against B; 0 at the start.
+struct JointRange {
+  double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
+  double restitution = 0;  // 0..1, where it ends
+};
+
 struct Hinge {
   static constexpr LinkKind kKind = LinkKind::hinge;
   static constexpr const char* kNoun = "hinge";
@@ -124,6 +131,7 @@ struct Hinge {
   Anchor anchorA, anchorB;
   Vec3 axis = Vec3::UnitZ();  // unit, frame of body A
   bool collide = false;       // whether its bodies touch each other
+  std::optional<JointRange> limits = {};
 };
 
 /// Lets A move along an axis of B, and does not let it turn against B. (A prismatic joint.)
@@ -135,6 +143,7 @@ struct Slider {
   Anchor anchorA, anchorB;
   Vec3 axis = Vec3::UnitZ();  // unit, frame of body A
   bool collide = false;       // whether its bodies touch each other
+  std::optional<JointRange> limits = {};
 };
 
 /// Keeps A where it is on B. Bodies that welds make one do not touch each other.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "collision/broad_phase.h"
@@ -108,6 +109,41 @@ SliderConstraint constraintOf(const Slider& slider, const JointTurns& turns) {
   return {acrossInB(turns.worldFromSceneA * slider.axis, turns), constraintOf(Weld(), turns).aFromB};
 }
 
+JointCoordinate coordinateOf(const Hinge& hinge, const JointTurns& turns) {
+  const Vec3 axis = turns.worldFromSceneA * hinge.axis, across = axis.unitOrthogonal();
+  return {true, turns.bFromWorld * axis, turns.aFromWorld * across, turns.bFromWorld * across, 0};
+}
+
+JointCoordinate coordinateOf(const Slider& slider, const JointTurns& turns) {
+  JointCoordinate coordinate;
+  coordinate.axisB = turns.bFromWorld * (turns.worldFromSceneA * slider.axis);
+  return coordinate;
+}
+
+/// m: how far the mass of a body is from an anchor, in the root of the mean square; 0 if no force moves it.
+double massDistance(const Attachment& anchor, const std::vector<RigidBody>& bodies) {
+  if (anchor.body == kFixed) return 0;
+  const RigidBody& body = bodies[static_cast<std::size_t>(anchor.body)];
+  return body.isDriven() ? 0 : std::sqrt(body.inertiaTensor.trace() / (2 * body.mass) + anchor.point.squaredNorm());
+}
+
+/// The stops of a joint. Where its anchors are apart at the start by an error, its coordinate is 0 all the same.
+template <class Joint>
+void addStops(const Joint& joint, const JointTurns& turns, const Attachment& a, const Attachment& b,
+              Assembly& assembly) {
+  if (!joint.limits) return;
+  JointLimit stop{a, b, coordinateOf(joint, turns)};
+  stop.size = std::max(massDistance(a, assembly.mechanism.bodies), massDistance(b, assembly.mechanism.bodies));
+  stop.restitution = joint.limits->restitution;
+  const double start = stop.bound.turns ? 0 : -motionOf(Limit(stop), assembly.state).slackLength;
+  for (const auto& [bound, side] : {std::pair(joint.limits->lower, -1.0), {joint.limits->upper, 1.0}}) {
+    if (!std::isfinite(bound)) continue;
+    stop.bound.value = start + bound, stop.side = side;
+    assembly.limits.emplace_back(stop);
+    assembly.limitBodies.emplace_back(joint.anchorA.body, joint.anchorB.body);
+  }
+}
+
 void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
   Mechanism& mechanism = assembly.mechanism;
   forEachLink(scene.springs, scene, island, assembly.sceneBodies,
@@ -116,18 +152,20 @@ void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) 
                 assembly.names.springs.push_back(spring.name);
               });
   const auto addConstraints = [&](const auto& links) {
-    forEachLink(
-        links, scene, island, assembly.sceneBodies, [&](const auto& link, const Attachment& a, const Attachment& b) {
-          mechanism.constraints.push_back({a, b, constraintOf(link, turnsOf(link.anchorA, link.anchorB, a, b, scene))});
-          assembly.names.constraints.push_back(fmt::format("{} \"{}\"", link.kNoun, link.name));
-        });
+    forEachLink(links, scene, island, assembly.sceneBodies,
+                [&](const auto& link, const Attachment& a, const Attachment& b) {
+                  const JointTurns turns = turnsOf(link.anchorA, link.anchorB, a, b, scene);
+                  mechanism.constraints.push_back({a, b, constraintOf(link, turns)});
+                  if constexpr (requires { link.limits; }) addStops(link, turns, a, b, assembly);
+                  assembly.names.constraints.push_back(fmt::format("{} \"{}\"", link.kNoun, link.name));
+                });
   };
   addConstraints(scene.rods);
   forEachKindOfJoint(scene, addConstraints);
   forEachLink(scene.ropes, scene, island, assembly.sceneBodies,
               [&](const Rope& rope, const Attachment& a, const Attachment& b) {
-                assembly.ropes.push_back({a, b, rope.maxLength, rope.restitution});
-                assembly.ropeBodies.emplace_back(rope.anchorA.body, rope.anchorB.body);
+                assembly.limits.emplace_back(RopeLimit{a, b, rope.maxLength, rope.restitution});
+                assembly.limitBodies.emplace_back(rope.anchorA.body, rope.anchorB.body);
               });
 }
 

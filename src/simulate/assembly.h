@@ -6,7 +6,7 @@
 
 #include "collision/collider.h"
 #include "constraints/equations_of_motion.h"
-#include "constraints/rope.h"
+#include "constraints/limit.h"
 #include "scene/scene.h"
 #include "simulate/colliders.h"
 #include "simulate/plan/plan.h"
@@ -22,14 +22,14 @@ struct PartNames {
 struct Assembly {
   Mechanism mechanism;
   ContactGeometry geometry;
-  std::vector<RopeLimit> ropes;
+  std::vector<Limit> limits;
   VectorX state;                    // at time 0
   std::vector<int> sceneBodies;     // scene body of each moving body, ascending
   std::vector<std::size_t> pushes;  // of the island, indices into the scene's
   PartNames names;                  // taut ropes stand behind the constraints named here
   std::vector<double> radii;        // m: of each moving body's collider about its centre of mass; 0 without one
   std::vector<int> colliderBodies, planeBodies;  // scene body of each collider and plane of the geometry
-  std::vector<std::pair<int, int>> ropeBodies;   // scene bodies A, B of each rope; kWorld
+  std::vector<std::pair<int, int>> limitBodies;  // scene bodies A, B of each limit; kWorld
   std::vector<std::string> warnings;
   bool hasLongSteps = false;  // a warning tells that the method's steps are too long for a spring
 };

@@ -21,7 +21,12 @@ bool isIsolated(const Assembly& assembly) {
   const auto areFree = [&](const auto& links) { return std::none_of(links.begin(), links.end(), isTied); };
   const std::vector<Collider>& colliders = assembly.geometry.colliders;
   return assembly.pushes.empty() && assembly.mechanism.driven.empty() && assembly.geometry.planes.empty() &&
-         areFree(assembly.mechanism.springs) && areFree(assembly.mechanism.constraints) && areFree(assembly.ropes) &&
+         areFree(assembly.mechanism.springs) && areFree(assembly.mechanism.constraints) &&
+         std::none_of(assembly.limits.begin(), assembly.limits.end(),
+                      [](const Limit& limit) {
+                        const auto [a, b] = bodiesOf(limit);
+                        return a == kFixed || b == kFixed;
+                      }) &&
          std::none_of(colliders.begin(), colliders.end(), [](const Collider& c) { return c.body == kFixed; });
 }
 

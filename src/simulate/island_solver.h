@@ -61,7 +61,7 @@ class IslandSolver {
   void rotate(Eigen::Index body, double time, VectorX& state) const;
 
   IslandState island_;
-  RopeEvents ropes_;
+  LimitEvents ropes_;
   ConstraintSolver solver_;
   std::variant<std::monostate, EventMotion, SteppedMotion> motion_;
   ChosenMethod method_;

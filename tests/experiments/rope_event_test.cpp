@@ -273,6 +273,23 @@ TEST(TautRope, StaysTautWhileWhatItHoldsRests) {
   EXPECT_NEAR(endOf(fall).position.y(), 0.8, 1e-12);
 }
 
+// A ball that hangs at rest is lifted by a push of twice its weight: its rope does not push back for an instant. By
+// events, and in steps.
+TEST(TautRope, LetsGoAsAPushLiftsWhatItHolds) {
+  for (const char* method : {"", R"("method": {"name": "rk4", "timeStep": 0.001}, )"}) {
+    const Trajectory lift = simulate(sceneWith(
+        std::string(method) +
+        R"("duration": 0.5, "accuracy": 1e-8, "bodies": [{"name": "hung", "shape": {"sphere": {"radius": 0.1}}, "mass": 1,
+         "position": [0, 1, 0]}],
+         "ropes": [{"bodyA": "hung", "anchorA": [0, 0, 0], "anchorB": [0, 2, 0], "maxLength": 1}],
+         "pushes": [{"body": "hung", "point": [0, 0, 0], "force": [0, 19.62, 0], "start": 0.2, "duration": 0.3}])"));
+    for (const Frame& frame : lift.frames) {
+      const double t = std::max(0.0, frame.time - 0.2);
+      EXPECT_NEAR(frame.states[0].position.y(), 1 + kGravity * t * t / 2, 1e-9) << frame.time;
+    }
+  }
+}
+
 // A ball whose rope is taut already pulls at it before it has gone the way that is left to the floor, however short
 // that is: first the rope, with its direction d, then the floor, and both again as long as they close.
 TEST(RopeAtItsLength, PullsBeforeAGapCloses) {

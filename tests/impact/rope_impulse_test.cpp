@@ -23,7 +23,7 @@ void applyToFree(std::vector<RopePull>& pulls, const std::vector<RigidBody>& bod
 // rope that shortens faster than that, or exactly as fast, does not pull.
 TEST(RopeImpulse, OfOneRopeMatchesTheClosedForm) {
   const std::vector<RigidBody> bodies{ball(2), ball(0.5)};
-  const RopeLimit rope{{0, Vec3::Zero()}, {1, Vec3::Zero()}, 1, 0};
+  const Limit rope = RopeLimit{{0, Vec3::Zero()}, {1, Vec3::Zero()}, 1, 0};
   const Vec3 along = Vec3(0.6, 0, 0.8), across = Vec3(0.8, 1, -0.6);
   for (const double rebound : {0.0, 0.7})
     for (const double lengthening : {3.0, -0.2, -rebound, -0.9}) {
@@ -42,7 +42,7 @@ TEST(RopeImpulse, OfOneRopeMatchesTheClosedForm) {
 /// Bodies without symmetry on ropes between points beside their centres, two of them to the world.
 struct TangledRopes {
   std::vector<RigidBody> bodies;
-  std::vector<RopeLimit> ropes;
+  std::vector<Limit> ropes;
   VectorX state = statesAtRest(3);
 
   explicit TangledRopes(int seed) {
@@ -60,7 +60,7 @@ struct TangledRopes {
       linearVelocity(state, body) = numbers(), angularVelocity(state, body) = numbers();
     }
     for (const auto& [a, b] : {std::pair{0, 1}, {1, 2}, {0, 2}, {2, kFixed}, {kFixed, 0}})
-      ropes.push_back({{a, numbers()}, {b, numbers()}, 1, 0});
+      ropes.emplace_back(RopeLimit{{a, numbers()}, {b, numbers()}, 1, 0});
   }
   struct End {
     Vec3 point, velocity;
@@ -71,12 +71,14 @@ struct TangledRopes {
     return {centerOfMass(at, anchor.body) + arm,
             linearVelocity(at, anchor.body) + angularVelocity(at, anchor.body).cross(arm)};
   }
-  double lengthening(const RopeLimit& rope, const VectorX& at) const {
+  double lengthening(const Limit& limit, const VectorX& at) const {
+    const RopeLimit& rope = std::get<RopeLimit>(limit);
     const End a = endOf(rope.anchorA, at), b = endOf(rope.anchorB, at);
     return (a.point - b.point).normalized().dot(a.velocity - b.velocity);
   }
   /// Newton's and Euler's laws for a pull of this impulse on both ends.
-  void pull(const RopeLimit& rope, double impulse, VectorX& at) const {
+  void pull(const Limit& limit, double impulse, VectorX& at) const {
+    const RopeLimit& rope = std::get<RopeLimit>(limit);
     const Vec3 toB = (endOf(rope.anchorB, state).point - endOf(rope.anchorA, state).point).normalized();
     for (const auto& [anchor, push] :
          {std::pair{rope.anchorA, Vec3(impulse * toB)}, {rope.anchorB, Vec3(-impulse * toB)}}) {
@@ -96,7 +98,7 @@ TEST(RopeImpulse, OfManyRopesPullsOnlyWhereARopeWouldLengthen) {
   for (int trial = 0; trial < 40; ++trial) {
     const TangledRopes tangle(trial);
     std::vector<RopePull> pulls;
-    for (const RopeLimit& rope : tangle.ropes) pulls.push_back({&rope, 0.1 * static_cast<double>(pulls.size()), 0});
+    for (const Limit& rope : tangle.ropes) pulls.push_back({&rope, 0.1 * static_cast<double>(pulls.size()), 0});
     VectorX state = tangle.state, expected = tangle.state;
     applyToFree(pulls, tangle.bodies, state);
     for (const RopePull& pull : pulls) tangle.pull(*pull.rope, pull.impulse, expected);
@@ -117,7 +119,7 @@ TEST(RopeImpulse, OfManyRopesPullsOnlyWhereARopeWouldLengthen) {
 // Two ropes side by side pull half each.
 TEST(RopeImpulse, IsSharedByRopesBetweenTheSamePoints) {
   const std::vector<RigidBody> bodies{ball(2)};
-  const RopeLimit rope{{0, Vec3::Zero()}, {kFixed, Vec3::UnitY()}, 1, 0}, other = rope;
+  const Limit rope = RopeLimit{{0, Vec3::Zero()}, {kFixed, Vec3::UnitY()}, 1, 0}, other = rope;
   VectorX state = statesAtRest(1);
   linearVelocity(state, 0) = Vec3(1, -3, 0);
   std::vector<RopePull> pulls{{&rope, 0, 0}, {&other, 0, 0}};
@@ -135,7 +137,7 @@ TEST(RopeImpulse, IsAnsweredByARod) {
   const Vec3 along(std::cos(angle), std::sin(angle), 0);
   const std::vector<RigidBody> bodies{ball(m1), ball(m2)};
   const Constraints rod = {{{0, Vec3::Zero()}, {1, Vec3::Zero()}, RodConstraint{length}}};
-  const RopeLimit rope{{0, Vec3::Zero()}, {kFixed, Vec3::UnitY()}, 1, 0};
+  const Limit rope = RopeLimit{{0, Vec3::Zero()}, {kFixed, Vec3::UnitY()}, 1, 0};
   VectorX state = statesAtRest(2);
   centerOfMass(state, 1) = length * along;
   for (int body = 0; body < 2; ++body) linearVelocity(state, body).y() = -fall;

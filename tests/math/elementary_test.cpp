@@ -127,6 +127,19 @@ TEST(Elementary, LogarithmErrsBelowOneUlp) {
   expectBelowOneUlp(log, std::log, {std::nextafter(1, 0), std::nextafter(1, 2), std::numbers::sqrt2 / 2});
 }
 
+TEST(Elementary, AngleOfADirectionErrsBelowFourUlps) {
+  double worst = 0;
+  const std::vector<double> first = uniform(-1, 1, 100000), sizes = ofAllSizes(100000);
+  for (std::size_t i = 1; i < first.size(); ++i)
+    for (const auto& [y, x] : {std::pair(first[i], first[i - 1]), {first[i], 1.0}, {1.0, first[i]}, {sizes[i], -1.0}})
+      worst = std::max(worst, ulps(atan2(y, x), std::atan2(static_cast<long double>(y), static_cast<long double>(x))));
+  EXPECT_LT(worst, 4);
+  EXPECT_EQ(atan2(0, 0), 0);
+  EXPECT_EQ(atan2(0, 1), 0);
+  EXPECT_EQ(atan2(0, -1), std::numbers::pi);
+  EXPECT_EQ(atan2(-2, 0), -std::numbers::pi / 2);
+}
+
 TEST(Elementary, SpecialValuesAreThoseOfIeee754) {
   EXPECT_TRUE(std::signbit(sin(-0.0)));
   EXPECT_FALSE(std::signbit(sin(0.0)));

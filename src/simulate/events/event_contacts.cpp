@@ -7,7 +7,7 @@
 
 namespace cradle {
 
-EventContacts::EventContacts(IslandState& island, RopeEvents& ropes, const EventTolerances& tolerances, bool isTrial)
+EventContacts::EventContacts(IslandState& island, LimitEvents& ropes, const EventTolerances& tolerances, bool isTrial)
     : island_(island),
       tolerances_(tolerances),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),

@@ -10,7 +10,7 @@
 #include "simulate/events/event_tolerances.h"
 #include "simulate/events/touching_contacts.h"
 #include "simulate/island_state.h"
-#include "simulate/rope_events.h"
+#include "simulate/limit_events.h"
 
 namespace cradle {
 
@@ -19,7 +19,7 @@ namespace cradle {
 class EventContacts {
  public:
   /// Keeps references to all three. A trial is made where contacts had to be resolved by time stepping before.
-  EventContacts(IslandState& island, RopeEvents& ropes, const EventTolerances& tolerances, bool isTrial);
+  EventContacts(IslandState& island, LimitEvents& ropes, const EventTolerances& tolerances, bool isTrial);
   EventContacts(const EventContacts&) = delete;
   EventContacts& operator=(const EventContacts&) = delete;
 

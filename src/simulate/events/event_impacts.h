@@ -10,7 +10,7 @@
 #include "simulate/events/impact_sequence.h"
 #include "simulate/events/touching_contacts.h"
 #include "simulate/island_state.h"
-#include "simulate/rope_events.h"
+#include "simulate/limit_events.h"
 
 namespace cradle {
 
@@ -20,7 +20,7 @@ class EventImpacts {
  public:
   /// Keeps references to all five. `constraints` must be factorised for the island's state at each call, and is so
   /// after it.
-  EventImpacts(IslandState& island, RopeEvents& ropes, ConstraintSolver& constraints, ComingToRest& rest,
+  EventImpacts(IslandState& island, LimitEvents& ropes, ConstraintSolver& constraints, ComingToRest& rest,
                const EventTolerances& tolerances)
       : island_(island), ropes_(ropes), constraints_(constraints), rest_(rest), tolerances_(tolerances) {}
 
@@ -48,7 +48,7 @@ class EventImpacts {
   double endZenoSequence(const VectorX& approach, std::vector<ImpactContact>& impacts);
 
   IslandState& island_;
-  RopeEvents& ropes_;
+  LimitEvents& ropes_;
   ConstraintSolver& constraints_;
   ComingToRest& rest_;
   const EventTolerances& tolerances_;

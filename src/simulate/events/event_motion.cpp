@@ -44,7 +44,7 @@ VectorX toleranceOf(const ChosenMethod& method, const VectorX& state, double dur
 
 }  // namespace
 
-EventMotion::EventMotion(IslandState& island, RopeEvents& ropes, const ChosenMethod& method, bool isTrial)
+EventMotion::EventMotion(IslandState& island, LimitEvents& ropes, const ChosenMethod& method, bool isTrial)
     : island_(island),
       ropes_(ropes),
       method_(method),
@@ -60,8 +60,8 @@ EventMotion::EventMotion(IslandState& island, RopeEvents& ropes, const ChosenMet
   island_.findNearPairsNow(tolerances_.reach);
   ropes_.setTimeStep(0);
   contacts_.resolve();
-  applyRopeEvents();
-  if (island_.makeChanges()) contacts_.resolve();
+  applyLimitEvents();
+  makeChanges();
   island_.requireUnsolvedPairsApart();
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
   startConstraintError_ = solver_.largestError();
@@ -192,7 +192,7 @@ EventMotion::Event EventMotion::findFirstEvent() {
 /// Cuts the step at the first event in it. The state there is that of a step of its own, as the error of the
 /// interpolant would let bodies overlap; with DOPRI5 it is the interpolant's, which is as good as the step.
 EventMotion::Event EventMotion::stopAtFirstEvent() {
-  if (!island_.mayTouch() && !ropes_.hasRopes()) return {};
+  if (!island_.mayTouch() && !ropes_.hasLimits()) return {};
   Step& step = island_.step;
   Event event = findFirstEvent();
   const double whole = step.timeStep, latest = event.latest * whole;
@@ -271,7 +271,7 @@ void EventMotion::projectState() {
   for (Eigen::Index body = 0; body < bodyCount(state); ++body)
     isTouched = isTouched || std::abs(orientation(state, body).squaredNorm() - 1) > EventTolerances::kUnitLength;
   if (isTouched) normalizeOrientations(state);
-  isContinuous_ = !isTouched && !ropes_.hasRopes();
+  isContinuous_ = !isTouched && !ropes_.hasLimits();
 }
 
 /// Ends the run where constraints cannot be kept, or leave no motion: their forces are without bound, and the bodies
@@ -293,11 +293,18 @@ void EventMotion::changeForces(const Event& event) {
   else
     followActive();
   if (!lasted && !contacts_.active().empty()) lengths_.fill(island_.scene.duration);  // no more bounces
-  applyRopeEvents();
+  applyLimitEvents();
+  const bool isPushed = makeChanges();
   keepsConstraints_ = ropes_.tautRows() == tautRowsBefore_;
-  const bool isPushed = island_.makeChanges();
-  if (isPushed) contacts_.resolve();
   if (event.any() || isPushed) isContinuous_ = false;
+}
+
+/// Lets pushes begin and end: what was in equilibrium may not be any more. True if there were any.
+bool EventMotion::makeChanges() {
+  if (!island_.makeChanges()) return false;
+  contacts_.resolve();
+  applyLimitEvents();
+  return true;
 }
 
 /// Follows active contacts along a step without an event.
@@ -307,7 +314,7 @@ void EventMotion::followActive() {
 }
 
 /// Ropes and contacts in turn: either may load or release the other.
-void EventMotion::applyRopeEvents() {
+void EventMotion::applyLimitEvents() {
   for (int round = 0; round < kMaxRopeRounds && ropes_.resolve(island_.time, island_.state); ++round)
     contacts_.resolve();
 }
@@ -318,7 +325,7 @@ bool EventMotion::isAtRest() const {
 
 void EventMotion::restUntil(double time) {
   island_.time = std::min(time, island_.nextChange());
-  if (island_.makeChanges()) contacts_.resolve();
+  makeChanges();
   isContinuous_ = false;
 }
 

@@ -9,8 +9,8 @@
 #include "simulate/events/event_contacts.h"
 #include "simulate/events/event_tolerances.h"
 #include "simulate/island_state.h"
+#include "simulate/limit_events.h"
 #include "simulate/plan/event_rate_limit.h"
-#include "simulate/rope_events.h"
 
 namespace cradle {
 
@@ -20,7 +20,7 @@ namespace cradle {
 class EventMotion {
  public:
   /// Keeps references to the island, which it moves, and its ropes. A trial: whether the promise is given up.
-  EventMotion(IslandState& island, RopeEvents& ropes, const ChosenMethod& method, bool isTrial);
+  EventMotion(IslandState& island, LimitEvents& ropes, const ChosenMethod& method, bool isTrial);
 
   /// Takes a step. `frame` (s) is the next time whose state is asked for. Throws Error(unstable) if the state blows up.
   void advance(double frame);
@@ -52,7 +52,7 @@ class EventMotion {
   /// The event that ends a step: at most one of these.
   struct Event {
     std::optional<ImpactTime> impact;
-    std::optional<RopeChange> rope;
+    std::optional<LimitChange> rope;
     std::optional<ContactChange> contact;
     double latest = 1;  // of the step: fraction of the event after it
     bool any() const { return impact || rope || contact; }
@@ -63,9 +63,10 @@ class EventMotion {
   void project(VectorX& state);
   void projectState();
   void requireConstraintsKept();
+  bool makeChanges();
   void changeForces(const Event& event);
   void followActive();
-  void applyRopeEvents();
+  void applyLimitEvents();
   bool mayEndAnywhere() const;
   bool isStillAccurate();
   double longestStep() const;
@@ -73,7 +74,7 @@ class EventMotion {
   [[noreturn]] void failAtManyEvents() const;
 
   IslandState& island_;
-  RopeEvents& ropes_;
+  LimitEvents& ropes_;
   ChosenMethod method_;
   const EventTolerances tolerances_;
   EventContacts contacts_;

@@ -12,13 +12,13 @@ namespace {
 constexpr double kReachRounding = 1e-6;  // of the radius: a motion may go exactly to its bound
 
 /// Two anchors that stay within `length` (m, or infinity) of each other.
-struct Limit {
+struct Tether {
   Anchor a, b;
   double length;
 };
 
-std::vector<Limit> limitsOf(const Scene& scene) {
-  std::vector<Limit> limits;
+std::vector<Tether> limitsOf(const Scene& scene) {
+  std::vector<Tether> limits;
   for (const Rod& rod : scene.rods) limits.push_back({rod.anchorA, rod.anchorB, rod.length});
   for (const Rope& rope : scene.ropes) limits.push_back({rope.anchorA, rope.anchorB, rope.maxLength});
   for (const BallJoint& joint : scene.ballJoints) limits.push_back({joint.anchorA, joint.anchorB, 0});
@@ -119,7 +119,7 @@ void forBothEnds(const Anchor& a, const Anchor& b, const Visit& visit) {
 }
 
 /// Narrows the reaches of bodies on springs that all end at fixed points, and that nothing else moves.
-void narrowBySprings(const Scene& scene, const std::vector<char>& touches, const std::vector<Limit>& limits,
+void narrowBySprings(const Scene& scene, const std::vector<char>& touches, const std::vector<Tether>& limits,
                      std::vector<Reach>& reaches) {
   std::vector<SpringBody> bodies(scene.bodies.size());
   const std::vector<char> isPushed = pushedOf(scene);
@@ -129,7 +129,7 @@ void narrowBySprings(const Scene& scene, const std::vector<char>& touches, const
   const auto requireFixed = [&](const Anchor& end, const Anchor& other) {
     if (end.body != kWorld && !isFixed(other, scene)) bodyAt(end).isAlone = false;
   };
-  for (const Limit& limit : limits) forBothEnds(limit.a, limit.b, requireFixed);
+  for (const Tether& limit : limits) forBothEnds(limit.a, limit.b, requireFixed);
   for (const Spring& spring : scene.springs) {
     forBothEnds(spring.anchorA, spring.anchorB, requireFixed);
     const auto addEnergy = [&](const Anchor& end, const Anchor& other) {
@@ -146,9 +146,9 @@ void narrowBySprings(const Scene& scene, const std::vector<char>& touches, const
 
 /// Narrows the reaches of bodies along chains of limits, which are lengths of ways: each from the nearest fixed point
 /// (E. W. Dijkstra, 1959).
-void narrowByLimits(const Scene& scene, const std::vector<Limit>& limits, std::vector<Reach>& reaches) {
-  std::vector<std::vector<Limit>> limitsFrom(scene.bodies.size());  // by the body of their anchor b
-  using Way = std::pair<double, int>;                               // m; body
+void narrowByLimits(const Scene& scene, const std::vector<Tether>& limits, std::vector<Reach>& reaches) {
+  std::vector<std::vector<Tether>> limitsFrom(scene.bodies.size());  // by the body of their anchor b
+  using Way = std::pair<double, int>;                                // m; body
   std::priority_queue<Way, std::vector<Way>, std::greater<>> next;
   const auto narrowEnd = [&](const Anchor& end, const Anchor& other, double length) {
     if (narrow(end, other, length, scene, reaches))
@@ -157,7 +157,7 @@ void narrowByLimits(const Scene& scene, const std::vector<Limit>& limits, std::v
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     if (scene.bodies[i].motion != Motion::fixed && std::isfinite(reaches[i].radius))
       next.emplace(reaches[i].radius, static_cast<int>(i));
-  for (const Limit& limit : limits)
+  for (const Tether& limit : limits)
     forBothEnds(limit.a, limit.b, [&](const Anchor& end, const Anchor& other) {
       if (isFixed(other, scene)) return narrowEnd(end, other, limit.length);
       limitsFrom[static_cast<std::size_t>(other.body)].push_back({end, other, limit.length});
@@ -166,7 +166,7 @@ void narrowByLimits(const Scene& scene, const std::vector<Limit>& limits, std::v
     const auto [radius, body] = next.top();
     next.pop();
     if (radius > reaches[static_cast<std::size_t>(body)].radius) continue;
-    for (const Limit& limit : limitsFrom[static_cast<std::size_t>(body)]) narrowEnd(limit.a, limit.b, limit.length);
+    for (const Tether& limit : limitsFrom[static_cast<std::size_t>(body)]) narrowEnd(limit.a, limit.b, limit.length);
   }
 }
 
@@ -200,8 +200,8 @@ std::vector<Reach> reachOf(const Scene& scene, const std::vector<char>& touches)
   const auto attach = [&](const Anchor& anchor) {
     if (anchor.body != kWorld) isAttached[static_cast<std::size_t>(anchor.body)] = 1;
   };
-  const std::vector<Limit> limits = limitsOf(scene);
-  for (const Limit& limit : limits) attach(limit.a), attach(limit.b);
+  const std::vector<Tether> limits = limitsOf(scene);
+  for (const Tether& limit : limits) attach(limit.a), attach(limit.b);
   for (const Spring& spring : scene.springs) attach(spring.anchorA), attach(spring.anchorB);
   for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
     if (scene.bodies[body].motion == Motion::dynamic) continue;

@@ -4,16 +4,16 @@
 #include <utility>
 
 #include "constraints/disjoint_sets.h"
-#include "simulate/rope_events.h"
+#include "simulate/limit_events.h"
 
 namespace cradle {
 
 ContactSet::ContactSet(const Assembly& assembly, const StepTolerances& tolerances, const std::vector<Contact>& contacts,
-                       const std::vector<const RopeLimit*>& ropes, const VectorX& before)
+                       const std::vector<const Limit*>& ropes, const VectorX& before)
     : assembly_(assembly), tolerances_(tolerances), contacts_(contacts) {
   if (contacts.empty()) return;
-  for (const RopeLimit* rope : ropes) {
-    const ImpactContact contact = RopeEvents::contactOf(*rope, before);
+  for (const Limit* rope : ropes) {
+    const ImpactContact contact = LimitEvents::contactOf(*rope, before);
     contacts_.push_back(contact.contact);
     ropes_.push_back(rope), ropeMaterials_.push_back(contact.material);
   }

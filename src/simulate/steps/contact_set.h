@@ -25,14 +25,14 @@ class ContactSet {
   /// Keeps references to `assembly` and `tolerances`. `contacts` and `ropes` (none of them a rod) are those at the
   /// state `before`. Without contacts, ropes are none of its members.
   ContactSet(const Assembly& assembly, const StepTolerances& tolerances, const std::vector<Contact>& contacts,
-             const std::vector<const RopeLimit*>& ropes, const VectorX& before);
+             const std::vector<const Limit*>& ropes, const VectorX& before);
 
   std::size_t size() const { return contacts_.size(); }
   const Contact& operator[](std::size_t member) const { return contacts_[member]; }
   const Assembly& assembly() const { return assembly_; }
 
   /// The rope that a member is; null if it is a contact of bodies.
-  const RopeLimit* ropeOf(std::size_t member) const {
+  const Limit* ropeOf(std::size_t member) const {
     return member < firstRope() ? nullptr : ropes_[member - firstRope()];
   }
   const ContactMaterial& materialOf(std::size_t member) const;
@@ -49,7 +49,7 @@ class ContactSet {
   const Assembly& assembly_;
   const StepTolerances& tolerances_;
   std::vector<Contact> contacts_;               // ropes are the last
-  std::vector<const RopeLimit*> ropes_;         // of the last contacts
+  std::vector<const Limit*> ropes_;             // of the last contacts
   std::vector<ContactMaterial> ropeMaterials_;  // theirs
 };
 

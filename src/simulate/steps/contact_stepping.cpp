@@ -51,7 +51,7 @@ void bookForces(const Mechanism& mechanism, const FreeStep& step, VectorX& state
 
 }  // namespace
 
-void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes,
+void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::vector<const Limit*>& ropes,
                               const VectorX& before, double timeStep, VectorX& state,
                               const std::vector<char>& strikesInside) {
   problem_.warmStartFrom({std::exchange(contacts_, {}), std::exchange(slips_, {}), impulseRatio(timeStep)});
@@ -198,8 +198,8 @@ NextImpact ContactStepping::nextImpact(const std::vector<Contact>& contacts, con
   return findNextImpact({assembly_, tolerances_, contacts, {}, before}, step, minImpactSpeed, problem_);
 }
 
-void ContactStepping::correctPenetration(const std::vector<Contact>& contacts,
-                                         const std::vector<const RopeLimit*>& ropes, VectorX& state) {
+void ContactStepping::correctPenetration(const std::vector<Contact>& contacts, const std::vector<const Limit*>& ropes,
+                                         VectorX& state) {
   const ContactSet set(assembly_, tolerances_, contacts, ropes, state);
   if (!contacts.empty()) problem_.factorize(FreeStep(assembly_.mechanism.bodies, state, 0, state).middle);
   cradle::correctPenetration(set, problem_, state, faults_);

@@ -27,7 +27,7 @@ class ContactStepping {
   /// went. `ropes` that are no rods take part: they may be as long as they are, as contacts may close. Contacts that
   /// nextImpact found to strike inside the step are not kept apart before its end (`strikesInside`: by contact, or
   /// empty).
-  void resolve(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes, const VectorX& before,
+  void resolve(const std::vector<Contact>& contacts, const std::vector<const Limit*>& ropes, const VectorX& before,
                double timeStep, VectorX& state, const std::vector<char>& strikesInside = {});
 
   /// How far (m or rad) the last call left constraints from where they should be.
@@ -41,8 +41,7 @@ class ContactStepping {
                         const VectorX& state, double minImpactSpeed);
 
   /// Moves bodies apart that overlap in `state`; the energy that lifts them is taken from their velocities.
-  void correctPenetration(const std::vector<Contact>& contacts, const std::vector<const RopeLimit*>& ropes,
-                          VectorX& state);
+  void correctPenetration(const std::vector<Contact>& contacts, const std::vector<const Limit*>& ropes, VectorX& state);
 
   /// The impact of contacts that touch in `state`, all at once. Their impulses (N s, world, on B). Energy that went is
   /// booked.

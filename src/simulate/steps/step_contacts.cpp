@@ -153,7 +153,7 @@ double StepContacts::nextImpact(const VectorX& before, const VectorX& state, dou
   return next.fraction;
 }
 
-void StepContacts::solveContacts(const VectorX& before, double length, const RopeEvents& ropes, VectorX& state) {
+void StepContacts::solveContacts(const VectorX& before, double length, const LimitEvents& ropes, VectorX& state) {
   stepPart_ = length / timeStep_;
   // Of a step that is shortened after this, no impact inside is known.
   stepping_.resolve(touching_, ropes.withinReach(before, state, length), before, length, state,
@@ -176,7 +176,7 @@ void StepContacts::recordAndLetSleep(double time, VectorX& state) {
 
 /// Takes out overlaps at the end of a step: points on rims and edges that rotate may overlap there without having been
 /// contacts at its start.
-void StepContacts::correctPenetrations(const RopeEvents& ropes, VectorX& state) {
+void StepContacts::correctPenetrations(const LimitEvents& ropes, VectorX& state) {
   for (int round = 0; round < kMaxRemovals; ++round) {
     findTouching(state, 0, overlapping_);
     loosenShortMomentArms(state, overlapping_);

@@ -6,7 +6,7 @@
 #include "constraints/disjoint_sets.h"
 #include "impact/pairwise.h"
 #include "simulate/island_state.h"
-#include "simulate/rope_events.h"
+#include "simulate/limit_events.h"
 #include "simulate/steps/contact_stepping.h"
 
 namespace cradle {
@@ -31,7 +31,7 @@ class StepContacts {
 
   /// Solves the contacts of a step that has begun, now of this `length` (s), as one frictional contact problem, with
   /// `ropes` that may be stretched in it. `state` is the end of free motion, and after the call that of the step.
-  void solveContacts(const VectorX& before, double length, const RopeEvents& ropes, VectorX& state);
+  void solveContacts(const VectorX& before, double length, const LimitEvents& ropes, VectorX& state);
 
   /// J: what friction took in the step that was solved last, and would have at the velocities of its start.
   ContactStepping::FrictionWork frictionWork() const { return stepping_.frictionWork(); }
@@ -61,7 +61,7 @@ class StepContacts {
   void findTouching(const VectorX& state, double margin) { findTouching(state, margin, touching_); }
   void findTouching(const VectorX& state, double margin, std::vector<Contact>& touching);
   void loosenShortMomentArms(const VectorX& state, std::vector<Contact>& contacts);
-  void correctPenetrations(const RopeEvents& ropes, VectorX& state);
+  void correctPenetrations(const LimitEvents& ropes, VectorX& state);
   void findWithinReach(const VectorX& before, const VectorX& state, double length);
   void findStepContacts(const VectorX& before, const VectorX& state, double length);
   void findSimultaneous(const VectorX& state);

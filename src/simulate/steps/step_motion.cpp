@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "simulate/rope_events.h"
+#include "simulate/limit_events.h"
 #include "simulate/rows_of_contacts.h"
 
 namespace cradle {
@@ -37,8 +37,8 @@ Vec3 followSides(const ContactSet& contacts, const FreeStep& step, Contact& cont
 
 /// Moves a member's contact from the step's start to its middle. Returns its velocity product (dJ/dt) v (m/s^2, world).
 Vec3 followMember(const ContactSet& contacts, std::size_t member, const FreeStep& step, Contact& contact) {
-  if (const RopeLimit* rope = contacts.ropeOf(member)) {
-    contact = RopeEvents::contactOf(*rope, step.middle).contact;
+  if (const Limit* rope = contacts.ropeOf(member)) {
+    contact = LimitEvents::contactOf(*rope, step.middle).contact;
     return -lengtheningAcceleration(*rope, step.middle, VectorX::Zero(step.middle.size())) * contact.normal;
   }
   const Vec3 product = followContact(step.before, step.middle, step.frames, contact);

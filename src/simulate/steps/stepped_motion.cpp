@@ -28,7 +28,7 @@ constexpr int kMaxEvents = 10000;    // within a step
 
 }  // namespace
 
-SteppedMotion::SteppedMotion(IslandState& island, RopeEvents& ropes, const ChosenMethod& method)
+SteppedMotion::SteppedMotion(IslandState& island, LimitEvents& ropes, const ChosenMethod& method)
     : island_(island),
       ropes_(ropes),
       method_(method),
@@ -42,7 +42,7 @@ SteppedMotion::SteppedMotion(IslandState& island, RopeEvents& ropes, const Chose
   island_.step.startDerivativeIsKnown = false;
   contacts_.resolveImpacts(island_.time, island_.state, island_.state);
   ropes_.resolve(island_.time, island_.state);
-  island_.makeChanges();
+  if (island_.makeChanges()) ropes_.resolve(island_.time, island_.state);
   island_.requireUnsolvedPairsApart();
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
   startConstraintError_ = solver_.largestError();
@@ -75,8 +75,8 @@ void SteppedMotion::advance(double frame) {
   if (atEvent || !contacts_.usesTimeSteppingOnly()) contacts_.resolveImpacts(time, before_, island_.state);
   tautRowsBefore_ = ropes_.tautRows();
   ropes_.resolve(time, island_.state);
+  if (island_.makeChanges()) ropes_.resolve(time, island_.state);
   keepsConstraints_ = ropes_.tautRows() == tautRowsBefore_;
-  island_.makeChanges();
   guard_.check(island_.state, time, step.timeStep);
   island_.requireUnsolvedPairsApart();
 
@@ -193,7 +193,7 @@ void SteppedMotion::moveFreely(double stepEnd) {
 /// Cuts the step at the first event in it. Impacts of pairs that touch already are found with their contacts
 /// (stopAtNextImpact): free motion does not tell them.
 bool SteppedMotion::stopAtFirstEvent() {
-  if (!island_.mayTouch() && !ropes_.hasRopes()) return false;
+  if (!island_.mayTouch() && !ropes_.hasLimits()) return false;
   Step& step = island_.step;
   prepareInterpolant(island_.rightHandSide, step);
   island_.findNearPairs(contacts_.tolerances().margin());
@@ -241,7 +241,7 @@ bool SteppedMotion::mayServeEvents() const {
 void SteppedMotion::restUntil(double time) {
   island_.time = std::min(time, island_.nextChange());
   countSteps();
-  island_.makeChanges();
+  if (island_.makeChanges()) ropes_.resolve(island_.time, island_.state);
 }
 
 void SteppedMotion::countEvent() {

@@ -4,7 +4,7 @@
 
 #include "simulate/energy_guard.h"
 #include "simulate/island_state.h"
-#include "simulate/rope_events.h"
+#include "simulate/limit_events.h"
 #include "simulate/steps/step_contacts.h"
 
 namespace cradle {
@@ -15,7 +15,7 @@ namespace cradle {
 class SteppedMotion {
  public:
   /// Keeps references to the island, which it moves, and its ropes. The method has a fixed step; the first begins now.
-  SteppedMotion(IslandState& island, RopeEvents& ropes, const ChosenMethod& method);
+  SteppedMotion(IslandState& island, LimitEvents& ropes, const ChosenMethod& method);
 
   /// Takes a step, or goes to an event inside it. `frame` (s) is the next time whose state is asked for. Throws
   /// Error(unstable) if the state blows up, Error(limit) if a step has too many impacts.
@@ -52,7 +52,7 @@ class SteppedMotion {
   void countEvent();
 
   IslandState& island_;
-  RopeEvents& ropes_;
+  LimitEvents& ropes_;
   ChosenMethod method_;
   StepContacts contacts_;
   EnergyGuard guard_;

@@ -36,7 +36,7 @@ struct Struck : OneIsland {
     return events;
   }
 
-  RopeEvents ropes;
+  LimitEvents ropes;
   EventTolerances tolerances;
   EventContacts contacts;
 };

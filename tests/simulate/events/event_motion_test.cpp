@@ -42,7 +42,7 @@ struct ByEvents : OneIsland {
   }
   double constant() { return energyConstant(mechanism(), state()); }
 
-  RopeEvents ropes;
+  LimitEvents ropes;
   EventMotion motion;
 };
 

@@ -36,8 +36,8 @@ struct Gathered : OneIsland {
     return text;
   }
   ContactSet set(bool withRope) {
-    std::vector<const RopeLimit*> ropes;
-    if (withRope) ropes.push_back(&island.assembly.ropes.at(0));
+    std::vector<const Limit*> ropes;
+    if (withRope) ropes.push_back(&island.assembly.limits.at(0));
     return {island.assembly, tolerances, contactsWithin(1e-9), ropes, state()};
   }
 
@@ -88,14 +88,14 @@ TEST(ContactSet, HasRopesAsContacts) {
   const ContactSet set = at.set(true);
   ASSERT_EQ(set.size(), 7u);
   EXPECT_EQ(set.ropeOf(5), nullptr);
-  EXPECT_EQ(set.ropeOf(6), &at.island.assembly.ropes[0]);
+  EXPECT_EQ(set.ropeOf(6), &at.island.assembly.limits[0]);
   EXPECT_EQ(set.materialOf(6).restitution, 0.7);
   EXPECT_EQ(set.materialOf(6).staticFriction, 0);
   EXPECT_EQ(set.materialOf(0).staticFriction, at.island.assembly.geometry.pairs[set[0].pair].material.staticFriction);
   EXPECT_NEAR(set[6].separation, 0.1, 1e-15);  // 2 m, less the 1.9 m between the balls
   EXPECT_LT((set[6].normal + Vec3::UnitY()).norm(), 1e-15);
   EXPECT_THAT(set.findGroups().at(0).moved.bodies, ElementsAre(0, 1, 7));
-  const ContactSet ropeAlone(at.island.assembly, at.tolerances, {}, {&at.island.assembly.ropes[0]}, at.state());
+  const ContactSet ropeAlone(at.island.assembly, at.tolerances, {}, {&at.island.assembly.limits[0]}, at.state());
   EXPECT_EQ(ropeAlone.size(), 0u);
   EXPECT_THAT(ropeAlone.findGroups(), IsEmpty());
 }

@@ -47,7 +47,7 @@ struct Stepped : OneIsland {
   }
 
   StepContacts contacts;
-  RopeEvents ropes;
+  LimitEvents ropes;
 };
 
 std::string boxOver(const std::string& name, double x, double bottom) {

@@ -21,7 +21,7 @@ struct MovingOver : OneIsland {
 
   /// The motion of the contacts within a margin (m) in a step that ends with other velocities.
   StepMotion motion(const VectorX& end, double margin = 0.02) {
-    set.emplace(island.assembly, tolerances, contactsWithin(margin), std::vector<const RopeLimit*>{}, state());
+    set.emplace(island.assembly, tolerances, contactsWithin(margin), std::vector<const Limit*>{}, state());
     group = set->findGroups().at(0);
     GroupProblem problem(island.assembly);
     return stepMotionOf(group, *set, FreeStep(mechanism().bodies, state(), kMotionStep, end), problem);

@@ -36,7 +36,7 @@ struct BySteps : OneIsland {
     return found;
   }
 
-  RopeEvents ropes;
+  LimitEvents ropes;
   SteppedMotion motion;
 };
 

@@ -1,4 +1,4 @@
-#include "simulate/rope_events.h"
+#include "simulate/limit_events.h"
 
 #include <gmock/gmock.h>
 
@@ -37,15 +37,15 @@ void takeStepOf(IslandState& island, Integrator integrate, double length) {
 
 // A ball flies by an anchor on a straight line at the distance b: |x| = sqrt(L^2 - b^2) is where the rope becomes taut.
 // It comes in from |x| > L only as far as the rope lets it, so it starts in the middle.
-TEST(RopeEvents, FindWhereAFlightComesToTheLength) {
+TEST(LimitEvents, FindWhereAFlightComesToTheLength) {
   for (const double speed : {0.7, 3.0, 40.0}) {
     OneIsland at(ballOn(Vec3(-0.1, 0.3, 0), Vec3(speed, 0, 0), ropeOf("ball", Vec3::Zero(), 0.5), 0));
-    RopeEvents ropes(at.island);
+    LimitEvents ropes(at.island);
     takeStepOf(at.island, rk4, 1);
     const auto change = ropes.firstChange(at.island.step);
     ASSERT_TRUE(change) << speed;
     EXPECT_NEAR(change->fraction, 0.5 / speed, 2e-12) << speed;  // (0.4 + 0.1) / v; roots are found to 1e-12
-    EXPECT_EQ(change->rope, 0u);
+    EXPECT_EQ(change->limit, 0u);
     VectorX state;
     interpolate(at.island.step, change->fraction, state);
     EXPECT_NEAR(ropes.margin(*change, state), 0, 1e-12 * speed / 0.5);
@@ -56,11 +56,11 @@ TEST(RopeEvents, FindWhereAFlightComesToTheLength) {
 }
 
 // A throw that turns back before the length, within the step, and one that does not quite: v^2 / 2 g = 0.5 m.
-TEST(RopeEvents, FindFlightsThatReachTheLengthForAnInstant) {
+TEST(LimitEvents, FindFlightsThatReachTheLengthForAnInstant) {
   for (const double part : {0.9999, 1.0001}) {
     const double speed = std::sqrt(2 * kGravity * 0.5) * std::sqrt(part);
     OneIsland at(ballOn(Vec3::Zero(), Vec3(0, speed, 0), ropeOf("ball", Vec3::Zero(), 0.5)));
-    RopeEvents ropes(at.island);
+    LimitEvents ropes(at.island);
     takeStepOf(at.island, rk4, 1.5 * speed / kGravity);
     const auto change = ropes.firstChange(at.island.step);
     ASSERT_EQ(change.has_value(), part > 1);
@@ -74,29 +74,29 @@ TEST(RopeEvents, FindFlightsThatReachTheLengthForAnInstant) {
 }
 
 // Of two ropes the one that becomes taut first.
-TEST(RopeEvents, AreInTheOrderOfTime) {
+TEST(LimitEvents, AreInTheOrderOfTime) {
   OneIsland at(R"("duration": 9, "gravity": [0, 0, 0], "bodies": [)" +
                cradle::ball("one", Vec3::Zero(), Vec3(1, 0, 0)) + ", " +
                cradle::ball("two", Vec3(0, 5, 0), Vec3(0, 0, 2)) + R"(], "ropes": [
     {"bodyA": "one", "anchorB": [0, 0, 0], "maxLength": 0.4}, {"bodyA": "two", "anchorB": [0, 5, 0], "maxLength": 0.6}])");
-  RopeEvents ropes(at.island);
+  LimitEvents ropes(at.island);
   takeStepOf(at.island, rk4, 1);
   const auto change = ropes.firstChange(at.island.step);
   ASSERT_TRUE(change);
-  EXPECT_EQ(change->rope, 1u);
+  EXPECT_EQ(change->limit, 1u);
   EXPECT_NEAR(change->fraction, 0.3, 2e-12);
 }
 
 // An anchor at r = 0.3 m on a body that spins about its centre, D = 0.8 m from the fixed end: by the law of cosines the
 // rope of 1 m is taut at cos(phi) = (D^2 + r^2 - L^2) / (2 D r), phi the angle between the arm and the fixed end. The
 // interpolant of orientations has an error of (w h)^4 / 384 rad.
-TEST(RopeEvents, FollowAnchorsThatTurn) {
+TEST(LimitEvents, FollowAnchorsThatTurn) {
   OneIsland at(R"("duration": 9, "gravity": [0, 0, 0], "bodies": [{"name": "box", "collision": "none",
       "shape": {"box": {"size": [0.7, 0.7, 0.1]}}, "mass": 2, "angularVelocity": [0, 0, 3]}],
     "ropes": [{"bodyA": "box", "anchorA": [0.3, 0, 0], "anchorB": [0.8, 0, 0], "maxLength": 1}])");
   const double turn = std::acos((0.64 + 0.09 - 1) / (2 * 0.8 * 0.3));
   setOrientation(at.state(), 0, rotationAbout(Vec3::UnitZ(), turn - 0.1));
-  RopeEvents ropes(at.island);
+  LimitEvents ropes(at.island);
   takeStepOf(at.island, rk4, 0.1);
   const auto change = ropes.firstChange(at.island.step);
   ASSERT_TRUE(change);
@@ -132,7 +132,7 @@ Ends endsOf(const VectorX& state) {
 }
 
 // p = (1 + e) v / (1/m + 1/m' + (r x n).I^-1 (r x n) + ...), against the line of the rope on either body.
-TEST(RopeEvents, PullWithTheImpulseOfNewtonsRestitution) {
+TEST(LimitEvents, PullWithTheImpulseOfNewtonsRestitution) {
   for (const double restitution : {0.0, 0.6}) {
     OneIsland at = stretched(restitution);
     const VectorX before = at.state();
@@ -146,7 +146,7 @@ TEST(RopeEvents, PullWithTheImpulseOfNewtonsRestitution) {
         (1 / 2.0 + 1 / 5.0 + leverA.dot(inertiaA.inverse() * leverA) + leverB.dot(inertiaB.inverse() * leverB));
     const double kinetic = kineticEnergy(at.mechanism().bodies, before);
 
-    RopeEvents ropes(at.island);
+    LimitEvents ropes(at.island);
     EXPECT_TRUE(ropes.resolve(0.5, at.state()));
     constexpr double kRounding = 1e-14;  // of velocities below 5 m/s
     EXPECT_NEAR(endsOf(at.state()).lengthening, -restitution * ends.lengthening, kRounding);
@@ -172,10 +172,10 @@ TEST(RopeEvents, PullWithTheImpulseOfNewtonsRestitution) {
 }
 
 // As a contact the rope closes as fast as it lengthens, by what is slack.
-TEST(RopeEvents, CloseAsContactsWhereTheyLengthen) {
+TEST(LimitEvents, CloseAsContactsWhereTheyLengthen) {
   OneIsland at = stretched(0.6);
   centerOfMass(at.state(), 0) -= 0.1 * endsOf(at.state()).along;
-  const ImpactContact contact = RopeEvents::contactOf(at.island.assembly.ropes[0], at.state());
+  const ImpactContact contact = LimitEvents::contactOf(at.island.assembly.limits[0], at.state());
   EXPECT_NEAR(openingSpeed(contact.contact, at.state()), -endsOf(at.state()).lengthening, 1e-14);
   EXPECT_NEAR(contact.contact.separation, 0.1, 1e-15);
   EXPECT_EQ(contact.material.restitution, 0.6);
@@ -184,12 +184,12 @@ TEST(RopeEvents, CloseAsContactsWhereTheyLengthen) {
 
 // A ball on a rope of length L at the angle phi from the top of its circle: it is pulled by m (v^2 / L - g cos(phi)). A
 // rope that would push lets go, and one that pulls stays a rod.
-TEST(RopeEvents, LetGoWhereTheTensionEnds) {
+TEST(LimitEvents, LetGoWhereTheTensionEnds) {
   const double length = 0.7, phi = 0.6;
   const double slackSpeed = std::sqrt(kGravity * length * std::cos(phi));
   for (const double part : {0.99, 1.01}) {
     OneIsland at(ballOn(Vec3(0, -length, 0), Vec3(1, 0, 0), ropeOf("ball", Vec3::Zero(), length)));
-    RopeEvents ropes(at.island);
+    LimitEvents ropes(at.island);
     ASSERT_TRUE(ropes.resolve(0, at.state()));
     ASSERT_THAT(at.mechanism().constraints, SizeIs(1));
     EXPECT_EQ(std::get<RodConstraint>(at.mechanism().constraints[0].kind).length, length);
@@ -209,12 +209,12 @@ TEST(RopeEvents, LetGoWhereTheTensionEnds) {
 
 // Without gravity, m v^2 / L = 1e-15 N is no tension: the rope is released, and not pulled at again in that instant,
 // over and over. A tension that is one holds.
-TEST(RopeEvents, StayReleasedInTheInstantThatTheirTensionEnds) {
+TEST(LimitEvents, StayReleasedInTheInstantThatTheirTensionEnds) {
   const double length = 0.7;
   for (const double tension : {1e-15, 1e-3}) {
     const double speed = std::sqrt(tension * length);  // of 1 kg
     OneIsland at(ballOn(Vec3(0, -length, 0), Vec3(speed, 0, 0), ropeOf("ball", Vec3::Zero(), length), 0));
-    RopeEvents ropes(at.island);
+    LimitEvents ropes(at.island);
     ASSERT_TRUE(ropes.resolve(0, at.state()));
     ASSERT_THAT(at.mechanism().constraints, SizeIs(1));
     EXPECT_EQ(ropes.resolve(0, at.state()), tension < 1e-9);
@@ -225,10 +225,10 @@ TEST(RopeEvents, StayReleasedInTheInstantThatTheirTensionEnds) {
 // The ball rises on its rope, v^2 = v0^2 - 2 g L (cos(phi) + 1) from the bottom: its tension ends where v^2 / L =
 // g cos(phi), cos(phi) = (v0^2 / (g L) - 2) / 3. The margin is zero there, and in parts of the tension at the step's
 // start.
-TEST(RopeEvents, FindWhereInAStepTheTensionEnds) {
+TEST(LimitEvents, FindWhereInAStepTheTensionEnds) {
   const double length = 0.7, start2 = 3.2 * kGravity * length, cosine = (3.2 - 2) / 3;
   OneIsland at(ballOn(Vec3(0, -length, 0), Vec3(std::sqrt(start2), 0, 0), ropeOf("ball", Vec3::Zero(), length)));
-  RopeEvents ropes(at.island);
+  LimitEvents ropes(at.island);
   ASSERT_TRUE(ropes.resolve(0, at.state()));
   const auto placeAt = [&](double height, VectorX& state) {  // of the cosine, on the way up
     const double sine = std::sqrt(1 - height * height);
@@ -250,14 +250,14 @@ TEST(RopeEvents, FindWhereInAStepTheTensionEnds) {
 }
 
 // Two balls rise on ropes: with v0^2 = 2.6 g L the tension ends at the cosine 0.2, earlier than with 3.2 g L.
-TEST(RopeEvents, FindTheFirstOfTensionsThatEnd) {
+TEST(LimitEvents, FindTheFirstOfTensionsThatEnd) {
   const double length = 0.7;
   OneIsland at(fmt::format(R"("duration": 9, "bodies": [{}, {}], "ropes": [
       {{"bodyA": "slow", "anchorB": [0, 0, 0], "maxLength": {}}}, {{"bodyA": "fast", "anchorB": [5, 0, 0],
        "maxLength": {}}}])",
                            cradle::ball("slow", Vec3(0, -length, 0), Vec3(1, 0, 0)),
                            cradle::ball("fast", Vec3(5, -length, 0), Vec3(1, 0, 0)), length, length));
-  RopeEvents ropes(at.island);
+  LimitEvents ropes(at.island);
   ASSERT_TRUE(ropes.resolve(0, at.state()));
   for (const Eigen::Index body : {0, 1}) {
     centerOfMass(at.state(), body) = Vec3(5.0 * static_cast<double>(body) + length, 0, 0);
@@ -266,14 +266,14 @@ TEST(RopeEvents, FindTheFirstOfTensionsThatEnd) {
   takeStepOf(at.island, dop853, 0.2);
   const auto change = ropes.firstChange(at.island.step);
   ASSERT_TRUE(change);
-  EXPECT_EQ(change->rope, 0u);
+  EXPECT_EQ(change->limit, 0u);
 }
 
 // Without gravity nothing pulls at a rope that has stopped a ball: it holds by impulses alone, and is no rod.
-TEST(RopeEvents, BecomeRodsOnlyIfSmoothForcesPull) {
+TEST(LimitEvents, BecomeRodsOnlyIfSmoothForcesPull) {
   for (const double gravity : kGravities) {
     OneIsland at(ballOn(Vec3(0, -0.5, 0), Vec3(0, -2, 0), ropeOf("ball", Vec3::Zero(), 0.5), gravity));
-    RopeEvents ropes(at.island);
+    LimitEvents ropes(at.island);
     EXPECT_TRUE(ropes.resolve(0, at.state()));
     EXPECT_NEAR(linearVelocity(at.state(), 0).y(), 0, 1e-15);
     EXPECT_THAT(at.mechanism().constraints, SizeIs(gravity > 0 ? 1 : 0));
@@ -282,10 +282,10 @@ TEST(RopeEvents, BecomeRodsOnlyIfSmoothForcesPull) {
 }
 
 // A rebound with e v that lasts less than two steps is not resolved: e v < 2 g h, here with v = 2 m/s.
-TEST(RopeEvents, DoNotReboundWithinTwoSteps) {
+TEST(LimitEvents, DoNotReboundWithinTwoSteps) {
   for (const double part : {0.99, 1.01}) {
     OneIsland at(ballOn(Vec3(0, -0.5, 0), Vec3(0, -2, 0), ropeOf("ball", Vec3::Zero(), 0.5, 0.25)));
-    RopeEvents ropes(at.island);
+    LimitEvents ropes(at.island);
     ropes.setTimeStep(0.5 / (2 * kGravity) / part);
     EXPECT_TRUE(ropes.resolve(0, at.state()));
     EXPECT_NEAR(linearVelocity(at.state(), 0).y(), part < 1 ? 0 : 0.5, 1e-14);
@@ -293,10 +293,10 @@ TEST(RopeEvents, DoNotReboundWithinTwoSteps) {
 }
 
 // An impact takes taut ropes as members, and gives them back as rods unless their ends come together.
-TEST(RopeEvents, GoSlackInImpactsThatShortenThem) {
+TEST(LimitEvents, GoSlackInImpactsThatShortenThem) {
   for (const double after : {-1.0, 0.0}) {
     OneIsland at(ballOn(Vec3(0, -0.5, 0), Vec3(1, 0, 0), ropeOf("ball", Vec3::Zero(), 0.5)));
-    RopeEvents ropes(at.island);
+    LimitEvents ropes(at.island);
     ASSERT_TRUE(ropes.resolve(0, at.state()));
     std::vector<ImpactContact> members = ropes.beginImpact(at.state());
     ASSERT_THAT(members, SizeIs(1));
@@ -311,11 +311,11 @@ TEST(RopeEvents, GoSlackInImpactsThatShortenThem) {
 
 // Within reach of a contact step is what both ends could close by in it, twice over: here 2 m/s x 0.01 s x 2, and a
 // thousandth of the length.
-TEST(RopeEvents, AreWithinReachOfAStepByTheirSpeeds) {
+TEST(LimitEvents, AreWithinReachOfAStepByTheirSpeeds) {
   for (const double part : {0.99, 1.01}) {
     const double slack = part * (0.04 + 1e-3);
     OneIsland at(ballOn(Vec3(0, -1 + slack, 0), Vec3(2, 0, 0), ropeOf("ball", Vec3::Zero(), 1)));
-    RopeEvents ropes(at.island);
+    LimitEvents ropes(at.island);
     EXPECT_THAT(ropes.withinReach(at.state(), at.state(), 0.01), SizeIs(part < 1 ? 1 : 0));
   }
 }

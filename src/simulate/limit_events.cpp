@@ -1,7 +1,8 @@
-#include "simulate/rope_events.h"
+#include "simulate/limit_events.h"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "collision/root_bracketing.h"
@@ -35,6 +36,52 @@ MotionBounds motionBounds(const Step& step, const Attachment& attachment) {
   return cradle::motionBounds(step, attachment.body, attachment.point.norm());
 }
 
+double slackAt(const RopeLimit& rope, const Step& step, double fraction, double) {
+  return rope.maxLength - (positionAt(step, rope.anchorA, fraction) - positionAt(step, rope.anchorB, fraction)).norm();
+}
+
+/// `turning` is what a hinge would turn by in the step with the rate of its start (rad).
+double slackAt(const JointLimit& stop, const Step& step, double fraction, double turning) {
+  return slackOf(stop, poseAt(step, stop.anchorA.body, fraction), poseAt(step, stop.anchorB.body, fraction),
+                 fraction * turning);
+}
+
+double turningOf(const Limit& limit, const Step& step) {
+  const auto* stop = std::get_if<JointLimit>(&limit);
+  return stop ? stop->side * motionOf(limit, step.startState).lengthening / stop->unit() * step.timeStep : 0;
+}
+
+/// Bounds on the slack's derivatives, with the step as the unit of time. Of two points at distance d, -d'' is at most
+/// their relative acceleration.
+MotionBounds slackBounds(const RopeLimit& rope, const Step& step) {
+  const MotionBounds a = motionBounds(step, rope.anchorA), b = motionBounds(step, rope.anchorB);
+  return {a.speed + b.speed, a.acceleration + b.acceleration};
+}
+
+/// Of a hinge's angle: u . (w_A - w_B), and its rate. Of the way d along a slider: u . d, with |d| at most what it is
+/// now and what its ends go, and the rates of u by the turning of B.
+MotionBounds slackBounds(const JointLimit& stop, const Step& step) {
+  const MotionBounds turnA = turnBounds(step, stop.anchorA.body), turnB = turnBounds(step, stop.anchorB.body);
+  if (stop.bound.turns)
+    return {stop.size * (turnA.speed + turnB.speed),
+            stop.size * (turnA.acceleration + turnB.acceleration + turnB.speed * (turnA.speed + turnB.speed))};
+  const MotionBounds a = motionBounds(step, stop.anchorA), b = motionBounds(step, stop.anchorB);
+  const double speed = a.speed + b.speed;
+  const double way = (positionAt(step, stop.anchorA, 0) - positionAt(step, stop.anchorB, 0)).norm() + speed;
+  return {speed + turnB.speed * way, a.acceleration + b.acceleration + 2 * turnB.speed * speed +
+                                         (turnB.acceleration + turnB.speed * turnB.speed) * way};
+}
+
+/// The rate of the lengthening at most, whatever accelerates the ends: of the distance d of two points d'' <= relative
+/// acceleration + (speed across)^2 / d.
+double accelerationBound(const RopeLimit& rope, const Step& step) {
+  const MotionBounds bounds = slackBounds(rope, step);
+  return bounds.acceleration + bounds.speed * bounds.speed / rope.maxLength;
+}
+double accelerationBound(const JointLimit& stop, const Step& step) {
+  return slackBounds(stop, step).acceleration;
+}
+
 /// First fraction of the step at which a rope is slack by more than `least` (m): 0, or, for a rope that has just been
 /// released, the first of begin, 2 begin, 4 begin, ... where it is; 1 if none.
 template <class Slack>
@@ -48,21 +95,18 @@ double firstSlack(const Slack& slack, double least, double begin) {
 /// Fraction of the step until which a rope that shortens at its start shortens still, whatever accelerates its ends:
 /// even a rebound far shorter than the step is not over by then. It is v / (v' bound), v the speed of shortening (m a
 /// step).
-double firstSample(const RopeLimit& rope, const Step& step) {
-  const double speed = -motionOf(rope, step.startState).lengthening * step.timeStep;
+double firstSample(const Limit& limit, const Step& step) {
+  const double speed = -motionOf(limit, step.startState).lengthening * step.timeStep;
   if (!(speed > 0)) return kMaxFirstSample;
-  const MotionBounds a = motionBounds(step, rope.anchorA), b = motionBounds(step, rope.anchorB);
-  // The distance d of two points: d'' <= relative acceleration + (speed across)^2 / d.
-  const double across = a.speed + b.speed;
-  const double part = speed / (a.acceleration + b.acceleration + across * across / rope.maxLength);
-  return std::clamp(part, kMinFirstSample, kMaxFirstSample / 2);
+  const double bound = std::visit([&step](const auto& kind) { return accelerationBound(kind, step); }, limit);
+  return std::clamp(speed / bound, kMinFirstSample, kMaxFirstSample / 2);
 }
 
 /// J: of ropes' impulses.
 double energyTakenBy(const std::vector<RopePull>& pulls, const VectorX& before, const VectorX& after) {
   double taken = 0;
   for (const RopePull& pull : pulls) {
-    const RopeMotion from = motionOf(*pull.rope, before), to = motionOf(*pull.rope, after);
+    const LimitMotion from = motionOf(*pull.rope, before), to = motionOf(*pull.rope, after);
     taken +=
         energyTaken(-pull.impulse * from.direction, from.a.velocity - from.b.velocity, to.a.velocity - to.b.velocity);
   }
@@ -71,59 +115,57 @@ double energyTakenBy(const std::vector<RopePull>& pulls, const VectorX& before, 
 
 }  // namespace
 
-RopeEvents::RopeEvents(IslandState& island)
+LimitEvents::LimitEvents(IslandState& island)
     : island_(island),
       assembly_(island.assembly),
       equations_(island.equations),
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       sceneConstraints_(assembly_.mechanism.constraints.size()),
-      tautRow_(assembly_.ropes.size(), -1),
-      isStretched_(assembly_.ropes.size(), 0) {}
+      tautRow_(assembly_.limits.size(), -1),
+      isStretched_(assembly_.limits.size(), 0) {}
 
-std::optional<RopeChange> RopeEvents::firstChange(const Step& step) {
-  std::optional<RopeChange> first;
-  for (std::size_t i = 0; i < assembly_.ropes.size(); ++i) {
+std::optional<LimitChange> LimitEvents::firstChange(const Step& step) {
+  std::optional<LimitChange> first;
+  for (std::size_t i = 0; i < assembly_.limits.size(); ++i) {
     const double end = first ? first->fraction : 1;
     if (!isTaut(i)) {
       if (const auto reached = firstReach(step, i, end)) first = reached;
     } else if (const auto fraction = firstTensionLoss(step, i); fraction && *fraction < end) {
-      first = RopeChange{*fraction, i};
+      first = LimitChange{*fraction, i};
     }
   }
-  if (first && isTaut(first->rope))
-    tensionScale_ = std::max(tension(first->rope, step.time, step.startState),
-                             std::abs(tension(first->rope, step.time + step.timeStep, step.state)));
+  if (first && isTaut(first->limit))
+    tensionScale_ = std::max(tension(first->limit, step.time, step.startState),
+                             std::abs(tension(first->limit, step.time + step.timeStep, step.state)));
   return first;
 }
 
 /// First root in (0, `end`] of the event function maxLength - L(theta) along the step's interpolant: the rope becomes
 /// taut there. A rope that starts at its full length without tension has the threshold -kTautRatio maxLength instead.
-std::optional<RopeChange> RopeEvents::firstReach(const Step& step, std::size_t index, double end) const {
-  const RopeLimit& rope = assembly_.ropes[index];
-  const auto slack = [&](double fraction) {
-    return rope.maxLength -
-           (positionAt(step, rope.anchorA, fraction) - positionAt(step, rope.anchorB, fraction)).norm();
+std::optional<LimitChange> LimitEvents::firstReach(const Step& step, std::size_t index, double end) const {
+  const Limit& rope = assembly_.limits[index];
+  const auto slack = [&, turning = turningOf(rope, step)](double fraction) {
+    return std::visit([&](const auto& kind) { return slackAt(kind, step, fraction, turning); }, rope);
   };
-  // Of two points at distance d, -d'' is at most their relative acceleration.
-  const MotionBounds a = motionBounds(step, rope.anchorA), b = motionBounds(step, rope.anchorB);
-  GapBounds bounds{a.speed + b.speed, a.acceleration + b.acceleration};
-  const double least = kTautRatio * rope.maxLength, start = slack(0);
+  const MotionBounds most = std::visit([&step](const auto& kind) { return slackBounds(kind, step); }, rope);
+  GapBounds bounds{most.speed, most.acceleration};
+  const double least = kTautRatio * sizeOf(rope), start = slack(0);
   if (start > bounds.speed) return std::nullopt;
   const double begin = std::min(end, firstSlack(slack, least, firstSample(rope, step)));
   if (begin < end) {
     const auto fraction = firstRoot(slack, bounds, {begin, slack(begin), end, slack(end)});
-    if (fraction) return RopeChange{*fraction, index};
+    if (fraction) return LimitChange{*fraction, index};
   }
   if (start > least) return std::nullopt;
   const double threshold = std::min(0.0, start) - least;
   const auto above = [&](double fraction) { return slack(fraction) - threshold; };
   bounds.finest = kCoarsestInterval;
   const auto fraction = firstRoot(above, bounds, {0, above(0), begin, above(begin)});
-  return fraction ? std::optional(RopeChange{*fraction, index, threshold}) : std::nullopt;
+  return fraction ? std::optional(LimitChange{*fraction, index, threshold}) : std::nullopt;
 }
 
 /// First fraction of the step at which the tension of a taut rope falls below zero, between a few samples of it.
-std::optional<double> RopeEvents::firstTensionLoss(const Step& step, std::size_t rope) {
+std::optional<double> LimitEvents::firstTensionLoss(const Step& step, std::size_t rope) {
   double before = tension(rope, step.time, step.startState);
   for (int i = 1; i <= kTensionSamples; ++i) {
     const double fraction = static_cast<double>(i) / kTensionSamples;
@@ -135,26 +177,33 @@ std::optional<double> RopeEvents::firstTensionLoss(const Step& step, std::size_t
   return std::nullopt;
 }
 
-double RopeEvents::margin(const RopeChange& change, const VectorX& state) {
-  if (isTaut(change.rope))
-    return tension(change.rope, island_.step.time + island_.step.timeStep, state) / tensionScale_;
-  const RopeLimit& rope = assembly_.ropes[change.rope];
-  return (motionOf(rope, state).slackLength - change.threshold) / rope.maxLength;
+double LimitEvents::margin(const LimitChange& change, const VectorX& state) {
+  if (isTaut(change.limit))
+    return tension(change.limit, island_.step.time + island_.step.timeStep, state) / tensionScale_;
+  const Limit& rope = assembly_.limits[change.limit];
+  return (motionOf(rope, state).slackLength - change.threshold) / sizeOf(rope);
 }
 
 /// Force (N) with which a taut rope pulls its ends together. Its row's multiplier pushes by multiplier x distance.
-double RopeEvents::tension(std::size_t rope, double time, const VectorX& state) {
+double LimitEvents::tension(std::size_t rope, double time, const VectorX& state) {
   equations_.evaluate(time, state, derivative_);
-  return -equations_.multipliers()[tautRow_[rope]] * assembly_.ropes[rope].maxLength;
+  return tensionOf(assembly_.limits[rope], equations_.multipliers()[tautRow_[rope]]);
 }
 
 /// Whether a body at its ends is at rest: nothing is computed for such a rope.
-bool RopeEvents::rests(std::size_t rope) const {
-  const RopeLimit& limit = assembly_.ropes[rope];
-  return island_.resting.isResting(limit.anchorA.body) || island_.resting.isResting(limit.anchorB.body);
+bool LimitEvents::rests(std::size_t rope) const {
+  const auto [a, b] = bodiesOf(assembly_.limits[rope]);
+  return island_.resting.isResting(a) || island_.resting.isResting(b);
 }
 
-bool RopeEvents::resolve(double time, VectorX& state) {
+/// Whole turns are counted from step to step.
+void LimitEvents::followTurns(const VectorX& state) {
+  for (Limit& limit : assembly_.limits)
+    if (auto* stop = std::get_if<JointLimit>(&limit); stop && stop->bound.turns) stop->turned = turnedOf(*stop, state);
+}
+
+bool LimitEvents::resolve(double time, VectorX& state) {
+  followTurns(state);
   // Ropes that would have to push are released, even where others go taut; impacts may have shortened some.
   std::vector<char> isReleased(tautRow_.size(), 0);
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
@@ -164,18 +213,18 @@ bool RopeEvents::resolve(double time, VectorX& state) {
   }
 
   for (std::size_t i = 0; i < tautRow_.size(); ++i)
-    if (!isTaut(i) && motionOf(assembly_.ropes[i], state).slackLength > kSlackRatio * assembly_.ropes[i].maxLength)
+    if (!isTaut(i) && motionOf(assembly_.limits[i], state).slackLength > kSlackRatio * sizeOf(assembly_.limits[i]))
       loosen(time, i, state);
   const bool released = std::find(isReleased.begin(), isReleased.end(), 1) != isReleased.end();
   return pullStretched(time, isReleased, state) || released;
 }
 
-bool RopeEvents::pullStretched(double time, VectorX& state) {
+bool LimitEvents::pullStretched(double time, VectorX& state) {
   return pullStretched(time, std::vector<char>(tautRow_.size(), 0), state);
 }
 
 /// A pull may stretch another rope that is at its length, or load it.
-bool RopeEvents::pullStretched(double time, const std::vector<char>& isReleased, VectorX& state) {
+bool LimitEvents::pullStretched(double time, const std::vector<char>& isReleased, VectorX& state) {
   for (int round = 0; round < kMaxPullRounds; ++round) {
     const std::vector<Stretch> stretches = findStretches(time, isReleased, state);
     if (stretches.empty()) return round > 0;
@@ -187,23 +236,23 @@ bool RopeEvents::pullStretched(double time, const std::vector<char>& isReleased,
 /// Ropes at their length that still lengthen. A rebound that would end within about two steps is not resolved: the rope
 /// stays taut. Smooth forces do not pull at a rope in the instant that it is released: its tension is zero to rounding,
 /// of either sign, and would have it released again before time moves on.
-std::vector<RopeEvents::Stretch> RopeEvents::findStretches(double time, const std::vector<char>& isReleased,
-                                                           const VectorX& state) {
+std::vector<LimitEvents::Stretch> LimitEvents::findStretches(double time, const std::vector<char>& isReleased,
+                                                             const VectorX& state) {
   std::vector<Stretch> stretches;
   bool isEvaluated = false;
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
-    const RopeLimit& rope = assembly_.ropes[i];
+    const Limit& rope = assembly_.limits[i];
     if (isTaut(i)) continue;
-    const RopeMotion motion = motionOf(rope, state);
-    if (motion.slackLength > kTautRatio * rope.maxLength || motion.lengthening < -kRestSpeedFloor) continue;
+    const LimitMotion motion = motionOf(rope, state);
+    if (motion.slackLength > kTautRatio * sizeOf(rope) || motion.lengthening < -kRestSpeedFloor) continue;
     if (!std::exchange(isEvaluated, true)) equations_.evaluate(time, state, derivative_);
     const double acceleration = lengtheningAcceleration(rope, state, derivative_),
                  pulling = std::max(0.0, acceleration);
     const bool isLoaded = !isReleased[i] && acceleration > kMinPull * assembly_.mechanism.gravity.norm();
     if (!isLoaded && motion.lengthening <= kRestSpeedFloor) continue;
     const double restSpeed =
-        2 * pulling * timeStep_ + kLowestRebound * std::sqrt(pulling * rope.maxLength) + kRestSpeedFloor;
-    const double rebound = rope.restitution * motion.lengthening;
+        2 * pulling * timeStep_ + kLowestRebound * std::sqrt(pulling * sizeOf(rope)) + kRestSpeedFloor;
+    const double rebound = restitutionOf(rope) * motion.lengthening;
     stretches.push_back({i, motion.lengthening, rebound > restSpeed ? rebound : 0, isLoaded});
   }
   return stretches;
@@ -211,11 +260,12 @@ std::vector<RopeEvents::Stretch> RopeEvents::findStretches(double time, const st
 
 /// All ropes that are stretched at this instant pull at once. One that does not rebound becomes a rod if smooth forces
 /// pull at it; else what drags at it (friction) is resolved step by step.
-void RopeEvents::pull(double time, const std::vector<Stretch>& stretches, VectorX& state) {
+void LimitEvents::pull(double time, const std::vector<Stretch>& stretches, VectorX& state) {
   std::vector<RopePull> pulls;
   for (const Stretch& stretch : stretches) {
-    const RopeLimit& rope = assembly_.ropes[stretch.rope];
-    for (const int body : {rope.anchorA.body, rope.anchorB.body}) island_.wake(body);
+    const Limit& rope = assembly_.limits[stretch.rope];
+    const auto [a, b] = bodiesOf(rope);
+    island_.wake(a), island_.wake(b);
     pulls.push_back({&rope, stretch.reboundSpeed});
   }
   const VectorX before = state;
@@ -225,7 +275,7 @@ void RopeEvents::pull(double time, const std::vector<Stretch>& stretches, Vector
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const auto& [rope, speed, reboundSpeed, isLoaded] = stretches[i];
     const bool rebounds = reboundSpeed > 0;
-    const double lengthening = motionOf(assembly_.ropes[rope], state).lengthening;
+    const double lengthening = motionOf(assembly_.limits[rope], state).lengthening;
     if (lengthening < -(reboundSpeed + kRestSpeedFloor + kPullRounding * speed)) continue;  // others pulled it short
     if (!isStretched_[rope] || rebounds) record(time, EventKind::taut, rope, pulls[i].impulse, state);
     isStretched_[rope] = !rebounds;
@@ -241,37 +291,35 @@ void RopeEvents::pull(double time, const std::vector<Stretch>& stretches, Vector
 
 /// A rope closes as a contact where it lengthens. An impulse along the line of both ends has the same effect wherever
 /// on that line it acts: at end A for both bodies.
-ImpactContact RopeEvents::contactOf(const RopeLimit& rope, const VectorX& state) {
-  const RopeMotion motion = motionOf(rope, state);
+ImpactContact LimitEvents::contactOf(const Limit& rope, const VectorX& state) {
+  const LimitMotion motion = motionOf(rope, state);
   Contact contact;
-  contact.bodyA = rope.anchorA.body, contact.bodyB = rope.anchorB.body;
+  std::tie(contact.bodyA, contact.bodyB) = bodiesOf(rope);
   contact.point = motion.a.position, contact.normal = motion.direction;
   contact.separation = motion.slackLength;
-  return {contact, {rope.restitution, 0, 0}, 0, Vec3::Zero()};
+  return {contact, {restitutionOf(rope), 0, 0}, 0, Vec3::Zero()};
 }
 
-std::vector<const RopeLimit*> RopeEvents::withinReach(const VectorX& before, const VectorX& state,
-                                                      double length) const {
-  std::vector<const RopeLimit*> ropes;
+std::vector<const Limit*> LimitEvents::withinReach(const VectorX& before, const VectorX& state, double length) const {
+  std::vector<const Limit*> ropes;
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
-    const RopeLimit& rope = assembly_.ropes[i];
+    const Limit& rope = assembly_.limits[i];
     if (isTaut(i) || rests(i)) continue;
-    const RopeMotion from = motionOf(rope, before), to = motionOf(rope, state);
-    const auto speed = [](const RopeMotion& motion) { return motion.a.velocity.norm() + motion.b.velocity.norm(); };
-    if (from.slackLength > kRopeReach * length * std::max(speed(from), speed(to)) + kNearRatio * rope.maxLength)
-      continue;
+    const LimitMotion from = motionOf(rope, before), to = motionOf(rope, state);
+    const auto speed = [](const LimitMotion& motion) { return motion.a.velocity.norm() + motion.b.velocity.norm(); };
+    if (from.slackLength > kRopeReach * length * std::max(speed(from), speed(to)) + kNearRatio * sizeOf(rope)) continue;
     ropes.push_back(&rope);
   }
   return ropes;
 }
 
-std::vector<ImpactContact> RopeEvents::beginImpact(const VectorX& state) {
+std::vector<ImpactContact> LimitEvents::beginImpact(const VectorX& state) {
   std::vector<ImpactContact> impacts;
   members_.clear();
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
-    const RopeLimit& rope = assembly_.ropes[i];
-    const RopeMotion motion = motionOf(rope, state);
-    if (!isTaut(i) && motion.slackLength > kTautRatio * rope.maxLength) continue;
+    const Limit& rope = assembly_.limits[i];
+    const LimitMotion motion = motionOf(rope, state);
+    if (!isTaut(i) && motion.slackLength > kTautRatio * sizeOf(rope)) continue;
     members_.push_back({i, isTaut(i)});
     tautRow_[i] = -1;
     impacts.push_back(contactOf(rope, state));
@@ -281,10 +329,10 @@ std::vector<ImpactContact> RopeEvents::beginImpact(const VectorX& state) {
   return impacts;
 }
 
-void RopeEvents::endImpact(double time, const std::vector<ImpactContact>& impacts, const VectorX& state) {
+void LimitEvents::endImpact(double time, const std::vector<ImpactContact>& impacts, const VectorX& state) {
   for (std::size_t k = 0; k < members_.size(); ++k) {
     const auto [rope, wasTaut] = members_[k];
-    const RopeMotion motion = motionOf(assembly_.ropes[rope], state);
+    const LimitMotion motion = motionOf(assembly_.limits[rope], state);
     const double speed = motion.a.velocity.norm() + motion.b.velocity.norm();
     const bool shortens = motion.lengthening < -(kRestSpeedFloor + kPullRounding * speed);
     const double impulse = impacts[k].impulse.norm();
@@ -297,31 +345,32 @@ void RopeEvents::endImpact(double time, const std::vector<ImpactContact>& impact
   rebuildConstraints();
 }
 
-void RopeEvents::release(double time, std::size_t rope, const VectorX& state) {
+void LimitEvents::release(double time, std::size_t rope, const VectorX& state) {
   tautRow_[rope] = -1;
   rebuildConstraints();
   loosen(time, rope, state);
 }
 
-void RopeEvents::loosen(double time, std::size_t rope, const VectorX& state) {
+void LimitEvents::loosen(double time, std::size_t rope, const VectorX& state) {
   if (isStretched_[rope]) record(time, EventKind::slack, rope, 0, state);
   isStretched_[rope] = false;
 }
 
-void RopeEvents::rebuildConstraints() {
+void LimitEvents::rebuildConstraints() {
   Constraints& constraints = assembly_.mechanism.constraints;
   constraints.resize(sceneConstraints_);
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
     if (!isTaut(i)) continue;
-    const RopeLimit& rope = assembly_.ropes[i];
     tautRow_[i] = rowCount(constraints);
-    constraints.push_back({rope.anchorA, rope.anchorB, RodConstraint{rope.maxLength}});
+    constraints.push_back(constraintOf(assembly_.limits[i]));
   }
 }
 
-void RopeEvents::record(double time, EventKind kind, std::size_t rope, double impulse, const VectorX& state) {
-  const RopeMotion motion = motionOf(assembly_.ropes[rope], state);
-  const auto [a, b] = assembly_.ropeBodies[rope];
+void LimitEvents::record(double time, EventKind kind, std::size_t rope, double impulse, const VectorX& state) {
+  const LimitMotion motion = motionOf(assembly_.limits[rope], state);
+  const auto [a, b] = assembly_.limitBodies[rope];
+  if (std::holds_alternative<JointLimit>(assembly_.limits[rope]))
+    kind = kind == EventKind::taut ? EventKind::impact : EventKind::release;
   island_.log.record({time, kind, a, b, motion.a.position, -motion.direction, impulse});
 }
 

@@ -8,30 +8,31 @@
 
 namespace cradle {
 
-/// A rope that goes taut, or slack, inside a step.
-struct RopeChange {
+/// A limit that is reached, or left, inside a step.
+struct LimitChange {
   double fraction = 0;  // of the step, 0..1
-  std::size_t rope = 0;
-  double threshold = 0;  // m: slack length that is reached; < 0: of a rope at its length without tension
+  std::size_t limit = 0;
+  double threshold = 0;  // m: slack length that is reached; < 0: of a limit without tension at which the link is
 };
 
-/// Ropes over time: nothing while slack; an impulse when the length is reached; then a rod, until that would push.
-/// The constraints of taut ropes, rods, stand behind the scene's own.
-class RopeEvents {
+/// Ropes and the stops of joints over time: nothing while slack; an impulse when the limit is reached; then a bilateral
+/// constraint, of a rope a rod, until that would push the wrong way. The constraints of taut limits stand behind the
+/// scene's own. (Here all of them are told of as ropes.)
+class LimitEvents {
  public:
   /// Keeps a reference to `island`.
-  explicit RopeEvents(IslandState& island);
+  explicit LimitEvents(IslandState& island);
 
   /// The method's if that is fixed (s), else 0: rebounds that end within about two steps are not resolved.
   void setTimeStep(double timeStep) { timeStep_ = timeStep; }
 
   /// The first slack rope of a step that reaches its length, or taut one whose tension ends. The step's end derivative
   /// must be there (prepareInterpolant).
-  std::optional<RopeChange> firstChange(const Step& step);
+  std::optional<LimitChange> firstChange(const Step& step);
 
   /// Zero where the change happens, positive before: slack as a part of the length, or tension as a part of the
   /// greater of those at both ends of the step. `state` is that of the step's end.
-  double margin(const RopeChange& change, const VectorX& state);
+  double margin(const LimitChange& change, const VectorX& state);
 
   /// What happens at the end of a step: impulses in ropes that are at their length, new rods, released ropes. True if
   /// anything does.
@@ -46,15 +47,15 @@ class RopeEvents {
 
   /// Ropes that are no rods and may come to their length within a step of `length` (s) whose free motion led from
   /// `before` to `state`.
-  std::vector<const RopeLimit*> withinReach(const VectorX& before, const VectorX& state, double length) const;
+  std::vector<const Limit*> withinReach(const VectorX& before, const VectorX& state, double length) const;
 
   /// A rope as a contact of the bodies at its ends that may close by what is slack.
-  static ImpactContact contactOf(const RopeLimit& rope, const VectorX& state);
+  static ImpactContact contactOf(const Limit& rope, const VectorX& state);
 
   /// Takes the impulses that the same members got. What lengthens no more and shortens is slack now.
   void endImpact(double time, const std::vector<ImpactContact>& members, const VectorX& state);
 
-  bool hasRopes() const { return !assembly_.ropes.empty(); }
+  bool hasLimits() const { return !assembly_.limits.empty(); }
 
   /// Which ropes are constraints now: to be asked later whether they are the same ones.
   const std::vector<int>& tautRows() const { return tautRow_; }
@@ -64,7 +65,8 @@ class RopeEvents {
   bool rests(std::size_t rope) const;
   double tension(std::size_t rope, double time, const VectorX& state);
   std::optional<double> firstTensionLoss(const Step& step, std::size_t rope);
-  std::optional<RopeChange> firstReach(const Step& step, std::size_t rope, double end) const;
+  std::optional<LimitChange> firstReach(const Step& step, std::size_t rope, double end) const;
+  void followTurns(const VectorX& state);
   /// A rope at its length that lengthens.
   struct Stretch {
     std::size_t rope;
