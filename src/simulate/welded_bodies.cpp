@@ -7,10 +7,6 @@ WeldedBodies::WeldedBodies(const Scene& scene) : scene_(scene), sets_(scene.bodi
   sets_.flatten();
 }
 
-bool WeldedBodies::areOne(int first, int second) const {
-  return !scene_.welds.empty() && sets_.islandOf(placeOf(first)) == sets_.islandOf(placeOf(second));
-}
-
 /// The place of a body, or of the world, in the disjoint sets.
 int WeldedBodies::placeOf(int body) const {
   const bool isFixed = body == kWorld || scene_.bodies[static_cast<std::size_t>(body)].motion == Motion::fixed;

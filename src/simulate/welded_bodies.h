@@ -11,8 +11,11 @@ class WeldedBodies {
  public:
   explicit WeldedBodies(const Scene& scene);
 
+  /// The same for two scene bodies if they are one. O(1).
+  int groupOf(int body) const { return sets_.islandOf(placeOf(body)); }
+
   /// Of two different scene bodies.
-  bool areOne(int first, int second) const;
+  bool areOne(int first, int second) const { return !scene_.welds.empty() && groupOf(first) == groupOf(second); }
 
  private:
   int placeOf(int body) const;

@@ -141,11 +141,13 @@ TEST(WeldedBeam, StaysWhereItIs) {
       EXPECT_LT((frame.states[i].position - Vec3(static_cast<double>(i) + 0.5, 0, 0)).norm(), 1e-12) << frame.time << i;
 }
 
-// Parts of one body may overlap, and touch each other however it turns: that is no contact, nor is it near to one.
+// Parts of one body may overlap, and touch each other however it turns: that is no contact, nor near to one, though
+// each of them may touch a floor.
 TEST(WeldedParts, OverlapWithoutContact) {
   for (const double accuracy : {1e-3, 1e-6}) {
     const Trajectory run = simulate(sceneWith(fmt::format(R"("duration": 1, "accuracy": {}, "gravity": [0, 0, 0],
-      "bodies": [{{"name": "a", "shape": {{"box": {{"size": [0.2, 0.2, 0.2]}}}}, "angularVelocity": [3, 1, -2]}},
+      "bodies": [{{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "position": [0, -9, 0]}},
+        {{"name": "a", "shape": {{"box": {{"size": [0.2, 0.2, 0.2]}}}}, "angularVelocity": [3, 1, -2]}},
         {{"name": "b", "shape": {{"cylinder": {{"radius": 0.1, "length": 0.2}}}}, "position": [0.2, 0, 0], "angularVelocity": [3, 1, -2], "linearVelocity": [0, -0.4, -0.2]}},
         {{"name": "c", "shape": {{"box": {{"size": [0.2, 0.2, 0.2]}}}}, "position": [0.1, 0.15, 0], "angularVelocity": [3, 1, -2], "linearVelocity": [0.3, -0.2, 0.35]}}],
       "welds": [{{"bodyA": "a", "anchorA": [0.1, 0, 0], "bodyB": "b", "anchorB": [-0.1, 0, 0], "collide": true}},
