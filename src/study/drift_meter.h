@@ -14,7 +14,7 @@ class DriftMeter {
 
   /// Largest change of the energy constant since the first frame, as part of the largest kinetic energy.
   double energyDrift() const;
-  /// Largest error of a rod or joint in m (of a hinge's axis in rad).
+  /// Largest error of a rod or joint in m (of what it keeps of orientations in rad).
   double constraintDrift() const { return constraintDrift_; }
   /// Deepest overlap of two bodies in m, of those pairs whose contact is simulated.
   double penetration() const { return penetration_; }
