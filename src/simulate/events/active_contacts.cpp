@@ -107,16 +107,13 @@ const std::vector<ActiveFeature>& ActiveContacts::features() {
   features_.clear();
   const ContactGeometry& geometry = island_.assembly.geometry;
   for (std::size_t i = 0; i < records_.size(); ++i) {
-    const ColliderPair& own = records_[i].pair;
-    const auto isSame = [&](const ColliderPair& pair) {
-      return pair.a == own.a && pair.b == own.b && pair.againstPlane == own.againstPlane;
-    };
+    const auto isSame = [&](const ColliderPair& pair) { return isSamePair(pair, records_[i].pair); };
     const auto pair = std::find_if(geometry.pairs.begin(), geometry.pairs.end(), isSame);
     if (pair == geometry.pairs.end()) continue;
     ActiveFeature feature{static_cast<std::size_t>(pair - geometry.pairs.begin()), 0, mechanism().contacts[i],
                           touchedFeature(records_[i].contact)};
-    const Collider& a = geometry.colliders[own.a];
-    if (own.againstPlane) {
+    const Collider& a = geometry.colliders[records_[i].pair.a];
+    if (records_[i].pair.againstPlane) {
       const auto nearer = [&](const Vec3& left, const Vec3& right) {
         return (left - feature.contact.centerA.point).squaredNorm() <
                (right - feature.contact.centerA.point).squaredNorm();

@@ -27,6 +27,10 @@ std::vector<int> sceneBodiesOf(const std::vector<const Contact*>& contacts, cons
   return bodies;
 }
 
+bool isSamePair(const ColliderPair& one, const ColliderPair& other) {
+  return one.a == other.a && one.b == other.b && one.againstPlane == other.againstPlane;
+}
+
 bool isAwake(const Contact& contact, const RestingBodies& resting) {
   const auto isUp = [&](int body) { return body != kFixed && !resting.isResting(body); };
   return isUp(contact.bodyA) || isUp(contact.bodyB);

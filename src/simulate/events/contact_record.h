@@ -40,6 +40,9 @@ ContactFallback jamAt(const std::vector<const ContactRecord*>& records, const As
 /// Scene bodies of some contacts, ascending, each once.
 std::vector<int> sceneBodiesOf(const std::vector<const Contact*>& contacts, const Assembly& assembly);
 
+/// Whether two pairs are of the same colliders.
+bool isSamePair(const ColliderPair& one, const ColliderPair& other);
+
 /// Whether a body at the contact moves and does not rest.
 bool isAwake(const Contact& contact, const RestingBodies& resting);
 

@@ -58,9 +58,9 @@ double EventImpacts::resolve(const std::optional<std::size_t>& closingPair, std:
     if (constraints_.hasConstraints()) constraints_.factorize(island_.state);
     touching = findTouching(island_, constraints_, tolerances_, std::nullopt);
   }
+  knownGaps_.keep(sequence, limits.leastRounding);
   // A gap that closes later is an event of its own.
-  std::erase_if(touching,
-                [&](const Contact& contact) { return contact.separation > limits.gapRounding && closes(contact); });
+  std::erase_if(touching, [&](const Contact& contact) { return closes(contact) && isApart(contact, limits); });
   return zenoTime;
 }
 
@@ -94,10 +94,12 @@ SequenceLimits EventImpacts::limitsOf(const std::vector<Contact>& near, double s
   limits.gapRounding = tolerances_.gapRounding(farthest), limits.stillSpeed = stillSpeed;
   limits.openingSpeed = tolerances_.minOpeningSpeed(tolerances_.scales.size);
   limits.touchTolerance = tolerances_.touch, limits.reach = tolerances_.reach, limits.duration = INFINITY;
+  limits.leastRounding = tolerances_.sphereGapRounding(farthest);
   for (const Contact& contact : near)
-    limits.gapErrors.push_back(isOfSphere(contact) ? tolerances_.sphereGapRounding(farthest) : limits.gapRounding);
-  const auto isClosed = [&](const Contact& contact) { return contact.separation <= limits.gapRounding; };
-  if (std::all_of(near.begin(), near.end(), isClosed)) return limits;
+    limits.gapErrors.push_back(isOfSphere(contact) ? limits.leastRounding : limits.gapRounding);
+  useKnownGaps(near, limits);
+  if (std::none_of(near.begin(), near.end(), [&](const Contact& contact) { return isApart(contact, limits); }))
+    return limits;
   VectorX derivative;
   island_.equations.evaluate(island_.time, island_.state, derivative);
   double strongest = 0;  // m/s^2
@@ -105,6 +107,24 @@ SequenceLimits EventImpacts::limitsOf(const std::vector<Contact>& near, double s
     strongest = std::max(strongest, std::abs(openingAcceleration(contact, island_.state, derivative)));
   limits.duration = tolerances_.maxSequenceTime(strongest);
   return limits;
+}
+
+/// Whether a contact has a gap that its separation shows.
+bool EventImpacts::isApart(const Contact& contact, const SequenceLimits& limits) const {
+  const auto known = knownGaps_.find(contact, limits.leastRounding);
+  const bool isShown = known && std::abs(contact.separation - known->gap) <= limits.leastRounding;
+  return contact.separation > (isShown ? limits.leastRounding : limits.gapRounding);
+}
+
+/// Contacts that have just had an impact have gaps that are known from it, better than they are measured.
+void EventImpacts::useKnownGaps(const std::vector<Contact>& near, SequenceLimits& limits) const {
+  limits.gapOffsets.assign(near.size(), 0.0);
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const auto known = knownGaps_.find(near[i], limits.leastRounding);
+    if (!known) continue;
+    limits.gapOffsets[i] = near[i].separation - known->gap;
+    limits.gapErrors[i] = known->error;
+  }
 }
 
 /// Impact islands: bodies that an impact at one of them may move.

@@ -8,6 +8,7 @@
 #include "simulate/events/coming_to_rest.h"
 #include "simulate/events/event_tolerances.h"
 #include "simulate/events/impact_sequence.h"
+#include "simulate/events/known_gaps.h"
 #include "simulate/events/touching_contacts.h"
 #include "simulate/island_state.h"
 #include "simulate/limit_events.h"
@@ -22,7 +23,12 @@ class EventImpacts {
   /// after it.
   EventImpacts(IslandState& island, LimitEvents& ropes, ConstraintSolver& constraints, ComingToRest& rest,
                const EventTolerances& tolerances)
-      : island_(island), ropes_(ropes), constraints_(constraints), rest_(rest), tolerances_(tolerances) {}
+      : island_(island),
+        ropes_(ropes),
+        constraints_(constraints),
+        rest_(rest),
+        tolerances_(tolerances),
+        knownGaps_(island, tolerances) {}
 
   /// Resolves the impacts of the contacts in `touching`; `closingPair` is the pair whose gap an event has closed.
   /// Changes velocities of the island's state, and by rounding positions; wakes struck bodies, records impacts and
@@ -39,6 +45,8 @@ class EventImpacts {
   static void addImpulse(std::size_t contact, double impulse, std::vector<ContactImpulse>& impulses);
   std::vector<Contact> contactsInReach(const std::vector<Contact>& touching);
   bool isOfSphere(const Contact& contact) const;
+  bool isApart(const Contact& contact, const SequenceLimits& limits) const;
+  void useKnownGaps(const std::vector<Contact>& near, SequenceLimits& limits) const;
   SequenceLimits limitsOf(const std::vector<Contact>& near, double stillSpeed);
   DisjointSets findImpactIslands(const std::vector<Contact>& contacts) const;
   double resolveNext(const ImpactSequence& sequence, double still, std::vector<ContactImpulse>& impulses);
@@ -52,6 +60,7 @@ class EventImpacts {
   ConstraintSolver& constraints_;
   ComingToRest& rest_;
   const EventTolerances& tolerances_;
+  KnownGaps knownGaps_;  // after the last impacts
 };
 
 }  // namespace cradle

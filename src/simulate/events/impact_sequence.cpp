@@ -30,11 +30,13 @@ ImpactSequence::ImpactSequence(std::vector<Contact> contacts, const std::optiona
       radii_(radii),
       limits_(limits),
       gapErrors_(limits.gapErrors),
+      offsets_(limits.gapOffsets),
       speeds_(contacts_.size()),
       leftSpeeds_(contacts_.size(), 0.0),
       lastImpacts_(contacts_.size(), 0),
       displacements_(VectorX::Zero(bodyCount(state) * kVelocitySize)) {
-  for (const Contact& contact : contacts_) gaps_.push_back(contact.separation);
+  offsets_.resize(contacts_.size(), 0.0);
+  for (std::size_t i = 0; i < contacts_.size(); ++i) gaps_.push_back(contacts_[i].separation - offsets_[i]);
   findSpeeds(state);
   if (closingPair) closeGapOf(*closingPair);
 }
@@ -49,8 +51,11 @@ void ImpactSequence::closeGapOf(std::size_t pair) {
   if (nearest == contacts_.size()) return;
   const double most = limits_.touchTolerance / fastestClosing_;
   const double time = std::clamp(gaps_[nearest] / -speeds_[nearest], 0.0, most);
-  for (std::size_t i = 0; i < contacts_.size(); ++i) gaps_[i] += time * speeds_[i];
-  gaps_[nearest] = 0;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    gaps_[i] += time * speeds_[i];
+    offsets_[i] -= time * speeds_[i];
+  }
+  closeGap(nearest);
 }
 
 void ImpactSequence::findSpeeds(const VectorX& state) {
@@ -65,9 +70,15 @@ bool ImpactSequence::closes(std::size_t contact) const {
   return speeds_[contact] < leftSpeeds_[contact] - limits_.stillSpeed;
 }
 
-/// Whether the gap, measured anew, might be none.
+void ImpactSequence::closeGap(std::size_t contact) {
+  offsets_[contact] += gaps_[contact];
+  gaps_[contact] = 0;
+}
+
 bool ImpactSequence::isWithinRounding(std::size_t contact) const {
-  return gaps_[contact] <= kHiddenGap * limits_.gapRounding;
+  const double least = limits_.leastRounding;
+  const bool isKnown = gapErrors_[contact] < least && std::abs(offsets_[contact]) <= least;
+  return gaps_[contact] <= kHiddenGap * (isKnown ? least : limits_.gapRounding);
 }
 
 bool ImpactSequence::next(const VectorX& state) {
@@ -99,7 +110,7 @@ bool ImpactSequence::closeWithinRounding() {
   bool isAnyClosed = false;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     if (!closes(i) || !isWithinRounding(i)) continue;
-    gaps_[i] = 0;
+    closeGap(i);
     isAnyClosed = true;
   }
   return isAnyClosed;
@@ -161,7 +172,8 @@ void ImpactSequence::findMembers() {
 void ImpactSequence::finishImpact(const VectorX& state) {
   times_.push_back(elapsed_);
   for (const std::size_t i : members_) {
-    gaps_[i] = gapErrors_[i] = 0;
+    closeGap(i);
+    gapErrors_[i] = 0;
     leftSpeeds_[i] = std::min(0.0, openingSpeed(contacts_[i], state));
     lastImpacts_[i] = times_.size();
   }

@@ -9,13 +9,15 @@ namespace cradle {
 
 /// Limits of a sequence of impacts at frozen places.
 struct SequenceLimits {
-  std::vector<double> gapErrors;  // m, of each contact: a gap below it is none
-  double gapRounding = 0;         // m: rounding may hide gaps about as small from the events that follow
-  double touchTolerance = 0;      // m: bound on the gap that the pair of an event seems to have
-  double reach = 0;               // m: contacts farther apart are not known, so bodies move by half of it at most
-  double duration = 0;            // s: in a longer time forces count
-  double stillSpeed = 0;          // m/s: closing more slowly is rounding
-  double openingSpeed = 0;        // m/s: a contact without a gap that opens more slowly stays without
+  std::vector<double> gapErrors;   // m, of each contact: a gap below it is none
+  std::vector<double> gapOffsets;  // m, of each contact: by so much is its separation more than its gap; empty: 0
+  double gapRounding = 0;          // m: rounding may hide gaps about as small from the events that follow
+  double leastRounding = 0;        // m: the same, where a gap is known better than this and its separation tells it
+  double touchTolerance = 0;       // m: bound on the gap that the pair of an event seems to have
+  double reach = 0;                // m: contacts farther apart are not known, so bodies move by half of it at most
+  double duration = 0;             // s: in a longer time forces count
+  double stillSpeed = 0;           // m/s: closing more slowly is rounding
+  double openingSpeed = 0;         // m/s: a contact without a gap that opens more slowly stays without
 };
 
 /// Impacts that follow each other faster than bodies move: contacts close in the order of s / -s', s their gaps, while
@@ -35,6 +37,13 @@ class ImpactSequence {
                  const std::vector<double>& radii, const SequenceLimits& limits, const VectorX& state);
 
   const std::vector<Contact>& contacts() const { return contacts_; }
+
+  /// Of a contact, m: its gap now, and the error of that.
+  double gap(std::size_t contact) const { return gaps_[contact]; }
+  double gapError(std::size_t contact) const { return gapErrors_[contact]; }
+
+  /// Whether the gap of a contact, measured anew, might be none.
+  bool isWithinRounding(std::size_t contact) const;
 
   /// Whether its first impact takes no time: else ropes at their length pull before it.
   bool beginsNow() const { return timeToNextImpact() == 0; }
@@ -57,9 +66,9 @@ class ImpactSequence {
 
  private:
   void closeGapOf(std::size_t pair);
+  void closeGap(std::size_t contact);
   void findSpeeds(const VectorX& state);
   bool closes(std::size_t contact) const;
-  bool isWithinRounding(std::size_t contact) const;
   bool hasCollapsed() const;
   bool closeWithinRounding();
   double timeToNextImpact() const;
@@ -71,6 +80,7 @@ class ImpactSequence {
   const std::vector<double>& radii_;
   SequenceLimits limits_;
   std::vector<double> gaps_, gapErrors_;     // m
+  std::vector<double> offsets_;              // m: separations, as they would be measured now, minus gaps
   std::vector<double> speeds_;               // m/s, of opening
   std::vector<double> leftSpeeds_;           // m/s, <= 0: of closing that its last impact could not end
   std::vector<std::size_t> lastImpacts_;     // of each contact: number of its last impact, from 1; 0: none

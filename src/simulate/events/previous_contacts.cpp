@@ -31,8 +31,7 @@ bool isRolling(const Contact& contact, const IslandState& island) {
 const PreviousContact* previousAt(const ContactRecord& record, const std::vector<PreviousContact>& previous,
                                   const std::vector<BodyFrame>& frames, const IslandState& island) {
   for (const PreviousContact& one : previous) {
-    const ColliderPair &a = one.record.pair, &b = record.pair;
-    if (a.a != b.a || a.b != b.b || a.againstPlane != b.againstPlane) continue;
+    if (!isSamePair(one.record.pair, record.pair)) continue;
     const ContactKinematics place = kinematicsOf(one.constraint, island.state, frames);
     const double size = smallestSize(record.contact, island.assembly.radii);
     if (std::abs(place.normal.dot(record.contact.normal)) > EventTolerances::kSameContactNormal &&
