@@ -14,306 +14,305 @@
 #include "simulate/steps/step_limit.h"
 #include "simulate/welded_bodies.h"
 
-    namespace cradle {
-  namespace {
+namespace cradle {
+namespace {
 
-  constexpr double kNearWelded = 2;            // of the sum of two radii: far more than projection moves welded bodies
-  constexpr double kVelocityRounding = 1e-12;  // m/s a m of rod: less is no violation, only decimal digits
+constexpr double kNearWelded = 2;            // of the sum of two radii: far more than projection moves welded bodies
+constexpr double kVelocityRounding = 1e-12;  // m/s a m of rod: less is no violation, only decimal digits
 
-  Attachment attach(const Anchor& anchor, const Scene& scene, const std::vector<int>& sceneBodies) {
-    if (anchor.body == kWorld) return {kFixed, anchor.point};
-    const Body& body = scene.bodies[static_cast<std::size_t>(anchor.body)];
-    const int moving = indexAmong(sceneBodies, anchor.body);
-    if (moving == kFixed) return {kFixed, body.worldFromBody * anchor.point};
-    return {moving, anchor.point - body.massProperties.centerOfMass};
+Attachment attach(const Anchor& anchor, const Scene& scene, const std::vector<int>& sceneBodies) {
+  if (anchor.body == kWorld) return {kFixed, anchor.point};
+  const Body& body = scene.bodies[static_cast<std::size_t>(anchor.body)];
+  const int moving = indexAmong(sceneBodies, anchor.body);
+  if (moving == kFixed) return {kFixed, body.worldFromBody * anchor.point};
+  return {moving, anchor.point - body.massProperties.centerOfMass};
+}
+
+void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
+  std::merge(island.bodies.begin(), island.bodies.end(), island.driven.begin(), island.driven.end(),
+             std::back_inserter(assembly.sceneBodies));
+  for (const int index : assembly.sceneBodies) {
+    const Body& body = scene.bodies[static_cast<std::size_t>(index)];
+    RigidBody inertia = body.prescribed ? drivenRigidBody() : makeRigidBody(body.massProperties);
+    inertia.hasConstantSpin = std::binary_search(island.nonRotating.begin(), island.nonRotating.end(), index);
+    if (body.prescribed)
+      add(static_cast<int>(assembly.mechanism.bodies.size()), *body.prescribed, assembly.mechanism.driven);
+    assembly.mechanism.bodies.push_back(inertia);
+    assembly.names.bodies.push_back(body.name);
   }
-
-  void addBodies(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
-    std::merge(island.bodies.begin(), island.bodies.end(), island.driven.begin(), island.driven.end(),
-               std::back_inserter(assembly.sceneBodies));
-    for (const int index : assembly.sceneBodies) {
-      const Body& body = scene.bodies[static_cast<std::size_t>(index)];
-      RigidBody inertia = body.prescribed ? drivenRigidBody() : makeRigidBody(body.massProperties);
-      inertia.hasConstantSpin = std::binary_search(island.nonRotating.begin(), island.nonRotating.end(), index);
-      if (body.prescribed)
-        add(static_cast<int>(assembly.mechanism.bodies.size()), *body.prescribed, assembly.mechanism.driven);
-      assembly.mechanism.bodies.push_back(inertia);
-      assembly.names.bodies.push_back(body.name);
-    }
-    VectorX& state = assembly.state;
-    state.setZero(stateSize(static_cast<Eigen::Index>(assembly.sceneBodies.size())));
-    for (std::size_t i = 0; i < assembly.sceneBodies.size(); ++i) {
-      const Body& body = scene.bodies[static_cast<std::size_t>(assembly.sceneBodies[i])];
-      const Eigen::Index index = static_cast<Eigen::Index>(i);
-      centerOfMass(state, index) = body.worldFromBody * body.massProperties.centerOfMass;
-      setOrientation(state, index, body.worldFromBody.rotation);
-      linearVelocity(state, index) = body.linearVelocity;
-      angularVelocity(state, index) = body.angularVelocity;
-    }
+  VectorX& state = assembly.state;
+  state.setZero(stateSize(static_cast<Eigen::Index>(assembly.sceneBodies.size())));
+  for (std::size_t i = 0; i < assembly.sceneBodies.size(); ++i) {
+    const Body& body = scene.bodies[static_cast<std::size_t>(assembly.sceneBodies[i])];
+    const Eigen::Index index = static_cast<Eigen::Index>(i);
+    centerOfMass(state, index) = body.worldFromBody * body.massProperties.centerOfMass;
+    setOrientation(state, index, body.worldFromBody.rotation);
+    linearVelocity(state, index) = body.linearVelocity;
+    angularVelocity(state, index) = body.angularVelocity;
   }
+}
 
-  /// Calls add(link, anchorA, anchorB) for the links of one kind that are attached to a body of the island.
-  template <class Links, class Add>
-  void forEachLink(const Links& links, const Scene& scene, const IslandPlan& island,
-                   const std::vector<int>& sceneBodies, const Add& add) {
-    for (const LinkIndex& place : island.links) {
-      if (place.kind != LinkOf<Links>::kKind) continue;
-      const auto& link = links[place.index];
-      const Attachment a = attach(link.anchorA, scene, sceneBodies), b = attach(link.anchorB, scene, sceneBodies);
-      if (a.body != kFixed || b.body != kFixed) add(link, a, b);
-    }
+/// Calls add(link, anchorA, anchorB) for the links of one kind that are attached to a body of the island.
+template <class Links, class Add>
+void forEachLink(const Links& links, const Scene& scene, const IslandPlan& island, const std::vector<int>& sceneBodies,
+                 const Add& add) {
+  for (const LinkIndex& place : island.links) {
+    if (place.kind != LinkOf<Links>::kKind) continue;
+    const auto& link = links[place.index];
+    const Attachment a = attach(link.anchorA, scene, sceneBodies), b = attach(link.anchorB, scene, sceneBodies);
+    if (a.body != kFixed || b.body != kFixed) add(link, a, b);
   }
+}
 
-  /// How the bodies of a joint are turned at the start: that of its anchor A in the scene, and both as the mechanism
-  /// has them, where what is fixed has the world's frame.
-  struct JointTurns {
-    Quat worldFromSceneA, aFromWorld, bFromWorld;
+/// How the bodies of a joint are turned at the start: that of its anchor A in the scene, and both as the mechanism
+/// has them, where what is fixed has the world's frame.
+struct JointTurns {
+  Quat worldFromSceneA, aFromWorld, bFromWorld;
+};
+
+JointTurns turnsOf(const Anchor& anchorA, const Anchor& anchorB, const Attachment& a, const Attachment& b,
+                   const Scene& scene) {
+  const auto worldFromBody = [&](const Anchor& anchor) -> Quat {
+    if (anchor.body == kWorld) return Quat::Identity();
+    return scene.bodies[static_cast<std::size_t>(anchor.body)].worldFromBody.rotation;
   };
+  const auto fromWorld = [&](const Attachment& at, const Anchor& anchor) -> Quat {
+    return at.body == kFixed ? Quat::Identity() : worldFromBody(anchor).conjugate();
+  };
+  return {worldFromBody(anchorA), fromWorld(a, anchorA), fromWorld(b, anchorB)};
+}
 
-  JointTurns turnsOf(const Anchor& anchorA, const Anchor& anchorB, const Attachment& a, const Attachment& b,
-                     const Scene& scene) {
-    const auto worldFromBody = [&](const Anchor& anchor) -> Quat {
-      if (anchor.body == kWorld) return Quat::Identity();
-      return scene.bodies[static_cast<std::size_t>(anchor.body)].worldFromBody.rotation;
-    };
-    const auto fromWorld = [&](const Attachment& at, const Anchor& anchor) -> Quat {
-      return at.body == kFixed ? Quat::Identity() : worldFromBody(anchor).conjugate();
-    };
-    return {worldFromBody(anchorA), fromWorld(a, anchorA), fromWorld(b, anchorB)};
+RodConstraint constraintOf(const Rod& rod, const JointTurns&) {
+  return {rod.length};
+}
+
+BallJointConstraint constraintOf(const BallJoint&, const JointTurns&) {
+  return {};
+}
+
+/// Two directions across an axis (unit), and across each other, that turn with body B; all in the world's frame at
+/// the start.
+std::array<Vec3, 2> acrossInB(const Vec3& axis, const JointTurns& turns) {
+  const Vec3 across = axis.unitOrthogonal();
+  return {turns.bFromWorld * across, turns.bFromWorld * axis.cross(across)};
+}
+
+HingeConstraint constraintOf(const Hinge& hinge, const JointTurns& turns) {
+  const Vec3 axis = turns.worldFromSceneA * hinge.axis;
+  return {turns.aFromWorld * axis, acrossInB(axis, turns)};
+}
+
+WeldConstraint constraintOf(const Weld&, const JointTurns& turns) {
+  return {(turns.aFromWorld * turns.bFromWorld.conjugate()).toRotationMatrix()};
+}
+
+SliderConstraint constraintOf(const Slider& slider, const JointTurns& turns) {
+  return {acrossInB(turns.worldFromSceneA * slider.axis, turns), constraintOf(Weld(), turns).aFromB};
+}
+
+JointCoordinate coordinateOf(const Hinge& hinge, const JointTurns& turns) {
+  const Vec3 axis = turns.worldFromSceneA * hinge.axis, across = axis.unitOrthogonal();
+  return {true, turns.bFromWorld * axis, turns.aFromWorld * across, turns.bFromWorld * across, 0};
+}
+
+JointCoordinate coordinateOf(const Slider& slider, const JointTurns& turns) {
+  JointCoordinate coordinate;
+  coordinate.axisB = turns.bFromWorld * (turns.worldFromSceneA * slider.axis);
+  return coordinate;
+}
+
+/// m: how far the mass of a body is from an anchor, in the root of the mean square; 0 if no force moves it.
+double massDistance(const Attachment& anchor, const std::vector<RigidBody>& bodies) {
+  if (anchor.body == kFixed) return 0;
+  const RigidBody& body = bodies[static_cast<std::size_t>(anchor.body)];
+  return body.isDriven() ? 0 : std::sqrt(body.inertiaTensor.trace() / (2 * body.mass) + anchor.point.squaredNorm());
+}
+
+/// The stops of a joint. Where its anchors are apart at the start by an error, its coordinate is 0 all the same.
+template <class Joint>
+void addStops(const Joint& joint, const JointTurns& turns, const Attachment& a, const Attachment& b,
+              Assembly& assembly) {
+  if (!joint.limits) return;
+  JointLimit stop{a, b, coordinateOf(joint, turns)};
+  stop.size = std::max(massDistance(a, assembly.mechanism.bodies), massDistance(b, assembly.mechanism.bodies));
+  stop.restitution = joint.limits->restitution;
+  const double start = stop.bound.turns ? 0 : -motionOf(Limit(stop), assembly.state).slackLength;
+  for (const auto& [bound, side] : {std::pair(joint.limits->lower, -1.0), {joint.limits->upper, 1.0}}) {
+    if (!std::isfinite(bound)) continue;
+    stop.bound.value = start + bound, stop.side = side;
+    assembly.limits.emplace_back(stop);
+    assembly.limitBodies.emplace_back(joint.anchorA.body, joint.anchorB.body);
   }
+}
 
-  RodConstraint constraintOf(const Rod& rod, const JointTurns&) {
-    return {rod.length};
-  }
-
-  BallJointConstraint constraintOf(const BallJoint&, const JointTurns&) {
-    return {};
-  }
-
-  /// Two directions across an axis (unit), and across each other, that turn with body B; all in the world's frame at
-  /// the start.
-  std::array<Vec3, 2> acrossInB(const Vec3& axis, const JointTurns& turns) {
-    const Vec3 across = axis.unitOrthogonal();
-    return {turns.bFromWorld * across, turns.bFromWorld * axis.cross(across)};
-  }
-
-  HingeConstraint constraintOf(const Hinge& hinge, const JointTurns& turns) {
-    const Vec3 axis = turns.worldFromSceneA * hinge.axis;
-    return {turns.aFromWorld * axis, acrossInB(axis, turns)};
-  }
-
-  WeldConstraint constraintOf(const Weld&, const JointTurns& turns) {
-    return {(turns.aFromWorld * turns.bFromWorld.conjugate()).toRotationMatrix()};
-  }
-
-  SliderConstraint constraintOf(const Slider& slider, const JointTurns& turns) {
-    return {acrossInB(turns.worldFromSceneA * slider.axis, turns), constraintOf(Weld(), turns).aFromB};
-  }
-
-  JointCoordinate coordinateOf(const Hinge& hinge, const JointTurns& turns) {
-    const Vec3 axis = turns.worldFromSceneA * hinge.axis, across = axis.unitOrthogonal();
-    return {true, turns.bFromWorld * axis, turns.aFromWorld * across, turns.bFromWorld * across, 0};
-  }
-
-  JointCoordinate coordinateOf(const Slider& slider, const JointTurns& turns) {
-    JointCoordinate coordinate;
-    coordinate.axisB = turns.bFromWorld * (turns.worldFromSceneA * slider.axis);
-    return coordinate;
-  }
-
-  /// m: how far the mass of a body is from an anchor, in the root of the mean square; 0 if no force moves it.
-  double massDistance(const Attachment& anchor, const std::vector<RigidBody>& bodies) {
-    if (anchor.body == kFixed) return 0;
-    const RigidBody& body = bodies[static_cast<std::size_t>(anchor.body)];
-    return body.isDriven() ? 0 : std::sqrt(body.inertiaTensor.trace() / (2 * body.mass) + anchor.point.squaredNorm());
-  }
-
-  /// The stops of a joint. Where its anchors are apart at the start by an error, its coordinate is 0 all the same.
-  template <class Joint>
-  void addStops(const Joint& joint, const JointTurns& turns, const Attachment& a, const Attachment& b,
-                Assembly& assembly) {
-    if (!joint.limits) return;
-    JointLimit stop{a, b, coordinateOf(joint, turns)};
-    stop.size = std::max(massDistance(a, assembly.mechanism.bodies), massDistance(b, assembly.mechanism.bodies));
-    stop.restitution = joint.limits->restitution;
-    const double start = stop.bound.turns ? 0 : -motionOf(Limit(stop), assembly.state).slackLength;
-    for (const auto& [bound, side] : {std::pair(joint.limits->lower, -1.0), {joint.limits->upper, 1.0}}) {
-      if (!std::isfinite(bound)) continue;
-      stop.bound.value = start + bound, stop.side = side;
-      assembly.limits.emplace_back(stop);
-      assembly.limitBodies.emplace_back(joint.anchorA.body, joint.anchorB.body);
-    }
-  }
-
-  void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
-    Mechanism& mechanism = assembly.mechanism;
-    forEachLink(scene.springs, scene, island, assembly.sceneBodies,
-                [&](const Spring& spring, const Attachment& a, const Attachment& b) {
-                  mechanism.springs.push_back({a, b, spring.stiffness, spring.damping, spring.restLength});
-                  assembly.names.springs.push_back(spring.name);
+void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
+  Mechanism& mechanism = assembly.mechanism;
+  forEachLink(scene.springs, scene, island, assembly.sceneBodies,
+              [&](const Spring& spring, const Attachment& a, const Attachment& b) {
+                mechanism.springs.push_back({a, b, spring.stiffness, spring.damping, spring.restLength});
+                assembly.names.springs.push_back(spring.name);
+              });
+  const auto addConstraints = [&](const auto& links) {
+    forEachLink(links, scene, island, assembly.sceneBodies,
+                [&](const auto& link, const Attachment& a, const Attachment& b) {
+                  const JointTurns turns = turnsOf(link.anchorA, link.anchorB, a, b, scene);
+                  mechanism.constraints.push_back({a, b, constraintOf(link, turns)});
+                  if constexpr (requires { link.limits; }) addStops(link, turns, a, b, assembly);
+                  assembly.names.constraints.push_back(fmt::format("{} \"{}\"", link.kNoun, link.name));
                 });
-    const auto addConstraints = [&](const auto& links) {
-      forEachLink(links, scene, island, assembly.sceneBodies,
-                  [&](const auto& link, const Attachment& a, const Attachment& b) {
-                    const JointTurns turns = turnsOf(link.anchorA, link.anchorB, a, b, scene);
-                    mechanism.constraints.push_back({a, b, constraintOf(link, turns)});
-                    if constexpr (requires { link.limits; }) addStops(link, turns, a, b, assembly);
-                    assembly.names.constraints.push_back(fmt::format("{} \"{}\"", link.kNoun, link.name));
-                  });
-    };
-    addConstraints(scene.rods);
-    forEachKindOfJoint(scene, addConstraints);
-    forEachLink(scene.ropes, scene, island, assembly.sceneBodies,
-                [&](const Rope& rope, const Attachment& a, const Attachment& b) {
-                  assembly.limits.emplace_back(RopeLimit{a, b, rope.maxLength, rope.restitution});
-                  assembly.limitBodies.emplace_back(rope.anchorA.body, rope.anchorB.body);
-                });
-  }
+  };
+  addConstraints(scene.rods);
+  forEachKindOfJoint(scene, addConstraints);
+  forEachLink(scene.ropes, scene, island, assembly.sceneBodies,
+              [&](const Rope& rope, const Attachment& a, const Attachment& b) {
+                assembly.limits.emplace_back(RopeLimit{a, b, rope.maxLength, rope.restitution});
+                assembly.limitBodies.emplace_back(rope.anchorA.body, rope.anchorB.body);
+              });
+}
 
-  void satisfyConstraints(const Scene& scene, Assembly& assembly) {
-    const Mechanism& mechanism = assembly.mechanism;
-    ConstraintSolver solver(mechanism.constraints, mechanism.bodies);
-    if (!solver.hasConstraints()) return;
-    const VectorX before = assembly.state;
-    solver.factorize(before);
-    const double violation = solver.largestRate(before);
-    // Spins that a scene gives are kept where velocities of the centres of mass can follow them.
-    std::vector<RigidBody> nonRotating = mechanism.bodies;
-    for (RigidBody& body : nonRotating) body.inverseInertia.setZero();
-    ConstraintSolver linear(mechanism.constraints, nonRotating);
-    linear.factorize(before);
-    linear.constrainVelocities(assembly.state);
-    solver.constrainVelocities(assembly.state);
-    if (violation > kVelocityRounding)
-      assembly.warnings.push_back(fmt::format(
-          "{}: the start velocities would stretch or shorten rods or pull joints apart by up to {:.3g} m/s; they were "
-          "changed by up to {:.3g} to fit",
-          scene.path, violation, (assembly.state - before).cwiseAbs().maxCoeff()));
-  }
+void satisfyConstraints(const Scene& scene, Assembly& assembly) {
+  const Mechanism& mechanism = assembly.mechanism;
+  ConstraintSolver solver(mechanism.constraints, mechanism.bodies);
+  if (!solver.hasConstraints()) return;
+  const VectorX before = assembly.state;
+  solver.factorize(before);
+  const double violation = solver.largestRate(before);
+  // Spins that a scene gives are kept where velocities of the centres of mass can follow them.
+  std::vector<RigidBody> nonRotating = mechanism.bodies;
+  for (RigidBody& body : nonRotating) body.inverseInertia.setZero();
+  ConstraintSolver linear(mechanism.constraints, nonRotating);
+  linear.factorize(before);
+  linear.constrainVelocities(assembly.state);
+  solver.constrainVelocities(assembly.state);
+  if (violation > kVelocityRounding)
+    assembly.warnings.push_back(fmt::format(
+        "{}: the start velocities would stretch or shorten rods or pull joints apart by up to {:.3g} m/s; they were "
+        "changed by up to {:.3g} to fit",
+        scene.path, violation, (assembly.state - before).cwiseAbs().maxCoeff()));
+}
 
-  /// Colliders of the bodies that may touch.
-  void addColliders(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
-    ContactGeometry& geometry = assembly.geometry;
-    assembly.radii.assign(assembly.mechanism.bodies.size(), 0.0);
-    for (const int index : island.touching) {
-      const Body& body = scene.bodies[static_cast<std::size_t>(index)];
-      if (const auto* plane = std::get_if<Plane>(&body.shape)) {
-        geometry.planes.push_back(
-            {body.worldFromBody.translation, body.worldFromBody.rotation * plane->normal, body.material});
-        assembly.planeBodies.push_back(index);
-      } else {
-        geometry.colliders.push_back(*colliderOf(body, scene, indexAmong(assembly.sceneBodies, index)));
-        geometry.colliders.back().isDriven = body.motion == Motion::driven;
-        assembly.colliderBodies.push_back(index);
-        const Collider& collider = geometry.colliders.back();
-        if (collider.body != kFixed) assembly.radii[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
-      }
-    }
-    addSurfaces(scene, assembly.colliderBodies, geometry.colliders);
-    for (const std::vector<SurfacePair>& row : scene.surfacePairs) {
-      std::vector<ContactMaterial>& materials = geometry.materials.emplace_back();
-      for (const SurfacePair& pair : row)
-        materials.push_back({pair.restitution, pair.staticFriction, pair.dynamicFriction});
+/// Colliders of the bodies that may touch.
+void addColliders(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
+  ContactGeometry& geometry = assembly.geometry;
+  assembly.radii.assign(assembly.mechanism.bodies.size(), 0.0);
+  for (const int index : island.touching) {
+    const Body& body = scene.bodies[static_cast<std::size_t>(index)];
+    if (const auto* plane = std::get_if<Plane>(&body.shape)) {
+      geometry.planes.push_back(
+          {body.worldFromBody.translation, body.worldFromBody.rotation * plane->normal, body.material});
+      assembly.planeBodies.push_back(index);
+    } else {
+      geometry.colliders.push_back(*colliderOf(body, scene, indexAmong(assembly.sceneBodies, index)));
+      geometry.colliders.back().isDriven = body.motion == Motion::driven;
+      assembly.colliderBodies.push_back(index);
+      const Collider& collider = geometry.colliders.back();
+      if (collider.body != kFixed) assembly.radii[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
     }
   }
-
-  /// Parts of one body whose bounding spheres are near at the start: others stay apart.
-  void excludeWelded(const Scene& scene, Assembly& assembly) {
-    if (scene.welds.empty()) return;
-    const std::vector<Collider>& colliders = assembly.geometry.colliders;
-    const auto centerOf = [&](const Collider& collider) -> Vec3 {
-      return collider.body == kFixed ? Vec3::Zero() : Vec3(centerOfMass(assembly.state, collider.body));
-    };
-    const auto areNear = [&](const Collider& a, const Collider& b) {
-      return (centerOf(a) - centerOf(b)).norm() <= kNearWelded * (a.boundingRadius + b.boundingRadius);
-    };
-    const WeldedBodies welded(scene);
-    std::map<int, std::vector<std::size_t>> groups;
-    for (std::size_t i = 0; i < colliders.size(); ++i) groups[welded.groupOf(assembly.colliderBodies[i])].push_back(i);
-    for (const auto& [group, parts] : groups)
-      for (const std::size_t a : parts) {
-        if (colliders[a].body == kFixed) continue;
-        for (const std::size_t b : parts)
-          if ((a < b || colliders[b].body == kFixed) && areNear(colliders[a], colliders[b]))
-            assembly.geometry.excluded.emplace_back(std::min(a, b), std::max(a, b));
-      }
+  addSurfaces(scene, assembly.colliderBodies, geometry.colliders);
+  for (const std::vector<SurfacePair>& row : scene.surfacePairs) {
+    std::vector<ContactMaterial>& materials = geometry.materials.emplace_back();
+    for (const SurfacePair& pair : row)
+      materials.push_back({pair.restitution, pair.staticFriction, pair.dynamicFriction});
   }
+}
 
-  void excludeJoined(const Scene& scene, Assembly& assembly) {
-    for (const auto& [bodyA, bodyB] : pairsKeptFromTouching(scene)) {
-      const int a = indexAmong(assembly.colliderBodies, bodyA), b = indexAmong(assembly.colliderBodies, bodyB);
-      if (a >= 0 && b >= 0) assembly.geometry.excluded.emplace_back(std::min(a, b), std::max(a, b));
+/// Parts of one body whose bounding spheres are near at the start: others stay apart.
+void excludeWelded(const Scene& scene, Assembly& assembly) {
+  if (scene.welds.empty()) return;
+  const std::vector<Collider>& colliders = assembly.geometry.colliders;
+  const auto centerOf = [&](const Collider& collider) -> Vec3 {
+    return collider.body == kFixed ? Vec3::Zero() : Vec3(centerOfMass(assembly.state, collider.body));
+  };
+  const auto areNear = [&](const Collider& a, const Collider& b) {
+    return (centerOf(a) - centerOf(b)).norm() <= kNearWelded * (a.boundingRadius + b.boundingRadius);
+  };
+  const WeldedBodies welded(scene);
+  std::map<int, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < colliders.size(); ++i) groups[welded.groupOf(assembly.colliderBodies[i])].push_back(i);
+  for (const auto& [group, parts] : groups)
+    for (const std::size_t a : parts) {
+      if (colliders[a].body == kFixed) continue;
+      for (const std::size_t b : parts)
+        if ((a < b || colliders[b].body == kFixed) && areNear(colliders[a], colliders[b]))
+          assembly.geometry.excluded.emplace_back(std::min(a, b), std::max(a, b));
     }
-  }
+}
 
-  /// Contact that cannot be computed is not searched for, but must not come about.
-  void excludeUnsolved(ContactGeometry& geometry) {
-    const auto isSolved = [](const Collider& collider) { return canSolveContact(collider, &collider); };
-    if (std::all_of(geometry.colliders.begin(), geometry.colliders.end(), isSolved)) return;
-    const std::vector<std::pair<std::size_t, std::size_t>> joined = geometry.excluded;
-    for (std::size_t a = 0; a < geometry.colliders.size(); ++a)
-      for (std::size_t b = a + 1; b < geometry.colliders.size(); ++b) {
-        const Collider &first = geometry.colliders[a], &second = geometry.colliders[b];
-        if ((first.isHeld() && second.isHeld()) || canSolveContact(first, &second)) continue;
-        if (std::find(joined.begin(), joined.end(), std::pair(a, b)) != joined.end()) continue;
-        geometry.unsolvedPairs.push_back({a, b, false, {}});
-        geometry.excluded.emplace_back(a, b);
-      }
+void excludeJoined(const Scene& scene, Assembly& assembly) {
+  for (const auto& [bodyA, bodyB] : pairsKeptFromTouching(scene)) {
+    const int a = indexAmong(assembly.colliderBodies, bodyA), b = indexAmong(assembly.colliderBodies, bodyB);
+    if (a >= 0 && b >= 0) assembly.geometry.excluded.emplace_back(std::min(a, b), std::max(a, b));
   }
+}
 
-  /// Springs that fixed steps are too long for: they blow up, or keep still where they should swing.
-  void warnOfSteps(const Scene& scene, const ChosenMethod& method, Assembly& assembly) {
-    auto fault = stepFault(assembly.mechanism, assembly.state, method, scene.duration);
-    if (!fault) fault = energyChangeByStep(assembly.mechanism, assembly.state, method, scene.duration);
-    if (!fault) return;
-    assembly.hasLongSteps = true;
-    assembly.warnings.push_back(
-        fmt::format("{}: spring \"{}\" {}", scene.path, assembly.names.springs[fault->spring], fault->text));
-  }
+/// Contact that cannot be computed is not searched for, but must not come about.
+void excludeUnsolved(ContactGeometry& geometry) {
+  const auto isSolved = [](const Collider& collider) { return canSolveContact(collider, &collider); };
+  if (std::all_of(geometry.colliders.begin(), geometry.colliders.end(), isSolved)) return;
+  const std::vector<std::pair<std::size_t, std::size_t>> joined = geometry.excluded;
+  for (std::size_t a = 0; a < geometry.colliders.size(); ++a)
+    for (std::size_t b = a + 1; b < geometry.colliders.size(); ++b) {
+      const Collider &first = geometry.colliders[a], &second = geometry.colliders[b];
+      if ((first.isHeld() && second.isHeld()) || canSolveContact(first, &second)) continue;
+      if (std::find(joined.begin(), joined.end(), std::pair(a, b)) != joined.end()) continue;
+      geometry.unsolvedPairs.push_back({a, b, false, {}});
+      geometry.excluded.emplace_back(a, b);
+    }
+}
 
-  }  // namespace
+/// Springs that fixed steps are too long for: they blow up, or keep still where they should swing.
+void warnOfSteps(const Scene& scene, const ChosenMethod& method, Assembly& assembly) {
+  auto fault = stepFault(assembly.mechanism, assembly.state, method, scene.duration);
+  if (!fault) fault = energyChangeByStep(assembly.mechanism, assembly.state, method, scene.duration);
+  if (!fault) return;
+  assembly.hasLongSteps = true;
+  assembly.warnings.push_back(
+      fmt::format("{}: spring \"{}\" {}", scene.path, assembly.names.springs[fault->spring], fault->text));
+}
 
-  Assembly assemble(const Scene& scene, const IslandPlan& island) {
-    Assembly assembly;
-    assembly.mechanism.gravity = scene.gravity;
-    assembly.pushes = island.pushes;
-    addBodies(scene, island, assembly);
-    addLinks(scene, island, assembly);
-    addColliders(scene, island, assembly);
-    excludeJoined(scene, assembly);
-    excludeWelded(scene, assembly);
-    excludeUnsolved(assembly.geometry);
-    std::sort(assembly.geometry.excluded.begin(), assembly.geometry.excluded.end());
-    BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0,
-                        assembly.geometry);
-    constrainPinnedContacts(assembly);
-    satisfyConstraints(scene, assembly);
-    warnOfSteps(scene, island.method, assembly);
-    return assembly;
-  }
+}  // namespace
 
-  int indexAmong(const std::vector<int>& bodies, int body) {
-    const auto found = std::lower_bound(bodies.begin(), bodies.end(), body);
-    return found != bodies.end() && *found == body ? static_cast<int>(found - bodies.begin()) : kFixed;
-  }
+Assembly assemble(const Scene& scene, const IslandPlan& island) {
+  Assembly assembly;
+  assembly.mechanism.gravity = scene.gravity;
+  assembly.pushes = island.pushes;
+  addBodies(scene, island, assembly);
+  addLinks(scene, island, assembly);
+  addColliders(scene, island, assembly);
+  excludeJoined(scene, assembly);
+  excludeWelded(scene, assembly);
+  excludeUnsolved(assembly.geometry);
+  std::sort(assembly.geometry.excluded.begin(), assembly.geometry.excluded.end());
+  BroadPhase().update(assembly.state, std::vector<double>(assembly.mechanism.bodies.size(), 0.0), 0, assembly.geometry);
+  constrainPinnedContacts(assembly);
+  satisfyConstraints(scene, assembly);
+  warnOfSteps(scene, island.method, assembly);
+  return assembly;
+}
 
-  std::pair<int, int> bodiesOf(const Assembly& assembly, const ColliderPair& pair) {
-    return {assembly.colliderBodies[pair.a],
-            (pair.againstPlane ? assembly.planeBodies : assembly.colliderBodies)[pair.b]};
-  }
+int indexAmong(const std::vector<int>& bodies, int body) {
+  const auto found = std::lower_bound(bodies.begin(), bodies.end(), body);
+  return found != bodies.end() && *found == body ? static_cast<int>(found - bodies.begin()) : kFixed;
+}
 
-  void refuse(const std::vector<std::string>& faults) {
-    if (faults.empty()) return;
-    const std::size_t told = std::min(faults.size(), kMaxFaultsTold);
-    std::string text = printableLine(faults.front());
-    for (std::size_t i = 1; i < told; ++i) text.append("\n").append(printableLine(faults[i]));
-    const char* atLeast = faults.size() < kMaxFaultsCounted ? "" : "at least ";
-    if (faults.size() > told) text += fmt::format("\nand {}{} more", atLeast, faults.size() - told);
-    throw Error::ofLines(ErrorKind::scene, text);
-  }
+std::pair<int, int> bodiesOf(const Assembly& assembly, const ColliderPair& pair) {
+  return {assembly.colliderBodies[pair.a],
+          (pair.againstPlane ? assembly.planeBodies : assembly.colliderBodies)[pair.b]};
+}
 
-  void refuseUnsupported(const Scene& scene) {
-    refuse(unsupportedContacts(scene));
-  }
+void refuse(const std::vector<std::string>& faults) {
+  if (faults.empty()) return;
+  const std::size_t told = std::min(faults.size(), kMaxFaultsTold);
+  std::string text = printableLine(faults.front());
+  for (std::size_t i = 1; i < told; ++i) text.append("\n").append(printableLine(faults[i]));
+  const char* atLeast = faults.size() < kMaxFaultsCounted ? "" : "at least ";
+  if (faults.size() > told) text += fmt::format("\nand {}{} more", atLeast, faults.size() - told);
+  throw Error::ofLines(ErrorKind::scene, text);
+}
+
+void refuseUnsupported(const Scene& scene) {
+  refuse(unsupportedContacts(scene));
+}
 
 }  // namespace cradle
