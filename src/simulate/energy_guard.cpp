@@ -65,6 +65,9 @@ const char* const kNoCause =
     "no tie, spring, push or speed explains it: give the scene a coarser \"accuracy\", whose steps do not follow each "
     "contact";
 
+const char* const kDrivenCause =
+    "what is driven may leave it no room: keep it farther off, or let a spring press in its place";
+
 }  // namespace
 
 double energyOfPlaceErrors(const Mechanism& mechanism, const std::vector<double>& radii, const VectorX& state,
@@ -160,12 +163,13 @@ void EnergyGuard::fail(const VectorX& state, double time, const std::string& wha
   std::size_t worst = 0;
   double most = -1;
   for (std::size_t i = 0; i < mechanism_.bodies.size(); ++i) {
+    if (mechanism_.bodies[i].isDriven()) continue;
     const Eigen::Index body = static_cast<Eigen::Index>(i);
     const double energy = mechanism_.bodies[i].mass * linearVelocity(state, body).squaredNorm();
     const double size = std::isfinite(energy) ? energy : INFINITY;
     if (size > most) most = size, worst = i;
   }
-  std::string why = cause;
+  std::string why = cause == kNoCause && !mechanism_.driven.empty() ? kDrivenCause : cause;
   if (const PushForce* push = overwhelmingPush()) {
     worst = static_cast<std::size_t>(push->point.body);
     why = fmt::format(

@@ -228,8 +228,29 @@ TEST(DrivenBodies, CrankLeadsABallAround) {
   expectBalance(moved, 1e-11, 1e-6);
 }
 
-/// A concave model, an L of two boxes, hangs on a rope from a hand that goes to another place and stops: it ends below
-/// the hand, and the rope is never too long.
+/// A ball between the ground and a press that comes lower than the ball is thick: no motion is right, and the run ends
+/// with a message that says so, with friction and without, at every accuracy.
+TEST(DrivenBodies, PressThatLeavesNoRoomEndsTheRun) {
+  for (const double friction : {0.0, 0.4})
+    for (const double accuracy : {1e-3, 1e-6, 1e-8}) {
+      const std::string text = fmt::format(R"("duration": 2, "accuracy": {},
+      "materials": {{"m": {{"staticFriction": {}, "dynamicFriction": {}}}}}, "bodies": [
+      {{"name": "ground", "material": "m", "shape": {{"plane": {{}}}}, "motion": "static"}},
+      {{"name": "press", "material": "m", "shape": {{"box": {{"size": [1, 0.2, 1]}}}}, "motion": "driven",
+        "keyFrames": [{{"time": 0, "position": [0, 1, 0]}}, {{"time": 1, "position": [0, 0.25, 0]}}]}},
+      {{"name": "ball", "material": "m", "mass": 1, "shape": {{"sphere": {{"radius": 0.1}}}}, "position": [0, 0.1, 0]}}])",
+                                           accuracy, friction, friction);
+      try {
+        simulate(sceneWith(text));
+        ADD_FAILURE() << friction << ' ' << accuracy;
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::unstable);
+        EXPECT_NE(std::string(error.what()).find("no room"), std::string::npos) << error.what();
+      }
+    }
+}
+
+/// A box hangs on a rope from a hand that goes to another place and stops: the rope is never too long.
 TEST(DrivenBodies, HandCarriesABodyOnARope) {
   const Trajectory moved =
       run(3, 1e-6, R"({"name": "hand", "shape": {"sphere": {"radius": 0.05}}, "motion": "driven",

@@ -15,6 +15,8 @@
 namespace cradle {
 namespace {
 
+// Of a size: contact steps leave overlaps of a thousandth where bodies have room. [5e-3, 0.1]
+constexpr double kSqueezed = 0.02;
 constexpr double kShortestRatio = 1.0 / 1024;  // of a step: shorter ones are not cut for their error
 constexpr double kMaxPartGrowth = 4;           // of a part of a step to the next
 constexpr double kMaxConstraintErrorGrowth =
@@ -78,11 +80,28 @@ void SteppedMotion::advance(double frame) {
   if (island_.makeChanges()) ropes_.resolve(time, island_.state);
   keepsConstraints_ = ropes_.tautRows() == tautRowsBefore_;
   guard_.check(island_.state, time, step.timeStep);
+  requireRoom();
   island_.requireUnsolvedPairsApart();
 
   if (atEvent) countEvent();
   if (eventsInWindow_ > kManyEvents) contacts_.useTimeSteppingOnly();
   if (time >= static_cast<double>(stepNumber_ + 1) * method_.timeStep) ++stepNumber_;
+}
+
+/// Ends the run where driven bodies press others into something: no force keeps them apart.
+void SteppedMotion::requireRoom() const {
+  const Assembly& assembly = island_.assembly;
+  if (assembly.mechanism.driven.empty()) return;
+  for (const Contact& contact : contacts_.touching()) {
+    if (contact.separation >= -kSqueezed * smallestSize(contact, assembly.radii)) continue;
+    const auto [a, b] = bodiesOf(assembly, assembly.geometry.pairs[contact.pair]);
+    const auto nameOf = [this](int body) { return island_.scene.bodies[static_cast<std::size_t>(body)].name; };
+    throw Error(
+        ErrorKind::unstable, "",
+        fmt::format("unstable at {:.6g} s: \"{}\" is pressed {:.3g} m into \"{}\": what is driven leaves no room; "
+                    "keep it farther off, or let a spring press in its place",
+                    island_.time, nameOf(a), -contact.separation, nameOf(b)));
+  }
 }
 
 void SteppedMotion::addContactMotion(double fraction, VectorX& state) const {

@@ -41,6 +41,7 @@ class SteppedMotion {
   void restUntil(double time);
 
  private:
+  void requireRoom() const;
   void countSteps();
   double nextStepEnd() const;
   void moveFreely(double stepEnd);
