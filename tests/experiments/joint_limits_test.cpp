@@ -155,6 +155,27 @@ TEST(JointLimits, BallKnocksAGateOpen) {
   expectBalance(moved, 1e-11, 1e-6);
 }
 
+/// A lid of 2 kg that lies shut on its stop, with a ball of 1 kg in its middle: a push at its edge opens it if its
+/// moment is more than that of both weights, and does not if it is less.
+TEST(JointLimits, LidThatRestsOnItsStopOpensWhenItIsPushed) {
+  for (const double part : {0.99, 1.01}) {
+    const Trajectory moved =
+        run(1, 1e-6, R"({"name": "lid", "mass": 2, "shape": {"box": {"size": [0.6, 0.04, 0.4]}}},
+      {"name": "ball", "mass": 1, "shape": {"sphere": {"radius": 0.05}}, "position": [0, 0.07, 0]})",
+            fmt::format(R"("hinges": [{{"bodyA": "lid", "anchorA": [-0.3, 0, 0], "anchorB": [-0.3, 0, 0],
+      "limits": {{"lower": 0, "upper": 1.5}}}}],
+      "pushes": [{{"body": "lid", "point": [0.3, 0, 0], "force": [0, {}, 0], "start": 0.5, "duration": 0.5}}],)",
+                        part * 3 * kGravity / 2));
+    const double height = moved.frames.back().states[0].position.y();
+    if (part < 1) {
+      EXPECT_NEAR(height, 0, 1e-9);
+    } else {
+      EXPECT_GT(height, 1e-3);
+    }
+    EXPECT_FALSE(eventsOf(moved, EventKind::rest).empty());
+  }
+}
+
 /// The same stop in steps of contact: never beyond by more than a step's error.
 TEST(JointLimits, StopsHoldInContactSteps) {
   const Trajectory moved =

@@ -4,7 +4,6 @@
 
 #include "constraints/dense_delassus.h"
 #include "impact/frictional_contact.h"
-#include "simulate/rows_of_contacts.h"
 
 namespace cradle {
 
@@ -75,10 +74,11 @@ bool ComingToRest::canBeInEquilibrium(const std::vector<Contact>& touching, cons
   VectorX derivative;
   island_.equations.evaluate(island_.time, island_.state, derivative);
   std::swap(active, island_.assembly.mechanism.contacts);
-  if (isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(0))) return true;
   std::vector<BodyFrame> frames;
   findBodyFrames(mechanism.bodies, island_.state, frames);
   std::vector<ContactRows> contacts;
+  if (isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(0)))
+    return doLimitsHold(contacts, VectorX(), frames, groups, group);
   std::vector<double> frictions;
   for (const Contact& contact : touching) {
     if (groups.islandOf(contact.movingBody()) != group) continue;
@@ -90,7 +90,38 @@ bool ComingToRest::canBeInEquilibrium(const std::vector<Contact>& touching, cons
   const ContactSolution solution =
       solveFrictionalContact(delassus.matrix(), delassus.accelerations(derivative), frictions);
   delassus.apply(solution.impulses, derivative);
-  return isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(solution.residual));
+  return isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(solution.residual)) &&
+         doLimitsHold(contacts, solution.impulses, frames, groups, group);
+}
+
+/// Whether ropes and stops that are constraints in an equilibrium with these forces of contacts pull there, rather than
+/// push. (Of several ways to share a load those of the least forces are found.)
+bool ComingToRest::doLimitsHold(const std::vector<ContactRows>& contacts, const VectorX& impulses,
+                                const std::vector<BodyFrame>& frames, const DisjointSets& groups, int group) {
+  const std::vector<Limit>& limits = island_.assembly.limits;
+  const std::vector<int>& rows = limits_.tautRows();
+  if (std::all_of(rows.begin(), rows.end(), [](int row) { return row < 0; })) return true;
+  Mechanism& mechanism = island_.assembly.mechanism;
+  std::vector<ContactConstraint> active;
+  Constraints constraints;
+  std::swap(active, mechanism.contacts), std::swap(constraints, mechanism.constraints);
+  VectorX derivative;
+  island_.equations.evaluate(island_.time, island_.state, derivative);
+  std::swap(active, mechanism.contacts), std::swap(constraints, mechanism.constraints);
+  if (!contacts.empty())
+    DenseDelassus(allRowsOf(contacts), mechanism.bodies, frames, nullptr).apply(impulses, derivative);
+  constraints_.constrainAccelerations(derivative);
+  VectorX multipliers = VectorX::Zero(rowCount(mechanism.constraints));
+  constraints_.putMultipliers(multipliers);
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const auto [a, b] = bodiesOf(limits[i]);
+    if (rows[i] < 0 || groups.islandOf(a == kFixed ? b : a) != group) continue;
+    double mass = 0;  // kg, of the heavier
+    for (const int body : {a, b})
+      if (body != kFixed) mass = std::max(mass, mechanism.bodies[static_cast<std::size_t>(body)].mass);
+    if (tensionOf(limits[i], multipliers[rows[i]]) < -tolerances_.maxRestAcceleration(0) * mass) return false;
+  }
+  return true;
 }
 
 /// Whether the accelerations of a state derivative are below `most` (m/s^2) for all bodies of a group.

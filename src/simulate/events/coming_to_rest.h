@@ -6,6 +6,8 @@
 #include "constraints/disjoint_sets.h"
 #include "simulate/events/event_tolerances.h"
 #include "simulate/island_state.h"
+#include "simulate/limit_events.h"
+#include "simulate/rows_of_contacts.h"
 
 namespace cradle {
 
@@ -13,9 +15,10 @@ namespace cradle {
 /// that they touch or are joined to; nothing is computed for them until an impact or a push wakes them.
 class ComingToRest {
  public:
-  /// Keeps references to all three; `constraints` must be factorised for the island's state at each call.
-  ComingToRest(IslandState& island, ConstraintSolver& constraints, const EventTolerances& tolerances)
-      : island_(island), constraints_(constraints), tolerances_(tolerances) {}
+  /// Keeps references to all; `constraints` must be factorised for the island's state at each call.
+  ComingToRest(IslandState& island, const LimitEvents& limits, ConstraintSolver& constraints,
+               const EventTolerances& tolerances)
+      : island_(island), limits_(limits), constraints_(constraints), tolerances_(tolerances) {}
 
   /// Whether a body that does not rest is still.
   bool isAnySlow() const;
@@ -30,9 +33,12 @@ class ComingToRest {
   bool isSlow(std::size_t body) const;
   DisjointSets findRestGroups(const std::vector<Contact>& touching) const;
   bool canBeInEquilibrium(const std::vector<Contact>& touching, const DisjointSets& groups, int group);
+  bool doLimitsHold(const std::vector<ContactRows>& contacts, const VectorX& impulses,
+                    const std::vector<BodyFrame>& frames, const DisjointSets& groups, int group);
   bool isInEquilibrium(const VectorX& derivative, const DisjointSets& groups, int group, double most) const;
 
   IslandState& island_;
+  const LimitEvents& limits_;
   ConstraintSolver& constraints_;
   const EventTolerances& tolerances_;
 };

@@ -12,7 +12,7 @@ EventContacts::EventContacts(IslandState& island, LimitEvents& ropes, const Even
       tolerances_(tolerances),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       active_(island, tolerances),
-      rest_(island, solver_, tolerances),
+      rest_(island, ropes, solver_, tolerances),
       impacts_(island, ropes, solver_, rest_, tolerances),
       shortMomentArm_(isTrial ? EventTolerances::kUnboundedMomentArm : EventTolerances::kShortMomentArm) {}
 

@@ -21,7 +21,7 @@ std::string ballsInARow(const std::vector<double>& places) {
 
 struct ToRest : OnPlane {
   explicit ToRest(const std::string& bodies, const std::string& more = R"("gravity": [0, -9.81, 0])")
-      : OnPlane(bodies, more), rest(island, solver, tolerances) {}
+      : OnPlane(bodies, more), limits(island), rest(island, limits, solver, tolerances) {}
 
   /// m/s: the fastest speed of a body at rest.
   double still(std::size_t body = 0) { return tolerances.maxRestSpeed(island.assembly.radii[body]); }
@@ -36,6 +36,7 @@ struct ToRest : OnPlane {
     return found;
   }
 
+  LimitEvents limits;
   ComingToRest rest;
 };
 
