@@ -1,9 +1,16 @@
 #include "constraints/equations_of_motion.h"
 
+#include <Eigen/QR>
+#include <algorithm>
+#include <limits>
+
 #include "math/rotation.h"
 
 namespace cradle {
 namespace {
+
+// 1/s: what steps let the velocity of a motor that holds be off goes so fast, which steps follow with ease.
+constexpr double kMotorRelaxation = 10;
 
 /// World derivative of the angular velocity of a body without torque: body frame I w' = -w x I w. The derivative of w
 /// is the same vector in both frames, since w x w = 0.
@@ -47,14 +54,102 @@ void EquationsOfMotion::applyConstraints(const VectorX& state, VectorX& derivati
   if (!mechanism_.contacts.empty()) {
     holdResting(state, derivative);
     contactSolver_.factorize(state, frames_, resting_);
+  } else if (solver_.hasConstraints()) {
+    solver_.factorize(state, frames_);
+  }
+  if (!mechanism_.motors.empty()) applyMotors(state, derivative);
+  constrain(derivative);
+}
+
+/// Adds what constraints and contacts give, which were factorised.
+void EquationsOfMotion::constrain(VectorX& derivative) {
+  if (!mechanism_.contacts.empty()) {
     contactSolver_.constrainAccelerations(derivative);
     multipliers_ = contactSolver_.bilateralMultipliers();
   } else if (solver_.hasConstraints()) {
-    solver_.factorize(state, frames_);
     solver_.constrainAccelerations(derivative);
     multipliers_.setZero(rowCount(mechanism_.constraints));
     solver_.putMultipliers(multipliers_);
   }
+}
+
+/// Adds the forces of motors, and their power to the work.
+void EquationsOfMotion::applyMotors(const VectorX& state, VectorX& derivative) {
+  const std::vector<JointMotor>& motors = mechanism_.motors;
+  motorForces_.setZero(std::ssize(motors)), motorMobilities_.setZero(std::ssize(motors));
+  std::vector<ConstraintRow> rows;
+  std::vector<std::size_t> holding;
+  for (std::size_t i = 0; i < motors.size(); ++i) {
+    rows.push_back(rowOf(motors[i], state, frames_));
+    const bool holds = motors[i].mode == JointMotor::Mode::holds;
+    if (holds && !isResting(motors[i].joint)) holding.push_back(i);
+    if (holds) continue;
+    motorForces_[static_cast<Eigen::Index>(i)] = motors[i].sign * motors[i].maxForce;
+    addForce(rows[i], motors[i].sign * motors[i].maxForce, state, derivative);
+  }
+  if (!holding.empty()) hold(holding, rows, state, derivative);
+  for (std::size_t i = 0; i < motors.size(); ++i)
+    pushWork(derivative) += motorForces_[static_cast<Eigen::Index>(i)] * rateOf(rows[i], state);
+}
+
+/// Adds the forces of motors that hold: those with which their coordinates' accelerations, after all constraints and
+/// contacts, are zero, or take back an error of the velocity. They solve a linear system, whose columns are what unit
+/// forces give.
+void EquationsOfMotion::hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows,
+                             const VectorX& state, VectorX& derivative) {
+  const std::vector<JointMotor>& motors = mechanism_.motors;
+  const auto at = [](std::size_t i) { return static_cast<Eigen::Index>(i); };
+  const Eigen::Index count = std::ssize(holding);
+  const auto accelerations = [&](VectorX rates) {
+    constrain(rates);
+    VectorX found(count);
+    for (std::size_t k = 0; k < holding.size(); ++k)
+      found[at(k)] = rateOf(rows[holding[k]], rates) + rows[holding[k]].velocityProduct;
+    return found;
+  };
+  const VectorX free = accelerations(derivative);
+  const double relaxation = motorTimeStep_ > 0 ? 1 / motorTimeStep_ : kMotorRelaxation;
+  MatrixX response(count, count);
+  VectorX wanted = -free;
+  for (std::size_t k = 0; k < holding.size(); ++k) {
+    VectorX pushed = derivative;
+    addForce(rows[holding[k]], 1, state, pushed);
+    response.col(at(k)) = accelerations(pushed) - free;
+    wanted[at(k)] -= relaxation * (rateOf(rows[holding[k]], state) - motors[holding[k]].targetVelocity);
+  }
+  const VectorX forces = response.completeOrthogonalDecomposition().solve(wanted);
+  for (std::size_t k = 0; k < holding.size(); ++k) {
+    const double limit = motorTimeStep_ > 0 ? motors[holding[k]].maxForce : std::numeric_limits<double>::infinity();
+    const double force = std::clamp(forces[at(k)], -limit, limit);
+    motorForces_[at(holding[k])] = force, motorMobilities_[at(holding[k])] = response(at(k), at(k));
+    addForce(rows[holding[k]], force, state, derivative);
+  }
+}
+
+bool EquationsOfMotion::isResting(const Constraint& constraint) const {
+  const auto rests = [this](int body) {
+    return body == kFixed || mechanism_.bodies[static_cast<std::size_t>(body)].isDriven() ||
+           resting_[static_cast<std::size_t>(body)];
+  };
+  return rests(constraint.anchorA.body) && rests(constraint.anchorB.body);
+}
+
+/// Adds the accelerations that a force along a row's coordinate gives. What drives a body works against it.
+void EquationsOfMotion::addForce(const ConstraintRow& row, double force, const VectorX& state,
+                                 VectorX& derivative) const {
+  const auto add = [&](int body, const Vec3& linear, const Vec3& angular) {
+    if (body == kFixed) return;
+    const std::size_t index = static_cast<std::size_t>(body);
+    if (mechanism_.bodies[index].isDriven()) {
+      pushWork(derivative) -=
+          force * (linear.dot(linearVelocity(state, body)) + angular.dot(angularVelocity(state, body)));
+      return;
+    }
+    linearVelocity(derivative, body) += force * mechanism_.bodies[index].inverseMass * linear;
+    angularVelocity(derivative, body) += force * (frames_[index].inverseInertia * angular);
+  };
+  add(row.bodyA, row.linearA, row.angularA);
+  add(row.bodyB, row.linearB, row.angularB);
 }
 
 void EquationsOfMotion::setResting(std::size_t body, bool resting) {

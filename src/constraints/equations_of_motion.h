@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "constraints/contact_forces.h"
+#include "constraints/joint_motor.h"
 #include "dynamics/driven_body.h"
 #include "dynamics/integrators/step.h"
 #include "dynamics/push.h"
@@ -19,6 +20,7 @@ struct Mechanism {
   std::vector<PushForce> pushes;                 // those that act now
   std::vector<ContactConstraint> contacts = {};  // those that last and are loaded
   std::vector<DrivenBody> driven = {};           // of the bodies
+  std::vector<JointMotor> motors = {};
 };
 
 /// The equations of motion of a mechanism in the layout of state.h:
@@ -43,6 +45,15 @@ class EquationsOfMotion {
   /// What acts at each contact, at the last evaluation. Contacts between bodies at rest have no force here.
   const std::vector<ContactForce>& contactForces() const { return contactSolver_.forces(); }
 
+  /// Forces (N or N m) of the motors at the last evaluation, and what 1 of it adds to the acceleration of the
+  /// coordinate, 1/kg or 1/(kg m^2); the latter of those that hold alone.
+  const VectorX& motorForces() const { return motorForces_; }
+  const VectorX& motorMobilities() const { return motorMobilities_; }
+
+  /// How fast (1/s) motors that hold take back what their joint's velocity is off. Steps of a fixed length do so within
+  /// one, and with at most the force that motors have; others locate the instants from which that does not suffice.
+  void setMotorSteps(double timeStep) { motorTimeStep_ = timeStep; }
+
   /// Moves the bodies by the least (mass-weighted) motion until constraints and contacts hold to rounding, and takes
   /// out of the velocities what would change that or makes sticking contacts slide. Returns the largest error that was
   /// found, in m or rad.
@@ -59,6 +70,12 @@ class EquationsOfMotion {
   void applySprings(const VectorX& state, VectorX& derivative) const;
   void applyPushes(const VectorX& state, VectorX& derivative) const;
   void applyConstraints(const VectorX& state, VectorX& derivative);
+  bool isResting(const Constraint& constraint) const;
+  void constrain(VectorX& derivative);
+  void applyMotors(const VectorX& state, VectorX& derivative);
+  void hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows, const VectorX& state,
+            VectorX& derivative);
+  void addForce(const ConstraintRow& row, double force, const VectorX& state, VectorX& derivative) const;
   void holdResting(const VectorX& state, VectorX& derivative) const;
   void addForce(int body, const Vec3& arm, const Vec3& force, const VectorX& state, VectorX& derivative) const;
   void addPowerOfConstraints(const VectorX& state, VectorX& derivative) const;
@@ -70,6 +87,8 @@ class EquationsOfMotion {
   ConstraintSolver solver_;  // without contacts
   ContactSolver contactSolver_;
   VectorX multipliers_;
+  VectorX motorForces_, motorMobilities_;
+  double motorTimeStep_ = 0;  // s; 0: motors hold without a limit
   long evaluations_ = 0;
 };
 

@@ -103,6 +103,28 @@ JointRange parseRange(const Field& field, const char* unit, const Range& bounds,
   return range;
 }
 
+/// The keys of a motor, by what it works on.
+struct MotorKeys {
+  const char *most, *constant, *velocityUnit, *forceUnit;
+};
+constexpr MotorKeys kHingeMotor{"maxTorque", "torque", "rad/s", "N m"}, kSliderMotor{"maxForce", "force", "m/s", "N"};
+
+JointDrive parseMotor(const Field& field, const MotorKeys& keys, FaultList& faults) {
+  JointDrive motor;
+  ObjectReader reader(field, faults);
+  const auto target = reader.find("targetVelocity"), most = reader.find(keys.most),
+             constant = reader.find(keys.constant);
+  if (target) motor.targetVelocity = reader.number("targetVelocity", kSpeeds, keys.velocityUnit, 0);
+  if (most) motor.force = reader.number(keys.most, {0, kForces.most}, keys.forceUnit, 0);
+  if (constant) motor.force = reader.number(keys.constant, kForces, keys.forceUnit, 0);
+  reader.rejectUnknownKeys();
+  if (target.has_value() == constant.has_value() || target.has_value() != most.has_value())
+    addFault(faults, field,
+             fmt::format("a motor has either \"targetVelocity\" and \"{}\", both, or a constant \"{}\"", keys.most,
+                         keys.constant));
+  return motor;
+}
+
 template <typename Joint>
 Joint parseJoint(ObjectReader& reader, LinkDraft&) {
   Joint joint;
@@ -111,6 +133,8 @@ Joint parseJoint(ObjectReader& reader, LinkDraft&) {
     constexpr bool isHinge = std::is_same_v<Joint, Hinge>;
     if (const auto field = reader.find("limits"))
       joint.limits = parseRange(*field, isHinge ? "rad" : "m", isHinge ? kTurns : kCoordinates, reader.faults());
+    if (const auto field = reader.find("motor"))
+      joint.motor = parseMotor(*field, isHinge ? kHingeMotor : kSliderMotor, reader.faults());
   }
   const bool collide = reader.boolean("collide", false);
   if constexpr (requires { joint.collide; }) joint.collide = collide;  // there is no contact inside one body of welds

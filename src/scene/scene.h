@@ -123,6 +123,12 @@ struct JointRange {
   double restitution = 0;  // 0..1, where it ends
 };
 
+/// What works on that coordinate, on A against B.
+struct JointDrive {
+  std::optional<double> targetVelocity;  // m/s or rad/s; unset: a constant force
+  double force = 0;                      // N or N m; with a target velocity the most, >= 0
+};
+
 struct Hinge {
   static constexpr LinkKind kKind = LinkKind::hinge;
   static constexpr const char* kNoun = "hinge";
@@ -132,6 +138,7 @@ struct Hinge {
   Vec3 axis = Vec3::UnitZ();  // unit, frame of body A
   bool collide = false;       // whether its bodies touch each other
   std::optional<JointRange> limits = {};
+  std::optional<JointDrive> motor = {};
 };
 
 /// Lets A move along an axis of B, and does not let it turn against B. (A prismatic joint.)
@@ -144,6 +151,7 @@ struct Slider {
   Vec3 axis = Vec3::UnitZ();  // unit, frame of body A
   bool collide = false;       // whether its bodies touch each other
   std::optional<JointRange> limits = {};
+  std::optional<JointDrive> motor = {};
 };
 
 /// Keeps A where it is on B. Bodies that welds make one do not touch each other.

@@ -145,6 +145,14 @@ void addStops(const Joint& joint, const JointTurns& turns, const Attachment& a, 
   }
 }
 
+JointMotor motorOf(const JointDrive& drive, const Constraint& joint) {
+  JointMotor motor{joint};
+  motor.hasTarget = drive.targetVelocity.has_value();
+  motor.targetVelocity = drive.targetVelocity.value_or(0);
+  motor.maxForce = std::abs(drive.force), motor.sign = drive.force < 0 ? -1 : 1;
+  return motor;
+}
+
 void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
   Mechanism& mechanism = assembly.mechanism;
   forEachLink(scene.springs, scene, island, assembly.sceneBodies,
@@ -157,7 +165,10 @@ void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) 
                 [&](const auto& link, const Attachment& a, const Attachment& b) {
                   const JointTurns turns = turnsOf(link.anchorA, link.anchorB, a, b, scene);
                   mechanism.constraints.push_back({a, b, constraintOf(link, turns)});
-                  if constexpr (requires { link.limits; }) addStops(link, turns, a, b, assembly);
+                  if constexpr (requires { link.limits; }) {
+                    addStops(link, turns, a, b, assembly);
+                    if (link.motor) mechanism.motors.push_back(motorOf(*link.motor, {a, b, coordinateOf(link, turns)}));
+                  }
                   assembly.names.constraints.push_back(fmt::format("{} \"{}\"", link.kNoun, link.name));
                 });
   };

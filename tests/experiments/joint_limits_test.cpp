@@ -5,24 +5,17 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/experiment.h"
+#include "experiments/expect_ledger.h"
 
 namespace cradle {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Trajectory run(double duration, double accuracy, const std::string& bodies, const std::string& more) {
+Trajectory runStopped(double duration, double accuracy, const std::string& bodies, const std::string& more) {
   return simulate(sceneWith(fmt::format(R"("duration": {}, "accuracy": {}, "output": {{"framesPerSecond": 100}}, {}
     "bodies": [{}])",
                                         duration, accuracy, more, bodies)));
-}
-
-void expectBalance(const Trajectory& run, double tolerance, double numerical) {
-  for (const Frame& frame : run.frames) {
-    EXPECT_NEAR(ledgerConstantOf(frame), ledgerConstantOf(run.frames[0]), tolerance) << frame.time;
-    EXPECT_LT(std::abs(frame.energy.numerical), numerical) << frame.time;
-  }
 }
 
 std::string box(const std::string& more) {
@@ -33,8 +26,8 @@ std::string box(const std::string& more) {
 /// takes m (1 - e^2) v^2 / 2.
 TEST(JointLimits, SliderBouncesBetweenItsStops) {
   const Trajectory moved =
-      run(2, 1e-8, box(R"(, "linearVelocity": [2, 0, 0])"),
-          R"("gravity": [0, 0, 0], "sliders": [{"bodyA": "box", "anchorB": [0, 0, 0], "axis": [1, 0, 0],
+      runStopped(2, 1e-8, box(R"(, "linearVelocity": [2, 0, 0])"),
+                 R"("gravity": [0, 0, 0], "sliders": [{"bodyA": "box", "anchorB": [0, 0, 0], "axis": [1, 0, 0],
       "limits": {"lower": -0.3, "upper": 0.5, "restitution": 0.5}}],)");
   const double first = 0.25, second = first + 0.8 / 1;  // 0.8 m at 1 m/s
   for (const Frame& frame : moved.frames) {
@@ -48,13 +41,13 @@ TEST(JointLimits, SliderBouncesBetweenItsStops) {
   EXPECT_NEAR(hits[0].impulse, 2 * 2 * 1.5, 1e-9);
   EXPECT_NEAR(hits[1].time, second, 1e-9);
   EXPECT_NEAR(moved.frames.back().energy.impact, (4 - 0.25) * 2 / 2, 1e-9);
-  expectBalance(moved, 1e-12, 1e-9);
+  expectLedger(moved, 1e-12, 1e-9);
 }
 
 /// A box on a slider that is tilted by 30 degrees slides with g/2 to its stop, rests there, and leaves it as its
 /// support tilts the other way: here as a push lifts it with more than its weight along the slider.
 TEST(JointLimits, SliderRestsAtItsStopAndLeavesIt) {
-  const Trajectory moved = run(1, 1e-8, box(""), R"("sliders": [{"bodyA": "box", "anchorB": [0, 0, 0],
+  const Trajectory moved = runStopped(1, 1e-8, box(""), R"("sliders": [{"bodyA": "box", "anchorB": [0, 0, 0],
       "axis": [0.8660254037844387, 0.5, 0], "limits": {"lower": -0.25}}],
       "pushes": [{"body": "box", "point": [0, 0, 0], "force": [0, 39.24, 0], "start": 0.6, "duration": 0.2}],)");
   const double acceleration = kGravity / 2, reached = std::sqrt(0.5 / acceleration);
@@ -69,22 +62,22 @@ TEST(JointLimits, SliderRestsAtItsStopAndLeavesIt) {
   }
   EXPECT_NEAR(eventsOf(moved, EventKind::impact).at(0).time, reached, 1e-9);
   EXPECT_NEAR(eventsOf(moved, EventKind::release).at(0).time, 0.6, 1e-9);
-  expectBalance(moved, 1e-11, 1e-8);
+  expectLedger(moved, 1e-11, 1e-8);
 }
 
 /// A rod pendulum of length 1 m and 2 kg that a hinge stops: by energy it comes to the bottom with w^2 = 3 g / l (1 -
 /// cos 60 degrees); with e it goes back with e w, and rises until w^2 e^2 = 3 g / l (1 - cos a).
 TEST(JointLimits, HingeStopsAPendulumAtTheBottom) {
   const double tilt = kPi / 3, restitution = 0.6;
-  const Trajectory moved =
-      run(1.2, 1e-9,
-          fmt::format(R"({{"name": "rod", "mass": 2, "shape": {{"capsule": {{"radius": 0.02, "length": 1}}}},
+  const Trajectory moved = runStopped(
+      1.2, 1e-9,
+      fmt::format(R"({{"name": "rod", "mass": 2, "shape": {{"capsule": {{"radius": 0.02, "length": 1}}}},
       "inertiaTensor": [[{0}, 0, 0], [0, 1e-3, 0], [0, 0, {0}]], "centerOfMass": [0, 0, 0], "collision": "none",
       "position": [{1}, {2}, 0], "orientation": {{"axis": [0, 0, 1], "angleDegrees": 60}}}})",
-                      2.0 / 12, std::sin(tilt) / 2, -std::cos(tilt) / 2),
-          fmt::format(R"("hinges": [{{"bodyA": "rod", "anchorA": [0, 0.5, 0], "anchorB": [0, 0, 0], "axis": [0, 0, 1],
+                  2.0 / 12, std::sin(tilt) / 2, -std::cos(tilt) / 2),
+      fmt::format(R"("hinges": [{{"bodyA": "rod", "anchorA": [0, 0.5, 0], "anchorB": [0, 0, 0], "axis": [0, 0, 1],
       "limits": {{"lower": {}, "restitution": {}}}}}],)",
-                      -tilt, restitution));
+                  -tilt, restitution));
   const std::vector<Event> hits = eventsOf(moved, EventKind::impact);
   ASSERT_FALSE(hits.empty());
   const double speed = std::sqrt(3 * kGravity * (1 - std::cos(tilt)));
@@ -103,16 +96,17 @@ TEST(JointLimits, HingeStopsAPendulumAtTheBottom) {
     if (frame.time > hits[0].time && (hits.size() < 2 || frame.time < hits[1].time)) {
       EXPECT_NEAR(frame.energy.impact, taken, 1e-7);
     }
-  expectBalance(moved, 1e-11, 1e-7);
+  expectLedger(moved, 1e-11, 1e-7);
 }
 
 /// A wheel that turns five times and a quarter: whole turns are counted.
 TEST(JointLimits, HingeCountsWholeTurns) {
   for (const double rate : {30.0, -30.0}) {
-    const Trajectory moved = run(2, 1e-7, box(fmt::format(R"(, "angularVelocity": [0, 0, {}])", rate)),
-                                 fmt::format(R"("gravity": [0, 0, 0], "hinges": [{{"bodyA": "box", "anchorB": [0, 0, 0],
+    const Trajectory moved =
+        runStopped(2, 1e-7, box(fmt::format(R"(, "angularVelocity": [0, 0, {}])", rate)),
+                   fmt::format(R"("gravity": [0, 0, 0], "hinges": [{{"bodyA": "box", "anchorB": [0, 0, 0],
       "limits": {{"lower": {}, "upper": {}}}}}],)",
-                                             -10.5 * kPi, 10.5 * kPi));
+                               -10.5 * kPi, 10.5 * kPi));
     const std::vector<Event> hits = eventsOf(moved, EventKind::impact);
     ASSERT_EQ(hits.size(), 1u);
     EXPECT_NEAR(hits[0].time, 10.5 * kPi / 30, 1e-8);
@@ -125,23 +119,23 @@ TEST(JointLimits, LightBodyStrikesTheStopOfAHeavyOne) {
   const std::string heavy = R"({"name": "heavy", "mass": 2000, "shape": {"box": {"size": [0.2, 0.2, 0.2]}},
       "collision": "none"})";
   const Trajectory moved =
-      run(1, 1e-9, box(R"(, "linearVelocity": [1, 0, 0])") + ", " + heavy,
-          R"("gravity": [0, 0, 0], "sliders": [{"bodyA": "box", "bodyB": "heavy", "anchorB": [0, 0, 0],
+      runStopped(1, 1e-9, box(R"(, "linearVelocity": [1, 0, 0])") + ", " + heavy,
+                 R"("gravity": [0, 0, 0], "sliders": [{"bodyA": "box", "bodyB": "heavy", "anchorB": [0, 0, 0],
       "axis": [1, 0, 0], "limits": {"upper": 0.5, "restitution": 1}}],)");
   const Frame& end = moved.frames.back();
   EXPECT_NEAR(end.states[0].linearVelocity.x(), (2.0 - 2000) / 2002, 1e-11);
   EXPECT_NEAR(end.states[1].linearVelocity.x(), 2 * 2.0 / 2002, 1e-12);
-  expectBalance(moved, 1e-12, 1e-10);
+  expectLedger(moved, 1e-12, 1e-10);
 }
 
 /// A gate, shut at one stop, that a ball knocks open to the other: the bodies' impact and the gate's later hit.
 TEST(JointLimits, BallKnocksAGateOpen) {
   const Trajectory moved =
-      run(1.5, 1e-7, R"({"name": "gate", "mass": 1, "shape": {"box": {"size": [1, 0.5, 0.05]}},
+      runStopped(1.5, 1e-7, R"({"name": "gate", "mass": 1, "shape": {"box": {"size": [1, 0.5, 0.05]}},
       "position": [0.5, 0, 0]},
       {"name": "ball", "mass": 1, "shape": {"sphere": {"radius": 0.1}}, "position": [0.8, 0, 1],
        "linearVelocity": [0, 0, -4]})",
-          R"("gravity": [0, 0, 0], "hinges": [{"bodyA": "gate", "anchorA": [-0.5, 0, 0], "anchorB": [0, 0, 0],
+                 R"("gravity": [0, 0, 0], "hinges": [{"bodyA": "gate", "anchorA": [-0.5, 0, 0], "anchorB": [0, 0, 0],
       "axis": [0, 1, 0], "limits": {"lower": 0, "upper": 1.2}}],)");
   double most = -1, least = 1;
   for (const Frame& frame : moved.frames) {
@@ -152,7 +146,7 @@ TEST(JointLimits, BallKnocksAGateOpen) {
   EXPECT_GT(least, -1e-9);
   EXPECT_NEAR(most, 1.2, 1e-7);
   EXPECT_GE(eventsOf(moved, EventKind::impact).size(), 2u);
-  expectBalance(moved, 1e-11, 1e-6);
+  expectLedger(moved, 1e-11, 1e-6);
 }
 
 /// A lid of 2 kg that lies shut on its stop, with a ball of 1 kg in its middle: a push at its edge opens it if its
@@ -160,12 +154,12 @@ TEST(JointLimits, BallKnocksAGateOpen) {
 TEST(JointLimits, LidThatRestsOnItsStopOpensWhenItIsPushed) {
   for (const double part : {0.99, 1.01}) {
     const Trajectory moved =
-        run(1, 1e-6, R"({"name": "lid", "mass": 2, "shape": {"box": {"size": [0.6, 0.04, 0.4]}}},
+        runStopped(1, 1e-6, R"({"name": "lid", "mass": 2, "shape": {"box": {"size": [0.6, 0.04, 0.4]}}},
       {"name": "ball", "mass": 1, "shape": {"sphere": {"radius": 0.05}}, "position": [0, 0.07, 0]})",
-            fmt::format(R"("hinges": [{{"bodyA": "lid", "anchorA": [-0.3, 0, 0], "anchorB": [-0.3, 0, 0],
+                   fmt::format(R"("hinges": [{{"bodyA": "lid", "anchorA": [-0.3, 0, 0], "anchorB": [-0.3, 0, 0],
       "limits": {{"lower": 0, "upper": 1.5}}}}],
       "pushes": [{{"body": "lid", "point": [0.3, 0, 0], "force": [0, {}, 0], "start": 0.5, "duration": 0.5}}],)",
-                        part * 3 * kGravity / 2));
+                               part * 3 * kGravity / 2));
     const double height = moved.frames.back().states[0].position.y();
     if (part < 1) {
       EXPECT_NEAR(height, 0, 1e-9);
@@ -179,11 +173,11 @@ TEST(JointLimits, LidThatRestsOnItsStopOpensWhenItIsPushed) {
 /// The same stop in steps of contact: never beyond by more than a step's error.
 TEST(JointLimits, StopsHoldInContactSteps) {
   const Trajectory moved =
-      run(2, 1e-6, box(""), R"("method": {"name": "rk4", "timeStep": 0.001}, "sliders": [{"bodyA": "box",
+      runStopped(2, 1e-6, box(""), R"("method": {"name": "rk4", "timeStep": 0.001}, "sliders": [{"bodyA": "box",
       "anchorB": [0, 0, 0], "axis": [0, 1, 0], "limits": {"lower": -0.2, "restitution": 0.3}}],)");
   for (const Frame& frame : moved.frames) EXPECT_GT(frame.states[0].position.y(), -0.2 - 1e-6) << frame.time;
   EXPECT_NEAR(moved.frames.back().states[0].position.y(), -0.2, 1e-6);
-  expectBalance(moved, 1e-10, 1e-4);
+  expectLedger(moved, 1e-10, 1e-4);
 }
 
 }  // namespace

@@ -50,6 +50,7 @@ EventMotion::EventMotion(IslandState& island, LimitEvents& ropes, const ChosenMe
       method_(method),
       tolerances_(eventTolerancesOf(eventScalesOf(island))),
       contacts_(island, ropes, tolerances_, isTrial),
+      motors_(island),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       eventRateLimit_(eventRateLimitOf(method, island.scene.accuracy, isTrial)),
       tolerance_(toleranceOf(method, island.state, island.scene.duration)),
@@ -59,8 +60,11 @@ EventMotion::EventMotion(IslandState& island, LimitEvents& ropes, const ChosenMe
   island_.step.startDerivativeIsKnown = false;
   island_.findNearPairsNow(tolerances_.reach);
   ropes_.setTimeStep(0);
+  island_.equations.setMotorSteps(0);
+  motors_.resolve({});
   contacts_.resolve();
   applyLimitEvents();
+  resolveMotors({});
   makeChanges();
   island_.requireUnsolvedPairsApart();
   if (solver_.hasConstraints()) solver_.factorize(island_.state);
@@ -179,12 +183,15 @@ EventMotion::Event EventMotion::findFirstEvent() {
   }
   event.rope = ropes_.firstChange(step);
   event.contact = contacts_.active().firstChange();
-  const double impact = event.impact ? event.impact->fraction : 2, rope = event.rope ? event.rope->fraction : 2,
-               contact = event.contact ? event.contact->fraction : 2, first = std::min({impact, rope, contact});
+  event.motor = motors_.firstChange(step);
+  const auto fractionOf = [](const auto& found) { return found ? found->fraction : 2; };
+  const double impact = fractionOf(event.impact), rope = fractionOf(event.rope), contact = fractionOf(event.contact),
+               motor = fractionOf(event.motor), first = std::min({impact, rope, contact, motor});
   if (rope > first) event.rope.reset();
   if (contact > first || event.rope) event.contact.reset();
-  if (impact > first || event.rope || event.contact) event.impact.reset();
-  for (const double other : {impact, rope, contact})
+  if (motor > first || event.rope || event.contact) event.motor.reset();
+  if (impact > first || event.rope || event.contact || event.motor) event.impact.reset();
+  for (const double other : {impact, rope, contact, motor})
     if (other > first) event.latest = std::min(event.latest, other);
   return event;
 }
@@ -192,18 +199,25 @@ EventMotion::Event EventMotion::findFirstEvent() {
 /// Cuts the step at the first event in it. The state there is that of a step of its own, as the error of the
 /// interpolant would let bodies overlap; with DOPRI5 it is the interpolant's, which is as good as the step.
 EventMotion::Event EventMotion::stopAtFirstEvent() {
-  if (!island_.mayTouch() && !ropes_.hasLimits()) return {};
+  if (!island_.mayTouch() && !ropes_.hasLimits() && !motors_.any()) return {};
   Step& step = island_.step;
   Event event = findFirstEvent();
   const double whole = step.timeStep, latest = event.latest * whole;
   if (event.any() && mayEndAnywhere()) {
-    cutStep(event.impact ? event.impact->fraction : event.rope ? event.rope->fraction : event.contact->fraction, step);
+    cutStep(event.impact  ? event.impact->fraction
+            : event.rope  ? event.rope->fraction
+            : event.motor ? event.motor->fraction
+                          : event.contact->fraction,
+            step);
     place(island_.assembly.mechanism.driven, step.time + step.timeStep, step.state);
   } else if (event.impact) {
     if (!stopAtImpact(*event.impact)) event.impact.reset();
   } else if (event.rope) {
     endStepAtEvent(island_, method_.integrate, {event.rope->fraction * whole, latest, kRopeTolerance},
                    [&](const VectorX& state) { return ropes_.margin(*event.rope, state); });
+  } else if (event.motor) {
+    endStepAtEvent(island_, method_.integrate, {event.motor->fraction * whole, latest, EventTolerances::kEventFunction},
+                   [&](const VectorX& state) { return motors_.margin(*event.motor, state); });
   } else if (event.contact && event.contact->kind == ContactChange::Kind::redundant) {
     keepStartDerivative(step);
     island_.integrate(method_.integrate, event.contact->fraction * whole);
@@ -288,12 +302,14 @@ void EventMotion::requireConstraintsKept() {
 void EventMotion::changeForces(const Event& event) {
   tautRowsBefore_ = ropes_.tautRows();
   const bool lasted = !contacts_.active().empty();
+  if (event.motor) resolveMotors(event.motor);
   if (event.impact || event.contact || event.rope)  // a rope may go taut as bodies meet
     contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
   else
     followActive();
   if (!lasted && !contacts_.active().empty()) lengths_.fill(island_.scene.duration);  // no more bounces
   applyLimitEvents();
+  if (event.any() && !event.motor) resolveMotors({});
   const bool isPushed = makeChanges();
   keepsConstraints_ = ropes_.tautRows() == tautRowsBefore_;
   if (event.any() || isPushed) isContinuous_ = false;
@@ -304,7 +320,15 @@ bool EventMotion::makeChanges() {
   if (!island_.makeChanges()) return false;
   contacts_.resolve();
   applyLimitEvents();
+  resolveMotors({});
   return true;
+}
+
+/// Motors, and what their other forces change of contacts, ropes and stops.
+void EventMotion::resolveMotors(const std::optional<MotorChange>& change) {
+  if (!motors_.resolve(change)) return;
+  contacts_.resolve();
+  applyLimitEvents();
 }
 
 /// Follows active contacts along a step without an event.

@@ -10,6 +10,7 @@
 #include "simulate/events/event_tolerances.h"
 #include "simulate/island_state.h"
 #include "simulate/limit_events.h"
+#include "simulate/motor_events.h"
 #include "simulate/plan/event_rate_limit.h"
 
 namespace cradle {
@@ -54,11 +55,13 @@ class EventMotion {
     std::optional<ImpactTime> impact;
     std::optional<LimitChange> rope;
     std::optional<ContactChange> contact;
+    std::optional<MotorChange> motor;
     double latest = 1;  // of the step: fraction of the event after it
-    bool any() const { return impact || rope || contact; }
+    bool any() const { return impact || rope || contact || motor; }
   };
   Event findFirstEvent();
   Event stopAtFirstEvent();
+  void resolveMotors(const std::optional<MotorChange>& change);
   bool stopAtImpact(const ImpactTime& impact);
   void project(VectorX& state);
   void projectState();
@@ -78,6 +81,7 @@ class EventMotion {
   ChosenMethod method_;
   const EventTolerances tolerances_;
   EventContacts contacts_;
+  MotorEvents motors_;
   std::optional<EnergyGuard> guard_;  // always there once begun
   ConstraintSolver solver_;
   EventRateLimit eventRateLimit_;

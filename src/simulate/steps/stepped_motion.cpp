@@ -42,6 +42,9 @@ SteppedMotion::SteppedMotion(IslandState& island, LimitEvents& ropes, const Chos
   countSteps();
   ropes_.setTimeStep(method.timeStep);
   island_.step.startDerivativeIsKnown = false;
+  island_.equations.setMotorSteps(method.timeStep);
+  for (JointMotor& motor : island_.assembly.mechanism.motors)
+    if (motor.hasTarget) motor.mode = JointMotor::Mode::holds;
   contacts_.resolveImpacts(island_.time, island_.state, island_.state);
   ropes_.resolve(island_.time, island_.state);
   if (island_.makeChanges()) ropes_.resolve(island_.time, island_.state);

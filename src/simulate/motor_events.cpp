@@ -1,0 +1,99 @@
+#include "simulate/motor_events.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cradle {
+namespace {
+
+constexpr int kSamples = 4;              // a step, as of the tensions of ropes
+constexpr double kSettled = 1e-6;        // s: a velocity that is recovered sooner is kept
+constexpr double kForceRounding = 1e-9;  // of all the force of a motor
+constexpr double kAtItsEnd = 1e-6;       // of all the force: one that pushes goes on if holding would take more
+
+}  // namespace
+
+bool MotorEvents::any() const {
+  const std::vector<JointMotor>& motors = island_.assembly.mechanism.motors;
+  return std::any_of(motors.begin(), motors.end(), [](const JointMotor& motor) { return motor.hasTarget; });
+}
+
+bool MotorEvents::rests(std::size_t motor) const {
+  const Constraint& joint = island_.assembly.mechanism.motors[motor].joint;
+  return island_.resting.isResting(joint.anchorA.body) || island_.resting.isResting(joint.anchorB.body);
+}
+
+double MotorEvents::velocity(std::size_t motor, const VectorX& state) {
+  findBodyFrames(island_.assembly.mechanism.bodies, state, frames_);
+  return rateOf(rowOf(motors()[motor], state, frames_), state);
+}
+
+double MotorEvents::marginAt(std::size_t index, double time, const VectorX& state) {
+  const JointMotor& motor = motors()[index];
+  if (motor.mode == JointMotor::Mode::pushes)
+    return motor.sign * (motor.targetVelocity - velocity(index, state)) / scales_[index];
+  island_.equations.evaluate(time, state, derivative_);
+  return (motor.maxForce - std::abs(island_.equations.motorForces()[static_cast<Eigen::Index>(index)])) /
+         motor.maxForce;
+}
+
+double MotorEvents::margin(const MotorChange& change, const VectorX& state) {
+  return marginAt(change.motor, island_.step.time + island_.step.timeStep, state);
+}
+
+std::optional<MotorChange> MotorEvents::firstChange(const Step& step) {
+  std::optional<MotorChange> first;
+  for (std::size_t i = 0; i < motors().size(); ++i) {
+    const JointMotor& motor = motors()[i];
+    if (!motor.hasTarget || motor.maxForce == 0 || rests(i)) continue;
+    scales_[i] = std::max({std::abs(motor.targetVelocity - velocity(i, step.startState)),
+                           std::abs(motor.targetVelocity - velocity(i, step.state)), std::abs(motor.targetVelocity)});
+    if (scales_[i] == 0) scales_[i] = 1;
+    double before = marginAt(i, step.time, step.startState);
+    for (int k = 1; k <= kSamples; ++k) {
+      const double fraction = static_cast<double>(k) / kSamples;
+      interpolate(step, fraction, sample_);
+      const double after = marginAt(i, step.time + fraction * step.timeStep, sample_);
+      if (before >= 0 && after < 0) {
+        const double found = fraction - after / (after - before) / kSamples;
+        if (!first || found < first->fraction) first = MotorChange{found, i};
+        break;
+      }
+      before = after;
+    }
+  }
+  return first;
+}
+
+bool MotorEvents::resolve(const std::optional<MotorChange>& change) {
+  if (!any()) return false;
+  const std::vector<JointMotor> before = motors();
+  for (JointMotor& motor : motors())
+    if (motor.hasTarget) motor.mode = JointMotor::Mode::holds;
+  for (bool isOther = true; isOther;) {
+    isOther = false;
+    island_.equations.evaluate(island_.time, island_.state, derivative_);
+    const VectorX forces = island_.equations.motorForces(), mobilities = island_.equations.motorMobilities();
+    for (std::size_t i = 0; i < motors().size(); ++i) {
+      JointMotor& motor = motors()[i];
+      if (motor.mode == JointMotor::Mode::pushes || rests(i)) continue;
+      const Eigen::Index at = static_cast<Eigen::Index>(i);
+      const double missing = motor.targetVelocity - velocity(i, island_.state);
+      const bool isOff = std::abs(missing) > kSettled * motor.maxForce * mobilities[at];
+      const bool wasHolding = before[i].mode == JointMotor::Mode::holds;
+      const bool isAtItsEnd = change && change->motor == i && wasHolding;
+      const bool goesOn = !wasHolding && forces[at] * before[i].sign > (1 - kAtItsEnd) * motor.maxForce;
+      const bool canHold = std::abs(forces[at]) <= motor.maxForce * (1 + kForceRounding) && !goesOn;
+      if (!isOff && !isAtItsEnd && canHold) continue;
+      motor.mode = JointMotor::Mode::pushes;
+      motor.sign = (isOff ? missing : forces[at]) < 0 ? -1 : 1;
+      isOther = true;
+    }
+  }
+  bool isOther = false;
+  for (std::size_t i = 0; i < motors().size(); ++i)
+    isOther = isOther || motors()[i].mode != before[i].mode || motors()[i].sign != before[i].sign;
+  return isOther;
+}
+
+}  // namespace cradle

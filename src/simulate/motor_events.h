@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+
+#include "simulate/island_state.h"
+
+namespace cradle {
+
+/// A motor that comes to its target, or to the end of its force, inside a step.
+struct MotorChange {
+  double fraction = 0;  // of the step, 0..1
+  std::size_t motor = 0;
+};
+
+/// Motors with a target velocity over time: one holds its joint's velocity, as long as that takes no more force than it
+/// has; else it pushes with all of it, until the joint has the velocity. In an impact a finite force gives nothing:
+/// what the impact does to the velocity is taken back by pushing.
+class MotorEvents {
+ public:
+  /// Keeps a reference to `island`.
+  explicit MotorEvents(IslandState& island) : island_(island), scales_(island.assembly.mechanism.motors.size(), 1) {}
+
+  /// Whether any motor may change.
+  bool any() const;
+
+  /// The first change within a step, whose end derivative must be there (prepareInterpolant).
+  std::optional<MotorChange> firstChange(const Step& step);
+
+  /// Zero where the change happens, positive before: the force that is left as a part of all, or the velocity that is
+  /// missing as a part of the largest in the step. `state` is that of the step's end.
+  double margin(const MotorChange& change, const VectorX& state);
+
+  /// What each motor does from now on, after a change or whatever else has happened. True if that is something else.
+  bool resolve(const std::optional<MotorChange>& change);
+
+ private:
+  double marginAt(std::size_t motor, double time, const VectorX& state);
+  double velocity(std::size_t motor, const VectorX& state);
+  bool rests(std::size_t motor) const;
+  std::vector<JointMotor>& motors() { return island_.assembly.mechanism.motors; }
+
+  IslandState& island_;
+  std::vector<double> scales_;  // m/s or rad/s, of each motor's velocity in the step under way
+  std::vector<BodyFrame> frames_;
+  VectorX derivative_, sample_;
+};
+
+}  // namespace cradle

@@ -1,0 +1,143 @@
+// Motors of hinges and sliders, against closed forms.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "experiments/expect_ledger.h"
+
+namespace cradle {
+namespace {
+
+Trajectory runMotor(double duration, double accuracy, const std::string& bodies, const std::string& more) {
+  return simulate(sceneWith(fmt::format(R"("duration": {}, "accuracy": {}, "output": {{"framesPerSecond": 100}}, {},
+    "bodies": [{}])",
+                                        duration, accuracy, more, bodies)));
+}
+
+/// 2 kg, and 2/60 (0.3^2 + 0.3^2) = 0.03 kg m^2 about its middle.
+const char* const kMotorBox =
+    R"({"name": "box", "mass": 2, "shape": {"box": {"size": [0.3, 0.3, 0.3]}}, "collision": "none"})";
+constexpr double kInertia = 2 * 0.09 / 6;
+
+/// A wheel that a motor of T brings to w: T t / I until it has it at I w / T, and w from then on; the motor's work is I
+/// w^2 / 2.
+TEST(JointMotors, MotorBringsAWheelToItsVelocity) {
+  for (const double target : {8.0, -8.0}) {
+    const Trajectory moved =
+        runMotor(1, 1e-8, kMotorBox,
+                 fmt::format(R"("gravity": [0, 0, 0], "hinges": [{{"bodyA": "box", "anchorB": [0, 0, 0],
+      "motor": {{"targetVelocity": {}, "maxTorque": 0.6}}}}])",
+                             target));
+    const double reached = kInertia * 8 / 0.6, sign = target / 8;
+    for (const Frame& frame : moved.frames) {
+      const double rate = sign * std::min(0.6 * frame.time / kInertia, 8.0);
+      EXPECT_NEAR(frame.states[0].angularVelocity.z(), rate, 1e-8) << frame.time;
+      EXPECT_NEAR(frame.energy.work, kInertia * rate * rate / 2, 1e-8);
+    }
+    EXPECT_GT(reached, 0.1);
+    expectLedger(moved, 1e-12, 1e-8);
+  }
+}
+
+/// A constant torque, and a constant force against the weight of a body of 2 kg.
+TEST(JointMotors, ConstantForcesAccelerate) {
+  const Trajectory turned =
+      runMotor(1, 1e-8, kMotorBox, R"("gravity": [0, 0, 0], "hinges": [{"bodyA": "box", "anchorB": [0, 0, 0],
+      "motor": {"torque": -0.06}}])");
+  EXPECT_NEAR(endOf(turned).angularVelocity.z(), -0.06 / kInertia, 1e-10);
+  expectLedger(turned, 1e-13, 1e-10);
+  const Trajectory lifted =
+      runMotor(1, 1e-8, kMotorBox, R"("sliders": [{"bodyA": "box", "anchorB": [0, 0, 0], "axis": [0, 1, 0],
+      "motor": {"force": 20}}])");
+  const double acceleration = 10 - kGravity;
+  EXPECT_NEAR(endOf(lifted).position.y(), acceleration / 2, 1e-10);
+  EXPECT_NEAR(lifted.frames.back().energy.work, 20 * acceleration / 2, 1e-9);
+}
+
+/// A motor that is to hold an arm level: it does if it has more than m g r, and if it has less the arm falls with I a =
+/// m g r - T at first.
+TEST(JointMotors, BrakeHoldsWhatItCan) {
+  const double moment = 2 * kGravity * 0.5, inertia = kInertia + 2 * 0.25;
+  for (const double part : {1.001, 0.999, 0.5}) {
+    const Trajectory moved =
+        runMotor(0.1, 1e-9, kMotorBox,
+                 fmt::format(R"("hinges": [{{"bodyA": "box", "anchorA": [-0.5, 0, 0], "anchorB": [-0.5, 0, 0],
+      "motor": {{"targetVelocity": 0, "maxTorque": {}}}}}])",
+                             part * moment));
+    const double angle = std::asin(-endOf(moved).position.y() / 0.5), time = moved.frames.back().time;
+    const double expected = part > 1 ? 0 : (moment - part * moment) / inertia * time * time / 2;
+    // Its moment is less by 1 - cos(angle) on the way.
+    EXPECT_NEAR(angle, expected, 1e-10 + expected * expected * expected * moment / ((1 - part) * moment + 1e-9))
+        << part;
+    expectLedger(moved, 1e-12, 1e-8);
+  }
+}
+
+/// A motor pulls a body at v against a spring: until k x = F at x = F / k; with all of its force the body then swings
+/// about that place, and comes to v again after a period.
+TEST(JointMotors, MotorComesToTheEndOfItsForce) {
+  const Trajectory moved = runMotor(
+      3, 1e-9, kMotorBox, R"("gravity": [0, 0, 0], "sliders": [{"bodyA": "box", "anchorB": [0, 0, 0], "axis": [1, 0, 0],
+      "motor": {"targetVelocity": 0.5, "maxForce": 20}}], "springs": [{"bodyA": "box", "anchorB": [-1, 0, 0], "stiffness": 50,
+      "restLength": 1}])");
+  // From rest m x'' = F - k x brings it to v: x = F / k (1 - cos w t), v = F / k w sin w t.
+  const double rate = std::sqrt(50.0 / 2), place = 20.0 / 50;
+  const double started = std::asin(0.5 / (place * rate)) / rate, from = place * (1 - std::cos(rate * started));
+  const double ended = started + (place - from) / 0.5, again = ended + 2 * std::numbers::pi / rate;
+  for (const Frame& frame : moved.frames) {
+    const double t = frame.time;
+    const double x = t < started ? place * (1 - std::cos(rate * t))
+                     : t < ended ? from + 0.5 * (t - started)
+                                 : place + 0.5 / rate * std::sin(rate * (t - ended));
+    if (t > again) break;
+    EXPECT_NEAR(frame.states[0].position.x(), x, 1e-8) << t;
+  }
+  expectLedger(moved, 1e-11, 1e-8);
+}
+
+/// A car of a board and four balls as wheels, which motors turn with T in all: a = (T / r) / (M + 4 m + 4 I / r^2) on
+/// level ground, and less by (M + 4 m) g sin on a slope; friction is enough for rolling.
+TEST(JointMotors, WheelsDriveACar) {
+  const double radius = 0.1, torque = 0.3;
+  std::string bodies = R"({"name": "ground", "material": "m", "shape": {"plane": {}}, "motion": "static"},
+      {"name": "board", "mass": 4, "shape": {"box": {"size": [0.8, 0.05, 0.3]}}, "position": [0, 0.1, 0]})",
+              hinges;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 place(i % 2 ? 0.3 : -0.3, radius, i < 2 ? 0.3 : -0.3);
+    bodies += fmt::format(
+        R"(, {{"name": "w{}", "material": "m", "mass": 1, "shape": {{"sphere": {{"radius": {}}}}}, "position": {}}})",
+        i, radius, vectorText(place));
+    hinges +=
+        fmt::format(R"({}{{"bodyA": "w{}", "anchorA": [0, 0, 0], "bodyB": "board", "anchorB": {}, "axis": [0, 0, 1],
+      "motor": {{"torque": {}}}}})",
+                    i ? ", " : "", i, vectorText(place - Vec3(0, 0.1, 0)), -torque);
+  }
+  const double masses = 4 + 4, rolling = 4 * 0.4;
+  for (const double tilt : {0.0, 0.1}) {
+    const Trajectory moved =
+        runMotor(1, 1e-7, bodies,
+                 fmt::format(R"("gravity": {}, "materials": {{"m": {{"staticFriction": 1, "dynamicFriction": 0.9}}}},
+      "hinges": [{}])",
+                             vectorText(kGravity * Vec3(-std::sin(tilt), -std::cos(tilt), 0)), hinges));
+    const double acceleration = (4 * torque / radius - masses * kGravity * std::sin(tilt)) / (masses + rolling);
+    for (const Frame& frame : moved.frames)
+      EXPECT_NEAR(frame.states[0].position.x(), acceleration * frame.time * frame.time / 2, 1e-6) << frame.time;
+    EXPECT_NEAR(moved.frames.back().energy.work, 4 * torque * acceleration / 2 / radius, 1e-5);
+    expectLedger(moved, 1e-10, 1e-5);
+  }
+}
+
+/// The first wheel in steps of a fixed length: within what a step may be off.
+TEST(JointMotors, MotorBringsAWheelToItsVelocityInSteps) {
+  const Trajectory moved =
+      runMotor(1, 1e-8, kMotorBox, R"("gravity": [0, 0, 0], "method": {"name": "rk4", "timeStep": 0.001},
+      "hinges": [{"bodyA": "box", "anchorB": [0, 0, 0], "motor": {"targetVelocity": 8, "maxTorque": 0.6}}])");
+  for (const Frame& frame : moved.frames)
+    EXPECT_NEAR(frame.states[0].angularVelocity.z(), std::min(0.6 * frame.time / kInertia, 8.0), 0.02) << frame.time;
+  EXPECT_NEAR(moved.frames.back().states[0].angularVelocity.z(), 8, 1e-9);
+}
+
+}  // namespace
+}  // namespace cradle
