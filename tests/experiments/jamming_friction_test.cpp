@@ -84,5 +84,27 @@ TEST(JammingFriction, BesideIndeterminateContactsGainsNoEnergy) {
     }
 }
 
+// A heavy ball slides on a light one, which it wedges away over the floor: friction drags it back at both contacts.
+// Events without end were the way there. No ball gains energy; contact steps lose 5e-3.
+TEST(JammingFriction, OfABallWedgedBetweenTheFloorAndAHeavyBallEndsThePromise) {
+  for (const double accuracy : {1e-4, 1e-6, 1e-9}) {
+    const Trajectory run = simulate(sceneWith(fmt::format(
+        R"("duration": 0.05, "accuracy": {}, "output": {{"framesPerSecond": 240}},
+      "materials": {{"rough": {{"restitution": 0.5, "staticFriction": 0.5, "dynamicFriction": 0.5}}}}, "bodies": [
+      {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "rough"}},
+      {{"name": "light", "material": "rough", "mass": 0.1, "shape": {{"sphere": {{"radius": 0.05}}}},
+        "position": [0, 0.05, 0]}},
+      {{"name": "heavy", "material": "rough", "mass": 10, "shape": {{"sphere": {{"radius": 0.05}}}},
+        "position": {}, "linearVelocity": [0.3, -0.3, 0]}}])",
+        accuracy, vectorText(Vec3(0.1 * std::sqrt(0.5), 0.05 + 0.1 * std::sqrt(0.5), 0)))));
+    EXPECT_THAT(run.cost.promise, testing::StartsWith("light, heavy: promised while no contact of light, heavy jams, "
+                                                      "or slides so slowly that its friction has no sure direction; "
+                                                      "given up at "));
+    EXPECT_THAT(run.cost.promise, testing::HasSubstr("friction jams where contacts slide (floor, light, heavy)"));
+    const double start = mechanicalEnergy(run.frames.front());
+    for (const Frame& frame : run.frames) EXPECT_LT(mechanicalEnergy(frame), start * (1 + 5e-3)) << frame.time;
+  }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -167,7 +167,6 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
   // Accelerations that give less than a speed of rounding over the whole run do not count.
   const double most = std::max(EventTolerances::kStillRatio * largest, kRestSpeedFloor / island.scene.duration);
   if (!(solution.residual <= most)) logUnsolved(members, solution.residual, island);
-  if (!(solution.frictionError <= most)) found.fallback = jamAt(members, island.assembly);
   const AccelerationLimits limits{
       largest, input.tolerances.stillAcceleration(largest, solution.residual),
       (input.isReleasing ? EventTolerances::kReleasedRatio : EventTolerances::kUnloadedRatio) * largest};
@@ -192,6 +191,7 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
     if (record.sticks) activeRows.push_back(at), activeRows.push_back(at + 1);
   }
   if (!activeRows.empty()) countRows(group, matrix(activeRows, activeRows), island.assembly, found);
+  if (!(solution.frictionError <= most)) found.fallback = jamAt(members, island.assembly);
 }
 
 /// A corner stays a corner when the face beside it tips, but a cylinder rolls on over its rim. Rows keep points of a

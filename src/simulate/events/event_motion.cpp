@@ -145,7 +145,7 @@ bool EventMotion::isSlowAtJoint() {
 /// together (P. Painleve, 1895): velocities jump there without an impact. Forces also grow without bound where the
 /// moment arm about a joint goes to zero. Time stepping, whose unknowns are impulses, goes on.
 bool EventMotion::noteUnboundedForces() {
-  areForcesUnbounded_ = !method_.keepsPromise && contacts_.noteUnboundedForces();
+  areForcesUnbounded_ = contacts_.noteUnboundedForces();
   return areForcesUnbounded_;
 }
 
@@ -356,11 +356,13 @@ void EventMotion::restUntil(double time) {
 void EventMotion::countEvent(const Event& event) {
   if (island_.time > windowStart_ + eventRateLimit_.window) windowStart_ = island_.time, eventsInWindow_ = 0;
   const bool isFailure = event.contact && event.contact->kind == ContactChange::Kind::redundant;
+  const bool takesNoTime = event.contact && island_.step.timeStep < tolerances_.shortestTimeStep;
+  changesWithoutTime_ = takesNoTime ? changesWithoutTime_ + 1 : 0;
   eventsInWindow_ += isFailure ? eventRateLimit_.ofAFailure : 1;
   if (method_.keepsPromise && eventsInWindow_ > eventRateLimit_.most) failAtManyEvents();
 }
 
-/// A promise without conditions is not given up: the run ends instead.
+/// A promise without such a condition is not given up: the run ends instead.
 void EventMotion::failAtManyEvents() const {
   throw Error(ErrorKind::limit, "",
               fmt::format("more than {} impacts, pulls of ropes and changes of contacts in {:.3g} s at {:.6g} s, at "
@@ -369,8 +371,15 @@ void EventMotion::failAtManyEvents() const {
                           namesOfBodies(fallbackBodies(), island_.scene)));
 }
 
+/// Whether steps or changes of contacts follow each other without time: forces grow without bound, or contacts that
+/// carry load in the frictional contact problem would have to pull in the equations of motion, or stop to slide at
+/// once.
+bool EventMotion::isJammed() const {
+  return areForcesUnbounded_ || changesWithoutTime_ > kEventRateLimit.most;
+}
+
 std::string_view EventMotion::fallbackReason() const {
-  if (method_.keepsPromise) return {};
+  if (method_.keepsPromise) return isJammed() ? contacts_.fallbackReason() : std::string_view();
   if (eventsInWindow_ > eventRateLimit_.most) return eventRateLimit_.reason;
   return contacts_.fallbackReason();
 }

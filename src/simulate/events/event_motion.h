@@ -49,6 +49,7 @@ class EventMotion {
   bool takeStep(double stepEnd);
   bool isTooShort();
   bool isSlowAtJoint();
+  bool isJammed() const;
   bool noteUnboundedForces();
   /// The event that ends a step: at most one of these.
   struct Event {
@@ -98,7 +99,8 @@ class EventMotion {
   bool isContinuous_ = false;           // nothing has changed the state since the last step's end
   bool keepsConstraints_ = true;        // no rope went taut or slack at the last step's end
   int eventsInWindow_ = 0;
-  double windowStart_ = 0;  // s
+  int changesWithoutTime_ = 0;  // of contacts, in a row
+  double windowStart_ = 0;      // s
 };
 
 }  // namespace cradle

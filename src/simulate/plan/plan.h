@@ -34,7 +34,7 @@ struct ChosenMethod {
   double tolerance = 0;            // of the local error, scaled 1 + |x|; 0: fixed steps are never cut for it
   ErrorNorm errorNorm = nullptr;   // of error steps
   int order = 0;                   // of that
-  bool keepsPromise = false;       // events serve all that may come: they are never given up
+  bool keepsPromise = false;       // events serve all that may come, unless friction jams
 
   bool isClosedForm() const { return kind == MotionKind::freeFlight || kind == MotionKind::elasticFlight; }
   bool isAdaptive() const { return kind == MotionKind::errorSteps; }

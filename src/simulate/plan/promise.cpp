@@ -33,6 +33,7 @@ struct PossibleContacts {
   std::vector<int> edgeOwners, tippers, movers;  // scene bodies; cylinders that may tip; moving bodies that may touch
   bool hasFriction = false, areRound = true;     // round: of spheres with each other and with planes alone
   bool hasSlopes = false;                        // planes with friction that are not level
+  bool mayWedge = false;                         // moving bodies with friction between each other
   double restitution = 0;                        // largest below 1
   int rows = 0, treeRows = 0;  // of all contacts; of one contact of each pair, as long as pairs close no loop
 };
@@ -129,13 +130,15 @@ class ContactSurvey {
   /// Adds edges, friction and restitution of the contact of two bodies.
   void addKinds(std::size_t a, std::size_t b) {
     const Surface &surfaceA = surfaces_[a], &surfaceB = surfaces_[b];
+    const auto isMoving = [&](std::size_t body) { return bodyOf(body).motion == Motion::dynamic; };
     for (const std::size_t body : {a, b})
-      if (bodyOf(body).motion == Motion::dynamic) parts_[body].moves = true;
+      if (isMoving(body)) parts_[body].moves = true;
     addEdges(a, surfaceA, surfaceB);
     addEdges(b, surfaceB, surfaceA);
     const SurfacePair& material = materialOf(a, b);
     found_.hasFriction = found_.hasFriction || material.staticFriction > 0;
     found_.hasSlopes = found_.hasSlopes || (material.staticFriction > 0 && (isSlope(a) || isSlope(b)));
+    found_.mayWedge = found_.mayWedge || (material.staticFriction > 0 && isMoving(a) && isMoving(b));
     if (material.restitution < 1) found_.restitution = std::max(found_.restitution, material.restitution);
   }
 
@@ -210,6 +213,12 @@ bool mayHaveManyRows(const PossibleContacts& contacts, bool isConstrained) {
   return redundant > kMaxRedundant || independentRows(contacts) > kMaxIndependent;
 }
 
+PromiseCondition slidingCondition(const Scene& scene, const PossibleContacts& contacts) {
+  return {fmt::format("no contact of {} jams, or slides so slowly that its friction has no sure direction",
+                      namesOfBodies(contacts.movers, scene)),
+          contacts.movers};
+}
+
 std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan& island,
                                            const PossibleContacts& contacts) {
   std::vector<PromiseCondition> conditions;
@@ -225,10 +234,7 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
                                       kMaxRedundant, kMaxIndependent, namesOfBodies(contacts.movers, scene)),
                           contacts.movers});
   if (contacts.hasFriction && (!contacts.areRound || contacts.hasSlopes))
-    conditions.push_back(
-        {fmt::format("no contact of {} jams, or slides so slowly that its friction has no sure direction",
-                     namesOfBodies(contacts.movers, scene)),
-         contacts.movers});
+    conditions.push_back(slidingCondition(scene, contacts));
   if (hasJoints(island))
     conditions.push_back({fmt::format("nothing touches {} within a thousandth of its size of a joint",
                                       namesOfBodies(contacts.movers, scene)),
@@ -239,8 +245,14 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
   return conditions;
 }
 
+/// A sphere that slides with friction between others, or on a plane and under another one, may be wedged in.
+Promise promiseOfFewSpheres(const Scene& scene, const PossibleContacts& contacts) {
+  if (!contacts.mayWedge) return {};
+  return {Promise::Kind::conditional, {slidingCondition(scene, contacts)}, {}, true};
+}
+
 Promise notPromised(std::string reason) {
-  return {Promise::Kind::none, {}, std::move(reason)};
+  return {Promise::Kind::none, {}, std::move(reason), false};
 }
 
 }  // namespace
@@ -257,8 +269,9 @@ Promise promiseOf(const Scene& scene, const IslandPlan& island, const ReachableP
         fmt::format("models with hollows may touch: their contact is resolved every {:.3g} s", method.timeStep));
   if (method.isClosedForm() || island.touching.empty()) return {};
   const ContactSurvey survey(scene, island, reachable);
-  if (areFewSpheres(survey.found()) && !hasJoints(island) && island.driven.empty()) return {};
-  return {Promise::Kind::conditional, conditionsOf(scene, island, survey.found()), {}};
+  if (areFewSpheres(survey.found()) && !hasJoints(island) && island.driven.empty())
+    return promiseOfFewSpheres(scene, survey.found());
+  return {Promise::Kind::conditional, conditionsOf(scene, island, survey.found()), {}, false};
 }
 
 std::string namesOfBodies(const std::vector<int>& bodies, const Scene& scene) {
