@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "constraints/constraint_forces.h"
 #include "impact/pairwise.h"
 
 namespace cradle {
@@ -13,10 +14,15 @@ inline double energyTaken(const Vec3& impulse, const Vec3& before, const Vec3& a
   return -0.5 * impulse.dot(before + after);
 }
 
+/// `state` with the velocities of driven bodies and those that constraints lead the others to, of the least kinetic
+/// energy. An impulse p (N s, on B) at a contact, and what constraints answer to it, make what drives bodies work by
+/// -p . v (J), v the velocity (m/s) of B relative to A there. The solver must be factorised for `state`.
+VectorX ledVelocities(const std::vector<RigidBody>& bodies, ConstraintSolver& constraints, const VectorX& state);
+
 /// Books what one simultaneous impact took from bodies that had the velocities of `before` and have those of `state`
 /// now, at the same places: the work of its impulses, and what they lost where that is the same to rounding of these;
-/// and the work of what drives bodies against them.
-void bookImpact(const std::vector<ImpactContact>& impacts, const std::vector<RigidBody>& bodies, const VectorX& before,
-                VectorX& state);
+/// and the work of what drives bodies against them. The solver must be factorised for these places.
+void bookImpact(const std::vector<ImpactContact>& impacts, const std::vector<RigidBody>& bodies,
+                ConstraintSolver& constraints, const VectorX& before, VectorX& state);
 
 }  // namespace cradle

@@ -137,7 +137,7 @@ void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
   if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->addContactMotion(fraction, reported_);
   const Mechanism& mechanism = island_.assembly.mechanism;
   const auto* events = std::get_if<EventMotion>(&motion_);
-  if (events && !mechanism.driven.empty()) integrateWork(*events, fraction);
+  if (events && keepsConstraints && !mechanism.driven.empty()) integrateWork(*events, fraction);
   if (events && keepsConstraints && !events->contactsOfStep().empty()) {
     project(events->contactsOfStep());
   } else if (keepsConstraints && solver_.hasConstraints()) {

@@ -102,6 +102,13 @@ double firstSample(const Limit& limit, const Step& step) {
   return std::clamp(speed / bound, kMinFirstSample, kMaxFirstSample / 2);
 }
 
+/// J: of what drives bodies, against ropes' impulses.
+double workOfDriven(const std::vector<RopePull>& pulls, const VectorX& led) {
+  double work = 0;
+  for (const RopePull& pull : pulls) work += pull.impulse * motionOf(*pull.rope, led).lengthening;
+  return work;
+}
+
 /// J: of ropes' impulses.
 double energyTakenBy(const std::vector<RopePull>& pulls, const VectorX& before, const VectorX& after) {
   double taken = 0;
@@ -272,6 +279,8 @@ void LimitEvents::pull(double time, const std::vector<Stretch>& stretches, Vecto
   if (solver_.hasConstraints()) solver_.factorize(state);
   applyPulls(pulls, assembly_.mechanism.bodies, solver_, state);
   impactEnergy(state) += energyTakenBy(pulls, before, state);
+  if (!assembly_.mechanism.driven.empty())
+    pushWork(state) += workOfDriven(pulls, ledVelocities(assembly_.mechanism.bodies, solver_, before));
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const auto& [rope, speed, reboundSpeed, isLoaded] = stretches[i];
     const bool rebounds = reboundSpeed > 0;

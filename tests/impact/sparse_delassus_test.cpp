@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "dynamics/driven_body.h"
 #include "impact/contact_delassus.h"
 #include "impact/frictional_contact.h"
 #include "impact/stack_of_cubes.h"
@@ -26,6 +27,27 @@ TEST(SparseDelassus, AreTheSameProblemAsTheDenseOnes) {
   VectorX one = stack.state, other = stack.state;
   dense.apply(impulses, one), sparse.apply(impulses, other);
   EXPECT_LT((one - other).norm(), 1e-12);
+}
+
+// A driven cube among others has velocities, and neither answers impulses nor is moved by them.
+TEST(SparseDelassus, HaveTheVelocitiesOfDrivenBodiesAsTheDenseOnesDo) {
+  StackOfCubes stack({1, 1, 0.3});
+  stack.bodies[1] = drivenRigidBody();
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (Contact& contact : stack.contacts) contact.normal = Vec3{uniform(random), uniform(random), 1}.normalized();
+  for (double& velocity : stack.state.tail(20)) velocity = uniform(random);
+  const ContactDelassus dense(stack.contacts, stack.bodies, stack.state);
+  SparseDelassus sparse;
+  sparse.set(stack.contacts, stack.bodies, stack.state);
+  EXPECT_LT((dense.matrix() - sparse.matrix()).norm(), 1e-13 * dense.matrix().norm());
+  EXPECT_LT((dense.velocitiesIn(stack.state) - sparse.velocitiesIn(stack.state)).norm(), 1e-13);
+  const VectorX impulses = VectorX::LinSpaced(36, -1, 2);
+  VectorX one = stack.state, other = stack.state;
+  dense.apply(impulses, one), sparse.apply(impulses, other);
+  EXPECT_LT((one - other).norm(), 1e-12);
+  EXPECT_EQ(linearVelocity(other, 1), linearVelocity(stack.state, 1));
+  EXPECT_EQ(angularVelocity(other, 1), angularVelocity(stack.state, 1));
 }
 
 TEST(SparseDelassus, AreSolvedAsTheDenseOnesAre) {

@@ -206,7 +206,7 @@ double EventImpacts::resolveImpact(std::vector<ImpactContact>& impacts) {
     solve();
   }
   island_.log.recordFaults(island_.time, impacts, faults);
-  bookImpact(impacts, island_.assembly.mechanism.bodies, approach, state);
+  bookImpact(impacts, island_.assembly.mechanism.bodies, constraints_, approach, state);
   bookNumerical(energyConstant(island_.assembly.mechanism, approach), island_.assembly.mechanism, state);
   return zenoTime;
 }

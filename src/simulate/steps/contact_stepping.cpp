@@ -66,11 +66,15 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::v
   for (std::size_t i = 0; i < set.size(); ++i) contacts_.push_back({set[i], Vec3::Zero(), false});
   slips_.assign(set.size(), Vec3::Zero());
   const double constant = energyConstant(mechanism, state);
+  LedMotion led;
+  if (!mechanism.driven.empty())
+    led = {ledVelocities(mechanism.bodies, problem_.constraints(), before),
+           ledVelocities(mechanism.bodies, problem_.constraints(), state)};
   const std::vector<StepGroup> groups = set.findGroups();
   std::vector<double> most;  // J, of each group
   for (const StepGroup& group : groups) {
     most.push_back(energyOf(group.moved.bodies, mechanism, state));
-    most.back() += resolveGroup(group, {set, step, strikesInside}, state);
+    most.back() += resolveGroup(group, {set, step, strikesInside, led}, state);
   }
   // Contact moves bodies along straight lines, which ends of rods and joints do not follow.
   if (problem_.constraints().hasConstraints()) {
@@ -85,50 +89,47 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::v
   bookNumerical(constant, mechanism, state);
 }
 
-/// Energy does not grow beyond the work of what drives bodies, which is returned (J): a restitution that would let it
-/// (with friction it can) is made smaller, and what is left by rounding, by the order of the method, or by impulses
-/// that were not found is taken from the velocities.
+/// Energy does not grow beyond the most that what drives bodies may work, which is returned (J): a restitution that
+/// would let it (with friction it can) is made smaller, and what is left by rounding, by the order of the method, or by
+/// impulses that were not found is taken from the velocities.
 double ContactStepping::resolveGroup(const StepGroup& group, const StepInput& input, VectorX& state) {
   const Mechanism& mechanism = assembly_.mechanism;
   const StepMotion motion = stepMotionOf(group, input.contacts, input.step, problem_);
   const double most = energyOf(group.moved.bodies, mechanism, state);
   ContactProblem posed;
   VectorX impulses, end;
-  double work = 0;
+  WorkOfDriven work;
   const std::size_t kept = faults_.size();
   const auto lossWith = [&](double restitutionFraction) {
     faults_.erase(faults_.begin() + static_cast<std::ptrdiff_t>(kept), faults_.end());
     copyBodies(group.moved.bodies, input.step.end, state);
     posed = posedStep(group, input.contacts, motion, input.strikesInside, restitutionFraction);
     impulses = problem_.solve(group, posed, faults_);
-    work = workOfDriven(group, input.step, impulses, state);
+    work = workOfDriven(input.led, posed.free, impulses);
     end = move(group, input, motion, impulses, state);
-    return most + work - energyOf(group.moved.bodies, mechanism, state);
+    return most + work.most - energyOf(group.moved.bodies, mechanism, state);
   };
   const double loss = lossWith(1);
-  if (posed.hasRebounds && isGain(most + work - loss, most + work)) lossWith(fractionWithoutGain(lossWith, loss));
+  if (posed.hasRebounds && isGain(most + work.most - loss, most + work.most))
+    lossWith(fractionWithoutGain(lossWith, loss));
   keepMomenta(group.moved, input.step.end, mechanism, state);
-  limitEnergy(group.moved, most + work, mechanism, state, faults_);
+  limitEnergy(group.moved, most + work.most, mechanism, state, faults_);
   keep(group, motion, posed, impulses, state);
-  book(group, motion, impulses, end, most + work - energyOf(group.moved.bodies, mechanism, state), state);
-  pushWork(state) += work;
-  return work;
+  book(group, motion, impulses, end, most + work.mean - energyOf(group.moved.bodies, mechanism, state), state);
+  pushWork(state) += work.mean;
+  return work.most;
 }
 
-/// J: of what drives bodies, against a group's impulses, with the mean of their velocities at both ends of the step.
-double ContactStepping::workOfDriven(const StepGroup& group, const FreeStep& step, const VectorX& impulses,
-                                     const VectorX& state) const {
-  const Mechanism& mechanism = assembly_.mechanism;
-  if (mechanism.driven.empty()) return 0;
-  double work = 0;
-  for (std::size_t i = 0; i < group.contacts.size(); ++i) {
-    const Contact& contact = group.contacts[i];
-    const Vec3 impulse = problem_.axes(i) * impulses.segment<3>(3 * static_cast<Eigen::Index>(i));
-    for (const VectorX* velocities : {&step.before, &state})
-      work += powerOfDriven(mechanism.bodies, contact.bodyA, contact.point, impulse / 2, *velocities) +
-              powerOfDriven(mechanism.bodies, contact.bodyB, contact.point, -impulse / 2, *velocities);
-  }
-  return work;
+/// Of what drives bodies, against impulses at the contacts of the group that was set: they are forces of a step, whose
+/// work with changing velocities is known to the order of the method, and they leave velocities that are not solved
+/// for.
+ContactStepping::WorkOfDriven ContactStepping::workOfDriven(const LedMotion& led, const VectorX& free,
+                                                            const VectorX& impulses) const {
+  if (led.start.size() == 0) return {};
+  const double atStart = -impulses.dot(problem_.velocitiesIn(led.start));
+  const double atEnd = -impulses.dot(problem_.velocitiesIn(led.end));
+  const double unsolved = StepTolerances::kSolvedRatio * free.cwiseAbs().maxCoeff() * impulses.lpNorm<1>();
+  return {0.5 * (atStart + atEnd), std::max(atStart, atEnd) + unsolved};
 }
 
 /// From free motion to where impulses lead, with the mean of the velocities at both ends: contacts that last keep order

@@ -62,15 +62,23 @@ class ContactStepping {
   std::vector<SteppingFault> takeFaults() { return std::exchange(faults_, {}); }
 
  private:
+  /// What driven bodies lead others to, at the start and the end of a step (ledVelocities). Empty if there are none.
+  struct LedMotion {
+    VectorX start, end;
+  };
+  struct WorkOfDriven {
+    double mean = 0;  // J: with the mean of the velocities at both ends
+    double most = 0;  // J: with those of one of them, and what solvers leave
+  };
   struct StepInput {
     const ContactSet& contacts;
     const FreeStep& step;
     const std::vector<char>& strikesInside;
+    const LedMotion& led;
   };
   double impulseRatio(double timeStep) const { return previousStep_ > 0 ? timeStep / previousStep_ : 1; }
   double resolveGroup(const StepGroup& group, const StepInput& input, VectorX& state);
-  double workOfDriven(const StepGroup& group, const FreeStep& step, const VectorX& impulses,
-                      const VectorX& state) const;
+  WorkOfDriven workOfDriven(const LedMotion& led, const VectorX& free, const VectorX& impulses) const;
   VectorX move(const StepGroup& group, const StepInput& input, const StepMotion& motion, const VectorX& impulses,
                VectorX& state);
   void keep(const StepGroup& group, const StepMotion& motion, const ContactProblem& posed, const VectorX& impulses,

@@ -249,7 +249,7 @@ void StepContacts::resolveImpactIslands(double time, const VectorX& before, Vect
     const bool isHard = std::any_of(impacts.begin(), impacts.end(), [&](const ImpactContact& impact) {
       return closingSpeed(impact.contact, approach) > tolerances().minImpactSpeed(timeStep_);
     });
-    bookImpact(impacts, assembly_.mechanism.bodies, approach, state);
+    bookImpact(impacts, assembly_.mechanism.bodies, solver_, approach, state);
     bookNumerical(energyConstant(assembly_.mechanism, approach), assembly_.mechanism, state);
     for (const ImpactContact& impact : impacts) {
       const double impulse = impact.contact.normal.dot(impact.impulse);

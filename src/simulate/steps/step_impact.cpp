@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "dynamics/driven_body.h"
 #include "impact/impact_energy.h"
 
 namespace cradle {
@@ -64,18 +63,16 @@ VectorX resolveGroupImpact(const StepGroup& group, const ImpactInput& input, Gro
   const double most = energyOf(group.moved.bodies, mechanism, state);
   ContactProblem posed;
   VectorX impulses;
-  double work = 0;  // J, of what drives bodies
+  // m/s, of the contacts: what drives bodies works against impulses with these.
+  const VectorX led = mechanism.driven.empty()
+                          ? VectorX::Zero(start.size())
+                          : problem.velocitiesIn(ledVelocities(mechanism.bodies, problem.constraints(), state));
+  double work = 0;  // J
   const auto solveAndApply = [&] {
     copyBodies(group.moved.bodies, input.approach, state);
     impulses = problem.solve(group, posed, faults);
     problem.apply(impulses, state);
-    work = 0;
-    for (std::size_t i = 0; i < group.contacts.size(); ++i) {
-      const Contact& contact = group.contacts[i];
-      const Vec3 impulse = problem.axes(i) * impulses.segment<3>(3 * static_cast<Eigen::Index>(i));
-      work += powerOfDriven(mechanism.bodies, contact.bodyA, contact.point, impulse, state) +
-              powerOfDriven(mechanism.bodies, contact.bodyB, contact.point, -impulse, state);
-    }
+    work = -impulses.dot(led);
   };
   const std::size_t kept = faults.size();
   const auto lossWith = [&](double fraction) {
