@@ -15,6 +15,7 @@
 #include "math/rotation.h"
 #include "render/body_place.h"
 #include "render/link_items.h"
+#include "scene/count_bodies.h"
 
 namespace cradle {
 namespace {
@@ -87,8 +88,7 @@ class GlbExport {
 
 /// Before memory is taken. What else is in the file is little, and counted when it is written.
 void GlbExport::requireFits() const {
-  const auto bodies = scene_.bodies.size() -
-                      static_cast<std::uint64_t>(std::ranges::count(scene_.bodies, Motion::fixed, &Body::motion));
+  const std::uint64_t bodies = scene_.bodies.size() - countBodies(scene_, Motion::fixed);
   const std::uint64_t links = scene_.springs.size() + scene_.rods.size() + scene_.ropes.size();
   GlbFile::requireFits(sizeof(float) * frameCount() * (1 + 7 * bodies + 10 * links), path_);
 }

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/console.h"
 #include "core/printable.h"
+#include "scene/count_bodies.h"
 #include "simulate/assembly.h"
 #include "simulate/plan/plan_text.h"
 #include "simulate/world.h"
@@ -38,13 +38,12 @@ Json jsonOf(const IslandPlan& island, const Scene& scene) {
 Json jsonOf(const Plan& plan, const Scene& scene, const std::string& scenePath) {
   Json groups = Json::array();
   for (const IslandPlan& island : plan.islands) groups.push_back(jsonOf(island, scene));
-  const auto fixed = std::count_if(scene.bodies.begin(), scene.bodies.end(),
-                                   [](const Body& body) { return body.motion == Motion::fixed; });
   return {{"scene", scenePath},
           {"accuracy", plan.accuracy},
           {"promise", promiseOfAll(plan)},
           {"bodies", scene.bodies.size()},
-          {"fixed", fixed},
+          {"fixed", countBodies(scene, Motion::fixed)},
+          {"driven", countBodies(scene, Motion::driven)},
           {"collisionOfModels", collisionOfModels(scene)},
           {"groups", groups}};
 }

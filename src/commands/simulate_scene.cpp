@@ -17,6 +17,7 @@
 #include "core/printable.h"
 #include "core/progress.h"
 #include "render/camera_path.h"
+#include "scene/count_bodies.h"
 #include "scene/load_scene.h"
 #include "scene/named_accuracy.h"
 #include "scene/parse_settings.h"
@@ -209,11 +210,10 @@ void checkScene(const std::string& scenePath, const SceneOptions& options) {
   for (const Assembly& assembly : islands)
     warnings.insert(warnings.end(), assembly.warnings.begin(), assembly.warnings.end());
   warnOfAll(warnings);
-  const auto dynamic = std::count_if(scene.bodies.begin(), scene.bodies.end(),
-                                     [](const Body& body) { return body.motion == Motion::dynamic; });
-  show("{}: \"{}\" is in order: {} ({} dynamic){}; {} s, {} frames\n", printableLine(scenePath),
-       printableLine(scene.name), counted(scene.bodies.size(), "body", "bodies"), dynamic, linksOf(scene),
-       scene.duration, lastFrame(scene) + 1);
+  const std::size_t driven = countBodies(scene, Motion::driven);
+  show("{}: \"{}\" is in order: {} ({} dynamic{}){}; {} s, {} frames\n", printableLine(scenePath),
+       printableLine(scene.name), counted(scene.bodies.size(), "body", "bodies"), countBodies(scene, Motion::dynamic),
+       driven > 0 ? fmt::format(", {} driven", driven) : "", linksOf(scene), scene.duration, lastFrame(scene) + 1);
 }
 
 }  // namespace cradle

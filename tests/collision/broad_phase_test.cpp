@@ -107,6 +107,29 @@ TEST(BroadPhase, MissesNoPairThatMayMeetWhileBodiesMove) {
   EXPECT_LT(newLists, 60);
 }
 
+// What no force moves meets nothing else that none does: of driven bodies there are pairs with others alone.
+TEST(BroadPhase, LeavesOutPairsOfWhatNoForceMoves) {
+  std::mt19937 random(5);
+  Crowd crowd = crowdOf(40, 0.7, random);
+  const auto isDriven = [](std::size_t collider) { return collider % 3 == 0; };
+  for (std::size_t i = 0; i < 40; ++i) crowd.geometry.colliders[i].isDriven = isDriven(i);
+  BroadPhase broadPhase;
+  broadPhase.update(crowd.state, std::vector<double>(40, 0.0), 0.02, crowd.geometry);
+  int ofDriven = 0;
+  for (const ColliderPair& pair : crowd.geometry.pairs) {
+    const bool aMoves = pair.a < 40 && !isDriven(pair.a),
+               bMoves = !pair.againstPlane && pair.b < 40 && !isDriven(pair.b);
+    EXPECT_TRUE(aMoves || bMoves) << pair.a << ' ' << pair.b;
+    ofDriven += !pair.againstPlane && (pair.a < 40 && pair.b < 40) && aMoves != bMoves;
+  }
+  EXPECT_GT(ofDriven, 10);
+  const Pairs found = pairsOf(crowd.geometry);
+  for (const auto& [againstPlane, a, b] : nearPairsOf(crowd, 0.02))
+    if ((a < 40 && !isDriven(a)) || (!againstPlane && b < 40 && !isDriven(b))) {
+      EXPECT_TRUE(found.contains({againstPlane, a, b})) << a << ' ' << b;
+    }
+}
+
 // Each goes 0.5 m on a way of its own, stops anywhere on it, and is pushed aside by up to 0.01 m: a new list is made
 // only where this was not foreseen.
 TEST(BroadPhase, MissesNoPairThatMayMeetOnTheirWays) {

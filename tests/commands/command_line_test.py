@@ -130,6 +130,15 @@ class Scenes(InTemporaryFolder):
         result = cradle("check", self.write("s.json", scene(rods=rods, ropes=rods[:1])))
         self.assertIn("1 body (1 dynamic), 2 rods, 1 rope;", result.stdout)
 
+    def test_driven_bodies_are_counted(self):
+        hand = {"name": "hand", "shape": {"sphere": {"radius": 0.1}}, "motion": "driven", "linearVelocity": [1, 0, 0], "position": [0, 5, 0]}
+        ball = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}}
+        path = self.write("s.json", scene(bodies=[hand, ball]))
+        self.assertIn("2 bodies (1 dynamic, 1 driven);", cradle("check", path).stdout)
+        self.assertIn("2 bodies in 1 island, 1 driven\n", cradle("plan", path).stdout)
+        plan = json.loads(cradle("plan", path, "--json").stdout)
+        self.assertEqual((plan["bodies"], plan["fixed"], plan["driven"]), (2, 0, 1))
+
     def test_a_ray_that_misses_is_warned_about_even_if_quiet(self):
         push = {"body": "ball", "ray": {"origin": [0, 9, 5], "direction": [0, 0, -1]}, "force": [0, 0, -3], "start": 0.05, "duration": 0.02}
         result = cradle("simulate", self.write("s.json", scene(pushes=[push])), "-o", self.path("x.sqlite"), "--quiet")

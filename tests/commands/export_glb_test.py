@@ -205,6 +205,22 @@ class ExportGlb(unittest.TestCase):
         self.assertEqual([number for normal in glb.arrays[mesh[0]["attributes"]["NORMAL"]] for number in normal],
                          list(struct.unpack(f"<{len(normals) // 4}f", normals)))
 
+    def test_driven_bodies_move(self):
+        prism = {"name": "prism", "shape": {"mesh": os.path.join(SOURCE, "assets", "l_prism.3ds")}, "motion": "driven",
+                 "position": [1, 2, 3], "linearVelocity": [1, 0, 0], "angularVelocity": [0, 3, 0]}
+        ball = {"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "linearVelocity": [0, 1, 0]}
+        self.simulate([prism, ball])
+        glb = self.export()
+        self.moves_as_in_the_table(glb, "prism")
+        self.moves_as_in_the_table(glb, "ball")
+        # Velocities of a driven body are those of its frame's origin, whose place the states have.
+        for time, position, q in self.states["prism"]:
+            self.assertLess(difference(position, (1 + time, 2, 3)), 1e-14)
+            self.assertLess(difference(q, (math.cos(1.5 * time), 0, math.sin(1.5 * time), 0)), 1e-14)
+        (blob,) = sqlite3.connect(self.path("a.sqlite")).execute("SELECT vertices FROM mesh").fetchone()
+        for at, corner in zip(range(0, len(blob), 24), glb.corners("prism"), strict=True):
+            self.assertLess(difference(struct.unpack_from("<3d", blob, at), corner), 2 * ROUNDING)
+
     def test_times_are_simulated_ones_whatever_the_speed_of_the_film(self):
         self.simulate([{"name": "ball", "shape": {"sphere": {"radius": 0.1}}, "linearVelocity": [1, 0, 0]}],
                       output={"framesPerSecond": 10, "playbackSpeed": 0.25})

@@ -241,6 +241,8 @@ TEST(Peers, SimbodyIsAsExactAsItIsAskedToBe) {
 TEST(Peers, WhatTheyDoNotHaveIsNamed) {
   EXPECT_EQ(missingIn("bullet", fileOf("scenes/slack_rope.json")), "ropes");
   EXPECT_EQ(missingIn("ode", fileOf("scenes/struck_model.json")), "pushes");
+  for (const char* name : {"bullet", "ode", "mujoco", "simbody"})
+    EXPECT_EQ(missingIn(name, fileOf("scenes/kapitza.json")), "driven bodies");
   EXPECT_THAT(missingIn("bullet", fileOf("scenes/gears_fall.json")), ::testing::HasSubstr("concave mesh"));
   EXPECT_THAT(missingIn("mujoco", fileOf("scenes/gears_fall.json")), ::testing::HasSubstr("no primitive"));
   EXPECT_THAT(missingIn("simbody", fileOf("scenes/newtons_cradle.json")), ::testing::HasSubstr("contact"));

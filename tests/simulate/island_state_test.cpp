@@ -90,6 +90,47 @@ TEST(IslandState, WakesWhatAPushActsUpon) {
   EXPECT_THAT(at.mechanism().pushes, IsEmpty());
 }
 
+/// A hand that rests at (0, 2, 0) until 0.5 s and is at (1, 2, 0) at 1.5 s, and a ball beside it.
+struct HandAndBall : OneIsland {
+  HandAndBall()
+      : OneIsland(R"("duration": 9, "gravity": [0, 0, 0], "bodies": [
+          {"name": "hand", "shape": {"sphere": {"radius": 0.1}}, "motion": "driven", "keyFrames":
+            [{"time": 0.5, "position": [0, 2, 0]}, {"time": 1.5, "position": [1, 2, 0]}]}, )" +
+                  flyingBall("ball", Vec3(3, 2, 0), Vec3(0, 1, 0)) + "]") {}
+};
+
+// Its place is not the integrator's, which knows it to the method's error alone: the middle of the way from rest to
+// rest.
+TEST(IslandState, PutsDrivenBodiesWhereTheyArePrescribed) {
+  HandAndBall at;
+  IslandState& island = at.island;
+  ASSERT_TRUE(at.mechanism().bodies[0].isDriven());
+  island.time = 0.5;
+  island.integrate(rk4, 0.5);
+  EXPECT_NEAR(centerOfMass(island.step.state, 0).x(), 0.5, 1e-15);
+  EXPECT_NEAR(centerOfMass(island.step.state, 1).y(), 2.5, 1e-15);
+  const VectorX integrated = [&] {
+    rk4(island.rightHandSide, island.state, 0.5, 0.5, island.step);
+    return island.step.state;
+  }();
+  EXPECT_GT(std::abs(centerOfMass(integrated, 0).x() - 0.5), 1e-3);
+}
+
+// A hand at rest wakes when its way begins: a change at a time that is known, before which no step ends.
+TEST(IslandState, WakesWhatIsDrivenWhenItsWayBegins) {
+  HandAndBall at;
+  IslandState& island = at.island;
+  EXPECT_EQ(island.nextChange(), 0.5);
+  island.resting.bringToRest({0}, at.state());
+  island.time = 0.25;
+  EXPECT_FALSE(island.makeChanges());
+  EXPECT_TRUE(island.resting.isResting(0));
+  island.time = 0.5;
+  EXPECT_TRUE(island.makeChanges());
+  EXPECT_FALSE(island.resting.isResting(0));
+  EXPECT_EQ(island.nextChange(), 1.5);
+}
+
 // Spheres around both bodies, of 0.1 m each, decide.
 TEST(IslandState, EndsWhereContactCannotBeComputed) {
   OneIsland at(R"("duration": 9, "bodies": [{"name": "floor", "shape": {"plane": {}}, "motion": "static"},)" +

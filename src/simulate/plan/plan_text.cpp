@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "core/printable.h"
+#include "scene/count_bodies.h"
 
 namespace cradle {
 namespace {
@@ -90,9 +92,8 @@ std::string promiseOfAll(const Plan& plan) {
 std::string describe(const Plan& plan, const Scene& scene) {
   std::string text = fmt::format("{} {} in {} {}", scene.bodies.size(), scene.bodies.size() == 1 ? "body" : "bodies",
                                  plan.islands.size(), plan.islands.size() == 1 ? "island" : "islands");
-  std::size_t fixed = 0;
-  for (const Body& body : scene.bodies) fixed += body.motion == Motion::fixed;
-  if (fixed > 0) text += fmt::format(", {} fixed", fixed);
+  for (const auto& [motion, name] : {std::pair(Motion::fixed, "fixed"), {Motion::driven, "driven"}})
+    if (const auto count = countBodies(scene, motion); count > 0) text += fmt::format(", {} {}", count, name);
   const std::vector<std::string> collisions = collisionOfModels(scene);
   if (!collisions.empty()) text += fmt::format("\ncollision of models: {}", fmt::join(collisions, ", "));
   AlikeIslands alike;

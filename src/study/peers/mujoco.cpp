@@ -9,6 +9,7 @@
 #include <array>
 
 #include "core/error.h"
+#include "scene/count_bodies.h"
 #include "study/peers/mujoco_model.h"
 #include "study/peers/peer_shapes.h"
 
@@ -121,6 +122,7 @@ std::string missingInMujoco(const Scene& scene, const Assembly& assembly) {
   if (!scene.pushes.empty()) return "pushes";
   for (const Constraint& loop : jointTreeOf(assembly).loops)
     if (std::holds_alternative<SliderConstraint>(loop.kind)) return "sliders that close a loop";
+  if (countBodies(scene, Motion::driven) > 0) return "driven bodies";
   return meshThatTouches(scene);
 }
 

@@ -118,5 +118,32 @@ TEST(PlanIslands, AreThoseOfAllPairs) {
   EXPECT_GT(islandsOfSome, 100);
 }
 
+/// Two balls 6 m apart on short rods, which a table may touch, and one that hangs from its middle.
+Scene aroundATable(const std::string& motion) {
+  std::string bodies = R"({"name": "table", "shape": {"box": {"size": [8, 0.2, 2]}}, )" + motion + "}";
+  for (const auto& [name, place] :
+       {std::pair("left", Vec3(-3, 0.3, 0)), {"right", {3, 0.3, 0}}, {"hung", {0, -0.6, 0}}})
+    bodies += fmt::format(R"(, {{"name": "{}", "shape": {{"sphere": {{"radius": 0.1}}}}, "position": {}}})", name,
+                          vectorText(place));
+  return sceneWith(
+      R"("duration": 0.1, "bodies": [)" + bodies +
+      R"(], "rods": [{"bodyA": "left", "anchorB": [-3, 0.6, 0]}, {"bodyA": "right", "anchorB": [3, 0.6, 0]},
+                                  {"bodyA": "hung", "bodyB": "table", "anchorB": [0, 0, 0]}])");
+}
+
+// As what is fixed: bodies that touch it or hang on it do not depend on each other by that. Unlike that, it is one of
+// the bodies of each of their islands.
+TEST(PlanIslands, AreNotJoinedByWhatIsDriven) {
+  const Scene scene = aroundATable(R"("motion": "driven", "oscillation": {"amplitude": 0.1, "frequency": 1})");
+  const std::vector<IslandPlan> islands = findIslands(scene, ReachablePairs(scene));
+  ASSERT_EQ(islands.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(islands[i].bodies, std::vector<int>{static_cast<int>(i) + 1});
+    EXPECT_EQ(islands[i].driven, std::vector<int>{0});
+  }
+  const Scene dynamic = aroundATable(R"("motion": "dynamic")");
+  EXPECT_EQ(findIslands(dynamic, ReachablePairs(dynamic)).size(), 1u);
+}
+
 }  // namespace
 }  // namespace cradle

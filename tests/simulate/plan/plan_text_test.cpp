@@ -109,6 +109,14 @@ TEST(PlanText, CountsOneBodyInOneIsland) {
   EXPECT_THAT(describe(planOf(scene), scene), testing::StartsWith("1 body in 1 island\na\n"));
 }
 
+TEST(PlanText, CountsWhatIsDriven) {
+  const Scene scene = sceneWith(R"("duration": 1, "bodies": [{"name": "a", "shape": {"sphere": {"radius": 0.1}}},
+      {"name": "hand", "shape": {"sphere": {"radius": 0.1}}, "motion": "driven", "linearVelocity": [1, 0, 0],
+       "collision": "none"},
+      {"name": "floor", "shape": {"plane": {}}, "motion": "static", "position": [0, -9, 0]}])");
+  EXPECT_THAT(describe(planOf(scene), scene), testing::StartsWith("3 bodies in 1 island, 1 fixed, 1 driven\na\n"));
+}
+
 // A ground with a valley is a mesh; flat, it is a box. What touches nothing has no collision.
 TEST(PlanText, TellsOnceAsWhatModelsTouch) {
   const auto modelsText = [](bool isFlat, const std::vector<std::string>& collisions) {
