@@ -10,13 +10,16 @@ import html, json, os, re, shutil, subprocess, sys, tempfile
 SIZE = "480x270"
 MOST_BYTES = 4_000_000  # of all pictures: a page that loads at once
 FRAMES = {
-    "arch": 110, "backspin_ball": 60, "ball_tray": 60, "billiard_break": 34, "bouncing_balls": 75, "box_tray": 60,
-    "cart": 260, "coupled_pendulums": 400, "coupled_pendulums_rod": 150, "dominoes": 110, "double_pendulum": 250,
-    "dropped_model": 30, "gears_fall": 30, "gears_on_platform": 40, "hanging_chain": 60, "hard_sphere_gas": 60,
-    "heavy_top_stack": 120, "lagrange_top": 150, "newtons_cradle": 28, "newtons_cradles": 30, "piston": 25, "platform_drop": 45,
-    "platform_drop_rods": 40, "rod_pendulum": 60, "rolling_race": 200, "rope_bridge": 40, "rope_slack_taut": 60, "slack_rope": 60,
+    "arch": 110, "backspin_ball": 60, "ball_tray": 60, "belt": 60, "billiard_break": 34, "bouncing_balls": 75,
+    "box_tray": 60, "cart": 260, "coupled_pendulums": 400, "coupled_pendulums_rod": 150, "dominoes": 110,
+    "double_pendulum": 250, "drag_and_drop": 145, "dropped_model": 30, "gears_fall": 30, "gears_on_platform": 40,
+    "hanging_chain": 60, "hard_sphere_gas": 60, "heavy_top_stack": 120, "kapitza": 130, "lagrange_top": 150,
+    "newtons_cradle": 28, "newtons_cradles": 30, "piston": 25, "platform_drop": 45, "platform_drop_rods": 40,
+    "rod_pendulum": 60,
+    "rolling_race": 200, "rope_bridge": 40, "rope_slack_taut": 60, "shaken_table": 150, "slack_rope": 60,
     "sliding_blocks": 120, "spinning_handle": 200, "struck_model": 35, "suspended_model": 45, "suspended_model_rod": 45,
-    "top_on_ground": 350, "tray_of_balls": 120, "triple_pendulum": 75, "two_models_one_rod": 100, "two_models_one_spring": 100,
+    "top_on_ground": 350, "tray_of_balls": 120, "triple_pendulum": 75, "turntable": 24, "two_models_one_rod": 100,
+    "two_models_one_spring": 100,
 }
 
 

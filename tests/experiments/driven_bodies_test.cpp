@@ -203,54 +203,55 @@ TEST(DrivenBodies, PendulumOnAVibratingSupportStandsUpright) {
 /// A ball that rolls on a turntable, by time stepping: what drives the disc accelerates the place under the ball within
 /// a step, which is no energy from nowhere. Velocities of 4 m/s that turn by 1 % in a step are right to 1e-4 of that.
 TEST(DrivenBodies, BallOnATurntableKeepsItsEnergyInSteps) {
-  const Trajectory moved = run(3.2, 1e-6,
-                               drivenBox({6, 0.2, 6}, R"("angularVelocity": [0, 7, 0])") +
-                                   R"(, {"name": "ball", "material": "m", "shape": {"sphere": {"radius": 0.1}},
+  const Trajectory moved = runDriven(3.2, 1e-6,
+                                     drivenBox({6, 0.2, 6}, R"("angularVelocity": [0, 7, 0])") +
+                                         R"(, {"name": "ball", "material": "m", "shape": {"sphere": {"radius": 0.1}},
       "position": [0.5, 0.2, 0], "linearVelocity": [0, 0, 0.3], "angularVelocity": [38, 0, 0]})",
-                               R"("method": {"name": "rk4", "timeStep": 0.001},)");
+                                     R"("method": {"name": "rk4", "timeStep": 0.001},)");
   for (const Frame& frame : moved.frames) {
     const double angle = 2 * frame.time;
     EXPECT_NEAR(frame.states[1].position.x(), 0.65 - 0.15 * std::cos(angle), 1e-4) << frame.time;
     EXPECT_NEAR(frame.states[1].position.z(), 0.15 * std::sin(angle), 1e-4) << frame.time;
   }
   EXPECT_EQ(moved.cost.corrections.size(), 0u);
-  expectBalance(moved, 1e-11, 1e-6);
+  expectLedger(moved, 1e-11, 1e-6);
 }
 
 /// A hand that goes up with V jerks a ball of 2 kg, which hangs slack, to (1 + e) V. The impulse m (1 + e) V works with
 /// V; what it takes is m (1 - e^2) V^2 / 2.
 TEST(DrivenBodies, HandJerksABallByARope) {
   for (const double restitution : {0.0, 0.5}) {
-    const Trajectory moved = run(0.5, 1e-8,
-                                 R"({"name": "hand", "shape": {"sphere": {"radius": 0.1}}, "motion": "driven",
+    const Trajectory moved =
+        runDriven(0.5, 1e-8,
+                  R"({"name": "hand", "shape": {"sphere": {"radius": 0.1}}, "motion": "driven",
       "collision": "none", "linearVelocity": [0, 2, 0], "position": [0, 0.5, 0]},
       {"name": "ball", "mass": 2, "shape": {"sphere": {"radius": 0.1}}, "collision": "none"})",
-                                 fmt::format(R"("gravity": [0, 0, 0], "ropes": [{{"bodyA": "ball", "bodyB": "hand",
+                  fmt::format(R"("gravity": [0, 0, 0], "ropes": [{{"bodyA": "ball", "bodyB": "hand",
       "anchorB": [0, 0, 0], "maxLength": 1, "restitution": {}}}],)",
-                                             restitution));
+                              restitution));
     EXPECT_NEAR(timeOf(moved, EventKind::taut), 0.25, 1e-9);
     const double speed = 2 * (1 + restitution);
     const Frame& end = moved.frames.back();
     EXPECT_NEAR(end.states[1].linearVelocity.y(), speed, 1e-12);
     EXPECT_NEAR(end.energy.work, 2 * speed * 2, 1e-11);
     EXPECT_NEAR(end.energy.impact, (1 - restitution * restitution) * 4, 1e-11);
-    expectBalance(moved, 1e-11, 1e-8);
+    expectLedger(moved, 1e-11, 1e-8);
   }
 }
 
 /// A bar that a hand lifts by two ropes, of which one is longer: the shorter one pulls within the impulse of the other,
 /// and the hand works against both.
 TEST(DrivenBodies, HandLiftsABarByUnequalRopes) {
-  const Trajectory moved = run(0.8, 1e-8,
-                               R"({"name": "hand", "shape": {"sphere": {"radius": 0.1}}, "motion": "driven",
+  const Trajectory moved = runDriven(0.8, 1e-8,
+                                     R"({"name": "hand", "shape": {"sphere": {"radius": 0.1}}, "motion": "driven",
       "collision": "none", "linearVelocity": [0.1, 1, 0], "position": [0, 0.5, 0]},
       {"name": "bar", "mass": 2, "shape": {"box": {"size": [1, 0.1, 0.2]}}, "collision": "none"})",
-                               R"("gravity": [0, 0, 0], "ropes": [
+                                     R"("gravity": [0, 0, 0], "ropes": [
       {"bodyA": "bar", "anchorA": [0.5, 0, 0], "bodyB": "hand", "anchorB": [0, 0, 0], "maxLength": 0.75},
       {"bodyA": "bar", "anchorA": [-0.5, 0, 0], "bodyB": "hand", "anchorB": [0, 0, 0], "maxLength": 0.8}],)");
   EXPECT_GE(eventsOf(moved, EventKind::taut).size(), 2u);
   EXPECT_GT(moved.frames.back().energy.work, 0.5);
-  expectBalance(moved, 1e-11, 1e-6);
+  expectLedger(moved, 1e-11, 1e-6);
 }
 
 /// A ball on a joint of a crank goes around with it: what drives the crank works against the ball's weight alone.

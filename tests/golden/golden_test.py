@@ -53,6 +53,11 @@ FRAMES = {  # scene: frames that are drawn; states are kept for these too
     "box_tray": (0, 60, 290),
     "arch": (0, 90, 200),
     "piston": (0, 25, 300),
+    "belt": (0, 60, 300),
+    "drag_and_drop": (0, 60, 180, 350),
+    "kapitza": (0, 160, 300),
+    "shaken_table": (0, 40, 250),
+    "turntable": (0, 20, 250),
 }
 TOLERANCE = 1e-9
 
