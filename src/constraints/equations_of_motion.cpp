@@ -11,6 +11,8 @@ namespace {
 
 // 1/s: what steps let the velocity of a motor that holds be off goes so fast, which steps follow with ease.
 constexpr double kMotorRelaxation = 10;
+// Of the largest pivot: motors whose responses differ by less work on one motion.
+constexpr double kSameMotors = 1e-9;
 
 /// World derivative of the angular velocity of a body without torque: body frame I w' = -w x I w. The derivative of w
 /// is the same vector in both frames, since w x w = 0.
@@ -47,11 +49,17 @@ void EquationsOfMotion::evaluate(double time, const VectorX& state, VectorX& der
   holdResting(state, derivative);
   if (mechanism_.driven.empty()) return;
   addPowerOfConstraints(state, derivative);
-  addPowerOfContacts(state, derivative);
+  if (hasContacts()) addPowerOfContacts(state, derivative);
+}
+
+void EquationsOfMotion::evaluateWithoutContacts(double time, const VectorX& state, VectorX& derivative) {
+  isWithoutContacts_ = true;
+  evaluate(time, state, derivative);
+  isWithoutContacts_ = false;
 }
 
 void EquationsOfMotion::applyConstraints(const VectorX& state, VectorX& derivative) {
-  if (!mechanism_.contacts.empty()) {
+  if (hasContacts()) {
     holdResting(state, derivative);
     contactSolver_.factorize(state, frames_, resting_);
   } else if (solver_.hasConstraints()) {
@@ -63,7 +71,7 @@ void EquationsOfMotion::applyConstraints(const VectorX& state, VectorX& derivati
 
 /// Adds what constraints and contacts give, which were factorised.
 void EquationsOfMotion::constrain(VectorX& derivative) {
-  if (!mechanism_.contacts.empty()) {
+  if (hasContacts()) {
     contactSolver_.constrainAccelerations(derivative);
     multipliers_ = contactSolver_.bilateralMultipliers();
   } else if (solver_.hasConstraints()) {
@@ -76,16 +84,18 @@ void EquationsOfMotion::constrain(VectorX& derivative) {
 /// Adds the forces of motors, and their power to the work.
 void EquationsOfMotion::applyMotors(const VectorX& state, VectorX& derivative) {
   const std::vector<JointMotor>& motors = mechanism_.motors;
-  motorForces_.setZero(std::ssize(motors)), motorMobilities_.setZero(std::ssize(motors));
+  const bool areKnown = isWithoutContacts_ && motorForces_.size() == std::ssize(motors);
+  if (!areKnown) motorForces_.setZero(std::ssize(motors));
+  motorMobilities_.setZero(std::ssize(motors));
   std::vector<ConstraintRow> rows;
   std::vector<std::size_t> holding;
   for (std::size_t i = 0; i < motors.size(); ++i) {
     rows.push_back(rowOf(motors[i], state, frames_));
     const bool holds = motors[i].mode == JointMotor::Mode::holds;
-    if (holds && !isResting(motors[i].joint)) holding.push_back(i);
-    if (holds) continue;
-    motorForces_[static_cast<Eigen::Index>(i)] = motors[i].sign * motors[i].maxForce;
-    addForce(rows[i], motors[i].sign * motors[i].maxForce, state, derivative);
+    if (holds && !areKnown && !isResting(motors[i].joint)) holding.push_back(i);
+    double& force = motorForces_[static_cast<Eigen::Index>(i)];
+    if (!holds) force = motors[i].sign * motors[i].maxForce;
+    if (force != 0) addForce(rows[i], force, state, derivative);
   }
   if (!holding.empty()) hold(holding, rows, state, derivative);
   for (std::size_t i = 0; i < motors.size(); ++i)
@@ -117,7 +127,9 @@ void EquationsOfMotion::hold(const std::vector<std::size_t>& holding, const std:
     response.col(at(k)) = accelerations(pushed) - free;
     wanted[at(k)] -= relaxation * (rateOf(rows[holding[k]], state) - motors[holding[k]].targetVelocity);
   }
-  const VectorX forces = response.completeOrthogonalDecomposition().solve(wanted);
+  Eigen::CompleteOrthogonalDecomposition<MatrixX> decomposition;  // wheels on one road share their load
+  decomposition.setThreshold(kSameMotors);
+  const VectorX forces = decomposition.compute(response).solve(wanted);
   for (std::size_t k = 0; k < holding.size(); ++k) {
     const double limit = motorTimeStep_ > 0 ? motors[holding[k]].maxForce : std::numeric_limits<double>::infinity();
     const double force = std::clamp(forces[at(k)], -limit, limit);

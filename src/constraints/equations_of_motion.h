@@ -34,6 +34,9 @@ class EquationsOfMotion {
   /// State derivative at `time` (s), at which driven bodies are where `state` says. Allocates only in its first call.
   void evaluate(double time, const VectorX& state, VectorX& derivative);
 
+  /// The same without contacts, for what is to find their forces: motors that hold have the forces that they had last.
+  void evaluateWithoutContacts(double time, const VectorX& state, VectorX& derivative);
+
   void setResting(std::size_t body, bool resting);
   bool isResting(std::size_t body) const { return resting_[body] != 0; }
   const std::vector<char>& resting() const { return resting_; }
@@ -69,6 +72,7 @@ class EquationsOfMotion {
   void applyGravityAndGyroscopicTerms(const VectorX& state, VectorX& derivative) const;
   void applySprings(const VectorX& state, VectorX& derivative) const;
   void applyPushes(const VectorX& state, VectorX& derivative) const;
+  bool hasContacts() const { return !isWithoutContacts_ && !mechanism_.contacts.empty(); }
   void applyConstraints(const VectorX& state, VectorX& derivative);
   bool isResting(const Constraint& constraint) const;
   void constrain(VectorX& derivative);
@@ -88,7 +92,8 @@ class EquationsOfMotion {
   ContactSolver contactSolver_;
   VectorX multipliers_;
   VectorX motorForces_, motorMobilities_;
-  double motorTimeStep_ = 0;  // s; 0: motors hold without a limit
+  bool isWithoutContacts_ = false;  // in the evaluation under way
+  double motorTimeStep_ = 0;        // s; 0: motors hold without a limit
   long evaluations_ = 0;
 };
 

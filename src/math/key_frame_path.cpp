@@ -60,6 +60,11 @@ void KeyFramePath::solveDerivatives(const Part& part) {
   const std::size_t pieces = knots_.size() - 1, first = repeats_ ? 0 : 1;
   if (pieces == first) return;
   const auto columnOf = [first](std::size_t knot) { return 2 * static_cast<Eigen::Index>(knot - first); };
+  // Unknowns and rows are scaled by the shorter of both pieces at a knot, so that all entries are of order 100 at most.
+  const auto scaleOf = [this, pieces](std::size_t knot) {
+    const std::size_t before = (knot + pieces - 1) % pieces;
+    return std::min(lengthOf(before), lengthOf(knot % pieces));
+  };
   const auto values = [&part](auto& vector) { return vector.segment(part.first, part.count); };
   std::vector<Eigen::Triplet<double>> entries;
   MatrixX right = MatrixX::Zero(columnOf(pieces), part.count);
@@ -67,8 +72,9 @@ void KeyFramePath::solveDerivatives(const Part& part) {
     if (!repeats_ && (knot == 0 || knot == pieces)) return;  // at rest
     const double seam = knot == pieces ? part.seam : 1;
     const Eigen::Index column = columnOf(knot == pieces ? 0 : knot);
-    entries.emplace_back(row, column, seam * ofFirst);
-    entries.emplace_back(row, column + 1, seam * ofSecond);
+    const double scale = scaleOf(knot);
+    entries.emplace_back(row, column, seam * ofFirst / scale);
+    entries.emplace_back(row, column + 1, seam * ofSecond / (scale * scale));
   };
   const auto add = [&](Eigen::Index row, std::size_t piece, const EndDerivative& derivative, double sign) {
     const Values way = knots_[piece + 1].value - knots_[piece].value;
@@ -78,11 +84,12 @@ void KeyFramePath::solveDerivatives(const Part& part) {
   };
   for (std::size_t knot = first; knot < pieces; ++knot) {
     const std::size_t before = (knot + pieces - 1) % pieces;
-    const double sign = knot == 0 ? part.seam : 1;
-    add(columnOf(knot), before, kThirdAtEnd.over(3, lengthOf(before)), sign);
-    add(columnOf(knot), knot, kThirdAtStart.over(3, lengthOf(knot)), -1);
-    add(columnOf(knot) + 1, before, kFourthAtEnd.over(4, lengthOf(before)), sign);
-    add(columnOf(knot) + 1, knot, kFourthAtStart.over(4, lengthOf(knot)), -1);
+    const double sign = knot == 0 ? part.seam : 1, scale = scaleOf(knot), third = scale * scale * scale,
+                 fourth = third * scale;
+    add(columnOf(knot), before, kThirdAtEnd.over(3, lengthOf(before)), sign * third);
+    add(columnOf(knot), knot, kThirdAtStart.over(3, lengthOf(knot)), -third);
+    add(columnOf(knot) + 1, before, kFourthAtEnd.over(4, lengthOf(before)), sign * fourth);
+    add(columnOf(knot) + 1, knot, kFourthAtStart.over(4, lengthOf(knot)), -fourth);
   }
   Eigen::SparseMatrix<double> matrix(columnOf(pieces), columnOf(pieces));
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -93,8 +100,9 @@ void KeyFramePath::solveDerivatives(const Part& part) {
     if (knot == pieces && !repeats_) continue;
     const double seam = knot == pieces ? part.seam : 1;
     const Eigen::Index row = columnOf(knot == pieces ? 0 : knot);
-    values(knots_[knot].first) = seam * derivatives.row(row).transpose();
-    values(knots_[knot].second) = seam * derivatives.row(row + 1).transpose();
+    const double scale = scaleOf(knot);
+    values(knots_[knot].first) = seam / scale * derivatives.row(row).transpose();
+    values(knots_[knot].second) = seam / (scale * scale) * derivatives.row(row + 1).transpose();
   }
 }
 

@@ -31,6 +31,11 @@ void checkOrder(const KeyFrame& before, const KeyFrame& key, const Field& field,
   if (!(key.time > before.time))
     addFault(faults, field,
              fmt::format("time is {} s, and {} s in the key frame before; times must ascend", key.time, before.time));
+  const double speed = (key.pose.translation - before.pose.translation).norm() / (key.time - before.time);
+  if (key.time > before.time && speed > kSpeeds.most)
+    addFault(faults, field,
+             fmt::format("the body would come here from the key frame before with {:.3g} m/s; allowed are {:g}", speed,
+                         kSpeeds.most));
   const double halfCosine = std::abs(before.pose.rotation.dot(key.pose.rotation));
   if (halfCosine < cos(kMaxTurnDegrees / 2 * kRadiansPerDegree))
     addFault(

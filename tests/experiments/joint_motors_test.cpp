@@ -129,6 +129,45 @@ TEST(JointMotors, WheelsDriveACar) {
   }
 }
 
+/// The same car climbs with motors that hold the wheels at w: with all their torque until it has v = w r, and then at
+/// v. A wheel on ice spins at w, and the car slides down: a = g (sin - mu cos) less.
+TEST(JointMotors, CarClimbsASlopeAtItsVelocityAndSlipsOnIce) {
+  const double radius = 0.1, most = 1, tilt = 0.3, target = 20, masses = 8, rolling = 4 * 0.4;
+  for (const double friction : {0.8, 0.05}) {
+    std::string bodies = R"({"name": "ground", "material": "m", "shape": {"plane": {}}, "motion": "static"},
+      {"name": "board", "mass": 4, "shape": {"box": {"size": [0.8, 0.05, 0.3]}}, "position": [0, 0.1, 0]})",
+                hinges;
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 place(i % 2 ? 0.3 : -0.3, radius, i < 2 ? 0.3 : -0.3);
+      bodies += fmt::format(
+          R"(, {{"name": "w{}", "material": "m", "mass": 1, "shape": {{"sphere": {{"radius": {}}}}}, "position": {}}})",
+          i, radius, vectorText(place));
+      hinges +=
+          fmt::format(R"({}{{"bodyA": "board", "anchorA": {}, "bodyB": "w{}", "anchorB": [0, 0, 0], "axis": [0, 0, 1],
+        "motor": {{"targetVelocity": {}, "maxTorque": {}}}}})",
+                      i ? ", " : "", vectorText(place - Vec3(0, 0.1, 0)), i, target, most);
+    }
+    const Trajectory moved = runMotor(
+        2, 1e-6, bodies,
+        fmt::format(R"("gravity": {}, "materials": {{"m": {{"staticFriction": {}, "dynamicFriction": {}}}}},
+      "hinges": [{}])",
+                    vectorText(kGravity * Vec3(-std::sin(tilt), -std::cos(tilt), 0)), friction, friction, hinges));
+    const Frame& end = moved.frames.back();
+    if (friction > 0.5) {
+      const double acceleration = (4 * most / radius - masses * kGravity * std::sin(tilt)) / (masses + rolling);
+      const double reached = target * radius / acceleration;
+      for (const Frame& frame : moved.frames) {
+        const double t = std::min(frame.time, reached);
+        EXPECT_NEAR(frame.states[0].position.x(), acceleration * t * t / 2 + target * radius * (frame.time - t), 1e-6);
+      }
+    } else {
+      EXPECT_NEAR(end.states[1].angularVelocity.z(), -target, 1e-6);
+      EXPECT_NEAR(end.states[0].linearVelocity.x(), -kGravity * (std::sin(tilt) - friction * std::cos(tilt)) * 2, 1e-6);
+    }
+    expectLedger(moved, 1e-9, 1e-4);
+  }
+}
+
 /// The first wheel in steps of a fixed length: within what a step may be off.
 TEST(JointMotors, MotorBringsAWheelToItsVelocityInSteps) {
   const Trajectory moved =

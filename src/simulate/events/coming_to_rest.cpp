@@ -69,11 +69,8 @@ void ComingToRest::letSleep(const std::vector<Contact>& touching) {
 /// group.
 bool ComingToRest::canBeInEquilibrium(const std::vector<Contact>& touching, const DisjointSets& groups, int group) {
   const Mechanism& mechanism = island_.assembly.mechanism;
-  std::vector<ContactConstraint> active;
-  std::swap(active, island_.assembly.mechanism.contacts);
   VectorX derivative;
-  island_.equations.evaluate(island_.time, island_.state, derivative);
-  std::swap(active, island_.assembly.mechanism.contacts);
+  island_.equations.evaluateWithoutContacts(island_.time, island_.state, derivative);
   std::vector<BodyFrame> frames;
   findBodyFrames(mechanism.bodies, island_.state, frames);
   std::vector<ContactRows> contacts;
@@ -102,12 +99,11 @@ bool ComingToRest::doLimitsHold(const std::vector<ContactRows>& contacts, const 
   const std::vector<int>& rows = limits_.tautRows();
   if (std::all_of(rows.begin(), rows.end(), [](int row) { return row < 0; })) return true;
   Mechanism& mechanism = island_.assembly.mechanism;
-  std::vector<ContactConstraint> active;
   Constraints constraints;
-  std::swap(active, mechanism.contacts), std::swap(constraints, mechanism.constraints);
+  std::swap(constraints, mechanism.constraints);
   VectorX derivative;
-  island_.equations.evaluate(island_.time, island_.state, derivative);
-  std::swap(active, mechanism.contacts), std::swap(constraints, mechanism.constraints);
+  island_.equations.evaluateWithoutContacts(island_.time, island_.state, derivative);
+  std::swap(constraints, mechanism.constraints);
   if (!contacts.empty())
     DenseDelassus(allRowsOf(contacts), mechanism.bodies, frames, nullptr).apply(impulses, derivative);
   constraints_.constrainAccelerations(derivative);

@@ -241,10 +241,9 @@ bool ContactChanges::areForcesFeasible(const std::vector<ContactRecord>& records
   }
   ConstraintSolver constraints(mechanism().constraints, mechanism().bodies);
   if (constraints.hasConstraints()) constraints.factorize(state, frames_);
-  std::vector<ContactConstraint> active;  // the accelerations are those without contact
-  std::swap(active, mechanism().contacts);
-  island_.equations.evaluate(timeAt(fraction), state, derivative_);
-  std::swap(active, mechanism().contacts);
+  // With all contacts for the forces of motors, and then without.
+  if (!mechanism().motors.empty()) island_.equations.evaluate(timeAt(fraction), state, derivative_);
+  island_.equations.evaluateWithoutContacts(timeAt(fraction), state, derivative_);
   const DenseDelassus delassus(allRowsOf(rows), mechanism().bodies, frames_, &constraints);
   const SlidingSolution solution = solveContactForces(members, rows, delassus, derivative_);
   const double most = EventTolerances::kInfeasibleRatio *

@@ -159,7 +159,7 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
     members.push_back(&found.records[i]);
   }
   VectorX derivative;
-  island.equations.evaluate(island.time, island.state, derivative);
+  island.equations.evaluateWithoutContacts(island.time, island.state, derivative);
   if (nothingCloses(rows, derivative, mechanism.gravity.norm())) return;
   const DenseDelassus delassus(allRowsOf(rows), mechanism.bodies, input.frames, &constraints);
   const SlidingSolution solution = solveContactForces(members, rows, delassus, derivative);
