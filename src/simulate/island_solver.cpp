@@ -137,7 +137,7 @@ void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
   if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->addContactMotion(fraction, reported_);
   const Mechanism& mechanism = island_.assembly.mechanism;
   const auto* events = std::get_if<EventMotion>(&motion_);
-  if (events && keepsConstraints && !mechanism.driven.empty()) integrateWork(*events, fraction);
+  if (events && !mechanism.driven.empty()) integrateWork(*events, fraction);
   if (events && keepsConstraints && !events->contactsOfStep().empty()) {
     project(events->contactsOfStep());
   } else if (keepsConstraints && solver_.hasConstraints()) {
@@ -157,9 +157,17 @@ void IslandSolver::integrateWork(const EventMotion& events, double fraction) {
   constexpr double kWeights[] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
   const Step& step = island_.step;
   Mechanism& mechanism = island_.assembly.mechanism;
-  // As it was in the step: what has ended it may have changed contacts, and brought bodies to rest.
+  // As it was in the step: what has ended it may have changed forces, and brought bodies to rest.
   std::vector<ContactConstraint> contacts = events.contactsOfStep();
-  std::swap(contacts, mechanism.contacts);
+  Constraints constraints = events.constraintsOfStep();
+  std::vector<PushForce> pushes = events.pushesOfStep();
+  std::vector<JointMotor> motors = events.motorsOfStep();
+  const auto swapForces = [&] {
+    std::swap(contacts, mechanism.contacts);
+    std::swap(constraints, mechanism.constraints), std::swap(pushes, mechanism.pushes);
+    std::swap(motors, mechanism.motors);
+  };
+  swapForces();
   const std::vector<char> resting = island_.equations.resting();
   findStill();
   for (std::size_t i = 0; i < resting.size(); ++i)
@@ -173,7 +181,7 @@ void IslandSolver::integrateWork(const EventMotion& events, double fraction) {
       island_.equations.evaluate(time, sample_, derivative_);
       power += kWeights[i] / 2 * pushWork(derivative_);
     }
-  std::swap(contacts, mechanism.contacts);
+  swapForces();
   for (std::size_t i = 0; i < resting.size(); ++i) island_.equations.setResting(i, resting[i]);
   pushWork(reported_) = pushWork(step.startState) + fraction * step.timeStep * power;
 }

@@ -354,6 +354,22 @@ void LimitEvents::endImpact(double time, const std::vector<ImpactContact>& impac
   rebuildConstraints();
 }
 
+void LimitEvents::giveWay(const std::vector<Contact>& touching) {
+  if (assembly_.mechanism.driven.empty()) return;
+  const auto isDriven = [this](int body) {
+    return body != kFixed && assembly_.mechanism.bodies[static_cast<std::size_t>(body)].isDriven();
+  };
+  const auto touches = [&](int body) {
+    return std::any_of(touching.begin(), touching.end(),
+                       [body](const Contact& contact) { return contact.bodyA == body || contact.bodyB == body; });
+  };
+  for (std::size_t i = 0; i < tautRow_.size(); ++i) {
+    const auto [a, b] = bodiesOf(assembly_.limits[i]);
+    if (isTaut(i) && ((isDriven(a) && touches(b)) || (isDriven(b) && touches(a)))) tautRow_[i] = -1;
+  }
+  rebuildConstraints();
+}
+
 void LimitEvents::release(double time, std::size_t rope, const VectorX& state) {
   tautRow_[rope] = -1;
   rebuildConstraints();

@@ -41,6 +41,10 @@ class LimitEvents {
   /// Impulses and new rods alone, of ropes at their length that lengthen. True if there are any.
   bool pullStretched(double time, VectorX& state);
 
+  /// Taut ropes from a driven body to one of those that touch are no rods any more, until they lengthen: what drives
+  /// their ends would press bodies by them onto what they touch.
+  void giveWay(const std::vector<Contact>& touching);
+
   /// Ropes at their length as members of an impact: they lengthen as contacts close, along the line of their ends.
   /// Those that are taut are no rods until endImpact.
   std::vector<ImpactContact> beginImpact(const VectorX& state);

@@ -108,6 +108,7 @@ TEST(DrivenBody, JumpsFirstWhereAnyOfThemDoes) {
   EXPECT_EQ(nextJump(at.driven, 2), kInfinity);
   add(0, KeyFramePath({{1.25, {Quat::Identity(), Vec3::Zero()}}, {3, {Quat::Identity(), Vec3(0, 1, 0)}}}, false),
       at.driven);
+  EXPECT_EQ(nextJump(at.driven, 0), 1);
   EXPECT_EQ(nextJump(at.driven, 1), 1.25);
   EXPECT_EQ(nextJump(at.driven, 2), 3);
 }

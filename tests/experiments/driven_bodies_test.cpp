@@ -239,6 +239,29 @@ TEST(DrivenBodies, HandJerksABallByARope) {
   }
 }
 
+/// A plate that a hand lowers onto the ground on three ropes, by events and by time stepping: it lies there, and the
+/// ropes are slack. Its impact takes no more than its kinetic energy, and the hand has worked what it sank by.
+TEST(DrivenBodies, HandLowersAPlateOnRopes) {
+  for (const char* method : {"", R"("method": {"name": "rk4", "timeStep": 0.001},)"}) {
+    const Trajectory moved = runDriven(1.5, 1e-6,
+                                 R"({"name": "ground", "shape": {"plane": {}}, "motion": "static"},
+      {"name": "hand", "shape": {"sphere": {"radius": 0.02}}, "motion": "driven", "collision": "none",
+       "keyFrames": [{"time": 0, "position": [0, 0.8, 0]}, {"time": 1, "position": [0, 0.4, 0]}]},
+      {"name": "plate", "mass": 2, "shape": {"box": {"size": [0.4, 0.04, 0.4]}}, "position": [0, 0.3, 0]})",
+                                 std::string(R"("ropes": [
+      {"bodyA": "plate", "anchorA": [0.15, 0.02, 0], "bodyB": "hand", "anchorB": [0, 0, 0]},
+      {"bodyA": "plate", "anchorA": [-0.1, 0.02, 0.12], "bodyB": "hand", "anchorB": [0, 0, 0]},
+      {"bodyA": "plate", "anchorA": [-0.1, 0.02, -0.12], "bodyB": "hand", "anchorB": [0, 0, 0]}],)") +
+                                     method);
+    const Frame& end = moved.frames.back();
+    EXPECT_NEAR(end.states[1].position.y(), 0.02, 1e-6);
+    EXPECT_LT(end.states[1].linearVelocity.norm(), 1e-6);
+    EXPECT_LT(end.energy.impact + end.energy.friction, 2);  // m v^2 / 2, v up to 0.75 m/s
+    EXPECT_NEAR(end.energy.work, -2 * kGravity * 0.28 + end.energy.impact + end.energy.friction, 1e-9);
+    expectLedger(moved, 1e-11, 1e-9);
+  }
+}
+
 /// A bar that a hand lifts by two ropes, of which one is longer: the shorter one pulls within the impulse of the other,
 /// and the hand works against both.
 TEST(DrivenBodies, HandLiftsABarByUnequalRopes) {

@@ -90,7 +90,12 @@ void EventMotion::advance(double frame) {
 
   // The interpolant is that of the forces that act until the event.
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
-  contactsOfStep_ = island_.assembly.mechanism.contacts;
+  const Mechanism& mechanism = island_.assembly.mechanism;
+  contactsOfStep_ = mechanism.contacts;
+  if (!mechanism.driven.empty()) {
+    constraintsOfStep_ = mechanism.constraints, pushesOfStep_ = mechanism.pushes;
+    motorsOfStep_ = mechanism.motors;
+  }
 
   bookStep(island_.assembly.mechanism, step);
 

@@ -39,6 +39,11 @@ class EventMotion {
   /// Contacts that were active over the last step.
   const std::vector<ContactConstraint>& contactsOfStep() const { return contactsOfStep_; }
 
+  /// Ties, pushes and motors that acted in the last step of an island with driven bodies; what ended it may have changed them.
+  const Constraints& constraintsOfStep() const { return constraintsOfStep_; }
+  const std::vector<PushForce>& pushesOfStep() const { return pushesOfStep_; }
+  const std::vector<JointMotor>& motorsOfStep() const { return motorsOfStep_; }
+
   /// Whether all bodies of the island lie still.
   bool isAtRest() const;
 
@@ -91,6 +96,9 @@ class EventMotion {
   double startConstraintError_ = 0;  // m or rad
   std::vector<int> tautRowsBefore_;  // of ropes, before an event
   std::vector<ContactConstraint> contactsOfStep_;
+  Constraints constraintsOfStep_;
+  std::vector<PushForce> pushesOfStep_;
+  std::vector<JointMotor> motorsOfStep_;
   StepSize stepSize_;
   std::array<double, 8> lengths_;  // s: of the last steps, if bodies may touch
   std::size_t lengthIndex_ = 0;

@@ -45,11 +45,12 @@ StepContacts::StepContacts(IslandState& island, double timeStep)
   resting_.setStillTime(tolerances().minAwakeTime(timeStep));
 }
 
-void StepContacts::resolveImpacts(double time, const VectorX& before, VectorX& state) {
+void StepContacts::resolveImpacts(double time, const VectorX& before, LimitEvents& ropes, VectorX& state) {
   if (assembly_.geometry.colliders.empty()) return;
   findSimultaneous(state);
   if (touching_.empty()) return;
   wakeTouched(time, state);
+  ropes.giveWay(touching_);
   if (solver_.hasConstraints()) solver_.factorize(state);
   if (!stepsOnly_) {
     resolveImpactIslands(time, before, state);

@@ -43,7 +43,7 @@ class StepContacts {
   void recordAndLetSleep(double time, VectorX& state);
 
   /// The impacts of this instant. `before` is the state at the step's start.
-  void resolveImpacts(double time, const VectorX& before, VectorX& state);
+  void resolveImpacts(double time, const VectorX& before, LimitEvents& ropes, VectorX& state);
 
   /// The contacts of the last step, or those at its end, between bodies of which one moved.
   const std::vector<Contact>& touching() const { return touching_; }

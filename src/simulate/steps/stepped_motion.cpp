@@ -45,7 +45,7 @@ SteppedMotion::SteppedMotion(IslandState& island, LimitEvents& ropes, const Chos
   island_.equations.setMotorSteps(method.timeStep);
   for (JointMotor& motor : island_.assembly.mechanism.motors)
     if (motor.hasTarget) motor.mode = JointMotor::Mode::holds;
-  contacts_.resolveImpacts(island_.time, island_.state, island_.state);
+  contacts_.resolveImpacts(island_.time, island_.state, ropes_, island_.state);
   ropes_.resolve(island_.time, island_.state);
   if (island_.makeChanges()) ropes_.resolve(island_.time, island_.state);
   island_.requireUnsolvedPairsApart();
@@ -60,6 +60,7 @@ void SteppedMotion::advance(double frame) {
   if (time > windowStart_ + method_.timeStep) windowStart_ = time, eventsInWindow_ = 0;
 
   // How far do bodies move freely, until which event?
+  tautRowsBefore_ = ropes_.tautRows();
   moveFreely(stepEnd);
   before_ = island_.state;
   bool atEvent = stopAtFirstEvent();
@@ -77,8 +78,7 @@ void SteppedMotion::advance(double frame) {
   // What changes at the end of the step?
   if (hasContacts_) contacts_.recordAndLetSleep(time, island_.state);
   if (hasContacts_) contactEnd_ = island_.state;
-  if (atEvent || !contacts_.usesTimeSteppingOnly()) contacts_.resolveImpacts(time, before_, island_.state);
-  tautRowsBefore_ = ropes_.tautRows();
+  if (atEvent || !contacts_.usesTimeSteppingOnly()) contacts_.resolveImpacts(time, before_, ropes_, island_.state);
   ropes_.resolve(time, island_.state);
   if (island_.makeChanges()) ropes_.resolve(time, island_.state);
   keepsConstraints_ = ropes_.tautRows() == tautRowsBefore_;
@@ -164,6 +164,7 @@ bool SteppedMotion::solveContacts() {
   if (!hasContacts_) return true;
   const double free = solver_.hasConstraints() ? solver_.largestError() : 0;
   const double size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
+  ropes_.giveWay(contacts_.touching());
   contacts_.solveContacts(before_, length, ropes_, state);
   return contacts_.constraintError() <=
              std::max(contacts_.tolerances().constraintError(size), kMaxConstraintErrorGrowth * free) ||

@@ -120,7 +120,7 @@ TEST(StepContacts, ReboundFromMoreThanTwoStepsExplain) {
     at.contacts.begin(0, before, at.state(), kStep);
     linearVelocity(at.state(), 0).y() = -speed;
     const double constant = energyConstant(at.mechanism(), at.state());
-    at.contacts.resolveImpacts(kStep, before, at.state());
+    at.contacts.resolveImpacts(kStep, before, at.ropes, at.state());
     EXPECT_NEAR(linearVelocity(at.state(), 0).y(), part < 1 ? 0 : speed / 2, 1e-15);
     EXPECT_NEAR(impactEnergy(at.state()), speed * speed * (part < 1 ? 1 : 0.75), 1e-15);
     EXPECT_NEAR(energyConstant(at.mechanism(), at.state()), constant, 1e-14);
@@ -138,7 +138,7 @@ TEST(StepContacts, CountWhatAPartOfAStepGainedForTheWhole) {
     centerOfMass(before, 0).y() += 1e-3;
     at.contacts.begin(0, before, at.state(), kStep / 2);
     linearVelocity(at.state(), 0).y() = -speed;
-    at.contacts.resolveImpacts(kStep / 2, before, at.state());
+    at.contacts.resolveImpacts(kStep / 2, before, at.ropes, at.state());
     EXPECT_NEAR(linearVelocity(at.state(), 0).y(), part < 1 ? 0 : speed / 2, 1e-15);
   }
 }
@@ -150,7 +150,7 @@ TEST(StepContacts, StrikeTogetherWhatIsNearlyThere) {
     centerOfMass(at.state(), 1).x() += part * 5e-5 * kStep;
     linearVelocity(at.state(), 0) = Vec3(0.02, -0.05, 0);
     at.contacts.begin(0, at.state(), at.state(), kStep);
-    at.contacts.resolveImpacts(kStep, at.state(), at.state());
+    at.contacts.resolveImpacts(kStep, at.state(), at.ropes, at.state());
     EXPECT_NEAR(linearVelocity(at.state(), 0).y(), 0, 1e-14);
     EXPECT_NEAR(linearVelocity(at.state(), 1).x(), part < 1 ? 0.01 : 0, 1e-14);
   }
