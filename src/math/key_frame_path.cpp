@@ -1,7 +1,5 @@
 #include "math/key_frame_path.h"
 
-#include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,20 +9,13 @@
 namespace cradle {
 namespace {
 
-/// Derivatives of the third and fourth order at the start of a piece of degree 5 and length h, or at its end, by the
-/// values at its ends: c[0] (p1 - p0) + c[1] v0 + c[2] a0 + c[3] v1 + c[4] a1, where each is divided by a power of h.
-struct EndDerivative {
-  double difference, firstAtStart, secondAtStart, firstAtEnd, secondAtEnd;
+// Of the slower piece's velocity, and of that by the longer one's time.
+constexpr double kMostFirst = 2, kMostSecond = 4;
 
-  EndDerivative over(int order, double length) const {
-    double n = 1;
-    for (int i = 0; i < order; ++i) n *= length;
-    return {difference / n, firstAtStart * length / n, secondAtStart * length * length / n, firstAtEnd * length / n,
-            secondAtEnd * length * length / n};
-  }
-};
-constexpr EndDerivative kThirdAtStart{60, -36, -9, -24, 3}, kThirdAtEnd{60, -24, -3, -36, 9};
-constexpr EndDerivative kFourthAtStart{-360, 192, 36, 168, -24}, kFourthAtEnd{360, -168, -24, -192, 36};
+VectorX limited(const VectorX& vector, double most) {
+  const double length = vector.norm();
+  return length > most ? VectorX(most / length * vector) : vector;
+}
 
 Eigen::Matrix<double, 7, 1> valuesOf(const RigidTransform& pose) {
   Eigen::Matrix<double, 7, 1> values;
@@ -50,60 +41,31 @@ KeyFramePath::KeyFramePath(const std::vector<KeyFrame>& keys, bool repeats) : re
     knots_.back().value = knots_.front().value;
     if (turnsOver_) knots_.back().value.tail<4>() *= -1;
   }
-  solveDerivatives({0, 3, 1});
-  solveDerivatives({3, 4, turnsOver_ ? -1.0 : 1.0});
+  findDerivatives({0, 3, 1});
+  findDerivatives({3, 4, turnsOver_ ? -1.0 : 1.0});
 }
 
-/// Unknown are first and second derivatives at the knots between the ends, or, of a way that repeats, at all but the
-/// last; equations, that third and fourth derivatives are the same on both sides of each.
-void KeyFramePath::solveDerivatives(const Part& part) {
+/// Those of the parabola through a knot and both beside it, but never so large that a slow piece would swing out beside
+/// a quick one: a piece in which nothing moves stands still.
+void KeyFramePath::findDerivatives(const Part& part) {
   const std::size_t pieces = knots_.size() - 1, first = repeats_ ? 0 : 1;
-  if (pieces == first) return;
-  const auto columnOf = [first](std::size_t knot) { return 2 * static_cast<Eigen::Index>(knot - first); };
-  // Unknowns and rows are scaled by the shorter of both pieces at a knot, so that all entries are of order 100 at most.
-  const auto scaleOf = [this, pieces](std::size_t knot) {
-    const std::size_t before = (knot + pieces - 1) % pieces;
-    return std::min(lengthOf(before), lengthOf(knot % pieces));
-  };
   const auto values = [&part](auto& vector) { return vector.segment(part.first, part.count); };
-  std::vector<Eigen::Triplet<double>> entries;
-  MatrixX right = MatrixX::Zero(columnOf(pieces), part.count);
-  const auto addKnot = [&](Eigen::Index row, std::size_t knot, double ofFirst, double ofSecond) {
-    if (!repeats_ && (knot == 0 || knot == pieces)) return;  // at rest
-    const double seam = knot == pieces ? part.seam : 1;
-    const Eigen::Index column = columnOf(knot == pieces ? 0 : knot);
-    const double scale = scaleOf(knot);
-    entries.emplace_back(row, column, seam * ofFirst / scale);
-    entries.emplace_back(row, column + 1, seam * ofSecond / (scale * scale));
-  };
-  const auto add = [&](Eigen::Index row, std::size_t piece, const EndDerivative& derivative, double sign) {
+  const auto velocity = [&](std::size_t piece) {
     const Values way = knots_[piece + 1].value - knots_[piece].value;
-    right.row(row) -= sign * derivative.difference * values(way).transpose();
-    addKnot(row, piece, sign * derivative.firstAtStart, sign * derivative.secondAtStart);
-    addKnot(row, piece + 1, sign * derivative.firstAtEnd, sign * derivative.secondAtEnd);
+    return VectorX(values(way) / lengthOf(piece));
   };
   for (std::size_t knot = first; knot < pieces; ++knot) {
-    const std::size_t before = (knot + pieces - 1) % pieces;
-    const double sign = knot == 0 ? part.seam : 1, scale = scaleOf(knot), third = scale * scale * scale,
-                 fourth = third * scale;
-    add(columnOf(knot), before, kThirdAtEnd.over(3, lengthOf(before)), sign * third);
-    add(columnOf(knot), knot, kThirdAtStart.over(3, lengthOf(knot)), -third);
-    add(columnOf(knot) + 1, before, kFourthAtEnd.over(4, lengthOf(before)), sign * fourth);
-    add(columnOf(knot) + 1, knot, kFourthAtStart.over(4, lengthOf(knot)), -fourth);
+    const std::size_t piece = (knot + pieces - 1) % pieces;
+    const VectorX before = (knot == 0 ? part.seam : 1) * velocity(piece), after = velocity(knot);
+    const double lengthBefore = lengthOf(piece), lengthAfter = lengthOf(knot), sum = lengthBefore + lengthAfter;
+    const double slowest = std::min(before.norm(), after.norm());
+    const double mostSecond = kMostSecond * slowest / std::max(lengthBefore, lengthAfter);
+    values(knots_[knot].first) = limited((lengthAfter * before + lengthBefore * after) / sum, kMostFirst * slowest);
+    values(knots_[knot].second) = limited(2 * (after - before) / sum, mostSecond);
   }
-  Eigen::SparseMatrix<double> matrix(columnOf(pieces), columnOf(pieces));
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(matrix);
-  CRADLE_CHECK(solver.info() == Eigen::Success);
-  const MatrixX derivatives = solver.solve(right);
-  for (std::size_t knot = first; knot <= pieces; ++knot) {
-    if (knot == pieces && !repeats_) continue;
-    const double seam = knot == pieces ? part.seam : 1;
-    const Eigen::Index row = columnOf(knot == pieces ? 0 : knot);
-    const double scale = scaleOf(knot);
-    values(knots_[knot].first) = seam / scale * derivatives.row(row).transpose();
-    values(knots_[knot].second) = seam / (scale * scale) * derivatives.row(row + 1).transpose();
-  }
+  if (!repeats_) return;
+  values(knots_.back().first) = part.seam * values(knots_.front().first);
+  values(knots_.back().second) = part.seam * values(knots_.front().second);
 }
 
 KeyFramePath::Place KeyFramePath::placeOf(double time) const {

@@ -19,10 +19,10 @@ struct PoseMotion {
   Vec3 angularVelocity = Vec3::Zero(), angularAcceleration = Vec3::Zero();  // rad/s, rad/s^2
 };
 
-/// A smooth way through key frames: positions and quaternions follow splines of degree 5 whose fourth derivatives are
-/// continuous, and quaternions are made of unit length. (C. de Boor, "A Practical Guide to Splines", 1978) At rest,
-/// without acceleration, at the first key frame and before it, and at the last and after it; or, if it repeats, with
-/// the period from the first to the last, which must have the same pose.
+/// A smooth way through key frames: positions and quaternions go from each to the next by polynomials of degree 5, with
+/// the same first and second derivatives on both sides of a key frame, and quaternions are made of unit length. Between
+/// two equal key frames nothing moves. At rest, without acceleration, at the first key frame and before it, and at the
+/// last and after it; or, if it repeats, with the period from the first to the last, which must have the same pose.
 class KeyFramePath {
  public:
   /// Two key frames or more, times ascending. From each to the next it turns by less than half a turn.
@@ -30,7 +30,7 @@ class KeyFramePath {
 
   PoseMotion at(double time) const;
 
-  /// The first key frame after `time` (s), where the fifth derivative jumps; infinite if there is none.
+  /// The first key frame after `time` (s), where the third derivative jumps; infinite if there is none.
   double nextKey(double time) const;
 
   /// Whether the pose stays as it is from `time` to the next key frame.
@@ -58,7 +58,7 @@ class KeyFramePath {
     Eigen::Index first, count;
     double seam;
   };
-  void solveDerivatives(const Part& part);
+  void findDerivatives(const Part& part);
   double lengthOf(std::size_t piece) const { return knots_[piece + 1].time - knots_[piece].time; }
   double period() const { return knots_.back().time - knots_.front().time; }
   Place placeOf(double time) const;
