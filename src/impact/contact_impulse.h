@@ -22,7 +22,8 @@ class ImpulseResponse;
 bool hasShortMomentArm(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double arm);
 
 /// Erases the contacts that the bodies' constraints let neither open nor close.
-void eraseImmobile(const ImpulseResponse& response, const VectorX& state, std::vector<Contact>& contacts);
+std::vector<Contact> eraseImmobile(const ImpulseResponse& response, const VectorX& state,
+                                   std::vector<Contact>& contacts);
 
 /// The response of bodies to impulses at contacts. Constraints, with the Jacobian B, respond within the same impulse:
 /// in place of the inverse mass matrix M^-1 stands W = M^-1 - M^-1 B^T (B M^-1 B^T)^-1 B M^-1.

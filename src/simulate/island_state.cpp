@@ -60,6 +60,21 @@ void IslandState::wake(int body) {
     log.recordBody(time, EventKind::wake, other, centerOfMass(state, other));
 }
 
+void IslandState::failAtNoRoom(const Contact& contact) const {
+  const auto [a, b] = bodiesOf(assembly, assembly.geometry.pairs[contact.pair]);
+  const auto nameOf = [this](int body) { return scene.bodies[static_cast<std::size_t>(body)].name; };
+  throw Error(ErrorKind::unstable, "",
+              fmt::format("unstable at {:.6g} s: \"{}\" is pressed into \"{}\": what is driven leaves no room; keep it "
+                          "farther off, or let a spring press in its place",
+                          time, nameOf(a), nameOf(b)));
+}
+
+void IslandState::requireRoom(const std::vector<Contact>& immobile, double still) const {
+  if (assembly.mechanism.driven.empty()) return;
+  for (const Contact& contact : immobile)
+    if (openingSpeed(contact, state) < -still) failAtNoRoom(contact);
+}
+
 void IslandState::requireUnsolvedPairsApart() const {
   for (const ColliderPair& pair : assembly.geometry.unsolvedPairs) {
     const int a = assembly.geometry.colliders[pair.a].body, b = bodyBOf(assembly.geometry, pair);

@@ -244,15 +244,15 @@ TEST(DrivenBodies, HandJerksABallByARope) {
 TEST(DrivenBodies, HandLowersAPlateOnRopes) {
   for (const char* method : {"", R"("method": {"name": "rk4", "timeStep": 0.001},)"}) {
     const Trajectory moved = runDriven(1.5, 1e-6,
-                                 R"({"name": "ground", "shape": {"plane": {}}, "motion": "static"},
+                                       R"({"name": "ground", "shape": {"plane": {}}, "motion": "static"},
       {"name": "hand", "shape": {"sphere": {"radius": 0.02}}, "motion": "driven", "collision": "none",
        "keyFrames": [{"time": 0, "position": [0, 0.8, 0]}, {"time": 1, "position": [0, 0.4, 0]}]},
       {"name": "plate", "mass": 2, "shape": {"box": {"size": [0.4, 0.04, 0.4]}}, "position": [0, 0.3, 0]})",
-                                 std::string(R"("ropes": [
+                                       std::string(R"("ropes": [
       {"bodyA": "plate", "anchorA": [0.15, 0.02, 0], "bodyB": "hand", "anchorB": [0, 0, 0]},
       {"bodyA": "plate", "anchorA": [-0.1, 0.02, 0.12], "bodyB": "hand", "anchorB": [0, 0, 0]},
       {"bodyA": "plate", "anchorA": [-0.1, 0.02, -0.12], "bodyB": "hand", "anchorB": [0, 0, 0]}],)") +
-                                     method);
+                                           method);
     const Frame& end = moved.frames.back();
     EXPECT_NEAR(end.states[1].position.y(), 0.02, 1e-6);
     EXPECT_LT(end.states[1].linearVelocity.norm(), 1e-6);
@@ -313,6 +313,26 @@ TEST(DrivenBodies, PressThatLeavesNoRoomEndsTheRun) {
         EXPECT_NE(std::string(error.what()).find("no room"), std::string::npos) << error.what();
       }
     }
+}
+
+/// Likewise where it presses a ball into the ground by a rod, which leaves the contact no motion.
+TEST(DrivenBodies, RodThatLeavesNoRoomEndsTheRun) {
+  for (const double accuracy : {1e-3, 1e-6, 1e-8}) {
+    const std::string text = fmt::format(R"("duration": 2, "accuracy": {}, "bodies": [
+      {{"name": "ground", "shape": {{"plane": {{}}}}, "motion": "static"}},
+      {{"name": "hand", "shape": {{"sphere": {{"radius": 0.05}}}}, "motion": "driven",
+        "keyFrames": [{{"time": 0, "position": [0, 1.2, 0]}}, {{"time": 1, "position": [0, 0.7, 0]}}]}},
+      {{"name": "ball", "mass": 1, "shape": {{"sphere": {{"radius": 0.1}}}}, "position": [0, 0.2, 0]}}],
+      "rods": [{{"bodyA": "ball", "bodyB": "hand", "anchorB": [0, 0, 0]}}])",
+                                         accuracy);
+    try {
+      simulate(sceneWith(text));
+      ADD_FAILURE() << accuracy;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::unstable);
+      EXPECT_NE(std::string(error.what()).find("no room"), std::string::npos) << error.what();
+    }
+  }
 }
 
 /// A box hangs on a rope from a hand that goes to another place and stops: the rope is never too long.

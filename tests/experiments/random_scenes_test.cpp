@@ -41,8 +41,8 @@ TEST(RandomSketches, PassAllOracles) {
     for (const unsigned number : {1U, 4U}) expectNoFaults(randomSketch(family, number));
 }
 
-// Of two balls on tori whose files have single precision, a gap of 1e-9 m decides which is struck first: no twin in which
-// it is the other one is wrong.
+// Of two balls on tori whose files have single precision, a gap of 1e-9 m decides which is struck first: no twin in
+// which it is the other one is wrong.
 TEST(RandomSketches, AreNotComparedBeyondTheirSensitivity) {
   expectNoFaults(randomSketch(SketchFamily::symmetric, 51054));
 }

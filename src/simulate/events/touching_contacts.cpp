@@ -59,7 +59,9 @@ std::vector<Contact> findTouching(const IslandState& island, ConstraintSolver& c
                                   const EventTolerances& tolerances, const std::optional<std::size_t>& closingPair) {
   const ContactGeometry& geometry = island.assembly.geometry;
   std::vector<Contact> touching = findNear(island, tolerances, closingPair);
-  eraseImmobile(ImpulseResponse(island.assembly.mechanism.bodies, constraints), island.state, touching);
+  island.requireRoom(
+      eraseImmobile(ImpulseResponse(island.assembly.mechanism.bodies, constraints), island.state, touching),
+      tolerances.minOpeningSpeed(tolerances.scales.size));
   for (Contact& contact : touching) findCorner(geometry, island.state, contact);
   for (Contact& contact : touching) moveToRim(geometry, island.state, contact);
   touching.erase(std::unique(touching.begin(), touching.end(), isSameRim), touching.end());

@@ -95,16 +95,8 @@ void SteppedMotion::advance(double frame) {
 void SteppedMotion::requireRoom() const {
   const Assembly& assembly = island_.assembly;
   if (assembly.mechanism.driven.empty()) return;
-  for (const Contact& contact : contacts_.touching()) {
-    if (contact.separation >= -kSqueezed * smallestSize(contact, assembly.radii)) continue;
-    const auto [a, b] = bodiesOf(assembly, assembly.geometry.pairs[contact.pair]);
-    const auto nameOf = [this](int body) { return island_.scene.bodies[static_cast<std::size_t>(body)].name; };
-    throw Error(
-        ErrorKind::unstable, "",
-        fmt::format("unstable at {:.6g} s: \"{}\" is pressed {:.3g} m into \"{}\": what is driven leaves no room; "
-                    "keep it farther off, or let a spring press in its place",
-                    island_.time, nameOf(a), -contact.separation, nameOf(b)));
-  }
+  for (const Contact& contact : contacts_.touching())
+    if (contact.separation < -kSqueezed * smallestSize(contact, assembly.radii)) island_.failAtNoRoom(contact);
 }
 
 void SteppedMotion::addContactMotion(double fraction, VectorX& state) const {
