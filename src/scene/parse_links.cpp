@@ -120,7 +120,7 @@ JointDrive parseMotor(const Field& field, const MotorKeys& keys, FaultList& faul
   reader.rejectUnknownKeys();
   if (target.has_value() == constant.has_value() || target.has_value() != most.has_value())
     addFault(faults, field,
-             fmt::format("a motor has either \"targetVelocity\" and \"{}\", both, or a constant \"{}\"", keys.most,
+             fmt::format("a motor has either a \"targetVelocity\" with a \"{}\" or a constant \"{}\"", keys.most,
                          keys.constant));
   return motor;
 }

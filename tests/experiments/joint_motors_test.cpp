@@ -97,72 +97,61 @@ TEST(JointMotors, MotorComesToTheEndOfItsForce) {
   expectLedger(moved, 1e-11, 1e-8);
 }
 
-/// A car of a board and four balls as wheels, which motors turn with T in all: a = (T / r) / (M + 4 m + 4 I / r^2) on
-/// level ground, and less by (M + 4 m) g sin on a slope; friction is enough for rolling.
-TEST(JointMotors, WheelsDriveACar) {
-  const double radius = 0.1, torque = 0.3;
+constexpr double kCarWheel = 0.1, kCarMass = 4 + 4;  // m, kg
+constexpr double kCarInertia = kCarMass + 4 * 0.4;   // kg: and 4 I / r^2 of its wheels
+
+/// A car of a board of 4 kg and four balls of 1 kg as wheels with one motor each, from rest up a slope along x.
+Trajectory runCar(double duration, double accuracy, double slope, double friction, const std::string& motor) {
   std::string bodies = R"({"name": "ground", "material": "m", "shape": {"plane": {}}, "motion": "static"},
       {"name": "board", "mass": 4, "shape": {"box": {"size": [0.8, 0.05, 0.3]}}, "position": [0, 0.1, 0]})",
               hinges;
   for (int i = 0; i < 4; ++i) {
-    const Vec3 place(i % 2 ? 0.3 : -0.3, radius, i < 2 ? 0.3 : -0.3);
+    const Vec3 place(i % 2 ? 0.3 : -0.3, kCarWheel, i < 2 ? 0.3 : -0.3);
     bodies += fmt::format(
         R"(, {{"name": "w{}", "material": "m", "mass": 1, "shape": {{"sphere": {{"radius": {}}}}}, "position": {}}})",
-        i, radius, vectorText(place));
-    hinges +=
-        fmt::format(R"({}{{"bodyA": "w{}", "anchorA": [0, 0, 0], "bodyB": "board", "anchorB": {}, "axis": [0, 0, 1],
-      "motor": {{"torque": {}}}}})",
-                    i ? ", " : "", i, vectorText(place - Vec3(0, 0.1, 0)), -torque);
+        i, kCarWheel, vectorText(place));
+    hinges += fmt::format(
+        R"({}{{"bodyA": "board", "anchorA": {}, "bodyB": "w{}", "anchorB": [0, 0, 0], "axis": [0, 0, 1], "motor": {}}})",
+        i ? ", " : "", vectorText(place - Vec3(0, 0.1, 0)), i, motor);
   }
-  const double masses = 4 + 4, rolling = 4 * 0.4;
-  for (const double tilt : {0.0, 0.1}) {
-    const Trajectory moved =
-        runMotor(1, 1e-7, bodies,
-                 fmt::format(R"("gravity": {}, "materials": {{"m": {{"staticFriction": 1, "dynamicFriction": 0.9}}}},
-      "hinges": [{}])",
-                             vectorText(kGravity * Vec3(-std::sin(tilt), -std::cos(tilt), 0)), hinges));
-    const double acceleration = (4 * torque / radius - masses * kGravity * std::sin(tilt)) / (masses + rolling);
+  return runMotor(
+      duration, accuracy, bodies,
+      fmt::format(
+          R"("gravity": {}, "materials": {{"m": {{"staticFriction": {}, "dynamicFriction": {}}}}}, "hinges": [{}])",
+          vectorText(kGravity * Vec3(-std::sin(slope), -std::cos(slope), 0)), friction, friction, hinges));
+}
+
+/// Motors of T each drive a car with a = (4 T / r - M g sin) / (M + 4 I / r^2); friction is enough for rolling.
+TEST(JointMotors, WheelsDriveACar) {
+  for (const double slope : {0.0, 0.1}) {
+    const Trajectory moved = runCar(1, 1e-7, slope, 1, R"({"torque": 0.3})");
+    const double acceleration = (4 * 0.3 / kCarWheel - kCarMass * kGravity * std::sin(slope)) / kCarInertia;
     for (const Frame& frame : moved.frames)
       EXPECT_NEAR(frame.states[0].position.x(), acceleration * frame.time * frame.time / 2, 1e-6) << frame.time;
-    EXPECT_NEAR(moved.frames.back().energy.work, 4 * torque * acceleration / 2 / radius, 1e-5);
+    EXPECT_NEAR(moved.frames.back().energy.work, 4 * 0.3 * acceleration / 2 / kCarWheel, 1e-5);
     expectLedger(moved, 1e-10, 1e-5);
   }
 }
 
-/// The same car climbs with motors that hold the wheels at w: with all their torque until it has v = w r, and then at
-/// v. A wheel on ice spins at w, and the car slides down: a = g (sin - mu cos) less.
+/// A car climbs with motors that hold the wheels at w: with all their torque until it has v = w r, and then at v. A
+/// wheel on ice spins at w, and the car slides down: a = g (sin - mu cos).
 TEST(JointMotors, CarClimbsASlopeAtItsVelocityAndSlipsOnIce) {
-  const double radius = 0.1, most = 1, tilt = 0.3, target = 20, masses = 8, rolling = 4 * 0.4;
+  const double most = 1, slope = 0.3, target = 20;
   for (const double friction : {0.8, 0.05}) {
-    std::string bodies = R"({"name": "ground", "material": "m", "shape": {"plane": {}}, "motion": "static"},
-      {"name": "board", "mass": 4, "shape": {"box": {"size": [0.8, 0.05, 0.3]}}, "position": [0, 0.1, 0]})",
-                hinges;
-    for (int i = 0; i < 4; ++i) {
-      const Vec3 place(i % 2 ? 0.3 : -0.3, radius, i < 2 ? 0.3 : -0.3);
-      bodies += fmt::format(
-          R"(, {{"name": "w{}", "material": "m", "mass": 1, "shape": {{"sphere": {{"radius": {}}}}}, "position": {}}})",
-          i, radius, vectorText(place));
-      hinges +=
-          fmt::format(R"({}{{"bodyA": "board", "anchorA": {}, "bodyB": "w{}", "anchorB": [0, 0, 0], "axis": [0, 0, 1],
-        "motor": {{"targetVelocity": {}, "maxTorque": {}}}}})",
-                      i ? ", " : "", vectorText(place - Vec3(0, 0.1, 0)), i, target, most);
-    }
-    const Trajectory moved = runMotor(
-        2, 1e-6, bodies,
-        fmt::format(R"("gravity": {}, "materials": {{"m": {{"staticFriction": {}, "dynamicFriction": {}}}}},
-      "hinges": [{}])",
-                    vectorText(kGravity * Vec3(-std::sin(tilt), -std::cos(tilt), 0)), friction, friction, hinges));
+    const Trajectory moved =
+        runCar(2, 1e-6, slope, friction, fmt::format(R"({{"targetVelocity": {}, "maxTorque": {}}})", target, most));
     const Frame& end = moved.frames.back();
     if (friction > 0.5) {
-      const double acceleration = (4 * most / radius - masses * kGravity * std::sin(tilt)) / (masses + rolling);
-      const double reached = target * radius / acceleration;
+      const double acceleration = (4 * most / kCarWheel - kCarMass * kGravity * std::sin(slope)) / kCarInertia;
+      const double velocity = target * kCarWheel, reached = velocity / acceleration;
       for (const Frame& frame : moved.frames) {
         const double t = std::min(frame.time, reached);
-        EXPECT_NEAR(frame.states[0].position.x(), acceleration * t * t / 2 + target * radius * (frame.time - t), 1e-6);
+        EXPECT_NEAR(frame.states[0].position.x(), acceleration * t * t / 2 + velocity * (frame.time - t), 1e-6);
       }
     } else {
       EXPECT_NEAR(end.states[1].angularVelocity.z(), -target, 1e-6);
-      EXPECT_NEAR(end.states[0].linearVelocity.x(), -kGravity * (std::sin(tilt) - friction * std::cos(tilt)) * 2, 1e-6);
+      EXPECT_NEAR(end.states[0].linearVelocity.x(), -kGravity * (std::sin(slope) - friction * std::cos(slope)) * 2,
+                  1e-6);
     }
     expectLedger(moved, 1e-9, 1e-4);
   }

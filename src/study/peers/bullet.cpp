@@ -11,7 +11,6 @@
 #include <cmath>
 
 #include "math/principal_axes.h"
-#include "scene/count_bodies.h"
 #include "study/peers/bullet_shapes.h"
 #include "study/peers/peer_shapes.h"
 
@@ -253,8 +252,7 @@ void BulletWorld::read(VectorX& state) {
 
 std::string missingInBullet(const Scene& scene, const Assembly&) {
   if (!scene.ropes.empty()) return "ropes";
-  if (!scene.pushes.empty()) return "pushes";
-  if (countBodies(scene, Motion::driven) > 0) return "driven bodies";
+  if (const std::string missing = missingInEveryPeer(scene); !missing.empty()) return missing;
   for (const Body& body : scene.bodies)
     if (std::holds_alternative<ModelShape>(body.shape) && body.collision != CollisionChoice::none &&
         body.collision != CollisionChoice::hull && !recogniseModel(body, scene).isConvex)

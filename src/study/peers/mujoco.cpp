@@ -9,7 +9,6 @@
 #include <array>
 
 #include "core/error.h"
-#include "scene/count_bodies.h"
 #include "study/peers/mujoco_model.h"
 #include "study/peers/peer_shapes.h"
 
@@ -119,10 +118,9 @@ void MujocoWorld::read(VectorX& state) {
 
 std::string missingInMujoco(const Scene& scene, const Assembly& assembly) {
   if (!scene.ropes.empty()) return "ropes that give back what they take";
-  if (!scene.pushes.empty()) return "pushes";
   for (const Constraint& loop : jointTreeOf(assembly).loops)
     if (std::holds_alternative<SliderConstraint>(loop.kind)) return "sliders that close a loop";
-  if (countBodies(scene, Motion::driven) > 0) return "driven bodies";
+  if (const std::string missing = missingInEveryPeer(scene); !missing.empty()) return missing;
   return meshThatTouches(scene);
 }
 

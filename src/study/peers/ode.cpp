@@ -9,7 +9,6 @@
 #include <array>
 
 #include "core/error.h"
-#include "scene/count_bodies.h"
 #include "study/peers/peer_shapes.h"
 
 namespace cradle {
@@ -261,8 +260,7 @@ void OdeWorld::read(VectorX& state) {
 
 std::string missingInOde(const Scene& scene, const Assembly&) {
   if (!scene.ropes.empty()) return "ropes";
-  if (!scene.pushes.empty()) return "pushes";
-  if (countBodies(scene, Motion::driven) > 0) return "driven bodies";
+  if (const std::string missing = missingInEveryPeer(scene); !missing.empty()) return missing;
   return meshThatTouches(scene);
 }
 

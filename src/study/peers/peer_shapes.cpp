@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scene/count_bodies.h"
+#include "simulate/colliders.h"
 #include "simulate/welded_bodies.h"
 
 namespace cradle {
@@ -30,6 +32,17 @@ std::optional<PeerShape> peerShapeOf(const Body& body, const Scene& scene) {
       body.shape);
 }
 
+std::string missingInEveryPeer(const Scene& scene) {
+  if (!scene.pushes.empty()) return "pushes";
+  if (countBodies(scene, Motion::driven) > 0) return "driven bodies";
+  const auto anyOf = [&](auto has) {
+    return std::ranges::any_of(scene.hinges, has) || std::ranges::any_of(scene.sliders, has);
+  };
+  if (anyOf([](const auto& joint) { return joint.limits.has_value(); })) return "limits of joints";
+  if (anyOf([](const auto& joint) { return joint.motor.has_value(); })) return "motors of joints";
+  return "";
+}
+
 std::string meshThatTouches(const Scene& scene) {
   for (const Body& body : scene.bodies)
     if (body.collision != CollisionChoice::none && !peerShapeOf(body, scene))
@@ -38,10 +51,7 @@ std::string meshThatTouches(const Scene& scene) {
 }
 
 std::set<std::pair<int, int>> joinedBodies(const Scene& scene) {
-  std::set<std::pair<int, int>> joined;
-  forEachKindOfJoint(scene, [&](const auto& joints) {
-    for (const auto& joint : joints) joined.insert(std::minmax(joint.anchorA.body, joint.anchorB.body));
-  });
+  std::set<std::pair<int, int>> joined = pairsKeptFromTouching(scene);
   const WeldedBodies welded(scene);
   for (int a = 0; a < std::ssize(scene.bodies); ++a)
     for (int b = a + 1; b < std::ssize(scene.bodies); ++b)

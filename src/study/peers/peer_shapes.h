@@ -19,10 +19,13 @@ struct PeerShape {
 /// A body's shape as `auto` takes it; nothing for bodies that touch nothing, and for meshes that are no primitive.
 std::optional<PeerShape> peerShapeOf(const Body& body, const Scene& scene);
 
+/// What no other engine is given, in words; empty if the scene has nothing of it.
+std::string missingInEveryPeer(const Scene& scene);
+
 /// The first body that touches with a mesh that is no primitive, in words; empty if there is none.
 std::string meshThatTouches(const Scene& scene);
 
-/// Scene bodies A < B of joints, or that welds make one: they do not touch each other.
+/// Scene bodies A < B that do not touch each other: those of joints, unless these collide, and what welds make one.
 std::set<std::pair<int, int>> joinedBodies(const Scene& scene);
 
 /// What a body's model is, if it has one and does not ask to be a hull or a mesh.

@@ -19,8 +19,8 @@
 #include "core/error.h"
 #include "math/principal_axes.h"
 #include "math/rotation.h"
-#include "scene/count_bodies.h"
 #include "study/peers/joint_tree.h"
+#include "study/peers/peer_shapes.h"
 
 namespace cradle {
 namespace {
@@ -205,8 +205,7 @@ void SimbodyWorld::read(VectorX& state) {
 
 std::string missingInSimbody(const Scene& scene, const Assembly& assembly) {
   if (!scene.ropes.empty()) return "ropes";
-  if (!scene.pushes.empty()) return "pushes";
-  if (countBodies(scene, Motion::driven) > 0) return "driven bodies";
+  if (const std::string missing = missingInEveryPeer(scene); !missing.empty()) return missing;
   const ContactGeometry& geometry = assembly.geometry;
   const auto moves = [](const Collider& collider) { return collider.body != kFixed; };
   const bool anyMoves = std::any_of(geometry.colliders.begin(), geometry.colliders.end(), moves);
