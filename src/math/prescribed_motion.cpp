@@ -15,6 +15,8 @@ template <class... Cases>
 struct Overloaded : Cases... {
   using Cases::operator()...;
 };
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;  // clang 14 needs it
 
 PoseMotion steadyAt(const SteadyMotion& motion, double time) {
   const double angle = time * motion.angularVelocity.norm();
