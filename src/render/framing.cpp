@@ -37,6 +37,8 @@ constexpr double kFilled = 0.84;         // share of the picture that things may
 constexpr double kLargestFixed = 3;      // fixed bodies larger than so many times what moves are scenery
 constexpr double kLongestArrow = 0.2;    // of the size of what moves
 constexpr double kShortestArrow = 0.45;  // of the longest one
+constexpr double kSmallestArc = 0.4;     // radius, of the longest arrow
+constexpr double kArcGap = 0.06;         // between it and its body, of the longest arrow
 constexpr double kSizeOfSeen = 1.5;      // of the height of the picture: what moves will fill it
 constexpr double kSmallestReach = 1e-6;  // m, of a scene that shows nothing
 
@@ -74,9 +76,14 @@ double View::size() const {
 
 double View::arrowLength(const ShownPush& push) const {
   double greatest = 0;
-  for (const ShownPush& other : pushes) greatest = std::max(greatest, other.force.norm());
+  for (const ShownPush& other : pushes)
+    if (other.isTorque == push.isTorque) greatest = std::max(greatest, other.force.norm());
   const double force = push.force.norm();
   return force > 0 ? longestArrow * (kShortestArrow + (1 - kShortestArrow) * force / greatest) : 0;
+}
+
+double View::arcRadius(const ShownPush& push) const {
+  return std::max(push.clearance + kArcGap * longestArrow, kSmallestArc * longestArrow);
 }
 
 Framing::Framing(const Scene& scene, int width, int height, std::vector<ShownPush> pushes)
@@ -181,8 +188,14 @@ void Framing::includeArrows(View& view, std::vector<Solid>& shown) const {
   if (!movingBounds_.isEmpty()) view.longestArrow = kLongestArrow * movingBounds_.diagonal().norm();
   for (const ArrowPlace& place : arrowPlaces_) {
     const ShownPush& push = pushes_[place.push];
-    const Vec3 tail = place.tip - view.arrowLength(push) * push.force.normalized();
-    for (const Vec3& end : {tail, place.tip}) {
+    if (push.isTorque) {
+      const Vec3 size = Vec3::Constant(view.arcRadius(push));
+      shown.push_back({Bounds(-size, size), size.x(), {Quat::Identity(), place.point}});
+      view.bounds.extend(Bounds(place.point - size, place.point + size));
+      continue;
+    }
+    const Vec3 tail = place.point - view.arrowLength(push) * push.force.normalized();
+    for (const Vec3& end : {tail, place.point}) {
       shown.push_back({Bounds(Vec3::Zero(), Vec3::Zero()), 0, {Quat::Identity(), end}});
       view.bounds.extend(end);
     }

@@ -25,6 +25,9 @@ struct View {
 
   /// m, from the tail to the point that is pushed; 0 for a push without a force.
   double arrowLength(const ShownPush& push) const;
+
+  /// m, of the arc that shows a torque: round its body, and as large as an arrow's head needs.
+  double arcRadius(const ShownPush& push) const;
 };
 
 /// Finds the view of a film. Where the scene names a camera, that and the first frame decide. Else all frames do: all
@@ -72,7 +75,7 @@ class Framing {
 
   struct ArrowPlace {
     std::size_t push;  // index into pushes_
-    Vec3 tip;          // m, world
+    Vec3 point;        // m, world: what is pushed
   };
 
   const Scene& scene_;

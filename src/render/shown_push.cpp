@@ -28,6 +28,14 @@ std::vector<RigidTransform> placeBodiesAt(double time, const Scene& scene, const
   return placeBodies(scene, blend(before, frameAt(number + 1), (time - before.time) / interval));
 }
 
+/// Radius (m) of a ball about a point of a body's frame (m) that holds what bounds the body.
+double radiusAbout(const Vec3& point, int body, const Scene& scene) {
+  const Body& pushed = scene.bodies[static_cast<std::size_t>(body)];
+  if (const auto* sphere = std::get_if<Sphere>(&pushed.shape)) return point.norm() + sphere->radius;
+  const Bounds bounds = localBounds(scene, pushed);
+  return (bounds.max() - point).cwiseAbs().cwiseMax((bounds.min() - point).cwiseAbs()).norm();
+}
+
 /// The push that an event is about: of those of its body that are not yet `taken`, the one that starts closest to it.
 std::optional<std::size_t> pushOf(const Event& event, const Scene& scene, const std::vector<bool>& taken) {
   std::optional<std::size_t> closest;
@@ -55,11 +63,13 @@ std::vector<ShownPush> findShownPushes(const Scene& scene, const std::vector<Eve
     taken[*index] = true;
     if (event.kind == EventKind::pushMissed) continue;
     const Push& push = scene.pushes[*index];
-    ShownPush seen{push.body, event.point, Vec3::Zero(), push.force, event.time};
+    ShownPush seen{push.body, event.point, Vec3::Zero(), push.torque.value_or(push.force), push.torque.has_value()};
+    seen.start = event.time;
     const auto places = placeBodiesAt(event.time, scene, frameAt);
-    const Vec3* point = std::get_if<Vec3>(&push.target);
+    const Vec3* point = push.torque ? nullptr : std::get_if<Vec3>(&push.target);
     seen.pointOfBody =
         point != nullptr ? *point : places.at(static_cast<std::size_t>(push.body)).inverse() * event.point;
+    if (push.torque) seen.clearance = radiusAbout(seen.pointOfBody, push.body, scene);
     seen.shownFrom = event.time - kShownBefore * scene.output.playbackSpeed;
     seen.shownUntil = event.time + push.duration + kShownAfter * scene.output.playbackSpeed;
     shown.push_back(seen);

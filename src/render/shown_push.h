@@ -13,7 +13,9 @@ struct ShownPush {
   int body = 0;                          // index into Scene::bodies
   Vec3 pointAtStart = Vec3::Zero();      // m, world: what is pushed, when the push starts
   Vec3 pointOfBody = Vec3::Zero();       // m, body's frame: the same, from then on
-  Vec3 force = Vec3::Zero();             // N, world
+  Vec3 force = Vec3::Zero();             // N, world; of a torque N m
+  bool isTorque = false;                 // drawn as an arc about its axis
+  double clearance = 0;                  // m: the least radius of that arc, so that it goes round the body
   double start = 0;                      // s
   double shownFrom = 0, shownUntil = 0;  // s
 

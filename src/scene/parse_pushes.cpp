@@ -15,7 +15,7 @@ Push::Ray parseRay(const Field& field, FaultList& faults) {
 }
 
 // A body point, or the ray that finds one.
-void parseTarget(ObjectReader& reader, Push& push) {
+void parsePoint(ObjectReader& reader, Push& push) {
   const auto point = reader.find("point"), ray = reader.find("ray");
   if (point) push.target = readVector(*point, kCoordinates, "m", reader.faults()).value_or(Vec3::Zero());
   if (ray) push.target = parseRay(*ray, reader.faults());
@@ -23,8 +23,24 @@ void parseTarget(ObjectReader& reader, Push& push) {
     addFault(reader.faults(), *ray, "both point and ray are given; allowed is one of them");
   } else if (!point && !ray && std::holds_alternative<JsonValue::Object>(reader.field().value->content)) {
     addFault(reader.faults(), reader.field(),
-             "the push does not say where it acts; give \"point\" (of the body) or \"ray\" (of the world)");
+             "the push does not say where it acts; give \"point\" (of the body) or \"ray\" (of the world), or a "
+             "\"torque\"");
   }
+}
+
+// A torque, which needs no point, or a force at one.
+void parseAction(ObjectReader& reader, Push& push) {
+  const auto torque = reader.find("torque");
+  if (!torque) {
+    parsePoint(reader, push);
+    push.force = reader.vector("force", kForces, "N", Vec3(0, 0, -3));
+    return;
+  }
+  push.torque = readVector(*torque, kForces, "N m", reader.faults());
+  for (const char* key : {"force", "point", "ray"})
+    if (const auto other = reader.find(key))
+      addFault(reader.faults(), *other,
+               fmt::format("both torque and {} are given; a torque acts on the whole body and has no {}", key, key));
 }
 
 void warnIfFixed(const Push& push, SceneDraft& scene) {
@@ -40,8 +56,7 @@ Push parsePush(const Field& field, SceneDraft& scene, FaultList& faults) {
   ObjectReader reader(field, faults);
   const auto name = reader.require("body");
   const auto body = name ? findNamed(*name, scene.bodyIndex, "body", faults) : std::nullopt;
-  parseTarget(reader, push);
-  push.force = reader.vector("force", kForces, "N", Vec3(0, 0, -3));
+  parseAction(reader, push);
   push.start = reader.number("start", kInstants, "s", 0.5);
   push.duration = reader.number("duration", kPushDurations, "s", 0.02);
   reader.rejectUnknownKeys();

@@ -170,10 +170,11 @@ struct Push {
   };
   std::string where;
   int body = 0;
-  std::variant<Vec3, Ray> target;  // a point of the body's frame (m), or a ray
-  Vec3 force = Vec3::Zero();       // N, world
-  double start = 0;                // s
-  double duration = 0;             // s, > 0
+  std::variant<Vec3, Ray> target;   // a point of the body's frame (m), or a ray; not of a torque
+  Vec3 force = Vec3::Zero();        // N, world
+  double start = 0;                 // s
+  double duration = 0;              // s, > 0
+  std::optional<Vec3> torque = {};  // N m, world, in place of the force
 };
 
 enum class MethodName { explicitEuler, semiImplicitEuler, rk4, dop853 };

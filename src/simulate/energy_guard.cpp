@@ -154,7 +154,8 @@ double EnergyGuard::firstStepEnergy(double timeStep) const {
   for (const PushForce& push : mechanism_.pushes) {
     const RigidBody& body = mechanism_.bodies[static_cast<std::size_t>(push.point.body)];
     const double inverseMass = body.inverseMass + push.point.point.squaredNorm() * body.inverseInertia.norm();
-    energy += push.force.squaredNorm() * timeStep * timeStep * inverseMass;
+    energy += (push.force.squaredNorm() * inverseMass + push.torque.squaredNorm() * body.inverseInertia.norm()) *
+              timeStep * timeStep;
   }
   return energy;
 }

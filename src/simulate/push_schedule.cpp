@@ -103,9 +103,9 @@ bool PushSchedule::begin(Planned& planned, double time, const VectorX& state) {
     }
     point = inBody.origin + *distance * inBody.direction;
   } else {
-    point = std::get<Vec3>(planned.push->target);
+    point = planned.push->torque ? center : std::get<Vec3>(planned.push->target);
   }
-  planned.force = {{planned.body, point - center}, planned.push->force};
+  planned.force = {{planned.body, point - center}, planned.push->force, planned.push->torque.value_or(Vec3::Zero())};
   log_.recordBody(time, EventKind::pushStart, planned.body, motionOf(planned.force.point, state).position);
   return true;
 }

@@ -81,6 +81,43 @@ TEST(Push, PutsItsWorkIntoTheEnergyBalance) {
   for (const Frame& frame : run.frames) EXPECT_NEAR(energyConstantOf(frame), 0, 1e-9) << frame.time;
 }
 
+// L = T t for a body that turns about no axis of its own for long; the centre of mass stays.
+TEST(Push, TorqueGivesAngularMomentumAndWork) {
+  const Trajectory run = pushBox(R"({"body": "box", "torque": [0.3, -0.2, 0.5], "start": 0.2, "duration": 0.5})",
+                                 methodText("dop853", 0.001));
+  const BodyState end = endOf(run);
+  const Mat3 turn = end.orientation.toRotationMatrix();
+  const Vec3 inertia = 2.0 / 12 * Vec3(0.40, 0.52, 0.20);
+  const Vec3 angularMomentum = turn * inertia.asDiagonal() * turn.transpose() * end.angularVelocity;
+  EXPECT_LT((angularMomentum - 0.5 * Vec3(0.3, -0.2, 0.5)).norm(), 1e-11);
+  EXPECT_EQ(end.linearVelocity, Vec3::Zero());
+  EXPECT_GT(run.frames.back().energy.work, 0.1);
+  for (const Frame& frame : run.frames) EXPECT_NEAR(energyConstantOf(frame), 0, 1e-11) << frame.time;
+}
+
+// A ball of 2 kg and 0.1 m on the ground rolls with a = (T / r) / (7/5 m), one on ice turns with 5/2 T / (m r^2), and
+// so does one that hangs from its centre.
+TEST(Push, TorqueRollsBalls) {
+  for (const double friction : {0.5, 0.0}) {
+    const Trajectory run = simulate(sceneOf(fmt::format(
+        R"({{"schema": "cradle-scene/1", "name": "Push", "duration": 1, "accuracy": 1e-8, "output": {{"framesPerSecond": 10}},
+      "materials": {{"m": {{"staticFriction": {}, "dynamicFriction": {}}}}},
+      "bodies": [{{"name": "ground", "shape": {{"plane": {{"normal": [0, 1, 0]}}}}, "motion": "static", "material": "m"}},
+        {{"name": "rolls", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 2, "position": [0, 0.1, 0], "material": "m"}},
+        {{"name": "hangs", "shape": {{"sphere": {{"radius": 0.1}}}}, "mass": 2, "position": [9, 3, 0]}}],
+      "rods": [{{"bodyA": "hangs", "anchorB": [9, 4, 0]}}],
+      "pushes": [{{"body": "rolls", "torque": [0, 0, -0.05], "start": 0.25, "duration": 0.5}},
+        {{"body": "hangs", "torque": [0, 0, -0.05], "start": 0.25, "duration": 0.5}}]}})",
+        friction, friction)));
+    const double acceleration = friction > 0 ? 0.05 / 0.1 / (1.4 * 2) : 0, spin = 2.5 * 0.05 / (2 * 0.01) * 0.5;
+    const BodyState &rolls = run.frames.back().states[0], &hangs = run.frames.back().states[1];
+    EXPECT_NEAR(rolls.position.x(), acceleration * (0.125 + 0.5 * 0.25), 1e-8);
+    EXPECT_NEAR(rolls.angularVelocity.z(), friction > 0 ? -acceleration * 0.5 / 0.1 : -spin, 1e-8);
+    EXPECT_NEAR(hangs.angularVelocity.z(), -spin, 1e-8);
+    for (const Frame& frame : run.frames) EXPECT_NEAR(energyConstantOf(frame), energyConstantOf(run.frames[0]), 1e-8);
+  }
+}
+
 TEST(Push, WakesABodyThatLies) {
   const Trajectory run = simulate(sceneOf(R"({"schema": "cradle-scene/1", "name": "Push", "duration": 1,
     "output": {"framesPerSecond": 10}, )" +

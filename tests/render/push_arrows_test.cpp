@@ -79,6 +79,30 @@ TEST(ShownPush, PointHitByARayIsFoundInTheBodysFrame) {
   EXPECT_NEAR((pushes[0].pointOfBody - kPointOfBody).norm(), 0, 1e-12);
 }
 
+/// An arc round the body, whose head has its point in the plane through the centre of mass across the axis, and whose
+/// pieces go about that axis as a right hand's fingers do.
+TEST(ShownPush, TorqueIsAnArcRoundItsBody) {
+  Scene scene = pushedScene(Vec3::Zero());
+  const Vec3 axis(0, -0.6, 0.8);
+  scene.pushes[0].torque = 10 * axis;
+  Framing framing(scene, 640, 360,
+                  findShownPushes(scene, {pushEvent(kStart, placeInFlight(kStart).translation)}, frameOfFlight));
+  for (long frame = 0; frame <= 120; ++frame) framing.add(frameOfFlight(frame));
+  const View view = framing.view();
+  const Frame shown = frameOfFlight(62);
+  const DrawList list = makeDrawList(scene, makeAppearance(scene, view, 100), view, {shown, view.camera.position});
+  ASSERT_EQ(list.meshes.size(), 2u);
+  const double radius = std::max(Vec3(0.2, 0.15, 0.1).norm() + 0.06 * view.longestArrow, 0.4 * view.longestArrow);
+  const Vec3 tip = tipOf(list) - shown.states[0].position;
+  EXPECT_NEAR(tip.norm(), radius, 1e-9);
+  EXPECT_NEAR(tip.dot(axis), 0, 1e-9);
+  ASSERT_GT(list.cylinders.size(), 10u);
+  for (const auto& piece : list.cylinders) {
+    const Vec3 out = (piece.center - shown.states[0].position) / radius;
+    EXPECT_LT((out.cross(piece.axis) - axis).norm(), 1e-9);
+  }
+}
+
 TEST(ShownPush, PushThatMissedIsNotShown) {
   const Scene scene = pushedScene(Push::Ray{{5, 9, 0}, -Vec3::UnitX()});
   EXPECT_TRUE(findShownPushes(scene, {pushEvent(kStart, {5, 9, 0}, EventKind::pushMissed)}, frameOfFlight).empty());
