@@ -204,7 +204,10 @@ void EquationsOfMotion::applySprings(const VectorX& state, VectorX& derivative) 
 void EquationsOfMotion::applyPushes(const VectorX& state, VectorX& derivative) const {
   for (const PushForce& push : mechanism_.pushes) {
     addForce(push.point.body, motionOf(push.point, state, frames_).arm, push.force, state, derivative);
-    if (!push.torque.isZero()) addTorque(push.point.body, push.torque, state, derivative);
+    if (!push.torque.isZero()) {
+      const auto index = static_cast<std::size_t>(push.point.body);
+      angularVelocity(derivative, push.point.body) += frames_[index].inverseInertia * push.torque;
+    }
     pushWork(derivative) += powerOf(push, state);
   }
 }
@@ -222,15 +225,6 @@ void EquationsOfMotion::addForce(int body, const Vec3& arm, const Vec3& force, c
   linearVelocity(derivative, body) += mechanism_.bodies[index].inverseMass * force;
   if (!mechanism_.bodies[index].hasConstantSpin)
     angularVelocity(derivative, body) += frames_[index].inverseInertia * arm.cross(force);
-}
-
-/// Adds the angular acceleration that a torque (N m, world) gives a body. A body that is driven keeps its motion.
-void EquationsOfMotion::addTorque(int body, const Vec3& torque, const VectorX& state, VectorX& derivative) const {
-  const std::size_t index = static_cast<std::size_t>(body);
-  if (mechanism_.bodies[index].isDriven())
-    pushWork(derivative) -= torque.dot(angularVelocity(state, body));
-  else
-    angularVelocity(derivative, body) += frames_[index].inverseInertia * torque;
 }
 
 /// What drives bodies works against the constraints: -lambda . J v, v the velocities of driven bodies alone.

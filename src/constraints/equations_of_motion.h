@@ -79,7 +79,6 @@ class EquationsOfMotion {
   void applyMotors(const VectorX& state, VectorX& derivative);
   void hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows, const VectorX& state,
             VectorX& derivative);
-  void addTorque(int body, const Vec3& torque, const VectorX& state, VectorX& derivative) const;
   void addForce(const ConstraintRow& row, double force, const VectorX& state, VectorX& derivative) const;
   void holdResting(const VectorX& state, VectorX& derivative) const;
   void addForce(int body, const Vec3& arm, const Vec3& force, const VectorX& state, VectorX& derivative) const;

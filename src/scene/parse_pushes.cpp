@@ -43,11 +43,16 @@ void parseAction(ObjectReader& reader, Push& push) {
                fmt::format("both torque and {} are given; a torque acts on the whole body and has no {}", key, key));
 }
 
-void warnIfFixed(const Push& push, SceneDraft& scene) {
+void checkThatItMoves(const Push& push, const Field& name, SceneDraft& scene, FaultList& faults) {
   const Body& body = scene.scene.bodies[static_cast<std::size_t>(push.body)];
-  if (body.motion == Motion::dynamic) return;
-  scene.warnings.push_back(fmt::format("{}: the push moves nothing, because body {} is {}", push.where,
-                                       inQuotes(body.name), body.motion == Motion::driven ? "driven" : "static"));
+  if (body.motion == Motion::driven)
+    addFault(faults, name,
+             fmt::format("body {} is driven and moves as it is told, whatever pushes it; push a dynamic body, or give "
+                         "this one the motion",
+                         inQuotes(body.name)));
+  if (body.motion == Motion::fixed)
+    scene.warnings.push_back(
+        fmt::format("{}: the push moves nothing, because body {} is static", push.where, inQuotes(body.name)));
 }
 
 Push parsePush(const Field& field, SceneDraft& scene, FaultList& faults) {
@@ -61,7 +66,7 @@ Push parsePush(const Field& field, SceneDraft& scene, FaultList& faults) {
   push.duration = reader.number("duration", kPushDurations, "s", 0.02);
   reader.rejectUnknownKeys();
   push.body = body.value_or(kWorld);
-  if (push.body != kWorld) warnIfFixed(push, scene);
+  if (push.body != kWorld) checkThatItMoves(push, *name, scene, faults);
   return push;
 }
 
