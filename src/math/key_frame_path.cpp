@@ -9,8 +9,10 @@
 namespace cradle {
 namespace {
 
-// Of the slower piece's velocity, and of that by the longer one's time.
-constexpr double kMostFirst = 2, kMostSecond = 4;
+// Most velocity and acceleration at a key frame: of the slower piece's mean velocity, and of that by the longer one's
+// time. A slow piece beside a fast one would start with the fast one's otherwise, and swing back and forth before its
+// end; at 0 both are 0, so that equal key frames wait.
+constexpr double kMaxVelocityRatio = 2, kMaxAccelerationRatio = 4;
 
 VectorX limited(const VectorX& vector, double most) {
   const double length = vector.norm();
@@ -59,9 +61,10 @@ void KeyFramePath::findDerivatives(const Part& part) {
     const VectorX before = (knot == 0 ? part.seam : 1) * velocity(piece), after = velocity(knot);
     const double lengthBefore = lengthOf(piece), lengthAfter = lengthOf(knot), sum = lengthBefore + lengthAfter;
     const double slowest = std::min(before.norm(), after.norm());
-    const double mostSecond = kMostSecond * slowest / std::max(lengthBefore, lengthAfter);
-    values(knots_[knot].first) = limited((lengthAfter * before + lengthBefore * after) / sum, kMostFirst * slowest);
-    values(knots_[knot].second) = limited(2 * (after - before) / sum, mostSecond);
+    const double maxAcceleration = kMaxAccelerationRatio * slowest / std::max(lengthBefore, lengthAfter);
+    values(knots_[knot].first) =
+        limited((lengthAfter * before + lengthBefore * after) / sum, kMaxVelocityRatio * slowest);
+    values(knots_[knot].second) = limited(2 * (after - before) / sum, maxAcceleration);
   }
   if (!repeats_) return;
   values(knots_.back().first) = part.seam * values(knots_.front().first);
