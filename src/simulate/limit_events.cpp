@@ -391,12 +391,16 @@ void LimitEvents::rebuildConstraints() {
   }
 }
 
+/// Normals go from a to b: along a rope, and where A strikes a stop of B the way in which it does.
 void LimitEvents::record(double time, EventKind kind, std::size_t rope, double impulse, const VectorX& state) {
   const LimitMotion motion = motionOf(assembly_.limits[rope], state);
   const auto [a, b] = assembly_.limitBodies[rope];
-  if (std::holds_alternative<JointLimit>(assembly_.limits[rope]))
+  if (std::holds_alternative<JointLimit>(assembly_.limits[rope])) {
     kind = kind == EventKind::taut ? EventKind::impact : EventKind::release;
-  island_.log.record({time, kind, a, b, motion.a.position, -motion.direction, impulse});
+    island_.log.record({time, kind, a, b, motion.a.position, motion.direction, impulse});
+  } else {
+    island_.log.record({time, kind, a, b, motion.a.position, -motion.direction, impulse});
+  }
 }
 
 }  // namespace cradle

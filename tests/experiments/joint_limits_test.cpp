@@ -39,6 +39,7 @@ TEST(JointLimits, SliderBouncesBetweenItsStops) {
   ASSERT_EQ(hits.size(), 2u);
   EXPECT_NEAR(hits[0].time, first, 1e-9);
   EXPECT_NEAR(hits[0].impulse, 2 * 2 * 1.5, 1e-9);
+  EXPECT_LT((hits[0].normal - Vec3::UnitX()).norm() + (hits[1].normal + Vec3::UnitX()).norm(), 1e-12);
   EXPECT_NEAR(hits[1].time, second, 1e-9);
   EXPECT_NEAR(moved.frames.back().energy.impact, (4 - 0.25) * 2 / 2, 1e-9);
   expectLedger(moved, 1e-12, 1e-9);
@@ -81,6 +82,9 @@ TEST(JointLimits, HingeStopsAPendulumAtTheBottom) {
   const std::vector<Event> hits = eventsOf(moved, EventKind::impact);
   ASSERT_FALSE(hits.empty());
   const double speed = std::sqrt(3 * kGravity * (1 - std::cos(tilt)));
+  // The hinge is at the origin: r x p on the rod, whose normal goes from it, is I (1 + e) w, with l^2 m / 3 about the
+  // end.
+  EXPECT_NEAR(hits[0].point.cross(-hits[0].impulse * hits[0].normal).z(), 2.0 / 3 * (1 + restitution) * speed, 1e-7);
   double least = 0, highest = 0;
   for (const Frame& frame : moved.frames) {
     const double angle = std::atan2(frame.states[0].position.x(), -frame.states[0].position.y());
