@@ -9,7 +9,7 @@
 namespace cradle {
 namespace {
 
-// 1/s: what steps let the velocity of a motor that holds be off goes so fast, which steps follow with ease.
+// 1/s: an error of the velocity of a motor that holds decays so fast, which steps follow with ease.
 constexpr double kMotorRelaxation = 10;
 // Of the largest pivot: motors whose responses differ by less work on one motion.
 constexpr double kSameMotors = 1e-9;
@@ -227,7 +227,8 @@ void EquationsOfMotion::addForce(int body, const Vec3& arm, const Vec3& force, c
     angularVelocity(derivative, body) += frames_[index].inverseInertia * arm.cross(force);
 }
 
-/// What drives bodies works against the constraints: -lambda . J v, v the velocities of driven bodies alone.
+/// Adds the power of the drives of driven bodies against the constraints: -lambda . J v, v the velocities of driven
+/// bodies alone.
 void EquationsOfMotion::addPowerOfConstraints(const VectorX& state, VectorX& derivative) const {
   const auto isDriven = [this](int body) {
     return body != kFixed && mechanism_.bodies[static_cast<std::size_t>(body)].isDriven();

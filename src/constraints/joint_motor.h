@@ -4,11 +4,11 @@
 
 namespace cradle {
 
-/// What works on the coordinate of a slider or a hinge: with a constant force, or so that the coordinate has a
-/// velocity, with at most a given force. Forces are in N along a slider's axis, in N m about a hinge's; of A against B.
+/// A drive of the coordinate of a slider or a hinge: a constant force, or the force that gives the coordinate a
+/// velocity, up to a given one. Forces are in N along a slider's axis, in N m about a hinge's; of A against B.
 struct JointMotor {
-  /// What a motor with a target velocity does now: keeps it, with the force that this takes, or pushes with all that it
-  /// has. One with a constant force pushes at all times.
+  /// A motor with a target velocity keeps it, with the force that this takes, or pushes with all the force that it has.
+  /// One with a constant force pushes at all times.
   enum class Mode { holds, pushes };
 
   Constraint joint;  // whose kind is a JointCoordinate

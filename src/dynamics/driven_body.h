@@ -26,8 +26,8 @@ void place(const std::vector<DrivenBody>& driven, double time, VectorX& state);
 /// Sets the rates of their velocities at `time` (s).
 void accelerate(const std::vector<DrivenBody>& driven, double time, VectorX& derivative);
 
-/// What drives a body puts that power (W) into others by a force (N, world) that the body exerts at a point (m, world);
-/// likewise the work (J) of an impulse (N s). Zero unless it is driven.
+/// Power (W) that the drive of a body puts into others by a force (N, world) of the body at a point (m, world);
+/// likewise the work (J) of an impulse (N s). Zero unless the body is driven.
 double powerOfDriven(const std::vector<RigidBody>& bodies, int body, const Vec3& point, const Vec3& force,
                      const VectorX& state);
 

@@ -52,7 +52,7 @@ void parseName(ObjectReader& reader, BodyDraft& draft) {
   draft.body.name = name.value_or("");
 }
 
-// What a body that no force moves says about its mass and velocities goes unused; its writer should know.
+// The mass and velocities of a body that no force moves go unused; its writer should know.
 void warnOfUnused(ObjectReader& reader, const BodyDraft& draft, std::vector<std::string>& warnings) {
   if (draft.body.motion == Motion::dynamic) return;
   const bool isDriven = draft.body.motion == Motion::driven;

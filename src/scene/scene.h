@@ -49,7 +49,7 @@ struct ModelCollision {
 using Shape = std::variant<Sphere, Box, Cylinder, Capsule, Plane, ModelShape>;
 
 enum class CollisionChoice { automatic, sphere, box, hull, mesh, none };
-/// What moves a body: forces, nothing, or what `prescribed` says, whatever acts on it.
+/// The cause of a body's motion: forces, nothing, or `prescribed`, whatever acts on it.
 enum class Motion { dynamic, fixed, driven };
 
 struct Body {
@@ -123,7 +123,7 @@ struct JointRange {
   double restitution = 0;  // 0..1, where it ends
 };
 
-/// What works on that coordinate, on A against B.
+/// A motor on that coordinate, of A against B.
 struct JointDrive {
   std::optional<double> targetVelocity;  // m/s or rad/s; unset: a constant force
   double force = 0;                      // N or N m; with a target velocity the most, >= 0

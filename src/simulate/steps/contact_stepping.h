@@ -62,7 +62,8 @@ class ContactStepping {
   std::vector<SteppingFault> takeFaults() { return std::exchange(faults_, {}); }
 
  private:
-  /// What driven bodies lead others to, at the start and the end of a step (ledVelocities). Empty if there are none.
+  /// Velocities to which driven bodies lead others, at the start and the end of a step (ledVelocities). Empty if there
+  /// are none.
   struct LedMotion {
     VectorX start, end;
   };

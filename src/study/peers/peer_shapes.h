@@ -19,7 +19,7 @@ struct PeerShape {
 /// A body's shape as `auto` takes it; nothing for bodies that touch nothing, and for meshes that are no primitive.
 std::optional<PeerShape> peerShapeOf(const Body& body, const Scene& scene);
 
-/// What no other engine is given, in words; empty if the scene has nothing of it.
+/// The first part of a scene that no other engine is given, in words; empty if there is none.
 std::string missingInEveryPeer(const Scene& scene);
 
 /// The first body that touches with a mesh that is no primitive, in words; empty if there is none.
