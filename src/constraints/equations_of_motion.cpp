@@ -85,16 +85,19 @@ void EquationsOfMotion::constrain(VectorX& derivative) {
 void EquationsOfMotion::applyMotors(const VectorX& state, VectorX& derivative) {
   const std::vector<JointMotor>& motors = mechanism_.motors;
   const bool areKnown = isWithoutContacts_ && motorForces_.size() == std::ssize(motors);
-  if (!areKnown) motorForces_.setZero(std::ssize(motors));
+  if (motorForces_.size() != std::ssize(motors)) motorForces_.setZero(std::ssize(motors));
   motorMobilities_.setZero(std::ssize(motors));
   std::vector<ConstraintRow> rows;
   std::vector<std::size_t> holding;
   for (std::size_t i = 0; i < motors.size(); ++i) {
     rows.push_back(rowOf(motors[i], state, frames_));
-    const bool holds = motors[i].mode == JointMotor::Mode::holds;
-    if (holds && !areKnown && !isResting(motors[i].joint)) holding.push_back(i);
     double& force = motorForces_[static_cast<Eigen::Index>(i)];
-    if (!holds) force = motors[i].sign * motors[i].maxForce;
+    if (motors[i].mode == JointMotor::Mode::pushes) {
+      force = motors[i].sign * motors[i].maxForce;
+    } else if (!areKnown && !isResting(motors[i].joint)) {
+      holding.push_back(i);
+      continue;
+    }
     if (force != 0) addForce(rows[i], force, state, derivative);
   }
   if (!holding.empty()) hold(holding, rows, state, derivative);

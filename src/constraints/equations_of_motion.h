@@ -41,6 +41,9 @@ class EquationsOfMotion {
   bool isResting(std::size_t body) const { return resting_[body] != 0; }
   const std::vector<char>& resting() const { return resting_; }
 
+  /// Whether nothing moves the ends of a constraint: those of it that are bodies rest or are driven.
+  bool isResting(const Constraint& constraint) const;
+
   /// Multipliers of the constraints' rows at the last evaluation, in their order: a rod pushes its ends apart with the
   /// force (N) multiplier x length.
   const VectorX& multipliers() const { return multipliers_; }
@@ -48,14 +51,15 @@ class EquationsOfMotion {
   /// What acts at each contact, at the last evaluation. Contacts between bodies at rest have no force here.
   const std::vector<ContactForce>& contactForces() const { return contactSolver_.forces(); }
 
-  /// Forces (N or N m) of the motors at the last evaluation, and what 1 of it adds to the acceleration of the
-  /// coordinate, 1/kg or 1/(kg m^2); the latter of those that hold alone.
+  /// Forces (N or N m) of the motors at the last evaluation (where bodies rest, at the last before that), and what 1 of
+  /// it adds to the acceleration of the coordinate, 1/kg or 1/(kg m^2); the latter of those that hold alone.
   const VectorX& motorForces() const { return motorForces_; }
   const VectorX& motorMobilities() const { return motorMobilities_; }
 
   /// How fast (1/s) motors that hold take back what their joint's velocity is off. Steps of a fixed length do so within
   /// one, and with at most the force that motors have; others locate the instants from which that does not suffice.
   void setMotorSteps(double timeStep) { motorTimeStep_ = timeStep; }
+  double motorSteps() const { return motorTimeStep_; }  // s; 0: of no fixed length
 
   /// Moves the bodies by the least (mass-weighted) motion until constraints and contacts hold to rounding, and takes
   /// out of the velocities what would change that or makes sticking contacts slide. Returns the largest error that was
@@ -74,7 +78,6 @@ class EquationsOfMotion {
   void applyPushes(const VectorX& state, VectorX& derivative) const;
   bool hasContacts() const { return !isWithoutContacts_ && !mechanism_.contacts.empty(); }
   void applyConstraints(const VectorX& state, VectorX& derivative);
-  bool isResting(const Constraint& constraint) const;
   void constrain(VectorX& derivative);
   void applyMotors(const VectorX& state, VectorX& derivative);
   void hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows, const VectorX& state,

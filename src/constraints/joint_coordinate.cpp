@@ -1,9 +1,14 @@
 #include "constraints/joint_coordinate.h"
 
+#include <cmath>
+#include <numbers>
+
 #include "math/elementary.h"
 
 namespace cradle {
 namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
 
 /// dq/dt = u . (w_A - w_B) with the axis u of B, and du/dt = w_B x u.
 void putTurn(const JointCoordinate& joint, const ConstraintEnds& ends, ConstraintBlock& block) {
@@ -32,6 +37,10 @@ void putSlide(const JointCoordinate& joint, const ConstraintEnds& ends, Constrai
 }
 
 }  // namespace
+
+double nearestTurn(double angle, double near) {
+  return angle + kTurn * std::round((near - angle) / kTurn);
+}
 
 void putRows(const JointCoordinate& joint, const ConstraintEnds& ends, ConstraintBlock& block) {
   block.turnsA = ends.a.rotation, block.turnsB = ends.b.rotation;  // wherever the anchors are

@@ -17,6 +17,9 @@ struct JointCoordinate {
   double value = 0;                                       // m or rad
 };
 
+/// Of the angles that differ from one by whole turns (rad) that which is nearest to `near`.
+double nearestTurn(double angle, double near);
+
 void putRows(const JointCoordinate& joint, const ConstraintEnds& ends, ConstraintBlock& block);
 
 }  // namespace cradle

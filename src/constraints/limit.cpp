@@ -1,12 +1,7 @@
 #include "constraints/limit.h"
 
-#include <cmath>
-#include <numbers>
-
 namespace cradle {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 /// The ends of a joint between two poses of centres of mass, at rest.
 ConstraintEnd endAt(const Attachment& anchor, const RigidTransform& pose, Mat3& rotation) {
@@ -41,11 +36,6 @@ void findRow(const JointLimit& limit, const VectorX& state, CoordinateRow& found
   found.block.rows = JointCoordinate::kRows;
   found.block.bodyA = a, found.block.bodyB = b;
   putRows(limit.bound, found.ends, found.block);
-}
-
-/// Of a hinge's coordinate less the bound, of all that differ by whole turns that which is nearest to `near` (rad).
-double nearestTurn(double value, double near) {
-  return value + kTurn * std::round((near - value) / kTurn);
 }
 
 double excessOf(const JointLimit& limit, double value, double turning) {

@@ -128,20 +128,27 @@ double massDistance(const Attachment& anchor, const std::vector<RigidBody>& bodi
   return body.isDriven() ? 0 : std::sqrt(body.inertiaTensor.trace() / (2 * body.mass) + anchor.point.squaredNorm());
 }
 
-/// The stops of a joint. Where its anchors are apart at the start by an error, its coordinate is 0 all the same.
+/// The coordinate of a joint, which is 0 at the start also where its anchors are apart by an error.
 template <class Joint>
-void addStops(const Joint& joint, const JointTurns& turns, const Attachment& a, const Attachment& b,
-              Assembly& assembly) {
-  if (!joint.limits) return;
-  JointLimit stop{a, b, coordinateOf(joint, turns)};
+Constraint coordinateAtStart(const Joint& joint, const JointTurns& turns, const Attachment& a, const Attachment& b,
+                             const Assembly& assembly) {
+  JointCoordinate coordinate = coordinateOf(joint, turns);
+  if (!coordinate.turns) coordinate.value = -motionOf(Limit(JointLimit{a, b, coordinate}), assembly.state).slackLength;
+  return {a, b, coordinate};
+}
+
+/// The stops of a joint between two scene bodies.
+void addStops(const JointRange& range, int bodyA, int bodyB, const Constraint& coordinate, Assembly& assembly) {
+  const auto& [a, b, kind] = coordinate;
+  JointLimit stop{a, b, std::get<JointCoordinate>(kind)};
   stop.size = std::max(massDistance(a, assembly.mechanism.bodies), massDistance(b, assembly.mechanism.bodies));
-  stop.restitution = joint.limits->restitution;
-  const double start = stop.bound.turns ? 0 : -motionOf(Limit(stop), assembly.state).slackLength;
-  for (const auto& [bound, side] : {std::pair(joint.limits->lower, -1.0), {joint.limits->upper, 1.0}}) {
+  stop.restitution = range.restitution;
+  const double start = stop.bound.value;
+  for (const auto& [bound, side] : {std::pair(range.lower, -1.0), {range.upper, 1.0}}) {
     if (!std::isfinite(bound)) continue;
     stop.bound.value = start + bound, stop.side = side;
     assembly.limits.emplace_back(stop);
-    assembly.limitBodies.emplace_back(joint.anchorA.body, joint.anchorB.body);
+    assembly.limitBodies.emplace_back(bodyA, bodyB);
   }
 }
 
@@ -151,6 +158,15 @@ JointMotor motorOf(const JointDrive& drive, const Constraint& joint) {
   motor.targetVelocity = drive.targetVelocity.value_or(0);
   motor.maxForce = std::abs(drive.force), motor.sign = drive.force < 0 ? -1 : 1;
   return motor;
+}
+
+/// What acts on the coordinate of a joint, `index` among the scene's hinges and sliders.
+template <class Joint>
+void addCoordinate(const Joint& joint, std::size_t index, const Constraint& coordinate, Assembly& assembly) {
+  std::vector<JointMotor>& motors = assembly.mechanism.motors;
+  if (joint.limits) addStops(*joint.limits, joint.anchorA.body, joint.anchorB.body, coordinate, assembly);
+  assembly.joints.push_back({coordinate, index, joint.motor ? static_cast<int>(motors.size()) : -1});
+  if (joint.motor) motors.push_back(motorOf(*joint.motor, coordinate));
 }
 
 void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) {
@@ -166,8 +182,9 @@ void addLinks(const Scene& scene, const IslandPlan& island, Assembly& assembly) 
                   const JointTurns turns = turnsOf(link.anchorA, link.anchorB, a, b, scene);
                   mechanism.constraints.push_back({a, b, constraintOf(link, turns)});
                   if constexpr (requires { link.limits; }) {
-                    addStops(link, turns, a, b, assembly);
-                    if (link.motor) mechanism.motors.push_back(motorOf(*link.motor, {a, b, coordinateOf(link, turns)}));
+                    const std::size_t before = link.kKind == LinkKind::slider ? scene.hinges.size() : 0;
+                    addCoordinate(link, before + static_cast<std::size_t>(&link - links.data()),
+                                  coordinateAtStart(link, turns, a, b, assembly), assembly);
                   }
                   assembly.names.constraints.push_back(fmt::format("{} \"{}\"", link.kNoun, link.name));
                 });

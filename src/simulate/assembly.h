@@ -18,11 +18,19 @@ struct PartNames {
   std::vector<std::string> bodies, springs, constraints;
 };
 
+/// A hinge or a slider of an island.
+struct AssembledJoint {
+  Constraint coordinate;  // whose kind is a JointCoordinate: 0 at the start
+  std::size_t index = 0;  // among the scene's hinges and sliders, in this order
+  int motor = -1;         // index into the mechanism's motors, or -1
+};
+
 /// An island of a scene turned into what the methods work on.
 struct Assembly {
   Mechanism mechanism;
   ContactGeometry geometry;
   std::vector<Limit> limits;
+  std::vector<AssembledJoint> joints;
   VectorX state;                    // at time 0
   std::vector<int> sceneBodies;     // scene body of each moving body, ascending
   std::vector<std::size_t> pushes;  // of the island, indices into the scene's

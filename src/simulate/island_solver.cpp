@@ -30,9 +30,12 @@ double contactTimeStep(const Assembly& assembly) {
 IslandSolver::IslandSolver(const Scene& scene, Assembly assembly, const ChosenMethod& method)
     : island_(scene, std::move(assembly)),
       ropes_(island_),
+      coordinates_(island_.assembly),
       solver_(island_.assembly.mechanism.constraints, island_.assembly.mechanism.bodies),
+      frameEquations_(island_.assembly.mechanism),
       method_(method),
-      record_(island_.assembly, scene.accuracy) {
+      record_(island_.assembly, scene.accuracy),
+      jointStates_(island_.assembly.joints.size()) {
   if (method.isAdaptive())
     motion_.emplace<EventMotion>(island_, ropes_, method, false);
   else
@@ -57,6 +60,7 @@ const VectorX& IslandSolver::stateAt(double time, const std::function<void(doubl
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (bodies[i].hasConstantSpin) rotate(static_cast<Eigen::Index>(i), time, reported_);
   record_.add(time, reported_);
+  if (!jointStates_.empty()) findJointStates(time);
   return reported_;
 }
 
@@ -80,10 +84,14 @@ void IslandSolver::advance(double time, Motion& motion) {
 
 void IslandSolver::advance(double time) {
   if (mayNotGoOn()) changeMotion();
+  const double before = island_.time;
+  coordinates_.beginStep(island_.state);
   if (auto* events = std::get_if<EventMotion>(&motion_))
     advance(time, *events);
   else
     advance(time, std::get<SteppedMotion>(motion_));
+  const bool hasStepped = island_.step.time + island_.step.timeStep >= island_.time;
+  coordinates_.endStep(island_.time - before, hasStepped ? island_.step.state : island_.state);
   // The step under way ends later than `time`: its interpolant is needed as it is.
   if (method_.isAdaptive()) changeMotion();
 }
@@ -149,15 +157,10 @@ void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
   bookNumerical(energyConstant(mechanism, island_.step.startState), mechanism, reported_);
 }
 
-/// Sets the work since the step's start to the integral of the power along the interpolant, by Gauss and Legendre: of
-/// degree 2 k - 1, in steps that are as long as the motion allows, it is more exact than the interpolant of the work,
-/// whose degree is that of the motion's.
-void IslandSolver::integrateWork(const EventMotion& events, double fraction) {
-  constexpr double kNodes[] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521};  // of -1..1, both signs
-  constexpr double kWeights[] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
-  const Step& step = island_.step;
+template <class Evaluate>
+void IslandSolver::withForcesOfStep(const EventMotion& events, const Evaluate& evaluate) {
   Mechanism& mechanism = island_.assembly.mechanism;
-  // As it was in the step: what has ended it may have changed forces, and brought bodies to rest.
+  // What has ended the step may have changed forces, and brought bodies to rest.
   std::vector<ContactConstraint> contacts = events.contactsOfStep();
   Constraints constraints = events.constraintsOfStep();
   std::vector<PushForce> pushes = events.pushesOfStep();
@@ -168,22 +171,70 @@ void IslandSolver::integrateWork(const EventMotion& events, double fraction) {
     std::swap(motors, mechanism.motors);
   };
   swapForces();
-  const std::vector<char> resting = island_.equations.resting();
   findStill();
-  for (std::size_t i = 0; i < resting.size(); ++i)
-    if (!still_[i]) island_.equations.setResting(i, false);
-  double power = 0;  // W, mean
-  for (std::size_t i = 0; i < std::size(kNodes); ++i)
-    for (const double node : {-kNodes[i], kNodes[i]}) {
-      const double part = fraction * (1 + node) / 2, time = step.time + part * step.timeStep;
-      interpolate(step, part, sample_);
-      place(mechanism.driven, time, sample_);
-      island_.equations.evaluate(time, sample_, derivative_);
-      power += kWeights[i] / 2 * pushWork(derivative_);
-    }
+  std::vector<char> resting = island_.equations.resting();
+  for (std::size_t i = 0; i < resting.size(); ++i) resting[i] = resting[i] && still_[i];
+  setResting(resting);
+  evaluate();
   swapForces();
-  for (std::size_t i = 0; i < resting.size(); ++i) island_.equations.setResting(i, resting[i]);
+}
+
+/// Sets the work since the step's start to the integral of the power along the interpolant, by Gauss and Legendre: of
+/// degree 2 k - 1, in steps that are as long as the motion allows, it is more exact than the interpolant of the work,
+/// whose degree is that of the motion's.
+void IslandSolver::integrateWork(const EventMotion& events, double fraction) {
+  constexpr double kNodes[] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521};  // of -1..1, both signs
+  constexpr double kWeights[] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
+  const Step& step = island_.step;
+  double power = 0;  // W, mean
+  withForcesOfStep(events, [&] {
+    for (std::size_t i = 0; i < std::size(kNodes); ++i)
+      for (const double node : {-kNodes[i], kNodes[i]}) {
+        const double part = fraction * (1 + node) / 2, time = step.time + part * step.timeStep;
+        interpolate(step, part, sample_);
+        place(island_.assembly.mechanism.driven, time, sample_);
+        frameEquations_.evaluate(time, sample_, derivative_);
+        power += kWeights[i] / 2 * pushWork(derivative_);
+      }
+  });
   pushWork(reported_) = pushWork(step.startState) + fraction * step.timeStep * power;
+}
+
+void IslandSolver::findJointStates(double time) {
+  coordinates_.find(std::min(0.0, time - island_.time), reported_, jointStates_);
+  const Assembly& assembly = island_.assembly;
+  if (assembly.mechanism.motors.empty()) return;
+  const VectorX forces = motorForces(time);
+  for (std::size_t i = 0; i < jointStates_.size(); ++i)
+    if (const int motor = assembly.joints[i].motor; motor >= 0) jointStates_[i].force = forces[motor];
+}
+
+/// Forces of all motors in the reported state: of those that hold, in steps of one length, the ones of the step.
+VectorX IslandSolver::motorForces(double time) {
+  const std::vector<JointMotor>& motors = island_.assembly.mechanism.motors;
+  const VectorX& ofStep = island_.equations.motorForces();
+  const bool isKnown = ofStep.size() == std::ssize(motors);
+  const auto* events = std::get_if<EventMotion>(&motion_);
+  if (!events && isKnown) return ofStep;
+  frameEquations_.setMotorSteps(island_.equations.motorSteps());
+  const auto evaluate = [&] { frameEquations_.evaluate(time, reported_, derivative_); };
+  if (events && time < island_.time - sameTime(time)) {
+    withForcesOfStep(*events, evaluate);
+  } else {
+    setResting(island_.equations.resting());
+    evaluate();
+  }
+  VectorX forces = frameEquations_.motorForces();
+  for (std::size_t i = 0; i < motors.size() && isKnown; ++i)
+    if (frameEquations_.isResting(motors[i].joint))
+      forces[static_cast<Eigen::Index>(i)] = ofStep[static_cast<Eigen::Index>(i)];
+  return forces;
+}
+
+/// For what is asked of frames.
+void IslandSolver::setResting(const std::vector<char>& resting) {
+  for (std::size_t i = 0; i < resting.size(); ++i)
+    if (frameEquations_.isResting(i) != (resting[i] != 0)) frameEquations_.setResting(i, resting[i] != 0);
 }
 
 /// Projects the interpolated state onto the constraint manifold: no gaps at active contacts, no constraint errors.

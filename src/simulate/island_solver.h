@@ -7,6 +7,7 @@
 
 #include "simulate/conservation_record.h"
 #include "simulate/events/event_motion.h"
+#include "simulate/joint_coordinates.h"
 #include "simulate/steps/stepped_motion.h"
 #include "trajectory/trajectory.h"
 
@@ -32,8 +33,11 @@ class IslandSolver {
   /// more than kMaxNumericalRatio times the accuracy without a cause.
   void finish();
 
+  /// The hinges and sliders of the assembly in that state. In steps of one length a motor's force is that of the step.
+  const std::vector<JointState>& jointStates() const { return jointStates_; }
+
   const Assembly& assembly() const { return island_.assembly; }
-  long evaluations() const { return island_.equations.evaluations(); }
+  long evaluations() const { return island_.equations.evaluations() + frameEquations_.evaluations(); }
 
   /// Events since the last call: up to the end of the step under way.
   std::vector<Event> takeEvents() { return island_.log.take(); }
@@ -55,14 +59,22 @@ class IslandSolver {
   /// The state of a frame inside a step. Its difference from the energy of the step's start is an error of that frame
   /// alone.
   void interpolateAt(double time, bool keepsConstraints);
+  /// Calls evaluate() with contacts, constraints, pushes and motors as they were in the last step of events.
+  template <class Evaluate>
+  void withForcesOfStep(const EventMotion& events, const Evaluate& evaluate);
   void integrateWork(const EventMotion& events, double fraction);
+  void findJointStates(double time);
+  VectorX motorForces(double time);
+  void setResting(const std::vector<char>& resting);
   void project(const std::vector<ContactConstraint>& contacts);
   void findStill();
   void rotate(Eigen::Index body, double time, VectorX& state) const;
 
   IslandState island_;
   LimitEvents ropes_;
+  JointCoordinates coordinates_;
   ConstraintSolver solver_;
+  EquationsOfMotion frameEquations_;  // for what is asked of frames: the motion knows nothing of it
   std::variant<std::monostate, EventMotion, SteppedMotion> motion_;
   ChosenMethod method_;
   ConservationRecord record_;
@@ -71,6 +83,7 @@ class IslandSolver {
   double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not
   std::vector<char> still_;        // bodies that the step has not moved
   VectorX reported_, sample_, derivative_;
+  std::vector<JointState> jointStates_;
 };
 
 }  // namespace cradle

@@ -48,6 +48,11 @@ TrajectoryHeader headerOf(const Scene& scene, const Plan& plan) {
     header.bodies.push_back({body.name, body.motion == Motion::dynamic, body.motion == Motion::driven,
                              model ? model->model : -1, shapeText(body.shape), body.massProperties});
   }
+  const auto addJoints = [&header](const auto& joints) {
+    for (const auto& joint : joints)
+      header.joints.push_back({joint.name, joint.kNoun, joint.anchorA.body, joint.anchorB.body});
+  };
+  addJoints(scene.hinges), addJoints(scene.sliders);
   return header;
 }
 

@@ -28,7 +28,7 @@ void add(const Invariants& sums, const VectorX& state, EnergyBalance& balance) {
 
 }  // namespace
 
-World::World(const Scene& scene) : plan_(planOf(scene)) {
+World::World(const Scene& scene) : plan_(planOf(scene)), joints_(scene.hinges.size() + scene.sliders.size()) {
   for (const Body& body : scene.bodies) {
     if (body.prescribed) cradle::add(static_cast<int>(moving_), *body.prescribed, driven_);
     stateOfBody_.push_back(body.motion == Motion::fixed ? -1 : static_cast<int>(moving_++));
@@ -99,7 +99,7 @@ void World::addFlight(Assembly assembly) {
 
 Frame World::frameAt(long number, double time, const std::function<void(double time)>& reached) {
   throwIfInterrupted();
-  Frame frame{number, time, std::vector<BodyState>(moving_), {}};
+  Frame frame{number, time, std::vector<BodyState>(moving_), {}, std::vector<JointState>(joints_)};
   const auto add = [&](const auto& simulation, const auto&... told) {
     addTo(frame, simulation->assembly(), simulation->stateAt(time, told...));
     const std::vector<Event> events = simulation->takeEvents();
@@ -115,6 +115,8 @@ Frame World::frameAt(long number, double time, const std::function<void(double t
     };
   for (const auto& simulation : solvers_) {
     add(simulation, tellMean);
+    for (std::size_t i = 0; i < simulation->jointStates().size(); ++i)
+      frame.joints[simulation->assembly().joints[i].index] = simulation->jointStates()[i];
     ++done;
   }
   lastTime_ = time;

@@ -81,8 +81,8 @@ class World {
   std::vector<FlyingIsland> flying_;
   std::vector<std::unique_ptr<HardSpheres>> spheres_;
   std::vector<std::unique_ptr<SoftSubsteps>> softIslands_;
-  std::vector<int> stateOfBody_;  // of each scene body in a frame's states, or -1
-  std::size_t moving_ = 0;
+  std::vector<int> stateOfBody_;                      // of each scene body in a frame's states, or -1
+  std::size_t moving_ = 0, joints_ = 0;               // states of a frame
   std::vector<DrivenBody> driven_;                    // by their places in a frame's states
   std::array<char, kCorrectionKinds> isToldOf_ = {};  // kinds of corrections
   std::vector<Event> events_;                         // known, but not yet taken

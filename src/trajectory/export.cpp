@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
+#include <string_view>
 #include <vector>
 
 #include "core/csv_field.h"
@@ -11,28 +13,61 @@
 namespace cradle {
 namespace {
 
-constexpr const char* kColumns =
-    "time_s,frame,body,px_m,py_m,pz_m,qw,qx,qy,qz,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s\n";
+constexpr std::string_view kBodyColumns =
+    "time_s,frame,body,px_m,py_m,pz_m,qw,qx,qy,qz,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s";
+constexpr std::string_view kJointColumns = ",joint,coordinate,velocity,force";  // units go with the kind of the joint
+
+/// Empty fields in place of some columns, each with its comma in front.
+std::string emptyFields(std::string_view columns) {
+  return std::string(static_cast<std::size_t>(std::ranges::count(columns, ',')), ',');
+}
+
+/// The lines of a frame: those of its bodies, then those of its joints.
+class FrameLines {
+ public:
+  explicit FrameLines(const TrajectoryHeader& header) {
+    for (const BodyRecord& body : header.bodies)
+      if (body.hasStates()) bodies_.push_back(csvField(body.name));
+    for (const JointRecord& joint : header.joints) joints_.push_back(csvField(joint.name));
+    header_ = kBodyColumns;
+    if (joints_.empty()) return;
+    header_ += kJointColumns;
+    afterBody_ = emptyFields(kJointColumns);
+    beforeJoint_ = emptyFields(kBodyColumns.substr(kBodyColumns.find(",body")));
+  }
+
+  const std::string& header() const { return header_; }
+
+  void append(const Frame& frame, fmt::memory_buffer& lines) const {
+    const auto out = std::back_inserter(lines);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      fmt::format_to(out, "{},{},{}", frame.time, frame.number, bodies_[i]);
+      for (const double value : stateNumbers(frame.states[i])) fmt::format_to(out, ",{}", value);
+      fmt::format_to(out, "{}\n", afterBody_);
+    }
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      const JointState& joint = frame.joints[i];
+      fmt::format_to(out, "{},{}{},{},{},{},{}\n", frame.time, frame.number, beforeJoint_, joints_[i], joint.coordinate,
+                     joint.velocity, joint.force);
+    }
+  }
+
+ private:
+  std::vector<std::string> bodies_, joints_;  // names
+  std::string header_, afterBody_, beforeJoint_;
+};
 
 }  // namespace
 
 void exportCsv(const TrajectoryReader& reader, const std::string& path,
                const std::function<void(long done)>& progress) {
-  std::vector<std::string> names;
-  for (const BodyRecord& body : reader.header().bodies)
-    if (body.hasStates()) names.push_back(csvField(body.name));
-
+  const FrameLines frameLines(reader.header());
   PartFile file(path);
-  file.write(kColumns);
+  file.write(frameLines.header() + "\n");
   fmt::memory_buffer lines;
   for (long number = 0; number < reader.frameCount(); ++number) {
-    const Frame frame = reader.readFrame(number);
     lines.clear();
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      fmt::format_to(std::back_inserter(lines), "{},{},{}", frame.time, number, names[i]);
-      for (const double value : stateNumbers(frame.states[i])) fmt::format_to(std::back_inserter(lines), ",{}", value);
-      lines.push_back('\n');
-    }
+    frameLines.append(reader.readFrame(number), lines);
     file.write({lines.data(), lines.size()});
     progress(number + 1);
   }

@@ -7,10 +7,10 @@
 
 namespace cradle {
 
-/// Writes the states as comma-separated values: a header line with units, then one line for each frame and dynamic
-/// body. Numbers have as many digits as give the same bits when read back; names are quoted as RFC 4180 says where they
-/// need it. `progress` is told after each frame how many are done, and may throw. FILE is replaced when all is written.
-/// Throws Error(output), and what reading throws.
+/// Writes the states as comma-separated values: a header line with units, then for each frame one line for each body
+/// that moves and, in columns of their own, one for each hinge and slider. Numbers have as many digits as give the same
+/// bits when read back; names are quoted as RFC 4180 says where they need it. `progress` is told after each frame how
+/// many are done, and may throw. FILE is replaced when all is written. Throws Error(output), and what reading throws.
 void exportCsv(const TrajectoryReader& reader, const std::string& path, const std::function<void(long done)>& progress);
 
 }  // namespace cradle

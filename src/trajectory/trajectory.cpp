@@ -27,6 +27,11 @@ bool isPossible(const BodyState& state) {
          std::abs(state.orientation.norm() - 1) < kUnitError;  // false where it is not finite
 }
 
+bool isPossible(const JointState& state) {
+  const auto isPossibleNumber = [](double number) { return std::abs(number) < kLargestNumber; };
+  return isPossibleNumber(state.coordinate) && isPossibleNumber(state.velocity) && isPossibleNumber(state.force);
+}
+
 std::string eventKindName(EventKind kind) {
   return kEventKindNames.at(static_cast<std::size_t>(kind));
 }

@@ -47,11 +47,22 @@ struct EnergyBalance {
   Vec3 angularMomentum = Vec3::Zero();  // kg m^2/s, about the world origin
 };
 
+/// State of a hinge or a slider: A against B about its axis, or along it.
+struct JointState {
+  double coordinate = 0;  // rad or m, 0 at the start; whole turns are counted
+  double velocity = 0;    // rad/s or m/s
+  double force = 0;       // N m or N, of its motor on A
+};
+
+/// Whether a joint can have that state: its numbers are finite and below 1e100.
+bool isPossible(const JointState& state);
+
 struct Frame {
   long number = 0;
   double time = 0;                // s
-  std::vector<BodyState> states;  // one a dynamic body, in the order of the bodies
+  std::vector<BodyState> states;  // one a dynamic or driven body, in the order of the bodies
   EnergyBalance energy;
+  std::vector<JointState> joints = {};  // in the order of TrajectoryHeader::joints
 };
 
 enum class EventKind { impact, taut, slack, rest, slip, stick, roll, release, wake, pushStart, pushEnd, pushMissed };
@@ -77,13 +88,21 @@ struct BodyRecord {
   bool hasStates() const { return isDynamic || isDriven; }
 };
 
+/// A joint with a coordinate as the trajectory describes it.
+struct JointRecord {
+  std::string name;
+  std::string kind;           // hinge or slider
+  int bodyA = 0, bodyB = -1;  // indices into TrajectoryHeader::bodies; -1: the world
+};
+
 /// All that is known before the first step.
 struct TrajectoryHeader {
   std::string scene, scenePath;        // text of the scene file; path for messages
   std::string version;                 // of the program that made it
   std::string plan, accuracy, method;  // what was chosen, in words
   std::vector<BodyRecord> bodies;
-  std::vector<Model> meshes;  // named "path#object@scale"; drawn and solid
+  std::vector<Model> meshes;             // named "path#object@scale"; drawn and solid
+  std::vector<JointRecord> joints = {};  // hinges, then sliders
 };
 
 /// What is known after the last step.

@@ -32,8 +32,8 @@ class TrajectoryWriter {
   TrajectoryWriter(const TrajectoryWriter&) = delete;
   TrajectoryWriter& operator=(const TrajectoryWriter&) = delete;
 
-  /// Frames count from 0 without gaps, in order of time, with one state for each dynamic body. Throws Error(unstable)
-  /// if a number is not finite, Error(output) if it cannot be written. Amortised O(bodies).
+  /// Frames count from 0 without gaps, in order of time, with one state for each body that moves and each joint. Throws
+  /// Error(unstable) if a number is not finite, Error(output) if it cannot be written. Amortised O(bodies).
   void append(const Frame& frame);
   /// Events in order of time.
   void append(const Event& event);
@@ -56,7 +56,7 @@ class TrajectoryWriter {
   void endUnfinished() noexcept;
 
   std::string path_, part_;
-  std::vector<std::string> bodyNames_;
+  std::vector<std::string> bodyNames_, jointNames_;
   std::vector<int> movingBodies_;  // ids
   std::chrono::milliseconds commitInterval_;
   std::chrono::steady_clock::time_point lastCommit_;
@@ -103,7 +103,9 @@ class TrajectoryReader {
   void readMeta();
   void readMeshes();
   void readBodies();
+  void readJoints();
   void readFrameTimes();
+  void readJointStates(Frame& frame) const;
 
   std::string path_;
   TrajectoryHeader header_;

@@ -32,6 +32,7 @@ constexpr const char* kMaterialsOfMesh =
     "SELECT value ->> 'name', value ->> 'baseColor', value ->> 'firstTriangle', value ->> 'triangleCount' "
     "FROM mesh, json_each(mesh.material) WHERE mesh.id = ?";
 constexpr const char* kTableNames = "('meta', 'mesh', 'body', 'frame', 'state', 'event', 'energy')";
+constexpr const char* kJointTableNames = "('joint', 'joint_state')";  // which earlier versions did not write
 
 /// The first bytes of a file, or all; empty if it cannot be read.
 std::string fileHeaderOf(const std::string& path) {
@@ -49,20 +50,28 @@ std::int64_t oneInteger(Database& database, const std::string& sql) {
   return query.integer(0);
 }
 
-void requireTrajectory(Database& database, const std::string& path) {
-  const bool isOurs = oneInteger(database, "PRAGMA application_id") == kApplicationId &&
-                      oneInteger(database, fmt::format("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND "
-                                                       "name IN {}",
-                                                       kTableNames)) == 7;
-  if (!isOurs) throw Error(ErrorKind::usage, path, "is a SQLite database, but not a trajectory of cradle");
-  // Tables that compute what they give could give without end.
+std::int64_t countTables(Database& database, const char* names) {
+  return oneInteger(database,
+                    fmt::format("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN {}", names));
+}
+
+/// Tables that compute what they give could give without end.
+void requireStored(Database& database, const char* names) {
   const bool isStored =
-      oneInteger(database, fmt::format("SELECT count(*) FROM sqlite_master WHERE rootpage = 0 AND name IN {}",
-                                       kTableNames)) == 0 &&
+      oneInteger(database,
+                 fmt::format("SELECT count(*) FROM sqlite_master WHERE rootpage = 0 AND name IN {}", names)) == 0 &&
       oneInteger(database, fmt::format("SELECT count(*) FROM sqlite_master AS t, pragma_table_xinfo(t.name) AS c WHERE "
                                        "t.type = 'table' AND t.name IN {} AND c.hidden <> 0",
-                                       kTableNames)) == 0;
+                                       names)) == 0;
   if (!isStored) database.failDamaged("a table computes its columns instead of holding them");
+}
+
+void requireTrajectory(Database& database, const std::string& path) {
+  const bool isOurs =
+      oneInteger(database, "PRAGMA application_id") == kApplicationId && countTables(database, kTableNames) == 7;
+  if (!isOurs) throw Error(ErrorKind::usage, path, "is a SQLite database, but not a trajectory of cradle");
+  requireStored(database, kTableNames);
+  requireStored(database, kJointTableNames);
   const std::int64_t version = oneInteger(database, "PRAGMA user_version");
   if (version != kSchemaVersion)
     throw Error(
@@ -145,6 +154,21 @@ MassProperties massPropertiesAt(const Statement& row, int first) {
   return properties;
 }
 
+/// A body's number; `who` names it.
+int bodyAt(const Statement& row, int column, const TrajectoryHeader& header, const Database& database,
+           const char* who) {
+  const std::int64_t id = row.integer(column);
+  if (id < 0 || id >= static_cast<std::int64_t>(header.bodies.size()))
+    database.failDamaged(fmt::format("{} names a body that is not there", who));
+  return static_cast<int>(id);
+}
+
+/// The same, or -1: null is the world.
+int bodyOrWorldAt(const Statement& row, int column, const TrajectoryHeader& header, const Database& database,
+                  const char* who) {
+  return row.isNull(column) ? -1 : bodyAt(row, column, header, database, who);
+}
+
 /// Earlier versions did not write the causes of what was dissipated.
 std::string energyQuery(Database& database) {
   const bool hasCauses =
@@ -162,10 +186,14 @@ struct TrajectoryReader::Session {
         database->prepare("SELECT body, px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz FROM state "
                           "WHERE frame = ? ORDER BY body"));
     energy.emplace(database->prepare(energyQuery(*database)));
+    if (countTables(*database, kJointTableNames) == 2)
+      joint.emplace(database->prepare(
+          "SELECT joint, coordinate, velocity, force FROM joint_state WHERE frame = ? ORDER BY joint"));
   }
 
   std::unique_ptr<Database> database;
   std::optional<Statement> state, energy;
+  std::optional<Statement> joint;  // none in files of earlier versions
 };
 
 TrajectoryReader::TrajectoryReader(const std::string& path) : path_(path) {
@@ -193,6 +221,7 @@ void TrajectoryReader::readAll() {
   readMeta();
   readMeshes();
   readBodies();
+  if (session_->joint) readJoints();
   readFrameTimes();
 }
 
@@ -270,6 +299,22 @@ void TrajectoryReader::readBodies() {
   }
 }
 
+void TrajectoryReader::readJoints() {
+  Database& database = *session_->database;
+  Statement query = database.prepare("SELECT id, name, kind, a, b FROM joint ORDER BY id");
+  while (query.step()) {
+    if (query.integer(0) != static_cast<std::int64_t>(header_.joints.size()))
+      database.failDamaged("a joint is missing");
+    header_.joints.push_back({query.text(1), query.text(2), bodyAt(query, 3, header_, database, "a joint"),
+                              bodyOrWorldAt(query, 4, header_, database, "a joint")});
+    const JointRecord& joint = header_.joints.back();
+    if (joint.name.size() > kLongestName)
+      database.failDamaged("a joint has a name that is longer than those of scenes");
+    if (joint.kind != "hinge" && joint.kind != "slider")
+      database.failDamaged("a joint is neither a hinge nor a slider");
+  }
+}
+
 void TrajectoryReader::readFrameTimes() {
   Database& database = *session_->database;
   Statement query = database.prepare("SELECT id, time FROM frame ORDER BY id");
@@ -315,18 +360,30 @@ Frame TrajectoryReader::readFrame(long number) const {
   frame.energy = {energy.real(0), energy.real(1), energy.real(2), cause(10),           cause(11),
                   cause(12),      cause(13),      energy.real(3), vectorAt(energy, 4), vectorAt(energy, 7)};
   energy.reset();
+  readJointStates(frame);
   return frame;
+}
+
+void TrajectoryReader::readJointStates(Frame& frame) const {
+  if (header_.joints.empty()) return;
+  Statement& query = *session_->joint;
+  query.reset();
+  query.bind(1, frame.number);
+  const auto fail = [&] {
+    session_->database->failDamaged(
+        fmt::format("the states of joints of frame {} are not those of its joints", frame.number));
+  };
+  for (std::size_t i = 0; i < header_.joints.size(); ++i) {
+    if (!query.step() || query.integer(0) != static_cast<std::int64_t>(i)) fail();
+    frame.joints.push_back({query.real(1), query.real(2), query.real(3)});
+  }
+  if (query.step()) fail();
+  query.reset();
 }
 
 std::vector<Event> TrajectoryReader::events() const {
   Database& database = *session_->database;
   Statement query = database.prepare("SELECT time, kind, a, b, x, y, z, nx, ny, nz, impulse FROM event ORDER BY rowid");
-  const auto body = [&](int column) {
-    const std::int64_t id = query.integer(column);
-    if (id < 0 || id >= static_cast<std::int64_t>(header_.bodies.size()))
-      database.failDamaged("an event names a body that is not there");
-    return static_cast<int>(id);
-  };
   const auto kind = [&](const std::string& name) {
     try {
       return eventKindFromName(name);
@@ -336,8 +393,9 @@ std::vector<Event> TrajectoryReader::events() const {
   };
   std::vector<Event> events;
   while (query.step()) {
-    events.push_back({query.real(0), kind(query.text(1)), body(2), query.isNull(3) ? -1 : body(3), vectorAt(query, 4),
-                      vectorAt(query, 7), query.real(10)});
+    events.push_back({query.real(0), kind(query.text(1)), bodyAt(query, 2, header_, database, "an event"),
+                      bodyOrWorldAt(query, 3, header_, database, "an event"), vectorAt(query, 4), vectorAt(query, 7),
+                      query.real(10)});
     const Event& event = events.back();
     if (!isPossiblePlace(event.point) || !isPossiblePlace(event.normal) || std::abs(event.time) > kLatestTime)
       database.failDamaged(fmt::format("an event \"{}\" is where or when none can be", eventKindName(event.kind)));

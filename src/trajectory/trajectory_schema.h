@@ -30,6 +30,14 @@ CREATE TABLE state (frame INTEGER, body INTEGER,
   vx, vy, vz,      -- m/s, of the centre of mass
   wx, wy, wz,      -- rad/s, world
   PRIMARY KEY (frame, body)) WITHOUT ROWID;
+CREATE TABLE joint (id INTEGER PRIMARY KEY, name TEXT UNIQUE,
+  kind TEXT,               -- hinge or slider
+  a INTEGER, b INTEGER);   -- bodies; b null for the world
+CREATE TABLE joint_state (frame INTEGER, joint INTEGER,
+  coordinate,  -- rad or m, of A against B, 0 at the start, whole turns counted
+  velocity,    -- rad/s or m/s
+  force,       -- N m or N, of the joint's motor on A
+  PRIMARY KEY (frame, joint)) WITHOUT ROWID;
 CREATE TABLE event (time, kind TEXT,
   a INTEGER, b INTEGER,  -- bodies; b null for the world
   x, y, z,               -- m, world

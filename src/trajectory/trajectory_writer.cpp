@@ -107,6 +107,24 @@ void insertBodies(Database& database, const TrajectoryHeader& header) {
   }
 }
 
+/// The world is null.
+void bindBody(Statement& statement, int parameter, int body) {
+  body < 0 ? statement.bindNull(parameter) : statement.bind(parameter, body);
+}
+
+void insertJoints(Database& database, const TrajectoryHeader& header) {
+  Statement insert = database.prepare("INSERT INTO joint VALUES (?, ?, ?, ?, ?)");
+  for (std::size_t id = 0; id < header.joints.size(); ++id) {
+    const JointRecord& joint = header.joints[id];
+    insert.bind(1, id);
+    insert.bind(2, joint.name);
+    insert.bind(3, joint.kind);
+    insert.bind(4, joint.bodyA);
+    bindBody(insert, 5, joint.bodyB);
+    insert.run();
+  }
+}
+
 void insertHeader(Database& database, const TrajectoryHeader& header) {
   insertMeta(database, "scene", header.scene);
   insertMeta(database, "sceneHash", textHash(header.scene));
@@ -117,6 +135,7 @@ void insertHeader(Database& database, const TrajectoryHeader& header) {
   insertMeta(database, "method", header.method);
   insertMeshes(database, header.meshes);
   insertBodies(database, header);
+  insertJoints(database, header);
 }
 
 /// {"name": count, ...}; names are plain words.
@@ -158,10 +177,11 @@ struct TrajectoryWriter::Session {
         frame(createTables(*database).prepare("INSERT INTO frame VALUES (?, ?)")),
         state(database->prepare("INSERT INTO state VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         energy(database->prepare("INSERT INTO energy VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
+        joint(database->prepare("INSERT INTO joint_state VALUES (?, ?, ?, ?, ?)")),
         event(database->prepare("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")) {}
 
   std::unique_ptr<Database> database;
-  Statement frame, state, energy, event;
+  Statement frame, state, energy, joint, event;
 };
 
 TrajectoryWriter::TrajectoryWriter(const std::string& path, const TrajectoryHeader& header,
@@ -186,6 +206,7 @@ void TrajectoryWriter::begin(std::unique_ptr<Database> database, const Trajector
     bodyNames_.push_back(header.bodies[id].name);
     if (header.bodies[id].hasStates()) movingBodies_.push_back(static_cast<int>(id));
   }
+  for (const JointRecord& joint : header.joints) jointNames_.push_back(joint.name);
   session_ = std::make_unique<Session>(std::move(database));
   insertHeader(*session_->database, header);
   session_->database->commit();
@@ -200,7 +221,7 @@ TrajectoryWriter::~TrajectoryWriter() {
 void TrajectoryWriter::append(const Frame& frame) {
   CRADLE_CHECK(session_ && transactionWhole_);
   CRADLE_CHECK(frame.number == framesAppended_ && (frame.number == 0 || frame.time > lastTime_));
-  CRADLE_CHECK(frame.states.size() == movingBodies_.size());
+  CRADLE_CHECK(frame.states.size() == movingBodies_.size() && frame.joints.size() == jointNames_.size());
   requireFinite(frame);
   transactionWhole_ = false;
   writeFrame(frame);
@@ -215,6 +236,8 @@ void TrajectoryWriter::requireFinite(const Frame& frame) const {
   for (std::size_t i = 0; i < frame.states.size(); ++i)
     if (!isPossible(frame.states[i]))
       failNotFinite(frame.time, "state of body " + bodyNames_[static_cast<std::size_t>(movingBodies_[i])]);
+  for (std::size_t i = 0; i < frame.joints.size(); ++i)
+    if (!isPossible(frame.joints[i])) failNotFinite(frame.time, "state of joint " + jointNames_[i]);
   if (!allPossible(energyNumbers(frame.energy))) failNotFinite(frame.time, "energy or momentum of the scene");
 }
 
@@ -232,6 +255,13 @@ void TrajectoryWriter::writeFrame(const Frame& frame) {
   session.energy.bind(1, frame.number);
   bindNumbers(session.energy, 2, energyNumbers(frame.energy));
   session.energy.run();
+  for (std::size_t i = 0; i < frame.joints.size(); ++i) {
+    const JointState& joint = frame.joints[i];
+    session.joint.bind(1, frame.number);
+    session.joint.bind(2, i);
+    bindNumbers(session.joint, 3, std::array{joint.coordinate, joint.velocity, joint.force});
+    session.joint.run();
+  }
 }
 
 void TrajectoryWriter::append(const Event& event) {
@@ -247,7 +277,7 @@ void TrajectoryWriter::append(const Event& event) {
   insert.bind(1, event.time);
   insert.bind(2, eventKindName(event.kind));
   insert.bind(3, event.bodyA);
-  event.bodyB < 0 ? insert.bindNull(4) : insert.bind(4, event.bodyB);
+  bindBody(insert, 4, event.bodyB);
   bindNumbers(insert, 5, numbers);
   insert.run();
 }

@@ -46,7 +46,7 @@ TEST_F(CompareTrajectories, FramesThatAreNotThoseOfTheHashAreDamage) {
   for (const std::string sql :
        {"UPDATE state SET px = px + 1 WHERE frame = 3", "UPDATE frame SET time = 0.51 WHERE id = 4",
         "DELETE FROM state WHERE frame = 4; DELETE FROM energy WHERE frame = 4; "
-        "DELETE FROM frame WHERE id = 4"}) {
+        "DELETE FROM joint_state WHERE frame = 4; DELETE FROM frame WHERE id = 4"}) {
     const std::string path = folder_.file("changed.sqlite");
     std::filesystem::copy_file(actual.path(), path, std::filesystem::copy_options::overwrite_existing);
     sqlite3* database = nullptr;

@@ -85,6 +85,9 @@ TEST_F(DamagedTrajectory, WithMissingRowsIsRefused) {
       "WHERE frame = 3 AND body = 0",
       "frame 3");
   expectRefused("DELETE FROM energy WHERE frame = 3", "energies of frame 3");
+  expectRefused("DELETE FROM joint_state WHERE frame = 1 AND joint = 1", "joints of frame 1");
+  expectRefused("INSERT INTO joint_state VALUES (1, 2, 0.0, 0.0, 0.0)", "joints of frame 1");
+  expectRefused("DELETE FROM joint WHERE id = 0", "joint");
   expectRefused("DELETE FROM body WHERE id = 0", "body");
   expectRefused("DELETE FROM mesh", "mesh");
   expectRefused("DELETE FROM meta WHERE key = 'scene'", "scene");
@@ -124,6 +127,12 @@ TEST_F(DamagedTrajectory, WithWrongValuesIsRefused) {
   expectRefused("UPDATE event SET kind = 'crash'", "crash");
   expectRefused("UPDATE event SET a = 3", "event");
   expectRefused("UPDATE event SET b = -1", "event");
+  expectRefused("UPDATE joint SET a = 3 WHERE id = 0", "joint");
+  expectRefused("UPDATE joint SET b = -1 WHERE id = 1", "joint");
+  expectRefused("UPDATE joint SET a = NULL WHERE id = 1", "a");
+  expectRefused("UPDATE joint SET kind = 'knee' WHERE id = 1", "hinge");
+  expectRefused("UPDATE joint_state SET coordinate = 1e100 WHERE frame = 1", "coordinate");
+  expectRefused("UPDATE joint_state SET force = NULL WHERE frame = 1", "force");
   expectRefused("UPDATE body SET mesh = 1 WHERE id = 2", "mesh");
   expectRefused("UPDATE body SET motion = 'lazy' WHERE id = 2", "dynamic");
   expectRefused("UPDATE body SET shape = NULL WHERE id = 0", "shape");
@@ -182,6 +191,7 @@ TEST_F(DamagedTrajectory, WithoutKeysIsRefusedBeforeItTakesLong) {
 TEST_F(DamagedTrajectory, WithComputedColumnsIsRefused) {
   const std::string rest = "kind TEXT, a INTEGER, b INTEGER, x, y, z, nx, ny, nz, impulse";
   expectRefused("ALTER TABLE event ADD COLUMN more AS (zeroblob(1000000000))", "computes");
+  expectRefused("ALTER TABLE joint_state ADD COLUMN more AS (zeroblob(1000000000))", "computes");
   expectRefused("DROP TABLE event; CREATE TABLE event (time AS (1.0) STORED, " + rest + ")", "computes");
   expectRefused("DROP TABLE event; CREATE VIRTUAL TABLE event USING fts5(time)", "computes");
 }

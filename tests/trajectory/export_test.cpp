@@ -19,6 +19,7 @@ TEST(ExportCsv, WritesOneLineForEachFrameAndDynamicBody) {
   const TemporaryFolder folder;
   TrajectoryHeader header = sampleHeader();
   header.bodies[2].name = "a \"big\", bad\nname";
+  header.joints.clear();
   TrajectoryWriter writer(folder.file("a.sqlite"), header);
   const BodyState still;
   const BodyState moving{Vec3(0.1, -0.0, 1e-7), Quat(0.5, -0.5, 0.5, -0.5), Vec3(1e22, 2, 5e-324),
@@ -37,6 +38,21 @@ TEST(ExportCsv, WritesOneLineForEachFrameAndDynamicBody) {
   EXPECT_EQ(folder.count(), 2);
 }
 
+TEST(ExportCsv, WritesOneLineForEachFrameAndJoint) {
+  const TemporaryFolder folder;
+  TrajectoryWriter writer(folder.file("a.sqlite"), sampleHeader());
+  writer.append(Frame{0, 0, {{}, {}}, {}, {{7.5, -0.1, 0}, {1e-3, 0, 20}}});
+  writer.finish({});
+  exportCsv(TrajectoryReader(folder.file("a.sqlite")), folder.file("a.csv"), [](long) {});
+  std::string header(kHeaderLine);
+  header.insert(header.size() - 1, ",joint,coordinate,velocity,force");
+  EXPECT_EQ(contentOf(folder.file("a.csv")), header +
+                                                 "0,0,ball,0,0,0,1,0,0,0,0,0,0,0,0,0,,,,\n"
+                                                 "0,0,wedge,0,0,0,1,0,0,0,0,0,0,0,0,0,,,,\n"
+                                                 "0,0,,,,,,,,,,,,,,,\"lid, \"\"old\"\"\",7.5,-0.1,0\n"
+                                                 "0,0,,,,,,,,,,,,,,,rail,0.001,0,20\n");
+}
+
 TEST(ExportCsv, WritesNumbersThatReadBackBitByBit) {
   const TemporaryFolder folder;
   writeSample(folder.file("a.sqlite"), 20);
@@ -44,17 +60,27 @@ TEST(ExportCsv, WritesNumbersThatReadBackBitByBit) {
   std::ifstream file(folder.file("a.csv"));
   std::string line;
   std::getline(file, line);
-  for (long number = 0; number < 20; ++number)
-    for (const BodyState& state : sampleFrame(number).states) {
-      ASSERT_TRUE(std::getline(file, line));
-      std::size_t start = line.find(',', line.find(',', line.find(',') + 1) + 1) + 1;
-      for (const double expected : stateNumbers(state)) {
-        double value = 0;
-        const auto end = std::from_chars(line.data() + start, line.data() + line.size(), value).ptr;
-        start = static_cast<std::size_t>(end - line.data()) + 1;
-        expectSameBits(value, expected);
-      }
+  const auto expectNumbers = [&](std::size_t start, auto... expected) {
+    for (const double number : {expected...}) {
+      double value = 0;
+      const auto end = std::from_chars(line.data() + start, line.data() + line.size(), value).ptr;
+      start = static_cast<std::size_t>(end - line.data()) + 1;
+      expectSameBits(value, number);
     }
+  };
+  for (long number = 0; number < 20; ++number) {
+    const Frame frame = sampleFrame(number);
+    for (const BodyState& state : frame.states) {
+      ASSERT_TRUE(std::getline(file, line));
+      const std::size_t start = line.find(',', line.find(',', line.find(',') + 1) + 1) + 1;
+      std::apply([&](auto... numbers) { expectNumbers(start, numbers...); }, stateNumbers(state));
+    }
+    for (const JointState& joint : frame.joints) {
+      ASSERT_TRUE(std::getline(file, line));
+      const std::size_t force = line.rfind(','), velocity = line.rfind(',', force - 1);
+      expectNumbers(line.rfind(',', velocity - 1) + 1, joint.coordinate, joint.velocity, joint.force);
+    }
+  }
   EXPECT_FALSE(std::getline(file, line));
 }
 

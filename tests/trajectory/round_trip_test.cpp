@@ -29,6 +29,13 @@ TEST(TrajectoryFile, KeepsTheHeader) {
     EXPECT_EQ(header.bodies[i].massProperties.centerOfMass, expected.bodies[i].massProperties.centerOfMass);
     EXPECT_EQ(header.bodies[i].massProperties.inertiaTensor, expected.bodies[i].massProperties.inertiaTensor);
   }
+  ASSERT_EQ(header.joints.size(), expected.joints.size());
+  for (std::size_t i = 0; i < expected.joints.size(); ++i) {
+    EXPECT_EQ(header.joints[i].name, expected.joints[i].name);
+    EXPECT_EQ(header.joints[i].kind, expected.joints[i].kind);
+    EXPECT_EQ(header.joints[i].bodyA, expected.joints[i].bodyA);
+    EXPECT_EQ(header.joints[i].bodyB, expected.joints[i].bodyB);
+  }
 }
 
 TEST(TrajectoryFile, KeepsMeshesAndWeldsTheSolidAgain) {
@@ -98,6 +105,7 @@ TEST(TrajectoryFile, KeepsTheBitsOfExtremeNumbers) {
   frame.time = -0.0;
   frame.energy = {extreme(), extreme(), extreme(), extreme(), extreme(),
                   extreme(), extreme(), extreme(), vector(),  vector()};
+  for (JointState& joint : frame.joints) joint = {extreme(), extreme(), extreme()};
   {
     TrajectoryWriter writer(folder.file("a.sqlite"), sampleHeader());
     writer.append(frame);
@@ -163,6 +171,9 @@ TEST(TrajectoryFile, RefusesStatesThatAreNotFiniteAndNamesTheBody) {
     frame = sampleFrame(0);
     frame.energy.work = number;
     expectError(ErrorKind::unstable, "energy", [&] { writer.append(frame); });
+    frame = sampleFrame(0);
+    frame.joints[1].force = number;
+    expectError(ErrorKind::unstable, "rail", [&] { writer.append(frame); });
     expectError(ErrorKind::unstable, "slip", [&] {
       writer.append(Event{0, EventKind::slip, 0, -1, Vec3::Zero(), Vec3::Zero(), number});
     });
@@ -173,7 +184,7 @@ TEST(TrajectoryFile, HoldsScenesWithNothingThatMoves) {
   const TemporaryFolder folder;
   TrajectoryHeader header = sampleHeader();
   header.bodies = {header.bodies[1]};
-  header.meshes.clear();
+  header.meshes.clear(), header.joints.clear();
   TrajectoryWriter writer(folder.file("a.sqlite"), header);
   writer.append(Frame{});
   writer.finish({});

@@ -53,7 +53,7 @@ inline Model sampleModel() {
   return model;
 }
 
-/// Bodies 0 and 2 are dynamic, body 1 is static.
+/// Bodies 0 and 2 are dynamic, body 1 is static; a hinge between those, and a slider of body 2 against the world.
 inline TrajectoryHeader sampleHeader() {
   TrajectoryHeader header;
   header.scene = "{\"schema\": \"cradle-scene/1\"} // \xc3\xa9";
@@ -68,6 +68,7 @@ inline TrajectoryHeader sampleHeader() {
   header.bodies = {{"ball", true, false, -1, R"({"sphere": {"radius": 1}})", {2.5, Vec3(0.1, -0.2, 0.3), inertia}},
                    {"ground", false, false, -1, R"({"plane": {"normal": [0, 1, 0]}})", {}},
                    {"wedge", true, false, 0, "", {1.0 / 3, Vec3(-0.0, 1e-300, 7), 3 * inertia}}};
+  header.joints = {{"lid, \"old\"", "hinge", 0, 2}, {"rail", "slider", 2, -1}};
   return header;
 }
 
@@ -87,6 +88,7 @@ inline Frame sampleFrame(long number) {
     frame.states.push_back(state);
   }
   frame.energy = {value(), value(), value(), value(), value(), value(), value(), value(), vector(), vector()};
+  for (int joint = 0; joint < 2; ++joint) frame.joints.push_back({100 * value(), value(), value()});
   return frame;
 }
 
@@ -110,6 +112,12 @@ inline void expectSameBits(const Frame& a, const Frame& b) {
   for (std::size_t body = 0; body < a.states.size(); ++body) {
     const auto numbersOfA = stateNumbers(a.states[body]), numbersOfB = stateNumbers(b.states[body]);
     for (std::size_t i = 0; i < numbersOfA.size(); ++i) expectSameBits(numbersOfA[i], numbersOfB[i]);
+  }
+  ASSERT_EQ(a.joints.size(), b.joints.size());
+  for (std::size_t joint = 0; joint < a.joints.size(); ++joint) {
+    expectSameBits(a.joints[joint].coordinate, b.joints[joint].coordinate);
+    expectSameBits(a.joints[joint].velocity, b.joints[joint].velocity);
+    expectSameBits(a.joints[joint].force, b.joints[joint].force);
   }
   expectSameBits(a.energy.kinetic, b.energy.kinetic);
   expectSameBits(a.energy.potential, b.energy.potential);

@@ -38,8 +38,9 @@ class TrajectorySchema : public testing::Test {
 };
 
 TEST_F(TrajectorySchema, HasTheTablesOfTheContract) {
-  EXPECT_EQ(rows("SELECT name FROM sqlite_master WHERE type != 'index' ORDER BY name"),
-            (std::vector<std::string>{"body", "energy", "event", "frame", "mesh", "meta", "state"}));
+  EXPECT_EQ(
+      rows("SELECT name FROM sqlite_master WHERE type != 'index' ORDER BY name"),
+      (std::vector<std::string>{"body", "energy", "event", "frame", "joint", "joint_state", "mesh", "meta", "state"}));
 }
 
 TEST_F(TrajectorySchema, HasTheColumnsOfTheContractInItsOrder) {
@@ -48,6 +49,8 @@ TEST_F(TrajectorySchema, HasTheColumnsOfTheContractInItsOrder) {
   EXPECT_EQ(columnsOf(path_, "body"), "id name motion mesh shape mass comx comy comz ixx iyy izz ixy ixz iyz");
   EXPECT_EQ(columnsOf(path_, "frame"), "id time");
   EXPECT_EQ(columnsOf(path_, "state"), "frame body px py pz qw qx qy qz vx vy vz wx wy wz");
+  EXPECT_EQ(columnsOf(path_, "joint"), "id name kind a b");
+  EXPECT_EQ(columnsOf(path_, "joint_state"), "frame joint coordinate velocity force");
   EXPECT_EQ(columnsOf(path_, "event"), "time kind a b x y z nx ny nz impulse");
   EXPECT_EQ(columnsOf(path_, "energy"),
             "frame kinetic potential dissipated work px py pz lx ly lz impact friction damping numerical");
@@ -81,6 +84,24 @@ TEST_F(TrajectorySchema, WithoutCausesIsReadAllTheSame) {
   expectSameBits(energy.dissipated, sampleFrame(1).energy.dissipated);
   for (const double cause : {energy.impact, energy.friction, energy.damping, energy.numerical})
     EXPECT_TRUE(std::isnan(cause));
+}
+
+// What files of the time before joints were told of have.
+TEST_F(TrajectorySchema, WithoutJointsIsReadAllTheSame) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open_v2(path_.c_str(), &database, SQLITE_OPEN_READWRITE, nullptr), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, "DROP TABLE joint; DROP TABLE joint_state", nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(database);
+  const TrajectoryReader reader(path_);
+  EXPECT_TRUE(reader.header().joints.empty());
+  EXPECT_TRUE(reader.readFrame(1).joints.empty());
+  EXPECT_EQ(reader.hashOfFrames(), reader.stateHash());
+}
+
+TEST_F(TrajectorySchema, HoldsJointsAsOthersReadThem) {
+  EXPECT_EQ(rows("SELECT * FROM joint ORDER BY id"),
+            (std::vector<std::string>{R"(0|lid, "old"|hinge|0|2)", "1|rail|slider|2|null"}));
+  EXPECT_EQ(rows("SELECT frame, joint FROM joint_state").size(), 6u);
 }
 
 TEST_F(TrajectorySchema, HoldsBodiesAsOthersReadThem) {

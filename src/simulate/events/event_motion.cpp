@@ -92,7 +92,7 @@ void EventMotion::advance(double frame) {
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
   const Mechanism& mechanism = island_.assembly.mechanism;
   contactsOfStep_ = mechanism.contacts;
-  if (!mechanism.driven.empty()) {
+  if (!mechanism.driven.empty() || !mechanism.motors.empty()) {
     constraintsOfStep_ = mechanism.constraints, pushesOfStep_ = mechanism.pushes;
     motorsOfStep_ = mechanism.motors;
   }

@@ -39,8 +39,8 @@ class EventMotion {
   /// Contacts that were active over the last step.
   const std::vector<ContactConstraint>& contactsOfStep() const { return contactsOfStep_; }
 
-  /// Ties, pushes and motors that acted in the last step of an island with driven bodies; what ended it may have
-  /// changed them.
+  /// Ties, pushes and motors that acted in the last step of an island with driven bodies or motors; what ended it
+  /// may have changed them.
   const Constraints& constraintsOfStep() const { return constraintsOfStep_; }
   const std::vector<PushForce>& pushesOfStep() const { return pushesOfStep_; }
   const std::vector<JointMotor>& motorsOfStep() const { return motorsOfStep_; }
