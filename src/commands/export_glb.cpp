@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
-#include "commands/glb_file.h"
-#include "commands/glb_meshes.h"
+#include "commands/glb_joints.h"
 #include "commands/trajectory_source.h"
 #include "core/crash.h"
 #include "core/error.h"
@@ -80,10 +80,12 @@ class GlbExport {
   GlbFile file_;
   GlbMeshes meshes_;
   int times_ = 0;
+  std::vector<int> bodyNodes_;
   std::vector<Track> bodyTracks_;  // of bodies that move
   std::vector<Link> links_;
   Bounds bounds_;  // m, world, of bodies at the start, and then of their places
   double linkRadius_ = 0;
+  std::optional<GlbJoints> joints_;  // always there once links are
 };
 
 /// Before memory is taken. What else is in the file is little, and counted when it is written.
@@ -119,12 +121,14 @@ Track GlbExport::addTrack(int node) {
 void GlbExport::addBodies(const std::vector<RigidTransform>& places) {
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
     const Body& body = scene_.bodies[i];
+    bodyNodes_.push_back(GlbFile::kNoParent);
     if (std::holds_alternative<Plane>(body.shape)) continue;
     const Bounds local = localBounds(scene_, body);
     bounds_.extend(transformed(local, places[i]));
     const bool moves = body.motion != Motion::fixed;
     const Vec3 center = moves ? body.massProperties.centerOfMass : Vec3::Zero();
     int node = file_.addNode(body.name, {places[i].rotation, places[i] * center});
+    bodyNodes_.back() = node;
     if (moves) bodyTracks_.push_back(addTrack(node));
     if (center.norm() > kRounding * local.diagonal().norm())
       node = file_.addNode(body.name + " shape", {Quat::Identity(), -center}, node);
@@ -180,6 +184,7 @@ void GlbExport::addFrame(const Frame& frame) {
     setPose(number, state.position, state.orientation, bodyTracks_[i]);
     bounds_.extend(state.position);
   }
+  joints_->follow(frame);
   if (links_.empty()) return;
   const std::vector<RigidTransform> places = placeBodies(scene_, frame);
   for (Link& link : links_) setLink(number, places, link);
@@ -209,6 +214,8 @@ void GlbExport::build(bool quiet) {
   addLinks(scene_.springs, "spring", kDarkSteel);
   addLinks(scene_.rods, "rod", kSteel);
   addLinks(scene_.ropes, "rope", kHemp);
+  joints_.emplace(scene_, bodyNodes_, linkRadius_, file_, meshes_);
+  joints_->add();
 
   Progress progress("Exporting", "frames", reader_.frameCount(), quiet);
   for (long number = 0; number < reader_.frameCount(); ++number) {
@@ -216,6 +223,7 @@ void GlbExport::build(bool quiet) {
     addFrame(reader_.readFrame(number));
     progress.update(number + 1);
   }
+  joints_->addRails();
   addPlanes();
 }
 

@@ -156,6 +156,10 @@ void GlbFile::setMesh(int node, int mesh) {
   document_->node(node)["mesh"] = mesh;
 }
 
+void GlbFile::setScale(int node, const Vec3& scale) {
+  document_->node(node)["scale"] = floatsOf(scale);
+}
+
 void GlbFile::animate(int node, const std::string& property, int times, int values) {
   bound(times);
   Json& animation = document_->json["animations"][0];

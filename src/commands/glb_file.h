@@ -45,6 +45,7 @@ class GlbFile {
   /// A node of the scene, or of the node `parent`.
   int addNode(const std::string& name, const RigidTransform& parentFromNode, int parent = kNoParent);
   void setMesh(int node, int mesh);
+  void setScale(int node, const Vec3& scale);  // along the node's axes
 
   /// Lets `values`, one for each of `times` (s; set, and ascending), be the node's "translation", "rotation" (x, y, z,
   /// w) or "scale", and linear between them. Viewers that show no motion show the node as it starts.

@@ -19,14 +19,9 @@ constexpr double kCoilOfBody = 0.45, kCoilOfView = 0.05, kCoilOfLength = 0.14;
 constexpr double kWireOfCoil = 0.16;
 constexpr double kPitchOfCoil = 0.85;  // distance of turns at rest
 constexpr int kFewestTurns = 6;
-constexpr double kStraightEnd = 0.07;                         // of a spring's length
-constexpr double kSlenderest = 0.3;                           // a coil that is drawn out narrows so far and no farther
-constexpr double kKnobOfRod = 1.8;                            // radius of the sphere at the end of a rod
-constexpr double kBallJointOfRod = 4;                         // radius of a ball joint
-constexpr double kPinOfRod = 2.5, kPinLengthOfRod = 12;       // radius, of an axle too; length of a hinge's pin
-constexpr double kSleeveOfRod = 2.5, kSleeveLengthOfRod = 9;  // radius and length of what is on a slider's rail
-constexpr double kRailLengthOfRod = 120;                      // longer if its sleeve is not on it
-constexpr double kBeadOfRod = 2.5;                            // radius of a weld
+constexpr double kStraightEnd = 0.07;  // of a spring's length
+constexpr double kSlenderest = 0.3;    // a coil that is drawn out narrows so far and no farther
+constexpr double kKnobOfRod = 1.8;     // radius of the sphere at the end of a rod
 constexpr double kPlateOfKnob = 3.2, kPlateThickness = 0.9;
 constexpr int kGroundHalvings = 40, kThirds = 50;  // to find where a rope lies on the ground
 

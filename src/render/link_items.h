@@ -9,6 +9,13 @@ inline const Surface kSteel{Vec3f(0.56f, 0.57f, 0.58f), 1.0f, 0.28f};
 inline const Surface kDarkSteel{Vec3f(0.16f, 0.165f, 0.175f), 0.6f, 0.45f};
 inline const Surface kHemp{Vec3f(0.36f, 0.26f, 0.15f), 0.0f, 0.85f};
 
+// Joints as they are drawn, in radii of a drawn rod.
+inline constexpr double kBallJointOfRod = 4;                         // radius of a ball joint
+inline constexpr double kPinOfRod = 2.5, kPinLengthOfRod = 12;       // radius, of an axle too; length of a hinge's pin
+inline constexpr double kSleeveOfRod = 2.5, kSleeveLengthOfRod = 9;  // radius and length of what is on a slider's rail
+inline constexpr double kRailLengthOfRod = 120;                      // longer if its sleeve is not on it
+inline constexpr double kBeadOfRod = 2.5;                            // radius of a weld
+
 /// Appends what is seen of springs, rods, ropes and joints: coils, thin cylinders, small spheres at their ends, and
 /// mounts where they hang from the world.
 void appendLinks(const Scene& scene, const Appearance& appearance, const View& view,

@@ -148,6 +148,8 @@ class ExportGlb(unittest.TestCase):
         self.states = {}
         with open(self.path("a.csv")) as file:
             for row in csv.DictReader(file):
+                if not row["body"]:  # of a joint
+                    continue
                 numbers = [float(row[key]) for key in ("time_s", "px_m", "py_m", "pz_m", "qw", "qx", "qy", "qz")]
                 self.states.setdefault(row["body"], []).append((numbers[0], tuple(numbers[1:4]), tuple(numbers[4:])))
         return Glb(self, self.path("a.glb"))
@@ -314,6 +316,54 @@ class ExportGlb(unittest.TestCase):
                 if last:  # as little as the motion asks: no half turns between frames
                     self.assertGreater(sum(x * y for x, y in zip(last, (i, j, l, w))), 0.9)
                 last = (i, j, l, w)
+
+    def test_joints_are_parts_of_their_bodies(self):
+        half = [[0.5, 0, 0], [0, 0.5, 0], [0, 0, 0.5]]
+        bodies = [{"name": "lid", "shape": {"box": {"size": [0.4, 0.1, 0.2]}}, "position": [0, 1, 0], "mass": 2, "centerOfMass": [0.02, 0.01, 0],
+                   "inertiaTensor": half, "orientation": {"axis": [0, 1, 0], "angleDegrees": 90}},
+                  {"name": "cart", "shape": {"box": {"size": [0.2, 0.1, 0.1]}}, "position": [3, 0, 0], "linearVelocity": [4, 0, 0]},
+                  {"name": "track", "shape": {"box": {"size": [1, 0.1, 0.1]}}, "position": [3, -1, 0], "motion": "static", "collision": "none",
+                   "orientation": {"axis": [0, 0, 1], "angleDegrees": 90}},
+                  {"name": "mast", "shape": {"sphere": {"radius": 0.1}}, "position": [3, 1, 0]}]
+        self.simulate(bodies, duration=1, gravity=[0, -9.81, 0],
+                      hinges=[{"name": "pin", "bodyA": "lid", "anchorA": [-0.2, 0, 0], "anchorB": [0, 1, 0.2], "axis": [0, 0, 1]}],
+                      sliders=[{"name": "sleeve", "bodyA": "cart", "bodyB": "track", "anchorB": [1, 0, 0], "axis": [1, 0, 0]}],
+                      welds=[{"name": "bead", "bodyA": "cart", "anchorA": [0, 0.5, 0], "bodyB": "mast", "anchorB": [0, -0.5, 0]}])
+        glb = self.export()
+        parents = {child: node for node in glb.json["nodes"] for child in node.get("children", [])}
+        number = {node["name"]: i for i, node in enumerate(glb.json["nodes"])}
+
+        def ends(name, frame):
+            """Of a bar, in the world."""
+            node, parent = glb.nodes[name], parents.get(number[name])
+            (i, j, k, w), middle, length = node["rotation"], tuple(node["translation"]), node["scale"][1]
+            points = [plus(middle, turned((w, i, j, k), (0, sign * length / 2, 0))) for sign in (-1, 1)]
+            if not parent:
+                return points
+            pose = ((*parent["rotation"],), (*parent["translation"],))
+            if parent["name"] in self.states and frame is not None:
+                _, position, q = self.states[parent["name"]][frame]
+                pose = ((*q[1:], q[0]), position)
+            (i, j, k, w), at = pose
+            return [plus(at, turned((w, i, j, k), point)) for point in points]
+
+        for frame, (_, position, q) in enumerate(self.states["lid"]):
+            near, far = ends("pin", frame)
+            anchor = plus(position, turned(q, (-0.22, -0.01, 0)))
+            self.assertLess(difference(plus(near, far), plus(anchor, anchor)), 1e-6)
+            axis = tuple(a - b for a, b in zip(far, near))
+            self.assertLess(difference(axis, (math.dist(near, far), 0, 0)), 1e-6)
+            near, far = ends("sleeve", frame)
+            sleeve = self.states["cart"][frame][1]
+            self.assertLess(difference(plus(near, far), plus(sleeve, sleeve)), 1e-5)
+            (from_x, _, _), (to_x, _, _) = ends("sleeve rail", frame)
+            self.assertLess(from_x, near[0] + 1e-6)
+            self.assertGreater(to_x, far[0] - 1e-6)
+        self.assertLess(difference(ends("sleeve rail", None)[0][1:], (0, 0)), 1e-6)
+        self.assertAlmostEqual(to_x - self.states["cart"][-1][1][0], math.dist(near, far) / 2, 5)
+        self.assertEqual(glb.nodes["bead"]["translation"], [0, 0.5, 0])
+        self.assertEqual(parents[number["bead"]]["name"], "cart")
+        self.assertEqual(parents[number["bead arm of mast"]]["name"], "mast")
 
     def test_colours_of_a_models_file_stand_for_their_triangles(self):
         frame = {"name": "frame", "shape": {"mesh": os.path.join(SOURCE, "assets", "cradle_frame.3ds")}, "motion": "static", "collision": "none"}
