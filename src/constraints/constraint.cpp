@@ -32,7 +32,7 @@ void findRows(const Constraint& constraint, const VectorX& state, const std::vec
   const ConstraintEnds ends{endAt(anchorA, state, frames, block.turnsA), endAt(anchorB, state, frames, block.turnsB)};
   block.bodyA = anchorA.body, block.bodyB = anchorB.body;
   block.isPoint = false;
-  block.scale = 1;
+  block.scale = 1, block.compliance = 0;
   std::visit(
       [&](const auto& each) {
         block.rows = each.kRows;

@@ -200,6 +200,8 @@ void ConstraintSolver::assemble() {
       addMass<rows, rows>(block, block, response.inverseMassA + response.inverseMassB, entries);
       if (block.turnsA) addInertia<rows, rows>(block.angularA, response.turnA, entries);
       if (block.turnsB) addInertia<rows, rows>(block.angularB, response.turnB, entries);
+      if (block.compliance > 0)
+        for (int row = 0; row < rows; ++row) entries[row * rows + row] *= 1 + block.compliance;
     });
   }
   for (const Coupling& coupling : couplings_) {

@@ -44,6 +44,7 @@ double nearestTurn(double angle, double near) {
 
 void putRows(const JointCoordinate& joint, const ConstraintEnds& ends, ConstraintBlock& block) {
   block.turnsA = ends.a.rotation, block.turnsB = ends.b.rotation;  // wherever the anchors are
+  block.compliance = joint.compliance;
   joint.turns ? putTurn(joint, ends, block) : putSlide(joint, ends, block);
 }
 

@@ -15,6 +15,7 @@ struct JointCoordinate {
   Vec3 acrossA = Vec3::UnitX(), acrossB = Vec3::UnitX();  // of a turn: unit, across the axis, one direction at q = 0;
                                                           // in body A's and in body B's frame, or the world
   double value = 0;                                       // m or rad
+  double compliance = 0;                                  // of a ConstraintBlock
 };
 
 /// Of the angles that differ from one by whole turns (rad) that which is nearest to `near`.

@@ -6,8 +6,9 @@
 
 #include "mesh/recognise_shape.h"
 #include "mesh/solid.h"
+#include "render/arrows.h"
 #include "render/body_place.h"
-#include "render/push_arrows.h"
+#include "render/motor_arrows.h"
 
 namespace cradle {
 namespace {
@@ -221,6 +222,12 @@ DrawnMesh makeWall(double size) {
   return wall;
 }
 
+ArrowLook addArrow(double longest, Appearance& appearance) {
+  appearance.meshes.push_back(makeArrowHead(longest));
+  appearance.meshIsClosed.push_back(true);
+  return {static_cast<int>(appearance.meshes.size()) - 1, longest};
+}
+
 }  // namespace
 
 Surface surfaceOf(const Material& material, const std::optional<Vec3f>& fileColor) {
@@ -243,9 +250,9 @@ Appearance makeAppearance(const Scene& scene, const View& view, double pixelsPer
   appearance.wallMesh = static_cast<int>(appearance.meshes.size());
   appearance.meshes.push_back(makeWall(size));
   appearance.meshIsClosed.push_back(true);
-  appearance.arrowHeadMesh = static_cast<int>(appearance.meshes.size());
-  appearance.meshes.push_back(makeArrowHead(view.longestArrow));
-  appearance.meshIsClosed.push_back(true);
+  appearance.pushArrow = addArrow(view.longestArrow, appearance);
+  if (const double longest = longestMotorArrow(scene, appearance); longest > 0)
+    appearance.motorArrow = addArrow(longest, appearance);
   return appearance;
 }
 

@@ -60,14 +60,20 @@ struct Ground {
   double squareSize = 1;        // m, a power of ten
 };
 
+/// What arrows of one kind are drawn with.
+struct ArrowLook {
+  int headMesh = 0;    // index into Appearance::meshes; makeArrowHead says how it lies
+  double longest = 0;  // m: of the longest arrow, to which heads and shafts are in proportion
+};
+
 /// What bodies look like, the same in every frame.
 struct Appearance {
   std::vector<DrawnMesh> meshes;
   std::vector<bool> meshIsClosed;  // then its inside is never seen
   std::vector<BodyAppearance> bodies;
   std::optional<Ground> ground;
-  int wallMesh = 0;       // a thin plate as wide as the scene, its upper face through the origin: other planes
-  int arrowHeadMesh = 0;  // of pushes; makeArrowHead says how it lies
+  int wallMesh = 0;  // a thin plate as wide as the scene, its upper face through the origin: other planes
+  ArrowLook pushArrow, motorArrow;
 };
 
 /// `pixelsPerMetre` at the distance of the scene decides how finely round things are divided.

@@ -6,6 +6,7 @@
 #include "math/rotation.h"
 #include "render/body_place.h"
 #include "render/link_items.h"
+#include "render/motor_arrows.h"
 #include "render/push_arrows.h"
 
 namespace cradle {
@@ -184,6 +185,7 @@ DrawList makeDrawList(const Scene& scene, const Appearance& appearance, const Vi
   findNearOccluders(bodyOfCylinder, search, list.cylinders, list);
   appendLinks(scene, appearance, view, places, list);
   appendPushArrows(appearance, view, seen.frame, places, list);
+  appendMotorArrows(scene, appearance, seen.frame, places, list);
   std::stable_sort(list.meshes.begin(), list.meshes.end(), [](const MeshItem& a, const MeshItem& b) {
     return std::pair(a.mesh, a.firstTriangle) < std::pair(b.mesh, b.firstTriangle);
   });

@@ -212,10 +212,12 @@ void IslandSolver::findJointStates(double time) {
 /// Forces of all motors in the reported state: of those that hold, in steps of one length, the ones of the step.
 VectorX IslandSolver::motorForces(double time) {
   const std::vector<JointMotor>& motors = island_.assembly.mechanism.motors;
-  const VectorX& ofStep = island_.equations.motorForces();
-  const bool isKnown = ofStep.size() == std::ssize(motors);
+  const VectorX& last = island_.equations.motorForces();
+  const bool isKnown = last.size() == std::ssize(motors);
   const auto* events = std::get_if<EventMotion>(&motion_);
-  if (!events && isKnown) return ofStep;
+  if (const auto* steps = std::get_if<SteppedMotion>(&motion_);
+      steps && steps->motorForces().size() == last.size() && isKnown)
+    return steps->motorForces();
   frameEquations_.setMotorSteps(island_.equations.motorSteps());
   const auto evaluate = [&] { frameEquations_.evaluate(time, reported_, derivative_); };
   if (events && time < island_.time - sameTime(time)) {
@@ -227,7 +229,7 @@ VectorX IslandSolver::motorForces(double time) {
   VectorX forces = frameEquations_.motorForces();
   for (std::size_t i = 0; i < motors.size() && isKnown; ++i)
     if (frameEquations_.isResting(motors[i].joint))
-      forces[static_cast<Eigen::Index>(i)] = ofStep[static_cast<Eigen::Index>(i)];
+      forces[static_cast<Eigen::Index>(i)] = last[static_cast<Eigen::Index>(i)];
   return forces;
 }
 

@@ -139,7 +139,8 @@ constexpr double kCarWheel = 0.1, kCarMass = 4 + 4;  // m, kg
 constexpr double kCarInertia = kCarMass + 4 * 0.4;   // kg: and 4 I / r^2 of its wheels
 
 /// A car of a board of 4 kg and four balls of 1 kg as wheels with one motor each, from rest up a slope along x.
-Trajectory runCar(double duration, double accuracy, double slope, double friction, const std::string& motor) {
+Trajectory runCar(double duration, double accuracy, double slope, double friction, const std::string& motor,
+                  const std::string& method = "") {
   std::string bodies = R"({"name": "ground", "material": "m", "shape": {"plane": {}}, "motion": "static"},
       {"name": "board", "mass": 4, "shape": {"box": {"size": [0.8, 0.05, 0.3]}}, "position": [0, 0.1, 0]})",
               hinges;
@@ -155,8 +156,8 @@ Trajectory runCar(double duration, double accuracy, double slope, double frictio
   return runMotor(
       duration, accuracy, bodies,
       fmt::format(
-          R"("gravity": {}, "materials": {{"m": {{"staticFriction": {}, "dynamicFriction": {}}}}}, "hinges": [{}])",
-          vectorText(kGravity * Vec3(-std::sin(slope), -std::cos(slope), 0)), friction, friction, hinges));
+          R"({}"gravity": {}, "materials": {{"m": {{"staticFriction": {}, "dynamicFriction": {}}}}}, "hinges": [{}])",
+          method, vectorText(kGravity * Vec3(-std::sin(slope), -std::cos(slope), 0)), friction, friction, hinges));
 }
 
 /// Motors of T each drive a car with a = (4 T / r - M g sin) / (M + 4 I / r^2); friction is enough for rolling.
@@ -207,6 +208,48 @@ TEST(JointMotors, MotorBringsAWheelToItsVelocityInSteps) {
   for (const Frame& frame : moved.frames)
     EXPECT_NEAR(frame.states[0].angularVelocity.z(), std::min(0.6 * frame.time / kInertia, 8.0), 0.02) << frame.time;
   EXPECT_NEAR(moved.frames.back().states[0].angularVelocity.z(), 8, 1e-9);
+}
+
+/// The car that climbs, in steps h of a fixed length, in which motors are rows of the contact problem. They and
+/// contacts give way by 1e-3 of what their load would do in a step: by T h / I about the axle, and by T h / r (1 / m +
+/// r^2 / I) at the contact, 2e-5 of the velocity together. What the load's changes take on the way up is of the order
+/// of h.
+TEST(JointMotors, CarClimbsInSteps) {
+  const double slope = 0.3, target = 20, timeStep = 1e-3, velocity = target * kCarWheel;
+  const Trajectory moved =
+      runCar(2, 1e-6, slope, 0.8, fmt::format(R"({{"targetVelocity": {}, "maxTorque": 1}})", target),
+             fmt::format(R"("method": {{"name": "rk4", "timeStep": {}}}, )", timeStep));
+  const double holding = kCarMass * kGravity * std::sin(slope) * kCarWheel / 4;
+  const double inertia = 0.4 * kCarWheel * kCarWheel, load = 1e-3 * holding * timeStep;  // of wheels of 1 kg
+  const double slower = load / inertia / target + load / kCarWheel * (1 + 1 / 0.4) / velocity;
+  const double acceleration = (4 / kCarWheel - kCarMass * kGravity * std::sin(slope)) / kCarInertia;
+  const double reached = velocity / acceleration;
+  ASSERT_LT(reached, 1.5);
+  for (const Frame& frame : moved.frames) {
+    const double t = std::min(frame.time, reached);
+    EXPECT_NEAR(frame.states[0].position.x(), acceleration * t * t / 2 + velocity * (frame.time - t),
+                velocity * (timeStep + slower * frame.time));
+    if (frame.time < reached + 0.1) continue;
+    EXPECT_NEAR(frame.states[0].linearVelocity.x(), velocity, 1.2 * slower * velocity);
+    for (const JointState& axle : frame.joints) {
+      EXPECT_NEAR(axle.velocity, target, 1.2 * slower * target);
+      EXPECT_NEAR(std::abs(axle.force), holding, 0.01 * holding) << frame.time;
+    }
+  }
+  expectLedger(moved, 1e-6, 1e-3);
+}
+
+/// Motors that are too weak push with all they have, and the car rolls back.
+TEST(JointMotors, WeakMotorsLetACarRollBackInSteps) {
+  const double slope = 0.3, timeStep = 1e-3;
+  const Trajectory moved = runCar(1, 1e-6, slope, 0.8, R"({"targetVelocity": 20, "maxTorque": 0.3})",
+                                  fmt::format(R"("method": {{"name": "rk4", "timeStep": {}}}, )", timeStep));
+  const double acceleration = (4 * 0.3 / kCarWheel - kCarMass * kGravity * std::sin(slope)) / kCarInertia;
+  for (const Frame& frame : moved.frames) {
+    EXPECT_NEAR(frame.states[0].linearVelocity.x(), acceleration * frame.time, -2 * acceleration * timeStep);
+    for (const JointState& axle : frame.joints) EXPECT_NEAR(std::abs(axle.force), 0.3, 1e-12);
+  }
+  expectLedger(moved, 1e-6, 1e-3);
 }
 
 }  // namespace

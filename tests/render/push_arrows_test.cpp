@@ -7,6 +7,7 @@
 
 #include "math/rotation.h"
 #include "mesh/mass_properties.h"
+#include "render/arrows.h"
 #include "render/body_place.h"
 #include "render/camera.h"
 #include "render/scene_builder.h"

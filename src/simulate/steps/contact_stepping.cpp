@@ -39,14 +39,21 @@ void moveByMean(const std::vector<int>& bodies, const FreeStep& step, VectorX& s
   }
 }
 
-/// Corrects the work of dampers and pushes, which was that along free motion: contact changes velocities in proportion
-/// to time, so that the mean of their change is half of it.
+/// Corrects the work of dampers, pushes and motors that push, which was that along free motion: contact changes
+/// velocities in proportion to time, so that the mean of their change is half of it.
 void bookForces(const Mechanism& mechanism, const FreeStep& step, VectorX& state) {
   for (const SpringForce& spring : mechanism.springs)
     dampingEnergy(state) +=
         0.5 * step.timeStep * (actionOf(spring, state).dissipation - actionOf(spring, step.end).dissipation);
   for (const PushForce& push : mechanism.pushes)
     pushWork(state) += 0.5 * step.timeStep * (powerOf(push, state) - powerOf(push, step.end));
+  std::vector<BodyFrame> frames;
+  for (const JointMotor& motor : mechanism.motors) {
+    if (motor.mode == JointMotor::Mode::holds) continue;
+    if (frames.empty()) findBodyFrames(mechanism.bodies, state, frames);
+    const ConstraintRow row = rowOf(motor, state, frames);
+    pushWork(state) += 0.5 * step.timeStep * motor.sign * motor.maxForce * (rateOf(row, state) - rateOf(row, step.end));
+  }
 }
 
 }  // namespace
@@ -58,18 +65,17 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::v
   previousStep_ = timeStep;
   frictionWork_ = {};
   faults_.clear();
+  motorImpulses_.setZero(std::ssize(assembly_.mechanism.motors));
   if (contacts.empty()) return;
   const Mechanism& mechanism = assembly_.mechanism;
   const ContactSet set(assembly_, tolerances_, contacts, ropes, before);
   const FreeStep step(mechanism.bodies, before, timeStep, state);
+  holdMotors();
   problem_.factorize(step.middle);
   for (std::size_t i = 0; i < set.size(); ++i) contacts_.push_back({set[i], Vec3::Zero(), false});
   slips_.assign(set.size(), Vec3::Zero());
   const double constant = energyConstant(mechanism, state);
-  LedMotion led;
-  if (!mechanism.driven.empty())
-    led = {ledVelocities(mechanism.bodies, problem_.constraints(), before),
-           ledVelocities(mechanism.bodies, problem_.constraints(), state)};
+  const LedMotion led = ledMotion(before, state);
   const std::vector<StepGroup> groups = set.findGroups();
   std::vector<double> most;  // J, of each group
   for (const StepGroup& group : groups) {
@@ -89,6 +95,32 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::v
   bookNumerical(constant, mechanism, state);
 }
 
+/// Motors that hold do so whatever the contacts of the step do.
+void ContactStepping::holdMotors() {
+  heldMotors_.clear();
+  const std::vector<JointMotor>& motors = assembly_.mechanism.motors;
+  for (std::size_t i = 0; i < motors.size(); ++i)
+    if (motors[i].mode == JointMotor::Mode::holds) heldMotors_.push_back(i);
+  problem_.hold(heldMotors_);
+}
+
+/// With rows J of joints and of motors that hold, velocities v of a mechanism are led in as far as J v != 0: by M^-1
+/// J^T nu, which has the same J v. The work of motors against impulses is then as that of driven bodies.
+ContactStepping::LedMotion ContactStepping::ledMotion(const VectorX& before, const VectorX& state) {
+  const std::vector<RigidBody>& bodies = assembly_.mechanism.bodies;
+  if (assembly_.mechanism.driven.empty() && !problem_.isHolding()) return {};
+  const auto ledBy = [&](const VectorX& velocities) {
+    VectorX led = ledVelocities(bodies, problem_.ties(), velocities);
+    if (!problem_.isHolding()) return led;
+    VectorX free = velocities;
+    problem_.ties().constrainVelocities(free);
+    const Eigen::Index poses = poseComponents(velocities);
+    led.tail(led.size() - poses) += velocities.tail(led.size() - poses) - free.tail(led.size() - poses);
+    return led;
+  };
+  return {ledBy(before), ledBy(state)};
+}
+
 /// Energy does not grow beyond the most that what drives bodies may work, which is returned (J): a restitution that
 /// would let it (with friction it can) is made smaller, and what is left by rounding, by the order of the method, or by
 /// impulses that were not found is taken from the velocities.
@@ -98,14 +130,14 @@ double ContactStepping::resolveGroup(const StepGroup& group, const StepInput& in
   const double most = energyOf(group.moved.bodies, mechanism, state);
   ContactProblem posed;
   VectorX impulses, end;
-  WorkOfDriven work;
+  WorkOfDrives work;
   const std::size_t kept = faults_.size();
   const auto lossWith = [&](double restitutionFraction) {
     faults_.erase(faults_.begin() + static_cast<std::ptrdiff_t>(kept), faults_.end());
     copyBodies(group.moved.bodies, input.step.end, state);
     posed = posedStep(group, input.contacts, motion, input.strikesInside, restitutionFraction);
     impulses = problem_.solve(group, posed, faults_);
-    work = workOfDriven(input.led, posed.free, impulses);
+    work = workOfDrives(input.led, posed.free, impulses);
     end = move(group, input, motion, impulses, state);
     return most + work.most - energyOf(group.moved.bodies, mechanism, state);
   };
@@ -115,20 +147,26 @@ double ContactStepping::resolveGroup(const StepGroup& group, const StepInput& in
   keepMomenta(group.moved, input.step.end, mechanism, state);
   limitEnergy(group.moved, most + work.most, mechanism, state, faults_);
   keep(group, motion, posed, impulses, state);
+  if (problem_.isHolding()) {
+    const VectorX given = problem_.motorImpulses(impulses, input.step.middle);
+    for (std::size_t i = 0; i < heldMotors_.size(); ++i)
+      motorImpulses_[static_cast<Eigen::Index>(heldMotors_[i])] += given[static_cast<Eigen::Index>(i)];
+  }
   book(group, motion, impulses, end, most + work.mean - energyOf(group.moved.bodies, mechanism, state), state);
   pushWork(state) += work.mean;
   return work.most;
 }
 
-/// Of what drives bodies, against impulses at the contacts of the group that was set: they are forces of a step, whose
-/// work with changing velocities is known to the order of the method, and they leave velocities that are not solved
-/// for.
-ContactStepping::WorkOfDriven ContactStepping::workOfDriven(const LedMotion& led, const VectorX& free,
+/// Of driven bodies and motors that hold, against impulses at the contacts of the group that was set: they are forces
+/// of a step, whose work with changing velocities is known to the order of the method, and they leave velocities that
+/// are not solved for.
+ContactStepping::WorkOfDrives ContactStepping::workOfDrives(const LedMotion& led, const VectorX& free,
                                                             const VectorX& impulses) const {
   if (led.start.size() == 0) return {};
-  const double atStart = -impulses.dot(problem_.velocitiesIn(led.start));
-  const double atEnd = -impulses.dot(problem_.velocitiesIn(led.end));
-  const double unsolved = StepTolerances::kSolvedRatio * free.cwiseAbs().maxCoeff() * impulses.lpNorm<1>();
+  const VectorX start = problem_.velocitiesIn(led.start), end = problem_.velocitiesIn(led.end);
+  const double atStart = -impulses.dot(start), atEnd = -impulses.dot(end);
+  double unsolved = StepTolerances::kSolvedRatio * free.cwiseAbs().maxCoeff() * impulses.lpNorm<1>();
+  if (problem_.isHolding()) unsolved += GroupProblem::kCompliance * impulses.cwiseAbs().dot(end.cwiseAbs());
   return {0.5 * (atStart + atEnd), std::max(atStart, atEnd) + unsolved};
 }
 
@@ -194,6 +232,7 @@ NextImpact ContactStepping::nextImpact(const std::vector<Contact>& contacts, con
   if (contacts.empty()) return {};
   problem_.warmStartFrom({contacts_, slips_, impulseRatio(timeStep)});
   const FreeStep step(assembly_.mechanism.bodies, before, timeStep, state);
+  holdMotors();
   problem_.factorize(step.middle);
   faults_.clear();
   return findNextImpact({assembly_, tolerances_, contacts, {}, before}, step, minImpactSpeed, problem_);
@@ -202,6 +241,7 @@ NextImpact ContactStepping::nextImpact(const std::vector<Contact>& contacts, con
 void ContactStepping::correctPenetration(const std::vector<Contact>& contacts, const std::vector<const Limit*>& ropes,
                                          VectorX& state) {
   const ContactSet set(assembly_, tolerances_, contacts, ropes, state);
+  problem_.hold({});
   if (!contacts.empty()) problem_.factorize(FreeStep(assembly_.mechanism.bodies, state, 0, state).middle);
   cradle::correctPenetration(set, problem_, state, faults_);
 }
@@ -209,6 +249,7 @@ void ContactStepping::correctPenetration(const std::vector<Contact>& contacts, c
 std::vector<Vec3> ContactStepping::resolveImpact(const std::vector<Contact>& contacts, double timeStep,
                                                  VectorX& state) {
   const ContactSet set(assembly_, tolerances_, contacts, {}, state);
+  problem_.hold({});  // a finite force gives no impulse
   if (!contacts.empty()) problem_.factorize(FreeStep(assembly_.mechanism.bodies, state, 0, state).middle);
   return resolveStepImpact(set, timeStep, problem_, state, faults_);
 }

@@ -53,6 +53,10 @@ class ContactStepping {
   };
   FrictionWork frictionWork() const { return frictionWork_; }
 
+  /// N s or N m s, of each motor of the mechanism: what those that hold gave in answer to the contacts of the last
+  /// step.
+  const VectorX& motorImpulses() const { return motorImpulses_; }
+
   /// Those of the last step.
   const std::vector<SteppedContact>& contacts() const { return contacts_; }
   /// Iterations that its frictional contact problems took so far.
@@ -62,12 +66,12 @@ class ContactStepping {
   std::vector<SteppingFault> takeFaults() { return std::exchange(faults_, {}); }
 
  private:
-  /// Velocities to which driven bodies lead others, at the start and the end of a step (ledVelocities). Empty if there
-  /// are none.
+  /// Velocities to which driven bodies and motors that hold lead others, at the start and the end of a step
+  /// (ledVelocities). Empty if there are none.
   struct LedMotion {
     VectorX start, end;
   };
-  struct WorkOfDriven {
+  struct WorkOfDrives {
     double mean = 0;  // J: with the mean of the velocities at both ends
     double most = 0;  // J: with those of one of them, and what solvers leave
   };
@@ -78,8 +82,10 @@ class ContactStepping {
     const LedMotion& led;
   };
   double impulseRatio(double timeStep) const { return previousStep_ > 0 ? timeStep / previousStep_ : 1; }
+  void holdMotors();
+  LedMotion ledMotion(const VectorX& before, const VectorX& state);
   double resolveGroup(const StepGroup& group, const StepInput& input, VectorX& state);
-  WorkOfDriven workOfDriven(const LedMotion& led, const VectorX& free, const VectorX& impulses) const;
+  WorkOfDrives workOfDrives(const LedMotion& led, const VectorX& free, const VectorX& impulses) const;
   VectorX move(const StepGroup& group, const StepInput& input, const StepMotion& motion, const VectorX& impulses,
                VectorX& state);
   void keep(const StepGroup& group, const StepMotion& motion, const ContactProblem& posed, const VectorX& impulses,
@@ -94,6 +100,8 @@ class ContactStepping {
   std::vector<Vec3> slips_;               // m/s, world: their velocities with De Saxce's correction
   double previousStep_ = 0;               // s: length of the last step
   std::vector<SteppingFault> faults_;
+  std::vector<std::size_t> heldMotors_;  // of the last step
+  VectorX motorImpulses_;
   FrictionWork frictionWork_;
 };
 

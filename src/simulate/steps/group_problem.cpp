@@ -23,6 +23,29 @@ void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechani
   if (taken > 0) faults.push_back({CorrectionKind::clampedEnergy, moved.bodies, taken});
 }
 
+void GroupProblem::hold(const std::vector<std::size_t>& motors) {
+  heldMotors_ = motors;
+  ties_.clear();
+  if (motors.empty()) return;
+  ties_ = assembly_.mechanism.constraints;
+  for (const std::size_t motor : motors) {
+    ties_.push_back(assembly_.mechanism.motors[motor].joint);
+    std::get<JointCoordinate>(ties_.back().kind).compliance = kCompliance;
+  }
+}
+
+VectorX GroupProblem::motorImpulses(const VectorX& impulses, const VectorX& state) {
+  VectorX change = state;
+  change.tail(state.size() - poseComponents(state)).setZero();
+  const ImpulseResponse bodiesAlone(assembly_.mechanism.bodies);
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    bodiesAlone.apply(contacts_[i], axes(i) * impulses.segment<3>(3 * static_cast<Eigen::Index>(i)), change);
+  held_.constrainVelocities(change);
+  VectorX multipliers = VectorX::Zero(rowCount(ties_));
+  held_.putMultipliers(multipliers);
+  return multipliers.tail(std::ssize(heldMotors_));
+}
+
 void GroupProblem::set(const StepGroup& group, const std::vector<Contact>& contacts, const VectorX& state) {
   contacts_ = contacts;
   isSolvedDensely_ = contacts.size() <= (group.isConstrained ? kFewTiedContacts : kFewDenseContacts);
@@ -30,11 +53,22 @@ void GroupProblem::set(const StepGroup& group, const std::vector<Contact>& conta
   if (!group.isConstrained) {
     sparse_.set(contacts, assembly_.mechanism.bodies, state);
   } else if (!isSolvedDensely_) {
-    sparse_.set(contacts, assembly_.mechanism.bodies, constraints_, state);
+    sparse_.set(contacts, assembly_.mechanism.bodies, ties(), state);
   } else {
     sparse_.set(contacts, assembly_.mechanism.bodies, state);
-    dense_.emplace(contacts, ImpulseResponse(assembly_.mechanism.bodies, constraints_), state);
+    dense_.emplace(contacts, ImpulseResponse(assembly_.mechanism.bodies, ties()), state);
   }
+}
+
+/// Of all solutions about the one of the least impulses: the first solves the problem of contacts that give way by D
+/// times their impulses, and the second, of contacts that give way by D times what differs from the first, hardly gives
+/// way at all (the proximal point method, R. T. Rockafellar, SIAM J. Control Optim. 14, 1976).
+ContactSolution GroupProblem::solveSharing(const VectorX& free, const std::vector<double>& frictions) const {
+  MatrixX w = delassus();
+  const VectorX compliance = kCompliance * w.diagonal();
+  w.diagonal() += compliance;
+  const ContactSolution first = solveFrictionalContact(w, free, frictions);
+  return solveFrictionalContact(w, free - compliance.cwiseProduct(first.impulses), frictions, first.impulses);
 }
 
 /// A wedged body may have no solution, and the search for one may lead beyond all bounds: friction, then all impulses,
@@ -61,6 +95,7 @@ VectorX GroupProblem::solve(const StepGroup& group, const ContactProblem& proble
 /// Of few contacts to rounding, else from `start` and to `tolerance` (m/s).
 ContactSolution GroupProblem::solve(const VectorX& free, const std::vector<double>& frictions, double tolerance,
                                     WarmStart& start) {
+  if (isSolvedDensely_ && !assembly_.mechanism.motors.empty()) return solveSharing(free, frictions);
   if (isSolvedDensely_) return solveFrictionalContact(delassus(), free, frictions);
   const ContactSolution solution = solveFrictionalContact(sparse_.scaledOperator(), free, frictions, tolerance, start);
   iterations_ += solution.iterations;

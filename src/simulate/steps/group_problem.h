@@ -52,14 +52,37 @@ class GroupProblem {
  public:
   /// Keeps a reference to `assembly`.
   explicit GroupProblem(const Assembly& assembly)
-      : assembly_(assembly), constraints_(assembly.mechanism.constraints, assembly.mechanism.bodies) {}
+      : assembly_(assembly),
+        constraints_(assembly.mechanism.constraints, assembly.mechanism.bodies),
+        held_(ties_, assembly.mechanism.bodies) {}
+  GroupProblem(const GroupProblem&) = delete;
+  GroupProblem& operator=(const GroupProblem&) = delete;
+
+  /// How far, where bodies have motors, contacts and motors that hold give way: by this part of what their load does to
+  /// free bodies. Four wheels share their load by it, of which three could bear all and any one could drive the others;
+  /// else gaps of 1e-9 m decide who does, and wheels spin on nothing. Steps have an error of that order anyway. [1e-3,
+  /// 1e-2]
+  static constexpr double kCompliance = 1e-3;
+
+  /// Lets motors (indices into the mechanism's) hold the velocities of their joints whatever contacts do, until the
+  /// next call: their rows are constraints of groups that are set. To be called before `factorize`.
+  void hold(const std::vector<std::size_t>& motors);
+  bool isHolding() const { return !heldMotors_.empty(); }
 
   /// The constraints of the bodies, factorised for the state of the last `factorize`.
   ConstraintSolver& constraints() { return constraints_; }
   const ConstraintSolver& constraints() const { return constraints_; }
   void factorize(const VectorX& state) {
     if (constraints_.hasConstraints()) constraints_.factorize(state);
+    if (isHolding()) held_.factorize(state);
   }
+
+  /// The same with the motors that hold.
+  ConstraintSolver& ties() { return isHolding() ? held_ : constraints_; }
+
+  /// N s or N m s: what the motors that hold give in answer to impulses (N s) at the contacts of the group that was
+  /// set, with bodies where they are in `state`.
+  VectorX motorImpulses(const VectorX& impulses, const VectorX& state);
 
   void warmStartFrom(StepMemory memory) { memory_ = std::move(memory); }
 
@@ -94,12 +117,16 @@ class GroupProblem {
 
  private:
   MatrixX delassus() const { return dense_ ? dense_->matrix() : sparse_.matrix(); }
+  ContactSolution solveSharing(const VectorX& free, const std::vector<double>& frictions) const;
   ContactSolution solve(const VectorX& free, const std::vector<double>& frictions, double tolerance, WarmStart& start);
   WarmStart warmStartOf(const StepGroup& group) const;
   WarmStart coldStart() const;
 
   const Assembly& assembly_;
   ConstraintSolver constraints_;
+  std::vector<std::size_t> heldMotors_;
+  Constraints ties_;               // of the mechanism, then of held motors; empty if there are none of these
+  ConstraintSolver held_;          // of ties_
   std::vector<Contact> contacts_;  // of the group
   SparseDelassus sparse_;
   bool isSolvedDensely_ = false;          // contacts are few

@@ -36,6 +36,9 @@ class StepContacts {
   /// J: what friction took in the step that was solved last, and would have at the velocities of its start.
   ContactStepping::FrictionWork frictionWork() const { return stepping_.frictionWork(); }
 
+  /// N s or N m s, of each motor: what those that hold gave in answer to the contacts of that step.
+  const VectorX& motorImpulses() const { return stepping_.motorImpulses(); }
+
   /// How far (m or rad) that left constraints from where they should be.
   double constraintError() const { return stepping_.constraintError(); }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "constraints/invariants.h"
+#include "constraints/row_response.h"
 #include "core/error.h"
 #include "dynamics/integrators/rk4.h"
 #include "simulate/events/event_location.h"
@@ -22,6 +23,8 @@ constexpr double kMaxPartGrowth = 4;           // of a part of a step to the nex
 constexpr double kMaxConstraintErrorGrowth =
     2;  // times the error of free motion, of constraints that contradict each other
 constexpr double kMinConstraintStep = 1.0 / 32;  // of a step: shorter ones are not cut for constraint errors
+constexpr double kAllOfAForce = 1e-9;            // of a motor's: so much less is all of it
+constexpr double kAlikeLoad = 1e-3;              // of the load of a motor: others that differ by less share its fate
 constexpr int kMaxServed = 12;                   // contacts
 constexpr double kSheetRatio = 0.5;  // of a body's inner radius: its largest displacement in a step beside a sheet
 constexpr int kMaxImpactCuts = 2;    // events in a step: with as many, it is not cut at the next impact inside it
@@ -61,6 +64,7 @@ void SteppedMotion::advance(double frame) {
 
   // How far do bodies move freely, until which event?
   tautRowsBefore_ = ropes_.tautRows();
+  holdReachedTargets();
   moveFreely(stepEnd);
   before_ = island_.state;
   bool atEvent = stopAtFirstEvent();
@@ -142,6 +146,7 @@ bool SteppedMotion::solveContacts() {
   const double length = island_.step.timeStep;
   VectorX& state = island_.state;
   const Mechanism& mechanism = island_.assembly.mechanism;
+  motorForces_ = island_.equations.motorForces();
   bookStep(mechanism, island_.step);
   state = island_.step.state;
   if (solver_.hasConstraints()) {
@@ -158,9 +163,54 @@ bool SteppedMotion::solveContacts() {
   const double size = state.head(poseComponents(state)).cwiseAbs().maxCoeff();
   ropes_.giveWay(contacts_.touching());
   contacts_.solveContacts(before_, length, ropes_, state);
+  if (exhaustMotors()) return solveContacts();
   return contacts_.constraintError() <=
              std::max(contacts_.tolerances().constraintError(size), kMaxConstraintErrorGrowth * free) ||
          length < kMinConstraintStep * method_.timeStep;
+}
+
+/// Motors that push hold their joint's velocity from the step on in which it comes to the target. Here are those that
+/// would come to it if their bodies were free: exhaustMotors finds which do not.
+void SteppedMotion::holdReachedTargets() {
+  Mechanism& mechanism = island_.assembly.mechanism;
+  std::vector<BodyFrame> frames;
+  for (JointMotor& motor : mechanism.motors) {
+    if (!motor.hasTarget || motor.mode == JointMotor::Mode::holds) continue;
+    if (frames.empty()) findBodyFrames(mechanism.bodies, island_.state, frames);
+    const ConstraintRow row = rowOf(motor, island_.state, frames);
+    const double mobility = delassusEntry(row, row, responseTo(row, mechanism.bodies, frames));
+    const double missing = motor.sign * (motor.targetVelocity - rateOf(row, island_.state));
+    if (missing <= method_.timeStep * motor.maxForce * mobility) motor.mode = JointMotor::Mode::holds;
+  }
+}
+
+/// Adds what contacts asked of motors that hold to their forces. The one for which that is most beyond all it has, and
+/// those like it, push with that instead: true if there is one, and the step of free motion has been taken again.
+bool SteppedMotion::exhaustMotors() {
+  Step& step = island_.step;
+  std::vector<JointMotor>& motors = island_.assembly.mechanism.motors;
+  const auto load = [&](std::size_t i) {
+    return std::abs(motorForces_[static_cast<Eigen::Index>(i)]) / motors[i].maxForce;
+  };
+  double most = 1 - kAllOfAForce;
+  for (std::size_t i = 0; i < motors.size(); ++i) {
+    if (motors[i].mode == JointMotor::Mode::pushes) continue;
+    motorForces_[static_cast<Eigen::Index>(i)] +=
+        contacts_.motorImpulses()[static_cast<Eigen::Index>(i)] / step.timeStep;
+    most = std::max(most, load(i));
+  }
+  bool isAny = false;
+  for (std::size_t i = 0; i < motors.size(); ++i) {
+    if (motors[i].mode == JointMotor::Mode::pushes || load(i) < (1 - kAlikeLoad) * most || load(i) < 1 - kAllOfAForce)
+      continue;
+    motors[i].mode = JointMotor::Mode::pushes;
+    motors[i].sign = motorForces_[static_cast<Eigen::Index>(i)] < 0 ? -1 : 1;
+    isAny = true;
+  }
+  if (!isAny) return false;
+  step.startDerivativeIsKnown = false;
+  island_.integrate(method_.integrate, before_, step.timeStep);
+  return true;
 }
 
 void SteppedMotion::shorten() {

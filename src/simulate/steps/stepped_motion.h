@@ -28,6 +28,9 @@ class SteppedMotion {
   /// proportion to the fraction, positions to its square.
   void addContactMotion(double fraction, VectorX& state) const;
 
+  /// Forces (N or N m) of the motors in the last step, the mean of those that hold against contacts.
+  const VectorX& motorForces() const { return motorForces_; }
+
   /// Whether all bodies of the island lie still.
   bool isAtRest() const;
 
@@ -49,6 +52,8 @@ class SteppedMotion {
   bool stopAtFirstEvent();
   bool stopAtNextImpact();
   bool solveContacts();
+  void holdReachedTargets();
+  bool exhaustMotors();
   void shorten();
   void countEvent();
 
@@ -68,7 +73,8 @@ class SteppedMotion {
   std::vector<int> tautRowsBefore_;  // of ropes, before the changes of a step
   bool hasContacts_ = false;         // contacts were solved over the last step ...
   VectorX contactEnd_;               // ... and led to this state
-  std::vector<double> innerRadii_;   // m, of the colliders
+  VectorX motorForces_;
+  std::vector<double> innerRadii_;  // m, of the colliders
 };
 
 }  // namespace cradle
