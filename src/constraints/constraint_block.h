@@ -24,7 +24,7 @@ struct ConstraintBlock {
   Values velocityProduct{};             // (dJ/dt) v
   Values rounding{};                    // m, or rad: an error that arithmetic alone explains
   double scale = 1;                     // C / scale is the error in m, or rad
-  double compliance = 0;  // of each row's J M^-1 J^T: so much more of a multiplier's velocity the row lets through
+  double compliance = 0;                // velocity (or acceleration) with which each row gives way to a multiplier of 1
 };
 
 /// A body of a constraint at one instant, and the constraint's point on it; world frame.

@@ -201,7 +201,7 @@ void ConstraintSolver::assemble() {
       if (block.turnsA) addInertia<rows, rows>(block.angularA, response.turnA, entries);
       if (block.turnsB) addInertia<rows, rows>(block.angularB, response.turnB, entries);
       if (block.compliance > 0)
-        for (int row = 0; row < rows; ++row) entries[row * rows + row] *= 1 + block.compliance;
+        for (int row = 0; row < rows; ++row) entries[row * rows + row] += block.compliance;
     });
   }
   for (const Coupling& coupling : couplings_) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "constraints/row_response.h"
+
 namespace cradle {
 namespace {
 
@@ -28,10 +30,29 @@ void GroupProblem::hold(const std::vector<std::size_t>& motors) {
   ties_.clear();
   if (motors.empty()) return;
   ties_ = assembly_.mechanism.constraints;
-  for (const std::size_t motor : motors) {
-    ties_.push_back(assembly_.mechanism.motors[motor].joint);
-    std::get<JointCoordinate>(ties_.back().kind).compliance = kCompliance;
-  }
+  for (const std::size_t motor : motors) ties_.push_back(assembly_.mechanism.motors[motor].joint);
+}
+
+/// The velocity of a motor's coordinate that an impulse of 1 gives, with all joints: 1/kg or 1/(kg m^2).
+double GroupProblem::motorMobility(const JointMotor& motor, const VectorX& state) {
+  const std::vector<RigidBody>& bodies = assembly_.mechanism.bodies;
+  VectorX moved = state;
+  moved.tail(state.size() - poseComponents(state)).setZero();
+  findBodyFrames(bodies, moved, frames_);
+  const ConstraintRow row = rowOf(motor, moved, frames_);
+  addResponse(row, responseTo(row, bodies, frames_), 1, moved);
+  constraints_.constrainVelocities(moved);
+  return rateOf(row, moved);
+}
+
+void GroupProblem::factorize(const VectorX& state) {
+  if (constraints_.hasConstraints()) constraints_.factorize(state);
+  if (!isHolding()) return;
+  const std::size_t first = ties_.size() - heldMotors_.size();
+  for (std::size_t i = 0; i < heldMotors_.size(); ++i)
+    std::get<JointCoordinate>(ties_[first + i].kind).compliance =
+        kCompliance * motorMobility(assembly_.mechanism.motors[heldMotors_[i]], state);
+  held_.factorize(state);
 }
 
 VectorX GroupProblem::motorImpulses(const VectorX& impulses, const VectorX& state) {

@@ -58,10 +58,10 @@ class GroupProblem {
   GroupProblem(const GroupProblem&) = delete;
   GroupProblem& operator=(const GroupProblem&) = delete;
 
-  /// How far, where bodies have motors, contacts and motors that hold give way: by this part of what their load does to
-  /// free bodies. Four wheels share their load by it, of which three could bear all and any one could drive the others;
-  /// else gaps of 1e-9 m decide who does, and wheels spin on nothing. Steps have an error of that order anyway. [1e-3,
-  /// 1e-2]
+  /// How far, where bodies have motors, contacts and motors that hold give way: by this part of what their load does
+  /// without contacts. Four wheels share their load by it, of which three could bear all and any one could drive the
+  /// others; else gaps of 1e-9 m decide who does, and wheels spin on nothing. Steps have an error of that order anyway.
+  /// [1e-3, 1e-2]
   static constexpr double kCompliance = 1e-3;
 
   /// Lets motors (indices into the mechanism's) hold the velocities of their joints whatever contacts do, until the
@@ -72,10 +72,7 @@ class GroupProblem {
   /// The constraints of the bodies, factorised for the state of the last `factorize`.
   ConstraintSolver& constraints() { return constraints_; }
   const ConstraintSolver& constraints() const { return constraints_; }
-  void factorize(const VectorX& state) {
-    if (constraints_.hasConstraints()) constraints_.factorize(state);
-    if (isHolding()) held_.factorize(state);
-  }
+  void factorize(const VectorX& state);
 
   /// The same with the motors that hold.
   ConstraintSolver& ties() { return isHolding() ? held_ : constraints_; }
@@ -117,6 +114,7 @@ class GroupProblem {
 
  private:
   MatrixX delassus() const { return dense_ ? dense_->matrix() : sparse_.matrix(); }
+  double motorMobility(const JointMotor& motor, const VectorX& state);
   ContactSolution solveSharing(const VectorX& free, const std::vector<double>& frictions) const;
   ContactSolution solve(const VectorX& free, const std::vector<double>& frictions, double tolerance, WarmStart& start);
   WarmStart warmStartOf(const StepGroup& group) const;
@@ -127,6 +125,7 @@ class GroupProblem {
   std::vector<std::size_t> heldMotors_;
   Constraints ties_;               // of the mechanism, then of held motors; empty if there are none of these
   ConstraintSolver held_;          // of ties_
+  std::vector<BodyFrame> frames_;  // scratch
   std::vector<Contact> contacts_;  // of the group
   SparseDelassus sparse_;
   bool isSolvedDensely_ = false;          // contacts are few

@@ -16,11 +16,11 @@ constexpr double kGroupFriction = 0.4;
 
 /// Boxes on each other on the floor, with the contacts of all of them as one group.
 struct BoxTower : OneIsland {
-  explicit BoxTower(int boxes, const std::string& more = "")
+  explicit BoxTower(int boxes, const std::string& more = "", const std::string& rotor = "")
       : OneIsland(R"("duration": 1, "materials": {"stuff": {"restitution": 0, "staticFriction": 0.4,
           "dynamicFriction": 0.4}}, "bodies": [{"name": "floor", "shape": {"plane": {}}, "motion": "static",
           "material": "stuff"})" +
-                  boxesOf(boxes) + "]" + more),
+                  boxesOf(boxes) + rotor + "]" + more),
         tolerances(stepTolerancesOf(stepScalesOf(island.assembly))),
         group(ContactSet(island.assembly, tolerances, contactsWithin(1e-9), {}, state()).findGroups().at(0)),
         problem(island.assembly) {
@@ -131,6 +131,70 @@ TEST(GroupProblem, HasTheResponseOfConstraintsWithManyContacts) {
   EXPECT_LT(at.problem.constraints().largestRate(at.state()), 1e-14);
   for (const Contact& contact : at.group.contacts) EXPECT_GE(openingSpeed(contact, at.state()), -1e-8);
   EXPECT_LT(at.problem.mobility(0), 0.9);
+}
+
+/// A wheel of 1 kg and inertia I on a fixed axle over the floor, with its lowest point on it.
+struct DrivenWheel : OneIsland {
+  DrivenWheel()
+      : OneIsland(R"("duration": 1, "materials": {"stuff": {"staticFriction": 0.4, "dynamicFriction": 0.4}}, "bodies": [
+          {"name": "floor", "shape": {"plane": {}}, "motion": "static", "material": "stuff"},
+          {"name": "wheel", "shape": {"sphere": {"radius": 0.5}}, "mass": 1, "material": "stuff", "position": [0, 0.5, 0]},
+          {"name": "cart", "shape": {"sphere": {"radius": 0.1}}, "mass": 3, "collision": "none", "position": [0, 0.5, 0]}],
+        "hinges": [{"bodyA": "wheel", "bodyB": "cart", "anchorB": [0, 0, 0], "motor": {"targetVelocity": -2, "maxTorque": 9}}],
+        "sliders": [{"bodyA": "cart", "anchorB": [0, 0.5, 0], "axis": [1, 0, 0]}])"),
+        tolerances(stepTolerancesOf(stepScalesOf(island.assembly))),
+        group(ContactSet(island.assembly, tolerances, contactsWithin(1e-9), {}, state()).findGroups().at(0)),
+        problem(island.assembly) {}
+  void set(const std::vector<std::size_t>& held) {
+    problem.hold(held);
+    problem.factorize(state());
+    problem.set(group, state());
+  }
+
+  StepTolerances tolerances;
+  StepGroup group;
+  GroupProblem problem;
+};
+
+// An impulse p along the floor at a wheel whose motor holds moves wheel and cart together, by p / 4 kg, and the motor
+// gives p r against it. Without the motor it turns the wheel besides. Motors give way by a thousandth of that.
+TEST(GroupProblem, MotorsThatHoldAnswerContacts) {
+  DrivenWheel at;
+  ASSERT_THAT(at.group.contacts, SizeIs(1));
+  const double inertia = 0.4 * 0.5 * 0.5, impulse = 0.3;
+  for (const bool holds : {true, false}) {
+    at.set(holds ? std::vector<std::size_t>{0} : std::vector<std::size_t>{});
+    const Vec3 along = at.problem.axes(0).transpose() * Vec3::UnitX();
+    const double sign = at.group.contacts[0].bodyB == 0 ? 1 : -1;  // impulses are on B
+    VectorX changed = at.state();
+    changed.tail(changed.size() - poseComponents(changed)).setZero();
+    at.problem.apply(sign * impulse * along, changed);
+    EXPECT_NEAR(linearVelocity(changed, 1).x(), impulse / 4, 1e-12);
+    const double turned = angularVelocity(changed, 0).z(), free = impulse * 0.5 / inertia;
+    if (!holds) {
+      EXPECT_NEAR(turned, free, 1e-12);
+      continue;
+    }
+    EXPECT_NEAR(turned, 0, 2 * GroupProblem::kCompliance * free);
+    const VectorX given = at.problem.motorImpulses(sign * impulse * along, at.state());
+    ASSERT_EQ(given.size(), 1);
+    EXPECT_NEAR(given[0], -impulse * 0.5, 2 * GroupProblem::kCompliance * impulse);
+  }
+}
+
+// Of the loads that four corners may have, which one number leaves open, the least: of a box that falls flat all the
+// same, W = 1/3 + 0.3^2/0.1 + 0.2^2/0.05 per kg at a corner and 4 / 4 kg for all four together. Two steps of the
+// proximal point method leave the square of kCompliance W. Without motors the loads are one of many.
+TEST(GroupProblem, LoadsOfBodiesWithMotorsAreShared) {
+  BoxTower at(1, R"(, "hinges": [{"bodyA": "b0", "bodyB": "rotor", "anchorB": [0, 0, 0], "motor": {"targetVelocity": 1,
+      "maxTorque": 1}}])",
+              R"(, {"name": "rotor", "shape": {"sphere": {"radius": 0.1}}, "mass": 1, "collision": "none",
+      "position": [0, 0.1, 0]})");
+  at.setVelocities(Vec3(0, -0.02, 0));
+  const VectorX impulses = at.problem.solve(at.group, at.posed(), at.faults);
+  const double left = std::pow(GroupProblem::kCompliance * (1.0 / 3 + 0.9 + 0.8), 2);
+  for (Eigen::Index i = 2; i < impulses.size(); i += 3) EXPECT_NEAR(impulses[i], 0.02, 0.02 * left);
+  EXPECT_THAT(at.faults, IsEmpty());
 }
 
 // Energy above a limit is taken, and told as a fault with the bodies it was taken from; nothing below it.
