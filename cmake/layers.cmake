@@ -6,7 +6,7 @@ function(cradle_layer NAME)
   cmake_parse_arguments(ARG "" "UNITY" "APART;LAYERS;LIBRARIES" ${ARGN})
   file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${NAME}/*.cpp)
   # Of these a program has one: cmake/contexts.cmake, cmake/peers.cmake.
-  list(FILTER SOURCES EXCLUDE REGEX "/contexts/|/peers/(bullet|joint_tree|mujoco|no_peers|ode|peer_shapes|peers|simbody)")
+  list(FILTER SOURCES EXCLUDE REGEX "/contexts/|/peers/(bullet|joint_tree|mujoco|no_peers|ode|peer_drives|peer_shapes|peers|simbody)")
   list(TRANSFORM ARG_LAYERS PREPEND cradle_)
   add_library(cradle_${NAME} STATIC ${SOURCES})
   set_target_properties(cradle_${NAME} PROPERTIES UNITY_BUILD "${ARG_UNITY}")

@@ -111,7 +111,7 @@ StudyRun StudyScene::runOnce(const StudyMethod& method, double setting, long fra
     return failedRun(error);
   }
   CRADLE_CHECK(!run.end.empty() || assembly_.sceneBodies.empty());
-  const bool knowsEnergy = !method.peer || !mayDissipate(assembly_);
+  const bool knowsEnergy = !method.peer || !mayChangeEnergy(assembly_);
   run.energyDrift = knowsEnergy ? meter.energyDrift() : std::numeric_limits<double>::quiet_NaN();
   run.constraintDrift = meter.constraintDrift();
   run.penetration = meter.penetration();

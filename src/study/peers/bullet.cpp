@@ -12,6 +12,7 @@
 
 #include "math/principal_axes.h"
 #include "study/peers/bullet_shapes.h"
+#include "study/peers/peer_drives.h"
 #include "study/peers/peer_shapes.h"
 
 namespace cradle {
@@ -69,6 +70,15 @@ struct BulletSettings {
   bool isTuned = false;  // contacts only where bodies touch, all overlap by split impulses, bounces from 0.01 m/s
 };
 
+/// Leaves the velocities of driven bodies as they are set: Bullet takes them from poses that are a step old.
+class BulletDynamics : public btDiscreteDynamicsWorld {
+ public:
+  using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
+
+ private:
+  void saveKinematicState(btScalar) override {}
+};
+
 class BulletWorld : public SteppedWorld {
  public:
   BulletWorld(const Scene& scene, const Assembly& parts, const BulletSettings& settings, double timeStep);
@@ -80,7 +90,11 @@ class BulletWorld : public SteppedWorld {
   btRigidBody& add(const btRigidBody::btRigidBodyConstructionInfo& info, const Body& body);
   void addJoints();
   void letJoinedOverlap(const Scene& scene);
+  void setVelocity(btRigidBody& body, const Vec3& linear, const Vec3& angular);
   void addForces();
+  void addMotors();
+  void leadDriven();
+  void placeDriven();
   AttachmentMotion motionOf(const Attachment& attachment) const;
   btRigidBody& bodyOf(const Attachment& attachment) const;
   btVector3 pointOf(const Attachment& attachment) const;
@@ -92,16 +106,17 @@ class BulletWorld : public SteppedWorld {
   std::vector<std::unique_ptr<btTypedConstraint>> joints_;
   std::vector<btRigidBody*> moving_;     // in the order of the assembly
   std::vector<Quat> bodyFromPrincipal_;  // of each moving body
+  VectorX state_;                        // at the last look
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadPhase_;
   btSequentialImpulseConstraintSolver solver_;
-  btDiscreteDynamicsWorld dynamics_{&dispatcher_, &broadPhase_, &solver_, &configuration_};
+  BulletDynamics dynamics_{&dispatcher_, &broadPhase_, &solver_, &configuration_};
   btScalar processingThreshold_ = BT_LARGE_FLOAT;  // m: contacts up to this distance are solved
 };
 
 BulletWorld::BulletWorld(const Scene& scene, const Assembly& parts, const BulletSettings& settings, double timeStep)
-    : SteppedWorld(timeStep), assembly_(parts), laws_(scene.surfacePairs) {
+    : SteppedWorld(timeStep), assembly_(parts), laws_(scene.surfacePairs), state_(parts.state) {
   gCalculateCombinedRestitutionCallback = restitutionOf;
   gCalculateCombinedFrictionCallback = frictionOf;
   dynamics_.setGravity(toBullet(scene.gravity));
@@ -142,8 +157,7 @@ void BulletWorld::addBody(const Body& body, const Scene& scene, int index) {
   btRigidBody::btRigidBodyConstructionInfo info(body.massProperties.mass, nullptr, shape, toBullet(principal.moments));
   info.m_startWorldTransform = toBullet(body.worldFromBody * bodyFromFrame);
   btRigidBody& rigid = add(info, body);
-  rigid.setLinearVelocity(toBullet(Vec3(linearVelocity(assembly_.state, index))));
-  rigid.setAngularVelocity(toBullet(Vec3(angularVelocity(assembly_.state, index))));
+  setVelocity(rigid, linearVelocity(assembly_.state, index), angularVelocity(assembly_.state, index));
   rigid.setActivationState(DISABLE_DEACTIVATION);
   moving_.push_back(&rigid);
   bodyFromPrincipal_.push_back(bodyFromFrame.rotation);
@@ -155,11 +169,17 @@ btRigidBody& BulletWorld::add(const btRigidBody::btRigidBodyConstructionInfo& in
   rigid.setUserPointer(&laws_[static_cast<std::size_t>(body.material)]);
   rigid.setUserIndex(body.material);
   rigid.setContactProcessingThreshold(processingThreshold_);
+  if (body.motion == Motion::driven) rigid.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
   if (body.collision == CollisionChoice::none)
     dynamics_.addRigidBody(&rigid, 0, 0);
   else
     dynamics_.addRigidBody(&rigid);
   return rigid;
+}
+
+void BulletWorld::setVelocity(btRigidBody& body, const Vec3& linear, const Vec3& angular) {
+  body.setLinearVelocity(toBullet(linear));
+  body.setAngularVelocity(toBullet(angular));
 }
 
 btRigidBody& BulletWorld::bodyOf(const Attachment& attachment) const {
@@ -181,6 +201,7 @@ void BulletWorld::addJoints() {
     return pointOf({at.body, direction});  // a direction turns as a point at the centre of mass does
   };
   const Constraints& constraints = assembly_.mechanism.constraints;
+  const std::vector<JointMotor>& motors = assembly_.mechanism.motors;
   forEachOf<RodConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const RodConstraint& rod) {
     add(std::make_unique<BulletRod>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b), rod.length));
   });
@@ -188,8 +209,12 @@ void BulletWorld::addJoints() {
     add(std::make_unique<btPoint2PointConstraint>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b)));
   });
   forEachOf<HingeConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const HingeConstraint& hinge) {
-    add(std::make_unique<btHingeConstraint>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b), turned(a, hinge.axisA),
-                                            turned(b, hinge.acrossB[0].cross(hinge.acrossB[1]))));
+    auto joint =
+        std::make_unique<btHingeConstraint>(bodyOf(a), bodyOf(b), pointOf(a), pointOf(b), turned(a, hinge.axisA),
+                                            turned(b, hinge.acrossB[0].cross(hinge.acrossB[1])));
+    if (const JointMotor* motor = motorOf({a, b, hinge}, motors); motor && motor->hasTarget)
+      joint->enableAngularMotor(true, motor->targetVelocity, motor->maxForce * timeStep());
+    add(std::move(joint));
   });
   const auto frameOf = [&](const Attachment& at, const Mat3& axes) {
     const btVector3 x = turned(at, axes.col(0)), y = turned(at, axes.col(1)), z = turned(at, axes.col(2));
@@ -198,8 +223,14 @@ void BulletWorld::addJoints() {
   forEachOf<SliderConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const auto& slider) {
     Mat3 axes;
     axes << slider.axisB(), slider.acrossB[0], slider.acrossB[1];  // a slider goes along x
-    add(std::make_unique<btSliderConstraint>(bodyOf(a), bodyOf(b), frameOf(a, slider.aFromB * axes), frameOf(b, axes),
-                                             true));
+    auto joint = std::make_unique<btSliderConstraint>(bodyOf(a), bodyOf(b), frameOf(a, slider.aFromB * axes),
+                                                      frameOf(b, axes), true);
+    if (const JointMotor* motor = motorOf({a, b, slider}, motors); motor && motor->hasTarget) {
+      joint->setPoweredLinMotor(true);
+      joint->setTargetLinMotorVelocity(-motor->targetVelocity);  // Bullet's is that of B against A
+      joint->setMaxLinMotorForce(motor->maxForce);
+    }
+    add(std::move(joint));
   });
   forEachOf<WeldConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const auto& weld) {
     add(std::make_unique<btFixedConstraint>(bodyOf(a), bodyOf(b), frameOf(a, weld.aFromB),
@@ -233,9 +264,46 @@ void BulletWorld::addForces() {
   }
 }
 
+void BulletWorld::addMotors() {
+  if (assembly_.mechanism.motors.empty()) return;
+  read(state_);
+  const auto act = [&](const Attachment& on, const MotorAction& action, double sign) {
+    if (on.body == kFixed) return;
+    btRigidBody& body = bodyOf(on);
+    body.applyForce(toBullet(sign * action.force), toBullet(action.point) - body.getWorldTransform().getOrigin());
+    body.applyTorque(toBullet(sign * action.torque));
+  };
+  for (const JointMotor& motor : assembly_.mechanism.motors) {
+    if (motor.hasTarget) continue;  // the joint's own
+    const MotorAction action = actionOf(motor, state_);
+    act(motor.joint.anchorA, action, 1), act(motor.joint.anchorB, action, -1);
+  }
+}
+
+/// Gives driven bodies the velocities that take them to their places at the end of the step: others feel those.
+void BulletWorld::leadDriven() {
+  for (const DrivenBody& driven : assembly_.mechanism.driven) {
+    const MeanVelocity velocity = meanVelocity(driven.motion, time(), endTime());
+    setVelocity(*moving_[static_cast<std::size_t>(driven.body)], velocity.linear, velocity.angular);
+  }
+}
+
+void BulletWorld::placeDriven() {
+  for (const DrivenBody& driven : assembly_.mechanism.driven) {
+    const PoseMotion now = motionAt(driven.motion, endTime());
+    const std::size_t index = static_cast<std::size_t>(driven.body);
+    const RigidTransform bodyFromPrincipal{bodyFromPrincipal_[index], Vec3::Zero()};
+    moving_[index]->setCenterOfMassTransform(toBullet(now.pose * bodyFromPrincipal));
+    setVelocity(*moving_[index], now.velocity, now.angularVelocity);
+  }
+}
+
 void BulletWorld::step() {
   addForces();
+  addMotors();
+  leadDriven();
   dynamics_.stepSimulation(timeStep(), 0);
+  placeDriven();
 }
 
 void BulletWorld::read(VectorX& state) {

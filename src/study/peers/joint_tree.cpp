@@ -1,5 +1,9 @@
 #include "study/peers/joint_tree.h"
 
+#include <algorithm>
+
+#include "study/peers/peer_drives.h"
+
 namespace cradle {
 namespace {
 
@@ -32,23 +36,29 @@ Quat turnOf(int body, const VectorX& state) {
 class TreeGrowth {
  public:
   TreeGrowth(const Assembly& assembly, JointTree& tree)
-      : state_(assembly.state),
+      : mechanism_(assembly.mechanism),
+        state_(assembly.state),
         joints_(jointsOf(assembly.mechanism.constraints)),
         isPlaced_(assembly.mechanism.bodies.size(), false),
         tree_(tree) {}
 
   void grow() {
+    for (const DrivenBody& driven : mechanism_.driven) addFree(driven.body);
     hangOn(kFixed);
     spreadFrom(0);
     for (std::size_t body = 0; body < isPlaced_.size(); ++body) {
       if (isPlaced_[body]) continue;
-      isPlaced_[body] = true;
-      tree_.links.push_back({TreeLink::Kind::free, static_cast<int>(body)});
+      addFree(static_cast<int>(body));
       spreadFrom(tree_.links.size() - 1);
     }
   }
 
  private:
+  void addFree(int body) {
+    isPlaced_[static_cast<std::size_t>(body)] = true;
+    tree_.links.push_back({TreeLink::Kind::free, body});
+  }
+
   void spreadFrom(std::size_t first) {
     for (std::size_t i = first; i < tree_.links.size(); ++i) hangOn(tree_.links[i].body);
   }
@@ -71,9 +81,13 @@ class TreeGrowth {
     isPlaced_[static_cast<std::size_t>(child.body)] = true;
     const Vec3 axis =
         turnOf(child.body, state_).conjugate() * (turnOf(joint.constraint->anchorA.body, state_) * joint.axisA);
-    tree_.links.push_back({joint.kind, child.body, parent.body, child.point, parent.point, axis});
+    double motorForce = 0;
+    if (const JointMotor* motor = motorOf(*joint.constraint, mechanism_.motors))
+      motorForce = (&child == &joint.constraint->anchorA ? 1 : -1) * motor->sign * motor->maxForce;
+    tree_.links.push_back({joint.kind, child.body, parent.body, child.point, parent.point, axis, motorForce});
   }
 
+  const Mechanism& mechanism_;
   const VectorX& state_;
   std::vector<Joint> joints_;
   std::vector<bool> isPlaced_;
@@ -86,6 +100,15 @@ JointTree jointTreeOf(const Assembly& assembly) {
   JointTree tree;
   TreeGrowth(assembly, tree).grow();
   return tree;
+}
+
+std::string missingMotors(const JointTree& tree, const Assembly& assembly) {
+  const std::vector<JointMotor>& motors = assembly.mechanism.motors;
+  if (std::any_of(motors.begin(), motors.end(), [](const JointMotor& motor) { return motor.hasTarget; }))
+    return "motors with a target velocity";
+  for (const Constraint& loop : tree.loops)
+    if (motorOf(loop, motors)) return "motors of joints that close a loop";
+  return "";
 }
 
 LinkStart startOf(const TreeLink& link, const Assembly& assembly) {

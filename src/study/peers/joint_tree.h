@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "simulate/assembly.h"
@@ -13,15 +14,19 @@ struct TreeLink {
   int body = 0, parent = kFixed;                            // moving bodies, or the world
   Vec3 anchor = Vec3::Zero(), parentAnchor = Vec3::Zero();  // m, of the joint: as attachments have their points
   Vec3 axis = Vec3::UnitZ();                                // of a hinge or slider: unit, in the frame of `body`
+  double motorForce = 0;                                    // N or N m, of its motor, on `body` along or about the axis
 };
 
 /// The joints of a mechanism for engines in reduced coordinates. Bodies that no joint ties to the world or to a body
-/// before them are free.
+/// before them are free, and so are driven ones, which come first.
 struct JointTree {
   std::vector<TreeLink> links;  // one a moving body, each after its parent
   Constraints loops;            // joints that close a loop
 };
 JointTree jointTreeOf(const Assembly& assembly);
+
+/// The first kind of motors, in words, that is no constant force on a coordinate of the tree; empty if there is none.
+std::string missingMotors(const JointTree& tree, const Assembly& assembly);
 
 /// What relates a link to its parent at the start.
 struct LinkStart {

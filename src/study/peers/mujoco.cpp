@@ -53,14 +53,17 @@ class MujocoWorld : public SteppedWorld {
  private:
   void step() override;
   void setVelocity(const TreeLink& link, const Assembly& assembly);
+  void leadDriven();
+  void placeDriven();
 
+  const Assembly& assembly_;
   ModelPointer model_;
   std::unique_ptr<mjData, FreeModel> data_;
   std::vector<int> bodies_;  // MuJoCo's, in the order of the assembly
 };
 
 MujocoWorld::MujocoWorld(const Scene& scene, const Assembly& assembly, const MujocoSettings& settings, double timeStep)
-    : SteppedWorld(timeStep, settings.integrator == "RK4" ? kStagesOfRungeKutta : 1) {
+    : SteppedWorld(timeStep, settings.integrator == "RK4" ? kStagesOfRungeKutta : 1), assembly_(assembly) {
   const JointTree tree = jointTreeOf(assembly);
   model_ = load(mujocoModelOf(scene, assembly, tree, settings, timeStep));
   data_.reset(mj_makeData(model_.get()));
@@ -69,6 +72,7 @@ MujocoWorld::MujocoWorld(const Scene& scene, const Assembly& assembly, const Muj
   for (const TreeLink& link : tree.links) setVelocity(link, assembly);
 }
 
+/// Velocity, and a motor's force for the whole run.
 void MujocoWorld::setVelocity(const TreeLink& link, const Assembly& assembly) {
   const LinkStart start = startOf(link, assembly);
   const int first = model_->body_dofadr[bodies_[static_cast<std::size_t>(link.body)]];
@@ -83,17 +87,48 @@ void MujocoWorld::setVelocity(const TreeLink& link, const Assembly& assembly) {
       break;
     case TreeLink::Kind::hinge:
       *velocity = start.relativeSpin.dot(link.axis);
+      data_->qfrc_applied[first] = link.motorForce;
       break;
     case TreeLink::Kind::slider:
       *velocity = start.relativeVelocity.dot(link.axis);
+      data_->qfrc_applied[first] = link.motorForce;
       break;
     case TreeLink::Kind::weld:
       break;
   }
 }
 
+/// Gives driven bodies the force and the torque (moments of inertia are equal) by which their velocities at the end of
+/// the step are right.
+void MujocoWorld::leadDriven() {
+  for (const DrivenBody& driven : assembly_.mechanism.driven) {
+    const int body = bodies_[static_cast<std::size_t>(driven.body)];
+    const PoseMotion now = motionAt(driven.motion, time()), next = motionAt(driven.motion, endTime());
+    const Vec3 acceleration = (next.velocity - now.velocity) / timeStep() - assembly_.mechanism.gravity;
+    Vec3::Map(data_->xfrc_applied + 6 * body) = model_->body_mass[body] * acceleration;
+    Vec3::Map(data_->xfrc_applied + 6 * body + 3) =
+        model_->body_inertia[3 * body] / timeStep() * (next.angularVelocity - now.angularVelocity);
+  }
+}
+
+/// Sets driven bodies to where they are at the end of the step.
+void MujocoWorld::placeDriven() {
+  for (const DrivenBody& driven : assembly_.mechanism.driven) {
+    const int body = bodies_[static_cast<std::size_t>(driven.body)];
+    const PoseMotion now = motionAt(driven.motion, endTime());
+    const Quat& turn = now.pose.rotation;
+    mjtNum* pose = data_->qpos + model_->jnt_qposadr[model_->body_jntadr[body]];
+    Vec3::Map(pose) = now.pose.translation;
+    pose[3] = turn.w(), Vec3::Map(pose + 4) = turn.vec();
+    mjtNum* velocity = data_->qvel + model_->body_dofadr[body];
+    Vec3::Map(velocity) = now.velocity, Vec3::Map(velocity + 3) = turn.conjugate() * now.angularVelocity;
+  }
+}
+
 void MujocoWorld::step() {
+  leadDriven();
   mj_step(model_.get(), data_.get());
+  placeDriven();
   const auto hasWarned = [&](mjtWarning kind) { return data_->warning[kind].number > 0; };
   if (hasWarned(mjWARN_BADQPOS) || hasWarned(mjWARN_BADQVEL) || hasWarned(mjWARN_BADQACC))
     throw Error(ErrorKind::unstable, "", fmt::format("MuJoCo found its state bad at {} s", data_->time));
@@ -118,8 +153,10 @@ void MujocoWorld::read(VectorX& state) {
 
 std::string missingInMujoco(const Scene& scene, const Assembly& assembly) {
   if (!scene.ropes.empty()) return "ropes that give back what they take";
-  for (const Constraint& loop : jointTreeOf(assembly).loops)
+  const JointTree tree = jointTreeOf(assembly);
+  for (const Constraint& loop : tree.loops)
     if (std::holds_alternative<SliderConstraint>(loop.kind)) return "sliders that close a loop";
+  if (const std::string missing = missingMotors(tree, assembly); !missing.empty()) return missing;
   if (const std::string missing = missingInEveryPeer(scene); !missing.empty()) return missing;
   return meshThatTouches(scene);
 }

@@ -11,6 +11,8 @@ namespace cradle {
 ///   springs           tendons with stiffness and damping: it knows them within a step
 ///   restitution       the spring and the damper of a contact that bounce so, as stiff as the time step allows
 ///   friction          the dynamic one
+///   driven bodies     free and very heavy, with the forces that their motion takes; they are placed after each step
+///   constant motors   forces on the coordinates of their joints
 std::vector<Peer> mujocoPeers();
 
 }  // namespace cradle

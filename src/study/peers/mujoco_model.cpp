@@ -19,6 +19,7 @@ constexpr const char* kDefaultGiving = R"(solref="0.02 1")";
 constexpr double kTunedTime = 2;        // steps: the shortest time constant that the manual advises
 constexpr double kBouncePhase = 0.2;    // rad a step of a contact that bounces: 16 steps a contact
 constexpr double kMaxFrequency = 2000;  // rad/s of a contact that bounces
+constexpr double kDrivenMass = 1e9;     // of driven bodies, times all others': rounding is 1e-16 of it
 constexpr double kSpinFriction = 0.005, kRollFriction = 0.0001;         // m: not used by contacts of three dimensions
 const Quat kLongAxis(0.70710678118654752, -0.70710678118654752, 0, 0);  // from z, MuJoCo's, to y, ours
 
@@ -67,9 +68,11 @@ class ModelText {
         giving_(isTuned_ ? fmt::format(R"(solref="{} 1" solimp="0.99 0.999 0.001")", kTunedTime * timeStep)
                          : kDefaultGiving) {
     text_ = fmt::format(R"(<mujoco><compiler angle="radian" inertiafromgeom="false"/>)"
-                        R"(<option timestep="{}" gravity="{}" integrator="{}"{}/><worldbody>)",
+                        R"(<option timestep="{}" gravity="{}" integrator="{}"{}/>)",
                         timeStep, text(scene.gravity), settings.integrator,
                         isTuned_ ? R"( cone="elliptic" impratio="10")" : "");
+    if (!assembly.mechanism.driven.empty()) add(R"(<statistic meaninertia="{}"/>)", meanInertia());
+    text_ += "<worldbody>";
     addFixedGeoms();
     addSites(kFixed);
     addChildren(kFixed);
@@ -112,9 +115,10 @@ class ModelText {
     const std::size_t index = static_cast<std::size_t>(link.body);
     const RigidBody& body = assembly_.mechanism.bodies[index];
     const PrincipalAxes principal = principalAxes(body.inertiaTensor);
+    const double mass = body.isDriven() ? kDrivenMass * massOfOthers() : body.mass;
+    const Vec3 moments = body.isDriven() ? Vec3(Vec3::Constant(mass)) : principal.moments;
     add(R"(<body name="body{}" {}>)", link.body, placeInParent(link));
-    add(R"(<inertial mass="{}" diaginertia="{}" {}/>)", body.mass, text(principal.moments),
-        place(Vec3::Zero(), Quat(principal.axes)));
+    add(R"(<inertial mass="{}" diaginertia="{}" {}/>)", mass, text(moments), place(Vec3::Zero(), Quat(principal.axes)));
     if (link.kind == TreeLink::Kind::free) text_ += "<freejoint/>";
     if (link.kind == TreeLink::Kind::ball) add(R"(<joint type="ball" pos="{}"/>)", text(link.anchor));
     if (link.kind == TreeLink::Kind::hinge)
@@ -125,6 +129,20 @@ class ModelText {
     addSites(link.body);
     addChildren(link.body);
     text_ += "</body>";
+  }
+
+  double massOfOthers() const {
+    double sum = 0;
+    for (const RigidBody& body : assembly_.mechanism.bodies) sum += body.mass;
+    return sum;
+  }
+
+  /// What the solver's tolerance is measured by (kg, kg m^2): the mean over coordinates, without driven bodies.
+  double meanInertia() const {
+    double sum = 0;
+    for (const RigidBody& body : assembly_.mechanism.bodies) sum += 3 * body.mass + body.inertiaTensor.trace();
+    const std::size_t count = assembly_.mechanism.bodies.size() - assembly_.mechanism.driven.size();
+    return sum / (6 * static_cast<double>(count));
   }
 
   std::string placeInParent(const TreeLink& link) const {
@@ -208,7 +226,8 @@ class ModelText {
     std::sort(touching_.begin(), touching_.end());
     for (const std::size_t a : touching_)
       for (const std::size_t b : touching_) {
-        if (a >= b || (scene_.bodies[a].motion == Motion::fixed && scene_.bodies[b].motion == Motion::fixed)) continue;
+        if (a >= b || (scene_.bodies[a].motion != Motion::dynamic && scene_.bodies[b].motion != Motion::dynamic))
+          continue;
         if (joined.count({static_cast<int>(a), static_cast<int>(b)}) > 0) continue;
         addPair(a, b);
       }

@@ -15,7 +15,8 @@ struct MujocoSettings {
 };
 
 /// A scene as MuJoCo's own file has it (MJCF). Moving body i is "body<i>", with its frame at the centre of mass along
-/// the body's axes.
+/// the body's axes. Driven bodies are free, and so heavy that what acts on them from others does not show; their
+/// moments of inertia are equal.
 std::string mujocoModelOf(const Scene& scene, const Assembly& assembly, const JointTree& tree,
                           const MujocoSettings& settings, double timeStep);
 

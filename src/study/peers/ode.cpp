@@ -9,6 +9,7 @@
 #include <array>
 
 #include "core/error.h"
+#include "study/peers/peer_drives.h"
 #include "study/peers/peer_shapes.h"
 
 namespace cradle {
@@ -66,7 +67,11 @@ class OdeWorld : public SteppedWorld {
   void addBody(const RigidBody& body, Eigen::Index index);
   void addGeom(int sceneBody);
   void addJoints();
+  void setMotor(const Constraint& joint, dJointID id, void (*set)(dJointID, int, dReal));
+  void setMotion(dBodyID body, Eigen::Index index);
   void addForces();
+  void leadDriven();
+  void placeDriven();
   void addContacts(dGeomID a, dGeomID b);
   dBodyID bodyOf(const Attachment& attachment) const;
 
@@ -110,21 +115,30 @@ OdeWorld::~OdeWorld() {
 }
 
 void OdeWorld::addBody(const RigidBody& body, Eigen::Index index) {
-  const Mat3& inertia = body.inertiaTensor;
-  dMass mass;
-  dMassSetParameters(&mass, body.mass, 0, 0, 0, inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1),
-                     inertia(0, 2), inertia(1, 2));
   const dBodyID added = dBodyCreate(world_);
-  dBodySetMass(added, &mass);
+  if (body.isDriven()) {
+    dBodySetKinematic(added);
+  } else {
+    const Mat3& inertia = body.inertiaTensor;
+    dMass mass;
+    dMassSetParameters(&mass, body.mass, 0, 0, 0, inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1),
+                       inertia(0, 2), inertia(1, 2));
+    dBodySetMass(added, &mass);
+  }
+  setMotion(added, index);
+  bodies_.push_back(added);
+}
+
+/// Pose and velocity as in state_.
+void OdeWorld::setMotion(dBodyID body, Eigen::Index index) {
   const Vec3 place = centerOfMass(state_, index), velocity = linearVelocity(state_, index);
   const Vec3 spin = angularVelocity(state_, index);
   const Quat turn = orientation(state_, index);
   const dReal quaternion[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
-  dBodySetPosition(added, place.x(), place.y(), place.z());
-  dBodySetQuaternion(added, quaternion);
-  dBodySetLinearVel(added, velocity.x(), velocity.y(), velocity.z());
-  dBodySetAngularVel(added, spin.x(), spin.y(), spin.z());
-  bodies_.push_back(added);
+  dBodySetPosition(body, place.x(), place.y(), place.z());
+  dBodySetQuaternion(body, quaternion);
+  dBodySetLinearVel(body, velocity.x(), velocity.y(), velocity.z());
+  dBodySetAngularVel(body, spin.x(), spin.y(), spin.z());
 }
 
 void OdeWorld::addGeom(int sceneBody) {
@@ -187,12 +201,14 @@ void OdeWorld::addJoints() {
     const Vec3 axis = a.body == kFixed ? hinge.axisA : orientation(state_, a.body) * hinge.axisA;
     dJointSetHingeAnchor(joint, at.x(), at.y(), at.z());
     dJointSetHingeAxis(joint, axis.x(), axis.y(), axis.z());
+    setMotor({a, b, hinge}, joint, dJointSetHingeParam);
   });
   forEachOf<SliderConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const auto& slider) {
     const dJointID joint = dJointCreateSlider(world_, nullptr);
     dJointAttach(joint, bodyOf(a), bodyOf(b));
     const Vec3 axis = b.body == kFixed ? slider.axisB() : orientation(state_, b.body) * slider.axisB();
     dJointSetSliderAxis(joint, axis.x(), axis.y(), axis.z());
+    setMotor({a, b, slider}, joint, dJointSetSliderParam);
   });
   forEachOf<WeldConstraint>(constraints, [&](const Attachment& a, const Attachment& b, const auto&) {
     const dJointID joint = dJointCreateFixed(world_, nullptr);
@@ -201,22 +217,60 @@ void OdeWorld::addJoints() {
   });
 }
 
+/// Gives a joint its motor, if that has a target velocity. A hinge takes a lone body for its first, a slider does not.
+void OdeWorld::setMotor(const Constraint& joint, dJointID id, void (*set)(dJointID, int, dReal)) {
+  const JointMotor* motor = motorOf(joint, assembly_.mechanism.motors);
+  if (!motor || !motor->hasTarget) return;
+  const bool isTurned = joint.anchorA.body == kFixed && std::holds_alternative<HingeConstraint>(joint.kind);
+  set(id, dParamVel, isTurned ? -motor->targetVelocity : motor->targetVelocity);
+  set(id, dParamFMax, motor->maxForce);
+}
+
 void OdeWorld::addForces() {
-  if (assembly_.mechanism.springs.empty()) return;
+  const Mechanism& mechanism = assembly_.mechanism;
+  if (mechanism.springs.empty() && mechanism.motors.empty()) return;
   read(state_);
-  for (const SpringForce& spring : assembly_.mechanism.springs) {
+  const auto addForce = [&](const Attachment& to, const Vec3& force, const Vec3& at) {
+    if (to.body != kFixed) dBodyAddForceAtPos(bodyOf(to), force.x(), force.y(), force.z(), at.x(), at.y(), at.z());
+  };
+  const auto addTorque = [&](const Attachment& to, const Vec3& torque) {
+    if (to.body != kFixed) dBodyAddTorque(bodyOf(to), torque.x(), torque.y(), torque.z());
+  };
+  for (const SpringForce& spring : mechanism.springs) {
     const SpringAction action = actionOf(spring, state_);
-    const Vec3 &force = action.forceOnA, &a = action.a.position, &b = action.b.position;
-    if (spring.anchorA.body != kFixed)
-      dBodyAddForceAtPos(bodyOf(spring.anchorA), force.x(), force.y(), force.z(), a.x(), a.y(), a.z());
-    if (spring.anchorB.body != kFixed)
-      dBodyAddForceAtPos(bodyOf(spring.anchorB), -force.x(), -force.y(), -force.z(), b.x(), b.y(), b.z());
+    addForce(spring.anchorA, action.forceOnA, action.a.position);
+    addForce(spring.anchorB, -action.forceOnA, action.b.position);
   }
+  for (const JointMotor& motor : mechanism.motors) {
+    if (motor.hasTarget) continue;  // the joint's own
+    const MotorAction action = actionOf(motor, state_);
+    addForce(motor.joint.anchorA, action.force, action.point), addTorque(motor.joint.anchorA, action.torque);
+    addForce(motor.joint.anchorB, -action.force, action.point), addTorque(motor.joint.anchorB, -action.torque);
+  }
+}
+
+/// Gives driven bodies the velocities that take them to their places at the end of the step: others feel those.
+void OdeWorld::leadDriven() {
+  for (const DrivenBody& driven : assembly_.mechanism.driven) {
+    const MeanVelocity velocity = meanVelocity(driven.motion, time(), endTime());
+    const dBodyID body = bodies_[static_cast<std::size_t>(driven.body)];
+    dBodySetLinearVel(body, velocity.linear.x(), velocity.linear.y(), velocity.linear.z());
+    dBodySetAngularVel(body, velocity.angular.x(), velocity.angular.y(), velocity.angular.z());
+  }
+}
+
+void OdeWorld::placeDriven() {
+  place(assembly_.mechanism.driven, endTime(), state_);
+  for (const DrivenBody& driven : assembly_.mechanism.driven)
+    setMotion(bodies_[static_cast<std::size_t>(driven.body)], driven.body);
 }
 
 void OdeWorld::addContacts(dGeomID a, dGeomID b) {
   const int bodyA = *static_cast<const int*>(dGeomGetData(a)), bodyB = *static_cast<const int*>(dGeomGetData(b));
-  if (!dGeomGetBody(a) && !dGeomGetBody(b)) return;
+  const auto isDynamic = [&](int body) {
+    return scene_.bodies[static_cast<std::size_t>(body)].motion == Motion::dynamic;
+  };
+  if (!isDynamic(bodyA) && !isDynamic(bodyB)) return;
   if (joined_.count(std::minmax(bodyA, bodyB)) > 0) return;
   const auto materialOf = [&](int body) {
     return static_cast<std::size_t>(scene_.bodies[static_cast<std::size_t>(body)].material);
@@ -240,11 +294,13 @@ void OdeWorld::addContacts(dGeomID a, dGeomID b) {
 
 void OdeWorld::step() {
   addForces();
+  leadDriven();
   dSpaceCollide(space_, this,
                 [](void* self, dGeomID a, dGeomID b) { static_cast<OdeWorld*>(self)->addContacts(a, b); });
   const int isDone = isQuick_ ? dWorldQuickStep(world_, timeStep()) : dWorldStep(world_, timeStep());
   if (!isDone) throw Error(ErrorKind::limit, "", "ODE had no memory for a step");
   dJointGroupEmpty(contacts_);
+  placeDriven();
 }
 
 void OdeWorld::read(VectorX& state) {

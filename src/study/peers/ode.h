@@ -8,7 +8,9 @@ namespace cradle {
 /// complementarity problem solves once a step, exactly (dWorldStep) or by iterations (dWorldQuickStep).
 ///   restitution and friction  as the scene's pairs of materials have them; friction is a pyramid, and the dynamic one
 ///   rods                      its double ball joints
-///   springs                   forces that are set before each step, from where the bodies are then
+///   springs, constant motors  forces that are set before each step, from where the bodies are then
+///   other motors              its joints' own
+///   driven bodies             kinematic, placed after each step, with the velocities that take them there
 std::vector<Peer> odePeers();
 
 }  // namespace cradle

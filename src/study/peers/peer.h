@@ -40,6 +40,10 @@ class SteppedWorld : public PeerWorld {
  protected:
   double timeStep() const { return timeStep_; }
 
+  /// Time (s) at the start of the step under way, and at its end.
+  double time() const { return static_cast<double>(steps_) * timeStep_; }
+  double endTime() const { return static_cast<double>(steps_ + 1) * timeStep_; }
+
  private:
   virtual void step() = 0;
 

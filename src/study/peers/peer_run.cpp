@@ -27,6 +27,10 @@ Frame frameOf(const Assembly& assembly, const VectorX& state, long number, doubl
   return frame;
 }
 
+bool hasDrives(const Assembly& assembly) {
+  return !assembly.mechanism.driven.empty() || !assembly.mechanism.motors.empty();
+}
+
 }  // namespace
 
 SteppedWorld::SteppedWorld(double timeStep, long evaluationsPerStep)
@@ -44,6 +48,8 @@ RunCost runPeer(const Peer& peer, double setting, const Scene& scene, const Asse
   const ChosenMethod method{MotionKind::fixedSteps, "semi-implicit Euler", timeStep, semiImplicitEuler};
   EnergyGuard guard(assembly, assembly.state, method, scene.duration);
   VectorX state = assembly.state;
+  const bool isDriven = hasDrives(assembly);  // no engine tells the work of drives: all that changes is taken for it
+  const double startEnergy = mechanicalEnergy(assembly.mechanism, state);
   CpuStopwatch integration;
   for (long number = 0; number <= lastFrame(scene); ++number) {
     const double time = frameTime(scene, number);
@@ -51,6 +57,7 @@ RunCost runPeer(const Peer& peer, double setting, const Scene& scene, const Asse
     world->advance(time);
     world->read(state);
     integration.stop();
+    if (isDriven) pushWork(state) = mechanicalEnergy(assembly.mechanism, state) - startEnergy;
     guard.check(state, time, timeStep);
     take(frameOf(assembly, state, number, time));
     throwIfInterrupted();
@@ -58,7 +65,8 @@ RunCost runPeer(const Peer& peer, double setting, const Scene& scene, const Asse
   return {integration.seconds(), world->evaluations()};
 }
 
-bool mayDissipate(const Assembly& assembly) {
+bool mayChangeEnergy(const Assembly& assembly) {
+  if (hasDrives(assembly)) return true;
   for (const SpringForce& spring : assembly.mechanism.springs)
     if (spring.damping > 0) return true;
   std::set<std::size_t> surfaces;

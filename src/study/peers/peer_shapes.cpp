@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "scene/count_bodies.h"
 #include "simulate/colliders.h"
 #include "simulate/welded_bodies.h"
 
@@ -34,12 +33,10 @@ std::optional<PeerShape> peerShapeOf(const Body& body, const Scene& scene) {
 
 std::string missingInEveryPeer(const Scene& scene) {
   if (!scene.pushes.empty()) return "pushes";
-  if (countBodies(scene, Motion::driven) > 0) return "driven bodies";
   const auto anyOf = [&](auto has) {
     return std::ranges::any_of(scene.hinges, has) || std::ranges::any_of(scene.sliders, has);
   };
   if (anyOf([](const auto& joint) { return joint.limits.has_value(); })) return "limits of joints";
-  if (anyOf([](const auto& joint) { return joint.motor.has_value(); })) return "motors of joints";
   return "";
 }
 

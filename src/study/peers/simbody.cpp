@@ -45,6 +45,38 @@ Quat bodyFromJointOf(const TreeLink& link) {
   return Quat::Identity();
 }
 
+/// A free body that moves as is prescribed: its coordinates are a quaternion and a position.
+class SimbodyDrive : public SimTK::Motion::Custom::Implementation {
+ public:
+  explicit SimbodyDrive(const PrescribedMotion& motion) : motion_(motion) {}
+
+  SimTK::Motion::Level getLevel(const SimTK::State&) const override { return SimTK::Motion::Position; }
+  void calcPrescribedPosition(const SimTK::State& state, int, double* q) const override {
+    const PoseMotion now = motionAt(motion_, state.getTime());
+    put(now.pose.rotation, now.pose.translation, q);
+  }
+  void calcPrescribedPositionDot(const SimTK::State& state, int, double* rates) const override {
+    const PoseMotion now = motionAt(motion_, state.getTime());
+    put(orientationRate(now.pose.rotation, now.angularVelocity), now.velocity, rates);
+  }
+  void calcPrescribedPositionDotDot(const SimTK::State& state, int, double* rates) const override {
+    const PoseMotion now = motionAt(motion_, state.getTime());
+    const Quat rate = orientationRate(now.pose.rotation, now.angularVelocity);
+    const Quat rateOfRate = Quat(orientationRate(now.pose.rotation, now.angularAcceleration).coeffs() +
+                                 orientationRate(rate, now.angularVelocity).coeffs());
+    put(rateOfRate, now.acceleration, rates);
+  }
+
+ private:
+  static void put(const Quat& turn, const Vec3& place, double* values) {
+    values[0] = turn.w();
+    Vec3::Map(values + 1) = turn.vec();
+    Vec3::Map(values + 4) = place;
+  }
+
+  PrescribedMotion motion_;
+};
+
 class SimbodyWorld : public PeerWorld {
  public:
   SimbodyWorld(const Assembly& assembly, SimbodyIntegrator kind, double accuracy);
@@ -71,6 +103,8 @@ SimbodyWorld::SimbodyWorld(const Assembly& assembly, SimbodyIntegrator kind, dou
     : bodies_(assembly.mechanism.bodies.size()) {
   const JointTree tree = jointTreeOf(assembly);
   for (const TreeLink& link : tree.links) addLink(link, assembly);
+  for (const DrivenBody& driven : assembly.mechanism.driven)
+    SimTK::Motion::Custom(bodyOf(driven.body), new SimbodyDrive(driven.motion));  // the system deletes it
   addForces(assembly);
   addConstraints(assembly, tree);
   system_.realizeTopology();
@@ -86,9 +120,9 @@ SimTK::MobilizedBody& SimbodyWorld::bodyOf(int body) {
 
 void SimbodyWorld::addLink(const TreeLink& link, const Assembly& assembly) {
   const RigidBody& body = assembly.mechanism.bodies[static_cast<std::size_t>(link.body)];
-  const Mat3& inertia = body.inertiaTensor;
+  const Mat3 inertia = body.isDriven() ? Mat3(Mat3::Identity()) : body.inertiaTensor;  // no matter which, but some
   const SimTK::Body::Rigid rigid(SimTK::MassProperties(
-      body.mass, SimTK::Vec3(0),
+      body.isDriven() ? 1 : body.mass, SimTK::Vec3(0),
       SimTK::Inertia(inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2))));
   const Quat parentFromBody = startOf(link, assembly).parentFromBody;
   const Quat bodyFromJoint = bodyFromJointOf(link);
@@ -113,6 +147,7 @@ void SimbodyWorld::addLink(const TreeLink& link, const Assembly& assembly) {
       added = SimTK::MobilizedBody::Weld(parent, inParent, rigid, inBody);
       break;
   }
+  if (link.motorForce != 0) SimTK::Force::MobilityConstantForce(forces_, added, 0, link.motorForce);
 }
 
 void SimbodyWorld::addForces(const Assembly& assembly) {
@@ -206,6 +241,7 @@ void SimbodyWorld::read(VectorX& state) {
 std::string missingInSimbody(const Scene& scene, const Assembly& assembly) {
   if (!scene.ropes.empty()) return "ropes";
   if (const std::string missing = missingInEveryPeer(scene); !missing.empty()) return missing;
+  if (const std::string missing = missingMotors(jointTreeOf(assembly), assembly); !missing.empty()) return missing;
   const ContactGeometry& geometry = assembly.geometry;
   const auto moves = [](const Collider& collider) { return collider.body != kFixed; };
   const bool anyMoves = std::any_of(geometry.colliders.begin(), geometry.colliders.end(), moves);
