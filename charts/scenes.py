@@ -68,4 +68,21 @@ half a step: order one for all engines. To Cradle the sliding contact is part of
 constant force exactly."""),
     "slope_stick": Scene("S8", "Block that sticks", """
 The same slope with friction 0.6: it must not move. Regularised friction creeps."""),
+    "crank": Scene("D1", "Crank and piston", """
+A driven crank moves a piston by a rod. Where the crank goes the rest is geometry: an error is what the joints have parted by.
+Cradle’s joints hold to rounding at any accuracy asked, so that all its points lie at the bottom. Bullet and ODE pull joints
+together once a step; MuJoCo closes the loop by a soft constraint, which gives way to the piston’s inertia by millimetres,
+unless its time constant goes down with the step; Simbody projects the loop as Cradle does, to the accuracy asked."""),
+    "car": Scene("D2", "Car on a slope", """
+Four balls on hinges, with a torque of 1 N m each, roll a car up a slope without slip: its acceleration is constant, and a
+closed form. Friction holds the balls by what the motors give at that instant; engines find it once a step, and are of order
+one by half a step of acceleration. MuJoCo’s friction is soft: its balls creep. To Cradle rolling contacts are part of the
+equations of motion. The error is that of the balls’ orientation, after 46 radians."""),
+    "shaken_table": Scene("D3", "Block on a shaken table", """
+A table swings to and fro; the block on it sticks while friction can give it the table’s acceleration, slips, and sticks
+again: nine times in three seconds. As engines know one coefficient of friction, both are equal here: sliding begins at no
+speed, where its friction has no sure direction. Cradle finds that instant, resolves contact in steps of a millisecond or less
+until the direction is sure, and says so: it costs the same whatever accuracy is asked. Engines are off by some of a step
+at each change. No run knows the end better than the dashed line: Cradle counts as sliding what takes 1e-6 g more than
+friction gives, which begins 3e-7 s late."""),
 }

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "peers/peer_frames.h"
 #include "simulate/simulate.h"
@@ -275,6 +276,22 @@ TEST_P(Touching, ABeltTakesABlockAlong) {
   const std::vector<BodyState> end = framesOf(scene, GetParam(), 1.0 / 1024, 1).back().states;
   EXPECT_NEAR(end[1].position.x(), 1 - 1 / (2 * 0.3 * 9.81), std::string(GetParam()) == "mujoco" ? 0.01 : 2e-3);
   EXPECT_EQ(end[0].position, Vec3(1, 0, 0));
+}
+
+TEST(Peers, MotorsRollACarUpASlope) {
+  // Of 14 kg, on balls with 4 x 0.4 m r^2: (sum T / r - m g sin 10) / (m + sum I / r^2). Steps are ahead by a t h / 2;
+  // wheels that slip by what their motors give in a step, h T r / I = 2.5 cm/s, are seen.
+  const double timeStep = 1e-3, time = 1;
+  const double acceleration = (4 * 1 / 0.1 - 14 * 9.81 * std::sin(std::numbers::pi / 18)) / (14 + 4 * 0.4);
+  for (const char* name : {"bullet", "ode", "odeQuick100", "mujocoTuned"}) {
+    SCOPED_TRACE(name);
+    Scene scene = fileOf("benchmarks/scenes/car.json");
+    scene.duration = time;
+    const std::vector<BodyState> end = framesOf(scene, name, timeStep, 1 / time).back().states;
+    EXPECT_NEAR(end[0].position.x(), acceleration * time * time / 2, acceleration * time * timeStep);
+    for (std::size_t wheel = 1; wheel < 5; ++wheel)
+      EXPECT_NEAR(-0.1 * end[wheel].angularVelocity.z(), acceleration * time, 1e-4);
+  }
 }
 
 TEST_P(Led, BeadsOnAnArmThatTurnsGoOutByTheHyperbolicCosine) {

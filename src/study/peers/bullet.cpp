@@ -264,14 +264,16 @@ void BulletWorld::addForces() {
   }
 }
 
+/// Motors of constant force give impulses, not torques: friction does not see torques that act in a step.
 void BulletWorld::addMotors() {
   if (assembly_.mechanism.motors.empty()) return;
   read(state_);
   const auto act = [&](const Attachment& on, const MotorAction& action, double sign) {
     if (on.body == kFixed) return;
     btRigidBody& body = bodyOf(on);
-    body.applyForce(toBullet(sign * action.force), toBullet(action.point) - body.getWorldTransform().getOrigin());
-    body.applyTorque(toBullet(sign * action.torque));
+    const btVector3 arm = toBullet(action.point) - body.getWorldTransform().getOrigin();
+    body.applyImpulse(toBullet(sign * timeStep() * action.force), arm);
+    body.applyTorqueImpulse(toBullet(sign * timeStep() * action.torque));
   };
   for (const JointMotor& motor : assembly_.mechanism.motors) {
     if (motor.hasTarget) continue;  // the joint's own
