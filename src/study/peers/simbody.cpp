@@ -120,7 +120,8 @@ SimTK::MobilizedBody& SimbodyWorld::bodyOf(int body) {
 
 void SimbodyWorld::addLink(const TreeLink& link, const Assembly& assembly) {
   const RigidBody& body = assembly.mechanism.bodies[static_cast<std::size_t>(link.body)];
-  const Mat3 inertia = body.isDriven() ? Mat3(Mat3::Identity()) : body.inertiaTensor;  // no matter which, but some
+  const Mat3 inertia =
+      body.isDriven() ? Mat3(Mat3::Identity()) : body.inertiaTensor;  // any: what is prescribed needs no force
   const SimTK::Body::Rigid rigid(SimTK::MassProperties(
       body.isDriven() ? 1 : body.mass, SimTK::Vec3(0),
       SimTK::Inertia(inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2))));
