@@ -168,5 +168,22 @@ TEST(BlockOnSlope, SlidesAccuratelyOrSaysThatItIsTooSlow) {
       }
 }
 
+/// Methods of every order move a pushed box by contact steps, which go by the mean of velocities: v = a t and x = a t^2
+/// / 2 with a = F / m - mu g, whatever energy a method of order 1 loses or gains in free motion.
+TEST(BlockOnFloor, IsPushedByEveryMethod) {
+  for (const std::string method : {"explicitEuler", "semiImplicitEuler", "rk4"}) {
+    const Trajectory pushed = simulate(sceneWith(fmt::format(R"("duration": 1, "method": {{"name": "{}",
+        "timeStep": 0.001}}, "materials": {{"m": {{"staticFriction": 0.3, "dynamicFriction": 0.3}}}}, "bodies": [
+        {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}},
+        {{"name": "box", "shape": {{"box": {{"size": [0.2, 0.2, 0.2]}}}}, "mass": 1, "position": [0, 0.1, 0],
+          "material": "m"}}], "pushes": [{{"body": "box", "point": [0, 0, 0], "force": [5, 0, 0], "start": 0, "duration": 2}}])",
+                                                             method)));
+    const double acceleration = 5 - 0.3 * kGravity;
+    EXPECT_NEAR(endOf(pushed).position.x(), acceleration / 2, 1e-9) << method;
+    EXPECT_NEAR(endOf(pushed).linearVelocity.x(), acceleration, 1e-9) << method;
+    EXPECT_NEAR(pushed.frames.back().energy.friction, 0.3 * kGravity * acceleration / 2, 1e-9) << method;
+  }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -239,6 +239,17 @@ TEST(JointMotors, CarClimbsInSteps) {
   expectLedger(moved, 1e-6, 1e-3);
 }
 
+/// The car of constant torques by contact steps, which move it by the mean of velocities whatever the order of the
+/// method: x = a t^2 / 2 to rounding and what is taken for energy that contact would give, 1e-8 J a step.
+TEST(JointMotors, WheelsDriveACarByEveryMethod) {
+  for (const std::string method : {"explicitEuler", "semiImplicitEuler", "rk4"}) {
+    const Trajectory moved = runCar(1, 1e-6, 0.1, 1, R"({"torque": 0.3})",
+                                    fmt::format(R"("method": {{"name": "{}", "timeStep": 0.001}}, )", method));
+    const double acceleration = (4 * 0.3 / kCarWheel - kCarMass * kGravity * std::sin(0.1)) / kCarInertia;
+    EXPECT_NEAR(moved.frames.back().states[0].position.x(), acceleration / 2, 1e-6) << method;
+  }
+}
+
 /// Motors that are too weak push with all they have, and the car rolls back.
 TEST(JointMotors, WeakMotorsLetACarRollBackInSteps) {
   const double slope = 0.3, timeStep = 1e-3;

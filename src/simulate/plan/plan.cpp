@@ -65,15 +65,15 @@ ChosenMethod namedMethod(const Scene& scene) {
   const double timeStep = scene.method->timeStep.value_or(kContactTimeStep);
   switch (scene.method->name) {
     case MethodName::explicitEuler:
-      return {MotionKind::fixedSteps, "explicit Euler", timeStep, explicitEuler};
+      return {MotionKind::fixedSteps, "explicit Euler", timeStep, explicitEuler, 0, nullptr, 1};
     case MethodName::semiImplicitEuler:
-      return {MotionKind::fixedSteps, "semi-implicit Euler", timeStep, semiImplicitEuler};
+      return {MotionKind::fixedSteps, "semi-implicit Euler", timeStep, semiImplicitEuler, 0, nullptr, 1};
     case MethodName::rk4:
-      return {MotionKind::fixedSteps, "RK4", timeStep, rk4};
+      return {MotionKind::fixedSteps, "RK4", timeStep, rk4, 0, nullptr, 4};
     case MethodName::dop853:
       break;
   }
-  if (scene.method->timeStep) return {MotionKind::fixedSteps, "DOP853", timeStep, dop853};
+  if (scene.method->timeStep) return {MotionKind::fixedSteps, "DOP853", timeStep, dop853, 0, nullptr, 8};
   return errorSteps(scene);
 }
 
@@ -206,7 +206,7 @@ void requireFewPoints(const Scene& scene, const std::vector<IslandPlan>& islands
 }  // namespace
 
 ChosenMethod contactSteps(double timeStep) {
-  return {MotionKind::fixedSteps, "RK4", timeStep, rk4, kSteppedTolerance};
+  return {MotionKind::fixedSteps, "RK4", timeStep, rk4, kSteppedTolerance, nullptr, 4};
 }
 
 Plan planOf(const Scene& scene) {

@@ -33,7 +33,7 @@ struct ChosenMethod {
   Integrator integrate = nullptr;  // of fixed steps and error steps
   double tolerance = 0;            // of the local error, scaled 1 + |x|; 0: fixed steps are never cut for it
   ErrorNorm errorNorm = nullptr;   // of error steps
-  int order = 0;                   // of that
+  int order = 0;                   // of the method
   bool keepsPromise = false;       // events serve all that may come, unless friction jams
 
   bool isClosedForm() const { return kind == MotionKind::freeFlight || kind == MotionKind::elasticFlight; }

@@ -20,6 +20,9 @@ class ContactStepping {
   explicit ContactStepping(const Assembly& assembly)
       : assembly_(assembly), tolerances_(stepTolerancesOf(stepScalesOf(assembly))), problem_(assembly) {}
 
+  /// To be called if free motion goes by a method of order 1.
+  void setFirstOrder() { isFirstOrder_ = true; }
+
   const StepTolerances& tolerances() const { return tolerances_; }
 
   /// `contacts` are those of the step's start, with gaps that may close within it; `before` is the state there; `state`
@@ -96,6 +99,7 @@ class ContactStepping {
   const Assembly& assembly_;
   StepTolerances tolerances_;
   GroupProblem problem_;
+  bool isFirstOrder_ = false;
   std::vector<SteppedContact> contacts_;  // of the last step
   std::vector<Vec3> slips_;               // m/s, world: their velocities with De Saxce's correction
   double previousStep_ = 0;               // s: length of the last step

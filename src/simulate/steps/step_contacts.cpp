@@ -35,14 +35,15 @@ ImpactFaults resolveImpact(std::vector<ImpactContact>& impacts, const ImpulseRes
 
 }  // namespace
 
-StepContacts::StepContacts(IslandState& island, double timeStep)
+StepContacts::StepContacts(IslandState& island, const ChosenMethod& method)
     : assembly_(island.assembly),
       log_(island.log),
       resting_(island.resting),
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
-      timeStep_(timeStep),
+      timeStep_(method.timeStep),
       stepping_(assembly_) {
-  resting_.setStillTime(tolerances().minAwakeTime(timeStep));
+  resting_.setStillTime(tolerances().minAwakeTime(timeStep_));
+  if (method.order == 1) stepping_.setFirstOrder();
 }
 
 void StepContacts::resolveImpacts(double time, const VectorX& before, LimitEvents& ropes, VectorX& state) {

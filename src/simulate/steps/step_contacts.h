@@ -15,8 +15,8 @@ namespace cradle {
 /// end, and bodies in equilibrium are put to rest.
 class StepContacts {
  public:
-  /// Keeps a reference to `island`. `timeStep` (s) is the method's.
-  StepContacts(IslandState& island, double timeStep);
+  /// Keeps a reference to `island`. The method has a fixed step.
+  StepContacts(IslandState& island, const ChosenMethod& method);
 
   /// Finds the contacts that may close within a step of free motion of `length` (s) from `before` to `state`, and wakes
   /// the bodies of those that do.

@@ -37,7 +37,7 @@ SteppedMotion::SteppedMotion(IslandState& island, LimitEvents& ropes, const Chos
     : island_(island),
       ropes_(ropes),
       method_(method),
-      contacts_(island, method.timeStep),
+      contacts_(island, method),
       guard_(island.assembly, island.state, method, island.scene.duration),
       solver_(island.assembly.mechanism.constraints, island.assembly.mechanism.bodies),
       windowStart_(island.time) {

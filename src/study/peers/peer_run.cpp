@@ -45,7 +45,7 @@ RunCost runPeer(const Peer& peer, double setting, const Scene& scene, const Asse
                 const std::function<void(const Frame&)>& take) {
   const std::unique_ptr<PeerWorld> world = peer.open(scene, assembly, setting);
   const double timeStep = peer.setting == SettingKind::timeStep ? setting : kFineStep;
-  const ChosenMethod method{MotionKind::fixedSteps, "semi-implicit Euler", timeStep, semiImplicitEuler};
+  const ChosenMethod method{MotionKind::fixedSteps, "semi-implicit Euler", timeStep, semiImplicitEuler, 0, nullptr, 1};
   EnergyGuard guard(assembly, assembly.state, method, scene.duration);
   VectorX state = assembly.state;
   const bool isDriven = hasDrives(assembly);  // no engine tells the work of drives: all that changes is taken for it

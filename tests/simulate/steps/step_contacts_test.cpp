@@ -21,7 +21,7 @@ struct Stepped : OneIsland {
             "staticFriction": {}, "dynamicFriction": {}}}}}, "bodies": [{{"name": "floor",
             "shape": {{"plane": {{}}}}, "motion": "static", "material": "stuff"}}, {}])",
                               gravity, restitution, friction, 0.6 * friction, bodies)),
-        contacts(island, kStep),
+        contacts(island, contactSteps(kStep)),
         ropes(island) {
     island.findNearPairsNow(0.1);
   }
