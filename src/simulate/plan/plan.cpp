@@ -147,6 +147,23 @@ bool hasDenseOnes(const Scene& scene, const IslandPlan& island) {
   });
 }
 
+bool hasMotors(const Scene& scene, const IslandPlan& island) {
+  return std::any_of(island.links.begin(), island.links.end(), [&](const LinkIndex& link) {
+    if (link.kind == LinkKind::hinge) return scene.hinges[link.index].motor.has_value();
+    return link.kind == LinkKind::slider && scene.sliders[link.index].motor.has_value();
+  });
+}
+
+/// What motors and driven bodies ask of the method, and leave of closed forms.
+std::string reasonOfDrives(const Scene& scene, const IslandPlan& island) {
+  std::string reason;
+  if (island.method.isAdaptive() && hasMotors(scene, island))
+    reason += "; they end where a motor comes to its velocity, or to the end of its force";
+  if (!island.driven.empty())
+    reason += "; driven bodies are where they are told, exactly, and leave no closed form to what they move";
+  return reason;
+}
+
 void choose(const Scene& scene, IslandPlan& island) {
   findNonRotating(scene, island);
   if (!island.nonRotating.empty()) island.notNeeded.push_back("no rotation of balls held at their centres: no torque");
@@ -180,6 +197,7 @@ void choose(const Scene& scene, IslandPlan& island) {
     island.method = errorSteps(scene);
     island.reason = "smooth forces: steps as long as the accuracy allows";
   }
+  island.reason += reasonOfDrives(scene, island);
 }
 
 /// Throws Error(limit) if bodies of models that may touch have more points than fit into memory: each has its own.

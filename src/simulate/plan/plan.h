@@ -59,7 +59,7 @@ struct IslandPlan {
   std::vector<LinkIndex> links;  // attached to the bodies, in the order of the kinds, then of the scene
   std::vector<std::size_t> pushes;  // of the bodies, indices into the scene's
   ChosenMethod method;
-  std::string_view reason;
+  std::string reason;
   std::vector<std::string_view> notNeeded;  // parts of a simulation that these bodies do not need
   Promise promise;                          // of the accuracy
 };

@@ -117,6 +117,28 @@ TEST(PlanText, CountsWhatIsDriven) {
   EXPECT_THAT(describe(planOf(scene), scene), testing::StartsWith("3 bodies in 1 island, 1 fixed, 1 driven\na\n"));
 }
 
+// A ball that a driven one may strike has no closed form; a wheel with a motor has steps that end at the motor's
+// changes.
+TEST(PlanText, TellsWhatDrivesLeave) {
+  const auto textOf = [](const std::string& members) {
+    const Scene scene = sceneWith(R"("duration": 1, "gravity": [0, 0, 0], "materials": {"m": {"staticFriction": 0,
+        "dynamicFriction": 0, "restitution": 1}}, )" +
+                                  members);
+    return describe(planOf(scene), scene);
+  };
+  const std::string ball = R"({"name": "a", "shape": {"sphere": {"radius": 0.1}}, "material": "m"})";
+  const std::string drivenText =
+      textOf(R"("bodies": [)" + ball + R"(, {"name": "bat", "shape": {"sphere": {"radius": 0.1}},
+      "motion": "driven", "position": [1, 0, 0], "linearVelocity": [-1, 0, 0], "material": "m"}])");
+  EXPECT_THAT(drivenText, testing::HasSubstr("exactly, and leave no closed form to what they move"));
+  const std::string hinge = R"("hinges": [{"bodyA": "a", "anchorB": [0, 0, 0]%}])";
+  for (const std::string motor : {"", R"(, "motor": {"torque": 1})"}) {
+    std::string joint = hinge;
+    joint.replace(joint.find('%'), 1, motor);
+    EXPECT_EQ(textOf(R"("bodies": [)" + ball + "], " + joint).find("motor") != std::string::npos, !motor.empty());
+  }
+}
+
 // A ground with a valley is a mesh; flat, it is a box. What touches nothing has no collision.
 TEST(PlanText, TellsOnceAsWhatModelsTouch) {
   const auto modelsText = [](bool isFlat, const std::vector<std::string>& collisions) {
