@@ -87,11 +87,12 @@ struct SolverMotions {
   std::vector<BodyMotion> displacements;  // m, scaled rad: since the step began
   std::vector<BodyMotion> starts;         // velocities before the step
   std::vector<BodyMotion> fallen;         // velocities before contacts push in a sub-step
-  std::vector<char> falls;                // 0: gravity does not move this body
+  enum class Pull : char { none, gravity, asleep };
+  std::vector<Pull> pulls;  // what moves a body beside contacts; those asleep are not moved by them either
 
   void resize(std::size_t bodies) {
     for (auto* motions : {&velocities, &displacements, &starts, &fallen}) motions->resize(bodies + 1);
-    falls.assign(bodies, 1);
+    pulls.assign(bodies, Pull::gravity);
   }
 };
 

@@ -131,14 +131,14 @@ void SoftContactSolver::solve(const Steps& steps, const Vec3& gravity, SolverMot
   const Vec3 gain = steps.subStep * gravity;
   const Lanes gainXy{gain.x(), gain.y()}, gainZ{gain.z(), 0};
   threads.run([&](int thread) {
-    const auto [first, last] = threads.partOf(motions.falls.size(), thread);
+    const auto [first, last] = threads.partOf(motions.pulls.size(), thread);
     for (int i = 0; i < steps.count; ++i) {
       for (std::size_t body = first; body < last; ++body) {
-        if (!motions.falls[body]) continue;
+        const SolverMotions::Pull pull = motions.pulls[body];
+        if (pull == SolverMotions::Pull::asleep) continue;
         BodyMotion &velocity = motions.velocities[body], &fallen = motions.fallen[body];
         const BodyMotion pushed = i > 0 ? velocity - fallen : BodyMotion{};
-        velocity.xy += gainXy;
-        velocity.zu += gainZ;
+        if (pull == SolverMotions::Pull::gravity) velocity.xy += gainXy, velocity.zu += gainZ;
         fallen = velocity;
         velocity = velocity + pushed;
       }

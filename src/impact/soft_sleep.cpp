@@ -54,6 +54,12 @@ void SoftSleep::wake(int body, std::vector<int>& woken) {
   woken.push_back(body);
 }
 
+void SoftSleep::wakeRestless(int body) {
+  std::vector<int> woken;  // told to nobody
+  wake(body, woken);
+  stillTimes_[static_cast<std::size_t>(body)] = 0;
+}
+
 /// The body struck and those nearest to it, along contacts, until they have that mass (kg) together.
 void SoftSleep::wakeAround(int struck, double leastMass, std::vector<int>& woken) {
   std::size_t next = woken.size();

@@ -22,6 +22,9 @@ class SoftSleep {
   void wakeTouched(const SoftContacts& contacts, const std::vector<MovingPose>& poses, double slow,
                    std::vector<int>& woken);
 
+  /// Wakes a sleeper that begins to move by itself: it wakes what it touches.
+  void wakeRestless(int body);
+
   /// A step of `timeStep` (s) has passed, at whose end the bodies have these speeds (m/s; infinite if it touches
   /// nothing). Appends those that fall asleep.
   void letSleep(const SoftContacts& contacts, const std::vector<double>& speeds, double slow, double timeStep,

@@ -59,7 +59,7 @@ SoftStep::SoftStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
   }
   poses_.resize(count);
   bounds_.assign(count, Bounds(Vec3(Vec3::Zero()), Vec3(Vec3::Zero())));
-  isSphere_.assign(count, 0);
+  isSphere_.assign(count, 0), isLed_.assign(count, 0), isLedStill_.assign(count, 0);
   for (const Collider& collider : geometry_.colliders)
     if (collider.body != kFixed) {
       MovingPose& pose = poses_[static_cast<std::size_t>(collider.body)];
@@ -67,6 +67,7 @@ SoftStep::SoftStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
       bounds_[static_cast<std::size_t>(collider.body)] = collider.bounds;
       pose.spinRadius = collider.isSphere() && collider.points[0].isZero() ? 0 : pose.radius;
       isSphere_[static_cast<std::size_t>(collider.body)] = collider.isSphere();
+      isLed_[static_cast<std::size_t>(collider.body)] = collider.isDriven;
     }
   hasManySpheres_ = static_cast<double>(std::count(isSphere_.begin(), isSphere_.end(), 1)) >
                     SoftParameters::kManySpheres * static_cast<double>(count);
@@ -75,6 +76,7 @@ SoftStep::SoftStep(const std::vector<RigidBody>& bodies, ContactGeometry& geomet
   worldFromPrincipal_.assign(count, Mat3::Identity());
   solverBodies_.resize(count);
   motions_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) motions_.pulls[i] = pullOf(i);
   reaches_.assign(count, 0);
   displacements_.assign(count, Vec3::Zero());
   speeds_.assign(count, 0);
@@ -84,6 +86,7 @@ void SoftStep::advance(double timeStep, VectorX& state) {
   using Soft = SoftParameters;
   impacts_.clear(), fallenAsleep_.clear(), woken_.clear();
   taken_ = {};
+  wakeLed(state);
   if (allAsleep()) return;
   slowestRebound_ = timeStep * gravity_.norm(), slow_ = Soft::kStillRatio * slowestRebound_;
 
@@ -170,7 +173,7 @@ void SoftStep::moveBody(std::size_t index, double timeStep, double subStep, Vect
   };
   centerOfMass(state, body) += linearOf(displacement);
   // Falling by sub-steps goes too far by g h/2 a unit of time: what touches nothing falls exactly.
-  if (!coloring_.isTouched(index)) centerOfMass(state, body) -= timeStep * subStep / 2 * gravity_;
+  if (!coloring_.isTouched(index) && !isLed_[index]) centerOfMass(state, body) -= timeStep * subStep / 2 * gravity_;
   linearVelocity(state, body) = linearOf(velocity);
   const Vec3 rotation = unscaled(angularOf(displacement));
   const Quat turn = turned(orientation(state, body), rotation);
@@ -203,6 +206,18 @@ void SoftStep::recordImpacts(double timeStep) {
   }
 }
 
+/// A body that is led sleeps while it stands still, and nothing that it touches does while it moves.
+void SoftStep::wakeLed(const VectorX& state) {
+  for (std::size_t i = 0; i < isLed_.size(); ++i) {
+    if (!isLed_[i]) continue;
+    const Eigen::Index body = static_cast<Eigen::Index>(i);
+    isLedStill_[i] = linearVelocity(state, body).isZero(0) && angularVelocity(state, body).isZero(0);
+    if (isLedStill_[i] || !poses_[i].isAsleep) continue;
+    sleep_.wakeRestless(static_cast<int>(i));
+    poses_[i].isAsleep = false, motions_.pulls[i] = pullOf(i);
+  }
+}
+
 /// Wakes what is disturbed, and finds what it touches.
 void SoftStep::wakeTouched(const SoftStepStart& look) {
   const std::size_t before = woken_.size();
@@ -210,7 +225,7 @@ void SoftStep::wakeTouched(const SoftStepStart& look) {
   if (woken_.size() == before) return;
   for (std::size_t i = before; i < woken_.size(); ++i) {
     const std::size_t body = static_cast<std::size_t>(woken_[i]);
-    poses_[body].isAsleep = false, motions_.falls[body] = 1;
+    poses_[body].isAsleep = false, motions_.pulls[body] = pullOf(body);
     placeBody(body, look.state);
   }
   contacts_.update(look, threads_);
@@ -226,6 +241,10 @@ void SoftStep::letSleep(double timeStep, VectorX& state) {
     if (poses_[i].isAsleep) continue;
     const Eigen::Index body = static_cast<Eigen::Index>(i);
     const double spin = isSphere_[i] ? 0 : poses_[i].radius * angularVelocity(state, body).norm();
+    if (isLed_[i]) {
+      speeds_[i] = isLedStill_[i] ? 0 : std::numeric_limits<double>::infinity();
+      continue;
+    }
     speeds_[i] = coloring_.isTouched(i) ? std::max(linearVelocity(state, body).norm(), spin)
                                         : std::numeric_limits<double>::infinity();
     isDisturbed_ = isDisturbed_ || (coloring_.isTouched(i) && speeds_[i] >= slow_ && !isSphere_[i] && !hasManySpheres_);
@@ -238,7 +257,8 @@ void SoftStep::letSleep(double timeStep, VectorX& state) {
     angularVelocity(state, fallenAsleep_[i]).setZero();
     poses_[sleeper].linearVelocity.setZero(), poses_[sleeper].angularVelocity.setZero();
     poses_[sleeper].spinSpeed = 0;
-    poses_[sleeper].isAsleep = true, motions_.falls[sleeper] = 0, motions_.starts[sleeper] = {};
+    poses_[sleeper].isAsleep = true, motions_.pulls[sleeper] = SolverMotions::Pull::asleep,
+    motions_.starts[sleeper] = {};
     solverBodies_[sleeper] = {0, Mat3(Mat3::Zero()), poses_[sleeper].rotation};
   }
 }

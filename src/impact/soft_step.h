@@ -18,8 +18,10 @@ class SoftStep {
   /// Keeps references to bodies and geometry, whose pairs it refreshes. All bodies are awake.
   SoftStep(const std::vector<RigidBody>& bodies, ContactGeometry& geometry, const Vec3& gravity, int threads);
 
-  /// Moves the state (layout of dynamics/state.h; orientations of unit length) on by `timeStep` (s), at most 1/60 for
-  /// heaps to stay still. Orientations stay of unit length; the ledger is left as it is.
+  /// Bodies of colliders that are driven are led: gravity does not pull them, and they go through a step with the
+  /// velocity that they have at its start, save for what contacts do to a body as heavy as they are said to be. Moves
+  /// the state (layout of dynamics/state.h; orientations of unit length) on by `timeStep` (s), at most 1/60 for heaps
+  /// to stay still. Orientations stay of unit length; the ledger is left as it is.
   void advance(double timeStep, VectorX& state);
 
   bool allAsleep() const { return sleep_.awake() == 0; }
@@ -49,6 +51,10 @@ class SoftStep {
   void takeSubstepGroup(double timeStep, int subSteps, int substepGroups, VectorX& state);
   void moveBody(std::size_t index, double timeStep, double subStep, VectorX& state);
   void recordImpacts(double timeStep);
+  void wakeLed(const VectorX& state);
+  SolverMotions::Pull pullOf(std::size_t body) const {
+    return isLed_[body] ? SolverMotions::Pull::none : SolverMotions::Pull::gravity;
+  }
   void wakeTouched(const SoftStepStart& look);
   void letSleep(double timeStep, VectorX& state);
 
@@ -64,7 +70,7 @@ class SoftStep {
   std::vector<Vec3> rootMoments_;    // sqrt(kg) m
   std::vector<MovingPose> poses_;
   std::vector<Bounds> bounds_;  // m, of the colliders, body's frame
-  std::vector<char> isSphere_;
+  std::vector<char> isSphere_, isLed_, isLedStill_;
   std::vector<Mat3> worldFromPrincipal_;
   std::vector<SolverBody> solverBodies_;
   SolverMotions motions_;

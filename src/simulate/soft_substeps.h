@@ -9,7 +9,7 @@
 
 namespace cradle {
 
-/// An island of many bodies that gravity and contact move, in motion: by soft sub-stepping.
+/// An island of many bodies that gravity, contact and driven bodies move, in motion: by soft sub-stepping.
 class SoftSubsteps {
  public:
   /// Steps end at the times asked for, and are no longer than `longestStep` (s). Without `threads`, large heaps take as
@@ -18,8 +18,8 @@ class SoftSubsteps {
   SoftSubsteps(const SoftSubsteps&) = delete;
   SoftSubsteps& operator=(const SoftSubsteps&) = delete;
 
-  /// The state at `time` (s), not earlier than in the call before. Throws Error(unstable) if the state is not
-  /// finite, or there is more energy than at the start.
+  /// The state at `time` (s), not earlier than in the call before. Throws Error(unstable) if the state is not finite,
+  /// there is more energy than at the start and by the work of driven bodies, or these leave others no room.
   const VectorX& stateAt(double time);
 
   const Assembly& assembly() const { return assembly_; }
@@ -32,6 +32,9 @@ class SoftSubsteps {
 
  private:
   void takeStep(double timeStep);
+  void lead(double timeStep);
+  void place();
+  void requireRoom() const;
   void book(double constant);
   void requireNoGain() const;
   void record();
@@ -39,9 +42,12 @@ class SoftSubsteps {
   Assembly assembly_;
   VectorX state_;
   double longestStep_;
+  std::vector<RigidBody> bodies_;  // those of the mechanism, driven ones as heavy bodies
   SoftStep step_;
-  double startEnergy_ = 0;  // J
-  double time_ = 0;         // s
+  std::vector<double> innerRadii_;  // m, of the bodies; infinite without a collider
+  VectorX led_;                     // state in which the step under way began
+  double startEnergy_ = 0;          // J
+  double time_ = 0;                 // s
   std::vector<Event> events_;
 };
 

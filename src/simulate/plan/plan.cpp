@@ -177,7 +177,8 @@ void choose(const Scene& scene, IslandPlan& island) {
     island.reason = "elastic balls in flight: parabolas, and collisions in the order of time";
     island.notNeeded.push_back("no steps, no rotation: nothing turns balls that touch without friction");
   } else if (mayTouchSomething && scene.accuracy > kVisualAccuracy && island.bodies.size() >= kMinSoftBodies &&
-             !isActedUpon(island) && !hasDenseOnes(scene, island) && !hasSheet(scene, island)) {
+             island.links.empty() && island.pushes.empty() && !hasDenseOnes(scene, island) &&
+             !hasSheet(scene, island)) {
     island.method = {MotionKind::pile, "fast contact step", kSoftTimeStep};
     island.reason = "many bodies may touch: soft contacts, sub-stepped";
     island.notNeeded.push_back("no motion of bodies that lie still");
