@@ -15,16 +15,16 @@
 namespace cradle {
 namespace {
 
-constexpr double kTautRatio = 1e-9;       // of its length: a rope this near to it is at its length
-constexpr double kSlackRatio = 1e-6;      // of its length: a rope this much shorter is slack again
+constexpr double kTautRatio = 1e-9;       // of its size: a limit this near is reached
+constexpr double kSlackRatio = 1e-6;      // of its size: a limit this far away is slack again
 constexpr double kLowestRebound = 1e-6;   // of sqrt(acceleration x length): a rebound that rises by 5e-13 of the length
 constexpr double kMinPull = 1e-6;         // of gravity: a pull that is no rounding
 constexpr int kTensionSamples = 4;        // a step: it is at most a small part of a swing
 constexpr double kMinFirstSample = 1e-9;  // of a step: a rebound that is over sooner is none
 constexpr double kMaxFirstSample = 1.0 / 1024;  // of a step
-constexpr double kCoarsestInterval = 1.0 / 8;   // of a step, of a rope without tension: its length is smooth
-constexpr double kRopeReach = 2;         // of the way that ends go freely in a step: what contacts may make of it
-constexpr double kNearRatio = 1e-3;      // of its length: ropes so near to it take part in a step's contacts
+constexpr double kCoarsestInterval = 1.0 / 8;   // of a step, of a limit without tension: its slack is smooth
+constexpr double kLimitReach = 2;        // of the way that ends go freely in a step: what contacts may make of it
+constexpr double kNearRatio = 1e-3;      // of its size: limits so near take part in a step's contacts
 constexpr double kPullRounding = 1e-12;  // of the speed before a pull
 constexpr int kMaxPullRounds = 100;      // of pulls at one instant; those left over pull after the next step
 
@@ -82,7 +82,7 @@ double accelerationBound(const JointLimit& stop, const Step& step) {
   return slackBounds(stop, step).acceleration;
 }
 
-/// First fraction of the step at which a rope is slack by more than `least` (m): 0, or, for a rope that has just been
+/// First fraction of the step at which a limit is slack by more than `least` (m): 0, or, for a limit that has just been
 /// released, the first of begin, 2 begin, 4 begin, ... where it is; 1 if none.
 template <class Slack>
 double firstSlack(const Slack& slack, double least, double begin) {
@@ -92,7 +92,7 @@ double firstSlack(const Slack& slack, double least, double begin) {
   return std::min(fraction, 1.0);
 }
 
-/// Fraction of the step until which a rope that shortens at its start shortens still, whatever accelerates its ends:
+/// Fraction of the step until which a limit that shortens at its start shortens still, whatever accelerates its ends:
 /// even a rebound far shorter than the step is not over by then. It is v / (v' bound), v the speed of shortening (m a
 /// step).
 double firstSample(const Limit& limit, const Step& step) {
@@ -102,14 +102,14 @@ double firstSample(const Limit& limit, const Step& step) {
   return std::clamp(speed / bound, kMinFirstSample, kMaxFirstSample / 2);
 }
 
-/// J: of what drives bodies, against ropes' impulses.
+/// J: of what drives bodies, against limits' impulses.
 double workOfDriven(const std::vector<RopePull>& pulls, const VectorX& led) {
   double work = 0;
   for (const RopePull& pull : pulls) work += pull.impulse * motionOf(*pull.rope, led).lengthening;
   return work;
 }
 
-/// J: of ropes' impulses.
+/// J: of limits' impulses.
 double energyTakenBy(const std::vector<RopePull>& pulls, const VectorX& before, const VectorX& after) {
   double taken = 0;
   for (const RopePull& pull : pulls) {
@@ -147,18 +147,18 @@ std::optional<LimitChange> LimitEvents::firstChange(const Step& step) {
   return first;
 }
 
-/// First root in (0, `end`] of the event function maxLength - L(theta) along the step's interpolant: the rope becomes
-/// taut there. A rope that starts at its full length without tension has the threshold -kTautRatio maxLength instead.
+/// First root in (0, `end`] of the event function maxLength - L(theta) along the step's interpolant: the limit becomes
+/// taut there. A limit that starts at its full length without tension has the threshold -kTautRatio maxLength instead.
 std::optional<LimitChange> LimitEvents::firstReach(const Step& step, std::size_t index, double end) const {
-  const Limit& rope = assembly_.limits[index];
-  const auto slack = [&, turning = turningOf(rope, step)](double fraction) {
-    return std::visit([&](const auto& kind) { return slackAt(kind, step, fraction, turning); }, rope);
+  const Limit& limit = assembly_.limits[index];
+  const auto slack = [&, turning = turningOf(limit, step)](double fraction) {
+    return std::visit([&](const auto& kind) { return slackAt(kind, step, fraction, turning); }, limit);
   };
-  const MotionBounds most = std::visit([&step](const auto& kind) { return slackBounds(kind, step); }, rope);
+  const MotionBounds most = std::visit([&step](const auto& kind) { return slackBounds(kind, step); }, limit);
   GapBounds bounds{most.speed, most.acceleration};
-  const double least = kTautRatio * sizeOf(rope), start = slack(0);
+  const double least = kTautRatio * sizeOf(limit), start = slack(0);
   if (start > bounds.speed) return std::nullopt;
-  const double begin = std::min(end, firstSlack(slack, least, firstSample(rope, step)));
+  const double begin = std::min(end, firstSlack(slack, least, firstSample(limit, step)));
   if (begin < end) {
     const auto fraction = firstRoot(slack, bounds, {begin, slack(begin), end, slack(end)});
     if (fraction) return LimitChange{*fraction, index};
@@ -171,13 +171,13 @@ std::optional<LimitChange> LimitEvents::firstReach(const Step& step, std::size_t
   return fraction ? std::optional(LimitChange{*fraction, index, threshold}) : std::nullopt;
 }
 
-/// First fraction of the step at which the tension of a taut rope falls below zero, between a few samples of it.
-std::optional<double> LimitEvents::firstTensionLoss(const Step& step, std::size_t rope) {
-  double before = tension(rope, step.time, step.startState);
+/// First fraction of the step at which the tension of a taut limit falls below zero, between a few samples of it.
+std::optional<double> LimitEvents::firstTensionLoss(const Step& step, std::size_t limit) {
+  double before = tension(limit, step.time, step.startState);
   for (int i = 1; i <= kTensionSamples; ++i) {
     const double fraction = static_cast<double>(i) / kTensionSamples;
     interpolate(step, fraction, sample_);
-    const double after = tension(rope, step.time + fraction * step.timeStep, sample_);
+    const double after = tension(limit, step.time + fraction * step.timeStep, sample_);
     if (before > 0 && after < 0) return fraction - after / (after - before) / kTensionSamples;
     before = after;
   }
@@ -187,19 +187,20 @@ std::optional<double> LimitEvents::firstTensionLoss(const Step& step, std::size_
 double LimitEvents::margin(const LimitChange& change, const VectorX& state) {
   if (isTaut(change.limit))
     return tension(change.limit, island_.step.time + island_.step.timeStep, state) / tensionScale_;
-  const Limit& rope = assembly_.limits[change.limit];
-  return (motionOf(rope, state).slackLength - change.threshold) / sizeOf(rope);
+  const Limit& limit = assembly_.limits[change.limit];
+  return (motionOf(limit, state).slackLength - change.threshold) / sizeOf(limit);
 }
 
-/// Force (N) with which a taut rope pulls its ends together. Its row's multiplier pushes by multiplier x distance.
-double LimitEvents::tension(std::size_t rope, double time, const VectorX& state) {
+/// Force (N) with which a taut limit pulls its ends together, or pushes back. Its row's multiplier pushes by multiplier
+/// x distance.
+double LimitEvents::tension(std::size_t limit, double time, const VectorX& state) {
   equations_.evaluate(time, state, derivative_);
-  return tensionOf(assembly_.limits[rope], equations_.multipliers()[tautRow_[rope]]);
+  return tensionOf(assembly_.limits[limit], equations_.multipliers()[tautRow_[limit]]);
 }
 
-/// Whether a body at its ends is at rest: nothing is computed for such a rope.
-bool LimitEvents::rests(std::size_t rope) const {
-  const auto [a, b] = bodiesOf(assembly_.limits[rope]);
+/// Whether a body at its ends is at rest: nothing is computed for such a limit.
+bool LimitEvents::rests(std::size_t limit) const {
+  const auto [a, b] = bodiesOf(assembly_.limits[limit]);
   return island_.resting.isResting(a) || island_.resting.isResting(b);
 }
 
@@ -211,7 +212,7 @@ void LimitEvents::followTurns(const VectorX& state) {
 
 bool LimitEvents::resolve(double time, VectorX& state) {
   followTurns(state);
-  // Ropes that would have to push are released, even where others go taut; impacts may have shortened some.
+  // Limits that would have to push are released, even where others go taut; impacts may have shortened some.
   std::vector<char> isReleased(tautRow_.size(), 0);
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
     if (!isTaut(i) || rests(i) || tension(i, time, state) > kTautRatio * tensionScale_) continue;
@@ -230,7 +231,7 @@ bool LimitEvents::pullStretched(double time, VectorX& state) {
   return pullStretched(time, std::vector<char>(tautRow_.size(), 0), state);
 }
 
-/// A pull may stretch another rope that is at its length, or load it.
+/// A pull may stretch another limit that is reached, or load it.
 bool LimitEvents::pullStretched(double time, const std::vector<char>& isReleased, VectorX& state) {
   for (int round = 0; round < kMaxPullRounds; ++round) {
     const std::vector<Stretch> stretches = findStretches(time, isReleased, state);
@@ -240,40 +241,40 @@ bool LimitEvents::pullStretched(double time, const std::vector<char>& isReleased
   return true;
 }
 
-/// Ropes at their length that still lengthen. A rebound that would end within about two steps is not resolved: the rope
-/// stays taut. Smooth forces do not pull at a rope in the instant that it is released: its tension is zero to rounding,
-/// of either sign, and would have it released again before time moves on.
+/// Limits that are reached and still lengthen. A rebound that would end within about two steps is not resolved: the
+/// limit stays taut. Smooth forces do not pull at a limit in the instant that it is released: its tension is zero to
+/// rounding, of either sign, and would have it released again before time moves on.
 std::vector<LimitEvents::Stretch> LimitEvents::findStretches(double time, const std::vector<char>& isReleased,
                                                              const VectorX& state) {
   std::vector<Stretch> stretches;
   bool isEvaluated = false;
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
-    const Limit& rope = assembly_.limits[i];
+    const Limit& limit = assembly_.limits[i];
     if (isTaut(i)) continue;
-    const LimitMotion motion = motionOf(rope, state);
-    if (motion.slackLength > kTautRatio * sizeOf(rope) || motion.lengthening < -kRestSpeedFloor) continue;
+    const LimitMotion motion = motionOf(limit, state);
+    if (motion.slackLength > kTautRatio * sizeOf(limit) || motion.lengthening < -kRestSpeedFloor) continue;
     if (!std::exchange(isEvaluated, true)) equations_.evaluate(time, state, derivative_);
-    const double acceleration = lengtheningAcceleration(rope, state, derivative_),
+    const double acceleration = lengtheningAcceleration(limit, state, derivative_),
                  pulling = std::max(0.0, acceleration);
     const bool isLoaded = !isReleased[i] && acceleration > kMinPull * assembly_.mechanism.gravity.norm();
     if (!isLoaded && motion.lengthening <= kRestSpeedFloor) continue;
     const double restSpeed =
-        2 * pulling * timeStep_ + kLowestRebound * std::sqrt(pulling * sizeOf(rope)) + kRestSpeedFloor;
-    const double rebound = restitutionOf(rope) * motion.lengthening;
+        2 * pulling * timeStep_ + kLowestRebound * std::sqrt(pulling * sizeOf(limit)) + kRestSpeedFloor;
+    const double rebound = restitutionOf(limit) * motion.lengthening;
     stretches.push_back({i, motion.lengthening, rebound > restSpeed ? rebound : 0, isLoaded});
   }
   return stretches;
 }
 
-/// All ropes that are stretched at this instant pull at once. One that does not rebound becomes a rod if smooth forces
-/// pull at it; else what drags at it (friction) is resolved step by step.
+/// All limits that are stretched at this instant pull at once. One that does not rebound becomes a constraint if smooth
+/// forces pull at it; else what drags at it (friction) is resolved step by step.
 void LimitEvents::pull(double time, const std::vector<Stretch>& stretches, VectorX& state) {
   std::vector<RopePull> pulls;
   for (const Stretch& stretch : stretches) {
-    const Limit& rope = assembly_.limits[stretch.rope];
-    const auto [a, b] = bodiesOf(rope);
+    const Limit& limit = assembly_.limits[stretch.limit];
+    const auto [a, b] = bodiesOf(limit);
     island_.wake(a), island_.wake(b);
-    pulls.push_back({&rope, stretch.reboundSpeed});
+    pulls.push_back({&limit, stretch.reboundSpeed});
   }
   const VectorX before = state;
   if (solver_.hasConstraints()) solver_.factorize(state);
@@ -282,13 +283,13 @@ void LimitEvents::pull(double time, const std::vector<Stretch>& stretches, Vecto
   if (!assembly_.mechanism.driven.empty())
     pushWork(state) += workOfDriven(pulls, ledVelocities(assembly_.mechanism.bodies, solver_, before));
   for (std::size_t i = 0; i < stretches.size(); ++i) {
-    const auto& [rope, speed, reboundSpeed, isLoaded] = stretches[i];
+    const auto& [limit, speed, reboundSpeed, isLoaded] = stretches[i];
     const bool rebounds = reboundSpeed > 0;
-    const double lengthening = motionOf(assembly_.limits[rope], state).lengthening;
+    const double lengthening = motionOf(assembly_.limits[limit], state).lengthening;
     if (lengthening < -(reboundSpeed + kRestSpeedFloor + kPullRounding * speed)) continue;  // others pulled it short
-    if (!isStretched_[rope] || rebounds) record(time, EventKind::taut, rope, pulls[i].impulse, state);
-    isStretched_[rope] = !rebounds;
-    if (!rebounds && isLoaded) tautRow_[rope] = 0;
+    if (!isStretched_[limit] || rebounds) record(time, EventKind::taut, limit, pulls[i].impulse, state);
+    isStretched_[limit] = !rebounds;
+    if (!rebounds && isLoaded) tautRow_[limit] = 0;
   }
   rebuildConstraints();
   if (solver_.hasConstraints()) {
@@ -298,40 +299,41 @@ void LimitEvents::pull(double time, const std::vector<Stretch>& stretches, Vecto
   bookNumerical(energyConstant(assembly_.mechanism, before), assembly_.mechanism, state);
 }
 
-/// A rope closes as a contact where it lengthens. An impulse along the line of both ends has the same effect wherever
+/// A limit closes as a contact where it lengthens. An impulse along the line of both ends has the same effect wherever
 /// on that line it acts: at end A for both bodies.
-ImpactContact LimitEvents::contactOf(const Limit& rope, const VectorX& state) {
-  const LimitMotion motion = motionOf(rope, state);
+ImpactContact LimitEvents::contactOf(const Limit& limit, const VectorX& state) {
+  const LimitMotion motion = motionOf(limit, state);
   Contact contact;
-  std::tie(contact.bodyA, contact.bodyB) = bodiesOf(rope);
+  std::tie(contact.bodyA, contact.bodyB) = bodiesOf(limit);
   contact.point = motion.a.position, contact.normal = motion.direction;
   contact.separation = motion.slackLength;
-  return {contact, {restitutionOf(rope), 0, 0}, 0, Vec3::Zero()};
+  return {contact, {restitutionOf(limit), 0, 0}, 0, Vec3::Zero()};
 }
 
 std::vector<const Limit*> LimitEvents::withinReach(const VectorX& before, const VectorX& state, double length) const {
-  std::vector<const Limit*> ropes;
+  std::vector<const Limit*> limits;
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
-    const Limit& rope = assembly_.limits[i];
+    const Limit& limit = assembly_.limits[i];
     if (isTaut(i) || rests(i)) continue;
-    const LimitMotion from = motionOf(rope, before), to = motionOf(rope, state);
+    const LimitMotion from = motionOf(limit, before), to = motionOf(limit, state);
     const auto speed = [](const LimitMotion& motion) { return motion.a.velocity.norm() + motion.b.velocity.norm(); };
-    if (from.slackLength > kRopeReach * length * std::max(speed(from), speed(to)) + kNearRatio * sizeOf(rope)) continue;
-    ropes.push_back(&rope);
+    if (from.slackLength > kLimitReach * length * std::max(speed(from), speed(to)) + kNearRatio * sizeOf(limit))
+      continue;
+    limits.push_back(&limit);
   }
-  return ropes;
+  return limits;
 }
 
 std::vector<ImpactContact> LimitEvents::beginImpact(const VectorX& state) {
   std::vector<ImpactContact> impacts;
   members_.clear();
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
-    const Limit& rope = assembly_.limits[i];
-    const LimitMotion motion = motionOf(rope, state);
-    if (!isTaut(i) && motion.slackLength > kTautRatio * sizeOf(rope)) continue;
+    const Limit& limit = assembly_.limits[i];
+    const LimitMotion motion = motionOf(limit, state);
+    if (!isTaut(i) && motion.slackLength > kTautRatio * sizeOf(limit)) continue;
     members_.push_back({i, isTaut(i)});
     tautRow_[i] = -1;
-    impacts.push_back(contactOf(rope, state));
+    impacts.push_back(contactOf(limit, state));
     impacts.back().contact.separation = 0;
   }
   rebuildConstraints();
@@ -340,16 +342,16 @@ std::vector<ImpactContact> LimitEvents::beginImpact(const VectorX& state) {
 
 void LimitEvents::endImpact(double time, const std::vector<ImpactContact>& impacts, const VectorX& state) {
   for (std::size_t k = 0; k < members_.size(); ++k) {
-    const auto [rope, wasTaut] = members_[k];
-    const LimitMotion motion = motionOf(assembly_.limits[rope], state);
+    const auto [limit, wasTaut] = members_[k];
+    const LimitMotion motion = motionOf(assembly_.limits[limit], state);
     const double speed = motion.a.velocity.norm() + motion.b.velocity.norm();
     const bool shortens = motion.lengthening < -(kRestSpeedFloor + kPullRounding * speed);
     const double impulse = impacts[k].impulse.norm();
-    if (wasTaut && shortens) loosen(time, rope, state);
-    if (wasTaut && !shortens) tautRow_[rope] = 0;
+    if (wasTaut && shortens) loosen(time, limit, state);
+    if (wasTaut && !shortens) tautRow_[limit] = 0;
     if (wasTaut || impulse == 0) continue;
-    record(time, EventKind::taut, rope, impulse, state);
-    isStretched_[rope] = !shortens;
+    record(time, EventKind::taut, limit, impulse, state);
+    isStretched_[limit] = !shortens;
   }
   rebuildConstraints();
 }
@@ -370,15 +372,15 @@ void LimitEvents::giveWay(const std::vector<Contact>& touching) {
   rebuildConstraints();
 }
 
-void LimitEvents::release(double time, std::size_t rope, const VectorX& state) {
-  tautRow_[rope] = -1;
+void LimitEvents::release(double time, std::size_t limit, const VectorX& state) {
+  tautRow_[limit] = -1;
   rebuildConstraints();
-  loosen(time, rope, state);
+  loosen(time, limit, state);
 }
 
-void LimitEvents::loosen(double time, std::size_t rope, const VectorX& state) {
-  if (isStretched_[rope]) record(time, EventKind::slack, rope, 0, state);
-  isStretched_[rope] = false;
+void LimitEvents::loosen(double time, std::size_t limit, const VectorX& state) {
+  if (isStretched_[limit]) record(time, EventKind::slack, limit, 0, state);
+  isStretched_[limit] = false;
 }
 
 void LimitEvents::rebuildConstraints() {
@@ -392,10 +394,10 @@ void LimitEvents::rebuildConstraints() {
 }
 
 /// Normals go from a to b: along a rope, and where A strikes a stop of B the way in which it does.
-void LimitEvents::record(double time, EventKind kind, std::size_t rope, double impulse, const VectorX& state) {
-  const LimitMotion motion = motionOf(assembly_.limits[rope], state);
-  const auto [a, b] = assembly_.limitBodies[rope];
-  if (std::holds_alternative<JointLimit>(assembly_.limits[rope])) {
+void LimitEvents::record(double time, EventKind kind, std::size_t limit, double impulse, const VectorX& state) {
+  const LimitMotion motion = motionOf(assembly_.limits[limit], state);
+  const auto [a, b] = assembly_.limitBodies[limit];
+  if (std::holds_alternative<JointLimit>(assembly_.limits[limit])) {
     kind = kind == EventKind::taut ? EventKind::impact : EventKind::release;
     island_.log.record({time, kind, a, b, motion.a.position, motion.direction, impulse});
   } else {

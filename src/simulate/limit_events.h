@@ -12,12 +12,12 @@ namespace cradle {
 struct LimitChange {
   double fraction = 0;  // of the step, 0..1
   std::size_t limit = 0;
-  double threshold = 0;  // m: slack length that is reached; < 0: of a limit without tension at which the link is
+  double threshold = 0;  // m: slack that is reached; < 0: of a limit without tension at which the link is
 };
 
 /// Ropes and the stops of joints over time: nothing while slack; an impulse when the limit is reached; then a bilateral
 /// constraint, of a rope a rod, until that would push the wrong way. The constraints of taut limits stand behind the
-/// scene's own. (Here all of them are told of as ropes.)
+/// scene's own.
 class LimitEvents {
  public:
   /// Keeps a reference to `island`.
@@ -26,7 +26,7 @@ class LimitEvents {
   /// The method's if that is fixed (s), else 0: rebounds that end within about two steps are not resolved.
   void setTimeStep(double timeStep) { timeStep_ = timeStep; }
 
-  /// The first slack rope of a step that reaches its length, or taut one whose tension ends. The step's end derivative
+  /// The first slack limit of a step that is reached, or taut one whose tension ends. The step's end derivative
   /// must be there (prepareInterpolant).
   std::optional<LimitChange> firstChange(const Step& step);
 
@@ -34,46 +34,46 @@ class LimitEvents {
   /// greater of those at both ends of the step. `state` is that of the step's end.
   double margin(const LimitChange& change, const VectorX& state);
 
-  /// What happens at the end of a step: impulses in ropes that are at their length, new rods, released ropes. True if
+  /// What happens at the end of a step: impulses in limits that are reached, new constraints, released limits. True if
   /// anything does.
   bool resolve(double time, VectorX& state);
 
-  /// Impulses and new rods alone, of ropes at their length that lengthen. True if there are any.
+  /// Impulses and new constraints alone, of limits that are reached and go on. True if there are any.
   bool pullStretched(double time, VectorX& state);
 
   /// Taut ropes from a driven body to one of those that touch are no rods any more, until they lengthen: what drives
   /// their ends would press bodies by them onto what they touch.
   void giveWay(const std::vector<Contact>& touching);
 
-  /// Ropes at their length as members of an impact: they lengthen as contacts close, along the line of their ends.
-  /// Those that are taut are no rods until endImpact.
+  /// Limits that are reached as members of an impact: they lengthen as contacts close, along the line of their ends.
+  /// Those that are taut are no constraints until endImpact.
   std::vector<ImpactContact> beginImpact(const VectorX& state);
 
-  /// Ropes that are no rods and may come to their length within a step of `length` (s) whose free motion led from
+  /// Limits that are no constraints and may be reached within a step of `length` (s) whose free motion led from
   /// `before` to `state`.
   std::vector<const Limit*> withinReach(const VectorX& before, const VectorX& state, double length) const;
 
-  /// A rope as a contact of the bodies at its ends that may close by what is slack.
-  static ImpactContact contactOf(const Limit& rope, const VectorX& state);
+  /// A limit as a contact of the bodies at its ends that may close by what is slack.
+  static ImpactContact contactOf(const Limit& limit, const VectorX& state);
 
   /// Takes the impulses that the same members got. What lengthens no more and shortens is slack now.
   void endImpact(double time, const std::vector<ImpactContact>& members, const VectorX& state);
 
   bool hasLimits() const { return !assembly_.limits.empty(); }
 
-  /// Which ropes are constraints now: to be asked later whether they are the same ones.
+  /// Which limits are constraints now: to be asked later whether they are the same ones.
   const std::vector<int>& tautRows() const { return tautRow_; }
 
  private:
-  bool isTaut(std::size_t rope) const { return tautRow_[rope] >= 0; }
-  bool rests(std::size_t rope) const;
-  double tension(std::size_t rope, double time, const VectorX& state);
-  std::optional<double> firstTensionLoss(const Step& step, std::size_t rope);
-  std::optional<LimitChange> firstReach(const Step& step, std::size_t rope, double end) const;
+  bool isTaut(std::size_t limit) const { return tautRow_[limit] >= 0; }
+  bool rests(std::size_t limit) const;
+  double tension(std::size_t limit, double time, const VectorX& state);
+  std::optional<double> firstTensionLoss(const Step& step, std::size_t limit);
+  std::optional<LimitChange> firstReach(const Step& step, std::size_t limit, double end) const;
   void followTurns(const VectorX& state);
-  /// A rope at its length that lengthens.
+  /// A limit that is reached and goes on.
   struct Stretch {
-    std::size_t rope;
+    std::size_t limit;
     double speed;         // m/s, of lengthening
     double reboundSpeed;  // m/s, 0: does not rebound
     bool isLoaded;        // forces would lengthen it further
@@ -81,20 +81,20 @@ class LimitEvents {
   bool pullStretched(double time, const std::vector<char>& isReleased, VectorX& state);
   std::vector<Stretch> findStretches(double time, const std::vector<char>& isReleased, const VectorX& state);
   void pull(double time, const std::vector<Stretch>& stretches, VectorX& state);
-  void release(double time, std::size_t rope, const VectorX& state);
-  void loosen(double time, std::size_t rope, const VectorX& state);
+  void release(double time, std::size_t limit, const VectorX& state);
+  void loosen(double time, std::size_t limit, const VectorX& state);
   void rebuildConstraints();
-  void record(double time, EventKind kind, std::size_t rope, double impulse, const VectorX& state);
+  void record(double time, EventKind kind, std::size_t limit, double impulse, const VectorX& state);
 
   IslandState& island_;
   Assembly& assembly_;
   EquationsOfMotion& equations_;
   ConstraintSolver solver_;
   double timeStep_ = 0;
-  std::size_t sceneConstraints_;  // those that are no ropes
-  std::vector<int> tautRow_;      // of each rope, among the constraints' rows; or -1: no smooth force pulls at it
+  std::size_t sceneConstraints_;  // those that are no limits
+  std::vector<int> tautRow_;      // of each limit, among the constraints' rows; or -1: no smooth force pulls at it
   struct Member {
-    std::size_t rope;
+    std::size_t limit;
     bool wasTaut;
   };
   std::vector<Member> members_;    // of the impact under way
