@@ -263,5 +263,44 @@ TEST(JointMotors, WeakMotorsLetACarRollBackInSteps) {
   expectLedger(moved, 1e-6, 1e-3);
 }
 
+/// A crank of 0.25 m from (0, 0), a coupler of 1 m and a rocker of 0.8 m from (0.85, 0), at right angles to the line of
+/// the pivots at the start. Their coordinates keep the coupler's length; the motor's work is the integral of its force
+/// over the crank's coordinate. Both ends of an interval in which the motor comes to its target have forces that
+/// differ: that interval is left out.
+TEST(JointMotors, CoordinatesAndForcesOfAFourBarLinkage) {
+  const auto bar = [](const char* name, double mass, const char* size, const char* place, double angle) {
+    return fmt::format(
+        R"({{"name": "{}", "mass": {}, "shape": {{"box": {{"size": {}}}}}, "position": {}, "collision": "none",
+        "orientation": {{"axis": [0, 0, 1], "angleDegrees": {:.17g}}}}})",
+        name, mass, size, place, angle);
+  };
+  const Trajectory run = simulate(
+      sceneWith(R"("duration": 2, "accuracy": 1e-9, "output": {"framesPerSecond": 500}, "bodies": [)" +
+                bar("crank", 1, "[0.25, 0.1, 0.1]", "[0.125, 0, 0]", 0) + ", " +
+                bar("coupler", 2, "[1, 0.1, 0.1]", "[0.55, 0.4, 0]", std::atan2(4, 3) * 180 / std::numbers::pi) + ", " +
+                bar("rocker", 3, "[0.1, 0.8, 0.1]", "[0.85, 0.4, 0]", 0) + R"(], "hinges": [
+        {"bodyA": "crank", "anchorA": [-0.125, 0, 0], "anchorB": [0, 0, 0], "motor": {"targetVelocity": 4, "maxTorque": 40}},
+        {"bodyA": "rocker", "anchorA": [0, -0.4, 0], "anchorB": [0.85, 0, 0]},
+        {"bodyA": "coupler", "anchorA": [-0.5, 0, 0], "bodyB": "crank", "anchorB": [0.125, 0, 0]}],
+        "ballJoints": [{"bodyA": "coupler", "anchorA": [0.5, 0, 0], "bodyB": "rocker", "anchorB": [0, 0.4, 0]}])"));
+  double work = 0, reached = -1;
+  for (std::size_t i = 0; i < run.frames.size(); ++i) {
+    const std::vector<JointState>& joints = run.frames[i].joints;
+    const double crank = joints[0].coordinate, rocker = joints[1].coordinate;
+    const Vec3 pin = 0.25 * Vec3(std::cos(crank), std::sin(crank), 0),
+               end = Vec3(0.85, 0, 0) + 0.8 * Vec3(-std::sin(rocker), std::cos(rocker), 0);
+    EXPECT_NEAR((end - pin).norm(), 1, 1e-8) << run.frames[i].time;
+    if (reached < 0 && std::abs(joints[0].velocity - 4) < 1e-6) reached = run.frames[i].time;
+    if (reached < 0 || i < 2 || run.frames[i - 2].time < reached || i % 2) continue;
+    const double first = run.frames[i - 2].joints[0].force, middle = run.frames[i - 1].joints[0].force;
+    work += 4 * (run.frames[i].time - run.frames[i - 2].time) / 6 * (first + 4 * middle + joints[0].force);  // Simpson
+    if (run.frames[i - 2].time < reached + 0.0041) work = run.frames[i].energy.work;
+    EXPECT_NEAR(run.frames[i].energy.work, work, 1e-5) << run.frames[i].time;
+  }
+  EXPECT_GT(reached, 0);
+  EXPECT_GT(run.frames.back().joints[0].coordinate, 2 * std::numbers::pi);
+  expectLedger(run, 1e-10, 1e-6);
+}
+
 }  // namespace
 }  // namespace cradle
