@@ -2,8 +2,10 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
+#include "constraints/row_response.h"
+#include "math/box_quadratic.h"
 #include "math/rotation.h"
 
 namespace cradle {
@@ -13,6 +15,10 @@ namespace {
 constexpr double kMotorRelaxation = 10;
 // Of the largest pivot: motors whose responses differ by less work on one motion.
 constexpr double kSameMotors = 1e-9;
+// Of the response of a joint's bodies alone: with less, stops or contacts leave the coordinate no motion, and its motor
+// has nothing to do.
+constexpr double kBlocked = 1e-9;
+constexpr double kContradicting = 1e-6;  // of the response: with more, motors push against each other
 
 /// World derivative of the angular velocity of a body without torque: body frame I w' = -w x I w. The derivative of w
 /// is the same vector in both frames, since w x w = 0.
@@ -92,7 +98,8 @@ void EquationsOfMotion::applyMotors(const VectorX& state, VectorX& derivative) {
   for (std::size_t i = 0; i < motors.size(); ++i) {
     rows.push_back(rowOf(motors[i], state, frames_));
     double& force = motorForces_[static_cast<Eigen::Index>(i)];
-    if (motors[i].mode == JointMotor::Mode::pushes) {
+    const bool isAsked = settled_ > 0 && motors[i].hasTarget && !isResting(motors[i].joint);
+    if (motors[i].mode == JointMotor::Mode::pushes && !isAsked) {
       force = motors[i].sign * motors[i].maxForce;
     } else if (!areKnown && !isResting(motors[i].joint)) {
       holding.push_back(i);
@@ -105,39 +112,100 @@ void EquationsOfMotion::applyMotors(const VectorX& state, VectorX& derivative) {
     pushWork(derivative) += motorForces_[static_cast<Eigen::Index>(i)] * rateOf(rows[i], state);
 }
 
-/// Adds the forces of motors that hold: those with which their coordinates' accelerations, after all constraints and
-/// contacts, are zero, or take back an error of the velocity. They solve a linear system, whose columns are what unit
-/// forces give.
-void EquationsOfMotion::hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows,
-                             const VectorX& state, VectorX& derivative) {
-  const std::vector<JointMotor>& motors = mechanism_.motors;
-  const auto at = [](std::size_t i) { return static_cast<Eigen::Index>(i); };
+EquationsOfMotion::MotorResponse EquationsOfMotion::responseOf(const std::vector<std::size_t>& holding,
+                                                               const std::vector<ConstraintRow>& rows,
+                                                               const VectorX& state, const VectorX& derivative) {
   const Eigen::Index count = std::ssize(holding);
   const auto accelerations = [&](VectorX rates) {
     constrain(rates);
     VectorX found(count);
-    for (std::size_t k = 0; k < holding.size(); ++k)
-      found[at(k)] = rateOf(rows[holding[k]], rates) + rows[holding[k]].velocityProduct;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const ConstraintRow& row = rows[holding[static_cast<std::size_t>(k)]];
+      found[k] = rateOf(row, rates) + row.velocityProduct;
+    }
     return found;
   };
-  const VectorX free = accelerations(derivative);
-  const double relaxation = motorTimeStep_ > 0 ? 1 / motorTimeStep_ : kMotorRelaxation;
-  MatrixX response(count, count);
-  VectorX wanted = -free;
-  for (std::size_t k = 0; k < holding.size(); ++k) {
+  MotorResponse response{accelerations(derivative), MatrixX(count, count)};
+  for (Eigen::Index k = 0; k < count; ++k) {
     VectorX pushed = derivative;
-    addForce(rows[holding[k]], 1, state, pushed);
-    response.col(at(k)) = accelerations(pushed) - free;
-    wanted[at(k)] -= relaxation * (rateOf(rows[holding[k]], state) - motors[holding[k]].targetVelocity);
+    addForce(rows[holding[static_cast<std::size_t>(k)]], 1, state, pushed);
+    response.perForce.col(k) = accelerations(pushed) - response.free;
   }
-  Eigen::CompleteOrthogonalDecomposition<MatrixX> decomposition;  // wheels on one road share their load
-  decomposition.setThreshold(kSameMotors);
-  const VectorX forces = decomposition.compute(response).solve(wanted);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const ConstraintRow& row = rows[holding[static_cast<std::size_t>(k)]];
+    const double alone = delassusEntry(row, row, responseTo(row, mechanism_.bodies, frames_));
+    if (std::abs(response.perForce(k, k)) > kBlocked * alone) continue;
+    response.perForce.row(k).setZero(), response.perForce.col(k).setZero();
+  }
+  return response;
+}
+
+VectorX EquationsOfMotion::missingVelocities(const std::vector<std::size_t>& holding,
+                                             const std::vector<ConstraintRow>& rows, const VectorX& state) const {
+  VectorX missing(holding.size());
+  for (std::size_t k = 0; k < holding.size(); ++k)
+    missing[static_cast<Eigen::Index>(k)] =
+        mechanism_.motors[holding[k]].targetVelocity - rateOf(rows[holding[k]], state);
+  return missing;
+}
+
+VectorX EquationsOfMotion::limitsOf(const std::vector<std::size_t>& holding) const {
+  VectorX limits(holding.size());
+  for (std::size_t k = 0; k < holding.size(); ++k)
+    limits[static_cast<Eigen::Index>(k)] = mechanism_.motors[holding[k]].maxForce;
+  return limits;
+}
+
+/// Dry friction in reverse: a motor that is off its target pushes towards it, and the others are a linear
+/// complementarity problem with bounds.
+VectorX EquationsOfMotion::possibleForces(const MotorResponse& response, const VectorX& missing,
+                                          const VectorX& limits) const {
+  VectorX forces = VectorX::Zero(limits.size());
+  std::vector<Eigen::Index> atTarget;
+  for (Eigen::Index k = 0; k < limits.size(); ++k)
+    if (std::abs(missing[k]) > settled_ * limits[k] * std::abs(response.perForce(k, k)))
+      forces[k] = std::copysign(limits[k], missing[k]);
+    else
+      atTarget.push_back(k);
+  if (atTarget.empty()) return forces;
+  const VectorX accelerations = response.free + response.perForce * forces;
+  const VectorX found = boxMinimum(response.perForce(atTarget, atTarget), -accelerations(atTarget), limits(atTarget));
+  for (std::size_t k = 0; k < atTarget.size(); ++k) forces[atTarget[k]] = found[static_cast<Eigen::Index>(k)];
+  return forces;
+}
+
+VectorX EquationsOfMotion::possibleMotorForces(double time, const VectorX& state, double settled) {
+  settled_ = settled;
+  VectorX derivative;
+  evaluate(time, state, derivative);
+  settled_ = 0;
+  return motorForces_;
+}
+
+/// Adds the forces of motors that hold: those with which their coordinates' accelerations, after all constraints and
+/// contacts, are zero, or take back an error of the velocity; in steps of a fixed length, and where it is asked what
+/// they can have, within all they have.
+void EquationsOfMotion::hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows,
+                             const VectorX& state, VectorX& derivative) {
+  const MotorResponse response = responseOf(holding, rows, state, derivative);
+  const VectorX missing = missingVelocities(holding, rows, state);
+  VectorX forces;
+  if (settled_ > 0) {
+    forces = possibleForces(response, missing, limitsOf(holding));
+  } else if (motorTimeStep_ > 0) {
+    // Targets that contradict each other: the weaker motors give all they have.
+    MatrixX perForce = response.perForce;
+    perForce.diagonal() *= 1 + kContradicting;
+    forces = boxMinimum(perForce, missing / motorTimeStep_ - response.free, limitsOf(holding));
+  } else {
+    Eigen::CompleteOrthogonalDecomposition<MatrixX> decomposition;  // wheels on one road share their load
+    decomposition.setThreshold(kSameMotors);
+    forces = decomposition.compute(response.perForce).solve(kMotorRelaxation * missing - response.free);
+  }
   for (std::size_t k = 0; k < holding.size(); ++k) {
-    const double limit = motorTimeStep_ > 0 ? motors[holding[k]].maxForce : std::numeric_limits<double>::infinity();
-    const double force = std::clamp(forces[at(k)], -limit, limit);
-    motorForces_[at(holding[k])] = force, motorMobilities_[at(holding[k])] = response(at(k), at(k));
-    addForce(rows[holding[k]], force, state, derivative);
+    const Eigen::Index at = static_cast<Eigen::Index>(k), motor = static_cast<Eigen::Index>(holding[k]);
+    motorForces_[motor] = forces[at], motorMobilities_[motor] = response.perForce(at, at);
+    addForce(rows[holding[k]], forces[at], state, derivative);
   }
 }
 

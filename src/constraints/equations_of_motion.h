@@ -56,6 +56,12 @@ class EquationsOfMotion {
   const VectorX& motorForces() const { return motorForces_; }
   const VectorX& motorMobilities() const { return motorMobilities_; }
 
+  /// The forces (N or N m) that motors with a target velocity can have at `time` (s), in their order, whatever their
+  /// mode: those whose joints are off the target push with all they have; the others, all together, give what keeps
+  /// their joints at it, or all they have where that does not suffice. Off is a velocity that all of the force takes
+  /// longer than `settled` (s) to mend. Motors of bodies at rest, and constant ones, have the forces that they have.
+  VectorX possibleMotorForces(double time, const VectorX& state, double settled);
+
   /// How fast (1/s) motors that hold take back what their joint's velocity is off. Steps of a fixed length do so within
   /// one, and with at most the force that motors have; others locate the instants from which that does not suffice.
   void setMotorSteps(double timeStep) { motorTimeStep_ = timeStep; }
@@ -80,6 +86,17 @@ class EquationsOfMotion {
   void applyConstraints(const VectorX& state, VectorX& derivative);
   void constrain(VectorX& derivative);
   void applyMotors(const VectorX& state, VectorX& derivative);
+  /// What motors do to their coordinates, with all constraints and contacts.
+  struct MotorResponse {
+    VectorX free;      // rad/s^2 or m/s^2: accelerations without their forces
+    MatrixX perForce;  // what 1 of each force adds
+  };
+  MotorResponse responseOf(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows,
+                           const VectorX& state, const VectorX& derivative);
+  VectorX missingVelocities(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows,
+                            const VectorX& state) const;
+  VectorX limitsOf(const std::vector<std::size_t>& holding) const;
+  VectorX possibleForces(const MotorResponse& response, const VectorX& missing, const VectorX& limits) const;
   void hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows, const VectorX& state,
             VectorX& derivative);
   void addForce(const ConstraintRow& row, double force, const VectorX& state, VectorX& derivative) const;
@@ -97,6 +114,7 @@ class EquationsOfMotion {
   VectorX motorForces_, motorMobilities_;
   bool isWithoutContacts_ = false;  // in the evaluation under way
   double motorTimeStep_ = 0;        // s; 0: motors hold without a limit
+  double settled_ = 0;              // s; 0: motors have their modes
   long evaluations_ = 0;
 };
 

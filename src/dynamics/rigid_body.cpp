@@ -1,5 +1,7 @@
 #include "dynamics/rigid_body.h"
 
+#include <cmath>
+
 #include <Eigen/LU>
 #include <algorithm>
 
@@ -12,6 +14,10 @@ RigidBody makeRigidBody(const MassProperties& properties) {
   const bool isSpherical = tensor == tensor(0, 0) * Mat3::Identity();
   const Mat3 inverse = isSpherical ? Mat3(1 / tensor(0, 0) * Mat3::Identity()) : Mat3(tensor.inverse());
   return {properties.mass, 1 / properties.mass, properties.centerOfMass, tensor, inverse, isSpherical, false};
+}
+
+double gyrationRadius(const RigidBody& body) {
+  return body.isDriven() ? 0 : std::sqrt(body.inertiaTensor.trace() / (2 * body.mass));
 }
 
 AttachmentMotion motionOf(const Attachment& attachment, const VectorX& state) {

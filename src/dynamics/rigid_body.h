@@ -25,6 +25,9 @@ struct RigidBody {
 
 RigidBody makeRigidBody(const MassProperties& properties);
 
+/// m: how far the mass of a body is from its centre, in the root of the mean square; 0 if no force moves it.
+double gyrationRadius(const RigidBody& body);
+
 /// A point fixed to a moving body, or to the world.
 struct Attachment {
   int body = kFixed;

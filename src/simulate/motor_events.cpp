@@ -6,10 +6,9 @@
 namespace cradle {
 namespace {
 
-constexpr int kSamples = 4;              // a step, as of the tensions of ropes
-constexpr double kSettled = 1e-6;        // s: a velocity that is recovered sooner is kept
-constexpr double kForceRounding = 1e-9;  // of all the force of a motor
-constexpr double kAtItsEnd = 1e-6;       // of all the force: one that pushes goes on if holding would take more
+constexpr int kSamples = 4;         // a step, as of the tensions of ropes
+constexpr double kSettled = 1e-8;   // s: a velocity that all of the force mends sooner is at its target
+constexpr double kAtItsEnd = 1e-6;  // of all the force: what is as near to it is at its end
 
 }  // namespace
 
@@ -67,32 +66,25 @@ std::optional<MotorChange> MotorEvents::firstChange(const Step& step) {
 
 bool MotorEvents::resolve(const std::optional<MotorChange>& change) {
   if (!any()) return false;
-  const std::vector<JointMotor> before = motors();
-  for (JointMotor& motor : motors())
-    if (motor.hasTarget) motor.mode = JointMotor::Mode::holds;
-  for (bool isOther = true; isOther;) {
-    isOther = false;
-    island_.equations.evaluate(island_.time, island_.state, derivative_);
-    const VectorX forces = island_.equations.motorForces(), mobilities = island_.equations.motorMobilities();
-    for (std::size_t i = 0; i < motors().size(); ++i) {
-      JointMotor& motor = motors()[i];
-      if (motor.mode == JointMotor::Mode::pushes || rests(i)) continue;
-      const Eigen::Index at = static_cast<Eigen::Index>(i);
-      const double missing = motor.targetVelocity - velocity(i, island_.state);
-      const bool isOff = std::abs(missing) > kSettled * motor.maxForce * mobilities[at];
-      const bool wasHolding = before[i].mode == JointMotor::Mode::holds;
-      const bool isAtItsEnd = change && change->motor == i && wasHolding;
-      const bool goesOn = !wasHolding && forces[at] * before[i].sign > (1 - kAtItsEnd) * motor.maxForce;
-      const bool canHold = std::abs(forces[at]) <= motor.maxForce * (1 + kForceRounding) && !goesOn;
-      if (!isOff && !isAtItsEnd && canHold) continue;
-      motor.mode = JointMotor::Mode::pushes;
-      motor.sign = (isOff ? missing : forces[at]) < 0 ? -1 : 1;
-      isOther = true;
-    }
-  }
+  const VectorX forces = island_.equations.possibleMotorForces(island_.time, island_.state, kSettled);
+  const VectorX& mobilities = island_.equations.motorMobilities();
   bool isOther = false;
-  for (std::size_t i = 0; i < motors().size(); ++i)
-    isOther = isOther || motors()[i].mode != before[i].mode || motors()[i].sign != before[i].sign;
+  for (std::size_t i = 0; i < motors().size(); ++i) {
+    JointMotor& motor = motors()[i];
+    if (!motor.hasTarget || rests(i)) continue;
+    const Eigen::Index at = static_cast<Eigen::Index>(i);
+    const double missing = std::abs(motor.targetVelocity - velocity(i, island_.state));
+    const bool isOff = missing > kSettled * motor.maxForce * std::abs(mobilities[at]);
+    // At the end of its force a motor holds no more, and one that has pushed goes on, to within rounding.
+    const bool isChange = change && change->motor == i && motor.mode == JointMotor::Mode::holds;
+    const bool goesOn = motor.mode == JointMotor::Mode::pushes && forces[at] * motor.sign > 0;
+    const double most = (isChange || goesOn ? 1 - kAtItsEnd : 1) * motor.maxForce;
+    const JointMotor before = motor;
+    const bool pushes = isOff || std::abs(forces[at]) >= most;
+    motor.mode = pushes ? JointMotor::Mode::pushes : JointMotor::Mode::holds;
+    if (pushes) motor.sign = forces[at] < 0 ? -1 : 1;
+    isOther = isOther || motor.mode != before.mode || (pushes && motor.sign != before.sign);
+  }
   return isOther;
 }
 

@@ -25,6 +25,7 @@ RestingBodies::RestingBodies(const Mechanism& mechanism, const ContactGeometry& 
       sizes_(mechanism.bodies.size(), 0.0),
       wakeTimes_(mechanism.bodies.size(), -INFINITY),
       restingIsland_(mechanism.bodies.size(), -1) {
+  for (std::size_t i = 0; i < sizes_.size(); ++i) sizes_[i] = gyrationRadius(mechanism.bodies[i]);
   for (const Collider& collider : geometry.colliders)
     if (collider.body != kFixed) sizes_[static_cast<std::size_t>(collider.body)] = collider.boundingRadius;
 }

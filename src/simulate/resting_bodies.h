@@ -45,7 +45,7 @@ class RestingBodies {
   EquationsOfMotion& equations_;
   StepTolerances tolerances_;
   ConstraintSolver solver_;
-  std::vector<double> sizes_;      // m: bounding radius of each moving body, 0 if it does not collide
+  std::vector<double> sizes_;      // m: bounding radius of each moving body; radius of gyration if it does not collide
   double stillTime_ = 0;           // s
   std::vector<double> wakeTimes_;  // s, of each body's last waking
   std::vector<int> restingIsland_;

@@ -10,6 +10,7 @@
 #include "constraints/invariants.h"
 #include "core/error.h"
 #include "core/interruption.h"
+#include "math/elementary.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -87,10 +88,10 @@ void SoftSubsteps::lead(double timeStep) {
   for (const DrivenBody& driven : assembly_.mechanism.driven) {
     const PoseMotion now = motionAt(driven.motion, time_), next = motionAt(driven.motion, time_ + timeStep);
     linearVelocity(state_, driven.body) = (next.pose.translation - now.pose.translation) / timeStep;
-    Quat turn = next.pose.rotation * now.pose.rotation.conjugate();
-    if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
-    const Eigen::AngleAxisd rotation(turn);
-    angularVelocity(state_, driven.body) = rotation.angle() / timeStep * rotation.axis();
+    const Quat turn = next.pose.rotation * now.pose.rotation.conjugate();
+    const Vec3 sine = (turn.w() < 0 ? -1 : 1) * turn.vec();
+    const double angle = 2 * atan2(sine.norm(), std::abs(turn.w()));
+    angularVelocity(state_, driven.body) = angle / timeStep * sine.stableNormalized();
   }
   led_ = state_;
 }

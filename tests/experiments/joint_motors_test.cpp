@@ -302,5 +302,113 @@ TEST(JointMotors, CoordinatesAndForcesOfAFourBarLinkage) {
   expectLedger(run, 1e-10, 1e-6);
 }
 
+const char* const kEveryMethod[] = {R"("accuracy": 1e-3)", R"("accuracy": 1e-6)", R"("accuracy": 1e-9)",
+                                    R"("method": {"name": "rk4", "timeStep": 0.001})"};
+
+Trajectory runMotors(double duration, const std::string& method, const std::string& bodies, const std::string& joints) {
+  return simulate(
+      sceneWith(fmt::format(R"("duration": {}, {}, "output": {{"framesPerSecond": 100}}, "bodies": [{}], {})", duration,
+                            method, bodies, joints)));
+}
+
+/// Two bodies of 1 kg in a row: the first pushes off the world with 1 N to come to 2 m/s, the second off the first with
+/// up to 3 N to come to -0.5 m/s. With both forces the second comes to it after 1/14 s, v = (4, -3) t and v2 - v1 = -7
+/// t; from then on both go as one, with 1/2 m/s^2 and a force of 1/2 N between them.
+TEST(JointMotors, MotorsInARow) {
+  for (const char* method : kEveryMethod) {
+    const Trajectory moved = runMotors(1, method, R"(
+        {"name": "a", "mass": 1, "shape": {"sphere": {"radius": 0.1}}, "collision": "none"},
+        {"name": "b", "mass": 1, "shape": {"sphere": {"radius": 0.1}}, "collision": "none"})",
+                                       R"("gravity": [0, 0, 0], "sliders": [
+        {"bodyA": "a", "anchorB": [0, 0, 0], "axis": [1, 0, 0], "motor": {"targetVelocity": 2, "maxForce": 1}},
+        {"bodyA": "b", "bodyB": "a", "anchorB": [0, 0, 0], "axis": [1, 0, 0], "motor": {"targetVelocity": -0.5, "maxForce": 3}}])");
+    const std::vector<JointState>& joints = moved.frames.back().joints;
+    EXPECT_NEAR(joints[0].velocity, 4.0 / 14 + 13.0 / 28, 1e-3) << method;
+    EXPECT_NEAR(joints[1].velocity, -0.5, 1e-3) << method;
+    EXPECT_NEAR(joints[0].force, 1, 1e-6) << method;
+    EXPECT_NEAR(joints[1].force, 0.5, 1e-3) << method;
+  }
+}
+
+/// Two motors against each other on one body: the weaker gives all it has, and the stronger has its way.
+TEST(JointMotors, StrongerMotorHasItsWay) {
+  for (const char* method : kEveryMethod) {
+    const Trajectory moved =
+        runMotors(1, method, R"({"name": "a", "mass": 1, "shape": {"sphere": {"radius": 0.1}}, "collision": "none"})",
+                  R"("gravity": [0, 0, 0], "sliders": [
+        {"bodyA": "a", "anchorB": [0, 0, 0], "axis": [1, 0, 0], "motor": {"targetVelocity": 0.5, "maxForce": 10}},
+        {"bodyA": "a", "anchorB": [0, 0, 0], "axis": [1, 0, 0], "motor": {"targetVelocity": -1, "maxForce": 5}}])");
+    EXPECT_NEAR(moved.frames.back().joints[0].velocity, 0.5, 1e-5) << method;
+    EXPECT_NEAR(moved.frames.back().joints[0].force, 5, 1e-4) << method;
+    EXPECT_NEAR(moved.frames.back().joints[1].force, -5, 1e-4) << method;
+  }
+}
+
+/// Three links of 1 kg and 0.4 m that fall from the level are led to velocities by motors with room to spare: 1 s later
+/// each coordinate is what its velocity makes of it, less than what full torque needs to bring it there.
+TEST(JointMotors, ArmComesToItsVelocities) {
+  for (const char* method : kEveryMethod) {
+    std::string links, hinges;
+    for (int i = 0; i < 3; ++i) {
+      links += fmt::format(R"({}{{"name": "l{}", "mass": 1, "shape": {{"box": {{"size": [0.4, 0.05, 0.05]}}}},
+          "position": [{}, 0, 0], "collision": "none"}})",
+                           i ? ", " : "", i, 0.2 + 0.4 * i);
+      hinges +=
+          fmt::format(R"({}{{"bodyA": "l{}", "anchorA": [-0.2, 0, 0], {}, "motor": {{"targetVelocity": {},
+          "maxTorque": 100}}}})",
+                      i ? ", " : "", i,
+                      i ? fmt::format(R"("bodyB": "l{}", "anchorB": [0.2, 0, 0])", i - 1) : R"("anchorB": [0, 0, 0])",
+                      i == 1 ? -1 : 1);
+    }
+    const Trajectory moved = runMotors(1, method, links, R"("hinges": [)" + hinges + "]");
+    for (int i = 0; i < 3; ++i) {
+      const JointState& joint = moved.frames.back().joints[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(joint.velocity, i == 1 ? -1 : 1, 1e-4) << method;
+      EXPECT_NEAR(joint.coordinate, i == 1 ? -1 : 1, 0.03) << method;
+    }
+  }
+}
+
+/// Brakes of 2 N m each and one motor of 1: the car stands where it is, whoever bears it.
+TEST(JointMotors, BrakesHoldACarAgainstItsMotor) {
+  std::string bodies = R"({"name": "ground", "material": "m", "shape": {"plane": {}}, "motion": "static"},
+      {"name": "board", "mass": 4, "shape": {"box": {"size": [0.8, 0.05, 0.3]}}, "position": [0, 0.1, 0]})",
+              hinges;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 place(i % 2 ? 0.3 : -0.3, kCarWheel, i < 2 ? 0.3 : -0.3);
+    bodies += fmt::format(
+        R"(, {{"name": "w{}", "material": "m", "mass": 1, "shape": {{"sphere": {{"radius": {}}}}}, "position": {}}})",
+        i, kCarWheel, vectorText(place));
+    hinges += fmt::format(
+        R"({}{{"bodyA": "board", "anchorA": {}, "bodyB": "w{}", "anchorB": [0, 0, 0], "motor": {{"targetVelocity": {},
+        "maxTorque": {}}}}})",
+        i ? ", " : "", vectorText(place - Vec3(0, 0.1, 0)), i, i ? 0 : 10, i ? 2 : 1);
+  }
+  for (const char* method : kEveryMethod) {
+    const Trajectory moved = runMotors(
+        0.5, method, bodies,
+        fmt::format(R"("materials": {{"m": {{"staticFriction": 0.8, "dynamicFriction": 0.8}}}}, "hinges": [{}])",
+                    hinges));
+    EXPECT_NEAR(moved.frames.back().states[0].position.x(), 0, 1e-4) << method;
+    for (const JointState& axle : moved.frames.back().joints) EXPECT_LE(std::abs(axle.force), 2);
+  }
+}
+
+/// A wheel that touches nothing on a box that rests on the floor: it spins, and its motor turns it.
+TEST(JointMotors, WheelOnABoxAtRestTurns) {
+  for (const std::string motor : {"", R"(, "motor": {"torque": 0.001})"}) {
+    const Trajectory moved = runMotors(1, R"("accuracy": 1e-6)", R"(
+        {"name": "floor", "shape": {"plane": {}}, "motion": "static"},
+        {"name": "box", "mass": 5, "shape": {"box": {"size": [0.4, 0.4, 0.4]}}, "position": [0, 0.2, 0]},
+        {"name": "wheel", "mass": 1, "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0.5, 0], "collision": "none",
+         "angularVelocity": [0, 5, 0]})",
+                                       R"("hinges": [{"bodyA": "wheel", "bodyB": "box", "anchorB": [0, 0.3, 0],
+        "axis": [0, 1, 0])" + motor + "}]");
+    const double gained = motor.empty() ? 0 : 0.001 / (0.4 * 0.01);
+    EXPECT_NEAR(moved.frames.back().joints[0].velocity, 5 + gained, 1e-6) << motor;
+    EXPECT_NEAR(moved.frames.back().joints[0].coordinate, 5 + gained / 2, 1e-6) << motor;
+  }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -13,11 +13,16 @@ bool ComingToRest::isAnySlow() const {
   return false;
 }
 
+double ComingToRest::sizeOf(std::size_t body) const {
+  const double radius = island_.assembly.radii[body];
+  return radius > 0 ? radius : gyrationRadius(island_.assembly.mechanism.bodies[body]);
+}
+
 bool ComingToRest::isSlow(std::size_t body) const {
   const Eigen::Index index = static_cast<Eigen::Index>(body);
   const Mechanism& mechanism = island_.assembly.mechanism;
   if (mechanism.bodies[body].isDriven()) return isDrivenStill(mechanism.driven, static_cast<int>(body), island_.time);
-  const double size = island_.assembly.radii[body];
+  const double size = sizeOf(body);
   return std::max(linearVelocity(island_.state, index).norm(), size * angularVelocity(island_.state, index).norm()) <=
          tolerances_.maxRestSpeed(size);
 }
@@ -127,8 +132,8 @@ bool ComingToRest::isInEquilibrium(const VectorX& derivative, const DisjointSets
   for (std::size_t body = 0; body < mechanism.bodies.size(); ++body) {
     if (groups.islandOf(static_cast<int>(body)) != group) continue;
     const Eigen::Index index = static_cast<Eigen::Index>(body);
-    const double left = std::max(linearVelocity(derivative, index).norm(),
-                                 island_.assembly.radii[body] * angularVelocity(derivative, index).norm());
+    const double left =
+        std::max(linearVelocity(derivative, index).norm(), sizeOf(body) * angularVelocity(derivative, index).norm());
     if (left > most) return false;
   }
   return true;

@@ -30,6 +30,7 @@ class ComingToRest {
   void wakeStruck(const Contact& contact);
 
  private:
+  double sizeOf(std::size_t body) const;  // m: its radius, or that of gyration if it does not collide
   bool isSlow(std::size_t body) const;
   DisjointSets findRestGroups(const std::vector<Contact>& touching) const;
   bool canBeInEquilibrium(const std::vector<Contact>& touching, const DisjointSets& groups, int group);

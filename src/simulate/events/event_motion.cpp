@@ -313,8 +313,8 @@ void EventMotion::changeForces(const Event& event) {
   else
     followActive();
   if (!lasted && !contacts_.active().empty()) lengths_.fill(island_.scene.duration);  // no more bounces
-  applyLimitEvents();
-  if (event.any() && !event.motor) resolveMotors({});
+  const bool haveLimitsChanged = applyLimitEvents();
+  if (event.any() && (!event.motor || haveLimitsChanged)) resolveMotors({});
   const bool isPushed = makeChanges();
   keepsConstraints_ = ropes_.tautRows() == tautRowsBefore_;
   if (event.any() || isPushed) isContinuous_ = false;
@@ -342,10 +342,11 @@ void EventMotion::followActive() {
   if (!method_.keepsPromise) contacts_.noteShortMomentArms();
 }
 
-/// Ropes and contacts in turn: either may load or release the other.
-void EventMotion::applyLimitEvents() {
-  for (int round = 0; round < kMaxRopeRounds && ropes_.resolve(island_.time, island_.state); ++round)
-    contacts_.resolve();
+/// Ropes and contacts in turn: either may load or release the other. True if any limit changes.
+bool EventMotion::applyLimitEvents() {
+  int round = 0;
+  for (; round < kMaxRopeRounds && ropes_.resolve(island_.time, island_.state); ++round) contacts_.resolve();
+  return round > 0;
 }
 
 bool EventMotion::isAtRest() const {

@@ -76,7 +76,7 @@ class EventMotion {
   bool makeChanges();
   void changeForces(const Event& event);
   void followActive();
-  void applyLimitEvents();
+  bool applyLimitEvents();
   bool mayEndAnywhere() const;
   bool isStillAccurate();
   double longestStep() const;
