@@ -64,9 +64,16 @@ void ContactSolver::analyze(const std::vector<char>& resting) {
   for (const ContactConstraint& contact : contacts_) contactJoints_.push_back(jointOf(contact));
   for (const Constraint& constraint : constraints_) constraintJoints_.push_back(jointOf(constraint));
   groups_.clear();
-  std::vector<char> isGrouped(bodies_.size(), 0);
-  for (ContactGroup& members : findContactGroups(contacts_, constraints_, resting)) {
+  std::vector<char> isGrouped(bodies_.size(), 0), isDriven;
+  std::vector<char> joinsNothing = resting;  // no force on them changes what they do to others
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    isDriven.push_back(bodies_[i].isDriven());
+    if (isDriven[i]) joinsNothing[i] = 1;
+  }
+  for (ContactGroup& members : findContactGroups(contacts_, constraints_, joinsNothing)) {
     std::vector<char> isOther(bodies_.size(), 1);
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+      if (isDriven[i]) isOther[i] = 0;
     for (const int body : members.bodies) isGrouped[index(body)] = 1, isOther[index(body)] = 0;
     Group& group = groups_.emplace_back(Group{std::move(members)});
     if (group.members.hasConstraints) group.constraints.emplace(constraints_, bodies_).exclude(isOther, resting);

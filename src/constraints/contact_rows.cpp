@@ -171,6 +171,7 @@ Vec3 tangentialVelocity(const ContactKinematics& place) {
 Vec3 slidingDirection(const ContactConstraint& contact, const ContactKinematics& place,
                       const std::vector<BodyFrame>& frames) {
   const Vec3 given = turned(contact.surfaceB.body, contact.slidingDirection, frames);
+  if (contact.keepsDirection) return (given - given.dot(place.normal) * place.normal).normalized();
   const Vec3 velocity = tangentialVelocity(place);
   if (velocity.dot(given) > 0 && velocity.squaredNorm() > kFastSliding * kFastSliding) return velocity.normalized();
   const Vec3 side = (given - given.dot(place.normal) * place.normal).normalized();

@@ -35,6 +35,7 @@ struct ContactConstraint {
   // direction itself as long as the sliding is too slow to have one (below 1e-6 m/s), and the side on which friction
   // stays when a trial step goes past the instant where the sliding ends: the right-hand side is smooth there.
   Vec3 slidingDirection = Vec3::Zero();
+  bool keepsDirection = false;  // friction is against slidingDirection, whatever the velocity
 };
 
 /// A contact as collision detection finds it, with the radii of the spheres that its surfaces are there: 0 a corner,
@@ -76,7 +77,8 @@ ContactKinematics kinematicsOf(const ContactConstraint& contact, const VectorX& 
 Vec3 tangentialVelocity(const ContactKinematics& place);
 
 /// Unit direction in which A slides: that of the tangential velocity v, mirrored to the side of the constraint's
-/// slidingDirection; below 1e-6 m/s it goes over into the latter. Friction on A is against it.
+/// slidingDirection; below 1e-6 m/s it goes over into the latter, which a contact that keeps its direction has at any
+/// speed. Friction on A is against it.
 Vec3 slidingDirection(const ContactConstraint& contact, const ContactKinematics& place,
                       const std::vector<BodyFrame>& frames);
 

@@ -12,12 +12,6 @@ SurfaceContact surfacesOf(const Contact& contact) {
           contact.radiusA, contact.radiusB, contact.edge,  contact.rimAxisA};
 }
 
-ContactRows rowsOf(const ContactConstraint& constraint, const VectorX& state, const std::vector<BodyFrame>& frames) {
-  const ContactKinematics place = kinematicsOf(constraint, state, frames);
-  const auto tangents = tangentRows(constraint, place);
-  return {constraint, place, {tangents[0], tangents[1], normalRow(constraint, place)}};
-}
-
 /// 1/(kg m^2): how easily a body turns, whatever its orientation.
 double easeOfTurning(int body, const std::vector<BodyFrame>& frames) {
   return body == kFixed ? 0 : frames[static_cast<std::size_t>(body)].inverseInertia.trace();
@@ -47,6 +41,12 @@ Vec3 driftToMiddle(const ContactConstraint& constraint, const ContactKinematics&
 }
 
 }  // namespace
+
+ContactRows rowsOf(const ContactConstraint& constraint, const VectorX& state, const std::vector<BodyFrame>& frames) {
+  const ContactKinematics place = kinematicsOf(constraint, state, frames);
+  const auto tangents = tangentRows(constraint, place);
+  return {constraint, place, {tangents[0], tangents[1], normalRow(constraint, place)}};
+}
 
 bool canLast(const Contact& contact) {
   const bool isEdge = contact.edge != Vec3::Zero(), isSharp = !(contact.radiusA > 0 || contact.radiusB > 0);

@@ -18,6 +18,9 @@ struct ContactRows {
 /// for one instant.
 ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames);
 
+/// The rows of a contact that lasts, where its bodies have come to `state`.
+ContactRows rowsOf(const ContactConstraint& constraint, const VectorX& state, const std::vector<BodyFrame>& frames);
+
 /// Whether a contact can last: its kinematics are those of a sphere or corner on a face, a corner or a sphere, of a
 /// sphere on a straight edge, or of a disc's rim on a face.
 bool canLast(const Contact& contact);

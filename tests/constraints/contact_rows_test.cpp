@@ -229,6 +229,9 @@ TEST(SlidingDirection, IsThatOfTheVelocityAboveAHundredMicrometresASecond) {
   EXPECT_EQ(direction(Vec3::Zero()), Vec3::UnitX());
   EXPECT_EQ(direction(Vec3(-2, 0, 0)), Vec3::UnitX());
   EXPECT_LT((direction(Vec3(-3, 0, 4)) - Vec3(0.6, 0, 0.8)).norm(), 1e-15);
+  // A contact that keeps its direction has it at any speed.
+  mechanism.contacts[0].keepsDirection = true;
+  EXPECT_EQ(direction(Vec3(3, 0, 4)), Vec3::UnitX());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "impact/contact_impulse.h"
 #include "simulate/events/contact_classification.h"
@@ -57,6 +58,7 @@ void ActiveContacts::add(const ContactRecord& record, const std::vector<BodyFram
     constraint.motion = ContactMotion::sliding;
     constraint.friction = record.pair.material.dynamicFriction;
     setSlidingDirection(constraint, record.direction, island_.state);
+    constraint.keepsDirection = record.keepsDirectionUntil > island_.time;
   }
   mechanism().contacts.push_back(constraint);
   records_.push_back(record);
@@ -126,21 +128,38 @@ const std::vector<ActiveFeature>& ActiveContacts::features() {
   return features_;
 }
 
-void ActiveContacts::followSliding() {
-  const ContactRecord* turning = nullptr;
+double ActiveContacts::nextFreeDirection() const {
+  double next = INFINITY;
+  for (std::size_t i = 0; i < records_.size(); ++i)
+    if (mechanism().contacts[i].keepsDirection) next = std::min(next, records_[i].keepsDirectionUntil);
+  return next;
+}
+
+std::optional<double> ActiveContacts::followSliding() {
+  const ContactRecord* fast = nullptr;
   bool isPlaced = false;
+  std::optional<double> turningTime;
   for (std::size_t i = 0; i < records_.size(); ++i) {
     ContactConstraint& contact = mechanism().contacts[i];
     if (contact.motion != ContactMotion::sliding) continue;
     if (!isPlaced) findBodyFrames(mechanism().bodies, island_.state, frames_);
     isPlaced = true;
+    if (contact.keepsDirection && island_.time < records_[i].keepsDirectionUntil) continue;
+    const bool isFreed = std::exchange(contact.keepsDirection, false);
     const Vec3 sliding = tangentialVelocity(kinematicsOf(contact, island_.state, frames_));
     const double speed = sliding.norm();
     if (speed > kSlowestSliding) setSlidingDirection(contact, sliding / speed, island_.state);
-    if (isDirectionTurnedFast(records_[i], speed, changes_.normalForceAtEnd(i, records_))) turning = &records_[i];
+    const double normal = changes_.normalForceAtEnd(i, records_);
+    if (isFreed) {
+      const double turning = speed * records_[i].mass / (contact.friction * normal);
+      turningTime = std::min(turning, turningTime.value_or(turning));
+    }
+    if (isDirectionTurnedFast(records_[i], speed, normal)) fast = &records_[i];
   }
-  turningSteps_ = turning ? turningSteps_ + 1 : 0;
-  if (turningSteps_ > kMaxTurningSteps) fallback_ = fallbackAt(kSlidesTooSlowly, {&turning->contact}, island_.assembly);
+  turningSteps_ = fast ? turningSteps_ + 1 : 0;
+  if (turningSteps_ > kMaxTurningSteps) fallback_ = fallbackAt(kSlidesTooSlowly, {&fast->contact}, island_.assembly);
+  if (turningTime) changes_.forget();
+  return turningTime;
 }
 
 }  // namespace cradle

@@ -49,8 +49,13 @@ class ActiveContacts {
   }
 
   /// Directions of sliding follow the motion from step to step. Notes as a reason to fall back to time stepping that
-  /// friction goes on turning them faster than steps follow at a bearable cost: a body that creeps under a load.
-  void followSliding();
+  /// friction goes on turning them faster than steps follow at a bearable cost: a body that creeps under a load. If
+  /// contacts that kept their directions are free now, friction has changed: returns the time (s) in which it turns
+  /// them.
+  std::optional<double> followSliding();
+
+  /// s: when the next contact that keeps its direction of sliding is free; infinite if there is none.
+  double nextFreeDirection() const;
 
   /// Why rows do not serve, if they don't: they are for few contacts, and only those between spheres, corners and
   /// faces.

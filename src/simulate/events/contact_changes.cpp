@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "collision/mesh_surface.h"
+#include "constraints/contact_groups.h"
 #include "simulate/events/contacts_on_meshes.h"
 #include "simulate/events/cylinder_rims.h"
 #include "simulate/events/sliding_friction.h"
@@ -21,6 +22,8 @@ using Kind = ContactChange::Kind;
 constexpr int kEventSamples = 4;     // of a step of order 8
 constexpr int kFewEventSamples = 2;  // of one of order 5, which is half as long
 constexpr int kMaxBorderCuts = 60;
+constexpr int kMaxSecants = 20;
+constexpr double kBehindKink = -0.9;  // a larger infeasibility is behind its kink, whatever rounding does
 
 // The event function of leaving is kLeavingUnit (1 - d / leaving), d the distance from the nearest point, and not below
 // -kLeavingUnit: where it is zero to kEventFunction, d is found to a thousandth. The bound keeps the Illinois method in
@@ -177,7 +180,7 @@ std::optional<ContactChange> ContactChanges::first(const std::vector<ContactReco
 std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<ContactRecord>& records, double from,
                                                           double to) {
   std::optional<ContactChange> first;
-  bool isDoubtful = false;
+  isInDoubt_.assign(records.size(), 0);
   for (std::size_t i = 0; i < records.size(); ++i)
     for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
       double end = to, marginEnd = ahead_[i][kind];
@@ -190,14 +193,14 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
       if (kKinds[kind] == Kind::leave && !(before_[i][kind] > 0)) continue;
       const bool isOfForces = kKinds[kind] == Kind::release || kKinds[kind] == Kind::slip;
       if (records[i].isRedundant && isOfForces) {
-        isDoubtful = true;
+        isInDoubt_[i] = 1;
         continue;
       }
       ContactChange change{kKinds[kind], 0, i};
       change.fraction = locate(change, records, from, before_[i][kind], end, marginEnd);
       if (!first || change.fraction < first->fraction) first = change;
     }
-  if (isDoubtful) {
+  if (std::any_of(isInDoubt_.begin(), isInDoubt_.end(), [](char isInDoubt) { return isInDoubt != 0; })) {
     const double end = first ? first->fraction : to;
     if (const auto failure = firstInfeasible(records, from, end)) first = ContactChange{Kind::redundant, *failure, 0};
   }
@@ -221,48 +224,88 @@ double ContactChanges::locate(const ContactChange& change, const std::vector<Con
   return to;
 }
 
-/// Whether some forces within the friction cones keep all contacts as they are at a fraction of the step: none opens or
-/// closes, none that sticks slides.
-bool ContactChanges::areForcesFeasible(const std::vector<ContactRecord>& records, double fraction) {
+/// Rows of active contacts at `state`, in which those that slide do so in the directions of `sliding`.
+ContactChanges::GroupRows ContactChanges::rowsOfGroup(const std::vector<int>& contacts,
+                                                      std::vector<ContactRecord>& sliding, const VectorX& state) const {
+  GroupRows group;
+  for (const int i : contacts) {
+    const std::size_t contact = static_cast<std::size_t>(i);
+    const ContactRows rows = rowsOf(mechanism().contacts[contact], state, frames_);
+    if (rows.constraint.motion == ContactMotion::sliding)
+      sliding[contact].direction = slidingDirection(rows.constraint, rows.place, frames_);
+    group.rows.push_back(rows);
+    group.records.push_back(&sliding[contact]);
+  }
+  return group;
+}
+
+/// Not above zero if some forces within the friction cones keep all contacts as they are at a fraction of the step:
+/// none opens or closes, none that sticks slides. It is the largest acceleration (1 is as much as may be left) that
+/// does, less 1, and so grows from -1 on, with a kink where forces begin to fail. Groups without a contact in doubt are
+/// kept.
+double ContactChanges::infeasibility(const std::vector<ContactRecord>& records, double fraction) {
   interpolate(island_.step, fraction, sample_);
   const VectorX& state = sample_;
   findBodyFrames(mechanism().bodies, state, frames_);
-  std::vector<ContactRows> rows;
-  std::vector<const ContactRecord*> members;
-  std::vector<ContactRecord> sliding = records;  // with the directions of sliding at `state`
-  for (std::size_t i = 0; i < sliding.size(); ++i) {
-    ContactRows contact{mechanism().contacts[i], kinematicsOf(mechanism().contacts[i], state, frames_), {}};
-    const auto tangents = tangentRows(contact.constraint, contact.place);
-    contact.rows = {tangents[0], tangents[1], normalRow(contact.constraint, contact.place)};
-    if (contact.constraint.motion == ContactMotion::sliding)
-      sliding[i].direction = slidingDirection(contact.constraint, contact.place, frames_);
-    rows.push_back(contact);
-    members.push_back(&sliding[i]);
-  }
   ConstraintSolver constraints(mechanism().constraints, mechanism().bodies);
   if (constraints.hasConstraints()) constraints.factorize(state, frames_);
   // With all contacts for the forces of motors, and then without.
   if (!mechanism().motors.empty()) island_.equations.evaluate(timeAt(fraction), state, derivative_);
   island_.equations.evaluateWithoutContacts(timeAt(fraction), state, derivative_);
-  const DenseDelassus delassus(allRowsOf(rows), mechanism().bodies, frames_, &constraints);
-  const SlidingSolution solution = solveContactForces(members, rows, delassus, derivative_);
-  const double most = EventTolerances::kInfeasibleRatio *
-                      std::max(delassus.accelerations(derivative_).cwiseAbs().maxCoeff(), mechanism().gravity.norm());
-  for (std::size_t i = 0; i < sliding.size(); ++i) {
-    const Vec3 acceleration = solution.velocities.segment<3>(3 * static_cast<Eigen::Index>(i));
-    if (std::abs(acceleration.z()) > most) return false;
-    if (sliding[i].sticks && acceleration.head<2>().norm() > most) return false;
+  std::vector<char> joinsNothing = island_.equations.resting();
+  for (const DrivenBody& driven : mechanism().driven) joinsNothing[static_cast<std::size_t>(driven.body)] = 1;
+  std::vector<ContactRecord> sliding = records;  // with the directions of sliding at `state`
+  double left = 0, largest = mechanism().gravity.norm();
+  for (const ContactGroup& group : findContactGroups(mechanism().contacts, mechanism().constraints, joinsNothing)) {
+    const GroupRows members = rowsOfGroup(group.contacts, sliding, state);
+    const DenseDelassus delassus(allRowsOf(members.rows), mechanism().bodies, frames_, &constraints);
+    largest = std::max(largest, delassus.accelerations(derivative_).cwiseAbs().maxCoeff());
+    const auto isInDoubt = [this](int contact) { return isInDoubt_[static_cast<std::size_t>(contact)] != 0; };
+    if (std::none_of(group.contacts.begin(), group.contacts.end(), isInDoubt)) continue;
+    const SlidingSolution solution = solveContactForces(members.records, members.rows, delassus, derivative_);
+    for (std::size_t k = 0; k < members.records.size(); ++k) {
+      const Vec3 acceleration = solution.velocities.segment<3>(3 * static_cast<Eigen::Index>(k));
+      const double along = members.records[k]->sticks ? acceleration.head<2>().norm() : 0;
+      left = std::max({left, std::abs(acceleration.z()), along});
+    }
   }
-  return true;
+  const double most = EventTolerances::kInfeasibleRatio * largest;
+  return (left - most) / most;
 }
 
-/// The fraction of the step between two points from which no forces keep the contacts any more, by bisection.
+/// Moves two fractions of the step, of which forces keep the contacts at `last` and not at `first`, to both sides of
+/// the instant from which they fail, by secants: halvings would take three times as many trials. Behind the kink the
+/// infeasibility is as good as linear.
+void ContactChanges::narrow(const std::vector<ContactRecord>& records, Trial& last, Trial& first) {
+  const double apart = EventTolerances::kChangeInstant / 4;
+  Trial beyond = first;
+  for (int i = 0; i < kMaxSecants && first.fraction - last.fraction > 2 * apart; ++i) {
+    const bool isBracketLinear = last.infeasibility > kBehindKink;
+    const Trial& other = isBracketLinear ? last : beyond;
+    const double slope = (other.infeasibility - first.infeasibility) / (other.fraction - first.fraction);
+    double cut = first.fraction + ((isBracketLinear ? 0 : kBehindKink / 2) - first.infeasibility) / slope;
+    // From the nearer side of a root that is known the farther one is tried.
+    if (isBracketLinear) cut += cut - last.fraction < first.fraction - cut ? apart : -apart;
+    if (!(cut > last.fraction && cut < first.fraction)) cut = last.fraction + (first.fraction - last.fraction) / 2;
+    const Trial trial{cut, infeasibility(records, cut)};
+    if (trial.infeasibility > 0)
+      beyond = first, first = trial;
+    else
+      last = trial;
+  }
+}
+
+/// The fraction of the step between two points from which no forces keep the contacts any more: of halvings of the
+/// interval, so that it does not hang on the way in which it is found.
 std::optional<double> ContactChanges::firstInfeasible(const std::vector<ContactRecord>& records, double from,
                                                       double to) {
-  if (areForcesFeasible(records, to)) return std::nullopt;
+  Trial last{from, -1}, first{to, infeasibility(records, to)};
+  if (first.infeasibility <= 0) return std::nullopt;
+  narrow(records, last, first);
   while (to - from > EventTolerances::kChangeInstant) {
     const double middle = from + (to - from) / 2;
-    (areForcesFeasible(records, middle) ? from : to) = middle;
+    const bool isFeasible = middle <= last.fraction || (middle < first.fraction && infeasibility(records, middle) <= 0);
+    (isFeasible ? from : to) = middle;
   }
   return to;
 }

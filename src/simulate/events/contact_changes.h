@@ -8,6 +8,7 @@
 #include "simulate/events/contact_record.h"
 #include "simulate/events/event_tolerances.h"
 #include "simulate/island_state.h"
+#include "simulate/rows_of_contacts.h"
 
 namespace cradle {
 
@@ -74,7 +75,17 @@ class ContactChanges {
   void takeEvaluated(const std::vector<ContactRecord>& records, const VectorX& state,
                      std::vector<EventFunctions>& values);
   std::optional<ContactChange> firstBetween(const std::vector<ContactRecord>& records, double from, double to);
-  bool areForcesFeasible(const std::vector<ContactRecord>& records, double fraction);
+  struct GroupRows {
+    std::vector<const ContactRecord*> records;
+    std::vector<ContactRows> rows;
+  };
+  GroupRows rowsOfGroup(const std::vector<int>& contacts, std::vector<ContactRecord>& sliding,
+                        const VectorX& state) const;
+  double infeasibility(const std::vector<ContactRecord>& records, double fraction);
+  struct Trial {
+    double fraction, infeasibility;
+  };
+  void narrow(const std::vector<ContactRecord>& records, Trial& last, Trial& first);
   std::optional<double> firstInfeasible(const std::vector<ContactRecord>& records, double from, double to);
   double locate(const ContactChange& change, const std::vector<ContactRecord>& records, double from, double marginFrom,
                 double to, double marginTo);
@@ -83,6 +94,7 @@ class ContactChanges {
   const EventTolerances& tolerances_;
   std::vector<BodyFrame> frames_;
   VectorX derivative_, sample_;
+  std::vector<char> isInDoubt_;  // of each contact: its row's force, of minimum norm, does not prove that it lasts
   std::vector<EventFunctions> before_, ahead_, after_, atEnd_;
   double knownTime_ = NAN;  // s: of the values in before_, if a step without changes has ended there
 };

@@ -45,13 +45,16 @@ std::vector<ContactRecord> recordsOf(const ClassificationInput& input, const Isl
 }
 
 std::vector<RecordGroup> groupsOf(const std::vector<ContactRecord>& records, const Mechanism& mechanism) {
+  const auto moved = [&](int body) {  // by forces
+    return body == kFixed || mechanism.bodies[static_cast<std::size_t>(body)].isDriven() ? kFixed : body;
+  };
   DisjointSets sets(mechanism.bodies.size());
-  for (const ContactRecord& record : records) sets.join(record.contact.bodyA, record.contact.bodyB);
+  for (const ContactRecord& record : records) sets.join(moved(record.contact.bodyA), moved(record.contact.bodyB));
   for (const Constraint& constraint : mechanism.constraints)
-    sets.join(constraint.anchorA.body, constraint.anchorB.body);
+    sets.join(moved(constraint.anchorA.body), moved(constraint.anchorB.body));
   std::vector<RecordGroup> groups(mechanism.bodies.size());
   for (std::size_t i = 0; i < records.size(); ++i) {
-    const int first = sets.islandOf(records[i].contact.movingBody());
+    const int first = sets.islandOf(std::max(moved(records[i].contact.bodyA), moved(records[i].contact.bodyB)));
     groups[static_cast<std::size_t>(first)].push_back(i);
   }
   std::erase_if(groups, [](const RecordGroup& group) { return group.empty(); });
@@ -138,14 +141,57 @@ VectorX slidingAccelerations(const std::vector<const ContactRecord*>& records, c
   return isAny ? VectorX(solution.velocities + delassus * eased) : solution.velocities;
 }
 
-/// Why a loaded contact cannot be a row.
-void findFallback(const ContactRecord& record, const SlidingAccelerations& accelerations,
-                  const EventTolerances& tolerances, const IslandState& island, ContactFallback& fallback) {
-  if (!canLast(record.contact))  // with planes only rims are neither corners nor round
-    fallback =
-        fallbackAt(record.pair.againstPlane ? kTips : "edges touch and press", {&record.contact}, island.assembly);
-  if (record.slides && slidesTooSlowly(record, accelerations, tolerances, island))
-    fallback = fallbackAt(kSlidesTooSlowly, {&record.contact}, island.assembly);
+/// Contacts of a group that are classified: how they go on.
+struct GoingContacts {
+  const std::vector<const ContactRecord*>& records;
+  const std::vector<ContactRows>& rows;  // at the island's state
+  const VectorX& derivative;             // of it, with the forces of contacts
+
+  /// m/s^2, of the sliding of each at a state near the island's, and its time; others have that of what sticks. Of
+  /// `island` the equations are evaluated.
+  VectorX slidingAt(double time, const VectorX& state, IslandState& island) const {
+    const Mechanism& mechanism = island.assembly.mechanism;
+    std::vector<BodyFrame> frames;
+    findBodyFrames(mechanism.bodies, state, frames);
+    ConstraintSolver constraints(mechanism.constraints, mechanism.bodies);
+    if (constraints.hasConstraints()) constraints.factorize(state, frames);
+    std::vector<ContactRows> moved;
+    for (const ContactRows& contact : rows) moved.push_back(rowsOf(contact.constraint, state, frames));
+    VectorX free;
+    island.equations.evaluateWithoutContacts(time, state, free);
+    const DenseDelassus delassus(allRowsOf(moved), mechanism.bodies, frames, &constraints);
+    const SlidingSolution solution = solveContactForces(records, moved, delassus, free);
+    VectorX sliding(std::ssize(records));
+    for (Index k = 0; k < sliding.size(); ++k) sliding[k] = solution.velocities.segment<2>(3 * k).norm();
+    return sliding;
+  }
+
+  /// m/s^3: the rates of the accelerations of sliding.
+  VectorX changesOfSliding(const EventTolerances& tolerances, IslandState& island) const {
+    const double time = island.time + tolerances.rateTime;
+    VectorX state = island.state + tolerances.rateTime * derivative;
+    place(island.assembly.mechanism.driven, time, state);
+    return (slidingAt(time, state, island) - slidingAt(island.time, island.state, island)) / tolerances.rateTime;
+  }
+};
+
+/// Tells which contacts of a group begin to slide so slowly that they keep their directions, and a fallback where that
+/// does not help. `accelerations` are those of the contacts, (t1, t2, n) each, `largest` m/s^2.
+void findSlowSliding(const RecordGroup& group, const GoingContacts& contacts, const VectorX& accelerations,
+                     double largest, const EventTolerances& tolerances, IslandState& island, Candidates& found) {
+  VectorX changes;  // found only where they matter
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    ContactRecord& record = found.records[group[k]];
+    if (!record.isLoaded || !record.slides) continue;
+    const Index at = static_cast<Index>(k);
+    SlidingAccelerations sliding{accelerations.segment<2>(3 * at).norm(), largest};
+    if (!slidesTooSlowly(record, sliding, tolerances, island)) continue;
+    if (changes.size() == 0) changes = contacts.changesOfSliding(tolerances, island);
+    sliding.change = changes[at];
+    record.keepsDirectionUntil = island.time + timeOfKeptDirection(sliding, tolerances);
+    if (slidesTooSlowly(record, sliding, tolerances, island))
+      found.fallback = fallbackAt(kSlidesTooSlowly, {&record.contact}, island.assembly);
+  }
 }
 
 /// Classifies the contacts of one group by their forces and accelerations.
@@ -185,11 +231,14 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
     ContactRecord& record = found.records[group[k]];
     const Index at = 3 * static_cast<Index>(k);
     if (!record.isLoaded) continue;
-    const double sliding = accelerations.segment<2>(at).norm();
-    findFallback(record, {sliding, largest}, input.tolerances, island, found.fallback);
+    if (!canLast(record.contact))  // with planes only rims are neither corners nor round
+      found.fallback =
+          fallbackAt(record.pair.againstPlane ? kTips : "edges touch and press", {&record.contact}, island.assembly);
     activeRows.push_back(at + 2);
     if (record.sticks) activeRows.push_back(at), activeRows.push_back(at + 1);
   }
+  delassus.apply(solution.impulses, derivative);
+  findSlowSliding(group, {members, rows, derivative}, accelerations, largest, input.tolerances, island, found);
   if (!activeRows.empty()) countRows(group, matrix(activeRows, activeRows), island.assembly, found);
   if (!(solution.frictionError <= most)) found.fallback = jamAt(members, island.assembly);
 }

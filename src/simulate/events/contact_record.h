@@ -14,8 +14,9 @@ struct ContactRecord {
   Contact contact;  // at the instant of classification
   ColliderPair pair;
   bool slides = false;
-  Vec3 direction = Vec3::Zero();  // unit, world, of A's sliding relative to B; zero unless it slides
-  bool isLoaded = false;          // its normal force is above rounding: it is active
+  Vec3 direction = Vec3::Zero();   // unit, world, of A's sliding relative to B; zero unless it slides
+  double keepsDirectionUntil = 0;  // s: friction is against `direction`, however the contact slides
+  bool isLoaded = false;           // its normal force is above rounding: it is active
   bool sticks = false;
   bool opens = false;        // it carries nothing, and the accelerations open it
   bool isRedundant = false;  // statically indeterminate: its forces are not unique

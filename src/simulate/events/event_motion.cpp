@@ -18,6 +18,7 @@ constexpr double kShortCorrection = 1e-3;   // of the step: longest Newton step 
 constexpr double kSlopeRatio = 1e-6;        // of the step, to find the slope of a gap
 constexpr double kMaxLengthGrowth = 2;      // of the longest of the last steps: searches far ahead are mostly in vain
 constexpr double kMinLookahead = 1.0 / 64;  // of the step that the accuracy allows
+constexpr double kTurnsOfAStep = 3;         // a step is stable over so many times in which friction turns a sliding
 constexpr int kMaxShortSteps = 1000;        // in a row; after an event some are short
 constexpr int kMaxRopeRounds = 100;         // of ropes and contacts at one instant; the others come after the next step
 
@@ -76,7 +77,8 @@ EventMotion::EventMotion(IslandState& island, LimitEvents& ropes, const ChosenMe
 void EventMotion::advance(double frame) {
   double& time = island_.time;
   Step& step = island_.step;
-  const double stepEnd = std::min(island_.scene.duration, island_.nextChange());
+  const double stepEnd =
+      std::min({island_.scene.duration, island_.nextChange(), contacts_.active().nextFreeDirection()});
 
   // How far do bodies move until the first event?
   if (!takeStep(stepEnd)) return;
@@ -338,7 +340,10 @@ void EventMotion::resolveMotors(const std::optional<MotorChange>& change) {
 
 /// Follows active contacts along a step without an event.
 void EventMotion::followActive() {
-  contacts_.active().followSliding();
+  if (const std::optional<double> turningTime = contacts_.active().followSliding()) {
+    isContinuous_ = false;
+    stepSize_.timeStep = std::min(stepSize_.timeStep, kTurnsOfAStep * *turningTime);
+  }
   if (!method_.keepsPromise) contacts_.noteShortMomentArms();
 }
 

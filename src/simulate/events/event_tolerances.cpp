@@ -29,7 +29,9 @@ EventTolerances eventTolerancesOf(const EventScales& scales) {
   const double longest = std::min(scales.duration, Tolerances::kLongRun);
   made.shortTimeStep = Tolerances::kShortTimeStepRatio * longest;
   made.shortestTimeStep = kShortestTimeStep * longest;
-  made.slowTimeStep = Tolerances::kSlowTimeStepRatio * std::min(longest, std::sqrt(size / scales.gravity));
+  const double fall = std::min(longest, std::sqrt(size / scales.gravity));
+  made.slowTimeStep = Tolerances::kSlowTimeStepRatio * fall;
+  made.rateTime = Tolerances::kRateTimeRatio * fall;
   made.reboundRatio = std::max({Tolerances::kOpeningRatio, Tolerances::kBounceOfAccuracy * accuracy,
                                 Tolerances::kBounceOfSquare * accuracy * accuracy});
   made.restRatio = std::min(Tolerances::kMaxRestRatio, accuracy);

@@ -152,6 +152,11 @@ struct EventTolerances {
   static constexpr double kCreepOfAccuracy = 50;         // 1/(m s^2), of mu g T^2 A: the same at fine accuracies
   double minSlidingAcceleration(double friction) const;  // m/s^2
 
+  // Over so little time the rate of accelerations is taken: of the time in which a size is fallen through, or of the
+  // run, if that is shorter. Accelerations known to 1e-11 g give a rate to 1e-6 g / sqrt(L / g).
+  static constexpr double kRateTimeRatio = 1e-5;
+  double rateTime = 0;  // s
+
   // What is accelerated by less is still: it comes no farther than a twentieth of A in the whole run. That is no less
   // than what rounding leaves, [1e-14, 1e-8] of `largest`, and ten times, [1, 100], what a solution leaves, `residual`;
   // and no more than kStillRatio of `largest`. All are m/s^2.

@@ -8,16 +8,19 @@ namespace cradle {
 
 constexpr const char* kSlidesTooSlowly = "contacts slide so slowly that their friction has no sure direction";
 
-/// m/s^2.
 struct SlidingAccelerations {
-  double sliding = 0;  // of the surfaces along each other, at a contact
-  double largest = 0;  // at all contacts
+  double sliding = 0;  // m/s^2, of the surfaces along each other, at a contact
+  double largest = 0;  // m/s^2, at all contacts
+  double change = 0;   // m/s^3, rate of `sliding`
 };
 
 /// Whether a contact slides, and goes on sliding, so slowly that errors of velocities decide the direction of its
 /// friction, or that following it costs too many steps.
 bool slidesTooSlowly(const ContactRecord& record, const SlidingAccelerations& accelerations,
                      const EventTolerances& tolerances, const IslandState& island);
+
+/// s: how long the friction of a contact that begins to slide so slowly may keep its direction.
+double timeOfKeptDirection(const SlidingAccelerations& accelerations, const EventTolerances& tolerances);
 
 /// Whether sliding at `speed` (m/s) under the normal force `normal` (N) has its direction turned so fast by friction
 /// that steps can hardly follow.

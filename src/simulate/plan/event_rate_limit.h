@@ -14,17 +14,17 @@ struct EventRateLimit {
   std::string_view limit, reason;
 };
 
-// A failure of redundant contacts takes as long to find as 50 events. At visual accuracies chattering contacts cost
+// A failure of redundant contacts takes as long to find as 15 events. At visual accuracies chattering contacts cost
 // less with time stepping; a burst of events, as at the end of bounces, does not.
-constexpr EventRateLimit kEventRateLimit{500, 50, 1.0 / 60, "contacts change at most 500 times in 1/60 s",
-                                         "contacts change more than 500 times in 1/60 s, or redundant ones 10 times"};
-constexpr EventRateLimit kVisualEventRateLimit{60, 50, 0.25, "contacts change at most 60 times in 1/4 s",
+constexpr EventRateLimit kEventRateLimit{500, 15, 1.0 / 60, "contacts change at most 500 times in 1/60 s",
+                                         "contacts change more than 500 times in 1/60 s, or redundant ones 33 times"};
+constexpr EventRateLimit kVisualEventRateLimit{60, 15, 0.25, "contacts change at most 60 times in 1/4 s",
                                                "contacts change more than 60 times in 1/4 s"};
 
 /// Of a trial, after the promise was given up: contacts that chatter again cost less with time stepping.
-constexpr EventRateLimit kTrialEventRateLimit{60, 50, 1.0 / 60, kEventRateLimit.limit, kEventRateLimit.reason};
+constexpr EventRateLimit kTrialEventRateLimit{60, 15, 1.0 / 60, kEventRateLimit.limit, kEventRateLimit.reason};
 
 /// Of islands with a promise without conditions: some 0.2 s of computing.
-constexpr EventRateLimit kLongEventRateLimit{20000, 50, 1.0 / 60, "", ""};
+constexpr EventRateLimit kLongEventRateLimit{20000, 15, 1.0 / 60, "", ""};
 
 }  // namespace cradle

@@ -64,6 +64,7 @@ TEST(EventTolerances, OfStepsArePartsOfTheRunButNotOfLongOnes) {
     expectNear(made.shortTimeStep, 1e-9 * std::min(duration, 1000.0));
     expectNear(made.shortestTimeStep, 1e-14 * std::min(duration, 1000.0));
     expectNear(made.slowTimeStep, 1e-5 * std::sqrt(0.1 / 9.81));
+    expectNear(made.rateTime, 1e-5 * std::sqrt(0.1 / 9.81));
     expectNear(eventTolerancesOf({1e-6, duration, 0.1, 0}).slowTimeStep, 1e-5 * std::min(duration, 1000.0));
   }
 }

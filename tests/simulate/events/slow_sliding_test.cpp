@@ -16,9 +16,9 @@ struct SlowSliding : OnPlane {
     record.contact = contactsWithin(1e-3).at(0);
     record.pair = island.assembly.geometry.pairs[record.contact.pair];
   }
-  bool isTooSlow(double speed, double acceleration) {
+  bool isTooSlow(double speed, double acceleration, double change = 0) {
     linearVelocity(state(), 0) = Vec3(speed, -1, 0);  // along the surfaces alone
-    return slidesTooSlowly(record, {acceleration, kGravity}, tolerances, island);
+    return slidesTooSlowly(record, {acceleration, kGravity, change}, tolerances, island);
   }
 
   ContactRecord record;
@@ -50,6 +50,36 @@ TEST(SlowSliding, IsThatWhichCreeps) {
     EXPECT_EQ(box.isTooSlow(part * passed, 0.9 * creeping), part < 1);
     EXPECT_EQ(box.isTooSlow(0.9 * passed, part * creeping), part < 1);
     EXPECT_FALSE(sphere.isTooSlow(0.9 * passed, part * creeping));
+  }
+}
+
+// What begins without acceleration, and has that of creeping after a twentieth of the run of 10 s, does not creep,
+// whether it gains it or loses it.
+TEST(SlowSliding, IsNotThatWhoseAccelerationChanges) {
+  SlowSliding box(kBox);
+  const double change = 0.02 * kFrictionOfGravity / (0.05 * 10);
+  for (const double part : {0.999, 1.001}) {
+    EXPECT_EQ(box.isTooSlow(0, 0, part * change), part < 1);
+    EXPECT_EQ(box.isTooSlow(0, 0, -part * change), part < 1);
+  }
+  // The slowest sliding is reached, j T^2 / 2, without acceleration and speed at the start.
+  const double slowest = 10 * std::sqrt(kFrictionOfGravity * 1e-4) / 20, passed = 1e-4 * std::sqrt(1 / (2 * 0.02));
+  SlowSliding sphere(kBall);
+  const double turned = 2e-5 * kFrictionOfGravity;
+  for (const double part : {0.999, 1.001}) {
+    EXPECT_EQ(sphere.isTooSlow(0, 0, part * turned / 50), part < 1);
+    EXPECT_EQ(box.isTooSlow(1.1 * passed, 0, part * (slowest - 1.1 * passed) / 50), part < 1);
+  }
+}
+
+// The direction is kept for a hundredth of the accuracy 1e-4: a t^2 / 2, or j t^3 / 6.
+TEST(SlowSliding, KeepsItsDirectionForAHundredthOfTheAccuracy) {
+  const EventTolerances tolerances = eventTolerancesOf({1e-4, 10, 0.1, kGravity});
+  const double accelerated = timeOfKeptDirection({0.5, kGravity, 1e-9}, tolerances);
+  EXPECT_NEAR(0.5 * accelerated * accelerated / 2, 1e-6, 1e-20);
+  for (const double change : {7.0, -7.0}) {
+    const double changed = timeOfKeptDirection({0, kGravity, change}, tolerances);
+    EXPECT_NEAR(7.0 * changed * changed * changed / 6, 1e-6, 1e-20);
   }
 }
 
