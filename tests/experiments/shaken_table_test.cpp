@@ -223,6 +223,43 @@ TEST(ShakenTable, BallRollsAndSlips) {
     }
 }
 
+/// The table hangs to one side, so that friction turns: with u the velocity of the box relative to the table, and d its
+/// direction, u' = -mu g_n d - x'' + g_z. The reference takes it by fourth-order steps of 2e-7 s from the instant of
+/// the slip on. These are stable from u = mu g h / 2.8 on, and have the direction there by h: no more than 1e-9 m.
+TEST(ShakenTable, FrictionTurnsWithThePushOnATableThatHangs) {
+  const double friction = 0.3, across = 1.5, amplitude = 0.05, rate = 2 * kPi * 1.5, end = 0.2, step = 2e-7;
+  const double limit = friction * kGravity,
+               begin = std::asin(std::sqrt(limit * limit - across * across) / (amplitude * rate * rate)) / rate;
+  const auto pushAt = [&](double t) { return Vec3(amplitude * rate * rate * std::sin(rate * t), 0, across); };
+  const auto accelerationAt = [&](double t, const Vec3& u) {
+    const Vec3 push = pushAt(t);
+    return Vec3(push - limit * (u.norm() > 0 ? u : push).normalized());
+  };
+  Vec3 velocity = Vec3::Zero(), place = Vec3::Zero();  // relative to the table
+  const long steps = std::lround((end - begin) / step);
+  const double h = (end - begin) / static_cast<double>(steps);
+  for (long i = 0; i < steps; ++i) {
+    const double t = begin + static_cast<double>(i) * h;
+    const Vec3 k1 = accelerationAt(t, velocity), k2 = accelerationAt(t + h / 2, velocity + h / 2 * k1);
+    const Vec3 k3 = accelerationAt(t + h / 2, velocity + h / 2 * k2), k4 = accelerationAt(t + h, velocity + h * k3);
+    place += h * velocity + h * h / 6 * (k1 + k2 + k3);
+    velocity += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  place.x() += amplitude * std::sin(rate * end);
+  for (const double accuracy : {1e-3, 1e-4, 1e-5, 1e-6}) {
+    const ShakenRun made = runWithWarnings(sceneWith(fmt::format(
+        R"("duration": {}, "accuracy": {}, "gravity": [0, {}, {}], "materials": {{
+        "m": {{"restitution": 0, "staticFriction": 0.3, "dynamicFriction": 0.3}}}}, "bodies": [
+        {{"name": "table", "material": "m", "motion": "driven", "shape": {{"box": {{"size": [8, 0.2, 8]}}}},
+          "position": [0, -0.1, 0], "oscillation": {{"direction": [1, 0, 0], "amplitude": 0.05, "frequency": 1.5}}}},
+        {{"name": "box", "material": "m", "mass": 2, "linearVelocity": [{}, 0, 0], {}}}])",
+        end, accuracy, -kGravity, across, amplitude * rate, kShakenBox.shape)));
+    EXPECT_TRUE(made.warnings.empty()) << made.warnings[0];
+    const Vec3 found = made.run.frames.back().states[1].position;
+    EXPECT_LT(std::hypot(found.x() - place.x(), found.z() - place.z()), accuracy) << accuracy;
+  }
+}
+
 /// Boxes beside each other on one table are as alone: what is driven hands no force on.
 TEST(ShakenTable, BoxesDoNotFeelEachOther) {
   const auto boxes = [](int count) {
