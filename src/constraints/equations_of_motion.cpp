@@ -158,15 +158,19 @@ VectorX EquationsOfMotion::limitsOf(const std::vector<std::size_t>& holding) con
 
 /// Dry friction in reverse: a motor that is off its target pushes towards it, and the others are a linear
 /// complementarity problem with bounds.
-VectorX EquationsOfMotion::possibleForces(const MotorResponse& response, const VectorX& missing,
-                                          const VectorX& limits) const {
+VectorX EquationsOfMotion::possibleForces(const std::vector<std::size_t>& holding, const MotorResponse& response,
+                                          const VectorX& missing) const {
+  const VectorX limits = limitsOf(holding);
   VectorX forces = VectorX::Zero(limits.size());
   std::vector<Eigen::Index> atTarget;
-  for (Eigen::Index k = 0; k < limits.size(); ++k)
-    if (std::abs(missing[k]) > settled_ * limits[k] * std::abs(response.perForce(k, k)))
+  for (Eigen::Index k = 0; k < limits.size(); ++k) {
+    const bool isReached = static_cast<int>(holding[static_cast<std::size_t>(k)]) == reached_;
+    const double settled = settled_ * limits[k] * std::abs(response.perForce(k, k));
+    if (!isReached && std::abs(missing[k]) > settled)
       forces[k] = std::copysign(limits[k], missing[k]);
     else
       atTarget.push_back(k);
+  }
   if (atTarget.empty()) return forces;
   const VectorX accelerations = response.free + response.perForce * forces;
   const VectorX found = boxMinimum(response.perForce(atTarget, atTarget), -accelerations(atTarget), limits(atTarget));
@@ -174,8 +178,8 @@ VectorX EquationsOfMotion::possibleForces(const MotorResponse& response, const V
   return forces;
 }
 
-VectorX EquationsOfMotion::possibleMotorForces(double time, const VectorX& state, double settled) {
-  settled_ = settled;
+VectorX EquationsOfMotion::possibleMotorForces(double time, const VectorX& state, double settled, int reached) {
+  settled_ = settled, reached_ = reached;
   VectorX derivative;
   evaluate(time, state, derivative);
   settled_ = 0;
@@ -191,12 +195,15 @@ void EquationsOfMotion::hold(const std::vector<std::size_t>& holding, const std:
   const VectorX missing = missingVelocities(holding, rows, state);
   VectorX forces;
   if (settled_ > 0) {
-    forces = possibleForces(response, missing, limitsOf(holding));
+    forces = possibleForces(holding, response, missing);
   } else if (motorTimeStep_ > 0) {
     // Targets that contradict each other: the weaker motors give all they have.
     MatrixX perForce = response.perForce;
     perForce.diagonal() *= 1 + kContradicting;
-    forces = boxMinimum(perForce, missing / motorTimeStep_ - response.free, limitsOf(holding));
+    const VectorX limits = limitsOf(holding);
+    forces = boxMinimum(perForce, missing / motorTimeStep_ - response.free, limits);
+    for (Eigen::Index k = 0; k < forces.size(); ++k)  // against a stop
+      if (perForce(k, k) == 0 && missing[k] != 0) forces[k] = std::copysign(limits[k], missing[k]);
   } else {
     Eigen::CompleteOrthogonalDecomposition<MatrixX> decomposition;  // wheels on one road share their load
     decomposition.setThreshold(kSameMotors);

@@ -59,8 +59,9 @@ class EquationsOfMotion {
   /// The forces (N or N m) that motors with a target velocity can have at `time` (s), in their order, whatever their
   /// mode: those whose joints are off the target push with all they have; the others, all together, give what keeps
   /// their joints at it, or all they have where that does not suffice. Off is a velocity that all of the force takes
-  /// longer than `settled` (s) to mend. Motors of bodies at rest, and constant ones, have the forces that they have.
-  VectorX possibleMotorForces(double time, const VectorX& state, double settled);
+  /// longer than `settled` (s) to mend, of all motors but `reached` (-1: none). Motors of bodies at rest, and constant
+  /// ones, have the forces that they have.
+  VectorX possibleMotorForces(double time, const VectorX& state, double settled, int reached);
 
   /// How fast (1/s) motors that hold take back what their joint's velocity is off. Steps of a fixed length do so within
   /// one, and with at most the force that motors have; others locate the instants from which that does not suffice.
@@ -96,7 +97,8 @@ class EquationsOfMotion {
   VectorX missingVelocities(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows,
                             const VectorX& state) const;
   VectorX limitsOf(const std::vector<std::size_t>& holding) const;
-  VectorX possibleForces(const MotorResponse& response, const VectorX& missing, const VectorX& limits) const;
+  VectorX possibleForces(const std::vector<std::size_t>& holding, const MotorResponse& response,
+                         const VectorX& missing) const;
   void hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows, const VectorX& state,
             VectorX& derivative);
   void addForce(const ConstraintRow& row, double force, const VectorX& state, VectorX& derivative) const;
@@ -115,6 +117,7 @@ class EquationsOfMotion {
   bool isWithoutContacts_ = false;  // in the evaluation under way
   double motorTimeStep_ = 0;        // s; 0: motors hold without a limit
   double settled_ = 0;              // s; 0: motors have their modes
+  int reached_ = -1;                // a motor that is at its target
   long evaluations_ = 0;
 };
 

@@ -125,7 +125,7 @@ JointCoordinate coordinateOf(const Slider& slider, const JointTurns& turns) {
 double massDistance(const Attachment& anchor, const std::vector<RigidBody>& bodies) {
   if (anchor.body == kFixed) return 0;
   const RigidBody& body = bodies[static_cast<std::size_t>(anchor.body)];
-  return body.isDriven() ? 0 : std::hypot(gyrationRadius(body), anchor.point.norm());
+  return body.isDriven() ? 0 : Vec3(gyrationRadius(body), anchor.point.norm(), 0).norm();
 }
 
 /// The coordinate of a joint, which is 0 at the start also where its anchors are apart by an error.

@@ -6,8 +6,11 @@
 namespace cradle {
 namespace {
 
-constexpr int kSamples = 4;         // a step, as of the tensions of ropes
-constexpr double kSettled = 1e-8;   // s: a velocity that all of the force mends sooner is at its target
+constexpr int kSamples = 4;        // a step, as of the tensions of ropes
+constexpr double kSettled = 1e-8;  // s: a velocity that all of the force mends sooner is at its target
+// Of the largest velocity in a step: so far past its target a motor has come to it. One that leaves it again at once is
+// at it to within rounding, on either side.
+constexpr double kPastTarget = 1e-9;
 constexpr double kAtItsEnd = 1e-6;  // of all the force: what is as near to it is at its end
 
 }  // namespace
@@ -30,7 +33,7 @@ double MotorEvents::velocity(std::size_t motor, const VectorX& state) {
 double MotorEvents::marginAt(std::size_t index, double time, const VectorX& state) {
   const JointMotor& motor = motors()[index];
   if (motor.mode == JointMotor::Mode::pushes)
-    return motor.sign * (motor.targetVelocity - velocity(index, state)) / scales_[index];
+    return kPastTarget + motor.sign * (motor.targetVelocity - velocity(index, state)) / scales_[index];
   island_.equations.evaluate(time, state, derivative_);
   return (motor.maxForce - std::abs(island_.equations.motorForces()[static_cast<Eigen::Index>(index)])) /
          motor.maxForce;
@@ -66,7 +69,10 @@ std::optional<MotorChange> MotorEvents::firstChange(const Step& step) {
 
 bool MotorEvents::resolve(const std::optional<MotorChange>& change) {
   if (!any()) return false;
-  const VectorX forces = island_.equations.possibleMotorForces(island_.time, island_.state, kSettled);
+  // Its velocity is at the target, to within what the search for the instant leaves.
+  const bool isReached = change && motors()[change->motor].mode == JointMotor::Mode::pushes;
+  const int reached = isReached ? static_cast<int>(change->motor) : -1;
+  const VectorX forces = island_.equations.possibleMotorForces(island_.time, island_.state, kSettled, reached);
   const VectorX& mobilities = island_.equations.motorMobilities();
   bool isOther = false;
   for (std::size_t i = 0; i < motors().size(); ++i) {
@@ -74,7 +80,7 @@ bool MotorEvents::resolve(const std::optional<MotorChange>& change) {
     if (!motor.hasTarget || rests(i)) continue;
     const Eigen::Index at = static_cast<Eigen::Index>(i);
     const double missing = std::abs(motor.targetVelocity - velocity(i, island_.state));
-    const bool isOff = missing > kSettled * motor.maxForce * std::abs(mobilities[at]);
+    const bool isOff = static_cast<int>(i) != reached && missing > kSettled * motor.maxForce * std::abs(mobilities[at]);
     // At the end of its force a motor holds no more, and one that has pushed goes on, to within rounding.
     const bool isChange = change && change->motor == i && motor.mode == JointMotor::Mode::holds;
     const bool goesOn = motor.mode == JointMotor::Mode::pushes && forces[at] * motor.sign > 0;

@@ -39,7 +39,9 @@ TEST(JointMotors, MotorBringsAWheelToItsVelocity) {
       ASSERT_EQ(frame.joints.size(), 1u);
       EXPECT_NEAR(frame.joints[0].coordinate, sign * (most * turning * turning / 2 + 8 * (frame.time - turning)), 1e-8);
       EXPECT_NEAR(frame.joints[0].velocity, rate, 1e-8);
-      EXPECT_NEAR(frame.joints[0].force, frame.time < reached ? sign * 0.6 : 0, 1e-8) << frame.time;
+      if (std::abs(frame.time - reached) > 1e-6) {
+        EXPECT_NEAR(frame.joints[0].force, frame.time < reached ? sign * 0.6 : 0, 1e-8) << frame.time;
+      }
     }
     expectLedger(moved, 1e-12, 1e-8);
   }
@@ -408,6 +410,40 @@ TEST(JointMotors, WheelOnABoxAtRestTurns) {
     EXPECT_NEAR(moved.frames.back().joints[0].velocity, 5 + gained, 1e-6) << motor;
     EXPECT_NEAR(moved.frames.back().joints[0].coordinate, 5 + gained / 2, 1e-6) << motor;
   }
+}
+
+/// A motor lifts a body against a stop and presses it there with all that it has: one impact, and no more.
+TEST(JointMotors, MotorPressesAgainstAStop) {
+  for (const char* method : kEveryMethod) {
+    const Trajectory moved =
+        runMotors(1, method, R"({"name": "a", "mass": 2, "shape": {"sphere": {"radius": 0.1}}, "collision": "none"})",
+                  R"("sliders": [{"bodyA": "a", "anchorB": [0, 0, 0], "axis": [0, 1, 0], "limits": {"upper": 0.3},
+        "motor": {"targetVelocity": 0.5, "maxForce": 30}}])");
+    EXPECT_NEAR(moved.frames.back().joints[0].coordinate, 0.3, 1e-9) << method;
+    EXPECT_EQ(moved.frames.back().joints[0].force, 30) << method;
+    EXPECT_EQ(std::count_if(moved.events.begin(), moved.events.end(),
+                            [](const Event& event) { return event.kind == EventKind::impact; }),
+              1)
+        << method;
+  }
+}
+
+/// A brake of 8 N between a table that swings and a body of 2 kg that slides and sticks on it, between stops with e =
+/// 0.5: the same at every accuracy.
+TEST(JointMotors, BrakeBetweenStopsOnASwingingTable) {
+  std::vector<double> ends;
+  for (const char* accuracy : {"1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9"}) {
+    const Trajectory moved =
+        runMotors(3, fmt::format(R"("accuracy": {})", accuracy), R"(
+        {"name": "t", "shape": {"box": {"size": [1, 0.1, 1]}}, "motion": "driven", "collision": "none",
+         "oscillation": {"direction": [1, 0, 0], "amplitude": 0.2, "frequency": 1}},
+        {"name": "b", "shape": {"box": {"size": [0.2, 0.2, 0.2]}}, "position": [0, 0.3, 0], "mass": 2, "collision": "none",
+         "linearVelocity": [1.2566370614359172, 0, 0]})",
+                  R"("sliders": [{"bodyA": "b", "axis": [1, 0, 0], "bodyB": "t", "anchorB": [0, 0.3, 0],
+        "motor": {"targetVelocity": 0, "maxForce": 8}, "limits": {"lower": -0.1, "upper": 0.05, "restitution": 0.5}}])");
+    ends.push_back(moved.frames.back().joints[0].coordinate);
+  }
+  for (const double end : ends) EXPECT_NEAR(end, ends.back(), 1e-3);
 }
 
 }  // namespace

@@ -347,10 +347,13 @@ void EventMotion::followActive() {
   if (!method_.keepsPromise) contacts_.noteShortMomentArms();
 }
 
-/// Ropes and contacts in turn: either may load or release the other. True if any limit changes.
+/// Limits, contacts and motors in turn: each may load or release the others. True if any limit changes.
 bool EventMotion::applyLimitEvents() {
   int round = 0;
-  for (; round < kMaxRopeRounds && ropes_.resolve(island_.time, island_.state); ++round) contacts_.resolve();
+  for (; round < kMaxRopeRounds && ropes_.resolve(island_.time, island_.state); ++round) {
+    contacts_.resolve();
+    motors_.resolve({});
+  }
   return round > 0;
 }
 
