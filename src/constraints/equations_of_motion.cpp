@@ -18,7 +18,9 @@ constexpr double kSameMotors = 1e-9;
 // Of the response of a joint's bodies alone: with less, stops or contacts leave the coordinate no motion, and its motor
 // has nothing to do.
 constexpr double kBlocked = 1e-9;
-constexpr double kContradicting = 1e-6;  // of the response: with more, motors push against each other
+// Of the response: so much is left of what motors ask in a step, and lets the weaker of two that contradict each other
+// come to its limit.
+constexpr double kContradicting = 1e-6;
 
 /// World derivative of the angular velocity of a body without torque: body frame I w' = -w x I w. The derivative of w
 /// is the same vector in both frames, since w x w = 0.

@@ -15,7 +15,7 @@ constexpr double kArcOfArm = 0.5;        // ... or of its greater one, whichever
 constexpr double kHeadOfArc = 0.45;      // length of a head, of the radius of its arc
 constexpr double kGap = 0.1;             // between arrow and body, of the longest arrow
 constexpr double kArrowOfBody = 1.2;     // of a slider, of its body's size along the axis
-constexpr double kLeastShare = 0.05;     // of a motor's force: less is not drawn
+constexpr double kMinShare = 0.05;       // of a motor's force: less is not drawn
 constexpr double kSmallestArrow = 0.02;  // of the diagonal of a body
 
 /// What a motor moves, as arrows need it; the joint's anchor on that body is the origin.
@@ -117,7 +117,7 @@ void appendMotorArrows(const Scene& scene, const Appearance& appearance, const F
   if (frame.joints.empty()) return;
   forEachMotor(scene, [&](const auto& joint, std::size_t index) {
     const double share = frame.joints.at(index).force / std::abs(joint.motor->force);
-    if (std::abs(share) < kLeastShare) return;
+    if (std::abs(share) < kMinShare) return;
     const MovedBody body = movedBy(scene, appearance, joint);
     const RigidTransform& place = worldFromBody.at(static_cast<std::size_t>(body.body));
     const double sign = body.body == joint.anchorA.body ? 1 : -1;  // on B it acts the other way

@@ -111,6 +111,7 @@ constexpr MotorKeys kHingeMotor{"maxTorque", "torque", "rad/s", "N m"}, kSliderM
 
 JointDrive parseMotor(const Field& field, const MotorKeys& keys, FaultList& faults) {
   JointDrive motor;
+  const std::size_t faultsBefore = faults.count();
   ObjectReader reader(field, faults);
   const auto target = reader.find("targetVelocity"), most = reader.find(keys.most),
              constant = reader.find(keys.constant);
@@ -118,6 +119,7 @@ JointDrive parseMotor(const Field& field, const MotorKeys& keys, FaultList& faul
   if (most) motor.force = reader.number(keys.most, {0, kForces.most}, keys.forceUnit, 0);
   if (constant) motor.force = reader.number(keys.constant, kForces, keys.forceUnit, 0);
   reader.rejectUnknownKeys();
+  if (faults.count() != faultsBefore) return motor;
   if (target.has_value() == constant.has_value() || target.has_value() != most.has_value())
     addFault(faults, field,
              fmt::format("a motor has either a \"targetVelocity\" with a \"{}\" or a constant \"{}\"", keys.most,

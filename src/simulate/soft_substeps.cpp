@@ -32,7 +32,7 @@ std::vector<RigidBody> withHeavyDriven(const Assembly& assembly) {
   for (const RigidBody& body : bodies) mass += body.mass;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (!bodies[i].isDriven()) continue;
-    const double heavy = kDrivenMass * mass, radius = std::max(assembly.radii[i], 1.0);
+    const double heavy = kDrivenMass * mass, radius = assembly.radii[i] > 0 ? assembly.radii[i] : 1;
     bodies[i] = makeRigidBody({heavy, Vec3::Zero(), heavy * radius * radius * Mat3::Identity()});
   }
   return bodies;

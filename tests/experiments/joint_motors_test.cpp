@@ -140,21 +140,32 @@ TEST(JointMotors, MotorComesToTheEndOfItsForce) {
 constexpr double kCarWheel = 0.1, kCarMass = 4 + 4;  // m, kg
 constexpr double kCarInertia = kCarMass + 4 * 0.4;   // kg: and 4 I / r^2 of its wheels
 
-/// A car of a board of 4 kg and four balls of 1 kg as wheels with one motor each, from rest up a slope along x.
-Trajectory runCar(double duration, double accuracy, double slope, double friction, const std::string& motor,
-                  const std::string& method = "") {
-  std::string bodies = R"({"name": "ground", "material": "m", "shape": {"plane": {}}, "motion": "static"},
+struct Car {
+  std::string bodies, hinges;
+};
+
+/// A board of 4 kg and four balls of 1 kg as wheels on the ground, each with the motor `motorOf(wheel)`.
+template <class MotorOf>
+Car carWith(const MotorOf& motorOf) {
+  Car car{R"({"name": "ground", "material": "m", "shape": {"plane": {}}, "motion": "static"},
       {"name": "board", "mass": 4, "shape": {"box": {"size": [0.8, 0.05, 0.3]}}, "position": [0, 0.1, 0]})",
-              hinges;
+          ""};
   for (int i = 0; i < 4; ++i) {
     const Vec3 place(i % 2 ? 0.3 : -0.3, kCarWheel, i < 2 ? 0.3 : -0.3);
-    bodies += fmt::format(
+    car.bodies += fmt::format(
         R"(, {{"name": "w{}", "material": "m", "mass": 1, "shape": {{"sphere": {{"radius": {}}}}}, "position": {}}})",
         i, kCarWheel, vectorText(place));
-    hinges += fmt::format(
+    car.hinges += fmt::format(
         R"({}{{"bodyA": "board", "anchorA": {}, "bodyB": "w{}", "anchorB": [0, 0, 0], "axis": [0, 0, 1], "motor": {}}})",
-        i ? ", " : "", vectorText(place - Vec3(0, 0.1, 0)), i, motor);
+        i ? ", " : "", vectorText(place - Vec3(0, 0.1, 0)), i, motorOf(i));
   }
+  return car;
+}
+
+/// A car with equal motors, from rest up a slope along x.
+Trajectory runCar(double duration, double accuracy, double slope, double friction, const std::string& motor,
+                  const std::string& method = "") {
+  const auto [bodies, hinges] = carWith([&motor](int) { return motor; });
   return runMotor(
       duration, accuracy, bodies,
       fmt::format(
@@ -373,19 +384,9 @@ TEST(JointMotors, ArmComesToItsVelocities) {
 
 /// Brakes of 2 N m each and one motor of 1: the car stands where it is, whoever bears it.
 TEST(JointMotors, BrakesHoldACarAgainstItsMotor) {
-  std::string bodies = R"({"name": "ground", "material": "m", "shape": {"plane": {}}, "motion": "static"},
-      {"name": "board", "mass": 4, "shape": {"box": {"size": [0.8, 0.05, 0.3]}}, "position": [0, 0.1, 0]})",
-              hinges;
-  for (int i = 0; i < 4; ++i) {
-    const Vec3 place(i % 2 ? 0.3 : -0.3, kCarWheel, i < 2 ? 0.3 : -0.3);
-    bodies += fmt::format(
-        R"(, {{"name": "w{}", "material": "m", "mass": 1, "shape": {{"sphere": {{"radius": {}}}}}, "position": {}}})",
-        i, kCarWheel, vectorText(place));
-    hinges += fmt::format(
-        R"({}{{"bodyA": "board", "anchorA": {}, "bodyB": "w{}", "anchorB": [0, 0, 0], "motor": {{"targetVelocity": {},
-        "maxTorque": {}}}}})",
-        i ? ", " : "", vectorText(place - Vec3(0, 0.1, 0)), i, i ? 0 : 10, i ? 2 : 1);
-  }
+  const auto [bodies, hinges] = carWith([](int wheel) {
+    return fmt::format(R"({{"targetVelocity": {}, "maxTorque": {}}})", wheel ? 0 : 10, wheel ? 2 : 1);
+  });
   for (const char* method : kEveryMethod) {
     const Trajectory moved = runMotors(
         0.5, method, bodies,
