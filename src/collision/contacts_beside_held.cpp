@@ -1,14 +1,16 @@
 // Contacts beside held ones. An active contact or a joint may hold points of a pair together; other points of the pair,
-// those that are not near a held one, may still collide. There are three kinds of gaps for them.
+// those that are not near a held one, may still collide. There are four kinds of gaps for them.
 // A sphere that is held on a mesh: its distance from all triangles but those wholly behind the tangent planes of the
 // held features. This distance has no jumps where the sphere goes from the space above one triangle to that above the
 // next. A body that is held over one flat face: the height of its other points over the plane of the face, or the room
 // that it has to the face's border and to surfaces in front, whichever is less. Any other pair: the least separation of
-// its contacts that are not held.
+// its contacts that are not held. Where two lines that cross are all that touches, other points come down together as a
+// face beside the edge of one becomes flush with the line of the other: the sine of their angle is a gap too.
 
 #include <algorithm>
 #include <cmath>
 
+#include "collision/closest_points.h"
 #include "collision/impact_search_tolerances.h"
 #include "collision/mesh_collider.h"
 #include "collision/over_face.h"
@@ -17,17 +19,66 @@
 namespace cradle {
 namespace {
 
+constexpr double kSameLine = 1e-6;  // sine: an edge at a smaller angle to a line is that line
+
 /// The place (m, world) at which a contact is held together, on the surface of A.
 Vec3 heldPlace(const ContactConstraint& contact, const VectorX& state) {
-  const RigidTransform worldFromB = poseOf(state, contact.surfaceB.body);
-  const Vec3 center = poseOf(state, contact.centerA.body) * contact.centerA.point;
-  const Vec3 apart = center - worldFromB * contact.surfaceB.point, edge = worldFromB.rotation * contact.edgeB;
+  const RigidTransform worldFromA = poseOf(state, contact.centerA.body),
+                       worldFromB = poseOf(state, contact.surfaceB.body);
+  const Vec3 center = worldFromA * contact.centerA.point, apart = center - worldFromB * contact.surfaceB.point;
+  const Vec3 lineA = worldFromA.rotation * contact.lineA, lineB = worldFromB.rotation * contact.lineB;
+  if (const Vec3 across = lineA.cross(lineB); !across.isZero(0)) {  // constraints/contact_rows.cpp has the formula
+    const double along = -apart.cross(lineB).dot(across) / across.squaredNorm();
+    return center + along * lineA - contact.radiusA * across.normalized();
+  }
   const Vec3 normal = std::isinf(contact.radiusB) ? Vec3(worldFromB.rotation * contact.normalB)
-                                                  : (apart - edge.dot(apart) * edge).normalized();
+                                                  : (apart - lineB.dot(apart) * lineB).normalized();
   return center - contact.radiusA * normal;
 }
 
+/// The edge of a polytope along a line through a point of it, both in its frame; null: there is none.
+const Polytope::Edge* edgeAlong(const Collider& collider, const Vec3& point, const Vec3& line) {
+  if (collider.kind() != ColliderKind::polytope) return nullptr;
+  const std::vector<Vec3>& corners = collider.polytope->vertices;
+  const Polytope::Edge* found = nullptr;
+  double least = INFINITY;
+  for (const Polytope::Edge& edge : collider.polytope->edges) {
+    const Segment segment{corners[edge.from], corners[edge.to] - corners[edge.from]};
+    if (segment.along.cross(line).norm() > kSameLine * segment.along.norm()) continue;
+    const double distance = (segment.at(segment.nearestPart(point)) - point).norm();
+    if (distance < least) least = distance, found = &edge;
+  }
+  return found;
+}
+
+/// How far the faces beside an edge of `collider` are from flush with another line, which crosses it: the least of the
+/// sines by which they go back from the plane of both lines. `ahead` is the cross product of the lines, out of the
+/// collider, in its frame; infinite without an edge.
+double sineBesideEdge(const Collider& collider, const Vec3& point, const Vec3& line, const Vec3& ahead) {
+  const Polytope::Edge* edge = edgeAlong(collider, point, line);
+  if (!edge) return INFINITY;
+  const Polytope& polytope = *collider.polytope;
+  const Vec3 along = (polytope.vertices[edge->to] - polytope.vertices[edge->from]).normalized();
+  const Vec3 inLeft = polytope.faces[edge->left].normal.cross(along),
+             inRight = along.cross(polytope.faces[edge->right].normal);
+  return -std::max(ahead.dot(inLeft), ahead.dot(inRight));
+}
+
 }  // namespace
+
+/// m: that of a pair which one crossing of lines holds. No larger than the path of any point.
+double ImpactSearch::gapBesideCrossing(std::size_t index, const ContactConstraint& crossing,
+                                       const VectorX& state) const {
+  const ColliderPair& pair = geometry_.pairs[index];
+  const bool isOfB = geometry_.colliders[pair.a].body == crossing.centerA.body;
+  const Collider &a = geometry_.colliders[isOfB ? pair.a : pair.b], &b = geometry_.colliders[isOfB ? pair.b : pair.a];
+  const RigidTransform worldFromA = poseOf(state, a.body), worldFromB = poseOf(state, b.body);
+  const Vec3 outOfB = (worldFromA.rotation * crossing.lineA).cross(worldFromB.rotation * crossing.lineB);
+  const double sine = std::min(
+      sineBesideEdge(a, crossing.centerA.point, crossing.lineA, worldFromA.rotation.conjugate() * Vec3(-outOfB)),
+      sineBesideEdge(b, crossing.surfaceB.point, crossing.lineB, worldFromB.rotation.conjugate() * outOfB));
+  return sine * std::min(a.boundingRadius - a.radius, b.boundingRadius - b.radius);
+}
 
 /// Puts those contacts of a pair that are not held into contacts_.
 void ImpactSearch::findOthers(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state,
@@ -57,6 +108,11 @@ double ImpactSearch::gapOfOthers(std::size_t pair, const std::vector<ActiveFeatu
   findOthers(pair, held, state, margin);
   double least = margin;
   for (const Contact& contact : contacts_) least = std::min(least, contact.separation);
+  const auto isOfPair = [&](const ActiveFeature& feature) { return feature.pair == pair; };
+  const auto first = std::find_if(held.begin(), held.end(), isOfPair);
+  const bool isCrossing = first != held.end() && !first->contact.lineA.isZero(0);
+  if (isCrossing && std::none_of(first + 1, held.end(), isOfPair))
+    least = std::min(least, gapBesideCrossing(pair, first->contact, state));
   return least;
 }
 

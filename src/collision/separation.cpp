@@ -246,7 +246,7 @@ double separation(const ContactGeometry& geometry, const ColliderPair& pair, std
 
 TouchedFeature touchedFeature(const Contact& contact) {
   using Feature = MeshPoint::Feature;
-  if (contact.edge != Vec3::Zero()) return {Feature::edge, contact.feature};
+  if (!contact.lineA.isZero(0) || !contact.lineB.isZero(0)) return {Feature::edge, contact.feature};
   if (std::isinf(contact.radiusA) || std::isinf(contact.radiusB)) return {Feature::face, contact.feature};
   return {contact.radiusA == 0 || contact.radiusB == 0 ? Feature::vertex : Feature::none, contact.feature};
 }
@@ -292,10 +292,14 @@ void appendContacts(const ContactGeometry& geometry, std::size_t index, const Ve
   const int bodyA = geometry.colliders[pair.a].body, bodyB = bodyBOf(geometry, pair);
   const RigidTransform worldFromA = poseOf(state, bodyA), worldFromB = poseOf(state, bodyB);
   if (separationBound(geometry, pair, worldFromA, worldFromB) > margin) return;
-  for (const ContactPoint& found : contactPoints(geometry, pair, worldFromA, worldFromB, margin))
-    if (found.separation <= margin && !isPinnedContact(geometry, pair, found, worldFromA, worldFromB))
-      contacts.push_back({index, bodyA, bodyB, found.point, found.normal, found.separation, found.radiusA,
-                          found.radiusB, found.edge, found.feature});
+  for (const ContactPoint& found : contactPoints(geometry, pair, worldFromA, worldFromB, margin)) {
+    if (found.separation > margin || isPinnedContact(geometry, pair, found, worldFromA, worldFromB)) continue;
+    Contact& contact = contacts.emplace_back(
+        Contact{index, bodyA, bodyB, found.point, found.normal, found.separation, found.radiusA, found.radiusB});
+    contact.feature = found.feature;
+    if (!found.edge.isZero(0) && std::isnan(found.radiusA)) contact.radiusA = 0, contact.lineA = found.edge;
+    if (!found.edge.isZero(0) && std::isnan(found.radiusB)) contact.radiusB = 0, contact.lineB = found.edge;
+  }
 }
 
 void findContacts(const ContactGeometry& geometry, const VectorX& state, double margin,

@@ -17,9 +17,10 @@ struct Contact {
   Vec3 normal = Vec3::Zero();  // unit, world, from A to B
   double separation = 0;       // m, < 0: overlap
   // m: radius of the sphere that each surface is there: 0 a corner, infinite a flat face; NaN: neither (edge, side,
-  // rim).
+  // rim). Of a line the radius around it: 0 an edge.
   double radiusA = kNotRound, radiusB = kNotRound;
-  Vec3 edge = Vec3::Zero();      // unit, world: of the edge of a mesh that a sphere touches; else zero
+  // Unit, world: direction of the straight line that a surface is there; zero: it is none, or not told.
+  Vec3 lineA = Vec3::Zero(), lineB = Vec3::Zero();
   std::uint32_t feature = 0;     // of the mesh that a sphere touches, as in ContactPoint
   Vec3 rimAxisA = Vec3::Zero();  // unit, world: A is a tilted disc of that radius there, across this; zero: it is not
 

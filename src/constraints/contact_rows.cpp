@@ -1,15 +1,20 @@
-// Kinematics of a sphere on a face, a sphere or an edge, and of a disc's rim on a face. The rows are those of the
-// relative velocity of the bodies' material at the point of contact; their velocityProduct terms let that point move
-// over both surfaces (rolling), and the normal turn.
+// Kinematics of a sphere on a face, a sphere or a line, of a disc's rim on a face, and of a line on a line. The rows
+// are those of the relative velocity of the bodies' material at the point of contact; their velocityProduct terms let
+// that point move over both surfaces (rolling), and the normal turn.
 //
 // With n out of B, c the centre of A's sphere, a = c - r_A n - x_A and b = c - r_A n - x_B the arms, u the velocity:
 //   u = v_A + w_A x a - v_B - w_B x b,   gap' = n.u,   gap'' = n'.u + n.u',
 //   u' = J (accelerations) + w_A x a' - w_B x b',   a' = w_A x (c - x_A) - r_A n',   b' = a' + v_A - v_B,
 // n' = w_B x n on a face, and the part of the centres' relative velocity across n over their distance on a sphere. On
-// an edge along e, s = c - b less its part along e takes the place of the centres' difference: s' = w - w_e with w_e =
+// a line along e, s = c - b less its part along e takes the place of the centres' difference: s' = w - w_e with w_e =
 // e (e.w) + e' (e.(c - b)) + e (e'.(c - b)), w = (c - b)'. A disc across the unit vector d touches a face by c - r_A m,
 // m = (n - (n.d) d) / |n - (n.d) d|: m and m' stand for n and n' in the arms then. Tangential: the rate of u - n (n.u)
 // has the part u' - n' (n.u) along the surfaces, whatever spans them.
+//
+// Lines c + a e_A and b + s e_B are nearest where c - b + a e_A - s e_B = g n, with N = e_A x e_B and n = N / |N|:
+//   g = n.(c - b),  a = -((c - b) x e_B).N / N^2,  s = -((c - b) x e_A).N / N^2,
+//   n' = (N' - n (n.N')) / |N|,  a' = ((g n' - v) x e_B).N / N^2,
+// v the relative velocity of the material of both lines there; the place on A runs along its line with a'.
 
 #include "constraints/contact_rows.h"
 
@@ -46,7 +51,36 @@ Attachment attachmentAt(int body, const Vec3& point, const VectorX& state) {
   return {body, inFrameOf(body, point - centerOf(body, state), state)};
 }
 
-/// Normal, its rate, the gap and B's lever: what depends on the kind of B's surface.
+bool isLine(const Vec3& direction) {
+  return !direction.isZero(0);
+}
+
+/// Where two lines are nearest to each other.
+struct Crossing {
+  Vec3 normal, normalRate;  // from B's line to A's; 1/s
+  double gap;               // m, of the lines without the radii around them
+  double along, alongRate;  // m, of the place on A's line from its anchor; m/s
+  Vec3 alongA, alongRateA;  // direction of A's line, and its rate (1/s)
+};
+
+Crossing crossingOf(const ContactConstraint& contact, const AttachmentMotion& a, const AttachmentMotion& b,
+                    const Vec3& spinA, const Vec3& spinB, const std::vector<BodyFrame>& frames) {
+  const Vec3 alongA = turned(contact.centerA.body, contact.lineA, frames), rateA = spinA.cross(alongA);
+  const Vec3 alongB = turned(contact.surfaceB.body, contact.lineB, frames), rateB = spinB.cross(alongB);
+  const Vec3 across = alongA.cross(alongB), acrossRate = rateA.cross(alongB) + alongA.cross(rateB);
+  const Vec3 apart = a.position - b.position;
+  const double sine = across.norm();
+  Crossing found{across / sine, Vec3::Zero(), 0, 0, 0, alongA, rateA};
+  found.normalRate = (acrossRate - found.normal.dot(acrossRate) * found.normal) / sine;
+  found.gap = found.normal.dot(apart);
+  found.along = -apart.cross(alongB).dot(across) / (sine * sine);
+  const double alongOfB = -apart.cross(alongA).dot(across) / (sine * sine);
+  const Vec3 velocity = a.velocity - b.velocity + found.along * rateA - alongOfB * rateB;
+  found.alongRate = (found.gap * found.normalRate - velocity).cross(alongB).dot(across) / (sine * sine);
+  return found;
+}
+
+/// Normal, its rate, the gap and B's lever: what depends on the kind of B's surface, under a sphere or disc.
 void placeNormal(const ContactConstraint& contact, const AttachmentMotion& a, const AttachmentMotion& b,
                  const Vec3& spinB, const std::vector<BodyFrame>& frames, ContactKinematics& place) {
   const Vec3 apart = a.position - b.position;
@@ -58,8 +92,8 @@ void placeNormal(const ContactConstraint& contact, const AttachmentMotion& a, co
     return;
   }
   Vec3 across = apart, velocity = a.velocity - b.velocity;
-  if (contact.edgeB != Vec3::Zero()) {
-    const Vec3 along = turned(contact.surfaceB.body, contact.edgeB, frames), rate = spinB.cross(along);
+  if (isLine(contact.lineB)) {
+    const Vec3 along = turned(contact.surfaceB.body, contact.lineB, frames), rate = spinB.cross(along);
     across -= along.dot(apart) * along;
     velocity -= (along.dot(velocity) + rate.dot(apart)) * along + along.dot(apart) * rate;
   }
@@ -74,7 +108,8 @@ bool isRim(const ContactConstraint& contact) {
   return !contact.rimAxisA.isZero(0);
 }
 
-/// From the place where A touches to the centre of its sphere or disc (m), and the rate of that (m/s).
+/// From the place where A touches to the centre of its sphere or disc, or its line's anchor (m), and the rate of that
+/// (m/s).
 struct Ascent {
   Vec3 way, rate;
 };
@@ -100,6 +135,16 @@ Vec3 across(const Vec3& n) {
   return {1 + sign * n.x() * part, sign * n.y() * part, -sign * n.x()};
 }
 
+/// Places the normal of two lines.
+Ascent ascentOfLine(const ContactConstraint& contact, const Crossing& crossing, ContactKinematics& place) {
+  place.normal = crossing.normal;
+  place.normalRate = crossing.normalRate;
+  place.gap = crossing.gap - (contact.radiusA + contact.radiusB);
+  return {contact.radiusA * crossing.normal - crossing.along * crossing.alongA,
+          contact.radiusA * crossing.normalRate - crossing.alongRate * crossing.alongA -
+              crossing.along * crossing.alongRateA};
+}
+
 ConstraintRow tangentRow(const ContactConstraint& contact, const ContactKinematics& place, const Vec3& direction) {
   ConstraintRow row{contact.centerA.body, contact.surfaceB.body,       direction, place.armA.cross(direction),
                     -direction,           -place.armB.cross(direction)};
@@ -111,9 +156,9 @@ ConstraintRow tangentRow(const ContactConstraint& contact, const ContactKinemati
 
 ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& state) {
   CRADLE_CHECK(std::isfinite(contact.radiusA) || std::isfinite(contact.radiusB));
-  if (isFace(contact.radiusA) || std::isnan(contact.radiusA))
+  if (isFace(contact.radiusA) || (isLine(contact.lineA) && !isLine(contact.lineB)))
     return constraintOf({contact.bodyB, contact.bodyA, contact.point, -contact.normal, contact.separation,
-                         contact.radiusB, contact.radiusA, contact.edge},
+                         contact.radiusB, contact.radiusA, contact.lineB, contact.lineA},
                         state);
   const double half = 0.5 * contact.separation;
   const double depthB = contact.radiusB > 0 && !isFace(contact.radiusB) ? contact.radiusB : 0;
@@ -128,8 +173,10 @@ ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& sta
   }
   constraint.radiusA = contact.radiusA;
   constraint.surfaceB = attachmentAt(contact.bodyB, contact.point + (half + depthB) * contact.normal, state);
-  constraint.radiusB = std::isnan(contact.radiusB) ? 0 : contact.radiusB;
-  constraint.edgeB = inFrameOf(contact.bodyB, contact.edge, state);
+  constraint.radiusB = contact.radiusB;
+  constraint.lineB = inFrameOf(contact.bodyB, contact.lineB, state);
+  const bool isReversed = contact.lineA.cross(contact.lineB).dot(contact.normal) > 0;  // the normal is out of B
+  constraint.lineA = inFrameOf(contact.bodyA, isReversed ? Vec3(-contact.lineA) : contact.lineA, state);
   constraint.normalB = inFrameOf(contact.bodyB, -contact.normal, state);
   return constraint;
 }
@@ -144,18 +191,19 @@ ContactKinematics kinematicsOf(const ContactConstraint& contact, const VectorX& 
   const AttachmentMotion a = motionOf(contact.centerA, state, frames), b = motionOf(contact.surfaceB, state, frames);
   const Vec3 spinA = spinOf(bodyA, state), spinB = spinOf(bodyB, state);
   const Vec3 velocity = velocityOf(bodyA, state) - velocityOf(bodyB, state);
+  const bool areLines = isLine(contact.lineA);
   ContactKinematics place;
-  placeNormal(contact, a, b, spinB, frames, place);
-  const Ascent ascent = ascentOf(contact, place, spinA, frames);
+  if (!areLines) placeNormal(contact, a, b, spinB, frames, place);
+  const Ascent ascent = areLines ? ascentOfLine(contact, crossingOf(contact, a, b, spinA, spinB, frames), place)
+                                 : ascentOf(contact, place, spinA, frames);
   place.leverA = a.arm.cross(place.normal);
   place.point = a.position - ascent.way;
   place.armA = a.arm - ascent.way;
   place.armB = place.point - centerOf(bodyB, state);
   place.velocity = velocity + spinA.cross(place.armA) - spinB.cross(place.armB);
-  if (isRim(contact)) {
-    place.gap = (a.position - b.position).dot(place.normal) - ascent.way.dot(place.normal);
+  if (isRim(contact)) place.gap = (a.position - b.position).dot(place.normal) - ascent.way.dot(place.normal);
+  if (isRim(contact) || areLines)
     place.leverA = place.armA.cross(place.normal), place.leverB = place.armB.cross(place.normal);
-  }
   const Vec3 armRateA = spinA.cross(a.arm) - ascent.rate;
   place.drift = spinA.cross(armRateA) - spinB.cross(armRateA + velocity);
   place.rounding = kRowRounding * (a.position.norm() + a.arm.norm() + b.arm.norm() + contact.radiusA);

@@ -17,17 +17,19 @@ enum class ContactMotion {
   sticking  // no tangential velocity where they touch: at rest on each other, or rolling
 };
 
-/// A sphere of body A that stays on a surface of body B: on a flat face, a sphere or a straight edge. A corner is a
-/// sphere of radius 0. On a face it may be the rim of a disc as well, by its lowest point. What touches may roll, slide
-/// or spin; it is released only by being taken away.
+/// A sphere of body A that stays on a surface of body B: on a flat face, a sphere, or all that is within a radius of a
+/// straight line (the side of a capsule or cylinder, or with radius 0 an edge). A corner is a sphere of radius 0. On a
+/// face it may be the rim of a disc as well, by its lowest point. On a line it may be another such line, which crosses
+/// it. What touches may roll, slide or spin; it is released only by being taken away.
 struct ContactConstraint {
-  Attachment centerA;                                        // of A's sphere or disc
+  Attachment centerA;                                        // of A's sphere or disc; a point of its line
   double radiusA = 0;                                        // m, >= 0
-  Vec3 rimAxisA = Vec3::Zero();                              // unit, across the disc, in A's frame; zero: a sphere
-  Attachment surfaceB;                                       // a point of B's face, or the centre of B's sphere
+  Vec3 rimAxisA = Vec3::Zero();                              // unit, across the disc, in A's frame; zero: no disc
+  Vec3 lineA = Vec3::Zero();                                 // of a line through centerA, unit, A's frame; else zero
+  Attachment surfaceB;                                       // a point of B's face or line, or its sphere's centre
   double radiusB = std::numeric_limits<double>::infinity();  // m, >= 0; infinite: a flat face
   Vec3 normalB = Vec3::UnitY();                              // of a face, outward, unit; in B's frame, or the world
-  Vec3 edgeB = Vec3::Zero();  // of a straight edge through surfaceB, unit, same frame; radiusB is 0 then; else zero
+  Vec3 lineB = Vec3::Zero();                                 // of a line through surfaceB, unit, same frame; else zero
   ContactMotion motion = ContactMotion::frictionless;
   double friction = 0;  // coefficient, >= 0; of sliding alone
 
@@ -38,27 +40,27 @@ struct ContactConstraint {
   bool keepsDirection = false;  // friction is against slidingDirection, whatever the velocity
 };
 
-/// A contact as collision detection finds it, with the radii of the spheres that its surfaces are there: 0 a corner,
-/// infinite a flat face.
+/// A contact as collision detection finds it, with the radii of the spheres that its surfaces are there, or those
+/// around their lines: 0 a corner or an edge, infinite a flat face.
 struct SurfaceContact {
   int bodyA = kFixed, bodyB = kFixed;
   Vec3 point = Vec3::Zero();   // m, world: middle between the two surfaces
   Vec3 normal = Vec3::Zero();  // unit, world, from A to B
   double separation = 0;       // m
   double radiusA = 0, radiusB = 0;
-  Vec3 edge = Vec3::Zero();      // unit, world: direction of a straight edge, whose radius is NaN; else zero
+  Vec3 lineA = Vec3::Zero(), lineB = Vec3::Zero();  // unit, world: of a straight line; zero: it is none
   Vec3 rimAxisA = Vec3::Zero();  // unit, world: A touches a face by the rim of a disc across this; zero: it does not
 };
 
-/// The frictionless constraint that keeps a contact. If A's surface is a face or an edge, the bodies change places in
-/// it: its A is the contact's B. One of the radii must be finite.
+/// The frictionless constraint that keeps a contact. If A's surface is a face, or a line that B's sphere touches, the
+/// bodies change places in it: its A is the contact's B. One of the radii must be finite, lines must not be parallel.
 ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& state);
 
 /// Sets the way A slides from a direction in the world.
 void setSlidingDirection(ContactConstraint& contact, const Vec3& direction, const VectorX& state);
 
 /// How the surfaces of a contact are placed and move, in the world's frame. They touch at `point`, the place of A's
-/// sphere, or of its disc's rim, nearest to B.
+/// sphere or line, or of its disc's rim, nearest to B.
 struct ContactKinematics {
   Vec3 normal;          // unit, out of B: A is pushed along it
   Vec3 normalRate;      // 1/s

@@ -8,8 +8,8 @@ namespace {
 constexpr double kSameInertia = 1e-9;  // relative: what bodies that are meant to be equal differ by, and more
 
 SurfaceContact surfacesOf(const Contact& contact) {
-  return {contact.bodyA,   contact.bodyB,   contact.point, contact.normal,  contact.separation,
-          contact.radiusA, contact.radiusB, contact.edge,  contact.rimAxisA};
+  return {contact.bodyA,   contact.bodyB,   contact.point, contact.normal, contact.separation,
+          contact.radiusA, contact.radiusB, contact.lineA, contact.lineB,  contact.rimAxisA};
 }
 
 /// 1/(kg m^2): how easily a body turns, whatever its orientation.
@@ -49,8 +49,9 @@ ContactRows rowsOf(const ContactConstraint& constraint, const VectorX& state, co
 }
 
 bool canLast(const Contact& contact) {
-  const bool isEdge = contact.edge != Vec3::Zero(), isSharp = !(contact.radiusA > 0 || contact.radiusB > 0);
-  return !isSharp && (isEdge || (!std::isnan(contact.radiusA) && !std::isnan(contact.radiusB))) &&
+  if (!contact.lineA.isZero(0) && !contact.lineB.isZero(0)) return true;
+  const bool isSharp = !(contact.radiusA > 0 || contact.radiusB > 0);
+  return !isSharp && !std::isnan(contact.radiusA) && !std::isnan(contact.radiusB) &&
          (std::isfinite(contact.radiusA) || std::isfinite(contact.radiusB));
 }
 

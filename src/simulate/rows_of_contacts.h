@@ -14,15 +14,14 @@ struct ContactRows {
   std::array<ConstraintRow, 3> rows;  // two along the surfaces, then the gap's
 };
 
-/// Surfaces that are neither sphere, corner nor face, nor an edge under a sphere, are taken as a corner on a face: good
-/// for one instant.
+/// Surfaces that cannot last are taken as a corner on a face: good for one instant.
 ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vector<BodyFrame>& frames);
 
 /// The rows of a contact that lasts, where its bodies have come to `state`.
 ContactRows rowsOf(const ContactConstraint& constraint, const VectorX& state, const std::vector<BodyFrame>& frames);
 
 /// Whether a contact can last: its kinematics are those of a sphere or corner on a face, a corner or a sphere, of a
-/// sphere on a straight edge, or of a disc's rim on a face.
+/// sphere on a straight line, of two lines that cross, or of a disc's rim on a face.
 bool canLast(const Contact& contact);
 
 /// Moves a contact of `before` with its bodies, which are at `state` now, where `frames` are theirs; its separation

@@ -12,13 +12,14 @@
 namespace cradle {
 namespace {
 
+enum class Shape { point, rim, line };
 struct Kind {
   std::string name;
   int bodyA, bodyB;
   double radiusA, radiusB;
-  bool isRim = false;
+  Shape a = Shape::point, b = Shape::point;
 };
-constexpr double kFace = std::numeric_limits<double>::infinity(), kEdge = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFace = std::numeric_limits<double>::infinity();
 const std::vector<Kind> kKinds = {{"corner on fixed face", 0, kFixed, 0, kFace},
                                   {"ball on fixed face", 0, kFixed, 0.3, kFace},
                                   {"corner on face", 0, 1, 0, kFace},
@@ -27,14 +28,23 @@ const std::vector<Kind> kKinds = {{"corner on fixed face", 0, kFixed, 0, kFace},
                                   {"ball on fixed ball", 0, kFixed, 0.3, 0.7},
                                   {"ball on ball", 0, 1, 0.3, 0.7},
                                   {"corner on ball", 0, 1, 0, 0.7},
-                                  {"ball on fixed edge", 0, kFixed, 0.7, kEdge},
-                                  {"ball on edge", 0, 1, 0.7, kEdge},
-                                  {"rim on fixed face", 0, kFixed, 0.3, kFace, true},
-                                  {"rim on face", 0, 1, 0.3, kFace, true},
-                                  {"fixed rim on face", kFixed, 1, 0.3, kFace, true}};
+                                  {"ball on fixed edge", 0, kFixed, 0.7, 0, Shape::point, Shape::line},
+                                  {"ball on edge", 0, 1, 0.7, 0, Shape::point, Shape::line},
+                                  {"edge on fixed ball", 0, kFixed, 0, 0.7, Shape::line, Shape::point},
+                                  {"corner on side", 0, 1, 0, 0.4, Shape::point, Shape::line},
+                                  {"edge on fixed edge", 0, kFixed, 0, 0, Shape::line, Shape::line},
+                                  {"edge on edge", 0, 1, 0, 0, Shape::line, Shape::line},
+                                  {"fixed edge on side", kFixed, 1, 0, 0.4, Shape::line, Shape::line},
+                                  {"side on side", 0, 1, 0.3, 0.4, Shape::line, Shape::line},
+                                  {"rim on fixed face", 0, kFixed, 0.3, kFace, Shape::rim},
+                                  {"rim on face", 0, 1, 0.3, kFace, Shape::rim},
+                                  {"fixed rim on face", kFixed, 1, 0.3, kFace, Shape::rim}};
 
-Vec3 edgeOf(const Kind& kind, const Vec3& normal) {
-  return std::isnan(kind.radiusB) ? Vec3(normal.unitOrthogonal()) : Vec3(Vec3::Zero());
+/// Lines across the normal that cross at that angle (rad).
+void setLines(const Kind& kind, double angle, SurfaceContact& surfaces) {
+  const Vec3 along = surfaces.normal.unitOrthogonal();
+  if (kind.a == Shape::line) surfaces.lineA = rotationAbout(surfaces.normal, angle) * along;
+  if (kind.b == Shape::line) surfaces.lineB = along;
 }
 
 /// Two lopsided bodies that move at random and touch in a contact of that kind, somewhere.
@@ -56,10 +66,11 @@ struct Touching {
     }
     evaluatePoseRates(mechanism.bodies, state, rate);
     const Vec3 normal = random.vector().normalized();
-    SurfaceContact surfaces{kind.bodyA, kind.bodyB,   random.vector(), normal,
-                            0,          kind.radiusA, kind.radiusB,    edgeOf(kind, normal)};
+    SurfaceContact surfaces{kind.bodyA, kind.bodyB, random.vector(), normal, 0, kind.radiusA, kind.radiusB};
+    setLines(kind, (random.between(-1, 1) > 0 ? 1 : -1) * random.between(0.5, 2.5), surfaces);
     // A disc 30 degrees from upright, whose lowest point moves around it.
-    if (kind.isRim) surfaces.rimAxisA = (std::sqrt(3.0) * normal.cross(random.vector()).normalized() + normal) / 2;
+    if (kind.a == Shape::rim)
+      surfaces.rimAxisA = (std::sqrt(3.0) * normal.cross(random.vector()).normalized() + normal) / 2;
     ContactConstraint contact = constraintOf(surfaces, state);
     contact.motion = motion;
     contact.friction = 0.4;
@@ -106,7 +117,8 @@ TEST(ContactRows, TangentialVelocityIsThatOfTheMaterialWhereTheSurfacesTouch) {
     const ContactKinematics place = placeIn(pair.mechanism, 0, pair.state);
     // Points marked on both bodies at the place of contact.
     Vec3 velocity = Vec3::Zero();
-    for (const auto& [body, sign] : {std::pair(kind.bodyA, 1.0), std::pair(kind.bodyB, -1.0)}) {
+    const ContactConstraint& contact = pair.mechanism.contacts[0];
+    for (const auto& [body, sign] : {std::pair(contact.centerA.body, 1.0), std::pair(contact.surfaceB.body, -1.0)}) {
       if (body == kFixed) continue;
       const Quat bodyFromWorld = orientation(pair.state, body).normalized().conjugate();
       const Attachment mark{body, bodyFromWorld * (place.point - centerOfMass(pair.state, body))};
@@ -154,9 +166,9 @@ TEST(ContactRows, SurfacesApartKeepTheirDistanceInTheGap) {
     Mechanism mechanism;
     const Vec3 normal = Vec3(2, -1, 2) / 3;
     mechanism.bodies = {lopsided(1), lopsided(1)};
-    mechanism.contacts = {constraintOf(
-        {kind.bodyA, kind.bodyB, Vec3(1, 2, 3), normal, 0.01, kind.radiusA, kind.radiusB, edgeOf(kind, normal)},
-        state)};
+    SurfaceContact surfaces{kind.bodyA, kind.bodyB, Vec3(1, 2, 3), normal, 0.01, kind.radiusA, kind.radiusB};
+    setLines(kind, -0.7, surfaces);
+    mechanism.contacts = {constraintOf(surfaces, state)};
     EXPECT_NEAR(placeIn(mechanism, 0, state).gap, 0.01, 3e-15) << kind.name;
   }
 }

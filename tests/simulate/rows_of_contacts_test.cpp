@@ -35,16 +35,16 @@ TEST(ContactsThatLast, HaveASurfaceThatIsRoundOrFlat) {
     for (const double radiusB : {0.0, 0.1, kFlat, kNone})
       for (const bool isEdge : {false, true}) {
         contact.radiusA = radiusA, contact.radiusB = radiusB;
-        contact.edge = (isEdge ? 1.0 : 0.0) * Vec3::UnitX();
+        contact.lineB = (isEdge ? 1.0 : 0.0) * Vec3::UnitX();
         const bool hasNormal = radiusA > 0 || radiusB > 0;
         EXPECT_FALSE(canLast(contact) && !hasNormal) << radiusA << " " << radiusB << " " << isEdge;
       }
-  contact.edge.setZero();
+  contact.lineB.setZero();
   contact.radiusA = 0, contact.radiusB = kFlat;
   EXPECT_TRUE(canLast(contact));
   contact.radiusB = 0.1;
   EXPECT_TRUE(canLast(contact));
-  contact.radiusB = kNone, contact.radiusA = 0.1, contact.edge = Vec3::UnitX();
+  contact.radiusB = 0, contact.radiusA = 0.1, contact.lineB = Vec3::UnitX();
   EXPECT_TRUE(canLast(contact));
 }
 
@@ -54,7 +54,7 @@ TEST(RowsOfContacts, AreFiniteWhateverTouches) {
       for (const bool isEdge : {false, true}) {
         Touching touching;
         touching.contact.radiusA = radiusA, touching.contact.radiusB = radiusB;
-        touching.contact.edge = (isEdge && std::isnan(radiusB) ? 1.0 : 0.0) * Vec3::UnitX();
+        touching.contact.lineB = (isEdge && radiusB == 0 ? 1.0 : 0.0) * Vec3::UnitX();
         const ContactRows rows = rowsOf(touching.contact, touching.state, touching.frames);
         SCOPED_TRACE(::testing::Message() << radiusA << " " << radiusB << " " << isEdge);
         EXPECT_TRUE(rows.place.normal.allFinite());

@@ -86,17 +86,22 @@ double ContactChanges::distanceFromNearest(std::size_t contact, const ContactRec
   const ContactGeometry& geometry = island_.assembly.geometry;
   const bool isOfB = geometry.colliders[pair.a].body == row.centerA.body;
   const Collider &a = geometry.colliders[isOfB ? pair.a : pair.b], &b = geometry.colliders[isOfB ? pair.b : pair.a];
-  const auto nearestOn = [&](const Collider& collider, const Attachment& anchor) {
-    const Vec3 center = motionOf(anchor, state, frames_).position;
+  const auto nearestOn = [&](const Collider& collider, const Vec3& center) {
     if (collider.body == kFixed) return nearestOnSurface(collider, center);
     const Mat3& worldFromBody = frames_[static_cast<std::size_t>(collider.body)].rotation;
     const Vec3 origin = centerOfMass(state, collider.body);
     return Vec3(origin + worldFromBody * nearestOnSurface(collider, worldFromBody.transpose() * (center - origin)));
   };
   const ContactKinematics place = kinematicsOf(row, state, frames_);
-  const double onB = (place.point - place.gap * place.normal - nearestOn(b, row.centerA)).norm();
-  if (std::isinf(row.radiusB)) return onB;
-  return std::max(onB, (place.point - nearestOn(a, row.surfaceB)).norm());
+  const Vec3 onB = place.point - place.gap * place.normal;
+  // Where lines cross, each has its own end: the error of the interpolant, which lets edges overlap, says nothing then.
+  if (!row.lineA.isZero(0))
+    return std::max((place.point - nearestOn(a, place.point)).norm(), (onB - nearestOn(b, onB)).norm());
+  const double apartOnB = (onB - nearestOn(b, motionOf(row.centerA, state, frames_).position)).norm();
+  if (std::isinf(row.radiusB)) return apartOnB;
+  const Vec3 centerB =
+      row.lineB.isZero(0) ? motionOf(row.surfaceB, state, frames_).position : Vec3(onB - row.radiusB * place.normal);
+  return std::max(apartOnB, (place.point - nearestOn(a, centerB)).norm());
 }
 
 /// N: the normal forces with which the pair of a contact slides, as evaluated last. Points of one face share them in
