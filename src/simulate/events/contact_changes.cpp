@@ -99,8 +99,9 @@ double ContactChanges::distanceFromNearest(std::size_t contact, const ContactRec
     return std::max((place.point - nearestOn(a, place.point)).norm(), (onB - nearestOn(b, onB)).norm());
   const double apartOnB = (onB - nearestOn(b, motionOf(row.centerA, state, frames_).position)).norm();
   if (std::isinf(row.radiusB)) return apartOnB;
-  const Vec3 centerB =
-      row.lineB.isZero(0) ? motionOf(row.surfaceB, state, frames_).position : Vec3(onB - row.radiusB * place.normal);
+  Vec3 centerB = motionOf(row.surfaceB, state, frames_).position;
+  if (!row.lineB.isZero(0)) centerB = onB - row.radiusB * place.normal;
+  if (a.kind() == ColliderKind::cylinder) centerB = place.point;  // from inside, its end may be nearer than its side
   return std::max(apartOnB, (place.point - nearestOn(a, centerB)).norm());
 }
 

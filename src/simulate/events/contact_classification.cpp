@@ -250,7 +250,8 @@ bool tips(const ContactRecord& record, const std::vector<ContactRecord>& records
   const ContactGeometry& geometry = island.assembly.geometry;
   if (!record.isLoaded || !standsOnRim(geometry, record.contact)) return false;
   const auto isBeside = [&](const ContactRecord& other) {
-    return other.contact.pair == record.contact.pair && standsOnRim(geometry, other.contact) &&
+    const bool isSide = !other.contact.lineA.isZero(0) && !other.contact.lineB.isZero(0);
+    return other.contact.pair == record.contact.pair && (isSide || standsOnRim(geometry, other.contact)) &&
            other.contact.normal.dot(record.contact.normal) > kSameMeshSide;
   };
   const auto carries = [&](const ContactRecord& other) { return isBeside(other) && other.isLoaded; };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "collision/closest_points.h"
@@ -15,13 +16,21 @@
 namespace cradle {
 namespace {
 
-// Sine of the angle between two lines: nearer to parallel, the place where they cross runs too fast along them.
-constexpr double kLeastCrossing = 1e-3;
+// Sine of the angle between two lines that cross: nearer to parallel, rounding (1e-16 of the size) moves the place
+// where they do by more than leaving the end of a line means.
+constexpr double kLeastCrossing = 1e-6;
 
 /// A straight line of a surface, in the collider's frame, and the radius (m) around it.
 struct Line {
   Segment segment;
   double radius;
+};
+
+/// A place in a surface, m in the world: the centre of a sphere, or the point of a line.
+struct Center {
+  Vec3 place;
+  double radius;  // m, around it
+  Vec3 line;      // unit; zero: a sphere
 };
 
 /// A collider as a contact sees it: all in its own frame.
@@ -39,8 +48,11 @@ struct Side {
         near(EventTolerances::kAtCorner * of.boundingRadius +
              EventTolerances::kCoordinateRounding * contact.point.norm()) {}
 
-  /// m: of the contact from a place, along the surface.
-  double distanceTo(const Vec3& place) const { return (place - point).cross(outward).norm(); }
+  /// m: of the contact from a place near it, along the surface; infinite from others.
+  double distanceTo(const Vec3& place) const {
+    if ((place - point).norm() > EventTolerances::kSameCorner * collider.boundingRadius) return INFINITY;
+    return (place - point).cross(outward).norm();
+  }
 
   bool isRound() const { return collider.kind() == ColliderKind::capsule || collider.kind() == ColliderKind::cylinder; }
 
@@ -48,16 +60,21 @@ struct Side {
   Segment axis() const { return {collider.points[0], collider.points[1] - collider.points[0]}; }
   bool isAcross() const { return std::abs(axis().along.normalized().dot(outward)) <= ConvexTolerances::kParallelAngle; }
 
+  /// The corner of a polytope there; null: there is none.
+  const Vec3* corner() const {
+    if (collider.radius > 0 || collider.kind() == ColliderKind::cylinder) return nullptr;
+    const auto found = std::find_if(collider.points.begin(), collider.points.end(),
+                                    [this](const Vec3& place) { return distanceTo(place) < near; });
+    return found == collider.points.end() ? nullptr : &*found;
+  }
   bool hasCorner() const {
-    if (collider.radius > 0) return false;
     if (collider.kind() == ColliderKind::cylinder) {  // any point of a rim
       const Core core(collider, {});
       const double side = core.axis().dot(point - core.center()) < 0 ? -1 : 1;
       return (core.rimPoint(side, point - core.center()) - point).norm() <
              EventTolerances::kSameCorner * collider.boundingRadius;
     }
-    return std::any_of(collider.points.begin(), collider.points.end(),
-                       [this](const Vec3& corner) { return distanceTo(corner) < near; });
+    return corner() != nullptr;
   }
 
   /// Whether the foot of the contact on a segment is between its ends.
@@ -74,7 +91,7 @@ struct Side {
     }
     if (collider.kind() != ColliderKind::polytope) return std::nullopt;
     const std::vector<Vec3>& corners = collider.polytope->vertices;
-    double least = EventTolerances::kSameCorner * collider.boundingRadius;
+    double least = INFINITY;
     std::optional<Line> nearest;
     for (const Polytope::Edge& edge : collider.polytope->edges) {
       const Segment segment{corners[edge.from], corners[edge.to] - corners[edge.from]};
@@ -85,12 +102,18 @@ struct Side {
     return nearest;
   }
 
-  /// m: radius of the sphere at the end of a line, where `radius` does not tell: of the cap of a capsule, of the rim of
-  /// a cylinder that lies, of the corner of a polytope.
-  double radiusAtEnd(double radius) const {
-    if (!std::isnan(radius)) return radius;
-    if (isRound() && isAcross()) return collider.radius + collider.rimRadius;
-    return hasCorner() ? 0 : radius;
+  /// The sphere at the end of a line that touches there: the cap of a capsule, the rim of a cylinder that lies, the
+  /// corner of a polytope, or a sphere; none where the contact is none of these.
+  std::optional<Center> end() const {
+    if (collider.isSphere()) return Center{worldFromCollider * collider.points[0], collider.radius, Vec3::Zero()};
+    if (collider.kind() == ColliderKind::cylinder && !isAcross()) return std::nullopt;
+    if (isRound()) {
+      const bool isFirst = axis().nearestPart(point) < 0.5;
+      return Center{worldFromCollider * collider.points[isFirst ? 0 : 1], collider.radius + collider.rimRadius,
+                    Vec3::Zero()};
+    }
+    const Vec3* corner = this->corner();
+    return corner ? std::optional(Center{worldFromCollider * *corner, 0, Vec3::Zero()}) : std::nullopt;
   }
 
   Segment inWorld(const Segment& segment) const {
@@ -109,45 +132,67 @@ void findCorner(const Side& a, const Side& b, Contact& contact) {
     contact.radiusB = 0;
 }
 
+/// Puts a contact where the surfaces around two places touch; `contact` tells the normal of what is sharp.
+void place(const Center& a, const Center& b, Contact& contact) {
+  const Vec3 apart = b.place - a.place, across = a.line.cross(b.line);
+  if (a.radius + b.radius > 0)
+    contact.normal = apart.normalized();
+  else
+    contact.normal = (across.dot(contact.normal) < 0 ? -1 : 1) * across.normalized();
+  contact.separation = apart.dot(contact.normal) - a.radius - b.radius;
+  contact.point = a.place + (a.radius + contact.separation / 2) * contact.normal;
+  contact.radiusA = a.radius, contact.radiusB = b.radius;
+  contact.lineA = a.line, contact.lineB = b.line;
+}
+
+Center footOn(const Segment& segment, double radius, const Vec3& point) {
+  return {segment.at(segment.nearestPart(point)), radius, segment.along.normalized()};
+}
+
+/// Whether edges of two flat faces run along each other at a contact: it is no corner of the area in which the faces
+/// touch, whose corners lie at the ends of what the edges share.
+bool isBetweenCorners(const Contact& contact, double sine) {
+  return sine < ConvexTolerances::kParallelAngle && std::isinf(contact.radiusA) && std::isinf(contact.radiusB);
+}
+
 /// Contacts at both ends of what two parallel lines share: of the end of one on the other one's line.
-void appendEnds(const Contact& contact, const Line& ofA, const Segment& a, const Line& ofB, const Segment& b,
+void appendEnds(const Contact& contact, const Segment& a, double radiusA, const Segment& b, double radiusB,
                 std::vector<Contact>& contacts) {
   const Vec3 along = a.along.normalized();
   const auto [low, high] = std::minmax({along.dot(b.from - a.from), along.dot(b.at(1) - a.from)});
-  const double length = a.along.norm(), foot = along.dot(contact.point - a.from);
-  for (const auto& [end, endOfB] : {std::pair(0.0, low), std::pair(length, high)}) {
-    const bool isOfA = end == 0 ? endOfB <= 0 : endOfB >= length;
+  const double length = a.along.norm();
+  const bool isForward = along.dot(b.along) > 0;
+  for (const auto& [endOfA, endOfB, part] : {std::tuple(0.0, low, 0.0), std::tuple(length, high, 1.0)}) {
+    const bool isOfA = part == 0 ? endOfB <= endOfA : endOfB >= endOfA;
+    const Vec3 end = isOfA ? a.at(part) : b.at(isForward ? part : 1 - part);
     Contact& added = contacts.emplace_back(contact);
-    added.point += ((isOfA ? end : endOfB) - foot) * along;
-    added.radiusA = ofA.radius, added.radiusB = ofB.radius;
     if (isOfA)
-      added.lineB = b.along.normalized();
+      place({end, radiusA, Vec3::Zero()}, footOn(b, radiusB, end), added);
     else
-      added.lineA = along;
+      place(footOn(a, radiusA, end), {end, radiusB, Vec3::Zero()}, added);
   }
 }
 
-/// A contact with the lines that touch there: itself, or two.
+/// A contact with the lines that touch there: itself, or two; none between two corners.
 void appendWithLines(const Side& a, const Side& b, Contact contact, std::vector<Contact>& contacts) {
   const std::optional<Line> ofA = a.line(), ofB = b.line();
   if (ofA && ofB) {
     const Segment lineA = a.inWorld(ofA->segment), lineB = b.inWorld(ofB->segment);
-    const Vec3 alongA = lineA.along.normalized(), alongB = lineB.along.normalized();
-    const double sine = alongA.cross(alongB).norm();
+    const double sine = lineA.along.normalized().cross(lineB.along.normalized()).norm();
+    if (sine < ConvexTolerances::kParallelAngle && ofA->radius + ofB->radius > 0)
+      return appendEnds(contact, lineA, ofA->radius, lineB, ofB->radius, contacts);
+    if (isBetweenCorners(contact, sine)) return;
     if (sine > kLeastCrossing) {
-      contact.radiusA = ofA->radius, contact.radiusB = ofB->radius;
-      contact.lineA = alongA, contact.lineB = alongB;
-    } else if (sine < ConvexTolerances::kParallelAngle && ofA->radius + ofB->radius > 0) {
-      return appendEnds(contact, *ofA, lineA, *ofB, lineB, contacts);
+      const SegmentParts nearest = nearestParts(lineA, lineB);
+      place({lineA.at(nearest.a), ofA->radius, lineA.along.normalized()},
+            {lineB.at(nearest.b), ofB->radius, lineB.along.normalized()}, contact);
     }
-  } else {
-    const double radiusA = a.radiusAtEnd(contact.radiusA), radiusB = b.radiusAtEnd(contact.radiusB);
-    if (ofA && std::isfinite(radiusB) && ofA->radius + radiusB > 0)
-      contact.radiusA = ofA->radius, contact.radiusB = radiusB,
-      contact.lineA = a.inWorld(ofA->segment).along.normalized();
-    if (ofB && std::isfinite(radiusA) && ofB->radius + radiusA > 0)
-      contact.radiusB = ofB->radius, contact.radiusA = radiusA,
-      contact.lineB = b.inWorld(ofB->segment).along.normalized();
+  } else if (ofA || ofB) {
+    const std::optional<Center> endOfA = a.end(), endOfB = b.end();
+    if (ofA && endOfB && ofA->radius + endOfB->radius > 0)
+      place(footOn(a.inWorld(ofA->segment), ofA->radius, endOfB->place), *endOfB, contact);
+    if (ofB && endOfA && ofB->radius + endOfA->radius > 0)
+      place(*endOfA, footOn(b.inWorld(ofB->segment), ofB->radius, endOfA->place), contact);
   }
   contacts.push_back(contact);
 }

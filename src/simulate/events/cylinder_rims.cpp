@@ -31,8 +31,8 @@ bool standsOnRim(const ContactGeometry& geometry, const Contact& contact) {
   const auto isCylinder = [&](std::size_t collider) {
     return geometry.colliders[collider].kind() == ColliderKind::cylinder;
   };
-  return (isCylinder(pair.a) && std::isfinite(contact.radiusA)) ||
-         (!pair.againstPlane && isCylinder(pair.b) && std::isfinite(contact.radiusB));
+  return (isCylinder(pair.a) && std::isfinite(contact.radiusA) && contact.lineA.isZero(0)) ||
+         (!pair.againstPlane && isCylinder(pair.b) && std::isfinite(contact.radiusB) && contact.lineB.isZero(0));
 }
 
 bool standsOnEnd(const ContactGeometry& geometry, const Contact& contact) {
