@@ -49,7 +49,9 @@ ContactRows rowsOf(const ContactConstraint& constraint, const VectorX& state, co
 }
 
 bool canLast(const Contact& contact) {
-  if (!contact.lineA.isZero(0) && !contact.lineB.isZero(0)) return true;
+  const bool isLineA = !contact.lineA.isZero(0), isLineB = !contact.lineB.isZero(0);
+  const bool isRound = std::isfinite(contact.radiusA) && std::isfinite(contact.radiusB);  // neither face nor unknown
+  if (isLineA || isLineB) return isRound && ((isLineA && isLineB) || contact.radiusA + contact.radiusB > 0);
   const bool isSharp = !(contact.radiusA > 0 || contact.radiusB > 0);
   return !isSharp && !std::isnan(contact.radiusA) && !std::isnan(contact.radiusB) &&
          (std::isfinite(contact.radiusA) || std::isfinite(contact.radiusB));
@@ -65,6 +67,7 @@ ContactRows rowsOf(const Contact& contact, const VectorX& state, const std::vect
     const bool isFaceOfA = !isSphereA && !isSphereB && isSteadier(contact.bodyA, contact.bodyB, state, frames);
     surfaces.radiusA = isSphereA ? contact.radiusA : isFaceOfA ? INFINITY : 0;
     surfaces.radiusB = isSphereB ? contact.radiusB : isSphereA || isFaceOfA ? 0 : INFINITY;
+    surfaces.lineA.setZero(), surfaces.lineB.setZero();
   }
   return rowsOf(constraintOf(surfaces, state), state, frames);
 }

@@ -41,7 +41,8 @@ TEST(TouchingContacts, AreWithinTheToleranceOrOfTheClosingPair) {
   EXPECT_LT(nearest[0].point.x(), 0);
 }
 
-// A box turned on another: four corners of the smaller face are on the larger one. Where edges cross there is neither.
+// A box turned on another: four corners of the smaller face are on the larger one. Where edges cross these are lines,
+// the one along x and the other along z, in the plane of the faces.
 TEST(TouchingContacts, OfFlatFacesAreCornersOfEither) {
   for (const bool isUpperSmall : {true, false}) {
     const double lower = isUpperSmall ? 0.8 : 0.3, upper = isUpperSmall ? 0.3 : 0.8;
@@ -66,7 +67,12 @@ TEST(TouchingContacts, OfFlatFacesAreCornersOfEither) {
       "position": [0, 0.7, 0]})");
   const std::vector<Contact> contacts = crossing.find();
   ASSERT_THAT(contacts, SizeIs(4));
-  for (const Contact& contact : contacts) EXPECT_TRUE(std::isinf(contact.radiusA) && std::isinf(contact.radiusB));
+  for (const Contact& contact : contacts) {
+    EXPECT_EQ(contact.radiusA + contact.radiusB, 0);
+    EXPECT_NEAR(std::abs(contact.lineA.cross(contact.lineB).y()), 1, 1e-15);
+    EXPECT_LT((contact.point.cwiseAbs() - Vec3(0.1, 0.6, 0.1)).norm(), 1e-15);
+    EXPECT_NEAR(contact.separation, 0, 1e-15);
+  }
 }
 
 // A rod along the normal leaves a contact no motion: whatever acts, it stays as it is.
