@@ -30,11 +30,13 @@ constexpr int kManyContacts = 64;     // of a mesh
 
 /// Bounds over all contacts that may come about in an island.
 struct PossibleContacts {
-  std::vector<int> edgeOwners, tippers, movers;  // scene bodies; cylinders that may tip; moving bodies that may touch
-  bool hasFriction = false, areRound = true;     // round: of spheres with each other and with planes alone
-  bool hasSlopes = false;                        // planes with friction that are not level
-  bool mayWedge = false;                         // moving bodies with friction between each other
-  double restitution = 0;                        // largest below 1
+  // Scene bodies: polytopes that meet each other, cylinders that meet other than planes, meshes that meet other than
+  // planes and spheres, cylinders that may tip, moving bodies that may touch.
+  std::vector<int> edgeOwners, rimOwners, meshes, tippers, movers;
+  bool hasFriction = false, areRound = true;  // round: of spheres with each other and with planes alone
+  bool hasSlopes = false;                     // planes with friction that are not level
+  bool mayWedge = false;                      // moving bodies with friction between each other
+  double restitution = 0;                     // largest below 1
   int rows = 0, treeRows = 0;  // of all contacts; of one contact of each pair, as long as pairs close no loop
 };
 
@@ -80,6 +82,8 @@ class ContactSurvey {
       surveyPairs(reachable);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (parts_[i].ownsEdge) found_.edgeOwners.push_back(touching_[i]);
+      if (parts_[i].ownsRim) found_.rimOwners.push_back(touching_[i]);
+      if (parts_[i].isMesh) found_.meshes.push_back(touching_[i]);
       if (parts_[i].mayTip) found_.tippers.push_back(touching_[i]);
       if (parts_[i].moves) found_.movers.push_back(touching_[i]);
     }
@@ -90,7 +94,7 @@ class ContactSurvey {
  private:
   /// The part of a body in the contacts that it may have.
   struct Part {
-    bool ownsEdge = false, mayTip = false, moves = false;
+    bool ownsEdge = false, ownsRim = false, isMesh = false, mayTip = false, moves = false;
   };
 
   // Bodies are named by their places in touching_ from here on.
@@ -160,12 +164,16 @@ class ContactSurvey {
                         kLevelSlope * scene_.gravity.norm();
   }
 
-  /// Adds the edges of a body that have no row against the other body.
+  /// Adds what of a body has no row against the other body.
   void addEdges(std::size_t body, const Surface& own, const Surface& other) {
     if (own.isRound()) return;
     found_.areRound = false;
-    if (!other.isPlane()) parts_[body].ownsEdge = true;
-    if (own.kind == ColliderKind::cylinder) parts_[body].mayTip = true;
+    Part& part = parts_[body];
+    if (own.kind == ColliderKind::polytope && other.kind == ColliderKind::polytope) part.ownsEdge = true;
+    if (own.kind == ColliderKind::mesh && !other.isRound()) part.isMesh = true;
+    if (own.kind != ColliderKind::cylinder) return;
+    part.mayTip = true;
+    if (!other.isPlane()) part.ownsRim = true;
   }
 
   /// The element of a body in the disjoint sets: all fixed bodies are one.
@@ -222,13 +230,14 @@ PromiseCondition slidingCondition(const Scene& scene, const PossibleContacts& co
 std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan& island,
                                            const PossibleContacts& contacts) {
   std::vector<PromiseCondition> conditions;
-  if (!contacts.edgeOwners.empty())
-    conditions.push_back(
-        {fmt::format("no edge or round side of {} presses on another body", namesOfBodies(contacts.edgeOwners, scene)),
-         contacts.edgeOwners});
-  if (!contacts.tippers.empty())
-    conditions.push_back(
-        {fmt::format("no cylinder of {} tips over its rim", namesOfBodies(contacts.tippers, scene)), contacts.tippers});
+  const auto add = [&](const char* what, const std::vector<int>& bodies, const char* does) {
+    if (!bodies.empty())
+      conditions.push_back({fmt::format("no {} of {} {}", what, namesOfBodies(bodies, scene), does), bodies});
+  };
+  add("edges", contacts.edgeOwners, "press along each other");
+  add("rim", contacts.rimOwners, "presses on another body");
+  add("edge", contacts.meshes, "presses on another body");
+  add("cylinder", contacts.tippers, "tips over its rim");
   if (mayHaveManyRows(contacts, hasBilateral(island)))
     conditions.push_back({fmt::format("no more than {} redundant or {} independent forces press {} at once",
                                       kMaxRedundant, kMaxIndependent, namesOfBodies(contacts.movers, scene)),
