@@ -31,9 +31,10 @@ using Memory = std::pmr::monotonic_buffer_resource;
 /// The part of a collider's surface that may carry contact: a face, a line, or a point.
 struct FeatureManifold {
   explicit FeatureManifold(Memory* memory) : points(memory) {}
-  Points points;              // m: one, the ends of a line, or a polygon, counter-clockwise seen from outside
-  double radius = kNotRound;  // m, at those points as in ContactPoint
-  bool isFlat = false;        // a face across the contact's normal
+  Points points;                // m: one, the ends of a line, or a polygon, counter-clockwise seen from outside
+  double radius = kNotRound;    // m, at those points as in ContactPoint
+  bool isFlat = false;          // a face across the contact's normal
+  Vec3 outward = Vec3::Zero();  // of that face, unit: its own normal, at kParallelAngle to the contact's at most
 };
 
 /// Radius (m) of the spheres around the points of a core.
@@ -55,7 +56,8 @@ void addEndOfCylinder(const Core& core, const Vec3& outward, FeatureManifold& pa
   const Polytope& prism = *core.collider().polytope;
   const double cosine = core.axis().dot(outward);
   addLoop(core, prism.faces[prism.faces.size() - (cosine > 0 ? 2 : 1)], patch);  // as inscribedPrism has them
-  patch.isFlat = areParallel(cosine > 0 ? core.axis() : Vec3(-core.axis()), outward);
+  patch.outward = cosine > 0 ? core.axis() : Vec3(-core.axis());
+  patch.isFlat = areParallel(patch.outward, outward);
   if (patch.isFlat) patch.radius = 0;  // corners; of a tilted end a rim carries, which rolls
 }
 
@@ -73,6 +75,7 @@ void addFaceOrCorner(const Core& core, const Vec3& outward, FeatureManifold& pat
   patch.radius = 0;
   if (!best) return patch.points.push_back(core.placed(polytope.vertices[vertex]));
   addLoop(core, *best, patch);
+  patch.outward = core.turned(best->normal);
   patch.isFlat = areParallel(best->normal, direction);
 }
 
@@ -100,18 +103,22 @@ FeatureManifold manifoldOf(const Core& core, const Vec3& outward, Memory* memory
   return patch;
 }
 
-/// A face in the plane of contact.
+/// A face in the plane of contact. Gaps are heights over its own plane: over one across the contact's normal, which may
+/// be tilted by 1e-7, points of one height would have different gaps.
 struct Reference {
-  Vec3 normal;  // unit, outwards
-  double offset;
+  Vec3 normal;    // unit, outwards: the contact's
+  Vec3 outward;   // unit: the face's own
+  double offset;  // m, along `outward`
+
+  double heightOf(const Vec3& point) const { return outward.dot(point) - offset; }
 };
 
 /// Contacts of an incident manifold, clipped already, on a face of A: a point each that is within `margin` (m).
 void appendOnFace(const Reference& face, FeatureManifold& incident, double margin, std::vector<ContactPoint>& points) {
-  std::erase_if(incident.points, [&](const Vec3& point) { return face.normal.dot(point) - face.offset > margin; });
+  std::erase_if(incident.points, [&](const Vec3& point) { return face.heightOf(point) > margin; });
   thinOut(kMaxManifoldPoints, incident.points);
   for (const Vec3& point : incident.points) {
-    const double separation = face.normal.dot(point) - face.offset;
+    const double separation = face.heightOf(point);
     points.push_back({point - separation / 2 * face.normal, face.normal, separation, kFlat, incident.radius});
   }
 }
@@ -130,7 +137,7 @@ OverFace clipOnFace(const Core& core, const Core& other, const Vec3& normal, Fea
                     FeatureManifold& incident, double margin, std::vector<ContactPoint>& points) {
   if (core.rimRadius() > 0) growDisc(core, reference);
   const ConvexTolerances tolerances(core, other);
-  const Reference face{normal, core.supportValue(normal)};
+  const Reference face{normal, reference.outward, core.supportValue(reference.outward)};
   const Vec3 deepest = other.supportPoint(-normal) - radiusAround(other) * normal;
   bool isBeside = false;  // the deepest point is not over the face
   Points scratch(reference.points.get_allocator());
@@ -293,7 +300,7 @@ void appendManifold(const Core& core, const Vec3& planePoint, const Vec3& planeN
   if (height > margin) return;
   const std::size_t first = points.size();
   FeatureManifold patch = manifoldOf(core, -planeNormal, &pool);
-  appendOnFace({planeNormal, planeNormal.dot(planePoint)}, patch, margin, points);
+  appendOnFace({planeNormal, planeNormal, planeNormal.dot(planePoint)}, patch, margin, points);
   const double near = height + ConvexTolerances(core.collider().boundingRadius).meeting;
   if (std::none_of(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
                    [near](const ContactPoint& point) { return point.separation <= near; }))
