@@ -227,17 +227,20 @@ bool PairSearch::isCornerHeld(const TouchingFeatures& touching, const Collider& 
          });
 }
 
-/// Whether the corners of a body that are held span an area: the body then does not tilt, and no other corner of it
-/// comes any nearer.
+/// Whether the corners of a body that are held span an area, or both rims of a cylinder that lies are held: the body
+/// then does not tilt, and no other point of it comes any nearer.
 bool PairSearch::isFlush(const TouchingFeatures& touching, const Collider& upper) const {
-  if (!touching.active || upper.radius > 0 || upper.rimRadius > 0) return false;
+  if (!touching.active || upper.radius > 0) return false;
   std::vector<Vec3> arms;  // m, from the first of them
   const Vec3* first = nullptr;
   for (const ActiveFeature& held : *touching.active) {
     const Attachment& corner = held.contact.centerA;
     if (held.pair != pairIndex_ || corner.body != upper.body || !std::isinf(held.contact.radiusB)) continue;
+    if (!held.contact.rimAxisA.isZero(0)) return false;
     if (first) arms.push_back(corner.point - *first);
     first = first ? first : &corner.point;
+    const bool isOfSide = held.contact.radiusA > 0;  // of a cylinder that lies: it stands on corners
+    if (isOfSide && !arms.empty() && 2 * arms.back().norm() > (upper.points[0] - upper.points[1]).norm()) return true;
   }
   const double area = ImpactSearchTolerances(upper.boundingRadius).flushArea;
   return std::any_of(arms.begin(), arms.end(), [&](const Vec3& arm) { return arm.cross(arms[0]).norm() > area; });
