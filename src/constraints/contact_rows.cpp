@@ -25,7 +25,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kFastSliding = 1e-4;  // m/s: above, the weight of the direction given is below rounding
+constexpr double kFastSliding = 100;  // times slowSliding: above, the weight of the direction given is below rounding
 
 bool isFace(double radius) {
   return std::isinf(radius);
@@ -221,11 +221,12 @@ Vec3 slidingDirection(const ContactConstraint& contact, const ContactKinematics&
   const Vec3 given = turned(contact.surfaceB.body, contact.slidingDirection, frames);
   if (contact.keepsDirection) return (given - given.dot(place.normal) * place.normal).normalized();
   const Vec3 velocity = tangentialVelocity(place);
-  if (velocity.dot(given) > 0 && velocity.squaredNorm() > kFastSliding * kFastSliding) return velocity.normalized();
+  const double slow = contact.slowSliding, fast = kFastSliding * slow;
+  if (velocity.dot(given) > 0 && velocity.squaredNorm() > fast * fast) return velocity.normalized();
   const Vec3 side = (given - given.dot(place.normal) * place.normal).normalized();
   const double along = velocity.dot(side);
-  const double speed = 1 + velocity.squaredNorm() / (kSlowestSliding * kSlowestSliding);
-  const double weight = kSlowestSliding / (speed * speed * speed * speed);
+  const double speed = 1 + velocity.squaredNorm() / (slow * slow);
+  const double weight = slow / (speed * speed * speed * speed);
   return (velocity + (std::abs(along) - along + weight) * side).normalized();
 }
 

@@ -34,10 +34,11 @@ struct ContactConstraint {
   double friction = 0;  // coefficient, >= 0; of sliding alone
 
   // Of sliding: the way A slides along B, in B's frame, or the world; of any length but not along the normal. It is the
-  // direction itself as long as the sliding is too slow to have one (below 1e-6 m/s), and the side on which friction
-  // stays when a trial step goes past the instant where the sliding ends: the right-hand side is smooth there.
+  // direction itself as long as the sliding is too slow to have one, and the side on which friction stays when a trial
+  // step goes past the instant where the sliding ends: the right-hand side is smooth there.
   Vec3 slidingDirection = Vec3::Zero();
-  bool keepsDirection = false;  // friction is against slidingDirection, whatever the velocity
+  double slowSliding = kSlowestSliding;  // m/s: slower sliding has that direction
+  bool keepsDirection = false;           // friction is against slidingDirection, whatever the velocity
 };
 
 /// A contact as collision detection finds it, with the radii of the spheres that its surfaces are there, or those
@@ -79,8 +80,8 @@ ContactKinematics kinematicsOf(const ContactConstraint& contact, const VectorX& 
 Vec3 tangentialVelocity(const ContactKinematics& place);
 
 /// Unit direction in which A slides: that of the tangential velocity v, mirrored to the side of the constraint's
-/// slidingDirection; below 1e-6 m/s it goes over into the latter, which a contact that keeps its direction has at any
-/// speed. Friction on A is against it.
+/// slidingDirection; below slowSliding it goes over into the latter, which a contact that keeps its direction has at
+/// any speed. Friction on A is against it.
 Vec3 slidingDirection(const ContactConstraint& contact, const ContactKinematics& place,
                       const std::vector<BodyFrame>& frames);
 

@@ -1,6 +1,7 @@
 #include "simulate/events/active_contacts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -14,6 +15,12 @@ namespace cradle {
 namespace {
 
 constexpr int kMaxTurningSteps = 1000;  // in a row: sliding that ends does so in some hundred
+
+// Parts of the way to a stop at which the direction of sliding is taken, and the weights with which that of the stop is
+// extrapolated from them, by a parabola.
+constexpr std::array<double, 3> kAimParts = {0.7, 0.8, 0.9}, kAimWeights = {1, -3, 3};
+constexpr double kStopped = 1e-3;         // of the speed at the first of them: no more is left at a stop
+constexpr double kMostAimedSpeed = 1e-4;  // m/s: faster sliding has its own direction in any case
 
 }  // namespace
 
@@ -58,6 +65,7 @@ void ActiveContacts::add(const ContactRecord& record, const std::vector<BodyFram
     constraint.motion = ContactMotion::sliding;
     constraint.friction = record.pair.material.dynamicFriction;
     setSlidingDirection(constraint, record.direction, island_.state);
+    constraint.slowSliding = tolerances_.slowSliding;
     constraint.keepsDirection = record.keepsDirectionUntil > island_.time;
   }
   mechanism().contacts.push_back(constraint);
@@ -135,6 +143,39 @@ double ActiveContacts::nextFreeDirection() const {
   return next;
 }
 
+/// m/s, world: of each contact, at a fraction of the island's step.
+std::vector<Vec3> ActiveContacts::slidingVelocitiesAt(double fraction) {
+  interpolate(island_.step, fraction, sample_);
+  place(mechanism().driven, island_.step.time + fraction * island_.step.timeStep, sample_);
+  findBodyFrames(mechanism().bodies, sample_, frames_);
+  std::vector<Vec3> velocities;
+  for (const ContactConstraint& contact : mechanism().contacts)
+    velocities.push_back(tangentialVelocity(kinematicsOf(contact, sample_, frames_)));
+  return velocities;
+}
+
+// With v the velocity of sliding and 1 - p what is left of the way to the stop, v / (1 - p) has a limit there along the
+// direction wanted.
+void ActiveContacts::aimAtStop(double fraction) {
+  std::vector<Vec3> aims(records_.size(), Vec3::Zero());
+  std::vector<double> speeds;  // m/s, at the first part
+  for (std::size_t k = 0; k < kAimParts.size(); ++k) {
+    const std::vector<Vec3> velocities = slidingVelocitiesAt(kAimParts[k] * fraction);
+    for (std::size_t i = 0; i < aims.size(); ++i) {
+      aims[i] += kAimWeights[k] / (1 - kAimParts[k]) * velocities[i];
+      if (k == 0) speeds.push_back(velocities[i].norm());
+    }
+  }
+  const std::vector<Vec3> last = slidingVelocitiesAt(fraction);
+  for (std::size_t i = 0; i < aims.size(); ++i) {
+    ContactConstraint& contact = mechanism().contacts[i];
+    if (contact.motion != ContactMotion::sliding || contact.keepsDirection) continue;
+    if (!(last[i].norm() < kStopped * speeds[i])) continue;
+    setSlidingDirection(contact, aims[i], sample_);
+    contact.slowSliding = std::max(tolerances_.slowSliding, std::min(kStopped * speeds[i], kMostAimedSpeed));
+  }
+}
+
 std::optional<double> ActiveContacts::followSliding() {
   const ContactRecord* fast = nullptr;
   bool isPlaced = false;
@@ -145,6 +186,7 @@ std::optional<double> ActiveContacts::followSliding() {
     if (!isPlaced) findBodyFrames(mechanism().bodies, island_.state, frames_);
     isPlaced = true;
     if (contact.keepsDirection && island_.time < records_[i].keepsDirectionUntil) continue;
+    contact.slowSliding = tolerances_.slowSliding;
     const bool isFreed = std::exchange(contact.keepsDirection, false);
     const Vec3 sliding = tangentialVelocity(kinematicsOf(contact, island_.state, frames_));
     const double speed = sliding.norm();

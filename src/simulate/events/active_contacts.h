@@ -48,6 +48,10 @@ class ActiveContacts {
     return changes_.margin(change, records_, 1, state);
   }
 
+  /// Gives contacts that stop sliding at a fraction of the island's step the direction in which they stop, for a step
+  /// that ends there: the velocity itself tells no direction where it is as small as its error.
+  void aimAtStop(double fraction);
+
   /// Directions of sliding follow the motion from step to step. Notes as a reason to fall back to time stepping that
   /// friction goes on turning them faster than steps follow at a bearable cost: a body that creeps under a load. If
   /// contacts that kept their directions are free now, friction has changed: returns the time (s) in which it turns
@@ -78,6 +82,7 @@ class ActiveContacts {
  private:
   Mechanism& mechanism() const { return island_.assembly.mechanism; }
   void add(const ContactRecord& record, const std::vector<BodyFrame>& frames);
+  std::vector<Vec3> slidingVelocitiesAt(double fraction);
 
   IslandState& island_;
   const EventTolerances& tolerances_;
@@ -85,7 +90,8 @@ class ActiveContacts {
   std::vector<PreviousContact> previous_;
   ContactChanges changes_;
   std::vector<ActiveFeature> features_;
-  std::vector<BodyFrame> frames_;  // of the island's state
+  std::vector<BodyFrame> frames_;  // of the island's state, or of a sample
+  VectorX sample_;
   ContactFallback fallback_;
   bool isReleasing_ = false;
   int turningSteps_ = 0;  // in a row, in which friction turned the direction of some sliding

@@ -35,7 +35,7 @@ std::vector<ContactRecord> recordsOf(const ClassificationInput& input, const Isl
     ContactRecord record{contact, island.assembly.geometry.pairs[contact.pair]};
     const ContactRows rows = rowsOf(contact, island.state, input.frames);
     const Vec3 sliding = tangentialVelocity(rows.place);
-    record.slides = sliding.norm() > kSlowestSliding;
+    record.slides = sliding.norm() > input.tolerances.slowSliding;
     if (record.slides) record.direction = sliding.normalized();
     const PreviousContact* previous = previousAt(record, input.previous, input.frames, island);
     if (previous && previous->isSlipping && !record.slides) record.slides = true, record.direction = previous->slipping;

@@ -231,6 +231,7 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   } else if (event.contact) {
     // Where forces change so fast that the interpolant does not tell them, the step itself may have no such change.
     const double tolerance = EventTolerances::kEventFunction;
+    if (event.contact->kind == ContactChange::Kind::stick) contacts_.active().aimAtStop(event.contact->fraction);
     const double left =
         endStepAtEvent(island_, method_.integrate, {event.contact->fraction * whole, latest, tolerance},
                        [&](const VectorX& state) { return contacts_.active().margin(*event.contact, state); });

@@ -26,6 +26,7 @@ EventTolerances eventTolerancesOf(const EventScales& scales) {
   made.closingPairGap = Tolerances::kClosingPairRatio * size;
   made.closedGap = Tolerances::kClosedGapRatio * made.touch;
   made.leaving = Tolerances::kLeavingRatio * made.touch;
+  made.slowSliding = std::max(kSlowestSliding, Tolerances::kSlowSlidingRatio * accuracy);
   const double longest = std::min(scales.duration, Tolerances::kLongRun);
   made.shortTimeStep = Tolerances::kShortTimeStepRatio * longest;
   made.shortestTimeStep = kShortestTimeStep * longest;

@@ -90,6 +90,10 @@ struct EventTolerances {
   // inside their edges. Where forces grow without bound, longer ones are why.
   static constexpr double kShortMomentArm = 3e-4, kUnboundedMomentArm = 3e-3;
 
+  // Sliding that is no faster than ten times the error that steps allow a velocity tells no direction. m/s, of A.
+  static constexpr double kSlowSlidingRatio = 1;
+  double slowSliding = 0;
+
   // Instants.
 
   // To these a change of contacts is found: its instant on the interpolant of a step, [1e-14, 1e-9], and its event
