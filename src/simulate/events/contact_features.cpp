@@ -20,6 +20,9 @@ namespace {
 // where they do by more than leaving the end of a line means.
 constexpr double kLeastCrossing = 1e-6;
 
+// Between an edge and the contact's normal: nearer to it, the edge does not touch there but leaves from a corner.
+constexpr double kMostRise = 1e-6;
+
 /// A straight line of a surface, in the collider's frame, and the radius (m) around it.
 struct Line {
   Segment segment;
@@ -95,8 +98,9 @@ struct Side {
     std::optional<Line> nearest;
     for (const Polytope::Edge& edge : collider.polytope->edges) {
       const Segment segment{corners[edge.from], corners[edge.to] - corners[edge.from]};
+      if (std::abs(segment.along.dot(outward)) > kMostRise * segment.along.norm() || !isAlong(segment)) continue;
       const double distance = distanceTo(segment.at(segment.nearestPart(point)));
-      if (!isAlong(segment) || distance >= least) continue;
+      if (distance >= least) continue;
       least = distance, nearest = Line{segment, 0};
     }
     return nearest;
