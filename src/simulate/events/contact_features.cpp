@@ -20,8 +20,9 @@ namespace {
 // where they do by more than leaving the end of a line means.
 constexpr double kLeastCrossing = 1e-6;
 
-// Between an edge and the contact's normal: nearer to it, the edge does not touch there but leaves from a corner.
-constexpr double kMostRise = 1e-6;
+// Sines of angles to the plane of contact: an edge, or a face, that is steeper does not touch there but leaves from a
+// corner, or an edge; a cylinder does not lie.
+constexpr double kMostRise = 1e-6, kMostTilt = 1e-4;
 
 /// A straight line of a surface, in the collider's frame, and the radius (m) around it.
 struct Line {
@@ -61,7 +62,7 @@ struct Side {
 
   /// Of a capsule or cylinder: its axis, and whether that is across the normal.
   Segment axis() const { return {collider.points[0], collider.points[1] - collider.points[0]}; }
-  bool isAcross() const { return std::abs(axis().along.normalized().dot(outward)) <= ConvexTolerances::kParallelAngle; }
+  bool isAcross() const { return std::abs(axis().along.normalized().dot(outward)) < kMostTilt; }
 
   /// The corner of a polytope there; null: there is none.
   const Vec3* corner() const {
@@ -86,24 +87,53 @@ struct Side {
     return foot > near && foot < length - near;
   }
 
+  /// Whether it has a face there, in the plane of contact.
+  bool hasFace() const {
+    if (collider.kind() == ColliderKind::cylinder) return axis().along.normalized().cross(outward).norm() < kMostRise;
+    if (collider.kind() != ColliderKind::polytope) return false;
+    const double most = EventTolerances::kSameCorner * collider.boundingRadius;
+    return std::any_of(
+        collider.polytope->faces.begin(), collider.polytope->faces.end(), [&](const Polytope::Face& face) {
+          return (face.normal - outward).norm() < kMostRise && std::abs(face.normal.dot(point) - face.offset) < most;
+        });
+  }
+
+  /// Calls visit(edge, distance of the contact from it) with the edges of a polytope in the plane of contact.
+  template <class Visit>
+  void visitEdges(const Visit& visit) const {
+    const std::vector<Vec3>& corners = collider.polytope->vertices;
+    for (const Polytope::Edge& edge : collider.polytope->edges) {
+      const Segment segment{corners[edge.from], corners[edge.to] - corners[edge.from]};
+      if (std::abs(segment.along.dot(outward)) <= kMostRise * segment.along.norm())
+        visit(segment, distanceTo(segment.at(segment.nearestPart(point))));
+    }
+  }
+
   /// The side of a capsule or cylinder, or the edge, that touches there between its ends.
   std::optional<Line> line() const {
     if (isRound()) {
-      if (!isAcross() || !isAlong(axis())) return std::nullopt;
+      if ((collider.rimRadius > 0 && !isAcross()) || !isAlong(axis())) return std::nullopt;
       return Line{axis(), collider.radius + collider.rimRadius};
     }
-    if (collider.kind() != ColliderKind::polytope) return std::nullopt;
-    const std::vector<Vec3>& corners = collider.polytope->vertices;
+    if (collider.kind() != ColliderKind::polytope || corner()) return std::nullopt;
     double least = INFINITY;
     std::optional<Line> nearest;
-    for (const Polytope::Edge& edge : collider.polytope->edges) {
-      const Segment segment{corners[edge.from], corners[edge.to] - corners[edge.from]};
-      if (std::abs(segment.along.dot(outward)) > kMostRise * segment.along.norm() || !isAlong(segment)) continue;
-      const double distance = distanceTo(segment.at(segment.nearestPart(point)));
-      if (distance >= least) continue;
-      least = distance, nearest = Line{segment, 0};
-    }
+    visitEdges([&](const Segment& segment, double distance) {
+      if (distance < least) least = distance, nearest = Line{segment, 0};
+    });
     return nearest;
+  }
+
+  /// Of the edges that meet in the corner there, the one that is most across a direction (world); none without one.
+  std::optional<Line> edgeOfCorner(const Vec3& direction) const {
+    const Vec3 local = worldFromCollider.rotation.conjugate() * direction;
+    double most = kLeastCrossing;
+    std::optional<Line> found;
+    visitEdges([&](const Segment& segment, double distance) {
+      const double sine = segment.along.normalized().cross(local).norm();
+      if (distance < near && sine > most) most = sine, found = Line{segment, 0};
+    });
+    return found;
   }
 
   /// The sphere at the end of a line that touches there: the cap of a capsule, the rim of a cylinder that lies, the
@@ -125,14 +155,15 @@ struct Side {
   }
 };
 
-/// Where two flat faces touch, a contact may be a corner of either of them; where their edges cross it is none.
+/// Where a face touches, a contact may be a corner of the other side on it. Where edges cross it is none, and neither
+/// is the corner of a face on an edge.
 void findCorner(const Side& a, const Side& b, Contact& contact) {
   const double least = std::min(contact.radiusA, contact.radiusB), most = std::max(contact.radiusA, contact.radiusB);
   if (least != 0 || !std::isinf(most)) return;
   contact.radiusA = contact.radiusB = INFINITY;
-  if (a.hasCorner())
+  if (a.hasCorner() && b.hasFace())
     contact.radiusA = 0;
-  else if (b.hasCorner())
+  else if (b.hasCorner() && a.hasFace())
     contact.radiusB = 0;
 }
 
@@ -177,47 +208,77 @@ void appendEnds(const Contact& contact, const Segment& a, double radiusA, const 
   }
 }
 
-/// A contact with the lines that touch there: itself, or two; none between two corners.
-void appendWithLines(const Side& a, const Side& b, Contact contact, std::vector<Contact>& contacts) {
-  const std::optional<Line> ofA = a.line(), ofB = b.line();
-  if (ofA && ofB) {
-    const Segment lineA = a.inWorld(ofA->segment), lineB = b.inWorld(ofB->segment);
-    const double sine = lineA.along.normalized().cross(lineB.along.normalized()).norm();
-    if (sine < ConvexTolerances::kParallelAngle && ofA->radius + ofB->radius > 0)
-      return appendEnds(contact, lineA, ofA->radius, lineB, ofB->radius, contacts);
-    if (isBetweenCorners(contact, sine)) return;
-    if (sine > kLeastCrossing) {
-      const SegmentParts nearest = nearestParts(lineA, lineB);
-      place({lineA.at(nearest.a), ofA->radius, lineA.along.normalized()},
-            {lineB.at(nearest.b), ofB->radius, lineB.along.normalized()}, contact);
-    }
-  } else if (ofA || ofB) {
-    const std::optional<Center> endOfA = a.end(), endOfB = b.end();
-    if (ofA && endOfB && ofA->radius + endOfB->radius > 0)
-      place(footOn(a.inWorld(ofA->segment), ofA->radius, endOfB->place), *endOfB, contact);
-    if (ofB && endOfA && ofB->radius + endOfA->radius > 0)
-      place(*endOfA, footOn(b.inWorld(ofB->segment), ofB->radius, endOfA->place), contact);
-  }
+/// Contacts of one pair of convex shapes that have been told.
+struct ToldContacts {
+  std::vector<Contact>& all;
+  std::vector<Contact> corners = {};  // of faces, on edges: spare where the edges of the corner cross those as well
+};
+
+/// A contact where two lines touch: itself, or two; none between two corners.
+void appendLines(const Side& a, const Line& ofA, const Side& b, const Line& ofB, Contact contact,
+                 std::vector<Contact>& contacts) {
+  const Segment lineA = a.inWorld(ofA.segment), lineB = b.inWorld(ofB.segment);
+  const Vec3 alongA = lineA.along.normalized(), alongB = lineB.along.normalized();
+  const double sine = alongA.cross(alongB).norm();
+  if (sine < ConvexTolerances::kParallelAngle && ofA.radius + ofB.radius > 0)
+    return appendEnds(contact, lineA, ofA.radius, lineB, ofB.radius, contacts);
+  if (isBetweenCorners(contact, sine)) return;
+  const SegmentParts nearest = nearestParts(lineA, lineB);
+  if (sine > kLeastCrossing)
+    place({lineA.at(nearest.a), ofA.radius, alongA}, {lineB.at(nearest.b), ofB.radius, alongB}, contact);
   contacts.push_back(contact);
+}
+
+/// A contact with the lines that touch there.
+void appendWithLines(const Side& a, const Side& b, Contact contact, ToldContacts& told) {
+  const std::optional<Line> ofA = a.line(), ofB = b.line();
+  if (ofA && ofB) return appendLines(a, *ofA, b, *ofB, contact, told.all);
+  const std::optional<Center> endOfA = a.end(), endOfB = b.end();
+  if (ofA && endOfB && ofA->radius + endOfB->radius > 0) {
+    place(footOn(a.inWorld(ofA->segment), ofA->radius, endOfB->place), *endOfB, contact);
+  } else if (ofB && endOfA && ofB->radius + endOfA->radius > 0) {
+    place(*endOfA, footOn(b.inWorld(ofB->segment), ofB->radius, endOfA->place), contact);
+  } else if (ofA && endOfB) {
+    if (const auto edge = b.edgeOfCorner(a.worldFromCollider.rotation * ofA->segment.along.normalized()))
+      return appendLines(a, *ofA, b, *edge, contact, told.corners);
+  } else if (ofB && endOfA) {
+    if (const auto edge = a.edgeOfCorner(b.worldFromCollider.rotation * ofB->segment.along.normalized()))
+      return appendLines(a, *edge, b, *ofB, contact, told.corners);
+  }
+  told.all.push_back(contact);
+}
+
+void findFeaturesOfPair(const Collider& colliderA, const Collider& colliderB, const VectorX& state,
+                        const std::vector<Contact>& contacts, std::vector<Contact>& all) {
+  ToldContacts told{all};
+  const std::size_t first = all.size();
+  for (Contact contact : contacts) {
+    const Side a(colliderA, contact, contact.normal, state), b(colliderB, contact, -contact.normal, state);
+    findCorner(a, b, contact);
+    if (a.isRound() || b.isRound() || !canLast(contact))
+      appendWithLines(a, b, contact, told);
+    else
+      all.push_back(contact);
+  }
+  const double near = EventTolerances::kSameCorner * std::min(colliderA.boundingRadius, colliderB.boundingRadius);
+  for (const Contact& corner : told.corners)
+    if (std::none_of(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(),
+                     [&](const Contact& other) { return (other.point - corner.point).norm() < near; }))
+      all.push_back(corner);
 }
 
 }  // namespace
 
 void findFeatures(const ContactGeometry& geometry, const VectorX& state, std::vector<Contact>& contacts) {
   std::vector<Contact> told;
-  for (Contact& contact : contacts) {
-    const ColliderPair& pair = geometry.pairs[contact.pair];
-    if (pair.againstPlane || hasMesh(geometry.colliders[pair.a], geometry.colliders[pair.b])) {
-      told.push_back(contact);
-      continue;
-    }
-    const Side a(geometry.colliders[pair.a], contact, contact.normal, state),
-        b(geometry.colliders[pair.b], contact, -contact.normal, state);
-    findCorner(a, b, contact);
-    if (a.isRound() || b.isRound() || !canLast(contact))
-      appendWithLines(a, b, contact, told);
+  for (auto from = contacts.begin(); from != contacts.end();) {
+    const auto to = std::find_if(from, contacts.end(), [&](const Contact& other) { return other.pair != from->pair; });
+    const ColliderPair& pair = geometry.pairs[from->pair];
+    if (pair.againstPlane || hasMesh(geometry.colliders[pair.a], geometry.colliders[pair.b]))
+      told.insert(told.end(), from, to);
     else
-      told.push_back(contact);
+      findFeaturesOfPair(geometry.colliders[pair.a], geometry.colliders[pair.b], state, {from, to}, told);
+    from = to;
   }
   contacts = std::move(told);
 }
