@@ -64,7 +64,40 @@ double sineBesideEdge(const Collider& collider, const Vec3& point, const Vec3& l
   return -std::max(ahead.dot(inLeft), ahead.dot(inRight));
 }
 
+/// The least separation (m) of the ends of a capsule, and of corners that a capsule meets, that are not held. They may
+/// come down on a line along their own that touches already: contacts show that only where both are parallel.
+double gapOfEnds(const Collider& collider, const Collider& other, const RigidTransform& otherFromCollider,
+                 const std::vector<Vec3>& held) {
+  const bool isCapsule = collider.kind() == ColliderKind::capsule;
+  if (!isCapsule && other.kind() != ColliderKind::capsule) return INFINITY;
+  if (collider.kind() != ColliderKind::polytope && !isCapsule) return INFINITY;
+  if (other.kind() == ColliderKind::mesh) return INFINITY;
+  const double near = ImpactSearchTolerances(collider.boundingRadius).samePlace;
+  double least = INFINITY;
+  for (const Vec3& end : collider.points)
+    if (std::none_of(held.begin(), held.end(), [&](const Vec3& place) { return (place - end).norm() < near; }))
+      least = std::min(least, nearestSurfacePoint(other, otherFromCollider * end).distance - collider.radius);
+  return least;
+}
+
 }  // namespace
+
+/// m: the same of both colliders of a pair that touches at a line.
+double ImpactSearch::gapOfEnds(std::size_t index, const std::vector<ActiveFeature>& held, const VectorX& state) const {
+  const ColliderPair& pair = geometry_.pairs[index];
+  const Collider &a = geometry_.colliders[pair.a], &b = geometry_.colliders[pair.b];
+  const RigidTransform aFromB = poseOf(state, a.body).inverse() * poseOf(state, b.body);
+  std::vector<Vec3> heldOfA, heldOfB;
+  bool isLineHeld = false;
+  for (const ActiveFeature& feature : held) {
+    const ContactConstraint& contact = feature.contact;
+    if (feature.pair != index || contact.lineB.isZero(0)) continue;
+    isLineHeld = true;
+    if (contact.lineA.isZero(0)) (contact.centerA.body == a.body ? heldOfA : heldOfB).push_back(contact.centerA.point);
+  }
+  if (!isLineHeld) return INFINITY;
+  return std::min(cradle::gapOfEnds(a, b, aFromB.inverse(), heldOfA), cradle::gapOfEnds(b, a, aFromB, heldOfB));
+}
 
 /// m: that of a pair which one crossing of lines holds. No larger than the path of any point.
 double ImpactSearch::gapBesideCrossing(std::size_t index, const ContactConstraint& crossing,
@@ -108,6 +141,7 @@ double ImpactSearch::gapOfOthers(std::size_t pair, const std::vector<ActiveFeatu
   findOthers(pair, held, state, margin);
   double least = margin;
   for (const Contact& contact : contacts_) least = std::min(least, contact.separation);
+  least = std::min(least, gapOfEnds(pair, held, state));
   const auto isOfPair = [&](const ActiveFeature& feature) { return feature.pair == pair; };
   const auto first = std::find_if(held.begin(), held.end(), isOfPair);
   const bool isCrossing = first != held.end() && !first->contact.lineA.isZero(0);

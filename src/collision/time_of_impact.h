@@ -70,6 +70,7 @@ class ImpactSearch {
   double gapOfOthers(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state, double margin);
   std::optional<double> gapBesideFace(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state,
                                       double margin) const;
+  double gapOfEnds(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state) const;
   double gapBesideCrossing(std::size_t pair, const ContactConstraint& crossing, const VectorX& state) const;
   static double gapBesideFeatures(std::size_t pair, const std::vector<ActiveFeature>& held,
                                   const SphereOverMesh& sphere, double margin);

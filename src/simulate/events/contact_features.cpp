@@ -20,9 +20,9 @@ namespace {
 // where they do by more than leaving the end of a line means.
 constexpr double kLeastCrossing = 1e-6;
 
-// Sines of angles to the plane of contact: an edge, or a face, that is steeper does not touch there but leaves from a
-// corner, or an edge; a cylinder does not lie.
-constexpr double kMostRise = 1e-6, kMostTilt = 1e-4;
+// Sines of angles to the plane of contact, whose normal may miss that of two edges by less. A steeper edge does not
+// touch there but leaves from a corner, a steeper cylinder does not lie, a steeper face touches by its border alone.
+constexpr double kMostRise = 1e-3, kMostTilt = 1e-4, kMostFaceTilt = 1e-6;
 
 /// A straight line of a surface, in the collider's frame, and the radius (m) around it.
 struct Line {
@@ -44,13 +44,13 @@ struct Side {
   Vec3 point, outward;  // m; unit
   double near;          // m: a place so near to a corner, or to the end of a line, is there
 
-  Side(const Collider& of, const Contact& contact, const Vec3& outwards, const VectorX& state)
+  /// `size` (m) is that of the smaller collider.
+  Side(const Collider& of, const Contact& contact, const Vec3& outwards, double size, const VectorX& state)
       : collider(of),
         worldFromCollider(poseOf(state, of.body)),
         point(worldFromCollider.inverse() * contact.point),
         outward(worldFromCollider.rotation.conjugate() * outwards),
-        near(EventTolerances::kAtCorner * of.boundingRadius +
-             EventTolerances::kCoordinateRounding * contact.point.norm()) {}
+        near(EventTolerances::kAtCorner * size + EventTolerances::kCoordinateRounding * contact.point.norm()) {}
 
   /// m: of the contact from a place near it, along the surface; infinite from others.
   double distanceTo(const Vec3& place) const {
@@ -89,13 +89,15 @@ struct Side {
 
   /// Whether it has a face there, in the plane of contact.
   bool hasFace() const {
-    if (collider.kind() == ColliderKind::cylinder) return axis().along.normalized().cross(outward).norm() < kMostRise;
+    if (collider.kind() == ColliderKind::cylinder)
+      return axis().along.normalized().cross(outward).norm() < kMostFaceTilt;
     if (collider.kind() != ColliderKind::polytope) return false;
     const double most = EventTolerances::kSameCorner * collider.boundingRadius;
-    return std::any_of(
-        collider.polytope->faces.begin(), collider.polytope->faces.end(), [&](const Polytope::Face& face) {
-          return (face.normal - outward).norm() < kMostRise && std::abs(face.normal.dot(point) - face.offset) < most;
-        });
+    return std::any_of(collider.polytope->faces.begin(), collider.polytope->faces.end(),
+                       [&](const Polytope::Face& face) {
+                         return (face.normal - outward).norm() < kMostFaceTilt &&
+                                std::abs(face.normal.dot(point) - face.offset) < most;
+                       });
   }
 
   /// Calls visit(edge, distance of the contact from it) with the edges of a polytope in the plane of contact.
@@ -234,7 +236,10 @@ void appendWithLines(const Side& a, const Side& b, Contact contact, ToldContacts
   const std::optional<Line> ofA = a.line(), ofB = b.line();
   if (ofA && ofB) return appendLines(a, *ofA, b, *ofB, contact, told.all);
   const std::optional<Center> endOfA = a.end(), endOfB = b.end();
-  if (ofA && endOfB && ofA->radius + endOfB->radius > 0) {
+  const bool areKnown = !std::isnan(contact.radiusA) && !std::isnan(contact.radiusB);
+  if (!ofA && !ofB && !areKnown && endOfA && endOfB && endOfA->radius + endOfB->radius > 0) {
+    place(*endOfA, *endOfB, contact);
+  } else if (ofA && endOfB && ofA->radius + endOfB->radius > 0) {
     place(footOn(a.inWorld(ofA->segment), ofA->radius, endOfB->place), *endOfB, contact);
   } else if (ofB && endOfA && ofB->radius + endOfA->radius > 0) {
     place(*endOfA, footOn(b.inWorld(ofB->segment), ofB->radius, endOfA->place), contact);
@@ -252,15 +257,16 @@ void findFeaturesOfPair(const Collider& colliderA, const Collider& colliderB, co
                         const std::vector<Contact>& contacts, std::vector<Contact>& all) {
   ToldContacts told{all};
   const std::size_t first = all.size();
+  const double size = std::min(colliderA.boundingRadius, colliderB.boundingRadius);
   for (Contact contact : contacts) {
-    const Side a(colliderA, contact, contact.normal, state), b(colliderB, contact, -contact.normal, state);
+    const Side a(colliderA, contact, contact.normal, size, state), b(colliderB, contact, -contact.normal, size, state);
     findCorner(a, b, contact);
     if (a.isRound() || b.isRound() || !canLast(contact))
       appendWithLines(a, b, contact, told);
     else
       all.push_back(contact);
   }
-  const double near = EventTolerances::kSameCorner * std::min(colliderA.boundingRadius, colliderB.boundingRadius);
+  const double near = EventTolerances::kSameCorner * size;
   for (const Contact& corner : told.corners)
     if (std::none_of(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(),
                      [&](const Contact& other) { return (other.point - corner.point).norm() < near; }))
