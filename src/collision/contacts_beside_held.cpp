@@ -33,7 +33,16 @@ Vec3 heldPlace(const ContactConstraint& contact, const VectorX& state) {
   }
   const Vec3 normal = std::isinf(contact.radiusB) ? Vec3(worldFromB.rotation * contact.normalB)
                                                   : (apart - lineB.dot(apart) * lineB).normalized();
-  return center - contact.radiusA * normal;
+  const Vec3 axis = worldFromA.rotation * contact.rimAxisA;  // of a disc, else zero
+  return center - contact.radiusA * (normal - normal.dot(axis) * axis).normalized();
+}
+
+/// Whether a place is on the rim of a disc that a contact holds by its lowest point, whichever that is.
+bool isOnHeldRim(const ContactConstraint& contact, const Vec3& place, const VectorX& state, double near) {
+  if (contact.rimAxisA.isZero(0)) return false;
+  const Vec3 arm = poseOf(state, contact.centerA.body).inverse() * place - contact.centerA.point;
+  const double height = contact.rimAxisA.dot(arm);
+  return std::abs(height) < near && std::abs((arm - height * contact.rimAxisA).norm() - contact.radiusA) < near;
 }
 
 /// The edge of a polytope along a line through a point of it, both in its frame; null: there is none.
@@ -125,7 +134,8 @@ void ImpactSearch::findOthers(std::size_t pair, const std::vector<ActiveFeature>
   std::erase_if(contacts_, [&](const Contact& contact) {
     return std::any_of(held.begin(), held.end(), [&](const ActiveFeature& feature) {
       if (feature.pair != pair) return false;
-      return (heldPlace(feature.contact, state) - contact.point).norm() < near;
+      return (heldPlace(feature.contact, state) - contact.point).norm() < near ||
+             isOnHeldRim(feature.contact, contact.point, state, near);
     });
   });
 }

@@ -21,8 +21,9 @@ struct Contact {
   double radiusA = kNotRound, radiusB = kNotRound;
   // Unit, world: direction of the straight line that a surface is there; zero: it is none, or not told.
   Vec3 lineA = Vec3::Zero(), lineB = Vec3::Zero();
-  std::uint32_t feature = 0;     // of the mesh that a sphere touches, as in ContactPoint
-  Vec3 rimAxisA = Vec3::Zero();  // unit, world: A is a tilted disc of that radius there, across this; zero: it is not
+  std::uint32_t feature = 0;  // of the mesh that a sphere touches, as in ContactPoint
+  // Unit, world: the one that is no face is a tilted disc of its radius there, across this; zero: it is none.
+  Vec3 rimAxis = Vec3::Zero();
 
   /// A if it moves, else B.
   int movingBody() const { return bodyA != kFixed ? bodyA : bodyB; }

@@ -158,14 +158,14 @@ ContactConstraint constraintOf(const SurfaceContact& contact, const VectorX& sta
   CRADLE_CHECK(std::isfinite(contact.radiusA) || std::isfinite(contact.radiusB));
   if (isFace(contact.radiusA) || (isLine(contact.lineA) && !isLine(contact.lineB)))
     return constraintOf({contact.bodyB, contact.bodyA, contact.point, -contact.normal, contact.separation,
-                         contact.radiusB, contact.radiusA, contact.lineB, contact.lineA},
+                         contact.radiusB, contact.radiusA, contact.lineB, contact.lineA, contact.rimAxis},
                         state);
   const double half = 0.5 * contact.separation;
   const double depthB = contact.radiusB > 0 && !isFace(contact.radiusB) ? contact.radiusB : 0;
   ContactConstraint constraint;
   constraint.centerA = attachmentAt(contact.bodyA, contact.point - (half + contact.radiusA) * contact.normal, state);
-  if (!contact.rimAxisA.isZero(0)) {
-    const Vec3& axis = contact.rimAxisA;
+  if (!contact.rimAxis.isZero(0)) {
+    const Vec3& axis = contact.rimAxis;
     const Vec3 down = (contact.normal - contact.normal.dot(axis) * axis).normalized();
     constraint.centerA =
         attachmentAt(contact.bodyA, contact.point - half * contact.normal - contact.radiusA * down, state);

@@ -50,7 +50,7 @@ struct SurfaceContact {
   double separation = 0;       // m
   double radiusA = 0, radiusB = 0;
   Vec3 lineA = Vec3::Zero(), lineB = Vec3::Zero();  // unit, world: of a straight line; zero: it is none
-  Vec3 rimAxisA = Vec3::Zero();  // unit, world: A touches a face by the rim of a disc across this; zero: it does not
+  Vec3 rimAxis = Vec3::Zero();  // unit, world: a face is touched by the rim of a disc across this; zero: it is not
 };
 
 /// The frictionless constraint that keeps a contact. If A's surface is a face, or a line that B's sphere touches, the

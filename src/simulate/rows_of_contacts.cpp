@@ -9,7 +9,7 @@ constexpr double kSameInertia = 1e-9;  // relative: what bodies that are meant t
 
 SurfaceContact surfacesOf(const Contact& contact) {
   return {contact.bodyA,   contact.bodyB,   contact.point, contact.normal, contact.separation,
-          contact.radiusA, contact.radiusB, contact.lineA, contact.lineB,  contact.rimAxisA};
+          contact.radiusA, contact.radiusB, contact.lineA, contact.lineB,  contact.rimAxis};
 }
 
 /// 1/(kg m^2): how easily a body turns, whatever its orientation.

@@ -70,7 +70,7 @@ struct Touching {
     setLines(kind, (random.between(-1, 1) > 0 ? 1 : -1) * random.between(0.5, 2.5), surfaces);
     // A disc 30 degrees from upright, whose lowest point moves around it.
     if (kind.a == Shape::rim)
-      surfaces.rimAxisA = (std::sqrt(3.0) * normal.cross(random.vector()).normalized() + normal) / 2;
+      surfaces.rimAxis = (std::sqrt(3.0) * normal.cross(random.vector()).normalized() + normal) / 2;
     ContactConstraint contact = constraintOf(surfaces, state);
     contact.motion = motion;
     contact.friction = 0.4;

@@ -97,6 +97,9 @@ double ContactChanges::distanceFromNearest(std::size_t contact, const ContactRec
   // Where lines cross, each has its own end: the error of the interpolant, which lets edges overlap, says nothing then.
   if (!row.lineA.isZero(0))
     return std::max((place.point - nearestOn(a, place.point)).norm(), (onB - nearestOn(b, onB)).norm());
+  if (!row.rimAxisA.isZero(0))
+    return std::max((onB - nearestOn(b, place.point + row.radiusA * place.normal)).norm(),
+                    tolerances_.leaving * flatnessOf(row, state));
   const double apartOnB = (onB - nearestOn(b, motionOf(row.centerA, state, frames_).position)).norm();
   if (std::isinf(row.radiusB)) return apartOnB;
   Vec3 centerB = motionOf(row.surfaceB, state, frames_).position;

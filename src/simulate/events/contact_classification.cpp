@@ -244,7 +244,7 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
 }
 
 /// A corner stays a corner when the face beside it tips, but a cylinder rolls on over its rim. Rows keep points of a
-/// rim only as long as the cylinder stands or lies still, on two of them at least.
+/// rim as they are only as long as the cylinder stands or lies still, on two of them at least.
 bool tips(const ContactRecord& record, const std::vector<ContactRecord>& records, const ClassificationInput& input,
           const IslandState& island) {
   const ContactGeometry& geometry = island.assembly.geometry;
@@ -261,6 +261,16 @@ bool tips(const ContactRecord& record, const std::vector<ContactRecord>& records
          opensAt(tippingSpeed(geometry, island.state, record.contact), record.contact, input, island);
 }
 
+/// Cylinders that lie and may tip roll on a rim from now on; those that stand have no rows.
+void letCylindersTip(const ClassificationInput& input, const IslandState& island, Candidates& found) {
+  std::vector<ContactRecord*> tipping;
+  for (ContactRecord& record : found.records)
+    if (tips(record, found.records, input, island)) tipping.push_back(&record);
+  for (ContactRecord* record : tipping)
+    if (!rollOnRim(island.assembly.geometry, island.state, record->contact))
+      found.fallback = fallbackAt(kTips, {&record->contact}, island.assembly);
+}
+
 }  // namespace
 
 ClassifiedContacts classifyContacts(const ClassificationInput& input, ConstraintSolver& constraints,
@@ -269,8 +279,7 @@ ClassifiedContacts classifyContacts(const ClassificationInput& input, Constraint
   const std::vector<ContactRecord>& records = found.records;
   for (const RecordGroup& group : groupsOf(records, island.assembly.mechanism))
     classifyGroup(group, input, constraints, island, found);
-  for (const ContactRecord& record : records)
-    if (tips(record, records, input, island)) found.fallback = fallbackAt(kTips, {&record.contact}, island.assembly);
+  letCylindersTip(input, island, found);
   for (const ContactRecord& record : records)
     if (record.isLoaded && canLast(record.contact) &&
         !isServedOnMesh(record, input.tolerances.touch, input.frames, island))

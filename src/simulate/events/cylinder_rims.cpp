@@ -9,24 +9,31 @@
 namespace cradle {
 
 void moveToRim(const ContactGeometry& geometry, const VectorX& state, Contact& contact) {
+  if (std::isnan(contact.radiusA) || std::isnan(contact.radiusB)) rollOnRim(geometry, state, contact);
+}
+
+bool rollOnRim(const ContactGeometry& geometry, const VectorX& state, Contact& contact) {
   const ColliderPair& pair = geometry.pairs[contact.pair];
-  const Collider& cylinder = geometry.colliders[pair.a];
-  if (!pair.againstPlane || cylinder.kind() != ColliderKind::cylinder || !std::isnan(contact.radiusA)) return;
+  const bool isOnB = std::isinf(contact.radiusB);  // the face
+  if (isOnB == std::isinf(contact.radiusA)) return false;
+  const Collider& cylinder = geometry.colliders[isOnB ? pair.a : pair.b];
+  if (cylinder.kind() != ColliderKind::cylinder) return false;
   const Core core(cylinder, poseOf(state, cylinder.body));
-  if (core.axis().cross(contact.normal).norm() < kFlatRim) return;
+  const Vec3 down = isOnB ? contact.normal : Vec3(-contact.normal);
+  if (core.axis().cross(down).norm() < kFlatRim) return false;
   const double side = core.axis().dot(contact.point - core.center()) < 0 ? -1 : 1;
-  const Vec3 lowest = core.rimPoint(side, contact.normal);
-  contact.point = lowest + contact.separation / 2 * contact.normal;
-  contact.radiusA = cylinder.rimRadius, contact.rimAxisA = core.axis();
+  contact.point = core.rimPoint(side, down) + contact.separation / 2 * down;
+  (isOnB ? contact.radiusA : contact.radiusB) = cylinder.rimRadius, contact.rimAxis = core.axis();
+  return true;
 }
 
 bool isSameRim(const Contact& one, const Contact& other) {
-  return one.pair == other.pair && !one.rimAxisA.isZero(0) && one.rimAxisA == other.rimAxisA &&
-         (one.point - other.point).norm() < EventTolerances::kSameCorner * one.radiusA;
+  return one.pair == other.pair && !one.rimAxis.isZero(0) && one.rimAxis == other.rimAxis &&
+         (one.point - other.point).norm() < EventTolerances::kSameCorner * std::min(one.radiusA, one.radiusB);
 }
 
 bool standsOnRim(const ContactGeometry& geometry, const Contact& contact) {
-  if (!contact.rimAxisA.isZero(0)) return false;  // it rolls on the rim
+  if (!contact.rimAxis.isZero(0)) return false;  // it rolls on the rim
   const ColliderPair& pair = geometry.pairs[contact.pair];
   const auto isCylinder = [&](std::size_t collider) {
     return geometry.colliders[collider].kind() == ColliderKind::cylinder;

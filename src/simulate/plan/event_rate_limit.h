@@ -4,8 +4,8 @@
 
 namespace cradle {
 
-constexpr int kMaxRedundant = 12;    // dependent rows of active contacts: with more, time stepping costs less
-constexpr int kMaxIndependent = 40;  // independent rows: the same
+constexpr int kMaxRedundant = 24;    // dependent rows of active contacts: with more, time stepping costs less
+constexpr int kMaxIndependent = 80;  // independent rows: the same
 
 /// The largest rate of events: beyond, time stepping costs less.
 struct EventRateLimit {

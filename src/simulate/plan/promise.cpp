@@ -235,7 +235,7 @@ std::vector<PromiseCondition> conditionsOf(const Scene& scene, const IslandPlan&
       conditions.push_back({fmt::format("no {} of {} {}", what, namesOfBodies(bodies, scene), does), bodies});
   };
   add("edges", contacts.edgeOwners, "press along each other");
-  add("rim", contacts.rimOwners, "presses on another body");
+  add("rim", contacts.rimOwners, "presses on an edge or a round side");
   add("edge", contacts.meshes, "presses on another body");
   add("cylinder", contacts.tippers, "tips over its rim");
   if (mayHaveManyRows(contacts, hasBilateral(island)))

@@ -43,7 +43,7 @@ TEST(CylinderRims, AreTouchedAtTheirLowestPoint) {
     const Vec3 lowest = centerOfMass(at.state(), 0) + kHalfLength * down + kRimRadius * across;
     EXPECT_NEAR(lowest.y(), gap, 1e-15);
     EXPECT_LT((contact.point - lowest + gap / 2 * Vec3::UnitY()).norm(), 1e-14) << tilt;
-    EXPECT_LT(contact.rimAxisA.cross(axis).norm(), 1e-15);
+    EXPECT_LT(contact.rimAxis.cross(axis).norm(), 1e-15);
     EXPECT_EQ(contact.radiusA, kRimRadius);
     EXPECT_FALSE(standsOnRim(at.island.assembly.geometry, contact));
     Contact same = contact, other = contact;
@@ -60,7 +60,7 @@ TEST(CylinderRims, AreNotTouchedByFlatDiscsAndOtherShapes) {
     Contact contact = at.lowest();
     contact.radiusA = kNotRound;
     moveToRim(at.island.assembly.geometry, at.state(), contact);
-    EXPECT_EQ(contact.rimAxisA.isZero(0), part < 1) << part;
+    EXPECT_EQ(contact.rimAxis.isZero(0), part < 1) << part;
     EXPECT_FALSE(isSameRim(contact, contact) && part < 1);
   }
   OnPlane at(std::string(kBox) + "}");

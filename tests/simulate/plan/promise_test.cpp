@@ -118,7 +118,7 @@ TEST(Promise, OfRoundBodiesOnABoxIsOfRimsAlone) {
   EXPECT_THAT(conditionsOf(table + bodyOf("c", R"("capsule": {"radius": 0.1, "length": 0.3})", Vec3(0, 1, 0))),
               ElementsAre(kSlow, kRate));
   EXPECT_THAT(conditionsOf(table + bodyOf("c", R"("cylinder": {"radius": 0.1, "length": 0.3})", Vec3(0, 1, 0))),
-              testing::Contains("no rim of c presses on another body"));
+              testing::Contains("no rim of c presses on an edge or a round side"));
 }
 
 // A cube has four corners on a plane: twelve rows, of which any three are independent.
