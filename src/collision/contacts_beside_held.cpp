@@ -100,8 +100,8 @@ double ImpactSearch::gapOfEnds(std::size_t index, const std::vector<ActiveFeatur
   bool isLineHeld = false;
   for (const ActiveFeature& feature : held) {
     const ContactConstraint& contact = feature.contact;
-    if (feature.pair != index || contact.lineB.isZero(0)) continue;
-    isLineHeld = true;
+    if (feature.pair != index) continue;
+    isLineHeld = isLineHeld || !contact.lineB.isZero(0);
     if (contact.lineA.isZero(0)) (contact.centerA.body == a.body ? heldOfA : heldOfB).push_back(contact.centerA.point);
   }
   if (!isLineHeld) return INFINITY;

@@ -9,6 +9,7 @@
 #include "constraints/row_response.h"
 #include "core/error.h"
 #include "dynamics/integrators/rk4.h"
+#include "simulate/events/contact_features.h"
 #include "simulate/events/event_location.h"
 #include "simulate/rows_of_contacts.h"
 #include "simulate/thresholds.h"
@@ -299,7 +300,8 @@ bool SteppedMotion::isAtRest() const {
 }
 
 bool SteppedMotion::mayServeEvents() const {
-  const std::vector<Contact>& touching = contacts_.touching();
+  std::vector<Contact> touching = contacts_.touching();
+  findFeatures(island_.assembly.geometry, island_.state, touching);
   return std::ssize(touching) <= kMaxServed && std::all_of(touching.begin(), touching.end(), canLast);
 }
 
