@@ -200,6 +200,8 @@ std::optional<ContactChange> ContactChanges::firstBetween(const std::vector<Cont
         }
       if (!(marginEnd < -EventTolerances::kEventFunction)) continue;
       if (kKinds[kind] == Kind::leave && !(before_[i][kind] > 0)) continue;
+      // What starts to slide may still go the other way, as slowly as tells no direction, and is turned.
+      if (kKinds[kind] == Kind::stick && before_[i][kind] < 0 && marginEnd > before_[i][kind]) continue;
       const bool isOfForces = kKinds[kind] == Kind::release || kKinds[kind] == Kind::slip;
       if (records[i].isRedundant && isOfForces) {
         isInDoubt_[i] = 1;
