@@ -8,6 +8,7 @@
 #include "collision/mesh_surface.h"
 #include "collision/random_poses.h"
 #include "collision/time_of_impact.h"
+#include "math/rotation.h"
 #include "mesh/primitives.h"
 #include "mesh/sample_meshes.h"
 
@@ -93,6 +94,50 @@ TEST(ContactsBesideHeld, OfACapsuleOnABoxAreThoseOfItsOtherEnd) {
     const VectorX state = placedAt({turn, center});
     EXPECT_NEAR(gapOfOthers(geometry, held, state), (center + other).y() - 0.1, 1e-15) << tilt;
     EXPECT_NEAR(gapOfOthers(geometry, {}, state), std::min(-1e-5, (center + other).y() - 0.1), 1e-15);
+  }
+}
+
+/// A fixed beam on its side, with its upper edge along z at the origin between faces that fall by 45 degrees, and a box
+/// of 0.4 x 0.2 x 0.4 m above it.
+ContactGeometry beamAndBox() {
+  Collider box = colliderOf(Box{Vec3(0.4, 0.2, 0.4)}, RigidTransform{});
+  box.body = 0;
+  const Quat onEdge = rotationAbout(Vec3::UnitZ(), M_PI / 4);
+  ContactGeometry geometry;
+  geometry.colliders = {box, colliderOf(Box{Vec3(1, 1, 4)}, RigidTransform{onEdge, Vec3(0, -std::sqrt(0.5), 0)})};
+  geometry.pairs = {{0, 1, false, {}}};
+  return geometry;
+}
+
+// The box stands with its lower edge along x on the beam's, its face that was down tilted by an angle a about it. That
+// face comes flush with the beam's edge at a = 0, and the sine of a is the gap, in sizes of the smaller body.
+TEST(ContactsBesideHeld, OfEdgesThatCrossAreTheFacesBesideThem) {
+  const ContactGeometry geometry = beamAndBox();
+  const double size = geometry.colliders[0].boundingRadius;
+  for (const double tilt : {0.3, 0.01, 1e-4, 1e-7}) {
+    const Quat turn = rotationAbout(Vec3::UnitX(), tilt);
+    const Vec3 edge = turn * Vec3(0, -0.1, 0.2);  // of the box, from its centre; it is the lower one
+    const VectorX state = placedAt({turn, -edge + 0.03 * Vec3::UnitX()});
+    SurfaceContact crossing{0, kFixed, Vec3::Zero(), -Vec3::UnitY(), 0, 0, 0, Vec3::UnitX(), Vec3::UnitZ()};
+    const std::vector<ActiveFeature> held = {{0, 0, constraintOf(crossing, state)}};
+    EXPECT_NEAR(gapOfOthers(geometry, held, state), std::sin(tilt) * size, 1e-3 * tilt * size + 1e-15) << tilt;
+  }
+}
+
+// A capsule held with one end on the beam's edge, its axis along z but for an angle a: the other end, 0.6 m away, is
+// 0.6 sin a over the edge, however small that is.
+TEST(ContactsBesideHeld, OfACapsuleHeldByOneEndAreItsOtherEnd) {
+  ContactGeometry geometry = beamAndBox();
+  Collider capsule =
+      colliderOf(Capsule{0.1, 0.6}, RigidTransform{rotationAbout(Vec3::UnitX(), M_PI / 2), Vec3::Zero()});
+  capsule.body = 0;
+  geometry.colliders[0] = capsule;
+  for (const double tilt : {0.01, 1e-4, 1e-6, 1e-8}) {
+    const Quat turn = rotationAbout(Vec3::UnitX(), -tilt);
+    const VectorX state = placedAt({turn, Vec3(0, 0.1, 0) - turn * Vec3(0, 0, -0.3)});
+    SurfaceContact end{0, kFixed, Vec3::Zero(), -Vec3::UnitY(), 0, 0.1, 0, Vec3::Zero(), Vec3::UnitZ()};
+    const std::vector<ActiveFeature> held = {{0, 0, constraintOf(end, state)}};
+    EXPECT_NEAR(gapOfOthers(geometry, held, state), 0.6 * std::sin(tilt), 1e-15) << tilt;
   }
 }
 

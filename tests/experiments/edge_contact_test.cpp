@@ -6,7 +6,8 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <string>
+#include <tuple>
 
 #include "experiments/experiment.h"
 
@@ -194,6 +195,36 @@ TEST(EdgeContact, RoundBodiesRollAndSlideOverAnEdgeUntilNothingPresses) {
           accuracy, friction, friction, shape, speed, -speed / radius)));
       expectPromised(run);
       EXPECT_NEAR(endOf(run).linearVelocity.x(), radius * end[1] * std::cos(end[0]), 10 * accuracy) << shape;
+    }
+}
+
+/// A cylinder that is dropped on a floor at an angle (degrees) between its axis and the vertical, rolls on its rim, and
+/// lands on the other one; the state after 0.8 s.
+Trajectory onFloor(const std::string& floor, double length, double tilt, double spin, double accuracy) {
+  return simulate(sceneWith(fmt::format(
+      R"("duration": 0.8, "accuracy": {}, "output": {{"framesPerSecond": 50}},
+      "materials": {{"m": {{"restitution": 0.2, "staticFriction": 0.4, "dynamicFriction": 0.4}}}}, "bodies": [
+      {{"name": "floor", {}, "motion": "static", "material": "m"}},
+      {{"name": "cylinder", "shape": {{"cylinder": {{"radius": 0.06, "length": {}}}}}, "mass": 1, "material": "m",
+        "position": [0, 0.15, 0], "orientation": {{"axis": [1, 0, 0.2], "angleDegrees": {}}},
+        "linearVelocity": [0.3, 0, 0], "angularVelocity": [1, {}, -2]}}])",
+      accuracy, floor, length, tilt, spin)));
+}
+
+// A table is as good as a plane to a rim that rolls on it. Motions differ by rounding, which impacts make larger.
+TEST(EdgeContact, RimsRollOnATableAsOnAPlane) {
+  for (const auto& [length, tilt, spin] : {std::tuple(0.01, 60.0, 0.0), std::tuple(0.05, 85.0, 10.0),
+                                           std::tuple(0.2, 85.0, 0.0), std::tuple(0.05, 89.0, -5.0)})
+    for (const double accuracy : {1e-6, 1e-8}) {
+      const Trajectory plane = onFloor(R"("shape": {"plane": {}})", length, tilt, spin, accuracy);
+      const Trajectory table = onFloor(R"("shape": {"box": {"size": [20, 0.2, 20]}}, "position": [0, -0.1, 0])", length,
+                                       tilt, spin, accuracy);
+      expectPromised(plane);
+      expectPromised(table);
+      EXPECT_FALSE(eventsOf(plane, EventKind::impact).empty());
+      const BodyState on = endOf(plane), other = endOf(table);
+      EXPECT_LT((on.position - other.position).norm(), 1e-9) << length << " " << tilt << " " << accuracy;
+      EXPECT_LT((on.linearVelocity - other.linearVelocity).norm(), 1e-8) << length << " " << tilt << " " << accuracy;
     }
 }
 
