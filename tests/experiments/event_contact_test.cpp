@@ -438,5 +438,30 @@ TEST(Heaps, MoveAlikeMirroredAndInAnotherOrder) {
   }
 }
 
+// A ball slides obliquely with a = mu g against its way, and its spin about the horizontal across that grows by 5 a /
+// (2 r), until it rolls at t = 2 v / (7 a) = 0.053 s. Steps end there, where sliding tells no direction: frames inside
+// them know it all the same.
+TEST(SlidingBall, HasExactFramesUpToWhereItRolls) {
+  const double radius = 0.08, friction = 0.2, deceleration = friction * kGravity;
+  const Vec3 velocity(0.32, 0, 0.18), across = Vec3::UnitY().cross(velocity.normalized());
+  for (const double accuracy : {1e-6, 1e-8, 1e-10}) {
+    const Trajectory run = simulate(sceneWith(fmt::format(
+        R"("duration": 0.06, "accuracy": {}, "output": {{"framesPerSecond": 1000}},
+        "materials": {{"m": {{"restitution": 0, "staticFriction": {}, "dynamicFriction": {}}}}}, "bodies": [
+        {{"name": "floor", "shape": {{"box": {{"size": [4, 1, 4]}}}}, "position": [0, -0.5, 0], "motion": "static",
+          "material": "m"}},
+        {{"name": "ball", "shape": {{"sphere": {{"radius": {}}}}}, "material": "m", "position": [0, {}, 0],
+          "linearVelocity": {}}}])",
+        accuracy, friction, friction, radius, radius, vectorText(velocity))));
+    for (const Frame& frame : run.frames) {
+      if (frame.time > 0.053) break;
+      const BodyState& ball = frame.states[0];
+      const Vec3 spin = 2.5 * deceleration * frame.time / radius * across;
+      EXPECT_LT((ball.angularVelocity - spin).norm(), 10 * accuracy) << accuracy << " " << frame.time;
+      EXPECT_LT((ball.linearVelocity - velocity + deceleration * frame.time * velocity.normalized()).norm(), accuracy);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cradle
