@@ -237,16 +237,17 @@ void appendWithLines(const Side& a, const Side& b, Contact contact, ToldContacts
   if (ofA && ofB) return appendLines(a, *ofA, b, *ofB, contact, told.all);
   const std::optional<Center> endOfA = a.end(), endOfB = b.end();
   const bool areKnown = !std::isnan(contact.radiusA) && !std::isnan(contact.radiusB);
+  const bool isFaceA = std::isinf(contact.radiusA), isFaceB = std::isinf(contact.radiusB);  // up to its border
   if (!ofA && !ofB && !areKnown && endOfA && endOfB && endOfA->radius + endOfB->radius > 0) {
     place(*endOfA, *endOfB, contact);
-  } else if (ofA && endOfB && ofA->radius + endOfB->radius > 0) {
+  } else if (ofA && endOfB && !isFaceA && ofA->radius + endOfB->radius > 0) {
     place(footOn(a.inWorld(ofA->segment), ofA->radius, endOfB->place), *endOfB, contact);
-  } else if (ofB && endOfA && ofB->radius + endOfA->radius > 0) {
+  } else if (ofB && endOfA && !isFaceB && ofB->radius + endOfA->radius > 0) {
     place(*endOfA, footOn(b.inWorld(ofB->segment), ofB->radius, endOfA->place), contact);
-  } else if (ofA && endOfB) {
+  } else if (ofA && endOfB && endOfB->radius == 0) {
     if (const auto edge = b.edgeOfCorner(a.worldFromCollider.rotation * ofA->segment.along.normalized()))
       return appendLines(a, *ofA, b, *edge, contact, told.corners);
-  } else if (ofB && endOfA) {
+  } else if (ofB && endOfA && endOfA->radius == 0) {
     if (const auto edge = a.edgeOfCorner(b.worldFromCollider.rotation * ofB->segment.along.normalized()))
       return appendLines(a, *edge, b, *ofB, contact, told.corners);
   }
