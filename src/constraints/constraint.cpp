@@ -41,14 +41,4 @@ void findRows(const Constraint& constraint, const VectorX& state, const std::vec
       kind);
 }
 
-void findRows(const Constraints& constraints, const VectorX& state, const std::vector<BodyFrame>& frames,
-              std::vector<ConstraintRow>& rows) {
-  rows.clear();
-  ConstraintBlock block;
-  for (const Constraint& constraint : constraints) {
-    findRows(constraint, state, frames, block);
-    for (int i = 0; i < block.rows; ++i) rows.push_back(rowOf(block, i));
-  }
-}
-
 }  // namespace cradle

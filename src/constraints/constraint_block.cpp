@@ -2,14 +2,16 @@
 
 namespace cradle {
 
-ConstraintRow rowOf(const ConstraintBlock& block, int row) {
-  const Vec3 linear = block.linear.row(row);
-  const std::size_t i = static_cast<std::size_t>(row);
-  return {block.bodyA,    block.bodyB,
-          linear,         block.turnsA ? Vec3(block.angularA.row(row)) : Vec3::Zero(),
-          -linear,        block.turnsB ? Vec3(block.angularB.row(row)) : Vec3::Zero(),
-          block.value[i], block.velocityProduct[i],
-          block.scale,    block.rounding[i]};
+double rateOf(const ConstraintBlock& block, int row, const VectorX& state) {
+  double rate = 0;
+  const auto add = [&](int body, double sign, bool turns, const ConstraintBlock::Jacobian& angular) {
+    if (body == kFixed) return;
+    const double moving = sign * block.linear.row(row).dot(linearVelocity(state, body));
+    rate += turns ? moving + angular.row(row).dot(angularVelocity(state, body)) : moving;
+  };
+  add(block.bodyA, 1, block.turnsA, block.angularA);
+  add(block.bodyB, -1, block.turnsB, block.angularB);
+  return rate;
 }
 
 }  // namespace cradle

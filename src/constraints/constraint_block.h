@@ -1,15 +1,20 @@
 #pragma once
 
 #include <array>
-#include <vector>
+#include <type_traits>
 
-#include "constraints/constraint_row.h"
+#include "core/error.h"
+#include "dynamics/rigid_body.h"
 
 namespace cradle {
 
-/// The rows of one bilateral constraint C(positions) = 0 of two bodies at one instant, one to six. It depends on where
-/// A is relative to B, so that dC/dt = linear (v_A - v_B) + angularA w_A + angularB w_B: the Jacobian J in parts, in
-/// the world's frame. As for a ConstraintRow, d^2C/dt^2 = J a + (dJ/dt) v.
+/// Of the lengths that enter a row: a few units in their last place.
+constexpr double kRowRounding = 1e-15;
+
+/// The rows of one constraint C(positions) = 0 of two bodies, or of a contact of them, at one instant, one to six. It
+/// depends on where A is relative to B, so that dC/dt = linear (v_A - v_B) + angularA w_A + angularB w_B: the Jacobian
+/// J in parts, in the world's frame. d^2C/dt^2 = J a + (dJ/dt) v is 0 for J a = -velocityProduct. (R. Featherstone,
+/// "Rigid Body Dynamics Algorithms", 2008, 3.4)
 struct ConstraintBlock {
   static constexpr int kMaxRows = 6;
   using Jacobian = Eigen::Matrix<double, kMaxRows, 3>;
@@ -43,7 +48,18 @@ struct ConstraintEnds {
   Vec3 centripetalAcceleration() const { return a.centripetalAcceleration() - b.centripetalAcceleration(); }
 };
 
-/// One of the rows.
-ConstraintRow rowOf(const ConstraintBlock& block, int row);
+/// Calls visit(std::integral_constant of `rows`): loops over the rows of a constraint have a length that the compiler
+/// knows.
+template <class Visit>
+[[gnu::always_inline]] inline void withRows(int rows, const Visit& visit) {
+  if (rows == 1) return visit(std::integral_constant<int, 1>());
+  if (rows == 3) return visit(std::integral_constant<int, 3>());
+  if (rows == 5) return visit(std::integral_constant<int, 5>());
+  CRADLE_CHECK(rows == 6);
+  visit(std::integral_constant<int, 6>());
+}
+
+/// J v of one of the rows for the velocities, or accelerations, in `state`.
+double rateOf(const ConstraintBlock& block, int row, const VectorX& state);
 
 }  // namespace cradle

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "core/error.h"
 
@@ -35,49 +34,6 @@ constexpr double kJammedRegularisation = 1e-7;  // of the diagonal: 3e-4 of a si
 constexpr double kContradicted = 0.5;           // of what is asked: locked mechanisms leave 0.95, others up to 0.02
 constexpr double kContradictingRatio = 1e-3;    // of the largest residual: rows with less contradict nothing
 
-using Jacobian = ConstraintBlock::Jacobian;
-
-/// A row times a vector. Loops over the rows become loops over neighbours in memory, two at a time.
-template <class Vector>
-[[gnu::always_inline]] inline double dotOf(const Jacobian& jacobian, int row, const Vector& vector) {
-  return jacobian(row, 0) * vector[0] + jacobian(row, 1) * vector[1] + jacobian(row, 2) * vector[2];
-}
-
-/// Adds J M^-1 J^T of two constraints by a body that both have to a block of the matrix, column by column: what the
-/// body's mass does, and what its turning. `inverseMass` is negative where the body is A of one and B of the other.
-template <int rows, int columns>
-void addMass(const ConstraintBlock& row, const ConstraintBlock& column, double inverseMass, double* block) {
-  if (row.isPoint && column.isPoint)
-    for (int i = 0; i < 3; ++i) block[i * rows + i] += inverseMass;
-  else
-    for (int k = 0; k < columns; ++k)
-      for (int i = 0; i < rows; ++i) block[k * rows + i] += inverseMass * dotOf(row.linear, i, column.linear.row(k));
-}
-template <int rows, int columns>
-void addInertia(const Jacobian& angular, const Jacobian& turn, double* __restrict__ block) {
-  for (int k = 0; k < columns; ++k)
-    for (int i = 0; i < rows; ++i) block[k * rows + i] += dotOf(angular, i, turn.row(k));
-}
-
-/// J v of the rows of a constraint.
-template <int rows>
-[[gnu::always_inline]] inline void findRates(const ConstraintBlock& block, const VectorX& state,
-                                             double* __restrict__ rates) {
-  Vec3 relative = Vec3::Zero();
-  if (block.bodyA != kFixed) relative += linearVelocity(state, block.bodyA);
-  if (block.bodyB != kFixed) relative -= linearVelocity(state, block.bodyB);
-  if (block.isPoint)
-    for (int i = 0; i < rows; ++i) rates[i] = i < 3 ? relative[i] : 0;
-  else
-    for (int i = 0; i < rows; ++i) rates[i] = dotOf(block.linear, i, relative);
-  const auto addSpin = [&](int body, const Jacobian& angular) {
-    const Vec3 spin = angularVelocity(state, body);
-    for (int i = 0; i < rows; ++i) rates[i] += dotOf(angular, i, spin);
-  };
-  if (block.turnsA) addSpin(block.bodyA, block.angularA);
-  if (block.turnsB) addSpin(block.bodyB, block.angularB);
-}
-
 }  // namespace
 
 void ConstraintSolver::factorize(const VectorX& state) {
@@ -102,28 +58,10 @@ void ConstraintSolver::findBlocks(const VectorX& state, const std::vector<BodyFr
     findRows(constraint, state, frames, blocks_[blocks]);
     if (!moves(constraint.anchorA.body)) blocks_[blocks].bodyA = kFixed, blocks_[blocks].turnsA = false;
     if (!moves(constraint.anchorB.body)) blocks_[blocks].bodyB = kFixed, blocks_[blocks].turnsB = false;
-    findResponse(blocks_[blocks], frames, responses_[blocks]);
+    findResponse(blocks_[blocks], bodies_, frames, responses_[blocks]);
     ++blocks;
   }
   blocks_.resize(blocks), responses_.resize(blocks);
-}
-
-void ConstraintSolver::findResponse(const ConstraintBlock& block, const std::vector<BodyFrame>& frames,
-                                    Response& response) const {
-  const auto inverseMassOf = [this](int body) {
-    return body == kFixed ? 0 : bodies_[static_cast<std::size_t>(body)].inverseMass;
-  };
-  response.inverseMassA = inverseMassOf(block.bodyA), response.inverseMassB = inverseMassOf(block.bodyB);
-  const auto findTurn = [&](int body, const Jacobian& angular, Jacobian& turn) {
-    const std::size_t index = static_cast<std::size_t>(body);
-    const Mat3 inverseInertia = bodies_[index].hasConstantSpin ? Mat3::Zero() : frames[index].inverseInertia;
-    withRows(block.rows, [&](auto rows) {
-      for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < rows; ++i) turn(i, k) = dotOf(angular, i, inverseInertia.col(k));
-    });
-  };
-  if (block.turnsA) findTurn(block.bodyA, block.angularA, response.turnA);
-  if (block.turnsB) findTurn(block.bodyB, block.angularB, response.turnB);
 }
 
 void ConstraintSolver::exclude(const std::vector<char>& bodies, const std::vector<char>& fixed) {
@@ -153,39 +91,25 @@ bool ConstraintSolver::hasKnownStructure() const {
 /// Which constraints share a body, and the rows of each.
 void ConstraintSolver::analyze() {
   structure_.clear(), couplings_.clear();
-  struct End {
-    std::size_t block;
-    bool isA;
-  };
-  std::vector<std::vector<End>> endsOf(bodies_.size());
-  std::map<std::pair<int, int>, std::size_t> placeOf;
-  std::vector<std::pair<int, int>> places;
+  std::vector<std::vector<int>> blocksOf(bodies_.size());
   std::vector<int> sizes;
   Eigen::Index rows = 0;
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    const ConstraintBlock& block = blocks_[i];
+  for (const ConstraintBlock& block : blocks_) {
+    const int index = static_cast<int>(sizes.size());
     structure_.push_back({block.bodyA, block.bodyB, block.rows});
     sizes.push_back(block.rows);
     rows += block.rows;
-    for (const bool isA : {true, false}) {
-      const int body = isA ? block.bodyA : block.bodyB;
+    const std::size_t first = couplings_.size();
+    for (const int body : {block.bodyA, block.bodyB}) {
       if (body == kFixed) continue;
-      std::vector<End>& ends = endsOf[static_cast<std::size_t>(body)];
-      for (const End& other : ends) {
-        const std::pair<int, int> place(static_cast<int>(i), static_cast<int>(other.block));
-        const auto [known, isNew] = placeOf.try_emplace(place, places.size());
-        if (isNew) places.push_back(place);
-        couplings_.push_back({i, other.block, isA, other.isA, isNew, known->second});
-      }
-      ends.push_back({i, isA});
+      for (const int other : blocksOf[static_cast<std::size_t>(body)])
+        if (std::find(couplings_.begin() + static_cast<std::ptrdiff_t>(first), couplings_.end(),
+                      std::pair(index, other)) == couplings_.end())
+          couplings_.emplace_back(index, other);
+      blocksOf[static_cast<std::size_t>(body)].push_back(index);
     }
   }
-  factor_.analyze(sizes, places);
-  for (Coupling& coupling : couplings_) {
-    if (places[coupling.place].first == static_cast<int>(coupling.row)) continue;
-    std::swap(coupling.row, coupling.column);
-    std::swap(coupling.rowIsA, coupling.columnIsA);
-  }
+  factor_.analyze(sizes, couplings_);
   multipliers_.resize(rows), rightHandSide_.resize(rows), residual_.resize(rows);
 }
 
@@ -193,32 +117,20 @@ void ConstraintSolver::analyze() {
 void ConstraintSolver::assemble() {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const ConstraintBlock& block = blocks_[i];
-    const Response& response = responses_[i];
     withRows(block.rows, [&](auto rows) {
       double* const entries = factor_.diagonal(i);
-      std::fill_n(entries, rows * rows, 0.0);
-      addMass<rows, rows>(block, block, response.inverseMassA + response.inverseMassB, entries);
-      if (block.turnsA) addInertia<rows, rows>(block.angularA, response.turnA, entries);
-      if (block.turnsB) addInertia<rows, rows>(block.angularB, response.turnB, entries);
+      putDelassus<rows, rows>(block, block, responses_[i], entries, rows);
       if (block.compliance > 0)
         for (int row = 0; row < rows; ++row) entries[row * rows + row] += block.compliance;
     });
   }
-  for (const Coupling& coupling : couplings_) {
-    const ConstraintBlock &row = blocks_[coupling.row], &column = blocks_[coupling.column];
-    const Response& response = responses_[coupling.column];
-    const double inverseMass = coupling.columnIsA ? response.inverseMassA : response.inverseMassB;
-    const bool rowTurns = coupling.rowIsA ? row.turnsA : row.turnsB;
-    const bool columnTurns = coupling.columnIsA ? column.turnsA : column.turnsB;
-    const Jacobian& angular = coupling.rowIsA ? row.angularA : row.angularB;
-    const Jacobian& turn = coupling.columnIsA ? response.turnA : response.turnB;
-    double* const entries = factor_.beside(coupling.place);
+  for (std::size_t i = 0; i < couplings_.size(); ++i) {
+    const std::size_t later = static_cast<std::size_t>(couplings_[i].first),
+                      earlier = static_cast<std::size_t>(couplings_[i].second);
+    const ConstraintBlock &row = blocks_[later], &column = blocks_[earlier];
     withRows(row.rows, [&](auto rows) {
       withRows(column.rows, [&](auto columns) {
-        if (coupling.isFirst) std::fill_n(entries, rows * columns, 0.0);
-        addMass<rows, columns>(row, column, coupling.rowIsA == coupling.columnIsA ? inverseMass : -inverseMass,
-                               entries);
-        if (rowTurns && columnTurns) addInertia<rows, columns>(angular, turn, entries);
+        putDelassus<rows, columns>(row, column, responses_[earlier], factor_.beside(i), rows);
       });
     });
   }
@@ -251,28 +163,13 @@ void ConstraintSolver::solve() {
   }
 }
 
-/// Calls add(body, linear, angular) with the parts of M^-1 J^T multipliers, constraint by constraint.
+/// Adds M^-1 J^T multipliers, constraint by constraint: to a state, or by calls of add(body, linear, angular).
 template <class Add>
-void ConstraintSolver::addResponse(const Add& add) const {
+void ConstraintSolver::addResponses(Add&& add) const {
   const double* multipliers = multipliers_.data();
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
-    const ConstraintBlock& block = blocks_[k];
-    const Response& response = responses_[k];
-    Vec3 force = Vec3::Zero(), turnA = Vec3::Zero(), turnB = Vec3::Zero();
-    withRows(block.rows, [&](auto rows) {
-      const auto sum = [&](const Jacobian& jacobian, Vec3& total) {
-        for (int i = 0; i < rows; ++i) total += multipliers[i] * jacobian.row(i).transpose();
-      };
-      if (block.isPoint)
-        force = Vec3(multipliers[0], multipliers[1], multipliers[2]);
-      else
-        sum(block.linear, force);
-      if (block.turnsA) sum(response.turnA, turnA);
-      if (block.turnsB) sum(response.turnB, turnB);
-    });
-    if (block.bodyA != kFixed) add(block.bodyA, Vec3(response.inverseMassA * force), turnA);
-    if (block.bodyB != kFixed) add(block.bodyB, Vec3(-response.inverseMassB * force), turnB);
-    multipliers += block.rows;
+    addResponse(blocks_[k], responses_[k], multipliers, add);
+    multipliers += blocks_[k].rows;
   }
 }
 
@@ -304,17 +201,10 @@ void ConstraintSolver::opposeAccelerations(const VectorX& derivative) {
     });
 }
 
-void ConstraintSolver::addResponse(VectorX& velocities) const {
-  addResponse([&velocities](int body, const Vec3& linear, const Vec3& angular) {
-    linearVelocity(velocities, body) += linear;
-    angularVelocity(velocities, body) += angular;
-  });
-}
-
 const VectorX& ConstraintSolver::constrainAccelerations(VectorX& derivative) {
   opposeAccelerations(derivative);
   solve();
-  addResponse(derivative);
+  addResponses(derivative);
   return multipliers_;
 }
 
@@ -324,13 +214,13 @@ void ConstraintSolver::constrainDisplacements(VectorX& displacement) {
     multipliers_[index] -= block.value[row];
   });
   solve();
-  addResponse(displacement);
+  addResponses(displacement);
 }
 
 void ConstraintSolver::constrainVelocities(VectorX& state) {
   opposeVelocities(state);
   solve();
-  addResponse(state);
+  addResponses(state);
 }
 
 void ConstraintSolver::putMultipliers(VectorX& all) const {
@@ -380,7 +270,7 @@ double ConstraintSolver::displace(VectorX& state) {
   });
   factor_.solve(multipliers_);
   double farthest = 0;
-  addResponse([&](int body, const Vec3& shift, const Vec3& turn) {
+  addResponses([&](int body, const Vec3& shift, const Vec3& turn) {
     centerOfMass(state, body) += shift;
     turnBody(state, body, turn);
     farthest = std::max({farthest, shift.norm(), turn.norm()});

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "constraints/block_ldlt.h"
+#include "constraints/block_response.h"
 #include "constraints/constraint.h"
 
 namespace cradle {
@@ -67,31 +68,17 @@ class ConstraintSolver {
   double largestRate(const VectorX& state) const;
 
  private:
-  /// M^-1 J^T of a block.
-  struct Response {
-    double inverseMassA = 0, inverseMassB = 0;  // 1/kg; 0 if fixed
-    ConstraintBlock::Jacobian turnA, turnB;     // angularA I^-1, angularB I^-1; not set where these are zero
-  };
-  /// A body that two constraints have in common, which puts a block beside the diagonal of the matrix.
-  struct Coupling {
-    std::size_t row, column;  // blocks
-    bool rowIsA, columnIsA;   // which of the bodies of each
-    bool isFirst;             // of those of its block
-    std::size_t place;        // of the block
-  };
   bool moves(int body) const;
   bool hasKnownStructure() const;
   void analyze();
   void findBlocks(const VectorX& state, const std::vector<BodyFrame>& frames);
-  void findResponse(const ConstraintBlock& block, const std::vector<BodyFrame>& frames, Response& response) const;
   void assemble();
   void opposeVelocities(const VectorX& state);
   void opposeAccelerations(const VectorX& derivative);
   void ignoreEmptyRows();
   void solve();
-  void addResponse(VectorX& velocities) const;
   template <class Add>
-  void addResponse(const Add& add) const;
+  void addResponses(Add&& add) const;
   template <class Visit>
   void forEachRow(const Visit& visit) const;
   double displace(VectorX& state);
@@ -103,9 +90,9 @@ class ConstraintSolver {
   std::vector<char> excluded_, fixed_;  // by body, or none
   std::vector<BodyFrame> frames_;
   std::vector<ConstraintBlock> blocks_;  // of the constraints that are not excluded
-  std::vector<Response> responses_;
-  std::vector<std::array<int, 3>> structure_;  // bodies and rows of each, when the couplings were found
-  std::vector<Coupling> couplings_;
+  std::vector<BlockResponse> responses_;
+  std::vector<std::array<int, 3>> structure_;   // bodies and rows of each, when the couplings were found
+  std::vector<std::pair<int, int>> couplings_;  // of blocks that share a body
   BlockLdlt factor_;
   bool isRegular_ = true;
   VectorX multipliers_, rightHandSide_, residual_, undisplaced_;

@@ -21,6 +21,11 @@ std::size_t index(int i) {
   return static_cast<std::size_t>(i);
 }
 
+template <class Visit>
+[[gnu::always_inline]] inline void withContactRows(int rows, const Visit& visit) {
+  rows == 1 ? visit(std::integral_constant<int, 1>()) : visit(std::integral_constant<int, 3>());
+}
+
 }  // namespace
 
 ContactSolver::ContactSolver(const std::vector<ContactConstraint>& contacts, const Constraints& constraints,
@@ -29,9 +34,11 @@ ContactSolver::ContactSolver(const std::vector<ContactConstraint>& contacts, con
 
 void ContactSolver::factorize(const VectorX& state, const std::vector<BodyFrame>& frames,
                               const std::vector<char>& resting) {
-  fillRows(state, frames, resting);
+  place(state, frames, resting);
+  findBlocks(frames, true);
   for (Group& group : groups_) {
     couple(group);
+    if (group.slides) coupleFriction(group, frames);
     group.solver.factorize(group.rows, group.slides);
   }
   if (hasFreeConstraints_) constraintSolver_.factorize(state, frames);
@@ -86,156 +93,182 @@ void ContactSolver::analyze(const std::vector<char>& resting) {
 }
 
 void ContactSolver::sizeRows() {
-  int rows = 0;
+  std::size_t most = 0;
   for (Group& group : groups_) {
-    group.firstRow = rows;
-    group.rows = group.positionRows();
+    int rows = 0;
     for (const int contact : group.members.contacts) {
       const ContactMotion motion = contacts_[index(contact)].motion;
-      if (motion == ContactMotion::sticking) group.rows += 2;
+      rows += motion == ContactMotion::sticking ? 3 : 1;
       if (motion == ContactMotion::sliding) group.slides = true;
     }
-    rows += group.rows;
-    group.solver.resize(group.rows);
+    group.solver.resize(rows);
+    most = std::max(most, index(rows));
   }
-  const std::size_t size = index(rows);
-  rows_.resize(size);
-  responses_.resize(size), coupled_.resize(size);
-  constrained_.resize(size), constrainedCoupled_.resize(size);
-  multipliers_.resize(size);
+  multipliers_.resize(most);
+  blocks_.resize(contacts_.size());
   kinematics_.resize(contacts_.size());
   forces_.assign(contacts_.size(), {});
   bilateralMultipliers_.setZero(rowCount(constraints_));
 }
 
-void ContactSolver::fillRows(const VectorX& state, const std::vector<BodyFrame>& frames,
-                             const std::vector<char>& resting) {
+/// Finds where the contacts are, and factorises the constraints there.
+void ContactSolver::place(const VectorX& state, const std::vector<BodyFrame>& frames,
+                          const std::vector<char>& resting) {
   if (!hasKnownStructure(resting)) analyze(resting);
   for (Group& group : groups_) {
-    int row = group.firstRow, tangentRow = group.firstRow + group.positionRows();
-    for (const int contact : group.members.contacts) fillContact(index(contact), row++, tangentRow, state, frames);
-    if (!group.constraints) continue;
-    group.constraints->factorize(state, frames);
-    constrainResponses(group, state.size());
-  }
-}
-
-void ContactSolver::fillContact(std::size_t contact, int row, int& tangentRow, const VectorX& state,
-                                const std::vector<BodyFrame>& frames) {
-  const ContactConstraint& constraint = contacts_[contact];
-  const ContactKinematics& place = kinematics_[contact] = kinematicsOf(constraint, state, frames);
-  forces_[contact] = {0, Vec3::Zero(), place.normal, place.point, tangentialVelocity(place), Vec3::Zero()};
-  putRow(row, normalRow(constraint, place), frames);
-  if (constraint.motion == ContactMotion::sliding) {
-    forces_[contact].slidingDirection = slidingDirection(constraint, place, frames);
-    addFriction(contact, row, frames);
-  }
-  if (constraint.motion != ContactMotion::sticking) return;
-  for (const ConstraintRow& tangent : tangentRows(constraint, place)) putRow(tangentRow++, tangent, frames);
-}
-
-/// Bodies at rest are fixed to a row.
-void ContactSolver::putRow(int row, const ConstraintRow& from, const std::vector<BodyFrame>& frames) {
-  ConstraintRow& to = rows_[index(row)] = from;
-  to.bodyA = movingBody(from.bodyA);
-  to.bodyB = movingBody(from.bodyB);
-  coupled_[index(row)] = responses_[index(row)] = responseTo(to, bodies_, frames);
-}
-
-/// Adds to the response to a normal force that to the friction that goes with it.
-void ContactSolver::addFriction(std::size_t contact, int row, const std::vector<BodyFrame>& frames) {
-  const ContactKinematics& place = kinematics_[contact];
-  const Vec3 force = -contacts_[contact].friction * forces_[contact].slidingDirection;
-  ConstraintRow friction;
-  friction.bodyA = rows_[index(row)].bodyA;
-  friction.bodyB = rows_[index(row)].bodyB;
-  friction.linearA = force;
-  friction.angularA = place.armA.cross(force);
-  friction.linearB = -force;
-  friction.angularB = -place.armB.cross(force);
-  const RowResponse response = responseTo(friction, bodies_, frames);
-  RowResponse& sum = coupled_[index(row)];
-  sum.linearA += response.linearA;
-  sum.angularA += response.angularA;
-  sum.linearB += response.linearB;
-  sum.angularB += response.angularB;
-}
-
-/// Whether one of a group's rows, counted from its first, is the gap of a sliding contact.
-bool ContactSolver::isSliding(const Group& group, int row) const {
-  return row < group.positionRows() &&
-         contacts_[index(group.members.contacts[index(row)])].motion == ContactMotion::sliding;
-}
-
-void ContactSolver::constrainResponses(Group& group, Eigen::Index stateSize) {
-  const auto constrain = [&](int row, const RowResponse& alone, VectorX& response) {
-    response.setZero(stateSize);
-    addResponse(rows_[index(row)], alone, 1, response);
-    group.constraints->constrainVelocities(response);
-  };
-  for (int i = 0; i < group.rows; ++i) {
-    const std::size_t row = index(group.firstRow + i);
-    constrain(group.firstRow + i, responses_[row], constrained_[row]);
-    if (isSliding(group, i)) constrain(group.firstRow + i, coupled_[row], constrainedCoupled_[row]);
-  }
-}
-
-double ContactSolver::entryOf(const Group& group, int row, int column) const {
-  return group.constraints ? rateOf(rows_[index(row)], constrained_[index(column)])
-                           : delassusEntry(rows_[index(row)], rows_[index(column)], responses_[index(column)]);
-}
-
-double ContactSolver::coupledEntryOf(const Group& group, int row, int column) const {
-  return group.constraints ? rateOf(rows_[index(row)], constrainedCoupled_[index(column)])
-                           : delassusEntry(rows_[index(row)], rows_[index(column)], coupled_[index(column)]);
-}
-
-/// The matrices of a group. Columns differ with friction alone.
-void ContactSolver::couple(Group& group) {
-  const int first = group.firstRow;
-  for (int column = 0; column < group.rows; ++column) {
-    for (int row = column; row < group.rows; ++row) {
-      const double entry = entryOf(group, first + row, first + column);
-      group.solver.symmetric(row, column) = entry;
-      group.solver.symmetric(column, row) = entry;
+    for (const int contact : group.members.contacts) {
+      const std::size_t i = index(contact);
+      const ContactKinematics& place = kinematics_[i] = kinematicsOf(contacts_[i], state, frames);
+      forces_[i] = {0, Vec3::Zero(), place.normal, place.point, tangentialVelocity(place), Vec3::Zero()};
     }
-    const std::size_t own = index(first + column);
-    group.solver.whole(column) = group.constraints ? delassusEntry(rows_[own], rows_[own], responses_[own])
-                                                   : group.solver.symmetric(column, column);
+    if (group.constraints) group.constraints->factorize(state, frames);
   }
-  if (!group.slides) return;
-  for (int column = 0; column < group.rows; ++column)
-    for (int row = 0; row < group.rows; ++row)
-      group.solver.coupled(row, column) = isSliding(group, column) ? coupledEntryOf(group, first + row, first + column)
-                                                                   : group.solver.symmetric(row, column);
 }
 
-/// Adds to a motion (accelerations, velocities, or displacements in their place) what the leading rows of a group and
-/// its constraints ask for: constrain(solver, motion) does what the constraints alone ask, and residual(row, motion) is
-/// what a row leaves of what it asks.
-template <class Constrain, class Residual>
-void ContactSolver::solve(Group& group, int rows, const std::vector<RowResponse>& responses, const Constrain& constrain,
-                          const Residual& residual, VectorX& motion) {
+/// The rows of the contacts, with or without those along the surfaces where they stick.
+void ContactSolver::findBlocks(const std::vector<BodyFrame>& frames, bool withTangents) {
+  for (Group& group : groups_) {
+    group.rows = 0;
+    for (const int contact : group.members.contacts) {
+      const std::size_t i = index(contact);
+      ConstraintBlock& block = blocks_[i].rows.block;
+      findRows(contacts_[i], kinematics_[i], withTangents && contacts_[i].motion == ContactMotion::sticking, block);
+      if (movingBody(block.bodyA) == kFixed) block.bodyA = kFixed, block.turnsA = false;
+      if (movingBody(block.bodyB) == kFixed) block.bodyB = kFixed, block.turnsB = false;
+      findResponse(group, frames, blocks_[i].rows);
+      blocks_[i].firstRow = group.rows;
+      group.rows += block.rows;
+    }
+  }
+}
+
+void ContactSolver::findResponse(Group& group, const std::vector<BodyFrame>& frames, Response& response) {
+  cradle::findResponse(response.block, bodies_, frames, response.alone);
+  if (!group.constraints) return;
+  for (int k = 0; k < response.block.rows; ++k) {
+    std::array<double, 3> multipliers{};
+    multipliers[index(k)] = 1;
+    VectorX& velocities = response.constrained[index(k)];
+    velocities.setZero(stateSize(std::ssize(bodies_)));
+    addResponse(response.block, response.alone, multipliers.data(), velocities);
+    group.constraints->constrainVelocities(velocities);
+  }
+}
+
+/// Entries of a group's matrix, column by column and `stride` apart: what the rows of a contact see of 1 of each
+/// multiplier of `of`.
+template <int rows, int columns>
+[[gnu::always_inline]] inline void ContactSolver::putEntries(const Group& group, const ConstraintBlock& seen,
+                                                             const Response& of, double* entries) {
+  const int stride = group.solver.stride();
+  if (!group.constraints) return putDelassus<rows, columns>(seen, of.block, of.alone, entries, stride);
+  for (int k = 0; k < columns; ++k) findRates<rows>(seen, of.constrained[index(k)], entries + k * stride);
+}
+
+/// The matrix of a group without friction.
+void ContactSolver::couple(Group& group) {
+  MinimumNormSolver& solver = group.solver;
+  const std::vector<int>& contacts = group.members.contacts;
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+    for (std::size_t i = k; i < contacts.size(); ++i) {
+      const ActiveBlock &row = blocks_[index(contacts[i])], &column = blocks_[index(contacts[k])];
+      const int firstRow = row.firstRow, firstColumn = column.firstRow;
+      withContactRows(row.rows.block.rows, [&](auto rows) {
+        withContactRows(column.rows.block.rows, [&](auto columns) {
+          putEntries<rows, columns>(group, row.rows.block, column.rows, &solver.symmetric(firstRow, firstColumn));
+          for (int x = firstColumn; x < firstColumn + columns; ++x)
+            for (int y = firstRow; y < firstRow + rows; ++y) solver.symmetric(x, y) = solver.symmetric(y, x);
+        });
+      });
+    }
+  findDiagonal(group);
+}
+
+/// The diagonal of a group's matrix as it were without constraints.
+void ContactSolver::findDiagonal(Group& group) {
+  for (const int contact : group.members.contacts) {
+    const Response& of = blocks_[index(contact)].rows;
+    const int first = blocks_[index(contact)].firstRow;
+    withContactRows(of.block.rows, [&](auto rows) {
+      std::array<double, static_cast<std::size_t>(rows * rows)> entries{};
+      if (group.constraints) putDelassus<rows, rows>(of.block, of.block, of.alone, entries.data(), rows);
+      for (int k = 0; k < rows; ++k)
+        group.solver.whole(first + k) =
+            group.constraints ? entries[index(k * (rows + 1))] : group.solver.symmetric(first + k, first + k);
+    });
+  }
+}
+
+/// The matrix of a group in which contacts slide: columns differ with friction alone.
+void ContactSolver::coupleFriction(Group& group, const std::vector<BodyFrame>& frames) {
+  MinimumNormSolver& solver = group.solver;
+  for (const int contact : group.members.contacts) {
+    ActiveBlock& column = blocks_[index(contact)];
+    const int first = column.firstRow;
+    if (contacts_[index(contact)].motion != ContactMotion::sliding) {
+      for (int k = first; k < first + column.rows.block.rows; ++k)
+        for (int i = 0; i < group.rows; ++i) solver.coupled(i, k) = solver.symmetric(i, k);
+      continue;
+    }
+    addFriction(group, index(contact), frames);
+    for (const int other : group.members.contacts) {
+      const ActiveBlock& row = blocks_[index(other)];
+      withContactRows(row.rows.block.rows, [&](auto rows) {
+        putEntries<rows, 1>(group, row.rows.block, column.push, &solver.coupled(row.firstRow, first));
+      });
+    }
+  }
+}
+
+/// Joins friction to the normal force of a contact that slides.
+void ContactSolver::addFriction(Group& group, std::size_t contact, const std::vector<BodyFrame>& frames) {
+  const ContactKinematics& place = kinematics_[contact];
+  forces_[contact].slidingDirection = slidingDirection(contacts_[contact], place, frames);
+  const Vec3 force = -contacts_[contact].friction * forces_[contact].slidingDirection;
+  Response& push = blocks_[contact].push;
+  const ConstraintBlock& normal = blocks_[contact].rows.block;
+  push.block.bodyA = normal.bodyA, push.block.bodyB = normal.bodyB;
+  push.block.turnsA = normal.turnsA, push.block.turnsB = normal.turnsB;
+  push.block.rows = 1;
+  push.block.linear.row(0) = place.normal + force;
+  push.block.angularA.row(0) = place.leverA + place.armA.cross(force);
+  push.block.angularB.row(0) = -place.leverB - place.armB.cross(force);
+  findResponse(group, frames, push);
+}
+
+/// Adds to a motion (accelerations, velocities, or displacements in their place) what the rows of a group and its
+/// constraints ask for: constrain(solver, motion) does what the constraints alone ask, and a row of a block has the
+/// rate -asked(block, row).
+template <class Constrain, class Asked>
+void ContactSolver::solve(Group& group, const Constrain& constrain, const Asked& asked, VectorX& motion) {
   if (group.constraints) {
     free_ = motion;
     constrain(*group.constraints, free_);
   }
   const VectorX& free = group.constraints ? free_ : motion;
-  for (int row = group.firstRow; row < group.firstRow + rows; ++row)
-    multipliers_[index(row)] = -residual(rows_[index(row)], free);
-  group.solver.solve(&multipliers_[index(group.firstRow)]);
-  for (int row = group.firstRow; row < group.firstRow + rows; ++row)
-    addResponse(rows_[index(row)], responses[index(row)], multipliers_[index(row)], motion);
+  for (const int contact : group.members.contacts) {
+    const ActiveBlock& from = blocks_[index(contact)];
+    double* const multipliers = &multipliers_[index(from.firstRow)];
+    withContactRows(from.rows.block.rows, [&](auto rows) {
+      findRates<rows>(from.rows.block, free, multipliers);
+      for (std::size_t i = 0; i < rows; ++i) multipliers[i] = -(multipliers[i] + asked(from.rows.block, i));
+    });
+  }
+  group.solver.solve(multipliers_.data());
+  for (const int contact : group.members.contacts) {
+    const ActiveBlock& from = blocks_[index(contact)];
+    const bool slides = group.solver.isCoupled() && contacts_[index(contact)].motion == ContactMotion::sliding;
+    const Response& response = slides ? from.push : from.rows;
+    addResponse(response.block, response.alone, &multipliers_[index(from.firstRow)], motion);
+  }
   if (group.constraints) constrain(*group.constraints, motion);
 }
 
 void ContactSolver::constrainAccelerations(VectorX& derivative) {
   for (Group& group : groups_) {
     solve(
-        group, group.rows, coupled_,
-        [](ConstraintSolver& constraints, VectorX& motion) { constraints.constrainAccelerations(motion); },
-        [](const ConstraintRow& row, const VectorX& motion) { return row.velocityProduct + rateOf(row, motion); },
-        derivative);
+        group, [](ConstraintSolver& constraints, VectorX& motion) { constraints.constrainAccelerations(motion); },
+        [](const ConstraintBlock& block, std::size_t row) { return block.velocityProduct[row]; }, derivative);
     takeForces(group, derivative);
   }
   if (!hasFreeConstraints_) return;
@@ -245,18 +278,17 @@ void ContactSolver::constrainAccelerations(VectorX& derivative) {
 
 /// Notes the forces that go with a group's multipliers, and what friction takes.
 void ContactSolver::takeForces(const Group& group, VectorX& derivative) {
-  int row = group.firstRow, tangentRow = group.firstRow + group.positionRows();
   for (const int i : group.members.contacts) {
     const ContactConstraint& contact = contacts_[index(i)];
+    const ConstraintBlock& block = blocks_[index(i)].rows.block;
+    const double* const multipliers = &multipliers_[index(blocks_[index(i)].firstRow)];
     ContactForce& force = forces_[index(i)];
-    force.normal = multipliers_[index(row++)];
+    force.normal = multipliers[block.rows - 1];
     if (contact.motion == ContactMotion::sliding) {
       force.tangential = -contact.friction * force.normal * force.slidingDirection;
       frictionEnergy(derivative) -= force.tangential.dot(force.tangentialVelocity);
     }
-    if (contact.motion != ContactMotion::sticking) continue;
-    for (int k = 0; k < 2; ++k, ++tangentRow)
-      force.tangential += multipliers_[index(tangentRow)] * rows_[index(tangentRow)].linearA;
+    for (int k = 0; k + 1 < block.rows; ++k) force.tangential += multipliers[k] * block.linear.row(k).transpose();
   }
   if (group.constraints) group.constraints->putMultipliers(bilateralMultipliers_);
 }
@@ -272,13 +304,12 @@ void ContactSolver::constrainVelocities(VectorX& state) {
 void ContactSolver::constrainGroupVelocities(VectorX& state) {
   for (Group& group : groups_)
     solve(
-        group, group.rows, responses_,
-        [](ConstraintSolver& constraints, VectorX& motion) { constraints.constrainVelocities(motion); },
-        [](const ConstraintRow& row, const VectorX& motion) { return rateOf(row, motion); }, state);
+        group, [](ConstraintSolver& constraints, VectorX& motion) { constraints.constrainVelocities(motion); },
+        [](const ConstraintBlock&, std::size_t) { return 0.0; }, state);
 }
 
 double ContactSolver::project(VectorX& state, const std::vector<char>& resting) {
-  placeRows(state, resting);
+  placeGaps(state, resting);
   double found = 0;
   for (Group& group : groups_) {
     group.error = errorOf(group);
@@ -290,12 +321,13 @@ double ContactSolver::project(VectorX& state, const std::vector<char>& resting) 
     undisplaced_ = state;
     for (Group& group : groups_)
       if (!group.isPlaced) displace(group, state);
-    placeRows(state, resting);
+    placeGaps(state, resting);
     bool isUndone = false;
     for (Group& group : groups_)
       if (!group.isPlaced) isUndone = judge(group, state) || isUndone;
-    if (isUndone) placeRows(state, resting);
+    if (isUndone) placeGaps(state, resting);
   }
+  findBlocks(frames_, true);
   for (Group& group : groups_) {
     couple(group);
     group.solver.factorize(group.rows, false);
@@ -305,34 +337,35 @@ double ContactSolver::project(VectorX& state, const std::vector<char>& resting) 
   return found;
 }
 
-void ContactSolver::placeRows(const VectorX& state, const std::vector<char>& resting) {
+void ContactSolver::placeGaps(const VectorX& state, const std::vector<char>& resting) {
   findBodyFrames(bodies_, state, frames_);
-  fillRows(state, frames_, resting);
+  place(state, frames_, resting);
+  findBlocks(frames_, false);
 }
 
 double ContactSolver::errorOf(const Group& group) const {
   double error = group.constraints ? group.constraints->largestError() : 0;
-  for (int i = group.firstRow; i < group.firstRow + group.positionRows(); ++i)
-    error = std::max(error, std::abs(rows_[index(i)].value));
+  for (const int contact : group.members.contacts) error = std::max(error, std::abs(kinematics_[index(contact)].gap));
   return error;
 }
 
 bool ContactSolver::isRounding(const Group& group) const {
-  const auto first = rows_.begin() + group.firstRow;
+  const std::vector<int>& contacts = group.members.contacts;
   return (!group.constraints || group.constraints->holdToRounding()) &&
-         std::all_of(first, first + group.positionRows(),
-                     [](const ConstraintRow& row) { return std::abs(row.value) <= row.rounding; });
+         std::all_of(contacts.begin(), contacts.end(), [this](int contact) {
+           const ContactKinematics& place = kinematics_[index(contact)];
+           return std::abs(place.gap) <= place.rounding;
+         });
 }
 
 /// One step of Newton's method.
 void ContactSolver::displace(Group& group, VectorX& state) {
   couple(group);
-  group.solver.factorize(group.positionRows(), false);
+  group.solver.factorize(group.rows, false);
   displacement_.setZero(state.size());
   solve(
-      group, group.positionRows(), responses_,
-      [](ConstraintSolver& constraints, VectorX& motion) { constraints.constrainDisplacements(motion); },
-      [](const ConstraintRow& row, const VectorX& motion) { return row.value + rateOf(row, motion); }, displacement_);
+      group, [](ConstraintSolver& constraints, VectorX& motion) { constraints.constrainDisplacements(motion); },
+      [](const ConstraintBlock& block, std::size_t row) { return block.value[row]; }, displacement_);
   for (const int body : group.members.bodies) {
     centerOfMass(state, body) += linearVelocity(displacement_, body);
     turnBody(state, body, angularVelocity(displacement_, body));

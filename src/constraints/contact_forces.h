@@ -1,12 +1,12 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
 #include "constraints/constraint_forces.h"
 #include "constraints/contact_groups.h"
 #include "constraints/minimum_norm.h"
-#include "constraints/row_response.h"
 
 namespace cradle {
 
@@ -57,17 +57,26 @@ class ContactSolver {
   double project(VectorX& state, const std::vector<char>& resting);
 
  private:
-  /// Its rows stand one after another: the gaps of its contacts, then two for each contact that sticks.
+  /// Rows, what bodies make of their multipliers, and in groups with constraints, whose bodies all respond, the
+  /// velocities that 1 of each gives, in the layout of a state.
+  struct Response {
+    ConstraintBlock block;
+    BlockResponse alone;
+    std::array<VectorX, 3> constrained;
+  };
+  struct ActiveBlock {
+    int firstRow = 0;  // in its group
+    Response rows;     // of the gap, and of a contact that sticks two before it
+    Response push;     // of one that slides: its normal force with the friction that goes with it
+  };
   struct Group {
     ContactGroup members;
     std::optional<ConstraintSolver> constraints = {};  // if it has any
-    int firstRow = 0, rows = 0;
+    int rows = 0;
     bool slides = false;
     bool isPlaced = false;  // by project, as well as it can be
     double error = 0;       // m or rad, that project found last
     MinimumNormSolver solver = {};
-
-    int positionRows() const { return static_cast<int>(members.contacts.size()); }
   };
   /// How a contact or a constraint joined two bodies when groups were found: `kind` is the motion of a contact, or the
   /// number of rows of a constraint.
@@ -83,24 +92,22 @@ class ContactSolver {
   void sizeRows();
   int movingBody(int body) const;
 
-  void fillRows(const VectorX& state, const std::vector<BodyFrame>& frames, const std::vector<char>& resting);
-  void fillContact(std::size_t contact, int row, int& tangentRow, const VectorX& state,
-                   const std::vector<BodyFrame>& frames);
-  void putRow(int row, const ConstraintRow& from, const std::vector<BodyFrame>& frames);
-  void addFriction(std::size_t contact, int row, const std::vector<BodyFrame>& frames);
-  bool isSliding(const Group& group, int row) const;
-  void constrainResponses(Group& group, Eigen::Index stateSize);
+  void place(const VectorX& state, const std::vector<BodyFrame>& frames, const std::vector<char>& resting);
+  void findBlocks(const std::vector<BodyFrame>& frames, bool withTangents);
+  void findResponse(Group& group, const std::vector<BodyFrame>& frames, Response& response);
+  template <int rows, int columns>
+  static void putEntries(const Group& group, const ConstraintBlock& seen, const Response& of, double* entries);
   void couple(Group& group);
-  double entryOf(const Group& group, int row, int column) const;
-  double coupledEntryOf(const Group& group, int row, int column) const;
+  void findDiagonal(Group& group);
+  void coupleFriction(Group& group, const std::vector<BodyFrame>& frames);
+  void addFriction(Group& group, std::size_t contact, const std::vector<BodyFrame>& frames);
 
-  template <class Constrain, class Residual>
-  void solve(Group& group, int rows, const std::vector<RowResponse>& responses, const Constrain& constrain,
-             const Residual& residual, VectorX& motion);
+  template <class Constrain, class Asked>
+  void solve(Group& group, const Constrain& constrain, const Asked& asked, VectorX& motion);
   void takeForces(const Group& group, VectorX& derivative);
 
   void constrainGroupVelocities(VectorX& state);
-  void placeRows(const VectorX& state, const std::vector<char>& resting);
+  void placeGaps(const VectorX& state, const std::vector<char>& resting);
   double errorOf(const Group& group) const;
   bool isRounding(const Group& group) const;
   void displace(Group& group, VectorX& state);
@@ -118,12 +125,8 @@ class ContactSolver {
 
   std::vector<ContactKinematics> kinematics_;
   std::vector<ContactForce> forces_;
-  std::vector<ConstraintRow> rows_;
-  std::vector<RowResponse> responses_;  // M^-1 J^T
-  std::vector<RowResponse> coupled_;    // the same with friction
-  // The same two of groups with constraints, whose bodies all respond: velocities in the layout of a state.
-  std::vector<VectorX> constrained_, constrainedCoupled_;
-  std::vector<double> multipliers_;
+  std::vector<ActiveBlock> blocks_;
+  std::vector<double> multipliers_;  // of the group that was solved last
   VectorX bilateralMultipliers_, free_, undisplaced_, displacement_;
   std::vector<BodyFrame> frames_;
 };

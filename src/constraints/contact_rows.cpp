@@ -145,11 +145,21 @@ Ascent ascentOfLine(const ContactConstraint& contact, const Crossing& crossing, 
               crossing.along * crossing.alongRateA};
 }
 
-ConstraintRow tangentRow(const ContactConstraint& contact, const ContactKinematics& place, const Vec3& direction) {
-  ConstraintRow row{contact.centerA.body, contact.surfaceB.body,       direction, place.armA.cross(direction),
-                    -direction,           -place.armB.cross(direction)};
-  row.velocityProduct = direction.dot(place.drift) - direction.dot(place.normalRate) * place.normal.dot(place.velocity);
-  return row;
+void putTangentRow(const ContactKinematics& place, const Vec3& direction, int row, ConstraintBlock& block) {
+  const std::size_t i = static_cast<std::size_t>(row);
+  block.linear.row(row) = direction;
+  block.angularA.row(row) = place.armA.cross(direction), block.angularB.row(row) = -place.armB.cross(direction);
+  block.value[i] = block.rounding[i] = 0;
+  block.velocityProduct[i] =
+      direction.dot(place.drift) - direction.dot(place.normalRate) * place.normal.dot(place.velocity);
+}
+
+void putNormalRow(const ContactKinematics& place, int row, ConstraintBlock& block) {
+  const std::size_t i = static_cast<std::size_t>(row);
+  block.linear.row(row) = place.normal;
+  block.angularA.row(row) = place.leverA, block.angularB.row(row) = -place.leverB;
+  block.value[i] = place.gap, block.rounding[i] = place.rounding;
+  block.velocityProduct[i] = place.normalRate.dot(place.velocity) + place.normal.dot(place.drift);
 }
 
 }  // namespace
@@ -230,18 +240,18 @@ Vec3 slidingDirection(const ContactConstraint& contact, const ContactKinematics&
   return (velocity + (std::abs(along) - along + weight) * side).normalized();
 }
 
-ConstraintRow normalRow(const ContactConstraint& contact, const ContactKinematics& place) {
-  ConstraintRow row{contact.centerA.body, contact.surfaceB.body, place.normal,
-                    place.leverA,         -place.normal,         -place.leverB};
-  row.value = place.gap;
-  row.velocityProduct = place.normalRate.dot(place.velocity) + place.normal.dot(place.drift);
-  row.rounding = place.rounding;
-  return row;
-}
-
-std::array<ConstraintRow, 2> tangentRows(const ContactConstraint& contact, const ContactKinematics& place) {
+void findRows(const ContactConstraint& contact, const ContactKinematics& place, bool withTangents,
+              ConstraintBlock& block) {
+  block.bodyA = contact.centerA.body, block.bodyB = contact.surfaceB.body;
+  block.turnsA = block.bodyA != kFixed, block.turnsB = block.bodyB != kFixed;
+  block.isPoint = false;
+  block.rows = withTangents ? 3 : 1;
+  block.scale = 1, block.compliance = 0;
+  putNormalRow(place, block.rows - 1, block);
+  if (!withTangents) return;
   const Vec3 first = across(place.normal);
-  return {tangentRow(contact, place, first), tangentRow(contact, place, place.normal.cross(first))};
+  putTangentRow(place, first, 0, block);
+  putTangentRow(place, place.normal.cross(first), 1, block);
 }
 
 }  // namespace cradle

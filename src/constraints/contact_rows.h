@@ -1,10 +1,9 @@
 #pragma once
 
-#include <array>
 #include <limits>
 #include <vector>
 
-#include "constraints/constraint_row.h"
+#include "constraints/constraint_block.h"
 
 namespace cradle {
 
@@ -85,11 +84,11 @@ Vec3 tangentialVelocity(const ContactKinematics& place);
 Vec3 slidingDirection(const ContactConstraint& contact, const ContactKinematics& place,
                       const std::vector<BodyFrame>& frames);
 
-/// The row of the gap: its multiplier is the normal force (N).
-ConstraintRow normalRow(const ContactConstraint& contact, const ContactKinematics& place);
-
-/// Two rows of the tangential velocity along orthogonal unit directions, which may be others in the next instant: with
-/// multipliers for all of both, motion and force do not depend on them. No value: they constrain velocities alone.
-std::array<ConstraintRow, 2> tangentRows(const ContactConstraint& contact, const ContactKinematics& place);
+/// Fills in the row of the gap, whose multiplier is the normal force (N), as the last one of the block. Before it, if
+/// `withTangents`, stand two of the tangential velocity along orthogonal unit directions, which may be others in the
+/// next instant: with multipliers for all of both, motion and force do not depend on them. They have no value: they
+/// constrain velocities alone.
+void findRows(const ContactConstraint& contact, const ContactKinematics& place, bool withTangents,
+              ConstraintBlock& block);
 
 }  // namespace cradle

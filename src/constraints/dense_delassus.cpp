@@ -11,17 +11,26 @@ bool isImmobile(double inverseMass, double unconstrainedInverseMass) {
   return inverseMass <= kImmobileRatio * unconstrainedInverseMass;
 }
 
-DenseDelassus::DenseDelassus(std::vector<ConstraintRow> rows, const std::vector<RigidBody>& bodies,
+DenseDelassus::DenseDelassus(std::vector<ConstraintBlock> blocks, const std::vector<RigidBody>& bodies,
                              const std::vector<BodyFrame>& frames, ConstraintSolver* constraints)
-    : rows_(std::move(rows)), unconstrainedDiagonal_(std::ssize(rows_)), matrix_(std::ssize(rows_), std::ssize(rows_)) {
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const RowResponse alone = responseTo(rows_[i], bodies, frames);
-    VectorX response = VectorX::Zero(stateSize(std::ssize(bodies)));
-    addResponse(rows_[i], alone, 1, response);
-    if (constraints && constraints->hasConstraints()) constraints->constrainVelocities(response);
-    unconstrainedDiagonal_[static_cast<Index>(i)] = delassusEntry(rows_[i], rows_[i], alone);
-    matrix_.col(static_cast<Index>(i)) = velocities(response);
-    responses_.push_back(std::move(response));
+    : blocks_(std::move(blocks)) {
+  Index size = 0;
+  for (const ConstraintBlock& block : blocks_) size += block.rows;
+  matrix_.resize(size, size), unconstrainedDiagonal_.resize(size);
+  BlockResponse alone;
+  for (const ConstraintBlock& block : blocks_) {
+    findResponse(block, bodies, frames, alone);
+    for (int row = 0; row < block.rows; ++row) {
+      const Index column = std::ssize(responses_);
+      ConstraintBlock::Values multipliers{};
+      multipliers[static_cast<std::size_t>(row)] = 1;
+      VectorX response = VectorX::Zero(stateSize(std::ssize(bodies)));
+      addResponse(block, alone, multipliers.data(), response);
+      unconstrainedDiagonal_[column] = rateOf(block, row, response);
+      if (constraints && constraints->hasConstraints()) constraints->constrainVelocities(response);
+      matrix_.col(column) = velocities(response);
+      responses_.push_back(std::move(response));
+    }
   }
   matrix_ = (0.5 * (matrix_ + matrix_.transpose())).eval();
 }
@@ -31,14 +40,20 @@ bool DenseDelassus::isImmobile(Index row) const {
 }
 
 VectorX DenseDelassus::velocities(const VectorX& state) const {
-  VectorX result(rows_.size());
-  for (std::size_t i = 0; i < rows_.size(); ++i) result[static_cast<Index>(i)] = rateOf(rows_[i], state);
+  VectorX result(matrix_.rows());
+  double* next = result.data();
+  for (const ConstraintBlock& block : blocks_) {
+    withRows(block.rows, [&](auto rows) { findRates<rows>(block, state, next); });
+    next += block.rows;
+  }
   return result;
 }
 
 VectorX DenseDelassus::accelerations(const VectorX& derivative) const {
   VectorX result = velocities(derivative);
-  for (std::size_t i = 0; i < rows_.size(); ++i) result[static_cast<Index>(i)] += rows_[i].velocityProduct;
+  double* next = result.data();
+  for (const ConstraintBlock& block : blocks_)
+    for (std::size_t row = 0; row < static_cast<std::size_t>(block.rows); ++row) *next++ += block.velocityProduct[row];
   return result;
 }
 

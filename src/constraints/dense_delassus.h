@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "constraints/constraint_forces.h"
-#include "constraints/row_response.h"
 
 namespace cradle {
 
@@ -16,7 +15,7 @@ bool isImmobile(double inverseMass, double unconstrainedInverseMass);
 class DenseDelassus {
  public:
   /// The bodies have `frames`; `constraints` must be factorised for their places, or null: there are none.
-  DenseDelassus(std::vector<ConstraintRow> rows, const std::vector<RigidBody>& bodies,
+  DenseDelassus(std::vector<ConstraintBlock> blocks, const std::vector<RigidBody>& bodies,
                 const std::vector<BodyFrame>& frames, ConstraintSolver* constraints);
 
   /// In 1/kg: from impulses to velocities of the rows, or from forces to accelerations.
@@ -38,7 +37,7 @@ class DenseDelassus {
   void apply(const VectorX& impulses, VectorX& state) const;
 
  private:
-  std::vector<ConstraintRow> rows_;
+  std::vector<ConstraintBlock> blocks_;
   std::vector<VectorX> responses_;  // of all bodies to each row, with the constraints
   VectorX unconstrainedDiagonal_;
   MatrixX matrix_;

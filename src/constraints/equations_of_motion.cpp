@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/row_response.h"
 #include "math/box_quadratic.h"
 #include "math/rotation.h"
 
@@ -95,7 +94,7 @@ void EquationsOfMotion::applyMotors(const VectorX& state, VectorX& derivative) {
   const bool areKnown = isWithoutContacts_ && motorForces_.size() == std::ssize(motors);
   if (motorForces_.size() != std::ssize(motors)) motorForces_.setZero(std::ssize(motors));
   motorMobilities_.setZero(std::ssize(motors));
-  std::vector<ConstraintRow> rows;
+  std::vector<ConstraintBlock> rows;
   std::vector<std::size_t> holding;
   for (std::size_t i = 0; i < motors.size(); ++i) {
     rows.push_back(rowOf(motors[i], state, frames_));
@@ -111,19 +110,19 @@ void EquationsOfMotion::applyMotors(const VectorX& state, VectorX& derivative) {
   }
   if (!holding.empty()) hold(holding, rows, state, derivative);
   for (std::size_t i = 0; i < motors.size(); ++i)
-    pushWork(derivative) += motorForces_[static_cast<Eigen::Index>(i)] * rateOf(rows[i], state);
+    pushWork(derivative) += motorForces_[static_cast<Eigen::Index>(i)] * rateOf(rows[i], 0, state);
 }
 
 EquationsOfMotion::MotorResponse EquationsOfMotion::responseOf(const std::vector<std::size_t>& holding,
-                                                               const std::vector<ConstraintRow>& rows,
+                                                               const std::vector<ConstraintBlock>& rows,
                                                                const VectorX& state, const VectorX& derivative) {
   const Eigen::Index count = std::ssize(holding);
   const auto accelerations = [&](VectorX rates) {
     constrain(rates);
     VectorX found(count);
     for (Eigen::Index k = 0; k < count; ++k) {
-      const ConstraintRow& row = rows[holding[static_cast<std::size_t>(k)]];
-      found[k] = rateOf(row, rates) + row.velocityProduct;
+      const ConstraintBlock& row = rows[holding[static_cast<std::size_t>(k)]];
+      found[k] = rateOf(row, 0, rates) + row.velocityProduct[0];
     }
     return found;
   };
@@ -134,8 +133,7 @@ EquationsOfMotion::MotorResponse EquationsOfMotion::responseOf(const std::vector
     response.perForce.col(k) = accelerations(pushed) - response.free;
   }
   for (Eigen::Index k = 0; k < count; ++k) {
-    const ConstraintRow& row = rows[holding[static_cast<std::size_t>(k)]];
-    const double alone = delassusEntry(row, row, responseTo(row, mechanism_.bodies, frames_));
+    const double alone = mobilityOf(rows[holding[static_cast<std::size_t>(k)]], mechanism_.bodies, frames_);
     if (std::abs(response.perForce(k, k)) > kBlocked * alone) continue;
     response.perForce.row(k).setZero(), response.perForce.col(k).setZero();
   }
@@ -143,11 +141,11 @@ EquationsOfMotion::MotorResponse EquationsOfMotion::responseOf(const std::vector
 }
 
 VectorX EquationsOfMotion::missingVelocities(const std::vector<std::size_t>& holding,
-                                             const std::vector<ConstraintRow>& rows, const VectorX& state) const {
+                                             const std::vector<ConstraintBlock>& rows, const VectorX& state) const {
   VectorX missing(holding.size());
   for (std::size_t k = 0; k < holding.size(); ++k)
     missing[static_cast<Eigen::Index>(k)] =
-        mechanism_.motors[holding[k]].targetVelocity - rateOf(rows[holding[k]], state);
+        mechanism_.motors[holding[k]].targetVelocity - rateOf(rows[holding[k]], 0, state);
   return missing;
 }
 
@@ -191,7 +189,7 @@ VectorX EquationsOfMotion::possibleMotorForces(double time, const VectorX& state
 /// Adds the forces of motors that hold: those with which their coordinates' accelerations, after all constraints and
 /// contacts, are zero, or take back an error of the velocity; in steps of a fixed length, and where it is asked what
 /// they can have, within all they have.
-void EquationsOfMotion::hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows,
+void EquationsOfMotion::hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintBlock>& rows,
                              const VectorX& state, VectorX& derivative) {
   const MotorResponse response = responseOf(holding, rows, state, derivative);
   const VectorX missing = missingVelocities(holding, rows, state);
@@ -227,7 +225,7 @@ bool EquationsOfMotion::isResting(const Constraint& constraint) const {
 }
 
 /// Adds the accelerations that a force along a row's coordinate gives. What drives a body works against it.
-void EquationsOfMotion::addForce(const ConstraintRow& row, double force, const VectorX& state,
+void EquationsOfMotion::addForce(const ConstraintBlock& row, double force, const VectorX& state,
                                  VectorX& derivative) const {
   const auto add = [&](int body, const Vec3& linear, const Vec3& angular) {
     if (body == kFixed) return;
@@ -240,8 +238,8 @@ void EquationsOfMotion::addForce(const ConstraintRow& row, double force, const V
     linearVelocity(derivative, body) += force * mechanism_.bodies[index].inverseMass * linear;
     angularVelocity(derivative, body) += force * (frames_[index].inverseInertia * angular);
   };
-  add(row.bodyA, row.linearA, row.angularA);
-  add(row.bodyB, row.linearB, row.angularB);
+  add(row.bodyA, row.linear.row(0), row.angularA.row(0));
+  add(row.bodyB, -row.linear.row(0), row.angularB.row(0));
 }
 
 void EquationsOfMotion::setResting(std::size_t body, bool resting) {
@@ -319,12 +317,9 @@ void EquationsOfMotion::addPowerOfConstraints(const VectorX& state, VectorX& der
     const int rows = rowCount(constraint), a = constraint.anchorA.body, b = constraint.anchorB.body;
     if (isDriven(a) || isDriven(b)) {
       findRows(constraint, state, frames_, block);
-      for (int i = 0; i < rows; ++i) {
-        ConstraintRow row = rowOf(block, i);
-        if (!isDriven(a)) row.bodyA = kFixed;
-        if (!isDriven(b)) row.bodyB = kFixed;
-        pushWork(derivative) -= multipliers_[first + i] * rateOf(row, state);
-      }
+      if (!isDriven(a)) block.bodyA = kFixed;
+      if (!isDriven(b)) block.bodyB = kFixed;
+      for (int i = 0; i < rows; ++i) pushWork(derivative) -= multipliers_[first + i] * rateOf(block, i, state);
     }
     first += rows;
   }

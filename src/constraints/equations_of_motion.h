@@ -92,16 +92,16 @@ class EquationsOfMotion {
     VectorX free;      // rad/s^2 or m/s^2: accelerations without their forces
     MatrixX perForce;  // what 1 of each force adds
   };
-  MotorResponse responseOf(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows,
+  MotorResponse responseOf(const std::vector<std::size_t>& holding, const std::vector<ConstraintBlock>& rows,
                            const VectorX& state, const VectorX& derivative);
-  VectorX missingVelocities(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows,
+  VectorX missingVelocities(const std::vector<std::size_t>& holding, const std::vector<ConstraintBlock>& rows,
                             const VectorX& state) const;
   VectorX limitsOf(const std::vector<std::size_t>& holding) const;
   VectorX possibleForces(const std::vector<std::size_t>& holding, const MotorResponse& response,
                          const VectorX& missing) const;
-  void hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintRow>& rows, const VectorX& state,
+  void hold(const std::vector<std::size_t>& holding, const std::vector<ConstraintBlock>& rows, const VectorX& state,
             VectorX& derivative);
-  void addForce(const ConstraintRow& row, double force, const VectorX& state, VectorX& derivative) const;
+  void addForce(const ConstraintBlock& row, double force, const VectorX& state, VectorX& derivative) const;
   void holdResting(const VectorX& state, VectorX& derivative) const;
   void addForce(int body, const Vec3& arm, const Vec3& force, const VectorX& state, VectorX& derivative) const;
   void addPowerOfConstraints(const VectorX& state, VectorX& derivative) const;

@@ -2,10 +2,10 @@
 
 namespace cradle {
 
-ConstraintRow rowOf(const JointMotor& motor, const VectorX& state, const std::vector<BodyFrame>& frames) {
+ConstraintBlock rowOf(const JointMotor& motor, const VectorX& state, const std::vector<BodyFrame>& frames) {
   ConstraintBlock block;
   findRows(motor.joint, state, frames, block);
-  return rowOf(block, 0);
+  return block;
 }
 
 }  // namespace cradle

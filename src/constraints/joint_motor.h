@@ -19,7 +19,7 @@ struct JointMotor {
   Mode mode = Mode::pushes;
 };
 
-/// The row of a motor's coordinate: dq/dt = J v.
-ConstraintRow rowOf(const JointMotor& motor, const VectorX& state, const std::vector<BodyFrame>& frames);
+/// The one row of a motor's coordinate: dq/dt = J v.
+ConstraintBlock rowOf(const JointMotor& motor, const VectorX& state, const std::vector<BodyFrame>& frames);
 
 }  // namespace cradle

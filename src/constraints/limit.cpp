@@ -1,5 +1,7 @@
 #include "constraints/limit.h"
 
+#include <tuple>
+
 namespace cradle {
 namespace {
 
@@ -70,7 +72,7 @@ LimitMotion motionOf(const JointLimit& limit, const VectorX& state) {
   LimitMotion motion{motionAt(point, limit.anchorA.body, state), motionAt(point, limit.anchorB.body, state), direction,
                      0, 0};
   motion.slackLength = -limit.side * limit.unit() * excessOf(limit, row.block.value[0], 0);
-  motion.lengthening = limit.side * limit.unit() * rateOf(rowOf(row.block, 0), state);
+  motion.lengthening = limit.side * limit.unit() * rateOf(row.block, 0, state);
   return motion;
 }
 
@@ -87,7 +89,7 @@ double accelerationOf(const RopeLimit& rope, const VectorX& state, const VectorX
 double accelerationOf(const JointLimit& limit, const VectorX& state, const VectorX& derivative) {
   CoordinateRow row;
   findRow(limit, state, row);
-  return limit.side * limit.unit() * (rateOf(rowOf(row.block, 0), derivative) + row.block.velocityProduct[0]);
+  return limit.side * limit.unit() * (rateOf(row.block, 0, derivative) + row.block.velocityProduct[0]);
 }
 
 }  // namespace
@@ -122,10 +124,15 @@ double turnedOf(const JointLimit& limit, const VectorX& state) {
   return limit.bound.value + excessOf(limit, row.block.value[0], 0);
 }
 
-ConstraintRow lengtheningRow(const Limit& limit, const LimitMotion& motion) {
-  const auto [a, b] = bodiesOf(limit);
+ConstraintBlock lengtheningRow(const Limit& limit, const LimitMotion& motion) {
   const Vec3& u = motion.direction;
-  return {a, b, u, motion.a.arm.cross(u), -u, -motion.b.arm.cross(u)};
+  ConstraintBlock block;
+  std::tie(block.bodyA, block.bodyB) = bodiesOf(limit);
+  block.rows = 1;
+  block.turnsA = block.bodyA != kFixed, block.turnsB = block.bodyB != kFixed;
+  block.linear.row(0) = u;
+  block.angularA.row(0) = motion.a.arm.cross(u), block.angularB.row(0) = -motion.b.arm.cross(u);
+  return block;
 }
 
 double lengtheningAcceleration(const Limit& limit, const VectorX& state, const VectorX& derivative) {

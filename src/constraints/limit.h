@@ -53,8 +53,8 @@ double slackOf(const JointLimit& limit, const RigidTransform& poseA, const Rigid
 /// The coordinate of a hinge's stop (rad), whole turns counted, that is nearest to where it was followed last.
 double turnedOf(const JointLimit& limit, const VectorX& state);
 
-/// The row of the lengthening; its multiplier pushes A away from the limit if it is < 0.
-ConstraintRow lengtheningRow(const Limit& limit, const LimitMotion& motion);
+/// The one row of the lengthening; its multiplier pushes A away from the limit if it is < 0.
+ConstraintBlock lengtheningRow(const Limit& limit, const LimitMotion& motion);
 
 /// d/dt of the lengthening (m/s^2), for the rates of all velocities in `derivative`.
 double lengtheningAcceleration(const Limit& limit, const VectorX& state, const VectorX& derivative);

@@ -11,12 +11,11 @@ std::vector<Mat3> axesOf(const std::vector<Contact>& contacts) {
   return axes;
 }
 
-std::vector<ConstraintRow> rowsAlong(const std::vector<Mat3>& axes, const std::vector<Contact>& contacts,
-                                     const VectorX& state) {
-  std::vector<ConstraintRow> rows;
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis) rows.push_back(rowAlong(axes[i].col(axis), contacts[i], state));
-  return rows;
+std::vector<ConstraintBlock> blocksAlong(const std::vector<Mat3>& axes, const std::vector<Contact>& contacts,
+                                         const VectorX& state) {
+  std::vector<ConstraintBlock> blocks;
+  for (std::size_t i = 0; i < contacts.size(); ++i) blocks.push_back(rowsAlong(axes[i], contacts[i], state));
+  return blocks;
 }
 
 }  // namespace
@@ -35,7 +34,7 @@ Mat3 contactAxes(const Vec3& normal) {
 
 ContactDelassus::ContactDelassus(const std::vector<Contact>& contacts, const ImpulseResponse& response,
                                  const VectorX& state)
-    : axes_(axesOf(contacts)), delassus_(response.delassusOf(rowsAlong(axes_, contacts, state), state)) {}
+    : axes_(axesOf(contacts)), delassus_(response.delassusOf(blocksAlong(axes_, contacts, state), state)) {}
 
 double ContactDelassus::mobility(std::size_t contact) const {
   const Eigen::Index normal = 3 * static_cast<Eigen::Index>(contact) + 2;

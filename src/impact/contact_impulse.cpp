@@ -35,9 +35,19 @@ Mat3 delassusAt(const Contact& contact, const std::vector<RigidBody>& bodies, co
   return inverseMassOf(contact, contact.bodyA, bodies, state) + inverseMassOf(contact, contact.bodyB, bodies, state);
 }
 
-ConstraintRow rowAlong(const Vec3& direction, const Contact& contact, const VectorX& state) {
+ConstraintBlock rowsAlong(const Eigen::Ref<const Eigen::Matrix<double, 3, Eigen::Dynamic>>& directions,
+                          const Contact& contact, const VectorX& state) {
   const Vec3 armA = armOf(contact, contact.bodyA, state), armB = armOf(contact, contact.bodyB, state);
-  return {contact.bodyA, contact.bodyB, -direction, -armA.cross(direction), direction, armB.cross(direction)};
+  ConstraintBlock block;
+  block.bodyA = contact.bodyA, block.bodyB = contact.bodyB;
+  block.turnsA = contact.bodyA != kFixed, block.turnsB = contact.bodyB != kFixed;
+  block.rows = static_cast<int>(directions.cols());
+  for (int row = 0; row < block.rows; ++row) {
+    const Vec3 direction = directions.col(row);
+    block.linear.row(row) = -direction;
+    block.angularA.row(row) = -armA.cross(direction), block.angularB.row(row) = armB.cross(direction);
+  }
+  return block;
 }
 
 bool hasShortMomentArm(const Contact& contact, const ImpulseResponse& response, const VectorX& state, double arm) {
@@ -77,10 +87,10 @@ Mat3 ImpulseResponse::unconstrainedDelassusAt(const Contact& contact, const Vect
   return cradle::delassusAt(contact, bodies_, state);
 }
 
-DenseDelassus ImpulseResponse::delassusOf(std::vector<ConstraintRow> rows, const VectorX& state) const {
+DenseDelassus ImpulseResponse::delassusOf(std::vector<ConstraintBlock> blocks, const VectorX& state) const {
   std::vector<BodyFrame> frames;
   findBodyFrames(bodies_, state, frames);
-  return {std::move(rows), bodies_, frames, constraints_};
+  return {std::move(blocks), bodies_, frames, constraints_};
 }
 
 void ImpulseResponse::apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const {

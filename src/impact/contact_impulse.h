@@ -11,9 +11,10 @@ namespace cradle {
 /// impulse on B (and its opposite on A) to the change of B's velocity relative to A there.
 Mat3 delassusAt(const Contact& contact, const std::vector<RigidBody>& bodies, const VectorX& state);
 
-/// The row of B's velocity relative to A's along a unit direction (world) at a contact: its multiplier is the impulse
-/// on B.
-ConstraintRow rowAlong(const Vec3& direction, const Contact& contact, const VectorX& state);
+/// The rows of B's velocity relative to A's at a contact along one unit direction or three, the columns (world): their
+/// multipliers are impulses on B.
+ConstraintBlock rowsAlong(const Eigen::Ref<const Eigen::Matrix<double, 3, Eigen::Dynamic>>& directions,
+                          const Contact& contact, const VectorX& state);
 
 class ImpulseResponse;
 
@@ -45,7 +46,7 @@ class ImpulseResponse {
   Mat3 unconstrainedDelassusAt(const Contact& contact, const VectorX& state) const;
 
   /// The Delassus operator of rows of bodies at their places in `state`.
-  DenseDelassus delassusOf(std::vector<ConstraintRow> rows, const VectorX& state) const;
+  DenseDelassus delassusOf(std::vector<ConstraintBlock> blocks, const VectorX& state) const;
 
   /// Applies an impulse (N s, world) to B and its opposite to A at the contact.
   void apply(const Contact& contact, const Vec3& impulseOnB, VectorX& state) const;

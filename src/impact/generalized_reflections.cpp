@@ -186,8 +186,9 @@ VectorX reflectionImpulses(const MatrixX& delassus, const VectorX& speeds, const
 void resolveReflections(std::vector<ImpactContact>& impacts, const ImpulseResponse& response, VectorX& state) {
   if (impacts.empty()) return;
   if (impacts.size() == 1) return reflectAlone(impacts[0], response, state);
-  std::vector<ConstraintRow> normals;
-  for (const ImpactContact& impact : impacts) normals.push_back(rowAlong(impact.contact.normal, impact.contact, state));
+  std::vector<ConstraintBlock> normals;
+  for (const ImpactContact& impact : impacts)
+    normals.push_back(rowsAlong(impact.contact.normal, impact.contact, state));
   const DenseDelassus delassus = response.delassusOf(std::move(normals), state);
   VectorX speeds = delassus.velocities(state);
   for (Index i = 0; i < speeds.size(); ++i)

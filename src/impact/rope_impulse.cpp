@@ -33,7 +33,7 @@ VectorX solvePulls(const MatrixX& shortening, const VectorX& wanted) {
 
 void applyPulls(std::vector<RopePull>& pulls, const std::vector<RigidBody>& bodies, ConstraintSolver& constraints,
                 VectorX& state) {
-  std::vector<ConstraintRow> rows;
+  std::vector<ConstraintBlock> rows;
   VectorX wanted(std::ssize(pulls));
   for (const RopePull& pull : pulls) {
     const LimitMotion motion = motionOf(*pull.rope, state);

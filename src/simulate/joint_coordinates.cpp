@@ -11,7 +11,7 @@ JointState JointCoordinates::stateOf(std::size_t joint, double length, const Vec
   const auto& kind = std::get<JointCoordinate>(constraint.kind);
   ConstraintBlock block;
   findRows(constraint, state, frames_, block);
-  const double velocity = rateOf(rowOf(block, 0), state);
+  const double velocity = rateOf(block, 0, state);
   const JointState& last = last_[joint];
   const double expected = last.coordinate + length * (last.velocity + velocity) / 2;
   return {kind.turns ? nearestTurn(block.value[0], expected) : block.value[0], velocity};

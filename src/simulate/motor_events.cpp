@@ -27,7 +27,7 @@ bool MotorEvents::rests(std::size_t motor) const {
 
 double MotorEvents::velocity(std::size_t motor, const VectorX& state) {
   findBodyFrames(island_.assembly.mechanism.bodies, state, frames_);
-  return rateOf(rowOf(motors()[motor], state, frames_), state);
+  return rateOf(rowOf(motors()[motor], state, frames_), 0, state);
 }
 
 double MotorEvents::marginAt(std::size_t index, double time, const VectorX& state) {

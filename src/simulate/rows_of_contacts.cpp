@@ -43,9 +43,9 @@ Vec3 driftToMiddle(const ContactConstraint& constraint, const ContactKinematics&
 }  // namespace
 
 ContactRows rowsOf(const ContactConstraint& constraint, const VectorX& state, const std::vector<BodyFrame>& frames) {
-  const ContactKinematics place = kinematicsOf(constraint, state, frames);
-  const auto tangents = tangentRows(constraint, place);
-  return {constraint, place, {tangents[0], tangents[1], normalRow(constraint, place)}};
+  ContactRows rows{constraint, kinematicsOf(constraint, state, frames), {}};
+  findRows(constraint, rows.place, true, rows.block);
+  return rows;
 }
 
 bool canLast(const Contact& contact) {
@@ -84,14 +84,15 @@ Vec3 followContact(const VectorX& before, const VectorX& state, const std::vecto
   contact.point = rows.place.point - 0.5 * rows.place.gap * rows.place.normal;
   contact.normal = sense * rows.place.normal;
   Vec3 drift = sense * driftToMiddle(rows.constraint, rows.place, state);
-  for (const ConstraintRow& row : rows.rows) drift += sense * row.velocityProduct * row.linearA;
+  for (int i = 0; i < rows.block.rows; ++i)
+    drift += sense * rows.block.velocityProduct[static_cast<std::size_t>(i)] * rows.block.linear.row(i).transpose();
   return drift;
 }
 
-std::vector<ConstraintRow> allRowsOf(const std::vector<ContactRows>& contacts) {
-  std::vector<ConstraintRow> rows;
-  for (const ContactRows& contact : contacts) rows.insert(rows.end(), contact.rows.begin(), contact.rows.end());
-  return rows;
+std::vector<ConstraintBlock> blocksOf(const std::vector<ContactRows>& contacts) {
+  std::vector<ConstraintBlock> blocks;
+  for (const ContactRows& contact : contacts) blocks.push_back(contact.block);
+  return blocks;
 }
 
 }  // namespace cradle

@@ -11,7 +11,7 @@ namespace cradle {
 struct ContactRows {
   ContactConstraint constraint;
   ContactKinematics place;
-  std::array<ConstraintRow, 3> rows;  // two along the surfaces, then the gap's
+  ConstraintBlock block;  // two rows along the surfaces, then the gap's
 };
 
 /// Surfaces that cannot last are taken as a corner on a face: good for one instant.
@@ -30,6 +30,6 @@ bool canLast(const Contact& contact);
 Vec3 followContact(const VectorX& before, const VectorX& state, const std::vector<BodyFrame>& frames, Contact& contact);
 
 /// The rows of all, in turn.
-std::vector<ConstraintRow> allRowsOf(const std::vector<ContactRows>& contacts);
+std::vector<ConstraintBlock> blocksOf(const std::vector<ContactRows>& contacts);
 
 }  // namespace cradle

@@ -17,10 +17,13 @@ void DriftMeter::add(const Frame& frame) {
 
   const VectorX state = stateOf(assembly_, frame);
   std::vector<BodyFrame> bodies;
-  std::vector<ConstraintRow> rows;
   findBodyFrames(assembly_.mechanism.bodies, state, bodies);
-  findRows(assembly_.mechanism.constraints, state, bodies, rows);
-  for (const ConstraintRow& row : rows) constraintDrift_ = std::max(constraintDrift_, std::abs(row.value / row.scale));
+  ConstraintBlock block;
+  for (const Constraint& constraint : assembly_.mechanism.constraints) {
+    findRows(constraint, state, bodies, block);
+    for (std::size_t row = 0; row < static_cast<std::size_t>(block.rows); ++row)
+      constraintDrift_ = std::max(constraintDrift_, std::abs(block.value[row] / block.scale));
+  }
 
   for (const Contact& overlap : overlaps_.overlapsOf(state)) penetration_ = std::max(penetration_, -overlap.separation);
 }

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 
+#include "constraints/constraint_row.h"
 #include "math/rotation.h"
 
 namespace cradle {
@@ -54,32 +55,17 @@ struct JointedBodies {
   }
 };
 
-/// M^-1 J^T of a row, in the layout of the velocities.
-VectorX responseOf(const JointedBodies& jointed, const ConstraintRow& row) {
-  VectorX response = VectorX::Zero(jointed.state.size());
-  const auto add = [&](int body, const Vec3& linear, const Vec3& angular) {
-    if (body == kFixed) return;
-    const std::size_t at = static_cast<std::size_t>(body);
-    linearVelocity(response, body) += jointed.bodies[at].inverseMass * linear;
-    angularVelocity(response, body) += jointed.frames[at].inverseInertia * angular;
-  };
-  add(row.bodyA, row.linearA, row.angularA);
-  add(row.bodyB, row.linearB, row.angularB);
-  return response;
-}
-
 /// Holds accelerations, velocities and errors against the dense solution. Entries are of the size of 1 to 10, condition
 /// numbers below 1e4.
 void expectAsDense(const JointedBodies& jointed) {
-  std::vector<ConstraintRow> rows;
-  findRows(jointed.constraints, jointed.state, jointed.frames, rows);
+  const std::vector<ConstraintRow> rows = rowsOf(jointed.constraints, jointed.state, jointed.frames);
   const Eigen::Index size = std::ssize(rows);
   ASSERT_EQ(size, rowCount(jointed.constraints));
   MatrixX matrix(size, size), responses(jointed.state.size(), size);
   VectorX rates(size), products(size), errors(size);
   for (Eigen::Index i = 0; i < size; ++i) {
     const ConstraintRow& row = rows[static_cast<std::size_t>(i)];
-    responses.col(i) = responseOf(jointed, row);
+    responses.col(i) = responseTo(row, jointed.bodies, jointed.frames);
     for (Eigen::Index j = 0; j < size; ++j) matrix(j, i) = rateOf(rows[static_cast<std::size_t>(j)], responses.col(i));
     rates[i] = rateOf(row, jointed.state), products[i] = row.velocityProduct, errors[i] = row.value / row.scale;
   }
@@ -197,8 +183,7 @@ TEST(ConstraintForces, KeepPointsOfBodiesThatNothingTurns) {
     ConstraintSolver solver(at.constraints, at.bodies);
     solver.factorize(at.state);
     solver.constrainVelocities(at.state);
-    std::vector<ConstraintRow> rows;
-    findRows(at.constraints, at.state, at.frames, rows);
+    const std::vector<ConstraintRow> rows = rowsOf(at.constraints, at.state, at.frames);
     ASSERT_EQ(rows.size(), 11u);
     for (const std::size_t row : {0u, 1u, 2u, 3u, 4u, 5u, 8u, 9u, 10u})
       EXPECT_NEAR(rateOf(rows[row], at.state), 0, 1e-11 * spin) << row << " " << spin;

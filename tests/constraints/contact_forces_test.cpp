@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "constraints/bodies_on_ground.h"
+#include "constraints/constraint_row.h"
 
 namespace cradle {
 namespace {
@@ -99,21 +100,18 @@ VectorX velocityPart(const VectorX& state) {
 VectorX denseAccelerations(const Mechanism& mechanism, const VectorX& state) {
   std::vector<BodyFrame> frames;
   findBodyFrames(mechanism.bodies, state, frames);
-  std::vector<ConstraintRow> rows;
-  findRows(mechanism.constraints, state, frames, rows);
+  std::vector<ConstraintRow> rows = rowsOf(mechanism.constraints, state, frames);
   std::vector<ConstraintRow> answers = rows;
   for (const ContactConstraint& contact : mechanism.contacts) {
     const ContactKinematics place = kinematicsOf(contact, state, frames);
-    rows.push_back(normalRow(contact, place)), answers.push_back(rows.back());
-    if (contact.motion == kSliding) {
-      const Vec3 friction = -contact.friction * slidingDirection(contact, place, frames);
-      ConstraintRow& answer = answers.back();
-      answer.linearA += friction, answer.angularA += place.armA.cross(friction);
-      answer.linearB -= friction, answer.angularB -= place.armB.cross(friction);
-    }
-    if (contact.motion != kSticking) continue;
-    for (const ConstraintRow& tangent : tangentRows(contact, place))
-      rows.push_back(tangent), answers.push_back(tangent);
+    ConstraintBlock block;
+    findRows(contact, place, contact.motion == kSticking, block);
+    for (int i = 0; i < block.rows; ++i) rows.push_back(rowOf(block, i)), answers.push_back(rows.back());
+    if (contact.motion != kSliding) continue;
+    const Vec3 friction = -contact.friction * slidingDirection(contact, place, frames);
+    ConstraintRow& answer = answers.back();
+    answer.linearA += friction, answer.angularA += place.armA.cross(friction);
+    answer.linearB -= friction, answer.angularB -= place.armB.cross(friction);
   }
   Mechanism free = mechanism;
   free.constraints.clear(), free.contacts.clear();
@@ -123,9 +121,8 @@ VectorX denseAccelerations(const Mechanism& mechanism, const VectorX& state) {
   VectorX side(size);
   for (Eigen::Index i = 0; i < size; ++i) {
     const std::size_t row = static_cast<std::size_t>(i);
-    VectorX one = VectorX::Zero(state.size()), unit = one;
-    addResponse(answers[row], responseTo(answers[row], mechanism.bodies, frames), 1, one);
-    response.col(i) = velocityPart(one);
+    VectorX unit = VectorX::Zero(state.size());
+    response.col(i) = velocityPart(responseTo(answers[row], mechanism.bodies, frames));
     side[i] = -(rateOf(rows[row], derivative) + rows[row].velocityProduct);
     for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
       unit[poseComponents(state) + k] = 1;
@@ -199,9 +196,7 @@ TEST(ContactProjection, ClosesGapsAndTiesAtOnceToRounding) {
   EXPECT_GT(equations.project(row.state), 2e-4);
   std::vector<BodyFrame> frames;
   findBodyFrames(row.mechanism.bodies, row.state, frames);
-  std::vector<ConstraintRow> rows;
-  findRows(row.mechanism.constraints, row.state, frames, rows);
-  for (const ConstraintRow& tie : rows) {
+  for (const ConstraintRow& tie : rowsOf(row.mechanism.constraints, row.state, frames)) {
     EXPECT_NEAR(tie.value, 0, 3e-15);
     EXPECT_NEAR(rateOf(tie, row.state), 0, 1e-14);
   }

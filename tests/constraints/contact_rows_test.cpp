@@ -79,6 +79,18 @@ struct Touching {
   }
 };
 
+/// Two rows along the surfaces, then that of the gap; the gap's alone is the same.
+ConstraintBlock blockAt(const Touching& pair, const ContactKinematics& place) {
+  ConstraintBlock block, alone;
+  findRows(pair.mechanism.contacts[0], place, true, block), findRows(pair.mechanism.contacts[0], place, false, alone);
+  EXPECT_EQ(block.rows, 3);
+  EXPECT_EQ(alone.rows, 1);
+  for (const auto part : {&ConstraintBlock::linear, &ConstraintBlock::angularA, &ConstraintBlock::angularB})
+    EXPECT_EQ((alone.*part).row(0), (block.*part).row(2));
+  EXPECT_EQ(alone.velocityProduct[0], block.velocityProduct[2]);
+  return block;
+}
+
 /// Central difference of fourth order of a function of the state along its rate: its time derivative.
 template <class Function>
 auto fourthOrderDerivative(const VectorX& state, const VectorX& rate, const Function& function) {
@@ -96,16 +108,15 @@ TEST(ContactRows, GapAndItsTwoDerivativesAgreeForAllKindsOfSurfaces) {
   for (const Kind& kind : kKinds)
     for (int i = 0; i < 20; ++i) {
       const Touching pair(kind, random);
-      const auto rowIn = [&](const VectorX& state) {
-        return normalRow(pair.mechanism.contacts[0], placeIn(pair.mechanism, 0, state));
-      };
-      const ConstraintRow row = rowIn(pair.state);
-      EXPECT_NEAR(row.value, 0, 3e-15) << kind.name;
-      const auto gap = [&](const VectorX& state) { return rowIn(state).value; };
-      EXPECT_NEAR(rateOf(row, pair.state), fourthOrderDerivative(pair.state, pair.rate, gap), kDifference) << kind.name;
-      const auto gapRate = [&](const VectorX& state) { return rateOf(rowIn(state), state); };
-      EXPECT_NEAR(rateOf(row, pair.rate) + row.velocityProduct, fourthOrderDerivative(pair.state, pair.rate, gapRate),
-                  kDifference)
+      const auto blockIn = [&](const VectorX& state) { return blockAt(pair, placeIn(pair.mechanism, 0, state)); };
+      const ConstraintBlock block = blockIn(pair.state);
+      EXPECT_NEAR(block.value[2], 0, 3e-15) << kind.name;
+      const auto gap = [&](const VectorX& state) { return blockIn(state).value[2]; };
+      EXPECT_NEAR(rateOf(block, 2, pair.state), fourthOrderDerivative(pair.state, pair.rate, gap), kDifference)
+          << kind.name;
+      const auto gapRate = [&](const VectorX& state) { return rateOf(blockIn(state), 2, state); };
+      EXPECT_NEAR(rateOf(block, 2, pair.rate) + block.velocityProduct[2],
+                  fourthOrderDerivative(pair.state, pair.rate, gapRate), kDifference)
           << kind.name;
     }
 }
@@ -125,12 +136,15 @@ TEST(ContactRows, TangentialVelocityIsThatOfTheMaterialWhereTheSurfacesTouch) {
       velocity += sign * motionOf(mark, pair.state).velocity;
     }
     EXPECT_LT((velocity - place.velocity).norm(), 1e-14) << kind.name;
-    EXPECT_NEAR(place.normal.dot(velocity), rateOf(normalRow(pair.mechanism.contacts[0], place), pair.state), 1e-14);
-    for (const ConstraintRow& row : tangentRows(pair.mechanism.contacts[0], place)) {
-      EXPECT_NEAR(row.linearA.norm(), 1, 1e-15);
-      EXPECT_NEAR(row.linearA.dot(place.normal), 0, 1e-15);
-      EXPECT_NEAR(rateOf(row, pair.state), row.linearA.dot(tangentialVelocity(place)), 1e-14) << kind.name;
+    const ConstraintBlock block = blockAt(pair, place);
+    EXPECT_NEAR(place.normal.dot(velocity), rateOf(block, 2, pair.state), 1e-14);
+    for (const int row : {0, 1}) {
+      const Vec3 direction = block.linear.row(row);
+      EXPECT_NEAR(direction.norm(), 1, 1e-15);
+      EXPECT_NEAR(direction.dot(place.normal), 0, 1e-15);
+      EXPECT_NEAR(rateOf(block, row, pair.state), direction.dot(tangentialVelocity(place)), 1e-14) << kind.name;
     }
+    EXPECT_NEAR(block.linear.row(0).dot(block.linear.row(1)), 0, 1e-15);
   }
 }
 
@@ -143,8 +157,11 @@ TEST(ContactRows, RateOfTheTangentialVelocityAgreesForAllKindsOfSurfaces) {
       const Vec3 expected = fourthOrderDerivative(pair.state, pair.rate, [&](const VectorX& state) {
         return Vec3(tangentialVelocity(placeIn(pair.mechanism, 0, state)));
       });
-      for (const ConstraintRow& row : tangentRows(pair.mechanism.contacts[0], placeIn(pair.mechanism, 0, pair.state)))
-        EXPECT_NEAR(rateOf(row, pair.rate) + row.velocityProduct, row.linearA.dot(expected), kDifference) << kind.name;
+      const ConstraintBlock block = blockAt(pair, placeIn(pair.mechanism, 0, pair.state));
+      for (const int row : {0, 1})
+        EXPECT_NEAR(rateOf(block, row, pair.rate) + block.velocityProduct[static_cast<std::size_t>(row)],
+                    block.linear.row(row).dot(expected), kDifference)
+            << kind.name;
     }
 }
 
@@ -181,12 +198,10 @@ TEST(ContactForces, KeepGapAndMomentaForAllKindsOfSurfaces) {
       const Touching pair(kind, random, motion);
       const VectorX rate = rateOf(pair.mechanism, pair.state);
       const ContactKinematics place = placeIn(pair.mechanism, 0, pair.state);
-      const ConstraintRow row = normalRow(pair.mechanism.contacts[0], place);
-      EXPECT_NEAR(rateOf(row, rate) + row.velocityProduct, 0, 1e-12) << kind.name;
-      for (const ConstraintRow& tangent : tangentRows(pair.mechanism.contacts[0], place)) {
-        if (motion != ContactMotion::sticking) break;
-        EXPECT_NEAR(rateOf(tangent, rate) + tangent.velocityProduct, 0, 1e-12) << kind.name;
-      }
+      const ConstraintBlock block = blockAt(pair, place);
+      for (int row = motion == ContactMotion::sticking ? 0 : 2; row < 3; ++row)
+        EXPECT_NEAR(rateOf(block, row, rate) + block.velocityProduct[static_cast<std::size_t>(row)], 0, 1e-12)
+            << kind.name;
       if (kind.bodyA == kFixed || kind.bodyB == kFixed) continue;
       const auto sum = [&](auto member) {
         return Vec3(fourthOrderDerivative(

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "constraints/constraint_row.h"
 #include "constraints/equations_of_motion.h"
 #include "constraints/invariants.h"
 #include "math/rotation.h"
@@ -151,9 +152,7 @@ Mechanism hingedBodies(const VectorX& state) {
 std::vector<ConstraintRow> rowsIn(const Mechanism& mechanism, const VectorX& state) {
   std::vector<BodyFrame> frames;
   findBodyFrames(mechanism.bodies, state, frames);
-  std::vector<ConstraintRow> rows;
-  findRows(mechanism.constraints, state, frames, rows);
-  return rows;
+  return rowsOf(mechanism.constraints, state, frames);
 }
 
 TEST(ConstraintRows, RateAndCurvatureAreTheTimeDerivativesOfTheirValues) {

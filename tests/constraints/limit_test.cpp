@@ -68,7 +68,7 @@ TEST(Rope, LengthensAsItsEndsPart) {
 TEST(Rope, HasARowOfItsLengthening) {
   const RopedBodies at;
   const LimitMotion motion = motionOf(Limit(at.rope), at.state);
-  const ConstraintRow row = lengtheningRow(Limit(at.rope), motion);
+  const ConstraintRow row = rowOf(lengtheningRow(Limit(at.rope), motion), 0);
   EXPECT_EQ(row.bodyA, 0);
   EXPECT_EQ(row.bodyB, 1);
   for (const int still : {-1, 0, 1}) {
@@ -130,7 +130,7 @@ TEST(JointLimit, IsSlackByWhatIsLeftToItsBound) {
       EXPECT_NEAR(motion.slackLength, side * unit * (1 - 0.4), 1e-14) << turns << side;
       EXPECT_NEAR(motion.lengthening, side * unit * 1.3, 1e-14) << turns << side;
       EXPECT_NEAR(motion.direction.norm(), 1, 1e-15);
-      EXPECT_NEAR(rateOf(lengtheningRow(Limit(at.stop), motion), at.state), motion.lengthening, 1e-13);
+      EXPECT_NEAR(rateOf(lengtheningRow(Limit(at.stop), motion), 0, at.state), motion.lengthening, 1e-13);
     }
 }
 

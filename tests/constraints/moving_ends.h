@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "constraints/constraint_block.h"
+#include "constraints/constraint_row.h"
 #include "math/rotation.h"
 
 // A constraint's two ends on bodies that move, for tests of its rows.

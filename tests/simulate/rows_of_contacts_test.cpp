@@ -59,7 +59,7 @@ TEST(RowsOfContacts, AreFiniteWhateverTouches) {
         SCOPED_TRACE(::testing::Message() << radiusA << " " << radiusB << " " << isEdge);
         EXPECT_TRUE(rows.place.normal.allFinite());
         EXPECT_NEAR(std::abs(rows.place.normal.y()), 1, 1e-12);
-        for (const ConstraintRow& row : rows.rows) EXPECT_TRUE(std::isfinite(row.velocityProduct));
+        for (const std::size_t row : {0, 1, 2}) EXPECT_TRUE(std::isfinite(rows.block.velocityProduct[row]));
       }
 }
 
@@ -81,7 +81,7 @@ TEST(RowsOfContacts, DoNotDependOnTheOrderOfTheBodies) {
       const ContactRows rows = rowsOf(touching.contact, touching.state, touching.frames),
                         other = rowsOf(swapped, touching.state, touching.frames);
       SCOPED_TRACE(::testing::Message() << radiusA << " " << radiusB << " " << ease);
-      EXPECT_NEAR(rows.rows[2].velocityProduct, other.rows[2].velocityProduct, 1e-12);
+      EXPECT_NEAR(rows.block.velocityProduct[2], other.block.velocityProduct[2], 1e-12);
     }
 }
 

@@ -88,7 +88,7 @@ bool ComingToRest::canBeInEquilibrium(const std::vector<Contact>& touching, cons
     frictions.push_back(island_.assembly.geometry.pairs[contact.pair].material.staticFriction);
   }
   if (contacts.empty()) return false;
-  const DenseDelassus delassus(allRowsOf(contacts), mechanism.bodies, frames, &constraints_);
+  const DenseDelassus delassus(blocksOf(contacts), mechanism.bodies, frames, &constraints_);
   const ContactSolution solution =
       solveFrictionalContact(delassus.matrix(), delassus.accelerations(derivative), frictions);
   delassus.apply(solution.impulses, derivative);
@@ -110,7 +110,7 @@ bool ComingToRest::doLimitsHold(const std::vector<ContactRows>& contacts, const 
   island_.equations.evaluateWithoutContacts(island_.time, island_.state, derivative);
   std::swap(constraints, mechanism.constraints);
   if (!contacts.empty())
-    DenseDelassus(allRowsOf(contacts), mechanism.bodies, frames, nullptr).apply(impulses, derivative);
+    DenseDelassus(blocksOf(contacts), mechanism.bodies, frames, nullptr).apply(impulses, derivative);
   constraints_.constrainAccelerations(derivative);
   VectorX multipliers = VectorX::Zero(rowCount(mechanism.constraints));
   constraints_.putMultipliers(multipliers);

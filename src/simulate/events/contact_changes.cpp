@@ -269,7 +269,7 @@ double ContactChanges::infeasibility(const std::vector<ContactRecord>& records, 
   double left = 0, largest = mechanism().gravity.norm();
   for (const ContactGroup& group : findContactGroups(mechanism().contacts, mechanism().constraints, joinsNothing)) {
     const GroupRows members = rowsOfGroup(group.contacts, sliding, state);
-    const DenseDelassus delassus(allRowsOf(members.rows), mechanism().bodies, frames_, &constraints);
+    const DenseDelassus delassus(blocksOf(members.rows), mechanism().bodies, frames_, &constraints);
     largest = std::max(largest, delassus.accelerations(derivative_).cwiseAbs().maxCoeff());
     const auto isInDoubt = [this](int contact) { return isInDoubt_[static_cast<std::size_t>(contact)] != 0; };
     if (std::none_of(group.contacts.begin(), group.contacts.end(), isInDoubt)) continue;

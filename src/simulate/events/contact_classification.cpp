@@ -64,7 +64,7 @@ std::vector<RecordGroup> groupsOf(const std::vector<ContactRecord>& records, con
 /// Whether the accelerations of a state derivative press no contact together by more than rounding.
 bool nothingCloses(const std::vector<ContactRows>& rows, const VectorX& derivative, double gravity) {
   return std::all_of(rows.begin(), rows.end(), [&](const ContactRows& contact) {
-    return rateOf(contact.rows[2], derivative) + contact.rows[2].velocityProduct >=
+    return rateOf(contact.block, 2, derivative) + contact.block.velocityProduct[2] >=
            -EventTolerances::kClosingRounding * gravity;
   });
 }
@@ -118,8 +118,7 @@ void classifyOne(const ContactRows& rows, const ContactState& state, const Accel
   record.sticks = state.acceleration.head<2>().norm() <= limits.still;
   if (record.sticks) return;
   record.slides = true;
-  record.direction =
-      (state.acceleration.x() * rows.rows[0].linearA + state.acceleration.y() * rows.rows[1].linearA).normalized();
+  record.direction = (rows.block.linear.topRows<2>().transpose() * state.acceleration.head<2>()).normalized();
 }
 
 /// m/s^2, (t1, t2, n) of each contact: the accelerations of a solution with static friction once contacts slide that
@@ -135,8 +134,7 @@ VectorX slidingAccelerations(const std::vector<const ContactRecord*>& records, c
     isAny = true;
     const Index at = 3 * static_cast<Index>(k);
     const double less = (material.staticFriction - material.dynamicFriction) * solution.impulses[at + 2];
-    for (Index i = 0; i < 2; ++i)
-      eased[at + i] = less * record.direction.dot(rows[k].rows[static_cast<std::size_t>(i)].linearA);
+    eased.segment<2>(at) = less * (rows[k].block.linear.topRows<2>() * record.direction);
   }
   return isAny ? VectorX(solution.velocities + delassus * eased) : solution.velocities;
 }
@@ -159,7 +157,7 @@ struct GoingContacts {
     for (const ContactRows& contact : rows) moved.push_back(rowsOf(contact.constraint, state, frames));
     VectorX free;
     island.equations.evaluateWithoutContacts(time, state, free);
-    const DenseDelassus delassus(allRowsOf(moved), mechanism.bodies, frames, &constraints);
+    const DenseDelassus delassus(blocksOf(moved), mechanism.bodies, frames, &constraints);
     const SlidingSolution solution = solveContactForces(records, moved, delassus, free);
     VectorX sliding(std::ssize(records));
     for (Index k = 0; k < sliding.size(); ++k) sliding[k] = solution.velocities.segment<2>(3 * k).norm();
@@ -207,7 +205,7 @@ void classifyGroup(const RecordGroup& group, const ClassificationInput& input, C
   VectorX derivative;
   island.equations.evaluateWithoutContacts(island.time, island.state, derivative);
   if (nothingCloses(rows, derivative, mechanism.gravity.norm())) return;
-  const DenseDelassus delassus(allRowsOf(rows), mechanism.bodies, input.frames, &constraints);
+  const DenseDelassus delassus(blocksOf(rows), mechanism.bodies, input.frames, &constraints);
   const SlidingSolution solution = solveContactForces(members, rows, delassus, derivative);
   const double largest = std::max(delassus.accelerations(derivative).cwiseAbs().maxCoeff(), mechanism.gravity.norm());
   // Accelerations that give less than a speed of rounding over the whole run do not count.

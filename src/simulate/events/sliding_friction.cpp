@@ -36,8 +36,7 @@ VectorX slidingFriction(const std::vector<const ContactRecord*>& records, const 
     if (!records[k]->slides) continue;
     const Eigen::Index contact = static_cast<Eigen::Index>(k);
     const double size = records[k]->pair.material.dynamicFriction * normals[contact];
-    for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
-      friction[3 * contact + static_cast<Eigen::Index>(i)] = -size * records[k]->direction.dot(rows[k].rows[i].linearA);
+    friction.segment<2>(3 * contact) = -size * (rows[k].block.linear.topRows<2>() * records[k]->direction);
   }
   return friction;
 }

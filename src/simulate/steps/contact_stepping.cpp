@@ -62,8 +62,9 @@ void bookForces(const Mechanism& mechanism, const FreeStep& step, VectorX& state
   for (const JointMotor& motor : mechanism.motors) {
     if (motor.mode == JointMotor::Mode::holds) continue;
     if (frames.empty()) findBodyFrames(mechanism.bodies, state, frames);
-    const ConstraintRow row = rowOf(motor, state, frames);
-    pushWork(state) += 0.5 * step.timeStep * motor.sign * motor.maxForce * (rateOf(row, state) - rateOf(row, step.end));
+    const ConstraintBlock row = rowOf(motor, state, frames);
+    pushWork(state) +=
+        0.5 * step.timeStep * motor.sign * motor.maxForce * (rateOf(row, 0, state) - rateOf(row, 0, step.end));
   }
 }
 

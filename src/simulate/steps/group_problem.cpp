@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "constraints/row_response.h"
-
 namespace cradle {
 namespace {
 
@@ -39,10 +37,13 @@ double GroupProblem::motorMobility(const JointMotor& motor, const VectorX& state
   VectorX moved = state;
   moved.tail(state.size() - poseComponents(state)).setZero();
   findBodyFrames(bodies, moved, frames_);
-  const ConstraintRow row = rowOf(motor, moved, frames_);
-  addResponse(row, responseTo(row, bodies, frames_), 1, moved);
+  const ConstraintBlock row = rowOf(motor, moved, frames_);
+  BlockResponse response;
+  findResponse(row, bodies, frames_, response);
+  constexpr double kUnit = 1;
+  addResponse(row, response, &kUnit, moved);
   constraints_.constrainVelocities(moved);
-  return rateOf(row, moved);
+  return rateOf(row, 0, moved);
 }
 
 void GroupProblem::factorize(const VectorX& state) {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "constraints/invariants.h"
-#include "constraints/row_response.h"
 #include "core/error.h"
 #include "dynamics/integrators/rk4.h"
 #include "simulate/events/contact_features.h"
@@ -178,10 +177,10 @@ void SteppedMotion::holdReachedTargets() {
   for (JointMotor& motor : mechanism.motors) {
     if (!motor.hasTarget || motor.mode == JointMotor::Mode::holds) continue;
     if (frames.empty()) findBodyFrames(mechanism.bodies, island_.state, frames);
-    const ConstraintRow row = rowOf(motor, island_.state, frames);
-    const double mobility = delassusEntry(row, row, responseTo(row, mechanism.bodies, frames));
-    const double missing = motor.sign * (motor.targetVelocity - rateOf(row, island_.state));
-    if (missing <= method_.timeStep * motor.maxForce * mobility) motor.mode = JointMotor::Mode::holds;
+    const ConstraintBlock row = rowOf(motor, island_.state, frames);
+    const double missing = motor.sign * (motor.targetVelocity - rateOf(row, 0, island_.state));
+    if (missing <= method_.timeStep * motor.maxForce * mobilityOf(row, mechanism.bodies, frames))
+      motor.mode = JointMotor::Mode::holds;
   }
 }
 

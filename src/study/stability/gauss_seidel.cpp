@@ -13,14 +13,14 @@ using Index = Eigen::Index;
 
 }  // namespace
 
-GaussSeidel::GaussSeidel(std::vector<ConstraintRow> rows, RowKind kind, const std::vector<RigidBody>& bodies,
+GaussSeidel::GaussSeidel(std::vector<ConstraintBlock> rows, RowKind kind, const std::vector<RigidBody>& bodies,
                          VectorX state)
     : rows_(std::move(rows)), kind_(kind), state_(std::move(state)) {
   std::vector<BodyFrame> frames;
   findBodyFrames(bodies, state_, frames);
-  for (const ConstraintRow& row : rows_) {
-    responses_.push_back(responseTo(row, bodies, frames));
-    inverseMasses_.push_back(delassusEntry(row, row, responses_.back()));
+  for (const ConstraintBlock& row : rows_) {
+    findResponse(row, bodies, frames, responses_.emplace_back());
+    inverseMasses_.push_back(mobilityOf(row, bodies, frames));
   }
   multipliers_.assign(rows_.size(), 0);
 }
@@ -28,9 +28,10 @@ GaussSeidel::GaussSeidel(std::vector<ConstraintRow> rows, RowKind kind, const st
 void GaussSeidel::sweep() {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const double before = multipliers_[i];
-    multipliers_[i] -= rateOf(rows_[i], state_) / inverseMasses_[i];
+    multipliers_[i] -= rateOf(rows_[i], 0, state_) / inverseMasses_[i];
     if (kind_ == RowKind::pushes) multipliers_[i] = std::max(0.0, multipliers_[i]);
-    addResponse(rows_[i], responses_[i], multipliers_[i] - before, state_);
+    const double impulse = multipliers_[i] - before;
+    addResponse(rows_[i], responses_[i], &impulse, state_);
   }
 }
 
@@ -39,8 +40,8 @@ MatrixX GaussSeidel::matrix() const {
   MatrixX result(size, size);
   for (std::size_t column = 0; column < rows_.size(); ++column)
     for (std::size_t row = 0; row < rows_.size(); ++row)
-      result(static_cast<Index>(row), static_cast<Index>(column)) =
-          delassusEntry(rows_[row], rows_[column], responses_[column]);
+      putDelassus<1, 1>(rows_[row], rows_[column], responses_[column],
+                        &result(static_cast<Index>(row), static_cast<Index>(column)), 1);
   return result;
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "constraints/row_response.h"
+#include "constraints/block_response.h"
 
 namespace cradle {
 
@@ -17,8 +17,8 @@ enum class RowKind {
 /// which scenes are simulated: charts show where it fails.
 class GaussSeidel {
  public:
-  /// Starts from the velocities in `state`. O(rows) space.
-  GaussSeidel(std::vector<ConstraintRow> rows, RowKind kind, const std::vector<RigidBody>& bodies, VectorX state);
+  /// Takes blocks of one row each. Starts from the velocities in `state`. O(rows) space.
+  GaussSeidel(std::vector<ConstraintBlock> rows, RowKind kind, const std::vector<RigidBody>& bodies, VectorX state);
 
   /// O(rows).
   void sweep();
@@ -30,8 +30,8 @@ class GaussSeidel {
   MatrixX matrix() const;
 
  private:
-  std::vector<ConstraintRow> rows_;
-  std::vector<RowResponse> responses_;
+  std::vector<ConstraintBlock> rows_;
+  std::vector<BlockResponse> responses_;
   std::vector<double> inverseMasses_, multipliers_;  // the diagonal of J M^-1 J^T; what the sweeps have added up
   RowKind kind_;
   VectorX state_;

@@ -64,8 +64,10 @@ StopProblem stackToStop(int balls, double topMass) {
   StopProblem problem = fallen(stackOfBalls(balls, topMass), RowKind::pushes);
   std::vector<BodyFrame> frames;
   findBodyFrames(problem.assembly.mechanism.bodies, problem.assembly.state, frames);
-  for (const Contact& contact : contactsAtStart(problem.assembly))
-    problem.rows.push_back(rowsOf(contact, problem.assembly.state, frames).rows[2]);
+  for (const Contact& contact : contactsAtStart(problem.assembly)) {
+    const ContactRows rows = rowsOf(contact, problem.assembly.state, frames);
+    findRows(rows.constraint, rows.place, false, problem.rows.emplace_back());
+  }
   return problem;
 }
 
@@ -74,7 +76,8 @@ StopProblem chainToStop(int balls, double bobMass) {
   std::vector<BodyFrame> frames;
   const Mechanism& mechanism = problem.assembly.mechanism;
   findBodyFrames(mechanism.bodies, problem.assembly.state, frames);
-  findRows(mechanism.constraints, problem.assembly.state, frames, problem.rows);
+  for (const Constraint& rod : mechanism.constraints)
+    findRows(rod, problem.assembly.state, frames, problem.rows.emplace_back());
   return problem;
 }
 

@@ -11,7 +11,7 @@ namespace cradle {
 struct StopProblem {
   Assembly assembly;
   VectorX state;
-  std::vector<ConstraintRow> rows;
+  std::vector<ConstraintBlock> rows;  // one each
   RowKind kind = RowKind::holds;
 };
 StopProblem stackToStop(int balls, double topMass);

@@ -32,7 +32,7 @@ struct SlidingBody {
   void slide(std::size_t contact, const Vec3& direction) {
     records[contact].slides = true, records[contact].direction = direction;
   }
-  DenseDelassus delassus() const { return {allRowsOf(rows), bodies, frames, nullptr}; }
+  DenseDelassus delassus() const { return {blocksOf(rows), bodies, frames, nullptr}; }
   SlidingSolution solve() const {
     std::vector<const ContactRecord*> members;
     for (const ContactRecord& record : records) members.push_back(&record);
@@ -41,7 +41,7 @@ struct SlidingBody {
   /// A contact's part along the surfaces, in the world.
   Vec3 tangential(const VectorX& components, std::size_t contact) const {
     const Eigen::Index at = 3 * static_cast<Eigen::Index>(contact);
-    return components[at] * rows[contact].rows[0].linearA + components[at + 1] * rows[contact].rows[1].linearA;
+    return rows[contact].block.linear.topRows<2>().transpose() * components.segment<2>(at);
   }
   /// m/s^2: of the body's material at a contact, by Newton's and Euler's laws for forces that are its components.
   Vec3 accelerationAt(const Vec3& arm, const VectorX& forces) const {
