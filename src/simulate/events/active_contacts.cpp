@@ -19,7 +19,9 @@ constexpr int kMaxTurningSteps = 1000;  // in a row: sliding that ends does so i
 // Parts of the way to a stop at which the direction of sliding is taken, and the weights with which that of the stop is
 // extrapolated from them, by a parabola.
 constexpr std::array<double, 3> kAimParts = {0.7, 0.8, 0.9}, kAimWeights = {1, -3, 3};
-constexpr double kStopped = 1e-3;         // of the speed at the first of them: no more is left at a stop
+constexpr double kFastToAim = 100;  // times slowSliding, at the first of them: slower has not its own direction
+constexpr double kStopped = 1e-3;   // of the speed at the first of them: no more is left at a stop
+constexpr double kStraight = 0.1;   // sine: sliding that turns by more on its last third is too curved for a parabola
 constexpr double kMostAimedSpeed = 1e-4;  // m/s: faster sliding has its own direction in any case
 
 }  // namespace
@@ -156,24 +158,29 @@ std::vector<Vec3> ActiveContacts::slidingVelocitiesAt(double fraction) {
 
 // With v the velocity of sliding and 1 - p what is left of the way to the stop, v / (1 - p) has a limit there along the
 // direction wanted.
-void ActiveContacts::aimAtStop(double fraction) {
+bool ActiveContacts::aimAtStop(double fraction) {
   std::vector<Vec3> aims(records_.size(), Vec3::Zero());
-  std::vector<double> speeds;  // m/s, at the first part
+  std::vector<Vec3> firsts;  // m/s, at the first part
   for (std::size_t k = 0; k < kAimParts.size(); ++k) {
     const std::vector<Vec3> velocities = slidingVelocitiesAt(kAimParts[k] * fraction);
     for (std::size_t i = 0; i < aims.size(); ++i) {
       aims[i] += kAimWeights[k] / (1 - kAimParts[k]) * velocities[i];
-      if (k == 0) speeds.push_back(velocities[i].norm());
+      if (k == 0) firsts.push_back(velocities[i]);
     }
   }
   const std::vector<Vec3> last = slidingVelocitiesAt(fraction);
+  bool isAny = false;
   for (std::size_t i = 0; i < aims.size(); ++i) {
     ContactConstraint& contact = mechanism().contacts[i];
     if (contact.motion != ContactMotion::sliding || contact.keepsDirection) continue;
-    if (!(last[i].norm() < kStopped * speeds[i])) continue;
+    const double speed = firsts[i].norm();
+    if (!(speed > kFastToAim * tolerances_.slowSliding && last[i].norm() < kStopped * speed)) continue;
+    if (!(aims[i].normalized().cross(firsts[i].normalized()).norm() < kStraight)) continue;
+    isAny = true;
     setSlidingDirection(contact, aims[i], sample_);
-    contact.slowSliding = std::max(tolerances_.slowSliding, std::min(kStopped * speeds[i], kMostAimedSpeed));
+    contact.slowSliding = std::max(tolerances_.slowSliding, std::min(kStopped * speed, kMostAimedSpeed));
   }
+  return isAny;
 }
 
 std::optional<double> ActiveContacts::followSliding() {

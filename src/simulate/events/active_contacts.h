@@ -49,8 +49,9 @@ class ActiveContacts {
   }
 
   /// Gives contacts that stop sliding at a fraction of the island's step the direction in which they stop, for a step
-  /// that ends there: the velocity itself tells no direction where it is as small as its error.
-  void aimAtStop(double fraction);
+  /// that ends there: the velocity itself tells no direction where it is as small as its error. False if none does so
+  /// straight enough.
+  bool aimAtStop(double fraction);
 
   /// Directions of sliding follow the motion from step to step. Notes as a reason to fall back to time stepping that
   /// friction goes on turning them faster than steps follow at a bearable cost: a body that creeps under a load. If

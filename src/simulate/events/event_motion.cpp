@@ -231,10 +231,15 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
   } else if (event.contact) {
     // Where forces change so fast that the interpolant does not tell them, the step itself may have no such change.
     const double tolerance = EventTolerances::kEventFunction;
-    if (event.contact->kind == ContactChange::Kind::stick) contacts_.active().aimAtStop(event.contact->fraction);
-    const double left =
-        endStepAtEvent(island_, method_.integrate, {event.contact->fraction * whole, latest, tolerance},
-                       [&](const VectorX& state) { return contacts_.active().margin(*event.contact, state); });
+    const auto end = [&] {
+      return endStepAtEvent(island_, method_.integrate, {event.contact->fraction * whole, latest, tolerance},
+                            [&](const VectorX& state) { return contacts_.active().margin(*event.contact, state); });
+    };
+    const std::vector<ContactConstraint> unaimed = island_.assembly.mechanism.contacts;
+    const bool isAimed =
+        event.contact->kind == ContactChange::Kind::stick && contacts_.active().aimAtStop(event.contact->fraction);
+    double left = end();
+    if (isAimed && left > tolerance) island_.assembly.mechanism.contacts = unaimed, left = end();
     if (left > tolerance && latest == whole) event.contact.reset();
   }
   if (island_.mayTouch()) lengths_[lengthIndex_++ % lengths_.size()] = step.timeStep;
