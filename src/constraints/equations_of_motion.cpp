@@ -28,6 +28,13 @@ Vec3 gyroscopicAcceleration(const RigidBody& body, const Mat3& worldFromBody, co
   return worldFromBody * (body.inverseInertia * -spin.cross(body.inertiaTensor * spin));
 }
 
+/// Forces, or impulses, of motors that give these accelerations, or velocities: wheels on one road share their load.
+VectorX leastForces(const MatrixX& perForce, const VectorX& wanted) {
+  Eigen::CompleteOrthogonalDecomposition<MatrixX> decomposition;
+  decomposition.setThreshold(kSameMotors);
+  return decomposition.compute(perForce).solve(wanted);
+}
+
 }  // namespace
 
 EquationsOfMotion::EquationsOfMotion(const Mechanism& mechanism)
@@ -66,14 +73,17 @@ void EquationsOfMotion::evaluateWithoutContacts(double time, const VectorX& stat
 }
 
 void EquationsOfMotion::applyConstraints(const VectorX& state, VectorX& derivative) {
-  if (hasContacts()) {
-    holdResting(state, derivative);
-    contactSolver_.factorize(state, frames_, resting_);
-  } else if (solver_.hasConstraints()) {
-    solver_.factorize(state, frames_);
-  }
+  if (hasContacts()) holdResting(state, derivative);
+  factorize(state);
   if (!mechanism_.motors.empty()) applyMotors(state, derivative);
   constrain(derivative);
+}
+
+void EquationsOfMotion::factorize(const VectorX& state) {
+  if (hasContacts())
+    contactSolver_.factorize(state, frames_, resting_);
+  else if (solver_.hasConstraints())
+    solver_.factorize(state, frames_);
 }
 
 /// Adds what constraints and contacts give, which were factorised.
@@ -99,7 +109,7 @@ void EquationsOfMotion::applyMotors(const VectorX& state, VectorX& derivative) {
   for (std::size_t i = 0; i < motors.size(); ++i) {
     rows.push_back(rowOf(motors[i], state, frames_));
     double& force = motorForces_[static_cast<Eigen::Index>(i)];
-    const bool isAsked = settled_ > 0 && motors[i].hasTarget && !isResting(motors[i].joint);
+    const bool isAsked = asksPossible_ && motors[i].hasTarget && !isResting(motors[i].joint);
     if (motors[i].mode == JointMotor::Mode::pushes && !isAsked) {
       force = motors[i].sign * motors[i].maxForce;
     } else if (!areKnown && !isResting(motors[i].joint)) {
@@ -132,12 +142,18 @@ EquationsOfMotion::MotorResponse EquationsOfMotion::responseOf(const std::vector
     addForce(rows[holding[static_cast<std::size_t>(k)]], 1, state, pushed);
     response.perForce.col(k) = accelerations(pushed) - response.free;
   }
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const double alone = mobilityOf(rows[holding[static_cast<std::size_t>(k)]], mechanism_.bodies, frames_);
-    if (std::abs(response.perForce(k, k)) > kBlocked * alone) continue;
-    response.perForce.row(k).setZero(), response.perForce.col(k).setZero();
-  }
+  std::vector<ConstraintBlock> held;
+  for (const std::size_t motor : holding) held.push_back(rows[motor]);
+  leaveOutBlocked(held, response.perForce);
   return response;
+}
+
+/// Sets the responses of coordinates to zero to which nothing leaves any motion.
+void EquationsOfMotion::leaveOutBlocked(const std::vector<ConstraintBlock>& rows, MatrixX& perForce) const {
+  for (Eigen::Index k = 0; k < perForce.cols(); ++k) {
+    const double alone = mobilityOf(rows[static_cast<std::size_t>(k)], mechanism_.bodies, frames_);
+    if (std::abs(perForce(k, k)) <= kBlocked * alone) perForce.row(k).setZero(), perForce.col(k).setZero();
+  }
 }
 
 VectorX EquationsOfMotion::missingVelocities(const std::vector<std::size_t>& holding,
@@ -165,8 +181,8 @@ VectorX EquationsOfMotion::possibleForces(const std::vector<std::size_t>& holdin
   std::vector<Eigen::Index> atTarget;
   for (Eigen::Index k = 0; k < limits.size(); ++k) {
     const bool isReached = static_cast<int>(holding[static_cast<std::size_t>(k)]) == reached_;
-    const double settled = settled_ * limits[k] * std::abs(response.perForce(k, k));
-    if (!isReached && std::abs(missing[k]) > settled)
+    const JointMotor& motor = mechanism_.motors[holding[static_cast<std::size_t>(k)]];
+    if (!isReached && std::abs(missing[k]) > settledSpeed(motor, response.perForce(k, k)))
       forces[k] = std::copysign(limits[k], missing[k]);
     else
       atTarget.push_back(k);
@@ -178,12 +194,48 @@ VectorX EquationsOfMotion::possibleForces(const std::vector<std::size_t>& holdin
   return forces;
 }
 
-VectorX EquationsOfMotion::possibleMotorForces(double time, const VectorX& state, double settled, int reached) {
-  settled_ = settled, reached_ = reached;
+VectorX EquationsOfMotion::possibleMotorForces(double time, const VectorX& state, int reached) {
+  asksPossible_ = true, reached_ = reached;
   VectorX derivative;
   evaluate(time, state, derivative);
-  settled_ = 0;
+  asksPossible_ = false;
   return motorForces_;
+}
+
+void EquationsOfMotion::keepTargets(VectorX& state) {
+  const auto holds = [](const JointMotor& motor) { return motor.mode == JointMotor::Mode::holds; };
+  if (std::none_of(mechanism_.motors.begin(), mechanism_.motors.end(), holds)) return;
+  findBodyFrames(mechanism_.bodies, state, frames_);
+  std::vector<ConstraintBlock> rows;
+  std::vector<double> missing;
+  for (const JointMotor& motor : mechanism_.motors) {
+    if (!holds(motor) || isResting(motor.joint)) continue;
+    ConstraintBlock& row = rows.emplace_back(rowOf(motor, state, frames_));
+    missing.push_back(motor.targetVelocity - rateOf(row, 0, state));
+    const auto isAtRest = [this](int body) { return body != kFixed && resting_[static_cast<std::size_t>(body)]; };
+    if (isAtRest(row.bodyA)) row.bodyA = kFixed, row.turnsA = false;
+    if (isAtRest(row.bodyB)) row.bodyB = kFixed, row.turnsB = false;
+  }
+  if (rows.empty()) return;
+  factorize(state);
+  const Eigen::Index count = std::ssize(rows);
+  MatrixX responses(state.size(), count), perImpulse(count, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const ConstraintBlock& row = rows[static_cast<std::size_t>(k)];
+    const double one = 1;
+    BlockResponse alone;
+    findResponse(row, mechanism_.bodies, frames_, alone);
+    VectorX response = VectorX::Zero(state.size());
+    addResponse(row, alone, &one, response);
+    if (hasContacts())
+      contactSolver_.constrainVelocities(response);
+    else if (solver_.hasConstraints())
+      solver_.constrainVelocities(response);
+    responses.col(k) = response;
+    for (Eigen::Index i = 0; i < count; ++i) perImpulse(i, k) = rateOf(rows[static_cast<std::size_t>(i)], 0, response);
+  }
+  leaveOutBlocked(rows, perImpulse);
+  state += responses * leastForces(perImpulse, Eigen::Map<const VectorX>(missing.data(), count));
 }
 
 /// Adds the forces of motors that hold: those with which their coordinates' accelerations, after all constraints and
@@ -194,7 +246,7 @@ void EquationsOfMotion::hold(const std::vector<std::size_t>& holding, const std:
   const MotorResponse response = responseOf(holding, rows, state, derivative);
   const VectorX missing = missingVelocities(holding, rows, state);
   VectorX forces;
-  if (settled_ > 0) {
+  if (asksPossible_) {
     forces = possibleForces(holding, response, missing);
   } else if (motorTimeStep_ > 0) {
     // Targets that contradict each other: the weaker motors give all they have.
@@ -205,9 +257,7 @@ void EquationsOfMotion::hold(const std::vector<std::size_t>& holding, const std:
     for (Eigen::Index k = 0; k < forces.size(); ++k)  // against a stop
       if (perForce(k, k) == 0 && missing[k] != 0) forces[k] = std::copysign(limits[k], missing[k]);
   } else {
-    Eigen::CompleteOrthogonalDecomposition<MatrixX> decomposition;  // wheels on one road share their load
-    decomposition.setThreshold(kSameMotors);
-    forces = decomposition.compute(response.perForce).solve(kMotorRelaxation * missing - response.free);
+    forces = leastForces(response.perForce, kMotorRelaxation * missing - response.free);
   }
   for (std::size_t k = 0; k < holding.size(); ++k) {
     const Eigen::Index at = static_cast<Eigen::Index>(k), motor = static_cast<Eigen::Index>(holding[k]);

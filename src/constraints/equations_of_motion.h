@@ -58,15 +58,20 @@ class EquationsOfMotion {
 
   /// The forces (N or N m) that motors with a target velocity can have at `time` (s), in their order, whatever their
   /// mode: those whose joints are off the target push with all they have; the others, all together, give what keeps
-  /// their joints at it, or all they have where that does not suffice. Off is a velocity that all of the force takes
-  /// longer than `settled` (s) to mend, of all motors but `reached` (-1: none). Motors of bodies at rest, and constant
-  /// ones, have the forces that they have.
-  VectorX possibleMotorForces(double time, const VectorX& state, double settled, int reached);
+  /// their joints at it, or all they have where that does not suffice. Off is what misses it by more than settledSpeed,
+  /// of all motors but `reached` (-1: none). Motors of bodies at rest, and constant ones, have the forces that they
+  /// have.
+  VectorX possibleMotorForces(double time, const VectorX& state, int reached);
 
   /// How fast (1/s) motors that hold take back what their joint's velocity is off. Steps of a fixed length do so within
   /// one, and with at most the force that motors have; others locate the instants from which that does not suffice.
   void setMotorSteps(double timeStep) { motorTimeStep_ = timeStep; }
   double motorSteps() const { return motorTimeStep_; }  // s; 0: of no fixed length
+
+  /// Gives motors that hold the impulses that bring their joints to their targets, with all constraints and contacts:
+  /// what a step, its interpolant, or the search for the instant of the target has left. Changes velocities alone;
+  /// the last evaluation's forces of contacts and constraints are not known any more.
+  void keepTargets(VectorX& state);
 
   /// Moves the bodies by the least (mass-weighted) motion until constraints and contacts hold to rounding, and takes
   /// out of the velocities what would change that or makes sticking contacts slide. Returns the largest error that was
@@ -85,6 +90,7 @@ class EquationsOfMotion {
   void applyPushes(const VectorX& state, VectorX& derivative) const;
   bool hasContacts() const { return !isWithoutContacts_ && !mechanism_.contacts.empty(); }
   void applyConstraints(const VectorX& state, VectorX& derivative);
+  void factorize(const VectorX& state);
   void constrain(VectorX& derivative);
   void applyMotors(const VectorX& state, VectorX& derivative);
   /// What motors do to their coordinates, with all constraints and contacts.
@@ -94,6 +100,7 @@ class EquationsOfMotion {
   };
   MotorResponse responseOf(const std::vector<std::size_t>& holding, const std::vector<ConstraintBlock>& rows,
                            const VectorX& state, const VectorX& derivative);
+  void leaveOutBlocked(const std::vector<ConstraintBlock>& rows, MatrixX& perForce) const;
   VectorX missingVelocities(const std::vector<std::size_t>& holding, const std::vector<ConstraintBlock>& rows,
                             const VectorX& state) const;
   VectorX limitsOf(const std::vector<std::size_t>& holding) const;
@@ -116,8 +123,8 @@ class EquationsOfMotion {
   VectorX motorForces_, motorMobilities_;
   bool isWithoutContacts_ = false;  // in the evaluation under way
   double motorTimeStep_ = 0;        // s; 0: motors hold without a limit
-  double settled_ = 0;              // s; 0: motors have their modes
-  int reached_ = -1;                // a motor that is at its target
+  bool asksPossible_ = false;       // what motors can give, whatever their modes
+  int reached_ = -1;                // a motor that is at its target then
   long evaluations_ = 0;
 };
 

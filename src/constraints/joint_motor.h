@@ -19,6 +19,11 @@ struct JointMotor {
   Mode mode = Mode::pushes;
 };
 
+/// m/s or rad/s: a motor that misses its target by no more is at it, and is brought to it at once. All of its force
+/// would mend that within an instant; or it is rounding. `mobility` (1/kg or 1/(kg m^2)) is what a force of 1 adds to
+/// the acceleration of the coordinate.
+double settledSpeed(const JointMotor& motor, double mobility);
+
 /// The one row of a motor's coordinate: dq/dt = J v.
 ConstraintBlock rowOf(const JointMotor& motor, const VectorX& state, const std::vector<BodyFrame>& frames);
 

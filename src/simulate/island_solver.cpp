@@ -153,6 +153,8 @@ void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
     solver_.exclude(still_);
     solver_.project(reported_);
   }
+  if (events && !mechanism.motors.empty())
+    withForcesOfStep(*events, [this] { frameEquations_.keepTargets(reported_); });
   numericalEnergy(reported_) = numericalEnergy(island_.step.startState);
   bookNumerical(energyConstant(mechanism, island_.step.startState), mechanism, reported_);
 }

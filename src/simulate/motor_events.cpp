@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/invariants.h"
+
 namespace cradle {
 namespace {
 
-constexpr int kSamples = 4;        // a step, as of the tensions of ropes
-constexpr double kSettled = 1e-8;  // s: a velocity that all of the force mends sooner is at its target
+constexpr int kSamples = 4;  // a step, as of the tensions of ropes
 // Of the largest velocity in a step: so far past its target a motor has come to it. One that leaves it again at once is
 // at it to within rounding, on either side.
 constexpr double kPastTarget = 1e-9;
@@ -72,7 +73,7 @@ bool MotorEvents::resolve(const std::optional<MotorChange>& change) {
   // Its velocity is at the target, to within what the search for the instant leaves.
   const bool isReached = change && motors()[change->motor].mode == JointMotor::Mode::pushes;
   const int reached = isReached ? static_cast<int>(change->motor) : -1;
-  const VectorX forces = island_.equations.possibleMotorForces(island_.time, island_.state, kSettled, reached);
+  const VectorX forces = island_.equations.possibleMotorForces(island_.time, island_.state, reached);
   const VectorX& mobilities = island_.equations.motorMobilities();
   bool isOther = false;
   for (std::size_t i = 0; i < motors().size(); ++i) {
@@ -80,7 +81,7 @@ bool MotorEvents::resolve(const std::optional<MotorChange>& change) {
     if (!motor.hasTarget || rests(i)) continue;
     const Eigen::Index at = static_cast<Eigen::Index>(i);
     const double missing = std::abs(motor.targetVelocity - velocity(i, island_.state));
-    const bool isOff = static_cast<int>(i) != reached && missing > kSettled * motor.maxForce * std::abs(mobilities[at]);
+    const bool isOff = static_cast<int>(i) != reached && missing > settledSpeed(motor, mobilities[at]);
     // At the end of its force a motor holds no more, and one that has pushed goes on, to within rounding.
     const bool isChange = change && change->motor == i && motor.mode == JointMotor::Mode::holds;
     const bool goesOn = motor.mode == JointMotor::Mode::pushes && forces[at] * motor.sign > 0;
@@ -91,6 +92,9 @@ bool MotorEvents::resolve(const std::optional<MotorChange>& change) {
     if (pushes) motor.sign = forces[at] < 0 ? -1 : 1;
     isOther = isOther || motor.mode != before.mode || (pushes && motor.sign != before.sign);
   }
+  const double before = kineticEnergy(island_.assembly.mechanism.bodies, island_.state);
+  island_.equations.keepTargets(island_.state);
+  pushWork(island_.state) += kineticEnergy(island_.assembly.mechanism.bodies, island_.state) - before;
   return isOther;
 }
 

@@ -30,7 +30,8 @@ class MotorEvents {
   /// missing as a part of the largest in the step. `state` is that of the step's end.
   double margin(const MotorChange& change, const VectorX& state);
 
-  /// Finds whether each motor holds or pushes from now on, after a change or any other event. True if one has changed.
+  /// Finds whether each motor holds or pushes from now on, after a change or any other event, and brings those that
+  /// hold to their targets. True if one has changed.
   bool resolve(const std::optional<MotorChange>& change);
 
  private:

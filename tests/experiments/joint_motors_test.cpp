@@ -429,6 +429,85 @@ TEST(JointMotors, MotorPressesAgainstAStop) {
   }
 }
 
+/// A motor of 1e9 N has a body of 2 kg at 3 m/s after 6 ns, one of 1e15 N at once. A wall of 4 kg, struck without
+/// restitution, leaves both at 1 m/s and 6 J less, and 12 ns later the motor has both at 3 m/s: 21 nm less on the way.
+TEST(JointMotors, StrongMotorIsAtItsTargetAtOnce) {
+  for (const double force : {1e9, 1e15}) {
+    const bool meetsWall = force < 1e10;
+    const Trajectory moved =
+        runMotor(1, 1e-6,
+                 fmt::format(R"({{"name": "a", "mass": 2, "shape": {{"sphere": {{"radius": 0.1}}}}}},
+        {{"name": "b", "mass": 4, "shape": {{"sphere": {{"radius": 0.1}}}}, "position": [1.75, {}, 0]}})",
+                             meetsWall ? 0 : 1),
+                 fmt::format(R"("gravity": [0, 0, 0], "sliders": [{{"bodyA": "a", "anchorB": [0, 0, 0],
+        "axis": [1, 0, 0], "motor": {{"targetVelocity": 3, "maxForce": {}}}}}])",
+                             force));
+    for (const Frame& frame : moved.frames) {
+      if (frame.number == 0) continue;
+      const bool hasMet = meetsWall && frame.time > 1.55 / 3;
+      EXPECT_NEAR(frame.states[0].linearVelocity.x(), 3, 1e-11) << frame.time;
+      EXPECT_NEAR(frame.states[0].position.x(), 3 * frame.time, 2.2e-8);
+      EXPECT_NEAR(frame.states[1].linearVelocity.x(), hasMet ? 3 : 0, 1e-11);
+      EXPECT_NEAR(frame.energy.work, hasMet ? 9 + 6 * (9 - 1) / 2 : 9, 1e-10);
+      EXPECT_NEAR(frame.energy.impact, hasMet ? 9 - 3 : 0, 1e-10);
+    }
+    expectLedger(moved, 1e-11, 1e-10);
+  }
+}
+
+/// Velocities that motors hold, in all frames of a swinging arm, however far inside a step: to rounding.
+TEST(JointMotors, HeldVelocitiesAreExactInAllFrames) {
+  for (const double accuracy : {1e-3, 1e-6}) {
+    const Trajectory moved = simulate(sceneWith(fmt::format(R"("duration": 1, "accuracy": {},
+      "output": {{"framesPerSecond": 1000}}, "bodies": [
+        {{"name": "a", "mass": 1, "shape": {{"box": {{"size": [0.4, 0.05, 0.1]}}}}, "position": [0.2, 0, 0], "collision": "none"}},
+        {{"name": "b", "mass": 1, "shape": {{"box": {{"size": [0.4, 0.05, 0.1]}}}}, "position": [0.6, 0, 0], "collision": "none"}}],
+      "hinges": [{{"bodyA": "a", "anchorA": [-0.2, 0, 0], "anchorB": [0, 0, 0]}},
+        {{"bodyA": "b", "anchorA": [-0.2, 0, 0], "bodyB": "a", "anchorB": [0.2, 0, 0], "axis": [0, 1, 1],
+         "motor": {{"targetVelocity": 5, "maxTorque": 1000}}}}])",
+                                                            accuracy)));
+    for (const Frame& frame : moved.frames)
+      if (frame.time > 0.01) {
+        EXPECT_NEAR(frame.joints[1].velocity, 5, 1e-12) << frame.time;
+        EXPECT_GT(std::abs(frame.joints[0].velocity), 0.01) << frame.time;
+      }
+  }
+}
+
+/// A motor of 5 N that brakes the fall of a plate of 3 kg to 0.5 m/s pushes it down once it lies on a box: it has not
+/// its velocity there.
+TEST(JointMotors, MotorPressesWhatItHasBrakedBefore) {
+  const Trajectory moved = runMotor(0.5, 1e-6, R"({"name": "floor", "shape": {"plane": {}}, "motion": "static"},
+        {"name": "box", "mass": 1, "shape": {"box": {"size": [0.4, 0.4, 0.4]}}, "position": [0, 0.2, 0]},
+        {"name": "plate", "mass": 3, "shape": {"box": {"size": [1, 0.1, 1]}}, "position": [0, 0.6, 0]})",
+                                    R"("sliders": [{"bodyA": "plate", "anchorB": [0, 0.6, 0], "axis": [0, 1, 0],
+        "motor": {"targetVelocity": -0.5, "maxForce": 5}}])");
+  EXPECT_NEAR(moved.frames[10].joints[0].force, 5, 1e-9);
+  EXPECT_NEAR(moved.frames[10].joints[0].velocity, -0.5 - (kGravity - 5.0 / 3) * (0.1 - 0.5 / (kGravity + 5.0 / 3)),
+              1e-6);
+  EXPECT_EQ(moved.frames.back().joints[0].force, -5);
+  EXPECT_FALSE(eventsOf(moved, EventKind::rest).empty());
+}
+
+/// A box that slides with mu g as a motor on it, which touches nothing, comes to its target.
+TEST(JointMotors, MotorComesToItsTargetOnASlidingBox) {
+  const double friction = 0.4;
+  const Trajectory moved =
+      runMotor(0.5, 1e-8, R"({"name": "floor", "shape": {"plane": {}}, "motion": "static", "material": "m"},
+        {"name": "box", "mass": 3, "shape": {"box": {"size": [0.6, 0.2, 0.6]}}, "position": [0, 0.1, 0],
+         "linearVelocity": [2.5, 0, 0], "material": "m"},
+        {"name": "wheel", "mass": 1, "shape": {"sphere": {"radius": 0.1}}, "position": [0, 0.3, 0], "collision": "none",
+         "linearVelocity": [2.5, 0, 0]})",
+               R"("materials": {"m": {"staticFriction": 0.4, "dynamicFriction": 0.4}},
+         "hinges": [{"bodyA": "wheel", "bodyB": "box", "anchorB": [0, 0.2, 0],
+        "motor": {"targetVelocity": -4, "maxTorque": 0.2}}])");
+  const double reached = 4 * 0.004 / 0.2, deceleration = friction * kGravity;
+  for (const Frame& frame : moved.frames) {
+    EXPECT_NEAR(frame.states[0].position.x(), 2.5 * frame.time - deceleration * frame.time * frame.time / 2, 1e-7);
+    EXPECT_NEAR(frame.joints[0].velocity, -4 * std::min(1.0, frame.time / reached), 1e-7) << frame.time;
+  }
+}
+
 /// A brake of 8 N between a table that swings and a body of 2 kg that slides and sticks on it, between stops with e =
 /// 0.5: the same at every accuracy.
 TEST(JointMotors, BrakeBetweenStopsOnASwingingTable) {

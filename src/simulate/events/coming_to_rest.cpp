@@ -62,11 +62,27 @@ void ComingToRest::letSleep(const std::vector<Contact>& touching) {
           isAwake[groupOf(static_cast<std::size_t>(other))] = 1, woken = true;
   }
   for (std::size_t group = 0; group < bodies; ++group) {
-    if (!isAwake[group] || !isStill[group] || !canBeInEquilibrium(touching, groups, static_cast<int>(group))) continue;
+    if (!isAwake[group] || !isStill[group]) continue;
+    const std::vector<JointMotor> motors = island_.assembly.mechanism.motors;
+    pushTowardsTargets(groups, static_cast<int>(group));
+    if (!canBeInEquilibrium(touching, groups, static_cast<int>(group))) {
+      island_.assembly.mechanism.motors = motors;
+      continue;
+    }
     std::vector<int> members;
     for (std::size_t body = 0; body < bodies; ++body)
       if (groupOf(body) == group) members.push_back(static_cast<int>(body));
     if (!members.empty()) island_.resting.bringToRest(members, island_.state);
+  }
+}
+
+/// Motors of a group that stands have all their force for another target than rest, whatever they did before.
+void ComingToRest::pushTowardsTargets(const DisjointSets& groups, int group) {
+  for (JointMotor& motor : island_.assembly.mechanism.motors) {
+    const int a = motor.joint.anchorA.body, b = motor.joint.anchorB.body;
+    if (!motor.hasTarget || motor.targetVelocity == 0 || groups.islandOf(a == kFixed ? b : a) != group) continue;
+    motor.mode = JointMotor::Mode::pushes;
+    motor.sign = motor.targetVelocity < 0 ? -1 : 1;
   }
 }
 
@@ -82,8 +98,9 @@ bool ComingToRest::canBeInEquilibrium(const std::vector<Contact>& touching, cons
   if (isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(0)))
     return doLimitsHold(contacts, VectorX(), frames, groups, group);
   std::vector<double> frictions;
+  const auto isOfGroup = [&](int body) { return body == kFixed || groups.islandOf(body) == group; };
   for (const Contact& contact : touching) {
-    if (groups.islandOf(contact.movingBody()) != group) continue;
+    if (!isOfGroup(contact.bodyA) || !isOfGroup(contact.bodyB)) continue;  // what opens carries nothing
     contacts.push_back(rowsOf(contact, island_.state, frames));
     frictions.push_back(island_.assembly.geometry.pairs[contact.pair].material.staticFriction);
   }

@@ -33,6 +33,7 @@ class ComingToRest {
   double sizeOf(std::size_t body) const;  // m: its radius, or that of gyration if it does not collide
   bool isSlow(std::size_t body) const;
   DisjointSets findRestGroups(const std::vector<Contact>& touching) const;
+  void pushTowardsTargets(const DisjointSets& groups, int group);
   bool canBeInEquilibrium(const std::vector<Contact>& touching, const DisjointSets& groups, int group);
   bool doLimitsHold(const std::vector<ContactRows>& contacts, const VectorX& impulses,
                     const std::vector<BodyFrame>& frames, const DisjointSets& groups, int group);

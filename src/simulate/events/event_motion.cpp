@@ -283,12 +283,13 @@ void EventMotion::project(VectorX& state) {
   solver_.project(state);
 }
 
-/// Projects the island's state. A state that this leaves as it was, to rounding, lets the next step
-/// begin with the end derivative of this one, unless ropes may still act on it. Orientations are normalised only then:
-/// the equations take their direction alone.
+/// Projects the island's state, and keeps motors at their targets. A state that this leaves as it was, to rounding,
+/// lets the next step begin with the end derivative of this one, unless ropes may still act on it. Orientations are
+/// normalised only then: the equations take their direction alone.
 void EventMotion::projectState() {
   VectorX& state = island_.state;
   project(state);
+  island_.equations.keepTargets(state);
   bool isTouched = false;
   if (!contacts_.active().empty() || solver_.hasConstraints()) {
     isTouched = !isSame(state, island_.step.state);
@@ -315,11 +316,11 @@ void EventMotion::requireConstraintsKept() {
 void EventMotion::changeForces(const Event& event) {
   tautRowsBefore_ = ropes_.tautRows();
   const bool lasted = !contacts_.active().empty();
-  if (event.motor) resolveMotors(event.motor);
   if (event.impact || event.contact || event.rope)  // a rope may go taut as bodies meet
     contacts_.resolve(event.contact, event.impact ? std::optional(event.impact->pair) : std::nullopt);
   else
-    followActive();
+    followActive();  // those of the step: a motor may change them
+  if (event.motor) resolveMotors(event.motor);
   if (!lasted && !contacts_.active().empty()) lengths_.fill(island_.scene.duration);  // no more bounces
   const bool haveLimitsChanged = applyLimitEvents();
   if (event.any() && (!event.motor || haveLimitsChanged)) resolveMotors({});
