@@ -288,6 +288,8 @@ void ContactSolver::takeForces(const Group& group, VectorX& derivative) {
       force.tangential = -contact.friction * force.normal * force.slidingDirection;
       frictionEnergy(derivative) -= force.tangential.dot(force.tangentialVelocity);
     }
+    if (contact.motion != ContactMotion::sticking) continue;
+    force.tangential.setZero();  // those of a call before, with other accelerations
     for (int k = 0; k + 1 < block.rows; ++k) force.tangential += multipliers[k] * block.linear.row(k).transpose();
   }
   if (group.constraints) group.constraints->putMultipliers(bilateralMultipliers_);

@@ -64,8 +64,9 @@ bool RestingBodies::canBeInEquilibrium(double time, const std::vector<int>& isla
   std::vector<Contact> near, supports;
   std::vector<double> frictions;
   findContacts(geometry_, state, tolerances_.support, near);
+  const auto isOfIsland = [&](int body) { return body == kFixed || islands[static_cast<std::size_t>(body)] == island; };
   for (const Contact& contact : near) {
-    if (islands[static_cast<std::size_t>(contact.movingBody())] != island) continue;
+    if (!isOfIsland(contact.bodyA) || !isOfIsland(contact.bodyB)) continue;
     supports.push_back(contact);
     frictions.push_back(geometry_.pairs[contact.pair].material.staticFriction);
     const Vec3 velocity = relativeVelocity(contact, state),

@@ -508,6 +508,32 @@ TEST(JointMotors, MotorComesToItsTargetOnASlidingBox) {
   }
 }
 
+/// A box with a wheel that its motor turns goes with a table that swings by half of what friction holds, and the table
+/// works what its velocity asks for.
+TEST(JointMotors, FrictionCarriesABoxWithAMotor) {
+  const double rate = 2 * std::numbers::pi, amplitude = 0.05, fastest = amplitude * rate;
+  const Trajectory moved =
+      runMotor(1, 1e-8,
+               fmt::format(R"({{"name": "table", "material": "m", "shape": {{"box": {{"size": [2, 0.2, 2]}}}},
+         "motion": "driven", "oscillation": {{"direction": [1, 0, 0], "amplitude": {}, "frequency": 1}}}},
+        {{"name": "box", "mass": 3, "material": "m", "shape": {{"box": {{"size": [0.6, 0.2, 0.6]}}}},
+         "position": [0, 0.2, 0], "linearVelocity": [{}, 0, 0]}},
+        {{"name": "wheel", "mass": 1, "shape": {{"sphere": {{"radius": 0.1}}}}, "position": [0, 0.4, 0],
+         "collision": "none", "linearVelocity": [{}, 0, 0]}})",
+                           amplitude, fastest, fastest),
+               R"("materials": {"m": {"staticFriction": 0.4, "dynamicFriction": 0.4}},
+         "hinges": [{"bodyA": "wheel", "bodyB": "box", "anchorB": [0, 0.2, 0], "axis": [0, 1, 0],
+        "motor": {"targetVelocity": -4, "maxTorque": 0.2}}])");
+  for (const Frame& frame : moved.frames) {
+    EXPECT_NEAR(frame.states[1].position.x(), amplitude * std::sin(rate * frame.time), 1e-8) << frame.time;
+    const double velocity = fastest * std::cos(rate * frame.time), spin = frame.joints[0].velocity;
+    EXPECT_NEAR(frame.energy.work,
+                4 * (velocity * velocity - fastest * fastest) / 2 + 0.4 * 1 * 0.1 * 0.1 * spin * spin / 2, 1e-7);
+  }
+  EXPECT_TRUE(eventsOf(moved, EventKind::slip).empty());
+  expectLedger(moved, 1e-11, 1e-7);
+}
+
 /// A brake of 8 N between a table that swings and a body of 2 kg that slides and sticks on it, between stops with e =
 /// 0.5: the same at every accuracy.
 TEST(JointMotors, BrakeBetweenStopsOnASwingingTable) {
