@@ -64,9 +64,12 @@ bool RestingBodies::canBeInEquilibrium(double time, const std::vector<int>& isla
   std::vector<Contact> near, supports;
   std::vector<double> frictions;
   findContacts(geometry_, state, tolerances_.support, near);
-  const auto isOfIsland = [&](int body) { return body == kFixed || islands[static_cast<std::size_t>(body)] == island; };
+  const auto leaves = [&](int body) {  // what is driven carries nothing that it does not go with
+    return body != kFixed && mechanism_.bodies[static_cast<std::size_t>(body)].isDriven() &&
+           islands[static_cast<std::size_t>(body)] != island;
+  };
   for (const Contact& contact : near) {
-    if (!isOfIsland(contact.bodyA) || !isOfIsland(contact.bodyB)) continue;
+    if (islands[static_cast<std::size_t>(contact.movingBody())] != island || leaves(contact.bodyB)) continue;
     supports.push_back(contact);
     frictions.push_back(geometry_.pairs[contact.pair].material.staticFriction);
     const Vec3 velocity = relativeVelocity(contact, state),

@@ -350,5 +350,42 @@ TEST(DrivenBodies, HandCarriesABodyOnARope) {
   expectLedger(moved, 1e-11, 1e-5);
 }
 
+/// A capsule that stands, spins and falls on its side, without friction: a table that shakes to the side under it
+/// changes nothing, and its far end strikes when and as it does on a fixed one. The steps of this accuracy are as long
+/// as the fall.
+TEST(DrivenBodies, CapsuleFallsOnAShakenTableAsOnAFixedOne) {
+  std::vector<Event> first;
+  for (const char* motion : {R"("static")", R"("driven", "oscillation": {"direction": [0, 0, 1],
+      "amplitude": 0.0386, "frequency": 2.54, "phase": 1.5707963267948966})"}) {
+    const Trajectory moved = simulate(sceneWith(fmt::format(R"("duration": 0.5, "accuracy": 1e-4,
+      "output": {{"framesPerSecond": 240}},
+      "materials": {{"m": {{"staticFriction": 0, "dynamicFriction": 0}}}}, "bodies": [
+        {{"name": "table", "material": "m", "shape": {{"box": {{"size": [0.7725, 0.0386, 0.7725]}}}}, "motion": {}}},
+        {{"name": "capsule", "material": "m", "shape": {{"capsule": {{"radius": 0.0596, "length": 0.0222}}}},
+         "mass": 78, "position": [0, 0.09, 0], "angularVelocity": [5.2646, 3.1116, -7.3603]}}])",
+                                                            motion)));
+    const std::vector<Event> hits = eventsOf(moved, EventKind::impact);
+    ASSERT_FALSE(hits.empty());
+    first.push_back(hits.front());
+  }
+  EXPECT_NEAR(first[1].time, first[0].time, 1e-5);
+  EXPECT_NEAR(first[1].impulse, first[0].impulse, 1e-3 * first[0].impulse);
+}
+
+/// A ball on a table that sinks with V falls, whichever of them comes first in the file: it meets the table again after
+/// 2 V / g.
+TEST(DrivenBodies, BallFallsBehindATableThatSinks) {
+  const std::string table = drivenBox({1, 0.2, 1}, R"("linearVelocity": [0, -0.05, 0])");
+  const std::string fallen = R"({"name": "ball", "material": "m", "shape": {"sphere": {"radius": 0.1}}, "mass": 2,
+      "position": [0, 0.2, 0]})";
+  for (const std::string& bodies : {table + ", " + fallen, fallen + ", " + table})
+    for (const char* method : {"", R"("method": {"name": "rk4", "timeStep": 0.001},)"}) {
+      const Trajectory moved = runDriven(0.3, 1e-6, bodies, method);
+      EXPECT_NEAR(timeOf(moved, EventKind::impact), 2 * 0.05 / kGravity, 1e-3);
+      EXPECT_NEAR(moved.frames.back().states[0].position.y() + moved.frames.back().states[1].position.y(),
+                  0.2 - 2 * 0.05 * 0.3, 1e-5);
+    }
+}
+
 }  // namespace
 }  // namespace cradle

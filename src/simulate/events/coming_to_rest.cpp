@@ -98,9 +98,12 @@ bool ComingToRest::canBeInEquilibrium(const std::vector<Contact>& touching, cons
   if (isInEquilibrium(derivative, groups, group, tolerances_.maxRestAcceleration(0)))
     return doLimitsHold(contacts, VectorX(), frames, groups, group);
   std::vector<double> frictions;
-  const auto isOfGroup = [&](int body) { return body == kFixed || groups.islandOf(body) == group; };
+  const auto leaves = [&](int body) {  // what is driven carries nothing that it does not go with
+    return body != kFixed && mechanism.bodies[static_cast<std::size_t>(body)].isDriven() &&
+           groups.islandOf(body) != group;
+  };
   for (const Contact& contact : touching) {
-    if (!isOfGroup(contact.bodyA) || !isOfGroup(contact.bodyB)) continue;  // what opens carries nothing
+    if (groups.islandOf(contact.movingBody()) != group || leaves(contact.bodyB)) continue;
     contacts.push_back(rowsOf(contact, island_.state, frames));
     frictions.push_back(island_.assembly.geometry.pairs[contact.pair].material.staticFriction);
   }
