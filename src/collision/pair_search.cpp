@@ -23,6 +23,8 @@ constexpr double kFinestBesidePin = 1.0 / 256;
 // Of a step: a feature that leaves is searched from then on at the latest, for another of its points may come down. A
 // tenth or ten times as much changes no test of a search.
 constexpr double kFirstGap = 1.0 / 1024;
+// rad, in a step: of two bodies against each other, by which a manifold may change its features.
+constexpr double kTurned = 0.1;
 
 /// Distance (m) from the centre of mass of a collider's farthest point, without the spheres around its points.
 double pointReach(const Collider& collider) {
@@ -128,11 +130,18 @@ void PairSearch::searchTurningAboutPin(const TouchingFeatures& touching, std::op
 
 /// Searches for the impact of a feature whose gap is `start` (m) when the step begins.
 void PairSearch::searchFeature(double start, const TouchingFeatures& touching, std::optional<ImpactTime>& best) {
-  if (start > bounds_.speed) return;
+  if (start > bounds_.speed && !mayTurnDown()) return;
   if (start > touching.tolerance)
     searchFrom(0, start, 0, best);
   else if (std::isfinite(touching.deadBand))
     searchTouching(start, touching, best);
+}
+
+/// Whether a pair that a contact holds may turn so far that others come which were none at the start, however near:
+/// the far end of a body that stands or leans.
+bool PairSearch::mayTurnDown() {
+  if (!held_ || hasMesh(a_, geometry_.colliders[pair_.b])) return false;
+  return scratch_.turnOf(step_, a_.body).speed + scratch_.turnOf(step_, bodyB_).speed > kTurned;
 }
 
 /// Finds bounds on the gap. A gap is the least distance d between points of the two cores, less the radii r of the

@@ -25,6 +25,7 @@ class PairSearch {
   void search(const TouchingFeatures& touching, std::optional<ImpactTime>& best);
 
  private:
+  bool mayTurnDown();
   void findBounds();
   double accelerationInFrame(const MotionBounds& turn, const Collider& other) const;
   void useSpeedBoundAlone();
