@@ -13,9 +13,6 @@
 namespace cradle {
 namespace {
 
-const Vec3 kDownwards(0, -1, 0);
-constexpr int kMaxTrials = 50;  // places tried for a body that misses the others
-
 SceneSketch emptySketch(SketchFamily family, unsigned number, SketchDraws& draws) {
   constexpr std::array kAccuracies{1e-3, 1e-4, 1e-6, 1e-8};
   SceneSketch sketch;
@@ -45,33 +42,6 @@ void addGround(SceneSketch& sketch, SketchDraws& draws) {
   if (kind < 0.6 || kind > 0.75) return;
   ground.worldFromBody.rotation = rotationBetween(Vec3::UnitY(), Vec3(-1, draws.one({0.0, 0.0, 0.3}), 0));
   sketch.bodies.push_back(ground);  // a wall, beside the floor
-}
-
-/// Adds a body in touch with what is there; against a wall too, if there is one.
-bool addTouching(SceneSketch& sketch, SketchDraws& draws, double scale, bool isCentered) {
-  const bool hasWall = sketch.bodies.size() > 1 && sketch.bodies[1].shape == SketchShape::plane;
-  for (int trial = 0; trial < kMaxTrials; ++trial) {
-    SketchBody body = draws.body(scale);
-    const Vec3 below = sketch.bodies.back().worldFromBody.translation;
-    const double offset = isCentered ? 0 : draws.one({0.0, 0.3, 0.8}) * scale;
-    body.worldFromBody.translation = below + Vec3(draws.number(-offset, offset), 0, draws.number(-offset, offset));
-    if (hasWall) body.worldFromBody.translation.x() -= 3 * scale;
-    sketch.bodies.push_back(body);
-    const double gap = draws.gap() * sizeOf(body);
-    bool touches = moveToTouch(sketch, kDownwards, gap);
-    if (touches && hasWall && draws.chance(0.6)) {
-      // Along the floor, up to the wall.
-      const double sideGap = draws.gap() * sizeOf(body);
-      SceneSketch beside = sketch;
-      beside.bodies.erase(beside.bodies.begin());
-      touches = moveToTouch(beside, Vec3::UnitX(), sideGap);
-      sketch.bodies.back() = beside.bodies.back();
-    }
-    const std::optional<NearestPlace> nearest = nearestPlace(sketch);
-    if (touches && nearest && nearest->separation >= -1e-12 * scale) return true;
-    sketch.bodies.pop_back();
-  }
-  return false;
 }
 
 void addVelocities(SceneSketch& sketch, SketchDraws& draws) {
@@ -216,7 +186,7 @@ bool addPair(SceneSketch& sketch, SketchDraws& draws, double scale) {
   if (!moveToTouch(beside, -Vec3::UnitX(), gap)) return false;
   sketch.bodies.push_back(beside.bodies.back());
   const double floorGap = draws.gap() * sizeOf(body);
-  const bool touches = moveToTouch(sketch, kDownwards, floorGap);
+  const bool touches = moveToTouch(sketch, -Vec3::UnitY(), floorGap);
   const std::optional<NearestPlace> nearest = nearestPlace(sketch);
   if (!touches || !nearest || nearest->separation < -1e-12 * scale) {
     sketch.bodies.pop_back();
@@ -240,7 +210,7 @@ void addMiddle(SceneSketch& sketch, SketchDraws& draws, double scale) {
   body.worldFromBody.translation = Vec3(0, 0, draws.one({0.0, draws.number(-scale, scale) / 4}));
   sketch.bodies.push_back(body);
   const double gap = draws.gap() * sizeOf(body);
-  const bool touches = moveToTouch(sketch, kDownwards, gap);
+  const bool touches = moveToTouch(sketch, -Vec3::UnitY(), gap);
   const std::optional<NearestPlace> nearest = nearestPlace(sketch);
   if (!touches || !nearest || nearest->separation < -1e-12 * scale) {
     sketch.bodies.pop_back();
@@ -278,10 +248,11 @@ SceneSketch drawSketch(SketchFamily family, unsigned number, SketchDraws& draws)
     case SketchFamily::symmetric:
       return drawSymmetric(number, draws);
     case SketchFamily::threshold:
+    case SketchFamily::led:
       break;
   }
   SceneSketch sketch = emptySketch(family, number, draws);
-  drawThreshold(sketch, draws);
+  family == SketchFamily::led ? drawLed(sketch, draws) : drawThreshold(sketch, draws);
   return sketch;
 }
 

@@ -14,9 +14,11 @@ enum class SketchFamily {
   pinned,     // joints to the world or to each other at the places of contact
   squeezed,   // light bodies between a floor, or a wall, and heavy ones
   symmetric,  // arrangements that are their own image in the mirror x = 0
-  threshold   // slopes at the limits of sticking, tipping and rolling: the motion is known
+  threshold,  // slopes at the limits of sticking, tipping and rolling: the motion is known
+  led         // linkages with stops and motors, and driven bodies that carry, tow, strike and shake
 };
-constexpr std::array<std::string_view, 5> kSketchFamilyNames{"touch", "pinned", "squeezed", "symmetric", "threshold"};
+constexpr std::array<std::string_view, 6> kSketchFamilyNames{"touch",     "pinned",    "squeezed",
+                                                             "symmetric", "threshold", "led"};
 
 /// The scene of a family with a number; the same for the same number, whatever was asked for before.
 SceneSketch randomSketch(SketchFamily family, unsigned number);

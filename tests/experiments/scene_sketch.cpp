@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "experiments/experiment.h"
@@ -39,16 +40,49 @@ std::string shapeText(const SketchBody& body) {
   return R"("shape": {"plane": {}})";
 }
 
+std::string poseText(const RigidTransform& pose) {
+  const Quat& q = pose.rotation;
+  return fmt::format(R"("position": {}, "orientation": {{"w": {}, "x": {}, "y": {}, "z": {}}})",
+                     vectorText(pose.translation), q.w(), q.x(), q.y(), q.z());
+}
+
+std::string driveText(const SketchBody& body) {
+  const SketchDrive& drive = *body.drive;
+  if (drive.keys.empty() && drive.frequency > 0)
+    return fmt::format(R"(, "oscillation": {{"direction": {}, "amplitude": {}, "frequency": {}, "phase": {}}})",
+                       vectorText(drive.amplitude.normalized()), drive.amplitude.norm(), drive.frequency, drive.phase);
+  if (drive.keys.empty()) return "";
+  std::vector<std::string> keys;
+  for (const KeyFrame& key : drive.keys)
+    keys.push_back(fmt::format(R"({{"time": {}, {}}})", key.time, poseText(key.pose)));
+  return fmt::format(R"(, "keyFrames": [{}])", fmt::join(keys, ", "));
+}
+
 std::string bodyText(const SketchBody& body, std::size_t index) {
-  const Quat& q = body.worldFromBody.rotation;
-  std::string text = fmt::format(
-      R"({{"name": "b{}", {}, "material": "m{}", "position": {}, "orientation": {{"w": {}, "x": {}, "y": {}, "z": {}}})",
-      index, shapeText(body), body.material, vectorText(body.worldFromBody.translation), q.w(), q.x(), q.y(), q.z());
+  std::string text = fmt::format(R"({{"name": "b{}", {}, "material": "m{}", {})", index, shapeText(body), body.material,
+                                 poseText(body.worldFromBody));
+  if (!body.collides) text += R"(, "collision": "none")";
   if (body.isStatic) return text + R"(, "motion": "static"})";
-  text += fmt::format(R"(, "mass": {})", body.mass);
-  if (!body.linearVelocity.isZero(0)) text += R"(, "linearVelocity": )" + vectorText(body.linearVelocity);
+  const bool isSteady = body.drive && body.drive->keys.empty() && body.drive->frequency == 0;
+  text += body.drive ? R"(, "motion": "driven")" + driveText(body) : fmt::format(R"(, "mass": {})", body.mass);
+  if (!body.linearVelocity.isZero(0) || isSteady) text += R"(, "linearVelocity": )" + vectorText(body.linearVelocity);
   if (!body.angularVelocity.isZero(0)) text += R"(, "angularVelocity": )" + vectorText(body.angularVelocity);
   return text + "}";
+}
+
+/// Axis, stops and motor of a hinge or slider.
+std::string coordinateText(const SketchLink& link) {
+  const bool turns = link.kind == SketchLinkKind::hinge;
+  std::string text = R"(, "axis": )" + vectorText(link.axis);
+  if (link.limits)
+    text += fmt::format(R"(, "limits": {{"lower": {}, "upper": {}, "restitution": {}}})", link.limits->lower,
+                        link.limits->upper, link.limits->restitution);
+  if (link.motor && link.motor->targetVelocity)
+    text += fmt::format(R"(, "motor": {{"targetVelocity": {}, "{}": {}}})", *link.motor->targetVelocity,
+                        turns ? "maxTorque" : "maxForce", link.motor->force);
+  else if (link.motor)
+    text += fmt::format(R"(, "motor": {{"{}": {}}})", turns ? "torque" : "force", link.motor->force);
+  return text;
 }
 
 std::string linkText(const SketchLink& link) {
@@ -67,9 +101,11 @@ std::string linkText(const SketchLink& link) {
       text += fmt::format(R"(, "maxLength": {}, "restitution": {})", link.length, link.restitution);
       break;
     case SketchLinkKind::hinge:
-      text += R"(, "axis": )" + vectorText(link.axis);
+    case SketchLinkKind::slider:
+      text += coordinateText(link);
       break;
     case SketchLinkKind::ballJoint:
+    case SketchLinkKind::weld:
       break;
   }
   return text + "}";
@@ -90,7 +126,9 @@ std::string textOf(const SceneSketch& sketch) {
                                    {SketchLinkKind::rod, "rods"},
                                    {SketchLinkKind::rope, "ropes"},
                                    {SketchLinkKind::ballJoint, "ballJoints"},
-                                   {SketchLinkKind::hinge, "hinges"}}) {
+                                   {SketchLinkKind::hinge, "hinges"},
+                                   {SketchLinkKind::slider, "sliders"},
+                                   {SketchLinkKind::weld, "welds"}}) {
     std::vector<std::string> links;
     for (const SketchLink& link : sketch.links)
       if (link.kind == kind) links.push_back(linkText(link));
@@ -131,16 +169,22 @@ double sizeOf(const SketchBody& body) {
 double smallestSizeOf(const SceneSketch& sketch) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const SketchBody& body : sketch.bodies)
-    if (!body.isStatic) smallest = std::min(smallest, sizeOf(body));
+    if (body.isDynamic()) smallest = std::min(smallest, sizeOf(body));
   return smallest;
 }
 
+RigidTransform startPoseOf(const SketchBody& body) {
+  RigidTransform pose = body.worldFromBody;
+  if (body.drive && body.drive->keys.empty()) pose.translation += std::sin(body.drive->phase) * body.drive->amplitude;
+  return pose;
+}
+
 Vec3 anchorInWorld(const SceneSketch& sketch, int body, const Vec3& point) {
-  return body < 0 ? point : Vec3(sketch.bodies[static_cast<std::size_t>(body)].worldFromBody * point);
+  return body < 0 ? point : Vec3(startPoseOf(sketch.bodies[static_cast<std::size_t>(body)]) * point);
 }
 
 Vec3 anchorInBody(const SceneSketch& sketch, int body, const Vec3& point) {
-  return body < 0 ? point : Vec3(sketch.bodies[static_cast<std::size_t>(body)].worldFromBody.inverse() * point);
+  return body < 0 ? point : Vec3(startPoseOf(sketch.bodies[static_cast<std::size_t>(body)]).inverse() * point);
 }
 
 }  // namespace cradle

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "math/types.h"
+#include "math/key_frame_path.h"
+#include "scene/scene.h"
 
 namespace cradle {
 
@@ -13,6 +15,15 @@ enum class SketchShape { sphere, box, cylinder, capsule, prismHull, prism, gear,
 
 struct SketchMaterial {
   double restitution = 0, staticFriction = 0, dynamicFriction = 0;
+};
+
+/// How a driven body moves: by key frames if there are any, else as an oscillation if it has a frequency, else with the
+/// velocities of the body.
+struct SketchDrive {
+  std::vector<KeyFrame> keys;     // the first at the body's own pose
+  Vec3 amplitude = Vec3::Zero();  // m, world
+  double frequency = 0;           // 1/s
+  double phase = 0;               // rad
 };
 
 struct SketchBody {
@@ -24,18 +35,24 @@ struct SketchBody {
   RigidTransform worldFromBody;         // of a plane: +y is its normal
   Vec3 linearVelocity = Vec3::Zero();   // m/s
   Vec3 angularVelocity = Vec3::Zero();  // rad/s, world
+  bool collides = true;
+  std::optional<SketchDrive> drive;  // of a driven body, whose shape is its own image in all mirrors
+
+  bool isDynamic() const { return !isStatic && !drive; }
 };
 
-enum class SketchLinkKind { spring, rod, rope, ballJoint, hinge };
+enum class SketchLinkKind { spring, rod, rope, ballJoint, hinge, slider, weld };
 
 struct SketchLink {
   SketchLinkKind kind = SketchLinkKind::ballJoint;
   int bodyA = 0, bodyB = -1;  // -1: the world
   Vec3 anchorA = Vec3::Zero(), anchorB = Vec3::Zero();
-  Vec3 axis = Vec3::UnitZ();          // of a hinge, frame of A
+  Vec3 axis = Vec3::UnitZ();          // of a hinge or slider, frame of A
   double length = 0;                  // m: of a rod, at rest, or at most
   double stiffness = 0, damping = 0;  // N/m, N s/m
   double restitution = 0;             // of a rope
+  std::optional<JointRange> limits;   // of a hinge or slider
+  std::optional<JointDrive> motor;    // likewise
 };
 
 /// A scene as what stands in it, so that it can be seen in a mirror, turned, made larger, or put in another order.
@@ -65,8 +82,11 @@ std::string textOf(const SceneSketch& sketch);
 /// About the radius (m) of the ball around a body.
 double sizeOf(const SketchBody& body);
 
-/// m: of the smallest body that moves.
+/// m: of the smallest dynamic body.
 double smallestSizeOf(const SceneSketch& sketch);
+
+/// Where a body is at time 0.
+RigidTransform startPoseOf(const SketchBody& body);
 
 Vec3 anchorInWorld(const SceneSketch& sketch, int body, const Vec3& point);
 Vec3 anchorInBody(const SceneSketch& sketch, int body, const Vec3& point);

@@ -60,6 +60,44 @@ TEST(SceneTwin, OfASmoothMotionIsTheSameMotion) {
   EXPECT_LT((there - Vec3(-here.x(), here.y(), here.z())).norm(), 1e-8);  // the model's single precision
 }
 
+/// A slider with a motor and stops on a box that is led along key frames, a hinge with a motor to a wheel, and a ball
+/// that swings on a hand.
+SceneSketch ledSketch() {
+  SceneSketch sketch;
+  sketch.name = "Led", sketch.accuracy = 1e-9, sketch.duration = 0.3;
+  sketch.materials.push_back({});
+  SketchBody table, sled, wheel, hand, bob;
+  table.shape = SketchShape::box, table.collides = false;
+  table.worldFromBody = {rotationAbout(Vec3(1, 2, 3), 0.4), Vec3(0.3, 1, -0.2)};
+  table.drive.emplace().keys = {{0, table.worldFromBody},
+                                {0.4, {rotationAbout(Vec3(1, 0, 3), 0.9), Vec3(0.5, 1.2, 0.1)}}};
+  sled.shape = SketchShape::box, sled.size = Vec3(0.1, 0.2, 0.3), sled.collides = false;
+  sled.worldFromBody = {rotationAbout(Vec3(3, -1, 1), 1.1), Vec3(0.3, 1.4, -0.2)};
+  wheel.shape = SketchShape::cylinder, wheel.size = Vec3(0.2, 0.1, 0), wheel.collides = false, wheel.mass = 0.5;
+  wheel.worldFromBody = {rotationAbout(Vec3(1, -1, 2), 2), Vec3(0.5, 1.4, -0.2)};
+  hand.collides = false, hand.worldFromBody.translation = Vec3(-1, 0, 0);
+  hand.drive.emplace(SketchDrive{{}, Vec3(0.1, 0.2, -0.1), 1.5, 0.7});
+  bob.collides = false, bob.size = Vec3::Constant(0.1);
+  bob.worldFromBody.translation = Vec3(-0.5, 0, 0);
+  sketch.bodies = {table, sled, wheel, hand, bob};
+  SketchLink slider, hinge, rod;
+  slider.kind = SketchLinkKind::slider, slider.bodyA = 1, slider.bodyB = 0, slider.axis = Vec3(1, 2, -1).normalized();
+  slider.anchorA = Vec3(0.05, 0.1, 0),
+  slider.anchorB = anchorInBody(sketch, 0, anchorInWorld(sketch, 1, slider.anchorA));
+  slider.limits = JointRange{-0.05, 0.02, 0.5}, slider.motor = JointDrive{0.3, 20};
+  hinge.kind = SketchLinkKind::hinge, hinge.bodyA = 2, hinge.bodyB = 1, hinge.axis = Vec3(1, 1, 0).normalized();
+  hinge.anchorB = anchorInBody(sketch, 1, anchorInWorld(sketch, 2, hinge.anchorA));
+  hinge.motor = JointDrive{std::nullopt, 0.1};
+  rod.kind = SketchLinkKind::rod, rod.bodyA = 4, rod.bodyB = 3;
+  rod.length = (anchorInWorld(sketch, 4, rod.anchorA) - anchorInWorld(sketch, 3, rod.anchorB)).norm();
+  sketch.links = {slider, hinge, rod};
+  return sketch;
+}
+
+TEST(SceneTwin, OfLedBodiesIsTheSameMotion) {
+  EXPECT_THAT(checkSketch(ledSketch(), [](const std::string&) {}), IsEmpty());
+}
+
 TEST(TouchingPlaces, LeaveTheGapAskedFor) {
   for (const double gap : {0.0, 1e-12, 1e-6}) {
     SceneSketch sketch;
@@ -148,6 +186,15 @@ TEST(SketchOracles, ShowWhatIsWrong) {
               }),
               "closed form");
   expectFault(faultsOfChanged([](SceneSketch&, SceneRun& run) { run.cpuSeconds = 3; }), "cpu");
+  for (const auto& [change, oracle] :
+       {std::pair{+[](JointState& joint) { joint.coordinate = 0.021; }, "stops"},
+        std::pair{+[](JointState& joint) { joint.force = 21; }, "motors"},
+        std::pair{+[](JointState& joint) { joint.velocity = 0.2, joint.force = 10; }, "motors"}}) {
+    const SceneSketch sketch = ledSketch();
+    SceneRun run = runSketch(sketch);
+    change(run.frames.back().joints[1]);
+    expectFault(faultsOfRun(sketch, run), oracle);
+  }
   expectFault(faultsOfChanged([](SceneSketch& sketch, SceneRun& run) {
                 sketch.links.clear(), sketch.materials[0].staticFriction = 0;
                 run.frames.back().energy.momentum.x() += 1e-3;

@@ -54,7 +54,7 @@ SceneTwin sameOrder(std::string name, const SceneSketch& sketch) {
   return twin;
 }
 
-/// Of axial vectors: spins and hinges.
+/// Of axial vectors: spins and hinges. Sliders have polar ones.
 Vec3 axialImage(const Vec3& v, int axis) {
   return -flipped(v, axis);
 }
@@ -71,10 +71,18 @@ SceneTwin scaledBy(double times, std::string name, const SceneSketch& sketch) {
   for (SketchBody& body : twin.sketch.bodies) {
     body.size *= lengths, body.worldFromBody.translation *= lengths, body.mass *= masses;
     body.linearVelocity *= lengths / times, body.angularVelocity /= times;
+    if (!body.drive) continue;
+    body.drive->amplitude *= lengths, body.drive->frequency /= times;
+    for (KeyFrame& key : body.drive->keys) key.time *= times, key.pose.translation *= lengths;
   }
   for (SketchLink& link : twin.sketch.links) {
     link.anchorA *= lengths, link.anchorB *= lengths, link.length *= lengths;
     link.stiffness *= masses / (times * times), link.damping *= masses / times;
+    const double unit = link.kind == SketchLinkKind::slider ? lengths : 1;  // of the coordinate: m or rad
+    if (link.limits) link.limits->lower *= unit, link.limits->upper *= unit;
+    if (!link.motor) continue;
+    link.motor->force *= masses * lengths / unit;
+    if (link.motor->targetVelocity) *link.motor->targetVelocity *= unit / times;
   }
   twin.back = [lengths](RigidTransform pose, std::size_t) {
     pose.translation /= lengths;
@@ -109,12 +117,16 @@ SceneTwin mirroredTwin(const SceneSketch& sketch, int axis) {
     body.worldFromBody = mirrorImage(body.worldFromBody, body, axis);
     body.linearVelocity = flipped(body.linearVelocity, axis);
     body.angularVelocity = axialImage(body.angularVelocity, axis);
+    if (!body.drive) continue;
+    body.drive->amplitude = flipped(body.drive->amplitude, axis);
+    for (KeyFrame& key : body.drive->keys) key.pose = mirrorImage(key.pose, body, axis);
   }
   for (SketchLink& link : twin.sketch.links) {
     const SketchBody& a = sketch.bodies[static_cast<std::size_t>(link.bodyA)];
     link.anchorA = anchorImage(sketch, link.bodyA, link.anchorA, axis);
     link.anchorB = anchorImage(sketch, link.bodyB, link.anchorB, axis);
-    link.axis = axialImage(link.axis, mirrorOf(a, axis).axis);
+    const int mirror = mirrorOf(a, axis).axis;
+    link.axis = link.kind == SketchLinkKind::slider ? flipped(link.axis, mirror) : axialImage(link.axis, mirror);
   }
   twin.back = [bodies = sketch.bodies, axis](const RigidTransform& pose, std::size_t body) {
     return mirrorImage(pose, bodies[body], axis);
@@ -136,7 +148,8 @@ SceneTwin renumberedTwin(const SceneSketch& sketch) {
   for (SketchLink& link : twin.sketch.links) {
     link.bodyA = number(link.bodyA), link.bodyB = number(link.bodyB);
     if (link.bodyB < 0) continue;
-    link.axis = turnOf(link.bodyB).conjugate() * (turnOf(link.bodyA) * link.axis);
+    // The coordinate of B against A about the axis is that of A against B about the axis turned over.
+    link.axis = -(turnOf(link.bodyB).conjugate() * (turnOf(link.bodyA) * link.axis));
     std::swap(link.bodyA, link.bodyB), std::swap(link.anchorA, link.anchorB);
   }
   twin.back = [](const RigidTransform& pose, std::size_t) { return pose; };
@@ -150,6 +163,9 @@ SceneTwin turnedTwin(const SceneSketch& sketch) {
   for (SketchBody& body : twin.sketch.bodies) {
     body.worldFromBody = turn * body.worldFromBody;
     body.linearVelocity = turn * body.linearVelocity, body.angularVelocity = turn * body.angularVelocity;
+    if (!body.drive) continue;
+    body.drive->amplitude = turn.rotation * body.drive->amplitude;
+    for (KeyFrame& key : body.drive->keys) key.pose = turn * key.pose;
   }
   for (SketchLink& link : twin.sketch.links)
     if (link.bodyB < 0) link.anchorB = turn * link.anchorB;
@@ -166,8 +182,8 @@ SceneTwin scaledTwin(const SceneSketch& sketch) {
 SceneTwin shrunkTwin(const SceneSketch& sketch) {
   SceneTwin twin = scaledBy(kShrunkTimes, "shrunk", sketch);
   twin.sketch.accuracy *= kShrunkTimes * kShrunkTimes;
-  const auto moving =
-      std::count_if(sketch.bodies.begin(), sketch.bodies.end(), [](const SketchBody& body) { return !body.isStatic; });
+  const auto moving = std::count_if(sketch.bodies.begin(), sketch.bodies.end(),
+                                    [](const SketchBody& body) { return body.isDynamic(); });
   twin.hasOtherSteps = moving > kFewBodies || sketch.accuracy > kFewBodiesAccuracy;
   return twin;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "experiments/touching_places.h"
 #include "math/rotation.h"
 
 namespace cradle {
@@ -48,6 +49,32 @@ SketchBody SketchDraws::body(double scale) {
   body.mass = magnitude(-2, 2);
   body.worldFromBody.rotation = orientation();
   return body;
+}
+
+bool addTouching(SceneSketch& sketch, SketchDraws& draws, double scale, bool isCentered) {
+  const bool hasWall = sketch.bodies.size() > 1 && sketch.bodies[1].shape == SketchShape::plane;
+  for (int trial = 0; trial < kMaxTrials; ++trial) {
+    SketchBody body = draws.body(scale);
+    const Vec3 below = sketch.bodies.back().worldFromBody.translation;
+    const double offset = isCentered ? 0 : draws.one({0.0, 0.3, 0.8}) * scale;
+    body.worldFromBody.translation = below + Vec3(draws.number(-offset, offset), 0, draws.number(-offset, offset));
+    if (hasWall) body.worldFromBody.translation.x() -= 3 * scale;
+    sketch.bodies.push_back(body);
+    const double gap = draws.gap() * sizeOf(body);
+    bool touches = moveToTouch(sketch, -Vec3::UnitY(), gap);
+    if (touches && hasWall && draws.chance(0.6)) {
+      // Along the floor, up to the wall.
+      const double sideGap = draws.gap() * sizeOf(body);
+      SceneSketch beside = sketch;
+      beside.bodies.erase(beside.bodies.begin());
+      touches = moveToTouch(beside, Vec3::UnitX(), sideGap);
+      sketch.bodies.back() = beside.bodies.back();
+    }
+    const std::optional<NearestPlace> nearest = nearestPlace(sketch);
+    if (touches && nearest && nearest->separation >= -1e-12 * scale) return true;
+    sketch.bodies.pop_back();
+  }
+  return false;
 }
 
 /// Slopes fall along x, by an angle alpha: with friction mu a sliding body gains g (sin alpha - mu cos alpha), and a

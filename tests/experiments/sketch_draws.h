@@ -38,7 +38,15 @@ class SketchDraws {
   RandomPoses random_;
 };
 
+constexpr int kMaxTrials = 50;  // places tried for a body that misses the others
+
+/// Adds a body in touch with what is there; against a wall too, if there is one. False if none was found that touches.
+bool addTouching(SceneSketch& sketch, SketchDraws& draws, double scale, bool isCentered);
+
 /// A slope, and on it a body at the limit of sticking, tipping or rolling without slip.
 void drawThreshold(SceneSketch& sketch, SketchDraws& draws);
+
+/// A linkage, a machine, or a driven body with what it moves.
+void drawLed(SceneSketch& sketch, SketchDraws& draws);
 
 }  // namespace cradle

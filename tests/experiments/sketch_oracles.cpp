@@ -38,14 +38,14 @@ constexpr double kFileRounding = 1.2e-7;  // of models: files have single precis
 
 double massOf(const SceneSketch& sketch) {
   double mass = 0;
-  for (const SketchBody& body : sketch.bodies) mass += body.isStatic ? 0 : body.mass;
+  for (const SketchBody& body : sketch.bodies) mass += body.isDynamic() ? body.mass : 0;
   return mass;
 }
 
 double largestSizeOf(const SceneSketch& sketch) {
   double size = 0;
   for (const SketchBody& body : sketch.bodies)
-    if (!body.isStatic) size = std::max(size, sizeOf(body));
+    if (body.isDynamic()) size = std::max(size, sizeOf(body));
   return size;
 }
 
@@ -91,7 +91,8 @@ class RunOracles {
     energyScale_ = massOf(sketch) * (gravity * largestSizeOf(sketch) + speed * speed);
     const double potential = run.frames[0].energy.potential;
     for (const Frame& frame : run.frames)
-      energyScale_ = std::max({energyScale_, frame.energy.kinetic, std::abs(frame.energy.potential - potential)});
+      energyScale_ = std::max({energyScale_, frame.energy.kinetic, std::abs(frame.energy.potential - potential),
+                               std::abs(frame.energy.work)});
   }
 
   std::vector<SketchFault> faults() {
@@ -99,6 +100,7 @@ class RunOracles {
     checkEnergy();
     checkMomentum();
     checkPlaces();
+    checkJoints();
     checkSymmetry();
     checkDisplacements();
     const double most = kCpuAtStart + kCpuPerSecond * sketch_.duration;
@@ -124,8 +126,9 @@ class RunOracles {
   void checkEnergy() {
     double least = mechanicalEnergy(run_.frames[0]), most = 0, gain = 0, fall = 0, balance = 0;
     for (const Frame& frame : run_.frames) {
-      gain = std::max(gain, mechanicalEnergy(frame) - least);
-      least = std::min(least, mechanicalEnergy(frame));
+      const double own = mechanicalEnergy(frame) - frame.energy.work;
+      gain = std::max(gain, own - least);
+      least = std::min(least, own);
       fall = std::max(fall, most - frame.energy.dissipated);
       most = std::max(most, frame.energy.dissipated);
       balance = std::max(balance, std::abs(energyConstantOf(frame) - energyConstantOf(run_.frames[0])));
@@ -145,11 +148,12 @@ class RunOracles {
         std::any_of(sketch_.links.begin(), sketch_.links.end(), [](const SketchLink& link) { return link.bodyB < 0; });
     bool isFree = !isTied, isLevel = !isTied;
     for (const SketchBody& body : sketch_.bodies) {
-      if (!body.isStatic) continue;
+      if (body.isDynamic()) continue;
       isFree = false;
       const Vec3 normal = body.worldFromBody.rotation * Vec3::UnitY();
       const double friction = sketch_.materials[static_cast<std::size_t>(body.material)].staticFriction;
-      isLevel = isLevel && body.shape == SketchShape::plane && normal.cross(Vec3::UnitY()).norm() == 0 && friction == 0;
+      isLevel = isLevel && body.isStatic && body.shape == SketchShape::plane &&
+                normal.cross(Vec3::UnitY()).norm() == 0 && friction == 0;
     }
     if (!isLevel) return;
     double scale = 0, change = 0, turning = 0;
@@ -182,6 +186,32 @@ class RunOracles {
     require(meter.penetration() <= most, "penetration",
             fmt::format("penetration {:.2g} m, {:.2g} of the size", meter.penetration(), meter.penetration() / size));
     require(ties <= bound(kStepsPlace) * std::max(1.0, size), "ties", fmt::format("ties off by {:.2g} m or rad", ties));
+  }
+
+  /// Coordinates beyond their stops; motors that give more than they have, or less while they miss their target.
+  void checkJoints() {
+    double beyond = 0, force = 0, idle = 0;
+    for (const Frame& frame : run_.frames) {
+      auto state = frame.joints.begin();
+      const auto add = [&](const auto& joints) {
+        for (const auto& joint : joints) {
+          const double coordinate = state->coordinate, velocity = state->velocity, given = (state++)->force;
+          if (joint.limits)
+            beyond = std::max({beyond, joint.limits->lower - coordinate, coordinate - joint.limits->upper});
+          if (!joint.motor || !joint.motor->targetVelocity || joint.motor->force == 0) continue;
+          const double missing = *joint.motor->targetVelocity - velocity, part = given / joint.motor->force;
+          force = std::max(force, std::abs(part) - 1);
+          idle = std::max(idle, std::min(std::abs(missing), 1 - std::copysign(part, missing * part)));
+        }
+      };
+      add(run_.scene.hinges), add(run_.scene.sliders);
+    }
+    const double most = bound(kStepsPlace) * std::max(1.0, smallestSizeOf(sketch_));
+    require(beyond <= most, "stops", fmt::format("{:.2g} m or rad beyond a stop", beyond));
+    require(force <= bound(kStepsPlace), "motors",
+            fmt::format("a motor gives {:.2g} more than all that it has", force));
+    require(!run_.keepsAccuracy || idle <= most, "motors",
+            fmt::format("a motor misses its target by {:.2g} m/s or rad/s, or does not push there", idle));
   }
 
   void checkSymmetry() {
@@ -236,8 +266,9 @@ double spreadOf(const SceneSketch& sketch, const SceneRun& run, double disturban
   SceneTwin twin = sameScene(sketch);
   for (SketchBody& body : twin.sketch.bodies) {
     const Vec3 velocity = random.vector(disturbance), spin = random.vector(disturbance / sizeOf(body));
-    if (!body.isStatic) body.linearVelocity += velocity, body.angularVelocity += spin;
-    if (body.isStatic || !isModel(body)) continue;
+    if (!body.isDynamic()) continue;
+    body.linearVelocity += velocity, body.angularVelocity += spin;
+    if (!isModel(body)) continue;
     // Where it stands upright, turning it leaves its gaps as they are; both at once may let it overlap.
     const Vec3 way = kFileRounding * random.vector(1).normalized();
     if (seed % 2 == 0)
@@ -387,7 +418,7 @@ SceneSketch reduceSketch(const SceneSketch& sketch, const std::string& oracle) {
   }
   for (int i = static_cast<int>(least.bodies.size()); i-- > 0 && least.bodies.size() > 1;) {
     const SceneSketch less = withoutBody(least, i);
-    if (std::all_of(less.bodies.begin(), less.bodies.end(), [](const SketchBody& body) { return body.isStatic; }))
+    if (std::all_of(less.bodies.begin(), less.bodies.end(), [](const SketchBody& body) { return !body.isDynamic(); }))
       continue;
     if (stillFails(less)) least = less;
   }

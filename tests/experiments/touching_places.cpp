@@ -16,6 +16,8 @@ constexpr int kMaxMoves = 40;           // each leaves less than half, where sur
 
 Scene sceneOfBodies(SceneSketch sketch) {
   sketch.links.clear();
+  for (SketchBody& body : sketch.bodies)
+    if (body.drive) body.worldFromBody = startPoseOf(body), body.isStatic = true, body.drive.reset();
   return parseScene(textOf(sketch), "sketch.json", modelFilesBeside("sketch.json")).scene;
 }
 
@@ -82,8 +84,10 @@ class LastBody {
 IslandPlan touchingScene(const Scene& scene) {
   IslandPlan all;
   for (int body = 0; body < static_cast<int>(scene.bodies.size()); ++body) {
-    all.touching.push_back(body);
-    if (scene.bodies[static_cast<std::size_t>(body)].motion == Motion::dynamic) all.bodies.push_back(body);
+    const Body& found = scene.bodies[static_cast<std::size_t>(body)];
+    if (found.collision != CollisionChoice::none) all.touching.push_back(body);
+    if (found.motion == Motion::dynamic) all.bodies.push_back(body);
+    if (found.motion == Motion::driven) all.driven.push_back(body);
   }
   forEachLink(scene, [&](const LinkIndex& link, const Anchor&, const Anchor&) { all.links.push_back(link); });
   return all;
