@@ -43,7 +43,8 @@ void parseAction(ObjectReader& reader, Push& push) {
                fmt::format("both torque and {} are given; a torque acts on the whole body and has no {}", key, key));
 }
 
-void checkThatItMoves(const Push& push, const Field& name, SceneDraft& scene, FaultList& faults) {
+/// False if it does not and may not be pushed: what else the push says is of no account then.
+bool checkThatItMoves(const Push& push, const Field& name, SceneDraft& scene, FaultList& faults) {
   const Body& body = scene.scene.bodies[static_cast<std::size_t>(push.body)];
   if (body.motion == Motion::driven)
     addFault(faults, name,
@@ -53,6 +54,7 @@ void checkThatItMoves(const Push& push, const Field& name, SceneDraft& scene, Fa
   if (body.motion == Motion::fixed)
     scene.warnings.push_back(
         fmt::format("{}: the push moves nothing, because body {} is static", push.where, inQuotes(body.name)));
+  return body.motion != Motion::driven;
 }
 
 Push parsePush(const Field& field, SceneDraft& scene, FaultList& faults) {
@@ -61,12 +63,12 @@ Push parsePush(const Field& field, SceneDraft& scene, FaultList& faults) {
   ObjectReader reader(field, faults);
   const auto name = reader.require("body");
   const auto body = name ? findNamed(*name, scene.bodyIndex, "body", faults) : std::nullopt;
+  push.body = body.value_or(kWorld);
+  if (push.body != kWorld && !checkThatItMoves(push, *name, scene, faults)) return push;
   parseAction(reader, push);
   push.start = reader.number("start", kInstants, "s", 0.5);
   push.duration = reader.number("duration", kPushDurations, "s", 0.02);
   reader.rejectUnknownKeys();
-  push.body = body.value_or(kWorld);
-  if (push.body != kWorld) checkThatItMoves(push, *name, scene, faults);
   return push;
 }
 

@@ -18,6 +18,7 @@ namespace {
 constexpr double kTautRatio = 1e-9;       // of its size: a limit this near is reached
 constexpr double kSlackRatio = 1e-6;      // of its size: a limit this far away is slack again
 constexpr double kLowestRebound = 1e-6;   // of sqrt(acceleration x length): a rebound that rises by 5e-13 of the length
+constexpr double kUsualAcceleration = 1;  // m/s^2: tensions are compared with what gives that before others are known
 constexpr double kMinPull = 1e-6;         // of gravity: a pull that is no rounding
 constexpr int kTensionSamples = 4;        // a step: it is at most a small part of a swing
 constexpr double kMinFirstSample = 1e-9;  // of a step: a rebound that is over sooner is none
@@ -129,7 +130,20 @@ LimitEvents::LimitEvents(IslandState& island)
       solver_(assembly_.mechanism.constraints, assembly_.mechanism.bodies),
       sceneConstraints_(assembly_.mechanism.constraints.size()),
       tautRow_(assembly_.limits.size(), -1),
-      isStretched_(assembly_.limits.size(), 0) {}
+      isStretched_(assembly_.limits.size(), 0),
+      tensionScales_(assembly_.limits.size()) {
+  for (std::size_t i = 0; i < tensionScales_.size(); ++i) tensionScales_[i] = usualTension(i);
+}
+
+/// N: of the lighter body at the limit's ends.
+double LimitEvents::usualTension(std::size_t limit) const {
+  double mass = INFINITY;
+  const auto [a, b] = bodiesOf(assembly_.limits[limit]);
+  for (const int body : {a, b})
+    if (body != kFixed && !assembly_.mechanism.bodies[static_cast<std::size_t>(body)].isDriven())
+      mass = std::min(mass, assembly_.mechanism.bodies[static_cast<std::size_t>(body)].mass);
+  return kUsualAcceleration * mass;
+}
 
 std::optional<LimitChange> LimitEvents::firstChange(const Step& step) {
   std::optional<LimitChange> first;
@@ -142,8 +156,10 @@ std::optional<LimitChange> LimitEvents::firstChange(const Step& step) {
     }
   }
   if (first && isTaut(first->limit))
-    tensionScale_ = std::max(tension(first->limit, step.time, step.startState),
-                             std::abs(tension(first->limit, step.time + step.timeStep, step.state)));
+    for (std::size_t i = 0; i < assembly_.limits.size(); ++i)
+      if (isTaut(i))
+        tensionScales_[i] = std::max(tension(i, step.time, step.startState),
+                                     std::abs(tension(i, step.time + step.timeStep, step.state)));
   return first;
 }
 
@@ -186,7 +202,7 @@ std::optional<double> LimitEvents::firstTensionLoss(const Step& step, std::size_
 
 double LimitEvents::margin(const LimitChange& change, const VectorX& state) {
   if (isTaut(change.limit))
-    return tension(change.limit, island_.step.time + island_.step.timeStep, state) / tensionScale_;
+    return tension(change.limit, island_.step.time + island_.step.timeStep, state) / tensionScales_[change.limit];
   const Limit& limit = assembly_.limits[change.limit];
   return (motionOf(limit, state).slackLength - change.threshold) / sizeOf(limit);
 }
@@ -215,7 +231,7 @@ bool LimitEvents::resolve(double time, VectorX& state) {
   // Limits that would have to push are released, even where others go taut; impacts may have shortened some.
   std::vector<char> isReleased(tautRow_.size(), 0);
   for (std::size_t i = 0; i < tautRow_.size(); ++i) {
-    if (!isTaut(i) || rests(i) || tension(i, time, state) > kTautRatio * tensionScale_) continue;
+    if (!isTaut(i) || rests(i) || tension(i, time, state) > kTautRatio * tensionScales_[i]) continue;
     release(time, i, state);
     isReleased[i] = 1;
   }
@@ -289,7 +305,7 @@ void LimitEvents::pull(double time, const std::vector<Stretch>& stretches, Vecto
     if (lengthening < -(reboundSpeed + kRestSpeedFloor + kPullRounding * speed)) continue;  // others pulled it short
     if (!isStretched_[limit] || rebounds) record(time, EventKind::taut, limit, pulls[i].impulse, state);
     isStretched_[limit] = !rebounds;
-    if (!rebounds && isLoaded) tautRow_[limit] = 0;
+    if (!rebounds && isLoaded) tautRow_[limit] = 0, tensionScales_[limit] = usualTension(limit);
   }
   rebuildConstraints();
   if (solver_.hasConstraints()) {

@@ -67,6 +67,7 @@ class LimitEvents {
  private:
   bool isTaut(std::size_t limit) const { return tautRow_[limit] >= 0; }
   bool rests(std::size_t limit) const;
+  double usualTension(std::size_t limit) const;
   double tension(std::size_t limit, double time, const VectorX& state);
   std::optional<double> firstTensionLoss(const Step& step, std::size_t limit);
   std::optional<LimitChange> firstReach(const Step& step, std::size_t limit, double end) const;
@@ -99,9 +100,9 @@ class LimitEvents {
   };
   std::vector<Member> members_;    // of the impact under way
   std::vector<char> isStretched_;  // has reached its length and not been slack since
-  // N, of the change under way, the greater of both ends of its step: one that contacts keep just above zero is small
-  // at the start, and no measure of itself.
-  double tensionScale_ = 1;
+  // N, of each limit when a tension ended last, the greater of both ends of that step: one that contacts keep just
+  // above zero is small at the start, and no measure of itself. The usual one since it has gone taut.
+  std::vector<double> tensionScales_;
   VectorX derivative_, sample_;
 };
 

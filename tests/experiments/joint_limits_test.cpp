@@ -184,5 +184,22 @@ TEST(JointLimits, StopsHoldInContactSteps) {
   expectLedger(moved, 1e-10, 1e-4);
 }
 
+/// A bar of any size and weight that falls about its end onto a stop without restitution stays there after one hit,
+/// though it presses with 1e-11 N.
+TEST(JointLimits, LightestBodiesStayAtTheirStops) {
+  for (const double length : {1.0, 1e-2, 1e-4}) {
+    const Trajectory moved =
+        runStopped(1.5 * std::sqrt(length), 1e-6,
+                   fmt::format(R"({{"name": "bar", "mass": {}, "shape": {{"box": {{"size": [{}, {}, {}]}}}},
+        "position": [{}, 0, 0], "collision": "none"}})",
+                               2 * std::pow(length, 3), 0.4 * length, 0.1 * length, 0.1 * length, 0.2 * length),
+                   fmt::format(R"("hinges": [{{"bodyA": "bar", "anchorA": [{}, 0, 0], "anchorB": [0, 0, 0],
+        "limits": {{"lower": -0.7}}}}],)",
+                               -0.2 * length));
+    EXPECT_NEAR(moved.frames.back().joints[0].coordinate, -0.7, 1e-9) << length;
+    EXPECT_EQ(moved.events.size(), 1u) << length;
+  }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -7,7 +7,11 @@ namespace cradle {
 
 void EventLog::record(const Event& event) {
   events_.push_back(event);
-  if (event.bodyB != kWorld) latestBodies_ = {event.bodyA, event.bodyB};
+  const bool isMet = event.kind == EventKind::impact || event.kind == EventKind::taut;  // the world, by a joint or rope
+  if (event.bodyB != kWorld)
+    latestBodies_ = {event.bodyA, event.bodyB};
+  else if (isMet)
+    latestBodies_ = {event.bodyA};
 }
 
 void EventLog::recordContact(double time, EventKind kind, const Contact& contact, double impulse) {

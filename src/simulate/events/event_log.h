@@ -30,7 +30,7 @@ class EventLog {
   void recordFaults(double time, const std::vector<ImpactContact>& impacts, const ImpactFaults& faults);
   Corrections& corrections() { return corrections_; }
 
-  /// The scene's bodies of the last event that was between two; none before the first.
+  /// The scene's bodies of the last event between two, or between one and the world; none before the first.
   const std::vector<int>& latestBodies() const { return latestBodies_; }
 
   /// Events since the last call, in the order in which they were recorded.

@@ -385,11 +385,13 @@ void EventMotion::countEvent(const Event& event) {
 
 /// A promise without such a condition is not given up: the run ends instead.
 void EventMotion::failAtManyEvents() const {
-  throw Error(ErrorKind::limit, "",
-              fmt::format("more than {} impacts, pulls of ropes and changes of contacts in {:.3g} s at {:.6g} s, at "
-                          "last of {}; lower a restitution near 1, or damp what jerks at ropes",
-                          eventRateLimit_.most, eventRateLimit_.window, island_.time,
-                          namesOfBodies(fallbackBodies(), island_.scene)));
+  throw Error(
+      ErrorKind::limit, "",
+      fmt::format("more than {} impacts, pulls of ropes and changes of contacts, stops and motors in {:.3g} s at "
+                  "{:.6g} s, at last of {}; lower a restitution near 1, damp what jerks at ropes, or weaken "
+                  "what presses joints against their stops",
+                  eventRateLimit_.most, eventRateLimit_.window, island_.time,
+                  namesOfBodies(fallbackBodies(), island_.scene)));
 }
 
 /// Whether steps or changes of contacts follow each other without time: forces grow without bound, or contacts that
@@ -407,8 +409,10 @@ std::string_view EventMotion::fallbackReason() const {
 
 std::vector<int> EventMotion::fallbackBodies() const {
   if (!contacts_.fallbackReason().empty()) return contacts_.fallbackBodies();
-  // Changes of redundant contacts name none: there may have been no others.
-  return island_.log.latestBodies().empty() ? contacts_.sceneBodies() : island_.log.latestBodies();
+  // Changes of redundant contacts and of motors name none: there may have been no others.
+  if (!island_.log.latestBodies().empty()) return island_.log.latestBodies();
+  const std::vector<int> touching = contacts_.sceneBodies();
+  return touching.empty() ? island_.assembly.sceneBodies : touching;
 }
 
 }  // namespace cradle

@@ -312,10 +312,13 @@ void SteppedMotion::restUntil(double time) {
 
 void SteppedMotion::countEvent() {
   if (++eventsInWindow_ <= kMaxEvents) return;
-  throw Error(ErrorKind::limit, "",
-              fmt::format("more than {} impacts and pulls of ropes within {:.3g} s at {:.6g} s; lower a restitution of "
-                          "1 between bodies that cannot separate, or take a smaller \"timeStep\"",
-                          kMaxEvents, method_.timeStep, island_.time));
+  throw Error(
+      ErrorKind::limit, "",
+      fmt::format("more than {} impacts, pulls of ropes and hits of stops within {:.3g} s at {:.6g} s, at last of "
+                  "{}; lower a restitution of 1 between bodies that cannot separate, weaken what presses joints "
+                  "against their stops, or take a smaller \"timeStep\"",
+                  kMaxEvents, method_.timeStep, island_.time,
+                  namesOfBodies(island_.log.latestBodies(), island_.scene)));
 }
 
 }  // namespace cradle
