@@ -508,6 +508,28 @@ TEST(JointMotors, MotorComesToItsTargetOnASlidingBox) {
   }
 }
 
+/// A motor of 10 N between bodies of 1 and 1000 kg that float brings them to 2 m/s against each other after 2 mu / F,
+/// mu the reduced mass 1000/1001 kg: with momentum zero, and mu v^2 / 2 of work.
+TEST(JointMotors, MotorPartsALightBodyFromAHeavyOne) {
+  const double reduced = 1000.0 / 1001, target = 2, reached = reduced * target / 10;
+  for (const bool isLightA : {true, false}) {
+    const Trajectory moved =
+        runMotor(1, 1e-8, R"({"name": "light", "mass": 1, "shape": {"sphere": {"radius": 0.1}}, "collision": "none"},
+        {"name": "heavy", "mass": 1000, "shape": {"sphere": {"radius": 0.1}}, "collision": "none"})",
+                 fmt::format(R"("gravity": [0, 0, 0], "sliders": [{{"bodyA": "{}", "bodyB": "{}", "anchorB": [0, 0, 0],
+        "axis": [1, 0, 0], "motor": {{"targetVelocity": 2, "maxForce": 10}}}}])",
+                             isLightA ? "light" : "heavy", isLightA ? "heavy" : "light"));
+    const double sign = isLightA ? 1 : -1;
+    for (const Frame& frame : moved.frames) {
+      const double speed = target * std::min(1.0, frame.time / reached);
+      EXPECT_NEAR(frame.states[0].linearVelocity.x(), sign * speed * reduced, 1e-9) << frame.time;
+      EXPECT_NEAR(frame.states[1].linearVelocity.x(), -sign * speed * reduced / 1000, 1e-12);
+      EXPECT_NEAR(frame.energy.work, reduced * speed * speed / 2, 1e-9);
+    }
+    expectLedger(moved, 1e-12, 1e-9);
+  }
+}
+
 /// A box with a wheel that its motor turns goes with a table that swings by half of what friction holds, and the table
 /// works what its velocity asks for.
 TEST(JointMotors, FrictionCarriesABoxWithAMotor) {

@@ -71,6 +71,10 @@ TEST(EventLog, KnowsTheLatestTwoBodies) {
   EXPECT_THAT(at.log().latestBodies(), ElementsAre(3, 1));
   at.log().take();
   EXPECT_THAT(at.log().latestBodies(), ElementsAre(3, 1));
+  at.log().record({0.35, EventKind::release, 1, kWorld});
+  EXPECT_THAT(at.log().latestBodies(), ElementsAre(3, 1));
+  at.log().record({0.35, EventKind::impact, 3, kWorld});  // at the stop of a joint
+  EXPECT_THAT(at.log().latestBodies(), ElementsAre(3));
   at.log().record({0.4, EventKind::taut, 1, 0});
   EXPECT_THAT(at.log().latestBodies(), ElementsAre(1, 0));
 }
