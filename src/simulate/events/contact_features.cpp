@@ -100,6 +100,12 @@ struct Side {
                        });
   }
 
+  /// Whether it is a face that is nearest to a place (m, world), as it is until a contact with that face leaves it.
+  bool hasFaceUnder(const Vec3& place) const {
+    return collider.kind() == ColliderKind::polytope &&
+           std::isinf(nearestSurfacePoint(collider, worldFromCollider.inverse() * place).radius);
+  }
+
   /// Calls visit(edge, distance of the contact from it) with the edges of a polytope in the plane of contact.
   template <class Visit>
   void visitEdges(const Visit& visit) const {
@@ -237,13 +243,14 @@ void appendWithLines(const Side& a, const Side& b, Contact contact, ToldContacts
   if (ofA && ofB) return appendLines(a, *ofA, b, *ofB, contact, told.all);
   const std::optional<Center> endOfA = a.end(), endOfB = b.end();
   const bool areKnown = !std::isnan(contact.radiusA) && !std::isnan(contact.radiusB);
-  const bool isFaceA = std::isinf(contact.radiusA), isFaceB = std::isinf(contact.radiusB);  // up to its border
   if (!ofA && !ofB && !areKnown && endOfA && endOfB && endOfA->radius + endOfB->radius > 0) {
     place(*endOfA, *endOfB, contact);
-  } else if (ofA && endOfB && !isFaceA && ofA->radius + endOfB->radius > 0) {
-    place(footOn(a.inWorld(ofA->segment), ofA->radius, endOfB->place), *endOfB, contact);
-  } else if (ofB && endOfA && !isFaceB && ofB->radius + endOfA->radius > 0) {
-    place(*endOfA, footOn(b.inWorld(ofB->segment), ofB->radius, endOfA->place), contact);
+  } else if (ofA && endOfB && ofA->radius + endOfB->radius > 0) {
+    if (!a.hasFaceUnder(endOfB->place))
+      place(footOn(a.inWorld(ofA->segment), ofA->radius, endOfB->place), *endOfB, contact);
+  } else if (ofB && endOfA && ofB->radius + endOfA->radius > 0) {
+    if (!b.hasFaceUnder(endOfA->place))
+      place(*endOfA, footOn(b.inWorld(ofB->segment), ofB->radius, endOfA->place), contact);
   } else if (ofA && endOfB && endOfB->radius == 0) {
     if (const auto edge = b.edgeOfCorner(a.worldFromCollider.rotation * ofA->segment.along.normalized()))
       return appendLines(a, *ofA, b, *edge, contact, told.corners);
