@@ -165,6 +165,7 @@ void drawCarried(SceneSketch& sketch, SketchDraws& draws, double scale) {
 /// A hand that tows a body over a floor, by any link.
 void drawTowed(SceneSketch& sketch, SketchDraws& draws, double scale) {
   addFloor(sketch, draws);
+  sketch.bodies[0].worldFromBody.rotation.setIdentity();  // a rigid joint may press nothing into a slope
   if (!addTouching(sketch, draws, scale, true)) return;
   const int body = lastOf(sketch);
   const Vec3 middle = bodyOf(sketch, body).worldFromBody.translation;
@@ -233,7 +234,7 @@ void drawLinkage(SceneSketch& sketch, SketchDraws& draws, double scale) {
   if (!draws.chance(0.3)) return;
   SketchBody ball;
   ball.size = Vec3::Constant(0.3 * scale), ball.mass = draws.magnitude(-1, 1);
-  ball.worldFromBody.translation = point + scale * Vec3(0.7, 1.2, 0);
+  ball.worldFromBody.translation = point + scale * Vec3(0.7, 2, 0);
   sketch.bodies.push_back(ball);
 }
 
