@@ -20,7 +20,8 @@ constexpr double kMaxLengthGrowth = 2;      // of the longest of the last steps:
 constexpr double kMinLookahead = 1.0 / 64;  // of the step that the accuracy allows
 constexpr double kTurnsOfAStep = 3;         // a step is stable over so many times in which friction turns a sliding
 constexpr int kMaxShortSteps = 1000;        // in a row; after an event some are short
-constexpr int kMaxRopeRounds = 100;  // of ropes, motors and contacts at one instant; others come after the next step
+constexpr int kMaxRopeRounds = 100;         // of ropes and contacts at one instant; the others come after the next step
+constexpr int kMaxMotorRounds = 3;  // of motors and contacts; those that change each other go on in the next step
 
 const EventRateLimit& eventRateLimitOf(const ChosenMethod& method, double accuracy, bool isTrial) {
   if (method.keepsPromise) return kLongEventRateLimit;
@@ -341,7 +342,7 @@ bool EventMotion::makeChanges() {
 /// Motors, and what their other forces change of contacts, ropes and stops; what that does to motors in turn.
 void EventMotion::resolveMotors(const std::optional<MotorChange>& change) {
   bool isOther = motors_.resolve(change);
-  for (int round = 0; isOther && round < kMaxRopeRounds; ++round) {
+  for (int round = 0; isOther && round < kMaxMotorRounds; ++round) {
     contacts_.resolve();
     applyLimitEvents();
     isOther = motors_.resolve({});
