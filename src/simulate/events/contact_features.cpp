@@ -64,12 +64,15 @@ struct Side {
   Segment axis() const { return {collider.points[0], collider.points[1] - collider.points[0]}; }
   bool isAcross() const { return std::abs(axis().along.normalized().dot(outward)) < kMostTilt; }
 
-  /// The corner of a polytope there; null: there is none.
+  /// The corner of a polytope there; null: there is none. What is beyond the ends of all edges is at a corner too.
   const Vec3* corner() const {
-    if (collider.radius > 0 || collider.kind() == ColliderKind::cylinder) return nullptr;
-    const auto found = std::find_if(collider.points.begin(), collider.points.end(),
-                                    [this](const Vec3& place) { return distanceTo(place) < near; });
-    return found == collider.points.end() ? nullptr : &*found;
+    if (collider.kind() != ColliderKind::polytope) return nullptr;
+    const Vec3* nearest = nullptr;
+    double least = INFINITY, leastOfEdges = INFINITY;
+    for (const Vec3& place : collider.polytope->vertices)
+      if (const double distance = distanceTo(place); distance < least) least = distance, nearest = &place;
+    visitEdges([&](const Segment&, double distance) { leastOfEdges = std::min(leastOfEdges, distance); });
+    return least < near || least <= leastOfEdges + near ? nearest : nullptr;
   }
   bool hasCorner() const {
     if (collider.kind() == ColliderKind::cylinder) {  // any point of a rim
@@ -135,11 +138,14 @@ struct Side {
   /// Of the edges that meet in the corner there, the one that is most across a direction (world); none without one.
   std::optional<Line> edgeOfCorner(const Vec3& direction) const {
     const Vec3 local = worldFromCollider.rotation.conjugate() * direction;
+    const Vec3* place = corner();
+    if (!place) return std::nullopt;
+    const double reach = distanceTo(*place) + near;
     double most = kLeastCrossing;
     std::optional<Line> found;
     visitEdges([&](const Segment& segment, double distance) {
       const double sine = segment.along.normalized().cross(local).norm();
-      if (distance < near && sine > most) most = sine, found = Line{segment, 0};
+      if (distance < reach && sine > most) most = sine, found = Line{segment, 0};
     });
     return found;
   }
