@@ -44,13 +44,12 @@ struct Side {
   Vec3 point, outward;  // m; unit
   double near;          // m: a place so near to a corner, or to the end of a line, is there
 
-  /// `size` (m) is that of the smaller collider.
-  Side(const Collider& of, const Contact& contact, const Vec3& outwards, double size, const VectorX& state)
+  Side(const Collider& of, const Contact& contact, const Vec3& outwards, double leaving, const VectorX& state)
       : collider(of),
         worldFromCollider(poseOf(state, of.body)),
         point(worldFromCollider.inverse() * contact.point),
         outward(worldFromCollider.rotation.conjugate() * outwards),
-        near(EventTolerances::kAtCorner * size + EventTolerances::kCoordinateRounding * contact.point.norm()) {}
+        near(EventTolerances::kAtCorner * leaving + EventTolerances::kCoordinateRounding * contact.point.norm()) {}
 
   /// m: of the contact from a place near it, along the surface; infinite from others.
   double distanceTo(const Vec3& place) const {
@@ -90,8 +89,12 @@ struct Side {
     return foot > near && foot < length - near;
   }
 
-  /// Whether it has a face there, in the plane of contact.
-  bool hasFace() const {
+  /// Whether it has a face in the plane of contact under the corner that another side has there, up to its border.
+  bool hasFace(const Side& other) const {
+    if (const Vec3* corner = other.corner()) {
+      const Vec3 place = worldFromCollider.inverse() * (other.worldFromCollider * *corner);
+      if ((nearestOnSurface(collider, place) - place).cross(outward).norm() > near) return false;
+    }
     if (collider.kind() == ColliderKind::cylinder)
       return axis().along.normalized().cross(outward).norm() < kMostFaceTilt;
     if (collider.kind() != ColliderKind::polytope) return false;
@@ -175,9 +178,9 @@ void findCorner(const Side& a, const Side& b, Contact& contact) {
   const double least = std::min(contact.radiusA, contact.radiusB), most = std::max(contact.radiusA, contact.radiusB);
   if (least != 0 || !std::isinf(most)) return;
   contact.radiusA = contact.radiusB = INFINITY;
-  if (a.hasCorner() && b.hasFace())
+  if (a.hasCorner() && b.hasFace(a))
     contact.radiusA = 0;
-  else if (b.hasCorner() && a.hasFace())
+  else if (b.hasCorner() && a.hasFace(b))
     contact.radiusB = 0;
 }
 
@@ -267,13 +270,14 @@ void appendWithLines(const Side& a, const Side& b, Contact contact, ToldContacts
   told.all.push_back(contact);
 }
 
-void findFeaturesOfPair(const Collider& colliderA, const Collider& colliderB, const VectorX& state,
+void findFeaturesOfPair(const Collider& colliderA, const Collider& colliderB, double leaving, const VectorX& state,
                         const std::vector<Contact>& contacts, std::vector<Contact>& all) {
   ToldContacts told{all};
   const std::size_t first = all.size();
   const double size = std::min(colliderA.boundingRadius, colliderB.boundingRadius);
   for (Contact contact : contacts) {
-    const Side a(colliderA, contact, contact.normal, size, state), b(colliderB, contact, -contact.normal, size, state);
+    const Side a(colliderA, contact, contact.normal, leaving, state),
+        b(colliderB, contact, -contact.normal, leaving, state);
     findCorner(a, b, contact);
     if (a.isRound() || b.isRound() || !canLast(contact))
       appendWithLines(a, b, contact, told);
@@ -289,7 +293,8 @@ void findFeaturesOfPair(const Collider& colliderA, const Collider& colliderB, co
 
 }  // namespace
 
-void findFeatures(const ContactGeometry& geometry, const VectorX& state, std::vector<Contact>& contacts) {
+void findFeatures(const ContactGeometry& geometry, const VectorX& state, double leaving,
+                  std::vector<Contact>& contacts) {
   std::vector<Contact> told;
   for (auto from = contacts.begin(); from != contacts.end();) {
     const auto to = std::find_if(from, contacts.end(), [&](const Contact& other) { return other.pair != from->pair; });
@@ -297,7 +302,7 @@ void findFeatures(const ContactGeometry& geometry, const VectorX& state, std::ve
     if (pair.againstPlane || hasMesh(geometry.colliders[pair.a], geometry.colliders[pair.b]))
       told.insert(told.end(), from, to);
     else
-      findFeaturesOfPair(geometry.colliders[pair.a], geometry.colliders[pair.b], state, {from, to}, told);
+      findFeaturesOfPair(geometry.colliders[pair.a], geometry.colliders[pair.b], leaving, state, {from, to}, told);
     from = to;
   }
   contacts = std::move(told);

@@ -78,9 +78,8 @@ struct EventTolerances {
   // A contact so near to a rim, or to an edge, is at it. [1e-10, 1e-3]
   static constexpr double kSameCorner = 1e-6;  // of l
 
-  // A contact so near to a corner, or to the end of a line, is there: less than `leaving`, or a corner that has left a
-  // face would be found on it again.
-  static constexpr double kAtCorner = 1e-12;  // of l
+  // A contact so near to a corner, or to the end of a line, is there: nearer than what has left one is to it.
+  static constexpr double kAtCorner = 0.2;  // of `leaving`
 
   // The contact after an event is that of before if it is so near, [1e-7, 1e-2], and this the cosine between normals.
   static constexpr double kSameContactPoint = 1e-4;    // of l

@@ -36,7 +36,7 @@ std::vector<Contact> findTouching(const IslandState& island, ConstraintSolver& c
   island.requireRoom(
       eraseImmobile(ImpulseResponse(island.assembly.mechanism.bodies, constraints), island.state, touching),
       tolerances.minOpeningSpeed(tolerances.scales.size));
-  findFeatures(geometry, island.state, touching);
+  findFeatures(geometry, island.state, tolerances.leaving, touching);
   for (Contact& contact : touching) moveToRim(geometry, island.state, contact);
   touching.erase(std::unique(touching.begin(), touching.end(), isSameRim), touching.end());
   return touching;

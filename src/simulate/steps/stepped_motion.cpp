@@ -10,6 +10,7 @@
 #include "dynamics/integrators/rk4.h"
 #include "simulate/events/contact_features.h"
 #include "simulate/events/event_location.h"
+#include "simulate/events/event_tolerances.h"
 #include "simulate/rows_of_contacts.h"
 #include "simulate/thresholds.h"
 
@@ -300,7 +301,7 @@ bool SteppedMotion::isAtRest() const {
 
 bool SteppedMotion::mayServeEvents() const {
   std::vector<Contact> touching = contacts_.touching();
-  findFeatures(island_.assembly.geometry, island_.state, touching);
+  findFeatures(island_.assembly.geometry, island_.state, eventTolerancesOf(eventScalesOf(island_)).leaving, touching);
   return std::ssize(touching) <= kMaxServed && std::all_of(touching.begin(), touching.end(), canLast);
 }
 

@@ -34,7 +34,7 @@ struct OverEdge {
     std::vector<Contact> contacts(1);
     contacts[0].bodyA = 0, contacts[0].point = point, contacts[0].normal = normal;
     contacts[0].radiusA = radiusA, contacts[0].radiusB = radiusB;
-    findFeatures(geometry, state, contacts);
+    findFeatures(geometry, state, 1e-12, contacts);
     return contacts;
   }
 };
