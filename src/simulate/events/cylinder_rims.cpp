@@ -18,6 +18,7 @@ bool rollOnRim(const ContactGeometry& geometry, const VectorX& state, Contact& c
   if (isOnB == std::isinf(contact.radiusA)) return false;
   const Collider& cylinder = geometry.colliders[isOnB ? pair.a : pair.b];
   if (cylinder.kind() != ColliderKind::cylinder) return false;
+  if (!pair.againstPlane && geometry.colliders[isOnB ? pair.b : pair.a].kind() == ColliderKind::mesh) return false;
   const Core core(cylinder, poseOf(state, cylinder.body));
   const Vec3 down = isOnB ? contact.normal : Vec3(-contact.normal);
   if (core.axis().cross(down).norm() < kFlatRim) return false;

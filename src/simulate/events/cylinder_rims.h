@@ -7,8 +7,8 @@ namespace cradle {
 constexpr const char* kTips = "a cylinder tips over its rim";
 constexpr double kFlatRim = 1e-3;  // sine of a disc's tilt: flatter, its lowest point runs too fast around its rim
 
-/// A tilted cylinder on a plane or face touches by the lowest point of a disc, which rolls along its rim: moves the
-/// contact there. Other contacts stay as they are.
+/// A tilted cylinder on a plane, or on a face of a convex shape, touches by the lowest point of a disc, which rolls
+/// along its rim: moves the contact there. Other contacts stay as they are.
 void moveToRim(const ContactGeometry& geometry, const VectorX& state, Contact& contact);
 
 /// The same for one that lies or stands, if it does not stand flat: it may tilt then. False if it does, or is no
