@@ -92,6 +92,7 @@ bool ConstraintSolver::hasKnownStructure() const {
 void ConstraintSolver::analyze() {
   structure_.clear(), couplings_.clear();
   std::vector<std::vector<int>> blocksOf(bodies_.size());
+  std::vector<std::pair<int, int>> places;
   std::vector<int> sizes;
   Eigen::Index rows = 0;
   for (const ConstraintBlock& block : blocks_) {
@@ -99,17 +100,21 @@ void ConstraintSolver::analyze() {
     structure_.push_back({block.bodyA, block.bodyB, block.rows});
     sizes.push_back(block.rows);
     rows += block.rows;
-    const std::size_t first = couplings_.size();
+    const std::size_t first = places.size();
     for (const int body : {block.bodyA, block.bodyB}) {
       if (body == kFixed) continue;
       for (const int other : blocksOf[static_cast<std::size_t>(body)])
-        if (std::find(couplings_.begin() + static_cast<std::ptrdiff_t>(first), couplings_.end(),
-                      std::pair(index, other)) == couplings_.end())
-          couplings_.emplace_back(index, other);
+        if (std::find(places.begin() + static_cast<std::ptrdiff_t>(first), places.end(), std::pair(index, other)) ==
+            places.end())
+          places.emplace_back(index, other);
       blocksOf[static_cast<std::size_t>(body)].push_back(index);
     }
   }
-  factor_.analyze(sizes, couplings_);
+  factor_.analyze(sizes, places);
+  for (const auto& [first, second] : places) {
+    const std::size_t row = static_cast<std::size_t>(first), column = static_cast<std::size_t>(second);
+    couplings_.push_back({row, column, sharedBodies(blocks_[row], blocks_[column])});
+  }
   multipliers_.resize(rows), rightHandSide_.resize(rows), residual_.resize(rows);
 }
 
@@ -119,18 +124,17 @@ void ConstraintSolver::assemble() {
     const ConstraintBlock& block = blocks_[i];
     withRows(block.rows, [&](auto rows) {
       double* const entries = factor_.diagonal(i);
-      putDelassus<rows, rows>(block, block, responses_[i], entries, rows);
+      putDelassus<rows>(block, responses_[i], entries);
       if (block.compliance > 0)
         for (int row = 0; row < rows; ++row) entries[row * rows + row] += block.compliance;
     });
   }
   for (std::size_t i = 0; i < couplings_.size(); ++i) {
-    const std::size_t later = static_cast<std::size_t>(couplings_[i].first),
-                      earlier = static_cast<std::size_t>(couplings_[i].second);
-    const ConstraintBlock &row = blocks_[later], &column = blocks_[earlier];
+    const ConstraintBlock &row = blocks_[couplings_[i].row], &column = blocks_[couplings_[i].column];
+    const BlockResponse& response = responses_[couplings_[i].column];
     withRows(row.rows, [&](auto rows) {
       withRows(column.rows, [&](auto columns) {
-        putDelassus<rows, columns>(row, column, responses_[earlier], factor_.beside(i), rows);
+        putDelassus<rows, columns>(row, column, couplings_[i].shared, response, factor_.beside(i), rows);
       });
     });
   }

@@ -68,6 +68,11 @@ class ConstraintSolver {
   double largestRate(const VectorX& state) const;
 
  private:
+  /// Two blocks that share a body, which puts a block beside the diagonal of the matrix.
+  struct Coupling {
+    std::size_t row, column;
+    SharedBodies shared;
+  };
   bool moves(int body) const;
   bool hasKnownStructure() const;
   void analyze();
@@ -91,8 +96,8 @@ class ConstraintSolver {
   std::vector<BodyFrame> frames_;
   std::vector<ConstraintBlock> blocks_;  // of the constraints that are not excluded
   std::vector<BlockResponse> responses_;
-  std::vector<std::array<int, 3>> structure_;   // bodies and rows of each, when the couplings were found
-  std::vector<std::pair<int, int>> couplings_;  // of blocks that share a body
+  std::vector<std::array<int, 3>> structure_;  // bodies and rows of each, when the couplings were found
+  std::vector<Coupling> couplings_;            // in the order of their places in factor_
   BlockLdlt factor_;
   bool isRegular_ = true;
   VectorX multipliers_, rightHandSide_, residual_, undisplaced_;

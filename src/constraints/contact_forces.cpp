@@ -155,29 +155,36 @@ void ContactSolver::findResponse(Group& group, const std::vector<BodyFrame>& fra
   }
 }
 
-/// Entries of a group's matrix, column by column and `stride` apart: what the rows of a contact see of 1 of each
-/// multiplier of `of`.
+/// Entries of a group's matrix: what the rows of a contact see of 1 of each multiplier of `of`.
 template <int rows, int columns>
-[[gnu::always_inline]] inline void ContactSolver::putEntries(const Group& group, const ConstraintBlock& seen,
-                                                             const Response& of, double* entries) {
-  const int stride = group.solver.stride();
-  if (!group.constraints) return putDelassus<rows, columns>(seen, of.block, of.alone, entries, stride);
-  for (int k = 0; k < columns; ++k) findRates<rows>(seen, of.constrained[index(k)], entries + k * stride);
+[[gnu::always_inline]] inline Eigen::Matrix<double, rows, columns> ContactSolver::entriesOf(const Group& group,
+                                                                                            const ConstraintBlock& seen,
+                                                                                            const Response& of) {
+  Eigen::Matrix<double, rows, columns> entries;
+  const SharedBodies shared = sharedBodies(seen, of.block);
+  if (group.constraints)
+    for (int k = 0; k < columns; ++k) findRates<rows>(seen, of.constrained[index(k)], &entries(0, k));
+  else if (shared.any())
+    putDelassus<rows, columns>(seen, of.block, shared, of.alone, entries.data(), rows);
+  else
+    entries.setZero();
+  return entries;
 }
 
 /// The matrix of a group without friction.
 void ContactSolver::couple(Group& group) {
-  MinimumNormSolver& solver = group.solver;
   const std::vector<int>& contacts = group.members.contacts;
   for (std::size_t k = 0; k < contacts.size(); ++k)
     for (std::size_t i = k; i < contacts.size(); ++i) {
       const ActiveBlock &row = blocks_[index(contacts[i])], &column = blocks_[index(contacts[k])];
-      const int firstRow = row.firstRow, firstColumn = column.firstRow;
       withContactRows(row.rows.block.rows, [&](auto rows) {
         withContactRows(column.rows.block.rows, [&](auto columns) {
-          putEntries<rows, columns>(group, row.rows.block, column.rows, &solver.symmetric(firstRow, firstColumn));
-          for (int x = firstColumn; x < firstColumn + columns; ++x)
-            for (int y = firstRow; y < firstRow + rows; ++y) solver.symmetric(x, y) = solver.symmetric(y, x);
+          const auto entries = entriesOf<rows, columns>(group, row.rows.block, column.rows);
+          for (int x = 0; x < columns; ++x)
+            for (int y = 0; y < rows; ++y) {
+              group.solver.symmetric(row.firstRow + y, column.firstRow + x) = entries(y, x);
+              group.solver.symmetric(column.firstRow + x, row.firstRow + y) = entries(y, x);
+            }
         });
       });
     }
@@ -191,7 +198,7 @@ void ContactSolver::findDiagonal(Group& group) {
     const int first = blocks_[index(contact)].firstRow;
     withContactRows(of.block.rows, [&](auto rows) {
       std::array<double, static_cast<std::size_t>(rows * rows)> entries{};
-      if (group.constraints) putDelassus<rows, rows>(of.block, of.block, of.alone, entries.data(), rows);
+      if (group.constraints) putDelassus<rows>(of.block, of.alone, entries.data());
       for (int k = 0; k < rows; ++k)
         group.solver.whole(first + k) =
             group.constraints ? entries[index(k * (rows + 1))] : group.solver.symmetric(first + k, first + k);
@@ -214,7 +221,8 @@ void ContactSolver::coupleFriction(Group& group, const std::vector<BodyFrame>& f
     for (const int other : group.members.contacts) {
       const ActiveBlock& row = blocks_[index(other)];
       withContactRows(row.rows.block.rows, [&](auto rows) {
-        putEntries<rows, 1>(group, row.rows.block, column.push, &solver.coupled(row.firstRow, first));
+        const auto entries = entriesOf<rows, 1>(group, row.rows.block, column.push);
+        for (int i = 0; i < rows; ++i) solver.coupled(row.firstRow + i, first) = entries[i];
       });
     }
   }

@@ -96,7 +96,8 @@ class ContactSolver {
   void findBlocks(const std::vector<BodyFrame>& frames, bool withTangents);
   void findResponse(Group& group, const std::vector<BodyFrame>& frames, Response& response);
   template <int rows, int columns>
-  static void putEntries(const Group& group, const ConstraintBlock& seen, const Response& of, double* entries);
+  static Eigen::Matrix<double, rows, columns> entriesOf(const Group& group, const ConstraintBlock& seen,
+                                                        const Response& of);
   void couple(Group& group);
   void findDiagonal(Group& group);
   void coupleFriction(Group& group, const std::vector<BodyFrame>& frames);

@@ -23,9 +23,6 @@ class MinimumNormSolver {
   /// S + C; read if factorize is told so.
   double& coupled(int row, int column) { return coupled_[at(row, column)]; }
 
-  /// From a column of these matrices to the next.
-  int stride() const { return capacity_; }
-
   /// Factorises the leading `size` rows and columns.
   void factorize(int size, bool isCoupled);
 

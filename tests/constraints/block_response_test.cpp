@@ -55,12 +55,15 @@ TEST(BlockResponse, EntriesAreThoseOfItsRowsOneByOne) {
   for (const ConstraintBlock& row : problem.blocks)
     for (std::size_t at = 0; at < problem.blocks.size(); ++at) {
       const ConstraintBlock& column = problem.blocks[at];
+      const SharedBodies shared = sharedBodies(row, column);
       MatrixX entries = MatrixX::Constant(row.rows + 1, column.rows, 7);
-      withRows(row.rows, [&](auto rows) {
-        withRows(column.rows, [&](auto columns) {
-          putDelassus<rows, columns>(row, column, problem.responses[at], entries.data(), rows + 1);
+      if (!shared.any()) entries.topRows(row.rows).setZero();
+      if (shared.any())
+        withRows(row.rows, [&](auto rows) {
+          withRows(column.rows, [&](auto columns) {
+            putDelassus<rows, columns>(row, column, shared, problem.responses[at], entries.data(), rows + 1);
+          });
         });
-      });
       for (int k = 0; k < column.rows; ++k) {
         const VectorX response = responseTo(rowOf(column, k), problem.bodies, problem.frames);
         for (int i = 0; i < row.rows; ++i) {
@@ -69,6 +72,10 @@ TEST(BlockResponse, EntriesAreThoseOfItsRowsOneByOne) {
         }
         EXPECT_EQ(entries(row.rows, k), 7);  // what is not the block's
       }
+      if (&row != &column) continue;
+      MatrixX own(row.rows, row.rows);
+      withRows(row.rows, [&](auto rows) { putDelassus<rows>(row, problem.responses[at], own.data()); });
+      EXPECT_LT((own - entries.topRows(row.rows)).norm(), kEntryError);
     }
   EXPECT_GT(largest, 1);
 }

@@ -37,11 +37,13 @@ void GaussSeidel::sweep() {
 
 MatrixX GaussSeidel::matrix() const {
   const Index size = std::ssize(rows_);
-  MatrixX result(size, size);
+  MatrixX result = MatrixX::Zero(size, size);
   for (std::size_t column = 0; column < rows_.size(); ++column)
-    for (std::size_t row = 0; row < rows_.size(); ++row)
-      putDelassus<1, 1>(rows_[row], rows_[column], responses_[column],
-                        &result(static_cast<Index>(row), static_cast<Index>(column)), 1);
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+      const SharedBodies shared = sharedBodies(rows_[row], rows_[column]);
+      double& entry = result(static_cast<Index>(row), static_cast<Index>(column));
+      if (shared.any()) putDelassus<1, 1>(rows_[row], rows_[column], shared, responses_[column], &entry, 1);
+    }
   return result;
 }
 
