@@ -147,15 +147,13 @@ ShakenRun runShaken(const Shaking& shaking, const Vec3& direction, const ShakenB
   return runWithWarnings(scene);
 }
 
-std::string nameOf(const Shaking& shaking, const ShakenBody& body, double accuracy) {
-  return fmt::format("{} mu {} {} at {} Hz, {} mu g, accuracy {}", body.name, shaking.staticFriction,
-                     shaking.dynamicFriction, shaking.frequency, shaking.strength, accuracy);
-}
-
 /// A contact of several corners slips when forces lack 1e-6 g: the longest delay d of a slip, in which static friction
-/// in place of dynamic gives (mu_s - mu_d) g d. That lasts to the end.
-void expectPlaces(const ShakenRun& made, const Shaking& shaking, const Vec3& direction, double accuracy,
-                  const std::string& what) {
+/// in place of dynamic gives (mu_s - mu_d) g d. That lasts to the end. Else the accuracy is kept: it is promised.
+void expectExact(const Shaking& shaking, const Vec3& direction, const ShakenBody& body, double accuracy) {
+  const ShakenRun made = runShaken(shaking, direction, body, accuracy);
+  const std::string what = fmt::format("{} mu {} {} at {} Hz, {} mu g, accuracy {}", body.name, shaking.staticFriction,
+                                       shaking.dynamicFriction, shaking.frequency, shaking.strength, accuracy);
+  EXPECT_TRUE(made.warnings.empty()) << what << ": " << made.warnings[0];
   ExactMotion exact(shaking);
   double largest = 0, allowed = accuracy;
   for (const Frame& frame : made.run.frames) {
@@ -171,32 +169,15 @@ void expectPlaces(const ShakenRun& made, const Shaking& shaking, const Vec3& dir
   }
 }
 
-/// The places, and the accuracy of the energy in all frames as it is promised.
-void expectExact(const Shaking& shaking, const Vec3& direction, const ShakenBody& body, double accuracy) {
-  const ShakenRun made = runShaken(shaking, direction, body, accuracy);
-  const std::string what = nameOf(shaking, body, accuracy);
-  EXPECT_TRUE(made.warnings.empty()) << what << ": " << made.warnings[0];
-  expectPlaces(made, shaking, direction, accuracy, what);
-}
-
 const Vec3 kAlong = Vec3::UnitX(), kOblique = Vec3(0.8, 0, -0.6);
 
 TEST(ShakenTable, BoxSlipsAndSticksWithOneFriction) {
   for (const double accuracy : {1e-2, 1e-4, 1e-6})
     for (const Vec3& direction : {kAlong, kOblique}) {
       expectExact({0.3, 0.3, 1.5, 1.5}, direction, kShakenBox, accuracy);
+      if (accuracy < 1e-2) expectExact({0.1, 0.1, 0.5, 1.2}, direction, kShakenBox, accuracy);
       expectExact({0.5, 0.5, 5, 3}, direction, kShakenBox, accuracy);
     }
-}
-
-// Before a slow slide ends, friction holds rotations about the vertical so stiffly that those of rounding reach the
-// tolerance, and frames within the last step see them: energies there may be off, places are not.
-TEST(ShakenTable, BoxSlipsAndSticksSlowly) {
-  const Shaking shaking{0.1, 0.1, 0.5, 1.2};
-  for (const double accuracy : {1e-4, 1e-6})
-    for (const Vec3& direction : {kAlong, kOblique})
-      expectPlaces(runShaken(shaking, direction, kShakenBox, accuracy), shaking, direction, accuracy,
-                   nameOf(shaking, kShakenBox, accuracy));
 }
 
 TEST(ShakenTable, BoxSlipsAndSticksWithMoreStaticFriction) {
