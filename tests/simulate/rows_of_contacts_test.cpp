@@ -59,7 +59,7 @@ TEST(RowsOfContacts, AreFiniteWhateverTouches) {
         SCOPED_TRACE(::testing::Message() << radiusA << " " << radiusB << " " << isEdge);
         EXPECT_TRUE(rows.place.normal.allFinite());
         EXPECT_NEAR(std::abs(rows.place.normal.y()), 1, 1e-12);
-        for (const std::size_t row : {0, 1, 2}) EXPECT_TRUE(std::isfinite(rows.block.velocityProduct[row]));
+        for (std::size_t row = 0; row < 3; ++row) EXPECT_TRUE(std::isfinite(rows.block.velocityProduct[row]));
       }
 }
 
