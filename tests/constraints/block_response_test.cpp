@@ -3,30 +3,19 @@
 #include <gtest/gtest.h>
 
 #include "constraints/constraint_row.h"
-#include "math/rotation.h"
+#include "constraints/tumbling_bodies.h"
 
 namespace cradle {
 namespace {
 
-/// Three bodies without any symmetry, one of which nothing turns, and blocks of one to six rows between them in all
+/// Three tumbling bodies, one of which nothing turns, and blocks of one to six rows between them in all
 /// orders, with anchors at a centre of mass among them.
-struct BlockProblem {
-  std::vector<RigidBody> bodies;
-  VectorX state = VectorX::Zero(stateSize(3));
+struct BlockProblem : TumblingBodies {
   std::vector<BodyFrame> frames;
   std::vector<ConstraintBlock> blocks;
   std::vector<BlockResponse> responses;
 
-  BlockProblem() {
-    for (int i = 0; i < 3; ++i) {
-      const Mat3 turn = rotationAbout(Vec3(1, i, 2), 0.3 + i).toRotationMatrix();
-      bodies.push_back(makeRigidBody(
-          {1 + 0.3 * i, Vec3::Zero(), turn * Vec3(0.1 + 0.02 * i, 0.2, 0.25).asDiagonal() * turn.transpose()}));
-      centerOfMass(state, i) = Vec3(0.7 * i, 0.2 - i, 0.1 * i * i);
-      setOrientation(state, i, rotationAbout(Vec3(i, -1, 0.5), 0.8 - i));
-      linearVelocity(state, i) = Vec3(0.4, -1.1 + i, 0.2 * i);
-      angularVelocity(state, i) = Vec3(1.3 - i, -0.6, 2.2);
-    }
+  BlockProblem() : TumblingBodies(3) {
     bodies[2].hasConstantSpin = true, bodies[2].inverseInertia.setZero();
     findBodyFrames(bodies, state, frames);
     const Vec3 point(0.3, -0.2, 0.4), none = Vec3::Zero();

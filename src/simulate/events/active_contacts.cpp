@@ -22,7 +22,7 @@ constexpr std::array<double, 3> kAimParts = {0.7, 0.8, 0.9}, kAimWeights = {1, -
 constexpr double kFastToAim = 100;  // times slowSliding, at the first of them: slower has not its own direction
 constexpr double kStopped = 1e-3;   // of the speed at the first of them: no more is left at a stop
 constexpr double kStraight = 0.1;   // sine: sliding that turns by more on its last third is too curved for a parabola
-constexpr double kMostAimedSpeed = 1e-4;  // m/s: faster sliding has its own direction in any case
+constexpr double kMaxAimedSpeed = 1e-4;  // m/s: faster sliding has its own direction in any case
 
 }  // namespace
 
@@ -178,7 +178,7 @@ bool ActiveContacts::aimAtStop(double fraction) {
     if (!(aims[i].normalized().cross(firsts[i].normalized()).norm() < kStraight)) continue;
     isAny = true;
     setSlidingDirection(contact, aims[i], sample_);
-    contact.slowSliding = std::max(tolerances_.slowSliding, std::min(kStopped * speed, kMostAimedSpeed));
+    contact.slowSliding = std::max(tolerances_.slowSliding, std::min(kStopped * speed, kMaxAimedSpeed));
   }
   return isAny;
 }

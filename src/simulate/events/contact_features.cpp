@@ -18,11 +18,11 @@ namespace {
 
 // Sine of the angle between two lines that cross: nearer to parallel, rounding (1e-16 of the size) moves the place
 // where they do by more than leaving the end of a line means.
-constexpr double kLeastCrossing = 1e-6;
+constexpr double kMinCrossingSine = 1e-6;
 
 // Sines of angles to the plane of contact, whose normal may miss that of two edges by less. A steeper edge does not
 // touch there but leaves from a corner, a steeper cylinder does not lie, a steeper face touches by its border alone.
-constexpr double kMostRise = 1e-3, kMostTilt = 1e-4, kMostFaceTilt = 1e-6;
+constexpr double kMaxRise = 1e-3, kMaxTilt = 1e-4, kMaxFaceTilt = 1e-6;
 
 /// A straight line of a surface, in the collider's frame, and the radius (m) around it.
 struct Line {
@@ -61,7 +61,7 @@ struct Side {
 
   /// Of a capsule or cylinder: its axis, and whether that is across the normal.
   Segment axis() const { return {collider.points[0], collider.points[1] - collider.points[0]}; }
-  bool isAcross() const { return std::abs(axis().along.normalized().dot(outward)) < kMostTilt; }
+  bool isAcross() const { return std::abs(axis().along.normalized().dot(outward)) < kMaxTilt; }
 
   /// The corner of a polytope there; null: there is none. What is beyond the ends of all edges is at a corner too.
   const Vec3* corner() const {
@@ -96,14 +96,13 @@ struct Side {
       if ((nearestOnSurface(collider, place) - place).cross(outward).norm() > near) return false;
     }
     if (collider.kind() == ColliderKind::cylinder)
-      return axis().along.normalized().cross(outward).norm() < kMostFaceTilt;
+      return axis().along.normalized().cross(outward).norm() < kMaxFaceTilt;
     if (collider.kind() != ColliderKind::polytope) return false;
     const double most = EventTolerances::kSameCorner * collider.boundingRadius;
-    return std::any_of(collider.polytope->faces.begin(), collider.polytope->faces.end(),
-                       [&](const Polytope::Face& face) {
-                         return (face.normal - outward).norm() < kMostFaceTilt &&
-                                std::abs(face.normal.dot(point) - face.offset) < most;
-                       });
+    return std::any_of(
+        collider.polytope->faces.begin(), collider.polytope->faces.end(), [&](const Polytope::Face& face) {
+          return (face.normal - outward).norm() < kMaxFaceTilt && std::abs(face.normal.dot(point) - face.offset) < most;
+        });
   }
 
   /// Whether it is a face that is nearest to a place (m, world), as it is until a contact with that face leaves it.
@@ -118,7 +117,7 @@ struct Side {
     const std::vector<Vec3>& corners = collider.polytope->vertices;
     for (const Polytope::Edge& edge : collider.polytope->edges) {
       const Segment segment{corners[edge.from], corners[edge.to] - corners[edge.from]};
-      if (std::abs(segment.along.dot(outward)) <= kMostRise * segment.along.norm())
+      if (std::abs(segment.along.dot(outward)) <= kMaxRise * segment.along.norm())
         visit(segment, distanceTo(segment.at(segment.nearestPart(point))));
     }
   }
@@ -144,7 +143,7 @@ struct Side {
     const Vec3* place = corner();
     if (!place) return std::nullopt;
     const double reach = distanceTo(*place) + near;
-    double most = kLeastCrossing;
+    double most = kMinCrossingSine;
     std::optional<Line> found;
     visitEdges([&](const Segment& segment, double distance) {
       const double sine = segment.along.normalized().cross(local).norm();
@@ -241,7 +240,7 @@ void appendLines(const Side& a, const Line& ofA, const Side& b, const Line& ofB,
     return appendEnds(contact, lineA, ofA.radius, lineB, ofB.radius, contacts);
   if (isBetweenCorners(contact, sine)) return;
   const SegmentParts nearest = nearestParts(lineA, lineB);
-  if (sine > kLeastCrossing)
+  if (sine > kMinCrossingSine)
     place({lineA.at(nearest.a), ofA.radius, alongA}, {lineB.at(nearest.b), ofB.radius, alongB}, contact);
   contacts.push_back(contact);
 }
