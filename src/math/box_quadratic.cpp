@@ -30,6 +30,18 @@ VectorX freeMinimum(const MatrixX& A, const VectorX& b, const VectorX& x, const 
   return found;
 }
 
+/// Where to go from `x`: to `stationary`, unless x^T A x / 2 - b^T x is greatest there, on the line between them. Then it
+/// falls without end on the other side of `x`, as far as limits let it.
+VectorX aimFrom(const MatrixX& A, const VectorX& x, const VectorX& stationary, const VectorX& limits) {
+  const VectorX way = stationary - x;
+  const VectorX size = way.cwiseAbs();
+  if (way.dot(A * way) >= -kRounding * size.dot(A.cwiseAbs() * size)) return stationary;
+  double far = 0;
+  for (Eigen::Index i = 0; i < way.size(); ++i)
+    if (way[i] != 0) far = std::max(far, 2 * limits[i] / size[i]);
+  return x - 2 * far * way;
+}
+
 /// Goes from `x` towards `aim` as far as limits let it; where one stops it, that is active from then on. True if none
 /// does.
 bool approach(const VectorX& aim, const VectorX& limits, VectorX& x, Active& active) {
@@ -73,7 +85,9 @@ VectorX boxMinimum(const MatrixX& A, const VectorX& b, const VectorX& limits) {
   Active active(static_cast<std::size_t>(b.size()), 0);
   const int most = 20 + 10 * static_cast<int>(b.size());  // more are cycles of a matrix that is not quite symmetric
   for (int change = 0; change < most; ++change)
-    if (approach(freeMinimum(A, b, x, active), limits, x, active) && !release(A, b, limits, x, active)) break;
+    if (approach(aimFrom(A, x, freeMinimum(A, b, x, active), limits), limits, x, active) &&
+        !release(A, b, limits, x, active))
+      break;
   return x;
 }
 

@@ -124,9 +124,10 @@ class RunOracles {
   }
 
   void checkEnergy() {
-    double least = mechanicalEnergy(run_.frames[0]), most = 0, gain = 0, fall = 0, balance = 0;
+    const auto ownOf = [](const Frame& frame) { return mechanicalEnergy(frame) - frame.energy.work; };
+    double least = ownOf(run_.frames[0]), most = 0, gain = 0, fall = 0, balance = 0;
     for (const Frame& frame : run_.frames) {
-      const double own = mechanicalEnergy(frame) - frame.energy.work;
+      const double own = ownOf(frame);
       gain = std::max(gain, own - least);
       least = std::min(least, own);
       fall = std::max(fall, most - frame.energy.dissipated);

@@ -36,6 +36,21 @@ TEST(BoxMinimum, HoldsItsConditions) {
     }
 }
 
+/// Friction of contacts that slide leaves motors matrices that are not definite. Their conditions have several solutions,
+/// and no minimum inside.
+TEST(BoxMinimum, HoldsItsConditionsWhereCurvatureIsNegative) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  for (const Eigen::Index size : {1, 2, 5})
+    for (int trial = 0; trial < 50; ++trial) {
+      const MatrixX any = MatrixX::NullaryExpr(size, size, [&] { return normal(random); });
+      const MatrixX A = any + any.transpose();
+      const VectorX b = VectorX::NullaryExpr(size, [&] { return 3 * normal(random); });
+      const VectorX limits = VectorX::NullaryExpr(size, [&] { return std::abs(normal(random)); });
+      expectMinimum(A, b, limits, boxMinimum(A, b, limits), 1e-9 * b.norm() * A.norm());
+    }
+}
+
 /// Of four that share one load, each a quarter; if one has less, the others a third of the rest.
 TEST(BoxMinimum, SharesWhatIsNotDetermined) {
   const MatrixX A = MatrixX::Ones(4, 4);
