@@ -23,7 +23,7 @@ constexpr double kFinestBesidePin = 1.0 / 256;
 // Of a step: a feature that leaves is searched from then on at the latest, for another of its points may come down. A
 // tenth or ten times as much changes no test of a search.
 constexpr double kFirstGap = 1.0 / 1024;
-// rad, in a step: of two bodies against each other, by which a manifold may change its features.
+// rad, in a step: of two bodies against each other, by which a manifold of convex ones may change its features.
 constexpr double kTurned = 0.1;
 
 /// Distance (m) from the centre of mass of a collider's farthest point, without the spheres around its points.
@@ -138,10 +138,12 @@ void PairSearch::searchFeature(double start, const TouchingFeatures& touching, s
 }
 
 /// Whether a pair that a contact holds may turn so far that others come which were none at the start, however near:
-/// the far end of a body that stands or leans.
+/// the far end of a body that stands or leans. Meshes have contacts only where they go back from a tangent plane, so
+/// that the least turn may bring others.
 bool PairSearch::mayTurnDown() {
-  if (!held_ || hasMesh(a_, geometry_.colliders[pair_.b])) return false;
-  return scratch_.turnOf(step_, a_.body).speed + scratch_.turnOf(step_, bodyB_).speed > kTurned;
+  if (!held_) return false;
+  const double turned = scratch_.turnOf(step_, a_.body).speed + scratch_.turnOf(step_, bodyB_).speed;
+  return turned > (hasMesh(a_, geometry_.colliders[pair_.b]) ? 0 : kTurned);
 }
 
 /// Finds bounds on the gap. A gap is the least distance d between points of the two cores, less the radii r of the

@@ -95,12 +95,12 @@ double firstSlack(const Slack& slack, double least, double begin) {
 
 /// Fraction of the step until which a limit that shortens at its start shortens still, whatever accelerates its ends:
 /// even a rebound far shorter than the step is not over by then. It is v / (v' bound), v the speed of shortening (m a
-/// step).
+/// step). One that hardly shortens, as nothing presses it, has not rebounded.
 double firstSample(const Limit& limit, const Step& step) {
-  const double speed = -motionOf(limit, step.startState).lengthening * step.timeStep;
-  if (!(speed > 0)) return kMaxFirstSample;
+  const double speed = -motionOf(limit, step.startState).lengthening;
+  if (!(speed > kRestSpeedFloor)) return kMaxFirstSample;
   const double bound = std::visit([&step](const auto& kind) { return accelerationBound(kind, step); }, limit);
-  return std::clamp(speed / bound, kMinFirstSample, kMaxFirstSample / 2);
+  return std::clamp(speed * step.timeStep / bound, kMinFirstSample, kMaxFirstSample / 2);
 }
 
 /// J: of what drives bodies, against limits' impulses.
