@@ -18,9 +18,19 @@ constexpr std::size_t kLongestPointer = 200;   // bytes
 
 }  // namespace
 
-void FaultList::add(const TextPlace& place, const std::string& pointer, const std::string& what) {
-  if (!isFull()) faults_.push_back({place, where(place, pointer) + ": " + printableLine(what, kLongestWhat)});
+FaultList::Fault FaultList::faultOf(const TextPlace& place, const std::string& pointer, const std::string& what) const {
+  return {place, where(place, pointer) + ": " + printableLine(what, kLongestWhat)};
+}
+
+std::size_t FaultList::add(const TextPlace& place, const std::string& pointer, const std::string& what) {
+  if (!isFull()) faults_.push_back(faultOf(place, pointer, what));
   if (++count_ == kMaxCounted) throwIfAny();
+  return count_ - 1;
+}
+
+void FaultList::replace(std::size_t number, const TextPlace& place, const std::string& pointer,
+                        const std::string& what) {
+  if (number < faults_.size()) faults_[number] = faultOf(place, pointer, what);
 }
 
 bool FaultList::isFull() const {

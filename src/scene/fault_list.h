@@ -17,8 +17,10 @@ class FaultList {
   FaultList(std::string file, ErrorKind kind) : file_(std::move(file)), kind_(kind) {}
 
   /// `what` reads "what was found; what is allowed; hint"; `pointer` is a JSON pointer, empty for the whole text.
-  /// Throws, as throwIfAny does, if there are more than anyone counts.
-  void add(const TextPlace& place, const std::string& pointer, const std::string& what);
+  /// Returns its number. Throws, as throwIfAny does, if there are more than anyone counts.
+  std::size_t add(const TextPlace& place, const std::string& pointer, const std::string& what);
+  /// Puts a fault that tells more of the same mistake in the place of another.
+  void replace(std::size_t number, const TextPlace& place, const std::string& pointer, const std::string& what);
 
   /// All faults, those that are counted but no longer kept included.
   std::size_t count() const { return count_; }
@@ -36,6 +38,8 @@ class FaultList {
     TextPlace place;
     std::string line;
   };
+  Fault faultOf(const TextPlace& place, const std::string& pointer, const std::string& what) const;
+
   std::string file_;
   ErrorKind kind_;
   std::vector<Fault> faults_;

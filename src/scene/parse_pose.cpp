@@ -82,11 +82,15 @@ Quat parseOrientation(const Field& field, FaultList& faults) {
   std::optional<Quat> rotation;
   if (forms == 1) {
     rotation = isQuaternion ? readQuaternion(reader) : isAxisAngle ? readAxisAngle(reader) : readEulerAngles(reader);
-  } else if (std::holds_alternative<JsonValue::Object>(field.value->content)) {
-    addFault(faults, field,
-             fmt::format("the orientation is given in {} forms; allowed is one of: w, x, y, z; axis and angleDegrees; "
-                         "eulerDegrees and order",
-                         forms));
+  } else {
+    const std::string what = fmt::format(
+        "the orientation is given in {} forms; allowed is one of: w, x, y, z; axis and angleDegrees; eulerDegrees and "
+        "order",
+        forms);
+    if (forms == 0)
+      reader.addMissing({"w", "x", "y", "z", "axis", "angleDegrees", "eulerDegrees", "order"}, what);
+    else
+      addFault(faults, field, what);
   }
   reader.rejectUnknownKeys();
   return rotation.value_or(Quat::Identity());

@@ -21,10 +21,11 @@ void parsePoint(ObjectReader& reader, Push& push) {
   if (ray) push.target = parseRay(*ray, reader.faults());
   if (point && ray) {
     addFault(reader.faults(), *ray, "both point and ray are given; allowed is one of them");
-  } else if (!point && !ray && std::holds_alternative<JsonValue::Object>(reader.field().value->content)) {
-    addFault(reader.faults(), reader.field(),
-             "the push does not say where it acts; give \"point\" (of the body) or \"ray\" (of the world), or a "
-             "\"torque\"");
+  } else if (!point && !ray) {
+    reader.addMissing(
+        {"point", "ray", "torque"},
+        "the push does not say where it acts; give \"point\" (of the body) or \"ray\" (of the world), or a "
+        "\"torque\"");
   }
 }
 

@@ -90,8 +90,8 @@ void readShapeKeys(ObjectReader& reader, BodyDraft& draft) {
              fmt::format("the shape is both {} and {}; it must be one of them", found[0].first, found[1].first));
   }
   if (found.empty()) {
-    addFault(faults, reader.field(),
-             fmt::format("the shape says nothing; it must be one of {}", fmt::join(kShapeKeys, ", ")));
+    reader.addMissing({kShapeKeys.begin(), kShapeKeys.end()},
+                      fmt::format("the shape says nothing; it must be one of {}", fmt::join(kShapeKeys, ", ")));
   } else if (found[0].first == "mesh") {
     readMeshPath(found[0].second, draft, faults);
   } else {

@@ -206,9 +206,13 @@ std::optional<Field> ObjectReader::find(const char* key) {
 
 std::optional<Field> ObjectReader::require(const char* key) {
   const auto found = find(key);
-  if (!found && object_ != nullptr)
-    addFault(faults_, field_, fmt::format("key \"{}\" is missing; it is required", key));
+  if (!found) addMissing({key}, fmt::format("key \"{}\" is missing; it is required", key));
   return found;
+}
+
+void ObjectReader::addMissing(std::vector<std::string> keys, const std::string& what) {
+  if (object_ == nullptr) return;
+  missing_.push_back({std::move(keys), faults_.add(field_.place(), field_.pointer, what)});
 }
 
 double ObjectReader::number(const char* key, const Range& range, const char* unit, double fallback) {
@@ -277,9 +281,23 @@ void ObjectReader::rejectUnknownKeys() {
     if (faults_.isFull())
       faults_.add({}, "", "");
     else
-      faults_.add(member.place, pointerTo(field_.pointer, member.key),
-                  fmt::format("unknown key {}; allowed are {}{}", inQuotes(member.key), fmt::join(known_, ", "),
-                              didYouMean(member.key, known_)));
+      rejectUnknown(member);
+  }
+}
+
+void ObjectReader::rejectUnknown(const JsonMember& member) {
+  const std::string pointer = pointerTo(field_.pointer, member.key);
+  const std::string what = fmt::format("unknown key {}; allowed are {}{}", inQuotes(member.key),
+                                       fmt::join(known_, ", "), didYouMean(member.key, known_));
+  const std::string* meant = mostLike(member.key, known_);
+  const auto same = std::find_if(missing_.begin(), missing_.end(), [meant](const Missing& missing) {
+    return meant && std::find(missing.keys.begin(), missing.keys.end(), *meant) != missing.keys.end();
+  });
+  if (same == missing_.end()) {
+    faults_.add(member.place, pointer, what);
+  } else {
+    faults_.replace(same->fault, member.place, pointer, what);
+    missing_.erase(same);
   }
 }
 

@@ -57,6 +57,8 @@ class ObjectReader {
   std::optional<Field> find(const char* key);
   /// A missing key is a fault.
   std::optional<Field> require(const char* key);
+  /// Adds a fault of the object: it has none of `keys`, of which it needs one.
+  void addMissing(std::vector<std::string> keys, const std::string& what);
 
   double number(const char* key, const Range& range, const char* unit, double fallback);
   std::optional<double> optionalNumber(const char* key, const Range& range, const char* unit);
@@ -72,7 +74,8 @@ class ObjectReader {
   template <typename T>
   T choice(const char* key, const std::vector<std::pair<const char*, T>>& words, T fallback);
 
-  /// To be called last: every key that was never asked for is a fault.
+  /// To be called last: every key that was never asked for is a fault. One that is like a missing key is the same fault
+  /// as that.
   void rejectUnknownKeys();
 
   const Field& field() const { return field_; }
@@ -80,11 +83,18 @@ class ObjectReader {
 
  private:
   std::size_t choiceIndex(const Field& field, const std::vector<std::string>& words);
+  void rejectUnknown(const JsonMember& member);
+
+  struct Missing {
+    std::vector<std::string> keys;
+    std::size_t fault;  // its number
+  };
 
   Field field_;
   const JsonValue::Object* object_;  // null if the value is no object
   FaultList& faults_;
   std::vector<std::string> known_;
+  std::vector<Missing> missing_;
 };
 
 template <typename T>

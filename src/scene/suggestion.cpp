@@ -45,8 +45,8 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return row[t.size()];
 }
 
-std::string didYouMean(const std::string& name, const std::vector<std::string>& candidates) {
-  if (name.empty() || name.size() > kLongestName) return "";
+const std::string* mostLike(const std::string& name, const std::vector<std::string>& candidates) {
+  if (name.empty() || name.size() > kLongestName) return nullptr;
   const std::string* best = nullptr;
   std::size_t bestDistance = allowedSlips(name) + 1;
   for (const std::string& candidate : candidates) {
@@ -62,6 +62,11 @@ std::string didYouMean(const std::string& name, const std::vector<std::string>& 
   for (auto i = candidates.begin(); best == nullptr && i != candidates.end(); ++i) {
     if (contains(*i, name) || contains(name, *i)) best = &*i;
   }
+  return best;
+}
+
+std::string didYouMean(const std::string& name, const std::vector<std::string>& candidates) {
+  const std::string* best = mostLike(name, candidates);
   return best == nullptr ? "" : "; did you mean " + inQuotes(*best) + "?";
 }
 

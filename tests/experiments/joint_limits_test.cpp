@@ -201,5 +201,27 @@ TEST(JointLimits, LightestBodiesStayAtTheirStops) {
   }
 }
 
+/// A box at the stop of a level slider on an arm that falls along a slope until that stops it: nothing presses the box
+/// against its stop, and nothing takes it away, but for rounding, which makes no events.
+TEST(JointLimits, StopThatNothingLoadsIsNoEvent) {
+  for (const double accuracy : {1e-3, 1e-6, 1e-8}) {
+    const Trajectory moved =
+        runStopped(0.5, accuracy, R"({"name": "hand", "motion": "driven", "collision": "none", "position": [0, 1.9, 0],
+         "shape": {"sphere": {"radius": 0.1}},
+         "oscillation": {"direction": [0, 1, 0], "amplitude": 0.2221409776194208, "frequency": 1.0576459139852903,
+         "phase": 5.59453463370967}},
+        {"name": "arm", "mass": 0.42, "shape": {"box": {"size": [0.45, 0.26, 0.13]}}, "collision": "none",
+         "position": [0.3, 1.618830310534665, 0], "orientation": {"axis": [0, 0, 1], "angleDegrees": 45}},
+        {"name": "box", "mass": 0.8, "shape": {"box": {"size": [0.1, 0.2, 0.1]}}, "collision": "none",
+         "position": [0.9, 1.618830310534665, 0], "orientation": {"axis": [0, 0, 1], "angleDegrees": 90}})",
+                   R"("sliders": [{"bodyA": "arm", "anchorA": [0, 0, 0], "bodyB": "hand", "anchorB": [0.3, -0.14, 0],
+         "axis": [0.7071067811865476, 0.7071067811865475, 0], "limits": {"lower": -0.03, "upper": 0, "restitution": 0}},
+        {"bodyA": "box", "anchorA": [0, 0.3, 0], "bodyB": "arm", "anchorB": [0.21213203435596426, -0.21213203435596426, 0],
+         "axis": [0, -1, 0], "limits": {"lower": -0.08, "upper": 0, "restitution": 0}}],)");
+    for (const Frame& frame : moved.frames) EXPECT_NEAR(frame.joints[1].coordinate, 0, 1e-11) << frame.time;
+    EXPECT_LE(moved.events.size(), 2U) << accuracy;  // the arm's
+  }
+}
+
 }  // namespace
 }  // namespace cradle

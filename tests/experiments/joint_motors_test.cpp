@@ -574,5 +574,32 @@ TEST(JointMotors, BrakeBetweenStopsOnASwingingTable) {
   for (const double end : ends) EXPECT_NEAR(end, ends.back(), 1e-3);
 }
 
+/// A plate that a motor of 2 N lowers, on a capsule that slips out from under it over a ball: the harder the motor
+/// holds the plate up, the less friction it leaves to the capsule, and the faster both fall. The plate parts from it at
+/// the motor's velocity, and sinks with that, its weight on the motor.
+TEST(JointMotors, MotorHoldsAPlateWhoseSupportSlipsAway) {
+  for (const double accuracy : {1e-3, 1e-6}) {
+    const Trajectory moved = runMotor(0.13, accuracy, R"({"name": "floor", "shape": {"plane": {}}, "motion": "static",
+         "material": "m"},
+        {"name": "ball", "mass": 1.283, "shape": {"sphere": {"radius": 0.0343}}, "position": [-0.0309, 0.0343, -0.02645],
+         "material": "m"},
+        {"name": "capsule", "mass": 5.769, "shape": {"capsule": {"radius": 0.04042, "length": 0.05557}},
+         "position": [-0.0309, 0.12603, -0.02645], "material": "m", "orientation": {"w": -0.5919244091548097,
+         "x": 0.29382281730726073, "y": 0.709351030477861, "z": -0.2451831181716032}},
+        {"name": "plate", "mass": 0.1735, "shape": {"box": {"size": [0.1742, 0.01307, 0.1742]}},
+         "position": [0, 0.19264, 0], "material": "m"})",
+                                      R"("materials": {"m": {"restitution": 0, "staticFriction": 1.2668,
+         "dynamicFriction": 1.2668}}, "sliders": [{"bodyA": "plate", "anchorB": [0, 0.19264, 0], "axis": [0, 1, 0],
+         "motor": {"targetVelocity": -0.196, "maxForce": 2}}])");
+    EXPECT_LT(moved.frames[2].joints[0].velocity, -0.05);
+    for (const Frame& frame : moved.frames) {
+      EXPECT_GE(frame.joints[0].velocity, -0.196 - 1e-12) << frame.time;
+      if (frame.time < 0.07) continue;
+      EXPECT_NEAR(frame.joints[0].velocity, -0.196, 1e-12) << frame.time;
+      EXPECT_NEAR(frame.joints[0].force, 0.1735 * kGravity, 1e-9) << frame.time;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -1,4 +1,5 @@
-// A bar that comes down nearly flat touches with one end, and within the same step with the other.
+// A bar that comes down nearly flat touches with one end, and within the same step with the other. A model that tips
+// over an edge comes down with its face.
 
 #include <gtest/gtest.h>
 
@@ -84,6 +85,44 @@ TEST(LandingBar, DoesNotDependOnTheSteps) {
       const BodyState a = endOf(coarse), b = endOf(fine);
       EXPECT_LT((a.position - b.position).norm(), 1e-5) << width << " " << tilt;
       EXPECT_LT(orientationError(a.orientation, b.orientation), 1e-5) << width << " " << tilt;
+    }
+}
+
+/// m: how deep the lowest corner of assets/l_prism.3ds is below the height `top`.
+double depthOfPrism(const BodyState& prism, double scale, double top) {
+  double depth = -INFINITY;
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.3, 0.0}, {0.3, 0.1}, {0.1, 0.1}, {0.1, 0.2}, {0.0, 0.2}})
+    for (const double z : {0.0, 0.1}) {
+      const Vec3 corner = scale * (Vec3(x, y, z) - Vec3(0.125, 0.075, 0.05));  // about the centre of mass
+      depth = std::max(depth, top - (prism.position + prism.orientation * corner).y());
+    }
+  return depth;
+}
+
+// An L prism that falls over its edge onto its face, on the end of a cylinder that moves. The far corners of the face
+// are no contacts before it has come down, and it comes down within one step.
+TEST(LandingPrism, TipsOntoACylinder) {
+  for (const char* shape :
+       {R"({"cylinder": {"radius": 0.34868, "length": 0.034868}})", R"({"box": {"size": [0.7, 0.034868, 0.7]}})"})
+    for (const double accuracy : {1e-4, 1e-6, 1e-8}) {
+      const std::string text = fmt::format(
+          R"({{"schema": "cradle-scene/1", "name": "Prism", "duration": 0.14, "accuracy": {}, "output": {{"framesPerSecond": 240}},
+             "materials": {{"m": {{"restitution": 0, "staticFriction": 3, "dynamicFriction": 1.7607}}}},
+             "bodies": [{{"name": "table", "motion": "driven", "shape": {}, "material": "m",
+                "oscillation": {{"direction": [1, 0, 0], "amplitude": 0.034868, "frequency": 1.1939, "phase": 2.91}}}},
+               {{"name": "prism", "shape": {{"mesh": "{}/assets/l_prism.3ds", "scale": 0.2552}}, "material": "m",
+                "mass": 69.1, "position": [0, 0.0174354, 0], "orientation": {{"w": 0.8585833269748705,
+                "x": -0.13394969446873428, "y": -0.44841726944331023, "z": 0.20931818472722621}}}}]}})",
+          accuracy, shape, CRADLE_SOURCE_DIR);
+      const Trajectory run = simulate(parseScene(text, "prism.json", modelFilesBeside("prism.json")).scene);
+      double deepest = -1, highest = -1;
+      for (const Frame& frame : run.frames) {
+        deepest = std::max(deepest, depthOfPrism(frame.states[1], 0.2552, 0.017434));
+        highest = std::max(highest, -depthOfPrism(frame.states[1], 0.2552, 0.017434));
+      }
+      EXPECT_LT(deepest, 1e-6) << shape << accuracy;
+      EXPECT_LT(highest, 1e-5) << shape << accuracy;
+      EXPECT_LT(std::abs(run.frames.back().energy.numerical), 0.01) << shape << accuracy;  // J, of 13
     }
 }
 

@@ -36,8 +36,8 @@ TEST(BoxMinimum, HoldsItsConditions) {
     }
 }
 
-/// Friction of contacts that slide leaves motors matrices that are not definite. Their conditions have several solutions,
-/// and no minimum inside.
+/// Friction of contacts that slide leaves motors matrices that are not definite. Their conditions have several
+/// solutions, and no minimum inside.
 TEST(BoxMinimum, HoldsItsConditionsWhereCurvatureIsNegative) {
   std::mt19937 random(11);
   std::normal_distribution<double> normal;

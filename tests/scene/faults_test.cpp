@@ -76,6 +76,16 @@ TEST(Faults, StandInTheOrderOfTheFile) {
   EXPECT_NE(schema, std::string::npos);
 }
 
+/// One key is meant for one that is missing: a second one stays a fault of its own, as does what else is missing.
+TEST(Faults, OfAKeyThatIsMissingAreAsManyAsThereAre) {
+  std::istringstream lines(
+      errorOf(R"({"schema": "cradle-scene/1", "durration": 1, "dduration": 1, "bodies": []})").what());
+  std::vector<std::string> found;
+  for (std::string line; std::getline(lines, line);) found.push_back(line);
+  EXPECT_THAT(found, UnorderedElementsAre(HasSubstr("\"name\" is missing"), HasSubstr("unknown key \"durration\""),
+                                          HasSubstr("unknown key \"dduration\"")));
+}
+
 TEST(Faults, QuotationsAreCutAndHarmless) {
   const std::string message =
       errorOf(sceneWith("\"bodies\": [], \"a\\u001b[31m\\n" + std::string(1000, 'x') + "\": 1")).what();
