@@ -255,6 +255,20 @@ ContactPoint singlePoint(const Core& a, const Core& b, const SeparatingAxis& axi
   return contact;
 }
 
+/// m^2: of the polygon of a flat manifold.
+double areaOf(const FeatureManifold& patch) {
+  Vec3 doubled = Vec3::Zero();
+  for (std::size_t i = 2; i < patch.points.size(); ++i)
+    doubled += (patch.points[i - 1] - patch.points[0]).cross(patch.points[i] - patch.points[0]);
+  return doubled.norm() / 2;
+}
+
+/// Of a disc and a face the smaller one stands on the larger, in either order: polygons of the disc that are inside and
+/// around it would not meet a face in the same one.
+bool isSmallerWithDisc(const Core& a, const FeatureManifold& patchA, const Core& b, const FeatureManifold& patchB) {
+  return (a.rimRadius() > 0) != (b.rimRadius() > 0) && areaOf(patchA) < areaOf(patchB);
+}
+
 void mirror(ContactPoint& contact) {
   contact.normal = -contact.normal;
   std::swap(contact.radiusA, contact.radiusB);
@@ -271,7 +285,7 @@ void appendManifold(const Core& a, const Core& b, const SeparatingAxis& axis, do
   const std::size_t first = points.size();
   FeatureManifold patchA = manifoldOf(a, axis.normal, &pool), patchB = manifoldOf(b, -axis.normal, &pool);
   OverFace over = OverFace::shallow;
-  if (patchA.isFlat) {
+  if (patchA.isFlat && !(patchB.isFlat && isSmallerWithDisc(a, patchA, b, patchB))) {
     over = clipOnFace(a, b, axis.normal, patchA, patchB, margin, points);
   } else if (patchB.isFlat) {
     over = clipOnFace(b, a, -axis.normal, patchB, patchA, margin, points);

@@ -196,6 +196,22 @@ TEST(Manifold, OfABoxOnACylinderIsTheLineOrTheEnd) {
   expectTouching(onEnd, 4, Vec3::UnitY(), INFINITY, 0);
 }
 
+// A can that is partly beyond a table's edge, and a box partly beyond a can's rim: the same places in either order.
+TEST(Manifold, OfADiscOnAFaceIsTheSameInEitherOrder) {
+  const Placed table{colliderOf(Box{Vec3(2, 1, 2)}, {}), at(0, -0.5, 0)};
+  for (const double radius : {0.3, 0.9, 5.0})
+    for (const double beyond : {0.0, 0.2}) {
+      const Placed can{colliderOf(Cylinder{radius, 1}, {}), at(beyond + std::max(0.0, 1 - radius), 0.5, 0.1)};
+      std::vector<Contact> one = contactsOf(table, can), other = contactsOf(can, table);
+      ASSERT_EQ(one.size(), other.size()) << radius;
+      for (const Contact& contact : one)
+        EXPECT_TRUE(std::any_of(other.begin(), other.end(), [&](const Contact& same) {
+          return (same.point - contact.point).norm() < 1e-14 && same.normal == -contact.normal &&
+                 same.radiusA == contact.radiusB && same.radiusB == contact.radiusA;
+        })) << radius;
+    }
+}
+
 // A tilted cylinder whose lowest point is beyond the edge: its bottom touches the edge where the rim crosses that, at
 // z = sqrt(r^2 - d^2), d the distance of the axis from the edge. The plane of the floor sees an overlap beside it.
 TEST(Manifold, OfARimAtAnEdgeIsWhereTheyCross) {
