@@ -9,6 +9,7 @@
 #include "constraints/invariants.h"
 #include "core/error.h"
 #include "core/interruption.h"
+#include "simulate/ledger_quadrature.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -145,7 +146,7 @@ void IslandSolver::interpolateAt(double time, bool keepsConstraints) {
   if (const auto* steps = std::get_if<SteppedMotion>(&motion_)) steps->addContactMotion(fraction, reported_);
   const Mechanism& mechanism = island_.assembly.mechanism;
   const auto* events = std::get_if<EventMotion>(&motion_);
-  if (events && !mechanism.driven.empty()) integrateWork(*events, fraction);
+  if (events && !mechanism.driven.empty()) integrateLedger(*events, fraction);
   if (events && keepsConstraints && !events->contactsOfStep().empty()) {
     project(events->contactsOfStep());
   } else if (keepsConstraints && solver_.hasConstraints()) {
@@ -181,25 +182,12 @@ void IslandSolver::withForcesOfStep(const EventMotion& events, const Evaluate& e
   swapForces();
 }
 
-/// Sets the work since the step's start to the integral of the power along the interpolant, by Gauss and Legendre: of
-/// degree 2 k - 1, in steps that are as long as the motion allows, it is more exact than the interpolant of the work,
-/// whose degree is that of the motion's.
-void IslandSolver::integrateWork(const EventMotion& events, double fraction) {
-  constexpr double kNodes[] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521};  // of -1..1, both signs
-  constexpr double kWeights[] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
-  const Step& step = island_.step;
-  double power = 0;  // W, mean
+/// Energies of the ledger of an island with driven bodies, in the state of a frame.
+void IslandSolver::integrateLedger(const EventMotion& events, double fraction) {
   withForcesOfStep(events, [&] {
-    for (std::size_t i = 0; i < std::size(kNodes); ++i)
-      for (const double node : {-kNodes[i], kNodes[i]}) {
-        const double part = fraction * (1 + node) / 2, time = step.time + part * step.timeStep;
-        interpolate(step, part, sample_);
-        place(island_.assembly.mechanism.driven, time, sample_);
-        frameEquations_.evaluate(time, sample_, derivative_);
-        power += kWeights[i] / 2 * pushWork(derivative_);
-      }
+    cradle::integrateLedger(frameEquations_, island_.assembly.mechanism, island_.step, fraction,
+                            events.toleranceOfWork(), reported_);
   });
-  pushWork(reported_) = pushWork(step.startState) + fraction * step.timeStep * power;
 }
 
 void IslandSolver::findJointStates(double time) {

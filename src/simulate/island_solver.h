@@ -62,7 +62,7 @@ class IslandSolver {
   /// Calls evaluate() with contacts, constraints, pushes and motors as they were in the last step of events.
   template <class Evaluate>
   void withForcesOfStep(const EventMotion& events, const Evaluate& evaluate);
-  void integrateWork(const EventMotion& events, double fraction);
+  void integrateLedger(const EventMotion& events, double fraction);
   void findJointStates(double time);
   VectorX motorForces(double time);
   void setResting(const std::vector<char>& resting);
@@ -82,7 +82,7 @@ class IslandSolver {
   double nextTrial_ = 0;           // s: when events may serve again
   double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not
   std::vector<char> still_;        // bodies that the step has not moved
-  VectorX reported_, sample_, derivative_;
+  VectorX reported_, derivative_;
   std::vector<JointState> jointStates_;
 };
 

@@ -413,5 +413,48 @@ TEST(DrivenBodies, BallFallsBehindATableThatSinks) {
     }
 }
 
+/// A hand that pulls by a spring at a box which friction holds works what the spring takes up and its damper wastes,
+/// however long the steps of a box at rest are. From key frame to key frame it goes by 10 u^3 - 15 u^4 + 6 u^5, u = t /
+/// T. The damper takes c times the integral of the square of the rate at which the spring lengthens, here by Simpson's
+/// rule.
+TEST(DrivenBodies, HandPullsAtABoxThatStands) {
+  const double restLength = 0.5, stiffness = 120, damping = 3, way = 0.25, duration = 0.3;
+  const Vec3 anchor(0, 0.34, 0), middle(0.45, 0.15, 0);  // on the box; where the hand begins its way along z
+  const auto placeAt = [&](double t) {
+    const double u = t / duration;
+    return way * u * u * u * (10 + u * (6 * u - 15));
+  };
+  const auto lengthAt = [&](double t) { return (middle + Vec3(0, 0, placeAt(t)) - anchor).norm(); };
+  const auto lossRate = [&](double t) {
+    const double u = t / duration, speed = way / duration * 30 * u * u * (1 - u) * (1 - u);
+    return damping * std::pow(placeAt(t) * speed / lengthAt(t), 2);
+  };
+  for (const double accuracy : {1e-4, 1e-6, 1e-9}) {
+    const Trajectory moved = runDriven(
+        duration, accuracy,
+        fmt::format(
+            R"({{"name": "hand", "motion": "driven", "collision": "none", "shape": {{"sphere": {{"radius": 0.05}}}},
+         "keyFrames": [{{"time": 0, "position": {}}}, {{"time": {}, "position": {}}}]}},
+        {{"name": "floor", "shape": {{"plane": {{}}}}, "motion": "static", "material": "m"}},
+        {{"name": "box", "mass": 20, "material": "m", "shape": {{"box": {{"size": [0.4, 0.3, 0.4]}}}},
+         "position": [0, 0.15, 0]}})",
+            vectorText(middle), duration, vectorText(middle + Vec3(0, 0, way))),
+        fmt::format(R"("springs": [{{"bodyA": "box", "anchorA": [0, 0.19, 0], "bodyB": "hand", "stiffness": {},
+          "damping": {}, "restLength": {}}}],)",
+                    stiffness, damping, restLength));
+    const double start = stiffness / 2 * std::pow(lengthAt(0) - restLength, 2), most = 10 * accuracy * 0.1;  // of 0.1 J
+    for (const Frame& frame : moved.frames) {
+      double lost = 0;
+      for (int i = 0; i <= 2000; ++i)
+        lost += (i == 0 || i == 2000 ? 1 : i % 2 ? 4 : 2) * lossRate(frame.time * i / 2000) * frame.time / 6000;
+      const double taken = stiffness / 2 * std::pow(lengthAt(frame.time) - restLength, 2) - start;
+      EXPECT_NEAR(frame.energy.damping, lost, most) << frame.time;
+      EXPECT_NEAR(frame.energy.work, taken + lost, most) << frame.time;
+      EXPECT_LT((frame.states[1].position - moved.frames[0].states[1].position).norm(), 1e-12);
+    }
+    expectLedger(moved, 1e-12, most);
+  }
+}
+
 }  // namespace
 }  // namespace cradle

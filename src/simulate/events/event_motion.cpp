@@ -9,6 +9,7 @@
 #include "constraints/invariants.h"
 #include "core/error.h"
 #include "simulate/events/event_location.h"
+#include "simulate/ledger_quadrature.h"
 #include "simulate/thresholds.h"
 
 namespace cradle {
@@ -100,7 +101,11 @@ void EventMotion::advance(double frame) {
     motorsOfStep_ = mechanism.motors;
   }
 
-  bookStep(island_.assembly.mechanism, step);
+  if (std::isfinite(toleranceOfWork_)) {
+    prepareInterpolant(island_.rightHandSide, step);
+    integrateLedger(island_.equations, mechanism, step, 1, toleranceOfWork_, step.state);
+  }
+  bookStep(mechanism, step);
 
   // Remove the drift that velocities cannot see. Then what changes at the event?
   island_.state = step.state;
@@ -127,6 +132,7 @@ bool EventMotion::takeStep(double stepEnd) {
     keepStartDerivative(step);
   }
   if (areForcesUnbounded_ || isSlowAtJoint()) return false;
+  toleranceOfWork_ = cradle::toleranceOfWork(method_, island_.assembly.mechanism, step);
   shortSteps_ = stepSize_.timeStep < tolerances_.shortTimeStep ? shortSteps_ + 1 : 0;
   if (shortSteps_ <= kMaxShortSteps) return true;
   if (!noteUnboundedForces()) guard_->failAtShortSteps(island_.state, island_.time, step.timeStep);

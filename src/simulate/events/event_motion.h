@@ -45,6 +45,9 @@ class EventMotion {
   const std::vector<PushForce>& pushesOfStep() const { return pushesOfStep_; }
   const std::vector<JointMotor>& motorsOfStep() const { return motorsOfStep_; }
 
+  /// J: of the work of driven bodies in the last step, as in integrateLedger.
+  double toleranceOfWork() const { return toleranceOfWork_; }
+
   /// Whether all bodies of the island lie still.
   bool isAtRest() const;
 
@@ -95,6 +98,7 @@ class EventMotion {
   VectorX tolerance_;
   VectorX projected_;                // scratch
   double startConstraintError_ = 0;  // m or rad
+  double toleranceOfWork_ = INFINITY;
   std::vector<int> tautRowsBefore_;  // of ropes, before an event
   std::vector<ContactConstraint> contactsOfStep_;
   Constraints constraintsOfStep_;
