@@ -312,7 +312,7 @@ void forgetEmptyTemporaryFolder() {
 }
 
 /// A thread that cannot be started for lack of memory, or a bug.
-int reportUnforeseen(const std::exception& error) {
+int reportUnexpected(const std::exception& error) {
   const auto* ofSystem = dynamic_cast<const std::system_error*>(&error);
   if (ofSystem != nullptr && ofSystem->code() == std::errc::resource_unavailable_try_again)
     return report({ErrorKind::limit, "", "no memory or threads are left; make the scene or the picture smaller"});
@@ -337,6 +337,6 @@ int main(int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return cradle::reportFile(error);
   } catch (const std::exception& error) {
-    return cradle::reportUnforeseen(error);
+    return cradle::reportUnexpected(error);
   }
 }

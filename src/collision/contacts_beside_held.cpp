@@ -7,14 +7,16 @@
 // its contacts that are not held. Where two lines that cross are all that touches, other points come down together as a
 // face beside the edge of one becomes flush with the line of the other: the sine of their angle is a gap too.
 
+#include "collision/contacts_beside_held.h"
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "collision/closest_points.h"
 #include "collision/impact_search_tolerances.h"
 #include "collision/mesh_collider.h"
 #include "collision/over_face.h"
-#include "collision/time_of_impact.h"
 
 namespace cradle {
 namespace {
@@ -89,12 +91,11 @@ double gapOfEnds(const Collider& collider, const Collider& other, const RigidTra
   return least;
 }
 
-}  // namespace
-
 /// m: the same of both colliders of a pair that touches at a line.
-double ImpactSearch::gapOfEnds(std::size_t index, const std::vector<ActiveFeature>& held, const VectorX& state) const {
-  const ColliderPair& pair = geometry_.pairs[index];
-  const Collider &a = geometry_.colliders[pair.a], &b = geometry_.colliders[pair.b];
+double gapOfEnds(const ContactGeometry& geometry, std::size_t index, const std::vector<ActiveFeature>& held,
+                 const VectorX& state) {
+  const ColliderPair& pair = geometry.pairs[index];
+  const Collider &a = geometry.colliders[pair.a], &b = geometry.colliders[pair.b];
   const RigidTransform aFromB = poseOf(state, a.body).inverse() * poseOf(state, b.body);
   std::vector<Vec3> heldOfA, heldOfB;
   bool isLineHeld = false;
@@ -105,15 +106,15 @@ double ImpactSearch::gapOfEnds(std::size_t index, const std::vector<ActiveFeatur
     if (contact.lineA.isZero(0)) (contact.centerA.body == a.body ? heldOfA : heldOfB).push_back(contact.centerA.point);
   }
   if (!isLineHeld) return INFINITY;
-  return std::min(cradle::gapOfEnds(a, b, aFromB.inverse(), heldOfA), cradle::gapOfEnds(b, a, aFromB, heldOfB));
+  return std::min(gapOfEnds(a, b, aFromB.inverse(), heldOfA), gapOfEnds(b, a, aFromB, heldOfB));
 }
 
 /// m: that of a pair which one crossing of lines holds. No larger than the path of any point.
-double ImpactSearch::gapBesideCrossing(std::size_t index, const ContactConstraint& crossing,
-                                       const VectorX& state) const {
-  const ColliderPair& pair = geometry_.pairs[index];
-  const bool isOfB = geometry_.colliders[pair.a].body == crossing.centerA.body;
-  const Collider &a = geometry_.colliders[isOfB ? pair.a : pair.b], &b = geometry_.colliders[isOfB ? pair.b : pair.a];
+double gapBesideCrossing(const ContactGeometry& geometry, std::size_t index, const ContactConstraint& crossing,
+                         const VectorX& state) {
+  const ColliderPair& pair = geometry.pairs[index];
+  const bool isOfB = geometry.colliders[pair.a].body == crossing.centerA.body;
+  const Collider &a = geometry.colliders[isOfB ? pair.a : pair.b], &b = geometry.colliders[isOfB ? pair.b : pair.a];
   const RigidTransform worldFromA = poseOf(state, a.body), worldFromB = poseOf(state, b.body);
   const Vec3 outOfB = (worldFromA.rotation * crossing.lineA).cross(worldFromB.rotation * crossing.lineB);
   const double sine = std::min(
@@ -122,16 +123,42 @@ double ImpactSearch::gapBesideCrossing(std::size_t index, const ContactConstrain
   return sine * std::min(a.boundingRadius - a.radius, b.boundingRadius - b.radius);
 }
 
-/// Puts those contacts of a pair that are not held into contacts_.
-void ImpactSearch::findOthers(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state,
-                              double margin) {
-  contacts_.clear();
-  appendContacts(geometry_, pair, state, margin, contacts_);
-  const ColliderPair& colliders = geometry_.pairs[pair];
+/// Of a pair with a mesh that is held over one flat face; none of others.
+std::optional<double> gapBesideFace(const ContactGeometry& geometry, std::size_t index,
+                                    const std::vector<ActiveFeature>& held, const VectorX& state, double margin) {
+  const ColliderPair& pair = geometry.pairs[index];
+  if (!hasMesh(geometry.colliders[pair.a], geometry.colliders[pair.b])) return std::nullopt;
+  OverFace over;
+  std::vector<Vec3> points;
+  for (const ActiveFeature& feature : held) {
+    if (feature.pair != index) continue;
+    if (!over.solid) over = overFace(geometry, pair, feature.contact, state);
+    points.push_back(feature.contact.centerA.point);
+  }
+  if (!over.solid) return std::nullopt;
+  return std::min(roomBeside(over, margin), heightOfOthers(over, points));
+}
+
+/// Of a sphere that is held on a mesh.
+double gapBesideFeatures(std::size_t pair, const std::vector<ActiveFeature>& held, const SphereOverMesh& sphere,
+                         double margin) {
+  std::vector<std::vector<HalfSpace>> behind;
+  for (const ActiveFeature& feature : held)
+    if (feature.pair == pair) behind.push_back(spaceBehind(*sphere.mesh, feature.onMesh));
+  return std::min(margin, distanceBeside(*sphere.mesh, behind, sphere.center, sphere.radius + margin) - sphere.radius);
+}
+
+}  // namespace
+
+void findContactsBesideHeld(const ContactGeometry& geometry, std::size_t pair, const std::vector<ActiveFeature>& held,
+                            const VectorX& state, double margin, std::vector<Contact>& contacts) {
+  contacts.clear();
+  appendContacts(geometry, pair, state, margin, contacts);
+  const ColliderPair& colliders = geometry.pairs[pair];
   const double size =
-      std::min(geometry_.colliders[colliders.a].boundingRadius, geometry_.colliders[colliders.b].boundingRadius);
+      std::min(geometry.colliders[colliders.a].boundingRadius, geometry.colliders[colliders.b].boundingRadius);
   const double near = ImpactSearchTolerances(size).samePlace;
-  std::erase_if(contacts_, [&](const Contact& contact) {
+  std::erase_if(contacts, [&](const Contact& contact) {
     return std::any_of(held.begin(), held.end(), [&](const ActiveFeature& feature) {
       if (feature.pair != pair) return false;
       return (heldPlace(feature.contact, state) - contact.point).norm() < near ||
@@ -140,47 +167,23 @@ void ImpactSearch::findOthers(std::size_t pair, const std::vector<ActiveFeature>
   });
 }
 
-/// The least separation (m) of points that are not held; `margin` (m) if that is less.
-double ImpactSearch::gapOfOthers(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state,
-                                 double margin) {
-  const SphereOverMesh sphere = sphereOverMesh(geometry_, geometry_.pairs[pair], state);
+double gapBesideHeld(const ContactGeometry& geometry, std::size_t pair, const std::vector<ActiveFeature>& held,
+                     const VectorX& state, double margin, std::vector<Contact>& scratch) {
+  const SphereOverMesh sphere = sphereOverMesh(geometry, geometry.pairs[pair], state);
   const bool isAnyHeld =
       std::any_of(held.begin(), held.end(), [&](const ActiveFeature& feature) { return feature.pair == pair; });
   if (sphere.mesh && isAnyHeld) return gapBesideFeatures(pair, held, sphere, margin);
-  if (const auto gap = gapBesideFace(pair, held, state, margin)) return std::min(margin, *gap);
-  findOthers(pair, held, state, margin);
+  if (const auto gap = gapBesideFace(geometry, pair, held, state, margin)) return std::min(margin, *gap);
+  findContactsBesideHeld(geometry, pair, held, state, margin, scratch);
   double least = margin;
-  for (const Contact& contact : contacts_) least = std::min(least, contact.separation);
-  least = std::min(least, gapOfEnds(pair, held, state));
+  for (const Contact& contact : scratch) least = std::min(least, contact.separation);
+  least = std::min(least, gapOfEnds(geometry, pair, held, state));
   const auto isOfPair = [&](const ActiveFeature& feature) { return feature.pair == pair; };
   const auto first = std::find_if(held.begin(), held.end(), isOfPair);
   const bool isCrossing = first != held.end() && !first->contact.lineA.isZero(0);
   if (isCrossing && std::none_of(first + 1, held.end(), isOfPair))
-    least = std::min(least, gapBesideCrossing(pair, first->contact, state));
+    least = std::min(least, gapBesideCrossing(geometry, pair, first->contact, state));
   return least;
-}
-
-std::optional<double> ImpactSearch::gapBesideFace(std::size_t index, const std::vector<ActiveFeature>& held,
-                                                  const VectorX& state, double margin) const {
-  const ColliderPair& pair = geometry_.pairs[index];
-  if (!hasMesh(geometry_.colliders[pair.a], geometry_.colliders[pair.b])) return std::nullopt;
-  OverFace over;
-  std::vector<Vec3> points;
-  for (const ActiveFeature& feature : held) {
-    if (feature.pair != index) continue;
-    if (!over.solid) over = overFace(geometry_, pair, feature.contact, state);
-    points.push_back(feature.contact.centerA.point);
-  }
-  if (!over.solid) return std::nullopt;
-  return std::min(roomBeside(over, margin), heightOfOthers(over, points));
-}
-
-double ImpactSearch::gapBesideFeatures(std::size_t pair, const std::vector<ActiveFeature>& held,
-                                       const SphereOverMesh& sphere, double margin) {
-  std::vector<std::vector<HalfSpace>> behind;
-  for (const ActiveFeature& feature : held)
-    if (feature.pair == pair) behind.push_back(spaceBehind(*sphere.mesh, feature.onMesh));
-  return std::min(margin, distanceBeside(*sphere.mesh, behind, sphere.center, sphere.radius + margin) - sphere.radius);
 }
 
 }  // namespace cradle

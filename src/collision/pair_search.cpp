@@ -341,7 +341,7 @@ double PairSearch::leavingSpeed(double tolerance) {
     return normal.dot(pointVelocity(upper, corner, step_.startState) - pointVelocity(lower, corner, step_.startState));
   }
   if (held_) {
-    scratch_.findOthers(pairIndex_, *held_, step_.startState, tolerance);
+    findContactsBesideHeld(geometry_, pairIndex_, *held_, step_.startState, tolerance, scratch_.contacts_);
   } else {
     scratch_.contacts_.clear();
     appendContacts(geometry_, pairIndex_, step_.startState, tolerance, scratch_.contacts_);
@@ -367,7 +367,7 @@ double PairSearch::gap(double fraction, double enough) {
   if (held_) {
     for (const int body : {a_.body, bodyB_})
       if (body != kFixed) interpolatePose(step_, body, fraction, scratch_.sample_);
-    return scratch_.gapOfOthers(pairIndex_, *held_, scratch_.sample_, std::min(reach_, enough));
+    return gapBesideHeld(geometry_, pairIndex_, *held_, scratch_.sample_, std::min(reach_, enough), scratch_.contacts_);
   }
   // A gap of more than the motion possible in the step stays open; its value does not matter.
   const double reach = std::min(2 * bounds_.speed, enough);

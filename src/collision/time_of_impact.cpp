@@ -30,7 +30,7 @@ double ImpactSearch::margin(const ImpactTime& impact, const TouchingFeatures& to
   // Near an impact the gap is small: a search within a whole size could visit thousands of triangles.
   double gap = 0;
   for (double reach = kFirstMarginReach * a.boundingRadius;; reach *= kMarginReachGrowth) {
-    gap = gapOfOthers(impact.pair, touching.activeFeatures(), state, reach);
+    gap = gapBesideHeld(geometry_, impact.pair, touching.activeFeatures(), state, reach, contacts_);
     if (gap < reach || reach >= a.boundingRadius) break;
   }
   return gap - impact.threshold;

@@ -4,11 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "collision/contacts_beside_held.h"
 #include "collision/face_below.h"
-#include "collision/mesh_feature.h"
 #include "collision/root_bracketing.h"
-#include "collision/separation.h"
-#include "constraints/contact_rows.h"
 #include "dynamics/integrators/pose_interpolant.h"
 
 namespace cradle {
@@ -20,13 +18,6 @@ struct ImpactTime {
   double threshold = 0;           // m: the gap at that instant; < 0 if the features touched at the start
   bool isOfOthers = false;        // the gap is that of those points of the pair that no active contact holds
   std::optional<FaceBelow> face;  // if there is one, the gap is the height of corner number `feature` over it
-};
-
-/// A feature of a pair, as separation.h numbers them, that an active contact or a joint holds together.
-struct ActiveFeature {
-  std::size_t pair = 0, feature = 0;
-  ContactConstraint contact;   // the constraint that holds it
-  TouchedFeature onMesh = {};  // the feature of a mesh that a sphere is held on
 };
 
 /// The features that touch when a step begins.
@@ -66,14 +57,6 @@ class ImpactSearch {
   };
   friend class PairSearch;
   const MotionBounds& turnOf(const Step& step, int body);
-  void findOthers(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state, double margin);
-  double gapOfOthers(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state, double margin);
-  std::optional<double> gapBesideFace(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state,
-                                      double margin) const;
-  double gapOfEnds(std::size_t pair, const std::vector<ActiveFeature>& held, const VectorX& state) const;
-  double gapBesideCrossing(std::size_t pair, const ContactConstraint& crossing, const VectorX& state) const;
-  static double gapBesideFeatures(std::size_t pair, const std::vector<ActiveFeature>& held,
-                                  const SphereOverMesh& sphere, double margin);
 
   const ContactGeometry& geometry_;
   std::vector<Turn> turns_;     // of the moving bodies, in the step that is searched

@@ -17,7 +17,7 @@ using Index = Eigen::Index;
 constexpr double kSingularPivotRatio = 1e-7;
 // Of the largest eigenvalue: with a smaller shift the condition number of the shifted matrix is above 1e8, and half of
 // the digits of its factors are rounding.
-constexpr double kLeastShiftRatio = 1e-8;
+constexpr double kMinShiftRatio = 1e-8;
 
 /// The state of the operator of a dense matrix: the scaled matrix, and the factors of the last equations.
 struct DenseFactors {
@@ -105,7 +105,7 @@ DelassusOperator operatorOf(const MatrixX& delassus) {
     for (Index i = 0; i < op.scales.size(); ++i)
       matrix.block<3, 3>(3 * i, 3 * j) = op.scales[i] * op.scales[j] * delassus.block<3, 3>(3 * i, 3 * j);
   op.largest = matrix.cwiseAbs().colwise().sum().maxCoeff();
-  op.leastShift = kLeastShiftRatio * op.largest;
+  op.minShift = kMinShiftRatio * op.largest;
   op.multiply = [factors](const VectorX& z) { return VectorX(factors->matrix * z); };
   op.magnitude = [factors](const VectorX& z) { return (factors->matrix.cwiseAbs() * z.cwiseAbs()).maxCoeff(); };
   op.factorize = [factors](const std::vector<ContactEquation>& equations) { return factors->factorize(equations); };

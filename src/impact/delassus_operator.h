@@ -18,9 +18,9 @@ struct ContactEquation {
 /// which each contact has about inverse mass 1, so that light and heavy bodies converge together. Impulses (N s) are
 /// the scaled ones times the contact's scale, velocities (m/s) the scaled ones divided by it. Components (t1, t2, n).
 struct DelassusOperator {
-  VectorX scales;         // by contact, square root of kg
-  double largest = 1;     // upper bound on the eigenvalues of the scaled W
-  double leastShift = 0;  // with a smaller shift the factors of factorizeShifted are rounding
+  VectorX scales;       // by contact, square root of kg
+  double largest = 1;   // upper bound on the eigenvalues of the scaled W
+  double minShift = 0;  // with a smaller shift the factors of factorizeShifted are rounding
   /// W z.
   std::function<VectorX(const VectorX& z)> multiply;
   /// The largest component of |W| |z|: the rounding of multiply, in units of the last place.

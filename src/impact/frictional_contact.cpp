@@ -181,7 +181,7 @@ void Search::runAdmm(int iterations) {
       factorised = iterate_.penalty;
     }
     iterateAdmm(contacts_, kProximal, solveShifted, kFirstAdmmIterations, iterate_);
-    iterate_.penalty = balancedPenalty(iterate_, op_.leastShift, op_.largest);
+    iterate_.penalty = balancedPenalty(iterate_, op_.minShift, op_.largest);
   }
   iterations_ += iterations;
 }

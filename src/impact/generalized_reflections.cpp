@@ -36,7 +36,7 @@ constexpr long kMaxReflections = 10000;
 constexpr long kMaxMixedReflections = 100;
 // Of the fastest closing speed: if more of it is left after as many plastic reflections in a row as there are contacts,
 // no impulse can end it, such as of a body that is stuck between two that joints hold.
-constexpr double kLeastPlasticProgress = 0.5;
+constexpr double kMinPlasticProgress = 0.5;
 // Of the fastest speed: speeds that come back to within it go round in a circle, such as those of a body that closes by
 // turns on two sides between which joints leave it no motion. Bodies of which one is 1e11 times as heavy as another may
 // look so. [1e-12, 1e-8]
@@ -94,7 +94,7 @@ VectorX NormalImpact::reflect(const VectorX& restitutions) const {
     const double fastest = -speeds.minCoeff();
     bool isPlastic = false;
     impulses += reflectOnce(closing, speeds, restitutions, isPlastic);
-    if (isPlastic && fastest > kLeastPlasticProgress * least && inVain > 0)
+    if (isPlastic && fastest > kMinPlasticProgress * least && inVain > 0)
       ++inVain;
     else
       inVain = isPlastic, least = fastest;

@@ -354,7 +354,7 @@ DelassusOperator SparseDelassus::scaledOperator() {
   op.scales.resize(std::ssize(contacts_));
   for (std::size_t i = 0; i < contacts_.size(); ++i) op.scales[static_cast<Index>(i)] = contacts_[i].scale;
   op.largest = kUsualEigenvalue;
-  op.leastShift = kMinSparseShift;
+  op.minShift = kMinSparseShift;
   op.multiply = [this](const VectorX& z) { return multiply(z); };
   op.magnitude = [this](const VectorX& z) { return magnitude(z); };
   op.factorize = [this](const std::vector<ContactEquation>& equations) {

@@ -20,9 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostKept = 256 << 20;  // bytes, of triangles: those of more files are parsed for each model
-constexpr double kSecondsForAnyFiles = 10;    // s: three files that take as long as they may
-constexpr double kSecondsForFile = 0.3;       // s, of one of many: to begin a child process takes a tenth of that
+constexpr std::size_t kMaxKept = 256 << 20;  // bytes, of triangles: those of more files are parsed for each model
+constexpr double kSecondsForAnyFiles = 10;   // s: three files that take as long as they may
+constexpr double kSecondsForFile = 0.3;      // s, of one of many: to begin a child process takes a tenth of that
 constexpr double kSecondsPerByte = 1.0 / (1 << 20);  // s, as for each file
 
 std::vector<std::string> namesOf(const std::vector<LoadedModel>& objects) {
@@ -146,7 +146,7 @@ LoadedModel MeshLibrary::load(const MeshReference& reference) {
   try {
     std::vector<ImportedObject> objects = parse(reference.path);
     const std::size_t size = sizeOf(objects);
-    if (kept_ + size > kMostKept) return chosenModel(reference, std::move(objects));
+    if (kept_ + size > kMaxKept) return chosenModel(reference, std::move(objects));
     kept_ += size;
     file->objects = std::move(objects);
   } catch (const Error& error) {

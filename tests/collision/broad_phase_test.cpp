@@ -131,7 +131,7 @@ TEST(BroadPhase, LeavesOutPairsOfWhatNoForceMoves) {
 }
 
 // Each goes 0.5 m on a way of its own, stops anywhere on it, and is pushed aside by up to 0.01 m: a new list is made
-// only where this was not foreseen.
+// only where this was not predicted.
 TEST(BroadPhase, MissesNoPairThatMayMeetOnTheirWays) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> part(0, 1);

@@ -1,4 +1,4 @@
-// Contacts beside those that something holds together: ImpactSearch::margin of others.
+#include "collision/contacts_beside_held.h"
 
 #include <gtest/gtest.h>
 
@@ -7,15 +7,12 @@
 
 #include "collision/mesh_surface.h"
 #include "collision/random_poses.h"
-#include "collision/time_of_impact.h"
 #include "math/rotation.h"
 #include "mesh/primitives.h"
 #include "mesh/sample_meshes.h"
 
 namespace cradle {
 namespace {
-
-constexpr double kNearby = 1e-11;  // m
 
 VectorX placedAt(const RigidTransform& pose) {
   VectorX state = VectorX::Zero(stateSize(1));
@@ -36,9 +33,10 @@ Collider stair() {
 
 /// How far others than what is held are, of the only pair.
 double gapOfOthers(const ContactGeometry& geometry, const std::vector<ActiveFeature>& held, const VectorX& state) {
-  ImpactTime impact;
-  impact.isOfOthers = true;
-  return ImpactSearch(geometry).margin(impact, {kNearby, 1e-12, &held}, state);
+  std::vector<Contact> scratch;
+  double size = 0;
+  for (const Collider& collider : geometry.colliders) size = std::max(size, collider.boundingRadius);
+  return gapBesideHeld(geometry, 0, held, state, size, scratch);
 }
 
 // A ball that lies on the tread touches the riser next: by its distance from x = 1. Against the riser, the tread is

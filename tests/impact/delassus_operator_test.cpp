@@ -102,7 +102,7 @@ TEST(DelassusOperator, SolvesShiftedSystems) {
   const VectorX sides = stack.numbers();
   for (const double shift : {0.01, 2.0})
     for (const DelassusOperator& op : stack.all) {
-      EXPECT_LE(op.leastShift, 1e-5);
+      EXPECT_LE(op.minShift, 1e-5);
       op.factorizeShifted(shift);
       VectorX velocities;
       const VectorX change = op.solve(sides, &velocities);

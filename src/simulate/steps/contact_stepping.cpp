@@ -101,7 +101,7 @@ void ContactStepping::resolve(const std::vector<Contact>& contacts, const std::v
     problem_.constraints().project(state);
     for (std::size_t i = 0; i < groups.size(); ++i) {
       keepMomenta(groups[i].moved, step.end, mechanism, state);
-      limitEnergy(groups[i].moved, most[i], mechanism, state, faults_);
+      clampEnergyWithFault(groups[i].moved, most[i], mechanism, state, faults_);
     }
   }
   contacts_.resize(contacts.size());  // without ropes
@@ -159,7 +159,7 @@ double ContactStepping::resolveGroup(const StepGroup& group, const StepInput& in
   if (posed.hasRebounds && isGain(most + work.most - loss, most + work.most))
     lossWith(fractionWithoutGain(lossWith, loss));
   keepMomenta(group.moved, input.step.end, mechanism, state);
-  limitEnergy(group.moved, most + work.most, mechanism, state, faults_);
+  clampEnergyWithFault(group.moved, most + work.most, mechanism, state, faults_);
   keep(group, motion, posed, impulses, state);
   if (problem_.isHolding()) {
     const VectorX given = problem_.motorImpulses(impulses, input.step.middle);
@@ -196,7 +196,7 @@ VectorX ContactStepping::move(const StepGroup& group, const StepInput& input, co
   if (gaps.minCoeff() >= -tolerances_.overlap) return end;
   const double most = energyOf(group.moved.bodies, assembly_.mechanism, state);
   separateGroup(group, input.contacts, gaps, problem_, state);
-  limitEnergy(group.moved, most, assembly_.mechanism, state, faults_);
+  clampEnergyWithFault(group.moved, most, assembly_.mechanism, state, faults_);
   return end;
 }
 

@@ -17,8 +17,8 @@ void noteUnsolved(const StepGroup& group, const ContactSolution& solution, doubl
 
 }  // namespace
 
-void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state,
-                 std::vector<SteppingFault>& faults) {
+void clampEnergyWithFault(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state,
+                          std::vector<SteppingFault>& faults) {
   const double taken = clampEnergy(moved, most, mechanism, state);
   if (taken > 0) faults.push_back({CorrectionKind::clampedEnergy, moved.bodies, taken});
 }

@@ -21,8 +21,8 @@ struct SteppingFault {
 };
 
 /// clampEnergy, with a fault if that took energy.
-void limitEnergy(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state,
-                 std::vector<SteppingFault>& faults);
+void clampEnergyWithFault(const MovedBodies& moved, double most, const Mechanism& mechanism, VectorX& state,
+                          std::vector<SteppingFault>& faults);
 
 /// A contact that took part in a step.
 struct SteppedContact {

@@ -77,7 +77,7 @@ void correctPenetration(const ContactSet& contacts, GroupProblem& problem, Vecto
     separateGroup(group, contacts, gaps, problem, state);
     if (group.isConstrained) problem.constraints().project(state);
     keepMomenta(group.moved, before, mechanism, state);
-    limitEnergy(group.moved, most, mechanism, state, faults);
+    clampEnergyWithFault(group.moved, most, mechanism, state, faults);
   }
   bookNumerical(constant, mechanism, state);
 }

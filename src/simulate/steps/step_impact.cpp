@@ -85,7 +85,7 @@ VectorX resolveGroupImpact(const StepGroup& group, const ImpactInput& input, Gro
   const double loss = lossWith(1);
   if (posed.hasRebounds && isGain(most + work - loss, most + work)) lossWith(fractionWithoutGain(lossWith, loss));
   impactEnergy(state) += std::max(0.0, energyTakenBy(impulses, start, problem.velocitiesIn(state)));
-  limitEnergy(group.moved, most + work, mechanism, state, faults);
+  clampEnergyWithFault(group.moved, most + work, mechanism, state, faults);
   pushWork(state) += work;
   return impulses;
 }

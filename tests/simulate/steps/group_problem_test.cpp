@@ -202,9 +202,9 @@ TEST(GroupProblem, TellsOfEnergyThatIsTaken) {
   BoxTower at(2);
   at.setVelocities(Vec3(1, 0, 0));
   const double energy = energyOf(at.group.moved.bodies, at.mechanism(), at.state());
-  limitEnergy(at.group.moved, energy, at.mechanism(), at.state(), at.faults);
+  clampEnergyWithFault(at.group.moved, energy, at.mechanism(), at.state(), at.faults);
   EXPECT_THAT(at.faults, IsEmpty());
-  limitEnergy(at.group.moved, energy - 0.5, at.mechanism(), at.state(), at.faults);
+  clampEnergyWithFault(at.group.moved, energy - 0.5, at.mechanism(), at.state(), at.faults);
   ASSERT_THAT(at.faults, SizeIs(1));
   EXPECT_EQ(at.faults[0].kind, CorrectionKind::clampedEnergy);
   EXPECT_EQ(at.faults[0].bodies, at.group.moved.bodies);
