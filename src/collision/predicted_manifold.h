@@ -28,7 +28,7 @@ struct PosedBox {
 
 /// Up to four points that carry the contact of two surfaces.
 struct PredictedManifold {
-  static constexpr std::size_t kMaxPoints = 4;
+  static constexpr std::size_t kMaxPoints = 4;  // they span what bears a load, in whole blocks of the solver
   struct Point {
     Vec3 onA = Vec3::Zero(), onB = Vec3::Zero();  // m, world: surface points that belong together
     double separation = 0;                        // m, along the normal, < 0: overlap

@@ -37,7 +37,7 @@ ThetaPhase thetaOf(const Polhode& polhode, const QuarterPeriods& periods) {
 
 /// An angle that stays finite however long one waits.
 double angleAfter(double time, double rate) {
-  constexpr double kMax = 1e300;
+  constexpr double kMax = 1e300;  // rad: sums of two do not overflow
   return std::clamp(rate * time, -kMax, kMax);
 }
 

@@ -6,10 +6,10 @@
 namespace cradle {
 namespace {
 
-constexpr int kMaxOverlapSweeps = 20;
-constexpr double kOverlapLeft = 1e-15;  // m
-constexpr double kMinWay =
-    1e-9;  // of the inverse mass without constraints: less is rounding, and the constraints hold the pair
+constexpr int kMaxOverlapSweeps = 20;   // over all pairs; those that press each other go on for ever
+constexpr double kOverlapLeft = 1e-15;  // m: rounding of places a metre from the origin
+// Of the inverse mass without constraints: less is rounding, and the constraints hold the pair.
+constexpr double kMinWay = 1e-9;
 
 /// Adds the displacement, in place of velocities, that takes the overlaps of one pair out. Many with one normal are
 /// one: what the deepest needs is enough for all.

@@ -113,7 +113,7 @@ PredictedManifold SoftManifolds::manifoldOfAnyShapes(const SoftPair& pair, const
   const auto deepest = std::min_element(scratch.begin(), scratch.end(),
                                         [](const Contact& a, const Contact& b) { return a.separation < b.separation; });
   manifold.normal = deepest->normal;
-  constexpr std::size_t kMaxCandidates = 16;
+  constexpr std::size_t kMaxCandidates = 16;  // of which four are chosen; a pair of convex solids has eight at most
   PredictedManifold::Point points[kMaxCandidates];
   std::size_t count = 0;
   for (const Contact& contact : scratch) {

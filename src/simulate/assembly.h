@@ -55,7 +55,7 @@ Assembly assemble(const Scene& scene, const IslandPlan& island);
 /// Throws Error(scene) that names everything in the scene that no method simulates yet, one a line.
 void refuseUnsupported(const Scene& scene);
 
-constexpr std::size_t kMaxFaultsTold = 50;
+constexpr std::size_t kMaxFaultsTold = 50;  // more than anyone reads at once
 
 /// Throws Error(scene) that tells of the first kMaxFaultsTold faults, if there are any, and how many more there are; of
 /// kMaxFaultsCounted, that there are at least as many.

@@ -18,7 +18,7 @@ namespace cradle {
 /// A simulation in a thread of its own. It is kFramesAhead frames ahead of who takes them at most, and then waits.
 class FrameStream {
  public:
-  static constexpr std::size_t kFramesAhead = 16;
+  static constexpr std::size_t kFramesAhead = 16;  // a slow frame does not stop the drawing at once
 
   /// Begins. `scene` must outlive this object.
   explicit FrameStream(const Scene& scene);

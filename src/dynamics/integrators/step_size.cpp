@@ -12,6 +12,7 @@
 namespace cradle {
 namespace {
 
+// The step-size control of E. Hairer, S. P. Norsett, G. Wanner, II.4, with their values for DOP853.
 constexpr double kSafety = 0.9;
 constexpr double kMaxGrowth = 6;
 constexpr double kMaxShrinking = 1.0 / 3;

@@ -21,8 +21,8 @@ using Kind = ContactChange::Kind;
 
 constexpr int kEventSamples = 4;     // of a step of order 8
 constexpr int kFewEventSamples = 2;  // of one of order 5, which is half as long
-constexpr int kMaxBorderCuts = 60;
-constexpr int kMaxSecants = 20;
+constexpr int kMaxBorderCuts = 60;  // halves of a step: none is left, to rounding
+constexpr int kMaxSecants = 20;     // of infeasibility; six are usual
 constexpr double kBehindKink = -0.9;  // a larger infeasibility is behind its kink, whatever rounding does
 
 // The event function of leaving is kLeavingUnit (1 - d / leaving), d the distance from the nearest point, and not below

@@ -32,7 +32,7 @@ namespace cradle {
 namespace {
 
 constexpr double kShortCreeping = 0.05;  // of the run
-constexpr double kKeptWay = 0.01;        // of A
+constexpr double kKeptWay = 0.01;        // of A, in m: a way that is no part of the errors
 constexpr double kTurningTime = 2e-5;    // s: friction that turns sliding as fast costs 4 s of CPU a second
 
 /// m/s: of the surfaces along each other.

@@ -19,7 +19,7 @@
 namespace cradle {
 namespace {
 
-constexpr double kHitWindow = 1.0 / 960;      // s
+constexpr double kHitWindow = 1.0 / 960;      // s: of one contact step
 constexpr long kMaxHits = 1000000;            // of a sphere in a window: a second of computing
 constexpr long kEventsBetweenChecks = 10000;  // for a signal: some ms
 constexpr long kEventsAnOrigin = 8;           // a sphere: moving the origin costs about one for each
