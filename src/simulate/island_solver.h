@@ -59,6 +59,7 @@ class IslandSolver {
   /// The state of a frame inside a step. Its difference from the energy of the step's start is an error of that frame
   /// alone.
   void interpolateAt(double time, bool keepsConstraints);
+  bool stepWhereForcesJump(double time);
   /// Calls evaluate() with contacts, constraints, pushes and motors as they were in the last step of events.
   template <class Evaluate>
   void withForcesOfStep(const EventMotion& events, const Evaluate& evaluate);
@@ -83,6 +84,7 @@ class IslandSolver {
   double trialTime_ = kTrialTime;  // s: until then; longer each time that they did not
   std::vector<char> still_;        // bodies that the step has not moved
   VectorX reported_, derivative_;
+  Step frameStep_;  // that ends at a frame
   std::vector<JointState> jointStates_;
 };
 

@@ -456,5 +456,38 @@ TEST(DrivenBodies, HandPullsAtABoxThatStands) {
   }
 }
 
+/// A box that two tines carry down and to the side, against a stop along which it slides down, and up again as the
+/// tines do: its sliding there turns around in a plane, and frames show nothing across that plane. Two ways of the
+/// tines: in one a step beyond the turn is taken first, in the other one a step that ends at a stop of the sliding.
+TEST(DrivenBodies, BoxOnTinesSlidesAlongAStopInAPlane) {
+  struct Way {
+    double xTurn, yTurn, turn, xEnd, yEnd, end, friction;
+  };
+  const auto tine = [](const char* name, double z, const Way& way) {
+    return fmt::format(
+        R"({{"name": "{}", "motion": "driven", "material": "m", "shape": {{"box": {{"size": [0.3, 0.02, 0.04]}}}},
+        "keyFrames": [{{"time": 1, "position": {}}}, {{"time": 1.7, "position": {}}}, {{"time": {}, "position": {}}},
+         {{"time": {}, "position": {}}}]}})",
+        name, vectorText({0.8, 1.2, z}), vectorText({0.8, 0.44, z}), way.turn, vectorText({way.xTurn, way.yTurn, z}),
+        way.end, vectorText({way.xEnd, way.yEnd, z}));
+  };
+  for (const Way& way :
+       {Way{0.689, 0.392, 1.873, 0.525, 0.448, 2.166, 0.6}, Way{0.722, 0.413, 1.942, 0.532, 0.406, 2.475, 0.8}}) {
+    const Trajectory moved = simulate(sceneWith(fmt::format(
+        R"("duration": 2.4, "output": {{"framesPerSecond": 240}},
+           "materials": {{"m": {{"staticFriction": {0}, "dynamicFriction": {0}}}}}, "bodies": [
+        {{"name": "box", "mass": 8.4, "shape": {{"box": {{"size": [0.2, 0.2, 0.3]}}}}, "position": [0.8, 1.31, 0], "material": "m"}},
+        {{"name": "stop", "motion": "driven", "material": "m", "shape": {{"box": {{"size": [0.04, 0.08, 0.25]}}}},
+         "keyFrames": [{{"time": 1, "position": [0.63, 1.26, 0]}}, {{"time": 1.8, "position": [0.63, 0.475, 0]}},
+          {{"time": 2.3, "position": [0.63, 0.475, 0]}}, {{"time": 2.7, "position": [0.13, 0.475, 0]}}]}},
+        {1}, {2}])",
+        way.friction, tine("left", 0.09, way), tine("right", -0.09, way))));
+    for (const Frame& frame : moved.frames) {
+      EXPECT_LT(std::abs(frame.states[0].position.z()), 1e-7) << frame.time;
+      EXPECT_LT(std::abs(frame.states[0].linearVelocity.z()), 1e-6) << frame.time;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cradle

@@ -140,6 +140,25 @@ TEST(KeyFramePath, DoesNotSwingOutWhereItSlowsDown) {
   }
 }
 
+/// Where the way turns back, or by a right angle, and where the axis of its turning does: it stays between key frames.
+TEST(KeyFramePath, GoesNoFartherThanItsKeyFramesAtCorners) {
+  const PrescribedMotion motion = KeyFramePath({{0, poseAt({0, 1, 0}, {0, 1, 0}, 0)},
+                                                {0.8, poseAt({0, 0, 0}, {0, 1, 0}, 1)},
+                                                {1.3, poseAt({0.4, 0, 0}, {0, 1, 0}, 0.5)},
+                                                {1.5, poseAt({0.4, 0, 0.3}, {0, 1, 0}, 1)},
+                                                {2, poseAt({0.4, 0, -0.2}, {0, 1, 0}, 1)}},
+                                               false);
+  for (double time = 0; time < 2; time += 0.01) {
+    const PoseMotion at = motionAt(motion, time);
+    const Vec3& place = at.pose.translation;
+    const double angle = 2 * std::atan2(at.pose.rotation.y(), at.pose.rotation.w());
+    EXPECT_TRUE(place.x() > -1e-15 && place.x() < 0.4 + 1e-15) << time;
+    EXPECT_TRUE(place.y() > -1e-15 && place.y() < 1 + 1e-15) << time;
+    EXPECT_TRUE(place.z() > -0.2 - 1e-15 && place.z() < 0.3 + 1e-15) << time;
+    EXPECT_TRUE(angle > -1e-15 && angle < 1 + 1e-15) << time;
+  }
+}
+
 TEST(KeyFramePath, RepeatsWithItsPeriod) {
   const PrescribedMotion motion = wave(true);
   for (const double time : {0.6, 1.3, 2.5}) {

@@ -64,13 +64,25 @@ void interpolate(const Step& step, double fraction, VectorX& state) {
     state += (s * s * r * r) * (c[0] + s * (c[1] + r * (c[2] + s * c[3])));
 }
 
+void interpolateRate(const Step& step, double fraction, VectorX& rate) {
+  CRADLE_CHECK(step.hasEndDerivative);
+  const double s = fraction, r = 1 - fraction, length = step.timeStep;
+  rate = (6 * s * r / length) * (step.state - step.startState) + (r * (r - 2 * s)) * step.startDerivative +
+         (s * (s - 2 * r)) * step.endDerivative;
+  const auto& c = step.corrections;
+  const double slope = 2 * s * r * (r - s) / length;
+  if (step.interpolant == InterpolantKind::degreeFour) rate += slope * c[0];
+  if (step.interpolant == InterpolantKind::degreeSeven)
+    rate += slope * (c[0] + s * (c[1] + r * (c[2] + s * c[3]))) +
+            (s * s * r * r / length) * (c[1] + (r - s) * c[2] + s * (2 * r - s) * c[3]);
+}
+
 // The part of a polynomial of degree 4 has the fourth power of its length as the factor of its leading coefficient.
 void cutStep(double fraction, Step& step) {
   CRADLE_CHECK(step.interpolant == InterpolantKind::degreeFour && step.hasCorrections);
-  const double s = fraction, r = 1 - fraction;
+  const double s = fraction;
   interpolate(step, fraction, step.stage);
-  step.work = (6 * s * r / step.timeStep) * (step.state - step.startState) + (r * (r - 2 * s)) * step.startDerivative +
-              (s * (s - 2 * r)) * step.endDerivative + (2 * s * r * (r - s) / step.timeStep) * step.corrections[0];
+  interpolateRate(step, fraction, step.work);
   std::swap(step.state, step.stage);
   std::swap(step.endDerivative, step.work);
   step.corrections[0] *= s * s * s * s;

@@ -67,6 +67,9 @@ void prepareInterpolant(const RightHandSide& rightHandSide, Step& step);
 /// State at time + fraction * timeStep by the step's interpolant, exact at both ends. 0 <= fraction <= 1.
 void interpolate(const Step& step, double fraction, VectorX& state);
 
+/// The interpolant's derivative there (1/s), which is the right-hand side's at both ends.
+void interpolateRate(const Step& step, double fraction, VectorX& rate);
+
 /// Ends a step whose interpolant is of degree 4, and prepared, at a fraction of it: what is left is the same curve.
 void cutStep(double fraction, Step& step);
 

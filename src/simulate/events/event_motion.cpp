@@ -22,6 +22,7 @@ constexpr double kMinLookahead = 1.0 / 64;  // of the step that the accuracy all
 constexpr double kTurnsOfAStep = 3;         // a step is stable over so many times in which friction turns a sliding
 constexpr int kMaxShortSteps = 1000;        // in a row; after an event some are short
 constexpr int kMaxRopeRounds = 100;         // of ropes and contacts at one instant; the others come after the next step
+constexpr int kMaxDoubts = 20;              // steps for one event that the interpolant has and the step may not
 constexpr int kMaxMotorRounds = 3;  // of motors and contacts; those that change each other go on in the next step
 
 const EventRateLimit& eventRateLimitOf(const ChosenMethod& method, double accuracy, bool isTrial) {
@@ -83,12 +84,9 @@ void EventMotion::advance(double frame) {
       std::min({island_.scene.duration, island_.nextChange(), contacts_.active().nextFreeDirection()});
 
   // How far do bodies move until the first event?
-  if (!takeStep(stepEnd)) return;
-  Event event = stopAtFirstEvent();
-  while (event.any() && !isStillAccurate()) {
-    if (!takeStep(stepEnd)) return;
-    event = stopAtFirstEvent();
-  }
+  const std::optional<Event> found = stepToFirstEvent(stepEnd);
+  if (!found) return;
+  const Event& event = *found;
   time = step.time + step.timeStep;
   if (!event.any() && time > stepEnd - kTimeRounding * step.timeStep) time = stepEnd;
 
@@ -96,7 +94,7 @@ void EventMotion::advance(double frame) {
   if (time > frame) prepareInterpolant(island_.rightHandSide, step);
   const Mechanism& mechanism = island_.assembly.mechanism;
   contactsOfStep_ = mechanism.contacts;
-  if (!mechanism.driven.empty() || !mechanism.motors.empty()) {
+  if (!mechanism.driven.empty() || !mechanism.motors.empty() || !mechanism.contacts.empty()) {
     constraintsOfStep_ = mechanism.constraints, pushesOfStep_ = mechanism.pushes;
     motorsOfStep_ = mechanism.motors;
   }
@@ -114,6 +112,22 @@ void EventMotion::advance(double frame) {
   guard_->check(island_.state, time, step.timeStep);
   island_.requireUnsolvedPairsApart();
   if (event.any()) countEvent(event);
+}
+
+/// Takes a step that ends at the first event in it. Empty if friction jams: then none is accurate.
+std::optional<EventMotion::Event> EventMotion::stepToFirstEvent(double stepEnd) {
+  if (!takeStep(stepEnd)) return std::nullopt;
+  Event event = stopAtFirstEvent();
+  const auto stepAgain = [&] { return takeStep(stepEnd) && (event = stopAtFirstEvent(), true); };
+  // Where forces change so fast that the interpolant does not tell them, the next step ends where it has an event.
+  for (int i = 0; i < kMaxDoubts && event.doubtful > 0; ++i) {
+    keepStartDerivative(island_.step);
+    stepSize_.timeStep = event.doubtful;
+    if (!stepAgain()) return std::nullopt;
+  }
+  while (event.any() && !isStillAccurate())
+    if (!stepAgain()) return std::nullopt;
+  return event;
 }
 
 /// Takes steps from the same state until one is as accurate as asked. False if friction jams: then none is.
@@ -237,17 +251,16 @@ EventMotion::Event EventMotion::stopAtFirstEvent() {
     island_.integrate(method_.integrate, event.contact->fraction * whole);
   } else if (event.contact) {
     // Where forces change so fast that the interpolant does not tell them, the step itself may have no such change.
-    const double tolerance = EventTolerances::kEventFunction;
+    const double tolerance = EventTolerances::kEventFunction, fraction = event.contact->fraction;
     const auto end = [&] {
-      return endStepAtEvent(island_, method_.integrate, {event.contact->fraction * whole, latest, tolerance},
+      return endStepAtEvent(island_, method_.integrate, {fraction * whole, latest, tolerance},
                             [&](const VectorX& state) { return contacts_.active().margin(*event.contact, state); });
     };
     const std::vector<ContactConstraint> unaimed = island_.assembly.mechanism.contacts;
-    const bool isAimed =
-        event.contact->kind == ContactChange::Kind::stick && contacts_.active().aimAtStop(event.contact->fraction);
+    const bool isAimed = event.contact->kind == ContactChange::Kind::stick && contacts_.active().aimAtStop(fraction);
     double left = end();
     if (isAimed && left > tolerance) island_.assembly.mechanism.contacts = unaimed, left = end();
-    if (left > tolerance && latest == whole) event.contact.reset();
+    if (left > tolerance && latest == whole) event.contact.reset(), event.doubtful = fraction * whole;
   }
   if (island_.mayTouch()) lengths_[lengthIndex_++ % lengths_.size()] = step.timeStep;
   return event;

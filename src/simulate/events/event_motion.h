@@ -39,8 +39,8 @@ class EventMotion {
   /// Contacts that were active over the last step.
   const std::vector<ContactConstraint>& contactsOfStep() const { return contactsOfStep_; }
 
-  /// Ties, pushes and motors that acted in the last step of an island with driven bodies or motors; what ended it
-  /// may have changed them.
+  /// Ties, pushes and motors that acted in the last step of an island with driven bodies, motors or contacts; what
+  /// ended it may have changed them.
   const Constraints& constraintsOfStep() const { return constraintsOfStep_; }
   const std::vector<PushForce>& pushesOfStep() const { return pushesOfStep_; }
   const std::vector<JointMotor>& motorsOfStep() const { return motorsOfStep_; }
@@ -67,6 +67,8 @@ class EventMotion {
     std::optional<ContactChange> contact;
     std::optional<MotorChange> motor;
     double latest = 1;  // of the step: fraction of the event after it
+    // s: the length of a step in which there may be no such event, though the interpolant has one; 0: there is no doubt
+    double doubtful = 0;
     bool any() const { return impact || rope || contact || motor; }
   };
   Event findFirstEvent();
@@ -82,6 +84,7 @@ class EventMotion {
   bool applyLimitEvents();
   bool mayEndAnywhere() const;
   bool isStillAccurate();
+  std::optional<Event> stepToFirstEvent(double stepEnd);
   double longestStep() const;
   void countEvent(const Event& event);
   [[noreturn]] void failAtManyEvents() const;
