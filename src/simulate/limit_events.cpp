@@ -19,9 +19,9 @@ constexpr double kTautRatio = 1e-9;       // of its size: a limit this near is r
 constexpr double kSlackRatio = 1e-6;      // of its size: a limit this far away is slack again
 constexpr double kLowestRebound = 1e-6;   // of sqrt(acceleration x length): a rebound that rises by 5e-13 of the length
 constexpr double kUsualAcceleration = 1;  // m/s^2: tensions are compared with what gives that before others are known
-constexpr double kMinPull = 1e-6;         // of gravity: a pull that is no rounding
-constexpr int kTensionSamples = 4;        // a step: it is at most a small part of a swing
-constexpr double kMinFirstSample = 1e-9;  // of a step: a rebound that is over sooner is none
+constexpr double kMinPull = 1e-11;  // of the accelerations that it is the difference of: a pull that is no rounding
+constexpr int kTensionSamples = 4;  // a step: it is at most a small part of a swing
+constexpr double kMinFirstSample = 1e-9;        // of a step: a rebound that is over sooner is none
 constexpr double kMaxFirstSample = 1.0 / 1024;  // of a step
 constexpr double kCoarsestInterval = 1.0 / 8;   // of a step, of a limit without tension: its slack is smooth
 constexpr double kLimitReach = 2;        // of the way that ends go freely in a step: what contacts may make of it
@@ -257,6 +257,19 @@ bool LimitEvents::pullStretched(double time, const std::vector<char>& isReleased
   return true;
 }
 
+/// m/s^2: of the terms whose difference is a limit's acceleration, in the derivative that was evaluated last.
+double LimitEvents::accelerationScale(const Limit& limit, const VectorX& state) const {
+  double scale = assembly_.mechanism.gravity.norm();
+  const auto [a, b] = bodiesOf(limit);
+  for (const int body : {a, b}) {
+    if (body == kFixed) continue;
+    const double spin = angularVelocity(state, body).norm();
+    scale += linearVelocity(derivative_, body).norm() +
+             sizeOf(limit) * (angularVelocity(derivative_, body).norm() + spin * spin);
+  }
+  return scale;
+}
+
 /// Limits that are reached and still lengthen. A rebound that would end within about two steps is not resolved: the
 /// limit stays taut. Smooth forces do not pull at a limit in the instant that it is released: its tension is zero to
 /// rounding, of either sign, and would have it released again before time moves on.
@@ -272,7 +285,7 @@ std::vector<LimitEvents::Stretch> LimitEvents::findStretches(double time, const 
     if (!std::exchange(isEvaluated, true)) equations_.evaluate(time, state, derivative_);
     const double acceleration = lengtheningAcceleration(limit, state, derivative_),
                  pulling = std::max(0.0, acceleration);
-    const bool isLoaded = !isReleased[i] && acceleration > kMinPull * assembly_.mechanism.gravity.norm();
+    const bool isLoaded = !isReleased[i] && acceleration > kMinPull * accelerationScale(limit, state);
     if (!isLoaded && motion.lengthening <= kRestSpeedFloor) continue;
     const double restSpeed =
         2 * pulling * timeStep_ + kLowestRebound * std::sqrt(pulling * sizeOf(limit)) + kRestSpeedFloor;

@@ -80,6 +80,7 @@ class LimitEvents {
     bool isLoaded;        // forces would lengthen it further
   };
   bool pullStretched(double time, const std::vector<char>& isReleased, VectorX& state);
+  double accelerationScale(const Limit& limit, const VectorX& state) const;
   std::vector<Stretch> findStretches(double time, const std::vector<char>& isReleased, const VectorX& state);
   void pull(double time, const std::vector<Stretch>& stretches, VectorX& state);
   void release(double time, std::size_t limit, const VectorX& state);
